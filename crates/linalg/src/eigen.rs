@@ -1,0 +1,194 @@
+use faer::{Mat, Side};
+
+/// Why the eigenproblem has no trustworthy answer.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum EigenError {
+    /// The matrices are not of the stated order, or hold a value that is not finite.
+    #[error("the mass and stiffness matrices must both be finite and of order {order}")]
+    Shape {
+        /// The stated order.
+        order: usize,
+    },
+    /// The mass matrix is not positive definite.
+    #[error("the mass matrix is not positive definite: some motion of the assembly has no mass")]
+    MassNotPositive,
+    /// The solution does not satisfy the equations it was found from.
+    #[error(
+        "the eigenproblem was solved with a relative residual of {residual:.1e}, more than {allowed:.1e}"
+    )]
+    Inaccurate {
+        /// Largest of `‖Kφ − λMφ‖ / ‖K‖`, balanced, over the modes, or departure of ΞᵀMΞ from I.
+        residual: f64,
+        /// What is tolerated.
+        allowed: f64,
+    },
+    /// The iteration did not converge.
+    #[error("the eigenproblem did not converge")]
+    NoConvergence,
+}
+
+/// Undamped modes, mass-normalised: ΞᵀMΞ = I and ΞᵀKΞ = diag λ (eq 30, 31).
+#[derive(Debug, Clone, PartialEq)]
+pub struct ModalBasis {
+    order: usize,
+    eigenvalues: Vec<f64>,
+    shapes: Vec<f64>,
+}
+
+impl ModalBasis {
+    /// Number of modes, equal to the number of coordinates.
+    pub fn order(&self) -> usize {
+        self.order
+    }
+
+    /// Eigenvalues λ_r = ω_r², ascending, (rad/s)².
+    pub fn eigenvalues(&self) -> &[f64] {
+        &self.eigenvalues
+    }
+
+    /// The mass-normalised shape of mode `r` over the coordinates.
+    pub fn shape(&self, r: usize) -> &[f64] {
+        &self.shapes[r * self.order..(r + 1) * self.order]
+    }
+}
+
+/// Residual that is tolerated, relative to the norm of the balanced matrices.
+const RESIDUAL_ALLOWED: f64 = 1e-11;
+
+/// Solves `K φ = λ M φ` for symmetric `stiffness` and symmetric positive definite `mass`, both
+/// row-major of order `order` (eq 24 as corrected, 25, 28, 29).
+///
+/// Coordinates are scaled to unit mass first, so that displacements and rotations weigh alike, and
+/// the standard problem is divided by its norm before it is solved. Eigenvalues that are zero to
+/// working precision (rigid motions) come back as exactly zero; negative ones of an indefinite
+/// stiffness come back as they are.
+///
+/// # Errors
+/// See [`EigenError`].
+pub fn generalized_symmetric_eigen(
+    order: usize,
+    mass: &[f64],
+    stiffness: &[f64],
+) -> Result<ModalBasis, EigenError> {
+    let finite = |a: &[f64]| a.len() == order * order && a.iter().all(|e| e.is_finite());
+    if order == 0 || !finite(mass) || !finite(stiffness) {
+        return Err(EigenError::Shape { order });
+    }
+    let mut unit = Vec::with_capacity(order);
+    for i in 0..order {
+        let diagonal = mass[i * order + i];
+        if diagonal <= 0.0 {
+            return Err(EigenError::MassNotPositive);
+        }
+        unit.push(1.0 / diagonal.sqrt());
+    }
+    let balanced = |a: &[f64]| {
+        Mat::from_fn(order, order, |i, j| 0.5 * (a[i * order + j] + a[j * order + i]) * unit[i] * unit[j])
+    };
+    let mass = balanced(mass);
+    let mut stiffness = balanced(stiffness);
+    let norm = stiffness.norm_l2();
+    let norm = if norm > 0.0 { norm } else { 1.0 };
+    stiffness *= faer::Scale(1.0 / norm);
+
+    let factor = mass.llt(Side::Lower).map_err(|_| EigenError::MassNotPositive)?;
+    let lower = factor.L();
+    // A = L⁻¹ K L⁻ᵀ, by two triangular solves.
+    let mut standard = stiffness.clone();
+    lower.solve_lower_triangular_in_place(standard.as_mut());
+    let mut standard = standard.transpose().to_owned();
+    lower.solve_lower_triangular_in_place(standard.as_mut());
+    let symmetric = Mat::from_fn(order, order, |i, j| 0.5 * (standard[(i, j)] + standard[(j, i)]));
+    let standard_norm = symmetric.norm_l2();
+    let standard_norm = if standard_norm > 0.0 { standard_norm } else { 1.0 };
+    let symmetric = symmetric * faer::Scale(1.0 / standard_norm);
+    let eigen = symmetric.self_adjoint_eigen(Side::Lower).map_err(|_| EigenError::NoConvergence)?;
+    let mut shapes = eigen.U().to_owned();
+    lower.transpose().solve_upper_triangular_in_place(shapes.as_mut());
+
+    let values = eigen.S();
+    let largest = values[order - 1].abs().max(values[0].abs());
+    let zero = 1e-14 * order as f64 * largest;
+    let scaled: Vec<f64> =
+        (0..order).map(|r| if values[r].abs() <= zero { 0.0 } else { values[r] * standard_norm }).collect();
+    check(&mass, &stiffness, &scaled, &shapes)?;
+
+    Ok(ModalBasis {
+        order,
+        eigenvalues: scaled.iter().map(|value| value * norm).collect(),
+        shapes: (0..order * order).map(|k| shapes[(k % order, k / order)] * unit[k % order]).collect(),
+    })
+}
+
+fn check(mass: &Mat<f64>, stiffness: &Mat<f64>, values: &[f64], shapes: &Mat<f64>) -> Result<(), EigenError> {
+    let order = values.len();
+    let mass_shapes = mass * shapes;
+    let stiffness_shapes = stiffness * shapes;
+    let scale = values.iter().fold(f64::MIN_POSITIVE, |largest, v| largest.max(v.abs()));
+    let mut residual = 0.0_f64;
+    for r in 0..order {
+        let equation: f64 =
+            (0..order).map(|i| (stiffness_shapes[(i, r)] - values[r] * mass_shapes[(i, r)]).powi(2)).sum();
+        let size: f64 = (0..order).map(|i| mass_shapes[(i, r)].powi(2)).sum();
+        residual = residual.max((equation / size).sqrt() / scale);
+    }
+    let gram = shapes.transpose() * &mass_shapes;
+    for i in 0..order {
+        for j in 0..order {
+            residual = residual.max((gram[(i, j)] - f64::from(i == j)).abs());
+        }
+    }
+    // A comparison that a residual of NaN fails as well.
+    if residual <= RESIDUAL_ALLOWED * (order as f64).max(10.0) {
+        Ok(())
+    } else {
+        Err(EigenError::Inaccurate { residual, allowed: RESIDUAL_ALLOWED * (order as f64).max(10.0) })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn two_masses_on_a_spring_have_a_rigid_mode_and_the_textbook_frequency() {
+        let (m1, m2, k) = (2.0, 3.0, 5e6);
+        let basis = generalized_symmetric_eigen(2, &[m1, 0.0, 0.0, m2], &[k, -k, -k, k]).unwrap();
+        assert_eq!(basis.eigenvalues()[0], 0.0);
+        let expected = k * (1.0 / m1 + 1.0 / m2);
+        assert!((basis.eigenvalues()[1] / expected - 1.0).abs() < 1e-14);
+        let rigid = basis.shape(0);
+        assert!(
+            (rigid[0].abs() - (m1 + m2).sqrt().recip()).abs() < 1e-12 && (rigid[0] - rigid[1]).abs() < 1e-12
+        );
+    }
+
+    #[test]
+    fn a_chain_of_two_hundred_stiff_springs_has_its_closed_form_frequencies() {
+        // Stiffness of 1e12 N/m: the case in which an unscaled solver goes wrong without a word.
+        let (n, k) = (200, 1e12);
+        let mut mass = vec![0.0; n * n];
+        let mut stiffness = vec![0.0; n * n];
+        for i in 0..n {
+            mass[i * n + i] = 1e-3;
+            stiffness[i * n + i] = 2.0 * k;
+            if i + 1 < n {
+                stiffness[i * n + i + 1] = -k;
+                stiffness[(i + 1) * n + i] = -k;
+            }
+        }
+        let basis = generalized_symmetric_eigen(n, &mass, &stiffness).unwrap();
+        for r in 0..n {
+            let angle = std::f64::consts::PI * (r + 1) as f64 / (2.0 * (n + 1) as f64);
+            let expected = 4.0 * k / 1e-3 * angle.sin().powi(2);
+            let error = (basis.eigenvalues()[r] / expected - 1.0).abs();
+            assert!(error < 1e-10, "mode {}: {} instead of {expected}", r + 1, basis.eigenvalues()[r]);
+        }
+    }
+
+    #[test]
+    fn a_motion_without_mass_is_refused() {
+        let answer = generalized_symmetric_eigen(2, &[1.0, 0.0, 0.0, 0.0], &[1.0, 0.0, 0.0, 1.0]);
+        assert_eq!(answer, Err(EigenError::MassNotPositive));
+    }
+}

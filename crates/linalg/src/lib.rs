@@ -1,0 +1,30 @@
+//! Linear algebra of the sizes that joint identification needs.
+//!
+//! * [`Matrix2`]: real and complex 2×2 matrices in closed form, the size of a compliance or a
+//!   joint stiffness on (transverse, rotation) per spectral line;
+//! * [`LuWorkspace`]: dense complex LU with row equilibration, its memory reused from line to line;
+//! * [`LeastSquares`]: weighted linear least squares by Householder reflections, with a rank check;
+//! * [`generalized_symmetric_eigen`]: `K φ = λ M φ`, scaled and with its residuals checked.
+//!
+//! This is the only crate that names the library behind the eigenproblem. That library loses
+//! accuracy on symmetric matrices whose norm is far from one, so scaling and residual checks live
+//! here and nowhere else.
+//!
+//! ```
+//! use jointscope_linalg::Matrix2;
+//!
+//! let stiffness = Matrix2::new(3.3e6, -1.1e5, -1.1e5, 4.7e3);
+//! let compliance = stiffness.inverse().expect("a stiff joint is not singular");
+//! let identity = stiffness * compliance;
+//! assert!((identity.at(0, 0) - 1.0).abs() < 1e-12 && identity.at(0, 1).abs() < 1e-9);
+//! ```
+
+mod eigen;
+mod least_squares;
+mod lu;
+mod matrix2;
+
+pub use eigen::{EigenError, ModalBasis, generalized_symmetric_eigen};
+pub use least_squares::{LeastSquares, LeastSquaresError};
+pub use lu::{LuWorkspace, Singular};
+pub use matrix2::{ComplexMatrix2, Matrix2, RealMatrix2, Scalar};
