@@ -1,0 +1,117 @@
+use crate::SpectraError;
+use std::f64::consts::TAU;
+use std::sync::Arc;
+
+/// The spectral lines of a test: frequencies in Hz, strictly ascending, zero or above. Cheap to clone.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SpectralLines(Arc<[f64]>);
+
+impl SpectralLines {
+    /// Takes frequencies in Hz.
+    ///
+    /// # Errors
+    /// None at all, a negative or non-finite one, or one that does not ascend.
+    pub fn new(frequencies_hz: Vec<f64>) -> Result<Self, SpectraError> {
+        if frequencies_hz.is_empty() {
+            return Err(SpectraError::NoLines);
+        }
+        let mut previous = f64::NEG_INFINITY;
+        for (index, &frequency) in frequencies_hz.iter().enumerate() {
+            if !frequency.is_finite() || frequency < 0.0 {
+                return Err(SpectraError::BadFrequency { index, frequency });
+            }
+            if frequency <= previous {
+                return Err(SpectraError::NotAscending { index, frequency, previous });
+            }
+            previous = frequency;
+        }
+        Ok(SpectralLines(frequencies_hz.into()))
+    }
+
+    /// `count` lines from `start_hz` in steps of `step_hz`.
+    ///
+    /// # Errors
+    /// As [`SpectralLines::new`].
+    pub fn even(start_hz: f64, step_hz: f64, count: usize) -> Result<Self, SpectraError> {
+        Self::new((0..count).map(|i| start_hz + step_hz * i as f64).collect())
+    }
+
+    /// Frequencies in Hz.
+    pub fn hz(&self) -> &[f64] {
+        &self.0
+    }
+
+    /// Number of lines, at least one.
+    #[allow(clippy::len_without_is_empty)]
+    pub fn len(&self) -> usize {
+        self.0.len()
+    }
+
+    /// Angular frequency of line `index`, rad/s.
+    pub fn omega(&self, index: usize) -> f64 {
+        TAU * self.0[index]
+    }
+
+    /// Angular frequencies, rad/s.
+    pub fn omegas(&self) -> impl Iterator<Item = f64> + '_ {
+        self.0.iter().map(|f| TAU * f)
+    }
+
+    /// Indices of the lines from `from_hz` to `to_hz`, both included.
+    pub fn range(&self, from_hz: f64, to_hz: f64) -> std::ops::Range<usize> {
+        let start = self.0.partition_point(|&f| f < from_hz);
+        let end = self.0.partition_point(|&f| f <= to_hz);
+        start..end.max(start)
+    }
+
+    /// The lines of which `keep` holds true, by index; `None` where that leaves none.
+    pub fn retain(&self, keep: impl Fn(usize) -> bool) -> Option<Self> {
+        let kept: Arc<[f64]> = self.0.iter().enumerate().filter(|(i, _)| keep(*i)).map(|(_, &f)| f).collect();
+        (!kept.is_empty()).then_some(SpectralLines(kept))
+    }
+
+    /// Whether `other` has the same lines to within a hundredth of the smallest spacing: analysers
+    /// print the same step with different roundings.
+    pub fn agrees_with(&self, other: &SpectralLines) -> bool {
+        let spacing = self.0.windows(2).map(|w| w[1] - w[0]).fold(f64::INFINITY, f64::min);
+        let tolerance = if spacing.is_finite() { 0.01 * spacing } else { 1e-6 * self.0[0].max(1.0) };
+        self.len() == other.len()
+            && self.0.iter().zip(other.0.iter()).all(|(a, b)| (a - b).abs() <= tolerance)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_that_do_not_ascend_or_are_not_numbers_cannot_be_built() {
+        assert!(matches!(SpectralLines::new(vec![]), Err(SpectraError::NoLines)));
+        assert!(matches!(
+            SpectralLines::new(vec![2.0, 2.0]),
+            Err(SpectraError::NotAscending { index: 1, .. })
+        ));
+        assert!(matches!(
+            SpectralLines::new(vec![1.0, f64::NAN]),
+            Err(SpectraError::BadFrequency { index: 1, .. })
+        ));
+        assert!(matches!(SpectralLines::new(vec![-1.0]), Err(SpectraError::BadFrequency { index: 0, .. })));
+    }
+
+    #[test]
+    fn a_band_includes_both_its_ends() {
+        let lines = SpectralLines::even(0.0, 2.5, 401).unwrap();
+        assert_eq!(lines.range(2.5, 10.0), 1..5);
+        assert_eq!(lines.range(2000.0, 3000.0).len(), 0);
+        assert_eq!(lines.range(10.0, 2.5).len(), 0);
+    }
+
+    #[test]
+    fn lines_printed_with_other_roundings_agree_and_shifted_ones_do_not() {
+        let lines = SpectralLines::even(10.0, 0.019531, 50_000).unwrap();
+        let exact = SpectralLines::even(10.0, 0.01953125, 50_000).unwrap();
+        assert!(!lines.agrees_with(&exact), "a quarter of a microhertz a line adds up to 12 mHz");
+        let nearly = SpectralLines::new(exact.hz().iter().map(|f| f * (1.0 + 1e-8)).collect()).unwrap();
+        assert!(nearly.agrees_with(&exact));
+    }
+}
