@@ -1,0 +1,346 @@
+use crate::mesh::Mesh;
+use crate::{LumpedError, Station};
+use jointscope_beam::{
+    Matrix4, consistent_mass, consistent_rotary_inertia, element_stiffness, end_stiffness,
+    from_end_stiffness, shear_element_stiffness,
+};
+use jointscope_damping::{DampingLaw, ModeDamping, viscous_matrix};
+use jointscope_fixture::{BeamBody, Body, BodyKind, Damping, EffectKind, Fixture, Joint, JointLaw, Place};
+use jointscope_linalg::{Matrix2, ModalBasis, RealMatrix2, generalized_symmetric_eigen};
+use jointscope_spectra::Dof;
+use std::f64::consts::TAU;
+
+/// Where a body's coordinates stand in the assembly's.
+#[derive(Debug, Clone)]
+enum Coordinates {
+    /// y and θ of the centre of gravity.
+    Rigid { first: usize, x_cg: f64 },
+    /// y alone.
+    Translating { first: usize },
+    /// y and θ of every node.
+    Beam { first: usize, mesh: Mesh },
+}
+
+/// The free assembly: bodies with their known masses, and joints; no supports, no effects but those that
+/// rebuild a beam body (its shear, its stiffness factor).
+///
+/// Coordinates are (y, θ) of each rigid body's centre of gravity, y of a body that does not rotate, and
+/// (y, θ) of every node of a beam, in the order of the fixture's bodies.
+#[derive(Debug, Clone)]
+pub struct Assembly {
+    order: usize,
+    places: Vec<Coordinates>,
+    mass: Vec<f64>,
+    stiffness: Vec<f64>,
+    basis: ModalBasis,
+    damping: Vec<ModeDamping>,
+    law: DampingLaw,
+}
+
+impl Assembly {
+    /// Builds matrices and modes, beams meshed finely enough for `highest_hz`.
+    ///
+    /// # Errors
+    /// [`LumpedError::Modes`] where the eigenproblem fails, as it does for impossible masses.
+    pub fn new(fixture: &Fixture, highest_hz: f64) -> Result<Self, LumpedError> {
+        let places = coordinates(fixture, highest_hz);
+        let order = places.iter().map(Coordinates::count).sum();
+        let plain = Matrices::of(fixture, &places, order, false);
+        let basis = generalized_symmetric_eigen(order, &plain.mass, &plain.stiffness)?;
+        let law = damping_law(fixture.damping());
+        let damping = law.of_modes(basis.eigenvalues());
+        let assembly =
+            Assembly { order, places, mass: plain.mass, stiffness: plain.stiffness, basis, damping, law };
+        if fixture.physics().iter().any(rebuilds_a_body) { assembly.rebuilt(fixture) } else { Ok(assembly) }
+    }
+
+    /// The assembly with the effects that rebuild a beam body. Its viscous matrix stays that of the
+    /// assembly without them; in the new modes only its diagonal is kept, an error of the order of the
+    /// damping ratio times the change of shape.
+    fn rebuilt(self, fixture: &Fixture) -> Result<Self, LumpedError> {
+        let viscous = viscous_matrix(&self.mass, &self.basis, &self.damping);
+        let with = Matrices::of(fixture, &self.places, self.order, true);
+        let basis = generalized_symmetric_eigen(self.order, &with.mass, &with.stiffness)?;
+        let structural = match self.law {
+            DampingLaw::LossFactor(factor) => factor,
+            _ => 0.0,
+        };
+        let damping = (0..self.order)
+            .map(|r| ModeDamping {
+                viscous: quadratic_form(&viscous, basis.shape(r)),
+                structural: structural * basis.eigenvalues()[r],
+            })
+            .collect();
+        Ok(Assembly { mass: with.mass, stiffness: with.stiffness, basis, damping, ..self })
+    }
+
+    /// Number of coordinates.
+    pub fn order(&self) -> usize {
+        self.order
+    }
+
+    /// Mass matrix M, row-major; kg, kg·m, kg·m².
+    pub fn mass(&self) -> &[f64] {
+        &self.mass
+    }
+
+    /// Stiffness matrix K, row-major; N/m, N, N·m.
+    pub fn stiffness(&self) -> &[f64] {
+        &self.stiffness
+    }
+
+    /// Viscous damping matrix C, row-major (eq 27); zero for structural damping.
+    pub fn viscous_damping(&self) -> Vec<f64> {
+        viscous_matrix(&self.mass, &self.basis, &self.damping)
+    }
+
+    /// The undamped modes, mass-normalised.
+    pub fn modes(&self) -> &ModalBasis {
+        &self.basis
+    }
+
+    /// Damping of each mode.
+    pub fn mode_damping(&self) -> &[ModeDamping] {
+        &self.damping
+    }
+
+    /// Undamped natural frequencies of the free assembly in Hz, ascending; rigid motions are exactly zero.
+    pub fn natural_frequencies_hz(&self) -> Vec<f64> {
+        self.basis.eigenvalues().iter().map(|l| l.max(0.0).sqrt() / TAU).collect()
+    }
+
+    /// How the free assembly is damped.
+    pub fn damping_law(&self) -> &DampingLaw {
+        &self.law
+    }
+
+    /// The row vector t that reads the motion at `station` from the coordinates (and spreads a load over them).
+    pub fn station_row(&self, station: &Station) -> Vec<f64> {
+        let mut row = vec![0.0; self.order];
+        self.places[station.body].read(station.x, station.dof, &mut row);
+        row
+    }
+
+    /// The station's participation in each mode, Ξᵀ t.
+    pub fn participation(&self, station: &Station) -> Vec<f64> {
+        let row = self.station_row(station);
+        (0..self.order)
+            .map(|r| self.basis.shape(r).iter().zip(&row).map(|(shape, t)| shape * t).sum())
+            .collect()
+    }
+}
+
+impl Coordinates {
+    fn count(&self) -> usize {
+        match self {
+            Coordinates::Rigid { .. } => 2,
+            Coordinates::Translating { .. } => 1,
+            Coordinates::Beam { mesh, .. } => mesh.coordinates(),
+        }
+    }
+
+    fn read(&self, x: f64, dof: Dof, row: &mut [f64]) {
+        match (self, dof) {
+            (Coordinates::Rigid { first, x_cg }, Dof::Translation) => {
+                row[*first] = 1.0;
+                row[first + 1] = x - x_cg;
+            }
+            (Coordinates::Rigid { first, .. }, Dof::Rotation) => row[first + 1] = 1.0,
+            (Coordinates::Translating { first }, Dof::Translation) => row[*first] = 1.0,
+            (Coordinates::Translating { .. }, Dof::Rotation) => {}
+            (Coordinates::Beam { first, mesh }, dof) => {
+                mesh.interpolate(x, dof, &mut row[*first..first + mesh.coordinates()]);
+            }
+        }
+    }
+}
+
+fn coordinates(fixture: &Fixture, highest_hz: f64) -> Vec<Coordinates> {
+    let mut first = 0;
+    let mut places = Vec::with_capacity(fixture.bodies().len());
+    for (index, body) in fixture.bodies().iter().enumerate() {
+        let place = match &body.kind {
+            BodyKind::Rigid(rigid) if rigid.rotates => {
+                Coordinates::Rigid { first, x_cg: rigid.x_cg.map_or(0.0, |q| q.value) }
+            }
+            BodyKind::Rigid(_) => Coordinates::Translating { first },
+            BodyKind::Beam(beam) => {
+                let mesh = Mesh::new(
+                    beam.from.value,
+                    beam.to.value,
+                    beam.youngs_modulus.value * beam.second_moment.value,
+                    beam.mass_per_length.value,
+                    highest_hz,
+                    &attachments(fixture, index),
+                );
+                Coordinates::Beam { first, mesh }
+            }
+        };
+        first += place.count();
+        places.push(place);
+    }
+    places
+}
+
+/// Abscissae where something holds the body, the most important first: joints bend it there.
+fn attachments(fixture: &Fixture, body: usize) -> Vec<f64> {
+    let points = fixture.points();
+    let joints =
+        fixture.joints().iter().flat_map(|j| [j.from, j.to]).map(|p| (points[p].body, points[p].x.value));
+    let supports = fixture.supports().iter().map(|s| fixture.support_place(s));
+    let masses = fixture.bodies()[body].masses.iter().map(|m| (body, m.x.value));
+    let sensors = points.iter().map(|p| (p.body, p.x.value));
+    joints.chain(supports).chain(masses).chain(sensors).filter(|(b, _)| *b == body).map(|(_, x)| x).collect()
+}
+
+/// Stiffness of a joint as the fixture states it, without effects, on d = u_to − R·u_from.
+pub(crate) fn nominal_stiffness(law: &JointLaw, length: f64) -> RealMatrix2 {
+    match law {
+        JointLaw::Beam { youngs_modulus, second_moment } => {
+            end_stiffness(youngs_modulus.value * second_moment.value, length)
+        }
+        JointLaw::Stiffness { stiffness: [a, b, d], .. } => Matrix2::new(a.value, b.value, b.value, d.value),
+    }
+}
+
+pub(crate) fn damping_law(damping: &Damping) -> DampingLaw {
+    match damping {
+        Damping::Undamped => DampingLaw::Undamped,
+        Damping::ModalRatios(ratios) => DampingLaw::ModalRatios(ratios.iter().map(|r| r.value).collect()),
+        Damping::Rayleigh { mass, stiffness } => {
+            DampingLaw::Rayleigh { mass: mass.value, stiffness: stiffness.value }
+        }
+        Damping::LossFactor(factor) => DampingLaw::LossFactor(factor.value),
+    }
+}
+
+fn rebuilds_a_body(effect: &jointscope_fixture::Effect) -> bool {
+    matches!(effect.kind, EffectKind::ShearDeformation | EffectKind::StiffnessChange)
+        && matches!(effect.place, Place::Body(_))
+}
+
+fn quadratic_form(matrix: &[f64], vector: &[f64]) -> f64 {
+    let rows = matrix.chunks_exact(vector.len());
+    rows.zip(vector).map(|(row, v)| v * row.iter().zip(vector).map(|(a, b)| a * b).sum::<f64>()).sum()
+}
+
+/// Mass and stiffness under construction.
+struct Matrices {
+    order: usize,
+    mass: Vec<f64>,
+    stiffness: Vec<f64>,
+}
+
+impl Matrices {
+    fn of(fixture: &Fixture, places: &[Coordinates], order: usize, with_effects: bool) -> Self {
+        let mut all = Matrices { order, mass: vec![0.0; order * order], stiffness: vec![0.0; order * order] };
+        for (body, place) in fixture.bodies().iter().zip(places) {
+            all.add_body(fixture, body, place, with_effects);
+        }
+        for joint in fixture.joints() {
+            all.add_joint(fixture, joint, places);
+        }
+        all
+    }
+
+    fn add_body(&mut self, fixture: &Fixture, body: &Body, place: &Coordinates, with_effects: bool) {
+        match (&body.kind, place) {
+            (BodyKind::Rigid(rigid), Coordinates::Rigid { first, .. }) => {
+                self.mass[first * self.order + first] += rigid.mass.value;
+                let inertia = rigid.inertia.map_or(0.0, |q| q.value);
+                self.mass[(first + 1) * self.order + first + 1] += inertia;
+            }
+            (BodyKind::Rigid(rigid), Coordinates::Translating { first }) => {
+                self.mass[first * self.order + first] += rigid.mass.value;
+            }
+            (BodyKind::Beam(beam), Coordinates::Beam { first, mesh }) => {
+                let altered = BodyEffects::on(fixture, &body.name, with_effects);
+                self.add_beam(beam, *first, mesh, &altered);
+            }
+            // Coordinates are made from the same bodies, so the kinds always match.
+            _ => {}
+        }
+        for point in &body.masses {
+            let mut row = vec![0.0; self.order];
+            place.read(point.x.value, Dof::Translation, &mut row);
+            for i in 0..self.order {
+                for j in 0..self.order {
+                    self.mass[i * self.order + j] += point.mass.value * row[i] * row[j];
+                }
+            }
+        }
+    }
+
+    fn add_beam(&mut self, beam: &BeamBody, first: usize, mesh: &Mesh, altered: &BodyEffects) {
+        let bending = beam.youngs_modulus.value * beam.second_moment.value * altered.factor;
+        for (element, pair) in mesh.nodes.windows(2).enumerate() {
+            let length = pair[1] - pair[0];
+            let stiffness = match altered.shear_stiffness {
+                Some(shear) => shear_element_stiffness(bending, shear * altered.factor, length),
+                None => element_stiffness(bending, length),
+            };
+            let at = first + 2 * element;
+            add_block(&mut self.stiffness, self.order, at, &stiffness);
+            add_block(&mut self.mass, self.order, at, &consistent_mass(beam.mass_per_length.value, length));
+            if altered.rotary_inertia != 0.0 {
+                let rotary = consistent_rotary_inertia(altered.rotary_inertia, length);
+                add_block(&mut self.mass, self.order, at, &rotary);
+            }
+        }
+    }
+
+    fn add_joint(&mut self, fixture: &Fixture, joint: &Joint, places: &[Coordinates]) {
+        let length = fixture.joint_length(joint);
+        let matrix = from_end_stiffness(nominal_stiffness(&joint.law, length), length);
+        let rows: Vec<Vec<f64>> = [joint.from, joint.to]
+            .into_iter()
+            .flat_map(|point| [Dof::Translation, Dof::Rotation].map(|dof| (point, dof)))
+            .map(|(point, dof)| {
+                let point = &fixture.points()[point];
+                let mut row = vec![0.0; self.order];
+                places[point.body].read(point.x.value, dof, &mut row);
+                row
+            })
+            .collect();
+        for (a, b) in (0..4).flat_map(|a| (0..4).map(move |b| (a, b))) {
+            for i in (0..self.order).filter(|&i| rows[a][i] != 0.0) {
+                for j in (0..self.order).filter(|&j| rows[b][j] != 0.0) {
+                    self.stiffness[i * self.order + j] += rows[a][i] * matrix[a][b] * rows[b][j];
+                }
+            }
+        }
+    }
+}
+
+fn add_block(matrix: &mut [f64], order: usize, at: usize, block: &Matrix4) {
+    for i in 0..4 {
+        for j in 0..4 {
+            matrix[(at + i) * order + at + j] += block[i][j];
+        }
+    }
+}
+
+/// Effects that change a beam body as a whole.
+struct BodyEffects {
+    factor: f64,
+    shear_stiffness: Option<f64>,
+    rotary_inertia: f64,
+}
+
+impl BodyEffects {
+    fn on(fixture: &Fixture, body: &str, with_effects: bool) -> Self {
+        let mut all = BodyEffects { factor: 1.0, shear_stiffness: None, rotary_inertia: 0.0 };
+        let here = |place: &Place| matches!(place, Place::Body(name) if name == body);
+        for effect in fixture.physics().iter().filter(|e| with_effects && here(&e.place)) {
+            match effect.kind {
+                EffectKind::StiffnessChange => all.factor *= effect.value(0),
+                EffectKind::ShearDeformation => {
+                    all.shear_stiffness = Some(effect.value(0));
+                    all.rotary_inertia += effect.value(1);
+                }
+                _ => {}
+            }
+        }
+        all
+    }
+}

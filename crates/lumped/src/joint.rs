@@ -1,0 +1,351 @@
+//! The dynamic stiffness of one joint with everything that the fixture says of it.
+
+use crate::assembly::nominal_stiffness;
+use jointscope_beam::{consistent_mass, end_compliance, transport};
+use jointscope_fixture::{Damping, Dof, Effect, EffectKind, Fixture, Joint, JointLaw, Place};
+use jointscope_linalg::{ComplexMatrix2, Matrix2, RealMatrix2};
+use num_complex::Complex64;
+
+/// A complex 4×4 matrix on (y, θ) at the joint's near end, (y, θ) at its far end, by 2×2 blocks.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct TwoEnds {
+    near: ComplexMatrix2,
+    cross: ComplexMatrix2,
+    far: ComplexMatrix2,
+}
+
+/// A spring and dashpot in series with one end of the joint.
+#[derive(Debug, Clone, Copy)]
+struct Interface {
+    at_far_end: bool,
+    dof: Dof,
+    stiffness: f64,
+    damping: f64,
+}
+
+/// Everything that the fixture says of one joint's dynamic stiffness.
+#[derive(Debug, Clone)]
+pub(crate) struct JointDynamics {
+    nominal: RealMatrix2,
+    length: f64,
+    /// η of the fixture: its structural part belongs to the modes.
+    base_loss: f64,
+    dashpots: Option<RealMatrix2>,
+    bending_stiffness: Option<f64>,
+    extra_length: f64,
+    factor: f64,
+    loss: f64,
+    relaxations: Vec<(f64, f64)>,
+    interfaces: Vec<Interface>,
+    shear_stiffness: Option<f64>,
+    mass: f64,
+    altered: bool,
+}
+
+impl JointDynamics {
+    pub fn new(fixture: &Fixture, joint: &Joint) -> Self {
+        let length = fixture.joint_length(joint);
+        let (bending_stiffness, dashpots) = match &joint.law {
+            JointLaw::Beam { youngs_modulus, second_moment } => {
+                (Some(youngs_modulus.value * second_moment.value), None)
+            }
+            JointLaw::Stiffness { damping, .. } => {
+                (None, damping.map(|[a, b, d]| Matrix2::new(a.value, b.value, b.value, d.value)))
+            }
+        };
+        let base_loss = match fixture.damping() {
+            Damping::LossFactor(factor) => factor.value,
+            _ => 0.0,
+        };
+        let mut all = JointDynamics {
+            nominal: nominal_stiffness(&joint.law, length),
+            length,
+            base_loss,
+            altered: dashpots.is_some(),
+            dashpots,
+            bending_stiffness,
+            extra_length: 0.0,
+            factor: 1.0,
+            loss: 0.0,
+            relaxations: Vec::new(),
+            interfaces: Vec::new(),
+            shear_stiffness: None,
+            mass: 0.0,
+        };
+        fixture.physics().iter().for_each(|effect| all.apply(fixture, joint, effect));
+        all
+    }
+
+    fn apply(&mut self, fixture: &Fixture, joint: &Joint, effect: &Effect) {
+        let points = fixture.points();
+        match &effect.place {
+            Place::Joint(name) if *name == joint.name => match effect.kind {
+                EffectKind::ShearDeformation => {
+                    // Two shear compliances in series add up.
+                    let earlier = self.shear_stiffness.map_or(0.0, |s| 1.0 / s);
+                    self.shear_stiffness = Some(1.0 / (earlier + 1.0 / effect.value(0)));
+                }
+                EffectKind::JointMass => self.mass += effect.value(0),
+                EffectKind::StiffnessChange => self.factor *= effect.value(0),
+                EffectKind::LossFactor => self.loss += effect.value(0),
+                EffectKind::Relaxation => self.relaxations.push((effect.value(0), effect.value(1))),
+                EffectKind::JointLength => self.extra_length += effect.value(0),
+                _ => return,
+            },
+            Place::Point(name) if effect.kind == EffectKind::InterfaceCompliance => {
+                let at_far_end = points[joint.to].name == *name;
+                if !at_far_end && points[joint.from].name != *name {
+                    return;
+                }
+                let dof = effect.dof.unwrap_or(Dof::Translation);
+                let (stiffness, damping) = (effect.value(0), effect.value(1));
+                self.interfaces.push(Interface { at_far_end, dof, stiffness, damping });
+            }
+            _ => return,
+        }
+        self.altered = true;
+    }
+
+    /// Whether anything differs from what the modes of the free assembly hold already.
+    pub fn is_altered(&self) -> bool {
+        self.altered
+    }
+
+    /// The part that the modes of the free assembly hold: k(1 + iη) of the fixture, without its viscous damping.
+    pub fn in_the_modes(&self) -> TwoEnds {
+        let factor = Complex64::new(1.0, self.base_loss);
+        TwoEnds::from_end(self.nominal.to_complex().scale(factor), self.length)
+    }
+
+    /// The dynamic stiffness at s = iω (or decay + iω), effects included.
+    pub fn at(&self, s: Complex64) -> TwoEnds {
+        let length = self.length + self.extra_length;
+        let modulus = self.modulus(s);
+        if self.mass != 0.0 && self.bending_stiffness.is_some() && length > 0.0 {
+            return self.heavy_beam(s, length, modulus);
+        }
+        let elastic = match self.bending_stiffness {
+            Some(bending) => jointscope_beam::end_stiffness(bending, length),
+            None => self.nominal,
+        };
+        let mut stiffness = elastic.to_complex().scale(modulus);
+        if let Some(dashpots) = self.dashpots {
+            stiffness = stiffness + dashpots.to_complex().scale(s);
+        }
+        if let Some(shear) = self.shear_stiffness {
+            stiffness = in_series(stiffness, [1.0, 0.0], modulus * (shear / length));
+        }
+        for interface in &self.interfaces {
+            let direction = match (interface.dof, interface.at_far_end) {
+                (Dof::Translation, _) => [1.0, 0.0],
+                (Dof::Rotation, true) => [0.0, 1.0],
+                (Dof::Rotation, false) => [length, 1.0],
+            };
+            stiffness = in_series(stiffness, direction, interface.stiffness + s * interface.damping);
+        }
+        let mut ends = TwoEnds::from_end(stiffness, length);
+        if self.mass != 0.0 {
+            ends.add_half_masses(s * s * (0.5 * self.mass));
+        }
+        ends
+    }
+
+    /// Complex factor of the elastic stiffness: stiffness change, loss factors, relaxation.
+    fn modulus(&self, s: Complex64) -> Complex64 {
+        let mut factor = Complex64::new(1.0, self.base_loss + self.loss);
+        for &(ratio, time) in &self.relaxations {
+            factor += ratio * (s * time) / (1.0 + s * time);
+        }
+        factor * self.factor
+    }
+
+    /// A beam with uniformly distributed mass, by doubling a short element four times; its interfaces are
+    /// springs in series with its ends.
+    fn heavy_beam(&self, s: Complex64, length: f64, modulus: Complex64) -> TwoEnds {
+        const DOUBLINGS: u32 = 4;
+        let short = length / f64::from(1u32 << DOUBLINGS);
+        let bending = self.bending_stiffness.unwrap_or_default();
+        let mut compliance = end_compliance(bending, short);
+        if let Some(shear) = self.shear_stiffness {
+            compliance.0[0][0] += short / shear;
+        }
+        let stiffness = compliance.inverse_unchecked().to_complex().scale(modulus);
+        let mut beam = TwoEnds::from_end(stiffness, short);
+        beam.add_real(&consistent_mass(self.mass / length, short), s * s);
+        for _ in 0..DOUBLINGS {
+            beam = beam.followed_by(beam);
+        }
+        for interface in &self.interfaces {
+            beam = beam.softened(interface, interface.stiffness + s * interface.damping);
+        }
+        beam
+    }
+}
+
+/// (k⁻¹ + r rᵀ/spring)⁻¹ = k − k r rᵀ k / (spring + rᵀ k r), which needs no inverse of k.
+fn in_series(stiffness: ComplexMatrix2, direction: [f64; 2], spring: Complex64) -> ComplexMatrix2 {
+    let [[a, b], [c, d]] = stiffness.0;
+    let column = [a * direction[0] + b * direction[1], c * direction[0] + d * direction[1]];
+    let row = [a * direction[0] + c * direction[1], b * direction[0] + d * direction[1]];
+    let factor = (spring + column[0] * direction[0] + column[1] * direction[1]).inv();
+    Matrix2::new(
+        a - column[0] * row[0] * factor,
+        b - column[0] * row[1] * factor,
+        c - column[1] * row[0] * factor,
+        d - column[1] * row[1] * factor,
+    )
+}
+
+impl TwoEnds {
+    /// `[−R, I]ᵀ k [−R, I]`.
+    pub fn from_end(stiffness: ComplexMatrix2, length: f64) -> Self {
+        let transport = transport(length).to_complex();
+        let back = transport.transpose() * stiffness;
+        TwoEnds { near: back * transport, cross: back.map(|e| -e), far: stiffness }
+    }
+
+    /// The element in row `i`, column `j` of the 4×4 matrix.
+    pub fn at(&self, i: usize, j: usize) -> Complex64 {
+        match (i / 2, j / 2) {
+            (0, 0) => self.near.at(i, j),
+            (0, _) => self.cross.at(i, j - 2),
+            (_, 0) => self.cross.at(j, i - 2),
+            _ => self.far.at(i - 2, j - 2),
+        }
+    }
+
+    fn add_real(&mut self, matrix: &jointscope_beam::Matrix4, factor: Complex64) {
+        for i in 0..2 {
+            for j in 0..2 {
+                self.near.0[i][j] += matrix[i][j] * factor;
+                self.cross.0[i][j] += matrix[i][j + 2] * factor;
+                self.far.0[i][j] += matrix[i + 2][j + 2] * factor;
+            }
+        }
+    }
+
+    fn add_half_masses(&mut self, inertia: Complex64) {
+        self.near.0[0][0] += inertia;
+        self.far.0[0][0] += inertia;
+    }
+
+    /// This element and the next one behind it, the motion between them eliminated.
+    fn followed_by(self, next: TwoEnds) -> TwoEnds {
+        let middle = (self.far + next.near).inverse_unchecked();
+        let left = self.cross * middle;
+        let right = next.cross.transpose() * middle;
+        TwoEnds {
+            near: self.near - left * self.cross.transpose(),
+            cross: Matrix2::zero() - left * next.cross,
+            far: next.far - right * next.cross,
+        }
+    }
+
+    /// With a spring in series with one of its four end motions.
+    fn softened(self, interface: &Interface, spring: Complex64) -> TwoEnds {
+        let e = 2 * usize::from(interface.at_far_end) + usize::from(interface.dof == Dof::Rotation);
+        let factor = (spring + self.at(e, e)).inv();
+        let changed = |i: usize, j: usize| self.at(i, j) - self.at(i, e) * self.at(e, j) * factor;
+        let block = |i: usize, j: usize| {
+            Matrix2::new(changed(i, j), changed(i, j + 1), changed(i + 1, j), changed(i + 1, j + 1))
+        };
+        TwoEnds { near: block(0, 0), cross: block(0, 2), far: block(2, 2) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn fixture(physics: &str) -> Fixture {
+        Fixture::from_json(&format!(
+            r#"{{ "bodies": {{ "A": {{ "mass": 1, "inertia": 1e-3, "x_cg": -0.03 }}, "B": {{ "mass": 1, "inertia": 1e-3, "x_cg": 0.09 }} }},
+              "points": {{ "2": {{ "body": "A", "x": 0 }}, "3": {{ "body": "B", "x": 0.06 }} }},
+              "joints": {{ "J": {{ "from": "2", "to": "3", "beam": {{ "youngs_modulus": 2.07e11, "second_moment": 3.67e-10 }} }} }},
+              "physics": [{physics}] }}"#
+        ))
+        .unwrap()
+    }
+
+    fn dynamics(physics: &str) -> JointDynamics {
+        let fixture = fixture(physics);
+        JointDynamics::new(&fixture, &fixture.joints()[0])
+    }
+
+    fn largest_difference(a: TwoEnds, b: TwoEnds) -> f64 {
+        let mut worst = 0.0_f64;
+        for i in 0..4 {
+            for j in 0..4 {
+                let scale = (a.at(i, i).norm() * a.at(j, j).norm()).sqrt();
+                worst = worst.max((a.at(i, j) - b.at(i, j)).norm() / scale);
+            }
+        }
+        worst
+    }
+
+    #[test]
+    fn a_joint_of_almost_no_mass_is_the_massless_one_whatever_else_it_has() {
+        let s = Complex64::new(0.0, 3000.0);
+        let others = r#"{"kind": "shear_deformation", "place": "J", "shear_stiffness": 2e6},
+            {"kind": "interface_compliance", "place": "2", "dof": "rotation", "stiffness": 9e3, "damping": 0.3},
+            {"kind": "interface_compliance", "place": "3", "dof": "translation", "stiffness": 8e6},
+            {"kind": "loss_factor", "place": "J", "loss_factor": 0.05}, {"kind": "joint_length", "place": "J", "dx": 0.002}"#;
+        let heavy = format!(r#"{others}, {{"kind": "joint_mass", "place": "J", "mass": 1e-12}}"#);
+        let error = largest_difference(dynamics(others).at(s), dynamics(&heavy).at(s));
+        assert!(error < 1e-9, "{error}");
+    }
+
+    #[test]
+    fn the_mass_of_a_beam_is_right_to_the_closed_form_of_the_vibrating_beam() {
+        // Clamped far end: the receptance at the free near end of a cantilever is, with z = βL,
+        // y/F = L³/(EI z³) · (cosh z sin z − sinh z cos z) / (1 + cos z cosh z), here below its first resonance.
+        let (ei, length, mass) = (2.07e11 * 3.67e-10, 0.06, 0.2);
+        let joint = dynamics(r#"{"kind": "joint_mass", "place": "J", "mass": 0.2}"#);
+        let z: f64 = 1.2;
+        let omega = (z / length).powi(2) * (ei / (mass / length)).sqrt();
+        let found = joint.at(Complex64::new(0.0, omega)).near.inverse().unwrap().at(0, 0);
+        let expected = length.powi(3) / (ei * z.powi(3)) * (z.cosh() * z.sin() - z.sinh() * z.cos())
+            / (1.0 + z.cos() * z.cosh());
+        assert!((found.re / expected - 1.0).abs() < 1e-5, "{found} against {expected}");
+    }
+
+    #[test]
+    fn shear_reads_the_same_as_a_translation_spring_at_either_end() {
+        let s = Complex64::new(0.0, 2000.0);
+        let shear = dynamics(r#"{"kind": "shear_deformation", "place": "J", "shear_stiffness": 6e4}"#).at(s);
+        for point in ["2", "3"] {
+            let spring = dynamics(&format!(
+                r#"{{"kind": "interface_compliance", "place": "{point}", "dof": "translation", "stiffness": 1e6}}"#
+            ));
+            assert!(largest_difference(shear, spring.at(s)) < 1e-12);
+        }
+    }
+
+    #[test]
+    fn relaxation_stiffens_from_its_static_to_its_instantaneous_value() {
+        let joint = dynamics(r#"{"kind": "relaxation", "place": "J", "ratio": 0.6, "time": 1e-4}"#);
+        let nominal = joint.nominal.at(0, 0);
+        let ratio = |omega: f64| joint.at(Complex64::new(0.0, omega)).far.at(0, 0) / nominal;
+        assert!((ratio(1e-3) - 1.0).norm() < 1e-6 && (ratio(1e9) - 1.6).norm() < 1e-4);
+        // At ωτ = 1 the loss is half of the ratio.
+        assert!((ratio(1e4) - Complex64::new(1.3, 0.3)).norm() < 1e-12);
+    }
+
+    #[test]
+    fn a_rotation_spring_at_the_near_end_adds_its_compliance_about_that_end() {
+        let s = Complex64::new(0.0, 1.0);
+        let joint = dynamics(
+            r#"{"kind": "interface_compliance", "place": "2", "dof": "rotation", "stiffness": 5e3}"#,
+        );
+        let with = joint.at(s).far.inverse().unwrap();
+        let without = joint.nominal.inverse().unwrap();
+        let l = 0.06;
+        let expected = [[l * l / 5e3, l / 5e3], [l / 5e3, 1.0 / 5e3]];
+        for i in 0..2 {
+            for j in 0..2 {
+                let added = with.at(i, j).re - without.at(i, j);
+                assert!((added / expected[i][j] - 1.0).abs() < 1e-9, "({i},{j}): {added}");
+            }
+        }
+    }
+}

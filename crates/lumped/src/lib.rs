@@ -1,0 +1,93 @@
+//! The lumped model (SIM) of an assembly: bodies, joints, supports and effects, solved by modal sums.
+//!
+//! Bodies are rigid (y, θ about the centre of gravity), rigid without rotation (y alone) or
+//! Euler–Bernoulli beams meshed with finite elements. Joints act on d = u_to − R·u_from. The dynamic stiffness
+//! of the free assembly, Z(s) = s²M + sC + K with s = iω, is diagonal in its undamped modes whatever its
+//! proportional damping, so its receptances are sums over modes: nothing is factorised per line. What is
+//! not proportional (supports, dashpots, every effect of the fixture file) is a change of low rank, V Δ Vᵀ, and
+//! enters by the Woodbury formula:
+//!
+//! H = G_oi − G_oV (I + Δ G_VV)⁻¹ Δ G_Vi.
+//!
+//! * [`Assembly`]: matrices and undamped modes of the free assembly (eq 8–14);
+//! * [`Model`]: the assembly with supports and effects, and its receptances between any [`Station`]s;
+//! * [`synthesize`]: the FRFs an analyser would record (eq 18, 41), measuring-chain effects included.
+//!
+//! ```
+//! use jointscope_fixture::Fixture;
+//! use jointscope_lumped::{Instrument, synthesize};
+//! use jointscope_spectra::{FrfPair, SpectralLines};
+//!
+//! let fixture = Fixture::from_json(r#"{
+//!   "bodies": { "A": { "mass": 2.0, "rotates": false }, "B": { "mass": 3.0, "rotates": false } },
+//!   "points": { "1": { "body": "A", "x": 0 }, "2": { "body": "B", "x": 0.1 } },
+//!   "joints": { "J": { "from": "1", "to": "2", "stiffness": [[5e6, 0], [0, 0]] } } }"#)?;
+//! let lines = SpectralLines::new(vec![100.0])?;
+//! let frfs = synthesize(&fixture, &[FrfPair::transverse("2", "1")], &lines, Instrument::AsRecorded)?;
+//! // Closed form of two masses on a spring: k / (k (m1 + m2) − ω² m1 m2).
+//! let omega2 = (2.0 * std::f64::consts::PI * 100.0_f64).powi(2);
+//! let expected = 5e6 / (5e6 * 5.0 - omega2 * 6.0);
+//! assert!((frfs.values(0)[0].re - expected).abs() < 1e-12);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+mod assembly;
+mod bar;
+mod joint;
+mod mesh;
+mod model;
+mod station;
+mod synthesis;
+mod terms;
+
+pub use assembly::Assembly;
+pub use model::{Model, Receptances};
+pub use station::Station;
+pub use synthesis::{Instrument, synthesize};
+
+/// Why an assembly cannot be modelled.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum LumpedError {
+    /// The undamped modes could not be found.
+    #[error("the assembly's modes cannot be computed: {0}")]
+    Modes(#[from] jointscope_linalg::EigenError),
+    /// An FRF names a point that the fixture does not have.
+    #[error("FRF {frf}: the fixture has no point `{point}` (it has {known})")]
+    UnknownPoint {
+        /// The FRF asked for.
+        frf: String,
+        /// The missing point.
+        point: String,
+        /// The points there are.
+        known: String,
+    },
+    /// A rotation or moment was asked of a body that does not rotate.
+    #[error("FRF {frf}: point `{point}` sits on a body that does not rotate")]
+    NoRotation {
+        /// The FRF asked for.
+        frf: String,
+        /// The point.
+        point: String,
+    },
+    /// An effect makes FRFs depend on the amplitude.
+    #[error(
+        "physics/{index}: `{kind}` makes the response depend on its amplitude, so it has no single FRF; `jointscope simulate` computes its time histories"
+    )]
+    NonLinear {
+        /// Position in the fixture's `physics`.
+        index: usize,
+        /// The effect's name.
+        kind: &'static str,
+    },
+    /// The dynamic stiffness has no inverse at a line.
+    #[error(
+        "the response is unbounded at {frequency} Hz: the model has an undamped resonance on that line; state some damping or move the line"
+    )]
+    Unbounded {
+        /// The line, Hz.
+        frequency: f64,
+    },
+    /// The resulting FRFs are not a valid set.
+    #[error(transparent)]
+    Spectra(#[from] jointscope_spectra::SpectraError),
+}

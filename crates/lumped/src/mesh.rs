@@ -1,0 +1,90 @@
+//! Finite-element mesh of a deformable body.
+
+use jointscope_beam::shape_functions;
+use jointscope_spectra::Dof;
+use std::f64::consts::TAU;
+
+/// Longest element, as βh at the highest line: Hermite elements are then right to about 1e-6 in frequency.
+const ELEMENT_WAVE: f64 = 0.35;
+/// Fewest elements of a body, for bodies that hardly bend within the band.
+const FEWEST: f64 = 8.0;
+/// A node is set at an attachment only if no other is nearer than this share of an element: very short
+/// elements ruin the eigenproblem's accuracy.
+const NEAREST: f64 = 0.2;
+
+/// Nodes of a beam, ascending, m.
+#[derive(Debug, Clone)]
+pub(crate) struct Mesh {
+    pub nodes: Vec<f64>,
+}
+
+impl Mesh {
+    /// Meshes the beam from `from` to `to` with EI and mass per length, fine enough for `highest_hz`, with
+    /// nodes at the `attachments` in their order of importance.
+    pub fn new(
+        from: f64,
+        to: f64,
+        bending_stiffness: f64,
+        mass_per_length: f64,
+        highest_hz: f64,
+        attachments: &[f64],
+    ) -> Self {
+        let omega = TAU * highest_hz;
+        let wave_number = (omega * omega * mass_per_length / bending_stiffness).sqrt().sqrt();
+        let longest = ((to - from) / FEWEST).min(ELEMENT_WAVE / wave_number.max(1e-9));
+        let mut nodes = vec![from, to];
+        for &x in attachments {
+            if nodes.iter().all(|n| (n - x).abs() > NEAREST * longest) && x > from && x < to {
+                nodes.push(x);
+            }
+        }
+        nodes.sort_by(f64::total_cmp);
+        let mut mesh = vec![from];
+        for pair in nodes.windows(2) {
+            let count = ((pair[1] - pair[0]) / longest).ceil().max(1.0);
+            mesh.extend((1..=count as usize).map(|i| pair[0] + (pair[1] - pair[0]) * i as f64 / count));
+        }
+        Mesh { nodes: mesh }
+    }
+
+    /// Number of coordinates: y and θ of each node.
+    pub fn coordinates(&self) -> usize {
+        2 * self.nodes.len()
+    }
+
+    /// Adds the shape-function values at `x` to `row`, which covers the body's coordinates. Beyond the
+    /// ends the beam goes on along its tangent.
+    pub fn interpolate(&self, x: f64, dof: Dof, row: &mut [f64]) {
+        let last = self.nodes.len() - 2;
+        let element = self.nodes.partition_point(|&n| n <= x).saturating_sub(1).min(last);
+        let (left, right) = (self.nodes[element], self.nodes[element + 1]);
+        let inside = x.clamp(left, right);
+        let [deflection, slope] = shape_functions(inside - left, right - left);
+        for k in 0..4 {
+            row[2 * element + k] += match dof {
+                Dof::Translation => deflection[k] + slope[k] * (x - inside),
+                Dof::Rotation => slope[k],
+            };
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn nodes_sit_at_attachments_unless_two_are_all_but_the_same() {
+        let mesh = Mesh::new(0.0, 1.0, 1e3, 1.0, 100.0, &[0.333, 0.3331, 0.9999]);
+        assert!(
+            mesh.nodes.contains(&0.333) && !mesh.nodes.contains(&0.3331) && !mesh.nodes.contains(&0.9999)
+        );
+        assert!(mesh.nodes.windows(2).all(|w| w[1] > w[0]));
+    }
+
+    #[test]
+    fn a_higher_band_asks_for_more_elements() {
+        let count = |hz| Mesh::new(0.0, 1.0, 1e3, 1.0, hz, &[]).nodes.len();
+        assert!(count(5000.0) > 2 * count(500.0));
+    }
+}

@@ -1,0 +1,276 @@
+use crate::bar::BarShape;
+use crate::terms::{TermStation, Terms};
+use crate::{Assembly, LumpedError, Station};
+use jointscope_fixture::{BodyKind, EffectKind, Fixture, Place};
+use jointscope_linalg::LuWorkspace;
+use jointscope_spectra::{Dof, SpectralLines};
+use num_complex::Complex64;
+use std::f64::consts::TAU;
+
+/// The assembly with its supports and structural effects, ready to give receptances.
+///
+/// Effects of the measuring chain are not in it: they belong to a recording, see [`crate::synthesize`].
+#[derive(Debug, Clone)]
+pub struct Model {
+    assembly: Assembly,
+    bending: Vec<BendingCoordinate>,
+    terms: Terms,
+}
+
+/// The first bending mode of a block that was taken as rigid.
+#[derive(Debug, Clone)]
+struct BendingCoordinate {
+    body: usize,
+    shape: BarShape,
+    modal_mass: f64,
+    eigenvalue: f64,
+    viscous: f64,
+}
+
+/// A mode's denominator λ + i·structural + s·viscous + s², shared by modes that have the same one.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Denominator {
+    stiffness: Complex64,
+    viscous: f64,
+}
+
+impl Model {
+    /// Models the fixture with its structural effects, beams meshed for lines up to `highest_hz`.
+    ///
+    /// # Errors
+    /// Modes that cannot be computed; an effect that depends on amplitude.
+    pub fn new(fixture: &Fixture, highest_hz: f64) -> Result<Self, LumpedError> {
+        if let Some((index, effect)) =
+            fixture.physics().iter().enumerate().find(|(_, e)| e.kind.is_nonlinear())
+        {
+            return Err(LumpedError::NonLinear { index, kind: effect.kind.name() });
+        }
+        let bending = bending_coordinates(fixture);
+        let flexible: Vec<bool> =
+            (0..fixture.bodies().len()).map(|body| bending.iter().any(|b| b.body == body)).collect();
+        Ok(Model {
+            assembly: Assembly::new(fixture, highest_hz)?,
+            bending,
+            terms: Terms::of(fixture, &flexible),
+        })
+    }
+
+    /// The free assembly inside.
+    pub fn assembly(&self) -> &Assembly {
+        &self.assembly
+    }
+
+    /// Prepares the receptances from every one of `inputs` to every one of `outputs`.
+    pub fn receptances(&self, outputs: &[Station], inputs: &[Station]) -> Receptances<'_> {
+        let pairs = (0..outputs.len()).flat_map(|o| (0..inputs.len()).map(move |i| (o, i))).collect();
+        self.receptances_of(outputs, inputs, pairs)
+    }
+
+    /// Prepares the receptances of `pairs` of indices (output, input).
+    pub fn receptances_of(
+        &self,
+        outputs: &[Station],
+        inputs: &[Station],
+        pairs: Vec<(usize, usize)>,
+    ) -> Receptances<'_> {
+        Receptances::new(self, outputs, inputs, pairs)
+    }
+
+    fn participation(&self, station: &TermStation) -> Vec<f64> {
+        let TermStation { station, rigid_only } = station;
+        let mut all = self.assembly.participation(station);
+        all.extend(self.bending.iter().map(|mode| {
+            if *rigid_only || mode.body != station.body {
+                return 0.0;
+            }
+            let (deflection, slope) = mode.shape.at(station.x);
+            let motion = if station.dof == Dof::Translation { deflection } else { slope };
+            motion / mode.modal_mass.sqrt()
+        }));
+        all
+    }
+
+    fn denominators(&self) -> Vec<Denominator> {
+        let assembly = self.assembly.modes().eigenvalues().iter().zip(self.assembly.mode_damping());
+        let assembly = assembly.map(|(&eigenvalue, damping)| Denominator {
+            stiffness: Complex64::new(eigenvalue, damping.structural),
+            viscous: damping.viscous,
+        });
+        let bending = self
+            .bending
+            .iter()
+            .map(|b| Denominator { stiffness: Complex64::new(b.eigenvalue, 0.0), viscous: b.viscous });
+        assembly.chain(bending).collect()
+    }
+}
+
+fn bending_coordinates(fixture: &Fixture) -> Vec<BendingCoordinate> {
+    let mut all = Vec::new();
+    for effect in fixture.physics().iter().filter(|e| e.kind == EffectKind::BodyFlexibility) {
+        let Place::Body(name) = &effect.place else { continue };
+        let Some(body) = fixture.bodies().iter().position(|b| b.name == *name) else { continue };
+        let BodyKind::Rigid(rigid) = &fixture.bodies()[body].kind else { continue };
+        let omega = TAU * effect.value(0);
+        let inertia = rigid.inertia.map_or(0.0, |q| q.value);
+        all.push(BendingCoordinate {
+            body,
+            shape: BarShape::new(rigid.mass.value, inertia, rigid.x_cg.map_or(0.0, |q| q.value)),
+            modal_mass: rigid.mass.value,
+            eigenvalue: omega * omega,
+            viscous: 2.0 * effect.value(1) * omega,
+        });
+    }
+    all
+}
+
+/// Receptances between fixed stations, evaluated line by line without allocation.
+#[derive(Debug, Clone)]
+pub struct Receptances<'a> {
+    terms: &'a Terms,
+    denominators: Vec<Denominator>,
+    /// (output, input) of each wanted receptance.
+    pairs: Vec<(usize, usize)>,
+    outputs: usize,
+    inputs: usize,
+    /// Products of participations, one row over the denominators for each needed entry of G.
+    products: Vec<f64>,
+    inverse: Vec<Complex64>,
+    sums: Vec<Complex64>,
+    delta: Vec<Complex64>,
+    right: Vec<Complex64>,
+    lu: LuWorkspace,
+}
+
+impl<'a> Receptances<'a> {
+    fn new(model: &'a Model, outputs: &[Station], inputs: &[Station], pairs: Vec<(usize, usize)>) -> Self {
+        let with_bending = |s: &Station| model.participation(&TermStation { station: *s, rigid_only: false });
+        let out: Vec<Vec<f64>> = outputs.iter().map(with_bending).collect();
+        let input: Vec<Vec<f64>> = inputs.iter().map(with_bending).collect();
+        let change: Vec<Vec<f64>> = model.terms.stations.iter().map(|s| model.participation(s)).collect();
+        let (denominators, group) = merge(&model.denominators());
+        let mut products = Vec::new();
+        let mut entry = |a: &[f64], b: &[f64]| {
+            let start = products.len();
+            products.resize(start + denominators.len(), 0.0);
+            for (mode, (x, y)) in a.iter().zip(b).enumerate() {
+                products[start + group[mode]] += x * y;
+            }
+        };
+        // The order of the entries: wanted pairs, then G_oV, G_VV, G_Vi where there is a change.
+        pairs.iter().for_each(|&(o, i)| entry(&out[o], &input[i]));
+        if !change.is_empty() {
+            out.iter().for_each(|o| change.iter().for_each(|v| entry(o, v)));
+            change.iter().for_each(|v| change.iter().for_each(|w| entry(v, w)));
+            change.iter().for_each(|v| input.iter().for_each(|i| entry(v, i)));
+        }
+        let entries = products.len() / denominators.len();
+        let rank = change.len();
+        Receptances {
+            terms: &model.terms,
+            inverse: vec![Complex64::ZERO; denominators.len()],
+            sums: vec![Complex64::ZERO; entries],
+            delta: vec![Complex64::ZERO; rank * rank],
+            right: vec![Complex64::ZERO; rank * inputs.len()],
+            lu: LuWorkspace::new(),
+            outputs: outputs.len(),
+            inputs: inputs.len(),
+            denominators,
+            pairs,
+            products,
+        }
+    }
+
+    /// Number of receptances per line.
+    pub fn count(&self) -> usize {
+        self.pairs.len()
+    }
+
+    /// Writes the receptances at `s` = iω (or decay + iω) over `values`, in the order of the pairs.
+    ///
+    /// Returns whether they are finite; they are not on an undamped resonance, nor at s = 0 of a free assembly.
+    pub fn at(&mut self, s: Complex64, values: &mut [Complex64]) -> bool {
+        let squared = s * s;
+        for (inverse, denominator) in self.inverse.iter_mut().zip(&self.denominators) {
+            let value = denominator.stiffness + s * denominator.viscous + squared;
+            *inverse = value.conj() * (1.0 / value.norm_sqr());
+        }
+        for (sum, row) in self.sums.iter_mut().zip(self.products.chunks_exact(self.inverse.len())) {
+            let (mut re, mut im) = (0.0, 0.0);
+            for (product, inverse) in row.iter().zip(&self.inverse) {
+                re += product * inverse.re;
+                im += product * inverse.im;
+            }
+            *sum = Complex64::new(re, im);
+        }
+        values.copy_from_slice(&self.sums[..self.pairs.len()]);
+        self.subtract_change(s, values) && values.iter().all(|v| v.is_finite())
+    }
+
+    /// Subtracts G_oV (I + Δ G_VV)⁻¹ Δ G_Vi.
+    fn subtract_change(&mut self, s: Complex64, values: &mut [Complex64]) -> bool {
+        let rank = self.terms.stations.len();
+        if rank == 0 {
+            return true;
+        }
+        self.terms.write(s, &mut self.delta);
+        let after_pairs = &self.sums[self.pairs.len()..];
+        let (left, rest) = after_pairs.split_at(self.outputs * rank);
+        let (middle, right) = rest.split_at(rank * rank);
+        let product = |i: usize, column: usize, width: usize, of: &[Complex64]| -> Complex64 {
+            (0..rank).map(|k| self.delta[i * rank + k] * of[k * width + column]).sum()
+        };
+        let solvable = self.lu.factorize(rank, |matrix| {
+            for i in 0..rank {
+                for j in 0..rank {
+                    matrix[i * rank + j] = product(i, j, rank, middle);
+                }
+                matrix[i * rank + i] += 1.0;
+            }
+        });
+        if solvable.is_err() {
+            return false;
+        }
+        for i in 0..rank {
+            for j in 0..self.inputs {
+                self.right[i * self.inputs + j] = product(i, j, self.inputs, right);
+            }
+        }
+        self.lu.solve_columns_in_place(&mut self.right, self.inputs);
+        for (value, &(o, i)) in values.iter_mut().zip(&self.pairs) {
+            let change: Complex64 =
+                (0..rank).map(|k| left[o * rank + k] * self.right[k * self.inputs + i]).sum();
+            *value -= change;
+        }
+        true
+    }
+
+    /// The receptances on all `lines`, line after line, at s = iω.
+    ///
+    /// # Errors
+    /// [`LumpedError::Unbounded`] on an undamped resonance.
+    pub fn on_lines(&mut self, lines: &SpectralLines) -> Result<Vec<Complex64>, LumpedError> {
+        let count = self.count();
+        let mut values = vec![Complex64::ZERO; count * lines.len()];
+        for (line, block) in values.chunks_exact_mut(count).enumerate() {
+            if !self.at(Complex64::new(0.0, lines.omega(line)), block) {
+                return Err(LumpedError::Unbounded { frequency: lines.hz()[line] });
+            }
+        }
+        Ok(values)
+    }
+}
+
+/// Modes with one denominator (all rigid motions, above all) share one term of the sum.
+fn merge(all: &[Denominator]) -> (Vec<Denominator>, Vec<usize>) {
+    let mut distinct: Vec<Denominator> = Vec::new();
+    let group = all
+        .iter()
+        .map(|d| {
+            distinct.iter().position(|e| e == d).unwrap_or_else(|| {
+                distinct.push(*d);
+                distinct.len() - 1
+            })
+        })
+        .collect();
+    (distinct, group)
+}

@@ -1,0 +1,203 @@
+use crate::{LumpedError, Model, Receptances, Station};
+use jointscope_fixture::{BodyKind, EffectKind, Fixture, Place};
+use jointscope_spectra::{Channel, Dof, FrfForm, FrfPair, FrfSet, SpectralLines};
+use num_complex::Complex64;
+
+/// Whether the measuring chain's effects are part of what is synthesised.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Instrument {
+    /// As this test's sensors and analyser would record it: offsets, gains, delays, sensor masses, window.
+    AsRecorded,
+    /// As a perfect instrument at the stated points would read it.
+    Perfect,
+}
+
+/// Accelerances stand in for their limit at 0 Hz by their value this close to it.
+const NEARLY_ZERO_HZ: f64 = 1e-5;
+
+/// Accelerances of the fixture with its effects, between the channels of `pairs` (eq 18, 41).
+///
+/// At 0 Hz the value is the limit of the accelerance. Variances are not part of it.
+///
+/// # Errors
+/// Unknown points, rotations of bodies that have none, effects that depend on amplitude, undamped
+/// resonances on a line.
+pub fn synthesize(
+    fixture: &Fixture,
+    pairs: &[FrfPair],
+    lines: &SpectralLines,
+    instrument: Instrument,
+) -> Result<FrfSet, LumpedError> {
+    let model = Model::new(fixture, lines.hz()[lines.len() - 1])?;
+    let chain = MeasuringChain::of(fixture, instrument);
+    let mut stations = Stations::default();
+    let mut wanted = Vec::with_capacity(pairs.len());
+    for pair in pairs {
+        let output = stations.output(chain.station(fixture, pair, &pair.response)?);
+        wanted.push((output, stations.input(chain.station(fixture, pair, &pair.reference)?)));
+    }
+    let mut loads = Vec::with_capacity(pairs.len());
+    for (index, pair) in pairs.iter().enumerate() {
+        let mass = chain.sensor_mass(&pair.response);
+        if mass == 0.0 {
+            loads.push(None);
+            continue;
+        }
+        let seat = chain.station(fixture, pair, &Channel::transverse(pair.response.point.clone()))?;
+        loads.push(Some(stations.sensor(mass, seat, &mut wanted, index)));
+    }
+    let mut receptances = model.receptances_of(&stations.outputs, &stations.inputs, wanted);
+    let values = chain.record(&mut receptances, pairs, &loads, lines)?;
+    Ok(FrfSet::new(lines.clone(), FrfForm::Accelerance, pairs.to_vec(), values)?)
+}
+
+/// Stations in use, each once.
+#[derive(Default)]
+struct Stations {
+    outputs: Vec<Station>,
+    inputs: Vec<Station>,
+}
+
+impl Stations {
+    fn output(&mut self, station: Station) -> usize {
+        index_in(&mut self.outputs, station)
+    }
+
+    fn input(&mut self, station: Station) -> usize {
+        index_in(&mut self.inputs, station)
+    }
+
+    /// Asks for what a sensor's own mass changes its row through: the receptance where it sits, from there to
+    /// the response, and from the reference to there.
+    fn sensor(
+        &mut self,
+        mass: f64,
+        seat: Station,
+        wanted: &mut Vec<(usize, usize)>,
+        frf: usize,
+    ) -> SensorLoad {
+        let (response, reference) = wanted[frf];
+        let (seat_in, seat_out) = (self.input(seat), self.output(seat));
+        let first = wanted.len();
+        wanted.extend([(seat_out, seat_in), (response, seat_in), (seat_out, reference)]);
+        SensorLoad { mass, first }
+    }
+}
+
+/// A sensor's mass and where its three receptances stand among the wanted ones.
+struct SensorLoad {
+    mass: f64,
+    first: usize,
+}
+
+impl SensorLoad {
+    /// H_oi − H_os δ H_si / (1 + δ H_ss), δ = s² m.
+    fn change(&self, s: Complex64, receptance: Complex64, all: &[Complex64]) -> Complex64 {
+        let inertia = s * s * self.mass;
+        let (driving, to_response, from_reference) =
+            (all[self.first], all[self.first + 1], all[self.first + 2]);
+        receptance - to_response * inertia * from_reference / (1.0 + inertia * driving)
+    }
+}
+
+fn index_in(stations: &mut Vec<Station>, station: Station) -> usize {
+    stations.iter().position(|s| *s == station).unwrap_or_else(|| {
+        stations.push(station);
+        stations.len() - 1
+    })
+}
+
+/// The effects between the structure and the file.
+struct MeasuringChain<'a> {
+    fixture: &'a Fixture,
+    active: bool,
+}
+
+impl<'a> MeasuringChain<'a> {
+    fn of(fixture: &'a Fixture, instrument: Instrument) -> Self {
+        MeasuringChain { fixture, active: instrument == Instrument::AsRecorded }
+    }
+
+    /// Sum, over the effects of this kind that `applies` to, of the parameter.
+    fn sum(&self, kind: EffectKind, applies: impl Fn(&Place) -> bool) -> f64 {
+        let effects = self.fixture.physics().iter().filter(|e| self.active && e.kind == kind);
+        effects.filter(|e| applies(&e.place)).map(|e| e.value(0)).sum()
+    }
+
+    fn station(&self, fixture: &Fixture, pair: &FrfPair, channel: &Channel) -> Result<Station, LumpedError> {
+        let point = fixture.point(&channel.point).ok_or_else(|| LumpedError::UnknownPoint {
+            frf: pair.to_string(),
+            point: channel.point.clone(),
+            known: fixture.points().iter().map(|p| p.name.as_str()).collect::<Vec<_>>().join(", "),
+        })?;
+        if channel.dof == Dof::Rotation
+            && matches!(&fixture.bodies()[point.body].kind, BodyKind::Rigid(rigid) if !rigid.rotates)
+        {
+            return Err(LumpedError::NoRotation { frf: pair.to_string(), point: channel.point.clone() });
+        }
+        let offset = self.sum(
+            EffectKind::PointOffset,
+            |place| matches!(place, Place::Point(name) if *name == channel.point),
+        );
+        Ok(Station { body: point.body, x: point.x.value + offset, dof: channel.dof })
+    }
+
+    fn sensor_mass(&self, response: &Channel) -> f64 {
+        let name = response.to_string();
+        self.sum(
+            EffectKind::SensorMass,
+            |place| matches!(place, Place::Response(channel) if *channel == name),
+        )
+    }
+
+    /// Gain and delay (s) of an FRF: a response is multiplied, a reference divides.
+    fn gain_and_delay(&self, pair: &FrfPair) -> (f64, f64) {
+        let (response, reference) = (pair.response.to_string(), pair.reference.to_string());
+        let (mut gain, mut delay) = (1.0, 0.0);
+        for effect in self.fixture.physics().iter().filter(|_| self.active) {
+            let sign = match &effect.place {
+                Place::Response(name) if *name == response => 1.0,
+                Place::Reference(name) if *name == reference => -1.0,
+                _ => continue,
+            };
+            match effect.kind {
+                EffectKind::ChannelGain => {
+                    gain *= if sign > 0.0 { effect.value(0) } else { 1.0 / effect.value(0) }
+                }
+                EffectKind::ChannelDelay => delay += sign * effect.value(0),
+                _ => {}
+            }
+        }
+        (gain, delay)
+    }
+
+    fn record(
+        &self,
+        receptances: &mut Receptances,
+        pairs: &[FrfPair],
+        loads: &[Option<SensorLoad>],
+        lines: &SpectralLines,
+    ) -> Result<Vec<Complex64>, LumpedError> {
+        let decay = self.sum(EffectKind::ExponentialWindow, |_| true);
+        let chain: Vec<(f64, f64)> = pairs.iter().map(|pair| self.gain_and_delay(pair)).collect();
+        let count = lines.len();
+        let mut values = vec![Complex64::ZERO; pairs.len() * count];
+        let mut line_values = vec![Complex64::ZERO; receptances.count()];
+        for (line, &hz) in lines.hz().iter().enumerate() {
+            let omega = std::f64::consts::TAU * hz.max(NEARLY_ZERO_HZ);
+            let s = Complex64::new(decay, omega);
+            if !receptances.at(s, &mut line_values) {
+                return Err(LumpedError::Unbounded { frequency: hz });
+            }
+            for (index, (&(gain, delay), load)) in chain.iter().zip(loads).enumerate() {
+                let mut receptance = line_values[index];
+                if let Some(load) = load {
+                    receptance = load.change(s, receptance, &line_values);
+                }
+                let phase = Complex64::new(0.0, -omega * delay).exp();
+                values[index * count + line] = s * s * receptance * gain * phase;
+            }
+        }
+        Ok(values)
+    }
+}
