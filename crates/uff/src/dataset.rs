@@ -1,0 +1,183 @@
+//! One function at a nodal degree of freedom: dataset 58 as a typed model.
+
+use std::collections::BTreeMap;
+
+use num_complex::Complex64;
+
+use crate::{Abscissa, Axis, FunctionType, Units};
+
+/// What a universal file holds.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct UffFile {
+    /// Every function of the file, in file order.
+    pub datasets: Vec<Dataset58>,
+    /// How many datasets of each other number were skipped (geometry, headers, …); units (164) are read, not skipped.
+    pub skipped: BTreeMap<u32, usize>,
+}
+
+/// A function at a nodal degree of freedom (dataset 58 or 58b).
+#[derive(Debug, Clone, PartialEq)]
+pub struct Dataset58 {
+    /// The five ID lines, without blanks around them; at most 80 characters each. A blank line is written as `NONE`.
+    pub id_lines: [String; 5],
+    /// What the function is: FRF, coherence, time response, …
+    pub function: FunctionType,
+    /// Function identification number.
+    pub function_id: i64,
+    /// Version or sequence number (third field of record 6). In time histories it counts the hits.
+    pub sequence_number: i64,
+    /// Load case identification number; 0 is single-point excitation.
+    pub load_case: i64,
+    /// Where and in which direction the response was measured.
+    pub response: Node,
+    /// Where and in which direction the structure was excited.
+    pub reference: Node,
+    /// Where the ordinates sit.
+    pub abscissa: Abscissa,
+    /// Value on the z-axis; 0 if not used.
+    pub z_value: f64,
+    /// What the abscissa is.
+    pub abscissa_axis: Axis,
+    /// What the ordinate, or its numerator, is.
+    pub ordinate_axis: Axis,
+    /// What the ordinate's denominator is; unused for anything but ratios.
+    pub denominator_axis: Axis,
+    /// What the z-axis is.
+    pub z_axis: Axis,
+    /// The ordinates, one a point.
+    pub data: Data,
+    /// Precision in which the ordinates are stored.
+    pub precision: Precision,
+    /// Form in which the ordinates are stored.
+    pub encoding: Encoding,
+    /// Units in force (the last dataset 164 before this one), if the file states any.
+    pub units: Option<Units>,
+}
+
+impl Dataset58 {
+    /// A function of unknown type at no node, stored as 58b in double precision: fill in what is known.
+    pub fn new(abscissa: Abscissa, data: Data) -> Self {
+        Dataset58 {
+            id_lines: std::array::from_fn(|_| "NONE".to_owned()),
+            function: FunctionType::General,
+            function_id: 0,
+            sequence_number: 0,
+            load_case: 0,
+            response: Node::default(),
+            reference: Node::default(),
+            abscissa,
+            z_value: 0.0,
+            abscissa_axis: Axis::default(),
+            ordinate_axis: Axis::default(),
+            denominator_axis: Axis::default(),
+            z_axis: Axis::default(),
+            data,
+            precision: Precision::Double,
+            encoding: Encoding::default(),
+            units: None,
+        }
+    }
+
+    /// What the ordinates are multiplied by to become SI, by the units in force; `None` if the file states none.
+    pub fn si_per_ordinate(&self) -> Option<f64> {
+        self.units.as_ref().map(|units| {
+            units.si_per_ratio(
+                &self.ordinate_axis,
+                self.response.direction,
+                &self.denominator_axis,
+                self.reference.direction,
+            )
+        })
+    }
+}
+
+/// A nodal degree of freedom.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Node {
+    /// Entity (component) name, at most 10 characters; `NONE` if not used.
+    pub entity: String,
+    /// Node number.
+    pub number: i64,
+    /// Direction: 0 scalar, ±1 to ±3 translation along x, y, z, ±4 to ±6 rotation about them.
+    pub direction: i32,
+}
+
+impl Default for Node {
+    /// No node: number 0, scalar.
+    fn default() -> Self {
+        Node::new(0, 0)
+    }
+}
+
+impl Node {
+    /// A node of no particular entity.
+    pub fn new(number: i64, direction: i32) -> Self {
+        Node { entity: "NONE".to_owned(), number, direction }
+    }
+}
+
+/// Ordinates, always kept in double precision in memory.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Data {
+    /// Real values: time histories, coherences, auto spectra.
+    Real(Vec<f64>),
+    /// Complex values: FRFs, cross spectra.
+    Complex(Vec<Complex64>),
+}
+
+impl Data {
+    /// Number of ordinates.
+    pub fn len(&self) -> usize {
+        match self {
+            Data::Real(values) => values.len(),
+            Data::Complex(values) => values.len(),
+        }
+    }
+
+    /// Whether there is no ordinate at all.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// Index of the first ordinate that is NaN or infinite.
+    pub(crate) fn first_non_finite(&self) -> Option<usize> {
+        match self {
+            Data::Real(values) => values.iter().position(|value| !value.is_finite()),
+            Data::Complex(values) => values.iter().position(|value| !value.is_finite()),
+        }
+    }
+}
+
+/// Precision of the stored ordinates.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Precision {
+    /// 4-byte floats, or 6 printed digits.
+    Single,
+    /// 8-byte floats, or 13 printed digits.
+    Double,
+}
+
+/// Form of the stored ordinates.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Encoding {
+    /// Dataset 58: text in columns.
+    Ascii,
+    /// Dataset 58b: IEEE 754 floats.
+    Binary(ByteOrder),
+}
+
+impl Default for Encoding {
+    /// Binary, little endian.
+    fn default() -> Self {
+        Encoding::Binary(ByteOrder::Little)
+    }
+}
+
+/// Byte order of binary ordinates.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ByteOrder {
+    /// Least significant byte first (PC, DEC).
+    Little,
+    /// Most significant byte first (older workstations).
+    Big,
+}
