@@ -1,0 +1,60 @@
+//! Self-contained report pages: text, figures of merit, tables, fixture drawings and interactive plots in one HTML file.
+//!
+//! A [`Page`] is put together from [`Section`]s and rendered to a `String`; this crate reads and writes no files. The page needs no network and cannot use
+//! one: its Content-Security-Policy is `default-src 'none'`. Everything it shows is escaped, so names from fixture files may contain anything. The same
+//! input gives the same bytes.
+//!
+//! | module | holds |
+//! |---|---|
+//! | [`Page`], [`Section`], [`Foot`] | the page and its parts |
+//! | [`Verdict`], [`Card`], [`Table`] | headline, key figures, tables |
+//! | [`Plot`], [`Axis`], [`Role`], [`YRange`] | plots over spectral lines, with bands, gaps and reference lines |
+//! | [`drawing`] | side view of a fixture as SVG |
+//! | [`format`](mod@format), [`Scale`] | numbers with uncertainty, units with SI prefix |
+//!
+//! ```
+//! use jointscope_report::{Axis, Card, Foot, Page, Plot, Role, Section, Verdict};
+//!
+//! let frequency: Vec<f64> = (200..900).map(f64::from).collect();
+//! let stiffness = frequency.iter().map(|f| if *f == 310.0 { None } else { Some(3.3e6 + 40.0 * f) });
+//!
+//! let html = Page::new("Joint J: two blocks and a beam")
+//!     .verdict(Verdict::ok("The transverse stiffness is 3.32 MN/m."))
+//!     .section(
+//!         Section::new("Stiffness")
+//!             .cards([Card::quantity("k₁₁", 3.32e6, 2.0e4, "N/m").note("nominal 3.31 MN/m")])
+//!             .plot(
+//!                 Plot::new("Transverse stiffness", Axis::frequency(), Axis::linear("k₁₁", "N/m"))
+//!                     .over(&frequency)
+//!                     .line("measured", Role::Measured, stiffness)
+//!                     .horizontal("nominal", Role::Nominal, 3.31e6)
+//!                     .caption("The measured stiffness stays close to the nominal one."),
+//!             ),
+//!     )
+//!     .foot(Foot::new("jointscope 0.1.0").command("jointscope decompose rig.json rig.uff -o out"))
+//!     .to_html()?;
+//! assert!(html.contains("3.320 ± 0.020"));
+//! # Ok::<(), jointscope_report::PageError>(())
+//! ```
+//!
+//! Plots are drawn by [uPlot](https://github.com/leeoniya/uPlot) 1.6.32 (MIT, its licence is part of every page), embedded as published: 51 KB, maintained, and fast enough
+//! that panes of many thousand spectral lines zoom and move together without delay, where general plotting libraries would add megabytes to each report or load
+//! themselves from a server.
+
+pub mod drawing;
+mod elements;
+mod error;
+pub mod format;
+mod html;
+mod page;
+mod plot;
+mod section;
+mod unit;
+
+pub use drawing::{FixtureDrawing, Svg};
+pub use elements::{Card, Column, Table, Tone, Verdict};
+pub use error::PageError;
+pub use page::{Foot, Page};
+pub use plot::{Axis, Ordinate, Plot, Role, Spacing, YRange, kept_lines};
+pub use section::Section;
+pub use unit::{Scale, typeset};
