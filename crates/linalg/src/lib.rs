@@ -4,6 +4,7 @@
 //!   joint stiffness on (transverse, rotation) per spectral line;
 //! * [`LuWorkspace`]: dense complex LU with row equilibration, its memory reused from line to line;
 //! * [`LeastSquares`]: weighted linear least squares by Householder reflections, with a rank check;
+//! * [`solve_positive_definite`]: the normal equations of a fit;
 //! * [`generalized_symmetric_eigen`]: `K φ = λ M φ`, scaled and with its residuals checked.
 //!
 //! This is the only crate that names the library behind the eigenproblem. That library loses
@@ -23,8 +24,10 @@ mod eigen;
 mod least_squares;
 mod lu;
 mod matrix2;
+mod positive_definite;
 
 pub use eigen::{EigenError, ModalBasis, generalized_symmetric_eigen};
 pub use least_squares::{LeastSquares, LeastSquaresError};
 pub use lu::{LuWorkspace, Singular};
 pub use matrix2::{ComplexMatrix2, Matrix2, RealMatrix2, Scalar};
+pub use positive_definite::solve_positive_definite;

@@ -1,0 +1,106 @@
+use crate::AveragingError;
+
+/// A band of frequencies, both ends included, Hz.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Band {
+    /// Lower end, Hz.
+    pub from: f64,
+    /// Upper end, Hz.
+    pub to: f64,
+}
+
+impl Band {
+    /// Whether a frequency lies in the band.
+    pub fn contains(&self, hz: f64) -> bool {
+        hz >= self.from && hz <= self.to
+    }
+
+    /// Indices of the frequencies (ascending, Hz) in the band.
+    ///
+    /// # Errors
+    /// [`AveragingError::EmptyBand`] where there are none.
+    pub fn lines(&self, frequencies: &[f64]) -> Result<std::ops::Range<usize>, AveragingError> {
+        let start = frequencies.partition_point(|&f| f < self.from);
+        let end = frequencies.partition_point(|&f| f <= self.to);
+        if start >= end {
+            return Err(AveragingError::EmptyBand { from: self.from, to: self.to });
+        }
+        Ok(start..end)
+    }
+}
+
+/// Number of steps along the lines at which a band may start or end.
+const STEPS: usize = 48;
+/// A band holds at least this share of the lines: a few quiet ones are luck.
+const SMALLEST_SHARE: f64 = 0.2;
+
+/// The contiguous band in which plain means come out with the smallest standard deviations, all quantities
+/// weighed alike (product of their deviations).
+///
+/// `frequencies` ascend, Hz; `deviations` holds, for each quantity, one expected standard deviation a line.
+/// They must come from a model of the noise, not from the values.
+///
+/// # Errors
+/// [`AveragingError::NoLines`] where there are no lines or no finite deviations.
+pub fn quietest_band(frequencies: &[f64], deviations: &[Vec<f64>]) -> Result<Band, AveragingError> {
+    let n = frequencies.len();
+    if n == 0 || deviations.is_empty() {
+        return Err(AveragingError::NoLines);
+    }
+    // Running sums of variances make every candidate band one subtraction.
+    let sums: Vec<Vec<f64>> = deviations
+        .iter()
+        .map(|deviation| {
+            let running = deviation.iter().scan(0.0, |sum, s| {
+                *sum += s * s;
+                Some(*sum)
+            });
+            std::iter::once(0.0).chain(running).collect()
+        })
+        .collect();
+    let edge = |step: usize| step * n / STEPS.min(n);
+    let smallest = ((n as f64 * SMALLEST_SHARE) as usize).max(1);
+    let mut best: Option<(f64, usize, usize)> = None;
+    for from in 0..STEPS.min(n) {
+        for to in from + 1..=STEPS.min(n) {
+            let (start, end) = (edge(from), edge(to));
+            if end - start < smallest {
+                continue;
+            }
+            let score: f64 =
+                sums.iter().map(|s| 0.5 * (s[end] - s[start]).ln() - ((end - start) as f64).ln()).sum();
+            if score.is_finite() && best.is_none_or(|(lowest, ..)| score < lowest) {
+                best = Some((score, start, end));
+            }
+        }
+    }
+    let (_, start, end) = best.ok_or(AveragingError::NoLines)?;
+    Ok(Band { from: frequencies[start], to: frequencies[end - 1] })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_quietest_band_leaves_out_the_noisy_ends_and_takes_all_of_the_middle() {
+        let frequencies: Vec<f64> = (0..400).map(|i| 2.5 * (i + 1) as f64).collect();
+        let noisy = |f: f64| if (300.0..=800.0).contains(&f) { 1.0 } else { 30.0 };
+        let deviations = vec![frequencies.iter().map(|&f| noisy(f)).collect::<Vec<_>>()];
+        let band = quietest_band(&frequencies, &deviations).unwrap();
+        assert!((300.0..330.0).contains(&band.from) && (770.0..=800.0).contains(&band.to), "{band:?}");
+    }
+
+    #[test]
+    fn a_band_without_lines_says_so() {
+        let band = Band { from: 5.0, to: 6.0 };
+        assert_eq!(band.lines(&[1.0, 2.0]), Err(AveragingError::EmptyBand { from: 5.0, to: 6.0 }));
+        assert_eq!(Band { from: 1.0, to: 2.0 }.lines(&[1.0, 2.0, 3.0]), Ok(0..2));
+    }
+
+    #[test]
+    fn a_handful_of_lines_still_has_a_band() {
+        let band = quietest_band(&[10.0, 20.0, 30.0], &[vec![1.0, 1.0, 1.0]]).unwrap();
+        assert_eq!((band.from, band.to), (10.0, 30.0));
+    }
+}

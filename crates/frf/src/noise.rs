@@ -1,0 +1,240 @@
+//! Variances of FRFs: from coherence and averages where they were recorded, from the FRFs themselves where not.
+//!
+//! With n averages the variance of one complex value is (1 − γ²)/((n − 1) γ²)·|H|², but as an estimate line by line
+//! it has so few degrees of freedom that weights taken from it are worthless. The physics behind it is smooth:
+//! response noise is a floor in the accelerance, force noise is a share of |H|². [`with_variances`] therefore
+//! fits var = S + N·|H|² with S and N slowly varying over the lines.
+
+use jointscope_spectra::{FrfForm, FrfSet, SpectraError};
+use num_complex::Complex64;
+
+/// Where variances came from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum NoiseSource {
+    /// Coherence and number of averages of the recording.
+    Coherence,
+    /// The scatter of the FRF from line to line.
+    Scatter,
+}
+
+/// Half-width of the window, in lines, within which the noise is taken as constant.
+const WINDOW: usize = 25;
+/// Fewest usable lines from which a scatter can be estimated.
+const FEWEST: usize = 8;
+/// Smallest relative noise that is believed: quantisation and calibration are never better.
+const FLOOR: f64 = 1e-5;
+
+/// The set with variances by line, estimated on the accelerance and smoothed over the lines, and where
+/// each FRF's came from.
+///
+/// Variances that the set carries already are replaced. Lines at 0 Hz get the variance of their neighbours.
+///
+/// # Errors
+/// Only those of a set that cannot be converted.
+pub fn with_variances(frfs: &FrfSet) -> Result<(FrfSet, Vec<NoiseSource>), SpectraError> {
+    let n = frfs.lines().len();
+    let mut variance = Vec::with_capacity(n * frfs.pairs().len());
+    let mut sources = Vec::new();
+    for index in 0..frfs.pairs().len() {
+        // |accelerance| = |value| ω^(2 − order): where noise floors are flat.
+        let scale: Vec<f64> =
+            frfs.lines().omegas().map(|w| w.max(1e-3).powi(2 - frfs.form().order())).collect();
+        let values: Vec<Complex64> = frfs
+            .values(index)
+            .iter()
+            .zip(frfs.lines().omegas())
+            .map(|(v, w)| v * frfs.form().factor_to(FrfForm::Accelerance, w).unwrap_or(Complex64::ZERO))
+            .collect();
+        let averages = frfs.averages(index).filter(|n| *n > 1);
+        let (estimate, source) = match (frfs.coherence(index), averages) {
+            (Some(coherence), Some(averages)) => {
+                (from_coherence(&values, coherence, averages), NoiseSource::Coherence)
+            }
+            _ => (from_scatter(&values), NoiseSource::Scatter),
+        };
+        variance.extend(estimate.iter().zip(&scale).map(|(v, s)| v / (s * s)));
+        sources.push(source);
+    }
+    Ok((frfs.clone().with_variance(variance)?, sources))
+}
+
+/// Variances E|ε|² of one FRF from its coherence and number of averages, smoothed over the lines.
+pub fn from_coherence(values: &[Complex64], coherence: &[f64], averages: u32) -> Vec<f64> {
+    let degrees = f64::from(averages.max(2) - 1);
+    let raw: Vec<f64> = values
+        .iter()
+        .zip(coherence)
+        .map(|(value, &gamma2)| {
+            let gamma2 = gamma2.clamp(1e-6, 1.0);
+            (1.0 - gamma2) / (degrees * gamma2) * value.norm_sqr()
+        })
+        .collect();
+    let usable: Vec<bool> = coherence.iter().map(|&g| g > 0.0).collect();
+    smooth(values, &raw, &usable)
+}
+
+/// Variances E|ε|² of one FRF from its third differences over the lines: what is left of a smooth
+/// curve is noise. The median over a window keeps resonance peaks out.
+pub fn from_scatter(values: &[Complex64]) -> Vec<f64> {
+    let n = values.len();
+    let largest = values.iter().map(|v| v.norm_sqr()).fold(0.0, f64::max);
+    if n < FEWEST {
+        return vec![(0.01f64.powi(2) * largest).max(f64::MIN_POSITIVE); n];
+    }
+    // Squared binomial coefficients 1, 3, 3, 1 sum to 20.
+    let difference: Vec<f64> = (0..n - 3)
+        .map(|i| (values[i + 3] - values[i + 2] * 3.0 + values[i + 1] * 3.0 - values[i]).norm_sqr() / 20.0)
+        .collect();
+    let mut window = Vec::with_capacity(2 * WINDOW + 1);
+    (0..n)
+        .map(|line| {
+            let centre = line.saturating_sub(1).min(difference.len() - 1);
+            let from = centre.saturating_sub(WINDOW);
+            let to = (centre + WINDOW + 1).min(difference.len());
+            window.clear();
+            window.extend_from_slice(&difference[from..to]);
+            window.sort_by(f64::total_cmp);
+            // The square of a complex normal is exponential: its median is ln 2 of its mean.
+            let mean = window[window.len() / 2] / std::f64::consts::LN_2;
+            mean.max(FLOOR * FLOOR * values[line].norm_sqr()).max(f64::MIN_POSITIVE)
+        })
+        .collect()
+}
+
+/// Fits raw variances as S + N·|H|² within a sliding window: both non-negative, weighted by the fit itself, as the
+/// spread of a variance is proportional to it.
+fn smooth(values: &[Complex64], raw: &[f64], usable: &[bool]) -> Vec<f64> {
+    let n = values.len();
+    let size: Vec<f64> = values.iter().map(|v| v.norm_sqr()).collect();
+    let range = |line: usize| line.saturating_sub(WINDOW)..(line + WINDOW + 1).min(n);
+    let mean = |line: usize| {
+        let (mut sum, mut count) = (0.0, 0.0f64);
+        for i in range(line).filter(|&i| usable[i]) {
+            sum += raw[i];
+            count += 1.0;
+        }
+        sum / count.max(1.0)
+    };
+    let mut fit: Vec<f64> = (0..n).map(mean).collect();
+    for _ in 0..3 {
+        fit = (0..n).map(|line| fit_window(range(line), raw, &size, &fit, usable, size[line])).collect();
+    }
+    fit.iter().zip(&size).map(|(v, s)| v.max(FLOOR * FLOOR * s).max(f64::MIN_POSITIVE)).collect()
+}
+
+fn fit_window(
+    range: std::ops::Range<usize>,
+    raw: &[f64],
+    size: &[f64],
+    fit: &[f64],
+    usable: &[bool],
+    here: f64,
+) -> f64 {
+    let [mut a11, mut a12, mut a22, mut b1, mut b2] = [0.0; 5];
+    for i in range.filter(|&i| usable[i]) {
+        let weight = 1.0 / (fit[i] * fit[i]).max(f64::MIN_POSITIVE);
+        a11 += weight;
+        a12 += weight * size[i];
+        a22 += weight * size[i] * size[i];
+        b1 += weight * raw[i];
+        b2 += weight * raw[i] * size[i];
+    }
+    if a11 == 0.0 {
+        return 0.0;
+    }
+    let determinant = a11 * a22 - a12 * a12;
+    if determinant > 1e-9 * a11 * a22 {
+        let floor = (b1 * a22 - b2 * a12) / determinant;
+        let share = (a11 * b2 - a12 * b1) / determinant;
+        if floor >= 0.0 && share >= 0.0 {
+            return floor + share * here;
+        }
+        if floor < 0.0 {
+            return b2 / a22 * here;
+        }
+    }
+    b1 / a11
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A deterministic stream of standard normals (a linear congruential generator and Box–Muller).
+    struct Normals(u64);
+
+    impl Normals {
+        fn uniform(&mut self) -> f64 {
+            self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+            ((self.0 >> 11) as f64 + 0.5) / (1u64 << 53) as f64
+        }
+
+        fn complex(&mut self, variance: f64) -> Complex64 {
+            let radius = (-variance * self.uniform().ln()).sqrt();
+            Complex64::from_polar(radius, std::f64::consts::TAU * self.uniform())
+        }
+    }
+
+    fn resonance(line: usize) -> Complex64 {
+        let x = line as f64 / 400.0;
+        let square = |v: f64| v * v;
+        -square(x) / (Complex64::new(square(0.37) - square(x), 2.0 * 0.01 * 0.37 * x))
+    }
+
+    /// Hits of one FRF: H1 and coherence of `n` averages with response noise `floor` and force noise `share`.
+    fn measure(random: &mut Normals, truth: Complex64, n: u32, floor: f64, share: f64) -> (Complex64, f64) {
+        let (mut xx, mut yy, mut xy) = (0.0, 0.0, Complex64::ZERO);
+        for _ in 0..n {
+            let x = Complex64::ONE + random.complex(share);
+            let y = truth + random.complex(floor);
+            xx += x.norm_sqr();
+            yy += y.norm_sqr();
+            xy += y * x.conj();
+        }
+        (xy / xx, xy.norm_sqr() / (xx * yy))
+    }
+
+    #[test]
+    fn smoothed_variances_of_few_averages_normalise_the_errors_to_one() {
+        for averages in [5, 8, 20] {
+            let mut random = Normals(averages as u64);
+            let (mut chi2, mut count) = (0.0, 0.0);
+            for _ in 0..20 {
+                let lines: Vec<(Complex64, f64)> =
+                    (1..401).map(|l| measure(&mut random, resonance(l), averages, 1e-2, 1e-5)).collect();
+                let values: Vec<Complex64> = lines.iter().map(|l| l.0).collect();
+                let coherence: Vec<f64> = lines.iter().map(|l| l.1).collect();
+                let variance = from_coherence(&values, &coherence, averages);
+                for (i, v) in variance.iter().enumerate() {
+                    chi2 += (values[i] - resonance(i + 1)).norm_sqr() / v;
+                    count += 1.0;
+                }
+            }
+            let ratio = chi2 / count;
+            assert!((0.93..1.07).contains(&ratio), "{averages} averages: chi2 per degree of freedom {ratio}");
+        }
+    }
+
+    #[test]
+    fn without_coherence_the_scatter_of_the_lines_gives_the_floor() {
+        let mut random = Normals(7);
+        let (mut chi2, mut count) = (0.0, 0.0);
+        for _ in 0..20 {
+            let values: Vec<Complex64> = (1..401).map(|l| resonance(l) + random.complex(1e-4)).collect();
+            for (i, v) in from_scatter(&values).iter().enumerate() {
+                chi2 += (values[i] - resonance(i + 1)).norm_sqr() / v;
+                count += 1.0;
+            }
+        }
+        let ratio: f64 = chi2 / count;
+        assert!((0.8..1.2).contains(&ratio), "{ratio}");
+    }
+
+    #[test]
+    fn a_noiseless_frf_keeps_a_positive_variance() {
+        let values: Vec<Complex64> = (1..100).map(resonance).collect();
+        assert!(from_coherence(&values, &vec![1.0; 99], 5).iter().all(|v| *v > 0.0 && v.is_finite()));
+        assert!(from_scatter(&values).iter().all(|v| *v > 0.0 && v.is_finite()));
+        assert!(from_scatter(&values[..3]).iter().all(|v| *v > 0.0));
+    }
+}
