@@ -1,0 +1,83 @@
+//! A joint's dynamic stiffness from the FRFs of the assembly, and back (eq 4–7, 32–42).
+//!
+//! An assembly is side α, the joint, side β. A force on α reaches β through the joint alone, so
+//!
+//! H41 = β43 · (k⁻¹ + β33 + R α22 Rᵀ)⁻¹ · R α21, and k⁻¹ = R α21 H41⁻¹ β43 − β33 − R α22 Rᵀ
+//!
+//! with R = [[1, L],[0, 1]] across the joint's length L. Eq (7) of the paper leaves R out, which is exact only for a
+//! joint of zero length; [`Relation::Paper`] reproduces it, [`Relation::Exact`] closes the round trip.
+//!
+//! * [`Relation`]: both relations for one line and for many;
+//! * [`Sides`]: the fixture taken apart at a joint, and the compliances α21, α22, β33, β43 of its sides with their
+//!   supports, masses and mass-proportional damping (eq 8–12);
+//! * [`MeasurementPlan`]: which FRFs of a recording tell the motion of one side due to loads on the other;
+//! * [`decompose`]: K(ω) and C(ω) with standard deviations, masked lines counted ([`JointSpectrum`]);
+//! * [`Averages`]: means over a band, plain (eq 35, 42) and weighted;
+//! * [`maximum_likelihood`]: symmetric, passive k and c straight from the FRFs;
+//! * [`interfaces`]: what the joint's ends add to its beam (eq 6, scalar and matrix form).
+//!
+//! ```
+//! use jointscope_decomposition::Relation;
+//! use jointscope_linalg::{ComplexMatrix2, Matrix2};
+//! use num_complex::Complex64;
+//!
+//! let c = |re: f64| Complex64::new(re, 0.0);
+//! let (alpha, beta) = (Matrix2::new(c(-1e-6), c(0.0), c(0.0), c(-1e-3)), Matrix2::new(c(-2e-6), c(0.0), c(0.0), c(-3e-3)));
+//! let stiffness = Matrix2::new(c(3e6), c(-1e5), c(-1e5), c(5e3));
+//! let length = 0.065;
+//! let h41 = Relation::synthesize(stiffness, alpha, alpha, beta, beta, length).unwrap();
+//! let back: ComplexMatrix2 = Relation::Exact.decompose(h41, alpha, alpha, beta, beta, length).unwrap();
+//! assert!((back.at(0, 0).re / 3e6 - 1.0).abs() < 1e-9);
+//! // Eq (7), without the transport, does not close its own round trip.
+//! let paper = Relation::Paper.decompose(h41, alpha, alpha, beta, beta, length).unwrap();
+//! assert!((paper.at(0, 0).re / 3e6 - 1.0).abs() > 0.01);
+//! ```
+
+mod averages;
+mod interfaces;
+mod likelihood;
+mod plan;
+mod relation;
+mod sides;
+mod spectrum;
+mod tolerances;
+
+pub use averages::{Averages, MatrixAverage};
+pub use interfaces::{Compliance, InterfaceStiffness, Interfaces, interfaces};
+pub use likelihood::{LikelihoodFit, maximum_likelihood};
+pub use plan::{MeasurementPlan, PlanError};
+pub use relation::{Compliances, Relation};
+pub use sides::{Sides, SidesError};
+pub use spectrum::{JointLine, JointSpectrum, decompose};
+pub use tolerances::{ToleranceShare, tolerance_shares};
+
+/// Why a joint cannot be decomposed.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum DecompositionError {
+    /// The fixture cannot be taken apart there.
+    #[error(transparent)]
+    Sides(#[from] SidesError),
+    /// The recording lacks what is needed.
+    #[error(transparent)]
+    Plan(#[from] PlanError),
+    /// The blocks' motion cannot be found.
+    #[error(transparent)]
+    Motion(#[from] jointscope_frf::RigidMotionError),
+    /// A side cannot be modelled.
+    #[error(transparent)]
+    Model(#[from] jointscope_lumped::LumpedError),
+    /// No average can be taken.
+    #[error(transparent)]
+    Averaging(#[from] jointscope_averaging::AveragingError),
+    /// Not one line could be solved.
+    #[error("none of the {lines} spectral lines can be solved: {reasons}")]
+    NothingSolved {
+        /// Lines of the recording.
+        lines: usize,
+        /// Reasons and their counts.
+        reasons: String,
+    },
+    /// The fit of the joint did not converge.
+    #[error("the maximum-likelihood fit of the joint did not converge: {0}")]
+    NoFit(&'static str),
+}

@@ -1,0 +1,454 @@
+//! One symmetric, passive k and c for the whole band, fitted to the FRFs themselves.
+
+use crate::averages::dynamic_stiffness;
+use crate::{Compliances, DecompositionError, JointSpectrum, MeasurementPlan, Sides};
+use jointscope_averaging::Band;
+use jointscope_frf::{BlockChannel, BlockLayout};
+use jointscope_linalg::{ComplexMatrix2, LeastSquares, Matrix2, RealMatrix2, solve_positive_definite};
+use jointscope_spectra::{Dof, FrfForm, FrfSet};
+use num_complex::Complex64;
+
+/// The maximum-likelihood joint.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LikelihoodFit {
+    /// K, symmetric: N/m, N/rad, N·m/rad.
+    pub stiffness: RealMatrix2,
+    /// C, symmetric and passive (it never gives out energy): N·s/m, N·s/rad, N·m·s/rad.
+    pub damping: RealMatrix2,
+    /// Standard deviations of K.
+    pub stiffness_std: RealMatrix2,
+    /// Standard deviations of C.
+    pub damping_std: RealMatrix2,
+    /// Covariance of (k11, k12, k22, c11, c12, c22). As the deviations, it is widened by χ² per degree of freedom
+    /// where that is above one.
+    pub covariance: [[f64; 6]; 6],
+    /// χ² per degree of freedom: 1 where a constant joint explains the FRFs within their noise.
+    pub chi2_per_dof: f64,
+    /// Complex values fitted.
+    pub values: usize,
+}
+
+/// Rounds of the linear fit that finds the start.
+const ROUNDS: usize = 12;
+/// Gauss–Newton iterations, at the most.
+const ITERATIONS: usize = 60;
+/// Damping of the steps beyond which no step is a gain.
+const GIVEN_UP: f64 = 1e8;
+/// Relative decrease of χ² below which a fit has converged.
+const CONVERGED: f64 = 1e-9;
+
+/// Fits a constant k + iωc to the FRFs across the joint on the lines in `band` (all usable ones without).
+///
+/// With X = (k⁻¹ + T)⁻¹, T = β33 + R α22 Rᵀ, an FRF is rational in k, and resonances make a trap of every poor start.
+/// But (I − X T) k = X is linear: solved with the measured X and the last round's (I + T k)⁻¹ as weight, it leads
+/// close to the optimum within a few rounds, from the spectrum's medians or from `nominal`, the better kept.
+/// Levenberg–Marquardt with analytic derivatives goes on from there. Where c comes out giving off energy, it is fitted
+/// again as c = v vᵀ, the boundary of what is passive.
+///
+/// The fit weighs every FRF by the variance it carries; FRFs without variances weigh alike.
+///
+/// # Errors
+/// No usable line in the band, or FRFs that leave an element of k or c undetermined.
+pub fn maximum_likelihood(
+    frfs: &FrfSet,
+    sides: &Sides,
+    spectrum: &JointSpectrum,
+    band: Option<Band>,
+    nominal: Option<RealMatrix2>,
+) -> Result<LikelihoodFit, DecompositionError> {
+    let plan = MeasurementPlan::of(frfs, sides)?;
+    let data = Data::new(frfs, &plan.layout, spectrum, band)?;
+    let starts = [Some(start_of(spectrum)), nominal].into_iter().flatten();
+    let fitted = starts.filter_map(|k| {
+        let start = data.linear_rounds(spectrum, Parameters::of(k, k.scale(START_LOSS), spectrum.scalar)?);
+        Some(data.fit(start))
+    });
+    let best = |a: (f64, Parameters), b: (f64, Parameters)| if b.0 < a.0 { b } else { a };
+    let (mut chi2, mut joint) = fitted
+        .filter(|(chi2, _)| chi2.is_finite())
+        .reduce(best)
+        .ok_or(DecompositionError::NoFit("no start gives finite FRFs"))?;
+    if !joint.is_passive() {
+        (chi2, joint) = data.fit(joint.on_the_boundary());
+    }
+    data.result(chi2, &joint)
+}
+
+/// c/k of the start, s: a loss factor of 0.6 % at 300 Hz.
+const START_LOSS: f64 = 3e-6;
+
+/// Robust start: medians over the solved lines.
+fn start_of(spectrum: &JointSpectrum) -> RealMatrix2 {
+    let at = |i: usize, j: usize| {
+        let mut values: Vec<f64> = spectrum.solved.iter().map(|line| line.stiffness.at(i, j)).collect();
+        values.sort_by(f64::total_cmp);
+        values[values.len() / 2]
+    };
+    let cross = 0.5 * (at(0, 1) + at(1, 0));
+    Matrix2::new(at(0, 0), cross, cross, at(1, 1))
+}
+
+/// (k11, k12, k22, c11, c12, c22), or with c = v vᵀ on the boundary of what is passive.
+#[derive(Debug, Clone, Copy)]
+struct Parameters {
+    k: [f64; 3],
+    c: [f64; 3],
+    /// v, where c is v vᵀ.
+    boundary: Option<[f64; 2]>,
+    scalar: bool,
+}
+
+impl Parameters {
+    /// `None` for a start that is no joint.
+    fn of(k: RealMatrix2, c: RealMatrix2, scalar: bool) -> Option<Self> {
+        let elements = |m: RealMatrix2| {
+            if scalar { [m.at(0, 0), 0.0, 0.0] } else { [m.at(0, 0), m.at(0, 1), m.at(1, 1)] }
+        };
+        let possible = k.at(0, 0) > 0.0 && (scalar || (k.at(1, 1) > 0.0 && k.determinant() > 0.0));
+        possible.then_some(Parameters { k: elements(k), c: elements(c), boundary: None, scalar })
+    }
+
+    /// Which of the slots (k11, k12, k22, c11 or v1, c12 or v2, c22) are free.
+    fn active(&self) -> &'static [usize] {
+        match (self.scalar, self.boundary) {
+            (true, None) => &[0, 3],
+            (true, Some(_)) => &[0],
+            (false, None) => &[0, 1, 2, 3, 4, 5],
+            (false, Some(_)) => &[0, 1, 2, 3, 4],
+        }
+    }
+
+    fn stiffness(&self) -> RealMatrix2 {
+        Matrix2::new(self.k[0], self.k[1], self.k[1], self.k[2])
+    }
+
+    fn damping(&self) -> RealMatrix2 {
+        Matrix2::new(self.c[0], self.c[1], self.c[1], self.c[2])
+    }
+
+    fn is_passive(&self) -> bool {
+        self.c[0] >= 0.0 && self.c[2] >= 0.0 && self.c[1] * self.c[1] <= self.c[0] * self.c[2]
+    }
+
+    /// The nearest c on the boundary, both dofs scaled to equal stiffness.
+    fn on_the_boundary(&self) -> Self {
+        let unit = [self.k[0].sqrt(), self.k[2].sqrt()];
+        if self.scalar {
+            return Parameters { c: [0.0; 3], boundary: Some([0.0; 2]), ..*self };
+        }
+        let (a, b, d) = (
+            self.c[0] / (unit[0] * unit[0]),
+            self.c[1] / (unit[0] * unit[1]),
+            self.c[2] / (unit[1] * unit[1]),
+        );
+        // The larger eigenvalue and its eigenvector; the smaller one is negative.
+        let (mean, half) = (0.5 * (a + d), 0.5 * (a - d));
+        let largest = (mean + half.hypot(b)).max(0.0);
+        let angle = 0.5 * b.atan2(half);
+        let v = [largest.sqrt() * angle.cos() * unit[0], largest.sqrt() * angle.sin() * unit[1]];
+        Self::with_boundary(*self, v)
+    }
+
+    fn with_boundary(self, v: [f64; 2]) -> Self {
+        Parameters { c: [v[0] * v[0], v[0] * v[1], v[1] * v[1]], boundary: Some(v), ..self }
+    }
+
+    /// Derivatives with respect to the slots from those with respect to (k, c).
+    fn chain(&self, by_kc: &[Complex64; 6]) -> [Complex64; 6] {
+        let Some([v1, v2]) = self.boundary else { return *by_kc };
+        let mut slots = *by_kc;
+        slots[3] = by_kc[3] * (2.0 * v1) + by_kc[4] * v2;
+        slots[4] = by_kc[4] * v1 + by_kc[5] * (2.0 * v2);
+        slots
+    }
+
+    fn stepped(&self, step: &[f64; 6]) -> Self {
+        let mut next = *self;
+        for m in 0..3 {
+            next.k[m] += step[m];
+            next.c[m] += step[m + 3];
+        }
+        match self.boundary {
+            Some([v1, v2]) => next.with_boundary([v1 + step[3], v2 + step[4]]),
+            None => next,
+        }
+    }
+}
+
+/// The FRFs to be fitted and everything in their model that does not change.
+struct Data<'a> {
+    sides: &'a Compliances,
+    across: ComplexMatrix2,
+    /// (line of the recording, ω).
+    lines: Vec<(usize, f64)>,
+    rows: Vec<([f64; 2], [f64; 2])>,
+    /// Receptances and variances, FRF after FRF within a line.
+    measured: Vec<Complex64>,
+    variance: Vec<f64>,
+    scalar: bool,
+}
+
+impl<'a> Data<'a> {
+    fn new(
+        frfs: &FrfSet,
+        layout: &BlockLayout,
+        spectrum: &'a JointSpectrum,
+        band: Option<Band>,
+    ) -> Result<Self, DecompositionError> {
+        let inside = |hz: f64| band.is_none_or(|b| b.contains(hz));
+        let lines: Vec<(usize, f64)> = spectrum
+            .solved
+            .iter()
+            .filter(|l| inside(l.frequency))
+            .map(|l| (l.line, frfs.lines().omega(l.line)))
+            .collect();
+        if lines.is_empty() {
+            return Err(DecompositionError::NoFit("the band holds no usable spectral line"));
+        }
+        let row = |seat: &BlockChannel| match seat.dof {
+            Dof::Translation => [1.0, seat.offset],
+            Dof::Rotation => [0.0, 1.0],
+        };
+        let mut data = Data {
+            sides: &spectrum.sides,
+            across: crate::Relation::Exact.transport(spectrum.sides.length),
+            rows: layout.channels.iter().map(|(_, out, input)| (row(out), row(input))).collect(),
+            measured: Vec::with_capacity(lines.len() * layout.channels.len()),
+            variance: Vec::with_capacity(lines.len() * layout.channels.len()),
+            scalar: spectrum.scalar,
+            lines,
+        };
+        for &(line, omega) in &data.lines {
+            // Solved lines lie above 0 Hz.
+            let factor = frfs.form().factor_to(FrfForm::Receptance, omega).unwrap_or(Complex64::ONE);
+            for (index, ..) in &layout.channels {
+                let value = frfs.values(*index)[line] * factor;
+                let variance = frfs.variance(*index).map_or(0.0, |v| v[line]) * factor.norm_sqr();
+                data.measured.push(value);
+                data.variance.push(if variance > 0.0 { variance } else { 1e-6 * value.norm_sqr() });
+            }
+        }
+        Ok(data)
+    }
+
+    /// Model receptances of one line and, for derivatives, A = β43 X k⁻¹ and B = k⁻¹ X R α21 (δH41 = A δk B).
+    fn model(
+        &self,
+        joint: ComplexMatrix2,
+        line: usize,
+    ) -> Option<(ComplexMatrix2, ComplexMatrix2, ComplexMatrix2)> {
+        let s = self.sides;
+        let near = self.across * s.alpha22[line] * self.across.transpose();
+        let load = self.across * s.alpha21[line];
+        // X k⁻¹ = (I + k (β33 + R α22 Rᵀ))⁻¹ needs no inverse of k, which a scalar joint does not have.
+        let total = s.beta33[line] + near;
+        let (left, right) = if self.scalar {
+            let factor = (joint.at(0, 0) * total.at(0, 0) + 1.0).inv();
+            let unit = Matrix2::new(factor, Complex64::ZERO, Complex64::ZERO, Complex64::ZERO);
+            (s.beta43[line] * unit, unit * load)
+        } else {
+            let left = (ComplexMatrix2::identity() + joint * total).inverse()?;
+            let right = (ComplexMatrix2::identity() + total * joint).inverse()?;
+            (s.beta43[line] * left, right * load)
+        };
+        Some((left * joint * load, left, right))
+    }
+
+    /// χ²; every weight, residual and derivative by (k11, k12, k22, c11, c12, c22) is shown to `each`.
+    fn visit(&self, parameters: &Parameters, mut each: impl FnMut(f64, Complex64, &[Complex64; 6])) -> f64 {
+        let (k, c) = (parameters.stiffness(), parameters.damping());
+        let channels = self.rows.len();
+        let mut chi2 = 0.0;
+        for (index, &(line, omega)) in self.lines.iter().enumerate() {
+            let joint = dynamic_stiffness((k, c), omega);
+            let Some((h41, left, right)) = self.model(joint, line) else { return f64::INFINITY };
+            for (channel, (out, input)) in self.rows.iter().enumerate() {
+                let at = index * channels + channel;
+                let residual = self.measured[at] - bilinear(out, &h41, input);
+                // The noise of a complex value has half of its variance in each part.
+                let weight = 2.0 / self.variance[at];
+                chi2 += weight * residual.norm_sqr();
+                each(
+                    weight,
+                    residual,
+                    &derivatives(omega, row_times(out, &left), times_column(&right, input)),
+                );
+            }
+        }
+        chi2
+    }
+
+    /// Rounds of the linear problem t_pᵀ β43 [X − (I − X T) k] (I + T k₀)⁻¹ R α21 t_q = 0 for k, k₀ being the last round's.
+    fn linear_rounds(&self, spectrum: &JointSpectrum, start: Parameters) -> Parameters {
+        let mut current = start;
+        for _ in 0..ROUNDS {
+            let mut normal = NormalEquations::default();
+            for (index, &(line, omega)) in self.lines.iter().enumerate() {
+                let Some(x) = self.measured_coupling(&spectrum.h41.values[line], line) else { continue };
+                let s = self.sides;
+                let total = s.beta33[line] + self.across * s.alpha22[line] * self.across.transpose();
+                let joint = dynamic_stiffness((current.stiffness(), current.damping()), omega);
+                let Some((_, _, right)) = self.model(joint, line) else { continue };
+                let left = s.beta43[line] * (ComplexMatrix2::identity() - x * total);
+                let known = s.beta43[line] * x * right;
+                for (channel, (out, input)) in self.rows.iter().enumerate() {
+                    let weight = 2.0 / self.variance[index * self.rows.len() + channel];
+                    let by_kc = derivatives(omega, row_times(out, &left), times_column(&right, input));
+                    normal.add(current.active(), weight, bilinear(out, &known, input), &by_kc);
+                }
+            }
+            let Some(solution) = normal.step(0.0, current.active()) else { break };
+            let next = Parameters {
+                k: [solution[0], solution[1], solution[2]],
+                c: [solution[3], solution[4], solution[5]],
+                ..current
+            };
+            if !solution.iter().all(|v| v.is_finite()) {
+                break;
+            }
+            current = next;
+        }
+        current
+    }
+
+    /// X = β43⁻¹ H41 (R α21)⁻¹; `None` where a matrix is singular.
+    fn measured_coupling(&self, h41: &ComplexMatrix2, line: usize) -> Option<ComplexMatrix2> {
+        let (beta43, load) = (self.sides.beta43[line], self.across * self.sides.alpha21[line]);
+        if self.scalar {
+            let x = h41.at(0, 0) / (beta43.at(0, 0) * load.at(0, 0));
+            let zero = Complex64::ZERO;
+            return x.is_finite().then_some(Matrix2::new(x, zero, zero, zero));
+        }
+        Some(beta43.inverse()? * *h41 * load.inverse()?)
+    }
+
+    fn fit(&self, start: Parameters) -> (f64, Parameters) {
+        let mut current = start;
+        let mut chi2 = self.visit(&current, |_, _, _| {});
+        let mut damping = 1e-6;
+        let mut normal = self.normal_equations(&current);
+        for _ in 0..ITERATIONS {
+            let next = normal.step(damping, current.active()).map(|step| current.stepped(&step));
+            let after = next.as_ref().map_or(f64::INFINITY, |next| self.visit(next, |_, _, _| {}));
+            let gain = chi2 - after;
+            if let (Some(next), true) = (next, gain > 0.0) {
+                (current, chi2, damping) = (next, after, (damping * 0.03).max(1e-15));
+                if gain < CONVERGED * chi2 {
+                    break;
+                }
+                normal = self.normal_equations(&current);
+            } else if damping > GIVEN_UP {
+                break;
+            } else {
+                damping *= 10.0;
+            }
+        }
+        (chi2, current)
+    }
+
+    fn normal_equations(&self, current: &Parameters) -> NormalEquations {
+        let mut normal = NormalEquations::default();
+        self.visit(current, |weight, residual, by_kc| {
+            normal.add(current.active(), weight, residual, &current.chain(by_kc));
+        });
+        normal
+    }
+
+    fn result(&self, chi2: f64, fitted: &Parameters) -> Result<LikelihoodFit, DecompositionError> {
+        // Deviations are those of free elements, on the boundary too.
+        let active = Parameters { boundary: None, ..*fitted }.active();
+        let mut problem = LeastSquares::new();
+        problem.begin(active.len());
+        self.visit(fitted, |weight, residual, by_kc| {
+            let re: Vec<f64> = active.iter().map(|&m| by_kc[m].re).collect();
+            let im: Vec<f64> = active.iter().map(|&m| by_kc[m].im).collect();
+            problem.equation(&re, Complex64::new(residual.re, 0.0), weight);
+            problem.equation(&im, Complex64::new(residual.im, 0.0), weight);
+        });
+        let mut unused = vec![Complex64::ZERO; active.len()];
+        problem
+            .solve(&mut unused)
+            .map_err(|_| DecompositionError::NoFit("the FRFs leave an element of k or c undetermined"))?;
+        let degrees = (2 * self.measured.len()).saturating_sub(active.len()).max(1);
+        let chi2_per_dof = chi2 / degrees as f64;
+        let widening = chi2_per_dof.max(1.0);
+        let mut covariance = [[0.0; 6]; 6];
+        for (a, &m) in active.iter().enumerate() {
+            for (b, &n) in active.iter().enumerate() {
+                covariance[m][n] = problem.covariance(a, b) * widening;
+            }
+        }
+        let std = |first: usize| {
+            let s = |m: usize| covariance[first + m][first + m].sqrt();
+            Matrix2::new(s(0), s(1), s(1), s(2))
+        };
+        Ok(LikelihoodFit {
+            stiffness: fitted.stiffness(),
+            damping: fitted.damping(),
+            stiffness_std: std(0),
+            damping_std: std(3),
+            covariance,
+            chi2_per_dof,
+            values: self.measured.len(),
+        })
+    }
+}
+
+/// JᵀWJ (lower triangle) and JᵀWr of the six parameters.
+#[derive(Default)]
+struct NormalEquations {
+    matrix: [[f64; 6]; 6],
+    right: [f64; 6],
+}
+
+impl NormalEquations {
+    fn add(&mut self, active: &[usize], weight: f64, residual: Complex64, derivative: &[Complex64; 6]) {
+        for &m in active {
+            let weighted = derivative[m].conj() * weight;
+            self.right[m] += (weighted * residual).re;
+            for &n in active.iter().take_while(|n| **n <= m) {
+                self.matrix[m][n] += (weighted * derivative[n]).re;
+            }
+        }
+    }
+
+    /// The solution with the diagonal raised by the share `damping`; `None` where that is not positive definite.
+    fn step(&self, damping: f64, active: &[usize]) -> Option<[f64; 6]> {
+        let n = active.len();
+        let mut matrix = [0.0; 36];
+        let mut right = [0.0; 6];
+        for (i, &p) in active.iter().enumerate() {
+            for (j, &q) in active.iter().enumerate().take(i + 1) {
+                matrix[i * n + j] = self.matrix[p][q];
+            }
+            matrix[i * n + i] *= 1.0 + damping;
+            right[i] = self.right[p];
+        }
+        if !solve_positive_definite(&mut matrix[..n * n], &mut right[..n]) {
+            return None;
+        }
+        let mut step = [0.0; 6];
+        active.iter().zip(right).for_each(|(&m, value)| step[m] = value);
+        Some(step)
+    }
+}
+
+/// Derivatives of aᵀ (k + iωc) b by (k11, k12, k22, c11, c12, c22), both matrices symmetric.
+fn derivatives(omega: f64, a: [Complex64; 2], b: [Complex64; 2]) -> [Complex64; 6] {
+    let by_k = [a[0] * b[0], a[0] * b[1] + a[1] * b[0], a[1] * b[1]];
+    let s = Complex64::new(0.0, omega);
+    [by_k[0], by_k[1], by_k[2], s * by_k[0], s * by_k[1], s * by_k[2]]
+}
+
+fn row_times(row: &[f64; 2], m: &ComplexMatrix2) -> [Complex64; 2] {
+    [0, 1].map(|j| m.at(0, j) * row[0] + m.at(1, j) * row[1])
+}
+
+fn times_column(m: &ComplexMatrix2, column: &[f64; 2]) -> [Complex64; 2] {
+    [0, 1].map(|i| m.at(i, 0) * column[0] + m.at(i, 1) * column[1])
+}
+
+fn bilinear(out: &[f64; 2], h: &ComplexMatrix2, input: &[f64; 2]) -> Complex64 {
+    let column = times_column(h, input);
+    column[0] * out[0] + column[1] * out[1]
+}

@@ -1,0 +1,204 @@
+use crate::Compliances;
+use jointscope_fixture::{Effect, EffectKind, Fixture, Place};
+use jointscope_linalg::{ComplexMatrix2, Matrix2};
+use jointscope_lumped::{LumpedError, Model, Station};
+use jointscope_spectra::SpectralLines;
+use num_complex::Complex64;
+
+/// Why a fixture cannot be taken apart at a joint.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum SidesError {
+    /// No joint was named and there is not exactly one.
+    #[error("the fixture has {} joints ({}): choose one with --joint", names.len(), names.join(", "))]
+    WhichJoint {
+        /// The joints there are.
+        names: Vec<String>,
+    },
+    /// There is no such joint.
+    #[error("the fixture has no joint `{name}` (it has {})", names.join(", "))]
+    NoSuchJoint {
+        /// The name asked for.
+        name: String,
+        /// The joints there are.
+        names: Vec<String>,
+    },
+    /// The fixture has no joint at all.
+    #[error("the fixture has no joint to find: it is a single body")]
+    NoJoint,
+    /// The assembly stays in one piece without the joint.
+    #[error(
+        "without joint `{0}` the assembly still holds together through its other joints, so what passes through it cannot be told apart"
+    )]
+    Loop(String),
+    /// An effect of the measuring chain that cannot be taken out of FRFs.
+    #[error(
+        "physics/{index}: `{kind}` cannot be taken out of measured FRFs; decompose needs recordings without it"
+    )]
+    Instrument {
+        /// Position in the fixture's `physics`.
+        index: usize,
+        /// The effect's name.
+        kind: &'static str,
+    },
+}
+
+/// The fixture taken apart at one joint: side α with the joint's `from`, side β with its `to`.
+#[derive(Debug, Clone)]
+pub struct Sides {
+    fixture: Fixture,
+    joint: usize,
+    on_alpha: Vec<bool>,
+    alpha: Fixture,
+    beta: Fixture,
+}
+
+impl Sides {
+    /// Takes the fixture apart at the joint named, or at its only one.
+    ///
+    /// Effects of the fixture's `physics` that sit on a side stay with it; those of the joint itself are part of
+    /// what is to be found.
+    ///
+    /// # Errors
+    /// See [`SidesError`].
+    pub fn of(fixture: &Fixture, joint: Option<&str>) -> Result<Self, SidesError> {
+        let names = || fixture.joints().iter().map(|j| j.name.clone()).collect::<Vec<_>>();
+        let joint = match joint {
+            _ if fixture.joints().is_empty() => return Err(SidesError::NoJoint),
+            Some(name) => fixture
+                .joints()
+                .iter()
+                .position(|j| j.name == name)
+                .ok_or_else(|| SidesError::NoSuchJoint { name: name.to_string(), names: names() })?,
+            None if fixture.joints().len() == 1 => 0,
+            None => return Err(SidesError::WhichJoint { names: names() }),
+        };
+        check_instruments(fixture)?;
+        let on_alpha = connected(fixture, joint);
+        let far_body = fixture.points()[fixture.joints()[joint].to].body;
+        if on_alpha[far_body] {
+            return Err(SidesError::Loop(fixture.joints()[joint].name.clone()));
+        }
+        let side = |alpha: bool| with_its_effects(fixture, joint, &|body| on_alpha[body] == alpha);
+        Ok(Sides { alpha: side(true), beta: side(false), fixture: fixture.clone(), joint, on_alpha })
+    }
+
+    /// The whole fixture.
+    pub fn fixture(&self) -> &Fixture {
+        &self.fixture
+    }
+
+    /// The joint that is looked for.
+    pub fn joint(&self) -> &jointscope_fixture::Joint {
+        &self.fixture.joints()[self.joint]
+    }
+
+    /// Whether a body (its index in the whole fixture) belongs to side α.
+    pub fn is_on_alpha(&self, body: usize) -> bool {
+        self.on_alpha[body]
+    }
+
+    /// The joint's length L, m.
+    pub fn length(&self) -> f64 {
+        self.fixture.joint_length(self.joint())
+    }
+
+    /// Compliances of the sides on `lines`, all above 0 Hz (eq 8–12). `loaded` and `responding` are (body index
+    /// in the whole fixture, abscissa) of the reference points on sides α and β.
+    ///
+    /// A line at 0 Hz has no compliance; its matrices are zero.
+    ///
+    /// # Errors
+    /// A side that cannot be modelled, or an undamped resonance of a side on a line.
+    pub fn compliances(
+        &self,
+        lines: &SpectralLines,
+        loaded: (usize, f64),
+        responding: (usize, f64),
+    ) -> Result<Compliances, LumpedError> {
+        let joint = self.joint();
+        let [near, far] = [joint.from, joint.to].map(|p| &self.fixture.points()[p]);
+        let highest = lines.hz()[lines.len() - 1];
+        let alpha = Model::new(&self.alpha, highest)?;
+        let beta = Model::new(&self.beta, highest)?;
+        let at = |body: usize, x: f64| Station::both(self.index_on_side(body), x);
+        let [near_end, far_end] = [near, far].map(|p| at(p.body, p.x.value));
+        let (loads, motion) = (at(loaded.0, loaded.1), at(responding.0, responding.1));
+        Ok(Compliances {
+            alpha21: matrices(&alpha, near_end, loads, lines)?,
+            alpha22: matrices(&alpha, near_end, near_end, lines)?,
+            beta33: matrices(&beta, far_end, far_end, lines)?,
+            beta43: matrices(&beta, motion, far_end, lines)?,
+            length: self.length(),
+        })
+    }
+
+    /// Index of a body within its side.
+    fn index_on_side(&self, body: usize) -> usize {
+        (0..body).filter(|&other| self.on_alpha[other] == self.on_alpha[body]).count()
+    }
+}
+
+fn matrices(
+    model: &Model,
+    outputs: [Station; 2],
+    inputs: [Station; 2],
+    lines: &SpectralLines,
+) -> Result<Vec<ComplexMatrix2>, LumpedError> {
+    let mut receptances = model.receptances(&outputs, &inputs);
+    let mut values = [Complex64::ZERO; 4];
+    lines
+        .hz()
+        .iter()
+        .enumerate()
+        .map(|(line, &frequency)| {
+            if frequency == 0.0 {
+                return Ok(Matrix2::zero());
+            }
+            if !receptances.at(Complex64::new(0.0, lines.omega(line)), &mut values) {
+                return Err(LumpedError::Unbounded { frequency });
+            }
+            Ok(Matrix2::new(values[0], values[1], values[2], values[3]))
+        })
+        .collect()
+}
+
+/// The bodies reached from the joint's near end without crossing it.
+fn connected(fixture: &Fixture, joint: usize) -> Vec<bool> {
+    let body = |point: usize| fixture.points()[point].body;
+    let mut reached = vec![false; fixture.bodies().len()];
+    reached[body(fixture.joints()[joint].from)] = true;
+    loop {
+        let mut grew = false;
+        for (_, other) in fixture.joints().iter().enumerate().filter(|(i, _)| *i != joint) {
+            let (a, b) = (body(other.from), body(other.to));
+            if reached[a] != reached[b] {
+                (reached[a], reached[b], grew) = (true, true, true);
+            }
+        }
+        if !grew {
+            return reached;
+        }
+    }
+}
+
+fn with_its_effects(fixture: &Fixture, joint: usize, keep: &dyn Fn(usize) -> bool) -> Fixture {
+    let side = fixture.side(keep, joint);
+    let own = |effect: &&Effect| match &effect.place {
+        Place::Body(name) => side.body(name).is_some(),
+        Place::Joint(name) => side.joint(name).is_some(),
+        Place::Point(name) => {
+            let ends = side.joints().iter().flat_map(|j| [j.from, j.to]);
+            let at_a_joint = ends.map(|p| &side.points()[p].name).any(|end| end == name);
+            effect.kind == EffectKind::InterfaceCompliance && at_a_joint
+        }
+        _ => false,
+    };
+    let effects = fixture.physics().iter().filter(own).cloned().collect();
+    // An effect that was possible in the whole is possible on its side.
+    side.clone().with_physics(effects).unwrap_or(side)
+}
+
+fn check_instruments(fixture: &Fixture) -> Result<(), SidesError> {
+    let found = fixture.physics().iter().enumerate().find(|(_, e)| e.kind.is_instrumental());
+    found.map_or(Ok(()), |(index, effect)| Err(SidesError::Instrument { index, kind: effect.kind.name() }))
+}
