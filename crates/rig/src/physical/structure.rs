@@ -1,0 +1,166 @@
+use super::body::Bodies;
+use super::damping::{add_viscous, loss_factor};
+use super::joint::assemble_joint;
+use super::mesh::meshes;
+use super::{Assembly, Law, Row, Station};
+use crate::StructureError;
+use crate::effects::{all, all_at_point, sum};
+use jointscope_fixture::{Effect, EffectKind, Fixture, Place};
+use jointscope_linalg::generalized_symmetric_eigen;
+use jointscope_spectra::{Channel, Dof};
+use std::collections::BTreeMap;
+use std::f64::consts::TAU;
+
+/// A structure in the laboratory: its dynamic stiffness, and the places where it can be struck and read.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Structure {
+    assembly: Assembly,
+    points: BTreeMap<String, Station>,
+    displaced: BTreeMap<String, Station>,
+}
+
+impl Structure {
+    /// A structure assembled by hand, with its measuring points by name.
+    pub fn new(assembly: Assembly, points: impl IntoIterator<Item = (String, Station)>) -> Self {
+        Structure { assembly, points: points.into_iter().collect(), displaced: BTreeMap::new() }
+    }
+
+    /// The structure that a fixture describes, every structural effect of its `physics` in place.
+    ///
+    /// # Errors
+    /// A non-linear effect, or physics that cannot be built.
+    pub fn of(fixture: &Fixture) -> Result<Self, StructureError> {
+        let effects = fixture.physics();
+        if let Some(effect) = effects.iter().find(|e| e.kind.is_nonlinear()) {
+            return Err(StructureError::Nonlinear {
+                kind: effect.kind.name(),
+                place: effect.place.to_string(),
+            });
+        }
+        let meshes = meshes(fixture);
+        let (free, _) = free_assembly(fixture, &meshes, &[])?;
+        let (mut assembly, bodies) = free_assembly(fixture, &meshes, effects)?;
+        add_viscous(&mut assembly, &free, fixture.damping())?;
+        add_supports(&mut assembly, fixture, &bodies)?;
+        for effect in effects {
+            attach(&mut assembly, fixture, &bodies, effect)?;
+        }
+        let mut structure = Structure::new(assembly, []);
+        for point in fixture.points() {
+            let x = point.x.value;
+            structure.points.insert(point.name.clone(), bodies.station(point.body, x)?);
+            let dx = sum(all_at_point(effects, EffectKind::PointOffset, &point.name));
+            if dx != 0.0 {
+                structure.displaced.insert(point.name.clone(), bodies.station(point.body, x + dx)?);
+            }
+        }
+        Ok(structure)
+    }
+
+    /// Masses, springs and dashpots on the coordinates.
+    pub fn assembly(&self) -> &Assembly {
+        &self.assembly
+    }
+
+    /// How the stated place of a channel moves.
+    ///
+    /// # Errors
+    /// [`StructureError::UnknownPoint`].
+    pub fn motion(&self, channel: &Channel) -> Result<&Row, StructureError> {
+        motion(&self.points, channel).ok_or_else(|| StructureError::UnknownPoint(channel.point.clone()))
+    }
+
+    /// How the place moves where the channel's sensor or impact really is.
+    ///
+    /// # Errors
+    /// [`StructureError::UnknownPoint`].
+    pub fn motion_as_mounted(&self, channel: &Channel) -> Result<&Row, StructureError> {
+        match motion(&self.displaced, channel) {
+            Some(row) => Ok(row),
+            None => self.motion(channel),
+        }
+    }
+
+    /// Undamped natural frequencies in Hz, ascending, rigid motions first, of a structure in which every
+    /// coordinate has mass.
+    ///
+    /// # Errors
+    /// [`StructureError::Modes`].
+    pub fn natural_frequencies(&self) -> Result<Vec<f64>, StructureError> {
+        let mass = self.assembly.mass_matrix();
+        let stiffness = self.assembly.stiffness_matrix();
+        let basis = generalized_symmetric_eigen(self.assembly.order(), &mass, &stiffness)?;
+        Ok(basis.eigenvalues().iter().map(|lambda| lambda.max(0.0).sqrt() / TAU).collect())
+    }
+}
+
+fn motion<'a>(places: &'a BTreeMap<String, Station>, channel: &Channel) -> Option<&'a Row> {
+    let station = places.get(&channel.point)?;
+    Some(match channel.dof {
+        Dof::Translation => &station.y,
+        Dof::Rotation => &station.theta,
+    })
+}
+
+/// Bodies and joints, without supports and without damping other than the loss factor and the joints' own.
+fn free_assembly(
+    fixture: &Fixture,
+    meshes: &[Vec<f64>],
+    effects: &[Effect],
+) -> Result<(Assembly, Bodies), StructureError> {
+    let mut assembly = Assembly::new();
+    let loss_factor = loss_factor(fixture.damping());
+    let bodies = Bodies::assemble(&mut assembly, fixture, meshes, effects, loss_factor)?;
+    for joint in fixture.joints() {
+        assemble_joint(&mut assembly, fixture, &bodies, joint, effects, loss_factor)?;
+    }
+    Ok((assembly, bodies))
+}
+
+fn add_supports(assembly: &mut Assembly, fixture: &Fixture, bodies: &Bodies) -> Result<(), StructureError> {
+    for support in fixture.supports() {
+        let (body, x) = fixture.support_place(support);
+        let station = bodies.station(body, x)?;
+        let value = |quantity: &Option<jointscope_fixture::Quantity>| quantity.map_or(0.0, |q| q.value);
+        assembly.spring(&station.y, support.stiffness.value, Law::ELASTIC);
+        assembly.dashpot(&station.y, value(&support.damping));
+        assembly.spring(&station.theta, value(&support.rotational_stiffness), Law::ELASTIC);
+        assembly.dashpot(&station.theta, value(&support.rotational_damping));
+    }
+    Ok(())
+}
+
+/// Hangs masses, springs and resonators on the bodies.
+fn attach(
+    assembly: &mut Assembly,
+    fixture: &Fixture,
+    bodies: &Bodies,
+    effect: &Effect,
+) -> Result<(), StructureError> {
+    let Place::Body(name) = &effect.place else { return Ok(()) };
+    let Some(body) = fixture.bodies().iter().position(|b| b.name == *name) else { return Ok(()) };
+    let place = || Ok::<Row, StructureError>(bodies.station(body, effect.value(0))?.y);
+    match effect.kind {
+        EffectKind::AddedMass => assembly.inertia(&place()?, effect.value(1)),
+        EffectKind::Support => {
+            let place = place()?;
+            assembly.spring(&place, effect.value(1), Law::ELASTIC);
+            assembly.dashpot(&place, effect.value(2));
+        }
+        EffectKind::AttachedResonator => {
+            let (mass, omega) = (effect.value(1), TAU * effect.value(2));
+            let resonator = Row::coordinate(assembly.coordinate());
+            assembly.inertia(&resonator, mass);
+            let stretch = resonator.minus(&place()?);
+            assembly.spring(&stretch, mass * omega * omega, Law::ELASTIC);
+            assembly.dashpot(&stretch, 2.0 * effect.value(3) * omega * mass);
+        }
+        _ => {}
+    }
+    Ok(())
+}
+
+/// Decay rate (1/s) of the response window, zero where there is none.
+pub(crate) fn window_decay(effects: &[Effect]) -> f64 {
+    sum(all(effects, EffectKind::ExponentialWindow))
+}
