@@ -12,6 +12,7 @@
 //!   supports, masses and mass-proportional damping (eq 8–12);
 //! * [`MeasurementPlan`]: which FRFs of a recording tell the motion of one side due to loads on the other;
 //! * [`decompose`]: K(ω) and C(ω) with standard deviations, masked lines counted ([`JointSpectrum`]);
+//! * [`Analysis`]: all of it for one recording, with what the fixture's tolerances add;
 //! * [`Averages`]: means over a band, plain (eq 35, 42) and weighted;
 //! * [`maximum_likelihood`]: symmetric, passive k and c straight from the FRFs;
 //! * [`interfaces`]: what the joint's ends add to its beam (eq 6, scalar and matrix form).
@@ -33,6 +34,7 @@
 //! assert!((paper.at(0, 0).re / 3e6 - 1.0).abs() > 0.01);
 //! ```
 
+mod analysis;
 mod averages;
 mod interfaces;
 mod likelihood;
@@ -42,6 +44,7 @@ mod sides;
 mod spectrum;
 mod tolerances;
 
+pub use analysis::{Analysis, AnalysisOptions};
 pub use averages::{Averages, MatrixAverage};
 pub use interfaces::{Compliance, InterfaceStiffness, Interfaces, interfaces};
 pub use likelihood::{LikelihoodFit, maximum_likelihood};

@@ -23,19 +23,22 @@ pub struct ToleranceShare {
 }
 
 /// Moves every quantity of the fixture that has a standard deviation up and down by it, and decomposes again;
-/// half of the difference is its share. `fit` is the fit at the stated values, from which the others start.
+/// half of the difference is its share. `band` is the one averaged over, `fit_band` the one fitted (all lines
+/// without); `fit` is the fit at the stated values, from which the others start.
 ///
 /// `exact` takes bare numbers of the fixture as exact. A quantity whose change cannot be followed (a fixture that
 /// becomes impossible) is left out.
 ///
 /// # Errors
 /// A fixture that cannot be taken apart at `joint`.
+#[allow(clippy::too_many_arguments)]
 pub fn tolerance_shares(
     fixture: &Fixture,
     joint: &str,
     frfs: &FrfSet,
     relation: Relation,
     band: Band,
+    fit_band: Option<Band>,
     fit: Option<&LikelihoodFit>,
     exact: bool,
 ) -> Result<Vec<ToleranceShare>, DecompositionError> {
@@ -49,7 +52,7 @@ pub fn tolerance_shares(
             if let Some(entry) = other.quantities_mut().into_iter().nth(index) {
                 entry.quantity.value += sign * std;
             }
-            Outcome::of(&other, joint, frfs, relation, band, fit)
+            Outcome::of(&other, joint, frfs, relation, (band, fit_band), fit)
         };
         let (Ok(up), Ok(down)) = (moved(1.0), moved(-1.0)) else { continue };
         let half = |a: RealMatrix2, b: RealMatrix2| (a - b).scale(0.5);
@@ -80,7 +83,7 @@ impl Outcome {
         joint: &str,
         frfs: &FrfSet,
         relation: Relation,
-        band: Band,
+        (band, fit_band): (Band, Option<Band>),
         fit: Option<&LikelihoodFit>,
     ) -> Result<Self, DecompositionError> {
         let sides = Sides::of(fixture, Some(joint))?;
@@ -88,8 +91,13 @@ impl Outcome {
         let model = fit
             .map_or((spectrum.solved[0].stiffness, spectrum.solved[0].damping), |f| (f.stiffness, f.damping));
         let averages = Averages::of(&spectrum, Some(band), model)?;
+        let exact = match relation {
+            Relation::Exact => None,
+            Relation::Paper => Some(decompose(frfs, &sides, Relation::Exact)?),
+        };
+        let exact = exact.as_ref().unwrap_or(&spectrum);
         let fitted = match fit {
-            Some(fit) => Some(maximum_likelihood(frfs, &sides, &spectrum, None, Some(fit.stiffness))?),
+            Some(fit) => Some(maximum_likelihood(frfs, &sides, exact, fit_band, Some(fit.stiffness))?),
             None => None,
         };
         let compliance = match (&fitted, &sides.joint().law) {

@@ -1,4 +1,5 @@
 //! Synthesis followed by decomposition.
+#![allow(clippy::unwrap_used, missing_docs)]
 
 mod common;
 

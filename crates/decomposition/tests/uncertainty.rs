@@ -1,4 +1,5 @@
 //! Whether stated uncertainties are true, by simulation with fixed seeds.
+#![allow(clippy::unwrap_used, missing_docs)]
 
 mod common;
 

@@ -28,7 +28,7 @@ pub fn solve_positive_definite(a: &mut [f64], b: &mut [f64]) -> bool {
             let rest = a[i * n + j] - dot;
             if i == j {
                 // Of a unit diagonal, less than this left is rounding.
-                if !(rest > 1e-15) {
+                if rest.is_nan() || rest <= 1e-15 {
                     return false;
                 }
                 a[i * n + i] = rest.sqrt();

@@ -1,5 +1,6 @@
 //! The modal sums with their low-rank changes, against one dense solution per line of the whole
 //! dynamic stiffness matrix by another library.
+#![allow(clippy::unwrap_used, missing_docs)]
 
 use jointscope_fixture::Fixture;
 use jointscope_lumped::{Model, Station};

@@ -1,4 +1,5 @@
 //! Effects of the measuring chain, each against its definition.
+#![allow(clippy::unwrap_used, missing_docs)]
 
 use jointscope_fixture::Fixture;
 use jointscope_lumped::{Instrument, LumpedError, synthesize};

@@ -112,7 +112,7 @@ impl Scene<'_> {
         for joint in self.fixture.joints() {
             let length = self.fixture.joint_length(joint);
             let [translation, _] = stiffness(self.fixture, joint);
-            if !sheared || (length > 0.0 && translation > 0.0) {
+            if !sheared || matches!(joint.law, jointscope_fixture::JointLaw::Beam { .. }) {
                 places.push((Place::Joint(joint.name.clone()), translation * length, 0.0));
             }
         }

@@ -1,5 +1,5 @@
 //! Fixtures and noise shared by the tests of this crate.
-#![allow(dead_code)]
+#![allow(dead_code, clippy::unwrap_used)]
 
 use jointscope_fixture::Fixture;
 use jointscope_linalg::{Matrix2, RealMatrix2};

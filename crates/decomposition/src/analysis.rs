@@ -1,0 +1,187 @@
+use crate::{
+    Averages, DecompositionError, Interfaces, JointSpectrum, LikelihoodFit, MeasurementPlan, Relation, Sides,
+    ToleranceShare, decompose, interfaces, maximum_likelihood, tolerance_shares,
+};
+use jointscope_averaging::Band;
+use jointscope_beam::end_stiffness;
+use jointscope_fixture::{Fixture, JointLaw};
+use jointscope_frf::noise::{NoiseSource, with_variances};
+use jointscope_linalg::{ComplexMatrix2, Matrix2, RealMatrix2};
+use jointscope_lumped::{Model, Station};
+use jointscope_spectra::FrfSet;
+use num_complex::Complex64;
+
+/// What to decompose and how.
+#[derive(Debug, Clone, PartialEq)]
+pub struct AnalysisOptions {
+    /// The joint to find; may be left out where the fixture has one.
+    pub joint: Option<String>,
+    /// The relation by which K(ω) and C(ω) are found.
+    pub relation: Relation,
+    /// The band of averages and of the fit; the quietest one and all lines where it is left out.
+    pub band: Option<Band>,
+    /// Take the fixture's bare numbers as exact.
+    pub exact: bool,
+}
+
+impl Default for AnalysisOptions {
+    fn default() -> Self {
+        AnalysisOptions { joint: None, relation: Relation::Exact, band: None, exact: false }
+    }
+}
+
+/// A recording decomposed for a joint: everything that the file and the page say of it.
+#[derive(Debug, Clone)]
+pub struct Analysis {
+    /// The joint's name.
+    pub joint: String,
+    /// The FRFs with the variances that were used.
+    pub frfs: FrfSet,
+    /// Where each FRF's variance came from.
+    pub noise: Vec<NoiseSource>,
+    /// Which FRFs were used and from where.
+    pub plan: MeasurementPlan,
+    /// K and C by line.
+    pub spectrum: JointSpectrum,
+    /// Averages over the band.
+    pub averages: Averages,
+    /// The maximum-likelihood joint, or why there is none.
+    pub likelihood: Result<LikelihoodFit, DecompositionError>,
+    /// The joint's interfaces, where it is a beam and the fit succeeded.
+    pub interfaces: Option<Interfaces>,
+    /// What the fixture's tolerances do to the results.
+    pub tolerances: Vec<ToleranceShare>,
+    /// H41 and K + iωC that the fixture as it stands predicts, by line of the recording.
+    pub nominal: Vec<Option<(ComplexMatrix2, ComplexMatrix2)>>,
+    /// The fixture's stiffness of the joint on d = u_to − R·u_from.
+    pub nominal_stiffness: RealMatrix2,
+}
+
+impl Analysis {
+    /// Decomposes `frfs` for a joint of `fixture`.
+    ///
+    /// Variances are estimated from coherence and averages where the set has them, from its scatter elsewhere; those
+    /// that the set carries already are kept.
+    ///
+    /// # Errors
+    /// See [`DecompositionError`].
+    pub fn of(
+        fixture: &Fixture,
+        frfs: &FrfSet,
+        options: &AnalysisOptions,
+    ) -> Result<Self, DecompositionError> {
+        let sides = Sides::of(fixture, options.joint.as_deref())?;
+        let plan = MeasurementPlan::of(frfs, &sides)?;
+        let (frfs, noise) = match frfs.variance(0) {
+            Some(_) => (frfs.clone(), Vec::new()),
+            None => with_variances(frfs).map_err(jointscope_frf::RigidMotionError::from)?,
+        };
+        let joint = sides.joint().name.clone();
+        let spectrum = decompose(&frfs, &sides, options.relation)?;
+        // Fit and weights rest on the exact relation, whichever is shown.
+        let exact = match options.relation {
+            Relation::Exact => spectrum.clone(),
+            Relation::Paper => decompose(&frfs, &sides, Relation::Exact)?,
+        };
+        let nominal_stiffness = nominal_of(&sides);
+        let likelihood = maximum_likelihood(&frfs, &sides, &exact, options.band, Some(nominal_stiffness));
+        let model = match &likelihood {
+            Ok(fit) => (fit.stiffness, fit.damping),
+            Err(_) => (nominal_stiffness, RealMatrix2::zero()),
+        };
+        let averages = Averages::of(&spectrum, options.band, model)?;
+        let tolerances = tolerance_shares(
+            fixture,
+            &joint,
+            &frfs,
+            options.relation,
+            averages.band,
+            options.band,
+            likelihood.as_ref().ok(),
+            options.exact,
+        )?;
+        let interfaces = likelihood.as_ref().ok().and_then(|fit| joint_interfaces(fit, &sides, &tolerances));
+        let nominal = predicted(fixture, &plan, &spectrum)?;
+        Ok(Analysis {
+            joint,
+            frfs,
+            noise,
+            plan,
+            spectrum,
+            averages,
+            likelihood,
+            interfaces,
+            tolerances,
+            nominal,
+            nominal_stiffness,
+        })
+    }
+
+    /// Standard deviations that the fixture's tolerances give the plain averages of K and C.
+    pub fn tolerance_of_averages(&self) -> (RealMatrix2, RealMatrix2) {
+        root_of_squares(self.tolerances.iter().map(|share| share.plain))
+    }
+
+    /// Standard deviations that the fixture's tolerances give the maximum-likelihood K and C.
+    pub fn tolerance_of_likelihood(&self) -> (RealMatrix2, RealMatrix2) {
+        root_of_squares(self.tolerances.iter().filter_map(|share| share.likelihood))
+    }
+
+    /// Number of solved lines whose intervals noise makes only indicative.
+    pub fn noisy_lines(&self) -> usize {
+        self.spectrum.solved.iter().filter(|line| line.is_noisy()).count()
+    }
+}
+
+fn root_of_squares(shares: impl Iterator<Item = (RealMatrix2, RealMatrix2)>) -> (RealMatrix2, RealMatrix2) {
+    let mut sums = (RealMatrix2::zero(), RealMatrix2::zero());
+    for (k, c) in shares {
+        sums.0 = sums.0 + k.map(|e| e * e);
+        sums.1 = sums.1 + c.map(|e| e * e);
+    }
+    (sums.0.map(f64::sqrt), sums.1.map(f64::sqrt))
+}
+
+fn nominal_of(sides: &Sides) -> RealMatrix2 {
+    match &sides.joint().law {
+        JointLaw::Beam { youngs_modulus, second_moment } => {
+            end_stiffness(youngs_modulus.value * second_moment.value, sides.length())
+        }
+        JointLaw::Stiffness { stiffness: [a, b, d], .. } => Matrix2::new(a.value, b.value, b.value, d.value),
+    }
+}
+
+fn joint_interfaces(fit: &LikelihoodFit, sides: &Sides, tolerances: &[ToleranceShare]) -> Option<Interfaces> {
+    let JointLaw::Beam { youngs_modulus, second_moment } = &sides.joint().law else { return None };
+    let covariance = std::array::from_fn(|m| std::array::from_fn(|n| fit.covariance[m][n]));
+    let shifts: Vec<[f64; 5]> = tolerances.iter().filter_map(|share| share.compliance).collect();
+    let bending_stiffness = youngs_modulus.value * second_moment.value;
+    interfaces(fit.stiffness, covariance, bending_stiffness, sides.length(), &shifts)
+}
+
+/// H41 of the whole fixture between the plan's reference points, and what the spectrum's relation makes of it.
+fn predicted(
+    fixture: &Fixture,
+    plan: &MeasurementPlan,
+    spectrum: &JointSpectrum,
+) -> Result<Vec<Option<(ComplexMatrix2, ComplexMatrix2)>>, DecompositionError> {
+    let lines = &spectrum.h41.lines;
+    let model = Model::new(fixture, lines.hz()[lines.len() - 1])?;
+    let outputs = Station::both(plan.responding.0, plan.responding.1);
+    let inputs = Station::both(plan.loaded.0, plan.loaded.1);
+    let mut receptances = model.receptances(&outputs, &inputs);
+    let mut values = [Complex64::ZERO; 4];
+    let s = &spectrum.sides;
+    let predicted = (0..lines.len()).map(|line| {
+        if lines.hz()[line] == 0.0 || !receptances.at(Complex64::new(0.0, lines.omega(line)), &mut values) {
+            return None;
+        }
+        let h41 = Matrix2::new(values[0], values[1], values[2], values[3]);
+        if spectrum.scalar {
+            return Some((h41, Matrix2::zero()));
+        }
+        let (a21, a22, b33, b43) = (s.alpha21[line], s.alpha22[line], s.beta33[line], s.beta43[line]);
+        Some((h41, spectrum.relation.decompose(h41, a21, a22, b33, b43, s.length)?))
+    });
+    Ok(predicted.collect())
+}

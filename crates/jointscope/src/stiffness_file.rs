@@ -1,0 +1,142 @@
+use jointscope_decomposition::{Analysis, Compliance, InterfaceStiffness, JointLine, MatrixAverage};
+use jointscope_frf::noise::NoiseSource;
+use jointscope_linalg::RealMatrix2;
+use serde_json::{Map, Value, json};
+
+/// The contents of `stiffness.json`: K and C by line, averages, the fitted joint and its interfaces, in SI units.
+///
+/// `std` is what the FRFs' noise leaves uncertain, `std_fixture` what the fixture's tolerances do.
+pub fn stiffness_file(analysis: &Analysis) -> Value {
+    let mut root = Map::new();
+    let spectrum = &analysis.spectrum;
+    root.insert("joint".into(), json!(analysis.joint));
+    root.insert("relation".into(), json!(spectrum.relation.name()));
+    root.insert("lines".into(), spectrum.solved.iter().map(line).collect());
+    let frequencies = spectrum.h41.lines.hz();
+    let masked =
+        spectrum.masked.iter().map(|(i, why)| json!({"frequency": frequencies[*i], "why": why.why()}));
+    root.insert("masked".into(), masked.collect());
+    root.insert("average".into(), averages(analysis));
+    if let Some(weighted) = &analysis.averages.weighted {
+        root.insert("weighted_average".into(), average(weighted));
+    }
+    root.insert("maximum_likelihood".into(), likelihood(analysis));
+    if let Some(interfaces) = &analysis.interfaces {
+        root.insert(
+            "interfaces".into(),
+            json!({
+                "translation_both": stiffness(&interfaces.translation, "N/m"),
+                "rotation_from": stiffness(&interfaces.near_rotation, "N*m/rad"),
+                "rotation_to": stiffness(&interfaces.far_rotation, "N*m/rad"),
+                "scalar_11": stiffness(&interfaces.scalar[0], "N/m"),
+                "scalar_22": stiffness(&interfaces.scalar[1], "N*m/rad"),
+            }),
+        );
+    }
+    root.insert("nominal_stiffness".into(), matrix(&analysis.nominal_stiffness));
+    root.insert("recording".into(), recording(analysis));
+    Value::Object(root)
+}
+
+fn matrix(m: &RealMatrix2) -> Value {
+    json!(m.0)
+}
+
+fn pair(k: &RealMatrix2, c: &RealMatrix2) -> Value {
+    json!({"stiffness": matrix(k), "damping": matrix(c)})
+}
+
+fn line(line: &JointLine) -> Value {
+    let mut entry = json!({
+        "frequency": line.frequency,
+        "stiffness": matrix(&line.stiffness),
+        "damping": matrix(&line.damping),
+        "condition": line.condition,
+    });
+    if let (Some(k), Some(c)) = (&line.stiffness_std, &line.damping_std) {
+        entry["std"] = pair(k, c);
+        entry["noisy"] = json!(line.is_noisy());
+    }
+    entry
+}
+
+fn average(average: &MatrixAverage) -> Value {
+    json!({
+        "stiffness": matrix(&average.stiffness),
+        "damping": matrix(&average.damping),
+        "std": pair(&average.stiffness_std, &average.damping_std),
+    })
+}
+
+fn averages(analysis: &Analysis) -> Value {
+    let mut entry = average(&analysis.averages.plain);
+    let (k, c) = analysis.tolerance_of_averages();
+    entry["band"] = json!([analysis.averages.band.from, analysis.averages.band.to]);
+    entry["lines"] = json!(analysis.averages.lines);
+    entry["std_fixture"] = pair(&k, &c);
+    entry
+}
+
+fn likelihood(analysis: &Analysis) -> Value {
+    match &analysis.likelihood {
+        Ok(fit) => {
+            let (k, c) = analysis.tolerance_of_likelihood();
+            json!({
+                "stiffness": matrix(&fit.stiffness),
+                "damping": matrix(&fit.damping),
+                "std": pair(&fit.stiffness_std, &fit.damping_std),
+                "std_fixture": pair(&k, &c),
+                "chi2_per_dof": fit.chi2_per_dof,
+                "relation": "exact",
+            })
+        }
+        Err(error) => json!({"failed": error.to_string()}),
+    }
+}
+
+fn stiffness(compliance: &Compliance, unit: &str) -> Value {
+    let mut entry = match compliance.stiffness() {
+        InterfaceStiffness::Found { stiffness, interval } => {
+            json!({"stiffness": stiffness, "ci95": interval})
+        }
+        InterfaceStiffness::StifferThan { above } => json!({"above": above}),
+        InterfaceStiffness::StifferThanTheBeam => {
+            json!({"says": "the joint is stiffer than the beam it is said to be"})
+        }
+    };
+    entry["unit"] = json!(unit);
+    entry["compliance"] = json!({"value": compliance.value, "std": compliance.std});
+    entry
+}
+
+fn recording(analysis: &Analysis) -> Value {
+    let used: Vec<String> = analysis
+        .plan
+        .layout
+        .channels
+        .iter()
+        .map(|(index, ..)| analysis.frfs.pairs()[*index].to_string())
+        .collect();
+    let unused: Vec<String> = analysis.plan.unused.iter().map(ToString::to_string).collect();
+    let noise: Map<String, Value> = analysis
+        .frfs
+        .pairs()
+        .iter()
+        .zip(&analysis.noise)
+        .map(|(pair, source)| {
+            let source = match source {
+                NoiseSource::Coherence => "coherence and averages",
+                NoiseSource::Scatter => "scatter over the lines",
+            };
+            (pair.to_string(), json!(source))
+        })
+        .collect();
+    json!({
+        "used": used,
+        "unused": unused,
+        "noise_from": noise,
+        "reference_points": {"responding": analysis.plan.responding.2, "loaded": analysis.plan.loaded.2},
+        "rigid_motion_chi2_per_dof": analysis.spectrum.h41.rigidity(),
+        "noisy_lines": analysis.noisy_lines(),
+    })
+}

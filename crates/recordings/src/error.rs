@@ -1,0 +1,220 @@
+use std::fmt;
+
+use jointscope_spectra::SpectraError;
+
+use crate::{FileChannel, UnitsError};
+
+/// A function in a file: `test.uff, function 3 (FRF 4:+y/1:+y)`.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Place {
+    /// The file's name.
+    pub source: String,
+    /// Which of its functions (datasets 58), counted from 1.
+    pub function: usize,
+    /// What it is: `FRF` or `coherence`.
+    pub what: &'static str,
+    /// Response channel, as the file names it.
+    pub response: FileChannel,
+    /// Reference channel, as the file names it.
+    pub reference: FileChannel,
+}
+
+impl fmt::Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Place { source, function, what, response, reference } = self;
+        write!(f, "{source}, function {function} ({what} {response}/{reference})")
+    }
+}
+
+/// What is wrong with one function.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum FunctionError {
+    /// Its units.
+    #[error(transparent)]
+    Units(#[from] UnitsError),
+    /// An FRF without phase.
+    #[error("its values are real, a magnitude without phase: export the complex FRF")]
+    NoPhase,
+    /// A coherence with an imaginary part.
+    #[error("a coherence is real, but its values are complex")]
+    ComplexCoherence,
+    /// A coherence outside 0 … 1.
+    #[error("the coherence is {value} at {frequency} Hz: it lies between 0 and 1")]
+    Coherence {
+        /// What stands there.
+        value: f64,
+        /// The line, Hz.
+        frequency: f64,
+    },
+    /// ID line 5 starts with `averages`, but no count follows.
+    #[error("ID line 5 reads `{0}`: a whole number of averages, 1 or more, is needed, such as `averages 5`")]
+    Averages(String),
+    /// Its spectral lines.
+    #[error("{0}")]
+    Lines(SpectraError),
+    /// The direction is not transverse, and no map says what it is.
+    #[error(
+        "direction {direction} of node {node} is neither y nor theta; if it is the fixture's y, say so with `--map {node}:{direction}={node}:+y` (or `-y`)"
+    )]
+    Direction {
+        /// Node number.
+        node: i64,
+        /// Direction, such as `+z`.
+        direction: String,
+    },
+    /// As [`FunctionError::Direction`], of a rotation.
+    #[error(
+        "direction {direction} of node {node} is neither y nor theta; if it is the fixture's theta, say so with `--map {node}:{direction}={node}:+theta` (or `-theta`)"
+    )]
+    RotationalDirection {
+        /// Node number.
+        node: i64,
+        /// Direction, such as `+rx`.
+        direction: String,
+    },
+    /// A direction that the format does not have.
+    #[error(
+        "direction {direction} of node {node} does not exist: 0 to 6 and -1 to -6 do; export the file again"
+    )]
+    NoSuchDirection {
+        /// Node number.
+        node: i64,
+        /// The number stated.
+        direction: i32,
+    },
+    /// A rotation of a body that has none.
+    #[error("point `{point}` of the fixture sits on a body that does not rotate; leave this function out")]
+    NoRotation {
+        /// The point.
+        point: String,
+    },
+}
+
+/// Why files and fixture do not make a recording.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum RecordingError {
+    /// One function cannot be used.
+    #[error("{place}: {problem}")]
+    Function {
+        /// Which.
+        place: Box<Place>,
+        /// Why.
+        problem: FunctionError,
+    },
+    /// A map entry names a point that the fixture does not have.
+    #[error(
+        "the map entry `{entry}` names the point `{point}`, which the fixture does not have (it has {points})"
+    )]
+    MapPoint {
+        /// The entry.
+        entry: String,
+        /// The unknown point.
+        point: String,
+        /// The fixture's points.
+        points: String,
+    },
+    /// A map entry that applies to nothing.
+    #[error("the map entry `{entry}` applies to no channel of the files (they have {channels})")]
+    MapUnused {
+        /// The entry.
+        entry: String,
+        /// The files' channels.
+        channels: String,
+    },
+    /// The same function twice.
+    #[error("{second}: {what} {frf} was given already by {first}; leave one of them out")]
+    Twice {
+        /// `FRF` or `coherence`.
+        what: &'static str,
+        /// In the fixture's terms, with the level where there is one.
+        frf: String,
+        /// The first of them.
+        first: Box<Place>,
+        /// The second of them.
+        second: Box<Place>,
+    },
+    /// Functions on different spectral lines.
+    #[error("{second} has {second_lines}, but {first} has {first_lines}; give functions on the same lines")]
+    Lines {
+        /// One function.
+        first: Box<Place>,
+        /// Its lines.
+        first_lines: String,
+        /// The other function.
+        second: Box<Place>,
+        /// Its lines.
+        second_lines: String,
+    },
+    /// No FRF connects two points of the fixture.
+    #[error(
+        "no FRF belongs to the fixture: the files have nodes {nodes}, the fixture has points {points}; say which is which with `--map`, such as `--map {example}`"
+    )]
+    NotOnFixture {
+        /// Channels of the files.
+        nodes: String,
+        /// The fixture's points.
+        points: String,
+        /// A map entry in the right form.
+        example: String,
+    },
+    /// Time histories only.
+    #[error("{files} hold {count} time histories and no FRF; make FRFs of them first: `jointscope estimate`")]
+    OnlyTimeHistories {
+        /// The files.
+        files: String,
+        /// Number of time histories.
+        count: usize,
+        /// Their channels.
+        channels: Vec<FileChannel>,
+    },
+    /// Neither FRFs nor time histories.
+    #[error("{files} hold no FRF (function type 4), only {found}")]
+    NoFrf {
+        /// The files.
+        files: String,
+        /// What there is.
+        found: String,
+    },
+    /// Functions of type 4 that are no motion per force.
+    #[error(
+        "{place}: data types {numerator} over {denominator} are no displacement (8), velocity (11) or acceleration (12) per force (13), and the files have no other FRF"
+    )]
+    NotPerForce {
+        /// The first of them.
+        place: Box<Place>,
+        /// Data type of the ordinate's numerator.
+        numerator: i32,
+        /// Data type of its denominator.
+        denominator: i32,
+    },
+    /// FRFs at several amplitudes, where those of one are needed.
+    #[error("the files hold FRFs at {count} levels ({levels}); give the files of one level")]
+    SeveralLevels {
+        /// Number of levels.
+        count: usize,
+        /// The levels.
+        levels: String,
+    },
+    /// The FRFs are no valid set.
+    #[error("the FRFs do not make a set: {0}")]
+    Spectra(#[from] SpectraError),
+}
+
+impl RecordingError {
+    pub(crate) fn function(place: Place, problem: impl Into<FunctionError>) -> Self {
+        RecordingError::Function { place: Box::new(place), problem: problem.into() }
+    }
+}
+
+/// Names in a row, the end of a long row cut short.
+pub(crate) fn enumeration<T: fmt::Display>(items: impl IntoIterator<Item = T>) -> String {
+    const SHOWN: usize = 12;
+    let names: Vec<String> = items.into_iter().map(|item| item.to_string()).collect();
+    match names.len() {
+        0 => "none".to_owned(),
+        count if count > SHOWN + 1 => {
+            format!("{} and {} more", names[..SHOWN].join(", "), count - SHOWN)
+        }
+        _ => names.join(", "),
+    }
+}

@@ -1,0 +1,132 @@
+//! One function of a file, read for what it is to the test: its lines, values, level and averages.
+
+use jointscope_spectra::{FrfForm, SpectralLines};
+use jointscope_uff::{Abscissa, Axis, Data, Dataset58};
+use num_complex::Complex64;
+
+use crate::ordinate::hertz;
+use crate::{FileChannel, FunctionError, HeldAmplitude, Place};
+
+/// A function and where it stands.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Function<'a> {
+    /// Name of its file.
+    pub source: &'a str,
+    /// Its position among the file's functions, from 0.
+    pub index: usize,
+    /// `FRF` or `coherence`.
+    pub what: &'static str,
+    pub dataset: &'a Dataset58,
+}
+
+/// How far a coherence may leave 0 … 1 by rounding.
+const COHERENCE_SLACK: f64 = 1e-6;
+
+impl<'a> Function<'a> {
+    pub fn response(&self) -> FileChannel {
+        FileChannel::from(&self.dataset.response)
+    }
+
+    pub fn reference(&self) -> FileChannel {
+        FileChannel::from(&self.dataset.reference)
+    }
+
+    pub fn place(&self) -> Place {
+        Place {
+            source: self.source.to_owned(),
+            function: self.index + 1,
+            what: self.what,
+            response: self.response(),
+            reference: self.reference(),
+        }
+    }
+
+    /// Held amplitude, ID line 4.
+    pub fn level(&self) -> Option<HeldAmplitude> {
+        HeldAmplitude::parse(&self.dataset.id_lines[3])
+    }
+
+    /// Number of averages, ID line 5.
+    pub fn averages(&self) -> Result<Option<u32>, FunctionError> {
+        let line = &self.dataset.id_lines[4];
+        let mut words = line.split_whitespace();
+        if !words.next().is_some_and(|word| word.eq_ignore_ascii_case("averages")) {
+            return Ok(None);
+        }
+        match (words.next().and_then(|word| word.parse().ok()), words.next()) {
+            (Some(count @ 1..), None) => Ok(Some(count)),
+            _ => Err(FunctionError::Averages(line.clone())),
+        }
+    }
+
+    /// Complex values.
+    pub fn complex(&self) -> Result<&'a [Complex64], FunctionError> {
+        match &self.dataset.data {
+            Data::Complex(values) => Ok(values),
+            Data::Real(_) => Err(FunctionError::NoPhase),
+        }
+    }
+
+    /// Values of a coherence; analysers store some as complex numbers without imaginary part.
+    pub fn coherence(&self, lines: &SpectralLines) -> Result<Vec<f64>, FunctionError> {
+        let values = match &self.dataset.data {
+            Data::Real(values) => values.clone(),
+            Data::Complex(values) if values.iter().all(|value| value.im == 0.0) => {
+                values.iter().map(|value| value.re).collect()
+            }
+            Data::Complex(_) => return Err(FunctionError::ComplexCoherence),
+        };
+        let possible = -COHERENCE_SLACK..=1.0 + COHERENCE_SLACK;
+        match values.iter().zip(lines.hz()).find(|(value, _)| !possible.contains(value)) {
+            Some((&value, &frequency)) => Err(FunctionError::Coherence { value, frequency }),
+            None => Ok(values),
+        }
+    }
+}
+
+/// Appends accelerances, from values of another form: `factor` brings them to SI and along y.
+pub(crate) fn append_accelerances(
+    all: &mut Vec<Complex64>,
+    values: &[Complex64],
+    form: FrfForm,
+    factor: f64,
+    lines: &SpectralLines,
+) {
+    match form {
+        FrfForm::Accelerance => all.extend(values.iter().map(|value| value * factor)),
+        // iω times.
+        FrfForm::Mobility => all.extend(values.iter().zip(lines.omegas()).map(|(value, omega)| {
+            let scale = factor * omega;
+            Complex64::new(-value.im * scale, value.re * scale)
+        })),
+        // (iω)² times.
+        FrfForm::Receptance => all.extend(
+            values.iter().zip(lines.omegas()).map(|(value, omega)| value * (-factor * omega * omega)),
+        ),
+    }
+}
+
+/// Spectral lines of functions, built once for all functions on the same abscissa.
+#[derive(Default)]
+pub(crate) struct LinesCache<'a> {
+    last: Option<(&'a Abscissa, &'a Axis, SpectralLines)>,
+}
+
+impl<'a> LinesCache<'a> {
+    pub fn lines(&mut self, dataset: &'a Dataset58) -> Result<SpectralLines, FunctionError> {
+        let (abscissa, axis) = (&dataset.abscissa, &dataset.abscissa_axis);
+        if let Some((last, last_axis, lines)) = &self.last
+            && (*last, *last_axis) == (abscissa, axis)
+        {
+            return Ok(lines.clone());
+        }
+        let factor = hertz(axis)?;
+        let mut frequencies = abscissa.values();
+        if factor != 1.0 {
+            frequencies.iter_mut().for_each(|frequency| *frequency *= factor);
+        }
+        let lines = SpectralLines::new(frequencies).map_err(FunctionError::Lines)?;
+        self.last = Some((abscissa, axis, lines.clone()));
+        Ok(lines)
+    }
+}

@@ -1,0 +1,272 @@
+//! From files to functions between the fixture's channels: what belongs to the test, what is left out, and why.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use jointscope_fixture::{BodyKind, Fixture};
+use jointscope_spectra::{Channel, Dof, FrfPair};
+use jointscope_uff::FunctionType;
+
+use crate::error::enumeration;
+use crate::function::Function;
+use crate::{ChannelMap, FileChannel, FunctionError, HeldAmplitude, MapEntry, RecordingError, Source};
+
+/// A function between two channels of the fixture.
+#[derive(Debug)]
+pub(crate) struct Entry<'a> {
+    pub pair: FrfPair,
+    pub level: Option<HeldAmplitude>,
+    /// Product of both channels' signs.
+    pub sign: f64,
+    pub function: Function<'a>,
+    /// Order of the fixture's points, so that the order of the files does not show.
+    key: Key,
+}
+
+/// Level, response, reference.
+type Key = ((u8, u64), (usize, Dof), (usize, Dof));
+
+/// The functions of all files, by what they are.
+#[derive(Debug, Default)]
+pub(crate) struct Gathered<'a> {
+    pub frfs: Vec<Entry<'a>>,
+    pub coherences: Vec<Entry<'a>>,
+    pub time_histories: Vec<FileChannel>,
+    /// Number of functions of each other type, by code.
+    pub others: BTreeMap<i32, usize>,
+    /// FRFs at nodes that the fixture does not have.
+    pub elsewhere: Vec<String>,
+    /// FRFs in directions that are not the fixture's.
+    pub other_directions: Vec<String>,
+    /// Nodes whose direction is not stated.
+    pub scalars: BTreeSet<i64>,
+    /// Channels of all FRFs and coherences.
+    pub channels: BTreeSet<FileChannel>,
+}
+
+impl Gathered<'_> {
+    /// Whether the files hold FRFs at all.
+    pub fn has_frfs(&self) -> bool {
+        !(self.frfs.is_empty() && self.elsewhere.is_empty() && self.other_directions.is_empty())
+    }
+}
+
+/// Sorts the functions of all files into what they are.
+pub(crate) fn gather<'a>(
+    sources: &'a [Source],
+    fixture: &Fixture,
+    map: &ChannelMap,
+) -> Result<Gathered<'a>, RecordingError> {
+    check_points(fixture, map)?;
+    let mut gathered = Gathered::default();
+    let mut spectra = Vec::new();
+    for source in sources {
+        for (index, dataset) in source.file.datasets.iter().enumerate() {
+            let what = match dataset.function {
+                FunctionType::FrequencyResponse => "FRF",
+                FunctionType::Coherence => "coherence",
+                FunctionType::TimeResponse => {
+                    gathered.time_histories.push(FileChannel::from(&dataset.response));
+                    continue;
+                }
+                other => {
+                    *gathered.others.entry(other.code()).or_default() += 1;
+                    continue;
+                }
+            };
+            spectra.push(Function { source: &source.name, index, what, dataset });
+        }
+    }
+    gathered.channels = spectra.iter().flat_map(|f| [f.response(), f.reference()]).collect();
+    check_entries_apply(map, &gathered)?;
+    let locator = Locator::new(fixture, map, &spectra);
+    for function in spectra {
+        locator
+            .sort(function, &mut gathered)
+            .map_err(|problem| RecordingError::function(function.place(), problem))?;
+    }
+    Ok(gathered)
+}
+
+fn check_points(fixture: &Fixture, map: &ChannelMap) -> Result<(), RecordingError> {
+    match map.entries().iter().find(|entry| fixture.point(&entry.channel.point).is_none()) {
+        None => Ok(()),
+        Some(MapEntry { text, channel, .. }) => Err(RecordingError::MapPoint {
+            entry: text.clone(),
+            point: channel.point.clone(),
+            points: enumeration(fixture.points().iter().map(|point| &point.name)),
+        }),
+    }
+}
+
+/// An entry that applies to nothing is a slip; files of time histories alone are refused for that instead.
+fn check_entries_apply(map: &ChannelMap, gathered: &Gathered) -> Result<(), RecordingError> {
+    let applies = |entry: &&MapEntry| {
+        let same =
+            |channel: &FileChannel| channel.node == entry.file.node && channel.axis() == entry.file.axis();
+        gathered.channels.iter().any(same)
+    };
+    match map.entries().iter().find(|entry| !applies(entry)) {
+        Some(entry) if !gathered.channels.is_empty() => Err(RecordingError::MapUnused {
+            entry: entry.text.clone(),
+            channels: enumeration(&gathered.channels),
+        }),
+        _ => Ok(()),
+    }
+}
+
+/// Where a channel of the files is in the fixture.
+enum Located {
+    At { channel: Channel, sign: f64, order: (usize, Dof) },
+    NoSuchPoint,
+    OtherDirection,
+}
+
+struct Locator<'f> {
+    fixture: &'f Fixture,
+    map: &'f ChannelMap,
+    /// Nodes with a response along y or about z: what else they measured is no riddle.
+    planar_responses: BTreeSet<i64>,
+    planar_references: BTreeSet<i64>,
+}
+
+impl<'f> Locator<'f> {
+    fn new(fixture: &'f Fixture, map: &'f ChannelMap, functions: &[Function]) -> Self {
+        let planar = |channel: &FileChannel| matches!(channel.axis(), 0 | 2 | 6);
+        let nodes = |channels: &mut dyn Iterator<Item = FileChannel>| {
+            channels.filter(planar).map(|channel| channel.node).collect()
+        };
+        Locator {
+            fixture,
+            map,
+            planar_responses: nodes(&mut functions.iter().map(Function::response)),
+            planar_references: nodes(&mut functions.iter().map(Function::reference)),
+        }
+    }
+
+    fn sort<'a>(&self, function: Function<'a>, gathered: &mut Gathered<'a>) -> Result<(), FunctionError> {
+        let is_frf = function.what == "FRF";
+        let name = || format!("{}/{}", function.response(), function.reference());
+        let response = self.locate(function.response(), &self.planar_responses);
+        let reference = self.locate(function.reference(), &self.planar_references);
+        if matches!(response, Ok(Located::NoSuchPoint)) || matches!(reference, Ok(Located::NoSuchPoint)) {
+            if is_frf {
+                gathered.elsewhere.push(name());
+            }
+            return Ok(());
+        }
+        let (response, reference) = (response?, reference?);
+        let (
+            Located::At { channel: response, sign: response_sign, order: response_order },
+            Located::At { channel: reference, sign: reference_sign, order: reference_order },
+        ) = (response, reference)
+        else {
+            if is_frf {
+                gathered.other_directions.push(name());
+            }
+            return Ok(());
+        };
+        let scalar = [function.response(), function.reference()];
+        gathered.scalars.extend(
+            scalar.iter().filter(|c| c.direction == 0 && !self.map.names_node(c.node)).map(|c| c.node),
+        );
+        let level = function.level();
+        let entry = Entry {
+            pair: FrfPair::new(response, reference),
+            level,
+            sign: response_sign * reference_sign,
+            function,
+            key: (level.map_or((0, 0), HeldAmplitude::key), response_order, reference_order),
+        };
+        if is_frf {
+            gathered.frfs.push(entry)
+        } else {
+            gathered.coherences.push(entry)
+        }
+        Ok(())
+    }
+
+    fn locate(&self, file: FileChannel, planar_nodes: &BTreeSet<i64>) -> Result<Located, FunctionError> {
+        if self.map.names_node(file.node) {
+            return match self.map.find(file) {
+                Some((channel, sign)) => self.at(channel.clone(), sign),
+                None => Ok(Located::OtherDirection),
+            };
+        }
+        let point = file.node.to_string();
+        if self.fixture.point(&point).is_none() {
+            return Ok(Located::NoSuchPoint);
+        }
+        match file.axis() {
+            0 | 2 => self.at(Channel::transverse(point), file.sign()),
+            6 => self.at(Channel::rotational(point), file.sign()),
+            1..=5 if planar_nodes.contains(&file.node) => Ok(Located::OtherDirection),
+            axis @ 1..=5 => {
+                // The map speaks of positive directions.
+                let along = FileChannel { direction: axis as i32, ..file }.to_string();
+                let direction = along.rsplit(':').next().unwrap_or_default().to_owned();
+                Err(if axis < 4 {
+                    FunctionError::Direction { node: file.node, direction }
+                } else {
+                    FunctionError::RotationalDirection { node: file.node, direction }
+                })
+            }
+            _ => Err(FunctionError::NoSuchDirection { node: file.node, direction: file.direction }),
+        }
+    }
+
+    fn at(&self, channel: Channel, sign: f64) -> Result<Located, FunctionError> {
+        let points = self.fixture.points();
+        let Some(index) = points.iter().position(|point| point.name == channel.point) else {
+            return Ok(Located::NoSuchPoint);
+        };
+        let rotates = match &self.fixture.bodies()[points[index].body].kind {
+            BodyKind::Rigid(body) => body.rotates,
+            BodyKind::Beam(_) => true,
+        };
+        if channel.dof == Dof::Rotation && !rotates {
+            return Err(FunctionError::NoRotation { point: channel.point });
+        }
+        Ok(Located::At { order: (index, channel.dof), channel, sign })
+    }
+}
+
+/// Sorts functions by level, response and reference, in the order of the fixture's points.
+///
+/// # Errors
+/// The same function twice.
+pub(crate) fn in_order<'a, T>(
+    items: &mut [T],
+    entry: impl for<'t> Fn(&'t T) -> &'t Entry<'a>,
+) -> Result<(), RecordingError> {
+    items.sort_by_key(|item| entry(item).key);
+    let two = items.windows(2).map(|two| (entry(&two[0]), entry(&two[1])));
+    match two.into_iter().find(|(first, second)| first.key == second.key) {
+        None => Ok(()),
+        Some((first, second)) => {
+            let level = first.level.map_or(String::new(), |level| format!(" at {level}"));
+            Err(RecordingError::Twice {
+                what: first.function.what,
+                frf: format!("{}{level}", first.pair),
+                first: Box::new(first.function.place()),
+                second: Box::new(second.function.place()),
+            })
+        }
+    }
+}
+
+impl Entry<'_> {
+    /// The function of the same channels and level among others in order.
+    pub fn counterpart<'e, 'a>(&self, others: &'e [Entry<'a>]) -> Option<&'e Entry<'a>> {
+        others.binary_search_by_key(&self.key, |entry| entry.key).ok().map(|index| &others[index])
+    }
+
+    /// Whether both are of the same channels and level.
+    pub fn is_of(&self, other: &Entry) -> bool {
+        self.key == other.key
+    }
+
+    /// The error of this function.
+    pub fn refuse(&self, problem: FunctionError) -> RecordingError {
+        RecordingError::function(self.function.place(), problem)
+    }
+}

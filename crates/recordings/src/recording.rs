@@ -1,0 +1,324 @@
+use std::collections::{BTreeMap, BTreeSet};
+
+use jointscope_fixture::Fixture;
+use jointscope_spectra::{FrfForm, FrfSet, SpectralLines};
+use jointscope_uff::UffFile;
+
+use crate::error::enumeration;
+use crate::function::{LinesCache, append_accelerances};
+use crate::gather::{Entry, Gathered, gather, in_order};
+use crate::ordinate::{Ordinate, UnitNotes, ordinate};
+use crate::{AssumedUnits, ChannelMap, FileChannel, HeldAmplitude, RecordingError};
+
+/// A universal file and the name it goes by in messages.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Source {
+    /// Name for messages, usually the file's.
+    pub name: String,
+    /// What it holds.
+    pub file: UffFile,
+}
+
+/// What the analyst says where the files do not.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct ReadOptions {
+    /// Which channel of the files is which of the fixture.
+    pub map: ChannelMap,
+    /// Units, where a file states none.
+    pub assume_units: Option<AssumedUnits>,
+}
+
+/// The FRFs of one test, level by level, in the fixture's terms and SI units.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Recording {
+    /// The levels, at least one: that of no held amplitude first, then forces, then responses, ascending.
+    pub levels: Vec<Level>,
+    /// Time histories that the files hold besides; they are left aside.
+    pub time_histories: TimeHistories,
+    /// What a reader of the results should know of the files: one plain sentence each.
+    pub notes: Vec<String>,
+    /// Number of datasets of each other number (geometry, headers, …).
+    pub skipped_datasets: BTreeMap<u32, usize>,
+}
+
+/// FRFs at one amplitude.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Level {
+    /// The amplitude that was held; `None` for any but stepped-sine tests.
+    pub held: Option<HeldAmplitude>,
+    /// Accelerances in SI units along +y and +θ, in the order of the fixture's points, with coherence and averages where
+    /// they were recorded; at 0 Hz they are what the file holds, or zero where the file holds a mobility or receptance.
+    pub frfs: FrfSet,
+    /// The form in which each FRF was recorded.
+    pub recorded_forms: Vec<FrfForm>,
+}
+
+/// Time histories among the files.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct TimeHistories {
+    /// Number of them, over all hits.
+    pub count: usize,
+    /// Their channels.
+    pub channels: Vec<FileChannel>,
+}
+
+impl Recording {
+    /// Reads the FRFs of a test from its files.
+    ///
+    /// FRFs at nodes that the fixture does not have are left out and named in the notes, as are functions that are no FRFs.
+    ///
+    /// # Errors
+    /// A [`RecordingError`] that names file, function and remedy: units or directions that are not known or contradict each
+    /// other, the same FRF twice at one level, functions on different spectral lines, nothing that belongs to the fixture.
+    pub fn of(sources: &[Source], fixture: &Fixture, options: &ReadOptions) -> Result<Self, RecordingError> {
+        let mut gathered = gather(sources, fixture, &options.map)?;
+        if !gathered.has_frfs() {
+            return Err(without_frfs(sources, &gathered));
+        }
+        let mut notes = Notes::default();
+        notes.of_what_is_left_out(&gathered);
+        in_order(&mut gathered.coherences, |entry| entry)?;
+        let usable = notes.of_ordinates(std::mem::take(&mut gathered.frfs), options)?;
+        if usable.is_empty() {
+            return Err(not_on_fixture(&gathered, fixture));
+        }
+        notes.of_lone_coherences(&usable, &gathered.coherences);
+        let levels = levels(&usable, &gathered.coherences)?;
+        let mut skipped_datasets = BTreeMap::new();
+        for (number, count) in sources.iter().flat_map(|source| &source.file.skipped) {
+            *skipped_datasets.entry(*number).or_default() += count;
+        }
+        Ok(Recording {
+            levels,
+            time_histories: TimeHistories {
+                count: gathered.time_histories.len(),
+                channels: distinct(&gathered.time_histories),
+            },
+            notes: notes.texts,
+            skipped_datasets,
+        })
+    }
+
+    /// The FRFs of a test at one level.
+    ///
+    /// # Errors
+    /// [`RecordingError::SeveralLevels`].
+    pub fn frfs(&self) -> Result<&FrfSet, RecordingError> {
+        match self.levels.as_slice() {
+            [level] => Ok(&level.frfs),
+            levels => Err(RecordingError::SeveralLevels {
+                count: levels.len(),
+                levels: enumeration(levels.iter().map(|level| match level.held {
+                    Some(held) => held.to_string(),
+                    None => "none stated".to_owned(),
+                })),
+            }),
+        }
+    }
+}
+
+/// An FRF whose ordinates are understood.
+type Usable<'a> = (Entry<'a>, Ordinate);
+
+/// Sentences about the files.
+#[derive(Default)]
+struct Notes {
+    texts: Vec<String>,
+}
+
+impl Notes {
+    fn of_what_is_left_out(&mut self, gathered: &Gathered) {
+        let mut say = |names: &[String], what: &str| {
+            if !names.is_empty() {
+                let mut names = names.to_vec();
+                names.sort();
+                self.texts.push(format!("{} {what}: {}", counted(names.len(), "FRF"), enumeration(names)));
+            }
+        };
+        say(&gathered.elsewhere, "at nodes that the fixture does not have left out");
+        say(&gathered.other_directions, "in directions other than y and theta left out");
+        if !gathered.scalars.is_empty() {
+            let nodes = enumeration(&gathered.scalars);
+            self.texts.push(format!("no direction is stated for nodes {nodes}: +y taken"));
+        }
+        if !gathered.others.is_empty() {
+            let types =
+                gathered.others.iter().map(|(code, count)| format!("{count} of function type {code}"));
+            self.texts.push(format!("functions that are no FRFs left out: {}", enumeration(types)));
+        }
+        if !gathered.time_histories.is_empty() {
+            let count = gathered.time_histories.len();
+            self.texts.push(format!("{count} time histories left aside: the files hold FRFs"));
+        }
+    }
+
+    /// Form and units of every FRF; those that are no motion per force are left out.
+    fn of_ordinates<'a>(
+        &mut self,
+        frfs: Vec<Entry<'a>>,
+        options: &ReadOptions,
+    ) -> Result<Vec<Usable<'a>>, RecordingError> {
+        let mut units: BTreeMap<&str, UnitNotes> = BTreeMap::new();
+        let mut other_quantities = Vec::new();
+        let mut first_other = None;
+        let mut usable = Vec::with_capacity(frfs.len());
+        for entry in frfs {
+            let function = entry.function;
+            let notes = units.entry(function.source).or_default();
+            match ordinate(function.dataset, options.assume_units.as_ref(), notes)
+                .map_err(|problem| RecordingError::function(function.place(), problem))?
+            {
+                Ok(ordinate) => usable.push((entry, ordinate)),
+                Err(other) => {
+                    other_quantities.push(entry.pair.to_string());
+                    first_other.get_or_insert(RecordingError::NotPerForce {
+                        place: Box::new(function.place()),
+                        numerator: other.numerator,
+                        denominator: other.denominator,
+                    });
+                }
+            }
+        }
+        if let (true, Some(error)) = (usable.is_empty(), first_other) {
+            return Err(error);
+        }
+        if !other_quantities.is_empty() {
+            other_quantities.sort();
+            let (count, names) = (counted(other_quantities.len(), "function"), enumeration(other_quantities));
+            self.texts.push(format!("{count} of type FRF, but no motion per force, left out: {names}"));
+        }
+        if options.assume_units.is_some() && !units.values().any(|notes| notes.assumed) && !usable.is_empty()
+        {
+            self.texts.push("the files state all their units: `--assume-units` was not needed".to_owned());
+        }
+        for (source, notes) in units {
+            self.texts.extend(notes.texts.into_iter().map(|text| format!("{source}: {text}")));
+        }
+        in_order(&mut usable, |(entry, _)| entry)?;
+        Ok(usable)
+    }
+
+    fn of_lone_coherences(&mut self, frfs: &[Usable], coherences: &[Entry]) {
+        let lone: Vec<String> = coherences
+            .iter()
+            .filter(|coherence| !frfs.iter().any(|(frf, _)| frf.is_of(coherence)))
+            .map(|coherence| coherence.pair.to_string())
+            .collect();
+        if !lone.is_empty() {
+            self.texts.push(format!("coherences without their FRF left out: {}", enumeration(lone)));
+        }
+    }
+}
+
+fn counted(count: usize, what: &str) -> String {
+    if count == 1 { format!("1 {what}") } else { format!("{count} {what}s") }
+}
+
+fn distinct(channels: &[FileChannel]) -> Vec<FileChannel> {
+    channels.iter().copied().collect::<BTreeSet<_>>().into_iter().collect()
+}
+
+fn without_frfs(sources: &[Source], gathered: &Gathered) -> RecordingError {
+    let files = match sources {
+        [] => "no files".to_owned(),
+        _ => enumeration(sources.iter().map(|source| &source.name)),
+    };
+    let mut found: Vec<String> = gathered
+        .others
+        .iter()
+        .map(|(code, count)| format!("{} of type {code}", counted(*count, "function")))
+        .collect();
+    if !gathered.time_histories.is_empty() && found.is_empty() && gathered.channels.is_empty() {
+        return RecordingError::OnlyTimeHistories {
+            files,
+            count: gathered.time_histories.len(),
+            channels: distinct(&gathered.time_histories),
+        };
+    }
+    if !gathered.channels.is_empty() {
+        found.push("coherences".to_owned());
+    }
+    if !gathered.time_histories.is_empty() {
+        found.push(format!("{} time histories", gathered.time_histories.len()));
+    }
+    RecordingError::NoFrf {
+        files,
+        found: if found.is_empty() { "no function".into() } else { enumeration(found) },
+    }
+}
+
+fn not_on_fixture(gathered: &Gathered, fixture: &Fixture) -> RecordingError {
+    let points = || fixture.points().iter().map(|point| &point.name);
+    let file = gathered.channels.iter().find(|channel| fixture.point(&channel.node.to_string()).is_none());
+    let file = file.or(gathered.channels.first()).copied().unwrap_or(FileChannel { node: 101, direction: 2 });
+    let fixture_direction = if file.is_rotational() { "+theta" } else { "+y" };
+    let point = points().next().map_or("1", String::as_str);
+    RecordingError::NotOnFixture {
+        nodes: enumeration(&gathered.channels),
+        points: enumeration(points()),
+        example: format!("{file}={point}:{fixture_direction}"),
+    }
+}
+
+/// One set of FRFs for each run of equal levels.
+fn levels(frfs: &[Usable], coherences: &[Entry]) -> Result<Vec<Level>, RecordingError> {
+    let mut cache = LinesCache::default();
+    frfs.chunk_by(|(a, _), (b, _)| a.level == b.level)
+        .map(|frfs| level(frfs, coherences, &mut cache))
+        .collect()
+}
+
+fn level<'a>(
+    frfs: &[Usable<'a>],
+    coherences: &[Entry<'a>],
+    cache: &mut LinesCache<'a>,
+) -> Result<Level, RecordingError> {
+    let first = &frfs[0].0;
+    let lines = cache.lines(first.function.dataset).map_err(|problem| first.refuse(problem))?;
+    let mut values = Vec::with_capacity(frfs.len() * lines.len());
+    for (entry, ordinate) in frfs {
+        same_lines(cache, first, &lines, entry)?;
+        let recorded = entry.function.complex().map_err(|problem| entry.refuse(problem))?;
+        append_accelerances(&mut values, recorded, ordinate.form, entry.sign * ordinate.si, &lines);
+    }
+    let pairs = frfs.iter().map(|(entry, _)| entry.pair.clone()).collect();
+    let mut set = FrfSet::new(lines.clone(), FrfForm::Accelerance, pairs, values)?;
+    for (index, (entry, _)) in frfs.iter().enumerate() {
+        let mut averages = entry.function.averages().map_err(|problem| entry.refuse(problem))?;
+        if let Some(coherence) = entry.counterpart(coherences) {
+            same_lines(cache, first, &lines, coherence)?;
+            let values = coherence.function.coherence(&lines).map_err(|problem| coherence.refuse(problem))?;
+            set.set_coherence(index, values)?;
+            if averages.is_none() {
+                averages = coherence.function.averages().map_err(|problem| coherence.refuse(problem))?;
+            }
+        }
+        set.set_averages(index, averages);
+    }
+    let recorded_forms = frfs.iter().map(|(_, ordinate)| ordinate.form).collect();
+    Ok(Level { held: first.level, frfs: set, recorded_forms })
+}
+
+fn same_lines<'a>(
+    cache: &mut LinesCache<'a>,
+    first: &Entry<'a>,
+    lines: &SpectralLines,
+    entry: &Entry<'a>,
+) -> Result<(), RecordingError> {
+    let found = cache.lines(entry.function.dataset).map_err(|problem| entry.refuse(problem))?;
+    if lines.agrees_with(&found) {
+        return Ok(());
+    }
+    Err(RecordingError::Lines {
+        first: Box::new(first.function.place()),
+        first_lines: extent(lines),
+        second: Box::new(entry.function.place()),
+        second_lines: extent(&found),
+    })
+}
+
+/// `400 lines from 2.5 to 1000 Hz`.
+fn extent(lines: &SpectralLines) -> String {
+    let hz = lines.hz();
+    format!("{} from {} to {} Hz", counted(hz.len(), "line"), hz[0], hz[hz.len() - 1])
+}
