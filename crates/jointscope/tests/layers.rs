@@ -1,0 +1,86 @@
+//! The crates' floors, kept by what cargo itself says of their dependencies.
+#![allow(clippy::unwrap_used, clippy::panic, missing_docs)]
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::process::Command;
+
+/// Crates by floor, from the ground up: a crate stands only on crates of floors below its own.
+const FLOORS: [&[&str]; 7] = [
+    &["jointscope-linalg", "jointscope-spectra", "jointscope-uff"],
+    &["jointscope-beam", "jointscope-fixture", "jointscope-averaging"],
+    &["jointscope-damping", "jointscope-frf", "jointscope-recordings"],
+    &["jointscope-lumped", "jointscope-rig"],
+    &["jointscope-decomposition"],
+    &["jointscope", "jointscope-report"],
+    &["jointscope-cli", "jointscope-benches"],
+];
+
+struct Package {
+    /// (name, whether only tests and benches need it).
+    dependencies: Vec<(String, bool)>,
+}
+
+fn packages() -> BTreeMap<String, Package> {
+    let manifest = concat!(env!("CARGO_MANIFEST_DIR"), "/../../Cargo.toml");
+    let output = Command::new(env!("CARGO"))
+        .args(["metadata", "--no-deps", "--offline", "--format-version", "1", "--manifest-path", manifest])
+        .output()
+        .unwrap();
+    let metadata: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+    let packages = metadata["packages"].as_array().unwrap().iter().map(|package| {
+        let dependencies = package["dependencies"].as_array().unwrap().iter().map(|dependency| {
+            (dependency["name"].as_str().unwrap().to_string(), dependency["kind"].as_str() == Some("dev"))
+        });
+        (package["name"].as_str().unwrap().to_string(), Package { dependencies: dependencies.collect() })
+    });
+    packages.collect()
+}
+
+fn floor(name: &str) -> Option<usize> {
+    FLOORS.iter().position(|crates| crates.contains(&name))
+}
+
+#[test]
+fn every_crate_has_a_floor_and_stands_only_on_floors_below() {
+    for (name, package) in packages() {
+        let own = floor(&name).unwrap_or_else(|| panic!("{name} has no floor"));
+        for (dependency, only_tests) in &package.dependencies {
+            if let (Some(below), false) = (floor(dependency), only_tests) {
+                assert!(below < own, "{name} (floor {own}) stands on {dependency} (floor {below})");
+            }
+        }
+    }
+}
+
+#[test]
+fn one_crate_alone_names_the_library_behind_the_eigenproblem() {
+    for (name, package) in packages() {
+        let names_it = package.dependencies.iter().any(|(d, only_tests)| d == "faer" && !only_tests);
+        assert!(!names_it || name == "jointscope-linalg", "{name} names faer");
+    }
+}
+
+/// Everything that `name` is built of, tests and benches included for itself.
+fn built_of(name: &str, packages: &BTreeMap<String, Package>) -> BTreeSet<String> {
+    let mut all = BTreeSet::new();
+    let mut open: Vec<(String, bool)> =
+        packages[name].dependencies.iter().map(|(d, _)| (d.clone(), true)).collect();
+    while let Some((dependency, _)) = open.pop() {
+        let Some(package) = packages.get(&dependency) else { continue };
+        if all.insert(dependency) {
+            open.extend(package.dependencies.iter().filter(|(_, only_tests)| !only_tests).cloned());
+        }
+    }
+    all
+}
+
+#[test]
+fn the_simulated_laboratory_and_what_it_judges_share_no_model() {
+    let packages = packages();
+    let models = ["jointscope-beam", "jointscope-damping", "jointscope-lumped", "jointscope-decomposition"];
+    let laboratory = built_of("jointscope-rig", &packages);
+    for model in models {
+        assert!(!laboratory.contains(model), "jointscope-rig is built of {model}");
+        assert!(!built_of(model, &packages).contains("jointscope-rig"), "{model} is built of jointscope-rig");
+    }
+}
