@@ -10,6 +10,7 @@
 //! | [`Verdict`], [`Card`], [`Table`] | headline, key figures, tables |
 //! | [`Plot`], [`Axis`], [`Role`], [`YRange`] | plots over spectral lines, with bands, gaps and reference lines |
 //! | [`drawing`] | side view of a fixture as SVG |
+//! | [`decomposition_page`], [`PageContext`] | the page of a joint's decomposition |
 //! | [`format`](mod@format), [`Scale`] | numbers with uncertainty, units with SI prefix |
 //!
 //! ```
@@ -41,6 +42,7 @@
 //! that panes of many thousand spectral lines zoom and move together without delay, where general plotting libraries would add megabytes to each report or load
 //! themselves from a server.
 
+mod decomposition_page;
 pub mod drawing;
 mod elements;
 mod error;
@@ -51,6 +53,7 @@ mod plot;
 mod section;
 mod unit;
 
+pub use decomposition_page::{InputFile, PageContext, decomposition_page};
 pub use drawing::{FixtureDrawing, Svg};
 pub use elements::{Card, Column, Table, Tone, Verdict};
 pub use error::PageError;

@@ -184,6 +184,7 @@ pub struct Plot {
     pub(crate) group: Option<String>,
     pub(crate) height: u32,
     pub(crate) line_limit: usize,
+    pub(crate) masked: Option<usize>,
 }
 
 impl Plot {
@@ -203,6 +204,7 @@ impl Plot {
             group: Some(group),
             height: 240,
             line_limit: DEFAULT_LINE_LIMIT,
+            masked: None,
         }
     }
 
@@ -343,6 +345,13 @@ impl Plot {
     /// Height of the drawing in CSS pixels (240 unless said otherwise, at least 80).
     pub fn height(mut self, pixels: u32) -> Self {
         self.height = pixels.max(80);
+        self
+    }
+
+    /// How many lines are said to be masked. Unless stated, that is the number of gaps of the series with most of them, which
+    /// is wrong where one curve is split into two series.
+    pub fn masked(mut self, lines: usize) -> Self {
+        self.masked = Some(lines);
         self
     }
 

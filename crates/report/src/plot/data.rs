@@ -188,7 +188,7 @@ impl PlotData {
             };
             self.remarks.push(format!("{undrawable} {verb} no place on a logarithmic axis"));
         }
-        let gaps = plot.series.iter().map(masked_lines).max().unwrap_or(0);
+        let gaps = plot.masked.unwrap_or_else(|| plot.series.iter().map(masked_lines).max().unwrap_or(0));
         if gaps > 0 {
             let lines = if gaps == 1 { "line is" } else { "lines are" };
             self.remarks.push(format!("{gaps} {lines} masked (gaps)"));
