@@ -18,12 +18,15 @@ impl Band {
     /// Indices of the frequencies (ascending, Hz) in the band.
     ///
     /// # Errors
-    /// [`AveragingError::EmptyBand`] where there are none.
+    /// [`AveragingError::EmptyBand`] where there are none, [`AveragingError::NoLines`] where there are none at all.
     pub fn lines(&self, frequencies: &[f64]) -> Result<std::ops::Range<usize>, AveragingError> {
         let start = frequencies.partition_point(|&f| f < self.from);
         let end = frequencies.partition_point(|&f| f <= self.to);
+        let (Some(&first), Some(&last)) = (frequencies.first(), frequencies.last()) else {
+            return Err(AveragingError::NoLines);
+        };
         if start >= end {
-            return Err(AveragingError::EmptyBand { from: self.from, to: self.to });
+            return Err(AveragingError::EmptyBand { from: self.from, to: self.to, first, last });
         }
         Ok(start..end)
     }
@@ -94,7 +97,10 @@ mod tests {
     #[test]
     fn a_band_without_lines_says_so() {
         let band = Band { from: 5.0, to: 6.0 };
-        assert_eq!(band.lines(&[1.0, 2.0]), Err(AveragingError::EmptyBand { from: 5.0, to: 6.0 }));
+        assert_eq!(
+            band.lines(&[1.0, 2.0]),
+            Err(AveragingError::EmptyBand { from: 5.0, to: 6.0, first: 1.0, last: 2.0 })
+        );
         assert_eq!(Band { from: 1.0, to: 2.0 }.lines(&[1.0, 2.0, 3.0]), Ok(0..2));
     }
 

@@ -31,12 +31,18 @@ pub struct Average {
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum AveragingError {
     /// No line is left in the band.
-    #[error("the band from {from} to {to} Hz holds no usable spectral line")]
+    #[error(
+        "the band from {from} to {to} Hz holds no usable spectral line; those there are lie from {first} to {last} Hz"
+    )]
     EmptyBand {
         /// Lower end, Hz.
         from: f64,
         /// Upper end, Hz.
         to: f64,
+        /// Lowest usable line, Hz.
+        first: f64,
+        /// Highest usable line, Hz.
+        last: f64,
     },
     /// Nothing to average.
     #[error("there is no usable spectral line")]

@@ -1,3 +1,4 @@
+use crate::spectrum::scalar_stiffness;
 use crate::{
     Averages, DecompositionError, Interfaces, JointSpectrum, LikelihoodFit, MeasurementPlan, Relation, Sides,
     ToleranceShare, decompose, interfaces, maximum_likelihood, tolerance_shares,
@@ -153,7 +154,8 @@ fn nominal_of(sides: &Sides) -> RealMatrix2 {
 
 fn joint_interfaces(fit: &LikelihoodFit, sides: &Sides, tolerances: &[ToleranceShare]) -> Option<Interfaces> {
     let JointLaw::Beam { youngs_modulus, second_moment } = &sides.joint().law else { return None };
-    let covariance = std::array::from_fn(|m| std::array::from_fn(|n| fit.covariance[m][n]));
+    let covariance =
+        std::array::from_fn(|m| std::array::from_fn(|n| fit.covariance[m][n] + fit.model_covariance[m][n]));
     let shifts: Vec<[f64; 5]> = tolerances.iter().filter_map(|share| share.compliance).collect();
     let bending_stiffness = youngs_modulus.value * second_moment.value;
     interfaces(fit.stiffness, covariance, bending_stiffness, sides.length(), &shifts)
@@ -178,7 +180,7 @@ fn predicted(
         }
         let h41 = Matrix2::new(values[0], values[1], values[2], values[3]);
         if spectrum.scalar {
-            return Some((h41, Matrix2::zero()));
+            return Some((h41, scalar_stiffness(spectrum.relation, h41, s, line)));
         }
         let (a21, a22, b33, b43) = (s.alpha21[line], s.alpha22[line], s.beta33[line], s.beta43[line]);
         Some((h41, spectrum.relation.decompose(h41, a21, a22, b33, b43, s.length)?))

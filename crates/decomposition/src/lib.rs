@@ -73,7 +73,9 @@ pub enum DecompositionError {
     #[error(transparent)]
     Averaging(#[from] jointscope_averaging::AveragingError),
     /// Not one line could be solved.
-    #[error("none of the {lines} spectral lines can be solved: {reasons}")]
+    #[error(
+        "none of the {lines} spectral lines can be solved: {reasons}; measure again or leave out FRFs without coherence"
+    )]
     NothingSolved {
         /// Lines of the recording.
         lines: usize,

@@ -1,12 +1,17 @@
 //! One symmetric, passive k and c for the whole band, fitted to the FRFs themselves.
 
+mod normal;
+mod parameters;
+
 use crate::averages::dynamic_stiffness;
 use crate::{Compliances, DecompositionError, JointSpectrum, MeasurementPlan, Sides};
 use jointscope_averaging::Band;
 use jointscope_frf::{BlockChannel, BlockLayout};
-use jointscope_linalg::{ComplexMatrix2, LeastSquares, Matrix2, RealMatrix2, solve_positive_definite};
+use jointscope_linalg::{ComplexMatrix2, LeastSquares, Matrix2, RealMatrix2};
 use jointscope_spectra::{Dof, FrfForm, FrfSet};
+use normal::NormalEquations;
 use num_complex::Complex64;
+use parameters::Parameters;
 
 /// The maximum-likelihood joint.
 #[derive(Debug, Clone, PartialEq)]
@@ -24,6 +29,10 @@ pub struct LikelihoodFit {
     pub covariance: [[f64; 6]; 6],
     /// χ² per degree of freedom: 1 where a constant joint explains the FRFs within their noise.
     pub chi2_per_dof: f64,
+    /// Covariance of (k11, k12, k22, c11, c12, c22) from how far they move when one of eight blocks of lines is left
+    /// out (a jackknife): what a joint that is not quite constant, or a fixture that is not quite right, does to them.
+    /// Zero where χ² gives no reason to look.
+    pub model_covariance: [[f64; 6]; 6],
     /// Complex values fitted.
     pub values: usize,
 }
@@ -45,7 +54,8 @@ const CONVERGED: f64 = 1e-9;
 /// Levenberg–Marquardt with analytic derivatives goes on from there. Where c comes out giving off energy, it is fitted
 /// again as c = v vᵀ, the boundary of what is passive.
 ///
-/// The fit weighs every FRF by the variance it carries; FRFs without variances weigh alike.
+/// The fit weighs every FRF by the variance it carries; FRFs without variances weigh alike. Where χ² says that a constant joint
+/// does not explain the FRFs, a jackknife over the band says what that leaves uncertain.
 ///
 /// # Errors
 /// No usable line in the band, or FRFs that leave an element of k or c undetermined.
@@ -71,8 +81,29 @@ pub fn maximum_likelihood(
     if !joint.is_passive() {
         (chi2, joint) = data.fit(joint.on_the_boundary());
     }
-    data.result(chi2, &joint)
+    let mut fit = data.result(chi2, &joint)?;
+    if fit.chi2_per_dof > EXPLAINED {
+        fit.model_covariance = data.jackknife(&joint);
+    }
+    Ok(fit)
 }
+
+impl LikelihoodFit {
+    /// Standard deviations of K and C from [`LikelihoodFit::model_covariance`].
+    pub fn model_std(&self) -> (RealMatrix2, RealMatrix2) {
+        let std = |first: usize| {
+            let s = |m: usize| self.model_covariance[first + m][first + m].sqrt();
+            Matrix2::new(s(0), s(1), s(1), s(2))
+        };
+        (std(0), std(3))
+    }
+}
+
+/// χ² per degree of freedom up to which a constant joint counts as explaining the FRFs: variances from few averages
+/// are themselves known to a few per cent.
+const EXPLAINED: f64 = 1.2;
+/// Blocks of neighbouring lines that the jackknife leaves out in turn.
+const BLOCKS: usize = 8;
 
 /// c/k of the start, s: a loss factor of 0.6 % at 300 Hz.
 const START_LOSS: f64 = 3e-6;
@@ -86,93 +117,6 @@ fn start_of(spectrum: &JointSpectrum) -> RealMatrix2 {
     };
     let cross = 0.5 * (at(0, 1) + at(1, 0));
     Matrix2::new(at(0, 0), cross, cross, at(1, 1))
-}
-
-/// (k11, k12, k22, c11, c12, c22), or with c = v vᵀ on the boundary of what is passive.
-#[derive(Debug, Clone, Copy)]
-struct Parameters {
-    k: [f64; 3],
-    c: [f64; 3],
-    /// v, where c is v vᵀ.
-    boundary: Option<[f64; 2]>,
-    scalar: bool,
-}
-
-impl Parameters {
-    /// `None` for a start that is no joint.
-    fn of(k: RealMatrix2, c: RealMatrix2, scalar: bool) -> Option<Self> {
-        let elements = |m: RealMatrix2| {
-            if scalar { [m.at(0, 0), 0.0, 0.0] } else { [m.at(0, 0), m.at(0, 1), m.at(1, 1)] }
-        };
-        let possible = k.at(0, 0) > 0.0 && (scalar || (k.at(1, 1) > 0.0 && k.determinant() > 0.0));
-        possible.then_some(Parameters { k: elements(k), c: elements(c), boundary: None, scalar })
-    }
-
-    /// Which of the slots (k11, k12, k22, c11 or v1, c12 or v2, c22) are free.
-    fn active(&self) -> &'static [usize] {
-        match (self.scalar, self.boundary) {
-            (true, None) => &[0, 3],
-            (true, Some(_)) => &[0],
-            (false, None) => &[0, 1, 2, 3, 4, 5],
-            (false, Some(_)) => &[0, 1, 2, 3, 4],
-        }
-    }
-
-    fn stiffness(&self) -> RealMatrix2 {
-        Matrix2::new(self.k[0], self.k[1], self.k[1], self.k[2])
-    }
-
-    fn damping(&self) -> RealMatrix2 {
-        Matrix2::new(self.c[0], self.c[1], self.c[1], self.c[2])
-    }
-
-    fn is_passive(&self) -> bool {
-        self.c[0] >= 0.0 && self.c[2] >= 0.0 && self.c[1] * self.c[1] <= self.c[0] * self.c[2]
-    }
-
-    /// The nearest c on the boundary, both dofs scaled to equal stiffness.
-    fn on_the_boundary(&self) -> Self {
-        let unit = [self.k[0].sqrt(), self.k[2].sqrt()];
-        if self.scalar {
-            return Parameters { c: [0.0; 3], boundary: Some([0.0; 2]), ..*self };
-        }
-        let (a, b, d) = (
-            self.c[0] / (unit[0] * unit[0]),
-            self.c[1] / (unit[0] * unit[1]),
-            self.c[2] / (unit[1] * unit[1]),
-        );
-        // The larger eigenvalue and its eigenvector; the smaller one is negative.
-        let (mean, half) = (0.5 * (a + d), 0.5 * (a - d));
-        let largest = (mean + half.hypot(b)).max(0.0);
-        let angle = 0.5 * b.atan2(half);
-        let v = [largest.sqrt() * angle.cos() * unit[0], largest.sqrt() * angle.sin() * unit[1]];
-        Self::with_boundary(*self, v)
-    }
-
-    fn with_boundary(self, v: [f64; 2]) -> Self {
-        Parameters { c: [v[0] * v[0], v[0] * v[1], v[1] * v[1]], boundary: Some(v), ..self }
-    }
-
-    /// Derivatives with respect to the slots from those with respect to (k, c).
-    fn chain(&self, by_kc: &[Complex64; 6]) -> [Complex64; 6] {
-        let Some([v1, v2]) = self.boundary else { return *by_kc };
-        let mut slots = *by_kc;
-        slots[3] = by_kc[3] * (2.0 * v1) + by_kc[4] * v2;
-        slots[4] = by_kc[4] * v1 + by_kc[5] * (2.0 * v2);
-        slots
-    }
-
-    fn stepped(&self, step: &[f64; 6]) -> Self {
-        let mut next = *self;
-        for m in 0..3 {
-            next.k[m] += step[m];
-            next.c[m] += step[m + 3];
-        }
-        match self.boundary {
-            Some([v1, v2]) => next.with_boundary([v1 + step[3], v2 + step[4]]),
-            None => next,
-        }
-    }
 }
 
 /// The FRFs to be fitted and everything in their model that does not change.
@@ -346,6 +290,39 @@ impl<'a> Data<'a> {
         (chi2, current)
     }
 
+    /// The spread of the fits without each of the blocks, as a covariance of the fit to all.
+    fn jackknife(&self, at: &Parameters) -> [[f64; 6]; 6] {
+        let channels = self.rows.len();
+        let blocks = BLOCKS.min(self.lines.len());
+        let fits: Vec<[f64; 6]> = (0..blocks)
+            .map(|block| {
+                let edge = |b: usize| b * self.lines.len() / blocks;
+                let (from, to) = (edge(block), edge(block + 1));
+                let outside = |i: &usize| *i < from || *i >= to;
+                let values = |i: &usize| outside(&(i / channels));
+                let pick = |all: &[f64]| (0..all.len()).filter(values).map(|i| all[i]).collect();
+                let rest = Data {
+                    sides: self.sides,
+                    across: self.across,
+                    lines: (0..self.lines.len()).filter(outside).map(|i| self.lines[i]).collect(),
+                    rows: self.rows.clone(),
+                    measured: (0..self.measured.len()).filter(values).map(|i| self.measured[i]).collect(),
+                    variance: pick(&self.variance),
+                    scalar: self.scalar,
+                };
+                let Parameters { k, c, .. } = rest.fit(*at).1;
+                [k[0], k[1], k[2], c[0], c[1], c[2]]
+            })
+            .collect();
+        let count = blocks as f64;
+        let mean: [f64; 6] = std::array::from_fn(|m| fits.iter().map(|fit| fit[m]).sum::<f64>() / count);
+        let product = |m: usize, n: usize| {
+            fits.iter().map(|fit| (fit[m] - mean[m]) * (fit[n] - mean[n])).sum::<f64>() * (count - 1.0)
+                / count
+        };
+        std::array::from_fn(|m| std::array::from_fn(|n| product(m, n)))
+    }
+
     fn normal_equations(&self, current: &Parameters) -> NormalEquations {
         let mut normal = NormalEquations::default();
         self.visit(current, |weight, residual, by_kc| {
@@ -389,47 +366,9 @@ impl<'a> Data<'a> {
             damping_std: std(3),
             covariance,
             chi2_per_dof,
+            model_covariance: [[0.0; 6]; 6],
             values: self.measured.len(),
         })
-    }
-}
-
-/// JᵀWJ (lower triangle) and JᵀWr of the six parameters.
-#[derive(Default)]
-struct NormalEquations {
-    matrix: [[f64; 6]; 6],
-    right: [f64; 6],
-}
-
-impl NormalEquations {
-    fn add(&mut self, active: &[usize], weight: f64, residual: Complex64, derivative: &[Complex64; 6]) {
-        for &m in active {
-            let weighted = derivative[m].conj() * weight;
-            self.right[m] += (weighted * residual).re;
-            for &n in active.iter().take_while(|n| **n <= m) {
-                self.matrix[m][n] += (weighted * derivative[n]).re;
-            }
-        }
-    }
-
-    /// The solution with the diagonal raised by the share `damping`; `None` where that is not positive definite.
-    fn step(&self, damping: f64, active: &[usize]) -> Option<[f64; 6]> {
-        let n = active.len();
-        let mut matrix = [0.0; 36];
-        let mut right = [0.0; 6];
-        for (i, &p) in active.iter().enumerate() {
-            for (j, &q) in active.iter().enumerate().take(i + 1) {
-                matrix[i * n + j] = self.matrix[p][q];
-            }
-            matrix[i * n + i] *= 1.0 + damping;
-            right[i] = self.right[p];
-        }
-        if !solve_positive_definite(&mut matrix[..n * n], &mut right[..n]) {
-            return None;
-        }
-        let mut step = [0.0; 6];
-        active.iter().zip(right).for_each(|(&m, value)| step[m] = value);
-        Some(step)
     }
 }
 

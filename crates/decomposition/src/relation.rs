@@ -44,9 +44,8 @@ impl Relation {
         beta43: ComplexMatrix2,
         length: f64,
     ) -> Option<ComplexMatrix2> {
-        let across = self.transport(length);
         h41.inverse()?;
-        let stiffness = self.decompose_unchecked(h41, alpha21, alpha22, beta33, beta43, across);
+        let stiffness = self.decompose_unchecked(h41, alpha21, alpha22, beta33, beta43, length);
         stiffness.is_finite().then_some(stiffness)
     }
 
@@ -73,7 +72,8 @@ impl Relation {
         }
     }
 
-    #[inline]
+    // Inlined by force: as a call, its five matrices would be copied for every line, which costs as much as the formula.
+    #[inline(always)]
     fn decompose_unchecked(
         self,
         h41: ComplexMatrix2,
@@ -81,14 +81,13 @@ impl Relation {
         alpha22: ComplexMatrix2,
         beta33: ComplexMatrix2,
         beta43: ComplexMatrix2,
-        across: ComplexMatrix2,
+        length: f64,
     ) -> ComplexMatrix2 {
-        let through = alpha21 * h41.inverse_unchecked() * beta43;
-        let compliance = match self {
+        let through = alpha21 * inverse(h41) * beta43;
+        inverse(match self {
             Relation::Paper => through - alpha22 - beta33,
-            Relation::Exact => carried(across, through) - beta33 - carried_both(across, alpha22),
-        };
-        compliance.inverse_unchecked()
+            Relation::Exact => carried(length, through) - carried_both(length, alpha22) - beta33,
+        })
     }
 
     /// The joint's dynamic stiffness on all lines, written over `stiffness`; where a matrix is singular the
@@ -101,26 +100,50 @@ impl Relation {
         sides: &Compliances,
         stiffness: &mut [ComplexMatrix2],
     ) {
-        let across = self.transport(sides.length);
-        let inputs = h41.iter().zip(&sides.alpha21).zip(&sides.alpha22).zip(&sides.beta33).zip(&sides.beta43);
-        for (out, ((((h41, alpha21), alpha22), beta33), beta43)) in stiffness.iter_mut().zip(inputs) {
-            *out = self.decompose_unchecked(*h41, *alpha21, *alpha22, *beta33, *beta43, across);
+        // Told apart here and not line by line, so that either loop is free of branches.
+        match self {
+            Relation::Paper => on_lines(Relation::Paper, h41, sides, stiffness),
+            Relation::Exact => on_lines(Relation::Exact, h41, sides, stiffness),
         }
     }
 }
 
+#[inline(always)]
+fn on_lines(
+    relation: Relation,
+    h41: &[ComplexMatrix2],
+    sides: &Compliances,
+    stiffness: &mut [ComplexMatrix2],
+) {
+    let Compliances { alpha21, alpha22, beta33, beta43, length } = sides;
+    let inputs = h41.iter().zip(alpha21).zip(alpha22).zip(beta33).zip(beta43);
+    for (out, ((((h41, alpha21), alpha22), beta33), beta43)) in stiffness.iter_mut().zip(inputs) {
+        *out = relation.decompose_unchecked(*h41, *alpha21, *alpha22, *beta33, *beta43, *length);
+    }
+}
+
+/// The inverse, not finite where the matrix is singular.
+///
+/// A determinant is squared here, which receptances below 1e-77 m/N would not survive; in exchange there is one
+/// division instead of the two in a row of [`Matrix2::inverse_unchecked`].
+#[inline(always)]
+fn inverse(m: ComplexMatrix2) -> ComplexMatrix2 {
+    let [[a, b], [c, d]] = m.0;
+    let determinant = a * d - b * c;
+    let factor = determinant.conj() * (1.0 / determinant.norm_sqr());
+    Matrix2([[d * factor, -b * factor], [-c * factor, a * factor]])
+}
+
 /// R m for R = [[1, L],[0, 1]].
-#[inline]
-fn carried(across: ComplexMatrix2, m: ComplexMatrix2) -> ComplexMatrix2 {
-    let length = across.at(0, 1).re;
+#[inline(always)]
+fn carried(length: f64, m: ComplexMatrix2) -> ComplexMatrix2 {
     let [[a, b], [c, d]] = m.0;
     Matrix2::new(a + c * length, b + d * length, c, d)
 }
 
 /// R m Rᵀ for R = [[1, L],[0, 1]].
-#[inline]
-fn carried_both(across: ComplexMatrix2, m: ComplexMatrix2) -> ComplexMatrix2 {
-    let length = across.at(0, 1).re;
-    let [[a, b], [c, d]] = carried(across, m).0;
+#[inline(always)]
+fn carried_both(length: f64, m: ComplexMatrix2) -> ComplexMatrix2 {
+    let [[a, b], [c, d]] = carried(length, m).0;
     Matrix2::new(a + b * length, b, c + d * length, d)
 }

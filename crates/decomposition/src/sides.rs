@@ -15,7 +15,7 @@ pub enum SidesError {
         names: Vec<String>,
     },
     /// There is no such joint.
-    #[error("the fixture has no joint `{name}` (it has {})", names.join(", "))]
+    #[error("the fixture has no joint `{name}`; choose one of {} with --joint", names.join(", "))]
     NoSuchJoint {
         /// The name asked for.
         name: String,
@@ -23,11 +23,11 @@ pub enum SidesError {
         names: Vec<String>,
     },
     /// The fixture has no joint at all.
-    #[error("the fixture has no joint to find: it is a single body")]
+    #[error("the fixture has no joint to find; state the one that is looked for under `joints`")]
     NoJoint,
     /// The assembly stays in one piece without the joint.
     #[error(
-        "without joint `{0}` the assembly still holds together through its other joints, so what passes through it cannot be told apart"
+        "without joint `{0}` the assembly still holds together through its other joints, so what passes through it cannot be told apart; choose a joint that alone connects its sides"
     )]
     Loop(String),
     /// An effect of the measuring chain that cannot be taken out of FRFs.

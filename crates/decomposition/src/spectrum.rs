@@ -113,7 +113,9 @@ fn spectrum(
     let count = h41.lines.len();
     let mut stiffness = vec![Matrix2::zero(); count];
     if scalar {
-        scalar_lines(relation, &h41.values, &sides, &mut stiffness);
+        stiffness.iter_mut().enumerate().for_each(|(line, k)| {
+            *k = scalar_stiffness(relation, h41.values[line], &sides, line);
+        });
     } else {
         relation.decompose_lines(&h41.values, &sides, &mut stiffness);
     }
@@ -142,15 +144,19 @@ fn spectrum(
     Ok(spectrum)
 }
 
-/// Eq (5): both sides and the joint are scalars.
-fn scalar_lines(relation: Relation, h41: &[ComplexMatrix2], sides: &Compliances, out: &mut [ComplexMatrix2]) {
+/// Eq (5): both sides and the joint are scalars, in the element (1,1).
+pub(crate) fn scalar_stiffness(
+    relation: Relation,
+    h41: ComplexMatrix2,
+    sides: &Compliances,
+    line: usize,
+) -> ComplexMatrix2 {
     let across = relation.transport(sides.length);
-    for (line, out) in out.iter_mut().enumerate() {
-        let near = across * sides.alpha22[line] * across.transpose();
-        let through =
-            (across * sides.alpha21[line]).at(0, 0) * sides.beta43[line].at(0, 0) / h41[line].at(0, 0);
-        out.0[0][0] = (through - near.at(0, 0) - sides.beta33[line].at(0, 0)).inv();
-    }
+    let near = across * sides.alpha22[line] * across.transpose();
+    let through = (across * sides.alpha21[line]).at(0, 0) * sides.beta43[line].at(0, 0) / h41.at(0, 0);
+    let mut stiffness = Matrix2::zero();
+    stiffness.0[0][0] = (through - near.at(0, 0) - sides.beta33[line].at(0, 0)).inv();
+    stiffness
 }
 
 /// How an error of H41 reaches the joint: δk = P δH Q, with P = k R α21 H⁻¹ and Q = H⁻¹ β43 k.

@@ -160,6 +160,48 @@ fn closed_form(blocks: &TwoBlocks, eta: f64, omega: f64) -> jointscope_linalg::C
     )
 }
 
+/// Compares eq (7) of the program with its closed form on sixty lines up to twice the peak and one line 1e-3 beside it, to
+/// 1e-9 on well-conditioned lines and to rounding times the condition number on the others; the condition beside the peak.
+fn check_paper(blocks: &TwoBlocks, eta: f64) -> Result<f64, TestCaseError> {
+    let (ei, l, inertia) = (blocks.bending_stiffness, blocks.length, [blocks.inertia(0), blocks.inertia(1)]);
+    let s = blocks.half_length[0] / inertia[0] + blocks.half_length[1] / inertia[1];
+    let sum = ei / (l * l) * (12.0 * s + 6.0 * l * (1.0 / inertia[0] + 1.0 / inertia[1]));
+    let product = 12.0 * ei * ei / (l * l * inertia[0] * inertia[1]);
+    // The upper pole of g is the peak of the paper's spectra.
+    let peak = (0.5 * (sum + (sum * sum - 4.0 * product).sqrt())).sqrt() / std::f64::consts::TAU;
+    let mut hz: Vec<f64> = (1..60).map(|i| peak * i as f64 / 29.7).collect();
+    hz.push(peak * (1.0 + 1e-3));
+    hz.sort_by(f64::total_cmp);
+    hz.dedup();
+    let fixture = blocks.fixture();
+    let set = frfs(&fixture, &FOUR, &SpectralLines::new(hz).unwrap());
+    let found = decompose(&set, &Sides::of(&fixture, None).unwrap(), Relation::Paper).unwrap();
+    let mut beside_the_peak = f64::INFINITY;
+    for line in &found.solved {
+        let omega = std::f64::consts::TAU * line.frequency;
+        let expected = closed_form(blocks, eta, omega);
+        let allowed = 1e-9 * (line.condition / WELL_CONDITIONED).max(1.0);
+        if (line.frequency / peak - 1.001).abs() < 1e-6 {
+            beside_the_peak = line.condition;
+        }
+        for i in 0..2 {
+            for j in 0..2 {
+                let found =
+                    num_complex::Complex64::new(line.stiffness.at(i, j), omega * line.damping.at(i, j));
+                let error = (found / expected.at(i, j) - 1.0).norm();
+                prop_assert!(
+                    error < allowed,
+                    "K({i},{j}) at {} Hz (peak {peak}): {found} against {}, condition {:e}",
+                    line.frequency,
+                    expected.at(i, j),
+                    line.condition
+                );
+            }
+        }
+    }
+    Ok(beside_the_peak)
+}
+
 proptest! {
     #![proptest_config(ProptestConfig { cases: 64, failure_persistence: None, ..ProptestConfig::default() })]
 
@@ -172,33 +214,18 @@ proptest! {
             mass: [ma, mb], half_length: [a, b], bending_stiffness: ei, length: l,
             damping: format!(r#"{{"loss_factor": {eta}}}"#), extra: String::new(),
         };
-        // The pole of g is the peak of the paper's spectra: one line as near to it as 1e-3.
-        let fixture = blocks.fixture();
-        let s = a / blocks.inertia(0) + b / blocks.inertia(1);
-        let sum = ei / (l * l) * (12.0 * s + 6.0 * l * (1.0 / blocks.inertia(0) + 1.0 / blocks.inertia(1)));
-        let product = 12.0 * ei * ei / (l * l * blocks.inertia(0) * blocks.inertia(1));
-        let peak = (0.5 * (sum + (sum * sum - 4.0 * product).sqrt())).sqrt() / std::f64::consts::TAU;
-        let mut hz: Vec<f64> = (1..60).map(|i| peak * i as f64 / 29.7).collect();
-        hz.push(peak * (1.0 + 1e-3));
-        hz.sort_by(f64::total_cmp);
-        hz.dedup();
-        let set = frfs(&fixture, &FOUR, &SpectralLines::new(hz).unwrap());
-        let found = decompose(&set, &Sides::of(&fixture, None).unwrap(), Relation::Paper).unwrap();
-        for line in found.solved.iter().filter(|line| line.condition < 1e5) {
-            let omega = std::f64::consts::TAU * line.frequency;
-            let expected = closed_form(&blocks, eta, omega);
-            for i in 0..2 {
-                for j in 0..2 {
-                    let found = num_complex::Complex64::new(line.stiffness.at(i, j), omega * line.damping.at(i, j));
-                    let error = (found / expected.at(i, j) - 1.0).norm();
-                    prop_assert!(error < 1e-9, "K({i},{j}) at {} Hz (peak {peak}): {found} against {}, condition {:e}", line.frequency, expected.at(i, j), line.condition);
-                }
-            }
-        }
         // Undamped, 1e-3 from the pole, K is hundreds of times its asymptote and must still have been compared.
-        let on_peak = |line: &&jointscope_decomposition::JointLine| (line.frequency / peak - 1.001).abs() < 1e-6;
-        let near = found.solved.iter().find(on_peak);
-        prop_assert!(near.is_some_and(|line| line.condition < 1e5), "{:?}", near.map(|line| line.condition));
+        let condition = check_paper(&blocks, eta)?;
+        prop_assert!(condition < 1e8, "{condition:e}");
+    }
+}
+
+#[test]
+fn beside_the_peak_of_the_papers_kind_of_fixture_the_closed_form_holds_to_1e_9() {
+    for eta in [0.0, 0.006] {
+        let damping = format!(r#"{{"loss_factor": {eta}}}"#);
+        let condition = check_paper(&TwoBlocks { damping, ..TwoBlocks::default() }, eta).unwrap();
+        assert!(condition < WELL_CONDITIONED, "loss factor {eta}: {condition:e}");
     }
 }
 

@@ -5,7 +5,8 @@ use serde_json::{Map, Value, json};
 
 /// The contents of `stiffness.json`: K and C by line, averages, the fitted joint and its interfaces, in SI units.
 ///
-/// `std` is what the FRFs' noise leaves uncertain, `std_fixture` what the fixture's tolerances do.
+/// `std` is what the FRFs' noise leaves uncertain, `std_fixture` what the fixture's tolerances do, `std_model` what it
+/// costs that a constant joint does not explain the FRFs.
 pub fn stiffness_file(analysis: &Analysis) -> Value {
     let mut root = Map::new();
     let spectrum = &analysis.spectrum;
@@ -81,11 +82,13 @@ fn likelihood(analysis: &Analysis) -> Value {
     match &analysis.likelihood {
         Ok(fit) => {
             let (k, c) = analysis.tolerance_of_likelihood();
+            let (k_model, c_model) = fit.model_std();
             json!({
                 "stiffness": matrix(&fit.stiffness),
                 "damping": matrix(&fit.damping),
                 "std": pair(&fit.stiffness_std, &fit.damping_std),
                 "std_fixture": pair(&k, &c),
+                "std_model": pair(&k_model, &c_model),
                 "chi2_per_dof": fit.chi2_per_dof,
                 "relation": "exact",
             })

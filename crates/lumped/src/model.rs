@@ -216,25 +216,15 @@ impl<'a> Receptances<'a> {
         let after_pairs = &self.sums[self.pairs.len()..];
         let (left, rest) = after_pairs.split_at(self.outputs * rank);
         let (middle, right) = rest.split_at(rank * rank);
-        let product = |i: usize, column: usize, width: usize, of: &[Complex64]| -> Complex64 {
-            (0..rank).map(|k| self.delta[i * rank + k] * of[k * width + column]).sum()
-        };
         let solvable = self.lu.factorize(rank, |matrix| {
-            for i in 0..rank {
-                for j in 0..rank {
-                    matrix[i * rank + j] = product(i, j, rank, middle);
-                }
-                matrix[i * rank + i] += 1.0;
-            }
+            add_product(&self.delta, rank, middle, matrix);
+            (0..rank).for_each(|i| matrix[i * rank + i] += 1.0);
         });
         if solvable.is_err() {
             return false;
         }
-        for i in 0..rank {
-            for j in 0..self.inputs {
-                self.right[i * self.inputs + j] = product(i, j, self.inputs, right);
-            }
-        }
+        self.right.fill(Complex64::ZERO);
+        add_product(&self.delta, rank, right, &mut self.right);
         self.lu.solve_columns_in_place(&mut self.right, self.inputs);
         for (value, &(o, i)) in values.iter_mut().zip(&self.pairs) {
             let change: Complex64 =
@@ -257,6 +247,17 @@ impl<'a> Receptances<'a> {
             }
         }
         Ok(values)
+    }
+}
+
+/// Adds Δ G to `to`, both of `rank` rows. Most of Δ is zero: each effect acts on its own few stations.
+fn add_product(delta: &[Complex64], rank: usize, g: &[Complex64], to: &mut [Complex64]) {
+    let columns = g.len() / rank;
+    for (to, delta) in to.chunks_exact_mut(columns).zip(delta.chunks_exact(rank)) {
+        for (&factor, g) in delta.iter().zip(g.chunks_exact(columns)).filter(|(d, _)| **d != Complex64::ZERO)
+        {
+            to.iter_mut().zip(g).for_each(|(to, g)| *to += factor * g);
+        }
     }
 }
 

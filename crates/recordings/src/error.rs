@@ -39,7 +39,7 @@ pub enum FunctionError {
     #[error("a coherence is real, but its values are complex")]
     ComplexCoherence,
     /// A coherence outside 0 … 1.
-    #[error("the coherence is {value} at {frequency} Hz: it lies between 0 and 1")]
+    #[error("the coherence is {value} at {frequency} Hz, but it lies between 0 and 1: export it again")]
     Coherence {
         /// What stands there.
         value: f64,
@@ -158,7 +158,9 @@ pub enum RecordingError {
         example: String,
     },
     /// Time histories only.
-    #[error("{files} hold {count} time histories and no FRF; make FRFs of them first: `jointscope estimate`")]
+    #[error(
+        "{files}: there are {count} time histories and no FRF; make FRFs of them first: `jointscope estimate`"
+    )]
     OnlyTimeHistories {
         /// The files.
         files: String,
@@ -168,7 +170,7 @@ pub enum RecordingError {
         channels: Vec<FileChannel>,
     },
     /// Neither FRFs nor time histories.
-    #[error("{files} hold no FRF (function type 4), only {found}")]
+    #[error("{files}: there is no FRF (function type 4), only {found}; export the FRFs as dataset 58")]
     NoFrf {
         /// The files.
         files: String,

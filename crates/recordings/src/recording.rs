@@ -241,9 +241,20 @@ fn without_frfs(sources: &[Source], gathered: &Gathered) -> RecordingError {
     if !gathered.time_histories.is_empty() {
         found.push(format!("{} time histories", gathered.time_histories.len()));
     }
+    let skipped: BTreeMap<u32, usize> = sources.iter().flat_map(|source| &source.file.skipped).fold(
+        BTreeMap::new(),
+        |mut all, (number, n)| {
+            *all.entry(*number).or_default() += n;
+            all
+        },
+    );
+    found.extend(skipped.iter().map(|(number, count)| match count {
+        1 => format!("dataset {number}"),
+        _ => format!("{count} datasets {number}"),
+    }));
     RecordingError::NoFrf {
         files,
-        found: if found.is_empty() { "no function".into() } else { enumeration(found) },
+        found: if found.is_empty() { "an empty file".into() } else { enumeration(found) },
     }
 }
 

@@ -126,5 +126,5 @@ fn a_file_of_hits_asks_for_an_estimate_first() {
     let hits = source(&shared.join("recordings/hammer-hit/hits.uff"));
     let answer = Recording::of(&[hits], &fixture, &ReadOptions::default()).unwrap_err();
     let message = answer.to_string();
-    assert!(message.contains("hits.uff hold 6 time histories and no FRF"), "{message}");
+    assert!(message.contains("hits.uff: there are 6 time histories and no FRF"), "{message}");
 }

@@ -7,7 +7,7 @@ use thiserror::Error;
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum ReadError {
     /// There is nothing in it.
-    #[error("the file is empty")]
+    #[error("the file is empty; copy or export it again")]
     Empty,
     /// The first line is no dataset delimiter.
     #[error("does not start with a `    -1` line; is it a UFF file?")]
@@ -58,7 +58,9 @@ pub enum ReadError {
         code: i64,
     },
     /// The file ends inside a dataset.
-    #[error("dataset {dataset}, line {line}: the file ends where {expected} was expected")]
+    #[error(
+        "dataset {dataset}, line {line}: the file ends where {expected} was expected; copy or export it again"
+    )]
     Truncated {
         /// Which dataset.
         dataset: usize,
@@ -69,7 +71,7 @@ pub enum ReadError {
     },
     /// The dataset is closed before its header is complete.
     #[error(
-        "dataset {dataset}, line {line}: the dataset is closed by `    -1` where {expected} was expected"
+        "dataset {dataset}, line {line}: the dataset is closed by `    -1` where {expected} was expected; export the file again"
     )]
     HeaderEndsEarly {
         /// Which dataset.
@@ -92,7 +94,9 @@ pub enum ReadError {
         column: usize,
     },
     /// ASCII data that is no number.
-    #[error("dataset {dataset}, line {line}: expected a number, found `{found}`")]
+    #[error(
+        "dataset {dataset}, line {line}: expected a number, found `{found}`; correct it or export the file again"
+    )]
     NotANumber {
         /// Which dataset.
         dataset: usize,
@@ -113,7 +117,9 @@ pub enum ReadError {
         point: usize,
     },
     /// Fewer ASCII values than the header promises.
-    #[error("dataset {dataset}, line {line}: the dataset ends after {found} of {expected} values")]
+    #[error(
+        "dataset {dataset}, line {line}: the dataset ends after {found} of {expected} values; export the file again"
+    )]
     TooFewValues {
         /// Which dataset.
         dataset: usize,
@@ -139,7 +145,7 @@ pub enum ReadError {
     /// The file ends inside binary data.
     #[error(
         "dataset {dataset}, byte {offset}: the binary data of {points} points needs {expected} bytes, \
-         the file ends after {found}"
+         the file ends after {found}; copy or export it again"
     )]
     TruncatedBinary {
         /// Which dataset.
@@ -156,7 +162,7 @@ pub enum ReadError {
     /// No closing delimiter where the binary data should end.
     #[error(
         "dataset {dataset}, byte {offset}: no `    -1` line follows the binary data, neither after its {points} points \
-         nor after the {stated} bytes stated; the header or the transfer is damaged"
+         nor after the {stated} bytes stated; the header or the transfer is damaged: copy or export the file again"
     )]
     BinaryEnd {
         /// Which dataset.
@@ -171,7 +177,7 @@ pub enum ReadError {
     /// The closing delimiter agrees with the stated bytes, but not with the number of points.
     #[error(
         "dataset {dataset}, byte {offset}: the header states {points} points, but the {stated} bytes of binary data \
-         it also states are not that many"
+         it also states are not that many; export the file again"
     )]
     PointsAgainstBytes {
         /// Which dataset.

@@ -18,8 +18,8 @@ fn check_data(record7: &str, data: &str, message: &str) {
 
 #[test]
 fn a_file_that_is_no_universal_file_is_told_so() {
-    check(b"", "the file is empty");
-    check(b" \n\n", "the file is empty");
+    check(b"", "the file is empty; copy or export it again");
+    check(b" \n\n", "the file is empty; copy or export it again");
     check(b"frequency,re,im\n1,2,3\n", "does not start with a `    -1` line; is it a UFF file?");
     check(b"\x89PNG\r\n\x1a\n\0\0", "does not start with a `    -1` line; is it a UFF file?");
 }
@@ -39,7 +39,10 @@ fn a_dataset_without_a_number_is_named() {
         b"    -1\n  xx\n    -1\n",
         "dataset 1, line 2: expected a dataset number in columns 1 to 6, found `xx`",
     );
-    check(b"    -1\n", "dataset 1, line 1: the file ends where a dataset number was expected");
+    check(
+        b"    -1\n",
+        "dataset 1, line 1: the file ends where a dataset number was expected; copy or export it again",
+    );
 }
 
 #[test]
@@ -49,16 +52,16 @@ fn a_truncated_file_names_the_dataset_that_ends_early() {
     let in_header = whole.len() + 19;
     check(
         &two[..in_header],
-        "dataset 2, line 18: the file ends where an ID line (records 1 to 5) was expected",
+        "dataset 2, line 18: the file ends where an ID line (records 1 to 5) was expected; copy or export it again",
     );
     let before_the_delimiter = two.len() - 7;
     check(
         &two[..before_the_delimiter],
-        "dataset 2, line 29: the file ends where data or the `    -1` line that closes the dataset was expected",
+        "dataset 2, line 29: the file ends where data or the `    -1` line that closes the dataset was expected; copy or export it again",
     );
     check(
         b"    -1\n    15\n   1  2  3\n",
-        "dataset 1, line 3: the file ends where the `    -1` line that closes the dataset was expected",
+        "dataset 1, line 3: the file ends where the `    -1` line that closes the dataset was expected; copy or export it again",
     );
 }
 
@@ -66,7 +69,7 @@ fn a_truncated_file_names_the_dataset_that_ends_early() {
 fn a_header_that_is_closed_early_names_the_record_that_is_missing() {
     check(
         b"    -1\n    58\na\nb\nc\nd\ne\n    -1\n",
-        "dataset 1, line 8: the dataset is closed by `    -1` where record 6 (function type and nodes) was expected",
+        "dataset 1, line 8: the dataset is closed by `    -1` where record 6 (function type and nodes) was expected; export the file again",
     );
 }
 
@@ -103,12 +106,12 @@ fn a_value_that_is_no_number_is_named_with_its_line() {
     check_data(
         &even(2, 3),
         "  1.00000e+00  2.0000oe+00  3.00000e+00\n",
-        "dataset 1, line 14: expected a number, found `2.0000oe+00`",
+        "dataset 1, line 14: expected a number, found `2.0000oe+00`; correct it or export the file again",
     );
     check_data(
         &even(2, 1),
         "*************\n",
-        "dataset 1, line 14: expected a number, found `*************`",
+        "dataset 1, line 14: expected a number, found `*************`; correct it or export the file again",
     );
 }
 
@@ -155,7 +158,7 @@ fn too_few_and_too_many_values_are_told_apart() {
     check_data(
         &even(2, 3),
         "  1.00000e+00  2.00000e+00\n",
-        "dataset 1, line 15: the dataset ends after 2 of 3 values",
+        "dataset 1, line 15: the dataset ends after 2 of 3 values; export the file again",
     );
     let too_many =
         "dataset 1, line 14: more data than the 1 values the header states; is the number of points right?";
@@ -168,7 +171,7 @@ fn too_few_and_too_many_values_are_told_apart() {
     check_data(
         &even(2, 999_999_999),
         "  1.00000e+00\n",
-        "dataset 1, line 15: the dataset ends after 1 of 999999999 values",
+        "dataset 1, line 15: the dataset ends after 1 of 999999999 values; export the file again",
     );
 }
 
@@ -179,13 +182,13 @@ fn truncated_binary_data_is_named_with_its_byte() {
     check(
         &bytes[..start + 10],
         &format!(
-            "dataset 1, byte {start}: the binary data of 2 points needs 16 bytes, the file ends after 10"
+            "dataset 1, byte {start}: the binary data of 2 points needs 16 bytes, the file ends after 10; copy or export it again"
         ),
     );
     check(
         &bytes[..start + 16],
         &format!(
-            "dataset 1, byte {start}: the binary data of 2 points needs 16 bytes, the file ends after 16"
+            "dataset 1, byte {start}: the binary data of 2 points needs 16 bytes, the file ends after 16; copy or export it again"
         ),
     );
 }

@@ -1,0 +1,89 @@
+use jointscope_linalg::{Matrix2, RealMatrix2};
+use num_complex::Complex64;
+
+/// (k11, k12, k22, c11, c12, c22), or with c = v vᵀ on the boundary of what is passive.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Parameters {
+    pub k: [f64; 3],
+    pub c: [f64; 3],
+    /// v, where c is v vᵀ.
+    pub boundary: Option<[f64; 2]>,
+    pub scalar: bool,
+}
+
+impl Parameters {
+    /// `None` for a start that is no joint.
+    pub fn of(k: RealMatrix2, c: RealMatrix2, scalar: bool) -> Option<Self> {
+        let elements = |m: RealMatrix2| {
+            if scalar { [m.at(0, 0), 0.0, 0.0] } else { [m.at(0, 0), m.at(0, 1), m.at(1, 1)] }
+        };
+        let possible = k.at(0, 0) > 0.0 && (scalar || (k.at(1, 1) > 0.0 && k.determinant() > 0.0));
+        possible.then_some(Parameters { k: elements(k), c: elements(c), boundary: None, scalar })
+    }
+
+    /// Which of the slots (k11, k12, k22, c11 or v1, c12 or v2, c22) are free.
+    pub fn active(&self) -> &'static [usize] {
+        match (self.scalar, self.boundary) {
+            (true, None) => &[0, 3],
+            (true, Some(_)) => &[0],
+            (false, None) => &[0, 1, 2, 3, 4, 5],
+            (false, Some(_)) => &[0, 1, 2, 3, 4],
+        }
+    }
+
+    pub fn stiffness(&self) -> RealMatrix2 {
+        Matrix2::new(self.k[0], self.k[1], self.k[1], self.k[2])
+    }
+
+    pub fn damping(&self) -> RealMatrix2 {
+        Matrix2::new(self.c[0], self.c[1], self.c[1], self.c[2])
+    }
+
+    pub fn is_passive(&self) -> bool {
+        self.c[0] >= 0.0 && self.c[2] >= 0.0 && self.c[1] * self.c[1] <= self.c[0] * self.c[2]
+    }
+
+    /// The nearest c on the boundary, both dofs scaled to equal stiffness.
+    pub fn on_the_boundary(&self) -> Self {
+        let unit = [self.k[0].sqrt(), self.k[2].sqrt()];
+        if self.scalar {
+            return Parameters { c: [0.0; 3], boundary: Some([0.0; 2]), ..*self };
+        }
+        let (a, b, d) = (
+            self.c[0] / (unit[0] * unit[0]),
+            self.c[1] / (unit[0] * unit[1]),
+            self.c[2] / (unit[1] * unit[1]),
+        );
+        // The larger eigenvalue and its eigenvector; the smaller one is negative.
+        let (mean, half) = (0.5 * (a + d), 0.5 * (a - d));
+        let largest = (mean + half.hypot(b)).max(0.0);
+        let angle = 0.5 * b.atan2(half);
+        let v = [largest.sqrt() * angle.cos() * unit[0], largest.sqrt() * angle.sin() * unit[1]];
+        Self::with_boundary(*self, v)
+    }
+
+    fn with_boundary(self, v: [f64; 2]) -> Self {
+        Parameters { c: [v[0] * v[0], v[0] * v[1], v[1] * v[1]], boundary: Some(v), ..self }
+    }
+
+    /// Derivatives with respect to the slots from those with respect to (k, c).
+    pub fn chain(&self, by_kc: &[Complex64; 6]) -> [Complex64; 6] {
+        let Some([v1, v2]) = self.boundary else { return *by_kc };
+        let mut slots = *by_kc;
+        slots[3] = by_kc[3] * (2.0 * v1) + by_kc[4] * v2;
+        slots[4] = by_kc[4] * v1 + by_kc[5] * (2.0 * v2);
+        slots
+    }
+
+    pub fn stepped(&self, step: &[f64; 6]) -> Self {
+        let mut next = *self;
+        for m in 0..3 {
+            next.k[m] += step[m];
+            next.c[m] += step[m + 3];
+        }
+        match self.boundary {
+            Some([v1, v2]) => next.with_boundary([v1 + step[3], v2 + step[4]]),
+            None => next,
+        }
+    }
+}
