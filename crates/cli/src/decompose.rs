@@ -1,0 +1,103 @@
+//! `jointscope decompose`: a fixture and recordings in, the joint's stiffness and damping and a page out.
+
+use jointscope::{Analysis, AnalysisOptions, Relation, stiffness_file};
+use jointscope_report::format::quantity;
+use jointscope_report::{PageContext, decomposition_page};
+
+use crate::arguments::{DecomposeArguments, RelationName};
+use crate::input;
+use crate::output::Outputs;
+use crate::refusal::Refusal;
+
+/// Decomposes and writes `stiffness.json` and `report.html`; answers with what was found and where the page is.
+pub fn run(arguments: &DecomposeArguments) -> Result<String, Refusal> {
+    let fixture = input::fixture(&arguments.fixture)?;
+    let recording = input::recording(&arguments.recording, &fixture, &arguments.fixture)?;
+    let files = || std::iter::once(&arguments.fixture).chain(&arguments.recording.files);
+    let names = input::names(&arguments.recording.files);
+    let frfs = recording.frfs().map_err(|error| Refusal::new(format_args!("{names}: {error}")))?;
+    let options = AnalysisOptions {
+        joint: arguments.joint.clone(),
+        relation: match arguments.relation {
+            RelationName::Exact => Relation::Exact,
+            RelationName::Paper => Relation::Paper,
+        },
+        band: arguments.band,
+        exact: arguments.exact,
+    };
+    let analysis = Analysis::of(&fixture, frfs, &options).map_err(|error| match error {
+        jointscope::DecompositionError::Sides(_) | jointscope::DecompositionError::Model(_) => {
+            Refusal::at(&arguments.fixture, error)
+        }
+        _ => Refusal::new(format_args!("{names}: {error}")),
+    })?;
+    let context = PageContext {
+        program: format!("jointscope {}", env!("CARGO_PKG_VERSION")),
+        command: command_line(),
+        inputs: files().map(|path| input::hash(path)).collect::<Result<_, _>>()?,
+        notes: recording.notes.clone(),
+    };
+    let page = decomposition_page(&analysis, &fixture, &context).map_err(Refusal::new)?;
+    let stiffness = serde_json::to_string_pretty(&stiffness_file(&analysis)).map_err(Refusal::new)?;
+    let mut outputs = Outputs::new(files());
+    let page_path = arguments.output.join("report.html");
+    outputs.add(arguments.output.join("stiffness.json"), stiffness + "\n");
+    outputs.add(&page_path, page);
+    outputs.write()?;
+    let mut lines = recording.notes.clone();
+    lines.extend(summary(&analysis));
+    lines.push(page_path.display().to_string());
+    Ok(lines.join("\n"))
+}
+
+/// The command as it was typed; the program by its name alone, wherever it lies.
+fn command_line() -> String {
+    let quoted = |word: String| if word.contains([' ', '"', '\'']) { format!("{word:?}") } else { word };
+    let arguments = std::env::args_os().skip(1).map(|word| quoted(word.to_string_lossy().into_owned()));
+    std::iter::once("jointscope".to_owned()).chain(arguments).collect::<Vec<_>>().join(" ")
+}
+
+/// `1 line`, `2 lines`.
+fn counted(count: usize, what: &str) -> String {
+    format!("{count} {what}{}", if count == 1 { "" } else { "s" })
+}
+
+/// What was found, a line each.
+fn summary(analysis: &Analysis) -> Vec<String> {
+    let spectrum = &analysis.spectrum;
+    let all = spectrum.solved.len() + spectrum.masked.len();
+    let mut lines =
+        vec![format!("joint {}: {} of {all} lines solved", analysis.joint, spectrum.solved.len())];
+    for (reason, count) in spectrum.masked_summary() {
+        lines.push(format!("{} masked: {}", counted(count, "line"), reason.why()));
+    }
+    match analysis.noisy_lines() {
+        0 => {}
+        1 => lines.push("1 line is dominated by noise; its interval is only indicative".to_owned()),
+        noisy => {
+            lines.push(format!("{noisy} lines are dominated by noise; their intervals are only indicative"))
+        }
+    }
+    let elements: &[(usize, usize)] = if spectrum.scalar { &[(0, 0)] } else { &[(0, 0), (0, 1), (1, 1)] };
+    match &analysis.likelihood {
+        Ok(fit) => {
+            let (k_fixture, c_fixture) = analysis.tolerance_of_likelihood();
+            let (k_model, c_model) = fit.model_std();
+            let units = [["N/m", "N/rad", "N*m/rad"], ["N*s/m", "N*s/rad", "N*m*s/rad"]];
+            let parts = [
+                ("k", &fit.stiffness, [fit.stiffness_std, k_fixture, k_model]),
+                ("c", &fit.damping, [fit.damping_std, c_fixture, c_model]),
+            ];
+            for ((symbol, value, shares), units) in parts.into_iter().zip(units) {
+                for &(i, j) in elements {
+                    let std = shares.iter().map(|share| share.at(i, j).powi(2)).sum::<f64>().sqrt();
+                    let text = quantity(value.at(i, j), std, units[i + j]);
+                    lines.push(format!("{symbol}{}{} = {text}", i + 1, j + 1));
+                }
+            }
+            lines.push(format!("chi2 per degree of freedom of this constant joint: {:.3}", fit.chi2_per_dof));
+        }
+        Err(error) => lines.push(error.to_string()),
+    }
+    lines
+}

@@ -1,0 +1,252 @@
+//! Files out: all of a command's, or none.
+
+use std::fs::{self, File};
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+
+use crate::refusal::Refusal;
+
+/// The files of a command, written together: each beside its place first, and moved there when all are complete. Whatever
+/// goes wrong, files that were there before are left or put back as they were.
+#[derive(Debug, Default)]
+pub struct Outputs {
+    files: Vec<(PathBuf, Vec<u8>)>,
+    inputs: Vec<PathBuf>,
+}
+
+impl Outputs {
+    /// Nothing yet; `inputs` are the files that the command has read and must not overwrite.
+    pub fn new<'a>(inputs: impl IntoIterator<Item = &'a PathBuf>) -> Self {
+        Outputs { files: Vec::new(), inputs: inputs.into_iter().cloned().collect() }
+    }
+
+    /// Adds a file.
+    pub fn add(&mut self, path: impl Into<PathBuf>, contents: impl Into<Vec<u8>>) {
+        self.files.push((path.into(), contents.into()));
+    }
+
+    /// Writes the files, creating their directories.
+    pub fn write(self) -> Result<(), Refusal> {
+        self.check()?;
+        let mut undo = Undo::default();
+        let mut complete = Vec::with_capacity(self.files.len());
+        for (index, (path, contents)) in self.files.iter().enumerate() {
+            let beside = beside(path, index, "part");
+            let written = undo.create_directories(parent(path)).and_then(|()| undo.write(&beside, contents));
+            written.map_err(|error| Refusal::io(path, &error))?;
+            complete.push(beside);
+        }
+        for (index, ((path, _), from)) in self.files.iter().zip(&complete).enumerate() {
+            undo.replace(from, path, &beside(path, index, "before"))
+                .map_err(|error| Refusal::io(path, &error))?;
+        }
+        undo.keep();
+        Ok(())
+    }
+
+    fn check(&self) -> Result<(), Refusal> {
+        for (path, _) in &self.files {
+            if path.file_name().is_none() || path.is_dir() {
+                return Err(Refusal::at(path, "is a directory where a file is to be written"));
+            }
+            if path.exists() && !path.is_file() {
+                return Err(Refusal::at(path, "is no ordinary file, so it cannot be replaced"));
+            }
+            let same = |input: &&PathBuf| match (input.canonicalize(), path.canonicalize()) {
+                (Ok(input), Ok(output)) => input == output,
+                _ => false,
+            };
+            if self.inputs.iter().any(|input| same(&input)) {
+                return Err(Refusal::at(
+                    path,
+                    "is read by this command and would be overwritten; choose another `-o`",
+                ));
+            }
+        }
+        Ok(())
+    }
+}
+
+fn parent(path: &Path) -> &Path {
+    path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."))
+}
+
+/// A hidden name in the same directory, for renaming does not cross file systems.
+fn beside(path: &Path, index: usize, role: &str) -> PathBuf {
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    path.with_file_name(format!(".{name}.{}-{index}.{role}", std::process::id()))
+}
+
+/// What has been done so far; undone when dropped, unless it is kept.
+#[derive(Debug, Default)]
+struct Undo {
+    steps: Vec<Step>,
+}
+
+#[derive(Debug)]
+enum Step {
+    Directory(PathBuf),
+    Written(PathBuf),
+    /// A file that was there, moved out of the way.
+    Moved {
+        from: PathBuf,
+        to: PathBuf,
+    },
+}
+
+impl Undo {
+    fn create_directories(&mut self, path: &Path) -> io::Result<()> {
+        let missing: Vec<&Path> = path
+            .ancestors()
+            .take_while(|ancestor| !ancestor.as_os_str().is_empty() && !ancestor.exists())
+            .collect();
+        for directory in missing.into_iter().rev() {
+            fs::create_dir(directory)?;
+            self.steps.push(Step::Directory(directory.to_owned()));
+        }
+        Ok(())
+    }
+
+    fn write(&mut self, path: &Path, contents: &[u8]) -> io::Result<()> {
+        let mut file = File::create_new(path)?;
+        self.steps.push(Step::Written(path.to_owned()));
+        file.write_all(contents)?;
+        file.sync_all()
+    }
+
+    fn replace(&mut self, from: &Path, to: &Path, aside: &Path) -> io::Result<()> {
+        if to.exists() {
+            fs::rename(to, aside)?;
+            self.steps.push(Step::Moved { from: to.to_owned(), to: aside.to_owned() });
+        }
+        fs::rename(from, to)?;
+        self.steps.push(Step::Written(to.to_owned()));
+        Ok(())
+    }
+
+    /// All is done: what was moved out of the way goes.
+    fn keep(mut self) {
+        for step in std::mem::take(&mut self.steps) {
+            if let Step::Moved { to, .. } = step {
+                let _ = fs::remove_file(to);
+            }
+        }
+    }
+}
+
+impl Drop for Undo {
+    fn drop(&mut self) {
+        // The first fault is the one reported; undoing does what still can be done.
+        for step in self.steps.drain(..).rev() {
+            let _ = match step {
+                Step::Directory(path) => fs::remove_dir(path),
+                Step::Written(path) => fs::remove_file(path),
+                Step::Moved { from, to } => fs::rename(to, from),
+            };
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// An empty directory that is removed with everything in it.
+    struct Scratch(PathBuf);
+
+    impl Scratch {
+        fn new(name: &str) -> Self {
+            let path = std::env::temp_dir().join(format!("jointscope-output-{name}-{}", std::process::id()));
+            let _ = fs::remove_dir_all(&path);
+            fs::create_dir_all(&path).unwrap();
+            Scratch(path)
+        }
+
+        fn names(&self) -> Vec<String> {
+            let mut names: Vec<String> = fs::read_dir(&self.0)
+                .unwrap()
+                .map(|entry| entry.unwrap().file_name().to_string_lossy().into_owned())
+                .collect();
+            names.sort();
+            names
+        }
+    }
+
+    impl Drop for Scratch {
+        fn drop(&mut self) {
+            let _ = fs::remove_dir_all(&self.0);
+        }
+    }
+
+    #[test]
+    fn all_files_are_written_into_directories_that_did_not_exist() {
+        let scratch = Scratch::new("all");
+        let mut outputs = Outputs::default();
+        outputs.add(scratch.0.join("a/b/one.json"), "1");
+        outputs.add(scratch.0.join("a/two.json"), "2");
+        outputs.write().unwrap();
+        assert_eq!(fs::read(scratch.0.join("a/b/one.json")).unwrap(), b"1");
+        assert_eq!(fs::read(scratch.0.join("a/two.json")).unwrap(), b"2");
+        assert_eq!(fs::read_dir(scratch.0.join("a")).unwrap().count(), 2, "nothing else is left");
+    }
+
+    #[test]
+    fn an_earlier_file_is_replaced() {
+        let scratch = Scratch::new("replace");
+        fs::write(scratch.0.join("one"), "before").unwrap();
+        let mut outputs = Outputs::default();
+        outputs.add(scratch.0.join("one"), "after");
+        outputs.write().unwrap();
+        assert_eq!(fs::read(scratch.0.join("one")).unwrap(), b"after");
+        assert_eq!(scratch.names(), ["one"]);
+    }
+
+    #[test]
+    fn when_one_file_cannot_be_written_none_is_and_nothing_is_left_behind() {
+        let scratch = Scratch::new("none");
+        fs::write(scratch.0.join("plain"), "a file, no directory").unwrap();
+        fs::write(scratch.0.join("one"), "before").unwrap();
+        let mut outputs = Outputs::default();
+        outputs.add(scratch.0.join("one"), "after");
+        outputs.add(scratch.0.join("new/two"), "2");
+        outputs.add(scratch.0.join("plain/three"), "3");
+        let message = outputs.write().unwrap_err().to_string();
+        assert!(message.contains("plain/three"), "{message}");
+        assert_eq!(scratch.names(), ["one", "plain"]);
+        assert_eq!(fs::read(scratch.0.join("one")).unwrap(), b"before");
+    }
+
+    #[test]
+    fn files_replaced_before_a_fault_are_put_back() {
+        let scratch = Scratch::new("back");
+        let path = |name: &str| scratch.0.join(name);
+        fs::write(path("one"), "before").unwrap();
+        fs::write(path("new"), "after").unwrap();
+        let mut undo = Undo::default();
+        undo.replace(&path("new"), &path("one"), &path("aside")).unwrap();
+        assert_eq!(fs::read(path("one")).unwrap(), b"after");
+        assert!(undo.replace(&path("missing"), &path("two"), &path("aside2")).is_err());
+        drop(undo);
+        assert_eq!(fs::read(path("one")).unwrap(), b"before");
+        assert_eq!(scratch.names(), ["one"]);
+    }
+
+    #[test]
+    fn a_file_that_was_read_is_never_overwritten() {
+        let scratch = Scratch::new("input");
+        let fixture = scratch.0.join("fixture.json");
+        fs::write(&fixture, "{}").unwrap();
+        let mut outputs = Outputs::new([&fixture]);
+        outputs.add(scratch.0.join("./fixture.json"), "FRFs");
+        assert!(outputs.write().unwrap_err().to_string().contains("would be overwritten"));
+        assert_eq!(fs::read(&fixture).unwrap(), b"{}");
+    }
+
+    #[test]
+    fn a_directory_is_no_place_for_a_file() {
+        let scratch = Scratch::new("directory");
+        let mut outputs = Outputs::default();
+        outputs.add(&scratch.0, "x");
+        assert!(outputs.write().unwrap_err().to_string().contains("is a directory"));
+    }
+}

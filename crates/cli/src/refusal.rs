@@ -1,0 +1,65 @@
+use std::fmt;
+use std::path::Path;
+
+/// Why a command did nothing: one plain sentence that names the file, the place in it and the remedy.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Refusal(String);
+
+impl Refusal {
+    /// A sentence about the command line.
+    pub fn new(sentence: impl fmt::Display) -> Self {
+        Refusal(one_line(&sentence.to_string()))
+    }
+
+    /// A sentence about a file.
+    pub fn at(file: &Path, problem: impl fmt::Display) -> Self {
+        Refusal::new(format_args!("{}: {problem}", file.display()))
+    }
+
+    /// A file that could not be read or written.
+    pub fn io(file: &Path, error: &std::io::Error) -> Self {
+        use std::io::ErrorKind;
+        match error.kind() {
+            ErrorKind::NotFound => Refusal::at(file, "there is no such file; check the path"),
+            ErrorKind::PermissionDenied => {
+                Refusal::at(file, "permission denied; check the rights of file and directory")
+            }
+            ErrorKind::IsADirectory => Refusal::at(file, "is a directory where a file is needed"),
+            ErrorKind::NotADirectory => Refusal::at(file, "a part of this path is a file, not a directory"),
+            _ => Refusal::at(file, error),
+        }
+    }
+}
+
+impl fmt::Display for Refusal {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.0)
+    }
+}
+
+/// Bad usage, as found by the argument parser: its sentence, its tip, and where help is to be had.
+impl From<&clap::Error> for Refusal {
+    fn from(error: &clap::Error) -> Self {
+        let text = error.render().to_string();
+        if error.kind() == clap::error::ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand {
+            return Refusal::new("no command was given; `jointscope --help` lists the commands");
+        }
+        let mut paragraphs = text.split("\n\n");
+        let problem = paragraphs.next().unwrap_or_default().trim().trim_start_matches("error: ");
+        let tips = paragraphs.filter_map(|paragraph| paragraph.trim().strip_prefix("tip: "));
+        let mut sentence = one_line(problem);
+        for tip in tips {
+            sentence.push_str("; ");
+            sentence.push_str(&one_line(tip));
+        }
+        Refusal(format!("{sentence}; see `jointscope --help`"))
+    }
+}
+
+/// Line breaks and the blanks around them become one blank.
+fn one_line(text: &str) -> String {
+    if !text.contains(['\n', '\r']) {
+        return text.to_owned();
+    }
+    text.lines().map(str::trim).filter(|line| !line.is_empty()).collect::<Vec<_>>().join(" ")
+}
