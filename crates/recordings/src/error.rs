@@ -170,7 +170,9 @@ pub enum RecordingError {
         channels: Vec<FileChannel>,
     },
     /// Neither FRFs nor time histories.
-    #[error("{files}: there is no FRF (function type 4), only {found}; export the FRFs as dataset 58")]
+    #[error(
+        "{files}: there is no FRF (function type 4); what there is: {found}; export the FRFs as dataset 58"
+    )]
     NoFrf {
         /// The files.
         files: String,

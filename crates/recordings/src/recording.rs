@@ -254,7 +254,7 @@ fn without_frfs(sources: &[Source], gathered: &Gathered) -> RecordingError {
     }));
     RecordingError::NoFrf {
         files,
-        found: if found.is_empty() { "an empty file".into() } else { enumeration(found) },
+        found: if found.is_empty() { "no function".into() } else { enumeration(found) },
     }
 }
 

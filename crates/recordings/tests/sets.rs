@@ -176,7 +176,15 @@ fn files_without_frfs_say_what_they_hold_instead() {
     let spectrum = Dataset58 { function: FunctionType::AutoSpectrum, ..frf((4, 2), (4, 2)) };
     refused(vec![spectrum], &ReadOptions::default(), &["test.uff", "1 function of type 2"]);
     refused(vec![], &ReadOptions::default(), &["no function"]);
-    refused(vec![coherence((4, 2), (1, 2), [1.0; 3])], &ReadOptions::default(), &["only coherences"]);
+    refused(
+        vec![coherence((4, 2), (1, 2), [1.0; 3])],
+        &ReadOptions::default(),
+        &["what there is: coherences"],
+    );
+    let mut header = source("header.uff", vec![]);
+    header.file = UffFile { skipped: [(15, 1), (151, 2)].into(), ..header.file };
+    let message = Recording::of(&[header], &fixture(), &ReadOptions::default()).unwrap_err().to_string();
+    assert!(message.contains("what there is: dataset 15, 2 datasets 151; export"), "{message}");
 }
 
 #[test]
