@@ -35,7 +35,7 @@ pub fn run(arguments: &DecomposeArguments) -> Result<String, Refusal> {
         program: format!("jointscope {}", env!("CARGO_PKG_VERSION")),
         command: command_line(),
         inputs: files().map(|path| input::hash(path)).collect::<Result<_, _>>()?,
-        notes: recording.notes.clone(),
+        notes: recording.notes.iter().cloned().chain(lost_tolerances(&analysis)).collect(),
     };
     let page = decomposition_page(&analysis, &fixture, &context).map_err(Refusal::new)?;
     let stiffness = serde_json::to_string_pretty(&stiffness_file(&analysis)).map_err(Refusal::new)?;
@@ -44,7 +44,7 @@ pub fn run(arguments: &DecomposeArguments) -> Result<String, Refusal> {
     outputs.add(arguments.output.join("stiffness.json"), stiffness + "\n");
     outputs.add(&page_path, page);
     outputs.write()?;
-    let mut lines = recording.notes.clone();
+    let mut lines = context.notes.clone();
     lines.extend(summary(&analysis));
     lines.push(page_path.display().to_string());
     Ok(lines.join("\n"))
@@ -61,6 +61,20 @@ fn command_line() -> String {
 fn counted(count: usize, what: &str) -> String {
     format!("{count} {what}{}", if count == 1 { "" } else { "s" })
 }
+
+/// What the deviations leave out, if anything.
+fn lost_tolerances(analysis: &Analysis) -> Option<String> {
+    let lost = &analysis.lost_tolerances;
+    (!lost.is_empty()).then(|| {
+        format!(
+            "the ± of the fit leave out the tolerances of {}: the fit could not follow them",
+            lost.join(", ")
+        )
+    })
+}
+
+/// χ² per degree of freedom above which the reader is told what it means.
+const POOR_FIT: f64 = 1.3;
 
 /// What was found, a line each.
 fn summary(analysis: &Analysis) -> Vec<String> {
@@ -96,6 +110,13 @@ fn summary(analysis: &Analysis) -> Vec<String> {
                 }
             }
             lines.push(format!("chi2 per degree of freedom of this constant joint: {:.3}", fit.chi2_per_dof));
+            if fit.chi2_per_dof > POOR_FIT {
+                lines.push(
+                    "with the fixture as stated, a constant joint does not explain the FRFs within their noise; the ± allow for \
+                     it as far as the band shows, and the page says what may be behind it"
+                        .to_owned(),
+                );
+            }
         }
         Err(error) => lines.push(error.to_string()),
     }

@@ -1,7 +1,7 @@
 use crate::spectrum::scalar_stiffness;
 use crate::{
     Averages, DecompositionError, Interfaces, JointSpectrum, LikelihoodFit, MeasurementPlan, Relation, Sides,
-    ToleranceShare, decompose, interfaces, maximum_likelihood, tolerance_shares,
+    ToleranceShare, ToleranceShares, decompose, interfaces, maximum_likelihood, tolerance_shares,
 };
 use jointscope_averaging::Band;
 use jointscope_beam::end_stiffness;
@@ -52,6 +52,8 @@ pub struct Analysis {
     pub interfaces: Option<Interfaces>,
     /// What the fixture's tolerances do to the results.
     pub tolerances: Vec<ToleranceShare>,
+    /// Quantities whose tolerance could not be followed; the deviations leave them out.
+    pub lost_tolerances: Vec<String>,
     /// H41 and K + iωC that the fixture as it stands predicts, by line of the recording.
     pub nominal: Vec<Option<(ComplexMatrix2, ComplexMatrix2)>>,
     /// The fixture's stiffness of the joint on d = u_to − R·u_from.
@@ -91,7 +93,7 @@ impl Analysis {
             Err(_) => (nominal_stiffness, RealMatrix2::zero()),
         };
         let averages = Averages::of(&spectrum, options.band, model)?;
-        let tolerances = tolerance_shares(
+        let ToleranceShares { shares: tolerances, lost: lost_tolerances } = tolerance_shares(
             fixture,
             &joint,
             &frfs,
@@ -113,6 +115,7 @@ impl Analysis {
             likelihood,
             interfaces,
             tolerances,
+            lost_tolerances,
             nominal,
             nominal_stiffness,
         })

@@ -33,6 +33,8 @@ pub struct LikelihoodFit {
     /// out (a jackknife): what a joint that is not quite constant, or a fixture that is not quite right, does to them.
     /// Zero where χ² gives no reason to look.
     pub model_covariance: [[f64; 6]; 6],
+    /// Whether c would give out energy if it were free, and was held to c = v vᵀ.
+    pub is_on_the_boundary: bool,
     /// Complex values fitted.
     pub values: usize,
 }
@@ -50,8 +52,8 @@ const CONVERGED: f64 = 1e-9;
 ///
 /// With X = (k⁻¹ + T)⁻¹, T = β33 + R α22 Rᵀ, an FRF is rational in k, and resonances make a trap of every poor start.
 /// But (I − X T) k = X is linear: solved with the measured X and the last round's (I + T k)⁻¹ as weight, it leads
-/// close to the optimum within a few rounds, from the spectrum's medians or from `nominal`, the better kept.
-/// Levenberg–Marquardt with analytic derivatives goes on from there. Where c comes out giving off energy, it is fitted
+/// close to the optimum within a few rounds, from the spectrum's medians or from `nominal`.
+/// Levenberg–Marquardt with analytic derivatives goes on from there and from the starts themselves; the lowest χ² is kept. Where c comes out giving off energy, it is fitted
 /// again as c = v vᵀ, the boundary of what is passive.
 ///
 /// The fit weighs every FRF by the variance it carries; FRFs without variances weigh alike. Where χ² says that a constant joint
@@ -69,13 +71,14 @@ pub fn maximum_likelihood(
     let plan = MeasurementPlan::of(frfs, sides)?;
     let data = Data::new(frfs, &plan.layout, spectrum, band)?;
     let starts = [Some(start_of(spectrum)), nominal].into_iter().flatten();
-    let fitted = starts.filter_map(|k| {
-        let start = data.linear_rounds(spectrum, Parameters::of(k, k.scale(START_LOSS), spectrum.scalar)?);
-        Some(data.fit(start))
-    });
+    let fitted =
+        starts.filter_map(|k| Parameters::of(k, k.scale(START_LOSS), spectrum.scalar)).flat_map(|start| {
+            // The linear rounds mislead where the model is far from right; plain steps do where the start is.
+            [data.fit(data.linear_rounds(spectrum, start)), data.fit(start)]
+        });
     let best = |a: (f64, Parameters), b: (f64, Parameters)| if b.0 < a.0 { b } else { a };
     let (mut chi2, mut joint) = fitted
-        .filter(|(chi2, _)| chi2.is_finite())
+        .filter(|(chi2, joint)| chi2.is_finite() && joint.k[0] > 0.0)
         .reduce(best)
         .ok_or(DecompositionError::NoFit("no start gives finite FRFs"))?;
     if !joint.is_passive() {
@@ -86,6 +89,27 @@ pub fn maximum_likelihood(
         fit.model_covariance = data.jackknife(&joint);
     }
     Ok(fit)
+}
+
+/// The optimum next to `near`, for a recording or a fixture that differs a little from that of `near`: what the
+/// difference does, without a jump to another minimum.
+///
+/// # Errors
+/// As [`maximum_likelihood`].
+pub(crate) fn continued(
+    frfs: &FrfSet,
+    sides: &Sides,
+    spectrum: &JointSpectrum,
+    band: Option<Band>,
+    near: &LikelihoodFit,
+) -> Result<LikelihoodFit, DecompositionError> {
+    let plan = MeasurementPlan::of(frfs, sides)?;
+    let data = Data::new(frfs, &plan.layout, spectrum, band)?;
+    let start = Parameters::of(near.stiffness, near.damping, spectrum.scalar)
+        .ok_or(DecompositionError::NoFit("the joint it starts from is none"))?;
+    let start = if near.is_on_the_boundary { start.on_the_boundary() } else { start };
+    let (chi2, joint) = data.fit(start);
+    data.result(chi2, &joint)
 }
 
 impl LikelihoodFit {
@@ -366,6 +390,7 @@ impl<'a> Data<'a> {
             damping_std: std(3),
             covariance,
             chi2_per_dof,
+            is_on_the_boundary: fitted.boundary.is_some(),
             model_covariance: [[0.0; 6]; 6],
             values: self.measured.len(),
         })

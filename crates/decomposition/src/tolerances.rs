@@ -1,7 +1,8 @@
 //! What the fixture's own uncertainty does to the joint found.
 
 use crate::interfaces::left_over;
-use crate::{Averages, DecompositionError, LikelihoodFit, Relation, Sides, decompose, maximum_likelihood};
+use crate::likelihood::continued;
+use crate::{Averages, DecompositionError, LikelihoodFit, Relation, Sides, decompose};
 use jointscope_averaging::Band;
 use jointscope_fixture::{Fixture, JointLaw};
 use jointscope_linalg::RealMatrix2;
@@ -22,12 +23,21 @@ pub struct ToleranceShare {
     pub compliance: Option<[f64; 5]>,
 }
 
+/// The shares of all quantities.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct ToleranceShares {
+    /// One by quantity.
+    pub shares: Vec<ToleranceShare>,
+    /// Paths of quantities whose share could not be found: uncertainties leave them out.
+    pub lost: Vec<String>,
+}
+
 /// Moves every quantity of the fixture that has a standard deviation up and down by it, and decomposes again;
 /// half of the difference is its share. `band` is the one averaged over, `fit_band` the one fitted (all lines
 /// without); `fit` is the fit at the stated values, from which the others start.
 ///
 /// `exact` takes bare numbers of the fixture as exact. A quantity whose change cannot be followed (a fixture that
-/// becomes impossible) is left out.
+/// becomes impossible, a fit that fails) is named among the lost ones.
 ///
 /// # Errors
 /// A fixture that cannot be taken apart at `joint`.
@@ -41,10 +51,10 @@ pub fn tolerance_shares(
     fit_band: Option<Band>,
     fit: Option<&LikelihoodFit>,
     exact: bool,
-) -> Result<Vec<ToleranceShare>, DecompositionError> {
+) -> Result<ToleranceShares, DecompositionError> {
     Sides::of(fixture, Some(joint))?;
     let quantities = if exact { fixture.quantities_exact() } else { fixture.quantities() };
-    let mut shares = Vec::new();
+    let mut result = ToleranceShares::default();
     for (index, quantity) in quantities.iter().enumerate() {
         let Some(std) = quantity.std.filter(|s| *s > 0.0) else { continue };
         let moved = |sign: f64| {
@@ -54,9 +64,15 @@ pub fn tolerance_shares(
             }
             Outcome::of(&other, joint, frfs, relation, (band, fit_band), fit)
         };
-        let (Ok(up), Ok(down)) = (moved(1.0), moved(-1.0)) else { continue };
+        let (Ok(up), Ok(down)) = (moved(1.0), moved(-1.0)) else {
+            result.lost.push(quantity.path.clone());
+            continue;
+        };
+        if fit.is_some() && (up.likelihood.is_none() || down.likelihood.is_none()) {
+            result.lost.push(quantity.path.clone());
+        }
         let half = |a: RealMatrix2, b: RealMatrix2| (a - b).scale(0.5);
-        shares.push(ToleranceShare {
+        result.shares.push(ToleranceShare {
             path: quantity.path.clone(),
             std,
             plain: (half(up.plain.0, down.plain.0), half(up.plain.1, down.plain.1)),
@@ -67,7 +83,7 @@ pub fn tolerance_shares(
                 .map(|(u, d)| std::array::from_fn(|e| 0.5 * (u[e] - d[e]))),
         });
     }
-    Ok(shares)
+    Ok(result)
 }
 
 /// What one fixture makes of the recording.
@@ -97,7 +113,7 @@ impl Outcome {
         };
         let exact = exact.as_ref().unwrap_or(&spectrum);
         let fitted = match fit {
-            Some(fit) => Some(maximum_likelihood(frfs, &sides, exact, fit_band, Some(fit.stiffness))?),
+            Some(fit) => continued(frfs, &sides, exact, fit_band, fit).ok(),
             None => None,
         };
         let compliance = match (&fitted, &sides.joint().law) {

@@ -141,5 +141,6 @@ fn recording(analysis: &Analysis) -> Value {
         "reference_points": {"responding": analysis.plan.responding.2, "loaded": analysis.plan.loaded.2},
         "rigid_motion_chi2_per_dof": analysis.spectrum.h41.rigidity(),
         "noisy_lines": analysis.noisy_lines(),
+        "tolerances_not_followed": analysis.lost_tolerances,
     })
 }
