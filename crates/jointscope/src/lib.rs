@@ -34,6 +34,7 @@ pub use jointscope_averaging as averaging;
 pub use jointscope_beam as beam;
 pub use jointscope_damping as damping;
 pub use jointscope_decomposition as decomposition;
+pub use jointscope_diagnosis as diagnosis;
 pub use jointscope_fixture as fixture;
 pub use jointscope_frf as frf;
 pub use jointscope_linalg as linalg;

@@ -10,7 +10,7 @@ const FLOORS: [&[&str]; 7] = [
     &["jointscope-beam", "jointscope-fixture", "jointscope-averaging"],
     &["jointscope-damping", "jointscope-frf", "jointscope-recordings"],
     &["jointscope-lumped", "jointscope-rig"],
-    &["jointscope-decomposition"],
+    &["jointscope-decomposition", "jointscope-diagnosis"],
     &["jointscope", "jointscope-report"],
     &["jointscope-cli", "jointscope-benches"],
 ];
@@ -77,7 +77,13 @@ fn built_of(name: &str, packages: &BTreeMap<String, Package>) -> BTreeSet<String
 #[test]
 fn the_simulated_laboratory_and_what_it_judges_share_no_model() {
     let packages = packages();
-    let models = ["jointscope-beam", "jointscope-damping", "jointscope-lumped", "jointscope-decomposition"];
+    let models = [
+        "jointscope-beam",
+        "jointscope-damping",
+        "jointscope-lumped",
+        "jointscope-decomposition",
+        "jointscope-diagnosis",
+    ];
     let laboratory = built_of("jointscope-rig", &packages);
     for model in models {
         assert!(!laboratory.contains(model), "jointscope-rig is built of {model}");

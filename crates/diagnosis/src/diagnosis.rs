@@ -1,0 +1,394 @@
+use crate::evidence::{Alternative, alternatives, excess, same_names};
+use crate::fit::Fit;
+use crate::search::Search;
+use crate::{Hypothesis, Observation};
+use jointscope_fixture::{Dof, Effect, Fixture, ParameterSpec};
+use jointscope_frf::noise::NoiseSource;
+use jointscope_spectra::{FrfPair, FrfSet, SpectraError};
+use num_complex::Complex64;
+
+/// What a diagnosis concludes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Verdict {
+    /// Nothing beyond noise and the stated tolerances.
+    Consistent,
+    /// The effects found explain the recordings within noise and tolerances.
+    Explained,
+    /// The effects found are needed, and something is left.
+    PartlyExplained,
+    /// A mismatch that no effect accounts for.
+    Unexplained,
+}
+
+impl Verdict {
+    /// The word used in `diagnosis.json`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Verdict::Consistent => "consistent",
+            Verdict::Explained => "explained",
+            Verdict::PartlyExplained => "partly_explained",
+            Verdict::Unexplained => "unexplained",
+        }
+    }
+}
+
+/// A parameter of a finding, in SI units.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Estimate {
+    /// The parameter's specification: name and range.
+    pub parameter: ParameterSpec,
+    /// Its unit, decided by the finding's degree of freedom.
+    pub unit: &'static str,
+    /// The value.
+    pub value: f64,
+    /// One standard deviation; `None` where the FRFs do not determine it.
+    pub std: Option<f64>,
+    /// 95 % interval.
+    pub interval: Option<[f64; 2]>,
+}
+
+/// A piece of physics that the recordings need.
+#[derive(Debug, Clone)]
+pub struct Finding {
+    /// Kind, place, dof and parameters.
+    pub effect: Effect,
+    /// Parameters with their uncertainty.
+    pub estimates: Vec<Estimate>,
+    /// Probability of kind, place and dof together.
+    pub probability: f64,
+    /// Other names for it, the most probable first.
+    pub alternatives: Vec<(Effect, f64)>,
+    /// What χ² and priors lose without it.
+    pub gain: f64,
+}
+
+/// How one FRF disagrees with the refitted fixture.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FrfMismatch {
+    /// The FRF.
+    pub frf: FrfPair,
+    /// √(Σ|H_model − H_measured|²/Σ|H_measured|²) of this FRF.
+    pub nrmse: f64,
+    /// (from, to, share of this FRF's χ²), Hz, ascending.
+    pub bands: Vec<(f64, f64, f64)>,
+}
+
+/// What the fit never saw, and how well it was predicted.
+#[derive(Debug, Clone, PartialEq)]
+pub struct HeldOut {
+    /// Bands, Hz, and an FRF, in words: `band 180:240`, `frf 4/2`.
+    pub what: Vec<String>,
+    /// Error of the refitted fixture there.
+    pub nrmse_refitted: f64,
+    /// Error of the repaired one.
+    pub nrmse_repaired: f64,
+    /// Whether the selection without the held-out lines found the same names.
+    pub same_findings: bool,
+}
+
+/// What to leave out of a diagnosis, and what to hold out of its fits.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct DiagnosisOptions {
+    /// The band to use, Hz; everything without.
+    pub band: Option<(f64, f64)>,
+    /// Bands to leave out, Hz.
+    pub exclude: Vec<(f64, f64)>,
+    /// FRFs to hold out; one is chosen where there are four or more and none is named.
+    pub hold_out: Vec<FrfPair>,
+    /// Take the fixture's bare numbers as exact.
+    pub exact: bool,
+}
+
+/// Why a recording cannot be diagnosed.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum DiagnosisError {
+    /// The set cannot be used.
+    #[error("no usable spectral line is left: {0}")]
+    Lines(#[from] SpectraError),
+    /// The fixture predicts nothing finite.
+    #[error("the fixture's model predicts no finite FRFs: {0}")]
+    Model(#[from] jointscope_lumped::LumpedError),
+    /// An FRF to be held out is not there, or nothing would be left.
+    #[error("FRF {0} cannot be held out: the recording does not have it, or has nothing else")]
+    HoldOut(String),
+}
+
+/// The whole answer.
+#[derive(Debug, Clone)]
+pub struct Diagnosis {
+    /// What it comes to.
+    pub verdict: Verdict,
+    /// FRFs and noise that it rests on.
+    pub observation: Observation,
+    /// The three models: the file's, refitted within tolerances, with the effects found.
+    pub search: Search,
+    /// χ² per degree of freedom of the refitted fixture, and the probability of one as large by chance.
+    pub refitted: (f64, f64),
+    /// Mismatch of the refitted fixture by FRF and band.
+    pub mismatch: Vec<FrfMismatch>,
+    /// What was found, the strongest first.
+    pub findings: Vec<Finding>,
+    /// The judgement on what no fit saw.
+    pub held_out: Option<HeldOut>,
+    /// Correlation of neighbouring lines' residuals of the repaired model: near zero if they are white.
+    pub residual_correlation: f64,
+}
+
+/// χ² per degree of freedom above which a model leaves something unexplained: variances from coherence are known to a few
+/// per cent, those from scatter much less.
+const LEFT_OVER: f64 = 1.2;
+const LEFT_OVER_SCATTER: f64 = 1.6;
+/// Bands in which a mismatch is told.
+const BANDS: usize = 12;
+/// Share of the lines in each of the two bands held out.
+const HELD_OUT_SHARE: f64 = 0.06;
+
+impl Diagnosis {
+    /// Diagnoses `frfs` against `fixture`.
+    ///
+    /// # Errors
+    /// See [`DiagnosisError`].
+    pub fn of(fixture: &Fixture, frfs: &FrfSet, options: &DiagnosisOptions) -> Result<Self, DiagnosisError> {
+        let in_use = |hz: f64| {
+            options.band.is_none_or(|(from, to)| hz >= from && hz <= to)
+                && !options.exclude.iter().any(|(from, to)| hz >= *from && hz <= *to)
+        };
+        let observation = Observation::new(frfs, in_use)?;
+        Hypothesis::nominal(fixture, options.exact).predict(&observation)?;
+        let search = Search::of(fixture, &observation, options.exact)
+            .ok_or(DiagnosisError::Lines(SpectraError::NoLines))?;
+        let chi2_per_dof = search.refitted.chi2_per_dof(&observation);
+        let findings = findings(&search, &observation);
+        let held_out = held_out(fixture, &observation, &search, options)?;
+        Ok(Diagnosis {
+            verdict: verdict(&search, &observation, &findings),
+            refitted: (chi2_per_dof, upper_tail(excess(chi2_per_dof, observation.degrees()))),
+            mismatch: mismatch(&observation, &search.refitted.predicted),
+            residual_correlation: correlation(&observation, &search.repaired.predicted),
+            findings,
+            held_out,
+            search,
+            observation,
+        })
+    }
+
+    /// (nominal, refitted, repaired) errors over all FRFs and lines in use.
+    pub fn nrmse(&self) -> [f64; 3] {
+        [&self.search.nominal, &self.search.refitted, &self.search.repaired]
+            .map(|fit| self.observation.nrmse(&fit.predicted))
+    }
+
+    /// (nominal, refitted, repaired) χ² per degree of freedom.
+    pub fn chi2_per_dof(&self) -> [f64; 3] {
+        [&self.search.nominal, &self.search.refitted, &self.search.repaired]
+            .map(|fit| fit.chi2_per_dof(&self.observation))
+    }
+}
+
+fn verdict(search: &Search, observation: &Observation, findings: &[Finding]) -> Verdict {
+    let scatter = observation.noise().contains(&NoiseSource::Scatter);
+    let limit = if scatter { LEFT_OVER_SCATTER } else { LEFT_OVER };
+    let fits = search.repaired.chi2_per_dof(observation) < limit;
+    match (findings.is_empty(), fits) {
+        (true, true) => Verdict::Consistent,
+        (true, false) => Verdict::Unexplained,
+        (false, true) => Verdict::Explained,
+        (false, false) => Verdict::PartlyExplained,
+    }
+}
+
+fn findings(search: &Search, observation: &Observation) -> Vec<Finding> {
+    let repaired = &search.repaired;
+    let effects = repaired.hypothesis.effects();
+    let covariance = repaired.covariance(observation);
+    let mut all: Vec<Finding> = effects
+        .iter()
+        .enumerate()
+        .map(|(index, effect)| {
+            let names = alternatives(search, index, observation);
+            let own = |a: &Alternative| search.candidates[a.candidate].names(effect);
+            let without = Fit::of(&repaired.hypothesis.without(index), observation, false);
+            let named = |a: &Alternative| {
+                let effects = a.fit.hypothesis.effects();
+                effects.last().map(|effect| (effect.clone(), a.probability))
+            };
+            Finding {
+                effect: effect.clone(),
+                estimates: estimates(
+                    &repaired.hypothesis,
+                    index,
+                    effect,
+                    covariance.as_deref(),
+                    repaired,
+                    observation,
+                ),
+                probability: names.iter().find(|a| own(a)).map_or(0.0, |a| a.probability),
+                alternatives: names.iter().filter(|a| !own(a)).filter_map(named).collect(),
+                gain: without.map_or(0.0, |fit| fit.objective - repaired.objective),
+            }
+        })
+        .collect();
+    all.sort_by(|a, b| b.gain.total_cmp(&a.gain));
+    all
+}
+
+fn estimates(
+    hypothesis: &Hypothesis,
+    index: usize,
+    effect: &Effect,
+    covariance: Option<&[f64]>,
+    fit: &Fit,
+    observation: &Observation,
+) -> Vec<Estimate> {
+    let n = hypothesis.coordinates.len();
+    let first = hypothesis.range_of(index).start;
+    let slopes = hypothesis.parameter_slopes(index);
+    let widening = fit.chi2_per_dof(observation).max(1.0).sqrt();
+    let specs = effect.kind.spec().parameters;
+    specs
+        .iter()
+        .enumerate()
+        .map(|(place, parameter)| {
+            let value = effect.value(place);
+            let slot = slopes.iter().position(|(p, _)| *p == place);
+            // A logarithm's deviation is relative: its interval is lopsided.
+            let relative = slot.is_some_and(|s| slopes[s].1 == value) && value > 0.0;
+            let std = slot.and_then(|s| {
+                let coordinate = covariance?[(first + s) * n + first + s].sqrt() * widening;
+                (coordinate.is_finite()).then_some((coordinate, coordinate * slopes[s].1.abs()))
+            });
+            let interval = std.map(|(coordinate, std)| {
+                if relative {
+                    let factor = (1.96 * coordinate).min(50.0).exp();
+                    [value / factor, value * factor]
+                } else {
+                    [value - 1.96 * std, value + 1.96 * std]
+                }
+            });
+            let unit = unit(parameter, effect.dof);
+            Estimate { parameter: *parameter, unit, value, std: std.map(|s| s.1), interval }
+        })
+        .collect()
+}
+
+/// Of "N/m or N*m/rad", the one that the degree of freedom means.
+fn unit(parameter: &ParameterSpec, dof: Option<Dof>) -> &'static str {
+    match parameter.unit.split_once(" or ") {
+        Some((translation, rotation)) => {
+            if dof == Some(Dof::Rotation) {
+                rotation
+            } else {
+                translation
+            }
+        }
+        None => parameter.unit,
+    }
+}
+
+fn mismatch(observation: &Observation, predicted: &[Complex64]) -> Vec<FrfMismatch> {
+    let n = observation.lines().len();
+    let hz = observation.lines().hz();
+    let bands = BANDS.min(n);
+    let edge = |band: usize| band * n / bands;
+    let of = |(index, pair): (usize, &FrfPair)| {
+        let at = |line: usize| index * n + line;
+        let residual = |line: usize| (observation.values()[at(line)] - predicted[at(line)]).norm_sqr();
+        let error: f64 = (0..n).map(residual).sum();
+        let size: f64 = (0..n).map(|line| observation.values()[at(line)].norm_sqr()).sum();
+        let chi2 = |range: std::ops::Range<usize>| {
+            range.map(|l| observation.weights()[at(l)] * residual(l)).sum::<f64>()
+        };
+        let whole = chi2(0..n).max(f64::MIN_POSITIVE);
+        let band = |b: usize| (hz[edge(b)], hz[edge(b + 1) - 1], chi2(edge(b)..edge(b + 1)) / whole);
+        FrfMismatch { frf: pair.clone(), nrmse: (error / size).sqrt(), bands: (0..bands).map(band).collect() }
+    };
+    observation.pairs().iter().enumerate().map(of).collect()
+}
+
+/// Correlation of the normalised residuals of neighbouring lines.
+fn correlation(observation: &Observation, predicted: &[Complex64]) -> f64 {
+    let n = observation.lines().len();
+    let normalised: Vec<Complex64> = observation
+        .values()
+        .iter()
+        .zip(predicted)
+        .zip(observation.weights())
+        .map(|((measured, modelled), weight)| (measured - modelled) * weight.sqrt())
+        .collect();
+    let (mut product, mut square) = (0.0, 0.0);
+    for frf in normalised.chunks_exact(n) {
+        product += frf.windows(2).map(|w| (w[0].conj() * w[1]).re).sum::<f64>();
+        square += frf.iter().map(|r| r.norm_sqr()).sum::<f64>();
+    }
+    if square > 0.0 { product / square } else { 0.0 }
+}
+
+/// Searches again without two bands and one FRF, and predicts them.
+fn held_out(
+    fixture: &Fixture,
+    observation: &Observation,
+    search: &Search,
+    options: &DiagnosisOptions,
+) -> Result<Option<HeldOut>, DiagnosisError> {
+    let hz = observation.lines().hz();
+    let n = hz.len();
+    let width = ((n as f64 * HELD_OUT_SHARE) as usize).max(1);
+    if n < 10 * width {
+        return Ok(None);
+    }
+    // About a third and two thirds of the lines: neither the stiff nor the massy end alone.
+    let bands: Vec<(f64, f64)> = [0.3, 0.62]
+        .map(|at| ((n as f64 * at) as usize, width))
+        .map(|(from, width)| (hz[from], hz[from + width]))
+        .to_vec();
+    let frfs = held_out_frfs(observation, options)?;
+    let outside = |line: f64| !bands.iter().any(|(from, to)| line >= *from && line <= *to);
+    let Some(seen) = observation.reduced(outside, |pair| !frfs.contains(pair)) else { return Ok(None) };
+    let Some(again) = Search::of(fixture, &seen, options.exact) else { return Ok(None) };
+    let error = |fit: &Fit| -> Option<f64> {
+        let predicted = fit.hypothesis.predict(observation).ok()?;
+        let unseen = |index: usize| frfs.contains(&observation.pairs()[index / n]) || !outside(hz[index % n]);
+        let (mut error, mut size) = (0.0, 0.0);
+        for index in (0..predicted.len()).filter(|i| unseen(*i)) {
+            error += (observation.values()[index] - predicted[index]).norm_sqr();
+            size += observation.values()[index].norm_sqr();
+        }
+        Some((error / size).sqrt())
+    };
+    let (Some(nrmse_refitted), Some(nrmse_repaired)) = (error(&again.refitted), error(&again.repaired))
+    else {
+        return Ok(None);
+    };
+    let what = bands
+        .iter()
+        .map(|(from, to)| format!("band {from}:{to}"))
+        .chain(frfs.iter().map(|p| format!("frf {p}")));
+    let same_findings = same_names(&again.repaired.hypothesis, &search.repaired.hypothesis);
+    Ok(Some(HeldOut { what: what.collect(), nrmse_refitted, nrmse_repaired, same_findings }))
+}
+
+fn held_out_frfs(
+    observation: &Observation,
+    options: &DiagnosisOptions,
+) -> Result<Vec<FrfPair>, DiagnosisError> {
+    let pairs = observation.pairs();
+    if let Some(missing) = options.hold_out.iter().find(|pair| !pairs.contains(pair)) {
+        return Err(DiagnosisError::HoldOut(missing.to_string()));
+    }
+    match (options.hold_out.as_slice(), pairs) {
+        ([], [.., last]) if pairs.len() >= 4 => Ok(vec![last.clone()]),
+        ([], _) => Ok(Vec::new()),
+        (named, _) if named.len() >= pairs.len() => Err(DiagnosisError::HoldOut(named[0].to_string())),
+        (named, _) => Ok(named.to_vec()),
+    }
+}
+
+/// Probability of a standard normal above `z` (Abramowitz and Stegun 26.2.17, absolute error below 1e-7).
+fn upper_tail(z: f64) -> f64 {
+    let t = 1.0 / (1.0 + 0.231_641_9 * z.abs());
+    let series = t
+        * (0.319_381_530
+            + t * (-0.356_563_782 + t * (1.781_477_937 + t * (-1.821_255_978 + t * 1.330_274_429))));
+    let tail = (-0.5 * z * z).exp() / std::f64::consts::TAU.sqrt() * series;
+    if z >= 0.0 { tail } else { 1.0 - tail }
+}

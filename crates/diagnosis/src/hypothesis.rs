@@ -1,0 +1,341 @@
+use crate::Observation;
+use jointscope_fixture::{BodyKind, Effect, EffectKind, Fixture, FixtureError, ParameterRange, Place};
+use jointscope_linalg::solve_positive_definite;
+use jointscope_lumped::{Instrument, LumpedError, synthesize};
+use num_complex::Complex64;
+
+/// A quantity of the fixture that a fit may move.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Tolerance {
+    /// Position among the fixture's quantities.
+    index: usize,
+    /// Path in the file.
+    pub path: String,
+    /// The stated value.
+    pub nominal: f64,
+    /// One standard deviation of the prior; `None` where it is free.
+    pub std: Option<f64>,
+    /// The unit of a step.
+    scale: f64,
+}
+
+/// A parameter of an effect that a fit may move, and how.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Freedom {
+    /// Positive: moved by its logarithm, between bounds.
+    Logarithm { low: f64, high: f64 },
+    /// Moved as it is, in units of the scale, between bounds.
+    Linear { scale: f64, low: f64, high: f64 },
+    /// Stays.
+    Fixed,
+}
+
+/// The fixture with quantities and effects to be fitted: coordinates in units of which one is a typical step.
+#[derive(Debug, Clone)]
+pub struct Hypothesis {
+    fixture: Fixture,
+    tolerances: Vec<Tolerance>,
+    effects: Vec<(Effect, Vec<Freedom>)>,
+    /// Coordinates: tolerances as (value − nominal)/scale, then the effects' free parameters.
+    pub(crate) coordinates: Vec<f64>,
+}
+
+impl Hypothesis {
+    /// The fixture by itself, its own effects kept as they stand. `exact` takes bare numbers as exact.
+    ///
+    /// Young's modulus and second moment of one beam enter as a product alone: one of them carries the deviation of both.
+    pub fn nominal(fixture: &Fixture, exact: bool) -> Self {
+        let quantities = if exact { fixture.quantities_exact() } else { fixture.quantities() };
+        let mut tolerances: Vec<Tolerance> = Vec::new();
+        for (index, quantity) in quantities.iter().enumerate() {
+            let std = match quantity.std {
+                Some(std) if std <= 0.0 => continue,
+                std => std,
+            };
+            let relative = |std: f64, value: f64| std / value.abs();
+            if let Some(beam) = quantity.path.strip_suffix("second_moment") {
+                let modulus = format!("{beam}youngs_modulus");
+                if let Some(earlier) = tolerances.iter_mut().find(|t| t.path == modulus) {
+                    earlier.std = earlier.std.zip(std).map(|(a, b)| {
+                        earlier.nominal * relative(a, earlier.nominal).hypot(relative(b, quantity.value))
+                    });
+                    earlier.scale = earlier.std.unwrap_or(earlier.scale);
+                    continue;
+                }
+            }
+            let scale = std.unwrap_or(if quantity.value != 0.0 { 0.1 * quantity.value.abs() } else { 1.0 });
+            tolerances.push(Tolerance {
+                index,
+                path: quantity.path.clone(),
+                nominal: quantity.value,
+                std,
+                scale,
+            });
+        }
+        let coordinates = vec![0.0; tolerances.len()];
+        Hypothesis { fixture: fixture.clone(), tolerances, effects: Vec::new(), coordinates }
+    }
+
+    /// The same with one more effect, at the parameters it is given with.
+    pub fn with(&self, effect: Effect) -> Self {
+        let mut more = self.clone();
+        let freedoms = freedoms(&self.fixture, &effect);
+        for (freedom, quantity) in freedoms.iter().zip(&effect.parameters) {
+            more.coordinates.extend(freedom.coordinate(quantity.value));
+        }
+        more.effects.push((effect, freedoms));
+        more
+    }
+
+    /// The same without effect `index`.
+    pub fn without(&self, index: usize) -> Self {
+        let mut fewer = self.clone();
+        let range = self.range_of(index);
+        fewer.coordinates.drain(range);
+        fewer.effects.remove(index);
+        fewer
+    }
+
+    /// The same with the quantities of the fixture back at (or at those of) `other`; effects stay.
+    pub fn with_tolerances_of(&self, other: &Hypothesis) -> Self {
+        let mut moved = self.clone();
+        let count = self.tolerances.len();
+        moved.coordinates[..count].copy_from_slice(&other.coordinates[..count]);
+        moved
+    }
+
+    /// Number of effects.
+    pub fn effect_count(&self) -> usize {
+        self.effects.len()
+    }
+
+    /// Number of the effects' free parameters.
+    pub fn effect_parameters(&self) -> usize {
+        self.coordinates.len() - self.tolerances.len()
+    }
+
+    /// The quantities that may move.
+    pub fn tolerances(&self) -> &[Tolerance] {
+        &self.tolerances
+    }
+
+    /// Where tolerance `index` stands, in standard deviations (or tenths of its value where it is free).
+    pub fn departure(&self, index: usize) -> f64 {
+        self.coordinates[index]
+    }
+
+    /// Precision of the prior on coordinate `index`: 1 for a quantity with a deviation, 0 for what is free.
+    pub(crate) fn prior(&self, index: usize) -> f64 {
+        f64::from(self.tolerances.get(index).is_some_and(|t| t.std.is_some()))
+    }
+
+    /// Σ (departure/std)².
+    pub fn penalty(&self) -> f64 {
+        (0..self.tolerances.len()).map(|i| self.prior(i) * self.coordinates[i].powi(2)).sum()
+    }
+
+    /// Coordinates of effect `index` within the whole.
+    pub(crate) fn range_of(&self, index: usize) -> std::ops::Range<usize> {
+        let free = |e: &(Effect, Vec<Freedom>)| e.1.iter().filter(|f| **f != Freedom::Fixed).count();
+        let start = self.tolerances.len() + self.effects[..index].iter().map(free).sum::<usize>();
+        start..start + free(&self.effects[index])
+    }
+
+    /// The effects at their present parameters.
+    pub fn effects(&self) -> Vec<Effect> {
+        let mut at = self.tolerances.len();
+        self.effects
+            .iter()
+            .map(|(effect, freedoms)| {
+                let mut effect = effect.clone();
+                for (freedom, quantity) in freedoms.iter().zip(&mut effect.parameters) {
+                    if let Some(value) = freedom.value(self.coordinates.get(at).copied().unwrap_or(0.0)) {
+                        quantity.value = value;
+                        at += 1;
+                    }
+                }
+                effect
+            })
+            .collect()
+    }
+
+    /// Derivative of each free parameter of effect `index` with respect to its coordinate, with the parameter's place in
+    /// the effect.
+    pub(crate) fn parameter_slopes(&self, index: usize) -> Vec<(usize, f64)> {
+        let (_, freedoms) = &self.effects[index];
+        let effect = &self.effects()[index];
+        let slope = |(place, freedom): (usize, &Freedom)| match freedom {
+            Freedom::Logarithm { .. } => Some((place, effect.value(place))),
+            Freedom::Linear { scale, .. } => Some((place, *scale)),
+            Freedom::Fixed => None,
+        };
+        freedoms.iter().enumerate().filter_map(slope).collect()
+    }
+
+    /// The fixture at the present quantities, its own effects and the fitted ones in its `physics`.
+    ///
+    /// # Errors
+    /// Quantities or parameters that are impossible.
+    pub fn to_fixture(&self) -> Result<Fixture, FixtureError> {
+        let mut fixture = self.fixture.clone();
+        let mut quantities = fixture.quantities_mut();
+        for (tolerance, coordinate) in self.tolerances.iter().zip(&self.coordinates) {
+            quantities[tolerance.index].quantity.value = tolerance.nominal + coordinate * tolerance.scale;
+        }
+        let mut physics = self.fixture.physics().to_vec();
+        physics.extend(self.effects());
+        fixture.with_physics(physics)
+    }
+
+    /// The accelerances this hypothesis predicts for an observation, as its instruments would record them.
+    pub fn predict(&self, observation: &Observation) -> Result<Vec<Complex64>, LumpedError> {
+        let fixture = self.to_fixture().map_err(|_| LumpedError::Unbounded { frequency: 0.0 })?;
+        let frfs = synthesize(&fixture, observation.pairs(), observation.lines(), Instrument::AsRecorded)?;
+        Ok(frfs.all_values().to_vec())
+    }
+
+    /// Bounds of each coordinate.
+    fn bounds(&self) -> Vec<(f64, f64)> {
+        let open = (f64::NEG_INFINITY, f64::INFINITY);
+        let mut all = vec![open; self.tolerances.len()];
+        for freedom in self.effects.iter().flat_map(|(_, freedoms)| freedoms) {
+            match freedom {
+                Freedom::Fixed => {}
+                Freedom::Linear { scale, low, high } => all.push((low / scale, high / scale)),
+                Freedom::Logarithm { low, high } => all.push((*low, *high)),
+            }
+        }
+        all
+    }
+
+    /// Solves `matrix`·step = `right` (row-major, whole) within the bounds: a coordinate whose step would cross its bound
+    /// stops there, and the others are solved for again.
+    pub(crate) fn bounded_step(&self, matrix: &[f64], right: &[f64]) -> Option<Vec<f64>> {
+        let n = right.len();
+        let bounds = self.bounds();
+        let mut stopped: Vec<Option<f64>> = vec![None; n];
+        for _ in 0..4 {
+            let free: Vec<usize> = (0..n).filter(|&m| stopped[m].is_none()).collect();
+            let mut reduced = Vec::with_capacity(free.len() * free.len());
+            let mut rest = Vec::with_capacity(free.len());
+            for &i in &free {
+                reduced.extend(free.iter().map(|&j| matrix[i * n + j]));
+                let known: f64 = (0..n).filter_map(|j| stopped[j].map(|s| matrix[i * n + j] * s)).sum();
+                rest.push(right[i] - known);
+            }
+            if !free.is_empty() && !solve_positive_definite(&mut reduced, &mut rest) {
+                return None;
+            }
+            let mut crossed = false;
+            for (&m, step) in free.iter().zip(&rest) {
+                let target = self.coordinates[m] + step;
+                let (low, high) = bounds[m];
+                if target < low || target > high {
+                    stopped[m] = Some(target.clamp(low, high) - self.coordinates[m]);
+                    crossed = true;
+                }
+            }
+            if !crossed {
+                let mut step: Vec<f64> = stopped.iter().map(|s| s.unwrap_or(0.0)).collect();
+                free.iter().zip(&rest).for_each(|(&m, value)| step[m] = *value);
+                return Some(step);
+            }
+        }
+        None
+    }
+
+    /// Moves by `step`, bounded parameters stopping at their bounds.
+    pub(crate) fn stepped(&self, step: &[f64]) -> Self {
+        let mut next = self.clone();
+        for ((coordinate, step), (low, high)) in next.coordinates.iter_mut().zip(step).zip(self.bounds()) {
+            *coordinate = (*coordinate + step).clamp(low, high);
+        }
+        next
+    }
+}
+
+impl Freedom {
+    fn coordinate(&self, value: f64) -> Option<f64> {
+        match self {
+            Freedom::Logarithm { .. } => Some(value.max(f64::MIN_POSITIVE).ln()),
+            Freedom::Linear { scale, .. } => Some(value / scale),
+            Freedom::Fixed => None,
+        }
+    }
+
+    fn value(&self, coordinate: f64) -> Option<f64> {
+        match self {
+            Freedom::Logarithm { .. } => Some(coordinate.exp()),
+            Freedom::Linear { scale, .. } => Some(coordinate * scale),
+            Freedom::Fixed => None,
+        }
+    }
+}
+
+/// Abscissae between which something may sit on a body: a bar of its mass and inertia, and its points.
+pub(crate) fn extent(fixture: &Fixture, body: usize) -> (f64, f64) {
+    let points = fixture.points().iter().filter(|p| p.body == body).map(|p| p.x.value);
+    let (low, high) = points.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(x), h.max(x)));
+    match &fixture.bodies()[body].kind {
+        BodyKind::Beam(beam) => (beam.from.value, beam.to.value),
+        BodyKind::Rigid(rigid) => match (rigid.rotates, rigid.x_cg, rigid.inertia) {
+            (true, Some(x_cg), Some(inertia)) => {
+                let half = (3.0 * inertia.value / rigid.mass.value).sqrt();
+                (low.min(x_cg.value - half), high.max(x_cg.value + half))
+            }
+            _ => (low.min(0.0), high.max(0.0)),
+        },
+    }
+}
+
+/// How far a logarithm may move from its start.
+const REACH: f64 = 9.0;
+
+fn freedoms(fixture: &Fixture, effect: &Effect) -> Vec<Freedom> {
+    let spec = effect.kind.spec();
+    let body = match &effect.place {
+        Place::Body(name) => fixture.bodies().iter().position(|b| b.name == *name),
+        _ => None,
+    };
+    let turns = |body: usize| match &fixture.bodies()[body].kind {
+        BodyKind::Rigid(rigid) => rigid.rotates,
+        BodyKind::Beam(_) => true,
+    };
+    let linear = |scale: f64| Freedom::Linear { scale, low: f64::NEG_INFINITY, high: f64::INFINITY };
+    let not_negative = |scale: f64| Freedom::Linear { scale, low: 0.0, high: f64::INFINITY };
+    let of = |(index, parameter): (usize, &jointscope_fixture::ParameterSpec)| {
+        let value = effect.value(index);
+        match (effect.kind, parameter.name) {
+            (_, "x") => match body.filter(|b| turns(*b)) {
+                Some(body) => {
+                    let (low, high) = extent(fixture, body);
+                    Freedom::Linear { scale: 0.1 * (high - low).max(1e-6), low, high }
+                }
+                None => Freedom::Fixed,
+            },
+            // Below the band a resonator is a support, above it a mass: it must resonate near where it set out.
+            (EffectKind::AttachedResonator, "frequency") => {
+                Freedom::Logarithm { low: value.ln() - 0.7, high: value.ln() + 0.7 }
+            }
+            (EffectKind::AddedMass | EffectKind::SensorMass, "mass") => linear(value.abs().max(1e-6)),
+            (EffectKind::JointMass, "mass") => not_negative(value.abs().max(1e-6)),
+            (_, "dx") => linear(1e-3),
+            (_, "seconds") => linear(1e-5),
+            (EffectKind::ChannelGain, "factor") => linear(0.1),
+            (_, "rotary_inertia") if !matches!(effect.place, Place::Body(_)) => Freedom::Fixed,
+            (_, "rotary_inertia") => not_negative(value.max(1e-9)),
+            (EffectKind::LossFactor, _) => not_negative(0.01),
+            (EffectKind::ExponentialWindow, _) => not_negative(1.0),
+            (EffectKind::Relaxation, "ratio") => not_negative(0.1),
+            // Zero is a dashpot or a ratio too: linear, bounded, in units of what would be felt.
+            (_, "damping" | "damping_ratio") => not_negative(value.max(1e-9)),
+            _ if parameter.range == ParameterRange::Positive => {
+                // Four decades about the start: beyond them an effect is another one, or none.
+                let centre = value.max(f64::MIN_POSITIVE).ln();
+                Freedom::Logarithm { low: centre - REACH, high: centre + REACH }
+            }
+            _ => not_negative(value.abs().max(1e-9)),
+        }
+    };
+    spec.parameters.iter().enumerate().map(of).collect()
+}

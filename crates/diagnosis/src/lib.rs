@@ -1,0 +1,42 @@
+//! What physics a fixture leaves out, told from the recordings that disagree with it.
+//!
+//! The questions are kept apart as in the physics. *Is there anything?* The fixture is refitted within its tolerances, as priors,
+//! and only what is left against the noise is a mismatch. *What, and where?* Every effect of the fixture file at every legal
+//! place ([`catalogue`]) is tried with the tolerances linearised, the promising ones are fitted in full together with them, the
+//! best is kept if it earns its price, what is left is searched again, effects are exchanged and dropped ([`Search`]). *How
+//! sure?* Every finding is replaced by every other name in the company of the rest; names that serve as well are alternatives with
+//! probabilities. *Is it better?* The search is done again without two bands and one FRF, which are then predicted.
+//!
+//! * [`Observation`]: the FRFs on the lines in use, each value with its weight;
+//! * [`Hypothesis`]: quantities of the fixture that may move, and effects with free parameters;
+//! * [`Fit`]: a hypothesis at its maximum of likelihood and prior;
+//! * [`Search`]: nominal, refitted and repaired model;
+//! * [`Diagnosis`]: verdict, findings with intervals and alternatives, mismatch by FRF and band, the held-out judgement.
+//!
+//! ```no_run
+//! use jointscope_diagnosis::{Diagnosis, DiagnosisOptions};
+//! # fn example(fixture: jointscope_fixture::Fixture, frfs: jointscope_spectra::FrfSet) -> Result<(), Box<dyn std::error::Error>> {
+//! let diagnosis = Diagnosis::of(&fixture, &frfs, &DiagnosisOptions::default())?;
+//! for finding in &diagnosis.findings {
+//!     println!("{} at {}: {:.2}", finding.effect.kind.name(), finding.effect.place, finding.probability);
+//! }
+//! # Ok(()) }
+//! ```
+
+mod catalogue;
+mod diagnosis;
+mod evidence;
+mod fit;
+mod hypothesis;
+mod observation;
+mod search;
+
+pub use catalogue::{Candidate, catalogue};
+pub use diagnosis::{
+    Diagnosis, DiagnosisError, DiagnosisOptions, Estimate, Finding, FrfMismatch, HeldOut, Verdict,
+};
+pub use evidence::{Alternative, alternatives};
+pub use fit::{Fit, Linearisation};
+pub use hypothesis::{Hypothesis, Tolerance};
+pub use observation::Observation;
+pub use search::Search;

@@ -1,0 +1,134 @@
+use jointscope_frf::noise::{NoiseSource, with_variances};
+use jointscope_spectra::{FrfForm, FrfPair, FrfSet, SpectraError, SpectralLines};
+use num_complex::Complex64;
+
+/// FRFs as a fit sees them: accelerances on the lines in use, each with its weight.
+#[derive(Debug, Clone)]
+pub struct Observation {
+    frfs: FrfSet,
+    /// 2/σ² by value: each part of a complex value has half of its variance.
+    weight: Vec<f64>,
+    /// Mean |H|² around each line, by value: the floor of what a softened fit tolerates.
+    level: Vec<f64>,
+    noise: Vec<NoiseSource>,
+}
+
+/// Lines on each side over which the local level is taken.
+const LEVEL_WINDOW: usize = 20;
+
+impl Observation {
+    /// Takes a recording on the lines for which `in_use` holds (Hz). Variances that the set carries are kept; without
+    /// them they are estimated from coherence or scatter.
+    ///
+    /// The noise is estimated on all lines before any are left out. Lines at 0 Hz are never used, and neither
+    /// are single values without coherence.
+    ///
+    /// # Errors
+    /// No line left.
+    pub fn new(frfs: &FrfSet, in_use: impl Fn(f64) -> bool + Copy) -> Result<Self, SpectraError> {
+        let (with_noise, noise) = match frfs.variance(0) {
+            Some(_) => (frfs.clone(), Vec::new()),
+            None => with_variances(frfs)?,
+        };
+        let hz = frfs.lines().hz().to_vec();
+        let kept = with_noise.on_lines(|i| hz[i] > 0.0 && in_use(hz[i])).ok_or(SpectraError::NoLines)?;
+        let frfs = kept.to_form(FrfForm::Accelerance)?;
+        let n = frfs.lines().len();
+        let mut weight = Vec::with_capacity(n * frfs.pairs().len());
+        let mut level = Vec::with_capacity(weight.capacity());
+        for index in 0..frfs.pairs().len() {
+            let values = frfs.values(index);
+            let variance = frfs.variance(index).unwrap_or(&[]);
+            for line in 0..n {
+                let coherent = frfs.coherence(index).is_none_or(|c| c[line] > 0.0);
+                let variance = variance.get(line).copied().unwrap_or(0.0);
+                weight.push(if coherent && variance > 0.0 { 2.0 / variance } else { 0.0 });
+                let near = line.saturating_sub(LEVEL_WINDOW)..(line + LEVEL_WINDOW + 1).min(n);
+                let count = near.len() as f64;
+                level.push(values[near].iter().map(|v| v.norm_sqr()).sum::<f64>() / count);
+            }
+        }
+        Ok(Observation { frfs, weight, level, noise })
+    }
+
+    /// The observation on fewer lines and FRFs, its noise as it was; `None` where nothing is left.
+    pub fn reduced(&self, line: impl Fn(f64) -> bool, frf: impl Fn(&FrfPair) -> bool) -> Option<Self> {
+        let n = self.lines().len();
+        let hz = self.lines().hz();
+        let kept_frfs: Vec<usize> = (0..self.pairs().len()).filter(|&i| frf(&self.pairs()[i])).collect();
+        let kept_lines: Vec<usize> = (0..n).filter(|&i| line(hz[i])).collect();
+        let places = || kept_frfs.iter().flat_map(|&i| kept_lines.iter().map(move |&l| i * n + l));
+        let lines = SpectralLines::new(kept_lines.iter().map(|&l| hz[l]).collect()).ok()?;
+        let pairs: Vec<FrfPair> = kept_frfs.iter().map(|&i| self.pairs()[i].clone()).collect();
+        let values = places().map(|at| self.values()[at]).collect();
+        let frfs = FrfSet::new(lines, FrfForm::Accelerance, pairs, values).ok()?;
+        (!kept_frfs.is_empty()).then(|| Observation {
+            frfs,
+            weight: places().map(|at| self.weight[at]).collect(),
+            level: places().map(|at| self.level[at]).collect(),
+            noise: kept_frfs.iter().filter_map(|&i| self.noise.get(i).copied()).collect(),
+        })
+    }
+
+    /// The FRFs in use, accelerances.
+    pub fn frfs(&self) -> &FrfSet {
+        &self.frfs
+    }
+
+    /// The spectral lines in use.
+    pub fn lines(&self) -> &SpectralLines {
+        self.frfs.lines()
+    }
+
+    /// The FRFs' channels.
+    pub fn pairs(&self) -> &[FrfPair] {
+        self.frfs.pairs()
+    }
+
+    /// Where each FRF's noise came from; empty where the set carried its variances.
+    pub fn noise(&self) -> &[NoiseSource] {
+        &self.noise
+    }
+
+    /// Measured values, FRF after FRF.
+    pub fn values(&self) -> &[Complex64] {
+        self.frfs.all_values()
+    }
+
+    /// 2/σ² by value.
+    pub fn weights(&self) -> &[f64] {
+        &self.weight
+    }
+
+    /// Number of real values that count.
+    pub fn degrees(&self) -> usize {
+        2 * self.weight.iter().filter(|w| **w > 0.0).count()
+    }
+
+    /// The weight of value `index` when a share `epsilon` of the measured, the modelled and a tenth of the local level
+    /// counts as noise too: sharp peaks then do not decide where a fit goes.
+    pub fn softened(&self, index: usize, modelled: Complex64, epsilon: f64) -> f64 {
+        let weight = self.weight[index];
+        if epsilon == 0.0 || weight == 0.0 {
+            return weight;
+        }
+        let size = self.values()[index].norm_sqr() + modelled.norm_sqr() + 0.1 * self.level[index];
+        1.0 / (1.0 / weight + 0.5 * epsilon * epsilon * size)
+    }
+
+    /// χ² of modelled values.
+    pub fn chi2(&self, modelled: &[Complex64]) -> f64 {
+        let terms = self.weight.iter().zip(self.values()).zip(modelled);
+        terms.map(|((weight, measured), modelled)| weight * (measured - modelled).norm_sqr()).sum()
+    }
+
+    /// √(Σ|H_model − H_measured|² / Σ|H_measured|²) over all FRFs and lines.
+    pub fn nrmse(&self, modelled: &[Complex64]) -> f64 {
+        let (mut error, mut size) = (0.0, 0.0);
+        for (measured, modelled) in self.values().iter().zip(modelled) {
+            error += (measured - modelled).norm_sqr();
+            size += measured.norm_sqr();
+        }
+        (error / size).sqrt()
+    }
+}

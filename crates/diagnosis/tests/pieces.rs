@@ -1,0 +1,130 @@
+//! The pieces of a diagnosis, each by itself.
+#![allow(clippy::unwrap_used, missing_docs)]
+
+use jointscope_diagnosis::{Fit, Hypothesis, Observation, catalogue};
+use jointscope_fixture::{Effect, EffectKind, Fixture, Place};
+use jointscope_lumped::{Instrument, synthesize};
+use jointscope_spectra::{FrfPair, FrfSet, SpectralLines};
+
+fn fixture() -> Fixture {
+    Fixture::from_json(
+        r#"{ "bodies": { "A": { "mass": {"value": 1.1, "std": 0.002}, "inertia": {"value": 9.5e-4, "std": 4e-6}, "x_cg": {"value": -0.03, "std": 1e-4} },
+                         "B": { "mass": {"value": 1.2, "std": 0.0}, "inertia": {"value": 9.9e-4, "std": 0.0}, "x_cg": {"value": 0.095, "std": 0.0} } },
+             "points": { "1": { "body": "A", "x": {"value": -0.06, "std": 0.0} }, "2": { "body": "A", "x": {"value": 0, "std": 0.0} },
+                         "3": { "body": "B", "x": {"value": 0.065, "std": 0.0} }, "4": { "body": "B", "x": {"value": 0.125, "std": 0.0} } },
+             "joints": { "J": { "from": "2", "to": "3",
+               "beam": { "youngs_modulus": {"value": 2e11, "std": 4e9}, "second_moment": {"value": 4e-10, "std": 6e-12} } } },
+             "damping": { "modal_ratios": [{"value": 0.006, "std": 0.001}] } }"#,
+    )
+    .unwrap()
+}
+
+/// The FRFs of `truth` with stated variances of a thousandth of their mean square, and no noise.
+fn recorded(truth: &Fixture) -> FrfSet {
+    let pairs = [("4", "1"), ("3", "1"), ("4", "2"), ("3", "2")].map(|(o, i)| FrfPair::transverse(o, i));
+    let lines = SpectralLines::even(10.0, 10.0, 120).unwrap();
+    let frfs = synthesize(truth, &pairs, &lines, Instrument::AsRecorded).unwrap();
+    let variance = (0..4)
+        .flat_map(|i| {
+            let mean = frfs.values(i).iter().map(|v| v.norm_sqr()).sum::<f64>() / 120.0;
+            vec![1e-6 * mean; 120]
+        })
+        .collect();
+    frfs.with_variance(variance).unwrap()
+}
+
+fn observation(truth: &Fixture) -> Observation {
+    Observation::new(&recorded(truth), |_| true).unwrap()
+}
+
+#[test]
+fn modulus_and_second_moment_enter_as_their_product_and_exact_quantities_do_not_move() {
+    let hypothesis = Hypothesis::nominal(&fixture(), false);
+    let paths: Vec<&str> = hypothesis.tolerances().iter().map(|t| t.path.as_str()).collect();
+    let expected = [
+        "bodies/A/mass",
+        "bodies/A/inertia",
+        "bodies/A/x_cg",
+        "joints/J/beam/youngs_modulus",
+        "damping/modal_ratios/0",
+    ];
+    assert_eq!(paths, expected);
+    // 2 % and 1.5 % are 2.5 % of the product.
+    let modulus = hypothesis.tolerances()[3].std.unwrap();
+    assert!((modulus / (0.025 * 2e11) - 1.0).abs() < 1e-12, "{modulus}");
+}
+
+#[test]
+fn a_refit_finds_quantities_that_were_moved_within_their_tolerances() {
+    let mut truth = fixture();
+    for quantity in truth.quantities_mut() {
+        match quantity.path.as_str() {
+            "bodies/A/mass" => quantity.quantity.value += 0.002,
+            "joints/J/beam/youngs_modulus" => quantity.quantity.value += 6e9,
+            _ => {}
+        }
+    }
+    let observation = observation(&truth);
+    let start = Hypothesis::nominal(&fixture(), false);
+    let before = observation.chi2(&start.predict(&observation).unwrap());
+    let fit = Fit::of(&start, &observation, true).unwrap();
+    assert!(fit.chi2 < 1e-2 && before > 1e5, "chi2 {before:.0} to {:.3}", fit.chi2);
+    assert!((fit.hypothesis.departure(0) - 1.0).abs() < 0.1, "mass {}", fit.hypothesis.departure(0));
+    assert!((fit.hypothesis.departure(3) - 1.2).abs() < 0.1, "modulus {}", fit.hypothesis.departure(3));
+}
+
+#[test]
+fn an_effects_parameters_are_fitted_and_their_covariance_is_positive() {
+    let hidden = Effect::new(EffectKind::AddedMass, Place::Body("B".into()), None, &[0.11, 0.05]);
+    let truth = fixture().with_physics(vec![hidden]).unwrap();
+    let observation = observation(&truth);
+    let guess = Effect::new(EffectKind::AddedMass, Place::Body("B".into()), None, &[0.1, 0.02]);
+    let fit = Fit::of(&Hypothesis::nominal(&fixture(), false).with(guess), &observation, true).unwrap();
+    let found = &fit.hypothesis.effects()[0];
+    assert!((found.value(0) - 0.11).abs() < 1e-4 && (found.value(1) - 0.05).abs() < 1e-4, "{found:?}");
+    let covariance = fit.covariance(&observation).unwrap();
+    let n = fit.hypothesis.tolerances().len() + 2;
+    assert!((0..n).all(|m| covariance[m * n + m] > 0.0));
+}
+
+#[test]
+fn a_bounded_parameter_stops_at_its_bound_and_the_others_go_on() {
+    // The data want less loss than none: the loss factor stays at zero and the stiffness still gets its factor.
+    let mut truth = fixture();
+    for quantity in truth.quantities_mut().into_iter().filter(|q| q.path.starts_with("damping")) {
+        quantity.quantity.value = 0.0059;
+    }
+    let softer = Effect::new(EffectKind::StiffnessChange, Place::Joint("J".into()), None, &[0.8]);
+    let observation = observation(&truth.with_physics(vec![softer]).unwrap());
+    let start = Hypothesis::nominal(&fixture(), false)
+        .with(Effect::new(EffectKind::LossFactor, Place::Joint("J".into()), None, &[0.01]))
+        .with(Effect::new(EffectKind::StiffnessChange, Place::Joint("J".into()), None, &[0.85]));
+    let effects = Fit::of(&start, &observation, true).unwrap().hypothesis.effects();
+    assert!(effects[0].value(0) >= 0.0 && effects[0].value(0) < 1e-3, "{effects:?}");
+    assert!((effects[1].value(0) - 0.8).abs() < 0.02, "{effects:?}");
+}
+
+#[test]
+fn the_catalogue_has_every_linear_effect_that_the_fixture_can_have() {
+    let observation = observation(&fixture());
+    let candidates = catalogue(&fixture(), &observation);
+    for kind in EffectKind::ALL.into_iter().filter(|kind| !kind.is_nonlinear()) {
+        let mine: Vec<_> = candidates.iter().filter(|c| c.kind == kind).collect();
+        assert!(!mine.is_empty(), "{} is missing", kind.name());
+        for candidate in mine {
+            for start in 0..candidate.starts.len() {
+                let possible = fixture().with_physics(vec![candidate.effect(start)]);
+                assert!(possible.is_ok(), "{possible:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn an_observation_on_fewer_lines_and_frfs_keeps_the_noise_of_what_is_left() {
+    let all = observation(&fixture());
+    let fewer = all.reduced(|hz| hz > 600.0, |pair| pair.to_string() != "3/1").unwrap();
+    assert_eq!((fewer.pairs().len(), fewer.lines().len()), (3, 60));
+    assert_eq!(fewer.weights()[60], all.weights()[2 * 120 + 60]);
+    assert!(all.reduced(|_| false, |_| true).is_none() && all.reduced(|_| true, |_| false).is_none());
+}
