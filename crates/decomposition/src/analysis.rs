@@ -4,7 +4,6 @@ use crate::{
     ToleranceShare, ToleranceShares, decompose, interfaces, maximum_likelihood, tolerance_shares,
 };
 use jointscope_averaging::Band;
-use jointscope_beam::end_stiffness;
 use jointscope_fixture::{Fixture, JointLaw};
 use jointscope_frf::noise::{NoiseSource, with_variances};
 use jointscope_linalg::{ComplexMatrix2, Matrix2, RealMatrix2};
@@ -86,7 +85,7 @@ impl Analysis {
             Relation::Exact => spectrum.clone(),
             Relation::Paper => decompose(&frfs, &sides, Relation::Exact)?,
         };
-        let nominal_stiffness = nominal_of(&sides);
+        let nominal_stiffness = jointscope_lumped::nominal_stiffness(&sides.joint().law, sides.length());
         let likelihood = maximum_likelihood(&frfs, &sides, &exact, options.band, Some(nominal_stiffness));
         let model = match &likelihood {
             Ok(fit) => (fit.stiffness, fit.damping),
@@ -144,15 +143,6 @@ fn root_of_squares(shares: impl Iterator<Item = (RealMatrix2, RealMatrix2)>) -> 
         sums.1 = sums.1 + c.map(|e| e * e);
     }
     (sums.0.map(f64::sqrt), sums.1.map(f64::sqrt))
-}
-
-fn nominal_of(sides: &Sides) -> RealMatrix2 {
-    match &sides.joint().law {
-        JointLaw::Beam { youngs_modulus, second_moment } => {
-            end_stiffness(youngs_modulus.value * second_moment.value, sides.length())
-        }
-        JointLaw::Stiffness { stiffness: [a, b, d], .. } => Matrix2::new(a.value, b.value, b.value, d.value),
-    }
 }
 
 fn joint_interfaces(fit: &LikelihoodFit, sides: &Sides, tolerances: &[ToleranceShare]) -> Option<Interfaces> {

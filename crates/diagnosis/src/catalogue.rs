@@ -3,7 +3,7 @@
 use crate::Observation;
 use crate::hypothesis::extent;
 use jointscope_fixture::{BodyKind, Dof, Effect, EffectKind, Fixture, JointLaw, Place, RigidBody};
-use jointscope_linalg::RealMatrix2;
+use jointscope_lumped::nominal_stiffness;
 
 /// One kind of effect at one place (and dof): a name that a diagnosis can give, with starts for its parameters.
 #[derive(Debug, Clone)]
@@ -120,7 +120,7 @@ fn at_joints(fixture: &Fixture, observation: &Observation, all: &mut Vec<Candida
     for joint in fixture.joints() {
         let place = || Place::Joint(joint.name.clone());
         let length = fixture.joint_length(joint);
-        let stiffness = stiffness_of(&joint.law, length);
+        let stiffness = nominal_stiffness(&joint.law, length);
         let bends = stiffness.at(1, 1) > 0.0;
         for point in [joint.from, joint.to] {
             let ends = fixture.joints().iter().filter(|j| j.from == point || j.to == point).count();
@@ -153,23 +153,6 @@ fn at_joints(fixture: &Fixture, observation: &Observation, all: &mut Vec<Candida
         if bends {
             let lengths = [-0.1, -0.03, -0.01, 0.01, 0.03, 0.1].map(|s| vec![s * length.max(0.01)]).to_vec();
             all.push(candidate(EffectKind::JointLength, place(), None, lengths));
-        }
-    }
-}
-
-fn stiffness_of(law: &JointLaw, length: f64) -> RealMatrix2 {
-    match law {
-        JointLaw::Beam { youngs_modulus, second_moment } => {
-            let factor = youngs_modulus.value * second_moment.value / length.powi(3);
-            RealMatrix2::new(
-                12.0 * factor,
-                -6.0 * length * factor,
-                -6.0 * length * factor,
-                4.0 * length * length * factor,
-            )
-        }
-        JointLaw::Stiffness { stiffness: [a, b, d], .. } => {
-            RealMatrix2::new(a.value, b.value, b.value, d.value)
         }
     }
 }

@@ -194,7 +194,7 @@ fn attachments(fixture: &Fixture, body: usize) -> Vec<f64> {
 }
 
 /// Stiffness of a joint as the fixture states it, without effects, on d = u_to − R·u_from.
-pub(crate) fn nominal_stiffness(law: &JointLaw, length: f64) -> RealMatrix2 {
+pub fn nominal_stiffness(law: &JointLaw, length: f64) -> RealMatrix2 {
     match law {
         JointLaw::Beam { youngs_modulus, second_moment } => {
             end_stiffness(youngs_modulus.value * second_moment.value, length)

@@ -40,7 +40,7 @@ mod station;
 mod synthesis;
 mod terms;
 
-pub use assembly::Assembly;
+pub use assembly::{Assembly, nominal_stiffness};
 pub use model::{Model, Receptances};
 pub use station::Station;
 pub use synthesis::{Instrument, synthesize};
