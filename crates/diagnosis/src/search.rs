@@ -94,9 +94,19 @@ impl Search {
         let far = base.hypothesis.with_tolerances_of(&self.nominal.hypothesis);
         let scans = [
             Scan::about(base.hypothesis.clone(), observation, 0.0, true).map(|scan| (scan, false)),
-            Scan::about(far, observation, 0.1, true).map(|scan| (scan, true)),
+            Scan::about(far.clone(), observation, 0.1, true).map(|scan| (scan, true)),
         ];
-        self.fitted(base, self.shortlist(base, scans.into_iter().flatten(), observation), observation)
+        let mut shortlist = self.shortlist(base, scans.into_iter().flatten(), observation);
+        // Where an effect moves peaks by many widths no scan is to be trusted: everybody gets one fit from afar.
+        if let Some(scan) = Scan::about(far, observation, 0.3, false) {
+            let starts = self.starts(base);
+            for (c, effect) in self.everybody(&starts, &scan.scores(&starts, &self.candidates, observation)) {
+                if !shortlist.iter().any(|(other, _, from_nominal)| *other == c && *from_nominal) {
+                    shortlist.push((c, effect, true));
+                }
+            }
+        }
+        self.fitted(base, shortlist, observation)
     }
 
     /// As [`Search::ranked`], for a `base` whose quantities stand already where the effect that is looked for would leave
@@ -137,16 +147,10 @@ impl Search {
         scans: impl Iterator<Item = (Scan, bool)>,
         observation: &Observation,
     ) -> Vec<(usize, Effect, bool)> {
-        let starts: Vec<(usize, usize)> = (0..self.candidates.len())
-            .filter(|&c| !base.hypothesis.effects().iter().any(|e| self.candidates[c].names(e)))
-            .flat_map(|c| (0..self.candidates[c].starts.len()).map(move |s| (c, s)))
-            .collect();
+        let starts = self.starts(base);
         let mut chosen: Vec<(usize, Effect, bool)> = Vec::new();
         for (scan, from_nominal) in scans {
-            let scores: Vec<f64> = starts
-                .par_iter()
-                .map(|&(c, s)| scan.score(self.candidates[c].effect(s), observation))
-                .collect();
+            let scores = scan.scores(&starts, &self.candidates, observation);
             chosen.extend(
                 self.promising(&scan, &starts, &scores, observation)
                     .into_iter()
@@ -154,6 +158,28 @@ impl Search {
             );
         }
         chosen
+    }
+
+    /// (candidate, start) of everything that `base` does not have yet.
+    fn starts(&self, base: &Fit) -> Vec<(usize, usize)> {
+        let effects = base.hypothesis.effects();
+        (0..self.candidates.len())
+            .filter(|&c| !effects.iter().any(|e| self.candidates[c].names(e)))
+            .flat_map(|c| (0..self.candidates[c].starts.len()).map(move |s| (c, s)))
+            .collect()
+    }
+
+    /// The best start of every candidate.
+    fn everybody(&self, starts: &[(usize, usize)], scores: &[f64]) -> Vec<(usize, Effect)> {
+        let mut best: Vec<Option<(f64, usize)>> = vec![None; self.candidates.len()];
+        for (&(c, s), &score) in starts.iter().zip(scores) {
+            if best[c].is_none_or(|(lowest, _)| score < lowest) {
+                best[c] = Some((score, s));
+            }
+        }
+        let effect =
+            |(c, best): (usize, Option<(f64, usize)>)| best.map(|(_, s)| (c, self.candidates[c].effect(s)));
+        best.into_iter().enumerate().filter_map(effect).collect()
     }
 
     /// The best starts of the best candidates of a scan, polished: several for those in front, whose fits may end in
@@ -270,6 +296,16 @@ impl Scan {
         let zero = vec![Complex64::ZERO; predicted.len()];
         let (matrix, _) = linear.normal(&base, &weights, &zero);
         Some(Scan { base, linear, weights, matrix })
+    }
+
+    /// The score of each start.
+    fn scores(
+        &self,
+        starts: &[(usize, usize)],
+        candidates: &[Candidate],
+        observation: &Observation,
+    ) -> Vec<f64> {
+        starts.par_iter().map(|&(c, s)| self.score(candidates[c].effect(s), observation)).collect()
     }
 
     /// The objective with `effect` added and everything else at its linear best.
