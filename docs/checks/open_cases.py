@@ -115,7 +115,8 @@ def run(program, case, joint, scores, at_truth):
     cells, truths = [], {"stiffness": joint_stiffness(fixture, joint), "damping": joint_damping(fixture, joint)}
     for i, j in ELEMENTS[:1] if scalar else ELEMENTS:
         for part in ("stiffness", "damping"):
-            std = np.hypot(fit["std"][part][i][j], fit["std_fixture"][part][i][j])
+            parts = ("std", "std_fixture", "std_model")
+            std = float(np.linalg.norm([fit[name][part][i][j] for name in parts]))
             value = fit[part][i][j]
             if part == "stiffness":
                 cells.append(f"{text(value, std)} ({truths[part][i, j]:.4g})")
