@@ -1,10 +1,12 @@
 //! The built program on files: what `synthesize` writes, and what it refuses.
 #![allow(clippy::unwrap_used)] // helpers of tests fail as tests do
 
-use std::fs;
-use std::path::PathBuf;
-use std::process::{Command, Output, Stdio};
+mod common;
 
+use std::fs;
+use std::process::{Command, Stdio};
+
+use common::Bench;
 use jointscope_uff::{Abscissa, Data, Encoding, FunctionType};
 
 const FIXTURE: &str = r#"{
@@ -22,63 +24,11 @@ const FIXTURE: &str = r#"{
   "physics": [ { "kind": "channel_gain", "place": "response 4", "factor": -2.0 } ]
 }"#;
 
-/// A directory of its own with a fixture in it, removed afterwards.
-struct Bench(PathBuf);
-
-impl Bench {
-    fn new(name: &str, fixture: &str) -> Self {
-        let path = std::env::temp_dir().join(format!("jointscope-synthesize-{name}-{}", std::process::id()));
-        let _ = fs::remove_dir_all(&path);
-        fs::create_dir_all(&path).unwrap();
-        fs::write(path.join("two.json"), fixture).unwrap();
-        Bench(path)
-    }
-
-    fn run(&self, arguments: &[&str]) -> Output {
-        Command::new(env!("CARGO_BIN_EXE_jointscope")).args(arguments).current_dir(&self.0).output().unwrap()
-    }
-
-    fn done(&self, arguments: &[&str]) -> String {
-        let output = self.run(arguments);
-        let complaint = String::from_utf8_lossy(&output.stderr);
-        assert_eq!(output.status.code(), Some(0), "{arguments:?}: {complaint}");
-        assert!(complaint.is_empty(), "{complaint}");
-        String::from_utf8(output.stdout).unwrap()
-    }
-
-    /// The program must refuse in one sentence that holds every part, and leave the directory as it was.
-    #[track_caller]
-    fn refused(&self, arguments: &[&str], parts: &[&str]) {
-        let before = self.names();
-        let output = self.run(arguments);
-        let complaint = String::from_utf8(output.stderr).unwrap();
-        assert_eq!(output.status.code(), Some(2), "{arguments:?}: {complaint}");
-        assert!(output.stdout.is_empty(), "{arguments:?} printed to standard output");
-        assert!(complaint.starts_with("jointscope: "), "{complaint}");
-        assert_eq!(complaint.trim_end().lines().count(), 1, "one sentence: {complaint}");
-        for part in parts {
-            assert!(complaint.contains(part), "`{part}` is missing from: {complaint}");
-        }
-        assert_eq!(self.names(), before, "{arguments:?} left something behind");
-    }
-
-    fn names(&self) -> Vec<String> {
-        let entries = fs::read_dir(&self.0).unwrap();
-        let mut names: Vec<_> =
-            entries.map(|entry| entry.unwrap().file_name().to_string_lossy().into_owned()).collect();
-        names.sort();
-        names
-    }
-
-    fn frfs(&self, name: &str) -> Vec<jointscope_uff::Dataset58> {
-        jointscope_uff::read(&fs::read(self.0.join(name)).unwrap()).unwrap().datasets
-    }
-}
-
-impl Drop for Bench {
-    fn drop(&mut self) {
-        let _ = fs::remove_dir_all(&self.0);
-    }
+/// A directory with a fixture, `two.json`, in it.
+fn bench(name: &str, fixture: &str) -> Bench {
+    let bench = Bench::new(&format!("synthesize-{name}"));
+    bench.write("two.json", fixture);
+    bench
 }
 
 /// Real and imaginary part.
@@ -91,13 +41,13 @@ fn value(dataset: &jointscope_uff::Dataset58, line: usize) -> (f64, f64) {
 
 #[test]
 fn the_default_is_four_frfs_across_the_joint_on_four_hundred_lines() {
-    let bench = Bench::new("default", FIXTURE);
+    let bench = bench("default", FIXTURE);
     let summary = bench.done(&["synthesize", "two.json", "-o", "frf.uff"]);
     assert!(
         summary.starts_with("frf.uff: FRFs 4/1, 3/1, 4/2, 3/2 on 400 lines, 2.5 to 1000 Hz"),
         "{summary}"
     );
-    let frfs = bench.frfs("frf.uff");
+    let frfs = bench.datasets("frf.uff");
     let nodes: Vec<_> = frfs.iter().map(|frf| (frf.response.number, frf.reference.number)).collect();
     assert_eq!(nodes, [(4, 1), (3, 1), (4, 2), (3, 2)]);
     for frf in &frfs {
@@ -111,23 +61,23 @@ fn the_default_is_four_frfs_across_the_joint_on_four_hundred_lines() {
 
 #[test]
 fn rigid_body_lines_come_out_in_closed_form() {
-    let bench = Bench::new("closed-form", FIXTURE);
+    let bench = bench("closed-form", FIXTURE);
     bench.done(&["synthesize", "two.json", "--perfect", "--frf", "1/1", "--lines", "0:1:0.5", "-o", "f.uff"]);
     // At 0 Hz the two blocks move as one body: 1/M + (x − x_cg)²/I.
     let (mass, x_cg) = (2.2_f64, 0.0325_f64);
     let inertia = 2.0 * (9.5e-4 + 1.1 * 0.0625_f64.powi(2));
     let expected = 1.0 / mass + (-0.06 - x_cg).powi(2) / inertia;
-    let (re, im) = value(&bench.frfs("f.uff")[0], 0);
+    let (re, im) = value(&bench.datasets("f.uff")[0], 0);
     assert!((re - expected).abs() < 1e-6 * expected, "at 0 Hz: expected {expected}, got {re}");
     assert!(im.abs() < 1e-6 * expected, "at 0 Hz the accelerance is real: {im}");
 }
 
 #[test]
 fn a_perfect_instrument_leaves_out_the_effects_of_the_channels() {
-    let bench = Bench::new("perfect", FIXTURE);
+    let bench = bench("perfect", FIXTURE);
     bench.done(&["synthesize", "two.json", "-o", "recorded.uff"]);
     bench.done(&["synthesize", "two.json", "--perfect", "-o", "perfect.uff"]);
-    let (recorded, perfect) = (bench.frfs("recorded.uff"), bench.frfs("perfect.uff"));
+    let (recorded, perfect) = (bench.datasets("recorded.uff"), bench.datasets("perfect.uff"));
     for (frf, factor) in [(0, -2.0), (1, 1.0)] {
         let ((a, _), (b, _)) = (value(&recorded[frf], 100), value(&perfect[frf], 100));
         assert!((a - factor * b).abs() <= 1e-12 * a.abs(), "FRF {frf}: {a} is not {factor} times {b}");
@@ -136,11 +86,11 @@ fn a_perfect_instrument_leaves_out_the_effects_of_the_channels() {
 
 #[test]
 fn text_and_binary_hold_the_same_frfs() {
-    let bench = Bench::new("ascii", FIXTURE);
+    let bench = bench("ascii", FIXTURE);
     let frfs = ["--frf", "4:theta/1", "3/2", "--lines", "10:500:0.25"];
     bench.done(&[["synthesize", "two.json", "-o", "b.uff"].as_slice(), &frfs].concat());
     bench.done(&[["synthesize", "two.json", "--ascii", "-o", "a.uff"].as_slice(), &frfs].concat());
-    let (binary, text) = (bench.frfs("b.uff"), bench.frfs("a.uff"));
+    let (binary, text) = (bench.datasets("b.uff"), bench.datasets("a.uff"));
     assert_eq!((binary[0].response.direction, binary[0].reference.direction), (6, 2));
     for (binary, text) in binary.iter().zip(&text) {
         assert_eq!((&text.encoding, &text.abscissa), (&Encoding::Ascii, &binary.abscissa));
@@ -153,14 +103,14 @@ fn text_and_binary_hold_the_same_frfs() {
 
 #[test]
 fn the_output_may_lie_in_a_directory_that_does_not_exist_yet() {
-    let bench = Bench::new("directory", FIXTURE);
+    let bench = bench("directory", FIXTURE);
     bench.done(&["synthesize", "two.json", "-o", "new/deep/f.uff"]);
-    assert_eq!(bench.frfs("new/deep/f.uff").len(), 4);
+    assert_eq!(bench.datasets("new/deep/f.uff").len(), 4);
 }
 
 #[test]
 fn a_missing_fixture_is_named() {
-    let bench = Bench::new("missing", FIXTURE);
+    let bench = bench("missing", FIXTURE);
     bench.refused(&["synthesize", "three.json", "-o", "f.uff"], &["three.json", "no such file"]);
     bench.refused(&["synthesize", ".", "-o", "f.uff"], &["directory"]);
 }
@@ -168,7 +118,7 @@ fn a_missing_fixture_is_named() {
 #[test]
 fn a_bad_fixture_names_file_place_and_remedy() {
     let check = |name: &str, from: &str, to: &str, parts: &[&str]| {
-        let bench = Bench::new(name, &FIXTURE.replacen(from, to, 1));
+        let bench = bench(name, &FIXTURE.replacen(from, to, 1));
         bench.refused(&["synthesize", "two.json", "-o", "f.uff"], parts);
     };
     check("typo", "\"inertia\"", "\"innertia\"", &["two.json: bodies/A", "did you mean `inertia`?"]);
@@ -178,7 +128,7 @@ fn a_bad_fixture_names_file_place_and_remedy() {
 
 #[test]
 fn an_unknown_point_is_named_with_the_points_there_are() {
-    let bench = Bench::new("point", FIXTURE);
+    let bench = bench("point", FIXTURE);
     bench.refused(
         &["synthesize", "two.json", "--frf", "9/1", "-o", "f.uff"],
         &["two.json: FRF 9/1", "`9`", "1, 2, 3, 4"],
@@ -188,7 +138,7 @@ fn an_unknown_point_is_named_with_the_points_there_are() {
 #[test]
 fn a_fixture_without_the_default_points_is_told_to_choose_frfs() {
     let fixture = FIXTURE.replace("\"4\":", "\"40\":").replace("response 4", "response 40");
-    let bench = Bench::new("default-points", &fixture);
+    let bench = bench("default-points", &fixture);
     bench.refused(&["synthesize", "two.json", "-o", "f.uff"], &["two.json", "1, 2, 3, 40", "`--frf 40/1`"]);
     bench.done(&["synthesize", "two.json", "--frf", "40/1", "-o", "f.uff"]);
 }
@@ -196,13 +146,13 @@ fn a_fixture_without_the_default_points_is_told_to_choose_frfs() {
 #[test]
 fn a_point_that_is_no_node_number_cannot_be_written() {
     let fixture = FIXTURE.replace("\"4\":", "\"tip\":").replace("response 4", "response tip");
-    let bench = Bench::new("tip", &fixture);
+    let bench = bench("tip", &fixture);
     bench.refused(&["synthesize", "two.json", "--frf", "tip/1", "-o", "f.uff"], &["`tip`", "whole numbers"]);
 }
 
 #[test]
 fn bad_arguments_are_refused_in_one_sentence() {
-    let bench = Bench::new("usage", FIXTURE);
+    let bench = bench("usage", FIXTURE);
     let check = |arguments: &[&str], parts: &[&str]| bench.refused(arguments, parts);
     check(&[], &["no command", "--help"]);
     check(&["synthesise"], &["synthesise", "synthesize"]);
@@ -216,7 +166,7 @@ fn bad_arguments_are_refused_in_one_sentence() {
 
 #[test]
 fn neither_inputs_nor_directories_are_overwritten() {
-    let bench = Bench::new("overwrite", FIXTURE);
+    let bench = bench("overwrite", FIXTURE);
     bench.refused(&["synthesize", "two.json", "-o", "two.json"], &["two.json", "overwritten"]);
     bench.refused(&["synthesize", "two.json", "-o", "."], &["directory"]);
     bench.refused(&["synthesize", "two.json", "-o", "two.json/f.uff"], &["two.json/f.uff"]);
@@ -225,7 +175,7 @@ fn neither_inputs_nor_directories_are_overwritten() {
 
 #[test]
 fn a_refusal_leaves_an_earlier_result_as_it_was() {
-    let bench = Bench::new("earlier", FIXTURE);
+    let bench = bench("earlier", FIXTURE);
     bench.done(&["synthesize", "two.json", "-o", "f.uff"]);
     let before = fs::read(bench.0.join("f.uff")).unwrap();
     bench.refused(&["synthesize", "two.json", "--frf", "9/1", "-o", "f.uff"], &["9/1"]);
@@ -234,7 +184,7 @@ fn a_refusal_leaves_an_earlier_result_as_it_was() {
 
 #[test]
 fn help_and_version_are_no_errors() {
-    let bench = Bench::new("help", FIXTURE);
+    let bench = bench("help", FIXTURE);
     assert!(bench.done(&["--help"]).contains("synthesize"));
     assert!(bench.done(&["synthesize", "--help"]).contains("FROM:TO:STEP"));
     assert!(bench.done(&["--version"]).starts_with("jointscope "));
@@ -242,7 +192,7 @@ fn help_and_version_are_no_errors() {
 
 #[test]
 fn a_reader_that_has_gone_away_is_no_panic() {
-    let bench = Bench::new("pipe", FIXTURE);
+    let bench = bench("pipe", FIXTURE);
     let mut child = Command::new(env!("CARGO_BIN_EXE_jointscope"))
         .args(["synthesize", "two.json", "-o", "f.uff"])
         .current_dir(&bench.0)

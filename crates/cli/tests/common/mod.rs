@@ -71,9 +71,23 @@ impl Bench {
         serde_json::from_str(&self.text(name)).unwrap()
     }
 
+    /// Names of what the directory itself holds, in order.
+    pub fn names(&self) -> Vec<String> {
+        let entries = fs::read_dir(&self.0).unwrap();
+        let mut names: Vec<_> =
+            entries.map(|entry| entry.unwrap().file_name().to_string_lossy().into_owned()).collect();
+        names.sort();
+        names
+    }
+
+    /// The functions of a universal file.
+    pub fn datasets(&self, name: &str) -> Vec<Dataset58> {
+        jointscope_uff::read(&fs::read(self.0.join(name)).unwrap()).unwrap().datasets
+    }
+
     /// Writes the functions of `from`, changed, to `to`.
     pub fn rewrite(&self, from: &str, to: &str, change: impl FnOnce(&mut Vec<Dataset58>)) {
-        let mut datasets = jointscope_uff::read(&fs::read(self.0.join(from)).unwrap()).unwrap().datasets;
+        let mut datasets = self.datasets(from);
         change(&mut datasets);
         self.write(to, jointscope_uff::write(&datasets).unwrap());
     }
