@@ -107,7 +107,7 @@ pub enum DiagnosisError {
     Lines(#[from] SpectraError),
     /// The fixture predicts nothing finite.
     #[error("the fixture's model predicts no finite FRFs: {0}")]
-    Model(#[from] jointscope_lumped::LumpedError),
+    Model(#[from] crate::PredictionError),
     /// An FRF to be held out is not there, or nothing would be left.
     #[error("FRF {0} cannot be held out: the recording does not have it, or has nothing else")]
     HoldOut(String),

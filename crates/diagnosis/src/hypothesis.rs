@@ -4,6 +4,17 @@ use jointscope_linalg::solve_positive_definite;
 use jointscope_lumped::{Instrument, LumpedError, synthesize};
 use num_complex::Complex64;
 
+/// Why a hypothesis predicts nothing.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum PredictionError {
+    /// Its quantities or parameters are impossible.
+    #[error(transparent)]
+    Fixture(#[from] FixtureError),
+    /// Its model has no finite FRFs.
+    #[error(transparent)]
+    Model(#[from] LumpedError),
+}
+
 /// A quantity of the fixture that a fit may move.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Tolerance {
@@ -188,8 +199,11 @@ impl Hypothesis {
     }
 
     /// The accelerances this hypothesis predicts for an observation, as its instruments would record them.
-    pub fn predict(&self, observation: &Observation) -> Result<Vec<Complex64>, LumpedError> {
-        let fixture = self.to_fixture().map_err(|_| LumpedError::Unbounded { frequency: 0.0 })?;
+    ///
+    /// # Errors
+    /// Impossible quantities, or a model without finite FRFs.
+    pub fn predict(&self, observation: &Observation) -> Result<Vec<Complex64>, PredictionError> {
+        let fixture = self.to_fixture()?;
         let frfs = synthesize(&fixture, observation.pairs(), observation.lines(), Instrument::AsRecorded)?;
         Ok(frfs.all_values().to_vec())
     }

@@ -37,6 +37,6 @@ pub use diagnosis::{
 };
 pub use evidence::{Alternative, alternatives};
 pub use fit::{Fit, Linearisation};
-pub use hypothesis::{Hypothesis, Tolerance};
+pub use hypothesis::{Hypothesis, PredictionError, Tolerance};
 pub use observation::Observation;
 pub use search::Search;
