@@ -1,5 +1,6 @@
 use crate::evidence::{Alternative, alternatives, excess, same_names};
 use crate::fit::Fit;
+use crate::location::Location;
 use crate::search::Search;
 use crate::{Hypothesis, Observation};
 use jointscope_fixture::{Dof, Effect, Fixture, ParameterSpec};
@@ -60,6 +61,9 @@ pub struct Finding {
     pub alternatives: Vec<(Effect, f64)>,
     /// What χ² and priors lose without it.
     pub gain: f64,
+    /// Its place with one free scalar a line in its stead, beside the other findings: the measured δ(ω) that its law has to follow. `None`
+    /// where its place is not of rank one.
+    pub measured: Option<Location>,
 }
 
 /// How one FRF disagrees with the refitted fixture.
@@ -128,6 +132,9 @@ pub struct Diagnosis {
     pub mismatch: Vec<FrfMismatch>,
     /// What was found, the strongest first.
     pub findings: Vec<Finding>,
+    /// What each place leaves unexplained of the refitted fixture's mismatch with one free scalar a line, the best place first. Empty where
+    /// there is no mismatch.
+    pub locations: Vec<Location>,
     /// The judgement on what no fit saw.
     pub held_out: Option<HeldOut>,
     /// Correlation of neighbouring lines' residuals of the repaired model: near zero if they are white.
@@ -166,6 +173,7 @@ impl Diagnosis {
             mismatch: mismatch(&observation, &search.refitted.predicted),
             residual_correlation: correlation(&observation, &search.repaired.predicted),
             findings,
+            locations: Vec::new(),
             held_out,
             search,
             observation,
@@ -225,6 +233,7 @@ fn findings(search: &Search, observation: &Observation) -> Vec<Finding> {
                 probability: names.iter().find(|a| own(a)).map_or(0.0, |a| a.probability),
                 alternatives: names.iter().filter(|a| !own(a)).filter_map(named).collect(),
                 gain: without.map_or(0.0, |fit| fit.objective - repaired.objective),
+                measured: None,
             }
         })
         .collect();

@@ -28,6 +28,7 @@ mod diagnosis;
 mod evidence;
 mod fit;
 mod hypothesis;
+mod location;
 mod observation;
 mod search;
 
@@ -38,5 +39,6 @@ pub use diagnosis::{
 pub use evidence::{Alternative, alternatives};
 pub use fit::{Fit, Linearisation};
 pub use hypothesis::{Hypothesis, PredictionError, Tolerance};
+pub use location::{LineEstimate, Location, Site};
 pub use observation::Observation;
 pub use search::Search;
