@@ -123,10 +123,17 @@ impl Assembly {
 
     /// The station's participation in each mode, Ξᵀ t.
     pub fn participation(&self, station: &Station) -> Vec<f64> {
+        let mut all = vec![0.0; self.order];
+        self.add_participation(station, 1.0, &mut all);
+        all
+    }
+
+    /// Adds `weight` times the station's participation in each mode to `all`.
+    pub(crate) fn add_participation(&self, station: &Station, weight: f64, all: &mut [f64]) {
         let row = self.station_row(station);
-        (0..self.order)
-            .map(|r| self.basis.shape(r).iter().zip(&row).map(|(shape, t)| shape * t).sum())
-            .collect()
+        for (r, value) in all.iter_mut().enumerate() {
+            *value += weight * self.basis.shape(r).iter().zip(&row).map(|(shape, t)| shape * t).sum::<f64>();
+        }
     }
 }
 

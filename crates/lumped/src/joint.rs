@@ -111,22 +111,28 @@ impl JointDynamics {
         self.altered
     }
 
-    /// The part that the modes of the free assembly hold: k(1 + iη) of the fixture, without its viscous damping.
-    pub fn in_the_modes(&self) -> TwoEnds {
-        let factor = Complex64::new(1.0, self.base_loss);
-        TwoEnds::from_end(self.nominal.to_complex().scale(factor), self.length)
+    /// Whether mass of its own keeps it from being a stiffness on the relative motion of its ends alone.
+    pub fn is_heavy(&self) -> bool {
+        self.mass != 0.0
     }
 
-    /// The dynamic stiffness at s = iω (or decay + iω), effects included.
-    pub fn at(&self, s: Complex64) -> TwoEnds {
+    /// The length over which its far end's motion is compared with its near end's: with what an effect adds, or as the modes have it.
+    pub fn lengths(&self) -> (f64, f64) {
+        (self.length + self.extra_length, self.length)
+    }
+
+    /// The part that the modes of the free assembly hold: k(1 + iη) of the fixture on d, without its viscous damping.
+    pub fn in_the_modes(&self) -> ComplexMatrix2 {
+        self.nominal.to_complex().scale(Complex64::new(1.0, self.base_loss))
+    }
+
+    /// The stiffness at s = iω (or decay + iω) on d = u_to − R·u_from of a joint without mass, effects included.
+    pub fn on_relative_motion(&self, s: Complex64) -> ComplexMatrix2 {
         let length = self.length + self.extra_length;
         let modulus = self.modulus(s);
-        if self.mass != 0.0 && self.bending_stiffness.is_some() && length > 0.0 {
-            return self.heavy_beam(s, length, modulus);
-        }
         let elastic = match self.bending_stiffness {
-            Some(bending) => jointscope_beam::end_stiffness(bending, length),
-            None => self.nominal,
+            Some(bending) if self.extra_length != 0.0 => jointscope_beam::end_stiffness(bending, length),
+            _ => self.nominal,
         };
         let mut stiffness = elastic.to_complex().scale(modulus);
         if let Some(dashpots) = self.dashpots {
@@ -143,7 +149,16 @@ impl JointDynamics {
             };
             stiffness = in_series(stiffness, direction, interface.stiffness + s * interface.damping);
         }
-        let mut ends = TwoEnds::from_end(stiffness, length);
+        stiffness
+    }
+
+    /// The dynamic stiffness at s = iω (or decay + iω) on the motions of both ends, effects and mass included.
+    pub fn on_both_ends(&self, s: Complex64) -> TwoEnds {
+        let length = self.length + self.extra_length;
+        if self.mass != 0.0 && self.bending_stiffness.is_some() && length > 0.0 {
+            return self.heavy_beam(s, length, self.modulus(s));
+        }
+        let mut ends = TwoEnds::from_end(self.on_relative_motion(s), length);
         if self.mass != 0.0 {
             ends.add_half_masses(s * s * (0.5 * self.mass));
         }
@@ -291,7 +306,7 @@ mod tests {
             {"kind": "interface_compliance", "place": "3", "dof": "translation", "stiffness": 8e6},
             {"kind": "loss_factor", "place": "J", "loss_factor": 0.05}, {"kind": "joint_length", "place": "J", "dx": 0.002}"#;
         let heavy = format!(r#"{others}, {{"kind": "joint_mass", "place": "J", "mass": 1e-12}}"#);
-        let error = largest_difference(dynamics(others).at(s), dynamics(&heavy).at(s));
+        let error = largest_difference(dynamics(others).on_both_ends(s), dynamics(&heavy).on_both_ends(s));
         assert!(error < 1e-9, "{error}");
     }
 
@@ -303,7 +318,7 @@ mod tests {
         let joint = dynamics(r#"{"kind": "joint_mass", "place": "J", "mass": 0.2}"#);
         let z: f64 = 1.2;
         let omega = (z / length).powi(2) * (ei / (mass / length)).sqrt();
-        let found = joint.at(Complex64::new(0.0, omega)).near.inverse().unwrap().at(0, 0);
+        let found = joint.on_both_ends(Complex64::new(0.0, omega)).near.inverse().unwrap().at(0, 0);
         let expected = length.powi(3) / (ei * z.powi(3)) * (z.cosh() * z.sin() - z.sinh() * z.cos())
             / (1.0 + z.cos() * z.cosh());
         assert!((found.re / expected - 1.0).abs() < 1e-5, "{found} against {expected}");
@@ -312,12 +327,13 @@ mod tests {
     #[test]
     fn shear_reads_the_same_as_a_translation_spring_at_either_end() {
         let s = Complex64::new(0.0, 2000.0);
-        let shear = dynamics(r#"{"kind": "shear_deformation", "place": "J", "shear_stiffness": 6e4}"#).at(s);
+        let shear = dynamics(r#"{"kind": "shear_deformation", "place": "J", "shear_stiffness": 6e4}"#)
+            .on_both_ends(s);
         for point in ["2", "3"] {
             let spring = dynamics(&format!(
                 r#"{{"kind": "interface_compliance", "place": "{point}", "dof": "translation", "stiffness": 1e6}}"#
             ));
-            assert!(largest_difference(shear, spring.at(s)) < 1e-12);
+            assert!(largest_difference(shear, spring.on_both_ends(s)) < 1e-12);
         }
     }
 
@@ -325,7 +341,7 @@ mod tests {
     fn relaxation_stiffens_from_its_static_to_its_instantaneous_value() {
         let joint = dynamics(r#"{"kind": "relaxation", "place": "J", "ratio": 0.6, "time": 1e-4}"#);
         let nominal = joint.nominal.at(0, 0);
-        let ratio = |omega: f64| joint.at(Complex64::new(0.0, omega)).far.at(0, 0) / nominal;
+        let ratio = |omega: f64| joint.on_both_ends(Complex64::new(0.0, omega)).far.at(0, 0) / nominal;
         assert!((ratio(1e-3) - 1.0).norm() < 1e-6 && (ratio(1e9) - 1.6).norm() < 1e-4);
         // At ωτ = 1 the loss is half of the ratio.
         assert!((ratio(1e4) - Complex64::new(1.3, 0.3)).norm() < 1e-12);
@@ -337,7 +353,7 @@ mod tests {
         let joint = dynamics(
             r#"{"kind": "interface_compliance", "place": "2", "dof": "rotation", "stiffness": 5e3}"#,
         );
-        let with = joint.at(s).far.inverse().unwrap();
+        let with = joint.on_both_ends(s).far.inverse().unwrap();
         let without = joint.nominal.inverse().unwrap();
         let l = 0.06;
         let expected = [[l * l / 5e3, l / 5e3], [l / 5e3, 1.0 / 5e3]];

@@ -34,6 +34,7 @@
 mod assembly;
 mod bar;
 mod joint;
+mod joint_element;
 mod mesh;
 mod model;
 mod station;
@@ -41,6 +42,7 @@ mod synthesis;
 mod terms;
 
 pub use assembly::{Assembly, nominal_stiffness};
+pub use joint_element::JointElement;
 pub use model::{Model, Receptances};
 pub use station::Station;
 pub use synthesis::{Instrument, synthesize};

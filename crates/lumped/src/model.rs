@@ -77,16 +77,19 @@ impl Model {
     }
 
     fn participation(&self, station: &TermStation) -> Vec<f64> {
-        let TermStation { station, rigid_only } = station;
-        let mut all = self.assembly.participation(station);
-        all.extend(self.bending.iter().map(|mode| {
-            if *rigid_only || mode.body != station.body {
-                return 0.0;
+        let mut all = vec![0.0; self.assembly.order() + self.bending.len()];
+        for (weight, part) in station.parts() {
+            let (modes, bending) = all.split_at_mut(self.assembly.order());
+            self.assembly.add_participation(part, *weight, modes);
+            for (value, mode) in bending.iter_mut().zip(&self.bending) {
+                if station.rigid_only || mode.body != part.body {
+                    continue;
+                }
+                let (deflection, slope) = mode.shape.at(part.x);
+                let motion = if part.dof == Dof::Translation { deflection } else { slope };
+                *value += weight * motion / mode.modal_mass.sqrt();
             }
-            let (deflection, slope) = mode.shape.at(station.x);
-            let motion = if station.dof == Dof::Translation { deflection } else { slope };
-            motion / mode.modal_mass.sqrt()
-        }));
+        }
         all
     }
 
@@ -132,9 +135,10 @@ pub struct Receptances<'a> {
     pairs: Vec<(usize, usize)>,
     outputs: usize,
     inputs: usize,
-    /// Products of participations, one row over the denominators for each needed entry of G.
+    /// Products of participations, one row over the needed entries of G for each denominator.
     products: Vec<f64>,
-    inverse: Vec<Complex64>,
+    /// Real and imaginary parts of the sums, as contiguous rows that the processor adds two or four at a time.
+    parts: [Vec<f64>; 2],
     sums: Vec<Complex64>,
     delta: Vec<Complex64>,
     right: Vec<Complex64>,
@@ -143,18 +147,19 @@ pub struct Receptances<'a> {
 
 impl<'a> Receptances<'a> {
     fn new(model: &'a Model, outputs: &[Station], inputs: &[Station], pairs: Vec<(usize, usize)>) -> Self {
-        let with_bending = |s: &Station| model.participation(&TermStation { station: *s, rigid_only: false });
+        let with_bending = |s: &Station| model.participation(&TermStation::single(*s));
         let out: Vec<Vec<f64>> = outputs.iter().map(with_bending).collect();
         let input: Vec<Vec<f64>> = inputs.iter().map(with_bending).collect();
         let change: Vec<Vec<f64>> = model.terms.stations.iter().map(|s| model.participation(s)).collect();
         let (denominators, group) = merge(&model.denominators());
-        let mut products = Vec::new();
+        let count = pairs.len() + change.len() * (out.len() + change.len() + input.len());
+        let mut products = vec![0.0; count * denominators.len()];
+        let mut next = 0;
         let mut entry = |a: &[f64], b: &[f64]| {
-            let start = products.len();
-            products.resize(start + denominators.len(), 0.0);
             for (mode, (x, y)) in a.iter().zip(b).enumerate() {
-                products[start + group[mode]] += x * y;
+                products[group[mode] * count + next] += x * y;
             }
+            next += 1;
         };
         // The order of the entries: wanted pairs, then G_oV, G_VV, G_Vi where there is a change.
         pairs.iter().for_each(|&(o, i)| entry(&out[o], &input[i]));
@@ -163,12 +168,11 @@ impl<'a> Receptances<'a> {
             change.iter().for_each(|v| change.iter().for_each(|w| entry(v, w)));
             change.iter().for_each(|v| input.iter().for_each(|i| entry(v, i)));
         }
-        let entries = products.len() / denominators.len();
         let rank = change.len();
         Receptances {
             terms: &model.terms,
-            inverse: vec![Complex64::ZERO; denominators.len()],
-            sums: vec![Complex64::ZERO; entries],
+            parts: [vec![0.0; count], vec![0.0; count]],
+            sums: vec![Complex64::ZERO; count],
             delta: vec![Complex64::ZERO; rank * rank],
             right: vec![Complex64::ZERO; rank * inputs.len()],
             lu: LuWorkspace::new(),
@@ -190,17 +194,19 @@ impl<'a> Receptances<'a> {
     /// Returns whether they are finite; they are not on an undamped resonance, nor at s = 0 of a free assembly.
     pub fn at(&mut self, s: Complex64, values: &mut [Complex64]) -> bool {
         let squared = s * s;
-        for (inverse, denominator) in self.inverse.iter_mut().zip(&self.denominators) {
+        let [re, im] = &mut self.parts;
+        re.fill(0.0);
+        im.fill(0.0);
+        for (row, denominator) in self.products.chunks_exact(re.len()).zip(&self.denominators) {
             let value = denominator.stiffness + s * denominator.viscous + squared;
-            *inverse = value.conj() * (1.0 / value.norm_sqr());
-        }
-        for (sum, row) in self.sums.iter_mut().zip(self.products.chunks_exact(self.inverse.len())) {
-            let (mut re, mut im) = (0.0, 0.0);
-            for (product, inverse) in row.iter().zip(&self.inverse) {
-                re += product * inverse.re;
-                im += product * inverse.im;
+            let inverse = value.conj() * (1.0 / value.norm_sqr());
+            for ((re, im), product) in re.iter_mut().zip(im.iter_mut()).zip(row) {
+                *re += product * inverse.re;
+                *im += product * inverse.im;
             }
-            *sum = Complex64::new(re, im);
+        }
+        for ((sum, re), im) in self.sums.iter_mut().zip(re).zip(im) {
+            *sum = Complex64::new(*re, *im);
         }
         values.copy_from_slice(&self.sums[..self.pairs.len()]);
         self.subtract_change(s, values) && values.iter().all(|v| v.is_finite())
@@ -216,16 +222,20 @@ impl<'a> Receptances<'a> {
         let after_pairs = &self.sums[self.pairs.len()..];
         let (left, rest) = after_pairs.split_at(self.outputs * rank);
         let (middle, right) = rest.split_at(rank * rank);
-        let solvable = self.lu.factorize(rank, |matrix| {
-            add_product(&self.delta, rank, middle, matrix);
-            (0..rank).for_each(|i| matrix[i * rank + i] += 1.0);
-        });
-        if solvable.is_err() {
-            return false;
-        }
         self.right.fill(Complex64::ZERO);
         add_product(&self.delta, rank, right, &mut self.right);
-        self.lu.solve_columns_in_place(&mut self.right, self.inputs);
+        if rank <= 2 {
+            divide_small(&self.delta, middle, &mut self.right);
+        } else {
+            let solvable = self.lu.factorize(rank, |matrix| {
+                add_product(&self.delta, rank, middle, matrix);
+                (0..rank).for_each(|i| matrix[i * rank + i] += 1.0);
+            });
+            if solvable.is_err() {
+                return false;
+            }
+            self.lu.solve_columns_in_place(&mut self.right, self.inputs);
+        }
         for (value, &(o, i)) in values.iter_mut().zip(&self.pairs) {
             let change: Complex64 =
                 (0..rank).map(|k| left[o * rank + k] * self.right[k * self.inputs + i]).sum();
@@ -257,6 +267,22 @@ fn add_product(delta: &[Complex64], rank: usize, g: &[Complex64], to: &mut [Comp
         for (&factor, g) in delta.iter().zip(g.chunks_exact(columns)).filter(|(d, _)| **d != Complex64::ZERO)
         {
             to.iter_mut().zip(g).for_each(|(to, g)| *to += factor * g);
+        }
+    }
+}
+
+/// Overwrites `right` (rank rows) with (I + ΔG)⁻¹·right in closed form, for a rank of one or two.
+fn divide_small(delta: &[Complex64], g: &[Complex64], right: &mut [Complex64]) {
+    if let ([delta], [g]) = (delta, g) {
+        let factor = (1.0 + delta * g).inv();
+        right.iter_mut().for_each(|value| *value *= factor);
+    } else if let ([d00, d01, d10, d11], [g00, g01, g10, g11]) = (delta, g) {
+        let (a, b) = (1.0 + d00 * g00 + d01 * g10, d00 * g01 + d01 * g11);
+        let (c, d) = (d10 * g00 + d11 * g10, 1.0 + d10 * g01 + d11 * g11);
+        let factor = (a * d - b * c).inv();
+        let (first, second) = right.split_at_mut(right.len() / 2);
+        for (x, y) in first.iter_mut().zip(second) {
+            (*x, *y) = ((d * *x - b * *y) * factor, (a * *y - c * *x) * factor);
         }
     }
 }

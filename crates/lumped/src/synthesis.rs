@@ -186,6 +186,7 @@ impl<'a> MeasuringChain<'a> {
         for (line, &hz) in lines.hz().iter().enumerate() {
             let omega = std::f64::consts::TAU * hz.max(NEARLY_ZERO_HZ);
             let s = Complex64::new(decay, omega);
+            let squared = s * s;
             if !receptances.at(s, &mut line_values) {
                 return Err(LumpedError::Unbounded { frequency: hz });
             }
@@ -194,8 +195,11 @@ impl<'a> MeasuringChain<'a> {
                 if let Some(load) = load {
                     receptance = load.change(s, receptance, &line_values);
                 }
-                let phase = Complex64::new(0.0, -omega * delay).exp();
-                values[index * count + line] = s * s * receptance * gain * phase;
+                let mut recorded = squared * receptance * gain;
+                if delay != 0.0 {
+                    recorded *= Complex64::cis(-omega * delay);
+                }
+                values[index * count + line] = recorded;
             }
         }
         Ok(values)

@@ -1,8 +1,9 @@
 //! Everything that is not a proportional part of the free assembly, as a change V Δ(s) Vᵀ of low rank.
 
 use crate::Station;
-use crate::joint::JointDynamics;
+use crate::joint::{JointDynamics, TwoEnds};
 use jointscope_fixture::{Dof, Effect, EffectKind, Fixture, Place};
+use jointscope_linalg::ComplexMatrix2;
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 
@@ -30,13 +31,17 @@ impl PointLaw {
     }
 }
 
-/// One term of Δ, by the indices of its stations in the list of [`Terms`].
+/// One term of Δ, by the first of its stations in the list of [`Terms`].
 #[derive(Debug, Clone)]
 pub(crate) enum Term {
     /// A rank-one change at one station.
     Point { station: usize, law: PointLaw },
-    /// What a joint is beyond its part in the modes; the four stations are (y, θ) at its ends.
-    Joint { acting: usize, in_the_modes: usize, joint: Box<JointDynamics> },
+    /// A joint without mass, through the two stations that read its relative motion d.
+    Relative { station: usize, joint: Box<JointDynamics> },
+    /// A joint with mass, through the four stations (y, θ) at its ends, less what the modes hold of it where they read the same motions.
+    Ends { station: usize, joint: Box<JointDynamics>, held: Option<TwoEnds> },
+    /// What the modes hold of a joint already, taken out through the two stations that read d as the modes have it.
+    TakenOut { station: usize, stiffness: ComplexMatrix2 },
 }
 
 /// All terms with the stations they act through.
@@ -46,12 +51,33 @@ pub(crate) struct Terms {
     pub terms: Vec<Term>,
 }
 
-/// A station, with or without the bending coordinates of blocks in its motion.
+/// What a term acts through: a weighted sum of motions.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct TermStation {
-    pub station: Station,
-    /// What is subtracted because the modes hold it already acts on the rigid coordinates alone.
+    parts: [(f64, Station); 3],
+    /// What is subtracted because the modes hold it already acts on the rigid coordinates alone, without the bending of blocks.
     pub rigid_only: bool,
+}
+
+impl TermStation {
+    /// One motion by itself.
+    pub fn single(station: Station) -> Self {
+        TermStation { parts: [(1.0, station), (0.0, station), (0.0, station)], rigid_only: false }
+    }
+
+    /// d = u_to − R·u_from over `length`: its deflection, then its rotation.
+    fn relative(from: (usize, f64), to: (usize, f64), length: f64, rigid_only: bool) -> [Self; 2] {
+        let [near, far] = [from, to].map(|(body, x)| Station::both(body, x));
+        [
+            TermStation { parts: [(1.0, far[0]), (-1.0, near[0]), (-length, near[1])], rigid_only },
+            TermStation { parts: [(1.0, far[1]), (-1.0, near[1]), (0.0, near[1])], rigid_only },
+        ]
+    }
+
+    /// Motions and their weights.
+    pub fn parts(&self) -> impl Iterator<Item = &(f64, Station)> {
+        self.parts.iter().filter(|(weight, _)| *weight != 0.0)
+    }
 }
 
 impl Terms {
@@ -78,14 +104,9 @@ impl Terms {
             let dynamics = JointDynamics::new(fixture, joint);
             let ends = [joint.from, joint.to].map(|p| &fixture.points()[p]);
             let bends = ends.iter().any(|p| flexible[p.body]);
-            if !dynamics.is_altered() && !bends {
-                continue;
+            if dynamics.is_altered() || bends {
+                all.joint(ends.map(|p| (p.body, p.x.value)), dynamics, bends);
             }
-            let stations = ends.map(|p| Station::both(p.body, p.x.value)).concat();
-            let acting = all.push_stations(&stations, false);
-            // Without bending coordinates both sets of stations are the same.
-            let in_the_modes = if bends { all.push_stations(&stations, true) } else { acting };
-            all.terms.push(Term::Joint { acting, in_the_modes, joint: Box::new(dynamics) });
         }
         fixture.physics().iter().for_each(|effect| all.effect(fixture, effect));
         all
@@ -108,13 +129,37 @@ impl Terms {
     }
 
     fn point(&mut self, station: Station, law: PointLaw) {
-        let station = self.push_stations(&[station], false);
+        let station = self.push(&[TermStation::single(station)]);
         self.terms.push(Term::Point { station, law });
     }
 
-    fn push_stations(&mut self, stations: &[Station], rigid_only: bool) -> usize {
+    fn joint(&mut self, [from, to]: [(usize, f64); 2], joint: JointDynamics, bends: bool) {
+        let (acting, in_the_modes) = joint.lengths();
+        let stiffness = joint.in_the_modes();
+        let taken_out = if joint.is_heavy() {
+            let both = [from, to].map(|(body, x)| Station::both(body, x).map(TermStation::single)).concat();
+            let station = self.push(&both);
+            let held = (!bends).then(|| TwoEnds::from_end(stiffness, in_the_modes));
+            self.terms.push(Term::Ends { station, joint: Box::new(joint), held });
+            bends.then(|| self.push(&TermStation::relative(from, to, in_the_modes, true)))
+        } else {
+            let station = self.push(&TermStation::relative(from, to, acting, false));
+            self.terms.push(Term::Relative { station, joint: Box::new(joint) });
+            let same = !bends && acting == in_the_modes;
+            Some(if same {
+                station
+            } else {
+                self.push(&TermStation::relative(from, to, in_the_modes, bends))
+            })
+        };
+        if let Some(station) = taken_out {
+            self.terms.push(Term::TakenOut { station, stiffness });
+        }
+    }
+
+    fn push(&mut self, stations: &[TermStation]) -> usize {
         let first = self.stations.len();
-        self.stations.extend(stations.iter().map(|&station| TermStation { station, rigid_only }));
+        self.stations.extend_from_slice(stations);
         first
     }
 
@@ -122,18 +167,28 @@ impl Terms {
     pub fn write(&self, s: Complex64, delta: &mut [Complex64]) {
         let order = self.stations.len();
         delta.fill(Complex64::ZERO);
+        let mut add = |first: usize, size: usize, element: &dyn Fn(usize, usize) -> Complex64| {
+            for i in 0..size {
+                for j in 0..size {
+                    delta[(first + i) * order + first + j] += element(i, j);
+                }
+            }
+        };
         for term in &self.terms {
             match term {
-                Term::Point { station, law } => delta[station * order + station] += law.at(s),
-                Term::Joint { acting, in_the_modes, joint } => {
-                    let (with, without) = (joint.at(s), joint.in_the_modes());
-                    for i in 0..4 {
-                        for j in 0..4 {
-                            delta[(acting + i) * order + acting + j] += with.at(i, j);
-                            delta[(in_the_modes + i) * order + in_the_modes + j] -= without.at(i, j);
-                        }
-                    }
+                Term::Point { station, law } => {
+                    let value = law.at(s);
+                    add(*station, 1, &|_, _| value);
                 }
+                Term::Relative { station, joint } => {
+                    let stiffness = joint.on_relative_motion(s);
+                    add(*station, 2, &|i, j| stiffness.at(i, j));
+                }
+                Term::Ends { station, joint, held } => {
+                    let ends = joint.on_both_ends(s);
+                    add(*station, 4, &|i, j| ends.at(i, j) - held.map_or(Complex64::ZERO, |h| h.at(i, j)));
+                }
+                Term::TakenOut { station, stiffness } => add(*station, 2, &|i, j| -stiffness.at(i, j)),
             }
         }
     }
