@@ -19,7 +19,7 @@ impl JointElement {
     /// Column `end` (0 to 3) of the symmetric 4×4 dynamic stiffness at s = iω (or decay + iω): the forces at both ends per unit of that motion
     /// alone, N/m to N·m/rad.
     pub fn column(&self, s: Complex64, end: usize) -> [Complex64; 4] {
-        let element = self.dynamics.at(s);
+        let element = self.dynamics.on_both_ends(s);
         [0, 1, 2, 3].map(|row| element.at(row, end.min(3)))
     }
 }
