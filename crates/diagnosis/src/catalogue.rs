@@ -16,6 +16,8 @@ pub struct Candidate {
     pub dof: Option<Dof>,
     /// Parameters to start from: sizes, signs, abscissae, frequencies.
     pub starts: Vec<Vec<f64>>,
+    /// Parameters of effects so small that what they do is proportional to their size, one for each abscissa, frequency or time.
+    pub directions: Vec<Vec<f64>>,
 }
 
 impl Candidate {
@@ -24,10 +26,43 @@ impl Candidate {
         Effect::new(self.kind, self.place.clone(), self.dof, &self.starts[index])
     }
 
+    /// The effect that is `times` as large as direction `index`; `None` where there is none of that sign.
+    ///
+    /// Large means what it does to the FRFs to first order: a mass, a deviation, a compliance.
+    pub(crate) fn scaled(&self, index: usize, times: f64) -> Option<Effect> {
+        let effect = Effect::new(self.kind, self.place.clone(), self.dof, &self.directions[index]);
+        scaled(&effect, times)
+    }
+
     /// Whether `effect` goes by this name.
     pub fn names(&self, effect: &Effect) -> bool {
         self.kind == effect.kind && self.place == effect.place && self.dof == effect.dof
     }
+}
+
+/// The effect made `times` as large in what it does to the FRFs to first order; `None` where none of its kind has that sign.
+pub(crate) fn scaled(effect: &Effect, times: f64) -> Option<Effect> {
+    use EffectKind as Kind;
+    let mut parameters: Vec<f64> = effect.parameters.iter().map(|p| p.value).collect();
+    let either_sign = match effect.kind {
+        Kind::AddedMass | Kind::SensorMass | Kind::PointOffset | Kind::JointLength => true,
+        Kind::ChannelDelay | Kind::ChannelGain | Kind::StiffnessChange => true,
+        _ => false,
+    };
+    if !either_sign && times <= 0.0 {
+        return None;
+    }
+    match effect.kind {
+        Kind::AddedMass | Kind::AttachedResonator => parameters[1] *= times,
+        Kind::Support => parameters[1..].iter_mut().for_each(|p| *p *= times),
+        Kind::InterfaceCompliance | Kind::ShearDeformation => parameters[0] /= times,
+        Kind::BodyFlexibility => parameters[0] /= times.sqrt(),
+        Kind::ChannelGain => parameters[0] = 1.0 + (parameters[0] - 1.0) * times,
+        // A factor must stay positive: half or double is as far as a line leads.
+        Kind::StiffnessChange => parameters[0] = (1.0 + (parameters[0] - 1.0) * times).clamp(0.5, 2.0),
+        _ => parameters[0] *= times,
+    }
+    Some(Effect::new(effect.kind, effect.place.clone(), effect.dof, &parameters))
 }
 
 /// Sizes of an effect relative to what it acts on.
@@ -45,7 +80,32 @@ pub fn catalogue(fixture: &Fixture, observation: &Observation) -> Vec<Candidate>
 }
 
 fn candidate(kind: EffectKind, place: Place, dof: Option<Dof>, starts: Vec<Vec<f64>>) -> Candidate {
-    Candidate { kind, place, dof, starts }
+    // Of starts that differ in size alone the first serves as direction, made small.
+    let mut directions: Vec<Vec<f64>> = Vec::new();
+    for start in &starts {
+        let small = made_small(kind, start, &starts);
+        if !directions.iter().any(|d| d == &small) {
+            directions.push(small);
+        }
+    }
+    Candidate { kind, place, dof, starts, directions }
+}
+
+/// The start's shape (abscissa, frequency, time) with a size that depends on its kind alone, too small to bend anything.
+fn made_small(kind: EffectKind, start: &[f64], all: &[Vec<f64>]) -> Vec<f64> {
+    use EffectKind as Kind;
+    let stiffest = all.iter().map(|start| start[0]).fold(0.0, f64::max);
+    match kind {
+        Kind::AddedMass => vec![start[0], 1e-6],
+        Kind::Support => vec![start[0], 1e-2, 0.0],
+        Kind::AttachedResonator => vec![start[0], 1e-7, start[2], start[3]],
+        Kind::BodyFlexibility => vec![30.0 * stiffest, start[1]],
+        Kind::InterfaceCompliance | Kind::ShearDeformation => vec![300.0 * stiffest, 0.0],
+        Kind::ChannelGain | Kind::StiffnessChange => vec![1.0 + 1e-5],
+        Kind::Relaxation => vec![1e-5, start[1]],
+        Kind::ChannelDelay => vec![1e-9],
+        _ => vec![1e-6],
+    }
 }
 
 fn mass_of(fixture: &Fixture, body: usize) -> f64 {

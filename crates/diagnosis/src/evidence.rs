@@ -38,22 +38,14 @@ pub(crate) fn excess(chi2_per_dof: f64, degrees: usize) -> f64 {
 pub fn alternatives(search: &Search, index: usize, observation: &Observation) -> Vec<Alternative> {
     let repaired = &search.repaired;
     let own = &repaired.hypothesis.effects()[index];
-    let Some(others) = Fit::of(&repaired.hypothesis.without(index), observation, false) else {
-        return Vec::new();
-    };
-    // Look-alikes are found from the solution's quantities as well as from those that did without the effect.
-    let near = Fit {
-        hypothesis: others.hypothesis.with_tolerances_of(&repaired.hypothesis),
-        predicted: others.predicted.clone(),
-        chi2: others.chi2,
-        objective: others.objective,
-    };
-    let mut fits = search.look_alikes(&near, observation);
+    // Look-alikes are found from the solution's quantities: there the fixture alone does badly, and whatever serves as well takes few steps.
+    let scale = repaired.chi2_per_dof(observation).max(1.0);
+    let near = repaired.hypothesis.without(index);
+    let mut fits = search.look_alikes(&near, repaired.objective + 2.0 * LISTED * scale, observation);
     if let Some(candidate) = search.candidates.iter().position(|c| c.names(own)) {
         fits.retain(|(c, _)| *c != candidate);
         fits.push((candidate, repaired.clone()));
     }
-    let scale = repaired.chi2_per_dof(observation).max(1.0);
     let lowest = fits.iter().map(|(_, fit)| cost(fit, scale)).fold(f64::INFINITY, f64::min);
     fits.retain(|(_, fit)| cost(fit, scale) - lowest < LISTED);
     let weight = |fit: &Fit| (-0.5 * (cost(fit, scale) - lowest)).exp();

@@ -1,6 +1,8 @@
+use crate::catalogue::scaled;
 use crate::{Hypothesis, Observation};
 use jointscope_linalg::solve_positive_definite;
 use num_complex::Complex64;
+use rayon::prelude::*;
 
 /// A hypothesis at its best, and how good that is.
 #[derive(Debug, Clone)]
@@ -22,10 +24,13 @@ pub struct Linearisation {
     pub derivatives: Vec<Vec<Complex64>>,
 }
 
-/// Step of central differences in units of a coordinate: small against a resonance's width, large against rounding.
+/// Step of differences in units of a coordinate: small against a resonance's width, large against rounding.
 const DIFFERENCE: f64 = 2e-4;
-/// Shares by which a fit is softened on its way, when it starts far from its goal.
-const CONTINUATION: [f64; 4] = [0.3, 0.1, 0.03, 0.01];
+/// Shares by which a fit is softened on its way, when it starts far from its goal: on thinned lines, then on all.
+const COARSE: [f64; 4] = [1.0, 0.3, 0.1, 0.03];
+const FINE: [f64; 1] = [0.01];
+/// Lines of a coarse fit.
+pub(crate) const COARSE_LINES: usize = 100;
 /// Iterations with softened weights, each share, and in the end.
 const ITERATIONS: (usize, usize) = (12, 60);
 /// Decrease of the objective below which a fit has converged.
@@ -34,26 +39,42 @@ const CONVERGED: f64 = 1e-3;
 const SLOW: f64 = 0.15;
 /// Damping beyond which no step is a gain.
 const GIVEN_UP: f64 = 1e7;
+/// χ² per degree of freedom above which a refit looks elsewhere too, and how many of those starts it follows to the end.
+const MUCH: f64 = 1.3;
+const STARTS: usize = 3;
+/// Shares of its size by which an effect fades.
+const FADING: [f64; 4] = [0.75, 0.5, 0.25, 0.1];
+/// A fit is given up where what it would still have to gain is this many times what its last step gained.
+const HOPELESS: f64 = 8.0;
 
 impl Linearisation {
     /// Central differences about `at`. A coordinate that cannot be moved gets zeros.
     pub fn of(at: &Hypothesis, observation: &Observation) -> Self {
-        let derivatives = (0..at.coordinates.len())
-            .map(|m| {
-                let moved = |sign: f64| {
-                    let mut other = at.clone();
-                    other.coordinates[m] += sign * DIFFERENCE;
-                    other.predict(observation)
-                };
-                match (moved(1.0), moved(-1.0)) {
-                    (Ok(up), Ok(down)) => {
-                        up.iter().zip(&down).map(|(u, d)| (u - d) / (2.0 * DIFFERENCE)).collect()
-                    }
-                    _ => vec![Complex64::ZERO; observation.values().len()],
-                }
-            })
-            .collect();
-        Linearisation { derivatives }
+        let moved = |m: usize, sign: f64| {
+            let mut other = at.clone();
+            other.coordinates[m] += sign * DIFFERENCE;
+            other.predict(observation)
+        };
+        let derivatives = (0..at.coordinates.len()).map(|m| match (moved(m, 1.0), moved(m, -1.0)) {
+            (Ok(up), Ok(down)) => up.iter().zip(&down).map(|(u, d)| (u - d) / (2.0 * DIFFERENCE)).collect(),
+            _ => vec![Complex64::ZERO; observation.values().len()],
+        });
+        Linearisation { derivatives: derivatives.collect() }
+    }
+
+    /// Forward differences from `predicted`, which `at` predicts: half the price, right to a thousandth, which is enough to find
+    /// the way but not to state an uncertainty.
+    pub(crate) fn forward(at: &Hypothesis, predicted: &[Complex64], observation: &Observation) -> Self {
+        let derivatives = (0..at.coordinates.len()).map(|m| {
+            let mut other = at.clone();
+            let step = other.inward(m, DIFFERENCE);
+            other.coordinates[m] += step;
+            match other.predict(observation) {
+                Ok(moved) => moved.iter().zip(predicted).map(|(u, p)| (u - p) / step).collect(),
+                Err(_) => vec![Complex64::ZERO; predicted.len()],
+            }
+        });
+        Linearisation { derivatives: derivatives.collect() }
     }
 
     /// Nothing that could yield.
@@ -71,12 +92,12 @@ impl Linearisation {
         let n = self.derivatives.len();
         let mut matrix = vec![0.0; n * n];
         let mut right = vec![0.0; n];
-        let mut weighted = vec![Complex64::ZERO; weights.len()];
-        for (m, derivative) in self.derivatives.iter().enumerate() {
-            weighted.iter_mut().zip(derivative).zip(weights).for_each(|((w, d), weight)| *w = d * *weight);
-            right[m] = dot(&weighted, residual) - at.prior(m) * at.coordinates[m];
-            for (k, other) in self.derivatives.iter().enumerate().take(m + 1) {
-                let value = dot(&weighted, other) + if k == m { at.prior(m) } else { 0.0 };
+        let residual = whitened(residual, weights);
+        let columns: Vec<Vec<f64>> = self.derivatives.iter().map(|d| whitened(d, weights)).collect();
+        for m in 0..n {
+            right[m] = dot(&columns[m], &residual) - at.prior(m) * at.coordinates[m];
+            for k in 0..=m {
+                let value = dot(&columns[m], &columns[k]) + if k == m { at.prior(m) } else { 0.0 };
                 matrix[m * n + k] = value;
                 matrix[k * n + m] = value;
             }
@@ -85,9 +106,23 @@ impl Linearisation {
     }
 }
 
-/// Re Σ aᵢ* bᵢ.
-fn dot(a: &[Complex64], b: &[Complex64]) -> f64 {
-    a.iter().zip(b).map(|(x, y)| x.re * y.re + x.im * y.im).sum()
+/// √w·value, real and imaginary parts side by side.
+pub(crate) fn whitened(values: &[Complex64], weights: &[f64]) -> Vec<f64> {
+    let scaled = values.iter().zip(weights).map(|(value, weight)| value * weight.sqrt());
+    scaled.flat_map(|value| [value.re, value.im]).collect()
+}
+
+/// Σ aᵢ bᵢ, in eight sums at once: a single one would wait for each addition.
+pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
+    let mut sums = [0.0; 8];
+    let (left, right) = (a.chunks_exact(8), b.chunks_exact(8));
+    let rest: f64 = left.remainder().iter().zip(right.remainder()).map(|(x, y)| x * y).sum();
+    for (x, y) in left.zip(right) {
+        for lane in 0..8 {
+            sums[lane] += x[lane] * y[lane];
+        }
+    }
+    rest + sums.iter().sum::<f64>()
 }
 
 impl Fit {
@@ -95,13 +130,88 @@ impl Fit {
     ///
     /// `None` where the start itself predicts no finite FRFs.
     pub fn of(start: &Hypothesis, observation: &Observation, far: bool) -> Option<Self> {
-        let mut state = State::at(start.clone(), observation)?;
-        if far {
-            for epsilon in CONTINUATION {
-                state.improve(observation, epsilon, ITERATIONS.0);
-            }
+        if !far {
+            return Fit::refined(start, observation, f64::INFINITY);
         }
-        state.improve(observation, 0.0, ITERATIONS.1);
+        let coarse = Fit::coarse(start, &observation.thinned(COARSE_LINES))?;
+        Fit::from_coarse(&coarse.hypothesis, observation, f64::INFINITY)
+    }
+
+    /// The softened beginning of a far fit, on thinned lines: good enough to compare hypotheses by. Its objective is the softened one.
+    pub(crate) fn coarse(start: &Hypothesis, thinned: &Observation) -> Option<Self> {
+        Fit::softened(start, thinned, &COARSE)
+    }
+
+    /// As [`Fit::coarse`], from where a coarse fit of something similar has led already.
+    pub(crate) fn coarse_from_near(start: &Hypothesis, thinned: &Observation) -> Option<Self> {
+        Fit::softened(start, thinned, &COARSE[2..])
+    }
+
+    /// The last softened stage, on all lines; its objective is the softened one.
+    pub(crate) fn middle(start: &Hypothesis, observation: &Observation) -> Option<Self> {
+        Fit::softened(start, observation, &FINE)
+    }
+
+    fn softened(start: &Hypothesis, observation: &Observation, stages: &[f64]) -> Option<Self> {
+        let mut state = State::at(start.clone(), observation)?;
+        for &epsilon in stages {
+            state.improve(observation, epsilon, ITERATIONS.0, f64::INFINITY);
+        }
+        let last = stages.last().copied().unwrap_or_default();
+        let objective = state.objective(observation, &state.weights(observation, last));
+        Some(Fit { objective, ..state.into_fit(observation) })
+    }
+
+    /// The best of fits from the hypothesis as it stands, far and near, and, where those leave much, of far fits from about it: one
+    /// deviation up and down each quantity that is known to no better than a tenth, whose peaks may lie anywhere between others.
+    pub(crate) fn searched(start: &Hypothesis, observation: &Observation) -> Option<Self> {
+        let near = [Fit::of(start, observation, true), Fit::of(start, observation, false)];
+        let best = |a: Fit, b: Fit| if b.objective < a.objective { b } else { a };
+        let first = near.into_iter().flatten().reduce(best)?;
+        if first.chi2_per_dof(observation) < MUCH {
+            return Some(first);
+        }
+        let thinned = observation.thinned(COARSE_LINES);
+        let wide = (0..start.tolerances().len()).filter(|&m| start.tolerances()[m].is_wide());
+        let starts: Vec<Hypothesis> =
+            wide.flat_map(|m| [-1.0, 1.0].map(|sign| start.moved(m, sign))).collect();
+        let mut fits: Vec<Fit> = starts.par_iter().filter_map(|s| Fit::coarse(s, &thinned)).collect();
+        fits.sort_by(|a, b| a.objective.total_cmp(&b.objective));
+        fits.truncate(STARTS);
+        let fits: Vec<Option<Fit>> =
+            fits.par_iter().map(|f| Fit::from_coarse(&f.hypothesis, observation, f64::INFINITY)).collect();
+        fits.into_iter().flatten().chain([first]).reduce(best)
+    }
+
+    /// The fit without effect `index` that is reached by making the effect smaller step by step, so that the quantities can take over
+    /// what they are able to imitate.
+    pub(crate) fn faded(full: &Hypothesis, index: usize, observation: &Observation) -> Option<Self> {
+        let effect = &full.effects()[index];
+        let without = full.without(index);
+        let mut at = without.clone();
+        for share in FADING {
+            let smaller = scaled(effect, share).and_then(|effect| without.beside(effect));
+            let Some(smaller) = smaller.map(|h| h.with_coordinates_of(&at)) else { break };
+            let Some(fit) = Fit::refined(&smaller, observation, f64::INFINITY) else { break };
+            at = fit.hypothesis;
+        }
+        Fit::refined(&without.with_coordinates_of(&at), observation, f64::INFINITY)
+    }
+
+    /// The rest of a far fit, on all lines; see [`Fit::refined`] for `limit`.
+    pub(crate) fn from_coarse(start: &Hypothesis, observation: &Observation, limit: f64) -> Option<Self> {
+        let mut state = State::at(start.clone(), observation)?;
+        for epsilon in FINE {
+            state.improve(observation, epsilon, ITERATIONS.0, f64::INFINITY);
+        }
+        state.improve(observation, 0.0, ITERATIONS.1, limit);
+        Some(state.into_fit(observation))
+    }
+
+    /// Fits from nearby, and gives up early where the objective will hardly come below `limit`.
+    pub(crate) fn refined(start: &Hypothesis, observation: &Observation, limit: f64) -> Option<Self> {
+        let mut state = State::at(start.clone(), observation)?;
+        state.improve(observation, 0.0, ITERATIONS.1, limit);
         Some(state.into_fit(observation))
     }
 
@@ -146,26 +256,35 @@ impl State {
         observation.values().iter().zip(&self.predicted).map(|(m, p)| m - p).collect()
     }
 
-    fn objective(&self, observation: &Observation, weights: &[f64]) -> f64 {
-        let misfit: f64 = self.residual(observation).iter().zip(weights).map(|(r, w)| w * r.norm_sqr()).sum();
-        misfit + self.hypothesis.penalty()
+    fn weights(&self, observation: &Observation, epsilon: f64) -> Vec<f64> {
+        let modelled = self.predicted.iter().enumerate();
+        modelled.map(|(index, modelled)| observation.softened(index, *modelled, epsilon)).collect()
     }
 
-    fn improve(&mut self, observation: &Observation, epsilon: f64, iterations: usize) {
+    fn objective(&self, observation: &Observation, weights: &[f64]) -> f64 {
+        let values = observation.values().iter().zip(&self.predicted).zip(weights);
+        values.map(|((m, p), w)| w * (m - p).norm_sqr()).sum::<f64>() + self.hypothesis.penalty()
+    }
+
+    /// Softened fits only have to find the way; at the end a derivative's error, times what noise leaves, would lead astray along
+    /// directions that the FRFs hardly determine.
+    fn linearised(&self, observation: &Observation, epsilon: f64) -> Linearisation {
+        match epsilon > 0.0 {
+            true => Linearisation::forward(&self.hypothesis, &self.predicted, observation),
+            false => Linearisation::of(&self.hypothesis, observation),
+        }
+    }
+
+    fn improve(&mut self, observation: &Observation, epsilon: f64, iterations: usize, limit: f64) {
         let mut damping = 1e-6;
         // Derivatives cost far more than a prediction, and change little from step to step: they are made anew
         // only when steps made from old ones gain little.
-        let mut linear = Linearisation::of(&self.hypothesis, observation);
+        let mut linear = self.linearised(observation, epsilon);
         let mut fresh = true;
         let mut hoped_for = 0.0;
-        for _ in 0..iterations {
+        for iteration in 0..iterations {
             // Weights are frozen within an iteration, so that a step is judged by what it was made for.
-            let weights: Vec<f64> = self
-                .predicted
-                .iter()
-                .enumerate()
-                .map(|(index, modelled)| observation.softened(index, *modelled, epsilon))
-                .collect();
+            let weights = self.weights(observation, epsilon);
             let before = self.objective(observation, &weights);
             let (matrix, right) = linear.normal(&self.hypothesis, &weights, &self.residual(observation));
             let patience = if fresh { GIVEN_UP } else { damping * 10.0 };
@@ -178,10 +297,13 @@ impl State {
             if gain < converged && fresh {
                 return;
             }
+            if fresh && iteration > 2 && before - gain - limit > HOPELESS * gain {
+                return;
+            }
             let slow = gain < hoped_for || gain < converged;
             hoped_for = if fresh { (SLOW * gain).max(converged) } else { hoped_for };
             if slow {
-                linear = Linearisation::of(&self.hypothesis, observation);
+                linear = self.linearised(observation, epsilon);
             }
             fresh = slow;
             if fresh {

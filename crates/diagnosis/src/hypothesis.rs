@@ -28,6 +28,46 @@ pub struct Tolerance {
     pub std: Option<f64>,
     /// The unit of a step.
     scale: f64,
+    /// Whether it moves by its logarithm.
+    relative: bool,
+}
+
+/// Relative deviation up to which a size moves by its logarithm.
+const NARROW: f64 = 0.12;
+
+impl Tolerance {
+    fn new(index: usize, path: &str, nominal: f64, std: Option<f64>) -> Self {
+        let scale = std.unwrap_or(if nominal != 0.0 { 0.1 * nominal.abs() } else { 1.0 });
+        // Masses and stiffnesses trade against factors of each other: by their logarithms such a trade is a straight line.
+        let place = ["x", "x_cg", "from", "to"].iter().any(|name| path.rsplit('/').next() == Some(name));
+        let relative = !place && !path.contains("damping") && nominal > 0.0 && scale <= NARROW * nominal;
+        Tolerance { index, path: path.to_owned(), nominal, std, scale, relative }
+    }
+
+    /// The value at `coordinate` deviations from the nominal one.
+    pub fn value(&self, coordinate: f64) -> f64 {
+        match self.relative {
+            true => self.nominal * (coordinate * self.scale / self.nominal).exp(),
+            false => self.nominal + coordinate * self.scale,
+        }
+    }
+
+    /// Whether it is known to no better than a tenth, damping apart.
+    pub(crate) fn is_wide(&self) -> bool {
+        let deviation = self.std.map_or(0.5, |std| std / self.nominal.abs().max(f64::MIN_POSITIVE));
+        deviation >= 0.1
+            && !self.path.contains("damping")
+            && self.nominal != 0.0
+            && !self.path.ends_with("/x")
+    }
+
+    /// Lowest coordinate: what must not be negative stops at zero.
+    fn lowest(&self) -> f64 {
+        match !self.relative && self.nominal > 0.0 && self.path.contains("damping") {
+            true => -self.nominal / self.scale,
+            false => f64::NEG_INFINITY,
+        }
+    }
 }
 
 /// A parameter of an effect that a fit may move, and how.
@@ -47,7 +87,7 @@ pub struct Hypothesis {
     fixture: Fixture,
     tolerances: Vec<Tolerance>,
     effects: Vec<(Effect, Vec<Freedom>)>,
-    /// Coordinates: tolerances as (value − nominal)/scale, then the effects' free parameters.
+    /// Coordinates: tolerances in deviations from the nominal values, then the effects' free parameters.
     pub(crate) coordinates: Vec<f64>,
 }
 
@@ -67,24 +107,24 @@ impl Hypothesis {
             if let Some(beam) = quantity.path.strip_suffix("second_moment") {
                 let modulus = format!("{beam}youngs_modulus");
                 if let Some(earlier) = tolerances.iter_mut().find(|t| t.path == modulus) {
-                    earlier.std = earlier.std.zip(std).map(|(a, b)| {
+                    let both = earlier.std.zip(std).map(|(a, b)| {
                         earlier.nominal * relative(a, earlier.nominal).hypot(relative(b, quantity.value))
                     });
-                    earlier.scale = earlier.std.unwrap_or(earlier.scale);
+                    *earlier = Tolerance::new(earlier.index, &modulus, earlier.nominal, both);
                     continue;
                 }
             }
-            let scale = std.unwrap_or(if quantity.value != 0.0 { 0.1 * quantity.value.abs() } else { 1.0 });
-            tolerances.push(Tolerance {
-                index,
-                path: quantity.path.clone(),
-                nominal: quantity.value,
-                std,
-                scale,
-            });
+            tolerances.push(Tolerance::new(index, &quantity.path, quantity.value, std));
         }
         let coordinates = vec![0.0; tolerances.len()];
         Hypothesis { fixture: fixture.clone(), tolerances, effects: Vec::new(), coordinates }
+    }
+
+    /// The same with quantity `index` moved by `deviations`.
+    pub(crate) fn moved(&self, index: usize, deviations: f64) -> Self {
+        let mut other = self.clone();
+        other.coordinates[index] += deviations;
+        other
     }
 
     /// The same with one more effect, at the parameters it is given with.
@@ -115,6 +155,19 @@ impl Hypothesis {
         moved
     }
 
+    /// The same with `effect` in the fixture itself, where nothing moves it; `None` where the fixture cannot have it.
+    pub(crate) fn beside(&self, effect: Effect) -> Option<Self> {
+        let mut physics = self.fixture.physics().to_vec();
+        physics.push(effect);
+        let fixture = self.fixture.clone().with_physics(physics).ok()?;
+        Some(Hypothesis { fixture, ..self.clone() })
+    }
+
+    /// The same where `other`, of the same quantities and effects, stands.
+    pub(crate) fn with_coordinates_of(&self, other: &Hypothesis) -> Self {
+        Hypothesis { coordinates: other.coordinates.clone(), ..self.clone() }
+    }
+
     /// Number of effects.
     pub fn effect_count(&self) -> usize {
         self.effects.len()
@@ -130,7 +183,8 @@ impl Hypothesis {
         &self.tolerances
     }
 
-    /// Where tolerance `index` stands, in standard deviations (or tenths of its value where it is free).
+    /// Where tolerance `index` stands, in standard deviations (or tenths of its value where it is free): for masses and stiffnesses those of
+    /// the logarithm.
     pub fn departure(&self, index: usize) -> f64 {
         self.coordinates[index]
     }
@@ -191,7 +245,7 @@ impl Hypothesis {
         let mut fixture = self.fixture.clone();
         let mut quantities = fixture.quantities_mut();
         for (tolerance, coordinate) in self.tolerances.iter().zip(&self.coordinates) {
-            quantities[tolerance.index].quantity.value = tolerance.nominal + coordinate * tolerance.scale;
+            quantities[tolerance.index].quantity.value = tolerance.value(*coordinate);
         }
         let mut physics = self.fixture.physics().to_vec();
         physics.extend(self.effects());
@@ -210,8 +264,7 @@ impl Hypothesis {
 
     /// Bounds of each coordinate.
     fn bounds(&self) -> Vec<(f64, f64)> {
-        let open = (f64::NEG_INFINITY, f64::INFINITY);
-        let mut all = vec![open; self.tolerances.len()];
+        let mut all: Vec<(f64, f64)> = self.tolerances.iter().map(|t| (t.lowest(), f64::INFINITY)).collect();
         for freedom in self.effects.iter().flat_map(|(_, freedoms)| freedoms) {
             match freedom {
                 Freedom::Fixed => {}
@@ -256,6 +309,14 @@ impl Hypothesis {
             }
         }
         None
+    }
+
+    /// A step of size `size` of coordinate `index` that stays within its bounds.
+    pub(crate) fn inward(&self, index: usize, size: f64) -> f64 {
+        match self.bounds().get(index) {
+            Some((_, high)) if self.coordinates[index] + size > *high => -size,
+            _ => size,
+        }
     }
 
     /// Moves by `step`, bounded parameters stopping at their bounds.

@@ -53,10 +53,16 @@ impl Observation {
 
     /// The observation on fewer lines and FRFs, its noise as it was; `None` where nothing is left.
     pub fn reduced(&self, line: impl Fn(f64) -> bool, frf: impl Fn(&FrfPair) -> bool) -> Option<Self> {
+        let lines: Vec<bool> = self.lines().hz().iter().map(|&hz| line(hz)).collect();
+        let frfs: Vec<bool> = self.pairs().iter().map(frf).collect();
+        self.on(&lines, &frfs)
+    }
+
+    fn on(&self, lines: &[bool], frfs: &[bool]) -> Option<Self> {
         let n = self.lines().len();
         let hz = self.lines().hz();
-        let kept_frfs: Vec<usize> = (0..self.pairs().len()).filter(|&i| frf(&self.pairs()[i])).collect();
-        let kept_lines: Vec<usize> = (0..n).filter(|&i| line(hz[i])).collect();
+        let kept_frfs: Vec<usize> = (0..frfs.len()).filter(|&i| frfs[i]).collect();
+        let kept_lines: Vec<usize> = (0..n).filter(|&i| lines[i]).collect();
         let places = || kept_frfs.iter().flat_map(|&i| kept_lines.iter().map(move |&l| i * n + l));
         let lines = SpectralLines::new(kept_lines.iter().map(|&l| hz[l]).collect()).ok()?;
         let pairs: Vec<FrfPair> = kept_frfs.iter().map(|&i| self.pairs()[i].clone()).collect();
@@ -68,6 +74,15 @@ impl Observation {
             level: places().map(|at| self.level[at]).collect(),
             noise: kept_frfs.iter().filter_map(|&i| self.noise.get(i).copied()).collect(),
         })
+    }
+
+    /// The observation on at most `limit` lines, evenly thinned: enough for a softened fit, which follows the FRFs' course and
+    /// leaves their peaks alone.
+    pub fn thinned(&self, limit: usize) -> Self {
+        let n = self.lines().len();
+        let every = n.div_ceil(limit.max(1)).max(1);
+        let keep: Vec<bool> = (0..n).map(|line| line % every == 0).collect();
+        self.on(&keep, &vec![true; self.pairs().len()]).unwrap_or_else(|| self.clone())
     }
 
     /// The FRFs in use, accelerances.

@@ -1,0 +1,295 @@
+//! Every candidate fitted beside what a hypothesis has already, the best first.
+//!
+//! Two ways lead to a candidate's fit. A small effect is found from where the hypothesis stands: its starts are scored with the tolerances at
+//! their linear best, and the promising ones refined. A large effect has bent the tolerances where no linear step leads back: every candidate
+//! is fitted from the nominal quantities besides, with softened weights on thinned lines, and those that come near are refined on all lines.
+
+use crate::catalogue::Candidate;
+use crate::fit::{COARSE_LINES, Fit, Linearisation, dot, whitened};
+use crate::search::parameter_price;
+use crate::{Hypothesis, Observation};
+use jointscope_fixture::Effect;
+use jointscope_linalg::solve_positive_definite;
+use num_complex::Complex64;
+use rayon::prelude::*;
+
+/// Candidates of the near way that are refined, and starts of each.
+const NEAR: usize = 12;
+const NEAR_STARTS: usize = 2;
+/// Candidates of the far way that are kept after the coarse fits, and after those on all lines; those of them that are kept from two
+/// starts.
+const HALF: usize = 24;
+const HALF_TWICE: usize = 6;
+const FAR: usize = 10;
+const FAR_TWICE: usize = 3;
+/// Fits made without a limit before the others are measured against the best of them.
+const UNLIMITED: usize = 4;
+/// A fit whose objective will stay this far above the best is not finished.
+const MARGIN: f64 = 60.0;
+
+/// Where a fit of a candidate sets out.
+struct Start {
+    candidate: usize,
+    hypothesis: Hypothesis,
+}
+
+/// Candidates to be fitted beside a base, and where from.
+pub(crate) struct Ranking<'a> {
+    pub candidates: &'a [Candidate],
+    pub nominal: &'a Hypothesis,
+    pub observation: &'a Observation,
+}
+
+impl Ranking<'_> {
+    /// Fits of `base` with one more effect, best first by objective and price of parameters, with the candidate's index. `far` takes
+    /// the way from the nominal quantities too.
+    pub fn of(&self, base: &Hypothesis, far: bool) -> Vec<(usize, Fit)> {
+        let starts = self.starts(base);
+        let mut all = Vec::new();
+        if far {
+            all.extend(self.far(base, &starts));
+        }
+        all.extend(self.near(base, &starts, NEAR, NEAR_STARTS));
+        self.fitted(all, f64::INFINITY)
+    }
+
+    /// Every candidate fitted from where `base` stands, which is where an effect that is looked for would leave the quantities; fits that
+    /// will not come near `limit` are left unfinished.
+    pub fn look_alikes(&self, base: &Hypothesis, limit: f64) -> Vec<(usize, Fit)> {
+        let starts = self.starts(base);
+        self.fitted(self.near(base, &starts, usize::MAX, 1), limit)
+    }
+
+    /// (candidate, start) of everything that `base` does not have yet.
+    fn starts(&self, base: &Hypothesis) -> Vec<(usize, usize)> {
+        self.names_without(base)
+            .flat_map(|c| (0..self.candidates[c].starts.len()).map(move |s| (c, s)))
+            .collect()
+    }
+
+    /// The best candidates about the base itself, each at the size that serves to first order, and at the best start of its grid.
+    fn near(&self, base: &Hypothesis, starts: &[(usize, usize)], count: usize, each: usize) -> Vec<Start> {
+        let Some(scan) = Scan::about(base.clone(), self.observation, 0.0, true) else { return Vec::new() };
+        let mut chosen = self.first_order(base, &scan, count, each, self.observation);
+        let scores = scan.scores(starts, self.candidates, self.observation);
+        chosen.extend(self.best_starts(starts, &scores, 1).into_iter().take(count).flatten());
+        let start = |(candidate, effect): (usize, Effect)| Start { candidate, hypothesis: base.with(effect) };
+        chosen.into_iter().map(start).collect()
+    }
+
+    /// Candidates that `base` does not have yet.
+    fn names_without(&self, base: &Hypothesis) -> impl Iterator<Item = usize> {
+        let effects = base.effects();
+        (0..self.candidates.len()).filter(move |&c| !effects.iter().any(|e| self.candidates[c].names(e)))
+    }
+
+    /// The best softened fits from the nominal quantities and from where those lead without a candidate.
+    fn far(&self, base: &Hypothesis, starts: &[(usize, usize)]) -> Vec<Start> {
+        let coarse = self.observation.thinned(COARSE_LINES);
+        let nominal = base.with_tolerances_of(self.nominal);
+        let mut begun: Vec<(usize, Hypothesis, bool)> = Vec::new();
+        // Where an effect moves peaks by many widths no linear step of the tolerances is to be trusted.
+        if let Some(scan) = Scan::about(nominal.clone(), &coarse, 0.3, false) {
+            let scores = scan.scores(starts, self.candidates, &coarse);
+            let best = self.best_starts(starts, &scores, 1).into_iter().flatten();
+            begun.extend(best.map(|(c, effect)| (c, nominal.with(effect), false)));
+        }
+        // A softened refit is bent less by what the candidate would explain.
+        let led = Fit::coarse(&nominal, &coarse).map(|fit| fit.hypothesis);
+        if let Some((led, scan)) =
+            led.and_then(|led| Some((led.clone(), Scan::about(led, &coarse, 0.1, true)?)))
+        {
+            let scores = scan.scores(starts, self.candidates, &coarse);
+            let best = self.best_starts(starts, &scores, 1).into_iter().flatten();
+            let small = self.first_order(base, &scan, usize::MAX, 1, &coarse);
+            begun.extend(best.chain(small).map(|(c, effect)| (c, led.with(effect), true)));
+        }
+        let fits = begun.into_par_iter().filter_map(|(candidate, start, near)| {
+            let fit =
+                if near { Fit::coarse_from_near(&start, &coarse) } else { Fit::coarse(&start, &coarse) };
+            fit.map(|fit| (candidate, fit))
+        });
+        let kept = self.front(fits.collect(), HALF, HALF_TWICE);
+        let fits = kept.into_par_iter().filter_map(|(candidate, fit)| {
+            Fit::middle(&fit.hypothesis, self.observation).map(|fit| (candidate, fit))
+        });
+        let start = |(candidate, fit): (usize, Fit)| Start { candidate, hypothesis: fit.hypothesis };
+        self.front(fits.collect(), FAR, FAR_TWICE).into_iter().map(start).collect()
+    }
+
+    /// The best fit of the best `count` candidates, and the two best of the best `twice`.
+    fn front(&self, mut fits: Vec<(usize, Fit)>, count: usize, twice: usize) -> Vec<(usize, Fit)> {
+        fits.sort_by(|a, b| cost(&a.1).total_cmp(&cost(&b.1)));
+        let mut taken = vec![0; self.candidates.len()];
+        fits.retain(|(candidate, _)| {
+            let distinct = taken.iter().filter(|t| **t > 0).count();
+            let allowed = if distinct <= twice { 2 } else { 1 };
+            let keep = taken[*candidate] < allowed && (taken[*candidate] > 0 || distinct < count);
+            taken[*candidate] += usize::from(keep);
+            keep
+        });
+        fits
+    }
+
+    /// The candidates that gain most about a scan's base to first order, each at the size that serves best.
+    fn first_order(
+        &self,
+        base: &Hypothesis,
+        scan: &Scan,
+        count: usize,
+        each: usize,
+        observation: &Observation,
+    ) -> Vec<(usize, Effect)> {
+        let directions: Vec<(usize, usize)> = self
+            .names_without(base)
+            .flat_map(|c| (0..self.candidates[c].directions.len()).map(move |d| (c, d)))
+            .collect();
+        let gains: Vec<(f64, Option<Effect>)> = directions
+            .par_iter()
+            .map(|&(c, d)| scan.first_order(&self.candidates[c], d, observation))
+            .collect();
+        let gains = directions.iter().zip(gains);
+        let mut by_gain: Vec<(f64, usize, Effect)> =
+            gains.filter_map(|(&(c, _), (gain, effect))| Some((gain, c, effect?))).collect();
+        by_gain.sort_by(|a, b| b.0.total_cmp(&a.0));
+        let mut taken = vec![0; self.candidates.len()];
+        let mut chosen = Vec::new();
+        for (_, candidate, effect) in by_gain {
+            let distinct = taken.iter().filter(|t| **t > 0).count();
+            if taken[candidate] < each && (taken[candidate] > 0 || distinct < count) {
+                taken[candidate] += 1;
+                chosen.push((candidate, effect));
+            }
+        }
+        chosen
+    }
+
+    /// The `each` best starts of every candidate, the best candidates first.
+    fn best_starts(
+        &self,
+        starts: &[(usize, usize)],
+        scores: &[f64],
+        each: usize,
+    ) -> Vec<Vec<(usize, Effect)>> {
+        let mut by_candidate: Vec<Vec<(f64, usize)>> = vec![Vec::new(); self.candidates.len()];
+        for (&(c, s), &score) in starts.iter().zip(scores) {
+            by_candidate[c].push((score, s));
+        }
+        by_candidate.iter_mut().for_each(|starts| starts.sort_by(|a, b| a.0.total_cmp(&b.0)));
+        let mut order: Vec<usize> =
+            (0..by_candidate.len()).filter(|&c| !by_candidate[c].is_empty()).collect();
+        order.sort_by(|&a, &b| by_candidate[a][0].0.total_cmp(&by_candidate[b][0].0));
+        let effects = |c: usize| {
+            by_candidate[c].iter().take(each).map(move |&(_, s)| (c, self.candidates[c].effect(s))).collect()
+        };
+        order.into_iter().map(effects).collect()
+    }
+
+    /// Fits from all starts, the best of each candidate, best first. The first few are fitted to the end, the others only where they
+    /// come near them, or near `limit`.
+    fn fitted(&self, starts: Vec<Start>, limit: f64) -> Vec<(usize, Fit)> {
+        let fit = |start: &Start, limit: f64| {
+            Fit::refined(&start.hypothesis, self.observation, limit).map(|fit| (start.candidate, fit))
+        };
+        let (first, rest) = starts.split_at(UNLIMITED.min(starts.len()));
+        let mut fits: Vec<(usize, Fit)> = first.par_iter().filter_map(|s| fit(s, limit)).collect();
+        let best = fits.iter().map(|(_, fit)| fit.objective).fold(f64::INFINITY, f64::min);
+        let limit = limit.min(best + MARGIN);
+        fits.extend(rest.par_iter().filter_map(|s| fit(s, limit)).collect::<Vec<_>>());
+        fits.sort_by(|a, b| cost(&a.1).total_cmp(&cost(&b.1)));
+        let mut seen = vec![false; self.candidates.len()];
+        fits.retain(|(index, _)| !std::mem::replace(&mut seen[*index], true));
+        fits
+    }
+}
+
+fn cost(fit: &Fit) -> f64 {
+    fit.objective + parameter_price(&fit.hypothesis)
+}
+
+/// A base about which effects are tried with the tolerances linearised, or held where they are.
+struct Scan {
+    base: Hypothesis,
+    /// √w·derivative by tolerance.
+    columns: Vec<Vec<f64>>,
+    weights: Vec<f64>,
+    matrix: Vec<f64>,
+    predicted: Vec<Complex64>,
+    /// What the base leaves, √w·residual, and what the tolerances make of it.
+    residual: Vec<f64>,
+    step: Vec<f64>,
+}
+
+impl Scan {
+    fn about(base: Hypothesis, observation: &Observation, epsilon: f64, yielding: bool) -> Option<Self> {
+        let predicted = base.predict(observation).ok()?;
+        let weights: Vec<f64> =
+            predicted.iter().enumerate().map(|(i, p)| observation.softened(i, *p, epsilon)).collect();
+        let linear = if yielding { Linearisation::of(&base, observation) } else { Linearisation::rigid() };
+        let residual: Vec<Complex64> =
+            observation.values().iter().zip(&predicted).map(|(m, p)| m - p).collect();
+        let (matrix, pull) = linear.normal(&base, &weights, &residual);
+        let columns = linear.derivatives.iter().map(|d| whitened(d, &weights)).collect();
+        let (mut factors, mut step) = (matrix.clone(), pull);
+        if !solve_positive_definite(&mut factors, &mut step) {
+            step.fill(0.0);
+        }
+        let residual = whitened(&residual, &weights);
+        Some(Scan { base, columns, weights, matrix, predicted, residual, step })
+    }
+
+    /// What direction `index` of a candidate gains at its best size, to first order with the tolerances yielding, and the effect
+    /// of that size.
+    fn first_order(
+        &self,
+        candidate: &Candidate,
+        index: usize,
+        observation: &Observation,
+    ) -> (f64, Option<Effect>) {
+        let nothing = (0.0, None);
+        let Some(small) = candidate.scaled(index, 1.0) else { return nothing };
+        let Ok(moved) = self.base.with(small).predict(observation) else { return nothing };
+        let change: Vec<Complex64> = moved.iter().zip(&self.predicted).map(|(m, p)| m - p).collect();
+        let change = whitened(&change, &self.weights);
+        let shared: Vec<f64> = self.columns.iter().map(|column| dot(column, &change)).collect();
+        let (mut matrix, mut absorbed) = (self.matrix.clone(), shared.clone());
+        if !solve_positive_definite(&mut matrix, &mut absorbed) {
+            return nothing;
+        }
+        let own = dot(&change, &change);
+        let left = own - dot(&shared, &absorbed);
+        // What the tolerances can imitate to nine digits is not to be told from them.
+        if left <= 1e-9 * own {
+            return nothing;
+        }
+        let slope = dot(&change, &self.residual) - dot(&shared, &self.step);
+        (slope * slope / left, candidate.scaled(index, slope / left))
+    }
+
+    /// The score of each start.
+    fn scores(
+        &self,
+        starts: &[(usize, usize)],
+        candidates: &[Candidate],
+        observation: &Observation,
+    ) -> Vec<f64> {
+        starts.par_iter().map(|&(c, s)| self.score(candidates[c].effect(s), observation)).collect()
+    }
+
+    /// The objective with `effect` added and everything else at its linear best.
+    fn score(&self, effect: Effect, observation: &Observation) -> f64 {
+        let Ok(predicted) = self.base.with(effect).predict(observation) else { return f64::INFINITY };
+        let residual: Vec<Complex64> =
+            observation.values().iter().zip(&predicted).map(|(m, p)| m - p).collect();
+        let residual = whitened(&residual, &self.weights);
+        let misfit = dot(&residual, &residual);
+        let pull = |m: usize| self.base.prior(m) * self.base.coordinates[m];
+        let right: Vec<f64> =
+            self.columns.iter().enumerate().map(|(m, column)| dot(column, &residual) - pull(m)).collect();
+        let (mut matrix, mut step) = (self.matrix.clone(), right.clone());
+        if !solve_positive_definite(&mut matrix, &mut step) {
+            return misfit;
+        }
+        misfit + self.base.penalty() - dot(&step, &right)
+    }
+}
