@@ -1,6 +1,6 @@
 use crate::evidence::{Alternative, alternatives, excess, same_names};
 use crate::fit::Fit;
-use crate::location::Location;
+use crate::location::{Location, locate, measure};
 use crate::search::Search;
 use crate::{Hypothesis, Observation};
 use jointscope_fixture::{Dof, Effect, Fixture, ParameterSpec};
@@ -145,6 +145,8 @@ pub struct Diagnosis {
 /// per cent, those from scatter much less.
 const LEFT_OVER: f64 = 1.2;
 const LEFT_OVER_SCATTER: f64 = 1.6;
+/// Probability by chance below which a mismatch is located.
+const BY_CHANCE: f64 = 0.01;
 /// Bands in which a mismatch is told.
 const BANDS: usize = 12;
 /// Share of the lines in each of the two bands held out.
@@ -167,13 +169,18 @@ impl Diagnosis {
         let chi2_per_dof = search.refitted.chi2_per_dof(&observation);
         let findings = findings(&search, &observation);
         let held_out = held_out(fixture, &observation, &search, options)?;
+        let chance = upper_tail(excess(chi2_per_dof, observation.degrees()));
+        let locations = match chance < BY_CHANCE {
+            true => locate(&search.nominal.hypothesis, &search.refitted, &observation),
+            false => Vec::new(),
+        };
         Ok(Diagnosis {
             verdict: verdict(&search, &observation, &findings),
-            refitted: (chi2_per_dof, upper_tail(excess(chi2_per_dof, observation.degrees()))),
+            refitted: (chi2_per_dof, chance),
             mismatch: mismatch(&observation, &search.refitted.predicted),
             residual_correlation: correlation(&observation, &search.repaired.predicted),
             findings,
-            locations: Vec::new(),
+            locations,
             held_out,
             search,
             observation,
@@ -233,7 +240,7 @@ fn findings(search: &Search, observation: &Observation) -> Vec<Finding> {
                 probability: names.iter().find(|a| own(a)).map_or(0.0, |a| a.probability),
                 alternatives: names.iter().filter(|a| !own(a)).filter_map(named).collect(),
                 gain: without.map_or(0.0, |fit| fit.objective - repaired.objective),
-                measured: None,
+                measured: measure(repaired, index, observation),
             }
         })
         .collect();
@@ -393,7 +400,7 @@ fn held_out_frfs(
 }
 
 /// Probability of a standard normal above `z` (Abramowitz and Stegun 26.2.17, absolute error below 1e-7).
-fn upper_tail(z: f64) -> f64 {
+pub(crate) fn upper_tail(z: f64) -> f64 {
     let t = 1.0 / (1.0 + 0.231_641_9 * z.abs());
     let series = t
         * (0.319_381_530

@@ -11,6 +11,7 @@
 //! * [`Hypothesis`]: quantities of the fixture that may move, and effects with free parameters;
 //! * [`Fit`]: a hypothesis at its maximum of likelihood and prior;
 //! * [`Search`]: nominal, refitted and repaired model;
+//! * [`locate`], [`measure`]: the place of a mismatch with no law assumed, and the δ(ω) found there;
 //! * [`Diagnosis`]: verdict, findings with intervals and alternatives, mismatch by FRF and band, the held-out judgement.
 //!
 //! ```no_run
@@ -30,6 +31,8 @@ mod fit;
 mod hypothesis;
 mod location;
 mod observation;
+mod ranking;
+mod says;
 mod search;
 
 pub use catalogue::{Candidate, catalogue};
@@ -39,6 +42,6 @@ pub use diagnosis::{
 pub use evidence::{Alternative, alternatives};
 pub use fit::{Fit, Linearisation};
 pub use hypothesis::{Hypothesis, PredictionError, Tolerance};
-pub use location::{LineEstimate, Location, Site};
+pub use location::{LawFit, LawParameter, LineEstimate, Location, Site, locate, measure};
 pub use observation::Observation;
 pub use search::Search;

@@ -5,7 +5,17 @@
 //! place one γ explains all FRFs within their noise, at a wrong one it cannot. What stays unexplained, by place, FRF and band, is the map of
 //! the mismatch; the γ of the best place, turned back into δ, is a measured dynamic stiffness, whose law over frequency names the physics.
 
-use jointscope_fixture::{Dof, Effect};
+mod chain;
+mod law_fit;
+mod laws;
+mod map;
+mod pattern;
+mod sites;
+mod yielding;
+
+pub use map::{locate, measure};
+
+use jointscope_fixture::Dof;
 use jointscope_spectra::FrfPair;
 use num_complex::Complex64;
 
@@ -28,6 +38,8 @@ pub enum Site {
         /// The direction that yields.
         dof: Dof,
     },
+    /// The joint's own law: its elastic stiffness is multiplied by 1 + δ.
+    Joint(String),
     /// A response channel: its FRFs are multiplied by 1 + δ.
     Response(String),
     /// A reference channel: its FRFs are divided by 1 + δ.
@@ -53,6 +65,40 @@ pub struct Location {
     pub frfs: Vec<(FrfPair, f64)>,
     /// δ on each line where it is determined.
     pub delta: Vec<LineEstimate>,
+    /// Number of lines without δ: the pattern vanishes, too few FRFs are valid, or the noise does not let it be inverted.
+    pub masked: usize,
+    /// The laws tried on δ(ω), the closest first.
+    pub laws: Vec<LawFit>,
+}
+
+/// A law over frequency fitted to the δ(ω) of a place.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LawFit {
+    /// What it would be, in words.
+    pub name: &'static str,
+    /// δ(ω) as a formula.
+    pub formula: &'static str,
+    /// Its parameters.
+    pub parameters: Vec<LawParameter>,
+    /// χ² per degree of freedom that the law leaves of δ, tolerances yielding: far above 1 where δ does not follow it.
+    pub chi2_per_dof: f64,
+    /// Real values of δ less parameters.
+    pub degrees: usize,
+    /// The law on the lines of [`Location::delta`].
+    pub values: Vec<Complex64>,
+}
+
+/// A parameter of a law.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LawParameter {
+    /// Its name, as in fixture files.
+    pub name: &'static str,
+    /// Its unit.
+    pub unit: &'static str,
+    /// Its value.
+    pub value: f64,
+    /// One standard deviation, tolerances included.
+    pub std: f64,
 }
 
 /// δ on one spectral line.
@@ -60,8 +106,8 @@ pub struct Location {
 pub struct LineEstimate {
     /// The line, Hz.
     pub frequency: f64,
-    /// The unknown component's dynamic stiffness (N/m for a body or a translation in series, N·m/rad for a rotation in series), or the channel's
-    /// relative error (1), or the seat's offset (m).
+    /// δ: the unknown component's dynamic stiffness (N/m for a body or a translation in series, N·m/rad for a rotation in series: there
+    /// infinite means that nothing yields), the relative change of a joint's elastic stiffness or of a channel (1), a seat's offset (m).
     pub value: Complex64,
     /// Standard deviation of its real part, and of its imaginary part.
     pub std: f64,
@@ -73,13 +119,8 @@ impl Site {
         match self {
             Site::Body { .. } | Site::Series { dof: Dof::Translation, .. } => "N/m",
             Site::Series { dof: Dof::Rotation, .. } => "N*m/rad",
-            Site::Response(_) | Site::Reference(_) => "1",
+            Site::Response(_) | Site::Reference(_) | Site::Joint(_) => "1",
             Site::Seat(_) => "m",
         }
-    }
-
-    /// Whether `effect` would act through this site.
-    pub fn holds(&self, _effect: &Effect) -> bool {
-        false
     }
 }

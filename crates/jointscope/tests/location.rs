@@ -1,0 +1,159 @@
+//! The place of a mismatch, found with no law assumed, on recordings of the simulated laboratory.
+#![allow(clippy::unwrap_used, missing_docs)]
+
+use jointscope::diagnosis::{Fit, Hypothesis, Location, Observation, Site, locate, measure};
+use jointscope::fixture::{Dof, Effect, EffectKind, Place, Quantity};
+use jointscope::{Fixture, FrfPair, FrfSet, SpectralLines, synthesize};
+use jointscope_rig::{HammerTest, Instrument, drawn_within_tolerance, frfs, generator};
+
+const BELIEVED: &str = r#"{
+  "bodies": {
+    "A": { "mass": {"value": 1.10, "std": 0.0011}, "inertia": {"value": 9.5e-4, "std": 4e-6}, "x_cg": {"value": -0.030, "std": 1e-4} },
+    "B": { "mass": {"value": 1.25, "std": 0.0012}, "inertia": {"value": 1.1e-3, "std": 4e-6}, "x_cg": {"value": 0.096, "std": 1e-4} } },
+  "points": {
+    "1": { "body": "A", "x": {"value": -0.060, "std": 1e-4} }, "2": { "body": "A", "x": {"value": 0.0, "std": 1e-4} },
+    "3": { "body": "B", "x": {"value": 0.065, "std": 1e-4} },  "4": { "body": "B", "x": {"value": 0.127, "std": 1e-4} } },
+  "joints": { "J": { "from": "2", "to": "3",
+    "beam": { "youngs_modulus": {"value": 2.07e11, "std": 1e9}, "second_moment": {"value": 3.6e-10, "std": 2e-12} } } },
+  "damping": { "modal_ratios": [{"value": 0.006, "std": 0.0012}, {"value": 0.008, "std": 0.0014}] } }"#;
+
+fn pairs() -> Vec<FrfPair> {
+    [("4", "1"), ("3", "1"), ("4", "2"), ("3", "2")].map(|(o, i)| FrfPair::transverse(o, i)).to_vec()
+}
+
+fn clean(truth: &Fixture) -> FrfSet {
+    frfs(truth, &pairs(), &SpectralLines::even(15.0, 15.0, 86).unwrap(), Instrument::AsDescribed).unwrap()
+}
+
+/// What an analyst would have: the fixture believed, and recordings of one with true values within its tolerances and an effect.
+fn recorded(effects: Vec<Effect>, seed: u64) -> (Fixture, Observation) {
+    let believed = Fixture::from_json(BELIEVED).unwrap();
+    let truth =
+        drawn_within_tolerance(&believed, &mut generator(seed)).unwrap().with_physics(effects).unwrap();
+    let hammer = HammerTest {
+        averages: 10,
+        noise_response: 0.005,
+        noise_force: 0.0007,
+        corner: 1200.0,
+        spread: 0.25,
+        common_hits: false,
+        seed,
+    };
+    let frfs = hammer.measure(&clean(&truth)).unwrap();
+    (believed, Observation::new(&frfs, |_| true).unwrap())
+}
+
+fn located(effects: Vec<Effect>, seed: u64) -> (Fixture, Vec<Location>) {
+    let (fixture, observation) = recorded(effects, seed);
+    let nominal = Hypothesis::nominal(&fixture, false);
+    let refitted = Fit::of(&nominal, &observation, true).unwrap();
+    let all = locate(&nominal, &refitted, &observation);
+    (fixture, all)
+}
+
+fn listed(all: &[Location]) -> String {
+    all.iter().map(|l| format!("{:?}: {:.2}\n", l.site, l.chi2_per_dof)).collect()
+}
+
+#[test]
+fn a_strong_added_mass_is_located_on_its_body_and_measured_as_minus_omega_squared_m() {
+    let mass = 0.08;
+    let hidden = Effect::new(EffectKind::AddedMass, Place::Body("B".into()), None, &[0.118, mass]);
+    let (fixture, all) = located(vec![hidden.clone()], 12);
+    let best = &all[0];
+    assert!(best.site.holds(&hidden, &fixture), "{}", listed(&all));
+    assert!(best.p_value > 0.001, "p = {}: {}", best.p_value, listed(&all));
+    let Site::Body { x, .. } = best.site else { unreachable!() };
+    assert!((x - 0.118).abs() < 0.01, "at {x} m");
+    let law = &best.laws[0];
+    let told = &law.parameters[0];
+    assert_eq!(told.name, "mass", "{law:?}");
+    assert!((told.value - mass).abs() < 4.0 * told.std.max(0.003 * mass), "{told:?}");
+    // Every line by itself, tolerances included: nearly all real parts within two and a half deviations.
+    let inside = best.delta.iter().filter(|d| {
+        let omega = std::f64::consts::TAU * d.frequency;
+        (d.value.re + omega * omega * mass).abs() < 2.5 * d.std
+    });
+    let (inside, of) = (inside.count(), best.delta.len());
+    assert!(of > 40 && inside as f64 > 0.85 * of as f64, "{inside} of {of} lines");
+}
+
+#[test]
+fn a_wrong_place_leaves_misfit() {
+    let hidden = Effect::new(EffectKind::ChannelGain, Place::Response("3".into()), None, &[0.8]);
+    let (fixture, all) = located(vec![hidden.clone()], 14);
+    assert!(all[0].site.holds(&hidden, &fixture), "{}", listed(&all));
+    assert!(all[0].chi2_per_dof < 1.2, "{}", listed(&all));
+    assert!(all.last().unwrap().chi2_per_dof > 10.0, "{}", listed(&all));
+    let law = &all[0].laws[0];
+    assert_eq!(law.parameters[0].name, "factor", "{law:?}");
+    assert!((law.parameters[0].value - 0.8).abs() < 4.0 * law.parameters[0].std, "{law:?}");
+}
+
+#[test]
+fn a_rotation_spring_at_a_joints_end_is_measured_as_the_same_stiffness_on_all_lines() {
+    let hidden = Effect::new(
+        EffectKind::InterfaceCompliance,
+        Place::Point("3".into()),
+        Some(Dof::Rotation),
+        &[6000.0, 0.0],
+    );
+    let (fixture, all) = located(vec![hidden.clone()], 15);
+    let at = all.iter().find(|l| l.site.holds(&hidden, &fixture)).unwrap();
+    assert!(at.p_value > 0.001, "{}", listed(&all));
+    let law = &at.laws[0];
+    let told = &law.parameters[0];
+    assert!((told.value / 6000.0 - 1.0).abs() < 0.1, "{law:?}");
+    assert!(at.site.unit() == "N*m/rad" && told.unit == "N*m/rad");
+}
+
+#[test]
+fn with_nothing_hidden_every_place_leaves_what_chance_leaves() {
+    let (_, all) = located(Vec::new(), 11);
+    assert!(all.len() >= 12, "{}", listed(&all));
+    for location in &all {
+        assert!(location.p_value > 0.001 && location.chi2_per_dof > 0.8, "{}", listed(&all));
+    }
+}
+
+#[test]
+fn without_noise_and_tolerance_every_line_gives_the_stiffness_that_was_put_there() {
+    let mut believed = Fixture::from_json(BELIEVED).unwrap();
+    for quantity in believed.quantities_mut() {
+        *quantity.quantity = Quantity::bare(quantity.quantity.value);
+    }
+    let lines = SpectralLines::even(15.0, 15.0, 86).unwrap();
+    for (mass, x) in [(-0.05, 0.11), (0.02, 0.07), (0.3, 0.13), (-0.004, 0.09)] {
+        let hidden = Effect::new(EffectKind::AddedMass, Place::Body("B".into()), None, &[x, mass]);
+        let truth = believed.clone().with_physics(vec![hidden.clone()]).unwrap();
+        let set = synthesize(&truth, &pairs(), &lines, jointscope::Instrument::AsRecorded).unwrap();
+        let tiny = set.all_values().iter().map(|v| (1e-6 * v.norm()).powi(2)).collect();
+        let observation = Observation::new(&set.with_variance(tiny).unwrap(), |_| true).unwrap();
+        let hypothesis = Hypothesis::nominal(&believed, true).with(hidden);
+        let repaired = Fit::of(&hypothesis, &observation, false).unwrap();
+        let found = measure(&repaired, 0, &observation).unwrap();
+        assert_eq!((found.delta.len(), found.masked), (lines.len(), 0));
+        for line in &found.delta {
+            let omega = std::f64::consts::TAU * line.frequency;
+            let relative = (line.value / (-omega * omega * mass) - 1.0).norm();
+            assert!(relative < 1e-9, "{mass} kg, {} Hz: {relative:e}", line.frequency);
+        }
+    }
+}
+
+#[test]
+fn an_effect_of_higher_rank_has_no_single_stiffness_to_measure() {
+    let (fixture, observation) = recorded(Vec::new(), 16);
+    let bends = Effect::new(EffectKind::BodyFlexibility, Place::Body("B".into()), None, &[3000.0, 0.01]);
+    let fit = Fit::of(&Hypothesis::nominal(&fixture, false).with(bends), &observation, false).unwrap();
+    assert!(measure(&fit, 0, &observation).is_none());
+}
+
+#[test]
+fn one_frf_alone_locates_nothing() {
+    let (fixture, observation) = recorded(Vec::new(), 17);
+    let one = observation.reduced(|_| true, |pair| *pair == FrfPair::transverse("4", "1")).unwrap();
+    let nominal = Hypothesis::nominal(&fixture, false);
+    let refitted = Fit::of(&nominal, &one, false).unwrap();
+    assert!(locate(&nominal, &refitted, &one).is_empty());
+}
