@@ -10,6 +10,7 @@
 //! | what channels read | [`frfs`], [`read`], [`Instrument`] |
 //! | hammer hits and noise | [`HammerTest`] |
 //! | random assemblies | [`Family`], [`drawn_within_tolerance`], [`random_effect`] |
+//! | physics without a name in fixture files | [`Outside`] |
 //! | a worked case | [`glued_joint`]: two steel blocks and a glued strip |
 //! | files | [`universal_file`]: FRFs with coherence as UFF |
 //!
@@ -37,6 +38,7 @@ mod error;
 mod families;
 pub mod glued_joint;
 mod hits;
+mod outside;
 mod physical;
 mod random;
 mod random_effect;
@@ -47,6 +49,7 @@ pub use channels::{Instrument, frfs, read};
 pub use error::{HammerError, StructureError};
 pub use families::Family;
 pub use hits::{HammerTest, smoothed_variance};
+pub use outside::Outside;
 pub use physical::{Assembly, BeamElement, Law, Row, Station, Structure};
 pub use random::generator;
 pub use random_effect::random_effect;
