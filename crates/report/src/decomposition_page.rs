@@ -14,30 +14,8 @@ mod verdict;
 use jointscope_decomposition::{Analysis, Relation};
 use jointscope_fixture::{Fixture, Joint, JointLaw};
 
-use crate::{Foot, Page, PageError, Section};
+use crate::{Page, PageContext, PageError, Section};
 use estimate::Estimate;
-
-/// Where a page comes from: what its foot states, and what was noticed on the way.
-#[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub struct PageContext {
-    /// The program and its version.
-    pub program: String,
-    /// The command line.
-    pub command: String,
-    /// The files that were read.
-    pub inputs: Vec<InputFile>,
-    /// Remarks from reading the recordings, one plain sentence each.
-    pub notes: Vec<String>,
-}
-
-/// A file that was read.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct InputFile {
-    /// Its name.
-    pub name: String,
-    /// SHA-256 of its contents, in hexadecimal digits.
-    pub sha256: String,
-}
 
 /// What the sections of the page are made from.
 #[derive(Clone, Copy)]
@@ -89,7 +67,7 @@ pub fn decomposition_page(
     let best = Estimate::best(analysis);
     let subject = Subject { analysis, fixture, best: &best };
     let mut page = Page::new(format!("Joint {}: stiffness and damping", analysis.joint))
-        .subtitle(subtitle(fixture, context))
+        .subtitle(context.subtitle(fixture))
         .verdict(verdict::verdict(&subject))
         .section(fixture_view::section(&subject));
     for section in result::sections(&subject) {
@@ -107,25 +85,5 @@ pub fn decomposition_page(
     for section in others.into_iter().flatten() {
         page = page.section(section);
     }
-    page.foot(foot(context)).to_html()
-}
-
-fn subtitle(fixture: &Fixture, context: &PageContext) -> String {
-    let recordings: Vec<&str> = context.inputs.iter().skip(1).map(|input| input.name.as_str()).collect();
-    match (fixture.name(), recordings.as_slice()) {
-        (name, []) => name.to_owned(),
-        ("", files) => files.join(", "),
-        (name, files) => format!("{name} · {}", files.join(", ")),
-    }
-}
-
-fn foot(context: &PageContext) -> Foot {
-    let mut foot = Foot::new(&context.program);
-    if !context.command.is_empty() {
-        foot = foot.command(&context.command);
-    }
-    context
-        .inputs
-        .iter()
-        .fold(foot, |foot, input| foot.input(&input.name, format!("sha256 {}", input.sha256)))
+    page.foot(context.foot()).to_html()
 }

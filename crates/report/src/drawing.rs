@@ -21,6 +21,7 @@
 //! ```
 
 mod layout;
+mod of_fixture;
 mod svg;
 
 /// Markup of an SVG image that may stand in a page as it is.

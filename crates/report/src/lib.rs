@@ -10,7 +10,8 @@
 //! | [`Verdict`], [`Card`], [`Table`] | headline, key figures, tables |
 //! | [`Plot`], [`Axis`], [`Role`], [`YRange`] | plots over spectral lines, with bands, gaps and reference lines |
 //! | [`drawing`] | side view of a fixture as SVG |
-//! | [`decomposition_page`], [`PageContext`] | the page of a joint's decomposition |
+//! | [`HeatMap`] | misfit by place and band, with its numbers |
+//! | [`decomposition_page`], [`diagnosis_page`], [`PageContext`] | the pages of a joint's decomposition and of a diagnosis |
 //! | [`format`](mod@format), [`Scale`] | numbers with uncertainty, units with SI prefix |
 //!
 //! ```
@@ -42,21 +43,28 @@
 //! that panes of many thousand spectral lines zoom and move together without delay, where general plotting libraries would add megabytes to each report or load
 //! themselves from a server.
 
+mod context;
 mod decomposition_page;
+mod diagnosis_page;
 pub mod drawing;
 mod elements;
 mod error;
 pub mod format;
+mod heat_map;
 mod html;
 mod page;
+mod phase;
 mod plot;
 mod section;
 mod unit;
 
-pub use decomposition_page::{InputFile, PageContext, decomposition_page};
+pub use context::{InputFile, PageContext};
+pub use decomposition_page::decomposition_page;
+pub use diagnosis_page::diagnosis_page;
 pub use drawing::{FixtureDrawing, Svg};
 pub use elements::{Card, Column, Table, Tone, Verdict};
 pub use error::PageError;
+pub use heat_map::HeatMap;
 pub use page::{Foot, Page};
 pub use plot::{Axis, Ordinate, Plot, Role, Spacing, YRange, kept_lines};
 pub use section::Section;

@@ -3,6 +3,7 @@
 use crate::drawing::Svg;
 use crate::elements::{Card, Table};
 use crate::error::PageError;
+use crate::heat_map::HeatMap;
 use crate::html::{push_element, push_escaped};
 use crate::plot::{ColumnPool, Plot, PlotData, write_figure};
 
@@ -11,6 +12,7 @@ enum Block {
     Paragraph(String),
     Cards(Vec<Card>),
     Table(Table),
+    HeatMap(HeatMap),
     Notes(Vec<String>),
     Warnings(Vec<String>),
     Command(String),
@@ -49,6 +51,11 @@ impl Section {
     /// A table.
     pub fn table(self, table: Table) -> Self {
         self.with(Block::Table(table))
+    }
+
+    /// A map of numbers by row and column.
+    pub fn heat_map(self, map: HeatMap) -> Self {
+        self.with(Block::HeatMap(map))
     }
 
     /// A list of remarks; nothing where there are none.
@@ -115,6 +122,7 @@ fn write_block(
             html.push_str("</dl>");
         }
         Block::Table(table) => table.write(html)?,
+        Block::HeatMap(map) => map.write(html)?,
         Block::Notes(notes) => push_list(html, "notes", notes),
         Block::Warnings(warnings) => push_list(html, "notes warnings", warnings),
         Block::Command(line) => push_element(html, "pre", "command", line),

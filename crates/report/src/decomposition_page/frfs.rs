@@ -6,6 +6,7 @@ use num_complex::Complex64;
 use super::Subject;
 use super::by_line::LINE_LIMIT;
 use super::element::Element;
+use crate::phase::{degrees, in_the_quietest_turn};
 use crate::{Axis, Plot, Role, Section};
 
 const UNITS: [&str; 4] = ["m/N", "m/(N*m)", "rad/N", "rad/(N*m)"];
@@ -75,18 +76,9 @@ fn magnitude(subject: &Subject, element: Element, hz: &[f64]) -> Plot {
 }
 
 fn phase(subject: &Subject, element: Element, hz: &[f64]) -> Plot {
-    let degrees = |values: Vec<Option<Complex64>>| -> Vec<Option<f64>> {
-        values
-            .into_iter()
-            .map(|v| v.filter(|v| *v != Complex64::ZERO).map(|v| v.arg().to_degrees()))
-            .collect()
-    };
     let (mut measured, mut nominal) =
         (degrees(measured(subject, element)), degrees(nominal(subject, element)));
-    let cut = quietest_cut(&measured, &nominal);
-    for value in measured.iter_mut().chain(&mut nominal).flatten() {
-        *value = below(*value, cut);
-    }
+    in_the_quietest_turn(&mut [&mut measured, &mut nominal]);
     let axis = Axis::linear(format!("arg H{}", element.index), "°");
     Plot::new(format!("Phase of H{}", element.index), Axis::frequency(), axis)
         .over(hz)
@@ -95,24 +87,6 @@ fn phase(subject: &Subject, element: Element, hz: &[f64]) -> Plot {
         .height(180)
         .line_limit(LINE_LIMIT)
         .caption("Phase, in the turn that the curves cross least.")
-}
-
-/// The phase in the turn that ends at `cut`, degrees.
-fn below(degrees: f64, cut: f64) -> f64 {
-    cut - (cut - degrees).rem_euclid(360.0)
-}
-
-/// Where to cut the circle of phases so that the fewest lines jump over the cut: noise about ±180° would fill the pane.
-fn quietest_cut(measured: &[Option<f64>], nominal: &[Option<f64>]) -> f64 {
-    let jumps = |cut: f64| {
-        let of = |values: &[Option<f64>]| {
-            let pairs = values.windows(2).filter_map(|pair| pair[0].zip(pair[1]));
-            pairs.filter(|(a, b)| (below(*a, cut) - below(*b, cut)).abs() > 180.0).count()
-        };
-        of(measured) + of(nominal)
-    };
-    let cuts = [180.0, 90.0, 60.0, 45.0, 120.0, 135.0, 150.0, 210.0, 225.0, 240.0, 270.0, 30.0];
-    cuts.into_iter().min_by_key(|cut| jumps(*cut)).unwrap_or(180.0)
 }
 
 /// FRFs in use, with their indices.

@@ -1,9 +1,9 @@
 //! What was left out, what was remarked, and how hard the lines are to decompose.
 
+use super::Subject;
 use super::by_line::LINE_LIMIT;
 use super::verdict::plain;
-use super::{PageContext, Subject};
-use crate::{Axis, Column, Plot, Role, Section, Table, YRange};
+use crate::{Axis, Column, PageContext, Plot, Role, Section, Table, YRange};
 
 pub(super) fn section(subject: &Subject, context: &PageContext) -> Section {
     let analysis = subject.analysis;

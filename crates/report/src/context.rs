@@ -1,0 +1,50 @@
+//! Where a page comes from, as every page states it.
+
+use jointscope_fixture::Fixture;
+
+use crate::Foot;
+
+/// Where a page comes from: what its foot states, and what was noticed on the way.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct PageContext {
+    /// The program and its version.
+    pub program: String,
+    /// The command line.
+    pub command: String,
+    /// The files that were read.
+    pub inputs: Vec<InputFile>,
+    /// Remarks from reading the recordings, one plain sentence each.
+    pub notes: Vec<String>,
+}
+
+/// A file that was read.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct InputFile {
+    /// Its name.
+    pub name: String,
+    /// SHA-256 of its contents, in hexadecimal digits.
+    pub sha256: String,
+}
+
+impl PageContext {
+    /// The fixture's name and the recordings.
+    pub(crate) fn subtitle(&self, fixture: &Fixture) -> String {
+        let recordings: Vec<&str> = self.inputs.iter().skip(1).map(|input| input.name.as_str()).collect();
+        match (fixture.name(), recordings.as_slice()) {
+            (name, []) => name.to_owned(),
+            ("", files) => files.join(", "),
+            (name, files) => format!("{name} · {}", files.join(", ")),
+        }
+    }
+
+    /// Program, command line and the inputs' hashes.
+    pub(crate) fn foot(&self) -> Foot {
+        let mut foot = Foot::new(&self.program);
+        if !self.command.is_empty() {
+            foot = foot.command(&self.command);
+        }
+        self.inputs
+            .iter()
+            .fold(foot, |foot, input| foot.input(&input.name, format!("sha256 {}", input.sha256)))
+    }
+}

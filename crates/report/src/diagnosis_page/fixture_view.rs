@@ -1,0 +1,103 @@
+//! The fixture from the side, with the places of the findings marked.
+
+use jointscope_diagnosis::{Finding, Site};
+use jointscope_fixture::{BodyKind, Effect, Fixture, Place};
+
+use super::Subject;
+use crate::Section;
+use crate::drawing::{FixtureDrawing, Highlight};
+
+pub(super) fn section(subject: &Subject) -> Section {
+    let (fixture, diagnosis) = (subject.fixture, subject.diagnosis);
+    let mut drawing = FixtureDrawing::of_fixture(fixture, diagnosis.observation.pairs());
+    for (index, finding) in diagnosis.findings.iter().enumerate() {
+        mark(&mut drawing, fixture, index, finding);
+    }
+    let best = diagnosis.locations.first().filter(|_| diagnosis.is_unnamed());
+    if let Some(highlight) = best.and_then(|location| at_site(fixture, &location.site)) {
+        drawing.highlights.push(highlight);
+    }
+    let marked = match (diagnosis.findings.len(), best) {
+        (0, None) => "no place is marked",
+        (0, Some(_)) => "marked is the place that would explain most of what is left",
+        (_, Some(_)) => {
+            "marked are the places of the findings, which are doubtful, and the place that would explain most by itself"
+        }
+        (1, _) => "marked is where the finding sits",
+        _ => "marked is where the findings sit, by their numbers",
+    };
+    let everywhere = diagnosis.findings.iter().any(|finding| finding.effect.place == Place::All);
+    let all = if everywhere { " One finding concerns the whole measurement and has no place." } else { "" };
+    Section::new("Where").drawing(
+        drawing.to_svg(),
+        format!(
+            "Side view with the channels in use, responses (sensors) in blue and references (hammer) in green; {marked}.{all} The outlines of \
+             blocks are sketched."
+        ),
+    )
+}
+
+fn mark(drawing: &mut FixtureDrawing, fixture: &Fixture, index: usize, finding: &Finding) {
+    let effect = &finding.effect;
+    if let Place::Joint(name) = &effect.place {
+        drawing
+            .joints
+            .iter_mut()
+            .filter(|joint| joint.name == *name)
+            .for_each(|joint| joint.highlight = true);
+    }
+    if let Some((x, body)) = place(fixture, effect) {
+        let words = effect.kind.name().replace('_', " ");
+        drawing.highlights.push(Highlight { x, body, label: format!("{}. {words}", index + 1) });
+    }
+}
+
+/// Abscissa and body of an effect; nothing for what concerns the whole measurement.
+fn place(fixture: &Fixture, effect: &Effect) -> Option<(f64, Option<usize>)> {
+    match &effect.place {
+        Place::Body(name) => {
+            let body = fixture.bodies().iter().position(|body| body.name == *name)?;
+            let parameters = effect.kind.spec().parameters;
+            let x = parameters.iter().position(|p| p.name == "x").map(|index| effect.value(index));
+            Some((x.unwrap_or_else(|| centre(fixture, body)), Some(body)))
+        }
+        Place::Point(name) | Place::Response(name) | Place::Reference(name) => {
+            let point = fixture.point(name)?;
+            Some((point.x.value, Some(point.body)))
+        }
+        Place::Joint(name) => middle(fixture, name).map(|x| (x, None)),
+        Place::All => None,
+    }
+}
+
+fn at_site(fixture: &Fixture, site: &Site) -> Option<Highlight> {
+    let (x, body) = match site {
+        Site::Body { body, x } => (*x, fixture.bodies().iter().position(|b| b.name == *body)),
+        Site::Series { joint, point: None, .. } | Site::Joint(joint) => (middle(fixture, joint)?, None),
+        Site::Series { point: Some(point), .. }
+        | Site::Response(point)
+        | Site::Reference(point)
+        | Site::Seat(point) => {
+            let point = fixture.point(point)?;
+            (point.x.value, Some(point.body))
+        }
+    };
+    Some(Highlight { x, body, label: "best place".to_owned() })
+}
+
+fn middle(fixture: &Fixture, joint: &str) -> Option<f64> {
+    let joint = fixture.joint(joint)?;
+    let end = |index: usize| fixture.points().get(index).map(|point| point.x.value);
+    Some(0.5 * (end(joint.from)? + end(joint.to)?))
+}
+
+fn centre(fixture: &Fixture, body: usize) -> f64 {
+    match fixture.bodies().get(body).map(|body| &body.kind) {
+        Some(BodyKind::Beam(beam)) => 0.5 * (beam.from.value + beam.to.value),
+        Some(BodyKind::Rigid(rigid)) => {
+            let first = fixture.points().iter().find(|point| point.body == body).map(|point| point.x.value);
+            rigid.x_cg.as_ref().map(|x| x.value).or(first).unwrap_or(0.0)
+        }
+        None => 0.0,
+    }
+}

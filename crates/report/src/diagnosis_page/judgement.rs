@@ -1,0 +1,76 @@
+//! Before and after: errors of the three models, on what was fitted and on what was not.
+
+use super::Subject;
+use crate::format::{percent, significant};
+use crate::{Card, Column, Section, Table};
+
+pub(super) fn section(subject: &Subject) -> Section {
+    let diagnosis = subject.diagnosis;
+    let (errors, chi2) = (diagnosis.nrmse(), diagnosis.chi2_per_dof());
+    let what = [
+        "nominal: the fixture as stated",
+        "refitted: within its tolerances, no effects",
+        "repaired: tolerances and findings",
+    ];
+    let columns = [
+        Column::text("Model"),
+        Column::numbers("Relative error of the FRFs", "%"),
+        Column::numbers("χ² per degree of freedom", ""),
+    ];
+    let mut table = Table::new(columns);
+    for ((what, error), chi2) in what.into_iter().zip(errors).zip(chi2).take(subject.models().len()) {
+        table = table.row([what.to_owned(), significant(100.0 * error, 3), significant(chi2, 4)]);
+    }
+    table = table.footnote(format!(
+        "Relative error: √(Σ|H model − H measured|²/Σ|H measured|²) over all FRFs and lines in use, as accelerance. χ² counts {} real values.",
+        diagnosis.observation.degrees()
+    ));
+    let section = Section::new("Before and after").table(table);
+    match &diagnosis.held_out {
+        None => section.paragraph(
+            "There were too few lines to hold any out of the fit: the errors above are of what was fitted.",
+        ),
+        Some(held_out) => {
+            let same = match (held_out.same_findings, diagnosis.findings.is_empty()) {
+                (true, true) => "Without them the search finds nothing either.",
+                (true, false) => "Without them the search finds the same names.",
+                (false, _) => {
+                    "Without them the search finds other names: the findings hang on what was held out."
+                }
+            };
+            let what: Vec<String> = held_out.what.iter().map(|what| spoken(what)).collect();
+            let mut cards = vec![Card::text("Held out, refitted", percent(held_out.nrmse_refitted, 2))];
+            if !diagnosis.findings.is_empty() {
+                cards.push(
+                    Card::text("Held out, repaired", percent(held_out.nrmse_repaired, 2))
+                        .note(gain(held_out.nrmse_refitted, held_out.nrmse_repaired)),
+                );
+            }
+            section
+                .paragraph(format!(
+                    "Held out were {}: the whole search was done again without them, and its models then predicted them. {same}",
+                    what.join(", ")
+                ))
+                .cards(cards)
+        }
+    }
+}
+
+/// `band 180:240` as `180 to 240 Hz`, `frf 4/2` as `FRF 4/2`.
+fn spoken(what: &str) -> String {
+    if let Some(frf) = what.strip_prefix("frf ") {
+        return format!("FRF {frf}");
+    }
+    match what.strip_prefix("band ").and_then(|band| band.split_once(':')) {
+        Some((from, to)) => format!("{from} to {to} Hz"),
+        None => what.to_owned(),
+    }
+}
+
+fn gain(refitted: f64, repaired: f64) -> String {
+    match refitted / repaired {
+        ratio if ratio > 1.05 => format!("{} times smaller than refitted", significant(ratio, 2)),
+        ratio if ratio.is_finite() => "no smaller than refitted".to_owned(),
+        _ => String::new(),
+    }
+}
