@@ -11,7 +11,7 @@ const FLOORS: [&[&str]; 7] = [
     &["jointscope-damping", "jointscope-frf", "jointscope-recordings"],
     &["jointscope-lumped", "jointscope-rig"],
     &["jointscope-decomposition", "jointscope-diagnosis"],
-    &["jointscope", "jointscope-report"],
+    &["jointscope", "jointscope-proof", "jointscope-report"],
     &["jointscope-cli", "jointscope-benches"],
 ];
 

@@ -1,0 +1,91 @@
+//! The answers to all cases, each by a worker of its own.
+
+use crate::{Answer, Case, NoAnswer};
+use rayon::ThreadPoolBuilder;
+use serde_json::{Value, json};
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::time::Instant;
+
+/// The answers to all cases, in their order.
+#[derive(Debug)]
+pub struct Answers {
+    all: Vec<Result<Answer, NoAnswer>>,
+    seconds: Vec<f64>,
+}
+
+impl Answers {
+    /// Diagnoses all cases on `threads` workers; `told` hears the number of answers given so far. A case keeps to one core, so its
+    /// seconds mean the same however many workers there are.
+    pub fn to(cases: &[Case], threads: usize, told: impl Fn(usize) + Sync) -> Self {
+        Self::by(cases, threads, told, Answer::of)
+    }
+
+    /// As [`Answers::to`], given by another than the diagnosis.
+    pub fn by(
+        cases: &[Case],
+        threads: usize,
+        told: impl Fn(usize) + Sync,
+        answer: impl Fn(&Case) -> Result<Answer, NoAnswer> + Sync,
+    ) -> Self {
+        let given = on_workers(cases, threads, told, |case| {
+            let start = Instant::now();
+            let answer = catch_unwind(AssertUnwindSafe(|| answer(case))).unwrap_or(Err(NoAnswer::BrokeDown));
+            (answer, start.elapsed().as_secs_f64())
+        });
+        let (all, seconds) = given.into_iter().map(|a| a.unwrap_or((Err(NoAnswer::BrokeDown), 0.0))).unzip();
+        Answers { all, seconds }
+    }
+
+    /// The answers.
+    pub fn all(&self) -> &[Result<Answer, NoAnswer>] {
+        &self.all
+    }
+
+    /// Seconds that each answer took, on one core.
+    pub fn seconds(&self) -> &[f64] {
+        &self.seconds
+    }
+
+    /// The answers as JSON.
+    pub fn to_value(&self) -> Value {
+        let value = |answer: &Result<Answer, NoAnswer>| match answer {
+            Ok(answer) => answer.to_value(),
+            Err(why) => json!({ "no_answer": why.to_string() }),
+        };
+        Value::Array(self.all.iter().map(value).collect())
+    }
+}
+
+/// Maps `items` on `threads` workers, each with a pool of one thread for whatever runs within; results keep the items' order.
+/// `None` where a worker died over an item.
+pub(crate) fn on_workers<T: Sync, U: Send>(
+    items: &[T],
+    threads: usize,
+    told: impl Fn(usize) + Sync,
+    work: impl Fn(&T) -> U + Sync,
+) -> Vec<Option<U>> {
+    let results: Vec<Mutex<Option<U>>> = items.iter().map(|_| Mutex::new(None)).collect();
+    let (next, done) = (AtomicUsize::new(0), AtomicUsize::new(0));
+    let worker = || {
+        // Without a pool of its own a worker would lend its time to another's case, and neither could be timed.
+        let pool = ThreadPoolBuilder::new().num_threads(1).build().ok();
+        while let Some(index) = Some(next.fetch_add(1, Ordering::Relaxed)).filter(|i| *i < items.len()) {
+            let result = match &pool {
+                Some(pool) => pool.install(|| work(&items[index])),
+                None => work(&items[index]),
+            };
+            if let Ok(mut slot) = results[index].lock() {
+                *slot = Some(result);
+            }
+            told(done.fetch_add(1, Ordering::Relaxed) + 1);
+        }
+    };
+    std::thread::scope(|scope| {
+        for _ in 0..threads.clamp(1, items.len().max(1)) {
+            scope.spawn(worker);
+        }
+    });
+    results.into_iter().map(|slot| slot.into_inner().ok().flatten()).collect()
+}

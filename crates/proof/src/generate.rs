@@ -1,0 +1,274 @@
+//! Cases from a seed: random assemblies, true quantities within tolerances, hidden physics, hammer tests.
+
+use crate::{Case, Role, SealedTruths, Truth};
+use jointscope_fixture::{Effect, EffectKind, Fixture};
+use jointscope_rig::{
+    Family, HammerError, HammerTest, Instrument, Outside, StructureError, drawn_within_tolerance, frfs,
+    generator, random_effect,
+};
+use jointscope_spectra::{FrfPair, FrfSet, SpectraError, SpectralLines};
+use rand::seq::SliceRandom;
+use rand::{Rng, RngExt};
+use sha2::{Digest, Sha256};
+
+/// Which cases to make.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Plan {
+    /// Number of cases.
+    pub cases: usize,
+    /// Seed of all but the fresh ones.
+    pub seed: u64,
+    /// A text (a commit's hash) that the last of the cases are drawn from, a quarter of them: cases that nobody can have tuned anything to.
+    pub fresh_from: Option<String>,
+    /// The one case to make; all where none is named.
+    pub only: Option<usize>,
+    /// Assemblies to draw from; a deformable beam, whose answers take longest, only on request.
+    pub families: Vec<Family>,
+}
+
+impl Default for Plan {
+    fn default() -> Self {
+        let families =
+            vec![Family::TwoBlocks, Family::SupportedTwoBlocks, Family::ThreeBlocks, Family::Frame];
+        Plan { cases: 40, seed: 1, fresh_from: None, only: None, families }
+    }
+}
+
+/// The families by name.
+pub const FAMILIES: [(&str, Family); 5] = [
+    ("two-blocks", Family::TwoBlocks),
+    ("supported-two-blocks", Family::SupportedTwoBlocks),
+    ("three-blocks", Family::ThreeBlocks),
+    ("frame", Family::Frame),
+    ("beam-and-block", Family::BeamAndBlock),
+];
+
+/// Why cases cannot be made.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum GenerationError {
+    /// There would be none.
+    #[error("there is no case to make: ask for at least one case of at least one family")]
+    NoCases,
+    /// A case beyond the last.
+    #[error("there is no case {only}: {cases} cases are numbered 0 to {}", cases - 1)]
+    NoSuchCase {
+        /// The case asked for.
+        only: usize,
+        /// Number of cases.
+        cases: usize,
+    },
+    /// Nothing fits the fixtures that were drawn.
+    #[error("case {0} could not be drawn: no hidden physics suited its fixtures")]
+    Unlucky(usize),
+    /// The structure.
+    #[error(transparent)]
+    Structure(#[from] StructureError),
+    /// The hammer.
+    #[error(transparent)]
+    Hammer(#[from] HammerError),
+    /// The spectral lines.
+    #[error(transparent)]
+    Spectra(#[from] SpectraError),
+}
+
+/// Roles by case number, repeating: a quarter nulls, half singles, an eighth each of doubles and outside physics.
+const ROLES: [Role; 8] = [
+    Role::Single,
+    Role::Null,
+    Role::Single,
+    Role::Double,
+    Role::Single,
+    Role::Null,
+    Role::Single,
+    Role::Outside,
+];
+
+/// Spectral lines of every recording: number and spacing in Hz.
+const LINES: (usize, f64) = (400, 2.5);
+/// Relative change of the recorded FRFs between which physics outside the vocabulary is drawn: it shows, and leaves the
+/// assembly recognisable.
+const OUTSIDE_SHOWS: [f64; 2] = [0.03, 0.8];
+/// Draws of a case before giving up.
+const DRAWS: usize = 60;
+/// FRFs that nobody records, at the most.
+const UNSEEN: usize = 6;
+
+impl Plan {
+    /// Number of fresh cases: a quarter where there is a text to draw them from.
+    pub fn fresh(&self) -> usize {
+        if self.fresh_from.is_some() { self.cases.div_ceil(4) } else { 0 }
+    }
+
+    /// Makes the cases, their numbers and, sealed, their truths. A case depends on the seed (or the text) and its number alone.
+    ///
+    /// # Errors
+    /// See [`GenerationError`].
+    pub fn draw(&self) -> Result<(Vec<Case>, SealedTruths), GenerationError> {
+        if self.cases == 0 || self.families.is_empty() {
+            return Err(GenerationError::NoCases);
+        }
+        let indices: Vec<usize> = match self.only {
+            Some(only) if only >= self.cases => {
+                return Err(GenerationError::NoSuchCase { only, cases: self.cases });
+            }
+            Some(only) => vec![only],
+            None => (0..self.cases).collect(),
+        };
+        let mut cases = Vec::with_capacity(indices.len());
+        let mut truths = Vec::with_capacity(indices.len());
+        for index in indices {
+            let (case, truth) = self.case(index)?;
+            cases.push(case);
+            truths.push(truth);
+        }
+        Ok((cases, SealedTruths::new(truths)))
+    }
+
+    fn case(&self, index: usize) -> Result<(Case, Truth), GenerationError> {
+        let first_fresh = self.cases - self.fresh();
+        // A fresh case counts from the first of them, so that the text alone decides what they are.
+        let (source, number, fresh) = match &self.fresh_from {
+            Some(text) if index >= first_fresh => (format!("text {text}"), index - first_fresh, true),
+            _ => (format!("seed {}", self.seed), index, false),
+        };
+        let seed = seed_of(&source, number);
+        let mut random = generator(seed);
+        let role = ROLES[number % ROLES.len()];
+        for _ in 0..DRAWS {
+            let family = self.families[random.random_range(0..self.families.len())];
+            let scene = Scene { family, role, number, seed };
+            if let Some((case, hidden)) = scene.draw(&mut random)? {
+                let Hidden { fixture, outside, hammer, unseen } = hidden;
+                let truth = Truth { index, source, fresh, role, fixture, outside, hammer, unseen };
+                return Ok((case, truth));
+            }
+        }
+        Err(GenerationError::Unlucky(index))
+    }
+}
+
+/// A seed of its own for every case.
+fn seed_of(source: &str, number: usize) -> u64 {
+    let digest = Sha256::digest(format!("{source} case {number}").as_bytes());
+    digest.iter().take(8).fold(0, |seed, byte| seed << 8 | u64::from(*byte))
+}
+
+struct Scene {
+    family: Family,
+    role: Role,
+    number: usize,
+    seed: u64,
+}
+
+struct Hidden {
+    fixture: Fixture,
+    outside: Option<Outside>,
+    hammer: HammerTest,
+    unseen: FrfSet,
+}
+
+impl Scene {
+    /// `None` where the fixture that was drawn has no place for what is to be hidden.
+    fn draw(&self, random: &mut impl Rng) -> Result<Option<(Case, Hidden)>, GenerationError> {
+        let believed = self.family.draw("concealed case", random)?;
+        let truth = drawn_within_tolerance(&believed, random)?;
+        let pairs = self.family.usual_pairs();
+        let lines = SpectralLines::even(LINES.1, LINES.1, LINES.0)?;
+        let Some(effects) = self.effects(random, &truth, &pairs)? else { return Ok(None) };
+        let truth = truth.with_physics(effects).map_err(StructureError::from)?;
+        let plain = match frfs(&truth, &pairs, &lines, Instrument::AsDescribed) {
+            Ok(plain) => plain,
+            // Two effects that cannot be together, or a place that has gone: another draw.
+            Err(_) if self.role == Role::Double => return Ok(None),
+            Err(error) => return Err(error.into()),
+        };
+        let (clean, outside) = if self.role == Role::Outside {
+            let kind = self.number / ROLES.len();
+            let Some(outside) = Outside::draw(random, &truth, kind, &pairs) else { return Ok(None) };
+            let clean = outside.frfs(&truth, &pairs, &lines, Instrument::AsDescribed)?;
+            let change = difference(&clean, &plain);
+            if !(OUTSIDE_SHOWS[0]..=OUTSIDE_SHOWS[1]).contains(&change) {
+                return Ok(None);
+            }
+            (clean, Some(outside))
+        } else {
+            (plain, None)
+        };
+        let hammer = HammerTest {
+            averages: [5, 8, 10, 16, 20][random.random_range(0..5)],
+            noise_response: random.random_range(0.004..0.015),
+            noise_force: random.random_range(0.0005..0.0015),
+            corner: random.random_range(900.0..1300.0),
+            spread: 0.25,
+            common_hits: false,
+            seed: self.seed,
+        };
+        let recorded = hammer.measure(&clean)?;
+        let apart = unseen_pairs(&truth, &pairs, random);
+        let unseen = match &outside {
+            Some(outside) => outside.frfs(&truth, &apart, &lines, Instrument::Perfect)?,
+            None => frfs(&truth, &apart, &lines, Instrument::Perfect)?,
+        };
+        Ok(Some((Case { believed, recorded }, Hidden { fixture: truth, outside, hammer, unseen })))
+    }
+
+    /// The effects to hide; `None` where the fixture has no place for them.
+    fn effects(
+        &self,
+        random: &mut impl Rng,
+        truth: &Fixture,
+        pairs: &[FrfPair],
+    ) -> Result<Option<Vec<Effect>>, GenerationError> {
+        let linear: Vec<EffectKind> = EffectKind::ALL.into_iter().filter(|k| !k.is_nonlinear()).collect();
+        let kinds = match self.role {
+            Role::Null | Role::Outside => Vec::new(),
+            // Singles take the kinds in turn.
+            Role::Single => {
+                let singles = |number: usize| {
+                    let whole = ROLES.iter().filter(|r| **r == Role::Single).count();
+                    let part = ROLES[..number % ROLES.len()].iter().filter(|r| **r == Role::Single).count();
+                    number / ROLES.len() * whole + part
+                };
+                vec![linear[singles(self.number) % linear.len()]]
+            }
+            Role::Double => {
+                let first = random.random_range(0..linear.len());
+                let step = random.random_range(1..linear.len());
+                vec![linear[first], linear[(first + step) % linear.len()]]
+            }
+        };
+        let mut effects = Vec::with_capacity(kinds.len());
+        for kind in kinds {
+            match random_effect(random, truth, kind, pairs)? {
+                Some(effect) => effects.push(effect),
+                None => return Ok(None),
+            }
+        }
+        Ok(Some(effects))
+    }
+}
+
+/// √(Σ|a − b|²/Σ|b|²).
+fn difference(a: &FrfSet, b: &FrfSet) -> f64 {
+    let error: f64 = a.all_values().iter().zip(b.all_values()).map(|(a, b)| (a - b).norm_sqr()).sum();
+    let size: f64 = b.all_values().iter().map(|b| b.norm_sqr()).sum();
+    (error / size).sqrt()
+}
+
+/// Pairs of points of which neither the FRF nor its reciprocal is recorded.
+fn unseen_pairs(fixture: &Fixture, recorded: &[FrfPair], random: &mut impl Rng) -> Vec<FrfPair> {
+    let names: Vec<&str> = fixture.points().iter().map(|point| point.name.as_str()).collect();
+    let mut all = Vec::new();
+    for (i, response) in names.iter().enumerate() {
+        for reference in &names[..=i] {
+            let (pair, back) =
+                (FrfPair::transverse(response, reference), FrfPair::transverse(reference, response));
+            if !recorded.contains(&pair) && !recorded.contains(&back) {
+                all.push(pair);
+            }
+        }
+    }
+    all.shuffle(random);
+    all.truncate(UNSEEN);
+    all
+}

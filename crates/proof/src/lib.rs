@@ -1,0 +1,60 @@
+//! What the diagnosis is worth: concealed cases, sealed truths, scores with their uncertainty.
+//!
+//! A [`Plan`] draws random assemblies in the simulated laboratory, true quantities within the stated tolerances, hidden physics and a noisy hammer
+//! test. The diagnosis gets the [`Case`], fixture and recording, and nothing else; the [`Truth`] stays in
+//! [`SealedTruths`], which give it out only against the [`Answers`] to all cases, and whose SHA-256 is known before the first.
+//! Then [`Judged`] lays truth and answer side by side: the laboratory's own model is fitted about the truth ([`Reference`]), and a name
+//! counts as right if it is the truth or fits within [`AS_GOOD`] of that. [`Score`] counts.
+//!
+//! | theme | items |
+//! |---|---|
+//! | making cases | [`Plan`], [`Case`], [`Truth`], [`Role`], [`SealedTruths`] |
+//! | answers | [`Answers`], [`Answer`], [`Found`], [`Timing`] |
+//! | judging | [`Judged`], [`Evidence`], [`Reference`], [`Name`] |
+//! | scores | [`Score`], [`Rate`], [`Share`], [`Reliability`], [`Confusion`] |
+//!
+//! Nothing is random but by the seed: cases, answers and scores are the same on any number of threads.
+//!
+//! ```
+//! use jointscope_proof::{Answers, Judged, NoAnswer, Plan, Score};
+//!
+//! let plan = Plan { cases: 2, ..Plan::default() };
+//! let (cases, sealed) = plan.draw()?;
+//! let published = sealed.digest().to_owned();
+//! // Somebody who never answers, in place of `Answers::to(&cases, 1, |_| ())`.
+//! let answers = Answers::by(&cases, 1, |_| (), |_| Err(NoAnswer::BrokeDown));
+//! let truths = sealed.open(&answers).ok_or("answers are missing")?;
+//! let score = Score::of(&Judged::all(&cases, truths, &answers, 1, |_| ()));
+//! assert_eq!(published.len(), 64);
+//! assert_eq!(score.rate("nulls_consistent").map(|rate| rate.share.of), Some(0));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+mod answer;
+mod answers;
+mod case;
+mod confusion;
+mod failures;
+mod generate;
+mod judged;
+mod objective;
+mod reference;
+mod reliability;
+mod score;
+mod seal;
+mod statistics;
+mod table;
+mod timing;
+
+pub use answer::{Answer, Found, NoAnswer};
+pub use answers::Answers;
+pub use case::{Case, Name, Role, Truth, describe};
+pub use confusion::{Confusion, NOTHING};
+pub use generate::{FAMILIES, GenerationError, Plan};
+pub use judged::{AS_GOOD, Evidence, Judged, PLAIN, STRAINED, VISIBLE};
+pub use reference::Reference;
+pub use reliability::{Bin, Reliability};
+pub use score::{CHANCE, Comparison, Figure, Rate, Score, Target};
+pub use seal::SealedTruths;
+pub use statistics::Share;
+pub use timing::Timing;

@@ -1,0 +1,235 @@
+//! The scores as text and as JSON.
+
+use crate::score::{CHANCE, Comparison};
+use crate::{FAMILIES, Figure, Judged, Plan, Rate, Role, Score, Share, Target};
+use serde_json::{Map, Value, json};
+use std::fmt::{self, Display, Formatter};
+
+impl Display for Plan {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        match self.only {
+            Some(only) => write!(f, "case {only} of {}, seed {}", self.cases, self.seed)?,
+            None => write!(f, "{} cases, seed {}", self.cases, self.seed)?,
+        }
+        if self.families != Plan::default().families {
+            write!(f, ", {}", self.family_names().join(", "))?;
+        }
+        match &self.fresh_from {
+            Some(text) => write!(f, "; the last {} drawn from {text}", self.fresh()),
+            None => Ok(()),
+        }
+    }
+}
+
+impl Plan {
+    fn family_names(&self) -> Vec<&'static str> {
+        let name = |(name, family): &(&'static str, _)| self.families.contains(family).then_some(*name);
+        FAMILIES.iter().filter_map(name).collect()
+    }
+
+    /// The plan as JSON.
+    pub fn to_value(&self) -> Value {
+        json!({
+            "cases": self.cases, "seed": self.seed, "only": self.only, "families": self.family_names(),
+            "fresh_from": self.fresh_from, "fresh": self.fresh(),
+        })
+    }
+}
+
+impl Display for Target {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        match self {
+            Target::AtLeast(least) => write!(f, "≥ {least}"),
+            Target::AtMost(most) => write!(f, "≤ {most}"),
+            Target::Within(least, most) => write!(f, "{least} to {most}"),
+        }
+    }
+}
+
+/// What is left of a target: nothing decides it, met, missed within chance, missed.
+fn standing(rate: &Rate) -> &'static str {
+    let (Some(target), Some(value)) = (rate.target, rate.share.value()) else { return "" };
+    let [low, high] = rate.share.interval();
+    let within = match target {
+        Target::AtLeast(least) => high >= least,
+        Target::AtMost(most) => low <= most,
+        Target::Within(least, most) => high >= least && low <= most,
+    };
+    match (target.is_met(value), within) {
+        (true, _) => "met",
+        (false, true) => "missed, within chance",
+        (false, false) => "missed",
+    }
+}
+
+fn counted(share: Share) -> String {
+    let Some(value) = share.value() else { return "no case".to_owned() };
+    let [low, high] = share.interval();
+    format!("{:>4} of {:<4} {value:.3} ({low:.3} to {high:.3})", share.of, share.all)
+}
+
+impl Display for Score {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        writeln!(f, "cases, and those whose hidden physics shows:")?;
+        for (role, all, visible) in &self.cases {
+            match role {
+                Role::Null => writeln!(f, "  {:<8} {all}", role.name())?,
+                _ => writeln!(f, "  {:<8} {all}, {visible} show", role.name())?,
+            }
+        }
+        writeln!(f, "\nshares (95 % binomial interval), target:")?;
+        for rate in &self.rates {
+            let target = rate.target.map_or_else(String::new, |target| target.to_string());
+            let line =
+                format!("  {:<60} {:<36} {target:<14} {}", rate.what, counted(rate.share), standing(rate));
+            writeln!(f, "{}", line.trim_end())?;
+        }
+        writeln!(f, "\nfigures, target:")?;
+        for Figure { what, value, from, target, .. } in &self.figures {
+            let shown = value.map_or_else(|| "no case".to_owned(), |value| format!("{value:.3} of {from}"));
+            let standing = match (target, value) {
+                (Some(target), Some(value)) if target.is_met(*value) => "met",
+                (Some(_), Some(_)) => "missed",
+                _ => "",
+            };
+            let target = target.map_or_else(String::new, |target| target.to_string());
+            let line = format!("  {what:<60} {shown:<36} {target:<14} {standing}");
+            writeln!(f, "{}", line.trim_end())?;
+        }
+        self.write_calibration(f)?;
+        self.write_confusion(f)?;
+        self.write_comparisons(f)
+    }
+}
+
+impl Score {
+    fn write_calibration(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        writeln!(
+            f,
+            "\nstated probabilities of names: number, mean stated, share that is the hidden name, share acceptable:"
+        )?;
+        for bin in self.reliability.0.iter().filter(|bin| bin.true_names.all > 0) {
+            let share = |share: Share| share.value().unwrap_or(0.0);
+            writeln!(
+                f,
+                "  {:.2} to {:.2} {:>5}  {:.3}  {:.3}  {:.3}",
+                bin.from,
+                bin.to,
+                bin.true_names.all,
+                bin.stated,
+                share(bin.true_names),
+                share(bin.acceptable)
+            )?;
+        }
+        Ok(())
+    }
+
+    fn write_confusion(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        writeln!(f, "\nhidden kind: strongest kind found")?;
+        for (hidden, found) in &self.confusion.0 {
+            let mut found: Vec<_> = found.iter().collect();
+            found.sort_by_key(|(kind, count)| (std::cmp::Reverse(**count), **kind));
+            let found: Vec<String> = found.iter().map(|(kind, count)| format!("{kind} {count}")).collect();
+            writeln!(f, "  {hidden:<22} {}", found.join(", "))?;
+        }
+        writeln!(f, "\nverdicts:")?;
+        for (role, verdicts) in &self.verdicts {
+            let given: Vec<String> = verdicts
+                .iter()
+                .filter(|(_, count)| *count > 0)
+                .map(|(name, count)| format!("{name} {count}"))
+                .collect();
+            writeln!(f, "  {:<8} {}", role.name(), given.join(", "))?;
+        }
+        Ok(())
+    }
+
+    fn write_comparisons(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        if self.comparisons.is_empty() {
+            return Ok(());
+        }
+        writeln!(f, "\nold and fresh cases, probability of a difference as large by chance:")?;
+        for Comparison { key, old, fresh, probability } in &self.comparisons {
+            let word = if *probability < CHANCE { "differ" } else { "agree" };
+            writeln!(
+                f,
+                "  {key:<20} {:>4} of {:<4} {:>4} of {:<4} {probability:.3} {word}",
+                old.of, old.all, fresh.of, fresh.all
+            )?;
+        }
+        Ok(())
+    }
+
+    /// The scores as JSON.
+    pub fn to_value(&self) -> Value {
+        let share = |share: Share| json!({ "count": share.of, "of": share.all, "share": share.value(), "ci95": share.interval() });
+        let rate = |rate: &Rate| {
+            let mut value = share(rate.share);
+            value["what"] = json!(rate.what);
+            value["target"] = json!(rate.target.map(|target| target.to_string()));
+            value["met"] = json!(rate.target.zip(rate.share.value()).map(|(t, v)| t.is_met(v)));
+            (rate.key.to_owned(), value)
+        };
+        let figure = |figure: &Figure| {
+            let target = figure.target.map(|target| target.to_string());
+            let met = figure.target.zip(figure.value).map(|(t, v)| t.is_met(v));
+            let value = json!({
+                "value": figure.value, "of": figure.from, "what": figure.what, "target": target, "met": met,
+            });
+            (figure.key.to_owned(), value)
+        };
+        let roles: Map<String, Value> = self
+            .cases
+            .iter()
+            .map(|(role, all, visible)| (role.name().to_owned(), json!({ "cases": all, "visible": visible })))
+            .collect();
+        let verdicts: Map<String, Value> = self
+            .verdicts
+            .iter()
+            .map(|(role, given)| {
+                let given: Map<String, Value> =
+                    given.iter().map(|(name, count)| ((*name).to_owned(), json!(count))).collect();
+                (role.name().to_owned(), Value::Object(given))
+            })
+            .collect();
+        json!({
+            "roles": roles,
+            "rates": self.rates.iter().map(rate).collect::<Map<_, _>>(),
+            "figures": self.figures.iter().map(figure).collect::<Map<_, _>>(),
+            "reliability": self.reliability.0.iter().map(|bin| json!({
+                "from": bin.from, "to": bin.to, "stated": bin.stated,
+                "true_name": share(bin.true_names), "acceptable": share(bin.acceptable),
+            })).collect::<Vec<_>>(),
+            "confusion": self.confusion.0,
+            "verdicts": verdicts,
+            "old_and_fresh": self.comparisons.iter().map(|comparison| (comparison.key.to_owned(), json!({
+                "old": share(comparison.old), "fresh": share(comparison.fresh),
+                "probability": comparison.probability, "agree": comparison.probability >= CHANCE,
+            }))).collect::<Map<_, _>>(),
+        })
+    }
+}
+
+impl Judged {
+    /// The case as JSON: truth, names found, objectives, faults.
+    pub fn to_value(&self) -> Value {
+        let evidence = &self.evidence;
+        let findings = self.answer.iter().flat_map(|answer| &answer.findings);
+        let named = |name: String, value: f64| json!({ "name": name, "objective": value });
+        json!({
+            "truth": self.truth.to_value(),
+            "verdict": self.answer.as_ref().map(|answer| answer.verdict.name()).ok(),
+            "found": findings.map(|found| json!({
+                "name": crate::Name::of(&found.effect).to_string(), "probability": found.probability,
+            })).collect::<Vec<_>>(),
+            "visible": self.is_visible(),
+            "faults": self.faults(),
+            "objectives": {
+                "refitted": evidence.refitted, "repaired": evidence.repaired, "truth": evidence.truth,
+                "others": evidence.others.iter().map(|(n, v)| named(n.to_string(), *v)).collect::<Vec<_>>(),
+                "without": evidence.without,
+            },
+            "unseen": evidence.unseen,
+        })
+    }
+}
