@@ -23,6 +23,10 @@ pub enum Command {
     Synthesize(SynthesizeArguments),
     /// Stiffness and damping of a joint by frequency, from the FRFs of the assembly: stiffness.json and report.html.
     Decompose(DecomposeArguments),
+    /// What physics the fixture leaves out, where it sits and how sure that is: diagnosis.json, refitted.json, repaired.json, report.html.
+    Diagnose(DiagnoseArguments),
+    /// How often the diagnosis is right: concealed cases of a simulated laboratory, and a table of scores.
+    Prove(crate::prove::ProveArguments),
 }
 
 #[derive(Debug, Args)]
@@ -67,6 +71,32 @@ pub struct DecomposeArguments {
     /// The directory to write to.
     #[arg(short, long, value_name = "DIR")]
     pub output: PathBuf,
+}
+
+#[derive(Debug, Args)]
+pub struct DiagnoseArguments {
+    /// The fixture file (JSON).
+    pub fixture: PathBuf,
+    #[command(flatten)]
+    pub recording: RecordingArguments,
+    /// The band to use, in Hz [default: all lines].
+    #[arg(long, value_name = "F1:F2", value_parser = band)]
+    pub band: Option<Band>,
+    /// Bands to leave out, in Hz, such as mains hum.
+    #[arg(long, value_name = "F1:F2", value_parser = band, num_args = 1..)]
+    pub exclude: Vec<Band>,
+    /// FRFs to judge by, which no fit sees [default: one, where there are four or more].
+    #[arg(long, value_name = "OUT/IN", value_parser = frf_pair, num_args = 1..)]
+    pub hold_out: Vec<FrfPair>,
+    /// Take numbers of the fixture without a standard deviation as exact.
+    #[arg(long)]
+    pub exact: bool,
+    /// Print diagnosis.json to standard output, for scripts.
+    #[arg(long)]
+    pub json: bool,
+    /// The directory to write to; may be left out with --json.
+    #[arg(short, long, value_name = "DIR", required_unless_present = "json")]
+    pub output: Option<PathBuf>,
 }
 
 /// The relations by their names on the command line.

@@ -33,7 +33,7 @@ pub fn run(arguments: &DecomposeArguments) -> Result<String, Refusal> {
     })?;
     let context = PageContext {
         program: format!("jointscope {}", env!("CARGO_PKG_VERSION")),
-        command: command_line(),
+        command: input::command_line(),
         inputs: files().map(|path| input::hash(path)).collect::<Result<_, _>>()?,
         notes: recording.notes.iter().cloned().chain(lost_tolerances(&analysis)).collect(),
     };
@@ -48,13 +48,6 @@ pub fn run(arguments: &DecomposeArguments) -> Result<String, Refusal> {
     lines.extend(summary(&analysis));
     lines.push(page_path.display().to_string());
     Ok(lines.join("\n"))
-}
-
-/// The command as it was typed; the program by its name alone, wherever it lies.
-fn command_line() -> String {
-    let quoted = |word: String| if word.contains([' ', '"', '\'']) { format!("{word:?}") } else { word };
-    let arguments = std::env::args_os().skip(1).map(|word| quoted(word.to_string_lossy().into_owned()));
-    std::iter::once("jointscope".to_owned()).chain(arguments).collect::<Vec<_>>().join(" ")
 }
 
 /// `1 line`, `2 lines`.

@@ -56,6 +56,13 @@ pub fn hash(path: &Path) -> Result<InputFile, Refusal> {
     Ok(InputFile { name: path.display().to_string(), sha256 })
 }
 
+/// The command as it was typed; the program by its name alone, wherever it lies.
+pub fn command_line() -> String {
+    let quoted = |word: String| if word.contains([' ', '"', '\'']) { format!("{word:?}") } else { word };
+    let arguments = std::env::args_os().skip(1).map(|word| quoted(word.to_string_lossy().into_owned()));
+    std::iter::once("jointscope".to_owned()).chain(arguments).collect::<Vec<_>>().join(" ")
+}
+
 fn source(path: &Path) -> Result<Source, Refusal> {
     let file = jointscope_uff::read(&bytes(path)?).map_err(|error| Refusal::at(path, error))?;
     Ok(Source { name: path.display().to_string(), file })

@@ -4,8 +4,10 @@
 
 mod arguments;
 mod decompose;
+mod diagnose;
 mod input;
 mod output;
+mod prove;
 mod refusal;
 mod synthesize;
 
@@ -40,6 +42,8 @@ fn run(command: &Command) -> Result<String, Refusal> {
     match command {
         Command::Synthesize(arguments) => synthesize::run(arguments),
         Command::Decompose(arguments) => decompose::run(arguments),
+        Command::Diagnose(arguments) => diagnose::run(arguments),
+        Command::Prove(arguments) => prove::run(arguments),
     }
 }
 

@@ -14,6 +14,36 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
+//! Where the recordings do not suit the fixture, [`Diagnosis`] tells what physics was left out: is there anything, where, what, how sure.
+//! Here a recording whose response 4 reads a tenth low:
+//!
+//! ```
+//! use jointscope::{Diagnosis, DiagnosisOptions, Fixture, FrfPair, FrfSet, Instrument, SpectralLines, Verdict, synthesize};
+//!
+//! let fixture = Fixture::from_json(r#"{
+//!   "bodies": { "A": { "mass": {"value": 2.0, "std": 0.002}, "rotates": false },
+//!               "B": { "mass": {"value": 3.0, "std": 0.003}, "rotates": false } },
+//!   "points": { "1": { "body": "A", "x": 0 }, "4": { "body": "B", "x": 0.1 } },
+//!   "joints": { "J": { "from": "1", "to": "4", "stiffness": [[{"value": 5e6, "std": 5e4}, 0], [0, 0]] } },
+//!   "damping": { "modal_ratios": [0.02] } }"#)?;
+//! let pairs = [FrfPair::transverse("1", "1"), FrfPair::transverse("4", "1")];
+//! let lines = SpectralLines::even(20.0, 20.0, 30)?;
+//! let true_frfs = synthesize(&fixture, &pairs, &lines, Instrument::Perfect)?;
+//! let mut values = true_frfs.all_values().to_vec();
+//! values[30..].iter_mut().for_each(|value| *value *= 0.9);
+//! let variance = values.iter().map(|value| 1e-4 * value.norm_sqr()).collect();
+//! let recorded = FrfSet::new(lines, true_frfs.form(), pairs.to_vec(), values)?.with_variance(variance)?;
+//!
+//! let diagnosis = Diagnosis::of(&fixture, &recorded, &DiagnosisOptions::default())?;
+//! assert_eq!(diagnosis.verdict, Verdict::Explained);
+//! assert_eq!(diagnosis.findings[0].name(), "gain of response 4");
+//! println!("{}", diagnosis.says());
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! [`diagnosis_file`] writes it as `diagnosis.json`; the refitted and the repaired fixture are
+//! `diagnosis.search.refitted.hypothesis.to_fixture()` and `diagnosis.search.repaired.hypothesis.to_fixture()`.
+//!
 //! The other way round, [`synthesize`] gives the FRFs that a fixture should show:
 //!
 //! ```
@@ -28,7 +58,8 @@
 //! ```
 //!
 //! The parts are crates of their own, re-exported as modules for what this page leaves out: [`uff`], [`recordings`],
-//! [`fixture`], [`spectra`], [`frf`], [`beam`], [`damping`], [`lumped`], [`averaging`], [`decomposition`].
+//! [`fixture`], [`spectra`], [`frf`], [`beam`], [`damping`], [`lumped`], [`averaging`], [`decomposition`],
+//! [`diagnosis`].
 
 pub use jointscope_averaging as averaging;
 pub use jointscope_beam as beam;
@@ -45,13 +76,16 @@ pub use jointscope_uff as uff;
 
 pub use jointscope_averaging::Band;
 pub use jointscope_decomposition::{Analysis, AnalysisOptions, DecompositionError, Relation};
+pub use jointscope_diagnosis::{Diagnosis, DiagnosisError, DiagnosisOptions, Finding, Verdict};
 pub use jointscope_fixture::{Fixture, FixtureError};
 pub use jointscope_lumped::{Instrument, LumpedError, synthesize};
 pub use jointscope_recordings::{ReadOptions, Recording, RecordingError};
 pub use jointscope_spectra::{FrfForm, FrfPair, FrfSet, SpectralLines};
 
+mod diagnosis_file;
 mod stiffness_file;
 
+pub use diagnosis_file::diagnosis_file;
 pub use stiffness_file::stiffness_file;
 
 /// Why the bytes of a universal file are no recording of a fixture.
