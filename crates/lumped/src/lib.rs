@@ -36,6 +36,7 @@ mod bar;
 mod joint;
 mod joint_element;
 mod mesh;
+mod modal_system;
 mod model;
 mod station;
 mod synthesis;

@@ -1,4 +1,5 @@
 use crate::bar::BarShape;
+use crate::modal_system::ModalSystem;
 use crate::terms::{TermStation, Terms};
 use crate::{Assembly, LumpedError, Station};
 use jointscope_fixture::{BodyKind, EffectKind, Fixture, Place};
@@ -29,9 +30,9 @@ struct BendingCoordinate {
 
 /// A mode's denominator λ + i·structural + s·viscous + s², shared by modes that have the same one.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Denominator {
-    stiffness: Complex64,
-    viscous: f64,
+pub(crate) struct Denominator {
+    pub stiffness: Complex64,
+    pub viscous: f64,
 }
 
 impl Model {
@@ -143,7 +144,13 @@ pub struct Receptances<'a> {
     delta: Vec<Complex64>,
     right: Vec<Complex64>,
     lu: LuWorkspace,
+    /// In place of all that, where the modes are few and the change is of high rank.
+    system: Option<ModalSystem>,
 }
+
+/// Modes up to which a change of at least `HIGH_RANK` is solved for in the modes' coordinates.
+const FEW_MODES: usize = 12;
+const HIGH_RANK: usize = 3;
 
 impl<'a> Receptances<'a> {
     fn new(model: &'a Model, outputs: &[Station], inputs: &[Station], pairs: Vec<(usize, usize)>) -> Self {
@@ -151,7 +158,10 @@ impl<'a> Receptances<'a> {
         let out: Vec<Vec<f64>> = outputs.iter().map(with_bending).collect();
         let input: Vec<Vec<f64>> = inputs.iter().map(with_bending).collect();
         let change: Vec<Vec<f64>> = model.terms.stations.iter().map(|s| model.participation(s)).collect();
-        let (denominators, group) = merge(&model.denominators());
+        let single = model.denominators();
+        let system = (single.len() <= FEW_MODES && change.len() >= HIGH_RANK)
+            .then(|| ModalSystem::new(single.clone(), &out, &input, &change));
+        let (denominators, group) = merge(&single);
         let count = pairs.len() + change.len() * (out.len() + change.len() + input.len());
         let mut products = vec![0.0; count * denominators.len()];
         let mut next = 0;
@@ -181,6 +191,7 @@ impl<'a> Receptances<'a> {
             denominators,
             pairs,
             products,
+            system,
         }
     }
 
@@ -193,6 +204,9 @@ impl<'a> Receptances<'a> {
     ///
     /// Returns whether they are finite; they are not on an undamped resonance, nor at s = 0 of a free assembly.
     pub fn at(&mut self, s: Complex64, values: &mut [Complex64]) -> bool {
+        if let Some(system) = &mut self.system {
+            return system.at(s, self.terms, &self.pairs, values) && values.iter().all(|v| v.is_finite());
+        }
         let squared = s * s;
         let [re, im] = &mut self.parts;
         re.fill(0.0);
