@@ -34,7 +34,7 @@ pub(crate) const COARSE_LINES: usize = 100;
 /// Iterations with softened weights, each share, and in the end.
 const ITERATIONS: (usize, usize) = (12, 60);
 /// Decrease of the objective below which a fit has converged.
-const CONVERGED: f64 = 1e-3;
+const CONVERGED: f64 = 0.01;
 /// Steps made from old derivatives that gain less than this share of the first one's call for new ones.
 const SLOW: f64 = 0.15;
 /// Damping beyond which no step is a gain.
@@ -44,22 +44,31 @@ const MUCH: f64 = 1.3;
 const STARTS: usize = 3;
 /// Shares of its size by which an effect fades.
 const FADING: [f64; 4] = [0.75, 0.5, 0.25, 0.1];
-/// A fit is given up where what it would still have to gain is this many times what its last step gained.
-const HOPELESS: f64 = 8.0;
+/// A fit is given up where this many times what its derivatives promise would not bring it below the limit.
+pub(crate) const PROMISE: f64 = 3.0;
 
 impl Linearisation {
     /// Central differences about `at`. A coordinate that cannot be moved gets zeros.
     pub fn of(at: &Hypothesis, observation: &Observation) -> Self {
+        Linearisation::rigid().extended(at, observation)
+    }
+
+    /// These derivatives for the first coordinates of `at`, and central differences for the rest.
+    pub(crate) fn extended(mut self, at: &Hypothesis, observation: &Observation) -> Self {
         let moved = |m: usize, sign: f64| {
             let mut other = at.clone();
             other.coordinates[m] += sign * DIFFERENCE;
             other.predict(observation)
         };
-        let derivatives = (0..at.coordinates.len()).map(|m| match (moved(m, 1.0), moved(m, -1.0)) {
-            (Ok(up), Ok(down)) => up.iter().zip(&down).map(|(u, d)| (u - d) / (2.0 * DIFFERENCE)).collect(),
-            _ => vec![Complex64::ZERO; observation.values().len()],
-        });
-        Linearisation { derivatives: derivatives.collect() }
+        for m in self.derivatives.len()..at.coordinates.len() {
+            self.derivatives.push(match (moved(m, 1.0), moved(m, -1.0)) {
+                (Ok(up), Ok(down)) => {
+                    up.iter().zip(&down).map(|(u, d)| (u - d) / (2.0 * DIFFERENCE)).collect()
+                }
+                _ => vec![Complex64::ZERO; observation.values().len()],
+            });
+        }
+        self
     }
 
     /// Forward differences from `predicted`, which `at` predicts: half the price, right to a thousandth, which is enough to find
@@ -210,7 +219,18 @@ impl Fit {
 
     /// Fits from nearby, and gives up early where the objective will hardly come below `limit`.
     pub(crate) fn refined(start: &Hypothesis, observation: &Observation, limit: f64) -> Option<Self> {
+        Fit::refined_with(start, None, observation, limit)
+    }
+
+    /// As [`Fit::refined`], with derivatives of the first coordinates known from nearby.
+    pub(crate) fn refined_with(
+        start: &Hypothesis,
+        nearby: Option<&Linearisation>,
+        observation: &Observation,
+        limit: f64,
+    ) -> Option<Self> {
         let mut state = State::at(start.clone(), observation)?;
+        state.linear = nearby.map(|linear| linear.clone().extended(start, observation));
         state.improve(observation, 0.0, ITERATIONS.1, limit);
         Some(state.into_fit(observation))
     }
@@ -244,12 +264,14 @@ impl Fit {
 struct State {
     hypothesis: Hypothesis,
     predicted: Vec<Complex64>,
+    /// Derivatives made here or on the way.
+    linear: Option<Linearisation>,
 }
 
 impl State {
     fn at(hypothesis: Hypothesis, observation: &Observation) -> Option<Self> {
         let predicted = hypothesis.predict(observation).ok()?;
-        Some(State { hypothesis, predicted })
+        Some(State { hypothesis, predicted, linear: None })
     }
 
     fn residual(&self, observation: &Observation) -> Vec<Complex64> {
@@ -279,37 +301,42 @@ impl State {
         let mut damping = 1e-6;
         // Derivatives cost far more than a prediction, and change little from step to step: they are made anew
         // only when steps made from old ones gain little.
-        let mut linear = self.linearised(observation, epsilon);
-        let mut fresh = true;
+        let mut fresh = self.linear.is_none();
+        let mut linear = self.linear.take().unwrap_or_else(|| self.linearised(observation, epsilon));
         let mut hoped_for = 0.0;
-        for iteration in 0..iterations {
+        for _ in 0..iterations {
             // Weights are frozen within an iteration, so that a step is judged by what it was made for.
             let weights = self.weights(observation, epsilon);
             let before = self.objective(observation, &weights);
             let (matrix, right) = linear.normal(&self.hypothesis, &weights, &self.residual(observation));
+            if fresh && before - PROMISE * self.promised(&matrix, &right) > limit {
+                break;
+            }
             let patience = if fresh { GIVEN_UP } else { damping * 10.0 };
             let stepped = self.step(observation, &weights, &matrix, &right, before, &mut damping, patience);
             let gain = stepped.as_ref().map_or(0.0, |(_, after)| before - after);
             if let Some((next, _)) = stepped {
-                *self = next;
+                (self.hypothesis, self.predicted) = (next.hypothesis, next.predicted);
             }
             let converged = if epsilon == 0.0 { CONVERGED } else { 0.01 * before };
             if gain < converged && fresh {
-                return;
-            }
-            if fresh && iteration > 2 && before - gain - limit > HOPELESS * gain {
-                return;
+                break;
             }
             let slow = gain < hoped_for || gain < converged;
             hoped_for = if fresh { (SLOW * gain).max(converged) } else { hoped_for };
             if slow {
                 linear = self.linearised(observation, epsilon);
-            }
-            fresh = slow;
-            if fresh {
                 hoped_for = 0.0;
             }
+            fresh = slow;
         }
+        self.linear = Some(linear);
+    }
+
+    /// What a whole step gains if the FRFs follow their derivatives.
+    fn promised(&self, matrix: &[f64], right: &[f64]) -> f64 {
+        let step = self.hypothesis.bounded_step(matrix, right).unwrap_or_default();
+        step.iter().zip(right).map(|(step, right)| step * right).sum::<f64>().abs()
     }
 
     /// The first damped step that lowers the objective.

@@ -5,7 +5,7 @@
 //! is fitted from the nominal quantities besides, with softened weights on thinned lines, and those that come near are refined on all lines.
 
 use crate::catalogue::Candidate;
-use crate::fit::{COARSE_LINES, Fit, Linearisation, dot, whitened};
+use crate::fit::{COARSE_LINES, Fit, Linearisation, PROMISE, dot, whitened};
 use crate::search::parameter_price;
 use crate::{Hypothesis, Observation};
 use jointscope_fixture::Effect;
@@ -42,22 +42,25 @@ pub(crate) struct Ranking<'a> {
 
 impl Ranking<'_> {
     /// Fits of `base` with one more effect, best first by objective and price of parameters, with the candidate's index. `far` takes
-    /// the way from the nominal quantities too.
-    pub fn of(&self, base: &Hypothesis, far: bool) -> Vec<(usize, Fit)> {
+    /// the way from the nominal quantities too. Candidates that will not come below `limit` are left unfinished or out.
+    pub fn of(&self, base: &Hypothesis, far: bool, limit: f64) -> Vec<(usize, Fit)> {
         let starts = self.starts(base);
-        let mut all = Vec::new();
+        let mut fits = Vec::new();
+        let mut limit = limit;
         if far {
-            all.extend(self.far(base, &starts));
+            fits = self.fitted(self.far(base, &starts), None, limit);
+            let best = fits.iter().map(|(_, fit)| fit.objective).fold(f64::INFINITY, f64::min);
+            limit = limit.min(best + MARGIN);
         }
-        all.extend(self.near(base, &starts, NEAR, NEAR_STARTS));
-        self.fitted(all, f64::INFINITY)
+        fits.extend(self.near(base, &starts, NEAR, NEAR_STARTS, limit));
+        self.best_of_each(fits)
     }
 
     /// Every candidate fitted from where `base` stands, which is where an effect that is looked for would leave the quantities; fits that
     /// will not come near `limit` are left unfinished.
     pub fn look_alikes(&self, base: &Hypothesis, limit: f64) -> Vec<(usize, Fit)> {
         let starts = self.starts(base);
-        self.fitted(self.near(base, &starts, usize::MAX, 1), limit)
+        self.best_of_each(self.near(base, &starts, usize::MAX, 1, limit))
     }
 
     /// (candidate, start) of everything that `base` does not have yet.
@@ -67,14 +70,26 @@ impl Ranking<'_> {
             .collect()
     }
 
-    /// The best candidates about the base itself, each at the size that serves to first order, and at the best start of its grid.
-    fn near(&self, base: &Hypothesis, starts: &[(usize, usize)], count: usize, each: usize) -> Vec<Start> {
+    /// Fits of the best candidates from the base itself, each at the size that serves to first order, and at the best start of its grid.
+    fn near(
+        &self,
+        base: &Hypothesis,
+        starts: &[(usize, usize)],
+        count: usize,
+        each: usize,
+        limit: f64,
+    ) -> Vec<(usize, Fit)> {
         let Some(scan) = Scan::about(base.clone(), self.observation, 0.0, true) else { return Vec::new() };
+        let objective = scan.objective();
+        let hopeful = |gain: f64| objective - PROMISE * gain <= limit;
         let mut chosen = self.first_order(base, &scan, count, each, self.observation);
+        chosen.retain(|(gain, _, _)| hopeful(*gain));
         let scores = scan.scores(starts, self.candidates, self.observation);
-        chosen.extend(self.best_starts(starts, &scores, 1).into_iter().take(count).flatten());
-        let start = |(candidate, effect): (usize, Effect)| Start { candidate, hypothesis: base.with(effect) };
-        chosen.into_iter().map(start).collect()
+        let grid = self.best_starts(starts, &scores, 1).into_iter().take(count).flatten();
+        chosen.extend(grid.map(|(score, c, effect)| (objective - score, c, effect)).filter(|g| hopeful(g.0)));
+        let start =
+            |(_, candidate, effect): (f64, usize, Effect)| Start { candidate, hypothesis: base.with(effect) };
+        self.fitted(chosen.into_iter().map(start).collect(), Some(&scan.linear), limit)
     }
 
     /// Candidates that `base` does not have yet.
@@ -92,7 +107,7 @@ impl Ranking<'_> {
         if let Some(scan) = Scan::about(nominal.clone(), &coarse, 0.3, false) {
             let scores = scan.scores(starts, self.candidates, &coarse);
             let best = self.best_starts(starts, &scores, 1).into_iter().flatten();
-            begun.extend(best.map(|(c, effect)| (c, nominal.with(effect), false)));
+            begun.extend(best.map(|(_, c, effect)| (c, nominal.with(effect), false)));
         }
         // A softened refit is bent less by what the candidate would explain.
         let led = Fit::coarse(&nominal, &coarse).map(|fit| fit.hypothesis);
@@ -102,7 +117,7 @@ impl Ranking<'_> {
             let scores = scan.scores(starts, self.candidates, &coarse);
             let best = self.best_starts(starts, &scores, 1).into_iter().flatten();
             let small = self.first_order(base, &scan, usize::MAX, 1, &coarse);
-            begun.extend(best.chain(small).map(|(c, effect)| (c, led.with(effect), true)));
+            begun.extend(best.chain(small).map(|(_, c, effect)| (c, led.with(effect), true)));
         }
         let fits = begun.into_par_iter().filter_map(|(candidate, start, near)| {
             let fit =
@@ -131,7 +146,7 @@ impl Ranking<'_> {
         fits
     }
 
-    /// The candidates that gain most about a scan's base to first order, each at the size that serves best.
+    /// The candidates that gain most about a scan's base to first order, each at the size that serves best: (gain, candidate, effect).
     fn first_order(
         &self,
         base: &Hypothesis,
@@ -139,7 +154,7 @@ impl Ranking<'_> {
         count: usize,
         each: usize,
         observation: &Observation,
-    ) -> Vec<(usize, Effect)> {
+    ) -> Vec<(f64, usize, Effect)> {
         let directions: Vec<(usize, usize)> = self
             .names_without(base)
             .flat_map(|c| (0..self.candidates[c].directions.len()).map(move |d| (c, d)))
@@ -154,23 +169,23 @@ impl Ranking<'_> {
         by_gain.sort_by(|a, b| b.0.total_cmp(&a.0));
         let mut taken = vec![0; self.candidates.len()];
         let mut chosen = Vec::new();
-        for (_, candidate, effect) in by_gain {
+        for (gain, candidate, effect) in by_gain {
             let distinct = taken.iter().filter(|t| **t > 0).count();
             if taken[candidate] < each && (taken[candidate] > 0 || distinct < count) {
                 taken[candidate] += 1;
-                chosen.push((candidate, effect));
+                chosen.push((gain, candidate, effect));
             }
         }
         chosen
     }
 
-    /// The `each` best starts of every candidate, the best candidates first.
+    /// The `each` best starts of every candidate, the best candidates first: (score, candidate, effect).
     fn best_starts(
         &self,
         starts: &[(usize, usize)],
         scores: &[f64],
         each: usize,
-    ) -> Vec<Vec<(usize, Effect)>> {
+    ) -> Vec<Vec<(f64, usize, Effect)>> {
         let mut by_candidate: Vec<Vec<(f64, usize)>> = vec![Vec::new(); self.candidates.len()];
         for (&(c, s), &score) in starts.iter().zip(scores) {
             by_candidate[c].push((score, s));
@@ -180,22 +195,32 @@ impl Ranking<'_> {
             (0..by_candidate.len()).filter(|&c| !by_candidate[c].is_empty()).collect();
         order.sort_by(|&a, &b| by_candidate[a][0].0.total_cmp(&by_candidate[b][0].0));
         let effects = |c: usize| {
-            by_candidate[c].iter().take(each).map(move |&(_, s)| (c, self.candidates[c].effect(s))).collect()
+            by_candidate[c]
+                .iter()
+                .take(each)
+                .map(move |&(score, s)| (score, c, self.candidates[c].effect(s)))
+                .collect()
         };
         order.into_iter().map(effects).collect()
     }
 
-    /// Fits from all starts, the best of each candidate, best first. The first few are fitted to the end, the others only where they
-    /// come near them, or near `limit`.
-    fn fitted(&self, starts: Vec<Start>, limit: f64) -> Vec<(usize, Fit)> {
+    /// Fits from all starts, with derivatives of the base where they set out from it. The first few are fitted to the end, the others only
+    /// where they come near them; all of them only where they come below `limit`.
+    fn fitted(&self, starts: Vec<Start>, nearby: Option<&Linearisation>, limit: f64) -> Vec<(usize, Fit)> {
         let fit = |start: &Start, limit: f64| {
-            Fit::refined(&start.hypothesis, self.observation, limit).map(|fit| (start.candidate, fit))
+            let fit = Fit::refined_with(&start.hypothesis, nearby, self.observation, limit);
+            fit.map(|fit| (start.candidate, fit))
         };
         let (first, rest) = starts.split_at(UNLIMITED.min(starts.len()));
         let mut fits: Vec<(usize, Fit)> = first.par_iter().filter_map(|s| fit(s, limit)).collect();
         let best = fits.iter().map(|(_, fit)| fit.objective).fold(f64::INFINITY, f64::min);
         let limit = limit.min(best + MARGIN);
         fits.extend(rest.par_iter().filter_map(|s| fit(s, limit)).collect::<Vec<_>>());
+        fits
+    }
+
+    /// The best fit of each candidate, best first.
+    fn best_of_each(&self, mut fits: Vec<(usize, Fit)>) -> Vec<(usize, Fit)> {
         fits.sort_by(|a, b| cost(&a.1).total_cmp(&cost(&b.1)));
         let mut seen = vec![false; self.candidates.len()];
         fits.retain(|(index, _)| !std::mem::replace(&mut seen[*index], true));
@@ -210,7 +235,8 @@ fn cost(fit: &Fit) -> f64 {
 /// A base about which effects are tried with the tolerances linearised, or held where they are.
 struct Scan {
     base: Hypothesis,
-    /// √w·derivative by tolerance.
+    linear: Linearisation,
+    /// √w·derivative by coordinate.
     columns: Vec<Vec<f64>>,
     weights: Vec<f64>,
     matrix: Vec<f64>,
@@ -235,7 +261,12 @@ impl Scan {
             step.fill(0.0);
         }
         let residual = whitened(&residual, &weights);
-        Some(Scan { base, columns, weights, matrix, predicted, residual, step })
+        Some(Scan { base, linear, columns, weights, matrix, predicted, residual, step })
+    }
+
+    /// What the base leaves.
+    fn objective(&self) -> f64 {
+        dot(&self.residual, &self.residual) + self.base.penalty()
     }
 
     /// What direction `index` of a candidate gains at its best size, to first order with the tolerances yielding, and the effect

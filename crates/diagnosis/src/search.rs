@@ -88,7 +88,9 @@ impl Search {
         // What fits already can only lack something small, which the near way finds.
         let degrees = observation.degrees() as f64;
         let far = base.objective > degrees + FITS * (2.0 * degrees).sqrt();
-        self.ranking(observation).of(&base.hypothesis, far)
+        // What gains less than the price of looking is not believed.
+        let limit = base.objective - price(0.0, self.candidates.len());
+        self.ranking(observation).of(&base.hypothesis, far, limit)
     }
 
     /// As [`Search::ranked`], for a `base` whose quantities stand already where the effect that is looked for would leave

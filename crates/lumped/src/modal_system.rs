@@ -4,24 +4,22 @@ use crate::model::Denominator;
 use crate::terms::Terms;
 use num_complex::Complex64;
 
+/// Modes up to which there is a solution of fixed size, which the compiler unrolls.
+pub(crate) const FEW_MODES: usize = 12;
 /// A pivot smaller than this share of the largest element is a zero.
 const ZERO: f64 = 1e-15;
 
 /// (D(s) + V Δ(s) Vᵀ) q = Φ_i with D diagonal. The modes are mass-normalised, so that all elements have one unit and none needs scaling.
 #[derive(Debug, Clone)]
 pub(crate) struct ModalSystem {
-    order: usize,
     denominators: Vec<Denominator>,
     /// Participations, a row over the modes for each output, input and station of the change.
     outputs: Vec<f64>,
     inputs: Vec<f64>,
     change: Vec<f64>,
     delta: Vec<Complex64>,
-    product: Vec<Complex64>,
-    matrix: Vec<Complex64>,
-    /// One row over the inputs for each mode.
+    /// Modal coordinates, a row over the modes for each input.
     solution: Vec<Complex64>,
-    columns: usize,
 }
 
 impl ModalSystem {
@@ -31,18 +29,13 @@ impl ModalSystem {
         inputs: &[Vec<f64>],
         change: &[Vec<f64>],
     ) -> Self {
-        let (order, rank, columns) = (denominators.len(), change.len(), inputs.len());
         ModalSystem {
-            order,
-            denominators,
             outputs: outputs.concat(),
             inputs: inputs.concat(),
             change: change.concat(),
-            delta: vec![Complex64::ZERO; rank * rank],
-            product: vec![Complex64::ZERO; rank * order],
-            matrix: vec![Complex64::ZERO; order * order],
-            solution: vec![Complex64::ZERO; order * columns],
-            columns,
+            delta: vec![Complex64::ZERO; change.len() * change.len()],
+            solution: vec![Complex64::ZERO; denominators.len() * inputs.len()],
+            denominators,
         }
     }
 
@@ -54,87 +47,108 @@ impl ModalSystem {
         pairs: &[(usize, usize)],
         values: &mut [Complex64],
     ) -> bool {
-        self.fill(s, terms);
-        for (mode, row) in self.solution.chunks_exact_mut(self.columns).enumerate() {
-            for (column, value) in row.iter_mut().enumerate() {
-                *value = Complex64::new(self.inputs[column * self.order + mode], 0.0);
+        terms.write(s, &mut self.delta);
+        let order = self.denominators.len();
+        let solved = match order {
+            1 => self.solve::<1>(s),
+            2 => self.solve::<2>(s),
+            3 => self.solve::<3>(s),
+            4 => self.solve::<4>(s),
+            5 => self.solve::<5>(s),
+            6 => self.solve::<6>(s),
+            7 => self.solve::<7>(s),
+            8 => self.solve::<8>(s),
+            9 => self.solve::<9>(s),
+            10 => self.solve::<10>(s),
+            11 => self.solve::<11>(s),
+            FEW_MODES => self.solve::<FEW_MODES>(s),
+            _ => false,
+        };
+        if solved {
+            for (value, &(output, input)) in values.iter_mut().zip(pairs) {
+                let shapes = &self.outputs[output * order..(output + 1) * order];
+                let modes = &self.solution[input * order..(input + 1) * order];
+                *value = shapes.iter().zip(modes).map(|(shape, q)| q * *shape).sum();
             }
         }
-        if !self.eliminate() {
-            return false;
-        }
-        for (value, &(output, input)) in values.iter_mut().zip(pairs) {
-            let shapes = &self.outputs[output * self.order..(output + 1) * self.order];
-            let modes = self.solution.iter().skip(input).step_by(self.columns);
-            *value = shapes.iter().zip(modes).map(|(shape, q)| q * *shape).sum();
+        solved
+    }
+
+    fn solve<const N: usize>(&mut self, s: Complex64) -> bool {
+        let Some((matrix, pivots)) = factorized(self.matrix::<N>(s)) else { return false };
+        let columns = self.inputs.as_chunks::<N>().0.iter().zip(self.solution.as_chunks_mut::<N>().0);
+        for (input, solution) in columns {
+            *solution = input.map(|shape| Complex64::new(shape, 0.0));
+            substitute(&matrix, &pivots, solution);
         }
         true
     }
 
-    fn fill(&mut self, s: Complex64, terms: &Terms) {
-        let rank = terms.stations.len();
-        terms.write(s, &mut self.delta);
-        self.product.fill(Complex64::ZERO);
-        for (row, delta) in self.product.chunks_exact_mut(self.order).zip(self.delta.chunks_exact(rank)) {
-            let acting = delta.iter().zip(self.change.chunks_exact(self.order));
-            for (factor, shapes) in acting.filter(|(factor, _)| **factor != Complex64::ZERO) {
-                row.iter_mut().zip(shapes).for_each(|(to, shape)| *to += factor * *shape);
+    /// D + V Δ Vᵀ.
+    fn matrix<const N: usize>(&self, s: Complex64) -> [[Complex64; N]; N] {
+        let change = self.change.as_chunks::<N>().0;
+        let mut matrix = [[Complex64::ZERO; N]; N];
+        for (shapes, delta) in change.iter().zip(self.delta.chunks_exact(change.len())) {
+            let mut product = [Complex64::ZERO; N];
+            for (factor, other) in delta.iter().zip(change).filter(|(factor, _)| **factor != Complex64::ZERO) {
+                for n in 0..N {
+                    product[n] += factor * other[n];
+                }
             }
-        }
-        self.matrix.fill(Complex64::ZERO);
-        for (shapes, product) in
-            self.change.chunks_exact(self.order).zip(self.product.chunks_exact(self.order))
-        {
-            for (row, shape) in self.matrix.chunks_exact_mut(self.order).zip(shapes) {
-                row.iter_mut().zip(product).for_each(|(to, value)| *to += value * *shape);
+            for (row, shape) in matrix.iter_mut().zip(shapes) {
+                for n in 0..N {
+                    row[n] += product[n] * *shape;
+                }
             }
         }
         let squared = s * s;
-        for (mode, denominator) in self.denominators.iter().enumerate() {
-            self.matrix[mode * self.order + mode] +=
-                denominator.stiffness + s * denominator.viscous + squared;
+        for (mode, denominator) in self.denominators.iter().enumerate().take(N) {
+            matrix[mode][mode] += denominator.stiffness + s * denominator.viscous + squared;
+        }
+        matrix
+    }
+}
+
+/// LU with partial pivoting in place, pivots inverted on the diagonal, and the rows that were exchanged.
+fn factorized<const N: usize>(mut matrix: [[Complex64; N]; N]) -> Option<([[Complex64; N]; N], [usize; N])> {
+    let largest = matrix.iter().flatten().map(|e| e.norm_sqr()).fold(0.0, f64::max);
+    let mut pivots = [0; N];
+    for column in 0..N {
+        let size = |row: usize| matrix[row][column].norm_sqr();
+        let pivot = (column..N).fold(column, |best, row| if size(row) > size(best) { row } else { best });
+        // Written so that what is not a number counts as zero too.
+        if !(size(pivot) > ZERO * ZERO * largest) || !largest.is_finite() {
+            return None;
+        }
+        pivots[column] = pivot;
+        matrix.swap(column, pivot);
+        let inverse = matrix[column][column].inv();
+        matrix[column][column] = inverse;
+        let pivot_row = matrix[column];
+        for row in matrix.iter_mut().skip(column + 1) {
+            let factor = row[column] * inverse;
+            row[column] = factor;
+            for n in column + 1..N {
+                row[n] -= factor * pivot_row[n];
+            }
         }
     }
+    Some((matrix, pivots))
+}
 
-    /// Gaussian elimination with partial pivoting of the matrix and its right-hand sides.
-    fn eliminate(&mut self) -> bool {
-        let (n, m) = (self.order, self.columns);
-        let largest = self.matrix.iter().map(|e| e.norm_sqr()).fold(0.0, f64::max);
-        if !largest.is_finite() {
-            return false;
+fn substitute<const N: usize>(matrix: &[[Complex64; N]; N], pivots: &[usize; N], values: &mut [Complex64; N]) {
+    for row in 0..N {
+        values.swap(row, pivots[row]);
+    }
+    for row in 1..N {
+        for n in 0..row {
+            values[row] -= matrix[row][n] * values[n];
         }
-        for column in 0..n {
-            let size = |row: usize| self.matrix[row * n + column].norm_sqr();
-            let pivot = (column..n).fold(column, |best, row| if size(row) > size(best) { row } else { best });
-            if size(pivot) <= ZERO * ZERO * largest {
-                return false;
-            }
-            if pivot != column {
-                (0..n).for_each(|j| self.matrix.swap(column * n + j, pivot * n + j));
-                (0..m).for_each(|j| self.solution.swap(column * m + j, pivot * m + j));
-            }
-            let inverse = self.matrix[column * n + column].inv();
-            let (upper, lower) = self.matrix.split_at_mut((column + 1) * n);
-            let (known, unknown) = self.solution.split_at_mut((column + 1) * m);
-            let pivot_row = &upper[column * n + column + 1..];
-            known[column * m..].iter_mut().for_each(|value| *value *= inverse);
-            for (row, right) in lower.chunks_exact_mut(n).zip(unknown.chunks_exact_mut(m)) {
-                let factor = row[column];
-                right.iter_mut().zip(&known[column * m..]).for_each(|(to, from)| *to -= factor * from);
-                let factor = factor * inverse;
-                row[column + 1..].iter_mut().zip(pivot_row).for_each(|(to, from)| *to -= factor * from);
-            }
-            // The row above keeps the inverse of its pivot for the way back.
-            upper[column * n + column] = inverse;
+    }
+    for row in (0..N).rev() {
+        for n in row + 1..N {
+            values[row] -= matrix[row][n] * values[n];
         }
-        for row in (0..n).rev() {
-            let (known, below) = self.solution.split_at_mut((row + 1) * m);
-            let inverse = self.matrix[row * n + row];
-            for (k, right) in below.chunks_exact(m).enumerate() {
-                let factor = self.matrix[row * n + row + 1 + k] * inverse;
-                known[row * m..].iter_mut().zip(right).for_each(|(to, from)| *to -= factor * from);
-            }
-        }
-        true
+        values[row] *= matrix[row][row];
     }
 }

@@ -1,5 +1,5 @@
 use crate::bar::BarShape;
-use crate::modal_system::ModalSystem;
+use crate::modal_system::{FEW_MODES, ModalSystem};
 use crate::terms::{TermStation, Terms};
 use crate::{Assembly, LumpedError, Station};
 use jointscope_fixture::{BodyKind, EffectKind, Fixture, Place};
@@ -148,8 +148,7 @@ pub struct Receptances<'a> {
     system: Option<ModalSystem>,
 }
 
-/// Modes up to which a change of at least `HIGH_RANK` is solved for in the modes' coordinates.
-const FEW_MODES: usize = 12;
+/// Rank from which a change is solved for in the coordinates of few modes.
 const HIGH_RANK: usize = 3;
 
 impl<'a> Receptances<'a> {
