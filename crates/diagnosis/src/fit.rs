@@ -75,6 +75,9 @@ impl Linearisation {
     /// the way but not to state an uncertainty.
     pub(crate) fn forward(at: &Hypothesis, predicted: &[Complex64], observation: &Observation) -> Self {
         let derivatives = (0..at.coordinates.len()).map(|m| {
+            if at.is_held(m) {
+                return vec![Complex64::ZERO; predicted.len()];
+            }
             let mut other = at.clone();
             let step = other.inward(m, DIFFERENCE);
             other.coordinates[m] += step;
@@ -104,8 +107,12 @@ impl Linearisation {
         let residual = whitened(residual, weights);
         let columns: Vec<Vec<f64>> = self.derivatives.iter().map(|d| whitened(d, weights)).collect();
         for m in 0..n {
+            if at.is_held(m) {
+                matrix[m * n + m] = 1.0;
+                continue;
+            }
             right[m] = dot(&columns[m], &residual) - at.prior(m) * at.coordinates[m];
-            for k in 0..=m {
+            for k in (0..=m).filter(|&k| !at.is_held(k)) {
                 let value = dot(&columns[m], &columns[k]) + if k == m { at.prior(m) } else { 0.0 };
                 matrix[m * n + k] = value;
                 matrix[k * n + m] = value;

@@ -87,6 +87,8 @@ pub struct Hypothesis {
     fixture: Fixture,
     tolerances: Vec<Tolerance>,
     effects: Vec<(Effect, Vec<Freedom>)>,
+    /// Coordinates that stay where they are.
+    held: Vec<usize>,
     /// Coordinates: tolerances in deviations from the nominal values, then the effects' free parameters.
     pub(crate) coordinates: Vec<f64>,
 }
@@ -117,7 +119,13 @@ impl Hypothesis {
             tolerances.push(Tolerance::new(index, &quantity.path, quantity.value, std));
         }
         let coordinates = vec![0.0; tolerances.len()];
-        Hypothesis { fixture: fixture.clone(), tolerances, effects: Vec::new(), coordinates }
+        Hypothesis {
+            fixture: fixture.clone(),
+            tolerances,
+            effects: Vec::new(),
+            held: Vec::new(),
+            coordinates,
+        }
     }
 
     /// The same with quantity `index` moved by `deviations`.
@@ -166,6 +174,17 @@ impl Hypothesis {
     /// The same where `other`, of the same quantities and effects, stands.
     pub(crate) fn with_coordinates_of(&self, other: &Hypothesis) -> Self {
         Hypothesis { coordinates: other.coordinates.clone(), ..self.clone() }
+    }
+
+    /// The same with these coordinates (and no others) held where they are.
+    pub(crate) fn holding(mut self, held: &[usize]) -> Self {
+        self.held = held.to_vec();
+        self
+    }
+
+    /// Whether a fit leaves coordinate `index` where it is.
+    pub(crate) fn is_held(&self, index: usize) -> bool {
+        self.held.contains(&index)
     }
 
     /// Number of effects.

@@ -22,6 +22,8 @@ const HALF: usize = 24;
 const HALF_TWICE: usize = 6;
 const FAR: usize = 10;
 const FAR_TWICE: usize = 3;
+/// Softened χ² of one deviation below which a quantity stays where it is in a coarse fit.
+const UNFELT: f64 = 8.0;
 /// Fits made without a limit before the others are measured against the best of them.
 const UNLIMITED: usize = 4;
 /// A fit whose objective will stay this far above the best is not finished.
@@ -119,31 +121,19 @@ impl Ranking<'_> {
             let small = self.first_order(base, &scan, usize::MAX, 1, &coarse);
             begun.extend(best.chain(small).map(|(_, c, effect)| (c, led.with(effect), true)));
         }
+        let stiff = Scan::about(nominal, &coarse, 0.1, true).map_or(Vec::new(), |scan| scan.unfelt());
         let fits = begun.into_par_iter().filter_map(|(candidate, start, near)| {
+            let start = start.holding(&stiff);
             let fit =
                 if near { Fit::coarse_from_near(&start, &coarse) } else { Fit::coarse(&start, &coarse) };
-            fit.map(|fit| (candidate, fit))
+            fit.map(|fit| (candidate, Fit { hypothesis: fit.hypothesis.holding(&[]), ..fit }))
         });
-        let kept = self.front(fits.collect(), HALF, HALF_TWICE);
+        let kept = front(fits.collect(), HALF, HALF_TWICE);
         let fits = kept.into_par_iter().filter_map(|(candidate, fit)| {
             Fit::middle(&fit.hypothesis, self.observation).map(|fit| (candidate, fit))
         });
         let start = |(candidate, fit): (usize, Fit)| Start { candidate, hypothesis: fit.hypothesis };
-        self.front(fits.collect(), FAR, FAR_TWICE).into_iter().map(start).collect()
-    }
-
-    /// The best fit of the best `count` candidates, and the two best of the best `twice`.
-    fn front(&self, mut fits: Vec<(usize, Fit)>, count: usize, twice: usize) -> Vec<(usize, Fit)> {
-        fits.sort_by(|a, b| cost(&a.1).total_cmp(&cost(&b.1)));
-        let mut taken = vec![0; self.candidates.len()];
-        fits.retain(|(candidate, _)| {
-            let distinct = taken.iter().filter(|t| **t > 0).count();
-            let allowed = if distinct <= twice { 2 } else { 1 };
-            let keep = taken[*candidate] < allowed && (taken[*candidate] > 0 || distinct < count);
-            taken[*candidate] += usize::from(keep);
-            keep
-        });
-        fits
+        front(fits.collect(), FAR, FAR_TWICE).into_iter().map(start).collect()
     }
 
     /// The candidates that gain most about a scan's base to first order, each at the size that serves best: (gain, candidate, effect).
@@ -228,6 +218,27 @@ impl Ranking<'_> {
     }
 }
 
+/// Of softened fits those that come near the best: one of each of at most `count` candidates, two of the best `twice`.
+fn front(mut fits: Vec<(usize, Fit)>, count: usize, twice: usize) -> Vec<(usize, Fit)> {
+    fits.sort_by(|a, b| cost(&a.1).total_cmp(&cost(&b.1)));
+    let limit = fits.first().map_or(f64::INFINITY, |(_, best)| best.objective + MARGIN);
+    let mut taken: Vec<usize> = Vec::new();
+    fits.retain(|(candidate, fit)| {
+        let mut distinct = taken.clone();
+        distinct.dedup();
+        let own = taken.iter().filter(|c| *c == candidate).count();
+        let keep = fit.objective <= limit
+            && own < if distinct.len() <= twice { 2 } else { 1 }
+            && (own > 0 || distinct.len() < count);
+        if keep {
+            let at = taken.partition_point(|c| c < candidate);
+            taken.insert(at, *candidate);
+        }
+        keep
+    });
+    fits
+}
+
 fn cost(fit: &Fit) -> f64 {
     fit.objective + parameter_price(&fit.hypothesis)
 }
@@ -262,6 +273,12 @@ impl Scan {
         }
         let residual = whitened(&residual, &weights);
         Some(Scan { base, linear, columns, weights, matrix, predicted, residual, step })
+    }
+
+    /// Coordinates of the fixture's quantities that a deviation moves by less than the softened FRFs can tell.
+    fn unfelt(&self) -> Vec<usize> {
+        let felt = |m: &usize| dot(&self.columns[*m], &self.columns[*m]) < UNFELT * self.base.prior(*m);
+        (0..self.base.tolerances().len()).filter(felt).collect()
     }
 
     /// What the base leaves.

@@ -90,7 +90,8 @@ impl ModalSystem {
         let mut matrix = [[Complex64::ZERO; N]; N];
         for (shapes, delta) in change.iter().zip(self.delta.chunks_exact(change.len())) {
             let mut product = [Complex64::ZERO; N];
-            for (factor, other) in delta.iter().zip(change).filter(|(factor, _)| **factor != Complex64::ZERO) {
+            for (factor, other) in delta.iter().zip(change).filter(|(factor, _)| **factor != Complex64::ZERO)
+            {
                 for n in 0..N {
                     product[n] += factor * other[n];
                 }
@@ -136,7 +137,11 @@ fn factorized<const N: usize>(mut matrix: [[Complex64; N]; N]) -> Option<([[Comp
     Some((matrix, pivots))
 }
 
-fn substitute<const N: usize>(matrix: &[[Complex64; N]; N], pivots: &[usize; N], values: &mut [Complex64; N]) {
+fn substitute<const N: usize>(
+    matrix: &[[Complex64; N]; N],
+    pivots: &[usize; N],
+    values: &mut [Complex64; N],
+) {
     for row in 0..N {
         values.swap(row, pivots[row]);
     }
