@@ -37,6 +37,12 @@ const ITERATIONS: (usize, usize) = (12, 60);
 const CONVERGED: f64 = 0.01;
 /// Steps made from old derivatives that gain less than this share of the first one's call for new ones.
 const SLOW: f64 = 0.15;
+/// Damping, relative to each coordinate's own curvature, to begin with, and next to none.
+const DAMPING: f64 = 1e-8;
+const UNDAMPED: f64 = 1e-13;
+/// Times the decrease of convergence that an undamped step must promise to be tried, and how often it is.
+const VALLEY: f64 = 3.0;
+const VALLEYS: usize = 3;
 /// Damping beyond which no step is a gain.
 const GIVEN_UP: f64 = 1e7;
 /// χ² per degree of freedom above which a refit looks elsewhere too, and how many of those starts it follows to the end.
@@ -201,14 +207,24 @@ impl Fit {
 
     /// The fit without effect `index` that is reached by making the effect smaller step by step, so that the quantities can take over
     /// what they are able to imitate.
-    pub(crate) fn faded(full: &Hypothesis, index: usize, observation: &Observation) -> Option<Self> {
+    ///
+    /// `None` as well where a part of the effect is already missed by more than `limit`.
+    pub(crate) fn faded(
+        full: &Hypothesis,
+        index: usize,
+        observation: &Observation,
+        limit: f64,
+    ) -> Option<Self> {
         let effect = &full.effects()[index];
         let without = full.without(index);
         let mut at = without.clone();
         for share in FADING {
             let smaller = scaled(effect, share).and_then(|effect| without.beside(effect));
             let Some(smaller) = smaller.map(|h| h.with_coordinates_of(&at)) else { break };
-            let Some(fit) = Fit::refined(&smaller, observation, f64::INFINITY) else { break };
+            let Some(fit) = Fit::refined(&smaller, observation, limit) else { break };
+            if fit.objective > limit {
+                return None;
+            }
             at = fit.hypothesis;
         }
         Fit::refined(&without.with_coordinates_of(&at), observation, f64::INFINITY)
@@ -305,18 +321,20 @@ impl State {
     }
 
     fn improve(&mut self, observation: &Observation, epsilon: f64, iterations: usize, limit: f64) {
-        let mut damping = 1e-6;
+        let mut damping = DAMPING;
         // Derivatives cost far more than a prediction, and change little from step to step: they are made anew
         // only when steps made from old ones gain little.
         let mut fresh = self.linear.is_none();
         let mut linear = self.linear.take().unwrap_or_else(|| self.linearised(observation, epsilon));
         let mut hoped_for = 0.0;
+        let mut valleys = 0;
         for _ in 0..iterations {
             // Weights are frozen within an iteration, so that a step is judged by what it was made for.
             let weights = self.weights(observation, epsilon);
             let before = self.objective(observation, &weights);
             let (matrix, right) = linear.normal(&self.hypothesis, &weights, &self.residual(observation));
-            if fresh && before - PROMISE * self.promised(&matrix, &right) > limit {
+            let promised = if fresh { self.promised(&matrix, &right) } else { 0.0 };
+            if fresh && before - PROMISE * promised > limit {
                 break;
             }
             let patience = if fresh { GIVEN_UP } else { damping * 10.0 };
@@ -327,6 +345,13 @@ impl State {
             }
             let converged = if epsilon == 0.0 { CONVERGED } else { 0.01 * before };
             if gain < converged && fresh {
+                // Along a flat valley a damped step gains little of what there is.
+                if promised > VALLEY * converged && gain > 0.0 && valleys < VALLEYS && epsilon == 0.0 {
+                    valleys += 1;
+                    damping = UNDAMPED;
+                    linear = self.linearised(observation, epsilon);
+                    continue;
+                }
                 break;
             }
             let slow = gain < hoped_for || gain < converged;
@@ -370,7 +395,7 @@ impl State {
             if let Some(next) = next.and_then(|next| State::at(next, observation)) {
                 let after = next.objective(observation, weights);
                 if after < before {
-                    *damping = (*damping * 0.1).max(1e-12);
+                    *damping = (*damping * 0.1).max(UNDAMPED);
                     return Some((next, after));
                 }
             }

@@ -22,6 +22,8 @@ const HALF: usize = 24;
 const HALF_TWICE: usize = 6;
 const FAR: usize = 10;
 const FAR_TWICE: usize = 3;
+/// Softened fits that leave this many times what the best one leaves are not followed: one in a false minimum may still win.
+const SOFT: f64 = 3.0;
 /// Softened χ² of one deviation below which a quantity stays where it is in a coarse fit.
 const UNFELT: f64 = 8.0;
 /// Fits made without a limit before the others are measured against the best of them.
@@ -61,8 +63,17 @@ impl Ranking<'_> {
     /// Every candidate fitted from where `base` stands, which is where an effect that is looked for would leave the quantities; fits that
     /// will not come near `limit` are left unfinished.
     pub fn look_alikes(&self, base: &Hypothesis, limit: f64) -> Vec<(usize, Fit)> {
+        self.in_stead(base, false, limit)
+    }
+
+    /// As [`Ranking::look_alikes`], and with `far` by the way from the nominal quantities too.
+    pub fn in_stead(&self, base: &Hypothesis, far: bool, limit: f64) -> Vec<(usize, Fit)> {
         let starts = self.starts(base);
-        self.best_of_each(self.near(base, &starts, usize::MAX, 1, limit))
+        let mut fits = self.near(base, &starts, usize::MAX, 1, limit);
+        if far {
+            fits.extend(self.fitted(self.far(base, &starts), None, limit));
+        }
+        self.best_of_each(fits)
     }
 
     /// (candidate, start) of everything that `base` does not have yet.
@@ -221,7 +232,7 @@ impl Ranking<'_> {
 /// Of softened fits those that come near the best: one of each of at most `count` candidates, two of the best `twice`.
 fn front(mut fits: Vec<(usize, Fit)>, count: usize, twice: usize) -> Vec<(usize, Fit)> {
     fits.sort_by(|a, b| cost(&a.1).total_cmp(&cost(&b.1)));
-    let limit = fits.first().map_or(f64::INFINITY, |(_, best)| best.objective + MARGIN);
+    let limit = fits.first().map_or(f64::INFINITY, |(_, best)| SOFT * best.objective + MARGIN);
     let mut taken: Vec<usize> = Vec::new();
     fits.retain(|(candidate, fit)| {
         let mut distinct = taken.clone();
