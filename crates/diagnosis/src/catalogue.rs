@@ -171,7 +171,7 @@ fn on_bodies(fixture: &Fixture, observation: &Observation, all: &mut Vec<Candida
 }
 
 fn factors() -> Vec<Vec<f64>> {
-    [0.5, 0.7, 0.85, 0.95, 1.05, 1.2, 1.5, 2.0].map(|f| vec![f]).to_vec()
+    [0.3, 0.5, 0.7, 0.85, 0.95, 1.05, 1.2, 1.5, 2.0, 3.0].map(|f| vec![f]).to_vec()
 }
 
 fn at_joints(fixture: &Fixture, observation: &Observation, all: &mut Vec<Candidate>) {

@@ -147,6 +147,8 @@ const LEFT_OVER: f64 = 1.2;
 const LEFT_OVER_SCATTER: f64 = 1.6;
 /// Probability by chance below which a mismatch is located.
 const BY_CHANCE: f64 = 0.01;
+/// Probability that a finding and its look-alikes must have together for it to be named.
+const NAMED: f64 = 0.5;
 /// Bands in which a mismatch is told.
 const BANDS: usize = 12;
 /// Share of the lines in each of the two bands held out.
@@ -164,10 +166,16 @@ impl Diagnosis {
         };
         let observation = Observation::new(frfs, in_use)?;
         Hypothesis::nominal(fixture, options.exact).predict(&observation)?;
-        let search = Search::of(fixture, &observation, options.exact)
+        let mut search = Search::of(fixture, &observation, options.exact)
             .ok_or(DiagnosisError::Lines(SpectraError::NoLines))?;
         let chi2_per_dof = search.refitted.chi2_per_dof(&observation);
-        let findings = findings(&search, &observation);
+        let mut findings = findings(&search, &observation);
+        let named = |f: &Finding| f.probability + f.alternatives.iter().map(|(_, p)| p).sum::<f64>();
+        if findings.iter().any(|finding| named(finding) < NAMED) {
+            // What the best names leave says that none of them is right: they would only bend the model to the recording.
+            findings.clear();
+            search.repaired = search.refitted.clone();
+        }
         let held_out = held_out(fixture, &observation, &search, options)?;
         let chance = upper_tail(excess(chi2_per_dof, observation.degrees()));
         let locations = match chance < BY_CHANCE {
@@ -222,7 +230,11 @@ fn findings(search: &Search, observation: &Observation) -> Vec<Finding> {
         .map(|(index, effect)| {
             let names = alternatives(search, index, observation);
             let own = |a: &Alternative| search.candidates[a.candidate].names(effect);
-            let without = Fit::of(&repaired.hypothesis.without(index), observation, false);
+            let without = repaired.hypothesis.without(index);
+            let without = match without.effect_count() {
+                0 => Some(search.refitted.clone()),
+                _ => Fit::of(&without.with_tolerances_of(&search.nominal.hypothesis), observation, true),
+            };
             let named = |a: &Alternative| {
                 let effects = a.fit.hypothesis.effects();
                 effects.last().map(|effect| (effect.clone(), a.probability))

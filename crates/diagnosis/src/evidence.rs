@@ -8,6 +8,8 @@ use crate::{Hypothesis, Observation};
 const LISTED: f64 = 16.0;
 /// Cost, above the best name's, of physics that no name covers: a few in a hundred where the fit is good.
 const UNLISTED: f64 = 7.0;
+/// How much nearer that is for every further effect: several effects at once are rare, and with a pair of names much can be imitated.
+const COMPANY: f64 = 3.2;
 /// Relative uncertainty of noise variances made from few averages, with which χ² is judged.
 pub(crate) const NOISE_UNCERTAINTY: f64 = 0.04;
 
@@ -51,7 +53,8 @@ pub fn alternatives(search: &Search, index: usize, observation: &Observation) ->
     let weight = |fit: &Fit| (-0.5 * (cost(fit, scale) - lowest)).exp();
     // The worse the best fit is, the likelier it is that no name is right.
     let strain = excess(repaired.chi2_per_dof(observation), observation.degrees()).max(0.0);
-    let unlisted = (-0.5 * (UNLISTED - strain * strain).max(-10.0)).exp();
+    let company = repaired.hypothesis.effect_count().saturating_sub(1) as f64;
+    let unlisted = (-0.5 * (UNLISTED - COMPANY * company - strain * strain).max(-10.0)).exp();
     let total: f64 = fits.iter().map(|(_, fit)| weight(fit)).sum::<f64>() + unlisted;
     let mut all: Vec<Alternative> = fits
         .into_iter()

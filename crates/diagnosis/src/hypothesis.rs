@@ -409,7 +409,7 @@ fn freedoms(fixture: &Fixture, effect: &Effect) -> Vec<Freedom> {
             },
             // Below the band a resonator is a support, above it a mass: it must resonate near where it set out.
             (EffectKind::AttachedResonator, "frequency") => {
-                Freedom::Logarithm { low: value.ln() - 0.7, high: value.ln() + 0.7 }
+                Freedom::Logarithm { low: value.ln() - 0.35, high: value.ln() + 0.35 }
             }
             (EffectKind::AddedMass | EffectKind::SensorMass, "mass") => linear(value.abs().max(1e-6)),
             (EffectKind::JointMass, "mass") => not_negative(value.abs().max(1e-6)),

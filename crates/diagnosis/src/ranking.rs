@@ -52,7 +52,7 @@ impl Ranking<'_> {
         let mut fits = Vec::new();
         let mut limit = limit;
         if far {
-            fits = self.fitted(self.far(base, &starts), None, limit);
+            fits = self.fitted(self.far(&base.with_tolerances_of(self.nominal), &starts), None, limit);
             let best = fits.iter().map(|(_, fit)| fit.objective).fold(f64::INFINITY, f64::min);
             limit = limit.min(best + MARGIN);
         }
@@ -69,9 +69,11 @@ impl Ranking<'_> {
     /// As [`Ranking::look_alikes`], and with `far` by the way from the nominal quantities too.
     pub fn in_stead(&self, base: &Hypothesis, far: bool, limit: f64) -> Vec<(usize, Fit)> {
         let starts = self.starts(base);
-        let mut fits = self.near(base, &starts, usize::MAX, 1, limit);
+        // The quantities stand right already, but no line leads from nothing to an effect that moves peaks by many widths.
+        let mut fits = self.fitted(self.far(base, &starts), None, limit);
+        fits.extend(self.near(base, &starts, usize::MAX, 1, limit));
         if far {
-            fits.extend(self.fitted(self.far(base, &starts), None, limit));
+            fits.extend(self.fitted(self.far(&base.with_tolerances_of(self.nominal), &starts), None, limit));
         }
         self.best_of_each(fits)
     }
@@ -111,19 +113,18 @@ impl Ranking<'_> {
         (0..self.candidates.len()).filter(move |&c| !effects.iter().any(|e| self.candidates[c].names(e)))
     }
 
-    /// The best softened fits from the nominal quantities and from where those lead without a candidate.
+    /// The best softened fits from where the base stands and from where a softened fit leads without a candidate.
     fn far(&self, base: &Hypothesis, starts: &[(usize, usize)]) -> Vec<Start> {
         let coarse = self.observation.thinned(COARSE_LINES);
-        let nominal = base.with_tolerances_of(self.nominal);
         let mut begun: Vec<(usize, Hypothesis, bool)> = Vec::new();
         // Where an effect moves peaks by many widths no linear step of the tolerances is to be trusted.
-        if let Some(scan) = Scan::about(nominal.clone(), &coarse, 0.3, false) {
+        if let Some(scan) = Scan::about(base.clone(), &coarse, 0.3, false) {
             let scores = scan.scores(starts, self.candidates, &coarse);
             let best = self.best_starts(starts, &scores, 1).into_iter().flatten();
-            begun.extend(best.map(|(_, c, effect)| (c, nominal.with(effect), false)));
+            begun.extend(best.map(|(_, c, effect)| (c, base.with(effect), false)));
         }
         // A softened refit is bent less by what the candidate would explain.
-        let led = Fit::coarse(&nominal, &coarse).map(|fit| fit.hypothesis);
+        let led = Fit::coarse(base, &coarse).map(|fit| fit.hypothesis);
         if let Some((led, scan)) =
             led.and_then(|led| Some((led.clone(), Scan::about(led, &coarse, 0.1, true)?)))
         {
@@ -132,7 +133,7 @@ impl Ranking<'_> {
             let small = self.first_order(base, &scan, usize::MAX, 1, &coarse);
             begun.extend(best.chain(small).map(|(_, c, effect)| (c, led.with(effect), true)));
         }
-        let stiff = Scan::about(nominal, &coarse, 0.1, true).map_or(Vec::new(), |scan| scan.unfelt());
+        let stiff = Scan::about(base.clone(), &coarse, 0.1, true).map_or(Vec::new(), |scan| scan.unfelt());
         let fits = begun.into_par_iter().filter_map(|(candidate, start, near)| {
             let start = start.holding(&stiff);
             let fit =
