@@ -383,7 +383,10 @@ fn held_out(
         }
         Some((error / size).sqrt())
     };
-    let (Some(nrmse_refitted), Some(nrmse_repaired)) = (error(&again.refitted), error(&again.repaired))
+    // What is not named is not in the repaired fixture either.
+    let named = search.repaired.hypothesis.effect_count() > 0;
+    let repaired = if named { &again.repaired } else { &again.refitted };
+    let (Some(nrmse_refitted), Some(nrmse_repaired)) = (error(&again.refitted), error(repaired))
     else {
         return Ok(None);
     };
@@ -391,7 +394,7 @@ fn held_out(
         .iter()
         .map(|(from, to)| format!("band {from}:{to}"))
         .chain(frfs.iter().map(|p| format!("frf {p}")));
-    let same_findings = same_names(&again.repaired.hypothesis, &search.repaired.hypothesis);
+    let same_findings = same_names(&repaired.hypothesis, &search.repaired.hypothesis);
     Ok(Some(HeldOut { what: what.collect(), nrmse_refitted, nrmse_repaired, same_findings }))
 }
 
