@@ -4,14 +4,24 @@
 //! pattern p that the model knows and γ = δ/(1 + δ·bᵀZ⁻¹b). With more FRFs than one, a free γ on every line is over-determined: at the right
 //! place one γ explains all FRFs within their noise, at a wrong one it cannot. What stays unexplained, by place, FRF and band, is the map of
 //! the mismatch; the γ of the best place, turned back into δ, is a measured dynamic stiffness, whose law over frequency names the physics.
+//!
+//! Stated deviations include noise, tolerances and abscissa. In twenty simulated tests of 86 lines each, two of them cover the true δ on 92 % of the lines
+//! for an added mass, on 94 % for a channel's gain and on 81 % for a spring in series, and the true parameter of the law in nine cases of ten or more
+//! (`stated_deviations_cover_the_truth_about_as_often_as_they_should`).
 
 mod chain;
-mod law_fit;
+mod descent;
+mod followed;
+mod guess;
 mod laws;
 mod map;
 mod pattern;
+mod recorded;
+mod scalar;
 mod sites;
-mod yielding;
+mod subject;
+mod tangent;
+mod yielded;
 
 pub use map::{locate, measure};
 
@@ -55,6 +65,8 @@ pub struct Location {
     pub site: Site,
     /// χ² per degree of freedom that is left with one free scalar a line there, tolerances yielding.
     pub chi2_per_dof: f64,
+    /// Σ (departure/std)² of the fixture's quantities there: a wrong place often explains as much, with tolerances that nobody would believe.
+    pub departures: f64,
     /// Real values less real unknowns.
     pub degrees: usize,
     /// Probability of as much by chance.
@@ -63,11 +75,11 @@ pub struct Location {
     pub bands: Vec<(f64, f64, f64)>,
     /// χ² per real value left, by FRF.
     pub frfs: Vec<(FrfPair, f64)>,
-    /// δ on each line where it is determined.
+    /// δ on each line where it is determined; told of the best places.
     pub delta: Vec<LineEstimate>,
     /// Number of lines without δ: the pattern vanishes, too few FRFs are valid, or the noise does not let it be inverted.
     pub masked: usize,
-    /// The laws tried on δ(ω), the closest first.
+    /// The laws that come closest to δ(ω), the closest first; told of the best places.
     pub laws: Vec<LawFit>,
 }
 
@@ -80,7 +92,8 @@ pub struct LawFit {
     pub formula: &'static str,
     /// Its parameters.
     pub parameters: Vec<LawParameter>,
-    /// χ² per degree of freedom that the law leaves of δ, tolerances yielding: far above 1 where δ does not follow it.
+    /// χ² per degree of freedom that the law leaves of δ, tolerances yielding: what it leaves of the FRFs beyond what free scalars leave. Far
+    /// above 1 where δ does not follow it, never below 0.
     pub chi2_per_dof: f64,
     /// Real values of δ less parameters.
     pub degrees: usize,
@@ -97,7 +110,7 @@ pub struct LawParameter {
     pub unit: &'static str,
     /// Its value.
     pub value: f64,
-    /// One standard deviation, tolerances included.
+    /// One standard deviation, tolerances and abscissa included.
     pub std: f64,
 }
 
@@ -111,6 +124,13 @@ pub struct LineEstimate {
     pub value: Complex64,
     /// Standard deviation of its real part, and of its imaginary part.
     pub std: f64,
+}
+
+impl Location {
+    /// χ² left and what the priors charge for the tolerances.
+    pub(crate) fn cost(&self) -> f64 {
+        self.chi2_per_dof * self.degrees as f64 + self.departures
+    }
 }
 
 impl Site {

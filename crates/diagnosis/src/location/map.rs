@@ -1,10 +1,12 @@
 //! The map of a mismatch: every site fitted, what each leaves unexplained, and the δ(ω) it would have to have.
 
-use super::law_fit::{FittedLaw, Measured};
-use super::laws::laws_of;
+use super::descent::{Descent, Start};
+use super::followed::{Followed, followed};
+use super::recorded::{Recorded, telling};
 use super::sites::sites;
-use super::yielding::{COARSE_LINES, State, Subject, Yielded};
-use super::{LawFit, LineEstimate, Location, Site};
+use super::subject::{Stand, State, Subject};
+use super::yielded::Yielded;
+use super::{LineEstimate, Location, Site};
 use crate::diagnosis::upper_tail;
 use crate::evidence::excess;
 use crate::fit::Fit;
@@ -17,48 +19,85 @@ use rayon::prelude::*;
 const BANDS: usize = 12;
 /// A recording with more lines than this is thinned for the map.
 const MOST_LINES: usize = 2000;
-/// Sites whose χ² is within this factor of the best get their uncertainties stated with care.
+/// Lines on which sites and laws find their way.
+const FEW_LINES: usize = 72;
+/// Sites that leave more than this, times the best and besides, with softened weights are left there.
+const PROMISING: (f64, f64) = (300.0, 1000.0);
+/// What those leave with softened weights comes after all that the others leave without.
+const HOPELESS: f64 = 1e6;
+/// Sites that leave up to this many times what the best leaves on those lines are fitted on all lines.
 const RIVAL: f64 = 1.5;
-/// Shares by which the scalars are softened while laws are fitted again about the tolerances of the closest.
-const SOFTENED: [f64; 7] = [0.1, 0.03, 0.01, 0.0, 0.0, 0.0, 0.0];
-/// Relative change of what the closest law leaves that ends them.
-const SETTLED: f64 = 1e-3;
+/// Steps on all lines, for a site and for one that a law has led elsewhere.
+const STEPS: usize = 4;
+/// Best sites whose δ and laws are told, and what they may leave, as a multiple of what the best leaves.
+const TOLD: usize = 3;
+const ALTERNATIVE: f64 = 1.2;
+/// Gain in χ² for which a free scalar sets out again from where a law has led.
+const ELSEWHERE: f64 = 1.0;
 /// 1 − γ·bᵀZ⁻¹b, and the compliance of what is in series, must be known to this share of themselves for δ to be told.
 const KNOWN: f64 = 1.0 / 3.0;
 
-/// What each site leaves unexplained of a mismatch, the best first; empty with fewer than two FRFs, which over-determine nothing.
+/// What each site leaves unexplained of a mismatch, the best first by χ² and what it asks of the tolerances; empty with fewer than two FRFs, which over-determine nothing.
 ///
 /// Every site sets out from the quantities as `base` has them and as `refitted` bent them, and goes on from the better end. Of a body the
-/// abscissa is sought too. A recording of more than two thousand lines is thinned: every k-th line, and as many of those with the largest
-/// signal against noise, which are the peaks.
+/// abscissa is sought too. The way is found on six dozen lines, half of them the peaks; sites that come near the best are then fitted on all
+/// lines, of the others only what they leave there is told. δ and laws are those of the best three. A recording of more than two thousand
+/// lines is thinned: every k-th line, and as many of those with the largest signal against noise.
 pub fn locate(base: &Hypothesis, refitted: &Fit, observation: &Observation) -> Vec<Location> {
     if observation.pairs().len() < 2 {
         return Vec::new();
     }
-    let thinned = thinned(observation);
+    let thinned = telling(observation, MOST_LINES);
     let observation = thinned.as_ref().unwrap_or(observation);
     let Ok(fixture) = base.to_fixture() else { return Vec::new() };
-    let starts = [base, &refitted.hypothesis];
-    let coarse = observation.thinned(COARSE_LINES);
-    let states: Vec<(f64, State)> = sites(&fixture, observation)
-        .par_iter()
-        .filter_map(|sites| {
-            let subject = Subject { observation, site: sites.first()?, moves: true };
-            let state = subject.reached(&starts, sites, &coarse)?;
-            Some((subject.plain_objective(&state), state))
-        })
-        .collect();
-    let best = states.iter().map(|(objective, _)| *objective).fold(f64::INFINITY, f64::min);
-    let mut all: Vec<Location> = states
+    let fewer = telling(observation, FEW_LINES);
+    let (few, whole) = (Recorded::of(fewer.as_ref().unwrap_or(observation)), Recorded::of(observation));
+    let [few, whole] = [&few, &whole].map(|recorded| Subject { recorded, moves: true, law: None });
+    let starts: Vec<Start> = [base, &refitted.hypothesis].iter().filter_map(|h| few.start(h)).collect();
+    let approached: Vec<(f64, Descent)> =
+        sites(&fixture, observation).par_iter().filter_map(|sites| few.approached(&starts, sites)).collect();
+    let best = least(approached.iter().map(|(left, _)| *left));
+    let mut reached: Vec<(f64, State)> = approached
         .into_par_iter()
-        .filter_map(|(objective, state)| {
-            let site = state.site.clone();
-            let subject = Subject { observation, site: &site, moves: true };
-            location(&subject, state, objective < RIVAL * best)
+        .filter_map(|(left, descent)| match left < PROMISING.0 * best + PROMISING.1 {
+            true => descent.ended(),
+            false => Some((HOPELESS * left, descent.state)),
         })
         .collect();
-    all.sort_by(|a, b| a.chi2_per_dof.total_cmp(&b.chi2_per_dof));
+    reached.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let mut seen: Vec<Site> = Vec::new();
+    reached.retain(|(_, state)| {
+        let known = seen.iter().any(|site| site.is_like(&state.stand.site));
+        seen.push(state.stand.site.clone());
+        !known
+    });
+    let best = least(reached.iter().map(|(left, _)| *left));
+    let ended = |(left, on_few): (f64, State)| {
+        let state = whole.state(&on_few.stand, &whole.recorded.weights)?;
+        let state = if left < RIVAL * best { whole.descended(state, STEPS)?.1 } else { state };
+        Some((whole.objective(&state, &whole.recorded.weights), on_few, state))
+    };
+    let mut ended: Vec<(f64, State, State)> = reached.into_par_iter().filter_map(ended).collect();
+    ended.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let best = least(ended.iter().map(|(left, ..)| *left));
+    let mut all: Vec<Location> = ended
+        .into_par_iter()
+        .enumerate()
+        .filter_map(|(rank, (left, on_few, state))| {
+            let told = rank < TOLD && left < ALTERNATIVE * best;
+            if told {
+                told_location(&few, &whole, on_few, state, base)
+            } else {
+                Some(location(&whole, &state))
+            }
+        })
+        .collect();
+    all.sort_by(|a, b| a.cost().total_cmp(&b.cost()));
     all
+}
+
+fn least(values: impl Iterator<Item = f64>) -> f64 {
+    values.fold(f64::INFINITY, f64::min)
 }
 
 /// The measured δ(ω) of effect `index` of a repaired fit: one free scalar a line at its place, beside the other effects as they were
@@ -68,58 +107,68 @@ pub fn measure(repaired: &Fit, index: usize, observation: &Observation) -> Optio
     if observation.pairs().len() < 2 {
         return None;
     }
-    let thinned = thinned(observation);
+    let thinned = telling(observation, MOST_LINES);
     let observation = thinned.as_ref().unwrap_or(observation);
     let effect = repaired.hypothesis.effects().into_iter().nth(index)?;
     let without = repaired.hypothesis.without(index);
     let site = Site::of(&without.to_fixture().ok()?, &effect)?;
-    let subject = Subject { observation, site: &site, moves: false };
-    location(&subject, subject.approached(&without)?, true)
+    let fewer = telling(observation, FEW_LINES);
+    let (few, whole) = (Recorded::of(fewer.as_ref().unwrap_or(observation)), Recorded::of(observation));
+    let [few, whole] = [&few, &whole].map(|recorded| Subject { recorded, moves: false, law: None });
+    let stand = Stand::free(&without, &site);
+    let (_, on_few) = few.descended(few.state(&stand, &few.recorded.weights)?, STEPS)?;
+    let (_, state) = whole.descended(whole.state(&on_few.stand, &whole.recorded.weights)?, STEPS)?;
+    told_location(&few, &whole, on_few, state, &without)
 }
 
-/// Fewer lines, where there are too many.
-fn thinned(observation: &Observation) -> Option<Observation> {
-    let n = observation.lines().len();
-    if n <= MOST_LINES {
-        return None;
+/// What a fitted site comes to, with its δ and its laws. A law may lead to tolerances that suit the free scalars better, too: a false minimum
+/// left, from which they then go on.
+fn told_location(
+    few: &Subject,
+    whole: &Subject,
+    on_few: State,
+    state: State,
+    base: &Hypothesis,
+) -> Option<Location> {
+    let laws = followed(few, whole, &few.yielded(on_few, false)?, base);
+    let weights = &whole.recorded.weights;
+    let mut state = state;
+    for law in &laws {
+        let stand = Stand { parameters: Vec::new(), ..law.state.stand.clone() };
+        let Some(other) = whole.state(&stand, weights) else { continue };
+        if whole.objective(&other, weights) + ELSEWHERE < whole.objective(&state, weights) {
+            state = whole.descended(other, STEPS)?.1;
+        }
     }
-    let signal = |line: usize| -> f64 {
-        let places = (0..observation.pairs().len()).map(|k| k * n + line);
-        places.map(|at| observation.weights()[at] * observation.values()[at].norm_sqr()).sum()
-    };
-    let signals: Vec<f64> = (0..n).map(signal).collect();
-    let mut sorted = signals.clone();
-    sorted.sort_by(f64::total_cmp);
-    let loud = sorted[n - MOST_LINES / 2];
-    let every = n.div_ceil(MOST_LINES / 2);
-    let hz = observation.lines().hz();
-    let kept = |frequency: f64| {
-        let line = hz.partition_point(|f| *f < frequency).min(n - 1);
-        line % every == 0 || signals[line] >= loud
-    };
-    observation.reduced(kept, |_| true)
+    let lowest = whole.objective(&state, weights);
+    let mut location = location(whole, &state);
+    let yielded = whole.yielded(state, true)?;
+    let delta = deltas(&yielded, whole);
+    let indices: Vec<usize> = delta.iter().map(|(line, _)| *line).collect();
+    let told = |law: &Followed| whole.told(law, lowest, &indices);
+    location.laws = laws.iter().filter_map(told).collect();
+    location.masked -= delta.len();
+    location.delta = delta.into_iter().map(|(_, estimate)| estimate).collect();
+    Some(location)
 }
 
-/// What a fitted site comes to; `carefully` where its uncertainties and laws will be looked at.
-fn location(subject: &Subject, state: State, carefully: bool) -> Option<Location> {
-    let observation = subject.observation;
-    let yielded = &subject.finished(state, carefully)?;
-    let (n, frfs) = (observation.lines().len(), observation.pairs().len());
+/// What a fitted site leaves, by band and FRF.
+fn location(subject: &Subject, state: &State) -> Location {
+    let recorded = subject.recorded;
+    let observation = recorded.observation;
+    let (n, frfs) = (recorded.lines(), recorded.frfs());
     let hz = observation.lines().hz();
-    // χ² and degrees of freedom of every line; values of FRFs that stand alone on a line determine nothing.
     let mut lines = vec![(0.0, 0usize); n];
     let mut by_frf = vec![(0.0, 0usize); frfs];
-    for line in 0..n {
-        let weight = |k: usize| observation.weights()[k * n + line];
-        let valid = (0..frfs).filter(|&k| weight(k) > 0.0).count();
-        for k in (0..frfs).filter(|&k| weight(k) > 0.0) {
-            let residual = observation.values()[k * n + line] - yielded.state.modelled[line * frfs + k];
-            let chi2 = weight(k) * residual.norm_sqr();
+    for (line, of_line) in lines.iter_mut().enumerate() {
+        for (k, place) in recorded.places(line).enumerate().filter(|(_, p)| recorded.weights[*p] > 0.0) {
+            let chi2 =
+                recorded.weights[place] * (recorded.measured[place] - state.modelled[place]).norm_sqr();
             by_frf[k].0 += chi2;
             by_frf[k].1 += 2;
-            lines[line].0 += chi2;
+            of_line.0 += chi2;
         }
-        lines[line].1 = 2 * valid.saturating_sub(usize::from(yielded.weights[line] > 0.0));
+        of_line.1 = freedoms(recorded, state, line);
     }
     let total = |range: std::ops::Range<usize>| {
         lines[range].iter().fold((0.0, 0), |sum, line| (sum.0 + line.0, sum.1 + line.1))
@@ -132,12 +181,10 @@ fn location(subject: &Subject, state: State, carefully: bool) -> Option<Location
         let (chi2, degrees) = total(from..to);
         (hz[from], hz[to - 1], chi2 / degrees.max(1) as f64)
     };
-    let told = deltas(yielded, &lines, hz);
-    let indices: Vec<usize> = told.iter().map(|(line, _)| *line).collect();
-    let laws = laws(subject, yielded, carefully, &indices);
-    Some(Location {
-        site: yielded.state.site.clone(),
+    Location {
+        site: state.stand.site.clone(),
         chi2_per_dof,
+        departures: state.stand.penalty(),
         degrees,
         p_value: if degrees == 0 { 1.0 } else { upper_tail(excess(chi2_per_dof, degrees)) },
         bands: (0..bands).map(band).collect(),
@@ -147,54 +194,29 @@ fn location(subject: &Subject, state: State, carefully: bool) -> Option<Location
             .zip(by_frf)
             .map(|(pair, (chi2, values))| (pair.clone(), chi2 / values.max(1) as f64))
             .collect(),
-        masked: n - told.len(),
-        delta: told.into_iter().map(|(_, estimate)| estimate).collect(),
-        laws,
-    })
+        delta: Vec::new(),
+        masked: n,
+        laws: Vec::new(),
+    }
 }
 
-/// The laws of a site, the closest first. The tolerances that the closest one asks for may be far from those that suit free scalars, and near a
-/// resonance no straight line leads there: softly at first, all are fitted again and again from where it went. Derivatives are
-/// taken at its own scalars, for those of single lines carry noise, which would let the tolerances seem better known than they are.
-fn laws(subject: &Subject, yielded: &Yielded, carefully: bool, told: &[usize]) -> Vec<LawFit> {
-    let fitted = |yielded: &Yielded, raised: f64, softness: f64| {
-        let measured = Measured::new(yielded, subject.observation.lines().omegas(), raised, softness);
-        let laws = laws_of(&yielded.state.site).iter();
-        let mut fits: Vec<FittedLaw> = laws.filter_map(|law| measured.fitted(law, told)).collect();
-        fits.sort_by(|a, b| a.told.chi2_per_dof.total_cmp(&b.told.chi2_per_dof));
-        fits
-    };
-    let lowest = subject.plain_objective(&yielded.state);
-    let first = if carefully { SOFTENED[0] } else { 0.0 };
-    let mut fits = fitted(yielded, 0.0, first);
-    let mut at = yielded.state.clone();
-    let rounds = if carefully { &SOFTENED[1..] } else { &SOFTENED[..0] };
-    for softness in rounds {
-        let Some(closest) = fits.first() else { break };
-        let Some(next) = subject.departed(&at, &closest.departures) else { break };
-        let lines = subject.observation.lines().omegas().zip(&next.inversions);
-        let scalars = lines.map(|(omega, inversion)| closest.scalar(omega, inversion)).collect();
-        let Some(about) = subject.finished_about(next, scalars) else { break };
-        let again = fitted(&about, subject.plain_objective(&about.state) - lowest, *softness);
-        let before = closest.told.chi2_per_dof;
-        let settled = again.first().is_some_and(|a| (a.told.chi2_per_dof - before).abs() < SETTLED * before);
-        (fits, at) = (again, about.state);
-        if *softness == 0.0 && settled {
-            break;
-        }
-    }
-    fits.into_iter().map(|fit| fit.told).collect()
+/// Degrees of freedom of a line: real values less the scalar, where it is felt. Values of FRFs that stand alone on a line determine nothing.
+fn freedoms(recorded: &Recorded, state: &State, line: usize) -> usize {
+    let valid = recorded.places(line).filter(|p| recorded.weights[*p] > 0.0);
+    let felt = valid.clone().any(|p| state.slopes[p] != Complex64::ZERO);
+    2 * valid.count().saturating_sub(usize::from(felt))
 }
 
 /// δ on the lines where the scalar is over-determined and can be inverted, with their indices.
-fn deltas(yielded: &Yielded, lines: &[(f64, usize)], hz: &[f64]) -> Vec<(usize, LineEstimate)> {
+fn deltas(yielded: &Yielded, subject: &Subject) -> Vec<(usize, LineEstimate)> {
     let n = yielded.order;
     let covariance = covariance(&yielded.information, n);
-    let mut all = Vec::with_capacity(lines.len());
+    let hz = subject.recorded.observation.lines().hz();
+    let mut all = Vec::with_capacity(hz.len());
     let mut spread = vec![Complex64::ZERO; n];
-    for (line, (_, degrees)) in lines.iter().enumerate() {
+    for line in 0..hz.len() {
         let weight = yielded.weights[line];
-        if weight.is_nan() || weight <= 0.0 || *degrees == 0 {
+        if weight.is_nan() || weight <= 0.0 || freedoms(subject.recorded, &yielded.state, line) == 0 {
             continue;
         }
         let sensitivities = &yielded.sensitivities[line * n..(line + 1) * n];
@@ -211,7 +233,7 @@ fn deltas(yielded: &Yielded, lines: &[(f64, usize)], hz: &[f64]) -> Vec<(usize, 
             continue;
         }
         let (mut value, mut std) = (inversion.delta(z), deviation / lower.norm_sqr());
-        if matches!(yielded.state.site, Site::Series { .. }) {
+        if matches!(yielded.state.stand.site, Site::Series { .. }) {
             if std > KNOWN * value.norm() {
                 continue;
             }

@@ -31,16 +31,17 @@ impl Course {
         self.start + upper / lower
     }
 
-    /// Its derivative with respect to z.
-    pub fn slope(&self, z: Complex64) -> Complex64 {
+    /// The value at z and its derivative there.
+    pub fn with_slope(&self, z: Complex64) -> (Complex64, Complex64) {
         if self.is_linear() {
-            return self.linear;
+            return (self.start + z * self.linear, self.linear);
         }
         let upper = z * (self.linear + z * self.square);
-        let lower = 1.0 + z * (self.lower_linear + z * self.lower_square);
+        let inverse = (1.0 + z * (self.lower_linear + z * self.lower_square)).inv();
+        let share = upper * inverse;
         let upper_slope = self.linear + 2.0 * z * self.square;
         let lower_slope = self.lower_linear + 2.0 * z * self.lower_square;
-        (upper_slope - upper * lower_slope / lower) / lower
+        (self.start + share, (upper_slope - share * lower_slope) * inverse)
     }
 
     /// Whether z enters linearly.
@@ -210,16 +211,19 @@ impl<'a> Pattern<'a> {
         let quadratic =
             |among: &Among| -> Complex64 { (0..self.count).map(|v| column[v] * along(&among[v])).sum() };
         let driving = quadratic(&own);
+        let mut scratch = own;
         for (k, course) in courses.iter_mut().enumerate() {
             let mut local = self.local(k);
-            let loaded = self.loaded(k, s, &mut local, &own);
-            let among = loaded.as_ref().unwrap_or(&own);
+            let loaded = self.loaded(k, s, &mut local, &own, &mut scratch);
+            let among = if loaded { &scratch } else { &own };
             let factor = self.chain.factor(k, omega);
             *course = Course { start: factor * local.whole, ..Course::default() };
             match &self.action {
                 Action::Body | Action::Series { .. } => {
                     course.linear = -factor * along(&local.out) * along(&local.into);
-                    course.lower_linear = loaded.as_ref().map_or(Complex64::ZERO, |g| quadratic(g) - driving);
+                    if loaded {
+                        course.lower_linear = quadratic(among) - driving;
+                    }
                 }
                 Action::Joint { stiffness, length } => {
                     joint(course, &local, among, factor, *stiffness, *length);
@@ -269,23 +273,22 @@ impl<'a> Pattern<'a> {
         local
     }
 
-    /// Adds the mass of FRF `k`'s own sensor, if it has one, to the structure that it reads.
-    fn loaded(&self, k: usize, s: Complex64, local: &mut Local, own: &Among) -> Option<Among> {
-        let load = self.indices[k].load.as_ref()?;
+    /// Adds the mass of FRF `k`'s own sensor, if it has one, to the structure that it reads; whether it has.
+    fn loaded(&self, k: usize, s: Complex64, local: &mut Local, own: &Among, among: &mut Among) -> bool {
+        let Some(load) = &self.indices[k].load else { return false };
         let at = |index: usize| self.values[index];
         let inertia = s * s * load.mass;
         let reaction = inertia / (1.0 + inertia * at(load.driving));
         let (out, into) = (at(load.to_response), at(load.from_reference));
         local.whole -= reaction * out * into;
-        let mut among = *own;
         for v in 0..self.count {
             local.out[v] -= reaction * out * at(load.to_sites[v]);
             local.into[v] -= reaction * at(load.to_sites[v]) * into;
             for w in 0..self.count {
-                among[v][w] -= reaction * at(load.to_sites[v]) * at(load.to_sites[w]);
+                among[v][w] = own[v][w] - reaction * at(load.to_sites[v]) * at(load.to_sites[w]);
             }
         }
-        Some(among)
+        true
     }
 }
 

@@ -10,9 +10,13 @@ use jointscope_spectra::Channel;
 /// Abscissae of an even grid on each body, its ends included.
 const GRID: usize = 5;
 
-/// The sites of a fixture and a recording; of each body several abscissae from which the best may be sought.
+/// Abscissae of one stretch of a body: each stretch is sought through by itself, for between them a search does not find the way.
+const STRETCH: usize = 3;
+
+/// The sites of a fixture and a recording; of each stretch of a body several abscissae from which the best may be sought.
 pub(super) fn sites(fixture: &Fixture, observation: &Observation) -> Vec<Vec<Site>> {
-    let mut all: Vec<Vec<Site>> = (0..fixture.bodies().len()).map(|body| on_body(fixture, body)).collect();
+    let stretches = |body| on_body(fixture, body).chunks(STRETCH).map(<[Site]>::to_vec).collect::<Vec<_>>();
+    let mut all: Vec<Vec<Site>> = (0..fixture.bodies().len()).flat_map(stretches).collect();
     for joint in fixture.joints() {
         let stiffness = nominal_stiffness(&joint.law, fixture.joint_length(joint));
         if stiffness.at(0, 0) > 0.0 {
@@ -89,6 +93,14 @@ fn series(fixture: &Fixture, joint: &Joint, dof: Dof) -> Vec<Site> {
 }
 
 impl Site {
+    /// Whether both are the same but for a body's abscissa.
+    pub(super) fn is_like(&self, other: &Site) -> bool {
+        match (self, other) {
+            (Site::Body { body, .. }, Site::Body { body: another, .. }) => body == another,
+            _ => self == other,
+        }
+    }
+
     /// Whether `effect` would act through this site of `fixture`. A body's abscissa is not compared: the effect's own is fitted.
     pub fn holds(&self, effect: &Effect, fixture: &Fixture) -> bool {
         match (self, &effect.place, effect.kind) {

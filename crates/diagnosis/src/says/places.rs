@@ -85,6 +85,7 @@ mod tests {
         let at = |delta: &dyn Fn(f64) -> Complex64| Location {
             site: Site::Body { body: "B".into(), x: 0.1 },
             chi2_per_dof: 1.0,
+            departures: 0.0,
             degrees: 100,
             p_value: 0.5,
             bands: Vec::new(),

@@ -1,20 +1,20 @@
-//! A law fitted to a site's scalar by generalised least squares.
+//! A first guess at a law's parameters from a site's free scalars, by generalised least squares.
 //!
 //! The scalars z were found with the tolerances at their best; a law that wants other tolerances may have them, at the price of the
 //! information that the recordings hold about them: minimised is Σ w |ẑ + S Δq − z(law)|² + Δqᵀ N Δq,
 //! with a linear term where the tolerances had not quite converged. Residuals are taken in z, which the noise
-//! enters linearly, never in δ, which near a resonance it does not.
+//! enters linearly, never in δ, which near a resonance it does not. All of it is linear in the tolerances: a guess, from which the law is fitted
+//! to the FRFs themselves.
 
 use super::laws::{Law, Line};
 use super::pattern::Inversion;
-use super::yielding::Yielded;
-use super::{LawFit, LawParameter, Site};
+use super::yielded::Yielded;
 use jointscope_linalg::solve_positive_definite;
 use num_complex::Complex64;
 
 /// Starts fitted in full after a scan, and Gauss–Newton steps for each.
-const FRONT: usize = 3;
-const STEPS: usize = 25;
+const FRONT: usize = 2;
+const STEPS: usize = 12;
 /// Share of a component's size that its course is known to at best, for a start.
 const SOFT: f64 = 0.1;
 /// Relative step of the parameters' differences.
@@ -26,40 +26,20 @@ pub(super) struct Measured<'a> {
     lines: Vec<Line>,
     /// N + Σ w SᵀS, the tolerances' part of every law's normal matrix.
     own: Vec<f64>,
-    degrees: usize,
     /// Information about the scalars, a share of their size counted as noise.
     weights: Vec<f64>,
-    /// What the state's tolerances cost already above those that suit free scalars best.
-    raised: f64,
 }
 
-/// A law at its best.
-pub(super) struct FittedLaw {
-    pub told: LawFit,
-    /// The tolerances' departures that it asks for, in units of the coordinates.
-    pub departures: Vec<f64>,
-    law: Law,
-    parameters: Vec<f64>,
-}
-
-impl FittedLaw {
-    /// The scalar z that the law means on a line.
-    pub fn scalar(&self, omega: f64, inversion: &Inversion) -> Complex64 {
-        let line = Line { omega, driving: inversion.driving };
-        inversion.scalar((self.law.value)(line, &self.parameters))
-    }
-}
-
-/// Parameters of a law and the tolerances' departures, with what they leave.
+/// Parameters of a law and the tolerances' departures (in units of the coordinates), with what they leave.
 #[derive(Clone)]
-struct Point {
-    parameters: Vec<f64>,
-    departures: Vec<f64>,
-    left: f64,
+pub(super) struct Guess {
+    pub parameters: Vec<f64>,
+    pub departures: Vec<f64>,
+    pub left: f64,
 }
 
 impl<'a> Measured<'a> {
-    pub fn new(yielded: &'a Yielded, omegas: impl Iterator<Item = f64>, raised: f64, softness: f64) -> Self {
+    pub fn new(yielded: &'a Yielded, omegas: &[f64], softness: f64) -> Self {
         let n = yielded.order;
         let softened = |(weight, z): (&f64, &Complex64)| {
             if *weight > 0.0 { 1.0 / (1.0 / weight + softness * softness * z.norm_sqr()) } else { 0.0 }
@@ -74,13 +54,13 @@ impl<'a> Measured<'a> {
             }
         }
         let inversions = &yielded.state.inversions;
-        let lines = omegas.zip(inversions).map(|(omega, i)| Line { omega, driving: i.driving }).collect();
-        let degrees = 2 * yielded.weights.iter().filter(|w| **w > 0.0).count();
-        Measured { yielded, lines, own, degrees, weights, raised }
+        let lines =
+            omegas.iter().zip(inversions).map(|(&omega, i)| Line { omega, driving: i.driving }).collect();
+        Measured { yielded, lines, own, weights }
     }
 
-    /// The law at its best, its values on the lines `told`, and the tolerances' departures that it asks for; `None` where no start leads anywhere.
-    pub fn fitted(&self, law: &Law, told: &[usize]) -> Option<FittedLaw> {
+    /// The law at its best; `None` where no start leads anywhere.
+    pub fn guess(&self, law: &Law) -> Option<Guess> {
         let (low, high) = (self.lines.first()?.omega, self.lines.last()?.omega);
         let mut starts: Vec<(f64, Vec<f64>)> = (law.starts)(low, high)
             .into_iter()
@@ -90,24 +70,9 @@ impl<'a> Measured<'a> {
             })
             .collect();
         starts.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let fits = starts.into_iter().take(FRONT).filter_map(|(_, start)| self.improved(law, start));
-        let best = fits.min_by(|a, b| a.left.total_cmp(&b.left))?;
-        let degrees = self.degrees.checked_sub(best.parameters.len()).filter(|d| *d > 0)?;
-        let in_series = matches!(self.yielded.state.site, Site::Series { .. });
-        let value = |&line: &usize| {
-            let component = (law.value)(self.lines[line], &best.parameters);
-            if in_series { component.inv() } else { component }
-        };
-        let values = told.iter().map(value).collect();
-        let fit = LawFit {
-            name: law.name,
-            formula: law.formula,
-            parameters: self.told(law, &best)?,
-            chi2_per_dof: (best.left + self.raised) / degrees as f64,
-            degrees,
-            values,
-        };
-        Some(FittedLaw { told: fit, law: *law, parameters: best.parameters, departures: best.departures })
+        let front = if starts.len() > 1 { FRONT } else { 1 };
+        let fits = starts.into_iter().take(front).filter_map(|(_, start)| self.improved(law, start));
+        fits.min_by(|a, b| a.left.total_cmp(&b.left))
     }
 
     /// The start with its amplitude at the mean of the component over the law. Lines count by what is known of them, at best by a tenth of
@@ -183,7 +148,7 @@ impl<'a> Measured<'a> {
     }
 
     /// Normal matrix of (parameters, departures), whole, and right side.
-    fn normal(&self, law: &Law, at: &Point) -> (Vec<f64>, Vec<f64>) {
+    fn normal(&self, law: &Law, at: &Guess) -> (Vec<f64>, Vec<f64>) {
         let (p, n) = (at.parameters.len(), self.yielded.order);
         let order = p + n;
         let mut matrix = vec![0.0; order * order];
@@ -222,10 +187,10 @@ impl<'a> Measured<'a> {
         (matrix, right)
     }
 
-    fn improved(&self, law: &Law, start: Vec<f64>) -> Option<Point> {
+    fn improved(&self, law: &Law, start: Vec<f64>) -> Option<Guess> {
         let departures = vec![0.0; self.yielded.order];
         let left = self.left(law, &start, &departures)?;
-        let mut at = Point { parameters: start, departures, left };
+        let mut at = Guess { parameters: start, departures, left };
         let mut damping = 1e-6;
         for _ in 0..STEPS {
             let (matrix, right) = self.normal(law, &at);
@@ -241,7 +206,7 @@ impl<'a> Measured<'a> {
                     let (parameters, departures) =
                         (add(&at.parameters, own), add(&at.departures, tolerances));
                     let left = self.left(law, &parameters, &departures);
-                    next = left.filter(|left| *left < at.left).map(|left| Point {
+                    next = left.filter(|left| *left < at.left).map(|left| Guess {
                         parameters,
                         departures,
                         left,
@@ -257,38 +222,5 @@ impl<'a> Measured<'a> {
             }
         }
         Some(at)
-    }
-
-    /// The parameters as they are told, with standard deviations, tolerances included.
-    fn told(&self, law: &Law, at: &Point) -> Option<Vec<LawParameter>> {
-        let (matrix, _) = self.normal(law, at);
-        let (p, order) = (at.parameters.len(), at.parameters.len() + self.yielded.order);
-        let mut covariance = vec![0.0; p * p];
-        for a in 0..p {
-            let (mut copy, mut column) = (matrix.clone(), vec![0.0; order]);
-            column[a] = 1.0;
-            if !solve_positive_definite(&mut copy, &mut column) {
-                return None;
-            }
-            (0..p).for_each(|b| covariance[a * p + b] = column[b]);
-        }
-        let values = (law.told)(&at.parameters);
-        let mut slopes = vec![0.0; p * p];
-        for a in 0..p {
-            let step = DIFFERENCE * at.parameters[a].abs().max(1e-12);
-            let moved = |sign: f64| {
-                let mut parameters = at.parameters.clone();
-                parameters[a] += sign * step;
-                (law.told)(&parameters)
-            };
-            let (up, down) = (moved(1.0), moved(-1.0));
-            (0..p).for_each(|told| slopes[told * p + a] = (up[told] - down[told]) / (2.0 * step));
-        }
-        let tell = |(index, (name, unit)): (usize, &(&'static str, &'static str))| {
-            let row = &slopes[index * p..(index + 1) * p];
-            let variance: f64 = (0..p * p).map(|i| row[i / p] * covariance[i] * row[i % p]).sum();
-            LawParameter { name, unit, value: values[index], std: variance.max(0.0).sqrt() }
-        };
-        Some(law.parameters.iter().enumerate().map(tell).collect())
     }
 }
