@@ -372,7 +372,14 @@ fn held_out(
     let frfs = held_out_frfs(observation, options)?;
     let outside = |line: f64| !bands.iter().any(|(from, to)| line >= *from && line <= *to);
     let Some(seen) = observation.reduced(outside, |pair| !frfs.contains(pair)) else { return Ok(None) };
-    let Some(again) = Search::of(fixture, &seen, options.exact) else { return Ok(None) };
+    // What is not named is not in the repaired fixture either, and needs no search.
+    let named = search.repaired.hypothesis.effect_count() > 0;
+    let again = if named {
+        Search::of(fixture, &seen, options.exact)
+    } else {
+        Search::without_effects(fixture, &seen, options.exact)
+    };
+    let Some(again) = again else { return Ok(None) };
     let error = |fit: &Fit| -> Option<f64> {
         let predicted = fit.hypothesis.predict(observation).ok()?;
         let unseen = |index: usize| frfs.contains(&observation.pairs()[index / n]) || !outside(hz[index % n]);
@@ -386,15 +393,14 @@ fn held_out(
     // What is not named is not in the repaired fixture either.
     let named = search.repaired.hypothesis.effect_count() > 0;
     let repaired = if named { &again.repaired } else { &again.refitted };
-    let (Some(nrmse_refitted), Some(nrmse_repaired)) = (error(&again.refitted), error(repaired))
-    else {
+    let (Some(nrmse_refitted), Some(nrmse_repaired)) = (error(&again.refitted), error(repaired)) else {
         return Ok(None);
     };
     let what = bands
         .iter()
         .map(|(from, to)| format!("band {from}:{to}"))
         .chain(frfs.iter().map(|p| format!("frf {p}")));
-    let same_findings = same_names(&repaired.hypothesis, &search.repaired.hypothesis);
+    let same_findings = same_names(&again.repaired.hypothesis, &search.repaired.hypothesis);
     Ok(Some(HeldOut { what: what.collect(), nrmse_refitted, nrmse_repaired, same_findings }))
 }
 

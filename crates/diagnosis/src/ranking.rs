@@ -63,15 +63,18 @@ impl Ranking<'_> {
     /// Every candidate fitted from where `base` stands, which is where an effect that is looked for would leave the quantities; fits that
     /// will not come near `limit` are left unfinished.
     pub fn look_alikes(&self, base: &Hypothesis, limit: f64) -> Vec<(usize, Fit)> {
-        self.in_stead(base, false, limit)
-    }
-
-    /// As [`Ranking::look_alikes`], and with `far` by the way from the nominal quantities too.
-    pub fn in_stead(&self, base: &Hypothesis, far: bool, limit: f64) -> Vec<(usize, Fit)> {
         let starts = self.starts(base);
         // The quantities stand right already, but no line leads from nothing to an effect that moves peaks by many widths.
         let mut fits = self.fitted(self.far(base, &starts), None, limit);
         fits.extend(self.near(base, &starts, usize::MAX, 1, limit));
+        self.best_of_each(fits)
+    }
+
+    /// What serves better than `limit` in the stead of an effect that `base` has lost: from where it left the quantities, and with `far`
+    /// by the way from the nominal ones.
+    pub fn in_stead(&self, base: &Hypothesis, far: bool, limit: f64) -> Vec<(usize, Fit)> {
+        let starts = self.starts(base);
+        let mut fits = self.near(base, &starts, NEAR, 1, limit);
         if far {
             fits.extend(self.fitted(self.far(&base.with_tolerances_of(self.nominal), &starts), None, limit));
         }

@@ -46,15 +46,20 @@ pub struct Search {
 }
 
 impl Search {
-    /// Searches for effects. `None` where the fixture predicts no finite FRFs.
-    pub fn of(fixture: &Fixture, observation: &Observation, exact: bool) -> Option<Self> {
+    /// The fixture as it stands and refitted, and nothing searched for yet. `None` where it predicts no finite FRFs.
+    pub(crate) fn without_effects(fixture: &Fixture, observation: &Observation, exact: bool) -> Option<Self> {
         let start = Hypothesis::nominal(fixture, exact);
         let predicted = start.predict(observation).ok()?;
         let chi2 = observation.chi2(&predicted);
         let nominal = Fit { hypothesis: start.clone(), predicted, chi2, objective: chi2 };
         let refitted = Fit::searched(&start, observation)?;
         let candidates = catalogue(fixture, observation);
-        let mut search = Search { nominal, repaired: refitted.clone(), refitted, candidates };
+        Some(Search { nominal, repaired: refitted.clone(), refitted, candidates })
+    }
+
+    /// Searches for effects. `None` where the fixture predicts no finite FRFs.
+    pub fn of(fixture: &Fixture, observation: &Observation, exact: bool) -> Option<Self> {
+        let mut search = Search::without_effects(fixture, observation, exact)?;
         for _ in 0..ROUNDS {
             if search.repaired.hypothesis.effect_count() >= MOST_EFFECTS {
                 break;
@@ -137,7 +142,9 @@ impl Search {
             let mut changed = false;
             for index in 0..self.repaired.hypothesis.effect_count() {
                 let without = self.repaired.hypothesis.without(index);
-                let far = self.lacks_much(&self.repaired, observation);
+                // Three names at once that still miss much are no physics in need of a fourth opinion.
+                let far = self.repaired.hypothesis.effect_count() == 2
+                    && self.lacks_much(&self.repaired, observation);
                 let ranking = self.ranking(observation);
                 let Some((_, other)) =
                     ranking.in_stead(&without, far, self.repaired.objective).into_iter().next()
