@@ -44,11 +44,10 @@ impl Candidate {
 pub(crate) fn scaled(effect: &Effect, times: f64) -> Option<Effect> {
     use EffectKind as Kind;
     let mut parameters: Vec<f64> = effect.parameters.iter().map(|p| p.value).collect();
-    let either_sign = match effect.kind {
-        Kind::AddedMass | Kind::SensorMass | Kind::PointOffset | Kind::JointLength => true,
-        Kind::ChannelDelay | Kind::ChannelGain | Kind::StiffnessChange => true,
-        _ => false,
-    };
+    let places =
+        matches!(effect.kind, Kind::AddedMass | Kind::SensorMass | Kind::PointOffset | Kind::JointLength);
+    let either_sign =
+        places || matches!(effect.kind, Kind::ChannelDelay | Kind::ChannelGain | Kind::StiffnessChange);
     if !either_sign && times <= 0.0 {
         return None;
     }

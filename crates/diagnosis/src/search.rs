@@ -79,10 +79,9 @@ impl Search {
         let found = &self.repaired.hypothesis;
         let starts = [(found.with_tolerances_of(&self.nominal.hypothesis), true), (found.clone(), false)];
         let fits = starts.iter().filter_map(|(start, far)| Fit::of(start, observation, *far));
-        if let Some(best) = fits.min_by(|a, b| a.objective.total_cmp(&b.objective)) {
-            if best.objective < self.repaired.objective {
-                self.repaired = best;
-            }
+        let best = fits.min_by(|a, b| a.objective.total_cmp(&b.objective));
+        if let Some(best) = best.filter(|best| best.objective < self.repaired.objective) {
+            self.repaired = best;
         }
     }
 

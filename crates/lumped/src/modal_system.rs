@@ -117,8 +117,7 @@ fn factorized<const N: usize>(mut matrix: [[Complex64; N]; N]) -> Option<([[Comp
     for column in 0..N {
         let size = |row: usize| matrix[row][column].norm_sqr();
         let pivot = (column..N).fold(column, |best, row| if size(row) > size(best) { row } else { best });
-        // Written so that what is not a number counts as zero too.
-        if !(size(pivot) > ZERO * ZERO * largest) || !largest.is_finite() {
+        if !largest.is_finite() || size(pivot).is_nan() || size(pivot) <= ZERO * ZERO * largest {
             return None;
         }
         pivots[column] = pivot;
