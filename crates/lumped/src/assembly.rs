@@ -1,4 +1,5 @@
 use crate::mesh::Mesh;
+use crate::modes_cache::modes;
 use crate::{LumpedError, Station};
 use jointscope_beam::{
     Matrix4, consistent_mass, consistent_rotary_inertia, element_stiffness, end_stiffness,
@@ -6,7 +7,7 @@ use jointscope_beam::{
 };
 use jointscope_damping::{DampingLaw, ModeDamping, viscous_matrix};
 use jointscope_fixture::{BeamBody, Body, BodyKind, Damping, EffectKind, Fixture, Joint, JointLaw, Place};
-use jointscope_linalg::{Matrix2, ModalBasis, RealMatrix2, generalized_symmetric_eigen};
+use jointscope_linalg::{Matrix2, ModalBasis, RealMatrix2};
 use jointscope_spectra::Dof;
 use std::f64::consts::TAU;
 
@@ -46,7 +47,7 @@ impl Assembly {
         let places = coordinates(fixture, highest_hz);
         let order = places.iter().map(Coordinates::count).sum();
         let plain = Matrices::of(fixture, &places, order, false);
-        let basis = generalized_symmetric_eigen(order, &plain.mass, &plain.stiffness)?;
+        let basis = modes(order, &plain.mass, &plain.stiffness)?;
         let law = damping_law(fixture.damping());
         let damping = law.of_modes(basis.eigenvalues());
         let assembly =
@@ -58,20 +59,34 @@ impl Assembly {
     /// assembly without them; in the new modes only its diagonal is kept, an error of the order of the
     /// damping ratio times the change of shape.
     fn rebuilt(self, fixture: &Fixture) -> Result<Self, LumpedError> {
-        let viscous = viscous_matrix(&self.mass, &self.basis, &self.damping);
         let with = Matrices::of(fixture, &self.places, self.order, true);
-        let basis = generalized_symmetric_eigen(self.order, &with.mass, &with.stiffness)?;
+        let basis = modes(self.order, &with.mass, &with.stiffness)?;
         let structural = match self.law {
             DampingLaw::LossFactor(factor) => factor,
             _ => 0.0,
         };
-        let damping = (0..self.order)
-            .map(|r| ModeDamping {
-                viscous: quadratic_form(&viscous, basis.shape(r)),
-                structural: structural * basis.eigenvalues()[r],
-            })
+        let viscous = self.viscous_diagonal(&basis);
+        let damping = viscous.iter().zip(basis.eigenvalues());
+        let damping = damping
+            .map(|(&viscous, eigenvalue)| ModeDamping { viscous, structural: structural * eigenvalue })
             .collect();
         Ok(Assembly { mass: with.mass, stiffness: with.stiffness, basis, damping, ..self })
+    }
+
+    /// φᵀ C φ of every shape of `basis`: C = Σ v_r (Mξ_r)(Mξ_r)ᵀ over this assembly's own modes.
+    fn viscous_diagonal(&self, basis: &ModalBasis) -> Vec<f64> {
+        let n = self.order;
+        let mut all = vec![0.0; n];
+        let mut momentum = vec![0.0; n];
+        for (r, mode) in self.damping.iter().enumerate().filter(|(_, mode)| mode.viscous != 0.0) {
+            for (value, row) in momentum.iter_mut().zip(self.mass.chunks_exact(n)) {
+                *value = dot(row, self.basis.shape(r));
+            }
+            for (k, value) in all.iter_mut().enumerate() {
+                *value += mode.viscous * dot(&momentum, basis.shape(k)).powi(2);
+            }
+        }
+        all
     }
 
     /// Number of coordinates.
@@ -226,9 +241,17 @@ fn rebuilds_a_body(effect: &jointscope_fixture::Effect) -> bool {
         && matches!(effect.place, Place::Body(_))
 }
 
-fn quadratic_form(matrix: &[f64], vector: &[f64]) -> f64 {
-    let rows = matrix.chunks_exact(vector.len());
-    rows.zip(vector).map(|(row, v)| v * row.iter().zip(vector).map(|(a, b)| a * b).sum::<f64>()).sum()
+/// Σ aᵢ bᵢ, in four sums at once: a single one would wait for each addition.
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    let mut sums = [0.0; 4];
+    let (left, right) = (a.chunks_exact(4), b.chunks_exact(4));
+    let rest: f64 = left.remainder().iter().zip(right.remainder()).map(|(x, y)| x * y).sum();
+    for (x, y) in left.zip(right) {
+        for lane in 0..4 {
+            sums[lane] += x[lane] * y[lane];
+        }
+    }
+    rest + sums.iter().sum::<f64>()
 }
 
 /// Mass and stiffness under construction.

@@ -33,11 +33,13 @@
 
 mod assembly;
 mod bar;
+mod far_modes;
 mod joint;
 mod joint_element;
 mod mesh;
 mod modal_system;
 mod model;
+mod modes_cache;
 mod station;
 mod synthesis;
 mod terms;

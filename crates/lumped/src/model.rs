@@ -1,4 +1,5 @@
 use crate::bar::BarShape;
+use crate::far_modes::FarModes;
 use crate::modal_system::{FEW_MODES, ModalSystem};
 use crate::terms::{TermStation, Terms};
 use crate::{Assembly, LumpedError, Station};
@@ -16,6 +17,7 @@ pub struct Model {
     assembly: Assembly,
     bending: Vec<BendingCoordinate>,
     terms: Terms,
+    highest_hz: f64,
 }
 
 /// The first bending mode of a block that was taken as rigid.
@@ -53,6 +55,7 @@ impl Model {
             assembly: Assembly::new(fixture, highest_hz)?,
             bending,
             terms: Terms::of(fixture, &flexible),
+            highest_hz,
         })
     }
 
@@ -144,12 +147,17 @@ pub struct Receptances<'a> {
     delta: Vec<Complex64>,
     right: Vec<Complex64>,
     lu: LuWorkspace,
+    /// Modes far above the band, the rows of their series, and how many of the denominators, the first ones, are not among them.
+    far: Option<(FarModes, Vec<f64>)>,
+    near: usize,
     /// In place of all that, where the modes are few and the change is of high rank.
     system: Option<ModalSystem>,
 }
 
 /// Rank from which a change is solved for in the coordinates of few modes.
 const HIGH_RANK: usize = 3;
+/// How far beyond the highest line s may lie, the decay of a response window included.
+const BEYOND: f64 = 1.1;
 
 impl<'a> Receptances<'a> {
     fn new(model: &'a Model, outputs: &[Station], inputs: &[Station], pairs: Vec<(usize, usize)>) -> Self {
@@ -160,13 +168,19 @@ impl<'a> Receptances<'a> {
         let single = model.denominators();
         let system = (single.len() <= FEW_MODES && change.len() >= HIGH_RANK)
             .then(|| ModalSystem::new(single.clone(), &out, &input, &change));
-        let (denominators, group) = merge(&single);
+        let far = FarModes::of(&single, BEYOND * TAU * model.highest_hz);
+        let is_far = |mode: usize| far.as_ref().is_some_and(|far| far.contain(mode));
+        let (denominators, group, near) = merge(&single, is_far);
         let count = pairs.len() + change.len() * (out.len() + change.len() + input.len());
         let mut products = vec![0.0; count * denominators.len()];
+        let mut by_mode = vec![0.0; if far.is_some() { count * single.len() } else { 0 }];
         let mut next = 0;
         let mut entry = |a: &[f64], b: &[f64]| {
             for (mode, (x, y)) in a.iter().zip(b).enumerate() {
                 products[group[mode] * count + next] += x * y;
+                if let Some(product) = by_mode.get_mut(mode * count + next) {
+                    *product = x * y;
+                }
             }
             next += 1;
         };
@@ -178,8 +192,14 @@ impl<'a> Receptances<'a> {
             change.iter().for_each(|v| input.iter().for_each(|i| entry(v, i)));
         }
         let rank = change.len();
+        let far = far.map(|far| {
+            let rows = far.rows(&by_mode, count);
+            (far, rows)
+        });
         Receptances {
             terms: &model.terms,
+            far,
+            near,
             parts: [vec![0.0; count], vec![0.0; count]],
             sums: vec![Complex64::ZERO; count],
             delta: vec![Complex64::ZERO; rank * rank],
@@ -210,13 +230,18 @@ impl<'a> Receptances<'a> {
         let [re, im] = &mut self.parts;
         re.fill(0.0);
         im.fill(0.0);
-        for (row, denominator) in self.products.chunks_exact(re.len()).zip(&self.denominators) {
+        let series = self.far.as_ref().filter(|(far, _)| far.hold(s));
+        let single = if series.is_some() { &self.denominators[..self.near] } else { &self.denominators[..] };
+        for (row, denominator) in self.products.chunks_exact(re.len()).zip(single) {
             let value = denominator.stiffness + s * denominator.viscous + squared;
             let inverse = value.conj() * (1.0 / value.norm_sqr());
             for ((re, im), product) in re.iter_mut().zip(im.iter_mut()).zip(row) {
                 *re += product * inverse.re;
                 *im += product * inverse.im;
             }
+        }
+        if let Some((_, rows)) = series {
+            FarModes::add(s, rows, re, im);
         }
         for ((sum, re), im) in self.sums.iter_mut().zip(re).zip(im) {
             *sum = Complex64::new(*re, *im);
@@ -300,17 +325,22 @@ fn divide_small(delta: &[Complex64], g: &[Complex64], right: &mut [Complex64]) {
     }
 }
 
-/// Modes with one denominator (all rigid motions, above all) share one term of the sum.
-fn merge(all: &[Denominator]) -> (Vec<Denominator>, Vec<usize>) {
+/// Modes with one denominator (all rigid motions, above all) share one term of the sum: the distinct denominators, those of far modes
+/// last, each mode's place among them, and the number of those before the far ones.
+fn merge(all: &[Denominator], is_far: impl Fn(usize) -> bool) -> (Vec<Denominator>, Vec<usize>, usize) {
     let mut distinct: Vec<Denominator> = Vec::new();
-    let group = all
-        .iter()
-        .map(|d| {
-            distinct.iter().position(|e| e == d).unwrap_or_else(|| {
+    let mut group = vec![0; all.len()];
+    let mut near = 0;
+    for far in [false, true] {
+        for (mode, d) in all.iter().enumerate().filter(|(mode, _)| is_far(*mode) == far) {
+            group[mode] = distinct.iter().position(|e| e == d).unwrap_or_else(|| {
                 distinct.push(*d);
                 distinct.len() - 1
-            })
-        })
-        .collect();
-    (distinct, group)
+            });
+        }
+        if !far {
+            near = distinct.len();
+        }
+    }
+    (distinct, group, near)
 }
