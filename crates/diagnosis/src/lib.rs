@@ -32,6 +32,7 @@ mod hypothesis;
 mod location;
 mod observation;
 mod ranking;
+mod recorded_lines;
 mod says;
 mod search;
 

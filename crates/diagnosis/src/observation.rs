@@ -1,3 +1,5 @@
+use crate::recorded_lines::{drift_variance, lines_in_use};
+use jointscope_frf::Drift;
 use jointscope_frf::noise::{NoiseSource, with_variances};
 use jointscope_spectra::{FrfForm, FrfPair, FrfSet, SpectraError, SpectralLines};
 use num_complex::Complex64;
@@ -11,6 +13,8 @@ pub struct Observation {
     /// Mean |H|² around each line, by value: the floor of what a softened fit tolerates.
     level: Vec<f64>,
     noise: Vec<NoiseSource>,
+    recorded_lines: usize,
+    drift: Option<Drift>,
 }
 
 /// Lines on each side over which the local level is taken.
@@ -21,7 +25,9 @@ impl Observation {
     /// them they are estimated from coherence or scatter.
     ///
     /// The noise is estimated on all lines before any are left out. Lines at 0 Hz are never used, and neither
-    /// are single values without coherence.
+    /// are single values without coherence. Of thousands of lines those are used that hold what there is to be told, those about
+    /// resonances above all. Where the noise had to be estimated from scatter, and resonances differ among FRFs of one response by more than
+    /// it, that drift counts as noise too.
     ///
     /// # Errors
     /// No line left.
@@ -48,7 +54,40 @@ impl Observation {
                 level.push(values[near].iter().map(|v| v.norm_sqr()).sum::<f64>() / count);
             }
         }
-        Ok(Observation { frfs, weight, level, noise })
+        let from_scatter = !noise.is_empty() && noise.iter().all(|source| *source == NoiseSource::Scatter);
+        let drift = if from_scatter { Drift::of(&frfs) } else { None };
+        let whole = Observation { frfs, weight, level, noise, recorded_lines: n, drift };
+        let kept = lines_in_use(&whole.frfs);
+        let mut used = whole.on(&kept, &vec![true; whole.pairs().len()]).ok_or(SpectraError::NoLines)?;
+        used.allow_for_drift(&whole.frfs, &kept);
+        Ok(used)
+    }
+
+    /// Adds what drift makes of the FRFs to the variances; `whole` has all lines, of which these are the `kept` ones.
+    fn allow_for_drift(&mut self, whole: &FrfSet, kept: &[bool]) {
+        let Some(drift) = self.drift.clone() else { return };
+        let wanted: Vec<usize> = (0..kept.len()).filter(|&line| kept[line]).collect();
+        let hz = self.lines().hz().to_vec();
+        for (index, weight) in self.weight.chunks_exact_mut(hz.len()).enumerate() {
+            let change = drift.squared_change(whole.lines().hz(), whole.values(index), &wanted);
+            let variance: Vec<f64> = weight.iter().map(|w| if *w > 0.0 { 2.0 / w } else { 0.0 }).collect();
+            let added = drift_variance(&drift, &hz, &variance, &change);
+            for ((weight, variance), added) in weight.iter_mut().zip(&variance).zip(&added) {
+                if *variance > 0.0 {
+                    *weight = 2.0 / (variance + added);
+                }
+            }
+        }
+    }
+
+    /// Number of lines of the recording within the band in use, before thinning.
+    pub fn recorded_lines(&self) -> usize {
+        self.recorded_lines
+    }
+
+    /// How far the resonances moved from FRF to FRF, where that is beyond their noise and counts as noise itself.
+    pub fn drift(&self) -> Option<&Drift> {
+        self.drift.as_ref()
     }
 
     /// The observation on fewer lines and FRFs, its noise as it was; `None` where nothing is left.
@@ -73,6 +112,8 @@ impl Observation {
             weight: places().map(|at| self.weight[at]).collect(),
             level: places().map(|at| self.level[at]).collect(),
             noise: kept_frfs.iter().filter_map(|&i| self.noise.get(i).copied()).collect(),
+            recorded_lines: self.recorded_lines,
+            drift: self.drift.clone(),
         })
     }
 

@@ -5,7 +5,8 @@
 //! * [`fit_rigid_motion`]: the same 2×2 matrix by weighted least squares from any number of sensors on one
 //!   block and hammer points on the other, with its covariance and the residual that says whether the blocks
 //!   moved rigidly;
-//! * [`noise`]: variances of FRFs from coherence and averages, or from the FRFs alone.
+//! * [`noise`]: variances of FRFs from coherence and averages, or from the FRFs alone;
+//! * [`Drift`]: resonances that moved between one FRF and the next.
 //!
 //! ```
 //! use jointscope_frf::from_four_frfs;
@@ -18,9 +19,12 @@
 //! assert!(h41.at(0, 1).norm() < 1e-12, "the same response to both hits: a moment does nothing");
 //! ```
 
+mod drift;
+mod local_rational;
 pub mod noise;
 mod rigid_motion;
 mod two_accelerometers;
 
+pub use drift::{Drift, resonant_lines};
 pub use rigid_motion::{BlockChannel, BlockFrf, BlockLayout, MaskReason, RigidMotionError, fit_rigid_motion};
 pub use two_accelerometers::{from_four_frfs, per_moment_from_two, rotation_from_two};

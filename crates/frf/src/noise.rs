@@ -5,6 +5,7 @@
 //! response noise is a floor in the accelerance, force noise is a share of |H|². [`with_variances`] therefore
 //! fits var = S + N·|H|² with S and N slowly varying over the lines.
 
+use crate::local_rational::LocalRationalFit;
 use jointscope_spectra::{FrfForm, FrfSet, SpectraError};
 use num_complex::Complex64;
 
@@ -13,7 +14,7 @@ use num_complex::Complex64;
 pub enum NoiseSource {
     /// Coherence and number of averages of the recording.
     Coherence,
-    /// The scatter of the FRF from line to line.
+    /// The scatter of the FRF about its course from line to line.
     Scatter,
 }
 
@@ -50,7 +51,7 @@ pub fn with_variances(frfs: &FrfSet) -> Result<(FrfSet, Vec<NoiseSource>), Spect
             (Some(coherence), Some(averages)) => {
                 (from_coherence(&values, coherence, averages), NoiseSource::Coherence)
             }
-            _ => (from_scatter(&values), NoiseSource::Scatter),
+            _ => (from_scatter(frfs.lines().hz(), &values), NoiseSource::Scatter),
         };
         variance.extend(estimate.iter().zip(&scale).map(|(v, s)| v / (s * s)));
         sources.push(source);
@@ -70,56 +71,81 @@ pub fn from_coherence(values: &[Complex64], coherence: &[f64], averages: u32) ->
         })
         .collect();
     let usable: Vec<bool> = coherence.iter().map(|&g| g > 0.0).collect();
-    smooth(values, &raw, &usable)
-}
-
-/// Variances E|ε|² of one FRF from its third differences over the lines: what is left of a smooth
-/// curve is noise. The median over a window keeps resonance peaks out.
-pub fn from_scatter(values: &[Complex64]) -> Vec<f64> {
-    let n = values.len();
-    let largest = values.iter().map(|v| v.norm_sqr()).fold(0.0, f64::max);
-    if n < FEWEST {
-        return vec![(0.01f64.powi(2) * largest).max(f64::MIN_POSITIVE); n];
-    }
-    // Squared binomial coefficients 1, 3, 3, 1 sum to 20.
-    let difference: Vec<f64> = (0..n - 3)
-        .map(|i| (values[i + 3] - values[i + 2] * 3.0 + values[i + 1] * 3.0 - values[i]).norm_sqr() / 20.0)
-        .collect();
-    let mut window = Vec::with_capacity(2 * WINDOW + 1);
-    (0..n)
-        .map(|line| {
-            let centre = line.saturating_sub(1).min(difference.len() - 1);
-            let from = centre.saturating_sub(WINDOW);
-            let to = (centre + WINDOW + 1).min(difference.len());
-            window.clear();
-            window.extend_from_slice(&difference[from..to]);
-            window.sort_by(f64::total_cmp);
-            // The square of a complex normal is exponential: its median is ln 2 of its mean.
-            let mean = window[window.len() / 2] / std::f64::consts::LN_2;
-            mean.max(FLOOR * FLOOR * values[line].norm_sqr()).max(f64::MIN_POSITIVE)
-        })
-        .collect()
-}
-
-/// Fits raw variances as S + N·|H|² within a sliding window: both non-negative, weighted by the fit itself, as the
-/// spread of a variance is proportional to it.
-fn smooth(values: &[Complex64], raw: &[f64], usable: &[bool]) -> Vec<f64> {
-    let n = values.len();
-    let size: Vec<f64> = values.iter().map(|v| v.norm_sqr()).collect();
-    let range = |line: usize| line.saturating_sub(WINDOW)..(line + WINDOW + 1).min(n);
     let mean = |line: usize| {
         let (mut sum, mut count) = (0.0, 0.0f64);
-        for i in range(line).filter(|&i| usable[i]) {
+        for i in around(line, raw.len()).filter(|&i| usable[i]) {
             sum += raw[i];
             count += 1.0;
         }
         sum / count.max(1.0)
     };
-    let mut fit: Vec<f64> = (0..n).map(mean).collect();
-    for _ in 0..3 {
-        fit = (0..n).map(|line| fit_window(range(line), raw, &size, &fit, usable, size[line])).collect();
+    let begun = (0..raw.len()).map(mean).collect();
+    let size: Vec<f64> = values.iter().map(|v| v.norm_sqr()).collect();
+    smooth(&size, &raw, &usable, begun, 3, f64::INFINITY)
+}
+
+/// Lines on each side from which the course of an FRF through a line is taken.
+const NEIGHBOURS: usize = 5;
+/// A line whose own noise is followed to more than this share tells nothing about it.
+const FOLLOWED: f64 = 0.8;
+/// Squared errors beyond this many times their expected size are peaks that the local function missed, not noise.
+const CLIPPED: f64 = 8.0;
+
+/// Variances E|ε|² of one FRF from what is left of its values at `hz` by a rational function through their neighbours: one mode and a
+/// smooth rest. Medians over a window keep out what is neither, two modes at once.
+pub fn from_scatter(hz: &[f64], values: &[Complex64]) -> Vec<f64> {
+    let n = values.len();
+    let size: Vec<f64> = values.iter().map(|v| v.norm_sqr()).collect();
+    let largest = size.iter().copied().fold(0.0, f64::max);
+    if n < FEWEST.max(2 * NEIGHBOURS + 1) {
+        return vec![(0.01f64.powi(2) * largest).max(f64::MIN_POSITIVE); n];
     }
-    fit.iter().zip(&size).map(|(v, s)| v.max(FLOOR * FLOOR * s).max(f64::MIN_POSITIVE)).collect()
+    let mut fit = LocalRationalFit::new();
+    let local = |line: usize| {
+        let local = fit.about(hz, values, line, NEIGHBOURS)?;
+        (local.leverage < FOLLOWED).then(|| local.residual.norm_sqr() / (1.0 - local.leverage))
+    };
+    let raw: Vec<Option<f64>> = (0..n).map(local).collect();
+    let usable: Vec<bool> = raw.iter().map(Option::is_some).collect();
+    let raw: Vec<f64> = raw.into_iter().map(Option::unwrap_or_default).collect();
+    // The square of a complex normal is exponential: its median is ln 2 of its mean.
+    let mut window = Vec::with_capacity(2 * WINDOW + 1);
+    let mut median = |line: usize, value: &dyn Fn(usize) -> f64| {
+        window.clear();
+        window.extend(around(line, n).filter(|&i| usable[i]).map(value));
+        let middle = window.len() / 2;
+        if window.is_empty() {
+            return 0.0;
+        }
+        *window.select_nth_unstable_by(middle, f64::total_cmp).1 / std::f64::consts::LN_2
+    };
+    let share = |i: usize| raw[i] / size[i].max(1e-30 * largest).max(f64::MIN_POSITIVE);
+    // An upper bound to begin with: the floor that the median shows, and the share that it shows.
+    let begun = (0..n).map(|line| median(line, &|i| raw[i]) + median(line, &share) * size[line]).collect();
+    smooth(&size, &raw, &usable, begun, 5, CLIPPED)
+}
+
+fn around(line: usize, n: usize) -> std::ops::Range<usize> {
+    line.saturating_sub(WINDOW)..(line + WINDOW + 1).min(n)
+}
+
+/// Fits raw variances as S + N·|H|² within a sliding window: both non-negative, weighted by the fit itself, as the
+/// spread of a variance is proportional to it, and clipped at so many times the fit.
+fn smooth(
+    size: &[f64],
+    raw: &[f64],
+    usable: &[bool],
+    begun: Vec<f64>,
+    passes: usize,
+    clipped: f64,
+) -> Vec<f64> {
+    let n = size.len();
+    let mut fit: Vec<f64> = begun;
+    for _ in 0..passes {
+        let raw: Vec<f64> = raw.iter().zip(&fit).map(|(raw, fit)| raw.min(clipped * fit)).collect();
+        fit = (0..n).map(|line| fit_window(around(line, n), &raw, size, &fit, usable, size[line])).collect();
+    }
+    fit.iter().zip(size).map(|(v, s)| v.max(FLOOR * FLOOR * s).max(f64::MIN_POSITIVE)).collect()
 }
 
 fn fit_window(
@@ -221,7 +247,7 @@ mod tests {
         let (mut chi2, mut count) = (0.0, 0.0);
         for _ in 0..20 {
             let values: Vec<Complex64> = (1..401).map(|l| resonance(l) + random.complex(1e-4)).collect();
-            for (i, v) in from_scatter(&values).iter().enumerate() {
+            for (i, v) in from_scatter(&hz(400), &values).iter().enumerate() {
                 chi2 += (values[i] - resonance(i + 1)).norm_sqr() / v;
                 count += 1.0;
             }
@@ -230,11 +256,39 @@ mod tests {
         assert!((0.8..1.2).contains(&ratio), "{ratio}");
     }
 
+    fn hz(count: usize) -> Vec<f64> {
+        (1..=count).map(|l| l as f64).collect()
+    }
+
+    /// A peak whose half-width is a third of a line's distance, noise a share of |H|.
+    #[test]
+    fn without_coherence_noise_that_grows_with_a_sharp_peak_is_seen_on_the_peak_too() {
+        let sharp = |line: usize| {
+            let x = line as f64;
+            -x * x / Complex64::new(130.3 * 130.3 - x * x, 2.0 * 0.3 * x)
+                - 0.7 * x * x / Complex64::new(341.6 * 341.6 - x * x, 0.5 * x)
+        };
+        let mut random = Normals(11);
+        let (mut all, mut peak) = ((0.0, 0.0), (0.0, 0.0));
+        for _ in 0..40 {
+            let values: Vec<Complex64> =
+                (1..401).map(|l| sharp(l) * (1.0 + random.complex(1e-4)) + random.complex(1e-6)).collect();
+            for (i, v) in from_scatter(&hz(400), &values).iter().enumerate() {
+                let chi2 = (values[i] - sharp(i + 1)).norm_sqr() / v;
+                let near = (i as f64 + 1.0 - 130.3).abs() < 4.0;
+                let sum = if near { &mut peak } else { &mut all };
+                *sum = (sum.0 + chi2, sum.1 + 1.0);
+            }
+        }
+        let ratios = [all.0 / all.1, peak.0 / peak.1];
+        assert!(ratios.iter().all(|r| (0.8f64..1.3).contains(r)), "away from and on the peak: {ratios:?}");
+    }
+
     #[test]
     fn a_noiseless_frf_keeps_a_positive_variance() {
         let values: Vec<Complex64> = (1..100).map(resonance).collect();
         assert!(from_coherence(&values, &vec![1.0; 99], 5).iter().all(|v| *v > 0.0 && v.is_finite()));
-        assert!(from_scatter(&values).iter().all(|v| *v > 0.0 && v.is_finite()));
-        assert!(from_scatter(&values[..3]).iter().all(|v| *v > 0.0));
+        assert!(from_scatter(&hz(values.len()), &values).iter().all(|v| *v > 0.0 && v.is_finite()));
+        assert!(from_scatter(&hz(3), &values[..3]).iter().all(|v| *v > 0.0));
     }
 }

@@ -120,6 +120,7 @@ impl Diagnosis {
                 if scatter.len() == pairs.len() { "all FRFs".to_owned() } else { listed(&scatter) }
             ));
         }
+        remarks.extend(self.observation.remarks());
         if self.residual_correlation.abs() > 0.2 {
             remarks.push(format!(
                 "What the best model leaves is not white (neighbouring lines correlate by {:.2}): probabilities are more confident than \

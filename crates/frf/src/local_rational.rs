@@ -1,0 +1,149 @@
+//! FRFs in the neighbourhood of a line: a rational function with one pole, which follows even a sharp peak between few lines.
+//!
+//! Over a few lines an FRF is one mode and a smooth rest, H ≈ (b₀ + b₁x + b₂x²)/(1 + a x) with x the distance from the line. What the
+//! FRF departs from that by is noise; its derivative and its pole are those of the structure.
+
+use jointscope_linalg::LuWorkspace;
+use num_complex::Complex64;
+
+/// Unknowns of the function.
+const UNKNOWNS: usize = 4;
+/// Passes with weights from the pass before.
+const PASSES: usize = 3;
+
+/// The function about one line.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct LocalRational {
+    numerator: [Complex64; 3],
+    pole: Complex64,
+    /// Departure of the line itself from the function.
+    pub residual: Complex64,
+    /// What share of the line's own noise the function follows.
+    pub leverage: f64,
+    /// Variance E|ε|² of a value, from all lines used.
+    pub variance: f64,
+    /// Variance of `pole` for a noise of that variance.
+    pole_variance: f64,
+}
+
+/// Fits one line after another without allocation.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct LocalRationalFit {
+    lu: LuWorkspace,
+    columns: Vec<Complex64>,
+}
+
+impl LocalRationalFit {
+    pub fn new() -> Self {
+        LocalRationalFit { lu: LuWorkspace::new(), columns: Vec::new() }
+    }
+
+    /// The function about `line` from the lines within `half` of it (moved inwards at the ends); the distance x is 1 at `half`
+    /// lines. `None` where there are too few lines, or they do not determine it.
+    pub fn about(
+        &mut self,
+        hz: &[f64],
+        values: &[Complex64],
+        line: usize,
+        half: usize,
+    ) -> Option<LocalRational> {
+        let n = values.len();
+        if n < 2 * half + 1 || 2 * half < UNKNOWNS {
+            return None;
+        }
+        let from = line.saturating_sub(half).min(n - 2 * half - 1);
+        let used = from..from + 2 * half + 1;
+        let unit = unit(hz, line, half)?;
+        let x = |i: usize| (hz[i] - hz[line]) / unit;
+        let level = used.clone().map(|i| values[i].norm_sqr()).fold(0.0, f64::max).sqrt();
+        if level <= 0.0 || !level.is_finite() {
+            return None;
+        }
+        let mut solution = [Complex64::ZERO; UNKNOWNS];
+        for pass in 0..PASSES {
+            let mut matrix = [Complex64::ZERO; UNKNOWNS * UNKNOWNS];
+            let mut right = [Complex64::ZERO; UNKNOWNS];
+            for i in used.clone() {
+                let (x, value) = (x(i), values[i] / level);
+                let row = [Complex64::ONE, x.into(), (x * x).into(), -value * x];
+                let denominator = 1.0 + solution[3] * x;
+                let weight = if pass == 0 { 1.0 } else { 1.0 / denominator.norm_sqr().max(1e-12) };
+                for j in 0..UNKNOWNS {
+                    let conjugate = row[j].conj() * weight;
+                    right[j] += conjugate * value;
+                    for k in 0..UNKNOWNS {
+                        matrix[j * UNKNOWNS + k] += conjugate * row[k];
+                    }
+                }
+            }
+            self.lu.factorize(UNKNOWNS, |to| to.copy_from_slice(&matrix)).ok()?;
+            solution = right;
+            self.lu.solve_in_place(&mut solution);
+        }
+        let [b0, b1, b2, pole] = solution;
+        // Two columns of the inverse: of the value at the line itself, and of the pole.
+        self.columns.clear();
+        self.columns.resize(2 * UNKNOWNS, Complex64::ZERO);
+        self.columns[0] = Complex64::ONE;
+        self.columns[2 * UNKNOWNS - 1] = Complex64::ONE;
+        self.lu.solve_columns_in_place(transposed(&mut self.columns), 2);
+        let mut misfit = 0.0;
+        let found = LocalRational {
+            numerator: [b0 * level, b1 * level, b2 * level],
+            pole: pole / unit,
+            residual: Complex64::ZERO,
+            leverage: self.columns[0].re.clamp(0.0, 1.0),
+            variance: 0.0,
+            pole_variance: 0.0,
+        };
+        let found = LocalRational {
+            numerator: [found.numerator[0], b1 * level / unit, b2 * level / (unit * unit)],
+            ..found
+        };
+        for i in used {
+            misfit += (values[i] - found.at(hz[i] - hz[line])).norm_sqr();
+        }
+        let variance = misfit / (2 * half + 1 - UNKNOWNS) as f64;
+        let pole_variance =
+            self.columns[2 * UNKNOWNS - 1].re.max(0.0) * variance / (level * level * unit * unit);
+        let residual = values[line] - found.at(0.0);
+        (variance.is_finite() && residual.is_finite()).then_some(LocalRational {
+            residual,
+            variance,
+            pole_variance,
+            ..found
+        })
+    }
+}
+
+/// The step of x: `half` lines about `line`, Hz.
+fn unit(hz: &[f64], line: usize, half: usize) -> Option<f64> {
+    let (low, high) = (line.saturating_sub(half), (line + half).min(hz.len() - 1));
+    let unit = 0.5 * (hz[high] - hz[low]);
+    (unit > 0.0).then_some(unit)
+}
+
+/// From two columns after each other to rows of two.
+fn transposed(columns: &mut [Complex64]) -> &mut [Complex64] {
+    let mut rows = [Complex64::ZERO; 2 * UNKNOWNS];
+    for k in 0..UNKNOWNS {
+        rows[2 * k] = columns[k];
+        rows[2 * k + 1] = columns[UNKNOWNS + k];
+    }
+    columns.copy_from_slice(&rows);
+    columns
+}
+
+impl LocalRational {
+    /// The function `distance` Hz from its line.
+    pub fn at(&self, distance: f64) -> Complex64 {
+        let [b0, b1, b2] = self.numerator;
+        (b0 + (b1 + b2 * distance) * distance) / (1.0 + self.pole * distance)
+    }
+
+    /// The pole: its distance from the line and its half-width, Hz, and the variance of the distance, Hz².
+    pub fn resonance(&self) -> (f64, f64, f64) {
+        let place = -self.pole.inv();
+        (place.re, place.im.abs(), 0.5 * self.pole_variance * self.pole.inv().norm_sqr().powi(2))
+    }
+}
