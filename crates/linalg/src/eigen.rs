@@ -36,6 +36,16 @@ pub struct ModalBasis {
 }
 
 impl ModalBasis {
+    /// Modes known from elsewhere: eigenvalues, ascending, and mass-normalised shapes, one after the other. `None` where the
+    /// numbers do not fit together or are not finite.
+    pub fn new(eigenvalues: Vec<f64>, shapes: Vec<f64>) -> Option<Self> {
+        let order = eigenvalues.len();
+        let fits = shapes.len() == order * order
+            && eigenvalues.iter().chain(&shapes).all(|value| value.is_finite())
+            && eigenvalues.windows(2).all(|pair| pair[0] <= pair[1]);
+        fits.then_some(ModalBasis { order, eigenvalues, shapes })
+    }
+
     /// Number of modes, equal to the number of coordinates.
     pub fn order(&self) -> usize {
         self.order

@@ -1,5 +1,6 @@
 use crate::mesh::Mesh;
 use crate::modes_cache::modes;
+use crate::uniform_beam::UniformBeam;
 use crate::{LumpedError, Station};
 use jointscope_beam::{
     Matrix4, consistent_mass, consistent_rotary_inertia, element_stiffness, end_stiffness,
@@ -46,6 +47,9 @@ impl Assembly {
     pub fn new(fixture: &Fixture, highest_hz: f64) -> Result<Self, LumpedError> {
         let places = coordinates(fixture, highest_hz);
         let order = places.iter().map(Coordinates::count).sum();
+        if let Some((beam, first)) = free_beam(fixture, &places) {
+            return Assembly::of_free_beam(fixture, places, order, beam, &first);
+        }
         let plain = Matrices::of(fixture, &places, order, false);
         let basis = modes(order, &plain.mass, &plain.stiffness)?;
         let law = damping_law(fixture.damping());
@@ -53,6 +57,52 @@ impl Assembly {
         let assembly =
             Assembly { order, places, mass: plain.mass, stiffness: plain.stiffness, basis, damping, law };
         if fixture.physics().iter().any(rebuilds_a_body) { assembly.rebuilt(fixture) } else { Ok(assembly) }
+    }
+
+    /// One uniform beam with nothing on it, whose modes need no eigenproblem of the whole mesh.
+    fn of_free_beam(
+        fixture: &Fixture,
+        mut places: Vec<Coordinates>,
+        order: usize,
+        plain: UniformBeam,
+        name: &str,
+    ) -> Result<Self, LumpedError> {
+        let altered = BodyEffects::on(fixture, name, true);
+        let shear = altered.shear_stiffness.map_or(0.0, |shear| plain.bending_stiffness / shear);
+        let beam = UniformBeam {
+            bending_stiffness: plain.bending_stiffness * altered.factor,
+            shear,
+            rotary_inertia: altered.rotary_inertia,
+            ..plain
+        };
+        if let [Coordinates::Beam { mesh, .. }] = places.as_mut_slice() {
+            mesh.shear = shear;
+        }
+        let law = damping_law(fixture.damping());
+        let before = plain.modes()?.basis;
+        let own = law.of_modes(before.eigenvalues());
+        let (basis, damping) = if beam == plain {
+            (before, own)
+        } else {
+            let modes = beam.modes()?;
+            let structural = match law {
+                DampingLaw::LossFactor(factor) => factor,
+                _ => 0.0,
+            };
+            let viscous = |r: usize| match modes.shares(r) {
+                Some(shares) => {
+                    shares.iter().zip(&own).map(|(share, mode)| share * share * mode.viscous).sum()
+                }
+                None => own[r].viscous,
+            };
+            let eigenvalues = modes.basis.eigenvalues().iter().enumerate();
+            let damping = eigenvalues
+                .map(|(r, l)| ModeDamping { viscous: viscous(r), structural: structural * l })
+                .collect();
+            (modes.basis, damping)
+        };
+        let with = Matrices::of(fixture, &places, order, true);
+        Ok(Assembly { order, places, mass: with.mass, stiffness: with.stiffness, basis, damping, law })
     }
 
     /// The assembly with the effects that rebuild a beam body. Its viscous matrix stays that of the
@@ -146,8 +196,11 @@ impl Assembly {
     /// Adds `weight` times the station's participation in each mode to `all`.
     pub(crate) fn add_participation(&self, station: &Station, weight: f64, all: &mut [f64]) {
         let row = self.station_row(station);
+        // A station reads a few coordinates only.
+        let read: Vec<(usize, f64)> = row.into_iter().enumerate().filter(|(_, t)| *t != 0.0).collect();
         for (r, value) in all.iter_mut().enumerate() {
-            *value += weight * self.basis.shape(r).iter().zip(&row).map(|(shape, t)| shape * t).sum::<f64>();
+            let shape = self.basis.shape(r);
+            *value += weight * read.iter().map(|(i, t)| shape[*i] * t).sum::<f64>();
         }
     }
 }
@@ -177,6 +230,34 @@ impl Coordinates {
     }
 }
 
+/// The fixture's only body where that is a beam with nothing on it, and its name.
+fn free_beam(fixture: &Fixture, places: &[Coordinates]) -> Option<(UniformBeam, String)> {
+    let ([body], [Coordinates::Beam { mesh, .. }]) = (fixture.bodies(), places) else { return None };
+    let BodyKind::Beam(beam) = &body.kind else { return None };
+    if !is_bare(fixture) {
+        return None;
+    }
+    let length = beam.to.value - beam.from.value;
+    let bending_stiffness = beam.youngs_modulus.value * beam.second_moment.value;
+    let mass_per_length = beam.mass_per_length.value;
+    let beam = UniformBeam {
+        elements: mesh.nodes.len() - 1,
+        length,
+        bending_stiffness,
+        mass_per_length,
+        shear: 0.0,
+        rotary_inertia: 0.0,
+    };
+    Some((beam, body.name.clone()))
+}
+
+/// Whether the fixture is one body with nothing on it: nothing that its deflection has a kink at.
+fn is_bare(fixture: &Fixture) -> bool {
+    matches!(fixture.bodies(), [body] if body.masses.is_empty())
+        && fixture.joints().is_empty()
+        && fixture.supports().is_empty()
+}
+
 fn coordinates(fixture: &Fixture, highest_hz: f64) -> Vec<Coordinates> {
     let mut first = 0;
     let mut places = Vec::with_capacity(fixture.bodies().len());
@@ -204,8 +285,11 @@ fn coordinates(fixture: &Fixture, highest_hz: f64) -> Vec<Coordinates> {
     places
 }
 
-/// Abscissae where something holds the body, the most important first: joints bend it there.
+/// Abscissae where something holds the body, the most important first: joints bend it there. A bare beam is meshed evenly.
 fn attachments(fixture: &Fixture, body: usize) -> Vec<f64> {
+    if is_bare(fixture) {
+        return Vec::new();
+    }
     let points = fixture.points();
     let joints =
         fixture.joints().iter().flat_map(|j| [j.from, j.to]).map(|p| (points[p].body, points[p].x.value));

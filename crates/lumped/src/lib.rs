@@ -43,6 +43,7 @@ mod modes_cache;
 mod station;
 mod synthesis;
 mod terms;
+mod uniform_beam;
 
 pub use assembly::{Assembly, nominal_stiffness};
 pub use joint_element::JointElement;

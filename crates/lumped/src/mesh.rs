@@ -16,6 +16,8 @@ const NEAREST: f64 = 0.2;
 #[derive(Debug, Clone)]
 pub(crate) struct Mesh {
     pub nodes: Vec<f64>,
+    /// EI/κGA, m², by which sections turn less than the beam slopes; zero without shear.
+    pub shear: f64,
 }
 
 impl Mesh {
@@ -44,7 +46,7 @@ impl Mesh {
             let count = ((pair[1] - pair[0]) / longest).ceil().max(1.0);
             mesh.extend((1..=count as usize).map(|i| pair[0] + (pair[1] - pair[0]) * i as f64 / count));
         }
-        Mesh { nodes: mesh }
+        Mesh { nodes: mesh, shear: 0.0 }
     }
 
     /// Number of coordinates: y and θ of each node.
@@ -59,7 +61,10 @@ impl Mesh {
         let element = self.nodes.partition_point(|&n| n <= x).saturating_sub(1).min(last);
         let (left, right) = (self.nodes[element], self.nodes[element + 1]);
         let inside = x.clamp(left, right);
-        let [deflection, slope] = shape_functions(inside - left, right - left);
+        let [deflection, slope] = match self.shear {
+            0.0 => shape_functions(inside - left, right - left),
+            shear => sheared_functions(inside - left, right - left, shear),
+        };
         for k in 0..4 {
             row[2 * element + k] += match dof {
                 Dof::Translation => deflection[k] + slope[k] * (x - inside),
@@ -69,9 +74,44 @@ impl Mesh {
     }
 }
 
+/// As [`shape_functions`], of an element that shears: its deflection, and the rotation of its section.
+fn sheared_functions(position: f64, length: f64, shear: f64) -> [[f64; 4]; 2] {
+    let (l, t) = (length, position / length);
+    let ratio = 12.0 * shear / (l * l);
+    let factor = 1.0 / (1.0 + ratio);
+    let bubble = 0.5 * ratio * t * (1.0 - t);
+    [
+        [
+            1.0 - 3.0 * t * t + 2.0 * t.powi(3) + ratio * (1.0 - t),
+            l * (t - 2.0 * t * t + t.powi(3) + bubble),
+            3.0 * t * t - 2.0 * t.powi(3) + ratio * t,
+            l * (t.powi(3) - t * t - bubble),
+        ],
+        [
+            6.0 * (t * t - t) / l,
+            1.0 - 4.0 * t + 3.0 * t * t + ratio * (1.0 - t),
+            6.0 * (t - t * t) / l,
+            3.0 * t * t - 2.0 * t + ratio * t,
+        ],
+    ]
+    .map(|row| row.map(|value| factor * value))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn an_element_that_shears_hardly_bends_as_one_that_does_not_and_moves_rigidly() {
+        let stiff = sheared_functions(0.03, 0.1, 1e-12);
+        let plain = shape_functions(0.03, 0.1);
+        assert!((0..4).all(|k| (stiff[0][k] - plain[0][k]).abs() < 1e-7 && (stiff[1][k] - plain[1][k]).abs() < 1e-5));
+        // y = 2 + 3x, θ = 3 at both ends.
+        let rigid = [2.0, 3.0, 2.3, 3.0];
+        let soft = sheared_functions(0.03, 0.1, 0.02);
+        let read = |row: [f64; 4]| row.iter().zip(rigid).map(|(n, u)| n * u).sum::<f64>();
+        assert!((read(soft[0]) - 2.09).abs() < 1e-12 && (read(soft[1]) - 3.0).abs() < 1e-12);
+    }
 
     #[test]
     fn nodes_sit_at_attachments_unless_two_are_all_but_the_same() {
