@@ -35,6 +35,8 @@ pub(crate) const COARSE_LINES: usize = 100;
 const ITERATIONS: (usize, usize) = (12, 60);
 /// Decrease of the objective below which a fit has converged.
 const CONVERGED: f64 = 0.01;
+/// The same as a share of what a poor fit leaves beyond the degrees of freedom.
+const NEGLIGIBLE: f64 = 3e-5;
 /// Steps made from old derivatives that gain less than this share of the first one's call for new ones.
 const SLOW: f64 = 0.15;
 /// Damping, relative to each coordinate's own curvature, to begin with, and next to none.
@@ -61,11 +63,7 @@ impl Linearisation {
 
     /// These derivatives for the first coordinates of `at`, and central differences for the rest.
     pub(crate) fn extended(mut self, at: &Hypothesis, observation: &Observation) -> Self {
-        let moved = |m: usize, sign: f64| {
-            let mut other = at.clone();
-            other.coordinates[m] += sign * DIFFERENCE;
-            other.predict(observation)
-        };
+        let moved = |m: usize, sign: f64| at.predict_moved(m, sign * DIFFERENCE, None, observation);
         for m in self.derivatives.len()..at.coordinates.len() {
             self.derivatives.push(match (moved(m, 1.0), moved(m, -1.0)) {
                 (Ok(up), Ok(down)) => {
@@ -84,10 +82,8 @@ impl Linearisation {
             if at.is_held(m) {
                 return vec![Complex64::ZERO; predicted.len()];
             }
-            let mut other = at.clone();
-            let step = other.inward(m, DIFFERENCE);
-            other.coordinates[m] += step;
-            match other.predict(observation) {
+            let step = at.inward(m, DIFFERENCE);
+            match at.predict_moved(m, step, Some(predicted), observation) {
                 Ok(moved) => moved.iter().zip(predicted).map(|(u, p)| (u - p) / step).collect(),
                 Err(_) => vec![Complex64::ZERO; predicted.len()],
             }
@@ -343,7 +339,9 @@ impl State {
             if let Some((next, _)) = stepped {
                 (self.hypothesis, self.predicted) = (next.hypothesis, next.predicted);
             }
-            let converged = if epsilon == 0.0 { CONVERGED } else { 0.01 * before };
+            // Far from explaining anything, a fit is compared with others whose objectives are far away.
+            let excess = (before - observation.degrees() as f64).max(0.0);
+            let converged = if epsilon == 0.0 { CONVERGED.max(NEGLIGIBLE * excess) } else { 0.01 * before };
             if gain < converged && fresh {
                 // Along a flat valley a damped step gains little of what there is.
                 if promised > VALLEY * converged && gain > 0.0 && valleys < VALLEYS && epsilon == 0.0 {

@@ -2,6 +2,7 @@ use crate::Observation;
 use jointscope_fixture::{BodyKind, Effect, EffectKind, Fixture, FixtureError, ParameterRange, Place};
 use jointscope_linalg::solve_positive_definite;
 use jointscope_lumped::{Instrument, LumpedError, synthesize};
+use jointscope_spectra::FrfPair;
 use num_complex::Complex64;
 
 /// Why a hypothesis predicts nothing.
@@ -279,6 +280,45 @@ impl Hypothesis {
         let fixture = self.to_fixture()?;
         let frfs = synthesize(&fixture, observation.pairs(), observation.lines(), Instrument::AsRecorded)?;
         Ok(frfs.all_values().to_vec())
+    }
+
+    /// What is predicted with coordinate `index` moved by `step`. FRFs that do not depend on it are not predicted again: they are
+    /// those of `predicted`, or zero without.
+    pub(crate) fn predict_moved(
+        &self,
+        index: usize,
+        step: f64,
+        predicted: Option<&[Complex64]>,
+        observation: &Observation,
+    ) -> Result<Vec<Complex64>, PredictionError> {
+        let moved = self.moved(index, step);
+        let Some(frfs) = self.depending(index, observation) else { return moved.predict(observation) };
+        let count = observation.lines().len();
+        let mut all =
+            predicted.map_or_else(|| vec![Complex64::ZERO; observation.values().len()], <[_]>::to_vec);
+        let pairs: Vec<FrfPair> = frfs.iter().map(|&i| observation.pairs()[i].clone()).collect();
+        if !pairs.is_empty() {
+            let some = synthesize(&moved.to_fixture()?, &pairs, observation.lines(), Instrument::AsRecorded)?;
+            for (values, &i) in some.all_values().chunks_exact(count).zip(&frfs) {
+                all[i * count..(i + 1) * count].copy_from_slice(values);
+            }
+        }
+        Ok(all)
+    }
+
+    /// The FRFs that coordinate `index` acts on, where that is told by its name: where a channel's point sits, if nothing but channels
+    /// is there, matters to that channel's FRFs alone.
+    fn depending(&self, index: usize, observation: &Observation) -> Option<Vec<usize>> {
+        let path = &self.tolerances.get(index)?.path;
+        let name = path.strip_prefix("points/")?.strip_suffix("/x")?;
+        let place = self.fixture.points().iter().position(|point| point.name == name)?;
+        let holds = self.fixture.joints().iter().any(|joint| joint.from == place || joint.to == place);
+        if holds || !self.fixture.supports().is_empty() {
+            return None;
+        }
+        let pairs = observation.pairs().iter().enumerate();
+        let reads = |pair: &FrfPair| pair.response.point == name || pair.reference.point == name;
+        Some(pairs.filter(|(_, pair)| reads(pair)).map(|(i, _)| i).collect())
     }
 
     /// Bounds of each coordinate.

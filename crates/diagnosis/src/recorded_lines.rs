@@ -6,9 +6,9 @@ use jointscope_spectra::FrfSet;
 
 /// Lines from which a recording is thinned, and how many are kept of it at the most.
 const LONG: usize = 4000;
-const KEPT: usize = 1500;
+const KEPT: usize = 450;
 /// Of these, evenly spread ones.
-const EVENLY: usize = 600;
+const EVENLY: usize = 160;
 /// Lines about a resonance are kept one by one up to this distance and ever more rarely beyond, in proportion to it: the first that
 /// keeps the limit.
 const GRADES: [usize; 10] = [64, 48, 32, 24, 16, 12, 8, 6, 4, 2];
@@ -132,7 +132,7 @@ mod tests {
         };
         assert!(kept.iter().filter(|k| **k).count() <= KEPT);
         assert_eq!([within(111.2, 111.4), within(306.8, 307.0)], [1.0, 1.0]);
-        assert!(within(180.0, 240.0) < 0.05 && within(180.0, 240.0) > 0.01);
+        assert!(within(180.0, 240.0) < 0.05 && within(180.0, 240.0) > 0.002);
         assert!(lines_in_use(&beam(LONG)).iter().all(|k| *k));
     }
 

@@ -19,6 +19,10 @@ const HALF_WIDTHS: f64 = 3.0;
 const LIMITS: (usize, usize) = (5, 60);
 /// A resonance is told where its place is known to this share of its half-width.
 const KNOWN: f64 = 0.3;
+/// A resonance is resolved where its half-width is this many lines, and has moved where it did so by this share of the half-width: less is the local
+/// function's own error.
+const RESOLVED: f64 = 0.5;
+const MOVED: f64 = 0.05;
 /// Standard deviations by which the differences must exceed their noise.
 const CERTAIN: f64 = 5.0;
 
@@ -121,7 +125,8 @@ fn differences(frfs: &FrfSet, group: &[usize], line: usize) -> Option<((f64, f64
         let Some(local) = fit.about(hz, values, top, half) else { continue };
         let (distance, width, variance) = local.resonance();
         let clear = values[top].norm_sqr() > STANDS_OUT * local.variance;
-        let known = variance.sqrt() < KNOWN * width && distance.abs() < width + step;
+        let known =
+            variance.sqrt() < KNOWN * width && distance.abs() < width + step && width > RESOLVED * step;
         if clear && known {
             places.push(hz[top] + distance);
             variances.push(variance);
@@ -138,6 +143,8 @@ fn differences(frfs: &FrfSet, group: &[usize], line: usize) -> Option<((f64, f64
     let noise = variances.iter().sum::<f64>() / count;
     widths.sort_by(f64::total_cmp);
     let deviation = (scatter - noise).max(0.0).sqrt() / mean;
-    let certain = chi2 > count - 1.0 + CERTAIN * (2.0 * (count - 1.0)).sqrt();
-    Some(((mean, deviation, widths[widths.len() / 2] / mean), certain))
+    let half_width = widths[widths.len() / 2] / mean;
+    let certain =
+        deviation > MOVED * half_width && chi2 > count - 1.0 + CERTAIN * (2.0 * (count - 1.0)).sqrt();
+    Some(((mean, deviation, half_width), certain))
 }
