@@ -36,7 +36,7 @@ const ITERATIONS: (usize, usize) = (12, 60);
 /// Decrease of the objective below which a fit has converged.
 const CONVERGED: f64 = 0.01;
 /// The same as a share of what a poor fit leaves beyond the degrees of freedom.
-const NEGLIGIBLE: f64 = 3e-5;
+const NEGLIGIBLE: f64 = 1e-5;
 /// Steps made from old derivatives that gain less than this share of the first one's call for new ones.
 const SLOW: f64 = 0.15;
 /// Damping, relative to each coordinate's own curvature, to begin with, and next to none.

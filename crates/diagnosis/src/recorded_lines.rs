@@ -6,9 +6,9 @@ use jointscope_spectra::FrfSet;
 
 /// Lines from which a recording is thinned, and how many are kept of it at the most.
 const LONG: usize = 4000;
-const KEPT: usize = 450;
+const KEPT: usize = 900;
 /// Of these, evenly spread ones.
-const EVENLY: usize = 160;
+const EVENLY: usize = 350;
 /// Lines about a resonance are kept one by one up to this distance and ever more rarely beyond, in proportion to it: the first that
 /// keeps the limit.
 const GRADES: [usize; 10] = [64, 48, 32, 24, 16, 12, 8, 6, 4, 2];
