@@ -24,6 +24,9 @@ const FAR: usize = 10;
 const FAR_TWICE: usize = 3;
 /// Softened fits that leave this many times what the best one leaves are not followed: one in a false minimum may still win.
 const SOFT: f64 = 3.0;
+/// χ² per degree of freedom above which the best single effect leaves too much, and starts of each candidate that are then tried.
+const UNEXPLAINED: f64 = 1.3;
+const SEVERAL: usize = 5;
 /// Softened χ² of one deviation below which a quantity stays where it is in a coarse fit.
 const UNFELT: f64 = 8.0;
 /// Fits made without a limit before the others are measured against the best of them.
@@ -52,9 +55,15 @@ impl Ranking<'_> {
         let mut fits = Vec::new();
         let mut limit = limit;
         if far {
-            fits = self.fitted(self.far(&base.with_tolerances_of(self.nominal), &starts), None, limit);
-            let best = fits.iter().map(|(_, fit)| fit.objective).fold(f64::INFINITY, f64::min);
-            limit = limit.min(best + MARGIN);
+            let nominal = base.with_tolerances_of(self.nominal);
+            let best =
+                |fits: &[(usize, Fit)]| fits.iter().map(|f| f.1.objective).fold(f64::INFINITY, f64::min);
+            fits = self.fitted(self.far(&nominal, &starts, 1), None, limit);
+            // One start of a candidate may end in a false minimum: where nothing explains the FRFs by itself, several are tried.
+            if base.effect_count() == 0 && best(&fits) > UNEXPLAINED * self.observation.degrees() as f64 {
+                fits.extend(self.fitted(self.far(&nominal, &starts, SEVERAL), None, limit));
+            }
+            limit = limit.min(best(&fits) + MARGIN);
         }
         fits.extend(self.near(base, &starts, NEAR, NEAR_STARTS, limit));
         self.best_of_each(fits)
@@ -65,7 +74,7 @@ impl Ranking<'_> {
     pub fn look_alikes(&self, base: &Hypothesis, limit: f64) -> Vec<(usize, Fit)> {
         let starts = self.starts(base);
         // The quantities stand right already, but no line leads from nothing to an effect that moves peaks by many widths.
-        let mut fits = self.fitted(self.far(base, &starts), None, limit);
+        let mut fits = self.fitted(self.far(base, &starts, 1), None, limit);
         fits.extend(self.near(base, &starts, usize::MAX, 1, limit));
         self.best_of_each(fits)
     }
@@ -76,7 +85,11 @@ impl Ranking<'_> {
         let starts = self.starts(base);
         let mut fits = self.near(base, &starts, NEAR, 1, limit);
         if far {
-            fits.extend(self.fitted(self.far(&base.with_tolerances_of(self.nominal), &starts), None, limit));
+            fits.extend(self.fitted(
+                self.far(&base.with_tolerances_of(self.nominal), &starts, 1),
+                None,
+                limit,
+            ));
         }
         self.best_of_each(fits)
     }
@@ -117,13 +130,13 @@ impl Ranking<'_> {
     }
 
     /// The best softened fits from where the base stands and from where a softened fit leads without a candidate.
-    fn far(&self, base: &Hypothesis, starts: &[(usize, usize)]) -> Vec<Start> {
+    fn far(&self, base: &Hypothesis, starts: &[(usize, usize)], each: usize) -> Vec<Start> {
         let coarse = self.observation.thinned(COARSE_LINES);
         let mut begun: Vec<(usize, Hypothesis, bool)> = Vec::new();
         // Where an effect moves peaks by many widths no linear step of the tolerances is to be trusted.
         if let Some(scan) = Scan::about(base.clone(), &coarse, 0.3, false) {
             let scores = scan.scores(starts, self.candidates, &coarse);
-            let best = self.best_starts(starts, &scores, 1).into_iter().flatten();
+            let best = self.best_starts(starts, &scores, each).into_iter().flatten();
             begun.extend(best.map(|(_, c, effect)| (c, base.with(effect), false)));
         }
         // A softened refit is bent less by what the candidate would explain.
