@@ -177,7 +177,7 @@ impl Diagnosis {
             search.repaired = search.refitted.clone();
         }
         let held_out = held_out(fixture, &observation, &search, options)?;
-        let chance = upper_tail(excess(chi2_per_dof, observation.degrees()));
+        let chance = upper_tail(excess(chi2_per_dof, observation.degrees(), observation.noise_uncertainty()));
         let locations = match chance < BY_CHANCE {
             true => locate(&search.nominal.hypothesis, &search.refitted, &observation),
             false => Vec::new(),
@@ -186,7 +186,7 @@ impl Diagnosis {
             verdict: verdict(&search, &observation, &findings),
             refitted: (chi2_per_dof, chance),
             mismatch: mismatch(&observation, &search.refitted.predicted),
-            residual_correlation: correlation(&observation, &search.repaired.predicted),
+            residual_correlation: observation.residual_correlation(&search.repaired.predicted),
             findings,
             locations,
             held_out,
@@ -271,7 +271,7 @@ fn estimates(
     let n = hypothesis.coordinates.len();
     let first = hypothesis.range_of(index).start;
     let slopes = hypothesis.parameter_slopes(index);
-    let widening = fit.chi2_per_dof(observation).max(1.0).sqrt();
+    let widening = fit.scale(observation).sqrt();
     let specs = effect.kind.spec().parameters;
     specs
         .iter()
@@ -331,24 +331,6 @@ fn mismatch(observation: &Observation, predicted: &[Complex64]) -> Vec<FrfMismat
         FrfMismatch { frf: pair.clone(), nrmse: (error / size).sqrt(), bands: (0..bands).map(band).collect() }
     };
     observation.pairs().iter().enumerate().map(of).collect()
-}
-
-/// Correlation of the normalised residuals of neighbouring lines.
-fn correlation(observation: &Observation, predicted: &[Complex64]) -> f64 {
-    let n = observation.lines().len();
-    let normalised: Vec<Complex64> = observation
-        .values()
-        .iter()
-        .zip(predicted)
-        .zip(observation.weights())
-        .map(|((measured, modelled), weight)| (measured - modelled) * weight.sqrt())
-        .collect();
-    let (mut product, mut square) = (0.0, 0.0);
-    for frf in normalised.chunks_exact(n) {
-        product += frf.windows(2).map(|w| (w[0].conj() * w[1]).re).sum::<f64>();
-        square += frf.iter().map(|r| r.norm_sqr()).sum::<f64>();
-    }
-    if square > 0.0 { product / square } else { 0.0 }
 }
 
 /// Searches again without two bands and one FRF, and predicts them.

@@ -10,9 +10,7 @@ const LISTED: f64 = 16.0;
 const UNLISTED: f64 = 7.0;
 /// How much nearer that is for every further effect: several effects at once are rare, and with a pair of names much can be imitated.
 const COMPANY: f64 = 3.2;
-/// Relative uncertainty of noise variances made from few averages, with which χ² is judged.
-pub(crate) const NOISE_UNCERTAINTY: f64 = 0.04;
-
+const MOST_COMPANY: f64 = 1.5;
 /// A name for a finding with its probability.
 #[derive(Debug, Clone)]
 pub struct Alternative {
@@ -30,9 +28,9 @@ fn cost(fit: &Fit, scale: f64) -> f64 {
     fit.objective / scale + parameter_price(&fit.hypothesis)
 }
 
-/// Standard deviations by which χ² per degree of freedom exceeds one, the noise's own uncertainty included.
-pub(crate) fn excess(chi2_per_dof: f64, degrees: usize) -> f64 {
-    (chi2_per_dof - 1.0) / (2.0 / degrees.max(1) as f64 + NOISE_UNCERTAINTY * NOISE_UNCERTAINTY).sqrt()
+/// Standard deviations by which χ² per degree of freedom exceeds one, the relative uncertainty of the noise's variances included.
+pub(crate) fn excess(chi2_per_dof: f64, degrees: usize, noise_uncertainty: f64) -> f64 {
+    (chi2_per_dof - 1.0) / (2.0 / degrees.max(1) as f64).sqrt().hypot(noise_uncertainty)
 }
 
 /// The names for effect `index` of the repaired fit, the most probable first. Each is fitted in the company of the other
@@ -41,7 +39,7 @@ pub fn alternatives(search: &Search, index: usize, observation: &Observation) ->
     let repaired = &search.repaired;
     let own = &repaired.hypothesis.effects()[index];
     // Look-alikes are found from the solution's quantities: there the fixture alone does badly, and whatever serves as well takes few steps.
-    let scale = repaired.chi2_per_dof(observation).max(1.0);
+    let scale = repaired.scale(observation);
     let near = repaired.hypothesis.without(index);
     let mut fits = search.look_alikes(&near, repaired.objective + 2.0 * LISTED * scale, observation);
     if let Some(candidate) = search.candidates.iter().position(|c| c.names(own)) {
@@ -52,8 +50,10 @@ pub fn alternatives(search: &Search, index: usize, observation: &Observation) ->
     fits.retain(|(_, fit)| cost(fit, scale) - lowest < LISTED);
     let weight = |fit: &Fit| (-0.5 * (cost(fit, scale) - lowest)).exp();
     // The worse the best fit is, the likelier it is that no name is right.
-    let strain = excess(repaired.chi2_per_dof(observation), observation.degrees()).max(0.0);
-    let company = repaired.hypothesis.effect_count().saturating_sub(1) as f64;
+    let strain =
+        excess(repaired.chi2_per_dof(observation), observation.degrees(), observation.noise_uncertainty())
+            .max(0.0);
+    let company = (repaired.hypothesis.effect_count().saturating_sub(1) as f64).min(MOST_COMPANY);
     let unlisted = (-0.5 * (UNLISTED - COMPANY * company - strain * strain).max(-10.0)).exp();
     let total: f64 = fits.iter().map(|(_, fit)| weight(fit)).sum::<f64>() + unlisted;
     let mut all: Vec<Alternative> = fits

@@ -45,6 +45,8 @@ const UNDAMPED: f64 = 1e-13;
 /// Times the decrease of convergence that an undamped step must promise to be tried, and how often it is.
 const VALLEY: f64 = 3.0;
 const VALLEYS: usize = 3;
+/// Correlation of neighbouring residuals that chance hardly makes.
+const CORRELATED: f64 = 0.15;
 /// Damping beyond which no step is a gain.
 const GIVEN_UP: f64 = 1e7;
 /// χ² per degree of freedom above which a refit looks elsewhere too, and how many of those starts it follows to the end.
@@ -257,6 +259,17 @@ impl Fit {
     /// Number of values that count.
     pub fn chi2_per_dof(&self, observation: &Observation) -> f64 {
         self.chi2 / (observation.degrees().saturating_sub(self.hypothesis.effect_parameters())).max(1) as f64
+    }
+
+    /// What a gain in χ² has to be divided by to count as one of independent values of known noise: χ² per degree of freedom where it is above
+    /// one, and (1 + ρ)/(1 − ρ) where residuals of neighbouring lines are correlated by ρ.
+    pub(crate) fn scale(&self, observation: &Observation) -> f64 {
+        let correlation = observation.residual_correlation(&self.predicted);
+        let alike = match correlation > CORRELATED {
+            true => (1.0 + correlation.min(0.9)) / (1.0 - correlation.min(0.9)),
+            false => 1.0,
+        };
+        self.chi2_per_dof(observation).max(1.0) * alike
     }
 
     /// Covariance of the coordinates, row-major; `None` where the FRFs leave a combination free.

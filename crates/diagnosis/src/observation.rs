@@ -17,6 +17,9 @@ pub struct Observation {
     drift: Option<Drift>,
 }
 
+/// Relative uncertainty of variances from coherence, and from scatter.
+const COHERENCE_UNCERTAINTY: f64 = 0.04;
+const SCATTER_UNCERTAINTY: f64 = 0.2;
 /// Lines on each side over which the local level is taken.
 const LEVEL_WINDOW: usize = 20;
 
@@ -186,5 +189,25 @@ impl Observation {
             size += measured.norm_sqr();
         }
         (error / size).sqrt()
+    }
+
+    /// Relative uncertainty of the noise's variances: those from coherence are smoothed over lines, those from scatter rest on the lines
+    /// nearby alone.
+    pub(crate) fn noise_uncertainty(&self) -> f64 {
+        if self.noise.contains(&NoiseSource::Scatter) { SCATTER_UNCERTAINTY } else { COHERENCE_UNCERTAINTY }
+    }
+
+    /// Correlation of the normalised residuals of neighbouring lines.
+    pub fn residual_correlation(&self, predicted: &[Complex64]) -> f64 {
+        let n = self.lines().len();
+        let values = self.values().iter().zip(predicted).zip(self.weights());
+        let normalised: Vec<Complex64> =
+            values.map(|((measured, modelled), weight)| (measured - modelled) * weight.sqrt()).collect();
+        let (mut product, mut square) = (0.0, 0.0);
+        for frf in normalised.chunks_exact(n) {
+            product += frf.windows(2).map(|w| (w[0].conj() * w[1]).re).sum::<f64>();
+            square += frf.iter().map(|r| r.norm_sqr()).sum::<f64>();
+        }
+        if square > 0.0 { product / square } else { 0.0 }
     }
 }

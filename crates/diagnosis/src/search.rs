@@ -85,15 +85,10 @@ impl Search {
         }
     }
 
-    /// The scale of χ² that the best fit leaves: above one, gains count for less.
-    fn scale(&self, fit: &Fit, observation: &Observation) -> f64 {
-        fit.chi2_per_dof(observation).max(1.0)
-    }
-
     /// Whether `with` is worth its parameters over `without`.
     fn is_worth(&self, with: &Fit, without: &Fit, observation: &Observation) -> bool {
         let parameters = parameter_price(&with.hypothesis) - parameter_price(&without.hypothesis);
-        let gain = (without.objective - with.objective) / self.scale(with, observation);
+        let gain = (without.objective - with.objective) / with.scale(observation);
         gain > price(parameters, self.candidates.len())
     }
 
@@ -107,7 +102,9 @@ impl Search {
     fn lacks_much(&self, fit: &Fit, observation: &Observation) -> bool {
         let degrees = observation.degrees() as f64;
         let fits = if fit.hypothesis.effect_count() == 0 { FITS.0 } else { FITS.1 };
-        fit.objective > degrees + fits * (2.0 * degrees).sqrt()
+        // With effects the noise's own uncertainty counts too: what they leave may be no more than that.
+        let noise = if fit.hypothesis.effect_count() == 0 { 0.0 } else { observation.noise_uncertainty() };
+        fit.objective > degrees * (1.0 + fits * (2.0 / degrees).sqrt().hypot(noise))
     }
 
     /// Fits of `base` with one more effect, best first by objective and price of parameters, with the candidate's index.
@@ -171,7 +168,7 @@ impl Search {
         while index < self.repaired.hypothesis.effect_count() {
             let without = self.repaired.hypothesis.without(index);
             // A quarter of an effect misses a sixteenth of what the whole does: what that makes clear needs no more fits.
-            let scale = self.scale(&self.repaired, observation);
+            let scale = self.repaired.scale(observation);
             let clear = self.repaired.objective + CLEAR * scale * price(0.0, self.candidates.len());
             let faded = Fit::faded(&self.repaired.hypothesis, index, observation, clear);
             let Some(fewer) = faded else {

@@ -186,7 +186,11 @@ fn location(subject: &Subject, state: &State) -> Location {
         chi2_per_dof,
         departures: state.stand.penalty(),
         degrees,
-        p_value: if degrees == 0 { 1.0 } else { upper_tail(excess(chi2_per_dof, degrees)) },
+        p_value: if degrees == 0 {
+            1.0
+        } else {
+            upper_tail(excess(chi2_per_dof, degrees, observation.noise_uncertainty()))
+        },
         bands: (0..bands).map(band).collect(),
         frfs: observation
             .pairs()
