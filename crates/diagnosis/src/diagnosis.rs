@@ -147,6 +147,8 @@ const LEFT_OVER: f64 = 1.2;
 const LEFT_OVER_SCATTER: f64 = 1.6;
 /// Probability by chance below which a mismatch is located.
 const BY_CHANCE: f64 = 0.01;
+/// Times at most that a name takes the place of one that was found.
+const SETTLINGS: usize = 3;
 /// Probability that a finding and its look-alikes must have together for it to be named.
 const NAMED: f64 = 0.5;
 /// Bands in which a mismatch is told.
@@ -169,7 +171,7 @@ impl Diagnosis {
         let mut search = Search::of(fixture, &observation, options.exact)
             .ok_or(DiagnosisError::Lines(SpectraError::NoLines))?;
         let chi2_per_dof = search.refitted.chi2_per_dof(&observation);
-        let mut findings = findings(&search, &observation);
+        let mut findings = findings(&mut search, &observation);
         let named = |f: &Finding| f.probability + f.alternatives.iter().map(|(_, p)| p).sum::<f64>();
         if findings.iter().any(|finding| named(finding) < NAMED) {
             // What the best names leave says that none of them is right: they would only bend the model to the recording.
@@ -220,7 +222,30 @@ fn verdict(search: &Search, observation: &Observation, findings: &[Finding]) -> 
     }
 }
 
-fn findings(search: &Search, observation: &Observation) -> Vec<Finding> {
+/// The names for each effect of the repaired fit. Where one serves better than what was found, it takes its place and everything is asked
+/// again: a search goes one effect at a time, and a name that was best alone need not be best in company.
+fn settled(search: &mut Search, observation: &Observation) -> Vec<Vec<Alternative>> {
+    let mut left = SETTLINGS;
+    loop {
+        let count = search.repaired.hypothesis.effect_count();
+        let names: Vec<Vec<Alternative>> =
+            (0..count).map(|index| alternatives(search, index, observation)).collect();
+        let effects = search.repaired.hypothesis.effects();
+        let better = names.iter().zip(&effects).find_map(|(names, effect)| {
+            let best = names.first().filter(|best| !search.candidates[best.candidate].names(effect))?;
+            (best.fit.objective + 1.0 < search.repaired.objective).then(|| best.fit.clone())
+        });
+        match better.filter(|_| left > 0) {
+            Some(fit) => search.repaired = fit,
+            None => return names,
+        }
+        left -= 1;
+    }
+}
+
+fn findings(search: &mut Search, observation: &Observation) -> Vec<Finding> {
+    let all_names = settled(search, observation);
+    let search = &*search;
     let repaired = &search.repaired;
     let effects = repaired.hypothesis.effects();
     let covariance = repaired.covariance(observation);
@@ -228,7 +253,7 @@ fn findings(search: &Search, observation: &Observation) -> Vec<Finding> {
         .iter()
         .enumerate()
         .map(|(index, effect)| {
-            let names = alternatives(search, index, observation);
+            let names = &all_names[index];
             let own = |a: &Alternative| search.candidates[a.candidate].names(effect);
             let without = repaired.hypothesis.without(index);
             let without = match without.effect_count() {
