@@ -123,8 +123,8 @@ impl Diagnosis {
         remarks.extend(self.observation.remarks());
         if self.residual_correlation.abs() > 0.2 {
             remarks.push(format!(
-                "What the best model leaves is not white (neighbouring lines correlate by {:.2}): probabilities are more confident than \
-                 they should be.",
+                "What the best model leaves is not white (neighbouring lines correlate by {:.2}): gains count for that much less \
+                 and intervals are wider, as far as that is all there is to it.",
                 self.residual_correlation
             ));
         }

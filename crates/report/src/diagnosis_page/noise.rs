@@ -52,8 +52,8 @@ pub(super) fn section(subject: &Subject) -> Section {
     let white = if correlation.abs() < WHITE {
         "they are white, as noise is"
     } else {
-        "they are not white: either something is left in them, or the noise is not what coherence says, and probabilities are more confident than \
-         they should be"
+        "they are not white: either something is left in them, or the noise is not what coherence says, and gains count for less and intervals are wider \
+         for it"
     };
     let (chi2, p) = diagnosis.refitted;
     let chance = if p < 1e-6 { "below 10⁻⁶".to_owned() } else { significant(p, 2) };
