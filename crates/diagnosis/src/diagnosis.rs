@@ -397,10 +397,8 @@ fn held_out(
         }
         Some((error / size).sqrt())
     };
-    // What is not named is not in the repaired fixture either.
-    let named = search.repaired.hypothesis.effect_count() > 0;
-    let repaired = if named { &again.repaired } else { &again.refitted };
-    let (Some(nrmse_refitted), Some(nrmse_repaired)) = (error(&again.refitted), error(repaired)) else {
+    let (Some(nrmse_refitted), Some(nrmse_repaired)) = (error(&again.refitted), error(&again.repaired))
+    else {
         return Ok(None);
     };
     let what = bands

@@ -11,6 +11,7 @@ const UNLISTED: f64 = 7.0;
 /// How much nearer that is for every further effect: several effects at once are rare, and with a pair of names much can be imitated.
 const COMPANY: f64 = 3.2;
 const MOST_COMPANY: f64 = 1.5;
+
 /// A name for a finding with its probability.
 #[derive(Debug, Clone)]
 pub struct Alternative {

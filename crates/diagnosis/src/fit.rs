@@ -178,7 +178,7 @@ impl Fit {
             state.improve(observation, epsilon, ITERATIONS.0, f64::INFINITY);
         }
         let last = stages.last().copied().unwrap_or_default();
-        let objective = state.objective(observation, &state.weights(observation, last));
+        let objective = state.objective(observation, &observation.softened_weights(&state.predicted, last));
         Some(Fit { objective, ..state.into_fit(observation) })
     }
 
@@ -256,7 +256,7 @@ impl Fit {
         Some(state.into_fit(observation))
     }
 
-    /// Number of values that count.
+    /// χ² over the real values that count less the effects' free parameters.
     pub fn chi2_per_dof(&self, observation: &Observation) -> f64 {
         self.chi2 / (observation.degrees().saturating_sub(self.hypothesis.effect_parameters())).max(1) as f64
     }
@@ -306,15 +306,6 @@ impl State {
         Some(State { hypothesis, predicted, linear: None })
     }
 
-    fn residual(&self, observation: &Observation) -> Vec<Complex64> {
-        observation.values().iter().zip(&self.predicted).map(|(m, p)| m - p).collect()
-    }
-
-    fn weights(&self, observation: &Observation, epsilon: f64) -> Vec<f64> {
-        let modelled = self.predicted.iter().enumerate();
-        modelled.map(|(index, modelled)| observation.softened(index, *modelled, epsilon)).collect()
-    }
-
     fn objective(&self, observation: &Observation, weights: &[f64]) -> f64 {
         let values = observation.values().iter().zip(&self.predicted).zip(weights);
         values.map(|((m, p), w)| w * (m - p).norm_sqr()).sum::<f64>() + self.hypothesis.penalty()
@@ -339,9 +330,10 @@ impl State {
         let mut valleys = 0;
         for _ in 0..iterations {
             // Weights are frozen within an iteration, so that a step is judged by what it was made for.
-            let weights = self.weights(observation, epsilon);
+            let weights = observation.softened_weights(&self.predicted, epsilon);
             let before = self.objective(observation, &weights);
-            let (matrix, right) = linear.normal(&self.hypothesis, &weights, &self.residual(observation));
+            let (matrix, right) =
+                linear.normal(&self.hypothesis, &weights, &observation.residual(&self.predicted));
             let promised = if fresh { self.promised(&matrix, &right) } else { 0.0 };
             if fresh && before - PROMISE * promised > limit {
                 break;

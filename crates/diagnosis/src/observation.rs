@@ -175,6 +175,16 @@ impl Observation {
         1.0 / (1.0 / weight + 0.5 * epsilon * epsilon * size)
     }
 
+    /// [`Observation::softened`] of every value.
+    pub(crate) fn softened_weights(&self, modelled: &[Complex64], epsilon: f64) -> Vec<f64> {
+        modelled.iter().enumerate().map(|(index, value)| self.softened(index, *value, epsilon)).collect()
+    }
+
+    /// Measured less modelled values.
+    pub(crate) fn residual(&self, modelled: &[Complex64]) -> Vec<Complex64> {
+        self.values().iter().zip(modelled).map(|(measured, modelled)| measured - modelled).collect()
+    }
+
     /// χ² of modelled values.
     pub fn chi2(&self, modelled: &[Complex64]) -> f64 {
         let terms = self.weight.iter().zip(self.values()).zip(modelled);
@@ -200,9 +210,9 @@ impl Observation {
     /// Correlation of the normalised residuals of neighbouring lines.
     pub fn residual_correlation(&self, predicted: &[Complex64]) -> f64 {
         let n = self.lines().len();
-        let values = self.values().iter().zip(predicted).zip(self.weights());
+        let residual = self.residual(predicted);
         let normalised: Vec<Complex64> =
-            values.map(|((measured, modelled), weight)| (measured - modelled) * weight.sqrt()).collect();
+            residual.iter().zip(self.weights()).map(|(r, weight)| r * weight.sqrt()).collect();
         let (mut product, mut square) = (0.0, 0.0);
         for frf in normalised.chunks_exact(n) {
             product += frf.windows(2).map(|w| (w[0].conj() * w[1]).re).sum::<f64>();

@@ -288,11 +288,9 @@ struct Scan {
 impl Scan {
     fn about(base: Hypothesis, observation: &Observation, epsilon: f64, yielding: bool) -> Option<Self> {
         let predicted = base.predict(observation).ok()?;
-        let weights: Vec<f64> =
-            predicted.iter().enumerate().map(|(i, p)| observation.softened(i, *p, epsilon)).collect();
+        let weights = observation.softened_weights(&predicted, epsilon);
         let linear = if yielding { Linearisation::of(&base, observation) } else { Linearisation::rigid() };
-        let residual: Vec<Complex64> =
-            observation.values().iter().zip(&predicted).map(|(m, p)| m - p).collect();
+        let residual = observation.residual(&predicted);
         let (matrix, pull) = linear.normal(&base, &weights, &residual);
         let columns = linear.derivatives.iter().map(|d| whitened(d, &weights)).collect();
         let (mut factors, mut step) = (matrix.clone(), pull);
@@ -355,9 +353,7 @@ impl Scan {
     /// The objective with `effect` added and everything else at its linear best.
     fn score(&self, effect: Effect, observation: &Observation) -> f64 {
         let Ok(predicted) = self.base.with(effect).predict(observation) else { return f64::INFINITY };
-        let residual: Vec<Complex64> =
-            observation.values().iter().zip(&predicted).map(|(m, p)| m - p).collect();
-        let residual = whitened(&residual, &self.weights);
+        let residual = whitened(&observation.residual(&predicted), &self.weights);
         let misfit = dot(&residual, &residual);
         let pull = |m: usize| self.base.prior(m) * self.base.coordinates[m];
         let right: Vec<f64> =

@@ -166,7 +166,6 @@ impl Search {
     fn prune(&mut self, observation: &Observation) {
         let mut index = 0;
         while index < self.repaired.hypothesis.effect_count() {
-            let without = self.repaired.hypothesis.without(index);
             // A quarter of an effect misses a sixteenth of what the whole does: what that makes clear needs no more fits.
             let scale = self.repaired.scale(observation);
             let clear = self.repaired.objective + CLEAR * scale * price(0.0, self.candidates.len());
@@ -175,7 +174,7 @@ impl Search {
                 index += 1;
                 continue;
             };
-            if without.effect_count() == 0 && fewer.objective < self.refitted.objective {
+            if fewer.hypothesis.effect_count() == 0 && fewer.objective < self.refitted.objective {
                 self.refitted = fewer.clone();
             }
             if self.is_worth(&self.repaired, &fewer, observation) {
