@@ -231,7 +231,7 @@ fn a_line_at_zero_and_lines_without_coherence_are_masked_counted_and_told() {
 }
 
 #[test]
-fn a_line_on_which_all_channels_were_dead_is_masked() {
+fn a_line_whose_frf_matrix_is_singular_is_masked() {
     let bench = Bench::synthesized("singular", TWO_BLOCKS, "50:1000:5");
     bench.rewrite("frf.uff", "dead.uff", |datasets| {
         for dataset in datasets.iter_mut() {
@@ -240,7 +240,7 @@ fn a_line_on_which_all_channels_were_dead_is_masked() {
         }
     });
     let said = bench.done(&["decompose", "two.json", "dead.uff", "-o", "out"]);
-    assert!(said.contains("190 of 191 lines solved") && said.contains("1 line masked: "), "{said}");
+    assert!(said.contains("1 line masked: the FRF matrix is singular"), "{said}");
     assert_eq!(bench.json("out/stiffness.json")["masked"][0]["frequency"], 150.0);
 }
 

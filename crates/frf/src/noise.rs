@@ -86,6 +86,8 @@ pub fn from_coherence(values: &[Complex64], coherence: &[f64], averages: u32) ->
 
 /// Lines on each side from which the course of an FRF through a line is taken.
 const NEIGHBOURS: usize = 5;
+/// |H|² below this share of the largest counts as nothing.
+const NOTHING: f64 = 1e-30;
 /// A line whose own noise is followed to more than this share tells nothing about it.
 const FOLLOWED: f64 = 0.8;
 /// Squared errors beyond this many times their expected size are peaks that the local function missed, not noise.
@@ -119,7 +121,7 @@ pub fn from_scatter(hz: &[f64], values: &[Complex64]) -> Vec<f64> {
         }
         *window.select_nth_unstable_by(middle, f64::total_cmp).1 / std::f64::consts::LN_2
     };
-    let share = |i: usize| raw[i] / size[i].max(1e-30 * largest).max(f64::MIN_POSITIVE);
+    let share = |i: usize| raw[i] / size[i].max(NOTHING * largest).max(f64::MIN_POSITIVE);
     // An upper bound to begin with: the floor that the median shows, and the share that it shows.
     let begun = (0..n).map(|line| median(line, &|i| raw[i]) + median(line, &share) * size[line]).collect();
     smooth(&size, &raw, &usable, begun, 5, CLIPPED)
@@ -145,7 +147,11 @@ fn smooth(
         let raw: Vec<f64> = raw.iter().zip(&fit).map(|(raw, fit)| raw.min(clipped * fit)).collect();
         fit = (0..n).map(|line| fit_window(around(line, n), &raw, size, &fit, usable, size[line])).collect();
     }
-    fit.iter().zip(size).map(|(v, s)| v.max(FLOOR * FLOOR * s).max(f64::MIN_POSITIVE)).collect()
+    // A value of exactly nothing comes from a dead channel: it is known no better than the loudest one.
+    let largest = size.iter().copied().fold(0.0, f64::max);
+    let known = |s: f64| if s < NOTHING * largest { largest } else { s };
+    let floor = |s: f64| (FLOOR * FLOOR * known(s)).max(f64::MIN_POSITIVE);
+    fit.iter().zip(size).map(|(v, s)| v.max(floor(*s))).collect()
 }
 
 fn fit_window(
