@@ -29,5 +29,5 @@ mod positive_definite;
 pub use eigen::{EigenError, ModalBasis, generalized_symmetric_eigen};
 pub use least_squares::{LeastSquares, LeastSquaresError};
 pub use lu::{LuWorkspace, Singular};
-pub use matrix2::{ComplexMatrix2, Matrix2, RealMatrix2, Scalar};
+pub use matrix2::{ComplexMatrix2, Field, Matrix2, RealMatrix2, Scalar};
 pub use positive_definite::solve_positive_definite;

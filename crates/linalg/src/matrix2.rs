@@ -1,46 +1,50 @@
 use num_complex::Complex64;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-/// A number a [`Matrix2`] can hold: `f64` or [`Complex64`].
-pub trait Scalar:
-    Copy
-    + PartialEq
-    + Add<Output = Self>
-    + Sub<Output = Self>
-    + Mul<Output = Self>
-    + Div<Output = Self>
-    + Neg<Output = Self>
+/// What a [`Matrix2`] can hold: numbers, or the numbers of several spectral lines side by side.
+pub trait Field:
+    Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Neg<Output = Self>
 {
     /// Zero.
     const ZERO: Self;
     /// One.
     const ONE: Self;
-    /// Squared absolute value.
-    fn abs_squared(self) -> f64;
     /// One over the number.
     fn reciprocal(self) -> Self;
 }
 
-impl Scalar for f64 {
+/// A single number: `f64` or [`Complex64`].
+pub trait Scalar: Field + PartialEq + Div<Output = Self> {
+    /// Squared absolute value.
+    fn abs_squared(self) -> f64;
+}
+
+impl Field for f64 {
     const ZERO: Self = 0.0;
     const ONE: Self = 1.0;
-    #[inline]
-    fn abs_squared(self) -> f64 {
-        self * self
-    }
     #[inline]
     fn reciprocal(self) -> Self {
         1.0 / self
     }
 }
 
+impl Scalar for f64 {
+    #[inline]
+    fn abs_squared(self) -> f64 {
+        self * self
+    }
+}
+
 impl Scalar for Complex64 {
-    const ZERO: Self = Complex64::new(0.0, 0.0);
-    const ONE: Self = Complex64::new(1.0, 0.0);
     #[inline]
     fn abs_squared(self) -> f64 {
         self.norm_sqr()
     }
+}
+
+impl Field for Complex64 {
+    const ZERO: Self = Complex64::new(0.0, 0.0);
+    const ONE: Self = Complex64::new(1.0, 0.0);
     #[inline]
     fn reciprocal(self) -> Self {
         // |z|² of a determinant of receptances can underflow, so the components are scaled first.
@@ -62,7 +66,7 @@ pub type ComplexMatrix2 = Matrix2<Complex64>;
 /// A static stiffness, a damping matrix or a transport.
 pub type RealMatrix2 = Matrix2<f64>;
 
-impl<T: Scalar> Matrix2<T> {
+impl<T: Field> Matrix2<T> {
     /// The matrix `[[a, b], [c, d]]`.
     #[inline]
     pub const fn new(a: T, b: T, c: T, d: T) -> Self {
@@ -109,13 +113,6 @@ impl<T: Scalar> Matrix2<T> {
         Matrix2([[d * factor, -b * factor], [-c * factor, a * factor]])
     }
 
-    /// The inverse; `None` where the matrix is singular or holds a non-finite number.
-    #[inline]
-    pub fn inverse(self) -> Option<Self> {
-        let inverse = self.inverse_unchecked();
-        inverse.is_finite().then_some(inverse)
-    }
-
     /// The matrix with every element multiplied by `factor`.
     #[inline]
     pub fn scale(self, factor: T) -> Self {
@@ -127,6 +124,15 @@ impl<T: Scalar> Matrix2<T> {
     pub fn map<U>(self, f: impl Fn(T) -> U) -> Matrix2<U> {
         let [[a, b], [c, d]] = self.0;
         Matrix2([[f(a), f(b)], [f(c), f(d)]])
+    }
+}
+
+impl<T: Scalar> Matrix2<T> {
+    /// The inverse; `None` where the matrix is singular or holds a non-finite number.
+    #[inline]
+    pub fn inverse(self) -> Option<Self> {
+        let inverse = self.inverse_unchecked();
+        inverse.is_finite().then_some(inverse)
     }
 
     /// Whether every element is finite.
@@ -183,7 +189,7 @@ impl ComplexMatrix2 {
     }
 }
 
-impl<T: Scalar> Mul for Matrix2<T> {
+impl<T: Field> Mul for Matrix2<T> {
     type Output = Self;
     #[inline]
     fn mul(self, other: Self) -> Self {
@@ -193,7 +199,7 @@ impl<T: Scalar> Mul for Matrix2<T> {
     }
 }
 
-impl<T: Scalar> Add for Matrix2<T> {
+impl<T: Field> Add for Matrix2<T> {
     type Output = Self;
     #[inline]
     fn add(self, other: Self) -> Self {
@@ -202,7 +208,7 @@ impl<T: Scalar> Add for Matrix2<T> {
     }
 }
 
-impl<T: Scalar> Sub for Matrix2<T> {
+impl<T: Field> Sub for Matrix2<T> {
     type Output = Self;
     #[inline]
     fn sub(self, other: Self) -> Self {

@@ -1,5 +1,6 @@
 //! Modes far above the band, whose terms are smooth there: one short power series for all of them together.
 
+use crate::lanes::Lines;
 use crate::model::Denominator;
 use num_complex::Complex64;
 
@@ -67,26 +68,21 @@ impl FarModes {
     }
 
     /// Adds the series at `s`, made of `rows`, to the sums.
-    pub fn add(s: Complex64, rows: &[f64], re: &mut [f64], im: &mut [f64]) {
-        let count = re.len();
-        let mut power = Complex64::ONE;
-        if rows.len() == POWERS * count {
-            for row in rows.chunks_exact(count) {
-                for ((re, im), value) in re.iter_mut().zip(im.iter_mut()).zip(row) {
-                    *re += power.re * value;
-                    *im += power.im * value;
-                }
-                power *= s;
+    #[inline(always)]
+    pub fn add<T: Lines>(&self, s: T, rows: &[f64], sums: &mut [T]) {
+        let count = sums.len();
+        let mut power = T::ONE;
+        let structural = rows.len() > POWERS * count;
+        for row in rows.chunks_exact(if structural { 2 * count } else { count }) {
+            let (real, imaginary) = row.split_at(count);
+            for (sum, value) in sums.iter_mut().zip(real) {
+                *sum = *sum + power * *value;
             }
-            return;
-        }
-        for pair in rows.chunks_exact(2 * count) {
-            let (real, imaginary) = pair.split_at(count);
-            for k in 0..count {
-                re[k] += power.re * real[k] - power.im * imaginary[k];
-                im[k] += power.im * real[k] + power.re * imaginary[k];
+            let turned = power * T::constant(Complex64::I);
+            for (sum, value) in sums.iter_mut().zip(imaginary) {
+                *sum = *sum + turned * *value;
             }
-            power *= s;
+            power = power * s;
         }
     }
 }
@@ -124,14 +120,14 @@ mod tests {
         assert!(!far.contain(8) && far.contain(20) && !far.hold(Complex64::new(0.0, 2.1e3)));
         let rows = far.rows(&products, 2);
         let s = Complex64::new(3.0, 1.99e3);
-        let (mut re, mut im) = ([0.0; 2], [0.0; 2]);
-        FarModes::add(s, &rows, &mut re, &mut im);
+        let mut sums = [Complex64::ZERO; 2];
+        far.add(s, &rows, &mut sums);
         for entry in 0..2 {
             let term =
                 |r: usize| products[2 * r + entry] / (modes[r].stiffness + s * modes[r].viscous + s * s);
             let size: f64 = (0..modes.len()).filter(|r| far.contain(*r)).map(|r| term(r).norm()).sum();
             let sum: Complex64 = (0..modes.len()).filter(|r| far.contain(*r)).map(term).sum();
-            let error = (Complex64::new(re[entry], im[entry]) - sum).norm();
+            let error = (sums[entry] - sum).norm();
             assert!(error < 1e-7 * size, "entry {entry}: {error} of {size}");
         }
     }

@@ -1,6 +1,7 @@
 //! The dynamic stiffness of one joint with everything that the fixture says of it.
 
 use crate::assembly::nominal_stiffness;
+use crate::lanes::Lines;
 use jointscope_beam::{consistent_mass, end_compliance, transport};
 use jointscope_fixture::{Damping, Dof, Effect, EffectKind, Fixture, Joint, JointLaw, Place};
 use jointscope_linalg::{ComplexMatrix2, Matrix2, RealMatrix2};
@@ -8,10 +9,10 @@ use num_complex::Complex64;
 
 /// A complex 4×4 matrix on (y, θ) at the joint's near end, (y, θ) at its far end, by 2×2 blocks.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct TwoEnds {
-    near: ComplexMatrix2,
-    cross: ComplexMatrix2,
-    far: ComplexMatrix2,
+pub(crate) struct TwoEnds<T> {
+    near: Matrix2<T>,
+    cross: Matrix2<T>,
+    far: Matrix2<T>,
 }
 
 /// A spring and dashpot in series with one end of the joint.
@@ -127,16 +128,17 @@ impl JointDynamics {
     }
 
     /// The stiffness at s = iω (or decay + iω) on d = u_to − R·u_from of a joint without mass, effects included.
-    pub fn on_relative_motion(&self, s: Complex64) -> ComplexMatrix2 {
+    #[inline(always)]
+    pub fn on_relative_motion<T: Lines>(&self, s: T) -> Matrix2<T> {
         let length = self.length + self.extra_length;
         let modulus = self.modulus(s);
         let elastic = match self.bending_stiffness {
             Some(bending) if self.extra_length != 0.0 => jointscope_beam::end_stiffness(bending, length),
             _ => self.nominal,
         };
-        let mut stiffness = elastic.to_complex().scale(modulus);
+        let mut stiffness = elastic.map(|element| modulus * element);
         if let Some(dashpots) = self.dashpots {
-            stiffness = stiffness + dashpots.to_complex().scale(s);
+            stiffness = stiffness + dashpots.map(|element| s * element);
         }
         if let Some(shear) = self.shear_stiffness {
             stiffness = in_series(stiffness, [1.0, 0.0], modulus * (shear / length));
@@ -147,13 +149,14 @@ impl JointDynamics {
                 (Dof::Rotation, true) => [0.0, 1.0],
                 (Dof::Rotation, false) => [length, 1.0],
             };
-            stiffness = in_series(stiffness, direction, interface.stiffness + s * interface.damping);
+            stiffness = in_series(stiffness, direction, T::ONE * interface.stiffness + s * interface.damping);
         }
         stiffness
     }
 
     /// The dynamic stiffness at s = iω (or decay + iω) on the motions of both ends, effects and mass included.
-    pub fn on_both_ends(&self, s: Complex64) -> TwoEnds {
+    #[inline(always)]
+    pub fn on_both_ends<T: Lines>(&self, s: T) -> TwoEnds<T> {
         let length = self.length + self.extra_length;
         if self.mass != 0.0 && self.bending_stiffness.is_some() && length > 0.0 {
             return self.heavy_beam(s, length, self.modulus(s));
@@ -166,17 +169,20 @@ impl JointDynamics {
     }
 
     /// Complex factor of the elastic stiffness: stiffness change, loss factors, relaxation.
-    fn modulus(&self, s: Complex64) -> Complex64 {
-        let mut factor = Complex64::new(1.0, self.base_loss + self.loss);
+    #[inline(always)]
+    fn modulus<T: Lines>(&self, s: T) -> T {
+        let mut factor = T::constant(Complex64::new(1.0, self.base_loss + self.loss));
         for &(ratio, time) in &self.relaxations {
-            factor += ratio * (s * time) / (1.0 + s * time);
+            let turned = s * time;
+            factor = factor + turned * (T::ONE + turned).reciprocal() * ratio;
         }
         factor * self.factor
     }
 
     /// A beam with uniformly distributed mass, by doubling a short element four times; its interfaces are
     /// springs in series with its ends.
-    fn heavy_beam(&self, s: Complex64, length: f64, modulus: Complex64) -> TwoEnds {
+    #[inline(always)]
+    fn heavy_beam<T: Lines>(&self, s: T, length: f64, modulus: T) -> TwoEnds<T> {
         const DOUBLINGS: u32 = 4;
         let short = length / f64::from(1u32 << DOUBLINGS);
         let bending = self.bending_stiffness.unwrap_or_default();
@@ -184,25 +190,26 @@ impl JointDynamics {
         if let Some(shear) = self.shear_stiffness {
             compliance.0[0][0] += short / shear;
         }
-        let stiffness = compliance.inverse_unchecked().to_complex().scale(modulus);
+        let stiffness = compliance.inverse_unchecked().map(|element| modulus * element);
         let mut beam = TwoEnds::from_end(stiffness, short);
         beam.add_real(&consistent_mass(self.mass / length, short), s * s);
         for _ in 0..DOUBLINGS {
             beam = beam.followed_by(beam);
         }
         for interface in &self.interfaces {
-            beam = beam.softened(interface, interface.stiffness + s * interface.damping);
+            beam = beam.softened(interface, T::ONE * interface.stiffness + s * interface.damping);
         }
         beam
     }
 }
 
 /// (k⁻¹ + r rᵀ/spring)⁻¹ = k − k r rᵀ k / (spring + rᵀ k r), which needs no inverse of k.
-fn in_series(stiffness: ComplexMatrix2, direction: [f64; 2], spring: Complex64) -> ComplexMatrix2 {
+#[inline(always)]
+fn in_series<T: Lines>(stiffness: Matrix2<T>, direction: [f64; 2], spring: T) -> Matrix2<T> {
     let [[a, b], [c, d]] = stiffness.0;
     let column = [a * direction[0] + b * direction[1], c * direction[0] + d * direction[1]];
     let row = [a * direction[0] + c * direction[1], b * direction[0] + d * direction[1]];
-    let factor = (spring + column[0] * direction[0] + column[1] * direction[1]).inv();
+    let factor = (spring + column[0] * direction[0] + column[1] * direction[1]).reciprocal();
     Matrix2::new(
         a - column[0] * row[0] * factor,
         b - column[0] * row[1] * factor,
@@ -211,16 +218,18 @@ fn in_series(stiffness: ComplexMatrix2, direction: [f64; 2], spring: Complex64) 
     )
 }
 
-impl TwoEnds {
+impl<T: Lines> TwoEnds<T> {
     /// `[−R, I]ᵀ k [−R, I]`.
-    pub fn from_end(stiffness: ComplexMatrix2, length: f64) -> Self {
-        let transport = transport(length).to_complex();
+    #[inline(always)]
+    pub fn from_end(stiffness: Matrix2<T>, length: f64) -> Self {
+        let transport = transport(length).map(|element| T::ONE * element);
         let back = transport.transpose() * stiffness;
         TwoEnds { near: back * transport, cross: back.map(|e| -e), far: stiffness }
     }
 
     /// The element in row `i`, column `j` of the 4×4 matrix.
-    pub fn at(&self, i: usize, j: usize) -> Complex64 {
+    #[inline(always)]
+    pub fn at(&self, i: usize, j: usize) -> T {
         match (i / 2, j / 2) {
             (0, 0) => self.near.at(i, j),
             (0, _) => self.cross.at(i, j - 2),
@@ -229,23 +238,26 @@ impl TwoEnds {
         }
     }
 
-    fn add_real(&mut self, matrix: &jointscope_beam::Matrix4, factor: Complex64) {
+    #[inline(always)]
+    fn add_real(&mut self, matrix: &jointscope_beam::Matrix4, factor: T) {
         for i in 0..2 {
             for j in 0..2 {
-                self.near.0[i][j] += matrix[i][j] * factor;
-                self.cross.0[i][j] += matrix[i][j + 2] * factor;
-                self.far.0[i][j] += matrix[i + 2][j + 2] * factor;
+                self.near.0[i][j] = self.near.0[i][j] + factor * matrix[i][j];
+                self.cross.0[i][j] = self.cross.0[i][j] + factor * matrix[i][j + 2];
+                self.far.0[i][j] = self.far.0[i][j] + factor * matrix[i + 2][j + 2];
             }
         }
     }
 
-    fn add_half_masses(&mut self, inertia: Complex64) {
-        self.near.0[0][0] += inertia;
-        self.far.0[0][0] += inertia;
+    #[inline(always)]
+    fn add_half_masses(&mut self, inertia: T) {
+        self.near.0[0][0] = self.near.0[0][0] + inertia;
+        self.far.0[0][0] = self.far.0[0][0] + inertia;
     }
 
     /// This element and the next one behind it, the motion between them eliminated.
-    fn followed_by(self, next: TwoEnds) -> TwoEnds {
+    #[inline(always)]
+    fn followed_by(self, next: Self) -> Self {
         let middle = (self.far + next.near).inverse_unchecked();
         let left = self.cross * middle;
         let right = next.cross.transpose() * middle;
@@ -257,9 +269,10 @@ impl TwoEnds {
     }
 
     /// With a spring in series with one of its four end motions.
-    fn softened(self, interface: &Interface, spring: Complex64) -> TwoEnds {
+    #[inline(always)]
+    fn softened(self, interface: &Interface, spring: T) -> Self {
         let e = 2 * usize::from(interface.at_far_end) + usize::from(interface.dof == Dof::Rotation);
-        let factor = (spring + self.at(e, e)).inv();
+        let factor = (spring + self.at(e, e)).reciprocal();
         let changed = |i: usize, j: usize| self.at(i, j) - self.at(i, e) * self.at(e, j) * factor;
         let block = |i: usize, j: usize| {
             Matrix2::new(changed(i, j), changed(i, j + 1), changed(i + 1, j), changed(i + 1, j + 1))
@@ -287,7 +300,7 @@ mod tests {
         JointDynamics::new(&fixture, &fixture.joints()[0])
     }
 
-    fn largest_difference(a: TwoEnds, b: TwoEnds) -> f64 {
+    fn largest_difference(a: TwoEnds<Complex64>, b: TwoEnds<Complex64>) -> f64 {
         let mut worst = 0.0_f64;
         for i in 0..4 {
             for j in 0..4 {

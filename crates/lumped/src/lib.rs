@@ -36,10 +36,12 @@ mod bar;
 mod far_modes;
 mod joint;
 mod joint_element;
+mod lanes;
 mod mesh;
 mod modal_system;
 mod model;
 mod modes_cache;
+mod receptances;
 mod station;
 mod synthesis;
 mod terms;
@@ -47,7 +49,8 @@ mod uniform_beam;
 
 pub use assembly::{Assembly, nominal_stiffness};
 pub use joint_element::JointElement;
-pub use model::{Model, Receptances};
+pub use model::Model;
+pub use receptances::Receptances;
 pub use station::Station;
 pub use synthesis::{Instrument, synthesize};
 

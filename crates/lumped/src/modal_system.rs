@@ -1,13 +1,15 @@
 //! Receptances of few modes with changes of high rank: one solution in the modes' own coordinates.
 
+use crate::lanes::Lines;
 use crate::model::Denominator;
-use crate::terms::Terms;
 use num_complex::Complex64;
 
 /// Modes up to which there is a solution of fixed size, which the compiler unrolls.
 pub(crate) const FEW_MODES: usize = 12;
 /// A pivot smaller than this share of the largest element is a zero.
 const ZERO: f64 = 1e-15;
+/// A pivot smaller than this share of the largest element, both squared, asks for rows to be exchanged.
+const WEAK: f64 = 1e-10;
 
 /// (D(s) + V Δ(s) Vᵀ) q = Φ_i with D diagonal. The modes are mass-normalised, so that all elements have one unit and none needs scaling.
 #[derive(Debug, Clone)]
@@ -17,9 +19,6 @@ pub(crate) struct ModalSystem {
     outputs: Vec<f64>,
     inputs: Vec<f64>,
     change: Vec<f64>,
-    delta: Vec<Complex64>,
-    /// Modal coordinates, a row over the modes for each input.
-    solution: Vec<Complex64>,
 }
 
 impl ModalSystem {
@@ -29,85 +28,172 @@ impl ModalSystem {
         inputs: &[Vec<f64>],
         change: &[Vec<f64>],
     ) -> Self {
-        ModalSystem {
-            outputs: outputs.concat(),
-            inputs: inputs.concat(),
-            change: change.concat(),
-            delta: vec![Complex64::ZERO; change.len() * change.len()],
-            solution: vec![Complex64::ZERO; denominators.len() * inputs.len()],
-            denominators,
-        }
+        let (outputs, inputs, change) = (outputs.concat(), inputs.concat(), change.concat());
+        ModalSystem { outputs, inputs, change, denominators }
     }
 
-    /// Writes the receptance of each (output, input) at `s`; `false` where there is no solution.
-    pub fn at(
-        &mut self,
-        s: Complex64,
-        terms: &Terms,
+    /// Writes the receptance of each (output, input) at `s`, given Δ(s) with its elements that are not zero; `false` where a line has
+    /// no solution. `solution` is memory for the modes' coordinates, a row for each input.
+    #[inline(always)]
+    pub fn at<T: Lines>(
+        &self,
+        s: T,
+        delta: &[T],
+        elements: &[(usize, usize)],
+        solution: &mut Vec<T>,
         pairs: &[(usize, usize)],
-        values: &mut [Complex64],
+        values: &mut [T],
     ) -> bool {
-        terms.write(s, &mut self.delta);
         let order = self.denominators.len();
+        solution.resize(self.inputs.len(), T::ZERO);
         let solved = match order {
-            1 => self.solve::<1>(s),
-            2 => self.solve::<2>(s),
-            3 => self.solve::<3>(s),
-            4 => self.solve::<4>(s),
-            5 => self.solve::<5>(s),
-            6 => self.solve::<6>(s),
-            7 => self.solve::<7>(s),
-            8 => self.solve::<8>(s),
-            9 => self.solve::<9>(s),
-            10 => self.solve::<10>(s),
-            11 => self.solve::<11>(s),
-            FEW_MODES => self.solve::<FEW_MODES>(s),
+            1 => self.solve::<1, T>(s, delta, elements, solution),
+            2 => self.solve::<2, T>(s, delta, elements, solution),
+            3 => self.solve::<3, T>(s, delta, elements, solution),
+            4 => self.solve::<4, T>(s, delta, elements, solution),
+            5 => self.solve::<5, T>(s, delta, elements, solution),
+            6 => self.solve::<6, T>(s, delta, elements, solution),
+            7 => self.solve::<7, T>(s, delta, elements, solution),
+            8 => self.solve::<8, T>(s, delta, elements, solution),
+            9 => self.solve::<9, T>(s, delta, elements, solution),
+            10 => self.solve::<10, T>(s, delta, elements, solution),
+            11 => self.solve::<11, T>(s, delta, elements, solution),
+            FEW_MODES => self.solve::<FEW_MODES, T>(s, delta, elements, solution),
             _ => false,
         };
         if solved {
             for (value, &(output, input)) in values.iter_mut().zip(pairs) {
                 let shapes = &self.outputs[output * order..(output + 1) * order];
-                let modes = &self.solution[input * order..(input + 1) * order];
-                *value = shapes.iter().zip(modes).map(|(shape, q)| q * *shape).sum();
+                let modes = &solution[input * order..(input + 1) * order];
+                *value = shapes.iter().zip(modes).fold(T::ZERO, |sum, (shape, q)| sum + *q * *shape);
             }
         }
         solved
     }
 
-    fn solve<const N: usize>(&mut self, s: Complex64) -> bool {
-        let Some((matrix, pivots)) = factorized(self.matrix::<N>(s)) else { return false };
-        let columns = self.inputs.as_chunks::<N>().0.iter().zip(self.solution.as_chunks_mut::<N>().0);
-        for (input, solution) in columns {
-            *solution = input.map(|shape| Complex64::new(shape, 0.0));
-            substitute(&matrix, &pivots, solution);
+    #[inline(always)]
+    fn solve<const N: usize, T: Lines>(
+        &self,
+        s: T,
+        delta: &[T],
+        elements: &[(usize, usize)],
+        solution: &mut [T],
+    ) -> bool {
+        let matrix = self.matrix::<N, T>(s, delta, elements);
+        let inputs = self.inputs.as_chunks::<N>().0;
+        let columns = solution.as_chunks_mut::<N>().0;
+        if let Some(factors) = symmetric_factors(matrix) {
+            for (input, column) in inputs.iter().zip(columns) {
+                *column = input.map(|shape| T::constant(Complex64::new(shape, 0.0)));
+                substitute(&factors, column);
+            }
+            return true;
         }
-        true
+        (0..T::COUNT).all(|line| solve_line(&matrix, line, inputs, columns))
     }
 
-    /// D + V Δ Vᵀ.
-    fn matrix<const N: usize>(&self, s: Complex64) -> [[Complex64; N]; N] {
+    /// The lower triangle of D + V Δ Vᵀ, which is symmetric.
+    #[inline(always)]
+    fn matrix<const N: usize, T: Lines>(
+        &self,
+        s: T,
+        delta: &[T],
+        elements: &[(usize, usize)],
+    ) -> [[T; N]; N] {
         let change = self.change.as_chunks::<N>().0;
-        let mut matrix = [[Complex64::ZERO; N]; N];
-        for (shapes, delta) in change.iter().zip(self.delta.chunks_exact(change.len())) {
-            let mut product = [Complex64::ZERO; N];
-            for (factor, other) in delta.iter().zip(change).filter(|(factor, _)| **factor != Complex64::ZERO)
-            {
+        let mut matrix = [[T::ZERO; N]; N];
+        for of_one_row in elements.chunk_by(|a, b| a.0 == b.0) {
+            let row = of_one_row[0].0;
+            let mut product = [T::ZERO; N];
+            for &(_, column) in of_one_row {
+                let factor = delta[row * change.len() + column];
                 for n in 0..N {
-                    product[n] += factor * other[n];
+                    product[n] = product[n] + factor * change[column][n];
                 }
             }
-            for (row, shape) in matrix.iter_mut().zip(shapes) {
-                for n in 0..N {
-                    row[n] += product[n] * *shape;
+            for i in 0..N {
+                for j in 0..=i {
+                    matrix[i][j] = matrix[i][j] + product[j] * change[row][i];
                 }
             }
         }
         let squared = s * s;
         for (mode, denominator) in self.denominators.iter().enumerate().take(N) {
-            matrix[mode][mode] += denominator.stiffness + s * denominator.viscous + squared;
+            matrix[mode][mode] =
+                matrix[mode][mode] + T::constant(denominator.stiffness) + s * denominator.viscous + squared;
         }
         matrix
     }
+}
+
+/// L D Lᵀ of a symmetric matrix given by its lower triangle, L below the diagonal and D⁻¹ on it; `None` where on any line a pivot is weak.
+#[inline(always)]
+fn symmetric_factors<const N: usize, T: Lines>(mut matrix: [[T; N]; N]) -> Option<[[T; N]; N]> {
+    let mut largest = matrix[0][0].sizes();
+    for i in 1..N {
+        for j in 0..=i {
+            largest = T::larger(largest, matrix[i][j].sizes());
+        }
+    }
+    for k in 0..N {
+        if !T::all_exceed(matrix[k][k].sizes(), WEAK, largest) {
+            return None;
+        }
+        let inverse = matrix[k][k].reciprocal();
+        let mut scaled = [T::ZERO; N];
+        for i in k + 1..N {
+            scaled[i] = matrix[i][k] * inverse;
+            for j in k + 1..=i {
+                matrix[i][j] = matrix[i][j] - scaled[i] * matrix[j][k];
+            }
+        }
+        matrix[k][k] = inverse;
+        for i in k + 1..N {
+            matrix[i][k] = scaled[i];
+        }
+    }
+    Some(matrix)
+}
+
+#[inline(always)]
+fn substitute<const N: usize, T: Lines>(factors: &[[T; N]; N], values: &mut [T; N]) {
+    for i in 1..N {
+        for j in 0..i {
+            values[i] = values[i] - factors[i][j] * values[j];
+        }
+    }
+    for i in 0..N {
+        values[i] = values[i] * factors[i][i];
+    }
+    for i in (0..N).rev() {
+        for j in i + 1..N {
+            values[i] = values[i] - factors[j][i] * values[j];
+        }
+    }
+}
+
+/// One line by itself, rows exchanged for the sake of its pivots.
+#[inline(never)]
+fn solve_line<const N: usize, T: Lines>(
+    lower: &[[T; N]; N],
+    line: usize,
+    inputs: &[[f64; N]],
+    columns: &mut [[T; N]],
+) -> bool {
+    let mut matrix = [[Complex64::ZERO; N]; N];
+    for i in 0..N {
+        for j in 0..=i {
+            matrix[i][j] = lower[i][j].line(line);
+            matrix[j][i] = matrix[i][j];
+        }
+    }
+    let Some((matrix, pivots)) = factorized(matrix) else { return false };
+    for (input, column) in inputs.iter().zip(columns) {
+        let mut values = input.map(|shape| Complex64::new(shape, 0.0));
+        substitute_exchanged(&matrix, &pivots, &mut values);
+        column.iter_mut().zip(values).for_each(|(to, value)| to.set_line(line, value));
+    }
+    true
 }
 
 /// LU with partial pivoting in place, pivots inverted on the diagonal, and the rows that were exchanged.
@@ -136,7 +222,7 @@ fn factorized<const N: usize>(mut matrix: [[Complex64; N]; N]) -> Option<([[Comp
     Some((matrix, pivots))
 }
 
-fn substitute<const N: usize>(
+fn substitute_exchanged<const N: usize>(
     matrix: &[[Complex64; N]; N],
     pivots: &[usize; N],
     values: &mut [Complex64; N],

@@ -1,7 +1,10 @@
+use crate::lanes::{Lanes, WIDTH};
 use crate::{LumpedError, Model, Receptances, Station};
 use jointscope_fixture::{BodyKind, EffectKind, Fixture, Place};
+use jointscope_linalg::Field;
 use jointscope_spectra::{Channel, Dof, FrfForm, FrfPair, FrfSet, SpectralLines};
 use num_complex::Complex64;
+use std::f64::consts::TAU;
 
 /// Whether the measuring chain's effects are part of what is synthesised.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -92,11 +95,13 @@ struct SensorLoad {
 
 impl SensorLoad {
     /// H_oi − H_os δ H_si / (1 + δ H_ss), δ = s² m.
-    fn change(&self, s: Complex64, receptance: Complex64, all: &[Complex64]) -> Complex64 {
+    #[inline(always)]
+    fn change(&self, s: Lanes, receptance: Lanes, all: &[Lanes]) -> Lanes {
         let inertia = s * s * self.mass;
         let (driving, to_response, from_reference) =
             (all[self.first], all[self.first + 1], all[self.first + 2]);
-        receptance - to_response * inertia * from_reference / (1.0 + inertia * driving)
+        let loaded = (Lanes::ONE + inertia * driving).reciprocal();
+        receptance - to_response * inertia * from_reference * loaded
     }
 }
 
@@ -180,26 +185,30 @@ impl<'a> MeasuringChain<'a> {
     ) -> Result<Vec<Complex64>, LumpedError> {
         let decay = self.sum(EffectKind::ExponentialWindow, |_| true);
         let chain: Vec<(f64, f64)> = pairs.iter().map(|pair| self.gain_and_delay(pair)).collect();
+        let omegas = lines.hz().iter().map(|hz| TAU * hz.max(NEARLY_ZERO_HZ));
+        let s: Vec<Complex64> = omegas.map(|omega| Complex64::new(decay, omega)).collect();
         let count = lines.len();
         let mut values = vec![Complex64::ZERO; pairs.len() * count];
-        let mut line_values = vec![Complex64::ZERO; receptances.count()];
-        for (line, &hz) in lines.hz().iter().enumerate() {
-            let omega = std::f64::consts::TAU * hz.max(NEARLY_ZERO_HZ);
-            let s = Complex64::new(decay, omega);
-            let squared = s * s;
-            if !receptances.at(s, &mut line_values) {
-                return Err(LumpedError::Unbounded { frequency: hz });
-            }
-            for (index, (&(gain, delay), load)) in chain.iter().zip(loads).enumerate() {
-                let mut receptance = line_values[index];
-                if let Some(load) = load {
-                    receptance = load.change(s, receptance, &line_values);
+        let recorded = receptances.in_blocks(
+            &s,
+            #[inline(always)]
+            |first, s, block| {
+                let last = (first + WIDTH).min(count);
+                let squared = s * s;
+                let courses = values.chunks_exact_mut(count).map(|course| &mut course[first..last]);
+                for (index, (course, (gain, _))) in courses.zip(&chain).enumerate() {
+                    let receptance = match &loads[index] {
+                        Some(load) => load.change(s, block[index], block),
+                        None => block[index],
+                    };
+                    (squared * receptance * *gain).write(course);
                 }
-                let mut recorded = squared * receptance * gain;
-                if delay != 0.0 {
-                    recorded *= Complex64::cis(-omega * delay);
-                }
-                values[index * count + line] = recorded;
+            },
+        );
+        recorded.map_err(|line| LumpedError::Unbounded { frequency: lines.hz()[line] })?;
+        for (course, (_, delay)) in values.chunks_exact_mut(count).zip(chain).filter(|(_, c)| c.1 != 0.0) {
+            for (value, s) in course.iter_mut().zip(&s) {
+                *value *= Complex64::cis(-s.im * delay);
             }
         }
         Ok(values)

@@ -2,6 +2,7 @@
 
 use crate::Station;
 use crate::joint::{JointDynamics, TwoEnds};
+use crate::lanes::Lines;
 use jointscope_fixture::{Dof, Effect, EffectKind, Fixture, Place};
 use jointscope_linalg::ComplexMatrix2;
 use num_complex::Complex64;
@@ -19,13 +20,15 @@ pub(crate) enum PointLaw {
 }
 
 impl PointLaw {
-    pub fn at(&self, s: Complex64) -> Complex64 {
+    #[inline(always)]
+    pub fn at<T: Lines>(&self, s: T) -> T {
         match *self {
-            PointLaw::Spring { stiffness, damping } => stiffness + s * damping,
+            PointLaw::Spring { stiffness, damping } => T::ONE * stiffness + s * damping,
             PointLaw::Mass(mass) => s * s * mass,
             PointLaw::Resonator { mass, omega, ratio } => {
-                let spring = omega * omega + s * (2.0 * ratio * omega);
-                s * s * mass * spring / (s * s + spring)
+                let spring = T::ONE * (omega * omega) + s * (2.0 * ratio * omega);
+                let squared = s * s;
+                squared * mass * spring * (squared + spring).reciprocal()
             }
         }
     }
@@ -39,7 +42,7 @@ pub(crate) enum Term {
     /// A joint without mass, through the two stations that read its relative motion d.
     Relative { station: usize, joint: Box<JointDynamics> },
     /// A joint with mass, through the four stations (y, θ) at its ends, less what the modes hold of it where they read the same motions.
-    Ends { station: usize, joint: Box<JointDynamics>, held: Option<TwoEnds> },
+    Ends { station: usize, joint: Box<JointDynamics>, held: Option<TwoEnds<Complex64>> },
     /// What the modes hold of a joint already, taken out through the two stations that read d as the modes have it.
     TakenOut { station: usize, stiffness: ComplexMatrix2 },
 }
@@ -163,33 +166,70 @@ impl Terms {
         first
     }
 
-    /// Writes Δ(s), order × order row-major, over `delta`.
-    pub fn write(&self, s: Complex64, delta: &mut [Complex64]) {
-        let order = self.stations.len();
-        delta.fill(Complex64::ZERO);
-        let mut add = |first: usize, size: usize, element: &dyn Fn(usize, usize) -> Complex64| {
-            for i in 0..size {
-                for j in 0..size {
-                    delta[(first + i) * order + first + j] += element(i, j);
-                }
-            }
+    /// (row, column) of the elements of Δ that are not zero by themselves, row by row.
+    pub fn elements(&self) -> Vec<(usize, usize)> {
+        let block = |first: usize, size: usize| {
+            (0..size).flat_map(move |i| (0..size).map(move |j| (first + i, first + j)))
         };
+        let mut all: Vec<(usize, usize)> =
+            self.terms.iter().flat_map(|t| block(t.station(), t.size())).collect();
+        all.sort_unstable();
+        all.dedup();
+        all
+    }
+
+    /// Writes Δ(s), order × order row-major, over `delta`.
+    #[inline(always)]
+    pub fn write<T: Lines>(&self, s: T, delta: &mut [T]) {
+        let order = self.stations.len();
+        delta.fill(T::ZERO);
         for term in &self.terms {
+            let (first, size) = (term.station(), term.size());
+            let mut add = |i: usize, j: usize, value: T| {
+                let element = &mut delta[(first + i) * order + first + j];
+                *element = *element + value;
+            };
             match term {
-                Term::Point { station, law } => {
-                    let value = law.at(s);
-                    add(*station, 1, &|_, _| value);
-                }
-                Term::Relative { station, joint } => {
+                Term::Point { law, .. } => add(0, 0, law.at(s)),
+                Term::Relative { joint, .. } => {
                     let stiffness = joint.on_relative_motion(s);
-                    add(*station, 2, &|i, j| stiffness.at(i, j));
+                    (0..size).for_each(|i| (0..size).for_each(|j| add(i, j, stiffness.at(i, j))));
                 }
-                Term::Ends { station, joint, held } => {
+                Term::Ends { joint, held, .. } => {
                     let ends = joint.on_both_ends(s);
-                    add(*station, 4, &|i, j| ends.at(i, j) - held.map_or(Complex64::ZERO, |h| h.at(i, j)));
+                    for i in 0..size {
+                        for j in 0..size {
+                            let held = held.map_or(Complex64::ZERO, |held| held.at(i, j));
+                            add(i, j, ends.at(i, j) - T::constant(held));
+                        }
+                    }
                 }
-                Term::TakenOut { station, stiffness } => add(*station, 2, &|i, j| -stiffness.at(i, j)),
+                Term::TakenOut { stiffness, .. } => {
+                    (0..size)
+                        .for_each(|i| (0..size).for_each(|j| add(i, j, T::constant(-stiffness.at(i, j)))));
+                }
             }
+        }
+    }
+}
+
+impl Term {
+    /// The first of its stations.
+    fn station(&self) -> usize {
+        match self {
+            Term::Point { station, .. }
+            | Term::Relative { station, .. }
+            | Term::Ends { station, .. }
+            | Term::TakenOut { station, .. } => *station,
+        }
+    }
+
+    /// How many stations it acts through.
+    fn size(&self) -> usize {
+        match self {
+            Term::Point { .. } => 1,
+            Term::Relative { .. } | Term::TakenOut { .. } => 2,
+            Term::Ends { .. } => 4,
         }
     }
 }

@@ -1,0 +1,364 @@
+//! Receptances between fixed stations, several spectral lines at once.
+
+use crate::Station;
+use crate::far_modes::FarModes;
+use crate::lanes::{Lanes, Lines, WIDTH};
+use crate::modal_system::{FEW_MODES, ModalSystem};
+use crate::model::{Denominator, Model};
+use crate::terms::{TermStation, Terms};
+use jointscope_linalg::{Field, LuWorkspace};
+use num_complex::Complex64;
+use std::f64::consts::TAU;
+
+/// Receptances between fixed stations, evaluated without allocation.
+#[derive(Debug, Clone)]
+pub struct Receptances<'a> {
+    prepared: Prepared<'a>,
+    single: Memory<Complex64>,
+    several: Memory<Lanes>,
+}
+
+/// What does not change from line to line.
+#[derive(Debug, Clone)]
+struct Prepared<'a> {
+    terms: &'a Terms,
+    /// (row, column) of the elements of Δ that are not zero on every line.
+    elements: Vec<(usize, usize)>,
+    denominators: Vec<Denominator>,
+    /// (output, input) of each wanted receptance.
+    pairs: Vec<(usize, usize)>,
+    outputs: usize,
+    inputs: usize,
+    /// Products of participations, a row over the denominators for each needed entry of G.
+    products: Vec<f64>,
+    /// Number of those entries.
+    entries: usize,
+    /// Modes far above the band, the rows of their series, and how many of the denominators, the first ones, are not among them.
+    far: Option<(FarModes, Vec<f64>)>,
+    near: usize,
+    /// In place of all that, where the modes are few and the change is of high rank.
+    system: Option<ModalSystem>,
+}
+
+/// Memory for one line, or for several.
+#[derive(Debug, Clone)]
+struct Memory<T> {
+    inverses: Vec<T>,
+    sums: Vec<T>,
+    delta: Vec<T>,
+    right: Vec<T>,
+    solution: Vec<T>,
+    lu: LuWorkspace,
+}
+
+/// Rank from which a change is solved for in the coordinates of few modes.
+const HIGH_RANK: usize = 3;
+/// How far beyond the highest line s may lie, the decay of a response window included.
+const BEYOND: f64 = 1.1;
+
+impl<'a> Receptances<'a> {
+    pub(crate) fn new(
+        model: &'a Model,
+        outputs: &[Station],
+        inputs: &[Station],
+        pairs: Vec<(usize, usize)>,
+    ) -> Self {
+        let prepared = Prepared::new(model, outputs, inputs, pairs);
+        Receptances { prepared, single: Memory::new(), several: Memory::new() }
+    }
+
+    /// Number of receptances per line.
+    pub fn count(&self) -> usize {
+        self.prepared.pairs.len()
+    }
+
+    /// Writes the receptances at `s` = iω (or decay + iω) over `values`, in the order of the pairs.
+    ///
+    /// Returns whether they are finite; they are not on an undamped resonance, nor at s = 0 of a free assembly.
+    pub fn at(&mut self, s: Complex64, values: &mut [Complex64]) -> bool {
+        self.prepared.evaluate(s, &mut self.single, values) && values.iter().all(|v| v.is_finite())
+    }
+
+    /// Hands the receptances at all of `s`, [`WIDTH`] lines at a time, to `read`, with the number of the first of them and their s.
+    ///
+    /// # Errors
+    /// The number of the first line on which they are not finite.
+    pub(crate) fn in_blocks(
+        &mut self,
+        s: &[Complex64],
+        read: impl FnMut(usize, Lanes, &mut [Lanes]),
+    ) -> Result<(), usize> {
+        pulp::Arch::new().dispatch(Blocks { receptances: self, s, read })
+    }
+
+    /// Writes the receptances at all of `s` over `values`: those of the first pair on all lines, then of the second, …
+    ///
+    /// # Errors
+    /// The number of the first line on which they are not finite.
+    pub fn on_lines(&mut self, s: &[Complex64], values: &mut [Complex64]) -> Result<(), usize> {
+        self.in_blocks(s, |first, _, block| {
+            let last = (first + WIDTH).min(s.len());
+            for (course, lanes) in values.chunks_exact_mut(s.len()).zip(block) {
+                lanes.write(&mut course[first..last]);
+            }
+        })
+    }
+
+    #[inline(never)]
+    fn line_by_line(&mut self, s: &[Complex64], values: &mut [Lanes]) -> Result<(), usize> {
+        let mut single = vec![Complex64::ZERO; self.count()];
+        for (line, &s) in s.iter().enumerate() {
+            if !self.at(s, &mut single) {
+                return Err(line);
+            }
+            values.iter_mut().zip(&single).for_each(|(to, value)| to.set_line(line, *value));
+        }
+        Ok(())
+    }
+}
+
+/// All lines in blocks, compiled once for each instruction set that the processor may have.
+struct Blocks<'r, 'a, 's, F> {
+    receptances: &'r mut Receptances<'a>,
+    s: &'s [Complex64],
+    read: F,
+}
+
+impl<F: FnMut(usize, Lanes, &mut [Lanes])> pulp::WithSimd for Blocks<'_, '_, '_, F> {
+    type Output = Result<(), usize>;
+
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, _: S) -> Self::Output {
+        let Blocks { receptances, s, mut read } = self;
+        let mut values = vec![Lanes::ZERO; receptances.count()];
+        for (block, s) in s.chunks(WIDTH).enumerate() {
+            let lanes = Lanes::of(s);
+            let solved = receptances.prepared.evaluate(lanes, &mut receptances.several, &mut values);
+            if !(solved && values.iter().all(|value| value.is_finite())) {
+                receptances.line_by_line(s, &mut values).map_err(|line| block * WIDTH + line)?;
+            }
+            read(block * WIDTH, lanes, &mut values);
+        }
+        Ok(())
+    }
+}
+
+impl<'a> Prepared<'a> {
+    fn new(model: &'a Model, outputs: &[Station], inputs: &[Station], pairs: Vec<(usize, usize)>) -> Self {
+        let with_bending = |s: &Station| model.participation(&TermStation::single(*s));
+        let out: Vec<Vec<f64>> = outputs.iter().map(with_bending).collect();
+        let input: Vec<Vec<f64>> = inputs.iter().map(with_bending).collect();
+        let change: Vec<Vec<f64>> = model.terms.stations.iter().map(|s| model.participation(s)).collect();
+        let single = model.denominators();
+        let elements = model.terms.elements();
+        let (outputs, inputs) = (out.len(), input.len());
+        if single.len() <= FEW_MODES && change.len() >= HIGH_RANK {
+            let system = Some(ModalSystem::new(single, &out, &input, &change));
+            let (terms, denominators, products) = (&model.terms, Vec::new(), Vec::new());
+            let (entries, far, near) = (0, None, 0);
+            return Prepared {
+                terms,
+                elements,
+                denominators,
+                pairs,
+                outputs,
+                inputs,
+                products,
+                entries,
+                far,
+                near,
+                system,
+            };
+        }
+        let far = FarModes::of(&single, BEYOND * TAU * model.highest_hz);
+        let is_far = |mode: usize| far.as_ref().is_some_and(|far| far.contain(mode));
+        let (denominators, group, near) = merge(&single, is_far);
+        let count = pairs.len() + change.len() * (out.len() + change.len() + input.len());
+        let distinct = denominators.len();
+        let mut products = vec![0.0; count * distinct];
+        let mut by_mode = vec![0.0; if far.is_some() { count * single.len() } else { 0 }];
+        let mut next = 0;
+        let mut entry = |a: &[f64], b: &[f64]| {
+            for (mode, (x, y)) in a.iter().zip(b).enumerate() {
+                products[next * distinct + group[mode]] += x * y;
+                if let Some(product) = by_mode.get_mut(mode * count + next) {
+                    *product = x * y;
+                }
+            }
+            next += 1;
+        };
+        // The order of the entries: wanted pairs, then G_oV, G_VV, G_Vi where there is a change.
+        pairs.iter().for_each(|&(o, i)| entry(&out[o], &input[i]));
+        if !change.is_empty() {
+            out.iter().for_each(|o| change.iter().for_each(|v| entry(o, v)));
+            change.iter().for_each(|v| change.iter().for_each(|w| entry(v, w)));
+            change.iter().for_each(|v| input.iter().for_each(|i| entry(v, i)));
+        }
+        let far = far.map(|far| {
+            let rows = far.rows(&by_mode, count);
+            (far, rows)
+        });
+        Prepared {
+            terms: &model.terms,
+            elements,
+            denominators,
+            pairs,
+            outputs,
+            inputs,
+            products,
+            entries: count,
+            far,
+            near,
+            system: None,
+        }
+    }
+
+    /// Writes the receptances over `values`; `false` where a line has no solution.
+    #[inline(always)]
+    fn evaluate<T: Lines>(&self, s: T, memory: &mut Memory<T>, values: &mut [T]) -> bool {
+        let rank = self.terms.stations.len();
+        memory.delta.resize(rank * rank, T::ZERO);
+        if rank > 0 {
+            self.terms.write(s, &mut memory.delta);
+        }
+        if let Some(system) = &self.system {
+            return system.at(s, &memory.delta, &self.elements, &mut memory.solution, &self.pairs, values);
+        }
+        memory.sums.resize(self.entries, T::ZERO);
+        memory.inverses.resize(self.denominators.len(), T::ZERO);
+        self.sum(s, &mut memory.inverses, &mut memory.sums);
+        for (value, sum) in values.iter_mut().zip(&memory.sums) {
+            *value = *sum;
+        }
+        match rank {
+            0 => true,
+            _ => self.subtract_change(memory, values),
+        }
+    }
+
+    /// Writes each entry of G, the sum of what the modes contribute.
+    #[inline(always)]
+    fn sum<T: Lines>(&self, s: T, inverses: &mut [T], sums: &mut [T]) {
+        let squared = s * s;
+        let series = self.far.as_ref().filter(|(far, _)| (0..T::COUNT).all(|line| far.hold(s.line(line))));
+        let single = if series.is_some() { self.near } else { self.denominators.len() };
+        let inverses = &mut inverses[..single];
+        for (inverse, denominator) in inverses.iter_mut().zip(&self.denominators) {
+            let value = T::constant(denominator.stiffness) + s * denominator.viscous + squared;
+            *inverse = value.reciprocal();
+        }
+        for (sum, products) in sums.iter_mut().zip(self.products.chunks_exact(self.denominators.len())) {
+            let mut total = T::ZERO;
+            for (inverse, product) in inverses.iter().zip(products) {
+                total = total + *inverse * *product;
+            }
+            *sum = total;
+        }
+        if let Some((far, rows)) = series {
+            far.add(s, rows, sums);
+        }
+    }
+
+    /// Subtracts G_oV (I + Δ G_VV)⁻¹ Δ G_Vi.
+    #[inline(always)]
+    fn subtract_change<T: Lines>(&self, memory: &mut Memory<T>, values: &mut [T]) -> bool {
+        let rank = self.terms.stations.len();
+        let after_pairs = &memory.sums[self.pairs.len()..];
+        let (left, rest) = after_pairs.split_at(self.outputs * rank);
+        let (middle, right) = rest.split_at(rank * rank);
+        memory.right.resize(rank * self.inputs, T::ZERO);
+        memory.right.iter_mut().for_each(|value| *value = T::ZERO);
+        for &(row, column) in &self.elements {
+            let factor = memory.delta[row * rank + column];
+            for input in 0..self.inputs {
+                let to = &mut memory.right[row * self.inputs + input];
+                *to = *to + factor * right[column * self.inputs + input];
+            }
+        }
+        if rank <= 2 {
+            divide_small(&memory.delta, middle, &mut memory.right);
+        } else if !self.divide(&memory.delta, middle, &mut memory.right, &mut memory.lu) {
+            return false;
+        }
+        for (value, &(o, i)) in values.iter_mut().zip(&self.pairs) {
+            for k in 0..rank {
+                *value = *value - left[o * rank + k] * memory.right[k * self.inputs + i];
+            }
+        }
+        true
+    }
+
+    /// Overwrites `right` (rank rows) with (I + ΔG)⁻¹·right, line by line.
+    fn divide<T: Lines>(&self, delta: &[T], g: &[T], right: &mut [T], lu: &mut LuWorkspace) -> bool {
+        let rank = self.terms.stations.len();
+        let mut single: Vec<Complex64> = vec![Complex64::ZERO; right.len()];
+        (0..T::COUNT).all(|line| {
+            let factorized = lu.factorize(rank, |matrix| {
+                for &(row, inner) in &self.elements {
+                    let factor = delta[row * rank + inner].line(line);
+                    for column in 0..rank {
+                        matrix[row * rank + column] += factor * g[inner * rank + column].line(line);
+                    }
+                }
+                (0..rank).for_each(|i| matrix[i * rank + i] += 1.0);
+            });
+            if factorized.is_err() {
+                return false;
+            }
+            single.iter_mut().zip(right.iter()).for_each(|(to, value)| *to = value.line(line));
+            lu.solve_columns_in_place(&mut single, self.inputs);
+            right.iter_mut().zip(&single).for_each(|(to, value)| to.set_line(line, *value));
+            true
+        })
+    }
+}
+
+impl<T> Memory<T> {
+    fn new() -> Self {
+        Memory {
+            inverses: Vec::new(),
+            sums: Vec::new(),
+            delta: Vec::new(),
+            right: Vec::new(),
+            solution: Vec::new(),
+            lu: LuWorkspace::new(),
+        }
+    }
+}
+
+/// Overwrites `right` (rank rows) with (I + ΔG)⁻¹·right in closed form, for a rank of one or two.
+#[inline(always)]
+fn divide_small<T: Lines>(delta: &[T], g: &[T], right: &mut [T]) {
+    if let (&[delta], &[g]) = (delta, g) {
+        let factor = (T::ONE + delta * g).reciprocal();
+        right.iter_mut().for_each(|value| *value = *value * factor);
+    } else if let (&[d00, d01, d10, d11], &[g00, g01, g10, g11]) = (delta, g) {
+        let (a, b) = (T::ONE + d00 * g00 + d01 * g10, d00 * g01 + d01 * g11);
+        let (c, d) = (d10 * g00 + d11 * g10, T::ONE + d10 * g01 + d11 * g11);
+        let factor = (a * d - b * c).reciprocal();
+        let (first, second) = right.split_at_mut(right.len() / 2);
+        for (x, y) in first.iter_mut().zip(second) {
+            (*x, *y) = ((d * *x - b * *y) * factor, (a * *y - c * *x) * factor);
+        }
+    }
+}
+
+/// Modes with one denominator (all rigid motions, above all) share one term of the sum: the distinct denominators, those of far modes
+/// last, each mode's place among them, and the number of those before the far ones.
+fn merge(all: &[Denominator], is_far: impl Fn(usize) -> bool) -> (Vec<Denominator>, Vec<usize>, usize) {
+    let mut distinct: Vec<Denominator> = Vec::new();
+    let mut group = vec![0; all.len()];
+    let mut near = 0;
+    for far in [false, true] {
+        for (mode, d) in all.iter().enumerate().filter(|(mode, _)| is_far(*mode) == far) {
+            group[mode] = distinct.iter().position(|e| e == d).unwrap_or_else(|| {
+                distinct.push(*d);
+                distinct.len() - 1
+            });
+        }
+        if !far {
+            near = distinct.len();
+        }
+    }
+    (distinct, group, near)
+}
