@@ -1,4 +1,5 @@
 use crate::catalogue::scaled;
+use crate::normal::products;
 use crate::{Hypothesis, Observation};
 use jointscope_linalg::solve_positive_definite;
 use num_complex::Complex64;
@@ -106,43 +107,23 @@ impl Linearisation {
         residual: &[Complex64],
     ) -> (Vec<f64>, Vec<f64>) {
         let n = self.derivatives.len();
+        let columns: Vec<&[Complex64]> =
+            self.derivatives.iter().map(Vec::as_slice).chain([residual]).collect();
+        let all = products(&columns, weights);
         let mut matrix = vec![0.0; n * n];
         let mut right = vec![0.0; n];
-        let residual = whitened(residual, weights);
-        let columns: Vec<Vec<f64>> = self.derivatives.iter().map(|d| whitened(d, weights)).collect();
         for m in 0..n {
             if at.is_held(m) {
                 matrix[m * n + m] = 1.0;
                 continue;
             }
-            right[m] = dot(&columns[m], &residual) - at.prior(m) * at.coordinates[m];
-            for k in (0..=m).filter(|&k| !at.is_held(k)) {
-                let value = dot(&columns[m], &columns[k]) + if k == m { at.prior(m) } else { 0.0 };
-                matrix[m * n + k] = value;
-                matrix[k * n + m] = value;
+            right[m] = all[n * (n + 1) + m] - at.prior(m) * at.coordinates[m];
+            for k in (0..n).filter(|&k| !at.is_held(k)) {
+                matrix[m * n + k] = all[m * (n + 1) + k] + if k == m { at.prior(m) } else { 0.0 };
             }
         }
         (matrix, right)
     }
-}
-
-/// √w·value, real and imaginary parts side by side.
-pub(crate) fn whitened(values: &[Complex64], weights: &[f64]) -> Vec<f64> {
-    let scaled = values.iter().zip(weights).map(|(value, weight)| value * weight.sqrt());
-    scaled.flat_map(|value| [value.re, value.im]).collect()
-}
-
-/// Σ aᵢ bᵢ, in eight sums at once: a single one would wait for each addition.
-pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
-    let mut sums = [0.0; 8];
-    let (left, right) = (a.chunks_exact(8), b.chunks_exact(8));
-    let rest: f64 = left.remainder().iter().zip(right.remainder()).map(|(x, y)| x * y).sum();
-    for (x, y) in left.zip(right) {
-        for lane in 0..8 {
-            sums[lane] += x[lane] * y[lane];
-        }
-    }
-    rest + sums.iter().sum::<f64>()
 }
 
 impl Fit {

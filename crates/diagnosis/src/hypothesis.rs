@@ -1,7 +1,7 @@
 use crate::Observation;
 use jointscope_fixture::{BodyKind, Effect, EffectKind, Fixture, FixtureError, ParameterRange, Place};
 use jointscope_linalg::solve_positive_definite;
-use jointscope_lumped::{Instrument, LumpedError, synthesize};
+use jointscope_lumped::{Instrument, LumpedError, accelerances};
 use jointscope_spectra::FrfPair;
 use num_complex::Complex64;
 
@@ -263,10 +263,10 @@ impl Hypothesis {
     /// Quantities or parameters that are impossible.
     pub fn to_fixture(&self) -> Result<Fixture, FixtureError> {
         let mut fixture = self.fixture.clone();
-        let mut quantities = fixture.quantities_mut();
-        for (tolerance, coordinate) in self.tolerances.iter().zip(&self.coordinates) {
-            quantities[tolerance.index].quantity.value = tolerance.value(*coordinate);
-        }
+        let moved = self.tolerances.iter().zip(&self.coordinates);
+        fixture.set_quantities(
+            moved.map(|(tolerance, coordinate)| (tolerance.index, tolerance.value(*coordinate))),
+        );
         let mut physics = self.fixture.physics().to_vec();
         physics.extend(self.effects());
         fixture.with_physics(physics)
@@ -278,8 +278,7 @@ impl Hypothesis {
     /// Impossible quantities, or a model without finite FRFs.
     pub fn predict(&self, observation: &Observation) -> Result<Vec<Complex64>, PredictionError> {
         let fixture = self.to_fixture()?;
-        let frfs = synthesize(&fixture, observation.pairs(), observation.lines(), Instrument::AsRecorded)?;
-        Ok(frfs.all_values().to_vec())
+        Ok(accelerances(&fixture, observation.pairs(), observation.lines(), Instrument::AsRecorded)?)
     }
 
     /// What is predicted with coordinate `index` moved by `step`. FRFs that do not depend on it are not predicted again: they are
@@ -298,8 +297,9 @@ impl Hypothesis {
             predicted.map_or_else(|| vec![Complex64::ZERO; observation.values().len()], <[_]>::to_vec);
         let pairs: Vec<FrfPair> = frfs.iter().map(|&i| observation.pairs()[i].clone()).collect();
         if !pairs.is_empty() {
-            let some = synthesize(&moved.to_fixture()?, &pairs, observation.lines(), Instrument::AsRecorded)?;
-            for (values, &i) in some.all_values().chunks_exact(count).zip(&frfs) {
+            let fixture = moved.to_fixture()?;
+            let some = accelerances(&fixture, &pairs, observation.lines(), Instrument::AsRecorded)?;
+            for (values, &i) in some.chunks_exact(count).zip(&frfs) {
                 all[i * count..(i + 1) * count].copy_from_slice(values);
             }
         }

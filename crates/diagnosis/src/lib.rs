@@ -30,6 +30,7 @@ mod evidence;
 mod fit;
 mod hypothesis;
 mod location;
+mod normal;
 mod observation;
 mod ranking;
 mod recorded_lines;

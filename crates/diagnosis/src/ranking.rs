@@ -5,7 +5,8 @@
 //! is fitted from the nominal quantities besides, with softened weights on thinned lines, and those that come near are refined on all lines.
 
 use crate::catalogue::Candidate;
-use crate::fit::{COARSE_LINES, Fit, Linearisation, PROMISE, dot, whitened};
+use crate::fit::{COARSE_LINES, Fit, Linearisation, PROMISE};
+use crate::normal::{dot, whitened};
 use crate::search::parameter_price;
 use crate::{Hypothesis, Observation};
 use jointscope_fixture::Effect;

@@ -11,7 +11,7 @@
 //!
 //! * [`Assembly`]: matrices and undamped modes of the free assembly (eq 8–14);
 //! * [`Model`]: the assembly with supports and effects, and its receptances between any [`Station`]s;
-//! * [`synthesize`]: the FRFs an analyser would record (eq 18, 41), measuring-chain effects included.
+//! * [`synthesize`], [`accelerances`]: the FRFs an analyser would record (eq 18, 41), measuring-chain effects included.
 //!
 //! ```
 //! use jointscope_fixture::Fixture;
@@ -52,7 +52,7 @@ pub use joint_element::JointElement;
 pub use model::Model;
 pub use receptances::Receptances;
 pub use station::Station;
-pub use synthesis::{Instrument, synthesize};
+pub use synthesis::{Instrument, accelerances, synthesize};
 
 /// Why an assembly cannot be modelled.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

@@ -31,6 +31,20 @@ pub fn synthesize(
     lines: &SpectralLines,
     instrument: Instrument,
 ) -> Result<FrfSet, LumpedError> {
+    let values = accelerances(fixture, pairs, lines, instrument)?;
+    Ok(FrfSet::new(lines.clone(), FrfForm::Accelerance, pairs.to_vec(), values)?)
+}
+
+/// The values alone of what [`synthesize`] returns: all lines of the first pair, then of the second, …
+///
+/// # Errors
+/// Those of [`synthesize`].
+pub fn accelerances(
+    fixture: &Fixture,
+    pairs: &[FrfPair],
+    lines: &SpectralLines,
+    instrument: Instrument,
+) -> Result<Vec<Complex64>, LumpedError> {
     let model = Model::new(fixture, lines.hz()[lines.len() - 1])?;
     let chain = MeasuringChain::of(fixture, instrument);
     let mut stations = Stations::default();
@@ -50,8 +64,7 @@ pub fn synthesize(
         loads.push(Some(stations.sensor(mass, seat, &mut wanted, index)));
     }
     let mut receptances = model.receptances_of(&stations.outputs, &stations.inputs, wanted);
-    let values = chain.record(&mut receptances, pairs, &loads, lines)?;
-    Ok(FrfSet::new(lines.clone(), FrfForm::Accelerance, pairs.to_vec(), values)?)
+    chain.record(&mut receptances, pairs, &loads, lines)
 }
 
 /// Stations in use, each once.
@@ -148,21 +161,19 @@ impl<'a> MeasuringChain<'a> {
     }
 
     fn sensor_mass(&self, response: &Channel) -> f64 {
-        let name = response.to_string();
         self.sum(
             EffectKind::SensorMass,
-            |place| matches!(place, Place::Response(channel) if *channel == name),
+            |place| matches!(place, Place::Response(name) if response.is_named(name)),
         )
     }
 
     /// Gain and delay (s) of an FRF: a response is multiplied, a reference divides.
     fn gain_and_delay(&self, pair: &FrfPair) -> (f64, f64) {
-        let (response, reference) = (pair.response.to_string(), pair.reference.to_string());
         let (mut gain, mut delay) = (1.0, 0.0);
         for effect in self.fixture.physics().iter().filter(|_| self.active) {
             let sign = match &effect.place {
-                Place::Response(name) if *name == response => 1.0,
-                Place::Reference(name) if *name == reference => -1.0,
+                Place::Response(name) if pair.response.is_named(name) => 1.0,
+                Place::Reference(name) if pair.reference.is_named(name) => -1.0,
                 _ => continue,
             };
             match effect.kind {

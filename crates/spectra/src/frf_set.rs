@@ -40,6 +40,14 @@ impl Channel {
     pub fn rotational(point: impl Into<String>) -> Self {
         Channel { point: point.into(), dof: Dof::Rotation }
     }
+
+    /// Whether the channel shows as `name`: the point's name, or `point:theta`.
+    pub fn is_named(&self, name: &str) -> bool {
+        match self.dof {
+            Dof::Translation => self.point == name,
+            Dof::Rotation => name.strip_suffix(":theta") == Some(self.point.as_str()),
+        }
+    }
 }
 
 impl fmt::Display for Channel {

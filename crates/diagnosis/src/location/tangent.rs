@@ -4,7 +4,7 @@ use super::Site;
 use super::pattern::{Course, Inversion};
 use super::subject::{Modelled, State, Subject};
 use crate::Hypothesis;
-use crate::fit::dot;
+use crate::normal::dot;
 use num_complex::Complex64;
 
 /// Step of differences in units of a coordinate, as in the fit of effects.
