@@ -109,20 +109,23 @@ fn receptances(effort: Effort, bodies: usize, attachments: Attachments) {
         }
         black_box(values);
     };
+    let s = cases::imaginary(&lines);
     let mut values: [Vec<Complex64>; 4] = std::array::from_fn(|_| vec![Complex64::ZERO; 4 * LINES]);
     let [ours, floor, nalgebra, faer] = &mut values;
     let times = compare(
         effort.rounds,
         0.3 * effort.budget,
         &mut [
-            &mut || on_lines(ours, &mut |s, four| assert!(prepared.at(s, four))),
+            &mut || prepared.on_lines(&s, black_box(ours)).unwrap(),
             &mut || on_lines(floor, &mut |s, four| four.fill(s)),
             &mut || on_lines(nalgebra, &mut |s, four| rival.nalgebra(s, four)),
             &mut || on_lines(faer, &mut |s, four| rival.faer(s, four)),
         ],
     );
     for (index, ours) in ours.iter().enumerate() {
-        for other in [nalgebra[index], faer[index]] {
+        // Ours are FRF after FRF, the others' line after line.
+        let there = index % LINES * 4 + index / LINES;
+        for other in [nalgebra[there], faer[there]] {
             assert!((ours - other).norm() < 1e-6 * other.norm(), "value {index}: {ours} against {other}");
         }
     }
