@@ -1,7 +1,7 @@
 //! Every effect at every legal place of a fixture, with starts from which a fit may set out.
 
 use crate::Observation;
-use crate::hypothesis::extent;
+use crate::freedom::extent;
 use jointscope_fixture::{BodyKind, Dof, Effect, EffectKind, Fixture, JointLaw, Place, RigidBody};
 use jointscope_lumped::nominal_stiffness;
 

@@ -1,9 +1,11 @@
-use crate::evidence::{Alternative, alternatives, excess, same_names};
+use crate::estimates::{Estimate, estimates};
+use crate::evidence::{Alternative, alternatives, excess};
 use crate::fit::Fit;
+use crate::held_out::{HeldOut, held_out};
 use crate::location::{Location, locate, measure};
 use crate::search::Search;
 use crate::{Hypothesis, Observation};
-use jointscope_fixture::{Dof, Effect, Fixture, ParameterSpec};
+use jointscope_fixture::{Effect, Fixture};
 use jointscope_frf::noise::NoiseSource;
 use jointscope_spectra::{FrfPair, FrfSet, SpectraError};
 use num_complex::Complex64;
@@ -33,21 +35,6 @@ impl Verdict {
     }
 }
 
-/// A parameter of a finding, in SI units.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Estimate {
-    /// The parameter's specification: name and range.
-    pub parameter: ParameterSpec,
-    /// Its unit, decided by the finding's degree of freedom.
-    pub unit: &'static str,
-    /// The value.
-    pub value: f64,
-    /// One standard deviation; `None` where the FRFs do not determine it.
-    pub std: Option<f64>,
-    /// 95 % interval.
-    pub interval: Option<[f64; 2]>,
-}
-
 /// A piece of physics that the recordings need.
 #[derive(Debug, Clone)]
 pub struct Finding {
@@ -75,19 +62,6 @@ pub struct FrfMismatch {
     pub nrmse: f64,
     /// (from, to, share of this FRF's χ²), Hz, ascending.
     pub bands: Vec<(f64, f64, f64)>,
-}
-
-/// What the fit never saw, and how well it was predicted.
-#[derive(Debug, Clone, PartialEq)]
-pub struct HeldOut {
-    /// Bands, Hz, and an FRF, in words: `band 180:240`, `frf 4/2`.
-    pub what: Vec<String>,
-    /// Error of the refitted fixture there.
-    pub nrmse_refitted: f64,
-    /// Error of the repaired one.
-    pub nrmse_repaired: f64,
-    /// Whether the selection without the held-out lines found the same names.
-    pub same_findings: bool,
 }
 
 /// What to leave out of a diagnosis, and what to hold out of its fits.
@@ -153,9 +127,6 @@ const SETTLINGS: usize = 3;
 const NAMED: f64 = 0.5;
 /// Bands in which a mismatch is told.
 const BANDS: usize = 12;
-/// Share of the lines in each of the two bands held out.
-const HELD_OUT_SHARE: f64 = 0.06;
-
 impl Diagnosis {
     /// Diagnoses `frfs` against `fixture`.
     ///
@@ -285,59 +256,6 @@ fn findings(search: &mut Search, observation: &Observation) -> Vec<Finding> {
     all
 }
 
-fn estimates(
-    hypothesis: &Hypothesis,
-    index: usize,
-    effect: &Effect,
-    covariance: Option<&[f64]>,
-    fit: &Fit,
-    observation: &Observation,
-) -> Vec<Estimate> {
-    let n = hypothesis.coordinates.len();
-    let first = hypothesis.range_of(index).start;
-    let slopes = hypothesis.parameter_slopes(index);
-    let widening = fit.scale(observation).sqrt();
-    let specs = effect.kind.spec().parameters;
-    specs
-        .iter()
-        .enumerate()
-        .map(|(place, parameter)| {
-            let value = effect.value(place);
-            let slot = slopes.iter().position(|(p, _)| *p == place);
-            // A logarithm's deviation is relative: its interval is lopsided.
-            let relative = slot.is_some_and(|s| slopes[s].1 == value) && value > 0.0;
-            let std = slot.and_then(|s| {
-                let coordinate = covariance?[(first + s) * n + first + s].sqrt() * widening;
-                (coordinate.is_finite()).then_some((coordinate, coordinate * slopes[s].1.abs()))
-            });
-            let interval = std.map(|(coordinate, std)| {
-                if relative {
-                    let factor = (1.96 * coordinate).min(50.0).exp();
-                    [value / factor, value * factor]
-                } else {
-                    [value - 1.96 * std, value + 1.96 * std]
-                }
-            });
-            let unit = unit(parameter, effect.dof);
-            Estimate { parameter: *parameter, unit, value, std: std.map(|s| s.1), interval }
-        })
-        .collect()
-}
-
-/// Of "N/m or N*m/rad", the one that the degree of freedom means.
-fn unit(parameter: &ParameterSpec, dof: Option<Dof>) -> &'static str {
-    match parameter.unit.split_once(" or ") {
-        Some((translation, rotation)) => {
-            if dof == Some(Dof::Rotation) {
-                rotation
-            } else {
-                translation
-            }
-        }
-        None => parameter.unit,
-    }
-}
-
 fn mismatch(observation: &Observation, predicted: &[Complex64]) -> Vec<FrfMismatch> {
     let n = observation.lines().len();
     let hz = observation.lines().hz();
@@ -356,73 +274,6 @@ fn mismatch(observation: &Observation, predicted: &[Complex64]) -> Vec<FrfMismat
         FrfMismatch { frf: pair.clone(), nrmse: (error / size).sqrt(), bands: (0..bands).map(band).collect() }
     };
     observation.pairs().iter().enumerate().map(of).collect()
-}
-
-/// Searches again without two bands and one FRF, and predicts them.
-fn held_out(
-    fixture: &Fixture,
-    observation: &Observation,
-    search: &Search,
-    options: &DiagnosisOptions,
-) -> Result<Option<HeldOut>, DiagnosisError> {
-    let hz = observation.lines().hz();
-    let n = hz.len();
-    let width = ((n as f64 * HELD_OUT_SHARE) as usize).max(1);
-    if n < 10 * width {
-        return Ok(None);
-    }
-    // About a third and two thirds of the lines: neither the stiff nor the massy end alone.
-    let bands: Vec<(f64, f64)> = [0.3, 0.62]
-        .map(|at| ((n as f64 * at) as usize, width))
-        .map(|(from, width)| (hz[from], hz[from + width]))
-        .to_vec();
-    let frfs = held_out_frfs(observation, options)?;
-    let outside = |line: f64| !bands.iter().any(|(from, to)| line >= *from && line <= *to);
-    let Some(seen) = observation.reduced(outside, |pair| !frfs.contains(pair)) else { return Ok(None) };
-    // What is not named is not in the repaired fixture either, and needs no search.
-    let named = search.repaired.hypothesis.effect_count() > 0;
-    let again = if named {
-        Search::of(fixture, &seen, options.exact)
-    } else {
-        Search::without_effects(fixture, &seen, options.exact)
-    };
-    let Some(again) = again else { return Ok(None) };
-    let error = |fit: &Fit| -> Option<f64> {
-        let predicted = fit.hypothesis.predict(observation).ok()?;
-        let unseen = |index: usize| frfs.contains(&observation.pairs()[index / n]) || !outside(hz[index % n]);
-        let (mut error, mut size) = (0.0, 0.0);
-        for index in (0..predicted.len()).filter(|i| unseen(*i)) {
-            error += (observation.values()[index] - predicted[index]).norm_sqr();
-            size += observation.values()[index].norm_sqr();
-        }
-        Some((error / size).sqrt())
-    };
-    let (Some(nrmse_refitted), Some(nrmse_repaired)) = (error(&again.refitted), error(&again.repaired))
-    else {
-        return Ok(None);
-    };
-    let what = bands
-        .iter()
-        .map(|(from, to)| format!("band {from}:{to}"))
-        .chain(frfs.iter().map(|p| format!("frf {p}")));
-    let same_findings = same_names(&again.repaired.hypothesis, &search.repaired.hypothesis);
-    Ok(Some(HeldOut { what: what.collect(), nrmse_refitted, nrmse_repaired, same_findings }))
-}
-
-fn held_out_frfs(
-    observation: &Observation,
-    options: &DiagnosisOptions,
-) -> Result<Vec<FrfPair>, DiagnosisError> {
-    let pairs = observation.pairs();
-    if let Some(missing) = options.hold_out.iter().find(|pair| !pairs.contains(pair)) {
-        return Err(DiagnosisError::HoldOut(missing.to_string()));
-    }
-    match (options.hold_out.as_slice(), pairs) {
-        ([], [.., last]) if pairs.len() >= 4 => Ok(vec![last.clone()]),
-        ([], _) => Ok(Vec::new()),
-        (named, _) if named.len() >= pairs.len() => Err(DiagnosisError::HoldOut(named[0].to_string())),
-        (named, _) => Ok(named.to_vec()),
-    }
 }
 
 /// Probability of a standard normal above `z` (Abramowitz and Stegun 26.2.17, absolute error below 1e-7).

@@ -26,8 +26,11 @@
 
 mod catalogue;
 mod diagnosis;
+mod estimates;
 mod evidence;
 mod fit;
+mod freedom;
+mod held_out;
 mod hypothesis;
 mod location;
 mod normal;
@@ -38,11 +41,11 @@ mod says;
 mod search;
 
 pub use catalogue::{Candidate, catalogue};
-pub use diagnosis::{
-    Diagnosis, DiagnosisError, DiagnosisOptions, Estimate, Finding, FrfMismatch, HeldOut, Verdict,
-};
+pub use diagnosis::{Diagnosis, DiagnosisError, DiagnosisOptions, Finding, FrfMismatch, Verdict};
+pub use estimates::Estimate;
 pub use evidence::{Alternative, alternatives};
 pub use fit::{Fit, Linearisation};
+pub use held_out::HeldOut;
 pub use hypothesis::{Hypothesis, PredictionError, Tolerance};
 pub use location::{LawFit, LawParameter, LineEstimate, Location, Site, locate, measure};
 pub use observation::Observation;

@@ -13,6 +13,7 @@ use jointscope_fixture::Effect;
 use jointscope_linalg::solve_positive_definite;
 use num_complex::Complex64;
 use rayon::prelude::*;
+use std::collections::BTreeMap;
 
 /// Candidates of the near way that are refined, and starts of each.
 const NEAR: usize = 12;
@@ -251,17 +252,14 @@ impl Ranking<'_> {
 fn front(mut fits: Vec<(usize, Fit)>, count: usize, twice: usize) -> Vec<(usize, Fit)> {
     fits.sort_by(|a, b| cost(&a.1).total_cmp(&cost(&b.1)));
     let limit = fits.first().map_or(f64::INFINITY, |(_, best)| SOFT * best.objective + MARGIN);
-    let mut taken: Vec<usize> = Vec::new();
+    let mut taken: BTreeMap<usize, usize> = BTreeMap::new();
     fits.retain(|(candidate, fit)| {
-        let mut distinct = taken.clone();
-        distinct.dedup();
-        let own = taken.iter().filter(|c| *c == candidate).count();
+        let own = taken.get(candidate).copied().unwrap_or(0);
         let keep = fit.objective <= limit
-            && own < if distinct.len() <= twice { 2 } else { 1 }
-            && (own > 0 || distinct.len() < count);
+            && own < if taken.len() <= twice { 2 } else { 1 }
+            && (own > 0 || taken.len() < count);
         if keep {
-            let at = taken.partition_point(|c| c < candidate);
-            taken.insert(at, *candidate);
+            taken.insert(*candidate, own + 1);
         }
         keep
     });

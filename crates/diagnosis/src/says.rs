@@ -7,7 +7,8 @@ mod places;
 mod quantities;
 mod verdict;
 
-use crate::diagnosis::{Estimate, Finding};
+use crate::diagnosis::Finding;
+use crate::estimates::Estimate;
 use jointscope_fixture::ParameterRange;
 use meaning::meaning;
 use names::name;

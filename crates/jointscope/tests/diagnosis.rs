@@ -1,40 +1,11 @@
 //! The diagnosis on recordings of the simulated laboratory, whose hidden physics it is not told.
 #![allow(clippy::unwrap_used, missing_docs)]
 
+use jointscope::Fixture;
 use jointscope::diagnosis::{Diagnosis, DiagnosisOptions, Verdict};
 use jointscope::fixture::{Dof, Effect, EffectKind, Place};
-use jointscope::{Fixture, FrfPair, FrfSet, SpectralLines};
-use jointscope_rig::{HammerTest, Instrument, drawn_within_tolerance, frfs, generator};
-
-const BELIEVED: &str = r#"{
-  "bodies": {
-    "A": { "mass": {"value": 1.10, "std": 0.0011}, "inertia": {"value": 9.5e-4, "std": 4e-6}, "x_cg": {"value": -0.030, "std": 1e-4} },
-    "B": { "mass": {"value": 1.25, "std": 0.0012}, "inertia": {"value": 1.1e-3, "std": 4e-6}, "x_cg": {"value": 0.096, "std": 1e-4} } },
-  "points": {
-    "1": { "body": "A", "x": {"value": -0.060, "std": 1e-4} }, "2": { "body": "A", "x": {"value": 0.0, "std": 1e-4} },
-    "3": { "body": "B", "x": {"value": 0.065, "std": 1e-4} },  "4": { "body": "B", "x": {"value": 0.127, "std": 1e-4} } },
-  "joints": { "J": { "from": "2", "to": "3",
-    "beam": { "youngs_modulus": {"value": 2.07e11, "std": 1e9}, "second_moment": {"value": 3.6e-10, "std": 2e-12} } } },
-  "damping": { "modal_ratios": [{"value": 0.006, "std": 0.0012}, {"value": 0.008, "std": 0.0014}] } }"#;
-
-fn recorded(effects: Vec<Effect>, seed: u64) -> (Fixture, FrfSet) {
-    let believed = Fixture::from_json(BELIEVED).unwrap();
-    let truth =
-        drawn_within_tolerance(&believed, &mut generator(seed)).unwrap().with_physics(effects).unwrap();
-    let pairs = [("4", "1"), ("3", "1"), ("4", "2"), ("3", "2")].map(|(o, i)| FrfPair::transverse(o, i));
-    let lines = SpectralLines::even(15.0, 15.0, 86).unwrap();
-    let clean = frfs(&truth, &pairs, &lines, Instrument::AsDescribed).unwrap();
-    let hammer = HammerTest {
-        averages: 10,
-        noise_response: 0.005,
-        noise_force: 0.0007,
-        corner: 1200.0,
-        spread: 0.25,
-        common_hits: false,
-        seed,
-    };
-    (believed, hammer.measure(&clean).unwrap())
-}
+mod common;
+use common::recorded;
 
 fn diagnose(effects: Vec<Effect>, seed: u64) -> Diagnosis {
     let (fixture, frfs) = recorded(effects, seed);

@@ -3,43 +3,12 @@
 
 use jointscope::diagnosis::{Fit, Hypothesis, Location, Observation, Site, locate, measure};
 use jointscope::fixture::{Dof, Effect, EffectKind, Place, Quantity};
-use jointscope::{Fixture, FrfPair, FrfSet, SpectralLines, synthesize};
-use jointscope_rig::{HammerTest, Instrument, drawn_within_tolerance, frfs, generator};
+use jointscope::{Fixture, FrfPair, SpectralLines, synthesize};
 
-const BELIEVED: &str = r#"{
-  "bodies": {
-    "A": { "mass": {"value": 1.10, "std": 0.0011}, "inertia": {"value": 9.5e-4, "std": 4e-6}, "x_cg": {"value": -0.030, "std": 1e-4} },
-    "B": { "mass": {"value": 1.25, "std": 0.0012}, "inertia": {"value": 1.1e-3, "std": 4e-6}, "x_cg": {"value": 0.096, "std": 1e-4} } },
-  "points": {
-    "1": { "body": "A", "x": {"value": -0.060, "std": 1e-4} }, "2": { "body": "A", "x": {"value": 0.0, "std": 1e-4} },
-    "3": { "body": "B", "x": {"value": 0.065, "std": 1e-4} },  "4": { "body": "B", "x": {"value": 0.127, "std": 1e-4} } },
-  "joints": { "J": { "from": "2", "to": "3",
-    "beam": { "youngs_modulus": {"value": 2.07e11, "std": 1e9}, "second_moment": {"value": 3.6e-10, "std": 2e-12} } } },
-  "damping": { "modal_ratios": [{"value": 0.006, "std": 0.0012}, {"value": 0.008, "std": 0.0014}] } }"#;
+mod common;
 
-fn pairs() -> Vec<FrfPair> {
-    [("4", "1"), ("3", "1"), ("4", "2"), ("3", "2")].map(|(o, i)| FrfPair::transverse(o, i)).to_vec()
-}
-
-fn clean(truth: &Fixture) -> FrfSet {
-    frfs(truth, &pairs(), &SpectralLines::even(15.0, 15.0, 86).unwrap(), Instrument::AsDescribed).unwrap()
-}
-
-/// What an analyst would have: the fixture believed, and recordings of one with true values within its tolerances and an effect.
 fn recorded(effects: Vec<Effect>, seed: u64) -> (Fixture, Observation) {
-    let believed = Fixture::from_json(BELIEVED).unwrap();
-    let truth =
-        drawn_within_tolerance(&believed, &mut generator(seed)).unwrap().with_physics(effects).unwrap();
-    let hammer = HammerTest {
-        averages: 10,
-        noise_response: 0.005,
-        noise_force: 0.0007,
-        corner: 1200.0,
-        spread: 0.25,
-        common_hits: false,
-        seed,
-    };
-    let frfs = hammer.measure(&clean(&truth)).unwrap();
+    let (believed, frfs) = common::recorded(effects, seed);
     (believed, Observation::new(&frfs, |_| true).unwrap())
 }
 
@@ -118,7 +87,7 @@ fn with_nothing_hidden_every_place_leaves_what_chance_leaves() {
 
 #[test]
 fn without_noise_and_tolerance_every_line_gives_the_stiffness_that_was_put_there() {
-    let mut believed = Fixture::from_json(BELIEVED).unwrap();
+    let mut believed = common::believed(common::RATIOS);
     for quantity in believed.quantities_mut() {
         *quantity.quantity = Quantity::bare(quantity.quantity.value);
     }
@@ -126,7 +95,8 @@ fn without_noise_and_tolerance_every_line_gives_the_stiffness_that_was_put_there
     for (mass, x) in [(-0.05, 0.11), (0.02, 0.07), (0.3, 0.13), (-0.004, 0.09)] {
         let hidden = Effect::new(EffectKind::AddedMass, Place::Body("B".into()), None, &[x, mass]);
         let truth = believed.clone().with_physics(vec![hidden.clone()]).unwrap();
-        let set = synthesize(&truth, &pairs(), &lines, jointscope::Instrument::AsRecorded).unwrap();
+        let set =
+            synthesize(&truth, &common::four_pairs(), &lines, jointscope::Instrument::AsRecorded).unwrap();
         let tiny = set.all_values().iter().map(|v| (1e-6 * v.norm()).powi(2)).collect();
         let observation = Observation::new(&set.with_variance(tiny).unwrap(), |_| true).unwrap();
         let hypothesis = Hypothesis::nominal(&believed, true).with(hidden);

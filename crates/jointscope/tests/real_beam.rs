@@ -4,8 +4,10 @@
 use jointscope::diagnosis::{Diagnosis, DiagnosisOptions, Fit, Hypothesis, Observation, Verdict};
 use jointscope::fixture::{Effect, EffectKind, Place};
 use jointscope::{Fixture, FrfForm, FrfPair, FrfSet, SpectralLines};
-use jointscope_rig::{HammerTest, Instrument, drawn_within_tolerance, frfs, generator};
+use jointscope_rig::HammerTest;
 use std::path::Path;
+
+mod common;
 
 #[test]
 fn shear_and_a_low_channel_explain_the_real_beam_down_to_noise_and_drift_and_bending_alone_does_not() {
@@ -40,39 +42,23 @@ fn shear_and_a_low_channel_explain_the_real_beam_down_to_noise_and_drift_and_ben
     assert!((1.12..1.26).contains(&factor), "records struck at 4 are low by {}", 1.0 / factor);
 }
 
-const BELIEVED: &str = r#"{
-  "bodies": {
-    "A": { "mass": {"value": 1.10, "std": 0.0011}, "inertia": {"value": 9.5e-4, "std": 4e-6}, "x_cg": {"value": -0.030, "std": 1e-4} },
-    "B": { "mass": {"value": 1.25, "std": 0.0012}, "inertia": {"value": 1.1e-3, "std": 4e-6}, "x_cg": {"value": 0.096, "std": 1e-4} } },
-  "points": {
-    "1": { "body": "A", "x": {"value": -0.060, "std": 1e-4} }, "2": { "body": "A", "x": {"value": 0.0, "std": 1e-4} },
-    "3": { "body": "B", "x": {"value": 0.065, "std": 1e-4} },  "4": { "body": "B", "x": {"value": 0.127, "std": 1e-4} } },
-  "joints": { "J": { "from": "2", "to": "3",
-    "beam": { "youngs_modulus": {"value": 2.07e11, "std": 1e9}, "second_moment": {"value": 3.6e-10, "std": 2e-12} } } },
-  "damping": { "modal_ratios": [{"value": 0.003, "std": 0.0006}, {"value": 0.004, "std": 0.0007}] } }"#;
-
 /// A hammer test whose file has the FRFs alone, its noise mostly a share of them.
 fn without_coherence(effects: Vec<Effect>, seed: u64) -> (Fixture, FrfSet) {
-    let believed = Fixture::from_json(BELIEVED).unwrap();
-    let truth =
-        drawn_within_tolerance(&believed, &mut generator(seed)).unwrap().with_physics(effects).unwrap();
-    let pairs =
-        [("4", "1"), ("3", "1"), ("4", "2"), ("3", "2"), ("4", "4")].map(|(o, i)| FrfPair::transverse(o, i));
+    let believed = common::believed([0.003, 0.004]);
+    let mut pairs = common::four_pairs();
+    pairs.push(FrfPair::transverse("4", "4"));
     let lines = SpectralLines::even(16.0, 4.0, 320).unwrap();
-    let clean = frfs(&truth, &pairs, &lines, Instrument::AsDescribed).unwrap();
     let hammer = HammerTest {
         averages: 5,
         noise_response: 0.001,
         noise_force: 0.01,
         corner: 1500.0,
         spread: 0.2,
-        common_hits: false,
-        seed,
+        ..common::hammer(seed)
     };
-    let measured = hammer.measure(&clean).unwrap();
-    let bare =
-        FrfSet::new(lines, FrfForm::Accelerance, pairs.to_vec(), measured.all_values().to_vec()).unwrap();
-    (believed, bare)
+    let measured = common::measured(&believed, effects, (&pairs, &lines), &hammer);
+    let values = measured.all_values().to_vec();
+    (believed, FrfSet::new(lines, FrfForm::Accelerance, pairs, values).unwrap())
 }
 
 #[test]

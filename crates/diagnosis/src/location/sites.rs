@@ -2,7 +2,7 @@
 
 use super::Site;
 use crate::Observation;
-use crate::hypothesis::extent;
+use crate::freedom::extent;
 use jointscope_fixture::{BodyKind, Dof, Effect, EffectKind, Fixture, Joint, Place};
 use jointscope_lumped::nominal_stiffness;
 use jointscope_spectra::Channel;

@@ -9,7 +9,7 @@ use super::recorded::Recorded;
 use super::scalar::eliminated;
 use super::sites::turns;
 use crate::Hypothesis;
-use crate::hypothesis::extent;
+use crate::freedom::extent;
 use jointscope_fixture::Fixture;
 use jointscope_lumped::Model;
 use num_complex::Complex64;
