@@ -56,7 +56,7 @@ pub(crate) fn gather<'a>(
     fixture: &Fixture,
     map: &ChannelMap,
 ) -> Result<Gathered<'a>, RecordingError> {
-    check_points(fixture, map)?;
+    check_points(Some(fixture), map)?;
     let mut gathered = Gathered::default();
     let mut spectra = Vec::new();
     for source in sources {
@@ -77,8 +77,9 @@ pub(crate) fn gather<'a>(
         }
     }
     gathered.channels = spectra.iter().flat_map(|f| [f.response(), f.reference()]).collect();
-    check_entries_apply(map, &gathered)?;
-    let locator = Locator::new(fixture, map, &spectra);
+    check_entries_apply(map, &gathered.channels)?;
+    let responses = spectra.iter().map(Function::response);
+    let locator = Locator::new(Some(fixture), map, responses, spectra.iter().map(Function::reference));
     for function in spectra {
         locator
             .sort(function, &mut gathered)
@@ -87,7 +88,9 @@ pub(crate) fn gather<'a>(
     Ok(gathered)
 }
 
-fn check_points(fixture: &Fixture, map: &ChannelMap) -> Result<(), RecordingError> {
+/// Refuses a map that names points which the fixture does not have; without a fixture any name is a point.
+pub(crate) fn check_points(fixture: Option<&Fixture>, map: &ChannelMap) -> Result<(), RecordingError> {
+    let Some(fixture) = fixture else { return Ok(()) };
     match map.entries().iter().find(|entry| fixture.point(&entry.channel.point).is_none()) {
         None => Ok(()),
         Some(MapEntry { text, channel, .. }) => Err(RecordingError::MapPoint {
@@ -98,49 +101,54 @@ fn check_points(fixture: &Fixture, map: &ChannelMap) -> Result<(), RecordingErro
     }
 }
 
-/// An entry that applies to nothing is a slip; files of time histories alone are refused for that instead.
-fn check_entries_apply(map: &ChannelMap, gathered: &Gathered) -> Result<(), RecordingError> {
+/// An entry that applies to nothing is a slip; files without any channel are refused for that instead.
+pub(crate) fn check_entries_apply(
+    map: &ChannelMap,
+    channels: &BTreeSet<FileChannel>,
+) -> Result<(), RecordingError> {
     let applies = |entry: &&MapEntry| {
         let same =
             |channel: &FileChannel| channel.node == entry.file.node && channel.axis() == entry.file.axis();
-        gathered.channels.iter().any(same)
+        channels.iter().any(same)
     };
     match map.entries().iter().find(|entry| !applies(entry)) {
-        Some(entry) if !gathered.channels.is_empty() => Err(RecordingError::MapUnused {
-            entry: entry.text.clone(),
-            channels: enumeration(&gathered.channels),
-        }),
+        Some(entry) if !channels.is_empty() => {
+            Err(RecordingError::MapUnused { entry: entry.text.clone(), channels: enumeration(channels) })
+        }
         _ => Ok(()),
     }
 }
 
 /// Where a channel of the files is in the fixture.
-enum Located {
+pub(crate) enum Located {
     At { channel: Channel, sign: f64, order: (usize, Dof) },
     NoSuchPoint,
     OtherDirection,
 }
 
-struct Locator<'f> {
-    fixture: &'f Fixture,
+/// Finds the fixture's channel of a channel of the files. Without a fixture every node is a point of its number's name.
+pub(crate) struct Locator<'f> {
+    fixture: Option<&'f Fixture>,
     map: &'f ChannelMap,
     /// Nodes with a response along y or about z: what else they measured is no riddle.
-    planar_responses: BTreeSet<i64>,
-    planar_references: BTreeSet<i64>,
+    pub(crate) planar_responses: BTreeSet<i64>,
+    pub(crate) planar_references: BTreeSet<i64>,
 }
 
 impl<'f> Locator<'f> {
-    fn new(fixture: &'f Fixture, map: &'f ChannelMap, functions: &[Function]) -> Self {
-        let planar = |channel: &FileChannel| matches!(channel.axis(), 0 | 2 | 6);
-        let nodes = |channels: &mut dyn Iterator<Item = FileChannel>| {
-            channels.filter(planar).map(|channel| channel.node).collect()
-        };
-        Locator {
-            fixture,
-            map,
-            planar_responses: nodes(&mut functions.iter().map(Function::response)),
-            planar_references: nodes(&mut functions.iter().map(Function::reference)),
+    pub(crate) fn new(
+        fixture: Option<&'f Fixture>,
+        map: &'f ChannelMap,
+        responses: impl Iterator<Item = FileChannel>,
+        references: impl Iterator<Item = FileChannel>,
+    ) -> Self {
+        fn planar(channels: impl Iterator<Item = FileChannel>) -> BTreeSet<i64> {
+            channels
+                .filter(|channel| matches!(channel.axis(), 0 | 2 | 6))
+                .map(|channel| channel.node)
+                .collect()
         }
+        Locator { fixture, map, planar_responses: planar(responses), planar_references: planar(references) }
     }
 
     fn sort<'a>(&self, function: Function<'a>, gathered: &mut Gathered<'a>) -> Result<(), FunctionError> {
@@ -185,7 +193,11 @@ impl<'f> Locator<'f> {
         Ok(())
     }
 
-    fn locate(&self, file: FileChannel, planar_nodes: &BTreeSet<i64>) -> Result<Located, FunctionError> {
+    pub(crate) fn locate(
+        &self,
+        file: FileChannel,
+        planar_nodes: &BTreeSet<i64>,
+    ) -> Result<Located, FunctionError> {
         if self.map.names_node(file.node) {
             return match self.map.find(file) {
                 Some((channel, sign)) => self.at(channel.clone(), sign),
@@ -193,7 +205,7 @@ impl<'f> Locator<'f> {
             };
         }
         let point = file.node.to_string();
-        if self.fixture.point(&point).is_none() {
+        if self.fixture.is_some_and(|fixture| fixture.point(&point).is_none()) {
             return Ok(Located::NoSuchPoint);
         }
         match file.axis() {
@@ -215,11 +227,14 @@ impl<'f> Locator<'f> {
     }
 
     fn at(&self, channel: Channel, sign: f64) -> Result<Located, FunctionError> {
-        let points = self.fixture.points();
+        let Some(fixture) = self.fixture else {
+            return Ok(Located::At { order: (0, channel.dof), channel, sign });
+        };
+        let points = fixture.points();
         let Some(index) = points.iter().position(|point| point.name == channel.point) else {
             return Ok(Located::NoSuchPoint);
         };
-        let rotates = match &self.fixture.bodies()[points[index].body].kind {
+        let rotates = match &fixture.bodies()[points[index].body].kind {
             BodyKind::Rigid(body) => body.rotates,
             BodyKind::Beam(_) => true,
         };

@@ -5,6 +5,7 @@
 //! means nothing.
 //!
 //! * [`Recording`]: the FRFs of each level as accelerances in SI units, with coherence and averages where they were recorded;
+//! * [`hits_of`]: the hammer hits among the time histories, force and responses in SI units;
 //! * [`ReadOptions`]: what the files do not say and the analyst does, a [`ChannelMap`] and [`AssumedUnits`];
 //! * [`to_datasets`]: FRFs as functions of a universal file;
 //! * [`RecordingError`]: one plain sentence each, naming file, function and remedy.
@@ -43,6 +44,8 @@ mod datasets;
 mod error;
 mod function;
 mod gather;
+mod hits;
+mod hits_error;
 mod level;
 mod ordinate;
 mod recording;
@@ -53,6 +56,8 @@ pub use assumed_units::{AssumedUnits, AssumedUnitsError};
 pub use channel_map::{ChannelMap, ChannelMapError, FileChannel, MapEntry};
 pub use datasets::{DatasetsError, to_datasets};
 pub use error::{FunctionError, Place, RecordingError};
+pub use hits::{Hits, hits_of};
+pub use hits_error::{HistoryPlace, HitsError};
 pub use level::HeldAmplitude;
 pub use recording::{Level, ReadOptions, Recording, Source, TimeHistories};
 pub use units_error::UnitsError;

@@ -85,6 +85,73 @@ pub(crate) fn ordinate(
     Ok(Ok(Ordinate { form, si: motion / force }))
 }
 
+/// What one channel of a time history measures.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Signal {
+    /// An exciting force or moment.
+    Force,
+    /// A motion: displacement, velocity or acceleration, by the form of FRF it is the numerator of.
+    Motion(FrfForm),
+}
+
+/// Signal and factor to SI of a time history; `Ok(None)` where the file says clearly that it is neither force nor motion.
+pub(crate) fn signal(
+    dataset: &Dataset58,
+    assumed: Option<&AssumedUnits>,
+    notes: &mut UnitNotes,
+) -> Result<Option<(Signal, f64)>, UnitsError> {
+    let axis = &dataset.ordinate_axis;
+    let channel = FileChannel::from(&dataset.response);
+    let mut reading = Reading {
+        numerator: axis,
+        denominator: axis,
+        response: channel,
+        reference: channel,
+        system: dataset.units.as_ref(),
+        assumed,
+        notes,
+    };
+    let form = match axis.data_type {
+        data_type::DISPLACEMENT => FrfForm::Receptance,
+        data_type::VELOCITY => FrfForm::Mobility,
+        data_type::ACCELERATION => FrfForm::Accelerance,
+        data_type::EXCITATION_FORCE => {
+            let factor = reading.force_factor(Label::of(axis, "force")?)?;
+            return Ok(Some((Signal::Force, factor)));
+        }
+        _ if open(axis) => {
+            let label = Label::of(axis, "response")?;
+            match label {
+                Label::Unit(unit) if unit.dimension == reading.force() => {
+                    return Ok(Some((Signal::Force, reading.force_factor(label)?)));
+                }
+                // Which of the two an unlabelled channel is, the analyst's pair of units does not say.
+                Label::Nothing | Label::Si => {
+                    return Err(UnitsError::NoQuantity { data_type: axis.data_type });
+                }
+                _ => reading.form_by_units(label)?,
+            }
+        }
+        _ => return Ok(None),
+    };
+    let factor = reading.motion_factor(form, Label::of(axis, "response")?)?;
+    Ok(Some((Signal::Motion(form), factor)))
+}
+
+/// Seconds in one unit of a time history's abscissa.
+pub(crate) fn seconds(axis: &Axis) -> Result<f64, UnitsError> {
+    let factor = match axis.units.trim().to_lowercase().as_str() {
+        "" | "none" | "s" | "sec" | "second" | "seconds" | "si" => Some(1.0),
+        "ms" | "msec" => Some(1e-3),
+        "us" | "µs" | "μs" => Some(1e-6),
+        _ => None,
+    };
+    let is_time = matches!(axis.data_type, data_type::TIME | data_type::UNKNOWN | data_type::GENERAL);
+    factor
+        .filter(|_| is_time)
+        .ok_or_else(|| UnitsError::NotTime { data_type: axis.data_type, label: axis.units.clone() })
+}
+
 /// Hz in one unit of the abscissa.
 pub(crate) fn hertz(axis: &Axis) -> Result<f64, UnitsError> {
     let label = axis.units.trim().to_lowercase().replace("sec", "s");

@@ -69,4 +69,22 @@ pub enum UnitsError {
         /// The label stated.
         label: String,
     },
+    /// A time history that may be a force or a motion.
+    #[error(
+        "neither its data type ({data_type}) nor a units label says whether it is a force or a motion; export it as excitation force (13), displacement (8), velocity (11) or acceleration (12)"
+    )]
+    NoQuantity {
+        /// The data type stated.
+        data_type: i32,
+    },
+    /// A time history over something else than time.
+    #[error(
+        "its abscissa has data type {data_type} and the units label `{label}`: a time history needs times (17) in s or ms"
+    )]
+    NotTime {
+        /// The data type stated.
+        data_type: i32,
+        /// The label stated.
+        label: String,
+    },
 }

@@ -1,0 +1,129 @@
+use std::fmt;
+
+use jointscope_hits::HitError;
+
+use crate::{FileChannel, FunctionError, RecordingError};
+
+/// A time history in a file: `hits.uff, function 3 (time history of 4:+y)`.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct HistoryPlace {
+    /// The file's name.
+    pub source: String,
+    /// Which of its functions (datasets 58), counted from 1.
+    pub function: usize,
+    /// Its channel, as the file names it.
+    pub channel: FileChannel,
+}
+
+impl fmt::Display for HistoryPlace {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let HistoryPlace { source, function, channel } = self;
+        write!(f, "{source}, function {function} (time history of {channel})")
+    }
+}
+
+/// Why the time histories of files are no hammer hits.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum HitsError {
+    /// Files without time histories.
+    #[error(
+        "{files}: there are no time histories (function type 1){found}; export force and responses over time as dataset 58"
+    )]
+    NoTimeHistory {
+        /// The files.
+        files: String,
+        /// What there is instead.
+        found: String,
+    },
+    /// A map that does not fit.
+    #[error(transparent)]
+    Map(RecordingError),
+    /// One channel cannot be used.
+    #[error("{place}: {problem}")]
+    Channel {
+        /// Which.
+        place: Box<HistoryPlace>,
+        /// Why.
+        problem: FunctionError,
+    },
+    /// Complex values over time.
+    #[error("{0}: a time history is real, but its values are complex; export the signal itself")]
+    Complex(Box<HistoryPlace>),
+    /// Samples that are not equally far apart.
+    #[error("{0}: its samples are not evenly spaced in time; resample the record before it is exported")]
+    Uneven(Box<HistoryPlace>),
+    /// A hit whose responses have no force.
+    #[error(
+        "{files}: hit {hit} has no force channel (ordinate type 13), only {responses}; give the file that holds it, with the same sequence number in record 6, or leave the hit out"
+    )]
+    NoForce {
+        /// The files.
+        files: String,
+        /// The sequence number.
+        hit: i64,
+        /// Its channels.
+        responses: String,
+    },
+    /// Two forces of one sequence number.
+    #[error(
+        "{second}: hit {hit} has its force already from {first}; channels of one hit share the sequence number (third field of record 6), and each hit needs one of its own"
+    )]
+    TwoForces {
+        /// The sequence number.
+        hit: i64,
+        /// The first force.
+        first: Box<HistoryPlace>,
+        /// The second force.
+        second: Box<HistoryPlace>,
+    },
+    /// Channels of one hit on different instants.
+    #[error(
+        "{place}: hit {hit} has its force every {force} s and this response every {response} s; sample all channels of a hit alike"
+    )]
+    Interval {
+        /// The response.
+        place: Box<HistoryPlace>,
+        /// The hit.
+        hit: i64,
+        /// Interval of the force's samples, s.
+        force: f64,
+        /// Interval of the response's samples, s.
+        response: f64,
+    },
+    /// Channels of one hit that start at different times.
+    #[error(
+        "{place}: the force of hit {hit} starts at {force} s and this response at {response} s; export all channels of a hit from the same instant"
+    )]
+    Start {
+        /// The response.
+        place: Box<HistoryPlace>,
+        /// The hit.
+        hit: i64,
+        /// First instant of the force, s.
+        force: f64,
+        /// First instant of the response, s.
+        response: f64,
+    },
+    /// The signals do not make a hit.
+    #[error("{files}: {problem}")]
+    Hit {
+        /// The files.
+        files: String,
+        /// Why.
+        problem: HitError,
+    },
+    /// No hit strikes a point of the fixture.
+    #[error(
+        "{files}: no hit belongs to the fixture: the files have nodes {nodes}, the fixture has points {points}; say which is which with `--map`, such as `--map {example}`"
+    )]
+    NotOnFixture {
+        /// The files.
+        files: String,
+        /// Channels of the files.
+        nodes: String,
+        /// The fixture's points.
+        points: String,
+        /// A map entry in the right form.
+        example: String,
+    },
+}
