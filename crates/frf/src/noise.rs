@@ -22,6 +22,8 @@ pub enum NoiseSource {
 const WINDOW: usize = 25;
 /// Fewest usable lines from which a scatter can be estimated.
 const FEWEST: usize = 8;
+/// Power of the force, relative to the strongest line's, that counts as none.
+const NO_FORCE: f64 = 1e-12;
 /// Smallest relative noise that is believed: quantisation and calibration are never better.
 const FLOOR: f64 = 1e-5;
 
@@ -61,6 +63,23 @@ pub fn with_variances(frfs: &FrfSet) -> Result<(FrfSet, Vec<NoiseSource>), Spect
 
 /// Variances E|ε|² of one FRF from its coherence and number of averages, smoothed over the lines.
 pub fn from_coherence(values: &[Complex64], coherence: &[f64], averages: u32) -> Vec<f64> {
+    from_coherence_and_force(values, coherence, averages, &[])
+}
+
+/// [`from_coherence`] where the power of the force by line, in any unit, is known too: the noise of the channels is smooth over the lines, and what
+/// it makes of an FRF rises wherever the force dips. An empty `force` is one that is the same on all lines.
+pub fn from_coherence_and_force(
+    values: &[Complex64],
+    coherence: &[f64],
+    averages: u32,
+    force: &[f64],
+) -> Vec<f64> {
+    let strongest = force.iter().copied().fold(0.0, f64::max);
+    // A line without force has no FRF, whatever its neighbours say.
+    let power = |line: usize| match force.get(line) {
+        Some(power) if strongest > 0.0 => (power / strongest).max(NO_FORCE),
+        _ => 1.0,
+    };
     let degrees = f64::from(averages.max(2) - 1);
     let raw: Vec<f64> = values
         .iter()
@@ -69,6 +88,8 @@ pub fn from_coherence(values: &[Complex64], coherence: &[f64], averages: u32) ->
             let gamma2 = gamma2.clamp(1e-6, 1.0);
             (1.0 - gamma2) / (degrees * gamma2) * value.norm_sqr()
         })
+        .enumerate()
+        .map(|(line, variance)| variance * power(line))
         .collect();
     let usable: Vec<bool> = coherence.iter().map(|&g| g > 0.0).collect();
     let mean = |line: usize| {
@@ -81,7 +102,8 @@ pub fn from_coherence(values: &[Complex64], coherence: &[f64], averages: u32) ->
     };
     let begun = (0..raw.len()).map(mean).collect();
     let size: Vec<f64> = values.iter().map(|v| v.norm_sqr()).collect();
-    smooth(&size, &raw, &usable, begun, 3, f64::INFINITY)
+    let smoothed = smooth(&size, &raw, &usable, begun, 3, f64::INFINITY);
+    smoothed.iter().enumerate().map(|(line, variance)| variance / power(line)).collect()
 }
 
 /// Lines on each side from which the course of an FRF through a line is taken.

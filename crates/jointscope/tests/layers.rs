@@ -7,8 +7,8 @@ use std::process::Command;
 /// Crates by floor, from the ground up: a crate stands only on crates of floors below its own.
 const FLOORS: [&[&str]; 7] = [
     &["jointscope-linalg", "jointscope-spectra", "jointscope-uff"],
-    &["jointscope-beam", "jointscope-fixture", "jointscope-averaging", "jointscope-hits"],
-    &["jointscope-damping", "jointscope-frf", "jointscope-recordings"],
+    &["jointscope-beam", "jointscope-fixture", "jointscope-averaging", "jointscope-frf", "jointscope-hits"],
+    &["jointscope-damping", "jointscope-estimation", "jointscope-recordings"],
     &["jointscope-lumped", "jointscope-rig"],
     &["jointscope-decomposition", "jointscope-diagnosis"],
     &["jointscope", "jointscope-proof", "jointscope-report"],

@@ -1,0 +1,172 @@
+//! Averages over hits: auto and cross spectra, FRF, coherence, and how much each hit counts.
+
+use num_complex::Complex64;
+
+use crate::{Estimator, Weighting};
+
+/// The averaged spectra of one response and force on one line.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Averaged {
+    pub force: f64,
+    pub response: f64,
+    /// Σ Y·X*.
+    pub cross: Complex64,
+}
+
+/// Force and response spectrum of one hit.
+pub(crate) type Pair<'a> = (&'a [Complex64], &'a [Complex64]);
+
+/// Σ over the hits, each weighted.
+pub(crate) fn averaged(hits: &[Pair], weights: &[f64], line: usize) -> Averaged {
+    let mut sum = Averaged::default();
+    for ((force, response), weight) in hits.iter().zip(weights) {
+        let (x, y) = (force[line], response[line]);
+        sum.force += weight * x.norm_sqr();
+        sum.response += weight * y.norm_sqr();
+        sum.cross += y * x.conj() * *weight;
+    }
+    sum
+}
+
+impl Averaged {
+    /// The FRF, or nothing where the force, or for H2 the cross spectrum, vanishes.
+    pub fn frf(&self, estimator: Estimator) -> Option<Complex64> {
+        let h1 = self.cross / self.force;
+        let cross = self.cross.norm_sqr();
+        let value = match estimator {
+            Estimator::H1 => h1,
+            Estimator::H2 => self.cross * (self.response / cross),
+            Estimator::Hv => self.cross * (self.response / (self.force * cross)).sqrt(),
+        };
+        (self.force > 0.0 && value.is_finite()).then_some(value)
+    }
+
+    /// Ordinary coherence γ².
+    pub fn coherence(&self) -> f64 {
+        let product = self.force * self.response;
+        if product > 0.0 { (self.cross.norm_sqr() / product).min(1.0) } else { 0.0 }
+    }
+}
+
+/// Hits whose noise differs by more than this factor in amplitude are weighted.
+const UNEQUAL: f64 = 1.5;
+/// Lines from which the hits' noise is told.
+const LOOKED_AT: usize = 1_000;
+const PASSES: usize = 40;
+/// Noise of two hits differs by no more than this, or it is not noise.
+const MOST: f64 = 1e4;
+
+/// How much each hit counts on the `lines` that the hammer excites.
+///
+/// H1 of several hits is a least-squares line through the origin, response over force, and so is its variance from the coherence: both
+/// hold where the noise of all hits is alike. An analyser that adapts its range to each hit, or sensors whose error is a share of what
+/// they read, make the noise of a hard hit larger. Then spectra are divided by the noise of their hit: the noise σ_k² is what
+/// makes the residuals |Y_k − H·X_k|², relative to their mean over the hits on each line, as large as their leverage lets them be.
+pub(crate) fn weights(hits: &[Pair], lines: std::ops::Range<usize>, weighting: Weighting) -> Vec<f64> {
+    let n = hits.len();
+    let plain = vec![1.0; n];
+    let every = (lines.len() / LOOKED_AT).max(1);
+    let lines: Vec<usize> = lines.step_by(every).collect();
+    // The residuals of two hits are one number per line: they do not tell whose it is.
+    if weighting == Weighting::Plain || n < 3 || lines.len() < 10 {
+        return plain;
+    }
+    // Hits of very different strength are begun as noisy as they are strong.
+    let strength = |force: &[Complex64]| lines.iter().map(|&l| force[l].norm_sqr()).sum::<f64>();
+    let mut variance: Vec<f64> =
+        hits.iter().map(|(force, _)| strength(force).max(f64::MIN_POSITIVE)).collect();
+    for _ in 0..PASSES {
+        let weights: Vec<f64> = variance.iter().map(|v| 1.0 / v).collect();
+        let mut ratio = vec![0.0; n];
+        for &line in &lines {
+            let sum = averaged(hits, &weights, line);
+            let Some(h1) = sum.frf(Estimator::H1) else { continue };
+            let residual = |k: usize| weights[k] * (hits[k].1[line] - h1 * hits[k].0[line]).norm_sqr();
+            let mean = (0..n).map(residual).sum::<f64>() / (n - 1) as f64;
+            if mean > 0.0 {
+                for (k, ratio) in ratio.iter_mut().enumerate() {
+                    let leverage = weights[k] * hits[k].0[line].norm_sqr() / sum.force;
+                    *ratio += residual(k) / (mean * (1.0 - leverage).max(1e-3));
+                }
+            }
+        }
+        let mut moved = 0.0f64;
+        for (variance, ratio) in variance.iter_mut().zip(&ratio) {
+            let step = (ratio / lines.len() as f64).clamp(0.1, 10.0);
+            moved = moved.max((step - 1.0).abs());
+            *variance *= step;
+        }
+        let mean = variance.iter().map(|v| v.ln()).sum::<f64>() / n as f64;
+        variance.iter_mut().for_each(|v| *v = (*v / mean.exp()).clamp(1.0 / MOST, MOST));
+        if moved < 1e-3 {
+            break;
+        }
+    }
+    let (low, high) =
+        variance.iter().fold((f64::INFINITY, 0.0f64), |(low, high), v| (low.min(*v), high.max(*v)));
+    if high > UNEQUAL * UNEQUAL * low { variance.iter().map(|v| 1.0 / v).collect() } else { plain }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rand::{Rng, SeedableRng};
+    use rand_chacha::ChaCha8Rng;
+
+    fn normal(random: &mut ChaCha8Rng) -> Complex64 {
+        let uniform =
+            |random: &mut ChaCha8Rng| ((random.next_u64() >> 11) as f64 + 0.5) / (1u64 << 53) as f64;
+        let radius = (-uniform(random).ln()).sqrt();
+        Complex64::from_polar(radius, std::f64::consts::TAU * uniform(random))
+    }
+
+    /// Hits of these strengths with these noises about an FRF of 2.
+    fn simulated(strengths: &[f64], noises: &[f64], seed: u64) -> Vec<(Vec<Complex64>, Vec<Complex64>)> {
+        let mut random = ChaCha8Rng::seed_from_u64(seed);
+        let hit = |(strength, noise): (&f64, &f64)| {
+            let force = vec![Complex64::from(*strength); 600];
+            let response = force.iter().map(|x| x * 2.0 + normal(&mut random) * *noise).collect();
+            (force, response)
+        };
+        strengths.iter().zip(noises).map(hit).collect()
+    }
+
+    fn found(strengths: &[f64], noises: &[f64], seed: u64) -> Vec<f64> {
+        let hits = simulated(strengths, noises, seed);
+        let pairs: Vec<Pair> = hits.iter().map(|(x, y)| (x.as_slice(), y.as_slice())).collect();
+        weights(&pairs, 0..600, Weighting::Auto)
+    }
+
+    #[test]
+    fn hits_of_equal_noise_count_as_the_textbook_says_however_strong_they_are() {
+        assert_eq!(found(&[1.0, 5.0, 20.0, 3.0], &[0.1; 4], 1), [1.0; 4]);
+        assert_eq!(found(&[1.0, 20.0], &[0.1, 2.0], 2), [1.0; 2], "two hits cannot tell");
+    }
+
+    #[test]
+    fn hits_whose_noise_differs_count_inversely_to_its_power() {
+        for (strengths, noises) in [
+            (vec![1.0, 1.1, 5.0, 5.2, 20.0, 21.0], vec![0.1, 0.1, 0.5, 0.5, 2.0, 2.0]),
+            (vec![1.0, 1.0, 1.0], vec![0.1, 0.4, 0.1]),
+            (vec![1.0, 1.0, 1.0, 3.0], vec![0.2, 0.2, 1.0, 0.2]),
+        ] {
+            let weights = found(&strengths, &noises, 3);
+            for (weight, noise) in weights.iter().zip(&noises) {
+                let share = weight * noise * noise / (weights[0] * noises[0] * noises[0]);
+                assert!((0.7..1.4).contains(&share), "noises {noises:?}: {weights:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn h2_lies_above_h1_by_the_coherence_and_hv_between_them() {
+        let hits = simulated(&[1.0, 2.0, 3.0], &[1.0; 3], 4);
+        let pairs: Vec<Pair> = hits.iter().map(|(x, y)| (x.as_slice(), y.as_slice())).collect();
+        let sum = averaged(&pairs, &[1.0; 3], 5);
+        let [h1, h2, hv] = [Estimator::H1, Estimator::H2, Estimator::Hv].map(|e| sum.frf(e).unwrap());
+        assert!((h1 / h2 - sum.coherence()).norm() < 1e-12);
+        assert!((hv * hv / (h1 * h2) - 1.0).norm() < 1e-12);
+        assert_eq!(Averaged::default().frf(Estimator::H1), None);
+        assert_eq!(Averaged::default().coherence(), 0.0);
+    }
+}

@@ -1,0 +1,36 @@
+//! Which lines the hammer excites.
+
+/// Power below this share of the largest excites too little: 20 dB.
+const WEAK: f64 = 0.01;
+/// An anti-alias filter falls off above this share of half the sampling rate.
+const FILTER: f64 = 0.8;
+/// Dips narrower than this share of all lines are bridged.
+const DIP: usize = 50;
+
+/// The last line, counted from 0, up to which the force's power by line stays within 20 dB of its largest.
+pub(crate) fn last_usable(power: &[f64]) -> usize {
+    let n = power.len();
+    let largest = power.iter().skip(1).copied().fold(0.0, f64::max);
+    let reach = (n / DIP).max(1);
+    let strong = |line: usize| power[line] >= WEAK * largest;
+    let mut last = (1..n).max_by(|a, b| power[*a].total_cmp(&power[*b])).unwrap_or(0);
+    while let Some(next) = (last + 1..(last + 1 + reach).min(n)).rev().find(|&line| strong(line)) {
+        last = next;
+    }
+    last.min(((n.max(1) - 1) as f64 * FILTER) as usize)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_band_ends_where_the_force_has_fallen_by_20_db_and_bridges_a_narrow_dip() {
+        let mut power: Vec<f64> = (0..1000).map(|line| (-0.01 * line as f64).exp()).collect();
+        assert_eq!(last_usable(&power), 461);
+        power[100..110].fill(1e-9);
+        assert_eq!(last_usable(&power), 461);
+        assert_eq!(last_usable(&vec![1.0; 1001]), 800);
+        assert_eq!(last_usable(&[0.0; 5]), 3);
+    }
+}

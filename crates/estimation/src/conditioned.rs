@@ -1,0 +1,171 @@
+//! A hit made ready: baselines off, faults found, windows on, spectra taken.
+
+use std::sync::Arc;
+
+use jointscope_hits::{Hit, Motion, Response};
+use num_complex::Complex64;
+use realfft::{RealFftPlanner, RealToComplex};
+
+use crate::decay::left_at_end;
+use crate::pulse::{FILTER_RINGING, Pulse};
+use crate::{Baseline, Fault, ForceWindow, baseline, fault};
+
+/// A hit without its baselines, and what was seen in it.
+#[derive(Debug, Clone)]
+pub(crate) struct Conditioned<'a> {
+    pub hit: &'a Hit,
+    pub pulse: Option<Pulse>,
+    pub faults: Vec<Fault>,
+    pub force: Vec<f64>,
+    pub responses: Vec<Signal<'a>>,
+    /// How far the force's baseline drifts, see [`baseline::remove`].
+    pub force_drift: f64,
+}
+
+/// One response of a hit without its baseline.
+#[derive(Debug, Clone)]
+pub(crate) struct Signal<'a> {
+    pub response: &'a Response,
+    pub values: Vec<f64>,
+    /// How far its baseline drifts.
+    pub drift: f64,
+    /// Mean square before the hit, where there are samples enough.
+    pub before: Option<f64>,
+    /// Amplitude left at the record's end, relative to the loudest part.
+    pub left: f64,
+}
+
+/// Fewest samples before the hit from which a mean square is taken.
+const FEWEST_BEFORE: usize = 24;
+
+impl<'a> Conditioned<'a> {
+    pub fn of(hit: &'a Hit, kind: Baseline) -> Self {
+        let mut force = hit.force().to_vec();
+        let force_drift = baseline::remove(&mut force, kind);
+        let pulse = Pulse::of(&force);
+        let faults = fault::faults(hit, &force, pulse.as_ref());
+        let (begin, before) = pulse.map_or((0, 0), |pulse| (pulse.begin, pulse.before()));
+        let signal = |response: &'a Response| {
+            let mut values = response.values.clone();
+            let drift = baseline::remove(&mut values, kind);
+            let quiet = &values[..before.min(values.len())];
+            let power = quiet.iter().map(|v| v * v).sum::<f64>() / quiet.len().max(1) as f64;
+            let before = (quiet.len() >= FEWEST_BEFORE).then_some(power);
+            let left = left_at_end(&values, begin, before);
+            Signal { response, values, drift, before, left }
+        };
+        Conditioned {
+            hit,
+            pulse,
+            faults,
+            responses: hit.responses().iter().map(signal).collect(),
+            force,
+            force_drift,
+        }
+    }
+
+    /// Where the exponential window begins: before the onset, so that it holds all of what a filter makes of the pulse.
+    fn window_begin(&self) -> usize {
+        self.pulse.map_or(0, |pulse| pulse.begin.saturating_sub(FILTER_RINGING))
+    }
+
+    /// Takes the windowed spectra of the force and of every response, the latter as accelerations.
+    ///
+    /// The exponential window lies on force and responses alike: e^(−δt) on both turns Y = H·X at s = iω into the same relation at
+    /// s = δ + iω, whatever the pulse's length. There an acceleration is s or s² times the velocity or displacement.
+    pub fn spectra(&self, transform: &mut Transform, force_window: ForceWindow, decay: f64) -> Spectra {
+        let interval = self.hit.interval();
+        let begin = self.window_begin();
+        let exponential = |i: usize| match i.checked_sub(begin) {
+            Some(after) if decay > 0.0 => (-decay * interval * after as f64).exp(),
+            _ => 1.0,
+        };
+        let window = self.force_window(force_window);
+        let force = transform.of((0..self.force.len()).map(|i| {
+            let factor = window.map_or(1.0, |(end, taper)| one_then_cosine(i, end, taper));
+            self.force[i] * factor * exponential(i)
+        }));
+        let responses = self.responses.iter().map(|signal| {
+            let mut spectrum =
+                transform.of(signal.values.iter().enumerate().map(|(i, v)| v * exponential(i)));
+            let order = match signal.response.motion {
+                Motion::Acceleration => 0,
+                Motion::Velocity => 1,
+                Motion::Displacement => 2,
+            };
+            if order > 0 {
+                let step = std::f64::consts::TAU / (interval * transform.length() as f64);
+                let s = |line: usize| Complex64::new(decay, step * line as f64);
+                spectrum.iter_mut().enumerate().for_each(|(line, value)| *value *= s(line).powi(order));
+            }
+            spectrum
+        });
+        let responses = responses.collect();
+        Spectra { force, responses }
+    }
+
+    /// Last sample of the force window's flat part and samples of its taper.
+    fn force_window(&self, window: ForceWindow) -> Option<(usize, usize)> {
+        let pulse = self.pulse?;
+        let flat = match window {
+            ForceWindow::None => return None,
+            ForceWindow::Auto => (pulse.end - pulse.begin) * 11,
+            ForceWindow::Length(seconds) => (seconds / self.hit.interval()).round() as usize,
+        };
+        Some((pulse.begin + flat, (flat / 4).max(1)))
+    }
+
+    /// Share of the record that the force window lets pass.
+    pub fn force_window_share(&self, window: ForceWindow) -> f64 {
+        match self.force_window(window) {
+            None => 1.0,
+            // The mean square of half a cosine's flank is 3/8.
+            Some((end, taper)) => ((end as f64 + 0.375 * taper as f64) / self.force.len() as f64).min(1.0),
+        }
+    }
+}
+
+/// 1 up to `end`, then half a cosine over `taper` samples down to 0.
+fn one_then_cosine(i: usize, end: usize, taper: usize) -> f64 {
+    match i.checked_sub(end) {
+        None => 1.0,
+        Some(over) if over >= taper => 0.0,
+        Some(over) => 0.5 + 0.5 * (std::f64::consts::PI * over as f64 / taper as f64).cos(),
+    }
+}
+
+/// Spectra of one hit's signals, Σ x e^(−iωt) without the interval: their ratios are FRFs.
+#[derive(Debug, Clone)]
+pub(crate) struct Spectra {
+    pub force: Vec<Complex64>,
+    pub responses: Vec<Vec<Complex64>>,
+}
+
+/// Fourier transforms of one length.
+pub(crate) struct Transform {
+    plan: Arc<dyn RealToComplex<f64>>,
+    input: Vec<f64>,
+    scratch: Vec<Complex64>,
+}
+
+impl Transform {
+    /// Transforms of records filled with zeros to `length` samples.
+    pub fn new(length: usize) -> Self {
+        let plan = RealFftPlanner::new().plan_fft_forward(length);
+        Transform { input: plan.make_input_vec(), scratch: plan.make_scratch_vec(), plan }
+    }
+
+    pub fn length(&self) -> usize {
+        self.input.len()
+    }
+
+    fn of(&mut self, values: impl Iterator<Item = f64>) -> Vec<Complex64> {
+        self.input.fill(0.0);
+        self.input.iter_mut().zip(values).for_each(|(to, value)| *to = value);
+        let mut spectrum = self.plan.make_output_vec();
+        // It only fails for buffers of a wrong length, and these are the plan's own.
+        let done = self.plan.process_with_scratch(&mut self.input, &mut spectrum, &mut self.scratch);
+        debug_assert!(done.is_ok());
+        spectrum
+    }
+}

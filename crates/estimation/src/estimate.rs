@@ -1,0 +1,317 @@
+use jointscope_frf::noise::from_coherence_and_force;
+use jointscope_hits::{Hit, Motion};
+use jointscope_spectra::{Channel, FrfForm, FrfPair, FrfSet, SpectralLines};
+use num_complex::Complex64;
+
+use crate::average::{Averaged, Pair, averaged, weights};
+use crate::band::last_usable;
+use crate::conditioned::{Conditioned, Spectra, Transform};
+use crate::remarks::Remarks;
+use crate::{EstimateError, EstimateOptions, Excitation, ForceWindow, HitReport, ResponseWindow};
+
+/// FRFs of a hammer test, and what was seen on the way to them.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Estimate {
+    /// Accelerances of every response to every struck point, on all lines from 0 Hz to half the sampling rate, with coherence
+    /// and averages, and with variances where every struck point has two hits or more. On lines without force, and at 0 Hz, value and
+    /// coherence are zero. Responses come in the order of the hits, references under each.
+    pub frfs: FrfSet,
+    /// The hits, in the order they were given.
+    pub hits: Vec<HitReport>,
+    /// What the hammer put in, struck point by struck point.
+    pub excitations: Vec<Excitation>,
+    /// Decay δ of the exponential window, 1/s; 0 without one. The FRFs are those at s = δ + iω.
+    pub decay: f64,
+    /// What a reader of the FRFs should know, one plain sentence each.
+    pub remarks: Vec<String>,
+}
+
+/// What an exponential window on demand leaves of the slowest response.
+const LEFT_BY_WINDOW: f64 = 1e-4;
+/// What may be left of a response at its record's end without a remark or a window.
+pub(crate) const LEFT_UNNOTICED: f64 = 3e-3;
+/// Fewest samples of a record.
+const SHORTEST: usize = 16;
+
+impl Estimate {
+    /// Estimates FRFs from hits. Hits with faults are rejected unless `options.keep` names them.
+    ///
+    /// # Errors
+    /// See [`EstimateError`].
+    pub fn of(hits: &[Hit], options: &EstimateOptions) -> Result<Self, EstimateError> {
+        check(hits, options)?;
+        let all: Vec<Conditioned> = hits.iter().map(|hit| Conditioned::of(hit, options.baseline)).collect();
+        let reports: Vec<HitReport> = all.iter().map(|hit| report(hit, options)).collect();
+        let used: Vec<&Conditioned> =
+            all.iter().zip(&reports).filter(|(_, report)| report.used).map(|(hit, _)| hit).collect();
+        if used.is_empty() {
+            let faults = reports.iter().filter_map(|r| Some(format!("hit {}: {}", r.number, r.why()?)));
+            return Err(EstimateError::AllRejected(faults.collect::<Vec<_>>().join(", ")));
+        }
+        let decay = decay(&used, options.response_window);
+        let samples = hits.iter().map(Hit::samples).max().unwrap_or(0);
+        let mut transform = Transform::new(samples * options.zero_padding.max(1) as usize);
+        let spectra: Vec<Spectra> =
+            used.iter().map(|hit| hit.spectra(&mut transform, options.force_window, decay)).collect();
+        let step = 1.0 / (hits[0].interval() * transform.length() as f64);
+        let lines = SpectralLines::even(0.0, step, transform.length() / 2 + 1)?;
+        let test = Test { used: &used, spectra: &spectra, lines: &lines, options };
+        let excitations: Vec<Excitation> = test.struck().map(|struck| test.excitation(struck)).collect();
+        let mut remarks = Remarks::of_hits(&all, &reports, options, decay);
+        let frfs = test.frfs(&excitations, &mut remarks)?;
+        remarks.of_frfs(&frfs, &excitations, options.estimator);
+        Ok(Estimate { frfs, hits: reports, excitations, decay, remarks: remarks.texts })
+    }
+
+    /// The FRFs on the lines above 0 Hz that the hammer excites at every struck point.
+    pub fn usable(&self) -> Option<FrfSet> {
+        let to = self.excitations.iter().map(|e| e.usable_to).fold(f64::INFINITY, f64::min);
+        let hz = self.frfs.lines().hz();
+        self.frfs.on_lines(|line| hz[line] > 0.0 && hz[line] <= to)
+    }
+}
+
+fn check(hits: &[Hit], options: &EstimateOptions) -> Result<(), EstimateError> {
+    let first = hits.first().ok_or(EstimateError::NoHits)?;
+    if hits.iter().all(|hit| hit.responses().is_empty()) {
+        return Err(EstimateError::NoResponses);
+    }
+    let differs = |hit: &&Hit| (hit.interval() - first.interval()).abs() > 1e-6 * first.interval();
+    if let Some(other) = hits.iter().find(differs) {
+        return Err(EstimateError::Interval {
+            first: first.number(),
+            first_interval: first.interval(),
+            second: other.number(),
+            second_interval: other.interval(),
+        });
+    }
+    for (what, numbers) in [("keep", &options.keep), ("reject", &options.reject)] {
+        if let Some(&number) = numbers.iter().find(|n| hits.iter().all(|hit| hit.number() != **n)) {
+            let hits: Vec<String> = hits.iter().map(|hit| hit.number().to_string()).collect();
+            return Err(EstimateError::NoSuchHit { number, what, hits: hits.join(", ") });
+        }
+    }
+    match options.force_window {
+        ForceWindow::Length(value) if !(value.is_finite() && value > 0.0) => {
+            return Err(EstimateError::Window { what: "a force window", value, unit: "seconds" });
+        }
+        _ => {}
+    }
+    match options.response_window {
+        ResponseWindow::Decay(value) if !(value.is_finite() && value > 0.0) => {
+            return Err(EstimateError::Window { what: "a decay of the response window", value, unit: "1/s" });
+        }
+        _ => {}
+    }
+    match hits.iter().map(Hit::samples).find(|samples| *samples < SHORTEST) {
+        Some(samples) => Err(EstimateError::TooShort(samples)),
+        None => Ok(()),
+    }
+}
+
+fn report(hit: &Conditioned, options: &EstimateOptions) -> HitReport {
+    let number = hit.hit.number();
+    let rejected_by_hand = options.reject.contains(&number);
+    HitReport {
+        number,
+        struck: hit.hit.struck().clone(),
+        peak_force: hit.pulse.map_or(0.0, |pulse| pulse.peak),
+        width: hit.pulse.map_or(0.0, |pulse| pulse.width() as f64 * hit.hit.interval()),
+        faults: hit.faults.clone(),
+        rejected_by_hand,
+        used: !rejected_by_hand && (hit.faults.is_empty() || options.keep.contains(&number)),
+    }
+}
+
+/// The decay of the window that is asked for, 1/s.
+fn decay(used: &[&Conditioned], window: ResponseWindow) -> f64 {
+    match window {
+        ResponseWindow::None => 0.0,
+        ResponseWindow::Decay(decay) => decay,
+        ResponseWindow::Auto => used
+            .iter()
+            .flat_map(|hit| hit.responses.iter().map(move |signal| (hit, signal)))
+            .filter(|(_, signal)| signal.left > LEFT_UNNOTICED)
+            .map(|(hit, signal)| {
+                let begin = hit.pulse.map_or(0, |pulse| pulse.begin);
+                let length = (hit.hit.samples() - begin).max(1) as f64 * hit.hit.interval();
+                (signal.left / LEFT_BY_WINDOW).ln() / length
+            })
+            .fold(0.0, f64::max),
+    }
+}
+
+/// The hits in use and their spectra.
+struct Test<'a> {
+    used: &'a [&'a Conditioned<'a>],
+    spectra: &'a [Spectra],
+    lines: &'a SpectralLines,
+    options: &'a EstimateOptions,
+}
+
+/// A response among those of the hits, and what it measures.
+#[derive(Clone, PartialEq)]
+struct Sensor {
+    channel: Channel,
+    motion: Motion,
+}
+
+impl<'a> Test<'a> {
+    /// The struck points, as they come.
+    fn struck(&self) -> impl Iterator<Item = &'a Channel> {
+        let used = self.used;
+        (0..used.len())
+            .filter(move |&i| used[..i].iter().all(|hit| hit.hit.struck() != used[i].hit.struck()))
+            .map(move |i| used[i].hit.struck())
+    }
+
+    /// One sensor per channel, the highest derivative where there are several.
+    fn sensors(&self) -> Vec<Sensor> {
+        let mut sensors: Vec<Sensor> = Vec::new();
+        for response in self.used.iter().flat_map(|hit| hit.hit.responses()) {
+            match sensors.iter_mut().find(|sensor| sensor.channel == response.channel) {
+                Some(sensor) => sensor.motion = sensor.motion.max(response.motion),
+                None => sensors.push(Sensor { channel: response.channel.clone(), motion: response.motion }),
+            }
+        }
+        sensors
+    }
+
+    fn hits_at(&self, struck: &Channel) -> Vec<usize> {
+        (0..self.used.len()).filter(|&i| self.used[i].hit.struck() == struck).collect()
+    }
+
+    fn excitation(&self, struck: &Channel) -> Excitation {
+        let hits = self.hits_at(struck);
+        let count = hits.len() as f64;
+        let power: Vec<f64> = (0..self.lines.len())
+            .map(|line| hits.iter().map(|&i| self.spectra[i].force[line].norm_sqr()).sum::<f64>() / count)
+            .collect();
+        let noise = hits.iter().map(|&i| self.force_noise(i)).sum::<f64>() / count;
+        let last = last_usable(&power);
+        let weakest = power[1.min(last)..=last].iter().copied().fold(f64::INFINITY, f64::min);
+        let interval = self.used[hits[0]].hit.interval();
+        Excitation {
+            struck: struck.clone(),
+            hits: hits.iter().map(|&i| self.used[i].hit.number()).collect(),
+            spectrum: power.iter().map(|power| interval * power.sqrt()).collect(),
+            noise: interval * noise.sqrt(),
+            usable_to: self.lines.hz()[last],
+            h1_bias: if weakest > 0.0 { (noise / weakest).min(1.0) } else { 1.0 },
+        }
+    }
+
+    /// Power that the force's noise adds to every line of a hit's spectrum, N².
+    fn force_noise(&self, hit: usize) -> f64 {
+        let conditioned = self.used[hit];
+        let deviation = conditioned.pulse.map_or(0.0, |pulse| pulse.noise);
+        let share = conditioned.force_window_share(self.options.force_window);
+        deviation * deviation * conditioned.force.len() as f64 * share
+    }
+
+    fn frfs(&self, excitations: &[Excitation], remarks: &mut Remarks) -> Result<FrfSet, EstimateError> {
+        let n = self.lines.len();
+        let (mut pairs, mut values, mut variances) = (Vec::new(), Vec::new(), Vec::new());
+        let mut quality = Vec::new();
+        for sensor in self.sensors() {
+            for excitation in excitations {
+                let Some(found) = self.frf(&sensor, excitation, remarks) else { continue };
+                pairs.push(FrfPair::new(sensor.channel.clone(), excitation.struck.clone()));
+                if found.averages > 1 {
+                    variances.extend(from_coherence_and_force(
+                        &found.values,
+                        &found.coherence,
+                        found.averages,
+                        &found.force,
+                    ));
+                }
+                values.extend(found.values);
+                quality.push((found.coherence, found.averages));
+            }
+        }
+        let all_have_variances = variances.len() == values.len();
+        let mut frfs = FrfSet::new(self.lines.clone(), FrfForm::Accelerance, pairs, values)?;
+        for (index, (coherence, averages)) in quality.into_iter().enumerate() {
+            debug_assert_eq!(coherence.len(), n);
+            if averages > 1 {
+                frfs.set_coherence(index, coherence)?;
+            }
+            frfs.set_averages(index, Some(averages));
+        }
+        Ok(if all_have_variances { frfs.with_variance(variances)? } else { frfs })
+    }
+
+    /// One FRF; `None` where no hit at that point has the response.
+    fn frf(&self, sensor: &Sensor, excitation: &Excitation, remarks: &mut Remarks) -> Option<Found> {
+        let place = |i: usize| {
+            let responses = self.used[i].hit.responses();
+            responses.iter().position(|r| r.channel == sensor.channel && r.motion == sensor.motion)
+        };
+        let hits: Vec<(usize, usize)> =
+            self.hits_at(&excitation.struck).into_iter().filter_map(|i| Some((i, place(i)?))).collect();
+        if hits.is_empty() {
+            return None;
+        }
+        let spectra =
+            |&(i, r): &(usize, usize)| -> Pair { (&self.spectra[i].force, &self.spectra[i].responses[r]) };
+        let pairs: Vec<Pair> = hits.iter().map(spectra).collect();
+        let n = self.lines.len();
+        let last = self.lines.hz().iter().rposition(|hz| *hz <= excitation.usable_to).unwrap_or(0);
+        let weights = weights(&pairs, 1..last + 1, self.options.weighting);
+        let sums: Vec<Averaged> = (0..n).map(|line| averaged(&pairs, &weights, line)).collect();
+        let mut found = Found {
+            values: vec![Complex64::ZERO; n],
+            coherence: vec![0.0; n],
+            force: sums.iter().map(|sum| sum.force).collect(),
+            averages: hits.len() as u32,
+        };
+        // At 0 Hz the baseline's own value is all there is.
+        for line in 1..n {
+            if let Some(value) = sums[line].frf(self.options.estimator) {
+                found.values[line] = value;
+                found.coherence[line] = sums[line].coherence();
+            }
+        }
+        remarks.of_weights(&weights);
+        if hits.len() > 1 {
+            let scatter = self.scatter_over_noise(&hits, &weights, &sums[..=last]);
+            remarks.of_scatter(&sensor.channel, &excitation.struck, scatter);
+        }
+        Some(found)
+    }
+
+    /// Median over the lines of how much more power the residuals have than the noise before the hits explains; `None` where no
+    /// samples before the hits tell it.
+    fn scatter_over_noise(&self, hits: &[(usize, usize)], weights: &[f64], sums: &[Averaged]) -> Option<f64> {
+        let n = hits.len() as f64;
+        let (mut response_noise, mut force_noise) = (0.0, 0.0);
+        for (&(i, r), weight) in hits.iter().zip(weights) {
+            let signal = &self.used[i].responses[r];
+            if signal.response.motion != Motion::Acceleration {
+                return None;
+            }
+            response_noise += weight * signal.before? * signal.values.len() as f64;
+            force_noise += weight * self.force_noise(i);
+        }
+        let ratio = |sum: &Averaged| {
+            let size = sum.cross.norm_sqr() / (sum.force * sum.force);
+            let expected = (n - 1.0) / n * (response_noise + size * force_noise);
+            ((1.0 - sum.coherence()) * sum.response) / expected
+        };
+        let mut ratios: Vec<f64> = sums.iter().skip(1).map(ratio).filter(|r| r.is_finite()).collect();
+        if ratios.is_empty() {
+            return None;
+        }
+        let middle = ratios.len() / 2;
+        Some(*ratios.select_nth_unstable_by(middle, f64::total_cmp).1)
+    }
+}
+
+/// One FRF with what it rests on.
+struct Found {
+    values: Vec<Complex64>,
+    coherence: Vec<f64>,
+    /// Power of the force by line.
+    force: Vec<f64>,
+    averages: u32,
+}

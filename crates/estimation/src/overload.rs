@@ -1,0 +1,83 @@
+//! Overload: a signal that its input cut off.
+
+/// Samples at one extreme value that a signal of its own does not hold.
+const HELD: usize = 3;
+/// Steps of the converter by which the samples beside a cut-off top lie below it.
+const STEEP: f64 = 4.0;
+/// Smallest share of the range that such a step is taken to be, for signals that were scaled since.
+const FINEST: f64 = 1e-6;
+
+/// The value at which a signal is cut off, if it is: its extreme held for three samples or more, with steep flanks, so that no
+/// smooth top read by a coarse converter is meant.
+///
+/// What was cut off before an anti-alias filter is round again and cannot be seen.
+pub(crate) fn is_cut_off(values: &[f64]) -> Option<f64> {
+    let high = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let low = values.iter().copied().fold(f64::INFINITY, f64::min);
+    if high <= low || !(high - low).is_finite() {
+        return None;
+    }
+    [high, low].into_iter().filter(|extreme| extreme.abs() >= 0.5 * high.abs().max(low.abs())).find(
+        |&extreme| {
+            let at_top = |i: &usize| (values[*i] - extreme).abs() <= 1e-9 * (high - low);
+            let tops: Vec<usize> = (0..values.len()).filter(at_top).collect();
+            if tops.len() < HELD {
+                return false;
+            }
+            let step = converter_step(values).max(FINEST * (high - low));
+            tops.chunk_by(|a, b| a + 1 == *b).any(|run| {
+                let flank = |i: Option<usize>| {
+                    i.and_then(|i| values.get(i)).is_none_or(|v| (v - extreme).abs() > STEEP * step)
+                };
+                run.len() >= HELD && flank(run[0].checked_sub(1)) && flank(run.last().map(|last| last + 1))
+            })
+        },
+    )
+}
+
+/// The step of the converter: the smallest distance between two values, as far as a sample of them shows.
+fn converter_step(values: &[f64]) -> f64 {
+    const LOOKED_AT: usize = 4096;
+    let mut sorted: Vec<f64> = values.iter().copied().take(LOOKED_AT).collect();
+    sorted.sort_unstable_by(f64::total_cmp);
+    let range = match (sorted.first(), sorted.last()) {
+        (Some(first), Some(last)) => last - first,
+        _ => 0.0,
+    };
+    let steps = sorted.windows(2).map(|two| two[1] - two[0]);
+    steps.filter(|step| *step > 1e-9 * range).fold(f64::INFINITY, f64::min).min(range)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn ringing(count: usize) -> Vec<f64> {
+        (0..count).map(|i| 10.0 * (-0.01 * i as f64).exp() * (0.31 * i as f64).sin()).collect()
+    }
+
+    #[test]
+    fn a_signal_that_is_cut_off_is_found_on_either_side() {
+        assert_eq!(is_cut_off(&ringing(500)), None);
+        let cut: Vec<f64> = ringing(500).iter().map(|v| v.min(6.0)).collect();
+        assert_eq!(is_cut_off(&cut), Some(6.0));
+        let cut: Vec<f64> = ringing(500).iter().map(|v| v.max(-7.0)).collect();
+        assert_eq!(is_cut_off(&cut), Some(-7.0));
+    }
+
+    #[test]
+    fn the_round_top_of_a_coarsely_read_signal_is_no_overload() {
+        let slow: Vec<f64> = (0..2000).map(|i| (30.0 * (0.002 * i as f64).sin()).round()).collect();
+        assert_eq!(is_cut_off(&slow), None);
+        let fine: Vec<f64> = ringing(500).iter().map(|v| (v * 100.0).round() / 100.0).collect();
+        assert_eq!(is_cut_off(&fine), None);
+        assert_eq!(is_cut_off(&[0.0; 100]), None);
+    }
+
+    #[test]
+    fn a_cut_off_signal_in_coarse_steps_is_found() {
+        let coarse: Vec<f64> =
+            ringing(500).iter().map(|v| (v * 20.0).round() / 20.0).map(|v| v.min(6.0)).collect();
+        assert_eq!(is_cut_off(&coarse), Some(6.0));
+    }
+}
