@@ -7,6 +7,7 @@ use jointscope::Band;
 use jointscope_recordings::{AssumedUnits, ChannelMap, ChannelMapError, ReadOptions};
 use jointscope_spectra::{Channel, Dof, FrfPair, SpectralLines};
 
+use crate::estimation_arguments::EstimationArguments;
 use crate::refusal::Refusal;
 
 /// Stiffness and damping of a joint from hammer tests on the blocks it connects.
@@ -21,6 +22,8 @@ pub struct Program {
 pub enum Command {
     /// FRFs of an assembly, computed from its fixture file, its effects included.
     Synthesize(SynthesizeArguments),
+    /// FRFs with coherence from hammer hits: time histories of force and responses.
+    Estimate(EstimateArguments),
     /// Stiffness and damping of a joint by frequency, from the FRFs of the assembly: stiffness.json and report.html.
     Decompose(DecomposeArguments),
     /// What physics the fixture leaves out, where it sits and how sure that is: diagnosis.json, refitted.json, repaired.json, report.html.
@@ -51,6 +54,20 @@ pub struct SynthesizeArguments {
 }
 
 #[derive(Debug, Args)]
+pub struct EstimateArguments {
+    #[command(flatten)]
+    pub recording: RecordingArguments,
+    /// Write text (dataset 58) instead of binary (58b).
+    #[arg(long)]
+    pub ascii: bool,
+    /// The universal file to write.
+    #[arg(short, long, value_name = "F.uff")]
+    pub output: PathBuf,
+    #[command(flatten)]
+    pub estimation: EstimationArguments,
+}
+
+#[derive(Debug, Args)]
 pub struct DecomposeArguments {
     /// The fixture file (JSON).
     pub fixture: PathBuf,
@@ -71,6 +88,8 @@ pub struct DecomposeArguments {
     /// The directory to write to.
     #[arg(short, long, value_name = "DIR")]
     pub output: PathBuf,
+    #[command(flatten)]
+    pub estimation: EstimationArguments,
 }
 
 #[derive(Debug, Args)]
@@ -97,6 +116,8 @@ pub struct DiagnoseArguments {
     /// The directory to write to; may be left out with --json.
     #[arg(short, long, value_name = "DIR", required_unless_present = "json")]
     pub output: Option<PathBuf>,
+    #[command(flatten)]
+    pub estimation: EstimationArguments,
 }
 
 /// The relations by their names on the command line.

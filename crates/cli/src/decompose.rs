@@ -1,21 +1,30 @@
 //! `jointscope decompose`: a fixture and recordings in, the joint's stiffness and damping and a page out.
 
+use jointscope::estimation::ResponseWindow;
 use jointscope::{Analysis, AnalysisOptions, Relation, stiffness_file};
 use jointscope_report::format::quantity;
 use jointscope_report::{PageContext, decomposition_page};
 
 use crate::arguments::{DecomposeArguments, RelationName};
 use crate::input;
+use crate::measured::{as_recorded, measured};
 use crate::output::Outputs;
 use crate::refusal::Refusal;
 
 /// Decomposes and writes `stiffness.json` and `report.html`; answers with what was found and where the page is.
 pub fn run(arguments: &DecomposeArguments) -> Result<String, Refusal> {
     let fixture = input::fixture(&arguments.fixture)?;
-    let recording = input::recording(&arguments.recording, &fixture, &arguments.fixture)?;
+    // The relation between FRFs and joint is one on the imaginary axis: no window that moves them off it unless asked for.
+    let measured = measured(
+        &arguments.recording,
+        &arguments.estimation,
+        &fixture,
+        &arguments.fixture,
+        ResponseWindow::None,
+    )?;
+    let recorded = as_recorded(&fixture, &arguments.fixture, measured.window_decay)?;
     let files = || std::iter::once(&arguments.fixture).chain(&arguments.recording.files);
     let names = input::names(&arguments.recording.files);
-    let frfs = recording.frfs().map_err(|error| Refusal::new(format_args!("{names}: {error}")))?;
     let options = AnalysisOptions {
         joint: arguments.joint.clone(),
         relation: match arguments.relation {
@@ -25,7 +34,7 @@ pub fn run(arguments: &DecomposeArguments) -> Result<String, Refusal> {
         band: arguments.band,
         exact: arguments.exact,
     };
-    let analysis = Analysis::of(&fixture, frfs, &options).map_err(|error| match error {
+    let analysis = Analysis::of(&recorded, &measured.frfs, &options).map_err(|error| match error {
         jointscope::DecompositionError::Sides(_) | jointscope::DecompositionError::Model(_) => {
             Refusal::at(&arguments.fixture, error)
         }
@@ -35,7 +44,8 @@ pub fn run(arguments: &DecomposeArguments) -> Result<String, Refusal> {
         program: format!("jointscope {}", env!("CARGO_PKG_VERSION")),
         command: input::command_line(),
         inputs: files().map(|path| input::hash(path)).collect::<Result<_, _>>()?,
-        notes: recording.notes.iter().cloned().chain(lost_tolerances(&analysis)).collect(),
+        notes: measured.notes.iter().cloned().chain(lost_tolerances(&analysis)).collect(),
+        hits: measured.hits,
     };
     let page = decomposition_page(&analysis, &fixture, &context).map_err(Refusal::new)?;
     let stiffness = serde_json::to_string_pretty(&stiffness_file(&analysis)).map_err(Refusal::new)?;

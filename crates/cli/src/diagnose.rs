@@ -2,6 +2,7 @@
 
 use std::io::{IsTerminal, Write};
 
+use jointscope::estimation::ResponseWindow;
 use jointscope::fixture::Fixture;
 use jointscope::{Diagnosis, DiagnosisError, DiagnosisOptions, FrfSet, diagnosis_file};
 use jointscope_report::{PageContext, diagnosis_page};
@@ -9,6 +10,7 @@ use serde_json::{Value, json};
 
 use crate::arguments::DiagnoseArguments;
 use crate::input;
+use crate::measured::{as_recorded, measured};
 use crate::output::Outputs;
 use crate::refusal::Refusal;
 
@@ -16,9 +18,16 @@ use crate::refusal::Refusal;
 /// is, or with `diagnosis.json` itself.
 pub fn run(arguments: &DiagnoseArguments) -> Result<String, Refusal> {
     let fixture = input::fixture(&arguments.fixture)?;
-    let recording = input::recording(&arguments.recording, &fixture, &arguments.fixture)?;
+    let measured = measured(
+        &arguments.recording,
+        &arguments.estimation,
+        &fixture,
+        &arguments.fixture,
+        ResponseWindow::Auto,
+    )?;
+    let fixture = as_recorded(&fixture, &arguments.fixture, measured.window_decay)?;
     let names = input::names(&arguments.recording.files);
-    let frfs = recording.frfs().map_err(|error| Refusal::new(format_args!("{names}: {error}")))?;
+    let frfs = &measured.frfs;
     check_lines(arguments, frfs)?;
     let options = DiagnosisOptions {
         band: arguments.band.map(|band| (band.from, band.to)),
@@ -40,7 +49,8 @@ pub fn run(arguments: &DiagnoseArguments) -> Result<String, Refusal> {
         program: format!("jointscope {}", env!("CARGO_PKG_VERSION")),
         command: input::command_line(),
         inputs: files().map(|path| input::hash(path)).collect::<Result<_, _>>()?,
-        notes: recording.notes.clone(),
+        notes: measured.notes,
+        hits: measured.hits,
     };
     let answer = serde_json::to_string_pretty(&answer(&diagnosis, &context)).map_err(Refusal::new)? + "\n";
     let Some(folder) = &arguments.output else { return Ok(answer.trim_end().to_owned()) };

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use jointscope_fixture::Fixture;
-use jointscope_recordings::{Recording, Source};
+use jointscope_recordings::{RecordingError, Source};
 use jointscope_report::InputFile;
 use sha2::{Digest, Sha256};
 
@@ -22,26 +22,26 @@ pub fn fixture(path: &Path) -> Result<Fixture, Refusal> {
     Fixture::from_json(text.trim_start_matches('\u{feff}')).map_err(|error| Refusal::at(path, error))
 }
 
-/// Reads the files of a test against the fixture `fixture`, read from `fixture_path`.
-pub fn recording(
-    arguments: &RecordingArguments,
-    fixture: &Fixture,
-    fixture_path: &Path,
-) -> Result<Recording, Refusal> {
-    use jointscope_recordings::RecordingError as Error;
-    let options = arguments.options()?;
-    let sources = arguments.files.iter().map(|path| source(path)).collect::<Result<Vec<_>, _>>()?;
-    Recording::of(&sources, fixture, &options).map_err(|error| match error {
+/// Reads the files of a test.
+pub fn sources(arguments: &RecordingArguments) -> Result<Vec<Source>, Refusal> {
+    arguments.files.iter().map(|path| source(path)).collect()
+}
+
+/// The refusal of a recording that does not suit the fixture read from `fixture_path`.
+pub fn refusal(error: RecordingError, files: &[PathBuf], fixture_path: &Path) -> Refusal {
+    use RecordingError as Error;
+    match error {
         Error::MapPoint { .. } => Refusal::at(fixture_path, error),
         // These name their files, and the function in them.
         Error::Function { .. }
         | Error::Twice { .. }
         | Error::Lines { .. }
+        | Error::Windows { .. }
         | Error::OnlyTimeHistories { .. }
         | Error::NoFrf { .. }
         | Error::NotPerForce { .. } => Refusal::new(error),
-        _ => Refusal::new(format_args!("{}: {error}", names(&arguments.files))),
-    })
+        _ => Refusal::new(format_args!("{}: {error}", names(files))),
+    }
 }
 
 /// The files' names for a message about all of them.
@@ -76,7 +76,7 @@ fn bytes(path: &Path) -> Result<Vec<u8>, Refusal> {
 mod tests {
     use super::*;
 
-    use jointscope_recordings::to_datasets;
+    use jointscope_recordings::{Recording, to_datasets};
     use jointscope_spectra::{FrfForm, FrfPair, FrfSet, SpectralLines};
     use jointscope_uff::Encoding;
 
@@ -106,7 +106,12 @@ mod tests {
                 assume_units: None,
             };
             let fixture = Fixture::from_json(FIXTURE).unwrap();
-            recording(&arguments, &fixture, Path::new("one.json")).map_err(|refusal| refusal.to_string())
+            let read = |sources: Vec<Source>| {
+                let options = arguments.options()?;
+                Recording::of(&sources, &fixture, &options)
+                    .map_err(|error| refusal(error, &arguments.files, Path::new("one.json")))
+            };
+            sources(&arguments).and_then(read).map_err(|refusal| refusal.to_string())
         }
     }
 

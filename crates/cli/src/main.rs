@@ -5,7 +5,10 @@
 mod arguments;
 mod decompose;
 mod diagnose;
+mod estimate;
+mod estimation_arguments;
 mod input;
+mod measured;
 mod output;
 mod prove;
 mod refusal;
@@ -41,6 +44,7 @@ fn main() -> ExitCode {
 fn run(command: &Command) -> Result<String, Refusal> {
     match command {
         Command::Synthesize(arguments) => synthesize::run(arguments),
+        Command::Estimate(arguments) => estimate::run(arguments),
         Command::Decompose(arguments) => decompose::run(arguments),
         Command::Diagnose(arguments) => diagnose::run(arguments),
         Command::Prove(arguments) => prove::run(arguments),

@@ -58,7 +58,7 @@
 //! ```
 //!
 //! The parts are crates of their own, re-exported as modules for what this page leaves out: [`uff`], [`recordings`],
-//! [`fixture`], [`spectra`], [`frf`], [`beam`], [`damping`], [`lumped`], [`averaging`], [`decomposition`],
+//! [`fixture`], [`spectra`], [`frf`], [`hits`], [`estimation`], [`beam`], [`damping`], [`lumped`], [`averaging`], [`decomposition`],
 //! [`diagnosis`].
 
 pub use jointscope_averaging as averaging;
@@ -66,8 +66,10 @@ pub use jointscope_beam as beam;
 pub use jointscope_damping as damping;
 pub use jointscope_decomposition as decomposition;
 pub use jointscope_diagnosis as diagnosis;
+pub use jointscope_estimation as estimation;
 pub use jointscope_fixture as fixture;
 pub use jointscope_frf as frf;
+pub use jointscope_hits as hits;
 pub use jointscope_linalg as linalg;
 pub use jointscope_lumped as lumped;
 pub use jointscope_recordings as recordings;

@@ -49,6 +49,11 @@ pub enum FunctionError {
     /// ID line 5 starts with `averages`, but no count follows.
     #[error("ID line 5 reads `{0}`: a whole number of averages, 1 or more, is needed, such as `averages 5`")]
     Averages(String),
+    /// ID line 3 starts with `exponential window`, but no decay follows.
+    #[error(
+        "ID line 3 reads `{0}`: a decay in 1/s is needed, zero or above, such as `exponential window 12.5 1/s`"
+    )]
+    Window(String),
     /// Its spectral lines.
     #[error("{0}")]
     Lines(SpectraError),
@@ -190,6 +195,20 @@ pub enum RecordingError {
         numerator: i32,
         /// Data type of its denominator.
         denominator: i32,
+    },
+    /// FRFs under different exponential windows.
+    #[error(
+        "{second} lies under an exponential window of decay {second_decay} 1/s, but {first} under one of {first_decay} 1/s (0 is none); give FRFs of one window"
+    )]
+    Windows {
+        /// One function.
+        first: Box<Place>,
+        /// Its window's decay, 1/s.
+        first_decay: f64,
+        /// The other function.
+        second: Box<Place>,
+        /// Its window's decay, 1/s.
+        second_decay: f64,
     },
     /// FRFs at several amplitudes, where those of one are needed.
     #[error("the files hold FRFs at {count} levels ({levels}); give the files of one level")]

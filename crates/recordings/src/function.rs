@@ -59,6 +59,21 @@ impl<'a> Function<'a> {
         }
     }
 
+    /// Decay of the exponential window that lies on force and response, 1/s; ID line 3: `exponential window 12.5 1/s`. 0 where it speaks of
+    /// something else.
+    pub fn window_decay(&self) -> Result<f64, FunctionError> {
+        let line = &self.dataset.id_lines[2];
+        let Some(rest) = line.to_lowercase().trim().strip_prefix("exponential window").map(str::to_owned)
+        else {
+            return Ok(0.0);
+        };
+        let mut words = rest.split_whitespace();
+        match (words.next().and_then(|word| word.parse::<f64>().ok()), words.next(), words.next()) {
+            (Some(decay), Some("1/s"), None) if decay.is_finite() && decay >= 0.0 => Ok(decay),
+            _ => Err(FunctionError::Window(line.clone())),
+        }
+    }
+
     /// Complex values.
     pub fn complex(&self) -> Result<&'a [Complex64], FunctionError> {
         match &self.dataset.data {

@@ -51,6 +51,9 @@ pub struct Level {
     pub frfs: FrfSet,
     /// The form in which each FRF was recorded.
     pub recorded_forms: Vec<FrfForm>,
+    /// Decay δ of the exponential window over force and responses, 1/s, as ID line 3 states it; 0 without one. The FRFs are those
+    /// at s = δ + iω.
+    pub window_decay: f64,
 }
 
 /// Time histories among the files.
@@ -104,8 +107,16 @@ impl Recording {
     /// # Errors
     /// [`RecordingError::SeveralLevels`].
     pub fn frfs(&self) -> Result<&FrfSet, RecordingError> {
+        self.level().map(|level| &level.frfs)
+    }
+
+    /// The one level of a test.
+    ///
+    /// # Errors
+    /// [`RecordingError::SeveralLevels`].
+    pub fn level(&self) -> Result<&Level, RecordingError> {
         match self.levels.as_slice() {
-            [level] => Ok(&level.frfs),
+            [level] => Ok(level),
             levels => Err(RecordingError::SeveralLevels {
                 count: levels.len(),
                 levels: enumeration(levels.iter().map(|level| match level.held {
@@ -287,8 +298,18 @@ fn level<'a>(
     let first = &frfs[0].0;
     let lines = cache.lines(first.function.dataset).map_err(|problem| first.refuse(problem))?;
     let mut values = Vec::with_capacity(frfs.len() * lines.len());
+    let window_decay = decay_of(first)?;
     for (entry, ordinate) in frfs {
         same_lines(cache, first, &lines, entry)?;
+        let decay = decay_of(entry)?;
+        if decay != window_decay {
+            return Err(RecordingError::Windows {
+                first: Box::new(first.function.place()),
+                first_decay: window_decay,
+                second: Box::new(entry.function.place()),
+                second_decay: decay,
+            });
+        }
         let recorded = entry.function.complex().map_err(|problem| entry.refuse(problem))?;
         append_accelerances(&mut values, recorded, ordinate.form, entry.sign * ordinate.si, &lines);
     }
@@ -307,7 +328,11 @@ fn level<'a>(
         set.set_averages(index, averages);
     }
     let recorded_forms = frfs.iter().map(|(_, ordinate)| ordinate.form).collect();
-    Ok(Level { held: first.level, frfs: set, recorded_forms })
+    Ok(Level { held: first.level, frfs: set, recorded_forms, window_decay })
+}
+
+fn decay_of(entry: &Entry) -> Result<f64, RecordingError> {
+    entry.function.window_decay().map_err(|problem| entry.refuse(problem))
 }
 
 fn same_lines<'a>(

@@ -33,6 +33,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         command: "jointscope decompose fixture.json test.uff -o out".to_owned(),
         inputs: vec![input(fixture_path), input(recording_path)],
         notes: recording.notes.clone(),
+        hits: None,
     };
     std::fs::write(page_path, decomposition_page(&analysis, &fixture, &context)?)?;
     Ok(())

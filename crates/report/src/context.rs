@@ -1,11 +1,13 @@
 //! Where a page comes from, as every page states it.
 
+use jointscope_estimation::Estimate;
 use jointscope_fixture::Fixture;
+use jointscope_hits::Hit;
 
 use crate::Foot;
 
 /// Where a page comes from: what its foot states, and what was noticed on the way.
-#[derive(Debug, Clone, Default, PartialEq, Eq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct PageContext {
     /// The program and its version.
     pub program: String,
@@ -15,6 +17,17 @@ pub struct PageContext {
     pub inputs: Vec<InputFile>,
     /// Remarks from reading the recordings, one plain sentence each.
     pub notes: Vec<String>,
+    /// The hammer hits, where the FRFs were estimated from them; shown before anything else.
+    pub hits: Option<HammerTest>,
+}
+
+/// Hammer hits and what was estimated from them.
+#[derive(Debug, Clone, PartialEq)]
+pub struct HammerTest {
+    /// The hits.
+    pub hits: Vec<Hit>,
+    /// FRFs, and what became of each hit.
+    pub estimate: Estimate,
 }
 
 /// A file that was read.

@@ -14,6 +14,7 @@ mod verdict;
 use jointscope_decomposition::{Analysis, Relation};
 use jointscope_fixture::{Fixture, Joint, JointLaw};
 
+use crate::hammer_test;
 use crate::{Page, PageContext, PageError, Section};
 use estimate::Estimate;
 
@@ -68,8 +69,11 @@ pub fn decomposition_page(
     let subject = Subject { analysis, fixture, best: &best };
     let mut page = Page::new(format!("Joint {}: stiffness and damping", analysis.joint))
         .subtitle(context.subtitle(fixture))
-        .verdict(verdict::verdict(&subject))
-        .section(fixture_view::section(&subject));
+        .verdict(verdict::verdict(&subject));
+    if let Some(test) = &context.hits {
+        page = page.section(hammer_test::section(test));
+    }
+    page = page.section(fixture_view::section(&subject));
     for section in result::sections(&subject) {
         page = page.section(section);
     }

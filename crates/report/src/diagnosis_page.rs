@@ -13,6 +13,7 @@ mod tolerances;
 use jointscope_diagnosis::{Diagnosis, Fit, Verdict as Conclusion};
 use jointscope_fixture::Fixture;
 
+use crate::hammer_test;
 use crate::{Page, PageContext, PageError, Section, Tone, Verdict};
 
 /// Lines beyond which panes are drawn thinned, so that a page of long recordings stays small.
@@ -55,7 +56,11 @@ pub fn diagnosis_page(
     let subject = Subject { diagnosis, fixture };
     let mut page = Page::new("Diagnosis: what the fixture leaves out")
         .subtitle(context.subtitle(fixture))
-        .verdict(verdict(diagnosis, context))
+        .verdict(verdict(diagnosis, context));
+    if let Some(test) = &context.hits {
+        page = page.section(hammer_test::section(test));
+    }
+    page = page
         .section(fixture_view::section(&subject))
         .section(findings::section(&subject))
         .section(judgement::section(&subject));

@@ -50,6 +50,7 @@ pub mod drawing;
 mod elements;
 mod error;
 pub mod format;
+mod hammer_test;
 mod heat_map;
 mod html;
 mod page;
@@ -58,7 +59,7 @@ mod plot;
 mod section;
 mod unit;
 
-pub use context::{InputFile, PageContext};
+pub use context::{HammerTest, InputFile, PageContext};
 pub use decomposition_page::decomposition_page;
 pub use diagnosis_page::diagnosis_page;
 pub use drawing::{FixtureDrawing, Svg};

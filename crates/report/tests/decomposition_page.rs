@@ -88,6 +88,7 @@ fn context() -> PageContext {
             InputFile { name: "hits </script>.uff".into(), sha256: "c3ab07d2".into() },
         ],
         notes: vec!["1 FRF at nodes that the fixture does not have left out: 9/1".into()],
+        hits: None,
     }
 }
 

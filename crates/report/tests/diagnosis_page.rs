@@ -56,6 +56,7 @@ fn page(physics: &str, change: impl Fn(usize, f64) -> Complex64) -> (Diagnosis, 
         command: "jointscope diagnose storeys.json frf.uff -o out".into(),
         inputs: vec![InputFile { name: "storeys.json".into(), sha256: "ab".repeat(32) }],
         notes: vec!["one remark".into()],
+        hits: None,
     };
     let html = diagnosis_page(&diagnosis, &believed, &context).unwrap();
     assert_eq!(html, diagnosis_page(&diagnosis, &believed, &context).unwrap(), "the same input, other bytes");

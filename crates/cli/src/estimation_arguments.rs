@@ -1,0 +1,163 @@
+//! How FRFs are made of hammer hits, as the command line says it.
+
+use clap::{Args, ValueEnum};
+use jointscope::estimation::{Baseline, EstimateOptions, Estimator, ForceWindow, ResponseWindow, Weighting};
+
+/// Options of every command that reads time histories.
+#[derive(Debug, Clone, Args)]
+#[command(next_help_heading = "Hammer hits (time histories)")]
+pub struct EstimationArguments {
+    /// How FRFs follow from the spectra: H1 (noise on the responses), H2 (noise on the force), Hv (between them).
+    #[arg(long, value_enum, default_value_t = EstimatorName::H1, ignore_case = true)]
+    pub estimator: EstimatorName,
+    /// How hits count in an average: `auto` inversely to their noise where it differs, `plain` as the textbook says.
+    #[arg(long, value_enum, default_value_t = WeightsName::Auto)]
+    pub weights: WeightsName,
+    /// What is taken off every signal: its offset, a straight line, or nothing.
+    #[arg(long, value_enum, default_value_t = BaselineName::Offset)]
+    pub baseline: BaselineName,
+    /// Keep the force for so many seconds after its onset, then fade it out; `auto` for ten widths of the pulse [default: none].
+    #[arg(long, value_name = "SECONDS", value_parser = force_window)]
+    pub force_window: Option<ForceWindow>,
+    /// Exponential window of this decay over force and responses; `auto` where a record ends too early, `none`.
+    #[arg(long, value_name = "1/S", value_parser = response_window)]
+    pub response_window: Option<ResponseWindow>,
+    /// Fill records with zeros to so many times their length.
+    #[arg(long, value_name = "TIMES", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=64))]
+    pub zero_padding: u32,
+    /// Hits to use whatever is wrong with them, by number.
+    #[arg(long, value_name = "HIT", num_args = 1.., value_delimiter = ',')]
+    pub keep: Vec<u32>,
+    /// Hits to leave out, by number.
+    #[arg(long, value_name = "HIT", num_args = 1.., value_delimiter = ',')]
+    pub reject: Vec<u32>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum EstimatorName {
+    #[value(name = "H1")]
+    H1,
+    #[value(name = "H2")]
+    H2,
+    #[value(name = "Hv")]
+    Hv,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum WeightsName {
+    Auto,
+    Plain,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum BaselineName {
+    Offset,
+    Drift,
+    Keep,
+}
+
+impl EstimationArguments {
+    /// The arguments as options of the estimate, `response_window` where they state none.
+    pub fn options(&self, response_window: ResponseWindow) -> EstimateOptions {
+        EstimateOptions {
+            estimator: match self.estimator {
+                EstimatorName::H1 => Estimator::H1,
+                EstimatorName::H2 => Estimator::H2,
+                EstimatorName::Hv => Estimator::Hv,
+            },
+            weighting: match self.weights {
+                WeightsName::Auto => Weighting::Auto,
+                WeightsName::Plain => Weighting::Plain,
+            },
+            baseline: match self.baseline {
+                BaselineName::Offset => Baseline::Offset,
+                BaselineName::Drift => Baseline::Drift,
+                BaselineName::Keep => Baseline::Keep,
+            },
+            force_window: self.force_window.unwrap_or_default(),
+            response_window: self.response_window.unwrap_or(response_window),
+            zero_padding: self.zero_padding,
+            keep: self.keep.clone(),
+            reject: self.reject.clone(),
+        }
+    }
+
+    /// Whether anything but the defaults is asked for.
+    pub fn are_given(&self) -> bool {
+        self.options(ResponseWindow::None)
+            != EstimateOptions { zero_padding: 1, ..EstimateOptions::default() }
+            || self.response_window.is_some()
+    }
+}
+
+fn force_window(text: &str) -> Result<ForceWindow, String> {
+    match text {
+        "auto" => Ok(ForceWindow::Auto),
+        "none" => Ok(ForceWindow::None),
+        _ => positive(text).map(ForceWindow::Length).ok_or_else(|| {
+            "seconds after the hit's onset, `auto` or `none` are needed, such as 0.01".to_owned()
+        }),
+    }
+}
+
+fn response_window(text: &str) -> Result<ResponseWindow, String> {
+    match text {
+        "auto" => Ok(ResponseWindow::Auto),
+        "none" => Ok(ResponseWindow::None),
+        _ => positive(text)
+            .map(ResponseWindow::Decay)
+            .ok_or_else(|| "a decay in 1/s, `auto` or `none` is needed, such as 12.5".to_owned()),
+    }
+}
+
+fn positive(text: &str) -> Option<f64> {
+    text.trim().parse().ok().filter(|value: &f64| value.is_finite() && *value > 0.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::Parser;
+
+    #[derive(Debug, Parser)]
+    struct Estimating {
+        #[command(flatten)]
+        estimation: EstimationArguments,
+    }
+
+    fn parse(words: &[&str]) -> Result<EstimateOptions, String> {
+        Estimating::try_parse_from(["estimating"].iter().chain(words))
+            .map(|parsed| parsed.estimation.options(ResponseWindow::None))
+            .map_err(|error| error.to_string())
+    }
+
+    #[test]
+    fn the_defaults_are_the_textbooks() {
+        let expected = EstimateOptions { zero_padding: 1, ..EstimateOptions::default() };
+        assert_eq!(parse(&[]), Ok(expected));
+    }
+
+    #[test]
+    fn windows_are_numbers_or_auto_and_hits_are_lists() {
+        let options = parse(&[
+            "--force-window",
+            "0.01",
+            "--response-window",
+            "auto",
+            "--keep",
+            "3,5",
+            "--reject",
+            "4",
+            "7",
+        ]);
+        let options = options.unwrap();
+        assert_eq!(options.force_window, ForceWindow::Length(0.01));
+        assert_eq!(options.response_window, ResponseWindow::Auto);
+        assert_eq!((options.keep, options.reject), (vec![3, 5], vec![4, 7]));
+        assert_eq!(parse(&["--estimator", "h2"]).unwrap().estimator, Estimator::H2);
+        assert!(parse(&["--response-window", "-3"]).is_err());
+        assert!(parse(&["--response-window=-3"]).unwrap_err().contains("12.5"));
+        assert!(parse(&["--force-window", "0"]).unwrap_err().contains("0.01"));
+        assert!(parse(&["--zero-padding", "0"]).is_err());
+    }
+}
