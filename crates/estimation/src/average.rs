@@ -2,7 +2,7 @@
 
 use num_complex::Complex64;
 
-use crate::{Estimator, Weighting};
+use crate::Estimator;
 
 /// The averaged spectra of one response and force on one line.
 #[derive(Debug, Clone, Copy, Default)]
@@ -48,6 +48,19 @@ impl Averaged {
     }
 }
 
+/// Variance E|ε|² of H1 on one line from the residuals of the hits, each with its own noise: Σ w²|X|²|Y − H X|²/(1 − h) / (Σ w|X|²)², h the hit's
+/// leverage. Where the noise of all hits is alike its mean is that of (1 − γ²)/((n − 1)γ²)·|H|², but it scatters more.
+pub(crate) fn variance_of_unequal_hits(hits: &[Pair], weights: &[f64], line: usize) -> f64 {
+    let sum = averaged(hits, weights, line);
+    let Some(h1) = sum.frf(Estimator::H1) else { return 0.0 };
+    let of_hit = |((force, response), weight): (&Pair, &f64)| {
+        let power = weight * force[line].norm_sqr();
+        let rest = (1.0 - power / sum.force).max(1e-3);
+        power * weight * (response[line] - h1 * force[line]).norm_sqr() / rest
+    };
+    hits.iter().zip(weights).map(of_hit).sum::<f64>() / (sum.force * sum.force)
+}
+
 /// Hits whose noise differs by more than this factor in amplitude are weighted.
 const UNEQUAL: f64 = 1.5;
 /// Lines from which the hits' noise is told.
@@ -62,13 +75,15 @@ const MOST: f64 = 1e4;
 /// hold where the noise of all hits is alike. An analyser that adapts its range to each hit, or sensors whose error is a share of what
 /// they read, make the noise of a hard hit larger. Then spectra are divided by the noise of their hit: the noise σ_k² is what
 /// makes the residuals |Y_k − H·X_k|², relative to their mean over the hits on each line, as large as their leverage lets them be.
-pub(crate) fn weights(hits: &[Pair], lines: std::ops::Range<usize>, weighting: Weighting) -> Vec<f64> {
+///
+/// Equal weights where the noise is alike, or cannot be told.
+pub(crate) fn weights_by_noise(hits: &[Pair], lines: std::ops::Range<usize>) -> Vec<f64> {
     let n = hits.len();
     let plain = vec![1.0; n];
     let every = (lines.len() / LOOKED_AT).max(1);
     let lines: Vec<usize> = lines.step_by(every).collect();
     // The residuals of two hits are one number per line: they do not tell whose it is.
-    if weighting == Weighting::Plain || n < 3 || lines.len() < 10 {
+    if n < 3 || lines.len() < 10 {
         return plain;
     }
     // Hits of very different strength are begun as noisy as they are strong.
@@ -134,7 +149,7 @@ mod tests {
     fn found(strengths: &[f64], noises: &[f64], seed: u64) -> Vec<f64> {
         let hits = simulated(strengths, noises, seed);
         let pairs: Vec<Pair> = hits.iter().map(|(x, y)| (x.as_slice(), y.as_slice())).collect();
-        weights(&pairs, 0..600, Weighting::Auto)
+        weights_by_noise(&pairs, 0..600)
     }
 
     #[test]

@@ -6,14 +6,32 @@ use crate::pulse::spread;
 /// Samples beyond so many deviations from the middle belong to the hit or its ringing.
 const FAR: f64 = 3.0;
 
-/// Takes off the baseline; answers with the drift over the whole record in deviations of a straight line's slope from none, as far
-/// as white noise of this spread would go.
-pub(crate) fn remove(values: &mut [f64], baseline: Baseline) -> f64 {
+/// How a baseline drifts.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Drift {
+    /// From the record's begin to its end, in the signal's unit.
+    pub over_record: f64,
+    /// The slope in deviations that it would have in white noise of this spread.
+    pub significance: f64,
+}
+
+/// Fewest samples before the hit from which an offset or a mean square is taken.
+pub(crate) const FEWEST_BEFORE: usize = 24;
+
+/// Takes off the baseline of a signal with so many samples `before` the hit; answers with its drift.
+///
+/// An offset is the mean of those samples, if they are enough: what comes after has a mean of its own, H(0)·F(0), which is none. It shows on no line
+/// above 0 Hz but under a window.
+pub(crate) fn remove(values: &mut [f64], baseline: Baseline, before: usize) -> Drift {
     let line = Line::through(values);
     match baseline {
         Baseline::Keep => {}
         Baseline::Offset => {
-            let offset = line.middle;
+            let quiet = &values[..before.min(values.len())];
+            let offset = match quiet.len() >= FEWEST_BEFORE {
+                true => quiet.iter().sum::<f64>() / quiet.len() as f64,
+                false => line.middle,
+            };
             values.iter_mut().for_each(|value| *value -= offset);
         }
         Baseline::Drift => {
@@ -21,7 +39,7 @@ pub(crate) fn remove(values: &mut [f64], baseline: Baseline) -> f64 {
             values.iter_mut().enumerate().for_each(|(i, value)| *value -= line.at(i, count));
         }
     }
-    line.significance
+    Drift { over_record: line.slope * values.len() as f64, significance: line.significance }
 }
 
 /// A straight line about the middle of a record.
@@ -100,7 +118,7 @@ mod tests {
     fn an_offset_is_found_beside_a_hits_ringing() {
         let mut values: Vec<f64> =
             (0..2000).map(|i| 0.7 + ringing(i) + 1e-3 * (1.7 * i as f64).sin()).collect();
-        remove(&mut values, Baseline::Offset);
+        remove(&mut values, Baseline::Offset, 0);
         assert!(values[..20].iter().all(|value| value.abs() < 2e-3), "{:?}", &values[..3]);
     }
 
@@ -108,8 +126,8 @@ mod tests {
     fn a_drift_is_told_and_taken_off_on_request() {
         let drifting = |i: usize| 0.7 + 1e-3 * i as f64 + ringing(i) + 0.01 * (1.7 * i as f64).sin();
         let mut values: Vec<f64> = (0..2000).map(drifting).collect();
-        assert!(remove(&mut values.clone(), Baseline::Offset) > 60.0);
-        remove(&mut values, Baseline::Drift);
+        assert!(remove(&mut values.clone(), Baseline::Offset, 0).significance > 60.0);
+        remove(&mut values, Baseline::Drift, 0);
         assert!(values[1900..].iter().all(|value| value.abs() < 0.05), "{}", values[1999]);
     }
 }

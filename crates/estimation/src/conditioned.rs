@@ -6,6 +6,7 @@ use jointscope_hits::{Hit, Motion, Response};
 use num_complex::Complex64;
 use realfft::{RealFftPlanner, RealToComplex};
 
+use crate::baseline::{Drift, FEWEST_BEFORE};
 use crate::decay::left_at_end;
 use crate::pulse::{FILTER_RINGING, Pulse};
 use crate::{Baseline, Fault, ForceWindow, baseline, fault};
@@ -18,8 +19,8 @@ pub(crate) struct Conditioned<'a> {
     pub faults: Vec<Fault>,
     pub force: Vec<f64>,
     pub responses: Vec<Signal<'a>>,
-    /// How far the force's baseline drifts, see [`baseline::remove`].
-    pub force_drift: f64,
+    /// How the force's baseline drifts.
+    pub force_drift: Drift,
 }
 
 /// One response of a hit without its baseline.
@@ -27,27 +28,24 @@ pub(crate) struct Conditioned<'a> {
 pub(crate) struct Signal<'a> {
     pub response: &'a Response,
     pub values: Vec<f64>,
-    /// How far its baseline drifts.
-    pub drift: f64,
+    /// How its baseline drifts.
+    pub drift: Drift,
     /// Mean square before the hit, where there are samples enough.
     pub before: Option<f64>,
     /// Amplitude left at the record's end, relative to the loudest part.
     pub left: f64,
 }
 
-/// Fewest samples before the hit from which a mean square is taken.
-const FEWEST_BEFORE: usize = 24;
-
 impl<'a> Conditioned<'a> {
     pub fn of(hit: &'a Hit, kind: Baseline) -> Self {
         let mut force = hit.force().to_vec();
-        let force_drift = baseline::remove(&mut force, kind);
+        let force_drift = baseline::remove(&mut force, kind, 0);
         let pulse = Pulse::of(&force);
         let faults = fault::faults(hit, &force, pulse.as_ref());
         let (begin, before) = pulse.map_or((0, 0), |pulse| (pulse.begin, pulse.before()));
         let signal = |response: &'a Response| {
             let mut values = response.values.clone();
-            let drift = baseline::remove(&mut values, kind);
+            let drift = baseline::remove(&mut values, kind, before);
             let quiet = &values[..before.min(values.len())];
             let power = quiet.iter().map(|v| v * v).sum::<f64>() / quiet.len().max(1) as f64;
             let before = (quiet.len() >= FEWEST_BEFORE).then_some(power);

@@ -1,13 +1,13 @@
-use jointscope_frf::noise::from_coherence_and_force;
+use jointscope_frf::noise::{of_lines, smoothed};
 use jointscope_hits::{Hit, Motion};
 use jointscope_spectra::{Channel, FrfForm, FrfPair, FrfSet, SpectralLines};
 use num_complex::Complex64;
 
-use crate::average::{Averaged, Pair, averaged, weights};
+use crate::average::{Averaged, Pair, averaged, variance_of_unequal_hits, weights_by_noise};
 use crate::band::last_usable;
 use crate::conditioned::{Conditioned, Spectra, Transform};
 use crate::remarks::Remarks;
-use crate::{EstimateError, EstimateOptions, Excitation, ForceWindow, HitReport, ResponseWindow};
+use crate::{EstimateError, EstimateOptions, Excitation, ForceWindow, HitReport, ResponseWindow, Weighting};
 
 /// FRFs of a hammer test, and what was seen on the way to them.
 #[derive(Debug, Clone, PartialEq)]
@@ -218,12 +218,8 @@ impl<'a> Test<'a> {
                 let Some(found) = self.frf(&sensor, excitation, remarks) else { continue };
                 pairs.push(FrfPair::new(sensor.channel.clone(), excitation.struck.clone()));
                 if found.averages > 1 {
-                    variances.extend(from_coherence_and_force(
-                        &found.values,
-                        &found.coherence,
-                        found.averages,
-                        &found.force,
-                    ));
+                    let Found { values, variance, coherence, force, .. } = &found;
+                    variances.extend(smoothed(values, variance, coherence, force));
                 }
                 values.extend(found.values);
                 quality.push((found.coherence, found.averages));
@@ -257,11 +253,15 @@ impl<'a> Test<'a> {
         let pairs: Vec<Pair> = hits.iter().map(spectra).collect();
         let n = self.lines.len();
         let last = self.lines.hz().iter().rposition(|hz| *hz <= excitation.usable_to).unwrap_or(0);
-        let weights = weights(&pairs, 1..last + 1, self.options.weighting);
-        let sums: Vec<Averaged> = (0..n).map(|line| averaged(&pairs, &weights, line)).collect();
+        let by_noise = weights_by_noise(&pairs, 1..last + 1);
+        let equal = vec![1.0; pairs.len()];
+        let is_plain = self.options.weighting == Weighting::Plain;
+        let weights = if is_plain { &equal } else { &by_noise };
+        let sums: Vec<Averaged> = (0..n).map(|line| averaged(&pairs, weights, line)).collect();
         let mut found = Found {
             values: vec![Complex64::ZERO; n],
             coherence: vec![0.0; n],
+            variance: Vec::new(),
             force: sums.iter().map(|sum| sum.force).collect(),
             averages: hits.len() as u32,
         };
@@ -272,9 +272,14 @@ impl<'a> Test<'a> {
                 found.coherence[line] = sums[line].coherence();
             }
         }
-        remarks.of_weights(&weights);
+        let unequal_but_plain = is_plain && by_noise != equal;
+        found.variance = match unequal_but_plain {
+            true => (0..n).map(|line| variance_of_unequal_hits(&pairs, &equal, line)).collect(),
+            false => of_lines(&found.values, &found.coherence, found.averages),
+        };
+        remarks.of_weights(&by_noise, is_plain);
         if hits.len() > 1 {
-            let scatter = self.scatter_over_noise(&hits, &weights, &sums[..=last]);
+            let scatter = self.scatter_over_noise(&hits, weights, &sums[..=last]);
             remarks.of_scatter(&sensor.channel, &excitation.struck, scatter);
         }
         Some(found)
@@ -311,6 +316,8 @@ impl<'a> Test<'a> {
 struct Found {
     values: Vec<Complex64>,
     coherence: Vec<f64>,
+    /// Variance of each value, not smoothed.
+    variance: Vec<f64>,
     /// Power of the force by line.
     force: Vec<f64>,
     averages: u32,

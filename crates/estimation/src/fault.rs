@@ -90,9 +90,13 @@ const STANDS_OUT: f64 = 10.0;
 pub(crate) fn faults(hit: &Hit, force: &[f64], pulse: Option<&Pulse>) -> Vec<Fault> {
     let Some(pulse) = pulse else { return vec![Fault::NoImpact] };
     let mut faults = Vec::new();
+    if rings(force, pulse) {
+        let swapped = pulse_among_responses(hit);
+        let noise_alone = swapped.is_none() && pulse.peak.abs() < STANDS_OUT * pulse.noise;
+        return vec![if noise_alone { Fault::NoImpact } else { Fault::ForceRings { pulse_at: swapped } }];
+    }
     if pulse.peak.abs() < STANDS_OUT * pulse.noise {
-        faults.push(if rings(force) { swapped(hit) } else { Fault::NoImpact });
-        return faults;
+        return vec![Fault::NoImpact];
     }
     if force[0] * pulse.peak.signum() > 2.0 * EDGE * pulse.peak.abs() {
         faults.push(Fault::StartsAfterImpact);
@@ -114,23 +118,30 @@ pub(crate) fn faults(hit: &Hit, force: &[f64], pulse: Option<&Pulse>) -> Vec<Fau
 /// Force at the first sample, relative to the peak, above which the record has missed the onset, halved.
 const EDGE: f64 = 0.05;
 
-/// Whether a signal swings to and fro: its largest values of both signs are alike.
-fn rings(values: &[f64]) -> bool {
-    let (low, high) = values.iter().fold((0.0f64, 0.0f64), |(low, high), v| (low.min(*v), high.max(*v)));
-    let smaller = high.min(-low);
-    smaller > 0.5 * high.max(-low)
+/// Energy to the other side, relative to that to the peak's side, above which a signal rings.
+const TO_AND_FRO: f64 = 0.3;
+
+/// Whether a signal swings to and fro instead of pushing one way.
+fn rings(values: &[f64], pulse: &Pulse) -> bool {
+    let sizeable = values.iter().filter(|v| v.abs() > EDGE * pulse.peak.abs());
+    let (mut to, mut fro) = (0.0, 0.0);
+    for value in sizeable {
+        let side = if value * pulse.peak > 0.0 { &mut to } else { &mut fro };
+        *side += value * value;
+    }
+    fro > TO_AND_FRO * to
 }
 
-/// A force that rings, and the response that is a pulse instead.
-fn swapped(hit: &Hit) -> Fault {
+/// The response that is a hammer's pulse, if one is.
+fn pulse_among_responses(hit: &Hit) -> Option<Channel> {
     let is_pulse = |values: &[f64]| {
         let mut values = values.to_vec();
-        crate::baseline::remove(&mut values, crate::Baseline::Offset);
+        crate::baseline::remove(&mut values, crate::Baseline::Offset, 0);
         let pulse = Pulse::of(&values);
-        pulse.is_some_and(|pulse| pulse.peak.abs() > 5.0 * STANDS_OUT * pulse.noise && !rings(&values))
+        pulse
+            .is_some_and(|pulse| pulse.peak.abs() > 5.0 * STANDS_OUT * pulse.noise && !rings(&values, &pulse))
     };
-    let pulse_at = hit.responses().iter().find(|r| is_pulse(&r.values)).map(|r| r.channel.clone());
-    Fault::ForceRings { pulse_at }
+    hit.responses().iter().find(|r| is_pulse(&r.values)).map(|r| r.channel.clone())
 }
 
 /// The largest other strike of the hammer: its sample and its height.

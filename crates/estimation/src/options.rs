@@ -35,10 +35,10 @@ pub enum Weighting {
 /// What is taken off every signal.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Baseline {
-    /// A constant: the mean of the samples that neither the hit nor the ringing moves far.
+    /// A constant: the mean before the hit, or, without enough samples there, of those that neither hit nor ringing moves far.
     #[default]
     Offset,
-    /// A straight line through those samples.
+    /// A straight line through the samples that neither the hit nor the ringing moves far.
     Drift,
     /// Nothing.
     Keep,

@@ -35,17 +35,20 @@ pub(crate) fn is_cut_off(values: &[f64]) -> Option<f64> {
     )
 }
 
-/// The step of the converter: the smallest distance between two values, as far as a sample of them shows.
+/// The step of the converter, as far as a sample of the values shows it: the smallest distance between two, if all others are multiples of it.
 fn converter_step(values: &[f64]) -> f64 {
     const LOOKED_AT: usize = 4096;
+    const OFF_THE_GRID: f64 = 0.05;
     let mut sorted: Vec<f64> = values.iter().copied().take(LOOKED_AT).collect();
     sorted.sort_unstable_by(f64::total_cmp);
     let range = match (sorted.first(), sorted.last()) {
         (Some(first), Some(last)) => last - first,
         _ => 0.0,
     };
-    let steps = sorted.windows(2).map(|two| two[1] - two[0]);
-    steps.filter(|step| *step > 1e-9 * range).fold(f64::INFINITY, f64::min).min(range)
+    let steps = || sorted.windows(2).map(|two| two[1] - two[0]).filter(|step| *step > 1e-9 * range);
+    let smallest = steps().fold(f64::INFINITY, f64::min);
+    let on_grid = |step: f64| (step / smallest - (step / smallest).round()).abs() < OFF_THE_GRID;
+    if smallest.is_finite() && steps().all(on_grid) { smallest } else { 0.0 }
 }
 
 #[cfg(test)]

@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use jointscope_spectra::{Channel, FrfSet};
 
+use crate::baseline::Drift;
 use crate::conditioned::Conditioned;
 use crate::estimate::LEFT_UNNOTICED;
 use crate::plausibility::implausible;
@@ -13,8 +14,9 @@ use crate::{Baseline, EstimateOptions, Estimator, Excitation, HitReport};
 #[derive(Debug, Default)]
 pub(crate) struct Remarks {
     pub texts: Vec<String>,
-    /// Largest ratio of the hits' noise that was weighed.
+    /// Largest ratio of the hits' noise, and whether it was left unweighed.
     noise_ratio: f64,
+    is_plain: bool,
     /// FRFs whose hits scatter beyond their noise, and by how much at the most.
     scatter: Vec<String>,
     worst_scatter: f64,
@@ -151,10 +153,11 @@ impl Remarks {
         }
         let mut drifting: BTreeSet<String> = BTreeSet::new();
         for hit in used {
-            if hit.force_drift > DRIFTS {
+            let drifts = |drift: &Drift, values: &[f64]| drift.significance > DRIFTS && shows(drift, values);
+            if drifts(&hit.force_drift, &hit.force) {
                 drifting.insert("the force".to_owned());
             }
-            let signals = hit.responses.iter().filter(|signal| signal.drift > DRIFTS);
+            let signals = hit.responses.iter().filter(|signal| drifts(&signal.drift, &signal.values));
             drifting.extend(signals.map(|signal| format!("the response at {}", signal.response.channel)));
         }
         if !drifting.is_empty() {
@@ -167,7 +170,8 @@ impl Remarks {
     }
 
     /// How differently the hits of an FRF count.
-    pub fn of_weights(&mut self, weights: &[f64]) {
+    pub fn of_weights(&mut self, weights: &[f64], is_plain: bool) {
+        self.is_plain = is_plain;
         let (low, high) =
             weights.iter().fold((f64::INFINITY, 0.0f64), |(low, high), w| (low.min(*w), high.max(*w)));
         self.noise_ratio = self.noise_ratio.max((high / low).sqrt());
@@ -184,11 +188,17 @@ impl Remarks {
     /// What only the finished FRFs tell.
     pub fn of_frfs(&mut self, frfs: &FrfSet, excitations: &[Excitation], estimator: Estimator) {
         if self.noise_ratio > 1.0 {
-            self.texts.push(format!(
-                "the noise of the hits differs by a factor of up to {}: in the averages each hit counts inversely to the power of its noise (`--weights \
-                 plain` takes the textbook's average)",
-                two_digits(self.noise_ratio)
-            ));
+            let ratio = two_digits(self.noise_ratio);
+            self.texts.push(match self.is_plain {
+                false => format!(
+                    "the noise of the hits differs by a factor of up to {ratio}: in the averages each hit counts inversely to the power of its noise \
+                     (`--weights plain` takes the textbook's average)"
+                ),
+                true => format!(
+                    "the noise of the hits differs by a factor of up to {ratio}: the variances here know of it, but coherence and averages state less noise \
+                     than a plain average has (`--weights auto` mends that)"
+                ),
+            });
         }
         if !self.scatter.is_empty() {
             self.texts.push(format!(
@@ -210,6 +220,18 @@ impl Remarks {
         self.texts.extend(implausible(frfs, excitations));
     }
 }
+
+/// Whether a drift makes up a tenth of the first line: a straight line over n samples has n/2π times its rise there, a pulse about the sum of
+/// its samples.
+fn shows(drift: &Drift, values: &[f64]) -> bool {
+    let first_line = drift.over_record.abs() * values.len() as f64 / std::f64::consts::TAU;
+    let peak = values.iter().map(|v| v.abs()).fold(0.0, f64::max);
+    let pulse: f64 = values.iter().map(|v| v.abs()).filter(|v| *v > PULSE * peak).sum();
+    first_line > 0.1 * pulse
+}
+
+/// Share of the peak that is part of the pulse or of the loudest ringing.
+const PULSE: f64 = 0.1;
 
 fn window(decay: f64) -> String {
     format!(

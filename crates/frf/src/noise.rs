@@ -63,34 +63,30 @@ pub fn with_variances(frfs: &FrfSet) -> Result<(FrfSet, Vec<NoiseSource>), Spect
 
 /// Variances E|ε|² of one FRF from its coherence and number of averages, smoothed over the lines.
 pub fn from_coherence(values: &[Complex64], coherence: &[f64], averages: u32) -> Vec<f64> {
-    from_coherence_and_force(values, coherence, averages, &[])
+    smoothed(values, &of_lines(values, coherence, averages), coherence, &[])
 }
 
-/// [`from_coherence`] where the power of the force by line, in any unit, is known too: the noise of the channels is smooth over the lines, and what
-/// it makes of an FRF rises wherever the force dips. An empty `force` is one that is the same on all lines.
-pub fn from_coherence_and_force(
-    values: &[Complex64],
-    coherence: &[f64],
-    averages: u32,
-    force: &[f64],
-) -> Vec<f64> {
+/// Variance E|ε|² of one value by line as coherence and averages state it, (1 − γ²)/((n − 1)γ²)·|H|²: right in the mean over many lines,
+/// with too few degrees of freedom to weigh a single one by.
+pub fn of_lines(values: &[Complex64], coherence: &[f64], averages: u32) -> Vec<f64> {
+    let degrees = f64::from(averages.max(2) - 1);
+    let of_line = |(value, gamma2): (&Complex64, &f64)| {
+        let gamma2 = gamma2.clamp(1e-6, 1.0);
+        (1.0 - gamma2) / (degrees * gamma2) * value.norm_sqr()
+    };
+    values.iter().zip(coherence).map(of_line).collect()
+}
+
+/// Smooths variances of single lines over the lines: the noise of the channels varies slowly, and what it makes of an FRF rises wherever
+/// the power of the `force`, in any unit, dips. An empty `force` is one that is the same on all lines; lines without coherence are skipped.
+pub fn smoothed(values: &[Complex64], of_lines: &[f64], coherence: &[f64], force: &[f64]) -> Vec<f64> {
     let strongest = force.iter().copied().fold(0.0, f64::max);
     // A line without force has no FRF, whatever its neighbours say.
     let power = |line: usize| match force.get(line) {
         Some(power) if strongest > 0.0 => (power / strongest).max(NO_FORCE),
         _ => 1.0,
     };
-    let degrees = f64::from(averages.max(2) - 1);
-    let raw: Vec<f64> = values
-        .iter()
-        .zip(coherence)
-        .map(|(value, &gamma2)| {
-            let gamma2 = gamma2.clamp(1e-6, 1.0);
-            (1.0 - gamma2) / (degrees * gamma2) * value.norm_sqr()
-        })
-        .enumerate()
-        .map(|(line, variance)| variance * power(line))
-        .collect();
+    let raw: Vec<f64> = of_lines.iter().enumerate().map(|(line, variance)| variance * power(line)).collect();
     let usable: Vec<bool> = coherence.iter().map(|&g| g > 0.0).collect();
     let mean = |line: usize| {
         let (mut sum, mut count) = (0.0, 0.0f64);

@@ -11,8 +11,8 @@ use crate::{Axis, Column, Plot, Role, Section, Table, Tone, YRange};
 /// Hits drawn at one struck point at the most, and struck points.
 const SHOWN: usize = 12;
 /// Widths of the pulse drawn before and after it.
-const BEFORE: f64 = 6.0;
-const AFTER: f64 = 24.0;
+const BEFORE: f64 = 3.0;
+const AFTER: f64 = 10.0;
 /// Lines beyond which spectra are drawn thinned.
 const LINE_LIMIT: usize = 2_000;
 
