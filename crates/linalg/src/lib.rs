@@ -5,6 +5,7 @@
 //! * [`LuWorkspace`]: dense complex LU with row equilibration, its memory reused from line to line;
 //! * [`LeastSquares`]: weighted linear least squares by Householder reflections, with a rank check;
 //! * [`solve_positive_definite`]: the normal equations of a fit;
+//! * [`inverse`], [`matrix_exponential`]: real matrices of a few rows, such as those of a state space;
 //! * [`generalized_symmetric_eigen`]: `K φ = λ M φ`, scaled and with its residuals checked.
 //!
 //! This is the only crate that names the library behind the eigenproblem. That library loses
@@ -25,9 +26,11 @@ mod least_squares;
 mod lu;
 mod matrix2;
 mod positive_definite;
+mod real;
 
 pub use eigen::{EigenError, ModalBasis, generalized_symmetric_eigen};
 pub use least_squares::{LeastSquares, LeastSquaresError};
 pub use lu::{LuWorkspace, Singular};
 pub use matrix2::{ComplexMatrix2, Field, Matrix2, RealMatrix2, Scalar};
 pub use positive_definite::solve_positive_definite;
+pub use real::{inverse, matrix_exponential};

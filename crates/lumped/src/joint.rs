@@ -1,5 +1,9 @@
 //! The dynamic stiffness of one joint with everything that the fixture says of it.
 
+mod in_time;
+
+pub(crate) use in_time::JointInTime;
+
 use crate::assembly::nominal_stiffness;
 use crate::lanes::Lines;
 use jointscope_beam::{consistent_mass, end_compliance, transport};

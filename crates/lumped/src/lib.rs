@@ -11,6 +11,7 @@
 //!
 //! * [`Assembly`]: matrices and undamped modes of the free assembly (eq 8–14);
 //! * [`Model`]: the assembly with supports and effects, and its receptances between any [`Station`]s;
+//! * [`StateSpace`]: the assembly over time, for what has no FRF;
 //! * [`synthesize`], [`accelerances`]: the FRFs an analyser would record (eq 18, 41), measuring-chain effects included.
 //!
 //! ```
@@ -42,6 +43,7 @@ mod modal_system;
 mod model;
 mod modes_cache;
 mod receptances;
+mod state_space;
 mod station;
 mod synthesis;
 mod terms;
@@ -51,6 +53,7 @@ pub use assembly::{Assembly, nominal_stiffness};
 pub use joint_element::JointElement;
 pub use model::Model;
 pub use receptances::Receptances;
+pub use state_space::StateSpace;
 pub use station::Station;
 pub use synthesis::{Instrument, accelerances, synthesize};
 
@@ -88,6 +91,19 @@ pub enum LumpedError {
         /// The effect's name.
         kind: &'static str,
     },
+    /// An effect has no form over time.
+    #[error(
+        "physics: `{kind}` is known by frequency only and has no form over time; leave it out, or state its damping by `modal_ratios`"
+    )]
+    NotInTime {
+        /// The effect's name.
+        kind: &'static str,
+    },
+    /// Mass or damping that makes the equations of motion singular.
+    #[error(
+        "the equations of motion are singular: masses that an effect takes away leave nothing to be moved"
+    )]
+    SingularMass,
     /// The dynamic stiffness has no inverse at a line.
     #[error(
         "the response is unbounded at {frequency} Hz: the model has an undamped resonance on that line; state some damping or move the line"

@@ -13,7 +13,7 @@ use std::f64::consts::TAU;
 pub struct Model {
     assembly: Assembly,
     bending: Vec<BendingCoordinate>,
-    pub(crate) terms: Terms,
+    terms: Terms,
     pub(crate) highest_hz: f64,
 }
 
@@ -45,6 +45,11 @@ impl Model {
         {
             return Err(LumpedError::NonLinear { index, kind: effect.kind.name() });
         }
+        Self::linear_part(fixture, highest_hz)
+    }
+
+    /// As [`Model::new`], effects that depend on amplitude left aside.
+    pub(crate) fn linear_part(fixture: &Fixture, highest_hz: f64) -> Result<Self, LumpedError> {
         let bending = bending_coordinates(fixture);
         let flexible: Vec<bool> =
             (0..fixture.bodies().len()).map(|body| bending.iter().any(|b| b.body == body)).collect();
@@ -75,6 +80,11 @@ impl Model {
         pairs: Vec<(usize, usize)>,
     ) -> Receptances<'_> {
         Receptances::new(self, outputs, inputs, pairs)
+    }
+
+    /// What is not a proportional part of the free assembly.
+    pub(crate) fn terms(&self) -> &Terms {
+        &self.terms
     }
 
     pub(crate) fn participation(&self, station: &TermStation) -> Vec<f64> {

@@ -148,13 +148,13 @@ impl<'a> Prepared<'a> {
         let with_bending = |s: &Station| model.participation(&TermStation::single(*s));
         let out: Vec<Vec<f64>> = outputs.iter().map(with_bending).collect();
         let input: Vec<Vec<f64>> = inputs.iter().map(with_bending).collect();
-        let change: Vec<Vec<f64>> = model.terms.stations.iter().map(|s| model.participation(s)).collect();
+        let change: Vec<Vec<f64>> = model.terms().stations.iter().map(|s| model.participation(s)).collect();
         let single = model.denominators();
-        let elements = model.terms.elements();
+        let elements = model.terms().elements();
         let (outputs, inputs) = (out.len(), input.len());
         if single.len() <= FEW_MODES && change.len() >= HIGH_RANK {
             let system = Some(ModalSystem::new(single, &out, &input, &change));
-            let (terms, denominators, products) = (&model.terms, Vec::new(), Vec::new());
+            let (terms, denominators, products) = (model.terms(), Vec::new(), Vec::new());
             let (entries, far, near) = (0, None, 0);
             return Prepared {
                 terms,
@@ -199,7 +199,7 @@ impl<'a> Prepared<'a> {
             (far, rows)
         });
         Prepared {
-            terms: &model.terms,
+            terms: model.terms(),
             elements,
             denominators,
             pairs,

@@ -69,7 +69,7 @@ impl TermStation {
     }
 
     /// d = u_to − R·u_from over `length`: its deflection, then its rotation.
-    fn relative(from: (usize, f64), to: (usize, f64), length: f64, rigid_only: bool) -> [Self; 2] {
+    pub fn relative(from: (usize, f64), to: (usize, f64), length: f64, rigid_only: bool) -> [Self; 2] {
         let [near, far] = [from, to].map(|(body, x)| Station::both(body, x));
         [
             TermStation { parts: [(1.0, far[0]), (-1.0, near[0]), (-length, near[1])], rigid_only },

@@ -1,0 +1,283 @@
+//! Steps of a linear system with a few amplitude-dependent forces in it.
+//!
+//! Between two instants force and element forces vary linearly and the linear part is propagated exactly,
+//! x⁺ = Φx + β₀F + β₁F⁺ − Σ(ε₀g + ε₁g⁺); the new g⁺ follows from its law in closed form, for it moves its own d⁺ by a known amount. A step
+//! in which an element changes its branch (contact, slip) is halved until the event is confined to a short one.
+
+use super::law::{Memory, RestoringLaw};
+use jointscope_linalg::matrix_exponential;
+
+/// A linear system ẋ = A x + b F − Σ eⱼgⱼ with elements on dⱼ = cⱼx and outputs yᵢ = rᵢx + aᵢF − Σ hᵢⱼgⱼ.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct System {
+    /// A, row-major.
+    pub matrix: Vec<f64>,
+    /// b.
+    pub load: Vec<f64>,
+    pub elements: Vec<Element>,
+    pub outputs: Vec<Output>,
+}
+
+/// An amplitude-dependent force.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Element {
+    pub law: RestoringLaw,
+    /// e: what a force pair of 1 loads.
+    pub load: Vec<f64>,
+    /// c: reads d.
+    pub motion: Vec<f64>,
+}
+
+/// A reading of the system.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Output {
+    pub row: Vec<f64>,
+    pub force: f64,
+    pub elements: Vec<f64>,
+}
+
+/// How a run steps.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Steps {
+    /// Interval of the outputs, s.
+    pub interval: f64,
+    /// Steps within it.
+    pub within: usize,
+    /// Halvings of a step that holds an event.
+    pub halvings: usize,
+}
+
+/// What a run leaves.
+pub(crate) struct Run {
+    /// One history an output.
+    pub outputs: Vec<Vec<f64>>,
+    /// Motion and force of each element at every output instant.
+    pub elements: Vec<Vec<Memory>>,
+    /// The last state.
+    pub state: Vec<f64>,
+}
+
+/// Largest number of states.
+pub(crate) const MOST_STATES: usize = 128;
+/// Largest number of elements.
+pub(crate) const MOST_ELEMENTS: usize = 4;
+
+/// A system ready to be stepped.
+pub(crate) struct Stepper {
+    kernel: Box<dyn Kernel>,
+    steps: Steps,
+    elements: usize,
+}
+
+impl Stepper {
+    /// `None` for more states or elements than there is room for, or a system whose exponential is not finite.
+    pub fn new(system: &System, steps: Steps) -> Option<Self> {
+        macro_rules! of_size {
+            ($($n:literal),*) => {
+                match (system.load.len(), system.elements.len()) {
+                    $((n, 0) if n <= $n => Box::new(Sized::<$n, 0>::new(system, steps)?) as Box<dyn Kernel>,
+                      (n, 1) if n <= $n => Box::new(Sized::<$n, 1>::new(system, steps)?),
+                      (n, 2..=MOST_ELEMENTS) if n <= $n => Box::new(Sized::<$n, MOST_ELEMENTS>::new(system, steps)?),)*
+                    _ => return None,
+                }
+            };
+        }
+        let kernel = of_size!(2, 4, 6, 8, 12, 16, 24, 32, 64, 128);
+        Some(Stepper { kernel, steps, elements: system.elements.len() })
+    }
+
+    /// Runs from rest through a force given at every step (`within` values an output interval); outputs are written at every
+    /// `within`-th of them.
+    pub fn run(&self, force: &[f64], samples: usize) -> Run {
+        let mut run =
+            Run { outputs: Vec::new(), elements: vec![Vec::new(); self.elements], state: Vec::new() };
+        self.kernel.run(force, samples, self.steps.within, &mut run);
+        run
+    }
+}
+
+trait Kernel: Send + Sync {
+    fn run(&self, force: &[f64], samples: usize, within: usize, to: &mut Run);
+}
+
+/// Φ, β and ε of one length of step.
+struct Propagator<const N: usize, const E: usize> {
+    /// Φ by columns: a state's contributions are added side by side.
+    transition: [[f64; N]; N],
+    force: [[f64; N]; 2],
+    elements: [[[f64; N]; 2]; E],
+    /// How far each element's new force moves each element's motion.
+    yields: [[f64; E]; E],
+}
+
+struct Sized<const N: usize, const E: usize> {
+    /// The whole step, its half, its quarter …
+    propagators: Vec<Propagator<N, E>>,
+    laws: [RestoringLaw; E],
+    motions: [[f64; N]; E],
+    outputs: Vec<([f64; N], f64, [f64; E])>,
+    states: usize,
+}
+
+/// A law that never bears anything: what stands where there is no element.
+const NOTHING: RestoringLaw = RestoringLaw::Gap { clearance: f64::INFINITY, stiffness: 0.0 };
+
+fn row<const N: usize>(values: &[f64]) -> [f64; N] {
+    let mut all = [0.0; N];
+    all.iter_mut().zip(values).for_each(|(to, from)| *to = *from);
+    all
+}
+
+#[inline]
+fn dot<const N: usize>(a: &[f64; N], b: &[f64; N]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+impl<const N: usize, const E: usize> Sized<N, E> {
+    fn new(system: &System, steps: Steps) -> Option<Self> {
+        let mut motions = [[0.0; N]; E];
+        let mut laws = [NOTHING; E];
+        for (j, element) in system.elements.iter().enumerate() {
+            motions[j] = row(&element.motion);
+            laws[j] = element.law;
+        }
+        let halvings = if E == 0 { 0 } else { steps.halvings };
+        let step = steps.interval / steps.within as f64;
+        let propagators = (0..=halvings)
+            .map(|halving| Propagator::new(system, step * 0.5f64.powi(halving as i32), &motions))
+            .collect::<Option<_>>()?;
+        let outputs = system.outputs.iter().map(|o| (row(&o.row), o.force, row(&o.elements))).collect();
+        Some(Sized { propagators, laws, motions, outputs, states: system.load.len() })
+    }
+
+    #[inline]
+    fn step(&self, halving: usize, x: &mut [f64; N], memory: &mut [Memory; E], force: [f64; 2]) {
+        let by = &self.propagators[halving];
+        let mut free = [0.0; N];
+        for i in 0..N {
+            free[i] = by.force[0][i] * force[0] + by.force[1][i] * force[1];
+        }
+        for (column, value) in by.transition.iter().zip(x.iter()) {
+            for i in 0..N {
+                free[i] += column[i] * value;
+            }
+        }
+        for (element, before) in by.elements.iter().zip(memory.iter()) {
+            for i in 0..N {
+                free[i] -= element[0][i] * before.force;
+            }
+        }
+        let mut after = *memory;
+        if E == 1 {
+            let motion = dot(&self.motions[0], &free);
+            after[0] = self.laws[0].settle(motion, by.yields[0][0], &memory[0]);
+        } else {
+            self.settle_together(by, &free, memory, &mut after);
+        }
+        if halving + 1 < self.propagators.len() {
+            let event = |j: usize| self.laws[j].branch(&memory[j]) != self.laws[j].branch(&after[j]);
+            if (0..E).any(event) {
+                let middle = 0.5 * (force[0] + force[1]);
+                self.step(halving + 1, x, memory, [force[0], middle]);
+                self.step(halving + 1, x, memory, [middle, force[1]]);
+                return;
+            }
+        }
+        for (element, now) in by.elements.iter().zip(&after) {
+            for i in 0..N {
+                free[i] -= element[1][i] * now.force;
+            }
+        }
+        *x = free;
+        *memory = after;
+    }
+
+    /// Several elements move each other: one after the other until nothing changes.
+    fn settle_together(
+        &self,
+        by: &Propagator<N, E>,
+        free: &[f64; N],
+        before: &[Memory; E],
+        after: &mut [Memory; E],
+    ) {
+        let motions: [f64; E] = std::array::from_fn(|j| dot(&self.motions[j], free));
+        for _ in 0..30 {
+            let mut change: f64 = 0.0;
+            for j in 0..E {
+                let others: f64 = (0..E).filter(|k| *k != j).map(|k| by.yields[j][k] * after[k].force).sum();
+                let next = self.laws[j].settle(motions[j] - others, by.yields[j][j], &before[j]);
+                change = change.max((next.force - after[j].force).abs() - 1e-13 * next.force.abs());
+                after[j] = next;
+            }
+            if change <= 0.0 {
+                break;
+            }
+        }
+    }
+}
+
+impl<const N: usize, const E: usize> Kernel for Sized<N, E> {
+    fn run(&self, force: &[f64], samples: usize, within: usize, to: &mut Run) {
+        let mut x = [0.0; N];
+        let mut memory = [Memory::default(); E];
+        to.outputs = vec![Vec::with_capacity(samples); self.outputs.len()];
+        let at = |step: usize| force.get(step).copied().unwrap_or(0.0);
+        for sample in 0..samples {
+            if sample > 0 {
+                for step in (sample - 1) * within..sample * within {
+                    self.step(0, &mut x, &mut memory, [at(step), at(step + 1)]);
+                }
+            }
+            let now = at(sample * within);
+            for (history, (row, direct, elements)) in to.outputs.iter_mut().zip(&self.outputs) {
+                let borne: f64 = elements.iter().zip(&memory).map(|(h, m)| h * m.force).sum();
+                history.push(dot(row, &x) + direct * now - borne);
+            }
+            to.elements.iter_mut().zip(&memory).for_each(|(history, memory)| history.push(*memory));
+        }
+        to.state = x[..self.states].to_vec();
+    }
+}
+
+impl<const N: usize, const E: usize> Propagator<N, E> {
+    /// From the exponential of the system extended by its inputs and their rates.
+    fn new(system: &System, step: f64, motions: &[[f64; N]; E]) -> Option<Self> {
+        let (n, loads) = (system.load.len(), 1 + system.elements.len());
+        let size = n + 2 * loads;
+        let mut extended = vec![0.0; size * size];
+        for i in 0..n {
+            for j in 0..n {
+                extended[i * size + j] = system.matrix[i * n + j] * step;
+            }
+            extended[i * size + n] = system.load[i] * step;
+            for (j, element) in system.elements.iter().enumerate() {
+                extended[i * size + n + 1 + j] = element.load[i] * step;
+            }
+        }
+        (0..loads).for_each(|k| extended[(n + k) * size + n + loads + k] = 1.0);
+        let exponential = matrix_exponential(&extended, size)?;
+        let mut all = Propagator {
+            transition: [[0.0; N]; N],
+            force: [[0.0; N]; 2],
+            elements: [[[0.0; N]; 2]; E],
+            yields: [[0.0; E]; E],
+        };
+        for i in 0..n {
+            for j in 0..n {
+                all.transition[j][i] = exponential[i * size + j];
+            }
+            for k in 0..loads {
+                let (held, ramp) = (exponential[i * size + n + k], exponential[i * size + n + loads + k]);
+                let into = if k == 0 { &mut all.force } else { &mut all.elements[k - 1] };
+                into[0][i] = held - ramp;
+                into[1][i] = ramp;
+            }
+        }
+        for (j, motion) in motions.iter().enumerate() {
+            for k in 0..E {
+                all.yields[j][k] = dot(motion, &all.elements[k][1]);
+            }
+        }
+        Some(all)
+    }
+}

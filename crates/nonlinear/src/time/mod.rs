@@ -1,0 +1,7 @@
+//! Motion over time.
+
+pub(crate) mod kernel;
+pub(crate) mod law;
+pub(crate) mod oversampling;
+pub(crate) mod simulation;
+pub(crate) mod structure;
