@@ -59,3 +59,79 @@ pub enum SimulationError {
     #[error(transparent)]
     Hit(#[from] HitError),
 }
+
+/// Why hits cannot be diagnosed.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum DiagnoseError {
+    /// No hits.
+    #[error("there are no hits: time histories of force and response are needed")]
+    NoHits,
+    /// A hit without force.
+    #[error("hit {hit} has no force: its force channel is zero throughout")]
+    NoForce {
+        /// The hit's number.
+        hit: u32,
+    },
+    /// A hit without response.
+    #[error("hit {hit} has a force and no response: at least one acceleration is needed")]
+    NoResponse {
+        /// The hit's number.
+        hit: u32,
+    },
+    /// A response that is zero throughout.
+    #[error("hit {hit}: the response at {channel} is zero throughout; leave the dead channel out")]
+    SilentResponse {
+        /// The hit's number.
+        hit: u32,
+        /// The channel.
+        channel: String,
+    },
+    /// A hit too short for spectra.
+    #[error("hit {hit} has {samples} samples: {needed} at the least are needed")]
+    TooShort {
+        /// The hit's number.
+        hit: u32,
+        /// Its samples.
+        samples: usize,
+        /// Samples needed.
+        needed: usize,
+    },
+    /// A point that the fixture does not have.
+    #[error("hit {hit}: the fixture has no point `{point}`")]
+    UnknownPoint {
+        /// The hit's number.
+        hit: u32,
+        /// The point.
+        point: String,
+    },
+    /// A rotation of a body that does not rotate.
+    #[error("hit {hit}: point `{point}` sits on a body that does not rotate")]
+    NoRotation {
+        /// The hit's number.
+        hit: u32,
+        /// The point.
+        point: String,
+    },
+    /// Hits of one strength only.
+    #[error(
+        "all {hits} hits are of one strength (at each point the strongest is {ratio:.2} times the weakest): whether anything depends on amplitude cannot be judged; strike at two or more strengths that differ by a factor of 2 or more"
+    )]
+    OneLevel {
+        /// Number of hits.
+        hits: usize,
+        /// Strongest over weakest.
+        ratio: f64,
+    },
+    /// Nothing elastic within the sampled band.
+    #[error("no elastic motion of the fixture lies below {highest} Hz, half of the sampling rate: sample faster")]
+    NoElasticMotion {
+        /// Half the sampling rate, Hz.
+        highest: f64,
+    },
+    /// The fixture's motion is not finite.
+    #[error("the fixture's motion under these hits is not finite: check its stiffnesses and masses")]
+    NoMotion,
+    /// The fixture cannot be simulated.
+    #[error(transparent)]
+    Simulation(#[from] SimulationError),
+}

@@ -62,6 +62,12 @@ impl<'a> Structure<'a> {
         self.reduced(load, outputs)
     }
 
+    /// The system struck at `struck` with outputs made of rows over all states of the assembly.
+    pub fn system_with(&self, struck: &Channel, outputs: Vec<Output>) -> Result<System, SimulationError> {
+        let load = self.space.load(&self.station(struck)?);
+        self.reduced(load, outputs)
+    }
+
     fn plain(&self, row: Vec<f64>) -> Output {
         Output { row, force: 0.0, elements: vec![0.0; self.elements.len()] }
     }

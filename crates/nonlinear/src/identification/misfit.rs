@@ -1,0 +1,264 @@
+//! Simulated against recorded responses, in spectra weighted by their noise.
+
+use super::parameters::Parameters;
+use super::records::Record;
+use super::spectra::{Transform, smooth_length};
+use crate::time::kernel::{Stepper, Steps};
+use crate::time::oversampling::oversampled;
+use crate::time::structure::{Reading, Structure};
+use jointscope_fixture::Fixture;
+use jointscope_spectra::Channel;
+use num_complex::Complex64;
+use rayon::prelude::*;
+
+/// A look at some of the records: how much of each, how finely stepped.
+pub(crate) struct View<'a> {
+    traces: Vec<Trace<'a>>,
+    within: usize,
+    halvings: usize,
+    highest_hz: f64,
+}
+
+/// The part of a record that is compared.
+struct Trace<'a> {
+    record: &'a Record,
+    /// Force at every step.
+    force: Vec<f64>,
+    samples: usize,
+    /// Weight of each sample before the transform.
+    window: Vec<f64>,
+    transform: Transform,
+    lines: std::ops::RangeInclusive<usize>,
+    /// √2 over the noise's standard deviation, line by line, a row a response.
+    weights: Vec<Vec<f64>>,
+    /// Σ|recorded|² in the band, a response each, for relative errors.
+    power: Vec<f64>,
+}
+
+/// How a view looks.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Focus {
+    /// Decay of the window's weight, 1/s; zero for all alike.
+    pub decay: f64,
+    /// Band compared, Hz.
+    pub band: (f64, f64),
+    /// Steps within a sampling interval.
+    pub within: usize,
+    /// Halvings of a step with an event.
+    pub halvings: usize,
+}
+
+/// e^{−at} at which a windowed record is cut off.
+const CUT: f64 = 6.0;
+
+/// Gauss–Newton's normal equations of the data, without priors.
+#[derive(Debug, Clone)]
+pub(crate) struct Normal {
+    pub chi2: f64,
+    /// JᵀJ, row-major.
+    pub matrix: Vec<f64>,
+    /// −Jᵀr.
+    pub right: Vec<f64>,
+}
+
+impl<'a> View<'a> {
+    pub fn new(records: impl IntoIterator<Item = &'a Record>, focus: &Focus) -> Self {
+        let records: Vec<&Record> = records.into_iter().collect();
+        let traces = records.into_par_iter().map(|record| Trace::new(record, focus)).collect();
+        View { traces, within: focus.within, halvings: focus.halvings, highest_hz: 2.0 * focus.band.1 }
+    }
+
+    /// Number of real values compared.
+    pub fn degrees(&self) -> f64 {
+        let of = |t: &Trace| (2 * t.weights.len() * t.lines.clone().count()) as f64;
+        self.traces.iter().map(of).sum()
+    }
+
+    /// χ² of the data; `None` for parameters without a finite motion.
+    pub fn chi2(&self, parameters: &Parameters) -> Option<f64> {
+        let model = ViewModel::of(self, &parameters.to_fixture().ok()?)?;
+        let each: Vec<f64> = self
+            .traces
+            .par_iter()
+            .map(|trace| trace.residuals(&model).map(|r| r.iter().map(|r| r.norm_sqr()).sum()))
+            .collect::<Option<_>>()?;
+        Some(each.iter().sum::<f64>()).filter(|chi2: &f64| chi2.is_finite())
+    }
+
+    /// √(Σ|simulated − recorded|²/Σ|recorded|²) in the band, over all responses.
+    pub fn nrmse(&self, parameters: &Parameters) -> Option<f64> {
+        let model = ViewModel::of(self, &parameters.to_fixture().ok()?)?;
+        let each: Vec<(f64, f64)> = self
+            .traces
+            .par_iter()
+            .map(|trace| {
+                let residuals = trace.residuals(&model)?;
+                let mut difference = 0.0;
+                for (row, weights) in residuals.chunks_exact(trace.weights[0].len()).zip(&trace.weights) {
+                    difference += row.iter().zip(weights).map(|(r, w)| r.norm_sqr() / (w * w)).sum::<f64>();
+                }
+                Some((difference, trace.power.iter().sum()))
+            })
+            .collect::<Option<_>>()?;
+        let (difference, power) = each.iter().fold((0.0, 0.0), |(a, b), (d, p)| (a + d, b + p));
+        Some((difference / power).sqrt())
+    }
+
+    /// χ² with its derivatives with respect to every coordinate, by differences.
+    pub fn normal(&self, parameters: &Parameters) -> Option<Normal> {
+        let count = parameters.coordinates.len();
+        let base = ViewModel::of(self, &parameters.to_fixture().ok()?)?;
+        let steps: Vec<f64> = (0..count).map(|i| parameters.step(i)).collect();
+        let moved: Vec<ViewModel> = (0..count)
+            .map(|i| ViewModel::of(self, &parameters.moved(i, steps[i]).to_fixture().ok()?))
+            .collect::<Option<_>>()?;
+        let each: Vec<Normal> = self
+            .traces
+            .par_iter()
+            .map(|trace| {
+                let r = trace.residuals(&base)?;
+                let mut columns = Vec::with_capacity(count);
+                for (model, step) in moved.iter().zip(&steps) {
+                    let mut column = trace.residuals(model)?;
+                    column.iter_mut().zip(&r).for_each(|(c, r)| *c = (*c - r) / *step);
+                    columns.push(column);
+                }
+                Some(Normal::of(&r, &columns))
+            })
+            .collect::<Option<_>>()?;
+        let mut sum = Normal { chi2: 0.0, matrix: vec![0.0; count * count], right: vec![0.0; count] };
+        for one in &each {
+            sum.chi2 += one.chi2;
+            sum.matrix.iter_mut().zip(&one.matrix).for_each(|(a, b)| *a += b);
+            sum.right.iter_mut().zip(&one.right).for_each(|(a, b)| *a += b);
+        }
+        sum.chi2.is_finite().then_some(sum)
+    }
+}
+
+impl Normal {
+    fn of(r: &[Complex64], columns: &[Vec<Complex64>]) -> Self {
+        let n = columns.len();
+        let dot = |a: &[Complex64], b: &[Complex64]| a.iter().zip(b).map(|(a, b)| a.re * b.re + a.im * b.im).sum::<f64>();
+        let mut matrix = vec![0.0; n * n];
+        for i in 0..n {
+            for j in 0..=i {
+                let value = dot(&columns[i], &columns[j]);
+                (matrix[i * n + j], matrix[j * n + i]) = (value, value);
+            }
+        }
+        Normal { chi2: dot(r, r), right: columns.iter().map(|c| -dot(c, r)).collect(), matrix }
+    }
+}
+
+/// The model stepped, for every kind of trace.
+struct ViewModel {
+    steppers: Vec<(Channel, Vec<Reading>, u64, Stepper)>,
+}
+
+impl ViewModel {
+    fn of(view: &View, fixture: &Fixture) -> Option<Self> {
+        let structure = Structure::new(fixture, view.highest_hz).ok()?;
+        let mut steppers: Vec<(Channel, Vec<Reading>, u64, Stepper)> = Vec::new();
+        for trace in &view.traces {
+            let (struck, readings) = (trace.record.struck(), &trace.record.readings);
+            let interval = trace.record.hit.interval();
+            if steppers.iter().any(|(s, r, i, _)| s == struck && r == readings && *i == interval.to_bits()) {
+                continue;
+            }
+            let system = structure.system(struck, readings).ok()?;
+            let steps = Steps { interval, within: view.within, halvings: view.halvings };
+            steppers.push((struck.clone(), readings.clone(), interval.to_bits(), Stepper::new(&system, steps)?));
+        }
+        Some(ViewModel { steppers })
+    }
+
+    fn stepper(&self, record: &Record) -> Option<&Stepper> {
+        let interval = record.hit.interval().to_bits();
+        let fits = |(s, r, i, _): &&(Channel, Vec<Reading>, u64, Stepper)| {
+            s == record.struck() && *r == record.readings && *i == interval
+        };
+        self.steppers.iter().find(fits).map(|(.., stepper)| stepper)
+    }
+}
+
+impl<'a> Trace<'a> {
+    fn new(record: &'a Record, focus: &Focus) -> Self {
+        let hit = &record.hit;
+        let interval = hit.interval();
+        let wanted = match focus.decay > 0.0 {
+            true => record.onset + (CUT / (focus.decay * interval)).ceil() as usize,
+            false => died_away(record),
+        };
+        let samples = smooth_length(wanted.min(hit.samples()), hit.samples());
+        let weight = |i: usize| (-focus.decay * interval * i.saturating_sub(record.onset) as f64).exp();
+        let window: Vec<f64> = (0..samples).map(weight).collect();
+        let spacing = 1.0 / (samples as f64 * interval);
+        let last = ((focus.band.1 / spacing) as usize).min(samples / 2);
+        let first = ((focus.band.0 / spacing).ceil() as usize).clamp(1, last.max(1));
+        let mut trace = Trace {
+            force: oversampled(hit.force(), focus.within),
+            samples,
+            transform: Transform::new(samples),
+            lines: first..=last.max(first),
+            weights: Vec::new(),
+            power: Vec::new(),
+            window,
+            record,
+        };
+        trace.weigh();
+        trace
+    }
+
+    /// Noise of a response and, through the FRF that the hit itself shows, of the force.
+    fn weigh(&mut self) {
+        let energy: f64 = self.window.iter().map(|w| w * w).sum();
+        let force = self.spectrum(self.record.hit.force());
+        let force_noise = self.record.force_noise.powi(2) * energy;
+        for (response, noise) in self.record.hit.responses().iter().zip(&self.record.noise) {
+            let lines = self.spectrum(&response.values);
+            let own = noise * noise * energy;
+            let variance = |(y, f): (&Complex64, &Complex64)| {
+                let through = if f.norm_sqr() > 25.0 * force_noise { y.norm_sqr() / f.norm_sqr() } else { 0.0 };
+                own + through * force_noise
+            };
+            self.weights.push(lines.iter().zip(&force).map(variance).map(|v| (2.0 / v).sqrt()).collect());
+            self.power.push(lines.iter().map(|y| y.norm_sqr()).sum());
+        }
+    }
+
+    fn spectrum(&self, values: &[f64]) -> Vec<Complex64> {
+        let mut windowed: Vec<f64> = values.iter().zip(&self.window).map(|(v, w)| v * w).collect();
+        let mut lines = self.transform.of(&mut windowed);
+        lines.truncate(self.lines.end() + 1);
+        lines.drain(..*self.lines.start());
+        lines
+    }
+
+    /// (simulated − recorded)·weight, response after response.
+    fn residuals(&self, model: &ViewModel) -> Option<Vec<Complex64>> {
+        let run = model.stepper(self.record)?.run(&self.force, self.samples);
+        let mut all = Vec::with_capacity(self.weights.len() * self.lines.clone().count());
+        for ((simulated, response), weights) in run.outputs.iter().zip(self.record.hit.responses()).zip(&self.weights) {
+            let difference: Vec<f64> = simulated.iter().zip(&response.values).map(|(s, r)| s - r).collect();
+            all.extend(self.spectrum(&difference).iter().zip(weights).map(|(d, w)| d * *w));
+        }
+        all.iter().all(|r| r.is_finite()).then_some(all)
+    }
+}
+
+/// Samples until every response has sunk into its noise, with a tenth on top.
+fn died_away(record: &Record) -> usize {
+    let samples = record.hit.samples();
+    const BLOCK: usize = 64;
+    let mut last = record.onset + BLOCK;
+    for (response, noise) in record.hit.responses().iter().zip(&record.noise) {
+        for (block, values) in response.values.chunks(BLOCK).enumerate() {
+            let square = values.iter().map(|v| v * v).sum::<f64>() / values.len() as f64;
+            if square > 1.5 * noise * noise {
+                last = last.max((block + 1) * BLOCK);
+            }
+        }
+    }
+    (last + last / 10).min(samples)
+}

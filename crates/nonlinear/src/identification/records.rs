@@ -1,0 +1,138 @@
+//! The hits of a test as the diagnosis uses them: noise, levels, what is held out.
+
+use super::spectra::noise;
+use crate::DiagnoseError;
+use crate::time::structure::Reading;
+use jointscope_fixture::{Dof, Fixture};
+use jointscope_hits::Hit;
+use jointscope_spectra::Channel;
+
+/// A hit with the noise of its signals.
+#[derive(Debug, Clone)]
+pub(crate) struct Record {
+    pub hit: Hit,
+    /// What each response reads.
+    pub readings: Vec<Reading>,
+    /// Standard deviation of each response's noise, in its unit.
+    pub noise: Vec<f64>,
+    /// Standard deviation of the force's noise, N.
+    pub force_noise: f64,
+    /// First sample of the blow.
+    pub onset: usize,
+    /// Index of its level among those of its test, from the weakest.
+    pub level: usize,
+}
+
+impl Record {
+    fn new(hit: &Hit) -> Self {
+        let peak = hit.peak_force();
+        let onset = hit.force().iter().position(|f| f.abs() > 0.05 * peak).unwrap_or(0);
+        // A signal without any noise (of a simulation) still is not known beyond its rounding.
+        let floor = |values: &[f64]| 1e-6 * (values.iter().map(|v| v * v).sum::<f64>() / values.len() as f64).sqrt();
+        Record {
+            readings: hit.responses().iter().map(|r| (r.channel.clone(), r.motion)).collect(),
+            noise: hit.responses().iter().map(|r| noise(&r.values).max(floor(&r.values))).collect(),
+            force_noise: noise(hit.force()).max(floor(hit.force())),
+            onset: onset.saturating_sub(8),
+            level: 0,
+            hit: hit.clone(),
+        }
+    }
+
+    pub fn struck(&self) -> &Channel {
+        self.hit.struck()
+    }
+}
+
+/// Ratio of peak forces from which two neighbours belong to different levels.
+const APART: f64 = 1.35;
+/// Ratio of the strongest to the weakest hit below which amplitude cannot be judged.
+pub(crate) const TELLING: f64 = 1.5;
+
+/// The records of a test, checked, with their levels.
+///
+/// # Errors
+/// Hits without force or response, hits that are all alike.
+pub(crate) fn records(fixture: &Fixture, hits: &[Hit]) -> Result<Vec<Record>, DiagnoseError> {
+    if hits.is_empty() {
+        return Err(DiagnoseError::NoHits);
+    }
+    for hit in hits {
+        let number = hit.number();
+        if hit.peak_force() == 0.0 {
+            return Err(DiagnoseError::NoForce { hit: number });
+        }
+        if hit.responses().is_empty() {
+            return Err(DiagnoseError::NoResponse { hit: number });
+        }
+        let silent = hit.responses().iter().find(|r| r.values.iter().all(|v| *v == 0.0));
+        if let Some(response) = silent {
+            return Err(DiagnoseError::SilentResponse { hit: number, channel: response.channel.to_string() });
+        }
+        if hit.samples() < FEWEST_SAMPLES {
+            return Err(DiagnoseError::TooShort { hit: number, samples: hit.samples(), needed: FEWEST_SAMPLES });
+        }
+        for channel in hit.responses().iter().map(|r| &r.channel).chain([hit.struck()]) {
+            let Some(point) = fixture.point(&channel.point) else {
+                return Err(DiagnoseError::UnknownPoint { hit: number, point: channel.point.clone() });
+            };
+            let turns = !matches!(&fixture.bodies()[point.body].kind, jointscope_fixture::BodyKind::Rigid(r) if !r.rotates);
+            if channel.dof == Dof::Rotation && !turns {
+                return Err(DiagnoseError::NoRotation { hit: number, point: channel.point.clone() });
+            }
+        }
+    }
+    let mut records: Vec<Record> = hits.iter().map(Record::new).collect();
+    let ratio = set_levels(&mut records);
+    if ratio < TELLING {
+        return Err(DiagnoseError::OneLevel { hits: hits.len(), ratio });
+    }
+    Ok(records)
+}
+
+/// Fewest samples of a hit.
+const FEWEST_SAMPLES: usize = 256;
+
+/// Numbers the levels of the hits at each struck point; answers with the ratio of strongest to weakest at the point where it is largest.
+fn set_levels(records: &mut [Record]) -> f64 {
+    let mut struck: Vec<Channel> = records.iter().map(|r| r.struck().clone()).collect();
+    struck.sort();
+    struck.dedup();
+    let mut widest: f64 = 1.0;
+    for channel in struck {
+        let mut group: Vec<usize> = (0..records.len()).filter(|&i| *records[i].struck() == channel).collect();
+        group.sort_by(|a, b| records[*a].hit.peak_force().total_cmp(&records[*b].hit.peak_force()));
+        let peak = |i: usize| records[i].hit.peak_force();
+        let ratio = peak(group[group.len() - 1]) / peak(group[0]);
+        widest = widest.max(ratio);
+        let mut levels = vec![0; group.len()];
+        for k in 1..group.len() {
+            levels[k] = levels[k - 1] + usize::from(peak(group[k]) > APART * peak(group[k - 1]));
+        }
+        if levels[group.len() - 1] == 0 && ratio >= TELLING {
+            // Strengths without gaps: thirds of the hits.
+            let count = group.len().min(3);
+            (0..group.len()).for_each(|k| levels[k] = k * count / group.len());
+        }
+        for (k, i) in group.iter().enumerate() {
+            records[*i].level = levels[k];
+        }
+    }
+    widest
+}
+
+/// Indices of the hits to hold out: the last of each group of two or more alike (same point, same level); every third where there are no
+/// such groups but six or more hits.
+pub(crate) fn held_out(records: &[Record]) -> Vec<usize> {
+    let same = |a: &Record, b: &Record| a.struck() == b.struck() && a.level == b.level;
+    let last = |i: usize| {
+        let alike = |j: &usize| same(&records[i], &records[*j]);
+        let all: Vec<usize> = (0..records.len()).filter(alike).collect();
+        all.len() > 1 && all[all.len() - 1] == i
+    };
+    let held: Vec<usize> = (0..records.len()).filter(|&i| last(i)).collect();
+    match held.is_empty() && records.len() >= 6 {
+        true => (0..records.len()).filter(|i| i % 3 == 1).collect(),
+        false => held,
+    }
+}
