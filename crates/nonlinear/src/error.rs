@@ -123,7 +123,9 @@ pub enum DiagnoseError {
         ratio: f64,
     },
     /// Nothing elastic within the sampled band.
-    #[error("no elastic motion of the fixture lies below {highest} Hz, half of the sampling rate: sample faster")]
+    #[error(
+        "no elastic motion of the fixture lies below {highest} Hz, half of the sampling rate: sample faster"
+    )]
     NoElasticMotion {
         /// Half the sampling rate, Hz.
         highest: f64,

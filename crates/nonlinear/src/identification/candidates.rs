@@ -1,11 +1,11 @@
 //! Laws that a joint may follow, and where to begin fitting them.
 
 use super::parameters::Law;
+use super::records::Record;
 use crate::RestoringLaw;
 use crate::time::kernel::{Output, Stepper, Steps};
-use crate::time::oversampling::oversampled;
+use crate::time::oversampling::oversampled_for_lines;
 use crate::time::structure::Structure;
-use super::records::Record;
 use jointscope_fixture::{Dof, Fixture, Joint};
 use jointscope_lumped::nominal_stiffness;
 
@@ -27,7 +27,12 @@ pub(crate) fn seats(fixture: &Fixture, records: &[&Record], highest_hz: f64) -> 
         let nominal = nominal_stiffness(&joint.law, fixture.joint_length(joint));
         for (index, dof) in [Dof::Translation, Dof::Rotation].into_iter().enumerate() {
             if nominal.at(index, index) > 0.0 && turns(fixture, joint, dof) {
-                all.push(Seat { joint: joint.name.clone(), dof, stiffness: nominal.at(index, index), reach: 0.0 });
+                all.push(Seat {
+                    joint: joint.name.clone(),
+                    dof,
+                    stiffness: nominal.at(index, index),
+                    reach: 0.0,
+                });
             }
         }
     }
@@ -61,7 +66,8 @@ fn reaches(fixture: &Fixture, record: &Record, highest_hz: f64) -> Option<Vec<f6
     let outputs = rows.into_iter().map(|row| Output { row, force: 0.0, elements: Vec::new() }).collect();
     let system = structure.system_with(record.struck(), outputs).ok()?;
     let steps = Steps { interval: record.hit.interval(), within: WITHIN, halvings: 0 };
-    let run = Stepper::new(&system, steps)?.run(&oversampled(record.hit.force(), WITHIN), record.hit.samples());
+    let run = Stepper::new(&system, steps)?
+        .run(&oversampled_for_lines(record.hit.force(), WITHIN), record.hit.samples());
     Some(run.outputs.iter().map(|d| d.iter().fold(0.0, |most: f64, d| d.abs().max(most))).collect())
 }
 

@@ -147,7 +147,12 @@ impl NonlinearDiagnosis {
         let found = seats(fixture, &references, 2.0 * band.1);
         let reach = found
             .iter()
-            .map(|s| Reach { joint: s.joint.clone(), dof: s.dof, motion: s.reach, force: s.stiffness * s.reach })
+            .map(|s| Reach {
+                joint: s.joint.clone(),
+                dof: s.dof,
+                motion: s.reach,
+                force: s.stiffness * s.reach,
+            })
             .collect();
         let mut diagnosis = NonlinearDiagnosis {
             verdict: Verdict::Homogeneous,
@@ -194,14 +199,15 @@ impl NonlinearDiagnosis {
             let model = base.to_fixture().unwrap_or_else(|_| fixture.clone());
             let names = search.names(&model, &base);
             let Some(first) = names.first() else { break };
-            if first.fit.objective > (1.0 - WORTH) * best.objective || first.fit.objective + 30.0 > best.objective {
+            if first.fit.objective > (1.0 - WORTH) * best.objective
+                || first.fit.objective + 30.0 > best.objective
+            {
                 break;
             }
             best = first.fit.clone();
             steps.push(names);
         }
-        self.judge(fixture, all, &held, &search, [&refitted, &best], &steps, &nominal)
-            .ok_or_else(unmoved)
+        self.judge(fixture, all, &held, &search, [&refitted, &best], &steps, &nominal).ok_or_else(unmoved)
     }
 
     #[allow(clippy::too_many_arguments)]
@@ -227,14 +233,20 @@ impl NonlinearDiagnosis {
         // Names were chosen without the hits held out; quantities are then those that all hits give.
         let everything = View::new(all.iter(), &focus);
         let degrees = everything.degrees();
-        let refitted = Fit::of(&everything, &refitted.parameters, 4)?;
-        let repaired = if steps.is_empty() { refitted.clone() } else { Fit::of(&everything, &best.parameters, 6)? };
+        let refitted = Fit::of(&everything, &refitted.parameters, 1)?;
+        let repaired =
+            if steps.is_empty() { refitted.clone() } else { Fit::of(&everything, &best.parameters, 3)? };
         let model = |parameters: &Parameters, chi2: f64| {
             Some(ModelFit {
                 fixture: parameters.to_fixture().ok()?,
                 nrmse: everything.nrmse(parameters)?,
                 chi2_per_dof: chi2 / degrees,
-                tolerances: parameters.tolerances.iter().cloned().zip(parameters.coordinates.iter().copied()).collect(),
+                tolerances: parameters
+                    .tolerances
+                    .iter()
+                    .cloned()
+                    .zip(parameters.coordinates.iter().copied())
+                    .collect(),
             })
         };
         self.models = Some([
@@ -283,10 +295,7 @@ fn findings(
             probability,
             alternatives,
             gain,
-            reach: reached
-                .iter()
-                .find(|s| s.joint == law.joint && s.dof == law.dof)
-                .map_or(0.0, |s| s.reach),
+            reach: reached.iter().find(|s| s.joint == law.joint && s.dof == law.dof).map_or(0.0, |s| s.reach),
         });
     }
     findings
@@ -328,7 +337,8 @@ fn probabilities(names: &[Named], chi2_per_dof: f64) -> (f64, Vec<(Effect, f64)>
     let Some(best) = names.first() else { return (0.0, Vec::new()) };
     let scale = chi2_per_dof.max(1.0);
     let weight = |name: &Named| {
-        let extra = name.fit.parameters.coordinates.len() as f64 - best.fit.parameters.coordinates.len() as f64;
+        let extra =
+            name.fit.parameters.coordinates.len() as f64 - best.fit.parameters.coordinates.len() as f64;
         (-0.5 * ((name.fit.objective - best.fit.objective) / scale + 7.0 * extra)).min(0.0).exp()
     };
     let unlisted = 0.01 + 0.3 * ((scale - LEFT_OVER) / 10.0).clamp(0.0, 1.0);

@@ -1,6 +1,6 @@
 //! Maximum of likelihood and prior by Levenberg's and Marquardt's method.
 
-use super::misfit::{Normal, View};
+use super::misfit::{Jacobian, View, sum_of_squares};
 use super::parameters::Parameters;
 use jointscope_linalg::{inverse, solve_positive_definite};
 
@@ -12,72 +12,85 @@ pub(crate) struct Fit {
     pub chi2: f64,
     /// χ² and priors.
     pub objective: f64,
-    normal: Normal,
+    /// JᵀJ of the data, row-major.
+    information: Vec<f64>,
 }
 
-/// Gain of an iteration below which a fit has converged, relative to χ².
-const CONVERGED: f64 = 1e-5;
+/// Gain of a step below which a fit has converged: absolute, and relative to the objective.
+const CONVERGED: (f64, f64) = (0.1, 2e-5);
+/// Steps at the most with derivatives that were taken once: near the maximum they serve for several.
+const STEPS: usize = 5;
+/// Share of the gain of the first step that a further one must bring for the derivatives to go on serving.
+const FADING: f64 = 0.05;
 
 impl Fit {
-    /// From `start`, with so many iterations at the most; `None` where the start has no finite motion.
-    pub fn of(view: &View, start: &Parameters, iterations: usize) -> Option<Self> {
+    /// From `start`, derivatives being taken `renewals` times at the most; `None` where the start has no finite motion.
+    pub fn of(view: &View, start: &Parameters, renewals: usize) -> Option<Self> {
         let mut parameters = start.clone();
-        let mut normal = view.normal(&parameters)?;
-        let mut objective = normal.chi2 + parameters.penalty();
+        let mut residuals = view.residuals(&parameters)?;
+        let mut objective = sum_of_squares(&residuals) + parameters.penalty();
         let mut damping = 1e-3;
-        for _ in 0..iterations {
-            let mut better = None;
-            for _ in 0..6 {
-                if let Some(step) = step(&parameters, &normal, damping) {
+        let mut information = Vec::new();
+        for _ in 0..renewals.max(1) {
+            let jacobian = view.jacobian(&parameters, &residuals)?;
+            let mut gains = Vec::new();
+            let mut failures = 0;
+            while gains.len() < STEPS && failures < 6 {
+                let right = jacobian.descent(&residuals);
+                let tried = step(&parameters, &jacobian, right, damping).and_then(|step| {
                     let next = parameters.stepped(&step);
-                    let value = view.chi2(&next).map(|chi2| chi2 + next.penalty());
-                    if let Some(value) = value.filter(|value| *value < objective) {
-                        better = Some((next, value));
+                    let residuals = view.residuals(&next)?;
+                    let value = sum_of_squares(&residuals) + next.penalty();
+                    (value < objective).then_some((next, residuals, value))
+                });
+                let Some((next, new_residuals, value)) = tried else {
+                    if !gains.is_empty() {
                         break;
                     }
-                }
-                damping *= 8.0;
-                if damping > 1e8 {
+                    failures += 1;
+                    damping = (damping * 10.0).min(1e12);
+                    continue;
+                };
+                let gain = objective - value;
+                (parameters, residuals, objective) = (next, new_residuals, value);
+                damping = (damping * 0.1).max(1e-9);
+                gains.push(gain);
+                if gain < FADING * gains[0] || gain < tolerance(objective) {
                     break;
                 }
             }
-            let Some((next, value)) = better else { break };
-            let gain = objective - value;
-            damping = (damping * 0.1).max(1e-9);
-            parameters = next;
-            objective = value;
-            normal = view.normal(&parameters)?;
-            if gain < 0.05 + CONVERGED * objective {
+            information = jacobian.matrix;
+            if gains.iter().sum::<f64>() < tolerance(objective) {
                 break;
             }
         }
-        Some(Fit { chi2: normal.chi2, objective, parameters, normal })
+        Some(Fit { chi2: objective - parameters.penalty(), objective, parameters, information })
     }
 
-    /// Covariance of the coordinates, row-major: inverse of the information of data and prior, widened by `scale`. What neither data nor priors
-    /// determine has an infinite variance.
+    /// Covariance of the coordinates, row-major: inverse of the information of data and prior, the data's noise being `scale` times what was
+    /// assumed. What neither data nor priors determine has an infinite variance.
     pub fn covariance(&self, scale: f64) -> Vec<f64> {
         let n = self.parameters.coordinates.len();
-        let mut information = self.normal.matrix.clone();
-        for i in 0..n {
-            information[i * n + i] = information[i * n + i] / scale + self.parameters.prior(i);
-            for j in (0..n).filter(|j| *j != i) {
-                information[i * n + j] /= scale;
-            }
-        }
+        let mut information: Vec<f64> = self.information.iter().map(|e| e / scale).collect();
+        (0..n).for_each(|i| information[i * n + i] += self.parameters.prior(i));
         inverse(&information, n).unwrap_or_else(|| vec![f64::INFINITY; n * n])
     }
 }
 
-fn step(parameters: &Parameters, normal: &Normal, damping: f64) -> Option<Vec<f64>> {
+fn tolerance(objective: f64) -> f64 {
+    CONVERGED.0 + CONVERGED.1 * objective
+}
+
+fn step(parameters: &Parameters, jacobian: &Jacobian, mut right: Vec<f64>, damping: f64) -> Option<Vec<f64>> {
     let n = parameters.coordinates.len();
-    let mut matrix = normal.matrix.clone();
-    let mut right = normal.right.clone();
+    let mut matrix = jacobian.matrix.clone();
     for i in 0..n {
         let prior = parameters.prior(i);
         right[i] -= prior * parameters.coordinates[i];
         // A coordinate that nothing determines must not spoil the others.
         matrix[i * n + i] = (matrix[i * n + i] + prior) * (1.0 + damping) + 1e-12;
     }
-    solve_positive_definite(&mut matrix, &mut right).then_some(right).filter(|step| step.iter().all(|s| s.is_finite()))
+    solve_positive_definite(&mut matrix, &mut right)
+        .then_some(right)
+        .filter(|step| step.iter().all(|s| s.is_finite()))
 }

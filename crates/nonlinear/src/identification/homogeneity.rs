@@ -118,7 +118,8 @@ pub(crate) fn homogeneity(records: &[Record], highest_hz: f64) -> Homogeneity {
 fn levels(records: &[Record]) -> Vec<(f64, usize)> {
     let count = records.iter().map(|r| r.level + 1).max().unwrap_or(0);
     let of = |level: usize| {
-        let peaks: Vec<f64> = records.iter().filter(|r| r.level == level).map(|r| r.hit.peak_force()).collect();
+        let peaks: Vec<f64> =
+            records.iter().filter(|r| r.level == level).map(|r| r.hit.peak_force()).collect();
         (peaks.iter().sum::<f64>() / peaks.len().max(1) as f64, peaks.len())
     };
     (0..count).map(of).collect()
@@ -177,7 +178,12 @@ impl Windowed {
     }
 
     /// One line: χ² of one H for all hits beyond that of one H a level, and the latter.
-    fn line(&self, columns: &[(&Record, usize)], lines: &[(usize, Complex64, Complex64)], levels: usize) -> Option<Sums> {
+    fn line(
+        &self,
+        columns: &[(&Record, usize)],
+        lines: &[(usize, Complex64, Complex64)],
+        levels: usize,
+    ) -> Option<Sums> {
         let mut gain = 0.0;
         // The noise of the force counts through H, which is known well enough from the unweighted ratio.
         let (cross, force) = lines.iter().fold((Complex64::ZERO, 0.0), |(cross, force), (_, f, y)| {

@@ -4,7 +4,7 @@ use super::parameters::Parameters;
 use super::records::Record;
 use super::spectra::{Transform, smooth_length};
 use crate::time::kernel::{Stepper, Steps};
-use crate::time::oversampling::oversampled;
+use crate::time::oversampling::oversampled_for_lines;
 use crate::time::structure::{Reading, Structure};
 use jointscope_fixture::Fixture;
 use jointscope_spectra::Channel;
@@ -51,14 +51,14 @@ pub(crate) struct Focus {
 /// e^{−at} at which a windowed record is cut off.
 const CUT: f64 = 6.0;
 
-/// Gauss–Newton's normal equations of the data, without priors.
-#[derive(Debug, Clone)]
-pub(crate) struct Normal {
-    pub chi2: f64,
+/// (simulated − recorded)·weight, trace by trace.
+pub(crate) type Residuals = Vec<Vec<Complex64>>;
+
+/// Derivatives of the residuals, trace by trace, a column a coordinate.
+pub(crate) struct Jacobian {
+    columns: Vec<Vec<Vec<Complex64>>>,
     /// JᵀJ, row-major.
     pub matrix: Vec<f64>,
-    /// −Jᵀr.
-    pub right: Vec<f64>,
 }
 
 impl<'a> View<'a> {
@@ -76,13 +76,13 @@ impl<'a> View<'a> {
 
     /// χ² of the data; `None` for parameters without a finite motion.
     pub fn chi2(&self, parameters: &Parameters) -> Option<f64> {
+        self.residuals(parameters).map(|residuals| sum_of_squares(&residuals))
+    }
+
+    /// The residuals; `None` for parameters without a finite motion.
+    pub fn residuals(&self, parameters: &Parameters) -> Option<Residuals> {
         let model = ViewModel::of(self, &parameters.to_fixture().ok()?)?;
-        let each: Vec<f64> = self
-            .traces
-            .par_iter()
-            .map(|trace| trace.residuals(&model).map(|r| r.iter().map(|r| r.norm_sqr()).sum()))
-            .collect::<Option<_>>()?;
-        Some(each.iter().sum::<f64>()).filter(|chi2: &f64| chi2.is_finite())
+        self.traces.par_iter().map(|trace| trace.residuals(&model)).collect()
     }
 
     /// √(Σ|simulated − recorded|²/Σ|recorded|²) in the band, over all responses.
@@ -104,51 +104,63 @@ impl<'a> View<'a> {
         Some((difference / power).sqrt())
     }
 
-    /// χ² with its derivatives with respect to every coordinate, by differences.
-    pub fn normal(&self, parameters: &Parameters) -> Option<Normal> {
+    /// Derivatives of the residuals with respect to every coordinate, by differences.
+    pub fn jacobian(&self, parameters: &Parameters, residuals: &Residuals) -> Option<Jacobian> {
         let count = parameters.coordinates.len();
-        let base = ViewModel::of(self, &parameters.to_fixture().ok()?)?;
         let steps: Vec<f64> = (0..count).map(|i| parameters.step(i)).collect();
         let moved: Vec<ViewModel> = (0..count)
             .map(|i| ViewModel::of(self, &parameters.moved(i, steps[i]).to_fixture().ok()?))
             .collect::<Option<_>>()?;
-        let each: Vec<Normal> = self
+        let derivative = |trace: &Trace, base: &[Complex64], i: usize| {
+            let mut column = trace.residuals(&moved[i])?;
+            let factor = 1.0 / steps[i];
+            column.iter_mut().zip(base).for_each(|(c, r)| *c = (*c - r) * factor);
+            Some(column)
+        };
+        let columns: Vec<Vec<Vec<Complex64>>> = self
             .traces
             .par_iter()
-            .map(|trace| {
-                let r = trace.residuals(&base)?;
-                let mut columns = Vec::with_capacity(count);
-                for (model, step) in moved.iter().zip(&steps) {
-                    let mut column = trace.residuals(model)?;
-                    column.iter_mut().zip(&r).for_each(|(c, r)| *c = (*c - r) / *step);
-                    columns.push(column);
-                }
-                Some(Normal::of(&r, &columns))
-            })
+            .zip(residuals)
+            .map(|(trace, base)| (0..count).map(|i| derivative(trace, base, i)).collect())
             .collect::<Option<_>>()?;
-        let mut sum = Normal { chi2: 0.0, matrix: vec![0.0; count * count], right: vec![0.0; count] };
+        let each: Vec<Vec<f64>> = columns.par_iter().map(|columns| gram(columns)).collect();
+        let mut matrix = vec![0.0; count * count];
         for one in &each {
-            sum.chi2 += one.chi2;
-            sum.matrix.iter_mut().zip(&one.matrix).for_each(|(a, b)| *a += b);
-            sum.right.iter_mut().zip(&one.right).for_each(|(a, b)| *a += b);
+            matrix.iter_mut().zip(one).for_each(|(sum, value)| *sum += value);
         }
-        sum.chi2.is_finite().then_some(sum)
+        matrix.iter().all(|e| e.is_finite()).then_some(Jacobian { columns, matrix })
     }
 }
 
-impl Normal {
-    fn of(r: &[Complex64], columns: &[Vec<Complex64>]) -> Self {
-        let n = columns.len();
-        let dot = |a: &[Complex64], b: &[Complex64]| a.iter().zip(b).map(|(a, b)| a.re * b.re + a.im * b.im).sum::<f64>();
-        let mut matrix = vec![0.0; n * n];
-        for i in 0..n {
-            for j in 0..=i {
-                let value = dot(&columns[i], &columns[j]);
-                (matrix[i * n + j], matrix[j * n + i]) = (value, value);
-            }
+impl Jacobian {
+    /// −Jᵀr.
+    pub fn descent(&self, residuals: &Residuals) -> Vec<f64> {
+        let mut right = vec![0.0; self.columns.first().map_or(0, Vec::len)];
+        for (columns, r) in self.columns.iter().zip(residuals) {
+            right.iter_mut().zip(columns).for_each(|(sum, column)| *sum -= dot(column, r));
         }
-        Normal { chi2: dot(r, r), right: columns.iter().map(|c| -dot(c, r)).collect(), matrix }
+        right
     }
+}
+
+pub(crate) fn sum_of_squares(residuals: &Residuals) -> f64 {
+    residuals.iter().map(|r| dot(r, r)).sum()
+}
+
+fn dot(a: &[Complex64], b: &[Complex64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a.re * b.re + a.im * b.im).sum()
+}
+
+fn gram(columns: &[Vec<Complex64>]) -> Vec<f64> {
+    let n = columns.len();
+    let mut matrix = vec![0.0; n * n];
+    for i in 0..n {
+        for j in 0..=i {
+            let value = dot(&columns[i], &columns[j]);
+            (matrix[i * n + j], matrix[j * n + i]) = (value, value);
+        }
+    }
+    matrix
 }
 
 /// The model stepped, for every kind of trace.
@@ -168,7 +180,12 @@ impl ViewModel {
             }
             let system = structure.system(struck, readings).ok()?;
             let steps = Steps { interval, within: view.within, halvings: view.halvings };
-            steppers.push((struck.clone(), readings.clone(), interval.to_bits(), Stepper::new(&system, steps)?));
+            steppers.push((
+                struck.clone(),
+                readings.clone(),
+                interval.to_bits(),
+                Stepper::new(&system, steps)?,
+            ));
         }
         Some(ViewModel { steppers })
     }
@@ -197,7 +214,7 @@ impl<'a> Trace<'a> {
         let last = ((focus.band.1 / spacing) as usize).min(samples / 2);
         let first = ((focus.band.0 / spacing).ceil() as usize).clamp(1, last.max(1));
         let mut trace = Trace {
-            force: oversampled(hit.force(), focus.within),
+            force: oversampled_for_lines(hit.force(), focus.within),
             samples,
             transform: Transform::new(samples),
             lines: first..=last.max(first),
@@ -219,7 +236,8 @@ impl<'a> Trace<'a> {
             let lines = self.spectrum(&response.values);
             let own = noise * noise * energy;
             let variance = |(y, f): (&Complex64, &Complex64)| {
-                let through = if f.norm_sqr() > 25.0 * force_noise { y.norm_sqr() / f.norm_sqr() } else { 0.0 };
+                let through =
+                    if f.norm_sqr() > 25.0 * force_noise { y.norm_sqr() / f.norm_sqr() } else { 0.0 };
                 own + through * force_noise
             };
             self.weights.push(lines.iter().zip(&force).map(variance).map(|v| (2.0 / v).sqrt()).collect());
@@ -239,7 +257,9 @@ impl<'a> Trace<'a> {
     fn residuals(&self, model: &ViewModel) -> Option<Vec<Complex64>> {
         let run = model.stepper(self.record)?.run(&self.force, self.samples);
         let mut all = Vec::with_capacity(self.weights.len() * self.lines.clone().count());
-        for ((simulated, response), weights) in run.outputs.iter().zip(self.record.hit.responses()).zip(&self.weights) {
+        for ((simulated, response), weights) in
+            run.outputs.iter().zip(self.record.hit.responses()).zip(&self.weights)
+        {
             let difference: Vec<f64> = simulated.iter().zip(&response.values).map(|(s, r)| s - r).collect();
             all.extend(self.spectrum(&difference).iter().zip(weights).map(|(d, w)| d * *w));
         }

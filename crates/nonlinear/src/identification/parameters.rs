@@ -97,7 +97,9 @@ impl Parameters {
     pub fn nominal(fixture: &Fixture, exact: bool, channels: &[String]) -> Self {
         let quantities = if exact { fixture.quantities_exact() } else { fixture.quantities() };
         let used = |path: &str| {
-            let Some(name) = path.strip_prefix("points/").and_then(|p| p.strip_suffix("/x")) else { return true };
+            let Some(name) = path.strip_prefix("points/").and_then(|p| p.strip_suffix("/x")) else {
+                return true;
+            };
             let joined = fixture.joints().iter().flat_map(|j| [j.from, j.to]);
             channels.iter().any(|c| c == name)
                 || joined.into_iter().any(|p| fixture.points()[p].name == name)
@@ -113,7 +115,8 @@ impl Parameters {
             };
             // Young's modulus and second moment enter as a product: one carries the deviation of both.
             if let Some(beam) = quantity.path.strip_suffix("second_moment")
-                && let Some(modulus) = tolerances.iter_mut().find(|t| t.path == format!("{beam}youngs_modulus"))
+                && let Some(modulus) =
+                    tolerances.iter_mut().find(|t| t.path == format!("{beam}youngs_modulus"))
             {
                 let relative = |std: f64, value: f64| std / value.abs();
                 modulus.std = modulus.std.zip(std).map(|(a, b)| {

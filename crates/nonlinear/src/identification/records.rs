@@ -28,7 +28,8 @@ impl Record {
         let peak = hit.peak_force();
         let onset = hit.force().iter().position(|f| f.abs() > 0.05 * peak).unwrap_or(0);
         // A signal without any noise (of a simulation) still is not known beyond its rounding.
-        let floor = |values: &[f64]| 1e-6 * (values.iter().map(|v| v * v).sum::<f64>() / values.len() as f64).sqrt();
+        let floor =
+            |values: &[f64]| 1e-6 * (values.iter().map(|v| v * v).sum::<f64>() / values.len() as f64).sqrt();
         Record {
             readings: hit.responses().iter().map(|r| (r.channel.clone(), r.motion)).collect(),
             noise: hit.responses().iter().map(|r| noise(&r.values).max(floor(&r.values))).collect(),
@@ -70,7 +71,11 @@ pub(crate) fn records(fixture: &Fixture, hits: &[Hit]) -> Result<Vec<Record>, Di
             return Err(DiagnoseError::SilentResponse { hit: number, channel: response.channel.to_string() });
         }
         if hit.samples() < FEWEST_SAMPLES {
-            return Err(DiagnoseError::TooShort { hit: number, samples: hit.samples(), needed: FEWEST_SAMPLES });
+            return Err(DiagnoseError::TooShort {
+                hit: number,
+                samples: hit.samples(),
+                needed: FEWEST_SAMPLES,
+            });
         }
         for channel in hit.responses().iter().map(|r| &r.channel).chain([hit.struck()]) {
             let Some(point) = fixture.point(&channel.point) else {

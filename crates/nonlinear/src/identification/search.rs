@@ -33,6 +33,8 @@ const HITS: usize = 1;
 const STARTS: usize = 3;
 /// χ² per degree of freedom from which names are further from the best than any later look could bring them back.
 const BEHIND: f64 = 1.5;
+/// Names that are fitted to the end on the first look.
+const CONTENDERS: usize = 4;
 /// Names that are fitted to whole records.
 const FINALISTS: usize = 3;
 
@@ -74,10 +76,10 @@ impl<'a> Search<'a> {
 
     /// The fixture without any law, refitted within its tolerances.
     pub fn refitted(&self, nominal: &Parameters) -> Option<Fit> {
-        let first = Fit::of(&self.first_look(), nominal, 8)?;
-        let second = Fit::of(&self.second_look(), &first.parameters, 10)?;
+        let first = Fit::of(&self.first_look(), nominal, 5)?;
+        let second = Fit::of(&self.second_look(), &first.parameters, 5)?;
         let whole = self.whole();
-        let fits = [nominal, &second.parameters].map(|start| Fit::of(&whole, start, 15));
+        let fits = [nominal, &second.parameters].map(|start| Fit::of(&whole, start, 5));
         fits.into_iter().flatten().min_by(|a, b| a.objective.total_cmp(&b.objective))
     }
 
@@ -98,30 +100,30 @@ impl<'a> Search<'a> {
                     .filter_map(|parameters| first.chi2(&parameters).map(|chi2| (chi2, parameters)))
                     .collect();
                 tried.sort_by(|a, b| a.0.total_cmp(&b.0));
-                let fits = tried.iter().take(STARTS).filter_map(|(_, start)| Fit::of(&first, start, 15));
+                let fits = tried.iter().take(STARTS).filter_map(|(_, start)| Fit::of(&first, start, 2));
                 let best = fits.min_by(|a, b| a.objective.total_cmp(&b.objective))?;
                 Some(Named { law: laws[0].clone(), fit: best })
             })
             .collect();
         sort(&mut names);
+        names.truncate(CONTENDERS);
+        refit(&mut names, &first, 3);
+        self.narrowed(&mut names, first.degrees());
+        refit(&mut names, &first, 9);
         self.narrowed(&mut names, first.degrees());
         let second = self.second_look();
-        refit(&mut names, &second, 10);
+        refit(&mut names, &second, 6);
         self.narrowed(&mut names, second.degrees());
         names.truncate(FINALISTS);
-        refit(&mut names, &self.whole(), 12);
+        refit(&mut names, &self.whole(), 8);
         names
     }
 
     /// Drops names that are hopelessly behind.
     fn narrowed(&self, names: &mut Vec<Named>, degrees: f64) {
         let Some(best) = names.first().map(|n| n.fit.objective) else { return };
-        let limit = (BEHIND * best).max(best + 0.2 * degrees.sqrt() + 200.0);
-        let mut rank = 0;
-        names.retain(|name| {
-            rank += 1;
-            rank <= 2 || name.fit.objective < limit
-        });
+        let limit = BEHIND * best + 50.0 + 5.0 * degrees.sqrt();
+        names.retain(|name| name.fit.objective < limit);
     }
 }
 

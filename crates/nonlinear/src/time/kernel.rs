@@ -1,8 +1,8 @@
 //! Steps of a linear system with a few amplitude-dependent forces in it.
 //!
-//! Between two instants force and element forces vary linearly and the linear part is propagated exactly,
-//! x⁺ = Φx + β₀F + β₁F⁺ − Σ(ε₀g + ε₁g⁺); the new g⁺ follows from its law in closed form, for it moves its own d⁺ by a known amount. A step
-//! in which an element changes its branch (contact, slip) is halved until the event is confined to a short one.
+//! Between two instants the force is a straight line, element forces are parabolas through their last three values, and the linear part is
+//! propagated exactly, x⁺ = Φx + β₀F + β₁F⁺ − Σ(ε₋g⁻ + ε₀g + ε₁g⁺); the new g⁺ follows from its law in closed form, for it moves its own d⁺ by a known amount. A step
+//! in which an element changes its branch (contact, slip) is halved until the event is confined to a short one; across an event and after it, element forces are straight lines.
 
 use super::law::{Memory, RestoringLaw};
 use jointscope_linalg::matrix_exponential;
@@ -105,13 +105,16 @@ struct Propagator<const N: usize, const E: usize> {
     /// Φ by columns: a state's contributions are added side by side.
     transition: [[f64; N]; N],
     force: [[f64; N]; 2],
-    elements: [[[f64; N]; 2]; E],
+    /// ε of the force before the last, the last and the new one.
+    elements: [[[f64; N]; 3]; E],
     /// How far each element's new force moves each element's motion.
     yields: [[f64; E]; E],
 }
 
 struct Sized<const N: usize, const E: usize> {
-    /// The whole step, its half, its quarter …
+    /// The whole step with parabolas.
+    smooth: Propagator<N, E>,
+    /// The whole step, its half, its quarter …, with straight lines.
     propagators: Vec<Propagator<N, E>>,
     laws: [RestoringLaw; E],
     motions: [[f64; N]; E],
@@ -144,27 +147,36 @@ impl<const N: usize, const E: usize> Sized<N, E> {
         let halvings = if E == 0 { 0 } else { steps.halvings };
         let step = steps.interval / steps.within as f64;
         let propagators = (0..=halvings)
-            .map(|halving| Propagator::new(system, step * 0.5f64.powi(halving as i32), &motions))
+            .map(|halving| Propagator::new(system, step * 0.5f64.powi(halving as i32), &motions, false))
             .collect::<Option<_>>()?;
         let outputs = system.outputs.iter().map(|o| (row(&o.row), o.force, row(&o.elements))).collect();
-        Some(Sized { propagators, laws, motions, outputs, states: system.load.len() })
+        let smooth = Propagator::new(system, step, &motions, true)?;
+        Some(Sized { smooth, propagators, laws, motions, outputs, states: system.load.len() })
     }
 
-    #[inline]
-    fn step(&self, halving: usize, x: &mut [f64; N], memory: &mut [Memory; E], force: [f64; 2]) {
-        let by = &self.propagators[halving];
+    /// One step with the propagator of `halving`; whether an event lies within it, in which case nothing is changed.
+    #[inline(always)]
+    fn plain_step(
+        &self,
+        by: &Propagator<N, E>,
+        x: &mut [f64; N],
+        memory: &mut [Memory; E],
+        earlier: &[f64; E],
+        force: [f64; 2],
+        any: bool,
+    ) -> bool {
         let mut free = [0.0; N];
         for i in 0..N {
             free[i] = by.force[0][i] * force[0] + by.force[1][i] * force[1];
         }
+        for ((element, before), earlier) in by.elements.iter().zip(memory.iter()).zip(earlier) {
+            for i in 0..N {
+                free[i] -= element[0][i] * earlier + element[1][i] * before.force;
+            }
+        }
         for (column, value) in by.transition.iter().zip(x.iter()) {
             for i in 0..N {
                 free[i] += column[i] * value;
-            }
-        }
-        for (element, before) in by.elements.iter().zip(memory.iter()) {
-            for i in 0..N {
-                free[i] -= element[0][i] * before.force;
             }
         }
         let mut after = *memory;
@@ -174,22 +186,30 @@ impl<const N: usize, const E: usize> Sized<N, E> {
         } else {
             self.settle_together(by, &free, memory, &mut after);
         }
-        if halving + 1 < self.propagators.len() {
-            let event = |j: usize| self.laws[j].branch(&memory[j]) != self.laws[j].branch(&after[j]);
-            if (0..E).any(event) {
-                let middle = 0.5 * (force[0] + force[1]);
-                self.step(halving + 1, x, memory, [force[0], middle]);
-                self.step(halving + 1, x, memory, [middle, force[1]]);
-                return;
-            }
+        let event = |j: usize| self.laws[j].branch(&memory[j]) != self.laws[j].branch(&after[j]);
+        if !any && (0..E).any(event) {
+            return true;
         }
         for (element, now) in by.elements.iter().zip(&after) {
             for i in 0..N {
-                free[i] -= element[1][i] * now.force;
+                free[i] -= element[2][i] * now.force;
             }
         }
         *x = free;
         *memory = after;
+        false
+    }
+
+    #[inline(never)]
+    fn halved_step(&self, halving: usize, x: &mut [f64; N], memory: &mut [Memory; E], force: [f64; 2]) {
+        let middle = 0.5 * (force[0] + force[1]);
+        let last = halving + 1 == self.propagators.len();
+        let by = &self.propagators[halving];
+        for half in [[force[0], middle], [middle, force[1]]] {
+            if self.plain_step(by, x, memory, &[0.0; E], half, last) {
+                self.halved_step(halving + 1, x, memory, half);
+            }
+        }
     }
 
     /// Several elements move each other: one after the other until nothing changes.
@@ -221,11 +241,21 @@ impl<const N: usize, const E: usize> Kernel for Sized<N, E> {
         let mut x = [0.0; N];
         let mut memory = [Memory::default(); E];
         to.outputs = vec![Vec::with_capacity(samples); self.outputs.len()];
+        let only = self.propagators.len() == 1;
+        // Whether the last step held no event, so that three values of the element forces lie on one branch.
+        let (mut even, mut earlier) = (false, [0.0; E]);
         let at = |step: usize| force.get(step).copied().unwrap_or(0.0);
         for sample in 0..samples {
             if sample > 0 {
                 for step in (sample - 1) * within..sample * within {
-                    self.step(0, &mut x, &mut memory, [at(step), at(step + 1)]);
+                    let forces = [at(step), at(step + 1)];
+                    let now = memory.map(|m| m.force);
+                    let by = if even { &self.smooth } else { &self.propagators[0] };
+                    even = !self.plain_step(by, &mut x, &mut memory, &earlier, forces, only);
+                    if !even {
+                        self.halved_step(1, &mut x, &mut memory, forces);
+                    }
+                    earlier = now;
                 }
             }
             let now = at(sample * within);
@@ -241,9 +271,9 @@ impl<const N: usize, const E: usize> Kernel for Sized<N, E> {
 
 impl<const N: usize, const E: usize> Propagator<N, E> {
     /// From the exponential of the system extended by its inputs and their rates.
-    fn new(system: &System, step: f64, motions: &[[f64; N]; E]) -> Option<Self> {
+    fn new(system: &System, step: f64, motions: &[[f64; N]; E], parabolas: bool) -> Option<Self> {
         let (n, loads) = (system.load.len(), 1 + system.elements.len());
-        let size = n + 2 * loads;
+        let size = n + 3 * loads;
         let mut extended = vec![0.0; size * size];
         for i in 0..n {
             for j in 0..n {
@@ -254,12 +284,12 @@ impl<const N: usize, const E: usize> Propagator<N, E> {
                 extended[i * size + n + 1 + j] = element.load[i] * step;
             }
         }
-        (0..loads).for_each(|k| extended[(n + k) * size + n + loads + k] = 1.0);
+        (0..2 * loads).for_each(|k| extended[(n + k) * size + n + loads + k] = 1.0);
         let exponential = matrix_exponential(&extended, size)?;
         let mut all = Propagator {
             transition: [[0.0; N]; N],
             force: [[0.0; N]; 2],
-            elements: [[[0.0; N]; 2]; E],
+            elements: [[[0.0; N]; 3]; E],
             yields: [[0.0; E]; E],
         };
         for i in 0..n {
@@ -268,14 +298,23 @@ impl<const N: usize, const E: usize> Propagator<N, E> {
             }
             for k in 0..loads {
                 let (held, ramp) = (exponential[i * size + n + k], exponential[i * size + n + loads + k]);
-                let into = if k == 0 { &mut all.force } else { &mut all.elements[k - 1] };
-                into[0][i] = held - ramp;
-                into[1][i] = ramp;
+                if k == 0 {
+                    all.force[0][i] = held - ramp;
+                    all.force[1][i] = ramp;
+                    continue;
+                }
+                // Of the second difference of three values: ∫Φ·½τ(τ − 1).
+                let bend =
+                    if parabolas { exponential[i * size + n + 2 * loads + k] - 0.5 * ramp } else { 0.0 };
+                let into = &mut all.elements[k - 1];
+                into[0][i] = bend;
+                into[1][i] = held - ramp - 2.0 * bend;
+                into[2][i] = ramp + bend;
             }
         }
         for (j, motion) in motions.iter().enumerate() {
             for k in 0..E {
-                all.yields[j][k] = dot(motion, &all.elements[k][1]);
+                all.yields[j][k] = dot(motion, &all.elements[k][2]);
             }
         }
         Some(all)

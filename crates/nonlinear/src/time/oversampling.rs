@@ -6,8 +6,18 @@ use realfft::num_complex::Complex;
 /// The band-limited signal through `samples`, at `factor` instants an interval from the first sample on: sampling says nothing of what lies
 /// above half of its rate. The signal is taken to begin and end at rest.
 pub(crate) fn oversampled(samples: &[f64], factor: usize) -> Vec<f64> {
+    filtered(samples, factor, |_| 1.0)
+}
+
+/// As [`oversampled`], raised so that straight lines drawn between the instants have the spectrum of the signal: drawing them lowers a line of
+/// angular frequency ω by (sin x/x)², x = ωh/2.
+pub(crate) fn oversampled_for_lines(samples: &[f64], factor: usize) -> Vec<f64> {
+    filtered(samples, factor, |x| if x > 0.0 { (x / x.sin()).powi(2) } else { 1.0 })
+}
+
+fn filtered(samples: &[f64], factor: usize, gain: impl Fn(f64) -> f64) -> Vec<f64> {
     let n = samples.len();
-    if factor <= 1 || n < 2 {
+    if factor == 0 || n < 2 {
         return samples.to_vec();
     }
     let mut planner = RealFftPlanner::<f64>::new();
@@ -21,10 +31,10 @@ pub(crate) fn oversampled(samples: &[f64], factor: usize) -> Vec<f64> {
     if forward.process(&mut values, &mut spectrum).is_err() {
         return samples.to_vec();
     }
-    for (to, from) in wide.iter_mut().zip(&spectrum) {
-        *to = from / n as f64;
+    for (line, (to, from)) in wide.iter_mut().zip(&spectrum).enumerate() {
+        *to = from * (gain(std::f64::consts::PI * line as f64 / (n * factor) as f64) / n as f64);
     }
-    if n % 2 == 0 {
+    if n % 2 == 0 && factor > 1 {
         // The line at half the rate stands for both its sides.
         wide[n / 2] = Complex::new(wide[n / 2].re * 0.5, 0.0);
     }

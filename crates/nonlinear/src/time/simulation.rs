@@ -1,7 +1,7 @@
 //! Responses of a fixture, amplitude-dependent effects included, to recorded forces.
 
 use super::kernel::{Stepper, Steps};
-use super::oversampling::oversampled;
+use super::oversampling::{oversampled, oversampled_for_lines};
 use super::structure::{Reading, Structure};
 use crate::SimulationError;
 use jointscope_fixture::{Effect, EffectKind, Fixture, Place};
@@ -52,7 +52,7 @@ fn simulate_one(fixture: &Fixture, hit: &Hit, readings: &[Reading]) -> Result<(H
     let run = |within: usize| {
         let steps = Steps { interval: hit.interval(), within, halvings: HALVINGS };
         let stepper = Stepper::new(&system, steps).ok_or(SimulationError::Unbounded { hit: hit.number() })?;
-        let outputs = stepper.run(&oversampled(&real_force, within), hit.samples()).outputs;
+        let outputs = stepper.run(&oversampled_for_lines(&real_force, within), hit.samples()).outputs;
         match outputs.iter().flatten().all(|value| value.is_finite()) {
             true => Ok(outputs),
             false => Err(SimulationError::Unbounded { hit: hit.number() }),
@@ -63,7 +63,7 @@ fn simulate_one(fixture: &Fixture, hit: &Hit, readings: &[Reading]) -> Result<(H
     loop {
         within *= 2;
         let fine = run(within)?;
-        // The error falls with the square of the step: that of the finer one is a third of the difference.
+        // The error falls at least with the square of the step: that of the finer one is below a third of the difference.
         let error =
             coarse.iter().zip(&fine).map(|(a, b)| relative_difference(a, b) / 3.0).fold(0.0, f64::max);
         if error < ENOUGH || within >= MOST {
