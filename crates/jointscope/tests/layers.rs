@@ -83,6 +83,7 @@ fn the_simulated_laboratory_and_what_it_judges_share_no_model() {
         "jointscope-lumped",
         "jointscope-decomposition",
         "jointscope-diagnosis",
+        "jointscope-nonlinear",
     ];
     let laboratory = built_of("jointscope-rig", &packages);
     for model in models {

@@ -9,6 +9,7 @@
 //! | the structure | [`Structure`], built of an [`Assembly`] of elements on [`Station`]s, or from a fixture with its `physics` |
 //! | what channels read | [`frfs`], [`read`], [`Instrument`] |
 //! | hammer hits and noise | [`HammerTest`] |
+//! | hits over time on joints that depend on amplitude | [`StrikeTest`], [`random_law`] |
 //! | random assemblies | [`Family`], [`drawn_within_tolerance`], [`random_effect`] |
 //! | physics without a name in fixture files | [`Outside`] |
 //! | a worked case | [`glued_joint`]: two steel blocks and a glued strip |
@@ -42,6 +43,7 @@ mod outside;
 mod physical;
 mod random;
 mod random_effect;
+mod strikes;
 mod tolerance;
 pub mod universal_file;
 
@@ -53,4 +55,5 @@ pub use outside::Outside;
 pub use physical::{Assembly, BeamElement, Law, Row, Station, Structure};
 pub use random::generator;
 pub use random_effect::random_effect;
+pub use strikes::{StrikeTest, random_law, reach};
 pub use tolerance::drawn_within_tolerance;

@@ -104,6 +104,11 @@ impl Assembly {
         dense(self.order, &self.mass)
     }
 
+    /// The dense viscous damping matrix, row by row.
+    pub fn damping_matrix(&self) -> Vec<f64> {
+        dense(self.order, &self.damping)
+    }
+
     /// The dense static stiffness matrix, row by row.
     pub fn stiffness_matrix(&self) -> Vec<f64> {
         dense(self.order, &self.stiffness)

@@ -1,0 +1,299 @@
+//! Hammer hits over time on a structure whose joints depend on amplitude.
+
+use crate::random::{log_uniform, normal, uniform};
+use crate::{Assembly, Row, Station, Structure, StructureError};
+use jointscope_fixture::{Dof, Effect, EffectKind, Fixture, Place};
+use jointscope_hits::{Hit, Motion, Response};
+use jointscope_linalg::inverse;
+use jointscope_spectra::Channel;
+use rand::Rng;
+use std::f64::consts::PI;
+
+/// How a structure is struck and recorded.
+#[derive(Debug, Clone, PartialEq)]
+pub struct StrikeTest {
+    /// Samples a second.
+    pub rate: f64,
+    /// Samples of a record.
+    pub samples: usize,
+    /// Steps of the integration within a sample.
+    pub steps: usize,
+    /// Length of the half-sine blow, s.
+    pub pulse: f64,
+    /// Peak forces, N; each hit's varies by some per cent.
+    pub levels: Vec<f64>,
+    /// Hits of each level at each point.
+    pub hits: usize,
+    /// White noise of each response, relative to its rms.
+    pub noise_response: f64,
+    /// White noise of the force, relative to its rms.
+    pub noise_force: f64,
+}
+
+/// An amplitude-dependent force on a motion.
+struct Element {
+    effect: Effect,
+    motion: Vec<f64>,
+    /// M⁻¹ times the motion.
+    pull: Vec<f64>,
+}
+
+/// ü = −M⁻¹(K u + C u̇) + M⁻¹ t F − Σ pull·g.
+struct Equations {
+    n: usize,
+    stiffness: Vec<f64>,
+    damping: Vec<f64>,
+    push: Vec<f64>,
+    elements: Vec<Element>,
+}
+
+impl StrikeTest {
+    /// Strikes the structure of `fixture`, its effects included, at each of `struck` and records accelerations at `read`.
+    ///
+    /// # Errors
+    /// A fixture that cannot be built, points that it does not have.
+    pub fn record(
+        &self,
+        fixture: &Fixture,
+        struck: &[Channel],
+        read: &[Channel],
+        rng: &mut impl Rng,
+    ) -> Result<Vec<Hit>, StructureError> {
+        let mut hits = Vec::new();
+        for level in &self.levels {
+            for channel in struck {
+                let (equations, readings) = build(fixture, channel, read)?;
+                for _ in 0..self.hits {
+                    let peak = level * uniform(rng, 0.9, 1.1);
+                    let start = uniform(rng, 0.009, 0.011);
+                    let number = hits.len() as u32 + 1;
+                    hits.push(self.strike(&equations, &readings, channel, read, (number, peak, start), rng)?);
+                }
+            }
+        }
+        Ok(hits)
+    }
+
+    fn strike(
+        &self,
+        equations: &Equations,
+        readings: &[Vec<f64>],
+        struck: &Channel,
+        read: &[Channel],
+        (number, peak, start): (u32, f64, f64),
+        rng: &mut impl Rng,
+    ) -> Result<Hit, StructureError> {
+        let force = |t: f64| {
+            let phase = (t - start) / self.pulse;
+            if (0.0..1.0).contains(&phase) { peak * (PI * phase).sin() } else { 0.0 }
+        };
+        let step = 1.0 / (self.rate * self.steps as f64);
+        let mut state = State::rest(equations);
+        let mut forces = Vec::with_capacity(self.samples);
+        let mut responses = vec![Vec::with_capacity(self.samples); readings.len()];
+        for sample in 0..self.samples {
+            let now = sample as f64 / self.rate;
+            forces.push(force(now));
+            let acceleration = equations.acceleration(&state, force(now));
+            for (history, row) in responses.iter_mut().zip(readings) {
+                history.push(dot(row, &acceleration));
+            }
+            for i in 0..self.steps {
+                state = equations.advanced(&state, now + i as f64 * step, step, &force);
+            }
+        }
+        add_noise(&mut forces, self.noise_force, rng);
+        responses.iter_mut().for_each(|values| add_noise(values, self.noise_response, rng));
+        let responses = read.iter().zip(responses);
+        let responses = responses.map(|(c, values)| Response::new(c.clone(), Motion::Acceleration, values)).collect();
+        Hit::new(number, 1.0 / self.rate, 0.0, struck.clone(), forces, responses).map_err(|_| StructureError::Impossible {
+            what: "a motion",
+            value: f64::INFINITY,
+            needed: "a finite one",
+        })
+    }
+}
+
+/// Largest relative motion of a joint's component when the structure without its amplitude-dependent effects is struck at `struck`, m or rad.
+///
+/// # Errors
+/// As [`StrikeTest::record`].
+pub fn reach(
+    fixture: &Fixture,
+    (joint, dof): (&str, Dof),
+    struck: &Channel,
+    test: &StrikeTest,
+    peak: f64,
+) -> Result<f64, StructureError> {
+    let linear = fixture.physics().iter().filter(|e| !e.kind.is_nonlinear()).cloned().collect();
+    let fixture = fixture.clone().with_physics(linear)?;
+    let (equations, _) = build(&fixture, struck, &[])?;
+    let structure = Structure::of(&fixture)?;
+    let motion = dense(&across(&structure, &fixture, joint, dof)?, equations.n);
+    let force = |t: f64| if t < test.pulse { peak * (PI * t / test.pulse).sin() } else { 0.0 };
+    let step = 1.0 / (test.rate * test.steps as f64);
+    let mut state = State::rest(&equations);
+    let mut most: f64 = 0.0;
+    for i in 0..test.samples * test.steps / 4 {
+        state = equations.advanced(&state, i as f64 * step, step, &force);
+        most = most.max(dot(&motion, &state.motion).abs());
+    }
+    Ok(most)
+}
+
+/// A random amplitude-dependent effect on a joint's component that is driven to `reach` and has stiffness `stiffness` there: strong enough to
+/// matter at that motion, exercised by it.
+pub fn random_law(rng: &mut impl Rng, kind: EffectKind, joint: &str, dof: Dof, stiffness: f64, reach: f64) -> Effect {
+    let place = Place::Joint(joint.to_owned());
+    let values = match kind {
+        EffectKind::CubicStiffness => vec![log_uniform(rng, 0.05, 1.0) * stiffness / (reach * reach)],
+        EffectKind::Friction => {
+            let spring = log_uniform(rng, 0.05, 0.6) * stiffness;
+            vec![spring * reach * log_uniform(rng, 0.05, 0.4), spring]
+        }
+        _ => vec![reach * uniform(rng, 0.1, 0.5), log_uniform(rng, 0.1, 1.0) * stiffness],
+    };
+    Effect::new(kind, place, Some(dof), &values)
+}
+
+fn build(fixture: &Fixture, struck: &Channel, read: &[Channel]) -> Result<(Equations, Vec<Vec<f64>>), StructureError> {
+    let (bent, linear): (Vec<Effect>, Vec<Effect>) =
+        fixture.physics().iter().cloned().partition(|e| e.kind.is_nonlinear());
+    let plain = fixture.clone().with_physics(linear)?;
+    let structure = Structure::of(&plain)?;
+    let assembly: &Assembly = structure.assembly();
+    let n = assembly.order();
+    let mass = inverse(&assembly.mass_matrix(), n).ok_or(StructureError::Impossible {
+        what: "a mass matrix",
+        value: 0.0,
+        needed: "mass on every coordinate",
+    })?;
+    let pulled = |row: &[f64]| -> Vec<f64> { mass.chunks_exact(n).map(|line| dot(line, row)).collect() };
+    let times = |matrix: &[f64]| -> Vec<f64> {
+        (0..n * n).map(|e| (0..n).map(|k| mass[(e / n) * n + k] * matrix[k * n + e % n]).sum()).collect()
+    };
+    let mut elements = Vec::new();
+    for effect in bent {
+        let Place::Joint(joint) = &effect.place else { continue };
+        let motion = dense(&across(&structure, &plain, joint, effect.dof.unwrap_or(Dof::Translation))?, n);
+        elements.push(Element { pull: pulled(&motion), motion, effect });
+    }
+    let equations = Equations {
+        n,
+        stiffness: times(&assembly.stiffness_matrix()),
+        damping: times(&assembly.damping_matrix()),
+        push: pulled(&dense(structure.motion(struck)?, n)),
+        elements,
+    };
+    let readings = read.iter().map(|c| Ok(dense(structure.motion(c)?, n))).collect::<Result<_, StructureError>>()?;
+    Ok((equations, readings))
+}
+
+fn across(structure: &Structure, fixture: &Fixture, joint: &str, dof: Dof) -> Result<Row, StructureError> {
+    let joint = fixture.joint(joint).ok_or_else(|| StructureError::UnknownPoint(format!("joint {joint}")))?;
+    let station = |point: usize| -> Result<Station, StructureError> {
+        let name = &fixture.points()[point].name;
+        let y = structure.motion(&Channel::transverse(name.clone()))?.clone();
+        Ok(Station { y, theta: structure.motion(&Channel::rotational(name.clone()))?.clone() })
+    };
+    let [y, theta] = station(joint.to)?.relative_to(&station(joint.from)?, fixture.joint_length(joint));
+    Ok(if dof == Dof::Rotation { theta } else { y })
+}
+
+/// Motion, velocity and what each friction element bears.
+#[derive(Clone)]
+struct State {
+    motion: Vec<f64>,
+    velocity: Vec<f64>,
+    borne: Vec<f64>,
+}
+
+impl State {
+    fn rest(equations: &Equations) -> Self {
+        let zero = vec![0.0; equations.n];
+        State { motion: zero.clone(), velocity: zero, borne: vec![0.0; equations.elements.len()] }
+    }
+
+    fn moved(&self, by: &Rates, step: f64) -> Self {
+        let add = |values: &[f64], rates: &[f64]| values.iter().zip(rates).map(|(v, r)| v + step * r).collect();
+        State {
+            motion: add(&self.motion, &by.motion),
+            velocity: add(&self.velocity, &by.velocity),
+            borne: add(&self.borne, &by.borne),
+        }
+    }
+}
+
+struct Rates {
+    motion: Vec<f64>,
+    velocity: Vec<f64>,
+    borne: Vec<f64>,
+}
+
+impl Equations {
+    fn acceleration(&self, state: &State, force: f64) -> Vec<f64> {
+        let n = self.n;
+        let mut all: Vec<f64> = (0..n)
+            .map(|i| {
+                self.push[i] * force
+                    - dot(&self.stiffness[i * n..(i + 1) * n], &state.motion)
+                    - dot(&self.damping[i * n..(i + 1) * n], &state.velocity)
+            })
+            .collect();
+        for (element, borne) in self.elements.iter().zip(&state.borne) {
+            let d = dot(&element.motion, &state.motion);
+            let value = |index| element.effect.value(index);
+            let g = match element.effect.kind {
+                EffectKind::CubicStiffness => value(0) * d * d * d,
+                EffectKind::Gap => value(1) * (d - value(0)).max(0.0),
+                _ => borne.clamp(-value(0), value(0)),
+            };
+            all.iter_mut().zip(&element.pull).for_each(|(a, p)| *a -= p * g);
+        }
+        all
+    }
+
+    fn rates(&self, state: &State, force: f64) -> Rates {
+        let borne = self.elements.iter().zip(&state.borne).map(|(element, borne)| {
+            let rate = dot(&element.motion, &state.velocity);
+            let slips = element.effect.kind != EffectKind::Friction
+                || (borne.abs() >= element.effect.value(0) && borne * rate > 0.0);
+            if slips { 0.0 } else { element.effect.value(1) * rate }
+        });
+        Rates { motion: state.velocity.clone(), velocity: self.acceleration(state, force), borne: borne.collect() }
+    }
+
+    /// One step of the classical method of Runge and Kutta.
+    fn advanced(&self, state: &State, time: f64, step: f64, force: &impl Fn(f64) -> f64) -> State {
+        let (middle, end) = (force(time + 0.5 * step), force(time + step));
+        let first = self.rates(state, force(time));
+        let second = self.rates(&state.moved(&first, 0.5 * step), middle);
+        let third = self.rates(&state.moved(&second, 0.5 * step), middle);
+        let fourth = self.rates(&state.moved(&third, step), end);
+        let mut next = state.clone();
+        for (rates, weight) in [(&first, 1.0), (&second, 2.0), (&third, 2.0), (&fourth, 1.0)] {
+            next = next.moved(rates, step * weight / 6.0);
+        }
+        for (element, borne) in self.elements.iter().zip(&mut next.borne) {
+            if element.effect.kind == EffectKind::Friction {
+                *borne = borne.clamp(-element.effect.value(0), element.effect.value(0));
+            }
+        }
+        next
+    }
+}
+
+fn dense(row: &Row, n: usize) -> Vec<f64> {
+    let mut all = vec![0.0; n];
+    row.terms().iter().for_each(|&(i, value)| all[i] += value);
+    all
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+fn add_noise(values: &mut [f64], relative: f64, rng: &mut impl Rng) {
+    let rms = (values.iter().map(|v| v * v).sum::<f64>() / values.len().max(1) as f64).sqrt();
+    values.iter_mut().for_each(|value| *value += relative * rms * normal(rng));
+}
