@@ -6,7 +6,9 @@
 //! * [`LeastSquares`]: weighted linear least squares by Householder reflections, with a rank check;
 //! * [`solve_positive_definite`]: the normal equations of a fit;
 //! * [`inverse`], [`matrix_exponential`]: real matrices of a few rows, such as those of a state space;
-//! * [`generalized_symmetric_eigen`]: `K φ = λ M φ`, scaled and with its residuals checked.
+//! * [`generalized_symmetric_eigen`]: `K φ = λ M φ`, scaled and with its residuals checked;
+//! * with the feature `sparse`: [`SparsePattern`] and [`SparseSymmetric`] assembled from element matrices, [`SparseCholesky`], and
+//!   [`lowest_modes`] of a sparse pencil by shift-invert block Lanczos, residuals checked.
 //!
 //! This is the only crate that names the library behind the eigenproblem. That library loses
 //! accuracy on symmetric matrices whose norm is far from one, so scaling and residual checks live
@@ -27,6 +29,12 @@ mod lu;
 mod matrix2;
 mod positive_definite;
 mod real;
+#[cfg(feature = "sparse")]
+mod sparse;
+#[cfg(feature = "sparse")]
+mod sparse_cholesky;
+#[cfg(feature = "sparse")]
+mod sparse_modes;
 
 pub use eigen::{EigenError, ModalBasis, generalized_symmetric_eigen};
 pub use least_squares::{LeastSquares, LeastSquaresError};
@@ -34,3 +42,9 @@ pub use lu::{LuWorkspace, Singular};
 pub use matrix2::{ComplexMatrix2, Field, Matrix2, RealMatrix2, Scalar};
 pub use positive_definite::solve_positive_definite;
 pub use real::{inverse, matrix_exponential};
+#[cfg(feature = "sparse")]
+pub use sparse::{SparseError, SparsePattern, SparseSymmetric};
+#[cfg(feature = "sparse")]
+pub use sparse_cholesky::SparseCholesky;
+#[cfg(feature = "sparse")]
+pub use sparse_modes::{ModesWanted, SparseModes, lowest_modes};

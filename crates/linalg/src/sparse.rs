@@ -1,0 +1,202 @@
+use std::sync::Arc;
+
+/// Why a sparse matrix cannot be built or factorised.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum SparseError {
+    /// An element names an equation that does not exist.
+    #[error("an element speaks of equation {equation}, and there are {order}")]
+    Equation {
+        /// The equation named.
+        equation: usize,
+        /// Number of equations.
+        order: usize,
+    },
+    /// The matrix is not positive definite to working precision, or holds a value that is not finite.
+    #[error("the matrix is not positive definite: some motion costs no energy, or an element is degenerate")]
+    NotPositiveDefinite,
+    /// Two matrices of different patterns were combined.
+    #[error("the matrices do not share a sparsity pattern")]
+    Patterns,
+    /// There is not enough memory for the factor.
+    #[error("the factor of {order} equations does not fit into memory: take a coarser mesh")]
+    Memory {
+        /// Number of equations.
+        order: usize,
+    },
+    /// The projected eigenproblem failed, or the modes found do not satisfy the equations.
+    #[error(transparent)]
+    Modes(#[from] crate::EigenError),
+}
+
+/// Where a symmetric matrix has entries: its lower triangle in compressed columns, diagonal first in each.
+#[derive(Debug, PartialEq, Eq)]
+pub struct SparsePattern {
+    pub(crate) starts: Vec<usize>,
+    pub(crate) rows: Vec<usize>,
+}
+
+impl SparsePattern {
+    /// The pattern of a matrix of order `order` summed from elements, each given by the equations that it couples.
+    ///
+    /// # Errors
+    /// An equation that is not below `order`.
+    pub fn of_elements<'a>(
+        order: usize,
+        elements: impl Iterator<Item = &'a [usize]> + Clone,
+    ) -> Result<Arc<Self>, SparseError> {
+        let mut touching = vec![Vec::new(); order];
+        for (index, equations) in elements.clone().enumerate() {
+            for &equation in equations {
+                touching.get_mut(equation).ok_or(SparseError::Equation { equation, order })?.push(index);
+            }
+        }
+        let elements: Vec<&[usize]> = elements.collect();
+        let mut starts = Vec::with_capacity(order + 1);
+        let mut rows = Vec::new();
+        // The last column that took each row: a set without clearing.
+        let mut taken = vec![usize::MAX; order];
+        starts.push(0);
+        for (column, touching) in touching.iter().enumerate() {
+            let start = rows.len();
+            rows.push(column);
+            taken[column] = column;
+            for &element in touching {
+                for &row in elements[element] {
+                    if row > column && taken[row] != column {
+                        taken[row] = column;
+                        rows.push(row);
+                    }
+                }
+            }
+            rows[start..].sort_unstable();
+            starts.push(rows.len());
+        }
+        Ok(Arc::new(SparsePattern { starts, rows }))
+    }
+
+    /// Number of equations.
+    pub fn order(&self) -> usize {
+        self.starts.len() - 1
+    }
+
+    /// Number of stored entries: the lower triangle with its diagonal.
+    pub fn entries(&self) -> usize {
+        self.rows.len()
+    }
+}
+
+/// A symmetric matrix with a [`SparsePattern`].
+#[derive(Debug, Clone, PartialEq)]
+pub struct SparseSymmetric {
+    pub(crate) pattern: Arc<SparsePattern>,
+    pub(crate) values: Vec<f64>,
+}
+
+impl SparseSymmetric {
+    /// The zero matrix.
+    pub fn zero(pattern: &Arc<SparsePattern>) -> Self {
+        SparseSymmetric { pattern: Arc::clone(pattern), values: vec![0.0; pattern.entries()] }
+    }
+
+    /// Number of equations.
+    pub fn order(&self) -> usize {
+        self.pattern.order()
+    }
+
+    /// Adds an element's symmetric matrix, row-major over its equations; `None` for those that are held.
+    ///
+    /// # Errors
+    /// Equations that the pattern does not couple.
+    pub fn add_element(&mut self, equations: &[Option<usize>], matrix: &[f64]) -> Result<(), SparseError> {
+        let (count, order) = (equations.len(), self.order());
+        for (i, row) in equations.iter().enumerate() {
+            let Some(row) = *row else { continue };
+            for (j, column) in equations.iter().enumerate() {
+                let Some(column) = column.filter(|column| *column <= row) else { continue };
+                let range = match self.pattern.starts.get(column..column + 2) {
+                    Some(ends) => ends[0]..ends[1],
+                    None => return Err(SparseError::Equation { equation: column, order }),
+                };
+                let place = self.pattern.rows[range.clone()].binary_search(&row);
+                let place = place.map_err(|_| SparseError::Equation { equation: row, order })?;
+                self.values[range.start + place] += matrix[i * count + j];
+            }
+        }
+        Ok(())
+    }
+
+    /// This matrix plus `factor` times `other`.
+    ///
+    /// # Errors
+    /// Matrices of different patterns.
+    pub fn plus(&self, factor: f64, other: &SparseSymmetric) -> Result<Self, SparseError> {
+        if !Arc::ptr_eq(&self.pattern, &other.pattern) && self.pattern != other.pattern {
+            return Err(SparseError::Patterns);
+        }
+        let values = self.values.iter().zip(&other.values).map(|(a, b)| a + factor * b).collect();
+        Ok(SparseSymmetric { pattern: Arc::clone(&self.pattern), values })
+    }
+
+    /// y = A x.
+    pub fn multiply(&self, x: &[f64]) -> Vec<f64> {
+        let mut y = vec![0.0; x.len()];
+        let SparsePattern { starts, rows } = self.pattern.as_ref();
+        for column in 0..self.order() {
+            let range = starts[column]..starts[column + 1];
+            let mut sum = self.values[range.start] * x[column];
+            for index in range.start + 1..range.end {
+                let (row, value) = (rows[index], self.values[index]);
+                y[row] += value * x[column];
+                sum += value * x[row];
+            }
+            y[column] += sum;
+        }
+        y
+    }
+
+    /// xᵀ A x: twice the energy of a motion.
+    pub fn quadratic(&self, x: &[f64]) -> f64 {
+        self.multiply(x).iter().zip(x).map(|(a, b)| a * b).sum()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Springs in a row, the first node held.
+    fn chain(stiffness: &[f64]) -> SparseSymmetric {
+        let couples: Vec<Vec<usize>> =
+            (0..stiffness.len()).map(|i| if i == 0 { vec![0] } else { vec![i - 1, i] }).collect();
+        let pattern = SparsePattern::of_elements(stiffness.len(), couples.iter().map(Vec::as_slice)).unwrap();
+        let mut matrix = SparseSymmetric::zero(&pattern);
+        for (i, k) in stiffness.iter().enumerate() {
+            matrix.add_element(&[i.checked_sub(1), Some(i)], &[*k, -k, -k, *k]).unwrap();
+        }
+        matrix
+    }
+
+    #[test]
+    fn a_chain_of_springs_multiplies_like_its_dense_matrix() {
+        let matrix = chain(&[2.0, 3.0, 5.0]);
+        // [[5, −3, 0], [−3, 8, −5], [0, −5, 5]]
+        assert_eq!(matrix.multiply(&[1.0, 10.0, 100.0]), [-25.0, -423.0, 450.0]);
+        assert_eq!(matrix.pattern.entries(), 5);
+    }
+
+    #[test]
+    fn an_element_outside_the_pattern_is_refused() {
+        let mut matrix = chain(&[1.0, 1.0, 1.0]);
+        let answer = matrix.add_element(&[Some(0), Some(2)], &[1.0; 4]);
+        assert_eq!(answer, Err(SparseError::Equation { equation: 2, order: 3 }));
+        let outside = [7_usize];
+        assert!(SparsePattern::of_elements(3, [outside.as_slice()].into_iter()).is_err());
+    }
+
+    #[test]
+    fn combining_needs_one_pattern() {
+        assert_eq!(chain(&[1.0, 1.0]).plus(1.0, &chain(&[1.0; 3])), Err(SparseError::Patterns));
+        let sum = chain(&[1.0, 1.0]).plus(2.0, &chain(&[1.0, 1.0])).unwrap();
+        assert_eq!(sum.multiply(&[1.0, 1.0]), [3.0, 0.0]);
+    }
+}
