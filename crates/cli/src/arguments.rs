@@ -28,6 +28,8 @@ pub enum Command {
     Decompose(DecomposeArguments),
     /// What physics the fixture leaves out, where it sits and how sure that is: diagnosis.json, refitted.json, repaired.json, report.html.
     Diagnose(DiagnoseArguments),
+    /// FRFs of the fixture's finite-element twin, the assembly as a deformable solid.
+    Fem(crate::fem::FemArguments),
     /// How often the diagnosis is right: concealed cases of a simulated laboratory, and a table of scores.
     Prove(crate::prove::ProveArguments),
 }
@@ -163,7 +165,7 @@ pub fn band(text: &str) -> Result<Band, String> {
 const MOST_LINES: f64 = 1e7;
 
 /// Reads `FROM:TO:STEP` in Hz; the last line is the last step not beyond TO.
-fn spectral_lines(text: &str) -> Result<SpectralLines, String> {
+pub fn spectral_lines(text: &str) -> Result<SpectralLines, String> {
     let form = "first line, last line and step in Hz are needed, such as 2.5:1000:2.5";
     let mut fields = text.split(':');
     let (Some(from), Some(to), Some(step), None) =

@@ -7,6 +7,7 @@ mod decompose;
 mod diagnose;
 mod estimate;
 mod estimation_arguments;
+mod fem;
 mod input;
 mod measured;
 mod output;
@@ -47,6 +48,7 @@ fn run(command: &Command) -> Result<String, Refusal> {
         Command::Estimate(arguments) => estimate::run(arguments),
         Command::Decompose(arguments) => decompose::run(arguments),
         Command::Diagnose(arguments) => diagnose::run(arguments),
+        Command::Fem(arguments) => fem::run(arguments),
         Command::Prove(arguments) => prove::run(arguments),
     }
 }

@@ -42,7 +42,8 @@ pub fn run(arguments: &SynthesizeArguments) -> Result<String, Refusal> {
 /// The paper's four FRFs, across the joint between points 2 and 3.
 const DEFAULT_PAIRS: [(&str, &str); 4] = [("4", "1"), ("3", "1"), ("4", "2"), ("3", "2")];
 
-fn default_pairs(fixture: &Fixture) -> Result<Vec<FrfPair>, String> {
+/// The FRFs computed where none are named.
+pub fn default_pairs(fixture: &Fixture) -> Result<Vec<FrfPair>, String> {
     if ["1", "2", "3", "4"].iter().all(|point| fixture.point(point).is_some()) {
         return Ok(DEFAULT_PAIRS
             .iter()

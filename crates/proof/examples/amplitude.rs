@@ -63,7 +63,11 @@ fn main() {
         let effect = kind.map(|kind| {
             let joints = fixture.joints();
             let joint = &joints[(unit(&mut rng) * joints.len() as f64) as usize];
-            let dof = if unit(&mut rng) < 0.6 || family == Family::Frame { Dof::Translation } else { Dof::Rotation };
+            let dof = if unit(&mut rng) < 0.6 || family == Family::Frame {
+                Dof::Translation
+            } else {
+                Dof::Rotation
+            };
             let most = struck.iter().map(|c| reach(&truth, (&joint.name, dof), c, &test, LEVELS[2]).unwrap());
             let most = most.fold(0.0, f64::max);
             let stiffness = jointscope_lumped::nominal_stiffness(&joint.law, fixture.joint_length(joint));
@@ -102,16 +106,25 @@ fn main() {
             seen += 1;
         }
         let chi2 = diagnosis.models.as_ref().map(|m| m[2].chi2_per_dof);
-        let name = |e: &jointscope_fixture::Effect| format!("{} {} {:?}", e.kind.name(), e.place, e.dof.unwrap());
+        let name =
+            |e: &jointscope_fixture::Effect| format!("{} {} {:?}", e.kind.name(), e.place, e.dof.unwrap());
         let found = diagnosis.findings.first();
-        let correct = found.is_some_and(|f| name(&f.effect) == name(&effect)) && diagnosis.findings.len() == 1;
+        let correct =
+            found.is_some_and(|f| name(&f.effect) == name(&effect)) && diagnosis.findings.len() == 1;
         right += usize::from(correct);
         let mut line = String::new();
         if let Some(found) = found.filter(|_| correct) {
             for (place, estimate) in found.estimates.iter().enumerate() {
                 let error = estimate.value / effect.value(place) - 1.0;
-                let covered = estimate.interval.is_some_and(|[low, high]| low <= effect.value(place) && effect.value(place) <= high);
-                line += &format!(" {} {:+.2} %{}", estimate.parameter.name, 100.0 * error, if covered { "" } else { "!" });
+                let covered = estimate
+                    .interval
+                    .is_some_and(|[low, high]| low <= effect.value(place) && effect.value(place) <= high);
+                line += &format!(
+                    " {} {:+.2} %{}",
+                    estimate.parameter.name,
+                    100.0 * error,
+                    if covered { "" } else { "!" }
+                );
                 errors.push((format!("{}.{}", effect.kind.name(), estimate.parameter.name), error, covered));
             }
         }
@@ -119,19 +132,34 @@ fn main() {
             ratios.push(held.nrmse_refitted / held.nrmse_repaired);
             line += &format!(" held out {:.3} -> {:.4}", held.nrmse_refitted, held.nrmse_repaired);
         }
-        let also: Vec<String> = diagnosis.findings.iter().map(|f| format!("{} ({:.2})", name(&f.effect), f.probability)).collect();
+        let also: Vec<String> = diagnosis
+            .findings
+            .iter()
+            .map(|f| format!("{} ({:.2})", name(&f.effect), f.probability))
+            .collect();
         println!(
             "{case}: {} {}: {:?} p {p:.0e} chi2 {:.3} found {also:?}{line} [{:.1} s]",
-            if correct { "right" } else { "WRONG" }, name(&effect), diagnosis.verdict, chi2.unwrap_or(0.0), begun.elapsed().as_secs_f64()
+            if correct { "right" } else { "WRONG" },
+            name(&effect),
+            diagnosis.verdict,
+            chi2.unwrap_or(0.0),
+            begun.elapsed().as_secs_f64()
         );
         if !correct {
             println!("    planted {:?}", effect.parameters.iter().map(|q| q.value).collect::<Vec<_>>());
             for f in &diagnosis.findings {
-                println!("    found {:?} of {:?}", name(&f.effect), f.estimates.iter().map(|e| e.value).collect::<Vec<_>>());
+                println!(
+                    "    found {:?} of {:?}",
+                    name(&f.effect),
+                    f.estimates.iter().map(|e| e.value).collect::<Vec<_>>()
+                );
             }
         }
     }
-    println!("nulls {nulls}, false alarms {alarms}; planted {planted}, seen {seen}, named rightly {right}; {:.2} s a case", seconds / cases as f64);
+    println!(
+        "nulls {nulls}, false alarms {alarms}; planted {planted}, seen {seen}, named rightly {right}; {:.2} s a case",
+        seconds / cases as f64
+    );
     let mut kinds: Vec<String> = errors.iter().map(|(k, ..)| k.clone()).collect();
     kinds.sort();
     kinds.dedup();
@@ -141,11 +169,19 @@ fn main() {
         sizes.sort_by(f64::total_cmp);
         let within = sizes.iter().filter(|e| **e < 0.1).count();
         let covered = of.iter().filter(|(.., c)| *c).count();
-        println!("{kind}: {} of {} within 10 %, median error {:.2} %, 95 % intervals hold {covered}", within, of.len(), 100.0 * sizes[sizes.len() / 2]);
+        println!(
+            "{kind}: {} of {} within 10 %, median error {:.2} %, 95 % intervals hold {covered}",
+            within,
+            of.len(),
+            100.0 * sizes[sizes.len() / 2]
+        );
     }
     ratios.sort_by(f64::total_cmp);
     if let (Some(least), Some(median)) = (ratios.first(), ratios.get(ratios.len() / 2)) {
         let five = ratios.iter().filter(|r| **r >= 5.0).count();
-        println!("held out: refitted over repaired error, least {least:.1}, median {median:.1}, at least 5 in {five} of {}", ratios.len());
+        println!(
+            "held out: refitted over repaired error, least {least:.1}, median {median:.1}, at least 5 in {five} of {}",
+            ratios.len()
+        );
     }
 }

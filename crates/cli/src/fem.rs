@@ -1,0 +1,180 @@
+//! `jointscope fem`: a fixture with `geometry` in, the FRFs of its finite-element twin out.
+
+use std::io::IsTerminal;
+use std::path::PathBuf;
+use std::time::Instant;
+
+use clap::Args;
+use indicatif::{ProgressBar, ProgressStyle};
+use jointscope_fem::{MeshOptions, ModeKind, ModeRange, Progress, Superposition, Twin, calculix_deck};
+use jointscope_recordings::to_datasets;
+use jointscope_spectra::{FrfPair, SpectralLines};
+use jointscope_uff::Encoding;
+
+use crate::arguments::{frf_pair, spectral_lines};
+use crate::input;
+use crate::output::Outputs;
+use crate::refusal::Refusal;
+use crate::synthesize::default_pairs;
+
+/// Options of `jointscope fem`.
+#[derive(Debug, Args)]
+pub struct FemArguments {
+    /// The fixture file (JSON), with `geometry`.
+    pub fixture: PathBuf,
+    /// FRFs to compute, response over reference, such as 4/1 or 4:theta/1 [default: 4/1 3/1 4/2 3/2].
+    #[arg(long, value_name = "OUT/IN", value_parser = frf_pair, num_args = 1..)]
+    pub frf: Vec<FrfPair>,
+    /// Spectral lines in Hz: first, last and step.
+    #[arg(long, value_name = "FROM:TO:STEP", value_parser = spectral_lines, default_value = "2.5:1000:2.5")]
+    pub lines: SpectralLines,
+    /// Superpose only the rigid motions and the first N transverse modes [default: all modes up to twice the last line, and what lies beyond].
+    #[arg(long, value_name = "N")]
+    pub modes: Option<usize>,
+    /// Elements where a strip meets its blocks: its thickness over N.
+    #[arg(long, value_name = "N", default_value_t = MeshOptions::default().corner)]
+    pub corner: usize,
+    /// Elements along a strip, at the least.
+    #[arg(long, value_name = "N", default_value_t = MeshOptions::default().along)]
+    pub along: usize,
+    /// Elements across half a strip's width.
+    #[arg(long, value_name = "N", default_value_t = MeshOptions::default().across)]
+    pub across: usize,
+    /// Factor by which elements grow away from the strips' ends.
+    #[arg(long, value_name = "FACTOR", default_value_t = MeshOptions::default().growth)]
+    pub growth: f64,
+    /// Mesh the whole depth and not its half: torsion and sideways modes come in.
+    #[arg(long)]
+    pub whole: bool,
+    /// Also write the mesh as an input deck for CalculiX or Abaqus.
+    #[arg(long, value_name = "F.inp")]
+    pub deck: Option<PathBuf>,
+    /// Write text (dataset 58) instead of binary (58b).
+    #[arg(long)]
+    pub ascii: bool,
+    /// The universal file to write.
+    #[arg(short, long, value_name = "F.uff")]
+    pub output: PathBuf,
+}
+
+/// Modes below which the deck's program need not look.
+const DECK_MODES: usize = 16;
+
+/// Share by which the boxes of `geometry` and the stated bodies may differ without a word.
+const AGREEMENT: f64 = 0.01;
+
+/// Computes the twin's FRFs and writes them; answers with the modes and what was written.
+pub fn run(arguments: &FemArguments) -> Result<String, Refusal> {
+    let FemArguments { fixture: path, lines, ascii, output, .. } = arguments;
+    let fixture = input::fixture(path)?;
+    let about_fixture = |error: &dyn std::fmt::Display| Refusal::at(path, error);
+    let pairs = match arguments.frf.is_empty() {
+        true => default_pairs(&fixture).map_err(|error| about_fixture(&error))?,
+        false => arguments.frf.clone(),
+    };
+    let options = MeshOptions {
+        corner: arguments.corner,
+        along: arguments.along,
+        across: arguments.across,
+        growth: arguments.growth,
+        whole: arguments.whole,
+    };
+    let hz = lines.hz();
+    let last = hz[hz.len() - 1];
+    let range = ModeRange { at_least: arguments.modes.unwrap_or(0).max(4), up_to: 2.0 * last };
+    let start = Instant::now();
+    let bar = progress_bar();
+    let twin = Twin::of(&fixture, &options, range, |progress| show(&bar, progress));
+    bar.finish_and_clear();
+    let twin = twin.map_err(|error| about_fixture(&error))?;
+    let superposition = match arguments.modes {
+        None => Superposition::Complete,
+        Some(count) => Superposition::First(count),
+    };
+    let frfs = twin.frfs(&pairs, lines, superposition).map_err(|error| about_fixture(&error))?;
+    let encoding = if *ascii { Encoding::Ascii } else { Encoding::default() };
+    let datasets = to_datasets(&frfs, fixture.name(), encoding).map_err(|error| about_fixture(&error))?;
+    let bytes = jointscope_uff::write(&datasets).map_err(|error| Refusal::at(output, error))?;
+    let mut outputs = Outputs::new([path]);
+    outputs.add(output, bytes);
+    if let Some(deck) = &arguments.deck {
+        outputs.add(deck, calculix_deck(&twin.mesh, fixture.name(), DECK_MODES));
+    }
+    outputs.write()?;
+    let elapsed = start.elapsed().as_secs_f64();
+    Ok(summary(&twin, &pairs, lines, output, elapsed).join("\n"))
+}
+
+fn summary(
+    twin: &Twin,
+    pairs: &[FrfPair],
+    lines: &SpectralLines,
+    output: &std::path::Path,
+    elapsed: f64,
+) -> Vec<String> {
+    let mut said = twin.disagreements(AGREEMENT);
+    said.push(format!(
+        "mesh: {} elements, {} nodes, {} equations, {}; mass {:.4} kg",
+        twin.mesh.elements.len(),
+        twin.mesh.nodes.len(),
+        twin.matrices.order(),
+        if twin.mesh.whole { "whole depth" } else { "half the depth" },
+        twin.mass()
+    ));
+    said.push(format!(
+        "{} rigid motions, at {:.0e} of the first elastic frequency; residual of the modes {:.0e}; {elapsed:.1} s",
+        twin.modes.rigid.len(),
+        twin.rigid_frequency(),
+        twin.modes.residual
+    ));
+    for (index, (hz, kind)) in twin.frequencies().iter().zip(&twin.kinds).enumerate() {
+        let kind = match kind {
+            ModeKind::Transverse => "transverse",
+            ModeKind::Other => "not transverse",
+        };
+        said.push(format!("mode {}: {hz:.3} Hz, {kind}", index + 1));
+    }
+    let names: Vec<String> = pairs.iter().map(FrfPair::to_string).collect();
+    let hz = lines.hz();
+    said.push(format!(
+        "{}: FRFs {} on {} lines, {} to {} Hz",
+        output.display(),
+        names.join(", "),
+        hz.len(),
+        hz[0],
+        hz[hz.len() - 1]
+    ));
+    said
+}
+
+/// Steps of the bar: mesh, matrices, and a hundred for the modes.
+const STEPS: u64 = 102;
+
+fn progress_bar() -> ProgressBar {
+    if !std::io::stderr().is_terminal() {
+        return ProgressBar::hidden();
+    }
+    let bar = ProgressBar::new(STEPS);
+    if let Ok(style) = ProgressStyle::with_template("{bar:30} {msg} ({elapsed})") {
+        bar.set_style(style);
+    }
+    bar.set_message("meshing");
+    bar
+}
+
+fn show(bar: &ProgressBar, progress: Progress) {
+    match progress {
+        Progress::Meshed(nodes, elements) => {
+            bar.set_position(1);
+            bar.set_message(format!("{elements} elements, {nodes} nodes"));
+        }
+        Progress::Assembled(equations) => {
+            bar.set_position(2);
+            bar.set_message(format!("{equations} equations, factorising"));
+        }
+        Progress::Modes(found, wanted) => {
+            bar.set_position(2 + (100 * found / wanted.max(1)) as u64);
+            bar.set_message(format!("{found} of {wanted} modes"));
+        }
+    }
+}
