@@ -32,6 +32,8 @@ pub enum Command {
     Fem(crate::fem::FemArguments),
     /// How often the diagnosis is right: concealed cases of a simulated laboratory, and a table of scores.
     Prove(crate::prove::ProveArguments),
+    /// The paper's Tables 1–6, its values beside the program's.
+    Tables(crate::tables::TablesArguments),
 }
 
 #[derive(Debug, Args)]

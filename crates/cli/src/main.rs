@@ -14,6 +14,7 @@ mod output;
 mod prove;
 mod refusal;
 mod synthesize;
+mod tables;
 
 use std::io::Write;
 use std::process::ExitCode;
@@ -50,6 +51,7 @@ fn run(command: &Command) -> Result<String, Refusal> {
         Command::Diagnose(arguments) => diagnose::run(arguments),
         Command::Fem(arguments) => fem::run(arguments),
         Command::Prove(arguments) => prove::run(arguments),
+        Command::Tables(arguments) => tables::run(arguments),
     }
 }
 

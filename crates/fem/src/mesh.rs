@@ -108,7 +108,7 @@ impl Mesh {
             }
         }
         let coordinate = |a: usize, half: usize| {
-            if half % 2 == 0 {
+            if half.is_multiple_of(2) {
                 lines[a][half / 2]
             } else {
                 0.5 * (lines[a][half / 2] + lines[a][half / 2 + 1])
@@ -218,7 +218,8 @@ fn lines(
 fn x_lines(fixture: &Fixture, geometry: &Geometry, options: &MeshOptions) -> Vec<f64> {
     let mut stops: Vec<f64> = geometry.bodies.iter().flat_map(|b| [b.from.value, b.to.value]).collect();
     // Where strips and layers end, with the element size there; strips, with the longest element in them.
-    let (mut fine, mut strips): (Vec<(f64, f64)>, Vec<([f64; 2], f64)>) = (Vec::new(), Vec::new());
+    let mut fine: Vec<(f64, f64)> = Vec::new();
+    let mut strips: Vec<([f64; 2], f64)> = Vec::new();
     for (index, strip) in geometry.joints.iter().enumerate() {
         let [start, end] = strip_ends(fixture, geometry, index);
         let size = strip.thickness.value / options.corner as f64;

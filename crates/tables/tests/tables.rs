@@ -1,0 +1,103 @@
+//! The tables against what is printed, and against what their text claims.
+#![allow(clippy::unwrap_used, missing_docs)]
+
+use jointscope_tables::paper::{DAMPING, RANKS, STIFFNESS, STIFFNESS_UNITS};
+use jointscope_tables::{Measured, ProgramRow, Tables};
+use serde_json::json;
+
+fn tables() -> Tables {
+    Tables::of(None, Vec::new(), |_, _, _| {}).unwrap()
+}
+
+/// The program's |K| by eq (7) in the printed units.
+fn sim(tables: &Tables, example: &str, element: usize) -> f64 {
+    ProgramRow::magnitudes(&tables.row(example).unwrap().sim.paper.stiffness)[element]
+        / STIFFNESS_UNITS[element].1
+}
+
+#[test]
+fn inferred_fixtures_give_the_cells_that_they_were_inferred_from() {
+    let tables = tables();
+    for (example, deviations) in [
+        ("D0", [0.01, 0.02, 0.02]),
+        ("E0", [0.09, 0.05, 0.05]),
+        ("F01", [0.01; 3]),
+        ("F02", [0.06, 0.02, 0.02]),
+    ] {
+        let printed = STIFFNESS.iter().find(|row| row.example == example).unwrap().sim.unwrap();
+        for (element, allowed) in deviations.into_iter().enumerate() {
+            let found = sim(&tables, example, element);
+            assert!(
+                (found / printed[element] - 1.0).abs() < allowed,
+                "{example}: {found} for {}",
+                printed[element]
+            );
+        }
+    }
+    for row in DAMPING.iter() {
+        if let Some(program) = tables.row(row.example) {
+            let found = ProgramRow::magnitudes(&program.sim.paper.damping)[0];
+            assert!((found / row.sim[0] - 1.0).abs() < 0.05, "{}: {found} for {}", row.example, row.sim[0]);
+            assert!((program.input[0] / row.input[0] - 1.0).abs() < 0.05, "{}", row.example);
+        }
+    }
+}
+
+#[test]
+fn the_exact_relation_closes_the_round_trip_that_eq_7_does_not() {
+    for row in tables().rows {
+        for (i, j) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
+            let stated = row.stiffness.at(i, j);
+            assert!((row.sim.exact.stiffness.at(i, j) / stated - 1.0).abs() < 1e-6);
+            assert!((row.sim.paper.stiffness.at(i, j) / stated - 1.0).abs() > 0.1);
+        }
+        assert!(row.sim.paper.damping.at(0, 0) / row.input[0] > 1.3, "damping of {}", row.example.name);
+    }
+}
+
+#[test]
+fn table_4_s_first_element_is_the_order_of_the_measured_cells() {
+    let exp = |name: &str| STIFFNESS.iter().find(|row| row.example == name).and_then(|row| row.exp);
+    let order = Tables::rank(0, 0, exp);
+    let printed: Vec<&str> = RANKS[0][0].iter().copied().filter(|name| *name != "E0").collect();
+    assert_eq!(order, printed);
+}
+
+#[test]
+fn every_example_has_its_row_and_every_row_its_finding() {
+    let text = tables().to_text();
+    for row in &STIFFNESS {
+        assert!(
+            text.contains(&format!("| {:<7} | {:<8} |", row.example, row.joint.name())),
+            "{}",
+            row.example
+        );
+    }
+    for part in
+        ["12               | 12 ", "no fixture of two equal blocks reaches", "Table 6", "within reach"]
+    {
+        assert!(text.contains(part), "`{part}` is missing");
+    }
+    let widths: Vec<usize> =
+        text.lines().filter(|l| l.starts_with("| example")).map(|l| l.matches('|').count()).collect();
+    assert!(widths.len() >= 9);
+}
+
+#[test]
+fn a_user_s_own_decomposition_stands_in_its_row() {
+    let file = json!({ "relation": "paper", "average": { "stiffness": [[0.71e6, -1.6e4], [9.8e3, -1.8e3]], "damping": [[1, 0], [0, 1]] } });
+    let measured = Measured::of("E2", &file).unwrap();
+    let tables = Tables::of(None, vec![measured], |_, _, _| {}).unwrap();
+    assert!(tables.to_text().contains("0.710 (same)"));
+    let error = Measured::of("E9", &file).unwrap_err().to_string();
+    assert!(error.contains("`E9`") && error.contains("F02"), "{error}");
+    assert!(Measured::of("E2", &json!({})).unwrap_err().to_string().contains("jointscope decompose"));
+}
+
+#[test]
+fn the_json_holds_si_units_and_signs() {
+    let value = tables().to_value();
+    assert_eq!(value["D0"]["paper"]["stiffness"]["sim"][0], 3.3e6);
+    assert!(value["D0"]["program"]["sim"]["eq7"]["stiffness"][1][1].as_f64().unwrap() < 0.0);
+    assert!(value["F1"]["program"].is_null() && value["E2"]["program"]["own_stiffness"] == false);
+}
