@@ -28,6 +28,8 @@ pub enum Command {
     Decompose(DecomposeArguments),
     /// What physics the fixture leaves out, where it sits and how sure that is: diagnosis.json, refitted.json, repaired.json, report.html.
     Diagnose(DiagnoseArguments),
+    /// Several decompositions side by side, and which joint is the stiffer: comparison.json and report.html.
+    Compare(crate::compare::CompareArguments),
     /// FRFs of the fixture's finite-element twin, the assembly as a deformable solid.
     Fem(crate::fem::FemArguments),
     /// How often the diagnosis is right: concealed cases of a simulated laboratory, and a table of scores.

@@ -3,6 +3,7 @@
 //! Exit status 0: done. 2: bad usage or bad input, with one plain sentence on standard error and nothing half-written.
 
 mod arguments;
+mod compare;
 mod decompose;
 mod diagnose;
 mod estimate;
@@ -49,6 +50,7 @@ fn run(command: &Command) -> Result<String, Refusal> {
         Command::Estimate(arguments) => estimate::run(arguments),
         Command::Decompose(arguments) => decompose::run(arguments),
         Command::Diagnose(arguments) => diagnose::run(arguments),
+        Command::Compare(arguments) => compare::run(arguments),
         Command::Fem(arguments) => fem::run(arguments),
         Command::Prove(arguments) => prove::run(arguments),
         Command::Tables(arguments) => tables::run(arguments),

@@ -10,8 +10,8 @@ const FLOORS: [&[&str]; 7] = [
     &["jointscope-beam", "jointscope-fixture", "jointscope-averaging", "jointscope-frf", "jointscope-hits"],
     &["jointscope-damping", "jointscope-estimation", "jointscope-recordings"],
     &["jointscope-fem", "jointscope-lumped", "jointscope-rig"],
-    &["jointscope-decomposition", "jointscope-diagnosis", "jointscope-nonlinear"],
-    &["jointscope", "jointscope-proof", "jointscope-report"],
+    &["jointscope-comparison", "jointscope-decomposition", "jointscope-diagnosis", "jointscope-nonlinear"],
+    &["jointscope", "jointscope-proof", "jointscope-report", "jointscope-tables"],
     &["jointscope-cli", "jointscope-benches"],
 ];
 

@@ -11,7 +11,7 @@
 //! | [`Plot`], [`Axis`], [`Role`], [`YRange`] | plots over spectral lines, with bands, gaps and reference lines |
 //! | [`drawing`] | side view of a fixture as SVG |
 //! | [`HeatMap`] | misfit by place and band, with its numbers |
-//! | [`decomposition_page`], [`diagnosis_page`], [`PageContext`] | the pages of a joint's decomposition and of a diagnosis |
+//! | [`decomposition_page`], [`diagnosis_page`], [`comparison_page`], [`PageContext`] | the pages of a joint's decomposition, of a diagnosis, and of joints side by side |
 //! | [`format`](mod@format), [`Scale`] | numbers with uncertainty, units with SI prefix |
 //!
 //! ```
@@ -43,6 +43,7 @@
 //! that panes of many thousand spectral lines zoom and move together without delay, where general plotting libraries would add megabytes to each report or load
 //! themselves from a server.
 
+mod comparison_page;
 mod context;
 mod decomposition_page;
 mod diagnosis_page;
@@ -59,6 +60,7 @@ mod plot;
 mod section;
 mod unit;
 
+pub use comparison_page::comparison_page;
 pub use context::{HammerTest, InputFile, PageContext};
 pub use decomposition_page::decomposition_page;
 pub use diagnosis_page::diagnosis_page;

@@ -1,0 +1,117 @@
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+
+/// The order of several quantities by magnitude, and how sure it is.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Ranking {
+    /// Indices, the smallest magnitude first.
+    pub order: Vec<usize>,
+    /// Probability that the whole order is right.
+    pub probability: f64,
+    /// Probability that each neighbour in the order is truly larger than the one before it.
+    pub adjacent: Vec<f64>,
+    /// For each quantity (as given), the probability of each rank.
+    pub ranks: Vec<Vec<f64>>,
+}
+
+/// Draws behind the probabilities: their own standard error is below 0.0036.
+const DRAWS: usize = 20_000;
+
+impl Ranking {
+    /// Ranks values with their standard deviations, taken as independent and normal, by magnitude.
+    ///
+    /// The deviations of two tests on the same blocks share the blocks' tolerances, which move both values alike: taken as independent they
+    /// make an order look less sure than it is, never more.
+    pub fn of(values: &[(f64, f64)]) -> Self {
+        let count = values.len();
+        let mut order: Vec<usize> = (0..count).collect();
+        order.sort_by(|a, b| values[*a].0.abs().total_cmp(&values[*b].0.abs()));
+        let mut random = ChaCha8Rng::seed_from_u64(1);
+        let mut right = 0_usize;
+        let mut adjacent = vec![0_usize; count.saturating_sub(1)];
+        let mut ranks = vec![vec![0_usize; count]; count];
+        let mut drawn = vec![0.0; count];
+        let mut sorted: Vec<usize> = order.clone();
+        for _ in 0..DRAWS {
+            for (draw, (value, std)) in drawn.iter_mut().zip(values) {
+                *draw = (value + std * normal(&mut random)).abs();
+            }
+            let mut all = true;
+            for (pair, count) in order.windows(2).zip(&mut adjacent) {
+                let larger = drawn[pair[1]] >= drawn[pair[0]];
+                *count += usize::from(larger);
+                all &= larger;
+            }
+            right += usize::from(all);
+            sorted.sort_by(|a, b| drawn[*a].total_cmp(&drawn[*b]).then(a.cmp(b)));
+            sorted.iter().enumerate().for_each(|(rank, index)| ranks[*index][rank] += 1);
+        }
+        let share = |count: usize| count as f64 / DRAWS as f64;
+        Ranking {
+            order,
+            probability: share(right),
+            adjacent: adjacent.into_iter().map(share).collect(),
+            ranks: ranks.into_iter().map(|row| row.into_iter().map(share).collect()).collect(),
+        }
+    }
+}
+
+/// A standard normal number (Box and Muller).
+fn normal(random: &mut ChaCha8Rng) -> f64 {
+    let (radius, angle): (f64, f64) = (random.random(), random.random());
+    (-2.0 * (1.0 - radius).ln()).sqrt() * (std::f64::consts::TAU * angle).cos()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn two_values_have_the_probability_of_their_difference() {
+        // Φ(1/√2) = 0.7602
+        let ranking = Ranking::of(&[(11.0, 1.0), (10.0, 1.0)]);
+        assert_eq!(ranking.order, [1, 0]);
+        assert!((ranking.probability - 0.7602).abs() < 0.012, "{}", ranking.probability);
+        assert!((ranking.ranks[0][1] - ranking.probability).abs() < 1e-12);
+    }
+
+    #[test]
+    fn magnitudes_are_ranked_and_exact_values_are_sure() {
+        let ranking = Ranking::of(&[(-3.0, 0.0), (2.0, 0.0), (-1.0, 0.0)]);
+        assert_eq!((ranking.order.as_slice(), ranking.probability), ([2, 1, 0].as_slice(), 1.0));
+        assert_eq!(ranking.ranks[0], [0.0, 0.0, 1.0]);
+    }
+
+    #[test]
+    fn no_value_and_one_value_are_in_order() {
+        assert_eq!(Ranking::of(&[]).probability, 1.0);
+        assert_eq!(Ranking::of(&[(1.0, 5.0)]).order, [0]);
+    }
+
+    #[test]
+    fn an_order_said_to_be_right_so_often_is_right_so_often() {
+        // Five joints of stiffness 1 to 2, measured to 0.08, three hundred times: in each tenth of the stated probability the share of right
+        // orders is the stated one to within what so few can show.
+        let mut random = ChaCha8Rng::seed_from_u64(7);
+        let (mut said, mut was) = (0.0, 0.0);
+        let mut tenths = [(0.0, 0.0, 0.0); 10];
+        for _ in 0..300 {
+            let truth: Vec<f64> = (0..5).map(|_| 1.0 + random.random::<f64>()).collect();
+            let measured: Vec<(f64, f64)> =
+                truth.iter().map(|t| (t + 0.08 * normal(&mut random), 0.08)).collect();
+            let ranking = Ranking::of(&measured);
+            let right = ranking.order.windows(2).all(|pair| truth[pair[1]] >= truth[pair[0]]);
+            let tenth = &mut tenths[((ranking.probability * 10.0) as usize).min(9)];
+            *tenth = (tenth.0 + 1.0, tenth.1 + ranking.probability, tenth.2 + f64::from(right));
+            said += ranking.probability;
+            was += f64::from(right);
+        }
+        assert!((said - was).abs() < 30.0, "said {said} of 300, was {was}");
+        for (count, said, was) in tenths {
+            assert!(
+                (said - was).abs() < 4.0 + 3.0 * (0.25_f64 * count).sqrt(),
+                "of {count}: said {said}, was {was}"
+            );
+        }
+    }
+}
