@@ -7,14 +7,14 @@ use jointscope_report::{PageContext, decomposition_page};
 
 use crate::arguments::{DecomposeArguments, RelationName};
 use crate::input;
-use crate::measured::{as_recorded, measured};
+use crate::measured::measured;
 use crate::output::Outputs;
 use crate::refusal::Refusal;
 
 /// Decomposes and writes `stiffness.json` and `report.html`; answers with what was found and where the page is.
 pub fn run(arguments: &DecomposeArguments) -> Result<String, Refusal> {
     let fixture = input::fixture(&arguments.fixture)?;
-    // The relation between FRFs and joint is one on the imaginary axis: no window that moves them off it unless asked for.
+    // The relation between FRFs and joint is one on the imaginary axis: no window that moves them off it.
     let measured = measured(
         &arguments.recording,
         &arguments.estimation,
@@ -22,9 +22,15 @@ pub fn run(arguments: &DecomposeArguments) -> Result<String, Refusal> {
         &arguments.fixture,
         ResponseWindow::None,
     )?;
-    let recorded = as_recorded(&fixture, &arguments.fixture, measured.window_decay)?;
     let files = || std::iter::once(&arguments.fixture).chain(&arguments.recording.files);
     let names = input::names(&arguments.recording.files);
+    if measured.window_decay > 0.0 {
+        return Err(Refusal::new(format_args!(
+            "{names}: the FRFs lie under an exponential window of decay {} 1/s, and K and C by line are read on the imaginary axis; estimate them \
+             without `--response-window`, or use `jointscope diagnose`, which models it",
+            measured.window_decay
+        )));
+    }
     let options = AnalysisOptions {
         joint: arguments.joint.clone(),
         relation: match arguments.relation {
@@ -34,7 +40,7 @@ pub fn run(arguments: &DecomposeArguments) -> Result<String, Refusal> {
         band: arguments.band,
         exact: arguments.exact,
     };
-    let analysis = Analysis::of(&recorded, &measured.frfs, &options).map_err(|error| match error {
+    let analysis = Analysis::of(&fixture, &measured.frfs, &options).map_err(|error| match error {
         jointscope::DecompositionError::Sides(_) | jointscope::DecompositionError::Model(_) => {
             Refusal::at(&arguments.fixture, error)
         }

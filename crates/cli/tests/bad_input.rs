@@ -99,7 +99,7 @@ fn coherences_alone_are_no_frfs() {
 }
 
 #[test]
-fn time_histories_alone_are_sent_to_estimate() {
+fn time_histories_without_a_force_are_no_hits() {
     let only = |datasets: &mut Vec<Dataset58>| {
         for dataset in datasets.iter_mut() {
             dataset.function = FunctionType::TimeResponse;
@@ -108,7 +108,7 @@ fn time_histories_alone_are_sent_to_estimate() {
             dataset.data = Data::Real(vec![0.1; dataset.data.len()]);
         }
     };
-    recording("bad-time", only, &["bad.uff", "4 time histories", "jointscope estimate"]);
+    recording("bad-time", only, &["bad.uff: hit 0 has no force channel", "ordinate type 13"]);
 }
 
 #[test]
