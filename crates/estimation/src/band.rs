@@ -20,6 +20,27 @@ pub(crate) fn last_usable(power: &[f64]) -> usize {
     last.min(((n.max(1) - 1) as f64 * FILTER) as usize)
 }
 
+/// Power below this share of its neighbourhood's median is a dip.
+const DEEP: f64 = 0.03;
+
+/// The deepest line of each narrow dip of the force's power below line `last`.
+pub(crate) fn dips(power: &[f64], last: usize) -> Vec<usize> {
+    let reach = (power.len() / DIP).max(1);
+    let mut near = Vec::with_capacity(2 * reach + 1);
+    let mut is_deep = |line: usize| {
+        near.clear();
+        near.extend_from_slice(
+            &power[line.saturating_sub(reach).max(1)..(line + reach + 1).min(power.len())],
+        );
+        let middle = near.len() / 2;
+        power[line] < DEEP * *near.select_nth_unstable_by(middle, f64::total_cmp).1
+    };
+    let deep: Vec<usize> =
+        (1..=last.min(power.len().saturating_sub(1))).filter(|&line| is_deep(line)).collect();
+    let deepest = |run: &[usize]| run.iter().copied().min_by(|a, b| power[*a].total_cmp(&power[*b]));
+    deep.chunk_by(|a, b| b - a <= reach).filter_map(deepest).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -30,6 +51,8 @@ mod tests {
         assert_eq!(last_usable(&power), 461);
         power[100..110].fill(1e-9);
         assert_eq!(last_usable(&power), 461);
+        power[104] = 0.0;
+        assert_eq!(dips(&power, 461), [104]);
         assert_eq!(last_usable(&vec![1.0; 1001]), 800);
         assert_eq!(last_usable(&[0.0; 5]), 3);
     }

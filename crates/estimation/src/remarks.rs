@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use jointscope_spectra::{Channel, FrfSet};
 
+use crate::band::dips;
 use crate::baseline::Drift;
 use crate::conditioned::Conditioned;
 use crate::estimate::LEFT_UNNOTICED;
@@ -217,6 +218,9 @@ impl Remarks {
                 biased.join(", ")
             ));
         }
+        for excitation in excitations {
+            self.of_dips(excitation, frfs.lines().hz());
+        }
         self.texts.extend(implausible(frfs, excitations));
     }
 }
@@ -232,6 +236,25 @@ fn shows(drift: &Drift, values: &[f64]) -> bool {
 
 /// Share of the peak that is part of the pulse or of the loudest ringing.
 const PULSE: f64 = 0.1;
+
+impl Remarks {
+    /// Narrow dips of the force's spectrum, where FRFs rest on little.
+    fn of_dips(&mut self, excitation: &Excitation, hz: &[f64]) {
+        const TOLD: usize = 5;
+        let power: Vec<f64> = excitation.spectrum.iter().map(|force| force * force).collect();
+        let last = hz.iter().rposition(|hz| *hz <= excitation.usable_to).unwrap_or(0);
+        let dips: Vec<String> = dips(&power, last).iter().map(|&line| format!("{:.1}", hz[line])).collect();
+        if dips.is_empty() {
+            return;
+        }
+        let more = if dips.len() > TOLD { " and elsewhere" } else { "" };
+        self.texts.push(format!(
+            "the force's spectrum at {} dips near {} Hz{more}: do not trust the FRFs there, however high their coherence",
+            excitation.struck,
+            dips[..dips.len().min(TOLD)].join(", ")
+        ));
+    }
+}
 
 fn window(decay: f64) -> String {
     format!(
