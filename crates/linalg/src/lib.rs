@@ -7,6 +7,8 @@
 //! * [`solve_positive_definite`]: the normal equations of a fit;
 //! * [`inverse`], [`matrix_exponential`]: real matrices of a few rows, such as those of a state space;
 //! * [`generalized_symmetric_eigen`]: `K φ = λ M φ`, scaled and with its residuals checked;
+//! * [`complex_eigenvalues`]: eigenvalues of a general complex matrix;
+//! * [`Cholesky`]: symmetric positive definite matrices of any order, and their inverses;
 //! * with the feature `sparse`: [`SparsePattern`] and [`SparseSymmetric`] assembled from element matrices, [`SparseCholesky`], and
 //!   [`lowest_modes`] of a sparse pencil by shift-invert block Lanczos, residuals checked.
 //!
@@ -23,7 +25,9 @@
 //! assert!((identity.at(0, 0) - 1.0).abs() < 1e-12 && identity.at(0, 1).abs() < 1e-9);
 //! ```
 
+mod cholesky;
 mod eigen;
+mod general_eigen;
 mod least_squares;
 mod lu;
 mod matrix2;
@@ -36,7 +40,9 @@ mod sparse_cholesky;
 #[cfg(feature = "sparse")]
 mod sparse_modes;
 
+pub use cholesky::Cholesky;
 pub use eigen::{EigenError, ModalBasis, generalized_symmetric_eigen};
+pub use general_eigen::complex_eigenvalues;
 pub use least_squares::{LeastSquares, LeastSquaresError};
 pub use lu::{LuWorkspace, Singular};
 pub use matrix2::{ComplexMatrix2, Field, Matrix2, RealMatrix2, Scalar};
