@@ -34,7 +34,7 @@ impl From<&jointscope_uff::Node> for FileChannel {
 }
 
 /// Directions by number: scalar, translations, rotations.
-const AXES: [&str; 7] = ["0", "x", "y", "z", "rx", "ry", "rz"];
+pub(crate) const AXES: [&str; 7] = ["0", "x", "y", "z", "rx", "ry", "rz"];
 
 impl fmt::Display for FileChannel {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -144,6 +144,10 @@ impl ChannelMap {
             map.entries.push(entry);
         }
         Ok(map)
+    }
+
+    pub(crate) fn of_entries(entries: Vec<MapEntry>) -> Self {
+        ChannelMap { entries }
     }
 
     /// The entries, as given.

@@ -210,6 +210,9 @@ pub enum RecordingError {
         /// Its window's decay, 1/s.
         second_decay: f64,
     },
+    /// Points that the map names, or the files' nodes, are no points of any fixture.
+    #[error("the points of the files do not make a structure: {0}")]
+    Points(jointscope_fixture::FixtureError),
     /// FRFs at several amplitudes, where those of one are needed.
     #[error("the files hold FRFs at {count} levels ({levels}); give the files of one level")]
     SeveralLevels {

@@ -6,6 +6,7 @@
 //!
 //! * [`Recording`]: the FRFs of each level as accelerances in SI units, with coherence and averages where they were recorded;
 //! * [`hits_of`]: the hammer hits among the time histories, force and responses in SI units;
+//! * [`Recording::of_nodes`]: the same of a structure that no fixture file describes, its points the files' nodes;
 //! * [`ReadOptions`]: what the files do not say and the analyst does, a [`ChannelMap`] and [`AssumedUnits`];
 //! * [`to_datasets`]: FRFs as functions of a universal file;
 //! * [`RecordingError`]: one plain sentence each, naming file, function and remedy.
@@ -47,6 +48,7 @@ mod gather;
 mod hits;
 mod hits_error;
 mod level;
+mod nodes;
 mod ordinate;
 mod recording;
 mod unit;
