@@ -9,7 +9,7 @@ const FLOORS: [&[&str]; 7] = [
     &["jointscope-linalg", "jointscope-spectra", "jointscope-uff"],
     &["jointscope-beam", "jointscope-fixture", "jointscope-averaging", "jointscope-frf", "jointscope-hits"],
     &["jointscope-damping", "jointscope-estimation", "jointscope-recordings"],
-    &["jointscope-fem", "jointscope-lumped", "jointscope-rig"],
+    &["jointscope-fem", "jointscope-lumped", "jointscope-modes", "jointscope-rig"],
     &["jointscope-comparison", "jointscope-decomposition", "jointscope-diagnosis", "jointscope-nonlinear"],
     &["jointscope", "jointscope-proof", "jointscope-report", "jointscope-tables"],
     &["jointscope-cli", "jointscope-benches"],

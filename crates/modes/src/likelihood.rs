@@ -1,0 +1,204 @@
+//! Maximum likelihood of the modal model: poles and participations by Gauss–Newton, residues and residual terms eliminated.
+//!
+//! Noise is circular and Gaussian with known variances, so the likelihood is weighted least squares. For given poles and participations, everything else is linear,
+//! row of FRFs by row of FRFs; it is solved for and taken out of the normal equations (Schur complement). What remains is the Fisher information of
+//! poles and participations with all else unknown, and its inverse their Cramér–Rao bound.
+
+mod point;
+
+use jointscope_linalg::Cholesky;
+use num_complex::Complex64;
+
+use crate::gram::Terms;
+use crate::observed::Observed;
+use point::Point;
+
+/// Poles and how strongly their modes show in each column of the FRFs.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Poles {
+    /// rad/s.
+    pub poles: Vec<Complex64>,
+    /// Largest entry one.
+    pub participations: Vec<Vec<Complex64>>,
+}
+
+impl Poles {
+    pub fn keep(&self, keep: impl Fn(usize) -> bool) -> Self {
+        let kept: Vec<usize> = (0..self.poles.len()).filter(|&r| keep(r)).collect();
+        Poles {
+            poles: kept.iter().map(|&r| self.poles[r]).collect(),
+            participations: kept.iter().map(|&r| self.participations[r].clone()).collect(),
+        }
+    }
+}
+
+/// Holds poles near a place while one FRF alone decides on them.
+#[derive(Debug, Clone)]
+pub(crate) struct Prior {
+    pub poles: Vec<Complex64>,
+    /// Standard deviations of the frequency, in half-widths, and of ln σ.
+    pub std: (f64, f64),
+}
+
+/// Poles at their most likely place.
+#[derive(Debug, Clone)]
+pub(crate) struct Likelihood {
+    pub poles: Poles,
+    pub terms: Terms,
+    /// Σ|residual|² over the variance of a part.
+    pub chi2: f64,
+    /// Information about (δω/σ, δ ln σ) of every mode, then about participations, row-major.
+    information: Cholesky,
+    /// Mode by mode: entries of the rows of FRFs.
+    pub entries: Vec<Vec<Complex64>>,
+    /// FRF by FRF: residual terms of the accelerance, each in units of its size at the highest line.
+    pub residual_terms: Vec<Vec<Complex64>>,
+    /// Rise of χ² without each mode, all other poles where they are.
+    pub significance: Vec<f64>,
+    /// Variance of |entry|²'s parts, mode by mode and row by row, poles included.
+    pub entry_std: Vec<Vec<f64>>,
+}
+
+/// Steps of the damped Gauss–Newton search, at most.
+const STEPS: usize = 40;
+/// χ² falls by less than this: done.
+const SETTLED: f64 = 1e-3;
+
+impl Likelihood {
+    /// Searches from `start`; `None` where the equations have no solution, as with more unknowns than numbers.
+    pub fn search(
+        observed: &Observed,
+        start: Poles,
+        terms: Terms,
+        steps: usize,
+        prior: Option<&Prior>,
+    ) -> Option<Self> {
+        let mut here = Point::of(observed, start, terms, prior)?;
+        let mut damping = 1e-4;
+        for _ in 0..steps.min(STEPS) {
+            if here.gradient.is_empty() {
+                break;
+            }
+            let mut moved = None;
+            for _ in 0..8 {
+                if let Some(step) = here.step(damping) {
+                    let next = Point::of(observed, here.moved(&step), terms, prior);
+                    if let Some(next) = next.filter(|next| next.target() <= here.target()) {
+                        moved = Some(next);
+                        break;
+                    }
+                }
+                damping = (damping * 10.0).max(1e-4);
+                if damping > 1e8 {
+                    break;
+                }
+            }
+            let Some(next) = moved else { break };
+            let fall = here.target() - next.target();
+            here = next;
+            damping = (damping * 0.1).max(1e-12);
+            if fall < SETTLED {
+                break;
+            }
+        }
+        here.finish(observed)
+    }
+
+    /// Variance of δω/σ and of δ ln σ, and their covariance, for each mode: the Cramér–Rao bound at the estimate.
+    pub fn pole_covariance(&self) -> Vec<[[f64; 2]; 2]> {
+        let inverse = self.information.inverse();
+        let n = self.information.order();
+        let at = |a: usize, b: usize| inverse[a * n + b];
+        (0..self.poles.poles.len())
+            .map(|r| {
+                let (a, b) = (2 * r, 2 * r + 1);
+                [[at(a, a), at(a, b)], [at(b, a), at(b, b)]]
+            })
+            .collect()
+    }
+
+    /// Number of real unknowns.
+    pub fn unknowns(&self) -> usize {
+        let entries: usize = self.entries.iter().map(|e| 2 * e.len()).sum();
+        let terms: usize = self.residual_terms.iter().map(|t| 2 * t.len()).sum();
+        self.information.order() + entries + terms
+    }
+
+    /// χ² per degree of freedom.
+    pub fn chi2_per_dof(&self, observed: &Observed) -> f64 {
+        self.chi2 / observed.degrees().saturating_sub(self.unknowns()).max(1) as f64
+    }
+}
+
+pub(crate) const MOST_STEPS: usize = STEPS;
+
+impl Point {
+    fn finish(self, observed: &Observed) -> Option<Likelihood> {
+        let count = self.poles.poles.len();
+        let own = 2 * self.terms.count();
+        let n = self.gradient.len();
+        let information = match Cholesky::of(n, &self.information) {
+            Some(factor) => factor,
+            None => {
+                // Directions that nothing is known of get a deviation that says so.
+                let mut loosened = self.information.clone();
+                for i in 0..n {
+                    loosened[i * n + i] = loosened[i * n + i] * (1.0 + 1e-9) + 1e-12;
+                }
+                Cholesky::of(n, &loosened)?
+            }
+        };
+        let complex = |x: &[f64], k: usize| Complex64::new(x[2 * k], x[2 * k + 1]);
+        let mut entries = vec![Vec::new(); count];
+        let mut entry_std = vec![Vec::new(); count];
+        let mut significance = vec![0.0; count];
+        let mut residual_terms = vec![Vec::new(); observed.frfs()];
+        let parameters = information.inverse();
+        for ((row, mixed), frfs) in self.rows.iter().zip(&self.mixed).zip(&observed.grid.rows) {
+            let x = &row.unknowns;
+            let covariance = row.factor.inverse();
+            let size = row.factor.order();
+            for mode in 0..count {
+                let entry = complex(x, mode);
+                entries[mode].push(entry);
+                let [a, b] = [2 * mode, 2 * mode + 1];
+                let (caa, cab, cbb) =
+                    (covariance[a * size + a], covariance[b * size + a], covariance[b * size + b]);
+                let determinant = caa * cbb - cab * cab;
+                if determinant > 0.0 {
+                    significance[mode] += (entry.re * entry.re * cbb - 2.0 * entry.re * entry.im * cab
+                        + entry.im * entry.im * caa)
+                        / determinant;
+                }
+                let own_variance: f64 = [a, b]
+                    .iter()
+                    .map(|&u| {
+                        // A_ll⁻¹ and what the poles' uncertainty brings along.
+                        let gain: Vec<f64> = (0..n)
+                            .map(|k| (0..size).map(|j| covariance[u * size + j] * mixed[k * size + j]).sum())
+                            .collect();
+                        let through: f64 = (0..n)
+                            .map(|k| gain[k] * (0..n).map(|m| parameters[k * n + m] * gain[m]).sum::<f64>())
+                            .sum();
+                        covariance[u * size + u] + through
+                    })
+                    .sum();
+                entry_std[mode].push((0.5 * own_variance).max(0.0).sqrt());
+            }
+            for (i, &frf) in frfs.iter().enumerate() {
+                residual_terms[frf] =
+                    (0..self.terms.count()).map(|t| complex(&x[2 * count + own * i..], t)).collect();
+            }
+        }
+        Some(Likelihood {
+            poles: self.poles,
+            terms: self.terms,
+            chi2: self.chi2,
+            information,
+            entries,
+            residual_terms,
+            significance,
+            entry_std,
+        })
+    }
+}

@@ -1,0 +1,189 @@
+//! What was measured, as accelerances with weights, and how the FRFs stand in a matrix of responses and references.
+
+use jointscope_spectra::{Channel, FrfForm, FrfPair, FrfSet};
+use num_complex::Complex64;
+use std::f64::consts::TAU;
+
+/// The FRFs as rows of `columns` entries that share their poles' participations.
+///
+/// The columns are the references or the responses, whichever are fewer: a hammer that roves over thirty points past one sensor is
+/// one column of thirty rows. A matrix with gaps is taken apart into FRFs that share poles only.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Grid {
+    /// Indices of the FRFs, row after row.
+    pub rows: Vec<Vec<usize>>,
+    /// Number of columns.
+    pub columns: usize,
+    /// The channels of the rows and of the columns; empty where the matrix has gaps.
+    pub row_channels: Vec<Channel>,
+    pub column_channels: Vec<Channel>,
+}
+
+impl Grid {
+    fn of(pairs: &[FrfPair]) -> Self {
+        let distinct = |channel: fn(&FrfPair) -> &Channel| {
+            let mut all: Vec<Channel> = Vec::new();
+            for pair in pairs {
+                if !all.contains(channel(pair)) {
+                    all.push(channel(pair).clone());
+                }
+            }
+            all
+        };
+        let (responses, references) = (distinct(|p| &p.response), distinct(|p| &p.reference));
+        if responses.len() * references.len() != pairs.len() {
+            let rows = (0..pairs.len()).map(|i| vec![i]).collect();
+            return Grid { rows, columns: 1, row_channels: Vec::new(), column_channels: Vec::new() };
+        }
+        let by_reference = references.len() <= responses.len();
+        let (rows, columns) = if by_reference { (responses, references) } else { (references, responses) };
+        let index = |row: &Channel, column: &Channel| {
+            let (response, reference) = if by_reference { (row, column) } else { (column, row) };
+            // Complete, so every pair is there.
+            pairs.iter().position(|p| p.response == *response && p.reference == *reference).unwrap_or(0)
+        };
+        Grid {
+            rows: rows.iter().map(|row| columns.iter().map(|column| index(row, column)).collect()).collect(),
+            columns: columns.len(),
+            row_channels: rows,
+            column_channels: columns,
+        }
+    }
+
+    fn single() -> Self {
+        Grid { rows: vec![vec![0]], columns: 1, row_channels: Vec::new(), column_channels: Vec::new() }
+    }
+}
+
+/// Accelerances and weights at angular frequencies above zero.
+#[derive(Debug, Clone)]
+pub(crate) struct Observed {
+    pub grid: Grid,
+    /// rad/s, ascending.
+    pub omegas: Vec<f64>,
+    /// FRF after FRF.
+    pub values: Vec<Complex64>,
+    /// One over the variance E|ε|² of each value; zero where it is not used.
+    pub weights: Vec<f64>,
+}
+
+impl Observed {
+    /// The lines above 0 Hz of `wanted` of a set that carries variances; `None` where there are none.
+    pub fn of(frfs: &FrfSet, wanted: impl Fn(f64) -> bool) -> Option<Self> {
+        let hz = frfs.lines().hz();
+        let lines: Vec<usize> = (0..hz.len()).filter(|&i| hz[i] > 0.0 && wanted(hz[i])).collect();
+        if lines.is_empty() {
+            return None;
+        }
+        let mut values = Vec::with_capacity(lines.len() * frfs.pairs().len());
+        let mut weights = Vec::with_capacity(values.capacity());
+        for index in 0..frfs.pairs().len() {
+            let (all, variance) = (frfs.values(index), frfs.variance(index)?);
+            // A dead channel tells nothing, least of all that there is no motion.
+            let alive = lines.iter().any(|&line| all[line].norm_sqr() > 0.0);
+            for &line in &lines {
+                let factor = frfs.form().factor_to(FrfForm::Accelerance, frfs.lines().omega(line))?;
+                let coherent = frfs.coherence(index).is_none_or(|c| c[line] > 0.0);
+                let spread = variance[line] * factor.norm_sqr();
+                values.push(all[line] * factor);
+                let weight = 1.0 / spread;
+                weights.push(if alive && coherent && spread > 0.0 && weight.is_finite() {
+                    weight
+                } else {
+                    0.0
+                });
+            }
+        }
+        Some(Observed {
+            grid: Grid::of(frfs.pairs()),
+            omegas: lines.iter().map(|&i| TAU * hz[i]).collect(),
+            values,
+            weights,
+        })
+    }
+
+    pub fn lines(&self) -> usize {
+        self.omegas.len()
+    }
+
+    pub fn frfs(&self) -> usize {
+        self.values.len() / self.lines()
+    }
+
+    pub fn values(&self, frf: usize) -> &[Complex64] {
+        &self.values[frf * self.lines()..(frf + 1) * self.lines()]
+    }
+
+    pub fn weights(&self, frf: usize) -> &[f64] {
+        &self.weights[frf * self.lines()..(frf + 1) * self.lines()]
+    }
+
+    /// Variances E|ε|² of all values; those that are not used get the largest.
+    pub fn variances(&self) -> Vec<f64> {
+        let least = self.weights.iter().copied().filter(|w| *w > 0.0).fold(f64::INFINITY, f64::min);
+        let least = if least.is_finite() { least } else { 1.0 };
+        self.weights.iter().map(|w| 1.0 / if *w > 0.0 { *w } else { least }).collect()
+    }
+
+    /// Number of real numbers that count.
+    pub fn degrees(&self) -> usize {
+        2 * self.weights.iter().filter(|w| **w > 0.0).count()
+    }
+
+    /// One FRF by itself.
+    pub fn single(&self, frf: usize) -> Self {
+        Observed {
+            grid: Grid::single(),
+            omegas: self.omegas.clone(),
+            values: self.values(frf).to_vec(),
+            weights: self.weights(frf).to_vec(),
+        }
+    }
+
+    /// The same with neighbouring lines averaged where the FRFs are smooth: far from every one of the `poles`. A sum of weighted lines keeps
+    /// what they tell of everything that is straight over them.
+    pub fn condensed(&self, poles: &[Complex64]) -> Self {
+        let n = self.lines();
+        if n <= FEW_LINES {
+            return self.clone();
+        }
+        let mut starts = Vec::new();
+        let mut next = 0;
+        while next < n {
+            starts.push(next);
+            let omega = self.omegas[next];
+            let distance =
+                poles.iter().map(|p| (Complex64::new(0.0, omega) - p).norm()).fold(omega, f64::min);
+            let end = omega + SMOOTH * distance;
+            next += 1;
+            while next < n && self.omegas[next] < end {
+                next += 1;
+            }
+        }
+        starts.push(n);
+        let count = starts.len() - 1;
+        let frfs = self.frfs();
+        let mut values = Vec::with_capacity(count * frfs);
+        let mut weights = Vec::with_capacity(count * frfs);
+        for frf in 0..frfs {
+            let (all, weight) = (self.values(frf), self.weights(frf));
+            for ends in starts.windows(2) {
+                // Alike for all lines of a point, so that its frequency is their mean.
+                let lines = ends[0]..ends[1];
+                let many = lines.len() as f64;
+                values.push(all[lines.clone()].iter().sum::<Complex64>() / many);
+                let variance: f64 =
+                    weight[lines.clone()].iter().map(|w| 1.0 / w).sum::<f64>() / (many * many);
+                weights.push(if variance.is_finite() { 1.0 / variance } else { 0.0 });
+            }
+        }
+        let mean =
+            |ends: &[usize]| self.omegas[ends[0]..ends[1]].iter().sum::<f64>() / (ends[1] - ends[0]) as f64;
+        Observed { grid: self.grid.clone(), omegas: starts.windows(2).map(mean).collect(), values, weights }
+    }
+}
+
+/// So many lines are all kept.
+const FEW_LINES: usize = 2000;
+/// Lines over this share of the distance to the nearest pole are averaged: what is curved over them is 1e-4 of the FRF.
+const SMOOTH: f64 = 0.03;

@@ -1,0 +1,180 @@
+//! Poles that each FRF has by itself: whether they agree, and what their scatter says of the mode.
+
+use num_complex::Complex64;
+use std::f64::consts::TAU;
+
+use crate::Drift;
+use crate::likelihood::{Likelihood, Poles, Prior};
+use crate::mode::deviations;
+use crate::observed::Observed;
+
+/// A number and its standard deviation.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Value {
+    pub value: f64,
+    pub std: f64,
+}
+
+/// What the FRFs one by one say of a mode.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(crate) struct Scatter {
+    /// Frequency (Hz) and damping ratio from the FRFs one by one, where they do not agree.
+    pub means: Option<[Value; 2]>,
+    pub drift: Option<Drift>,
+}
+
+/// FRFs from which a scatter is told.
+const FEWEST: usize = 3;
+/// Half-widths by which an FRF's pole may stand off that of all, and by how much (in ln σ) be wider: one standard deviation.
+pub(crate) const HELD: (f64, f64) = (3.0, 1.5);
+/// An FRF counts where it knows its pole to this share of a half-width and this one of σ.
+const KNOWN: (f64, f64) = (0.3, 0.25);
+/// Standard deviations by which the FRFs' differences must exceed their noise.
+const CERTAIN: f64 = 5.0;
+/// A drift of less than this share of the half-width is left to the noise.
+const MOVED: f64 = 0.02;
+/// Steps of each FRF's own search.
+const STEPS: usize = 12;
+
+/// The scatter of each mode of `fit`.
+pub(crate) fn scatter(observed: &Observed, fit: &Likelihood) -> Vec<Scatter> {
+    let count = fit.poles.poles.len();
+    if observed.frfs() < FEWEST {
+        return vec![Scatter::default(); count];
+    }
+    let prior = Prior { poles: fit.poles.poles.clone(), std: HELD };
+    let one = vec![Complex64::ONE];
+    let start = Poles { poles: fit.poles.poles.clone(), participations: vec![one; count] };
+    let mut by_mode = vec![Vec::new(); count];
+    let mut apart = Sharing::default();
+    for frf in 0..observed.frfs() {
+        let single = observed.single(frf);
+        let Some(own) = Likelihood::search(&single, start.clone(), fit.terms, STEPS, Some(&prior)) else {
+            continue;
+        };
+        apart.add(&single, &own);
+        let inflation = own.chi2_per_dof(&single).max(1.0);
+        for (mode, covariance) in own.pole_covariance().into_iter().enumerate() {
+            let covariance = covariance.map(|row| row.map(|c| c * inflation));
+            let pole = own.poles.poles[mode];
+            if covariance[0][0].sqrt() < KNOWN.0 && covariance[1][1].sqrt() < KNOWN.1 {
+                let [f, z] = deviations(pole, covariance);
+                by_mode[mode].push((frf, pole.norm() / TAU, f.0, -pole.re / pole.norm(), z.0));
+            }
+        }
+    }
+    if !apart.is_paid_for(observed, fit) {
+        return vec![Scatter::default(); count];
+    }
+    by_mode.into_iter().zip(&fit.poles.poles).map(|(own, pole)| of_mode(own, -pole.re / TAU)).collect()
+}
+
+/// χ² and unknowns of the FRFs each with poles of its own.
+#[derive(Debug, Default)]
+struct Sharing {
+    chi2: f64,
+    unknowns: usize,
+    degrees: usize,
+}
+
+impl Sharing {
+    fn add(&mut self, single: &Observed, own: &Likelihood) {
+        self.chi2 += own.chi2;
+        self.unknowns += own.unknowns();
+        self.degrees += single.degrees();
+    }
+
+    /// Whether the FRFs are explained better by poles of their own than noise alone would have it. Where they are not, poles that one FRF cannot tell by itself, such as
+    /// those of a close pair, differ for no reason.
+    fn is_paid_for(&self, observed: &Observed, shared: &Likelihood) -> bool {
+        if self.degrees != observed.degrees() || self.unknowns <= shared.unknowns() {
+            return false;
+        }
+        let scale = self.chi2 / self.degrees.saturating_sub(self.unknowns).max(1) as f64;
+        let fall = (shared.chi2 - self.chi2) / (self.unknowns - shared.unknowns()) as f64;
+        fall > PAID * scale
+    }
+}
+
+/// Fall of χ² for each pole of its own, over its residual noise, that poles of their own must bring.
+const PAID: f64 = 2.5;
+
+fn of_mode(by_frf: Vec<(usize, f64, f64, f64, f64)>, half_width: f64) -> Scatter {
+    if by_frf.len() < FEWEST {
+        return Scatter::default();
+    }
+    let frequency = Heterogeneity::of(by_frf.iter().map(|o| (o.1, o.2)));
+    let ratio = Heterogeneity::of(by_frf.iter().map(|o| (o.3, o.4)));
+    if !frequency.certain || frequency.between.sqrt() < MOVED * half_width {
+        return Scatter::default();
+    }
+    Scatter {
+        means: Some([frequency.value(), ratio.value()]),
+        drift: Some(Drift {
+            frequency: frequency.between.sqrt(),
+            damping_ratio: ratio.between.sqrt(),
+            by_frf,
+        }),
+    }
+}
+
+/// Measurements of one thing that may have changed between them (random effects; DerSimonian and Laird 1986).
+struct Heterogeneity {
+    mean: f64,
+    mean_variance: f64,
+    /// Variance of the thing itself.
+    between: f64,
+    certain: bool,
+}
+
+impl Heterogeneity {
+    fn of(measured: impl Iterator<Item = (f64, f64)> + Clone) -> Self {
+        let weighted = |between: f64| {
+            let (mut sum, mut weights) = (0.0, 0.0);
+            for (value, std) in measured.clone() {
+                let weight = 1.0 / (std * std + between).max(f64::MIN_POSITIVE);
+                sum += weight * value;
+                weights += weight;
+            }
+            (sum / weights, weights)
+        };
+        let (fixed, weights) = weighted(0.0);
+        let count = measured.clone().count() as f64;
+        let q: f64 = measured.clone().map(|(value, std)| ((value - fixed) / std).powi(2)).sum();
+        let squares: f64 = measured.clone().map(|(_, std)| std.powi(-4)).sum();
+        let between = ((q - (count - 1.0)) / (weights - squares / weights)).max(0.0);
+        let (mean, weights) = weighted(between);
+        let degrees = count - 1.0;
+        Heterogeneity {
+            mean,
+            mean_variance: 1.0 / weights,
+            between,
+            certain: q > degrees + CERTAIN * (2.0 * degrees).sqrt(),
+        }
+    }
+
+    /// Where one further measurement would find it: the mean, and its own scatter besides the mean's.
+    fn value(&self) -> Value {
+        Value { value: self.mean, std: (self.mean_variance + self.between).sqrt() }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn measurements_that_agree_within_their_deviations_have_no_scatter_of_their_own() {
+        let alike = Heterogeneity::of([(1.0, 0.1), (1.1, 0.1), (0.95, 0.1), (1.02, 0.1)].into_iter());
+        assert!(!alike.certain && alike.between == 0.0);
+        assert!((alike.mean_variance.sqrt() - 0.05).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_thing_that_moves_is_known_no_better_than_it_stays() {
+        let moving = Heterogeneity::of([(1.0, 1e-3), (1.4, 1e-3), (0.6, 1e-3), (1.2, 1e-3)].into_iter());
+        assert!(moving.certain);
+        let value = moving.value();
+        assert!((value.value - 1.05).abs() < 1e-3 && (0.3..0.45).contains(&value.std), "{value:?}");
+    }
+}
