@@ -50,6 +50,12 @@ impl PageContext {
         }
     }
 
+    /// The recordings; the first input is none of them where a fixture was read.
+    pub(crate) fn recordings(&self, fixture: bool) -> String {
+        let files = self.inputs.iter().skip(usize::from(fixture)).map(|input| input.name.as_str());
+        files.collect::<Vec<_>>().join(", ")
+    }
+
     /// Program, command line and the inputs' hashes.
     pub(crate) fn foot(&self) -> Foot {
         let mut foot = Foot::new(&self.program);

@@ -11,7 +11,7 @@
 //! | [`Plot`], [`Axis`], [`Role`], [`YRange`] | plots over spectral lines, with bands, gaps and reference lines |
 //! | [`drawing`] | side view of a fixture as SVG |
 //! | [`HeatMap`] | misfit by place and band, with its numbers |
-//! | [`decomposition_page`], [`diagnosis_page`], [`comparison_page`], [`PageContext`] | the pages of a joint's decomposition, of a diagnosis, and of joints side by side |
+//! | [`decomposition_page`], [`diagnosis_page`], [`comparison_page`], [`modes_page`], [`PageContext`] | the pages of a joint's decomposition, of a diagnosis, of joints side by side and of a modal analysis |
 //! | [`format`](mod@format), [`Scale`] | numbers with uncertainty, units with SI prefix |
 //!
 //! ```
@@ -54,6 +54,7 @@ pub mod format;
 mod hammer_test;
 mod heat_map;
 mod html;
+mod modes_page;
 mod page;
 mod phase;
 mod plot;
@@ -68,6 +69,7 @@ pub use drawing::{FixtureDrawing, Svg};
 pub use elements::{Card, Column, Table, Tone, Verdict};
 pub use error::PageError;
 pub use heat_map::HeatMap;
+pub use modes_page::modes_page;
 pub use page::{Foot, Page};
 pub use plot::{Axis, Ordinate, Plot, Role, Spacing, YRange, kept_lines};
 pub use section::Section;

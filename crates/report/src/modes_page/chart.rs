@@ -1,0 +1,77 @@
+//! The stabilisation chart under the FRFs' sum.
+
+use jointscope_modes::{ChartPole, ModalAnalysis, Stability};
+
+use super::LINE_LIMIT;
+use crate::{Axis, Plot, Role, Section, YRange};
+
+pub(super) fn section(analysis: &ModalAnalysis) -> Section {
+    let (lowest, highest) = analysis.orders;
+    let seen = match analysis.columns {
+        1 => String::new(),
+        columns => {
+            format!(" Each order has as many poles as {columns} columns of the matrix of FRFs times it.")
+        }
+    };
+    Section::new("Stabilisation chart")
+        .paragraph(format!(
+            "Damped poles of denominators of order {lowest} to {highest}. A mode stays where it is from order to order; poles of mere arithmetic wander.{seen} Vertical lines are the \
+             modes taken; `--pick` takes others, `--orders` draws another chart."
+        ))
+        .plot(sum(analysis))
+        .plot(poles(analysis))
+}
+
+/// Root of the FRFs' summed squares.
+fn sum(analysis: &ModalAnalysis) -> Plot {
+    let (n, frfs) = (analysis.lines().len(), analysis.pairs().len());
+    let of = |values: &dyn Fn(usize, usize) -> f64| -> Vec<f64> {
+        (0..n).map(|line| (0..frfs).map(|frf| values(frf, line)).sum::<f64>().sqrt()).collect()
+    };
+    let measured = of(&|frf, line| analysis.measured().values(frf)[line].norm_sqr());
+    let rebuilt = of(&|frf, line| analysis.rebuilt(frf)[line].norm_sqr());
+    modes_marked(
+        analysis,
+        Plot::new("All FRFs together", Axis::frequency(), Axis::logarithmic("√Σ|H|²", "(m/s^2)/N"))
+            .over(analysis.lines().hz())
+            .line("measured", Role::Measured, measured)
+            .dashed("rebuilt from the modes", Role::Highlight, rebuilt),
+    )
+    .height(200)
+    .line_limit(LINE_LIMIT)
+}
+
+fn poles(analysis: &ModalAnalysis) -> Plot {
+    let hz = analysis.lines().hz();
+    let in_band = |pole: &&ChartPole| pole.frequency >= hz[0] && pole.frequency <= hz[hz.len() - 1];
+    let mut poles: Vec<&ChartPole> = analysis.chart.iter().filter(in_band).collect();
+    poles.sort_by(|a, b| a.frequency.total_cmp(&b.frequency));
+    // Poles of one frequency are drawn as near one another as numbers can be.
+    let mut last = f64::NEG_INFINITY;
+    let frequencies: Vec<f64> = poles
+        .iter()
+        .map(|pole| {
+            last = pole.frequency.max(last + 1e-9 * pole.frequency.abs().max(1.0));
+            last
+        })
+        .collect();
+    let orders = |stability: Stability| {
+        poles.iter().map(move |p| (p.stability == stability).then_some(p.order as f64)).collect::<Vec<_>>()
+    };
+    let plot = Plot::new("Poles by order", Axis::frequency(), Axis::linear("Order", ""))
+        .over(frequencies)
+        .points("new", Role::Reference, orders(Stability::New))
+        .points("frequency stays", Role::Nominal, orders(Stability::Frequency))
+        .points("frequency and damping stay", Role::Estimate, orders(Stability::Stable));
+    modes_marked(analysis, plot)
+        .y_range(YRange::Fixed { low: 0.0, high: analysis.orders.1 as f64 + 1.0 })
+        .height(320)
+        .masked(0)
+        .caption("Stays: within 0.2 % of the frequency, and within 10 % of the damping ratio, of the order before.")
+}
+
+fn modes_marked(analysis: &ModalAnalysis, plot: Plot) -> Plot {
+    analysis.modes.iter().enumerate().fold(plot, |plot, (index, mode)| {
+        plot.vertical(format!("{}", index + 1), Role::Highlight, mode.frequency)
+    })
+}
