@@ -58,8 +58,8 @@
 //! ```
 //!
 //! The parts are crates of their own, re-exported as modules for what this page leaves out: [`uff`], [`recordings`],
-//! [`fixture`], [`spectra`], [`frf`], [`hits`], [`estimation`], [`beam`], [`damping`], [`lumped`], [`averaging`], [`decomposition`],
-//! [`diagnosis`].
+//! [`fixture`], [`spectra`], [`frf`], [`hits`], [`estimation`], [`beam`], [`damping`], [`lumped`], [`modes`], [`averaging`],
+//! [`decomposition`], [`diagnosis`].
 
 pub use jointscope_averaging as averaging;
 pub use jointscope_beam as beam;
@@ -72,6 +72,7 @@ pub use jointscope_frf as frf;
 pub use jointscope_hits as hits;
 pub use jointscope_linalg as linalg;
 pub use jointscope_lumped as lumped;
+pub use jointscope_modes as modes;
 pub use jointscope_recordings as recordings;
 pub use jointscope_spectra as spectra;
 pub use jointscope_uff as uff;
@@ -81,13 +82,18 @@ pub use jointscope_decomposition::{Analysis, AnalysisOptions, DecompositionError
 pub use jointscope_diagnosis::{Diagnosis, DiagnosisError, DiagnosisOptions, Finding, Verdict};
 pub use jointscope_fixture::{Fixture, FixtureError};
 pub use jointscope_lumped::{Instrument, LumpedError, synthesize};
+pub use jointscope_modes::{ModalAnalysis, ModesError, ModesOptions};
 pub use jointscope_recordings::{ReadOptions, Recording, RecordingError};
 pub use jointscope_spectra::{FrfForm, FrfPair, FrfSet, SpectralLines};
 
 mod diagnosis_file;
+mod modal_damping;
+mod modes_file;
 mod stiffness_file;
 
 pub use diagnosis_file::diagnosis_file;
+pub use modal_damping::{MeasuredDamping, MeasuredDampingError, measured_damping};
+pub use modes_file::modes_file;
 pub use stiffness_file::stiffness_file;
 
 /// Why the bytes of a universal file are no recording of a fixture.
