@@ -32,6 +32,8 @@ pub enum Command {
     Compare(crate::compare::CompareArguments),
     /// FRFs of the fixture's finite-element twin, the assembly as a deformable solid.
     Fem(crate::fem::FemArguments),
+    /// Natural frequencies, damping ratios and mode shapes from FRFs, with their standard deviations: modes.json and report.html.
+    Modes(ModesArguments),
     /// How often the diagnosis is right: concealed cases of a simulated laboratory, and a table of scores.
     Prove(crate::prove::ProveArguments),
     /// The paper's Tables 1–6, its values beside the program's.
@@ -126,6 +128,33 @@ pub struct DiagnoseArguments {
     pub estimation: EstimationArguments,
 }
 
+#[derive(Debug, Args)]
+pub struct ModesArguments {
+    #[command(flatten)]
+    pub recording: RecordingArguments,
+    /// The band to use, in Hz [default: all lines].
+    #[arg(long, value_name = "F1:F2", value_parser = band)]
+    pub band: Option<Band>,
+    /// Orders of the stabilisation chart: the highest, or the lowest and the highest.
+    #[arg(long, value_name = "N1:N2", value_parser = orders)]
+    pub orders: Option<(usize, usize)>,
+    /// Frequencies in Hz of the poles to take from the chart, in place of the automatic selection.
+    #[arg(long, value_name = "HZ", value_parser = picked, num_args = 1..)]
+    pub pick: Vec<f64>,
+    /// A fixture file (JSON) whose points the channels are; its elastic modes are matched with the measured ones.
+    #[arg(long, value_name = "FIXTURE")]
+    pub fixture: Option<PathBuf>,
+    /// Write the fixture with the measured damping ratios to this file.
+    #[arg(long, value_name = "OUT.json", requires = "fixture")]
+    pub update: Option<PathBuf>,
+    /// Print modes.json to standard output, for scripts.
+    #[arg(long)]
+    pub json: bool,
+    /// The directory to write to; may be left out with --json.
+    #[arg(short, long, value_name = "DIR", required_unless_present = "json")]
+    pub output: Option<PathBuf>,
+}
+
 /// The relations by their names on the command line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum RelationName {
@@ -163,6 +192,23 @@ pub fn band(text: &str) -> Result<Band, String> {
         (Some(from), Some(to)) if from < to => Ok(Band { from, to }),
         _ => Err(form.to_owned()),
     }
+}
+
+/// Reads `N` or `N1:N2`.
+fn orders(text: &str) -> Result<(usize, usize), String> {
+    let number = |text: &str| text.trim().parse().ok().filter(|n: &usize| *n > 0);
+    let ends = match text.split_once(':') {
+        None => number(text).map(|to| (to.min(2), to)),
+        Some((from, to)) => number(from).zip(number(to)),
+    };
+    ends.filter(|(from, to)| from <= to).ok_or_else(|| {
+        "whole numbers above zero are needed, the highest order or both ends, such as 40 or 4:40".to_owned()
+    })
+}
+
+/// A frequency in Hz above zero.
+fn picked(text: &str) -> Result<f64, String> {
+    frequency(text).filter(|hz| *hz > 0.0).ok_or_else(|| "a frequency in Hz above zero is needed".to_owned())
 }
 
 /// More lines than any analyser makes: a slip in the step.
@@ -264,6 +310,17 @@ mod tests {
         for bad in ["200", "800:200", "200:200", "a:b", "1:2:3", "-5:2", "nan:2"] {
             assert!(band(bad).unwrap_err().contains("such as 200:800"), "{bad}");
         }
+    }
+
+    #[test]
+    fn orders_are_the_highest_or_both_ends() {
+        assert_eq!(orders("40"), Ok((2, 40)));
+        assert_eq!(orders("1"), Ok((1, 1)));
+        assert_eq!(orders("4:40"), Ok((4, 40)));
+        for bad in ["0", "a", "5:4", "0:4", "-3", "4:"] {
+            assert!(orders(bad).unwrap_err().contains("such as 40 or 4:40"), "{bad}");
+        }
+        assert!(picked("0").is_err() && picked("nan").is_err() && picked("112.5") == Ok(112.5));
     }
 
     #[test]

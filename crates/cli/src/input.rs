@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use jointscope_fixture::Fixture;
-use jointscope_recordings::{RecordingError, Source};
+use jointscope_recordings::{Recording, RecordingError, Source};
 use jointscope_report::InputFile;
 use sha2::{Digest, Sha256};
 
@@ -22,16 +22,34 @@ pub fn fixture(path: &Path) -> Result<Fixture, Refusal> {
     Fixture::from_json(text.trim_start_matches('\u{feff}')).map_err(|error| Refusal::at(path, error))
 }
 
+/// Reads the files of a test against the fixture `fixture`, read from `fixture_path`.
+pub fn recording(
+    arguments: &RecordingArguments,
+    fixture: &Fixture,
+    fixture_path: &Path,
+) -> Result<Recording, Refusal> {
+    let options = arguments.options()?;
+    Recording::of(&sources(arguments)?, fixture, &options)
+        .map_err(|error| refusal(error, &arguments.files, Some(fixture_path)))
+}
+
+/// Reads the files of a test of a structure that no fixture describes.
+pub fn recording_of_nodes(arguments: &RecordingArguments) -> Result<Recording, Refusal> {
+    let options = arguments.options()?;
+    Recording::of_nodes(&sources(arguments)?, &options)
+        .map_err(|error| refusal(error, &arguments.files, None))
+}
+
 /// Reads the files of a test.
 pub fn sources(arguments: &RecordingArguments) -> Result<Vec<Source>, Refusal> {
     arguments.files.iter().map(|path| source(path)).collect()
 }
 
-/// The refusal of a recording that does not suit the fixture read from `fixture_path`.
-pub fn refusal(error: RecordingError, files: &[PathBuf], fixture_path: &Path) -> Refusal {
+/// The refusal of a recording that does not suit the fixture read from `fixture_path`, if there is one.
+pub fn refusal(error: RecordingError, files: &[PathBuf], fixture_path: Option<&Path>) -> Refusal {
     use RecordingError as Error;
     match error {
-        Error::MapPoint { .. } => Refusal::at(fixture_path, error),
+        Error::MapPoint { .. } => Refusal::at(fixture_path.unwrap_or(Path::new("the map")), error),
         // These name their files, and the function in them.
         Error::Function { .. }
         | Error::Twice { .. }
@@ -109,7 +127,7 @@ mod tests {
             let read = |sources: Vec<Source>| {
                 let options = arguments.options()?;
                 Recording::of(&sources, &fixture, &options)
-                    .map_err(|error| refusal(error, &arguments.files, Path::new("one.json")))
+                    .map_err(|error| refusal(error, &arguments.files, Some(Path::new("one.json"))))
             };
             sources(&arguments).and_then(read).map_err(|refusal| refusal.to_string())
         }

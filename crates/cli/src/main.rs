@@ -11,6 +11,7 @@ mod estimation_arguments;
 mod fem;
 mod input;
 mod measured;
+mod modes;
 mod output;
 mod prove;
 mod refusal;
@@ -52,6 +53,7 @@ fn run(command: &Command) -> Result<String, Refusal> {
         Command::Diagnose(arguments) => diagnose::run(arguments),
         Command::Compare(arguments) => compare::run(arguments),
         Command::Fem(arguments) => fem::run(arguments),
+        Command::Modes(arguments) => modes::run(arguments),
         Command::Prove(arguments) => prove::run(arguments),
         Command::Tables(arguments) => tables::run(arguments),
     }

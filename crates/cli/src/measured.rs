@@ -65,7 +65,7 @@ pub fn measured(
             let hits = Some(HammerTest { hits: hits.hits, estimate });
             Ok(Measured { frfs, notes, window_decay, hits })
         }
-        Err(error) => Err(input::refusal(error, &arguments.files, fixture_path)),
+        Err(error) => Err(input::refusal(error, &arguments.files, Some(fixture_path))),
     }
 }
 

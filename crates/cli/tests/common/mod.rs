@@ -71,6 +71,12 @@ impl Bench {
         serde_json::from_str(&self.text(name)).unwrap()
     }
 
+    /// What the program prints as JSON.
+    #[track_caller]
+    pub fn json_of(&self, arguments: &[&str]) -> serde_json::Value {
+        serde_json::from_str(&self.done(arguments)).unwrap()
+    }
+
     /// Names of what the directory itself holds, in order.
     pub fn names(&self) -> Vec<String> {
         let entries = fs::read_dir(&self.0).unwrap();
