@@ -33,7 +33,7 @@ impl ModalAnalysis {
         if scattered > 0 {
             let of_all = if scattered == self.noise.len() { "the".to_owned() } else { scattered.to_string() };
             all.push(format!(
-                "no coherence and averages for {of_all} FRFs: their noise is what neighbouring lines scatter by"
+                "no coherence and averages for {of_all} FRFs: their noise is what the modes leave of each"
             ));
         }
         let drifting: Vec<String> = self

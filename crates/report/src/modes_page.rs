@@ -31,11 +31,13 @@ pub fn modes_page(
 ) -> Result<String, PageError> {
     let count = analysis.modes.len();
     let hz = analysis.lines().hz();
+    // To a tenth of a millihertz: lines carry rounding of their own.
+    let rounded = |hz: f64| (1e4 * hz).round() / 1e4;
     let headline = format!(
         "{count} mode{} from {} to {} Hz",
         if count == 1 { "" } else { "s" },
-        crate::format::significant(hz[0], 5),
-        crate::format::significant(hz[hz.len() - 1], 5)
+        rounded(hz[0]),
+        rounded(hz[hz.len() - 1])
     );
     let remarks: Vec<String> = analysis.remarks();
     let verdict = if remarks.is_empty() { Verdict::ok(headline) } else { Verdict::attention(headline) };

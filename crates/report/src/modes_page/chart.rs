@@ -47,16 +47,17 @@ fn poles(analysis: &ModalAnalysis) -> Plot {
     let mut poles: Vec<&ChartPole> = analysis.chart.iter().filter(in_band).collect();
     poles.sort_by(|a, b| a.frequency.total_cmp(&b.frequency));
     // Poles of one frequency are drawn as near one another as numbers can be.
-    let mut last = f64::NEG_INFINITY;
-    let frequencies: Vec<f64> = poles
-        .iter()
-        .map(|pole| {
-            last = pole.frequency.max(last + 1e-9 * pole.frequency.abs().max(1.0));
-            last
-        })
-        .collect();
+    let mut last = hz[0];
+    let of_poles = poles.iter().map(|pole| {
+        last = pole.frequency.max(last + 1e-9 * pole.frequency.max(1.0));
+        last
+    });
+    // The ends of the band, without a pole, so that both panes begin and end alike.
+    let mut frequencies: Vec<f64> = std::iter::once(hz[0]).chain(of_poles).collect();
+    frequencies.push(hz[hz.len() - 1].max(frequencies[poles.len()] * (1.0 + 1e-9)));
     let orders = |stability: Stability| {
-        poles.iter().map(move |p| (p.stability == stability).then_some(p.order as f64)).collect::<Vec<_>>()
+        let drawn = poles.iter().map(|p| (p.stability == stability).then_some(p.order as f64));
+        std::iter::once(None).chain(drawn).chain([None]).collect::<Vec<_>>()
     };
     let plot = Plot::new("Poles by order", Axis::frequency(), Axis::linear("Order", ""))
         .over(frequencies)
