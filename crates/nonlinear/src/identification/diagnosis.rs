@@ -126,8 +126,10 @@ pub struct NonlinearDiagnosis {
 
 /// χ² per degree of freedom above which a model leaves something unexplained.
 const LEFT_OVER: f64 = 1.5;
-/// χ² per degree of freedom above which a second law is looked for.
-const SEEK_MORE: f64 = 2.0;
+/// χ² per degree of freedom, and error relative to the responses, above which a second law is looked for.
+const SEEK_MORE: (f64, f64) = (3.0, 0.05);
+/// How much finer the last fit steps than the search.
+const FINER: usize = 2;
 /// Laws at the most.
 const MOST_LAWS: usize = 2;
 /// Share of the refitted fixture's χ² that a law must explain to be named.
@@ -188,11 +190,13 @@ impl NonlinearDiagnosis {
         let nominal = Parameters::nominal(fixture, options.exact, &channels);
         let unmoved = || DiagnoseError::NoMotion;
         let refitted = search.refitted(&nominal).ok_or_else(unmoved)?;
-        let degrees = search.whole().degrees();
+        let whole = search.whole();
+        let degrees = whole.degrees();
         let mut steps: Vec<Vec<Named>> = Vec::new();
         let mut best = refitted.clone();
         for count in 0..MOST_LAWS {
-            if count > 0 && best.chi2 / degrees < SEEK_MORE {
+            let enough = || best.chi2 / degrees < SEEK_MORE.0 || whole.nrmse(&best.parameters).is_none_or(|e| e < SEEK_MORE.1);
+            if count > 0 && enough() {
                 break;
             }
             let base = if count == 0 { nominal.clone() } else { best.parameters.clone() };
@@ -231,11 +235,13 @@ impl NonlinearDiagnosis {
             });
         }
         // Names were chosen without the hits held out; quantities are then those that all hits give.
-        let everything = View::new(all.iter(), &focus);
+        // They are read from steps finer than the search needs: what steps leave of bias must not exceed what noise leaves of doubt.
+        let fine = Focus { within: FINER * focus.within, ..focus };
+        let everything = View::new(all.iter(), &fine);
         let degrees = everything.degrees();
         let refitted = Fit::of(&everything, &refitted.parameters, 1)?;
         let repaired =
-            if steps.is_empty() { refitted.clone() } else { Fit::of(&everything, &best.parameters, 3)? };
+            if steps.is_empty() { refitted.clone() } else { Fit::of(&everything, &best.parameters, 2)? };
         let model = |parameters: &Parameters, chi2: f64| {
             Some(ModelFit {
                 fixture: parameters.to_fixture().ok()?,

@@ -77,7 +77,8 @@ impl Stepper {
                 match (system.load.len(), system.elements.len()) {
                     $((n, 0) if n <= $n => Box::new(Sized::<$n, 0>::new(system, steps)?) as Box<dyn Kernel>,
                       (n, 1) if n <= $n => Box::new(Sized::<$n, 1>::new(system, steps)?),
-                      (n, 2..=MOST_ELEMENTS) if n <= $n => Box::new(Sized::<$n, MOST_ELEMENTS>::new(system, steps)?),)*
+                      (n, 2) if n <= $n => Box::new(Sized::<$n, 2>::new(system, steps)?),
+                      (n, 3..=MOST_ELEMENTS) if n <= $n => Box::new(Sized::<$n, MOST_ELEMENTS>::new(system, steps)?),)*
                     _ => return None,
                 }
             };
@@ -226,7 +227,7 @@ impl<const N: usize, const E: usize> Sized<N, E> {
             for j in 0..E {
                 let others: f64 = (0..E).filter(|k| *k != j).map(|k| by.yields[j][k] * after[k].force).sum();
                 let next = self.laws[j].settle(motions[j] - others, by.yields[j][j], &before[j]);
-                change = change.max((next.force - after[j].force).abs() - 1e-13 * next.force.abs());
+                change = change.max((next.force - after[j].force).abs() - 1e-10 * next.force.abs());
                 after[j] = next;
             }
             if change <= 0.0 {
