@@ -4,9 +4,11 @@ use std::io::IsTerminal;
 use std::path::PathBuf;
 use std::time::Instant;
 
-use clap::Args;
+use clap::{Args, ValueEnum};
 use indicatif::{ProgressBar, ProgressStyle};
-use jointscope_fem::{MeshOptions, ModeKind, ModeRange, Progress, Superposition, Twin, calculix_deck};
+use jointscope_fem::{
+    MeshOptions, ModeKind, ModeRange, Omissions, Progress, Superposition, Twin, calculix_deck,
+};
 use jointscope_recordings::to_datasets;
 use jointscope_spectra::{FrfPair, SpectralLines};
 use jointscope_uff::Encoding;
@@ -46,6 +48,9 @@ pub struct FemArguments {
     /// Mesh the whole depth and not its half: torsion and sideways modes come in.
     #[arg(long)]
     pub whole: bool,
+    /// Switch off something that the lumped model leaves out, to see what it does.
+    #[arg(long, value_name = "WHAT", value_enum, num_args = 1..)]
+    pub without: Vec<Omission>,
     /// Also write the mesh as an input deck for CalculiX or Abaqus.
     #[arg(long, value_name = "F.inp")]
     pub deck: Option<PathBuf>,
@@ -55,6 +60,19 @@ pub struct FemArguments {
     /// The universal file to write.
     #[arg(short, long, value_name = "F.uff")]
     pub output: PathBuf,
+}
+
+/// What can be switched off.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Omission {
+    /// The mass of strips and layers.
+    JointMass,
+    /// Shear deformation of strips.
+    Shear,
+    /// Bending of strips across their width (Poisson's ratio).
+    PlateAction,
+    /// The blocks' own flexibility, and with it that of the strips' footing.
+    BlockFlexibility,
 }
 
 /// Modes below which the deck's program need not look.
@@ -78,7 +96,18 @@ pub fn run(arguments: &FemArguments) -> Result<String, Refusal> {
         across: arguments.across,
         growth: arguments.growth,
         whole: arguments.whole,
+        without: Omissions {
+            joint_mass: arguments.without.contains(&Omission::JointMass),
+            shear: arguments.without.contains(&Omission::Shear),
+            plate_action: arguments.without.contains(&Omission::PlateAction),
+            block_flexibility: arguments.without.contains(&Omission::BlockFlexibility),
+        },
     };
+    if options.without.shear && arguments.deck.is_some() {
+        return Err(Refusal::new(
+            "`--deck` writes isotropic materials, and without shear the strips are none: leave one out",
+        ));
+    }
     let hz = lines.hz();
     let last = hz[hz.len() - 1];
     let range = ModeRange { at_least: arguments.modes.unwrap_or(0).max(4), up_to: 2.0 * last };

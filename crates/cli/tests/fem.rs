@@ -50,5 +50,7 @@ fn what_has_no_twin_is_refused() {
     bench.refused(&["fem", "two.json", "-o", "twin.uff"], &["two.json", "`geometry`"]);
     bench.refused(&fem(&["-o", "twin.uff", "--frf", "9/1"]), &["d0.json", "no point `9`"]);
     bench.refused(&["fem", "d0.json", "--corner", "0", "-o", "twin.uff"], &["1 to 200"]);
+    bench.refused(&fem(&["--without", "shear", "--deck", "a.inp", "-o", "twin.uff"]), &["`--deck`"]);
+    bench.refused(&fem(&["--without", "gravity", "-o", "twin.uff"]), &["gravity", "plate-action"]);
     assert!(!bench.0.join("twin.uff").exists());
 }

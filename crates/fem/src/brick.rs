@@ -40,6 +40,8 @@ pub struct Elasticity {
     pub poisson_ratio: f64,
     /// Density, kg/m³.
     pub density: f64,
+    /// Factor of the shear modulus in the plane x, y; one for a real material.
+    pub shear_factor: f64,
 }
 
 impl Elasticity {
@@ -141,11 +143,16 @@ pub fn matrices(
                         mass[i][k] += weight * material.density * n[i] * n[k];
                         // ∫ λ ∂_a N_i ∂_b N_k + μ (∂_b N_i ∂_a N_k + δ_ab ∇N_i·∇N_k)
                         let laplace: f64 = (0..3).map(|a| g[i][a] * g[k][a]).sum();
+                        let extra_shear = (material.shear_factor - 1.0) * mu;
                         for a in 0..3 {
                             for b in 0..3 {
                                 let mut value = lambda * g[i][a] * g[k][b] + mu * g[i][b] * g[k][a];
                                 if a == b {
                                     value += mu * laplace;
+                                }
+                                if a < 2 && b < 2 {
+                                    // γ_xy = ∂u/∂y + ∂v/∂x
+                                    value += extra_shear * g[i][1 - a] * g[k][1 - b];
                                 }
                                 stiffness[(3 * i + a) * EQUATIONS + 3 * k + b] += weight * value;
                             }
@@ -189,7 +196,9 @@ pub fn strain_energy(
                     [0, 1, 2].map(|a| [0, 1, 2].map(|b| 0.5 * (slope(a, b) + slope(b, a))));
                 let trace = strain[0][0] + strain[1][1] + strain[2][2];
                 let squares: f64 = strain.iter().flatten().map(|e| e * e).sum();
-                energy += wx * wy * wz * determinant * (lambda * trace * trace + 2.0 * mu * squares);
+                let extra_shear = 4.0 * (material.shear_factor - 1.0) * mu * strain[0][1] * strain[0][1];
+                energy +=
+                    wx * wy * wz * determinant * (lambda * trace * trace + 2.0 * mu * squares + extra_shear);
             }
         }
     }
@@ -201,7 +210,8 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    const STEEL: Elasticity = Elasticity { youngs_modulus: 2.07e11, poisson_ratio: 0.3, density: 7850.0 };
+    const STEEL: Elasticity =
+        Elasticity { youngs_modulus: 2.07e11, poisson_ratio: 0.3, density: 7850.0, shear_factor: 1.7 };
 
     /// A box whose corners were pushed about, its midside nodes halfway along the edges.
     fn distorted(push: &[f64]) -> [[f64; 3]; NODES] {

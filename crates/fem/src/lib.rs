@@ -29,6 +29,7 @@ mod brick;
 mod deck;
 mod grading;
 mod mesh;
+mod omissions;
 mod superposition;
 mod twin;
 
@@ -36,6 +37,7 @@ pub use assembly::Matrices;
 pub use brick::Elasticity;
 pub use deck::calculix_deck;
 pub use mesh::{Element, Mesh, Part};
+pub use omissions::Omissions;
 pub use superposition::Superposition;
 pub use twin::{ModeKind, ModeRange, Progress, Twin};
 
@@ -52,12 +54,21 @@ pub struct MeshOptions {
     pub growth: f64,
     /// Mesh the whole depth and not its half: torsion and sideways modes come in.
     pub whole: bool,
+    /// What is switched off, to see what it does.
+    pub without: Omissions,
 }
 
 impl Default for MeshOptions {
     /// Frequencies within 0.5 % of the converged ones; see docs/fem.md.
     fn default() -> Self {
-        MeshOptions { corner: 16, along: 16, across: 3, growth: 2.0, whole: false }
+        MeshOptions {
+            corner: 16,
+            along: 16,
+            across: 3,
+            growth: 2.0,
+            whole: false,
+            without: Omissions::default(),
+        }
     }
 }
 

@@ -65,8 +65,11 @@ impl Mesh {
             youngs_modulus: m.youngs_modulus.value,
             poisson_ratio: m.poisson_ratio.value,
             density: m.density.value,
+            shear_factor: 1.0,
         });
-        Ok(Mesh::on_lines(&lines, &solids, materials.collect(), options.whole))
+        let mut mesh = Mesh::on_lines(&lines, &solids, materials.collect(), options.whole);
+        options.without.apply(&mut mesh);
+        Ok(mesh)
     }
 
     /// A box of one material, divided evenly: for checks against beam theory.

@@ -8,7 +8,8 @@ use jointscope_linalg::{ModesWanted, SparseCholesky, lowest_modes};
 use std::f64::consts::TAU;
 use timoshenko::{Beam, Ends};
 
-const STEEL: Elasticity = Elasticity { youngs_modulus: 2.07e11, poisson_ratio: 0.3, density: 7850.0 };
+const STEEL: Elasticity =
+    Elasticity { youngs_modulus: 2.07e11, poisson_ratio: 0.3, density: 7850.0, shear_factor: 1.0 };
 
 /// Forces at the free equations inside a block whose nodes all follow `field`, relative to the largest at its faces.
 fn unbalanced(mesh: &Mesh, size: [f64; 3], field: impl Fn([f64; 3]) -> [f64; 3]) -> f64 {

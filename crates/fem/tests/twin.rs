@@ -1,13 +1,16 @@
 //! The twin of a fixture against its lumped model, and what holds of any linear structure.
 #![allow(clippy::unwrap_used, missing_docs)]
 
-use jointscope_fem::{FemError, MeshOptions, ModeRange, Superposition, Twin, calculix_deck};
+use jointscope_fem::{FemError, MeshOptions, ModeRange, Omissions, Superposition, Twin, calculix_deck};
 use jointscope_fixture::Fixture;
 use jointscope_lumped::{Instrument, synthesize};
 use jointscope_spectra::{Channel, FrfPair, FrfSet, SpectralLines};
 
 const D0: &str = include_str!("../../../fixtures/paper/D0.json");
-const COARSE: MeshOptions = MeshOptions { corner: 4, along: 12, across: 2, growth: 2.5, whole: false };
+const COARSE: MeshOptions =
+    MeshOptions { corner: 4, along: 12, across: 2, growth: 2.5, whole: false, without: NOTHING };
+const NOTHING: Omissions =
+    Omissions { joint_mass: false, shear: false, plate_action: false, block_flexibility: false };
 
 fn twin(text: &str, options: MeshOptions) -> Twin {
     let fixture = Fixture::from_json(text).unwrap();
@@ -132,11 +135,39 @@ fn what_cannot_be_meshed_is_refused_with_a_reason() {
 
 #[test]
 fn the_deck_names_every_node_and_element_once() {
-    let twin = twin(D0, MeshOptions { corner: 1, along: 3, across: 1, growth: 3.0, whole: false });
+    let twin = twin(D0, MeshOptions { corner: 1, along: 3, across: 1, growth: 3.0, ..COARSE });
     let deck = calculix_deck(&twin.mesh, "a title", 7);
     let section =
         |start: &str| deck.split(start).nth(1).unwrap().split('*').next().unwrap().lines().skip(1).count();
     assert_eq!(section("*NODE, NSET=ALL"), twin.mesh.nodes.len());
     assert_eq!(section("*ELEMENT, TYPE=C3D20, ELSET=SET0"), 2 * twin.mesh.elements.len());
     assert!(deck.contains("*FREQUENCY\n7\n") && deck.contains("PLANE, 3, 3"));
+}
+
+#[test]
+fn without_what_the_lumped_model_leaves_out_the_twin_is_the_lumped_model() {
+    let all = Omissions { joint_mass: true, shear: true, plate_action: true, block_flexibility: true };
+    let bare = twin(D0, MeshOptions { without: all, ..COARSE }).frequencies();
+    let pairs = [FrfPair::transverse("4", "1")];
+    // The lumped model's frequencies, where its accelerance peaks on a fine grid.
+    let peak = |from: f64, to: f64| {
+        let lines = SpectralLines::even(from, 0.05, ((to - from) / 0.05) as usize).unwrap();
+        let frfs = lumped(D0, &pairs, &lines);
+        let (line, _) =
+            frfs.values(0).iter().enumerate().max_by(|a, b| a.1.norm().total_cmp(&b.1.norm())).unwrap();
+        lines.hz()[line]
+    };
+    let expected = [peak(60.0, 80.0), peak(350.0, 450.0)];
+    for (found, expected) in bare.iter().zip(expected) {
+        assert!((found / expected - 1.0).abs() < 4e-3, "{found} Hz for {expected} Hz");
+    }
+    for one in [
+        Omissions { joint_mass: true, ..NOTHING },
+        Omissions { shear: true, ..NOTHING },
+        Omissions { block_flexibility: true, ..NOTHING },
+    ] {
+        let stiffer = twin(D0, MeshOptions { without: one, ..COARSE }).frequencies();
+        let full = twin(D0, COARSE).frequencies();
+        assert!(stiffer[1] > full[1], "{one:?}: {stiffer:?} for {full:?}");
+    }
 }

@@ -59,14 +59,16 @@
 //!
 //! The parts are crates of their own, re-exported as modules for what this page leaves out: [`uff`], [`recordings`],
 //! [`fixture`], [`spectra`], [`frf`], [`hits`], [`estimation`], [`beam`], [`damping`], [`lumped`], [`modes`], [`averaging`],
-//! [`decomposition`], [`diagnosis`].
+//! [`decomposition`], [`diagnosis`], [`fem`], [`comparison`].
 
 pub use jointscope_averaging as averaging;
 pub use jointscope_beam as beam;
+pub use jointscope_comparison as comparison;
 pub use jointscope_damping as damping;
 pub use jointscope_decomposition as decomposition;
 pub use jointscope_diagnosis as diagnosis;
 pub use jointscope_estimation as estimation;
+pub use jointscope_fem as fem;
 pub use jointscope_fixture as fixture;
 pub use jointscope_frf as frf;
 pub use jointscope_hits as hits;

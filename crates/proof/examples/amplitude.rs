@@ -89,13 +89,23 @@ fn main() {
                 for (r, s) in a.responses().iter().zip(b.responses()) {
                     let rms = |v: &[f64]| (v.iter().map(|x| x * x).sum::<f64>() / v.len() as f64).sqrt();
                     let d: Vec<f64> = r.values.iter().zip(&s.values).map(|(a, b)| a - b).collect();
-                    eprintln!("hit {} {} rel {:.4} early {:.4} mid {:.4} late {:.4}", a.number(), r.channel, rms(&d) / rms(&r.values), rms(&d[..400]) / rms(&r.values[..400]), rms(&d[400..2000]) / rms(&r.values), rms(&d[2000..]) / rms(&r.values));
+                    eprintln!(
+                        "hit {} {} rel {:.4} early {:.4} mid {:.4} late {:.4}",
+                        a.number(),
+                        r.channel,
+                        rms(&d) / rms(&r.values),
+                        rms(&d[..400]) / rms(&r.values[..400]),
+                        rms(&d[400..2000]) / rms(&r.values),
+                        rms(&d[2000..]) / rms(&r.values)
+                    );
                 }
             }
             eprintln!("step error {:.1e}", simulated.error);
             let a = jointscope_lumped::Assembly::new(&hidden, 3200.0).unwrap();
             eprintln!("modes {:?} damping {:?}", a.natural_frequencies_hz(), fixture.damping());
-            if std::env::var("NLT").unwrap() == "2" { return; }
+            if std::env::var("NLT").unwrap() == "2" {
+                return;
+            }
         }
         let begun = std::time::Instant::now();
         let diagnosis = NonlinearDiagnosis::of(&fixture, &hits, &NonlinearOptions::default());

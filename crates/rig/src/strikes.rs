@@ -67,7 +67,14 @@ impl StrikeTest {
                     let peak = level * uniform(rng, 0.9, 1.1);
                     let start = uniform(rng, 0.009, 0.011);
                     let number = hits.len() as u32 + 1;
-                    hits.push(self.strike(&equations, &readings, channel, read, (number, peak, start), rng)?);
+                    hits.push(self.strike(
+                        &equations,
+                        &readings,
+                        channel,
+                        read,
+                        (number, peak, start),
+                        rng,
+                    )?);
                 }
             }
         }
@@ -107,11 +114,10 @@ impl StrikeTest {
         add_noise(&mut forces, self.noise_force, rng);
         responses.iter_mut().for_each(|values| add_noise(values, self.noise_response, rng));
         let responses = read.iter().zip(responses);
-        let responses = responses.map(|(c, values)| Response::new(c.clone(), Motion::Acceleration, values)).collect();
-        Hit::new(number, 1.0 / self.rate, 0.0, struck.clone(), forces, responses).map_err(|_| StructureError::Impossible {
-            what: "a motion",
-            value: f64::INFINITY,
-            needed: "a finite one",
+        let responses =
+            responses.map(|(c, values)| Response::new(c.clone(), Motion::Acceleration, values)).collect();
+        Hit::new(number, 1.0 / self.rate, 0.0, struck.clone(), forces, responses).map_err(|_| {
+            StructureError::Impossible { what: "a motion", value: f64::INFINITY, needed: "a finite one" }
         })
     }
 }
@@ -147,7 +153,14 @@ pub fn reach(
 
 /// A random amplitude-dependent effect on a joint's component that is driven to `reach` and has stiffness `stiffness` there: strong enough to
 /// matter at that motion, exercised by it.
-pub fn random_law(rng: &mut impl Rng, kind: EffectKind, joint: &str, dof: Dof, stiffness: f64, reach: f64) -> Effect {
+pub fn random_law(
+    rng: &mut impl Rng,
+    kind: EffectKind,
+    joint: &str,
+    dof: Dof,
+    stiffness: f64,
+    reach: f64,
+) -> Effect {
     let place = Place::Joint(joint.to_owned());
     let values = match kind {
         EffectKind::CubicStiffness => vec![log_uniform(rng, 0.05, 1.0) * stiffness / (reach * reach)],
@@ -160,7 +173,11 @@ pub fn random_law(rng: &mut impl Rng, kind: EffectKind, joint: &str, dof: Dof, s
     Effect::new(kind, place, Some(dof), &values)
 }
 
-fn build(fixture: &Fixture, struck: &Channel, read: &[Channel]) -> Result<(Equations, Vec<Vec<f64>>), StructureError> {
+fn build(
+    fixture: &Fixture,
+    struck: &Channel,
+    read: &[Channel],
+) -> Result<(Equations, Vec<Vec<f64>>), StructureError> {
     let (bent, linear): (Vec<Effect>, Vec<Effect>) =
         fixture.physics().iter().cloned().partition(|e| e.kind.is_nonlinear());
     let plain = fixture.clone().with_physics(linear)?;
@@ -189,7 +206,8 @@ fn build(fixture: &Fixture, struck: &Channel, read: &[Channel]) -> Result<(Equat
         push: pulled(&dense(structure.motion(struck)?, n)),
         elements,
     };
-    let readings = read.iter().map(|c| Ok(dense(structure.motion(c)?, n))).collect::<Result<_, StructureError>>()?;
+    let readings =
+        read.iter().map(|c| Ok(dense(structure.motion(c)?, n))).collect::<Result<_, StructureError>>()?;
     Ok((equations, readings))
 }
 
@@ -247,7 +265,14 @@ impl Equations {
     }
 
     /// One step of the classical method of Runge and Kutta.
-    fn advance(&self, state: &mut State, work: &mut [State; 5], time: f64, step: f64, force: &impl Fn(f64) -> f64) {
+    fn advance(
+        &self,
+        state: &mut State,
+        work: &mut [State; 5],
+        time: f64,
+        step: f64,
+        force: &impl Fn(f64) -> f64,
+    ) {
         let [k1, k2, k3, k4, at] = work;
         let moved = |at: &mut State, from: &State, by: &State, step: f64| {
             at.iter_mut().zip(from.iter().zip(by)).for_each(|(to, (x, k))| *to = x + step * k);

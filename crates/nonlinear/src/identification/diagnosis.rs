@@ -195,7 +195,10 @@ impl NonlinearDiagnosis {
         let mut steps: Vec<Vec<Named>> = Vec::new();
         let mut best = refitted.clone();
         for count in 0..MOST_LAWS {
-            let enough = || best.chi2 / degrees < SEEK_MORE.0 || whole.nrmse(&best.parameters).is_none_or(|e| e < SEEK_MORE.1);
+            let enough = || {
+                best.chi2 / degrees < SEEK_MORE.0
+                    || whole.nrmse(&best.parameters).is_none_or(|e| e < SEEK_MORE.1)
+            };
             if count > 0 && enough() {
                 break;
             }
