@@ -148,7 +148,7 @@ impl Plan {
 }
 
 /// A seed of its own for every case.
-fn seed_of(source: &str, number: usize) -> u64 {
+pub(crate) fn seed_of(source: &str, number: usize) -> u64 {
     let digest = Sha256::digest(format!("{source} case {number}").as_bytes());
     digest.iter().take(8).fold(0, |seed, byte| seed << 8 | u64::from(*byte))
 }

@@ -12,6 +12,7 @@
 //! | answers | [`Answers`], [`Answer`], [`Found`], [`Timing`] |
 //! | judging | [`Judged`], [`Evidence`], [`Reference`], [`Name`] |
 //! | scores | [`Score`], [`Rate`], [`Share`], [`Reliability`], [`Confusion`] |
+//! | real recordings | [`concealed`]: something concealed relative to a fixture that explains them |
 //!
 //! Nothing is random but by the seed: cases, answers and scores are the same on any number of threads.
 //!
@@ -33,6 +34,7 @@
 mod answer;
 mod answers;
 mod case;
+pub mod concealed;
 mod confusion;
 mod failures;
 mod generate;
@@ -55,6 +57,6 @@ pub use judged::{AS_GOOD, Evidence, Judged, PLAIN, STRAINED, VISIBLE};
 pub use reference::Reference;
 pub use reliability::{Bin, Reliability};
 pub use score::{CHANCE, Comparison, Figure, Rate, Score, Target};
-pub use seal::SealedTruths;
+pub use seal::{Sealable, SealedTruths};
 pub use statistics::Share;
 pub use timing::Timing;

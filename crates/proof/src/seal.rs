@@ -4,17 +4,29 @@ use crate::{Answers, Truth};
 use serde_json::Value;
 use sha2::{Digest, Sha256};
 
+/// What can be sealed: a truth that says all of itself as JSON.
+pub trait Sealable {
+    /// The truth as JSON.
+    fn to_value(&self) -> Value;
+}
+
+impl Sealable for Truth {
+    fn to_value(&self) -> Value {
+        Truth::to_value(self)
+    }
+}
+
 /// Truths that cannot be read until the answers are there: [`SealedTruths::open`] asks for them.
 #[derive(Debug)]
-pub struct SealedTruths {
-    truths: Vec<Truth>,
+pub struct SealedTruths<T = Truth> {
+    truths: Vec<T>,
     digest: String,
 }
 
-impl SealedTruths {
+impl<T: Sealable> SealedTruths<T> {
     /// Seals truths.
-    pub fn new(truths: Vec<Truth>) -> Self {
-        let text = Value::Array(truths.iter().map(Truth::to_value).collect()).to_string();
+    pub fn new(truths: Vec<T>) -> Self {
+        let text = Value::Array(truths.iter().map(T::to_value).collect()).to_string();
         SealedTruths { digest: hex(&Sha256::digest(text.as_bytes())), truths }
     }
 
@@ -24,7 +36,7 @@ impl SealedTruths {
     }
 
     /// The truths, handed out against the answers to all of their cases; `None` (and the seal broken) where answers are missing.
-    pub fn open(self, answers: &Answers) -> Option<Vec<Truth>> {
+    pub fn open(self, answers: &Answers) -> Option<Vec<T>> {
         (answers.all().len() == self.truths.len()).then_some(self.truths)
     }
 }

@@ -1,0 +1,159 @@
+//! Which cases are made of a recording and the fixture that explains it.
+
+use super::scene::Scene;
+use super::{Concealed, ConcealmentKind};
+use crate::generate::seed_of;
+use crate::{Case, SealedTruths};
+use jointscope_fixture::{Fixture, FixtureError};
+use jointscope_rig::{StructureError, drawn_within_tolerance, generator};
+use jointscope_spectra::{FrfSet, SpectraError};
+use rand::seq::SliceRandom;
+
+/// Which concealments to make.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ConcealmentPlan {
+    /// Number of cases, controls among them.
+    pub cases: usize,
+    /// Seed of places and sizes.
+    pub seed: u64,
+    /// The one case to make besides the first control; all where none is named.
+    pub only: Option<usize>,
+    /// The kinds to draw from, as far as fixture and recording have room for them.
+    pub kinds: Vec<ConcealmentKind>,
+}
+
+impl Default for ConcealmentPlan {
+    fn default() -> Self {
+        ConcealmentPlan { cases: 8, seed: 1, only: None, kinds: ConcealmentKind::ALL.to_vec() }
+    }
+}
+
+/// Why nothing can be concealed.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum ConcealmentError {
+    /// There would be no concealment.
+    #[error(
+        "{0} cases leave none to conceal anything in, for the first is a control; ask for two at the least"
+    )]
+    TooFew(usize),
+    /// A case beyond the last.
+    #[error("there is no case {only}: {cases} cases are numbered 0 to {}", cases - 1)]
+    NoSuchCase {
+        /// The case asked for.
+        only: usize,
+        /// Number of cases.
+        cases: usize,
+    },
+    /// The fixture and the recording have room for nothing that was asked for.
+    #[error("nothing can be concealed of the kinds asked for ({asked}): fixture and recording have room for {}",
+        if there.is_empty() { "none of any kind" } else { there })]
+    NoRoom {
+        /// The kinds asked for.
+        asked: String,
+        /// The kinds that there is room for.
+        there: String,
+    },
+    /// Every draw was impossible.
+    #[error("case {0} could not be drawn: nothing of its kind suited the fixture")]
+    Unlucky(usize),
+    /// An edited fixture is impossible.
+    #[error(transparent)]
+    Fixture(#[from] FixtureError),
+    /// An edited recording is impossible.
+    #[error(transparent)]
+    Spectra(#[from] SpectraError),
+    /// No control can be drawn.
+    #[error(transparent)]
+    Structure(#[from] StructureError),
+}
+
+/// Of so many cases the first is a control.
+const CONTROLS: usize = 4;
+/// Draws of a case before giving up.
+const DRAWS: usize = 60;
+
+impl ConcealmentPlan {
+    /// Whether the plan has cases, and the one asked for.
+    ///
+    /// # Errors
+    /// [`ConcealmentError::TooFew`], [`ConcealmentError::NoSuchCase`].
+    pub fn check(&self) -> Result<(), ConcealmentError> {
+        match self.only {
+            _ if self.cases < 2 => Err(ConcealmentError::TooFew(self.cases)),
+            Some(only) if only >= self.cases => Err(ConcealmentError::NoSuchCase { only, cases: self.cases }),
+            _ => Ok(()),
+        }
+    }
+
+    /// Makes the cases and, sealed, their truths. Case 0 is fixture and recording as they are. Every fourth case after it is a control
+    /// too, in which the fixture's quantities are stated anew, drawn from the normal distributions that it states for them. In all others
+    /// something is concealed, the kinds in turn, in an order that the seed decides. A case depends on seed, number and the kinds alone.
+    ///
+    /// # Errors
+    /// See [`ConcealmentError`].
+    pub fn conceal(
+        &self,
+        explaining: &Fixture,
+        recorded: &FrfSet,
+    ) -> Result<(Vec<Case>, SealedTruths<Concealed>), ConcealmentError> {
+        self.check()?;
+        let indices: Vec<usize> = match self.only {
+            Some(0) => vec![0],
+            Some(only) => vec![0, only],
+            None => (0..self.cases).collect(),
+        };
+        let scene = Scene { explaining, recorded };
+        let kinds = self.kinds_in_turn(&scene)?;
+        let mut cases = Vec::with_capacity(indices.len());
+        let mut truths = Vec::with_capacity(indices.len());
+        for index in indices {
+            let (case, truth) = self.case(index, &kinds, &scene)?;
+            cases.push(case);
+            truths.push(truth);
+        }
+        Ok((cases, SealedTruths::new(truths)))
+    }
+
+    /// The kinds that there is room for, in the order in which cases take them.
+    fn kinds_in_turn(&self, scene: &Scene) -> Result<Vec<ConcealmentKind>, ConcealmentError> {
+        let there: Vec<_> =
+            ConcealmentKind::ALL.into_iter().filter(|kind| scene.has_room_for(*kind)).collect();
+        let mut kinds: Vec<_> = there.iter().copied().filter(|kind| self.kinds.contains(kind)).collect();
+        if kinds.is_empty() {
+            let names =
+                |kinds: &[ConcealmentKind]| kinds.iter().map(|k| k.name()).collect::<Vec<_>>().join(", ");
+            return Err(ConcealmentError::NoRoom { asked: names(&self.kinds), there: names(&there) });
+        }
+        kinds.shuffle(&mut generator(seed_of(&format!("seed {} order of concealments", self.seed), 0)));
+        Ok(kinds)
+    }
+
+    fn case(
+        &self,
+        index: usize,
+        kinds: &[ConcealmentKind],
+        scene: &Scene,
+    ) -> Result<(Case, Concealed), ConcealmentError> {
+        let as_it_is = Case { believed: scene.explaining.clone(), recorded: scene.recorded.clone() };
+        let mut random = generator(seed_of(&format!("seed {} concealment", self.seed), index));
+        let control =
+            |what: &str| Concealed { index, kind: None, what: what.to_owned(), expected: Vec::new() };
+        if index == 0 {
+            return Ok((as_it_is, control("nothing")));
+        }
+        if index.is_multiple_of(CONTROLS) {
+            let believed = drawn_within_tolerance(scene.explaining, &mut random)?;
+            let restated = control("nothing, quantities stated anew within their deviations");
+            return Ok((Case { believed, ..as_it_is }, restated));
+        }
+        let number = index - 1 - index / CONTROLS;
+        let kind = kinds[number % kinds.len()];
+        for _ in 0..DRAWS {
+            if let Some(drawn) = scene.draw(kind, &mut random)? {
+                let truth = Concealed { index, kind: Some(kind), what: drawn.what, expected: drawn.expected };
+                return Ok((drawn.case, truth));
+            }
+        }
+        Err(ConcealmentError::Unlucky(index))
+    }
+}

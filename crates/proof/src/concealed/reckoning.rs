@@ -1,0 +1,157 @@
+//! Concealments and answers side by side.
+
+use super::outcome::{Excess, extra, outcome, sizes};
+use super::{Concealed, Outcome, Size};
+use crate::answers::on_workers;
+use crate::objective::{Tolerance, objective, values};
+use crate::{Answer, Answers, Case, Name, NoAnswer, Share};
+use jointscope_diagnosis::Observation;
+use jointscope_fixture::Fixture;
+use jointscope_lumped::{Instrument, synthesize};
+
+/// A case after the truth was opened.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Reckoned {
+    /// What was concealed.
+    pub truth: Concealed,
+    /// What was answered.
+    pub answer: Result<Answer, NoAnswer>,
+    /// What became of it.
+    pub outcome: Outcome,
+    /// Parameters of what was concealed, as far as it was found.
+    pub sizes: Vec<Size>,
+    /// Findings that are neither what was concealed nor the recording's own.
+    pub extra: Vec<Name>,
+    /// Findings that the control has too.
+    pub own: Vec<Name>,
+    /// What the concealment costs the fixture as refitted by the answer, in χ² and squared departures over that of the fixture that explains;
+    /// `None` where it cannot be evaluated.
+    pub shows: Option<f64>,
+    /// The same of the fixture as repaired by the answer: zero, and a little to either side, if all is made good.
+    pub left: Option<f64>,
+}
+
+/// All cases of a recording.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Reckoning {
+    /// What is found in the recording with nothing concealed: its own.
+    pub own: Vec<Name>,
+    /// The cases, the first control first.
+    pub cases: Vec<Reckoned>,
+}
+
+impl Reckoning {
+    /// Lays truths and answers side by side, on `threads` workers. The first case is the control that decides what is the recording's own.
+    pub fn of(cases: &[Case], truths: Vec<Concealed>, answers: &Answers, threads: usize) -> Self {
+        let work: Vec<_> = cases.iter().zip(answers.all()).collect();
+        let objectives = on_workers(&work, threads, |_| (), |(case, answer)| Objectives::of(case, answer));
+        let mut objectives: Vec<Option<Objectives>> = objectives.into_iter().map(Option::flatten).collect();
+        let own: Vec<Name> = match answers.all().first() {
+            Some(Ok(answer)) => answer.names(),
+            _ => Vec::new(),
+        };
+        objectives.resize_with(truths.len(), || None);
+        let explaining = objectives.first().and_then(|first| first.as_ref().map(Objectives::lowest));
+        let each = truths.into_iter().zip(answers.all()).zip(&objectives);
+        let reckoned = each.map(|((truth, answer), objectives)| {
+            let excess = objectives.as_ref().zip(explaining).and_then(|(of, base)| of.over(base));
+            reckoned(truth, answer.clone(), &own, excess)
+        });
+        Reckoning { cases: reckoned.collect(), own }
+    }
+
+    /// A share by its key: `quiet` of the controls but the first; `found` (kind and place), `kind` and `extra` (further findings) of the
+    /// concealments that show and that effects describe; `noticed` of those that no effect describes; `intervals` (that hold the truth)
+    /// of the found parameters of planted sizes and `agreements` of those of deleted entries, whose size had been found in the same
+    /// recording. Nothing of nothing by any other key.
+    pub fn share(&self, key: &str) -> Share {
+        let concealed = || self.cases.iter().filter(|case| !case.truth.is_control());
+        let asked = || {
+            let there = |case: &&Reckoned| !matches!(case.outcome, Outcome::DoesNotShow | Outcome::Own);
+            concealed().filter(|case| !case.truth.expected.is_empty()).filter(there)
+        };
+        let sizes = |planted: bool| {
+            let of = move |case: &&Reckoned| {
+                case.outcome == Outcome::Found
+                    && case.truth.kind.is_some_and(|kind| kind.is_planted() == planted)
+            };
+            Share::count(concealed().filter(of).flat_map(|case| &case.sizes), Size::holds)
+        };
+        match key {
+            "quiet" => {
+                let controls = self.cases.iter().skip(1).filter(|case| case.truth.is_control());
+                Share::count(controls, |case| case.outcome == Outcome::Quiet)
+            }
+            "found" => Share::count(asked(), |case| case.outcome == Outcome::Found),
+            "kind" => {
+                let right = [Outcome::Found, Outcome::HalfFound, Outcome::Elsewhere];
+                Share::count(asked(), |case| right.contains(&case.outcome))
+            }
+            "extra" => {
+                let also = |case: &Reckoned| case.outcome == Outcome::Found && !case.extra.is_empty();
+                Share::count(asked(), also)
+            }
+            "noticed" => {
+                let nameless = concealed().filter(|case| case.truth.expected.is_empty());
+                Share::count(nameless, |case| case.outcome == Outcome::Noticed)
+            }
+            "intervals" => sizes(true),
+            "agreements" => sizes(false),
+            _ => Share::default(),
+        }
+    }
+}
+
+fn reckoned(
+    truth: Concealed,
+    answer: Result<Answer, NoAnswer>,
+    own: &[Name],
+    excess: Option<Excess>,
+) -> Reckoned {
+    let Ok(given) = &answer else {
+        let (sizes, extra) = (Vec::new(), Vec::new());
+        let outcome = Outcome::NoAnswer;
+        return Reckoned { truth, answer, outcome, sizes, extra, own: Vec::new(), shows: None, left: None };
+    };
+    // In the first control what is found is by definition the recording's own.
+    Reckoned {
+        outcome: outcome(&truth, given, own, excess),
+        sizes: sizes(&truth, given),
+        extra: extra(&truth, given, own),
+        own: given.names().into_iter().filter(|name| own.contains(name)).collect(),
+        shows: excess.map(|excess| excess.refitted),
+        left: excess.map(|excess| excess.repaired),
+        truth,
+        answer,
+    }
+}
+
+/// Objectives of a case's fixtures, evaluated anew and not taken at the answer's word.
+struct Objectives {
+    believed: f64,
+    /// Refitted and repaired; `None` where there is no answer.
+    answered: Option<[f64; 2]>,
+}
+
+impl Objectives {
+    fn of(case: &Case, answer: &Result<Answer, NoAnswer>) -> Option<Self> {
+        let observation = Observation::new(&case.recorded, |_| true).ok()?;
+        let tolerances = Tolerance::all(&case.believed);
+        let of = |fixture: &Fixture| {
+            let (pairs, lines) = (observation.pairs(), observation.lines());
+            let set = synthesize(fixture, pairs, lines, Instrument::AsRecorded).ok()?;
+            Some(objective(&observation, set.all_values(), &tolerances, &values(fixture)))
+        };
+        let answered = answer.as_ref().ok().and_then(|a| Some([of(&a.refitted)?, of(&a.repaired)?]));
+        Some(Objectives { believed: of(&case.believed)?, answered })
+    }
+
+    fn lowest(&self) -> f64 {
+        self.answered.map_or(self.believed, |[refitted, repaired]| self.believed.min(refitted).min(repaired))
+    }
+
+    fn over(&self, base: f64) -> Option<Excess> {
+        self.answered
+            .map(|[refitted, repaired]| Excess { refitted: refitted - base, repaired: repaired - base })
+    }
+}
