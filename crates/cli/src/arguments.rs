@@ -268,7 +268,7 @@ fn channel(text: &str) -> Result<Option<Channel>, String> {
 }
 
 /// One map entry, checked by itself; entries are checked against each other in [`RecordingArguments::options`].
-fn map_entry(text: &str) -> Result<String, ChannelMapError> {
+pub fn map_entry(text: &str) -> Result<String, ChannelMapError> {
     ChannelMap::parse([text]).map(|_| text.to_owned())
 }
 

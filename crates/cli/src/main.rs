@@ -14,6 +14,7 @@ mod measured;
 mod modes;
 mod output;
 mod prove;
+mod prove_recordings;
 mod refusal;
 mod synthesize;
 mod tables;

@@ -4,18 +4,26 @@ use std::io::{IsTerminal, Write};
 use std::path::PathBuf;
 
 use clap::Args;
+use clap::builder::ArgPredicate;
 use indicatif::{ProgressBar, ProgressStyle};
 use jointscope_proof::{Answers, FAMILIES, Judged, Plan, Score, Timing};
 use serde_json::{Value, json};
 
 use crate::output::Outputs;
+use crate::prove_recordings::{self, RealRecordings};
 use crate::refusal::Refusal;
 
 /// Options of `jointscope prove`.
 #[derive(Debug, Args)]
 pub struct ProveArguments {
-    /// Number of cases.
-    #[arg(long, value_name = "N", default_value_t = 40)]
+    /// Number of cases [default: 40, of real recordings 8].
+    #[arg(
+        long,
+        value_name = "N",
+        default_value_t = 40,
+        default_value_if("recordings", ArgPredicate::IsPresent, "8"),
+        hide_default_value = true
+    )]
     pub cases: usize,
     /// Seed of the cases.
     #[arg(long, value_name = "S", default_value_t = 1)]
@@ -41,10 +49,15 @@ pub struct ProveArguments {
     /// A directory for seal.json, answers.json, proof.json and timing.json.
     #[arg(short, long, value_name = "DIR")]
     pub output: Option<PathBuf>,
+    #[command(flatten)]
+    pub real: RealRecordings,
 }
 
 /// Makes the cases, has them all diagnosed, opens the truths and scores; answers with the table.
 pub fn run(arguments: &ProveArguments) -> Result<String, Refusal> {
+    if let Some(directory) = &arguments.real.recordings {
+        return prove_recordings::run(directory, arguments);
+    }
     let named = |(name, family): (&str, _)| arguments.family.iter().any(|f| f == name).then_some(family);
     let families: Vec<_> = FAMILIES.into_iter().filter_map(named).collect();
     let standard = Plan::default();
@@ -63,10 +76,7 @@ pub fn run(arguments: &ProveArguments) -> Result<String, Refusal> {
         let seal = json!({ "plan": plan.to_value(), "sealed_truths_sha256": digest });
         write(directory.join("seal.json"), &seal)?;
     }
-    let threads = arguments
-        .threads
-        .unwrap_or_else(|| std::thread::available_parallelism().map_or(1, std::num::NonZero::get))
-        .max(1);
+    let threads = workers(arguments);
     let bar = progress(cases.len(), "diagnosed");
     let answers = Answers::to(&cases, threads, |done| bar.set_position(done as u64));
     bar.finish_and_clear();
@@ -105,24 +115,32 @@ pub fn run(arguments: &ProveArguments) -> Result<String, Refusal> {
     Ok(text.trim_end().to_owned())
 }
 
-fn write(path: PathBuf, value: &Value) -> Result<(), Refusal> {
+/// Cases at a time.
+pub fn workers(arguments: &ProveArguments) -> usize {
+    let cores = || std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
+    arguments.threads.unwrap_or_else(cores).max(1)
+}
+
+/// Writes one file.
+pub fn write(path: PathBuf, value: &Value) -> Result<(), Refusal> {
     let mut outputs = Outputs::default();
     outputs.add(path, pretty(value));
     outputs.write()
 }
 
-fn pretty(value: &Value) -> String {
+/// JSON for people.
+pub fn pretty(value: &Value) -> String {
     format!("{value:#}\n")
 }
 
 /// A line for whoever watches, apart from the results.
-fn tell(line: &str) {
+pub fn tell(line: &str) {
     // With standard error closed nobody watches.
     let _ = writeln!(std::io::stderr(), "{line}");
 }
 
 /// A progress bar on a terminal, nothing elsewhere.
-fn progress(cases: usize, what: &'static str) -> ProgressBar {
+pub fn progress(cases: usize, what: &'static str) -> ProgressBar {
     if !std::io::stderr().is_terminal() {
         return ProgressBar::hidden();
     }

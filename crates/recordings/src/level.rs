@@ -13,7 +13,7 @@ pub enum HeldAmplitude {
 
 impl HeldAmplitude {
     /// Reads an ID line; `None` for one that speaks of something else.
-    pub(crate) fn parse(id_line: &str) -> Option<Self> {
+    pub fn parse(id_line: &str) -> Option<Self> {
         let mut words = id_line.split_whitespace();
         let quantity = words.next()?.to_lowercase();
         let amplitude: f64 = words.next()?.parse().ok()?;
