@@ -1,37 +1,41 @@
 //! `jointscope prove`: concealed cases made, diagnosed, and only then opened and scored.
 
+mod cases;
+mod pages;
+mod shipped;
+
 use std::io::{IsTerminal, Write};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
-use clap::builder::ArgPredicate;
 use indicatif::{ProgressBar, ProgressStyle};
-use jointscope_proof::{Answers, FAMILIES, Judged, Plan, Score, Timing};
+use jointscope_proof::{Answers, Baseline, FAMILIES, Judged, Limits, Methods, Score, Timing};
+use jointscope_report::{ProofContext, ProofResults, proof_page};
 use serde_json::{Value, json};
 
+use crate::input;
 use crate::output::Outputs;
 use crate::prove_recordings::{self, RealRecordings};
 use crate::refusal::Refusal;
+use cases::Concealed;
+use pages::CasePages;
 
 /// Options of `jointscope prove`.
 #[derive(Debug, Args)]
 pub struct ProveArguments {
-    /// Number of cases [default: 40, of real recordings 8].
-    #[arg(
-        long,
-        value_name = "N",
-        default_value_t = 40,
-        default_value_if("recordings", ArgPredicate::IsPresent, "8"),
-        hide_default_value = true
-    )]
-    pub cases: usize,
-    /// Seed of the cases.
-    #[arg(long, value_name = "S", default_value_t = 1)]
-    pub seed: u64,
+    /// Make so many new cases [default: the cases that the program carries; 40 where only a seed is given; 8 of real recordings].
+    #[arg(long, value_name = "N")]
+    pub cases: Option<usize>,
+    /// Seed of new cases [default: 1].
+    #[arg(long, value_name = "S")]
+    pub seed: Option<u64>,
+    /// Make so many further cases of one effect so small that it may be missed, for the detection curve.
+    #[arg(long, value_name = "N")]
+    pub graded: Option<usize>,
     /// A text, such as the current commit's hash, from which a quarter of the cases is drawn afresh.
     #[arg(long, value_name = "TEXT")]
     pub also_from: Option<String>,
-    /// Make the one case of this number.
+    /// Take the one case of this number.
     #[arg(long, value_name = "INDEX")]
     pub only: Option<usize>,
     /// Assemblies to draw from [default: all but beam-and-block].
@@ -46,57 +50,75 @@ pub struct ProveArguments {
     /// Print the scores as JSON.
     #[arg(long)]
     pub json: bool,
-    /// A directory for seal.json, answers.json, proof.json and timing.json.
+    /// A directory for report.html, seal.json, answers.json, baselines.json, proof.json and timing.json, and cases/NNN with the files and
+    /// the page of every case.
     #[arg(short, long, value_name = "DIR")]
     pub output: Option<PathBuf>,
     #[command(flatten)]
     pub real: RealRecordings,
+    /// Write no cases/NNN.
+    #[arg(long)]
+    pub no_case_pages: bool,
+    /// Instead: the effects that this recording cannot tell apart, and the smallest that show in it.
+    #[arg(long, num_args = 2, value_names = ["FIXTURE", "RECORDING"],
+        conflicts_with_all = ["cases", "seed", "graded", "also_from", "only", "family", "wrong", "output"])]
+    pub limits: Vec<PathBuf>,
 }
 
-/// Makes the cases, has them all diagnosed, opens the truths and scores; answers with the table.
+/// Has all cases diagnosed, opens the truths and scores; answers with the table.
 pub fn run(arguments: &ProveArguments) -> Result<String, Refusal> {
     if let Some(directory) = &arguments.real.recordings {
         return prove_recordings::run(directory, arguments);
     }
-    let named = |(name, family): (&str, _)| arguments.family.iter().any(|f| f == name).then_some(family);
-    let families: Vec<_> = FAMILIES.into_iter().filter_map(named).collect();
-    let standard = Plan::default();
-    let plan = Plan {
-        cases: arguments.cases,
-        seed: arguments.seed,
-        fresh_from: arguments.also_from.clone(),
-        only: arguments.only,
-        families: if families.is_empty() { standard.families } else { families },
-    };
-    let (cases, truths) = plan.draw().map_err(Refusal::new)?;
-    let digest = truths.digest().to_owned();
+    if let [fixture, recording] = arguments.limits.as_slice() {
+        return limits(fixture, recording, arguments.json);
+    }
+    let mut concealed = Concealed::of(arguments)?;
+    let digest = concealed.truths.digest().to_owned();
     tell(&format!("truths sealed, SHA-256 {digest}"));
     if let Some(directory) = &arguments.output {
         // A directory that cannot be written to is found out before the work, not after it.
-        let seal = json!({ "plan": plan.to_value(), "sealed_truths_sha256": digest });
+        let seal = json!({ "plan": concealed.plan, "sealed_truths_sha256": digest });
         write(directory.join("seal.json"), &seal)?;
     }
     let threads = workers(arguments);
-    let bar = progress(cases.len(), "diagnosed");
-    let answers = Answers::to(&cases, threads, |done| bar.set_position(done as u64));
-    bar.finish_and_clear();
+    let answers = diagnosed(arguments, &concealed, threads)?;
+    let baselines = {
+        let bar = progress(concealed.cases.len(), "looked up and updated");
+        Baseline::all(&concealed.cases, threads, |done| bar.set_position(done as u64))
+    };
     if let Some(directory) = &arguments.output {
         // On disk before the truths are opened.
         write(directory.join("answers.json"), &answers.to_value())?;
+        let value = baselines.iter().map(|b| b.as_ref().map(Baseline::to_value)).collect::<Value>();
+        write(directory.join("baselines.json"), &value)?;
     }
-    let truths = truths.open(&answers).ok_or_else(|| Refusal::new("answers are missing"))?;
-    let bar = progress(cases.len(), "judged");
-    let judged = Judged::all(&cases, truths, &answers, threads, |done| bar.set_position(done as u64));
-    bar.finish_and_clear();
+    let truths = concealed.truths.open(&answers).ok_or_else(|| Refusal::new("answers are missing"))?;
+    let judged = {
+        let bar = progress(concealed.cases.len(), "judged");
+        Judged::all(&concealed.cases, truths, &answers, threads, |done| bar.set_position(done as u64))
+    };
     let timing = Timing::of(answers.seconds());
     tell(&timing.to_string());
     let score = Score::of(&judged);
+    let believed: Vec<_> = concealed.cases.iter().map(|case| &case.believed).collect();
+    let methods = Methods::of(&judged, &believed, &baselines);
     let mut value = score.to_value();
-    value["plan"] = plan.to_value();
+    value["methods"] = methods.to_value();
+    value["plan"] = concealed.plan.take();
     value["sealed_truths_sha256"] = digest.clone().into();
     value["cases"] = judged.iter().map(Judged::to_value).collect();
     if let Some(directory) = &arguments.output {
+        let context = ProofContext {
+            program: format!("jointscope {}", env!("CARGO_PKG_VERSION")),
+            command: input::command_line(),
+            cases: concealed.what.clone(),
+            sealed: digest.clone(),
+            pages: !arguments.no_case_pages,
+        };
+        let results = ProofResults { score: &score, methods: &methods, judged: &judged };
         let mut outputs = Outputs::default();
+        outputs.add(directory.join("report.html"), proof_page(&results, &context).map_err(Refusal::new)?);
         outputs.add(directory.join("proof.json"), pretty(&value));
         outputs.add(directory.join("timing.json"), pretty(&timing.to_value()));
         outputs.write()?;
@@ -104,13 +126,18 @@ pub fn run(arguments: &ProveArguments) -> Result<String, Refusal> {
     if arguments.json {
         return Ok(pretty(&value).trim_end().to_owned());
     }
-    let mut text = format!("{plan}\ntruths sealed before the first answer, SHA-256 {digest}\n\n{score}");
+    let what = &concealed.what;
+    let mut text =
+        format!("{what}\ntruths sealed before the first answer, SHA-256 {digest}\n\n{score}\n{methods}");
     if arguments.wrong || arguments.only.is_some() {
         let told = judged.iter().filter(|judged| arguments.only.is_some() || !judged.faults().is_empty());
         for judged in told {
             text.push('\n');
             text.push_str(&judged.account());
         }
+    }
+    if let Some(directory) = &arguments.output {
+        text.push_str(&format!("\n{}", directory.join("report.html").display()));
     }
     Ok(text.trim_end().to_owned())
 }
@@ -119,6 +146,40 @@ pub fn run(arguments: &ProveArguments) -> Result<String, Refusal> {
 pub fn workers(arguments: &ProveArguments) -> usize {
     let cores = || std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
     arguments.threads.unwrap_or_else(cores).max(1)
+}
+
+/// All cases diagnosed, and a page written of each where a directory was given.
+fn diagnosed(arguments: &ProveArguments, concealed: &Concealed, threads: usize) -> Result<Answers, Refusal> {
+    let bar = progress(concealed.cases.len(), "diagnosed");
+    let told = |done: usize| bar.set_position(done as u64);
+    let Some(directory) = arguments.output.as_ref().filter(|_| !arguments.no_case_pages) else {
+        return Ok(Answers::to(&concealed.cases, threads, told));
+    };
+    let pages = CasePages::below(directory, concealed);
+    let answers = Answers::watched(&concealed.cases, threads, told, |position, diagnosis| {
+        pages.write(position, diagnosis)
+    });
+    pages.finish()?;
+    Ok(answers)
+}
+
+/// What a recording cannot tell apart or show.
+fn limits(fixture: &Path, recording: &Path, json: bool) -> Result<String, Refusal> {
+    let believed = input::fixture(fixture)?;
+    let arguments = crate::arguments::RecordingArguments {
+        files: vec![recording.to_owned()],
+        map: Vec::new(),
+        assume_units: None,
+    };
+    let read = input::recording(&arguments, &believed, fixture)?;
+    let frfs = read.frfs().map_err(|error| Refusal::at(recording, error))?;
+    let limits = Limits::of(&believed, frfs).ok_or_else(|| {
+        Refusal::at(
+            recording,
+            "has no coherence with a number of averages, from which the noise could be taken",
+        )
+    })?;
+    Ok(if json { pretty(&limits.to_value()) } else { limits.to_string() }.trim_end().to_owned())
 }
 
 /// Writes one file.
@@ -144,7 +205,8 @@ pub fn progress(cases: usize, what: &'static str) -> ProgressBar {
     if !std::io::stderr().is_terminal() {
         return ProgressBar::hidden();
     }
-    let template = "{bar:30} {pos} of {len} cases {msg}, {elapsed}, {eta} to go";
+    let template = "{bar:30} {pos} of {len} cases {msg}, {elapsed} gone, {eta} to go";
     let style = ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar());
-    ProgressBar::new(cases as u64).with_style(style).with_message(what)
+    let finish = indicatif::ProgressFinish::AndClear;
+    ProgressBar::new(cases as u64).with_style(style).with_message(what).with_finish(finish)
 }

@@ -24,7 +24,7 @@ use crate::refusal::Refusal;
 #[command(next_help_heading = "On real recordings")]
 pub struct RealRecordings {
     /// A directory with real recordings (FRFs) and the fixture.json that goes with them: conceal something there.
-    #[arg(long, value_name = "DIR", conflicts_with_all = ["also_from", "family", "wrong"])]
+    #[arg(long, value_name = "DIR", conflicts_with_all = ["also_from", "family", "wrong", "graded", "no_case_pages"])]
     pub recordings: Option<PathBuf>,
     /// What to conceal [default: whatever fixture and recording have room for, in turn].
     #[arg(long, value_name = "KIND", num_args = 1.., value_parser = ConcealmentKind::ALL.map(ConcealmentKind::name), requires = "recordings")]
@@ -43,6 +43,9 @@ pub struct RealRecordings {
     pub assume_units: Option<AssumedUnits>,
 }
 
+/// Cases where no number is given: each takes a whole diagnosis of the recording.
+const CASES: usize = 8;
+
 fn level(text: &str) -> Result<HeldAmplitude, String> {
     let form = "an amplitude that was held is needed, such as \"response 5 m/s^2\" or \"force 0.5 N\"";
     HeldAmplitude::parse(text).ok_or_else(|| form.to_owned())
@@ -56,8 +59,8 @@ pub fn run(directory: &Path, arguments: &ProveArguments) -> Result<String, Refus
         asked.is_empty() || asked.iter().any(|name| name == kind.name())
     });
     let plan = ConcealmentPlan {
-        cases: arguments.cases,
-        seed: arguments.seed,
+        cases: arguments.cases.unwrap_or(CASES),
+        seed: arguments.seed.unwrap_or(1),
         only: arguments.only,
         kinds: kinds.collect(),
     };

@@ -66,7 +66,16 @@ impl Answer {
     /// # Errors
     /// [`NoAnswer`], where it refuses.
     pub fn of(case: &Case) -> Result<Self, NoAnswer> {
-        let diagnosis = Diagnosis::of(&case.believed, &case.recorded, &DiagnosisOptions::default())?;
+        Answer::from_diagnosis(&Answer::diagnosis_of(case)?)
+    }
+
+    /// The diagnosis of a case, under its default options: of fixture and recording, and of nothing else.
+    pub(crate) fn diagnosis_of(case: &Case) -> Result<Diagnosis, DiagnosisError> {
+        Diagnosis::of(&case.believed, &case.recorded, &DiagnosisOptions::default())
+    }
+
+    /// What a diagnosis says, as plain data.
+    pub(crate) fn from_diagnosis(diagnosis: &Diagnosis) -> Result<Self, NoAnswer> {
         let found = diagnosis.findings.iter().map(|finding| Found {
             effect: finding.effect.clone(),
             intervals: finding.estimates.iter().map(|estimate| estimate.interval).collect(),
@@ -80,7 +89,10 @@ impl Answer {
             chi2_per_dof: diagnosis.chi2_per_dof(),
             refitted: diagnosis.search.refitted.hypothesis.to_fixture()?,
             repaired: diagnosis.search.repaired.hypothesis.to_fixture()?,
-            held_out: diagnosis.held_out.map(|held_out| [held_out.nrmse_refitted, held_out.nrmse_repaired]),
+            held_out: diagnosis
+                .held_out
+                .as_ref()
+                .map(|held_out| [held_out.nrmse_refitted, held_out.nrmse_repaired]),
         })
     }
 

@@ -1,6 +1,7 @@
 //! The answers to all cases, each by a worker of its own.
 
 use crate::{Answer, Case, NoAnswer};
+use jointscope_diagnosis::Diagnosis;
 use rayon::ThreadPoolBuilder;
 use serde_json::{Value, json};
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -19,7 +20,30 @@ impl Answers {
     /// Diagnoses all cases on `threads` workers; `told` hears the number of answers given so far. A case keeps to one core, so its
     /// seconds mean the same however many workers there are.
     pub fn to(cases: &[Case], threads: usize, told: impl Fn(usize) + Sync) -> Self {
-        Self::by(cases, threads, told, Answer::of)
+        Self::watched(cases, threads, told, |_, _| ())
+    }
+
+    /// As [`Answers::to`]; `watch` sees every diagnosis with its case's position, on the worker that made it and after its time was taken.
+    pub fn watched(
+        cases: &[Case],
+        threads: usize,
+        told: impl Fn(usize) + Sync,
+        watch: impl Fn(usize, &Diagnosis) + Sync,
+    ) -> Self {
+        Self::given(cases, threads, told, |index, case| {
+            let start = Instant::now();
+            let diagnosis = catch_unwind(AssertUnwindSafe(|| Answer::diagnosis_of(case)));
+            let seconds = start.elapsed().as_secs_f64();
+            let answer = match diagnosis {
+                Ok(Ok(diagnosis)) => {
+                    watch(index, &diagnosis);
+                    Answer::from_diagnosis(&diagnosis)
+                }
+                Ok(Err(why)) => Err(why.into()),
+                Err(_) => Err(NoAnswer::BrokeDown),
+            };
+            (answer, seconds)
+        })
     }
 
     /// As [`Answers::to`], given by another than the diagnosis.
@@ -29,11 +53,21 @@ impl Answers {
         told: impl Fn(usize) + Sync,
         answer: impl Fn(&Case) -> Result<Answer, NoAnswer> + Sync,
     ) -> Self {
-        let given = on_workers(cases, threads, told, |case| {
+        Self::given(cases, threads, told, |_, case| {
             let start = Instant::now();
             let answer = catch_unwind(AssertUnwindSafe(|| answer(case))).unwrap_or(Err(NoAnswer::BrokeDown));
             (answer, start.elapsed().as_secs_f64())
-        });
+        })
+    }
+
+    fn given(
+        cases: &[Case],
+        threads: usize,
+        told: impl Fn(usize) + Sync,
+        answer: impl Fn(usize, &Case) -> (Result<Answer, NoAnswer>, f64) + Sync,
+    ) -> Self {
+        let numbered: Vec<(usize, &Case)> = cases.iter().enumerate().collect();
+        let given = on_workers(&numbered, threads, told, |(index, case)| answer(*index, case));
         let (all, seconds) = given.into_iter().map(|a| a.unwrap_or((Err(NoAnswer::BrokeDown), 0.0))).unzip();
         Answers { all, seconds }
     }

@@ -1,6 +1,8 @@
 //! A case: what the diagnosis is given, and apart from it what is true.
 
+use crate::truth_file::outside_value;
 use jointscope_fixture::{Dof, Effect, EffectKind, Fixture, Place};
+use jointscope_rig::universal_file::{FileError, Precision, to_bytes};
 use jointscope_rig::{HammerTest, Outside};
 use jointscope_spectra::FrfSet;
 use serde_json::{Map, Value, json};
@@ -15,6 +17,16 @@ pub struct Case {
     pub recorded: FrfSet,
 }
 
+impl Case {
+    /// The recording as a universal file (58b), FRFs with coherence and averages.
+    ///
+    /// # Errors
+    /// A point whose name is no node number.
+    pub fn recording(&self, precision: Precision) -> Result<Vec<u8>, FileError> {
+        to_bytes("hammer test", &self.recorded, precision)
+    }
+}
+
 /// How much was hidden in a case.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Role {
@@ -26,11 +38,23 @@ pub enum Role {
     Double,
     /// Physics that no effect describes.
     Outside,
+    /// One effect made just so strong that it ought to show a little.
+    Graded,
 }
 
 impl Role {
     /// Every role.
-    pub const ALL: [Role; 4] = [Role::Null, Role::Single, Role::Double, Role::Outside];
+    pub const ALL: [Role; 5] = [Role::Null, Role::Single, Role::Double, Role::Outside, Role::Graded];
+
+    /// The role of this name.
+    pub fn from_name(name: &str) -> Option<Self> {
+        Role::ALL.into_iter().find(|role| role.name() == name)
+    }
+
+    /// Whether one effect was hidden.
+    pub fn is_of_one(self) -> bool {
+        matches!(self, Role::Single | Role::Graded)
+    }
 
     /// The role in a word.
     pub fn name(self) -> &'static str {
@@ -39,6 +63,7 @@ impl Role {
             Role::Single => "single",
             Role::Double => "double",
             Role::Outside => "outside",
+            Role::Graded => "graded",
         }
     }
 }
@@ -83,9 +108,11 @@ impl Truth {
         json!({
             "case": self.index,
             "source": self.source,
+            "fresh": self.fresh,
             "role": self.role.name(),
             "hidden": self.hidden(),
             "fixture": self.fixture.to_value(),
+            "outside": self.outside.as_ref().map(outside_value),
             "hammer": {
                 "averages": hammer.averages, "noise_response": hammer.noise_response, "noise_force": hammer.noise_force,
                 "corner": hammer.corner, "spread": hammer.spread, "common_hits": hammer.common_hits,

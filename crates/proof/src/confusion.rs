@@ -18,7 +18,7 @@ impl Confusion {
             let asked = match judged.truth.role {
                 Role::Null => true,
                 Role::Single => judged.is_visible(),
-                Role::Double | Role::Outside => false,
+                Role::Double | Role::Outside | Role::Graded => false,
             };
             if asked {
                 let hidden = judged.hidden().first().map_or(NOTHING, |name| name.kind.name());

@@ -20,7 +20,7 @@ impl Judged {
                     faults.push(format!("called {}", answer.verdict.name()));
                 }
             }
-            Role::Single => {
+            Role::Single | Role::Graded => {
                 let right = found.iter().any(|name| self.accepts(name));
                 if self.is_visible() && !right {
                     faults.push(if found.is_empty() { "missed" } else { "wrong name" }.to_owned());

@@ -1,5 +1,7 @@
 //! Cases from a seed: random assemblies, true quantities within tolerances, hidden physics, hammer tests.
 
+use crate::answers::on_workers;
+use crate::graded::scaled_to;
 use crate::{Case, Role, SealedTruths, Truth};
 use jointscope_fixture::{Effect, EffectKind, Fixture};
 use jointscope_rig::{
@@ -16,6 +18,9 @@ use sha2::{Digest, Sha256};
 pub struct Plan {
     /// Number of cases.
     pub cases: usize,
+    /// Number of further cases, numbered after the others, of one effect each that is made just so strong as to cost a fit without it a
+    /// Δχ² of 3 to 300: what the detection curve is drawn from.
+    pub graded: usize,
     /// Seed of all but the fresh ones.
     pub seed: u64,
     /// A text (a commit's hash) that the last of the cases are drawn from, a quarter of them: cases that nobody can have tuned anything to.
@@ -30,7 +35,7 @@ impl Default for Plan {
     fn default() -> Self {
         let families =
             vec![Family::TwoBlocks, Family::SupportedTwoBlocks, Family::ThreeBlocks, Family::Frame];
-        Plan { cases: 40, seed: 1, fresh_from: None, only: None, families }
+        Plan { cases: 40, graded: 0, seed: 1, fresh_from: None, only: None, families }
     }
 }
 
@@ -50,7 +55,7 @@ pub enum GenerationError {
     #[error("there is no case to make: ask for at least one case of at least one family")]
     NoCases,
     /// A case beyond the last.
-    #[error("there is no case {only}: {cases} cases are numbered 0 to {}", cases - 1)]
+    #[error("there is no case {only}: {cases} cases are numbered 0 to {}", cases.saturating_sub(1))]
     NoSuchCase {
         /// The case asked for.
         only: usize,
@@ -88,6 +93,8 @@ const LINES: (usize, f64) = (400, 2.5);
 /// Relative change of the recorded FRFs between which physics outside the vocabulary is drawn: it shows, and leaves the
 /// assembly recognisable.
 const OUTSIDE_SHOWS: [f64; 2] = [0.03, 0.8];
+/// Costs Δχ² of graded effects: from what chance makes to what is plain.
+const GRADED: [f64; 2] = [3.0, 300.0];
 /// Draws of a case before giving up.
 const DRAWS: usize = 60;
 /// FRFs that nobody records, at the most.
@@ -104,23 +111,22 @@ impl Plan {
     /// # Errors
     /// See [`GenerationError`].
     pub fn draw(&self) -> Result<(Vec<Case>, SealedTruths), GenerationError> {
-        if self.cases == 0 || self.families.is_empty() {
+        let all = self.cases + self.graded;
+        if all == 0 || self.families.is_empty() {
             return Err(GenerationError::NoCases);
         }
         let indices: Vec<usize> = match self.only {
-            Some(only) if only >= self.cases => {
-                return Err(GenerationError::NoSuchCase { only, cases: self.cases });
-            }
+            Some(only) if only >= all => return Err(GenerationError::NoSuchCase { only, cases: all }),
             Some(only) => vec![only],
-            None => (0..self.cases).collect(),
+            None => (0..all).collect(),
         };
-        let mut cases = Vec::with_capacity(indices.len());
-        let mut truths = Vec::with_capacity(indices.len());
-        for index in indices {
-            let (case, truth) = self.case(index)?;
-            cases.push(case);
-            truths.push(truth);
-        }
+        let threads = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
+        let drawn = on_workers(&indices, threads, |_| (), |index| self.case(*index));
+        let drawn = drawn.into_iter().zip(&indices).map(|(drawn, index)| {
+            // A worker that died over a case has left nothing of it.
+            drawn.unwrap_or(Err(GenerationError::Unlucky(*index)))
+        });
+        let (cases, truths) = drawn.collect::<Result<Vec<_>, _>>()?.into_iter().unzip();
         Ok((cases, SealedTruths::new(truths)))
     }
 
@@ -128,12 +134,13 @@ impl Plan {
         let first_fresh = self.cases - self.fresh();
         // A fresh case counts from the first of them, so that the text alone decides what they are.
         let (source, number, fresh) = match &self.fresh_from {
+            _ if index >= self.cases => (format!("seed {} graded", self.seed), index - self.cases, false),
             Some(text) if index >= first_fresh => (format!("text {text}"), index - first_fresh, true),
             _ => (format!("seed {}", self.seed), index, false),
         };
         let seed = seed_of(&source, number);
         let mut random = generator(seed);
-        let role = ROLES[number % ROLES.len()];
+        let role = if index >= self.cases { Role::Graded } else { ROLES[number % ROLES.len()] };
         for _ in 0..DRAWS {
             let family = self.families[random.random_range(0..self.families.len())];
             let scene = Scene { family, role, number, seed };
@@ -145,6 +152,11 @@ impl Plan {
         }
         Err(GenerationError::Unlucky(index))
     }
+}
+
+/// The spectral lines of every recording.
+pub(crate) fn recorded_lines() -> Result<SpectralLines, SpectraError> {
+    SpectralLines::even(LINES.1, LINES.1, LINES.0)
 }
 
 /// A seed of its own for every case.
@@ -173,16 +185,16 @@ impl Scene {
         let believed = self.family.draw("concealed case", random)?;
         let truth = drawn_within_tolerance(&believed, random)?;
         let pairs = self.family.usual_pairs();
-        let lines = SpectralLines::even(LINES.1, LINES.1, LINES.0)?;
+        let lines = recorded_lines()?;
         let Some(effects) = self.effects(random, &truth, &pairs)? else { return Ok(None) };
-        let truth = truth.with_physics(effects).map_err(StructureError::from)?;
+        let mut truth = truth.with_physics(effects).map_err(StructureError::from)?;
         let plain = match frfs(&truth, &pairs, &lines, Instrument::AsDescribed) {
             Ok(plain) => plain,
             // Two effects that cannot be together, or a place that has gone: another draw.
             Err(_) if self.role == Role::Double => return Ok(None),
             Err(error) => return Err(error.into()),
         };
-        let (clean, outside) = if self.role == Role::Outside {
+        let (mut clean, outside) = if self.role == Role::Outside {
             let kind = self.number / ROLES.len();
             let Some(outside) = Outside::draw(random, &truth, kind, &pairs) else { return Ok(None) };
             let clean = outside.frfs(&truth, &pairs, &lines, Instrument::AsDescribed)?;
@@ -194,15 +206,14 @@ impl Scene {
         } else {
             (plain, None)
         };
-        let hammer = HammerTest {
-            averages: [5, 8, 10, 16, 20][random.random_range(0..5)],
-            noise_response: random.random_range(0.004..0.015),
-            noise_force: random.random_range(0.0005..0.0015),
-            corner: random.random_range(900.0..1300.0),
-            spread: 0.25,
-            common_hits: false,
-            seed: self.seed,
-        };
+        let hammer = self.hammer(random);
+        if self.role == Role::Graded {
+            let wanted = random.random_range(GRADED[0].ln()..GRADED[1].ln()).exp();
+            let noisy = hammer.measure(&clean)?;
+            let Some(scaled) = scaled_to(wanted, &believed, &truth, &noisy) else { return Ok(None) };
+            clean = frfs(&scaled, &pairs, &lines, Instrument::AsDescribed)?;
+            truth = scaled;
+        }
         let recorded = hammer.measure(&clean)?;
         let apart = unseen_pairs(&truth, &pairs, random);
         let unseen = match &outside {
@@ -210,6 +221,18 @@ impl Scene {
             None => frfs(&truth, &apart, &lines, Instrument::Perfect)?,
         };
         Ok(Some((Case { believed, recorded }, Hidden { fixture: truth, outside, hammer, unseen })))
+    }
+
+    fn hammer(&self, random: &mut impl Rng) -> HammerTest {
+        HammerTest {
+            averages: [5, 8, 10, 16, 20][random.random_range(0..5)],
+            noise_response: random.random_range(0.004..0.015),
+            noise_force: random.random_range(0.0005..0.0015),
+            corner: random.random_range(900.0..1300.0),
+            spread: 0.25,
+            common_hits: false,
+            seed: self.seed,
+        }
     }
 
     /// The effects to hide; `None` where the fixture has no place for them.
@@ -231,6 +254,7 @@ impl Scene {
                 };
                 vec![linear[singles(self.number) % linear.len()]]
             }
+            Role::Graded => vec![linear[self.number % linear.len()]],
             Role::Double => {
                 let first = random.random_range(0..linear.len());
                 let step = random.random_range(1..linear.len());

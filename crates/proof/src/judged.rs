@@ -91,7 +91,7 @@ impl Judged {
         let lowest = without.iter().copied().fold(f64::INFINITY, f64::min);
         match self.truth.role {
             // A refit that ended in a false minimum must not make an effect look larger than it is.
-            Role::Single => refitted.min(lowest) - truth,
+            Role::Single | Role::Graded => refitted.min(lowest) - truth,
             Role::Double => lowest - truth,
             Role::Null | Role::Outside => refitted - truth,
         }
@@ -158,7 +158,7 @@ impl Evidence {
                 evidence.bounds = reference.bounds;
             }
         }
-        if truth.role == Role::Single {
+        if truth.role.is_of_one() {
             evidence.others = others(truth, answer, &evidence, best);
         }
         let without = |index: usize| {

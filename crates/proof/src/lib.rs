@@ -11,7 +11,9 @@
 //! | making cases | [`Plan`], [`Case`], [`Truth`], [`Role`], [`SealedTruths`] |
 //! | answers | [`Answers`], [`Answer`], [`Found`], [`Timing`] |
 //! | judging | [`Judged`], [`Evidence`], [`Reference`], [`Name`] |
-//! | scores | [`Score`], [`Rate`], [`Share`], [`Reliability`], [`Confusion`] |
+//! | what else one could do | [`Baseline`], [`Methods`] |
+//! | limits of a test | [`Limits`] |
+//! | scores | [`Score`], [`Rate`], [`Share`], [`Reliability`], [`Confusion`], [`Detection`], [`Coverage`] |
 //! | real recordings | [`concealed`]: something concealed relative to a fixture that explains them |
 //!
 //! Nothing is random but by the seed: cases, answers and scores are the same on any number of threads.
@@ -33,30 +35,44 @@
 
 mod answer;
 mod answers;
+mod baseline;
 mod case;
 pub mod concealed;
 mod confusion;
+mod coverage;
+mod detection;
+mod detection_table;
 mod failures;
 mod generate;
+mod graded;
 mod judged;
+mod limits;
 mod objective;
 mod reference;
 mod reliability;
 mod score;
 mod seal;
+mod sensitivity;
 mod statistics;
+mod strength;
 mod table;
 mod timing;
+mod truth_file;
 
 pub use answer::{Answer, Found, NoAnswer};
 pub use answers::Answers;
+pub use baseline::{Baseline, Lookup, Method, Methods, Updated, WIDER};
 pub use case::{Case, Name, Role, Truth, describe};
 pub use confusion::{Confusion, NOTHING};
+pub use coverage::Coverage;
+pub use detection::{Detection, SizeClass, Smallest};
 pub use generate::{FAMILIES, GenerationError, Plan};
+pub use jointscope_rig::universal_file::{FileError, Precision};
 pub use judged::{AS_GOOD, Evidence, Judged, PLAIN, STRAINED, VISIBLE};
+pub use limits::{Alike, Limits, SmallestShown};
 pub use reference::Reference;
 pub use reliability::{Bin, Reliability};
-pub use score::{CHANCE, Comparison, Figure, Rate, Score, Target};
-pub use seal::{Sealable, SealedTruths};
+pub use score::{CHANCE, Comparison, Figure, Rate, Score, Standing, Target};
+pub use seal::{BrokenSeal, Sealable, SealedTruths};
 pub use statistics::Share;
 pub use timing::Timing;

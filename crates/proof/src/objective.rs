@@ -45,8 +45,12 @@ impl Tolerance {
 
     /// Departure of the quantity in standard deviations, zero where that is unknown; `values` are those of all quantities.
     pub fn departure(&self, values: &[f64]) -> f64 {
-        let value = values[self.index] * self.with.map_or(1.0, |other| values[other]);
-        self.std.map_or(0.0, |std| (value - self.nominal) / std)
+        self.std.map_or(0.0, |std| (self.value(values) - self.nominal) / std)
+    }
+
+    /// Its value, of the product where there is one.
+    pub fn value(&self, values: &[f64]) -> f64 {
+        values[self.index] * self.with.map_or(1.0, |other| values[other])
     }
 
     /// Change of the first value that is one standard deviation, a tenth of it where that is unknown.

@@ -1,6 +1,8 @@
 //! The scores: shares with binomial intervals beside their targets.
 
 use crate::confusion::Confusion;
+use crate::coverage::Coverage;
+use crate::detection::Detection;
 use crate::reliability::Reliability;
 use crate::statistics::median;
 use crate::{Judged, Name, PLAIN, Role, Share};
@@ -39,6 +41,46 @@ pub struct Rate {
     pub share: Share,
     /// What it should be.
     pub target: Option<Target>,
+}
+
+/// How a share stands to its target.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Standing {
+    /// It is what it should be.
+    Met,
+    /// It is not, but its interval holds the target.
+    WithinChance,
+    /// It is not.
+    Missed,
+}
+
+impl Standing {
+    /// The standing in words.
+    pub fn says(self) -> &'static str {
+        match self {
+            Standing::Met => "met",
+            Standing::WithinChance => "missed, within chance",
+            Standing::Missed => "missed",
+        }
+    }
+}
+
+impl Rate {
+    /// How it stands to its target; `None` where it has none or nothing was counted.
+    pub fn standing(&self) -> Option<Standing> {
+        let (target, value) = (self.target?, self.share.value()?);
+        let [low, high] = self.share.interval();
+        let within = match target {
+            Target::AtLeast(least) => high >= least,
+            Target::AtMost(most) => low <= most,
+            Target::Within(least, most) => high >= least && low <= most,
+        };
+        Some(match (target.is_met(value), within) {
+            (true, _) => Standing::Met,
+            (false, true) => Standing::WithinChance,
+            (false, false) => Standing::Missed,
+        })
+    }
 }
 
 /// A figure that is no share.
@@ -85,6 +127,10 @@ pub struct Score {
     pub reliability: Reliability,
     /// Which kinds were taken for which.
     pub confusion: Confusion,
+    /// Share of effects found by their size.
+    pub detection: Detection,
+    /// Stated intervals against the truth.
+    pub coverage: Coverage,
     /// Verdicts by role.
     pub verdicts: Vec<(Role, Vec<(&'static str, usize)>)>,
     /// Old against fresh cases; empty where none are fresh.
@@ -97,8 +143,6 @@ const CERTAIN: f64 = 0.95;
 const CLAIMED: f64 = 0.9;
 /// Probability below which the log score does not fall.
 const LEAST: f64 = 1e-3;
-/// Half of a 95 % interval in standard deviations.
-const HALF: f64 = 1.96;
 
 impl Score {
     /// Scores judged cases.
@@ -129,6 +173,8 @@ impl Score {
             figures: figures(&all),
             reliability: Reliability::of(visible(&all, Role::Single)),
             confusion: Confusion::of(all.iter().copied()),
+            detection: Detection::of(all.iter().copied()),
+            coverage: intervals(&all),
             verdicts: verdicts.to_vec(),
             comparisons,
         }
@@ -166,7 +212,6 @@ fn rates(all: &[&Judged]) -> Vec<Rate> {
     let rate = |key, what, share, target| Rate { key, what, share, target: Some(target) };
     let consistent =
         |judged: &Judged| judged.answer.as_ref().is_ok_and(|answer| answer.verdict == Verdict::Consistent);
-    let covered = intervals(all);
     let worse = |errors: [f64; 2]| errors[1] > errors[0];
     vec![
         rate(
@@ -176,17 +221,31 @@ fn rates(all: &[&Judged]) -> Vec<Rate> {
             AtLeast(0.99),
         ),
         rate(
+            "null_finding",
+            "nulls with a finding: false alarms",
+            Share::count(of_role(Role::Null), |judged| !judged.found().is_empty()),
+            AtMost(0.01),
+        ),
+        rate(
             "single_kind",
             "single effects: kind right",
-            Share::count(visible(all, Role::Single), kind_right),
+            Share::count(visible(all, Role::Single), Judged::has_kind),
             AtLeast(0.97),
         ),
         rate(
             "single_place",
             "single effects: kind, place and dof right",
-            Share::count(visible(all, Role::Single), name_right),
+            Share::count(visible(all, Role::Single), Judged::is_named),
             AtLeast(0.97),
         ),
+        Rate {
+            key: "single_elsewhere",
+            what: "single effects of the right kind: at another place or dof",
+            share: Share::count(visible(all, Role::Single).filter(|judged| judged.has_kind()), |judged| {
+                !judged.is_named()
+            }),
+            target: None,
+        },
         rate(
             "single_extra",
             "single effects: an extra finding",
@@ -202,7 +261,7 @@ fn rates(all: &[&Judged]) -> Vec<Rate> {
         rate(
             "coverage",
             "95 % intervals that hold the true parameter",
-            Share::count(&covered, |interval| interval.holds),
+            intervals(all).share(),
             Within(0.92, 0.98),
         ),
         rate(
@@ -236,6 +295,14 @@ fn rates(all: &[&Judged]) -> Vec<Rate> {
             target: None,
         },
         Rate {
+            key: "outside_abstains",
+            what: "unknown physics that shows: noticed, and no name given",
+            share: Share::count(visible(all, Role::Outside), |judged| {
+                judged.is_noticed() && judged.found().is_empty()
+            }),
+            target: None,
+        },
+        Rate {
             key: "outside_named",
             what: "unknown physics: any name with 0.9 or more",
             share: Share::count(of_role(Role::Outside), claimed),
@@ -249,7 +316,8 @@ fn figures(all: &[&Judged]) -> Vec<Figure> {
     let ratio = |errors: [f64; 2]| errors[0] / errors[1];
     let held_out: Vec<f64> = held_out(helped()).map(ratio).collect();
     let unseen: Vec<f64> = unseen(helped()).map(ratio).collect();
-    let widths: Vec<f64> = intervals(all).iter().filter_map(|interval| interval.width).collect();
+    let widths = intervals(all).widths();
+    let places = place_errors(all);
     let logs: Vec<f64> = visible(all, Role::Single)
         .map(|judged| {
             let stated = judged.hidden().iter().map(|name| judged.stated(name)).fold(1.0, f64::min);
@@ -266,6 +334,13 @@ fn figures(all: &[&Judged]) -> Vec<Figure> {
             median(&widths),
             widths.len(),
             Some(Target::AtMost(1.5)),
+        ),
+        figure(
+            "place_error",
+            "right names with an abscissa: median error of the place in mm",
+            median(&places).map(|metres| 1e3 * metres),
+            places.len(),
+            None,
         ),
         figure("log_score", "mean log of the probability of the true name", mean(&logs), logs.len(), None),
         figure(
@@ -285,14 +360,24 @@ fn figures(all: &[&Judged]) -> Vec<Figure> {
     ]
 }
 
-fn kind_right(judged: &Judged) -> bool {
-    let hidden = judged.hidden();
-    let right = |name: &Name| hidden.iter().any(|h| h.kind == name.kind) || judged.accepts(name);
-    judged.found().iter().any(right)
+fn intervals(all: &[&Judged]) -> Coverage {
+    Coverage::of(visible(all, Role::Single).chain(visible(all, Role::Double)))
 }
 
-fn name_right(judged: &Judged) -> bool {
-    judged.found().iter().any(|name| judged.accepts(name))
+/// Distances between found and true abscissae of effects that were found under their own names, m.
+fn place_errors(all: &[&Judged]) -> Vec<f64> {
+    let mut errors = Vec::new();
+    for judged in visible(all, Role::Single).chain(visible(all, Role::Double)) {
+        for hidden in judged.truth.effects() {
+            let Some(x) = hidden.kind.spec().parameters.iter().position(|spec| spec.name == "x") else {
+                continue;
+            };
+            let findings = judged.answer.iter().flat_map(|answer| &answer.findings);
+            let own = findings.filter(|found| Name::of(&found.effect) == Name::of(hidden));
+            errors.extend(own.map(|found| (found.effect.value(x) - hidden.value(x)).abs()));
+        }
+    }
+    errors
 }
 
 /// Single effects that weigh at least [`PLAIN`] and of whose stated names only the true one is acceptable.
@@ -323,36 +408,4 @@ fn held_out<'a>(judged: impl Iterator<Item = &'a Judged>) -> impl Iterator<Item 
 
 fn unseen<'a>(judged: impl Iterator<Item = &'a Judged>) -> impl Iterator<Item = [f64; 2]> {
     judged.filter_map(|judged| judged.evidence.unseen)
-}
-
-/// A stated interval of a parameter that the recording determines.
-struct Interval {
-    /// Whether it holds the true value; an interval that was not stated holds nothing.
-    holds: bool,
-    /// Its width over that of the Cramér–Rao bound's.
-    width: Option<f64>,
-}
-
-/// The intervals of all hidden effects that show and were found under their own names.
-fn intervals(all: &[&Judged]) -> Vec<Interval> {
-    let mut intervals = Vec::new();
-    for judged in visible(all, Role::Single).chain(visible(all, Role::Double)) {
-        let Ok(answer) = &judged.answer else { continue };
-        for (hidden, bounds) in judged.truth.effects().iter().zip(&judged.evidence.bounds) {
-            let name = Name::of(hidden);
-            let Some(found) = answer.findings.iter().find(|found| Name::of(&found.effect) == name) else {
-                continue;
-            };
-            for (parameter, bound) in bounds.iter().enumerate() {
-                let Some(bound) = bound else { continue };
-                let (truth, stated) = (hidden.value(parameter), found.intervals.get(parameter));
-                let stated = stated.copied().flatten();
-                intervals.push(Interval {
-                    holds: stated.is_some_and(|[low, high]| (low..=high).contains(&truth)),
-                    width: stated.map(|[low, high]| (high - low) / (2.0 * HALF * bound)),
-                });
-            }
-        }
-    }
-    intervals
 }

@@ -1,7 +1,7 @@
 //! The scores as text and as JSON.
 
 use crate::score::{CHANCE, Comparison};
-use crate::{FAMILIES, Figure, Judged, Plan, Rate, Role, Score, Share, Target};
+use crate::{FAMILIES, Figure, Judged, Plan, Rate, Role, Score, Share, Standing, Target};
 use serde_json::{Map, Value, json};
 use std::fmt::{self, Display, Formatter};
 
@@ -10,6 +10,9 @@ impl Display for Plan {
         match self.only {
             Some(only) => write!(f, "case {only} of {}, seed {}", self.cases, self.seed)?,
             None => write!(f, "{} cases, seed {}", self.cases, self.seed)?,
+        }
+        if self.graded > 0 {
+            write!(f, ", and {} graded", self.graded)?;
         }
         if self.families != Plan::default().families {
             write!(f, ", {}", self.family_names().join(", "))?;
@@ -30,7 +33,7 @@ impl Plan {
     /// The plan as JSON.
     pub fn to_value(&self) -> Value {
         json!({
-            "cases": self.cases, "seed": self.seed, "only": self.only, "families": self.family_names(),
+            "cases": self.cases, "graded": self.graded, "seed": self.seed, "only": self.only, "families": self.family_names(),
             "fresh_from": self.fresh_from, "fresh": self.fresh(),
         })
     }
@@ -43,22 +46,6 @@ impl Display for Target {
             Target::AtMost(most) => write!(f, "≤ {most}"),
             Target::Within(least, most) => write!(f, "{least} to {most}"),
         }
-    }
-}
-
-/// What is left of a target: nothing decides it, met, missed within chance, missed.
-fn standing(rate: &Rate) -> &'static str {
-    let (Some(target), Some(value)) = (rate.target, rate.share.value()) else { return "" };
-    let [low, high] = rate.share.interval();
-    let within = match target {
-        Target::AtLeast(least) => high >= least,
-        Target::AtMost(most) => low <= most,
-        Target::Within(least, most) => high >= least && low <= most,
-    };
-    match (target.is_met(value), within) {
-        (true, _) => "met",
-        (false, true) => "missed, within chance",
-        (false, false) => "missed",
     }
 }
 
@@ -80,8 +67,12 @@ impl Display for Score {
         writeln!(f, "\nshares (95 % binomial interval), target:")?;
         for rate in &self.rates {
             let target = rate.target.map_or_else(String::new, |target| target.to_string());
-            let line =
-                format!("  {:<60} {:<36} {target:<14} {}", rate.what, counted(rate.share), standing(rate));
+            let line = format!(
+                "  {:<60} {:<36} {target:<14} {}",
+                rate.what,
+                counted(rate.share),
+                rate.standing().map_or("", Standing::says)
+            );
             writeln!(f, "{}", line.trim_end())?;
         }
         writeln!(f, "\nfigures, target:")?;
@@ -96,6 +87,7 @@ impl Display for Score {
             let line = format!("  {what:<60} {shown:<36} {target:<14} {standing}");
             writeln!(f, "{}", line.trim_end())?;
         }
+        self.write_detection(f)?;
         self.write_calibration(f)?;
         self.write_confusion(f)?;
         self.write_comparisons(f)
@@ -201,6 +193,10 @@ impl Score {
                 "true_name": share(bin.true_names), "acceptable": share(bin.acceptable),
             })).collect::<Vec<_>>(),
             "confusion": self.confusion.0,
+            "detection": self.detection.to_value(),
+            "coverage_by_level": self.coverage.by_level().into_iter().map(|(level, held)| json!({
+                "level": level, "held": share(held),
+            })).collect::<Vec<_>>(),
             "verdicts": verdicts,
             "old_and_fresh": self.comparisons.iter().map(|comparison| (comparison.key.to_owned(), json!({
                 "old": share(comparison.old), "fresh": share(comparison.fresh),

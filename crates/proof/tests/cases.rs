@@ -58,6 +58,7 @@ fn every_kind_of_linear_effect_is_hidden_in_turn() {
         Role::Single => truth.effects().len() == 1,
         Role::Double => truth.effects().len() == 2,
         Role::Outside => truth.effects().is_empty() && truth.outside.is_some(),
+        Role::Graded => false,
     }));
 }
 

@@ -145,6 +145,35 @@ impl Card {
     }
 }
 
+/// A cell of a [`Table`]: words or a number, and where they lead.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Cell {
+    text: String,
+    file: Option<String>,
+}
+
+impl Cell {
+    /// Text that leads to a file beside the page, named by its path from there.
+    pub fn link(text: impl Into<String>, file: impl Into<String>) -> Self {
+        Cell { text: text.into(), file: Some(file.into()) }
+    }
+
+    fn write(&self, html: &mut String, class: &str) {
+        let Some(file) = &self.file else { return push_element(html, "td", class, &self.text) };
+        html.push_str(&format!("<td class=\"{class}\"><a href=\"./"));
+        push_escaped(html, file);
+        html.push_str("\">");
+        push_escaped(html, &self.text);
+        html.push_str("</a></td>");
+    }
+}
+
+impl<T: Into<String>> From<T> for Cell {
+    fn from(text: T) -> Self {
+        Cell { text: text.into(), file: None }
+    }
+}
+
 /// A column of a [`Table`].
 #[derive(Debug, Clone)]
 pub struct Column {
@@ -180,7 +209,7 @@ impl Column {
 pub struct Table {
     caption: Option<String>,
     columns: Vec<Column>,
-    rows: Vec<(Vec<String>, Option<Tone>)>,
+    rows: Vec<(Vec<Cell>, Option<Tone>)>,
     footnotes: Vec<String>,
 }
 
@@ -202,13 +231,13 @@ impl Table {
     }
 
     /// A row with one cell per column; checked when the page is rendered.
-    pub fn row<T: Into<String>>(mut self, cells: impl IntoIterator<Item = T>) -> Self {
+    pub fn row<T: Into<Cell>>(mut self, cells: impl IntoIterator<Item = T>) -> Self {
         self.rows.push((cells.into_iter().map(Into::into).collect(), None));
         self
     }
 
     /// A row that is marked at its edge.
-    pub fn marked_row<T: Into<String>>(mut self, tone: Tone, cells: impl IntoIterator<Item = T>) -> Self {
+    pub fn marked_row<T: Into<Cell>>(mut self, tone: Tone, cells: impl IntoIterator<Item = T>) -> Self {
         self.rows.push((cells.into_iter().map(Into::into).collect(), Some(tone)));
         self
     }
@@ -254,7 +283,7 @@ impl Table {
         &self,
         html: &mut String,
         row: usize,
-        cells: &[String],
+        cells: &[Cell],
         tone: Option<Tone>,
     ) -> Result<(), PageError> {
         if cells.len() != self.columns.len() {
@@ -271,12 +300,12 @@ impl Table {
             None => html.push_str("<tr>"),
         }
         for (column, cell) in self.columns.iter().zip(cells) {
-            let class = match (column.numbers, cell.as_str()) {
+            let class = match (column.numbers, cell.text.as_str()) {
                 (true, NOT_DETERMINED) => "number undetermined",
                 (true, _) => "number",
                 (false, _) => "",
             };
-            push_element(html, "td", class, cell);
+            cell.write(html, class);
         }
         html.push_str("</tr>\n");
         Ok(())

@@ -17,6 +17,7 @@ pub struct HeatMap {
     corner: String,
     columns: Vec<String>,
     rows: Vec<(String, Vec<Option<f64>>)>,
+    counts: bool,
     caption: Option<String>,
     footnote: Option<String>,
 }
@@ -33,9 +34,16 @@ impl HeatMap {
             corner: corner.into(),
             columns: columns.into_iter().map(Into::into).collect(),
             rows: Vec::new(),
+            counts: false,
             caption: None,
             footnote: None,
         }
+    }
+
+    /// A map of counts instead, each shaded by its share of the row; what is zero is left empty.
+    pub fn of_counts(mut self) -> Self {
+        self.counts = true;
+        self
     }
 
     /// A row with one number per column; checked when the page is rendered.
@@ -76,7 +84,12 @@ impl HeatMap {
             }
             html.push_str("<tr>");
             push_heading(html, "row", name);
-            values.iter().for_each(|value| push_cell(html, *value));
+            if self.counts {
+                let all = values.iter().flatten().sum::<f64>();
+                values.iter().for_each(|value| push_count(html, *value, all));
+            } else {
+                values.iter().for_each(|value| push_cell(html, *value));
+            }
             html.push_str("</tr>\n");
         }
         html.push_str("</tbody></table>");
@@ -100,6 +113,16 @@ fn push_cell(html: &mut String, value: Option<f64>) {
         Some(value) => {
             let shade = STRONGEST * (value.max(1.0).ln() / FULL.ln()).min(1.0);
             html.push_str(&format!("<td style=\"--shade-share:{shade:.0}%\">{}</td>", number(value)));
+        }
+    }
+}
+
+fn push_count(html: &mut String, value: Option<f64>, all: f64) {
+    match value.filter(|value| *value > 0.0) {
+        None => html.push_str("<td></td>"),
+        Some(value) => {
+            let shade = STRONGEST * (value / all).min(1.0);
+            html.push_str(&format!("<td style=\"--shade-share:{shade:.0}%\">{value:.0}</td>"));
         }
     }
 }
@@ -129,6 +152,18 @@ mod tests {
             "{html}"
         );
         assert!(html.contains("&lt;4/1&gt;"));
+    }
+
+    #[test]
+    fn counts_are_shaded_by_their_share_of_the_row() {
+        let mut html = String::new();
+        let map = HeatMap::new("hidden", ["a", "b"]).of_counts().row("a", [Some(3.0), Some(1.0)]);
+        map.row("b", [Some(0.0), Some(2.0)]).write(&mut html).unwrap();
+        for part in
+            ["--shade-share:52%\">3<", "--shade-share:18%\">1<", "<td></td>", "--shade-share:70%\">2<"]
+        {
+            assert!(html.contains(part), "{part} in {html}");
+        }
     }
 
     #[test]

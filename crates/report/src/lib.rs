@@ -7,11 +7,12 @@
 //! | module | holds |
 //! |---|---|
 //! | [`Page`], [`Section`], [`Foot`] | the page and its parts |
-//! | [`Verdict`], [`Card`], [`Table`] | headline, key figures, tables |
+//! | [`Verdict`], [`Card`], [`Table`], [`Cell`] | headline, key figures, tables |
 //! | [`Plot`], [`Axis`], [`Role`], [`YRange`] | plots over spectral lines, with bands, gaps and reference lines |
 //! | [`drawing`] | side view of a fixture as SVG |
 //! | [`HeatMap`] | misfit by place and band, with its numbers |
 //! | [`decomposition_page`], [`diagnosis_page`], [`comparison_page`], [`modes_page`], [`PageContext`] | the pages of a joint's decomposition, of a diagnosis, of joints side by side and of a modal analysis |
+//! | [`proof_page`], [`ProofContext`] | the page of concealed cases: what the diagnosis is worth |
 //! | [`format`](mod@format), [`Scale`] | numbers with uncertainty, units with SI prefix |
 //!
 //! ```
@@ -58,6 +59,7 @@ mod modes_page;
 mod page;
 mod phase;
 mod plot;
+mod proof_page;
 mod section;
 mod unit;
 
@@ -66,11 +68,12 @@ pub use context::{HammerTest, InputFile, PageContext};
 pub use decomposition_page::decomposition_page;
 pub use diagnosis_page::diagnosis_page;
 pub use drawing::{FixtureDrawing, Svg};
-pub use elements::{Card, Column, Table, Tone, Verdict};
+pub use elements::{Card, Cell, Column, Table, Tone, Verdict};
 pub use error::PageError;
 pub use heat_map::HeatMap;
 pub use modes_page::modes_page;
 pub use page::{Foot, Page};
 pub use plot::{Axis, Ordinate, Plot, Role, Spacing, YRange, kept_lines};
+pub use proof_page::{ProofContext, ProofResults, proof_page};
 pub use section::Section;
 pub use unit::{Scale, typeset};

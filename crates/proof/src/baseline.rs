@@ -1,0 +1,60 @@
+//! Two ways of dealing with a fixture that disagrees with its recording, without asking what was left out: what the diagnosis is
+//! compared with.
+//!
+//! * **Parameter updating**: the quantities that the file states are moved until the model fits, once within their stated tolerances and
+//!   once within [`WIDER`] times those, so that they can take up what is missing.
+//! * **Nearest signature**: of all effects at all places in a few sizes, simulated in the refitted fixture, the one whose change of the FRFs
+//!   looks most like the misfit.
+
+mod lookup;
+mod methods;
+mod updating;
+
+pub use lookup::Lookup;
+pub use methods::{Method, Methods};
+pub use updating::{Updated, WIDER};
+
+use crate::Case;
+use crate::answers::on_workers;
+use crate::case::effect_value;
+use jointscope_diagnosis::Observation;
+use serde_json::{Value, json};
+
+/// What the two make of a case.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Baseline {
+    /// Quantities moved within their tolerances.
+    pub within: Updated,
+    /// Quantities moved within wide bounds.
+    pub freed: Updated,
+    /// The nearest signature; `None` where what is left within the tolerances is no more than noise.
+    pub nearest: Option<Lookup>,
+}
+
+impl Baseline {
+    /// Of a case; `None` where its fixture predicts nothing.
+    pub fn of(case: &Case) -> Option<Self> {
+        let observation = Observation::new(&case.recorded, |_| true).ok()?;
+        let within = Updated::of(&case.believed, 1.0, &observation)?;
+        let freed = Updated::of(&case.believed, WIDER, &observation)?;
+        let nearest = if within.fits() { None } else { Lookup::of(&within.fixture, &observation) };
+        Some(Baseline { within, freed, nearest })
+    }
+
+    /// Of all cases, on `threads` workers.
+    pub fn all(cases: &[Case], threads: usize, told: impl Fn(usize) + Sync) -> Vec<Option<Self>> {
+        on_workers(cases, threads, told, Baseline::of).into_iter().map(Option::flatten).collect()
+    }
+
+    /// As JSON.
+    pub fn to_value(&self) -> Value {
+        let updated = |updated: &Updated| json!({ "chi2_per_dof": updated.chi2_per_dof, "fixture": updated.fixture.to_value() });
+        json!({
+            "within_tolerances": updated(&self.within),
+            "freed": updated(&self.freed),
+            "nearest_signature": self.nearest.as_ref().map(|nearest| json!({
+                "effect": effect_value(&nearest.effect), "likeness": nearest.likeness,
+            })),
+        })
+    }
+}

@@ -1,0 +1,193 @@
+//! What a recording cannot tell apart, and what it cannot show, before anything is diagnosed.
+
+use crate::sensitivity::{Direction, Sensitivity};
+use crate::strength;
+use crate::{Name, VISIBLE};
+use jointscope_diagnosis::{Observation, catalogue};
+use jointscope_fixture::{Effect, Fixture};
+use jointscope_spectra::FrfSet;
+use serde_json::{Value, json};
+use std::fmt;
+
+/// Angle below which two names are listed as alike, degrees.
+const ALIKE: f64 = 25.0;
+/// Turns below which what one name does beyond the tolerances is rounding: there is nothing to compare.
+const ROUNDING: f64 = 1e-9;
+
+/// A name at a place, and the smallest effect that shows there.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SmallestShown {
+    /// The name.
+    pub name: Name,
+    /// The parameter, and its unit.
+    pub parameter: (&'static str, &'static str),
+    /// The parameter of an effect that costs a fit without it Δχ² = [`VISIBLE`], at the best abscissa or frequency tried; infinite where
+    /// nothing shows.
+    pub shows: f64,
+    /// The same were every quantity of the fixture known exactly.
+    pub shows_if_exact: f64,
+    /// Whether effects of a larger parameter are weaker.
+    pub is_upper: bool,
+    /// Share of what the effect does that quantities within their tolerances can do as well.
+    pub imitated: f64,
+}
+
+/// Two names that do nearly the same.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Alike {
+    /// The names.
+    pub names: [Name; 2],
+    /// Angle between what they do to the FRFs, in units of the noise, degrees: 0 is the same.
+    pub angle: f64,
+    /// The same after the quantities of the fixture have yielded within their tolerances.
+    pub angle_beyond_tolerances: f64,
+    /// Δχ² that the first must cost before a fit of the second is worse by [`VISIBLE`].
+    pub told_apart_from: f64,
+}
+
+/// The limits of one fixture and one test.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Limits {
+    /// Every name, in the order of the catalogue.
+    pub smallest: Vec<SmallestShown>,
+    /// Pairs that lie within 25° of each other beyond the tolerances, the closest first.
+    pub alike: Vec<Alike>,
+}
+
+struct Signature {
+    name: Name,
+    effect: Effect,
+    directions: Vec<Direction>,
+}
+
+impl Limits {
+    /// The limits of a recording with coherence against the fixture that describes it, by what small effects would do.
+    ///
+    /// `None` where the recording has no coherence, or the fixture predicts no finite FRFs.
+    pub fn of(fixture: &Fixture, recorded: &FrfSet) -> Option<Self> {
+        let observation = Observation::new(recorded, |_| true).ok()?;
+        let sensitivity = Sensitivity::of(fixture, fixture, recorded)?;
+        let mut signatures = Vec::new();
+        for candidate in catalogue(fixture, &observation) {
+            let effects = candidate.directions.iter().map(|parameters| {
+                Effect::new(candidate.kind, candidate.place.clone(), candidate.dof, parameters)
+            });
+            let both: Vec<(Effect, Direction)> = effects
+                .filter_map(|effect| sensitivity.direction(&effect).map(|direction| (effect, direction)))
+                .collect();
+            let (effects, directions): (Vec<_>, Vec<_>) = both.into_iter().unzip();
+            if let Some(effect) = effects.into_iter().next() {
+                signatures.push(Signature { name: Name::of(&effect), effect, directions });
+            }
+        }
+        let smallest = signatures.iter().map(Signature::smallest).collect();
+        let mut alike = Vec::new();
+        for (index, first) in signatures.iter().enumerate() {
+            alike.extend(signatures[..index].iter().filter_map(|second| first.beside(second)));
+        }
+        alike.sort_by(|a, b| a.angle_beyond_tolerances.total_cmp(&b.angle_beyond_tolerances));
+        Some(Limits { smallest, alike })
+    }
+
+    /// As JSON.
+    pub fn to_value(&self) -> Value {
+        let finite = |value: f64| value.is_finite().then_some(value);
+        json!({
+            "smallest": self.smallest.iter().map(|s| json!({
+                "name": s.name.to_string(), "parameter": s.parameter.0, "unit": s.parameter.1,
+                "shows": finite(s.shows), "shows_if_exact": finite(s.shows_if_exact), "upper": s.is_upper,
+                "imitated": s.imitated,
+            })).collect::<Vec<_>>(),
+            "alike": self.alike.iter().map(|a| json!({
+                "names": a.names.iter().map(ToString::to_string).collect::<Vec<_>>(),
+                "angle": a.angle, "angle_beyond_tolerances": a.angle_beyond_tolerances,
+                "told_apart_from": finite(a.told_apart_from),
+            })).collect::<Vec<_>>(),
+        })
+    }
+}
+
+impl Signature {
+    fn smallest(&self) -> SmallestShown {
+        let largest = |information: &dyn Fn(&Direction) -> f64| {
+            self.directions.iter().map(information).fold(0.0, f64::max)
+        };
+        let (whole, left) = (largest(&|d| d.whole(d)), largest(&|d| d.beyond_tolerances(d)));
+        let shown = |information: f64| match information > ROUNDING * whole {
+            true => strength::stated(self.name.kind, (VISIBLE / information).sqrt()),
+            false if strength::is_inverse(self.name.kind) => 0.0,
+            false => f64::INFINITY,
+        };
+        SmallestShown {
+            name: self.name.clone(),
+            parameter: strength::parameter(self.effect.kind, self.effect.dof),
+            shows: shown(left),
+            shows_if_exact: shown(whole),
+            is_upper: strength::is_inverse(self.name.kind),
+            imitated: if whole > 0.0 { (1.0 - left / whole).clamp(0.0, 1.0) } else { 1.0 },
+        }
+    }
+
+    /// The closest of both names' directions; `None` where they are told apart easily.
+    fn beside(&self, other: &Signature) -> Option<Alike> {
+        let mut closest: Option<(f64, f64)> = None;
+        for a in &self.directions {
+            for b in &other.directions {
+                let product = |f: &dyn Fn(&Direction, &Direction) -> f64| {
+                    let (aa, bb) = (f(a, a), f(b, b));
+                    // The sign does not count: an effect of the other sign is one of the same name, or none.
+                    (aa > 0.0 && bb > 0.0).then(|| (f(a, b).abs() / (aa * bb).sqrt()).min(1.0))
+                };
+                let shows = |d: &Direction| d.beyond_tolerances(d) > ROUNDING * d.whole(d);
+                if !(shows(a) && shows(b)) {
+                    continue;
+                }
+                let (Some(whole), Some(left)) =
+                    (product(&Direction::whole), product(&Direction::beyond_tolerances))
+                else {
+                    continue;
+                };
+                if closest.is_none_or(|(_, most)| left > most) {
+                    closest = Some((whole, left));
+                }
+            }
+        }
+        let (whole, left) = closest?;
+        let angle = left.acos().to_degrees();
+        (angle < ALIKE).then(|| Alike {
+            names: [other.name.clone(), self.name.clone()],
+            angle: whole.acos().to_degrees(),
+            angle_beyond_tolerances: angle,
+            told_apart_from: VISIBLE / (1.0 - left * left).max(1e-15),
+        })
+    }
+}
+
+impl fmt::Display for Limits {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(
+            f,
+            "smallest effect that shows (Δχ² = {VISIBLE}), were every quantity exact, share imitated within tolerances:"
+        )?;
+        for shown in &self.smallest {
+            let (parameter, unit) = shown.parameter;
+            let relation = if shown.is_upper { "≤" } else { "≥" };
+            writeln!(
+                f,
+                "  {:<44} {parameter} {relation} {:.2e} {unit} ({:.2e}) {:.4}",
+                shown.name.to_string(),
+                shown.shows,
+                shown.shows_if_exact,
+                shown.imitated
+            )?;
+        }
+        writeln!(
+            f,
+            "\nnames that do nearly the same: angle, angle beyond tolerances in degrees, Δχ² from which they are told apart:"
+        )?;
+        for Alike { names: [a, b], angle, angle_beyond_tolerances, told_apart_from } in &self.alike {
+            writeln!(f, "  {a} | {b}: {angle:.2} {angle_beyond_tolerances:.2} {told_apart_from:.1e}")?;
+        }
+        Ok(())
+    }
+}

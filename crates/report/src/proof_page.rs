@@ -1,0 +1,120 @@
+//! The page of the proof: what the diagnosis is worth on concealed cases, for a reader who does not believe it.
+
+mod calibration;
+mod cases;
+mod detection;
+mod methods;
+mod scores;
+
+use jointscope_proof::{Judged, Methods, Role, Score, Share};
+
+use crate::{Foot, Page, PageError, Section, Tone, Verdict};
+
+/// Where the page comes from.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct ProofContext {
+    /// The program and its version.
+    pub program: String,
+    /// The command line.
+    pub command: String,
+    /// Which cases these are, in a line.
+    pub cases: String,
+    /// SHA-256 of the sealed truths.
+    pub sealed: String,
+    /// Whether `cases/NNN/report.html` lie beside the page.
+    pub pages: bool,
+}
+
+/// What the page shows.
+#[derive(Debug, Clone, Copy)]
+pub struct ProofResults<'a> {
+    /// The scores.
+    pub score: &'a Score,
+    /// The diagnosis beside the baselines.
+    pub methods: &'a Methods,
+    /// Every case with its truth and its answer.
+    pub judged: &'a [Judged],
+}
+
+/// The page of a proof as one self-contained HTML file: the verdict in a sentence; scores with their targets; the diagnosis beside what people do
+/// today; detection against size; which kind was taken for which; whether probabilities and intervals mean what they say; every
+/// case with what was hidden and what was found, and a way to its own page.
+///
+/// The same input gives the same bytes.
+///
+/// # Errors
+/// Results whose lists do not fit each other.
+pub fn proof_page(results: &ProofResults, context: &ProofContext) -> Result<String, PageError> {
+    let mut foot = Foot::new(&context.program);
+    if !context.command.is_empty() {
+        foot = foot.command(&context.command);
+    }
+    Page::new("Proof: what the diagnosis is worth")
+        .subtitle(&context.cases)
+        .verdict(verdict(results))
+        .section(scores::section(results.score))
+        .section(methods::section(results.methods))
+        .section(detection::section(&results.score.detection))
+        .section(detection::confusion(&results.score.confusion))
+        .section(calibration::section(results.score))
+        .section(cases::section(results.judged, context))
+        .section(seal(context))
+        .foot(foot)
+        .to_html()
+}
+
+/// "46 of 48", or that there is none.
+fn counted(share: Share) -> String {
+    if share.all == 0 { "no case".to_owned() } else { format!("{} of {}", share.of, share.all) }
+}
+
+fn verdict(results: &ProofResults) -> Verdict {
+    let ProofResults { score, methods, .. } = results;
+    let share = |key: &str| score.rate(key).map(|rate| rate.share).unwrap_or_default();
+    let (named, alarms) = (share("single_place"), share("null_finding"));
+    let wrong = share("outside_wrong_name");
+    let missed =
+        score.rates.iter().filter(|rate| rate.standing() == Some(jointscope_proof::Standing::Missed));
+    let missed: Vec<&str> = missed.map(|rate| rate.what).collect();
+    let tone = if missed.is_empty() { Tone::Ok } else { Tone::Attention };
+    let headline = format!(
+        "Hidden effects that show were given their right names in {}; something was found in {} where nothing was hidden; \
+         unknown physics got a wrong name with certainty in {}.",
+        counted(named),
+        counted(alarms),
+        counted(wrong)
+    );
+    let mut verdict = Verdict::new(tone, headline);
+    let lookup = methods.0.iter().find(|method| method.key == "nearest_signature").and_then(|m| m.named);
+    if let Some(lookup) = lookup.filter(|share| share.all > 0) {
+        verdict = verdict.detail(format!(
+            "On the same cases the nearest of a library of simulated signatures has the right name in {}.",
+            counted(lookup)
+        ));
+    }
+    verdict.detail(match missed.len() {
+        0 => "No target is missed beyond chance; where there are few cases that says little, and the intervals say how little.".to_owned(),
+        _ => format!("Missed beyond chance: {}.", missed.join("; ")),
+    })
+}
+
+fn seal(context: &ProofContext) -> Section {
+    Section::new("What was sealed when")
+        .paragraph(
+            "The diagnosis is handed a fixture and a recording, nothing else. What is true of the cases was put under seal first: the SHA-256 \
+             of the truths was printed, and written to seal.json, before the first diagnosis began. All answers were written to answers.json \
+             before the truths were opened, and then everything above was counted. Truths, names, objectives and faults of every case are in \
+             proof.json; what the baselines made of them is in baselines.json; the seconds, which differ from machine to machine, are in timing.json.",
+        )
+        .command(format!("sha256 {}", context.sealed))
+        .paragraph(
+            "Recordings come from a simulated laboratory that shares no code with the diagnosis or its model. A name counts as right if it is the \
+             hidden one, or if its best fit comes as near to the recording as a fit from the truth does, within 9 in χ²: no test could tell the two apart. An effect \
+             shows if a fit without it is worse by 50 or more.",
+        )
+        .notes([format!("Nulls, singles, doubles, unknown physics and graded effects: {}.", roles())])
+}
+
+fn roles() -> String {
+    Role::ALL.map(|role| role.name()).join(", ")
+}
