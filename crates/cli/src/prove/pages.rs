@@ -48,6 +48,7 @@ impl<'a> CasePages<'a> {
                 .map(|(name, bytes)| InputFile { name: (*name).to_owned(), sha256: hash(bytes) })
                 .collect(),
             notes: Vec::new(),
+            hits: None,
         };
         let page = diagnosis_page(diagnosis, believed, &context).map_err(Refusal::new)?;
         let mut outputs = Outputs::default();
