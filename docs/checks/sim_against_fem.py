@@ -89,8 +89,9 @@ for example in EXAMPLES:
             print(f"  diagnose {' '.join(more)}: {d['verdict']}; chi2/dof {chi2['nominal']:.3g} {chi2['refitted']:.3g} {chi2['repaired']:.3g}; "
                   f"nrmse {nrmse['nominal']:.3g} {nrmse['refitted']:.3g} {nrmse['repaired']:.3g}")
             for finding in d["findings"]:
-                deviation = lambda p: "" if p["std"] is None else f" ± {p['std']:.2g}"
-                values = ", ".join(f"{key} {p['value']:.4g}{deviation(p)} {p['unit']}" for key, p in finding["parameters"].items())
+                number = lambda value, form: "unknown" if value is None else format(value, form)
+                values = ", ".join(
+                    f"{key} {number(p['value'], '.4g')} ± {number(p['std'], '.2g')} {p['unit']}" for key, p in finding["parameters"].items())
                 others = "; ".join(f"{a['kind']} {a['place']} {a['probability']:.2f}" for a in finding["alternatives"][:4])
                 print(f"    {finding['kind']} at {finding['place']} {finding.get('dof') or ''} (p {finding['probability']:.2f}): {values}"
                       + (f" [or {others}]" if others else ""))

@@ -17,7 +17,7 @@ pub enum Part {
 /// A brick of the mesh.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Element {
-    /// Its nodes in the order of [`NATURAL`].
+    /// Its nodes: corners of the lower face, of the upper face, then midsides below, above and upright, as in the C3D20 of CalculiX.
     pub nodes: [usize; NODES],
     /// Index of its material.
     pub material: usize,
