@@ -29,6 +29,9 @@ pub struct RealRecordings {
     /// What to conceal [default: whatever fixture and recording have room for, in turn].
     #[arg(long, value_name = "KIND", num_args = 1.., value_parser = ConcealmentKind::ALL.map(ConcealmentKind::name), requires = "recordings")]
     pub conceal: Vec<String>,
+    /// Diagnoses at the most that make the fixture explain the recording, each of what the one before repaired.
+    #[arg(long, value_name = "N", default_value_t = 1, requires = "recordings")]
+    pub rounds: usize,
     /// The level to use, where the recordings were made at several, such as "response 5 m/s^2".
     #[arg(long, value_name = "AMPLITUDE", value_parser = level, requires = "recordings")]
     pub level: Option<HeldAmplitude>,
@@ -67,8 +70,8 @@ pub fn run(directory: &Path, arguments: &ProveArguments) -> Result<String, Refus
     // Found out before the first diagnosis, which takes its time.
     plan.check().map_err(Refusal::new)?;
     let bar = progress(1, "diagnosed as they are");
-    let explained =
-        Explained::of(&test.fixture, &test.frfs).map_err(|error| Refusal::at(directory, error))?;
+    let explained = Explained::of(&test.fixture, &test.frfs, arguments.real.rounds)
+        .map_err(|error| Refusal::at(directory, error))?;
     bar.finish_and_clear();
     let (cases, truths) =
         plan.conceal(&explained.fixture, &test.frfs).map_err(|error| Refusal::at(directory, error))?;

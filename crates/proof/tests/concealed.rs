@@ -250,7 +250,7 @@ fn a_deleted_entry_and_a_scaled_channel_are_found_in_a_recording_that_the_fixtur
     let recorded = measured(&Fixture::from_json(&file.to_string()).unwrap());
     file["bodies"]["A"].as_object_mut().unwrap().remove("masses");
     let given = Fixture::from_json(&file.to_string()).unwrap();
-    let explained = Explained::of(&given, &recorded).unwrap();
+    let explained = Explained::of(&given, &recorded, 1).unwrap();
     assert!(!explained.as_given() && explained.to_string().contains("added_mass A"), "{explained}");
     assert_eq!(explained.fixture.physics().len(), 2);
     let kinds = vec![ConcealmentKind::Entry, ConcealmentKind::Gain];

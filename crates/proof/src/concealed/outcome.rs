@@ -85,7 +85,7 @@ impl Size {
     }
 }
 
-/// What the objectives of a case's fixtures exceed that of the fixture that explains by.
+/// What the objectives of a case's fixtures exceed those of the first control by.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Excess {
     /// Refitted within tolerances.

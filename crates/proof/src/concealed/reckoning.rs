@@ -4,7 +4,7 @@ use super::outcome::{Excess, extra, outcome, sizes};
 use super::{Concealed, Outcome, Size};
 use crate::answers::on_workers;
 use crate::objective::{Tolerance, objective, values};
-use crate::{Answer, Answers, Case, Name, NoAnswer, Share};
+use crate::{Answer, Answers, Case, Name, NoAnswer, Share, VISIBLE};
 use jointscope_diagnosis::Observation;
 use jointscope_fixture::Fixture;
 use jointscope_lumped::{Instrument, synthesize};
@@ -24,10 +24,10 @@ pub struct Reckoned {
     pub extra: Vec<Name>,
     /// Findings that the control has too.
     pub own: Vec<Name>,
-    /// What the concealment costs the fixture as refitted by the answer, in χ² and squared departures over that of the fixture that explains;
-    /// `None` where it cannot be evaluated.
+    /// What the concealment costs the fixture as refitted by the answer: its χ² and squared departures over those of the first control's
+    /// refitted fixture, so that what the recording has of its own counts on both sides; `None` where it cannot be evaluated.
     pub shows: Option<f64>,
-    /// The same of the fixture as repaired by the answer: zero, and a little to either side, if all is made good.
+    /// The same of the repaired fixture, over that of the first control's: zero, and a little to either side, if all is made good.
     pub left: Option<f64>,
 }
 
@@ -51,10 +51,10 @@ impl Reckoning {
             _ => Vec::new(),
         };
         objectives.resize_with(truths.len(), || None);
-        let explaining = objectives.first().and_then(|first| first.as_ref().map(Objectives::lowest));
+        let control = objectives.first().and_then(|first| first.as_ref().map(Objectives::of_control));
         let each = truths.into_iter().zip(answers.all()).zip(&objectives);
         let reckoned = each.map(|((truth, answer), objectives)| {
-            let excess = objectives.as_ref().zip(explaining).and_then(|(of, base)| of.over(base));
+            let excess = objectives.as_ref().zip(control).and_then(|(of, control)| of.over(control));
             reckoned(truth, answer.clone(), &own, excess)
         });
         Reckoning { cases: reckoned.collect(), own }
@@ -66,16 +66,20 @@ impl Reckoning {
     /// recording. Nothing of nothing by any other key.
     pub fn share(&self, key: &str) -> Share {
         let concealed = || self.cases.iter().filter(|case| !case.truth.is_control());
+        // By the same measure whether it was found or not: what is found below it is luck, what is missed there no fault.
         let asked = || {
-            let there = |case: &&Reckoned| !matches!(case.outcome, Outcome::DoesNotShow | Outcome::Own);
-            concealed().filter(|case| !case.truth.expected.is_empty()).filter(there)
+            let there = |case: &&Reckoned| {
+                let shows = case.shows.is_none_or(|shows| shows >= VISIBLE);
+                shows && case.outcome != Outcome::Own && !case.truth.expected.is_empty()
+            };
+            concealed().filter(there)
         };
         let sizes = |planted: bool| {
             let of = move |case: &&Reckoned| {
                 case.outcome == Outcome::Found
                     && case.truth.kind.is_some_and(|kind| kind.is_planted() == planted)
             };
-            Share::count(concealed().filter(of).flat_map(|case| &case.sizes), Size::holds)
+            Share::count(asked().filter(of).flat_map(|case| &case.sizes), Size::holds)
         };
         match key {
             "quiet" => {
@@ -146,12 +150,15 @@ impl Objectives {
         Some(Objectives { believed: of(&case.believed)?, answered })
     }
 
-    fn lowest(&self) -> f64 {
-        self.answered.map_or(self.believed, |[refitted, repaired]| self.believed.min(refitted).min(repaired))
+    /// The lowest that are known of the first control, refitted and repaired.
+    fn of_control(&self) -> [f64; 2] {
+        let [refitted, repaired] = self.answered.unwrap_or([f64::INFINITY; 2]);
+        let refitted = refitted.min(self.believed);
+        [refitted, repaired.min(refitted)]
     }
 
-    fn over(&self, base: f64) -> Option<Excess> {
-        self.answered
-            .map(|[refitted, repaired]| Excess { refitted: refitted - base, repaired: repaired - base })
+    fn over(&self, control: [f64; 2]) -> Option<Excess> {
+        let [refitted, repaired] = self.answered?;
+        Some(Excess { refitted: refitted - control[0], repaired: repaired - control[1] })
     }
 }

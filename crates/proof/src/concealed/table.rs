@@ -9,9 +9,9 @@ use std::fmt::{self, Display, Formatter};
 /// Shares by key, as a reader would put them.
 const SHARES: [(&str, &str); 7] = [
     ("quiet", "further controls without a finding of their own"),
-    ("found", "concealed: kind and place found"),
-    ("kind", "concealed: kind found"),
-    ("extra", "concealed: something else found besides"),
+    ("found", "concealed and showing: kind and place found"),
+    ("kind", "concealed and showing: kind found"),
+    ("extra", "concealed and showing: something else found besides"),
     ("noticed", "what no effect describes: noticed, no effect named with certainty"),
     ("intervals", "95 % intervals that hold a planted size"),
     ("agreements", "95 % intervals that hold what a deleted entry said"),
@@ -87,10 +87,9 @@ impl Display for Reckoned {
             writeln!(f, "  {size}")?;
         }
         match (self.shows, self.left) {
-            (Some(shows), Some(left)) => writeln!(
-                f,
-                "  objective over that of the fixture that explains: refitted {shows:.1}, repaired {left:.1}"
-            ),
+            (Some(shows), Some(left)) => {
+                writeln!(f, "  objective over the control's: refitted {shows:.1}, repaired {left:.1}")
+            }
             _ => Ok(()),
         }
     }
@@ -143,7 +142,7 @@ impl Reckoned {
             "sizes": self.sizes.iter().map(Size::to_value).collect::<Vec<_>>(),
             "extra": names(&self.extra),
             "own": names(&self.own),
-            "objective_over_explaining": { "refitted": self.shows, "repaired": self.left },
+            "objective_over_control": { "refitted": self.shows, "repaired": self.left },
         })
     }
 }
