@@ -34,6 +34,8 @@ pub enum Command {
     Fem(crate::fem::FemArguments),
     /// Natural frequencies, damping ratios and mode shapes from FRFs, with their standard deviations: modes.json and report.html.
     Modes(ModesArguments),
+    /// Accelerations of an assembly over time under recorded forces, effects that depend on amplitude included.
+    Simulate(SimulateArguments),
     /// How often the diagnosis is right: concealed cases of a simulated laboratory, and a table of scores.
     Prove(crate::prove::ProveArguments),
     /// The paper's Tables 1–6, its values beside the program's.
@@ -58,6 +60,27 @@ pub struct SynthesizeArguments {
     pub ascii: bool,
     /// The universal file to write.
     #[arg(short, long, value_name = "F.uff")]
+    pub output: PathBuf,
+}
+
+#[derive(Debug, Args)]
+pub struct SimulateArguments {
+    /// The fixture file (JSON).
+    pub fixture: PathBuf,
+    /// The forces (UFF time histories, ordinate type 13), one for each hit.
+    #[arg(long, value_name = "F.uff")]
+    pub force: PathBuf,
+    /// Where to read accelerations, such as 3 4:theta [default: transverse at every point].
+    #[arg(long, value_name = "POINT", value_parser = one_channel, num_args = 1..)]
+    pub at: Vec<Channel>,
+    /// Write the forces too, so that the file is a whole recording.
+    #[arg(long)]
+    pub with_force: bool,
+    /// Write text (dataset 58) instead of binary (58b).
+    #[arg(long)]
+    pub ascii: bool,
+    /// The universal file to write.
+    #[arg(short, long, value_name = "R.uff")]
     pub output: PathBuf,
 }
 
@@ -253,6 +276,11 @@ pub fn frf_pair(text: &str) -> Result<FrfPair, String> {
         (Some(response), Some(reference)) => Ok(FrfPair::new(response, reference)),
         _ => Err(form()),
     }
+}
+
+/// Reads a channel: `4`, `4:y` or `4:theta`.
+fn one_channel(text: &str) -> Result<Channel, String> {
+    channel(text)?.ok_or_else(|| "a point is needed, such as 4 or 4:theta".to_owned())
 }
 
 /// `None` where the point has no name or more than one slash follows.

@@ -9,6 +9,7 @@ use jointscope_report::{PageContext, diagnosis_page};
 use serde_json::{Value, json};
 
 use crate::arguments::DiagnoseArguments;
+use crate::diagnose_hits::{self, Told};
 use crate::input;
 use crate::measured::{as_recorded, measured};
 use crate::output::Outputs;
@@ -18,13 +19,21 @@ use crate::refusal::Refusal;
 /// is, or with `diagnosis.json` itself.
 pub fn run(arguments: &DiagnoseArguments) -> Result<String, Refusal> {
     let fixture = input::fixture(&arguments.fixture)?;
-    let measured = measured(
+    let mut measured = measured(
         &arguments.recording,
         &arguments.estimation,
         &fixture,
         &arguments.fixture,
         ResponseWindow::Auto,
     )?;
+    if let Some(test) = &measured.hits {
+        match diagnose_hits::told(arguments, &fixture, test) {
+            Told::Changes(diagnosis) => {
+                return diagnose_hits::written(arguments, &fixture, &diagnosis, measured);
+            }
+            Told::Linear(remarks) => measured.notes.extend(remarks),
+        }
+    }
     let fixture = as_recorded(&fixture, &arguments.fixture, measured.window_decay)?;
     let names = input::names(&arguments.recording.files);
     let frfs = &measured.frfs;

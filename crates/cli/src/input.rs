@@ -81,7 +81,8 @@ pub fn command_line() -> String {
     std::iter::once("jointscope".to_owned()).chain(arguments).collect::<Vec<_>>().join(" ")
 }
 
-fn source(path: &Path) -> Result<Source, Refusal> {
+/// Reads a universal file.
+pub fn source(path: &Path) -> Result<Source, Refusal> {
     let file = jointscope_uff::read(&bytes(path)?).map_err(|error| Refusal::at(path, error))?;
     Ok(Source { name: path.display().to_string(), file })
 }

@@ -6,6 +6,7 @@ mod arguments;
 mod compare;
 mod decompose;
 mod diagnose;
+mod diagnose_hits;
 mod estimate;
 mod estimation_arguments;
 mod fem;
@@ -16,6 +17,7 @@ mod output;
 mod prove;
 mod prove_recordings;
 mod refusal;
+mod simulate;
 mod synthesize;
 mod tables;
 
@@ -55,6 +57,7 @@ fn run(command: &Command) -> Result<String, Refusal> {
         Command::Compare(arguments) => compare::run(arguments),
         Command::Fem(arguments) => fem::run(arguments),
         Command::Modes(arguments) => modes::run(arguments),
+        Command::Simulate(arguments) => simulate::run(arguments),
         Command::Prove(arguments) => prove::run(arguments),
         Command::Tables(arguments) => tables::run(arguments),
     }

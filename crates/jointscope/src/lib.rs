@@ -59,7 +59,7 @@
 //!
 //! The parts are crates of their own, re-exported as modules for what this page leaves out: [`uff`], [`recordings`],
 //! [`fixture`], [`spectra`], [`frf`], [`hits`], [`estimation`], [`beam`], [`damping`], [`lumped`], [`modes`], [`averaging`],
-//! [`decomposition`], [`diagnosis`], [`fem`], [`comparison`].
+//! [`decomposition`], [`diagnosis`], [`nonlinear`], [`fem`], [`comparison`].
 
 pub use jointscope_averaging as averaging;
 pub use jointscope_beam as beam;
@@ -75,6 +75,7 @@ pub use jointscope_hits as hits;
 pub use jointscope_linalg as linalg;
 pub use jointscope_lumped as lumped;
 pub use jointscope_modes as modes;
+pub use jointscope_nonlinear as nonlinear;
 pub use jointscope_recordings as recordings;
 pub use jointscope_spectra as spectra;
 pub use jointscope_uff as uff;
@@ -91,11 +92,13 @@ pub use jointscope_spectra::{FrfForm, FrfPair, FrfSet, SpectralLines};
 mod diagnosis_file;
 mod modal_damping;
 mod modes_file;
+mod nonlinear_file;
 mod stiffness_file;
 
 pub use diagnosis_file::diagnosis_file;
 pub use modal_damping::{MeasuredDamping, MeasuredDampingError, measured_damping};
 pub use modes_file::modes_file;
+pub use nonlinear_file::nonlinear_file;
 pub use stiffness_file::stiffness_file;
 
 /// Why the bytes of a universal file are no recording of a fixture.

@@ -73,14 +73,14 @@ pub fn to_datasets(
     Ok(datasets)
 }
 
-fn id_lines(test_name: &str, averages: Option<u32>) -> [String; 5] {
+pub(crate) fn id_lines(test_name: &str, averages: Option<u32>) -> [String; 5] {
     let none = || "NONE".to_owned();
     // Columns hold plain text; a test's name is for people only.
     let name: String = test_name.chars().map(|c| if c.is_control() { ' ' } else { c }).take(80).collect();
     [name, none(), none(), none(), averages.map_or_else(none, |count| format!("averages {count}"))]
 }
 
-fn node(channel: &Channel) -> Result<Node, DatasetsError> {
+pub(crate) fn node(channel: &Channel) -> Result<Node, DatasetsError> {
     let direction = match channel.dof {
         Dof::Translation => 2,
         Dof::Rotation => 6,
@@ -104,7 +104,7 @@ fn response_axis(form: FrfForm, dof: Dof) -> Axis {
     }
 }
 
-fn force_axis(dof: Dof) -> Axis {
+pub(crate) fn force_axis(dof: Dof) -> Axis {
     match dof {
         Dof::Translation => Axis::excitation_force(),
         Dof::Rotation => Axis::new(data_type::EXCITATION_FORCE, "Excitation Moment", "N*m"),

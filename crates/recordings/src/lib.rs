@@ -8,6 +8,7 @@
 //! * [`hits_of`]: the hammer hits among the time histories, force and responses in SI units;
 //! * [`Recording::of_nodes`]: the same of a structure that no fixture file describes, its points the files' nodes;
 //! * [`ReadOptions`]: what the files do not say and the analyst does, a [`ChannelMap`] and [`AssumedUnits`];
+//! * [`hits_to_datasets`]: time histories as functions of a universal file;
 //! * [`to_datasets`]: FRFs as functions of a universal file;
 //! * [`RecordingError`]: one plain sentence each, naming file, function and remedy.
 //!
@@ -45,6 +46,7 @@ mod datasets;
 mod error;
 mod function;
 mod gather;
+mod histories;
 mod hits;
 mod hits_error;
 mod level;
@@ -58,6 +60,7 @@ pub use assumed_units::{AssumedUnits, AssumedUnitsError};
 pub use channel_map::{ChannelMap, ChannelMapError, FileChannel, MapEntry};
 pub use datasets::{DatasetsError, to_datasets};
 pub use error::{FunctionError, Place, RecordingError};
+pub use histories::hits_to_datasets;
 pub use hits::{Hits, hits_of};
 pub use hits_error::{HistoryPlace, HitsError};
 pub use level::HeldAmplitude;

@@ -64,14 +64,6 @@ impl Fit {
                 break;
             }
         }
-        if std::env::var("NLT").is_ok() {
-            eprintln!(
-                "fit deg {} renewals {renewals} laws {:?} obj {:.4e}",
-                view.degrees(),
-                parameters.laws().iter().map(|l| l.effect().kind.name()).collect::<Vec<_>>(),
-                objective
-            );
-        }
         Some(Fit { chi2: objective - parameters.penalty(), objective, parameters, information })
     }
 

@@ -29,7 +29,10 @@ pub struct Homogeneity {
 pub const CHANGED: f64 = 2e-3;
 
 /// e^{−aT} of the window over the record.
-const WINDOW: f64 = 6.0;
+const WINDOW: f64 = 10.0;
+/// Error of every spectral value relative to itself, beside its noise: what sampling and the end of the record leave of a hit's exact instant. It is
+/// alike on many lines, and no difference as small tells anything of a joint.
+const INEXACT: f64 = 3e-3;
 /// Force lines below this share of the strongest are left out.
 const WEAK: f64 = 0.03;
 /// Bands in which the levels are compared, beside all lines together.
@@ -62,8 +65,9 @@ impl Sums {
             let degrees = share * self.between_degrees;
             return (between, chi_squared_tail(between * degrees / NOISE_DOUBT, degrees));
         }
-        let within = self.within / self.within_degrees;
-        let ratio = between / within.max(1e-12);
+        // Hits alike may scatter more than their noise says, but not less.
+        let within = (self.within / self.within_degrees).max(1.0);
+        let ratio = between / within;
         (ratio, f_tail(ratio, share * self.between_degrees, share * self.within_degrees))
     }
 }
@@ -194,10 +198,10 @@ impl Windowed {
         }
         let weights: Vec<f64> = lines
             .iter()
-            .map(|(i, ..)| {
+            .map(|(i, _, y)| {
                 let (record, channel) = columns[*i];
                 let noise = record.noise[channel].powi(2) + gain * record.force_noise.powi(2);
-                2.0 / (noise * self.power)
+                2.0 / (noise * self.power + INEXACT * INEXACT * y.norm_sqr())
             })
             .collect();
         let fitted = |level: Option<usize>| {

@@ -7,5 +7,6 @@ pub(crate) mod homogeneity;
 pub(crate) mod misfit;
 pub(crate) mod parameters;
 pub(crate) mod records;
+mod says;
 pub(crate) mod search;
 pub(crate) mod spectra;

@@ -1,0 +1,96 @@
+use jointscope_fixture::Effect;
+use jointscope_nonlinear::{Finding, ModelFit, NonlinearDiagnosis};
+use serde_json::{Map, Value, json};
+
+/// The contents of `diagnosis.json` for a test by hits of several strengths: as [`crate::diagnosis_file`], errors being those of the response
+/// histories, and beyond the contract the test of homogeneity and how far the hits drive each joint.
+pub fn nonlinear_file(diagnosis: &NonlinearDiagnosis) -> Value {
+    let homogeneity = &diagnosis.homogeneity;
+    let refitted = diagnosis.models.as_ref().map(|[_, refitted, _]| refitted);
+    let mut root = Map::new();
+    root.insert("verdict".into(), json!(diagnosis.verdict.name()));
+    root.insert("says".into(), json!(diagnosis.says()));
+    root.insert(
+        "mismatch".into(),
+        json!({"chi2_per_dof": refitted.map(|m| m.chi2_per_dof), "p_value": homogeneity.p_value, "frfs": []}),
+    );
+    root.insert("findings".into(), diagnosis.findings.iter().map(finding).collect());
+    root.insert("fit".into(), fit(diagnosis));
+    root.insert("refitted".into(), tolerances(refitted));
+    root.insert("repaired".into(), tolerances(diagnosis.models.as_ref().map(|[.., repaired]| repaired)));
+    root.insert(
+        "homogeneity".into(),
+        json!({
+            "p_value": homogeneity.p_value,
+            "variance_ratio": homogeneity.ratio,
+            "most_in_band": [homogeneity.band.0, homogeneity.band.1],
+            "noise_from_repeats": homogeneity.from_repeats,
+            "levels": homogeneity.levels.iter().map(|(peak, hits)| json!({"peak_force": peak, "hits": hits})).collect::<Value>(),
+        }),
+    );
+    let reach = diagnosis.reach.iter().map(|r| {
+        json!({"joint": r.joint, "dof": r.dof.name(), "largest_relative_motion": r.motion, "force_of_the_joint": r.force})
+    });
+    root.insert("reach".into(), reach.collect());
+    root.insert("band".into(), json!([diagnosis.band.0, diagnosis.band.1]));
+    root.insert("remarks".into(), json!(diagnosis.remarks()));
+    Value::Object(root)
+}
+
+fn name(effect: &Effect) -> Map<String, Value> {
+    let mut entry = Map::new();
+    entry.insert("kind".into(), json!(effect.kind.name()));
+    entry.insert("place".into(), json!(effect.place.to_string()));
+    if let Some(dof) = effect.dof {
+        entry.insert("dof".into(), json!(dof.name()));
+    }
+    entry
+}
+
+fn finding(finding: &Finding) -> Value {
+    let mut entry = name(&finding.effect);
+    let parameters = finding.estimates.iter().map(|e| {
+        (
+            e.parameter.name.to_owned(),
+            json!({"value": e.value, "std": e.std, "ci95": e.interval, "unit": e.unit}),
+        )
+    });
+    entry.insert("parameters".into(), Value::Object(parameters.collect()));
+    entry.insert("probability".into(), json!(finding.probability));
+    entry.insert("says".into(), json!(finding.says()));
+    let alternatives = finding.alternatives.iter().map(|(effect, probability)| {
+        let mut entry = name(effect);
+        entry.insert("probability".into(), json!(probability));
+        Value::Object(entry)
+    });
+    entry.insert("alternatives".into(), alternatives.collect());
+    entry.insert("gain_chi2".into(), json!(finding.gain));
+    entry.insert("largest_relative_motion".into(), json!(finding.reach));
+    Value::Object(entry)
+}
+
+fn fit(diagnosis: &NonlinearDiagnosis) -> Value {
+    let Some(models) = &diagnosis.models else { return Value::Null };
+    let three = |of: &dyn Fn(&ModelFit) -> f64| json!({"nominal": of(&models[0]), "refitted": of(&models[1]), "repaired": of(&models[2])});
+    let held_out = diagnosis.held_out.as_ref().map(|held| {
+        json!({
+            "what": held.hits.iter().map(|hit| format!("hit {hit}")).collect::<Vec<_>>(),
+            "nrmse_refitted": held.nrmse_refitted,
+            "nrmse_repaired": held.nrmse_repaired,
+        })
+    });
+    json!({"nrmse": three(&|m| m.nrmse), "held_out": held_out, "chi2_per_dof": three(&|m| m.chi2_per_dof)})
+}
+
+fn tolerances(model: Option<&ModelFit>) -> Value {
+    let Some(model) = model else { return json!([]) };
+    let quantity = |(tolerance, departure): &(jointscope_nonlinear::Tolerance, f64)| {
+        json!({
+            "path": tolerance.path,
+            "nominal": tolerance.nominal,
+            "std": tolerance.std,
+            "departure": tolerance.std.map(|_| departure),
+        })
+    };
+    model.tolerances.iter().map(quantity).collect()
+}
