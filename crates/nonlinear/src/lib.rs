@@ -1,8 +1,42 @@
-//! Joints whose stiffness or damping depends on amplitude.
+//! Joints whose stiffness or damping depends on amplitude: their motion over time, and what hits of several strengths tell of them.
+//!
+//! * [`simulate`]: accelerations of a fixture under recorded forces, its cubic springs, friction and gaps included. The linear part
+//!   is propagated exactly; events of contact and slip are confined to short steps;
+//! * [`NonlinearDiagnosis`]: do FRFs change with the strength of the hits ([`Homogeneity`], no model needed)? If they do, every law at every
+//!   joint and degree of freedom is simulated under the recorded forces and fitted together with the fixture's tolerances, and judged on hits
+//!   that no fit saw;
+//! * [`RestoringLaw`]: the laws themselves.
+//!
+//! ```
+//! use jointscope_fixture::Fixture;
+//! use jointscope_hits::Hit;
+//! use jointscope_nonlinear::simulate;
+//! use jointscope_spectra::Channel;
+//!
+//! // Two storeys that touch after a tenth of a millimetre.
+//! let fixture = Fixture::from_json(r#"{
+//!   "bodies": { "A": { "mass": 2.0, "rotates": false }, "B": { "mass": 3.0, "rotates": false } },
+//!   "points": { "1": { "body": "A", "x": 0 }, "2": { "body": "B", "x": 0.1 } },
+//!   "joints": { "J": { "from": "1", "to": "2", "stiffness": [[5e5, 0], [0, 0]] } },
+//!   "physics": [ { "kind": "gap", "place": "J", "dof": "translation", "clearance": 1e-4, "stiffness": 5e6 } ] }"#)?;
+//! let blow = |peak: f64| {
+//!     let force = (0..512).map(|i| if i < 8 { peak * (0.4 * i as f64).sin() } else { 0.0 }).collect();
+//!     Hit::new(1, 1e-4, 0.0, Channel::transverse("1"), force, Vec::new())
+//! };
+//! let peak = |hit: Hit| -> Result<f64, Box<dyn std::error::Error>> {
+//!     let simulated = simulate(&fixture, &[hit], &[Channel::transverse("2")])?;
+//!     Ok(simulated.hits[0].responses()[0].values.iter().fold(0.0, |most: f64, a| a.abs().max(most)))
+//! };
+//! // A hundred times the force gives more than a hundred times the response: the gap has closed.
+//! assert!(peak(blow(1000.0)?)? > 150.0 * peak(blow(10.0)?)?);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
 mod distribution;
 mod error;
 mod identification;
 mod time;
+
 pub use error::{DiagnoseError, SimulationError};
 pub use identification::diagnosis::{
     Estimate, Finding, HeldOut, ModelFit, NonlinearDiagnosis, NonlinearOptions, Reach, Verdict,

@@ -132,8 +132,9 @@ const SEEK_MORE: (f64, f64) = (3.0, 0.05);
 const FINER: usize = 2;
 /// Laws at the most.
 const MOST_LAWS: usize = 2;
-/// Share of the refitted fixture's χ² that a law must explain to be named.
-const WORTH: f64 = 0.1;
+/// Share of what is left of χ² beyond noise that the first law, and a further one, must explain to be named: a fit caught in a false minimum
+/// explains a part, and no name should be given for it.
+const WORTH: [f64; 2] = [0.75, 0.1];
 
 impl NonlinearDiagnosis {
     /// Diagnoses `hits` against `fixture`.
@@ -206,7 +207,9 @@ impl NonlinearDiagnosis {
             let model = base.to_fixture().unwrap_or_else(|_| fixture.clone());
             let names = search.names(&model, &base);
             let Some(first) = names.first() else { break };
-            if first.fit.objective > (1.0 - WORTH) * best.objective
+            let excess = |fit: &Fit| (fit.objective - degrees).max(0.0);
+            let worth = WORTH[count.min(1)];
+            if excess(&first.fit) > (1.0 - worth) * excess(&best)
                 || first.fit.objective + 30.0 > best.objective
             {
                 break;

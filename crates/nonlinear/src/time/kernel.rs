@@ -321,3 +321,103 @@ impl<const N: usize, const E: usize> Propagator<N, E> {
         Some(all)
     }
 }
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+
+    const OMEGA: f64 = 900.0;
+
+    /// One mass of 1 kg on a spring without damping; outputs are d, its rate and its acceleration.
+    fn oscillator(law: RestoringLaw) -> System {
+        let output = |row: [f64; 2], force: f64, element: f64| Output {
+            row: row.to_vec(),
+            force,
+            elements: vec![element],
+        };
+        System {
+            matrix: vec![0.0, 1.0, -OMEGA * OMEGA, 0.0],
+            load: vec![0.0, 1.0],
+            elements: vec![Element { law, load: vec![0.0, 1.0], motion: vec![1.0, 0.0] }],
+            outputs: vec![
+                output([1.0, 0.0], 0.0, 0.0),
+                output([0.0, 1.0], 0.0, 0.0),
+                output([-OMEGA * OMEGA, 0.0], 1.0, 1.0),
+            ],
+        }
+    }
+
+    fn blow(samples: usize, within: usize) -> Vec<f64> {
+        let at = |i: usize| i as f64 / (20 * within) as f64;
+        (0..=samples * within)
+            .map(|i| if at(i) < 1.0 { 400.0 * (std::f64::consts::PI * at(i)).sin() } else { 0.0 })
+            .collect()
+    }
+
+    const LAWS: [RestoringLaw; 3] = [
+        RestoringLaw::Cubic { stiffness3: 4e11 },
+        RestoringLaw::Gap { clearance: 2e-4, stiffness: 2e6 },
+        RestoringLaw::Friction { slip_force: 60.0, stiffness: 1e6 },
+    ];
+
+    #[test]
+    fn what_the_force_puts_in_is_kinetic_elastic_or_lost_in_friction() {
+        let (interval, samples, within) = (2e-5, 6000, 8);
+        for law in LAWS {
+            let steps = Steps { interval, within, halvings: 8 };
+            let force = blow(samples, within);
+            let run = Stepper::new(&oscillator(law), steps).unwrap().run(&force, samples);
+            let (d, v) = (&run.outputs[0], &run.outputs[1]);
+            let (mut work, mut lost, mut largest) = (0.0, 0.0, 0.0f64);
+            for i in 1..samples {
+                work += 0.25 * interval * (force[i * within] + force[(i - 1) * within]) * (v[i] + v[i - 1]);
+                let (a, b) = (&run.elements[0][i - 1], &run.elements[0][i]);
+                if let RestoringLaw::Friction { stiffness, .. } = law {
+                    let slipped = (b.motion - a.motion) - (b.force - a.force) / stiffness;
+                    lost += 0.5 * (a.force + b.force) * slipped;
+                }
+                let energy = 0.5 * v[i] * v[i] + 0.5 * (OMEGA * d[i]).powi(2) + law.energy(b);
+                if force[i * within] == 0.0 {
+                    largest = largest.max((energy + lost - work).abs() / work);
+                }
+            }
+            assert!(largest < 2e-3, "{law:?}: {largest:.1e} of the work is missing");
+        }
+    }
+
+    #[test]
+    fn halving_the_steps_changes_next_to_nothing() {
+        let (interval, samples) = (1e-4, 1500);
+        for law in LAWS {
+            let run = |within: usize| {
+                let steps = Steps { interval, within, halvings: 10 };
+                // The same straight lines for both.
+                let coarse = blow(samples, 1);
+                let force: Vec<f64> = (0..=samples * within)
+                    .map(|i| {
+                        let (low, part) = (i / within, (i % within) as f64 / within as f64);
+                        coarse[low] * (1.0 - part) + coarse.get(low + 1).copied().unwrap_or(0.0) * part
+                    })
+                    .collect();
+                Stepper::new(&oscillator(law), steps).unwrap().run(&force, samples).outputs.swap_remove(0)
+            };
+            let (coarse, fine) = (run(4), run(16));
+            let rms = |values: &[f64]| values.iter().map(|v| v * v).sum::<f64>().sqrt();
+            let change: Vec<f64> = coarse.iter().zip(&fine).map(|(a, b)| a - b).collect();
+            assert!(rms(&change) < 5e-3 * rms(&fine), "{law:?}: {:.1e}", rms(&change) / rms(&fine));
+        }
+    }
+
+    #[test]
+    fn more_states_than_there_is_room_for_are_refused() {
+        let n = MOST_STATES + 1;
+        let system = System {
+            matrix: vec![0.0; n * n],
+            load: vec![0.0; n],
+            elements: Vec::new(),
+            outputs: Vec::new(),
+        };
+        assert!(Stepper::new(&system, Steps { interval: 1e-4, within: 1, halvings: 0 }).is_none());
+    }
+}
