@@ -313,6 +313,8 @@ fn findings(
     findings
 }
 
+/// Relative deviation that steps and sampling leave in a parameter beside noise, as measured on the simulated laboratory.
+const INEXACT: f64 = 5e-3;
 /// Deviation of a logarithm beyond which a parameter is not determined.
 const VAGUE: f64 = 1.5;
 
@@ -323,7 +325,9 @@ fn estimates(law: &Law, deviations: &[f64]) -> Vec<Estimate> {
     rows.map(|(place, ((parameter, deviation), slope))| {
         let value = effect.value(place);
         let logarithm = !matches!(law.law, RestoringLaw::Cubic { .. });
-        let known = deviation.is_finite() && (!logarithm || *deviation < VAGUE);
+        let slope_of_one = if logarithm { 1.0 } else { value.abs() / slope.abs() };
+        let deviation = deviation.hypot(INEXACT * slope_of_one);
+        let known = deviation.is_finite() && (!logarithm || deviation < VAGUE);
         let interval = match logarithm {
             true => [value * (-1.96 * deviation).exp(), value * (1.96 * deviation).exp()],
             false => [value - 1.96 * deviation * slope, value + 1.96 * deviation * slope],
