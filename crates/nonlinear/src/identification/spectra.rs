@@ -40,7 +40,8 @@ pub(crate) fn noise(values: &[f64]) -> f64 {
     let mut windowed: Vec<f64> = tail.iter().enumerate().map(|(i, v)| (v - mean) * hann(i)).collect();
     let power: f64 = (0..length).map(|i| hann(i).powi(2)).sum();
     let lines = Transform::new(length).of(&mut windowed);
-    let mut squares: Vec<f64> = lines[2..lines.len() - 1].iter().map(|line| line.norm_sqr()).collect();
+    let inner = lines.get(2..lines.len() - 1).unwrap_or_default();
+    let mut squares: Vec<f64> = inner.iter().map(|line| line.norm_sqr()).collect();
     if squares.is_empty() || power == 0.0 {
         return 0.0;
     }
