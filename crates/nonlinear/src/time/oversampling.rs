@@ -34,7 +34,7 @@ fn filtered(samples: &[f64], factor: usize, gain: impl Fn(f64) -> f64) -> Vec<f6
     for (line, (to, from)) in wide.iter_mut().zip(&spectrum).enumerate() {
         *to = from * (gain(std::f64::consts::PI * line as f64 / (n * factor) as f64) / n as f64);
     }
-    if n % 2 == 0 && factor > 1 {
+    if n.is_multiple_of(2) && factor > 1 {
         // The line at half the rate stands for both its sides.
         wide[n / 2] = Complex::new(wide[n / 2].re * 0.5, 0.0);
     }
