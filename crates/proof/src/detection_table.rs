@@ -97,7 +97,7 @@ impl Display for Methods {
             } = method;
             writeln!(
                 f,
-                "  {what:<48} {:>8} {:>8} {:>8} {:>8}  {:>9} {:>9} {:>9}",
+                "  {what:<28} {:>8} {:>8} {:>8} {:>8}  {:>9} {:>9} {:>9}",
                 share(*nulls),
                 share(*named),
                 share(*kind),

@@ -5,9 +5,6 @@ use crate::strength::{strength, with_strength};
 use jointscope_fixture::Fixture;
 use jointscope_spectra::FrfSet;
 
-/// Share of an effect that is small enough for what it does to be proportional to its strength.
-const SMALL: f64 = 1e-3;
-
 /// `truth` with its one effect made so strong that a fit without it should be worse by `wanted` in χ² and squared departures, to first
 /// order, under the noise of `recorded`.
 ///
@@ -20,8 +17,7 @@ pub(crate) fn scaled_to(
 ) -> Option<Fixture> {
     let [effect] = truth.physics() else { return None };
     let bare = truth.clone().with_physics(Vec::new()).ok()?;
-    let direction = Sensitivity::of(believed, &bare, recorded)?
-        .direction(&with_strength(effect, SMALL * strength(effect)))?;
+    let direction = Sensitivity::of(believed, &bare, recorded)?.direction(effect)?;
     let information = direction.beyond_tolerances(&direction);
     let needed = (wanted / information).sqrt();
     if !(information > 0.0 && needed <= strength(effect).abs()) {

@@ -67,6 +67,7 @@ pub use confusion::{Confusion, NOTHING};
 pub use coverage::Coverage;
 pub use detection::{Detection, SizeClass, Smallest};
 pub use generate::{FAMILIES, GenerationError, Plan};
+pub use jointscope_rig::Family;
 pub use jointscope_rig::universal_file::{FileError, Precision};
 pub use judged::{AS_GOOD, Evidence, Judged, PLAIN, STRAINED, VISIBLE};
 pub use limits::{Alike, Limits, SmallestShown};

@@ -1,7 +1,7 @@
 //! What small effects do to the recorded FRFs, and how much of it no tolerance could do as well.
 
 use crate::objective::{Tolerance, values};
-use crate::strength::strength;
+use crate::strength::{strength, with_strength};
 use jointscope_fixture::{Effect, Fixture};
 use jointscope_linalg::solve_positive_definite;
 use jointscope_rig::{Instrument, frfs, smoothed_variance};
@@ -12,6 +12,11 @@ use num_complex::Complex64;
 const DIFFERENCE: f64 = 2e-3;
 /// Lines on each side over which the recording's variance is averaged.
 const SMOOTHED_OVER: usize = 10;
+
+/// Times that an effect is made weaker to be linear: the first is still measured where it bends.
+const WEAKENED: usize = 2;
+/// What it then costs a fit that yields nothing, Δχ².
+const WHOLE: f64 = 1e3;
 
 /// Derivatives of a fixture's FRFs by its tolerances, in units of the noise, by the laboratory's own model.
 #[derive(Debug)]
@@ -100,15 +105,33 @@ impl<'a> Sensitivity<'a> {
         a.iter().zip(b).zip(&self.scale).map(|((a, b), scale)| (a - b) * *scale / step).collect()
     }
 
-    /// What `effect`, which must be small, does by unit of its strength; `None` where the fixture cannot have it.
+    /// What `effect` does by unit of its strength while it is weak; `None` where it does nothing, or the fixture cannot have it.
     pub fn direction(&self, effect: &Effect) -> Option<Direction> {
-        let with = self.frfs(&self.at.clone().with_physics(vec![effect.clone()]).ok()?)?;
-        let values = self.difference(&with, &self.plain, strength(effect));
+        // What tolerances leave may be a thousandth of what it does, and a strong effect bends by as much, while of a weak one rounding leaves
+        // no more: of two strengths in between the bend is taken out.
+        let mut weak = effect.clone();
+        let mut values = self.change(&weak)?;
+        for _ in 0..WEAKENED {
+            let whole = dot(&values, &values);
+            if !(whole > 0.0 && whole.is_finite()) {
+                return None;
+            }
+            weak = with_strength(&weak, (WHOLE / whole).sqrt() * strength(effect).signum());
+            values = self.change(&weak)?;
+        }
+        let half = self.change(&with_strength(&weak, 0.5 * strength(&weak)))?;
+        values.iter_mut().zip(&half).for_each(|(value, half)| *value = 2.0 * half - *value);
         let pull: Vec<f64> = self.columns.iter().map(|column| dot(column, &values)).collect();
         let mut imitation = pull.clone();
         let usable = values.iter().all(|v| v.is_finite());
         (usable && solve_positive_definite(&mut self.information.clone(), &mut imitation))
             .then_some(Direction { values, pull, imitation })
+    }
+
+    /// The change that an effect makes, over its strength.
+    fn change(&self, effect: &Effect) -> Option<Vec<Complex64>> {
+        let with = self.frfs(&self.at.clone().with_physics(vec![effect.clone()]).ok()?)?;
+        Some(self.difference(&with, &self.plain, strength(effect)))
     }
 }
 

@@ -6,7 +6,9 @@ mod common;
 use common::{answer, found, opened};
 use jointscope_diagnosis::Observation;
 use jointscope_fixture::EffectKind;
-use jointscope_proof::{Answers, GenerationError, Judged, NoAnswer, Plan, Reference, Role};
+use jointscope_proof::{
+    Answers, BrokenSeal, Case, GenerationError, Judged, NoAnswer, Plan, Reference, Role, SealedTruths, Truth,
+};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 fn plan(cases: usize) -> Plan {
@@ -82,6 +84,35 @@ fn the_seal_is_broken_without_answers_to_all_cases() {
     let (cases, sealed) = plan(4).draw().unwrap();
     let some = Answers::by(&cases[..3], 1, |_| (), |_| Err(NoAnswer::BrokeDown));
     assert!(sealed.open(&some).is_none());
+}
+
+/// Truths as a file would hold them, with the hash that was published.
+fn filed(cases: &[Case], truths: &[Truth]) -> (String, String) {
+    let text = serde_json::Value::Array(truths.iter().map(Truth::to_value).collect()).to_string();
+    let (_, sealed) = plan(cases.len()).draw().unwrap();
+    (text, sealed.digest().to_owned())
+}
+
+#[test]
+fn truths_come_out_of_their_file_as_they_went_in_and_against_answers_alone() {
+    let (cases, truths) = opened(&plan(8));
+    let (text, published) = filed(&cases, &truths);
+    let silent = |cases: &[Case]| Answers::by(cases, 1, |_| (), |_| Err(NoAnswer::BrokeDown));
+    let open =
+        |only, cases: &[Case]| SealedTruths::filed(&text, &published, only).unwrap().open(&silent(cases));
+    assert_eq!(open(None, &cases).unwrap(), truths);
+    assert_eq!(open(Some(5), &cases[5..6]).unwrap(), truths[5..6]);
+    assert!(open(None, &cases[..7]).is_none(), "an answer is missing");
+}
+
+#[test]
+fn a_file_of_truths_that_was_changed_is_not_the_published_one() {
+    let (cases, truths) = opened(&plan(2));
+    let (text, published) = filed(&cases, &truths);
+    let changed = text.replacen("single", "double", 1);
+    let broken: BrokenSeal = SealedTruths::filed(&changed, &published, None).unwrap_err();
+    assert_eq!(broken.published, published);
+    assert!(broken.to_string().contains("were changed"), "{broken}");
 }
 
 #[test]

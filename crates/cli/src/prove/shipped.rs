@@ -38,4 +38,4 @@ pub const CASES: [(&str, &[u8]); 20] = [
 pub const TRUTHS: &str = include_str!("../../../../fixtures/concealed/truths.json");
 
 /// SHA-256 of the sealed truths, published with the cases.
-pub const TRUTHS_SHA256: &str = "250f656695a364a9e4ac60a73b86e380a6f385dd275ba52ee6af23035c85bd56";
+pub const TRUTHS_SHA256: &str = "c5ea509764ce149b5792840497b85edbeca056f5a3616766b9f5e376c0b9b4c1";

@@ -82,7 +82,7 @@ impl Methods {
             }),
             named: singles(&|judged, _| judged.is_named()),
             kind: singles(&|judged, _| judged.has_kind()),
-            ..repaired.method("diagnosis", "diagnosis: refitted, and what is missing added")
+            ..repaired.method("diagnosis", "diagnosis")
         };
         let hidden = |judged: &Judged| judged.hidden().into_iter().next();
         let nearest =
@@ -98,17 +98,16 @@ impl Methods {
             joint_stiffness: None,
             unmeasured: None,
             key: "nearest_signature",
-            what: "nearest of the simulated signatures",
+            what: "nearest signature",
         };
         let within = Method {
             nulls: nulls(&|_, baseline| baseline.within.fits()),
             ..fates(&|_, baseline| Some(baseline.within.clone()))
-                .method("within_tolerances", "updating within the stated tolerances")
+                .method("within_tolerances", "updating within tolerances")
         };
         let freed = Method {
             nulls: nulls(&|_, baseline| baseline.freed.fits()),
-            ..fates(&|_, baseline| Some(baseline.freed.clone()))
-                .method("freed", "updating with all quantities freed")
+            ..fates(&|_, baseline| Some(baseline.freed.clone())).method("freed", "updating, all freed")
         };
         Methods(vec![diagnosis, within, freed, lookup])
     }

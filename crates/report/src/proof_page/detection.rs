@@ -7,7 +7,7 @@ use jointscope_proof::{Confusion, Detection, NOTHING, Smallest};
 use crate::format::significant;
 use crate::{Axis, Column, HeatMap, Plot, Role, Section, Table, typeset};
 
-/// Ends of the drawn course, Δχ².
+/// Ends of the drawn course, Δχ², the second at the least.
 const DRAWN: [f64; 2] = [1.0, 1e4];
 /// Points of the drawn course.
 const POINTS: usize = 120;
@@ -49,7 +49,8 @@ fn plot(detection: &Detection) -> Option<Plot> {
     .height(300)
     .unsynchronised();
     if detection.course.is_some() {
-        let step = (DRAWN[1] / DRAWN[0]).ln() / (POINTS - 1) as f64;
+        let end = sizes.iter().copied().fold(DRAWN[1], f64::max);
+        let step = (end / DRAWN[0]).ln() / (POINTS - 1) as f64;
         let course: Vec<f64> = (0..POINTS).map(|i| DRAWN[0] * (step * i as f64).exp()).collect();
         let shares: Vec<Option<f64>> = course.iter().map(|size| detection.share_at(*size)).collect();
         plot = plot.over(course).line("fitted course, named", Role::Estimate, shares);

@@ -5,34 +5,27 @@ use jointscope_proof::{Method, Methods, Share, WIDER};
 use crate::{Column, Section, Table};
 
 pub(super) fn section(methods: &Methods) -> Section {
-    let columns = [
-        Column::text("method, on the same cases"),
-        Column::numbers("nulls left alone", ""),
-        Column::numbers("right name", ""),
-        Column::numbers("right kind", ""),
-        Column::numbers("fits to the noise", ""),
-        Column::numbers("worst quantity", "deviations"),
-        Column::numbers("joint stiffness off", "%"),
-        Column::numbers("unmeasured FRFs off", "%"),
+    let share = |share: Option<Share>| share.map_or_else(|| "–".to_owned(), super::counted);
+    let number =
+        |value: Option<f64>, times: f64| value.map_or_else(|| "–".to_owned(), |value| short(times * value));
+    type Row<'a> = (&'a str, Box<dyn Fn(&Method) -> String + 'a>);
+    let rows: [Row; 7] = [
+        ("nulls left alone", Box::new(|m| share(m.nulls))),
+        ("right name: kind, place and dof", Box::new(|m| share(m.named))),
+        ("right kind", Box::new(|m| share(m.kind))),
+        ("model fits to the noise afterwards", Box::new(|m| share(m.fits))),
+        ("worst quantity off, stated deviations", Box::new(|m| number(m.worst_quantity, 1.0))),
+        ("joint stiffness off, %", Box::new(|m| number(m.joint_stiffness, 100.0))),
+        ("unmeasured FRFs off, %", Box::new(|m| number(m.unmeasured, 100.0))),
     ];
-    let table = methods.0.iter().fold(Table::new(columns), |table, method| {
-        let share = |share: Option<Share>| share.map_or_else(|| "–".to_owned(), super::counted);
-        let number = |value: Option<f64>, times: f64| {
-            value.map_or_else(|| "–".to_owned(), |value| short(times * value))
-        };
-        let Method { what, nulls, named, kind, fits, worst_quantity, joint_stiffness, unmeasured, .. } =
-            method;
-        table.row([
-            (*what).to_owned(),
-            share(*nulls),
-            share(*named),
-            share(*kind),
-            share(*fits),
-            number(*worst_quantity, 1.0),
-            number(*joint_stiffness, 100.0),
-            number(*unmeasured, 100.0),
-        ])
-    });
+    let heads = methods.0.iter().map(|method| Column::numbers(method.what, ""));
+    let table = rows.iter().fold(
+        Table::new(std::iter::once(Column::text("on the same cases")).chain(heads)),
+        |table, (what, cell)| {
+            let cells = methods.0.iter().map(cell);
+            table.row(std::iter::once((*what).to_owned()).chain(cells))
+        },
+    );
     Section::new("Beside what people do today")
         .paragraph(format!(
             "Parameter updating moves the quantities that the file states until the model fits: once within their stated tolerances, and once within \
@@ -44,7 +37,7 @@ pub(super) fn section(methods: &Methods) -> Section {
             table
                 .footnote(
                     "Right name and kind: of single effects that show; the baselines' by the letter, the diagnosis' also where another name fits as well as \
-                     the truth. The last four columns: single and double effects that show, without those where a joint is stiffer as a whole, which \
+                     the truth. The last four rows: single and double effects that show, without those where a joint is stiffer as a whole, which \
                      another modulus describes rightly.",
                 )
                 .footnote(
