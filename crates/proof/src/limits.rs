@@ -66,7 +66,10 @@ impl Limits {
     /// `None` where the recording has no coherence, or the fixture predicts no finite FRFs.
     pub fn of(fixture: &Fixture, recorded: &FrfSet) -> Option<Self> {
         let observation = Observation::new(recorded, |_| true).ok()?;
-        let sensitivity = Sensitivity::of(fixture, fixture, recorded)?;
+        // Noise from scatter takes a peak for noise, and would hide what peaks show.
+        (0..recorded.pairs().len()).all(|index| recorded.coherence(index).is_some()).then_some(())?;
+        let weights = observation.weights().iter().copied();
+        let sensitivity = Sensitivity::of(fixture, fixture, observation.frfs(), weights)?;
         let mut signatures = Vec::new();
         for candidate in catalogue(fixture, &observation) {
             let effects = candidate.directions.iter().map(|parameters| {

@@ -4,14 +4,12 @@ use crate::objective::{Tolerance, values};
 use crate::strength::{strength, with_strength};
 use jointscope_fixture::{Effect, Fixture};
 use jointscope_linalg::solve_positive_definite;
-use jointscope_rig::{Instrument, frfs, smoothed_variance};
+use jointscope_rig::{Instrument, frfs};
 use jointscope_spectra::FrfSet;
 use num_complex::Complex64;
 
 /// Step of differences, in standard deviations of a quantity.
 const DIFFERENCE: f64 = 2e-3;
-/// Lines on each side over which the recording's variance is averaged.
-const SMOOTHED_OVER: usize = 10;
 
 /// Times that an effect is made weaker to be linear: the first is still measured where it bends.
 const WEAKENED: usize = 2;
@@ -47,16 +45,18 @@ fn dot(a: &[Complex64], b: &[Complex64]) -> f64 {
 }
 
 impl<'a> Sensitivity<'a> {
-    /// Of `at`, a fixture without effects, under the tolerances of `believed` and the noise of a recording with coherence.
+    /// Of `at`, a fixture without effects, under the tolerances of `believed`, for the FRFs and lines of a recording whose values have the
+    /// weights 2/σ².
     ///
-    /// `None` where the fixture has no finite FRFs, or the recording no noise.
-    pub fn of(believed: &Fixture, at: &'a Fixture, recorded: &'a FrfSet) -> Option<Self> {
+    /// `None` where the fixture has no finite FRFs.
+    pub fn of(
+        believed: &Fixture,
+        at: &'a Fixture,
+        recorded: &'a FrfSet,
+        weights: impl Iterator<Item = f64>,
+    ) -> Option<Self> {
+        let scale = weights.map(f64::sqrt).collect();
         let count = recorded.lines().len();
-        let mut scale = Vec::with_capacity(recorded.all_values().len());
-        for index in 0..recorded.pairs().len() {
-            let variance = smoothed_variance(recorded, index, SMOOTHED_OVER)?;
-            scale.extend(variance.iter().map(|v| if *v > 0.0 { (2.0 / v).sqrt() } else { 0.0 }));
-        }
         let mut sensitivity = Sensitivity {
             plain: Vec::with_capacity(count),
             at,

@@ -12,12 +12,13 @@ fn plan(graded: usize) -> Plan {
     Plan { cases: 8, graded, seed: 11, families: vec![Family::TwoBlocks], ..Plan::default() }
 }
 
-/// χ² and squared departures of the best fit of the quantities alone, by the diagnosis' own fits: a fit from the truth is far from it where
-/// tolerances imitate nearly all of an effect.
-fn without_effects(case: &Case, observation: &Observation) -> f64 {
+/// χ² and squared departures of the best fit of the quantities alone: by the diagnosis' own fits from what is stated, or from the true
+/// quantities. Either may end in a false minimum, where tolerances imitate nearly all of an effect or peaks are very sharp.
+fn without_effects(case: &Case, truth: &Fixture, observation: &Observation) -> f64 {
     let start = Hypothesis::nominal(&case.believed, false);
     let fits = [true, false].into_iter().filter_map(|far| Fit::of(&start, observation, far));
-    fits.map(|fit| fit.objective).fold(f64::INFINITY, f64::min)
+    let bare = truth.clone().with_physics(Vec::new()).unwrap();
+    fits.map(|fit| fit.objective).fold(about_the_truth(case, &bare, observation), f64::min)
 }
 
 fn about_the_truth(case: &Case, truth: &Fixture, observation: &Observation) -> f64 {
@@ -31,7 +32,8 @@ fn graded_effects_come_after_the_others_and_cost_about_what_they_should() {
     for (case, truth) in cases.iter().zip(&truths).skip(8) {
         assert_eq!((truth.role, truth.effects().len()), (Role::Graded, 1));
         let observation = Observation::new(&case.recorded, |_| true).unwrap();
-        let cost = without_effects(case, &observation) - about_the_truth(case, &truth.fixture, &observation);
+        let cost = without_effects(case, &truth.fixture, &observation)
+            - about_the_truth(case, &truth.fixture, &observation);
         // Drawn between 3 and 300; chance moves the root by one or two.
         println!("{}: {cost:.1}", truth.hidden());
         assert!((-1.0..(300f64.sqrt() * 1.1 + 3.0).powi(2)).contains(&cost), "{}: {cost}", truth.hidden());
@@ -94,7 +96,9 @@ fn a_test_cannot_tell_a_soft_interface_in_translation_from_shear() {
 fn the_smallest_effect_that_shows_costs_a_fit_without_it_what_was_stated() {
     // The limit is of first order; the laboratory and full fits are the check.
     let (cases, truths) = opened(&plan(0));
-    let (case, truth) = (&cases[1], &truths[1]);
+    let truth = &truths[1];
+    // An analyst who happens to believe what is true: where peaks are sharper than the lines' spacing much hangs on how near they fall.
+    let case = &Case { believed: truth.fixture.clone(), ..cases[1].clone() };
     let limits = Limits::of(&case.believed, &case.recorded).unwrap();
     let mut checked = 0;
     for shown in &limits.smallest {
@@ -108,10 +112,10 @@ fn the_smallest_effect_that_shows_costs_a_fit_without_it_what_was_stated() {
         let clean =
             jointscope_rig::frfs(&with, pairs, lines, jointscope_rig::Instrument::AsDescribed).unwrap();
         let observation = Observation::new(&truth.hammer.measure(&clean).unwrap(), |_| true).unwrap();
-        let cost = without_effects(case, &observation) - about_the_truth(case, &with, &observation);
+        let cost = without_effects(case, &with, &observation) - about_the_truth(case, &with, &observation);
         println!("{}: {cost:.1}", shown.name);
-        // 50 was stated: within a factor of two in the strength, by chance and by what is not of first order.
-        assert!((12.5..200.0).contains(&cost), "{}: Δχ² {cost}", shown.name);
+        // 50 was stated; chance moves its root by one or two.
+        assert!((16.0..121.0).contains(&cost), "{}: Δχ² {cost}", shown.name);
         checked += 1;
     }
     assert!(checked >= 10, "{checked}");
