@@ -18,7 +18,7 @@ pub struct Method {
     pub what: &'static str,
     /// Nulls that it finds nothing amiss in.
     pub nulls: Option<Share>,
-    /// Single effects that show of which it gives the right name (kind, place and dof).
+    /// Single effects that show of which it gives the hidden name to the letter (kind, place and dof).
     pub named: Option<Share>,
     /// The same by kind alone.
     pub kind: Option<Share>,
@@ -76,15 +76,18 @@ impl Methods {
             let answer = judged.answer.as_ref().ok()?;
             Some(Updated { fixture: answer.repaired.clone(), chi2_per_dof: answer.chi2_per_dof[2] })
         });
+        // By the letter for all: nobody has fitted whether what a lookup names would serve as well.
+        let hidden = |judged: &Judged| judged.hidden().into_iter().next();
         let diagnosis = Method {
             nulls: nulls(&|judged, _| {
                 judged.answer.as_ref().is_ok_and(|answer| answer.verdict == Verdict::Consistent)
             }),
-            named: singles(&|judged, _| judged.is_named()),
-            kind: singles(&|judged, _| judged.has_kind()),
+            named: singles(&|judged, _| hidden(judged).is_some_and(|name| judged.found().contains(&name))),
+            kind: singles(&|judged, _| {
+                hidden(judged).is_some_and(|name| judged.found().iter().any(|found| found.kind == name.kind))
+            }),
             ..repaired.method("diagnosis", "diagnosis")
         };
-        let hidden = |judged: &Judged| judged.hidden().into_iter().next();
         let nearest =
             |baseline: &Baseline| baseline.nearest.as_ref().map(|nearest| Name::of(&nearest.effect));
         let lookup = Method {

@@ -36,8 +36,8 @@ pub(super) fn section(methods: &Methods) -> Section {
         .table(
             table
                 .footnote(
-                    "Right name and kind: of single effects that show; the baselines' by the letter, the diagnosis' also where another name fits as well as \
-                     the truth. The last four rows: single and double effects that show, without those where a joint is stiffer as a whole, which \
+                    "Right name and kind: of single effects that show, to the letter; the scores above also count a name that fits as well as the \
+                     truth. The last four rows: single and double effects that show, without those where a joint is stiffer as a whole, which \
                      another modulus describes rightly.",
                 )
                 .footnote(
