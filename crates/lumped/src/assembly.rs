@@ -43,9 +43,9 @@ impl Assembly {
     /// Builds matrices and modes, beams meshed finely enough for `highest_hz`.
     ///
     /// # Errors
-    /// [`LumpedError::Modes`] where the eigenproblem fails, as it does for impossible masses.
+    /// [`LumpedError::Modes`] where the eigenproblem fails, as it does for impossible masses; [`LumpedError::TooFine`].
     pub fn new(fixture: &Fixture, highest_hz: f64) -> Result<Self, LumpedError> {
-        let places = coordinates(fixture, highest_hz);
+        let places = coordinates(fixture, highest_hz)?;
         let order = places.iter().map(Coordinates::count).sum();
         if let Some((beam, first)) = free_beam(fixture, &places) {
             return Assembly::of_free_beam(fixture, places, order, beam, &first);
@@ -258,7 +258,7 @@ fn is_bare(fixture: &Fixture) -> bool {
         && fixture.supports().is_empty()
 }
 
-fn coordinates(fixture: &Fixture, highest_hz: f64) -> Vec<Coordinates> {
+fn coordinates(fixture: &Fixture, highest_hz: f64) -> Result<Vec<Coordinates>, LumpedError> {
     let mut first = 0;
     let mut places = Vec::with_capacity(fixture.bodies().len());
     for (index, body) in fixture.bodies().iter().enumerate() {
@@ -276,13 +276,19 @@ fn coordinates(fixture: &Fixture, highest_hz: f64) -> Vec<Coordinates> {
                     highest_hz,
                     &attachments(fixture, index),
                 );
+                let mesh = mesh.map_err(|elements| LumpedError::TooFine {
+                    body: body.name.clone(),
+                    elements,
+                    most: crate::mesh::MOST,
+                    frequency: highest_hz,
+                })?;
                 Coordinates::Beam { first, mesh }
             }
         };
         first += place.count();
         places.push(place);
     }
-    places
+    Ok(places)
 }
 
 /// Abscissae where something holds the body, the most important first: joints bend it there. A bare beam is meshed evenly.

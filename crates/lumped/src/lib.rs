@@ -63,6 +63,20 @@ pub enum LumpedError {
     /// The undamped modes could not be found.
     #[error("the assembly's modes cannot be computed: {0}")]
     Modes(#[from] jointscope_linalg::EigenError),
+    /// A beam body would need a finer mesh than its modes can be computed of.
+    #[error(
+        "body `{body}` bends so easily that lines up to {frequency} Hz need {elements:.0} elements of it, more than {most}: check its stiffness, its mass and its length, or take a lower band"
+    )]
+    TooFine {
+        /// The body.
+        body: String,
+        /// Elements that would be needed.
+        elements: f64,
+        /// The most there may be.
+        most: usize,
+        /// The highest line, Hz.
+        frequency: f64,
+    },
     /// An FRF names a point that the fixture does not have.
     #[error("FRF {frf}: the fixture has no point `{point}` (it has {known})")]
     UnknownPoint {

@@ -11,6 +11,8 @@ const FEWEST: f64 = 8.0;
 /// A node is set at an attachment only if no other is nearer than this share of an element: very short
 /// elements ruin the eigenproblem's accuracy.
 const NEAREST: f64 = 0.2;
+/// Most elements of a body: its modes come from a dense eigenproblem.
+pub(crate) const MOST: usize = 256;
 
 /// Nodes of a beam, ascending, m.
 #[derive(Debug, Clone)]
@@ -23,6 +25,9 @@ pub(crate) struct Mesh {
 impl Mesh {
     /// Meshes the beam from `from` to `to` with EI and mass per length, fine enough for `highest_hz`, with
     /// nodes at the `attachments` in their order of importance.
+    ///
+    /// # Errors
+    /// The number of elements that would be needed, where that is more than [`MOST`].
     pub fn new(
         from: f64,
         to: f64,
@@ -30,10 +35,14 @@ impl Mesh {
         mass_per_length: f64,
         highest_hz: f64,
         attachments: &[f64],
-    ) -> Self {
+    ) -> Result<Self, f64> {
         let omega = TAU * highest_hz;
         let wave_number = (omega * omega * mass_per_length / bending_stiffness).sqrt().sqrt();
         let longest = ((to - from) / FEWEST).min(ELEMENT_WAVE / wave_number.max(1e-9));
+        let needed = (to - from) / longest;
+        if needed.is_nan() || needed > MOST as f64 {
+            return Err(needed);
+        }
         let mut nodes = vec![from, to];
         for &x in attachments {
             if nodes.iter().all(|n| (n - x).abs() > NEAREST * longest) && x > from && x < to {
@@ -46,7 +55,7 @@ impl Mesh {
             let count = ((pair[1] - pair[0]) / longest).ceil().max(1.0);
             mesh.extend((1..=count as usize).map(|i| pair[0] + (pair[1] - pair[0]) * i as f64 / count));
         }
-        Mesh { nodes: mesh, shear: 0.0 }
+        Ok(Mesh { nodes: mesh, shear: 0.0 })
     }
 
     /// Number of coordinates: y and θ of each node.
@@ -115,7 +124,7 @@ mod tests {
 
     #[test]
     fn nodes_sit_at_attachments_unless_two_are_all_but_the_same() {
-        let mesh = Mesh::new(0.0, 1.0, 1e3, 1.0, 100.0, &[0.333, 0.3331, 0.9999]);
+        let mesh = Mesh::new(0.0, 1.0, 1e3, 1.0, 100.0, &[0.333, 0.3331, 0.9999]).unwrap();
         assert!(
             mesh.nodes.contains(&0.333) && !mesh.nodes.contains(&0.3331) && !mesh.nodes.contains(&0.9999)
         );
@@ -123,8 +132,14 @@ mod tests {
     }
 
     #[test]
+    fn a_beam_that_bends_too_easily_for_its_band_is_told_instead_of_meshed() {
+        let elements = Mesh::new(0.0, 1.0, 1e-12, 1.0, 1e3, &[]).map(|_| ()).unwrap_err();
+        assert!(elements > 1e5, "{elements}");
+    }
+
+    #[test]
     fn a_higher_band_asks_for_more_elements() {
-        let count = |hz| Mesh::new(0.0, 1.0, 1e3, 1.0, hz, &[]).nodes.len();
+        let count = |hz| Mesh::new(0.0, 1.0, 1e3, 1.0, hz, &[]).unwrap().nodes.len();
         assert!(count(5000.0) > 2 * count(500.0));
     }
 }
