@@ -50,22 +50,35 @@ fn name(effect: &Effect) -> Map<String, Value> {
     entry
 }
 
-fn finding(finding: &Finding) -> Value {
-    let mut entry = name(&finding.effect);
-    let parameter = |e: &Estimate| {
-        let value = json!({"value": e.value, "std": e.std, "ci95": e.interval, "unit": e.unit});
-        (e.parameter.name.to_owned(), value)
-    };
-    entry.insert("parameters".into(), Value::Object(finding.estimates.iter().map(parameter).collect()));
-    entry.insert("probability".into(), json!(finding.probability));
-    entry.insert("says".into(), json!(finding.says()));
-    let alternatives = finding.alternatives.iter().map(|(effect, probability)| {
+/// What an entry of `findings` holds whatever the law: names, parameters, probability, sentence, alternatives, and what χ² loses without it.
+pub(crate) fn named(
+    effect: &Effect,
+    parameters: impl Iterator<Item = (String, Value)>,
+    (probability, gain): (f64, f64),
+    says: String,
+    alternatives: &[(Effect, f64)],
+) -> Map<String, Value> {
+    let mut entry = name(effect);
+    entry.insert("parameters".into(), Value::Object(parameters.collect()));
+    entry.insert("probability".into(), json!(probability));
+    entry.insert("says".into(), json!(says));
+    let alternatives = alternatives.iter().map(|(effect, probability)| {
         let mut entry = name(effect);
         entry.insert("probability".into(), json!(probability));
         Value::Object(entry)
     });
     entry.insert("alternatives".into(), alternatives.collect());
-    entry.insert("gain_chi2".into(), json!(finding.gain));
+    entry.insert("gain_chi2".into(), json!(gain));
+    entry
+}
+
+fn finding(finding: &Finding) -> Value {
+    let parameters = finding.estimates.iter().map(|e: &Estimate| {
+        let value = json!({"value": e.value, "std": e.std, "ci95": e.interval, "unit": e.unit});
+        (e.parameter.name.to_owned(), value)
+    });
+    let Finding { effect, probability, gain, alternatives, .. } = finding;
+    let mut entry = named(effect, parameters, (*probability, *gain), finding.says(), alternatives);
     if let Some(measured) = &finding.measured {
         entry.insert("measured".into(), with_delta(measured));
     }

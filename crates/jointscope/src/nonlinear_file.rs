@@ -1,4 +1,4 @@
-use jointscope_fixture::Effect;
+use crate::diagnosis_file::named;
 use jointscope_nonlinear::{Finding, ModelFit, NonlinearDiagnosis};
 use serde_json::{Map, Value, json};
 
@@ -37,34 +37,13 @@ pub fn nonlinear_file(diagnosis: &NonlinearDiagnosis) -> Value {
     Value::Object(root)
 }
 
-fn name(effect: &Effect) -> Map<String, Value> {
-    let mut entry = Map::new();
-    entry.insert("kind".into(), json!(effect.kind.name()));
-    entry.insert("place".into(), json!(effect.place.to_string()));
-    if let Some(dof) = effect.dof {
-        entry.insert("dof".into(), json!(dof.name()));
-    }
-    entry
-}
-
 fn finding(finding: &Finding) -> Value {
-    let mut entry = name(&finding.effect);
     let parameters = finding.estimates.iter().map(|e| {
-        (
-            e.parameter.name.to_owned(),
-            json!({"value": e.value, "std": e.std, "ci95": e.interval, "unit": e.unit}),
-        )
+        let value = json!({"value": e.value, "std": e.std, "ci95": e.interval, "unit": e.unit});
+        (e.parameter.name.to_owned(), value)
     });
-    entry.insert("parameters".into(), Value::Object(parameters.collect()));
-    entry.insert("probability".into(), json!(finding.probability));
-    entry.insert("says".into(), json!(finding.says()));
-    let alternatives = finding.alternatives.iter().map(|(effect, probability)| {
-        let mut entry = name(effect);
-        entry.insert("probability".into(), json!(probability));
-        Value::Object(entry)
-    });
-    entry.insert("alternatives".into(), alternatives.collect());
-    entry.insert("gain_chi2".into(), json!(finding.gain));
+    let Finding { effect, probability, gain, alternatives, .. } = finding;
+    let mut entry = named(effect, parameters, (*probability, *gain), finding.says(), alternatives);
     entry.insert("largest_relative_motion".into(), json!(finding.reach));
     Value::Object(entry)
 }
