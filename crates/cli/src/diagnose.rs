@@ -10,6 +10,7 @@ use serde_json::{Value, json};
 
 use crate::arguments::DiagnoseArguments;
 use crate::diagnose_hits::{self, Told};
+use crate::diagnose_levels;
 use crate::input;
 use crate::measured::{as_recorded, measured};
 use crate::output::Outputs;
@@ -19,6 +20,9 @@ use crate::refusal::Refusal;
 /// is, or with `diagnosis.json` itself.
 pub fn run(arguments: &DiagnoseArguments) -> Result<String, Refusal> {
     let fixture = input::fixture(&arguments.fixture)?;
+    if let Some(answer) = diagnose_levels::answered(arguments, &fixture)? {
+        return Ok(answer);
+    }
     let mut measured = measured(
         &arguments.recording,
         &arguments.estimation,

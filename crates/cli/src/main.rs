@@ -7,6 +7,7 @@ mod compare;
 mod decompose;
 mod diagnose;
 mod diagnose_hits;
+mod diagnose_levels;
 mod estimate;
 mod estimation_arguments;
 mod fem;

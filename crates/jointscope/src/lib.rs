@@ -93,12 +93,14 @@ mod diagnosis_file;
 mod modal_damping;
 mod modes_file;
 mod nonlinear_file;
+mod stepped_file;
 mod stiffness_file;
 
 pub use diagnosis_file::diagnosis_file;
 pub use modal_damping::{MeasuredDamping, MeasuredDampingError, measured_damping};
 pub use modes_file::modes_file;
 pub use nonlinear_file::nonlinear_file;
+pub use stepped_file::stepped_file;
 pub use stiffness_file::stiffness_file;
 
 /// Why the bytes of a universal file are no recording of a fixture.

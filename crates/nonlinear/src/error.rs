@@ -137,3 +137,33 @@ pub enum DiagnoseError {
     #[error(transparent)]
     Simulation(#[from] SimulationError),
 }
+
+/// Why FRFs at several levels cannot be diagnosed.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum SteppedError {
+    /// Fewer than two levels.
+    #[error("there is one level only: give FRFs at two or more amplitudes")]
+    OneLevel,
+    /// Too few lines about the resonance.
+    #[error(
+        "level {level} has fewer than 8 spectral lines about the resonance; step finer, or widen `--band`"
+    )]
+    TooFewLines {
+        /// The amplitude held.
+        level: String,
+    },
+    /// No resonance can be fitted.
+    #[error("no resonance can be fitted to the FRFs of level {level}; choose a band about one with `--band`")]
+    NoResonance {
+        /// The amplitude held.
+        level: String,
+    },
+    /// No joint is moved by the resonance.
+    #[error(
+        "no joint of the fixture is moved at this resonance, so nothing can be said of a joint; choose another with `--band`"
+    )]
+    NoJoint,
+    /// The fixture cannot be modelled.
+    #[error(transparent)]
+    Model(#[from] LumpedError),
+}

@@ -5,6 +5,8 @@
 //! * [`NonlinearDiagnosis`]: do FRFs change with the strength of the hits ([`Homogeneity`], no model needed)? If they do, every law at every
 //!   joint and degree of freedom is simulated under the recorded forces and fitted together with the fixture's tolerances, and judged on hits
 //!   that no fit saw;
+//! * [`SteppedDiagnosis`]: stepped-sine FRFs at several levels: frequency and damping of the resonance by level, the joint's equivalent stiffness and
+//!   loss against the amplitude of its motion by harmonic balance, which law follows them, and up to which level;
 //! * [`RestoringLaw`]: the laws themselves.
 //!
 //! ```
@@ -35,13 +37,17 @@
 mod distribution;
 mod error;
 mod identification;
+mod stepped;
 mod time;
 
-pub use error::{DiagnoseError, SimulationError};
+pub use error::{DiagnoseError, SimulationError, SteppedError};
 pub use identification::diagnosis::{
     Estimate, Finding, HeldOut, ModelFit, NonlinearDiagnosis, NonlinearOptions, Reach, Verdict,
 };
 pub use identification::homogeneity::{CHANGED, Homogeneity};
 pub use identification::parameters::Tolerance;
+pub use stepped::diagnosis::{LevelFinding, LevelResult, SteppedDiagnosis, Tried};
+pub use stepped::level::{Held, SteppedLevel};
+pub use stepped::resonance::Resonance;
 pub use time::law::{Memory, RestoringLaw};
 pub use time::simulation::{Simulation, simulate};

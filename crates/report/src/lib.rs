@@ -62,6 +62,7 @@ mod phase;
 mod plot;
 mod proof_page;
 mod section;
+mod stepped_page;
 mod unit;
 
 pub use comparison_page::comparison_page;
@@ -78,4 +79,5 @@ pub use page::{Foot, Page};
 pub use plot::{Axis, Ordinate, Plot, Role, Spacing, YRange, kept_lines};
 pub use proof_page::{ProofContext, ProofResults, proof_page};
 pub use section::Section;
+pub use stepped_page::stepped_page;
 pub use unit::{Scale, typeset};

@@ -1,0 +1,87 @@
+use jointscope_nonlinear::{Held, LevelFinding, LevelResult, SteppedDiagnosis};
+use serde_json::{Map, Value, json};
+
+/// The contents of `diagnosis.json` for stepped-sine FRFs at several levels: as [`crate::diagnosis_file`], and beyond the contract the table
+/// `levels` and every law `tried`. Errors are root mean squares over the levels.
+pub fn stepped_file(diagnosis: &SteppedDiagnosis) -> Value {
+    let [nominal, refitted, repaired, own] = diagnosis.nrmse;
+    let count = diagnosis.levels.len();
+    json!({
+        "verdict": diagnosis.verdict.name(),
+        "says": diagnosis.says(),
+        "mismatch": { "chi2_per_dof": diagnosis.change.1, "p_value": diagnosis.change.0, "frfs": [] },
+        "findings": diagnosis.findings.iter().map(|f| finding(f, diagnosis)).collect::<Value>(),
+        "fit": {
+            "nrmse": {"nominal": nominal, "refitted": refitted, "repaired": repaired, "stiffness_of_its_own_a_level": own},
+            "held_out": diagnosis.left_out.map(|[refitted, repaired]| json!({
+                "what": diagnosis.levels.iter().take(diagnosis.holds).map(|l| format!("level {}", l.held)).collect::<Value>(),
+                "nrmse_refitted": refitted,
+                "nrmse_repaired": repaired,
+            })),
+            "chi2_per_dof": null,
+        },
+        "levels": diagnosis.levels.iter().enumerate().map(|(i, l)| level(l, i < diagnosis.holds)).collect::<Value>(),
+        "levels_explained": if diagnosis.findings.is_empty() { json!(null) } else { json!([diagnosis.holds, count]) },
+        "place": {"joint": diagnosis.place.0, "dof": diagnosis.place.1.name()},
+        "tried": diagnosis.tried.iter().map(|t| json!({
+            "kind": t.form, "place": t.joint, "dof": t.dof.name(), "nrmse": t.nrmse, "share_explained": t.share,
+        })).collect::<Value>(),
+        "band": [diagnosis.band.0, diagnosis.band.1],
+        "remarks": diagnosis.remarks(),
+    })
+}
+
+fn level(of: &LevelResult, explained: bool) -> Value {
+    let (quantity, unit) = match of.held {
+        Held::Force(_) => ("force", "N"),
+        Held::Response(_) => ("response", "m/s^2"),
+    };
+    let value = |(value, std): (f64, f64)| json!({"value": value, "std": std});
+    let known = |(value, std): (f64, Option<f64>)| json!({"value": value, "std": std});
+    let [nominal, refitted, repaired, own] = of.nrmse;
+    json!({
+        "held": {"quantity": quantity, "amplitude": of.held.amplitude(), "unit": unit},
+        "frequency": value(of.resonance.frequency),
+        "damping_ratio": value(of.resonance.damping_ratio),
+        "nrmse_of_one_mode": of.resonance.nrmse,
+        "relative_motion": of.motion,
+        "stiffness_beyond_the_fixture": known(of.stiffness),
+        "loss_stiffness_beyond_the_fixture": known(of.loss),
+        "nrmse": {"nominal": nominal, "refitted": refitted, "repaired": repaired, "stiffness_of_its_own": own},
+        "explained": explained,
+    })
+}
+
+fn finding(of: &LevelFinding, diagnosis: &SteppedDiagnosis) -> Value {
+    let mut entry = name(&of.effect);
+    let parameters = of.estimates.iter().map(|e| {
+        (
+            e.parameter.name.to_owned(),
+            json!({"value": e.value, "std": e.std, "ci95": e.interval, "unit": e.unit}),
+        )
+    });
+    entry.insert("parameters".into(), Value::Object(parameters.collect()));
+    entry.insert("probability".into(), json!(of.probability));
+    entry.insert("says".into(), json!(of.says()));
+    let alternatives = of.alternatives.iter().map(|(effect, probability)| {
+        let mut entry = name(effect);
+        entry.insert("probability".into(), json!(probability));
+        Value::Object(entry)
+    });
+    entry.insert("alternatives".into(), alternatives.collect());
+    entry.insert("share_explained".into(), json!(of.share));
+    entry.insert("relative_motions".into(), json!([of.motions.0, of.motions.1]));
+    let holds = diagnosis.levels.iter().take(diagnosis.holds).map(|l| l.held.to_string());
+    entry.insert("holds_at".into(), holds.collect());
+    Value::Object(entry)
+}
+
+fn name(effect: &jointscope_fixture::Effect) -> Map<String, Value> {
+    let mut entry = Map::new();
+    entry.insert("kind".into(), json!(effect.kind.name()));
+    entry.insert("place".into(), json!(effect.place.to_string()));
+    if let Some(dof) = effect.dof {
+        entry.insert("dof".into(), json!(dof.name()));
+    }
+    entry
+}

@@ -1,0 +1,98 @@
+//! Harmonic balance: the stiffness that a law shows to a sine.
+
+use crate::RestoringLaw;
+use num_complex::Complex64;
+use std::f64::consts::PI;
+
+/// First harmonic of a law's force over the amplitude of d = a·cos ωt: stiffness, and i times what it loses. `yields` is the static relative
+/// displacement of the joint by a force of 1 across it: one-sided contact pushes the mean of d away from the stop.
+pub(crate) fn equivalent(law: &RestoringLaw, amplitude: f64, yields: f64) -> Complex64 {
+    match *law {
+        RestoringLaw::Cubic { stiffness3 } => (0.75 * stiffness3 * amplitude * amplitude).into(),
+        RestoringLaw::Friction { slip_force, stiffness } => {
+            let onset = slip_force / stiffness;
+            if amplitude <= onset {
+                return stiffness.into();
+            }
+            let ratio = onset / amplitude;
+            let angle = (1.0 - 2.0 * ratio).acos();
+            let stores = stiffness / PI * (angle - 0.5 * (2.0 * angle).sin());
+            Complex64::new(stores, 4.0 * stiffness * ratio / PI * (1.0 - ratio))
+        }
+        RestoringLaw::Gap { clearance, stiffness } => {
+            let angle = contact(clearance, stiffness, amplitude, yields);
+            (stiffness / PI * (angle - 0.5 * (2.0 * angle).sin())).into()
+        }
+    }
+}
+
+/// Half the angle of a period during which the stop is touched, the mean of d being that at which the structure balances the stop's mean force.
+fn contact(clearance: f64, stiffness: f64, amplitude: f64, yields: f64) -> f64 {
+    let angle_at = |mean: f64| ((clearance - mean) / amplitude).clamp(-1.0, 1.0).acos();
+    let push = |mean: f64| {
+        let angle = angle_at(mean);
+        let reach = angle.sin() - (clearance - mean) / amplitude * angle;
+        stiffness * amplitude / PI * reach.max(0.0)
+    };
+    if amplitude <= clearance {
+        return 0.0;
+    }
+    // mean + yields·push(mean) ascends with the mean.
+    let (mut low, mut high) = (-yields.abs() * push(0.0), 0.0);
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        if middle + yields.abs() * push(middle) > 0.0 {
+            high = middle;
+        } else {
+            low = middle;
+        }
+    }
+    angle_at(0.5 * (low + high))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Memory;
+
+    /// First harmonic by stepping through a settled period.
+    fn stepped(law: RestoringLaw, amplitude: f64) -> Complex64 {
+        let steps = 20_000;
+        let mut memory = Memory::default();
+        let mut sum = Complex64::ZERO;
+        for i in 0..3 * steps {
+            let phase = 2.0 * PI * i as f64 / steps as f64;
+            let motion = amplitude * phase.cos();
+            memory = Memory { motion, force: law.force(motion, &memory) };
+            if i >= 2 * steps {
+                sum += memory.force * Complex64::from_polar(2.0 / steps as f64, -phase);
+            }
+        }
+        sum / amplitude
+    }
+
+    #[test]
+    fn equivalent_stiffness_is_the_first_harmonic_of_the_force() {
+        let laws = [
+            RestoringLaw::Cubic { stiffness3: 3e9 },
+            RestoringLaw::Friction { slip_force: 2.0, stiffness: 4e4 },
+            RestoringLaw::Gap { clearance: 5e-5, stiffness: 2e5 },
+        ];
+        for law in laws {
+            for amplitude in [3e-5, 6e-5, 3e-4] {
+                let (found, expected) = (equivalent(&law, amplitude, 0.0), stepped(law, amplitude));
+                assert!(
+                    (found - expected).norm() < 1e-3 * expected.norm() + 1e-3,
+                    "{law:?}: {found} {expected}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn a_stop_pushes_the_joint_away_and_is_touched_for_less_time() {
+        let law = RestoringLaw::Gap { clearance: 5e-5, stiffness: 2e5 };
+        let (held, free) = (equivalent(&law, 1e-4, 0.0), equivalent(&law, 1e-4, 1e-5));
+        assert!(free.re < 0.9 * held.re && free.re > 0.1 * held.re, "{held} {free}");
+    }
+}
