@@ -105,7 +105,16 @@ fn starts(subject: &Subject, form: Form) -> Vec<Vec<RestoringLaw>> {
             onsets.iter().flat_map(of).collect()
         }
         Form::FrictionAndCubic => {
-            frictions().into_iter().flat_map(|friction| cubics.map(|cubic| vec![friction, cubic])).collect()
+            // What friction alone came to, bent a little, and everything it started from.
+            let alone = fitted(subject, Form::Friction).and_then(|fit| fit.change.laws.first().copied());
+            let bent = cubics.map(|law| match law {
+                RestoringLaw::Cubic { stiffness3 } => RestoringLaw::Cubic { stiffness3: 0.01 * stiffness3 },
+                other => other,
+            });
+            let beside = alone.into_iter().flat_map(|friction| bent.map(|cubic| vec![friction, cubic]));
+            let plain =
+                frictions().into_iter().flat_map(|friction| cubics.map(|cubic| vec![friction, cubic]));
+            beside.chain(plain).collect()
         }
     }
 }

@@ -116,6 +116,16 @@ impl SteppedDiagnosis {
         if self.levels.iter().any(|l| matches!(l.held, super::level::Held::Force(_))) {
             remarks.push("Where the force was held the response changes along the lines, so frequency and damping of such a level are averages over its amplitudes; laws are fitted at each line's own amplitude.".to_owned());
         }
+        let two = self.tried.iter().find(|t| t.form.contains('+') && t.share >= 0.9);
+        if let (Some(two), [] | [_]) = (two, self.findings.as_slice()) {
+            remarks.push(format!(
+                "Friction and a cubic spring together at {} in {} would leave a relative error of {:.3}, but two laws follow {} levels by their freedom: that is no evidence for either.",
+                two.joint, two.dof.name(), two.nrmse, self.levels.len()
+            ));
+        }
+        if self.verdict == Verdict::Homogeneous {
+            remarks.push("Whether the fixture itself suits the recording is a matter for one level: give its file alone.".to_owned());
+        }
         if self.levels.len() < 3 {
             remarks.push("Two levels show that something changes, not by which law: add a third.".to_owned());
         }

@@ -50,6 +50,8 @@ pub(crate) struct Seat {
 
 /// Frequency at which statics are read, as a share of the lowest line.
 const STATIC: f64 = 1e-3;
+/// Step off a line on which the fixture's receptances are not finite, relative.
+const BESIDE: f64 = 1e-7;
 /// d's share in the driving-point motion below which a mode does not move the joint, in m or rad per m.
 const UNMOVED: f64 = 1e-9;
 
@@ -120,7 +122,10 @@ fn seat(
         let mut receptances = model.receptances(&outputs, &inputs);
         let mut values = vec![Complex64::ZERO; receptances.count()];
         let mut read = |hz: f64| {
-            let finite = receptances.at(Complex64::new(0.0, TAU * hz), &mut values);
+            // On an undamped resonance of the fixture only the sum with δ is finite: it is read as close by as numbers allow.
+            let finite = [hz, hz * (1.0 + BESIDE)]
+                .iter()
+                .any(|hz| receptances.at(Complex64::new(0.0, TAU * hz), &mut values));
             let at = |output: usize, input: usize| values[output * columns + input];
             let mut line = LineModel::default();
             for k in 0..pairs.len() {
