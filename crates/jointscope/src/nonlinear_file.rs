@@ -1,9 +1,12 @@
 use crate::diagnosis_file::named;
-use jointscope_nonlinear::{Finding, ModelFit, NonlinearDiagnosis};
+use jointscope_nonlinear::{
+    Finding, ForceState, ForceStateError, ForceStateMap, ModelFit, MotionSource, NonlinearDiagnosis,
+};
 use serde_json::{Map, Value, json};
 
 /// The contents of `diagnosis.json` for a test by hits of several strengths: as [`crate::diagnosis_file`], errors being those of the response
-/// histories, and beyond the contract the test of homogeneity and how far the hits drive each joint.
+/// histories, and beyond the contract the test of homogeneity, how far the hits drive each joint,
+/// and what the force–state maps say.
 pub fn nonlinear_file(diagnosis: &NonlinearDiagnosis) -> Value {
     let homogeneity = &diagnosis.homogeneity;
     let refitted = diagnosis.models.as_ref().map(|[_, refitted, _]| refitted);
@@ -32,9 +35,32 @@ pub fn nonlinear_file(diagnosis: &NonlinearDiagnosis) -> Value {
         json!({"joint": r.joint, "dof": r.dof.name(), "largest_relative_motion": r.motion, "force_of_the_joint": r.force})
     });
     root.insert("reach".into(), reach.collect());
+    root.insert("force_state".into(), diagnosis.maps.iter().map(force_state).collect());
     root.insert("band".into(), json!([diagnosis.band.0, diagnosis.band.1]));
     root.insert("remarks".into(), json!(diagnosis.remarks()));
     Value::Object(root)
+}
+
+fn force_state(map: &Result<ForceStateMap, ForceStateError>) -> Value {
+    let map = match map {
+        Ok(map) => map,
+        Err(why) => return json!({"not_drawn": why.to_string()}),
+    };
+    let source = |source: MotionSource| match source {
+        MotionSource::Sensors => "sensors",
+        MotionSource::Momentum => "momentum",
+        MotionSource::Model => "model",
+    };
+    let component =
+        |c: &ForceState| json!({"dof": c.dof.name(), "explained": c.explained(), "dashpot": c.dashpot()});
+    json!({
+        "joint": map.joint,
+        "hit": map.hit,
+        "band": [map.band.0, map.band.1],
+        "force_from_bodies": map.weighed,
+        "motion_from": map.sources.iter().map(|(body, s)| (body.clone(), json!(source(*s)))).collect::<Map<_, _>>(),
+        "components": map.components.iter().map(component).collect::<Value>(),
+    })
 }
 
 fn finding(finding: &Finding) -> Value {

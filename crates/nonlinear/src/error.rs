@@ -167,3 +167,57 @@ pub enum SteppedError {
     #[error(transparent)]
     Model(#[from] LumpedError),
 }
+
+/// Why a joint's force–state map cannot be drawn.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum ForceStateError {
+    /// A joint that the fixture does not have.
+    #[error("the fixture has no joint `{joint}`")]
+    UnknownJoint {
+        /// The joint.
+        joint: String,
+    },
+    /// Other joints bridge this one.
+    #[error(
+        "other joints lead around joint {joint}: what it bears alone does not follow from the motion of the bodies"
+    )]
+    Loop {
+        /// The joint.
+        joint: String,
+    },
+    /// Supports on both sides.
+    #[error("supports hold the bodies on both sides of joint {joint}: what they bear is not measured")]
+    Supported {
+        /// The joint.
+        joint: String,
+    },
+    /// No side is of rigid bodies that nothing holds.
+    #[error("the bodies beside joint {joint} bend: their inertia forces do not follow from a few sensors")]
+    Deformable {
+        /// The joint.
+        joint: String,
+    },
+    /// No side is followed by sensors.
+    #[error(
+        "the motion of {bodies} beside joint {joint} is not measured: put two sensors on the body (one where it does not rotate)"
+    )]
+    TooFewSensors {
+        /// The joint.
+        joint: String,
+        /// Bodies that are not followed.
+        bodies: String,
+    },
+    /// An effect by which inertia or signals are not what they seem.
+    #[error(
+        "`{kind}` at {place} makes the joint's force more than inertia and hammer say: no map is drawn with it"
+    )]
+    Effect {
+        /// Its kind.
+        kind: String,
+        /// Its place.
+        place: String,
+    },
+    /// The fixture cannot be simulated.
+    #[error(transparent)]
+    Simulation(#[from] SimulationError),
+}

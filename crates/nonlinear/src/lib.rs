@@ -7,6 +7,7 @@
 //!   that no fit saw;
 //! * [`SteppedDiagnosis`]: stepped-sine FRFs at several levels: frequency and damping of the resonance by level, the joint's equivalent stiffness and
 //!   loss against the amplitude of its motion by harmonic balance, which law follows them, and up to which level;
+//! * [`ForceStateMap`]: what a joint bore against how it was moved, from the measured motion of its bodies;
 //! * [`RestoringLaw`]: the laws themselves.
 //!
 //! ```
@@ -36,11 +37,13 @@
 
 mod distribution;
 mod error;
+mod force_state;
 mod identification;
 mod stepped;
 mod time;
 
-pub use error::{DiagnoseError, SimulationError, SteppedError};
+pub use error::{DiagnoseError, ForceStateError, SimulationError, SteppedError};
+pub use force_state::{ForceState, ForceStateMap, MotionSource};
 pub use identification::diagnosis::{
     Estimate, Finding, HeldOut, ModelFit, NonlinearDiagnosis, NonlinearOptions, Reach, Verdict,
 };

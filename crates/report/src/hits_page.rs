@@ -3,11 +3,11 @@
 use jointscope_fixture::Fixture;
 use jointscope_nonlinear::{NonlinearDiagnosis, Verdict as Conclusion};
 
-use crate::hammer_test;
 use crate::{Column, Page, PageContext, PageError, Section, Table, Tone, Verdict};
+use crate::{force_state, hammer_test};
 
 /// The page of a diagnosis from hits as one self-contained HTML file: the verdict, the laws found with their intervals, levels compared,
-/// errors of the three models, and the hits held out. The same input gives the same bytes.
+/// force against motion, errors of the three models, and the hits held out. The same input gives the same bytes.
 ///
 /// # Errors
 /// A page whose parts cannot be drawn.
@@ -25,6 +25,9 @@ pub fn hits_page(
     page = page.section(levels(diagnosis));
     if !diagnosis.findings.is_empty() {
         page = page.section(laws(diagnosis));
+    }
+    if !diagnosis.maps.is_empty() {
+        page = page.section(force_state::section(&diagnosis.maps, fixture));
     }
     if diagnosis.models.is_some() {
         page = page.section(judgement(diagnosis));

@@ -8,7 +8,7 @@ use super::parameters::{Law, Parameters, Tolerance};
 use super::records::{Record, held_out, records};
 use super::search::{Named, Search};
 use super::spectra::Transform;
-use crate::{DiagnoseError, RestoringLaw};
+use crate::{DiagnoseError, ForceStateError, ForceStateMap, RestoringLaw};
 use jointscope_fixture::{BodyKind, Dof, Effect, Fixture, ParameterSpec};
 use jointscope_hits::Hit;
 use jointscope_lumped::StateSpace;
@@ -120,6 +120,8 @@ pub struct NonlinearDiagnosis {
     pub held_out: Option<HeldOut>,
     /// How far the hits drive each joint.
     pub reach: Vec<Reach>,
+    /// Force–state maps under the strongest hit, of the joints with a law, or of all where no law was found; for each that cannot be drawn, why.
+    pub maps: Vec<Result<ForceStateMap, ForceStateError>>,
     /// Band that was compared, Hz.
     pub band: (f64, f64),
 }
@@ -130,6 +132,8 @@ const LEFT_OVER: f64 = 1.5;
 const SEEK_MORE: (f64, f64) = (3.0, 0.05);
 /// How much finer the last fit steps than the search.
 const FINER: usize = 2;
+/// Multiple of the highest elastic frequency up to which a force–state map goes.
+const HARMONIC: f64 = 3.5;
 /// Laws at the most.
 const MOST_LAWS: usize = 2;
 /// Share of what is left of χ² beyond noise that the first law, and a further one, must explain to be named: a fit caught in a false minimum
@@ -164,13 +168,30 @@ impl NonlinearDiagnosis {
             models: None,
             held_out: None,
             reach,
+            maps: Vec::new(),
             band,
         };
         if diagnosis.homogeneity.p_value >= CHANGED {
             return Ok(diagnosis);
         }
         diagnosis.search(fixture, &all, elastic, options)?;
+        diagnosis.map(&all, elastic);
         Ok(diagnosis)
+    }
+
+    fn map(&mut self, all: &[Record], elastic: (f64, f64)) {
+        let strongest = all.iter().max_by(|a, b| a.hit.peak_force().total_cmp(&b.hit.peak_force()));
+        let (Some([.., repaired]), Some(record)) = (&self.models, strongest) else { return };
+        let mut joints: Vec<String> = self.findings.iter().map(|f| f.effect.place.to_string()).collect();
+        if joints.is_empty() {
+            joints = repaired.fixture.joints().iter().map(|j| j.name.clone()).collect();
+        }
+        joints.dedup();
+        // Harmonics of the motion, as far as the sampling goes.
+        let highest = (HARMONIC * elastic.1).max(self.band.1).min(0.45 / record.hit.interval());
+        let band = (0.5 * elastic.0, highest);
+        let map = |joint: &String| ForceStateMap::of(&repaired.fixture, joint, &record.hit, band);
+        self.maps = joints.iter().map(map).collect();
     }
 
     fn search(

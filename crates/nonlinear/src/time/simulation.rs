@@ -45,7 +45,12 @@ pub fn simulate(fixture: &Fixture, hits: &[Hit], outputs: &[Channel]) -> Result<
     Ok(Simulation { hits: simulated.into_iter().map(|(hit, _)| hit).collect(), error })
 }
 
-fn simulate_one(fixture: &Fixture, hit: &Hit, readings: &[Reading]) -> Result<(Hit, f64), SimulationError> {
+/// What `readings` read under one hit, and the estimated error of the steps.
+pub(crate) fn simulate_one(
+    fixture: &Fixture,
+    hit: &Hit,
+    readings: &[Reading],
+) -> Result<(Hit, f64), SimulationError> {
     let structure = Structure::new(fixture, 0.5 / hit.interval())?;
     let system = structure.system(hit.struck(), readings)?;
     let real_force = unmeasured(fixture, hit);

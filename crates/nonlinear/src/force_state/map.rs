@@ -1,0 +1,318 @@
+//! The map of one joint from one hit.
+
+use super::bodies::{BodyMotion, Inertia, MotionSource, applied, inertia, measured};
+use super::sides::{abscissa, check_effects, free, sides, stiffness_factor};
+use super::signals::{Lines, rising};
+use crate::time::simulation::simulate_one;
+use crate::time::structure::Reading;
+use crate::{ForceStateError, Memory, RestoringLaw};
+use jointscope_fixture::{BodyKind, Dof, Fixture, Joint, Place};
+use jointscope_hits::{Hit, Motion};
+use jointscope_lumped::nominal_stiffness;
+use jointscope_spectra::Channel;
+use num_complex::Complex64;
+
+/// What a joint bore during a hit against how far and how fast it was moved, as measured.
+///
+/// The force is the inertia force of the bodies on one side of the joint less the hammer's, so neither the joint's stiffness nor its law enters
+/// it. The relative motion d = u_to − R·u_from is integrated from accelerations by 1/(iω)²; below `band.0`, where that drifts, it is
+/// the simulated fixture's.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ForceStateMap {
+    /// The joint.
+    pub joint: String,
+    /// Number of the hit.
+    pub hit: u32,
+    /// Its peak force, N.
+    pub peak_force: f64,
+    /// Where d is measured, Hz; force and d end at the upper limit.
+    pub band: (f64, f64),
+    /// Bodies whose inertia gives the force.
+    pub weighed: Vec<String>,
+    /// Bodies that the map needs, and where their motion is known from.
+    pub sources: Vec<(String, MotionSource)>,
+    /// Deflection, and rotation where the joint's bodies rotate.
+    pub components: Vec<ForceState>,
+}
+
+/// One component of a [`ForceStateMap`], from the blow until the motion has died down. SI units.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ForceState {
+    /// Which component.
+    pub dof: Dof,
+    /// d, m or rad.
+    pub motion: Vec<f64>,
+    /// ḋ, m/s or rad/s.
+    pub velocity: Vec<f64>,
+    /// What the joint bears on this component, N or N·m, without the part k₁₂ of the other component's motion.
+    pub force: Vec<f64>,
+    /// The fixture's own stiffness of this component, N/m or N·m/rad.
+    pub stiffness: f64,
+    /// The fixture's laws of this component.
+    pub laws: Vec<RestoringLaw>,
+    /// What these laws bear under d, N or N·m.
+    pub law_force: Vec<f64>,
+}
+
+impl ForceState {
+    /// The part of the force that is not the linear spring's: force − k·d.
+    pub fn beyond_linear(&self) -> Vec<f64> {
+        self.force.iter().zip(&self.motion).map(|(f, d)| f - self.stiffness * d).collect()
+    }
+
+    /// What neither the linear spring nor the laws bear.
+    pub fn left_over(&self) -> Vec<f64> {
+        self.beyond_linear().iter().zip(&self.law_force).map(|(r, g)| r - g).collect()
+    }
+
+    /// Share of the mean square of [`ForceState::beyond_linear`] that the laws explain; `None` without laws.
+    pub fn explained(&self) -> Option<f64> {
+        let power = |values: &[f64]| values.iter().map(|v| v * v).sum::<f64>();
+        let all = power(&self.beyond_linear());
+        (!self.laws.is_empty() && all > 0.0).then(|| 1.0 - power(&self.left_over()) / all)
+    }
+
+    /// The dashpot that takes most of what is left over, N·s/m or N·m·s/rad.
+    pub fn dashpot(&self) -> f64 {
+        let left = self.left_over();
+        let power: f64 = self.velocity.iter().map(|v| v * v).sum();
+        let work: f64 = left.iter().zip(&self.velocity).map(|(f, v)| f * v).sum();
+        if power > 0.0 { work / power } else { 0.0 }
+    }
+}
+
+/// Share of its largest d below which motion is no longer shown.
+const DIED_DOWN: f64 = 0.1;
+/// Share of the peak force at which a blow begins.
+const ONSET: f64 = 0.02;
+
+impl ForceStateMap {
+    /// The map of `joint` under `hit`, with the mass properties, stiffness and laws of `fixture`; `band` is where d is taken from the sensors, Hz.
+    ///
+    /// # Errors
+    /// A joint both of whose sides are held, deformable, or not followed by enough sensors; effects that make bodies bear more than
+    /// their inertia.
+    pub fn of(fixture: &Fixture, joint: &str, hit: &Hit, band: (f64, f64)) -> Result<Self, ForceStateError> {
+        let unknown = || ForceStateError::UnknownJoint { joint: joint.to_owned() };
+        let joint = fixture.joint(joint).ok_or_else(unknown)?;
+        check_effects(fixture)?;
+        let sides = sides(fixture, joint)?;
+        let lines = Lines::new(hit.samples(), hit.interval());
+        let motions = measured(fixture, hit, &lines);
+        let (side, bodies) = weighed(fixture, joint, &sides, &motions)?;
+        let ends = [joint.to, joint.from];
+        let (slow, accelerations) = ends_simulated(fixture, hit, &lines, ends)?;
+        let measured_end = |end: usize| {
+            let point = &fixture.points()[ends[end]];
+            let (Some((_, [a, turn])), Some(body)) = (&motions[point.body], inertia(fixture, point.body))
+            else {
+                return accelerations[end].clone();
+            };
+            let arm = abscissa(fixture, point) - body.x_cg;
+            [a.iter().zip(turn).map(|(a, turn)| a + turn * arm).collect(), turn.clone()]
+        };
+        let length = fixture.joint_length(joint);
+        let (to, from) = (measured_end(0), measured_end(1));
+        let deflection = (0..to[0].len()).map(|i| to[0][i] - from[0][i] - from[1][i] * length).collect();
+        let rotation: Vec<Complex64> = (0..to[1].len()).map(|i| to[1][i] - from[1][i]).collect();
+        let rates: BodyMotion = [deflection, rotation];
+        let motion = |component: usize| -> Vec<Complex64> {
+            let line = |(i, (rate, slow)): (usize, (&Complex64, &Complex64))| {
+                let high = rising(lines.frequency(i), (0.5 * band.0, band.0));
+                let fast = if high > 0.0 { rate / lines.s(i).powi(2) * high } else { Complex64::ZERO };
+                (fast + slow * (1.0 - high)) * upper(lines.frequency(i), band.1)
+            };
+            rates[component].iter().zip(&slow[component]).enumerate().map(line).collect()
+        };
+        let force = force(fixture, joint, hit, &lines, (side, &bodies), &motions, band.1);
+        let d = [motion(0), motion(1)];
+        let turns = ends.map(|p| turns(fixture, p)) == [true; 2] && bodies.iter().all(|(_, b)| b.rotates);
+        let components = if turns { 2 } else { 1 };
+        let names = |index: usize| fixture.bodies()[index].name.clone();
+        let mut needed: Vec<usize> = bodies.iter().map(|(i, _)| *i).collect();
+        needed.extend(ends.map(|p| fixture.points()[p].body));
+        needed.sort_unstable();
+        needed.dedup();
+        let source = |i: usize| motions[i].as_ref().map_or(MotionSource::Model, |(source, _)| *source);
+        let mut map = ForceStateMap {
+            joint: joint.name.clone(),
+            hit: hit.number(),
+            peak_force: hit.peak_force(),
+            band,
+            weighed: bodies.iter().map(|(i, _)| names(*i)).collect(),
+            sources: needed.into_iter().map(|i| (names(i), source(i))).collect(),
+            components: (0..components).map(|c| component(fixture, joint, &lines, c, &d, &force)).collect(),
+        };
+        map.trim(hit);
+        Ok(map)
+    }
+
+    /// Leaves what lies between the blow's beginning and the end of larger motion.
+    fn trim(&mut self, hit: &Hit) {
+        let onset = hit.force().iter().position(|f| f.abs() > ONSET * hit.peak_force()).unwrap_or(0);
+        let last = |c: &ForceState| {
+            let largest = c.motion.iter().fold(0.0, |most: f64, d| d.abs().max(most));
+            c.motion.iter().rposition(|d| d.abs() > DIED_DOWN * largest).unwrap_or(0)
+        };
+        let end = self.components.iter().map(last).max().unwrap_or(0);
+        for c in &mut self.components {
+            for values in [&mut c.motion, &mut c.velocity, &mut c.force, &mut c.law_force] {
+                values.truncate((end + 1).max(onset + 1));
+                values.drain(..onset.min(values.len()));
+            }
+        }
+    }
+}
+
+/// 1 up to four fifths of `highest`, then falling to 0 there.
+fn upper(frequency: f64, highest: f64) -> f64 {
+    1.0 - rising(frequency, (0.8 * highest, highest))
+}
+
+fn turns(fixture: &Fixture, point: usize) -> bool {
+    let body = &fixture.bodies()[fixture.points()[point].body].kind;
+    !matches!(body, BodyKind::Rigid(rigid) if !rigid.rotates)
+}
+
+type Side = (f64, Vec<(usize, Inertia)>);
+
+/// The side whose inertia gives the force: free, rigid, its motion measured, by its own sensors if possible. With it the sign by which what
+/// its bodies feel is the joint's force.
+fn weighed(
+    fixture: &Fixture,
+    joint: &Joint,
+    sides: &[Vec<usize>; 2],
+    motions: &[Option<(MotionSource, BodyMotion)>],
+) -> Result<Side, ForceStateError> {
+    let name = || joint.name.clone();
+    let mut why = ForceStateError::Supported { joint: name() };
+    let mut best: Option<(bool, Side)> = None;
+    for (sign, side) in [-1.0, 1.0].into_iter().zip(sides) {
+        if !free(fixture, side) {
+            continue;
+        }
+        let bodies: Option<Vec<(usize, Inertia)>> =
+            side.iter().map(|&i| inertia(fixture, i).map(|inertia| (i, inertia))).collect();
+        let Some(bodies) = bodies else {
+            why = ForceStateError::Deformable { joint: name() };
+            continue;
+        };
+        let unseen = side.iter().filter(|i| motions[**i].is_none());
+        let unseen: Vec<&str> = unseen.map(|i| fixture.bodies()[*i].name.as_str()).collect();
+        if !unseen.is_empty() {
+            why = ForceStateError::TooFewSensors { joint: name(), bodies: unseen.join(", ") };
+            continue;
+        }
+        let own = side.iter().all(|&i| matches!(motions[i], Some((MotionSource::Sensors, _))));
+        if best.as_ref().is_none_or(|(before, _)| own && !before) {
+            best = Some((own, (sign, bodies)));
+        }
+    }
+    best.map(|(_, side)| side).ok_or(why)
+}
+
+/// The relative motion d that the fixture shows, and the accelerations of the joint's ends, far end first.
+fn ends_simulated(
+    fixture: &Fixture,
+    hit: &Hit,
+    lines: &Lines,
+    ends: [usize; 2],
+) -> Result<(BodyMotion, [BodyMotion; 2]), ForceStateError> {
+    let mut readings: Vec<Reading> = Vec::new();
+    for motion in [Motion::Displacement, Motion::Acceleration] {
+        for end in ends {
+            let point = &fixture.points()[end].name;
+            readings.push((Channel::transverse(point.clone()), motion));
+            if turns(fixture, end) {
+                readings.push((Channel::rotational(point.clone()), motion));
+            }
+        }
+    }
+    let (simulated, _) = simulate_one(fixture, hit, &readings)?;
+    let read = |end: usize, motion: Motion, dof: Dof| {
+        let point = &fixture.points()[ends[end]].name;
+        let response = simulated
+            .responses()
+            .iter()
+            .find(|r| r.motion == motion && r.channel.dof == dof && r.channel.point == *point);
+        response.map_or_else(|| vec![0.0; hit.samples()], |r| r.values.clone())
+    };
+    let moved =
+        |end: usize, motion: Motion| [Dof::Translation, Dof::Rotation].map(|dof| read(end, motion, dof));
+    let ([y, turn], [near, tilt]) = (moved(0, Motion::Displacement), moved(1, Motion::Displacement));
+    let length = fixture.points()[ends[0]].x.value - fixture.points()[ends[1]].x.value;
+    // What carries the whole assembly along would swamp its lines, so d is formed before the transform.
+    let deflection: Vec<f64> = (0..y.len()).map(|i| y[i] - near[i] - tilt[i] * length).collect();
+    let rotation: Vec<f64> = (0..y.len()).map(|i| turn[i] - tilt[i]).collect();
+    let lines_of = |pair: [Vec<f64>; 2]| pair.map(|values| lines.of(&values));
+    let accelerated = [0, 1].map(|end| lines_of(moved(end, Motion::Acceleration)));
+    Ok((lines_of([deflection, rotation]), accelerated))
+}
+
+/// What the joint bears: the inertia force of the weighed bodies less the hammer's, at the abscissa of its far end, where R carries both components.
+fn force(
+    fixture: &Fixture,
+    joint: &Joint,
+    hit: &Hit,
+    lines: &Lines,
+    (sign, bodies): (f64, &[(usize, Inertia)]),
+    motions: &[Option<(MotionSource, BodyMotion)>],
+    highest: f64,
+) -> [Vec<Complex64>; 2] {
+    let x = fixture.points()[joint.to].x.value;
+    let struck = fixture.point(&hit.struck().point).map(|p| p.body);
+    let hammer = match bodies.iter().any(|(i, _)| Some(*i) == struck) {
+        true => applied(fixture, hit, x),
+        false => [0.0; 2],
+    };
+    let mut force = hammer.map(|part| lines.of(hit.force()).iter().map(|f| -part * f).collect::<Vec<_>>());
+    for (index, body) in bodies {
+        let Some((_, [a, turn])) = &motions[*index] else { continue };
+        for i in 0..a.len() {
+            force[0][i] += a[i] * body.mass;
+            force[1][i] += turn[i] * body.inertia + a[i] * (body.mass * (body.x_cg - x));
+        }
+    }
+    force.map(|part| {
+        let limited = part.into_iter().enumerate();
+        limited.map(|(i, f)| f * sign * upper(lines.frequency(i), highest)).collect()
+    })
+}
+
+fn component(
+    fixture: &Fixture,
+    joint: &Joint,
+    lines: &Lines,
+    own: usize,
+    d: &[Vec<Complex64>; 2],
+    force: &[Vec<Complex64>; 2],
+) -> ForceState {
+    let dof = [Dof::Translation, Dof::Rotation][own];
+    let nominal = nominal_stiffness(&joint.law, fixture.joint_length(joint));
+    let factor = stiffness_factor(fixture, &joint.name);
+    let coupling = nominal.at(own, 1 - own) * factor;
+    let motion = lines.signal(d[own].clone());
+    let laws: Vec<RestoringLaw> = fixture
+        .physics()
+        .iter()
+        .filter(|e| e.dof == Some(dof) && matches!(&e.place, Place::Joint(name) if *name == joint.name))
+        .filter_map(RestoringLaw::of)
+        .collect();
+    let mut law_force = vec![0.0; motion.len()];
+    for law in &laws {
+        let mut memory = Memory::default();
+        for (force, &motion) in law_force.iter_mut().zip(&motion) {
+            memory = Memory { motion, force: law.force(motion, &memory) };
+            *force += memory.force;
+        }
+    }
+    ForceState {
+        dof,
+        velocity: lines.signal(d[own].iter().enumerate().map(|(i, d)| d * lines.s(i)).collect()),
+        force: lines.signal(force[own].iter().zip(&d[1 - own]).map(|(f, d)| f - d * coupling).collect()),
+        stiffness: nominal.at(own, own) * factor,
+        motion,
+        laws,
+        law_force,
+    }
+}
