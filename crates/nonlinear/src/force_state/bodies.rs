@@ -193,7 +193,8 @@ fn solved(equations: &[&Equation], unknowns: &[usize], scale: f64) -> Option<Vec
     }
     let inverse = inverse(&normal, n)?;
     let norm = |m: &[f64]| m.iter().map(|v| v * v).sum::<f64>().sqrt();
-    if !(norm(&normal) * norm(&inverse) < DETERMINED) {
+    let condition = norm(&normal) * norm(&inverse);
+    if !condition.is_finite() || condition >= DETERMINED {
         return None;
     }
     let solution = |i: usize| {

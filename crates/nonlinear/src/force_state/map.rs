@@ -268,9 +268,10 @@ fn force(
     let mut force = hammer.map(|part| lines.of(hit.force()).iter().map(|f| -part * f).collect::<Vec<_>>());
     for (index, body) in bodies {
         let Some((_, [a, turn])) = &motions[*index] else { continue };
-        for i in 0..a.len() {
-            force[0][i] += a[i] * body.mass;
-            force[1][i] += turn[i] * body.inertia + a[i] * (body.mass * (body.x_cg - x));
+        let [push, moment] = &mut force;
+        for (((push, moment), a), turn) in push.iter_mut().zip(moment).zip(a).zip(turn) {
+            *push += a * body.mass;
+            *moment += turn * body.inertia + a * (body.mass * (body.x_cg - x));
         }
     }
     force.map(|part| {
