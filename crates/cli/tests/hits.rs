@@ -1,0 +1,112 @@
+//! `simulate` and `diagnose` of time histories: what depends on amplitude, from files to files.
+#![allow(clippy::unwrap_used, missing_docs)] // helpers of tests fail as tests do
+
+mod common;
+
+use common::{Bench, TWO_BLOCKS};
+use jointscope_hits::Hit;
+use jointscope_recordings::hits_to_datasets;
+use jointscope_spectra::Channel;
+use jointscope_uff::{Data, Encoding};
+
+const CUBIC: &str =
+    r#"{ "kind": "cubic_stiffness", "place": "J", "dof": "translation", "stiffness3": 4e13 }"#;
+
+/// [`TWO_BLOCKS`] with modal damping, which has a form over time, and an effect.
+fn fixture(physics: &str) -> String {
+    let damped = TWO_BLOCKS.replacen(r#""loss_factor": 0.006 }"#, r#""modal_ratios": [0.02] }"#, 1);
+    let end = damped.rfind('}').unwrap();
+    format!(r#"{}, "physics": [{physics}] }}"#, &damped[..end])
+}
+
+/// Blows at point 1 of these peaks, N.
+fn forces(bench: &Bench, point: &str, peaks: &[f64]) {
+    let blow = |(i, peak): (usize, &f64)| {
+        let pulse = |k: i32| peak * (-0.5 * ((f64::from(k) - 60.0) / 1.6).powi(2)).exp();
+        let force = (0..2048).map(pulse).collect();
+        Hit::new(i as u32 + 1, 1.0 / 6400.0, 0.0, Channel::transverse(point), force, Vec::new()).unwrap()
+    };
+    let hits: Vec<Hit> = peaks.iter().enumerate().map(blow).collect();
+    let datasets = hits_to_datasets(&hits, "blows", Encoding::default(), true).unwrap();
+    bench.write("force.uff", jointscope_uff::write(&datasets).unwrap());
+}
+
+/// A bench with `plain.json`, and `hits.uff` that `simulate` makes of it with `physics`, with noise of 0.1 % of each signal's peak.
+fn recorded(name: &str, physics: &str, peaks: &[f64]) -> Bench {
+    let bench = Bench::new(name);
+    bench.write("plain.json", fixture(""));
+    bench.write("true.json", fixture(physics));
+    forces(&bench, "1", peaks);
+    let simulate = ["simulate", "true.json", "--force", "force.uff", "--at", "3", "4", "--with-force"];
+    let said = bench.done(&[&simulate[..], &["-o", "exact.uff"]].concat());
+    assert!(said.contains(&format!("under {} hits of 2048 samples", peaks.len())), "{said}");
+    let mut seed = 7u64;
+    let mut uniform = move || {
+        seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (seed >> 11) as f64 / (1u64 << 53) as f64 - 0.5
+    };
+    bench.rewrite("exact.uff", "hits.uff", |datasets| {
+        for dataset in datasets {
+            let Data::Real(values) = &mut dataset.data else { panic!("a history is real") };
+            let peak = values.iter().fold(0.0, |most: f64, v| v.abs().max(most));
+            values.iter_mut().for_each(|v| *v += 2e-3 * peak * uniform());
+        }
+    });
+    bench
+}
+
+#[test]
+fn a_cubic_spring_is_simulated_read_back_and_named_with_its_force_state_map() {
+    let bench = recorded("hits-cubic", CUBIC, &[40.0, 41.0, 150.0, 153.0, 500.0, 490.0]);
+    let said = bench.done(&["diagnose", "plain.json", "hits.uff", "--exact", "-o", "out"]);
+    assert!(said.contains("Joint J in translation stiffens as it is moved further"), "{said}");
+    let found = bench.json("out/diagnosis.json");
+    assert_eq!(found["verdict"], "explained");
+    let finding = &found["findings"][0];
+    assert_eq!((&finding["kind"], &finding["place"]), (&"cubic_stiffness".into(), &"J".into()));
+    let value = finding["parameters"]["stiffness3"]["value"].as_f64().unwrap();
+    assert!((value / 4e13 - 1.0).abs() < 0.02, "{value:e}");
+    let map = &found["force_state"][0];
+    assert_eq!(map["motion_from"], serde_json::json!({"A": "momentum", "B": "sensors"}));
+    assert!(map["components"][0]["explained"].as_f64().unwrap() > 0.8, "{map}");
+    assert!(bench.text("out/report.html").contains("Force against motion, as measured"));
+    assert_eq!(bench.json("out/repaired.json")["physics"][0]["kind"], "cubic_stiffness");
+}
+
+#[test]
+fn hits_of_a_linear_joint_are_diagnosed_by_their_frfs_with_the_remark() {
+    let bench = recorded("hits-linear", "", &[40.0, 41.0, 500.0, 490.0]);
+    let said = bench.done(&["diagnose", "plain.json", "hits.uff", "-o", "out"]);
+    assert!(said.contains("FRFs do not change between hits of"), "{said}");
+    let found = bench.json("out/diagnosis.json");
+    assert!(found["homogeneity"].is_null(), "the linear diagnosis answers");
+    assert_eq!(found["verdict"], "consistent", "{said}");
+    assert!(found["notes"].to_string().contains("nothing depends on amplitude"), "{}", found["notes"]);
+}
+
+#[test]
+fn hits_all_alike_are_diagnosed_by_their_frfs_and_amplitude_is_said_not_to_be_judged() {
+    let bench = recorded("hits-alike", "", &[100.0, 102.0, 98.0]);
+    let said = bench.done(&["diagnose", "plain.json", "hits.uff", "-o", "out"]);
+    assert!(said.contains("whether anything depends on amplitude could not be judged"), "{said}");
+    assert!(said.contains("strike at two or more strengths"), "{said}");
+    assert_eq!(bench.json("out/diagnosis.json")["verdict"], "consistent", "{said}");
+}
+
+#[test]
+fn simulate_refuses_bad_input_in_one_sentence() {
+    let bench = recorded("hits-bad", "", &[100.0]);
+    let refused = |fixture: &str, force: &str, more: &[&str], parts: &[&str]| {
+        let arguments = [&["simulate", fixture, "--force", force], more, &["-o", "r.uff"]].concat();
+        bench.refused(&arguments, parts);
+    };
+    bench.rewrite("exact.uff", "silent.uff", |datasets| datasets.retain(|d| d.ordinate_axis.data_type != 13));
+    refused("plain.json", "silent.uff", &[], &["silent.uff", "force"]);
+    refused("plain.json", "force.uff", &["--at", "9"], &["plain.json", "no point `9`", "1, 2, 3, 4"]);
+    bench.write("heavy.json", fixture(r#"{ "kind": "joint_mass", "place": "J", "mass": 0.01 }"#));
+    refused("heavy.json", "force.uff", &[], &["heavy.json", "joint_mass"]);
+    bench.write("roving.json", fixture(r#"{ "kind": "sensor_mass", "place": "response 4", "mass": 0.01 }"#));
+    refused("roving.json", "force.uff", &[], &["roving.json", "sensor_mass", "added_mass"]);
+    forces(&bench, "9", &[100.0]);
+    refused("plain.json", "force.uff", &[], &["force.uff", "9"]);
+}
