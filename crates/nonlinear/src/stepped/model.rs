@@ -238,7 +238,7 @@ impl Subject {
             let better = self.best_gain(&deltas);
             let moved = (better - log_gain).abs();
             log_gain = better;
-            if !(moved > 1e-7) {
+            if moved.is_nan() || moved <= 1e-7 {
                 break;
             }
         }
