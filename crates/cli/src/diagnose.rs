@@ -2,32 +2,37 @@
 
 use std::io::{IsTerminal, Write};
 
+use jointscope::diagnosis::Fit;
 use jointscope::estimation::ResponseWindow;
-use jointscope::fixture::Fixture;
 use jointscope::{Diagnosis, DiagnosisError, DiagnosisOptions, FrfSet, diagnosis_file};
-use jointscope_report::{PageContext, diagnosis_page};
-use serde_json::{Value, json};
+use jointscope_recordings::Recording;
+use jointscope_report::diagnosis_page;
 
 use crate::arguments::DiagnoseArguments;
 use crate::diagnose_hits::{self, Told};
 use crate::diagnose_levels;
+use crate::diagnosed::Diagnosed;
 use crate::input;
-use crate::measured::{as_recorded, measured};
-use crate::output::Outputs;
+use crate::measured::{as_recorded, of_recording};
 use crate::refusal::Refusal;
 
 /// Diagnoses, and writes `diagnosis.json`, `refitted.json`, `repaired.json` and `report.html`; answers with what was found and where the page
 /// is, or with `diagnosis.json` itself.
 pub fn run(arguments: &DiagnoseArguments) -> Result<String, Refusal> {
     let fixture = input::fixture(&arguments.fixture)?;
-    if let Some(answer) = diagnose_levels::answered(arguments, &fixture)? {
+    let sources = input::sources(&arguments.recording)?;
+    let recording = Recording::of(&sources, &fixture, &arguments.recording.options()?);
+    if let Ok(recording) = &recording
+        && let Some(answer) = diagnose_levels::answered(arguments, &fixture, recording)?
+    {
         return Ok(answer);
     }
-    let mut measured = measured(
+    let mut measured = of_recording(
+        recording,
+        &sources,
         &arguments.recording,
         &arguments.estimation,
-        &fixture,
-        &arguments.fixture,
+        (&fixture, &arguments.fixture),
         ResponseWindow::Auto,
     )?;
     if let Some(test) = &measured.hits {
@@ -57,34 +62,18 @@ pub fn run(arguments: &DiagnoseArguments) -> Result<String, Refusal> {
         DiagnosisError::Lines(_) => Refusal::new(format_args!("{names}: {error}")),
     })?;
     drop(progress);
-    let files = || std::iter::once(&arguments.fixture).chain(&arguments.recording.files);
-    let context = PageContext {
-        program: format!("jointscope {}", env!("CARGO_PKG_VERSION")),
-        command: input::command_line(),
-        inputs: files().map(|path| input::hash(path)).collect::<Result<_, _>>()?,
+    let model =
+        |fit: &Fit| fit.hypothesis.to_fixture().map_err(|error| Refusal::at(&arguments.fixture, error));
+    let search = &diagnosis.search;
+    let (refitted, repaired) = (model(&search.refitted)?, model(&search.repaired)?);
+    Diagnosed {
+        answer: diagnosis_file(&diagnosis),
+        fixtures: [&refitted, &repaired],
         notes: measured.notes,
         hits: measured.hits,
-    };
-    let answer = serde_json::to_string_pretty(&answer(&diagnosis, &context)).map_err(Refusal::new)? + "\n";
-    let Some(folder) = &arguments.output else { return Ok(answer.trim_end().to_owned()) };
-    let page = diagnosis_page(&diagnosis, &fixture, &context).map_err(Refusal::new)?;
-    let page_path = folder.join("report.html");
-    let mut outputs = Outputs::new(files());
-    outputs.add(folder.join("diagnosis.json"), answer.clone());
-    for (name, fit) in [("refitted", &diagnosis.search.refitted), ("repaired", &diagnosis.search.repaired)] {
-        let model: Fixture =
-            fit.hypothesis.to_fixture().map_err(|error| Refusal::at(&arguments.fixture, error))?;
-        outputs.add(folder.join(format!("{name}.json")), model.to_json());
+        summary: summary(&diagnosis),
     }
-    outputs.add(&page_path, page);
-    outputs.write()?;
-    if arguments.json {
-        return Ok(answer.trim_end().to_owned());
-    }
-    let mut lines = context.notes;
-    lines.extend(summary(&diagnosis));
-    lines.push(page_path.display().to_string());
-    Ok(lines.join("\n"))
+    .written(arguments, |context| diagnosis_page(&diagnosis, &fixture, context))
 }
 
 /// Refuses a choice of lines that leaves none, with what there is.
@@ -102,18 +91,6 @@ fn check_lines(arguments: &DiagnoseArguments, frfs: &FrfSet) -> Result<(), Refus
         ))),
         _ => Ok(()),
     }
-}
-
-/// `diagnosis.json`: the diagnosis, and what it was made from.
-fn answer(diagnosis: &Diagnosis, context: &PageContext) -> Value {
-    let mut answer = diagnosis_file(diagnosis);
-    answer["notes"] = json!(context.notes);
-    answer["made"] = json!({
-        "program": context.program,
-        "command": context.command,
-        "inputs": context.inputs.iter().map(|i| json!({"file": i.name, "sha256": i.sha256})).collect::<Value>(),
-    });
-    answer
 }
 
 /// What was found, a line each.

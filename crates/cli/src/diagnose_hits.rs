@@ -4,13 +4,11 @@ use jointscope::fixture::Fixture;
 use jointscope::nonlinear::{NonlinearDiagnosis, NonlinearOptions, Verdict};
 use jointscope::nonlinear_file;
 use jointscope_hits::Hit;
-use jointscope_report::{HammerTest, PageContext, hits_page};
-use serde_json::{Value, json};
+use jointscope_report::{HammerTest, hits_page};
 
 use crate::arguments::DiagnoseArguments;
-use crate::input;
+use crate::diagnosed::Diagnosed;
 use crate::measured::Measured;
-use crate::output::Outputs;
 use crate::refusal::Refusal;
 
 /// What hits say of amplitude.
@@ -45,42 +43,18 @@ pub fn written(
     diagnosis: &NonlinearDiagnosis,
     measured: Measured,
 ) -> Result<String, Refusal> {
-    let files = || std::iter::once(&arguments.fixture).chain(&arguments.recording.files);
-    let context = PageContext {
-        program: format!("jointscope {}", env!("CARGO_PKG_VERSION")),
-        command: input::command_line(),
-        inputs: files().map(|path| input::hash(path)).collect::<Result<_, _>>()?,
-        notes: measured.notes,
-        hits: measured.hits,
-    };
-    let mut answer = nonlinear_file(diagnosis);
-    answer["notes"] = json!(context.notes);
-    answer["made"] = json!({
-        "program": context.program,
-        "command": context.command,
-        "inputs": context.inputs.iter().map(|i| json!({"file": i.name, "sha256": i.sha256})).collect::<Value>(),
-    });
-    let answer = serde_json::to_string_pretty(&answer).map_err(Refusal::new)? + "\n";
-    let Some(folder) = &arguments.output else { return Ok(answer.trim_end().to_owned()) };
-    let page_path = folder.join("report.html");
-    let page = hits_page(diagnosis, fixture, &context).map_err(Refusal::new)?;
-    let mut outputs = Outputs::new(files());
-    outputs.add(folder.join("diagnosis.json"), answer.clone());
-    let [refitted, repaired] = match &diagnosis.models {
+    let fixtures = match &diagnosis.models {
         Some([_, refitted, repaired]) => [&refitted.fixture, &repaired.fixture],
         None => [fixture, fixture],
     };
-    outputs.add(folder.join("refitted.json"), refitted.to_json());
-    outputs.add(folder.join("repaired.json"), repaired.to_json());
-    outputs.add(&page_path, page);
-    outputs.write()?;
-    if arguments.json {
-        return Ok(answer.trim_end().to_owned());
+    Diagnosed {
+        answer: nonlinear_file(diagnosis),
+        fixtures,
+        notes: measured.notes,
+        hits: measured.hits,
+        summary: summary(diagnosis),
     }
-    let mut lines = context.notes;
-    lines.extend(summary(diagnosis));
-    lines.push(page_path.display().to_string());
-    Ok(lines.join("\n"))
+    .written(arguments, |context| hits_page(diagnosis, fixture, context))
 }
 
 fn summary(diagnosis: &NonlinearDiagnosis) -> Vec<String> {

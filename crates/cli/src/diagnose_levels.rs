@@ -4,22 +4,22 @@ use jointscope::fixture::Fixture;
 use jointscope::nonlinear::{Held, SteppedDiagnosis, SteppedError, SteppedLevel, Verdict};
 use jointscope::{Recording, stepped_file};
 use jointscope_recordings::HeldAmplitude;
-use jointscope_report::{PageContext, stepped_page};
-use serde_json::{Value, json};
+use jointscope_report::stepped_page;
 
 use crate::arguments::DiagnoseArguments;
+use crate::diagnosed::Diagnosed;
 use crate::input;
-use crate::output::Outputs;
 use crate::refusal::Refusal;
 
-/// The answer where the files hold FRFs at several stated levels; `None` where they do not, and another analysis applies.
-pub fn answered(arguments: &DiagnoseArguments, fixture: &Fixture) -> Result<Option<String>, Refusal> {
-    let sources = input::sources(&arguments.recording)?;
-    let recording = match Recording::of(&sources, fixture, &arguments.recording.options()?) {
-        Ok(recording) if recording.levels.len() > 1 => recording,
-        // Whatever is wrong with the files is said where they are read for good.
-        _ => return Ok(None),
-    };
+/// The answer where a recording holds FRFs at several stated levels; `None` where it does not, and another analysis applies.
+pub fn answered(
+    arguments: &DiagnoseArguments,
+    fixture: &Fixture,
+    recording: &Recording,
+) -> Result<Option<String>, Refusal> {
+    if recording.levels.len() < 2 {
+        return Ok(None);
+    }
     let names = input::names(&arguments.recording.files);
     let levels: Option<Vec<SteppedLevel>> = recording
         .levels
@@ -49,55 +49,23 @@ pub fn answered(arguments: &DiagnoseArguments, fixture: &Fixture) -> Result<Opti
         SteppedError::Model(_) => Refusal::at(&arguments.fixture, error),
         _ => Refusal::new(format_args!("{names}: {error}")),
     })?;
-    let mut notes = recording.notes;
+    let mut notes = recording.notes.clone();
     if !arguments.hold_out.is_empty() {
         notes.push(
             "`--hold-out` does not apply to FRFs at several levels: levels are left out one by one"
                 .to_owned(),
         );
     }
-    written(arguments, fixture, &diagnosis, notes).map(Some)
-}
-
-fn written(
-    arguments: &DiagnoseArguments,
-    fixture: &Fixture,
-    diagnosis: &SteppedDiagnosis,
-    notes: Vec<String>,
-) -> Result<String, Refusal> {
-    let files = || std::iter::once(&arguments.fixture).chain(&arguments.recording.files);
-    let context = PageContext {
-        program: format!("jointscope {}", env!("CARGO_PKG_VERSION")),
-        command: input::command_line(),
-        inputs: files().map(|path| input::hash(path)).collect::<Result<_, _>>()?,
+    let [refitted, repaired] = &diagnosis.fixtures;
+    Diagnosed {
+        answer: stepped_file(&diagnosis),
+        fixtures: [refitted, repaired],
         notes,
         hits: None,
-    };
-    let mut answer = stepped_file(diagnosis);
-    answer["notes"] = json!(context.notes);
-    answer["made"] = json!({
-        "program": context.program,
-        "command": context.command,
-        "inputs": context.inputs.iter().map(|i| json!({"file": i.name, "sha256": i.sha256})).collect::<Value>(),
-    });
-    let answer = serde_json::to_string_pretty(&answer).map_err(Refusal::new)? + "\n";
-    let Some(folder) = &arguments.output else { return Ok(answer.trim_end().to_owned()) };
-    let page_path = folder.join("report.html");
-    let page = stepped_page(diagnosis, fixture, &context).map_err(Refusal::new)?;
-    let mut outputs = Outputs::new(files());
-    outputs.add(folder.join("diagnosis.json"), answer.clone());
-    let [refitted, repaired] = &diagnosis.fixtures;
-    outputs.add(folder.join("refitted.json"), refitted.to_json());
-    outputs.add(folder.join("repaired.json"), repaired.to_json());
-    outputs.add(&page_path, page);
-    outputs.write()?;
-    if arguments.json {
-        return Ok(answer.trim_end().to_owned());
+        summary: summary(&diagnosis),
     }
-    let mut lines = context.notes;
-    lines.extend(summary(diagnosis));
-    lines.push(page_path.display().to_string());
-    Ok(lines.join("\n"))
+    .written(arguments, |context| stepped_page(&diagnosis, fixture, context))
+    .map(Some)
 }
 
 fn summary(diagnosis: &SteppedDiagnosis) -> Vec<String> {

@@ -15,7 +15,7 @@ use jointscope_uff::Encoding;
 
 use crate::arguments::{frf_pair, spectral_lines};
 use crate::input;
-use crate::output::Outputs;
+use crate::output::{Outputs, frfs_written};
 use crate::refusal::Refusal;
 use crate::synthesize::default_pairs;
 
@@ -131,16 +131,12 @@ pub fn run(arguments: &FemArguments) -> Result<String, Refusal> {
     }
     outputs.write()?;
     let elapsed = start.elapsed().as_secs_f64();
-    Ok(summary(&twin, &pairs, lines, output, elapsed).join("\n"))
+    let mut said = summary(&twin, elapsed);
+    said.push(frfs_written(output, &frfs));
+    Ok(said.join("\n"))
 }
 
-fn summary(
-    twin: &Twin,
-    pairs: &[FrfPair],
-    lines: &SpectralLines,
-    output: &std::path::Path,
-    elapsed: f64,
-) -> Vec<String> {
+fn summary(twin: &Twin, elapsed: f64) -> Vec<String> {
     let mut said = twin.disagreements(AGREEMENT);
     said.push(format!(
         "mesh: {} elements, {} nodes, {} equations, {}; mass {:.4} kg",
@@ -163,16 +159,6 @@ fn summary(
         };
         said.push(format!("mode {}: {hz:.3} Hz, {kind}", index + 1));
     }
-    let names: Vec<String> = pairs.iter().map(FrfPair::to_string).collect();
-    let hz = lines.hz();
-    said.push(format!(
-        "{}: FRFs {} on {} lines, {} to {} Hz",
-        output.display(),
-        names.join(", "),
-        hz.len(),
-        hz[0],
-        hz[hz.len() - 1]
-    ));
     said
 }
 

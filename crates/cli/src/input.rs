@@ -5,7 +5,8 @@ use std::path::{Path, PathBuf};
 
 use jointscope_fixture::Fixture;
 use jointscope_recordings::{Recording, RecordingError, Source};
-use jointscope_report::InputFile;
+use jointscope_report::{HammerTest, InputFile, PageContext};
+use serde_json::{Value, json};
 use sha2::{Digest, Sha256};
 
 use crate::arguments::RecordingArguments;
@@ -72,6 +73,31 @@ pub fn hash(path: &Path) -> Result<InputFile, Refusal> {
     let digest = Sha256::digest(bytes(path)?);
     let sha256 = digest.iter().map(|byte| format!("{byte:02x}")).collect();
     Ok(InputFile { name: path.display().to_string(), sha256 })
+}
+
+/// What a page says of its origin: program, command, inputs, notes and hits.
+pub fn context<'a>(
+    files: impl Iterator<Item = &'a PathBuf>,
+    notes: Vec<String>,
+    hits: Option<HammerTest>,
+) -> Result<PageContext, Refusal> {
+    Ok(PageContext {
+        program: format!("jointscope {}", env!("CARGO_PKG_VERSION")),
+        command: command_line(),
+        inputs: files.map(|path| hash(path)).collect::<Result<_, _>>()?,
+        notes,
+        hits,
+    })
+}
+
+/// Adds to a file's contents what they were made from.
+pub fn add_origin(answer: &mut Value, context: &PageContext) {
+    answer["notes"] = json!(context.notes);
+    answer["made"] = json!({
+        "program": context.program,
+        "command": context.command,
+        "inputs": context.inputs.iter().map(|i| json!({"file": i.name, "sha256": i.sha256})).collect::<Value>(),
+    });
 }
 
 /// The command as it was typed; the program by its name alone, wherever it lies.

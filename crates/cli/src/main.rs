@@ -8,6 +8,7 @@ mod decompose;
 mod diagnose;
 mod diagnose_hits;
 mod diagnose_levels;
+mod diagnosed;
 mod estimate;
 mod estimation_arguments;
 mod fem;

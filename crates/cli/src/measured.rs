@@ -34,10 +34,22 @@ pub fn measured(
     fixture_path: &Path,
     window: ResponseWindow,
 ) -> Result<Measured, Refusal> {
-    let options = arguments.options()?;
     let sources = input::sources(arguments)?;
+    let recording = Recording::of(&sources, fixture, &arguments.options()?);
+    of_recording(recording, &sources, arguments, estimation, (fixture, fixture_path), window)
+}
+
+/// As [`measured`], of files that were read already, and what they hold of FRFs.
+pub fn of_recording(
+    recording: Result<Recording, RecordingError>,
+    sources: &[Source],
+    arguments: &RecordingArguments,
+    estimation: &EstimationArguments,
+    (fixture, fixture_path): (&Fixture, &Path),
+    window: ResponseWindow,
+) -> Result<Measured, Refusal> {
     let names = input::names(&arguments.files);
-    match Recording::of(&sources, fixture, &options) {
+    match recording {
         Ok(recording) => {
             let level = recording.level().map_err(|error| Refusal::new(format_args!("{names}: {error}")))?;
             let (frfs, window_decay) = (level.frfs.clone(), level.window_decay);
@@ -48,11 +60,12 @@ pub fn measured(
             Ok(Measured { frfs, notes, window_decay, hits: None })
         }
         Err(RecordingError::OnlyTimeHistories { .. }) => {
-            let (hits, estimate) = estimated(arguments, estimation, &sources, Some(fixture), window)
-                .map_err(|error| match error {
+            let (hits, estimate) = estimated(arguments, estimation, sources, Some(fixture), window).map_err(
+                |error| match error {
                     Unreadable::Map(error) => Refusal::at(fixture_path, error),
                     Unreadable::Else(refusal) => refusal,
-                })?;
+                },
+            )?;
             let frfs = estimate.usable().ok_or_else(|| {
                 Refusal::new(format_args!(
                     "{names}: the hits excite no spectral line; record harder or longer ones"

@@ -38,13 +38,7 @@ pub fn run(arguments: &ModesArguments) -> Result<String, Refusal> {
         _ => None,
     };
     let files = || arguments.fixture.iter().chain(&arguments.recording.files);
-    let context = PageContext {
-        program: format!("jointscope {}", env!("CARGO_PKG_VERSION")),
-        command: input::command_line(),
-        inputs: files().map(|path| input::hash(path)).collect::<Result<_, _>>()?,
-        notes,
-        hits: None,
-    };
+    let context = input::context(files(), notes, None)?;
     let answer = answer(&analysis, damping.as_ref(), &context);
     let answer = serde_json::to_string_pretty(&answer).map_err(Refusal::new)? + "\n";
     let mut outputs = Outputs::new(files());
@@ -91,12 +85,7 @@ fn answer(analysis: &ModalAnalysis, damping: Option<&MeasuredDamping>, context: 
         });
         answer["fixture"] = json!({"matches": matches.collect::<Value>(), "remarks": damping.remarks});
     }
-    answer["notes"] = json!(context.notes);
-    answer["made"] = json!({
-        "program": context.program,
-        "command": context.command,
-        "inputs": context.inputs.iter().map(|i| json!({"file": i.name, "sha256": i.sha256})).collect::<Value>(),
-    });
+    input::add_origin(&mut answer, context);
     answer
 }
 

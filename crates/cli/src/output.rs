@@ -5,6 +5,7 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use crate::refusal::Refusal;
+use jointscope_spectra::{FrfPair, FrfSet};
 
 /// The files of a command, written together: each beside its place first, and moved there when all are complete. Whatever
 /// goes wrong, files that were there before are left or put back as they were.
@@ -65,6 +66,20 @@ impl Outputs {
         }
         Ok(())
     }
+}
+
+/// What was written of FRFs: file, names, lines.
+pub fn frfs_written(path: &Path, frfs: &FrfSet) -> String {
+    let names: Vec<String> = frfs.pairs().iter().map(FrfPair::to_string).collect();
+    let hz = frfs.lines().hz();
+    format!(
+        "{}: FRFs {} on {} lines, {} to {} Hz",
+        path.display(),
+        names.join(", "),
+        hz.len(),
+        hz[0],
+        hz[hz.len() - 1]
+    )
 }
 
 fn parent(path: &Path) -> &Path {

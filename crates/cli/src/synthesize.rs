@@ -8,7 +8,7 @@ use jointscope_uff::Encoding;
 
 use crate::arguments::SynthesizeArguments;
 use crate::input;
-use crate::output::Outputs;
+use crate::output::{Outputs, frfs_written};
 use crate::refusal::Refusal;
 
 /// Computes the FRFs and writes them; answers with what was written.
@@ -27,16 +27,7 @@ pub fn run(arguments: &SynthesizeArguments) -> Result<String, Refusal> {
     let mut outputs = Outputs::new([path]);
     outputs.add(output, bytes);
     outputs.write()?;
-    let names: Vec<String> = pairs.iter().map(FrfPair::to_string).collect();
-    let hz = lines.hz();
-    Ok(format!(
-        "{}: FRFs {} on {} lines, {} to {} Hz",
-        output.display(),
-        names.join(", "),
-        hz.len(),
-        hz[0],
-        hz[hz.len() - 1]
-    ))
+    Ok(frfs_written(output, &frfs))
 }
 
 /// The paper's four FRFs, across the joint between points 2 and 3.

@@ -1,7 +1,7 @@
 //! The parameters of a finding with their intervals.
 
 use crate::{Fit, Hypothesis, Observation};
-use jointscope_fixture::{Dof, Effect, ParameterSpec};
+use jointscope_fixture::{Effect, ParameterSpec};
 
 /// A parameter of a finding, in SI units.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -52,22 +52,8 @@ pub(crate) fn estimates(
                     [value - 1.96 * std, value + 1.96 * std]
                 }
             });
-            let unit = unit(parameter, effect.dof);
+            let unit = parameter.unit_in(effect.dof);
             Estimate { parameter: *parameter, unit, value, std: std.map(|s| s.1), interval }
         })
         .collect()
-}
-
-/// Of "N/m or N*m/rad", the one that the degree of freedom means.
-fn unit(parameter: &ParameterSpec, dof: Option<Dof>) -> &'static str {
-    match parameter.unit.split_once(" or ") {
-        Some((translation, rotation)) => {
-            if dof == Some(Dof::Rotation) {
-                rotation
-            } else {
-                translation
-            }
-        }
-        None => parameter.unit,
-    }
 }

@@ -138,11 +138,7 @@ mod tests {
         let effect = Effect::new(kind, place, dof, values);
         let estimates = kind.spec().parameters.iter().zip(values).map(|(parameter, &value)| Estimate {
             parameter: *parameter,
-            unit: parameter
-                .unit
-                .split(" or ")
-                .nth(usize::from(dof == Some(Dof::Rotation)))
-                .unwrap_or(parameter.unit),
+            unit: parameter.unit_in(dof),
             value,
             std: Some(share * value.abs()),
             interval: Some([value - 1.96 * share * value.abs(), value + 1.96 * share * value.abs()]),

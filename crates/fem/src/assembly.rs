@@ -128,7 +128,7 @@ fn rigid_motions(mesh: &Mesh, equations: &[Option<usize>], order: usize) -> Vec<
 }
 
 /// Translations along x, y, z, and rotations about them.
-fn rigid_motion(motion: usize, x: [f64; 3]) -> [f64; 3] {
+pub(crate) fn rigid_motion(motion: usize, x: [f64; 3]) -> [f64; 3] {
     let mut u = [0.0; 3];
     if motion < 3 {
         u[motion] = 1.0;

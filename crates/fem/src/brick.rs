@@ -208,6 +208,7 @@ pub fn strain_energy(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::assembly::rigid_motion;
     use proptest::prelude::*;
 
     const STEEL: Elasticity =
@@ -281,7 +282,7 @@ mod tests {
             prop_assert!((total / (STEEL.density * volume) - 1.0).abs() < 1e-12);
             let largest = stiffness.iter().fold(0.0_f64, |m, k| m.max(k.abs()));
             for motion in 0..6 {
-                let displacement: Vec<f64> = nodes.iter().flat_map(|x| rigid(motion, *x)).collect();
+                let displacement: Vec<f64> = nodes.iter().flat_map(|x| rigid_motion(motion, *x)).collect();
                 for row in stiffness.chunks(EQUATIONS) {
                     let force: f64 = row.iter().zip(&displacement).map(|(k, u)| k * u).sum();
                     prop_assert!(force.abs() < 1e-12 * largest, "motion {}: {} N", motion, force);
@@ -290,17 +291,5 @@ mod tests {
                 prop_assert!(strain_energy(&nodes, &STEEL, &own).unwrap() < 1e-24 * largest);
             }
         }
-    }
-
-    /// Translations, and rotations about the axes through the origin.
-    fn rigid(motion: usize, x: [f64; 3]) -> [f64; 3] {
-        let mut u = [0.0; 3];
-        if motion < 3 {
-            u[motion] = 1.0;
-        } else {
-            let (a, b) = ((motion + 1) % 3, (motion + 2) % 3);
-            (u[a], u[b]) = (-x[b], x[a]);
-        }
-        u
     }
 }

@@ -101,14 +101,9 @@ pub(crate) fn is_inverse(kind: EffectKind) -> bool {
 /// Name and unit of the leading parameter.
 pub(crate) fn parameter(kind: EffectKind, dof: Option<Dof>) -> (&'static str, &'static str) {
     let spec = kind.spec().parameters[leading(kind).0];
-    let unit = match (spec.unit.split_once(" or "), dof) {
-        (Some((_, rotation)), Some(Dof::Rotation)) => rotation,
-        (Some((translation, _)), _) => translation,
-        (None, _) => spec.unit,
-    };
     match leading(kind).1 {
         Law::FromOne => ("factor − 1", ""),
-        _ => (spec.name, unit),
+        _ => (spec.name, spec.unit_in(dof)),
     }
 }
 

@@ -355,17 +355,13 @@ fn estimates(law: &Law, deviations: &[f64]) -> Vec<Estimate> {
         };
         Estimate {
             parameter: *parameter,
-            unit: unit(parameter.unit, law.dof),
+            unit: parameter.unit_in(Some(law.dof)),
             value,
             std: known.then_some(deviation * slope.abs()),
             interval: known.then_some(interval),
         }
     })
     .collect()
-}
-
-fn unit(units: &'static str, dof: Dof) -> &'static str {
-    units.split(" or ").nth(usize::from(dof == Dof::Rotation)).unwrap_or(units)
 }
 
 /// Probability of the first name, and the others with theirs: by how much worse they fit, noise being as large as the best fit's residuals.

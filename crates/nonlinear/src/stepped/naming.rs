@@ -7,7 +7,6 @@ use super::least_squares::deviations;
 use super::model::{Change, Subject};
 use crate::{Estimate, RestoringLaw};
 use jointscope_fixture::Effect;
-use jointscope_spectra::Dof;
 
 /// Share of the change with level that a law must explain to be named.
 const NAMED: f64 = 0.75;
@@ -186,7 +185,6 @@ impl Named {
 /// Parameters of a law as the file names them; those above zero were fitted by their logarithm.
 fn estimates(effect: &Effect, law: &RestoringLaw, std: &[Option<f64>]) -> Vec<Estimate> {
     let logarithmic = !matches!(law, RestoringLaw::Cubic { .. });
-    let rotation = effect.dof == Some(Dof::Rotation);
     let each = effect.kind.spec().parameters.iter().enumerate().map(|(index, parameter)| {
         let value = effect.value(index);
         let spread = std.get(index).copied().flatten().filter(|s| !logarithmic || *s < 2.0);
@@ -196,24 +194,11 @@ fn estimates(effect: &Effect, law: &RestoringLaw, std: &[Option<f64>]) -> Vec<Es
         });
         Estimate {
             parameter: *parameter,
-            unit: unit(parameter.name, rotation),
+            unit: parameter.unit_in(effect.dof),
             value,
             std: spread.map(|s| if logarithmic { value * s } else { s }),
             interval,
         }
     });
     each.collect()
-}
-
-fn unit(parameter: &str, rotation: bool) -> &'static str {
-    match (parameter, rotation) {
-        ("stiffness3", true) => "N*m/rad^3",
-        ("stiffness3", false) => "N/m^3",
-        ("slip_force", true) => "N*m",
-        ("slip_force", false) => "N",
-        ("clearance", true) => "rad",
-        ("clearance", false) => "m",
-        (_, true) => "N*m/rad",
-        (_, false) => "N/m",
-    }
 }

@@ -3,7 +3,6 @@
 use super::{Concealed, Expected};
 use crate::{AS_GOOD, Answer, Found, Name, VISIBLE};
 use jointscope_diagnosis::Verdict;
-use jointscope_fixture::Dof;
 use serde_json::{Value, json};
 
 /// Probability from which a name counts as stated with certainty.
@@ -149,7 +148,7 @@ pub(super) fn sizes(truth: &Concealed, answer: &Answer) -> Vec<Size> {
         let Some(effect) = truth.expected.iter().find_map(|expected| expected.named(&name)) else { continue };
         let specs = effect.kind.spec().parameters;
         for (place, spec) in specs.iter().enumerate() {
-            let unit = unit(spec.unit, effect.dof);
+            let unit = spec.unit_in(effect.dof);
             all.push(Size {
                 parameter: if unit.is_empty() {
                     spec.name.to_owned()
@@ -163,13 +162,4 @@ pub(super) fn sizes(truth: &Concealed, answer: &Answer) -> Vec<Size> {
         }
     }
     all
-}
-
-/// Of "N/m or N*m/rad", the one that the degree of freedom means.
-fn unit(text: &'static str, dof: Option<Dof>) -> &'static str {
-    match (text.split_once(" or "), dof) {
-        (Some((_, rotation)), Some(Dof::Rotation)) => rotation,
-        (Some((translation, _)), _) => translation,
-        (None, _) => text,
-    }
 }
