@@ -7,3 +7,4 @@ mod signals;
 
 pub use bodies::MotionSource;
 pub use map::{ForceState, ForceStateMap};
+pub(crate) use signals::Lines;

@@ -5,7 +5,7 @@ use num_complex::Complex64;
 use realfft::RealFftPlanner;
 
 /// Lines of signals of one length and interval, padded so that what filters smear past the end does not come back at the beginning.
-pub(super) struct Lines {
+pub(crate) struct Lines {
     samples: usize,
     padded: usize,
     transform: Transform,

@@ -1,9 +1,7 @@
-//! Laws that a joint may follow, and where to begin fitting them.
+//! Where amplitude-dependent laws may act.
 
-use super::parameters::Law;
 use super::records::Record;
-use crate::RestoringLaw;
-use crate::time::kernel::{Output, Stepper, Steps};
+use crate::time::kernel::{Stepper, Steps};
 use crate::time::oversampling::oversampled_for_lines;
 use crate::time::structure::Structure;
 use jointscope_fixture::{Dof, Fixture, Joint};
@@ -56,37 +54,16 @@ fn reaches(fixture: &Fixture, record: &Record, highest_hz: f64) -> Option<Vec<f6
     const WITHIN: usize = 4;
     let structure = Structure::new(fixture, highest_hz).ok()?;
     let motions = fixture.joints().iter().filter_map(|joint| {
-        let rows = structure.joint_motion(&joint.name)?;
+        let rows = structure.across(&joint.name)?;
         let nominal = nominal_stiffness(&joint.law, fixture.joint_length(joint));
         let dofs = [Dof::Translation, Dof::Rotation].into_iter().zip(rows).enumerate();
         let used = dofs.filter(|(i, (dof, _))| nominal.at(*i, *i) > 0.0 && turns(fixture, joint, *dof));
-        Some(used.map(|(_, (_, row))| row).collect::<Vec<_>>())
+        Some(used.map(|(_, (_, (row, _)))| row).collect::<Vec<_>>())
     });
     let rows: Vec<Vec<f64>> = motions.flatten().collect();
-    let outputs = rows.into_iter().map(|row| Output { row, force: 0.0, elements: Vec::new() }).collect();
-    let system = structure.system_with(record.struck(), outputs).ok()?;
+    let system = structure.system_with(record.struck(), &[], &rows).ok()?;
     let steps = Steps { interval: record.hit.interval(), within: WITHIN, halvings: 0 };
     let run = Stepper::new(&system, steps)?
         .run(&oversampled_for_lines(record.hit.force(), WITHIN), record.hit.samples());
     Some(run.outputs.iter().map(|d| d.iter().fold(0.0, |most: f64, d| d.abs().max(most))).collect())
-}
-
-/// Laws to begin with on a seat, from weak to strong: in parts of the joint's own stiffness and of the motion that the hits reach.
-pub(crate) fn starts(seat: &Seat) -> Vec<Vec<Law>> {
-    let law = |law: RestoringLaw| Law::new(&seat.joint, seat.dof, law);
-    let (k, reach) = (seat.stiffness, seat.reach);
-    let springs = [0.02, 0.06, 0.2, 0.6, 2.0, 6.0].map(|share| share * k);
-    let cubic = [0.03, 0.1, 0.3, 1.0, 3.0, 10.0, 30.0]
-        .into_iter()
-        .flat_map(|share| [share, -0.2 * share])
-        .map(|share| law(RestoringLaw::Cubic { stiffness3: share * k / (reach * reach) }));
-    let slips = [0.015, 0.04, 0.1, 0.25, 0.6];
-    let friction = springs.into_iter().flat_map(|stiffness| {
-        slips.map(|share| RestoringLaw::Friction { slip_force: share * reach * stiffness, stiffness })
-    });
-    let clearances = [0.03, 0.08, 0.18, 0.35, 0.6, 0.85];
-    let gap = springs.into_iter().flat_map(|stiffness| {
-        clearances.map(|share| RestoringLaw::Gap { clearance: share * reach, stiffness })
-    });
-    vec![cubic.collect(), friction.map(law).collect(), gap.map(law).collect()]
 }

@@ -3,12 +3,12 @@
 use super::candidates::seats;
 use super::fit::Fit;
 use super::homogeneity::{CHANGED, Homogeneity, homogeneity};
-use super::misfit::{Focus, View};
-use super::parameters::{Law, Parameters, Tolerance};
+use super::judge::{Judgement, Step};
+use super::parameters::{Parameters, Tolerance};
 use super::records::{Record, held_out, records};
-use super::search::{Named, Search};
+use super::search::{Search, Span};
 use super::spectra::Transform;
-use crate::{DiagnoseError, ForceStateError, ForceStateMap, RestoringLaw};
+use crate::{DiagnoseError, ForceStateError, ForceStateMap};
 use jointscope_fixture::{BodyKind, Dof, Effect, Fixture, ParameterSpec};
 use jointscope_hits::Hit;
 use jointscope_lumped::StateSpace;
@@ -124,14 +124,13 @@ pub struct NonlinearDiagnosis {
     pub maps: Vec<Result<ForceStateMap, ForceStateError>>,
     /// Band that was compared, Hz.
     pub band: (f64, f64),
+    /// Time after the blow, s, up to which the shortest of the hits was followed, where not all were to their end: later the motion depends on
+    /// more than the force is known to.
+    pub followed: Option<f64>,
 }
 
-/// χ² per degree of freedom above which a model leaves something unexplained.
-const LEFT_OVER: f64 = 1.5;
 /// χ² per degree of freedom, and error relative to the responses, above which a second law is looked for.
 const SEEK_MORE: (f64, f64) = (3.0, 0.05);
-/// How much finer the last fit steps than the search.
-const FINER: usize = 2;
 /// Multiple of the highest elastic frequency up to which a force–state map goes.
 const HARMONIC: f64 = 3.5;
 /// Laws at the most.
@@ -170,6 +169,7 @@ impl NonlinearDiagnosis {
             reach,
             maps: Vec::new(),
             band,
+            followed: None,
         };
         if diagnosis.homogeneity.p_value >= CHANGED {
             return Ok(diagnosis);
@@ -212,13 +212,13 @@ impl NonlinearDiagnosis {
         let nominal = Parameters::nominal(fixture, options.exact, &channels);
         let unmoved = || DiagnoseError::NoMotion;
         let refitted = search.refitted(&nominal).ok_or_else(unmoved)?;
-        let whole = search.whole();
-        let degrees = whole.degrees();
-        let mut steps: Vec<Vec<Named>> = Vec::new();
+        let mut steps: Vec<Step> = Vec::new();
         let mut best = refitted.clone();
+        let mut span = Span::default();
+        let mut whole = search.view(&span);
         for count in 0..MOST_LAWS {
             let enough = || {
-                best.chi2 / degrees < SEEK_MORE.0
+                best.chi2 / whole.degrees() < SEEK_MORE.0
                     || whole.nrmse(&best.parameters).is_none_or(|e| e < SEEK_MORE.1)
             };
             if count > 0 && enough() {
@@ -226,161 +226,32 @@ impl NonlinearDiagnosis {
             }
             let base = if count == 0 { nominal.clone() } else { best.parameters.clone() };
             let model = base.to_fixture().unwrap_or_else(|_| fixture.clone());
-            let names = search.names(&model, &base);
+            let (names, followed) = search.names(&model, &base);
             let Some(first) = names.first() else { break };
-            let excess = |fit: &Fit| (fit.objective - degrees).max(0.0);
+            // What is not followed counts for neither.
+            whole = search.view(&followed);
+            let before = Fit::of(&whole, &best.parameters, 1).ok_or_else(unmoved)?;
+            let excess = |fit: &Fit| (fit.objective - whole.degrees()).max(0.0);
             let worth = WORTH[count.min(1)];
-            if excess(&first.fit) > (1.0 - worth) * excess(&best)
-                || first.fit.objective + 30.0 > best.objective
+            if excess(&first.fit) > (1.0 - worth) * excess(&before)
+                || first.fit.objective + 30.0 > before.objective
             {
                 break;
             }
             best = first.fit.clone();
-            steps.push(names);
+            let gain = before.objective - best.objective;
+            steps.push(Step { names, gain });
+            span = followed;
         }
-        self.judge(fixture, all, &held, &search, [&refitted, &best], &steps, &nominal).ok_or_else(unmoved)
+        let judgement = Judgement { all, held: &held, search: &search, span: &span, band: self.band };
+        let judged = judgement.of([&nominal, &refitted.parameters], &best, &steps).ok_or_else(unmoved)?;
+        self.verdict = judged.verdict;
+        self.findings = judged.findings;
+        self.models = Some(judged.models);
+        self.held_out = judged.held_out;
+        self.followed = judged.followed;
+        Ok(())
     }
-
-    #[allow(clippy::too_many_arguments)]
-    fn judge(
-        &mut self,
-        fixture: &Fixture,
-        all: &[Record],
-        held: &[usize],
-        search: &Search,
-        [refitted, best]: [&Fit; 2],
-        steps: &[Vec<Named>],
-        nominal: &Parameters,
-    ) -> Option<()> {
-        let focus = Focus { decay: 0.0, band: self.band, within: search.within(), halvings: 4 };
-        if !held.is_empty() {
-            let unseen = View::new(held.iter().map(|&i| &all[i]), &focus);
-            self.held_out = Some(HeldOut {
-                hits: held.iter().map(|&i| all[i].hit.number()).collect(),
-                nrmse_refitted: unseen.nrmse(&refitted.parameters)?,
-                nrmse_repaired: unseen.nrmse(&best.parameters)?,
-            });
-        }
-        // Names were chosen without the hits held out; quantities are then those that all hits give.
-        // They are read from steps finer than the search needs: what steps leave of bias must not exceed what noise leaves of doubt.
-        let fine = Focus { within: FINER * focus.within, ..focus };
-        let everything = View::new(all.iter(), &fine);
-        let degrees = everything.degrees();
-        let refitted = Fit::of(&everything, &refitted.parameters, 1)?;
-        let repaired =
-            if steps.is_empty() { refitted.clone() } else { Fit::of(&everything, &best.parameters, 2)? };
-        let model = |parameters: &Parameters, chi2: f64| {
-            Some(ModelFit {
-                fixture: parameters.to_fixture().ok()?,
-                nrmse: everything.nrmse(parameters)?,
-                chi2_per_dof: chi2 / degrees,
-                tolerances: parameters
-                    .tolerances
-                    .iter()
-                    .cloned()
-                    .zip(parameters.coordinates.iter().copied())
-                    .collect(),
-            })
-        };
-        self.models = Some([
-            model(nominal, everything.chi2(nominal)?)?,
-            model(&refitted.parameters, refitted.chi2)?,
-            model(&repaired.parameters, repaired.chi2)?,
-        ]);
-        let chi2_per_dof = repaired.chi2 / degrees;
-        self.findings = findings(&repaired, &refitted, steps, chi2_per_dof, fixture, all, self.band);
-        self.verdict = match (self.findings.is_empty(), chi2_per_dof < LEFT_OVER) {
-            (true, _) => Verdict::Unexplained,
-            (false, true) => Verdict::Explained,
-            (false, false) => Verdict::PartlyExplained,
-        };
-        Some(())
-    }
-}
-
-fn findings(
-    repaired: &Fit,
-    refitted: &Fit,
-    steps: &[Vec<Named>],
-    chi2_per_dof: f64,
-    fixture: &Fixture,
-    all: &[Record],
-    band: (f64, f64),
-) -> Vec<Finding> {
-    let parameters = &repaired.parameters;
-    let covariance = repaired.covariance(chi2_per_dof.max(1.0));
-    let n = parameters.coordinates.len();
-    let model = parameters.to_fixture().unwrap_or_else(|_| fixture.clone());
-    let references: Vec<&Record> = all.iter().collect();
-    let reached = seats(&model, &references, 2.0 * band.1);
-    let mut before = refitted.objective;
-    let laws = parameters.laws();
-    let mut findings = Vec::new();
-    for (index, (law, names)) in laws.iter().zip(steps).enumerate() {
-        let first = parameters.first_of(index);
-        let deviation = |k: usize| covariance[(first + k) * n + first + k].max(0.0).sqrt();
-        let (probability, alternatives) = probabilities(names, chi2_per_dof);
-        let gain = (before - names[0].fit.objective).max(0.0);
-        before = names[0].fit.objective;
-        findings.push(Finding {
-            estimates: estimates(law, &(0..law.parameters()).map(deviation).collect::<Vec<_>>()),
-            effect: law.effect(),
-            probability,
-            alternatives,
-            gain,
-            reach: reached.iter().find(|s| s.joint == law.joint && s.dof == law.dof).map_or(0.0, |s| s.reach),
-        });
-    }
-    findings
-}
-
-/// Relative deviation that steps and sampling leave in a parameter beside noise, as measured on the simulated laboratory.
-const INEXACT: f64 = 5e-3;
-/// Deviation of a logarithm beyond which a parameter is not determined.
-const VAGUE: f64 = 1.5;
-
-fn estimates(law: &Law, deviations: &[f64]) -> Vec<Estimate> {
-    let effect = law.effect();
-    let specs = effect.kind.spec().parameters;
-    let rows = specs.iter().zip(deviations).zip(law.slopes()).enumerate();
-    rows.map(|(place, ((parameter, deviation), slope))| {
-        let value = effect.value(place);
-        let logarithm = !matches!(law.law, RestoringLaw::Cubic { .. });
-        let slope_of_one = if logarithm { 1.0 } else { value.abs() / slope.abs() };
-        let deviation = deviation.hypot(INEXACT * slope_of_one);
-        let known = deviation.is_finite() && (!logarithm || deviation < VAGUE);
-        let interval = match logarithm {
-            true => [value * (-1.96 * deviation).exp(), value * (1.96 * deviation).exp()],
-            false => [value - 1.96 * deviation * slope, value + 1.96 * deviation * slope],
-        };
-        Estimate {
-            parameter: *parameter,
-            unit: parameter.unit_in(Some(law.dof)),
-            value,
-            std: known.then_some(deviation * slope.abs()),
-            interval: known.then_some(interval),
-        }
-    })
-    .collect()
-}
-
-/// Probability of the first name, and the others with theirs: by how much worse they fit, noise being as large as the best fit's residuals.
-/// The more the best leaves unexplained, the more is left for something not listed.
-fn probabilities(names: &[Named], chi2_per_dof: f64) -> (f64, Vec<(Effect, f64)>) {
-    let Some(best) = names.first() else { return (0.0, Vec::new()) };
-    let scale = chi2_per_dof.max(1.0);
-    let weight = |name: &Named| {
-        let extra =
-            name.fit.parameters.coordinates.len() as f64 - best.fit.parameters.coordinates.len() as f64;
-        (-0.5 * ((name.fit.objective - best.fit.objective) / scale + 7.0 * extra)).min(0.0).exp()
-    };
-    let unlisted = 0.01 + 0.3 * ((scale - LEFT_OVER) / 10.0).clamp(0.0, 1.0);
-    let sum: f64 = names.iter().map(weight).sum::<f64>() + unlisted;
-    let others = names[1..].iter().map(|name| {
-        let law = name.fit.parameters.laws().last().map(Law::effect).unwrap_or_else(|| name.law.effect());
-        (law, weight(name) / sum)
-    });
-    (1.0 / sum, others.filter(|(_, p)| *p > 1e-6).collect())
 }
 
 /// Lowest and highest elastic frequency of the fixture's bodies and joints within half the sampling rate, Hz.

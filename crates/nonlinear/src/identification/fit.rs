@@ -26,13 +26,22 @@ const FADING: f64 = 0.05;
 impl Fit {
     /// From `start`, derivatives being taken `renewals` times at the most; `None` where the start has no finite motion.
     pub fn of(view: &View, start: &Parameters, renewals: usize) -> Option<Self> {
+        Self::sloped(view, view, start, renewals)
+    }
+
+    /// The same, with derivatives of a view of the same records that steps more coarsely: they need not be as exact as what they lead to.
+    pub fn sloped(view: &View, slopes: &View, start: &Parameters, renewals: usize) -> Option<Self> {
+        let own = std::ptr::eq(view, slopes);
         let mut parameters = start.clone();
         let mut residuals = view.residuals(&parameters)?;
         let mut objective = sum_of_squares(&residuals) + parameters.penalty();
         let mut damping = 1e-3;
         let mut information = Vec::new();
         for _ in 0..renewals.max(1) {
-            let jacobian = view.jacobian(&parameters, &residuals)?;
+            let jacobian = match own {
+                true => view.jacobian(&parameters, &residuals)?,
+                false => slopes.jacobian(&parameters, &slopes.residuals(&parameters)?)?,
+            };
             let mut gains = Vec::new();
             let mut failures = 0;
             while gains.len() < STEPS && failures < 6 {
@@ -65,6 +74,14 @@ impl Fit {
             }
         }
         Some(Fit { chi2: objective - parameters.penalty(), objective, parameters, information })
+    }
+
+    /// These parameters as they are, with what a view tells of them.
+    pub fn at(view: &View, slopes: &View, parameters: &Parameters) -> Option<Self> {
+        let chi2 = view.chi2(parameters)?;
+        let information = slopes.jacobian(parameters, &slopes.residuals(parameters)?)?.matrix;
+        let parameters = parameters.clone();
+        Some(Fit { chi2, objective: chi2 + parameters.penalty(), parameters, information })
     }
 
     /// Covariance of the coordinates, row-major: inverse of the information of data and prior, the data's noise being `scale` times what was

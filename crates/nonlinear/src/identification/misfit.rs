@@ -48,6 +48,8 @@ pub(crate) struct Focus {
     pub halvings: usize,
 }
 
+/// Departure of every line that is not held against a model: what sampling, sensors and steps leave of it, relative to the line.
+const INEXACT: f64 = 2e-3;
 /// e^{−at} at which a windowed record is cut off.
 const CUT: f64 = 6.0;
 
@@ -62,10 +64,30 @@ pub(crate) struct Jacobian {
 }
 
 impl<'a> View<'a> {
-    pub fn new(records: impl IntoIterator<Item = &'a Record>, focus: &Focus) -> Self {
-        let records: Vec<&Record> = records.into_iter().collect();
-        let traces = records.into_par_iter().map(|record| Trace::new(record, focus)).collect();
+    /// The records, each up to its own end or to where it has died away.
+    pub fn new(records: &[&'a Record], focus: &Focus, ends: &[usize]) -> Self {
+        let end = |i: usize| ends.get(i).copied().unwrap_or(usize::MAX);
+        let traces = records.par_iter().enumerate().map(|(i, r)| Trace::new(r, focus, end(i))).collect();
         View { traces, within: focus.within, halvings: focus.halvings, highest_hz: 2.0 * focus.band.1 }
+    }
+
+    /// What every response of every record reads in the model, under the recorded force and `disturbance` times its noise; nothing for
+    /// parameters without a finite motion.
+    pub fn histories(&self, parameters: &Parameters, disturbance: f64) -> Option<Vec<Vec<Vec<f64>>>> {
+        let model = ViewModel::of(self, &parameters.to_fixture().ok()?)?;
+        let history = |trace: &Trace| {
+            let record = trace.record;
+            let disturbed = if disturbance != 0.0 {
+                let noise = disturbance * record.force_noise;
+                let noisy = record.hit.force().iter().zip(white(record.hit.samples()));
+                let noisy: Vec<f64> = noisy.map(|(force, one)| force + noise * one).collect();
+                oversampled_for_lines(&noisy, self.within)
+            } else {
+                trace.force.clone()
+            };
+            Some(model.stepper(record)?.run(&disturbed, trace.samples).outputs)
+        };
+        self.traces.par_iter().map(history).collect()
     }
 
     /// Number of real values compared.
@@ -77,6 +99,11 @@ impl<'a> View<'a> {
     /// χ² of the data; `None` for parameters without a finite motion.
     pub fn chi2(&self, parameters: &Parameters) -> Option<f64> {
         self.residuals(parameters).map(|residuals| sum_of_squares(&residuals))
+    }
+
+    /// χ² of the data and the priors.
+    pub fn objective(&self, parameters: &Parameters) -> Option<f64> {
+        self.chi2(parameters).map(|chi2| chi2 + parameters.penalty())
     }
 
     /// The residuals; `None` for parameters without a finite motion.
@@ -200,15 +227,18 @@ impl ViewModel {
 }
 
 impl<'a> Trace<'a> {
-    fn new(record: &'a Record, focus: &Focus) -> Self {
+    fn new(record: &'a Record, focus: &Focus, end: usize) -> Self {
         let hit = &record.hit;
         let interval = hit.interval();
         let wanted = match focus.decay > 0.0 {
             true => record.onset + (CUT / (focus.decay * interval)).ceil() as usize,
             false => died_away(record),
         };
-        let samples = smooth_length(wanted.min(hit.samples()), hit.samples());
-        let weight = |i: usize| (-focus.decay * interval * i.saturating_sub(record.onset) as f64).exp();
+        let samples = smooth_length(wanted.min(end).min(hit.samples()), hit.samples());
+        let weight = |i: usize| {
+            let decay = (-focus.decay * interval * i.saturating_sub(record.onset) as f64).exp();
+            decay * fading(i, record.onset, end)
+        };
         let window: Vec<f64> = (0..samples).map(weight).collect();
         let spacing = 1.0 / (samples as f64 * interval);
         let last = ((focus.band.1 / spacing) as usize).min(samples / 2);
@@ -227,7 +257,7 @@ impl<'a> Trace<'a> {
         trace
     }
 
-    /// Noise of a response and, through the FRF that the hit itself shows, of the force.
+    /// Noise of a response and, through the FRF that the hit itself shows, of the force; and what no model is exact to.
     fn weigh(&mut self) {
         let energy: f64 = self.window.iter().map(|w| w * w).sum();
         let force = self.spectrum(self.record.hit.force());
@@ -238,7 +268,7 @@ impl<'a> Trace<'a> {
             let variance = |(y, f): (&Complex64, &Complex64)| {
                 let through =
                     if f.norm_sqr() > 25.0 * force_noise { y.norm_sqr() / f.norm_sqr() } else { 0.0 };
-                own + through * force_noise
+                own + through * force_noise + INEXACT * INEXACT * y.norm_sqr()
             };
             self.weights.push(lines.iter().zip(&force).map(variance).map(|v| (2.0 / v).sqrt()).collect());
             self.power.push(lines.iter().map(|y| y.norm_sqr()).sum());
@@ -265,6 +295,25 @@ impl<'a> Trace<'a> {
         }
         all.iter().all(|r| r.is_finite()).then_some(all)
     }
+}
+
+/// 1 well before `end`, 0 from there on; half a cosine over the last part of the way from `onset`.
+fn fading(sample: usize, onset: usize, end: usize) -> f64 {
+    const PART: f64 = 0.2;
+    let length = PART * end.saturating_sub(onset) as f64;
+    let left = (end.saturating_sub(sample) as f64 / length.max(1.0)).min(1.0);
+    0.5 - 0.5 * (std::f64::consts::PI * left).cos()
+}
+
+/// White noise of unit variance, the same every time: it asks what the noise of a force may do, and is no draw of it.
+fn white(samples: usize) -> impl Iterator<Item = f64> {
+    let mut state = 0x9E37_79B9_7F4A_7C15_u64;
+    let mut uniform = move || {
+        state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        (state >> 11) as f64 / (1u64 << 53) as f64 - 0.5
+    };
+    // The sum of twelve has a variance of one.
+    (0..samples).map(move |_| (0..12).map(|_| uniform()).sum())
 }
 
 /// Samples until every response has sunk into its noise, with a tenth on top.

@@ -52,6 +52,14 @@ impl Law {
             && std::mem::discriminant(&self.law) == std::mem::discriminant(&other.law)
     }
 
+    /// Whether no parameter differs by more than a part `by`.
+    pub fn is_like(&self, other: &Law, by: f64) -> bool {
+        let pairs = |law: &Law| law.effect().parameters.iter().map(|q| q.value).collect::<Vec<f64>>();
+        let (own, theirs) = (pairs(self), pairs(other));
+        self.is_named_as(other)
+            && own.iter().zip(&theirs).all(|(a, b)| (a - b).abs() <= by * a.abs().max(b.abs()))
+    }
+
     pub fn effect(&self) -> Effect {
         self.law.to_effect(&self.joint, self.dof)
     }
@@ -141,6 +149,14 @@ impl Parameters {
         more
     }
 
+    /// The same quantities without any law.
+    pub fn without_laws(&self) -> Self {
+        let mut less = self.clone();
+        less.coordinates.truncate(less.tolerances.len());
+        less.laws.clear();
+        less
+    }
+
     /// The laws at the present coordinates.
     pub fn laws(&self) -> Vec<Law> {
         let mut at = self.tolerances.len();
@@ -195,7 +211,8 @@ impl Parameters {
     pub fn stepped(&self, step: &[f64]) -> Self {
         let mut next = self.clone();
         for (i, step) in step.iter().enumerate() {
-            next.coordinates[i] += step.clamp(-LONGEST, LONGEST);
+            let longest = if i < self.tolerances.len() { LONGEST } else { LONGEST_OF_LAW };
+            next.coordinates[i] += step.clamp(-longest, longest);
             if let Some(tolerance) = self.tolerances.get(i)
                 && tolerance.path.contains("damping")
                 && tolerance.nominal > 0.0
@@ -221,6 +238,8 @@ impl Parameters {
 
 /// Longest step of a coordinate: beyond it a linearised model says nothing.
 const LONGEST: f64 = 4.0;
+/// The same of a law's, a logarithm or a part of where it began: a spring that no longer slips, or never touches, would not find back.
+const LONGEST_OF_LAW: f64 = 0.4;
 
 fn scale(nominal: f64, std: Option<f64>) -> f64 {
     std.unwrap_or(if nominal != 0.0 { 0.1 * nominal.abs() } else { 1.0 })

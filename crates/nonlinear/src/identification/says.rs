@@ -57,6 +57,12 @@ impl NonlinearDiagnosis {
                 ));
             }
         }
+        if let Some(time) = self.followed {
+            remarks.push(format!(
+                "Some hits are compared only up to {} s after the blow: from there on the motion depends on more than the force is known to, and no model could follow it.",
+                Short(time)
+            ));
+        }
         if !self.homogeneity.from_repeats {
             remarks.push("No two hits are alike, so noise was taken from the ends of the records: repeat each strength to have it measured.".to_owned());
         }

@@ -41,16 +41,35 @@ impl<'a> Structure<'a> {
         Ok(Structure { fixture, space, elements })
     }
 
-    /// Rows that read deflection and rotation across a joint, as readings of the whole system.
-    pub fn joint_motion(&self, joint: &str) -> Option<[Vec<f64>; 2]> {
-        self.space.across(joint).map(|pair| pair.map(|(motion, _)| motion))
+    /// Deflection and rotation across a joint: the row over all states that reads it, and the load of a force pair of 1 that drives it.
+    pub fn across(&self, joint: &str) -> Option<[(Vec<f64>, Vec<f64>); 2]> {
+        self.space.across(joint)
     }
 
     /// The system struck at `struck` and read by `readings`. Rigid motions that nothing holds and no element feels are no states of it:
     /// their accelerations follow from the force at once.
     pub fn system(&self, struck: &Channel, readings: &[Reading]) -> Result<System, SimulationError> {
-        let load = self.space.load(&self.station(struck)?);
-        let mut outputs = Vec::with_capacity(readings.len());
+        self.system_with(struck, readings, &[])
+    }
+
+    /// The system struck at `struck`, read by `readings` and by rows over all states of the assembly.
+    pub fn system_with(
+        &self,
+        struck: &Channel,
+        readings: &[Reading],
+        rows: &[Vec<f64>],
+    ) -> Result<System, SimulationError> {
+        self.system_loaded(self.space.load(&self.station(struck)?), readings, rows)
+    }
+
+    /// The system under a load over all states of the assembly, read as in [`Structure::system_with`].
+    pub fn system_loaded(
+        &self,
+        load: Vec<f64>,
+        readings: &[Reading],
+        rows: &[Vec<f64>],
+    ) -> Result<System, SimulationError> {
+        let mut outputs = Vec::with_capacity(readings.len() + rows.len());
         for (channel, motion) in readings {
             let station = self.station(channel)?;
             outputs.push(match motion {
@@ -59,12 +78,7 @@ impl<'a> Structure<'a> {
                 Motion::Acceleration => self.acceleration(&self.space.velocity(&station), &load),
             });
         }
-        self.reduced(load, outputs)
-    }
-
-    /// The system struck at `struck` with outputs made of rows over all states of the assembly.
-    pub fn system_with(&self, struck: &Channel, outputs: Vec<Output>) -> Result<System, SimulationError> {
-        let load = self.space.load(&self.station(struck)?);
+        outputs.extend(rows.iter().map(|row| self.plain(row.clone())));
         self.reduced(load, outputs)
     }
 

@@ -1,0 +1,114 @@
+//! How far a motion can be followed: until what the force's noise, the length of steps, or what is not known of the law does to it has grown
+//! beyond the responses' own noise.
+//!
+//! A joint that knocks or hardens strongly can make motions that depend on more digits than a force is measured with, or steps resolve. What comes later in
+//! such a record is no evidence for or against any model, and a fit to it is caught in false minima.
+
+use super::fit::Fit;
+use super::misfit::{Focus, View};
+use super::parameters::Parameters;
+use super::records::Record;
+
+/// Samples over which departures are averaged.
+const BLOCK: usize = 64;
+/// Disturbances of the force in its noise's deviations: to either side, and so large that contacts which are nearly made are made.
+const DISTURBANCES: [f64; 2] = [3.0, -3.0];
+/// Departure, in deviations of the response's noise, from which on a record is not followed.
+const TOLERATED: f64 = 1.0;
+/// Departures of the same noise in the linear model, which weights allow for, up to which nothing is amiss.
+const LINEAR: f64 = 4.0;
+
+/// Deviations of the law's parameters, the fixture's quantities following them, that must not be felt: together all records are far more
+/// sensitive than one, so that in a record that can be followed they are not.
+const DEVIATIONS: f64 = 3.0;
+
+/// Samples of each record up to which `fit` can follow it, not below `least` seconds after its blow; no limit where motions stay
+/// together to the end.
+pub(crate) fn horizons(records: &[&Record], focus: &Focus, fit: &Fit, least: f64) -> Vec<usize> {
+    let (unlimited, parameters) = (vec![usize::MAX; records.len()], &fit.parameters);
+    if parameters.laws.is_empty() {
+        return unlimited;
+    }
+    let view = View::new(records, focus, &[]);
+    let fine =
+        View::new(records, &Focus { within: 2 * focus.within, halvings: focus.halvings + 1, ..*focus }, &[]);
+    let linear = parameters.without_laws();
+    let disturbed = DISTURBANCES.iter().map(|by| view.histories(parameters, *by));
+    let moved = departed(fit);
+    let moved = moved.iter().map(|parameters| view.histories(parameters, 0.0));
+    let disturbed: Option<Vec<_>> = disturbed.chain([fine.histories(parameters, 0.0)]).chain(moved).collect();
+    let undisturbed = (view.histories(parameters, 0.0), view.histories(&linear, 0.0));
+    let (Some(plain), Some(linear_plain)) = undisturbed else { return unlimited };
+    let (Some(disturbed), Some(linear)) = (disturbed, view.histories(&linear, DISTURBANCES[0])) else {
+        return unlimited;
+    };
+    (0..records.len())
+        .map(|i| {
+            let record = records[i];
+            let least = record.onset + (least / record.hit.interval()).ceil() as usize;
+            let ends = (0..record.noise.len()).flat_map(|j| {
+                let allowed = allowed(&linear_plain[i][j], &linear[i][j], record.noise[j]);
+                let plain = &plain[i][j];
+                disturbed.iter().filter_map(move |disturbed| {
+                    let departures = departures(plain, &disturbed[i][j]);
+                    let beyond =
+                        departures.iter().zip(&allowed).position(|(departure, most)| departure > most);
+                    beyond.map(|block| block * BLOCK)
+                })
+            });
+            ends.min().unwrap_or(usize::MAX).max(least)
+        })
+        .collect()
+}
+
+/// The parameters moved along with each of the laws', as far as the fit leaves them uncertain.
+fn departed(fit: &Fit) -> Vec<Parameters> {
+    let (parameters, covariance) = (&fit.parameters, fit.covariance(1.0));
+    let n = parameters.coordinates.len();
+    let along = |k: usize| {
+        let deviation = covariance[k * n + k].sqrt();
+        let mut moved = parameters.clone();
+        for (i, coordinate) in moved.coordinates.iter_mut().enumerate() {
+            *coordinate += DEVIATIONS * covariance[i * n + k] / deviation;
+        }
+        moved
+    };
+    let certain = |k: &usize| covariance[k * n + k] > 0.0 && covariance[k * n + k] < 0.01;
+    (parameters.tolerances.len()..n).filter(certain).map(along).collect()
+}
+
+fn departures(a: &[f64], b: &[f64]) -> Vec<f64> {
+    let square = |(a, b): (&f64, &f64)| (a - b).powi(2);
+    let blocks = a.chunks(BLOCK).zip(b.chunks(BLOCK));
+    blocks.map(|(a, b)| (a.iter().zip(b).map(square).sum::<f64>() / a.len() as f64).sqrt()).collect()
+}
+
+/// What the noise of the response and of the force through a linear structure may come to, block by block.
+fn allowed(plain: &[f64], disturbed: &[f64], noise: f64) -> Vec<f64> {
+    let mut largest: f64 = 0.0;
+    let most = |departure: f64| {
+        largest = largest.max(departure);
+        (TOLERATED * noise).max(LINEAR * largest)
+    };
+    departures(plain, disturbed).into_iter().map(most).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn departures_are_those_of_their_block_and_no_other() {
+        let plain = vec![0.0; 3 * BLOCK];
+        let disturbed: Vec<f64> = (0..3 * BLOCK).map(|i| if i < 2 * BLOCK { 0.0 } else { 2.0 }).collect();
+        assert_eq!(departures(&plain, &disturbed), [0.0, 0.0, 2.0]);
+    }
+
+    #[test]
+    fn what_a_linear_structure_makes_of_the_same_disturbance_is_allowed() {
+        let plain = vec![0.0; 2 * BLOCK];
+        let disturbed = vec![0.5; 2 * BLOCK];
+        assert_eq!(allowed(&plain, &disturbed, 1e-3), [LINEAR * 0.5; 2]);
+        assert_eq!(allowed(&plain, &plain, 1e-3), [TOLERATED * 1e-3; 2]);
+    }
+}

@@ -1,0 +1,212 @@
+//! Laws whose strength is linear, compared by what they leave of a reconstructed force: suggestions of where to begin a fit.
+
+use super::candidates::Seat;
+use super::parameters::Law;
+use super::reconstruction::Seen;
+use crate::{Memory, RestoringLaw};
+use jointscope_linalg::solve_positive_definite;
+use num_complex::Complex64;
+
+/// Laws of one seat to begin with.
+#[derive(Debug, Clone)]
+pub(crate) struct Suggestion {
+    /// Laws of one kind, the one that leaves least first.
+    pub laws: Vec<Law>,
+    /// Share of the weighted misfit that the first of them explains beyond what a linear change of the joint does.
+    pub share: f64,
+}
+
+impl Suggestion {
+    /// Takes the best law of another look, and all of them if it explains more.
+    pub fn join(&mut self, other: Suggestion) {
+        if other.share > self.share {
+            let own = std::mem::replace(self, other);
+            self.add(&own.laws[..1]);
+        } else {
+            self.add(&other.laws[..1]);
+        }
+    }
+
+    fn add(&mut self, laws: &[Law]) {
+        for law in laws {
+            if !self.laws.iter().any(|known| known.is_like(law, ALIKE)) {
+                self.laws.push(law.clone());
+            }
+        }
+    }
+}
+
+/// Relative difference of all parameters below which a start is no other one.
+const ALIKE: f64 = 0.1;
+/// Sizes at which a shape is tried, and how far down from the largest motion they go.
+const SIZES: usize = 36;
+const SMALLEST: f64 = 0.004;
+/// Shapes of a kind that are worth a fit.
+const SHAPES: usize = 2;
+
+/// Columns that stand for what the fixture states a little wrongly: stiffness, dashpot and mass across the joint.
+const LINEAR: usize = 3;
+
+/// Sums of least squares: linear columns, then the shape.
+#[derive(Clone, Copy, Default)]
+struct Sums {
+    matrix: [[f64; LINEAR + 1]; LINEAR + 1],
+    right: [f64; LINEAR + 1],
+    square: f64,
+}
+
+/// A law of strength 1 laid against what was recorded.
+struct Tried {
+    /// Its strength beside a linear change of the joint, and the share of what such a change leaves that it takes.
+    beside: (f64, f64),
+    /// Its strength without any such change, and the share of all that it takes.
+    alone: (f64, f64),
+}
+
+/// Least squares at one seat.
+struct Regression<'a> {
+    seen: &'a [Seen],
+    index: usize,
+    /// D, sD, s²D of every record.
+    columns: Vec<[Vec<Complex64>; LINEAR]>,
+    linear: Sums,
+    /// What linear columns take off the sum of squares.
+    taken: f64,
+}
+
+/// Suggestions for each kind of law that helps at a seat.
+pub(super) fn suggested(seen: &[Seen], index: usize, seat: &Seat) -> Vec<Suggestion> {
+    let largest = seen
+        .iter()
+        .flat_map(|one| one.seats[index].motion.iter().zip(&one.window))
+        .filter(|(_, window)| **window > 0.05)
+        .fold(0.0, |most: f64, (d, _)| most.max(d.abs()));
+    if !(largest > 0.0 && largest.is_finite()) {
+        return Vec::new();
+    }
+    let regression = Regression::of(seen, index);
+    let law = |law: RestoringLaw| Law::new(&seat.joint, seat.dof, law);
+    let unit = largest.powi(-2);
+    let cubic = |_: f64, k: f64| RestoringLaw::Cubic { stiffness3: k * unit };
+    let friction = |slip: f64, k: f64| RestoringLaw::Friction { slip_force: k * slip, stiffness: k };
+    let gap = |clearance: f64, k: f64| RestoringLaw::Gap { clearance, stiffness: k };
+    let sizes: Vec<f64> =
+        (0..SIZES).map(|i| largest * SMALLEST.powf(1.0 - i as f64 / (SIZES - 1) as f64) * 0.98).collect();
+    let of_kind = |shape: &dyn Fn(f64, f64) -> RestoringLaw, sizes: &[f64], signed: bool| {
+        let tried: Vec<Option<Tried>> =
+            sizes.iter().map(|size| regression.tried(shape(*size, 1.0))).collect();
+        let usable = |(k, share): (f64, f64)| (if signed { k != 0.0 } else { k > 0.0 }) && share.is_finite();
+        let results = |by: fn(&Tried) -> (f64, f64)| -> Vec<Option<(f64, f64)>> {
+            tried.iter().map(|tried| tried.as_ref().map(by).filter(|result| usable(*result))).collect()
+        };
+        let (beside, alone) = (results(|tried| tried.beside), results(|tried| tried.alone));
+        let best = peaks(&beside);
+        let share = beside[*best.first()?]?.1;
+        let mut suggestion = Suggestion { laws: Vec::new(), share };
+        let chosen = best.iter().take(SHAPES).map(|&i| (i, beside[i]));
+        for (i, result) in chosen.chain(peaks(&alone).first().map(|&i| (i, alone[i]))) {
+            suggestion.add(&result.map(|(k, _)| law(shape(sizes[i], k))).into_iter().collect::<Vec<_>>());
+        }
+        Some(suggestion)
+    };
+    let kinds =
+        [of_kind(&cubic, &sizes[..1], true), of_kind(&friction, &sizes, false), of_kind(&gap, &sizes, false)];
+    kinds.into_iter().flatten().collect()
+}
+
+/// Places of the local maxima of the share, the highest first.
+fn peaks(results: &[Option<(f64, f64)>]) -> Vec<usize> {
+    let share = |i: usize| results.get(i).copied().flatten().map_or(f64::NEG_INFINITY, |(_, share)| share);
+    let is_peak = |i: &usize| {
+        share(*i).is_finite() && share(*i) >= share(i + 1) && (*i == 0 || share(*i) > share(i - 1))
+    };
+    let mut peaks: Vec<usize> = (0..results.len()).filter(is_peak).collect();
+    peaks.sort_by(|a, b| share(*b).total_cmp(&share(*a)));
+    peaks
+}
+
+impl Sums {
+    /// Coefficient of the last of `count` columns, and what they take off the sum of squares.
+    fn solved(&self, count: usize) -> Option<(f64, f64)> {
+        let size: Vec<f64> = (0..count).map(|i| self.matrix[i][i].sqrt()).collect();
+        if size.iter().any(|s| *s <= 0.0 || !s.is_finite()) {
+            return None;
+        }
+        let mut matrix: Vec<f64> = (0..count * count)
+            .map(|k| self.matrix[k / count][k % count] / (size[k / count] * size[k % count]))
+            .collect();
+        (0..count).for_each(|i| matrix[i * count + i] += 1e-9);
+        let right: Vec<f64> = (0..count).map(|i| self.right[i] / size[i]).collect();
+        let mut solution = right.clone();
+        if !solve_positive_definite(&mut matrix, &mut solution) {
+            return None;
+        }
+        let gain: f64 = solution.iter().zip(&right).map(|(a, b)| a * b).sum();
+        Some((solution[count - 1] / size[count - 1], gain))
+    }
+}
+
+impl<'a> Regression<'a> {
+    fn of(seen: &'a [Seen], index: usize) -> Self {
+        let columns: Vec<[Vec<Complex64>; LINEAR]> = seen
+            .iter()
+            .map(|one| {
+                let motion = &one.seats[index].lines;
+                let times = |power: i32| motion.iter().zip(&one.s).map(|(d, s)| d * s.powi(power)).collect();
+                [times(0), times(1), times(2)]
+            })
+            .collect();
+        let mut linear = Sums::default();
+        for (one, columns) in seen.iter().zip(&columns) {
+            for (row, transfer) in one.seats[index].transfer.iter().enumerate() {
+                for (k, h) in transfer.iter().enumerate() {
+                    let values = columns.each_ref().map(|column| column[k] * h);
+                    let target = one.target[row][k];
+                    linear.square += target.norm_sqr();
+                    for i in 0..LINEAR {
+                        linear.right[i] += product(values[i], target);
+                        (0..LINEAR).for_each(|j| linear.matrix[i][j] += product(values[i], values[j]));
+                    }
+                }
+            }
+        }
+        let taken = linear.solved(LINEAR).map_or(0.0, |(_, gain)| gain);
+        Regression { seen, index, columns, linear, taken }
+    }
+
+    fn tried(&self, law: RestoringLaw) -> Option<Tried> {
+        let mut sums = self.linear;
+        for (one, columns) in self.seen.iter().zip(&self.columns) {
+            let at = &one.seats[self.index];
+            let mut memory = Memory::default();
+            let force = |d: &f64| {
+                memory = Memory { motion: *d, force: law.force(*d, &memory) };
+                memory.force
+            };
+            let shape = one.force(&at.motion.iter().map(force).collect::<Vec<f64>>());
+            for (row, transfer) in at.transfer.iter().enumerate() {
+                for (k, h) in transfer.iter().enumerate() {
+                    let value = shape[k] * h;
+                    sums.right[LINEAR] += product(value, one.target[row][k]);
+                    sums.matrix[LINEAR][LINEAR] += value.norm_sqr();
+                    for i in 0..LINEAR {
+                        let cross = product(value, columns[i][k] * h);
+                        sums.matrix[i][LINEAR] += cross;
+                        sums.matrix[LINEAR][i] += cross;
+                    }
+                }
+            }
+        }
+        let (strength, gain) = sums.solved(LINEAR + 1)?;
+        let (own, along) = (sums.matrix[LINEAR][LINEAR], sums.right[LINEAR]);
+        Some(Tried {
+            beside: (strength, (gain - self.taken) / (sums.square - self.taken)),
+            alone: (along / own, along * along / (own * sums.square)),
+        })
+    }
+}
+
+/// Real part of a̅b.
+fn product(a: Complex64, b: Complex64) -> f64 {
+    a.re * b.re + a.im * b.im
+}
