@@ -1,5 +1,6 @@
 //! `jointscope fem`: a fixture with `geometry` in, the FRFs of its finite-element twin out.
 
+use std::f64::consts::TAU;
 use std::io::IsTerminal;
 use std::path::PathBuf;
 use std::time::Instant;
@@ -152,6 +153,14 @@ fn summary(twin: &Twin, elapsed: f64) -> Vec<String> {
         twin.rigid_frequency(),
         twin.modes.residual
     ));
+    let counted = twin.modes.rigid.len() + twin.modes.eigenvalues.len();
+    said.push(match twin.modes.complete_below.is_finite() {
+        true => format!(
+            "{counted} modes, rigid ones included, are all there are below {:.3} Hz, by the count of negative pivots",
+            twin.modes.complete_below.sqrt() / TAU
+        ),
+        false => format!("{counted} modes, rigid ones included, are all there are"),
+    });
     for (index, (hz, kind)) in twin.frequencies().iter().zip(&twin.kinds).enumerate() {
         let kind = match kind {
             ModeKind::Transverse => "transverse",

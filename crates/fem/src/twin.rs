@@ -105,6 +105,14 @@ impl Twin {
         Ok(self.modes.shapes.iter().map(kind).collect())
     }
 
+    /// Counts the modes of the mesh below a frequency just above the last one anew, and compares with those at hand, as was done when they were found.
+    ///
+    /// # Errors
+    /// A mode that is missing, or no certain count.
+    pub fn check_complete(&self) -> Result<(), FemError> {
+        Ok(self.modes.check_complete(&self.matrices.stiffness, &self.matrices.mass)?)
+    }
+
     /// Frequencies of the elastic modes, Hz, ascending.
     pub fn frequencies(&self) -> Vec<f64> {
         self.modes.eigenvalues.iter().map(|value| value.max(0.0).sqrt() / TAU).collect()

@@ -10,7 +10,7 @@
 //! * [`complex_eigenvalues`]: eigenvalues of a general complex matrix;
 //! * [`Cholesky`]: symmetric positive definite matrices of any order, and their inverses;
 //! * with the feature `sparse`: [`SparsePattern`] and [`SparseSymmetric`] assembled from element matrices, [`SparseCholesky`], and
-//!   [`lowest_modes`] of a sparse pencil by shift-invert block Lanczos, residuals checked.
+//!   [`lowest_modes`] of a sparse pencil by shift-invert block Lanczos, residuals checked and the modes counted ([`eigenvalues_below`]).
 //!
 //! This is the only crate that names the library behind the eigenproblem. That library loses
 //! accuracy on symmetric matrices whose norm is far from one, so scaling and residual checks live
@@ -38,7 +38,11 @@ mod sparse;
 #[cfg(feature = "sparse")]
 mod sparse_cholesky;
 #[cfg(feature = "sparse")]
+mod sparse_inertia;
+#[cfg(feature = "sparse")]
 mod sparse_modes;
+#[cfg(feature = "sparse")]
+mod sparse_space;
 
 pub use cholesky::Cholesky;
 pub use eigen::{EigenError, ModalBasis, generalized_symmetric_eigen};
@@ -52,5 +56,7 @@ pub use real::{inverse, matrix_exponential};
 pub use sparse::{SparseError, SparsePattern, SparseSymmetric};
 #[cfg(feature = "sparse")]
 pub use sparse_cholesky::SparseCholesky;
+#[cfg(feature = "sparse")]
+pub use sparse_inertia::eigenvalues_below;
 #[cfg(feature = "sparse")]
 pub use sparse_modes::{ModesWanted, SparseModes, lowest_modes};

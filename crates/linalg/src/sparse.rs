@@ -23,6 +23,28 @@ pub enum SparseError {
         /// Number of equations.
         order: usize,
     },
+    /// The search found another number of modes than there are.
+    #[error(
+        "{counted} modes, rigid ones included, lie below {hz:.6} Hz by count and {found} were found: change the mesh a little, or ask for modes up to another frequency"
+    )]
+    Missing {
+        /// Modes found below the shift, rigid ones included.
+        found: usize,
+        /// Eigenvalues counted there.
+        counted: usize,
+        /// The shift, Hz.
+        hz: f64,
+    },
+    /// The count of eigenvalues below a shift cannot be relied on.
+    #[error(
+        "the modes below {hz:.6} Hz cannot be counted: a mode lies too close to that frequency, or neighbouring elements differ too much in size or stiffness"
+    )]
+    Uncertain {
+        /// The shift, Hz.
+        hz: f64,
+        /// What one step of refinement leaves of a solution with the factor; 0.1 is allowed.
+        error: f64,
+    },
     /// The projected eigenproblem failed, or the modes found do not satisfy the equations.
     #[error(transparent)]
     Modes(#[from] crate::EigenError),

@@ -1,5 +1,8 @@
 use crate::sparse::SparseError;
+use crate::sparse_inertia::count_below;
+use crate::sparse_space::{Random, Space};
 use crate::{EigenError, SparseCholesky, SparseSymmetric, generalized_symmetric_eigen};
+use std::f64::consts::TAU;
 
 /// How many modes are to be found.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -24,9 +27,34 @@ pub struct SparseModes {
     pub shift: f64,
     /// The factor of K + s M.
     pub factor: SparseCholesky,
+    /// A shift between the last mode and the next, (rad/s)²: below it no mode is missing, by count. Infinite where these are all modes there are.
+    pub complete_below: f64,
 }
 
-/// Vectors that are found at a time; a mode of higher multiplicity may be missed.
+impl SparseModes {
+    /// Counts the eigenvalues below [`complete_below`](Self::complete_below) anew and compares with the modes at hand.
+    ///
+    /// # Errors
+    /// [`SparseError::Missing`] where the count is another one; no certain count.
+    pub fn check_complete(
+        &self,
+        stiffness: &SparseSymmetric,
+        mass: &SparseSymmetric,
+    ) -> Result<(), SparseError> {
+        let found = self.rigid.len() + self.eigenvalues.len();
+        let counted = match self.complete_below.is_finite() {
+            true => count_below(stiffness, mass, self.complete_below, &self.factor.elimination)?,
+            false => mass.order(),
+        };
+        if found == counted { Ok(()) } else { Err(missing(found, counted, self.complete_below)) }
+    }
+}
+
+fn missing(found: usize, counted: usize, below: f64) -> SparseError {
+    SparseError::Missing { found, counted, hz: below.max(0.0).sqrt() / TAU }
+}
+
+/// Vectors that are found at a time; of modes of higher multiplicity some are missed at first, and found after the count.
 const BLOCK: usize = 4;
 
 /// The Krylov space ends at so many vectors for each mode that is wanted, and some.
@@ -38,13 +66,26 @@ const CONVERGED: f64 = 1e-10;
 /// Largest residual of a mode that is handed out: half of it is the most that its frequency can be off by.
 const RESIDUAL_ALLOWED: f64 = 1e-4;
 
-/// The lowest modes of K φ = λ M φ by block Lanczos on (K + sM)⁻¹M with full reorthogonalisation, s = `shift` > 0.
+/// Modes closer than this share of their eigenvalue are handed out together: the count is taken in a wider gap, where it is certain.
+const GAP: f64 = 1e-3;
+
+/// Where the count says that modes are missing, at most so many new start vectors are brought in at a time, so many times, and each time the search
+/// goes on for as many steps before it asks again.
+const FRESH: usize = 16;
+const FRESH_BLOCKS: usize = 4;
+const STEPS_A_FRESH_BLOCK: usize = 12;
+
+/// The lowest modes of K φ = λ M φ by block Lanczos on (K + sM)⁻¹M with full reorthogonalisation, s = `shift` > 0, none left out.
 ///
 /// `rigid` are the motions that cost no energy, known beforehand; the search goes on in their complement, so that no zero of multiplicity
 /// six competes with the modes. They need not be normalised. `progress` is told how many modes are found, of how many wanted.
 ///
+/// Lanczos alone may pass over a mode: one that its start vectors do not hold, or the fifth of five equal ones. So the eigenvalues below a shift just above the
+/// last mode are counted by the signs of a second factor's pivots ([`eigenvalues_below`](crate::eigenvalues_below)); if more are counted than were found, the search goes on with
+/// new start vectors beside the old, and ends with an error if they do not turn up.
+///
 /// # Errors
-/// A K + sM that is not positive definite, no convergence, or residuals that are too large.
+/// A K + sM that is not positive definite, no convergence, residuals that are too large, modes that the count says are missing.
 pub fn lowest_modes(
     stiffness: &SparseSymmetric,
     mass: &SparseSymmetric,
@@ -61,18 +102,14 @@ pub fn lowest_modes(
         space.held.push((vector, image));
     }
     let at_least = wanted.at_least.min(order.saturating_sub(rigid.len()));
-    let mut random = Random(0x9e37_79b9_7f4a_7c15);
+    let mut random = Random::new();
     let mut block: Vec<(Vec<f64>, Vec<f64>)> = Vec::new();
     for _ in 0..BLOCK.min(order - rigid.len().min(order)) {
-        let mut start = mass.multiply(&random.vector(order));
-        factor.solve_in_place(&mut start);
-        if let Some(next) = space.normalised(start, 1e-8) {
-            space.vectors.push(next.clone());
-            block.push(next);
-        }
+        space.start(&mut random, &factor, &mut block);
     }
     // Projection of (K + sM)⁻¹M on the space, columns one by one as the space grows.
     let mut columns: Vec<Vec<f64>> = Vec::new();
+    let mut census: Option<Census> = None;
     loop {
         let size = space.vectors.len();
         let mut images: Vec<f64> = block.iter().flat_map(|(_, image)| image.iter().copied()).collect();
@@ -94,21 +131,47 @@ pub fn lowest_modes(
             space.mass.quadratic(&sum).max(0.0).sqrt() / pair.value
         };
         let converged = ritz.iter().take_while(|pair| residual_of(pair) <= CONVERGED).count();
-        let eigenvalue = |pair: &RitzPair| 1.0 / pair.value - shift;
-        // One mode beyond the limit proves that none below it is left out.
-        let beyond = ritz[..converged].iter().any(|pair| eigenvalue(pair) > wanted.up_to);
-        let exhausted = size + rigid.len() >= order;
+        let eigenvalues: Vec<f64> = ritz[..converged].iter().map(|pair| 1.0 / pair.value - shift).collect();
         progress(converged.min(at_least), at_least);
-        if (converged >= at_least && beyond) || exhausted {
-            let count = match beyond {
-                true => ritz[..converged].iter().filter(|p| eigenvalue(p) <= wanted.up_to).count(),
-                false => converged,
-            };
-            return space.modes(stiffness, &ritz[..count.max(at_least).min(converged)], factor, shift);
+        if size + rigid.len() >= order {
+            // The space is all there is: nothing can be missing.
+            let all = (converged == size).then_some((converged, f64::INFINITY));
+            let (count, below) = complete_set(&eigenvalues, wanted.up_to, at_least)
+                .or(all)
+                .ok_or(EigenError::NoConvergence)?;
+            return modes(space, stiffness, &ritz[..count], factor, shift, below);
         }
-        let most = VECTORS_A_MODE * converged.max(at_least) + 60;
-        if size >= most {
-            return Err(EigenError::NoConvergence.into());
+        let complete = match &census {
+            None => complete_set(&eigenvalues, wanted.up_to, at_least),
+            // The count holds for the shift where it was taken.
+            Some(census) => Some((below(&eigenvalues, census.shift), census.shift)),
+        };
+        if let Some((count, below)) = complete {
+            let census = match &mut census {
+                Some(census) => census,
+                None => census.insert(Census::at(stiffness, mass, below, &factor)?),
+            };
+            let found = rigid.len() + count;
+            if found == census.counted {
+                return modes(space, stiffness, &ritz[..count], factor, shift, below);
+            }
+            let due = size >= census.fresh_after;
+            if found > census.counted || (due && census.fresh_blocks == FRESH_BLOCKS) {
+                return Err(missing(found, census.counted, below));
+            }
+            if due {
+                let fresh = (census.counted - found).clamp(BLOCK, FRESH);
+                census.fresh_blocks += 1;
+                // A block of that many more needs as many more vectors for each of its steps.
+                census.fresh_after = size + STEPS_A_FRESH_BLOCK * (block.len() + fresh);
+                (0..fresh).for_each(|_| space.start(&mut random, &factor, &mut next));
+            }
+        } else {
+            // Ritz values lie above the eigenvalues: there are at least so many modes.
+            let known = ritz.iter().filter(|pair| 1.0 / pair.value - shift <= wanted.up_to).count();
+            if size >= VECTORS_A_MODE * known.max(converged).max(at_least) + 60 {
+                return Err(EigenError::NoConvergence.into());
+            }
         }
         for rest in outside {
             let vector = match space.normalised(rest, 1e-10) {
@@ -127,6 +190,40 @@ pub fn lowest_modes(
         }
         block = next;
     }
+}
+
+/// The count of eigenvalues below a shift, and what was done because of it.
+struct Census {
+    shift: f64,
+    counted: usize,
+    fresh_blocks: usize,
+    /// Vectors that the space must have before new directions are brought in again.
+    fresh_after: usize,
+}
+
+impl Census {
+    fn at(
+        stiffness: &SparseSymmetric,
+        mass: &SparseSymmetric,
+        shift: f64,
+        factor: &SparseCholesky,
+    ) -> Result<Self, SparseError> {
+        let counted = count_below(stiffness, mass, shift, &factor.elimination)?;
+        Ok(Census { shift, counted, fresh_blocks: 0, fresh_after: 0 })
+    }
+}
+
+fn below(eigenvalues: &[f64], limit: f64) -> usize {
+    eigenvalues.iter().filter(|value| **value <= limit).count()
+}
+
+/// How many of the modes found so far are handed out, and a shift in the gap behind them; `None` while no mode beyond such a gap is known.
+fn complete_set(eigenvalues: &[f64], up_to: f64, at_least: usize) -> Option<(usize, f64)> {
+    let least = below(eigenvalues, up_to).max(at_least);
+    (least..eigenvalues.len()).find_map(|count| {
+        let (last, next) = (count.checked_sub(1).map_or(0.0, |i| eigenvalues[i]), eigenvalues[count]);
+        (next - last > GAP * next).then_some((count, 0.5 * (last + next)))
+    })
 }
 
 struct RitzPair {
@@ -152,105 +249,47 @@ fn ritz_pairs(columns: &[Vec<f64>], size: usize) -> Result<Vec<RitzPair>, EigenE
     Ok(pairs.filter(|pair| pair.value > 0.0).collect())
 }
 
-/// M-orthonormal vectors with their images under M: the known motions, and those of the search.
-struct Space<'a> {
-    mass: &'a SparseSymmetric,
-    held: Vec<(Vec<f64>, Vec<f64>)>,
-    vectors: Vec<(Vec<f64>, Vec<f64>)>,
-}
-
-impl Space<'_> {
-    fn coefficients(&self, vector: &[f64]) -> Vec<f64> {
-        self.vectors.iter().map(|(_, image)| dot(image, vector)).collect()
-    }
-
-    /// What is left of a vector outside the space; twice, because once leaves rounding of the removed part.
-    fn remainder(&self, mut vector: Vec<f64>) -> Vec<f64> {
-        for _ in 0..2 {
-            for (known, image) in self.held.iter().chain(&self.vectors) {
-                let part = dot(image, &vector);
-                vector.iter_mut().zip(known).for_each(|(v, k)| *v -= part * k);
-            }
+/// Modes of the assembly from Ritz pairs, their residuals looked at.
+fn modes(
+    space: Space,
+    stiffness: &SparseSymmetric,
+    pairs: &[RitzPair],
+    factor: SparseCholesky,
+    shift: f64,
+    complete_below: f64,
+) -> Result<SparseModes, SparseError> {
+    let order = space.mass.order();
+    let (mut eigenvalues, mut shapes) = (Vec::new(), Vec::new());
+    let mut residual = 0.0_f64;
+    for pair in pairs {
+        let mut shape = vec![0.0; order];
+        for ((vector, _), weight) in space.vectors.iter().zip(&pair.vector) {
+            shape.iter_mut().zip(vector).for_each(|(s, v)| *s += weight * v);
         }
-        vector
+        let eigenvalue = 1.0 / pair.value - shift;
+        // K φ as it stands, carried through the factor: what is left of Kφ − λMφ as a motion. Unsmoothed it is mostly the rounding of
+        // stiffness that cancels, which grows with the finest element and says nothing of the mode.
+        let (mut left, inertia) = (stiffness.multiply(&shape), space.mass.multiply(&shape));
+        left.iter_mut().zip(&inertia).for_each(|(f, m)| *f -= eigenvalue * m);
+        factor.solve_in_place(&mut left);
+        let size = space.mass.quadratic(&left).max(0.0).sqrt();
+        residual = residual.max(size * (eigenvalue.abs() + shift) / eigenvalue.abs());
+        eigenvalues.push(eigenvalue);
+        shapes.push(shape);
     }
-
-    /// A vector's remainder at unit modal mass, with its image; `None` where less than `least` of it is left.
-    fn normalised(&self, vector: Vec<f64>, least: f64) -> Option<(Vec<f64>, Vec<f64>)> {
-        let before = self.mass.quadratic(&vector).max(0.0).sqrt();
-        let mut rest = self.remainder(vector);
-        let norm = self.mass.quadratic(&rest).max(0.0).sqrt();
-        if !(norm > least * before && norm > 0.0 && norm.is_finite()) {
-            return None;
-        }
-        rest.iter_mut().for_each(|v| *v /= norm);
-        let mut rest = self.remainder(rest);
-        let norm = self.mass.quadratic(&rest).max(0.0).sqrt();
-        rest.iter_mut().for_each(|v| *v /= norm);
-        let image = self.mass.multiply(&rest);
-        Some((rest, image))
+    // A comparison that a residual of NaN fails as well.
+    if pairs.is_empty() || residual <= RESIDUAL_ALLOWED {
+        let rigid = space.held.into_iter().map(|(vector, _)| vector).collect();
+        return Ok(SparseModes { rigid, eigenvalues, shapes, residual, shift, factor, complete_below });
     }
-
-    fn modes(
-        self,
-        stiffness: &SparseSymmetric,
-        pairs: &[RitzPair],
-        factor: SparseCholesky,
-        shift: f64,
-    ) -> Result<SparseModes, SparseError> {
-        let order = self.mass.order();
-        let (mut eigenvalues, mut shapes) = (Vec::new(), Vec::new());
-        let mut residual = 0.0_f64;
-        for pair in pairs {
-            let mut shape = vec![0.0; order];
-            for ((vector, _), weight) in self.vectors.iter().zip(&pair.vector) {
-                shape.iter_mut().zip(vector).for_each(|(s, v)| *s += weight * v);
-            }
-            let eigenvalue = 1.0 / pair.value - shift;
-            // K φ as it stands, carried through the factor: what is left of Kφ − λMφ as a motion. Unsmoothed it is mostly the rounding of
-            // stiffness that cancels, which grows with the finest element and says nothing of the mode.
-            let (mut left, inertia) = (stiffness.multiply(&shape), self.mass.multiply(&shape));
-            left.iter_mut().zip(&inertia).for_each(|(f, m)| *f -= eigenvalue * m);
-            factor.solve_in_place(&mut left);
-            let size = self.mass.quadratic(&left).max(0.0).sqrt();
-            residual = residual.max(size * (eigenvalue.abs() + shift) / eigenvalue.abs());
-            eigenvalues.push(eigenvalue);
-            shapes.push(shape);
-        }
-        // A comparison that a residual of NaN fails as well.
-        if pairs.is_empty() || residual <= RESIDUAL_ALLOWED {
-            let rigid = self.held.into_iter().map(|(vector, _)| vector).collect();
-            return Ok(SparseModes { rigid, eigenvalues, shapes, residual, shift, factor });
-        }
-        Err(EigenError::Inaccurate { residual, allowed: RESIDUAL_ALLOWED }.into())
-    }
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
-}
-
-/// SplitMix64: start vectors that are the same on every machine.
-struct Random(u64);
-
-impl Random {
-    fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
-    }
-
-    fn vector(&mut self, order: usize) -> Vec<f64> {
-        (0..order).map(|_| self.next()).collect()
-    }
+    Err(EigenError::Inaccurate { residual, allowed: RESIDUAL_ALLOWED }.into())
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::SparsePattern;
+    use crate::sparse_space::dot;
     use std::f64::consts::PI;
 
     /// A free chain of n unit masses on unit springs, stiffness scaled.
@@ -305,5 +344,57 @@ mod tests {
         let modes = lowest_modes(&k, &m, &[vec![1.0; 3]], 1.0, wanted, |_, _| {}).unwrap();
         assert_eq!(modes.eigenvalues.len(), 2);
         assert!((modes.eigenvalues[0] - 1.0).abs() < 1e-12 && (modes.eigenvalues[1] - 3.0).abs() < 1e-12);
+    }
+
+    /// `copies` chains of n unit masses beside each other, each held at one end: every eigenvalue as often as there are chains.
+    fn equal_chains(copies: usize, n: usize) -> (SparseSymmetric, SparseSymmetric) {
+        let couples: Vec<Vec<usize>> =
+            (0..copies * n).map(|i| if i % n == 0 { vec![i] } else { vec![i - 1, i] }).collect();
+        let pattern = SparsePattern::of_elements(copies * n, couples.iter().map(Vec::as_slice)).unwrap();
+        let (mut k, mut m) = (SparseSymmetric::zero(&pattern), SparseSymmetric::zero(&pattern));
+        for i in 0..copies * n {
+            m.add_element(&[Some(i)], &[1.0]).unwrap();
+            let before = (i % n > 0).then(|| i - 1);
+            k.add_element(&[before, Some(i)], &[1.0, -1.0, -1.0, 1.0]).unwrap();
+        }
+        (k, m)
+    }
+
+    #[test]
+    fn equal_modes_of_any_multiplicity_are_all_found() {
+        let n = 60;
+        let exact = |r: usize| 4.0 * (PI * (r as f64 + 0.5) / (2 * n + 1) as f64).sin().powi(2);
+        for copies in [2, 5, 8, 13] {
+            let (k, m) = equal_chains(copies, n);
+            let wanted = ModesWanted { at_least: 1, up_to: 0.5 * (exact(2) + exact(3)) };
+            let modes = lowest_modes(&k, &m, &[], 1e-4, wanted, |_, _| {})
+                .unwrap_or_else(|error| panic!("{copies} chains: {error}"));
+            assert_eq!(modes.eigenvalues.len(), 3 * copies, "{copies} chains: {:?}", modes.eigenvalues);
+            for (index, value) in modes.eigenvalues.iter().enumerate() {
+                assert!(
+                    (value / exact(index / copies) - 1.0).abs() < 1e-8,
+                    "{copies} chains, mode {index}: {value}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn a_set_that_would_end_within_equal_modes_takes_them_all() {
+        let (k, m) = equal_chains(3, 60);
+        let wanted = ModesWanted { at_least: 4, up_to: 0.0 };
+        let modes = lowest_modes(&k, &m, &[], 1e-4, wanted, |_, _| {}).unwrap();
+        assert_eq!(modes.eigenvalues.len(), 6);
+    }
+
+    #[test]
+    fn a_mode_that_is_taken_away_is_missed() {
+        let (k, m) = free_chain(300, 1.0);
+        let wanted = ModesWanted { at_least: 6, up_to: 0.0 };
+        let mut modes = lowest_modes(&k, &m, &[vec![1.0; 300]], 1e-4, wanted, |_, _| {}).unwrap();
+        assert_eq!(modes.check_complete(&k, &m), Ok(()));
+        modes.eigenvalues.remove(2);
+        let hz = modes.complete_below.sqrt() / TAU;
+        assert_eq!(modes.check_complete(&k, &m), Err(SparseError::Missing { found: 6, counted: 7, hz }));
     }
 }

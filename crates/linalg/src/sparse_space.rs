@@ -1,0 +1,81 @@
+use crate::{SparseCholesky, SparseSymmetric};
+
+/// M-orthonormal vectors with their images under M: the known motions, and those of the search.
+pub(crate) struct Space<'a> {
+    pub(crate) mass: &'a SparseSymmetric,
+    pub(crate) held: Vec<(Vec<f64>, Vec<f64>)>,
+    pub(crate) vectors: Vec<(Vec<f64>, Vec<f64>)>,
+}
+
+impl Space<'_> {
+    pub(crate) fn coefficients(&self, vector: &[f64]) -> Vec<f64> {
+        self.vectors.iter().map(|(_, image)| dot(image, vector)).collect()
+    }
+
+    /// What is left of a vector outside the space; twice, because once leaves rounding of the removed part.
+    pub(crate) fn remainder(&self, mut vector: Vec<f64>) -> Vec<f64> {
+        for _ in 0..2 {
+            for (known, image) in self.held.iter().chain(&self.vectors) {
+                let part = dot(image, &vector);
+                vector.iter_mut().zip(known).for_each(|(v, k)| *v -= part * k);
+            }
+        }
+        vector
+    }
+
+    /// A vector's remainder at unit modal mass, with its image; `None` where less than `least` of it is left.
+    pub(crate) fn normalised(&self, vector: Vec<f64>, least: f64) -> Option<(Vec<f64>, Vec<f64>)> {
+        let before = self.mass.quadratic(&vector).max(0.0).sqrt();
+        let mut rest = self.remainder(vector);
+        let norm = self.mass.quadratic(&rest).max(0.0).sqrt();
+        if !(norm > least * before && norm > 0.0 && norm.is_finite()) {
+            return None;
+        }
+        rest.iter_mut().for_each(|v| *v /= norm);
+        let mut rest = self.remainder(rest);
+        let norm = self.mass.quadratic(&rest).max(0.0).sqrt();
+        rest.iter_mut().for_each(|v| *v /= norm);
+        let image = self.mass.multiply(&rest);
+        Some((rest, image))
+    }
+
+    /// Takes in a random vector, smoothed by the factor, and adds it to a block if anything of it is new.
+    pub(crate) fn start(
+        &mut self,
+        random: &mut Random,
+        factor: &SparseCholesky,
+        block: &mut Vec<(Vec<f64>, Vec<f64>)>,
+    ) {
+        let mut vector = self.mass.multiply(&random.vector(self.mass.order()));
+        factor.solve_in_place(&mut vector);
+        if let Some(next) = self.normalised(vector, 1e-8) {
+            self.vectors.push(next.clone());
+            block.push(next);
+        }
+    }
+}
+
+pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+/// SplitMix64: start vectors that are the same on every machine.
+pub(crate) struct Random(u64);
+
+impl Random {
+    pub(crate) fn new() -> Self {
+        Random(0x9e37_79b9_7f4a_7c15)
+    }
+
+    fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+    }
+
+    pub(crate) fn vector(&mut self, order: usize) -> Vec<f64> {
+        (0..order).map(|_| self.next()).collect()
+    }
+}
