@@ -49,13 +49,17 @@ pub fn run(arguments: &CompareArguments) -> Result<String, Refusal> {
     lines.extend(comparison.rankings.iter().map(|entry| {
         let order: Vec<&str> =
             entry.ranking.order.iter().map(|i| comparison.joints[*i].name.as_str()).collect();
+        // No order is certain.
+        let probability = match entry.ranking.probability {
+            p if p > 0.999 => "more than 0.999".to_owned(),
+            p => format!("{p:.3}"),
+        };
         format!(
-            "{}{}{}: {} (right with a probability of {:.3})",
+            "{}{}{}: {} (right with a probability of {probability})",
             entry.kind.symbol(),
             entry.element.0 + 1,
             entry.element.1 + 1,
             order.join(" < "),
-            entry.ranking.probability
         )
     }));
     lines.push(page_path.display().to_string());

@@ -44,6 +44,12 @@ fn printed(value: Option<f64>) -> String {
     value.map_or("-".to_owned(), |value| value.to_string())
 }
 
+/// A number with its sign, and none where it rounds to zero.
+fn signed(value: f64, decimals: usize) -> String {
+    let text = format!("{value:+.decimals$}");
+    if text.contains(|c| ('1'..='9').contains(&c)) { text } else { text[1..].to_owned() }
+}
+
 /// A computed cell with its deviation from the printed one, or `same` where it rounds to what is printed.
 fn beside(found: Option<f64>, paper: Option<f64>) -> String {
     match (found, paper) {
@@ -51,10 +57,11 @@ fn beside(found: Option<f64>, paper: Option<f64>) -> String {
             let decimals = paper.to_string().split_once('.').map_or(1, |(_, after)| after.len());
             let rounds = (found - paper).abs() <= 0.5 * 10_f64.powi(-(decimals as i32)) * (1.0 + 1e-9);
             let deviation = 100.0 * (found / paper - 1.0);
+            let decimals = usize::from(deviation.abs() < 0.95);
             if rounds {
                 format!("{} (same)", digits(found))
             } else {
-                format!("{} ({deviation:+.0} %)", digits(found))
+                format!("{} ({} %)", digits(found), signed(deviation, decimals))
             }
         }
         (Some(found), None) => digits(found),
@@ -81,8 +88,8 @@ impl Tables {
     }
 
     fn inferences(&self, text: &mut String) {
-        let mut grid =
-            Grid::new(&["fixture (inferred)", "band Hz", "numbers inferred", "from cells", "which"]);
+        let mut grid = Grid::new(&["fixture (inferred)", "band Hz", "numbers inferred", "from cells"]);
+        let mut which = String::new();
         for row in self.rows.iter().filter(|row| row.example.own_stiffness) {
             let (band, inference) = (row.example.band, row.example.inference);
             grid.row([
@@ -90,11 +97,12 @@ impl Tables {
                 format!("{}-{}", band.from, band.to),
                 inference.numbers.to_string(),
                 inference.cells.to_string(),
-                inference.says.to_owned(),
             ]);
+            let _ = writeln!(which, "{}: {}.  ", row.example.name, inference.says);
         }
         grid.write(text);
-        text.push_str("Not inferred: steel (207 GPa, 0.3, 7850 kg/m^3); points 1 and 4 at 0.8 of their blocks' length, which enters no cell.\n\n");
+        text.push_str(&which);
+        text.push_str("\nNot inferred: steel (207 GPa, 0.3, 7850 kg/m^3); points 1 and 4 at 0.8 of their blocks' length, which enters no cell.\n\n");
     }
 
     fn models(&self, text: &mut String) {
@@ -170,7 +178,11 @@ impl Tables {
                 let (unit, size) = STIFFNESS_UNITS[element];
                 let stated = row.stiffness.at(i, j);
                 let against = |found: f64| {
-                    format!("{} ({:+.2} %)", digits(found / size), 100.0 * (found / stated - 1.0))
+                    format!(
+                        "{} ({} %)",
+                        digits(found / size),
+                        signed(100.0 * ((found / stated).abs() - 1.0), 2)
+                    )
                 };
                 grid.row([
                     row.example.name.to_owned(),
@@ -285,4 +297,17 @@ fn against(order: &[&str], printed: &[&str]) -> String {
     let expected: Vec<&str> = printed.iter().copied().filter(|name| order.contains(name)).collect();
     let mark = if expected == order { "same" } else { "differs" };
     format!("{} ({mark})", order.join(" "))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_rounds_to_zero_has_no_sign_and_small_deviations_a_decimal() {
+        assert_eq!([signed(-0.001, 2), signed(0.004, 2), signed(-0.006, 2)], ["0.00", "0.00", "-0.01"]);
+        assert_eq!(beside(Some(308.0), Some(308.6)), "308 (-0.2 %)");
+        assert_eq!(beside(Some(3.03), Some(3.6)), "3.03 (-16 %)");
+        assert_eq!(beside(Some(3.32), Some(3.3)), "3.32 (same)");
+    }
 }
