@@ -59,7 +59,8 @@ const FADING: [f64; 4] = [0.75, 0.5, 0.25, 0.1];
 pub(crate) const PROMISE: f64 = 3.0;
 
 impl Linearisation {
-    /// Central differences about `at`. A coordinate that cannot be moved gets zeros.
+    /// Central differences about `at`; one-sided ones where a coordinate lies on its bound, such as a dashpot of zero. A coordinate that cannot be
+    /// moved gets zeros.
     pub fn of(at: &Hypothesis, observation: &Observation) -> Self {
         Linearisation::rigid().extended(at, observation)
     }
@@ -68,12 +69,16 @@ impl Linearisation {
     pub(crate) fn extended(mut self, at: &Hypothesis, observation: &Observation) -> Self {
         let moved = |m: usize, sign: f64| at.predict_moved(m, sign * DIFFERENCE, None, observation);
         for m in self.derivatives.len()..at.coordinates.len() {
-            self.derivatives.push(match (moved(m, 1.0), moved(m, -1.0)) {
-                (Ok(up), Ok(down)) => {
-                    up.iter().zip(&down).map(|(u, d)| (u - d) / (2.0 * DIFFERENCE)).collect()
-                }
-                _ => vec![Complex64::ZERO; observation.values().len()],
-            });
+            let slope = |up: Vec<Complex64>, down: Vec<Complex64>, width: f64| {
+                up.iter().zip(&down).map(|(u, d)| (u - d) / width).collect()
+            };
+            let derivative = match (moved(m, 1.0), moved(m, -1.0)) {
+                (Ok(up), Ok(down)) => Some(slope(up, down, 2.0 * DIFFERENCE)),
+                (Ok(up), Err(_)) => moved(m, 0.0).ok().map(|here| slope(up, here, DIFFERENCE)),
+                (Err(_), Ok(down)) => moved(m, 0.0).ok().map(|here| slope(here, down, DIFFERENCE)),
+                (Err(_), Err(_)) => None,
+            };
+            self.derivatives.push(derivative.unwrap_or(vec![Complex64::ZERO; observation.values().len()]));
         }
         self
     }

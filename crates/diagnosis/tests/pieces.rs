@@ -2,7 +2,7 @@
 #![allow(clippy::unwrap_used, missing_docs)]
 
 use jointscope_diagnosis::{Fit, Hypothesis, Observation, catalogue};
-use jointscope_fixture::{Effect, EffectKind, Fixture, Place};
+use jointscope_fixture::{Dof, Effect, EffectKind, Fixture, Place};
 use jointscope_lumped::{Instrument, synthesize};
 use jointscope_spectra::{FrfPair, FrfSet, SpectralLines};
 
@@ -102,6 +102,30 @@ fn a_bounded_parameter_stops_at_its_bound_and_the_others_go_on() {
     let effects = Fit::of(&start, &observation, true).unwrap().hypothesis.effects();
     assert!(effects[0].value(0) >= 0.0 && effects[0].value(0) < 1e-3, "{effects:?}");
     assert!((effects[1].value(0) - 0.8).abs() < 0.02, "{effects:?}");
+}
+
+#[test]
+fn a_dashpot_of_zero_leaves_the_spring_beside_it_a_deviation() {
+    // The data want less damping than none in the interface: its dashpot stops at zero, from where it can be moved to one side only.
+    let mut truth = fixture();
+    for quantity in truth.quantities_mut().into_iter().filter(|q| q.path.starts_with("damping")) {
+        quantity.quantity.value = 0.0056;
+    }
+    let interface = |stiffness: f64, damping: f64| {
+        let at = Place::Point("3".into());
+        Effect::new(EffectKind::InterfaceCompliance, at, Some(Dof::Rotation), &[stiffness, damping])
+    };
+    let observation = observation(&truth.with_physics(vec![interface(5e3, 0.0)]).unwrap());
+    let start = Hypothesis::nominal(&fixture(), false).with(interface(5.2e3, 0.3));
+    let fit = Fit::of(&start, &observation, true).unwrap();
+    let found = &fit.hypothesis.effects()[0];
+    assert!(found.value(1) == 0.0 && (found.value(0) / 5e3 - 1.0).abs() < 0.05, "{found:?}");
+    let covariance = fit.covariance(&observation).unwrap();
+    let n = fit.hypothesis.tolerances().len() + 2;
+    assert!((0..n).all(|m| covariance[m * n + m] > 0.0));
+    // The spring moves by its logarithm: its deviation is a share of it.
+    let share = covariance[(n - 2) * n + n - 2].sqrt();
+    assert!(share < 0.1, "deviation of {share} of the spring");
 }
 
 #[test]
