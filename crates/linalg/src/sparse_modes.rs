@@ -81,7 +81,8 @@ const STEPS_A_FRESH_BLOCK: usize = 12;
 /// six competes with the modes. They need not be normalised. `progress` is told how many modes are found, of how many wanted.
 ///
 /// Lanczos alone may pass over a mode: one that its start vectors do not hold, or the fifth of five equal ones. So the eigenvalues below a shift just above the
-/// last mode are counted by the signs of a second factor's pivots ([`eigenvalues_below`](crate::eigenvalues_below)); if more are counted than were found, the search goes on with
+/// last mode are counted by the signs of a second factor's pivots ([`eigenvalues_below`](crate::eigenvalues_below)); if more are
+/// counted than were found, the search goes on with
 /// new start vectors beside the old, and ends with an error if they do not turn up.
 ///
 /// # Errors
