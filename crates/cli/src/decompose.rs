@@ -7,30 +7,23 @@ use jointscope_report::{PageContext, decomposition_page};
 
 use crate::arguments::{DecomposeArguments, RelationName};
 use crate::input;
-use crate::measured::measured;
+use crate::measured::{as_recorded, measured};
 use crate::output::Outputs;
 use crate::refusal::Refusal;
 
 /// Decomposes and writes `stiffness.json` and `report.html`; answers with what was found and where the page is.
 pub fn run(arguments: &DecomposeArguments) -> Result<String, Refusal> {
     let fixture = input::fixture(&arguments.fixture)?;
-    // The relation between FRFs and joint is one on the imaginary axis: no window that moves them off it.
     let measured = measured(
         &arguments.recording,
         &arguments.estimation,
         &fixture,
         &arguments.fixture,
-        ResponseWindow::None,
+        ResponseWindow::Auto,
     )?;
     let files = || std::iter::once(&arguments.fixture).chain(&arguments.recording.files);
     let names = input::names(&arguments.recording.files);
-    if measured.window_decay > 0.0 {
-        return Err(Refusal::new(format_args!(
-            "{names}: the FRFs lie under an exponential window of decay {} 1/s, and K and C by line are read on the imaginary axis; estimate them \
-             without `--response-window`, or use `jointscope diagnose`, which models it",
-            measured.window_decay
-        )));
-    }
+    let fixture = as_recorded(&fixture, &arguments.fixture, measured.window_decay)?;
     let options = AnalysisOptions {
         joint: arguments.joint.clone(),
         relation: match arguments.relation {
@@ -50,7 +43,13 @@ pub fn run(arguments: &DecomposeArguments) -> Result<String, Refusal> {
         program: format!("jointscope {}", env!("CARGO_PKG_VERSION")),
         command: input::command_line(),
         inputs: files().map(|path| input::hash(path)).collect::<Result<_, _>>()?,
-        notes: measured.notes.iter().cloned().chain(lost_tolerances(&analysis)).collect(),
+        notes: measured
+            .notes
+            .iter()
+            .cloned()
+            .chain(window(&analysis))
+            .chain(lost_tolerances(&analysis))
+            .collect(),
         hits: measured.hits,
     };
     let page = decomposition_page(&analysis, &fixture, &context).map_err(Refusal::new)?;
@@ -69,6 +68,17 @@ pub fn run(arguments: &DecomposeArguments) -> Result<String, Refusal> {
 /// `1 line`, `2 lines`.
 fn counted(count: usize, what: &str) -> String {
     format!("{count} {what}{}", if count == 1 { "" } else { "s" })
+}
+
+/// Where on the complex plane the joint was read, if not on the imaginary axis.
+fn window(analysis: &Analysis) -> Option<String> {
+    let decay = analysis.spectrum.decay;
+    (decay > 0.0).then(|| {
+        format!(
+            "the FRFs lie under an exponential window of decay {decay:.4} 1/s: sides and joint are read at s = {decay:.4} 1/s + iω, where they \
+             hold exactly, so that K and C are those of the joint and no damping of the window is left in them"
+        )
+    })
 }
 
 /// What the deviations leave out, if anything.

@@ -53,7 +53,7 @@ pub struct Analysis {
     pub tolerances: Vec<ToleranceShare>,
     /// Quantities whose tolerance could not be followed; the deviations leave them out.
     pub lost_tolerances: Vec<String>,
-    /// H41 and K + iωC that the fixture as it stands predicts, by line of the recording.
+    /// H41 and K + sC that the fixture as it stands predicts, by line of the recording.
     pub nominal: Vec<Option<(ComplexMatrix2, ComplexMatrix2)>>,
     /// The fixture's stiffness of the joint on d = u_to − R·u_from.
     pub nominal_stiffness: RealMatrix2,
@@ -103,7 +103,7 @@ impl Analysis {
             options.exact,
         )?;
         let interfaces = likelihood.as_ref().ok().and_then(|fit| joint_interfaces(fit, &sides, &tolerances));
-        let nominal = predicted(fixture, &plan, &spectrum)?;
+        let nominal = predicted(&sides, &plan, &spectrum)?;
         Ok(Analysis {
             joint,
             frfs,
@@ -156,19 +156,19 @@ fn joint_interfaces(fit: &LikelihoodFit, sides: &Sides, tolerances: &[ToleranceS
 
 /// H41 of the whole fixture between the plan's reference points, and what the spectrum's relation makes of it.
 fn predicted(
-    fixture: &Fixture,
+    sides: &Sides,
     plan: &MeasurementPlan,
     spectrum: &JointSpectrum,
 ) -> Result<Vec<Option<(ComplexMatrix2, ComplexMatrix2)>>, DecompositionError> {
     let lines = &spectrum.h41.lines;
-    let model = Model::new(fixture, lines.hz()[lines.len() - 1])?;
+    let model = Model::new(sides.fixture(), lines.hz()[lines.len() - 1])?;
     let outputs = Station::both(plan.responding.0, plan.responding.1);
     let inputs = Station::both(plan.loaded.0, plan.loaded.1);
     let mut receptances = model.receptances(&outputs, &inputs);
     let mut values = [Complex64::ZERO; 4];
     let s = &spectrum.sides;
     let predicted = (0..lines.len()).map(|line| {
-        if lines.hz()[line] == 0.0 || !receptances.at(Complex64::new(0.0, lines.omega(line)), &mut values) {
+        if lines.hz()[line] == 0.0 || !receptances.at(sides.s(lines.omega(line)), &mut values) {
             return None;
         }
         let h41 = Matrix2::new(values[0], values[1], values[2], values[3]);

@@ -3,6 +3,7 @@ use crate::{DecompositionError, JointSpectrum, Relation};
 use jointscope_averaging::{AveragingError, Band, mean, quietest_band, weighted_mean};
 use jointscope_linalg::{ComplexMatrix2, Matrix2, RealMatrix2};
 use num_complex::Complex64;
+use std::f64::consts::TAU;
 
 /// Averaged K and C with the standard deviations that the FRFs' noise gives them.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -56,7 +57,10 @@ impl Averages {
         };
         let range = band.lines(&frequencies)?;
         // Deviations of single lines are made from their own readings; the model's are free of that.
-        let own = |line: usize| spectrum.solved[line].stiffness_std.unwrap_or(RealMatrix2::zero());
+        let own = |line: usize| {
+            let solved = &spectrum.solved[line];
+            solved.damping_std.map_or(RealMatrix2::zero(), |std| std.scale(TAU * solved.frequency))
+        };
         let of_line = |line: usize| expected.as_ref().map_or_else(|| own(line), |e| e[line]);
         let plain = average(spectrum, range.clone(), |line, i, j| of_line(line).at(i, j), mean)?;
         let weighted = match &expected {
@@ -75,7 +79,7 @@ fn elements(scalar: bool) -> &'static [(usize, usize)] {
 
 type Mean = fn(&[f64], &[f64]) -> Result<jointscope_averaging::Average, AveragingError>;
 
-/// Averages every element over the solved lines in `range`; `std` is that of K, C's is 1/ω of it.
+/// Averages every element over the solved lines in `range`; `std` is that of the dynamic stiffness's real part and of its imaginary one.
 fn average(
     spectrum: &JointSpectrum,
     range: std::ops::Range<usize>,
@@ -84,12 +88,13 @@ fn average(
 ) -> Result<MatrixAverage, AveragingError> {
     let zero = RealMatrix2::zero();
     let mut result = MatrixAverage { stiffness: zero, damping: zero, stiffness_std: zero, damping_std: zero };
-    let omega = |line: usize| std::f64::consts::TAU * spectrum.solved[line].frequency;
+    let omega = |line: usize| TAU * spectrum.solved[line].frequency;
     for &(i, j) in elements(spectrum.scalar) {
         let lines = || range.clone();
         let k: Vec<f64> = lines().map(|l| spectrum.solved[l].stiffness.at(i, j)).collect();
         let c: Vec<f64> = lines().map(|l| spectrum.solved[l].damping.at(i, j)).collect();
-        let k_std: Vec<f64> = lines().map(|l| std(l, i, j)).collect();
+        let k_std: Vec<f64> =
+            lines().map(|l| std(l, i, j) * (spectrum.decay / omega(l)).hypot(1.0)).collect();
         let c_std: Vec<f64> = lines().map(|l| std(l, i, j) / omega(l)).collect();
         let (k, c) = (mean(&k, &k_std)?, mean(&c, &c_std)?);
         (result.stiffness.0[i][j], result.stiffness_std.0[i][j]) = (k.value, k.std);
@@ -98,20 +103,20 @@ fn average(
     Ok(result)
 }
 
-/// Standard deviations of K's elements on each solved line if the joint were `model`; `None` without variances.
+/// Standard deviations of the real (and of the imaginary) part of the dynamic stiffness's elements on each solved line if the joint were `model`;
+/// `None` without variances.
 fn expected_std(spectrum: &JointSpectrum, model: (RealMatrix2, RealMatrix2)) -> Option<Vec<RealMatrix2>> {
     let covariance = spectrum.h41.covariance.as_ref()?;
     let sides = &spectrum.sides;
     let across = spectrum.relation.transport(sides.length);
     let std = spectrum.solved.iter().map(|solved| {
         let line = solved.line;
-        let omega = spectrum.h41.lines.omega(line);
-        let joint = dynamic_stiffness(model, omega);
+        let s = Complex64::new(spectrum.decay, spectrum.h41.lines.omega(line));
+        let joint = dynamic_stiffness(model, s);
         let modelled = if spectrum.scalar { None } else { modelled(spectrum, joint, line) };
         // A model with a singular line falls back on what was measured there.
         let (h41, stiffness) = modelled.unwrap_or_else(|| {
-            let measured = solved.damping.map(|c| Complex64::new(0.0, omega * c));
-            (spectrum.h41.values[line], solved.stiffness.to_complex() + measured)
+            (spectrum.h41.values[line], dynamic_stiffness((solved.stiffness, solved.damping), s))
         });
         let (p, q) =
             sensitivity(stiffness, h41, sides.alpha21[line], sides.beta43[line], across, spectrum.scalar);
@@ -132,7 +137,8 @@ fn modelled(
     Some((h41, spectrum.relation.decompose(h41, a21, a22, b33, b43, s.length)?))
 }
 
-pub(crate) fn dynamic_stiffness((k, c): (RealMatrix2, RealMatrix2), omega: f64) -> ComplexMatrix2 {
-    let element = |i: usize, j: usize| Complex64::new(k.at(i, j), omega * c.at(i, j));
+/// k + s·c.
+pub(crate) fn dynamic_stiffness((k, c): (RealMatrix2, RealMatrix2), s: Complex64) -> ComplexMatrix2 {
+    let element = |i: usize, j: usize| s * c.at(i, j) + k.at(i, j);
     Matrix2::new(element(0, 0), element(0, 1), element(1, 0), element(1, 1))
 }

@@ -48,7 +48,7 @@ const GIVEN_UP: f64 = 1e8;
 /// Relative decrease of χ² below which a fit has converged.
 const CONVERGED: f64 = 1e-9;
 
-/// Fits a constant k + iωc to the FRFs across the joint on the lines in `band` (all usable ones without).
+/// Fits a constant k + sc (s = iω, or δ + iω under an exponential window) to the FRFs across the joint on the lines in `band` (all usable ones without).
 ///
 /// With X = (k⁻¹ + T)⁻¹, T = β33 + R α22 Rᵀ, an FRF is rational in k, and resonances make a trap of every poor start.
 /// But (I − X T) k = X is linear: solved with the measured X and the last round's (I + T k)⁻¹ as weight, it leads
@@ -69,7 +69,7 @@ pub fn maximum_likelihood(
     nominal: Option<RealMatrix2>,
 ) -> Result<LikelihoodFit, DecompositionError> {
     let plan = MeasurementPlan::of(frfs, sides)?;
-    let data = Data::new(frfs, &plan.layout, spectrum, band)?;
+    let data = Data::new(frfs, (&plan.layout, sides), spectrum, band)?;
     let starts = [Some(start_of(spectrum)), nominal].into_iter().flatten();
     let fitted =
         starts.filter_map(|k| Parameters::of(k, k.scale(START_LOSS), spectrum.scalar)).flat_map(|start| {
@@ -104,7 +104,7 @@ pub(crate) fn continued(
     near: &LikelihoodFit,
 ) -> Result<LikelihoodFit, DecompositionError> {
     let plan = MeasurementPlan::of(frfs, sides)?;
-    let data = Data::new(frfs, &plan.layout, spectrum, band)?;
+    let data = Data::new(frfs, (&plan.layout, sides), spectrum, band)?;
     let start = Parameters::of(near.stiffness, near.damping, spectrum.scalar)
         .ok_or(DecompositionError::NoFit("the joint it starts from is none"))?;
     let start = if near.is_on_the_boundary { start.on_the_boundary() } else { start };
@@ -147,8 +147,8 @@ fn start_of(spectrum: &JointSpectrum) -> RealMatrix2 {
 struct Data<'a> {
     sides: &'a Compliances,
     across: ComplexMatrix2,
-    /// (line of the recording, ω).
-    lines: Vec<(usize, f64)>,
+    /// (line of the recording, s).
+    lines: Vec<(usize, Complex64)>,
     rows: Vec<([f64; 2], [f64; 2])>,
     /// Receptances and variances, FRF after FRF within a line.
     measured: Vec<Complex64>,
@@ -159,16 +159,16 @@ struct Data<'a> {
 impl<'a> Data<'a> {
     fn new(
         frfs: &FrfSet,
-        layout: &BlockLayout,
+        (layout, taken_apart): (&BlockLayout, &Sides),
         spectrum: &'a JointSpectrum,
         band: Option<Band>,
     ) -> Result<Self, DecompositionError> {
         let inside = |hz: f64| band.is_none_or(|b| b.contains(hz));
-        let lines: Vec<(usize, f64)> = spectrum
+        let lines: Vec<(usize, Complex64)> = spectrum
             .solved
             .iter()
             .filter(|l| inside(l.frequency))
-            .map(|l| (l.line, frfs.lines().omega(l.line)))
+            .map(|l| (l.line, taken_apart.s(frfs.lines().omega(l.line))))
             .collect();
         if lines.is_empty() {
             return Err(DecompositionError::NoFit("the band holds no usable spectral line"));
@@ -186,9 +186,10 @@ impl<'a> Data<'a> {
             scalar: spectrum.scalar,
             lines,
         };
-        for &(line, omega) in &data.lines {
+        for &(line, s) in &data.lines {
             // Solved lines lie above 0 Hz.
-            let factor = frfs.form().factor_to(FrfForm::Receptance, omega).unwrap_or(Complex64::ONE);
+            let integrated = frfs.form().factor_to(FrfForm::Receptance, s.im).unwrap_or(Complex64::ONE);
+            let factor = integrated * taken_apart.integrated_at_s(s.im);
             for (index, ..) in &layout.channels {
                 let value = frfs.values(*index)[line] * factor;
                 let variance = frfs.variance(*index).map_or(0.0, |v| v[line]) * factor.norm_sqr();
@@ -227,8 +228,8 @@ impl<'a> Data<'a> {
         let (k, c) = (parameters.stiffness(), parameters.damping());
         let channels = self.rows.len();
         let mut chi2 = 0.0;
-        for (index, &(line, omega)) in self.lines.iter().enumerate() {
-            let joint = dynamic_stiffness((k, c), omega);
+        for (index, &(line, s)) in self.lines.iter().enumerate() {
+            let joint = dynamic_stiffness((k, c), s);
             let Some((h41, left, right)) = self.model(joint, line) else { return f64::INFINITY };
             for (channel, (out, input)) in self.rows.iter().enumerate() {
                 let at = index * channels + channel;
@@ -236,11 +237,7 @@ impl<'a> Data<'a> {
                 // The noise of a complex value has half of its variance in each part.
                 let weight = 2.0 / self.variance[at];
                 chi2 += weight * residual.norm_sqr();
-                each(
-                    weight,
-                    residual,
-                    &derivatives(omega, row_times(out, &left), times_column(&right, input)),
-                );
+                each(weight, residual, &derivatives(s, row_times(out, &left), times_column(&right, input)));
             }
         }
         chi2
@@ -251,17 +248,17 @@ impl<'a> Data<'a> {
         let mut current = start;
         for _ in 0..ROUNDS {
             let mut normal = NormalEquations::default();
-            for (index, &(line, omega)) in self.lines.iter().enumerate() {
+            for (index, &(line, s)) in self.lines.iter().enumerate() {
                 let Some(x) = self.measured_coupling(&spectrum.h41.values[line], line) else { continue };
-                let s = self.sides;
-                let total = s.beta33[line] + self.across * s.alpha22[line] * self.across.transpose();
-                let joint = dynamic_stiffness((current.stiffness(), current.damping()), omega);
+                let sides = self.sides;
+                let total = sides.beta33[line] + self.across * sides.alpha22[line] * self.across.transpose();
+                let joint = dynamic_stiffness((current.stiffness(), current.damping()), s);
                 let Some((_, _, right)) = self.model(joint, line) else { continue };
-                let left = s.beta43[line] * (ComplexMatrix2::identity() - x * total);
-                let known = s.beta43[line] * x * right;
+                let left = sides.beta43[line] * (ComplexMatrix2::identity() - x * total);
+                let known = sides.beta43[line] * x * right;
                 for (channel, (out, input)) in self.rows.iter().enumerate() {
                     let weight = 2.0 / self.variance[index * self.rows.len() + channel];
-                    let by_kc = derivatives(omega, row_times(out, &left), times_column(&right, input));
+                    let by_kc = derivatives(s, row_times(out, &left), times_column(&right, input));
                     normal.add(current.active(), weight, bilinear(out, &known, input), &by_kc);
                 }
             }
@@ -397,10 +394,9 @@ impl<'a> Data<'a> {
     }
 }
 
-/// Derivatives of aᵀ (k + iωc) b by (k11, k12, k22, c11, c12, c22), both matrices symmetric.
-fn derivatives(omega: f64, a: [Complex64; 2], b: [Complex64; 2]) -> [Complex64; 6] {
+/// Derivatives of aᵀ (k + sc) b by (k11, k12, k22, c11, c12, c22), both matrices symmetric.
+fn derivatives(s: Complex64, a: [Complex64; 2], b: [Complex64; 2]) -> [Complex64; 6] {
     let by_k = [a[0] * b[0], a[0] * b[1] + a[1] * b[0], a[1] * b[1]];
-    let s = Complex64::new(0.0, omega);
     [by_k[0], by_k[1], by_k[2], s * by_k[0], s * by_k[1], s * by_k[2]]
 }
 

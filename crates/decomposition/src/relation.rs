@@ -34,7 +34,7 @@ impl Relation {
         }
     }
 
-    /// The joint's dynamic stiffness K + iωC at one line; `None` where a matrix is singular.
+    /// The joint's dynamic stiffness K + sC at one line, s = iω or, with all its matrices, δ + iω; `None` where a matrix is singular.
     pub fn decompose(
         self,
         h41: ComplexMatrix2,

@@ -50,13 +50,14 @@ pub struct Sides {
     on_alpha: Vec<bool>,
     alpha: Fixture,
     beta: Fixture,
+    decay: f64,
 }
 
 impl Sides {
     /// Takes the fixture apart at the joint named, or at its only one.
     ///
     /// Effects of the fixture's `physics` that sit on a side stay with it; those of the joint itself are part of
-    /// what is to be found.
+    /// what is to be found. An `exponential_window` says at which s = decay + iω the FRFs were read.
     ///
     /// # Errors
     /// See [`SidesError`].
@@ -79,7 +80,9 @@ impl Sides {
             return Err(SidesError::Loop(fixture.joints()[joint].name.clone()));
         }
         let side = |alpha: bool| with_its_effects(fixture, joint, &|body| on_alpha[body] == alpha);
-        Ok(Sides { alpha: side(true), beta: side(false), fixture: fixture.clone(), joint, on_alpha })
+        let windows = fixture.physics().iter().filter(|e| e.kind == EffectKind::ExponentialWindow);
+        let decay = windows.map(|effect| effect.value(0)).sum();
+        Ok(Sides { alpha: side(true), beta: side(false), fixture: fixture.clone(), joint, on_alpha, decay })
     }
 
     /// The whole fixture.
@@ -102,7 +105,22 @@ impl Sides {
         self.fixture.joint_length(self.joint())
     }
 
-    /// Compliances of the sides on `lines`, all above 0 Hz (eq 8–12). `loaded` and `responding` are (body index
+    /// Decay δ of the exponential window over force and responses, 1/s; 0 without one. FRFs, sides and joint hold at s = δ + iω.
+    pub fn decay(&self) -> f64 {
+        self.decay
+    }
+
+    /// s = δ + iω on a line of `omega` rad/s.
+    pub(crate) fn s(&self, omega: f64) -> Complex64 {
+        Complex64::new(self.decay, omega)
+    }
+
+    /// −ω²/s², by which a receptance is multiplied that was made of an accelerance by −1/ω²: under a window an accelerance is s²H(s).
+    pub(crate) fn integrated_at_s(&self, omega: f64) -> Complex64 {
+        if self.decay == 0.0 { Complex64::ONE } else { -(omega * omega) / self.s(omega).powi(2) }
+    }
+
+    /// Compliances of the sides on `lines`, all above 0 Hz (eq 8–12), at s = δ + iω. `loaded` and `responding` are (body index
     /// in the whole fixture, abscissa) of the reference points on sides α and β.
     ///
     /// A line at 0 Hz has no compliance; its matrices are zero.
@@ -124,10 +142,10 @@ impl Sides {
         let [near_end, far_end] = [near, far].map(|p| at(p.body, p.x.value));
         let (loads, motion) = (at(loaded.0, loaded.1), at(responding.0, responding.1));
         Ok(Compliances {
-            alpha21: matrices(&alpha, near_end, loads, lines)?,
-            alpha22: matrices(&alpha, near_end, near_end, lines)?,
-            beta33: matrices(&beta, far_end, far_end, lines)?,
-            beta43: matrices(&beta, motion, far_end, lines)?,
+            alpha21: self.matrices(&alpha, near_end, loads, lines)?,
+            alpha22: self.matrices(&alpha, near_end, near_end, lines)?,
+            beta33: self.matrices(&beta, far_end, far_end, lines)?,
+            beta43: self.matrices(&beta, motion, far_end, lines)?,
             length: self.length(),
         })
     }
@@ -136,30 +154,27 @@ impl Sides {
     fn index_on_side(&self, body: usize) -> usize {
         (0..body).filter(|&other| self.on_alpha[other] == self.on_alpha[body]).count()
     }
-}
 
-fn matrices(
-    model: &Model,
-    outputs: [Station; 2],
-    inputs: [Station; 2],
-    lines: &SpectralLines,
-) -> Result<Vec<ComplexMatrix2>, LumpedError> {
-    let mut receptances = model.receptances(&outputs, &inputs);
-    let mut values = [Complex64::ZERO; 4];
-    lines
-        .hz()
-        .iter()
-        .enumerate()
-        .map(|(line, &frequency)| {
+    fn matrices(
+        &self,
+        model: &Model,
+        outputs: [Station; 2],
+        inputs: [Station; 2],
+        lines: &SpectralLines,
+    ) -> Result<Vec<ComplexMatrix2>, LumpedError> {
+        let mut receptances = model.receptances(&outputs, &inputs);
+        let mut values = [Complex64::ZERO; 4];
+        let on_lines = lines.hz().iter().zip(lines.omegas()).map(|(&frequency, omega)| {
             if frequency == 0.0 {
                 return Ok(Matrix2::zero());
             }
-            if !receptances.at(Complex64::new(0.0, lines.omega(line)), &mut values) {
+            if !receptances.at(self.s(omega), &mut values) {
                 return Err(LumpedError::Unbounded { frequency });
             }
             Ok(Matrix2::new(values[0], values[1], values[2], values[3]))
-        })
-        .collect()
+        });
+        on_lines.collect()
+    }
 }
 
 /// The bodies reached from the joint's near end without crossing it.
@@ -199,6 +214,7 @@ fn with_its_effects(fixture: &Fixture, joint: usize, keep: &dyn Fn(usize) -> boo
 }
 
 fn check_instruments(fixture: &Fixture) -> Result<(), SidesError> {
-    let found = fixture.physics().iter().enumerate().find(|(_, e)| e.kind.is_instrumental());
+    let cannot = |e: &Effect| e.kind.is_instrumental() && e.kind != EffectKind::ExponentialWindow;
+    let found = fixture.physics().iter().enumerate().find(|(_, e)| cannot(e));
     found.map_or(Ok(()), |(index, effect)| Err(SidesError::Instrument { index, kind: effect.kind.name() }))
 }

@@ -14,7 +14,7 @@ pub struct JointLine {
     pub line: usize,
     /// Its frequency, Hz.
     pub frequency: f64,
-    /// K = Re of the dynamic stiffness (eq 33): N/m, N/rad; N·m/m, N·m/rad.
+    /// K = Re of the dynamic stiffness K + sC (eq 33), under an exponential window less δC: N/m, N/rad; N·m/m, N·m/rad.
     pub stiffness: RealMatrix2,
     /// C = Im/ω (eq 38): N·s/m and so on.
     pub damping: RealMatrix2,
@@ -56,8 +56,10 @@ impl JointLine {
 pub struct JointSpectrum {
     /// The relation used.
     pub relation: Relation,
-    /// Receptances of side β's block due to loads on side α's.
+    /// Receptances of side β's block due to loads on side α's, at s.
     pub h41: BlockFrf,
+    /// Decay δ of the exponential window over force and responses, 1/s; 0 without one. Everything holds at s = δ + iω.
+    pub decay: f64,
     /// Compliances of the sides.
     pub sides: Compliances,
     /// Lines that were solved, ascending.
@@ -80,6 +82,16 @@ impl JointSpectrum {
         }
         all
     }
+
+    /// K and C of the dynamic stiffness K + sC on a line of the recording: C = Im/ω, K = Re − δC.
+    pub fn stiffness_and_damping(&self, line: usize, dynamic: ComplexMatrix2) -> (RealMatrix2, RealMatrix2) {
+        parts(dynamic, self.decay, self.h41.lines.omega(line))
+    }
+}
+
+fn parts(dynamic: ComplexMatrix2, decay: f64, omega: f64) -> (RealMatrix2, RealMatrix2) {
+    let damping = dynamic.im().map(|e| e / omega);
+    (dynamic.re() - damping.scale(decay), damping)
 }
 
 /// Finds K(ω) and C(ω) of the joint that `sides` were taken apart at (eq 7 or its exact form).
@@ -95,17 +107,29 @@ pub fn decompose(
     relation: Relation,
 ) -> Result<JointSpectrum, DecompositionError> {
     let plan = MeasurementPlan::of(frfs, sides)?;
-    let h41 = fit_rigid_motion(frfs, &plan.layout)?;
+    let h41 = read_at_s(fit_rigid_motion(frfs, &plan.layout)?, sides);
     let compliances = sides.compliances(
         frfs.lines(),
         (plan.loaded.0, plan.loaded.1),
         (plan.responding.0, plan.responding.1),
     )?;
-    spectrum(h41, compliances, relation, plan.is_scalar())
+    spectrum((h41, sides.decay()), compliances, relation, plan.is_scalar())
+}
+
+/// Receptances at s from those that were made of accelerances by −1/ω².
+fn read_at_s(mut h41: BlockFrf, sides: &Sides) -> BlockFrf {
+    for (line, omega) in h41.lines.omegas().enumerate() {
+        let factor = sides.integrated_at_s(omega);
+        h41.values[line] = h41.values[line].map(|e| e * factor);
+        if let Some(covariance) = &mut h41.covariance {
+            covariance[line].iter_mut().flatten().for_each(|v| *v *= factor.norm_sqr());
+        }
+    }
+    h41
 }
 
 fn spectrum(
-    h41: BlockFrf,
+    (h41, decay): (BlockFrf, f64),
     sides: Compliances,
     relation: Relation,
     scalar: bool,
@@ -132,10 +156,10 @@ fn spectrum(
             reasons[line] = Some(MaskReason::SingularFrf);
             continue;
         }
-        solved.push(joint_line(line, stiffness[line], &h41, &sides, relation, scalar));
+        solved.push(joint_line(line, stiffness[line], (&h41, decay), &sides, relation, scalar));
     }
     let masked: Vec<_> = reasons.iter().enumerate().filter_map(|(line, r)| r.map(|r| (line, r))).collect();
-    let spectrum = JointSpectrum { relation, h41, sides, solved, masked, scalar };
+    let spectrum = JointSpectrum { relation, h41, decay, sides, solved, masked, scalar };
     if spectrum.solved.is_empty() {
         let reasons: Vec<String> =
             spectrum.masked_summary().iter().map(|(r, n)| format!("{} ({n})", r.why())).collect();
@@ -203,7 +227,7 @@ pub(crate) fn element_std(p: ComplexMatrix2, q: ComplexMatrix2, covariance: &[[f
 fn joint_line(
     line: usize,
     stiffness: ComplexMatrix2,
-    h41: &BlockFrf,
+    (h41, decay): (&BlockFrf, f64),
     sides: &Compliances,
     relation: Relation,
     scalar: bool,
@@ -212,14 +236,16 @@ fn joint_line(
     let across = relation.transport(sides.length);
     let h = h41.values[line];
     let (p, q) = sensitivity(stiffness, h, sides.alpha21[line], sides.beta43[line], across, scalar);
-    let stiffness_std = h41.covariance.as_ref().map(|covariance| element_std(p, q, &covariance[line]));
+    let part_std = h41.covariance.as_ref().map(|covariance| element_std(p, q, &covariance[line]));
+    let (real, damping) = parts(stiffness, decay, omega);
     JointLine {
         line,
         frequency: h41.lines.hz()[line],
-        stiffness: stiffness.re(),
-        damping: stiffness.im().map(|e| e / omega),
-        stiffness_std,
-        damping_std: stiffness_std.map(|std| std.map(|e| e / omega)),
+        stiffness: real,
+        damping,
+        // Re and Im have independent errors of one size.
+        stiffness_std: part_std.map(|std| std.scale((decay / omega).hypot(1.0))),
+        damping_std: part_std.map(|std| std.map(|e| e / omega)),
         condition: condition(stiffness, h, p, q, sides, line, across, scalar),
     }
 }

@@ -129,11 +129,10 @@ impl Kind {
     pub fn nominal(self, analysis: &Analysis, line: usize, element: Element) -> Option<f64> {
         let scalar = analysis.spectrum.scalar;
         let (_, joint) = analysis.nominal.get(line)?.as_ref().filter(|_| !scalar)?;
-        let value = joint.at(element.row, element.column);
-        let omega = analysis.spectrum.h41.lines.omega(line);
+        let (stiffness, damping) = analysis.spectrum.stiffness_and_damping(line, *joint);
         Some(match self {
-            Kind::Stiffness => value.re,
-            Kind::Damping => value.im / omega,
+            Kind::Stiffness => stiffness.at(element.row, element.column),
+            Kind::Damping => damping.at(element.row, element.column),
         })
     }
 
