@@ -44,6 +44,12 @@ pub enum StructureError {
         /// The line, Hz.
         frequency: f64,
     },
+    /// Under a stepped sine no steady motion was found.
+    #[error("no steady motion was found at {frequency} Hz: shake less hard, or in smaller steps")]
+    Unsettled {
+        /// The line, Hz.
+        frequency: f64,
+    },
     /// The modes that the damping refers to could not be found.
     #[error("the modes of the assembly could not be found: {0}")]
     Modes(#[from] EigenError),

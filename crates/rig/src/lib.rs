@@ -10,6 +10,7 @@
 //! | what channels read | [`frfs`], [`read`], [`Instrument`] |
 //! | hammer hits and noise | [`HammerTest`] |
 //! | hits over time on joints that depend on amplitude | [`StrikeTest`], [`random_law`] |
+//! | stepped sines at several levels on such joints | [`SteppedSines`] |
 //! | random assemblies | [`Family`], [`drawn_within_tolerance`], [`random_effect`] |
 //! | physics without a name in fixture files | [`Outside`] |
 //! | a worked case | [`glued_joint`]: two steel blocks and a glued strip |
@@ -43,6 +44,7 @@ mod outside;
 mod physical;
 mod random;
 mod random_effect;
+mod stepped_sines;
 mod strikes;
 mod tolerance;
 pub mod universal_file;
@@ -55,5 +57,6 @@ pub use outside::Outside;
 pub use physical::{Assembly, BeamElement, Law, Row, Station, Structure};
 pub use random::generator;
 pub use random_effect::random_effect;
+pub use stepped_sines::{Control, SteppedSines};
 pub use strikes::{StrikeTest, random_law, reach};
 pub use tolerance::drawn_within_tolerance;

@@ -39,7 +39,7 @@ struct Element {
 }
 
 /// ü = −M⁻¹(K u + C u̇) + M⁻¹ t F − Σ pull·g.
-struct Equations {
+pub(crate) struct Equations {
     n: usize,
     stiffness: Vec<f64>,
     damping: Vec<f64>,
@@ -173,7 +173,7 @@ pub fn random_law(
     Effect::new(kind, place, Some(dof), &values)
 }
 
-fn build(
+pub(crate) fn build(
     fixture: &Fixture,
     struck: &Channel,
     read: &[Channel],
@@ -211,7 +211,12 @@ fn build(
     Ok((equations, readings))
 }
 
-fn across(structure: &Structure, fixture: &Fixture, joint: &str, dof: Dof) -> Result<Row, StructureError> {
+pub(crate) fn across(
+    structure: &Structure,
+    fixture: &Fixture,
+    joint: &str,
+    dof: Dof,
+) -> Result<Row, StructureError> {
     let joint = fixture.joint(joint).ok_or_else(|| StructureError::UnknownPoint(format!("joint {joint}")))?;
     let station = |point: usize| -> Result<Station, StructureError> {
         let name = &fixture.points()[point].name;
@@ -223,14 +228,14 @@ fn across(structure: &Structure, fixture: &Fixture, joint: &str, dof: Dof) -> Re
 }
 
 /// Motion, velocity and what each friction element bears, one after the other.
-type State = Vec<f64>;
+pub(crate) type State = Vec<f64>;
 
 impl Equations {
-    fn rest(&self) -> State {
+    pub(crate) fn rest(&self) -> State {
         vec![0.0; 2 * self.n + self.elements.len()]
     }
 
-    fn acceleration(&self, state: &[f64], force: f64, into: &mut [f64]) {
+    pub(crate) fn acceleration(&self, state: &[f64], force: f64, into: &mut [f64]) {
         let n = self.n;
         let (motion, rest) = state.split_at(n);
         let (velocity, borne) = rest.split_at(n);
@@ -265,7 +270,7 @@ impl Equations {
     }
 
     /// One step of the classical method of Runge and Kutta.
-    fn advance(
+    pub(crate) fn advance(
         &self,
         state: &mut State,
         work: &mut [State; 5],
