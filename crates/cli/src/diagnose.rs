@@ -22,19 +22,22 @@ pub fn run(arguments: &DiagnoseArguments) -> Result<String, Refusal> {
     let fixture = input::fixture(&arguments.fixture)?;
     let sources = input::sources(&arguments.recording)?;
     let recording = Recording::of(&sources, &fixture, &arguments.recording.options()?);
-    if let Ok(recording) = &recording
-        && let Some(answer) = diagnose_levels::answered(arguments, &fixture, recording)?
-    {
-        return Ok(answer);
-    }
-    let mut measured = of_recording(
-        recording,
-        &sources,
-        &arguments.recording,
-        &arguments.estimation,
-        (&fixture, &arguments.fixture),
-        ResponseWindow::Auto,
-    )?;
+    let levels = match &recording {
+        Ok(recording) => diagnose_levels::told(arguments, &fixture, recording)?,
+        Err(_) => None,
+    };
+    let mut measured = match levels {
+        Some(diagnose_levels::Told::Changes(answer)) => return Ok(answer),
+        Some(diagnose_levels::Told::Linear(measured)) => *measured,
+        None => of_recording(
+            recording,
+            &sources,
+            &arguments.recording,
+            &arguments.estimation,
+            (&fixture, &arguments.fixture),
+            ResponseWindow::Auto,
+        )?,
+    };
     if let Some(test) = &measured.hits {
         match diagnose_hits::told(arguments, &fixture, test) {
             Told::Changes(diagnosis) => {

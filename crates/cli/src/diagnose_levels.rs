@@ -1,7 +1,9 @@
 //! `jointscope diagnose` of stepped-sine FRFs at several levels: what changes from level to level.
 
 use jointscope::fixture::Fixture;
-use jointscope::nonlinear::{Held, SteppedDiagnosis, SteppedError, SteppedLevel, Verdict};
+use jointscope::nonlinear::{
+    Held, NonlinearOptions, SteppedDiagnosis, SteppedError, SteppedLevel, Verdict, pooled,
+};
 use jointscope::{Recording, stepped_file};
 use jointscope_recordings::HeldAmplitude;
 use jointscope_report::stepped_page;
@@ -9,14 +11,23 @@ use jointscope_report::stepped_page;
 use crate::arguments::DiagnoseArguments;
 use crate::diagnosed::Diagnosed;
 use crate::input;
+use crate::measured::Measured;
 use crate::refusal::Refusal;
 
-/// The answer where a recording holds FRFs at several stated levels; `None` where it does not, and another analysis applies.
-pub fn answered(
+/// What FRFs at several levels say of amplitude.
+pub enum Told {
+    /// Something changes with level: what `diagnose` answers.
+    Changes(String),
+    /// Nothing does, or it cannot be judged: the FRFs of all levels as one set, for a linear diagnosis, with what was said.
+    Linear(Box<Measured>),
+}
+
+/// What a recording says that holds FRFs at several stated levels; `None` where it does not, and another analysis applies.
+pub fn told(
     arguments: &DiagnoseArguments,
     fixture: &Fixture,
     recording: &Recording,
-) -> Result<Option<String>, Refusal> {
+) -> Result<Option<Told>, Refusal> {
     if recording.levels.len() < 2 {
         return Ok(None);
     }
@@ -34,6 +45,7 @@ pub fn answered(
         .collect();
     // FRFs of no stated level among others: the reader of one level refuses them with what they are.
     let Some(mut levels) = levels else { return Ok(None) };
+    let whole = levels.clone();
     for level in &mut levels {
         let hz: Vec<f64> = level.frfs.lines().hz().to_vec();
         let used = |line: usize| !arguments.exclude.iter().any(|band| band.contains(hz[line]));
@@ -44,11 +56,21 @@ pub fn answered(
             ))
         })?;
     }
-    let band = arguments.band.map(|band| (band.from, band.to));
-    let diagnosis = SteppedDiagnosis::of(fixture, &levels, band).map_err(|error| match error {
-        SteppedError::Model(_) => Refusal::at(&arguments.fixture, error),
-        _ => Refusal::new(format_args!("{names}: {error}")),
-    })?;
+    let options =
+        NonlinearOptions { band: arguments.band.map(|band| (band.from, band.to)), exact: arguments.exact };
+    let diagnosis = match SteppedDiagnosis::of(fixture, &levels, &options) {
+        Ok(diagnosis) if diagnosis.verdict == Verdict::Homogeneous => {
+            let said = std::iter::once(diagnosis.says()).chain(diagnosis.remarks()).collect();
+            return Ok(linear(recording, &whole, said));
+        }
+        Ok(diagnosis) => diagnosis,
+        Err(error @ (SteppedError::Alike { .. } | SteppedError::NoJoint)) => {
+            let said = format!("whether anything depends on amplitude could not be judged: {error}");
+            return Ok(linear(recording, &whole, vec![said]));
+        }
+        Err(error @ SteppedError::Model(_)) => return Err(Refusal::at(&arguments.fixture, error)),
+        Err(error) => return Err(Refusal::new(format_args!("{names}: {error}"))),
+    };
     let mut notes = recording.notes.clone();
     if !arguments.hold_out.is_empty() {
         notes.push(
@@ -65,7 +87,20 @@ pub fn answered(
         summary: summary(&diagnosis),
     }
     .written(arguments, |context| stepped_page(&diagnosis, fixture, context))
-    .map(Some)
+    .map(|answer| Some(Told::Changes(answer)))
+}
+
+/// The levels as one set of FRFs; `None` where they share none, which the reader of one level then says.
+fn linear(recording: &Recording, levels: &[SteppedLevel], said: Vec<String>) -> Option<Told> {
+    let frfs = pooled(levels)?;
+    let mut notes = recording.notes.clone();
+    notes.extend(said);
+    notes.push(format!(
+        "the FRFs diagnosed are the means over {} levels, weighted by their noise",
+        levels.len()
+    ));
+    let window_decay = recording.levels.first().map_or(0.0, |level| level.window_decay);
+    Some(Told::Linear(Box::new(Measured { frfs, notes, window_decay, hits: None })))
 }
 
 fn summary(diagnosis: &SteppedDiagnosis) -> Vec<String> {
@@ -85,12 +120,13 @@ fn summary(diagnosis: &SteppedDiagnosis) -> Vec<String> {
             level.nrmse[3]
         ));
     }
-    if diagnosis.verdict != Verdict::Homogeneous {
-        let tried = diagnosis
-            .tried
-            .iter()
-            .map(|t| format!("{} at {} in {} {:.3}", t.form, t.joint, t.dof.name(), t.nrmse));
-        lines.push(format!("relative errors over all levels: {}", tried.collect::<Vec<_>>().join(", ")));
+    let tried = diagnosis
+        .tried
+        .iter()
+        .map(|t| format!("{} at {} in {} {:.3}", t.form, t.joint, t.dof.name(), t.nrmse));
+    lines.push(format!("relative errors over all levels: {}", tried.collect::<Vec<_>>().join(", ")));
+    for (name, chi2) in ["fixture as stated", "refitted", "repaired"].iter().zip(diagnosis.chi2_per_dof) {
+        lines.extend(chi2.map(|chi2| format!("{name}: chi2 per degree of freedom {chi2:.4e}")));
     }
     if let Some([refitted, repaired]) = diagnosis.left_out {
         lines.push(format!(

@@ -53,7 +53,11 @@ pub fn of_recording(
         Ok(recording) => {
             let level = recording.level().map_err(|error| Refusal::new(format_args!("{names}: {error}")))?;
             let (frfs, window_decay) = (level.frfs.clone(), level.window_decay);
+            let held = level.held;
             let mut notes = recording.notes;
+            notes.extend(held.map(|held| {
+                format!("the FRFs are those of one level ({held}): whether anything depends on amplitude they cannot tell")
+            }));
             if estimation.are_given() {
                 notes.push("the files hold FRFs: options for hammer hits do not apply".to_owned());
             }

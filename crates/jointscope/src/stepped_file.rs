@@ -5,11 +5,12 @@ use serde_json::{Map, Value, json};
 /// `levels` and every law `tried`. Errors are root mean squares over the levels.
 pub fn stepped_file(diagnosis: &SteppedDiagnosis) -> Value {
     let [nominal, refitted, repaired, own] = diagnosis.nrmse;
+    let [chi2_nominal, chi2_refitted, chi2_repaired] = diagnosis.chi2_per_dof;
     let count = diagnosis.levels.len();
     json!({
         "verdict": diagnosis.verdict.name(),
         "says": diagnosis.says(),
-        "mismatch": { "chi2_per_dof": diagnosis.change.1, "p_value": diagnosis.change.0, "frfs": [] },
+        "mismatch": { "chi2_per_dof": chi2_refitted, "p_value": diagnosis.change.0, "ratio_of_variances": diagnosis.change.1, "frfs": [] },
         "findings": diagnosis.findings.iter().map(|f| finding(f, diagnosis)).collect::<Value>(),
         "fit": {
             "nrmse": {"nominal": nominal, "refitted": refitted, "repaired": repaired, "stiffness_of_its_own_a_level": own},
@@ -18,7 +19,7 @@ pub fn stepped_file(diagnosis: &SteppedDiagnosis) -> Value {
                 "nrmse_refitted": refitted,
                 "nrmse_repaired": repaired,
             })),
-            "chi2_per_dof": null,
+            "chi2_per_dof": {"nominal": chi2_nominal, "refitted": chi2_refitted, "repaired": chi2_repaired},
         },
         "levels": diagnosis.levels.iter().enumerate().map(|(i, l)| level(l, i < diagnosis.holds)).collect::<Value>(),
         "levels_explained": if diagnosis.findings.is_empty() { json!(null) } else { json!([diagnosis.holds, count]) },

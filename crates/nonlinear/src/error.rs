@@ -144,6 +144,26 @@ pub enum SteppedError {
     /// Fewer than two levels.
     #[error("there is one level only: give FRFs at two or more amplitudes")]
     OneLevel,
+    /// Levels of held force among levels of held response.
+    #[error(
+        "level {first} holds one quantity and level {second} another: give the levels of held force or those of held response"
+    )]
+    Mixed {
+        /// A level.
+        first: String,
+        /// A level of the other kind.
+        second: String,
+    },
+    /// Levels of one strength.
+    #[error(
+        "the levels, {first} to {last}, differ by less than a factor of 1.2: record a weaker or a stronger one"
+    )]
+    Alike {
+        /// The first.
+        first: String,
+        /// The last.
+        last: String,
+    },
     /// Too few lines about the resonance.
     #[error(
         "level {level} has fewer than 8 spectral lines about the resonance; step finer, or widen `--band`"

@@ -7,6 +7,7 @@
 //!   that no fit saw;
 //! * [`SteppedDiagnosis`]: stepped-sine FRFs at several levels: frequency and damping of the resonance by level, the joint's equivalent stiffness and
 //!   loss against the amplitude of its motion by harmonic balance, which law follows them, and up to which level;
+//! * [`pooled`]: one set of FRFs of levels that are alike, for analyses that know of no amplitude;
 //! * [`ForceStateMap`]: what a joint bore against how it was moved, from the measured motion of its bodies;
 //! * [`RestoringLaw`]: the laws themselves.
 //!
@@ -51,6 +52,7 @@ pub use identification::homogeneity::{CHANGED, Homogeneity};
 pub use identification::parameters::Tolerance;
 pub use stepped::diagnosis::{LevelFinding, LevelResult, SteppedDiagnosis, Tried};
 pub use stepped::level::{Held, SteppedLevel};
+pub use stepped::pooled::pooled;
 pub use stepped::resonance::Resonance;
 pub use time::law::{Memory, RestoringLaw};
 pub use time::simulation::{Simulation, simulate};

@@ -2,7 +2,7 @@
 #![allow(clippy::unwrap_used, missing_docs)]
 
 use jointscope_fixture::{EffectKind, Fixture};
-use jointscope_nonlinear::{Held, SteppedDiagnosis, SteppedLevel, Verdict};
+use jointscope_nonlinear::{Held, NonlinearOptions, SteppedDiagnosis, SteppedLevel, Verdict};
 use jointscope_recordings::{HeldAmplitude, ReadOptions, Recording, Source};
 use jointscope_spectra::{FrfForm, FrfPair, FrfSet, SpectralLines};
 use num_complex::Complex64;
@@ -108,7 +108,7 @@ fn levels(law: Law, held: &[f64], seed: u64) -> Vec<SteppedLevel> {
 
 fn diagnosed(law: Law, held: &[f64], seed: u64) -> SteppedDiagnosis {
     let fixture = Fixture::from_json(FIXTURE).unwrap();
-    SteppedDiagnosis::of(&fixture, &levels(law, held, seed), None).unwrap()
+    SteppedDiagnosis::of(&fixture, &levels(law, held, seed), &NonlinearOptions::default()).unwrap()
 }
 
 const HELD: [f64; 5] = [10.0, 25.0, 50.0, 75.0, 100.0];
@@ -184,7 +184,7 @@ fn bolted(files: &[&str]) -> Option<SteppedDiagnosis> {
         SteppedLevel { held, frfs: level.frfs.clone() }
     };
     let levels: Vec<SteppedLevel> = recording.levels.iter().map(level).collect();
-    Some(SteppedDiagnosis::of(&fixture, &levels, None).unwrap())
+    Some(SteppedDiagnosis::of(&fixture, &levels, &NonlinearOptions::default()).unwrap())
 }
 
 #[test]

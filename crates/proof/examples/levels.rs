@@ -5,7 +5,7 @@
 #![allow(clippy::unwrap_used)]
 
 use jointscope_fixture::{Dof, Effect, EffectKind, Fixture, Place};
-use jointscope_nonlinear::{Held, SteppedDiagnosis, SteppedLevel, Verdict};
+use jointscope_nonlinear::{Held, NonlinearOptions, SteppedDiagnosis, SteppedLevel, Verdict};
 use jointscope_rig::{Control, Family, Instrument, SteppedSines, drawn_within_tolerance, frfs, generator};
 use jointscope_spectra::{Channel, FrfForm, FrfPair, SpectralLines};
 use num_complex::Complex64;
@@ -147,6 +147,9 @@ fn main() {
     let number = |i: usize, or: u64| arguments.get(i).and_then(|a| a.parse().ok()).unwrap_or(or);
     let (cases, seed) = (number(0, 100), number(1, 1));
     let exact = arguments.iter().any(|a| a == "exact");
+    // A tenth of the noise shows what the analysis itself errs by.
+    let noise = if arguments.iter().any(|a| a == "quiet") { 0.1 } else { 1.0 };
+    let null = arguments.iter().any(|a| a == "null");
     let told = arguments.iter().any(|a| a == "tell");
     let families = match arguments.get(2).map(String::as_str) {
         Some("two") => vec![Family::TwoBlocks],
@@ -156,15 +159,21 @@ fn main() {
         _ => vec![Family::TwoBlocks, Family::Frame, Family::SupportedTwoBlocks, Family::ThreeBlocks],
     };
     let mut scores: BTreeMap<&'static str, Score> = BTreeMap::new();
-    for case in 0..cases {
+    // The cases named alone, where any are: `only=24,28`.
+    let only: Vec<u64> = arguments
+        .iter()
+        .filter_map(|a| a.strip_prefix("only="))
+        .flat_map(|list| list.split(',').filter_map(|n| n.parse().ok()))
+        .collect();
+    for case in (0..cases).filter(|case| only.is_empty() || only.contains(case)) {
         let mut dice = Dice(generator(seed * 100_000 + case));
         let (fixture, levels, effect) = loop {
-            if let Some(made) = concealed(&mut dice, case, &families, exact) {
+            if let Some(made) = concealed(&mut dice, case, &families, (exact, null), noise) {
                 break made;
             }
         };
         let begun = std::time::Instant::now();
-        let found = SteppedDiagnosis::of(&fixture, &levels, None);
+        let found = SteppedDiagnosis::of(&fixture, &levels, &NonlinearOptions { band: None, exact });
         let seconds = begun.elapsed().as_secs_f64();
         let planted = effect.as_ref().map_or("linear", |e| e.kind.name());
         let score = scores.entry(planted).or_default();
@@ -231,7 +240,24 @@ fn main() {
             }
         }
         println!("{head}{line} [{seconds:.1} s]");
-        if !whole && told {
+        if told {
+            for l in &found.levels {
+                println!(
+                    "    {} {:.4} Hz {:.4} % d {:.4e} delta {:.4e} {:.4e} nrmse {:.5} {:.5} {:.5} {:.5}",
+                    l.held,
+                    l.resonance.frequency.0,
+                    100.0 * l.resonance.damping_ratio.0,
+                    l.motion,
+                    l.stiffness.0,
+                    l.loss.0,
+                    l.nrmse[0],
+                    l.nrmse[1],
+                    l.nrmse[2],
+                    l.nrmse[3]
+                );
+            }
+        }
+        if told {
             println!("    {}", found.says());
             println!("    planted {:?}", effect.parameters.iter().map(|q| q.value).collect::<Vec<_>>());
             for t in &found.tried {
@@ -261,7 +287,8 @@ fn concealed(
     dice: &mut Dice<impl Rng>,
     case: u64,
     families: &[Family],
-    exact: bool,
+    (exact, null): (bool, bool),
+    noise: f64,
 ) -> Option<(Fixture, Vec<SteppedLevel>, Option<Effect>)> {
     let family = families[dice.below(families.len())];
     let fixture = family.draw("levels", &mut dice.0).unwrap();
@@ -287,7 +314,7 @@ fn concealed(
     let top = held[held.len() - 1];
     let reach = top * if control == Control::Force { at.by_force } else { at.by_response };
     let kind = [Some(EffectKind::CubicStiffness), Some(EffectKind::Friction), Some(EffectKind::Gap), None]
-        [(case % 4) as usize];
+        [if null { 3 } else { (case % 4) as usize }];
     // A resonance that bends over has two motions to one force.
     let shift = dice.log_uniform(0.4, if control == Control::Force { 2.0 } else { 8.0 });
     let effect = kind.map(|kind| law(dice, kind, &joint, dof, shift / at.own, reach));
@@ -302,7 +329,7 @@ fn concealed(
     let beyond = (MARGIN + 0.5 * shift) * at.width;
     let count = (2.0 * beyond / at.width * DENSITY) as usize + 1;
     let lines = SpectralLines::even(at.hz - beyond, 2.0 * beyond / (count - 1) as f64, count).ok()?;
-    let test = SteppedSines { control, harmonics: 9, noise: dice.uniform(0.005, 0.01) };
+    let test = SteppedSines { control, harmonics: 9, noise: noise * dice.uniform(0.005, 0.01) };
     let hidden = truth.with_physics(effect.clone().into_iter().collect()).unwrap();
     let sets = test.record(&hidden, &pairs, &held, &lines, &mut dice.0).ok()?;
     let level = |(frfs, held): (_, &f64)| {

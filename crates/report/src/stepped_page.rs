@@ -3,6 +3,7 @@
 use jointscope_fixture::Fixture;
 use jointscope_nonlinear::{LevelResult, SteppedDiagnosis, Verdict as Conclusion};
 
+use crate::format::quantity;
 use crate::{Axis, Column, Page, PageContext, PageError, Plot, Role, Section, Table, Tone, Verdict};
 
 /// The page of a diagnosis from FRFs at several levels as one self-contained HTML file: the verdict, frequency and damping against the amplitude
@@ -81,12 +82,8 @@ fn levels(diagnosis: &SteppedDiagnosis) -> Section {
     for (index, l) in diagnosis.levels.iter().enumerate() {
         table = table.row([
             l.held.to_string(),
-            format!("{:.3} ± {:.3}", l.resonance.frequency.0, l.resonance.frequency.1),
-            format!(
-                "{:.4} ± {:.4}",
-                100.0 * l.resonance.damping_ratio.0,
-                100.0 * l.resonance.damping_ratio.1
-            ),
+            quantity(l.resonance.frequency.0, l.resonance.frequency.1, ""),
+            quantity(100.0 * l.resonance.damping_ratio.0, 100.0 * l.resonance.damping_ratio.1, ""),
             format!("{:.3e}", l.motion),
             format!("{:.3e}", l.stiffness.0),
             format!("{:.3e}", l.loss.0),

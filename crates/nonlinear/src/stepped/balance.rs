@@ -26,28 +26,28 @@ pub(crate) fn equivalent(law: &RestoringLaw, amplitude: f64, yields: f64) -> Com
     }
 }
 
+/// Newton steps to the mean of d; the function is monotonic and convex, four are usual.
+const STEPS: usize = 40;
+
 /// Half the angle of a period during which the stop is touched, the mean of d being that at which the structure balances the stop's mean force.
 fn contact(clearance: f64, stiffness: f64, amplitude: f64, yields: f64) -> f64 {
     let angle_at = |mean: f64| ((clearance - mean) / amplitude).clamp(-1.0, 1.0).acos();
-    let push = |mean: f64| {
-        let angle = angle_at(mean);
-        let reach = angle.sin() - (clearance - mean) / amplitude * angle;
-        stiffness * amplitude / PI * reach.max(0.0)
-    };
     if amplitude <= clearance {
         return 0.0;
     }
-    // mean + yields·push(mean) ascends with the mean.
-    let (mut low, mut high) = (-yields.abs() * push(0.0), 0.0);
-    for _ in 0..60 {
-        let middle = 0.5 * (low + high);
-        if middle + yields.abs() * push(middle) > 0.0 {
-            high = middle;
-        } else {
-            low = middle;
+    // mean + yields·push(mean) = 0.
+    let mut mean = 0.0;
+    for _ in 0..STEPS {
+        let angle = angle_at(mean);
+        let push =
+            stiffness * amplitude / PI * (angle.sin() - (clearance - mean) / amplitude * angle).max(0.0);
+        let step = (mean + yields.abs() * push) / (1.0 + yields.abs() * stiffness * angle / PI);
+        mean -= step;
+        if step.abs() <= 1e-12 * amplitude {
+            break;
         }
     }
-    angle_at(0.5 * (low + high))
+    angle_at(mean)
 }
 
 #[cfg(test)]

@@ -4,12 +4,14 @@ use super::judge::{Fitted, Form, fitted};
 use super::level::{Held, SteppedLevel};
 use super::model::{Change, Subject};
 use super::naming::{Judged, named_law};
+use super::pooled::noisy;
 use super::resonance::{Resonance, resonance};
 use super::seat::seats;
 use crate::distribution::f_tail;
-use crate::{CHANGED, Estimate, SteppedError, Verdict};
+use crate::{CHANGED, Estimate, NonlinearOptions, SteppedError, Verdict};
 use jointscope_fixture::{Effect, Fixture};
 use jointscope_spectra::Dof;
+use rayon::prelude::*;
 use std::f64::consts::TAU;
 
 /// What one level shows.
@@ -84,6 +86,8 @@ pub struct SteppedDiagnosis {
     pub band: (f64, f64),
     /// Root-mean-square relative errors over the levels: as stated, refitted, repaired, each level with a stiffness of its own.
     pub nrmse: [f64; 4],
+    /// χ² per degree of freedom over all levels: as stated, refitted, repaired; `None` where it is not finite.
+    pub chi2_per_dof: [Option<f64>; 3],
     /// The fixture with the joint's stiffness refitted, and the same with the laws found.
     pub fixtures: [Fixture; 2],
     /// What of the refit the fixture file has no place for, in sentences.
@@ -96,16 +100,20 @@ const ALL: f64 = 0.95;
 const WIDTHS: f64 = 10.0;
 
 impl SteppedDiagnosis {
-    /// Diagnoses FRFs at two or more levels against `fixture`, on the lines about their strongest resonance within `band` (Hz).
+    /// Diagnoses FRFs at two or more levels against `fixture`, on the lines about their strongest resonance within the band.
     ///
     /// # Errors
     /// See [`SteppedError`].
     pub fn of(
         fixture: &Fixture,
         levels: &[SteppedLevel],
-        band: Option<(f64, f64)>,
+        options: &NonlinearOptions,
     ) -> Result<Self, SteppedError> {
-        let (levels, band) = about_the_resonance(levels, band)?;
+        check(levels)?;
+        // Noise is read from all lines, before most are cut away.
+        let with_noise = |level: &SteppedLevel| SteppedLevel { frfs: noisy(&level.frfs), ..level.clone() };
+        let levels: Vec<SteppedLevel> = levels.iter().map(with_noise).collect();
+        let (levels, band) = about_the_resonance(&levels, options.band)?;
         let resonances = levels
             .iter()
             .map(|level| {
@@ -115,14 +123,19 @@ impl SteppedDiagnosis {
         let all = seats(fixture, &levels)?;
         let subjects: Vec<Subject> = all.into_iter().filter_map(|seat| Subject::new(seat, &levels)).collect();
         let linear: Vec<Option<Fitted>> = subjects.iter().map(|s| fitted(s, Form::Linear)).collect();
-        let judged: Vec<Judged> = subjects
-            .iter()
-            .zip(linear)
-            .filter_map(|(subject, linear)| Some(Judged::of(subject, linear?)))
-            .collect();
+        let unbent: Vec<(&Subject, Fitted)> =
+            subjects.iter().zip(linear).filter_map(|(subject, linear)| Some((subject, linear?))).collect();
+        let closest = unbent.iter().min_by(|a, b| a.0.floor.total_cmp(&b.0.floor));
+        let change =
+            closest.map(|(subject, linear)| changed(subject, linear)).ok_or(SteppedError::NoJoint)?;
+        // What does not change is not searched for a law.
+        let judge = |(subject, linear)| match change.0 < CHANGED {
+            true => Judged::of(subject, linear),
+            false => Judged::unbent(subject, linear),
+        };
+        let judged: Vec<Judged> = unbent.into_par_iter().map(judge).collect();
         let best = judged.iter().min_by(|a, b| a.best().nrmse.total_cmp(&b.best().nrmse));
         let best = best.ok_or(SteppedError::NoJoint)?;
-        let change = changed(best.subject, &best.linear);
         let mut verdict = Verdict::Homogeneous;
         let mut named = None;
         if change.0 < CHANGED {
@@ -165,8 +178,13 @@ impl SteppedDiagnosis {
             None => refitted.clone(),
             Some(n) => with_laws(fixture, subject, &n.fit.change, omega),
         };
-        let findings = named.as_ref().map_or_else(Vec::new, |n| n.findings(&judged));
+        let findings =
+            named.as_ref().map_or_else(Vec::new, |n| n.findings(&judged, (fixture, options.exact)));
         let left_out = named.as_ref().and_then(|n| n.left_out());
+        let by_noise = subject.by_noise();
+        let chi2 = |change: &Change, fitted: usize| by_noise.as_ref()?.chi2_per_dof(change, fitted);
+        let fitted = |change: &Change| chi2(change, change.parameters().len());
+        let chi2_per_dof = [chi2(&stated, 0), fitted(&base.change), fitted(&repaired.change)];
         Ok(SteppedDiagnosis {
             verdict,
             place: (subject.seat.joint.clone(), subject.dof()),
@@ -178,10 +196,30 @@ impl SteppedDiagnosis {
             left_out,
             band,
             nrmse,
+            chi2_per_dof,
             fixtures: [refitted, repaired_fixture],
             unplaced,
         })
     }
+}
+
+/// Strengths of levels at the least, as a ratio: closer ones say nothing of amplitude.
+const APART: f64 = 1.2;
+
+/// Refuses levels from which nothing follows.
+fn check(levels: &[SteppedLevel]) -> Result<(), SteppedError> {
+    let [first, .., last] = levels else { return Err(SteppedError::OneLevel) };
+    if let Some(other) =
+        levels.iter().find(|l| std::mem::discriminant(&l.held) != std::mem::discriminant(&first.held))
+    {
+        return Err(SteppedError::Mixed { first: first.held.to_string(), second: other.held.to_string() });
+    }
+    let amplitudes = || levels.iter().map(|level| level.held.amplitude());
+    let (least, most) = (amplitudes().fold(f64::INFINITY, f64::min), amplitudes().fold(0.0, f64::max));
+    if most < APART * least {
+        return Err(SteppedError::Alike { first: first.held.to_string(), last: last.held.to_string() });
+    }
+    Ok(())
 }
 
 /// The lines about the strongest resonance of the lowest level, wide enough for all levels.
@@ -198,9 +236,6 @@ fn about_the_resonance(
             .collect::<Result<Vec<_>, _>>()
     };
     let within = cut(levels, from, to)?;
-    if within.len() < 2 {
-        return Err(SteppedError::OneLevel);
-    }
     let (top, _) = within[0].peak();
     let near = cut(&within, 0.85 * top, 1.15 * top)?;
     let peaks: Vec<(f64, f64)> = near.iter().map(SteppedLevel::peak).collect();
@@ -213,16 +248,20 @@ fn about_the_resonance(
     Ok((used, ends))
 }
 
-/// Probability that one complex stiffness for all levels leaves as much more than one a level by chance, and the ratio of variances.
+/// By how much variances about a resonance, read from the scatter of the lines, may be too small against those beside it.
+const UNCERTAIN: f64 = 1.25;
+
+/// Probability that one complex stiffness for all levels leaves as much more than one a level by chance, and the ratio of variances. Values are weighed
+/// by their own noise, of which only the course over lines and FRFs counts: its size is that of what the levels' own stiffnesses leave.
 fn changed(subject: &Subject, linear: &Fitted) -> (f64, f64) {
+    let by_noise = subject.by_noise();
+    let subject = by_noise.as_ref().unwrap_or(subject);
     let count = subject.levels.len();
-    let factors: Vec<f64> = (0..count).map(|l| subject.free_error(l).max(1e-12).recip()).collect();
-    let Some((_, common)) = subject.fitted(&linear.change, Some(&factors)) else { return (1.0, 1.0) };
-    // By the weights each level's own fit leaves 1.
-    let own = count as f64;
+    let Some((_, common)) = subject.fitted(&linear.change, None) else { return (1.0, 1.0) };
+    let own: f64 = (0..count).map(|l| subject.free_error(l).powi(2)).sum();
     let more = 2.0 * (count - 1) as f64;
-    let left = subject.count() as f64 - 2.0 * own - 1.0;
-    let ratio = ((common - own) / more) / (own / left);
+    let left = subject.count() as f64 - 2.0 * count as f64 - 1.0;
+    let ratio = ((common - own) / more) / (own / left) / UNCERTAIN;
     (f_tail(ratio, more, left), ratio)
 }
 

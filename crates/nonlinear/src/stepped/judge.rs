@@ -47,22 +47,25 @@ pub(crate) struct Fitted {
     pub nrmse: f64,
 }
 
-/// Starts that are followed to their minimum.
+/// Starts that are followed to their minimum, the motions those of the levels' own stiffnesses.
 const FOLLOWED: usize = 5;
+/// Minima that are followed on, the motions those of the law itself.
+const POLISHED: usize = 2;
 
 /// The best fit of a form.
 pub(crate) fn fitted(subject: &Subject, form: Form) -> Option<Fitted> {
-    let mut starts: Vec<(f64, Change)> = starts(subject, form)
-        .into_iter()
-        .map(|laws| {
-            let start = begun(subject, laws);
-            (subject.nrmse(&start), start)
-        })
-        .filter(|(error, _)| error.is_finite())
-        .collect();
-    starts.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let followed = starts.iter().take(FOLLOWED).filter_map(|(_, start)| subject.fitted(start, None));
-    let fits = followed.map(|(change, _)| Fitted { form, nrmse: subject.nrmse(&change), change });
+    let frozen = subject.frozen();
+    let ranked = |changes: Vec<Change>| {
+        let of = |change: Change| (frozen.nrmse(&change), change);
+        let mut all: Vec<_> = changes.into_iter().map(of).filter(|(error, _)| error.is_finite()).collect();
+        all.sort_by(|a, b| a.0.total_cmp(&b.0));
+        all
+    };
+    let starts = ranked(starts(subject, form).into_iter().map(|laws| begun(subject, laws)).collect());
+    let minima = starts.iter().take(FOLLOWED).filter_map(|(_, start)| Some(frozen.fitted(start, None)?.0));
+    let minima = ranked(minima.collect());
+    let polished = minima.iter().take(POLISHED).filter_map(|(_, near)| subject.fitted(near, None));
+    let fits = polished.map(|(change, _)| Fitted { form, nrmse: subject.nrmse(&change), change });
     fits.filter(|fit| fit.nrmse.is_finite()).min_by(|a, b| a.nrmse.total_cmp(&b.nrmse))
 }
 

@@ -7,6 +7,8 @@ pub(crate) mod least_squares;
 pub(crate) mod level;
 pub(crate) mod model;
 pub(crate) mod naming;
+pub(crate) mod pooled;
 pub(crate) mod resonance;
 pub(crate) mod says;
 pub(crate) mod seat;
+pub(crate) mod tolerances;

@@ -13,14 +13,16 @@ use num_complex::Complex64;
 pub(crate) struct Subject {
     pub seat: Seat,
     pub levels: Vec<SteppedLevel>,
-    /// One over √Σ|H|², by level.
-    weights: Vec<f64>,
+    /// By level and value, FRF after FRF: one over the level's √Σ|H|², or over each value's deviation.
+    weights: Vec<Vec<f64>>,
     /// ln of the gain common to all levels, with each level's δ.
     pub free: (f64, Vec<Complex64>),
     /// Root mean square over the levels of each one's relative error, each with its δ.
     pub floor: f64,
     /// Amplitude of d by level and line.
     motions: Vec<Vec<f64>>,
+    /// Whether laws are read at these amplitudes, whatever they do to d themselves.
+    frozen: bool,
 }
 
 /// What is added across the joint: gain of the fixture's FRFs, base stiffness and loss beyond the fixture's, laws.
@@ -44,6 +46,22 @@ impl Change {
             }
         }
         x
+    }
+
+    /// Which of the parameters are cubic stiffnesses.
+    pub fn cubic_places(&self) -> Vec<usize> {
+        let mut next = 3;
+        let mut places = Vec::new();
+        for law in &self.laws {
+            match law {
+                RestoringLaw::Cubic { .. } => {
+                    places.push(next);
+                    next += 1;
+                }
+                _ => next += 2,
+            }
+        }
+        places
     }
 
     /// The change of this form at the parameters `x`.
@@ -72,24 +90,74 @@ impl Subject {
     /// `None` where no δ follows the levels.
     pub fn new(seat: Seat, levels: &[SteppedLevel]) -> Option<Self> {
         let power = |level: &SteppedLevel| level.frfs.all_values().iter().map(|v| v.norm_sqr()).sum::<f64>();
-        let weights = levels.iter().map(|level| power(level).sqrt().recip()).collect();
+        let relative =
+            |level: &SteppedLevel| vec![power(level).sqrt().recip(); level.frfs.all_values().len()];
+        let weights = levels.iter().map(relative).collect();
         let mut subject = Subject {
             motions: vec![Vec::new(); levels.len()],
             seat,
             levels: levels.to_vec(),
             weights,
             free: (0.0, Vec::new()),
+            frozen: false,
             floor: f64::NAN,
         };
         subject.free = subject.each_level_free()?;
-        subject.motions =
-            (0..levels.len()).map(|l| subject.seat.motions(l, &levels[l], subject.free.1[l])).collect();
+        subject.motions = subject.motions_of_each_free();
         let squares =
             (0..levels.len()).map(|l| subject.error(l, subject.free.0, &|_| subject.free.1[l]).powi(2));
         subject.floor = (squares.sum::<f64>() / levels.len() as f64).sqrt();
         let sound =
             subject.floor.is_finite() && subject.motions.iter().flatten().all(|d| d.is_finite() && *d > 0.0);
         sound.then_some(subject)
+    }
+
+    /// The same component in another fixture, close to this one.
+    pub fn in_another(&self, seat: Seat) -> Option<Self> {
+        let mut other = Subject { seat, ..self.clone() };
+        other.free = other.each_level_free()?;
+        other.motions = other.motions_of_each_free();
+        Some(other)
+    }
+
+    /// A change fitted to another subject, moved by what the levels' own stiffnesses and the gain differ by.
+    pub fn carried_from(&self, other: &Subject, change: &Change) -> Change {
+        let pairs = self.free.1.iter().zip(&other.free.1);
+        let moved = pairs.map(|(here, there)| here - there).sum::<Complex64>() / self.free.1.len() as f64;
+        Change {
+            log_gain: change.log_gain + self.free.0 - other.free.0,
+            base: change.base + moved,
+            laws: change.laws.clone(),
+        }
+    }
+
+    fn motions_of_each_free(&self) -> Vec<Vec<f64>> {
+        let of =
+            |l: usize, line: usize| self.seat.motion((l, line), &self.levels[l], 0.0, &|_| self.free.1[l]).0;
+        let levels = self.seat.lines.iter().enumerate();
+        levels.map(|(l, lines)| (0..lines.len()).map(|line| of(l, line)).collect()).collect()
+    }
+
+    /// δ on every line of a level under a change, at the motion that goes with it there.
+    fn deltas(&self, level: usize, change: &Change) -> Vec<Complex64> {
+        let count = self.seat.lines[level].len();
+        if change.laws.is_empty() {
+            return vec![change.base; count];
+        }
+        let yields = self.seat.yields;
+        let delta = |motion: f64| change.delta(motion, yields);
+        if self.frozen {
+            return self.motions[level].iter().map(|motion| delta(*motion)).collect();
+        }
+        let of = |line: usize| {
+            self.seat.motion((level, line), &self.levels[level], self.motions[level][line], &delta).1
+        };
+        (0..count).map(of).collect()
+    }
+
+    /// The subject with laws read at the motions that the levels' own stiffnesses give: close, and four times as fast.
+    pub fn frozen(&self) -> Self {
+        Subject { frozen: true, ..self.clone() }
     }
 
     /// The first `count` levels alone.
@@ -136,7 +204,8 @@ impl Subject {
         let mut all = Vec::with_capacity(2 * of.frfs.all_values().len());
         for frf in 0..of.frfs.pairs().len() {
             for (line, value) in of.frfs.values(frf).iter().enumerate() {
-                let left = (value - gain * lines[line].accelerance(frf, deltas[line])) * self.weights[level];
+                let left = (value - gain * lines[line].accelerance(frf, deltas[line]))
+                    * self.weights[level][frf * lines.len() + line];
                 all.extend([left.re, left.im]);
             }
         }
@@ -150,8 +219,8 @@ impl Subject {
 
     /// Relative error of a level under a change.
     pub fn error_of(&self, level: usize, change: &Change) -> f64 {
-        let yields = self.seat.yields;
-        self.error(level, change.log_gain, &|line| change.delta(self.motions[level][line], yields))
+        let deltas = self.deltas(level, change);
+        self.error(level, change.log_gain, &|line| deltas[line])
     }
 
     /// Relative error of a level with a δ and gain of its own seat's free fit.
@@ -165,13 +234,35 @@ impl Subject {
         (sum / self.levels.len() as f64).sqrt()
     }
 
+    /// The subject with every value weighed by its own deviation, and the levels' δ that follow; `None` where values carry none.
+    pub fn by_noise(&self) -> Option<Self> {
+        let of_level = |level: &SteppedLevel| -> Option<Vec<f64>> {
+            let mut weights = Vec::with_capacity(level.frfs.all_values().len());
+            for frf in 0..level.frfs.pairs().len() {
+                weights.extend(level.frfs.variance(frf)?.iter().map(|v| v.sqrt().recip()));
+            }
+            weights.iter().all(|w| w.is_finite()).then_some(weights)
+        };
+        let weights = self.levels.iter().map(of_level).collect::<Option<_>>()?;
+        let mut other = Subject { weights, ..self.clone() };
+        other.free = other.with_one_gain(self.free.0, self.free.1.clone())?;
+        Some(other)
+    }
+
+    /// χ² per degree of freedom under a change, of a subject that is weighed by its noise; `None` where it is not finite.
+    pub fn chi2_per_dof(&self, change: &Change, fitted: usize) -> Option<f64> {
+        let squares = (0..self.levels.len()).map(|l| self.error_of(l, change).powi(2));
+        // The noise of a complex value has half of its variance in each part.
+        let chi2 = 2.0 * squares.sum::<f64>() / (self.count().max(fitted + 1) - fitted) as f64;
+        chi2.is_finite().then_some(chi2)
+    }
+
     /// All levels' residuals under a change, each level times its factor.
     pub fn residuals(&self, change: &Change, factors: Option<&[f64]>) -> Option<Vec<f64>> {
-        let yields = self.seat.yields;
         let mut all = Vec::new();
         for level in 0..self.levels.len() {
-            let motions = &self.motions[level];
-            let part = self.residual(level, change.log_gain, &|line| change.delta(motions[line], yields));
+            let deltas = self.deltas(level, change);
+            let part = self.residual(level, change.log_gain, &|line| deltas[line]);
             let factor = factors.map_or(1.0, |f| f[level]);
             all.extend(part.iter().map(|r| r * factor));
         }
@@ -214,25 +305,24 @@ impl Subject {
             let (of, line) = (&self.levels[l], self.peak_line(l));
             self.seat.lines[l][line].delta(of.watched(), of.frfs.values(of.watched())[line])
         };
-        let mut deltas: Vec<Complex64> = (0..self.levels.len()).map(at_peak).collect();
-        let mut log_gain = 0.0;
-        for _ in 0..12 {
-            let own = |(l, start): (usize, &Complex64)| {
-                let size = start.norm().max(f64::MIN_POSITIVE);
-                let residual = |x: &[f64]| {
-                    let all = self.residual(l, x[2], &|_| Complex64::new(x[0], x[1]));
-                    all.iter().all(|r| r.is_finite()).then_some(all)
-                };
-                let fit = minimum(&residual, &[start.re, start.im, log_gain], &[size, size, 0.05])?;
-                Some((Complex64::new(fit.x[0], fit.x[1]), fit.x[2]))
+        let own = |(l, start): (usize, Complex64)| {
+            let size = start.norm().max(f64::MIN_POSITIVE);
+            let residual = |x: &[f64]| {
+                let all = self.residual(l, x[2], &|_| Complex64::new(x[0], x[1]));
+                all.iter().all(|r| r.is_finite()).then_some(all)
             };
-            // The first pass gives every level a gain of its own; later ones share their mean.
-            if log_gain == 0.0 {
-                let fits: Vec<_> = deltas.iter().enumerate().map(own).collect::<Option<_>>()?;
-                log_gain = fits.iter().map(|f| f.1).sum::<f64>() / fits.len() as f64;
-                deltas = fits.iter().map(|f| f.0).collect();
-                continue;
-            }
+            let fit = minimum(&residual, &[start.re, start.im, 0.0], &[size, size, 0.05])?;
+            Some((Complex64::new(fit.x[0], fit.x[1]), fit.x[2]))
+        };
+        // The first pass gives every level a gain of its own; later ones share their mean.
+        let fits: Vec<_> = (0..self.levels.len()).map(at_peak).enumerate().map(own).collect::<Option<_>>()?;
+        let log_gain = fits.iter().map(|f| f.1).sum::<f64>() / fits.len() as f64;
+        self.with_one_gain(log_gain, fits.iter().map(|f| f.0).collect())
+    }
+
+    /// δ of each level and the gain common to all, from values close by.
+    fn with_one_gain(&self, mut log_gain: f64, mut deltas: Vec<Complex64>) -> Option<(f64, Vec<Complex64>)> {
+        for _ in 0..12 {
             deltas =
                 (0..deltas.len()).map(|l| self.free_delta(l, log_gain, deltas[l])).collect::<Option<_>>()?;
             let better = self.best_gain(&deltas);
@@ -262,8 +352,9 @@ impl Subject {
             for frf in 0..of.frfs.pairs().len() {
                 for (line, value) in of.frfs.values(frf).iter().enumerate() {
                     let model = self.seat.lines[l][line].accelerance(frf, deltas[l]);
-                    along += self.weights[l].powi(2) * (model.conj() * value).re;
-                    power += self.weights[l].powi(2) * model.norm_sqr();
+                    let weight = self.weights[l][frf * self.seat.lines[l].len() + line].powi(2);
+                    along += weight * (model.conj() * value).re;
+                    power += weight * model.norm_sqr();
                 }
             }
         }

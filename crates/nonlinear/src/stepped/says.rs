@@ -101,6 +101,12 @@ impl SteppedDiagnosis {
 
     /// What a reader should know besides.
     pub fn remarks(&self) -> Vec<String> {
+        if self.verdict == Verdict::Homogeneous {
+            return vec![format!(
+                "Levels were compared on the lines from {:.4} to {:.4} Hz, about their strongest resonance.",
+                self.band.0, self.band.1
+            )];
+        }
         let mut remarks = self.unplaced.clone();
         let (_, unit) = units(self.place.1);
         if let (Some(first), Some(last)) = (self.levels.first(), self.levels.last()) {
@@ -122,9 +128,6 @@ impl SteppedDiagnosis {
                 "Friction and a cubic spring together at {} in {} would leave a relative error of {:.3}, but two laws follow {} levels by their freedom: that is no evidence for either.",
                 two.joint, two.dof.name(), two.nrmse, self.levels.len()
             ));
-        }
-        if self.verdict == Verdict::Homogeneous {
-            remarks.push("Whether the fixture itself suits the recording is a matter for one level: give its file alone.".to_owned());
         }
         if self.levels.len() < 3 {
             remarks.push("Two levels show that something changes, not by which law: add a third.".to_owned());

@@ -55,6 +55,13 @@ const BESIDE: f64 = 1e-7;
 /// d's share in the driving-point motion below which a mode does not move the joint, in m or rad per m.
 const UNMOVED: f64 = 1e-9;
 
+/// One component of one joint in a fixture; `None` where the fixture lacks it or cannot be modelled.
+pub(crate) fn seat_of(fixture: &Fixture, (joint, dof): (&str, Dof), levels: &[SteppedLevel]) -> Option<Seat> {
+    let highest = levels.iter().flat_map(|l| l.frfs.lines().hz()).fold(0.0, |most: f64, hz| hz.max(most));
+    let model = Model::new(fixture, highest).ok()?;
+    seat(fixture, &model, fixture.joint(joint)?, dof, levels).ok()
+}
+
 /// Every component of every joint that the levels move.
 pub(crate) fn seats(fixture: &Fixture, levels: &[SteppedLevel]) -> Result<Vec<Seat>, LumpedError> {
     let highest = levels.iter().flat_map(|l| l.frfs.lines().hz()).fold(0.0, |most: f64, hz| hz.max(most));
@@ -149,21 +156,49 @@ fn seat(
     Ok(seat)
 }
 
+/// Turns of the loop from d to the joint's stiffness and back, at the most.
+const TURNS: usize = 12;
+/// Change of d, relative, at which it is found.
+const FOUND: f64 = 1e-7;
+
 impl Seat {
-    /// Amplitude of d on every line of a level, its complex stiffness there being `delta` more than the fixture's.
-    pub fn motions(&self, index: usize, level: &SteppedLevel, delta: Complex64) -> Vec<f64> {
+    /// Amplitude of d on a line of a level from the amplitude measured at the watched response, and the complex stiffness δ beyond the
+    /// fixture's there; `delta` is δ by d, `near` where d is looked for.
+    pub fn motion(
+        &self,
+        (index, line): (usize, usize),
+        level: &SteppedLevel,
+        near: f64,
+        delta: &dyn Fn(f64) -> Complex64,
+    ) -> (f64, Complex64) {
         let watched = level.watched();
-        let values = level.frfs.values(watched);
-        self.lines[index]
-            .iter()
-            .zip(values)
-            .map(|(line, value)| {
-                let response = match level.held {
-                    Held::Response(amplitude) => amplitude,
-                    Held::Force(amplitude) => amplitude * value.norm(),
-                };
-                response * line.motion_per_response(watched, delta)
-            })
-            .collect()
+        let response = match level.held {
+            Held::Response(amplitude) => amplitude,
+            Held::Force(amplitude) => amplitude * level.frfs.values(watched)[line].norm(),
+        };
+        let (mut motion, mut found) = (near, delta(near));
+        // ln of the motion before and of what δ there made of it: from the second turn on the secant through the last two.
+        let mut last: Option<(f64, f64)> = None;
+        for _ in 0..TURNS {
+            let made = response * self.lines[index][line].motion_per_response(watched, found);
+            if motion <= 0.0 {
+                (motion, found) = (made, delta(made));
+                continue;
+            }
+            let off = (made / motion).ln();
+            let step = match last {
+                Some((before, off_before)) if off != off_before && off.is_finite() => {
+                    off * (before - motion.ln()) / (off - off_before)
+                }
+                _ => off,
+            };
+            last = Some((motion.ln(), off));
+            motion *= step.clamp(-1.0, 1.0).exp();
+            found = delta(motion);
+            if step.abs() <= FOUND {
+                break;
+            }
+        }
+        (motion, found)
     }
 }
