@@ -133,6 +133,51 @@ fn hits_that_ring_on_at_the_end_of_their_records_are_decomposed_under_a_window()
 }
 
 #[test]
+fn swapped_and_inverted_channels_are_told() {
+    let bench = Bench::new("hits-swapped");
+    bench.write("true.json", fixture(""));
+    forces(&bench, &["1", "2"], &[300.0; 8]);
+    strike(&bench, 8);
+    let is_force = |d: &jointscope_uff::Dataset58| d.ordinate_axis.data_type == 13;
+    bench.rewrite("hits.uff", "swapped.uff", |datasets| {
+        for d in datasets.iter_mut().filter(|d| !is_force(d)) {
+            d.response.number = 7 - d.response.number;
+        }
+    });
+    let said = bench.done(&["diagnose", "true.json", "swapped.uff", "-o", "out"]);
+    assert!(said.contains("have each other's place: their channels are swapped"), "{said}");
+    bench.rewrite("hits.uff", "inverted.uff", |datasets| {
+        for d in datasets.iter_mut().filter(|d| !is_force(d) && d.response.number == 4) {
+            let Data::Real(values) = &mut d.data else { panic!("a history is real") };
+            values.iter_mut().for_each(|v| *v = -*v);
+        }
+    });
+    let said = bench.done(&["diagnose", "true.json", "inverted.uff", "-o", "out"]);
+    assert!(said.contains("The channel of response 4 has the wrong sign"), "{said}");
+    bench.rewrite("hits.uff", "force.uff", |datasets| {
+        for number in 1..=8 {
+            let data = |force: bool| {
+                let mut of_hit = datasets.iter().filter(|d| d.sequence_number == number);
+                let found = of_hit.find(|d| is_force(d) == force && (force || d.response.number == 3));
+                found.unwrap().data.clone()
+            };
+            let (force, response) = (data(true), data(false));
+            for d in datasets.iter_mut().filter(|d| d.sequence_number == number) {
+                if is_force(d) {
+                    d.data = response.clone();
+                } else if d.response.number == 3 {
+                    d.data = force.clone();
+                }
+            }
+        }
+    });
+    bench.refused(
+        &["diagnose", "true.json", "force.uff", "-o", "out"],
+        &["force.uff", "the channels seem swapped"],
+    );
+}
+
+#[test]
 fn simulate_refuses_bad_input_in_one_sentence() {
     let bench = recorded("hits-bad", "", &[100.0]);
     let refused = |fixture: &str, force: &str, more: &[&str], parts: &[&str]| {

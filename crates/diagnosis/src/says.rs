@@ -5,6 +5,7 @@ mod names;
 mod numbers;
 mod places;
 mod quantities;
+mod swapped;
 mod verdict;
 
 use crate::diagnosis::Finding;

@@ -2,6 +2,7 @@
 
 use super::names::named_with_size;
 use super::numbers::{figures, listed, percent, plain, significant};
+use super::swapped::swapped;
 use crate::diagnosis::{Diagnosis, Finding, Verdict};
 use crate::fit::Fit;
 use crate::location::Location;
@@ -119,6 +120,9 @@ impl Diagnosis {
                  and intervals are that much less certain.",
                 if scatter.len() == pairs.len() { "all FRFs".to_owned() } else { listed(&scatter) }
             ));
+        }
+        if let Ok(fixture) = self.search.nominal.hypothesis.to_fixture() {
+            remarks.extend(swapped(&self.findings, &fixture));
         }
         remarks.extend(self.observation.remarks());
         if self.residual_correlation.abs() > 0.2 {
