@@ -192,7 +192,7 @@ fn main() {
             found.findings.iter().map(|f| format!("{} ({:.2})", name(&f.effect), f.probability)).collect();
         let head = format!(
             "{case}: {}, {:?} levels {}, {:?} p {:.0e}, holds {}, {names:?}",
-            effect.as_ref().map_or("linear".to_owned(), |e| name(e)),
+            effect.as_ref().map_or("linear".to_owned(), name),
             levels.len(),
             levels[0].held,
             found.verdict,
