@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use jointscope::FrfSet;
-use jointscope::estimation::{Estimate, EstimateError, ResponseWindow};
+use jointscope::estimation::{Estimate, EstimateError, Estimator, ResponseWindow};
 use jointscope::fixture::{Effect, EffectKind, Fixture, Place};
 use jointscope_recordings::{Hits, HitsError, Recording, RecordingError, Source, hits_of};
 use jointscope_report::HammerTest;
@@ -76,7 +76,7 @@ pub fn of_recording(
                 ))
             })?;
             let mut notes = hits.notes;
-            notes.push(what_was_estimated(&estimate, &frfs, estimation));
+            notes.push(what_was_estimated(&estimate, &frfs, estimation.options(window).estimator));
             notes.extend(estimate.remarks.iter().cloned());
             let window_decay = estimate.decay;
             let hits = Some(HammerTest { hits: hits.hits, estimate });
@@ -122,8 +122,8 @@ pub fn estimated(
 }
 
 /// `FRFs were estimated from the hits: H1, 9 hits at 1, 9 at 2, on 1975 lines from 0.78125 to 1543 Hz`.
-pub fn what_was_estimated(estimate: &Estimate, frfs: &FrfSet, estimation: &EstimationArguments) -> String {
-    let name = estimation.options(ResponseWindow::None).estimator.name();
+pub fn what_was_estimated(estimate: &Estimate, frfs: &FrfSet, estimator: Estimator) -> String {
+    let name = estimator.name();
     let points: Vec<String> = estimate
         .excitations
         .iter()

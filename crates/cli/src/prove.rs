@@ -9,7 +9,11 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
-use jointscope_proof::{Answers, Baseline, FAMILIES, Judged, Limits, Methods, Score, Timing};
+use jointscope::Diagnosis;
+use jointscope_proof::{
+    Answers, Baseline, CaseLine, FAMILIES, Judged, Limits, Methods, Opened, Replies, RouteScores, Score,
+    SolidJudged, StruckAnswers, StruckDiagnosis, StruckJudged, Timing,
+};
 use jointscope_report::{ProofContext, ProofResults, proof_page};
 use serde_json::{Value, json};
 
@@ -32,6 +36,12 @@ pub struct ProveArguments {
     /// Make so many further cases of one effect so small that it may be missed, for the detection curve.
     #[arg(long, value_name = "N")]
     pub graded: Option<usize>,
+    /// Make so many cases whose recording comes from a solid [default: a twentieth of --cases; none of these with --family].
+    #[arg(long, value_name = "N")]
+    pub solid: Option<usize>,
+    /// Make so many cases of hits over time [default: as --solid].
+    #[arg(long, value_name = "N")]
+    pub struck: Option<usize>,
     /// A text, such as the current commit's hash, from which a quarter of the cases is drawn afresh.
     #[arg(long, value_name = "TEXT")]
     pub also_from: Option<String>,
@@ -61,7 +71,7 @@ pub struct ProveArguments {
     pub no_case_pages: bool,
     /// Instead: the effects that this recording cannot tell apart, and the smallest that show in it.
     #[arg(long, num_args = 2, value_names = ["FIXTURE", "RECORDING"],
-        conflicts_with_all = ["cases", "seed", "graded", "also_from", "only", "family", "wrong", "output"])]
+        conflicts_with_all = ["cases", "seed", "graded", "solid", "struck", "also_from", "only", "family", "wrong", "output"])]
     pub limits: Vec<PathBuf>,
 }
 
@@ -84,8 +94,8 @@ pub fn run(arguments: &ProveArguments) -> Result<String, Refusal> {
     let threads = workers(arguments);
     let answers = diagnosed(arguments, &concealed, threads)?;
     let baselines = {
-        let bar = progress(concealed.cases.len(), "looked up and updated");
-        Baseline::all(&concealed.cases, threads, |done| bar.set_position(done as u64))
+        let bar = progress(concealed.cases.laboratory.len(), "looked up and updated");
+        Baseline::all(&concealed.cases.laboratory, threads, |done| bar.set_position(done as u64))
     };
     if let Some(directory) = &arguments.output {
         // On disk before the truths are opened.
@@ -94,20 +104,29 @@ pub fn run(arguments: &ProveArguments) -> Result<String, Refusal> {
         write(directory.join("baselines.json"), &value)?;
     }
     let truths = concealed.truths.open(&answers).ok_or_else(|| Refusal::new("answers are missing"))?;
+    let truths: Opened = truths.into_iter().collect();
     let judged = {
-        let bar = progress(concealed.cases.len(), "judged");
-        Judged::all(&concealed.cases, truths, &answers, threads, |done| bar.set_position(done as u64))
+        let bar = progress(concealed.cases.laboratory.len(), "judged");
+        let told = |done: usize| bar.set_position(done as u64);
+        Judged::all(&concealed.cases.laboratory, truths.laboratory, &answers.laboratory, threads, told)
     };
-    let timing = Timing::of(answers.seconds());
+    let solid = {
+        let bar = progress(concealed.cases.solid.len(), "judged");
+        let told = |done: usize| bar.set_position(done as u64);
+        SolidJudged::all(&concealed.cases.solid, truths.solid, &answers.solid, threads, told)
+    };
+    let routes = RouteScores::of(&solid, &StruckJudged::all(truths.struck, &answers.struck));
+    let timing = Timing::of(&answers.seconds());
     tell(&timing.to_string());
     let score = Score::of(&judged);
-    let believed: Vec<_> = concealed.cases.iter().map(|case| &case.believed).collect();
+    let believed: Vec<_> = concealed.cases.laboratory.iter().map(|case| &case.believed).collect();
     let methods = Methods::of(&judged, &believed, &baselines);
     let mut value = score.to_value();
     value["methods"] = methods.to_value();
     value["plan"] = concealed.plan.take();
     value["sealed_truths_sha256"] = digest.clone().into();
     value["cases"] = judged.iter().map(Judged::to_value).collect();
+    value["routes"] = routes.to_value();
     if let Some(directory) = &arguments.output {
         let context = ProofContext {
             program: format!("jointscope {}", env!("CARGO_PKG_VERSION")),
@@ -116,7 +135,7 @@ pub fn run(arguments: &ProveArguments) -> Result<String, Refusal> {
             sealed: digest.clone(),
             pages: !arguments.no_case_pages,
         };
-        let results = ProofResults { score: &score, methods: &methods, judged: &judged };
+        let results = ProofResults { score: &score, methods: &methods, judged: &judged, routes: &routes };
         let mut outputs = Outputs::default();
         outputs.add(directory.join("report.html"), proof_page(&results, &context).map_err(Refusal::new)?);
         outputs.add(directory.join("proof.json"), pretty(&value));
@@ -127,13 +146,19 @@ pub fn run(arguments: &ProveArguments) -> Result<String, Refusal> {
         return Ok(pretty(&value).trim_end().to_owned());
     }
     let what = &concealed.what;
-    let mut text =
-        format!("{what}\ntruths sealed before the first answer, SHA-256 {digest}\n\n{score}\n{methods}");
+    let mut text = format!("{what}\ntruths sealed before the first answer, SHA-256 {digest}\n");
+    if !judged.is_empty() {
+        text.push_str(&format!("\n{score}\n{methods}"));
+    }
+    text.push_str(&routes.to_string());
     if arguments.wrong || arguments.only.is_some() {
-        let told = judged.iter().filter(|judged| arguments.only.is_some() || !judged.faults().is_empty());
-        for judged in told {
+        let all = arguments.only.is_some();
+        let told = judged.iter().filter(|judged| all || !judged.faults().is_empty()).map(Judged::account);
+        let lines = routes.0.iter().flat_map(|route| &route.lines);
+        let lines = lines.filter(|line| all || !line.faults.is_empty()).map(CaseLine::account);
+        for account in told.chain(lines) {
             text.push('\n');
-            text.push_str(&judged.account());
+            text.push_str(&account);
         }
     }
     if let Some(directory) = &arguments.output {
@@ -149,18 +174,36 @@ pub fn workers(arguments: &ProveArguments) -> usize {
 }
 
 /// All cases diagnosed, and a page written of each where a directory was given.
-fn diagnosed(arguments: &ProveArguments, concealed: &Concealed, threads: usize) -> Result<Answers, Refusal> {
-    let bar = progress(concealed.cases.len(), "diagnosed");
-    let told = |done: usize| bar.set_position(done as u64);
-    let Some(directory) = arguments.output.as_ref().filter(|_| !arguments.no_case_pages) else {
-        return Ok(Answers::to(&concealed.cases, threads, told));
+fn diagnosed(arguments: &ProveArguments, concealed: &Concealed, threads: usize) -> Result<Replies, Refusal> {
+    let bar = progress(concealed.numbers.len(), "diagnosed");
+    let [first_solid, first_struck] = concealed.firsts();
+    let from = |first: usize| {
+        let bar = &bar;
+        move |done: usize| bar.set_position((first + done) as u64)
     };
-    let pages = CasePages::below(directory, concealed);
-    let answers = Answers::watched(&concealed.cases, threads, told, |position, diagnosis| {
-        pages.write(position, diagnosis)
-    });
-    pages.finish()?;
-    Ok(answers)
+    let directory = arguments.output.as_ref().filter(|_| !arguments.no_case_pages);
+    let pages = directory.map(|directory| CasePages::below(directory, concealed));
+    let of_frfs = |first: usize| {
+        let pages = &pages;
+        move |position: usize, diagnosis: &Diagnosis| {
+            if let Some(pages) = pages {
+                pages.write(first + position, diagnosis);
+            }
+        }
+    };
+    let of_hits = |position: usize, diagnosis: &StruckDiagnosis| {
+        if let Some(pages) = &pages {
+            pages.write_hits(first_struck + position, diagnosis);
+        }
+    };
+    let cases = &concealed.cases;
+    let replies = Replies {
+        laboratory: Answers::watched(&cases.laboratory, threads, from(0), of_frfs(0)),
+        solid: Answers::watched(&cases.solid, threads, from(first_solid), of_frfs(first_solid)),
+        struck: StruckAnswers::to(&cases.struck, threads, from(first_struck), of_hits),
+    };
+    pages.map_or(Ok(()), CasePages::finish)?;
+    Ok(replies)
 }
 
 /// What a recording cannot tell apart or show.

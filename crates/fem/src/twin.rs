@@ -60,12 +60,25 @@ impl Twin {
         fixture: &Fixture,
         options: &MeshOptions,
         range: ModeRange,
-        mut progress: impl FnMut(Progress),
+        progress: impl FnMut(Progress),
     ) -> Result<Self, FemError> {
         if let Some((index, effect)) = fixture.physics().iter().enumerate().next() {
             return Err(FemError::Effect { index, kind: effect.kind.name() });
         }
         let mesh = Mesh::of(fixture, options)?;
+        Self::of_mesh(fixture, mesh, range, progress)
+    }
+
+    /// Finds the modes of a mesh of the fixture's geometry, whose materials may have been changed since [`Mesh::of`] made it.
+    ///
+    /// # Errors
+    /// See [`FemError`].
+    pub fn of_mesh(
+        fixture: &Fixture,
+        mesh: Mesh,
+        range: ModeRange,
+        mut progress: impl FnMut(Progress),
+    ) -> Result<Self, FemError> {
         progress(Progress::Meshed(mesh.nodes.len(), mesh.elements.len()));
         let matrices = Matrices::of(&mesh, |_, _| false)?;
         progress(Progress::Assembled(matrices.order()));

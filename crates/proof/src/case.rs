@@ -1,6 +1,6 @@
 //! A case: what the diagnosis is given, and apart from it what is true.
 
-use crate::truth_file::outside_value;
+use crate::truth_file::{hammer_value, outside_value};
 use jointscope_fixture::{Dof, Effect, EffectKind, Fixture, Place};
 use jointscope_rig::universal_file::{FileError, Precision, to_bytes};
 use jointscope_rig::{HammerTest, Outside};
@@ -104,7 +104,6 @@ impl Truth {
 
     /// The truth as JSON.
     pub fn to_value(&self) -> Value {
-        let hammer = &self.hammer;
         json!({
             "case": self.index,
             "source": self.source,
@@ -113,11 +112,7 @@ impl Truth {
             "hidden": self.hidden(),
             "fixture": self.fixture.to_value(),
             "outside": self.outside.as_ref().map(outside_value),
-            "hammer": {
-                "averages": hammer.averages, "noise_response": hammer.noise_response, "noise_force": hammer.noise_force,
-                "corner": hammer.corner, "spread": hammer.spread, "common_hits": hammer.common_hits,
-                "seed": hammer.seed.to_string(),
-            },
+            "hammer": hammer_value(&self.hammer),
             "unseen": self.unseen.pairs().iter().map(ToString::to_string).collect::<Vec<_>>(),
         })
     }

@@ -3,6 +3,7 @@
 use crate::answers::on_workers;
 use crate::graded::scaled_to;
 use crate::{Case, Role, SealedTruths, Truth};
+use jointscope_fem::FemError;
 use jointscope_fixture::{Effect, EffectKind, Fixture};
 use jointscope_rig::{
     Family, HammerError, HammerTest, Instrument, Outside, StructureError, drawn_within_tolerance, frfs,
@@ -21,6 +22,10 @@ pub struct Plan {
     /// Number of further cases, numbered after the others, of one effect each that is made just so strong as to cost a fit without it a
     /// Δχ² of 3 to 300: what the detection curve is drawn from.
     pub graded: usize,
+    /// Number of cases whose recording comes from a solid, numbered after these.
+    pub solid: usize,
+    /// Number of cases of hits over time, numbered last.
+    pub struck: usize,
     /// Seed of all but the fresh ones.
     pub seed: u64,
     /// A text (a commit's hash) that the last of the cases are drawn from, a quarter of them: cases that nobody can have tuned anything to.
@@ -35,7 +40,7 @@ impl Default for Plan {
     fn default() -> Self {
         let families =
             vec![Family::TwoBlocks, Family::SupportedTwoBlocks, Family::ThreeBlocks, Family::Frame];
-        Plan { cases: 40, graded: 0, seed: 1, fresh_from: None, only: None, families }
+        Plan { cases: 40, graded: 0, solid: 0, struck: 0, seed: 1, fresh_from: None, only: None, families }
     }
 }
 
@@ -74,6 +79,9 @@ pub enum GenerationError {
     /// The spectral lines.
     #[error(transparent)]
     Spectra(#[from] SpectraError),
+    /// The solid.
+    #[error(transparent)]
+    Solid(#[from] FemError),
 }
 
 /// Roles by case number, repeating: a quarter nulls, half singles, an eighth each of doubles and outside physics.
@@ -106,31 +114,48 @@ impl Plan {
         if self.fresh_from.is_some() { self.cases.div_ceil(4) } else { 0 }
     }
 
-    /// Makes the cases, their numbers and, sealed, their truths. A case depends on the seed (or the text) and its number alone.
+    /// Makes the laboratory's cases and, sealed, their truths. A case depends on the seed (or the text) and its number alone.
     ///
     /// # Errors
     /// See [`GenerationError`].
     pub fn draw(&self) -> Result<(Vec<Case>, SealedTruths), GenerationError> {
-        let all = self.cases + self.graded;
-        if all == 0 || self.families.is_empty() {
+        if self.cases + self.graded == 0 {
             return Err(GenerationError::NoCases);
         }
-        let indices: Vec<usize> = match self.only {
-            Some(only) if only >= all => return Err(GenerationError::NoSuchCase { only, cases: all }),
-            Some(only) => vec![only],
-            None => (0..all).collect(),
-        };
-        let threads = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
-        let drawn = on_workers(&indices, threads, |_| (), |index| self.case(*index));
-        let drawn = drawn.into_iter().zip(&indices).map(|(drawn, index)| {
-            // A worker that died over a case has left nothing of it.
-            drawn.unwrap_or(Err(GenerationError::Unlucky(*index)))
-        });
-        let (cases, truths) = drawn.collect::<Result<Vec<_>, _>>()?.into_iter().unzip();
+        let own = Plan { solid: 0, struck: 0, ..self.clone() };
+        let (cases, truths) = self.drawn(&own.numbers()?, |index| self.case(index))?;
         Ok((cases, SealedTruths::new(truths)))
     }
 
-    fn case(&self, index: usize) -> Result<(Case, Truth), GenerationError> {
+    /// The numbers of the cases to make.
+    pub(crate) fn numbers(&self) -> Result<Vec<usize>, GenerationError> {
+        let all = self.cases + self.graded + self.solid + self.struck;
+        if all == 0 || self.families.is_empty() {
+            return Err(GenerationError::NoCases);
+        }
+        match self.only {
+            Some(only) if only >= all => Err(GenerationError::NoSuchCase { only, cases: all }),
+            Some(only) => Ok(vec![only]),
+            None => Ok((0..all).collect()),
+        }
+    }
+
+    /// Cases and truths of some numbers, each drawn on a worker.
+    pub(crate) fn drawn<C: Send, T: Send>(
+        &self,
+        indices: &[usize],
+        draw: impl Fn(usize) -> Result<(C, T), GenerationError> + Sync,
+    ) -> Result<(Vec<C>, Vec<T>), GenerationError> {
+        let threads = std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
+        let drawn = on_workers(indices, threads, |_| (), |index| draw(*index));
+        let drawn = drawn.into_iter().zip(indices).map(|(drawn, index)| {
+            // A worker that died over a case has left nothing of it.
+            drawn.unwrap_or(Err(GenerationError::Unlucky(*index)))
+        });
+        Ok(drawn.collect::<Result<Vec<_>, _>>()?.into_iter().unzip())
+    }
+
+    pub(crate) fn case(&self, index: usize) -> Result<(Case, Truth), GenerationError> {
         let first_fresh = self.cases - self.fresh();
         // A fresh case counts from the first of them, so that the text alone decides what they are.
         let (source, number, fresh) = match &self.fresh_from {
@@ -163,6 +188,19 @@ pub(crate) fn recorded_lines() -> Result<SpectralLines, SpectraError> {
 pub(crate) fn seed_of(source: &str, number: usize) -> u64 {
     let digest = Sha256::digest(format!("{source} case {number}").as_bytes());
     digest.iter().take(8).fold(0, |seed, byte| seed << 8 | u64::from(*byte))
+}
+
+/// How a case is measured.
+pub(crate) fn drawn_hammer(random: &mut impl Rng, seed: u64) -> HammerTest {
+    HammerTest {
+        averages: [5, 8, 10, 16, 20][random.random_range(0..5)],
+        noise_response: random.random_range(0.004..0.015),
+        noise_force: random.random_range(0.0005..0.0015),
+        corner: random.random_range(900.0..1300.0),
+        spread: 0.25,
+        common_hits: false,
+        seed,
+    }
 }
 
 struct Scene {
@@ -206,7 +244,7 @@ impl Scene {
         } else {
             (plain, None)
         };
-        let hammer = self.hammer(random);
+        let hammer = drawn_hammer(random, self.seed);
         if self.role == Role::Graded {
             let wanted = random.random_range(GRADED[0].ln()..GRADED[1].ln()).exp();
             let noisy = hammer.measure(&clean)?;
@@ -221,18 +259,6 @@ impl Scene {
             None => frfs(&truth, &apart, &lines, Instrument::Perfect)?,
         };
         Ok(Some((Case { believed, recorded }, Hidden { fixture: truth, outside, hammer, unseen })))
-    }
-
-    fn hammer(&self, random: &mut impl Rng) -> HammerTest {
-        HammerTest {
-            averages: [5, 8, 10, 16, 20][random.random_range(0..5)],
-            noise_response: random.random_range(0.004..0.015),
-            noise_force: random.random_range(0.0005..0.0015),
-            corner: random.random_range(900.0..1300.0),
-            spread: 0.25,
-            common_hits: false,
-            seed: self.seed,
-        }
     }
 
     /// The effects to hide; `None` where the fixture has no place for them.

@@ -50,6 +50,7 @@ mod limits;
 mod objective;
 mod reference;
 mod reliability;
+mod routes;
 mod score;
 mod seal;
 mod sensitivity;
@@ -73,7 +74,12 @@ pub use judged::{AS_GOOD, Evidence, Judged, PLAIN, STRAINED, VISIBLE};
 pub use limits::{Alike, Limits, SmallestShown};
 pub use reference::Reference;
 pub use reliability::{Bin, Reliability};
+pub use routes::{
+    CaseLine, HitsFileError, Opened, Questions, Replies, RouteScore, RouteScores, RouteTruth, Shown,
+    SizeScore, SolidEvidence, SolidJudged, SolidTruth, StruckAnswer, StruckAnswers, StruckCase,
+    StruckDiagnosis, StruckJudged, StruckNoAnswer, StruckOutcome, StruckRole, StruckTruth,
+};
 pub use score::{CHANCE, Comparison, Figure, Rate, Score, Standing, Target};
-pub use seal::{BrokenSeal, Sealable, SealedTruths};
+pub use seal::{BrokenSeal, Filed, Given, Sealable, SealedTruths};
 pub use statistics::Share;
 pub use timing::Timing;

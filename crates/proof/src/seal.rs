@@ -16,6 +16,37 @@ impl Sealable for Truth {
     }
 }
 
+/// A truth that can be read back from what was sealed.
+pub trait Filed: Sealable + Sized {
+    /// The truth that [`Sealable::to_value`] has written; `None` of anything else.
+    fn from_value(value: &Value) -> Option<Self>;
+
+    /// Its case's number.
+    fn index(&self) -> usize;
+}
+
+impl Filed for Truth {
+    fn from_value(value: &Value) -> Option<Self> {
+        Truth::from_value(value)
+    }
+
+    fn index(&self) -> usize {
+        self.index
+    }
+}
+
+/// Answers against which truths are opened.
+pub trait Given {
+    /// Number of cases that were answered, refusals included.
+    fn count(&self) -> usize;
+}
+
+impl Given for Answers {
+    fn count(&self) -> usize {
+        self.all().len()
+    }
+}
+
 /// Truths that cannot be read until the answers are there: [`SealedTruths::open`] asks for them.
 ///
 /// What a truth says cannot be had of it in any other way:
@@ -50,7 +81,7 @@ pub struct BrokenSeal {
     pub found: String,
 }
 
-impl SealedTruths {
+impl<T: Filed> SealedTruths<T> {
     /// Truths from a file that [`SealedTruths::open`] will read, checked by its hash alone; `only` names the one case that answers are for.
     ///
     /// # Errors
@@ -60,16 +91,16 @@ impl SealedTruths {
         if found != published {
             return Err(BrokenSeal { published: published.to_owned(), found });
         }
-        let truths = Contents::Filed { text: text.to_owned(), only, read: truths_of };
+        let truths = Contents::Filed { text: text.to_owned(), only, read: truths_of::<T> };
         Ok(SealedTruths { digest: found, truths })
     }
 }
 
 /// The truths in a file's text, or the one that is asked for.
-fn truths_of(text: &str, only: Option<usize>) -> Option<Vec<Truth>> {
+fn truths_of<T: Filed>(text: &str, only: Option<usize>) -> Option<Vec<T>> {
     let all: Value = serde_json::from_str(text).ok()?;
-    let read = all.as_array()?.iter().map(Truth::from_value).collect::<Option<Vec<_>>>()?;
-    Some(read.into_iter().filter(|truth| only.is_none_or(|only| only == truth.index)).collect())
+    let read = all.as_array()?.iter().map(T::from_value).collect::<Option<Vec<_>>>()?;
+    Some(read.into_iter().filter(|truth| only.is_none_or(|only| only == truth.index())).collect())
 }
 
 impl<T: Sealable> SealedTruths<T> {
@@ -86,12 +117,12 @@ impl<T: Sealable> SealedTruths<T> {
 
     /// The truths, handed out against the answers to all of their cases; `None` (and the seal broken) where answers are missing, or a file
     /// holds no truths.
-    pub fn open(self, answers: &Answers) -> Option<Vec<T>> {
+    pub fn open(self, answers: &impl Given) -> Option<Vec<T>> {
         let truths = match self.truths {
             Contents::Drawn(truths) => truths,
             Contents::Filed { text, only, read } => read(&text, only)?,
         };
-        (answers.all().len() == truths.len()).then_some(truths)
+        (answers.count() == truths.len()).then_some(truths)
     }
 }
 

@@ -11,8 +11,10 @@ impl Display for Plan {
             Some(only) => write!(f, "case {only} of {}, seed {}", self.cases, self.seed)?,
             None => write!(f, "{} cases, seed {}", self.cases, self.seed)?,
         }
-        if self.graded > 0 {
-            write!(f, ", and {} graded", self.graded)?;
+        for (count, what) in [(self.graded, "graded"), (self.solid, "solid"), (self.struck, "struck")] {
+            if count > 0 {
+                write!(f, ", and {count} {what}")?;
+            }
         }
         if self.families != Plan::default().families {
             write!(f, ", {}", self.family_names().join(", "))?;
@@ -33,7 +35,7 @@ impl Plan {
     /// The plan as JSON.
     pub fn to_value(&self) -> Value {
         json!({
-            "cases": self.cases, "graded": self.graded, "seed": self.seed, "only": self.only, "families": self.family_names(),
+            "cases": self.cases, "graded": self.graded, "solid": self.solid, "struck": self.struck, "seed": self.seed, "only": self.only, "families": self.family_names(),
             "fresh_from": self.fresh_from, "fresh": self.fresh(),
         })
     }
@@ -49,7 +51,7 @@ impl Display for Target {
     }
 }
 
-fn counted(share: Share) -> String {
+pub(crate) fn counted(share: Share) -> String {
     let Some(value) = share.value() else { return "no case".to_owned() };
     let [low, high] = share.interval();
     format!("{:>4} of {:<4} {value:.3} ({low:.3} to {high:.3})", share.of, share.all)
@@ -65,33 +67,69 @@ impl Display for Score {
             }
         }
         writeln!(f, "\nshares (95 % binomial interval), target:")?;
-        for rate in &self.rates {
-            let target = rate.target.map_or_else(String::new, |target| target.to_string());
-            let line = format!(
-                "  {:<60} {:<36} {target:<14} {}",
-                rate.what,
-                counted(rate.share),
-                rate.standing().map_or("", Standing::says)
-            );
-            writeln!(f, "{}", line.trim_end())?;
-        }
+        write_rates(f, &self.rates)?;
         writeln!(f, "\nfigures, target:")?;
-        for Figure { what, value, from, target, .. } in &self.figures {
-            let shown = value.map_or_else(|| "no case".to_owned(), |value| format!("{value:.3} of {from}"));
-            let standing = match (target, value) {
-                (Some(target), Some(value)) if target.is_met(*value) => "met",
-                (Some(_), Some(_)) => "missed",
-                _ => "",
-            };
-            let target = target.map_or_else(String::new, |target| target.to_string());
-            let line = format!("  {what:<60} {shown:<36} {target:<14} {standing}");
-            writeln!(f, "{}", line.trim_end())?;
-        }
+        write_figures(f, &self.figures)?;
         self.write_detection(f)?;
         self.write_calibration(f)?;
         self.write_confusion(f)?;
         self.write_comparisons(f)
     }
+}
+
+/// Shares beside their targets, a line each.
+pub(crate) fn write_rates(f: &mut Formatter<'_>, rates: &[Rate]) -> fmt::Result {
+    for rate in rates {
+        let target = rate.target.map_or_else(String::new, |target| target.to_string());
+        let line = format!(
+            "  {:<60} {:<36} {target:<14} {}",
+            rate.what,
+            counted(rate.share),
+            rate.standing().map_or("", Standing::says)
+        );
+        writeln!(f, "{}", line.trim_end())?;
+    }
+    Ok(())
+}
+
+/// Figures beside their targets, a line each.
+pub(crate) fn write_figures(f: &mut Formatter<'_>, figures: &[Figure]) -> fmt::Result {
+    for Figure { what, value, from, target, .. } in figures {
+        let shown = value.map_or_else(|| "no case".to_owned(), |value| format!("{value:.3} of {from}"));
+        let standing = match (target, value) {
+            (Some(target), Some(value)) if target.is_met(*value) => "met",
+            (Some(_), Some(_)) => "missed",
+            _ => "",
+        };
+        let target = target.map_or_else(String::new, |target| target.to_string());
+        let line = format!("  {what:<60} {shown:<36} {target:<14} {standing}");
+        writeln!(f, "{}", line.trim_end())?;
+    }
+    Ok(())
+}
+
+/// A share as JSON.
+pub(crate) fn share_value(share: Share) -> Value {
+    json!({ "count": share.of, "of": share.all, "share": share.value(), "ci95": share.interval() })
+}
+
+/// A rate as JSON, with its key.
+pub(crate) fn rate_value(rate: &Rate) -> (String, Value) {
+    let mut value = share_value(rate.share);
+    value["what"] = json!(rate.what);
+    value["target"] = json!(rate.target.map(|target| target.to_string()));
+    value["met"] = json!(rate.target.zip(rate.share.value()).map(|(t, v)| t.is_met(v)));
+    (rate.key.to_owned(), value)
+}
+
+/// A figure as JSON, with its key.
+pub(crate) fn figure_value(figure: &Figure) -> (String, Value) {
+    let target = figure.target.map(|target| target.to_string());
+    let met = figure.target.zip(figure.value).map(|(t, v)| t.is_met(v));
+    let value = json!({
+        "value": figure.value, "of": figure.from, "what": figure.what, "target": target, "met": met,
+    });
+    (figure.key.to_owned(), value)
 }
 
 impl Score {
@@ -154,22 +192,6 @@ impl Score {
 
     /// The scores as JSON.
     pub fn to_value(&self) -> Value {
-        let share = |share: Share| json!({ "count": share.of, "of": share.all, "share": share.value(), "ci95": share.interval() });
-        let rate = |rate: &Rate| {
-            let mut value = share(rate.share);
-            value["what"] = json!(rate.what);
-            value["target"] = json!(rate.target.map(|target| target.to_string()));
-            value["met"] = json!(rate.target.zip(rate.share.value()).map(|(t, v)| t.is_met(v)));
-            (rate.key.to_owned(), value)
-        };
-        let figure = |figure: &Figure| {
-            let target = figure.target.map(|target| target.to_string());
-            let met = figure.target.zip(figure.value).map(|(t, v)| t.is_met(v));
-            let value = json!({
-                "value": figure.value, "of": figure.from, "what": figure.what, "target": target, "met": met,
-            });
-            (figure.key.to_owned(), value)
-        };
         let roles: Map<String, Value> = self
             .cases
             .iter()
@@ -186,20 +208,20 @@ impl Score {
             .collect();
         json!({
             "roles": roles,
-            "rates": self.rates.iter().map(rate).collect::<Map<_, _>>(),
-            "figures": self.figures.iter().map(figure).collect::<Map<_, _>>(),
+            "rates": self.rates.iter().map(rate_value).collect::<Map<_, _>>(),
+            "figures": self.figures.iter().map(figure_value).collect::<Map<_, _>>(),
             "reliability": self.reliability.0.iter().map(|bin| json!({
                 "from": bin.from, "to": bin.to, "stated": bin.stated,
-                "true_name": share(bin.true_names), "acceptable": share(bin.acceptable),
+                "true_name": share_value(bin.true_names), "acceptable": share_value(bin.acceptable),
             })).collect::<Vec<_>>(),
             "confusion": self.confusion.0,
             "detection": self.detection.to_value(),
             "coverage_by_level": self.coverage.by_level().into_iter().map(|(level, held)| json!({
-                "level": level, "held": share(held),
+                "level": level, "held": share_value(held),
             })).collect::<Vec<_>>(),
             "verdicts": verdicts,
             "old_and_fresh": self.comparisons.iter().map(|comparison| (comparison.key.to_owned(), json!({
-                "old": share(comparison.old), "fresh": share(comparison.fresh),
+                "old": share_value(comparison.old), "fresh": share_value(comparison.fresh),
                 "probability": comparison.probability, "agree": comparison.probability >= CHANCE,
             }))).collect::<Map<_, _>>(),
         })

@@ -43,7 +43,17 @@ fn outside_of(value: &Value) -> Option<Outside> {
     })
 }
 
-fn hammer_of(value: &Value) -> Option<HammerTest> {
+/// How a case was measured, as JSON.
+pub(crate) fn hammer_value(hammer: &HammerTest) -> Value {
+    json!({
+        "averages": hammer.averages, "noise_response": hammer.noise_response, "noise_force": hammer.noise_force,
+        "corner": hammer.corner, "spread": hammer.spread, "common_hits": hammer.common_hits,
+        "seed": hammer.seed.to_string(),
+    })
+}
+
+/// What [`hammer_value`] has written.
+pub(crate) fn hammer_of(value: &Value) -> Option<HammerTest> {
     let number = |key: &str| value[key].as_f64();
     Some(HammerTest {
         averages: u32::try_from(value["averages"].as_u64()?).ok()?,

@@ -4,9 +4,10 @@ mod calibration;
 mod cases;
 mod detection;
 mod methods;
+mod routes;
 mod scores;
 
-use jointscope_proof::{Judged, Methods, Role, Score, Share};
+use jointscope_proof::{Judged, Methods, Rate, Role, RouteScores, Score, Share};
 
 use crate::{Foot, Page, PageError, Section, Tone, Verdict};
 
@@ -32,8 +33,10 @@ pub struct ProofResults<'a> {
     pub score: &'a Score,
     /// The diagnosis beside the baselines.
     pub methods: &'a Methods,
-    /// Every case with its truth and its answer.
+    /// Every case of the laboratory with its truth and its answer.
     pub judged: &'a [Judged],
+    /// The scores of the other routes.
+    pub routes: &'a RouteScores,
 }
 
 /// The page of a proof as one self-contained HTML file: the verdict in a sentence; scores with their targets; the diagnosis beside what people do
@@ -49,18 +52,21 @@ pub fn proof_page(results: &ProofResults, context: &ProofContext) -> Result<Stri
     if !context.command.is_empty() {
         foot = foot.command(&context.command);
     }
-    Page::new("Proof: what the diagnosis is worth")
-        .subtitle(&context.cases)
-        .verdict(verdict(results))
-        .section(scores::section(results.score))
-        .section(methods::section(results.methods))
-        .section(detection::section(&results.score.detection))
-        .section(detection::confusion(&results.score.confusion))
-        .section(calibration::section(results.score))
-        .section(cases::section(results.judged, context))
-        .section(seal(context))
-        .foot(foot)
-        .to_html()
+    let mut page =
+        Page::new("Proof: what the diagnosis is worth").subtitle(&context.cases).verdict(verdict(results));
+    if !results.judged.is_empty() {
+        page = page
+            .section(scores::section(results.score))
+            .section(methods::section(results.methods))
+            .section(detection::section(&results.score.detection))
+            .section(detection::confusion(&results.score.confusion))
+            .section(calibration::section(results.score))
+            .section(cases::section(results.judged, context));
+    }
+    for route in &results.routes.0 {
+        page = page.section(routes::section(route, context));
+    }
+    page.section(seal(context)).foot(foot).to_html()
 }
 
 /// "46 of 48", or that there is none.
@@ -73,17 +79,22 @@ fn verdict(results: &ProofResults) -> Verdict {
     let share = |key: &str| score.rate(key).map(|rate| rate.share).unwrap_or_default();
     let (named, alarms) = (share("single_place"), share("null_finding"));
     let wrong = share("outside_wrong_name");
-    let missed =
-        score.rates.iter().filter(|rate| rate.standing() == Some(jointscope_proof::Standing::Missed));
-    let missed: Vec<&str> = missed.map(|rate| rate.what).collect();
-    let tone = if missed.is_empty() { Tone::Ok } else { Tone::Attention };
-    let headline = format!(
-        "Hidden effects that show were given their right names in {}; something was found in {} where nothing was hidden; \
-         unknown physics got a wrong name with certainty in {}.",
-        counted(named),
-        counted(alarms),
-        counted(wrong)
+    let is_missed = |rate: &&Rate| rate.standing() == Some(jointscope_proof::Standing::Missed);
+    let mut missed: Vec<&str> = score.rates.iter().filter(is_missed).map(|rate| rate.what).collect();
+    missed.extend(
+        results.routes.0.iter().flat_map(|route| &route.rates).filter(is_missed).map(|rate| rate.what),
     );
+    let tone = if missed.is_empty() { Tone::Ok } else { Tone::Attention };
+    let headline = match results.judged.is_empty() {
+        true => "The laboratory's own FRFs were left out: what follows are cases by other routes.".to_owned(),
+        false => format!(
+            "Hidden effects that show were given their right names in {}; something was found in {} where nothing was hidden; \
+             unknown physics got a wrong name with certainty in {}.",
+            counted(named),
+            counted(alarms),
+            counted(wrong)
+        ),
+    };
     let mut verdict = Verdict::new(tone, headline);
     let lookup = methods.0.iter().find(|method| method.key == "nearest_signature").and_then(|m| m.named);
     if let Some(lookup) = lookup.filter(|share| share.all > 0) {
@@ -91,6 +102,9 @@ fn verdict(results: &ProofResults) -> Verdict {
             "On the same cases the nearest of a library of simulated signatures has the right name in {}.",
             counted(lookup)
         ));
+    }
+    for route in &results.routes.0 {
+        verdict = verdict.detail(routes::sentence(route));
     }
     verdict.detail(match missed.len() {
         0 => "No target is missed beyond chance; where there are few cases that says little, and the intervals say how little.".to_owned(),
@@ -108,7 +122,8 @@ fn seal(context: &ProofContext) -> Section {
         )
         .command(format!("sha256 {}", context.sealed))
         .paragraph(
-            "Recordings come from a simulated laboratory that shares no code with the diagnosis or its model. A name counts as right if it is the \
+            "Recordings come from a simulated laboratory that shares no code with the diagnosis or its model; those of other routes from where their \
+             sections say. A name counts as right if it is the \
              hidden one, or if its best fit comes as near to the recording as a fit from the truth does, within 9 in χ²: no test could tell the two apart. An effect \
              shows if a fit without it is worse by 50 or more.",
         )

@@ -1,7 +1,7 @@
 //! The page of a proof.
 #![allow(clippy::unwrap_used, missing_docs)]
 
-use jointscope_proof::{Answers, Family, Judged, Methods, NoAnswer, Plan, Score};
+use jointscope_proof::{Answers, Family, Judged, Methods, NoAnswer, Plan, RouteScores, Score};
 use jointscope_report::{ProofContext, ProofResults, proof_page};
 
 fn judged() -> Vec<Judged> {
@@ -21,7 +21,8 @@ fn page(judged: &[Judged], pages: bool) -> String {
         pages,
     };
     let (score, methods) = (Score::of(judged), Methods::default());
-    proof_page(&ProofResults { score: &score, methods: &methods, judged }, &context).unwrap()
+    let routes = RouteScores::default();
+    proof_page(&ProofResults { score: &score, methods: &methods, judged, routes: &routes }, &context).unwrap()
 }
 
 #[test]

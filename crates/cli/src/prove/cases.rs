@@ -1,7 +1,9 @@
 //! Where the concealed cases come from: those that the program ships, or as many new ones as are asked for.
 
-use jointscope_proof::{BrokenSeal, Case, FAMILIES, Plan, Precision, SealedTruths};
-use jointscope_recordings::{ReadOptions, Recording, Source};
+use jointscope_proof::{
+    BrokenSeal, Case, FAMILIES, Plan, Precision, Questions, RouteTruth, SealedTruths, StruckCase,
+};
+use jointscope_recordings::{ReadOptions, Recording, Source, hits_of};
 use serde_json::{Value, json};
 
 use super::{ProveArguments, shipped};
@@ -10,12 +12,12 @@ use jointscope_fixture::Fixture;
 
 /// What is to be diagnosed, and what is true of it under seal.
 pub struct Concealed {
-    /// Fixtures and recordings.
-    pub cases: Vec<Case>,
-    /// The cases' numbers.
+    /// Fixtures and recordings by route.
+    pub cases: Questions,
+    /// The cases' numbers, route after route.
     pub numbers: Vec<usize>,
     /// What is true of them.
-    pub truths: SealedTruths,
+    pub truths: SealedTruths<RouteTruth>,
     /// Which cases these are, in a line.
     pub what: String,
     /// The same as JSON.
@@ -30,6 +32,8 @@ impl Concealed {
         let asks_for_new = arguments.cases.is_some()
             || arguments.seed.is_some()
             || arguments.graded.is_some()
+            || arguments.solid.is_some()
+            || arguments.struck.is_some()
             || arguments.also_from.is_some()
             || !arguments.family.is_empty();
         if asks_for_new { Self::drawn(arguments) } else { Self::shipped(arguments) }
@@ -39,16 +43,23 @@ impl Concealed {
         let named = |(name, family): (&str, _)| arguments.family.iter().any(|f| f == name).then_some(family);
         let families: Vec<_> = FAMILIES.into_iter().filter_map(named).collect();
         let standard = Plan::default();
+        // Who asks for a route alone gets that alone.
+        let by_route = arguments.solid.is_some() || arguments.struck.is_some();
+        let cases = arguments.cases.unwrap_or(if by_route { 0 } else { standard.cases });
+        // The other routes come along unless the assemblies were chosen.
+        let along = if families.is_empty() { Plan::along_with(cases) } else { 0 };
         let plan = Plan {
-            cases: arguments.cases.unwrap_or(standard.cases),
+            cases,
             graded: arguments.graded.unwrap_or(standard.graded),
+            solid: arguments.solid.unwrap_or(along),
+            struck: arguments.struck.unwrap_or(along),
             seed: arguments.seed.unwrap_or(standard.seed),
             fresh_from: arguments.also_from.clone(),
             only: arguments.only,
             families: if families.is_empty() { standard.families } else { families },
         };
-        let (cases, truths) = plan.draw().map_err(Refusal::new)?;
-        let numbers = arguments.only.map_or_else(|| (0..cases.len()).collect(), |only| vec![only]);
+        let (cases, truths) = plan.draw_routes().map_err(Refusal::new)?;
+        let numbers = arguments.only.map_or_else(|| (0..cases.count()).collect(), |only| vec![only]);
         Ok(Concealed { cases, numbers, truths, what: plan.to_string(), plan: plan.to_value(), files: None })
     }
 
@@ -68,7 +79,14 @@ impl Concealed {
         let truths = SealedTruths::filed(shipped::TRUTHS, shipped::TRUTHS_SHA256, arguments.only).map_err(
             |error: BrokenSeal| Refusal::new(format_args!("fixtures/concealed/truths.json: {error}")),
         )?;
-        let cases = numbers.iter().map(|&number| read(number)).collect::<Result<_, _>>()?;
+        let mut cases = Questions::default();
+        for &number in &numbers {
+            match number {
+                n if n < shipped::FIRST_SOLID => cases.laboratory.push(read(n)?),
+                n if n < shipped::FIRST_STRUCK => cases.solid.push(read(n)?),
+                n => cases.struck.push(read_hits(n)?),
+            }
+        }
         let only = arguments.only.map_or_else(String::new, |only| format!("case {only} of "));
         Ok(Concealed {
             cases,
@@ -80,25 +98,69 @@ impl Concealed {
         })
     }
 
+    /// What the analyst believes of the case at a position.
+    pub fn believed(&self, position: usize) -> &Fixture {
+        match self.route(position) {
+            Route::Frfs(case) => &case.believed,
+            Route::Hits(case) => &case.believed,
+        }
+    }
+
     /// The recording of the case at a position as a universal file: as it came, or in double precision as it was made.
     pub fn recording(&self, position: usize) -> Result<Vec<u8>, Refusal> {
-        match &self.files {
-            Some(files) => Ok(files[position].to_vec()),
-            None => self.cases[position].recording(Precision::Double).map_err(Refusal::new),
+        match (&self.files, self.route(position)) {
+            (Some(files), _) => Ok(files[position].to_vec()),
+            (None, Route::Frfs(case)) => case.recording(Precision::Double).map_err(Refusal::new),
+            (None, Route::Hits(case)) => case.recording(Precision::Double).map_err(Refusal::new),
+        }
+    }
+
+    /// Positions of the first solid case and of the first of hits.
+    pub fn firsts(&self) -> [usize; 2] {
+        let first_solid = self.cases.laboratory.len();
+        [first_solid, first_solid + self.cases.solid.len()]
+    }
+
+    fn route(&self, position: usize) -> Route<'_> {
+        let [first_solid, first_struck] = self.firsts();
+        match position {
+            p if p < first_solid => Route::Frfs(&self.cases.laboratory[p]),
+            p if p < first_struck => Route::Frfs(&self.cases.solid[p - first_solid]),
+            p => Route::Hits(&self.cases.struck[p - first_struck]),
         }
     }
 }
 
+/// What a case's recording holds.
+enum Route<'a> {
+    Frfs(&'a Case),
+    Hits(&'a StruckCase),
+}
+
 /// A shipped case, read as a user's files are.
 fn read(number: usize) -> Result<Case, Refusal> {
-    let (fixture, recording) = shipped::CASES[number];
-    let name = format!("fixtures/concealed/{number:02}");
-    let broken = |error: &dyn std::fmt::Display| Refusal::new(format_args!("{name}: {error}"));
-    let believed = Fixture::from_json(fixture).map_err(|error| broken(&error))?;
-    let file = jointscope_uff::read(recording).map_err(|error| broken(&error))?;
-    let source = Source { name: format!("{name}/hammer-test.uff"), file };
+    let (believed, source) = sources(number)?;
     let read =
-        Recording::of(&[source], &believed, &ReadOptions::default()).map_err(|error| broken(&error))?;
-    let recorded = read.frfs().map_err(|error| broken(&error))?.clone();
+        Recording::of(&[source], &believed, &ReadOptions::default()).map_err(|e| broken(number, &e))?;
+    let recorded = read.frfs().map_err(|error| broken(number, &error))?.clone();
     Ok(Case { believed, recorded })
+}
+
+/// A shipped case of hits.
+fn read_hits(number: usize) -> Result<StruckCase, Refusal> {
+    let (believed, source) = sources(number)?;
+    let read =
+        hits_of(&[source], Some(&believed), &ReadOptions::default()).map_err(|e| broken(number, &e))?;
+    Ok(StruckCase { believed, hits: read.hits })
+}
+
+fn sources(number: usize) -> Result<(Fixture, Source), Refusal> {
+    let (fixture, recording) = shipped::CASES[number];
+    let believed = Fixture::from_json(fixture).map_err(|error| broken(number, &error))?;
+    let file = jointscope_uff::read(recording).map_err(|error| broken(number, &error))?;
+    Ok((believed, Source { name: format!("fixtures/concealed/{number:02}/hammer-test.uff"), file }))
+}
+
+fn broken(number: usize, error: &dyn std::fmt::Display) -> Refusal {
+    Refusal::new(format_args!("fixtures/concealed/{number:02}: {error}"))
 }

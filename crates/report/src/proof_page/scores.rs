@@ -24,7 +24,7 @@ pub(super) fn section(score: &Score) -> Section {
         .table(verdicts(score))
 }
 
-fn rates(rates: &[Rate]) -> Table {
+pub(super) fn rates(rates: &[Rate]) -> Table {
     let columns = [
         Column::text("share of cases"),
         Column::numbers("counted", ""),
@@ -52,7 +52,7 @@ fn rates(rates: &[Rate]) -> Table {
     table.footnote("Intervals by Clopper and Pearson. Missed within chance: the target lies in the interval.")
 }
 
-fn figures(figures: &[Figure]) -> Table {
+pub(super) fn figures(figures: &[Figure]) -> Table {
     let columns = [
         Column::text("figure"),
         Column::numbers("value", ""),

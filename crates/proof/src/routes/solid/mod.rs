@@ -1,0 +1,232 @@
+//! Cases whose recording comes from a solid: the finite-element twin of two blocks on a strip.
+//!
+//! The diagnosis believes in the lumped fixture of the same assembly. Of all that a solid has beyond it (the strip's mass and shear, layers,
+//! plate action, blocks and footing that yield) only what is concealed is left on, and every quantity of the fixture lies within its
+//! tolerance of the solid's own. So what is concealed has a name, and a size in closed form.
+
+mod assembly;
+mod hidden;
+mod judged;
+mod score;
+mod twin;
+
+pub use judged::{SolidEvidence, SolidJudged};
+pub use twin::Shown;
+
+use crate::case::describe;
+use crate::generate::{drawn_hammer, recorded_lines, seed_of};
+use crate::seal::Sealable;
+use crate::truth_file::{hammer_of, hammer_value};
+use crate::{Case, GenerationError, Role};
+use assembly::{Assembly, Stoutness};
+use hidden::{CONCEALED, Hidden, IN_THE_SOLID};
+use jointscope_fixture::{Effect, EffectKind, Fixture, Place};
+use jointscope_rig::{Family, HammerTest, StructureError, drawn_within_tolerance, generator};
+use jointscope_spectra::{FrfPair, FrfSet};
+use rand::{Rng, RngExt};
+use serde_json::{Value, json};
+
+pub(crate) use score::score;
+
+/// What is true of a solid case.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SolidTruth {
+    /// The case's number among all.
+    pub index: usize,
+    /// What its random numbers were seeded with.
+    pub source: String,
+    /// How much was hidden.
+    pub role: Role,
+    /// The solid: the fixture's true quantities with `geometry`, and what is mounted on it; points that nobody knows of included.
+    pub solid: Fixture,
+    /// What is left on, of all that the lumped model leaves out.
+    pub shown: Shown,
+    /// The lumped fixture at its true quantities, what is hidden as its `physics`, sizes in closed form.
+    pub lumped: Fixture,
+    /// Effects that come with what is hidden and are true if found, though they are not asked for.
+    pub besides: Vec<Effect>,
+    /// How it was measured.
+    pub hammer: HammerTest,
+}
+
+/// Roles by case number, repeating.
+const ROLES: [Role; 8] = [
+    Role::Single,
+    Role::Null,
+    Role::Single,
+    Role::Single,
+    Role::Double,
+    Role::Single,
+    Role::Null,
+    Role::Single,
+];
+/// Draws of a case before giving up.
+const DRAWS: usize = 2000;
+/// Points of the solid that no fixture states.
+const APART: [&str; 2] = ["5", "6"];
+/// FRFs that nobody records: at those points and between them and what was measured.
+const UNSEEN: [(&str, &str); 6] = [("5", "5"), ("6", "6"), ("6", "5"), ("5", "1"), ("4", "5"), ("6", "2")];
+
+impl SolidTruth {
+    /// The case of a number, and apart from it what is true of it.
+    pub(crate) fn draw(index: usize, number: usize, seed: u64) -> Result<(Case, Self), GenerationError> {
+        let source = format!("seed {seed} solid");
+        let seed = seed_of(&source, number);
+        let mut random = generator(seed);
+        let role = ROLES[number % ROLES.len()];
+        let pairs = Family::TwoBlocks.usual_pairs();
+        for _ in 0..DRAWS {
+            let what = concealed(role, number, &mut random);
+            let stoutness = what.iter().map(|what| what.stoutness()).find(|s| *s == Stoutness::Thick);
+            let Some(assembly) = Assembly::draw(&mut random, stoutness.unwrap_or(Stoutness::Slender))? else {
+                continue;
+            };
+            let mut hidden = Some(Hidden::default());
+            for what in what {
+                hidden = match hidden {
+                    Some(hidden) => hidden.conceal(what, &assembly, &pairs, &mut random)?,
+                    None => None,
+                };
+            }
+            let Some(hidden) = hidden else { continue };
+            let hammer = drawn_hammer(&mut random, seed);
+            let solid = solid(&assembly, &hidden, &mut random)?;
+            let believed = drawn_within_tolerance(&assembly.lumped, &mut random)?;
+            let lumped = assembly.lumped.with_physics(hidden.effects).map_err(StructureError::from)?;
+            let (shown, besides) = (hidden.shown, hidden.besides);
+            let truth = SolidTruth { index, source, role, solid, shown, lumped, besides, hammer };
+            let [clean, _] = truth.frfs()?;
+            return Ok((Case { believed, recorded: hammer.measure(&clean)? }, truth));
+        }
+        Err(GenerationError::Unlucky(index))
+    }
+
+    /// The hidden effects, sizes in closed form.
+    pub fn effects(&self) -> &[Effect] {
+        self.lumped.physics()
+    }
+
+    /// What was hidden, in words.
+    pub fn hidden(&self) -> String {
+        let all: Vec<String> = self.effects().iter().map(describe).collect();
+        if all.is_empty() { "nothing".to_owned() } else { all.join(" and ") }
+    }
+
+    /// Noise-free accelerances: those recorded, as the measuring chain reads them, and those that nobody records, as a perfect
+    /// instrument would.
+    ///
+    /// # Errors
+    /// A solid that cannot be meshed or whose modes cannot be found; none of a case that was drawn.
+    pub fn frfs(&self) -> Result<[FrfSet; 2], GenerationError> {
+        self.frfs_on(&twin::MESH)
+    }
+
+    fn frfs_on(&self, mesh: &jointscope_fem::MeshOptions) -> Result<[FrfSet; 2], GenerationError> {
+        let lines = recorded_lines()?;
+        let twin = twin::twin(&self.solid, &self.shown, mesh, lines.hz()[lines.len() - 1])?;
+        let unseen = UNSEEN.map(|(response, reference)| FrfPair::transverse(response, reference));
+        Ok([
+            twin::read(&twin, self.effects(), &Family::TwoBlocks.usual_pairs(), &lines)?,
+            twin::read(&twin, &[], &unseen, &lines)?,
+        ])
+    }
+
+    /// A fixture of the same assembly with the points that nobody measured at.
+    fn with_points_apart(&self, fixture: &Fixture) -> Option<Fixture> {
+        let mut value = fixture.to_value();
+        let known = self.solid.to_value();
+        for name in APART {
+            value["points"][name] = known["points"][name].clone();
+        }
+        Fixture::from_value(&value).ok()
+    }
+
+    /// The truth that [`Sealable::to_value`] has written; `None` of anything else.
+    pub(crate) fn from_value(value: &Value) -> Option<Self> {
+        let shown = &value["shown"];
+        let lumped = Fixture::from_value(&value["lumped"]).ok()?;
+        let besides = lumped.clone().with_physics(Vec::new()).ok()?.to_value();
+        let mut besides = besides;
+        besides["physics"] = value["besides"].clone();
+        Some(SolidTruth {
+            index: usize::try_from(value["case"].as_u64()?).ok()?,
+            source: value["source"].as_str()?.to_owned(),
+            role: Role::from_name(value["role"].as_str()?)?,
+            solid: Fixture::from_value(&value["solid"]).ok()?,
+            shown: Shown {
+                strip_mass: shown["strip_mass"].as_bool()?,
+                strip_shear: shown["strip_shear"].as_f64(),
+                layer_shear: shown["layer_shear"].as_f64(),
+            },
+            besides: Fixture::from_value(&besides).ok()?.physics().to_vec(),
+            lumped,
+            hammer: hammer_of(&value["hammer"])?,
+        })
+    }
+}
+
+impl Sealable for SolidTruth {
+    fn to_value(&self) -> Value {
+        json!({
+            "case": self.index,
+            "route": "solid",
+            "source": self.source,
+            "role": self.role.name(),
+            "hidden": self.hidden(),
+            "lumped": self.lumped.to_value(),
+            "besides": self.besides.iter().map(crate::case::effect_value).collect::<Vec<_>>(),
+            "solid": self.solid.to_value(),
+            "shown": {
+                "strip_mass": self.shown.strip_mass, "strip_shear": self.shown.strip_shear,
+                "layer_shear": self.shown.layer_shear,
+            },
+            "hammer": hammer_value(&self.hammer),
+        })
+    }
+}
+
+/// What is concealed in a case: singles take all in turn, of two the first is in the solid itself.
+fn concealed(role: Role, number: usize, random: &mut impl Rng) -> Vec<hidden::Concealed> {
+    let singles = |number: usize| {
+        let count = |roles: &[Role]| roles.iter().filter(|role| **role == Role::Single).count();
+        number / ROLES.len() * count(&ROLES) + count(&ROLES[..number % ROLES.len()])
+    };
+    match role {
+        Role::Single => vec![CONCEALED[singles(number) % CONCEALED.len()]],
+        Role::Double => {
+            let first = random.random_range(0..IN_THE_SOLID);
+            let step = random.random_range(1..CONCEALED.len());
+            vec![CONCEALED[first], CONCEALED[(first + step) % CONCEALED.len()]]
+        }
+        _ => Vec::new(),
+    }
+}
+
+/// The fixture that is meshed: true quantities, geometry, what is mounted, and points where something is read elsewhere or not at all.
+fn solid(assembly: &Assembly, hidden: &Hidden, random: &mut impl Rng) -> Result<Fixture, GenerationError> {
+    let mut value = assembly.lumped.to_value();
+    value["geometry"] = assembly.geometry(hidden.layer.map(|l| (l.end, l.thickness, l.modulus)));
+    for ((name, body), x) in APART.iter().zip(["A", "B"]).zip(assembly.apart(random)) {
+        value["points"][*name] = json!({ "body": body, "x": x });
+    }
+    for effect in &hidden.effects {
+        match (&effect.place, effect.kind) {
+            (Place::Body(body), EffectKind::AddedMass) => {
+                value["bodies"][body.as_str()]["masses"] =
+                    json!([{ "x": effect.value(0), "mass": effect.value(1) }]);
+            }
+            (Place::Body(body), EffectKind::Support) => {
+                value["supports"] = json!({ "S": {
+                    "body": body, "x": effect.value(0), "stiffness": effect.value(1), "damping": effect.value(2) } });
+            }
+            (Place::Point(point), EffectKind::PointOffset) => {
+                let Some(known) = assembly.lumped.point(point) else { continue };
+                let body = &assembly.lumped.bodies()[known.body].name;
+                value["points"][twin::displaced_name(point)] =
+                    json!({ "body": body, "x": known.x.value + effect.value(0) });
+            }
+            _ => {}
+        }
+    }
+    Ok(Fixture::from_value(&value).map_err(StructureError::from)?)
+}

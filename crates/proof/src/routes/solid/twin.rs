@@ -1,0 +1,119 @@
+//! The solid's FRFs: its finite-element twin with all switched off that is not concealed.
+
+use crate::GenerationError;
+use jointscope_fem::{Mesh, MeshOptions, ModeRange, Omissions, Part, Superposition, Twin};
+use jointscope_fixture::{Effect, EffectKind, Fixture, Place};
+use jointscope_spectra::{Channel, FrfForm, FrfPair, FrfSet, SpectralLines};
+use num_complex::Complex64;
+
+/// What of the solid is left on, of all that the lumped model leaves out.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Shown {
+    /// The strip weighs what it weighs.
+    pub strip_mass: bool,
+    /// The strip shears, with this modulus (N/m²).
+    pub strip_shear: Option<f64>,
+    /// The layer shears, with this modulus (N/m²).
+    pub layer_shear: Option<f64>,
+}
+
+/// Fine enough for strips that bend between blocks all but rigid: quadratic bricks carry a cubic deflection on a few elements.
+pub const MESH: MeshOptions = MeshOptions {
+    corner: 2,
+    along: 32,
+    across: 1,
+    growth: 8.0,
+    whole: false,
+    without: Omissions { joint_mass: true, shear: true, plate_action: true, block_flexibility: true },
+};
+
+/// Modes up to this multiple of the last line.
+const MODES: f64 = 2.0;
+
+/// The modes of a solid fixture.
+pub(super) fn twin(
+    solid: &Fixture,
+    shown: &Shown,
+    options: &MeshOptions,
+    last_line: f64,
+) -> Result<Twin, GenerationError> {
+    let mut mesh = Mesh::of(solid, options)?;
+    restore(&mut mesh, options, shown);
+    let range = ModeRange { at_least: 4, up_to: MODES * last_line };
+    Ok(Twin::of_mesh(solid, mesh, range, |_| ())?)
+}
+
+/// Gives strip and layer back what is concealed in them.
+fn restore(mesh: &mut Mesh, options: &MeshOptions, shown: &Shown) {
+    // Without omissions a mesh has its materials as they are; with them, as they are first.
+    let plain =
+        if options.without == Omissions::default() { mesh.materials.len() } else { mesh.materials.len() / 3 };
+    for index in 0..mesh.elements.len() {
+        let element = &mesh.elements[index];
+        let (own, shear) = match element.part {
+            Part::Joint(_) => (shown.strip_mass, shown.strip_shear),
+            Part::Layer(..) => (false, shown.layer_shear),
+            Part::Body(_) => continue,
+        };
+        let mut material = mesh.materials[element.material];
+        if own {
+            material.density = mesh.materials[element.material % plain].density;
+        }
+        if let Some(modulus) = shear {
+            // Poisson's ratio is switched off, so that the shear modulus is half of Young's.
+            material.shear_factor = 2.0 * modulus / material.youngs_modulus;
+        }
+        let known = mesh.materials.iter().position(|known| *known == material);
+        let position = known.unwrap_or_else(|| {
+            mesh.materials.push(material);
+            mesh.materials.len() - 1
+        });
+        mesh.elements[index].material = position;
+    }
+}
+
+/// Accelerances as the measuring chain of `effects` reads them: gains, delays, points elsewhere.
+pub(super) fn read(
+    twin: &Twin,
+    effects: &[Effect],
+    pairs: &[FrfPair],
+    lines: &SpectralLines,
+) -> Result<FrfSet, GenerationError> {
+    let displaced = |channel: &Channel| {
+        let moved = |effect: &Effect| {
+            effect.kind == EffectKind::PointOffset && effect.place == Place::Point(channel.point.clone())
+        };
+        match effects.iter().any(moved) {
+            true => Channel { point: displaced_name(&channel.point), ..channel.clone() },
+            false => channel.clone(),
+        }
+    };
+    let asked: Vec<FrfPair> =
+        pairs.iter().map(|p| FrfPair::new(displaced(&p.response), displaced(&p.reference))).collect();
+    let solved = twin.frfs(&asked, lines, Superposition::Complete)?.to_form(FrfForm::Accelerance)?;
+    let mut values: Vec<Complex64> = solved.all_values().to_vec();
+    for (pair, values) in pairs.iter().zip(values.chunks_mut(lines.len())) {
+        for effect in effects {
+            let side = match &effect.place {
+                Place::Response(name) if *name == pair.response.to_string() => 1,
+                Place::Reference(name) if *name == pair.reference.to_string() => -1,
+                _ => continue,
+            };
+            for (value, omega) in values.iter_mut().zip(lines.omegas()) {
+                *value *= match effect.kind {
+                    EffectKind::ChannelGain => Complex64::from(effect.value(0).powi(side)),
+                    EffectKind::ChannelDelay => {
+                        Complex64::from_polar(1.0, -f64::from(side) * omega * effect.value(0))
+                    }
+                    _ => Complex64::ONE,
+                };
+            }
+        }
+    }
+    Ok(FrfSet::new(lines.clone(), FrfForm::Accelerance, pairs.to_vec(), values)?)
+}
+
+/// What the solid calls the place at which a point is really read.
+pub(super) fn displaced_name(point: &str) -> String {
+    format!("10{point}")
+}
