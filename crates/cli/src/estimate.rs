@@ -31,7 +31,11 @@ pub fn run(arguments: &EstimateArguments) -> Result<String, Refusal> {
     outputs.add(output, bytes);
     outputs.write()?;
     let mut lines = hits.notes;
-    lines.push(what_was_estimated(&estimate, &estimate.frfs, estimation.options(ResponseWindow::None).estimator));
+    lines.push(what_was_estimated(
+        &estimate,
+        &estimate.frfs,
+        estimation.options(ResponseWindow::None).estimator,
+    ));
     for excitation in &estimate.excitations {
         lines.push(format!(
             "the hits at {} excite up to {:.0} Hz, where their force has fallen by 20 dB or the anti-alias filter begins",

@@ -147,6 +147,8 @@ fn interface(end: usize, dof: Dof, stiffness: f64) -> Effect {
 /// Whether what is mounted lies on its block.
 fn fits(effect: &Effect, assembly: &Assembly) -> bool {
     match (&effect.place, effect.kind) {
+        // Mass that is not there is nothing that a solid could have.
+        (Place::Body(_), EffectKind::AddedMass) if effect.value(1) < 0.0 => false,
         (Place::Body(body), _) => assembly.is_on(body, effect.value(0)),
         (Place::Point(name), EffectKind::PointOffset) => {
             let point = assembly.lumped.point(name);

@@ -8,6 +8,9 @@ mod assembly;
 mod hidden;
 mod judged;
 mod score;
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests;
 mod twin;
 
 pub use judged::{SolidEvidence, SolidJudged};
