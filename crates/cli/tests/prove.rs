@@ -65,6 +65,47 @@ fn the_shipped_cases_come_with_pages_from_which_anyone_can_diagnose_again() {
 }
 
 #[test]
+fn solids_and_hits_have_scores_of_their_own_and_pages_that_diagnose_makes_again() {
+    let bench = Bench::new("prove-routes");
+    // Of each the second hides nothing: the quickest.
+    for (route, key, section) in
+        [("--solid", "solid", "Recordings of solids"), ("--struck", "struck", "Hits over time")]
+    {
+        let output = bench.run(&["prove", route, "2", "--only", "1", "--threads", "1", "-o", "proof"]);
+        assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+        let table = String::from_utf8(output.stdout).unwrap();
+        assert!(table.contains(&format!("\n{key}: ")) && table.contains("case 1: right"), "{table}");
+        assert!(!table.contains("single effects: mean log"), "the laboratory has no cases here: {table}");
+        let page = bench.text("proof/report.html");
+        assert!(page.contains(section) && page.contains("href=\"./cases/001/report.html\""));
+        let proof = bench.json("proof/proof.json");
+        assert_eq!(proof["routes"][key]["cases"].as_array().unwrap().len(), 1);
+        assert_eq!(bench.json("proof/answers.json").as_array().unwrap().len(), 1);
+        for file in ["fixture.json", "hammer-test.uff"] {
+            std::fs::copy(bench.0.join("proof/cases/001").join(file), bench.0.join(file)).unwrap();
+        }
+        bench.done(&["diagnose", "fixture.json", "hammer-test.uff", "-o", "again"]);
+        let sections = |page: &str| page.split("<footer>").next().unwrap().to_owned();
+        let (again, own) = (bench.text("again/report.html"), bench.text("proof/cases/001/report.html"));
+        assert_eq!(sections(&again), sections(&own), "{key}");
+        assert!(!bench.text("fixture.json").contains("geometry"), "the solid stays under seal");
+    }
+}
+
+#[test]
+fn solids_are_told_the_same_on_any_number_of_threads() {
+    let bench = Bench::new("prove-solid-threads");
+    let run = |threads: &str| {
+        let options = ["--threads", threads, "-o", threads, "--no-case-pages", "--json"];
+        let output = bench.run(&[&["prove", "--solid", "2"][..], &options].concat());
+        assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+        String::from_utf8(output.stdout).unwrap()
+    };
+    assert_eq!(run("1"), run("2"));
+    assert_eq!(bench.text("1/answers.json"), bench.text("2/answers.json"));
+}
+
+#[test]
 fn the_shipped_truths_are_the_published_ones_and_no_case_holds_any_of_them() {
     let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fixtures/concealed");
     let truths: serde_json::Value =

@@ -127,9 +127,14 @@ impl Plan {
         Ok((cases, SealedTruths::new(truths)))
     }
 
+    /// Number of cases of all routes.
+    pub(crate) fn all(&self) -> usize {
+        self.cases + self.graded + self.solid + self.struck
+    }
+
     /// The numbers of the cases to make.
     pub(crate) fn numbers(&self) -> Result<Vec<usize>, GenerationError> {
-        let all = self.cases + self.graded + self.solid + self.struck;
+        let all = self.all();
         if all == 0 || self.families.is_empty() {
             return Err(GenerationError::NoCases);
         }

@@ -8,7 +8,7 @@ use std::fmt::{self, Display, Formatter};
 impl Display for Plan {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         match self.only {
-            Some(only) => write!(f, "case {only} of {}, seed {}", self.cases, self.seed)?,
+            Some(only) => write!(f, "case {only} of {}, seed {}", self.all(), self.seed)?,
             None => write!(f, "{} cases, seed {}", self.cases, self.seed)?,
         }
         for (count, what) in [(self.graded, "graded"), (self.solid, "solid"), (self.struck, "struck")] {

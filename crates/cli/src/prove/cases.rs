@@ -3,7 +3,7 @@
 use jointscope_proof::{
     BrokenSeal, Case, FAMILIES, Plan, Precision, Questions, RouteTruth, SealedTruths, StruckCase,
 };
-use jointscope_recordings::{ReadOptions, Recording, Source, hits_of};
+use jointscope_recordings::{ReadOptions, Recording, Source};
 use serde_json::{Value, json};
 
 use super::{ProveArguments, shipped};
@@ -79,14 +79,8 @@ impl Concealed {
         let truths = SealedTruths::filed(shipped::TRUTHS, shipped::TRUTHS_SHA256, arguments.only).map_err(
             |error: BrokenSeal| Refusal::new(format_args!("fixtures/concealed/truths.json: {error}")),
         )?;
-        let mut cases = Questions::default();
-        for &number in &numbers {
-            match number {
-                n if n < shipped::FIRST_SOLID => cases.laboratory.push(read(n)?),
-                n if n < shipped::FIRST_STRUCK => cases.solid.push(read(n)?),
-                n => cases.struck.push(read_hits(n)?),
-            }
-        }
+        let laboratory = numbers.iter().map(|&number| read(number)).collect::<Result<_, _>>()?;
+        let cases = Questions { laboratory, ..Questions::default() };
         let only = arguments.only.map_or_else(String::new, |only| format!("case {only} of "));
         Ok(Concealed {
             cases,
@@ -139,28 +133,14 @@ enum Route<'a> {
 
 /// A shipped case, read as a user's files are.
 fn read(number: usize) -> Result<Case, Refusal> {
-    let (believed, source) = sources(number)?;
-    let read =
-        Recording::of(&[source], &believed, &ReadOptions::default()).map_err(|e| broken(number, &e))?;
-    let recorded = read.frfs().map_err(|error| broken(number, &error))?.clone();
-    Ok(Case { believed, recorded })
-}
-
-/// A shipped case of hits.
-fn read_hits(number: usize) -> Result<StruckCase, Refusal> {
-    let (believed, source) = sources(number)?;
-    let read =
-        hits_of(&[source], Some(&believed), &ReadOptions::default()).map_err(|e| broken(number, &e))?;
-    Ok(StruckCase { believed, hits: read.hits })
-}
-
-fn sources(number: usize) -> Result<(Fixture, Source), Refusal> {
     let (fixture, recording) = shipped::CASES[number];
-    let believed = Fixture::from_json(fixture).map_err(|error| broken(number, &error))?;
-    let file = jointscope_uff::read(recording).map_err(|error| broken(number, &error))?;
-    Ok((believed, Source { name: format!("fixtures/concealed/{number:02}/hammer-test.uff"), file }))
-}
-
-fn broken(number: usize, error: &dyn std::fmt::Display) -> Refusal {
-    Refusal::new(format_args!("fixtures/concealed/{number:02}: {error}"))
+    let name = format!("fixtures/concealed/{number:02}");
+    let broken = |error: &dyn std::fmt::Display| Refusal::new(format_args!("{name}: {error}"));
+    let believed = Fixture::from_json(fixture).map_err(|error| broken(&error))?;
+    let file = jointscope_uff::read(recording).map_err(|error| broken(&error))?;
+    let source = Source { name: format!("{name}/hammer-test.uff"), file };
+    let read =
+        Recording::of(&[source], &believed, &ReadOptions::default()).map_err(|error| broken(&error))?;
+    let recorded = read.frfs().map_err(|error| broken(&error))?.clone();
+    Ok(Case { believed, recorded })
 }

@@ -34,10 +34,6 @@ pub const CASES: [(&str, &[u8]); 20] = [
     case!("19"),
 ];
 
-/// Number of the first case whose recording comes from a solid, and of the first that is of hits over time.
-pub const FIRST_SOLID: usize = 20;
-pub const FIRST_STRUCK: usize = 20;
-
 /// What is true of them, under seal.
 pub const TRUTHS: &str = include_str!("../../../../fixtures/concealed/truths.json");
 

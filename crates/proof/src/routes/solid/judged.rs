@@ -29,6 +29,8 @@ pub struct SolidEvidence {
     pub repaired: f64,
     /// Of the solid's own noise-free FRFs.
     pub truth: f64,
+    /// Of the best lumped fixture that has what is hidden, started at its closed form.
+    pub lumped: f64,
     /// Of two hidden effects: of the best lumped fixture that has the one and not the other.
     pub without: Vec<f64>,
     /// Errors on the solid's FRFs that nobody recorded: refitted and repaired.
@@ -152,11 +154,13 @@ impl SolidEvidence {
             let set = synthesize(fixture, pairs, lines, Instrument::AsRecorded).ok()?;
             Some(objective(&observation, set.all_values(), &tolerances, &values(fixture)))
         };
+        let best = |start: &Fixture| {
+            Reference::of(&case.believed, start, &observation).map(|reference| reference.objective)
+        };
         let without = |index: usize| {
             let mut fewer = truth.effects().to_vec();
             fewer.remove(index);
-            let start = truth.lumped.clone().with_physics(fewer).ok()?;
-            Reference::of(&case.believed, &start, &observation).map(|reference| reference.objective)
+            best(&truth.lumped.clone().with_physics(fewer).ok()?)
         };
         let each = match truth.effects().len() {
             2 => (0..2).map(|index| without(index).unwrap_or(f64::INFINITY)).collect(),
@@ -166,6 +170,7 @@ impl SolidEvidence {
             refitted: objective_of(&answer.refitted)?,
             repaired: objective_of(&answer.repaired)?,
             truth: objective(&observation, used.all_values(), &tolerances, &values(&truth.lumped)),
+            lumped: best(&truth.lumped)?,
             without: each,
             unseen: errors(&unseen, [&answer.refitted, &answer.repaired], truth),
         })

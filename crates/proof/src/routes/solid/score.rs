@@ -199,8 +199,8 @@ fn line(case: &SolidJudged) -> CaseLine {
         details.extend(others.map(|(effect, p)| format!("    or p={p:.3} {}", describe(effect))));
     }
     details.push(format!(
-        "objective: refitted {:.1}, repaired {:.1}, the solid's own FRFs {:.1}",
-        evidence.refitted, evidence.repaired, evidence.truth
+        "objective: refitted {:.1}, repaired {:.1}, fit from the closed form {:.1}, the solid's own FRFs {:.1}",
+        evidence.refitted, evidence.repaired, evidence.lumped, evidence.truth
     ));
     for size in sizes(case) {
         details.push(format!(
@@ -231,7 +231,7 @@ fn line(case: &SolidJudged) -> CaseLine {
             })).collect::<Vec<_>>(),
             "visible": case.is_visible(),
             "faults": faults,
-            "objectives": { "refitted": evidence.refitted, "repaired": evidence.repaired, "truth": evidence.truth, "without": evidence.without },
+            "objectives": { "refitted": evidence.refitted, "repaired": evidence.repaired, "lumped": evidence.lumped, "truth": evidence.truth, "without": evidence.without },
             "sizes": sizes(case).iter().map(|size| json!({ "what": size.what, "true": size.truth, "found": size.found, "ci95": size.interval })).collect::<Vec<_>>(),
             "unseen": evidence.unseen,
         }),
