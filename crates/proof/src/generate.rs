@@ -2,12 +2,11 @@
 
 use crate::answers::on_workers;
 use crate::graded::scaled_to;
-use crate::{Case, Role, SealedTruths, Truth};
-use jointscope_fem::FemError;
+use crate::{Case, GenerationError, Role, SealedTruths, Truth};
 use jointscope_fixture::{Effect, EffectKind, Fixture};
 use jointscope_rig::{
-    Family, HammerError, HammerTest, Instrument, Outside, StructureError, drawn_within_tolerance, frfs,
-    generator, random_effect,
+    Family, HammerTest, Instrument, Outside, StructureError, drawn_within_tolerance, frfs, generator,
+    random_effect,
 };
 use jointscope_spectra::{FrfPair, FrfSet, SpectraError, SpectralLines};
 use rand::seq::SliceRandom;
@@ -52,37 +51,6 @@ pub const FAMILIES: [(&str, Family); 5] = [
     ("frame", Family::Frame),
     ("beam-and-block", Family::BeamAndBlock),
 ];
-
-/// Why cases cannot be made.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum GenerationError {
-    /// There would be none.
-    #[error("there is no case to make: ask for at least one case of at least one family")]
-    NoCases,
-    /// A case beyond the last.
-    #[error("there is no case {only}: {cases} cases are numbered 0 to {}", cases.saturating_sub(1))]
-    NoSuchCase {
-        /// The case asked for.
-        only: usize,
-        /// Number of cases.
-        cases: usize,
-    },
-    /// Nothing fits the fixtures that were drawn.
-    #[error("case {0} could not be drawn: no hidden physics suited its fixtures")]
-    Unlucky(usize),
-    /// The structure.
-    #[error(transparent)]
-    Structure(#[from] StructureError),
-    /// The hammer.
-    #[error(transparent)]
-    Hammer(#[from] HammerError),
-    /// The spectral lines.
-    #[error(transparent)]
-    Spectra(#[from] SpectraError),
-    /// The solid.
-    #[error(transparent)]
-    Solid(#[from] FemError),
-}
 
 /// Roles by case number, repeating: a quarter nulls, half singles, an eighth each of doubles and outside physics.
 const ROLES: [Role; 8] = [

@@ -9,11 +9,13 @@
 //! | theme | items |
 //! |---|---|
 //! | making cases | [`Plan`], [`Case`], [`Truth`], [`Role`], [`SealedTruths`] |
+//! | cases by other routes | [`Plan::draw_routes`], [`Questions`], [`RouteTruth`], [`Replies`], [`Opened`]; [`SolidTruth`], [`SolidJudged`]; [`StruckCase`], [`StruckTruth`], [`StruckJudged`] |
 //! | answers | [`Answers`], [`Answer`], [`Found`], [`Timing`] |
 //! | judging | [`Judged`], [`Evidence`], [`Reference`], [`Name`] |
 //! | what else one could do | [`Baseline`], [`Methods`] |
 //! | limits of a test | [`Limits`] |
 //! | scores | [`Score`], [`Rate`], [`Share`], [`Reliability`], [`Confusion`], [`Detection`], [`Coverage`] |
+//! | scores by route | [`RouteScores`], [`RouteScore`], [`SizeScore`], [`CaseLine`] |
 //! | real recordings | [`concealed`]: something concealed relative to a fixture that explains them |
 //!
 //! Nothing is random but by the seed: cases, answers and scores are the same on any number of threads.
@@ -44,6 +46,7 @@ mod detection;
 mod detection_table;
 mod failures;
 mod generate;
+mod generation_error;
 mod graded;
 mod judged;
 mod limits;
@@ -67,7 +70,8 @@ pub use case::{Case, Name, Role, Truth, describe};
 pub use confusion::{Confusion, NOTHING};
 pub use coverage::Coverage;
 pub use detection::{Detection, SizeClass, Smallest};
-pub use generate::{FAMILIES, GenerationError, Plan};
+pub use generate::{FAMILIES, Plan};
+pub use generation_error::GenerationError;
 pub use jointscope_rig::Family;
 pub use jointscope_rig::universal_file::{FileError, Precision};
 pub use judged::{AS_GOOD, Evidence, Judged, PLAIN, STRAINED, VISIBLE};

@@ -98,8 +98,9 @@ fn truths_come_out_of_their_file_as_they_went_in_and_against_answers_alone() {
     let (cases, truths) = opened(&plan(8));
     let (text, published) = filed(&cases, &truths);
     let silent = |cases: &[Case]| Answers::by(cases, 1, |_| (), |_| Err(NoAnswer::BrokeDown));
-    let open =
-        |only, cases: &[Case]| SealedTruths::filed(&text, &published, only).unwrap().open(&silent(cases));
+    let open = |only, cases: &[Case]| {
+        SealedTruths::<Truth>::filed(&text, &published, only).unwrap().open(&silent(cases))
+    };
     assert_eq!(open(None, &cases).unwrap(), truths);
     assert_eq!(open(Some(5), &cases[5..6]).unwrap(), truths[5..6]);
     assert!(open(None, &cases[..7]).is_none(), "an answer is missing");
@@ -110,7 +111,7 @@ fn a_file_of_truths_that_was_changed_is_not_the_published_one() {
     let (cases, truths) = opened(&plan(2));
     let (text, published) = filed(&cases, &truths);
     let changed = text.replacen("single", "double", 1);
-    let broken: BrokenSeal = SealedTruths::filed(&changed, &published, None).unwrap_err();
+    let broken: BrokenSeal = SealedTruths::<Truth>::filed(&changed, &published, None).unwrap_err();
     assert_eq!(broken.published, published);
     assert!(broken.to_string().contains("were changed"), "{broken}");
 }

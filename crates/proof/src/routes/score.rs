@@ -2,7 +2,7 @@
 
 use crate::statistics::median;
 use crate::{Figure, Rate, Share};
-use serde_json::Value;
+use serde_json::{Value, json};
 use std::collections::BTreeMap;
 
 /// The scores of one route.
@@ -83,6 +83,11 @@ impl Size {
     /// Whether the size is right within 10 %.
     pub fn is_right(&self) -> bool {
         self.error().abs() <= RIGHT
+    }
+
+    /// The size as JSON.
+    pub fn to_value(&self) -> Value {
+        json!({ "what": self.what, "true": self.truth, "found": self.found, "ci95": self.interval })
     }
 
     /// Whether a stated interval holds the truth.

@@ -101,7 +101,8 @@ fn cases(lines: &[CaseLine], context: &ProofContext) -> Table {
         }
     });
     table.footnote(
-        "How it shows: Δχ² of solids, the probability by chance of levels as different in hits. Findings are marked as hidden (=) or the same by mechanics (≈).",
+        "How it shows: Δχ² of solids, the probability by chance of levels as different in hits. Findings are marked as hidden (=) or the same by \
+         mechanics (≈).",
     )
 }
 

@@ -199,7 +199,7 @@ pub(super) fn are_the_same(a: &Effect, b: &Effect) -> bool {
 }
 
 /// Whether an effect is a spring in series across the strip.
-pub(super) fn is_across(effect: &Effect) -> bool {
+fn is_across(effect: &Effect) -> bool {
     effect.kind == EffectKind::ShearDeformation
         || (effect.kind == EffectKind::InterfaceCompliance && effect.dof == Some(Dof::Translation))
 }

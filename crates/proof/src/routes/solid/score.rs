@@ -1,7 +1,7 @@
 //! The scores of solid cases.
 
 use super::SolidJudged;
-use super::judged::{are_the_same, is_across};
+use super::judged::are_the_same;
 use crate::case::describe;
 use crate::routes::score::{CaseLine, RouteScore, Size, SizeScore};
 use crate::seal::Sealable;
@@ -165,7 +165,6 @@ fn sizes(case: &SolidJudged) -> Vec<Size> {
 
 /// A spring across the strip by another name: k = κGA/L.
 fn across(hidden: &Effect, found: &Found, case: &SolidJudged) -> Size {
-    debug_assert!(is_across(hidden));
     let length =
         case.truth.lumped.joints().first().map_or(1.0, |joint| case.truth.lumped.joint_length(joint));
     let over = |effect: &Effect| if effect.kind == EffectKind::ShearDeformation { length } else { 1.0 };
@@ -231,8 +230,11 @@ fn line(case: &SolidJudged) -> CaseLine {
             })).collect::<Vec<_>>(),
             "visible": case.is_visible(),
             "faults": faults,
-            "objectives": { "refitted": evidence.refitted, "repaired": evidence.repaired, "lumped": evidence.lumped, "truth": evidence.truth, "without": evidence.without },
-            "sizes": sizes(case).iter().map(|size| json!({ "what": size.what, "true": size.truth, "found": size.found, "ci95": size.interval })).collect::<Vec<_>>(),
+            "objectives": {
+                "refitted": evidence.refitted, "repaired": evidence.repaired, "lumped": evidence.lumped,
+                "truth": evidence.truth, "without": evidence.without,
+            },
+            "sizes": sizes(case).iter().map(Size::to_value).collect::<Vec<_>>(),
             "unseen": evidence.unseen,
         }),
         verdict,

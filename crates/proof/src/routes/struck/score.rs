@@ -165,8 +165,7 @@ fn line(case: &StruckJudged) -> CaseLine {
             })).collect::<Vec<_>>(),
             "linear_verdict": case.answer.iter().filter_map(|answer| answer.linear.as_ref()).map(|l| l.verdict.name()).next(),
             "faults": faults,
-            "sizes": case.sizes().iter().map(|size| json!({
-                "what": size.what, "true": size.truth, "found": size.found, "ci95": size.interval })).collect::<Vec<_>>(),
+            "sizes": case.sizes().iter().map(Size::to_value).collect::<Vec<_>>(),
             "held_out": case.answer.iter().filter_map(|answer| answer.held_out).next(),
         }),
         verdict,
