@@ -7,13 +7,19 @@ use std::fmt::{self, Display, Formatter};
 
 impl Display for Plan {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        let mut counts = vec![
+            (self.cases, ""),
+            (self.graded, "graded "),
+            (self.solid, "solid "),
+            (self.struck, "struck "),
+        ];
+        counts.retain(|(count, _)| *count > 0);
+        let ((first, what), others) = counts.split_first().map_or(((0, ""), &[][..]), |(c, o)| (*c, o));
         match self.only {
             Some(only) => write!(f, "case {only} of {}, seed {}", self.all(), self.seed)?,
-            None => write!(f, "{} cases, seed {}", self.cases, self.seed)?,
-        }
-        for (count, what) in [(self.graded, "graded"), (self.solid, "solid"), (self.struck, "struck")] {
-            if count > 0 {
-                write!(f, ", and {count} {what}")?;
+            None => {
+                write!(f, "{first} {what}cases, seed {}", self.seed)?;
+                others.iter().try_for_each(|(count, what)| write!(f, ", and {count} {}", what.trim_end()))?;
             }
         }
         if self.families != Plan::default().families {

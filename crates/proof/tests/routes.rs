@@ -235,3 +235,12 @@ fn hits_are_written_as_they_are_and_an_idle_law_leaves_them_in_proportion() {
         assert!((off / size).sqrt() < 1e-4, "{}", (off / size).sqrt());
     }
 }
+
+#[test]
+fn a_plan_says_which_routes_it_takes() {
+    let plan =
+        |cases, solid, struck, only| Plan { cases, solid, struck, only, ..Plan::default() }.to_string();
+    assert_eq!(plan(40, 2, 2, None), "40 cases, seed 1, and 2 solid, and 2 struck");
+    assert_eq!(plan(0, 8, 3, None), "8 solid cases, seed 1, and 3 struck");
+    assert_eq!(plan(0, 0, 3, Some(1)), "case 1 of 3, seed 1");
+}

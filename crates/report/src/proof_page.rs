@@ -54,7 +54,7 @@ pub fn proof_page(results: &ProofResults, context: &ProofContext) -> Result<Stri
     }
     let mut page =
         Page::new("Proof: what the diagnosis is worth").subtitle(&context.cases).verdict(verdict(results));
-    if !results.judged.is_empty() {
+    if !is_left_out(results) {
         page = page
             .section(scores::section(results.score))
             .section(methods::section(results.methods))
@@ -67,6 +67,11 @@ pub fn proof_page(results: &ProofResults, context: &ProofContext) -> Result<Stri
         page = page.section(routes::section(route, context));
     }
     page.section(seal(context)).foot(foot).to_html()
+}
+
+/// Whether other routes alone were asked for.
+fn is_left_out(results: &ProofResults) -> bool {
+    results.judged.is_empty() && !results.routes.0.is_empty()
 }
 
 /// "46 of 48", or that there is none.
@@ -85,7 +90,7 @@ fn verdict(results: &ProofResults) -> Verdict {
         results.routes.0.iter().flat_map(|route| &route.rates).filter(is_missed).map(|rate| rate.what),
     );
     let tone = if missed.is_empty() { Tone::Ok } else { Tone::Attention };
-    let headline = match results.judged.is_empty() {
+    let headline = match is_left_out(results) {
         true => "The laboratory's own FRFs were left out: what follows are cases by other routes.".to_owned(),
         false => format!(
             "Hidden effects that show were given their right names in {}; something was found in {} where nothing was hidden; \
