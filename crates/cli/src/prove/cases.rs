@@ -47,7 +47,7 @@ impl Concealed {
         let by_route = arguments.solid.is_some() || arguments.struck.is_some();
         let cases = arguments.cases.unwrap_or(if by_route { 0 } else { standard.cases });
         // The other routes come along unless the assemblies were chosen.
-        let along = if families.is_empty() { Plan::along_with(cases) } else { 0 };
+        let along = if families.is_empty() { Plan::along_with(arguments.cases.unwrap_or(0)) } else { 0 };
         let plan = Plan {
             cases,
             graded: arguments.graded.unwrap_or(standard.graded),

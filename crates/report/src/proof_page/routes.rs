@@ -47,7 +47,7 @@ pub(super) fn sentence(route: &RouteScore) -> String {
     let share = |key: &str| counted(route.rate(key).map(|rate| rate.share).unwrap_or_default());
     match route.key {
         "solid" => format!(
-            "In recordings of solids what was hidden got its right name in {}, and something was found in {} that hide nothing.",
+            "In recordings of solids what was hidden got its right name in {}; of those that hide nothing something was found in {}.",
             share("single_place"),
             share("null_finding")
         ),

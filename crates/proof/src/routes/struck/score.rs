@@ -8,6 +8,9 @@ use crate::statistics::{median, quantile};
 use crate::{Figure, Name, Rate, Share, Target};
 use serde_json::json;
 
+/// Probability below which it is not told how small it is.
+const LEAST: f64 = 1e-12;
+
 /// Scores cases of hits.
 pub(crate) fn score(judged: &[StruckJudged]) -> RouteScore {
     let of_role = |role: StruckRole| judged.iter().filter(move |case| case.truth.role == role);
@@ -125,7 +128,10 @@ fn line(case: &StruckJudged) -> CaseLine {
         Err(why) => verdict.push_str(&format!("no answer: {why}")),
         Ok(answer) => {
             verdict.push_str(&answer.verdict.name().replace('_', " "));
-            size = format!("p {:.0e}", answer.p_value);
+            size = match answer.p_value {
+                p if p < LEAST => format!("p < {LEAST:.0e}"),
+                p => format!("p = {p:.0e}"),
+            };
             if let Some([stated, refitted, repaired]) = answer.chi2_per_dof {
                 details.push(format!("χ² per degree of freedom: {stated:.3e} stated, {refitted:.3e} refitted, {repaired:.3e} repaired"));
             }
