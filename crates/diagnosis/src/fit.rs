@@ -27,6 +27,9 @@ pub struct Linearisation {
 
 /// Step of differences in units of a coordinate: small against a resonance's width, large against rounding.
 const DIFFERENCE: f64 = 2e-4;
+/// Relative change of an FRF that a difference may make at any line, and the least of the step above: where two coordinates do the same, such
+/// as a modulus and a factor on it, it is their derivatives' agreement to many digits that leaves the matter to what is known beforehand.
+const GENTLE: (f64, f64) = (1e-3, 1e-3);
 /// Shares by which a fit is softened on its way, when it starts far from its goal: on thinned lines, then on all.
 const COARSE: [f64; 4] = [1.0, 0.3, 0.1, 0.03];
 const FINE: [f64; 1] = [0.01];
@@ -59,6 +62,11 @@ const FADING: [f64; 4] = [0.75, 0.5, 0.25, 0.1];
 pub(crate) const PROMISE: f64 = 3.0;
 
 impl Linearisation {
+    /// As [`Linearisation::of`], by steps so small that every digit counts which rounding leaves: for uncertainties.
+    fn exact(at: &Hypothesis, observation: &Observation) -> Self {
+        Linearisation::rigid().differences(at, observation, |m| at.small_step(m, observation))
+    }
+
     /// Central differences about `at`; one-sided ones where a coordinate lies on its bound, such as a dashpot of zero. A coordinate that cannot be
     /// moved gets zeros.
     pub fn of(at: &Hypothesis, observation: &Observation) -> Self {
@@ -66,16 +74,26 @@ impl Linearisation {
     }
 
     /// These derivatives for the first coordinates of `at`, and central differences for the rest.
-    pub(crate) fn extended(mut self, at: &Hypothesis, observation: &Observation) -> Self {
-        let moved = |m: usize, sign: f64| at.predict_moved(m, sign * DIFFERENCE, None, observation);
+    pub(crate) fn extended(self, at: &Hypothesis, observation: &Observation) -> Self {
+        self.differences(at, observation, |_| DIFFERENCE)
+    }
+
+    fn differences(
+        mut self,
+        at: &Hypothesis,
+        observation: &Observation,
+        steps: impl Fn(usize) -> f64,
+    ) -> Self {
         for m in self.derivatives.len()..at.coordinates.len() {
+            let step = steps(m);
+            let moved = |m: usize, sign: f64| at.predict_moved(m, sign * step, None, observation);
             let slope = |up: Vec<Complex64>, down: Vec<Complex64>, width: f64| {
                 up.iter().zip(&down).map(|(u, d)| (u - d) / width).collect()
             };
             let derivative = match (moved(m, 1.0), moved(m, -1.0)) {
-                (Ok(up), Ok(down)) => Some(slope(up, down, 2.0 * DIFFERENCE)),
-                (Ok(up), Err(_)) => moved(m, 0.0).ok().map(|here| slope(up, here, DIFFERENCE)),
-                (Err(_), Ok(down)) => moved(m, 0.0).ok().map(|here| slope(here, down, DIFFERENCE)),
+                (Ok(up), Ok(down)) => Some(slope(up, down, 2.0 * step)),
+                (Ok(up), Err(_)) => moved(m, 0.0).ok().map(|here| slope(up, here, step)),
+                (Err(_), Ok(down)) => moved(m, 0.0).ok().map(|here| slope(here, down, step)),
                 (Err(_), Err(_)) => None,
             };
             self.derivatives.push(derivative.unwrap_or(vec![Complex64::ZERO; observation.values().len()]));
@@ -128,6 +146,17 @@ impl Linearisation {
             }
         }
         (matrix, right)
+    }
+}
+
+impl Hypothesis {
+    /// A step of coordinate `m` for central differences whose error is far below a thousandth.
+    fn small_step(&self, m: usize, observation: &Observation) -> f64 {
+        let predicted = [0.0, DIFFERENCE].map(|step| self.predict_moved(m, step, None, observation));
+        let [Ok(here), Ok(there)] = predicted else { return DIFFERENCE };
+        let change = |(a, b): (&Complex64, &Complex64)| (a - b).norm() / a.norm().max(b.norm());
+        let most = here.iter().zip(&there).map(change).filter(|c| c.is_finite()).fold(0.0, f64::max);
+        DIFFERENCE * (GENTLE.0 / most).clamp(GENTLE.1, 1.0)
     }
 }
 
@@ -260,7 +289,7 @@ impl Fit {
 
     /// Covariance of the coordinates, row-major; `None` where the FRFs leave a combination free.
     pub fn covariance(&self, observation: &Observation) -> Option<Vec<f64>> {
-        let linear = Linearisation::of(&self.hypothesis, observation);
+        let linear = Linearisation::exact(&self.hypothesis, observation);
         let residual = vec![Complex64::ZERO; observation.values().len()];
         let (matrix, _) = linear.normal(&self.hypothesis, observation.weights(), &residual);
         let n = self.hypothesis.coordinates.len();

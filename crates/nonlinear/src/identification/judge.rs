@@ -161,7 +161,7 @@ impl Judgement<'_> {
 }
 
 /// Relative deviation that steps and sampling leave in a parameter beside noise, as measured on the simulated laboratory.
-const INEXACT: f64 = 5e-3;
+const INEXACT: f64 = 2.5e-3;
 /// Deviation of a logarithm beyond which a parameter is not determined.
 const VAGUE: f64 = 1.5;
 
