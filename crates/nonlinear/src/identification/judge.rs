@@ -7,7 +7,7 @@ use super::horizon::horizons;
 use super::misfit::{Focus, View};
 use super::parameters::{Law, Parameters};
 use super::records::Record;
-use super::search::{CONTRADICTION, Named, Search, Span};
+use super::search::{Named, Search, Span, contradicts};
 use crate::RestoringLaw;
 use jointscope_fixture::Effect;
 
@@ -117,7 +117,7 @@ impl Judgement<'_> {
         let (trained, trained_slopes) = (seen(fine), seen(focus));
         let before = Fit::sloped(&trained, &trained_slopes, &best.parameters, 5)?;
         let all = Fit::sloped(everything, slopes, &before.parameters, 5)?;
-        let contradicted = trained.objective(&all.parameters)? > before.objective + CONTRADICTION;
+        let contradicted = contradicts(trained.objective(&all.parameters), before.objective);
         if contradicted { Fit::at(everything, slopes, &before.parameters) } else { Some(all) }
     }
 

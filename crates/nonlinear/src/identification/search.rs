@@ -44,8 +44,8 @@ const FIRST_LOOK: f64 = 5.0;
 const SECOND_LOOK: f64 = 30.0;
 /// The same of the looks from which a joint's force is reconstructed: the shorter, the less the fixture's errors add up; the longer, the more is seen.
 const RECONSTRUCTED: [f64; 3] = [2.0, 5.0, 12.0];
-/// What a longer look may cost a shorter one in χ² and priors.
-pub(crate) const CONTRADICTION: f64 = 40.0;
+/// What a longer look may cost a shorter one in χ² and priors: so much, and so large a part of them.
+const CONTRADICTION: (f64, f64) = (40.0, 3e-3);
 /// Share explained, relative to the best kind's, below which a kind is not fitted.
 const WEAK: f64 = 0.1;
 /// χ² per degree of freedom from which names are further from the best than any later look could bring them back.
@@ -156,11 +156,13 @@ impl<'a> Search<'a> {
         let shorter = names.clone();
         refit(&mut names, &self.view(&span), RENEWALS);
         // What comes late must not contradict what came before: a motion that cannot be followed to its end draws the fit away from the truth.
-        let contradicts = |names: &[Named]| {
-            let (Some(before), Some(now)) = (shorter.first(), names.first()) else { return false };
-            second.objective(&now.fit.parameters).is_none_or(|o| o > before.fit.objective + CONTRADICTION)
+        let contradicted = match (shorter.first(), names.first()) {
+            (Some(before), Some(now)) => {
+                contradicts(second.objective(&now.fit.parameters), before.fit.objective)
+            }
+            _ => false,
         };
-        if contradicts(&names) {
+        if contradicted {
             span.periods = Some(SECOND_LOOK);
             names = shorter.clone();
             refit(&mut names, &self.view(&span), RENEWALS);
@@ -174,6 +176,12 @@ impl<'a> Search<'a> {
         let limit = BEHIND * best + 50.0 + 5.0 * degrees.sqrt();
         names.retain(|name| name.fit.objective < limit);
     }
+}
+
+/// Whether an objective, of parameters that more of the records led to, is worse than the one before by more than chance and small errors of
+/// the model make.
+pub(crate) fn contradicts(now: Option<f64>, before: f64) -> bool {
+    now.is_none_or(|now| now > before * (1.0 + CONTRADICTION.1) + CONTRADICTION.0)
 }
 
 fn refit(names: &mut Vec<Named>, view: &View, iterations: usize) {
