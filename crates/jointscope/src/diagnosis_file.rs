@@ -50,11 +50,11 @@ fn name(effect: &Effect) -> Map<String, Value> {
     entry
 }
 
-/// What an entry of `findings` holds whatever the law: names, parameters, probability, sentence, alternatives, and what χ² loses without it.
+/// What an entry of `findings` holds whatever the law: names, parameters, probability, sentence, alternatives.
 pub(crate) fn named(
     effect: &Effect,
     parameters: impl Iterator<Item = (String, Value)>,
-    (probability, gain): (f64, f64),
+    probability: f64,
     says: String,
     alternatives: &[(Effect, f64)],
 ) -> Map<String, Value> {
@@ -68,7 +68,6 @@ pub(crate) fn named(
         Value::Object(entry)
     });
     entry.insert("alternatives".into(), alternatives.collect());
-    entry.insert("gain_chi2".into(), json!(gain));
     entry
 }
 
@@ -78,7 +77,8 @@ fn finding(finding: &Finding) -> Value {
         (e.parameter.name.to_owned(), value)
     });
     let Finding { effect, probability, gain, alternatives, .. } = finding;
-    let mut entry = named(effect, parameters, (*probability, *gain), finding.says(), alternatives);
+    let mut entry = named(effect, parameters, *probability, finding.says(), alternatives);
+    entry.insert("gain_chi2".into(), json!(gain));
     if let Some(measured) = &finding.measured {
         entry.insert("measured".into(), with_delta(measured));
     }

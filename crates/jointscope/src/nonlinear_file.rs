@@ -69,7 +69,8 @@ fn finding(finding: &Finding) -> Value {
         (e.parameter.name.to_owned(), value)
     });
     let Finding { effect, probability, gain, alternatives, .. } = finding;
-    let mut entry = named(effect, parameters, (*probability, *gain), finding.says(), alternatives);
+    let mut entry = named(effect, parameters, *probability, finding.says(), alternatives);
+    entry.insert("gain_chi2".into(), json!(gain));
     entry.insert("largest_relative_motion".into(), json!(finding.reach));
     Value::Object(entry)
 }

@@ -1,5 +1,6 @@
+use crate::diagnosis_file::named;
 use jointscope_nonlinear::{Held, LevelFinding, LevelResult, SteppedDiagnosis};
-use serde_json::{Map, Value, json};
+use serde_json::{Value, json};
 
 /// The contents of `diagnosis.json` for stepped-sine FRFs at several levels: as [`crate::diagnosis_file`], and beyond the contract the table
 /// `levels` and every law `tried`. Errors are root mean squares over the levels.
@@ -54,35 +55,16 @@ fn level(of: &LevelResult, explained: bool) -> Value {
 }
 
 fn finding(of: &LevelFinding, diagnosis: &SteppedDiagnosis) -> Value {
-    let mut entry = name(&of.effect);
     let parameters = of.estimates.iter().map(|e| {
         (
             e.parameter.name.to_owned(),
             json!({"value": e.value, "std": e.std, "ci95": e.interval, "unit": e.unit}),
         )
     });
-    entry.insert("parameters".into(), Value::Object(parameters.collect()));
-    entry.insert("probability".into(), json!(of.probability));
-    entry.insert("says".into(), json!(of.says()));
-    let alternatives = of.alternatives.iter().map(|(effect, probability)| {
-        let mut entry = name(effect);
-        entry.insert("probability".into(), json!(probability));
-        Value::Object(entry)
-    });
-    entry.insert("alternatives".into(), alternatives.collect());
+    let mut entry = named(&of.effect, parameters, of.probability, of.says(), &of.alternatives);
     entry.insert("share_explained".into(), json!(of.share));
     entry.insert("relative_motions".into(), json!([of.motions.0, of.motions.1]));
     let holds = diagnosis.levels.iter().take(diagnosis.holds).map(|l| l.held.to_string());
     entry.insert("holds_at".into(), holds.collect());
     Value::Object(entry)
-}
-
-fn name(effect: &jointscope_fixture::Effect) -> Map<String, Value> {
-    let mut entry = Map::new();
-    entry.insert("kind".into(), json!(effect.kind.name()));
-    entry.insert("place".into(), json!(effect.place.to_string()));
-    if let Some(dof) = effect.dof {
-        entry.insert("dof".into(), json!(dof.name()));
-    }
-    entry
 }

@@ -167,26 +167,13 @@ impl<'a> Indefinite<'a> {
 mod tests {
     use super::*;
     use crate::SparsePattern;
+    use crate::sparse_modes::tests::free_chain;
     use std::f64::consts::PI;
-
-    /// A free chain of n unit masses on springs of the stiffness given; λ_r = 4 k sin²(π r / 2n), r = 0 … n − 1.
-    fn chain(n: usize, k: f64) -> (SparseSymmetric, SparseSymmetric) {
-        let couples: Vec<Vec<usize>> = (1..n).map(|i| vec![i - 1, i]).collect();
-        let pattern = SparsePattern::of_elements(n, couples.iter().map(Vec::as_slice)).unwrap();
-        let (mut stiffness, mut mass) = (SparseSymmetric::zero(&pattern), SparseSymmetric::zero(&pattern));
-        for i in 0..n {
-            mass.add_element(&[Some(i)], &[1.0]).unwrap();
-            if i > 0 {
-                stiffness.add_element(&[Some(i - 1), Some(i)], &[k, -k, -k, k]).unwrap();
-            }
-        }
-        (stiffness, mass)
-    }
 
     #[test]
     fn the_count_below_any_shift_is_that_of_the_closed_form() {
         for (n, k) in [(2, 1.0), (7, 1e-9), (50, 1e12), (400, 3.0)] {
-            let (stiffness, mass) = chain(n, k);
+            let (stiffness, mass) = free_chain(n, k);
             let exact = |r: usize| 4.0 * k * (PI * r as f64 / (2 * n) as f64).sin().powi(2);
             for r in 0..n {
                 let above = if r + 1 < n { exact(r + 1) } else { 5.0 * k };
@@ -200,10 +187,10 @@ mod tests {
     #[test]
     fn a_zero_on_the_diagonal_is_no_obstacle() {
         // Two unit masses, K − σM = [[0, −1], [−1, 0]] at σ = 1: no pivot of one will do.
-        let (stiffness, mass) = chain(2, 1.0);
+        let (stiffness, mass) = free_chain(2, 1.0);
         assert_eq!(eigenvalues_below(&stiffness, &mass, 1.0), Ok(1));
         // Inner masses of a chain at σ = 2k: the diagonal is zero all along.
-        let (stiffness, mass) = chain(301, 1.0);
+        let (stiffness, mass) = free_chain(301, 1.0);
         let exact = (0..301).filter(|r| 4.0 * (PI * *r as f64 / 602.0).sin().powi(2) < 2.0).count();
         assert_eq!(eigenvalues_below(&stiffness, &mass, 2.0), Ok(exact));
     }
@@ -226,7 +213,7 @@ mod tests {
 
     #[test]
     fn a_shift_upon_an_eigenvalue_has_no_certain_count() {
-        let (stiffness, mass) = chain(3, 1.0);
+        let (stiffness, mass) = free_chain(3, 1.0);
         // Eigenvalues 0, 1, 3: the factor of K − M is singular but for rounding.
         let answer = eigenvalues_below(&stiffness, &mass, 1.0);
         assert!(matches!(answer, Err(SparseError::Uncertain { .. })), "{answer:?}");
@@ -234,7 +221,7 @@ mod tests {
 
     #[test]
     fn values_that_are_not_finite_are_refused() {
-        let (stiffness, mut mass) = chain(3, 1.0);
+        let (stiffness, mut mass) = free_chain(3, 1.0);
         mass.add_element(&[Some(1)], &[f64::NAN]).unwrap();
         assert!(eigenvalues_below(&stiffness, &mass, 0.5).is_err());
         assert!(eigenvalues_below(&stiffness, &SparseSymmetric::zero(&stiffness.pattern), 0.5).is_err());

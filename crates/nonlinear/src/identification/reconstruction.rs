@@ -85,9 +85,8 @@ impl Seen {
         let window: Vec<f64> =
             (0..samples).map(|i| (-look.decay * interval * (i as f64 - record.onset as f64)).exp()).collect();
         let lines = Lines::new(samples, interval);
-        let first = (0..).find(|line| lines.frequency(*line) > 0.0)?;
-        let last = (first..=samples).take_while(|line| lines.frequency(*line) <= look.highest).last()?;
-        let band = first..last + 1;
+        let last = (1..=samples).take_while(|line| lines.frequency(*line) <= look.highest).last()?;
+        let band = 1..last + 1;
         let s: Vec<Complex64> = band.clone().map(|line| lines.s(line) + look.decay).collect();
         let across = |structure: &Structure| -> Option<Vec<(Vec<f64>, Vec<f64>)>> {
             seats
@@ -107,7 +106,7 @@ impl Seen {
         let run = Stepper::new(&system, steps)?.run(&force, samples);
         let count = record.readings.len();
         let energy: f64 = window.iter().map(|w| w * w).sum();
-        let (mut weights, mut target) = (Vec::new(), Vec::new());
+        let (mut weights, mut target): (Vec<Vec<f64>>, Vec<Vec<Complex64>>) = Default::default();
         for ((response, noise), simulated) in hit.responses().iter().zip(&record.noise).zip(&run.outputs) {
             let recorded = windowed(&response.values[..samples]);
             let simulated = windowed(simulated);
@@ -129,19 +128,17 @@ impl Seen {
         }
         let pulse_lines = windowed(&pulse);
         let pulse = oversampled_for_lines(&pulse, look.within);
-        let rows: Vec<Vec<f64>> = across(linear)?.into_iter().map(|(row, _)| row).collect();
-        let loads = across(linear)?.into_iter().map(|(_, load)| load);
-        let seats = loads.zip(seats).enumerate().map(|(index, (load, seat))| {
-            let system = linear.system_loaded(load, &record.readings, &rows[index..=index]).ok()?;
+        let seats = across(linear)?.into_iter().zip(seats).enumerate().map(|(index, ((row, load), seat))| {
+            let system = linear.system_loaded(load, &record.readings, &[row]).ok()?;
             let run = Stepper::new(&system, steps)?.run(&pulse, samples);
-            let mut transfer = run.outputs.iter().map(|values| {
+            let of_one = |values: &Vec<f64>| {
                 let mut lines = windowed(values);
                 lines.iter_mut().zip(&pulse_lines).for_each(|(line, pulse)| *line /= *pulse);
                 lines
-            });
-            let mut all: Vec<Vec<Complex64>> = transfer.by_ref().collect();
-            let own = all.pop()?;
-            for (row, weight) in all.iter_mut().zip(&weights) {
+            };
+            let mut transfer: Vec<Vec<Complex64>> = run.outputs.iter().map(of_one).collect();
+            let own = transfer.pop()?;
+            for (row, weight) in transfer.iter_mut().zip(&weights) {
                 row.drain(..band.start);
                 row.truncate(weight.len());
                 row.iter_mut().zip(weight).for_each(|(h, w)| *h *= *w);
@@ -152,8 +149,7 @@ impl Seen {
                 let line = band.start + k;
                 let known = (seat.stiffness * unmoved[index][line].norm()).powi(2).recip();
                 let (mut top, mut bottom) = (Complex64::ZERO, if known.is_finite() { known } else { 1.0 });
-                for (h, t) in all.iter().zip(&target) {
-                    let t: &Vec<Complex64> = t;
+                for (h, t) in transfer.iter().zip(&target) {
                     top += h[k].conj() * t[k];
                     bottom += h[k].norm_sqr();
                 }
@@ -162,7 +158,7 @@ impl Seen {
             let seen = motion[band.clone()].to_vec();
             let mut values = lines.signal(motion);
             values.iter_mut().zip(&window).for_each(|(v, w)| *v /= w);
-            Some(SeenSeat { transfer: all, motion: values, lines: seen })
+            Some(SeenSeat { transfer, motion: values, lines: seen })
         });
         let seats = seats.collect::<Option<_>>()?;
         Some(Seen { band, window, target, seats, s, lines })
