@@ -1,3 +1,4 @@
+use crate::few_coordinates::{self, FEW};
 use faer::{Mat, Side};
 
 /// Why the eigenproblem has no trustworthy answer.
@@ -84,6 +85,14 @@ pub fn generalized_symmetric_eigen(
     if order == 0 || !finite(mass) || !finite(stiffness) {
         return Err(EigenError::Shape { order });
     }
+    if order <= FEW {
+        few_coordinates::modes(order, mass, stiffness)
+    } else {
+        by_library(order, mass, stiffness)
+    }
+}
+
+pub(crate) fn by_library(order: usize, mass: &[f64], stiffness: &[f64]) -> Result<ModalBasis, EigenError> {
     let mut unit = Vec::with_capacity(order);
     for i in 0..order {
         let diagonal = mass[i * order + i];
@@ -148,6 +157,11 @@ fn check(mass: &Mat<f64>, stiffness: &Mat<f64>, values: &[f64], shapes: &Mat<f64
             residual = residual.max((gram[(i, j)] - f64::from(i == j)).abs());
         }
     }
+    judged(order, residual)
+}
+
+/// Whether modes may be trusted that leave `residual` of the balanced equations.
+pub(crate) fn judged(order: usize, residual: f64) -> Result<(), EigenError> {
     // A comparison that a residual of NaN fails as well.
     if residual <= RESIDUAL_ALLOWED * (order as f64).max(10.0) {
         Ok(())

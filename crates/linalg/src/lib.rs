@@ -27,6 +27,7 @@
 
 mod cholesky;
 mod eigen;
+mod few_coordinates;
 mod general_eigen;
 mod least_squares;
 mod lu;
