@@ -63,30 +63,62 @@ struct Products<'a> {
     weights: &'a [f64],
 }
 
+/// Columns of a tile, and rows: each value that is fetched serves in several products.
+const ACROSS: usize = 4;
+const DOWN: usize = 2;
+
 impl pulp::WithSimd for Products<'_> {
     type Output = Vec<f64>;
 
     #[inline(always)]
-    fn with_simd<S: pulp::Simd>(self, _: S) -> Vec<f64> {
+    fn with_simd<S: pulp::Simd>(self, simd: S) -> Vec<f64> {
         let n = self.columns.len();
-        let mut all = vec![0.0; n * n];
-        let mut parts = vec![0.0; 2 * BLOCK * n];
+        // Columns of zeros fill the last tile.
+        let padded = n.next_multiple_of(ACROSS);
+        let mut all = vec![0.0; padded * padded];
+        let mut parts = vec![0.0; 2 * BLOCK * padded];
         for (block, weights) in self.weights.chunks(BLOCK).enumerate() {
             let first = block * BLOCK;
             for (column, parts) in self.columns.iter().zip(parts.chunks_exact_mut(2 * BLOCK)) {
-                whiten(&column[first..first + weights.len()], weights, parts);
+                let (used, rest) = parts.split_at_mut(2 * weights.len());
+                whiten(&column[first..first + weights.len()], weights, used);
+                rest.fill(0.0);
             }
-            let part = |column: usize| &parts[column * 2 * BLOCK..][..2 * weights.len()];
-            for m in 0..n {
-                for k in 0..=m {
-                    all[m * n + k] += sum_of_products(part(m), part(k));
+            for row in (0..padded).step_by(DOWN) {
+                for column in (0..row + DOWN).step_by(ACROSS) {
+                    tile(simd, &parts, row, column, |r, c, sum| all[r * padded + c] += sum);
                 }
             }
         }
-        for m in 0..n {
-            (0..m).for_each(|k| all[k * n + m] = all[m * n + k]);
+        let entry = |i: usize| all[(i / n).max(i % n) * padded + (i / n).min(i % n)];
+        (0..n * n).map(entry).collect()
+    }
+}
+
+/// Hands the products of [`DOWN`] columns from `row` on with [`ACROSS`] from `column` on to `add`.
+#[inline(always)]
+fn tile<S: pulp::Simd>(
+    simd: S,
+    parts: &[f64],
+    row: usize,
+    column: usize,
+    mut add: impl FnMut(usize, usize, f64),
+) {
+    let part = |index: usize| S::as_simd_f64s(&parts[index * 2 * BLOCK..][..2 * BLOCK]).0;
+    let left: [&[S::f64s]; DOWN] = std::array::from_fn(|r| part(row + r));
+    let right: [&[S::f64s]; ACROSS] = std::array::from_fn(|c| part(column + c));
+    let mut sums = [[simd.splat_f64s(0.0); ACROSS]; DOWN];
+    for at in 0..left[0].len() {
+        for (sums, left) in sums.iter_mut().zip(left) {
+            for (sum, right) in sums.iter_mut().zip(right) {
+                *sum = simd.mul_add_e_f64s(left[at], right[at], *sum);
+            }
         }
-        all
+    }
+    for (r, sums) in sums.into_iter().enumerate() {
+        for (c, sum) in sums.into_iter().enumerate() {
+            add(row + r, column + c, simd.reduce_sum_f64s(sum));
+        }
     }
 }
 
