@@ -1,7 +1,7 @@
 use crate::estimates::{Estimate, estimates};
-use crate::evidence::{Alternative, alternatives, excess};
+use crate::evidence::{Alternative, NAMED, alternatives, excess, is_beyond_names};
 use crate::fit::Fit;
-use crate::held_out::{HeldOut, held_out};
+use crate::held_out::{Division, HeldOut};
 use crate::location::{Location, locate, measure};
 use crate::search::Search;
 use crate::{Hypothesis, Observation};
@@ -121,10 +121,10 @@ const LEFT_OVER: f64 = 1.2;
 const LEFT_OVER_SCATTER: f64 = 1.6;
 /// Probability by chance below which a mismatch is located.
 const BY_CHANCE: f64 = 0.01;
-/// Times at most that a name takes the place of one that was found.
-const SETTLINGS: usize = 3;
-/// Probability that a finding and its look-alikes must have together for it to be named.
-const NAMED: f64 = 0.5;
+/// Times as probable as what was found that another name must be to take its place: two that cannot be told apart stay as they are.
+const CLEARLY: f64 = 1.5;
+/// Times at most that a name takes the place of one that was found, more by the number of effects.
+const SETTLINGS: usize = 4;
 /// Bands in which a mismatch is told.
 const BANDS: usize = 12;
 impl Diagnosis {
@@ -139,17 +139,27 @@ impl Diagnosis {
         };
         let observation = Observation::new(frfs, in_use)?;
         Hypothesis::nominal(fixture, options.exact).predict(&observation)?;
-        let mut search = Search::of(fixture, &observation, options.exact)
-            .ok_or(DiagnosisError::Lines(SpectraError::NoLines))?;
+        // What is to be judged on unseen lines must not have chosen the names either: the search that sees less goes first, and the whole
+        // recording only has to confirm or correct it.
+        let division = Division::of(&observation, options)?;
+        let blind = division.as_ref().and_then(|d| Search::of(fixture, &d.seen, options.exact));
+        let search = match &blind {
+            Some(blind) => Search::continued(blind, fixture, &observation, options.exact),
+            None => Search::of(fixture, &observation, options.exact),
+        };
+        let mut search = search.ok_or(DiagnosisError::Lines(SpectraError::NoLines))?;
         let chi2_per_dof = search.refitted.chi2_per_dof(&observation);
-        let mut findings = findings(&mut search, &observation);
+        let mut findings = match is_beyond_names(&search, &observation) {
+            true => Vec::new(),
+            false => findings(&mut search, &observation),
+        };
         let named = |f: &Finding| f.probability + f.alternatives.iter().map(|(_, p)| p).sum::<f64>();
-        if findings.iter().any(|finding| named(finding) < NAMED) {
+        if findings.is_empty() || findings.iter().any(|finding| named(finding) < NAMED) {
             // What the best names leave says that none of them is right: they would only bend the model to the recording.
             findings.clear();
             search.repaired = search.refitted.clone();
         }
-        let held_out = held_out(fixture, &observation, &search, options)?;
+        let held_out = division.zip(blind).and_then(|(d, blind)| d.judge(&blind, &search, &observation));
         let chance = upper_tail(excess(chi2_per_dof, observation.degrees(), observation.noise_uncertainty()));
         let locations = match chance < BY_CHANCE {
             true => locate(&search.nominal.hypothesis, &search.refitted, &observation),
@@ -193,21 +203,28 @@ fn verdict(search: &Search, observation: &Observation, findings: &[Finding]) -> 
     }
 }
 
-/// The names for each effect of the repaired fit. Where one serves better than what was found, it takes its place and everything is asked
-/// again: a search goes one effect at a time, and a name that was best alone need not be best in company.
+/// The names for each effect of the repaired fit. Where one is more probable than what was found, it takes its place and everything is asked
+/// again: a search goes one effect at a time, and a name that was best alone, or in a part of the recording, need not be best in company
+/// and in the whole.
 fn settled(search: &mut Search, observation: &Observation) -> Vec<Vec<Alternative>> {
-    let mut left = SETTLINGS;
+    // Each time costs the names of all effects.
+    let mut left = SETTLINGS.saturating_sub(search.repaired.hypothesis.effect_count());
     loop {
         let count = search.repaired.hypothesis.effect_count();
         let names: Vec<Vec<Alternative>> =
             (0..count).map(|index| alternatives(search, index, observation)).collect();
         let effects = search.repaired.hypothesis.effects();
         let better = names.iter().zip(&effects).find_map(|(names, effect)| {
-            let best = names.first().filter(|best| !search.candidates[best.candidate].names(effect))?;
-            (best.fit.objective + 1.0 < search.repaired.objective).then(|| best.fit.clone())
+            let own = names.iter().find(|name| search.candidates[name.candidate].names(effect));
+            let own = own.map_or(0.0, |own| own.probability);
+            names.first().filter(|best| best.probability > CLEARLY * own).map(|best| best.fit.clone())
         });
         match better.filter(|_| left > 0) {
-            Some(fit) => search.repaired = fit,
+            Some(fit) => {
+                search.repaired = fit;
+                // Beside the new name an earlier one may no longer be needed.
+                search.prune(observation);
+            }
             None => return names,
         }
         left -= 1;

@@ -10,7 +10,9 @@ const LISTED: f64 = 16.0;
 const UNLISTED: f64 = 7.0;
 /// How much nearer that is for every further effect: several effects at once are rare, and with a pair of names much can be imitated.
 const COMPANY: f64 = 3.2;
-const MOST_COMPANY: f64 = 1.5;
+
+/// Probability that a finding and its look-alikes must have together for it to be named.
+pub(crate) const NAMED: f64 = 0.5;
 
 /// A name for a finding with its probability.
 #[derive(Debug, Clone)]
@@ -34,6 +36,23 @@ pub(crate) fn excess(chi2_per_dof: f64, degrees: usize, noise_uncertainty: f64) 
     (chi2_per_dof - 1.0) / (2.0 / degrees.max(1) as f64).sqrt().hypot(noise_uncertainty)
 }
 
+/// The weight, against one for the best name, of physics that no name covers: the worse the best fit is, the likelier it is that no name is
+/// right.
+fn unlisted(repaired: &Fit, observation: &Observation) -> f64 {
+    let strain =
+        excess(repaired.chi2_per_dof(observation), observation.degrees(), observation.noise_uncertainty())
+            .max(0.0);
+    let company = repaired.hypothesis.effect_count().saturating_sub(1) as f64;
+    (-0.5 * (UNLISTED - COMPANY * company - strain * strain).max(-10.0)).exp()
+}
+
+/// Whether what the repaired fit leaves is so much that nothing can be named: not even if all its look-alikes were as good as the best. That
+/// is known without a fit of any of them.
+pub(crate) fn is_beyond_names(search: &Search, observation: &Observation) -> bool {
+    let names = search.candidates.len() as f64 + 1.0;
+    names / (names + unlisted(&search.repaired, observation)) < NAMED
+}
+
 /// The names for effect `index` of the repaired fit, the most probable first. Each is fitted in the company of the other
 /// effects. The probabilities sum to less than one: the rest is something not listed.
 pub fn alternatives(search: &Search, index: usize, observation: &Observation) -> Vec<Alternative> {
@@ -50,12 +69,7 @@ pub fn alternatives(search: &Search, index: usize, observation: &Observation) ->
     let lowest = fits.iter().map(|(_, fit)| cost(fit, scale)).fold(f64::INFINITY, f64::min);
     fits.retain(|(_, fit)| cost(fit, scale) - lowest < LISTED);
     let weight = |fit: &Fit| (-0.5 * (cost(fit, scale) - lowest)).exp();
-    // The worse the best fit is, the likelier it is that no name is right.
-    let strain =
-        excess(repaired.chi2_per_dof(observation), observation.degrees(), observation.noise_uncertainty())
-            .max(0.0);
-    let company = (repaired.hypothesis.effect_count().saturating_sub(1) as f64).min(MOST_COMPANY);
-    let unlisted = (-0.5 * (UNLISTED - COMPANY * company - strain * strain).max(-10.0)).exp();
+    let unlisted = unlisted(repaired, observation);
     let total: f64 = fits.iter().map(|(_, fit)| weight(fit)).sum::<f64>() + unlisted;
     let mut all: Vec<Alternative> = fits
         .into_iter()

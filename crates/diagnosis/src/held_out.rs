@@ -4,7 +4,6 @@ use crate::evidence::same_names;
 use crate::fit::Fit;
 use crate::search::Search;
 use crate::{DiagnosisError, DiagnosisOptions, Observation};
-use jointscope_fixture::Fixture;
 use jointscope_spectra::FrfPair;
 
 /// What the fit never saw, and how well it was predicted.
@@ -23,55 +22,64 @@ pub struct HeldOut {
 /// Share of the lines in each of the two bands held out.
 const HELD_OUT_SHARE: f64 = 0.06;
 
-/// Searches again without two bands and one FRF, and predicts them.
-pub(crate) fn held_out(
-    fixture: &Fixture,
-    observation: &Observation,
-    search: &Search,
-    options: &DiagnosisOptions,
-) -> Result<Option<HeldOut>, DiagnosisError> {
-    let hz = observation.lines().hz();
-    let n = hz.len();
-    let width = ((n as f64 * HELD_OUT_SHARE) as usize).max(1);
-    if n < 10 * width {
-        return Ok(None);
-    }
-    // About a third and two thirds of the lines: neither the stiff nor the massy end alone.
-    let bands: Vec<(f64, f64)> = [0.3, 0.62]
-        .map(|at| ((n as f64 * at) as usize, width))
-        .map(|(from, width)| (hz[from], hz[from + width]))
-        .to_vec();
-    let frfs = held_out_frfs(observation, options)?;
-    let outside = |line: f64| !bands.iter().any(|(from, to)| line >= *from && line <= *to);
-    let Some(seen) = observation.reduced(outside, |pair| !frfs.contains(pair)) else { return Ok(None) };
-    // What is not named is not in the repaired fixture either, and needs no search.
-    let named = search.repaired.hypothesis.effect_count() > 0;
-    let again = if named {
-        Search::of(fixture, &seen, options.exact)
-    } else {
-        Search::without_effects(fixture, &seen, options.exact)
-    };
-    let Some(again) = again else { return Ok(None) };
-    let error = |fit: &Fit| -> Option<f64> {
-        let predicted = fit.hypothesis.predict(observation).ok()?;
-        let unseen = |index: usize| frfs.contains(&observation.pairs()[index / n]) || !outside(hz[index % n]);
-        let (mut error, mut size) = (0.0, 0.0);
-        for index in (0..predicted.len()).filter(|i| unseen(*i)) {
-            error += (observation.values()[index] - predicted[index]).norm_sqr();
-            size += observation.values()[index].norm_sqr();
+/// A recording divided into what a search may see, and what it is judged on.
+pub(crate) struct Division {
+    /// The observation without the held-out bands and FRFs.
+    pub seen: Observation,
+    what: Vec<String>,
+    /// Whether each value of the whole observation is held out.
+    unseen: Vec<bool>,
+}
+
+impl Division {
+    /// Holds out two bands and the FRFs that are asked for. `None` where there are too few lines for that.
+    pub fn of(observation: &Observation, options: &DiagnosisOptions) -> Result<Option<Self>, DiagnosisError> {
+        let frfs = held_out_frfs(observation, options)?;
+        let hz = observation.lines().hz();
+        let n = hz.len();
+        let width = ((n as f64 * HELD_OUT_SHARE) as usize).max(1);
+        if n < 10 * width {
+            return Ok(None);
         }
-        Some((error / size).sqrt())
-    };
-    let (Some(nrmse_refitted), Some(nrmse_repaired)) = (error(&again.refitted), error(&again.repaired))
-    else {
-        return Ok(None);
-    };
-    let what = bands
-        .iter()
-        .map(|(from, to)| format!("band {from}:{to}"))
-        .chain(frfs.iter().map(|p| format!("frf {p}")));
-    let same_findings = same_names(&again.repaired.hypothesis, &search.repaired.hypothesis);
-    Ok(Some(HeldOut { what: what.collect(), nrmse_refitted, nrmse_repaired, same_findings }))
+        // About a third and two thirds of the lines: neither the stiff nor the massy end alone.
+        let bands = [0.3, 0.62]
+            .map(|at| ((n as f64 * at) as usize, width))
+            .map(|(from, width)| (hz[from], hz[from + width]));
+        let outside = |line: f64| !bands.iter().any(|(from, to)| line >= *from && line <= *to);
+        let Some(seen) = observation.reduced(outside, |pair| !frfs.contains(pair)) else { return Ok(None) };
+        let what = bands
+            .iter()
+            .map(|(from, to)| format!("band {from}:{to}"))
+            .chain(frfs.iter().map(|p| format!("frf {p}")));
+        let unseen = observation.pairs().iter().flat_map(|pair| {
+            let whole = frfs.contains(pair);
+            hz.iter().map(move |line| whole || !outside(*line))
+        });
+        Ok(Some(Division { what: what.collect(), unseen: unseen.collect(), seen }))
+    }
+
+    /// How well the outcome of a search that was given [`Division::seen`] alone predicts the rest. Where nothing is named of `found` in the whole
+    /// recording, nothing is repaired.
+    pub fn judge(&self, blind: &Search, found: &Search, observation: &Observation) -> Option<HeldOut> {
+        let error = |fit: &Fit| -> Option<f64> {
+            let predicted = fit.hypothesis.predict(observation).ok()?;
+            let values = observation.values().iter().zip(&predicted).zip(&self.unseen);
+            let (mut error, mut size) = (0.0, 0.0);
+            for ((measured, predicted), _) in values.filter(|(_, unseen)| **unseen) {
+                error += (measured - predicted).norm_sqr();
+                size += measured.norm_sqr();
+            }
+            Some((error / size).sqrt())
+        };
+        let named = found.repaired.hypothesis.effect_count() > 0;
+        let repaired = if named { &blind.repaired } else { &blind.refitted };
+        Some(HeldOut {
+            what: self.what.clone(),
+            nrmse_refitted: error(&blind.refitted)?,
+            nrmse_repaired: error(repaired)?,
+            same_findings: same_names(&repaired.hypothesis, &found.repaired.hypothesis),
+        })
+    }
 }
 
 fn held_out_frfs(

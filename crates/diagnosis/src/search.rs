@@ -1,6 +1,7 @@
 //! Which effects a recording needs: forward selection with exchange, every candidate fitted with the tolerances.
 
 use crate::catalogue::{Candidate, catalogue};
+use crate::evidence::is_beyond_names;
 use crate::fit::Fit;
 use crate::ranking::Ranking;
 use crate::{Hypothesis, Observation};
@@ -8,6 +9,8 @@ use jointscope_fixture::{Effect, EffectKind, Fixture};
 
 /// Standard deviations by which χ² and the priors' share may exceed the degrees of freedom where nothing large is left to be found.
 const FITS: (f64, f64) = (0.7, 2.0);
+/// The same for the departures of the fixture's quantities by themselves.
+const BENT: f64 = 8.0;
 /// Prices that an effect must be worth, faded, to be kept without further ado.
 const CLEAR: f64 = 2.0;
 /// Rounds of adding and dropping, at the most.
@@ -60,17 +63,55 @@ impl Search {
     /// Searches for effects. `None` where the fixture predicts no finite FRFs.
     pub fn of(fixture: &Fixture, observation: &Observation, exact: bool) -> Option<Self> {
         let mut search = Search::without_effects(fixture, observation, exact)?;
+        search.extend(observation);
+        Some(search)
+    }
+
+    /// As [`Search::of`], from what was found in a part of the observation: its names are fitted to the whole, exchanged, dropped and
+    /// added to as the whole demands.
+    pub(crate) fn continued(
+        part: &Search,
+        fixture: &Fixture,
+        observation: &Observation,
+        exact: bool,
+    ) -> Option<Self> {
+        let mut search = Search::without_effects(fixture, observation, exact)?;
+        let near = |fit: &Fit| Fit::of(&fit.hypothesis, observation, false);
+        if let Some(refitted) = near(&part.refitted).filter(|fit| fit.objective < search.refitted.objective) {
+            search.refitted = refitted;
+        }
+        search.repaired = search.refitted.clone();
+        let repaired_effects = part.repaired.hypothesis.effect_count();
+        if repaired_effects > 0
+            && let Some(repaired) = near(&part.repaired)
+        {
+            search.repaired = repaired;
+            // As many names as there may be that explain neither the part nor the whole need not be exchanged once more.
+            if repaired_effects < MOST_EFFECTS || !is_beyond_names(&search, observation) {
+                search.improve(observation);
+            }
+        }
+        search.extend(observation);
+        Some(search)
+    }
+
+    /// Adds effects one at a time as long as they are worth it.
+    fn extend(&mut self, observation: &Observation) {
         for _ in 0..ROUNDS {
-            if search.repaired.hypothesis.effect_count() >= MOST_EFFECTS {
+            if self.repaired.hypothesis.effect_count() >= MOST_EFFECTS {
                 break;
             }
-            let Some(better) = search.extended(observation) else { break };
-            search.repaired = better;
-            search.polish(observation);
-            search.exchange(observation);
-            search.prune(observation);
+            let Some(better) = self.extended(observation) else { break };
+            self.repaired = better;
+            self.improve(observation);
         }
-        Some(search)
+    }
+
+    /// The effects at hand at their best, in each other's company, those left out that are not needed.
+    fn improve(&mut self, observation: &Observation) {
+        self.polish(observation);
+        self.exchange(observation);
+        self.prune(observation);
     }
 
     /// Fits the effects that were found again from the nominal quantities: along a flat valley the way that led here may have
@@ -104,7 +145,10 @@ impl Search {
         let fits = if fit.hypothesis.effect_count() == 0 { FITS.0 } else { FITS.1 };
         // With effects the noise's own uncertainty counts too: what they leave may be no more than that.
         let noise = if fit.hypothesis.effect_count() == 0 { 0.0 } else { observation.noise_uncertainty() };
+        // Quantities that had to bend are a misfit too, which a χ² that is small by chance must not hide.
+        let quantities = fit.hypothesis.tolerances().len() as f64;
         fit.objective > degrees * (1.0 + fits * (2.0 / degrees).sqrt().hypot(noise))
+            || fit.hypothesis.penalty() > quantities + BENT * (2.0 * quantities).sqrt()
     }
 
     /// Fits of `base` with one more effect, best first by objective and price of parameters, with the candidate's index.
@@ -163,7 +207,7 @@ impl Search {
 
     /// Drops effects that no longer earn their place, the last one included: from the quantities that the effect led to, the
     /// fixture alone may do as well, where its own refit had ended in a false minimum.
-    fn prune(&mut self, observation: &Observation) {
+    pub(crate) fn prune(&mut self, observation: &Observation) {
         let mut index = 0;
         while index < self.repaired.hypothesis.effect_count() {
             // A quarter of an effect misses a sixteenth of what the whole does: what that makes clear needs no more fits.
