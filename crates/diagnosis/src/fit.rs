@@ -1,5 +1,6 @@
 use crate::catalogue::scaled;
 use crate::normal::products;
+use crate::under_way::{ITERATIONS, State};
 use crate::{Hypothesis, Observation};
 use jointscope_linalg::solve_positive_definite;
 use num_complex::Complex64;
@@ -31,35 +32,17 @@ const DIFFERENCE: f64 = 2e-4;
 /// as a modulus and a factor on it, it is their derivatives' agreement to many digits that leaves the matter to what is known beforehand.
 const GENTLE: (f64, f64) = (1e-3, 1e-3);
 /// Shares by which a fit is softened on its way, when it starts far from its goal: on thinned lines, then on all.
-const COARSE: [f64; 4] = [1.0, 0.3, 0.1, 0.03];
+pub(crate) const COARSE: [f64; 4] = [1.0, 0.3, 0.1, 0.03];
 const FINE: [f64; 1] = [0.01];
 /// Lines of a coarse fit.
 pub(crate) const COARSE_LINES: usize = 100;
-/// Iterations with softened weights, each share, and in the end.
-const ITERATIONS: (usize, usize) = (12, 60);
-/// Decrease of the objective below which a fit has converged.
-const CONVERGED: f64 = 0.01;
-/// The same as a share of what a poor fit leaves beyond the degrees of freedom.
-const NEGLIGIBLE: f64 = 1e-5;
-/// Steps made from old derivatives that gain less than this share of the first one's call for new ones.
-const SLOW: f64 = 0.15;
-/// Damping, relative to each coordinate's own curvature, to begin with, and next to none.
-const DAMPING: f64 = 1e-8;
-const UNDAMPED: f64 = 1e-13;
-/// Times the decrease of convergence that an undamped step must promise to be tried, and how often it is.
-const VALLEY: f64 = 3.0;
-const VALLEYS: usize = 3;
 /// Correlation of neighbouring residuals that chance hardly makes.
 const CORRELATED: f64 = 0.15;
-/// Damping beyond which no step is a gain.
-const GIVEN_UP: f64 = 1e7;
 /// χ² per degree of freedom above which a refit looks elsewhere too, and how many of those starts it follows to the end.
 const MUCH: f64 = 1.3;
 const STARTS: usize = 3;
 /// Shares of its size by which an effect fades.
 const FADING: [f64; 4] = [0.75, 0.5, 0.25, 0.1];
-/// A fit is given up where this many times what its derivatives promise would not bring it below the limit.
-pub(crate) const PROMISE: f64 = 3.0;
 
 impl Linearisation {
     /// As [`Linearisation::of`], by steps so small that every digit counts which rounding leaves: for uncertainties.
@@ -130,20 +113,17 @@ impl Linearisation {
         residual: &[Complex64],
     ) -> (Vec<f64>, Vec<f64>) {
         let n = self.derivatives.len();
+        let free: Vec<usize> = (0..n).filter(|&m| !at.is_held(m)).collect();
         let columns: Vec<&[Complex64]> =
-            self.derivatives.iter().map(Vec::as_slice).chain([residual]).collect();
+            free.iter().map(|&m| self.derivatives[m].as_slice()).chain([residual]).collect();
         let all = products(&columns, weights);
+        let width = columns.len();
         let mut matrix = vec![0.0; n * n];
         let mut right = vec![0.0; n];
-        for m in 0..n {
-            if at.is_held(m) {
-                matrix[m * n + m] = 1.0;
-                continue;
-            }
-            right[m] = all[n * (n + 1) + m] - at.prior(m) * at.coordinates[m];
-            for k in (0..n).filter(|&k| !at.is_held(k)) {
-                matrix[m * n + k] = all[m * (n + 1) + k] + if k == m { at.prior(m) } else { 0.0 };
-            }
+        (0..n).for_each(|m| matrix[m * n + m] = if at.is_held(m) { 1.0 } else { at.prior(m) });
+        for (i, &m) in free.iter().enumerate() {
+            right[m] = all[free.len() * width + i] - at.prior(m) * at.coordinates[m];
+            free.iter().enumerate().for_each(|(j, &k)| matrix[m * n + k] += all[i * width + j]);
         }
         (matrix, right)
     }
@@ -175,11 +155,6 @@ impl Fit {
     /// The softened beginning of a far fit, on thinned lines: good enough to compare hypotheses by. Its objective is the softened one.
     pub(crate) fn coarse(start: &Hypothesis, thinned: &Observation) -> Option<Self> {
         Fit::softened(start, thinned, &COARSE)
-    }
-
-    /// As [`Fit::coarse`], from where a coarse fit of something similar has led already.
-    pub(crate) fn coarse_from_near(start: &Hypothesis, thinned: &Observation) -> Option<Self> {
-        Fit::softened(start, thinned, &COARSE[2..])
     }
 
     /// The last softened stage, on all lines; its objective is the softened one.
@@ -304,129 +279,5 @@ impl Fit {
             (0..n).for_each(|k| covariance[k * n + m] = column[k]);
         }
         Some(covariance)
-    }
-}
-
-/// A fit under way.
-struct State {
-    hypothesis: Hypothesis,
-    predicted: Vec<Complex64>,
-    /// Derivatives made here or on the way.
-    linear: Option<Linearisation>,
-}
-
-impl State {
-    fn at(hypothesis: Hypothesis, observation: &Observation) -> Option<Self> {
-        let predicted = hypothesis.predict(observation).ok()?;
-        Some(State { hypothesis, predicted, linear: None })
-    }
-
-    fn objective(&self, observation: &Observation, weights: &[f64]) -> f64 {
-        let values = observation.values().iter().zip(&self.predicted).zip(weights);
-        values.map(|((m, p), w)| w * (m - p).norm_sqr()).sum::<f64>() + self.hypothesis.penalty()
-    }
-
-    /// Softened fits only have to find the way; at the end a derivative's error, times what noise leaves, would lead astray along
-    /// directions that the FRFs hardly determine.
-    fn linearised(&self, observation: &Observation, epsilon: f64) -> Linearisation {
-        match epsilon > 0.0 {
-            true => Linearisation::forward(&self.hypothesis, &self.predicted, observation),
-            false => Linearisation::of(&self.hypothesis, observation),
-        }
-    }
-
-    fn improve(&mut self, observation: &Observation, epsilon: f64, iterations: usize, limit: f64) {
-        let mut damping = DAMPING;
-        // Derivatives cost far more than a prediction, and change little from step to step: they are made anew
-        // only when steps made from old ones gain little.
-        let mut fresh = self.linear.is_none();
-        let mut linear = self.linear.take().unwrap_or_else(|| self.linearised(observation, epsilon));
-        let mut hoped_for = 0.0;
-        let mut valleys = 0;
-        for _ in 0..iterations {
-            // Weights are frozen within an iteration, so that a step is judged by what it was made for.
-            let weights = observation.softened_weights(&self.predicted, epsilon);
-            let before = self.objective(observation, &weights);
-            let (matrix, right) =
-                linear.normal(&self.hypothesis, &weights, &observation.residual(&self.predicted));
-            let promised = if fresh { self.promised(&matrix, &right) } else { 0.0 };
-            if fresh && before - PROMISE * promised > limit {
-                break;
-            }
-            let patience = if fresh { GIVEN_UP } else { damping * 10.0 };
-            let stepped = self.step(observation, &weights, &matrix, &right, before, &mut damping, patience);
-            let gain = stepped.as_ref().map_or(0.0, |(_, after)| before - after);
-            if let Some((next, _)) = stepped {
-                (self.hypothesis, self.predicted) = (next.hypothesis, next.predicted);
-            }
-            // Far from explaining anything, a fit is compared with others whose objectives are far away.
-            let excess = (before - observation.degrees() as f64).max(0.0);
-            let converged = if epsilon == 0.0 { CONVERGED.max(NEGLIGIBLE * excess) } else { 0.01 * before };
-            if gain < converged && fresh {
-                // Along a flat valley a damped step gains little of what there is.
-                if promised > VALLEY * converged && gain > 0.0 && valleys < VALLEYS && epsilon == 0.0 {
-                    valleys += 1;
-                    damping = UNDAMPED;
-                    linear = self.linearised(observation, epsilon);
-                    continue;
-                }
-                break;
-            }
-            let slow = gain < hoped_for || gain < converged;
-            hoped_for = if fresh { (SLOW * gain).max(converged) } else { hoped_for };
-            if slow {
-                linear = self.linearised(observation, epsilon);
-                hoped_for = 0.0;
-            }
-            fresh = slow;
-        }
-        self.linear = Some(linear);
-    }
-
-    /// What a whole step gains if the FRFs follow their derivatives.
-    fn promised(&self, matrix: &[f64], right: &[f64]) -> f64 {
-        let step = self.hypothesis.bounded_step(matrix, right).unwrap_or_default();
-        step.iter().zip(right).map(|(step, right)| step * right).sum::<f64>().abs()
-    }
-
-    /// The first damped step that lowers the objective.
-    #[allow(clippy::too_many_arguments)]
-    fn step(
-        &self,
-        observation: &Observation,
-        weights: &[f64],
-        matrix: &[f64],
-        right: &[f64],
-        before: f64,
-        damping: &mut f64,
-        given_up: f64,
-    ) -> Option<(State, f64)> {
-        let n = right.len();
-        let largest = (0..n).map(|m| matrix[m * n + m]).fold(0.0, f64::max);
-        loop {
-            let mut damped = matrix.to_vec();
-            for m in 0..n {
-                damped[m * n + m] += *damping * matrix[m * n + m].max(1e-14 * largest);
-            }
-            let next =
-                self.hypothesis.bounded_step(&damped, right).map(|step| self.hypothesis.stepped(&step));
-            if let Some(next) = next.and_then(|next| State::at(next, observation)) {
-                let after = next.objective(observation, weights);
-                if after < before {
-                    *damping = (*damping * 0.1).max(UNDAMPED);
-                    return Some((next, after));
-                }
-            }
-            *damping *= 10.0;
-            if *damping > given_up {
-                return None;
-            }
-        }
-    }
-
-    fn into_fit(self, observation: &Observation) -> Fit {
-        let chi2 = observation.chi2(&self.predicted);
-        let objective = chi2 + self.hypothesis.penalty();
-        Fit { hypothesis: self.hypothesis, predicted: self.predicted, chi2, objective }
     }
 }

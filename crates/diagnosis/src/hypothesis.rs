@@ -5,6 +5,7 @@ use jointscope_linalg::solve_positive_definite;
 use jointscope_lumped::{Instrument, LumpedError, accelerances};
 use jointscope_spectra::FrfPair;
 use num_complex::Complex64;
+use std::sync::Arc;
 
 /// Why a hypothesis predicts nothing.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -32,6 +33,8 @@ pub struct Tolerance {
     scale: f64,
     /// Whether it moves by its logarithm.
     relative: bool,
+    /// Lowest coordinate: what must not be negative stops at zero.
+    lowest: f64,
 }
 
 /// Relative deviation up to which a size moves by its logarithm.
@@ -43,7 +46,11 @@ impl Tolerance {
         // Masses and stiffnesses trade against factors of each other: by their logarithms such a trade is a straight line.
         let place = ["x", "x_cg", "from", "to"].iter().any(|name| path.rsplit('/').next() == Some(name));
         let relative = !place && !path.contains("damping") && nominal > 0.0 && scale <= NARROW * nominal;
-        Tolerance { index, path: path.to_owned(), nominal, std, scale, relative }
+        let lowest = match !relative && nominal > 0.0 && path.contains("damping") {
+            true => -nominal / scale,
+            false => f64::NEG_INFINITY,
+        };
+        Tolerance { index, path: path.to_owned(), nominal, std, scale, relative, lowest }
     }
 
     /// The value at `coordinate` deviations from the nominal one.
@@ -62,22 +69,15 @@ impl Tolerance {
             && self.nominal != 0.0
             && !self.path.ends_with("/x")
     }
-
-    /// Lowest coordinate: what must not be negative stops at zero.
-    fn lowest(&self) -> f64 {
-        match !self.relative && self.nominal > 0.0 && self.path.contains("damping") {
-            true => -self.nominal / self.scale,
-            false => f64::NEG_INFINITY,
-        }
-    }
 }
 
 /// The fixture with quantities and effects to be fitted: coordinates in units of which one is a typical step.
 #[derive(Debug, Clone)]
 pub struct Hypothesis {
-    fixture: Fixture,
-    tolerances: Vec<Tolerance>,
-    effects: Vec<(Effect, Vec<Freedom>)>,
+    // Thousands of neighbours share what none of them changes.
+    fixture: Arc<Fixture>,
+    tolerances: Arc<[Tolerance]>,
+    effects: Arc<Vec<(Effect, Vec<Freedom>)>>,
     /// Coordinates that stay where they are.
     held: Vec<usize>,
     /// Coordinates: tolerances in deviations from the nominal values, then the effects' free parameters.
@@ -111,9 +111,9 @@ impl Hypothesis {
         }
         let coordinates = vec![0.0; tolerances.len()];
         Hypothesis {
-            fixture: fixture.clone(),
-            tolerances,
-            effects: Vec::new(),
+            fixture: Arc::new(fixture.clone()),
+            tolerances: tolerances.into(),
+            effects: Arc::new(Vec::new()),
             held: Vec::new(),
             coordinates,
         }
@@ -133,7 +133,7 @@ impl Hypothesis {
         for (freedom, quantity) in freedoms.iter().zip(&effect.parameters) {
             more.coordinates.extend(freedom.coordinate(quantity.value));
         }
-        more.effects.push((effect, freedoms));
+        Arc::make_mut(&mut more.effects).push((effect, freedoms));
         more
     }
 
@@ -142,7 +142,7 @@ impl Hypothesis {
         let mut fewer = self.clone();
         let range = self.range_of(index);
         fewer.coordinates.drain(range);
-        fewer.effects.remove(index);
+        Arc::make_mut(&mut fewer.effects).remove(index);
         fewer
     }
 
@@ -158,8 +158,8 @@ impl Hypothesis {
     pub(crate) fn beside(&self, effect: Effect) -> Option<Self> {
         let mut physics = self.fixture.physics().to_vec();
         physics.push(effect);
-        let fixture = self.fixture.clone().with_physics(physics).ok()?;
-        Some(Hypothesis { fixture, ..self.clone() })
+        let fixture = Fixture::clone(&self.fixture).with_physics(physics).ok()?;
+        Some(Hypothesis { fixture: Arc::new(fixture), ..self.clone() })
     }
 
     /// The same where `other`, of the same quantities and effects, stands.
@@ -252,7 +252,7 @@ impl Hypothesis {
     /// # Errors
     /// Quantities or parameters that are impossible.
     pub fn to_fixture(&self) -> Result<Fixture, FixtureError> {
-        let mut fixture = self.fixture.clone();
+        let mut fixture = Fixture::clone(&self.fixture);
         let moved = self.tolerances.iter().zip(&self.coordinates);
         fixture.set_quantities(
             moved.map(|(tolerance, coordinate)| (tolerance.index, tolerance.value(*coordinate))),
@@ -313,7 +313,7 @@ impl Hypothesis {
 
     /// Bounds of each coordinate.
     fn bounds(&self) -> Vec<(f64, f64)> {
-        let mut all: Vec<(f64, f64)> = self.tolerances.iter().map(|t| (t.lowest(), f64::INFINITY)).collect();
+        let mut all: Vec<(f64, f64)> = self.tolerances.iter().map(|t| (t.lowest, f64::INFINITY)).collect();
         for freedom in self.effects.iter().flat_map(|(_, freedoms)| freedoms) {
             match freedom {
                 Freedom::Fixed => {}

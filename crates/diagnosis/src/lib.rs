@@ -39,6 +39,7 @@ mod ranking;
 mod recorded_lines;
 mod says;
 mod search;
+mod under_way;
 
 pub use catalogue::{Candidate, catalogue};
 pub use diagnosis::{Diagnosis, DiagnosisError, DiagnosisOptions, Finding, FrfMismatch, Verdict};

@@ -5,9 +5,10 @@
 //! is fitted from the nominal quantities besides, with softened weights on thinned lines, and those that come near are refined on all lines.
 
 use crate::catalogue::Candidate;
-use crate::fit::{COARSE_LINES, Fit, Linearisation, PROMISE};
+use crate::fit::{COARSE, COARSE_LINES, Fit, Linearisation};
 use crate::normal::{dot, whitened};
 use crate::search::parameter_price;
+use crate::under_way::{PROMISE, Softening};
 use crate::{Hypothesis, Observation};
 use jointscope_fixture::Effect;
 use jointscope_linalg::solve_positive_definite;
@@ -20,15 +21,18 @@ const NEAR: usize = 12;
 const NEAR_STARTS: usize = 2;
 /// Candidates of the far way that are kept after the coarse fits, and after those on all lines; those of them that are kept from two
 /// starts.
-const HALF: usize = 24;
+const HALF: usize = 16;
 const HALF_TWICE: usize = 6;
 const FAR: usize = 10;
 const FAR_TWICE: usize = 3;
-/// Softened fits that leave this many times what the best one leaves are not followed: one in a false minimum may still win.
-const SOFT: f64 = 3.0;
+/// Softened fits that leave this many times what the best one leaves are not followed, after each stage of [`COARSE`]: one in a false minimum
+/// may still win, the likelier the softer the stage.
+const SOFT: [f64; COARSE.len()] = [12.0, 10.0, 4.0, 3.0];
+/// The stage at which starts join that a coarse fit of something similar has led to.
+const LED: usize = 2;
 /// χ² per degree of freedom above which the best single effect leaves too much, and starts of each candidate that are then tried.
 const UNEXPLAINED: f64 = 1.3;
-const SEVERAL: usize = 5;
+const SEVERAL: usize = 3;
 /// Softened χ² of one deviation below which a quantity stays where it is in a coarse fit.
 const UNFELT: f64 = 8.0;
 /// Fits made without a limit before the others are measured against the best of them.
@@ -40,6 +44,13 @@ const MARGIN: f64 = 60.0;
 struct Start {
     candidate: usize,
     hypothesis: Hypothesis,
+}
+
+/// A candidate's coarse fit under way.
+struct Coarse {
+    candidate: usize,
+    fit: Softening,
+    objective: f64,
 }
 
 /// Candidates to be fitted beside a base, and where from.
@@ -134,12 +145,13 @@ impl Ranking<'_> {
     /// The best softened fits from where the base stands and from where a softened fit leads without a candidate.
     fn far(&self, base: &Hypothesis, starts: &[(usize, usize)], each: usize) -> Vec<Start> {
         let coarse = self.observation.thinned(COARSE_LINES);
-        let mut begun: Vec<(usize, Hypothesis, bool)> = Vec::new();
+        let mut begun: Vec<(usize, Hypothesis)> = Vec::new();
+        let mut led_to: Vec<(usize, Hypothesis)> = Vec::new();
         // Where an effect moves peaks by many widths no linear step of the tolerances is to be trusted.
         if let Some(scan) = Scan::about(base.clone(), &coarse, 0.3, false) {
             let scores = scan.scores(starts, self.candidates, &coarse);
             let best = self.best_starts(starts, &scores, each).into_iter().flatten();
-            begun.extend(best.map(|(_, c, effect)| (c, base.with(effect), false)));
+            begun.extend(best.map(|(_, c, effect)| (c, base.with(effect))));
         }
         // A softened refit is bent less by what the candidate would explain.
         let led = Fit::coarse(base, &coarse).map(|fit| fit.hypothesis);
@@ -149,20 +161,31 @@ impl Ranking<'_> {
             let scores = scan.scores(starts, self.candidates, &coarse);
             let best = self.best_starts(starts, &scores, 1).into_iter().flatten();
             let small = self.first_order(base, &scan, usize::MAX, 1, &coarse);
-            begun.extend(best.chain(small).map(|(_, c, effect)| (c, led.with(effect), true)));
+            led_to.extend(best.chain(small).map(|(_, c, effect)| (c, led.with(effect))));
         }
         let stiff = Scan::about(base.clone(), &coarse, 0.1, true).map_or(Vec::new(), |scan| scan.unfelt());
-        let fits = begun.into_par_iter().filter_map(|(candidate, start, near)| {
-            let start = start.holding(&stiff);
-            let fit =
-                if near { Fit::coarse_from_near(&start, &coarse) } else { Fit::coarse(&start, &coarse) };
-            fit.map(|fit| (candidate, Fit { hypothesis: fit.hypothesis.holding(&[]), ..fit }))
+        let begin = |(candidate, start): (usize, Hypothesis)| {
+            let fit = Softening::begin(start.holding(&stiff), &coarse)?;
+            Some(Coarse { candidate, fit, objective: f64::INFINITY })
+        };
+        let mut fits: Vec<Coarse> = begun.into_par_iter().filter_map(begin).collect();
+        for (stage, share) in COARSE.into_iter().enumerate() {
+            if stage == LED {
+                fits.par_extend(std::mem::take(&mut led_to).into_par_iter().filter_map(begin));
+            }
+            fits.par_iter_mut().for_each(|coarse_fit| {
+                coarse_fit.objective = coarse_fit.fit.stage(&coarse, share);
+            });
+            let best = fits.iter().map(|fit| fit.objective).fold(f64::INFINITY, f64::min);
+            fits.retain(|fit| fit.objective <= SOFT[stage] * best + MARGIN);
+        }
+        let led_by = |fit: Coarse| (fit.candidate, fit.objective, fit.fit.hypothesis().holding(&[]));
+        let kept = front(fits.into_iter().map(led_by).collect(), HALF, HALF_TWICE);
+        let fits = kept.into_par_iter().filter_map(|(candidate, _, hypothesis)| {
+            let fit = Fit::middle(&hypothesis, self.observation)?;
+            Some((candidate, fit.objective, fit.hypothesis))
         });
-        let kept = front(fits.collect(), HALF, HALF_TWICE);
-        let fits = kept.into_par_iter().filter_map(|(candidate, fit)| {
-            Fit::middle(&fit.hypothesis, self.observation).map(|fit| (candidate, fit))
-        });
-        let start = |(candidate, fit): (usize, Fit)| Start { candidate, hypothesis: fit.hypothesis };
+        let start = |(candidate, _, hypothesis)| Start { candidate, hypothesis };
         front(fits.collect(), FAR, FAR_TWICE).into_iter().map(start).collect()
     }
 
@@ -248,14 +271,20 @@ impl Ranking<'_> {
     }
 }
 
-/// Of softened fits those that come near the best: one of each of at most `count` candidates, two of the best `twice`.
-fn front(mut fits: Vec<(usize, Fit)>, count: usize, twice: usize) -> Vec<(usize, Fit)> {
-    fits.sort_by(|a, b| cost(&a.1).total_cmp(&cost(&b.1)));
-    let limit = fits.first().map_or(f64::INFINITY, |(_, best)| SOFT * best.objective + MARGIN);
+/// Of softened fits (candidate, objective, where it stands) those that come near the best: one of each of at most `count` candidates, two of the
+/// best `twice`.
+fn front(
+    mut fits: Vec<(usize, f64, Hypothesis)>,
+    count: usize,
+    twice: usize,
+) -> Vec<(usize, f64, Hypothesis)> {
+    let cost = |fit: &(usize, f64, Hypothesis)| fit.1 + parameter_price(&fit.2);
+    fits.sort_by(|a, b| cost(a).total_cmp(&cost(b)));
+    let limit = fits.first().map_or(f64::INFINITY, |best| SOFT[COARSE.len() - 1] * best.1 + MARGIN);
     let mut taken: BTreeMap<usize, usize> = BTreeMap::new();
-    fits.retain(|(candidate, fit)| {
+    fits.retain(|(candidate, objective, _)| {
         let own = taken.get(candidate).copied().unwrap_or(0);
-        let keep = fit.objective <= limit
+        let keep = *objective <= limit
             && own < if taken.len() <= twice { 2 } else { 1 }
             && (own > 0 || taken.len() < count);
         if keep {
