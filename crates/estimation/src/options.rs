@@ -62,7 +62,7 @@ pub enum ResponseWindow {
     /// None.
     #[default]
     None,
-    /// One that lets the slowest response fall to 10⁻⁴, only where the record's end cuts it off above 3·10⁻³.
+    /// One that lets the slowest response fall to 10⁻⁴ of its loudest part, where it does not by itself.
     Auto,
     /// One of this decay, 1/s.
     Decay(f64),

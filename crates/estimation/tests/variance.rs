@@ -4,7 +4,7 @@
 mod common;
 
 use common::{TWO_MODES, Test};
-use jointscope_estimation::{Estimate, EstimateOptions, Weighting};
+use jointscope_estimation::{Estimate, EstimateOptions, ResponseWindow, Weighting};
 
 /// Mean of |H − truth|²/variance over the lines from 20 to 480 Hz of `tests` tests.
 fn ratio(test: &Test, options: &EstimateOptions, tests: u64) -> f64 {
@@ -80,24 +80,32 @@ fn weights_by_noise_make_the_average_more_certain() {
     assert!((2.2..4.0).contains(&gain), "nine hits count as nine instead of about three: {gain}");
 }
 
-#[test]
-fn a_window_leaves_the_variances_right() {
-    use jointscope_estimation::ResponseWindow;
-    let test = Test { response_noise: vec![0.02; 4], force_noise: vec![0.01; 4], ..Test::quiet(4, 2048) };
+/// As [`ratio`], under an exponential window.
+fn ratio_under(decay: f64, test: &Test) -> f64 {
     let options =
-        EstimateOptions { response_window: ResponseWindow::Decay(8.0), ..EstimateOptions::default() };
+        EstimateOptions { response_window: ResponseWindow::Decay(decay), ..EstimateOptions::default() };
     let (mut sum, mut count) = (0.0, 0.0);
     for seed in 0..60 {
         let estimate = Estimate::of(&Test { seed, ..test.clone() }.hits(), &options).unwrap();
         let hz = estimate.frfs.lines().hz();
+        let variance = estimate.frfs.variance(0).unwrap();
         for line in (0..hz.len()).filter(|&l| (20.0..480.0).contains(&hz[l])) {
-            let truth = TWO_MODES.frf(8.0, hz[line]);
-            let variance = estimate.frfs.variance(0).unwrap()[line];
-            sum += (estimate.frfs.values(0)[line] - truth).norm_sqr() / variance;
+            let truth = TWO_MODES.frf(decay, hz[line]);
+            sum += (estimate.frfs.values(0)[line] - truth).norm_sqr() / variance[line];
             count += 1.0;
         }
     }
-    check("4 hits under a window", sum / count, 0.93, 1.08);
+    sum / count
+}
+
+#[test]
+fn a_window_leaves_the_variances_right() {
+    // Under 14 1/s on one second the noise of some fourteen neighbouring lines is one.
+    for (hits, decay) in [(4, 8.0), (3, 14.0), (4, 14.0), (6, 14.0)] {
+        let noise = |share: f64| vec![share; hits];
+        let test = Test { response_noise: noise(0.02), force_noise: noise(0.01), ..Test::quiet(hits, 2048) };
+        check(&format!("{hits} hits under {decay} 1/s"), ratio_under(decay, &test), 0.96, 1.035);
+    }
 }
 
 #[test]

@@ -132,3 +132,15 @@ proptest! {
         prop_assert!(deviation(&found, 0.0) < 1e-9);
     }
 }
+
+#[test]
+fn a_window_on_demand_leaves_no_more_of_a_record_that_ends_nearly_quiet() {
+    // After 0.7 s the slower mode is at e^-6.3 = 0.18 %: nobody sees that, and it bends peaks by as much.
+    let hits = Test::quiet(2, 1520).hits();
+    let plain = estimate(&hits, &EstimateOptions::default());
+    assert!(deviation(&plain, 0.0) > 5e-4, "{}", deviation(&plain, 0.0));
+    assert!(plain.remarks.is_empty(), "{:?}", plain.remarks);
+    let found = estimate(&hits, &windowed(ResponseWindow::Auto));
+    assert!((1.0..8.0).contains(&found.decay), "{}", found.decay);
+    assert!(deviation(&found, found.decay) < 2e-4, "{}", deviation(&found, found.decay));
+}

@@ -63,7 +63,7 @@ pub fn with_variances(frfs: &FrfSet) -> Result<(FrfSet, Vec<NoiseSource>), Spect
 
 /// Variances E|ε|² of one FRF from its coherence and number of averages, smoothed over the lines.
 pub fn from_coherence(values: &[Complex64], coherence: &[f64], averages: u32) -> Vec<f64> {
-    smoothed(values, &of_lines(values, coherence, averages), coherence, &[])
+    smoothed(values, &of_lines(values, coherence, averages), coherence, &[], 1.0)
 }
 
 /// Variance E|ε|² of one value by line as coherence and averages state it, (1 − γ²)/((n − 1)γ²)·|H|²: right in the mean over many lines,
@@ -79,7 +79,18 @@ pub fn of_lines(values: &[Complex64], coherence: &[f64], averages: u32) -> Vec<f
 
 /// Smooths variances of single lines over the lines: the noise of the channels varies slowly, and what it makes of an FRF rises wherever
 /// the power of the `force`, in any unit, dips. An empty `force` is one that is the same on all lines; lines without coherence are skipped.
-pub fn smoothed(values: &[Complex64], of_lines: &[f64], coherence: &[f64], force: &[f64]) -> Vec<f64> {
+///
+/// `alike` is the number of neighbouring lines that tell as much about the noise as one line whose noise is its own: 1 without a window, more under
+/// one or with zero padding. The mean is over that many times more lines: a variance from few independent values is too small as often as too large,
+/// and what it divides is too large in the mean.
+pub fn smoothed(
+    values: &[Complex64],
+    of_lines: &[f64],
+    coherence: &[f64],
+    force: &[f64],
+    alike: f64,
+) -> Vec<f64> {
+    let reach = (WINDOW as f64 * alike.clamp(1.0, of_lines.len().max(1) as f64)).round() as usize;
     let strongest = force.iter().copied().fold(0.0, f64::max);
     // A line without force has no FRF, whatever its neighbours say.
     let power = |line: usize| match force.get(line) {
@@ -90,7 +101,7 @@ pub fn smoothed(values: &[Complex64], of_lines: &[f64], coherence: &[f64], force
     let usable: Vec<bool> = coherence.iter().map(|&g| g > 0.0).collect();
     let mean = |line: usize| {
         let (mut sum, mut count) = (0.0, 0.0f64);
-        for i in around(line, raw.len()).filter(|&i| usable[i]) {
+        for i in around(line, reach, raw.len()).filter(|&i| usable[i]) {
             sum += raw[i];
             count += 1.0;
         }
@@ -98,7 +109,7 @@ pub fn smoothed(values: &[Complex64], of_lines: &[f64], coherence: &[f64], force
     };
     let begun = (0..raw.len()).map(mean).collect();
     let size: Vec<f64> = values.iter().map(|v| v.norm_sqr()).collect();
-    let smoothed = smooth(&size, &raw, &usable, begun, 3, f64::INFINITY);
+    let smoothed = smooth(&size, &raw, &usable, begun, 3, f64::INFINITY, reach);
     smoothed.iter().enumerate().map(|(line, variance)| variance / power(line)).collect()
 }
 
@@ -132,7 +143,7 @@ pub fn from_scatter(hz: &[f64], values: &[Complex64]) -> Vec<f64> {
     let mut window = Vec::with_capacity(2 * WINDOW + 1);
     let mut median = |line: usize, value: &dyn Fn(usize) -> f64| {
         window.clear();
-        window.extend(around(line, n).filter(|&i| usable[i]).map(value));
+        window.extend(around(line, WINDOW, n).filter(|&i| usable[i]).map(value));
         let middle = window.len() / 2;
         if window.is_empty() {
             return 0.0;
@@ -142,11 +153,11 @@ pub fn from_scatter(hz: &[f64], values: &[Complex64]) -> Vec<f64> {
     let share = |i: usize| raw[i] / size[i].max(NOTHING * largest).max(f64::MIN_POSITIVE);
     // An upper bound to begin with: the floor that the median shows, and the share that it shows.
     let begun = (0..n).map(|line| median(line, &|i| raw[i]) + median(line, &share) * size[line]).collect();
-    smooth(&size, &raw, &usable, begun, 5, CLIPPED)
+    smooth(&size, &raw, &usable, begun, 5, CLIPPED, WINDOW)
 }
 
-fn around(line: usize, n: usize) -> std::ops::Range<usize> {
-    line.saturating_sub(WINDOW)..(line + WINDOW + 1).min(n)
+fn around(line: usize, reach: usize, n: usize) -> std::ops::Range<usize> {
+    line.saturating_sub(reach)..(line + reach + 1).min(n)
 }
 
 /// Fits raw variances as S + N·|H|² within a sliding window: both non-negative, weighted by the fit itself, as the
@@ -158,12 +169,15 @@ fn smooth(
     begun: Vec<f64>,
     passes: usize,
     clipped: f64,
+    reach: usize,
 ) -> Vec<f64> {
     let n = size.len();
     let mut fit: Vec<f64> = begun;
     for _ in 0..passes {
         let raw: Vec<f64> = raw.iter().zip(&fit).map(|(raw, fit)| raw.min(clipped * fit)).collect();
-        fit = (0..n).map(|line| fit_window(around(line, n), &raw, size, &fit, usable, size[line])).collect();
+        fit = (0..n)
+            .map(|line| fit_window(around(line, reach, n), &raw, size, &fit, usable, size[line]))
+            .collect();
     }
     // A value of exactly nothing comes from a dead channel: it is known no better than the loudest one.
     let largest = size.iter().copied().fold(0.0, f64::max);
