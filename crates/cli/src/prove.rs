@@ -9,10 +9,9 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
-use jointscope::Diagnosis;
 use jointscope_proof::{
-    Answers, Baseline, CaseLine, FAMILIES, Judged, Limits, Methods, Opened, Replies, RouteScores, Score,
-    SolidJudged, StruckAnswers, StruckDiagnosis, StruckJudged, Timing,
+    Baseline, CaseLine, FAMILIES, Judged, Limits, Methods, Opened, Replies, RouteScores, Score, SolidJudged,
+    StruckJudged, Timing,
 };
 use jointscope_report::{ProofContext, ProofResults, proof_page};
 use serde_json::{Value, json};
@@ -176,32 +175,23 @@ pub fn workers(arguments: &ProveArguments) -> usize {
 /// All cases diagnosed, and a page written of each where a directory was given.
 fn diagnosed(arguments: &ProveArguments, concealed: &Concealed, threads: usize) -> Result<Replies, Refusal> {
     let bar = progress(concealed.numbers.len(), "diagnosed");
-    let [first_solid, first_struck] = concealed.firsts();
-    let from = |first: usize| {
-        let bar = &bar;
-        move |done: usize| bar.set_position((first + done) as u64)
-    };
     let directory = arguments.output.as_ref().filter(|_| !arguments.no_case_pages);
     let pages = directory.map(|directory| CasePages::below(directory, concealed));
-    let of_frfs = |first: usize| {
-        let pages = &pages;
-        move |position: usize, diagnosis: &Diagnosis| {
-            if let Some(pages) = pages {
-                pages.write(first + position, diagnosis);
+    let replies = Replies::to(
+        &concealed.cases,
+        threads,
+        |done| bar.set_position(done as u64),
+        |position, diagnosis| {
+            if let Some(pages) = &pages {
+                pages.write(position, diagnosis);
             }
-        }
-    };
-    let of_hits = |position: usize, diagnosis: &StruckDiagnosis| {
-        if let Some(pages) = &pages {
-            pages.write_hits(first_struck + position, diagnosis);
-        }
-    };
-    let cases = &concealed.cases;
-    let replies = Replies {
-        laboratory: Answers::watched(&cases.laboratory, threads, from(0), of_frfs(0)),
-        solid: Answers::watched(&cases.solid, threads, from(first_solid), of_frfs(first_solid)),
-        struck: StruckAnswers::to(&cases.struck, threads, from(first_struck), of_hits),
-    };
+        },
+        |position, diagnosis| {
+            if let Some(pages) = &pages {
+                pages.write_hits(position, diagnosis);
+            }
+        },
+    );
     pages.map_or(Ok(()), CasePages::finish)?;
     Ok(replies)
 }

@@ -16,6 +16,9 @@ pub struct Answers {
     seconds: Vec<f64>,
 }
 
+/// An answer, and the seconds it took.
+pub(crate) type Timed = (Result<Answer, NoAnswer>, f64);
+
 impl Answers {
     /// Diagnoses all cases on `threads` workers; `told` hears the number of answers given so far. A case keeps to one core, so its
     /// seconds mean the same however many workers there are.
@@ -30,20 +33,23 @@ impl Answers {
         told: impl Fn(usize) + Sync,
         watch: impl Fn(usize, &Diagnosis) + Sync,
     ) -> Self {
-        Self::given(cases, threads, told, |index, case| {
-            let start = Instant::now();
-            let diagnosis = catch_unwind(AssertUnwindSafe(|| Answer::diagnosis_of(case)));
-            let seconds = start.elapsed().as_secs_f64();
-            let answer = match diagnosis {
-                Ok(Ok(diagnosis)) => {
-                    watch(index, &diagnosis);
-                    Answer::from_diagnosis(&diagnosis)
-                }
-                Ok(Err(why)) => Err(why.into()),
-                Err(_) => Err(NoAnswer::BrokeDown),
-            };
-            (answer, seconds)
-        })
+        Self::given(cases, threads, told, |index, case| Self::one(case, |diagnosis| watch(index, diagnosis)))
+    }
+
+    /// The answer to one case, and the seconds it took.
+    pub(crate) fn one(case: &Case, watch: impl Fn(&Diagnosis)) -> Timed {
+        let start = Instant::now();
+        let diagnosis = catch_unwind(AssertUnwindSafe(|| Answer::diagnosis_of(case)));
+        let seconds = start.elapsed().as_secs_f64();
+        let answer = match diagnosis {
+            Ok(Ok(diagnosis)) => {
+                watch(&diagnosis);
+                Answer::from_diagnosis(&diagnosis)
+            }
+            Ok(Err(why)) => Err(why.into()),
+            Err(_) => Err(NoAnswer::BrokeDown),
+        };
+        (answer, seconds)
     }
 
     /// As [`Answers::to`], given by another than the diagnosis.
@@ -64,10 +70,14 @@ impl Answers {
         cases: &[Case],
         threads: usize,
         told: impl Fn(usize) + Sync,
-        answer: impl Fn(usize, &Case) -> (Result<Answer, NoAnswer>, f64) + Sync,
+        answer: impl Fn(usize, &Case) -> Timed + Sync,
     ) -> Self {
         let numbered: Vec<(usize, &Case)> = cases.iter().enumerate().collect();
-        let given = on_workers(&numbered, threads, told, |(index, case)| answer(*index, case));
+        Self::collected(on_workers(&numbered, threads, told, |(index, case)| answer(*index, case)))
+    }
+
+    /// What workers gave; from one that died there is no answer.
+    pub(crate) fn collected(given: impl IntoIterator<Item = Option<Timed>>) -> Self {
         let (all, seconds) = given.into_iter().map(|a| a.unwrap_or((Err(NoAnswer::BrokeDown), 0.0))).unzip();
         Answers { all, seconds }
     }

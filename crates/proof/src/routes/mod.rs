@@ -15,8 +15,10 @@ pub use struck::{
     StruckOutcome, StruckRole, StruckTruth,
 };
 
+use crate::answers::on_workers;
 use crate::seal::{Filed, Given, Sealable};
 use crate::{Answers, Case, GenerationError, Plan, SealedTruths, Truth};
+use jointscope_diagnosis::Diagnosis;
 use serde_json::{Map, Value, json};
 
 /// What is to be diagnosed, by route.
@@ -54,7 +56,62 @@ impl Given for Replies {
     }
 }
 
+/// A case by its route, at its position among all.
+enum Asked<'a> {
+    Frfs(usize, &'a Case),
+    Hits(usize, &'a StruckCase),
+}
+
+/// An answer with its seconds, by route.
+enum Told {
+    Frfs(crate::answers::Timed),
+    Hits(struck::Timed),
+}
+
 impl Replies {
+    /// Diagnoses all cases on `threads` workers, whatever their route: none waits for the last case of another. `told` hears the number of
+    /// answers given so far; `frfs` and `hits` see every diagnosis with its case's position among all, on the worker that made it and after its
+    /// time was taken. A case keeps to one core.
+    pub fn to(
+        cases: &Questions,
+        threads: usize,
+        told: impl Fn(usize) + Sync,
+        frfs: impl Fn(usize, &Diagnosis) + Sync,
+        hits: impl Fn(usize, &StruckDiagnosis) + Sync,
+    ) -> Self {
+        let of_frfs = cases.laboratory.iter().chain(&cases.solid).enumerate();
+        let of_hits = cases.struck.iter().enumerate();
+        let first_struck = cases.laboratory.len() + cases.solid.len();
+        let asked: Vec<Asked> = of_frfs
+            .map(|(position, case)| Asked::Frfs(position, case))
+            .chain(of_hits.map(|(index, case)| Asked::Hits(first_struck + index, case)))
+            .collect();
+        let given = on_workers(&asked, threads, told, |asked| match asked {
+            Asked::Frfs(position, case) => {
+                Told::Frfs(Answers::one(case, |diagnosis| frfs(*position, diagnosis)))
+            }
+            Asked::Hits(position, case) => {
+                Told::Hits(StruckAnswers::one(case, |diagnosis| hits(*position, diagnosis)))
+            }
+        });
+        let mut of_frfs: Vec<_> = Vec::with_capacity(first_struck);
+        let mut of_hits: Vec<_> = Vec::with_capacity(cases.struck.len());
+        for (asked, told) in asked.iter().zip(given) {
+            match (asked, told) {
+                (Asked::Frfs(..), Some(Told::Frfs(timed))) => of_frfs.push(Some(timed)),
+                (Asked::Hits(..), Some(Told::Hits(timed))) => of_hits.push(Some(timed)),
+                (Asked::Frfs(..), _) => of_frfs.push(None),
+                (Asked::Hits(..), _) => of_hits.push(None),
+            }
+        }
+        let of_solids = of_frfs.split_off(cases.laboratory.len());
+        Replies {
+            laboratory: Answers::collected(of_frfs),
+            solid: Answers::collected(of_solids),
+            struck: StruckAnswers::collected(of_hits),
+        }
+    }
+
     /// The answers as JSON, in the order of the cases.
     pub fn to_value(&self) -> Value {
         let all = [self.laboratory.to_value(), self.solid.to_value(), self.struck.to_value()];

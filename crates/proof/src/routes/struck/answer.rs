@@ -151,6 +151,9 @@ impl StruckAnswer {
     }
 }
 
+/// An answer to hits, and the seconds it took.
+pub(crate) type Timed = (Result<StruckAnswer, StruckNoAnswer>, f64);
+
 /// The answers to all cases of hits, in their order.
 #[derive(Debug, Default)]
 pub struct StruckAnswers {
@@ -159,49 +162,43 @@ pub struct StruckAnswers {
 }
 
 impl StruckAnswers {
-    /// Diagnoses all cases on `threads` workers; `told` hears the number of answers given so far, `watch` sees every diagnosis with its
-    /// case's position.
-    pub fn to(
-        cases: &[StruckCase],
-        threads: usize,
-        told: impl Fn(usize) + Sync,
-        watch: impl Fn(usize, &StruckDiagnosis) + Sync,
-    ) -> Self {
-        Self::given(cases, threads, told, |index, case| {
+    /// The answer to one case, and the seconds it took; `watch` sees the diagnosis after its time was taken.
+    pub(crate) fn one(case: &StruckCase, watch: impl Fn(&StruckDiagnosis)) -> Timed {
+        let answered = catch_unwind(AssertUnwindSafe(|| {
             let start = Instant::now();
             let diagnosis = StruckDiagnosis::of(case);
             let seconds = start.elapsed().as_secs_f64();
             let answer = diagnosis.and_then(|diagnosis| {
-                watch(index, &diagnosis);
+                watch(&diagnosis);
                 StruckAnswer::from_diagnosis(&diagnosis)
             });
             (answer, seconds)
-        })
+        }));
+        answered.unwrap_or((Err(StruckNoAnswer::BrokeDown), 0.0))
     }
 
-    /// As [`StruckAnswers::to`], given by another than the diagnosis.
+    /// What workers gave; from one that died there is no answer.
+    pub(crate) fn collected(given: impl IntoIterator<Item = Option<Timed>>) -> Self {
+        let (all, seconds) =
+            given.into_iter().map(|a| a.unwrap_or((Err(StruckNoAnswer::BrokeDown), 0.0))).unzip();
+        StruckAnswers { all, seconds }
+    }
+
+    /// Answers given by another than the diagnosis.
     pub fn by(
         cases: &[StruckCase],
         threads: usize,
         answer: impl Fn(&StruckCase) -> Result<StruckAnswer, StruckNoAnswer> + Sync,
     ) -> Self {
-        Self::given(cases, threads, |_| (), |_, case| (answer(case), 0.0))
-    }
-
-    fn given(
-        cases: &[StruckCase],
-        threads: usize,
-        told: impl Fn(usize) + Sync,
-        answer: impl Fn(usize, &StruckCase) -> (Result<StruckAnswer, StruckNoAnswer>, f64) + Sync,
-    ) -> Self {
-        let numbered: Vec<(usize, &StruckCase)> = cases.iter().enumerate().collect();
-        let given = on_workers(&numbered, threads, told, |(index, case)| {
-            let answered = catch_unwind(AssertUnwindSafe(|| answer(*index, case)));
-            answered.unwrap_or((Err(StruckNoAnswer::BrokeDown), 0.0))
-        });
-        let (all, seconds) =
-            given.into_iter().map(|a| a.unwrap_or((Err(StruckNoAnswer::BrokeDown), 0.0))).unzip();
-        StruckAnswers { all, seconds }
+        Self::collected(on_workers(
+            cases,
+            threads,
+            |_| (),
+            |case| {
+                let answered = catch_unwind(AssertUnwindSafe(|| answer(case)));
+                (answered.unwrap_or(Err(StruckNoAnswer::BrokeDown)), 0.0)
+            },
+        ))
     }
 
     /// The answers.

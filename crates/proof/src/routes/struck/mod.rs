@@ -6,6 +6,7 @@ mod answer;
 mod judged;
 mod score;
 
+pub(crate) use answer::Timed;
 pub use answer::{StruckAnswer, StruckAnswers, StruckDiagnosis, StruckNoAnswer, StruckOutcome};
 pub use judged::StruckJudged;
 
