@@ -1,38 +1,60 @@
 //! Packs concealed cases as files: what the diagnosis is given in directories of their own, what is true in one file under seal.
 //!
-//!     cargo run --release -p jointscope-proof --example conceal -- DIRECTORY CASES GRADED SEED FAMILY…
+//!     cargo run --release -p jointscope-proof --example conceal -- DIRECTORY CASES GRADED SOLID STRUCK SEED FAMILY…
 
-use jointscope_proof::{Answers, FAMILIES, NoAnswer, Plan, Precision, Truth};
+use jointscope_fixture::Fixture;
+use jointscope_proof::{
+    Answers, Case, FAMILIES, NoAnswer, Plan, Precision, Replies, Sealable, StruckAnswers, StruckNoAnswer,
+};
 use std::error::Error;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
-    let [directory, cases, graded, seed, families @ ..] = arguments.as_slice() else {
-        return Err("usage: conceal DIRECTORY CASES GRADED SEED FAMILY…".into());
+    let [directory, cases, graded, solid, struck, seed, families @ ..] = arguments.as_slice() else {
+        return Err("usage: conceal DIRECTORY CASES GRADED SOLID STRUCK SEED FAMILY…".into());
     };
     let named = |(name, family): (&str, _)| families.iter().any(|f| f == name).then_some(family);
     let plan = Plan {
         cases: cases.parse()?,
         graded: graded.parse()?,
+        solid: solid.parse()?,
+        struck: struck.parse()?,
         seed: seed.parse()?,
         families: FAMILIES.into_iter().filter_map(named).collect(),
         ..Plan::default()
     };
-    let (cases, sealed) = plan.draw()?;
+    let (questions, sealed) = plan.draw_routes()?;
     let digest = sealed.digest().to_owned();
     let directory = PathBuf::from(directory);
-    for (number, case) in cases.iter().enumerate() {
-        let folder = directory.join(format!("{number:02}"));
-        std::fs::create_dir_all(&folder)?;
-        std::fs::write(folder.join("fixture.json"), case.believed.to_json())?;
-        // Rounding to single precision is 6e-8 of a value; the noise is 1e-3 of it and more.
-        std::fs::write(folder.join("hammer-test.uff"), case.recording(Precision::Single)?)?;
+    // Rounding to single precision is 6e-8 of a value; the noise is 1e-3 of it and more.
+    let frfs = questions.laboratory.iter().chain(&questions.solid);
+    let mut number = 0;
+    for case in frfs {
+        pack(&directory, &mut number, &case.believed, &case.recording(Precision::Single)?)?;
     }
-    let silent = Answers::by(&cases, 1, |_| (), |_| Err(NoAnswer::BrokeDown));
-    let truths = sealed.open(&silent).ok_or("the seal does not open")?;
-    let values = serde_json::Value::Array(truths.iter().map(Truth::to_value).collect());
+    for case in &questions.struck {
+        pack(&directory, &mut number, &case.believed, &case.recording(Precision::Single)?)?;
+    }
+    let silent = |cases: &[Case]| Answers::by(cases, 1, |_| (), |_| Err(NoAnswer::BrokeDown));
+    let replies = Replies {
+        laboratory: silent(&questions.laboratory),
+        solid: silent(&questions.solid),
+        struck: StruckAnswers::by(&questions.struck, 1, |_| Err(StruckNoAnswer::BrokeDown)),
+    };
+    let truths = sealed.open(&replies).ok_or("the seal does not open")?;
+    let values = serde_json::Value::Array(truths.iter().map(Sealable::to_value).collect());
     std::fs::write(directory.join("truths.json"), values.to_string())?;
     println!("{digest}");
+    Ok(())
+}
+
+/// Writes one case's directory.
+fn pack(directory: &Path, number: &mut usize, believed: &Fixture, recording: &[u8]) -> std::io::Result<()> {
+    let folder = directory.join(format!("{number:02}"));
+    std::fs::create_dir_all(&folder)?;
+    std::fs::write(folder.join("fixture.json"), believed.to_json())?;
+    std::fs::write(folder.join("hammer-test.uff"), recording)?;
+    *number += 1;
     Ok(())
 }

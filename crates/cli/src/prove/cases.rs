@@ -3,10 +3,11 @@
 use jointscope_proof::{
     BrokenSeal, Case, FAMILIES, Plan, Precision, Questions, RouteTruth, SealedTruths, StruckCase,
 };
-use jointscope_recordings::{ReadOptions, Recording, Source};
+use jointscope_recordings::{ReadOptions, Recording, Source, hits_of};
 use serde_json::{Value, json};
 
-use super::{ProveArguments, shipped};
+use super::ProveArguments;
+use super::shipped::{self, Files};
 use crate::refusal::Refusal;
 use jointscope_fixture::Fixture;
 
@@ -64,7 +65,8 @@ impl Concealed {
     }
 
     fn shipped(arguments: &ProveArguments) -> Result<Self, Refusal> {
-        let count = shipped::CASES.len();
+        let all = [&shipped::LABORATORY[..], &shipped::SOLID, &shipped::STRUCK].concat();
+        let count = all.len();
         let numbers: Vec<usize> = match arguments.only {
             Some(only) if only >= count => {
                 return Err(Refusal::new(format_args!(
@@ -79,15 +81,23 @@ impl Concealed {
         let truths = SealedTruths::filed(shipped::TRUTHS, shipped::TRUTHS_SHA256, arguments.only).map_err(
             |error: BrokenSeal| Refusal::new(format_args!("fixtures/concealed/truths.json: {error}")),
         )?;
-        let laboratory = numbers.iter().map(|&number| read(number)).collect::<Result<_, _>>()?;
-        let cases = Questions { laboratory, ..Questions::default() };
+        let first_solid = shipped::LABORATORY.len();
+        let first_struck = first_solid + shipped::SOLID.len();
+        let mut cases = Questions::default();
+        for &number in &numbers {
+            match number {
+                n if n < first_solid => cases.laboratory.push(read_frfs(number, all[number])?),
+                n if n < first_struck => cases.solid.push(read_frfs(number, all[number])?),
+                _ => cases.struck.push(read_hits(number, all[number])?),
+            }
+        }
         let only = arguments.only.map_or_else(String::new, |only| format!("case {only} of "));
         Ok(Concealed {
             cases,
             truths,
             what: format!("{only}the {count} cases shipped in fixtures/concealed"),
             plan: json!({ "shipped": "fixtures/concealed", "cases": count, "only": arguments.only }),
-            files: Some(numbers.iter().map(|&number| shipped::CASES[number].1).collect()),
+            files: Some(numbers.iter().map(|&number| all[number].1).collect()),
             numbers,
         })
     }
@@ -131,16 +141,32 @@ enum Route<'a> {
     Hits(&'a StruckCase),
 }
 
-/// A shipped case, read as a user's files are.
-fn read(number: usize) -> Result<Case, Refusal> {
-    let (fixture, recording) = shipped::CASES[number];
-    let name = format!("fixtures/concealed/{number:02}");
-    let broken = |error: &dyn std::fmt::Display| Refusal::new(format_args!("{name}: {error}"));
-    let believed = Fixture::from_json(fixture).map_err(|error| broken(&error))?;
-    let file = jointscope_uff::read(recording).map_err(|error| broken(&error))?;
-    let source = Source { name: format!("{name}/hammer-test.uff"), file };
-    let read =
-        Recording::of(&[source], &believed, &ReadOptions::default()).map_err(|error| broken(&error))?;
-    let recorded = read.frfs().map_err(|error| broken(&error))?.clone();
+/// A shipped case of FRFs, read as a user's files are.
+fn read_frfs(number: usize, files: Files) -> Result<Case, Refusal> {
+    let (believed, source) = read(number, files)?;
+    let read = Recording::of(&[source], &believed, &ReadOptions::default());
+    let recorded = read.and_then(|read| read.frfs().cloned()).map_err(|error| broken(number, &error))?;
     Ok(Case { believed, recorded })
+}
+
+/// A shipped case of hits.
+fn read_hits(number: usize, files: Files) -> Result<StruckCase, Refusal> {
+    let (believed, source) = read(number, files)?;
+    let read = hits_of(&[source], Some(&believed), &ReadOptions::default());
+    let hits = read.map_err(|error| broken(number, &error))?.hits;
+    Ok(StruckCase { believed, hits })
+}
+
+fn read(number: usize, (fixture, recording): Files) -> Result<(Fixture, Source), Refusal> {
+    let believed = Fixture::from_json(fixture).map_err(|error| broken(number, &error))?;
+    let file = jointscope_uff::read(recording).map_err(|error| broken(number, &error))?;
+    Ok((believed, Source { name: format!("{}/hammer-test.uff", directory(number)), file }))
+}
+
+fn broken(number: usize, error: &dyn std::fmt::Display) -> Refusal {
+    Refusal::new(format_args!("{}: {error}", directory(number)))
+}
+
+fn directory(number: usize) -> String {
+    format!("fixtures/concealed/{number:02}")
 }

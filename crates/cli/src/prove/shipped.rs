@@ -10,8 +10,11 @@ macro_rules! case {
     };
 }
 
-/// Fixture and recording by case number.
-pub const CASES: [(&str, &[u8]); 20] = [
+/// A case's files: fixture and recording.
+pub type Files = (&'static str, &'static [u8]);
+
+/// Cases of the laboratory's FRFs, numbered from 0.
+pub const LABORATORY: [Files; 20] = [
     case!("00"),
     case!("01"),
     case!("02"),
@@ -34,8 +37,14 @@ pub const CASES: [(&str, &[u8]); 20] = [
     case!("19"),
 ];
 
+/// Cases whose FRFs come from solids, numbered after them.
+pub const SOLID: [Files; 4] = [case!("20"), case!("21"), case!("22"), case!("23")];
+
+/// Cases of hits over time, the last ones.
+pub const STRUCK: [Files; 3] = [case!("24"), case!("25"), case!("26")];
+
 /// What is true of them, under seal.
 pub const TRUTHS: &str = include_str!("../../../../fixtures/concealed/truths.json");
 
 /// SHA-256 of the sealed truths, published with the cases.
-pub const TRUTHS_SHA256: &str = "c5ea509764ce149b5792840497b85edbeca056f5a3616766b9f5e376c0b9b4c1";
+pub const TRUTHS_SHA256: &str = "4cc62f599c45ade5ee8ff96fa921908aefe74c712a168fb6407f6ccd540a23cc";
