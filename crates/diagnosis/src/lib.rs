@@ -5,7 +5,8 @@
 //! place ([`catalogue`]) is tried with the tolerances linearised, the promising ones are fitted in full together with them, the
 //! best is kept if it earns its price, what is left is searched again, effects are exchanged and dropped ([`Search`]). *How
 //! sure?* Every finding is replaced by every other name in the company of the rest; names that serve as well are alternatives with
-//! probabilities. *Is it better?* The search is done again without two bands and one FRF, which are then predicted.
+//! probabilities. *Is it better?* The search goes first without two bands and one FRF, which are then predicted; the whole recording
+//! continues from what was found.
 //!
 //! * [`Observation`]: the FRFs on the lines in use, each value with its weight;
 //! * [`Hypothesis`]: quantities of the fixture that may move, and effects with free parameters;
