@@ -23,20 +23,10 @@ impl Answers {
     /// Diagnoses all cases on `threads` workers; `told` hears the number of answers given so far. A case keeps to one core, so its
     /// seconds mean the same however many workers there are.
     pub fn to(cases: &[Case], threads: usize, told: impl Fn(usize) + Sync) -> Self {
-        Self::watched(cases, threads, told, |_, _| ())
+        Self::collected(on_workers(cases, threads, told, |case| Self::one(case, |_| ())))
     }
 
-    /// As [`Answers::to`]; `watch` sees every diagnosis with its case's position, on the worker that made it and after its time was taken.
-    pub fn watched(
-        cases: &[Case],
-        threads: usize,
-        told: impl Fn(usize) + Sync,
-        watch: impl Fn(usize, &Diagnosis) + Sync,
-    ) -> Self {
-        Self::given(cases, threads, told, |index, case| Self::one(case, |diagnosis| watch(index, diagnosis)))
-    }
-
-    /// The answer to one case, and the seconds it took.
+    /// The answer to one case, and the seconds it took; `watch` sees the diagnosis after its time was taken.
     pub(crate) fn one(case: &Case, watch: impl Fn(&Diagnosis)) -> Timed {
         let start = Instant::now();
         let diagnosis = catch_unwind(AssertUnwindSafe(|| Answer::diagnosis_of(case)));
@@ -59,21 +49,11 @@ impl Answers {
         told: impl Fn(usize) + Sync,
         answer: impl Fn(&Case) -> Result<Answer, NoAnswer> + Sync,
     ) -> Self {
-        Self::given(cases, threads, told, |_, case| {
+        Self::collected(on_workers(cases, threads, told, |case| {
             let start = Instant::now();
             let answer = catch_unwind(AssertUnwindSafe(|| answer(case))).unwrap_or(Err(NoAnswer::BrokeDown));
             (answer, start.elapsed().as_secs_f64())
-        })
-    }
-
-    fn given(
-        cases: &[Case],
-        threads: usize,
-        told: impl Fn(usize) + Sync,
-        answer: impl Fn(usize, &Case) -> Timed + Sync,
-    ) -> Self {
-        let numbered: Vec<(usize, &Case)> = cases.iter().enumerate().collect();
-        Self::collected(on_workers(&numbered, threads, told, |(index, case)| answer(*index, case)))
+        }))
     }
 
     /// What workers gave; from one that died there is no answer.
