@@ -1,4 +1,4 @@
-//! Every figure of `docs/performance.md` in one run, ours beside the floor and the rivals.
+//! Every figure of `docs/records/2026-11-21-performance.md` in one run, ours beside the floor and the rivals.
 #![allow(missing_docs, clippy::unwrap_used, clippy::expect_used)]
 
 #[path = "rivals/dense.rs"]

@@ -1,12 +1,20 @@
 use crate::AveragingError;
+use serde::Serialize;
 
 /// A band of frequencies, both ends included, Hz.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[serde(into = "[f64; 2]")]
 pub struct Band {
     /// Lower end, Hz.
     pub from: f64,
     /// Upper end, Hz.
     pub to: f64,
+}
+
+impl From<Band> for [f64; 2] {
+    fn from(band: Band) -> Self {
+        [band.from, band.to]
+    }
 }
 
 impl Band {

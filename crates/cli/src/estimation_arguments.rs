@@ -1,21 +1,24 @@
 //! How FRFs are made of hammer hits, as the command line says it.
 
-use clap::{Args, ValueEnum};
+use clap::Args;
+use jointscope::Measurement;
 use jointscope::estimation::{Baseline, EstimateOptions, Estimator, ForceWindow, ResponseWindow, Weighting};
+
+use crate::values::{one_of, positive};
 
 /// Options of every command that reads time histories.
 #[derive(Debug, Clone, Args)]
 #[command(next_help_heading = "Hammer hits (time histories)")]
 pub struct EstimationArguments {
     /// How FRFs follow from the spectra: H1 (noise on the responses), H2 (noise on the force), Hv (between them).
-    #[arg(long, value_enum, default_value_t = EstimatorName::H1, ignore_case = true)]
-    pub estimator: EstimatorName,
+    #[arg(long, value_parser = one_of(&ESTIMATORS), default_value = "H1", ignore_case = true)]
+    pub estimator: Estimator,
     /// How hits count in an average: `auto` inversely to their noise where it differs, `plain` as the textbook says.
-    #[arg(long, value_enum, default_value_t = WeightsName::Auto)]
-    pub weights: WeightsName,
+    #[arg(long, value_parser = one_of(&WEIGHTS), default_value = "auto")]
+    pub weights: Weighting,
     /// What is taken off every signal: its offset, a straight line, or nothing.
-    #[arg(long, value_enum, default_value_t = BaselineName::Offset)]
-    pub baseline: BaselineName,
+    #[arg(long, value_parser = one_of(&BASELINES), default_value = "offset")]
+    pub baseline: Baseline,
     /// Keep the force for so many seconds after its onset, then fade it out; `auto` for ten widths of the pulse [default: none].
     #[arg(long, value_name = "SECONDS", value_parser = force_window)]
     pub force_window: Option<ForceWindow>,
@@ -33,47 +36,19 @@ pub struct EstimationArguments {
     pub reject: Vec<u32>,
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum EstimatorName {
-    #[value(name = "H1")]
-    H1,
-    #[value(name = "H2")]
-    H2,
-    #[value(name = "Hv")]
-    Hv,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum WeightsName {
-    Auto,
-    Plain,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum BaselineName {
-    Offset,
-    Drift,
-    Keep,
-}
+const ESTIMATORS: [(&str, Estimator); 3] =
+    [("H1", Estimator::H1), ("H2", Estimator::H2), ("Hv", Estimator::Hv)];
+const WEIGHTS: [(&str, Weighting); 2] = [("auto", Weighting::Auto), ("plain", Weighting::Plain)];
+const BASELINES: [(&str, Baseline); 3] =
+    [("offset", Baseline::Offset), ("drift", Baseline::Drift), ("keep", Baseline::Keep)];
 
 impl EstimationArguments {
     /// The arguments as options of the estimate, `response_window` where they state none.
     pub fn options(&self, response_window: ResponseWindow) -> EstimateOptions {
         EstimateOptions {
-            estimator: match self.estimator {
-                EstimatorName::H1 => Estimator::H1,
-                EstimatorName::H2 => Estimator::H2,
-                EstimatorName::Hv => Estimator::Hv,
-            },
-            weighting: match self.weights {
-                WeightsName::Auto => Weighting::Auto,
-                WeightsName::Plain => Weighting::Plain,
-            },
-            baseline: match self.baseline {
-                BaselineName::Offset => Baseline::Offset,
-                BaselineName::Drift => Baseline::Drift,
-                BaselineName::Keep => Baseline::Keep,
-            },
+            estimator: self.estimator,
+            weighting: self.weights,
+            baseline: self.baseline,
             force_window: self.force_window.unwrap_or_default(),
             response_window: self.response_window.unwrap_or(response_window),
             zero_padding: self.zero_padding,
@@ -82,11 +57,12 @@ impl EstimationArguments {
         }
     }
 
-    /// Whether anything but the defaults is asked for.
-    pub fn are_given(&self) -> bool {
-        self.options(ResponseWindow::None)
-            != EstimateOptions { zero_padding: 1, ..EstimateOptions::default() }
-            || self.response_window.is_some()
+    /// The note that they were given with FRFs, which need no estimate.
+    pub fn unused_with(&self, measurement: &Measurement) -> Option<String> {
+        let default = EstimateOptions { zero_padding: 1, ..EstimateOptions::default() };
+        let given = self.response_window.is_some() || self.options(ResponseWindow::None) != default;
+        (given && matches!(measurement, Measurement::Frfs(_)))
+            .then(|| "the files hold FRFs: options for hammer hits do not apply".to_owned())
     }
 }
 
@@ -108,10 +84,6 @@ fn response_window(text: &str) -> Result<ResponseWindow, String> {
             .map(ResponseWindow::Decay)
             .ok_or_else(|| "a decay in 1/s, `auto` or `none` is needed, such as 12.5".to_owned()),
     }
-}
-
-fn positive(text: &str) -> Option<f64> {
-    text.trim().parse().ok().filter(|value: &f64| value.is_finite() && *value > 0.0)
 }
 
 #[cfg(test)]

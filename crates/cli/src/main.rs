@@ -2,32 +2,22 @@
 //!
 //! Exit status 0: done. 2: bad usage or bad input, with one plain sentence on standard error and nothing half-written.
 
-mod arguments;
-mod compare;
-mod decompose;
-mod diagnose;
-mod diagnose_hits;
-mod diagnose_levels;
-mod diagnosed;
-mod estimate;
+mod commands;
+mod computed_frfs;
 mod estimation_arguments;
-mod fem;
 mod input;
-mod measured;
-mod modes;
+mod origin;
 mod output;
-mod prove;
-mod prove_recordings;
+mod progress;
+mod recording;
 mod refusal;
-mod simulate;
-mod synthesize;
-mod tables;
+mod values;
 
 use std::io::Write;
 use std::process::ExitCode;
 
-use arguments::{Command, Program};
 use clap::Parser;
+use commands::Program;
 use refusal::Refusal;
 
 fn main() -> ExitCode {
@@ -40,28 +30,12 @@ fn main() -> ExitCode {
         }
         Err(error) => return refuse(&Refusal::from(&error)),
     };
-    match run(&program.command) {
+    match program.run() {
         Ok(summary) => {
             say(&format!("{summary}\n"));
             ExitCode::SUCCESS
         }
         Err(refusal) => refuse(&refusal),
-    }
-}
-
-/// Runs a command; what it has done is told on standard output.
-fn run(command: &Command) -> Result<String, Refusal> {
-    match command {
-        Command::Synthesize(arguments) => synthesize::run(arguments),
-        Command::Estimate(arguments) => estimate::run(arguments),
-        Command::Decompose(arguments) => decompose::run(arguments),
-        Command::Diagnose(arguments) => diagnose::run(arguments),
-        Command::Compare(arguments) => compare::run(arguments),
-        Command::Fem(arguments) => fem::run(arguments),
-        Command::Modes(arguments) => modes::run(arguments),
-        Command::Simulate(arguments) => simulate::run(arguments),
-        Command::Prove(arguments) => prove::run(arguments),
-        Command::Tables(arguments) => tables::run(arguments),
     }
 }
 

@@ -4,8 +4,10 @@ use std::fs::{self, File};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
+use jointscope::uff::Dataset58;
+use serde_json::Value;
+
 use crate::refusal::Refusal;
-use jointscope_spectra::{FrfPair, FrfSet};
 
 /// The files of a command, written together: each beside its place first, and moved there when all are complete. Whatever
 /// goes wrong, files that were there before are left or put back as they were.
@@ -24,6 +26,25 @@ impl Outputs {
     /// Adds a file.
     pub fn add(&mut self, path: impl Into<PathBuf>, contents: impl Into<Vec<u8>>) {
         self.files.push((path.into(), contents.into()));
+    }
+
+    /// Adds a universal file.
+    pub fn add_datasets(&mut self, path: &Path, datasets: &[Dataset58]) -> Result<(), Refusal> {
+        let bytes = jointscope::uff::write(datasets).map_err(|error| Refusal::at(path, error))?;
+        self.add(path, bytes);
+        Ok(())
+    }
+
+    /// Adds a JSON file.
+    pub fn add_json(&mut self, path: impl Into<PathBuf>, value: &Value) {
+        self.add(path, pretty(value));
+    }
+
+    /// Writes one JSON file.
+    pub fn one(path: PathBuf, value: &Value) -> Result<(), Refusal> {
+        let mut outputs = Outputs::default();
+        outputs.add_json(path, value);
+        outputs.write()
     }
 
     /// Writes the files, creating their directories.
@@ -68,18 +89,14 @@ impl Outputs {
     }
 }
 
-/// What was written of FRFs: file, names, lines.
-pub fn frfs_written(path: &Path, frfs: &FrfSet) -> String {
-    let names: Vec<String> = frfs.pairs().iter().map(FrfPair::to_string).collect();
-    let hz = frfs.lines().hz();
-    format!(
-        "{}: FRFs {} on {} lines, {} to {} Hz",
-        path.display(),
-        names.join(", "),
-        hz.len(),
-        hz[0],
-        hz[hz.len() - 1]
-    )
+/// JSON for people.
+pub fn pretty(value: &Value) -> String {
+    format!("{value:#}\n")
+}
+
+/// `1 line`, `2 lines`.
+pub fn counted(count: usize, what: &str) -> String {
+    format!("{count} {what}{}", if count == 1 { "" } else { "s" })
 }
 
 fn parent(path: &Path) -> &Path {

@@ -29,6 +29,7 @@ pub fn comparison_file(comparison: &Comparison) -> Value {
             "probability": entry.ranking.probability,
             "adjacent": entry.ranking.adjacent,
             "rank_probabilities": ranks,
+            "settled": entry.ranking.is_settled(),
         })
     });
     json!({

@@ -17,7 +17,20 @@ pub struct Ranking {
 /// Draws behind the probabilities: their own standard error is below 0.0036.
 const DRAWS: usize = 20_000;
 
+/// Probability from which an order counts as settled.
+const SURE: f64 = 0.95;
+
 impl Ranking {
+    /// Whether the whole order is settled.
+    pub fn is_settled(&self) -> bool {
+        self.probability >= SURE
+    }
+
+    /// Whether the quantity at `place` of the order is surely larger than the one before it.
+    pub fn is_surely_larger(&self, place: usize) -> bool {
+        place > 0 && self.adjacent.get(place - 1).is_some_and(|probability| *probability >= SURE)
+    }
+
     /// Ranks values with their standard deviations, taken as independent and normal, by magnitude.
     ///
     /// The deviations of two tests on the same blocks share the blocks' tolerances, which move both values alike: taken as independent they

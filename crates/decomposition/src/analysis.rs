@@ -1,7 +1,8 @@
 use crate::spectrum::scalar_stiffness;
 use crate::{
-    Averages, DecompositionError, Interfaces, JointSpectrum, LikelihoodFit, MeasurementPlan, Relation, Sides,
-    ToleranceShare, ToleranceShares, decompose, interfaces, maximum_likelihood, tolerance_shares,
+    Averages, DecompositionError, Element, Interfaces, JointSpectrum, Judgement, LikelihoodFit,
+    MeasurementPlan, Part, Relation, Sides, ToleranceShare, ToleranceShares, decompose, interfaces,
+    maximum_likelihood, tolerance_shares,
 };
 use jointscope_averaging::Band;
 use jointscope_fixture::{Fixture, JointLaw};
@@ -57,6 +58,8 @@ pub struct Analysis {
     pub nominal: Vec<Option<(ComplexMatrix2, ComplexMatrix2)>>,
     /// The fixture's stiffness of the joint on d = u_to − R·u_from.
     pub nominal_stiffness: RealMatrix2,
+    /// What the best estimate is worth.
+    pub judgement: Judgement,
 }
 
 impl Analysis {
@@ -104,7 +107,7 @@ impl Analysis {
         )?;
         let interfaces = likelihood.as_ref().ok().and_then(|fit| joint_interfaces(fit, &sides, &tolerances));
         let nominal = predicted(&sides, &plan, &spectrum)?;
-        Ok(Analysis {
+        let mut analysis = Analysis {
             joint,
             frfs,
             noise,
@@ -117,7 +120,10 @@ impl Analysis {
             lost_tolerances,
             nominal,
             nominal_stiffness,
-        })
+            judgement: Judgement::default(),
+        };
+        analysis.judgement = Judgement::of(&analysis, fixture);
+        Ok(analysis)
     }
 
     /// Standard deviations that the fixture's tolerances give the plain averages of K and C.
@@ -128,6 +134,28 @@ impl Analysis {
     /// Standard deviations that the fixture's tolerances give the maximum-likelihood K and C.
     pub fn tolerance_of_likelihood(&self) -> (RealMatrix2, RealMatrix2) {
         root_of_squares(self.tolerances.iter().filter_map(|share| share.likelihood))
+    }
+
+    /// What the fixture as it stands predicts for an element at a line of the recording; nothing where that is not known.
+    pub fn nominal_at(&self, line: usize, part: Part, element: Element) -> Option<f64> {
+        let (_, joint) = self.nominal.get(line)?.as_ref().filter(|_| !self.spectrum.scalar)?;
+        Some(element.of(&part.of(self.spectrum.stiffness_and_damping(line, *joint))))
+    }
+
+    /// The fixture's element over the averaging band, on the lines that the averages were taken over.
+    ///
+    /// For the exact relation a stiffness is the joint's own; what eq (7) (`paper`) makes of it, and every damping, is a mean over lines.
+    pub fn nominal_average(&self, part: Part, element: Element, paper: bool) -> Option<f64> {
+        if part == Part::Stiffness && !paper {
+            return Some(element.of(&self.nominal_stiffness));
+        }
+        // The nominal curves are those of the spectrum's own relation.
+        if paper != (self.spectrum.relation == Relation::Paper) {
+            return None;
+        }
+        let lines = self.spectrum.solved.iter().filter(|l| self.averages.band.contains(l.frequency));
+        let values: Vec<f64> = lines.filter_map(|line| self.nominal_at(line.line, part, element)).collect();
+        (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64)
     }
 
     /// Number of solved lines whose intervals noise makes only indicative.

@@ -36,7 +36,9 @@
 
 mod analysis;
 mod averages;
+mod estimate;
 mod interfaces;
+mod judgement;
 mod likelihood;
 mod plan;
 mod relation;
@@ -46,7 +48,9 @@ mod tolerances;
 
 pub use analysis::{Analysis, AnalysisOptions};
 pub use averages::{Averages, MatrixAverage};
+pub use estimate::{Element, Estimate, Figure, Method, Part};
 pub use interfaces::{Compliance, InterfaceStiffness, Interfaces, interfaces};
+pub use judgement::{Contradiction, Judgement, Use};
 pub use likelihood::{LikelihoodFit, maximum_likelihood};
 pub use plan::{MeasurementPlan, PlanError};
 pub use relation::{Compliances, Relation};

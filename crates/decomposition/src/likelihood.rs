@@ -1,15 +1,14 @@
 //! One symmetric, passive k and c for the whole band, fitted to the FRFs themselves.
 
-mod normal;
 mod parameters;
 
 use crate::averages::dynamic_stiffness;
 use crate::{Compliances, DecompositionError, JointSpectrum, MeasurementPlan, Sides};
 use jointscope_averaging::Band;
 use jointscope_frf::{BlockChannel, BlockLayout};
-use jointscope_linalg::{ComplexMatrix2, LeastSquares, Matrix2, RealMatrix2};
+use jointscope_inference::{Damping, LeastSquares, NormalEquations, Precision, Settings, descend, jackknife};
+use jointscope_linalg::{self as linalg, ComplexMatrix2, Matrix2, RealMatrix2};
 use jointscope_spectra::{Dof, FrfForm, FrfSet};
-use normal::NormalEquations;
 use num_complex::Complex64;
 use parameters::Parameters;
 
@@ -39,14 +38,12 @@ pub struct LikelihoodFit {
     pub values: usize,
 }
 
+/// χ² per degree of freedom above which a constant joint does not explain the FRFs within their noise.
+const POOR_FIT: f64 = 1.3;
 /// Rounds of the linear fit that finds the start.
 const ROUNDS: usize = 12;
-/// Gauss–Newton iterations, at the most.
-const ITERATIONS: usize = 60;
-/// Damping of the steps beyond which no step is a gain.
-const GIVEN_UP: f64 = 1e8;
-/// Relative decrease of χ² below which a fit has converged.
-const CONVERGED: f64 = 1e-9;
+/// Near the optimum χ² is nearly quadratic: undamped steps converge within a few.
+const DAMPING: Damping = Damping { initial: 1e-6, decrease: 0.03, least: 1e-15, raised: 0.0, most: 1e8 };
 
 /// Fits a constant k + sc (s = iω, or δ + iω under an exponential window) to the FRFs across the joint on the lines in `band` (all usable ones without).
 ///
@@ -113,6 +110,11 @@ pub(crate) fn continued(
 }
 
 impl LikelihoodFit {
+    /// Whether one constant k and c explains the FRFs within their noise.
+    pub fn explains(&self) -> bool {
+        self.chi2_per_dof <= POOR_FIT
+    }
+
     /// Standard deviations of K and C from [`LikelihoodFit::model_covariance`].
     pub fn model_std(&self) -> (RealMatrix2, RealMatrix2) {
         let std = |first: usize| {
@@ -247,7 +249,7 @@ impl<'a> Data<'a> {
     fn linear_rounds(&self, spectrum: &JointSpectrum, start: Parameters) -> Parameters {
         let mut current = start;
         for _ in 0..ROUNDS {
-            let mut normal = NormalEquations::default();
+            let mut normal = NormalEquations::zero(current.active().len());
             for (index, &(line, s)) in self.lines.iter().enumerate() {
                 let Some(x) = self.measured_coupling(&spectrum.h41.values[line], line) else { continue };
                 let sides = self.sides;
@@ -259,10 +261,10 @@ impl<'a> Data<'a> {
                 for (channel, (out, input)) in self.rows.iter().enumerate() {
                     let weight = 2.0 / self.variance[index * self.rows.len() + channel];
                     let by_kc = derivatives(s, row_times(out, &left), times_column(&right, input));
-                    normal.add(current.active(), weight, bilinear(out, &known, input), &by_kc);
+                    normal.add_complex(weight, bilinear(out, &known, input), &current.of_active(&by_kc));
                 }
             }
-            let Some(solution) = normal.step(0.0, current.active()) else { break };
+            let Some(solution) = normal.step(0.0).map(|active| current.slots(&active)) else { break };
             let next = Parameters {
                 k: [solution[0], solution[1], solution[2]],
                 c: [solution[3], solution[4], solution[5]],
@@ -287,35 +289,21 @@ impl<'a> Data<'a> {
         Some(beta43.inverse()? * *h41 * load.inverse()?)
     }
 
+    /// χ² and parameters at the optimum next to `start`.
     fn fit(&self, start: Parameters) -> (f64, Parameters) {
-        let mut current = start;
-        let mut chi2 = self.visit(&current, |_, _, _| {});
-        let mut damping = 1e-6;
-        let mut normal = self.normal_equations(&current);
-        for _ in 0..ITERATIONS {
-            let next = normal.step(damping, current.active()).map(|step| current.stepped(&step));
-            let after = next.as_ref().map_or(f64::INFINITY, |next| self.visit(next, |_, _, _| {}));
-            let gain = chi2 - after;
-            if let (Some(next), true) = (next, gain > 0.0) {
-                (current, chi2, damping) = (next, after, (damping * 0.03).max(1e-15));
-                if gain < CONVERGED * chi2 {
-                    break;
-                }
-                normal = self.normal_equations(&current);
-            } else if damping > GIVEN_UP {
-                break;
-            } else {
-                damping *= 10.0;
-            }
-        }
-        (chi2, current)
+        let settings = Settings { damping: DAMPING, ..Settings::default() };
+        descend(self, self.placed(start), None, &settings).map_or((f64::INFINITY, start), |fit| fit.point)
+    }
+
+    fn placed(&self, parameters: Parameters) -> (f64, Parameters) {
+        (self.visit(&parameters, |_, _, _| {}), parameters)
     }
 
     /// The spread of the fits without each of the blocks, as a covariance of the fit to all.
     fn jackknife(&self, at: &Parameters) -> [[f64; 6]; 6] {
         let channels = self.rows.len();
         let blocks = BLOCKS.min(self.lines.len());
-        let fits: Vec<[f64; 6]> = (0..blocks)
+        let fits: Vec<Vec<f64>> = (0..blocks)
             .map(|block| {
                 let edge = |b: usize| b * self.lines.len() / blocks;
                 let (from, to) = (edge(block), edge(block + 1));
@@ -332,30 +320,17 @@ impl<'a> Data<'a> {
                     scalar: self.scalar,
                 };
                 let Parameters { k, c, .. } = rest.fit(*at).1;
-                [k[0], k[1], k[2], c[0], c[1], c[2]]
+                [k, c].concat()
             })
             .collect();
-        let count = blocks as f64;
-        let mean: [f64; 6] = std::array::from_fn(|m| fits.iter().map(|fit| fit[m]).sum::<f64>() / count);
-        let product = |m: usize, n: usize| {
-            fits.iter().map(|fit| (fit[m] - mean[m]) * (fit[n] - mean[n])).sum::<f64>() * (count - 1.0)
-                / count
-        };
-        std::array::from_fn(|m| std::array::from_fn(|n| product(m, n)))
-    }
-
-    fn normal_equations(&self, current: &Parameters) -> NormalEquations {
-        let mut normal = NormalEquations::default();
-        self.visit(current, |weight, residual, by_kc| {
-            normal.add(current.active(), weight, residual, &current.chain(by_kc));
-        });
-        normal
+        let spread = jackknife(&fits);
+        std::array::from_fn(|m| std::array::from_fn(|n| spread.at(m, n)))
     }
 
     fn result(&self, chi2: f64, fitted: &Parameters) -> Result<LikelihoodFit, DecompositionError> {
         // Deviations are those of free elements, on the boundary too.
         let active = Parameters { boundary: None, ..*fitted }.active();
-        let mut problem = LeastSquares::new();
+        let mut problem = linalg::LeastSquares::new();
         problem.begin(active.len());
         self.visit(fitted, |weight, residual, by_kc| {
             let re: Vec<f64> = active.iter().map(|&m| by_kc[m].re).collect();
@@ -391,6 +366,44 @@ impl<'a> Data<'a> {
             model_covariance: [[0.0; 6]; 6],
             values: self.measured.len(),
         })
+    }
+}
+
+impl LeastSquares for Data<'_> {
+    /// χ² and parameters.
+    type Point = (f64, Parameters);
+    type Weights = ();
+    type Derivatives = ();
+    type Equations = NormalEquations;
+    const FIXED_WEIGHTS: bool = true;
+
+    fn weights(&self, _: &Self::Point) {}
+
+    fn objective(&self, (chi2, _): &Self::Point, _: &()) -> f64 {
+        *chi2
+    }
+
+    /// In closed form, and taken with the residuals.
+    fn derivatives(&self, _: &Self::Point, _: Precision) -> Option<()> {
+        Some(())
+    }
+
+    fn equations(&self, (_, current): &Self::Point, _: &(), _: &()) -> NormalEquations {
+        let mut normal = NormalEquations::zero(current.active().len());
+        self.visit(current, |weight, residual, by_kc| {
+            normal.add_complex(weight, residual, &current.of_active(&current.chain(by_kc)));
+        });
+        normal
+    }
+
+    fn stepped(
+        &self,
+        (_, from): &Self::Point,
+        normal: &NormalEquations,
+        damping: f64,
+    ) -> Option<Self::Point> {
+        let step = normal.step(damping)?;
+        Some(self.placed(from.stepped(&from.slots(&step))))
     }
 }
 

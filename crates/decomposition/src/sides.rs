@@ -1,7 +1,7 @@
 use crate::Compliances;
-use jointscope_fixture::{Effect, EffectKind, Fixture, Place};
+use jointscope_fixture::{Effect, Entry, Fixture, Place};
 use jointscope_linalg::{ComplexMatrix2, Matrix2};
-use jointscope_lumped::{LumpedError, Model, Station};
+use jointscope_lumped::{LumpedError, Model, Station, window_decay};
 use jointscope_spectra::SpectralLines;
 use num_complex::Complex64;
 
@@ -80,8 +80,7 @@ impl Sides {
             return Err(SidesError::Loop(fixture.joints()[joint].name.clone()));
         }
         let side = |alpha: bool| with_its_effects(fixture, joint, &|body| on_alpha[body] == alpha);
-        let windows = fixture.physics().iter().filter(|e| e.kind == EffectKind::ExponentialWindow);
-        let decay = windows.map(|effect| effect.value(0)).sum();
+        let decay = window_decay(fixture);
         Ok(Sides { alpha: side(true), beta: side(false), fixture: fixture.clone(), joint, on_alpha, decay })
     }
 
@@ -204,7 +203,7 @@ fn with_its_effects(fixture: &Fixture, joint: usize, keep: &dyn Fn(usize) -> boo
         Place::Point(name) => {
             let ends = side.joints().iter().flat_map(|j| [j.from, j.to]);
             let at_a_joint = ends.map(|p| &side.points()[p].name).any(|end| end == name);
-            effect.kind == EffectKind::InterfaceCompliance && at_a_joint
+            effect.kind.spec().entry == Entry::InSeries && at_a_joint
         }
         _ => false,
     };
@@ -214,7 +213,7 @@ fn with_its_effects(fixture: &Fixture, joint: usize, keep: &dyn Fn(usize) -> boo
 }
 
 fn check_instruments(fixture: &Fixture) -> Result<(), SidesError> {
-    let cannot = |e: &Effect| e.kind.is_instrumental() && e.kind != EffectKind::ExponentialWindow;
+    let cannot = |e: &Effect| e.kind.is_instrumental() && e.kind.spec().entry != Entry::Window;
     let found = fixture.physics().iter().enumerate().find(|(_, e)| cannot(e));
     found.map_or(Ok(()), |(index, effect)| Err(SidesError::Instrument { index, kind: effect.kind.name() }))
 }

@@ -1,26 +1,10 @@
 //! The judgement on lines and FRFs that no fit saw.
 
-use crate::evidence::same_names;
 use crate::fit::Fit;
 use crate::search::Search;
-use crate::{DiagnosisError, DiagnosisOptions, Observation};
+use crate::{DiagnosisError, DiagnosisOptions, Hypothesis, Observation};
+use jointscope_findings::HeldOut;
 use jointscope_spectra::FrfPair;
-
-/// What the fit never saw, and how well it was predicted.
-#[derive(Debug, Clone, PartialEq)]
-pub struct HeldOut {
-    /// Bands, Hz, and an FRF, in words: `band 180:240`, `frf 4/2`.
-    pub what: Vec<String>,
-    /// Error of the refitted fixture there.
-    pub nrmse_refitted: f64,
-    /// Error of the repaired one.
-    pub nrmse_repaired: f64,
-    /// Whether the selection without the held-out lines found the same names.
-    pub same_findings: bool,
-}
-
-/// Share of the lines in each of the two bands held out.
-const HELD_OUT_SHARE: f64 = 0.06;
 
 /// A recording divided into what a search may see, and what it is judged on.
 pub(crate) struct Division {
@@ -37,7 +21,7 @@ impl Division {
         let frfs = held_out_frfs(observation, options)?;
         let hz = observation.lines().hz();
         let n = hz.len();
-        let width = ((n as f64 * HELD_OUT_SHARE) as usize).max(1);
+        let width = ((n as f64 * options.settings.evidence.held_out) as usize).max(1);
         if n < 10 * width {
             return Ok(None);
         }
@@ -77,7 +61,7 @@ impl Division {
             what: self.what.clone(),
             nrmse_refitted: error(&blind.refitted)?,
             nrmse_repaired: error(repaired)?,
-            same_findings: same_names(&repaired.hypothesis, &found.repaired.hypothesis),
+            same_findings: Some(same_names(&repaired.hypothesis, &found.repaired.hypothesis)),
         })
     }
 }
@@ -96,4 +80,14 @@ fn held_out_frfs(
         (named, _) if named.len() >= pairs.len() => Err(DiagnosisError::HoldOut(named[0].to_string())),
         (named, _) => Ok(named.to_vec()),
     }
+}
+
+/// Whether two hypotheses have the same kinds of effects at the same places.
+fn same_names(a: &Hypothesis, b: &Hypothesis) -> bool {
+    let names = |h: &Hypothesis| {
+        let mut all: Vec<_> = h.effects().into_iter().map(|e| (e.kind, e.place, e.dof)).collect();
+        all.sort();
+        all
+    };
+    names(a) == names(b)
 }

@@ -1,7 +1,7 @@
 use crate::Observation;
-use crate::freedom::{Freedom, freedoms};
-use jointscope_fixture::{Effect, Fixture, FixtureError};
-use jointscope_linalg::solve_positive_definite;
+use crate::freedom::parameters_of;
+use jointscope_fixture::{Effect, Fixture, FixtureError, NamedQuantity, Nature, QuantityKey, QuantityOwner};
+use jointscope_inference::{Parameter, Transform};
 use jointscope_lumped::{Instrument, LumpedError, accelerances};
 use jointscope_spectra::FrfPair;
 use num_complex::Complex64;
@@ -23,51 +23,47 @@ pub enum PredictionError {
 pub struct Tolerance {
     /// Position among the fixture's quantities.
     index: usize,
-    /// Path in the file.
-    pub path: String,
-    /// The stated value.
-    pub nominal: f64,
-    /// One standard deviation of the prior; `None` where it is free.
-    pub std: Option<f64>,
-    /// The unit of a step.
-    scale: f64,
-    /// Whether it moves by its logarithm.
-    relative: bool,
-    /// Lowest coordinate: what must not be negative stops at zero.
-    lowest: f64,
+    /// The quantity as stated; of a beam, Young's modulus stands for its product with the second moment.
+    pub quantity: NamedQuantity,
+    /// Coordinate: deviations from the stated value, or tenths of it where it is free.
+    parameter: Parameter,
 }
 
-/// Relative deviation up to which a size moves by its logarithm.
+/// Relative deviation up to which a quantity moves by its logarithm.
 const NARROW: f64 = 0.12;
 
 impl Tolerance {
-    fn new(index: usize, path: &str, nominal: f64, std: Option<f64>) -> Self {
-        let scale = std.unwrap_or(if nominal != 0.0 { 0.1 * nominal.abs() } else { 1.0 });
+    fn new(index: usize, quantity: NamedQuantity) -> Self {
+        let nominal = quantity.value;
+        let scale = quantity.std.unwrap_or(if nominal != 0.0 { 0.1 * nominal.abs() } else { 1.0 });
         // Masses and stiffnesses trade against factors of each other: by their logarithms such a trade is a straight line.
-        let place = ["x", "x_cg", "from", "to"].iter().any(|name| path.rsplit('/').next() == Some(name));
-        let relative = !place && !path.contains("damping") && nominal > 0.0 && scale <= NARROW * nominal;
-        let lowest = match !relative && nominal > 0.0 && path.contains("damping") {
-            true => -nominal / scale,
-            false => f64::NEG_INFINITY,
+        let relative = !matches!(quantity.nature, Nature::Abscissa | Nature::Damping)
+            && nominal > 0.0
+            && scale <= NARROW * nominal;
+        let transform = match relative {
+            true => Transform::Logarithmic { centre: nominal, scale: scale / nominal },
+            false => Transform::Linear { centre: nominal, scale },
         };
-        Tolerance { index, path: path.to_owned(), nominal, std, scale, relative, lowest }
+        let known = f64::from(u8::from(quantity.std.is_some()));
+        let parameter = Parameter::new(transform).with_precision(known);
+        // A dashpot stops at zero.
+        let dissipates = quantity.nature == Nature::Damping && nominal > 0.0;
+        let parameter =
+            if dissipates { parameter.between(-nominal / scale, f64::INFINITY) } else { parameter };
+        Tolerance { index, quantity, parameter }
     }
 
-    /// The value at `coordinate` deviations from the nominal one.
+    /// The value at `coordinate` deviations from the stated one.
     pub fn value(&self, coordinate: f64) -> f64 {
-        match self.relative {
-            true => self.nominal * (coordinate * self.scale / self.nominal).exp(),
-            false => self.nominal + coordinate * self.scale,
-        }
+        self.parameter.transform.value(coordinate).unwrap_or(self.quantity.value)
     }
 
-    /// Whether it is known to no better than a tenth, damping apart.
-    pub(crate) fn is_wide(&self) -> bool {
-        let deviation = self.std.map_or(0.5, |std| std / self.nominal.abs().max(f64::MIN_POSITIVE));
-        deviation >= 0.1
-            && !self.path.contains("damping")
-            && self.nominal != 0.0
-            && !self.path.ends_with("/x")
+    /// Whether it is known to no better than the share `wide`; damping and where something is attached apart.
+    pub(crate) fn is_wide(&self, wide: f64) -> bool {
+        let NamedQuantity { key, nature, value, std, .. } = self.quantity;
+        let deviation = std.map_or(0.5, |std| std / value.abs().max(f64::MIN_POSITIVE));
+        let place = matches!(key, QuantityKey::Abscissa | QuantityKey::PointMassAbscissa(_));
+        deviation >= wide && value != 0.0 && nature != Nature::Damping && !place
     }
 }
 
@@ -77,7 +73,10 @@ pub struct Hypothesis {
     // Thousands of neighbours share what none of them changes.
     fixture: Arc<Fixture>,
     tolerances: Arc<[Tolerance]>,
-    effects: Arc<Vec<(Effect, Vec<Freedom>)>>,
+    /// Each effect with how its parameters move, those that stay included.
+    effects: Arc<Vec<(Effect, Vec<Parameter>)>>,
+    /// How the coordinates move: tolerances, then the effects' free parameters.
+    parameters: Arc<[Parameter]>,
     /// Coordinates that stay where they are.
     held: Vec<usize>,
     /// Coordinates: tolerances in deviations from the nominal values, then the effects' free parameters.
@@ -87,35 +86,20 @@ pub struct Hypothesis {
 impl Hypothesis {
     /// The fixture by itself, its own effects kept as they stand. `exact` takes bare numbers as exact.
     ///
-    /// Young's modulus and second moment of one beam enter as a product alone: one of them carries the deviation of both.
+    /// Young's modulus and second moment of one beam enter as their product ([`Fixture::uncertain_quantities`]).
     pub fn nominal(fixture: &Fixture, exact: bool) -> Self {
-        let quantities = if exact { fixture.quantities_exact() } else { fixture.quantities() };
-        let mut tolerances: Vec<Tolerance> = Vec::new();
-        for (index, quantity) in quantities.iter().enumerate() {
-            let std = match quantity.std {
-                Some(std) if std <= 0.0 => continue,
-                std => std,
-            };
-            let relative = |std: f64, value: f64| std / value.abs();
-            if let Some(beam) = quantity.path.strip_suffix("second_moment") {
-                let modulus = format!("{beam}youngs_modulus");
-                if let Some(earlier) = tolerances.iter_mut().find(|t| t.path == modulus) {
-                    let both = earlier.std.zip(std).map(|(a, b)| {
-                        earlier.nominal * relative(a, earlier.nominal).hypot(relative(b, quantity.value))
-                    });
-                    *earlier = Tolerance::new(earlier.index, &modulus, earlier.nominal, both);
-                    continue;
-                }
-            }
-            tolerances.push(Tolerance::new(index, &quantity.path, quantity.value, std));
-        }
-        let coordinates = vec![0.0; tolerances.len()];
+        let tolerances: Vec<Tolerance> = fixture
+            .uncertain_quantities(exact)
+            .into_iter()
+            .map(|(index, quantity)| Tolerance::new(index, quantity))
+            .collect();
         Hypothesis {
             fixture: Arc::new(fixture.clone()),
+            parameters: tolerances.iter().map(|tolerance| tolerance.parameter).collect(),
+            coordinates: vec![0.0; tolerances.len()],
             tolerances: tolerances.into(),
             effects: Arc::new(Vec::new()),
             held: Vec::new(),
-            coordinates,
         }
     }
 
@@ -129,12 +113,12 @@ impl Hypothesis {
     /// The same with one more effect, at the parameters it is given with.
     pub fn with(&self, effect: Effect) -> Self {
         let mut more = self.clone();
-        let freedoms = freedoms(&self.fixture, &effect);
-        for (freedom, quantity) in freedoms.iter().zip(&effect.parameters) {
-            more.coordinates.extend(freedom.coordinate(quantity.value));
+        let parameters = parameters_of(&self.fixture, &effect);
+        for (parameter, quantity) in parameters.iter().zip(&effect.parameters) {
+            more.coordinates.extend(parameter.transform.coordinate(quantity.value));
         }
-        Arc::make_mut(&mut more.effects).push((effect, freedoms));
-        more
+        Arc::make_mut(&mut more.effects).push((effect, parameters));
+        more.listed()
     }
 
     /// The same without effect `index`.
@@ -143,7 +127,15 @@ impl Hypothesis {
         let range = self.range_of(index);
         fewer.coordinates.drain(range);
         Arc::make_mut(&mut fewer.effects).remove(index);
-        fewer
+        fewer.listed()
+    }
+
+    /// The list of parameters follows from tolerances and effects.
+    fn listed(mut self) -> Self {
+        let tolerances = self.tolerances.iter().map(|tolerance| tolerance.parameter);
+        let free = self.effects.iter().flat_map(|(_, all)| all).copied().filter(Parameter::is_free);
+        self.parameters = tolerances.chain(free).collect();
+        self
     }
 
     /// The same with the quantities of the fixture back at (or at those of) `other`; effects stay.
@@ -199,19 +191,26 @@ impl Hypothesis {
         self.coordinates[index]
     }
 
+    /// How each coordinate moves: tolerances first, then the effects' free parameters.
+    pub(crate) fn parameters(&self) -> &[Parameter] {
+        &self.parameters
+    }
+
     /// Precision of the prior on coordinate `index`: 1 for a quantity with a deviation, 0 for what is free.
     pub(crate) fn prior(&self, index: usize) -> f64 {
-        f64::from(self.tolerances.get(index).is_some_and(|t| t.std.is_some()))
+        self.parameters[index].precision
     }
 
     /// Σ (departure/std)².
     pub fn penalty(&self) -> f64 {
-        (0..self.tolerances.len()).map(|i| self.prior(i) * self.coordinates[i].powi(2)).sum()
+        self.parameters.iter().zip(&self.coordinates).map(|(parameter, at)| parameter.penalty(*at)).sum()
     }
 
     /// Coordinates of effect `index` within the whole.
     pub(crate) fn range_of(&self, index: usize) -> std::ops::Range<usize> {
-        let free = |e: &(Effect, Vec<Freedom>)| e.1.iter().filter(|f| **f != Freedom::Fixed).count();
+        let free = |(_, parameters): &(Effect, Vec<Parameter>)| {
+            parameters.iter().filter(|parameter| parameter.is_free()).count()
+        };
         let start = self.tolerances.len() + self.effects[..index].iter().map(free).sum::<usize>();
         start..start + free(&self.effects[index])
     }
@@ -221,10 +220,11 @@ impl Hypothesis {
         let mut at = self.tolerances.len();
         self.effects
             .iter()
-            .map(|(effect, freedoms)| {
+            .map(|(effect, parameters)| {
                 let mut effect = effect.clone();
-                for (freedom, quantity) in freedoms.iter().zip(&mut effect.parameters) {
-                    if let Some(value) = freedom.value(self.coordinates.get(at).copied().unwrap_or(0.0)) {
+                for (parameter, quantity) in parameters.iter().zip(&mut effect.parameters) {
+                    let coordinate = self.coordinates.get(at).copied().unwrap_or(0.0);
+                    if let Some(value) = parameter.transform.value(coordinate) {
                         quantity.value = value;
                         at += 1;
                     }
@@ -234,17 +234,9 @@ impl Hypothesis {
             .collect()
     }
 
-    /// Derivative of each free parameter of effect `index` with respect to its coordinate, with the parameter's place in
-    /// the effect.
-    pub(crate) fn parameter_slopes(&self, index: usize) -> Vec<(usize, f64)> {
-        let (_, freedoms) = &self.effects[index];
-        let effect = &self.effects()[index];
-        let slope = |(place, freedom): (usize, &Freedom)| match freedom {
-            Freedom::Logarithm { .. } => Some((place, effect.value(place))),
-            Freedom::Linear { scale, .. } => Some((place, *scale)),
-            Freedom::Fixed => None,
-        };
-        freedoms.iter().enumerate().filter_map(slope).collect()
+    /// How each parameter of effect `index` moves, those that stay included.
+    pub(crate) fn effect_parameters_of(&self, index: usize) -> &[Parameter] {
+        &self.effects[index].1
     }
 
     /// The fixture at the present quantities, its own effects and the fitted ones in its `physics`.
@@ -299,9 +291,8 @@ impl Hypothesis {
     /// The FRFs that coordinate `index` acts on, where that is told by its name: where a channel's point sits, if nothing but channels
     /// is there, matters to that channel's FRFs alone.
     fn depending(&self, index: usize, observation: &Observation) -> Option<Vec<usize>> {
-        let path = &self.tolerances.get(index)?.path;
-        let name = path.strip_prefix("points/")?.strip_suffix("/x")?;
-        let place = self.fixture.points().iter().position(|point| point.name == name)?;
+        let QuantityOwner::Point(place) = self.tolerances.get(index)?.quantity.owner else { return None };
+        let name = self.fixture.points()[place].name.as_str();
         let holds = self.fixture.joints().iter().any(|joint| joint.from == place || joint.to == place);
         if holds || !self.fixture.supports().is_empty() {
             return None;
@@ -311,69 +302,42 @@ impl Hypothesis {
         Some(pairs.filter(|(_, pair)| reads(pair)).map(|(i, _)| i).collect())
     }
 
-    /// Bounds of each coordinate.
-    fn bounds(&self) -> Vec<(f64, f64)> {
-        let mut all: Vec<(f64, f64)> = self.tolerances.iter().map(|t| (t.lowest, f64::INFINITY)).collect();
-        for freedom in self.effects.iter().flat_map(|(_, freedoms)| freedoms) {
-            match freedom {
-                Freedom::Fixed => {}
-                Freedom::Linear { scale, low, high } => all.push((low / scale, high / scale)),
-                Freedom::Logarithm { low, high } => all.push((*low, *high)),
-            }
-        }
-        all
-    }
-
-    /// Solves `matrix`·step = `right` (row-major, whole) within the bounds: a coordinate whose step would cross its bound
-    /// stops there, and the others are solved for again.
-    pub(crate) fn bounded_step(&self, matrix: &[f64], right: &[f64]) -> Option<Vec<f64>> {
-        let n = right.len();
-        let bounds = self.bounds();
-        let mut stopped: Vec<Option<f64>> = vec![None; n];
-        for _ in 0..4 {
-            let free: Vec<usize> = (0..n).filter(|&m| stopped[m].is_none()).collect();
-            let mut reduced = Vec::with_capacity(free.len() * free.len());
-            let mut rest = Vec::with_capacity(free.len());
-            for &i in &free {
-                reduced.extend(free.iter().map(|&j| matrix[i * n + j]));
-                let known: f64 = (0..n).filter_map(|j| stopped[j].map(|s| matrix[i * n + j] * s)).sum();
-                rest.push(right[i] - known);
-            }
-            if !free.is_empty() && !solve_positive_definite(&mut reduced, &mut rest) {
-                return None;
-            }
-            let mut crossed = false;
-            for (&m, step) in free.iter().zip(&rest) {
-                let target = self.coordinates[m] + step;
-                let (low, high) = bounds[m];
-                if target < low || target > high {
-                    stopped[m] = Some(target.clamp(low, high) - self.coordinates[m]);
-                    crossed = true;
-                }
-            }
-            if !crossed {
-                let mut step: Vec<f64> = stopped.iter().map(|s| s.unwrap_or(0.0)).collect();
-                free.iter().zip(&rest).for_each(|(&m, value)| step[m] = *value);
-                return Some(step);
-            }
-        }
-        None
-    }
-
     /// A step of size `size` of coordinate `index` that stays within its bounds.
     pub(crate) fn inward(&self, index: usize, size: f64) -> f64 {
-        match self.bounds().get(index) {
-            Some((_, high)) if self.coordinates[index] + size > *high => -size,
-            _ => size,
-        }
+        if self.coordinates[index] + size > self.parameters[index].high { -size } else { size }
     }
 
     /// Moves by `step`, bounded parameters stopping at their bounds.
     pub(crate) fn stepped(&self, step: &[f64]) -> Self {
         let mut next = self.clone();
-        for ((coordinate, step), (low, high)) in next.coordinates.iter_mut().zip(step).zip(self.bounds()) {
-            *coordinate = (*coordinate + step).clamp(low, high);
+        for ((coordinate, step), parameter) in
+            next.coordinates.iter_mut().zip(step).zip(self.parameters.iter())
+        {
+            *coordinate = parameter.clamp(*coordinate + step);
         }
         next
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_mass_of_a_body_that_is_called_damping_plate_is_a_mass() {
+        let named = |name: &str| {
+            let text = format!(
+                r#"{{ "bodies": {{ "{name}": {{ "mass": 2.0, "rotates": false }}, "B": {{ "mass": 3.0, "rotates": false }} }},
+                  "points": {{ "1": {{ "body": "{name}", "x": 0.0 }}, "2": {{ "body": "B", "x": 0.0 }} }},
+                  "joints": {{ "damping": {{ "from": "1", "to": "2", "stiffness": [[{{"value": 1e6, "std": 3e5}}, 0.0], [0.0, 0.0]] }} }} }}"#
+            );
+            let hypothesis = Hypothesis::nominal(&Fixture::from_json(&text).unwrap(), false);
+            let moves = |t: &Tolerance| (t.parameter, t.is_wide(0.1));
+            hypothesis.tolerances().iter().map(moves).collect::<Vec<_>>()
+        };
+        assert_eq!(named("damping-plate"), named("plate"));
+        assert!(matches!(named("damping-plate")[0].0.transform, Transform::Logarithmic { .. }));
+        let stiffness = named("damping-plate").into_iter().find(|(_, wide)| *wide);
+        assert!(stiffness.is_some_and(|(parameter, _)| parameter.low == f64::NEG_INFINITY));
     }
 }

@@ -25,30 +25,40 @@
 //! # Ok(()) }
 //! ```
 
+mod alternatives;
 mod catalogue;
 mod diagnosis;
 mod estimates;
 mod evidence;
+mod facts;
 mod fit;
+mod fitter;
 mod freedom;
 mod held_out;
 mod hypothesis;
+mod linearisation;
 mod location;
-mod normal;
 mod observation;
+mod penalty;
+mod quantities;
 mod ranking;
 mod recorded_lines;
-mod says;
+mod scan;
 mod search;
-mod under_way;
+mod settings;
 
+pub use alternatives::Alternative;
 pub use catalogue::{Candidate, catalogue};
-pub use diagnosis::{Diagnosis, DiagnosisError, DiagnosisOptions, Finding, FrfMismatch, Verdict};
-pub use estimates::Estimate;
-pub use evidence::{Alternative, alternatives};
-pub use fit::{Fit, Linearisation};
-pub use held_out::HeldOut;
+pub use diagnosis::{BandShare, Diagnosis, DiagnosisError, DiagnosisOptions, Finding, FrfMismatch};
+pub use facts::{EndErrors, FrfMisfit, Phase, Trend, Variation};
+pub use fit::Fit;
 pub use hypothesis::{Hypothesis, PredictionError, Tolerance};
-pub use location::{LawFit, LawParameter, LineEstimate, Location, Site, locate, measure};
+pub use jointscope_findings::{Estimate, HeldOut, Verdict};
+pub use linearisation::Linearisation;
+pub use location::{BandMisfit, LawFit, LawParameter, LineEstimate, Location, Site, locate, measure};
 pub use observation::Observation;
 pub use search::Search;
+pub use settings::{
+    EvidenceSettings, FitSettings, LawSettings, LocationSettings, RankingSettings, SelectionSettings,
+    Settings,
+};

@@ -9,25 +9,26 @@
 //! for an added mass, on 94 % for a channel's gain and on 81 % for a spring in series, and the true parameter of the law in nine cases of ten or more
 //! (`stated_deviations_cover_the_truth_about_as_often_as_they_should`).
 
-mod chain;
 mod descent;
-mod followed;
+mod fitted_law;
+mod free_scalars;
 mod guess;
 mod laws;
 mod map;
 mod pattern;
+mod problem;
 mod recorded;
 mod scalar;
 mod sites;
-mod subject;
 mod tangent;
-mod yielded;
 
 pub use map::{locate, measure};
+pub(crate) use map::{located, measured};
 
 use jointscope_fixture::Dof;
 use jointscope_spectra::FrfPair;
 use num_complex::Complex64;
+use serde::{Serialize, Serializer};
 
 /// A place through which one unknown scalar a line may act.
 #[derive(Debug, Clone, PartialEq)]
@@ -55,13 +56,14 @@ pub enum Site {
     /// A reference channel: its FRFs are divided by 1 + δ.
     Reference(String),
     /// A sensor or impact that sits δ metres from where it is said to be.
-    Seat(String),
+    Position(String),
 }
 
 /// What one place leaves unexplained, and the dynamic stiffness that it would have to have.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize)]
 pub struct Location {
     /// The place.
+    #[serde(skip)]
     pub site: Site,
     /// χ² per degree of freedom that is left with one free scalar a line there, tolerances yielding.
     pub chi2_per_dof: f64,
@@ -71,26 +73,43 @@ pub struct Location {
     pub degrees: usize,
     /// Probability of as much by chance.
     pub p_value: f64,
-    /// (from, to, χ² per degree of freedom left) by band, Hz, ascending.
-    pub bands: Vec<(f64, f64, f64)>,
+    /// What is left by band, ascending.
+    pub bands: Vec<BandMisfit>,
     /// χ² per real value left, by FRF.
+    #[serde(skip)]
     pub frfs: Vec<(FrfPair, f64)>,
-    /// δ on each line where it is determined; told of the best places.
+    /// δ on each line where it is determined; stated of the best places.
+    #[serde(skip)]
     pub delta: Vec<LineEstimate>,
     /// Number of lines without δ: the pattern vanishes, too few FRFs are valid, or the noise does not let it be inverted.
+    #[serde(skip)]
     pub masked: usize,
-    /// The laws that come closest to δ(ω), the closest first; told of the best places.
+    /// The laws that come closest to δ(ω), the closest first; stated of the best places.
+    #[serde(skip)]
     pub laws: Vec<LawFit>,
 }
 
+/// What a model leaves in one band.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct BandMisfit {
+    /// Lower end, Hz.
+    pub from: f64,
+    /// Upper end, Hz.
+    pub to: f64,
+    /// χ² per degree of freedom; of an FRF per real value, nothing where no value of the band counts.
+    pub chi2_per_dof: Option<f64>,
+}
+
 /// A law over frequency fitted to the δ(ω) of a place.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct LawFit {
     /// What it would be, in words.
+    #[serde(rename = "law")]
     pub name: &'static str,
     /// δ(ω) as a formula.
     pub formula: &'static str,
     /// Its parameters.
+    #[serde(serialize_with = "by_name")]
     pub parameters: Vec<LawParameter>,
     /// χ² per degree of freedom that the law leaves of δ, tolerances yielding: what it leaves of the FRFs beyond what free scalars leave. Far
     /// above 1 where δ does not follow it, never below 0.
@@ -98,29 +117,36 @@ pub struct LawFit {
     /// Real values of δ less parameters.
     pub degrees: usize,
     /// The law on the lines of [`Location::delta`].
+    #[serde(skip)]
     pub values: Vec<Complex64>,
 }
 
 /// A parameter of a law.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct LawParameter {
     /// Its name, as in fixture files.
+    #[serde(skip)]
     pub name: &'static str,
-    /// Its unit.
-    pub unit: &'static str,
     /// Its value.
     pub value: f64,
     /// One standard deviation, tolerances and abscissa included.
     pub std: f64,
+    /// Its unit.
+    pub unit: &'static str,
+}
+
+fn by_name<S: Serializer>(parameters: &[LawParameter], serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_map(parameters.iter().map(|parameter| (parameter.name, parameter)))
 }
 
 /// δ on one spectral line.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct LineEstimate {
     /// The line, Hz.
     pub frequency: f64,
     /// δ: the unknown component's dynamic stiffness (N/m for a body or a translation in series, N·m/rad for a rotation in series: there
-    /// infinite means that nothing yields), the relative change of a joint's elastic stiffness or of a channel (1), a seat's offset (m).
+    /// infinite means that nothing yields), the relative change of a joint's elastic stiffness or of a channel (1), a position's offset (m).
+    #[serde(serialize_with = "jointscope_spectra::complex")]
     pub value: Complex64,
     /// Standard deviation of its real part, and of its imaginary part.
     pub std: f64,
@@ -140,7 +166,7 @@ impl Site {
             Site::Body { .. } | Site::Series { dof: Dof::Translation, .. } => "N/m",
             Site::Series { dof: Dof::Rotation, .. } => "N*m/rad",
             Site::Response(_) | Site::Reference(_) | Site::Joint(_) => "1",
-            Site::Seat(_) => "m",
+            Site::Position(_) => "m",
         }
     }
 }

@@ -1,8 +1,10 @@
 use crate::recorded_lines::{drift_variance, lines_in_use};
 use jointscope_frf::Drift;
 use jointscope_frf::noise::{NoiseSource, with_variances};
+use jointscope_inference::{autocorrelation, inflated_weight};
 use jointscope_spectra::{FrfForm, FrfPair, FrfSet, SpectraError, SpectralLines};
 use num_complex::Complex64;
+use std::borrow::Cow;
 
 /// FRFs as a fit sees them: accelerances on the lines in use, each with its weight.
 #[derive(Debug, Clone)]
@@ -166,18 +168,17 @@ impl Observation {
 
     /// The weight of value `index` when a share `epsilon` of the measured, the modelled and a tenth of the local level
     /// counts as noise too: sharp peaks then do not decide where a fit goes.
-    pub fn softened(&self, index: usize, modelled: Complex64, epsilon: f64) -> f64 {
-        let weight = self.weight[index];
-        if epsilon == 0.0 || weight == 0.0 {
-            return weight;
-        }
+    pub(crate) fn inflated(&self, index: usize, modelled: Complex64, epsilon: f64) -> f64 {
         let size = self.values()[index].norm_sqr() + modelled.norm_sqr() + 0.1 * self.level[index];
-        1.0 / (1.0 / weight + 0.5 * epsilon * epsilon * size)
+        inflated_weight(self.weight[index], size, epsilon)
     }
 
-    /// [`Observation::softened`] of every value.
-    pub(crate) fn softened_weights(&self, modelled: &[Complex64], epsilon: f64) -> Vec<f64> {
-        modelled.iter().enumerate().map(|(index, value)| self.softened(index, *value, epsilon)).collect()
+    /// [`Observation::inflated`] of every value.
+    pub(crate) fn inflated_weights(&self, modelled: &[Complex64], epsilon: f64) -> Cow<'_, [f64]> {
+        if epsilon == 0.0 {
+            return Cow::Borrowed(&self.weight);
+        }
+        modelled.iter().enumerate().map(|(index, value)| self.inflated(index, *value, epsilon)).collect()
     }
 
     /// Measured less modelled values.
@@ -185,10 +186,15 @@ impl Observation {
         self.values().iter().zip(modelled).map(|(measured, modelled)| measured - modelled).collect()
     }
 
+    /// Σ weight·|measured − modelled|².
+    pub(crate) fn weighted_squares(&self, modelled: &[Complex64], weights: &[f64]) -> f64 {
+        let terms = self.values().iter().zip(modelled).zip(weights);
+        terms.map(|((measured, modelled), weight)| weight * (measured - modelled).norm_sqr()).sum()
+    }
+
     /// χ² of modelled values.
     pub fn chi2(&self, modelled: &[Complex64]) -> f64 {
-        let terms = self.weight.iter().zip(self.values()).zip(modelled);
-        terms.map(|((weight, measured), modelled)| weight * (measured - modelled).norm_sqr()).sum()
+        self.weighted_squares(modelled, &self.weight)
     }
 
     /// √(Σ|H_model − H_measured|² / Σ|H_measured|²) over all FRFs and lines.
@@ -209,15 +215,8 @@ impl Observation {
 
     /// Correlation of the normalised residuals of neighbouring lines.
     pub fn residual_correlation(&self, predicted: &[Complex64]) -> f64 {
-        let n = self.lines().len();
-        let residual = self.residual(predicted);
-        let normalised: Vec<Complex64> =
-            residual.iter().zip(self.weights()).map(|(r, weight)| r * weight.sqrt()).collect();
-        let (mut product, mut square) = (0.0, 0.0);
-        for frf in normalised.chunks_exact(n) {
-            product += frf.windows(2).map(|w| (w[0].conj() * w[1]).re).sum::<f64>();
-            square += frf.iter().map(|r| r.norm_sqr()).sum::<f64>();
-        }
-        if square > 0.0 { product / square } else { 0.0 }
+        let residual = self.residual(predicted).into_iter().zip(self.weights());
+        let normalised: Vec<Complex64> = residual.map(|(r, weight)| r * weight.sqrt()).collect();
+        autocorrelation(&normalised, self.lines().len())
     }
 }

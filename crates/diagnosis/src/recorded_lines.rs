@@ -1,6 +1,5 @@
 //! What of a long recording is used, and what its resonances did while it was made.
 
-use crate::Observation;
 use jointscope_frf::{Drift, resonant_lines};
 use jointscope_spectra::FrfSet;
 
@@ -70,41 +69,6 @@ pub(crate) fn drift_variance(
         lines.iter().for_each(|&l| added[l] = high * squared_change[l]);
     }
     added
-}
-
-impl Observation {
-    /// What was done to the recording, and what it did, in plain sentences.
-    pub(crate) fn remarks(&self) -> Vec<String> {
-        let mut remarks = Vec::new();
-        let used = self.lines().len();
-        if self.recorded_lines() > used {
-            remarks.push(format!(
-                "Of {} lines {used} are used: all that tell one resonance from another, ever fewer with the distance from them, and evenly \
-                 spread ones. χ², errors and drawings are of these; the noise was estimated on all of them.",
-                self.recorded_lines()
-            ));
-        }
-        if let Some(drift) = self.drift() {
-            let told: Vec<String> = drift
-                .resonances
-                .iter()
-                .map(|(hz, deviation, ratio)| {
-                    format!(
-                        "{hz:.2} Hz by {:.1} parts in 100,000 ({:.0} % of its half-width)",
-                        1e5 * deviation,
-                        100.0 * deviation / ratio.max(f64::MIN_POSITIVE)
-                    )
-                })
-                .collect();
-            remarks.push(format!(
-                "The resonances moved between the FRFs, by more than their noise and more than any structure that stays the same could \
-                 make them: {} (standard deviations among FRFs of one response). That much is taken as noise about each resonance; no \
-                 model is asked to follow it.",
-                told.join(", ")
-            ));
-        }
-        remarks
-    }
 }
 
 #[cfg(test)]

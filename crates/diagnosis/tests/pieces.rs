@@ -40,7 +40,7 @@ fn observation(truth: &Fixture) -> Observation {
 #[test]
 fn modulus_and_second_moment_enter_as_their_product_and_exact_quantities_do_not_move() {
     let hypothesis = Hypothesis::nominal(&fixture(), false);
-    let paths: Vec<&str> = hypothesis.tolerances().iter().map(|t| t.path.as_str()).collect();
+    let paths: Vec<&str> = hypothesis.tolerances().iter().map(|t| t.quantity.path.as_str()).collect();
     let expected = [
         "bodies/A/mass",
         "bodies/A/inertia",
@@ -50,7 +50,7 @@ fn modulus_and_second_moment_enter_as_their_product_and_exact_quantities_do_not_
     ];
     assert_eq!(paths, expected);
     // 2 % and 1.5 % are 2.5 % of the product.
-    let modulus = hypothesis.tolerances()[3].std.unwrap();
+    let modulus = hypothesis.tolerances()[3].quantity.std.unwrap();
     assert!((modulus / (0.025 * 2e11) - 1.0).abs() < 1e-12, "{modulus}");
 }
 
@@ -84,7 +84,7 @@ fn an_effects_parameters_are_fitted_and_their_covariance_is_positive() {
     assert!((found.value(0) - 0.11).abs() < 1e-4 && (found.value(1) - 0.05).abs() < 1e-4, "{found:?}");
     let covariance = fit.covariance(&observation).unwrap();
     let n = fit.hypothesis.tolerances().len() + 2;
-    assert!((0..n).all(|m| covariance[m * n + m] > 0.0));
+    assert!((0..n).all(|m| covariance.at(m, m) > 0.0));
 }
 
 #[test]
@@ -122,9 +122,9 @@ fn a_dashpot_of_zero_leaves_the_spring_beside_it_a_deviation() {
     assert!(found.value(1) == 0.0 && (found.value(0) / 5e3 - 1.0).abs() < 0.05, "{found:?}");
     let covariance = fit.covariance(&observation).unwrap();
     let n = fit.hypothesis.tolerances().len() + 2;
-    assert!((0..n).all(|m| covariance[m * n + m] > 0.0));
+    assert!((0..n).all(|m| covariance.at(m, m) > 0.0));
     // The spring moves by its logarithm: its deviation is a share of it.
-    let share = covariance[(n - 2) * n + n - 2].sqrt();
+    let share = covariance.std(n - 2);
     assert!(share < 0.1, "deviation of {share} of the spring");
 }
 

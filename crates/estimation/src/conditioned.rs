@@ -1,10 +1,7 @@
 //! A hit made ready: baselines off, faults found, windows on, spectra taken.
 
-use std::sync::Arc;
-
-use jointscope_hits::{Hit, Motion, Response};
+use jointscope_hits::{Fourier, Hit, Motion, Response};
 use num_complex::Complex64;
-use realfft::{RealFftPlanner, RealToComplex};
 
 use crate::baseline::{Drift, FEWEST_BEFORE};
 use crate::decay::left_at_end;
@@ -141,16 +138,15 @@ pub(crate) struct Spectra {
 
 /// Fourier transforms of one length.
 pub(crate) struct Transform {
-    plan: Arc<dyn RealToComplex<f64>>,
+    fourier: Fourier,
     input: Vec<f64>,
-    scratch: Vec<Complex64>,
 }
 
 impl Transform {
     /// Transforms of records filled with zeros to `length` samples.
     pub fn new(length: usize) -> Self {
-        let plan = RealFftPlanner::new().plan_fft_forward(length);
-        Transform { input: plan.make_input_vec(), scratch: plan.make_scratch_vec(), plan }
+        let fourier = Fourier::new(length);
+        Transform { input: vec![0.0; fourier.length()], fourier }
     }
 
     pub fn length(&self) -> usize {
@@ -160,10 +156,6 @@ impl Transform {
     fn of(&mut self, values: impl Iterator<Item = f64>) -> Vec<Complex64> {
         self.input.fill(0.0);
         self.input.iter_mut().zip(values).for_each(|(to, value)| *to = value);
-        let mut spectrum = self.plan.make_output_vec();
-        // It only fails for buffers of a wrong length, and these are the plan's own.
-        let done = self.plan.process_with_scratch(&mut self.input, &mut spectrum, &mut self.scratch);
-        debug_assert!(done.is_ok());
-        spectrum
+        self.fourier.lines(&mut self.input)
     }
 }

@@ -28,8 +28,6 @@ pub struct Estimate {
 
 /// What an exponential window on demand leaves of the slowest response.
 const LEFT_BY_WINDOW: f64 = 1e-4;
-/// What may be left of a response at its record's end without a remark.
-pub(crate) const LEFT_UNNOTICED: f64 = 3e-3;
 /// Fewest samples of a record.
 const SHORTEST: usize = 16;
 

@@ -7,7 +7,6 @@ use jointscope_spectra::{Channel, FrfSet};
 use crate::band::dips;
 use crate::baseline::Drift;
 use crate::conditioned::Conditioned;
-use crate::estimate::LEFT_UNNOTICED;
 use crate::plausibility::implausible;
 use crate::{Baseline, EstimateOptions, Estimator, Excitation, HitReport};
 
@@ -23,6 +22,8 @@ pub(crate) struct Remarks {
     worst_scatter: f64,
 }
 
+/// What may be left of a response at its record's end without a remark.
+const LEFT_UNNOTICED: f64 = 3e-3;
 /// Deviations of a baseline's slope from none at which it is called a drift.
 const DRIFTS: f64 = 30.0;
 /// Ringing before a hit relative to its loudest response.

@@ -59,7 +59,7 @@ pub struct MeshOptions {
 }
 
 impl Default for MeshOptions {
-    /// Frequencies within 0.5 % of the converged ones; see docs/fem.md.
+    /// Frequencies within 0.5 % of the converged ones; see docs/guide/solid.md.
     fn default() -> Self {
         MeshOptions {
             corner: 16,

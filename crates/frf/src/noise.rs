@@ -8,13 +8,16 @@
 use crate::local_rational::LocalRationalFit;
 use jointscope_spectra::{FrfForm, FrfSet, SpectraError};
 use num_complex::Complex64;
+use serde::Serialize;
 
 /// Where variances came from.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub enum NoiseSource {
     /// Coherence and number of averages of the recording.
+    #[serde(rename = "coherence and averages")]
     Coherence,
     /// The scatter of the FRF about its course from line to line.
+    #[serde(rename = "scatter over the lines")]
     Scatter,
 }
 

@@ -1,7 +1,8 @@
 //! The signals of a hammer hit: one force and the responses to it over time, in SI units and the fixture's terms.
 //!
 //! * [`Hit`]: what was recorded from one blow, all channels on the same sampling instants;
-//! * [`Response`]: one sensor's signal and the [`Motion`] it measures.
+//! * [`Response`]: one sensor's signal and the [`Motion`] it measures;
+//! * [`Fourier`], [`InverseFourier`]: signals as spectral lines, and back.
 //!
 //! ```
 //! use jointscope_hits::{Hit, Motion, Response};
@@ -14,6 +15,10 @@
 //! assert_eq!(hit.samples(), 4);
 //! # Ok::<(), jointscope_hits::HitError>(())
 //! ```
+
+mod fourier;
+
+pub use fourier::{Fourier, InverseFourier};
 
 use jointscope_spectra::Channel;
 

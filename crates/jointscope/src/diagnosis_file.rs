@@ -1,172 +1,193 @@
+use crate::file::{told, value};
 use jointscope_diagnosis::{
-    Diagnosis, Estimate, Finding, Hypothesis, LawFit, LawParameter, LineEstimate, Location,
+    Diagnosis, EndErrors, Finding, FrfMismatch, HeldOut, Hypothesis, LawFit, LineEstimate, Location,
+    Variation, Verdict,
 };
-use jointscope_fixture::Effect;
+use jointscope_findings::by_model;
 use jointscope_frf::noise::NoiseSource;
-use serde_json::{Map, Value, json};
+use jointscope_spectra::FrfPair;
+use jointscope_wording::{Remarks, Says};
+use serde::{Serialize, Serializer};
+use serde_json::Value;
 
 /// The contents of `diagnosis.json`: verdict, mismatch, findings with intervals and alternatives, errors of the three models, and beyond the
 /// contract where the tolerances ended, where each FRF's noise came from, and what every place leaves unexplained. SI units; what is not
 /// finite is `null`.
 pub fn diagnosis_file(diagnosis: &Diagnosis) -> Value {
-    let mut root = Map::new();
-    root.insert("verdict".into(), json!(diagnosis.verdict.name()));
-    root.insert("says".into(), json!(diagnosis.says()));
-    root.insert("mismatch".into(), mismatch(diagnosis));
-    root.insert("findings".into(), diagnosis.findings.iter().map(finding).collect());
-    root.insert("fit".into(), fit(diagnosis));
-    root.insert("refitted".into(), tolerances(&diagnosis.search.refitted.hypothesis));
-    root.insert("repaired".into(), tolerances(&diagnosis.search.repaired.hypothesis));
-    root.insert("locations".into(), diagnosis.locations.iter().map(location).collect());
-    if let Some(best) = diagnosis.locations.first().filter(|_| diagnosis.is_unnamed()) {
-        root.insert("best_place".into(), with_delta(best));
-    }
-    root.insert("recording".into(), recording(diagnosis));
-    root.insert("remarks".into(), json!(diagnosis.remarks()));
-    Value::Object(root)
-}
-
-fn mismatch(diagnosis: &Diagnosis) -> Value {
-    let band = |&(from, to, share): &(f64, f64, f64)| json!({"from": from, "to": to, "share": share});
-    let frfs = diagnosis.mismatch.iter().map(|of| {
-        json!({
-            "frf": of.frf.to_string(),
-            "nrmse": of.nrmse,
-            "bands": of.bands.iter().map(band).collect::<Value>(),
-        })
-    });
     let (chi2_per_dof, p_value) = diagnosis.refitted;
-    json!({"chi2_per_dof": chi2_per_dof, "p_value": p_value, "frfs": frfs.collect::<Value>()})
+    value(DiagnosisFile {
+        verdict: diagnosis.verdict,
+        says: diagnosis.says(),
+        mismatch: Mismatch { chi2_per_dof, p_value, frfs: &diagnosis.mismatch },
+        findings: diagnosis.findings.iter().map(finding).collect(),
+        fit: Errors {
+            nrmse: diagnosis.nrmse(),
+            held_out: diagnosis.held_out.as_ref(),
+            chi2_per_dof: diagnosis.chi2_per_dof(),
+            residual_correlation: diagnosis.residual_correlation,
+            residuals_are_white: diagnosis.is_white(),
+        },
+        refitted: quantities(&diagnosis.search.refitted.hypothesis),
+        repaired: quantities(&diagnosis.search.repaired.hypothesis),
+        locations: diagnosis.locations.iter().map(Place::of).collect(),
+        best_place: diagnosis.best_place().map(MeasuredPlace::of),
+        recording: Recorded::of(diagnosis),
+        unnamed: diagnosis.is_unnamed(),
+        error_at_ends: diagnosis.end_errors(&diagnosis.search.repaired),
+        bent: diagnosis.bent().map(|(path, deviations)| Bent { path, deviations }),
+        swapped_points: diagnosis.swapped_points(),
+        remarks: diagnosis.remarks(),
+    })
 }
 
-/// `kind`, `place` and, for the kinds that have one, `dof`.
-fn name(effect: &Effect) -> Map<String, Value> {
-    let mut entry = Map::new();
-    entry.insert("kind".into(), json!(effect.kind.name()));
-    entry.insert("place".into(), json!(effect.place.to_string()));
-    if let Some(dof) = effect.dof {
-        entry.insert("dof".into(), json!(dof.name()));
-    }
-    entry
-}
-
-/// What an entry of `findings` holds whatever the law: names, parameters, probability, sentence, alternatives.
-pub(crate) fn named(
-    effect: &Effect,
-    parameters: impl Iterator<Item = (String, Value)>,
-    probability: f64,
+#[derive(Serialize)]
+struct DiagnosisFile<'a> {
+    verdict: Verdict,
     says: String,
-    alternatives: &[(Effect, f64)],
-) -> Map<String, Value> {
-    let mut entry = name(effect);
-    entry.insert("parameters".into(), Value::Object(parameters.collect()));
-    entry.insert("probability".into(), json!(probability));
-    entry.insert("says".into(), json!(says));
-    let alternatives = alternatives.iter().map(|(effect, probability)| {
-        let mut entry = name(effect);
-        entry.insert("probability".into(), json!(probability));
-        Value::Object(entry)
-    });
-    entry.insert("alternatives".into(), alternatives.collect());
-    entry
+    mismatch: Mismatch<'a>,
+    findings: Vec<Value>,
+    fit: Errors<'a>,
+    refitted: Vec<Quantity<'a>>,
+    repaired: Vec<Quantity<'a>>,
+    locations: Vec<Place<'a>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    best_place: Option<MeasuredPlace<'a>>,
+    recording: Recorded<'a>,
+    /// Whether no finding is likelier than something that is not listed.
+    unnamed: bool,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    error_at_ends: Option<EndErrors>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    bent: Option<Bent<'a>>,
+    swapped_points: Vec<[&'a str; 2]>,
+    remarks: Vec<String>,
+}
+
+/// The quantity that the refit without effects took farthest from what is stated, beyond belief.
+#[derive(Serialize)]
+struct Bent<'a> {
+    path: &'a str,
+    deviations: f64,
+}
+
+#[derive(Serialize)]
+struct Mismatch<'a> {
+    chi2_per_dof: f64,
+    p_value: f64,
+    frfs: &'a [FrfMismatch],
+}
+
+#[derive(Serialize)]
+struct Errors<'a> {
+    #[serde(serialize_with = "by_model")]
+    nrmse: [f64; 3],
+    held_out: Option<&'a HeldOut>,
+    #[serde(serialize_with = "by_model")]
+    chi2_per_dof: [f64; 3],
+    residual_correlation: f64,
+    residuals_are_white: bool,
 }
 
 fn finding(finding: &Finding) -> Value {
-    let parameters = finding.estimates.iter().map(|e: &Estimate| {
-        let value = json!({"value": e.value, "std": e.std, "ci95": e.interval, "unit": e.unit});
-        (e.parameter.name.to_owned(), value)
-    });
-    let Finding { effect, probability, gain, alternatives, .. } = finding;
-    let mut entry = named(effect, parameters, *probability, finding.says(), alternatives);
-    entry.insert("gain_chi2".into(), json!(gain));
+    let mut entry = told(finding, finding.says());
+    entry["doubtful"] = Value::Bool(finding.is_doubtful());
     if let Some(measured) = &finding.measured {
-        entry.insert("measured".into(), with_delta(measured));
+        entry["measured"] = value(MeasuredPlace::of(measured));
     }
-    Value::Object(entry)
-}
-
-fn fit(diagnosis: &Diagnosis) -> Value {
-    let three = |[nominal, refitted, repaired]: [f64; 3]| json!({"nominal": nominal, "refitted": refitted, "repaired": repaired});
-    let held_out = diagnosis.held_out.as_ref().map(|held_out| {
-        json!({
-            "what": held_out.what,
-            "nrmse_refitted": held_out.nrmse_refitted,
-            "nrmse_repaired": held_out.nrmse_repaired,
-            "same_findings": held_out.same_findings,
-        })
-    });
-    json!({
-        "nrmse": three(diagnosis.nrmse()),
-        "held_out": held_out,
-        "chi2_per_dof": three(diagnosis.chi2_per_dof()),
-        "residual_correlation": diagnosis.residual_correlation,
-    })
-}
-
-/// Where the quantities that may move ended, in their units and in standard deviations of their priors.
-fn tolerances(hypothesis: &Hypothesis) -> Value {
-    let quantity = |(index, tolerance): (usize, &jointscope_diagnosis::Tolerance)| {
-        json!({
-            "path": tolerance.path,
-            "nominal": tolerance.nominal,
-            "std": tolerance.std,
-            "value": hypothesis.ended_at(index),
-            "departure": tolerance.std.map(|_| hypothesis.departure(index)),
-            "unit": tolerance.unit(),
-        })
-    };
-    hypothesis.tolerances().iter().enumerate().map(quantity).collect()
-}
-
-fn location(location: &Location) -> Value {
-    let band = |&(from, to, chi2): &(f64, f64, f64)| json!({"from": from, "to": to, "chi2_per_dof": chi2});
-    json!({
-        "place": location.site.says(),
-        "chi2_per_dof": location.chi2_per_dof,
-        "degrees": location.degrees,
-        "p_value": location.p_value,
-        "bands": location.bands.iter().map(band).collect::<Value>(),
-    })
-}
-
-/// A place with the δ(ω) measured there and the laws tried on it.
-fn with_delta(of: &Location) -> Value {
-    let line =
-        |d: &LineEstimate| json!({"frequency": d.frequency, "value": [d.value.re, d.value.im], "std": d.std});
-    let parameter =
-        |p: &LawParameter| (p.name.to_owned(), json!({"value": p.value, "std": p.std, "unit": p.unit}));
-    let law = |law: &LawFit| {
-        json!({
-            "law": law.name,
-            "formula": law.formula,
-            "parameters": Value::Object(law.parameters.iter().map(parameter).collect()),
-            "chi2_per_dof": law.chi2_per_dof,
-        })
-    };
-    let mut entry = location(of);
-    entry["unit"] = json!(of.site.unit());
-    entry["laws"] = of.laws.iter().map(law).collect();
-    entry["delta"] = of.delta.iter().map(line).collect();
     entry
 }
 
-fn recording(diagnosis: &Diagnosis) -> Value {
-    let observation = &diagnosis.observation;
-    let hz = observation.lines().hz();
-    let frfs: Vec<String> = observation.pairs().iter().map(ToString::to_string).collect();
-    let source = |(frf, source): (&String, &NoiseSource)| {
-        let source = match source {
-            NoiseSource::Coherence => "coherence and averages",
-            NoiseSource::Scatter => "scatter over the lines",
-        };
-        (frf.clone(), json!(source))
-    };
-    json!({
-        "frfs": frfs,
-        "lines": hz.len(),
-        "from": hz.first(),
-        "to": hz.last(),
-        "values_in_use": observation.degrees(),
-        "noise_from": Value::Object(frfs.iter().zip(observation.noise()).map(source).collect()),
-    })
+/// A quantity that may move and where it ended, in its unit and in standard deviations of its prior.
+#[derive(Serialize)]
+struct Quantity<'a> {
+    path: &'a str,
+    nominal: f64,
+    std: Option<f64>,
+    value: f64,
+    departure: Option<f64>,
+    unit: &'static str,
+}
+
+fn quantities(hypothesis: &Hypothesis) -> Vec<Quantity<'_>> {
+    let all = hypothesis.tolerances().iter().enumerate().map(|(index, tolerance)| Quantity {
+        path: &tolerance.quantity.path,
+        nominal: tolerance.quantity.value,
+        std: tolerance.quantity.std,
+        value: hypothesis.ended_at(index),
+        departure: tolerance.quantity.std.map(|_| hypothesis.departure(index)),
+        unit: tolerance.quantity.key.unit(),
+    });
+    all.collect()
+}
+
+#[derive(Serialize)]
+struct Place<'a> {
+    place: String,
+    #[serde(flatten)]
+    left: &'a Location,
+}
+
+impl<'a> Place<'a> {
+    fn of(location: &'a Location) -> Self {
+        Place { place: location.site.says(), left: location }
+    }
+}
+
+/// A place with the δ(ω) measured there and the laws tried on it.
+#[derive(Serialize)]
+struct MeasuredPlace<'a> {
+    #[serde(flatten)]
+    place: Place<'a>,
+    unit: &'static str,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    variation: Option<Variation>,
+    laws: &'a [LawFit],
+    delta: &'a [LineEstimate],
+}
+
+impl<'a> MeasuredPlace<'a> {
+    fn of(location: &'a Location) -> Self {
+        MeasuredPlace {
+            place: Place::of(location),
+            unit: location.site.unit(),
+            variation: location.variation(),
+            laws: &location.laws,
+            delta: &location.delta,
+        }
+    }
+}
+
+/// What the diagnosis rests on.
+#[derive(Serialize)]
+struct Recorded<'a> {
+    frfs: &'a [FrfPair],
+    lines: usize,
+    from: Option<f64>,
+    to: Option<f64>,
+    values_in_use: usize,
+    #[serde(serialize_with = "by_frf")]
+    noise_from: (&'a [FrfPair], &'a [NoiseSource]),
+}
+
+impl<'a> Recorded<'a> {
+    fn of(diagnosis: &'a Diagnosis) -> Self {
+        let observation = &diagnosis.observation;
+        let hz = observation.lines().hz();
+        Recorded {
+            frfs: observation.pairs(),
+            lines: hz.len(),
+            from: hz.first().copied(),
+            to: hz.last().copied(),
+            values_in_use: observation.degrees(),
+            noise_from: (observation.pairs(), observation.noise()),
+        }
+    }
+}
+
+/// One entry an FRF.
+pub(crate) fn by_frf<T: Serialize, S: Serializer>(
+    (pairs, values): &(&[FrfPair], &[T]),
+    serializer: S,
+) -> Result<S::Ok, S::Error> {
+    serializer.collect_map(pairs.iter().zip(*values))
 }

@@ -14,11 +14,14 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! Where the recordings do not suit the fixture, [`Diagnosis`] tells what physics was left out: is there anything, where, what, how sure.
-//! Here a recording whose response 4 reads a tenth low:
+//! Where the recordings do not suit the fixture, [`diagnose`] tells what physics was left out: is there anything, where, what, how sure. FRFs,
+//! hits over time and stepped levels go the same way, as a [`Measurement`]. Here a recording whose response 4 reads a tenth low:
 //!
 //! ```
-//! use jointscope::{Diagnosis, DiagnosisOptions, Fixture, FrfPair, FrfSet, Instrument, SpectralLines, Verdict, synthesize};
+//! use jointscope::pipeline::Options;
+//! use jointscope::{
+//!     Fixture, FrfPair, FrfSet, Instrument, Measurement, Outcome, Says, SpectralLines, Verdict, diagnose, effect_name, synthesize,
+//! };
 //!
 //! let fixture = Fixture::from_json(r#"{
 //!   "bodies": { "A": { "mass": {"value": 2.0, "std": 0.002}, "rotates": false },
@@ -34,15 +37,16 @@
 //! let variance = values.iter().map(|value| 1e-4 * value.norm_sqr()).collect();
 //! let recorded = FrfSet::new(lines, true_frfs.form(), pairs.to_vec(), values)?.with_variance(variance)?;
 //!
-//! let diagnosis = Diagnosis::of(&fixture, &recorded, &DiagnosisOptions::default())?;
+//! let answer = diagnose(&fixture, &Measurement::from(recorded), &Options::default(), |_| ())?;
+//! let Outcome::Linear(diagnosis) = &answer.outcome else { unreachable!("FRFs of one level tell nothing of amplitude") };
 //! assert_eq!(diagnosis.verdict, Verdict::Explained);
-//! assert_eq!(diagnosis.findings[0].name(), "gain of response 4");
+//! assert_eq!(effect_name(&diagnosis.findings[0].effect), "gain of response 4");
+//! assert_eq!(answer.repaired.physics().len(), 1);
 //! println!("{}", diagnosis.says());
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! [`diagnosis_file`] writes it as `diagnosis.json`; the refitted and the repaired fixture are
-//! `diagnosis.search.refitted.hypothesis.to_fixture()` and `diagnosis.search.repaired.hypothesis.to_fixture()`.
+//! [`answer_file`] writes it as `diagnosis.json`, [`answer_page`](report::answer_page) as a page.
 //!
 //! The other way round, [`synthesize`] gives the FRFs that a fixture should show:
 //!
@@ -59,7 +63,7 @@
 //!
 //! The parts are crates of their own, re-exported as modules for what this page leaves out: [`uff`], [`recordings`],
 //! [`fixture`], [`spectra`], [`frf`], [`hits`], [`estimation`], [`beam`], [`damping`], [`lumped`], [`modes`], [`averaging`],
-//! [`decomposition`], [`diagnosis`], [`nonlinear`], [`fem`], [`comparison`].
+//! [`decomposition`], [`diagnosis`], [`nonlinear`], [`findings`], [`pipeline`], [`fem`], [`comparison`], [`tables`], [`proof`], [`report`].
 
 pub use jointscope_averaging as averaging;
 pub use jointscope_beam as beam;
@@ -69,6 +73,7 @@ pub use jointscope_decomposition as decomposition;
 pub use jointscope_diagnosis as diagnosis;
 pub use jointscope_estimation as estimation;
 pub use jointscope_fem as fem;
+pub use jointscope_findings as findings;
 pub use jointscope_fixture as fixture;
 pub use jointscope_frf as frf;
 pub use jointscope_hits as hits;
@@ -76,9 +81,14 @@ pub use jointscope_linalg as linalg;
 pub use jointscope_lumped as lumped;
 pub use jointscope_modes as modes;
 pub use jointscope_nonlinear as nonlinear;
+pub use jointscope_pipeline as pipeline;
+pub use jointscope_proof as proof;
 pub use jointscope_recordings as recordings;
+pub use jointscope_report as report;
 pub use jointscope_spectra as spectra;
+pub use jointscope_tables as tables;
 pub use jointscope_uff as uff;
+pub use jointscope_wording as wording;
 
 pub use jointscope_averaging::Band;
 pub use jointscope_decomposition::{Analysis, AnalysisOptions, DecompositionError, Relation};
@@ -86,42 +96,38 @@ pub use jointscope_diagnosis::{Diagnosis, DiagnosisError, DiagnosisOptions, Find
 pub use jointscope_fixture::{Fixture, FixtureError};
 pub use jointscope_lumped::{Instrument, LumpedError, synthesize};
 pub use jointscope_modes::{ModalAnalysis, ModesError, ModesOptions};
+pub use jointscope_pipeline::{
+    Answer, MeasuredDamping, MeasuredDampingError, Measurement, Outcome, diagnose, measured_damping,
+};
 pub use jointscope_recordings::{ReadOptions, Recording, RecordingError};
 pub use jointscope_spectra::{FrfForm, FrfPair, FrfSet, SpectralLines};
+pub use jointscope_wording::{Remarks, Says, effect_name};
 
+mod answer_file;
 mod diagnosis_file;
-mod modal_damping;
+mod file;
 mod modes_file;
 mod nonlinear_file;
 mod stepped_file;
 mod stiffness_file;
 
+pub use answer_file::answer_file;
 pub use diagnosis_file::diagnosis_file;
-pub use modal_damping::{MeasuredDamping, MeasuredDampingError, measured_damping};
 pub use modes_file::modes_file;
 pub use nonlinear_file::nonlinear_file;
 pub use stepped_file::stepped_file;
 pub use stiffness_file::stiffness_file;
 
 /// Why the bytes of a universal file are no recording of a fixture.
-#[derive(Debug)]
+#[derive(Debug, thiserror::Error)]
 pub enum ReadError {
     /// They are no universal file.
-    Uff(jointscope_uff::ReadError),
+    #[error(transparent)]
+    Uff(#[from] jointscope_uff::ReadError),
     /// What they hold does not suit the fixture.
+    #[error(transparent)]
     Recording(Box<RecordingError>),
 }
-
-impl std::fmt::Display for ReadError {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self {
-            ReadError::Uff(error) => error.fmt(f),
-            ReadError::Recording(error) => error.fmt(f),
-        }
-    }
-}
-
-impl std::error::Error for ReadError {}
 
 /// Reads one universal file as a recording of `fixture`: node numbers are point names, directions ±2 are ±y.
 ///
@@ -130,7 +136,7 @@ impl std::error::Error for ReadError {}
 /// # Errors
 /// See [`ReadError`].
 pub fn read(fixture: &Fixture, bytes: &[u8]) -> Result<Recording, ReadError> {
-    let file = jointscope_uff::read(bytes).map_err(ReadError::Uff)?;
+    let file = jointscope_uff::read(bytes)?;
     let source = jointscope_recordings::Source { name: "the recording".into(), file };
     Recording::of(&[source], fixture, &ReadOptions::default())
         .map_err(|error| ReadError::Recording(Box::new(error)))

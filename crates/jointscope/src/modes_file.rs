@@ -1,6 +1,7 @@
 use jointscope_frf::noise::NoiseSource;
 use jointscope_modes::{ModalAnalysis, Mode, Stability};
 use jointscope_spectra::Channel;
+use jointscope_wording::Remarks;
 use num_complex::Complex64;
 use serde_json::{Map, Value, json};
 
@@ -15,6 +16,7 @@ pub fn modes_file(analysis: &ModalAnalysis) -> Value {
     let count = analysis.modes.len().max(1);
     root.insert("auto_mac".into(), analysis.auto_mac().chunks(count).map(|row| json!(row)).collect());
     root.insert("chi2_per_dof".into(), json!(analysis.chi2_per_dof));
+    root.insert("explained".into(), json!(analysis.is_explained()));
     let hz = analysis.lines().hz();
     root.insert("lines".into(), json!({"from": hz[0], "to": hz[hz.len() - 1], "count": hz.len()}));
     root.insert("frfs".into(), frfs(analysis, &names));
@@ -55,6 +57,8 @@ fn mode(mode: &Mode, names: &[String]) -> Value {
         "shape": {"responses": shape(&mode.responses), "references": shape(&mode.references)},
         "modal_mass": mode.modal_mass,
         "phase_collinearity": mode.phase_collinearity,
+        "stands_out": mode.stands_out(),
+        "damping_is_vague": mode.is_vaguely_damped(),
         "residues": names.iter().zip(&mode.residues).zip(&mode.residue_std).map(residue).collect::<Value>(),
     })
 }

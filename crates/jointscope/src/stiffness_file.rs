@@ -34,6 +34,7 @@ pub fn stiffness_file(analysis: &Analysis) -> Value {
             }),
         );
     }
+    root.insert("judgement".into(), json!(analysis.judgement));
     root.insert("nominal_stiffness".into(), matrix(&analysis.nominal_stiffness));
     root.insert("recording".into(), recording(analysis));
     Value::Object(root)

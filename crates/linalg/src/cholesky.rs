@@ -8,40 +8,24 @@ pub struct Cholesky {
 }
 
 /// Of a unit diagonal, less than this left of a pivot is rounding.
-const ROUNDING: f64 = 1e-14;
+const ROUNDING: f64 = 1e-15;
 
 impl Cholesky {
     /// Factorises `matrix`, row-major of order `order`, of which only the lower triangle is read; `None` where it is not positive definite to
     /// working precision.
     pub fn of(order: usize, matrix: &[f64]) -> Option<Self> {
-        let n = order;
-        if matrix.len() != n * n {
+        if matrix.len() != order * order {
             return None;
         }
-        let mut unit = Vec::with_capacity(n);
-        for i in 0..n {
-            let diagonal = matrix[i * n + i];
-            if !(diagonal > 0.0 && diagonal.is_finite()) {
-                return None;
-            }
-            unit.push(diagonal.sqrt().recip());
-        }
-        let mut lower = vec![0.0; n * n];
-        for i in 0..n {
+        let diagonal = (0..order).map(|i| matrix[i * order + i]);
+        let unit: Vec<f64> = diagonal.map(|d| (d > 0.0).then(|| d.sqrt().recip())).collect::<Option<_>>()?;
+        let mut lower = vec![0.0; order * order];
+        for i in 0..order {
             for j in 0..=i {
-                let dot: f64 =
-                    lower[i * n..i * n + j].iter().zip(&lower[j * n..j * n + j]).map(|(a, b)| a * b).sum();
-                let rest = matrix[i * n + j] * unit[i] * unit[j] - dot;
-                if i > j {
-                    lower[i * n + j] = rest / lower[j * n + j];
-                } else if rest > ROUNDING {
-                    lower[i * n + i] = rest.sqrt();
-                } else {
-                    return None;
-                }
+                lower[i * order + j] = matrix[i * order + j] * unit[i] * unit[j];
             }
         }
-        Some(Cholesky { order, lower, unit })
+        factorise(order, order, &mut lower, ROUNDING).then_some(Cholesky { order, lower, unit })
     }
 
     /// The matrix' order.
@@ -79,6 +63,12 @@ impl Cholesky {
         self.solve_upper_in_place(b);
     }
 
+    /// ln det A.
+    pub fn ln_determinant(&self) -> f64 {
+        let n = self.order;
+        2.0 * (0..n).map(|i| (self.lower[i * n + i] / self.unit[i]).ln()).sum::<f64>()
+    }
+
     /// A⁻¹, row-major: the covariance of parameters of which A is the information.
     pub fn inverse(&self) -> Vec<f64> {
         let n = self.order;
@@ -92,12 +82,54 @@ impl Cholesky {
     }
 }
 
+/// Overwrites the lower triangle of the leading `order` × `order` part of a matrix, row-major in rows of `width`, with its Cholesky factor; false
+/// where a pivot is not larger than `least`.
+pub(crate) fn factorise(order: usize, width: usize, matrix: &mut [f64], least: f64) -> bool {
+    for i in 0..order {
+        let (above, row) = matrix.split_at_mut(i * width);
+        for j in 0..=i {
+            let left = if j < i { &above[j * width..j * width + j] } else { &row[..i] };
+            let rest = row[j] - row[..j].iter().zip(left).map(|(a, b)| a * b).sum::<f64>();
+            if j < i {
+                row[j] = rest / above[j * width + j];
+            } else if rest > least && rest.is_finite() {
+                row[i] = rest.sqrt();
+            } else {
+                return false;
+            }
+        }
+    }
+    true
+}
+
+/// Overwrites `b` by the solution of A x = b for a symmetric positive definite A, row-major of order `b.len()`; false where A is not positive
+/// definite to working precision.
+pub fn solve_positive_definite(a: &mut [f64], b: &mut [f64]) -> bool {
+    Cholesky::of(b.len(), a).map(|factor| factor.solve_in_place(b)).is_some()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use proptest::prelude::*;
 
     proptest! {
+        #[test]
+        fn the_solution_satisfies_the_equations_whatever_the_units(v in prop::collection::vec(-1.0f64..1.0, 20), decades in prop::array::uniform4(-6i32..6)) {
+            let unit = decades.map(|d| 10f64.powi(d));
+            let entry = |i: usize, j: usize| {
+                let gram: f64 = (0..4).map(|k| v[4 * k + i] * v[4 * k + j]).sum();
+                (gram + if i == j { 0.1 } else { 0.0 }) * unit[i] * unit[j]
+            };
+            let mut a: Vec<f64> = (0..16).map(|e| entry(e / 4, e % 4)).collect();
+            let mut x: Vec<f64> = (0..4).map(|i| v[16 + i] * unit[i]).collect();
+            prop_assert!(solve_positive_definite(&mut a, &mut x));
+            for i in 0..4 {
+                let left: f64 = (0..4).map(|j| entry(i, j) * x[j]).sum();
+                prop_assert!((left / unit[i] - v[16 + i]).abs() < 1e-10, "row {i}");
+            }
+        }
+
         #[test]
         fn a_matrix_times_its_inverse_is_one_whatever_the_units(v in prop::collection::vec(-1.0f64..1.0, 16), decades in prop::array::uniform4(-6i32..6)) {
             let unit = decades.map(|d| 10f64.powi(d));
@@ -106,7 +138,11 @@ mod tests {
                 (gram + if i == j { 0.1 } else { 0.0 }) * unit[i] * unit[j]
             };
             let a: Vec<f64> = (0..16).map(|e| entry(e / 4, e % 4)).collect();
-            let inverse = Cholesky::of(4, &a).unwrap().inverse();
+            let factor = Cholesky::of(4, &a).unwrap();
+            let inverse = factor.inverse();
+            let double: Vec<f64> = a.iter().map(|e| 2.0 * e).collect();
+            let doubled = Cholesky::of(4, &double).unwrap().ln_determinant() - factor.ln_determinant();
+            prop_assert!((doubled - 4.0 * 2f64.ln()).abs() < 1e-9);
             for i in 0..4 {
                 for j in 0..4 {
                     let product: f64 = (0..4).map(|k| a[4 * i + k] * inverse[4 * k + j]).sum();
@@ -118,9 +154,15 @@ mod tests {
 
     #[test]
     fn an_indefinite_or_singular_matrix_is_refused() {
+        assert!(!solve_positive_definite(&mut [1.0, 2.0, 2.0, 1.0], &mut [1.0, 1.0]));
+        assert!(!solve_positive_definite(&mut [1.0, 1.0, 1.0, 1.0], &mut [1.0, 1.0]));
+        assert!(!solve_positive_definite(&mut [0.0], &mut [1.0]));
+        assert!(!solve_positive_definite(&mut [f64::NAN], &mut [1.0]));
         assert_eq!(Cholesky::of(2, &[1.0, 2.0, 2.0, 1.0]), None);
         assert_eq!(Cholesky::of(2, &[1.0, 1.0, 1.0, 1.0]), None);
+        assert_eq!(Cholesky::of(1, &[0.0]), None);
         assert_eq!(Cholesky::of(1, &[f64::NAN]), None);
+        assert_eq!(Cholesky::of(1, &[f64::INFINITY]), None);
         assert_eq!(Cholesky::of(2, &[1.0]), None);
     }
 }

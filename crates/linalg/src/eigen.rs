@@ -1,70 +1,7 @@
-use crate::few_coordinates::{self, FEW};
 use faer::{Mat, Side};
 
-/// Why the eigenproblem has no trustworthy answer.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum EigenError {
-    /// The matrices are not of the stated order, or hold a value that is not finite.
-    #[error("the mass and stiffness matrices must both be finite and of order {order}")]
-    Shape {
-        /// The stated order.
-        order: usize,
-    },
-    /// The mass matrix is not positive definite.
-    #[error("the mass matrix is not positive definite: some motion of the assembly has no mass")]
-    MassNotPositive,
-    /// The solution does not satisfy the equations it was found from.
-    #[error(
-        "the eigenproblem was solved with a relative residual of {residual:.1e}, more than {allowed:.1e}"
-    )]
-    Inaccurate {
-        /// Largest of `‖Kφ − λMφ‖ / ‖K‖`, balanced, over the modes, or departure of ΞᵀMΞ from I.
-        residual: f64,
-        /// What is tolerated.
-        allowed: f64,
-    },
-    /// The iteration did not converge.
-    #[error("the eigenproblem did not converge")]
-    NoConvergence,
-}
-
-/// Undamped modes, mass-normalised: ΞᵀMΞ = I and ΞᵀKΞ = diag λ (eq 30, 31).
-#[derive(Debug, Clone, PartialEq)]
-pub struct ModalBasis {
-    order: usize,
-    eigenvalues: Vec<f64>,
-    shapes: Vec<f64>,
-}
-
-impl ModalBasis {
-    /// Modes known from elsewhere: eigenvalues, ascending, and mass-normalised shapes, one after the other. `None` where the
-    /// numbers do not fit together or are not finite.
-    pub fn new(eigenvalues: Vec<f64>, shapes: Vec<f64>) -> Option<Self> {
-        let order = eigenvalues.len();
-        let fits = shapes.len() == order * order
-            && eigenvalues.iter().chain(&shapes).all(|value| value.is_finite())
-            && eigenvalues.windows(2).all(|pair| pair[0] <= pair[1]);
-        fits.then_some(ModalBasis { order, eigenvalues, shapes })
-    }
-
-    /// Number of modes, equal to the number of coordinates.
-    pub fn order(&self) -> usize {
-        self.order
-    }
-
-    /// Eigenvalues λ_r = ω_r², ascending, (rad/s)².
-    pub fn eigenvalues(&self) -> &[f64] {
-        &self.eigenvalues
-    }
-
-    /// The mass-normalised shape of mode `r` over the coordinates.
-    pub fn shape(&self, r: usize) -> &[f64] {
-        &self.shapes[r * self.order..(r + 1) * self.order]
-    }
-}
-
-/// Residual that is tolerated, relative to the norm of the balanced matrices.
-const RESIDUAL_ALLOWED: f64 = 1e-11;
+use crate::few_coordinates::{self, FEW};
+use crate::modal_basis::{EigenError, ModalBasis, judged};
 
 /// Solves `K φ = λ M φ` for symmetric `stiffness` and symmetric positive definite `mass`, both
 /// row-major of order `order` (eq 24 as corrected, 25, 28, 29).
@@ -92,7 +29,7 @@ pub fn generalized_symmetric_eigen(
     }
 }
 
-pub(crate) fn by_library(order: usize, mass: &[f64], stiffness: &[f64]) -> Result<ModalBasis, EigenError> {
+fn by_library(order: usize, mass: &[f64], stiffness: &[f64]) -> Result<ModalBasis, EigenError> {
     let mut unit = Vec::with_capacity(order);
     for i in 0..order {
         let diagonal = mass[i * order + i];
@@ -132,11 +69,9 @@ pub(crate) fn by_library(order: usize, mass: &[f64], stiffness: &[f64]) -> Resul
         (0..order).map(|r| if values[r].abs() <= zero { 0.0 } else { values[r] * standard_norm }).collect();
     check(&mass, &stiffness, &scaled, &shapes)?;
 
-    Ok(ModalBasis {
-        order,
-        eigenvalues: scaled.iter().map(|value| value * norm).collect(),
-        shapes: (0..order * order).map(|k| shapes[(k % order, k / order)] * unit[k % order]).collect(),
-    })
+    let columns = (0..order * order).map(|k| shapes[(k % order, k / order)] * unit[k % order]).collect();
+    ModalBasis::new(scaled.iter().map(|value| value * norm).collect(), columns)
+        .ok_or(EigenError::NoConvergence)
 }
 
 fn check(mass: &Mat<f64>, stiffness: &Mat<f64>, values: &[f64], shapes: &Mat<f64>) -> Result<(), EigenError> {
@@ -160,19 +95,45 @@ fn check(mass: &Mat<f64>, stiffness: &Mat<f64>, values: &[f64], shapes: &Mat<f64
     judged(order, residual)
 }
 
-/// Whether modes may be trusted that leave `residual` of the balanced equations.
-pub(crate) fn judged(order: usize, residual: f64) -> Result<(), EigenError> {
-    // A comparison that a residual of NaN fails as well.
-    if residual <= RESIDUAL_ALLOWED * (order as f64).max(10.0) {
-        Ok(())
-    } else {
-        Err(EigenError::Inaccurate { residual, allowed: RESIDUAL_ALLOWED * (order as f64).max(10.0) })
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn a_few_coordinates_have_the_modes_that_the_library_finds(
+            n in 1usize..=FEW,
+            v in prop::collection::vec(-1.0f64..1.0, 2 * FEW * FEW),
+            decades in prop::collection::vec(-3i32..3, FEW),
+            rigid in any::<bool>(),
+        ) {
+            let gram = |from: usize, rank: usize, i: usize, j: usize| -> f64 {
+                (0..rank).map(|k| v[from + k * FEW + i] * v[from + k * FEW + j]).sum()
+            };
+            let unit = |i: usize| 10f64.powi(decades[i]);
+            let of = |entry: &dyn Fn(usize, usize) -> f64| -> Vec<f64> {
+                (0..n * n).map(|e| entry(e / n, e % n) * unit(e / n) * unit(e % n)).collect()
+            };
+            let mass = of(&|i, j| gram(0, FEW, i, j) + if i == j { 0.3 } else { 0.0 });
+            // Of low rank, the stiffness leaves rigid motions.
+            let rank = if rigid { n.div_ceil(2) } else { FEW };
+            let stiffness = of(&|i, j| 1e8 * gram(FEW * FEW, rank, i, j));
+            let [few, library] = [few_coordinates::modes, by_library].map(|solve| solve(n, &mass, &stiffness).unwrap());
+            let largest = library.eigenvalues()[n - 1];
+            for r in 0..n {
+                prop_assert!((few.eigenvalues()[r] - library.eigenvalues()[r]).abs() < 1e-12 * largest, "mode {}", r);
+            }
+            // Shapes of repeated values are free within their space; what all of them make of the stiffness is not.
+            for (i, j) in (0..n).flat_map(|i| (0..n).map(move |j| (i, j))) {
+                let whole = |basis: &ModalBasis| -> f64 {
+                    (0..n).map(|r| basis.shape(r)[i] * basis.shape(r)[j] / (1.0 + basis.eigenvalues()[r] / largest)).sum()
+                };
+                let size = unit(i).recip() * unit(j).recip();
+                prop_assert!((whole(&few) - whole(&library)).abs() < 1e-10 * size, "({}, {})", i, j);
+            }
+        }
+    }
 
     #[test]
     fn two_masses_on_a_spring_have_a_rigid_mode_and_the_textbook_frequency() {

@@ -4,8 +4,8 @@
 //! Cyclic Jacobi rotations (Golub and Van Loan, Matrix Computations, 8.5) on L⁻¹KL⁻ᵀ: nothing is faster at this size, and nothing more
 //! accurate.
 
-use crate::EigenError;
-use crate::eigen::{ModalBasis, judged};
+use crate::cholesky::factorise;
+use crate::modal_basis::{EigenError, ModalBasis, judged};
 
 /// Largest number of coordinates.
 pub(crate) const FEW: usize = 8;
@@ -19,7 +19,10 @@ type Square = [[f64; FEW]; FEW];
 /// Solves K φ = λ M φ for balanced matrices, M with a unit diagonal and K of unit norm: eigenvalues ascending, and the shapes, ΞᵀMΞ = I, by
 /// coordinate and mode.
 fn solve(n: usize, mass: &Square, stiffness: &Square) -> Result<([f64; FEW], Square), EigenError> {
-    let lower = factor(n, mass)?;
+    let mut lower = *mass;
+    if !factorise(n, FEW, lower.as_flattened_mut(), 0.0) {
+        return Err(EigenError::MassNotPositive);
+    }
     let mut a = *stiffness;
     for _ in 0..2 {
         // L⁻¹ from the left, then the transpose: twice makes L⁻¹KL⁻ᵀ.
@@ -48,24 +51,6 @@ fn solve(n: usize, mass: &Square, stiffness: &Square) -> Result<([f64; FEW], Squ
         }
     }
     Ok((values, shapes))
-}
-
-/// The lower triangle L of M = LLᵀ.
-fn factor(n: usize, mass: &Square) -> Result<Square, EigenError> {
-    let mut lower = [[0.0; FEW]; FEW];
-    for i in 0..n {
-        for j in 0..=i {
-            let rest = mass[i][j] - (0..j).map(|k| lower[i][k] * lower[j][k]).sum::<f64>();
-            if i != j {
-                lower[i][j] = rest / lower[j][j];
-            } else if rest > 0.0 {
-                lower[i][i] = rest.sqrt();
-            } else {
-                return Err(EigenError::MassNotPositive);
-            }
-        }
-    }
-    Ok(lower)
 }
 
 /// Rotates `a` until it is diagonal; the product of the rotations, whose columns are the eigenvectors.
@@ -162,46 +147,4 @@ fn residual(n: usize, mass: &Square, stiffness: &Square, values: &[f64; FEW], sh
         }
     }
     worst
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::eigen::by_library;
-    use proptest::prelude::*;
-
-    proptest! {
-        #[test]
-        fn a_few_coordinates_have_the_modes_that_the_library_finds(
-            n in 1usize..=FEW,
-            v in prop::collection::vec(-1.0f64..1.0, 2 * FEW * FEW),
-            decades in prop::collection::vec(-3i32..3, FEW),
-            rigid in any::<bool>(),
-        ) {
-            let gram = |from: usize, rank: usize, i: usize, j: usize| -> f64 {
-                (0..rank).map(|k| v[from + k * FEW + i] * v[from + k * FEW + j]).sum()
-            };
-            let unit = |i: usize| 10f64.powi(decades[i]);
-            let of = |entry: &dyn Fn(usize, usize) -> f64| -> Vec<f64> {
-                (0..n * n).map(|e| entry(e / n, e % n) * unit(e / n) * unit(e % n)).collect()
-            };
-            let mass = of(&|i, j| gram(0, FEW, i, j) + if i == j { 0.3 } else { 0.0 });
-            // Of low rank, the stiffness leaves rigid motions.
-            let rank = if rigid { n.div_ceil(2) } else { FEW };
-            let stiffness = of(&|i, j| 1e8 * gram(FEW * FEW, rank, i, j));
-            let [few, library] = [modes, by_library].map(|solve| solve(n, &mass, &stiffness).unwrap());
-            let largest = library.eigenvalues()[n - 1];
-            for r in 0..n {
-                prop_assert!((few.eigenvalues()[r] - library.eigenvalues()[r]).abs() < 1e-12 * largest, "mode {}", r);
-            }
-            // Shapes of repeated values are free within their space; what all of them make of the stiffness is not.
-            for (i, j) in (0..n).flat_map(|i| (0..n).map(move |j| (i, j))) {
-                let whole = |basis: &ModalBasis| -> f64 {
-                    (0..n).map(|r| basis.shape(r)[i] * basis.shape(r)[j] / (1.0 + basis.eigenvalues()[r] / largest)).sum()
-                };
-                let size = unit(i).recip() * unit(j).recip();
-                prop_assert!((whole(&few) - whole(&library)).abs() < 1e-10 * size, "({}, {})", i, j);
-            }
-        }
-    }
 }

@@ -4,11 +4,10 @@
 //!   joint stiffness on (transverse, rotation) per spectral line;
 //! * [`LuWorkspace`]: dense complex LU with row equilibration, its memory reused from line to line;
 //! * [`LeastSquares`]: weighted linear least squares by Householder reflections, with a rank check;
-//! * [`solve_positive_definite`]: the normal equations of a fit;
-//! * [`inverse`], [`matrix_exponential`]: real matrices of a few rows, such as those of a state space;
+//! * [`Cholesky`], [`solve_positive_definite`]: symmetric positive definite matrices: normal equations, covariances, masses;
+//! * [`matrix_exponential`]: real matrices of a few rows, such as those of a state space;
 //! * [`generalized_symmetric_eigen`]: `K φ = λ M φ`, scaled and with its residuals checked;
 //! * [`complex_eigenvalues`]: eigenvalues of a general complex matrix;
-//! * [`Cholesky`]: symmetric positive definite matrices of any order, and their inverses;
 //! * with the feature `sparse`: [`SparsePattern`] and [`SparseSymmetric`] assembled from element matrices, [`SparseCholesky`], and
 //!   [`lowest_modes`] of a sparse pencil by shift-invert block Lanczos, residuals checked and the modes counted ([`eigenvalues_below`]).
 //!
@@ -27,13 +26,13 @@
 
 mod cholesky;
 mod eigen;
+mod exponential;
 mod few_coordinates;
 mod general_eigen;
 mod least_squares;
 mod lu;
 mod matrix2;
-mod positive_definite;
-mod real;
+mod modal_basis;
 #[cfg(feature = "sparse")]
 mod sparse;
 #[cfg(feature = "sparse")]
@@ -45,14 +44,14 @@ mod sparse_modes;
 #[cfg(feature = "sparse")]
 mod sparse_space;
 
-pub use cholesky::Cholesky;
-pub use eigen::{EigenError, ModalBasis, generalized_symmetric_eigen};
+pub use cholesky::{Cholesky, solve_positive_definite};
+pub use eigen::generalized_symmetric_eigen;
+pub use exponential::matrix_exponential;
 pub use general_eigen::complex_eigenvalues;
 pub use least_squares::{LeastSquares, LeastSquaresError};
 pub use lu::{LuWorkspace, Singular};
 pub use matrix2::{ComplexMatrix2, Field, Matrix2, RealMatrix2, Scalar};
-pub use positive_definite::solve_positive_definite;
-pub use real::{inverse, matrix_exponential};
+pub use modal_basis::{EigenError, ModalBasis};
 #[cfg(feature = "sparse")]
 pub use sparse::{SparseError, SparsePattern, SparseSymmetric};
 #[cfg(feature = "sparse")]

@@ -1,4 +1,5 @@
 use num_complex::Complex64;
+use serde::Serialize;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// What a [`Matrix2`] can hold: numbers, or the numbers of several spectral lines side by side.
@@ -57,7 +58,7 @@ impl Field for Complex64 {
 }
 
 /// A 2×2 matrix on (transverse, rotation), row by row.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[repr(transparent)]
 pub struct Matrix2<T>(pub [[T; 2]; 2]);
 

@@ -1,3 +1,4 @@
+use crate::effects::{Action, Change, actions};
 use crate::mesh::Mesh;
 use crate::modes_cache::modes;
 use crate::uniform_beam::UniformBeam;
@@ -7,7 +8,7 @@ use jointscope_beam::{
     from_end_stiffness, shear_element_stiffness,
 };
 use jointscope_damping::{DampingLaw, ModeDamping, viscous_matrix};
-use jointscope_fixture::{BeamBody, Body, BodyKind, Damping, EffectKind, Fixture, Joint, JointLaw, Place};
+use jointscope_fixture::{BeamBody, Body, BodyKind, Damping, Fixture, Joint, JointLaw};
 use jointscope_linalg::{Matrix2, ModalBasis, RealMatrix2};
 use jointscope_spectra::Dof;
 use std::f64::consts::TAU;
@@ -56,7 +57,11 @@ impl Assembly {
         let damping = law.of_modes(basis.eigenvalues());
         let assembly =
             Assembly { order, places, mass: plain.mass, stiffness: plain.stiffness, basis, damping, law };
-        if fixture.physics().iter().any(rebuilds_a_body) { assembly.rebuilt(fixture) } else { Ok(assembly) }
+        if actions(fixture).any(|action| matches!(action, Action::OnBeam { .. })) {
+            assembly.rebuilt(fixture)
+        } else {
+            Ok(assembly)
+        }
     }
 
     /// One uniform beam with nothing on it, whose modes need no eigenproblem of the whole mesh.
@@ -326,11 +331,6 @@ pub(crate) fn damping_law(damping: &Damping) -> DampingLaw {
     }
 }
 
-fn rebuilds_a_body(effect: &jointscope_fixture::Effect) -> bool {
-    matches!(effect.kind, EffectKind::ShearDeformation | EffectKind::StiffnessChange)
-        && matches!(effect.place, Place::Body(_))
-}
-
 /// Σ aᵢ bᵢ, in four sums at once: a single one would wait for each addition.
 fn dot(a: &[f64], b: &[f64]) -> f64 {
     let mut sums = [0.0; 4];
@@ -450,13 +450,17 @@ struct BodyEffects {
 impl BodyEffects {
     fn on(fixture: &Fixture, body: &str, with_effects: bool) -> Self {
         let mut all = BodyEffects { factor: 1.0, shear_stiffness: None, rotary_inertia: 0.0 };
-        let here = |place: &Place| matches!(place, Place::Body(name) if name == body);
-        for effect in fixture.physics().iter().filter(|e| with_effects && here(&e.place)) {
-            match effect.kind {
-                EffectKind::StiffnessChange => all.factor *= effect.value(0),
-                EffectKind::ShearDeformation => {
-                    all.shear_stiffness = Some(effect.value(0));
-                    all.rotary_inertia += effect.value(1);
+        for action in actions(fixture).filter(|_| with_effects) {
+            match action {
+                Action::OnBeam { body: index, change } if fixture.bodies()[index].name == body => {
+                    match change {
+                        Change::Factor(factor) => all.factor *= factor,
+                        Change::Shear { stiffness, rotary_inertia } => {
+                            all.shear_stiffness = Some(stiffness);
+                            all.rotary_inertia += rotary_inertia;
+                        }
+                        _ => {}
+                    }
                 }
                 _ => {}
             }

@@ -5,9 +5,10 @@ mod in_time;
 pub(crate) use in_time::JointInTime;
 
 use crate::assembly::nominal_stiffness;
+use crate::effects::{Action, Change, Interface, actions};
 use crate::lanes::Lines;
 use jointscope_beam::{consistent_mass, end_compliance, transport};
-use jointscope_fixture::{Damping, Dof, Effect, EffectKind, Fixture, Joint, JointLaw, Place};
+use jointscope_fixture::{Damping, Dof, Fixture, Joint, JointLaw};
 use jointscope_linalg::{ComplexMatrix2, Matrix2, RealMatrix2};
 use num_complex::Complex64;
 
@@ -17,15 +18,6 @@ pub(crate) struct TwoEnds<T> {
     near: Matrix2<T>,
     cross: Matrix2<T>,
     far: Matrix2<T>,
-}
-
-/// A spring and dashpot in series with one end of the joint.
-#[derive(Debug, Clone, Copy)]
-struct Interface {
-    at_far_end: bool,
-    dof: Dof,
-    stiffness: f64,
-    damping: f64,
 }
 
 /// Everything that the fixture says of one joint's dynamic stiffness.
@@ -77,36 +69,30 @@ impl JointDynamics {
             shear_stiffness: None,
             mass: 0.0,
         };
-        fixture.physics().iter().for_each(|effect| all.apply(fixture, joint, effect));
+        for action in actions(fixture) {
+            match action {
+                Action::OnJoint { joint: index, change } if fixture.joints()[index].name == joint.name => {
+                    all.apply(change);
+                }
+                _ => {}
+            }
+        }
         all
     }
 
-    fn apply(&mut self, fixture: &Fixture, joint: &Joint, effect: &Effect) {
-        let points = fixture.points();
-        match &effect.place {
-            Place::Joint(name) if *name == joint.name => match effect.kind {
-                EffectKind::ShearDeformation => {
-                    // Two shear compliances in series add up.
-                    let earlier = self.shear_stiffness.map_or(0.0, |s| 1.0 / s);
-                    self.shear_stiffness = Some(1.0 / (earlier + 1.0 / effect.value(0)));
-                }
-                EffectKind::JointMass => self.mass += effect.value(0),
-                EffectKind::StiffnessChange => self.factor *= effect.value(0),
-                EffectKind::LossFactor => self.loss += effect.value(0),
-                EffectKind::Relaxation => self.relaxations.push((effect.value(0), effect.value(1))),
-                EffectKind::JointLength => self.extra_length += effect.value(0),
-                _ => return,
-            },
-            Place::Point(name) if effect.kind == EffectKind::InterfaceCompliance => {
-                let at_far_end = points[joint.to].name == *name;
-                if !at_far_end && points[joint.from].name != *name {
-                    return;
-                }
-                let dof = effect.dof.unwrap_or(Dof::Translation);
-                let (stiffness, damping) = (effect.value(0), effect.value(1));
-                self.interfaces.push(Interface { at_far_end, dof, stiffness, damping });
+    fn apply(&mut self, change: Change) {
+        match change {
+            Change::Shear { stiffness, .. } => {
+                // Two shear compliances in series add up.
+                let earlier = self.shear_stiffness.map_or(0.0, |s| 1.0 / s);
+                self.shear_stiffness = Some(1.0 / (earlier + 1.0 / stiffness));
             }
-            _ => return,
+            Change::Mass(mass) => self.mass += mass,
+            Change::Factor(factor) => self.factor *= factor,
+            Change::Loss(loss) => self.loss += loss,
+            Change::Relaxation { ratio, time } => self.relaxations.push((ratio, time)),
+            Change::Length(dx) => self.extra_length += dx,
+            Change::Interface(interface) => self.interfaces.push(interface),
         }
         self.altered = true;
     }

@@ -16,6 +16,16 @@ impl JointElement {
         JointElement { dynamics: JointDynamics::new(fixture, joint) }
     }
 
+    /// Its free length, m, effects included.
+    pub fn length(&self) -> f64 {
+        self.dynamics.lengths().0
+    }
+
+    /// Whether it has mass of its own.
+    pub fn is_heavy(&self) -> bool {
+        self.dynamics.is_heavy()
+    }
+
     /// Column `end` (0 to 3) of the symmetric 4×4 dynamic stiffness at s = iω (or decay + iω): the forces at both ends per unit of that motion
     /// alone, N/m to N·m/rad.
     pub fn column(&self, s: Complex64, end: usize) -> [Complex64; 4] {

@@ -12,6 +12,7 @@
 //! * [`Assembly`]: matrices and undamped modes of the free assembly (eq 8–14);
 //! * [`Model`]: the assembly with supports and effects, and its receptances between any [`Station`]s;
 //! * [`StateSpace`]: the assembly over time, for what has no FRF;
+//! * [`MeasuringChain`]: what stands between the structure and a recorded value;
 //! * [`synthesize`], [`accelerances`]: the FRFs an analyser would record (eq 18, 41), measuring-chain effects included.
 //!
 //! ```
@@ -34,6 +35,8 @@
 
 mod assembly;
 mod bar;
+mod chain;
+mod effects;
 mod far_modes;
 mod joint;
 mod joint_element;
@@ -50,6 +53,7 @@ mod terms;
 mod uniform_beam;
 
 pub use assembly::{Assembly, nominal_stiffness};
+pub use chain::{MeasuringChain, Reading, channel_signal, channel_station, window_decay};
 pub use joint_element::JointElement;
 pub use model::Model;
 pub use receptances::Receptances;

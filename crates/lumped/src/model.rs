@@ -1,10 +1,10 @@
 use crate::bar::BarShape;
+use crate::effects::{Action, actions};
 use crate::terms::{TermStation, Terms};
 use crate::{Assembly, LumpedError, Receptances, Station};
-use jointscope_fixture::{BodyKind, EffectKind, Fixture, Place};
+use jointscope_fixture::{BodyKind, Fixture};
 use jointscope_spectra::Dof;
 use num_complex::Complex64;
-use std::f64::consts::TAU;
 
 /// The assembly with its supports and structural effects, ready to give receptances.
 ///
@@ -119,20 +119,17 @@ impl Model {
 }
 
 fn bending_coordinates(fixture: &Fixture) -> Vec<BendingCoordinate> {
-    let mut all = Vec::new();
-    for effect in fixture.physics().iter().filter(|e| e.kind == EffectKind::BodyFlexibility) {
-        let Place::Body(name) = &effect.place else { continue };
-        let Some(body) = fixture.bodies().iter().position(|b| b.name == *name) else { continue };
-        let BodyKind::Rigid(rigid) = &fixture.bodies()[body].kind else { continue };
-        let omega = TAU * effect.value(0);
+    let of = |action| {
+        let Action::Bending { body, omega, ratio } = action else { return None };
+        let BodyKind::Rigid(rigid) = &fixture.bodies()[body].kind else { return None };
         let inertia = rigid.inertia.map_or(0.0, |q| q.value);
-        all.push(BendingCoordinate {
+        Some(BendingCoordinate {
             body,
             shape: BarShape::new(rigid.mass.value, inertia, rigid.x_cg.map_or(0.0, |q| q.value)),
             modal_mass: rigid.mass.value,
             eigenvalue: omega * omega,
-            viscous: 2.0 * effect.value(1) * omega,
-        });
-    }
-    all
+            viscous: 2.0 * ratio * omega,
+        })
+    };
+    actions(fixture).filter_map(of).collect()
 }

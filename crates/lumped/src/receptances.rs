@@ -95,6 +95,7 @@ impl<'a> Receptances<'a> {
     ///
     /// # Errors
     /// The number of the first line on which they are not finite.
+    #[inline] // compiled where it is called: all sizes of systems and all instruction sets, which `synthesize` has already
     pub fn on_lines(&mut self, s: &[Complex64], values: &mut [Complex64]) -> Result<(), usize> {
         self.in_blocks(s, |first, _, block| {
             let last = (first + WIDTH).min(s.len());

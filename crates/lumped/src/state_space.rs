@@ -1,10 +1,10 @@
 //! The assembly over time: ẋ = A x + b f in modal coordinates, effects included.
 
-use crate::joint::JointInTime;
+use crate::joint::{JointDynamics, JointInTime};
 use crate::terms::{PointLaw, Term, TermStation};
 use crate::{LumpedError, Model, Station};
-use jointscope_fixture::{EffectKind, Fixture, Joint, Place};
-use jointscope_linalg::{Matrix2, RealMatrix2, inverse};
+use jointscope_fixture::Fixture;
+use jointscope_linalg::{Cholesky, Matrix2, RealMatrix2};
 use std::f64::consts::TAU;
 
 /// The assembly with its supports and linear effects as a first-order system ẋ = A x + b f.
@@ -70,7 +70,7 @@ impl StateSpace {
             lengths: fixture
                 .joints()
                 .iter()
-                .map(|joint| (joint.name.clone(), acting_length(fixture, joint)))
+                .map(|joint| (joint.name.clone(), JointDynamics::new(fixture, joint).lengths().0))
                 .collect(),
             ends: fixture
                 .joints()
@@ -82,7 +82,7 @@ impl StateSpace {
             model,
         };
         space.add_terms(&mut equations)?;
-        space.inverse_mass = inverse(&equations.mass, n).ok_or(LumpedError::SingularMass)?;
+        space.inverse_mass = Cholesky::of(n, &equations.mass).ok_or(LumpedError::SingularMass)?.inverse();
         space.assemble(&equations)?;
         Ok(space)
     }
@@ -108,7 +108,7 @@ impl StateSpace {
                     equations.spring(&stretch, mass * omega * omega, 2.0 * ratio * omega * mass);
                     resonator += 1;
                 }
-                Term::Relative { station, joint } => {
+                Term::Relative { station, joint } | Term::Ends { station, joint, .. } => {
                     let law = joint.in_time().map_err(|kind| LumpedError::NotInTime { kind })?;
                     let motions = [row(*station), row(station + 1)];
                     if law.relaxations.is_empty() && law.slips.is_empty() {
@@ -117,9 +117,6 @@ impl StateSpace {
                     } else {
                         equations.joints.push((motions, law));
                     }
-                }
-                Term::Ends { .. } => {
-                    return Err(LumpedError::NotInTime { kind: EffectKind::JointMass.name() });
                 }
                 Term::TakenOut { station, stiffness } => {
                     let held = stiffness.map(|element| -element.re);
@@ -299,7 +296,7 @@ impl LocalLaw {
                 matrix[i * slips + j] = along(r, other) + if i == j { *damping } else { 0.0 };
             }
         }
-        let inverted = inverse(&matrix, slips)?;
+        let inverted = Cholesky::of(slips, &matrix)?.inverse();
         let right: Vec<Vec<f64>> = law
             .slips
             .iter()
@@ -335,12 +332,6 @@ impl LocalLaw {
 
 fn is_resonator(term: &Term) -> bool {
     matches!(term, Term::Point { law: PointLaw::Resonator { .. }, .. })
-}
-
-fn acting_length(fixture: &Fixture, joint: &Joint) -> f64 {
-    let here = |place: &Place| matches!(place, Place::Joint(name) if *name == joint.name);
-    let longer = fixture.physics().iter().filter(|e| e.kind == EffectKind::JointLength && here(&e.place));
-    fixture.joint_length(joint) + longer.map(|e| e.value(0)).sum::<f64>()
 }
 
 /// Adds factor·a·bᵀ to a matrix of `columns` columns.

@@ -1,8 +1,8 @@
 use crate::lanes::{Lanes, WIDTH};
-use crate::{LumpedError, Model, Receptances, Station};
-use jointscope_fixture::{BodyKind, EffectKind, Fixture, Place};
+use crate::{LumpedError, MeasuringChain, Model, Receptances, Station};
+use jointscope_fixture::Fixture;
 use jointscope_linalg::Field;
-use jointscope_spectra::{Channel, Dof, FrfForm, FrfPair, FrfSet, SpectralLines};
+use jointscope_spectra::{FrfForm, FrfPair, FrfSet, SpectralLines};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 
@@ -46,25 +46,18 @@ pub fn accelerances(
     instrument: Instrument,
 ) -> Result<Vec<Complex64>, LumpedError> {
     let model = Model::new(fixture, lines.hz()[lines.len() - 1])?;
-    let chain = MeasuringChain::of(fixture, instrument);
+    let chain = MeasuringChain::of(fixture, pairs, instrument)?;
     let mut stations = Stations::default();
     let mut wanted = Vec::with_capacity(pairs.len());
-    for pair in pairs {
-        let output = stations.output(chain.station(fixture, pair, &pair.response)?);
-        wanted.push((output, stations.input(chain.station(fixture, pair, &pair.reference)?)));
+    for reading in &chain.readings {
+        wanted.push((stations.output(reading.output), stations.input(reading.input)));
     }
     let mut loads = Vec::with_capacity(pairs.len());
-    for (index, pair) in pairs.iter().enumerate() {
-        let mass = chain.sensor_mass(&pair.response);
-        if mass == 0.0 {
-            loads.push(None);
-            continue;
-        }
-        let seat = chain.station(fixture, pair, &Channel::transverse(pair.response.point.clone()))?;
-        loads.push(Some(stations.sensor(mass, seat, &mut wanted, index)));
+    for (index, reading) in chain.readings.iter().enumerate() {
+        loads.push(reading.load.map(|(seat, mass)| stations.sensor(mass, seat, &mut wanted, index)));
     }
     let mut receptances = model.receptances_of(&stations.outputs, &stations.inputs, wanted);
-    chain.record(&mut receptances, pairs, &loads, lines)
+    record(&chain, &mut receptances, &loads, lines)
 }
 
 /// Stations in use, each once.
@@ -125,103 +118,40 @@ fn index_in(stations: &mut Vec<Station>, station: Station) -> usize {
     })
 }
 
-/// The effects between the structure and the file.
-struct MeasuringChain<'a> {
-    fixture: &'a Fixture,
-    active: bool,
-}
-
-impl<'a> MeasuringChain<'a> {
-    fn of(fixture: &'a Fixture, instrument: Instrument) -> Self {
-        MeasuringChain { fixture, active: instrument == Instrument::AsRecorded }
-    }
-
-    /// Sum, over the effects of this kind that `applies` to, of the parameter.
-    fn sum(&self, kind: EffectKind, applies: impl Fn(&Place) -> bool) -> f64 {
-        let effects = self.fixture.physics().iter().filter(|e| self.active && e.kind == kind);
-        effects.filter(|e| applies(&e.place)).map(|e| e.value(0)).sum()
-    }
-
-    fn station(&self, fixture: &Fixture, pair: &FrfPair, channel: &Channel) -> Result<Station, LumpedError> {
-        let point = fixture.point(&channel.point).ok_or_else(|| LumpedError::UnknownPoint {
-            frf: pair.to_string(),
-            point: channel.point.clone(),
-            known: fixture.points().iter().map(|p| p.name.as_str()).collect::<Vec<_>>().join(", "),
-        })?;
-        if channel.dof == Dof::Rotation
-            && matches!(&fixture.bodies()[point.body].kind, BodyKind::Rigid(rigid) if !rigid.rotates)
-        {
-            return Err(LumpedError::NoRotation { frf: pair.to_string(), point: channel.point.clone() });
-        }
-        let offset = self.sum(
-            EffectKind::PointOffset,
-            |place| matches!(place, Place::Point(name) if *name == channel.point),
-        );
-        Ok(Station { body: point.body, x: point.x.value + offset, dof: channel.dof })
-    }
-
-    fn sensor_mass(&self, response: &Channel) -> f64 {
-        self.sum(
-            EffectKind::SensorMass,
-            |place| matches!(place, Place::Response(name) if response.is_named(name)),
-        )
-    }
-
-    /// Gain and delay (s) of an FRF: a response is multiplied, a reference divides.
-    fn gain_and_delay(&self, pair: &FrfPair) -> (f64, f64) {
-        let (mut gain, mut delay) = (1.0, 0.0);
-        for effect in self.fixture.physics().iter().filter(|_| self.active) {
-            let sign = match &effect.place {
-                Place::Response(name) if pair.response.is_named(name) => 1.0,
-                Place::Reference(name) if pair.reference.is_named(name) => -1.0,
-                _ => continue,
-            };
-            match effect.kind {
-                EffectKind::ChannelGain => {
-                    gain *= if sign > 0.0 { effect.value(0) } else { 1.0 / effect.value(0) }
-                }
-                EffectKind::ChannelDelay => delay += sign * effect.value(0),
-                _ => {}
+/// What the chain makes of the receptances.
+fn record(
+    chain: &MeasuringChain,
+    receptances: &mut Receptances,
+    loads: &[Option<SensorLoad>],
+    lines: &SpectralLines,
+) -> Result<Vec<Complex64>, LumpedError> {
+    let omegas = lines.hz().iter().map(|hz| TAU * hz.max(NEARLY_ZERO_HZ));
+    let s: Vec<Complex64> = omegas.map(|omega| chain.s(omega)).collect();
+    let count = lines.len();
+    let mut values = vec![Complex64::ZERO; loads.len() * count];
+    let recorded = receptances.in_blocks(
+        &s,
+        #[inline(always)]
+        |first, s, block| {
+            let last = (first + WIDTH).min(count);
+            let squared = s * s;
+            let courses = values.chunks_exact_mut(count).map(|course| &mut course[first..last]);
+            for (index, (course, reading)) in courses.zip(&chain.readings).enumerate() {
+                let receptance = match &loads[index] {
+                    Some(load) => load.change(s, block[index], block),
+                    None => block[index],
+                };
+                (squared * receptance * reading.gain).write(course);
             }
+        },
+    );
+    recorded.map_err(|line| LumpedError::Unbounded { frequency: lines.hz()[line] })?;
+    for (course, reading) in
+        values.chunks_exact_mut(count).zip(&chain.readings).filter(|(_, r)| r.delay != 0.0)
+    {
+        for (value, s) in course.iter_mut().zip(&s) {
+            *value *= Complex64::cis(-s.im * reading.delay);
         }
-        (gain, delay)
     }
-
-    fn record(
-        &self,
-        receptances: &mut Receptances,
-        pairs: &[FrfPair],
-        loads: &[Option<SensorLoad>],
-        lines: &SpectralLines,
-    ) -> Result<Vec<Complex64>, LumpedError> {
-        let decay = self.sum(EffectKind::ExponentialWindow, |_| true);
-        let chain: Vec<(f64, f64)> = pairs.iter().map(|pair| self.gain_and_delay(pair)).collect();
-        let omegas = lines.hz().iter().map(|hz| TAU * hz.max(NEARLY_ZERO_HZ));
-        let s: Vec<Complex64> = omegas.map(|omega| Complex64::new(decay, omega)).collect();
-        let count = lines.len();
-        let mut values = vec![Complex64::ZERO; pairs.len() * count];
-        let recorded = receptances.in_blocks(
-            &s,
-            #[inline(always)]
-            |first, s, block| {
-                let last = (first + WIDTH).min(count);
-                let squared = s * s;
-                let courses = values.chunks_exact_mut(count).map(|course| &mut course[first..last]);
-                for (index, (course, (gain, _))) in courses.zip(&chain).enumerate() {
-                    let receptance = match &loads[index] {
-                        Some(load) => load.change(s, block[index], block),
-                        None => block[index],
-                    };
-                    (squared * receptance * *gain).write(course);
-                }
-            },
-        );
-        recorded.map_err(|line| LumpedError::Unbounded { frequency: lines.hz()[line] })?;
-        for (course, (_, delay)) in values.chunks_exact_mut(count).zip(chain).filter(|(_, c)| c.1 != 0.0) {
-            for (value, s) in course.iter_mut().zip(&s) {
-                *value *= Complex64::cis(-s.im * delay);
-            }
-        }
-        Ok(values)
-    }
+    Ok(values)
 }

@@ -1,12 +1,12 @@
 //! Everything that is not a proportional part of the free assembly, as a change V Δ(s) Vᵀ of low rank.
 
 use crate::Station;
+use crate::effects::{Action, actions};
 use crate::joint::{JointDynamics, TwoEnds};
 use crate::lanes::Lines;
-use jointscope_fixture::{Dof, Effect, EffectKind, Fixture, Place};
+use jointscope_fixture::{Dof, Fixture};
 use jointscope_linalg::ComplexMatrix2;
 use num_complex::Complex64;
-use std::f64::consts::TAU;
 
 /// The dynamic stiffness that one thing adds through one station.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -99,7 +99,10 @@ impl Terms {
             for (dof, stiffness, damping) in springs {
                 let damping = damping.map_or(0.0, |q| q.value);
                 if stiffness != 0.0 || damping != 0.0 {
-                    all.point(Station { body, x, dof }, PointLaw::Spring { stiffness, damping });
+                    all.point(
+                        TermStation::single(Station { body, x, dof }),
+                        PointLaw::Spring { stiffness, damping },
+                    );
                 }
             }
         }
@@ -111,28 +114,16 @@ impl Terms {
                 all.joint(ends.map(|p| (p.body, p.x.value)), dynamics, bends);
             }
         }
-        fixture.physics().iter().for_each(|effect| all.effect(fixture, effect));
+        for action in actions(fixture) {
+            if let Action::Through { motion, law } = action {
+                all.point(motion, law);
+            }
+        }
         all
     }
 
-    fn effect(&mut self, fixture: &Fixture, effect: &Effect) {
-        let Place::Body(name) = &effect.place else { return };
-        let Some(body) = fixture.bodies().iter().position(|b| b.name == *name) else { return };
-        let law = match effect.kind {
-            EffectKind::AddedMass => PointLaw::Mass(effect.value(1)),
-            EffectKind::Support => PointLaw::Spring { stiffness: effect.value(1), damping: effect.value(2) },
-            EffectKind::AttachedResonator => PointLaw::Resonator {
-                mass: effect.value(1),
-                omega: TAU * effect.value(2),
-                ratio: effect.value(3),
-            },
-            _ => return,
-        };
-        self.point(Station::transverse(body, effect.value(0)), law);
-    }
-
-    fn point(&mut self, station: Station, law: PointLaw) {
-        let station = self.push(&[TermStation::single(station)]);
+    fn point(&mut self, motion: TermStation, law: PointLaw) {
+        let station = self.push(&[motion]);
         self.terms.push(Term::Point { station, law });
     }
 

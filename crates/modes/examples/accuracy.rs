@@ -1,7 +1,8 @@
 //! Bias and spread of frequencies and damping ratios against the Cramér–Rao bound, on simulated tests:
 //! `cargo run --release -p jointscope-modes --example accuracy [SEEDS]`
+#![allow(clippy::unwrap_used, dead_code)] // shares the helpers of the tests, which fail as tests do
 
-#[path = "../tests/common/mod.rs"]
+#[path = "../tests/all/common/mod.rs"]
 mod common;
 
 fn main() {

@@ -74,6 +74,9 @@ const MOST_TERMS: usize = 8;
 /// Fall of χ² for a further residual term, in natural logarithms of the number of values for each of its unknowns.
 const TERM_WORTH: f64 = 1.0;
 
+/// χ² per degree of freedom above which poles that all FRFs share do not explain them.
+const POOR_FIT: f64 = 1.3;
+
 impl ModalAnalysis {
     /// Finds the modes of a set of FRFs. Variances that the set carries are believed; without, they come from coherence and averages, or
     /// from the scatter of the lines.
@@ -161,6 +164,11 @@ impl ModalAnalysis {
             if size > 0.0 { (apart / size).sqrt() } else { 0.0 }
         };
         (0..self.pairs().len()).map(error).collect()
+    }
+
+    /// Whether poles that all FRFs share explain them down to their noise; if not, deviations are widened.
+    pub fn is_explained(&self) -> bool {
+        self.chi2_per_dof <= POOR_FIT
     }
 
     /// MAC of every two modes over the FRFs' residues, row-major: 1 on the diagonal, small elsewhere where the channels tell the shapes apart.

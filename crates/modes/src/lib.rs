@@ -7,7 +7,7 @@
 //! 2. **Selection.** Of the columns those are modes that χ² cannot do without, noise and look-elsewhere counted; or the ones that the analyst picks ([`ModesOptions::pick`]).
 //! 3. **Maximum likelihood.** Poles, participations, residues and residual terms are refined on
 //!    α(s) = Σ [ρ/(s − λ) + ρ̄/(s − λ̄)] + L/s² + U with the FRFs' variances as weights, residues eliminated. The inverse of the information is the Cramér–Rao bound that the
-//!    standard deviations are taken from; estimates reach it (`tests/statistics.rs`, `docs/modes.md`).
+//!    standard deviations are taken from; estimates reach it (`tests/all/statistics.rs`, `docs/guide/modes.md`).
 //!
 //! Then each FRF is asked by itself. Where they do not agree on a pole, as after a structure has warmed up between hits, the mode [drifts](Drift): frequency and damping ratio are means
 //! over the FRFs, and their deviation is the scatter of one more.
@@ -50,7 +50,6 @@ mod model;
 mod noise;
 mod observed;
 mod polynomial;
-mod says;
 mod scatter;
 mod selection;
 mod stabilization;
@@ -58,5 +57,6 @@ mod stabilization;
 pub use analysis::{ModalAnalysis, ModesOptions, ResidualTerms};
 pub use error::ModesError;
 pub use matching::{ExpectedMode, Match, Matches, match_modes};
-pub use mode::{Drift, Mode, mac};
+pub use mode::{Mode, mac};
+pub use scatter::Drift;
 pub use stabilization::{ChartPole, Stability};

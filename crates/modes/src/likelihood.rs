@@ -6,6 +6,7 @@
 
 mod point;
 
+use jointscope_inference::{Convergence, Damping, LeastSquares, Precision, Settings, descend};
 use jointscope_linalg::Cholesky;
 use num_complex::Complex64;
 
@@ -61,8 +62,42 @@ pub(crate) struct Likelihood {
 
 /// Steps of the damped Gauss–Newton search, at most.
 const STEPS: usize = 40;
-/// χ² falls by less than this: done.
-const SETTLED: f64 = 1e-3;
+const DAMPING: Damping = Damping { initial: 1e-4, decrease: 0.1, least: 1e-12, raised: 1e-4, most: 1e8 };
+/// χ² falls by less than this: done. Noise alone moves it by far more.
+const CONVERGED: Convergence = Convergence { gain: 1e-3, share: 0.0, floor: 0.0 };
+
+/// The most likely poles and participations; everything linear is solved for anew at every point (variable projection).
+struct Search<'a> {
+    observed: &'a Observed,
+    terms: Terms,
+    prior: Option<&'a Prior>,
+}
+
+impl LeastSquares for Search<'_> {
+    type Point = Point;
+    type Weights = ();
+    type Derivatives = ();
+    type Equations = ();
+    const FIXED_WEIGHTS: bool = true;
+
+    fn weights(&self, _: &Point) {}
+
+    fn objective(&self, point: &Point, _: &()) -> f64 {
+        point.target()
+    }
+
+    /// In closed form, and found with the point.
+    fn derivatives(&self, _: &Point, _: Precision) -> Option<()> {
+        Some(())
+    }
+
+    fn equations(&self, _: &Point, _: &(), _: &()) {}
+
+    fn stepped(&self, point: &Point, _: &(), damping: f64) -> Option<Point> {
+        let moved = point.moved(&point.normal.step(damping)?);
+        Point::of(self.observed, moved, self.terms, self.prior)
+    }
+}
 
 impl Likelihood {
     /// Searches from `start`; `None` where the equations have no solution, as with more unknowns than numbers.
@@ -73,35 +108,17 @@ impl Likelihood {
         steps: usize,
         prior: Option<&Prior>,
     ) -> Option<Self> {
-        let mut here = Point::of(observed, start, terms, prior)?;
-        let mut damping = 1e-4;
-        for _ in 0..steps.min(STEPS) {
-            if here.gradient.is_empty() {
-                break;
-            }
-            let mut moved = None;
-            for _ in 0..8 {
-                if let Some(step) = here.step(damping) {
-                    let next = Point::of(observed, here.moved(&step), terms, prior);
-                    if let Some(next) = next.filter(|next| next.target() <= here.target()) {
-                        moved = Some(next);
-                        break;
-                    }
-                }
-                damping = (damping * 10.0).max(1e-4);
-                if damping > 1e8 {
-                    break;
-                }
-            }
-            let Some(next) = moved else { break };
-            let fall = here.target() - next.target();
-            here = next;
-            damping = (damping * 0.1).max(1e-12);
-            if fall < SETTLED {
-                break;
-            }
+        let here = Point::of(observed, start, terms, prior)?;
+        if here.normal.order == 0 {
+            return here.finish(observed);
         }
-        here.finish(observed)
+        let settings = Settings {
+            steps: steps.min(STEPS),
+            damping: DAMPING,
+            convergence: CONVERGED,
+            ..Settings::default()
+        };
+        descend(&Search { observed, terms, prior }, here, None, &settings)?.point.finish(observed)
     }
 
     /// Variance of δω/σ and of δ ln σ, and their covariance, for each mode: the Cramér–Rao bound at the estimate.
@@ -136,12 +153,12 @@ impl Point {
     fn finish(self, observed: &Observed) -> Option<Likelihood> {
         let count = self.poles.poles.len();
         let own = 2 * self.terms.count();
-        let n = self.gradient.len();
-        let information = match Cholesky::of(n, &self.information) {
+        let n = self.normal.order;
+        let information = match Cholesky::of(n, &self.normal.information) {
             Some(factor) => factor,
             None => {
                 // Directions that nothing is known of get a deviation that says so.
-                let mut loosened = self.information.clone();
+                let mut loosened = self.normal.information.clone();
                 for i in 0..n {
                     loosened[i * n + i] = loosened[i * n + i] * (1.0 + 1e-9) + 1e-12;
                 }

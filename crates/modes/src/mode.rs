@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use crate::likelihood::Likelihood;
 use crate::observed::Observed;
-use crate::scatter::Scatter;
+use crate::scatter::{Drift, Scatter, deviations};
 use crate::selection::{is_inside, worth};
 
 /// A mode, with the standard deviations of its numbers.
@@ -41,15 +41,19 @@ pub struct Mode {
     pub worth: f64,
 }
 
-/// A mode that is not at one place: its frequencies differ among the FRFs by more than their noise, as those of a structure that warms up between hits do.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Drift {
-    /// Standard deviation of the frequency among the FRFs beyond noise, Hz.
-    pub frequency: f64,
-    /// Standard deviation of the damping ratio among the FRFs beyond noise.
-    pub damping_ratio: f64,
-    /// FRFs in which the mode was told by itself: (index, frequency, its standard deviation, damping ratio, its standard deviation).
-    pub by_frf: Vec<(usize, f64, f64, f64, f64)>,
+/// Share of a damping ratio above which its deviation leaves little of it.
+const VAGUE: f64 = 0.3;
+
+impl Mode {
+    /// Whether the FRFs cannot be explained as well without it.
+    pub fn stands_out(&self) -> bool {
+        self.worth >= 1.0
+    }
+
+    /// Whether the damping ratio is known by its order of magnitude only.
+    pub fn is_vaguely_damped(&self) -> bool {
+        self.damping_std > VAGUE * self.damping_ratio
+    }
 }
 
 /// Modal assurance criterion |aᴴb|²/(aᴴa·bᴴb) of two vectors, 0 where one of them is nothing.
@@ -105,21 +109,6 @@ pub(crate) fn modes_of(
         .collect();
     all.sort_by(|a, b| a.frequency.total_cmp(&b.frequency));
     all.into_iter().partition(|mode| is_inside(&mode.pole, observed))
-}
-
-/// Standard deviations of |λ|/2π and ζ from the covariance of (δω/σ, δ ln σ), and the correlation with the second.
-pub(crate) fn deviations(pole: Complex64, covariance: [[f64; 2]; 2]) -> [(f64, f64); 2] {
-    let (sigma, omega, natural) = (-pole.re, pole.im, pole.norm());
-    // d|λ| = (ω dω + σ dσ)/|λ|; dζ = (dσ − ζ d|λ|)/|λ|.
-    let frequency = [omega * sigma / natural, sigma * sigma / natural];
-    let ratio =
-        [-sigma / natural * frequency[0] / natural, (sigma - sigma / natural * frequency[1]) / natural];
-    let product = |a: [f64; 2], b: [f64; 2]| {
-        (0..2).map(|i| (0..2).map(|j| a[i] * covariance[i][j] * b[j]).sum::<f64>()).sum::<f64>()
-    };
-    let (f, z) = (product(frequency, frequency).max(0.0).sqrt(), product(ratio, ratio).max(0.0).sqrt());
-    let correlation = if f * z > 0.0 { product(frequency, ratio) / (f * z) } else { 0.0 };
-    [(f / TAU, correlation), (z, correlation)]
 }
 
 fn residues(observed: &Observed, fit: &Likelihood, mode: usize) -> (Vec<Complex64>, Vec<f64>) {
@@ -229,13 +218,5 @@ mod tests {
         let turned = |phases: [f64; 4]| phases.map(|p| Complex64::from_polar(1.0, p));
         assert!((phase_collinearity(&turned([0.3, 0.3, 0.3 + TAU / 2.0, 0.3])) - 1.0).abs() < 1e-12);
         assert!(phase_collinearity(&turned([0.0, TAU / 4.0, TAU / 2.0, 3.0 * TAU / 4.0])) < 1e-12);
-    }
-
-    #[test]
-    fn deviations_of_a_lightly_damped_pole_are_those_of_its_parts() {
-        let pole = Complex64::new(-1.0, 1000.0);
-        let [frequency, ratio] = deviations(pole, [[0.04, 0.0], [0.0, 0.09]]);
-        assert!((frequency.0 * TAU - 0.2).abs() < 1e-6, "a fifth of a half-width");
-        assert!((ratio.0 - 0.3 * 1e-3).abs() < 1e-9, "three tenths of the ratio");
     }
 }

@@ -3,10 +3,19 @@
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 
-use crate::Drift;
 use crate::likelihood::{Likelihood, Poles, Prior};
-use crate::mode::deviations;
 use crate::observed::Observed;
+
+/// A mode that is not at one place: its frequencies differ among the FRFs by more than their noise, as those of a structure that warms up between hits do.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Drift {
+    /// Standard deviation of the frequency among the FRFs beyond noise, Hz.
+    pub frequency: f64,
+    /// Standard deviation of the damping ratio among the FRFs beyond noise.
+    pub damping_ratio: f64,
+    /// FRFs in which the mode was told by itself: (index, frequency, its standard deviation, damping ratio, its standard deviation).
+    pub by_frf: Vec<(usize, f64, f64, f64, f64)>,
+}
 
 /// A number and its standard deviation.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -159,6 +168,21 @@ impl Heterogeneity {
     }
 }
 
+/// Standard deviations of |λ|/2π and ζ from the covariance of (δω/σ, δ ln σ), and the correlation with the second.
+pub(crate) fn deviations(pole: Complex64, covariance: [[f64; 2]; 2]) -> [(f64, f64); 2] {
+    let (sigma, omega, natural) = (-pole.re, pole.im, pole.norm());
+    // d|λ| = (ω dω + σ dσ)/|λ|; dζ = (dσ − ζ d|λ|)/|λ|.
+    let frequency = [omega * sigma / natural, sigma * sigma / natural];
+    let ratio =
+        [-sigma / natural * frequency[0] / natural, (sigma - sigma / natural * frequency[1]) / natural];
+    let product = |a: [f64; 2], b: [f64; 2]| {
+        (0..2).map(|i| (0..2).map(|j| a[i] * covariance[i][j] * b[j]).sum::<f64>()).sum::<f64>()
+    };
+    let (f, z) = (product(frequency, frequency).max(0.0).sqrt(), product(ratio, ratio).max(0.0).sqrt());
+    let correlation = if f * z > 0.0 { product(frequency, ratio) / (f * z) } else { 0.0 };
+    [(f / TAU, correlation), (z, correlation)]
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -176,5 +200,13 @@ mod tests {
         assert!(moving.certain);
         let value = moving.value();
         assert!((value.value - 1.05).abs() < 1e-3 && (0.3..0.45).contains(&value.std), "{value:?}");
+    }
+
+    #[test]
+    fn deviations_of_a_lightly_damped_pole_are_those_of_its_parts() {
+        let pole = Complex64::new(-1.0, 1000.0);
+        let [frequency, ratio] = deviations(pole, [[0.04, 0.0], [0.0, 0.09]]);
+        assert!((frequency.0 * TAU - 0.2).abs() < 1e-6, "a fifth of a half-width");
+        assert!((ratio.0 - 0.3 * 1e-3).abs() < 1e-9, "three tenths of the ratio");
     }
 }

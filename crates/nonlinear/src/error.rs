@@ -1,13 +1,10 @@
 use jointscope_hits::HitError;
 use jointscope_lumped::LumpedError;
 
-/// Why motion over time cannot be computed.
+/// Why a channel cannot be read or struck.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum SimulationError {
-    /// The assembly cannot be modelled over time.
-    #[error(transparent)]
-    Model(#[from] LumpedError),
-    /// A channel names a point that the fixture does not have.
+pub enum ChannelError {
+    /// It names a point that the fixture does not have.
     #[error("the fixture has no point `{point}` (it has {known})")]
     UnknownPoint {
         /// The missing point.
@@ -15,38 +12,40 @@ pub enum SimulationError {
         /// The points there are.
         known: String,
     },
-    /// A rotation or moment of a body that does not rotate.
-    #[error("point `{point}` sits on a body that does not rotate")]
-    NoRotation {
-        /// The point.
-        point: String,
-    },
-    /// More amplitude-dependent effects than there is room for.
+    /// A rotation or moment at a point of a body that does not rotate.
+    #[error("point `{0}` sits on a body that does not rotate")]
+    NoRotation(String),
+}
+
+/// Why motion over time cannot be computed.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum SimulationError {
+    /// The assembly cannot be modelled over time.
+    #[error(transparent)]
+    Model(#[from] LumpedError),
+    /// A channel is impossible.
+    #[error(transparent)]
+    Channel(#[from] ChannelError),
+    /// More amplitude-dependent effects than there is room for: their number, and the most there may be.
     #[error(
-        "the fixture has {count} effects that depend on amplitude: {most} at the most can be simulated together"
+        "the fixture has {0} effects that depend on amplitude: {1} at the most can be simulated together"
     )]
-    TooManyElements {
-        /// Number of effects.
-        count: usize,
-        /// The most there is room for.
-        most: usize,
-    },
+    TooManyElements(usize, usize),
     /// More modes within the sampled band than there is room for.
-    #[error("{} modes lie within the band that the force's sampling rate asks for, and {} at the most can be followed: give the force at a lower rate", states / 2, most / 2)]
+    #[error(
+        "{modes} modes lie within the band that the force's sampling rate asks for, and {most} at the most can be followed: give the force at a lower rate"
+    )]
     TooManyStates {
-        /// Number of states.
-        states: usize,
+        /// Number of modes.
+        modes: usize,
         /// The most there is room for.
         most: usize,
     },
-    /// A roving sensor's mass.
+    /// A roving sensor's mass, at this channel.
     #[error(
-        "physics: `sensor_mass` at {place} is there only while that response is measured, but here all responses are simulated at once; state it as an `added_mass`"
+        "physics: `sensor_mass` at {0} is there only while that response is measured, but here all responses are simulated at once; state it as an `added_mass`"
     )]
-    SensorMass {
-        /// The channel.
-        place: String,
-    },
+    SensorMass(String),
     /// The motion grows beyond all bounds.
     #[error(
         "hit {hit}: the motion grows beyond all bounds; check the signs of stiffness and mass in `physics`"
@@ -66,18 +65,12 @@ pub enum DiagnoseError {
     /// No hits.
     #[error("there are no hits: time histories of force and response are needed")]
     NoHits,
-    /// A hit without force.
-    #[error("hit {hit} has no force: its force channel is zero throughout")]
-    NoForce {
-        /// The hit's number.
-        hit: u32,
-    },
-    /// A hit without response.
-    #[error("hit {hit} has a force and no response: at least one acceleration is needed")]
-    NoResponse {
-        /// The hit's number.
-        hit: u32,
-    },
+    /// The hit of this number has no force.
+    #[error("hit {0} has no force: its force channel is zero throughout")]
+    NoForce(u32),
+    /// The hit of this number has no response.
+    #[error("hit {0} has a force and no response: at least one acceleration is needed")]
+    NoResponse(u32),
     /// A response that is zero throughout.
     #[error("hit {hit}: the response at {channel} is zero throughout; leave the dead channel out")]
     SilentResponse {
@@ -96,22 +89,9 @@ pub enum DiagnoseError {
         /// Samples needed.
         needed: usize,
     },
-    /// A point that the fixture does not have.
-    #[error("hit {hit}: the fixture has no point `{point}`")]
-    UnknownPoint {
-        /// The hit's number.
-        hit: u32,
-        /// The point.
-        point: String,
-    },
-    /// A rotation of a body that does not rotate.
-    #[error("hit {hit}: point `{point}` sits on a body that does not rotate")]
-    NoRotation {
-        /// The hit's number.
-        hit: u32,
-        /// The point.
-        point: String,
-    },
+    /// A channel of the hit of this number is impossible.
+    #[error("hit {0}: {1}")]
+    Channel(u32, #[source] ChannelError),
     /// Hits of one strength only.
     #[error(
         "all {hits} hits are of one strength (at each point the strongest is {ratio:.2} times the weakest): whether anything depends on amplitude cannot be judged; strike at two or more strengths that differ by a factor of 2 or more"
@@ -122,14 +102,9 @@ pub enum DiagnoseError {
         /// Strongest over weakest.
         ratio: f64,
     },
-    /// Nothing elastic within the sampled band.
-    #[error(
-        "no elastic motion of the fixture lies below {highest} Hz, half of the sampling rate: sample faster"
-    )]
-    NoElasticMotion {
-        /// Half the sampling rate, Hz.
-        highest: f64,
-    },
+    /// Nothing elastic below this frequency in Hz, half of the sampling rate.
+    #[error("no elastic motion of the fixture lies below {0} Hz, half of the sampling rate: sample faster")]
+    NoElasticMotion(f64),
     /// The fixture's motion is not finite.
     #[error("the fixture's motion under these hits is not finite: check its stiffnesses and masses")]
     NoMotion,
@@ -164,59 +139,42 @@ pub enum SteppedError {
         /// The last.
         last: String,
     },
-    /// Too few lines about the resonance.
-    #[error(
-        "level {level} has fewer than 8 spectral lines about the resonance; step finer, or widen `--band`"
-    )]
-    TooFewLines {
-        /// The amplitude held.
-        level: String,
-    },
-    /// No resonance can be fitted.
-    #[error("no resonance can be fitted to the FRFs of level {level}; choose a band about one with `--band`")]
-    NoResonance {
-        /// The amplitude held.
-        level: String,
-    },
+    /// Too few lines about the resonance of the level of this amplitude.
+    #[error("level {0} has fewer than 8 spectral lines about the resonance; step finer, or widen `--band`")]
+    TooFewLines(String),
+    /// No resonance can be fitted to the level of this amplitude.
+    #[error("no resonance can be fitted to the FRFs of level {0}; choose a band about one with `--band`")]
+    NoResonance(String),
     /// No joint is moved by the resonance.
     #[error(
         "no joint of the fixture is moved at this resonance, so nothing can be said of a joint; choose another with `--band`"
     )]
     NoJoint,
+    /// A channel is impossible.
+    #[error(transparent)]
+    Channel(#[from] ChannelError),
     /// The fixture cannot be modelled.
     #[error(transparent)]
     Model(#[from] LumpedError),
 }
 
-/// Why a joint's force–state map cannot be drawn.
+/// Why the force–state map of a joint, named first, cannot be drawn.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum ForceStateError {
-    /// A joint that the fixture does not have.
-    #[error("the fixture has no joint `{joint}`")]
-    UnknownJoint {
-        /// The joint.
-        joint: String,
-    },
-    /// Other joints bridge this one.
+    /// The fixture does not have the joint.
+    #[error("the fixture has no joint `{0}`")]
+    UnknownJoint(String),
+    /// Other joints bridge it.
     #[error(
-        "other joints lead around joint {joint}: what it bears alone does not follow from the motion of the bodies"
+        "other joints lead around joint {0}: what it bears alone does not follow from the motion of the bodies"
     )]
-    Loop {
-        /// The joint.
-        joint: String,
-    },
+    Loop(String),
     /// Supports on both sides.
-    #[error("supports hold the bodies on both sides of joint {joint}: what they bear is not measured")]
-    Supported {
-        /// The joint.
-        joint: String,
-    },
+    #[error("supports hold the bodies on both sides of joint {0}: what they bear is not measured")]
+    Supported(String),
     /// No side is of rigid bodies that nothing holds.
-    #[error("the bodies beside joint {joint} bend: their inertia forces do not follow from a few sensors")]
-    Deformable {
-        /// The joint.
-        joint: String,
-    },
+    #[error("the bodies beside joint {0} bend: their inertia forces do not follow from a few sensors")]
+    Deformable(String),
     /// No side is followed by sensors.
     #[error(
         "the motion of {bodies} beside joint {joint} is not measured: put two sensors on the body (one where it does not rotate)"
@@ -233,7 +191,7 @@ pub enum ForceStateError {
     )]
     Effect {
         /// Its kind.
-        kind: String,
+        kind: &'static str,
         /// Its place.
         place: String,
     },

@@ -38,21 +38,21 @@
 
 mod distribution;
 mod error;
+mod estimates;
 mod force_state;
 mod identification;
+mod spectra;
 mod stepped;
 mod time;
 
-pub use error::{DiagnoseError, ForceStateError, SimulationError, SteppedError};
+pub use error::{ChannelError, DiagnoseError, ForceStateError, SimulationError, SteppedError};
 pub use force_state::{ForceState, ForceStateMap, MotionSource};
-pub use identification::diagnosis::{
-    Estimate, Finding, HeldOut, ModelFit, NonlinearDiagnosis, NonlinearOptions, Reach, Verdict,
-};
-pub use identification::homogeneity::{CHANGED, Homogeneity};
-pub use identification::parameters::Tolerance;
+pub use identification::diagnosis::{Finding, ModelFit, NonlinearDiagnosis, NonlinearOptions, Reach};
+pub use identification::homogeneity::{CHANGED, HitLevel, Homogeneity};
+pub use jointscope_findings::{Estimate, HeldOut, Verdict};
 pub use stepped::diagnosis::{LevelFinding, LevelResult, SteppedDiagnosis, Tried};
 pub use stepped::level::{Held, SteppedLevel};
 pub use stepped::pooled::pooled;
 pub use stepped::resonance::Resonance;
-pub use time::law::{Memory, RestoringLaw};
+pub use time::law::RestoringLaw;
 pub use time::simulation::{Simulation, simulate};

@@ -2,12 +2,11 @@
 //!
 //!     cargo run --release -p jointscope-proof --example conceal -- DIRECTORY CASES GRADED SOLID STRUCK SEED FAMILY…
 
-use jointscope_fixture::Fixture;
 use jointscope_proof::{
-    Answers, Case, FAMILIES, NoAnswer, Plan, Precision, Replies, Sealable, StruckAnswers, StruckNoAnswer,
+    Answers, Case, FAMILIES, NoAnswer, Plan, Precision, Replies, Sealable, StruckAnswers,
 };
 use std::error::Error;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -28,33 +27,21 @@ fn main() -> Result<(), Box<dyn Error>> {
     let digest = sealed.digest().to_owned();
     let directory = PathBuf::from(directory);
     // Rounding to single precision is 6e-8 of a value; the noise is 1e-3 of it and more.
-    let frfs = questions.laboratory.iter().chain(&questions.solid);
-    let mut number = 0;
-    for case in frfs {
-        pack(&directory, &mut number, &case.believed, &case.recording(Precision::Single)?)?;
-    }
-    for case in &questions.struck {
-        pack(&directory, &mut number, &case.believed, &case.recording(Precision::Single)?)?;
+    for (number, asked) in questions.all().into_iter().enumerate() {
+        let folder = directory.join(format!("{number:02}"));
+        std::fs::create_dir_all(&folder)?;
+        std::fs::write(folder.join("fixture.json"), asked.believed().to_json())?;
+        std::fs::write(folder.join("hammer-test.uff"), asked.recording(Precision::Single)?)?;
     }
     let silent = |cases: &[Case]| Answers::by(cases, 1, |_| (), |_| Err(NoAnswer::BrokeDown));
     let replies = Replies {
         laboratory: silent(&questions.laboratory),
         solid: silent(&questions.solid),
-        struck: StruckAnswers::by(&questions.struck, 1, |_| Err(StruckNoAnswer::BrokeDown)),
+        struck: StruckAnswers::by(&questions.struck, 1, |_| (), |_| Err(NoAnswer::BrokeDown)),
     };
     let truths = sealed.open(&replies).ok_or("the seal does not open")?;
     let values = serde_json::Value::Array(truths.iter().map(Sealable::to_value).collect());
     std::fs::write(directory.join("truths.json"), values.to_string())?;
     println!("{digest}");
-    Ok(())
-}
-
-/// Writes one case's directory.
-fn pack(directory: &Path, number: &mut usize, believed: &Fixture, recording: &[u8]) -> std::io::Result<()> {
-    let folder = directory.join(format!("{number:02}"));
-    std::fs::create_dir_all(&folder)?;
-    std::fs::write(folder.join("fixture.json"), believed.to_json())?;
-    std::fs::write(folder.join("hammer-test.uff"), recording)?;
-    *number += 1;
     Ok(())
 }

@@ -8,6 +8,7 @@ use jointscope_fixture::{Dof, Effect, EffectKind, Fixture, Place};
 use jointscope_nonlinear::{Held, NonlinearOptions, SteppedDiagnosis, SteppedLevel, Verdict};
 use jointscope_rig::{Control, Family, Instrument, SteppedSines, drawn_within_tolerance, frfs, generator};
 use jointscope_spectra::{Channel, FrfForm, FrfPair, SpectralLines};
+use jointscope_wording::Says;
 use num_complex::Complex64;
 use rand::Rng;
 use std::collections::BTreeMap;
@@ -185,7 +186,7 @@ fn main() {
                 continue;
             }
         };
-        let called = found.verdict != Verdict::Homogeneous;
+        let called = found.verdict != Verdict::Consistent;
         score.seen += usize::from(called);
         let name = |e: &Effect| format!("{} {} {}", e.kind.name(), e.place, e.dof.unwrap().name());
         let names: Vec<String> =

@@ -1,22 +1,32 @@
 //! What was answered: plain data, as a diagnosis hands it back.
 
-use crate::case::effect_value;
+use crate::case::{effect_value, in_file};
 use crate::{Case, Name};
-use jointscope_diagnosis::{Diagnosis, DiagnosisError, DiagnosisOptions, Verdict};
-use jointscope_fixture::{Effect, Fixture, FixtureError};
+use jointscope_diagnosis::Verdict;
+use jointscope_fixture::{Effect, Fixture};
+use jointscope_pipeline::{Answer as Diagnosed, Measurement, Options, Outcome, diagnose};
+use serde::{Serialize, Serializer};
 use serde_json::{Value, json};
 
 /// An effect that was found.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Found {
     /// Kind, place, dof and parameters.
+    #[serde(serialize_with = "in_file")]
     pub effect: Effect,
     /// 95 % intervals by parameter, where they are stated.
+    #[serde(rename = "ci95")]
     pub intervals: Vec<Option<[f64; 2]>>,
     /// Stated probability of its name.
     pub probability: f64,
     /// Other names for it with their probabilities.
+    #[serde(serialize_with = "with_probabilities")]
     pub alternatives: Vec<(Effect, f64)>,
+}
+
+fn with_probabilities<S: Serializer>(names: &[(Effect, f64)], serializer: S) -> Result<S::Ok, S::Error> {
+    let name = |(effect, p): &(Effect, f64)| json!({ "effect": effect_value(effect), "probability": p });
+    serializer.collect_seq(names.iter().map(name))
 }
 
 impl Found {
@@ -51,75 +61,72 @@ pub struct Answer {
 pub enum NoAnswer {
     /// The diagnosis refused.
     #[error(transparent)]
-    Refused(#[from] DiagnosisError),
-    /// What it hands back is no fixture.
-    #[error("the fixture handed back is impossible: {0}")]
-    Fixture(#[from] FixtureError),
+    Refused(#[from] jointscope_pipeline::Error),
     /// It broke down.
     #[error("the diagnosis broke down")]
     BrokeDown,
 }
 
-impl Answer {
-    /// What [`Diagnosis`] answers to a case, under its default options.
-    ///
-    /// # Errors
-    /// [`NoAnswer`], where it refuses.
-    pub fn of(case: &Case) -> Result<Self, NoAnswer> {
-        Answer::from_diagnosis(&Answer::diagnosis_of(case)?)
-    }
+/// An answer as plain data.
+pub trait Reply: Sized {
+    /// What a diagnosis says; `None` where it says nothing of this kind.
+    fn of_diagnosed(diagnosed: &Diagnosed) -> Option<Self>;
 
-    /// The diagnosis of a case, under its default options: of fixture and recording, and of nothing else.
-    pub(crate) fn diagnosis_of(case: &Case) -> Result<Diagnosis, DiagnosisError> {
-        Diagnosis::of(&case.believed, &case.recorded, &DiagnosisOptions::default())
-    }
+    /// The answer as JSON.
+    fn to_value(&self) -> Value;
+}
 
-    /// What a diagnosis says, as plain data.
-    pub(crate) fn from_diagnosis(diagnosis: &Diagnosis) -> Result<Self, NoAnswer> {
+/// What the program's own route answers under its default options: to fixture and recording, and to nothing else.
+pub(crate) fn diagnosed<R: Clone + Into<Measurement>>(case: &Case<R>) -> Result<Diagnosed, NoAnswer> {
+    Ok(diagnose(&case.believed, &case.recorded.clone().into(), &Options::default(), |_| ())?)
+}
+
+impl Reply for Answer {
+    /// Of the FRFs; none where the answer is the law of a joint.
+    fn of_diagnosed(diagnosed: &Diagnosed) -> Option<Self> {
+        let Outcome::Linear(diagnosis) = &diagnosed.outcome else { return None };
         let found = diagnosis.findings.iter().map(|finding| Found {
             effect: finding.effect.clone(),
             intervals: finding.estimates.iter().map(|estimate| estimate.interval).collect(),
             probability: finding.probability,
             alternatives: finding.alternatives.clone(),
         });
-        Ok(Answer {
+        Some(Answer {
             verdict: diagnosis.verdict,
             findings: found.collect(),
             objectives: [&diagnosis.search.refitted, &diagnosis.search.repaired].map(|fit| fit.objective),
             chi2_per_dof: diagnosis.chi2_per_dof(),
-            refitted: diagnosis.search.refitted.hypothesis.to_fixture()?,
-            repaired: diagnosis.search.repaired.hypothesis.to_fixture()?,
-            held_out: diagnosis
-                .held_out
-                .as_ref()
-                .map(|held_out| [held_out.nrmse_refitted, held_out.nrmse_repaired]),
+            refitted: diagnosed.refitted.clone(),
+            repaired: diagnosed.repaired.clone(),
+            held_out: diagnosis.held_out.as_ref().map(|held| [held.nrmse_refitted, held.nrmse_repaired]),
         })
+    }
+
+    fn to_value(&self) -> Value {
+        let [refitted, repaired] = self.objectives;
+        json!({
+            "verdict": self.verdict,
+            "findings": self.findings,
+            "objectives": { "refitted": refitted, "repaired": repaired },
+            "chi2_per_dof": self.chi2_per_dof,
+            "held_out": self.held_out,
+            "refitted": self.refitted,
+            "repaired": self.repaired,
+        })
+    }
+}
+
+impl Answer {
+    /// What is answered to a case.
+    ///
+    /// # Errors
+    /// [`NoAnswer`], where the diagnosis refuses.
+    pub fn of(case: &Case) -> Result<Self, NoAnswer> {
+        Answer::of_diagnosed(&diagnosed(case)?).ok_or(NoAnswer::BrokeDown)
     }
 
     /// The names found, the strongest first.
     pub fn names(&self) -> Vec<Name> {
         self.findings.iter().map(|found| Name::of(&found.effect)).collect()
-    }
-
-    /// The answer as JSON.
-    pub fn to_value(&self) -> Value {
-        let finding = |found: &Found| {
-            json!({
-                "effect": effect_value(&found.effect),
-                "ci95": found.intervals,
-                "probability": found.probability,
-                "alternatives": found.alternatives.iter()
-                    .map(|(effect, p)| json!({ "effect": effect_value(effect), "probability": p })).collect::<Vec<_>>(),
-            })
-        };
-        json!({
-            "verdict": self.verdict.name(),
-            "findings": self.findings.iter().map(finding).collect::<Vec<_>>(),
-            "objectives": { "refitted": self.objectives[0], "repaired": self.objectives[1] },
-            "chi2_per_dof": self.chi2_per_dof,
-            "held_out": self.held_out,
-            "refitted": self.refitted.to_value(),
-            "repaired": self.repaired.to_value(),
-        })
     }
 }

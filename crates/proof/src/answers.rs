@@ -1,7 +1,8 @@
 //! The answers to all cases, each by a worker of its own.
 
-use crate::{Answer, Case, NoAnswer};
-use jointscope_diagnosis::Diagnosis;
+use crate::answer::diagnosed;
+use crate::{Answer, Case, NoAnswer, Reply};
+use jointscope_pipeline::{Answer as Diagnosed, Measurement};
 use rayon::ThreadPoolBuilder;
 use serde_json::{Value, json};
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -9,45 +10,37 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Instant;
 
-/// The answers to all cases, in their order.
+/// The answers to all cases of a route, in their order.
 #[derive(Debug)]
-pub struct Answers {
-    all: Vec<Result<Answer, NoAnswer>>,
+pub struct Answers<A = Answer> {
+    all: Vec<Result<A, NoAnswer>>,
     seconds: Vec<f64>,
 }
 
 /// An answer, and the seconds it took.
-pub(crate) type Timed = (Result<Answer, NoAnswer>, f64);
+pub(crate) type Timed<A> = (Result<A, NoAnswer>, f64);
 
-impl Answers {
-    /// Diagnoses all cases on `threads` workers; `told` hears the number of answers given so far. A case keeps to one core, so its
-    /// seconds mean the same however many workers there are.
-    pub fn to(cases: &[Case], threads: usize, told: impl Fn(usize) + Sync) -> Self {
-        Self::collected(on_workers(cases, threads, told, |case| Self::one(case, |_| ())))
-    }
-
+impl<A: Reply + Send> Answers<A> {
     /// The answer to one case, and the seconds it took; `watch` sees the diagnosis after its time was taken.
-    pub(crate) fn one(case: &Case, watch: impl Fn(&Diagnosis)) -> Timed {
+    pub(crate) fn one<R: Clone + Into<Measurement>>(case: &Case<R>, watch: impl Fn(&Diagnosed)) -> Timed<A> {
         let start = Instant::now();
-        let diagnosis = catch_unwind(AssertUnwindSafe(|| Answer::diagnosis_of(case)));
+        let diagnosed =
+            catch_unwind(AssertUnwindSafe(|| diagnosed(case))).unwrap_or(Err(NoAnswer::BrokeDown));
         let seconds = start.elapsed().as_secs_f64();
-        let answer = match diagnosis {
-            Ok(Ok(diagnosis)) => {
-                watch(&diagnosis);
-                Answer::from_diagnosis(&diagnosis)
-            }
-            Ok(Err(why)) => Err(why.into()),
-            Err(_) => Err(NoAnswer::BrokeDown),
-        };
+        let answer = diagnosed.and_then(|diagnosed| {
+            watch(&diagnosed);
+            A::of_diagnosed(&diagnosed).ok_or(NoAnswer::BrokeDown)
+        });
         (answer, seconds)
     }
 
-    /// As [`Answers::to`], given by another than the diagnosis.
-    pub fn by(
-        cases: &[Case],
+    /// Answers to all cases on `threads` workers; `told` hears the number of answers given so far. A case keeps to one core, so its seconds
+    /// mean the same however many workers there are.
+    pub fn by<R: Sync>(
+        cases: &[Case<R>],
         threads: usize,
         told: impl Fn(usize) + Sync,
-        answer: impl Fn(&Case) -> Result<Answer, NoAnswer> + Sync,
+        answer: impl Fn(&Case<R>) -> Result<A, NoAnswer> + Sync,
     ) -> Self {
         Self::collected(on_workers(cases, threads, told, |case| {
             let start = Instant::now();
@@ -57,13 +50,13 @@ impl Answers {
     }
 
     /// What workers gave; from one that died there is no answer.
-    pub(crate) fn collected(given: impl IntoIterator<Item = Option<Timed>>) -> Self {
+    pub(crate) fn collected(given: impl IntoIterator<Item = Option<Timed<A>>>) -> Self {
         let (all, seconds) = given.into_iter().map(|a| a.unwrap_or((Err(NoAnswer::BrokeDown), 0.0))).unzip();
         Answers { all, seconds }
     }
 
     /// The answers.
-    pub fn all(&self) -> &[Result<Answer, NoAnswer>] {
+    pub fn all(&self) -> &[Result<A, NoAnswer>] {
         &self.all
     }
 
@@ -74,11 +67,11 @@ impl Answers {
 
     /// The answers as JSON.
     pub fn to_value(&self) -> Value {
-        let value = |answer: &Result<Answer, NoAnswer>| match answer {
+        let value = |answer: &Result<A, NoAnswer>| match answer {
             Ok(answer) => answer.to_value(),
             Err(why) => json!({ "no_answer": why.to_string() }),
         };
-        Value::Array(self.all.iter().map(value).collect())
+        self.all.iter().map(value).collect()
     }
 }
 

@@ -16,18 +16,19 @@ pub use updating::{Updated, WIDER};
 
 use crate::Case;
 use crate::answers::on_workers;
-use crate::case::effect_value;
 use jointscope_diagnosis::Observation;
-use serde_json::{Value, json};
+use serde::Serialize;
 
 /// What the two make of a case.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Baseline {
     /// Quantities moved within their tolerances.
+    #[serde(rename = "within_tolerances")]
     pub within: Updated,
     /// Quantities moved within wide bounds.
     pub freed: Updated,
     /// The nearest signature; `None` where what is left within the tolerances is no more than noise.
+    #[serde(rename = "nearest_signature")]
     pub nearest: Option<Lookup>,
 }
 
@@ -47,17 +48,5 @@ impl Baseline {
     /// Of all cases, on `threads` workers.
     pub fn all(cases: &[Case], threads: usize, told: impl Fn(usize) + Sync) -> Vec<Option<Self>> {
         on_workers(cases, threads, told, Baseline::of).into_iter().map(Option::flatten).collect()
-    }
-
-    /// As JSON.
-    pub fn to_value(&self) -> Value {
-        let updated = |updated: &Updated| json!({ "chi2_per_dof": updated.chi2_per_dof, "fixture": updated.fixture.to_value() });
-        json!({
-            "within_tolerances": updated(&self.within),
-            "freed": updated(&self.freed),
-            "nearest_signature": self.nearest.as_ref().map(|nearest| json!({
-                "effect": effect_value(&nearest.effect), "likeness": nearest.likeness,
-            })),
-        })
     }
 }

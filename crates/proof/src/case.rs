@@ -1,20 +1,23 @@
 //! A case: what the diagnosis is given, and apart from it what is true.
 
-use crate::truth_file::{hammer_value, outside_value};
+use crate::generate::recorded_lines;
+use crate::{Filed, GenerationError, Sealable};
 use jointscope_fixture::{Dof, Effect, EffectKind, Fixture, Place};
 use jointscope_rig::universal_file::{FileError, Precision, to_bytes};
-use jointscope_rig::{HammerTest, Outside};
-use jointscope_spectra::FrfSet;
+use jointscope_rig::{HammerTest, Instrument, Outside, StructureError, frfs};
+use jointscope_spectra::{FrfPair, FrfSet, SpectralLines};
+use serde::de::{Deserializer, Error};
+use serde::{Deserialize, Serialize, Serializer};
 use serde_json::{Map, Value, json};
 use std::fmt;
 
-/// What the diagnosis is given: the analyst's fixture and the recording.
+/// What the diagnosis is given: the analyst's fixture and the recording, FRFs or hits.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Case {
+pub struct Case<R = FrfSet> {
     /// The fixture as the analyst believes it.
     pub believed: Fixture,
-    /// The measured accelerances with coherence.
-    pub recorded: FrfSet,
+    /// The measured accelerances with coherence, or force and accelerations of every hit.
+    pub recorded: R,
 }
 
 impl Case {
@@ -28,7 +31,8 @@ impl Case {
 }
 
 /// How much was hidden in a case.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum Role {
     /// Nothing beyond quantities drawn within their tolerances.
     Null,
@@ -45,11 +49,6 @@ pub enum Role {
 impl Role {
     /// Every role.
     pub const ALL: [Role; 5] = [Role::Null, Role::Single, Role::Double, Role::Outside, Role::Graded];
-
-    /// The role of this name.
-    pub fn from_name(name: &str) -> Option<Self> {
-        Role::ALL.into_iter().find(|role| role.name() == name)
-    }
 
     /// Whether one effect was hidden.
     pub fn is_of_one(self) -> bool {
@@ -69,9 +68,10 @@ impl Role {
 }
 
 /// What is true of a case.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Deserialize)]
 pub struct Truth {
     /// The case's number.
+    #[serde(rename = "case")]
     pub index: usize,
     /// What its random numbers were seeded with: the seed, or the text of fresh cases.
     pub source: String,
@@ -85,8 +85,15 @@ pub struct Truth {
     pub outside: Option<Outside>,
     /// How it was measured.
     pub hammer: HammerTest,
-    /// FRFs that nobody recorded, as a perfect instrument would read them, without noise.
-    pub unseen: FrfSet,
+    /// FRFs that nobody recorded.
+    #[serde(deserialize_with = "pairs")]
+    pub unseen: Vec<FrfPair>,
+}
+
+fn pairs<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<FrfPair>, D::Error> {
+    let names = Vec::<String>::deserialize(deserializer)?;
+    let pair = |name: &String| name.split_once('/').map(|(to, from)| FrfPair::transverse(to, from));
+    names.iter().map(pair).collect::<Option<_>>().ok_or_else(|| D::Error::custom("no FRF has such a name"))
 }
 
 impl Truth {
@@ -102,19 +109,55 @@ impl Truth {
         if all.is_empty() { "nothing".to_owned() } else { all.join(" and ") }
     }
 
-    /// The truth as JSON.
-    pub fn to_value(&self) -> Value {
+    /// Noise-free accelerances of the true structure.
+    ///
+    /// # Errors
+    /// As [`jointscope_rig::frfs`].
+    pub fn frfs(
+        &self,
+        pairs: &[FrfPair],
+        lines: &SpectralLines,
+        instrument: Instrument,
+    ) -> Result<FrfSet, StructureError> {
+        match &self.outside {
+            Some(outside) => outside.frfs(&self.fixture, pairs, lines, instrument),
+            None => frfs(&self.fixture, pairs, lines, instrument),
+        }
+    }
+
+    /// The FRFs that nobody recorded, as a perfect instrument would read them, without noise.
+    ///
+    /// # Errors
+    /// As [`Truth::frfs`].
+    pub fn unseen(&self) -> Result<FrfSet, GenerationError> {
+        Ok(self.frfs(&self.unseen, &recorded_lines()?, Instrument::Perfect)?)
+    }
+}
+
+impl Sealable for Truth {
+    fn to_value(&self) -> Value {
+        let mut outside = json!(self.outside);
+        // What was sealed once has its kind last.
+        if let Some(kind) = outside.as_object_mut().and_then(|entries| entries.shift_remove("kind")) {
+            outside["kind"] = kind;
+        }
         json!({
             "case": self.index,
             "source": self.source,
             "fresh": self.fresh,
-            "role": self.role.name(),
+            "role": self.role,
             "hidden": self.hidden(),
-            "fixture": self.fixture.to_value(),
-            "outside": self.outside.as_ref().map(outside_value),
-            "hammer": hammer_value(&self.hammer),
-            "unseen": self.unseen.pairs().iter().map(ToString::to_string).collect::<Vec<_>>(),
+            "fixture": self.fixture,
+            "outside": outside,
+            "hammer": self.hammer,
+            "unseen": self.unseen,
         })
+    }
+}
+
+impl Filed for Truth {
+    fn from_value(value: &Value) -> Option<Self> {
+        Truth::deserialize(value).ok()
     }
 }
 
@@ -136,6 +179,12 @@ impl Name {
     }
 }
 
+impl Serialize for Name {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_str(self)
+    }
+}
+
 impl fmt::Display for Name {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{} {}", self.kind.name(), self.place)?;
@@ -153,6 +202,11 @@ pub fn describe(effect: &Effect) -> String {
     format!("{} ({})", Name::of(effect), values.join(" "))
 }
 
+/// As [`effect_value`], for `serde(serialize_with)`.
+pub(crate) fn in_file<S: Serializer>(effect: &Effect, serializer: S) -> Result<S::Ok, S::Error> {
+    effect_value(effect).serialize(serializer)
+}
+
 /// An effect as JSON, keys as in a fixture's `physics`.
 pub(crate) fn effect_value(effect: &Effect) -> Value {
     let mut entry = Map::new();
@@ -165,4 +219,28 @@ pub(crate) fn effect_value(effect: &Effect) -> Value {
         entry.insert(spec.name.into(), json!(quantity.value));
     }
     Value::Object(entry)
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+    use crate::{Answers, NoAnswer, Plan};
+
+    #[test]
+    fn a_truth_reads_back_as_it_was_written() {
+        let plan = Plan { cases: 40, graded: 1, seed: 6, ..Plan::default() };
+        let (cases, sealed) = plan.draw().unwrap();
+        let silent = Answers::by(&cases, 1, |_| (), |_| Err(NoAnswer::BrokeDown));
+        let truths = sealed.open(&silent).unwrap();
+        let kinds: std::collections::BTreeSet<_> =
+            truths.iter().filter_map(|t| t.outside.as_ref()).map(Outside::kind).collect();
+        assert_eq!(kinds.len(), Outside::KINDS, "every kind of unknown physics is among them: {kinds:?}");
+        for truth in truths {
+            let text = truth.to_value().to_string();
+            let read = Truth::from_value(&serde_json::from_str(&text).unwrap()).unwrap();
+            assert_eq!(read.to_value().to_string(), text);
+            assert_eq!(read.unseen().unwrap(), truth.unseen().unwrap(), "case {}", truth.index);
+        }
+    }
 }

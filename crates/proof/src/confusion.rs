@@ -1,13 +1,16 @@
 //! Which kinds were taken for which.
 
 use crate::{Judged, Role};
+use serde::Serialize;
+use std::cmp::Reverse;
 use std::collections::BTreeMap;
+use std::fmt::{self, Display, Formatter};
 
 /// Where nothing is hidden, or found.
 pub const NOTHING: &str = "nothing";
 
 /// Kinds hidden and kinds found (the strongest finding's), with the number of cases.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct Confusion(pub BTreeMap<&'static str, BTreeMap<&'static str, usize>>);
 
 impl Confusion {
@@ -32,5 +35,18 @@ impl Confusion {
     /// Number of cases in which `hidden` was taken for `found`.
     pub fn count(&self, hidden: &str, found: &str) -> usize {
         self.0.get(hidden).and_then(|row| row.get(found)).copied().unwrap_or(0)
+    }
+}
+
+impl Display for Confusion {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        writeln!(f, "\nhidden kind: strongest kind found")?;
+        for (hidden, found) in &self.0 {
+            let mut found: Vec<_> = found.iter().collect();
+            found.sort_by_key(|(kind, count)| (Reverse(**count), **kind));
+            let found: Vec<String> = found.iter().map(|(kind, count)| format!("{kind} {count}")).collect();
+            writeln!(f, "  {hidden:<22} {}", found.join(", "))?;
+        }
+        Ok(())
     }
 }

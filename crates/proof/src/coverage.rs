@@ -1,6 +1,8 @@
 //! How often stated intervals hold the true parameter, at every level, and how wide they are.
 
 use crate::{Judged, Name, Share};
+use serde::{Serialize, Serializer};
+use serde_json::json;
 
 /// Half of a 95 % interval in standard deviations.
 const HALF: f64 = 1.96;
@@ -37,12 +39,10 @@ impl Coverage {
     pub fn of<'a>(judged: impl Iterator<Item = &'a Judged>) -> Self {
         let mut intervals = Vec::new();
         for judged in judged {
-            let Ok(answer) = &judged.answer else { continue };
             for (hidden, bounds) in judged.truth.effects().iter().zip(&judged.evidence.bounds) {
                 let name = Name::of(hidden);
-                let Some(found) = answer.findings.iter().find(|found| Name::of(&found.effect) == name) else {
-                    continue;
-                };
+                let mut own = judged.findings().iter().filter(|found| Name::of(&found.effect) == name);
+                let Some(found) = own.next() else { continue };
                 for (parameter, bound) in bounds.iter().enumerate() {
                     let Some(bound) = bound else { continue };
                     let (truth, estimate) = (hidden.value(parameter), found.effect.value(parameter));
@@ -74,6 +74,13 @@ impl Coverage {
     /// Widths over those by the Cramér–Rao bound.
     pub fn widths(&self) -> Vec<f64> {
         self.0.iter().filter_map(|interval| interval.width).collect()
+    }
+}
+
+impl Serialize for Coverage {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let levels = self.by_level().into_iter();
+        serializer.collect_seq(levels.map(|(level, held)| json!({ "level": level, "held": held })))
     }
 }
 

@@ -3,8 +3,9 @@
 use crate::statistics::median;
 use crate::strength::{self, strength_deviation};
 use crate::{Judged, Share};
-use jointscope_diagnosis::Verdict;
 use jointscope_fixture::{Dof, EffectKind};
+use serde::{Serialize, Serializer};
+use std::fmt::{self, Display, Formatter};
 
 /// Edges of the classes of Δχ².
 const EDGES: [f64; 11] = [0.0, 5.0, 10.0, 20.0, 35.0, 50.0, 100.0, 200.0, 1e3, 1e4, f64::INFINITY];
@@ -17,13 +18,14 @@ const PRIOR: f64 = 0.02;
 const USUAL: f64 = 50.0;
 
 /// Single effects, graded ones included, of about the same size.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct SizeClass {
     /// From this Δχ² on.
     pub from: f64,
     /// Up to this one; the last class has no end.
     pub to: f64,
     /// Their median Δχ²; `None` where there is none.
+    #[serde(rename = "median")]
     pub size: Option<f64>,
     /// In how many something was noticed: a verdict other than consistent.
     pub noticed: Share,
@@ -32,9 +34,10 @@ pub struct SizeClass {
 }
 
 /// The smallest effect of a kind that is found for sure.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Smallest {
     /// The kind.
+    #[serde(serialize_with = "kind_name")]
     pub kind: EffectKind,
     /// Its degree of freedom, where the kind has one: translation and rotation are counted apart.
     pub dof: Option<Dof>,
@@ -43,23 +46,52 @@ pub struct Smallest {
     /// Its unit.
     pub unit: &'static str,
     /// Median over the cases; where [`Smallest::is_upper`], an effect is the smaller the larger this is.
+    #[serde(rename = "median")]
     pub value: f64,
     /// Smallest and largest of the cases.
     pub range: [f64; 2],
     /// Whether effects of a larger parameter are weaker.
+    #[serde(rename = "upper")]
     pub is_upper: bool,
     /// Number of cases.
     pub cases: usize,
 }
 
+fn kind_name<S: Serializer>(kind: &EffectKind, serializer: S) -> Result<S::Ok, S::Error> {
+    kind.name().serialize(serializer)
+}
+
+impl SizeClass {
+    /// The class in words: `20 to 35`.
+    pub fn name(&self) -> String {
+        if self.to.is_finite() {
+            format!("{} to {}", self.from, self.to)
+        } else {
+            format!("{} and more", self.from)
+        }
+    }
+}
+
+impl Smallest {
+    /// Kind and degree of freedom.
+    pub fn name(&self) -> String {
+        let dof = self.dof.map_or_else(String::new, |dof| format!(" {}", dof.name()));
+        format!("{}{dof}", self.kind.name())
+    }
+}
+
 /// Detection against size.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Detection {
     /// Classes of Δχ², from the smallest.
     pub classes: Vec<SizeClass>,
     /// Course of the share that is named over ln Δχ²: 1/(1 + exp(−(a + b·ln Δχ²))), by maximum of likelihood; `None` where nothing was
     /// hidden.
     pub course: Option<[f64; 2]>,
+    /// Δχ² from which half are found; `None` where the course does not rise to it.
+    pub half_named_from: Option<f64>,
+    /// Δχ² from which nineteen of twenty are found.
+    pub sure_from: Option<f64>,
     /// The smallest effects found for sure by kind.
     pub smallest: Vec<Smallest>,
 }
@@ -74,26 +106,21 @@ impl Detection {
             judged.filter(|judged| judged.truth.role.is_of_one() && judged.answer.is_ok()).collect();
         let trials: Vec<Trial> = singles.iter().map(|judged| (judged.size(), judged.is_named())).collect();
         let course = course(&trials);
-        let mut detection = Detection { classes: classes(&singles), course, smallest: Vec::new() };
-        detection.smallest = smallest(&singles, detection.sure_from().unwrap_or(USUAL));
-        detection
+        let [half_named_from, sure_from] = [0.5, SURE].map(|share| size_of_share(course, share));
+        let smallest = smallest(&singles, sure_from.unwrap_or(USUAL));
+        Detection { classes: classes(&singles), course, half_named_from, sure_from, smallest }
     }
 
     /// The fitted share of effects of a size that are found under their names.
     pub fn share_at(&self, size: f64) -> Option<f64> {
         self.course.map(|[a, b]| logistic(a + b * size.max(1.0).ln()))
     }
+}
 
-    /// Δχ² from which a share of the effects is found; `None` where the course does not rise to it.
-    pub fn size_of_share(&self, share: f64) -> Option<f64> {
-        let [a, b] = self.course?;
-        (b > 0.0).then(|| (((share / (1.0 - share)).ln() - a) / b).exp())
-    }
-
-    /// Δχ² from which nineteen of twenty are found.
-    pub fn sure_from(&self) -> Option<f64> {
-        self.size_of_share(SURE)
-    }
+/// Δχ² from which a share of the effects is found; `None` where the course does not rise to it.
+fn size_of_share(course: Option<[f64; 2]>, share: f64) -> Option<f64> {
+    let [a, b] = course?;
+    (b > 0.0).then(|| (((share / (1.0 - share)).ln() - a) / b).exp())
 }
 
 fn classes(singles: &[&Judged]) -> Vec<SizeClass> {
@@ -190,22 +217,24 @@ fn smallest(singles: &[&Judged], size: f64) -> Vec<Smallest> {
     all
 }
 
-impl Judged {
-    /// Whether the answer says that something is amiss.
-    pub fn is_noticed(&self) -> bool {
-        self.answer.as_ref().is_ok_and(|answer| answer.verdict != Verdict::Consistent)
-    }
-
-    /// Whether a finding is of a hidden kind, or counts as right.
-    pub fn has_kind(&self) -> bool {
-        let hidden = self.hidden();
-        let right = |name: &crate::Name| hidden.iter().any(|h| h.kind == name.kind) || self.accepts(name);
-        self.found().iter().any(right)
-    }
-
-    /// Whether a name counts as right among those found.
-    pub fn is_named(&self) -> bool {
-        self.found().iter().any(|name| self.accepts(name))
+impl Display for Detection {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        writeln!(f, "\nsingle effects by what they cost a fit without them, Δχ²: noticed, named:")?;
+        for class in self.classes.iter().filter(|class| class.named.all > 0) {
+            let (noticed, named) = (class.noticed.briefly(), class.named.briefly());
+            writeln!(f, "  {:<16} {noticed:<28} {named}", class.name())?;
+        }
+        if let (Some(half), Some(sure)) = (self.half_named_from, self.sure_from) {
+            writeln!(f, "  half are named from Δχ² = {half:.0}, nineteen of twenty from {sure:.0}")?;
+        }
+        writeln!(f, "\nsmallest effect named with 0.95, median (least to largest) of cases:")?;
+        for smallest in &self.smallest {
+            let Smallest { parameter, unit, value, range: [least, largest], is_upper, cases, .. } = smallest;
+            let relation = if *is_upper { "≤" } else { "≥" };
+            let range = format!("({least:.1e} to {largest:.1e}) of {cases}");
+            writeln!(f, "  {:<34} {parameter} {relation} {value:.2e} {unit} {range}", smallest.name())?;
+        }
+        Ok(())
     }
 }
 

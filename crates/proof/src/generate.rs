@@ -2,16 +2,37 @@
 
 use crate::answers::on_workers;
 use crate::graded::scaled_to;
+use crate::objective::relative_error;
 use crate::{Case, GenerationError, Role, SealedTruths, Truth};
 use jointscope_fixture::{Effect, EffectKind, Fixture};
 use jointscope_rig::{
     Family, HammerTest, Instrument, Outside, StructureError, drawn_within_tolerance, frfs, generator,
     random_effect,
 };
-use jointscope_spectra::{FrfPair, FrfSet, SpectraError, SpectralLines};
+use jointscope_spectra::{FrfPair, SpectraError, SpectralLines};
 use rand::seq::SliceRandom;
 use rand::{Rng, RngExt};
 use sha2::{Digest, Sha256};
+
+/// The kinds that cases hide, in the order in which seeds draw them: what a seed stands for must not change when a kind is added.
+pub const HIDDEN_KINDS: [EffectKind; 16] = [
+    EffectKind::AddedMass,
+    EffectKind::Support,
+    EffectKind::AttachedResonator,
+    EffectKind::BodyFlexibility,
+    EffectKind::InterfaceCompliance,
+    EffectKind::ShearDeformation,
+    EffectKind::JointMass,
+    EffectKind::StiffnessChange,
+    EffectKind::LossFactor,
+    EffectKind::Relaxation,
+    EffectKind::PointOffset,
+    EffectKind::JointLength,
+    EffectKind::ChannelGain,
+    EffectKind::ChannelDelay,
+    EffectKind::SensorMass,
+    EffectKind::ExponentialWindow,
+];
 
 /// Which cases to make.
 #[derive(Debug, Clone, PartialEq)]
@@ -142,10 +163,8 @@ impl Plan {
         for _ in 0..DRAWS {
             let family = self.families[random.random_range(0..self.families.len())];
             let scene = Scene { family, role, number, seed };
-            if let Some((case, hidden)) = scene.draw(&mut random)? {
-                let Hidden { fixture, outside, hammer, unseen } = hidden;
-                let truth = Truth { index, source, fresh, role, fixture, outside, hammer, unseen };
-                return Ok((case, truth));
+            if let Some((case, drawn)) = scene.draw(&mut random)? {
+                return Ok((case, Truth { index, source, fresh, ..drawn }));
             }
         }
         Err(GenerationError::Unlucky(index))
@@ -161,6 +180,23 @@ pub(crate) fn recorded_lines() -> Result<SpectralLines, SpectraError> {
 pub(crate) fn seed_of(source: &str, number: usize) -> u64 {
     let digest = Sha256::digest(format!("{source} case {number}").as_bytes());
     digest.iter().take(8).fold(0, |seed, byte| seed << 8 | u64::from(*byte))
+}
+
+/// How many cases before this one have its role, of roles that repeat.
+pub(crate) fn turn<R: PartialEq>(roles: &[R], number: usize) -> usize {
+    let (rounds, place) = (number / roles.len(), number % roles.len());
+    let count = |of: &[R]| of.iter().filter(|role| **role == roles[place]).count();
+    rounds * count(roles) + count(&roles[..place])
+}
+
+/// Uniform between two bounds.
+pub(crate) fn between(random: &mut impl Rng, [from, to]: [f64; 2]) -> f64 {
+    random.random_range(from..to)
+}
+
+/// Uniform in the logarithm between two positive bounds.
+pub(crate) fn log_uniform(random: &mut impl Rng, [from, to]: [f64; 2]) -> f64 {
+    between(random, [from.ln(), to.ln()]).exp()
 }
 
 /// How a case is measured.
@@ -183,16 +219,9 @@ struct Scene {
     seed: u64,
 }
 
-struct Hidden {
-    fixture: Fixture,
-    outside: Option<Outside>,
-    hammer: HammerTest,
-    unseen: FrfSet,
-}
-
 impl Scene {
-    /// `None` where the fixture that was drawn has no place for what is to be hidden.
-    fn draw(&self, random: &mut impl Rng) -> Result<Option<(Case, Hidden)>, GenerationError> {
+    /// A case with its truth, not numbered yet; `None` where the fixture that was drawn has no place for what is to be hidden.
+    fn draw(&self, random: &mut impl Rng) -> Result<Option<(Case, Truth)>, GenerationError> {
         let believed = self.family.draw("concealed case", random)?;
         let truth = drawn_within_tolerance(&believed, random)?;
         let pairs = self.family.usual_pairs();
@@ -209,7 +238,7 @@ impl Scene {
             let kind = self.number / ROLES.len();
             let Some(outside) = Outside::draw(random, &truth, kind, &pairs) else { return Ok(None) };
             let clean = outside.frfs(&truth, &pairs, &lines, Instrument::AsDescribed)?;
-            let change = difference(&clean, &plain);
+            let change = relative_error(&clean, &plain);
             if !(OUTSIDE_SHOWS[0]..=OUTSIDE_SHOWS[1]).contains(&change) {
                 return Ok(None);
             }
@@ -219,19 +248,18 @@ impl Scene {
         };
         let hammer = drawn_hammer(random, self.seed);
         if self.role == Role::Graded {
-            let wanted = random.random_range(GRADED[0].ln()..GRADED[1].ln()).exp();
+            let wanted = log_uniform(random, GRADED);
             let noisy = hammer.measure(&clean)?;
             let Some(scaled) = scaled_to(wanted, &believed, &truth, &noisy) else { return Ok(None) };
             clean = frfs(&scaled, &pairs, &lines, Instrument::AsDescribed)?;
             truth = scaled;
         }
         let recorded = hammer.measure(&clean)?;
-        let apart = unseen_pairs(&truth, &pairs, random);
-        let unseen = match &outside {
-            Some(outside) => outside.frfs(&truth, &apart, &lines, Instrument::Perfect)?,
-            None => frfs(&truth, &apart, &lines, Instrument::Perfect)?,
-        };
-        Ok(Some((Case { believed, recorded }, Hidden { fixture: truth, outside, hammer, unseen })))
+        let unseen = unseen_pairs(&truth, &pairs, random);
+        let (fixture, role) = (truth, self.role);
+        let (index, source, fresh) = (self.number, String::new(), false);
+        let truth = Truth { index, source, fresh, role, fixture, outside, hammer, unseen };
+        Ok(Some((Case { believed, recorded }, truth)))
     }
 
     /// The effects to hide; `None` where the fixture has no place for them.
@@ -241,23 +269,15 @@ impl Scene {
         truth: &Fixture,
         pairs: &[FrfPair],
     ) -> Result<Option<Vec<Effect>>, GenerationError> {
-        let linear: Vec<EffectKind> = EffectKind::ALL.into_iter().filter(|k| !k.is_nonlinear()).collect();
         let kinds = match self.role {
             Role::Null | Role::Outside => Vec::new(),
             // Singles take the kinds in turn.
-            Role::Single => {
-                let singles = |number: usize| {
-                    let whole = ROLES.iter().filter(|r| **r == Role::Single).count();
-                    let part = ROLES[..number % ROLES.len()].iter().filter(|r| **r == Role::Single).count();
-                    number / ROLES.len() * whole + part
-                };
-                vec![linear[singles(self.number) % linear.len()]]
-            }
-            Role::Graded => vec![linear[self.number % linear.len()]],
+            Role::Single => vec![HIDDEN_KINDS[turn(&ROLES, self.number) % HIDDEN_KINDS.len()]],
+            Role::Graded => vec![HIDDEN_KINDS[self.number % HIDDEN_KINDS.len()]],
             Role::Double => {
-                let first = random.random_range(0..linear.len());
-                let step = random.random_range(1..linear.len());
-                vec![linear[first], linear[(first + step) % linear.len()]]
+                let first = random.random_range(0..HIDDEN_KINDS.len());
+                let step = random.random_range(1..HIDDEN_KINDS.len());
+                vec![HIDDEN_KINDS[first], HIDDEN_KINDS[(first + step) % HIDDEN_KINDS.len()]]
             }
         };
         let mut effects = Vec::with_capacity(kinds.len());
@@ -269,13 +289,6 @@ impl Scene {
         }
         Ok(Some(effects))
     }
-}
-
-/// √(Σ|a − b|²/Σ|b|²).
-fn difference(a: &FrfSet, b: &FrfSet) -> f64 {
-    let error: f64 = a.all_values().iter().zip(b.all_values()).map(|(a, b)| (a - b).norm_sqr()).sum();
-    let size: f64 = b.all_values().iter().map(|b| b.norm_sqr()).sum();
-    (error / size).sqrt()
 }
 
 /// Pairs of points of which neither the FRF nor its reciprocal is recorded.

@@ -1,12 +1,17 @@
 //! Truth and answer side by side, with the objectives that decide which names are right.
 
 use crate::answers::on_workers;
-use crate::objective::{Tolerance, objective, values};
-use crate::{Answer, Answers, Case, Name, NoAnswer, Reference, Role, Truth};
-use jointscope_diagnosis::Observation;
+use crate::case::describe;
+use crate::case_line::{in_full, is_worse, marked, named};
+use crate::objective::{Judge, relative_error};
+use crate::seal::Sealable;
+use crate::{Answer, Answers, Case, CaseLine, Found, Name, NoAnswer, Role};
+use jointscope_diagnosis::Verdict;
 use jointscope_fixture::{Effect, Fixture};
 use jointscope_lumped::{Instrument, synthesize};
 use jointscope_spectra::FrfSet;
+use serde::{Serialize, Serializer};
+use serde_json::json;
 use std::collections::BTreeMap;
 
 /// A name whose best fit comes within this of the truth's cannot be told from it.
@@ -15,55 +20,97 @@ pub const AS_GOOD: f64 = 9.0;
 pub const VISIBLE: f64 = 50.0;
 /// What it must cost for its name to be expected with certainty.
 pub const PLAIN: f64 = 200.0;
-/// Standard deviations beyond which a quantity's departure is worth telling.
-pub const STRAINED: f64 = 4.0;
-/// Alternatives below this probability are not fitted.
-const LISTED: f64 = 0.01;
+/// Stated probability at which a wrong name is a fault.
+const CLAIMED: f64 = 0.9;
+
+/// What is true of a case whose recording is FRFs, and how answers to it are judged.
+pub trait Judgeable: Sealable {
+    /// The case's number among all.
+    fn index(&self) -> usize;
+    /// How much was hidden.
+    fn role(&self) -> Role;
+    /// The hidden effects.
+    fn effects(&self) -> &[Effect];
+    /// What independent fits say of an answer; `None` where recording or answer cannot be evaluated.
+    fn evidence(&self, case: &Case, answer: &Answer) -> Option<Evidence>;
+
+    /// What was hidden, in words.
+    fn hidden(&self) -> String {
+        let all: Vec<String> = self.effects().iter().map(describe).collect();
+        if all.is_empty() { "nothing".to_owned() } else { all.join(" and ") }
+    }
+}
 
 /// A case after the truth was opened.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Judged {
+pub struct Judged<T = crate::Truth> {
     /// What was true.
-    pub truth: Truth,
+    pub truth: T,
     /// What was answered.
     pub answer: Result<Answer, NoAnswer>,
     /// What independent fits say of both.
     pub evidence: Evidence,
 }
 
-/// Objectives (χ² and squared departures of the quantities) by which an answer is judged.
-#[derive(Debug, Clone, PartialEq, Default)]
+/// Objectives (χ² and squared departures of the quantities) and errors by which an answer is judged.
+#[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct Evidence {
     /// Of the refitted fixture that was handed back.
     pub refitted: f64,
     /// Of the repaired fixture that was handed back.
     pub repaired: f64,
-    /// Of the best fit about the truth.
+    /// Of the best fit about the truth; of a solid, of its own noise-free FRFs.
     pub truth: f64,
+    /// Of the best lumped fixture that has what is hidden in a solid, started at its closed form.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub lumped: Option<f64>,
     /// Cramér–Rao bound of each hidden effect's parameters, one standard deviation.
+    #[serde(skip)]
     pub bounds: Vec<Vec<Option<f64>>>,
     /// Of every other name that was given, fitted alone (one hidden effect only).
+    #[serde(serialize_with = "by_name")]
     pub others: BTreeMap<Name, f64>,
-    /// Of the best fit without each hidden effect.
+    /// Of the best fit without each hidden effect; of a solid only where there are two.
     pub without: Vec<f64>,
     /// Errors on FRFs that nobody recorded: refitted and repaired.
+    #[serde(skip)]
     pub unseen: Option<[f64; 2]>,
-    /// Quantities of the repaired fixture that lie farther than [`STRAINED`] from what was stated, in standard deviations.
+    /// Quantities of the repaired fixture that lie far from what was stated, in standard deviations.
+    #[serde(skip)]
     pub strained: Vec<(String, f64)>,
 }
 
-impl Judged {
+fn by_name<S: Serializer>(others: &BTreeMap<Name, f64>, serializer: S) -> Result<S::Ok, S::Error> {
+    let entry = |(name, objective): (&Name, &f64)| json!({ "name": name, "objective": objective });
+    serializer.collect_seq(others.iter().map(entry))
+}
+
+impl Evidence {
+    /// Objectives of what was handed back; those of the truth are still to come.
+    pub(crate) fn of_answer(judge: &Judge, answer: &Answer) -> Option<Self> {
+        let (refitted, repaired) = (judge.objective(&answer.refitted)?, judge.objective(&answer.repaired)?);
+        Some(Evidence { refitted, repaired, ..Evidence::default() })
+    }
+}
+
+/// Error √(Σ|ΔH|²/Σ|H|²) of a fixture on noise-free FRFs, as a perfect instrument would read them.
+pub(crate) fn error_on(exact: &FrfSet, fixture: &Fixture) -> Option<f64> {
+    let set = synthesize(fixture, exact.pairs(), exact.lines(), Instrument::Perfect).ok()?;
+    Some(relative_error(&set, exact))
+}
+
+impl<T: Judgeable + Sync> Judged<T> {
     /// Judges all cases on `threads` workers.
     pub fn all(
         cases: &[Case],
-        truths: Vec<Truth>,
+        truths: Vec<T>,
         answers: &Answers,
         threads: usize,
         told: impl Fn(usize) + Sync,
-    ) -> Vec<Judged> {
+    ) -> Vec<Self> {
         let work: Vec<_> = cases.iter().zip(&truths).zip(answers.all()).collect();
         let evidence = on_workers(&work, threads, told, |((case, truth), answer)| {
-            answer.as_ref().ok().and_then(|answer| Evidence::of(case, truth, answer))
+            answer.as_ref().ok().and_then(|answer| truth.evidence(case, answer))
         });
         let judged = truths.into_iter().zip(answers.all()).zip(evidence);
         judged
@@ -74,153 +121,95 @@ impl Judged {
             })
             .collect()
     }
+}
 
+impl<T: Judgeable> Judged<T> {
     /// The hidden names.
     pub fn hidden(&self) -> Vec<Name> {
         self.truth.effects().iter().map(Name::of).collect()
     }
 
-    /// The names found, the strongest first; none where there is no answer.
-    pub fn found(&self) -> Vec<Name> {
-        self.answer.as_ref().map_or_else(|_| Vec::new(), Answer::names)
+    /// What was found, the strongest first; nothing where there is no answer.
+    pub fn findings(&self) -> &[Found] {
+        self.answer.as_ref().map_or(&[], |answer| &answer.findings)
     }
 
-    /// What the hidden physics costs a fit that does without: Δχ², of two effects the smaller one's.
+    /// The names found, the strongest first.
+    pub fn found(&self) -> Vec<Name> {
+        self.findings().iter().map(|found| Name::of(&found.effect)).collect()
+    }
+
+    /// What the hidden physics costs a fit that does without: Δχ², of two effects the smaller one's. A refit that ended in a false
+    /// minimum does not make an effect look larger than it is.
     pub fn size(&self) -> f64 {
         let Evidence { refitted, truth, without, .. } = &self.evidence;
-        let lowest = without.iter().copied().fold(f64::INFINITY, f64::min);
-        match self.truth.role {
-            // A refit that ended in a false minimum must not make an effect look larger than it is.
-            Role::Single | Role::Graded => refitted.min(lowest) - truth,
-            Role::Double => lowest - truth,
-            Role::Null | Role::Outside => refitted - truth,
-        }
+        without.iter().copied().fold(*refitted, f64::min) - truth
     }
 
     /// Whether what was hidden shows: one effect, or each of two.
     pub fn is_visible(&self) -> bool {
-        self.truth.role != Role::Null && self.size() >= VISIBLE
+        self.truth.role() != Role::Null && self.size() >= VISIBLE
     }
 
-    /// Whether a name counts as right beside one hidden effect: it is the truth, or fits as well.
-    pub fn accepts(&self, name: &Name) -> bool {
-        let as_good = |objective: &f64| *objective <= self.evidence.truth + AS_GOOD;
-        self.hidden().contains(name) || self.evidence.others.get(name).is_some_and(as_good)
+    /// Whether the answer says that nothing is amiss.
+    pub fn is_consistent(&self) -> bool {
+        self.answer.as_ref().is_ok_and(|answer| answer.verdict == Verdict::Consistent)
     }
 
-    /// Whether all that was hidden was found, under its names or by a fit that is as good with as many effects.
-    pub fn all_found(&self) -> bool {
-        let (hidden, found) = (self.hidden(), self.found());
-        let by_name = hidden.iter().all(|name| found.contains(name));
-        let as_good = self.evidence.repaired <= self.evidence.truth + AS_GOOD;
-        by_name || (found.len() == hidden.len() && as_good)
+    /// Whether the answer says that something is amiss.
+    pub fn is_noticed(&self) -> bool {
+        self.answer.is_ok() && !self.is_consistent()
     }
 
-    /// The stated probability of a name, the largest where it was stated for several findings; zero where it was not named.
-    pub fn stated(&self, name: &Name) -> f64 {
-        let Ok(answer) = &self.answer else { return 0.0 };
-        let all = answer.findings.iter().flat_map(|found| found.names());
-        all.filter(|(other, _)| other == name).fold(0.0, |most, (_, p)| p.max(most))
+    /// The findings that are named with certainty.
+    pub(crate) fn claims(&self) -> impl Iterator<Item = &Found> {
+        self.findings().iter().filter(|found| found.probability >= CLAIMED)
     }
-}
 
-impl Evidence {
-    /// `None` where the recording or what was handed back cannot be evaluated.
-    fn of(case: &Case, truth: &Truth, answer: &Answer) -> Option<Self> {
-        let observation = Observation::new(&case.recorded, |_| true).ok()?;
-        let tolerances = Tolerance::all(&case.believed);
-        let objective_of = |fixture: &Fixture| {
-            let (pairs, lines) = (observation.pairs(), observation.lines());
-            let set = synthesize(fixture, pairs, lines, Instrument::AsRecorded).ok()?;
-            Some(objective(&observation, set.all_values(), &tolerances, &values(fixture)))
+    /// Errors of the refitted and the repaired fixture on what no fit saw.
+    pub(crate) fn held_out(&self) -> Option<[f64; 2]> {
+        self.answer.as_ref().ok()?.held_out
+    }
+
+    /// Faults of the repaired fixture, whatever was hidden.
+    pub(crate) fn faults_of_prediction(&self) -> Vec<String> {
+        let errors = [("unseen FRFs worse", self.evidence.unseen), ("held-out lines worse", self.held_out())];
+        let worse = errors.into_iter().filter(|(_, errors)| errors.is_some_and(is_worse));
+        worse.filter(|_| !self.findings().is_empty()).map(|(fault, _)| fault.to_owned()).collect()
+    }
+
+    /// The case in a line, with the findings that count as right; details are the findings.
+    pub(crate) fn line_of(&self, faults: Vec<String>, is_right: impl Fn(&Found) -> bool) -> CaseLine {
+        let hidden = self.hidden();
+        let mark = |found: &Found| match (hidden.contains(&Name::of(&found.effect)), is_right(found)) {
+            (true, _) => "= ",
+            (false, true) => "≈ ",
+            (false, false) => "",
         };
-        let best = |start: &Fixture| Reference::of(&case.believed, start, &observation);
-        let mut evidence = Evidence {
-            refitted: objective_of(&answer.refitted)?,
-            repaired: objective_of(&answer.repaired)?,
-            unseen: unseen(&truth.unseen, answer),
-            strained: strained(&case.believed, &tolerances, &answer.repaired),
-            ..Evidence::default()
-        };
-        match &truth.outside {
-            // No fixture describes it: the truth is what the hammer would have measured without noise.
-            Some(outside) => {
-                let (pairs, lines) = (observation.pairs(), observation.lines());
-                let set = outside
-                    .frfs(&truth.fixture, pairs, lines, jointscope_rig::Instrument::AsDescribed)
-                    .ok()?;
-                evidence.truth =
-                    objective(&observation, set.all_values(), &tolerances, &values(&truth.fixture));
-            }
-            None => {
-                let reference = best(&truth.fixture)?;
-                evidence.truth = reference.objective;
-                evidence.bounds = reference.bounds;
-            }
-        }
-        if truth.role.is_of_one() {
-            evidence.others = others(truth, answer, &evidence, best);
-        }
-        let without = |index: usize| {
-            let mut fewer = truth.effects().to_vec();
-            fewer.remove(index);
-            let start = truth.fixture.clone().with_physics(fewer).ok()?;
-            best(&start).map(|reference| reference.objective)
-        };
-        let each = (0..truth.effects().len()).map(|index| without(index).unwrap_or(f64::INFINITY));
-        evidence.without = each.collect();
-        Some(evidence)
-    }
-}
-
-fn strained(believed: &Fixture, tolerances: &[Tolerance], repaired: &Fixture) -> Vec<(String, f64)> {
-    let (quantities, values) = (believed.quantities(), values(repaired));
-    let departures = tolerances.iter().map(|t| (quantities[t.index].path.clone(), t.departure(&values)));
-    departures.filter(|(_, departure)| departure.abs() > STRAINED).collect()
-}
-
-/// Objectives of the names that were given instead of the hidden one, each fitted alone from where the answer left it, and from the
-/// true quantities.
-fn others(
-    truth: &Truth,
-    answer: &Answer,
-    evidence: &Evidence,
-    best: impl Fn(&Fixture) -> Option<Reference>,
-) -> BTreeMap<Name, f64> {
-    let hidden: Vec<Name> = truth.effects().iter().map(Name::of).collect();
-    let mut all: BTreeMap<Name, f64> = BTreeMap::new();
-    let mut fit = |effect: &Effect, known: f64| {
-        let name = Name::of(effect);
-        if hidden.contains(&name) || all.contains_key(&name) {
-            return;
-        }
-        let from = |fixture: &Fixture| {
-            let start = fixture.clone().with_physics(vec![effect.clone()]).ok()?;
-            best(&start).map(|reference| reference.objective)
-        };
-        let starts = [&answer.repaired, &truth.fixture].into_iter().filter_map(from);
-        all.insert(name, starts.fold(known, f64::min));
-    };
-    for found in &answer.findings {
-        let alone = if answer.findings.len() == 1 { evidence.repaired } else { f64::INFINITY };
-        fit(&found.effect, alone);
-        for (effect, _) in found.alternatives.iter().filter(|(_, p)| *p >= LISTED) {
-            fit(effect, f64::INFINITY);
+        let is_null = self.truth.role() == Role::Null;
+        CaseLine {
+            index: self.truth.index(),
+            role: String::new(),
+            hidden: self.truth.hidden(),
+            size: if is_null { String::new() } else { format!("{:.0}", self.size()) },
+            verdict: match &self.answer {
+                Ok(answer) => answer.verdict.name().replace('_', " "),
+                Err(why) => format!("no answer: {why}"),
+            },
+            found: marked(self.findings(), mark),
+            answered: self.answer.is_ok(),
+            asked: is_null || self.is_visible() || !self.findings().is_empty(),
+            details: in_full(self.findings()),
+            value: json!({
+                "truth": self.truth.to_value(),
+                "verdict": self.answer.as_ref().map(|answer| answer.verdict.name()).ok(),
+                "found": named(self.findings(), &is_right),
+                "visible": self.is_visible(),
+                "faults": faults,
+                "objectives": self.evidence,
+                "unseen": self.evidence.unseen,
+            }),
+            faults,
         }
     }
-    all
-}
-
-/// Errors of the refitted and the repaired fixture, √(Σ|ΔH|²/Σ|H|²), as a perfect instrument would read them.
-fn unseen(truth: &FrfSet, answer: &Answer) -> Option<[f64; 2]> {
-    let error = |fixture: &Fixture| {
-        let set = synthesize(fixture, truth.pairs(), truth.lines(), Instrument::Perfect).ok()?;
-        let (mut error, mut size) = (0.0, 0.0);
-        for (modelled, exact) in set.all_values().iter().zip(truth.all_values()) {
-            error += (modelled - exact).norm_sqr();
-            size += exact.norm_sqr();
-        }
-        Some((error / size).sqrt())
-    };
-    Some([error(&answer.refitted)?, error(&answer.repaired)?])
 }

@@ -10,7 +10,7 @@
 //! |---|---|
 //! | making cases | [`Plan`], [`Case`], [`Truth`], [`Role`], [`SealedTruths`] |
 //! | cases by other routes | [`Plan::draw_routes`], [`Questions`], [`RouteTruth`], [`Replies`], [`Opened`]; [`SolidTruth`], [`SolidJudged`]; [`StruckCase`], [`StruckTruth`], [`StruckJudged`] |
-//! | answers | [`Answers`], [`Answer`], [`Found`], [`Timing`] |
+//! | answers | [`Answers`], [`Answer`], [`Reply`], [`Found`], [`Timing`] |
 //! | judging | [`Judged`], [`Evidence`], [`Reference`], [`Name`] |
 //! | what else one could do | [`Baseline`], [`Methods`] |
 //! | limits of a test | [`Limits`] |
@@ -26,7 +26,7 @@
 //! let plan = Plan { cases: 2, ..Plan::default() };
 //! let (cases, sealed) = plan.draw()?;
 //! let published = sealed.digest().to_owned();
-//! // Somebody who never answers, in place of `Answers::to(&cases, 1, |_| ())`.
+//! // Somebody who never answers, in place of `Answers::by(&cases, 1, |_| (), Answer::of)`.
 //! let answers = Answers::by(&cases, 1, |_| (), |_| Err(NoAnswer::BrokeDown));
 //! let truths = sealed.open(&answers).ok_or("answers are missing")?;
 //! let score = Score::of(&Judged::all(&cases, truths, &answers, 1, |_| ()));
@@ -39,51 +39,54 @@ mod answer;
 mod answers;
 mod baseline;
 mod case;
+mod case_line;
 pub mod concealed;
 mod confusion;
 mod coverage;
 mod detection;
-mod detection_table;
-mod failures;
 mod generate;
 mod generation_error;
 mod graded;
 mod judged;
+mod laboratory;
 mod limits;
 mod objective;
+mod plan_table;
 mod reference;
 mod reliability;
 mod routes;
 mod score;
 mod seal;
 mod sensitivity;
+mod sheet;
+mod size;
 mod statistics;
 mod strength;
-mod table;
 mod timing;
-mod truth_file;
 
-pub use answer::{Answer, Found, NoAnswer};
+pub use answer::{Answer, Found, NoAnswer, Reply};
 pub use answers::Answers;
 pub use baseline::{Baseline, Lookup, Method, Methods, Updated, WIDER};
 pub use case::{Case, Name, Role, Truth, describe};
+pub use case_line::CaseLine;
 pub use confusion::{Confusion, NOTHING};
 pub use coverage::Coverage;
 pub use detection::{Detection, SizeClass, Smallest};
-pub use generate::{FAMILIES, Plan};
+pub use generate::{FAMILIES, HIDDEN_KINDS, Plan};
 pub use generation_error::GenerationError;
 pub use jointscope_rig::Family;
 pub use jointscope_rig::universal_file::{FileError, Precision};
-pub use judged::{AS_GOOD, Evidence, Judged, PLAIN, STRAINED, VISIBLE};
+pub use judged::{AS_GOOD, Evidence, Judgeable, Judged, PLAIN, VISIBLE};
 pub use limits::{Alike, Limits, SmallestShown};
 pub use reference::Reference;
 pub use reliability::{Bin, Reliability};
 pub use routes::{
-    CaseLine, HitsFileError, Opened, Questions, Replies, RouteScore, RouteScores, RouteTruth, Shown,
-    SizeScore, SolidEvidence, SolidJudged, SolidTruth, StruckAnswer, StruckAnswers, StruckCase,
-    StruckDiagnosis, StruckJudged, StruckNoAnswer, StruckOutcome, StruckRole, StruckTruth,
+    Asked, Opened, Questions, Replies, RouteScore, RouteScores, RouteTruth, Shown, SolidJudged, SolidTruth,
+    StruckAnswer, StruckAnswers, StruckCase, StruckJudged, StruckRole, StruckTruth,
 };
-pub use score::{CHANCE, Comparison, Figure, Rate, Score, Standing, Target};
+pub use score::{CHANCE, Comparison, Score, VerdictCounts};
 pub use seal::{BrokenSeal, Filed, Given, Sealable, SealedTruths};
+pub use sheet::{Figure, Rate, RoleCount, Sheet, Standing, Target};
+pub use size::{Size, SizeScore};
 pub use statistics::Share;
 pub use timing::Timing;

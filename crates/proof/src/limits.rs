@@ -6,7 +6,7 @@ use crate::{Name, VISIBLE};
 use jointscope_diagnosis::{Observation, catalogue};
 use jointscope_fixture::{Effect, Fixture};
 use jointscope_spectra::FrfSet;
-use serde_json::{Value, json};
+use serde::Serialize;
 use std::fmt;
 
 /// Angle below which two names are listed as alike, degrees.
@@ -15,25 +15,28 @@ const ALIKE: f64 = 25.0;
 const ROUNDING: f64 = 1e-9;
 
 /// A name at a place, and the smallest effect that shows there.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct SmallestShown {
     /// The name.
     pub name: Name,
-    /// The parameter, and its unit.
-    pub parameter: (&'static str, &'static str),
+    /// The parameter.
+    pub parameter: &'static str,
+    /// Its unit.
+    pub unit: &'static str,
     /// The parameter of an effect that costs a fit without it Δχ² = [`VISIBLE`], at the best abscissa or frequency tried; infinite where
     /// nothing shows.
     pub shows: f64,
     /// The same were every quantity of the fixture known exactly.
     pub shows_if_exact: f64,
     /// Whether effects of a larger parameter are weaker.
+    #[serde(rename = "upper")]
     pub is_upper: bool,
     /// Share of what the effect does that quantities within their tolerances can do as well.
     pub imitated: f64,
 }
 
 /// Two names that do nearly the same.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Alike {
     /// The names.
     pub names: [Name; 2],
@@ -46,7 +49,7 @@ pub struct Alike {
 }
 
 /// The limits of one fixture and one test.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Limits {
     /// Every name, in the order of the catalogue.
     pub smallest: Vec<SmallestShown>,
@@ -91,23 +94,6 @@ impl Limits {
         alike.sort_by(|a, b| a.angle_beyond_tolerances.total_cmp(&b.angle_beyond_tolerances));
         Some(Limits { smallest, alike })
     }
-
-    /// As JSON.
-    pub fn to_value(&self) -> Value {
-        let finite = |value: f64| value.is_finite().then_some(value);
-        json!({
-            "smallest": self.smallest.iter().map(|s| json!({
-                "name": s.name.to_string(), "parameter": s.parameter.0, "unit": s.parameter.1,
-                "shows": finite(s.shows), "shows_if_exact": finite(s.shows_if_exact), "upper": s.is_upper,
-                "imitated": s.imitated,
-            })).collect::<Vec<_>>(),
-            "alike": self.alike.iter().map(|a| json!({
-                "names": a.names.iter().map(ToString::to_string).collect::<Vec<_>>(),
-                "angle": a.angle, "angle_beyond_tolerances": a.angle_beyond_tolerances,
-                "told_apart_from": finite(a.told_apart_from),
-            })).collect::<Vec<_>>(),
-        })
-    }
 }
 
 impl Signature {
@@ -121,9 +107,11 @@ impl Signature {
             false if strength::is_inverse(self.name.kind) => 0.0,
             false => f64::INFINITY,
         };
+        let (parameter, unit) = strength::parameter(self.effect.kind, self.effect.dof);
         SmallestShown {
             name: self.name.clone(),
-            parameter: strength::parameter(self.effect.kind, self.effect.dof),
+            parameter,
+            unit,
             shows: shown(left),
             shows_if_exact: shown(whole),
             is_upper: strength::is_inverse(self.name.kind),
@@ -172,17 +160,12 @@ impl fmt::Display for Limits {
             f,
             "smallest effect that shows (Δχ² = {VISIBLE}), were every quantity exact, share imitated within tolerances:"
         )?;
-        for shown in &self.smallest {
-            let (parameter, unit) = shown.parameter;
-            let relation = if shown.is_upper { "≤" } else { "≥" };
-            writeln!(
-                f,
-                "  {:<44} {parameter} {relation} {:.2e} {unit} ({:.2e}) {:.4}",
-                shown.name.to_string(),
-                shown.shows,
-                shown.shows_if_exact,
-                shown.imitated
-            )?;
+        for SmallestShown { name, parameter, unit, shows, shows_if_exact, is_upper, imitated } in
+            &self.smallest
+        {
+            let (name, relation) = (name.to_string(), if *is_upper { "≤" } else { "≥" });
+            let exact = format!("({shows_if_exact:.2e}) {imitated:.4}");
+            writeln!(f, "  {name:<44} {parameter} {relation} {shows:.2e} {unit} {exact}")?;
         }
         writeln!(
             f,

@@ -1,8 +1,14 @@
 //! What every fit minimises: χ² of the FRFs and the squared departures of the fixture's quantities.
 
+use crate::{Case, Reference};
 use jointscope_diagnosis::Observation;
-use jointscope_fixture::Fixture;
+use jointscope_fixture::{Fixture, QuantityKey};
+use jointscope_lumped::{Instrument, synthesize};
+use jointscope_spectra::FrfSet;
 use num_complex::Complex64;
+
+/// Standard deviations beyond which a quantity's departure is worth telling.
+pub const STRAINED: f64 = 4.0;
 
 /// A quantity of the believed fixture that may depart from its statement; Young's modulus and second moment of a beam
 /// count as their product.
@@ -27,10 +33,12 @@ impl Tolerance {
             if quantity.std.is_some_and(|std| std <= 0.0) {
                 continue;
             }
-            let modulus =
-                quantity.path.strip_suffix("second_moment").map(|beam| format!("{beam}youngs_modulus"));
-            if let Some(first) = all.iter_mut().find(|t| modulus.as_ref() == Some(&quantities[t.index].path))
-            {
+            let is_modulus = |t: &&mut Tolerance| {
+                let first = &quantities[t.index];
+                first.key == QuantityKey::YoungsModulus && first.owner == quantity.owner
+            };
+            let first = all.iter_mut().find(is_modulus);
+            if let (QuantityKey::SecondMoment, Some(first)) = (quantity.key, first) {
                 let relative =
                     first.std.zip(quantity.std).map(|(a, b)| (a / first.nominal).hypot(b / quantity.value));
                 first.nominal *= quantity.value;
@@ -78,6 +86,64 @@ pub(crate) fn objective(
     values: &[f64],
 ) -> f64 {
     observation.chi2(predicted) + tolerances.iter().map(|t| t.departure(values).powi(2)).sum::<f64>()
+}
+
+/// √(Σ|a − b|²/Σ|b|²).
+pub(crate) fn relative_error(a: &FrfSet, b: &FrfSet) -> f64 {
+    let error: f64 = a.all_values().iter().zip(b.all_values()).map(|(a, b)| (a - b).norm_sqr()).sum();
+    let size: f64 = b.all_values().iter().map(|b| b.norm_sqr()).sum();
+    (error / size).sqrt()
+}
+
+/// Evaluates fixtures anew against a case's recording, and not taken at an answer's word.
+pub(crate) struct Judge<'a> {
+    believed: &'a Fixture,
+    tolerances: Vec<Tolerance>,
+    /// What was recorded.
+    pub observation: Observation,
+}
+
+impl<'a> Judge<'a> {
+    /// `None` where the recording has no noise that could be judged by.
+    pub fn of(case: &'a Case) -> Option<Self> {
+        let observation = Observation::new(&case.recorded, |_| true).ok()?;
+        Some(Judge { believed: &case.believed, tolerances: Tolerance::all(&case.believed), observation })
+    }
+
+    /// The objective of a fixture, read as the recording was.
+    pub fn objective(&self, fixture: &Fixture) -> Option<f64> {
+        let (pairs, lines) = (self.observation.pairs(), self.observation.lines());
+        let set = synthesize(fixture, pairs, lines, Instrument::AsRecorded).ok()?;
+        Some(self.objective_of(set.all_values(), fixture))
+    }
+
+    /// The objective of FRFs, with the departures of a fixture's quantities.
+    pub fn objective_of(&self, predicted: &[Complex64], fixture: &Fixture) -> f64 {
+        objective(&self.observation, predicted, &self.tolerances, &values(fixture))
+    }
+
+    /// The best fit about a fixture, by the laboratory's own model.
+    pub fn best(&self, start: &Fixture) -> Option<Reference> {
+        Reference::of(self.believed, start, &self.observation)
+    }
+
+    /// Objectives of the best fits about a fixture without each of its effects.
+    pub fn without_each(&self, fixture: &Fixture) -> Vec<f64> {
+        let without = |index: usize| {
+            let mut fewer = fixture.physics().to_vec();
+            fewer.remove(index);
+            self.best(&fixture.clone().with_physics(fewer).ok()?)
+        };
+        let objective = |index| without(index).map_or(f64::INFINITY, |reference| reference.objective);
+        (0..fixture.physics().len()).map(objective).collect()
+    }
+
+    /// Quantities that lie farther than so many standard deviations from what was stated.
+    pub fn strained(&self, fixture: &Fixture, beyond: f64) -> Vec<(String, f64)> {
+        let (quantities, values) = (self.believed.quantities(), values(fixture));
+        let departure = |t: &Tolerance| (quantities[t.index].path.clone(), t.departure(&values));
+        self.tolerances.iter().map(departure).filter(|(_, by)| by.abs() > beyond).collect()
+    }
 }
 
 #[cfg(test)]

@@ -4,7 +4,9 @@
 use crate::objective::{Tolerance, objective, values};
 use jointscope_diagnosis::Observation;
 use jointscope_fixture::{Fixture, ParameterRange};
-use jointscope_linalg::solve_positive_definite;
+use jointscope_inference::{
+    Convergence, Damping, Descent, LeastSquares, NormalEquations, Precision, Settings, descend,
+};
 use jointscope_rig::{Instrument, frfs};
 use num_complex::Complex64;
 
@@ -21,10 +23,20 @@ pub struct Reference {
 
 /// Step of central differences, in standard deviations or hundredths of a parameter.
 const DIFFERENCE: f64 = 2e-3;
-/// Steps towards the optimum at the most; derivatives are made anew while they gain.
-const STEPS: usize = 12;
-/// Gain in the objective below which nothing is left to gain.
-const CONVERGED: f64 = 1e-2;
+
+/// The start is a few standard deviations from the optimum: undamped steps, derivatives anew only when they gain nothing any more, and
+/// little to gain is left.
+const SETTINGS: Settings = Settings {
+    steps: 12,
+    derivatives: usize::MAX,
+    damping: Damping { initial: 0.0, decrease: 0.0, least: 0.0, raised: 1e-3, most: 10.0 },
+    convergence: Convergence { gain: 1e-2, share: 0.0, floor: 0.0 },
+    reuse: Some(0.0),
+    trust_old: false,
+    exact_at_end: false,
+    limit: None,
+    valleys: 0,
+};
 
 /// A coordinate that moves.
 enum Coordinate {
@@ -52,40 +64,74 @@ impl Reference {
     ///
     /// `None` where the truth has no finite FRFs.
     pub fn of(believed: &Fixture, truth: &Fixture, observation: &Observation) -> Option<Self> {
-        let near =
-            Neighbourhood { observation, tolerances: Tolerance::all(believed), coordinates: Vec::new() }
-                .with_coordinates(truth);
-        let mut place = near.place(truth.clone())?;
-        let at_truth = place.objective;
-        let mut jacobian = near.jacobian(&place);
-        let mut fresh = true;
-        for _ in 0..STEPS {
-            let gain = match near.step(&place, &jacobian) {
-                Some(next) => {
-                    let gain = place.objective - next.objective;
-                    place = next;
-                    gain
-                }
-                None => 0.0,
-            };
-            if gain < CONVERGED {
-                if fresh {
-                    break;
-                }
-                jacobian = near.jacobian(&place);
-                fresh = true;
-            } else {
-                fresh = false;
-            }
-        }
-        let bounds = near.bounds(&place, &jacobian, truth);
-        Some(Reference { objective: place.objective, at_truth, bounds })
+        let near = Neighbourhood::about(truth, Tolerance::all(believed), observation);
+        let start = near.place(truth.clone())?;
+        let at_truth = start.objective;
+        let Descent { point, derivatives, .. } = descend(&near, start, None, &SETTINGS)?;
+        let bounds = near.bounds(&point, &derivatives, truth);
+        Some(Reference { objective: point.objective, at_truth, bounds })
     }
 }
 
-impl Neighbourhood<'_> {
-    fn with_coordinates(mut self, truth: &Fixture) -> Self {
-        self.coordinates = (0..self.tolerances.len()).map(Coordinate::Quantity).collect();
+impl LeastSquares for Neighbourhood<'_> {
+    type Point = Place;
+    type Weights = ();
+    type Derivatives = Vec<Vec<Complex64>>;
+    type Equations = NormalEquations;
+    const FIXED_WEIGHTS: bool = true;
+
+    fn weights(&self, _: &Place) {}
+
+    fn objective(&self, place: &Place, _: &()) -> f64 {
+        place.objective
+    }
+
+    /// Central differences by coordinate; zeros where it cannot be moved.
+    fn derivatives(&self, place: &Place, _: Precision) -> Option<Vec<Vec<Complex64>>> {
+        let count = self.coordinates.len();
+        let at = |m: usize, step: f64| {
+            let mut steps = vec![0.0; count];
+            steps[m] = step;
+            self.moved(place, &steps)
+        };
+        let column = |m: usize| match (at(m, DIFFERENCE), at(m, -DIFFERENCE)) {
+            (Some(up), Some(down)) => {
+                let both = up.predicted.iter().zip(&down.predicted);
+                both.map(|(u, d)| (u - d) / (2.0 * DIFFERENCE)).collect()
+            }
+            _ => vec![Complex64::ZERO; place.predicted.len()],
+        };
+        Some((0..count).map(column).collect())
+    }
+
+    fn equations(&self, place: &Place, columns: &Vec<Vec<Complex64>>, _: &()) -> NormalEquations {
+        let (measured, weights) = (self.observation.values(), self.observation.weights());
+        let residual: Vec<Complex64> = measured.iter().zip(&place.predicted).map(|(m, p)| m - p).collect();
+        let priors = |m: usize| match self.coordinates[m] {
+            Coordinate::Quantity(which) => {
+                let tolerance = &self.tolerances[which];
+                (f64::from(tolerance.is_known()), tolerance.departure(&place.values))
+            }
+            Coordinate::Parameter { .. } => (0.0, 0.0),
+        };
+        let held = |m: usize| is_still(&columns[m]) && priors(m).0 == 0.0;
+        NormalEquations::of_columns(columns, &residual, weights, held, priors)
+    }
+
+    fn stepped(&self, place: &Place, equations: &NormalEquations, damping: f64) -> Option<Place> {
+        self.moved(place, &equations.step(damping)?)
+    }
+}
+
+/// Whether a coordinate does nothing to the FRFs.
+fn is_still(column: &[Complex64]) -> bool {
+    column.iter().all(|derivative| *derivative == Complex64::ZERO)
+}
+
+impl<'a> Neighbourhood<'a> {
+    /// All tolerances move, and the parameters of the effects that are not exactly zero.
+    fn about(truth: &Fixture, tolerances: Vec<Tolerance>, observation: &'a Observation) -> Self {
+        let mut coordinates: Vec<Coordinate> = (0..tolerances.len()).map(Coordinate::Quantity).collect();
         for (effect, hidden) in truth.physics().iter().enumerate() {
             for (parameter, spec) in hidden.kind.spec().parameters.iter().enumerate() {
                 let value = hidden.value(parameter).abs();
@@ -99,10 +145,10 @@ impl Neighbourhood<'_> {
                     ParameterRange::NonNegative => 0.0,
                     ParameterRange::Any | ParameterRange::NonZero => f64::NEG_INFINITY,
                 };
-                self.coordinates.push(Coordinate::Parameter { effect, parameter, scale, least });
+                coordinates.push(Coordinate::Parameter { effect, parameter, scale, least });
             }
         }
-        self
+        Neighbourhood { observation, tolerances, coordinates }
     }
 
     fn place(&self, fixture: Fixture) -> Option<Place> {
@@ -114,8 +160,8 @@ impl Neighbourhood<'_> {
         objective.is_finite().then_some(Place { fixture, values, predicted, objective })
     }
 
-    /// `from` with its coordinates moved by `steps`, in units of each.
-    fn moved(&self, from: &Place, steps: &[f64]) -> Option<Fixture> {
+    /// `from` with its coordinates moved by `steps`, in units of each; `None` where that is no fixture, or predicts nothing.
+    fn moved(&self, from: &Place, steps: &[f64]) -> Option<Place> {
         let mut fixture = from.fixture.clone();
         let mut physics = fixture.physics().to_vec();
         {
@@ -133,104 +179,19 @@ impl Neighbourhood<'_> {
                 }
             }
         }
-        fixture.with_physics(physics).ok()
-    }
-
-    /// Derivatives of the FRFs by coordinate, central differences; zeros where it cannot be moved.
-    fn jacobian(&self, place: &Place) -> Vec<Vec<Complex64>> {
-        let count = self.coordinates.len();
-        let at = |m: usize, step: f64| {
-            let mut steps = vec![0.0; count];
-            steps[m] = step;
-            self.moved(place, &steps).and_then(|fixture| self.place(fixture))
-        };
-        (0..count)
-            .map(|m| match (at(m, DIFFERENCE), at(m, -DIFFERENCE)) {
-                (Some(up), Some(down)) => {
-                    let both = up.predicted.iter().zip(&down.predicted);
-                    both.map(|(u, d)| (u - d) / (2.0 * DIFFERENCE)).collect()
-                }
-                _ => vec![Complex64::ZERO; place.predicted.len()],
-            })
-            .collect()
-    }
-
-    fn prior(&self, m: usize) -> f64 {
-        match self.coordinates[m] {
-            Coordinate::Quantity(which) => f64::from(self.tolerances[which].is_known()),
-            Coordinate::Parameter { .. } => 0.0,
-        }
-    }
-
-    fn departure(&self, m: usize, values: &[f64]) -> f64 {
-        match self.coordinates[m] {
-            Coordinate::Quantity(which) => self.tolerances[which].departure(values),
-            Coordinate::Parameter { .. } => 0.0,
-        }
-    }
-
-    /// JᵀWJ and the priors on its diagonal, row-major. A coordinate without effect gets a stiff one.
-    fn information(&self, jacobian: &[Vec<Complex64>]) -> Vec<f64> {
-        let n = jacobian.len();
-        let weights = self.observation.weights();
-        let mut matrix = vec![0.0; n * n];
-        for m in 0..n {
-            for k in 0..=m {
-                let products = jacobian[m].iter().zip(&jacobian[k]).zip(weights);
-                let sum: f64 = products.map(|((a, b), w)| w * (a.re * b.re + a.im * b.im)).sum();
-                matrix[m * n + k] = sum;
-                matrix[k * n + m] = sum;
-            }
-        }
-        for m in 0..n {
-            matrix[m * n + m] += self.prior(m);
-            if matrix[m * n + m] == 0.0 {
-                matrix[m * n + m] = 1.0;
-            }
-        }
-        matrix
-    }
-
-    /// The first damped step that lowers the objective.
-    fn step(&self, place: &Place, jacobian: &[Vec<Complex64>]) -> Option<Place> {
-        let n = jacobian.len();
-        let matrix = self.information(jacobian);
-        let residual: Vec<Complex64> =
-            self.observation.values().iter().zip(&place.predicted).map(|(m, p)| m - p).collect();
-        let right: Vec<f64> = (0..n)
-            .map(|m| {
-                let terms = jacobian[m].iter().zip(&residual).zip(self.observation.weights());
-                let pull: f64 = terms.map(|((j, r), w)| w * (j.re * r.re + j.im * r.im)).sum();
-                pull - self.prior(m) * self.departure(m, &place.values)
-            })
-            .collect();
-        [0.0, 1e-3, 1e-1, 10.0].into_iter().find_map(|damping| {
-            let mut damped = matrix.clone();
-            (0..n).for_each(|m| damped[m * n + m] *= 1.0 + damping);
-            let mut steps = right.clone();
-            if !solve_positive_definite(&mut damped, &mut steps) {
-                return None;
-            }
-            let next = self.moved(place, &steps).and_then(|fixture| self.place(fixture))?;
-            (next.objective < place.objective).then_some(next)
-        })
+        self.place(fixture.with_physics(physics).ok()?)
     }
 
     /// One standard deviation of every hidden parameter by the inverse of the information.
-    fn bounds(&self, place: &Place, jacobian: &[Vec<Complex64>], truth: &Fixture) -> Vec<Vec<Option<f64>>> {
-        let n = jacobian.len();
-        let matrix = self.information(jacobian);
-        let parameters = |effect: &jointscope_fixture::Effect| vec![None; effect.parameters.len()];
-        let mut bounds: Vec<Vec<Option<f64>>> = truth.physics().iter().map(parameters).collect();
+    fn bounds(&self, place: &Place, columns: &Vec<Vec<Complex64>>, truth: &Fixture) -> Vec<Vec<Option<f64>>> {
+        let mut bounds: Vec<Vec<Option<f64>>> =
+            truth.physics().iter().map(|effect| vec![None; effect.parameters.len()]).collect();
+        let Some(covariance) = self.equations(place, columns, &()).covariance() else { return bounds };
         for (m, coordinate) in self.coordinates.iter().enumerate() {
             let Coordinate::Parameter { effect, parameter, scale, least } = *coordinate else { continue };
-            let still = jacobian[m].iter().all(|derivative| *derivative == Complex64::ZERO);
             let at_its_end = place.fixture.physics()[effect].value(parameter) <= least;
-            let mut copy = matrix.clone();
-            let mut column = vec![0.0; n];
-            column[m] = 1.0;
-            if !still && !at_its_end && solve_positive_definite(&mut copy, &mut column) && column[m] > 0.0 {
-                bounds[effect][parameter] = Some(column[m].sqrt() * scale);
+            if !is_still(&columns[m]) && !at_its_end && covariance.at(m, m) > 0.0 {
+                bounds[effect][parameter] = Some(covariance.at(m, m).sqrt() * scale);
             }
         }
         bounds

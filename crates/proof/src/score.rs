@@ -1,107 +1,25 @@
-//! The scores: shares with binomial intervals beside their targets.
+//! The scores of the laboratory's cases.
 
+use crate::case_line::is_worse;
 use crate::confusion::Confusion;
 use crate::coverage::Coverage;
 use crate::detection::Detection;
 use crate::reliability::Reliability;
-use crate::statistics::median;
-use crate::{Judged, Name, PLAIN, Role, Share};
+use crate::sheet::Target::{AtLeast, AtMost, Within};
+use crate::sheet::{Keyed, Line, by_key};
+use crate::statistics::middle;
+use crate::{Figure, Judged, Name, PLAIN, Rate, Role, RoleCount, Share, Sheet};
 use jointscope_diagnosis::Verdict;
-
-/// What a figure should be.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Target {
-    /// This or more.
-    AtLeast(f64),
-    /// This or less.
-    AtMost(f64),
-    /// Neither less than the first nor more than the second.
-    Within(f64, f64),
-}
-
-impl Target {
-    /// Whether a figure is what it should be.
-    pub fn is_met(self, value: f64) -> bool {
-        match self {
-            Target::AtLeast(least) => value >= least,
-            Target::AtMost(most) => value <= most,
-            Target::Within(least, most) => (least..=most).contains(&value),
-        }
-    }
-}
-
-/// A share of cases with its target.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Rate {
-    /// Key in `proof.json`.
-    pub key: &'static str,
-    /// What is counted, in words.
-    pub what: &'static str,
-    /// How many of how many.
-    pub share: Share,
-    /// What it should be.
-    pub target: Option<Target>,
-}
-
-/// How a share stands to its target.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Standing {
-    /// It is what it should be.
-    Met,
-    /// It is not, but its interval holds the target.
-    WithinChance,
-    /// It is not.
-    Missed,
-}
-
-impl Standing {
-    /// The standing in words.
-    pub fn says(self) -> &'static str {
-        match self {
-            Standing::Met => "met",
-            Standing::WithinChance => "missed, within chance",
-            Standing::Missed => "missed",
-        }
-    }
-}
-
-impl Rate {
-    /// How it stands to its target; `None` where it has none or nothing was counted.
-    pub fn standing(&self) -> Option<Standing> {
-        let (target, value) = (self.target?, self.share.value()?);
-        let [low, high] = self.share.interval();
-        let within = match target {
-            Target::AtLeast(least) => high >= least,
-            Target::AtMost(most) => low <= most,
-            Target::Within(least, most) => high >= least && low <= most,
-        };
-        Some(match (target.is_met(value), within) {
-            (true, _) => Standing::Met,
-            (false, true) => Standing::WithinChance,
-            (false, false) => Standing::Missed,
-        })
-    }
-}
-
-/// A figure that is no share.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Figure {
-    /// Key in `proof.json`.
-    pub key: &'static str,
-    /// What it is, in words.
-    pub what: &'static str,
-    /// Its value; `None` where no case decides it.
-    pub value: Option<f64>,
-    /// Number of cases or intervals behind it.
-    pub from: usize,
-    /// What it should be.
-    pub target: Option<Target>,
-}
+use serde::{Serialize, Serializer};
+use std::collections::BTreeMap;
+use std::fmt::{self, Display, Formatter};
+use std::ops::Deref;
 
 /// The same share of cases that were always there and of fresh ones.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Comparison {
     /// Key of the rate.
+    #[serde(skip)]
     pub key: &'static str,
     /// Cases of the seed.
     pub old: Share,
@@ -109,20 +27,28 @@ pub struct Comparison {
     pub fresh: Share,
     /// Probability of a difference as large were both drawn alike.
     pub probability: f64,
+    /// Whether the difference may be chance: the probability is [`CHANCE`] or more.
+    pub agree: bool,
+}
+
+impl Keyed for Comparison {
+    fn key(&self) -> &str {
+        self.key
+    }
 }
 
 /// A difference less probable than this is no chance.
 pub const CHANCE: f64 = 0.01;
 
+/// Verdicts with the number of cases.
+pub type VerdictCounts = Vec<(&'static str, usize)>;
+
 /// All scores of a set of judged cases.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Score {
-    /// Number of cases by [`Role`], and how many of them show.
-    pub cases: Vec<(Role, usize, usize)>,
-    /// Shares with targets.
-    pub rates: Vec<Rate>,
-    /// Other figures.
-    pub figures: Vec<Figure>,
+    /// Shares, figures and every case.
+    #[serde(flatten)]
+    pub sheet: Sheet,
     /// Stated probabilities against how often they were right.
     pub reliability: Reliability,
     /// Which kinds were taken for which.
@@ -130,74 +56,112 @@ pub struct Score {
     /// Share of effects found by their size.
     pub detection: Detection,
     /// Stated intervals against the truth.
+    #[serde(rename = "coverage_by_level")]
     pub coverage: Coverage,
     /// Verdicts by role.
-    pub verdicts: Vec<(Role, Vec<(&'static str, usize)>)>,
+    #[serde(serialize_with = "by_role")]
+    pub verdicts: Vec<(Role, VerdictCounts)>,
     /// Old against fresh cases; empty where none are fresh.
+    #[serde(rename = "old_and_fresh", serialize_with = "by_key")]
     pub comparisons: Vec<Comparison>,
+}
+
+fn by_role<S: Serializer>(verdicts: &[(Role, VerdictCounts)], serializer: S) -> Result<S::Ok, S::Error> {
+    let counts = |(role, given): &(Role, VerdictCounts)| {
+        (role.name(), given.iter().copied().collect::<BTreeMap<_, _>>())
+    };
+    serializer.collect_map(verdicts.iter().map(counts))
 }
 
 /// Stated probability that counts as certain.
 const CERTAIN: f64 = 0.95;
-/// Stated probability at which a wrong name is a fault.
-const CLAIMED: f64 = 0.9;
 /// Probability below which the log score does not fall.
 const LEAST: f64 = 1e-3;
+
+const RATES: [Line; 15] = [
+    ("nulls_consistent", "nulls called consistent", Some(AtLeast(0.99))),
+    ("null_finding", "nulls with a finding: false alarms", Some(AtMost(0.01))),
+    ("single_kind", "single effects: kind right", Some(AtLeast(0.97))),
+    ("single_place", "single effects: kind, place and dof right", Some(AtLeast(0.97))),
+    ("single_elsewhere", "single effects of the right kind: at another place or dof", None),
+    ("single_extra", "single effects: an extra finding", Some(AtMost(0.05))),
+    ("single_certain", "plain single effects with one acceptable name: 0.95 on it", Some(AtLeast(0.9))),
+    ("coverage", "95 % intervals that hold the true parameter", Some(Within(0.92, 0.98))),
+    ("double_both", "two effects: both right", Some(AtLeast(0.85))),
+    ("held_out_worse", "held-out lines: repaired worse than refitted", Some(AtMost(0.01))),
+    ("unseen_worse", "unmeasured FRFs: repaired worse than refitted", Some(AtMost(0.01))),
+    ("outside_wrong_name", "unknown physics: a wrong name with 0.9 or more", Some(AtMost(0.0))),
+    ("false_minimum", "right names, or rightly none, fitted short of their minimum", None),
+    ("outside_abstains", "unknown physics that shows: noticed, and no name given", None),
+    ("outside_named", "unknown physics: any name with 0.9 or more", None),
+];
+
+const FIGURES: [Line; 5] = [
+    ("interval_width", "95 % intervals: median width over the Cramér–Rao bound's", Some(AtMost(1.5))),
+    ("place_error", "right names with an abscissa: median error of the place in mm", None),
+    ("log_score", "mean log of the probability of the true name", None),
+    ("held_out_ratio", "held-out lines: median error refitted over repaired", Some(AtLeast(10.0))),
+    ("unseen_ratio", "unmeasured FRFs: median error refitted over repaired", Some(AtLeast(10.0))),
+];
 
 impl Score {
     /// Scores judged cases.
     pub fn of(judged: &[Judged]) -> Self {
         let all: Vec<&Judged> = judged.iter().collect();
         let (fresh, old): (Vec<&Judged>, Vec<&Judged>) = all.iter().partition(|judged| judged.truth.fresh);
-        let comparisons = if fresh.is_empty() || old.is_empty() {
-            Vec::new()
-        } else {
-            let pairs = rates(&old).into_iter().zip(rates(&fresh));
-            pairs
-                .map(|(old, fresh)| Comparison {
-                    key: old.key,
-                    old: old.share,
-                    fresh: fresh.share,
-                    probability: old.share.agreement(fresh.share),
-                })
-                .collect()
+        let compared = |&(key, ..): &Line| {
+            let (old, fresh) = (share(&old, key), share(&fresh, key));
+            let probability = old.agreement(fresh);
+            Comparison { key, old, fresh, probability, agree: probability >= CHANCE }
         };
-        let of_role = |role: Role| all.iter().copied().filter(move |judged| judged.truth.role == role);
-        let cases = Role::ALL.map(|role| {
-            (role, of_role(role).count(), of_role(role).filter(|judged| judged.is_visible()).count())
+        let both = !fresh.is_empty() && !old.is_empty();
+        let roles = Role::ALL.map(|role| RoleCount {
+            role: role.name(),
+            cases: of_role(&all, role).count(),
+            visible: Some(visible(&all, role).count()),
+            asked: None,
         });
-        let verdicts = Role::ALL.map(|role| (role, verdicts(of_role(role))));
         Score {
-            cases: cases.to_vec(),
-            rates: rates(&all),
-            figures: figures(&all),
+            sheet: Sheet {
+                roles: roles.to_vec(),
+                rates: Rate::all(&RATES, |key| share(&all, key)),
+                figures: Figure::all(&FIGURES, |key| figure(&all, key)),
+                lines: judged.iter().map(Judged::line).collect(),
+            },
             reliability: Reliability::of(visible(&all, Role::Single)),
-            confusion: Confusion::of(all.iter().copied()),
-            detection: Detection::of(all.iter().copied()),
+            confusion: Confusion::of(judged.iter()),
+            detection: Detection::of(judged.iter()),
             coverage: intervals(&all),
-            verdicts: verdicts.to_vec(),
-            comparisons,
+            verdicts: Role::ALL.map(|role| (role, verdicts(of_role(&all, role)))).to_vec(),
+            comparisons: if both { RATES.iter().map(compared).collect() } else { Vec::new() },
         }
     }
+}
 
-    /// The rate of a key.
-    pub fn rate(&self, key: &str) -> Option<&Rate> {
-        self.rates.iter().find(|rate| rate.key == key)
-    }
+impl Deref for Score {
+    type Target = Sheet;
 
-    /// The figure of a key.
-    pub fn figure(&self, key: &str) -> Option<&Figure> {
-        self.figures.iter().find(|figure| figure.key == key)
+    fn deref(&self) -> &Sheet {
+        &self.sheet
     }
+}
+
+fn of_role<'a>(all: &'a [&Judged], role: Role) -> impl Iterator<Item = &'a Judged> + Clone {
+    all.iter().copied().filter(move |judged| judged.truth.role == role)
 }
 
 fn visible<'a>(all: &'a [&Judged], role: Role) -> impl Iterator<Item = &'a Judged> + Clone {
-    all.iter().copied().filter(move |judged| judged.truth.role == role && judged.is_visible())
+    of_role(all, role).filter(|judged| judged.is_visible())
 }
 
-fn verdicts<'a>(judged: impl Iterator<Item = &'a Judged>) -> Vec<(&'static str, usize)> {
+/// Single and double effects that show.
+fn shown<'a>(all: &'a [&Judged]) -> impl Iterator<Item = &'a Judged> + Clone {
+    visible(all, Role::Single).chain(visible(all, Role::Double))
+}
+
+fn verdicts<'a>(judged: impl Iterator<Item = &'a Judged>) -> VerdictCounts {
     let words = [Verdict::Consistent, Verdict::Explained, Verdict::PartlyExplained, Verdict::Unexplained];
-    let mut counts: Vec<(&'static str, usize)> = words.iter().map(|verdict| (verdict.name(), 0)).collect();
+    let mut counts: VerdictCounts = words.iter().map(|verdict| (verdict.name(), 0)).collect();
     counts.push(("no answer", 0));
     for judged in judged {
         let word = judged.answer.as_ref().map_or("no answer", |answer| answer.verdict.name());
@@ -206,174 +170,73 @@ fn verdicts<'a>(judged: impl Iterator<Item = &'a Judged>) -> Vec<(&'static str, 
     counts
 }
 
-fn rates(all: &[&Judged]) -> Vec<Rate> {
-    use Target::{AtLeast, AtMost, Within};
-    let of_role = |role: Role| all.iter().copied().filter(move |judged| judged.truth.role == role);
-    let rate = |key, what, share, target| Rate { key, what, share, target: Some(target) };
-    let consistent =
-        |judged: &Judged| judged.answer.as_ref().is_ok_and(|answer| answer.verdict == Verdict::Consistent);
-    let worse = |errors: [f64; 2]| errors[1] > errors[0];
-    vec![
-        rate(
-            "nulls_consistent",
-            "nulls called consistent",
-            Share::count(of_role(Role::Null), consistent),
-            AtLeast(0.99),
-        ),
-        rate(
-            "null_finding",
-            "nulls with a finding: false alarms",
-            Share::count(of_role(Role::Null), |judged| !judged.found().is_empty()),
-            AtMost(0.01),
-        ),
-        rate(
-            "single_kind",
-            "single effects: kind right",
-            Share::count(visible(all, Role::Single), Judged::has_kind),
-            AtLeast(0.97),
-        ),
-        rate(
-            "single_place",
-            "single effects: kind, place and dof right",
-            Share::count(visible(all, Role::Single), Judged::is_named),
-            AtLeast(0.97),
-        ),
-        Rate {
-            key: "single_elsewhere",
-            what: "single effects of the right kind: at another place or dof",
-            share: Share::count(visible(all, Role::Single).filter(|judged| judged.has_kind()), |judged| {
-                !judged.is_named()
-            }),
-            target: None,
-        },
-        rate(
-            "single_extra",
-            "single effects: an extra finding",
-            Share::count(visible(all, Role::Single), |judged| judged.found().len() > 1),
-            AtMost(0.05),
-        ),
-        rate(
-            "single_certain",
-            "plain single effects with one acceptable name: 0.95 on it",
-            Share::count(plain(all), |judged| judged.hidden().iter().all(|n| judged.stated(n) >= CERTAIN)),
-            AtLeast(0.9),
-        ),
-        rate(
-            "coverage",
-            "95 % intervals that hold the true parameter",
-            intervals(all).share(),
-            Within(0.92, 0.98),
-        ),
-        rate(
-            "double_both",
-            "two effects: both right",
-            Share::count(visible(all, Role::Double), Judged::all_found),
-            AtLeast(0.85),
-        ),
-        rate(
-            "held_out_worse",
-            "held-out lines: repaired worse than refitted",
-            Share::count(held_out(all.iter().copied()), worse),
-            AtMost(0.01),
-        ),
-        rate(
-            "unseen_worse",
-            "unmeasured FRFs: repaired worse than refitted",
-            Share::count(unseen(all.iter().copied()), worse),
-            AtMost(0.01),
-        ),
-        rate(
-            "outside_wrong_name",
-            "unknown physics: a wrong name with 0.9 or more",
-            Share::count(of_role(Role::Outside), |judged| claimed(judged) && !judged.cannot_be_told()),
-            AtMost(0.0),
-        ),
-        Rate {
-            key: "false_minimum",
-            what: "right names, or rightly none, fitted short of their minimum",
-            share: Share::count(right_names(all), Judged::stopped_short),
-            target: None,
-        },
-        Rate {
-            key: "outside_abstains",
-            what: "unknown physics that shows: noticed, and no name given",
-            share: Share::count(visible(all, Role::Outside), |judged| {
-                judged.is_noticed() && judged.found().is_empty()
-            }),
-            target: None,
-        },
-        Rate {
-            key: "outside_named",
-            what: "unknown physics: any name with 0.9 or more",
-            share: Share::count(of_role(Role::Outside), claimed),
-            target: None,
-        },
-    ]
+/// The share of a key of [`RATES`].
+fn share(all: &[&Judged], key: &str) -> Share {
+    let singles = || visible(all, Role::Single);
+    match key {
+        "nulls_consistent" => Share::count(of_role(all, Role::Null), |judged| judged.is_consistent()),
+        "null_finding" => Share::count(of_role(all, Role::Null), |judged| !judged.findings().is_empty()),
+        "single_kind" => Share::count(singles(), |judged| judged.has_kind()),
+        "single_place" => Share::count(singles(), |judged| judged.is_named()),
+        "single_elsewhere" => {
+            Share::count(singles().filter(|judged| judged.has_kind()), |judged| !judged.is_named())
+        }
+        "single_extra" => Share::count(singles(), |judged| judged.findings().len() > 1),
+        "single_certain" => {
+            Share::count(plain(all), |judged| judged.hidden().iter().all(|n| judged.stated(n) >= CERTAIN))
+        }
+        "coverage" => intervals(all).share(),
+        "double_both" => Share::count(visible(all, Role::Double), Judged::all_found),
+        "held_out_worse" => Share::count(all.iter().filter_map(|judged| judged.held_out()), is_worse),
+        "unseen_worse" => Share::count(all.iter().filter_map(|judged| judged.evidence.unseen), is_worse),
+        "outside_wrong_name" => Share::count(of_role(all, Role::Outside), Judged::claims_wrongly),
+        "false_minimum" => {
+            let right = all.iter().filter(|judged| judged.names_all_and_nothing_else());
+            Share::count(right, |judged| judged.stopped_short())
+        }
+        "outside_abstains" => Share::count(visible(all, Role::Outside), |judged| {
+            judged.is_noticed() && judged.findings().is_empty()
+        }),
+        "outside_named" => {
+            Share::count(of_role(all, Role::Outside), |judged| judged.claims().next().is_some())
+        }
+        _ => Share::default(),
+    }
 }
 
-fn figures(all: &[&Judged]) -> Vec<Figure> {
-    let helped = || visible(all, Role::Single).chain(visible(all, Role::Double));
-    let ratio = |errors: [f64; 2]| errors[0] / errors[1];
-    let held_out: Vec<f64> = held_out(helped()).map(ratio).collect();
-    let unseen: Vec<f64> = unseen(helped()).map(ratio).collect();
-    let widths = intervals(all).widths();
-    let places = place_errors(all);
-    let logs: Vec<f64> = visible(all, Role::Single)
-        .map(|judged| {
-            let stated = judged.hidden().iter().map(|name| judged.stated(name)).fold(1.0, f64::min);
-            stated.max(LEAST).ln()
-        })
-        .collect();
-    let mean =
-        |values: &[f64]| (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64);
-    let figure = |key, what, value, from, target| Figure { key, what, value, from, target };
-    vec![
-        figure(
-            "interval_width",
-            "95 % intervals: median width over the Cramér–Rao bound's",
-            median(&widths),
-            widths.len(),
-            Some(Target::AtMost(1.5)),
-        ),
-        figure(
-            "place_error",
-            "right names with an abscissa: median error of the place in mm",
-            median(&places).map(|metres| 1e3 * metres),
-            places.len(),
-            None,
-        ),
-        figure("log_score", "mean log of the probability of the true name", mean(&logs), logs.len(), None),
-        figure(
-            "held_out_ratio",
-            "held-out lines: median error refitted over repaired",
-            median(&held_out),
-            held_out.len(),
-            Some(Target::AtLeast(10.0)),
-        ),
-        figure(
-            "unseen_ratio",
-            "unmeasured FRFs: median error refitted over repaired",
-            median(&unseen),
-            unseen.len(),
-            Some(Target::AtLeast(10.0)),
-        ),
-    ]
+/// The figure of a key of [`FIGURES`], and how many it is of.
+fn figure(all: &[&Judged], key: &str) -> (Option<f64>, usize) {
+    let ratio = |[refitted, repaired]: [f64; 2]| refitted / repaired;
+    match key {
+        "interval_width" => middle(intervals(all).widths().into_iter()),
+        "place_error" => middle(place_errors(all).into_iter().map(|metres| 1e3 * metres)),
+        "log_score" => {
+            let logs = visible(all, Role::Single).map(|judged| {
+                let stated = judged.hidden().iter().map(|name| judged.stated(name)).fold(1.0, f64::min);
+                stated.max(LEAST).ln()
+            });
+            let count = logs.clone().count();
+            ((count > 0).then(|| logs.sum::<f64>() / count as f64), count)
+        }
+        "held_out_ratio" => middle(shown(all).filter_map(Judged::held_out).map(ratio)),
+        "unseen_ratio" => middle(shown(all).filter_map(|judged| judged.evidence.unseen).map(ratio)),
+        _ => (None, 0),
+    }
 }
 
 fn intervals(all: &[&Judged]) -> Coverage {
-    Coverage::of(visible(all, Role::Single).chain(visible(all, Role::Double)))
+    Coverage::of(shown(all))
 }
 
 /// Distances between found and true abscissae of effects that were found under their own names, m.
 fn place_errors(all: &[&Judged]) -> Vec<f64> {
     let mut errors = Vec::new();
-    for judged in visible(all, Role::Single).chain(visible(all, Role::Double)) {
+    for judged in shown(all) {
         for hidden in judged.truth.effects() {
             let Some(x) = hidden.kind.spec().parameters.iter().position(|spec| spec.name == "x") else {
                 continue;
             };
-            let findings = judged.answer.iter().flat_map(|answer| &answer.findings);
-            let own = findings.filter(|found| Name::of(&found.effect) == Name::of(hidden));
+            let own = judged.findings().iter().filter(|found| Name::of(&found.effect) == Name::of(hidden));
             errors.extend(own.map(|found| (found.effect.value(x) - hidden.value(x)).abs()));
         }
     }
@@ -388,24 +251,30 @@ fn plain<'a>(all: &'a [&Judged]) -> impl Iterator<Item = &'a Judged> {
     })
 }
 
-/// Answers that name what was hidden and nothing else.
-fn right_names<'a>(all: &'a [&Judged]) -> impl Iterator<Item = &'a Judged> {
-    all.iter().copied().filter(|judged| {
-        let (mut hidden, mut found) = (judged.hidden(), judged.found());
-        hidden.sort();
-        found.sort();
-        judged.answer.is_ok() && judged.truth.role != Role::Outside && hidden == found
-    })
-}
-
-fn claimed(judged: &Judged) -> bool {
-    judged.answer.as_ref().is_ok_and(|answer| answer.findings.iter().any(|f| f.probability >= CLAIMED))
-}
-
-fn held_out<'a>(judged: impl Iterator<Item = &'a Judged>) -> impl Iterator<Item = [f64; 2]> {
-    judged.filter_map(|judged| judged.answer.as_ref().ok()?.held_out)
-}
-
-fn unseen<'a>(judged: impl Iterator<Item = &'a Judged>) -> impl Iterator<Item = [f64; 2]> {
-    judged.filter_map(|judged| judged.evidence.unseen)
+impl Display for Score {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        write!(f, "cases, and those whose hidden physics shows:\n{}", self.sheet)?;
+        write!(f, "{}", self.detection)?;
+        writeln!(f, "\nintervals of a level that hold the true parameter:")?;
+        for (level, held) in self.coverage.by_level() {
+            writeln!(f, "  {level:<6} {}", held.briefly())?;
+        }
+        write!(f, "{}{}\nverdicts:\n", self.reliability, self.confusion)?;
+        for (role, verdicts) in &self.verdicts {
+            let given = verdicts.iter().filter(|(_, count)| *count > 0);
+            let given: Vec<String> = given.map(|(name, count)| format!("{name} {count}")).collect();
+            writeln!(f, "  {:<8} {}", role.name(), given.join(", "))?;
+        }
+        if !self.comparisons.is_empty() {
+            writeln!(f, "\nold and fresh cases, probability of a difference as large by chance:")?;
+        }
+        for Comparison { key, old, fresh, probability, agree } in &self.comparisons {
+            let word = if *agree { "agree" } else { "differ" };
+            let (old, fresh) = ([old.of, old.all], [fresh.of, fresh.all]);
+            let (of, of_fresh) =
+                (format!("{:>4} of {:<4}", old[0], old[1]), format!("{:>4} of {:<4}", fresh[0], fresh[1]));
+            writeln!(f, "  {key:<20} {of} {of_fresh} {probability:.3} {word}")?;
+        }
+        Ok(())
+    }
 }

@@ -10,29 +10,10 @@ pub trait Sealable {
     fn to_value(&self) -> Value;
 }
 
-impl Sealable for Truth {
-    fn to_value(&self) -> Value {
-        Truth::to_value(self)
-    }
-}
-
 /// A truth that can be read back from what was sealed.
 pub trait Filed: Sealable + Sized {
     /// The truth that [`Sealable::to_value`] has written; `None` of anything else.
     fn from_value(value: &Value) -> Option<Self>;
-
-    /// Its case's number.
-    fn index(&self) -> usize;
-}
-
-impl Filed for Truth {
-    fn from_value(value: &Value) -> Option<Self> {
-        Truth::from_value(value)
-    }
-
-    fn index(&self) -> usize {
-        self.index
-    }
 }
 
 /// Answers against which truths are opened.
@@ -99,8 +80,8 @@ impl<T: Filed> SealedTruths<T> {
 /// The truths in a file's text, or the one that is asked for.
 fn truths_of<T: Filed>(text: &str, only: Option<usize>) -> Option<Vec<T>> {
     let all: Value = serde_json::from_str(text).ok()?;
-    let read = all.as_array()?.iter().map(T::from_value).collect::<Option<Vec<_>>>()?;
-    Some(read.into_iter().filter(|truth| only.is_none_or(|only| only == truth.index())).collect())
+    let is_asked = |truth: &&Value| only.is_none_or(|only| truth["case"] == only);
+    all.as_array()?.iter().filter(is_asked).map(T::from_value).collect()
 }
 
 impl<T: Sealable> SealedTruths<T> {

@@ -1,12 +1,32 @@
 //! Shares with their binomial uncertainty.
 
+use serde::Serialize;
+use statrs::distribution::{Beta, ContinuousCDF, Discrete, Hypergeometric};
+use statrs::statistics::{Max, Min};
+
 /// How many of how many.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
+#[serde(into = "StatedShare")]
 pub struct Share {
     /// Cases in which it was so.
     pub of: usize,
     /// Cases that count.
     pub all: usize,
+}
+
+/// A share as files state it.
+#[derive(Serialize)]
+struct StatedShare {
+    count: usize,
+    of: usize,
+    share: Option<f64>,
+    ci95: [f64; 2],
+}
+
+impl From<Share> for StatedShare {
+    fn from(share: Share) -> Self {
+        StatedShare { count: share.of, of: share.all, share: share.value(), ci95: share.interval() }
+    }
 }
 
 impl Share {
@@ -25,59 +45,32 @@ impl Share {
         (self.all > 0).then(|| self.of as f64 / self.all as f64)
     }
 
-    /// Two-sided 95 % interval by Clopper and Pearson; everything where nothing was counted.
+    /// How many of how many with the interval, in a few words.
+    pub(crate) fn briefly(self) -> String {
+        let [low, high] = self.interval();
+        format!("{} of {} ({low:.2} to {high:.2})", self.of, self.all)
+    }
+
+    /// Two-sided 95 % interval by Clopper and Pearson, quantiles of the beta distribution; everything where nothing was counted.
     pub fn interval(self) -> [f64; 2] {
-        let Share { of, all } = self;
-        if all == 0 {
-            return [0.0, 1.0];
-        }
-        let tail = 0.025;
-        // Below p the count is too high to be chance; above it, too low.
-        let low = if of == 0 { 0.0 } else { bisect(|p| 1.0 - cumulative(of - 1, all, p) < tail) };
-        let high = if of == all { 1.0 } else { bisect(|p| cumulative(of, all, p) > tail) };
+        let quantile = |successes: usize, failures: usize, at: f64| {
+            Beta::new(successes as f64, failures as f64).map_or(f64::NAN, |beta| beta.inverse_cdf(at))
+        };
+        let failures = self.all - self.of;
+        let low = if self.of == 0 { 0.0 } else { quantile(self.of, failures + 1, 0.025) };
+        let high = if failures == 0 { 1.0 } else { quantile(self.of + 1, failures, 0.975) };
         [low, high]
     }
 
     /// Probability, were both shares drawn alike, of two that differ at least as much (Fisher's exact test).
     pub fn agreement(self, other: Share) -> f64 {
-        let (right, first, all) = (self.of + other.of, self.all, self.all + other.all);
-        let log = log_factorials(all);
-        let choose = |n: usize, k: usize| log[n] - log[k] - log[n - k];
-        let probability =
-            |k: usize| (choose(first, k) + choose(all - first, right - k) - choose(all, right)).exp();
-        let possible = right.saturating_sub(all - first)..=right.min(first);
-        let own = probability(self.of) * (1.0 + 1e-9);
-        possible.map(probability).filter(|p| *p <= own).sum::<f64>().min(1.0)
+        let (all, right) = ((self.all + other.all) as u64, (self.of + other.of) as u64);
+        // More right ones, or more drawn, than there are: two shares of the same cases have neither.
+        let Ok(drawn) = Hypergeometric::new(all, right, self.all as u64) else { return f64::NAN };
+        let own = drawn.ln_pmf(self.of as u64) + 1e-9;
+        let possible = (drawn.min()..=drawn.max()).map(|k| drawn.ln_pmf(k));
+        possible.filter(|ln| *ln <= own).map(f64::exp).sum::<f64>().min(1.0)
     }
-}
-
-/// Where a condition that holds at 0 ceases to hold on its way to 1.
-fn bisect(holds: impl Fn(f64) -> bool) -> f64 {
-    let (mut low, mut high) = (0.0, 1.0);
-    for _ in 0..60 {
-        let middle = 0.5 * (low + high);
-        if holds(middle) { low = middle } else { high = middle }
-    }
-    0.5 * (low + high)
-}
-
-/// Probability of at most `k` of `n` at a chance `p` each.
-fn cumulative(k: usize, n: usize, p: f64) -> f64 {
-    let log = log_factorials(n);
-    let term = |i: usize| {
-        let ways = log[n] - log[i] - log[n - i];
-        (ways + i as f64 * p.ln() + (n - i) as f64 * (-p).ln_1p()).exp()
-    };
-    (0..=k.min(n)).map(term).sum::<f64>().min(1.0)
-}
-
-/// ln 0! to ln n!.
-fn log_factorials(n: usize) -> Vec<f64> {
-    let mut all = vec![0.0; n + 1];
-    for i in 1..=n {
-        all[i] = all[i - 1] + (i as f64).ln();
-    }
-    all
 }
 
 /// Quantile of values by the nearest rank; `None` of none.
@@ -94,6 +87,12 @@ pub(crate) fn median(values: &[f64]) -> Option<f64> {
     sorted.sort_by(f64::total_cmp);
     let n = sorted.len();
     (n > 0).then(|| 0.5 * (sorted[(n - 1) / 2] + sorted[n / 2]))
+}
+
+/// The median of values, and their number.
+pub(crate) fn middle(values: impl Iterator<Item = f64>) -> (Option<f64>, usize) {
+    let values: Vec<f64> = values.collect();
+    (median(&values), values.len())
 }
 
 #[cfg(test)]

@@ -1,67 +1,25 @@
 //! How strong an effect is, in the one number by which what it does to the FRFs grows from nothing.
 
-use jointscope_fixture::{Dof, Effect, EffectKind};
+use jointscope_fixture::{Dof, Effect, EffectKind, Size, SizeLaw};
 
-/// How the strength of a kind follows from its leading parameter.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Law {
-    /// The parameter itself: a mass, a stiffness to ground, a distance, a delay.
-    Value,
-    /// Its departure from one: a factor.
-    FromOne,
-    /// Its inverse: the stiffness of a spring in series.
-    Inverse,
-    /// Its inverse square: a natural frequency, whose compliance counts.
-    InverseSquare,
-}
-
-/// Position of the leading parameter, and the law of its strength.
-fn leading(kind: EffectKind) -> (usize, Law) {
-    use EffectKind as Kind;
-    match kind {
-        Kind::AddedMass | Kind::Support | Kind::AttachedResonator => (1, Law::Value),
-        Kind::BodyFlexibility => (0, Law::InverseSquare),
-        Kind::InterfaceCompliance | Kind::ShearDeformation => (0, Law::Inverse),
-        Kind::ChannelGain | Kind::StiffnessChange => (0, Law::FromOne),
-        _ => (0, Law::Value),
-    }
+fn size_of(kind: EffectKind) -> Size {
+    kind.spec().size
 }
 
 /// Strength of an effect: zero where it does nothing.
 pub(crate) fn strength(effect: &Effect) -> f64 {
-    let (parameter, law) = leading(effect.kind);
-    let value = effect.value(parameter);
-    match law {
-        Law::Value => value,
-        Law::FromOne => value - 1.0,
-        Law::Inverse => value.recip(),
-        Law::InverseSquare => value.powi(-2),
-    }
-}
-
-/// The leading parameter of a strength.
-fn parameter_of(law: Law, strength: f64) -> f64 {
-    match law {
-        Law::Value => strength,
-        Law::FromOne => 1.0 + strength,
-        Law::Inverse => strength.recip(),
-        Law::InverseSquare => strength.abs().sqrt().recip(),
-    }
+    let size = size_of(effect.kind);
+    size.law.size(effect.value(size.parameter))
 }
 
 /// The effect with another strength. A support's dashpot goes with its spring, an interface's loss stays the share of its spring that it was.
 pub(crate) fn with_strength(effect: &Effect, wanted: f64) -> Effect {
-    let (parameter, law) = leading(effect.kind);
+    let size = size_of(effect.kind);
     let mut other = effect.clone();
-    let before = effect.value(parameter);
-    let after = parameter_of(law, wanted);
-    other.parameters[parameter].value = after;
-    let dashpot = match effect.kind {
-        EffectKind::Support => Some(2),
-        EffectKind::InterfaceCompliance => Some(1),
-        _ => None,
-    };
-    if let Some(dashpot) = dashpot.and_then(|index| other.parameters.get_mut(index)) {
+    let before = effect.value(size.parameter);
+    let after = size.law.parameter(wanted);
+    other.parameters[size.parameter].value = after;
+    if let Some(dashpot) = size.dashpot.and_then(|index| other.parameters.get_mut(index)) {
         dashpot.value *= after / before;
     }
     other
@@ -69,41 +27,35 @@ pub(crate) fn with_strength(effect: &Effect, wanted: f64) -> Effect {
 
 /// Standard deviation of the strength, given that of the leading parameter.
 pub(crate) fn strength_deviation(effect: &Effect, deviation: f64) -> f64 {
-    let (parameter, law) = leading(effect.kind);
-    let value = effect.value(parameter);
-    let slope = match law {
-        Law::Value | Law::FromOne => 1.0,
-        Law::Inverse => value.powi(-2),
-        Law::InverseSquare => 2.0 * value.powi(-3),
-    };
-    (slope * deviation).abs()
+    let size = size_of(effect.kind);
+    (size.law.slope(effect.value(size.parameter)) * deviation).abs()
 }
 
 /// Position of the leading parameter of a kind.
 pub(crate) fn leading_parameter(kind: EffectKind) -> usize {
-    leading(kind).0
+    size_of(kind).parameter
 }
 
 /// What is stated of a strength: the leading parameter, of a factor its departure from one. The weakest spring in series or lowest frequency
 /// that does not show is the strongest effect that hides, so for those the figure is an upper end.
 pub(crate) fn stated(kind: EffectKind, strength: f64) -> f64 {
-    match leading(kind).1 {
-        Law::FromOne => strength,
-        law => parameter_of(law, strength),
+    match size_of(kind).law {
+        SizeLaw::FromOne => strength,
+        law => law.parameter(strength),
     }
 }
 
 /// Whether a smaller effect has the larger parameter.
 pub(crate) fn is_inverse(kind: EffectKind) -> bool {
-    matches!(leading(kind).1, Law::Inverse | Law::InverseSquare)
+    size_of(kind).law.is_inverse()
 }
 
 /// Name and unit of the leading parameter.
 pub(crate) fn parameter(kind: EffectKind, dof: Option<Dof>) -> (&'static str, &'static str) {
-    let spec = kind.spec().parameters[leading(kind).0];
-    match leading(kind).1 {
-        Law::FromOne => ("factor − 1", ""),
-        _ => (spec.name, spec.unit_in(dof)),
+    let leading = &kind.spec().parameters[leading_parameter(kind)];
+    match size_of(kind).law {
+        SizeLaw::FromOne => ("factor − 1", ""),
+        _ => (leading.name, leading.unit_in(dof)),
     }
 }
 

@@ -58,7 +58,7 @@ pub fn to_datasets(
         };
         datasets.push(Dataset58 {
             function: FunctionType::FrequencyResponse,
-            ordinate_axis: response_axis(frfs.form(), pair.response.dof),
+            ordinate_axis: motion_axis(frfs.form(), pair.response.dof),
             denominator_axis: force_axis(pair.reference.dof),
             ..base(Data::Complex(frfs.values(index).to_vec()))
         });
@@ -92,7 +92,8 @@ pub(crate) fn node(channel: &Channel) -> Result<Node, DatasetsError> {
     }
 }
 
-fn response_axis(form: FrfForm, dof: Dof) -> Axis {
+/// The axis of a motion in SI units.
+pub(crate) fn motion_axis(form: FrfForm, dof: Dof) -> Axis {
     let translation = match form {
         FrfForm::Receptance => Axis::displacement(),
         FrfForm::Mobility => Axis::velocity(),

@@ -11,18 +11,13 @@ pub struct Place {
     pub source: String,
     /// Which of its functions (datasets 58), counted from 1.
     pub function: usize,
-    /// What it is: `FRF` or `coherence`.
-    pub what: &'static str,
-    /// Response channel, as the file names it.
-    pub response: FileChannel,
-    /// Reference channel, as the file names it.
-    pub reference: FileChannel,
+    /// What it is, with its channels as the file names them.
+    pub what: String,
 }
 
 impl fmt::Display for Place {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Place { source, function, what, response, reference } = self;
-        write!(f, "{source}, function {function} ({what} {response}/{reference})")
+        write!(f, "{}, function {} ({})", self.source, self.function, self.what)
     }
 }
 
@@ -57,25 +52,17 @@ pub enum FunctionError {
     /// Its spectral lines.
     #[error("{0}")]
     Lines(SpectraError),
-    /// The direction is not transverse, and no map says what it is.
+    /// A direction along or about which nothing says that it is the fixture's.
     #[error(
-        "direction {direction} of node {node} is neither y nor theta; if it is the fixture's y, say so with `--map {node}:{direction}={node}:+y` (or `-y`)"
+        "direction {direction} of node {node} is neither y nor theta; if it is the fixture's {becomes}, say so with `--map {node}:{direction}={node}:+{becomes}` (or `-{becomes}`)"
     )]
     Direction {
-        /// Node number.
+        /// Node.
         node: i64,
-        /// Direction, such as `+z`.
+        /// Direction, as a map entry writes it.
         direction: String,
-    },
-    /// As [`FunctionError::Direction`], of a rotation.
-    #[error(
-        "direction {direction} of node {node} is neither y nor theta; if it is the fixture's theta, say so with `--map {node}:{direction}={node}:+theta` (or `-theta`)"
-    )]
-    RotationalDirection {
-        /// Node number.
-        node: i64,
-        /// Direction, such as `+rx`.
-        direction: String,
+        /// `y` or `theta`.
+        becomes: &'static str,
     },
     /// A direction that the format does not have.
     #[error(
@@ -227,8 +214,8 @@ pub enum RecordingError {
 }
 
 impl RecordingError {
-    pub(crate) fn function(place: Place, problem: impl Into<FunctionError>) -> Self {
-        RecordingError::Function { place: Box::new(place), problem: problem.into() }
+    pub(crate) fn function(place: Box<Place>, problem: impl Into<FunctionError>) -> Self {
+        RecordingError::Function { place, problem: problem.into() }
     }
 }
 

@@ -1,11 +1,11 @@
 //! One function of a file, read for what it is to the test: its lines, values, level and averages.
 
 use jointscope_spectra::{FrfForm, SpectralLines};
-use jointscope_uff::{Abscissa, Axis, Data, Dataset58};
+use jointscope_uff::{Abscissa, Axis, Data, Dataset58, FunctionType};
 use num_complex::Complex64;
 
 use crate::ordinate::hertz;
-use crate::{FileChannel, FunctionError, HeldAmplitude, Place};
+use crate::{FileChannel, FunctionError, HeldAmplitude, Place, Source};
 
 /// A function and where it stands.
 #[derive(Debug, Clone, Copy)]
@@ -14,9 +14,15 @@ pub(crate) struct Function<'a> {
     pub source: &'a str,
     /// Its position among the file's functions, from 0.
     pub index: usize,
-    /// `FRF` or `coherence`.
-    pub what: &'static str,
     pub dataset: &'a Dataset58,
+}
+
+/// The functions of all files.
+pub(crate) fn functions(sources: &[Source]) -> impl Iterator<Item = Function<'_>> {
+    sources.iter().flat_map(|source| {
+        let datasets = source.file.datasets.iter().enumerate();
+        datasets.map(|(index, dataset)| Function { source: &source.name, index, dataset })
+    })
 }
 
 /// How far a coherence may leave 0 … 1 by rounding.
@@ -31,14 +37,23 @@ impl<'a> Function<'a> {
         FileChannel::from(&self.dataset.reference)
     }
 
-    pub fn place(&self) -> Place {
-        Place {
-            source: self.source.to_owned(),
-            function: self.index + 1,
-            what: self.what,
-            response: self.response(),
-            reference: self.reference(),
+    /// What it is, in messages.
+    pub fn what(&self) -> &'static str {
+        match self.dataset.function {
+            FunctionType::FrequencyResponse => "FRF",
+            FunctionType::Coherence => "coherence",
+            FunctionType::TimeResponse => "time history",
+            _ => "function",
         }
+    }
+
+    pub fn place(&self) -> Box<Place> {
+        let (what, response) = (self.what(), self.response());
+        let what = match self.dataset.function {
+            FunctionType::TimeResponse => format!("{what} of {response}"),
+            _ => format!("{what} {response}/{}", self.reference()),
+        };
+        Box::new(Place { source: self.source.to_owned(), function: self.index + 1, what })
     }
 
     /// Held amplitude, ID line 4.

@@ -7,7 +7,7 @@ use jointscope_spectra::{Channel, Dof, FrfPair};
 use jointscope_uff::FunctionType;
 
 use crate::error::enumeration;
-use crate::function::Function;
+use crate::function::{Function, functions};
 use crate::{ChannelMap, FileChannel, FunctionError, HeldAmplitude, MapEntry, RecordingError, Source};
 
 /// A function between two channels of the fixture.
@@ -59,21 +59,11 @@ pub(crate) fn gather<'a>(
     check_points(Some(fixture), map)?;
     let mut gathered = Gathered::default();
     let mut spectra = Vec::new();
-    for source in sources {
-        for (index, dataset) in source.file.datasets.iter().enumerate() {
-            let what = match dataset.function {
-                FunctionType::FrequencyResponse => "FRF",
-                FunctionType::Coherence => "coherence",
-                FunctionType::TimeResponse => {
-                    gathered.time_histories.push(FileChannel::from(&dataset.response));
-                    continue;
-                }
-                other => {
-                    *gathered.others.entry(other.code()).or_default() += 1;
-                    continue;
-                }
-            };
-            spectra.push(Function { source: &source.name, index, what, dataset });
+    for function in functions(sources) {
+        match function.dataset.function {
+            FunctionType::FrequencyResponse | FunctionType::Coherence => spectra.push(function),
+            FunctionType::TimeResponse => gathered.time_histories.push(function.response()),
+            other => *gathered.others.entry(other.code()).or_default() += 1,
         }
     }
     gathered.channels = spectra.iter().flat_map(|f| [f.response(), f.reference()]).collect();
@@ -96,7 +86,7 @@ pub(crate) fn check_points(fixture: Option<&Fixture>, map: &ChannelMap) -> Resul
         Some(MapEntry { text, channel, .. }) => Err(RecordingError::MapPoint {
             entry: text.clone(),
             point: channel.point.clone(),
-            points: enumeration(fixture.points().iter().map(|point| &point.name)),
+            points: points(Some(fixture)),
         }),
     }
 }
@@ -152,7 +142,7 @@ impl<'f> Locator<'f> {
     }
 
     fn sort<'a>(&self, function: Function<'a>, gathered: &mut Gathered<'a>) -> Result<(), FunctionError> {
-        let is_frf = function.what == "FRF";
+        let is_frf = function.dataset.function == FunctionType::FrequencyResponse;
         let name = || format!("{}/{}", function.response(), function.reference());
         let response = self.locate(function.response(), &self.planar_responses);
         let reference = self.locate(function.reference(), &self.planar_references);
@@ -216,11 +206,8 @@ impl<'f> Locator<'f> {
                 // The map speaks of positive directions.
                 let along = FileChannel { direction: axis as i32, ..file }.to_string();
                 let direction = along.rsplit(':').next().unwrap_or_default().to_owned();
-                Err(if axis < 4 {
-                    FunctionError::Direction { node: file.node, direction }
-                } else {
-                    FunctionError::RotationalDirection { node: file.node, direction }
-                })
+                let becomes = if axis < 4 { "y" } else { "theta" };
+                Err(FunctionError::Direction { node: file.node, direction, becomes })
             }
             _ => Err(FunctionError::NoSuchDirection { node: file.node, direction: file.direction }),
         }
@@ -245,6 +232,23 @@ impl<'f> Locator<'f> {
     }
 }
 
+/// A map entry that would put a channel of the files on the fixture, as an example of one.
+pub(crate) fn example(channels: &BTreeSet<FileChannel>, fixture: Option<&Fixture>) -> String {
+    let missing = |channel: &&FileChannel| {
+        fixture.is_some_and(|fixture| fixture.point(&channel.node.to_string()).is_none())
+    };
+    let file = channels.iter().find(missing).or(channels.first()).copied();
+    let file = file.unwrap_or(FileChannel { node: 101, direction: 2 });
+    let direction = if file.is_rotational() { "+theta" } else { "+y" };
+    let point = fixture.and_then(|fixture| fixture.points().first()).map_or("1", |point| &point.name);
+    format!("{file}={point}:{direction}")
+}
+
+/// The fixture's points, for messages.
+pub(crate) fn points(fixture: Option<&Fixture>) -> String {
+    enumeration(fixture.into_iter().flat_map(Fixture::points).map(|point| &point.name))
+}
+
 /// Sorts functions by level, response and reference, in the order of the fixture's points.
 ///
 /// # Errors
@@ -260,10 +264,10 @@ pub(crate) fn in_order<'a, T>(
         Some((first, second)) => {
             let level = first.level.map_or(String::new(), |level| format!(" at {level}"));
             Err(RecordingError::Twice {
-                what: first.function.what,
+                what: first.function.what(),
                 frf: format!("{}{level}", first.pair),
-                first: Box::new(first.function.place()),
-                second: Box::new(second.function.place()),
+                first: first.function.place(),
+                second: second.function.place(),
             })
         }
     }

@@ -1,11 +1,11 @@
 //! Time histories of hits as functions of a universal file.
 
 use jointscope_hits::{Hit, Motion};
-use jointscope_spectra::{Channel, Dof};
+use jointscope_spectra::{Channel, FrfForm};
 use jointscope_uff::{Abscissa, Axis, Data, Dataset58, Encoding, FunctionType};
 
 use crate::DatasetsError;
-use crate::datasets::{force_axis, id_lines, node};
+use crate::datasets::{force_axis, id_lines, motion_axis, node};
 
 /// The signals of hits as time histories (function type 1) in SI units and double precision, the hit's number as sequence number. Forces
 /// come first where `with_force` asks for them. ID line 1 is `test_name`.
@@ -38,21 +38,18 @@ pub fn hits_to_datasets(
             datasets.push(history(hit.struck(), force_axis(hit.struck().dof), hit.force())?);
         }
         for response in hit.responses() {
-            let axis = motion_axis(response.motion, response.channel.dof);
+            let axis = motion_axis(form_of(response.motion), response.channel.dof);
             datasets.push(history(&response.channel, axis, &response.values)?);
         }
     }
     Ok(datasets)
 }
 
-fn motion_axis(motion: Motion, dof: Dof) -> Axis {
-    let axis = match motion {
-        Motion::Displacement => Axis::displacement(),
-        Motion::Velocity => Axis::velocity(),
-        Motion::Acceleration => Axis::acceleration(),
-    };
-    match dof {
-        Dof::Translation => axis,
-        Dof::Rotation => Axis { units: axis.units.replacen('m', "rad", 1), ..axis },
+/// The form of FRF that a motion is the numerator of.
+fn form_of(motion: Motion) -> FrfForm {
+    match motion {
+        Motion::Displacement => FrfForm::Receptance,
+        Motion::Velocity => FrfForm::Mobility,
+        Motion::Acceleration => FrfForm::Accelerance,
     }
 }

@@ -5,12 +5,13 @@ use std::collections::{BTreeMap, BTreeSet};
 use jointscope_fixture::Fixture;
 use jointscope_hits::{Hit, Motion, Response};
 use jointscope_spectra::{Channel, Dof, FrfForm};
-use jointscope_uff::{Abscissa, Data, Dataset58, FunctionType};
+use jointscope_uff::{Abscissa, Data, FunctionType};
 
 use crate::error::enumeration;
-use crate::gather::{Located, Locator, check_entries_apply, check_points};
+use crate::function::{Function, functions};
+use crate::gather::{Located, Locator, check_entries_apply, check_points, example, points};
 use crate::ordinate::{Signal, UnitNotes, seconds, signal};
-use crate::{FileChannel, FunctionError, HistoryPlace, HitsError, ReadOptions, Source};
+use crate::{FileChannel, FunctionError, HitsError, ReadOptions, Source};
 
 /// The hammer hits of a test, in the fixture's terms and SI units.
 #[derive(Debug, Clone, PartialEq)]
@@ -58,7 +59,7 @@ pub fn hits_of(
 ) -> Result<Hits, HitsError> {
     let histories = time_histories(sources)?;
     check_points(fixture, &options.map).map_err(HitsError::Map)?;
-    let channels = histories.iter().map(|h| h.channel()).collect();
+    let channels = histories.iter().map(Function::response).collect();
     check_entries_apply(&options.map, &channels).map_err(HitsError::Map)?;
     let mut notes = Vec::new();
     let located = located(&histories, fixture, options, &mut notes)?;
@@ -73,7 +74,12 @@ pub fn hits_of(
         }
     }
     if hits.is_empty() {
-        return Err(not_on_fixture(files(), &channels, fixture));
+        return Err(HitsError::NotOnFixture {
+            files: files(),
+            nodes: enumeration(&channels),
+            points: points(fixture),
+            example: example(&channels, fixture),
+        });
     }
     if !struck_elsewhere.is_empty() {
         let hits = enumeration(struck_elsewhere);
@@ -85,38 +91,13 @@ pub fn hits_of(
     Ok(Hits { hits, notes })
 }
 
-/// A time history and where it stands.
-struct History<'a> {
-    source: &'a str,
-    index: usize,
-    dataset: &'a Dataset58,
+fn refused(function: &Function, problem: impl Into<FunctionError>) -> HitsError {
+    HitsError::Channel { place: function.place(), problem: problem.into() }
 }
 
-impl History<'_> {
-    fn channel(&self) -> FileChannel {
-        FileChannel::from(&self.dataset.response)
-    }
-
-    fn place(&self) -> Box<HistoryPlace> {
-        Box::new(HistoryPlace {
-            source: self.source.to_owned(),
-            function: self.index + 1,
-            channel: self.channel(),
-        })
-    }
-
-    fn refuse(&self, problem: impl Into<FunctionError>) -> HitsError {
-        HitsError::Channel { place: self.place(), problem: problem.into() }
-    }
-}
-
-fn time_histories(sources: &[Source]) -> Result<Vec<History<'_>>, HitsError> {
-    let all = sources.iter().flat_map(|source| {
-        let datasets = source.file.datasets.iter().enumerate();
-        datasets.map(|(index, dataset)| History { source: &source.name, index, dataset })
-    });
+fn time_histories(sources: &[Source]) -> Result<Vec<Function<'_>>, HitsError> {
     let (histories, others): (Vec<_>, Vec<_>) =
-        all.partition(|history| history.dataset.function == FunctionType::TimeResponse);
+        functions(sources).partition(|function| function.dataset.function == FunctionType::TimeResponse);
     if !histories.is_empty() {
         return Ok(histories);
     }
@@ -131,7 +112,7 @@ fn time_histories(sources: &[Source]) -> Result<Vec<History<'_>>, HitsError> {
 
 /// A channel of a hit in the fixture's terms.
 struct LocatedHistory<'a> {
-    history: &'a History<'a>,
+    history: &'a Function<'a>,
     /// `None` for a force at a node that the fixture does not have.
     at: Option<(Channel, (usize, Dof))>,
     signal: Signal,
@@ -150,34 +131,34 @@ impl LocatedHistory<'_> {
 }
 
 fn located<'a>(
-    histories: &'a [History<'a>],
+    histories: &'a [Function<'a>],
     fixture: Option<&Fixture>,
     options: &ReadOptions,
     notes: &mut Vec<String>,
 ) -> Result<Vec<LocatedHistory<'a>>, HitsError> {
-    let channels = || histories.iter().map(History::channel);
+    let channels = || histories.iter().map(Function::response);
     let locator = Locator::new(fixture, &options.map, channels(), channels());
-    let mut units: BTreeMap<&str, UnitNotes> = BTreeMap::new();
+    let mut units = UnitNotes::default();
     let (mut elsewhere, mut other_directions, mut neither) =
         (BTreeSet::new(), BTreeSet::new(), BTreeSet::new());
     let mut scalars = BTreeSet::new();
     let mut all = Vec::with_capacity(histories.len());
     for history in histories {
-        let channel = history.channel();
+        let channel = history.response();
         let found = locator.locate(channel, &locator.planar_responses);
-        let unit_notes = units.entry(history.source).or_default();
         let force_type = jointscope_uff::data_type::EXCITATION_FORCE;
         if matches!(found, Ok(Located::NoSuchPoint)) && history.dataset.ordinate_axis.data_type != force_type
         {
             elsewhere.insert(channel);
             continue;
         }
-        let read = signal(history.dataset, options.assume_units.as_ref(), unit_notes);
-        let Some((signal, si)) = read.map_err(|problem| history.refuse(problem))? else {
+        let named = (history.source, history.dataset);
+        let read = signal(named, options.assume_units.as_ref(), &mut units);
+        let Some((signal, si)) = read.map_err(|problem| refused(history, problem))? else {
             neither.insert(channel);
             continue;
         };
-        let (at, sign) = match found.map_err(|problem| history.refuse(problem))? {
+        let (at, sign) = match found.map_err(|problem| refused(history, problem))? {
             Located::At { channel: at, sign, order } => {
                 if channel.direction == 0 && !options.map.names_node(channel.node) {
                     scalars.insert(channel.node);
@@ -203,12 +184,7 @@ fn located<'a>(
     if !scalars.is_empty() {
         notes.push(format!("no direction is stated for nodes {}: +y taken", enumeration(&scalars)));
     }
-    if options.assume_units.is_some() && !units.values().any(|unit| unit.assumed) && !all.is_empty() {
-        notes.push("the files state all their units: `--assume-units` was not needed".to_owned());
-    }
-    for (source, unit) in units {
-        notes.extend(unit.texts.into_iter().map(|text| format!("{source}: {text}")));
-    }
+    notes.extend(units.into_texts(options.assume_units.as_ref()));
     Ok(all)
 }
 
@@ -259,7 +235,7 @@ fn hit(number: u32, group: &Group, files: &dyn Fn() -> String) -> Result<Option<
         return Err(HitsError::NoForce {
             files: files(),
             hit: sequence,
-            responses: enumeration(group.iter().map(|channel| channel.history.channel())),
+            responses: enumeration(group.iter().map(|channel| channel.history.response())),
         });
     };
     if let Some(second) = forces.next() {
@@ -309,8 +285,8 @@ struct Instants {
 const SAME_INSTANT: f64 = 1e-3;
 
 impl Instants {
-    fn of(history: &History) -> Result<Self, HitsError> {
-        let factor = seconds(&history.dataset.abscissa_axis).map_err(|problem| history.refuse(problem))?;
+    fn of(history: &Function) -> Result<Self, HitsError> {
+        let factor = seconds(&history.dataset.abscissa_axis).map_err(|problem| refused(history, problem))?;
         let instants = match &history.dataset.abscissa {
             Abscissa::Even { start, step, .. } => Instants { interval: step * factor, start: start * factor },
             Abscissa::Uneven(times) => {
@@ -330,7 +306,7 @@ impl Instants {
     }
 
     /// Refuses a response that was not sampled at the force's instants.
-    fn check(&self, hit: i64, response: &History) -> Result<(), HitsError> {
+    fn check(&self, hit: i64, response: &Function) -> Result<(), HitsError> {
         let found = Instants::of(response)?;
         let place = || response.place();
         if (found.interval - self.interval).abs() > SAME_INSTANT * self.interval {
@@ -360,20 +336,4 @@ fn renumbering(groups: &[(u32, Group)]) -> String {
         false => format!("{from} to {to} from {source}"),
     });
     format!("hits are numbered through all files: {}", enumeration(named))
-}
-
-fn not_on_fixture(files: String, channels: &BTreeSet<FileChannel>, fixture: Option<&Fixture>) -> HitsError {
-    let points = || fixture.into_iter().flat_map(|f| f.points()).map(|point| &point.name);
-    let missing = |channel: &&FileChannel| {
-        fixture.is_some_and(|fixture| fixture.point(&channel.node.to_string()).is_none())
-    };
-    let first = channels.iter().find(missing).or(channels.first()).copied();
-    let file = first.unwrap_or(FileChannel { node: 101, direction: 2 });
-    let direction = if file.is_rotational() { "+theta" } else { "+y" };
-    HitsError::NotOnFixture {
-        files,
-        nodes: enumeration(channels),
-        points: enumeration(points()),
-        example: format!("{file}={}:{direction}", points().next().map_or("1", String::as_str)),
-    }
 }

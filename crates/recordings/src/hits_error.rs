@@ -1,26 +1,6 @@
-use std::fmt;
-
 use jointscope_hits::HitError;
 
-use crate::{FileChannel, FunctionError, RecordingError};
-
-/// A time history in a file: `hits.uff, function 3 (time history of 4:+y)`.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct HistoryPlace {
-    /// The file's name.
-    pub source: String,
-    /// Which of its functions (datasets 58), counted from 1.
-    pub function: usize,
-    /// Its channel, as the file names it.
-    pub channel: FileChannel,
-}
-
-impl fmt::Display for HistoryPlace {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let HistoryPlace { source, function, channel } = self;
-        write!(f, "{source}, function {function} (time history of {channel})")
-    }
-}
+use crate::{FunctionError, Place, RecordingError};
 
 /// Why the time histories of files are no hammer hits.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -42,16 +22,16 @@ pub enum HitsError {
     #[error("{place}: {problem}")]
     Channel {
         /// Which.
-        place: Box<HistoryPlace>,
+        place: Box<Place>,
         /// Why.
         problem: FunctionError,
     },
     /// Complex values over time.
     #[error("{0}: a time history is real, but its values are complex; export the signal itself")]
-    Complex(Box<HistoryPlace>),
+    Complex(Box<Place>),
     /// Samples that are not equally far apart.
     #[error("{0}: its samples are not evenly spaced in time; resample the record before it is exported")]
-    Uneven(Box<HistoryPlace>),
+    Uneven(Box<Place>),
     /// A hit whose responses have no force.
     #[error(
         "{files}: hit {hit} has no force channel (ordinate type 13), only {responses}; give the file that holds it, with the same sequence number in record 6, or leave the hit out"
@@ -72,9 +52,9 @@ pub enum HitsError {
         /// The sequence number.
         hit: i64,
         /// The first force.
-        first: Box<HistoryPlace>,
+        first: Box<Place>,
         /// The second force.
-        second: Box<HistoryPlace>,
+        second: Box<Place>,
     },
     /// Channels of one hit on different instants.
     #[error(
@@ -82,7 +62,7 @@ pub enum HitsError {
     )]
     Interval {
         /// The response.
-        place: Box<HistoryPlace>,
+        place: Box<Place>,
         /// The hit.
         hit: i64,
         /// Interval of the force's samples, s.
@@ -96,7 +76,7 @@ pub enum HitsError {
     )]
     Start {
         /// The response.
-        place: Box<HistoryPlace>,
+        place: Box<Place>,
         /// The hit.
         hit: i64,
         /// First instant of the force, s.

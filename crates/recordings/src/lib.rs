@@ -62,7 +62,7 @@ pub use datasets::{DatasetsError, to_datasets};
 pub use error::{FunctionError, Place, RecordingError};
 pub use histories::hits_to_datasets;
 pub use hits::{Hits, hits_of};
-pub use hits_error::{HistoryPlace, HitsError};
+pub use hits_error::HitsError;
 pub use level::HeldAmplitude;
 pub use recording::{Level, ReadOptions, Recording, Source, TimeHistories};
 pub use units_error::UnitsError;

@@ -2,10 +2,11 @@
 
 use std::collections::BTreeSet;
 
-use jointscope_spectra::FrfForm;
-use jointscope_uff::{Axis, Dataset58, Units, data_type};
+use jointscope_spectra::{Dof, FrfForm};
+use jointscope_uff::{Axis, Dataset58, data_type};
 
-use crate::assumed_units::{FORMS, NamedUnit, motion_name};
+use crate::assumed_units::{FORMS, motion_name};
+use crate::datasets::motion_axis;
 use crate::unit::{Dimension, Unit};
 use crate::{AssumedUnits, FileChannel, UnitsError};
 
@@ -17,24 +18,28 @@ pub(crate) struct Ordinate {
     pub si: f64,
 }
 
-/// What was done about units, once however many functions it was done to.
+/// What was done about units, once a file however many functions it was done to.
 #[derive(Debug, Default)]
 pub(crate) struct UnitNotes {
-    pub texts: BTreeSet<String>,
+    /// File and sentence.
+    texts: BTreeSet<(String, String)>,
     /// Whether the analyst's word was needed anywhere.
-    pub assumed: bool,
+    assumed: bool,
 }
 
 impl UnitNotes {
-    fn insert(&mut self, note: String) {
-        self.texts.insert(note);
-    }
-
-    fn insert_assumed(&mut self, note: String) {
-        self.assumed = true;
-        self.texts.insert(note);
+    /// The sentences, beginning with that on an analyst's word that was given in vain.
+    pub fn into_texts(self, assumed: Option<&AssumedUnits>) -> Vec<String> {
+        let in_vain = assumed.filter(|_| !self.assumed);
+        let in_vain =
+            in_vain.map(|_| "the files state all their units: `--assume-units` was not needed".to_owned());
+        let texts = self.texts.into_iter().map(|(source, text)| format!("{source}: {text}"));
+        in_vain.into_iter().chain(texts).collect()
     }
 }
+
+/// A function whose units are asked for: the name of its file and itself.
+pub(crate) type Named<'a> = (&'a str, &'a Dataset58);
 
 /// Data type of a quantity that is no motion, or no force, where the other was expected.
 pub(crate) struct NotPerForce {
@@ -44,45 +49,33 @@ pub(crate) struct NotPerForce {
 
 /// Form and factor of an FRF; `Ok(Err(..))` where the file says clearly that it is no motion per force.
 pub(crate) fn ordinate(
-    dataset: &Dataset58,
+    (source, dataset): Named,
     assumed: Option<&AssumedUnits>,
     notes: &mut UnitNotes,
 ) -> Result<Result<Ordinate, NotPerForce>, UnitsError> {
     let (numerator, denominator) = (&dataset.ordinate_axis, &dataset.denominator_axis);
-    let stated_form = match numerator.data_type {
-        data_type::DISPLACEMENT => Some(FrfForm::Receptance),
-        data_type::VELOCITY => Some(FrfForm::Mobility),
-        data_type::ACCELERATION => Some(FrfForm::Accelerance),
-        _ => None,
-    };
-    let motion = stated_form.is_some() || open(numerator);
-    let per_force = denominator.data_type == data_type::EXCITATION_FORCE || open(denominator);
-    if !motion || !per_force {
+    let is_motion = stated_form(numerator).is_some() || open(numerator);
+    let is_per_force = denominator.data_type == data_type::EXCITATION_FORCE || open(denominator);
+    if !is_motion || !is_per_force {
         return Ok(Err(NotPerForce { numerator: numerator.data_type, denominator: denominator.data_type }));
     }
-    let mut reading = Reading {
-        numerator,
-        denominator,
-        response: FileChannel::from(&dataset.response),
-        reference: FileChannel::from(&dataset.reference),
-        system: dataset.units.as_ref(),
-        assumed,
-        notes,
-    };
+    let mut reading = Reading { source, dataset, assumed, notes };
+    let (response, reference) = (FileChannel::from(&dataset.response), FileChannel::from(&dataset.reference));
+    let force = Side { name: "force", axis: denominator, channel: reference, form: None };
     let motion_label = Label::of(numerator, "response")?;
     let force_label = Label::of(denominator, "force")?;
-    let form = match stated_form {
+    let form = match stated_form(numerator) {
         Some(form) => form,
-        None => reading.form_by_units(motion_label)?,
+        None => reading.form_by_units(response, &force, motion_label)?,
     };
-    if let Label::Unit(unit) = motion_label
-        && unit.dimension == reading.motion(form).over(reading.force())
-    {
-        return reading.ratio(form, unit, force_label).map(Ok);
-    }
-    let motion = reading.motion_factor(form, motion_label)?;
-    let force = reading.force_factor(force_label)?;
-    Ok(Ok(Ordinate { form, si: motion / force }))
+    let motion = Side { name: "response", axis: numerator, channel: response, form: Some(form) };
+    let si = match motion_label {
+        Label::Unit(unit) if unit.dimension == motion.dimension().over(force.dimension()) => {
+            reading.ratio(&motion, &force, unit, force_label)?
+        }
+        _ => reading.factor(&motion, motion_label)? / reading.factor(&force, force_label)?,
+    };
+    Ok(Ok(Ordinate { form, si }))
 }
 
 /// What one channel of a time history measures.
@@ -96,46 +89,34 @@ pub(crate) enum Signal {
 
 /// Signal and factor to SI of a time history; `Ok(None)` where the file says clearly that it is neither force nor motion.
 pub(crate) fn signal(
-    dataset: &Dataset58,
+    (source, dataset): Named,
     assumed: Option<&AssumedUnits>,
     notes: &mut UnitNotes,
 ) -> Result<Option<(Signal, f64)>, UnitsError> {
     let axis = &dataset.ordinate_axis;
     let channel = FileChannel::from(&dataset.response);
-    let mut reading = Reading {
-        numerator: axis,
-        denominator: axis,
-        response: channel,
-        reference: channel,
-        system: dataset.units.as_ref(),
-        assumed,
-        notes,
-    };
-    let form = match axis.data_type {
-        data_type::DISPLACEMENT => FrfForm::Receptance,
-        data_type::VELOCITY => FrfForm::Mobility,
-        data_type::ACCELERATION => FrfForm::Accelerance,
-        data_type::EXCITATION_FORCE => {
-            let factor = reading.force_factor(Label::of(axis, "force")?)?;
-            return Ok(Some((Signal::Force, factor)));
+    let mut reading = Reading { source, dataset, assumed, notes };
+    let force = Side { name: "force", axis, channel, form: None };
+    if axis.data_type == data_type::EXCITATION_FORCE {
+        return Ok(Some((Signal::Force, reading.factor(&force, Label::of(axis, "force")?)?)));
+    }
+    if stated_form(axis).is_none() && !open(axis) {
+        return Ok(None);
+    }
+    let label = Label::of(axis, "response")?;
+    let form = match (stated_form(axis), label) {
+        (Some(form), _) => form,
+        (None, Label::Unit(unit)) if unit.dimension == force.dimension() => {
+            return Ok(Some((Signal::Force, reading.factor(&force, label)?)));
         }
-        _ if open(axis) => {
-            let label = Label::of(axis, "response")?;
-            match label {
-                Label::Unit(unit) if unit.dimension == reading.force() => {
-                    return Ok(Some((Signal::Force, reading.force_factor(label)?)));
-                }
-                // Which of the two an unlabelled channel is, the analyst's pair of units does not say.
-                Label::Nothing | Label::Si => {
-                    return Err(UnitsError::NoQuantity { data_type: axis.data_type });
-                }
-                _ => reading.form_by_units(label)?,
-            }
+        // Which of the two an unlabelled channel is, the analyst's pair of units does not say.
+        (None, Label::Nothing | Label::Si) => {
+            return Err(UnitsError::NoQuantity { data_type: axis.data_type });
         }
-        _ => return Ok(None),
+        _ => reading.form_by_units(channel, &force, label)?,
     };
-    let factor = reading.motion_factor(form, Label::of(axis, "response")?)?;
-    Ok(Some((Signal::Motion(form), factor)))
+    let motion = Side { name: "response", axis, channel, form: Some(form) };
+    Ok(Some((Signal::Motion(form), reading.factor(&motion, label)?)))
 }
 
 /// Seconds in one unit of a time history's abscissa.
@@ -190,212 +171,220 @@ impl Label {
     }
 }
 
-/// One FRF's axes while they are being read.
+/// The motion or the force of a function.
+struct Side<'a> {
+    /// As messages call it.
+    name: &'static str,
+    axis: &'a Axis,
+    channel: FileChannel,
+    /// Form of the motion; `None` of a force.
+    form: Option<FrfForm>,
+}
+
+impl Side<'_> {
+    fn is_rotational(&self) -> bool {
+        self.channel.is_rotational()
+    }
+
+    fn dimension(&self) -> Dimension {
+        self.dimension_of(self.is_rotational())
+    }
+
+    fn dimension_of(&self, rotational: bool) -> Dimension {
+        match self.form {
+            Some(form) => Dimension::motion(form.order(), rotational),
+            None if rotational => Dimension::MOMENT,
+            None => Dimension::FORCE,
+        }
+    }
+
+    /// What it measures, in the plural.
+    fn what(&self) -> &'static str {
+        match (self.form, self.is_rotational()) {
+            (Some(_), true) => "rotations",
+            (Some(form), false) => motion_name(form),
+            (None, true) => "moments",
+            (None, false) => "forces",
+        }
+    }
+
+    fn label(&self) -> String {
+        self.axis.units.trim().to_owned()
+    }
+
+    fn contradiction(&self) -> UnitsError {
+        UnitsError::Contradiction {
+            axis: self.name,
+            data_type: self.axis.data_type,
+            quantity: match self.form {
+                Some(form) if self.is_rotational() => format!("rotational {}", motion_name(form)),
+                _ => self.what().to_owned(),
+            },
+            label: self.axis.units.clone(),
+        }
+    }
+}
+
+/// One function whose units are being read.
 struct Reading<'a> {
-    numerator: &'a Axis,
-    denominator: &'a Axis,
-    response: FileChannel,
-    reference: FileChannel,
-    system: Option<&'a Units>,
+    source: &'a str,
+    dataset: &'a Dataset58,
     assumed: Option<&'a AssumedUnits>,
     notes: &'a mut UnitNotes,
 }
 
-/// Factors that agree to a thousandth are two roundings of one: printed unit systems hold few digits.
-fn agree(a: f64, b: f64) -> bool {
-    (a - b).abs() <= 1e-3 * b.abs()
-}
-
 impl Reading<'_> {
-    fn motion(&self, form: FrfForm) -> Dimension {
-        Dimension::motion(form.order(), self.response.is_rotational())
-    }
-
-    fn force(&self) -> Dimension {
-        if self.reference.is_rotational() { Dimension::MOMENT } else { Dimension::FORCE }
-    }
-
     /// The form, where the data type leaves it open.
-    fn form_by_units(&self, label: Label) -> Result<FrfForm, UnitsError> {
+    fn form_by_units(
+        &self,
+        response: FileChannel,
+        force: &Side,
+        label: Label,
+    ) -> Result<FrfForm, UnitsError> {
         let form = match label {
             Label::Unit(unit) => FORMS.into_iter().find(|form| {
-                let motion = self.motion(*form);
-                unit.dimension == motion || unit.dimension == motion.over(self.force())
+                let motion = Dimension::motion(form.order(), response.is_rotational());
+                unit.dimension == motion || unit.dimension == motion.over(force.dimension())
             }),
-            Label::Nothing if !self.response.is_rotational() => self.assumed.map(|assumed| assumed.form),
+            Label::Nothing if !response.is_rotational() => self.assumed.map(|assumed| assumed.form),
             _ => None,
         };
-        form.ok_or_else(|| self.absent("response", self.numerator))
+        form.ok_or_else(|| absent("response", &self.dataset.ordinate_axis))
     }
 
-    fn absent(&self, axis: &'static str, stated: &Axis) -> UnitsError {
-        UnitsError::Absent { axis, data_type: stated.data_type, label: stated.units.clone() }
-    }
-
-    /// SI units of motion in one of the file's.
-    fn motion_factor(&mut self, form: FrfForm, label: Label) -> Result<f64, UnitsError> {
-        let rotational = self.response.is_rotational();
-        let by_label = match label {
-            Label::Nothing => None,
-            Label::Si => Some(1.0),
-            Label::Unit(unit) if unit.dimension == self.motion(form) => Some(unit.si),
-            Label::Unit(unit) if rotational && unit.is_si(Dimension::motion(form.order(), false)) => {
-                self.note_translation_label("rotations", "rad");
-                Some(1.0)
-            }
-            Label::Unit(_) => {
-                let rotation = if rotational { "rotational " } else { "" };
-                return Err(UnitsError::Contradiction {
-                    axis: "response",
-                    data_type: self.numerator.data_type,
-                    quantity: format!("{rotation}{}", motion_name(form)),
-                    label: self.numerator.units.clone(),
-                });
-            }
-        };
-        let by_system = self
-            .system_factor(&axis_of(form), self.response)
-            .filter(|_| by_label.is_some() || !open(self.numerator));
-        let what = if rotational { "rotations" } else { motion_name(form) };
-        let assumed = match self.assumed {
-            Some(assumed) if !rotational => {
-                let needed = by_label.is_none() && by_system.is_none() || disagree(by_label, by_system);
-                if needed && assumed.form != form {
+    /// SI units in one of the file's, from three witnesses: label, unit system and the analyst. Where none of them speaks, the
+    /// format's default is SI.
+    fn factor(&mut self, side: &Side, label: Label) -> Result<f64, UnitsError> {
+        let by_label = self.factor_by_label(side, label)?;
+        let assumed = self.assumed.filter(|_| !side.is_rotational());
+        if open(side.axis) && by_label.is_none() && assumed.is_none() {
+            return Err(absent(side.name, side.axis));
+        }
+        let by_system = self.factor_by_system(side).filter(|_| by_label.is_some() || !open(side.axis));
+        let disputed = disagree(by_label, by_system);
+        let what = side.what();
+        if let Some(assumed) = assumed.filter(|_| disputed || by_label.or(by_system).is_none()) {
+            let unit = match side.form {
+                Some(form) if form != assumed.form => {
                     let (assumed, stated) = (motion_name(assumed.form), motion_name(form));
                     return Err(UnitsError::Assumed { assumed, stated });
                 }
-                Some(&assumed.response)
+                Some(_) => &assumed.response,
+                None => &assumed.force,
+            };
+            let why = if disputed { "label and dataset 164 disagree" } else { "the file states no unit" };
+            self.note_assumed(format!("{what}: {why}, `{}` taken as `--assume-units` says", unit.text));
+            return Ok(unit.si);
+        }
+        if disputed {
+            return Err(self.disputed(side));
+        }
+        match (by_label, by_system) {
+            (None, None) => {
+                self.note(format!("{what}: the file states no unit, SI taken, the format's default"))
             }
-            _ => None,
-        };
-        self.decide("response", what, by_label, by_system, assumed)
+            (Some(1.0), _) | (None, Some(1.0)) => {}
+            (Some(_), _) => self.note(format!("{what} in `{}` were converted to SI", side.label())),
+            (None, Some(_)) => self.note(format!(
+                "{what} in the unit system `{}` (dataset 164) were converted to SI",
+                self.system()
+            )),
+        }
+        Ok(by_label.or(by_system).unwrap_or(1.0))
     }
 
-    /// N or N·m in one of the file's units of force.
-    fn force_factor(&mut self, label: Label) -> Result<f64, UnitsError> {
-        let rotational = self.reference.is_rotational();
-        let by_label = match label {
-            Label::Nothing => None,
-            Label::Si => Some(1.0),
-            Label::Unit(unit) if unit.dimension == self.force() => Some(unit.si),
-            Label::Unit(unit) if rotational && unit.is_si(Dimension::FORCE) => {
-                self.note_translation_label("moments", "N m");
-                Some(1.0)
+    fn factor_by_label(&mut self, side: &Side, label: Label) -> Result<Option<f64>, UnitsError> {
+        match label {
+            Label::Nothing => Ok(None),
+            Label::Si => Ok(Some(1.0)),
+            Label::Unit(unit) if unit.dimension == side.dimension() => Ok(Some(unit.si)),
+            // Exporters print the SI label of a translation beside rotations: data type and direction say what it is, and
+            // the label that it is SI.
+            Label::Unit(unit) if side.is_rotational() && unit.is_si(side.dimension_of(false)) => {
+                let unit = if side.form.is_some() { "rad" } else { "N m" };
+                let what = side.what();
+                self.note(format!("{what} carry the label of a translation in SI units, `{unit}` taken"));
+                Ok(Some(1.0))
             }
-            Label::Unit(_) => {
-                return Err(UnitsError::Contradiction {
-                    axis: "force",
-                    data_type: self.denominator.data_type,
-                    quantity: if rotational { "moments".into() } else { "forces".into() },
-                    label: self.denominator.units.clone(),
-                });
-            }
-        };
-        let assumed = self.assumed.filter(|_| !rotational).map(|assumed| &assumed.force);
-        if open(self.denominator) && by_label.is_none() && assumed.is_none() {
-            return Err(self.absent("force", self.denominator));
+            Label::Unit(_) => Err(side.contradiction()),
         }
-        let by_system = self
-            .system_factor(&Axis::excitation_force(), self.reference)
-            .filter(|_| by_label.is_some() || !open(self.denominator));
-        self.decide("force", if rotational { "moments" } else { "forces" }, by_label, by_system, assumed)
-    }
-
-    /// Exporters print the SI label of a translation beside rotations: data type and direction say what it is, and
-    /// the label that it is SI.
-    fn note_translation_label(&mut self, what: &str, unit: &str) {
-        self.notes.insert(format!("{what} carry the label of a translation in SI units, `{unit}` taken"));
-    }
-
-    /// The factor of one axis from its three witnesses. Where none of them speaks, the format's default is SI.
-    fn decide(
-        &mut self,
-        axis: &'static str,
-        what: &str,
-        by_label: Option<f64>,
-        by_system: Option<f64>,
-        assumed: Option<&NamedUnit>,
-    ) -> Result<f64, UnitsError> {
-        let label = if axis == "response" { &self.numerator.units } else { &self.denominator.units };
-        let system = self.system.map_or("", |units| units.description.trim());
-        let disputed = disagree(by_label, by_system);
-        let (factor, note) = match (by_label, by_system, assumed) {
-            (Some(_), Some(_), None) if disputed => {
-                return Err(UnitsError::System { axis, label: label.clone(), system: system.to_owned() });
-            }
-            (Some(_), Some(_), Some(assumed)) if disputed => {
-                let text = &assumed.text;
-                self.notes.insert_assumed(format!(
-                    "{what}: label and dataset 164 disagree, `{text}` taken as `--assume-units` says"
-                ));
-                return Ok(assumed.si);
-            }
-            (None, None, Some(assumed)) => {
-                let text = &assumed.text;
-                self.notes.insert_assumed(format!(
-                    "{what}: the file states no unit, `{text}` taken as `--assume-units` says"
-                ));
-                return Ok(assumed.si);
-            }
-            (None, None, None) => {
-                (1.0, Some(format!("{what}: the file states no unit, SI taken, the format's default")))
-            }
-            (Some(factor), _, _) => (
-                factor,
-                (factor != 1.0).then(|| format!("{what} in `{}` were converted to SI", label.trim())),
-            ),
-            (None, Some(factor), _) => (
-                factor,
-                (factor != 1.0).then(|| {
-                    format!("{what} in the unit system `{system}` (dataset 164) were converted to SI")
-                }),
-            ),
-        };
-        if let Some(note) = note {
-            self.notes.insert(note);
-        }
-        Ok(factor)
-    }
-
-    /// A label that states motion per force, such as `g/lbf`.
-    fn ratio(&mut self, form: FrfForm, unit: Unit, force_label: Label) -> Result<Ordinate, UnitsError> {
-        if let Label::Unit(force) = force_label
-            && force.dimension != self.force()
-        {
-            // The error of a force that is none.
-            self.force_factor(force_label)?;
-        }
-        let label = self.numerator.units.trim().to_owned();
-        let by_system = self
-            .system_factor(&axis_of(form), self.response)
-            .zip(self.system_factor(&Axis::excitation_force(), self.reference))
-            .map(|(motion, force)| motion / force);
-        if disagree(Some(unit.si), by_system) {
-            return self.ratio_as_assumed(form, label);
-        }
-        if unit.si != 1.0 {
-            self.notes.insert(format!("FRFs in `{label}` were converted to SI"));
-        }
-        Ok(Ordinate { form, si: unit.si })
-    }
-
-    /// The analyst's word on a ratio whose label disagrees with the file's unit system.
-    fn ratio_as_assumed(&mut self, form: FrfForm, label: String) -> Result<Ordinate, UnitsError> {
-        let rotational = self.response.is_rotational() || self.reference.is_rotational();
-        let Some(assumed) = self.assumed.filter(|assumed| assumed.form == form && !rotational) else {
-            let system = self.system.map_or("", |units| units.description.trim()).to_owned();
-            return Err(UnitsError::System { axis: "response", label, system });
-        };
-        self.notes.insert_assumed(format!(
-            "FRFs in `{label}`: label and dataset 164 disagree, `{}` per `{}` taken as `--assume-units` says",
-            assumed.response.text, assumed.force.text
-        ));
-        Ok(Ordinate { form, si: assumed.response.si / assumed.force.si })
     }
 
     /// SI units in one of the unit system in force, if there is any.
-    fn system_factor(&self, axis: &Axis, channel: FileChannel) -> Option<f64> {
-        self.system.map(|units| units.si_per_unit(exponents(axis, channel)))
+    fn factor_by_system(&self, side: &Side) -> Option<f64> {
+        let axis = side.form.map_or_else(Axis::excitation_force, |form| motion_axis(form, Dof::Translation));
+        // A scalar channel counts as a translation.
+        let direction = if side.channel.direction == 0 { 2 } else { side.channel.direction };
+        self.dataset.units.as_ref().map(|units| units.si_per_unit(axis.unit_exponents(direction)))
+    }
+
+    /// The factor of a label that states motion per force, such as `g/lbf`.
+    fn ratio(
+        &mut self,
+        motion: &Side,
+        force: &Side,
+        unit: Unit,
+        force_label: Label,
+    ) -> Result<f64, UnitsError> {
+        if let Label::Unit(stated) = force_label
+            && stated.dimension != force.dimension()
+        {
+            // The error of a force that is none.
+            self.factor(force, force_label)?;
+        }
+        let label = motion.label();
+        let by_system = self
+            .factor_by_system(motion)
+            .zip(self.factor_by_system(force))
+            .map(|(motion, force)| motion / force);
+        if !disagree(Some(unit.si), by_system) {
+            if unit.si != 1.0 {
+                self.note(format!("FRFs in `{label}` were converted to SI"));
+            }
+            return Ok(unit.si);
+        }
+        let rotational = motion.is_rotational() || force.is_rotational();
+        match self.assumed.filter(|assumed| Some(assumed.form) == motion.form && !rotational) {
+            None => Err(self.disputed(motion)),
+            Some(AssumedUnits { response, force, .. }) => {
+                self.note_assumed(format!(
+                    "FRFs in `{label}`: label and dataset 164 disagree, `{}` per `{}` taken as `--assume-units` says",
+                    response.text, force.text
+                ));
+                Ok(response.si / force.si)
+            }
+        }
+    }
+
+    fn system(&self) -> &str {
+        self.dataset.units.as_ref().map_or("", |units| units.description.trim())
+    }
+
+    fn disputed(&self, side: &Side) -> UnitsError {
+        UnitsError::System { axis: side.name, label: side.label(), system: self.system().to_owned() }
+    }
+
+    fn note(&mut self, text: String) {
+        self.notes.texts.insert((self.source.to_owned(), text));
+    }
+
+    fn note_assumed(&mut self, text: String) {
+        self.notes.assumed = true;
+        self.note(text);
+    }
+}
+
+fn absent(axis: &'static str, stated: &Axis) -> UnitsError {
+    UnitsError::Absent { axis, data_type: stated.data_type, label: stated.units.clone() }
+}
+
+/// The form of the FRFs of which an axis is the numerator, where its data type tells.
+fn stated_form(axis: &Axis) -> Option<FrfForm> {
+    match axis.data_type {
+        data_type::DISPLACEMENT => Some(FrfForm::Receptance),
+        data_type::VELOCITY => Some(FrfForm::Mobility),
+        data_type::ACCELERATION => Some(FrfForm::Accelerance),
+        _ => None,
     }
 }
 
@@ -404,20 +393,8 @@ fn open(axis: &Axis) -> bool {
     matches!(axis.data_type, data_type::UNKNOWN | data_type::GENERAL)
 }
 
-/// The numerator's axis in SI.
-fn axis_of(form: FrfForm) -> Axis {
-    match form {
-        FrfForm::Receptance => Axis::displacement(),
-        FrfForm::Mobility => Axis::velocity(),
-        FrfForm::Accelerance => Axis::acceleration(),
-    }
-}
-
+/// Whether label and unit system part by more than a thousandth, which two roundings of one factor may: printed unit systems hold
+/// few digits.
 fn disagree(by_label: Option<f64>, by_system: Option<f64>) -> bool {
-    matches!((by_label, by_system), (Some(l), Some(s)) if !agree(l, s))
-}
-
-/// Unit exponents of a quantity in a channel's direction; a scalar one counts as a translation.
-fn exponents(axis: &Axis, channel: FileChannel) -> [i32; 3] {
-    axis.unit_exponents(if channel.direction == 0 { 2 } else { channel.direction })
+    matches!((by_label, by_system), (Some(l), Some(s)) if (l - s).abs() > 1e-3 * s.abs())
 }

@@ -6,7 +6,7 @@ use jointscope_uff::UffFile;
 
 use crate::error::enumeration;
 use crate::function::{LinesCache, append_accelerances};
-use crate::gather::{Entry, Gathered, gather, in_order};
+use crate::gather::{Entry, Gathered, example, gather, in_order, points};
 use crate::ordinate::{Ordinate, UnitNotes, ordinate};
 use crate::{AssumedUnits, ChannelMap, FileChannel, HeldAmplitude, RecordingError};
 
@@ -87,10 +87,6 @@ impl Recording {
         }
         notes.of_lone_coherences(&usable, &gathered.coherences);
         let levels = levels(&usable, &gathered.coherences)?;
-        let mut skipped_datasets = BTreeMap::new();
-        for (number, count) in sources.iter().flat_map(|source| &source.file.skipped) {
-            *skipped_datasets.entry(*number).or_default() += count;
-        }
         Ok(Recording {
             levels,
             time_histories: TimeHistories {
@@ -98,7 +94,7 @@ impl Recording {
                 channels: distinct(&gathered.time_histories),
             },
             notes: notes.texts,
-            skipped_datasets,
+            skipped_datasets: skipped(sources),
         })
     }
 
@@ -169,21 +165,21 @@ impl Notes {
         frfs: Vec<Entry<'a>>,
         options: &ReadOptions,
     ) -> Result<Vec<Usable<'a>>, RecordingError> {
-        let mut units: BTreeMap<&str, UnitNotes> = BTreeMap::new();
+        let mut units = UnitNotes::default();
         let mut other_quantities = Vec::new();
         let mut first_other = None;
         let mut usable = Vec::with_capacity(frfs.len());
         for entry in frfs {
             let function = entry.function;
-            let notes = units.entry(function.source).or_default();
-            match ordinate(function.dataset, options.assume_units.as_ref(), notes)
+            let named = (function.source, function.dataset);
+            match ordinate(named, options.assume_units.as_ref(), &mut units)
                 .map_err(|problem| RecordingError::function(function.place(), problem))?
             {
                 Ok(ordinate) => usable.push((entry, ordinate)),
                 Err(other) => {
                     other_quantities.push(entry.pair.to_string());
                     first_other.get_or_insert(RecordingError::NotPerForce {
-                        place: Box::new(function.place()),
+                        place: function.place(),
                         numerator: other.numerator,
                         denominator: other.denominator,
                     });
@@ -198,13 +194,7 @@ impl Notes {
             let (count, names) = (counted(other_quantities.len(), "function"), enumeration(other_quantities));
             self.texts.push(format!("{count} of type FRF, but no motion per force, left out: {names}"));
         }
-        if options.assume_units.is_some() && !units.values().any(|notes| notes.assumed) && !usable.is_empty()
-        {
-            self.texts.push("the files state all their units: `--assume-units` was not needed".to_owned());
-        }
-        for (source, notes) in units {
-            self.texts.extend(notes.texts.into_iter().map(|text| format!("{source}: {text}")));
-        }
+        self.texts.extend(units.into_texts(options.assume_units.as_ref()));
         in_order(&mut usable, |(entry, _)| entry)?;
         Ok(usable)
     }
@@ -227,6 +217,15 @@ fn counted(count: usize, what: &str) -> String {
 
 fn distinct(channels: &[FileChannel]) -> Vec<FileChannel> {
     channels.iter().copied().collect::<BTreeSet<_>>().into_iter().collect()
+}
+
+/// Number of datasets of each number that is not read.
+fn skipped(sources: &[Source]) -> BTreeMap<u32, usize> {
+    let mut all = BTreeMap::new();
+    for (number, count) in sources.iter().flat_map(|source| &source.file.skipped) {
+        *all.entry(*number).or_default() += count;
+    }
+    all
 }
 
 fn without_frfs(sources: &[Source], gathered: &Gathered) -> RecordingError {
@@ -252,14 +251,7 @@ fn without_frfs(sources: &[Source], gathered: &Gathered) -> RecordingError {
     if !gathered.time_histories.is_empty() {
         found.push(format!("{} time histories", gathered.time_histories.len()));
     }
-    let skipped: BTreeMap<u32, usize> = sources.iter().flat_map(|source| &source.file.skipped).fold(
-        BTreeMap::new(),
-        |mut all, (number, n)| {
-            *all.entry(*number).or_default() += n;
-            all
-        },
-    );
-    found.extend(skipped.iter().map(|(number, count)| match count {
+    found.extend(skipped(sources).iter().map(|(number, count)| match count {
         1 => format!("dataset {number}"),
         _ => format!("{count} datasets {number}"),
     }));
@@ -270,15 +262,10 @@ fn without_frfs(sources: &[Source], gathered: &Gathered) -> RecordingError {
 }
 
 fn not_on_fixture(gathered: &Gathered, fixture: &Fixture) -> RecordingError {
-    let points = || fixture.points().iter().map(|point| &point.name);
-    let file = gathered.channels.iter().find(|channel| fixture.point(&channel.node.to_string()).is_none());
-    let file = file.or(gathered.channels.first()).copied().unwrap_or(FileChannel { node: 101, direction: 2 });
-    let fixture_direction = if file.is_rotational() { "+theta" } else { "+y" };
-    let point = points().next().map_or("1", String::as_str);
     RecordingError::NotOnFixture {
         nodes: enumeration(&gathered.channels),
-        points: enumeration(points()),
-        example: format!("{file}={point}:{fixture_direction}"),
+        points: points(Some(fixture)),
+        example: example(&gathered.channels, Some(fixture)),
     }
 }
 
@@ -304,9 +291,9 @@ fn level<'a>(
         let decay = decay_of(entry)?;
         if decay != window_decay {
             return Err(RecordingError::Windows {
-                first: Box::new(first.function.place()),
+                first: first.function.place(),
                 first_decay: window_decay,
-                second: Box::new(entry.function.place()),
+                second: entry.function.place(),
                 second_decay: decay,
             });
         }
@@ -346,9 +333,9 @@ fn same_lines<'a>(
         return Ok(());
     }
     Err(RecordingError::Lines {
-        first: Box::new(first.function.place()),
+        first: first.function.place(),
         first_lines: extent(lines),
-        second: Box::new(entry.function.place()),
+        second: entry.function.place(),
         second_lines: extent(&found),
     })
 }

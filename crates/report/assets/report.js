@@ -66,7 +66,6 @@
   }
   function padded([low, high], spacing) {
     if (spacing === "logarithmic") { const air = Math.max(1.05, (high / low) ** 0.04); return [low / air, high * air]; }
-    if (spacing === "symmetric") { const most = 1.05 * Math.max(Math.abs(low), Math.abs(high)) || 1; return [-most, most]; }
     const air = high - low > 1e-9 * Math.max(Math.abs(low), Math.abs(high)) ? 0.05 * (high - low) : 0.1 * Math.abs(high) || 1;
     return [low - air, high + air];
   }
@@ -139,7 +138,6 @@
       const stroke = () => palette[s.colour];
       const common = { colour: s.colour, scale: "y", stroke, width: 1.4, points: { show: true, size: 3, stroke, fill: stroke, filter: (u, index) => this.isolated(index) } };
       if (s.style === "dashed") return { ...common, dash: [6, 4] };
-      if (s.style === "step") return { ...common, paths: uPlot.paths.stepped({ align: 1 }) };
       if (s.style === "points") return { ...common, paths: () => null, points: { show: true, size: 5, stroke, fill: stroke, width: 0 } };
       if (s.style === "band") return { ...common, width: 0, stroke: "transparent", points: { show: false } };
       return common;

@@ -1,9 +1,14 @@
 //! The page of several joints side by side: who is stiffer, how sure that is, and their spectra in common plots.
 
-use jointscope_comparison::{Comparison, ELEMENTS, ElementRanking, Kind, Matrix};
+use jointscope_comparison::{Comparison, Decomposed, ELEMENTS, ElementRanking, Kind, Matrix};
 
+use crate::context::PageContext;
+use crate::error::PageError;
 use crate::format::{in_column, percent};
-use crate::{Axis, Column, Page, PageContext, PageError, Plot, Role, Scale, Section, Table, Verdict, YRange};
+use crate::plot::{Axis, Plot, Role, Span, YRange};
+use crate::section::{Section, Tone, Verdict};
+use crate::table::Table;
+use crate::unit::Scale;
 
 /// An order less probable than this is called open.
 const SURE: f64 = 0.95;
@@ -16,15 +21,11 @@ const SURE: f64 = 0.95;
 /// Joints whose lists do not fit their spectral lines.
 pub fn comparison_page(comparison: &Comparison, context: &PageContext) -> Result<String, PageError> {
     let names: Vec<&str> = comparison.joints.iter().map(|joint| joint.name.as_str()).collect();
-    let mut page = Page::new(format!("{} joints side by side", names.len()))
-        .subtitle(names.join(" · "))
-        .verdict(verdict(comparison))
-        .section(order_section(comparison))
-        .section(value_section(comparison));
-    for kind in [Kind::Stiffness, Kind::Damping] {
-        page = page.section(spectra_section(comparison, kind));
-    }
-    page.foot(context.foot()).to_html()
+    context
+        .page(format!("{} joints side by side", names.len()), names.join(" · "), verdict(comparison))
+        .sections([order_section(comparison), value_section(comparison)])
+        .sections([Kind::Stiffness, Kind::Damping].map(|kind| spectra_section(comparison, kind)))
+        .to_html()
 }
 
 fn symbol(entry: &ElementRanking) -> String {
@@ -37,16 +38,9 @@ fn name_of(kind: Kind, (i, j): (usize, usize)) -> String {
 }
 
 fn order_words(comparison: &Comparison, entry: &ElementRanking) -> String {
-    let name = |index: &usize| comparison.joints[*index].name.as_str();
-    let mut words = String::new();
-    for (place, index) in entry.ranking.order.iter().enumerate() {
-        if place > 0 {
-            let sure = entry.ranking.adjacent[place - 1] >= SURE;
-            words.push_str(if sure { " < " } else { " ≲ " });
-        }
-        words.push_str(name(index));
-    }
-    words
+    let signs = entry.ranking.adjacent.iter().map(|p| if *p >= SURE { " < " } else { " ≲ " });
+    let names = entry.ranking.order.iter().map(|index| comparison.joints[*index].name.as_str());
+    std::iter::once("").chain(signs).zip(names).flat_map(|(sign, name)| [sign, name]).collect()
 }
 
 fn verdict(comparison: &Comparison) -> Verdict {
@@ -70,66 +64,41 @@ fn verdict(comparison: &Comparison) -> Verdict {
             settled.join(", ")
         ),
     };
-    let verdict = if settled.len() == 4 { Verdict::ok(headline) } else { Verdict::attention(headline) };
-    verdict.detail(detail)
+    let tone = if settled.len() == 4 { Tone::Ok } else { Tone::Attention };
+    Verdict { tone, headline, details: vec![detail] }
 }
 
 fn order_section(comparison: &Comparison) -> Section {
-    let mut table = Table::new([
-        Column::text("element"),
-        Column::text("from the smallest magnitude to the largest"),
-        Column::text("whole order right"),
-        Column::text("each larger than the one before"),
-    ]);
-    for entry in &comparison.rankings {
-        let adjacent: Vec<String> = entry.ranking.adjacent.iter().map(|p| sure(*p)).collect();
-        table = table.row([
-            symbol(entry),
-            order_words(comparison, entry),
-            sure(entry.ranking.probability),
-            adjacent.join(", "),
-        ]);
-    }
-    let table = table.footnote("≲ : less than 95 % sure. Standard deviations are taken as normal and independent from joint to joint.");
+    let each = |entry: &ElementRanking| entry.ranking.adjacent.iter().map(|p| sure(*p)).collect::<Vec<_>>();
+    let table = Table::of(&comparison.rankings)
+        .words("element", |entry| symbol(entry))
+        .words("from the smallest magnitude to the largest", |entry| order_words(comparison, entry))
+        .words("whole order right", |entry| sure(entry.ranking.probability))
+        .words("each larger than the one before", |entry| each(entry).join(", "))
+        .footnote("≲ : less than 95 % sure. Standard deviations are taken as normal and independent from joint to joint.");
     Section::new("Rank order")
         .paragraph(format!(
             "Orders of magnitude by {}. Tolerances that two tests share, such as those of the same blocks, move both values alike; taken as \
              independent they make an order look less sure than it is.",
             comparison.estimate_words()
         ))
-        .table(table)
+        .with(table)
 }
 
 fn value_section(comparison: &Comparison) -> Section {
-    let mut section = Section::new("Values");
-    for kind in [Kind::Stiffness, Kind::Damping] {
-        let scales: Vec<Scale> = ELEMENTS
-            .iter()
-            .map(|element| {
-                let values = comparison.joints.iter().map(|j| kind.of(comparison.estimate(j), *element).0);
-                Scale::for_values(values, kind.unit(*element))
+    let table = |kind: Kind| {
+        let table = Table::of(&comparison.joints).words("joint", |joint| joint.name.clone());
+        let table = ELEMENTS.iter().fold(table, |table, &element| {
+            let values = comparison.joints.iter().map(|j| kind.of(comparison.estimate(j), element).0);
+            let scale = Scale::for_values(values, kind.unit(element));
+            table.numbers(name_of(kind, element), scale.unit(), |joint| {
+                let (value, std) = kind.of(comparison.estimate(joint), element);
+                in_column(value, std, &scale)
             })
-            .collect();
-        let mut columns = vec![Column::text("joint")];
-        columns.extend(
-            ELEMENTS
-                .iter()
-                .zip(&scales)
-                .map(|(element, scale)| Column::numbers(name_of(kind, *element), scale.unit())),
-        );
-        let mut table = Table::new(columns);
-        for joint in &comparison.joints {
-            let cell = |(element, scale): (&(usize, usize), &Scale)| {
-                let (value, std) = kind.of(comparison.estimate(joint), *element);
-                in_column(value, std, scale)
-            };
-            let mut cells = vec![joint.name.clone()];
-            cells.extend(ELEMENTS.iter().zip(&scales).map(cell));
-            table = table.row(cells);
-        }
-        section = section.table(table.footnote("± one standard deviation: noise, the fixture's tolerances, and what a constant joint leaves unexplained"));
-    }
-    section
+        });
+        table.footnote("± one standard deviation: noise, the fixture's tolerances, and what a constant joint leaves unexplained")
+    };
+    Section::new("Values").with(table(Kind::Stiffness)).with(table(Kind::Damping))
 }
 
 fn spectra_section(comparison: &Comparison, kind: Kind) -> Section {
@@ -148,12 +117,15 @@ fn spectra_section(comparison: &Comparison, kind: Kind) -> Section {
         .plots(2, ELEMENTS.map(|element| plot(comparison, kind, element)))
 }
 
+fn at(kind: Kind, stiffness: &Matrix, damping: &Matrix, (i, j): (usize, usize)) -> f64 {
+    match kind {
+        Kind::Stiffness => stiffness[i][j],
+        Kind::Damping => damping[i][j],
+    }
+}
+
 fn plot(comparison: &Comparison, kind: Kind, element: (usize, usize)) -> Plot {
-    let (i, j) = element;
-    let of = |k: &Matrix, c: &Matrix| match kind {
-        Kind::Stiffness => k[i][j],
-        Kind::Damping => c[i][j],
-    };
+    let of = |k: &Matrix, c: &Matrix| at(kind, k, c, element);
     let symbol = name_of(kind, element);
     let mut plot =
         Plot::new(symbol.clone(), Axis::frequency(), Axis::linear(symbol.clone(), kind.unit(element)));
@@ -161,55 +133,36 @@ fn plot(comparison: &Comparison, kind: Kind, element: (usize, usize)) -> Plot {
         let role = Role::Trace(index);
         plot = plot.over(joint.lines.iter().map(|line| line.frequency));
         let edge = |sign: f64| {
-            let value = move |line: &jointscope_comparison::Line| {
+            joint.lines.iter().map(move |line| {
                 let (k, c) = line.std?;
                 Some(of(&line.stiffness, &line.damping) + sign * 1.96 * of(&k, &c))
-            };
-            joint.lines.iter().map(value).collect::<Vec<Option<f64>>>()
+            })
         };
         if joint.lines.iter().any(|line| line.std.is_some()) {
             plot = plot.band(format!("{}, 95 %", joint.name), role, edge(-1.0), edge(1.0));
         }
-        plot = plot.line(
-            joint.name.clone(),
-            role,
-            joint.lines.iter().map(|line| of(&line.stiffness, &line.damping)),
-        );
+        let values = joint.lines.iter().map(|line| of(&line.stiffness, &line.damping));
+        plot = plot.line(&joint.name, role, values);
     }
     for (index, joint) in comparison.joints.iter().enumerate() {
         let level = kind.of(comparison.estimate(joint), element).0;
         plot = plot.horizontal(format!("{}, estimate", joint.name), Role::Trace(index), level);
     }
     let names: Vec<&str> = comparison.joints.iter().map(|joint| joint.name.as_str()).collect();
-    let range = range(comparison, kind, element);
-    plot.y_range(range).masked(0).line_limit(2_000).caption(format!("{symbol} of {}.", names.join(", ")))
+    let caption = format!("{symbol} of {}.", names.join(", "));
+    plot.y_range(range(comparison, kind, element)).masked(0).caption(caption)
 }
 
 /// What is drawn at first: the estimates and the middle of the lines in the joints' averaging bands, which poles and noise would squash.
-fn range(comparison: &Comparison, kind: Kind, (i, j): (usize, usize)) -> YRange {
-    let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
-    for joint in &comparison.joints {
-        let level = kind.of(comparison.estimate(joint), (i, j)).0;
-        let inside =
-            joint.lines.iter().filter(|l| l.frequency >= joint.band.0 && l.frequency <= joint.band.1);
-        let mut values: Vec<f64> = inside
-            .map(|line| match kind {
-                Kind::Stiffness => line.stiffness[i][j],
-                Kind::Damping => line.damping[i][j],
-            })
-            .collect();
-        values.sort_by(f64::total_cmp);
-        let at = |share: f64| values.get((share * values.len().saturating_sub(1) as f64) as usize).copied();
-        for value in [Some(level), at(0.1), at(0.9)].into_iter().flatten() {
-            (low, high) = (low.min(value), high.max(value));
-        }
-    }
-    let room = (0.4 * (high - low)).max(0.02 * low.abs().max(high.abs()));
-    if room > 0.0 && room.is_finite() {
-        YRange::Fixed { low: low - room, high: high + room }
-    } else {
-        YRange::robust()
-    }
+fn range(comparison: &Comparison, kind: Kind, element: (usize, usize)) -> YRange {
+    let of_joint = |joint: &Decomposed| {
+        let inside = joint.lines.iter().filter(|l| (joint.band.0..=joint.band.1).contains(&l.frequency));
+        let values = inside.map(|line| at(kind, &line.stiffness, &line.damping, element));
+        let level = kind.of(comparison.estimate(joint), element).0;
+        Span::percentiles(values, YRange::ROBUST).and(Span::of([level]))
+    };
+    let span = comparison.joints.iter().map(of_joint).fold(Span::default(), Span::and);
+    YRange::about(span, (0.4 * span.width()).max(0.02 * span.magnitude()))
 }
 
 /// A probability as a percentage that never claims to be certain of what was found by drawing.

@@ -1,10 +1,11 @@
 //! Where a page comes from, as every page states it.
 
-use jointscope_estimation::Estimate;
 use jointscope_fixture::Fixture;
-use jointscope_hits::Hit;
+use jointscope_pipeline::HammerTest;
 
-use crate::Foot;
+use crate::hammer_test;
+use crate::page::Page;
+use crate::section::{Section, Tone, Verdict};
 
 /// Where a page comes from: what its foot states, and what was noticed on the way.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -21,15 +22,6 @@ pub struct PageContext {
     pub hits: Option<HammerTest>,
 }
 
-/// Hammer hits and what was estimated from them.
-#[derive(Debug, Clone, PartialEq)]
-pub struct HammerTest {
-    /// The hits.
-    pub hits: Vec<Hit>,
-    /// FRFs, and what became of each hit.
-    pub estimate: Estimate,
-}
-
 /// A file that was read.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct InputFile {
@@ -40,14 +32,28 @@ pub struct InputFile {
 }
 
 impl PageContext {
+    /// A page under its verdict, with program, command line and the inputs' hashes in its foot.
+    pub(crate) fn page(&self, title: impl Into<String>, subtitle: String, verdict: Verdict) -> Page {
+        let page = Page::new(title).subtitle(subtitle).verdict(verdict);
+        page.foot(&self.program, &self.command, &self.inputs)
+    }
+
+    /// A headline, the sentences that go with it, and what was remarked of the recordings.
+    pub(crate) fn verdict(
+        &self,
+        tone: impl Into<Tone>,
+        headline: String,
+        sentences: impl IntoIterator<Item = String>,
+    ) -> Verdict {
+        let tone = tone.into();
+        Verdict { tone, headline, details: sentences.into_iter().chain(self.notes.iter().cloned()).collect() }
+    }
+
     /// The fixture's name and the recordings.
     pub(crate) fn subtitle(&self, fixture: &Fixture) -> String {
-        let recordings: Vec<&str> = self.inputs.iter().skip(1).map(|input| input.name.as_str()).collect();
-        match (fixture.name(), recordings.as_slice()) {
-            (name, []) => name.to_owned(),
-            ("", files) => files.join(", "),
-            (name, files) => format!("{name} · {}", files.join(", ")),
-        }
+        let recordings = self.recordings(true);
+        let parts = [fixture.name(), recordings.as_str()].into_iter().filter(|part| !part.is_empty());
+        parts.collect::<Vec<_>>().join(" · ")
     }
 
     /// The recordings; the first input is none of them where a fixture was read.
@@ -56,14 +62,8 @@ impl PageContext {
         files.collect::<Vec<_>>().join(", ")
     }
 
-    /// Program, command line and the inputs' hashes.
-    pub(crate) fn foot(&self) -> Foot {
-        let mut foot = Foot::new(&self.program);
-        if !self.command.is_empty() {
-            foot = foot.command(&self.command);
-        }
-        self.inputs
-            .iter()
-            .fold(foot, |foot, input| foot.input(&input.name, format!("sha256 {}", input.sha256)))
+    /// The section of the hits, where there are any.
+    pub(crate) fn hits(&self) -> Option<Section> {
+        self.hits.as_ref().map(hammer_test::section)
     }
 }

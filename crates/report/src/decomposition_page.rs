@@ -2,7 +2,6 @@
 
 mod by_line;
 mod element;
-mod estimate;
 mod fixture_view;
 mod frfs;
 mod interface_table;
@@ -11,12 +10,12 @@ mod result;
 mod shares;
 mod verdict;
 
-use jointscope_decomposition::{Analysis, Relation};
+use jointscope_decomposition::{Analysis, Estimate, Relation};
 use jointscope_fixture::{Fixture, Joint, JointLaw};
 
-use crate::hammer_test;
-use crate::{Page, PageContext, PageError, Section};
-use estimate::Estimate;
+use crate::context::PageContext;
+use crate::error::PageError;
+use crate::section::Verdict;
 
 /// What the sections of the page are made from.
 #[derive(Clone, Copy)]
@@ -67,27 +66,19 @@ pub fn decomposition_page(
 ) -> Result<String, PageError> {
     let best = Estimate::best(analysis);
     let subject = Subject { analysis, fixture, best: &best };
-    let mut page = Page::new(format!("Joint {}: stiffness and damping", analysis.joint))
-        .subtitle(context.subtitle(fixture))
-        .verdict(verdict::verdict(&subject));
-    if let Some(test) = &context.hits {
-        page = page.section(hammer_test::section(test));
-    }
-    page = page.section(fixture_view::section(&subject));
-    for section in result::sections(&subject) {
-        page = page.section(section);
-    }
-    for section in by_line::sections(&subject) {
-        page = page.section(section);
-    }
-    page = page.section(frfs::section(&subject));
-    let others: [Option<Section>; 3] = [
-        interface_table::section(&subject),
-        shares::section(&subject),
-        Some(omitted::section(&subject, context)),
-    ];
-    for section in others.into_iter().flatten() {
-        page = page.section(section);
-    }
-    page.foot(context.foot()).to_html()
+    let title = format!("Joint {}: stiffness and damping", analysis.joint);
+    let verdict = Verdict {
+        tone: verdict::tone(&subject),
+        headline: verdict::headline(&subject),
+        details: verdict::details(&subject),
+    };
+    context
+        .page(title, context.subtitle(fixture), verdict)
+        .sections(context.hits())
+        .sections([fixture_view::section(&subject), result::section(&subject)])
+        .sections(by_line::sections(&subject))
+        .sections([frfs::section(&subject)])
+        .sections(interface_table::section(&subject))
+        .sections([shares::section(&subject), omitted::section(&subject, context)])
+        .to_html()
 }

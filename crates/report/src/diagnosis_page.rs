@@ -10,14 +10,13 @@ mod misfit;
 mod noise;
 mod tolerances;
 
-use jointscope_diagnosis::{Diagnosis, Fit, Verdict as Conclusion};
+use jointscope_diagnosis::{Diagnosis, Fit};
 use jointscope_fixture::Fixture;
+use jointscope_wording::{Remarks, Says};
 
-use crate::hammer_test;
-use crate::{Page, PageContext, PageError, Section, Tone, Verdict};
+use crate::context::PageContext;
+use crate::error::PageError;
 
-/// Lines beyond which panes are drawn thinned, so that a page of long recordings stays small.
-const LINE_LIMIT: usize = 2_000;
 /// FRFs and places that are shown at the most; the page says how many there are.
 const SHOWN: usize = 12;
 
@@ -54,36 +53,19 @@ pub fn diagnosis_page(
     context: &PageContext,
 ) -> Result<String, PageError> {
     let subject = Subject { diagnosis, fixture };
-    let mut page = Page::new("Diagnosis: what the fixture leaves out")
-        .subtitle(context.subtitle(fixture))
-        .verdict(verdict(diagnosis, context));
-    if let Some(test) = &context.hits {
-        page = page.section(hammer_test::section(test));
-    }
-    page = page
-        .section(fixture_view::section(&subject))
-        .section(findings::section(&subject))
-        .section(judgement::section(&subject));
-    let others: [Option<Section>; 5] = [
-        delta::section(&subject),
-        Some(frfs::section(&subject)),
-        Some(misfit::section(&subject)),
-        tolerances::section(&subject),
-        Some(noise::section(&subject)),
-    ];
-    for section in others.into_iter().flatten() {
-        page = page.section(section);
-    }
-    page.foot(context.foot()).to_html()
-}
-
-fn verdict(diagnosis: &Diagnosis, context: &PageContext) -> Verdict {
-    let tone = match diagnosis.verdict {
-        Conclusion::Consistent => Tone::Ok,
-        Conclusion::Explained => Tone::Attention,
-        Conclusion::PartlyExplained | Conclusion::Unexplained => Tone::Problem,
-    };
     let said = diagnosis.findings.iter().map(|finding| finding.says());
-    let remarks = said.chain(diagnosis.remarks()).chain(context.notes.iter().cloned());
-    remarks.fold(Verdict::new(tone, diagnosis.says()), Verdict::detail)
+    let verdict = context.verdict(diagnosis.verdict, diagnosis.says(), said.chain(diagnosis.remarks()));
+    context
+        .page("Diagnosis: what the fixture leaves out", context.subtitle(fixture), verdict)
+        .sections(context.hits())
+        .sections([
+            fixture_view::section(&subject),
+            findings::section(&subject),
+            judgement::section(&subject),
+        ])
+        .sections(delta::section(&subject))
+        .sections([frfs::section(&subject), misfit::section(&subject)])
+        .sections(tolerances::section(&subject))
+        .sections([noise::section(&subject)])
+        .to_html()
 }

@@ -1,164 +1,25 @@
 //! A side view of a fixture: bodies along x with their points, joints, supports, sensors and impacts, as inline SVG.
-//!
-//! ```
-//! use jointscope_report::drawing::{Body, Channel, ChannelKind, FixtureDrawing, Joint, Point};
-//!
-//! let svg = FixtureDrawing {
-//!     bodies: vec![Body::block("A", -0.060, 0.0), Body::block("B", 0.065, 0.125)],
-//!     points: vec![
-//!         Point::new("1", -0.060, 0), Point::new("2", 0.0, 0),
-//!         Point::new("3", 0.065, 1), Point::new("4", 0.125, 1),
-//!     ],
-//!     joints: vec![Joint::beam("J", 1, 2)],
-//!     channels: vec![
-//!         Channel { point: 0, kind: ChannelKind::Reference },
-//!         Channel { point: 3, kind: ChannelKind::Response },
-//!     ],
-//!     ..FixtureDrawing::default()
-//! }
-//! .to_svg();
-//! assert!(svg.as_str().starts_with("<svg"));
-//! ```
 
 mod layout;
-mod of_fixture;
+mod outline;
 mod svg;
 
-/// Markup of an SVG image that may stand in a page as it is.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Svg(String);
-
-impl Svg {
-    /// Takes markup on trust: it goes into the page unescaped, so no text from outside may be in it unless escaped already.
-    pub fn trusted(markup: impl Into<String>) -> Self {
-        Self(markup.into())
-    }
-
-    /// The markup.
-    pub fn as_str(&self) -> &str {
-        &self.0
-    }
-}
-
-/// What is drawn of a fixture. Abscissae are in metres; indices point into the lists of this struct, and what points nowhere, or lies at no finite abscissa, is left out.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct FixtureDrawing {
-    /// The bodies. Those that overlap in x are drawn one above the other.
-    pub bodies: Vec<Body>,
-    /// Named places on bodies.
-    pub points: Vec<Point>,
-    /// What connects two points.
-    pub joints: Vec<Joint>,
-    /// Springs to ground.
-    pub supports: Vec<Support>,
-    /// Where is measured and where is struck.
-    pub channels: Vec<Channel>,
-    /// Places to be pointed out.
-    pub highlights: Vec<Highlight>,
-}
-
-/// A block or a slender beam.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Body {
-    /// Its name in the fixture file.
-    pub name: String,
-    /// Abscissa of its left end, m.
-    pub from: f64,
-    /// Abscissa of its right end, m.
-    pub to: f64,
-    /// Whether it has the degree of freedom θ besides y.
-    pub rotates: bool,
-    /// Whether it is a slender, deformable beam.
-    pub is_beam: bool,
-}
-
-impl Body {
-    /// A block that moves in y and θ.
-    pub fn block(name: impl Into<String>, from: f64, to: f64) -> Self {
-        Self { name: name.into(), from, to, rotates: true, is_beam: false }
-    }
-
-    /// A slender, deformable beam.
-    pub fn beam(name: impl Into<String>, from: f64, to: f64) -> Self {
-        Self { is_beam: true, ..Self::block(name, from, to) }
-    }
-}
-
-/// A named place on a body.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Point {
-    /// Its name, which is the node number of the recordings.
-    pub name: String,
-    /// Abscissa, m.
-    pub x: f64,
-    /// Index of the body.
-    pub body: usize,
-}
-
-impl Point {
-    /// A point at an abscissa (m) on the body of this index.
-    pub fn new(name: impl Into<String>, x: f64, body: usize) -> Self {
-        Self { name: name.into(), x, body }
-    }
-}
-
-/// A joint between two points.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Joint {
-    /// Its name in the fixture file.
-    pub name: String,
-    /// Index of the point at its near end.
-    pub from: usize,
-    /// Index of the point at its far end.
-    pub to: usize,
-    /// Drawn as a thin beam; a spring otherwise.
-    pub is_beam: bool,
-    /// Drawn in the colour of what the reader must look at.
-    pub highlight: bool,
-}
-
-impl Joint {
-    /// A beam between the points of these indices.
-    pub fn beam(name: impl Into<String>, from: usize, to: usize) -> Self {
-        Self { name: name.into(), from, to, is_beam: true, highlight: false }
-    }
-
-    /// A joint of given stiffness between the points of these indices, drawn as a spring.
-    pub fn spring(name: impl Into<String>, from: usize, to: usize) -> Self {
-        Self { is_beam: false, ..Self::beam(name, from, to) }
-    }
-}
-
-/// A support to ground.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Support {
-    /// Abscissa, m.
-    pub x: f64,
-    /// Index of the body.
-    pub body: usize,
-}
+use jointscope_fixture::Fixture;
+use jointscope_spectra::FrfPair;
+use maud::Markup;
 
 /// What a channel records.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum ChannelKind {
+pub(crate) enum ChannelKind {
     /// The motion of its point.
     Response,
     /// The force of the hammer on its point.
     Reference,
 }
 
-/// A sensor or an impact at a point.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Channel {
-    /// Index of the point.
-    pub point: usize,
-    /// What is recorded there.
-    pub kind: ChannelKind,
-}
-
-/// A place to be pointed out, with a few words.
+/// A place to be pointed out, with a few words; not drawn where its abscissa is not finite.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Highlight {
+pub(crate) struct Highlight {
     /// Abscissa, m.
     pub x: f64,
     /// Index of the body it lies on; between bodies where there is none.
@@ -167,9 +28,34 @@ pub struct Highlight {
     pub label: String,
 }
 
-impl FixtureDrawing {
+/// What is drawn of a fixture. Bodies that overlap in x are drawn one above the other.
+#[derive(Debug, Clone)]
+pub(crate) struct SideView<'a> {
+    pub fixture: &'a Fixture,
+    /// Each sensor and hammer point once, by the index of its point.
+    pub channels: Vec<(usize, ChannelKind)>,
+    /// Places to be pointed out.
+    pub highlights: Vec<Highlight>,
+    /// Names of the joints to be pointed out.
+    pub joints: Vec<&'a str>,
+}
+
+impl<'a> SideView<'a> {
+    /// A fixture with the sensors and hammer points of some FRFs.
+    pub fn new<'f>(fixture: &'a Fixture, frfs: impl IntoIterator<Item = &'f FrfPair>) -> Self {
+        let at = |name: &str| fixture.points().iter().position(|point| point.name == name);
+        let ends = frfs.into_iter().flat_map(|pair| {
+            [(&pair.response, ChannelKind::Response), (&pair.reference, ChannelKind::Reference)]
+        });
+        let mut channels: Vec<_> =
+            ends.filter_map(|(channel, kind)| Some((at(&channel.point)?, kind))).collect();
+        channels.sort_unstable();
+        channels.dedup();
+        Self { fixture, channels, highlights: Vec::new(), joints: Vec::new() }
+    }
+
     /// The drawing, in the colours of the page it stands in. It scales with its width; labels that would meet are put in rows of their own.
-    pub fn to_svg(&self) -> Svg {
-        Svg(svg::draw(self))
+    pub fn draw(&self) -> Markup {
+        svg::draw(self)
     }
 }

@@ -35,16 +35,4 @@ pub enum PageError {
         /// First index that is not finite or not above its predecessor.
         index: usize,
     },
-    /// A table row has more or fewer cells than the table has columns.
-    #[error("table '{table}': row {row} has {got} cells under {expected} columns; give every column a cell")]
-    RowLength {
-        /// The table's caption, or its first column heading where it has none.
-        table: String,
-        /// Row index, from 0.
-        row: usize,
-        /// Number of columns.
-        expected: usize,
-        /// Number of cells.
-        got: usize,
-    },
 }

@@ -1,10 +1,10 @@
 //! The section of a joint's force–state map.
 
 use jointscope_fixture::{Dof, Fixture};
-use jointscope_nonlinear::{ForceState, ForceStateError, ForceStateMap, Memory, MotionSource, RestoringLaw};
+use jointscope_nonlinear::{ForceState, ForceStateError, ForceStateMap, MotionSource, RestoringLaw};
 
-use crate::Section;
 use crate::scatter::{Scatter, draw};
+use crate::section::Section;
 
 /// Most points of a panel.
 const POINTS: usize = 1500;
@@ -116,16 +116,9 @@ fn curve(component: &ForceState) -> Vec<[f64; 2]> {
         true => there.clone().chain((0..CURVE).rev().map(at)).chain(there).collect(),
         false => there.collect(),
     };
-    let mut memories = vec![Memory::default(); component.laws.len()];
-    let mut points = Vec::with_capacity(path.len());
-    for d in path {
-        let mut all = 0.0;
-        for (memory, law) in memories.iter_mut().zip(&component.laws) {
-            *memory = Memory { motion: d, force: law.force(d, memory) };
-            all += memory.force;
-        }
-        points.push([d, all]);
-    }
+    let forces: Vec<Vec<f64>> = component.laws.iter().map(|law| law.forces(&path)).collect();
+    let all = |i: usize| forces.iter().fold(0.0, |sum, force| sum + force[i]);
+    let mut points: Vec<[f64; 2]> = path.iter().enumerate().map(|(i, d)| [*d, all(i)]).collect();
     // The first leg of a loop only leads up to it.
     if remembers { points.split_off(CURVE) } else { points }
 }

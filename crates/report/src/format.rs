@@ -3,7 +3,7 @@
 use crate::unit::{Scale, superscript};
 
 /// What is printed in place of a value that is not finite.
-pub const NOT_DETERMINED: &str = "not determined";
+pub(crate) const NOT_DETERMINED: &str = "not determined";
 
 /// Significant digits of a value whose uncertainty is not known.
 const DIGITS_WITHOUT_STD: usize = 4;
@@ -22,23 +22,15 @@ const DIGITS_WITHOUT_STD: usize = 4;
 /// ```
 pub fn quantity(value: f64, std: impl Into<Option<f64>>, unit: &str) -> String {
     let QuantityText { number, unit, note } = QuantityText::new(value, std, unit);
-    let mut text = number;
-    if !unit.is_empty() {
-        // A percent sign follows its number as other units do (ISO 80000-1).
-        text.push(' ');
-        text.push_str(&unit);
-    }
-    if let Some(note) = note {
-        text.push_str(" (");
-        text.push_str(note);
-        text.push(')');
-    }
-    text
+    // A percent sign follows its number as other units do (ISO 80000-1).
+    let unit = if unit.is_empty() { unit } else { format!(" {unit}") };
+    let note = note.map_or(String::new(), |note| format!(" ({note})"));
+    format!("{number}{unit}{note}")
 }
 
 /// A quantity in the parts a page typesets apart from each other.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct QuantityText {
+pub(crate) struct QuantityText {
     /// The number with its ± and power of ten, or [`NOT_DETERMINED`].
     pub number: String,
     /// The typeset unit with its prefix; empty for a pure number or an undetermined one.
@@ -95,8 +87,37 @@ fn plus_minus(value: f64, std: f64) -> String {
     format!("{} ± {}", rounded(value, decimals), rounded(std, decimals))
 }
 
+/// The ends of an interval in one unit: `1.20 to 3.40 MN/m`.
+pub(crate) fn interval([low, high]: [f64; 2], scale: &Scale, digits: usize) -> String {
+    let number = |value: f64| significant(scale.of(value), digits);
+    let unit = if scale.unit().is_empty() { String::new() } else { format!(" {}", scale.unit()) };
+    format!("{} to {}{unit}", number(low), number(high))
+}
+
+/// A magnitude without its uncertainty: `1.23 MN/m`.
+pub(crate) fn magnitude(value: f64, unit: &str, digits: usize) -> String {
+    let scale = Scale::for_magnitude(value, unit);
+    format!("{} {}", significant(scale.of(value), digits), scale.unit()).trim_end().to_owned()
+}
+
+/// `1.432 ± 0.012 ± 0.031` for a column: the largest of the standard deviations and `coarsest` (SI) sets the digits, each keeps one of its own at least.
+pub(crate) fn in_parts(value: f64, stds: &[f64], coarsest: f64, scale: &Scale) -> String {
+    if !value.is_finite() {
+        return NOT_DETERMINED.to_owned();
+    }
+    let stds = stds.iter().map(|std| scale.of(*std)).filter(|std| std.is_finite());
+    let largest = stds.clone().fold(scale.of(coarsest), f64::max);
+    if largest <= 0.0 {
+        return significant(scale.of(value), DIGITS_WITHOUT_STD);
+    }
+    let decimals = |std: f64, digits: i32| (digits - 1 - std.log10().floor() as i32).clamp(0, 8) as usize;
+    let common = decimals(largest, 2);
+    let own = |std: f64| if std > 0.0 { common.max(decimals(std, 1)) } else { common };
+    stds.fold(fixed(scale.of(value), common), |text, std| format!("{text} ± {}", fixed(std, own(std))))
+}
+
 /// A value and its standard deviation as numbers of a table column that states the unit: `3.320 ± 0.020`, or [`NOT_DETERMINED`].
-pub fn in_column(value: f64, std: impl Into<Option<f64>>, scale: &Scale) -> String {
+pub(crate) fn in_column(value: f64, std: impl Into<Option<f64>>, scale: &Scale) -> String {
     if !value.is_finite() {
         return NOT_DETERMINED.to_owned();
     }
@@ -108,7 +129,7 @@ pub fn in_column(value: f64, std: impl Into<Option<f64>>, scale: &Scale) -> Stri
 }
 
 /// A number of so many significant digits, a power of ten where it would be a row of zeros: `0.01234`, `1.234×10⁻⁷`.
-pub fn significant(value: f64, digits: usize) -> String {
+pub(crate) fn significant(value: f64, digits: usize) -> String {
     if !value.is_finite() {
         return NOT_DETERMINED.to_owned();
     }
@@ -129,12 +150,12 @@ pub fn significant(value: f64, digits: usize) -> String {
 }
 
 /// A number with a fixed count of decimals; never a negative zero.
-pub fn fixed(value: f64, decimals: usize) -> String {
+pub(crate) fn fixed(value: f64, decimals: usize) -> String {
     if value.is_finite() { rounded(value, decimals as i32) } else { NOT_DETERMINED.to_owned() }
 }
 
 /// A share such as a coherence or a probability as a percentage: `0.972` reads `97.2 %`.
-pub fn percent(share: f64, decimals: usize) -> String {
+pub(crate) fn percent(share: f64, decimals: usize) -> String {
     if share.is_finite() {
         format!("{} %", fixed(100.0 * share, decimals))
     } else {
@@ -179,8 +200,14 @@ fn minus(number: &str) -> String {
     }
 }
 
-/// An exact number without the zeros that only rounding put there.
-fn trimmed(number: &str) -> String {
+/// A text with its first letter as a capital.
+pub(crate) fn capitalised(text: &str) -> String {
+    let mut letters = text.chars();
+    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
+}
+
+/// A number without the zeros that only rounding put there.
+pub(crate) fn trimmed(number: &str) -> String {
     let (mantissa, power) = match number.find('×') {
         Some(at) => number.split_at(at),
         None => (number, ""),

@@ -2,30 +2,30 @@
 
 use jointscope_estimation::{Excitation, Fault, HitReport};
 use jointscope_hits::Hit;
+use jointscope_pipeline::HammerTest;
 use jointscope_spectra::Channel;
+use maud::Render;
 
-use crate::context::HammerTest;
 use crate::format::{fixed, significant};
-use crate::{Axis, Column, Plot, Role, Section, Table, Tone, YRange};
+use crate::plot::{Axis, Plot, Role, Style, YRange};
+use crate::section::{Section, Tone};
+use crate::table::Table;
 
 /// Hits drawn at one struck point at the most, and struck points.
 const SHOWN: usize = 12;
 /// Widths of the pulse drawn before and after it.
 const BEFORE: f64 = 3.0;
 const AFTER: f64 = 10.0;
-/// Lines beyond which spectra are drawn thinned.
-const LINE_LIMIT: usize = 2_000;
 
 pub(crate) fn section(test: &HammerTest) -> Section {
     let estimate = &test.estimate;
     let used = estimate.hits.iter().filter(|hit| hit.used).count();
-    let points: Vec<&Channel> =
-        estimate.hits.iter().map(|hit| &hit.struck).fold(Vec::new(), |mut all, point| {
-            if !all.contains(&point) {
-                all.push(point);
-            }
-            all
-        });
+    let mut points: Vec<&Channel> = Vec::new();
+    for hit in &estimate.hits {
+        if !points.contains(&&hit.struck) {
+            points.push(&hit.struck);
+        }
+    }
     let names: Vec<String> = points.iter().map(|point| point.to_string()).collect();
     let mut section = Section::new("Hits")
         .paragraph(format!(
@@ -34,7 +34,7 @@ pub(crate) fn section(test: &HammerTest) -> Section {
             estimate.hits.len(),
             names.join(", ")
         ))
-        .table(table(&estimate.hits));
+        .with(table(&estimate.hits));
     for point in points.iter().take(SHOWN) {
         let excitation = estimate.excitations.iter().find(|e| e.struck == **point);
         let mut plots = vec![force(test, point)];
@@ -46,49 +46,28 @@ pub(crate) fn section(test: &HammerTest) -> Section {
         section =
             section.paragraph(format!("The first {SHOWN} of {} struck points are drawn.", points.len()));
     }
-    section.notes(estimate.remarks.iter().cloned())
+    section.notes(&estimate.remarks)
 }
 
-fn table(hits: &[HitReport]) -> Table {
-    let columns = [
-        Column::text("Hit"),
-        Column::text("Struck"),
-        Column::numbers("Peak force", "N"),
-        Column::numbers("Contact", "ms"),
-        Column::text("Used"),
-    ];
-    let row = |table: Table, hit: &HitReport| {
-        let verdict = match (hit.used, hit.why()) {
+fn table(hits: &[HitReport]) -> impl Render {
+    Table::of(hits)
+        .words("Hit", |hit| hit.number.to_string())
+        .words("Struck", |hit| hit.struck.to_string())
+        .numbers("Peak force", "N", |hit| significant(hit.peak_force, 4))
+        .numbers("Contact", "ms", |hit| fixed(1e3 * hit.width, 2))
+        .words("Used", |hit| match (hit.used, hit.why()) {
             (true, None) => "yes".to_owned(),
             (true, Some(why)) => format!("yes, though: {why}"),
             (false, why) => format!("no: {}", why.unwrap_or_default()),
-        };
-        let cells = [
-            hit.number.to_string(),
-            hit.struck.to_string(),
-            significant(hit.peak_force, 4),
-            fixed(1e3 * hit.width, 2),
-            verdict,
-        ];
-        if hit.used && hit.why().is_none() {
-            table.row(cells)
-        } else {
-            table.marked_row(Tone::Attention, cells)
-        }
-    };
-    hits.iter()
-        .fold(Table::new(columns), row)
+        })
+        .marked(|hit| (!hit.used || hit.why().is_some()).then_some(Tone::Attention))
         .footnote("Contact: the time for which the force is above a twentieth of its peak.")
 }
 
 /// Force over time at one struck point, peaks upon each other.
 fn force(test: &HammerTest, struck: &Channel) -> Plot {
-    let mut plot = Plot::new(
-        format!("Force at {struck}"),
-        Axis::linear("Time after the peak", "ms"),
-        Axis::linear("Force", "N"),
-    )
-    .unsynchronised();
+    let (time, force) = (Axis::linear("Time after the peak", "ms"), Axis::linear("Force", "N"));
+    let mut plot = Plot::new(format!("Force at {struck}"), time, force).alone();
     let all: Vec<(&Hit, &HitReport)> =
         test.hits.iter().zip(&test.estimate.hits).filter(|(hit, _)| hit.struck() == struck).collect();
     // Rejected hits are what the reader must see.
@@ -96,19 +75,16 @@ fn force(test: &HammerTest, struck: &Channel) -> Plot {
     let width = all.iter().map(|(_, report)| report.width).fold(0.0, f64::max);
     for (index, (hit, report)) in shown.enumerate() {
         let (times, values) = about_the_peak(hit, report, width);
-        let label = format!("hit {}{}", hit.number(), if report.used { "" } else { ", rejected" });
-        plot = plot.over(times);
-        plot = match report.used {
-            true => plot.line(label, Role::Trace(index), values),
-            false => plot.dashed(label, Role::Highlight, values),
+        let (style, role, rejected) = match report.used {
+            true => (Style::Line, Role::Trace(index), ""),
+            false => (Style::Dashed, Role::Highlight, ", rejected"),
         };
+        plot = plot.over(times).series(style, format!("hit {}{rejected}", hit.number()), role, values);
     }
-    let count = all.len();
-    let caption = match count > SHOWN {
-        true => format!("{SHOWN} of {count} hits, rejected ones first and dashed."),
-        false => "All hits, rejected ones dashed.".to_owned(),
-    };
-    plot.caption(caption)
+    plot.caption(match all.len() {
+        count if count > SHOWN => format!("{SHOWN} of {count} hits, rejected ones first and dashed."),
+        _ => "All hits, rejected ones dashed.".to_owned(),
+    })
 }
 
 /// Times in ms about the hit's peak, as far as the pulse and a second strike reach, and the force then.
@@ -129,22 +105,18 @@ fn about_the_peak(hit: &Hit, report: &HitReport, width: f64) -> (Vec<f64>, Vec<f
 
 fn spectrum(test: &HammerTest, excitation: &Excitation) -> Plot {
     let hz = &test.estimate.frfs.lines().hz()[1..];
-    Plot::new(
-        format!("Spectrum of the force at {}", excitation.struck),
-        Axis::frequency(),
-        Axis::logarithmic("|F|", "N*s"),
-    )
-    .over(hz)
-    .line("force, root mean square", Role::Measured, &excitation.spectrum[1..])
-    .horizontal("its noise", Role::Reference, excitation.noise)
-    .shaded("lines in use", hz[0], excitation.usable_to)
-    .line_limit(LINE_LIMIT)
-    .unsynchronised()
-    .caption(format!(
-        "The hammer excites up to {} Hz; the force's noise makes H1 read low by {} % at the most.",
-        fixed(excitation.usable_to, 0),
-        significant(100.0 * excitation.h1_bias, 2)
-    ))
+    let title = format!("Spectrum of the force at {}", excitation.struck);
+    Plot::new(title, Axis::frequency(), Axis::logarithmic("|F|", "N*s"))
+        .over(hz)
+        .line("force, root mean square", Role::Measured, &excitation.spectrum[1..])
+        .horizontal("its noise", Role::Reference, excitation.noise)
+        .shaded("lines in use", hz[0], excitation.usable_to)
+        .alone()
+        .caption(format!(
+            "The hammer excites up to {} Hz; the force's noise makes H1 read low by {} % at the most.",
+            fixed(excitation.usable_to, 0),
+            significant(100.0 * excitation.h1_bias, 2)
+        ))
 }
 
 /// Coherence of the responses to one struck point; `None` of a single hit.
@@ -152,28 +124,20 @@ fn coherence(test: &HammerTest, excitation: &Excitation) -> Option<Plot> {
     let frfs = &test.estimate.frfs;
     let hz = &frfs.lines().hz()[1..];
     let last = hz.iter().rposition(|hz| *hz <= excitation.usable_to).unwrap_or(0);
-    let mut plot = Plot::new(
-        format!("Coherence of the responses to {}", excitation.struck),
-        Axis::frequency(),
-        Axis::linear("γ²", ""),
-    )
-    .over(&hz[..=last]);
-    let mut drawn = 0;
-    for (index, pair) in frfs.pairs().iter().enumerate() {
-        let Some(coherence) = frfs.coherence(index).filter(|_| pair.reference == excitation.struck) else {
-            continue;
-        };
-        if drawn < SHOWN {
-            plot = plot.line(pair.to_string(), Role::Trace(drawn), &coherence[1..=last + 1]);
-        }
-        drawn += 1;
-    }
+    let title = format!("Coherence of the responses to {}", excitation.struck);
+    let plot = Plot::new(title, Axis::frequency(), Axis::linear("γ²", "")).over(&hz[..=last]);
+    let pairs = frfs.pairs().iter().enumerate().filter(|(_, pair)| pair.reference == excitation.struck);
+    let measured: Vec<_> =
+        pairs.filter_map(|(index, pair)| Some((pair.to_string(), frfs.coherence(index)?))).collect();
     let hits = excitation.hits.len();
-    let caption = format!("Coherence of {hits} hits on the lines in use; below 1 the hits disagree.");
-    (drawn > 0).then(|| {
-        plot.y_range(YRange::Fixed { low: 0.0, high: 1.02 })
-            .line_limit(LINE_LIMIT)
-            .unsynchronised()
-            .caption(caption)
+    (!measured.is_empty()).then(|| {
+        let traces = measured.into_iter().take(SHOWN).enumerate();
+        traces
+            .fold(plot, |plot, (trace, (name, coherence))| {
+                plot.line(name, Role::Trace(trace), &coherence[1..=last + 1])
+            })
+            .y_range(YRange::Fixed { low: 0.0, high: 1.02 })
+            .alone()
+            .caption(format!("Coherence of {hits} hits on the lines in use; below 1 the hits disagree."))
     })
 }

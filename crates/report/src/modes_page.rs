@@ -7,11 +7,12 @@ mod table;
 
 use jointscope_fixture::Fixture;
 use jointscope_modes::ModalAnalysis;
+use jointscope_wording::Remarks;
 
-use crate::{Page, PageContext, PageError, Section, Verdict};
+use crate::context::PageContext;
+use crate::error::PageError;
+use crate::section::{Section, Tone};
 
-/// Lines beyond which panes are drawn thinned, so that a page of long recordings stays small.
-const LINE_LIMIT: usize = 2_000;
 /// FRFs and shapes that are shown at the most; the page says how many there are.
 const SHOWN: usize = 12;
 
@@ -39,21 +40,24 @@ pub fn modes_page(
         rounded(hz[0]),
         rounded(hz[hz.len() - 1])
     );
-    let remarks: Vec<String> = analysis.remarks();
-    let verdict = if remarks.is_empty() { Verdict::ok(headline) } else { Verdict::attention(headline) };
-    let verdict = remarks.into_iter().chain(context.notes.iter().cloned()).fold(verdict, Verdict::detail);
-    let mut page = Page::new("Modes: natural frequencies, damping ratios, shapes")
-        .subtitle(context.recordings(fixture.is_some()))
-        .verdict(verdict)
-        .section(table::modes(analysis));
-    if !matches.is_empty() {
-        page = page.section(Section::new("The fixture's elastic modes").notes(matches.to_vec()));
-    }
-    page.section(chart::section(analysis))
-        .section(shapes::section(analysis, fixture))
-        .section(table::auto_mac(analysis))
-        .section(frfs::section(analysis))
-        .section(table::residuals(analysis))
-        .foot(context.foot())
+    let remarks = analysis.remarks();
+    let tone = if remarks.is_empty() { Tone::Ok } else { Tone::Attention };
+    let verdict = context.verdict(tone, headline, remarks);
+    let matched = Section::new("The fixture's elastic modes").notes(matches);
+    context
+        .page(
+            "Modes: natural frequencies, damping ratios, shapes",
+            context.recordings(fixture.is_some()),
+            verdict,
+        )
+        .sections([table::modes(analysis)])
+        .sections((!matches.is_empty()).then_some(matched))
+        .sections([
+            chart::section(analysis),
+            shapes::section(analysis, fixture),
+            table::auto_mac(analysis),
+            frfs::section(analysis),
+            table::residuals(analysis),
+        ])
         .to_html()
 }

@@ -1,10 +1,12 @@
 //! The page around the sections: head with policy and style, verdict, contents, foot, and the data that the script draws.
 
-use crate::elements::Verdict;
+use maud::{DOCTYPE, Markup, PreEscaped, html};
+
+use crate::context::InputFile;
 use crate::error::PageError;
-use crate::html::{push_element, push_escaped, script_safe};
-use crate::plot::{ColumnPool, PlotData};
-use crate::section::Section;
+use crate::json::script_safe;
+use crate::plot::PlotBook;
+use crate::section::{Section, Verdict};
 
 const UPLOT_SCRIPT: &str = include_str!("../assets/uplot.iife.min.js");
 const UPLOT_STYLE: &str = include_str!("../assets/uplot.min.css");
@@ -19,108 +21,105 @@ const POLICY: &str =
 /// Sections above which a page opens with a list of them.
 const SECTIONS_WITHOUT_CONTENTS: usize = 2;
 
-/// A report page.
-#[derive(Debug, Clone)]
-pub struct Page {
+/// A report page. Text from outside is escaped wherever it stands.
+#[derive(Clone)]
+pub(crate) struct Page {
     title: String,
-    subtitle: Option<String>,
+    subtitle: String,
     verdict: Option<Verdict>,
     sections: Vec<Section>,
-    foot: Option<Foot>,
+    foot: Markup,
 }
 
 impl Page {
     /// An empty page.
     pub fn new(title: impl Into<String>) -> Self {
-        Self { title: title.into(), subtitle: None, verdict: None, sections: Vec::new(), foot: None }
+        Self {
+            title: title.into(),
+            subtitle: String::new(),
+            verdict: None,
+            sections: Vec::new(),
+            foot: Markup::default(),
+        }
     }
 
     /// A line below the title, such as the fixture's name and the recordings.
-    pub fn subtitle(mut self, subtitle: impl Into<String>) -> Self {
-        self.subtitle = Some(subtitle.into());
-        self
+    pub fn subtitle(self, subtitle: impl Into<String>) -> Self {
+        Self { subtitle: subtitle.into(), ..self }
     }
 
     /// What came out, above everything else.
-    pub fn verdict(mut self, verdict: Verdict) -> Self {
-        self.verdict = Some(verdict);
+    pub fn verdict(self, verdict: Verdict) -> Self {
+        Self { verdict: Some(verdict), ..self }
+    }
+
+    /// The next section or sections, or none.
+    pub fn sections(mut self, sections: impl IntoIterator<Item = Section>) -> Self {
+        self.sections.extend(sections);
         self
     }
 
-    /// The next section.
-    pub fn section(mut self, section: Section) -> Self {
-        self.sections.push(section);
-        self
-    }
-
-    /// Where the page comes from.
-    pub fn foot(mut self, foot: Foot) -> Self {
-        self.foot = Some(foot);
-        self
+    /// Where the page comes from. It has no date, so that the same input gives the same page.
+    pub fn foot(self, program: &str, command: &str, inputs: &[InputFile]) -> Self {
+        let foot = html! {
+            footer {
+                p { (program) }
+                @if !command.is_empty() { pre.command { (command) } }
+                @if !inputs.is_empty() {
+                    dl.inputs {
+                        @for input in inputs { dt { (input.name) } dd { "sha256 " (input.sha256) } }
+                    }
+                }
+            }
+        };
+        Self { foot, ..self }
     }
 
     /// The page as one HTML file.
     ///
     /// # Errors
-    /// A series that is not as long as its abscissa, an abscissa that does not ascend, or a table row that does not fit its header.
+    /// A series that is not as long as its abscissa, or an abscissa that does not ascend.
     pub fn to_html(&self) -> Result<String, PageError> {
-        let mut pool = ColumnPool::default();
-        let mut plots = Vec::new();
-        let mut body = String::new();
+        let mut plots = PlotBook::default();
         let anchors = self.anchors();
-        for (section, anchor) in self.sections.iter().zip(&anchors) {
-            section.write(&mut body, anchor, &mut pool, &mut plots)?;
-        }
-
-        let mut html = String::with_capacity(body.len() + 100_000);
-        self.write_head(&mut html, !plots.is_empty());
-        self.write_header(&mut html, &anchors);
-        html.push_str(&body);
-        if let Some(foot) = &self.foot {
-            foot.write(&mut html);
-        }
-        html.push_str("</main>\n");
-        if !plots.is_empty() {
-            write_scripts(&mut html, &plots, &pool);
-        }
-        html.push_str("</body>\n</html>\n");
-        Ok(html)
-    }
-
-    fn write_head(&self, html: &mut String, plots: bool) {
-        html.push_str("<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n");
-        html.push_str(&format!("<meta http-equiv=\"Content-Security-Policy\" content=\"{POLICY}\">\n"));
-        html.push_str("<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n");
-        html.push_str("<meta name=\"color-scheme\" content=\"light dark\">\n");
-        push_element(html, "title", "", &self.title);
-        html.push_str("\n<style>\n");
-        if plots {
-            html.push_str(UPLOT_STYLE.trim());
-            html.push('\n');
-        }
-        html.push_str(STYLE);
-        html.push_str("</style>\n</head>\n<body>\n<main>\n");
-    }
-
-    fn write_header(&self, html: &mut String, anchors: &[String]) {
-        html.push_str("<header>");
-        push_element(html, "h1", "", &self.title);
-        if let Some(subtitle) = &self.subtitle {
-            push_element(html, "p", "subtitle", subtitle);
-        }
-        html.push_str("</header>\n");
-        if let Some(verdict) = &self.verdict {
-            verdict.write(html);
-        }
-        if self.sections.len() > SECTIONS_WITHOUT_CONTENTS {
-            html.push_str("<nav aria-label=\"Contents\">");
-            for (section, anchor) in self.sections.iter().zip(anchors) {
-                html.push_str(&format!("<a href=\"#{anchor}\">"));
-                push_escaped(html, &section.heading);
-                html.push_str("</a>");
+        let sections = self.sections.iter().zip(&anchors);
+        let bodies: Vec<Markup> =
+            sections.map(|(section, anchor)| section.render(anchor, &mut plots)).collect::<Result<_, _>>()?;
+        let page = html! {
+            (DOCTYPE)
+            html lang="en" {
+                head {
+                    meta charset="utf-8";
+                    meta http-equiv="Content-Security-Policy" content=(POLICY);
+                    meta name="viewport" content="width=device-width, initial-scale=1";
+                    meta name="color-scheme" content="light dark";
+                    title { (self.title) }
+                    style { @if !plots.is_empty() { (PreEscaped(UPLOT_STYLE)) } (PreEscaped(STYLE)) }
+                }
+                body {
+                    main {
+                        header {
+                            h1 { (self.title) }
+                            @if !self.subtitle.is_empty() { p.subtitle { (self.subtitle) } }
+                        }
+                        @if let Some(verdict) = &self.verdict { (verdict) }
+                        @if self.sections.len() > SECTIONS_WITHOUT_CONTENTS {
+                            nav aria-label="Contents" {
+                                @for (section, anchor) in self.sections.iter().zip(&anchors) {
+                                    a href={ "#" (anchor) } { (section.heading) }
+                                }
+                            }
+                        }
+                        @for body in &bodies { "\n" (body) }
+                        (self.foot)
+                    }
+                    @if !plots.is_empty() { (scripts(&plots)) }
+                }
             }
-            html.push_str("</nav>\n");
-        }
+        };
+        // Control characters are no HTML text; the replacement character says that something stood there.
+        let is_foreign = |c: char| c.is_control() && !matches!(c, '\n' | '\t');
+        Ok(page.into_string().replace(is_foreign, "\u{fffd}"))
     }
 
     /// One anchor per section: its heading in lower case with hyphens, numbered where two would be equal.
@@ -128,84 +127,30 @@ impl Page {
         let mut anchors: Vec<String> = Vec::with_capacity(self.sections.len());
         for section in &self.sections {
             let base = anchor(&section.heading);
-            let mut candidate = base.clone();
-            let mut count = 1;
-            while anchors.contains(&candidate) {
-                count += 1;
-                candidate = format!("{base}-{count}");
-            }
-            anchors.push(candidate);
+            let numbered = (2..).map(|count| format!("{base}-{count}"));
+            let free = std::iter::once(base.clone()).chain(numbered).find(|name| !anchors.contains(name));
+            anchors.extend(free);
         }
         anchors
     }
 }
 
 fn anchor(heading: &str) -> String {
-    let words: Vec<String> = heading
-        .split(|c: char| !c.is_ascii_alphanumeric())
-        .filter(|word| !word.is_empty())
-        .map(str::to_ascii_lowercase)
-        .collect();
-    if words.is_empty() { "section".to_owned() } else { words.join("-") }
+    let words = heading.split(|c: char| !c.is_ascii_alphanumeric()).filter(|word| !word.is_empty());
+    let anchor = words.map(str::to_ascii_lowercase).collect::<Vec<_>>().join("-");
+    if anchor.is_empty() { "section".to_owned() } else { anchor }
 }
 
-fn write_scripts(html: &mut String, plots: &[PlotData], pool: &ColumnPool) {
-    // Plain data without maps: serialising it cannot fail, and without plots the page would still be readable.
-    let described = serde_json::to_string(plots).unwrap_or_else(|_| "[]".to_owned());
-    html.push_str("<noscript><p class=\"footnote\">The plots need scripts to be allowed for this file; it loads nothing from elsewhere.</p></noscript>\n");
-    html.push_str("<script type=\"application/json\" id=\"plot-data\">{\"plots\":");
-    html.push_str(&script_safe(&described));
-    html.push_str(",\n\"columns\":");
-    html.push_str(&pool.to_json());
-    html.push_str("}</script>\n<script>\n/*\n");
-    html.push_str(UPLOT_LICENSE.trim());
-    html.push_str("\n*/\n");
-    html.push_str(UPLOT_SCRIPT.trim());
-    html.push_str("\n</script>\n<script>\n");
-    html.push_str(SCRIPT);
-    html.push_str("</script>\n");
-}
-
-/// Where a page comes from: program, inputs, command line. It has no date, so that the same input gives the same page.
-#[derive(Debug, Clone)]
-pub struct Foot {
-    program: String,
-    inputs: Vec<(String, String)>,
-    command: Option<String>,
-}
-
-impl Foot {
-    /// The program and its version.
-    pub fn new(program: impl Into<String>) -> Self {
-        Self { program: program.into(), inputs: Vec::new(), command: None }
-    }
-
-    /// A file that was read, and its hash.
-    pub fn input(mut self, name: impl Into<String>, hash: impl Into<String>) -> Self {
-        self.inputs.push((name.into(), hash.into()));
-        self
-    }
-
-    /// The command line that wrote the page.
-    pub fn command(mut self, line: impl Into<String>) -> Self {
-        self.command = Some(line.into());
-        self
-    }
-
-    fn write(&self, html: &mut String) {
-        html.push_str("<footer>");
-        push_element(html, "p", "", &self.program);
-        if let Some(command) = &self.command {
-            push_element(html, "pre", "command", command);
-        }
-        if !self.inputs.is_empty() {
-            html.push_str("<dl class=\"inputs\">");
-            for (name, hash) in &self.inputs {
-                push_element(html, "dt", "", name);
-                push_element(html, "dd", "", hash);
+/// Data and scripts. The script's text is ours, and the data cannot leave its place.
+fn scripts(plots: &PlotBook) -> Markup {
+    html! {
+        noscript {
+            p.footnote {
+                "The plots need scripts to be allowed for this file; it loads nothing from elsewhere."
             }
-            html.push_str("</dl>");
         }
-        html.push_str("</footer>\n");
+        script type="application/json" id="plot-data" { (PreEscaped(script_safe(&plots.to_json()))) }
+        script { "/*\n" (PreEscaped(UPLOT_LICENSE)) "*/\n" (PreEscaped(UPLOT_SCRIPT)) }
+        script { (PreEscaped(SCRIPT)) }
     }
 }

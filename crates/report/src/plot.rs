@@ -1,35 +1,33 @@
-//! A plot as the caller describes it: axes, series over spectral lines, reference lines and bands of frequency.
+//! A plot as a page describes it: axes, series over spectral lines, reference lines and bands of frequency.
 
 mod data;
 mod figure;
+mod frf;
 mod range;
 mod thin;
 
-pub(crate) use data::{ColumnPool, PlotData};
-pub(crate) use figure::write_figure;
-pub use range::YRange;
-pub use thin::kept_lines;
+pub(crate) use data::PlotBook;
+pub(crate) use frf::{Curve, FrfPanes};
+pub(crate) use range::{Span, YRange};
 
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 
 /// How an axis is divided.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Spacing {
+pub(crate) enum Spacing {
     /// Equal steps of the quantity.
     Linear,
     /// Equal steps of its logarithm; values that are not positive cannot be drawn and become gaps.
     Logarithmic,
-    /// Linear and centred on zero (ordinates only; an abscissa takes it as linear).
-    Symmetric,
 }
 
 /// An axis: what is drawn along it and in which SI unit the values are given.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Axis {
-    pub(crate) label: String,
-    pub(crate) unit: String,
-    pub(crate) spacing: Spacing,
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub(crate) struct Axis {
+    pub label: String,
+    pub unit: String,
+    pub spacing: Spacing,
 }
 
 impl Axis {
@@ -43,21 +41,25 @@ impl Axis {
         Self { spacing: Spacing::Logarithmic, ..Self::linear(label, unit) }
     }
 
-    /// A linear axis with zero in its middle, as for residuals.
-    pub fn symmetric(label: impl Into<String>, unit: impl Into<String>) -> Self {
-        Self { spacing: Spacing::Symmetric, ..Self::linear(label, unit) }
-    }
-
     /// The frequency axis of most plots here: linear, in Hz.
     pub fn frequency() -> Self {
         Self::linear("Frequency", "Hz")
+    }
+
+    fn is_logarithmic(&self) -> bool {
+        self.spacing == Spacing::Logarithmic
+    }
+
+    /// Whether a value has a place on the axis.
+    fn can_show(&self, value: f64) -> bool {
+        value.is_finite() && (value > 0.0 || !self.is_logarithmic())
     }
 }
 
 /// What a line stands for. The role sets the colour (told apart by readers with any common colour vision, on light and dark ground), so one meaning has
 /// one colour throughout a report.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Role {
+pub(crate) enum Role {
     /// What was measured.
     Measured,
     /// What the fixture file says.
@@ -76,7 +78,7 @@ pub enum Role {
 
 impl Role {
     /// The name under which the style sheet keeps the colour.
-    pub(crate) fn colour_name(self) -> &'static str {
+    pub fn colour(self) -> &'static str {
         const TRACES: [&str; 6] = ["trace-1", "trace-2", "trace-3", "trace-4", "trace-5", "trace-6"];
         match self {
             Role::Measured => "measured",
@@ -90,8 +92,14 @@ impl Role {
     }
 }
 
+impl Serialize for Role {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_str(self.colour())
+    }
+}
+
 /// An ordinate: a number, or nothing where a line is masked. Numbers that are not finite are nothing, too.
-pub trait Ordinate {
+pub(crate) trait Ordinate: Copy {
     /// The number to be drawn, if there is one.
     fn drawn(self) -> Option<f64>;
 }
@@ -102,21 +110,27 @@ impl Ordinate for f64 {
     }
 }
 
-impl Ordinate for &f64 {
-    fn drawn(self) -> Option<f64> {
-        (*self).drawn()
-    }
-}
-
 impl Ordinate for Option<f64> {
     fn drawn(self) -> Option<f64> {
-        self.and_then(Ordinate::drawn)
+        self.and_then(f64::drawn)
     }
 }
 
-impl Ordinate for &Option<f64> {
+impl<T: Ordinate> Ordinate for &T {
     fn drawn(self) -> Option<f64> {
         (*self).drawn()
+    }
+}
+
+/// Numbers to draw, one a line.
+pub(crate) trait Values {
+    /// A series is one contiguous array: a gap is a NaN.
+    fn gaps_as_nan(self) -> Vec<f64>;
+}
+
+impl<I: IntoIterator<Item: Ordinate>> Values for I {
+    fn gaps_as_nan(self) -> Vec<f64> {
+        self.into_iter().map(|value| value.drawn().unwrap_or(f64::NAN)).collect()
     }
 }
 
@@ -124,76 +138,89 @@ impl Ordinate for &Option<f64> {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub(crate) enum Style {
+    /// A full line, interrupted where a value is missing.
     Line,
+    /// A dashed line, as for models beside measurements.
     Dashed,
+    /// Unconnected points.
     Points,
-    Step,
+    /// A translucent area between two edges.
     Band,
 }
 
-/// One series; a gap is a NaN, so that a series stays one contiguous array.
+/// One series.
 #[derive(Debug, Clone)]
-pub(crate) struct Series {
-    pub label: String,
-    pub role: Role,
-    pub style: Style,
-    pub table: usize,
-    pub values: Vec<f64>,
+struct Series {
+    label: String,
+    role: Role,
+    style: Style,
+    table: usize,
+    values: Vec<f64>,
     /// Lower edge of a band, whose upper edge is `values`; empty for all other styles.
-    pub low: Vec<f64>,
+    low: Vec<f64>,
+}
+
+impl Series {
+    /// Its values, or a band's lower and upper edge.
+    fn edges(&self) -> impl Iterator<Item = &[f64]> {
+        let low = (self.style == Style::Band).then_some(self.low.as_slice());
+        low.into_iter().chain([self.values.as_slice()])
+    }
 }
 
 /// What is drawn across the plot rather than over spectral lines.
-#[derive(Debug, Clone)]
-pub(crate) enum Mark {
-    Horizontal { label: String, role: Role, at: f64 },
-    Vertical { label: String, role: Role, at: f64 },
-    Shaded { label: String, from: f64, to: f64 },
+#[derive(Debug, Clone, Serialize)]
+#[serde(rename_all = "lowercase")]
+enum Mark {
+    Horizontal {
+        #[serde(skip)]
+        label: String,
+        colour: Role,
+        at: f64,
+    },
+    Vertical {
+        #[serde(skip)]
+        label: String,
+        colour: Role,
+        at: f64,
+    },
+    Shaded {
+        #[serde(skip)]
+        label: String,
+        from: f64,
+        to: f64,
+    },
 }
 
-/// Spectral lines above which a plot is drawn thinned.
-const DEFAULT_LINE_LIMIT: usize = 8_000;
+/// Spectral lines above which a plot is drawn thinned, so that a page of long recordings stays small.
+const LINE_LIMIT: usize = 2_000;
 
 /// A plot of one or more series over a common abscissa.
 ///
 /// Series are drawn in the order in which they are added, bands below all others. Lengths are checked when the page is
-/// [rendered](crate::Page::to_html).
-///
-/// ```
-/// use jointscope_report::{Axis, Plot, Role};
-/// let plot = Plot::new("Transverse stiffness k₁₁", Axis::frequency(), Axis::linear("k₁₁", "N/m"))
-///     .over([200.0, 201.0, 202.0])
-///     .band("95 % interval", Role::Measured, [3.1e6, 3.2e6, 3.1e6], [3.5e6, 3.5e6, 3.4e6])
-///     .line("measured", Role::Measured, [Some(3.3e6), None, Some(3.2e6)])
-///     .horizontal("nominal", Role::Nominal, 3.31e6)
-///     .shaded("averaging band", 200.5, 201.5)
-///     .robust()
-///     .caption("The stiffness of the joint is level over the averaging band.");
-/// # let _ = plot;
-/// ```
+/// [rendered](crate::page::Page::to_html).
 #[derive(Debug, Clone)]
-pub struct Plot {
-    pub(crate) title: String,
-    pub(crate) x: Axis,
-    pub(crate) y: Axis,
-    pub(crate) y_range: YRange,
-    pub(crate) tables: Vec<Vec<f64>>,
-    pub(crate) series: Vec<Series>,
-    pub(crate) marks: Vec<Mark>,
-    pub(crate) caption: Option<String>,
-    pub(crate) group: Option<String>,
-    pub(crate) height: u32,
-    pub(crate) line_limit: usize,
-    pub(crate) masked: Option<usize>,
+pub(crate) struct Plot {
+    title: String,
+    x: Axis,
+    y: Axis,
+    y_range: YRange,
+    tables: Vec<Vec<f64>>,
+    series: Vec<Series>,
+    marks: Vec<Mark>,
+    caption: Option<String>,
+    group: Option<String>,
+    height: u32,
+    line_limit: usize,
+    masked: Option<usize>,
 }
 
 impl Plot {
-    /// An empty plot. Plots whose abscissae have the same label and unit share cursor and zoom unless
-    /// [`synchronised_as`](Self::synchronised_as) or [`unsynchronised`](Self::unsynchronised) says otherwise.
+    /// An empty plot. Plots whose abscissae have the same label and unit share cursor and zoom unless they stand [`alone`](Self::alone).
     pub fn new(title: impl Into<String>, x: Axis, y: Axis) -> Self {
-        let group = format!("{} ({})", x.label, x.unit);
         Self {
             title: title.into(),
+            group: Some(format!("{} ({})", x.label, x.unit)),
             x,
             y,
             y_range: YRange::Full,
@@ -201,167 +228,97 @@ impl Plot {
             series: Vec::new(),
             marks: Vec::new(),
             caption: None,
-            group: Some(group),
             height: 240,
-            line_limit: DEFAULT_LINE_LIMIT,
+            line_limit: LINE_LIMIT,
             masked: None,
         }
     }
 
     /// The abscissa of the series added after it, finite and strictly ascending. May be called again for series over other lines.
-    pub fn over<T: Ordinate>(mut self, abscissa: impl IntoIterator<Item = T>) -> Self {
-        self.tables.push(gaps_as_nan(abscissa));
+    pub fn over(mut self, abscissa: impl Values) -> Self {
+        self.tables.push(abscissa.gaps_as_nan());
         self
     }
 
     /// A full line, interrupted where a value is missing.
-    pub fn line<T: Ordinate>(
-        self,
-        label: impl Into<String>,
-        role: Role,
-        values: impl IntoIterator<Item = T>,
-    ) -> Self {
-        self.add(label, role, Style::Line, Vec::new(), gaps_as_nan(values))
+    pub fn line(self, label: impl Into<String>, role: Role, values: impl Values) -> Self {
+        self.series(Style::Line, label, role, values)
     }
 
     /// A dashed line, as for models beside measurements.
-    pub fn dashed<T: Ordinate>(
-        self,
-        label: impl Into<String>,
-        role: Role,
-        values: impl IntoIterator<Item = T>,
-    ) -> Self {
-        self.add(label, role, Style::Dashed, Vec::new(), gaps_as_nan(values))
+    pub fn dashed(self, label: impl Into<String>, role: Role, values: impl Values) -> Self {
+        self.series(Style::Dashed, label, role, values)
     }
 
     /// Unconnected points.
-    pub fn points<T: Ordinate>(
-        self,
-        label: impl Into<String>,
-        role: Role,
-        values: impl IntoIterator<Item = T>,
-    ) -> Self {
-        self.add(label, role, Style::Points, Vec::new(), gaps_as_nan(values))
-    }
-
-    /// A step line: each value holds from its abscissa to the next.
-    pub fn step<T: Ordinate>(
-        self,
-        label: impl Into<String>,
-        role: Role,
-        values: impl IntoIterator<Item = T>,
-    ) -> Self {
-        self.add(label, role, Style::Step, Vec::new(), gaps_as_nan(values))
+    pub fn points(self, label: impl Into<String>, role: Role, values: impl Values) -> Self {
+        self.series(Style::Points, label, role, values)
     }
 
     /// A translucent band between two edges, such as a 95 % interval. Where either edge is missing, so is the band.
-    pub fn band<L: Ordinate, H: Ordinate>(
-        self,
-        label: impl Into<String>,
-        role: Role,
-        low: impl IntoIterator<Item = L>,
-        high: impl IntoIterator<Item = H>,
-    ) -> Self {
-        self.add(label, role, Style::Band, gaps_as_nan(low), gaps_as_nan(high))
+    pub fn band(self, label: impl Into<String>, role: Role, low: impl Values, high: impl Values) -> Self {
+        self.add(Style::Band, label.into(), role, low.gaps_as_nan(), high.gaps_as_nan())
     }
 
-    fn add(
-        mut self,
-        label: impl Into<String>,
-        role: Role,
-        style: Style,
-        low: Vec<f64>,
-        values: Vec<f64>,
-    ) -> Self {
-        self.series.push(Series {
-            label: label.into(),
-            role,
-            style,
-            table: self.tables.len().saturating_sub(1),
-            values,
-            low,
-        });
+    /// A series in the style given.
+    pub fn series(self, style: Style, label: impl Into<String>, role: Role, values: impl Values) -> Self {
+        self.add(style, label.into(), role, Vec::new(), values.gaps_as_nan())
+    }
+
+    fn add(mut self, style: Style, label: String, role: Role, low: Vec<f64>, values: Vec<f64>) -> Self {
+        let table = self.tables.len().saturating_sub(1);
+        self.series.push(Series { label, role, style, table, values, low });
         self
     }
 
     /// A horizontal reference line at an ordinate; left out when that is not finite.
-    pub fn horizontal(mut self, label: impl Into<String>, role: Role, at: f64) -> Self {
-        if at.is_finite() {
-            let label = label.into();
-            self.marks.push(Mark::Horizontal { label, role, at });
-        }
+    pub fn horizontal(mut self, label: impl Into<String>, colour: Role, at: f64) -> Self {
+        let line = at.is_finite().then(|| Mark::Horizontal { label: label.into(), colour, at });
+        self.marks.extend(line);
         self
     }
 
     /// A vertical line at an abscissa, such as a natural frequency; left out when that is not finite.
-    pub fn vertical(mut self, label: impl Into<String>, role: Role, at: f64) -> Self {
-        if at.is_finite() {
-            let label = label.into();
-            self.marks.push(Mark::Vertical { label, role, at });
-        }
+    pub fn vertical(mut self, label: impl Into<String>, colour: Role, at: f64) -> Self {
+        self.marks.extend(at.is_finite().then(|| Mark::Vertical { label: label.into(), colour, at }));
         self
     }
 
     /// A shaded part of the abscissa, such as the band over which averages are taken; left out when an end is not finite.
     pub fn shaded(mut self, label: impl Into<String>, from: f64, to: f64) -> Self {
-        if from.is_finite() && to.is_finite() {
-            let label = label.into();
-            let (from, to) = (from.min(to), from.max(to));
-            self.marks.push(Mark::Shaded { label, from, to });
-        }
+        let ends = Some((from.min(to), from.max(to))).filter(|_| from.is_finite() && to.is_finite());
+        self.marks.extend(ends.map(|(from, to)| Mark::Shaded { label: label.into(), from, to }));
         self
-    }
-
-    /// Draws only the readable part at first, so that a resonance or a few noisy lines do not squash it; see [`YRange::robust`]. The reader is told
-    /// how many values lie outside and can have the full range.
-    pub fn robust(self) -> Self {
-        self.y_range(YRange::robust())
     }
 
     /// The part of the ordinate that is drawn at first.
-    pub fn y_range(mut self, range: YRange) -> Self {
-        self.y_range = range;
-        self
+    pub fn y_range(self, y_range: YRange) -> Self {
+        Self { y_range, ..self }
     }
 
     /// One sentence which says what is seen; without it the sentence is made of the labels.
-    pub fn caption(mut self, caption: impl Into<String>) -> Self {
-        self.caption = Some(caption.into());
-        self
-    }
-
-    /// Shares cursor and zoom with the plots of this name only.
-    pub fn synchronised_as(mut self, group: impl Into<String>) -> Self {
-        self.group = Some(group.into());
-        self
+    pub fn caption(self, caption: impl Into<String>) -> Self {
+        Self { caption: Some(caption.into()), ..self }
     }
 
     /// Shares cursor and zoom with no other plot.
-    pub fn unsynchronised(mut self) -> Self {
-        self.group = None;
-        self
+    pub fn alone(self) -> Self {
+        Self { group: None, ..self }
     }
 
-    /// Height of the drawing in CSS pixels (240 unless said otherwise, at least 80).
-    pub fn height(mut self, pixels: u32) -> Self {
-        self.height = pixels.max(80);
-        self
+    /// Height of the drawing in CSS pixels (240 unless said otherwise).
+    pub fn height(self, height: u32) -> Self {
+        Self { height, ..self }
     }
 
     /// How many lines are said to be masked. Unless stated, that is the number of gaps of the series with most of them, which
     /// is wrong where one curve is split into two series.
-    pub fn masked(mut self, lines: usize) -> Self {
-        self.masked = Some(lines);
-        self
+    pub fn masked(self, lines: usize) -> Self {
+        Self { masked: Some(lines), ..self }
     }
 
-    /// Lines above which the plot is drawn thinned, its peaks kept (8,000 unless said otherwise).
-    pub fn line_limit(mut self, lines: usize) -> Self {
-        self.line_limit = lines;
-        self
+    /// Lines above which the plot is drawn thinned, its peaks kept.
+    pub fn line_limit(self, line_limit: usize) -> Self {
+        Self { line_limit, ..self }
     }
-}
-
-fn gaps_as_nan<T: Ordinate>(values: impl IntoIterator<Item = T>) -> Vec<f64> {
-    values.into_iter().map(|value| value.drawn().unwrap_or(f64::NAN)).collect()
 }

@@ -9,7 +9,10 @@ mod scores;
 
 use jointscope_proof::{Judged, Methods, Rate, Role, RouteScores, Score, Share};
 
-use crate::{Foot, Page, PageError, Section, Tone, Verdict};
+use crate::error::PageError;
+use crate::page::Page;
+use crate::section::{Section, Tone, Verdict};
+use crate::table::Cell;
 
 /// Where the page comes from.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -48,25 +51,24 @@ pub struct ProofResults<'a> {
 /// # Errors
 /// Results whose lists do not fit each other.
 pub fn proof_page(results: &ProofResults, context: &ProofContext) -> Result<String, PageError> {
-    let mut foot = Foot::new(&context.program);
-    if !context.command.is_empty() {
-        foot = foot.command(&context.command);
-    }
-    let mut page =
-        Page::new("Proof: what the diagnosis is worth").subtitle(&context.cases).verdict(verdict(results));
-    if !is_left_out(results) {
-        page = page
-            .section(scores::section(results.score))
-            .section(methods::section(results.methods))
-            .section(detection::section(&results.score.detection))
-            .section(detection::confusion(&results.score.confusion))
-            .section(calibration::section(results.score))
-            .section(cases::section(results.judged, context));
-    }
-    for route in &results.routes.0 {
-        page = page.section(routes::section(route, context));
-    }
-    page.section(seal(context)).foot(foot).to_html()
+    let of_the_laboratory = (!is_left_out(results)).then(|| {
+        [
+            scores::section(results.score),
+            methods::section(results.methods),
+            detection::section(&results.score.detection),
+            detection::confusion(&results.score.confusion),
+            calibration::section(results.score),
+            cases::section(results.judged, context),
+        ]
+    });
+    Page::new("Proof: what the diagnosis is worth")
+        .subtitle(&context.cases)
+        .verdict(verdict(results))
+        .foot(&context.program, &context.command, &[])
+        .sections(of_the_laboratory.into_iter().flatten())
+        .sections(results.routes.0.iter().map(|route| routes::section(route, context)))
+        .sections([seal(context)])
+        .to_html()
 }
 
 /// Whether other routes alone were asked for.
@@ -85,10 +87,8 @@ fn verdict(results: &ProofResults) -> Verdict {
     let (named, alarms) = (share("single_place"), share("null_finding"));
     let wrong = share("outside_wrong_name");
     let is_missed = |rate: &&Rate| rate.standing() == Some(jointscope_proof::Standing::Missed);
-    let mut missed: Vec<&str> = score.rates.iter().filter(is_missed).map(|rate| rate.what).collect();
-    missed.extend(
-        results.routes.0.iter().flat_map(|route| &route.rates).filter(is_missed).map(|rate| rate.what),
-    );
+    let rates = score.rates.iter().chain(results.routes.0.iter().flat_map(|route| &route.rates));
+    let missed: Vec<&str> = rates.filter(is_missed).map(|rate| rate.what).collect();
     let tone = if missed.is_empty() { Tone::Ok } else { Tone::Attention };
     let headline = match is_left_out(results) {
         true => "The laboratory's own FRFs were left out: what follows are cases by other routes.".to_owned(),
@@ -100,21 +100,19 @@ fn verdict(results: &ProofResults) -> Verdict {
             counted(wrong)
         ),
     };
-    let mut verdict = Verdict::new(tone, headline);
     let lookup = methods.0.iter().find(|method| method.key == "nearest_signature").and_then(|m| m.named);
-    if let Some(lookup) = lookup.filter(|share| share.all > 0) {
-        verdict = verdict.detail(format!(
+    let lookup = lookup.filter(|share| share.all > 0).map(|share| {
+        format!(
             "On the same cases the nearest of a library of simulated signatures has the right name in {}.",
-            counted(lookup)
-        ));
-    }
-    for route in &results.routes.0 {
-        verdict = verdict.detail(routes::sentence(route));
-    }
-    verdict.detail(match missed.len() {
+            counted(share)
+        )
+    });
+    let targets = match missed.len() {
         0 => "No target is missed beyond chance; where there are few cases that says little, and the intervals say how little.".to_owned(),
         _ => format!("Missed beyond chance: {}.", missed.join("; ")),
-    })
+    };
+    let routes = results.routes.0.iter().map(routes::sentence);
+    Verdict { tone, headline, details: lookup.into_iter().chain(routes).chain([targets]).collect() }
 }
 
 fn seal(context: &ProofContext) -> Section {
@@ -125,7 +123,7 @@ fn seal(context: &ProofContext) -> Section {
              before the truths were opened, and then everything above was counted. Truths, names, objectives and faults of every case are in \
              proof.json; what the baselines made of them is in baselines.json; the seconds, which differ from machine to machine, are in timing.json.",
         )
-        .command(format!("sha256 {}", context.sealed))
+        .command(&format!("sha256 {}", context.sealed))
         .paragraph(
             "Recordings come from a simulated laboratory that shares no code with the diagnosis or its model; those of other routes from where their \
              sections say. A name counts as right if it is the \
@@ -137,4 +135,26 @@ fn seal(context: &ProofContext) -> Section {
 
 fn roles() -> String {
     Role::ALL.map(|role| role.name()).join(", ")
+}
+
+/// A case's number, which leads to its page where it has one.
+fn case_number(index: usize, has_page: bool) -> Cell {
+    match has_page {
+        true => Cell::Link(format!("{index:03}"), format!("cases/{index:03}/report.html")),
+        false => format!("{index:03}").into(),
+    }
+}
+
+/// Green where all is right (and something was `asked` for), red where a fault would mislead a reader, amber where it is of the second order.
+fn tone(faults: &[String], asked: bool, lesser: &[&str]) -> Option<Tone> {
+    if faults.is_empty() {
+        return asked.then_some(Tone::Ok);
+    }
+    let grave = faults.iter().any(|fault| !lesser.contains(&fault.as_str()));
+    Some(if grave { Tone::Problem } else { Tone::Attention })
+}
+
+/// A number where there is one.
+fn or_dash(text: Option<String>) -> String {
+    text.unwrap_or_else(|| "–".to_owned())
 }

@@ -1,7 +1,7 @@
 //! Points in a plane with curves over them, as inline SVG: for signals drawn against each other, which have no ascending abscissa.
 
-use crate::drawing::Svg;
-use crate::html::escaped;
+use maud::{Markup, PreEscaped, html};
+
 use crate::unit::Scale;
 
 /// A panel: clouds of points and a curve over two quantities.
@@ -28,19 +28,17 @@ const STYLE: &str = "<style>.sc{font:14px system-ui,-apple-system,'Segoe UI',Rob
 .sc-points{stroke-width:2.6;stroke-linecap:round;opacity:.6}.sc-curve{stroke:var(--highlight,#b0257e);stroke-width:2}</style>";
 
 /// Panels side by side in one drawing, described by `description` for those who do not see it.
-pub(crate) fn draw(panels: &[Scatter], description: &str) -> Svg {
-    let mut svg = format!(
-        "<svg class=\"sc\" xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {:.0} {HEIGHT:.0}\" role=\"img\" aria-label=\"{}\">{STYLE}\n",
-        WIDTH * panels.len() as f64,
-        escaped(description)
-    );
-    for (index, panel) in panels.iter().enumerate() {
-        svg.push_str(&format!("<g transform=\"translate({:.0} 0)\">\n", WIDTH * index as f64));
-        panel.write(&mut svg);
-        svg.push_str("</g>\n");
+pub(crate) fn draw(panels: &[Scatter], description: &str) -> Markup {
+    let width = WIDTH * panels.len() as f64;
+    html! {
+        svg.sc xmlns="http://www.w3.org/2000/svg" viewBox={ "0 0 " (width) " " (HEIGHT) } role="img"
+            aria-label=(description) {
+            (PreEscaped(STYLE))
+            @for (index, panel) in panels.iter().enumerate() {
+                g transform={ "translate(" (WIDTH * index as f64) " 0)" } { (panel.draw()) }
+            }
+        }
     }
-    svg.push_str("</svg>\n");
-    Svg::trusted(svg)
 }
 
 /// What an axis shows: its unit, its range and the step of its ticks, in that unit.
@@ -84,60 +82,45 @@ impl Range {
 }
 
 impl Scatter {
-    fn write(&self, svg: &mut String) {
+    fn draw(&self) -> Markup {
         let all = || self.clouds.iter().flat_map(|(_, points)| points).chain(&self.curve);
         let x = Range::of(all().map(|p| p[0]), self.axes[0].1);
         let y = Range::of(all().map(|p| p[1]), self.axes[1].1);
         let px = |value: f64| LEFT + x.at(value) * (WIDTH - LEFT - RIGHT);
         let py = |value: f64| HEIGHT - BOTTOM - y.at(value) * (HEIGHT - TOP - BOTTOM);
-        let class = |tick: f64| if tick == 0.0 { "sc-zero" } else { "sc-grid" };
-        for tick in x.ticks() {
-            let at = px(tick);
-            svg.push_str(&format!(
-                "<path class=\"{}\" d=\"M{at:.1} {TOP}V{:.1}\"/><text x=\"{at:.1}\" y=\"{:.1}\">{}</text>\n",
-                class(tick),
-                HEIGHT - BOTTOM,
-                HEIGHT - BOTTOM + 17.0,
-                x.label(tick)
-            ));
-        }
-        for tick in y.ticks() {
-            let at = py(tick);
-            svg.push_str(&format!(
-                "<path class=\"{}\" d=\"M{LEFT} {at:.1}H{:.1}\"/><text class=\"sc-y\" x=\"{:.1}\" y=\"{:.1}\">{}</text>\n",
-                class(tick),
-                WIDTH - RIGHT,
-                LEFT - 6.0,
-                at + 5.0,
-                y.label(tick)
-            ));
-        }
-        let mark = |p: &[f64; 2]| {
+        let grid = |tick: f64, d: String| {
+            html! { path class=(if tick == 0.0 { "sc-zero" } else { "sc-grid" }) d=(d) {} }
+        };
+        let (floor, end) = (HEIGHT - BOTTOM, WIDTH - RIGHT);
+        let place = |p: &[f64; 2]| {
             let at = [px(x.scale.of(p[0])), py(y.scale.of(p[1]))];
             at.iter().all(|v| v.is_finite()).then_some(at)
         };
-        for (colour, points) in &self.clouds {
-            svg.push_str(&format!("<path class=\"sc-points\" style=\"stroke:var({colour})\" d=\""));
-            points.iter().filter_map(mark).for_each(|[x, y]| svg.push_str(&format!("M{x:.1} {y:.1}h0")));
-            svg.push_str("\"/>\n");
-        }
-        if !self.curve.is_empty() {
-            svg.push_str("<path class=\"sc-curve\" d=\"");
-            for (i, [x, y]) in self.curve.iter().filter_map(mark).enumerate() {
-                svg.push_str(&format!("{}{x:.1} {y:.1}", if i == 0 { 'M' } else { 'L' }));
+        let dots = |points: &[[f64; 2]]| -> String {
+            points.iter().filter_map(place).map(|[x, y]| format!("M{x:.1} {y:.1}h0")).collect()
+        };
+        let line: Vec<String> =
+            self.curve.iter().filter_map(place).map(|[x, y]| format!("{x:.1} {y:.1}")).collect();
+        let named = |axis: usize, range: &Range| format!("{}, {}", self.axes[axis].0, range.scale.unit());
+        html! {
+            @for tick in x.ticks() {
+                @let at = format!("{:.1}", px(tick));
+                (grid(tick, format!("M{at} {TOP}V{floor}")))
+                text x=(at) y=(floor + 17.0) { (x.label(tick)) }
             }
-            svg.push_str("\"/>\n");
+            @for tick in y.ticks() {
+                @let at = py(tick);
+                (grid(tick, format!("M{LEFT} {at:.1}H{end}")))
+                text.sc-y x=(LEFT - 6.0) y=(format!("{:.1}", at + 5.0)) { (y.label(tick)) }
+            }
+            @for (colour, points) in &self.clouds {
+                path.sc-points style={ "stroke:var(" (colour) ")" } d=(dots(points)) {}
+            }
+            @if !line.is_empty() { path.sc-curve d={ "M" (line.join("L")) } {} }
+            text.sc-title x=(LEFT) y="14" { (self.title) }
+            text.sc-title style="font-weight:400" x=(LEFT) y="29" { (named(1, &y)) }
+            text x=(0.5 * (LEFT + end)) y=(HEIGHT - 14.0) { (named(0, &x)) }
         }
-        svg.push_str(&format!(
-            "<text class=\"sc-title\" x=\"{LEFT}\" y=\"14\">{}</text><text class=\"sc-title\" style=\"font-weight:400\" x=\"{LEFT}\" y=\"29\">{}, {}</text><text x=\"{:.1}\" y=\"{:.1}\">{}, {}</text>\n",
-            escaped(&self.title),
-            escaped(&self.axes[1].0),
-            escaped(y.scale.unit()),
-            0.5 * (LEFT + WIDTH - RIGHT),
-            HEIGHT - 14.0,
-            escaped(&self.axes[0].0),
-            escaped(x.scale.unit()),
-        ));
     }
 }
 
@@ -154,7 +137,7 @@ mod tests {
             curve: vec![[-2e-5, 0.0], [2e-5, 40.0], [f64::NAN, 1.0]],
         };
         let svg = draw(&[panel], "a map");
-        let svg = svg.as_str();
+        let svg = svg.into_string();
         assert_eq!(svg.matches("h0").count(), 50);
         assert!(svg.contains("&lt;J&gt;") && svg.contains("d, µm") && svg.contains(">-20<"), "{svg}");
         assert!(!svg.contains("NaN"));
@@ -164,7 +147,8 @@ mod tests {
     fn points_that_are_all_alike_are_drawn() {
         let clouds = vec![("--trace-1", vec![[0.0, 0.0]; 3])];
         let axes = [("d".into(), "m"), ("force".into(), "N")];
-        let svg = draw(&[Scatter { title: String::new(), axes, clouds, curve: Vec::new() }], "");
-        assert!(!svg.as_str().contains("NaN") && svg.as_str().matches("h0").count() == 3);
+        let svg =
+            draw(&[Scatter { title: String::new(), axes, clouds, curve: Vec::new() }], "").into_string();
+        assert!(!svg.contains("NaN") && svg.matches("h0").count() == 3);
     }
 }

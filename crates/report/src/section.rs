@@ -1,29 +1,135 @@
-//! A section: a heading and what stands below it, in the order in which it was added.
+//! A section: a heading and what stands below it, in the order in which it was added; and the verdict above all of them.
 
-use crate::drawing::Svg;
-use crate::elements::{Card, Table};
+use jointscope_diagnosis::Verdict as Conclusion;
+use maud::{Markup, Render, html};
+
 use crate::error::PageError;
-use crate::heat_map::HeatMap;
-use crate::html::{push_element, push_escaped};
-use crate::plot::{ColumnPool, Plot, PlotData, write_figure};
+use crate::format::QuantityText;
+use crate::plot::{Plot, PlotBook};
 
-#[derive(Debug, Clone)]
-enum Block {
-    Paragraph(String),
-    Cards(Vec<Card>),
-    Table(Table),
-    HeatMap(HeatMap),
-    Notes(Vec<String>),
-    Warnings(Vec<String>),
-    Command(String),
-    Drawing { svg: Svg, caption: String },
-    Plots { columns: usize, plots: Vec<Plot> },
+/// How a statement is meant to be taken.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Tone {
+    /// As it should be.
+    Ok,
+    /// To be looked at.
+    Attention,
+    /// Not usable as it is.
+    Problem,
 }
 
-/// A part of a [`Page`](crate::Page) under a heading of its own, which is also its anchor.
+impl Tone {
+    pub fn class(self) -> &'static str {
+        match self {
+            Tone::Ok => "ok",
+            Tone::Attention => "attention",
+            Tone::Problem => "problem",
+        }
+    }
+
+    /// The tone in one character, so that it does not hang on the colour alone.
+    fn sign(self) -> &'static str {
+        match self {
+            Tone::Ok => "✓",
+            Tone::Attention => "!",
+            Tone::Problem => "✕",
+        }
+    }
+}
+
+impl From<Conclusion> for Tone {
+    fn from(conclusion: Conclusion) -> Self {
+        match conclusion {
+            Conclusion::Consistent => Tone::Ok,
+            Conclusion::Explained => Tone::Attention,
+            Conclusion::PartlyExplained | Conclusion::Unexplained => Tone::Problem,
+        }
+    }
+}
+
+/// What came out: how to take it, in one sentence, and what is to be said besides.
 #[derive(Debug, Clone)]
-pub struct Section {
-    pub(crate) heading: String,
+pub(crate) struct Verdict {
+    pub tone: Tone,
+    pub headline: String,
+    pub details: Vec<String>,
+}
+
+impl Render for Verdict {
+    fn render(&self) -> Markup {
+        html! {
+            div class={ "verdict " (self.tone.class()) } {
+                span.sign aria-hidden="true" { (self.tone.sign()) }
+                div {
+                    p.headline { (self.headline) }
+                    @for detail in &self.details { p { (detail) } }
+                }
+            }
+        }
+    }
+}
+
+/// A key figure: label, value with uncertainty and unit, and a note.
+#[derive(Debug, Clone)]
+pub(crate) struct Card {
+    label: String,
+    value: QuantityText,
+    note: Option<String>,
+    tone: Option<Tone>,
+}
+
+impl Card {
+    /// A quantity in SI with its standard deviation; see [`quantity`](crate::format::quantity) for how it is printed.
+    pub fn quantity(label: impl Into<String>, value: f64, std: impl Into<Option<f64>>, unit: &str) -> Self {
+        Self { label: label.into(), value: QuantityText::new(value, std, unit), note: None, tone: None }
+    }
+
+    /// A figure that is no quantity, such as `412 of 644 lines`.
+    pub fn text(label: impl Into<String>, text: impl Into<String>) -> Self {
+        let value = QuantityText { number: text.into(), unit: String::new(), note: None };
+        Self { label: label.into(), value, note: None, tone: None }
+    }
+
+    /// A line below the figure, such as the nominal value.
+    pub fn note(self, note: impl Into<String>) -> Self {
+        Self { note: Some(note.into()), ..self }
+    }
+
+    /// Marks the card at its edge.
+    pub fn tone(self, tone: Option<Tone>) -> Self {
+        Self { tone, ..self }
+    }
+}
+
+impl Render for Card {
+    fn render(&self) -> Markup {
+        html! {
+            div class={ "card" @if let Some(tone) = self.tone { " " (tone.class()) } } {
+                dt { (self.label) }
+                dd {
+                    span.figure {
+                        (self.value.number)
+                        @if !self.value.unit.is_empty() { " " span.unit { (self.value.unit) } }
+                    }
+                    @if let Some(note) = self.value.note { span.note { (note) } }
+                    @if let Some(note) = &self.note { span.note { (note) } }
+                }
+            }
+        }
+    }
+}
+
+#[derive(Clone)]
+enum Block {
+    Markup(Markup),
+    /// In rows of so many; numbered and checked when the page is rendered.
+    Plots(usize, Vec<Plot>),
+}
+
+/// A part of a [`Page`](crate::page::Page) under a heading of its own, which is also its anchor.
+#[derive(Clone)]
+pub(crate) struct Section {
+    pub heading: String,
     blocks: Vec<Block>,
 }
 
@@ -33,49 +139,48 @@ impl Section {
         Self { heading: heading.into(), blocks: Vec::new() }
     }
 
-    fn with(mut self, block: Block) -> Self {
-        self.blocks.push(block);
+    /// What renders itself, such as a [`Table`](crate::table::Table), or nothing.
+    pub fn with(mut self, part: impl Render) -> Self {
+        self.blocks.push(Block::Markup(part.render()));
         self
     }
 
     /// A paragraph of plain text.
-    pub fn paragraph(self, text: impl Into<String>) -> Self {
-        self.with(Block::Paragraph(text.into()))
+    pub fn paragraph(self, text: impl AsRef<str>) -> Self {
+        self.with(html! { p { (text.as_ref()) } })
     }
 
     /// Key figures side by side.
     pub fn cards(self, cards: impl IntoIterator<Item = Card>) -> Self {
-        self.with(Block::Cards(cards.into_iter().collect()))
-    }
-
-    /// A table.
-    pub fn table(self, table: Table) -> Self {
-        self.with(Block::Table(table))
-    }
-
-    /// A map of numbers by row and column.
-    pub fn heat_map(self, map: HeatMap) -> Self {
-        self.with(Block::HeatMap(map))
+        self.with(html! { dl.cards { @for card in cards { (card) } } })
     }
 
     /// A list of remarks; nothing where there are none.
-    pub fn notes<T: Into<String>>(self, notes: impl IntoIterator<Item = T>) -> Self {
-        self.with(Block::Notes(notes.into_iter().map(Into::into).collect()))
+    pub fn notes(self, notes: impl IntoIterator<Item: Render>) -> Self {
+        self.list("notes", notes)
     }
 
     /// A list of what the reader should mind; nothing where there is none.
-    pub fn warnings<T: Into<String>>(self, warnings: impl IntoIterator<Item = T>) -> Self {
-        self.with(Block::Warnings(warnings.into_iter().map(Into::into).collect()))
+    pub fn warnings(self, warnings: impl IntoIterator<Item: Render>) -> Self {
+        self.list("notes warnings", warnings)
+    }
+
+    fn list(self, class: &str, items: impl IntoIterator<Item: Render>) -> Self {
+        let mut items = items.into_iter().peekable();
+        if items.peek().is_none() {
+            return self;
+        }
+        self.with(html! { ul class=(class) { @for item in items { li { (item) } } } })
     }
 
     /// A command line, as typed.
-    pub fn command(self, line: impl Into<String>) -> Self {
-        self.with(Block::Command(line.into()))
+    pub fn command(self, line: &str) -> Self {
+        self.with(html! { pre.command { (line) } })
     }
 
-    /// A drawing with its caption, such as [`FixtureDrawing::to_svg`](crate::FixtureDrawing::to_svg).
-    pub fn drawing(self, svg: Svg, caption: impl Into<String>) -> Self {
-        self.with(Block::Drawing { svg, caption: caption.into() })
+    /// An SVG image with its caption.
+    pub fn drawing(self, svg: Markup, caption: impl AsRef<str>) -> Self {
+        self.with(html! { figure.sketch { (svg) figcaption { (caption.as_ref()) } } })
     }
 
     /// One plot over the full width.
@@ -84,77 +189,22 @@ impl Section {
     }
 
     /// Plots in rows of so many `columns`, 1 to 4; a narrow window shows fewer side by side.
-    pub fn plots(self, columns: usize, plots: impl IntoIterator<Item = Plot>) -> Self {
-        self.with(Block::Plots { columns: columns.clamp(1, 4), plots: plots.into_iter().collect() })
+    pub fn plots(mut self, columns: usize, plots: impl IntoIterator<Item = Plot>) -> Self {
+        self.blocks.push(Block::Plots(columns.clamp(1, 4), plots.into_iter().collect()));
+        self
     }
 
-    pub(crate) fn write(
-        &self,
-        html: &mut String,
-        anchor: &str,
-        pool: &mut ColumnPool,
-        drawn: &mut Vec<PlotData>,
-    ) -> Result<(), PageError> {
-        html.push_str(&format!("<section id=\"{anchor}\">\n"));
-        push_element(html, "h2", "", &self.heading);
-        html.push('\n');
+    pub fn render(&self, anchor: &str, book: &mut PlotBook) -> Result<Markup, PageError> {
+        let mut blocks = Vec::with_capacity(self.blocks.len());
         for block in &self.blocks {
-            write_block(block, html, pool, drawn)?;
+            blocks.push(match block {
+                Block::Markup(markup) => markup.clone(),
+                Block::Plots(columns, plots) => {
+                    let figures = plots.iter().map(|plot| book.figure(plot)).collect::<Result<Vec<_>, _>>()?;
+                    html! { div class={ "plots columns-" (columns) } { @for figure in &figures { (figure) } } }
+                }
+            });
         }
-        html.push_str("</section>\n");
-        Ok(())
+        Ok(html! { section id=(anchor) { h2 { (self.heading) } @for block in &blocks { "\n" (block) } } })
     }
-}
-
-fn write_block(
-    block: &Block,
-    html: &mut String,
-    pool: &mut ColumnPool,
-    drawn: &mut Vec<PlotData>,
-) -> Result<(), PageError> {
-    match block {
-        Block::Paragraph(text) => push_element(html, "p", "", text),
-        Block::Cards(cards) => {
-            html.push_str("<dl class=\"cards\">");
-            for card in cards {
-                card.write(html);
-            }
-            html.push_str("</dl>");
-        }
-        Block::Table(table) => table.write(html)?,
-        Block::HeatMap(map) => map.write(html)?,
-        Block::Notes(notes) => push_list(html, "notes", notes),
-        Block::Warnings(warnings) => push_list(html, "notes warnings", warnings),
-        Block::Command(line) => push_element(html, "pre", "command", line),
-        Block::Drawing { svg, caption } => {
-            html.push_str("<figure class=\"sketch\">");
-            html.push_str(svg.as_str());
-            push_element(html, "figcaption", "", caption);
-            html.push_str("</figure>");
-        }
-        Block::Plots { columns, plots } => {
-            html.push_str(&format!("<div class=\"plots columns-{columns}\">\n"));
-            for plot in plots {
-                let data = PlotData::new(plot, pool)?;
-                write_figure(html, drawn.len(), plot, &data);
-                drawn.push(data);
-            }
-            html.push_str("</div>");
-        }
-    }
-    html.push('\n');
-    Ok(())
-}
-
-fn push_list(html: &mut String, class: &str, items: &[String]) {
-    if items.is_empty() {
-        return;
-    }
-    html.push_str(&format!("<ul class=\"{class}\">"));
-    for item in items {
-        html.push_str("<li>");
-        push_escaped(html, item);
-        html.push_str("</li>");
-    }
-    html.push_str("</ul>");
 }

@@ -5,15 +5,8 @@ const PREFIXES: [(f64, &str); 7] =
     [(1e9, "G"), (1e6, "M"), (1e3, "k"), (1.0, ""), (1e-3, "m"), (1e-6, "µ"), (1e-9, "n")];
 
 /// A unit together with the factor by which SI values are divided before they are printed in it.
-///
-/// ```
-/// use jointscope_report::Scale;
-/// let scale = Scale::for_magnitude(3.32e6, "N/m");
-/// assert_eq!(scale.unit(), "MN/m");
-/// assert!((scale.of(3.32e6) - 3.32).abs() < 1e-12);
-/// ```
 #[derive(Debug, Clone, PartialEq)]
-pub struct Scale {
+pub(crate) struct Scale {
     factor: f64,
     unit: String,
 }
@@ -84,11 +77,6 @@ impl Scale {
     pub fn unit(&self) -> &str {
         &self.unit
     }
-
-    /// How many SI units one of this unit is (1e6 for MN/m).
-    pub fn factor(&self) -> f64 {
-        self.factor
-    }
 }
 
 /// Frequencies stay in Hz up to 10 kHz: 1843.2 Hz is how a line is spoken of.
@@ -103,7 +91,7 @@ fn leading_symbol(unit: &str) -> &str {
 }
 
 /// Writes a unit of a file (`N*m/rad`, `m/s^2`) the way it is printed (`N·m/rad`, `m/s²`). A pure number (`1`) has no unit.
-pub fn typeset(unit: &str) -> String {
+pub(crate) fn typeset(unit: &str) -> String {
     if unit == "1" {
         return String::new();
     }
@@ -128,19 +116,10 @@ pub fn typeset(unit: &str) -> String {
 
 /// The raised form of a digit or minus sign; anything else stays.
 pub(crate) fn superscript(c: char) -> char {
+    const RAISED: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
     match c {
         '-' => '⁻',
-        '0' => '⁰',
-        '1' => '¹',
-        '2' => '²',
-        '3' => '³',
-        '4' => '⁴',
-        '5' => '⁵',
-        '6' => '⁶',
-        '7' => '⁷',
-        '8' => '⁸',
-        '9' => '⁹',
-        other => other,
+        c => c.to_digit(10).map_or(c, |digit| RAISED[digit as usize]),
     }
 }
 
@@ -150,6 +129,13 @@ mod tests {
 
     fn check(magnitude: f64, unit: &str, expected: &str) {
         assert_eq!(Scale::for_magnitude(magnitude, unit).unit(), expected, "for {magnitude:e} {unit}");
+    }
+
+    #[test]
+    fn a_value_is_divided_by_its_prefix() {
+        let scale = Scale::for_magnitude(3.32e6, "N/m");
+        assert_eq!(scale.unit(), "MN/m");
+        assert!((scale.of(3.32e6) - 3.32).abs() < 1e-12);
     }
 
     #[test]

@@ -1,37 +1,22 @@
 //! Picking effects from a fixture's list.
 
-use jointscope_fixture::{Effect, EffectKind, Place};
+use crate::StructureError;
+use jointscope_fixture::{Effect, EffectKind, Fixture, Place};
 
 /// The effects of a kind, wherever they sit.
 pub(crate) fn all(effects: &[Effect], kind: EffectKind) -> impl Iterator<Item = &Effect> {
     effects.iter().filter(move |effect| effect.kind == kind)
 }
 
-/// The effects of a kind on a body.
-pub(crate) fn all_at_body<'a>(
-    effects: &'a [Effect],
-    kind: EffectKind,
-    body: &'a str,
-) -> impl Iterator<Item = &'a Effect> {
-    all(effects, kind).filter(move |effect| matches!(&effect.place, Place::Body(name) if name == body))
+/// The effects of a kind at a place.
+pub(crate) fn at(effects: &[Effect], kind: EffectKind, place: Place) -> impl Iterator<Item = &Effect> {
+    all(effects, kind).filter(move |effect| effect.place == place)
 }
 
-/// The effects of a kind on a joint.
-pub(crate) fn all_at_joint<'a>(
-    effects: &'a [Effect],
-    kind: EffectKind,
-    joint: &'a str,
-) -> impl Iterator<Item = &'a Effect> {
-    all(effects, kind).filter(move |effect| matches!(&effect.place, Place::Joint(name) if name == joint))
-}
-
-/// The effects of a kind at a point.
-pub(crate) fn all_at_point<'a>(
-    effects: &'a [Effect],
-    kind: EffectKind,
-    point: &'a str,
-) -> impl Iterator<Item = &'a Effect> {
-    all(effects, kind).filter(move |effect| matches!(&effect.place, Place::Point(name) if name == point))
+/// A fixture without the effects that depend on amplitude, and these.
+pub(crate) fn linear_part(fixture: &Fixture) -> Result<(Fixture, Vec<Effect>), StructureError> {
+    let (bent, linear) = fixture.physics().iter().cloned().partition(|effect| effect.kind.is_nonlinear());
+    Ok((fixture.clone().with_physics(linear)?, bent))
 }
 
 /// Product of the first parameters.

@@ -6,9 +6,10 @@ use jointscope_spectra::{FrfForm, FrfSet, SpectralLines};
 use num_complex::Complex64;
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
+use serde::{Deserialize, Serialize};
 
 /// How the hammer strikes and how noisy the channels are.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct HammerTest {
     /// Hits averaged for an FRF, at least 2.
     pub averages: u32,
@@ -23,8 +24,22 @@ pub struct HammerTest {
     /// Whether all responses to a reference are recorded in the same hits, so that they share the noise of the
     /// force; otherwise every FRF has hits of its own (a roving hammer or sensor).
     pub common_hits: bool,
-    /// Seed of strengths and noise.
+    /// Seed of strengths and noise; in files a text, for it has more digits than their numbers.
+    #[serde(with = "as_text")]
     pub seed: u64,
+}
+
+mod as_text {
+    use serde::de::{Deserialize, Deserializer, Error};
+    use serde::ser::Serializer;
+
+    pub fn serialize<S: Serializer>(seed: &u64, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_str(seed)
+    }
+
+    pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<u64, D::Error> {
+        String::deserialize(deserializer)?.parse().map_err(D::Error::custom)
+    }
 }
 
 impl HammerTest {

@@ -5,10 +5,12 @@ use crate::{Instrument, Law, Row, Station, Structure, StructureError, read};
 use jointscope_fixture::{BodyKind, Effect, EffectKind, Fixture, Joint, JointLaw, Place};
 use jointscope_spectra::{Channel, FrfForm, FrfPair, FrfSet, SpectralLines};
 use rand::Rng;
+use serde::{Deserialize, Serialize};
 use std::f64::consts::{PI, TAU};
 
 /// A piece of physics outside the vocabulary of fixture files, with its place and size.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "kind", rename_all = "snake_case")]
 pub enum Outside {
     /// A force proportional to the relative acceleration across a joint: the inertance (kg) of a flywheel on a rack.
     Inerter {

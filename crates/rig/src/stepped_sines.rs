@@ -1,5 +1,6 @@
 //! Stepped sines on a structure one of whose joints depends on amplitude: FRFs at levels of held force or held response.
 
+use crate::effects::linear_part;
 use crate::random::normal_pair;
 use crate::strikes::across;
 use crate::{Row, Structure, StructureError};
@@ -115,15 +116,13 @@ struct Compliances {
 
 impl Shaken {
     fn of(fixture: &Fixture, pairs: &[FrfPair], harmonics: usize) -> Result<Self, StructureError> {
-        let (bent, linear): (Vec<Effect>, Vec<Effect>) =
-            fixture.physics().iter().cloned().partition(|e| e.kind.is_nonlinear());
+        let (plain, bent) = linear_part(fixture)?;
         if let [_, second, ..] = bent.as_slice() {
             return Err(StructureError::Nonlinear {
                 kind: second.kind.name(),
                 place: second.place.to_string(),
             });
         }
-        let plain = fixture.clone().with_physics(linear)?;
         let structure = Structure::of(&plain)?;
         let effect = bent.into_iter().next();
         let motion = match effect.as_ref().map(|e| (&e.place, e.dof)) {

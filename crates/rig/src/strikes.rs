@@ -1,16 +1,18 @@
 //! Hammer hits over time on a structure whose joints depend on amplitude.
 
+use crate::effects::linear_part;
 use crate::random::{log_uniform, normal, uniform};
 use crate::{Assembly, Row, Station, Structure, StructureError};
 use jointscope_fixture::{Dof, Effect, EffectKind, Fixture, Place};
 use jointscope_hits::{Hit, Motion, Response};
-use jointscope_linalg::inverse;
+use jointscope_linalg::Cholesky;
 use jointscope_spectra::Channel;
 use rand::Rng;
+use serde::{Deserialize, Serialize};
 use std::f64::consts::LN_2;
 
 /// How a structure is struck and recorded.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct StrikeTest {
     /// Samples a second.
     pub rate: f64,
@@ -140,8 +142,7 @@ pub fn reach(
     test: &StrikeTest,
     peak: f64,
 ) -> Result<f64, StructureError> {
-    let linear = fixture.physics().iter().filter(|e| !e.kind.is_nonlinear()).cloned().collect();
-    let fixture = fixture.clone().with_physics(linear)?;
+    let (fixture, _) = linear_part(fixture)?;
     let (equations, _) = build(&fixture, struck, &[])?;
     let structure = Structure::of(&fixture)?;
     let motion = dense(&across(&structure, &fixture, joint, dof)?, equations.n);
@@ -184,17 +185,16 @@ pub(crate) fn build(
     struck: &Channel,
     read: &[Channel],
 ) -> Result<(Equations, Vec<Vec<f64>>), StructureError> {
-    let (bent, linear): (Vec<Effect>, Vec<Effect>) =
-        fixture.physics().iter().cloned().partition(|e| e.kind.is_nonlinear());
-    let plain = fixture.clone().with_physics(linear)?;
+    let (plain, bent) = linear_part(fixture)?;
     let structure = Structure::of(&plain)?;
     let assembly: &Assembly = structure.assembly();
     let n = assembly.order();
-    let mass = inverse(&assembly.mass_matrix(), n).ok_or(StructureError::Impossible {
+    let mass = Cholesky::of(n, &assembly.mass_matrix()).ok_or(StructureError::Impossible {
         what: "a mass matrix",
         value: 0.0,
         needed: "mass on every coordinate",
     })?;
+    let mass = mass.inverse();
     let pulled = |row: &[f64]| -> Vec<f64> { mass.chunks_exact(n).map(|line| dot(line, row)).collect() };
     let times = |matrix: &[f64]| -> Vec<f64> {
         (0..n * n).map(|e| (0..n).map(|k| mass[(e / n) * n + k] * matrix[k * n + e % n]).sum()).collect()

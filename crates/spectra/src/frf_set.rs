@@ -1,9 +1,11 @@
 use crate::{FrfForm, SpectraError, SpectralLines};
 use num_complex::Complex64;
+use serde::{Serialize, Serializer};
 use std::fmt;
 
 /// A degree of freedom of the planar motion.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Dof {
     /// Transverse displacement y, or a transverse force.
     Translation,
@@ -59,6 +61,12 @@ impl fmt::Display for Channel {
     }
 }
 
+impl Serialize for Channel {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_str(self)
+    }
+}
+
 /// Response and reference of an FRF; shown as `4/1`.
 #[derive(Debug, Clone, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct FrfPair {
@@ -83,6 +91,12 @@ impl FrfPair {
 impl fmt::Display for FrfPair {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}/{}", self.response, self.reference)
+    }
+}
+
+impl Serialize for FrfPair {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_str(self)
     }
 }
 

@@ -22,10 +22,12 @@
 mod form;
 mod frf_set;
 mod lines;
+mod serialization;
 
 pub use form::FrfForm;
 pub use frf_set::{Channel, Dof, FrfPair, FrfSet};
 pub use lines::SpectralLines;
+pub use serialization::{complex, complexes};
 
 /// What makes spectral lines or a set of FRFs impossible.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

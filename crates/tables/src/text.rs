@@ -8,8 +8,11 @@ use std::fmt::Write;
 struct Grid(Vec<Vec<String>>);
 
 impl Grid {
-    fn new(header: &[&str]) -> Self {
-        Grid(vec![header.iter().map(|cell| (*cell).to_owned()).collect()])
+    /// With its header, columns between bars.
+    fn new(header: &str) -> Self {
+        let mut grid = Grid(Vec::new());
+        grid.row(header.split(" | ").map(str::to_owned));
+        grid
     }
 
     fn row(&mut self, cells: impl IntoIterator<Item = String>) {
@@ -88,7 +91,7 @@ impl Tables {
     }
 
     fn inferences(&self, text: &mut String) {
-        let mut grid = Grid::new(&["fixture (inferred)", "band Hz", "numbers inferred", "from cells"]);
+        let mut grid = Grid::new("fixture (inferred) | band Hz | numbers inferred | from cells");
         let mut which = String::new();
         for row in self.rows.iter().filter(|row| row.example.own_stiffness) {
             let (band, inference) = (row.example.band, row.example.inference);
@@ -107,20 +110,14 @@ impl Tables {
 
     fn models(&self, text: &mut String) {
         text.push_str("Table 1: where each model's matrices come from\n\n");
-        let mut grid = Grid::new(&["model", "alpha, beta", "H41", "joint in", "joint out", "program"]);
-        let rows = [
-            ["SIM", "SIM", "SIM", "K, C", "K, C", "synthesize, then decompose --relation paper"],
-            [
-                "EXP",
-                "SIM",
-                "EXP",
-                "-",
-                "K, C",
-                "decompose --relation paper of your recording; --measured E2=DIR here",
-            ],
-            ["FEM", "SIM", "FEM", "C", "K, C", "fem, then decompose --relation paper"],
-        ];
-        rows.into_iter().for_each(|row| grid.row(row.map(str::to_owned)));
+        let mut grid = Grid::new("model | alpha, beta | H41 | joint in | joint out | program");
+        for row in [
+            "SIM | SIM | SIM | K, C | K, C | synthesize, then decompose --relation paper",
+            "EXP | SIM | EXP | - | K, C | decompose --relation paper of your recording; --measured E2=DIR here",
+            "FEM | SIM | FEM | C | K, C | fem, then decompose --relation paper",
+        ] {
+            grid.row(row.split(" | ").map(str::to_owned));
+        }
         grid.write(text);
     }
 
@@ -128,17 +125,10 @@ impl Tables {
         for (element, table) in [(0, 2), (3, 2), (1, 3), (2, 3)] {
             let (unit, size) = STIFFNESS_UNITS[element];
             let _ = writeln!(text, "Table {table}: |K{}| by eq (7), averaged, {unit}\n", ELEMENTS[element]);
-            let mut grid = Grid::new(&[
-                "example",
-                "type",
-                "SIM paper",
-                "SIM program",
-                "FEM paper",
-                "FEM program, 2 modes",
-                "FEM program, all modes",
-                "EXP paper",
-                "EXP yours",
-            ]);
+            let mut grid = Grid::new(
+                "example | type | SIM paper | SIM program | FEM paper | FEM program, 2 modes | \
+                 FEM program, all modes | EXP paper | EXP yours",
+            );
             for row in &STIFFNESS {
                 let cell = |cells: &Option<Elements>| cells.map(|cells| cells[element]);
                 let own = self.own(row.example);
@@ -164,15 +154,10 @@ impl Tables {
         text.push_str(
             "What eq (7) does to its own round trip, and what the exact relation gives (averages over the band)\n\n",
         );
-        let mut grid = Grid::new(&[
-            "example",
-            "element",
-            "put in",
-            "SIM eq (7)",
-            "SIM exact",
-            "FEM exact, all modes",
-            "unit",
-        ]);
+        let mut grid = Grid::new(
+            "example | element | put in | SIM eq (7) | SIM exact | FEM exact, all modes | \
+                 unit",
+        );
         for row in self.rows.iter().filter(|row| row.example.own_stiffness) {
             for (element, (i, j)) in [(0, 0), (0, 1), (1, 0), (1, 1)].into_iter().enumerate() {
                 let (unit, size) = STIFFNESS_UNITS[element];
@@ -204,7 +189,7 @@ impl Tables {
 
     fn reach(&self, text: &mut String) {
         text.push_str("Which SIM rows any fixture can reach: K11 K22 / (K12 K21) stays below 1 for two equal blocks in a band without poles\n\n");
-        let mut grid = Grid::new(&["example", "as printed", "within rounding", "program", "finding"]);
+        let mut grid = Grid::new("example | as printed | within rounding | program | finding");
         for row in &STIFFNESS {
             let Some(reach) = Reach::of_sim(row) else { continue };
             let program = self.own(row.example).map(|r| {
@@ -224,7 +209,7 @@ impl Tables {
 
     fn ranks(&self, text: &mut String) {
         text.push_str("Table 4: from the most compliant to the stiffest\n\n");
-        let mut grid = Grid::new(&["element", "Table 4", "EXP cells of Tables 2-3", "FEM cells", "program"]);
+        let mut grid = Grid::new("element | Table 4 | EXP cells of Tables 2-3 | FEM cells | program");
         let paper = |name: &str| STIFFNESS.iter().find(|row| row.example == name);
         for group in 0..GROUPS.len() {
             for (element, order) in RANKS[group].iter().enumerate() {
@@ -252,17 +237,10 @@ impl Tables {
         for (element, table) in [(0, 5), (3, 5), (1, 6), (2, 6)] {
             let (unit, _) = DAMPING_UNITS[element];
             let _ = writeln!(text, "Table {table}: |C{}| by eq (7), averaged, {unit}\n", ELEMENTS[element]);
-            let mut grid = Grid::new(&[
-                "example",
-                "C_IN paper",
-                "C_IN program",
-                "SIM paper",
-                "SIM program",
-                "SIM exact",
-                "FEM paper",
-                "FEM program, 2 modes",
-                "FEM program, all modes",
-            ]);
+            let mut grid = Grid::new(
+                "example | C_IN paper | C_IN program | SIM paper | SIM program | SIM exact | \
+                 FEM paper | FEM program, 2 modes | FEM program, all modes",
+            );
             for row in &DAMPING {
                 let program = self.row(row.example);
                 let of = |m: &crate::Extracted| ProgramRow::magnitudes(&m.paper.damping)[element];

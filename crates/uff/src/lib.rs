@@ -63,6 +63,6 @@ pub use axis::{Axis, data_type};
 pub use dataset::{ByteOrder, Data, Dataset58, Encoding, Node, Precision, UffFile};
 pub use function_type::FunctionType;
 pub use read::read;
-pub use read_error::ReadError;
+pub use read_error::{BinaryProblem, ReadError, TextProblem};
 pub use units::{TemperatureMode, Units};
-pub use write::{WriteError, write};
+pub use write::{WriteError, WriteProblem, write};

@@ -31,6 +31,18 @@ impl Parameters {
         }
     }
 
+    /// The free ones among values of all slots.
+    pub fn of_active(&self, slots: &[Complex64; 6]) -> Vec<Complex64> {
+        self.active().iter().map(|&m| slots[m]).collect()
+    }
+
+    /// Values of all slots from those of the free ones; zero of the others.
+    pub fn slots(&self, active: &[f64]) -> [f64; 6] {
+        let mut slots = [0.0; 6];
+        self.active().iter().zip(active).for_each(|(&m, value)| slots[m] = *value);
+        slots
+    }
+
     pub fn stiffness(&self) -> RealMatrix2 {
         Matrix2::new(self.k[0], self.k[1], self.k[1], self.k[2])
     }

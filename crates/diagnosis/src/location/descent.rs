@@ -1,34 +1,42 @@
-//! The way to a site's best: softened weights on few lines first, then the recording as it is.
+//! The fit of a place: weights with inflated noise on few lines first, then the recording as it is.
 
 use super::Site;
-use super::subject::{Modelled, Stand, State, Subject};
-use super::tangent::{Normal, Tangent};
+use super::problem::{Iterate, Modelled, Parameters, Problem};
+use super::tangent::Tangent;
 use crate::Hypothesis;
-use jointscope_linalg::solve_positive_definite;
+use jointscope_inference::{Convergence, LeastSquares, NormalEquations, Precision, Settings, descend};
 
-/// Shares by which weights are softened on the way from afar: up to which every start is followed, up to which every site; steps for each.
-const SOFTENED: [f64; 3] = [0.3, 0.1, 0.02];
-const COMPARED: usize = 1;
-const PRUNED: usize = 2;
-const STEPS: usize = 3;
-/// Starts that leave more than this many times what the best leaves are not followed.
-const BESIDE: f64 = 3.0;
-/// Share of the objective, and gain, below which a fit has converged: on the way, and at its end.
-pub(super) const NEAR: Converged = Converged { share: 0.03, gain: 1.0, trusting: true };
-pub(super) const THERE: Converged = Converged { share: 3e-4, gain: 0.1, trusting: false };
-/// Steps made from old derivatives that gain less than this share of the one before call for new ones.
-const SLOW: f64 = 0.2;
-/// Damping to begin with, and beyond which no step is a gain.
-const DAMPING: f64 = 1e-6;
-const GIVEN_UP: f64 = 1e3;
+/// A place fitted with given weights.
+struct Weighted<'a> {
+    problem: &'a Problem<'a>,
+    weights: &'a [f64],
+}
 
-/// When a descent stops.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Converged {
-    share: f64,
-    gain: f64,
-    /// Whether old derivatives are believed when they say so.
-    trusting: bool,
+impl LeastSquares for Weighted<'_> {
+    type Point = Iterate;
+    type Weights = ();
+    type Derivatives = Tangent;
+    type Equations = NormalEquations;
+    const FIXED_WEIGHTS: bool = true;
+
+    fn weights(&self, _: &Iterate) {}
+
+    fn objective(&self, at: &Iterate, _: &()) -> f64 {
+        self.problem.objective(at, self.weights)
+    }
+
+    fn derivatives(&self, at: &Iterate, _: Precision) -> Option<Tangent> {
+        self.problem.tangent(at, false)
+    }
+
+    fn equations(&self, at: &Iterate, tangent: &Tangent, _: &()) -> NormalEquations {
+        self.problem.normal(at, tangent, self.weights)
+    }
+
+    fn stepped(&self, at: &Iterate, equations: &NormalEquations, damping: f64) -> Option<Iterate> {
+        let moved = self.problem.moved(&at.parameters, &equations.step(damping)?);
+        self.problem.state(&moved, self.weights)
+    }
 }
 
 /// A hypothesis from which all sites set out.
@@ -38,142 +46,96 @@ pub(super) struct Start {
     surroundings: Vec<Modelled>,
 }
 
-/// A state on its way, with derivatives that were right somewhere behind it.
+/// A fit of a place under way, with derivatives that were taken somewhere behind it.
 pub(super) struct Descent<'a> {
-    subject: &'a Subject<'a>,
-    pub state: State,
+    problem: &'a Problem<'a>,
+    pub state: Iterate,
     tangent: Option<Tangent>,
-    damping: f64,
 }
 
 impl<'a> Descent<'a> {
-    pub fn from(subject: &'a Subject<'a>, state: State) -> Self {
-        Descent { subject, state, tangent: None, damping: DAMPING }
+    pub fn from(problem: &'a Problem<'a>, state: Iterate) -> Self {
+        Descent { problem, state, tangent: None }
     }
 
-    fn amid(subject: &'a Subject<'a>, state: State, surroundings: &[Modelled]) -> Option<Self> {
-        let tangent = Some(subject.tangent_amid(&state, surroundings)?);
-        Some(Descent { tangent, ..Descent::from(subject, state) })
-    }
-
-    /// Makes up to `steps` steps down with the given weights; `None` where the state has no derivatives.
-    pub fn descend(&mut self, weights: &[f64], steps: usize, goal: Converged) -> Option<f64> {
+    /// Up to `steps` steps with the given weights: what is left, and where. `None` where there are no derivatives. `on_the_way` to other
+    /// weights old derivatives are believed when they say that it has converged.
+    pub fn descend(self, weights: &[f64], steps: usize, on_the_way: bool) -> Option<(f64, Self)> {
+        let settings = &self.problem.settings().location;
         // Free scalars are those of other weights.
-        self.state = self.subject.state(&self.state.stand, weights)?;
-        let mut lowest = self.subject.objective(&self.state, weights);
-        let (mut worn, mut last) = (self.tangent.is_none(), f64::INFINITY);
-        for _ in 0..steps {
-            let fresh = worn;
-            if fresh {
-                self.tangent = Some(self.subject.tangent(&self.state, false)?);
-                last = f64::INFINITY;
-            }
-            let normal = self.subject.normal(&self.state, self.tangent.as_ref()?, weights);
-            let next = self.step(&normal, weights, lowest, fresh);
-            let gain = next.as_ref().map_or(0.0, |(_, after)| lowest - after);
-            let stuck = next.is_none();
-            if let Some(next) = next {
-                (self.state, lowest) = next;
-            }
-            let converged = gain < goal.gain.max(goal.share * lowest);
-            if converged && (fresh || (goal.trusting && !stuck)) {
-                break;
-            }
-            worn = converged || gain < SLOW * last;
-            last = gain;
-        }
-        Some(lowest)
+        let state = self.problem.state(&self.state.parameters, weights)?;
+        let convergence: Convergence = if on_the_way { settings.near } else { settings.end };
+        let settings = Settings {
+            steps,
+            damping: settings.damping,
+            convergence,
+            trust_old: on_the_way,
+            ..Settings::default()
+        };
+        let end = descend(&Weighted { problem: self.problem, weights }, state, self.tangent, &settings)?;
+        Some((end.objective, Descent { state: end.point, tangent: Some(end.derivatives), ..self }))
     }
 
-    /// Goes down with weights softened by one share after another; with what is left of the last.
-    pub fn soften(&mut self, shares: &[f64]) -> Option<f64> {
-        let mut left = f64::INFINITY;
-        for share in shares {
-            let weights = self.subject.recorded.softened(*share, &self.state.modelled);
-            left = self.descend(&weights, STEPS, NEAR)?;
+    /// Goes on by stages with inflated noise; with what is left of the last.
+    pub fn through(self, inflations: &[f64]) -> Option<(f64, Self)> {
+        let mut reached = (f64::INFINITY, self);
+        for inflation in inflations {
+            let weights = reached.1.problem.recorded.inflated(*inflation, &reached.1.state.modelled);
+            let steps = reached.1.problem.settings().location.steps.0;
+            reached = reached.1.descend(&weights, steps, true)?;
         }
-        Some(left)
+        Some(reached)
     }
 
-    /// The rest of the way, to the end of the softening and beyond; with what is left.
-    pub fn ended(mut self) -> Option<(f64, State)> {
-        self.soften(&SOFTENED[PRUNED..])?;
-        let left = self.descend(&self.subject.recorded.weights, STEPS, NEAR)?;
-        Some((left, self.state))
-    }
-
-    /// The first damped step that lowers the objective. Old derivatives get one attempt.
-    fn step(&mut self, normal: &Normal, weights: &[f64], before: f64, fresh: bool) -> Option<(State, f64)> {
-        loop {
-            if let Some(step) = damped(normal, self.damping) {
-                let stand = self.subject.moved(&self.state.stand, &step);
-                if let Some(next) = self.subject.state(&stand, weights) {
-                    let after = self.subject.objective(&next, weights);
-                    if after < before {
-                        self.damping = (self.damping * 0.1).max(1e-9);
-                        return Some((next, after));
-                    }
-                }
-            }
-            if !fresh {
-                return None;
-            }
-            self.damping = if self.damping < 1e-3 { 1e-3 } else { self.damping * 10.0 };
-            if self.damping > GIVEN_UP {
-                self.damping = DAMPING;
-                return None;
-            }
-        }
+    /// The last stages, with and without inflated noise; with what is left.
+    pub fn ended(self) -> Option<(f64, Iterate)> {
+        let problem = self.problem;
+        let settings = &problem.settings().location;
+        let (_, descent) = self.through(&settings.inflation[settings.dropped_after..])?;
+        let (left, descent) = descent.descend(&problem.recorded.weights, settings.steps.0, true)?;
+        Some((left, descent.state))
     }
 }
 
-fn damped(normal: &Normal, damping: f64) -> Option<Vec<f64>> {
-    let n = normal.right.len();
-    let (mut matrix, mut step) = (normal.matrix.clone(), normal.right.clone());
-    (0..n).for_each(|a| matrix[a * n + a] *= 1.0 + damping);
-    solve_positive_definite(&mut matrix, &mut step).then_some(step)
-}
-
-impl Subject<'_> {
+impl Problem<'_> {
     /// What all sites have in common at a hypothesis.
     pub fn start(&self, hypothesis: &Hypothesis) -> Option<Start> {
         let centre = self.model(hypothesis)?;
         Some(Start { hypothesis: hypothesis.clone(), centre, surroundings: self.surroundings(hypothesis)? })
     }
 
-    /// Fits from each of several starts with softened weights, of each from the most promising of `sites`, and some way on from the best
-    /// of their ends; with what is left, still softened.
+    /// Fits from each of several starts with inflated noise, of each from the most promising of `sites`, and some way on from the best
+    /// of their ends; with what is left, noise still inflated.
     pub fn approached(&self, starts: &[Start], sites: &[Site]) -> Option<(f64, Descent<'_>)> {
-        let weights = self.recorded.softened(SOFTENED[0], &self.recorded.measured);
-        let states: Vec<(f64, &Start, State)> = starts
+        let settings = &self.settings().location;
+        let weights = self.recorded.inflated(settings.inflation[0], &self.recorded.measured);
+        let states: Vec<(f64, &Start, Iterate)> = starts
             .iter()
             .filter_map(|start| {
                 self.promising(start, sites, &weights).map(|(left, state)| (left, start, state))
             })
             .collect();
         let best = states.iter().map(|(left, ..)| *left).fold(f64::INFINITY, f64::min);
-        let near = states.into_iter().filter(|(left, ..)| *left <= BESIDE * best);
+        let near = states.into_iter().filter(|(left, ..)| *left <= settings.followed * best);
         let ends = near.filter_map(|(_, start, state)| {
-            let mut descent = Descent::amid(self, state, &start.surroundings)?;
-            let left = descent.soften(&SOFTENED[..COMPARED])?;
-            Some((left, descent))
+            let tangent = Some(self.tangent_amid(&state, &start.surroundings)?);
+            Descent { tangent, ..Descent::from(self, state) }
+                .through(&settings.inflation[..settings.compared])
         });
-        let (_, mut descent) = ends.min_by(|a, b| a.0.total_cmp(&b.0))?;
-        let left = descent.soften(&SOFTENED[COMPARED..PRUNED])?;
-        Some((left, descent))
+        let (_, descent) = ends.min_by(|a, b| a.0.total_cmp(&b.0))?;
+        descent.through(&settings.inflation[settings.compared..settings.dropped_after])
     }
 
-    /// The way down without softening.
-    pub fn descended(&self, state: State, steps: usize) -> Option<(f64, State)> {
-        let mut descent = Descent::from(self, state);
-        let left = descent.descend(&self.recorded.weights, steps, THERE)?;
+    /// The fit without inflated noise.
+    pub fn descended(&self, state: Iterate, steps: usize) -> Option<(f64, Iterate)> {
+        let (left, descent) = Descent::from(self, state).descend(&self.recorded.weights, steps, false)?;
         Some((left, descent.state))
     }
 
-    /// Of several sites the one that leaves least with weights softened about what was measured, nothing yielding.
-    fn promising(&self, start: &Start, sites: &[Site], weights: &[f64]) -> Option<(f64, State)> {
+    /// Of several sites the one that leaves least with noise inflated by what was measured, nothing yielding.
+    fn promising(&self, start: &Start, sites: &[Site], weights: &[f64]) -> Option<(f64, Iterate)> {
         let left = |site| {
-            let state = self.state_on(&start.centre, &Stand::free(&start.hypothesis, site), weights)?;
+            let state = self.state_on(&start.centre, &Parameters::free(&start.hypothesis, site), weights)?;
             Some((self.objective(&state, weights), state))
         };
         sites.iter().filter_map(left).min_by(|a, b| a.0.total_cmp(&b.0))

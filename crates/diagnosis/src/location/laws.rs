@@ -9,7 +9,7 @@ use std::f64::consts::TAU;
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Line {
     pub omega: f64,
-    /// Accelerance of a response's own seat.
+    /// Accelerance of a response's own position.
     pub driving: Complex64,
 }
 
@@ -19,15 +19,15 @@ pub(super) struct Line {
 pub(super) struct Law {
     pub name: &'static str,
     pub formula: &'static str,
-    /// Names and units of the parameters told.
+    /// Names and units of the parameters stated.
     pub parameters: &'static [(&'static str, &'static str)],
     /// Whether the component is proportional to the first parameter, so that it need not be sought.
     pub proportional: bool,
     /// Parameters to start from, for a band of angular frequencies.
     pub starts: fn(f64, f64) -> Vec<Vec<f64>>,
     pub value: fn(Line, &[f64]) -> Complex64,
-    /// The parameters told, of those fitted.
-    pub told: fn(&[f64]) -> Vec<f64>,
+    /// The parameters stated, of those fitted.
+    pub stated: fn(&[f64]) -> Vec<f64>,
 }
 
 fn one(_: f64, _: f64) -> Vec<Vec<f64>> {
@@ -70,7 +70,7 @@ const MASS: Law = Law {
     proportional: true,
     starts: one,
     value: |line, p| Complex64::new(-line.omega * line.omega * p[0], 0.0),
-    told: same,
+    stated: same,
 };
 const SPRING: Law = Law {
     name: "a spring",
@@ -79,7 +79,7 @@ const SPRING: Law = Law {
     proportional: true,
     starts: one,
     value: |_, p| Complex64::new(p[0], 0.0),
-    told: same,
+    stated: same,
 };
 const DASHPOT: Law = Law {
     name: "a dashpot",
@@ -88,7 +88,7 @@ const DASHPOT: Law = Law {
     proportional: true,
     starts: one,
     value: |line, p| I * line.omega * p[0],
-    told: same,
+    stated: same,
 };
 const SPRING_AND_DASHPOT: Law = Law {
     name: "a spring and a dashpot",
@@ -98,7 +98,7 @@ const SPRING_AND_DASHPOT: Law = Law {
     // A dashpot in shares of the spring over the band's highest line.
     starts: |_, high| [0.0, 0.01, 0.1, 1.0].map(|turn| vec![1.0, turn / high]).to_vec(),
     value: |line, p| p[0] * (1.0 + I * line.omega * p[1]),
-    told: |p| vec![p[0], p[0] * p[1]],
+    stated: |p| vec![p[0], p[0] * p[1]],
 };
 const RESONATOR: Law = Law {
     name: "a mass on a spring",
@@ -115,7 +115,7 @@ const RESONATOR: Law = Law {
         let spring = own * own + I * (2.0 * p[2] * own * omega);
         -omega * omega * p[0] * spring / (spring - omega * omega)
     },
-    told: |p| vec![p[0], p[1].exp() / TAU, p[2]],
+    stated: |p| vec![p[0], p[1].exp() / TAU, p[2]],
 };
 const YIELDING: Law = Law {
     name: "a spring in series",
@@ -124,7 +124,7 @@ const YIELDING: Law = Law {
     proportional: true,
     starts: one,
     value: |_, p| Complex64::new(p[0], 0.0),
-    told: |p| vec![1.0 / p[0]],
+    stated: |p| vec![1.0 / p[0]],
 };
 const YIELDING_AND_LOSSY: Law = Law {
     name: "a spring and a dashpot in series",
@@ -133,7 +133,7 @@ const YIELDING_AND_LOSSY: Law = Law {
     proportional: true,
     starts: |_, high| [0.01, 0.1, 0.5].map(|turn| vec![1.0, turn / high]).to_vec(),
     value: |line, p| p[0] / (1.0 + I * line.omega * p[1]),
-    told: |p| vec![1.0 / p[0], p[1] / p[0]],
+    stated: |p| vec![1.0 / p[0], p[1] / p[0]],
 };
 const YIELDING_ROTATION: Law = Law { parameters: &[("stiffness", "N*m/rad")], ..YIELDING };
 const YIELDING_AND_LOSSY_ROTATION: Law =
@@ -145,7 +145,7 @@ const GAIN: Law = Law {
     proportional: true,
     starts: one,
     value: |_, p| Complex64::new(p[0], 0.0),
-    told: |p| vec![1.0 + p[0]],
+    stated: |p| vec![1.0 + p[0]],
 };
 const DELAY: Law = Law {
     name: "a delay",
@@ -154,7 +154,7 @@ const DELAY: Law = Law {
     proportional: false,
     starts: delays,
     value: |line, p| (-I * line.omega * p[0]).exp() - 1.0,
-    told: same,
+    stated: same,
 };
 const GAIN_AND_DELAY: Law = Law {
     name: "a gain and a delay",
@@ -166,7 +166,7 @@ const GAIN_AND_DELAY: Law = Law {
         factors.iter().flat_map(|g| [-0.3, 0.0, 0.3].map(|turn| vec![*g, turn / high])).collect()
     },
     value: |line, p| p[0] * (-I * line.omega * p[1]).exp() - 1.0,
-    told: same,
+    stated: same,
 };
 const SENSOR_MASS: Law = Law {
     name: "a sensor's mass",
@@ -175,7 +175,7 @@ const SENSOR_MASS: Law = Law {
     proportional: false,
     starts: sensors,
     value: |line, p| 1.0 / (1.0 + p[0] * line.driving) - 1.0,
-    told: same,
+    stated: same,
 };
 const OFFSET: Law = Law {
     name: "an offset",
@@ -184,7 +184,7 @@ const OFFSET: Law = Law {
     proportional: true,
     starts: one,
     value: |_, p| Complex64::new(p[0], 0.0),
-    told: same,
+    stated: same,
 };
 const FACTOR: Law = Law {
     name: "a stiffness factor",
@@ -193,7 +193,7 @@ const FACTOR: Law = Law {
     proportional: true,
     starts: one,
     value: |_, p| Complex64::new(p[0], 0.0),
-    told: |p| vec![1.0 + p[0]],
+    stated: |p| vec![1.0 + p[0]],
 };
 const LOSS: Law = Law {
     name: "a loss factor",
@@ -202,7 +202,7 @@ const LOSS: Law = Law {
     proportional: true,
     starts: one,
     value: |_, p| I * p[0],
-    told: same,
+    stated: same,
 };
 const RELAXATION: Law = Law {
     name: "relaxation",
@@ -214,7 +214,7 @@ const RELAXATION: Law = Law {
         let turn = I * line.omega * p[1].exp();
         p[0] * turn / (1.0 + turn)
     },
-    told: |p| vec![p[0], p[1].exp()],
+    stated: |p| vec![p[0], p[1].exp()],
 };
 
 /// The laws that make sense at a site.
@@ -226,6 +226,6 @@ pub(super) fn laws_of(site: &Site) -> &'static [Law] {
         Site::Joint(_) => &[FACTOR, LOSS, RELAXATION],
         Site::Response(_) => &[GAIN, DELAY, GAIN_AND_DELAY, SENSOR_MASS],
         Site::Reference(_) => &[GAIN, DELAY, GAIN_AND_DELAY],
-        Site::Seat(_) => &[OFFSET],
+        Site::Position(_) => &[OFFSET],
     }
 }

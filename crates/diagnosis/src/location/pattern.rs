@@ -1,18 +1,19 @@
 //! What one unknown scalar at a site does to every FRF on a line.
 
 use super::Site;
-use super::chain::{Chain, station};
-use jointscope_fixture::{Dof, EffectKind, Fixture, Place};
-use jointscope_lumped::{JointElement, Model, Receptances, Station, nominal_stiffness};
+use jointscope_fixture::{Dof, Entry, Fixture, Place};
+use jointscope_lumped::{
+    Instrument, JointElement, MeasuringChain, Model, Receptances, Station, channel_station, nominal_stiffness,
+};
 use jointscope_spectra::{Channel, FrfPair};
 use num_complex::Complex64;
 
 /// One FRF's recorded value as the site's scalar z grows: h + (z a + z² b)/(1 + z t + z² d).
 ///
-/// One channel through the structure is linear in z = γ (t appears where a sensor's own mass makes bᵀZ⁻¹b differ from row to row), a seat that
+/// One channel through the structure is linear in z = γ (t appears where a sensor's own mass makes bᵀZ⁻¹b differ from row to row), a position that
 /// is response and reference at once is a square, a factor on a joint's 2×2 stiffness is the whole expression.
 #[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Course {
+pub(super) struct RationalResponse {
     pub start: Complex64,
     pub linear: Complex64,
     pub square: Complex64,
@@ -20,7 +21,7 @@ pub(super) struct Course {
     pub lower_square: Complex64,
 }
 
-impl Course {
+impl RationalResponse {
     /// The value at z.
     pub fn at(&self, z: Complex64) -> Complex64 {
         if self.is_linear() {
@@ -57,7 +58,7 @@ impl Course {
 pub(super) struct Inversion {
     pub sign: f64,
     pub feedback: Complex64,
-    /// Receptance of a response's own seat, for what a mass there would do.
+    /// Receptance of a response's own position, for what a mass there would do.
     pub driving: Complex64,
 }
 
@@ -93,7 +94,7 @@ enum Action {
     /// Rows (or columns) of the FRFs named here: multiplied by 1 + δ, or divided by it.
     Channel { rows: Vec<bool>, divides: bool, driving: Option<usize> },
     /// FRFs whose response, and whose reference, sits there.
-    Seat { responses: Vec<bool>, references: Vec<bool> },
+    Position { responses: Vec<bool>, references: Vec<bool> },
 }
 
 /// Receptances wanted, each pair once whichever way round: the structure is reciprocal.
@@ -148,7 +149,7 @@ type Among = [[Complex64; MOST]; MOST];
 
 /// A site's pattern on a model, evaluated line by line without allocation.
 pub(super) struct Pattern<'a> {
-    chain: Chain,
+    chain: MeasuringChain,
     action: Action,
     count: usize,
     indices: Vec<Indices>,
@@ -161,7 +162,7 @@ impl<'a> Pattern<'a> {
     /// Prepares the pattern of `site` for the FRFs `pairs` on `model`, which is that of `fixture`. `None` where the site does not exist there, or is
     /// not of the form that this file knows.
     pub fn new(fixture: &Fixture, model: &'a Model, site: &Site, pairs: &[FrfPair]) -> Option<Self> {
-        let chain = Chain::of(fixture, pairs)?;
+        let chain = MeasuringChain::of(fixture, pairs, Instrument::AsRecorded).ok()?;
         let mut wanted = Wanted::default();
         let (stations, mut action) = action(fixture, site, pairs)?;
         let first = *stations.first().unwrap_or(&chain.readings.first()?.output);
@@ -170,20 +171,21 @@ impl<'a> Pattern<'a> {
             whole: wanted.index(reading.output, reading.input),
             from_sites: std::array::from_fn(|v| wanted.index(reading.output, slot(v))),
             to_sites: std::array::from_fn(|v| wanted.index(slot(v), reading.input)),
-            load: reading.load.map(|(seat, mass)| LoadIndices {
+            load: reading.load.map(|(position, mass)| LoadIndices {
                 mass,
-                driving: wanted.index(seat, seat),
-                to_response: wanted.index(reading.output, seat),
-                from_reference: wanted.index(seat, reading.input),
-                to_sites: std::array::from_fn(|v| wanted.index(seat, slot(v))),
+                driving: wanted.index(position, position),
+                to_response: wanted.index(reading.output, position),
+                from_reference: wanted.index(position, reading.input),
+                to_sites: std::array::from_fn(|v| wanted.index(position, slot(v))),
             }),
         });
         let indices: Vec<Indices> = indices.collect();
         let among = std::array::from_fn(|v| std::array::from_fn(|w| wanted.index(slot(v), slot(w))));
         if let Action::Channel { rows, divides: false, driving } = &mut action {
             let row = rows.iter().position(|r| *r)?;
-            let seat = chain.readings[row].output;
-            *driving = (pairs[row].response.dof == Dof::Translation).then(|| wanted.index(seat, seat));
+            let position = chain.readings[row].output;
+            *driving =
+                (pairs[row].response.dof == Dof::Translation).then(|| wanted.index(position, position));
         }
         let count = stations.len();
         let receptances = model.receptances_of(&wanted.stations, &wanted.stations, wanted.pairs);
@@ -191,8 +193,8 @@ impl<'a> Pattern<'a> {
         Some(Pattern { chain, action, count, indices, among, receptances, values })
     }
 
-    /// Writes every FRF's course on the line at `omega` (rad/s); `None` on an undamped resonance.
-    pub fn at(&mut self, omega: f64, courses: &mut [Course]) -> Option<Inversion> {
+    /// Writes every FRF's response on the line at `omega` (rad/s); `None` on an undamped resonance.
+    pub fn at(&mut self, omega: f64, responses: &mut [RationalResponse]) -> Option<Inversion> {
         let s = self.chain.s(omega);
         if !self.receptances.at(s, &mut self.values) {
             return None;
@@ -212,33 +214,33 @@ impl<'a> Pattern<'a> {
             |among: &Among| -> Complex64 { (0..self.count).map(|v| column[v] * along(&among[v])).sum() };
         let driving = quadratic(&own);
         let mut scratch = own;
-        for (k, course) in courses.iter_mut().enumerate() {
+        for (k, response) in responses.iter_mut().enumerate() {
             let mut local = self.local(k);
             let loaded = self.loaded(k, s, &mut local, &own, &mut scratch);
             let among = if loaded { &scratch } else { &own };
             let factor = self.chain.factor(k, omega);
-            *course = Course { start: factor * local.whole, ..Course::default() };
+            *response = RationalResponse { start: factor * local.whole, ..RationalResponse::default() };
             match &self.action {
                 Action::Body | Action::Series { .. } => {
-                    course.linear = -factor * along(&local.out) * along(&local.into);
+                    response.linear = -factor * along(&local.out) * along(&local.into);
                     if loaded {
-                        course.lower_linear = quadratic(among) - driving;
+                        response.lower_linear = quadratic(among) - driving;
                     }
                 }
                 Action::Joint { stiffness, length } => {
-                    joint(course, &local, among, factor, *stiffness, *length);
+                    joint(response, &local, among, factor, *stiffness, *length);
                 }
-                Action::Channel { rows, .. } if rows[k] => course.linear = course.start,
+                Action::Channel { rows, .. } if rows[k] => response.linear = response.start,
                 Action::Channel { .. } => {}
-                Action::Seat { responses, references } => {
+                Action::Position { responses, references } => {
                     if responses[k] {
-                        course.linear += factor * local.into[0];
+                        response.linear += factor * local.into[0];
                     }
                     if references[k] {
-                        course.linear += factor * local.out[0];
+                        response.linear += factor * local.out[0];
                     }
                     if responses[k] && references[k] {
-                        course.square = factor * among[0][0];
+                        response.square = factor * among[0][0];
                     }
                 }
             }
@@ -293,7 +295,14 @@ impl<'a> Pattern<'a> {
 }
 
 /// ΔH = −G_od (k⁻¹/δ + G_dd)⁻¹ G_di written without the inverse of k, d the joint's relative motion.
-fn joint(course: &mut Course, local: &Local, among: &Among, factor: Complex64, k: [f64; 3], length: f64) {
+fn joint(
+    response: &mut RationalResponse,
+    local: &Local,
+    among: &Among,
+    factor: Complex64,
+    k: [f64; 3],
+    length: f64,
+) {
     let relative = |g: &[Complex64; MOST]| [g[2] - g[0] - g[1] * length, g[3] - g[1]];
     let (out, into) = (relative(&local.out), relative(&local.into));
     let rows = [0, 1, 2, 3].map(|v| relative(&among[v]));
@@ -301,12 +310,12 @@ fn joint(course: &mut Course, local: &Local, among: &Among, factor: Complex64, k
     let ([g11, g21], [g12, g22]) = (column(0), column(1));
     let force = [k[0] * into[0] + k[1] * into[1], k[1] * into[0] + k[2] * into[1]];
     let determinant = k[0] * k[2] - k[1] * k[1];
-    course.linear = -factor * (out[0] * force[0] + out[1] * force[1]);
-    course.square = -factor
+    response.linear = -factor * (out[0] * force[0] + out[1] * force[1]);
+    response.square = -factor
         * determinant
         * (out[0] * (g22 * into[0] - g12 * into[1]) + out[1] * (g11 * into[1] - g21 * into[0]));
-    course.lower_linear = k[0] * g11 + k[1] * (g12 + g21) + k[2] * g22;
-    course.lower_square = determinant * (g11 * g22 - g12 * g21);
+    response.lower_linear = k[0] * g11 + k[1] * (g12 + g21) + k[2] * g22;
+    response.lower_square = determinant * (g11 * g22 - g12 * g21);
 }
 
 fn action(fixture: &Fixture, site: &Site, pairs: &[FrfPair]) -> Option<(Vec<Station>, Action)> {
@@ -335,17 +344,14 @@ fn action(fixture: &Fixture, site: &Site, pairs: &[FrfPair]) -> Option<(Vec<Stat
             let here = |place: &Place| matches!(place, Place::Joint(other) if other == name);
             let at_its_ends = |place: &Place| matches!(place, Place::Point(p) if [joint.from, joint.to].iter().any(|e| fixture.points()[*e].name == *p));
             // Inside a joint that is soft in series or has mass, a factor of its elastic part alone is another expression.
-            let others = fixture.physics().iter().any(|e| match e.kind {
-                EffectKind::JointMass | EffectKind::ShearDeformation => here(&e.place),
-                EffectKind::InterfaceCompliance => at_its_ends(&e.place),
+            let others = fixture.physics().iter().any(|e| match e.kind.spec().entry {
+                Entry::WholeJoint | Entry::InSeries => here(&e.place) || at_its_ends(&e.place),
                 _ => false,
             });
             if others {
                 return None;
             }
-            let longer =
-                fixture.physics().iter().filter(|e| e.kind == EffectKind::JointLength && here(&e.place));
-            let length = fixture.joint_length(joint) + longer.map(|e| e.value(0)).sum::<f64>();
+            let length = JointElement::new(fixture, joint).length();
             let k = nominal_stiffness(&joint.law, length);
             let stiffness = [k.at(0, 0), k.at(0, 1), k.at(1, 1)];
             Some((ends(joint), Action::Joint { stiffness, length }))
@@ -359,14 +365,14 @@ fn action(fixture: &Fixture, site: &Site, pairs: &[FrfPair]) -> Option<(Vec<Stat
             let rows: Vec<bool> = pairs.iter().map(|p| p.reference.to_string() == *name).collect();
             rows.contains(&true).then(|| (Vec::new(), Action::Channel { rows, divides: true, driving: None }))
         }
-        Site::Seat(name) => {
-            let slope = station(fixture, &Channel::rotational(name.clone()))?;
+        Site::Position(name) => {
+            let slope = channel_station(fixture, &Channel::rotational(name.clone()))?;
             // A rotation reads the same all along a rigid block.
             let reads = |channel: &Channel| channel.point == *name && channel.dof == Dof::Translation;
             let responses: Vec<bool> = pairs.iter().map(|p| reads(&p.response)).collect();
             let references: Vec<bool> = pairs.iter().map(|p| reads(&p.reference)).collect();
             let any = responses.contains(&true) || references.contains(&true);
-            any.then(|| (vec![slope], Action::Seat { responses, references }))
+            any.then(|| (vec![slope], Action::Position { responses, references }))
         }
     }
 }

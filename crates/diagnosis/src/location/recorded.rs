@@ -1,11 +1,14 @@
 //! A recording line after line, as scalars are eliminated from it.
 
 use crate::Observation;
+use crate::fitter::Fitter;
+use crate::settings::Settings;
 use num_complex::Complex64;
 
 /// The FRFs of an observation, line after line, FRF after FRF.
 pub(super) struct Recorded<'a> {
     pub observation: &'a Observation,
+    pub settings: &'a Settings,
     pub measured: Vec<Complex64>,
     /// 2/σ² by value.
     pub weights: Vec<f64>,
@@ -14,11 +17,13 @@ pub(super) struct Recorded<'a> {
 }
 
 impl<'a> Recorded<'a> {
-    pub fn of(observation: &'a Observation) -> Self {
+    pub fn of(fitter: Fitter<'a>) -> Self {
+        let Fitter { observation, settings } = fitter;
         let (lines, frfs) = (observation.lines().len(), observation.pairs().len());
         let indices = || (0..lines).flat_map(move |line| (0..frfs).map(move |k| k * lines + line));
         Recorded {
             observation,
+            settings,
             measured: indices().map(|index| observation.values()[index]).collect(),
             weights: indices().map(|index| observation.weights()[index]).collect(),
             omegas: observation.lines().omegas().collect(),
@@ -39,7 +44,7 @@ impl<'a> Recorded<'a> {
     }
 
     /// The weights when a share `epsilon` of the values counts as noise.
-    pub fn softened(&self, epsilon: f64, modelled: &[Complex64]) -> Vec<f64> {
+    pub fn inflated(&self, epsilon: f64, modelled: &[Complex64]) -> Vec<f64> {
         if epsilon == 0.0 {
             return self.weights.clone();
         }
@@ -47,7 +52,7 @@ impl<'a> Recorded<'a> {
         let mut all = Vec::with_capacity(lines * frfs);
         for line in 0..lines {
             for k in 0..frfs {
-                all.push(self.observation.softened(k * lines + line, modelled[line * frfs + k], epsilon));
+                all.push(self.observation.inflated(k * lines + line, modelled[line * frfs + k], epsilon));
             }
         }
         all

@@ -2,9 +2,9 @@
 
 use super::Site;
 use crate::Observation;
-use crate::freedom::extent;
-use jointscope_fixture::{BodyKind, Dof, Effect, EffectKind, Fixture, Joint, Place};
-use jointscope_lumped::nominal_stiffness;
+use crate::freedom::{extent, turns};
+use jointscope_fixture::{BodyKind, Dof, Effect, Entry, Fixture, Joint, Place};
+use jointscope_lumped::{JointElement, nominal_stiffness};
 use jointscope_spectra::Channel;
 
 /// Abscissae of an even grid on each body, its ends included.
@@ -42,16 +42,8 @@ pub(super) fn sites(fixture: &Fixture, observation: &Observation) -> Vec<Vec<Sit
     seats.sort();
     seats.dedup();
     let turns = |c: &&Channel| fixture.point(&c.point).is_some_and(|p| turns(fixture, p.body));
-    all.extend(seats.into_iter().filter(turns).map(|c| vec![Site::Seat(c.point.clone())]));
+    all.extend(seats.into_iter().filter(turns).map(|c| vec![Site::Position(c.point.clone())]));
     all
-}
-
-/// Whether a body has slopes.
-pub(super) fn turns(fixture: &Fixture, body: usize) -> bool {
-    match &fixture.bodies()[body].kind {
-        BodyKind::Rigid(rigid) => rigid.rotates,
-        BodyKind::Beam(_) => true,
-    }
 }
 
 fn on_body(fixture: &Fixture, body: usize) -> Vec<Site> {
@@ -82,10 +74,7 @@ fn on_body(fixture: &Fixture, body: usize) -> Vec<Site> {
 fn series(fixture: &Fixture, joint: &Joint, dof: Dof) -> Vec<Site> {
     let points = fixture.points();
     let site = |point| Site::Series { joint: joint.name.clone(), point, dof };
-    let heavy = fixture.physics().iter().any(
-        |e| matches!(&e.place, Place::Joint(name) if e.kind == EffectKind::JointMass && *name == joint.name),
-    );
-    if dof == Dof::Translation && !heavy {
+    if dof == Dof::Translation && !JointElement::new(fixture, joint).is_heavy() {
         return vec![site(None)];
     }
     let alone = |p: &&usize| fixture.joints().iter().filter(|j| j.from == **p || j.to == **p).count() == 1;
@@ -103,13 +92,9 @@ impl Site {
 
     /// Whether `effect` would act through this site of `fixture`. A body's abscissa is not compared: the effect's own is fitted.
     pub fn holds(&self, effect: &Effect, fixture: &Fixture) -> bool {
-        match (self, &effect.place, effect.kind) {
-            (
-                Site::Body { body, .. },
-                Place::Body(name),
-                EffectKind::AddedMass | EffectKind::Support | EffectKind::AttachedResonator,
-            ) => body == name,
-            (Site::Series { joint, point, dof }, Place::Point(name), EffectKind::InterfaceCompliance) => {
+        match (self, &effect.place, effect.kind.spec().entry) {
+            (Site::Body { body, .. }, Place::Body(name), Entry::RankOne) => body == name,
+            (Site::Series { joint, point, dof }, Place::Point(name), Entry::InSeries) => {
                 let ends = fixture.joint(joint).map(|j| [j.from, j.to]);
                 let at_an_end = ends.is_some_and(|e| e.iter().any(|p| fixture.points()[*p].name == *name));
                 let here = point.as_ref().is_none_or(|point| point == name);
@@ -118,43 +103,26 @@ impl Site {
             (
                 Site::Series { joint, dof: Dof::Translation, point: None, .. },
                 Place::Joint(name),
-                EffectKind::ShearDeformation,
+                Entry::InSeries,
             )
-            | (
-                Site::Joint(joint),
-                Place::Joint(name),
-                EffectKind::StiffnessChange | EffectKind::LossFactor | EffectKind::Relaxation,
-            ) => joint == name,
-            (
-                Site::Response(channel),
-                Place::Response(name),
-                EffectKind::ChannelGain | EffectKind::ChannelDelay | EffectKind::SensorMass,
-            )
-            | (
-                Site::Reference(channel),
-                Place::Reference(name),
-                EffectKind::ChannelGain | EffectKind::ChannelDelay,
-            )
-            | (Site::Seat(channel), Place::Point(name), EffectKind::PointOffset) => channel == name,
+            | (Site::Joint(joint), Place::Joint(name), Entry::Modulus) => joint == name,
+            (Site::Response(channel), Place::Response(name), Entry::Signal | Entry::SensorLoad)
+            | (Site::Reference(channel), Place::Reference(name), Entry::Signal)
+            | (Site::Position(channel), Place::Point(name), Entry::Offset) => channel == name,
             _ => false,
         }
     }
 
     /// The site through which `effect` acts in `fixture`; `None` for an effect of higher rank.
     pub fn of(fixture: &Fixture, effect: &Effect) -> Option<Self> {
-        let sites = match (&effect.place, effect.kind) {
-            (
-                Place::Body(body),
-                EffectKind::AddedMass | EffectKind::Support | EffectKind::AttachedResonator,
-            ) => {
+        let sites = match (&effect.place, effect.kind.spec().entry) {
+            (Place::Body(body), Entry::RankOne) => {
                 vec![Site::Body { body: body.clone(), x: effect.value(0) }]
             }
-            (Place::Point(name), EffectKind::PointOffset) => vec![Site::Seat(name.clone())],
+            (Place::Point(name), Entry::Offset) => vec![Site::Position(name.clone())],
             (Place::Response(name), _) => vec![Site::Response(name.clone())],
             (Place::Reference(name), _) => vec![Site::Reference(name.clone())],
-            (Place::Joint(name), kind) if kind != EffectKind::ShearDeformation => {
-                vec![Site::Joint(name.clone())]
-            }
+            (Place::Joint(name), Entry::Modulus) => vec![Site::Joint(name.clone())],
             _ => {
                 let dofs = [Dof::Translation, Dof::Rotation];
                 let of = |joint| dofs.into_iter().flat_map(move |dof| series(fixture, joint, dof));

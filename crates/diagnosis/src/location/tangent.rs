@@ -1,14 +1,12 @@
 //! How a site's modelled FRFs follow the tolerances, the abscissa and a law's parameters.
 
 use super::Site;
-use super::pattern::{Course, Inversion};
-use super::subject::{Modelled, State, Subject};
+use super::pattern::{Inversion, RationalResponse};
+use super::problem::{Iterate, Modelled, Problem};
 use crate::Hypothesis;
-use crate::normal::dot;
+use jointscope_inference::{NormalEquations, dot};
 use num_complex::Complex64;
 
-/// Step of differences in units of a coordinate, as in the fit of effects.
-const DIFFERENCE: f64 = 2e-4;
 /// Relative step of a law's parameters.
 const PARAMETER_DIFFERENCE: f64 = 1e-5;
 /// Parameters that a law may have.
@@ -21,12 +19,6 @@ pub(super) struct Tangent {
     values: Vec<Complex64>,
 }
 
-/// Normal matrix, row-major and whole, and right side.
-pub(super) struct Normal {
-    pub matrix: Vec<f64>,
-    pub right: Vec<f64>,
-}
-
 impl Tangent {
     /// The derivatives by one coordinate.
     pub fn column(&self, coordinate: usize) -> &[Complex64] {
@@ -35,23 +27,23 @@ impl Tangent {
     }
 }
 
-impl Subject<'_> {
+impl Problem<'_> {
     /// The models a step up each tolerance from a hypothesis: what all sites' derivatives there have in common.
     pub fn surroundings(&self, hypothesis: &Hypothesis) -> Option<Vec<Modelled>> {
-        let beside = |a| self.model(&hypothesis.moved(a, DIFFERENCE));
+        let beside = |a| self.model(&hypothesis.moved(a, self.settings().fit.difference));
         (0..hypothesis.tolerances().len()).map(beside).collect()
     }
 
     /// Differences about a state. A free scalar follows its component δ as bᵀZ⁻¹b changes. `central` ones where uncertainties are to be
-    /// stated; forward ones, at half the price, show the way well enough.
-    pub fn tangent(&self, at: &State, central: bool) -> Option<Tangent> {
+    /// stated; forward ones, at half the cost, show the way well enough.
+    pub fn tangent(&self, at: &Iterate, central: bool) -> Option<Tangent> {
         if !central {
-            return self.tangent_amid(at, &self.surroundings(&at.stand.hypothesis)?);
+            return self.tangent_amid(at, &self.surroundings(&at.parameters.hypothesis)?);
         }
-        let width = 0.5 / DIFFERENCE;
-        let up = self.differences(at, &self.surroundings(&at.stand.hypothesis)?, 1.0, width)?;
-        let down = (0..at.stand.hypothesis.tolerances().len())
-            .map(|a| self.model(&at.stand.hypothesis.moved(a, -DIFFERENCE)))
+        let width = 0.5 / self.settings().fit.difference;
+        let up = self.differences(at, &self.surroundings(&at.parameters.hypothesis)?, 1.0, width)?;
+        let down = (0..at.parameters.hypothesis.tolerances().len())
+            .map(|a| self.model(&at.parameters.hypothesis.moved(a, -self.settings().fit.difference)))
             .collect::<Option<Vec<Modelled>>>()?;
         let down = self.differences(at, &down, -1.0, width)?;
         let values = up.iter().zip(down).map(|(u, d)| u - d).collect();
@@ -59,15 +51,18 @@ impl Subject<'_> {
     }
 
     /// Forward differences about a state of which the surroundings are known.
-    pub fn tangent_amid(&self, at: &State, surroundings: &[Modelled]) -> Option<Tangent> {
-        let mut values = self.differences(at, surroundings, 1.0, 1.0 / DIFFERENCE)?;
+    pub fn tangent_amid(&self, at: &Iterate, surroundings: &[Modelled]) -> Option<Tangent> {
+        let mut values = self.differences(at, surroundings, 1.0, 1.0 / self.settings().fit.difference)?;
         for column in values.chunks_exact_mut(at.modelled.len()) {
-            column.iter_mut().zip(&at.modelled).for_each(|(sum, from)| *sum -= from / DIFFERENCE);
+            column
+                .iter_mut()
+                .zip(&at.modelled)
+                .for_each(|(sum, from)| *sum -= from / self.settings().fit.difference);
         }
         self.completed(at, values)
     }
 
-    fn completed(&self, at: &State, mut values: Vec<Complex64>) -> Option<Tangent> {
+    fn completed(&self, at: &Iterate, mut values: Vec<Complex64>) -> Option<Tangent> {
         self.by_parameters(at, &mut values);
         let order = values.len() / at.modelled.len().max(1);
         values.iter().all(|v| v.is_finite()).then_some(Tangent { order, values })
@@ -76,37 +71,37 @@ impl Subject<'_> {
     /// What is modelled in the surroundings, and on that side of the abscissa where it moves, times `factor`.
     fn differences(
         &self,
-        at: &State,
+        at: &Iterate,
         surroundings: &[Modelled],
         sign: f64,
         factor: f64,
     ) -> Option<Vec<Complex64>> {
         let (frfs, places) = (self.recorded.frfs(), at.modelled.len());
-        let abscissa = self.abscissa(&at.stand);
+        let abscissa = self.abscissa(&at.parameters);
         let mut values =
             vec![Complex64::ZERO; places * (surroundings.len() + usize::from(abscissa.is_some()))];
         let mut fill = |coordinate: usize, modelled: &Modelled, site: &Site| {
             let column = &mut values[coordinate * places..(coordinate + 1) * places];
-            self.on_lines(modelled, site, |line, courses: &[Course], inversion| {
+            self.on_lines(modelled, site, |line, responses: &[RationalResponse], inversion| {
                 let z = self.follows(at, line, &inversion);
                 let column = &mut column[line * frfs..(line + 1) * frfs];
-                column.iter_mut().zip(courses).for_each(|(to, course)| *to = course.at(z) * factor);
+                column.iter_mut().zip(responses).for_each(|(to, response)| *to = response.at(z) * factor);
             })
         };
         for (coordinate, modelled) in surroundings.iter().enumerate() {
-            fill(coordinate, modelled, &at.stand.site)?;
+            fill(coordinate, modelled, &at.parameters.site)?;
         }
-        if let (Some((unit, ..)), Site::Body { body, x }) = (abscissa, &at.stand.site) {
-            let site = Site::Body { body: body.clone(), x: x + sign * DIFFERENCE * unit };
-            fill(surroundings.len(), &self.model(&at.stand.hypothesis)?, &site)?;
+        if let (Some((unit, ..)), Site::Body { body, x }) = (abscissa, &at.parameters.site) {
+            let site = Site::Body { body: body.clone(), x: x + sign * self.settings().fit.difference * unit };
+            fill(surroundings.len(), &self.model(&at.parameters.hypothesis)?, &site)?;
         }
         Some(values)
     }
 
     /// The scalar when everything else has moved.
-    fn follows(&self, at: &State, line: usize, inversion: &Inversion) -> Complex64 {
+    fn follows(&self, at: &Iterate, line: usize, inversion: &Inversion) -> Complex64 {
         match &self.law {
-            Some(law) => self.bound(law, &at.stand.parameters, line, inversion),
+            Some(law) => self.bound(law, &at.parameters.of_law, line, inversion),
             None => {
                 let z = at.scalars[line];
                 z / (1.0 + (inversion.feedback - at.inversions[line].feedback) * z)
@@ -114,15 +109,15 @@ impl Subject<'_> {
         }
     }
 
-    fn by_parameters(&self, at: &State, values: &mut Vec<Complex64>) {
+    fn by_parameters(&self, at: &Iterate, values: &mut Vec<Complex64>) {
         let Some(law) = &self.law else { return };
         let places = at.modelled.len();
         let mut moved = [0.0; MOST];
-        let count = at.stand.parameters.len().min(MOST);
+        let count = at.parameters.of_law.len().min(MOST);
         let own = values.len();
         values.resize(own + count * places, Complex64::ZERO);
         for (p, column) in values[own..].chunks_exact_mut(places).enumerate() {
-            moved[..count].copy_from_slice(&at.stand.parameters[..count]);
+            moved[..count].copy_from_slice(&at.parameters.of_law[..count]);
             let step = PARAMETER_DIFFERENCE * moved[p].abs().max(1e-9);
             let centre = moved[p];
             for (line, inversion) in at.inversions.iter().enumerate() {
@@ -138,7 +133,7 @@ impl Subject<'_> {
     }
 
     /// The normal matrix with priors, what a free scalar takes up projected out.
-    pub fn normal(&self, at: &State, tangent: &Tangent, weights: &[f64]) -> Normal {
+    pub fn normal(&self, at: &Iterate, tangent: &Tangent, weights: &[f64]) -> NormalEquations {
         let n = tangent.order;
         let roots: Vec<f64> = weights.iter().map(|w| w.sqrt()).collect();
         let units = if self.law.is_none() { self.units(at, &roots) } else { Vec::new() };
@@ -159,26 +154,24 @@ impl Subject<'_> {
             project_out(&units, self.recorded.frfs(), whitened);
         }
         let column = |a: usize| &whitened[a * width..(a + 1) * width];
-        let mut normal = Normal { matrix: vec![0.0; n * n], right: vec![0.0; n] };
+        let mut normal = NormalEquations::zero(n);
         for a in 0..n {
             normal.right[a] = dot(column(a), column(n));
             for b in 0..=a {
                 let value = dot(column(a), column(b));
-                normal.matrix[a * n + b] = value;
-                normal.matrix[b * n + a] = value;
+                normal.information[a * n + b] = value;
+                normal.information[b * n + a] = value;
             }
         }
-        let hypothesis = &at.stand.hypothesis;
+        let hypothesis = &at.parameters.hypothesis;
         for a in 0..hypothesis.tolerances().len() {
-            let prior = hypothesis.prior(a);
-            normal.matrix[a * n + a] += prior;
-            normal.right[a] -= prior * hypothesis.coordinates[a];
+            normal.add_prior(a, hypothesis.prior(a), hypothesis.coordinates[a]);
         }
         normal
     }
 
     /// The direction of each line's free scalar among the whitened values, of length one; zero where the pattern vanishes.
-    fn units(&self, at: &State, roots: &[f64]) -> Vec<Complex64> {
+    fn units(&self, at: &Iterate, roots: &[f64]) -> Vec<Complex64> {
         let mut units: Vec<Complex64> = at.slopes.iter().zip(roots).map(|(s, root)| s * *root).collect();
         for line in units.chunks_exact_mut(self.recorded.frfs()) {
             let size: f64 = line.iter().map(|u| u.norm_sqr()).sum();

@@ -1,5 +1,6 @@
 //! One place of the search: the best linear unknowns there, χ², its gradient, and what the place tells of poles and participations.
 
+use jointscope_inference::NormalEquations;
 use jointscope_linalg::Cholesky;
 use num_complex::Complex64;
 
@@ -24,9 +25,8 @@ pub(super) struct Point {
     pub rows: Vec<RowSolution>,
     pub chi2: f64,
     penalty: f64,
-    /// −½ ∂χ²/∂(parameters), and the information.
-    pub gradient: Vec<f64>,
-    pub information: Vec<f64>,
+    /// For the parameters, all else eliminated.
+    pub normal: NormalEquations,
     /// For each row of FRFs, the information between its linear unknowns and the parameters.
     pub mixed: Vec<Vec<f64>>,
 }
@@ -43,8 +43,7 @@ impl Point {
             rows: Vec::new(),
             chi2: 0.0,
             penalty: 0.0,
-            gradient: vec![0.0; parameters],
-            information: vec![0.0; parameters * parameters],
+            normal: NormalEquations::zero(parameters),
             mixed: Vec::new(),
             gram,
             poles,
@@ -135,7 +134,7 @@ impl Point {
     }
 
     fn add_information(&mut self, frfs: &[usize], solution: &[f64], factor: &Cholesky) {
-        let parameters = self.gradient.len();
+        let parameters = self.normal.order;
         let count = self.poles.poles.len();
         let (shared, own) = (2 * count, 2 * self.terms.count());
         let size = factor.order();
@@ -151,10 +150,10 @@ impl Point {
             }
             residual.extend((0..own).map(|k| (first_term + k, -solution[shared + own * i + k])));
             for (a, left) in &derivatives {
-                self.gradient[*a] += self.gram.product(frf, left, &residual);
+                self.normal.right[*a] += self.gram.product(frf, left, &residual);
                 for (b, other) in derivatives.iter().filter(|(b, _)| b <= a) {
                     let value = self.gram.product(frf, left, other);
-                    self.information[a * parameters + b] += value;
+                    self.normal.information[a * parameters + b] += value;
                 }
                 for unknown in 0..shared {
                     mixed[a * size + unknown] +=
@@ -176,14 +175,14 @@ impl Point {
                     .zip(&reduced[b * size..(b + 1) * size])
                     .map(|(x, y)| x * y)
                     .sum();
-                self.information[a * parameters + b] -= dot;
+                self.normal.information[a * parameters + b] -= dot;
             }
         }
         self.mixed.push(mixed);
     }
 
     fn add_prior(&mut self, prior: &Prior) {
-        let parameters = self.gradient.len();
+        let parameters = self.normal.order;
         for (mode, (pole, centre)) in self.poles.poles.iter().zip(&prior.poles).enumerate() {
             // In half-widths of the centre, so that a narrow pole is held no tighter.
             let scale = pole.re / centre.re;
@@ -191,34 +190,22 @@ impl Point {
             for (k, (away, std)) in away.into_iter().zip([prior.std.0, prior.std.1]).enumerate() {
                 let (index, scale) = (2 * mode + k, if k == 0 { scale } else { 1.0 });
                 self.penalty += (away / std).powi(2);
-                self.gradient[index] -= scale * away / (std * std);
-                self.information[index * parameters + index] += (scale / std).powi(2);
+                self.normal.right[index] -= scale * away / (std * std);
+                self.normal.information[index * parameters + index] += (scale / std).powi(2);
             }
         }
     }
 
     /// A parameter that nothing is known of, such as the pole of a mode without an entry anywhere, stays where it is.
     fn hold_what_is_unknown(&mut self) {
-        let parameters = self.gradient.len();
+        let parameters = self.normal.order;
         for index in 0..parameters {
-            let diagonal = &mut self.information[index * parameters + index];
+            let diagonal = &mut self.normal.information[index * parameters + index];
             if *diagonal <= 0.0 || diagonal.is_nan() {
                 *diagonal = f64::MIN_POSITIVE.sqrt();
-                self.gradient[index] = 0.0;
+                self.normal.right[index] = 0.0;
             }
         }
-    }
-
-    pub fn step(&self, damping: f64) -> Option<Vec<f64>> {
-        let n = self.gradient.len();
-        let mut damped = self.information.clone();
-        for i in 0..n {
-            damped[i * n + i] *= 1.0 + damping;
-        }
-        let factor = Cholesky::of(n, &damped)?;
-        let mut step = self.gradient.clone();
-        factor.solve_in_place(&mut step);
-        step.iter().all(|s| s.is_finite()).then_some(step)
     }
 
     /// The parameters a step further; no pole moves by more than a few half-widths at once.

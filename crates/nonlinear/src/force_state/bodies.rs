@@ -1,14 +1,17 @@
 //! Accelerations of rigid bodies from sensors, and from the balance of momentum where sensors do not suffice.
 
-use super::sides::{abscissa, free};
-use super::signals::Lines;
-use jointscope_fixture::{BodyKind, Dof, EffectKind, Fixture, Place};
-use jointscope_hits::{Hit, Motion};
-use jointscope_linalg::inverse;
+use super::sides::free;
+use crate::spectra::Windowed;
+use crate::time::structure::{abscissa_m, effects};
+use jointscope_fixture::{BodyKind, Dof, EffectKind, Fixture, Place, Quantity};
+use jointscope_hits::{Hit, Motion, Response};
+use jointscope_linalg::Cholesky;
 use num_complex::Complex64;
+use serde::Serialize;
 
 /// Where a body's motion is known from.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
 pub enum MotionSource {
     /// Its own sensors.
     Sensors,
@@ -32,12 +35,10 @@ pub(super) struct Inertia {
 pub(super) fn inertia(fixture: &Fixture, index: usize) -> Option<Inertia> {
     let body = &fixture.bodies()[index];
     let BodyKind::Rigid(rigid) = &body.kind else { return None };
-    let value = |q: &Option<jointscope_fixture::Quantity>| q.as_ref().map_or(0.0, |q| q.value);
+    let value = |q: &Option<Quantity>| q.as_ref().map_or(0.0, |q| q.value);
     let mut parts = vec![(rigid.mass.value, value(&rigid.x_cg), value(&rigid.inertia))];
     parts.extend(body.masses.iter().map(|m| (m.mass.value, m.x.value, 0.0)));
-    let added = fixture.physics().iter().filter(|e| {
-        e.kind == EffectKind::AddedMass && matches!(&e.place, Place::Body(name) if *name == body.name)
-    });
+    let added = effects(fixture, EffectKind::AddedMass, Place::Body(body.name.clone()));
     parts.extend(added.map(|e| (e.value(1), e.value(0), 0.0)));
     let mass: f64 = parts.iter().map(|p| p.0).sum();
     let x_cg = match rigid.rotates {
@@ -51,9 +52,10 @@ pub(super) fn inertia(fixture: &Fixture, index: usize) -> Option<Inertia> {
 /// Lines of a body's acceleration: of its centre of gravity, and angular.
 pub(super) type BodyMotion = [Vec<Complex64>; 2];
 
-/// One equation: Σ coefficient·unknown = lines.
+/// One equation: Σ coefficient·unknown = lines. Unknown 2b is the acceleration of body b's centre of gravity, 2b + 1 the angular one times the
+/// length scale.
 struct Equation {
-    coefficients: Vec<(usize, f64)>,
+    coefficients: Vec<f64>,
     value: Vec<Complex64>,
 }
 
@@ -61,45 +63,37 @@ struct Equation {
 pub(super) fn measured(
     fixture: &Fixture,
     hit: &Hit,
-    lines: &Lines,
+    lines: &Windowed,
 ) -> Vec<Option<(MotionSource, BodyMotion)>> {
     let count = fixture.bodies().len();
     let bodies: Vec<Option<Inertia>> = (0..count).map(|index| inertia(fixture, index)).collect();
     let scale = extent(fixture);
     let readings = readings(fixture, hit, lines, &bodies, scale);
-    let mut found: Vec<Option<(MotionSource, BodyMotion)>> = (0..count)
-        .map(|index| {
-            let own = readings.iter().filter(|(body, _)| *body == index).map(|(_, e)| e);
-            let unknowns = unknowns(&bodies, index);
-            let motion = solved(&own.collect::<Vec<_>>(), &unknowns, scale)?;
-            Some((MotionSource::Sensors, motion.into_iter().next()?))
-        })
-        .collect();
-    let whole: Option<Vec<Inertia>> = bodies.iter().copied().collect();
+    let unknowns = |index: usize| match bodies[index] {
+        Some(Inertia { rotates: true, .. }) => vec![2 * index, 2 * index + 1],
+        Some(_) => vec![2 * index],
+        None => Vec::new(),
+    };
+    let own = |index: usize| {
+        let own = readings.iter().filter(|(body, _)| *body == index).map(|(_, equation)| equation);
+        let motion = solved(&own.collect::<Vec<_>>(), &unknowns(index), scale)?;
+        Some((MotionSource::Sensors, motion.into_iter().next()?))
+    };
+    let mut found: Vec<Option<(MotionSource, BodyMotion)>> = (0..count).map(own).collect();
     let all: Vec<usize> = (0..count).collect();
-    if let Some(whole) = whole
+    if let Some(whole) = bodies.iter().copied().collect::<Option<Vec<Inertia>>>()
         && found.iter().any(Option::is_none)
         && free(fixture, &all)
     {
         let momentum = momentum(fixture, hit, lines, &whole, scale);
         let equations: Vec<&Equation> = readings.iter().map(|(_, e)| e).chain(&momentum).collect();
-        let unknowns: Vec<usize> = all.iter().flat_map(|&i| unknowns(&bodies, i)).collect();
-        if let Some(motions) = solved(&equations, &unknowns, scale) {
-            for (found, motion) in found.iter_mut().zip(motions) {
-                found.get_or_insert((MotionSource::Momentum, motion));
-            }
+        let unknowns: Vec<usize> = all.into_iter().flat_map(unknowns).collect();
+        for (found, motion) in found.iter_mut().zip(solved(&equations, &unknowns, scale).unwrap_or_default())
+        {
+            found.get_or_insert((MotionSource::Momentum, motion));
         }
     }
     found
-}
-
-/// Unknown 2b is the acceleration of body b's centre of gravity, 2b + 1 the angular one times the length scale.
-fn unknowns(bodies: &[Option<Inertia>], body: usize) -> Vec<usize> {
-    match bodies[body] {
-        Some(Inertia { rotates: true, .. }) => vec![2 * body, 2 * body + 1],
-        Some(_) => vec![2 * body],
-        None => Vec::new(),
-    }
 }
 
 /// Length by which angular motion compares with transverse, m.
@@ -112,57 +106,57 @@ fn extent(fixture: &Fixture) -> f64 {
 fn readings(
     fixture: &Fixture,
     hit: &Hit,
-    lines: &Lines,
+    lines: &Windowed,
     bodies: &[Option<Inertia>],
     scale: f64,
 ) -> Vec<(usize, Equation)> {
-    let mut all = Vec::new();
-    for response in hit.responses() {
-        let Some(point) = fixture.point(&response.channel.point) else { continue };
-        let Some(body) = bodies[point.body] else { continue };
-        let mut value = lines.of(&response.values);
+    let reading = |response: &Response| {
+        let point = fixture.point(&response.channel.point)?;
+        let body = bodies[point.body].filter(|b| b.rotates || response.channel.dof == Dof::Translation)?;
+        let mut coefficients = vec![0.0; 2 * bodies.len()];
+        let mut factor = 1.0;
+        match response.channel.dof {
+            Dof::Translation => {
+                coefficients[2 * point.body] = 1.0;
+                coefficients[2 * point.body + 1] = (abscissa_m(fixture, point) - body.x_cg) / scale;
+            }
+            Dof::Rotation => {
+                coefficients[2 * point.body + 1] = 1.0;
+                factor = scale;
+            }
+        }
         let rates = match response.motion {
             Motion::Acceleration => 0,
             Motion::Velocity => 1,
             Motion::Displacement => 2,
         };
-        value.iter_mut().enumerate().for_each(|(line, v)| *v *= lines.s(line).powi(rates));
-        let (first, arm) = (2 * point.body, (abscissa(fixture, point) - body.x_cg) / scale);
-        let coefficients = match (response.channel.dof, body.rotates) {
-            (Dof::Translation, true) => vec![(first, 1.0), (first + 1, arm)],
-            (Dof::Translation, false) => vec![(first, 1.0)],
-            (Dof::Rotation, true) => {
-                value.iter_mut().for_each(|v| *v *= scale);
-                vec![(first + 1, 1.0)]
-            }
-            (Dof::Rotation, false) => continue,
-        };
-        all.push((point.body, Equation { coefficients, value }));
-    }
-    all
+        let mut value = lines.lines(&response.values);
+        value.iter_mut().enumerate().for_each(|(line, v)| *v *= lines.s(line).powi(rates) * factor);
+        Some((point.body, Equation { coefficients, value }))
+    };
+    hit.responses().iter().filter_map(reading).collect()
 }
 
 /// Balance of force and, where every body rotates, of moment about x = 0, of a free assembly; divided by its mass and the length scale.
-fn momentum(fixture: &Fixture, hit: &Hit, lines: &Lines, bodies: &[Inertia], scale: f64) -> Vec<Equation> {
+fn momentum(fixture: &Fixture, hit: &Hit, lines: &Windowed, bodies: &[Inertia], scale: f64) -> Vec<Equation> {
     let mass: f64 = bodies.iter().map(|b| b.mass).sum();
-    let load = lines.of(hit.force());
+    let load = lines.lines(hit.force());
     let [force, moment] = applied(fixture, hit, 0.0);
-    let per = |factor: f64| load.iter().map(|f| f * factor).collect::<Vec<_>>();
-    let forces = bodies.iter().enumerate().map(|(i, b)| (2 * i, b.mass / mass));
-    let mut all = vec![Equation { coefficients: forces.collect(), value: per(force / mass) }];
+    let equation = |factor: f64, coefficients: &dyn Fn(&Inertia) -> [f64; 2]| Equation {
+        coefficients: bodies.iter().flat_map(coefficients).collect(),
+        value: load.iter().map(|f| f * factor).collect(),
+    };
+    let mut all = vec![equation(force / mass, &|b| [b.mass / mass, 0.0])];
     if bodies.iter().all(|b| b.rotates) {
-        let moments = bodies.iter().enumerate().flat_map(|(i, b)| {
-            let own = b.inertia / (mass * scale * scale);
-            [(2 * i, b.mass * b.x_cg / (mass * scale)), (2 * i + 1, own)]
-        });
-        all.push(Equation { coefficients: moments.collect(), value: per(moment / (mass * scale)) });
+        let own = |b: &Inertia| [b.mass * b.x_cg / (mass * scale), b.inertia / (mass * scale * scale)];
+        all.push(equation(moment / (mass * scale), &own));
     }
     all
 }
 
 /// Force and moment about `x` that one unit of the hammer's signal applies.
 pub(super) fn applied(fixture: &Fixture, hit: &Hit, x: f64) -> [f64; 2] {
-    let at = fixture.point(&hit.struck().point).map_or(0.0, |point| abscissa(fixture, point));
+    let at = fixture.point(&hit.struck().point).map_or(0.0, |point| abscissa_m(fixture, point));
     match hit.struck().dof {
         Dof::Translation => [1.0, at - x],
         Dof::Rotation => [0.0, 1.0],
@@ -178,29 +172,21 @@ fn solved(equations: &[&Equation], unknowns: &[usize], scale: f64) -> Option<Vec
     if n == 0 || equations.len() < n {
         return None;
     }
-    let mut normal = vec![0.0; n * n];
-    let length = equations.first()?.value.len();
-    let mut right = vec![vec![Complex64::ZERO; length]; n];
-    let place = |unknown: usize| unknowns.iter().position(|u| *u == unknown);
-    for equation in equations {
-        for (a, factor) in &equation.coefficients {
-            let i = place(*a)?;
-            for (b, other) in &equation.coefficients {
-                normal[i * n + place(*b)?] += factor * other;
-            }
-            right[i].iter_mut().zip(&equation.value).for_each(|(to, v)| *to += v * *factor);
-        }
-    }
-    let inverse = inverse(&normal, n)?;
+    let factor = |equation: &Equation, i: usize| equation.coefficients[unknowns[i]];
+    let product = |k: usize| equations.iter().map(|e| factor(e, k / n) * factor(e, k % n)).sum();
+    let normal: Vec<f64> = (0..n * n).map(product).collect();
+    let inverse = Cholesky::of(n, &normal)?.inverse();
     let norm = |m: &[f64]| m.iter().map(|v| v * v).sum::<f64>().sqrt();
     let condition = norm(&normal) * norm(&inverse);
     if !condition.is_finite() || condition >= DETERMINED {
         return None;
     }
+    // Row i of the pseudo-inverse, applied to the lines.
     let solution = |i: usize| {
-        let mut all = vec![Complex64::ZERO; length];
-        for (factor, right) in inverse[i * n..(i + 1) * n].iter().zip(&right) {
-            all.iter_mut().zip(right).for_each(|(to, v)| *to += v * *factor);
+        let mut all = vec![Complex64::ZERO; equations[0].value.len()];
+        for equation in equations {
+            let weight: f64 = (0..n).map(|j| inverse[i * n + j] * factor(equation, j)).sum();
+            all.iter_mut().zip(&equation.value).for_each(|(to, v)| *to += v * weight);
         }
         all
     };
@@ -208,7 +194,7 @@ fn solved(equations: &[&Equation], unknowns: &[usize], scale: f64) -> Option<Vec
     for (i, unknown) in unknowns.iter().enumerate() {
         match (unknown % 2, motions.last_mut()) {
             (1, Some(last)) => last[1] = solution(i).iter().map(|v| v / scale).collect(),
-            _ => motions.push([solution(i), vec![Complex64::ZERO; length]]),
+            _ => motions.push([solution(i), vec![Complex64::ZERO; equations[0].value.len()]]),
         }
     }
     Some(motions)

@@ -1,38 +1,47 @@
 //! The map of one joint from one hit.
 
 use super::bodies::{BodyMotion, Inertia, MotionSource, applied, inertia, measured};
-use super::sides::{abscissa, check_effects, free, sides, stiffness_factor};
-use super::signals::{Lines, rising};
+use super::sides::{check_effects, free, sides};
+use crate::spectra::{Windowed, rising};
 use crate::time::simulation::simulate_one;
-use crate::time::structure::Reading;
-use crate::{ForceStateError, Memory, RestoringLaw};
-use jointscope_fixture::{BodyKind, Dof, Fixture, Joint, Place};
-use jointscope_hits::{Hit, Motion};
+use crate::time::structure::{Reading, abscissa_m, effects};
+use crate::{ForceStateError, RestoringLaw};
+use jointscope_fixture::{Dof, EffectKind, Fixture, Joint, Place};
+use jointscope_hits::{Hit, Motion, Response};
 use jointscope_lumped::nominal_stiffness;
 use jointscope_spectra::Channel;
 use num_complex::Complex64;
+use serde::{Serialize, Serializer};
+use std::ops::{Mul, Sub};
 
 /// What a joint bore during a hit against how far and how fast it was moved, as measured.
 ///
 /// The force is the inertia force of the bodies on one side of the joint less the hammer's, so neither the joint's stiffness nor its law enters
 /// it. The relative motion d = u_to − R·u_from is integrated from accelerations by 1/(iω)²; below `band.0`, where that drifts, it is
 /// the simulated fixture's.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ForceStateMap {
     /// The joint.
     pub joint: String,
     /// Number of the hit.
     pub hit: u32,
     /// Its peak force, N.
+    #[serde(skip)]
     pub peak_force: f64,
     /// Where d is measured, Hz; force and d end at the upper limit.
     pub band: (f64, f64),
     /// Bodies whose inertia gives the force.
+    #[serde(rename = "force_from_bodies")]
     pub weighed: Vec<String>,
     /// Bodies that the map needs, and where their motion is known from.
+    #[serde(rename = "motion_from", serialize_with = "by_body")]
     pub sources: Vec<(String, MotionSource)>,
     /// Deflection, and rotation where the joint's bodies rotate.
     pub components: Vec<ForceState>,
+}
+
+fn by_body<S: Serializer>(sources: &[(String, MotionSource)], serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_map(sources.iter().map(|(body, source)| (body, source)))
 }
 
 /// One component of a [`ForceStateMap`], from the blow until the motion has died down. SI units.
@@ -52,6 +61,19 @@ pub struct ForceState {
     pub laws: Vec<RestoringLaw>,
     /// What these laws bear under d, N or N·m.
     pub law_force: Vec<f64>,
+}
+
+/// Of the curves only what they come to.
+impl Serialize for ForceState {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        #[derive(Serialize)]
+        struct Summary {
+            dof: Dof,
+            explained: Option<f64>,
+            dashpot: f64,
+        }
+        Summary { dof: self.dof, explained: self.explained(), dashpot: self.dashpot() }.serialize(serializer)
+    }
 }
 
 impl ForceState {
@@ -93,55 +115,52 @@ impl ForceStateMap {
     /// A joint both of whose sides are held, deformable, or not followed by enough sensors; effects that make bodies bear more than
     /// their inertia.
     pub fn of(fixture: &Fixture, joint: &str, hit: &Hit, band: (f64, f64)) -> Result<Self, ForceStateError> {
-        let unknown = || ForceStateError::UnknownJoint { joint: joint.to_owned() };
+        let unknown = || ForceStateError::UnknownJoint(joint.to_owned());
         let joint = fixture.joint(joint).ok_or_else(unknown)?;
         check_effects(fixture)?;
         let sides = sides(fixture, joint)?;
-        let lines = Lines::new(hit.samples(), hit.interval());
+        let lines = Windowed::padded(vec![1.0; hit.samples()], hit.interval());
         let motions = measured(fixture, hit, &lines);
-        let (side, bodies) = weighed(fixture, joint, &sides, &motions)?;
+        let side = weighed(fixture, joint, &sides, &motions)?;
         let ends = [joint.to, joint.from];
         let (slow, accelerations) = ends_simulated(fixture, hit, &lines, ends)?;
-        let measured_end = |end: usize| {
+        let [to, from] = [0, 1].map(|end| {
             let point = &fixture.points()[ends[end]];
             let (Some((_, [a, turn])), Some(body)) = (&motions[point.body], inertia(fixture, point.body))
             else {
                 return accelerations[end].clone();
             };
-            let arm = abscissa(fixture, point) - body.x_cg;
+            let arm = abscissa_m(fixture, point) - body.x_cg;
             [a.iter().zip(turn).map(|(a, turn)| a + turn * arm).collect(), turn.clone()]
-        };
-        let length = fixture.joint_length(joint);
-        let (to, from) = (measured_end(0), measured_end(1));
-        let deflection = (0..to[0].len()).map(|i| to[0][i] - from[0][i] - from[1][i] * length).collect();
-        let rotation: Vec<Complex64> = (0..to[1].len()).map(|i| to[1][i] - from[1][i]).collect();
-        let rates: BodyMotion = [deflection, rotation];
+        });
+        let rates: BodyMotion = across(&to, &from, fixture.joint_length(joint));
         let motion = |component: usize| -> Vec<Complex64> {
             let line = |(i, (rate, slow)): (usize, (&Complex64, &Complex64))| {
-                let high = rising(lines.frequency(i), (0.5 * band.0, band.0));
+                let high = rising(lines.frequency_hz(i), 0.5 * band.0, band.0);
                 let fast = if high > 0.0 { rate / lines.s(i).powi(2) * high } else { Complex64::ZERO };
-                (fast + slow * (1.0 - high)) * upper(lines.frequency(i), band.1)
+                (fast + slow * (1.0 - high)) * upper(lines.frequency_hz(i), band.1)
             };
             rates[component].iter().zip(&slow[component]).enumerate().map(line).collect()
         };
-        let force = force(fixture, joint, hit, &lines, (side, &bodies), &motions, band.1);
+        let force = force(fixture, joint, hit, &lines, &side, &motions, band.1);
         let d = [motion(0), motion(1)];
-        let turns = ends.map(|p| turns(fixture, p)) == [true; 2] && bodies.iter().all(|(_, b)| b.rotates);
-        let components = if turns { 2 } else { 1 };
-        let names = |index: usize| fixture.bodies()[index].name.clone();
+        let (_, bodies) = side;
+        let rotates = ends.into_iter().all(|p| rotates(fixture, p)) && bodies.iter().all(|(_, b)| b.rotates);
+        let name = |index: usize| fixture.bodies()[index].name.clone();
         let mut needed: Vec<usize> = bodies.iter().map(|(i, _)| *i).collect();
         needed.extend(ends.map(|p| fixture.points()[p].body));
         needed.sort_unstable();
         needed.dedup();
         let source = |i: usize| motions[i].as_ref().map_or(MotionSource::Model, |(source, _)| *source);
+        let component = |c: usize| component(fixture, joint, &lines, c, &d, &force);
         let mut map = ForceStateMap {
             joint: joint.name.clone(),
             hit: hit.number(),
             peak_force: hit.peak_force(),
             band,
-            weighed: bodies.iter().map(|(i, _)| names(*i)).collect(),
-            sources: needed.into_iter().map(|i| (names(i), source(i))).collect(),
-            components: (0..components).map(|c| component(fixture, joint, &lines, c, &d, &force)).collect(),
+            weighed: bodies.iter().map(|(i, _)| name(*i)).collect(),
+            sources: needed.into_iter().map(|i| (name(i), source(i))).collect(),
+            components: (0..if rotates { 2 } else { 1 }).map(component).collect(),
         };
         map.trim(hit);
         Ok(map)
@@ -166,12 +185,20 @@ impl ForceStateMap {
 
 /// 1 up to four fifths of `highest`, then falling to 0 there.
 fn upper(frequency: f64, highest: f64) -> f64 {
-    1.0 - rising(frequency, (0.8 * highest, highest))
+    1.0 - rising(frequency, 0.8 * highest, highest)
 }
 
-fn turns(fixture: &Fixture, point: usize) -> bool {
-    let body = &fixture.bodies()[fixture.points()[point].body].kind;
-    !matches!(body, BodyKind::Rigid(rigid) if !rigid.rotates)
+/// d = u_to − R·u_from, deflection and rotation.
+fn across<T>(to: &[Vec<T>; 2], from: &[Vec<T>; 2], length: f64) -> [Vec<T>; 2]
+where
+    T: Copy + Sub<Output = T> + Mul<f64, Output = T>,
+{
+    let deflection = (0..to[0].len()).map(|i| to[0][i] - from[0][i] - from[1][i] * length);
+    [deflection.collect(), to[1].iter().zip(&from[1]).map(|(to, from)| *to - *from).collect()]
+}
+
+fn rotates(fixture: &Fixture, point: usize) -> bool {
+    fixture.bodies()[fixture.points()[point].body].kind.rotates()
 }
 
 type Side = (f64, Vec<(usize, Inertia)>);
@@ -185,7 +212,7 @@ fn weighed(
     motions: &[Option<(MotionSource, BodyMotion)>],
 ) -> Result<Side, ForceStateError> {
     let name = || joint.name.clone();
-    let mut why = ForceStateError::Supported { joint: name() };
+    let mut why = ForceStateError::Supported(name());
     let mut best: Option<(bool, Side)> = None;
     for (sign, side) in [-1.0, 1.0].into_iter().zip(sides) {
         if !free(fixture, side) {
@@ -194,7 +221,7 @@ fn weighed(
         let bodies: Option<Vec<(usize, Inertia)>> =
             side.iter().map(|&i| inertia(fixture, i).map(|inertia| (i, inertia))).collect();
         let Some(bodies) = bodies else {
-            why = ForceStateError::Deformable { joint: name() };
+            why = ForceStateError::Deformable(name());
             continue;
         };
         let unseen = side.iter().filter(|i| motions[**i].is_none());
@@ -215,38 +242,30 @@ fn weighed(
 fn ends_simulated(
     fixture: &Fixture,
     hit: &Hit,
-    lines: &Lines,
+    lines: &Windowed,
     ends: [usize; 2],
 ) -> Result<(BodyMotion, [BodyMotion; 2]), ForceStateError> {
-    let mut readings: Vec<Reading> = Vec::new();
-    for motion in [Motion::Displacement, Motion::Acceleration] {
-        for end in ends {
-            let point = &fixture.points()[end].name;
-            readings.push((Channel::transverse(point.clone()), motion));
-            if turns(fixture, end) {
-                readings.push((Channel::rotational(point.clone()), motion));
-            }
-        }
-    }
+    let channels = ends.map(|end| {
+        let point = &fixture.points()[end].name;
+        let rotation = rotates(fixture, end).then(|| Channel::rotational(point.clone()));
+        [Some(Channel::transverse(point.clone())), rotation]
+    });
+    let of = |motion: Motion| channels.iter().flatten().flatten().map(move |c| (c.clone(), motion));
+    let readings: Vec<Reading> = of(Motion::Displacement).chain(of(Motion::Acceleration)).collect();
     let (simulated, _) = simulate_one(fixture, hit, &readings)?;
-    let read = |end: usize, motion: Motion, dof: Dof| {
-        let point = &fixture.points()[ends[end]].name;
-        let response = simulated
-            .responses()
-            .iter()
-            .find(|r| r.motion == motion && r.channel.dof == dof && r.channel.point == *point);
-        response.map_or_else(|| vec![0.0; hit.samples()], |r| r.values.clone())
+    let moved = |end: usize, motion: Motion| {
+        channels[end].each_ref().map(|channel| {
+            let is_it = |r: &&Response| r.motion == motion && Some(&r.channel) == channel.as_ref();
+            let read = simulated.responses().iter().find(is_it);
+            read.map_or_else(|| vec![0.0; hit.samples()], |r| r.values.clone())
+        })
     };
-    let moved =
-        |end: usize, motion: Motion| [Dof::Translation, Dof::Rotation].map(|dof| read(end, motion, dof));
-    let ([y, turn], [near, tilt]) = (moved(0, Motion::Displacement), moved(1, Motion::Displacement));
+    let [to, from] = [0, 1].map(|end| moved(end, Motion::Displacement));
     let length = fixture.points()[ends[0]].x.value - fixture.points()[ends[1]].x.value;
     // What carries the whole assembly along would swamp its lines, so d is formed before the transform.
-    let deflection: Vec<f64> = (0..y.len()).map(|i| y[i] - near[i] - tilt[i] * length).collect();
-    let rotation: Vec<f64> = (0..y.len()).map(|i| turn[i] - tilt[i]).collect();
-    let lines_of = |pair: [Vec<f64>; 2]| pair.map(|values| lines.of(&values));
-    let accelerated = [0, 1].map(|end| lines_of(moved(end, Motion::Acceleration)));
-    Ok((lines_of([deflection, rotation]), accelerated))
+    let d = across(&to, &from, length).map(|values| lines.lines(&values));
+    let accelerated = [0, 1].map(|end| moved(end, Motion::Acceleration).map(|values| lines.lines(&values)));
+    Ok((d, accelerated))
 }
 
 /// What the joint bears: the inertia force of the weighed bodies less the hammer's, at the abscissa of its far end, where R carries both components.
@@ -254,8 +273,8 @@ fn force(
     fixture: &Fixture,
     joint: &Joint,
     hit: &Hit,
-    lines: &Lines,
-    (sign, bodies): (f64, &[(usize, Inertia)]),
+    lines: &Windowed,
+    (sign, bodies): &Side,
     motions: &[Option<(MotionSource, BodyMotion)>],
     highest: f64,
 ) -> [Vec<Complex64>; 2] {
@@ -265,7 +284,7 @@ fn force(
         true => applied(fixture, hit, x),
         false => [0.0; 2],
     };
-    let mut force = hammer.map(|part| lines.of(hit.force()).iter().map(|f| -part * f).collect::<Vec<_>>());
+    let mut force = hammer.map(|part| lines.lines(hit.force()).iter().map(|f| -part * f).collect::<Vec<_>>());
     for (index, body) in bodies {
         let Some((_, [a, turn])) = &motions[*index] else { continue };
         let [push, moment] = &mut force;
@@ -276,36 +295,34 @@ fn force(
     }
     force.map(|part| {
         let limited = part.into_iter().enumerate();
-        limited.map(|(i, f)| f * sign * upper(lines.frequency(i), highest)).collect()
+        limited.map(|(i, f)| f * *sign * upper(lines.frequency_hz(i), highest)).collect()
     })
 }
 
 fn component(
     fixture: &Fixture,
     joint: &Joint,
-    lines: &Lines,
+    lines: &Windowed,
     own: usize,
     d: &[Vec<Complex64>; 2],
     force: &[Vec<Complex64>; 2],
 ) -> ForceState {
     let dof = [Dof::Translation, Dof::Rotation][own];
     let nominal = nominal_stiffness(&joint.law, fixture.joint_length(joint));
-    let factor = stiffness_factor(fixture, &joint.name);
+    let here = || Place::Joint(joint.name.clone());
+    let changes = effects(fixture, EffectKind::StiffnessChange, here());
+    let factor: f64 = changes.map(|e| e.value(0)).product();
     let coupling = nominal.at(own, 1 - own) * factor;
     let motion = lines.signal(d[own].clone());
     let laws: Vec<RestoringLaw> = fixture
         .physics()
         .iter()
-        .filter(|e| e.dof == Some(dof) && matches!(&e.place, Place::Joint(name) if *name == joint.name))
+        .filter(|e| e.dof == Some(dof) && e.place == here())
         .filter_map(RestoringLaw::of)
         .collect();
     let mut law_force = vec![0.0; motion.len()];
     for law in &laws {
-        let mut memory = Memory::default();
-        for (force, &motion) in law_force.iter_mut().zip(&motion) {
-            memory = Memory { motion, force: law.force(motion, &memory) };
-            *force += memory.force;
-        }
+        law_force.iter_mut().zip(law.forces(&motion)).for_each(|(sum, force)| *sum += force);
     }
     ForceState {
         dof,

@@ -3,8 +3,6 @@
 mod bodies;
 mod map;
 mod sides;
-mod signals;
 
 pub use bodies::MotionSource;
 pub use map::{ForceState, ForceStateMap};
-pub(crate) use signals::Lines;

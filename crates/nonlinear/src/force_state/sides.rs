@@ -1,13 +1,13 @@
 //! The two sides of a joint: whose inertia its force moves.
 
 use crate::ForceStateError;
-use jointscope_fixture::{EffectKind, Fixture, Joint, Place};
+use jointscope_fixture::{Effect, EffectKind, Fixture, Joint};
 
 /// Bodies (by index) beyond a joint's far end, and those beyond its near end.
 pub(super) fn sides(fixture: &Fixture, joint: &Joint) -> Result<[Vec<usize>; 2], ForceStateError> {
     let far = beyond(fixture, joint, joint.to);
     if far.contains(&fixture.points()[joint.from].body) {
-        return Err(ForceStateError::Loop { joint: joint.name.clone() });
+        return Err(ForceStateError::Loop(joint.name.clone()));
     }
     Ok([far, beyond(fixture, joint, joint.from)])
 }
@@ -37,40 +37,13 @@ pub(super) fn free(fixture: &Fixture, bodies: &[usize]) -> bool {
 /// Refuses effects by which bodies bear more than their inertia, signals are not what sensors felt, or a joint's linear part is no
 /// stiffness.
 pub(super) fn check_effects(fixture: &Fixture) -> Result<(), ForceStateError> {
-    let known = |kind: EffectKind| {
-        matches!(
-            kind,
-            EffectKind::AddedMass
-                | EffectKind::StiffnessChange
-                | EffectKind::PointOffset
-                | EffectKind::CubicStiffness
-                | EffectKind::Friction
-                | EffectKind::Gap
-        )
-    };
+    use EffectKind::{AddedMass, PointOffset, StiffnessChange};
+    let known =
+        |kind: EffectKind| kind.is_nonlinear() || matches!(kind, AddedMass | StiffnessChange | PointOffset);
     match fixture.physics().iter().find(|effect| !known(effect.kind)) {
-        Some(effect) => Err(ForceStateError::Effect {
-            kind: effect.kind.name().to_owned(),
-            place: effect.place.to_string(),
-        }),
+        Some(Effect { kind, place, .. }) => {
+            Err(ForceStateError::Effect { kind: kind.name(), place: place.to_string() })
+        }
         None => Ok(()),
     }
-}
-
-/// Factor on a joint's stiffness that the fixture's effects state.
-pub(super) fn stiffness_factor(fixture: &Fixture, joint: &str) -> f64 {
-    let here = |place: &Place| matches!(place, Place::Joint(name) if name == joint);
-    let changes = fixture.physics().iter();
-    changes.filter(|e| e.kind == EffectKind::StiffnessChange && here(&e.place)).map(|e| e.value(0)).product()
-}
-
-/// Abscissa at which a point really lies, m.
-pub(super) fn abscissa(fixture: &Fixture, point: &jointscope_fixture::Point) -> f64 {
-    let here = |place: &Place| matches!(place, Place::Point(name) if *name == point.name);
-    let offsets = fixture.physics().iter();
-    point.x.value
-        + offsets
-            .filter(|e| e.kind == EffectKind::PointOffset && here(&e.place))
-            .map(|e| e.value(0))
-            .sum::<f64>()
 }

@@ -1,13 +1,15 @@
-//! Maximum of likelihood and prior by Levenberg's and Marquardt's method.
+//! Maximum of likelihood and prior.
 
-use super::misfit::{Jacobian, View, sum_of_squares};
-use super::parameters::Parameters;
-use jointscope_linalg::{inverse, solve_positive_definite};
+use super::hypothesis::Hypothesis;
+use super::misfit::{Jacobian, Residuals, View, sum_of_squares};
+use jointscope_inference::{
+    Convergence, Covariance, Damping, LeastSquares, NormalEquations, Precision, Settings, descend,
+};
 
-/// Parameters at which likelihood and prior are largest.
+/// A hypothesis at which likelihood and prior are largest.
 #[derive(Debug, Clone)]
 pub(crate) struct Fit {
-    pub parameters: Parameters,
+    pub hypothesis: Hypothesis,
     /// χ² of the data.
     pub chi2: f64,
     /// χ² and priors.
@@ -16,98 +18,107 @@ pub(crate) struct Fit {
     information: Vec<f64>,
 }
 
-/// Gain of a step below which a fit has converged: absolute, and relative to the objective.
-const CONVERGED: (f64, f64) = (0.1, 2e-5);
-/// Steps at the most with derivatives that were taken once: near the maximum they serve for several.
-const STEPS: usize = 5;
-/// Share of the gain of the first step that a further one must bring for the derivatives to go on serving.
-const FADING: f64 = 0.05;
-
 impl Fit {
     /// From `start`, derivatives being taken `renewals` times at the most; `None` where the start has no finite motion.
-    pub fn of(view: &View, start: &Parameters, renewals: usize) -> Option<Self> {
+    pub fn of(view: &View, start: &Hypothesis, renewals: usize) -> Option<Self> {
         Self::sloped(view, view, start, renewals)
     }
 
     /// The same, with derivatives of a view of the same records that steps more coarsely: they need not be as exact as what they lead to.
-    pub fn sloped(view: &View, slopes: &View, start: &Parameters, renewals: usize) -> Option<Self> {
-        let own = std::ptr::eq(view, slopes);
-        let mut parameters = start.clone();
-        let mut residuals = view.residuals(&parameters)?;
-        let mut objective = sum_of_squares(&residuals) + parameters.penalty();
-        let mut damping = 1e-3;
-        let mut information = Vec::new();
-        for _ in 0..renewals.max(1) {
-            let jacobian = match own {
-                true => view.jacobian(&parameters, &residuals)?,
-                false => slopes.jacobian(&parameters, &slopes.residuals(&parameters)?)?,
-            };
-            let mut gains = Vec::new();
-            let mut failures = 0;
-            while gains.len() < STEPS && failures < 6 {
-                let right = jacobian.descent(&residuals);
-                let tried = step(&parameters, &jacobian, right, damping).and_then(|step| {
-                    let next = parameters.stepped(&step);
-                    let residuals = view.residuals(&next)?;
-                    let value = sum_of_squares(&residuals) + next.penalty();
-                    (value < objective).then_some((next, residuals, value))
-                });
-                let Some((next, new_residuals, value)) = tried else {
-                    if !gains.is_empty() {
-                        break;
-                    }
-                    failures += 1;
-                    damping = (damping * 10.0).min(1e12);
-                    continue;
-                };
-                let gain = objective - value;
-                (parameters, residuals, objective) = (next, new_residuals, value);
-                damping = (damping * 0.1).max(1e-9);
-                gains.push(gain);
-                if gain < FADING * gains[0] || gain < tolerance(objective) {
-                    break;
-                }
-            }
-            information = jacobian.matrix;
-            if gains.iter().sum::<f64>() < tolerance(objective) {
-                break;
-            }
+    pub fn sloped(view: &View, slopes: &View, start: &Hypothesis, renewals: usize) -> Option<Self> {
+        let start = Iterate::at(view, start.clone())?;
+        let fit = descend(&Problem { view, slopes }, start, None, &settings(renewals))?;
+        Some(Self::with(fit.point, fit.derivatives))
+    }
+
+    /// A hypothesis as it is, with what a view tells of it.
+    pub fn at(view: &View, slopes: &View, hypothesis: &Hypothesis) -> Option<Self> {
+        let point = Iterate::at(view, hypothesis.clone())?;
+        let derivatives = Problem { view, slopes }.derivatives(&point, Precision::Rough)?;
+        Some(Self::with(point, derivatives))
+    }
+
+    fn with(Iterate { hypothesis, objective, .. }: Iterate, derivatives: Jacobian) -> Self {
+        let chi2 = objective - hypothesis.penalty();
+        Fit { hypothesis, chi2, objective, information: derivatives.information }
+    }
+
+    /// Covariance of the coordinates, the data's noise being `scale` times what was assumed; `None` where neither data nor priors determine
+    /// them.
+    pub fn covariance(&self, scale: f64) -> Option<Covariance> {
+        let information = self.information.iter().map(|e| e / scale).collect();
+        equations(&self.hypothesis, information, vec![0.0; self.hypothesis.coordinates.len()]).covariance()
+    }
+}
+
+/// Simulated against recorded responses, with derivatives of a view that may step more coarsely.
+struct Problem<'a> {
+    view: &'a View<'a>,
+    slopes: &'a View<'a>,
+}
+
+/// A hypothesis with its residuals.
+struct Iterate {
+    hypothesis: Hypothesis,
+    residuals: Residuals,
+    objective: f64,
+}
+
+impl Iterate {
+    fn at(view: &View, hypothesis: Hypothesis) -> Option<Self> {
+        let residuals = view.residuals(&hypothesis)?;
+        let objective = sum_of_squares(&residuals) + hypothesis.penalty();
+        Some(Iterate { hypothesis, residuals, objective })
+    }
+}
+
+impl LeastSquares for Problem<'_> {
+    type Point = Iterate;
+    type Weights = ();
+    type Derivatives = Jacobian;
+    type Equations = NormalEquations;
+    const FIXED_WEIGHTS: bool = true;
+
+    fn weights(&self, _: &Iterate) {}
+
+    fn objective(&self, point: &Iterate, _: &()) -> f64 {
+        point.objective
+    }
+
+    fn derivatives(&self, point: &Iterate, _: Precision) -> Option<Jacobian> {
+        match std::ptr::eq(self.view, self.slopes) {
+            true => self.view.jacobian(&point.hypothesis, &point.residuals),
+            false => self.slopes.jacobian(&point.hypothesis, &self.slopes.residuals(&point.hypothesis)?),
         }
-        Some(Fit { chi2: objective - parameters.penalty(), objective, parameters, information })
     }
 
-    /// These parameters as they are, with what a view tells of them.
-    pub fn at(view: &View, slopes: &View, parameters: &Parameters) -> Option<Self> {
-        let chi2 = view.chi2(parameters)?;
-        let information = slopes.jacobian(parameters, &slopes.residuals(parameters)?)?.matrix;
-        let parameters = parameters.clone();
-        Some(Fit { chi2, objective: chi2 + parameters.penalty(), parameters, information })
+    fn equations(&self, point: &Iterate, derivatives: &Jacobian, _: &()) -> NormalEquations {
+        equations(&point.hypothesis, derivatives.information.clone(), derivatives.descent(&point.residuals))
     }
 
-    /// Covariance of the coordinates, row-major: inverse of the information of data and prior, the data's noise being `scale` times what was
-    /// assumed. What neither data nor priors determine has an infinite variance.
-    pub fn covariance(&self, scale: f64) -> Vec<f64> {
-        let n = self.parameters.coordinates.len();
-        let mut information: Vec<f64> = self.information.iter().map(|e| e / scale).collect();
-        (0..n).for_each(|i| information[i * n + i] += self.parameters.prior(i));
-        inverse(&information, n).unwrap_or_else(|| vec![f64::INFINITY; n * n])
+    fn stepped(&self, point: &Iterate, equations: &NormalEquations, damping: f64) -> Option<Iterate> {
+        let step = equations.step(damping)?;
+        Iterate::at(self.view, point.hypothesis.stepped(&step))
     }
 }
 
-fn tolerance(objective: f64) -> f64 {
-    CONVERGED.0 + CONVERGED.1 * objective
+fn equations(hypothesis: &Hypothesis, information: Vec<f64>, right: Vec<f64>) -> NormalEquations {
+    let mut equations = NormalEquations { order: right.len(), information, right };
+    for (i, (parameter, at)) in hypothesis.parameters().iter().zip(&hypothesis.coordinates).enumerate() {
+        equations.add_prior(i, parameter.precision, *at);
+    }
+    equations
 }
 
-fn step(parameters: &Parameters, jacobian: &Jacobian, mut right: Vec<f64>, damping: f64) -> Option<Vec<f64>> {
-    let n = parameters.coordinates.len();
-    let mut matrix = jacobian.matrix.clone();
-    for i in 0..n {
-        let prior = parameters.prior(i);
-        right[i] -= prior * parameters.coordinates[i];
-        // A coordinate that nothing determines must not spoil the others.
-        matrix[i * n + i] = (matrix[i * n + i] + prior) * (1.0 + damping) + 1e-12;
+/// A simulation costs seconds, its derivatives many of them: they are taken anew as seldom as a twentieth of their first gain allows, and a
+/// tenth in χ² is no gain.
+fn settings(renewals: usize) -> Settings {
+    Settings {
+        steps: 100,
+        derivatives: renewals,
+        damping: Damping { initial: 1e-3, decrease: 0.1, least: 1e-9, raised: 0.0, most: 1e3 },
+        convergence: Convergence { gain: 0.1, share: 2e-5, floor: 0.0 },
+        reuse: Some(0.05),
+        ..Settings::default()
     }
-    solve_positive_definite(&mut matrix, &mut right)
-        .then_some(right)
-        .filter(|step| step.iter().all(|s| s.is_finite()))
 }

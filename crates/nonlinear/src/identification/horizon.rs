@@ -5,8 +5,8 @@
 //! such a record is no evidence for or against any model, and a fit to it is caught in false minima.
 
 use super::fit::Fit;
+use super::hypothesis::Hypothesis;
 use super::misfit::{Focus, View};
-use super::parameters::Parameters;
 use super::records::Record;
 
 /// Samples over which departures are averaged.
@@ -18,26 +18,26 @@ const TOLERATED: f64 = 1.0;
 /// Departures of the same noise in the linear model, which weights allow for, up to which nothing is amiss.
 const LINEAR: f64 = 4.0;
 
-/// Deviations of the law's parameters, the fixture's quantities following them, that must not be felt: together all records are far more
+/// Deviations of the effects' parameters, the fixture's quantities following them, that must not be felt: together all records are far more
 /// sensitive than one, so that in a record that can be followed they are not.
 const DEVIATIONS: f64 = 3.0;
 
 /// Samples of each record up to which `fit` can follow it, not below `least` seconds after its blow; no limit where motions stay
 /// together to the end.
 pub(crate) fn horizons(records: &[&Record], focus: &Focus, fit: &Fit, least: f64) -> Vec<usize> {
-    let (unlimited, parameters) = (vec![usize::MAX; records.len()], &fit.parameters);
-    if parameters.laws.is_empty() {
+    let (unlimited, hypothesis) = (vec![usize::MAX; records.len()], &fit.hypothesis);
+    if hypothesis.effects().is_empty() {
         return unlimited;
     }
     let view = View::new(records, focus, &[]);
     let fine =
         View::new(records, &Focus { within: 2 * focus.within, halvings: focus.halvings + 1, ..*focus }, &[]);
-    let linear = parameters.without_laws();
-    let disturbed = DISTURBANCES.iter().map(|by| view.histories(parameters, *by));
+    let linear = hypothesis.without_effects();
+    let disturbed = DISTURBANCES.iter().map(|by| view.histories(hypothesis, *by));
     let moved = departed(fit);
-    let moved = moved.iter().map(|parameters| view.histories(parameters, 0.0));
-    let disturbed: Option<Vec<_>> = disturbed.chain([fine.histories(parameters, 0.0)]).chain(moved).collect();
-    let undisturbed = (view.histories(parameters, 0.0), view.histories(&linear, 0.0));
+    let moved = moved.iter().map(|moved| view.histories(moved, 0.0));
+    let disturbed: Option<Vec<_>> = disturbed.chain([fine.histories(hypothesis, 0.0)]).chain(moved).collect();
+    let undisturbed = (view.histories(hypothesis, 0.0), view.histories(&linear, 0.0));
     let (Some(plain), Some(linear_plain)) = undisturbed else { return unlimited };
     let (Some(disturbed), Some(linear)) = (disturbed, view.histories(&linear, DISTURBANCES[0])) else {
         return unlimited;
@@ -61,20 +61,18 @@ pub(crate) fn horizons(records: &[&Record], focus: &Focus, fit: &Fit, least: f64
         .collect()
 }
 
-/// The parameters moved along with each of the laws', as far as the fit leaves them uncertain.
-fn departed(fit: &Fit) -> Vec<Parameters> {
-    let (parameters, covariance) = (&fit.parameters, fit.covariance(1.0));
-    let n = parameters.coordinates.len();
+/// The hypothesis moved along with each of its effects' parameters, as far as the fit leaves them uncertain.
+fn departed(fit: &Fit) -> Vec<Hypothesis> {
+    let (hypothesis, Some(covariance)) = (&fit.hypothesis, fit.covariance(1.0)) else { return Vec::new() };
     let along = |k: usize| {
-        let deviation = covariance[k * n + k].sqrt();
-        let mut moved = parameters.clone();
+        let mut moved = hypothesis.clone();
         for (i, coordinate) in moved.coordinates.iter_mut().enumerate() {
-            *coordinate += DEVIATIONS * covariance[i * n + k] / deviation;
+            *coordinate += DEVIATIONS * covariance.at(i, k) / covariance.std(k);
         }
         moved
     };
-    let certain = |k: &usize| covariance[k * n + k] > 0.0 && covariance[k * n + k] < 0.01;
-    (parameters.tolerances.len()..n).filter(certain).map(along).collect()
+    let certain = |k: &usize| covariance.at(*k, *k) > 0.0 && covariance.at(*k, *k) < 0.01;
+    (hypothesis.quantities.len()..covariance.order()).filter(certain).map(along).collect()
 }
 
 fn departures(a: &[f64], b: &[f64]) -> Vec<f64> {

@@ -1,15 +1,16 @@
 //! What the laws found come to: quantities from all hits, what each law is known to, and how hits fare that no fit saw.
 
-use super::candidates::seats;
-use super::diagnosis::{Estimate, Finding, HeldOut, ModelFit, Verdict};
+use super::diagnosis::{Finding, ModelFit};
 use super::fit::Fit;
 use super::horizon::horizons;
+use super::hypothesis::Hypothesis;
+use super::locations::locations;
 use super::misfit::{Focus, View};
-use super::parameters::{Law, Parameters};
 use super::records::Record;
-use super::search::{Named, Search, Span, contradicts};
-use crate::RestoringLaw;
-use jointscope_fixture::Effect;
+use super::search::{Search, Span, contradicts};
+use crate::estimates::estimates;
+use jointscope_findings::{HeldOut, Verdict};
+use jointscope_fixture::{Effect, Place};
 
 /// χ² per degree of freedom above which a model leaves something unexplained.
 const LEFT_OVER: f64 = 1.5;
@@ -18,13 +19,13 @@ const FINER: usize = 2;
 
 /// A law found.
 pub(super) struct Step {
-    /// Its names, the best first.
-    pub names: Vec<Named>,
+    /// The fits with it under each of its names, the best first.
+    pub fits: Vec<Fit>,
     /// What χ² and priors lose by it.
     pub gain: f64,
 }
 
-/// What a judgement looks at.
+/// What is judged.
 pub(super) struct Judgement<'a> {
     pub all: &'a [Record],
     /// Indices of the hits that the search did not see.
@@ -32,7 +33,6 @@ pub(super) struct Judgement<'a> {
     pub search: &'a Search<'a>,
     /// How much of the records the search followed.
     pub span: &'a Span,
-    pub band: (f64, f64),
 }
 
 /// What it comes to.
@@ -47,13 +47,13 @@ pub(super) struct Judged {
 
 impl Judgement<'_> {
     /// Of the fixture as stated and refitted without laws, and of the best fit with laws; `None` for models without a finite motion.
-    pub fn of(&self, [nominal, refitted]: [&Parameters; 2], best: &Fit, steps: &[Step]) -> Option<Judged> {
+    pub fn of(&self, [nominal, refitted]: [&Hypothesis; 2], best: &Fit, steps: &[Step]) -> Option<Judged> {
         let records: Vec<&Record> = self.all.iter().collect();
         let focus = Focus { halvings: 4, ..self.search.focus(self.span.periods) };
-        let ends = horizons(&records, &focus, best, self.search.shortest());
+        let ends = horizons(&records, &focus, best, self.search.shortest_s());
         let held_out = match self.held.is_empty() {
             true => None,
-            false => Some(self.held_out(&focus, &ends, [refitted, &best.parameters])?),
+            false => Some(self.held_out(&focus, &ends, [refitted, &best.hypothesis])?),
         };
         // Names were chosen without the hits held out; quantities are then those that all hits give.
         // They are read from steps finer than the search needs: what steps leave of bias must not exceed what noise leaves of doubt.
@@ -65,14 +65,13 @@ impl Judgement<'_> {
             true => refitted.clone(),
             false => self.of_all(&[focus, fine], [&everything, &slopes], best)?,
         };
-        let model = |parameters: &Parameters, chi2: f64| {
-            let tolerances =
-                parameters.tolerances.iter().cloned().zip(parameters.coordinates.iter().copied());
+        let model = |hypothesis: &Hypothesis, chi2: f64| {
+            let quantities = hypothesis.quantities.iter().map(|(_, quantity)| quantity.clone());
             Some(ModelFit {
-                fixture: parameters.to_fixture().ok()?,
-                nrmse: everything.nrmse(parameters)?,
+                fixture: hypothesis.to_fixture().ok()?,
+                nrmse: everything.nrmse(hypothesis)?,
                 chi2_per_dof: chi2 / degrees,
-                tolerances: tolerances.collect(),
+                quantities: quantities.zip(hypothesis.coordinates.iter().copied()).collect(),
             })
         };
         let chi2_per_dof = repaired.chi2 / degrees;
@@ -84,8 +83,8 @@ impl Judgement<'_> {
         };
         let models = [
             model(nominal, everything.chi2(nominal)?)?,
-            model(&refitted.parameters, refitted.chi2)?,
-            model(&repaired.parameters, repaired.chi2)?,
+            model(&refitted.hypothesis, refitted.chi2)?,
+            model(&repaired.hypothesis, repaired.chi2)?,
         ];
         Some(Judged { verdict, findings, models, held_out, followed: self.followed(&ends) })
     }
@@ -94,15 +93,16 @@ impl Judgement<'_> {
         &self,
         focus: &Focus,
         ends: &[usize],
-        [refitted, repaired]: [&Parameters; 2],
+        [refitted, repaired]: [&Hypothesis; 2],
     ) -> Option<HeldOut> {
         let (unseen, until): (Vec<&Record>, Vec<usize>) =
             self.held.iter().map(|&i| (&self.all[i], ends[i])).unzip();
         let unseen = View::new(&unseen, focus, &until);
         Some(HeldOut {
-            hits: self.held.iter().map(|&i| self.all[i].hit.number()).collect(),
+            what: self.held.iter().map(|&i| format!("hit {}", self.all[i].hit.number())).collect(),
             nrmse_refitted: unseen.nrmse(refitted)?,
             nrmse_repaired: unseen.nrmse(repaired)?,
+            same_findings: None,
         })
     }
 
@@ -115,10 +115,10 @@ impl Judgement<'_> {
     ) -> Option<Fit> {
         let seen = |focus: &Focus| View::new(&self.search.records, focus, &self.span.ends);
         let (trained, trained_slopes) = (seen(fine), seen(focus));
-        let before = Fit::sloped(&trained, &trained_slopes, &best.parameters, 5)?;
-        let all = Fit::sloped(everything, slopes, &before.parameters, 5)?;
-        let contradicted = contradicts(trained.objective(&all.parameters), before.objective);
-        if contradicted { Fit::at(everything, slopes, &before.parameters) } else { Some(all) }
+        let before = Fit::sloped(&trained, &trained_slopes, &best.hypothesis, 5)?;
+        let all = Fit::sloped(everything, slopes, &before.hypothesis, 5)?;
+        let contradicted = contradicts(trained.objective(&all.hypothesis), before.objective);
+        if contradicted { Fit::at(everything, slopes, &before.hypothesis) } else { Some(all) }
     }
 
     /// Time of the shortest record that was not followed to its end, s after the blow.
@@ -128,83 +128,58 @@ impl Judgement<'_> {
             cut.then(|| end.saturating_sub(record.onset) as f64 * record.hit.interval())
         };
         let ended = self.all.iter().zip(ends).filter_map(time);
-        ended.chain(self.span.periods.map(|periods| self.search.time_of(periods))).reduce(f64::min)
+        ended.chain(self.span.periods.map(|periods| self.search.time_s(periods))).reduce(f64::min)
     }
 
     fn findings(&self, repaired: &Fit, steps: &[Step], chi2_per_dof: f64) -> Vec<Finding> {
-        let parameters = &repaired.parameters;
+        let hypothesis = &repaired.hypothesis;
         let covariance = repaired.covariance(chi2_per_dof.max(1.0));
-        let n = parameters.coordinates.len();
         let records: Vec<&Record> = self.all.iter().collect();
-        let model = parameters.to_fixture();
-        let reached = model.map_or(Vec::new(), |model| seats(&model, &records, 2.0 * self.band.1));
-        let laws = parameters.laws();
-        let mut findings = Vec::new();
-        for (index, (law, step)) in laws.iter().zip(steps).enumerate() {
-            let first = parameters.first_of(index);
-            let deviation = |k: usize| covariance[(first + k) * n + first + k].max(0.0).sqrt();
-            let (probability, alternatives) = probabilities(&step.names, chi2_per_dof);
-            findings.push(Finding {
-                estimates: estimates(law, &(0..law.parameters()).map(deviation).collect::<Vec<_>>()),
-                effect: law.effect(),
+        let reached = hypothesis
+            .to_fixture()
+            .map_or(Vec::new(), |model| locations(&model, &records, 2.0 * self.search.band.1));
+        let finding = |(index, (effect, step)): (usize, (Effect, &Step))| {
+            let deviations: Vec<Option<f64>> = hypothesis
+                .parameters_of(index)
+                .map(|(transform, place)| {
+                    // A logarithm's deviation is wanted, not that of its value.
+                    let slope = transform.slope(1.0);
+                    covariance.as_ref().map(|covariance| covariance.std(place) * slope)
+                })
+                .collect();
+            let (probability, alternatives) = probabilities(&step.fits, chi2_per_dof);
+            let mut reaches = reached
+                .iter()
+                .filter(|l| effect.dof == Some(l.dof) && effect.place == Place::Joint(l.joint.clone()));
+            Finding {
+                estimates: estimates(&effect, &deviations, INEXACT),
                 probability,
                 alternatives,
                 gain: step.gain.max(0.0),
-                reach: reached
-                    .iter()
-                    .find(|s| s.joint == law.joint && s.dof == law.dof)
-                    .map_or(0.0, |s| s.reach),
-            });
-        }
-        findings
+                reach: reaches.next().map_or(0.0, |location| location.reach),
+                effect,
+            }
+        };
+        hypothesis.effects().into_iter().zip(steps).enumerate().map(finding).collect()
     }
 }
 
 /// Relative deviation that steps and sampling leave in a parameter beside noise, as measured on the simulated laboratory.
 const INEXACT: f64 = 2.5e-3;
-/// Deviation of a logarithm beyond which a parameter is not determined.
-const VAGUE: f64 = 1.5;
 
-fn estimates(law: &Law, deviations: &[f64]) -> Vec<Estimate> {
-    let effect = law.effect();
-    let specs = effect.kind.spec().parameters;
-    let rows = specs.iter().zip(deviations).zip(law.slopes()).enumerate();
-    rows.map(|(place, ((parameter, deviation), slope))| {
-        let value = effect.value(place);
-        let logarithm = !matches!(law.law, RestoringLaw::Cubic { .. });
-        let slope_of_one = if logarithm { 1.0 } else { value.abs() / slope.abs() };
-        let deviation = deviation.hypot(INEXACT * slope_of_one);
-        let known = deviation.is_finite() && (!logarithm || deviation < VAGUE);
-        let interval = match logarithm {
-            true => [value * (-1.96 * deviation).exp(), value * (1.96 * deviation).exp()],
-            false => [value - 1.96 * deviation * slope, value + 1.96 * deviation * slope],
-        };
-        Estimate {
-            parameter: *parameter,
-            unit: parameter.unit_in(Some(law.dof)),
-            value,
-            std: known.then_some(deviation * slope.abs()),
-            interval: known.then_some(interval),
-        }
-    })
-    .collect()
-}
-
-/// Probability of the first name, and the others with theirs: by how much worse they fit, noise being as large as the best fit's residuals.
+/// Probability of the best fit's effect, and the others with theirs: by how much worse they fit, noise being as large as the best fit's residuals.
 /// The more the best leaves unexplained, the more is left for something not listed.
-fn probabilities(names: &[Named], chi2_per_dof: f64) -> (f64, Vec<(Effect, f64)>) {
-    let Some(best) = names.first() else { return (0.0, Vec::new()) };
+fn probabilities(fits: &[Fit], chi2_per_dof: f64) -> (f64, Vec<(Effect, f64)>) {
+    let Some(best) = fits.first() else { return (0.0, Vec::new()) };
     let scale = chi2_per_dof.max(1.0);
-    let weight = |name: &Named| {
-        let extra =
-            name.fit.parameters.coordinates.len() as f64 - best.fit.parameters.coordinates.len() as f64;
-        (-0.5 * ((name.fit.objective - best.fit.objective) / scale + 7.0 * extra)).min(0.0).exp()
+    let count = |fit: &Fit| fit.hypothesis.coordinates.len() as f64;
+    let weight = |fit: &Fit| {
+        let extra = count(fit) - count(best);
+        (-0.5 * ((fit.objective - best.objective) / scale + 7.0 * extra)).min(0.0).exp()
     };
     let unlisted = 0.01 + 0.3 * ((scale - LEFT_OVER) / 10.0).clamp(0.0, 1.0);
-    let sum: f64 = names.iter().map(weight).sum::<f64>() + unlisted;
-    let others = names[1..].iter().map(|name| {
-        let law = name.fit.parameters.laws().last().map(Law::effect).unwrap_or_else(|| name.law.effect());
-        (law, weight(name) / sum)
-    });
-    (1.0 / sum, others.filter(|(_, p)| *p > 1e-6).collect())
+    let sum: f64 = fits.iter().map(weight).sum::<f64>() + unlisted;
+    let named = |fit: &Fit| Some((fit.hypothesis.effects().pop()?, weight(fit) / sum));
+    let others = fits[1..].iter().filter_map(named).filter(|(_, p)| *p > 1e-6);
+    (1.0 / sum, others.collect())
 }

@@ -1,41 +1,39 @@
 //! Simulated against recorded responses, in spectra weighted by their noise.
 
-use super::parameters::Parameters;
+use super::hypothesis::Hypothesis;
 use super::records::Record;
-use super::spectra::{Transform, smooth_length};
+use crate::spectra::{Windowed, oversampled_for_lines, smooth_length};
 use crate::time::kernel::{Stepper, Steps};
-use crate::time::oversampling::oversampled_for_lines;
-use crate::time::structure::{Reading, Structure};
-use jointscope_fixture::Fixture;
-use jointscope_spectra::Channel;
+use crate::time::structure::Structure;
+use jointscope_inference::dot;
 use num_complex::Complex64;
 use rayon::prelude::*;
+use std::ops::Range;
 
-/// A look at some of the records: how much of each, how finely stepped.
+/// Some of the records as they are compared: how much of each, how finely stepped.
 pub(crate) struct View<'a> {
     traces: Vec<Trace<'a>>,
-    within: usize,
-    halvings: usize,
-    highest_hz: f64,
+    /// One record of each set-up: those of one set-up are followed by one stepper.
+    setups: Vec<&'a Record>,
+    focus: Focus,
 }
 
 /// The part of a record that is compared.
 struct Trace<'a> {
     record: &'a Record,
+    setup: usize,
     /// Force at every step.
     force: Vec<f64>,
-    samples: usize,
-    /// Weight of each sample before the transform.
-    window: Vec<f64>,
-    transform: Transform,
-    lines: std::ops::RangeInclusive<usize>,
+    /// Samples as they count, before the transform.
+    windowed: Windowed,
+    lines: Range<usize>,
     /// √2 over the noise's standard deviation, line by line, a row a response.
     weights: Vec<Vec<f64>>,
-    /// Σ|recorded|² in the band, a response each, for relative errors.
-    power: Vec<f64>,
+    /// Σ|recorded|² in the band, over all responses, for relative errors.
+    power: f64,
 }
 
-/// How a view looks.
+/// How records are compared.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Focus {
     /// Decay of the window's weight, 1/s; zero for all alike.
@@ -53,109 +51,116 @@ const INEXACT: f64 = 2e-3;
 /// e^{−at} at which a windowed record is cut off.
 const CUT: f64 = 6.0;
 
-/// (simulated − recorded)·weight, trace by trace.
-pub(crate) type Residuals = Vec<Vec<Complex64>>;
+/// (simulated − recorded)·weight, trace by trace, real and imaginary parts side by side.
+pub(crate) type Residuals = Vec<Vec<f64>>;
 
-/// Derivatives of the residuals, trace by trace, a column a coordinate.
+/// Derivatives of the residuals.
 pub(crate) struct Jacobian {
-    columns: Vec<Vec<Vec<Complex64>>>,
+    /// Trace by trace, a column a coordinate.
+    columns: Vec<Vec<Vec<f64>>>,
     /// JᵀJ, row-major.
-    pub matrix: Vec<f64>,
+    pub information: Vec<f64>,
 }
 
 impl<'a> View<'a> {
     /// The records, each up to its own end or to where it has died away.
     pub fn new(records: &[&'a Record], focus: &Focus, ends: &[usize]) -> Self {
+        let mut setups: Vec<&Record> = Vec::new();
+        for record in records {
+            if !setups.iter().any(|other| other.has_setup_of(record)) {
+                setups.push(record);
+            }
+        }
+        let setup = |record: &Record| setups.iter().position(|other| other.has_setup_of(record)).unwrap_or(0);
         let end = |i: usize| ends.get(i).copied().unwrap_or(usize::MAX);
-        let traces = records.par_iter().enumerate().map(|(i, r)| Trace::new(r, focus, end(i))).collect();
-        View { traces, within: focus.within, halvings: focus.halvings, highest_hz: 2.0 * focus.band.1 }
+        let trace = |(i, record): (usize, &&'a Record)| Trace::new(record, setup(record), focus, end(i));
+        View { traces: records.par_iter().enumerate().map(trace).collect(), setups, focus: *focus }
     }
 
-    /// What every response of every record reads in the model, under the recorded force and `disturbance` times its noise; nothing for
-    /// parameters without a finite motion.
-    pub fn histories(&self, parameters: &Parameters, disturbance: f64) -> Option<Vec<Vec<Vec<f64>>>> {
-        let model = ViewModel::of(self, &parameters.to_fixture().ok()?)?;
-        let history = |trace: &Trace| {
-            let record = trace.record;
-            let disturbed = if disturbance != 0.0 {
-                let noise = disturbance * record.force_noise;
-                let noisy = record.hit.force().iter().zip(white(record.hit.samples()));
-                let noisy: Vec<f64> = noisy.map(|(force, one)| force + noise * one).collect();
-                oversampled_for_lines(&noisy, self.within)
-            } else {
-                trace.force.clone()
-            };
-            Some(model.stepper(record)?.run(&disturbed, trace.samples).outputs)
+    /// The model ready to be stepped, for each set-up.
+    fn steppers(&self, hypothesis: &Hypothesis) -> Option<Vec<Stepper>> {
+        let fixture = hypothesis.to_fixture().ok()?;
+        let structure = Structure::new(&fixture, 2.0 * self.focus.band.1).ok()?;
+        let stepper = |record: &&Record| {
+            let load = structure.load(record.struck()).ok()?;
+            let system = structure.system(load, &record.readings, &[]).ok()?;
+            let Focus { within, halvings, .. } = self.focus;
+            Stepper::new(&system, Steps { interval: record.hit.interval(), within, halvings })
         };
-        self.traces.par_iter().map(history).collect()
+        self.setups.iter().map(stepper).collect()
+    }
+
+    /// What every response of every record reads in the model, under the recorded force and `disturbance` times its noise; nothing for a
+    /// hypothesis without a finite motion.
+    pub fn histories(&self, hypothesis: &Hypothesis, disturbance: f64) -> Option<Vec<Vec<Vec<f64>>>> {
+        let steppers = self.steppers(hypothesis)?;
+        let history = |trace: &Trace| {
+            let hit = &trace.record.hit;
+            let noise = disturbance * trace.record.force_noise;
+            let disturbed = (disturbance != 0.0).then(|| {
+                let noisy = hit.force().iter().zip(white(hit.samples())).map(|(f, one)| f + noise * one);
+                oversampled_for_lines(&noisy.collect::<Vec<f64>>(), self.focus.within)
+            });
+            steppers[trace.setup].run(disturbed.as_ref().unwrap_or(&trace.force), trace.samples())
+        };
+        Some(self.traces.par_iter().map(history).collect())
     }
 
     /// Number of real values compared.
     pub fn degrees(&self) -> f64 {
-        let of = |t: &Trace| (2 * t.weights.len() * t.lines.clone().count()) as f64;
-        self.traces.iter().map(of).sum()
+        self.traces.iter().map(|trace| (2 * trace.weights.len() * trace.lines.len()) as f64).sum()
     }
 
-    /// χ² of the data; `None` for parameters without a finite motion.
-    pub fn chi2(&self, parameters: &Parameters) -> Option<f64> {
-        self.residuals(parameters).map(|residuals| sum_of_squares(&residuals))
+    /// χ² of the data; `None` for a hypothesis without a finite motion.
+    pub fn chi2(&self, hypothesis: &Hypothesis) -> Option<f64> {
+        self.residuals(hypothesis).map(|residuals| sum_of_squares(&residuals))
     }
 
     /// χ² of the data and the priors.
-    pub fn objective(&self, parameters: &Parameters) -> Option<f64> {
-        self.chi2(parameters).map(|chi2| chi2 + parameters.penalty())
+    pub fn objective(&self, hypothesis: &Hypothesis) -> Option<f64> {
+        self.chi2(hypothesis).map(|chi2| chi2 + hypothesis.penalty())
     }
 
-    /// The residuals; `None` for parameters without a finite motion.
-    pub fn residuals(&self, parameters: &Parameters) -> Option<Residuals> {
-        let model = ViewModel::of(self, &parameters.to_fixture().ok()?)?;
-        self.traces.par_iter().map(|trace| trace.residuals(&model)).collect()
+    /// The residuals; `None` for a hypothesis without a finite motion.
+    pub fn residuals(&self, hypothesis: &Hypothesis) -> Option<Residuals> {
+        let steppers = self.steppers(hypothesis)?;
+        self.traces.par_iter().map(|trace| trace.residuals(&steppers)).collect()
     }
 
     /// √(Σ|simulated − recorded|²/Σ|recorded|²) in the band, over all responses.
-    pub fn nrmse(&self, parameters: &Parameters) -> Option<f64> {
-        let model = ViewModel::of(self, &parameters.to_fixture().ok()?)?;
-        let each: Vec<(f64, f64)> = self
-            .traces
-            .par_iter()
-            .map(|trace| {
-                let residuals = trace.residuals(&model)?;
-                let mut difference = 0.0;
-                for (row, weights) in residuals.chunks_exact(trace.weights[0].len()).zip(&trace.weights) {
-                    difference += row.iter().zip(weights).map(|(r, w)| r.norm_sqr() / (w * w)).sum::<f64>();
-                }
-                Some((difference, trace.power.iter().sum()))
-            })
-            .collect::<Option<_>>()?;
-        let (difference, power) = each.iter().fold((0.0, 0.0), |(a, b), (d, p)| (a + d, b + p));
+    pub fn nrmse(&self, hypothesis: &Hypothesis) -> Option<f64> {
+        let residuals = self.residuals(hypothesis)?;
+        let (mut difference, mut power) = (0.0, 0.0);
+        for (trace, residuals) in self.traces.iter().zip(residuals) {
+            let weights = trace.weights.iter().flatten();
+            let square = |(r, w): (&[f64], &f64)| (r[0] * r[0] + r[1] * r[1]) / (w * w);
+            difference += residuals.chunks_exact(2).zip(weights).map(square).sum::<f64>();
+            power += trace.power;
+        }
         Some((difference / power).sqrt())
     }
 
     /// Derivatives of the residuals with respect to every coordinate, by differences.
-    pub fn jacobian(&self, parameters: &Parameters, residuals: &Residuals) -> Option<Jacobian> {
-        let count = parameters.coordinates.len();
-        let steps: Vec<f64> = (0..count).map(|i| parameters.step(i)).collect();
-        let moved: Vec<ViewModel> = (0..count)
-            .map(|i| ViewModel::of(self, &parameters.moved(i, steps[i]).to_fixture().ok()?))
-            .collect::<Option<_>>()?;
-        let derivative = |trace: &Trace, base: &[Complex64], i: usize| {
-            let mut column = trace.residuals(&moved[i])?;
-            let factor = 1.0 / steps[i];
-            column.iter_mut().zip(base).for_each(|(c, r)| *c = (*c - r) * factor);
-            Some(column)
+    pub fn jacobian(&self, hypothesis: &Hypothesis, residuals: &Residuals) -> Option<Jacobian> {
+        let count = hypothesis.coordinates.len();
+        let steps: Vec<f64> = (0..count).map(|i| hypothesis.difference(i)).collect();
+        let moved: Vec<Vec<Stepper>> =
+            (0..count).map(|i| self.steppers(&hypothesis.moved(i, steps[i]))).collect::<Option<_>>()?;
+        let derivatives = |(trace, base): (&Trace, &Vec<f64>)| {
+            let column = |i: usize| {
+                let mut column = trace.residuals(&moved[i])?;
+                let factor = 1.0 / steps[i];
+                column.iter_mut().zip(base).for_each(|(c, r)| *c = (*c - r) * factor);
+                Some(column)
+            };
+            (0..count).map(column).collect::<Option<Vec<_>>>()
         };
-        let columns: Vec<Vec<Vec<Complex64>>> = self
-            .traces
-            .par_iter()
-            .zip(residuals)
-            .map(|(trace, base)| (0..count).map(|i| derivative(trace, base, i)).collect())
-            .collect::<Option<_>>()?;
-        let each: Vec<Vec<f64>> = columns.par_iter().map(|columns| gram(columns)).collect();
-        let mut matrix = vec![0.0; count * count];
-        for one in &each {
-            matrix.iter_mut().zip(one).for_each(|(sum, value)| *sum += value);
-        }
-        matrix.iter().all(|e| e.is_finite()).then_some(Jacobian { columns, matrix })
+        let columns: Vec<_> =
+            self.traces.par_iter().zip(residuals).map(derivatives).collect::<Option<_>>()?;
+        let each: Vec<Vec<f64>> = columns.par_iter().map(|columns| products(columns)).collect();
+        let entry = |k: usize| each.iter().map(|one| one[k]).sum();
+        let information: Vec<f64> = (0..count * count).map(entry).collect();
+        information.iter().all(|e| e.is_finite()).then_some(Jacobian { columns, information })
     }
 }
 
@@ -174,11 +179,8 @@ pub(crate) fn sum_of_squares(residuals: &Residuals) -> f64 {
     residuals.iter().map(|r| dot(r, r)).sum()
 }
 
-fn dot(a: &[Complex64], b: &[Complex64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a.re * b.re + a.im * b.im).sum()
-}
-
-fn gram(columns: &[Vec<Complex64>]) -> Vec<f64> {
+/// Products of all pairs of columns, row-major.
+pub(crate) fn products(columns: &[Vec<f64>]) -> Vec<f64> {
     let n = columns.len();
     let mut matrix = vec![0.0; n * n];
     for i in 0..n {
@@ -190,44 +192,8 @@ fn gram(columns: &[Vec<Complex64>]) -> Vec<f64> {
     matrix
 }
 
-/// The model stepped, for every kind of trace.
-struct ViewModel {
-    steppers: Vec<(Channel, Vec<Reading>, u64, Stepper)>,
-}
-
-impl ViewModel {
-    fn of(view: &View, fixture: &Fixture) -> Option<Self> {
-        let structure = Structure::new(fixture, view.highest_hz).ok()?;
-        let mut steppers: Vec<(Channel, Vec<Reading>, u64, Stepper)> = Vec::new();
-        for trace in &view.traces {
-            let (struck, readings) = (trace.record.struck(), &trace.record.readings);
-            let interval = trace.record.hit.interval();
-            if steppers.iter().any(|(s, r, i, _)| s == struck && r == readings && *i == interval.to_bits()) {
-                continue;
-            }
-            let system = structure.system(struck, readings).ok()?;
-            let steps = Steps { interval, within: view.within, halvings: view.halvings };
-            steppers.push((
-                struck.clone(),
-                readings.clone(),
-                interval.to_bits(),
-                Stepper::new(&system, steps)?,
-            ));
-        }
-        Some(ViewModel { steppers })
-    }
-
-    fn stepper(&self, record: &Record) -> Option<&Stepper> {
-        let interval = record.hit.interval().to_bits();
-        let fits = |(s, r, i, _): &&(Channel, Vec<Reading>, u64, Stepper)| {
-            s == record.struck() && *r == record.readings && *i == interval
-        };
-        self.steppers.iter().find(fits).map(|(.., stepper)| stepper)
-    }
-}
-
 impl<'a> Trace<'a> {
-    fn new(record: &'a Record, focus: &Focus, end: usize) -> Self {
+    fn new(record: &'a Record, setup: usize, focus: &Focus, end: usize) -> Self {
         let hit = &record.hit;
         let interval = hit.interval();
         let wanted = match focus.decay > 0.0 {
@@ -239,27 +205,29 @@ impl<'a> Trace<'a> {
             let decay = (-focus.decay * interval * i.saturating_sub(record.onset) as f64).exp();
             decay * fading(i, record.onset, end)
         };
-        let window: Vec<f64> = (0..samples).map(weight).collect();
         let spacing = 1.0 / (samples as f64 * interval);
         let last = ((focus.band.1 / spacing) as usize).min(samples / 2);
         let first = ((focus.band.0 / spacing).ceil() as usize).clamp(1, last.max(1));
         let mut trace = Trace {
             force: oversampled_for_lines(hit.force(), focus.within),
-            samples,
-            transform: Transform::new(samples),
-            lines: first..=last.max(first),
+            windowed: Windowed::new((0..samples).map(weight).collect(), interval),
+            lines: first..last.max(first) + 1,
             weights: Vec::new(),
-            power: Vec::new(),
-            window,
+            power: 0.0,
             record,
+            setup,
         };
         trace.weigh();
         trace
     }
 
+    fn samples(&self) -> usize {
+        self.windowed.window.len()
+    }
+
     /// Noise of a response and, through the FRF that the hit itself shows, of the force; and what no model is exact to.
     fn weigh(&mut self) {
-        let energy: f64 = self.window.iter().map(|w| w * w).sum();
+        let energy = self.windowed.power();
         let force = self.spectrum(self.record.hit.force());
         let force_noise = self.record.force_noise.powi(2) * energy;
         for (response, noise) in self.record.hit.responses().iter().zip(&self.record.noise) {
@@ -271,27 +239,24 @@ impl<'a> Trace<'a> {
                 own + through * force_noise + INEXACT * INEXACT * y.norm_sqr()
             };
             self.weights.push(lines.iter().zip(&force).map(variance).map(|v| (2.0 / v).sqrt()).collect());
-            self.power.push(lines.iter().map(|y| y.norm_sqr()).sum());
+            self.power += lines.iter().map(|y| y.norm_sqr()).sum::<f64>();
         }
     }
 
     fn spectrum(&self, values: &[f64]) -> Vec<Complex64> {
-        let mut windowed: Vec<f64> = values.iter().zip(&self.window).map(|(v, w)| v * w).collect();
-        let mut lines = self.transform.of(&mut windowed);
-        lines.truncate(self.lines.end() + 1);
-        lines.drain(..*self.lines.start());
-        lines
+        self.windowed.band(values, &self.lines)
     }
 
     /// (simulated − recorded)·weight, response after response.
-    fn residuals(&self, model: &ViewModel) -> Option<Vec<Complex64>> {
-        let run = model.stepper(self.record)?.run(&self.force, self.samples);
-        let mut all = Vec::with_capacity(self.weights.len() * self.lines.clone().count());
-        for ((simulated, response), weights) in
-            run.outputs.iter().zip(self.record.hit.responses()).zip(&self.weights)
+    fn residuals(&self, steppers: &[Stepper]) -> Option<Vec<f64>> {
+        let run = steppers[self.setup].run(&self.force, self.samples());
+        let mut all = Vec::with_capacity(2 * self.weights.len() * self.lines.len());
+        for ((simulated, response), weights) in run.iter().zip(self.record.hit.responses()).zip(&self.weights)
         {
             let difference: Vec<f64> = simulated.iter().zip(&response.values).map(|(s, r)| s - r).collect();
-            all.extend(self.spectrum(&difference).iter().zip(weights).map(|(d, w)| d * *w));
+            all.extend(
+                self.spectrum(&difference).iter().zip(weights).flat_map(|(d, w)| [d.re * w, d.im * w]),
+            );
         }
         all.iter().all(|r| r.is_finite()).then_some(all)
     }

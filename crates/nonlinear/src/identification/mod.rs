@@ -1,16 +1,14 @@
 //! From hits of several strengths to the law of a joint.
 
-pub(crate) mod candidates;
 pub(crate) mod diagnosis;
-pub(crate) mod fit;
+mod fit;
 pub(crate) mod homogeneity;
-pub(crate) mod horizon;
+mod horizon;
+mod hypothesis;
 mod judge;
+mod locations;
 pub(crate) mod misfit;
-pub(crate) mod parameters;
-pub(crate) mod reconstruction;
-pub(crate) mod records;
-mod says;
-pub(crate) mod search;
+mod reconstruction;
+mod records;
+mod search;
 mod shapes;
-pub(crate) mod spectra;

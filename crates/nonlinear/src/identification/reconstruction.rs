@@ -6,111 +6,96 @@
 //! then linear in its strength, and shapes are compared by what they leave of Y₀ − Y. Stiffness, dashpot and mass at the joint that the
 //! fixture states a little wrongly are columns beside it. All signals are multiplied by e^{−at}, under which the above stays exact.
 
-use super::candidates::Seat;
+use super::locations::JointLocation;
+use super::misfit::Focus;
 use super::records::Record;
 use super::shapes::{Suggestion, suggested};
-use crate::force_state::Lines;
+use crate::spectra::{Windowed, oversampled_for_lines};
 use crate::time::kernel::{Stepper, Steps};
-use crate::time::oversampling::oversampled_for_lines;
 use crate::time::structure::Structure;
-use jointscope_fixture::{Dof, Fixture};
+use jointscope_fixture::Fixture;
 use num_complex::Complex64;
 use rayon::prelude::*;
 use std::ops::Range;
-
-/// How responses are looked at.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Look {
-    /// a of the window e^{−at}, 1/s.
-    pub decay: f64,
-    /// Highest frequency compared, Hz.
-    pub highest: f64,
-    /// Steps within a sampling interval.
-    pub within: usize,
-}
 
 /// Departure of every line that is not held against a model whose quantities are known within tolerances, relative to the line.
 const INEXACT: f64 = 0.03;
 /// e^{−aT} at which a record is cut off, as an exponent.
 const CUT: f64 = 6.0;
+
 /// A record seen through the linear fixture.
 pub(super) struct Seen {
-    lines: Lines,
+    lines: Windowed,
     band: Range<usize>,
-    /// e^{−at}.
-    pub window: Vec<f64>,
     /// (Y₀ − Y)·weight, response by response.
-    pub target: Vec<Vec<Complex64>>,
-    /// Of every seat: h·weight response by response, the motion over time, its lines in the band, and iω + a there.
-    pub seats: Vec<SeenSeat>,
+    target: Vec<Vec<Complex64>>,
+    pub locations: Vec<SeenLocation>,
+    /// iω + a of every line in the band.
     pub s: Vec<Complex64>,
 }
 
-pub(super) struct SeenSeat {
-    pub transfer: Vec<Vec<Complex64>>,
+/// A joint's component seen so.
+pub(super) struct SeenLocation {
+    /// h·weight, response by response.
+    transfer: Vec<Vec<Complex64>>,
+    /// The motion over time.
     pub motion: Vec<f64>,
+    /// Its lines in the band.
     pub lines: Vec<Complex64>,
 }
 
-/// For every seat, suggestions for each kind of law that helps there. `model` is the fixture as far as it is known, laws found already included.
+/// For every location, suggestions for each kind of law that helps there. `model` is the fixture as far as it is known, laws found already
+/// included.
 pub(crate) fn suggestions(
     model: &Fixture,
     records: &[&Record],
-    seats: &[Seat],
-    look: Look,
-) -> Option<Vec<Vec<Suggestion>>> {
+    locations: &[JointLocation],
+    focus: &Focus,
+) -> Option<Vec<Suggestion>> {
     let linear = model.physics().iter().filter(|effect| !effect.kind.is_nonlinear()).cloned().collect();
     let linear = model.clone().with_physics(linear).ok()?;
-    let highest = 2.0 * look.highest;
-    let structure = Structure::new(model, highest).ok()?;
-    let linear = Structure::new(&linear, highest).ok()?;
-    let seen: Vec<Seen> = records
-        .par_iter()
-        .map(|record| Seen::of(&structure, &linear, record, seats, look))
-        .collect::<Option<_>>()?;
-    Some((0..seats.len()).into_par_iter().map(|index| suggested(&seen, index, &seats[index])).collect())
+    let highest = 2.0 * focus.band.1;
+    let structures = [Structure::new(model, highest).ok()?, Structure::new(&linear, highest).ok()?];
+    let seen: Option<Vec<Seen>> =
+        records.par_iter().map(|record| Seen::of(&structures, record, locations, focus)).collect();
+    let seen = seen?;
+    let of = |(index, location)| suggested(&seen, index, location);
+    Some(locations.par_iter().enumerate().map(of).collect::<Vec<_>>().concat())
 }
+
+/// Where in the record a pulse is put to learn what a force pair of 1 does.
+const PULSE_AT: usize = 24;
+/// Three samples: what is above half of the rate does not ring ahead of it.
+const PULSE: [f64; 3] = [0.25, 0.5, 0.25];
 
 impl Seen {
     fn of(
-        structure: &Structure,
-        linear: &Structure,
+        [structure, linear]: &[Structure; 2],
         record: &Record,
-        seats: &[Seat],
-        look: Look,
+        locations: &[JointLocation],
+        focus: &Focus,
     ) -> Option<Self> {
         let hit = &record.hit;
         let interval = hit.interval();
-        let samples = (record.onset + (CUT / (look.decay * interval)).ceil() as usize).min(hit.samples());
-        let window: Vec<f64> =
-            (0..samples).map(|i| (-look.decay * interval * (i as f64 - record.onset as f64)).exp()).collect();
-        let lines = Lines::new(samples, interval);
-        let last = (1..=samples).take_while(|line| lines.frequency(*line) <= look.highest).last()?;
+        let samples = (record.onset + (CUT / (focus.decay * interval)).ceil() as usize).min(hit.samples());
+        let weight = |i: usize| (-focus.decay * interval * (i as f64 - record.onset as f64)).exp();
+        let lines = Windowed::padded((0..samples).map(weight).collect(), interval);
+        let last = (1..=samples).take_while(|line| lines.frequency_hz(*line) <= focus.band.1).last()?;
         let band = 1..last + 1;
-        let s: Vec<Complex64> = band.clone().map(|line| lines.s(line) + look.decay).collect();
+        let steps = Steps { interval, within: focus.within, halvings: focus.halvings };
         let across = |structure: &Structure| -> Option<Vec<(Vec<f64>, Vec<f64>)>> {
-            seats
-                .iter()
-                .map(|seat| {
-                    Some(structure.across(&seat.joint)?[usize::from(seat.dof == Dof::Rotation)].clone())
-                })
-                .collect()
+            locations.iter().map(|location| structure.across(&location.joint, location.dof)).collect()
         };
         let rows: Vec<Vec<f64>> = across(structure)?.into_iter().map(|(row, _)| row).collect();
-        let steps = Steps { interval, within: look.within, halvings: 3 };
-        let windowed = |values: &[f64]| -> Vec<Complex64> {
-            lines.of(&values.iter().zip(&window).map(|(v, w)| v * w).collect::<Vec<f64>>())
-        };
-        let system = structure.system_with(record.struck(), &record.readings, &rows).ok()?;
-        let force = oversampled_for_lines(&hit.force()[..samples], look.within);
+        let system = structure.system(structure.load(record.struck()).ok()?, &record.readings, &rows).ok()?;
+        let force = oversampled_for_lines(&hit.force()[..samples], focus.within);
         let run = Stepper::new(&system, steps)?.run(&force, samples);
-        let count = record.readings.len();
-        let energy: f64 = window.iter().map(|w| w * w).sum();
+        let (simulated, unmoved) = run.split_at(record.readings.len());
+        let energy = lines.power();
         let (mut weights, mut target): (Vec<Vec<f64>>, Vec<Vec<Complex64>>) = Default::default();
-        for ((response, noise), simulated) in hit.responses().iter().zip(&record.noise).zip(&run.outputs) {
-            let recorded = windowed(&response.values[..samples]);
-            let simulated = windowed(simulated);
-            let pairs = || recorded[band.clone()].iter().zip(&simulated[band.clone()]);
+        for ((response, noise), simulated) in hit.responses().iter().zip(&record.noise).zip(simulated) {
+            let (recorded, simulated) = (lines.band(&response.values, &band), lines.band(simulated, &band));
+            let pairs = || recorded.iter().zip(&simulated);
             let variance = |(y, y0): (&Complex64, &Complex64)| {
                 noise * noise * energy + INEXACT * INEXACT * (y.norm_sqr() + y0.norm_sqr())
             };
@@ -118,71 +103,87 @@ impl Seen {
             target.push(pairs().zip(&weight).map(|((y, y0), w)| (y0 - y) * *w).collect());
             weights.push(weight);
         }
-        let unmoved: Vec<Vec<Complex64>> =
-            run.outputs[count..].iter().map(|motion| windowed(motion)).collect();
-        // A pulse of three samples: what is above half of the rate does not ring ahead of it.
-        const AT: usize = 24;
         let mut pulse = vec![0.0; samples];
-        for (offset, value) in [0.25, 0.5, 0.25].into_iter().enumerate() {
-            *pulse.get_mut(AT + offset)? = value;
-        }
-        let pulse_lines = windowed(&pulse);
-        let pulse = oversampled_for_lines(&pulse, look.within);
-        let seats = across(linear)?.into_iter().zip(seats).enumerate().map(|(index, ((row, load), seat))| {
-            let system = linear.system_loaded(load, &record.readings, &[row]).ok()?;
+        pulse.get_mut(PULSE_AT..PULSE_AT + PULSE.len())?.copy_from_slice(&PULSE);
+        let pulse_lines = lines.lines(&pulse);
+        let pulse = oversampled_for_lines(&pulse, focus.within);
+        let mut seen = Seen {
+            s: band.clone().map(|line| lines.s(line) + focus.decay).collect(),
+            locations: Vec::new(),
+            lines,
+            band,
+            target,
+        };
+        for (((row, load), location), unmoved) in across(linear)?.into_iter().zip(locations).zip(unmoved) {
+            let system = linear.system(load, &record.readings, &[row]).ok()?;
             let run = Stepper::new(&system, steps)?.run(&pulse, samples);
-            let of_one = |values: &Vec<f64>| {
-                let mut lines = windowed(values);
-                lines.iter_mut().zip(&pulse_lines).for_each(|(line, pulse)| *line /= *pulse);
-                lines
+            let of_one = |values: &Vec<f64>| -> Vec<Complex64> {
+                seen.lines.lines(values).iter().zip(&pulse_lines).map(|(line, pulse)| line / pulse).collect()
             };
-            let mut transfer: Vec<Vec<Complex64>> = run.outputs.iter().map(of_one).collect();
+            let mut transfer: Vec<Vec<Complex64>> = run.iter().map(of_one).collect();
             let own = transfer.pop()?;
-            for (row, weight) in transfer.iter_mut().zip(&weights) {
-                row.drain(..band.start);
-                row.truncate(weight.len());
-                row.iter_mut().zip(weight).for_each(|(h, w)| *h *= *w);
+            for (row, weights) in transfer.iter_mut().zip(&weights) {
+                *row = row[seen.band.clone()].iter().zip(weights).map(|(h, w)| h * w).collect();
             }
-            // A force of the joint's own size is what little is known of it before.
-            let mut motion = unmoved[index].clone();
-            for k in 0..band.len() {
-                let line = band.start + k;
-                let known = (seat.stiffness * unmoved[index][line].norm()).powi(2).recip();
-                let (mut top, mut bottom) = (Complex64::ZERO, if known.is_finite() { known } else { 1.0 });
-                for (h, t) in transfer.iter().zip(&target) {
-                    top += h[k].conj() * t[k];
-                    bottom += h[k].norm_sqr();
-                }
-                motion[line] -= own[line] * (top / bottom);
-            }
-            let seen = motion[band.clone()].to_vec();
-            let mut values = lines.signal(motion);
-            values.iter_mut().zip(&window).for_each(|(v, w)| *v /= w);
-            Some(SeenSeat { transfer, motion: values, lines: seen })
-        });
-        let seats = seats.collect::<Option<_>>()?;
-        Some(Seen { band, window, target, seats, s, lines })
+            let motion = seen.motion(unmoved, &own, &transfer, location.stiffness);
+            let within = motion[seen.band.clone()].to_vec();
+            let mut values = seen.lines.signal(motion);
+            values.iter_mut().zip(seen.window()).for_each(|(v, w)| *v /= w);
+            seen.locations.push(SeenLocation { transfer, motion: values, lines: within });
+        }
+        Some(seen)
     }
 
-    /// Lines in the band of a force history on a seat's motion.
+    /// Lines of a location's motion, D = D₀ − h_d·G, G from the responses.
+    fn motion(
+        &self,
+        unmoved: &[f64],
+        own: &[Complex64],
+        transfer: &[Vec<Complex64>],
+        stiffness: f64,
+    ) -> Vec<Complex64> {
+        let mut motion = self.lines.lines(unmoved);
+        for (k, line) in self.band.clone().enumerate() {
+            // A force of the joint's own size is what little is known of it before.
+            let known = (stiffness * motion[line].norm()).powi(2).recip();
+            let (mut top, mut bottom) = (Complex64::ZERO, if known.is_finite() { known } else { 1.0 });
+            for (h, t) in transfer.iter().zip(&self.target) {
+                top += h[k].conj() * t[k];
+                bottom += h[k].norm_sqr();
+            }
+            motion[line] -= own[line] * (top / bottom);
+        }
+        motion
+    }
+
+    /// e^{−at} from the blow on.
+    pub fn window(&self) -> &[f64] {
+        &self.lines.window
+    }
+
+    /// Every value compared at a location, in the order of responses and lines: line in the band, h·weight, target.
+    pub fn each_value(&self, location: usize, mut visit: impl FnMut(usize, Complex64, Complex64)) {
+        for (transfer, target) in self.locations[location].transfer.iter().zip(&self.target) {
+            transfer.iter().zip(target).enumerate().for_each(|(k, (h, target))| visit(k, *h, *target));
+        }
+    }
+
+    /// Lines in the band of a force history on a joint's motion.
     pub fn force(&self, values: &[f64]) -> Vec<Complex64> {
-        let windowed: Vec<f64> = values.iter().zip(&self.window).map(|(v, w)| v * w).collect();
-        let mut lines = self.lines.of(&windowed);
-        lines.truncate(self.band.end);
-        lines.drain(..self.band.start);
-        lines
+        self.lines.band(values, &self.band)
     }
 }
 
 #[cfg(test)]
 #[allow(clippy::unwrap_used)]
 mod tests {
-    use super::super::candidates::seats;
-    use super::super::parameters::Law;
+    use super::super::hypothesis::same_name;
+    use super::super::locations::locations;
     use super::super::records::records;
+    use super::super::shapes::is_like;
     use super::*;
     use crate::{RestoringLaw, simulate};
-    use jointscope_fixture::Effect;
+    use jointscope_fixture::{Dof, Effect};
     use jointscope_hits::Hit;
     use jointscope_spectra::Channel;
 
@@ -229,15 +230,14 @@ mod tests {
             let stated = two_blocks(1.01);
             let recorded = records(&stated, &hits).unwrap();
             let recorded: Vec<&Record> = recorded.iter().collect();
-            let seats = seats(&stated, &recorded, 4000.0);
-            let look = Look { decay: 20.0, highest: 1500.0, within: 4 };
-            let mut found: Vec<Suggestion> =
-                suggestions(&stated, &recorded, &seats, look).unwrap().into_iter().flatten().collect();
+            let locations = locations(&stated, &recorded, 4000.0);
+            let focus = Focus { decay: 20.0, band: (0.0, 1500.0), within: 4, halvings: 3 };
+            let mut found = suggestions(&stated, &recorded, &locations, &focus).unwrap();
             found.sort_by(|a, b| b.share.total_cmp(&a.share));
-            let hidden = Law::new("J", dof, law);
-            assert!(found[0].laws[0].is_named_as(&hidden), "{law:?} in {dof:?}: {:?}", found[0]);
+            let hidden = law.to_effect("J", dof);
+            assert!(same_name(&found[0].effects[0], &hidden), "{law:?} in {dof:?}: {:?}", found[0]);
             assert!(
-                found[0].laws.iter().any(|suggested| suggested.is_like(&hidden, 1.0 / 3.0)),
+                found[0].effects.iter().any(|suggested| is_like(suggested, &hidden, 1.0 / 3.0)),
                 "{law:?} in {dof:?}: {:?}",
                 found[0]
             );

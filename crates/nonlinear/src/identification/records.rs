@@ -1,11 +1,12 @@
 //! The hits of a test as the diagnosis uses them: noise, levels, what is held out.
 
-use super::spectra::noise;
 use crate::DiagnoseError;
-use crate::time::structure::Reading;
-use jointscope_fixture::{Dof, Fixture};
+use crate::spectra::noise;
+use crate::time::structure::{Reading, station};
+use jointscope_fixture::Fixture;
 use jointscope_hits::Hit;
 use jointscope_spectra::Channel;
+use std::collections::BTreeSet;
 
 /// A hit with the noise of its signals.
 #[derive(Debug, Clone)]
@@ -43,6 +44,17 @@ impl Record {
     pub fn struck(&self) -> &Channel {
         self.hit.struck()
     }
+
+    /// Whether another hit was struck, read and sampled alike.
+    pub fn has_setup_of(&self, other: &Record) -> bool {
+        let interval = |record: &Record| record.hit.interval().to_bits();
+        (self.struck(), &self.readings, interval(self)) == (other.struck(), &other.readings, interval(other))
+    }
+
+    /// Whether another hit is of the same strength at the same point.
+    pub fn is_like(&self, other: &Record) -> bool {
+        self.struck() == other.struck() && self.level == other.level
+    }
 }
 
 /// Ratio of peak forces from which two neighbours belong to different levels.
@@ -58,35 +70,7 @@ pub(crate) fn records(fixture: &Fixture, hits: &[Hit]) -> Result<Vec<Record>, Di
     if hits.is_empty() {
         return Err(DiagnoseError::NoHits);
     }
-    for hit in hits {
-        let number = hit.number();
-        if hit.peak_force() == 0.0 {
-            return Err(DiagnoseError::NoForce { hit: number });
-        }
-        if hit.responses().is_empty() {
-            return Err(DiagnoseError::NoResponse { hit: number });
-        }
-        let silent = hit.responses().iter().find(|r| r.values.iter().all(|v| *v == 0.0));
-        if let Some(response) = silent {
-            return Err(DiagnoseError::SilentResponse { hit: number, channel: response.channel.to_string() });
-        }
-        if hit.samples() < FEWEST_SAMPLES {
-            return Err(DiagnoseError::TooShort {
-                hit: number,
-                samples: hit.samples(),
-                needed: FEWEST_SAMPLES,
-            });
-        }
-        for channel in hit.responses().iter().map(|r| &r.channel).chain([hit.struck()]) {
-            let Some(point) = fixture.point(&channel.point) else {
-                return Err(DiagnoseError::UnknownPoint { hit: number, point: channel.point.clone() });
-            };
-            let turns = !matches!(&fixture.bodies()[point.body].kind, jointscope_fixture::BodyKind::Rigid(r) if !r.rotates);
-            if channel.dof == Dof::Rotation && !turns {
-                return Err(DiagnoseError::NoRotation { hit: number, point: channel.point.clone() });
-            }
-        }
-    }
+    hits.iter().try_for_each(|hit| check(fixture, hit))?;
     let mut records: Vec<Record> = hits.iter().map(Record::new).collect();
     let ratio = set_levels(&mut records);
     if ratio < TELLING {
@@ -98,13 +82,32 @@ pub(crate) fn records(fixture: &Fixture, hits: &[Hit]) -> Result<Vec<Record>, Di
 /// Fewest samples of a hit.
 const FEWEST_SAMPLES: usize = 256;
 
+/// Refuses a hit of which nothing follows.
+fn check(fixture: &Fixture, hit: &Hit) -> Result<(), DiagnoseError> {
+    let number = hit.number();
+    if hit.peak_force() == 0.0 {
+        return Err(DiagnoseError::NoForce(number));
+    }
+    if hit.responses().is_empty() {
+        return Err(DiagnoseError::NoResponse(number));
+    }
+    if let Some(silent) = hit.responses().iter().find(|r| r.values.iter().all(|v| *v == 0.0)) {
+        return Err(DiagnoseError::SilentResponse { hit: number, channel: silent.channel.to_string() });
+    }
+    if hit.samples() < FEWEST_SAMPLES {
+        let (samples, needed) = (hit.samples(), FEWEST_SAMPLES);
+        return Err(DiagnoseError::TooShort { hit: number, samples, needed });
+    }
+    let mut channels = hit.responses().iter().map(|r| &r.channel).chain([hit.struck()]);
+    channels
+        .try_for_each(|c| station(fixture, c).map(drop))
+        .map_err(|error| DiagnoseError::Channel(number, error))
+}
+
 /// Numbers the levels of the hits at each struck point; answers with the ratio of strongest to weakest at the point where it is largest.
 fn set_levels(records: &mut [Record]) -> f64 {
-    let mut struck: Vec<Channel> = records.iter().map(|r| r.struck().clone()).collect();
-    struck.sort();
-    struck.dedup();
     let mut widest: f64 = 1.0;
-    for channel in struck {
+    for channel in struck_channels(records) {
         let mut group: Vec<usize> = (0..records.len()).filter(|&i| *records[i].struck() == channel).collect();
         group.sort_by(|a, b| records[*a].hit.peak_force().total_cmp(&records[*b].hit.peak_force()));
         let peak = |i: usize| records[i].hit.peak_force();
@@ -126,16 +129,20 @@ fn set_levels(records: &mut [Record]) -> f64 {
     widest
 }
 
-/// Indices of the hits to hold out: the last of each group of two or more alike (same point, same level); every third where there are no
-/// such groups but six or more hits.
+/// Every channel that was struck, in order.
+pub(crate) fn struck_channels(records: &[Record]) -> BTreeSet<Channel> {
+    records.iter().map(|r| r.struck().clone()).collect()
+}
+
+/// Indices of the hits to hold out: the last of each group of two or more alike; every third where there are no such groups but six or more
+/// hits.
 pub(crate) fn held_out(records: &[Record]) -> Vec<usize> {
-    let same = |a: &Record, b: &Record| a.struck() == b.struck() && a.level == b.level;
-    let last = |i: usize| {
-        let alike = |j: &usize| same(&records[i], &records[*j]);
-        let all: Vec<usize> = (0..records.len()).filter(alike).collect();
-        all.len() > 1 && all[all.len() - 1] == i
+    let last = |i: &usize| {
+        let (before, after) = (&records[..*i], &records[i + 1..]);
+        let alike = |other: &Record| records[*i].is_like(other);
+        before.iter().any(alike) && !after.iter().any(alike)
     };
-    let held: Vec<usize> = (0..records.len()).filter(|&i| last(i)).collect();
+    let held: Vec<usize> = (0..records.len()).filter(last).collect();
     match held.is_empty() && records.len() >= 6 {
         true => (0..records.len()).filter(|i| i % 3 == 1).collect(),
         false => held,

@@ -1,39 +1,42 @@
 //! Laws whose strength is linear, compared by what they leave of a reconstructed force: suggestions of where to begin a fit.
 
-use super::candidates::Seat;
-use super::parameters::Law;
+use super::hypothesis::same_name;
+use super::locations::JointLocation;
 use super::reconstruction::Seen;
-use crate::{Memory, RestoringLaw};
+use crate::RestoringLaw;
+use jointscope_fixture::Effect;
 use jointscope_linalg::solve_positive_definite;
 use num_complex::Complex64;
 
-/// Laws of one seat to begin with.
+/// Effects at one location to begin with.
 #[derive(Debug, Clone)]
 pub(crate) struct Suggestion {
-    /// Laws of one kind, the one that leaves least first.
-    pub laws: Vec<Law>,
+    /// Of one kind, the one that leaves least first.
+    pub effects: Vec<Effect>,
     /// Share of the weighted misfit that the first of them explains beyond what a linear change of the joint does.
     pub share: f64,
 }
 
 impl Suggestion {
-    /// Takes the best law of another look, and all of them if it explains more.
-    pub fn join(&mut self, other: Suggestion) {
+    /// Takes the best effect of another suggestion, and all of them if it explains more.
+    pub fn join(&mut self, mut other: Suggestion) {
         if other.share > self.share {
-            let own = std::mem::replace(self, other);
-            self.add(&own.laws[..1]);
-        } else {
-            self.add(&other.laws[..1]);
+            std::mem::swap(self, &mut other);
         }
+        other.effects.into_iter().take(1).for_each(|effect| self.add(effect));
     }
 
-    fn add(&mut self, laws: &[Law]) {
-        for law in laws {
-            if !self.laws.iter().any(|known| known.is_like(law, ALIKE)) {
-                self.laws.push(law.clone());
-            }
+    fn add(&mut self, effect: Effect) {
+        if !self.effects.iter().any(|known| is_like(known, &effect, ALIKE)) {
+            self.effects.push(effect);
         }
     }
+}
+
+/// Whether names are the same and no parameter differs by more than a part `by`.
+pub(super) fn is_like(a: &Effect, b: &Effect, by: f64) -> bool {
+    let close = |a: f64, b: f64| (a - b).abs() <= by * a.abs().max(b.abs());
+    same_name(a, b) && (0..a.parameters.len()).all(|i| close(a.value(i), b.value(i)))
 }
 
 /// Relative difference of all parameters below which a start is no other one.
@@ -63,7 +66,7 @@ struct Tried {
     alone: (f64, f64),
 }
 
-/// Least squares at one seat.
+/// Least squares at one location.
 struct Regression<'a> {
     seen: &'a [Seen],
     index: usize,
@@ -74,44 +77,58 @@ struct Regression<'a> {
     taken: f64,
 }
 
-/// Suggestions for each kind of law that helps at a seat.
-pub(super) fn suggested(seen: &[Seen], index: usize, seat: &Seat) -> Vec<Suggestion> {
+/// Suggestions for each kind of law that helps at a location.
+pub(super) fn suggested(seen: &[Seen], index: usize, location: &JointLocation) -> Vec<Suggestion> {
     let largest = seen
         .iter()
-        .flat_map(|one| one.seats[index].motion.iter().zip(&one.window))
+        .flat_map(|one| one.locations[index].motion.iter().zip(one.window()))
         .filter(|(_, window)| **window > 0.05)
         .fold(0.0, |most: f64, (d, _)| most.max(d.abs()));
     if !(largest > 0.0 && largest.is_finite()) {
         return Vec::new();
     }
     let regression = Regression::of(seen, index);
-    let law = |law: RestoringLaw| Law::new(&seat.joint, seat.dof, law);
     let unit = largest.powi(-2);
-    let cubic = |_: f64, k: f64| RestoringLaw::Cubic { stiffness3: k * unit };
-    let friction = |slip: f64, k: f64| RestoringLaw::Friction { slip_force: k * slip, stiffness: k };
-    let gap = |clearance: f64, k: f64| RestoringLaw::Gap { clearance, stiffness: k };
     let sizes: Vec<f64> =
         (0..SIZES).map(|i| largest * SMALLEST.powf(1.0 - i as f64 / (SIZES - 1) as f64) * 0.98).collect();
-    let of_kind = |shape: &dyn Fn(f64, f64) -> RestoringLaw, sizes: &[f64], signed: bool| {
-        let tried: Vec<Option<Tried>> =
-            sizes.iter().map(|size| regression.tried(shape(*size, 1.0))).collect();
-        let usable = |(k, share): (f64, f64)| (if signed { k != 0.0 } else { k > 0.0 }) && share.is_finite();
-        let results = |by: fn(&Tried) -> (f64, f64)| -> Vec<Option<(f64, f64)>> {
-            tried.iter().map(|tried| tried.as_ref().map(by).filter(|result| usable(*result))).collect()
-        };
-        let (beside, alone) = (results(|tried| tried.beside), results(|tried| tried.alone));
-        let best = peaks(&beside);
-        let share = beside[*best.first()?]?.1;
-        let mut suggestion = Suggestion { laws: Vec::new(), share };
-        let chosen = best.iter().take(SHAPES).map(|&i| (i, beside[i]));
-        for (i, result) in chosen.chain(peaks(&alone).first().map(|&i| (i, alone[i]))) {
-            suggestion.add(&result.map(|(k, _)| law(shape(sizes[i], k))).into_iter().collect::<Vec<_>>());
-        }
-        Some(suggestion)
+    let kinds: [(Shape, &[f64]); 3] = [
+        (&|_, k| RestoringLaw::Cubic { stiffness3: k * unit }, &sizes[..1]),
+        (&|slip, k| RestoringLaw::Friction { slip_force: k * slip, stiffness: k }, &sizes),
+        (&|clearance, k| RestoringLaw::Gap { clearance, stiffness: k }, &sizes),
+    ];
+    kinds.into_iter().filter_map(|(shape, sizes)| of_kind(&regression, shape, sizes, location)).collect()
+}
+
+/// A law by its size (where it slips, where it touches) and its strength.
+type Shape<'a> = &'a dyn Fn(f64, f64) -> RestoringLaw;
+
+/// The best sizes of one kind of law, each with its strength.
+fn of_kind(
+    regression: &Regression,
+    shape: Shape,
+    sizes: &[f64],
+    location: &JointLocation,
+) -> Option<Suggestion> {
+    let tried: Vec<Option<Tried>> = sizes.iter().map(|size| regression.tried(shape(*size, 1.0))).collect();
+    // A cubic spring alone may have either sign.
+    let usable = |(k, share): &(f64, f64)| {
+        share.is_finite()
+            && (*k > 0.0 || (*k < 0.0 && matches!(shape(sizes[0], 1.0), RestoringLaw::Cubic { .. })))
     };
-    let kinds =
-        [of_kind(&cubic, &sizes[..1], true), of_kind(&friction, &sizes, false), of_kind(&gap, &sizes, false)];
-    kinds.into_iter().flatten().collect()
+    let results = |by: fn(&Tried) -> (f64, f64)| -> Vec<Option<(f64, f64)>> {
+        tried.iter().map(|tried| tried.as_ref().map(by).filter(usable)).collect()
+    };
+    let (beside, alone) = (results(|tried| tried.beside), results(|tried| tried.alone));
+    let best = peaks(&beside);
+    let share = beside[*best.first()?]?.1;
+    let mut suggestion = Suggestion { effects: Vec::new(), share };
+    let chosen = best.iter().take(SHAPES).map(|&i| (i, beside[i]));
+    for (i, result) in chosen.chain(peaks(&alone).first().map(|&i| (i, alone[i]))) {
+        if let Some((k, _)) = result {
+            suggestion.add(shape(sizes[i], k).to_effect(&location.joint, location.dof));
+        }
+    }
+    Some(suggestion)
 }
 
 /// Places of the local maxima of the share, the highest first.
@@ -148,27 +165,21 @@ impl Sums {
 
 impl<'a> Regression<'a> {
     fn of(seen: &'a [Seen], index: usize) -> Self {
-        let columns: Vec<[Vec<Complex64>; LINEAR]> = seen
-            .iter()
-            .map(|one| {
-                let motion = &one.seats[index].lines;
-                let times = |power: i32| motion.iter().zip(&one.s).map(|(d, s)| d * s.powi(power)).collect();
-                [times(0), times(1), times(2)]
-            })
-            .collect();
+        let columns = |one: &Seen| {
+            let motion = &one.locations[index].lines;
+            [0, 1, 2].map(|power| motion.iter().zip(&one.s).map(|(d, s)| d * s.powi(power)).collect())
+        };
+        let columns: Vec<[Vec<Complex64>; LINEAR]> = seen.iter().map(columns).collect();
         let mut linear = Sums::default();
         for (one, columns) in seen.iter().zip(&columns) {
-            for (row, transfer) in one.seats[index].transfer.iter().enumerate() {
-                for (k, h) in transfer.iter().enumerate() {
-                    let values = columns.each_ref().map(|column| column[k] * h);
-                    let target = one.target[row][k];
-                    linear.square += target.norm_sqr();
-                    for i in 0..LINEAR {
-                        linear.right[i] += product(values[i], target);
-                        (0..LINEAR).for_each(|j| linear.matrix[i][j] += product(values[i], values[j]));
-                    }
+            one.each_value(index, |k, h, target| {
+                let values = columns.each_ref().map(|column| column[k] * h);
+                linear.square += target.norm_sqr();
+                for i in 0..LINEAR {
+                    linear.right[i] += product(values[i], target);
+                    (0..LINEAR).for_each(|j| linear.matrix[i][j] += product(values[i], values[j]));
                 }
-            }
+            });
         }
         let taken = linear.solved(LINEAR).map_or(0.0, |(_, gain)| gain);
         Regression { seen, index, columns, linear, taken }
@@ -177,25 +188,17 @@ impl<'a> Regression<'a> {
     fn tried(&self, law: RestoringLaw) -> Option<Tried> {
         let mut sums = self.linear;
         for (one, columns) in self.seen.iter().zip(&self.columns) {
-            let at = &one.seats[self.index];
-            let mut memory = Memory::default();
-            let force = |d: &f64| {
-                memory = Memory { motion: *d, force: law.force(*d, &memory) };
-                memory.force
-            };
-            let shape = one.force(&at.motion.iter().map(force).collect::<Vec<f64>>());
-            for (row, transfer) in at.transfer.iter().enumerate() {
-                for (k, h) in transfer.iter().enumerate() {
-                    let value = shape[k] * h;
-                    sums.right[LINEAR] += product(value, one.target[row][k]);
-                    sums.matrix[LINEAR][LINEAR] += value.norm_sqr();
-                    for i in 0..LINEAR {
-                        let cross = product(value, columns[i][k] * h);
-                        sums.matrix[i][LINEAR] += cross;
-                        sums.matrix[LINEAR][i] += cross;
-                    }
+            let shape = one.force(&law.forces(&one.locations[self.index].motion));
+            one.each_value(self.index, |k, h, target| {
+                let value = shape[k] * h;
+                sums.right[LINEAR] += product(value, target);
+                sums.matrix[LINEAR][LINEAR] += value.norm_sqr();
+                for i in 0..LINEAR {
+                    let cross = product(value, columns[i][k] * h);
+                    sums.matrix[i][LINEAR] += cross;
+                    sums.matrix[LINEAR][i] += cross;
                 }
-            }
+            });
         }
         let (strength, gain) = sums.solved(LINEAR + 1)?;
         let (own, along) = (sums.matrix[LINEAR][LINEAR], sums.right[LINEAR]);

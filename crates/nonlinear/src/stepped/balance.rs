@@ -53,22 +53,15 @@ fn contact(clearance: f64, stiffness: f64, amplitude: f64, yields: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Memory;
 
     /// First harmonic by stepping through a settled period.
     fn stepped(law: RestoringLaw, amplitude: f64) -> Complex64 {
         let steps = 20_000;
-        let mut memory = Memory::default();
-        let mut sum = Complex64::ZERO;
-        for i in 0..3 * steps {
-            let phase = 2.0 * PI * i as f64 / steps as f64;
-            let motion = amplitude * phase.cos();
-            memory = Memory { motion, force: law.force(motion, &memory) };
-            if i >= 2 * steps {
-                sum += memory.force * Complex64::from_polar(2.0 / steps as f64, -phase);
-            }
-        }
-        sum / amplitude
+        let phase = |i: usize| 2.0 * PI * i as f64 / steps as f64;
+        let motions: Vec<f64> = (0..3 * steps).map(|i| amplitude * phase(i).cos()).collect();
+        let settled = law.forces(&motions).into_iter().enumerate().skip(2 * steps);
+        let first = settled.map(|(i, force)| force * Complex64::from_polar(2.0 / steps as f64, -phase(i)));
+        first.sum::<Complex64>() / amplitude
     }
 
     #[test]

@@ -1,65 +1,87 @@
 //! The whole answer: what changes from level to level, what it is, where, up to which level, how sure.
 
-use super::judge::{Fitted, Form, fitted};
+use super::forms::{Fitted, fitted};
 use super::level::{Held, SteppedLevel};
-use super::model::{Change, Subject};
+use super::location::locations;
 use super::naming::{Judged, named_law};
 use super::pooled::noisy;
+use super::problem::{Change, Level, Problem};
 use super::resonance::{Resonance, resonance};
-use super::seat::seats;
 use crate::distribution::f_tail;
-use crate::{CHANGED, Estimate, NonlinearOptions, SteppedError, Verdict};
-use jointscope_fixture::{Effect, Fixture};
+use crate::{CHANGED, NonlinearOptions, SteppedError};
+use jointscope_findings::{Estimate, HeldOut, Verdict};
+use jointscope_fixture::{Effect, Fixture, QuantityKey, QuantityOwner};
 use jointscope_spectra::Dof;
 use rayon::prelude::*;
+use serde::{Serialize, Serializer};
 use std::f64::consts::TAU;
 
 /// What one level shows.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct LevelResult {
     /// What was held.
     pub held: Held,
     /// The resonance by itself, no fixture needed.
+    #[serde(flatten)]
     pub resonance: Resonance,
     /// Amplitude of the joint's relative motion at the peak, m or rad.
+    #[serde(rename = "relative_motion")]
     pub motion: f64,
     /// Stiffness across the joint beyond the fixture's, N/m or N·m/rad, and its standard deviation.
+    #[serde(rename = "stiffness_beyond_the_fixture", serialize_with = "jointscope_findings::with_std")]
     pub stiffness: (f64, Option<f64>),
     /// Loss stiffness (imaginary part) beyond the fixture's, and its standard deviation.
+    #[serde(rename = "loss_stiffness_beyond_the_fixture", serialize_with = "jointscope_findings::with_std")]
     pub loss: (f64, Option<f64>),
     /// Relative error of the FRFs: fixture as stated, refitted, repaired, and with a complex stiffness of its own.
+    #[serde(serialize_with = "by_model")]
     pub nrmse: [f64; 4],
+    /// Whether the laws found hold at this level.
+    pub explained: bool,
+}
+
+fn by_model<S: Serializer>(values: &[f64; 4], serializer: S) -> Result<S::Ok, S::Error> {
+    let names = ["nominal", "refitted", "repaired", "stiffness_of_its_own"];
+    serializer.collect_map(names.into_iter().zip(values))
 }
 
 /// A form tried at a component of a joint.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Tried {
+    /// Names of the effects, `linear` for none.
+    #[serde(rename = "kind")]
+    pub form: String,
     /// The joint.
+    #[serde(rename = "place")]
     pub joint: String,
     /// Which component of d.
     pub dof: Dof,
-    /// Names of the effects, `linear` for none.
-    pub form: &'static str,
     /// Root mean square over the levels of the relative errors.
     pub nrmse: f64,
     /// Share of the change with level that it explains, 0 to 1.
+    #[serde(rename = "share_explained")]
     pub share: f64,
 }
 
 /// A law that the levels need.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct LevelFinding {
     /// Kind, joint, dof and parameters.
+    #[serde(flatten, serialize_with = "jointscope_findings::effect_name")]
     pub effect: Effect,
     /// Parameters with their uncertainty.
+    #[serde(rename = "parameters", serialize_with = "jointscope_findings::parameters")]
     pub estimates: Vec<Estimate>,
     /// Probability of kind, joint and dof together.
     pub probability: f64,
     /// Other names for it, the most probable first.
+    #[serde(serialize_with = "jointscope_findings::alternatives")]
     pub alternatives: Vec<(Effect, f64)>,
     /// Share of the change with level that the laws found explain over the range.
+    #[serde(rename = "share_explained")]
     pub share: f64,
     /// Relative motions of the joint over the range, m or rad.
+    #[serde(rename = "relative_motions")]
     pub motions: (f64, f64),
 }
 
@@ -80,8 +102,8 @@ pub struct SteppedDiagnosis {
     pub findings: Vec<LevelFinding>,
     /// Levels, from the lowest, over which the laws found hold; 0 without laws.
     pub holds: usize,
-    /// Relative errors of the levels left out of the fit one by one, refitted and repaired; those over which the laws hold.
-    pub left_out: Option<[f64; 2]>,
+    /// The levels over which the laws hold, left out of the fit one by one.
+    pub held_out: Option<HeldOut>,
     /// Lines in use, Hz.
     pub band: (f64, f64),
     /// Root-mean-square relative errors over the levels: as stated, refitted, repaired, each level with a stiffness of its own.
@@ -114,88 +136,81 @@ impl SteppedDiagnosis {
         let with_noise = |level: &SteppedLevel| SteppedLevel { frfs: noisy(&level.frfs), ..level.clone() };
         let levels: Vec<SteppedLevel> = levels.iter().map(with_noise).collect();
         let (levels, band) = about_the_resonance(&levels, options.band)?;
+        let no_resonance = |level: &SteppedLevel| SteppedError::NoResonance(level.held.to_string());
         let resonances = levels
             .iter()
-            .map(|level| {
-                resonance(level).ok_or_else(|| SteppedError::NoResonance { level: level.held.to_string() })
-            })
+            .map(|level| resonance(level).ok_or_else(|| no_resonance(level)))
             .collect::<Result<Vec<_>, _>>()?;
-        let all = seats(fixture, &levels)?;
-        let subjects: Vec<Subject> = all.into_iter().filter_map(|seat| Subject::new(seat, &levels)).collect();
-        let linear: Vec<Option<Fitted>> = subjects.iter().map(|s| fitted(s, Form::Linear)).collect();
-        let unbent: Vec<(&Subject, Fitted)> =
-            subjects.iter().zip(linear).filter_map(|(subject, linear)| Some((subject, linear?))).collect();
-        let closest = unbent.iter().min_by(|a, b| a.0.floor.total_cmp(&b.0.floor));
-        let change =
-            closest.map(|(subject, linear)| changed(subject, linear)).ok_or(SteppedError::NoJoint)?;
-        // What does not change is not searched for a law.
-        let judge = |(subject, linear)| match change.0 < CHANGED {
-            true => Judged::of(subject, linear),
-            false => Judged::unbent(subject, linear),
+        let measured: Vec<&SteppedLevel> = levels.iter().collect();
+        let found = locations(fixture, &measured)?.into_iter();
+        let linear = |location| {
+            let problem = Problem::new(location, &measured)?;
+            let linear = fitted(&problem, &[])?;
+            Some((problem, linear))
         };
-        let judged: Vec<Judged> = unbent.into_par_iter().map(judge).collect();
+        let linear: Vec<(Problem, Fitted)> = found.filter_map(linear).collect();
+        let closest = linear.iter().min_by(|a, b| a.0.floor.total_cmp(&b.0.floor));
+        let change =
+            closest.map(|(problem, linear)| changed(problem, linear)).ok_or(SteppedError::NoJoint)?;
+        // What does not change is not searched for a law.
+        let changes = change.0 < CHANGED;
+        let judged: Vec<Judged> =
+            linear.into_par_iter().map(|(problem, linear)| Judged::of(problem, linear, changes)).collect();
         let best = judged.iter().min_by(|a, b| a.best().nrmse.total_cmp(&b.best().nrmse));
         let best = best.ok_or(SteppedError::NoJoint)?;
-        let mut verdict = Verdict::Homogeneous;
-        let mut named = None;
-        if change.0 < CHANGED {
-            named = named_law(&judged);
-            verdict = match &named {
-                None => Verdict::Unexplained,
-                Some(n) if n.count == levels.len() && n.share >= ALL => Verdict::Explained,
-                Some(_) => Verdict::PartlyExplained,
-            };
-        }
-        let subject = named.as_ref().map_or(best.subject, |n| judged[n.index].subject);
-        let base = named.as_ref().map_or(&best.linear, |n| &judged[n.index].linear);
-        let repaired = named.as_ref().map_or(base, |n| &n.fit);
-        let stated = Change { log_gain: 0.0, base: 0.0.into(), laws: Vec::new() };
-        let rows = (0..levels.len()).map(|l| {
-            let (delta, std) = (subject.free.1[l], subject.deviation(l));
+        let named = if changes { named_law(&judged) } else { None };
+        let verdict = match &named {
+            _ if !changes => Verdict::Consistent,
+            None => Verdict::Unexplained,
+            Some(n) if n.count == levels.len() && n.share >= ALL => Verdict::Explained,
+            Some(_) => Verdict::PartlyExplained,
+        };
+        let Judged { problem, linear, .. } = named.as_ref().map_or(best, |n| &judged[n.index]);
+        let repaired = named.as_ref().map_or(linear, |n| &n.fit);
+        let holds = named.as_ref().map_or(0, |n| n.count);
+        let models = [&Change::default(), &linear.change, &repaired.change];
+        let row = |(index, level): (usize, &Level)| {
+            let deviations = problem.delta_deviations(level);
+            let std = |k: usize| deviations.as_ref().map(|std| std[k]);
+            let [nominal, refitted, repaired] = models.map(|change| problem.error(level, change));
             LevelResult {
-                held: levels[l].held,
-                resonance: resonances[l],
-                motion: subject.motion(l),
-                stiffness: (delta.re, std.map(|s| s[0])),
-                loss: (delta.im, std.map(|s| s[1])),
-                nrmse: [
-                    subject.error_of(l, &stated),
-                    subject.error_of(l, &base.change),
-                    subject.error_of(l, &repaired.change),
-                    subject.free_error(l),
-                ],
+                held: level.measured.held,
+                resonance: resonances[index],
+                motion: level.motion(),
+                stiffness: (level.delta.re, std(0)),
+                loss: (level.delta.im, std(1)),
+                nrmse: [nominal, refitted, repaired, problem.own_error(level)],
+                explained: index < holds,
             }
-        });
-        let rows: Vec<LevelResult> = rows.collect();
+        };
+        let rows: Vec<LevelResult> = problem.levels.iter().enumerate().map(row).collect();
         let mean =
             |k: usize| (rows.iter().map(|r| r.nrmse[k].powi(2)).sum::<f64>() / rows.len() as f64).sqrt();
-        let nrmse = [mean(0), mean(1), mean(2), mean(3)];
         let mut tried: Vec<Tried> = judged.iter().flat_map(Judged::tried).collect();
         tried.sort_by(|a, b| a.nrmse.total_cmp(&b.nrmse));
         let omega = TAU * resonances[0].frequency.0;
-        let (refitted, unplaced) = placed(fixture, subject, &base.change, omega);
+        let (refitted, unplaced) = placed(fixture, problem, &linear.change, omega);
         let repaired_fixture = match &named {
             None => refitted.clone(),
-            Some(n) => with_laws(fixture, subject, &n.fit.change, omega),
+            Some(n) => with_laws(fixture, problem, &n.fit.change, omega),
         };
-        let findings =
-            named.as_ref().map_or_else(Vec::new, |n| n.findings(&judged, (fixture, options.exact)));
-        let left_out = named.as_ref().and_then(|n| n.left_out());
-        let by_noise = subject.by_noise();
-        let chi2 = |change: &Change, fitted: usize| by_noise.as_ref()?.chi2_per_dof(change, fitted);
-        let fitted = |change: &Change| chi2(change, change.parameters().len());
-        let chi2_per_dof = [chi2(&stated, 0), fitted(&base.change), fitted(&repaired.change)];
+        let by_noise = problem.by_noise();
+        let chi2_per_dof = models.map(|change| {
+            let fitted = if *change == Change::default() { 0 } else { change.parameters().len() };
+            by_noise.as_ref()?.chi2_per_dof(change, fitted)
+        });
+        let by_fixture = (fixture, options.exact);
         Ok(SteppedDiagnosis {
             verdict,
-            place: (subject.seat.joint.clone(), subject.dof()),
+            place: (problem.joint.clone(), problem.dof),
+            nrmse: [0, 1, 2, 3].map(mean),
             levels: rows,
             change,
             tried,
-            findings,
-            holds: named.as_ref().map_or(0, |n| n.count),
-            left_out,
+            findings: named.as_ref().map_or_else(Vec::new, |n| n.findings(&judged, by_fixture)),
+            holds,
+            held_out: named.as_ref().and_then(|n| n.held_out()),
             band,
-            nrmse,
             chi2_per_dof,
             fixtures: [refitted, repaired_fixture],
             unplaced,
@@ -228,7 +243,7 @@ fn about_the_resonance(
     band: Option<(f64, f64)>,
 ) -> Result<(Vec<SteppedLevel>, (f64, f64)), SteppedError> {
     let (from, to) = band.unwrap_or((0.0, f64::INFINITY));
-    let too_few = |level: &SteppedLevel| SteppedError::TooFewLines { level: level.held.to_string() };
+    let too_few = |level: &SteppedLevel| SteppedError::TooFewLines(level.held.to_string());
     let cut = |levels: &[SteppedLevel], from: f64, to: f64| {
         levels
             .iter()
@@ -252,30 +267,31 @@ fn about_the_resonance(
 const UNCERTAIN: f64 = 1.25;
 
 /// Probability that one complex stiffness for all levels leaves as much more than one a level by chance, and the ratio of variances. Values are weighed
-/// by their own noise, of which only the course over lines and FRFs counts: its size is that of what the levels' own stiffnesses leave.
-fn changed(subject: &Subject, linear: &Fitted) -> (f64, f64) {
-    let by_noise = subject.by_noise();
-    let subject = by_noise.as_ref().unwrap_or(subject);
-    let count = subject.levels.len();
-    let Some((_, common)) = subject.fitted(&linear.change, None) else { return (1.0, 1.0) };
-    let own: f64 = (0..count).map(|l| subject.free_error(l).powi(2)).sum();
+/// by their own noise, of which only the variation over lines and FRFs counts: its size is that of what the levels' own stiffnesses leave.
+fn changed(problem: &Problem, linear: &Fitted) -> (f64, f64) {
+    let by_noise = problem.by_noise();
+    let problem = by_noise.as_ref().unwrap_or(problem);
+    let count = problem.levels.len();
+    let Some((_, common)) = problem.fitted(&linear.change) else { return (1.0, 1.0) };
+    let own: f64 = problem.levels.iter().map(|level| problem.own_error(level).powi(2)).sum();
     let more = 2.0 * (count - 1) as f64;
-    let left = subject.count() as f64 - 2.0 * count as f64 - 1.0;
+    let left = problem.count() as f64 - 2.0 * count as f64 - 1.0;
     let ratio = ((common - own) / more) / (own / left) / UNCERTAIN;
     (f_tail(ratio, more, left), ratio)
 }
 
 /// The fixture with the base stiffness and loss of a change in its joint's file entries; and what has no entry.
-fn placed(fixture: &Fixture, subject: &Subject, change: &Change, omega: f64) -> (Fixture, Vec<String>) {
+fn placed(fixture: &Fixture, problem: &Problem, change: &Change, omega: f64) -> (Fixture, Vec<String>) {
     let mut refitted = fixture.clone();
-    let (joint, dof) = (&subject.seat.joint, subject.dof());
+    let (joint, dof) = (&problem.joint, problem.dof);
+    let owner = fixture.joints().iter().position(|j| j.name == *joint).map(QuantityOwner::Joint);
     let index = usize::from(dof == Dof::Rotation);
     let (mut stiff, mut damped) = (false, false);
-    for entry in refitted.quantities_mut() {
-        if entry.path == format!("joints/{joint}/stiffness/{index}/{index}") {
+    for entry in refitted.quantities_mut().into_iter().filter(|entry| Some(entry.owner) == owner) {
+        if entry.key == QuantityKey::JointStiffness(index, index) {
             entry.quantity.value += change.base.re;
             stiff = true;
-        } else if entry.path == format!("joints/{joint}/damping/{index}/{index}") {
+        } else if entry.key == QuantityKey::JointDamping(index, index) {
             let value = entry.quantity.value + change.base.im / omega;
             damped = value >= 0.0;
             entry.quantity.value = value.max(0.0);
@@ -298,9 +314,9 @@ fn placed(fixture: &Fixture, subject: &Subject, change: &Change, omega: f64) -> 
     (refitted, unplaced)
 }
 
-fn with_laws(fixture: &Fixture, subject: &Subject, change: &Change, omega: f64) -> Fixture {
-    let (base, _) = placed(fixture, subject, change, omega);
+fn with_laws(fixture: &Fixture, problem: &Problem, change: &Change, omega: f64) -> Fixture {
+    let (base, _) = placed(fixture, problem, change, omega);
     let mut physics = base.physics().to_vec();
-    physics.extend(change.laws.iter().map(|law| law.to_effect(&subject.seat.joint, subject.dof())));
+    physics.extend(change.laws.iter().map(|law| law.to_effect(&problem.joint, problem.dof)));
     base.clone().with_physics(physics).unwrap_or(base)
 }

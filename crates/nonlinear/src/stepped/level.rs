@@ -1,6 +1,7 @@
 //! One level of a stepped-sine test.
 
 use jointscope_spectra::FrfSet;
+use serde::{Serialize, Serializer};
 use std::fmt;
 
 /// The amplitude that a stepped-sine test held.
@@ -19,14 +20,34 @@ impl Held {
             Held::Force(value) | Held::Response(value) => value,
         }
     }
+
+    fn unit(self) -> &'static str {
+        match self {
+            Held::Force(_) => "N",
+            Held::Response(_) => "m/s^2",
+        }
+    }
 }
 
 impl fmt::Display for Held {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Held::Force(value) => write!(f, "{value} N"),
-            Held::Response(value) => write!(f, "{value} m/s^2"),
+        write!(f, "{} {}", self.amplitude(), self.unit())
+    }
+}
+
+impl Serialize for Held {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        #[derive(Serialize)]
+        struct Entry {
+            quantity: &'static str,
+            amplitude: f64,
+            unit: &'static str,
         }
+        let quantity = match self {
+            Held::Force(_) => "force",
+            Held::Response(_) => "response",
+        };
+        Entry { quantity, amplitude: self.amplitude(), unit: self.unit() }.serialize(serializer)
     }
 }
 

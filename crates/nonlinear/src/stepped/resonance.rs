@@ -3,16 +3,20 @@
 use super::least_squares::{deviations, minimum};
 use super::level::SteppedLevel;
 use num_complex::Complex64;
+use serde::Serialize;
 use std::f64::consts::TAU;
 
 /// Natural frequency and damping ratio at one level.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Resonance {
     /// Natural frequency, Hz, and its standard deviation.
+    #[serde(serialize_with = "jointscope_findings::with_std")]
     pub frequency: (f64, f64),
     /// Damping ratio and its standard deviation.
+    #[serde(serialize_with = "jointscope_findings::with_std")]
     pub damping_ratio: (f64, f64),
     /// √(Σ|fitted − measured|²/Σ|measured|²).
+    #[serde(rename = "nrmse_of_one_mode")]
     pub nrmse: f64,
 }
 
@@ -44,8 +48,7 @@ pub(crate) fn resonance(level: &SteppedLevel) -> Option<Resonance> {
     let starts = [0.2, 0.5, 1.5].map(|part| [top, part * width / top]);
     let fits = starts.iter().filter_map(|start| minimum(&residual, start, &scale));
     let best = fits.min_by(|a, b| a.cost.total_cmp(&b.cost))?;
-    let variance = best.cost / (count - unknowns) as f64;
-    let std = deviations(&residual, &best.x, &scale, variance)?;
+    let std = deviations(&residual, &best.x, &scale, count - unknowns)?;
     let total: f64 = level.frfs.all_values().iter().map(|v| v.norm_sqr()).sum();
     Some(Resonance {
         frequency: (best.x[0], std[0]),

@@ -1,8 +1,8 @@
 //! What the fixture's own uncertainty does to a law found.
 
-use super::model::{Change, Subject};
-use super::seat::seat_of;
-use jointscope_fixture::Fixture;
+use super::location::location_of;
+use super::problem::{Change, Problem};
+use jointscope_fixture::{Fixture, NamedQuantity};
 use rayon::prelude::*;
 
 /// Variances of the change's parameters from the fixture's quantities, each moved by its standard deviation and the change fitted again. Base
@@ -11,31 +11,26 @@ use rayon::prelude::*;
 pub(crate) fn tolerance_variances(
     fixture: &Fixture,
     exact: bool,
-    subject: &Subject,
+    problem: &Problem,
     change: &Change,
 ) -> Vec<f64> {
-    let quantities = if exact { fixture.quantities_exact() } else { fixture.quantities() };
     let stated = change.parameters();
-    let place = (subject.seat.joint.as_str(), subject.dof());
-    let moved = |index: usize, by: f64| -> Option<Vec<f64>> {
+    let measured: Vec<_> = problem.levels.iter().map(|level| &level.measured).collect();
+    let moved = |(index, quantity): &(usize, NamedQuantity), by: f64| -> Option<Vec<f64>> {
         let mut other = fixture.clone();
-        other.quantities_mut().into_iter().nth(index)?.quantity.value += by;
+        other.set_quantities([(*index, quantity.value + by)]);
         // As a file would be, so that what is impossible is not modelled.
         let physics = other.physics().to_vec();
         let other = other.with_physics(physics).ok()?;
-        let seat = seat_of(&other, place, &subject.levels)?;
-        let moved = subject.in_another(seat)?;
-        let (fitted, _) = moved.fitted(&moved.carried_from(subject, change), None)?;
+        let moved = Problem::new(location_of(&other, (&problem.joint, problem.dof), &measured)?, &measured)?;
+        let (fitted, _) = moved.fitted(&moved.carried_from(problem, change))?;
         let shift = fitted.parameters().iter().zip(&stated).map(|(a, b)| a - b).collect::<Vec<f64>>();
         shift.iter().all(|s| s.is_finite()).then_some(shift)
     };
-    let shifts: Vec<Vec<f64>> = quantities
-        .par_iter()
-        .enumerate()
-        .filter_map(|(index, quantity)| {
-            let std = quantity.std.filter(|std| *std > 0.0)?;
-            moved(index, std).or_else(|| moved(index, -std))
-        })
-        .collect();
+    let shift = |quantity: &(usize, NamedQuantity)| {
+        let std = quantity.1.std?;
+        moved(quantity, std).or_else(|| moved(quantity, -std))
+    };
+    let shifts: Vec<Vec<f64>> = fixture.uncertain_quantities(exact).par_iter().filter_map(shift).collect();
     (0..stated.len()).map(|p| shifts.iter().map(|shift| shift[p] * shift[p]).sum()).collect()
 }

@@ -47,27 +47,13 @@ pub(crate) struct Steps {
     pub halvings: usize,
 }
 
-/// What a run leaves.
-pub(crate) struct Run {
-    /// One history an output.
-    pub outputs: Vec<Vec<f64>>,
-    /// Motion and force of each element at every output instant.
-    pub elements: Vec<Vec<Memory>>,
-    /// The last state.
-    pub state: Vec<f64>,
-}
-
 /// Largest number of states.
 pub(crate) const MOST_STATES: usize = 128;
 /// Largest number of elements.
 pub(crate) const MOST_ELEMENTS: usize = 4;
 
 /// A system ready to be stepped.
-pub(crate) struct Stepper {
-    kernel: Box<dyn Kernel>,
-    steps: Steps,
-    elements: usize,
-}
+pub(crate) struct Stepper(Box<dyn Kernel>);
 
 impl Stepper {
     /// `None` for more states or elements than there is room for, or a system whose exponential is not finite.
@@ -83,22 +69,18 @@ impl Stepper {
                 }
             };
         }
-        let kernel = of_size!(2, 4, 6, 8, 12, 16, 24, 32, 64, 128);
-        Some(Stepper { kernel, steps, elements: system.elements.len() })
+        Some(Stepper(of_size!(2, 4, 6, 8, 12, 16, 24, 32, 64, 128)))
     }
 
-    /// Runs from rest through a force given at every step (`within` values an output interval); outputs are written at every
-    /// `within`-th of them.
-    pub fn run(&self, force: &[f64], samples: usize) -> Run {
-        let mut run =
-            Run { outputs: Vec::new(), elements: vec![Vec::new(); self.elements], state: Vec::new() };
-        self.kernel.run(force, samples, self.steps.within, &mut run);
-        run
+    /// The history of each output from rest, through a force given at every step (`within` values an output interval); outputs are written at
+    /// every `within`-th of them.
+    pub fn run(&self, force: &[f64], samples: usize) -> Vec<Vec<f64>> {
+        self.0.run(force, samples)
     }
 }
 
 trait Kernel: Send + Sync {
-    fn run(&self, force: &[f64], samples: usize, within: usize, to: &mut Run);
+    fn run(&self, force: &[f64], samples: usize) -> Vec<Vec<f64>>;
 }
 
 /// Φ, β and ε of one length of step.
@@ -120,7 +102,8 @@ struct Sized<const N: usize, const E: usize> {
     laws: [RestoringLaw; E],
     motions: [[f64; N]; E],
     outputs: Vec<([f64; N], f64, [f64; E])>,
-    states: usize,
+    /// Steps within an output interval.
+    within: usize,
 }
 
 /// A law that never bears anything: what stands where there is no element.
@@ -139,12 +122,9 @@ fn dot<const N: usize>(a: &[f64; N], b: &[f64; N]) -> f64 {
 
 impl<const N: usize, const E: usize> Sized<N, E> {
     fn new(system: &System, steps: Steps) -> Option<Self> {
-        let mut motions = [[0.0; N]; E];
-        let mut laws = [NOTHING; E];
-        for (j, element) in system.elements.iter().enumerate() {
-            motions[j] = row(&element.motion);
-            laws[j] = element.law;
-        }
+        let element = |j: usize| system.elements.get(j);
+        let motions = std::array::from_fn(|j| element(j).map_or([0.0; N], |e| row(&e.motion)));
+        let laws = std::array::from_fn(|j| element(j).map_or(NOTHING, |e| e.law));
         let halvings = if E == 0 { 0 } else { steps.halvings };
         let step = steps.interval / steps.within as f64;
         let propagators = (0..=halvings)
@@ -152,7 +132,7 @@ impl<const N: usize, const E: usize> Sized<N, E> {
             .collect::<Option<_>>()?;
         let outputs = system.outputs.iter().map(|o| (row(&o.row), o.force, row(&o.elements))).collect();
         let smooth = Propagator::new(system, step, &motions, true)?;
-        Some(Sized { smooth, propagators, laws, motions, outputs, states: system.load.len() })
+        Some(Sized { smooth, propagators, laws, motions, outputs, within: steps.within })
     }
 
     /// One step with the propagator of `halving`; whether an event lies within it, in which case nothing is changed.
@@ -238,10 +218,11 @@ impl<const N: usize, const E: usize> Sized<N, E> {
 }
 
 impl<const N: usize, const E: usize> Kernel for Sized<N, E> {
-    fn run(&self, force: &[f64], samples: usize, within: usize, to: &mut Run) {
+    fn run(&self, force: &[f64], samples: usize) -> Vec<Vec<f64>> {
+        let within = self.within;
         let mut x = [0.0; N];
         let mut memory = [Memory::default(); E];
-        to.outputs = vec![Vec::with_capacity(samples); self.outputs.len()];
+        let mut histories = vec![Vec::with_capacity(samples); self.outputs.len()];
         let only = self.propagators.len() == 1;
         // Whether the last step held no event, so that three values of the element forces lie on one branch.
         let (mut even, mut earlier) = (false, [0.0; E]);
@@ -260,13 +241,12 @@ impl<const N: usize, const E: usize> Kernel for Sized<N, E> {
                 }
             }
             let now = at(sample * within);
-            for (history, (row, direct, elements)) in to.outputs.iter_mut().zip(&self.outputs) {
+            for (history, (row, direct, elements)) in histories.iter_mut().zip(&self.outputs) {
                 let borne: f64 = elements.iter().zip(&memory).map(|(h, m)| h * m.force).sum();
                 history.push(dot(row, &x) + direct * now - borne);
             }
-            to.elements.iter_mut().zip(&memory).for_each(|(history, memory)| history.push(*memory));
         }
-        to.state = x[..self.states].to_vec();
+        histories
     }
 }
 
@@ -329,7 +309,7 @@ mod tests {
 
     const OMEGA: f64 = 900.0;
 
-    /// One mass of 1 kg on a spring without damping; outputs are d, its rate and its acceleration.
+    /// One mass of 1 kg on a spring without damping; outputs are d, its rate, its acceleration and the element's force.
     fn oscillator(law: RestoringLaw) -> System {
         let output = |row: [f64; 2], force: f64, element: f64| Output {
             row: row.to_vec(),
@@ -344,6 +324,7 @@ mod tests {
                 output([1.0, 0.0], 0.0, 0.0),
                 output([0.0, 1.0], 0.0, 0.0),
                 output([-OMEGA * OMEGA, 0.0], 1.0, 1.0),
+                output([0.0, 0.0], 0.0, -1.0),
             ],
         }
     }
@@ -370,16 +351,21 @@ mod tests {
             let steps = Steps { interval, within, halvings: 8 };
             let force = blow(samples, within, 160);
             let run = Stepper::new(&oscillator(law), steps).unwrap().run(&force, samples);
-            let (d, v) = (&run.outputs[0], &run.outputs[1]);
+            let (d, v, g) = (&run[0], &run[1], &run[3]);
             let (mut work, mut lost, mut largest) = (0.0, 0.0, 0.0f64);
             for i in 1..samples {
                 work += 0.25 * interval * (force[i * within] + force[(i - 1) * within]) * (v[i] + v[i - 1]);
-                let (a, b) = (&run.elements[0][i - 1], &run.elements[0][i]);
                 if let RestoringLaw::Friction { stiffness, .. } = law {
-                    let slipped = (b.motion - a.motion) - (b.force - a.force) / stiffness;
-                    lost += 0.5 * (a.force + b.force) * slipped;
+                    let slipped = (d[i] - d[i - 1]) - (g[i] - g[i - 1]) / stiffness;
+                    lost += 0.5 * (g[i - 1] + g[i]) * slipped;
                 }
-                let energy = 0.5 * v[i] * v[i] + 0.5 * (OMEGA * d[i]).powi(2) + law.energy(b);
+                let stored = match law {
+                    RestoringLaw::Cubic { stiffness3 } => 0.25 * stiffness3 * d[i].powi(4),
+                    RestoringLaw::Gap { stiffness, .. } | RestoringLaw::Friction { stiffness, .. } => {
+                        0.5 * g[i] * g[i] / stiffness
+                    }
+                };
+                let energy = 0.5 * v[i] * v[i] + 0.5 * (OMEGA * d[i]).powi(2) + stored;
                 if force[i * within] == 0.0 {
                     largest = largest.max((energy + lost - work).abs() / work);
                 }
@@ -402,7 +388,7 @@ mod tests {
                         coarse[low] * (1.0 - part) + coarse.get(low + 1).copied().unwrap_or(0.0) * part
                     })
                     .collect();
-                Stepper::new(&oscillator(law), steps).unwrap().run(&force, samples).outputs.swap_remove(0)
+                Stepper::new(&oscillator(law), steps).unwrap().run(&force, samples).swap_remove(0)
             };
             let (coarse, fine) = (run(4), run(16));
             let rms = |values: &[f64]| values.iter().map(|v| v * v).sum::<f64>().sqrt();

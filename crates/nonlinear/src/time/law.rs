@@ -28,7 +28,7 @@ pub enum RestoringLaw {
 
 /// What a law remembers: where it was and what it bore. A spring that slips needs both, the others need neither.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Memory {
+pub(crate) struct Memory {
     /// Relative motion d, m or rad.
     pub motion: f64,
     /// Force g, N or N·m.
@@ -49,34 +49,64 @@ pub(crate) enum Branch {
 impl RestoringLaw {
     /// The law of an effect; `None` for one whose force is linear.
     pub fn of(effect: &Effect) -> Option<Self> {
-        Some(match effect.kind {
-            EffectKind::CubicStiffness => RestoringLaw::Cubic { stiffness3: effect.value(0) },
-            EffectKind::Friction => {
-                RestoringLaw::Friction { slip_force: effect.value(0), stiffness: effect.value(1) }
-            }
-            EffectKind::Gap => RestoringLaw::Gap { clearance: effect.value(0), stiffness: effect.value(1) },
+        Self::of_kind(effect.kind, |index| effect.value(index))
+    }
+
+    fn of_kind(kind: EffectKind, value: impl Fn(usize) -> f64) -> Option<Self> {
+        Some(match kind {
+            EffectKind::CubicStiffness => RestoringLaw::Cubic { stiffness3: value(0) },
+            EffectKind::Friction => RestoringLaw::Friction { slip_force: value(0), stiffness: value(1) },
+            EffectKind::Gap => RestoringLaw::Gap { clearance: value(0), stiffness: value(1) },
             _ => return None,
         })
     }
 
-    /// The effect of this law at a joint.
-    pub fn to_effect(self, joint: &str, dof: Dof) -> Effect {
-        let place = Place::Joint(joint.to_owned());
+    /// The kind of its effect.
+    pub(crate) fn kind(&self) -> EffectKind {
         match self {
-            RestoringLaw::Cubic { stiffness3 } => {
-                Effect::new(EffectKind::CubicStiffness, place, Some(dof), &[stiffness3])
-            }
-            RestoringLaw::Friction { slip_force, stiffness } => {
-                Effect::new(EffectKind::Friction, place, Some(dof), &[slip_force, stiffness])
-            }
-            RestoringLaw::Gap { clearance, stiffness } => {
-                Effect::new(EffectKind::Gap, place, Some(dof), &[clearance, stiffness])
-            }
+            RestoringLaw::Cubic { .. } => EffectKind::CubicStiffness,
+            RestoringLaw::Friction { .. } => EffectKind::Friction,
+            RestoringLaw::Gap { .. } => EffectKind::Gap,
         }
     }
 
+    /// Its parameters in the order of the effect's.
+    pub(crate) fn values(&self) -> Vec<f64> {
+        match *self {
+            RestoringLaw::Cubic { stiffness3 } => vec![stiffness3],
+            RestoringLaw::Friction { slip_force, stiffness } => vec![slip_force, stiffness],
+            RestoringLaw::Gap { clearance, stiffness } => vec![clearance, stiffness],
+        }
+    }
+
+    /// A law of this kind with other parameters.
+    pub(crate) fn with_values(&self, values: &[f64]) -> Self {
+        let value = |index: usize| values.get(index).copied().unwrap_or(f64::NAN);
+        Self::of_kind(self.kind(), value).unwrap_or(*self)
+    }
+
+    /// Whether all parameters are positive, and a fit moves them by their logarithms: a cubic stiffness may have either sign.
+    pub(crate) fn is_positive(&self) -> bool {
+        !matches!(self, RestoringLaw::Cubic { .. })
+    }
+
+    /// The effect of this law at a joint.
+    pub fn to_effect(self, joint: &str, dof: Dof) -> Effect {
+        Effect::new(self.kind(), Place::Joint(joint.to_owned()), Some(dof), &self.values())
+    }
+
+    /// Its force along a history of motion that begins at rest.
+    pub fn forces<'a>(self, motions: impl IntoIterator<Item = &'a f64>) -> Vec<f64> {
+        let mut memory = Memory::default();
+        let force = |motion: &f64| {
+            memory = Memory { motion: *motion, force: self.force(*motion, &memory) };
+            memory.force
+        };
+        motions.into_iter().map(force).collect()
+    }
+
     /// The force at motion `motion` after what it remembers.
-    pub fn force(&self, motion: f64, before: &Memory) -> f64 {
+    pub(crate) fn force(&self, motion: f64, before: &Memory) -> f64 {
         match *self {
             RestoringLaw::Cubic { stiffness3 } => stiffness3 * motion.powi(3),
             RestoringLaw::Gap { clearance, stiffness } => (stiffness * (motion - clearance)).max(0.0),
@@ -123,16 +153,6 @@ impl RestoringLaw {
             RestoringLaw::Friction { slip_force, .. } if now.force >= slip_force => Branch::SlipsForward,
             RestoringLaw::Friction { slip_force, .. } if now.force <= -slip_force => Branch::SlipsBackward,
             RestoringLaw::Friction { .. } => Branch::Stuck,
-        }
-    }
-
-    /// Energy stored in the element, J.
-    pub fn energy(&self, now: &Memory) -> f64 {
-        match *self {
-            RestoringLaw::Cubic { stiffness3 } => 0.25 * stiffness3 * now.motion.powi(4),
-            RestoringLaw::Gap { stiffness, .. } | RestoringLaw::Friction { stiffness, .. } => {
-                0.5 * now.force * now.force / stiffness
-            }
         }
     }
 }

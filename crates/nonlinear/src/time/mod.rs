@@ -2,6 +2,5 @@
 
 pub(crate) mod kernel;
 pub(crate) mod law;
-pub(crate) mod oversampling;
 pub(crate) mod simulation;
 pub(crate) mod structure;

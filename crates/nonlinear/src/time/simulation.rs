@@ -1,10 +1,10 @@
 //! Responses of a fixture, amplitude-dependent effects included, to recorded forces.
 
 use super::kernel::{Stepper, Steps};
-use super::oversampling::{oversampled, oversampled_for_lines};
-use super::structure::{Reading, Structure};
+use super::structure::{Reading, Structure, effects};
 use crate::SimulationError;
-use jointscope_fixture::{Effect, EffectKind, Fixture, Place};
+use crate::spectra::{oversampled, oversampled_for_lines};
+use jointscope_fixture::{EffectKind, Fixture, Place};
 use jointscope_hits::{Hit, Motion, Response};
 use jointscope_spectra::Channel;
 use rayon::prelude::*;
@@ -36,7 +36,7 @@ const ENOUGH: f64 = 1e-5;
 /// Channels that the fixture does not have, effects that have no form over time.
 pub fn simulate(fixture: &Fixture, hits: &[Hit], outputs: &[Channel]) -> Result<Simulation, SimulationError> {
     if let Some(effect) = fixture.physics().iter().find(|e| e.kind == EffectKind::SensorMass) {
-        return Err(SimulationError::SensorMass { place: effect.place.to_string() });
+        return Err(SimulationError::SensorMass(effect.place.to_string()));
     }
     let readings: Vec<Reading> = outputs.iter().map(|c| (c.clone(), Motion::Acceleration)).collect();
     let simulated: Vec<(Hit, f64)> =
@@ -52,17 +52,17 @@ pub(crate) fn simulate_one(
     readings: &[Reading],
 ) -> Result<(Hit, f64), SimulationError> {
     let structure = Structure::new(fixture, 0.5 / hit.interval())?;
-    let system = structure.system(hit.struck(), readings)?;
-    let real_force = unmeasured(fixture, hit);
+    let system = structure.system(structure.load(hit.struck())?, readings, &[])?;
+    // The force that acts, of which a gain or delay of the hammer's channel makes the one recorded.
+    let hammer = Chain::of(fixture, Place::Reference(hit.struck().to_string()));
+    let real_force = shifted(hit.force(), 1.0 / hammer.gain, -hammer.delay_s / hit.interval());
     let run = |within: usize| {
         let steps = Steps { interval: hit.interval(), within, halvings: HALVINGS };
-        let stepper = Stepper::new(&system, steps).ok_or(SimulationError::Unbounded { hit: hit.number() })?;
-        let outputs = stepper.run(&oversampled_for_lines(&real_force, within), hit.samples()).outputs;
-        match outputs.iter().flatten().all(|value| value.is_finite()) {
-            true => Ok(outputs),
-            false => Err(SimulationError::Unbounded { hit: hit.number() }),
-        }
+        let stepper = Stepper::new(&system, steps)?;
+        let outputs = stepper.run(&oversampled_for_lines(&real_force, within), hit.samples());
+        outputs.iter().flatten().all(|value| value.is_finite()).then_some(outputs)
     };
+    let run = |within: usize| run(within).ok_or(SimulationError::Unbounded { hit: hit.number() });
     let mut within = FEWEST;
     let mut coarse = run(within)?;
     loop {
@@ -84,25 +84,17 @@ fn relative_difference(a: &[f64], b: &[f64]) -> f64 {
     if square > 0.0 { (difference / square).sqrt() } else { 0.0 }
 }
 
-/// The force that acts, of which a gain or delay of the hammer's channel makes the one recorded.
-fn unmeasured(fixture: &Fixture, hit: &Hit) -> Vec<f64> {
-    let name = hit.struck().to_string();
-    let chain = Chain::of(fixture, |place| matches!(place, Place::Reference(channel) if *channel == name));
-    chain.applied(hit.force(), 1.0 / chain.gain, -chain.delay / hit.interval())
-}
-
 fn recorded(
     fixture: &Fixture,
     hit: &Hit,
     readings: &[Reading],
     outputs: Vec<Vec<f64>>,
 ) -> Result<Hit, SimulationError> {
-    let window = |e: &&Effect| e.kind == EffectKind::ExponentialWindow;
-    let decay: f64 = fixture.physics().iter().filter(window).map(|e| e.value(0)).sum();
+    let windows = effects(fixture, EffectKind::ExponentialWindow, Place::All);
+    let decay: f64 = windows.map(|e| e.value(0)).sum();
     let responses = readings.iter().zip(outputs).map(|((channel, motion), values)| {
-        let name = channel.to_string();
-        let chain = Chain::of(fixture, |place| matches!(place, Place::Response(channel) if *channel == name));
-        let mut values = chain.applied(&values, chain.gain, chain.delay / hit.interval());
+        let chain = Chain::of(fixture, Place::Response(channel.to_string()));
+        let mut values = shifted(&values, chain.gain, chain.delay_s / hit.interval());
         if decay > 0.0 {
             let at = |i: usize| (-decay * hit.interval() * i as f64).exp();
             values.iter_mut().enumerate().for_each(|(i, value)| *value *= at(i));
@@ -117,37 +109,30 @@ fn recorded(
 /// Gain and delay of a channel.
 struct Chain {
     gain: f64,
-    delay: f64,
+    delay_s: f64,
 }
 
 impl Chain {
-    fn of(fixture: &Fixture, here: impl Fn(&Place) -> bool) -> Self {
-        let mut chain = Chain { gain: 1.0, delay: 0.0 };
-        for effect in fixture.physics().iter().filter(|e| here(&e.place)) {
-            match effect.kind {
-                EffectKind::ChannelGain => chain.gain *= effect.value(0),
-                EffectKind::ChannelDelay => chain.delay += effect.value(0),
-                _ => {}
-            }
-        }
-        chain
+    fn of(fixture: &Fixture, channel: Place) -> Self {
+        let values = |kind| effects(fixture, kind, channel.clone()).map(|e| e.value(0));
+        let gain = values(EffectKind::ChannelGain).product();
+        Chain { gain, delay_s: values(EffectKind::ChannelDelay).sum() }
     }
+}
 
-    /// Multiplies by `gain` and shifts by `shift` samples towards later times, band-limited.
-    fn applied(&self, values: &[f64], gain: f64, shift: f64) -> Vec<f64> {
-        const FINE: usize = 64;
-        let mut all: Vec<f64> = values.iter().map(|v| v * gain).collect();
-        if shift != 0.0 {
-            let fine = oversampled(&all, FINE);
-            for (i, value) in all.iter_mut().enumerate() {
-                let at = (i as f64 - shift) * FINE as f64;
-                let (low, part) = (at.floor(), at - at.floor());
-                let read = |index: f64| {
-                    if index < 0.0 { 0.0 } else { fine.get(index as usize).copied().unwrap_or(0.0) }
-                };
-                *value = read(low) * (1.0 - part) + read(low + 1.0) * part;
-            }
-        }
-        all
+/// The signal times `gain`, `shift` samples later, band-limited.
+fn shifted(values: &[f64], gain: f64, shift: f64) -> Vec<f64> {
+    const FINE: usize = 64;
+    let scaled: Vec<f64> = values.iter().map(|v| v * gain).collect();
+    if shift == 0.0 {
+        return scaled;
     }
+    let fine = oversampled(&scaled, FINE);
+    let read = |index: f64| if index < 0.0 { 0.0 } else { fine.get(index as usize).copied().unwrap_or(0.0) };
+    let value = |i: usize| {
+        let at = (i as f64 - shift) * FINE as f64;
+        let (low, part) = (at.floor(), at - at.floor());
+        read(low) * (1.0 - part) + read(low + 1.0) * part
+    };
+    (0..values.len()).map(value).collect()
 }

@@ -2,8 +2,8 @@
 
 use super::kernel::{Element, MOST_ELEMENTS, MOST_STATES, Output, System};
 use super::law::RestoringLaw;
-use crate::SimulationError;
-use jointscope_fixture::{BodyKind, Dof, EffectKind, Fixture, Place};
+use crate::{ChannelError, SimulationError};
+use jointscope_fixture::{Dof, Effect, EffectKind, Fixture, Place, Point};
 use jointscope_hits::Motion;
 use jointscope_lumped::{StateSpace, Station};
 use jointscope_spectra::Channel;
@@ -24,46 +24,35 @@ const UNMOVED: f64 = 1e-9;
 impl<'a> Structure<'a> {
     /// The fixture with all its structural effects, for motions up to `highest_hz`.
     pub fn new(fixture: &'a Fixture, highest_hz: f64) -> Result<Self, SimulationError> {
-        let space = StateSpace::new(fixture, highest_hz)?;
-        let mut elements = Vec::new();
+        let mut structure =
+            Structure { fixture, space: StateSpace::new(fixture, highest_hz)?, elements: Vec::new() };
         for effect in fixture.physics() {
-            let (Some(law), Place::Joint(joint)) = (RestoringLaw::of(effect), &effect.place) else {
-                continue;
-            };
-            let Some(across) = space.across(joint) else { continue };
-            let [deflection, rotation] = across;
-            let (motion, load) = if effect.dof == Some(Dof::Rotation) { rotation } else { deflection };
-            elements.push(Element { law, load, motion });
+            if let (Some(law), Place::Joint(joint)) = (RestoringLaw::of(effect), &effect.place)
+                && let Some((motion, load)) = structure.across(joint, effect.dof.unwrap_or(Dof::Translation))
+            {
+                structure.elements.push(Element { law, load, motion });
+            }
         }
-        if elements.len() > MOST_ELEMENTS {
-            return Err(SimulationError::TooManyElements { count: elements.len(), most: MOST_ELEMENTS });
+        match structure.elements.len() {
+            count if count > MOST_ELEMENTS => Err(SimulationError::TooManyElements(count, MOST_ELEMENTS)),
+            _ => Ok(structure),
         }
-        Ok(Structure { fixture, space, elements })
     }
 
-    /// Deflection and rotation across a joint: the row over all states that reads it, and the load of a force pair of 1 that drives it.
-    pub fn across(&self, joint: &str) -> Option<[(Vec<f64>, Vec<f64>); 2]> {
-        self.space.across(joint)
+    /// One component of the motion across a joint: the row over all states that reads it, and the load of a force pair of 1 that drives it.
+    pub fn across(&self, joint: &str, dof: Dof) -> Option<(Vec<f64>, Vec<f64>)> {
+        let [deflection, rotation] = self.space.across(joint)?;
+        Some(if dof == Dof::Rotation { rotation } else { deflection })
     }
 
-    /// The system struck at `struck` and read by `readings`. Rigid motions that nothing holds and no element feels are no states of it:
-    /// their accelerations follow from the force at once.
-    pub fn system(&self, struck: &Channel, readings: &[Reading]) -> Result<System, SimulationError> {
-        self.system_with(struck, readings, &[])
+    /// The load over all states of a force of 1 at `struck`.
+    pub fn load(&self, struck: &Channel) -> Result<Vec<f64>, SimulationError> {
+        Ok(self.space.load(&station(self.fixture, struck)?))
     }
 
-    /// The system struck at `struck`, read by `readings` and by rows over all states of the assembly.
-    pub fn system_with(
-        &self,
-        struck: &Channel,
-        readings: &[Reading],
-        rows: &[Vec<f64>],
-    ) -> Result<System, SimulationError> {
-        self.system_loaded(self.space.load(&self.station(struck)?), readings, rows)
-    }
-
-    /// The system under a load over all states of the assembly, read as in [`Structure::system_with`].
-    pub fn system_loaded(
+    /// The system under a load, read by `readings` and by rows over all states of the assembly. Rigid motions that nothing holds and no
+    /// element feels are no states of it: their accelerations follow from the force at once.
+    pub fn system(
         &self,
         load: Vec<f64>,
         readings: &[Reading],
@@ -71,7 +60,7 @@ impl<'a> Structure<'a> {
     ) -> Result<System, SimulationError> {
         let mut outputs = Vec::with_capacity(readings.len() + rows.len());
         for (channel, motion) in readings {
-            let station = self.station(channel)?;
+            let station = station(self.fixture, channel)?;
             outputs.push(match motion {
                 Motion::Displacement => self.plain(self.space.displacement(&station)),
                 Motion::Velocity => self.plain(self.space.velocity(&station)),
@@ -120,37 +109,38 @@ impl<'a> Structure<'a> {
         let dropped: Vec<bool> = (0..n).map(still).collect();
         let kept: Vec<usize> = (0..size).filter(|i| *i >= 2 * n || !dropped[i % n]).collect();
         if kept.len() > MOST_STATES {
-            return Err(SimulationError::TooManyStates { states: kept.len(), most: MOST_STATES });
+            return Err(SimulationError::TooManyStates { modes: kept.len() / 2, most: MOST_STATES / 2 });
         }
         let pick = |values: &[f64]| kept.iter().map(|&i| values[i]).collect::<Vec<f64>>();
-        let elements = self.elements.iter().map(|e| Element {
-            law: e.law,
-            load: pick(&e.load),
-            motion: pick(&e.motion),
-        });
+        let element = |e: &Element| Element { law: e.law, load: pick(&e.load), motion: pick(&e.motion) };
         Ok(System {
             matrix: kept.iter().flat_map(|&i| pick(&matrix[i * size..(i + 1) * size])).collect(),
             load: pick(&load),
-            elements: elements.collect(),
+            elements: self.elements.iter().map(element).collect(),
             outputs: outputs.into_iter().map(|o| Output { row: pick(&o.row), ..o }).collect(),
         })
     }
+}
 
-    /// Where a channel really sits: its point, moved by what the fixture says of it.
-    fn station(&self, channel: &Channel) -> Result<Station, SimulationError> {
-        let fixture = self.fixture;
-        let point = fixture.point(&channel.point).ok_or_else(|| SimulationError::UnknownPoint {
-            point: channel.point.clone(),
-            known: fixture.points().iter().map(|p| p.name.as_str()).collect::<Vec<_>>().join(", "),
-        })?;
-        let turns = !matches!(&fixture.bodies()[point.body].kind, BodyKind::Rigid(rigid) if !rigid.rotates);
-        if channel.dof == Dof::Rotation && !turns {
-            return Err(SimulationError::NoRotation { point: channel.point.clone() });
-        }
-        let moved = fixture.physics().iter().filter(|e| {
-            e.kind == EffectKind::PointOffset && matches!(&e.place, Place::Point(name) if *name == point.name)
-        });
-        let offset: f64 = moved.map(|e| e.value(0)).sum();
-        Ok(Station { body: point.body, x: point.x.value + offset, dof: channel.dof })
+/// The body, abscissa and direction of a channel.
+pub(crate) fn station(fixture: &Fixture, channel: &Channel) -> Result<Station, ChannelError> {
+    let known = || fixture.points().iter().map(|p| p.name.as_str()).collect::<Vec<_>>().join(", ");
+    let point = fixture
+        .point(&channel.point)
+        .ok_or_else(|| ChannelError::UnknownPoint { point: channel.point.clone(), known: known() })?;
+    if channel.dof == Dof::Rotation && !fixture.bodies()[point.body].kind.rotates() {
+        return Err(ChannelError::NoRotation(channel.point.clone()));
     }
+    Ok(Station { body: point.body, x: abscissa_m(fixture, point), dof: channel.dof })
+}
+
+/// Where a point really lies: as stated, moved by what the fixture says of it.
+pub(crate) fn abscissa_m(fixture: &Fixture, point: &Point) -> f64 {
+    let offsets = effects(fixture, EffectKind::PointOffset, Place::Point(point.name.clone()));
+    point.x.value + offsets.map(|e| e.value(0)).sum::<f64>()
+}
+
+/// The effects of one kind at one place.
+pub(crate) fn effects(fixture: &Fixture, kind: EffectKind, place: Place) -> impl Iterator<Item = &Effect> {
+    fixture.physics().iter().filter(move |e| e.kind == kind && e.place == place)
 }

@@ -1,14 +1,17 @@
 //! The nearest of a library of simulated signatures.
 
+use crate::case::in_file;
 use jointscope_diagnosis::{Observation, catalogue};
 use jointscope_fixture::{Effect, Fixture};
 use jointscope_lumped::{Instrument, synthesize};
 use num_complex::Complex64;
+use serde::Serialize;
 
 /// The signature that a misfit looks most like.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Lookup {
     /// The effect that it is of.
+    #[serde(serialize_with = "in_file")]
     pub effect: Effect,
     /// Cosine between signature and misfit, both in units of the noise.
     pub likeness: f64,

@@ -1,135 +1,139 @@
 //! The diagnosis and the baselines side by side.
 
 use super::{Baseline, Updated};
+use crate::judged::error_on;
 use crate::objective::{Tolerance, values};
+use crate::sheet::{Keyed, by_key};
 use crate::statistics::median;
-use crate::{Judged, Name, Role, Share, Truth};
-use jointscope_diagnosis::Verdict;
-use jointscope_fixture::{EffectKind, Fixture};
-use jointscope_lumped::{Instrument, synthesize};
-use serde_json::{Value, json};
+use crate::{Judged, Name, Role, Share};
+use jointscope_fixture::{EffectKind, Fixture, QuantityKey, QuantityOwner};
+use serde::Serialize;
+use std::fmt::{self, Display, Formatter};
 
 /// One way of dealing with the cases, and what it is worth. `None` where the question does not arise.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct Method {
     /// Key in `proof.json`.
+    #[serde(skip)]
     pub key: &'static str,
     /// What it is, in words.
     pub what: &'static str,
     /// Nulls that it finds nothing amiss in.
+    #[serde(rename = "nulls_clean")]
     pub nulls: Option<Share>,
     /// Single effects that show of which it gives the hidden name to the letter (kind, place and dof).
+    #[serde(rename = "right_name")]
     pub named: Option<Share>,
     /// The same by kind alone.
+    #[serde(rename = "right_kind")]
     pub kind: Option<Share>,
     /// Single and double effects that show after which its model fits to the noise.
+    #[serde(rename = "fits_to_the_noise")]
     pub fits: Option<Share>,
     /// The worst of a fixture's quantities: true less identified, in stated standard deviations, median over those cases.
+    #[serde(rename = "worst_quantity_in_stated_deviations")]
     pub worst_quantity: Option<f64>,
     /// Of the joints' stiffnesses the worst relative error, median over those cases.
+    #[serde(rename = "joint_stiffness_relative_error")]
     pub joint_stiffness: Option<f64>,
     /// Relative error on FRFs that nobody recorded, median over those cases.
+    #[serde(rename = "unmeasured_relative_error")]
     pub unmeasured: Option<f64>,
 }
 
-/// All of them.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct Methods(pub Vec<Method>);
+impl Keyed for Method {
+    fn key(&self) -> &str {
+        self.key
+    }
+}
 
-/// What became of a case whose hidden effects show.
-#[derive(Default)]
-struct Fates {
-    fits: Share,
-    worst: Vec<f64>,
-    joint: Vec<f64>,
-    unmeasured: Vec<f64>,
+/// All of them.
+#[derive(Debug, Clone, PartialEq, Default, Serialize)]
+#[serde(transparent)]
+pub struct Methods(#[serde(serialize_with = "by_key")] pub Vec<Method>);
+
+/// A case with what the diagnosis and the baselines made of it.
+struct Compared<'a> {
+    judged: &'a Judged,
+    believed: &'a Fixture,
+    baseline: &'a Baseline,
 }
 
 impl Methods {
     /// Compares the answers to judged cases with the baselines' to the same cases, which were `believed` to be what their fixtures say.
     pub fn of(judged: &[Judged], believed: &[&Fixture], baselines: &[Option<Baseline>]) -> Self {
-        let all: Vec<(&Judged, &Fixture, &Baseline)> = judged
-            .iter()
-            .zip(believed)
-            .zip(baselines)
-            .filter_map(|((judged, believed), baseline)| Some((judged, *believed, baseline.as_ref()?)))
+        let all = judged.iter().zip(believed).zip(baselines);
+        let all: Vec<Compared> = all
+            .filter_map(|((judged, believed), baseline)| {
+                baseline.as_ref().map(|baseline| Compared { judged, believed, baseline })
+            })
             .collect();
-        let nulls = |clean: &dyn Fn(&Judged, &Baseline) -> bool| {
-            let nulls = all.iter().filter(|(judged, ..)| judged.truth.role == Role::Null);
-            Some(Share::count(nulls, |(judged, _, baseline)| clean(judged, baseline)))
-        };
-        let singles = |right: &dyn Fn(&Judged, &Baseline) -> bool| {
-            let shown =
-                all.iter().filter(|(judged, ..)| judged.truth.role == Role::Single && judged.is_visible());
-            Some(Share::count(shown, |(judged, _, baseline)| right(judged, baseline)))
-        };
-        let fates = |model: &dyn Fn(&Judged, &Baseline) -> Option<Updated>| {
-            let mut fates = Fates::default();
-            for (judged, believed, baseline) in &all {
-                if let Some(updated) = model(judged, baseline).filter(|_| is_asked(judged)) {
-                    fates.add(judged, believed, &updated);
-                }
-            }
-            fates
-        };
-        let repaired = fates(&|judged, _| {
-            let answer = judged.answer.as_ref().ok()?;
-            Some(Updated { fixture: answer.repaired.clone(), chi2_per_dof: answer.chi2_per_dof[2] })
-        });
+        let of_role = |role: Role| all.iter().filter(move |case| case.judged.truth.role == role);
+        let nulls = |clean: &dyn Fn(&Compared) -> bool| Some(Share::count(of_role(Role::Null), clean));
         // By the letter for all: nobody has fitted whether what a lookup names would serve as well.
-        let hidden = |judged: &Judged| judged.hidden().into_iter().next();
-        let diagnosis = Method {
-            nulls: nulls(&|judged, _| {
-                judged.answer.as_ref().is_ok_and(|answer| answer.verdict == Verdict::Consistent)
-            }),
-            named: singles(&|judged, _| hidden(judged).is_some_and(|name| judged.found().contains(&name))),
-            kind: singles(&|judged, _| {
-                hidden(judged).is_some_and(|name| judged.found().iter().any(|found| found.kind == name.kind))
-            }),
-            ..repaired.method("diagnosis", "diagnosis")
+        let singles = |right: &dyn Fn(&Compared, &Name) -> bool| {
+            let shown = of_role(Role::Single).filter(|case| case.judged.is_visible());
+            Some(Share::count(shown, |case| case.judged.hidden().iter().any(|hidden| right(case, hidden))))
         };
-        let nearest =
-            |baseline: &Baseline| baseline.nearest.as_ref().map(|nearest| Name::of(&nearest.effect));
-        let lookup = Method {
-            nulls: nulls(&|_, baseline| baseline.nearest.is_none()),
-            named: singles(&|judged, baseline| hidden(judged) == nearest(baseline)),
-            kind: singles(&|judged, baseline| {
-                hidden(judged).map(|n| n.kind) == nearest(baseline).map(|n| n.kind)
-            }),
-            fits: None,
-            worst_quantity: None,
-            joint_stiffness: None,
-            unmeasured: None,
-            key: "nearest_signature",
-            what: "nearest signature",
+        let nearest = |case: &Compared| case.baseline.nearest.as_ref().map(|n| Name::of(&n.effect));
+        let diagnosis = Method {
+            nulls: nulls(&|case| case.judged.is_consistent()),
+            named: singles(&|case, hidden| case.judged.found().contains(hidden)),
+            kind: singles(&|case, hidden| case.judged.found().iter().any(|name| name.kind == hidden.kind)),
+            ..Method::of_models("diagnosis", "diagnosis", &all, |case| {
+                let answer = case.judged.answer.as_ref().ok()?;
+                Some(Updated { fixture: answer.repaired.clone(), chi2_per_dof: answer.chi2_per_dof[2] })
+            })
         };
         let within = Method {
-            nulls: nulls(&|_, baseline| baseline.within.fits()),
-            ..fates(&|_, baseline| Some(baseline.within.clone()))
-                .method("within_tolerances", "updating within tolerances")
+            nulls: nulls(&|case| case.baseline.within.fits()),
+            ..Method::of_models("within_tolerances", "updating within tolerances", &all, |case| {
+                Some(case.baseline.within.clone())
+            })
         };
         let freed = Method {
-            nulls: nulls(&|_, baseline| baseline.freed.fits()),
-            ..fates(&|_, baseline| Some(baseline.freed.clone())).method("freed", "updating, all freed")
+            nulls: nulls(&|case| case.baseline.freed.fits()),
+            ..Method::of_models("freed", "updating, all freed", &all, |case| {
+                Some(case.baseline.freed.clone())
+            })
+        };
+        let lookup = Method {
+            key: "nearest_signature",
+            what: "nearest signature",
+            nulls: nulls(&|case| case.baseline.nearest.is_none()),
+            named: singles(&|case, hidden| nearest(case).as_ref() == Some(hidden)),
+            kind: singles(&|case, hidden| nearest(case).is_some_and(|name| name.kind == hidden.kind)),
+            ..Method::default()
         };
         Methods(vec![diagnosis, within, freed, lookup])
     }
+}
 
-    /// As JSON.
-    pub fn to_value(&self) -> Value {
-        let share =
-            |share: &Option<Share>| share.map(|s| json!({ "count": s.of, "of": s.all, "share": s.value() }));
-        let method = |method: &Method| {
-            let value = json!({
-                "what": method.what, "nulls_clean": share(&method.nulls), "right_name": share(&method.named),
-                "right_kind": share(&method.kind), "fits_to_the_noise": share(&method.fits),
-                "worst_quantity_in_stated_deviations": method.worst_quantity,
-                "joint_stiffness_relative_error": method.joint_stiffness,
-                "unmeasured_relative_error": method.unmeasured,
-            });
-            (method.key.to_owned(), value)
-        };
-        Value::Object(self.0.iter().map(method).collect())
+impl Method {
+    /// What models made of the cases whose hidden effects show are worth.
+    fn of_models(
+        key: &'static str,
+        what: &'static str,
+        all: &[Compared],
+        model: impl Fn(&Compared) -> Option<Updated>,
+    ) -> Self {
+        let asked = all.iter().filter(|case| is_asked(case.judged));
+        let models: Vec<_> = asked.filter_map(|case| Some((case, model(case)?))).collect();
+        let errors = models.iter().map(|(case, updated)| quantity_errors(case, &updated.fixture));
+        let (worst, joint): (Vec<f64>, Vec<Option<f64>>) = errors.unzip();
+        let joint: Vec<f64> = joint.into_iter().flatten().collect();
+        let unmeasured = models
+            .iter()
+            .filter_map(|(case, updated)| error_on(&case.judged.truth.unseen().ok()?, &updated.fixture));
+        Method {
+            key,
+            what,
+            fits: Some(Share::count(&models, |(_, updated)| updated.fits())),
+            worst_quantity: median(&worst),
+            joint_stiffness: median(&joint),
+            unmeasured: median(&unmeasured.collect::<Vec<_>>()),
+            ..Method::default()
+        }
     }
 }
 
@@ -137,50 +141,48 @@ impl Methods {
 /// an updated one is no error.
 fn is_asked(judged: &Judged) -> bool {
     let of_effects = matches!(judged.truth.role, Role::Single | Role::Double);
-    let own_stiffness = |truth: &Truth| truth.effects().iter().any(|e| e.kind == EffectKind::StiffnessChange);
-    of_effects && judged.is_visible() && !own_stiffness(&judged.truth)
+    let own_stiffness = judged.truth.effects().iter().any(|e| e.kind == EffectKind::StiffnessChange);
+    of_effects && judged.is_visible() && !own_stiffness
 }
 
-impl Fates {
-    fn add(&mut self, judged: &Judged, believed: &Fixture, updated: &Updated) {
-        self.fits.all += 1;
-        self.fits.of += usize::from(updated.fits());
-        let (identified, exact) = (values(&updated.fixture), values(&judged.truth.fixture));
-        let quantities = believed.quantities();
-        let (mut worst, mut joint) = (0.0_f64, None::<f64>);
-        for tolerance in Tolerance::all(believed) {
-            worst = worst.max((tolerance.departure(&identified) - tolerance.departure(&exact)).abs());
-            let path = &quantities[tolerance.index].path;
+/// The worst departure of identified quantities from the true ones in stated deviations, and the worst relative error of a joint's
+/// stiffness.
+fn quantity_errors(case: &Compared, identified: &Fixture) -> (f64, Option<f64>) {
+    let (identified, exact) = (values(identified), values(&case.judged.truth.fixture));
+    let quantities = case.believed.quantities();
+    let (mut worst, mut joint) = (0.0_f64, None::<f64>);
+    for tolerance in Tolerance::all(case.believed) {
+        worst = worst.max((tolerance.departure(&identified) - tolerance.departure(&exact)).abs());
+        let quantity = &quantities[tolerance.index];
+        let is_stiffness = match quantity.key {
             // The coupling of a stiffness matrix may be zero.
-            if path.starts_with("joints/") && !path.contains("damping") && !path.ends_with("0/1") {
-                let error = tolerance.value(&identified) / tolerance.value(&exact) - 1.0;
-                joint = Some(joint.unwrap_or(0.0).max(error.abs()));
-            }
-        }
-        self.worst.push(worst);
-        self.joint.extend(joint);
-        let unseen = &judged.truth.unseen;
-        if let Ok(set) = synthesize(&updated.fixture, unseen.pairs(), unseen.lines(), Instrument::Perfect) {
-            let (mut error, mut size) = (0.0, 0.0);
-            for (modelled, exact) in set.all_values().iter().zip(unseen.all_values()) {
-                error += (modelled - exact).norm_sqr();
-                size += exact.norm_sqr();
-            }
-            self.unmeasured.push((error / size).sqrt());
+            QuantityKey::JointStiffness(row, column) => row == column,
+            key => matches!(key, QuantityKey::YoungsModulus | QuantityKey::SecondMoment),
+        };
+        if matches!(quantity.owner, QuantityOwner::Joint(_)) && is_stiffness {
+            let error = tolerance.value(&identified) / tolerance.value(&exact) - 1.0;
+            joint = Some(joint.unwrap_or(0.0).max(error.abs()));
         }
     }
+    (worst, joint)
+}
 
-    fn method(self, key: &'static str, what: &'static str) -> Method {
-        Method {
-            key,
-            what,
-            nulls: None,
-            named: None,
-            kind: None,
-            fits: Some(self.fits),
-            worst_quantity: median(&self.worst),
-            joint_stiffness: median(&self.joint),
-            unmeasured: median(&self.unmeasured),
+impl Display for Methods {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        writeln!(
+            f,
+            "diagnosis and baselines: nulls left alone, right name, right kind, fits to the noise; then worst quantity in stated deviations, \
+             worst joint stiffness, error on unmeasured FRFs (medians):"
+        )?;
+        for method in &self.0 {
+            let shares = [method.nulls, method.named, method.kind, method.fits];
+            let shares = shares.map(|s| s.map_or_else(|| "–".to_owned(), |s| format!("{}/{}", s.of, s.all)));
+            let numbers = [method.worst_quantity, method.joint_stiffness, method.unmeasured];
+            let numbers = numbers.map(|n| n.map_or_else(|| "–".to_owned(), |n| format!("{n:.2e}")));
+            let shares: String = shares.iter().map(|share| format!(" {share:>8}")).collect();
+            let numbers: String = numbers.iter().map(|number| format!(" {number:>9}")).collect();
+            writeln!(f, "  {:<28}{shares} {numbers}", method.what)?;
         }
+        Ok(())
     }
 }

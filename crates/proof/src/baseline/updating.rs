@@ -1,7 +1,8 @@
 //! Parameter updating: the file's own quantities moved until the model fits.
 
 use jointscope_diagnosis::{Fit, Hypothesis, Observation};
-use jointscope_fixture::{Fixture, Spread};
+use jointscope_fixture::{Fixture, Nature, Spread};
+use serde::Serialize;
 
 /// Times by which stated tolerances are widened for updating that may move everything.
 pub const WIDER: f64 = 30.0;
@@ -11,7 +12,7 @@ const WIDEST: f64 = 0.5;
 const FITS: f64 = 1.2;
 
 /// A fixture updated to a recording.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Updated {
     /// The fixture with the quantities that were "identified".
     pub fixture: Fixture,
@@ -41,9 +42,8 @@ fn widened(believed: &Fixture, wider: f64) -> Fixture {
     for (entry, stated) in fixture.quantities_mut().into_iter().zip(&stated) {
         // What is exact stays so, and what is unknown is free already.
         let Some(std) = stated.std.filter(|std| *std > 0.0) else { continue };
-        let place =
-            ["x", "x_cg", "from", "to"].iter().any(|name| stated.path.rsplit('/').next() == Some(name));
-        let most = if place { f64::INFINITY } else { WIDEST * stated.value.abs() };
+        let is_place = stated.nature == Nature::Abscissa;
+        let most = if is_place { f64::INFINITY } else { WIDEST * stated.value.abs() };
         entry.quantity.spread = Spread::Stated((wider * std).min(most.max(std)));
     }
     fixture

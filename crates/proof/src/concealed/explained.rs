@@ -46,7 +46,7 @@ impl Explained {
         self.rounds.last().is_some_and(|last| last.verdict == Verdict::Consistent)
     }
 
-    /// Diagnoses all cases of this recording, as [`Answers::to`]; the first control not again, where it is what has been diagnosed already.
+    /// Diagnoses all cases of this recording, as [`Answers::by`]; the first control not again, where it is what has been diagnosed already.
     pub fn answers(&self, cases: &[Case], threads: usize, told: impl Fn(usize) + Sync) -> Answers {
         let known = cases.first().zip(self.rounds.last().filter(|_| self.is_settled()));
         Answers::by(cases, threads, told, |case| match known {
@@ -89,25 +89,18 @@ fn round(which: &str, answer: &Answer) -> String {
     let [nominal, refitted, repaired] = answer.chi2_per_dof;
     let found: Vec<String> = answer.findings.iter().map(|found| describe(&found.effect)).collect();
     let found = found.join(", ");
-    let said = match answer.verdict {
-        Verdict::Consistent => format!("{which} explains the recording"),
+    let taken = match answer.verdict {
+        Verdict::Consistent => "explains the recording".to_owned(),
         Verdict::Explained => {
-            format!(
-                "{which} does not explain the recording, so the repaired one is taken, which adds {found}"
-            )
+            format!("does not explain the recording, so the repaired one is taken, which adds {found}")
         }
-        Verdict::PartlyExplained => {
-            format!(
-                "{which} does not explain the recording; nor does the repaired one whole, which adds {found} and is taken"
-            )
-        }
-        Verdict::Unexplained => {
-            format!(
-                "{which} does not explain the recording, and no effect does: it is taken refitted within its tolerances"
-            )
-        }
+        Verdict::PartlyExplained => format!(
+            "does not explain the recording; nor does the repaired one whole, which adds {found} and is taken"
+        ),
+        Verdict::Unexplained => "does not explain the recording, and no effect does: \
+                                 it is taken refitted within its tolerances"
+            .to_owned(),
     };
-    format!(
-        "{said}; chi2 per degree of freedom as stated {nominal:.4}, refitted {refitted:.4}, repaired {repaired:.4}"
-    )
+    let chi2 = format!("as stated {nominal:.4}, refitted {refitted:.4}, repaired {repaired:.4}");
+    format!("{which} {taken}; chi2 per degree of freedom {chi2}")
 }

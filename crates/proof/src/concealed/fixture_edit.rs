@@ -1,7 +1,7 @@
 //! Edits of a fixture's entries: what an analyst who forgets or misstates something would have written.
 
 use jointscope_fixture::{
-    Body, BodyKind, Effect, EffectKind, Fixture, FixtureError, JointLaw, Place, Spread,
+    Body, BodyKind, Effect, EffectKind, Fixture, FixtureError, Place, QuantityKey, QuantityOwner, Spread,
 };
 use serde_json::{Value, json};
 
@@ -93,29 +93,22 @@ pub(super) fn with_mass(fixture: &Fixture, body: &str, x: f64, mass: f64) -> Res
 }
 
 /// The fixture with a point stated `dx` farther along.
-pub(super) fn with_point_moved(fixture: &Fixture, point: &str, dx: f64) -> Result<Fixture, FixtureError> {
-    requantified(fixture, &[format!("points/{point}/x")], |x| x + dx, 1.0)
+pub(super) fn with_point_moved(fixture: &Fixture, point: usize, dx: f64) -> Result<Fixture, FixtureError> {
+    requantified(fixture, |owner, _| owner == QuantityOwner::Point(point), |x| x + dx, 1.0)
 }
 
 /// The fixture with the stiffness of a joint or beam body stated `factor` times as large, its relative deviation as it was.
-pub(super) fn with_stiffness(fixture: &Fixture, place: &Place, factor: f64) -> Result<Fixture, FixtureError> {
-    let paths = stiffness_paths(fixture, place);
-    requantified(fixture, &paths, |value| value * factor, factor)
+pub(super) fn with_stiffness(
+    fixture: &Fixture,
+    stiff: QuantityOwner,
+    factor: f64,
+) -> Result<Fixture, FixtureError> {
+    requantified(fixture, |owner, key| owner == stiff && is_stiffness(key), |value| value * factor, factor)
 }
 
-/// The quantities to which the stiffness of a joint or beam body is proportional.
-pub(super) fn stiffness_paths(fixture: &Fixture, place: &Place) -> Vec<String> {
-    match place {
-        Place::Joint(name) => match fixture.joint(name).map(|joint| &joint.law) {
-            Some(JointLaw::Stiffness { .. }) => {
-                ["0/0", "0/1", "1/1"].map(|element| format!("joints/{name}/stiffness/{element}")).to_vec()
-            }
-            Some(JointLaw::Beam { .. }) => vec![format!("joints/{name}/beam/youngs_modulus")],
-            None => Vec::new(),
-        },
-        Place::Body(name) => vec![format!("bodies/{name}/beam/youngs_modulus")],
-        _ => Vec::new(),
-    }
+/// Whether the stiffness of a joint or beam body is proportional to a quantity of it.
+pub(super) fn is_stiffness(key: QuantityKey) -> bool {
+    matches!(key, QuantityKey::JointStiffness(..) | QuantityKey::YoungsModulus)
 }
 
 /// First and last abscissa (m) at which something may sit on a body, and its mass (kg).
@@ -140,20 +133,18 @@ pub(super) fn rotates(fixture: &Fixture, index: usize) -> bool {
     !matches!(&fixture.bodies()[index].kind, BodyKind::Rigid(rigid) if !rigid.rotates)
 }
 
-/// Changes the quantities of these paths, stated deviations by `wider`.
+/// Changes the quantities that are `asked` for, stated deviations by `wider`.
 fn requantified(
     fixture: &Fixture,
-    paths: &[String],
+    asked: impl Fn(QuantityOwner, QuantityKey) -> bool,
     change: impl Fn(f64) -> f64,
     wider: f64,
 ) -> Result<Fixture, FixtureError> {
     let mut other = fixture.clone();
-    for entry in other.quantities_mut() {
-        if paths.contains(&entry.path) {
-            entry.quantity.value = change(entry.quantity.value);
-            if let Spread::Stated(std) = &mut entry.quantity.spread {
-                *std *= wider;
-            }
+    for entry in other.quantities_mut().into_iter().filter(|entry| asked(entry.owner, entry.key)) {
+        entry.quantity.value = change(entry.quantity.value);
+        if let Spread::Stated(std) = &mut entry.quantity.spread {
+            *std *= wider;
         }
     }
     // Checks the fixture anew, as a file would be.
@@ -171,6 +162,7 @@ fn edited(fixture: &Fixture, edit: impl FnOnce(&mut Value)) -> Result<Fixture, F
 #[cfg(test)]
 mod tests {
     use super::*;
+    use jointscope_fixture::JointLaw;
 
     fn fixture() -> Fixture {
         Fixture::from_json(
@@ -208,10 +200,10 @@ mod tests {
     #[test]
     fn what_is_misstated_is_misstated_and_all_else_stays() {
         let before = fixture();
-        let moved = with_point_moved(&before, "1", 0.003).unwrap();
+        let moved = with_point_moved(&before, 0, 0.003).unwrap();
         assert_eq!(moved.points()[0].x.value, 0.023);
         assert_eq!((moved.points()[1].x, moved.joints()), (before.points()[1].x, before.joints()));
-        let soft = with_stiffness(&before, &Place::Joint("J".into()), 0.5).unwrap();
+        let soft = with_stiffness(&before, QuantityOwner::Joint(0), 0.5).unwrap();
         let JointLaw::Stiffness { stiffness, .. } = &soft.joints()[0].law else { panic!("a stiffness") };
         assert_eq!(stiffness.map(|q| q.value), [2e6, -5e4, 2.5e3]);
         assert_eq!(stiffness[0].spread, Spread::Stated(5e4));

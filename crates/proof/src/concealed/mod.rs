@@ -24,7 +24,7 @@
 //! # let recorded = frfs(&explaining, &[FrfPair::transverse("2", "1")], &lines, Instrument::Perfect)?;
 //! let plan = ConcealmentPlan { cases: 4, seed: 1, ..ConcealmentPlan::default() };
 //! let (cases, sealed) = plan.conceal(&explaining, &recorded)?;
-//! // Somebody who never answers, in place of `Answers::to(&cases, 1, |_| ())`.
+//! // Somebody who never answers, in place of `Answers::by(&cases, 1, |_| (), Answer::of)`.
 //! let answers = Answers::by(&cases, 1, |_| (), |_| Err(NoAnswer::BrokeDown));
 //! let truths = sealed.open(&answers).ok_or("answers are missing")?;
 //! let reckoning = Reckoning::of(&cases, truths, &answers, 1);
@@ -43,7 +43,7 @@ mod table;
 mod truth;
 
 pub use explained::Explained;
-pub use outcome::{Outcome, Size};
+pub use outcome::Outcome;
 pub use plan::{ConcealmentError, ConcealmentPlan};
 pub use reckoning::{Reckoned, Reckoning};
 pub use truth::{Concealed, ConcealmentKind, Expected};

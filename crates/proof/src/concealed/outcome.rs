@@ -1,9 +1,8 @@
 //! What became of one case.
 
 use super::{Concealed, Expected};
-use crate::{AS_GOOD, Answer, Found, Name, VISIBLE};
+use crate::{AS_GOOD, Answer, Found, Name, Size, VISIBLE};
 use jointscope_diagnosis::Verdict;
-use serde_json::{Value, json};
 
 /// Probability from which a name counts as stated with certainty.
 const CERTAIN: f64 = 0.9;
@@ -54,33 +53,6 @@ impl Outcome {
             Outcome::Own => "the recording has it of its own",
             Outcome::NoAnswer => "no answer",
         }
-    }
-}
-
-/// A parameter of what was concealed, true and found.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Size {
-    /// Its name and unit.
-    pub parameter: String,
-    /// The true value.
-    pub truth: f64,
-    /// The value found.
-    pub found: f64,
-    /// Its 95 % interval, where one is stated.
-    pub interval: Option<[f64; 2]>,
-}
-
-impl Size {
-    /// Whether the interval holds the truth; one that is not stated does not.
-    pub fn holds(&self) -> bool {
-        self.interval.is_some_and(|[low, high]| (low..=high).contains(&self.truth))
-    }
-
-    pub(super) fn to_value(&self) -> Value {
-        json!({
-            "parameter": self.parameter, "true": self.truth, "found": self.found, "ci95": self.interval,
-            "holds": self.holds(),
-        })
     }
 }
 
@@ -146,18 +118,12 @@ pub(super) fn sizes(truth: &Concealed, answer: &Answer) -> Vec<Size> {
     for found in &answer.findings {
         let name = Name::of(&found.effect);
         let Some(effect) = truth.expected.iter().find_map(|expected| expected.named(&name)) else { continue };
-        let specs = effect.kind.spec().parameters;
-        for (place, spec) in specs.iter().enumerate() {
-            let unit = spec.unit_in(effect.dof);
+        for (index, spec) in effect.kind.spec().parameters.iter().enumerate() {
             all.push(Size {
-                parameter: if unit.is_empty() {
-                    spec.name.to_owned()
-                } else {
-                    format!("{} {unit}", spec.name)
-                },
-                truth: effect.value(place),
-                found: found.effect.value(place),
-                interval: found.intervals.get(place).copied().flatten(),
+                what: format!("{} {}", spec.name, spec.unit_in(effect.dof)).trim_end().to_owned(),
+                truth: effect.value(index),
+                found: found.effect.value(index),
+                interval: found.intervals.get(index).copied().flatten(),
             });
         }
     }

@@ -1,13 +1,10 @@
 //! Concealments and answers side by side.
 
 use super::outcome::{Excess, extra, outcome, sizes};
-use super::{Concealed, Outcome, Size};
+use super::{Concealed, Outcome};
 use crate::answers::on_workers;
-use crate::objective::{Tolerance, objective, values};
-use crate::{Answer, Answers, Case, Name, NoAnswer, Share, VISIBLE};
-use jointscope_diagnosis::Observation;
-use jointscope_fixture::Fixture;
-use jointscope_lumped::{Instrument, synthesize};
+use crate::objective::Judge;
+use crate::{Answer, Answers, Case, Name, NoAnswer, Share, Size, VISIBLE};
 
 /// A case after the truth was opened.
 #[derive(Debug, Clone, PartialEq)]
@@ -79,7 +76,7 @@ impl Reckoning {
                 case.outcome == Outcome::Found
                     && case.truth.kind.is_some_and(|kind| kind.is_planted() == planted)
             };
-            Share::count(asked().filter(of).flat_map(|case| &case.sizes), Size::holds)
+            Share::count(asked().filter(of).flat_map(|case| &case.sizes), Size::is_held)
         };
         match key {
             "quiet" => {
@@ -139,15 +136,11 @@ struct Objectives {
 
 impl Objectives {
     fn of(case: &Case, answer: &Result<Answer, NoAnswer>) -> Option<Self> {
-        let observation = Observation::new(&case.recorded, |_| true).ok()?;
-        let tolerances = Tolerance::all(&case.believed);
-        let of = |fixture: &Fixture| {
-            let (pairs, lines) = (observation.pairs(), observation.lines());
-            let set = synthesize(fixture, pairs, lines, Instrument::AsRecorded).ok()?;
-            Some(objective(&observation, set.all_values(), &tolerances, &values(fixture)))
-        };
-        let answered = answer.as_ref().ok().and_then(|a| Some([of(&a.refitted)?, of(&a.repaired)?]));
-        Some(Objectives { believed: of(&case.believed)?, answered })
+        let judge = Judge::of(case)?;
+        let of =
+            |answer: &Answer| Some([judge.objective(&answer.refitted)?, judge.objective(&answer.repaired)?]);
+        let answered = answer.as_ref().ok().and_then(of);
+        Some(Objectives { believed: judge.objective(&case.believed)?, answered })
     }
 
     /// The lowest that are known of the first control, refitted and repaired.

@@ -1,12 +1,15 @@
 //! What there is to conceal in a fixture and a recording, and the drawing of it.
 
 use super::fixture_edit::{
-    entries, extent, rotates, stiffness_paths, with_mass, with_point_moved, with_stiffness,
+    entries, extent, is_stiffness, rotates, with_mass, with_point_moved, with_stiffness,
 };
 use super::recording_edit::{Side, exchanged, with_signal};
 use super::{ConcealmentError, ConcealmentKind, Expected};
 use crate::Case;
-use jointscope_fixture::{BodyKind, Effect, EffectKind, Fixture, Place, SupportPlace};
+use crate::generate::log_uniform;
+use jointscope_fixture::{
+    BodyKind, Effect, EffectKind, Fixture, NamedQuantity, Place, QuantityKey, QuantityOwner, SupportPlace,
+};
 use jointscope_spectra::{Channel, Dof, FrfSet};
 use num_complex::Complex64;
 use rand::{Rng, RngExt};
@@ -92,25 +95,26 @@ impl Scene<'_> {
     }
 
     fn stiffness(&self, random: &mut impl Rng) -> Option<Drawn> {
-        let (place, deviation) = choice(random, &self.stiffnesses())?.clone();
+        let (place, owner, deviation) = choice(random, &self.stiffnesses())?.clone();
         let least = FACTOR[0].max(FACTOR_DEVIATIONS * deviation);
         let most = FACTOR[1].max(2.0 * least).min(FACTOR_MOST);
         if least >= most {
             return None;
         }
         let factor = (sign(random) * log_uniform(random, [least, most])).exp();
-        let believed = with_stiffness(self.explaining, &place, factor).ok()?;
+        let believed = with_stiffness(self.explaining, owner, factor).ok()?;
         let what = format!("stiffness of {place} stated {factor:.4} times as large");
         let change = Effect::new(EffectKind::StiffnessChange, place, None, &[1.0 / factor]);
         Some(self.misstated(believed, what, change))
     }
 
     fn point(&self, random: &mut impl Rng) -> Option<Drawn> {
-        let (name, std) = choice(random, &self.free_points())?.clone();
+        let &(index, std) = choice(random, &self.free_points())?;
+        let name = self.explaining.points()[index].name.clone();
         let range = [0, 1].map(|i| OFFSET[i].max(OFFSET_DEVIATIONS[i] * std));
         let dx = sign(random) * log_uniform(random, range);
         // A beam ends somewhere.
-        let believed = with_point_moved(self.explaining, &name, dx).ok()?;
+        let believed = with_point_moved(self.explaining, index, dx).ok()?;
         let what = format!("point {name} stated {:.2} mm from where it is", 1e3 * dx);
         let offset = Effect::new(EffectKind::PointOffset, Place::Point(name), None, &[-dx]);
         Some(self.misstated(believed, what, offset))
@@ -232,33 +236,30 @@ impl Scene<'_> {
     }
 
     /// Joints and beam bodies whose stiffness is known, with its relative deviation.
-    fn stiffnesses(&self) -> Vec<(Place, f64)> {
-        let joints = self.explaining.joints().iter().map(|joint| Place::Joint(joint.name.clone()));
-        let beams = self.explaining.bodies().iter().filter(|body| matches!(body.kind, BodyKind::Beam(_)));
-        let places = joints.chain(beams.map(|body| Place::Body(body.name.clone())));
+    fn stiffnesses(&self) -> Vec<(Place, QuantityOwner, f64)> {
+        let joints = self.explaining.joints().iter().enumerate();
+        let joints = joints.map(|(i, joint)| (Place::Joint(joint.name.clone()), QuantityOwner::Joint(i)));
+        let bodies = self.explaining.bodies().iter().enumerate();
+        let beams = bodies.filter(|(_, body)| matches!(body.kind, BodyKind::Beam(_)));
+        let beams = beams.map(|(i, body)| (Place::Body(body.name.clone()), QuantityOwner::Body(i)));
         let quantities = self.explaining.quantities();
-        let deviation = |path: &String| {
-            let quantity = quantities.iter().find(|q| q.path == *path)?;
+        let relative = |q: &NamedQuantity| q.std.map(|std| std / q.value.abs());
+        let known = |(place, owner): (Place, QuantityOwner)| {
+            let own = || quantities.iter().filter(|q| q.owner == owner);
             // Young's modulus and second moment are one stiffness.
-            let area = path.strip_suffix("youngs_modulus").map(|beam| format!("{beam}second_moment"));
-            let area = area.and_then(|path| quantities.iter().find(|q| q.path == path));
-            let relative = |q: &jointscope_fixture::NamedQuantity| Some(q.std? / q.value.abs());
-            Some(relative(quantity)?.hypot(area.map_or(Some(0.0), relative)?))
-        };
-        let known = |place: Place| {
+            let area = own().find(|q| q.key == QuantityKey::SecondMoment).map_or(Some(0.0), relative)?;
+            let each = own().filter(|q| is_stiffness(q.key)).map(|q| Some(relative(q)?.hypot(area)));
             // A coupling of zero has no relative deviation, and none is needed of it.
-            let paths = stiffness_paths(self.explaining, &place);
-            let all: Option<Vec<f64>> = paths.iter().map(deviation).collect();
-            let largest = all?.into_iter().filter(|d| d.is_finite()).fold(0.0, f64::max);
-            (FACTOR_DEVIATIONS * largest < FACTOR_MOST).then_some((place, largest))
+            let all = each.collect::<Option<Vec<f64>>>()?.into_iter().filter(|d| d.is_finite());
+            let largest = all.fold(0.0, f64::max);
+            (FACTOR_DEVIATIONS * largest < FACTOR_MOST).then_some((place, owner, largest))
         };
-        places.filter_map(known).collect()
+        joints.chain(beams).filter_map(known).collect()
     }
 
     /// Points at which something was recorded and nothing else sits, with their standard deviations.
-    fn free_points(&self) -> Vec<(String, f64)> {
+    fn free_points(&self) -> Vec<(usize, f64)> {
         let fixture = self.explaining;
-        let quantities = fixture.quantities();
         let pairs = self.recorded.pairs();
         let is_free = |index: usize| {
             let holds = fixture.joints().iter().any(|joint| joint.from == index || joint.to == index);
@@ -269,13 +270,11 @@ impl Scene<'_> {
                 pairs.iter().any(|p| [&p.response, &p.reference].iter().any(|c| c.point == point.name));
             !holds && !rests && read && rotates(fixture, point.body)
         };
-        let known = |index: usize| {
-            let name = &fixture.points()[index].name;
-            let path = format!("points/{name}/x");
-            let std = quantities.iter().find(|q| q.path == path)?.std?;
-            Some((name.clone(), std))
+        let known = |quantity: NamedQuantity| match quantity.owner {
+            QuantityOwner::Point(index) if is_free(index) => Some((index, quantity.std?)),
+            _ => None,
         };
-        (0..fixture.points().len()).filter(|index| is_free(*index)).filter_map(known).collect()
+        fixture.quantities().into_iter().filter_map(known).collect()
     }
 
     fn channels(&self) -> Vec<(Side, Channel)> {
@@ -299,11 +298,6 @@ impl Scene<'_> {
 
 fn choice<'a, T>(random: &mut impl Rng, of: &'a [T]) -> Option<&'a T> {
     if of.is_empty() { None } else { of.get(random.random_range(0..of.len())) }
-}
-
-/// Uniform in its logarithm.
-fn log_uniform(random: &mut impl Rng, [from, to]: [f64; 2]) -> f64 {
-    random.random_range(from.ln()..to.ln()).exp()
 }
 
 fn sign(random: &mut impl Rng) -> f64 {

@@ -1,20 +1,21 @@
 //! A reckoning as text and as JSON.
 
-use super::{ConcealmentKind, ConcealmentPlan, Reckoned, Reckoning, Size};
+use super::{ConcealmentKind, ConcealmentPlan, Reckoned, Reckoning};
 use crate::case::describe;
-use crate::{Name, Sealable, Share};
-use serde_json::{Value, json};
+use crate::sheet::Line;
+use crate::{Found, Name, Rate, Sealable, Size};
+use serde_json::{Map, Value, json};
 use std::fmt::{self, Display, Formatter};
 
 /// Shares by key, as a reader would put them.
-const SHARES: [(&str, &str); 7] = [
-    ("quiet", "further controls without a finding of their own"),
-    ("found", "concealed and showing: kind and place found"),
-    ("kind", "concealed and showing: kind found"),
-    ("extra", "concealed and showing: something else found besides"),
-    ("noticed", "what no effect describes: noticed, no effect named with certainty"),
-    ("intervals", "95 % intervals that hold a planted size"),
-    ("agreements", "95 % intervals that hold what a deleted entry said"),
+const SHARES: [Line; 7] = [
+    ("quiet", "further controls without a finding of their own", None),
+    ("found", "concealed and showing: kind and place found", None),
+    ("kind", "concealed and showing: kind found", None),
+    ("extra", "concealed and showing: something else found besides", None),
+    ("noticed", "what no effect describes: noticed, no effect named with certainty", None),
+    ("intervals", "95 % intervals that hold a planted size", None),
+    ("agreements", "95 % intervals that hold what a deleted entry said", None),
 ];
 
 impl Display for ConcealmentPlan {
@@ -49,8 +50,13 @@ impl Display for Reckoning {
             write!(f, "\n{case}")?;
         }
         writeln!(f, "\nshares (95 % binomial interval):")?;
-        for (key, what) in SHARES {
-            writeln!(f, "  {what:<66} {}", counted(self.share(key)))?;
+        for Rate { what, share, .. } in self.rates() {
+            let Some(value) = share.value() else {
+                writeln!(f, "  {what:<66} no case")?;
+                continue;
+            };
+            let ([low, high], of, all) = (share.interval(), share.of, share.all);
+            writeln!(f, "  {what:<66} {of} of {all}, {value:.3} ({low:.3} to {high:.3})")?;
         }
         Ok(())
     }
@@ -84,7 +90,7 @@ impl Display for Reckoned {
             writeln!(f, "{before}{}, probability {:.2}{own}", describe(&found.effect), found.probability)?;
         }
         for size in &self.sizes {
-            writeln!(f, "  {size}")?;
+            writeln!(f, "  {}", told(size))?;
         }
         match (self.shows, self.left) {
             (Some(shows), Some(left)) => {
@@ -95,53 +101,54 @@ impl Display for Reckoned {
     }
 }
 
-impl Display for Size {
-    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        write!(f, "{}: true {:.5e}, found {:.5e}", self.parameter, self.truth, self.found)?;
-        match self.interval {
-            Some([low, high]) => {
-                let holds = if self.holds() { "holds it" } else { "misses it" };
-                write!(f, " ({low:.5e} to {high:.5e} {holds})")
-            }
-            None => write!(f, " (no interval)"),
+/// A size true and found, with what its interval says.
+fn told(size: &Size) -> String {
+    let interval = match size.interval {
+        Some([low, high]) => {
+            let holds = if size.is_held() { "holds it" } else { "misses it" };
+            format!("{low:.5e} to {high:.5e} {holds}")
         }
-    }
+        None => "no interval".to_owned(),
+    };
+    format!("{}: true {:.5e}, found {:.5e} ({interval})", size.what, size.truth, size.found)
 }
 
 impl Reckoning {
+    /// The shares of all keys.
+    fn rates(&self) -> Vec<Rate> {
+        Rate::all(&SHARES, |key| self.share(key))
+    }
+
     /// The reckoning as JSON.
     pub fn to_value(&self) -> Value {
-        let share = |(key, what): (&str, &str)| {
-            let share = self.share(key);
-            let value = json!({
-                "what": what, "count": share.of, "of": share.all, "share": share.value(), "ci95": share.interval(),
-            });
-            (key.to_owned(), value)
-        };
-        json!({
-            "own": self.own.iter().map(ToString::to_string).collect::<Vec<_>>(),
-            "shares": Value::Object(SHARES.into_iter().map(share).collect()),
-            "cases": self.cases.iter().map(Reckoned::to_value).collect::<Vec<_>>(),
-        })
+        let shares: Map<String, Value> =
+            self.rates().iter().map(|rate| (rate.key.to_owned(), json!(rate))).collect();
+        let cases: Value = self.cases.iter().map(Reckoned::to_value).collect();
+        json!({ "own": self.own, "shares": shares, "cases": cases })
     }
 }
 
 impl Reckoned {
     /// The case as JSON.
     pub fn to_value(&self) -> Value {
-        let names = |names: &[Name]| names.iter().map(ToString::to_string).collect::<Vec<_>>();
+        let answer = self.answer.as_ref().ok();
+        let findings = answer.map_or(&[][..], |answer| &answer.findings);
+        let found =
+            |found: &Found| json!({ "effect": describe(&found.effect), "probability": found.probability });
+        let size = |size: &Size| {
+            json!({
+                "parameter": size.what, "true": size.truth, "found": size.found, "ci95": size.interval,
+                "holds": size.is_held(),
+            })
+        };
         json!({
             "truth": self.truth.to_value(),
             "outcome": self.outcome.name(),
-            "verdict": self.answer.as_ref().ok().map(|answer| answer.verdict.name()),
-            "found": self.answer.as_ref().map_or_else(|_| Vec::new(), |answer| {
-                answer.findings.iter()
-                    .map(|found| json!({ "effect": describe(&found.effect), "probability": found.probability }))
-                    .collect::<Vec<_>>()
-            }),
-            "sizes": self.sizes.iter().map(Size::to_value).collect::<Vec<_>>(),
-            "extra": names(&self.extra),
-            "own": names(&self.own),
+            "verdict": answer.map(|answer| answer.verdict.name()),
+            "found": findings.iter().map(found).collect::<Vec<_>>(),
+            "sizes": self.sizes.iter().map(size).collect::<Vec<_>>(),
+            "extra": self.extra,
+            "own": self.own,
             "objective_over_control": { "refitted": self.shows, "repaired": self.left },
         })
     }
@@ -149,10 +156,4 @@ impl Reckoned {
 
 fn listed(names: &[Name]) -> String {
     names.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ")
-}
-
-fn counted(share: Share) -> String {
-    let Some(value) = share.value() else { return "no case".to_owned() };
-    let [low, high] = share.interval();
-    format!("{} of {}, {value:.3} ({low:.3} to {high:.3})", share.of, share.all)
 }

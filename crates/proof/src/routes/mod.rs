@@ -6,20 +6,18 @@
 mod score;
 mod solid;
 mod struck;
-mod table;
 
-pub use score::{CaseLine, RouteScore, SizeScore};
-pub use solid::{Shown, SolidEvidence, SolidJudged, SolidTruth};
-pub use struck::{
-    HitsFileError, StruckAnswer, StruckAnswers, StruckCase, StruckDiagnosis, StruckJudged, StruckNoAnswer,
-    StruckOutcome, StruckRole, StruckTruth,
-};
+pub use score::{RouteScore, RouteScores};
+pub use solid::{Shown, SolidJudged, SolidTruth};
+pub use struck::{StruckAnswer, StruckAnswers, StruckCase, StruckJudged, StruckRole, StruckTruth};
 
 use crate::answers::on_workers;
 use crate::seal::{Filed, Given, Sealable};
-use crate::{Answers, Case, GenerationError, Plan, SealedTruths, Truth};
-use jointscope_diagnosis::Diagnosis;
-use serde_json::{Map, Value, json};
+use crate::{Answers, Case, FileError, GenerationError, Plan, Precision, SealedTruths, Truth};
+use jointscope_fixture::Fixture;
+use jointscope_pipeline::Answer as Diagnosed;
+use serde::Deserialize;
+use serde_json::Value;
 
 /// What is to be diagnosed, by route.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -33,9 +31,40 @@ pub struct Questions {
 }
 
 impl Questions {
-    /// Number of cases.
-    pub fn count(&self) -> usize {
-        self.laboratory.len() + self.solid.len() + self.struck.len()
+    /// Every case, route after route.
+    pub fn all(&self) -> Vec<Asked<'_>> {
+        let of_frfs = self.laboratory.iter().chain(&self.solid).map(Asked::Frfs);
+        of_frfs.chain(self.struck.iter().map(Asked::Hits)).collect()
+    }
+}
+
+/// A case by what its recording holds.
+#[derive(Debug, Clone, Copy)]
+pub enum Asked<'a> {
+    /// FRFs, of the laboratory or of a solid.
+    Frfs(&'a Case),
+    /// Hits over time.
+    Hits(&'a StruckCase),
+}
+
+impl Asked<'_> {
+    /// The fixture as the analyst believes it.
+    pub fn believed(&self) -> &Fixture {
+        match self {
+            Asked::Frfs(case) => &case.believed,
+            Asked::Hits(case) => &case.believed,
+        }
+    }
+
+    /// The recording as a universal file (58b).
+    ///
+    /// # Errors
+    /// A point whose name is no node number.
+    pub fn recording(&self, precision: Precision) -> Result<Vec<u8>, FileError> {
+        match self {
+            Asked::Frfs(case) => case.recording(precision),
+            Asked::Hits(case) => case.recording(precision),
+        }
     }
 }
 
@@ -56,59 +85,32 @@ impl Given for Replies {
     }
 }
 
-/// A case by its route, at its position among all.
-enum Asked<'a> {
-    Frfs(usize, &'a Case),
-    Hits(usize, &'a StruckCase),
-}
-
-/// An answer with its seconds, by route.
-enum Told {
-    Frfs(crate::answers::Timed),
-    Hits(struck::Timed),
-}
-
 impl Replies {
     /// Diagnoses all cases on `threads` workers, whatever their route: none waits for the last case of another. `told` hears the number of
-    /// answers given so far; `frfs` and `hits` see every diagnosis with its case's position among all, on the worker that made it and after its
-    /// time was taken. A case keeps to one core.
+    /// answers given so far; `watch` sees every diagnosis with its case's position among all, on the worker that made it and after its time was
+    /// taken. A case keeps to one core.
     pub fn to(
         cases: &Questions,
         threads: usize,
         told: impl Fn(usize) + Sync,
-        frfs: impl Fn(usize, &Diagnosis) + Sync,
-        hits: impl Fn(usize, &StruckDiagnosis) + Sync,
+        watch: impl Fn(usize, &Diagnosed) + Sync,
     ) -> Self {
-        let of_frfs = cases.laboratory.iter().chain(&cases.solid).enumerate();
-        let of_hits = cases.struck.iter().enumerate();
-        let first_struck = cases.laboratory.len() + cases.solid.len();
-        let asked: Vec<Asked> = of_frfs
-            .map(|(position, case)| Asked::Frfs(position, case))
-            .chain(of_hits.map(|(index, case)| Asked::Hits(first_struck + index, case)))
-            .collect();
-        let given = on_workers(&asked, threads, told, |asked| match asked {
-            Asked::Frfs(position, case) => {
-                Told::Frfs(Answers::one(case, |diagnosis| frfs(*position, diagnosis)))
-            }
-            Asked::Hits(position, case) => {
-                Told::Hits(StruckAnswers::one(case, |diagnosis| hits(*position, diagnosis)))
+        let asked: Vec<_> = cases.all().into_iter().enumerate().collect();
+        let given = on_workers(&asked, threads, told, |(position, asked)| {
+            let watch = |diagnosed: &Diagnosed| watch(*position, diagnosed);
+            match asked {
+                Asked::Frfs(case) => (Some(Answers::one(case, watch)), None),
+                Asked::Hits(case) => (None, Some(Answers::one(case, watch))),
             }
         });
-        let mut of_frfs: Vec<_> = Vec::with_capacity(first_struck);
-        let mut of_hits: Vec<_> = Vec::with_capacity(cases.struck.len());
-        for (asked, told) in asked.iter().zip(given) {
-            match (asked, told) {
-                (Asked::Frfs(..), Some(Told::Frfs(timed))) => of_frfs.push(Some(timed)),
-                (Asked::Hits(..), Some(Told::Hits(timed))) => of_hits.push(Some(timed)),
-                (Asked::Frfs(..), _) => of_frfs.push(None),
-                (Asked::Hits(..), _) => of_hits.push(None),
-            }
-        }
-        let of_solids = of_frfs.split_off(cases.laboratory.len());
+        // A worker that died has left neither.
+        let (mut frfs, hits): (Vec<_>, Vec<_>) = given.into_iter().map(Option::unwrap_or_default).unzip();
+        let mut later = frfs.split_off(cases.laboratory.len());
+        later.truncate(cases.solid.len());
         Replies {
-            laboratory: Answers::collected(of_frfs),
-            solid: Answers::collected(of_solids),
-            struck: StruckAnswers::collected(of_hits),
+            laboratory: Answers::collected(frfs),
+            solid: Answers::collected(later),
+            struck: Answers::collected(hits.into_iter().skip(cases.laboratory.len() + cases.solid.len())),
         }
     }
 
@@ -140,7 +142,7 @@ pub enum RouteTruth {
 impl Sealable for RouteTruth {
     fn to_value(&self) -> Value {
         match self {
-            RouteTruth::Laboratory(truth) => Truth::to_value(truth),
+            RouteTruth::Laboratory(truth) => truth.to_value(),
             RouteTruth::Solid(truth) => truth.to_value(),
             RouteTruth::Struck(truth) => truth.to_value(),
         }
@@ -152,17 +154,9 @@ impl Filed for RouteTruth {
         Some(match value["route"].as_str() {
             None => RouteTruth::Laboratory(Box::new(Truth::from_value(value)?)),
             Some("solid") => RouteTruth::Solid(Box::new(SolidTruth::from_value(value)?)),
-            Some("struck") => RouteTruth::Struck(Box::new(StruckTruth::from_value(value)?)),
+            Some("struck") => RouteTruth::Struck(Box::new(StruckTruth::deserialize(value).ok()?)),
             Some(_) => return None,
         })
-    }
-
-    fn index(&self) -> usize {
-        match self {
-            RouteTruth::Laboratory(truth) => truth.index,
-            RouteTruth::Solid(truth) => truth.index,
-            RouteTruth::Struck(truth) => truth.index,
-        }
     }
 }
 
@@ -223,27 +217,5 @@ impl Plan {
         })?;
         all.extend(truths.into_iter().map(|truth| RouteTruth::Struck(Box::new(truth))));
         Ok((Questions { laboratory, solid, struck }, SealedTruths::new(all)))
-    }
-}
-
-/// The scores of the routes beside the laboratory's FRFs that have any case.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct RouteScores(pub Vec<RouteScore>);
-
-impl RouteScores {
-    /// Scores judged cases.
-    pub fn of(solid: &[SolidJudged], struck: &[StruckJudged]) -> Self {
-        let all = [
-            (!solid.is_empty()).then(|| solid::score(solid)),
-            (!struck.is_empty()).then(|| struck::score(struck)),
-        ];
-        RouteScores(all.into_iter().flatten().collect())
-    }
-
-    /// The scores by route as JSON.
-    pub fn to_value(&self) -> Value {
-        let all: Map<String, Value> =
-            self.0.iter().map(|score| (score.key.to_owned(), score.to_value())).collect();
-        json!(all)
     }
 }

@@ -1,23 +1,19 @@
 //! K and C over the spectral lines.
 
-use jointscope_averaging::Band;
-use jointscope_decomposition::Analysis;
+use jointscope_decomposition::{Analysis, Element, Estimate, Method, Part};
 
 use super::Subject;
-use super::element::{Element, Kind};
-use super::estimate::{Estimate, Method};
-use crate::{Axis, Plot, Role, Section, YRange};
-
-/// Lines beyond which panes are drawn thinned, so that a page of long recordings stays small.
-pub(super) const LINE_LIMIT: usize = 2_000;
+use super::element::{meaning, symbol, unit};
+use crate::plot::{Axis, Plot, Role, Span, YRange};
+use crate::section::Section;
 
 pub(super) fn sections(subject: &Subject) -> [Section; 2] {
     let columns = if subject.is_scalar() { 1 } else { 2 };
     let symbols = if subject.is_paper() { ("K", "C") } else { ("k", "c") };
-    [(Kind::Stiffness, "Stiffness", symbols.0), (Kind::Damping, "Damping", symbols.1)].map(
-        |(kind, word, symbol)| {
-            let mut section = Section::new(format!("{word} by line")).paragraph(introduction(subject, kind, symbol));
-            if kind == Kind::Stiffness && subject.is_paper() {
+    [(Part::Stiffness, "Stiffness", symbols.0), (Part::Damping, "Damping", symbols.1)].map(
+        |(part, word, symbol)| {
+            let mut section = Section::new(format!("{word} by line")).paragraph(introduction(subject, part, symbol));
+            if part == Part::Stiffness && subject.is_paper() {
                 section = section.paragraph(
                     "Eq (7) takes the motion at both ends of the joint as that of one place. It leaves out the transport \
                      R = [[1, L],[0, 1]] over the joint's length: a rotation of the near end moves the far end by L·θ, and a \
@@ -27,17 +23,17 @@ pub(super) fn sections(subject: &Subject) -> [Section; 2] {
                 );
             }
             let elements = Element::all(subject.is_scalar());
-            section.plots(columns, elements.iter().map(|element| plot(subject, kind, *element)))
+            section.plots(columns, elements.iter().map(|element| plot(subject, part, *element)))
         },
     )
 }
 
-fn introduction(subject: &Subject, kind: Kind, symbol: &str) -> String {
+fn introduction(subject: &Subject, part: Part, symbol: &str) -> String {
     let analysis = subject.analysis;
     let noisy = analysis.noisy_lines();
-    let of = match kind {
-        Kind::Stiffness => "the real part of the dynamic stiffness",
-        Kind::Damping => "its imaginary part over ω",
+    let of = match part {
+        Part::Stiffness => "the real part of the dynamic stiffness",
+        Part::Damping => "its imaginary part over ω",
     };
     let solved = analysis.spectrum.solved.len();
     let dots = match noisy {
@@ -52,16 +48,16 @@ fn introduction(subject: &Subject, kind: Kind, symbol: &str) -> String {
     )
 }
 
-fn plot(subject: &Subject, kind: Kind, element: Element) -> Plot {
+fn plot(subject: &Subject, part: Part, element: Element) -> Plot {
     let analysis = subject.analysis;
     let paper = subject.is_paper();
-    let symbol = kind.symbol(element, paper);
-    let columns = Columns::of(analysis, kind, element);
-    let level = level(subject, kind, element);
+    let symbol = symbol(part, element, paper);
+    let columns = Columns::of(analysis, part, element);
+    let level = level(subject, part, element);
     let range = columns.range(analysis, level.map(|(_, value)| value));
     let band = analysis.averages.band;
-    let axis = Axis::linear(symbol.clone(), kind.unit(element));
-    let mut plot = Plot::new(format!("{symbol}, {}", kind.meaning(element)), Axis::frequency(), axis)
+    let axis = Axis::linear(symbol.clone(), unit(part, element));
+    let mut plot = Plot::new(format!("{symbol}, {}", meaning(part, element)), Axis::frequency(), axis)
         .over(analysis.spectrum.h41.lines.hz());
     if columns.low.iter().any(Option::is_some) {
         plot = plot.band("95 % interval", Role::Uncertainty, columns.low, columns.high);
@@ -72,7 +68,7 @@ fn plot(subject: &Subject, kind: Kind, element: Element) -> Plot {
     plot = plot.line("by line", Role::Measured, columns.quiet);
     if columns.nominal.iter().any(Option::is_some) {
         plot = plot.dashed("nominal", Role::Nominal, columns.nominal);
-    } else if let Some(nominal) = kind.nominal_average(analysis, element, paper) {
+    } else if let Some(nominal) = analysis.nominal_average(part, element, paper) {
         plot = plot.horizontal("nominal", Role::Nominal, nominal);
     }
     if let Some((label, value)) = level {
@@ -81,12 +77,11 @@ fn plot(subject: &Subject, kind: Kind, element: Element) -> Plot {
     plot.shaded("averaging band", band.from, band.to)
         .y_range(range)
         .masked(analysis.spectrum.masked.len())
-        .line_limit(LINE_LIMIT)
-        .caption(caption(subject, kind, element))
+        .caption(caption(subject, part, element))
 }
 
 /// The horizontal line: the best figure of the same relation as the spectrum.
-fn level(subject: &Subject, kind: Kind, element: Element) -> Option<(&'static str, f64)> {
+fn level(subject: &Subject, part: Part, element: Element) -> Option<(&'static str, f64)> {
     let estimate = if subject.best.paper == subject.is_paper() {
         *subject.best
     } else {
@@ -97,11 +92,11 @@ fn level(subject: &Subject, kind: Kind, element: Element) -> Option<(&'static st
         Method::WeightedMean => "weighted mean",
         Method::PlainMean => "mean",
     };
-    Some((label, estimate.figure(kind, element).value)).filter(|(_, value)| value.is_finite())
+    Some((label, estimate.figure(part, element).value)).filter(|(_, value)| value.is_finite())
 }
 
-fn caption(subject: &Subject, kind: Kind, element: Element) -> String {
-    let symbol = kind.symbol(element, subject.is_paper());
+fn caption(subject: &Subject, part: Part, element: Element) -> String {
+    let symbol = symbol(part, element, subject.is_paper());
     let what = if subject.is_paper() {
         "eq (7) varies over the lines even for a constant joint; the dashed curve is what it makes of the fixture's".to_owned()
     } else {
@@ -120,13 +115,14 @@ struct Columns {
 }
 
 impl Columns {
-    fn of(analysis: &Analysis, kind: Kind, element: Element) -> Self {
+    fn of(analysis: &Analysis, part: Part, element: Element) -> Self {
         let count = analysis.spectrum.h41.lines.len();
         let empty = || vec![None; count];
         let mut columns =
             Columns { quiet: empty(), noisy: empty(), low: empty(), high: empty(), nominal: empty() };
         for line in &analysis.spectrum.solved {
-            let (value, std) = kind.at(line, element);
+            let value = element.of(part.of((&line.stiffness, &line.damping)));
+            let std = part.of((&line.stiffness_std, &line.damping_std)).as_ref().map(|std| element.of(std));
             let column = if line.is_noisy() { &mut columns.noisy } else { &mut columns.quiet };
             column[line.line] = Some(value);
             if let Some(std) = std {
@@ -135,7 +131,7 @@ impl Columns {
             }
         }
         for (line, nominal) in columns.nominal.iter_mut().enumerate() {
-            *nominal = kind.nominal(analysis, line, element);
+            *nominal = analysis.nominal_at(line, part, element);
         }
         columns
     }
@@ -144,20 +140,15 @@ impl Columns {
     /// them for the other lines. Poles and noisy lines would squash all of it.
     fn range(&self, analysis: &Analysis, level: Option<f64>) -> YRange {
         let hz = analysis.spectrum.h41.lines.hz();
-        let band = Some(analysis.averages.band);
-        let mut inside = within(&self.quiet, hz, band);
-        inside.extend(within(&self.noisy, hz, band));
-        let Some((mut low, mut high)) = percentiles(inside, 0.1, 0.9) else { return YRange::robust() };
-        let scatter = high - low;
-        if let Some((a, b)) = percentiles(within(&self.nominal, hz, band), 0.05, 0.95) {
-            (low, high) = (low.min(a), high.max(b));
-        }
-        if let Some(level) = level {
-            (low, high) = (low.min(level), high.max(level));
-        }
-        let room = (scatter + 0.5 * (high - low)).max(0.02 * low.abs().max(high.abs()));
-        let all = within(&self.quiet, hz, None);
-        let (a, b) = percentiles(all, 0.05, 0.95).unwrap_or((low, high));
+        let band = |hz: f64| analysis.averages.band.contains(hz);
+        let inside = within(&self.quiet, hz, band).chain(within(&self.noisy, hz, band));
+        let middle = Span::percentiles(inside, YRange::ROBUST);
+        let nominal = Span::percentiles(within(&self.nominal, hz, band), (5.0, 95.0));
+        let span = middle.and(nominal).and(Span::of(level));
+        let most = Span::percentiles(within(&self.quiet, hz, |_| true), (5.0, 95.0));
+        let (Some(_), Some((low, high))) = (middle.0, span.0) else { return YRange::Robust };
+        let room = (middle.width() + 0.5 * span.width()).max(0.02 * span.magnitude());
+        let (a, b) = most.0.unwrap_or((low, high));
         YRange::Fixed {
             low: (low - 0.3 * room).min(a.max(low - room)),
             high: (high + 0.3 * room).max(b.min(high + room)),
@@ -165,14 +156,7 @@ impl Columns {
     }
 }
 
-fn within(values: &[Option<f64>], hz: &[f64], band: Option<Band>) -> Vec<f64> {
-    let inside = |hz: f64| band.is_none_or(|band| band.contains(hz));
-    values.iter().zip(hz).filter_map(|(value, hz)| value.filter(|v| v.is_finite() && inside(*hz))).collect()
-}
-
-fn percentiles(mut values: Vec<f64>, low: f64, high: f64) -> Option<(f64, f64)> {
-    values.sort_unstable_by(f64::total_cmp);
-    let at =
-        |share: f64| values.get((share * (values.len().saturating_sub(1)) as f64).round() as usize).copied();
-    at(low).zip(at(high))
+/// Values at the frequencies (Hz) asked for.
+fn within(values: &[Option<f64>], hz: &[f64], inside: impl Fn(f64) -> bool) -> impl Iterator<Item = f64> {
+    values.iter().zip(hz).filter_map(move |(value, hz)| value.filter(|_| inside(*hz)))
 }

@@ -1,23 +1,21 @@
 //! The fixture from the side, with what was used of the test.
 
 use super::Subject;
-use crate::Section;
-use crate::drawing::FixtureDrawing;
+use crate::drawing::SideView;
+use crate::section::Section;
 
 pub(super) fn section(subject: &Subject) -> Section {
     let (fixture, analysis) = (subject.fixture, subject.analysis);
     let used =
         analysis.plan.layout.channels.iter().filter_map(|(index, ..)| analysis.frfs.pairs().get(*index));
-    let mut drawing = FixtureDrawing::of_fixture(fixture, used);
-    for joint in &mut drawing.joints {
-        joint.highlight = joint.name == analysis.joint;
-    }
-    let scale_words = if subject.is_scalar() { "" } else { " The outlines of the blocks are sketched." };
+    let mut view = SideView::new(fixture, used);
+    view.joints.push(&analysis.joint);
+    let outlines = if subject.is_scalar() { "" } else { " The outlines of the blocks are sketched." };
     Section::new("Fixture").drawing(
-        drawing.to_svg(),
+        view.draw(),
         format!(
             "Side view: joint {} and the channels used to find it, responses (sensors) in blue and references \
-             (hammer) in green.{scale_words}",
+             (hammer) in green.{outlines}",
             analysis.joint
         ),
     )

@@ -1,23 +1,32 @@
 //! The FRFs behind the joint: H41 of the blocks, coherence and noise of each recorded FRF.
 
+use jointscope_decomposition::Element;
+use jointscope_linalg::ComplexMatrix2;
 use jointscope_spectra::FrfSet;
 use num_complex::Complex64;
 
 use super::Subject;
-use super::by_line::LINE_LIMIT;
-use super::element::Element;
-use crate::phase::{degrees, in_the_quietest_turn};
-use crate::{Axis, Plot, Role, Section};
+use super::element::index;
+use crate::plot::{Axis, Curve, FrfPanes, Plot, Role, Style, Values, YRange};
+use crate::section::Section;
 
 const UNITS: [&str; 4] = ["m/N", "m/(N*m)", "rad/N", "rad/(N*m)"];
 
 pub(super) fn section(subject: &Subject) -> Section {
     let elements = Element::all(subject.is_scalar());
     let columns = if subject.is_scalar() { 1 } else { 2 };
-    let hz = subject.analysis.spectrum.h41.lines.hz();
-    let mut section = Section::new("FRFs").paragraph(introduction(subject));
-    section = section.plots(columns, elements.iter().map(|element| magnitude(subject, *element, hz)));
-    section = section.plots(columns, elements.iter().map(|element| phase(subject, *element, hz)));
+    let panes: Vec<FrfPanes> = elements.iter().map(|element| panes(subject, *element)).collect();
+    let magnitudes = panes.iter().map(|panes| {
+        let caption = "Magnitude; where the peaks stand apart, the assembly is not as the fixture says.";
+        panes.magnitude().height(200).caption(caption)
+    });
+    let phases = panes
+        .iter()
+        .map(|panes| panes.phase().height(180).caption("Phase, in the turn that the curves cross least."));
+    let section = Section::new("FRFs")
+        .paragraph(introduction(subject))
+        .plots(columns, magnitudes)
+        .plots(columns, phases);
     let quality: Vec<Plot> = [coherence(subject), noise(subject)].into_iter().flatten().collect();
     if quality.is_empty() { section } else { section.plots(quality.len(), quality) }
 }
@@ -37,93 +46,57 @@ fn introduction(subject: &Subject) -> String {
     )
 }
 
-/// `y at 4 per F at 1`.
-fn name(subject: &Subject, element: Element) -> String {
-    let plan = &subject.analysis.plan;
+/// H41's element, measured (gaps where lines are masked) and as the fixture predicts it.
+fn panes<'a>(subject: &Subject<'a>, element: Element) -> FrfPanes<'a> {
+    let analysis = subject.analysis;
+    let (plan, h41) = (&analysis.plan, &analysis.spectrum.h41);
     let motion = if element.row == 0 { "y" } else { "θ" };
     let load = if element.column == 0 { "F" } else { "M" };
-    format!("H{}: {motion} at {} per {load} at {}", element.index, plan.responding.2, plan.loaded.2)
-}
-
-fn measured(subject: &Subject, element: Element) -> Vec<Option<Complex64>> {
-    let h41 = &subject.analysis.spectrum.h41;
-    let mut values: Vec<Option<Complex64>> =
-        h41.values.iter().map(|h| Some(h.at(element.row, element.column))).collect();
-    for (line, _) in &subject.analysis.spectrum.masked {
-        if let Some(value) = values.get_mut(*line) {
-            *value = None;
-        }
+    let symbol = format!("H{}", index(element));
+    let at = |h: &ComplexMatrix2| Some(h.at(element.row, element.column));
+    let mut measured: Vec<Option<Complex64>> = h41.values.iter().map(at).collect();
+    for (line, _) in &analysis.spectrum.masked {
+        measured[*line] = None;
     }
-    values
+    let values = analysis.nominal.iter().map(|line| line.as_ref().and_then(|(h41, _)| at(h41))).collect();
+    FrfPanes {
+        title: format!("{symbol}: {motion} at {} per {load} at {}", plan.responding.2, plan.loaded.2),
+        phase_title: format!("Phase of {symbol}"),
+        symbol,
+        unit: UNITS[2 * element.row + element.column],
+        hz: h41.lines.hz(),
+        measured,
+        noise: Vec::new(),
+        curves: vec![Curve { label: "nominal", role: Role::Nominal, style: Style::Dashed, values }],
+    }
 }
 
-fn nominal(subject: &Subject, element: Element) -> Vec<Option<Complex64>> {
-    let nominal = subject.analysis.nominal.iter();
-    nominal.map(|line| line.as_ref().map(|(h41, _)| h41.at(element.row, element.column))).collect()
-}
-
-fn magnitude(subject: &Subject, element: Element, hz: &[f64]) -> Plot {
-    let size = |values: Vec<Option<Complex64>>| values.into_iter().map(|v| v.map(|v| v.norm()));
-    let symbol = format!("|H{}|", element.index);
-    let axis = Axis::logarithmic(symbol, UNITS[2 * element.row + element.column]);
-    Plot::new(name(subject, element), Axis::frequency(), axis)
-        .over(hz)
-        .line("measured", Role::Measured, size(measured(subject, element)))
-        .dashed("nominal", Role::Nominal, size(nominal(subject, element)))
-        .height(200)
-        .line_limit(LINE_LIMIT)
-        .caption("Magnitude; where the peaks stand apart, the assembly is not as the fixture says.")
-}
-
-fn phase(subject: &Subject, element: Element, hz: &[f64]) -> Plot {
-    let (mut measured, mut nominal) =
-        (degrees(measured(subject, element)), degrees(nominal(subject, element)));
-    in_the_quietest_turn(&mut [&mut measured, &mut nominal]);
-    let axis = Axis::linear(format!("arg H{}", element.index), "°");
-    Plot::new(format!("Phase of H{}", element.index), Axis::frequency(), axis)
-        .over(hz)
-        .line("measured", Role::Measured, measured)
-        .dashed("nominal", Role::Nominal, nominal)
-        .height(180)
-        .line_limit(LINE_LIMIT)
-        .caption("Phase, in the turn that the curves cross least.")
-}
-
-/// FRFs in use, with their indices.
-fn used<'a>(subject: &'a Subject) -> impl Iterator<Item = (usize, String)> + 'a {
+/// A curve of each FRF in use that has one.
+fn of_each<T: Values>(subject: &Subject, plot: Plot, curve: impl Fn(usize) -> Option<T>) -> Option<Plot> {
     let frfs = &subject.analysis.frfs;
-    let channels = subject.analysis.plan.layout.channels.iter();
-    channels.filter_map(|(index, ..)| Some((*index, frfs.pairs().get(*index)?.to_string())))
+    let used = subject.analysis.plan.layout.channels.iter().map(|(index, ..)| *index);
+    let named = used.filter_map(|index| Some((frfs.pairs().get(index)?.to_string(), curve(index)?)));
+    let curves: Vec<(String, T)> = named.collect();
+    let plot = plot.height(200).over(frfs.lines().hz());
+    (!curves.is_empty()).then(|| {
+        curves
+            .into_iter()
+            .enumerate()
+            .fold(plot, |plot, (trace, (name, values))| plot.line(name, Role::Trace(trace), values))
+    })
 }
 
 fn coherence(subject: &Subject) -> Option<Plot> {
-    let frfs = &subject.analysis.frfs;
-    let axis = Axis::linear("γ²", "");
-    let mut plot = Plot::new("Coherence", Axis::frequency(), axis).over(frfs.lines().hz());
-    let mut any = false;
-    for (trace, (index, name)) in used(subject).enumerate() {
-        if let Some(coherence) = frfs.coherence(index) {
-            any = true;
-            plot = plot.line(name, Role::Trace(trace), coherence);
-        }
-    }
-    let caption = "Coherence of each FRF in use, as recorded; it falls where the response is small or noisy.";
-    any.then(|| plot.height(200).line_limit(LINE_LIMIT).caption(caption))
+    let plot = Plot::new("Coherence", Axis::frequency(), Axis::linear("γ²", ""))
+        .caption("Coherence of each FRF in use, as recorded; it falls where the response is small or noisy.");
+    of_each(subject, plot, |index| subject.analysis.frfs.coherence(index))
 }
 
 fn noise(subject: &Subject) -> Option<Plot> {
-    let frfs = &subject.analysis.frfs;
-    let axis = Axis::logarithmic("σ/|H|", "");
-    let mut plot = Plot::new("Noise to signal", Axis::frequency(), axis).over(frfs.lines().hz());
-    let mut any = false;
-    for (trace, (index, name)) in used(subject).enumerate() {
-        if let Some(ratio) = noise_to_signal(frfs, index) {
-            any = true;
-            plot = plot.line(name, Role::Trace(trace), ratio);
-        }
-    }
-    let caption = "Standard deviation of each FRF in use over its magnitude: 10⁻² is one per cent noise.";
-    any.then(|| plot.height(200).line_limit(LINE_LIMIT).robust().caption(caption))
+    let plot = Plot::new("Noise to signal", Axis::frequency(), Axis::logarithmic("σ/|H|", ""))
+        .y_range(YRange::Robust)
+        .caption("Standard deviation of each FRF in use over its magnitude: 10⁻² is one per cent noise.");
+    of_each(subject, plot, |index| noise_to_signal(&subject.analysis.frfs, index))
 }
 
 fn noise_to_signal(frfs: &FrfSet, index: usize) -> Option<Vec<Option<f64>>> {

@@ -1,39 +1,37 @@
 //! What was left out, what was remarked, and how hard the lines are to decompose.
 
+use maud::Render;
+
 use super::Subject;
-use super::by_line::LINE_LIMIT;
 use super::verdict::plain;
-use crate::{Axis, Column, PageContext, Plot, Role, Section, Table, YRange};
+use crate::context::PageContext;
+use crate::plot::{Axis, Plot, Role, YRange};
+use crate::section::Section;
+use crate::table::Table;
 
 pub(super) fn section(subject: &Subject, context: &PageContext) -> Section {
     let analysis = subject.analysis;
     let (masked, all) = (analysis.spectrum.masked.len(), analysis.spectrum.h41.lines.len());
-    let mut section = Section::new("Left out");
-    if masked == 0 {
-        section = section.paragraph(format!("No line was masked: all {all} were solved."));
-    } else {
-        section = section
-            .paragraph(format!(
-                "{masked} of {all} lines {} masked.",
-                if masked == 1 { "was" } else { "were" }
-            ))
-            .table(masked_table(subject));
-    }
-    section = section.notes(remarks(subject, context));
-    section.plot(condition(subject))
+    let section = Section::new("Left out");
+    let section = match masked {
+        0 => section.paragraph(format!("No line was masked: all {all} were solved.")),
+        _ => {
+            let verb = if masked == 1 { "was" } else { "were" };
+            section.paragraph(format!("{masked} of {all} lines {verb} masked.")).with(masked_table(subject))
+        }
+    };
+    section.notes(remarks(subject, context)).plot(condition(subject))
 }
 
-fn masked_table(subject: &Subject) -> Table {
+fn masked_table(subject: &Subject) -> impl Render {
     let spectrum = &subject.analysis.spectrum;
-    let hz = spectrum.h41.lines.hz();
-    let columns = [Column::text("Why masked"), Column::numbers("Lines", ""), Column::text("Where")];
-    let mut table = Table::new(columns);
-    for (reason, count) in spectrum.masked_summary() {
-        let lines: Vec<usize> =
-            spectrum.masked.iter().filter(|(_, r)| *r == reason).map(|(line, _)| *line).collect();
-        table = table.row([reason.why().to_owned(), count.to_string(), ranges(&lines, hz)]);
-    }
-    table
+    Table::of(spectrum.masked_summary())
+        .words("Why masked", |(reason, _)| reason.why())
+        .numbers("Lines", "", |(_, count)| count.to_string())
+        .words("Where", |(reason, _)| {
+            let lines = spectrum.masked.iter().filter(|(_, r)| r == reason).map(|(line, _)| *line);
+            ranges(&lines.collect::<Vec<_>>(), spectrum.h41.lines.hz())
+        })
 }
 
 /// Runs of neighbouring lines, the first few in full: `0 Hz, 410 to 415 Hz and 3 more places`.
@@ -83,22 +81,10 @@ fn condition(subject: &Subject) -> Plot {
         .over(spectrum.h41.lines.hz())
         .line("worst element", Role::Measured, &values)
         .shaded("averaging band", band.from, band.to)
-        .y_range(decades(&values))
+        .y_range(YRange::decades(values.iter().flatten().copied()))
         .height(180)
-        .line_limit(LINE_LIMIT)
         .caption(
             "By how much relative errors of the FRFs and of the blocks' compliances are multiplied in the worst element of K, at \
              the most: where it is large, the blocks' own motion hides the joint.",
         )
-}
-
-/// Whole decades about the values, so that the axis is labelled with powers of ten.
-fn decades(values: &[Option<f64>]) -> YRange {
-    let logarithms = values.iter().flatten().filter(|v| v.is_finite() && **v > 0.0).map(|v| v.log10());
-    let (low, high) =
-        logarithms.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)));
-    if low > high {
-        return YRange::Full;
-    }
-    YRange::Fixed { low: 10f64.powf(low.floor()), high: 10f64.powf(high.ceil().max(low.floor() + 1.0)) }
 }

@@ -1,32 +1,31 @@
 //! Key figures and the table of all averages.
 
+use jointscope_decomposition::{Element, Estimate, Figure, Part};
+
 use super::Subject;
-use super::element::{Element, Kind};
-use super::estimate::{Estimate, Figure};
+use super::element::{meaning, method, symbol, unit};
 use super::verdict::{band, share};
-use crate::format::{NOT_DETERMINED, fixed, quantity, significant};
-use crate::{Card, Column, Scale, Section, Table, Tone};
+use crate::format::{in_parts, quantity, significant};
+use crate::section::{Card, Section, Tone};
+use crate::table::Table;
+use crate::unit::Scale;
 
-/// A determinant of c this small against c₁₁·c₂₂ lies on the boundary of what is passive.
-const ON_THE_BOUNDARY: f64 = 1e-9;
-
-pub(super) fn sections(subject: &Subject) -> Vec<Section> {
+pub(super) fn section(subject: &Subject) -> Section {
     let likelihood = Estimate::maximum_likelihood(subject.analysis);
-    let mut section = Section::new("Result").paragraph(introduction(subject)).cards(cards(subject));
-    section = section.warnings(warnings(subject));
-    if subject.is_paper() {
-        section = section.table(means_table(subject, None));
-        if let Some(likelihood) = likelihood {
-            section = section.table(likelihood_table(subject, &likelihood));
+    let section = Section::new("Result")
+        .paragraph(introduction(subject))
+        .cards(cards(subject))
+        .warnings(warning(subject));
+    match likelihood {
+        Some(fit) if subject.is_paper() => {
+            section.with(means_table(subject, None)).with(likelihood_table(subject, &fit))
         }
-    } else {
-        section = section.table(means_table(subject, likelihood.as_ref()));
+        fit => section.with(means_table(subject, fit.as_ref())),
     }
-    vec![section]
 }
 
 fn introduction(subject: &Subject) -> String {
-    let method = subject.best.method.words();
+    let method = method(subject.best.method);
     let which = if subject.best.paper { "the matrices of eq (7)" } else { "the joint" };
     let signs = if subject.is_scalar() {
         "k and c act between the displacements of the two bodies."
@@ -41,194 +40,140 @@ fn introduction(subject: &Subject) -> String {
 
 fn cards(subject: &Subject) -> Vec<Card> {
     let scalar = subject.is_scalar();
-    [Kind::Stiffness, Kind::Damping]
+    Part::ALL
         .into_iter()
-        .flat_map(|kind| Element::distinct(scalar).map(move |element| card(subject, kind, element)))
+        .flat_map(|part| Element::distinct(scalar).map(move |element| card(subject, part, element)))
         .collect()
 }
 
-fn card(subject: &Subject, kind: Kind, element: Element) -> Card {
-    let (best, unit) = (subject.best, kind.unit(element));
-    let figure = best.figure(kind, element);
-    let label = format!("{}, {}", kind.symbol(element, best.paper), kind.meaning(element));
+fn card(subject: &Subject, part: Part, element: Element) -> Card {
+    let (best, unit) = (subject.best, unit(part, element));
+    let figure = best.figure(part, element);
+    let label = format!("{}, {}", symbol(part, element, best.paper), meaning(part, element));
     let mut notes = Vec::new();
     if figure.may_be_zero() {
         notes.push("cannot be told from zero".to_owned());
     }
-    if let Some(nominal) = kind.nominal_average(subject.analysis, element, best.paper) {
+    if let Some(nominal) = subject.analysis.nominal_average(part, element, best.paper) {
         let text = quantity(nominal, None, unit);
-        match kind {
-            Kind::Stiffness if nominal != 0.0 && !figure.may_be_zero() => {
+        match part {
+            Part::Stiffness if nominal != 0.0 && !figure.may_be_zero() => {
                 notes.push(format!("{} of nominal {text}", share(figure.value / nominal)));
             }
             _ => notes.push(format!("nominal {text}")),
         }
     }
-    let card = Card::quantity(label, figure.value, figure.total(), unit).note(notes.join(" · "));
-    if figure.may_be_zero() { card.tone(Tone::Attention) } else { card }
+    Card::quantity(label, figure.value, figure.total(), unit)
+        .note(notes.join(" · "))
+        .tone(figure.may_be_zero().then_some(Tone::Attention))
 }
 
-fn warnings(subject: &Subject) -> Vec<String> {
-    let mut warnings = Vec::new();
-    if let Ok(fit) = &subject.analysis.likelihood {
-        let c = &fit.damping;
-        let product = c.at(0, 0) * c.at(1, 1);
-        let on_boundary = if subject.is_scalar() {
-            c.at(0, 0) == 0.0
-        } else {
-            c.determinant() <= ON_THE_BOUNDARY * product
-        };
-        if on_boundary {
-            warnings.push(
-                "The FRFs ask for a damping that would give out energy; c is held at the limit of what a passive joint can do. Its \
-                 elements are tied to each other there, and their ± say little."
-                    .to_owned(),
-            );
-        }
+fn warning(subject: &Subject) -> Option<&'static str> {
+    subject.analysis.judgement.damping_at_limit.then_some(
+        "The FRFs ask for a damping that would give out energy; c is held at the limit of what a passive joint can do. Its \
+         elements are tied to each other there, and their ± say little.",
+    )
+}
+
+/// An element in the unit of its row.
+struct Row {
+    part: Part,
+    element: Element,
+    /// The fixture's, SI.
+    nominal: Option<f64>,
+    scale: Scale,
+}
+
+impl Row {
+    /// A row whose unit suits a reference value and the nominal one.
+    fn new(part: Part, element: Element, reference: f64, nominal: Option<f64>) -> Self {
+        let scale = Scale::for_values(nominal.into_iter().chain([reference]), unit(part, element));
+        Row { part, element, nominal, scale }
     }
-    warnings
+
+    /// Value ± noise ± tolerance; `coarsest` (SI) sets the digits where it is larger than both.
+    fn text(&self, estimate: &Estimate, coarsest: f64) -> String {
+        let Figure { value, noise, tolerance } = estimate.figure(self.part, self.element);
+        let stds: Vec<f64> = [Some(noise), tolerance].into_iter().flatten().collect();
+        in_parts(value, &stds, coarsest, &self.scale)
+    }
+}
+
+fn table(rows: impl Iterator<Item = Row>, paper: bool) -> Table<Row> {
+    Table::of(rows)
+        .words("Element", |row| symbol(row.part, row.element, paper))
+        .words("Unit", |row| row.scale.unit().to_owned())
+}
+
+fn with_nominal(table: Table<Row>) -> Table<Row> {
+    table.numbers("Nominal", "", |row| {
+        row.nominal.map_or_else(|| "–".to_owned(), |value| significant(row.scale.of(value), 4))
+    })
 }
 
 /// Means over the band, and the maximum-likelihood joint where it is of the same relation.
-fn means_table(subject: &Subject, likelihood: Option<&Estimate>) -> Table {
-    let analysis = subject.analysis;
-    let paper = subject.is_paper();
-    let plain = Estimate::plain(analysis);
-    let weighted = Estimate::weighted(analysis);
-    let mut columns = vec![
-        Column::text("Element"),
-        Column::text("Unit"),
-        Column::numbers("Plain mean (eq 35, 42)", ""),
-        Column::numbers("Weighted mean", ""),
-    ];
-    if likelihood.is_some() {
-        columns.push(Column::numbers("Maximum likelihood", ""));
+fn means_table(subject: &Subject, likelihood: Option<&Estimate>) -> Table<Row> {
+    let (analysis, paper) = (subject.analysis, subject.is_paper());
+    let (plain, weighted) = (Estimate::plain(analysis), Estimate::weighted(analysis));
+    let reference = likelihood.or(weighted.as_ref()).unwrap_or(&plain);
+    let rows = Part::ALL.into_iter().flat_map(|part| {
+        Element::all(subject.is_scalar()).iter().map(move |&element| {
+            let nominal = analysis.nominal_average(part, element, paper);
+            Row::new(part, element, reference.figure(part, element).value, nominal)
+        })
+    });
+    // Tolerances of the weighted mean are much those of the plain one.
+    let coarsest = |row: &Row| plain.figure(row.part, row.element).tolerance.unwrap_or(0.0);
+    let mut table = table(rows, paper)
+        .numbers("Plain mean (eq 35, 42)", "", |row| row.text(&plain, 0.0))
+        .numbers("Weighted mean", "", |row| {
+            weighted.map_or_else(|| "–".to_owned(), |mean| row.text(&mean, coarsest(row)))
+        })
+        .caption(format!(
+            "{} by {}: value ± noise (of the fit: and misfit) ± tolerances; means over {}, {} lines",
+            if paper { "K and C" } else { "k and c" },
+            subject.relation_words(),
+            band(subject),
+            analysis.averages.lines
+        ));
+    if let Some(fit) = likelihood {
+        table = table.numbers("Maximum likelihood", "", |row| row.text(fit, 0.0));
     }
-    columns.push(Column::numbers("Nominal", ""));
-    let caption = format!(
-        "{} by {}: value ± noise (of the fit: and misfit) ± tolerances; means over {}, {} lines",
-        if paper { "K and C" } else { "k and c" },
-        subject.relation_words(),
-        band(subject),
-        analysis.averages.lines
-    );
-    let mut table = Table::new(columns).caption(caption);
-    for kind in [Kind::Stiffness, Kind::Damping] {
-        for &element in Element::all(subject.is_scalar()) {
-            let plain = plain.figure(kind, element);
-            let weighted = weighted.map(|mean| mean.figure(kind, element));
-            let fitted = likelihood.map(|fit| fit.figure(kind, element));
-            let nominal = kind.nominal_average(analysis, element, paper);
-            let reference = fitted.or(weighted).unwrap_or(plain);
-            let scale = scale(kind, element, [Some(reference.value), nominal]);
-            let mut cells = vec![
-                kind.symbol(element, paper),
-                scale.unit().to_owned(),
-                figure_text(&plain, &scale, 0.0),
-                weighted.map_or_else(
-                    || "–".to_owned(),
-                    |figure| figure_text(&figure, &scale, plain.tolerance.unwrap_or(0.0)),
-                ),
-            ];
-            cells.extend(fitted.map(|figure| figure_text(&figure, &scale, 0.0)));
-            cells.push(nominal_text(nominal, &scale));
-            table = table.row(cells);
-        }
-    }
-    footnotes(table, subject, likelihood.is_some())
+    footnotes(subject, likelihood.is_some()).into_iter().fold(with_nominal(table), Table::footnote)
 }
 
-fn footnotes(table: Table, subject: &Subject, with_likelihood: bool) -> Table {
-    let mut table = table;
+fn footnotes(subject: &Subject, with_likelihood: bool) -> Vec<&'static str> {
+    let mut notes = Vec::new();
     if with_likelihood && !subject.is_scalar() {
-        table = table.footnote(
+        notes.push(
             "The maximum-likelihood k and c are symmetric by construction; 21 repeats 12. The means are not held to that: what 12 \
              and 21 differ by beyond their ± is an error of the model or the test.",
         );
     }
     if Estimate::weighted(subject.analysis).is_some() {
-        table = table.footnote(
+        notes.push(
             "Tolerances act on the weighted mean much as on the plain one; they are not worked out for it.",
         );
     }
     if !subject.is_scalar() {
-        let what = if subject.is_paper() {
-            "what eq (7) makes of the fixture as it stands, a mean over the same lines"
+        notes.push(if subject.is_paper() {
+            "Nominal: what eq (7) makes of the fixture as it stands, a mean over the same lines."
         } else {
-            "the fixture's joint; its c is its share of the fixture's damping, a mean over the same lines"
-        };
-        table = table.footnote(format!("Nominal: {what}."));
+            "Nominal: the fixture's joint; its c is its share of the fixture's damping, a mean over the same lines."
+        });
     }
-    table
+    notes
 }
 
 /// The exact joint beside the matrices of eq (7).
-fn likelihood_table(subject: &Subject, likelihood: &Estimate) -> Table {
-    let columns = [
-        Column::text("Element"),
-        Column::text("Unit"),
-        Column::numbers("Maximum likelihood", ""),
-        Column::numbers("Nominal", ""),
-    ];
-    let mut table = Table::new(columns)
-        .caption("The exact joint's k and c, fitted to the FRFs: value ± noise and misfit ± tolerances (not eq 7, and not to be compared with it element by element)");
-    for kind in [Kind::Stiffness, Kind::Damping] {
-        for element in Element::distinct(subject.is_scalar()) {
-            let figure = likelihood.figure(kind, element);
-            let nominal = match kind {
-                Kind::Stiffness => kind.nominal_average(subject.analysis, element, false),
-                Kind::Damping => None,
-            };
-            let scale = scale(kind, element, [Some(figure.value), nominal]);
-            table = table.row([
-                kind.symbol(element, false),
-                scale.unit().to_owned(),
-                figure_text(&figure, &scale, 0.0),
-                nominal_text(nominal, &scale),
-            ]);
-        }
-    }
-    table
-}
-
-fn scale(kind: Kind, element: Element, values: [Option<f64>; 2]) -> Scale {
-    Scale::for_values(values.into_iter().flatten(), kind.unit(element))
-}
-
-fn nominal_text(nominal: Option<f64>, scale: &Scale) -> String {
-    nominal.map_or_else(|| "–".to_owned(), |value| significant(scale.of(value), 4))
-}
-
-/// `1.432 ± 0.012 ± 0.031`: the larger of noise, tolerance and `coarsest` (SI) sets the digits, either keeps one of its own at
-/// least.
-fn figure_text(figure: &Figure, scale: &Scale, coarsest: f64) -> String {
-    if !figure.value.is_finite() {
-        return NOT_DETERMINED.to_owned();
-    }
-    let stds: Vec<f64> = [Some(figure.noise), figure.tolerance]
-        .into_iter()
-        .flatten()
-        .map(|std| scale.of(std))
-        .filter(|std| std.is_finite())
-        .collect();
-    let largest = stds.iter().fold(scale.of(coarsest), |a, b| a.max(*b));
-    if largest <= 0.0 {
-        return significant(scale.of(figure.value), 4);
-    }
-    let decimals = decimals(largest, 2).clamp(0, 8);
-    let mut text = fixed(scale.of(figure.value), decimals as usize);
-    for std in stds {
-        let own = if std > 0.0 { decimals.max(decimals_of(std)) } else { decimals };
-        text.push_str(&format!(" ± {}", fixed(std, own.clamp(0, 8) as usize)));
-    }
-    text
-}
-
-/// Decimals that show so many significant digits.
-fn decimals(value: f64, digits: i32) -> i32 {
-    digits - 1 - value.log10().floor() as i32
-}
-
-fn decimals_of(value: f64) -> i32 {
-    decimals(value, 1)
+fn likelihood_table(subject: &Subject, likelihood: &Estimate) -> Table<Row> {
+    let rows = Part::ALL.into_iter().flat_map(|part| {
+        Element::distinct(subject.is_scalar()).map(move |element| {
+            let nominal = subject.analysis.nominal_average(part, element, false);
+            let nominal = nominal.filter(|_| part == Part::Stiffness);
+            Row::new(part, element, likelihood.figure(part, element).value, nominal)
+        })
+    });
+    let table = table(rows, false).numbers("Maximum likelihood", "", |row| row.text(likelihood, 0.0));
+    with_nominal(table).caption("The exact joint's k and c, fitted to the FRFs: value ± noise and misfit ± tolerances (not eq 7, and not to be compared with it element by element)")
 }

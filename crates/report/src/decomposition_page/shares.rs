@@ -1,21 +1,22 @@
 //! Which tolerances of the fixture matter.
 
-use jointscope_decomposition::ToleranceShare;
-use jointscope_fixture::{Fixture, NamedQuantity, Nature};
+use jointscope_decomposition::{Element, Method, Part, ToleranceShare};
+use jointscope_fixture::{Dof, Fixture, NamedQuantity, Nature, QuantityKey as Key, QuantityOwner};
 use jointscope_linalg::RealMatrix2;
 
 use super::Subject;
-use super::element::{Element, Kind};
-use super::estimate::Method;
-use crate::format::{NOT_DETERMINED, significant};
-use crate::{Column, Scale, Section, Table, typeset};
+use super::element::symbol;
+use crate::format::{NOT_DETERMINED, magnitude, significant};
+use crate::section::Section;
+use crate::table::Table;
 
 /// Rows of the table.
 const SHOWN: usize = 8;
 
 /// A tolerance with its relative effects on k11, k12, k22 and c11.
 struct Effect<'a> {
-    share: &'a ToleranceShare,
+    quantity: &'a NamedQuantity,
+    std: f64,
     relative: Vec<f64>,
 }
 
@@ -25,71 +26,78 @@ impl Effect<'_> {
         let stiffness = self.relative.len().saturating_sub(1);
         self.relative.iter().take(stiffness).fold(0.0, |largest, effect| largest.max(effect.abs()))
     }
+
+    /// Its standard deviation, absolute and as a share of its value.
+    fn known_to(&self) -> String {
+        let Effect { quantity, std, .. } = self;
+        if quantity.nature == Nature::Abscissa {
+            return format!("{} mm", significant(1e3 * std, 2));
+        }
+        let relative = format!(" ({} %)", significant(100.0 * std / quantity.value.abs(), 2));
+        let absolute = magnitude(*std, quantity.key.unit(), 2);
+        if quantity.value == 0.0 { absolute } else { absolute + &relative }
+    }
 }
 
-pub(super) fn section(subject: &Subject) -> Option<Section> {
-    let shares = &subject.analysis.tolerances;
+pub(super) fn section(subject: &Subject) -> Section {
     let quantities = subject.fixture.quantities();
     let watched = watched(subject);
+    let shares = subject.analysis.tolerances.iter();
     let mut effects: Vec<Effect> =
-        shares.iter().filter_map(|share| effect(subject, share, &watched)).collect();
+        shares.filter_map(|share| effect(subject, share, &quantities, &watched)).collect();
     effects.sort_by(|a, b| {
-        b.on_stiffness().total_cmp(&a.on_stiffness()).then_with(|| a.share.path.cmp(&b.share.path))
+        b.on_stiffness().total_cmp(&a.on_stiffness()).then_with(|| a.quantity.path.cmp(&b.quantity.path))
     });
     let section = Section::new("Tolerances");
     let Some(strongest) = effects.first() else {
-        return Some(section.paragraph(
+        return section.paragraph(
             "No quantity of the fixture has a tolerance: all are taken as exact, and the ± hold noise alone.",
-        ));
+        );
     };
-    let advice = advice(&strongest.share.path, &quantities, subject.fixture);
+    let advice = advice(strongest.quantity, subject.fixture);
     let paragraph = format!(
         "By how much the result moves when one quantity of the fixture is larger by its standard deviation. {advice}"
     );
-    let mut columns = vec![Column::text("Quantity"), Column::text("In the file"), Column::text("Known to")];
-    let paper = subject.best.paper;
-    columns.extend(watched.iter().map(|(kind, element)| Column::numbers(kind.symbol(*element, paper), "%")));
-    let mut table = Table::new(columns);
-    for Effect { share, relative } in effects.iter().take(SHOWN) {
-        let quantity = quantities.iter().find(|quantity| quantity.path == share.path);
-        let mut cells = vec![
-            in_words(&share.path),
-            share.path.clone(),
-            quantity.map_or_else(|| significant(share.std, 2), |quantity| known_to(quantity, share.std)),
-        ];
-        cells.extend(relative.iter().map(|effect| signed_percent(*effect)));
-        table = table.row(cells);
+    let mut table = Table::of(effects.iter().take(SHOWN))
+        .words("Quantity", |effect| in_words(effect.quantity, subject.fixture))
+        .words("In the file", |effect| effect.quantity.path.clone())
+        .words("Known to", |effect| effect.known_to())
+        .footnote("Changes in percent of the element's magnitude.");
+    for (index, (part, element)) in watched.iter().enumerate() {
+        let heading = symbol(*part, *element, subject.best.paper);
+        table = table.numbers(heading, "%", |effect| signed_percent(effect.relative[index]));
     }
     let rest = effects.len().saturating_sub(SHOWN);
-    table = table.footnote("Changes in percent of the element's magnitude.");
     if rest > 0 {
         table = table
             .footnote(format!("{rest} more have smaller effects on the stiffness; the ± hold them all."));
     }
-    Some(section.paragraph(paragraph).table(table))
+    section.paragraph(paragraph).with(table)
 }
 
 /// k11, k12, k22, c11, or k11 and c11 of a scalar joint.
-fn watched(subject: &Subject) -> Vec<(Kind, Element)> {
+fn watched(subject: &Subject) -> Vec<(Part, Element)> {
     let scalar = subject.is_scalar();
-    let mut watched: Vec<(Kind, Element)> = Element::distinct(scalar).map(|e| (Kind::Stiffness, e)).collect();
-    watched.push((Kind::Damping, Element::all(scalar)[0]));
+    let mut watched: Vec<(Part, Element)> = Element::distinct(scalar).map(|e| (Part::Stiffness, e)).collect();
+    watched.push((Part::Damping, Element::all(scalar)[0]));
     watched
 }
 
 fn effect<'a>(
     subject: &Subject,
-    share: &'a ToleranceShare,
-    watched: &[(Kind, Element)],
+    share: &ToleranceShare,
+    quantities: &'a [NamedQuantity],
+    watched: &[(Part, Element)],
 ) -> Option<Effect<'a>> {
+    let quantity = quantities.iter().find(|quantity| quantity.path == share.path)?;
     let changes: (RealMatrix2, RealMatrix2) = match subject.best.method {
         Method::MaximumLikelihood => share.likelihood?,
         Method::WeightedMean | Method::PlainMean => share.plain,
     };
-    let relative = |&(kind, element): &(Kind, Element)| {
-        element.of(&kind.of(changes)) / subject.best.figure(kind, element).value.abs()
+    let relative = |&(part, element): &(Part, Element)| {
+        element.of(&part.of(changes)) / subject.best.figure(part, element).value.abs()
     };
-    Some(Effect { share, relative: watched.iter().map(relative).collect() })
+    Some(Effect { quantity, std: share.std, relative: watched.iter().map(relative).collect() })
 }
 
 fn signed_percent(effect: f64) -> String {
@@ -104,78 +112,53 @@ fn signed_percent(effect: f64) -> String {
     if percent > 0.0 { format!("+{text}") } else { text }
 }
 
-fn known_to(quantity: &NamedQuantity, std: f64) -> String {
-    let relative = || format!(" ({} %)", significant(100.0 * std / quantity.value.abs(), 2));
-    let absolute = |unit: &str| {
-        let scale = Scale::for_magnitude(std, unit);
-        format!("{} {}", significant(scale.of(std), 2), scale.unit())
+/// A quantity as one would say it.
+fn in_words(quantity: &NamedQuantity, fixture: &Fixture) -> String {
+    let name = match quantity.owner {
+        QuantityOwner::Body(index) => &fixture.bodies()[index].name,
+        QuantityOwner::Point(index) => &fixture.points()[index].name,
+        QuantityOwner::Joint(index) => &fixture.joints()[index].name,
+        QuantityOwner::Support(index) => &fixture.supports()[index].name,
+        _ => "",
     };
-    match quantity.nature {
-        Nature::Abscissa => format!("{} mm", significant(std * 1e3, 2)),
-        _ if quantity.value == 0.0 => significant(std, 2),
-        Nature::Mass => absolute("kg") + &relative(),
-        Nature::YoungsModulus => absolute("Pa") + &relative(),
-        Nature::Inertia => format!("{} {}", significant(std, 2), typeset("kg*m^2")) + &relative(),
-        _ => significant(std, 2) + &relative(),
-    }
-}
-
-/// A path of the fixture file as one would say it.
-fn in_words(path: &str) -> String {
-    let between = |start: &str, end: &str| path.strip_prefix(start).and_then(|rest| rest.strip_suffix(end));
-    let known: [(&str, &str, &str); 9] = [
-        ("bodies/", "/mass", "mass of"),
-        ("bodies/", "/inertia", "inertia of"),
-        ("bodies/", "/x_cg", "centre of gravity of"),
-        ("points/", "/x", "place of point"),
-        ("joints/", "/beam/youngs_modulus", "Young's modulus of"),
-        ("joints/", "/beam/second_moment", "second moment of area of"),
-        ("supports/", "/stiffness", "stiffness of support"),
-        ("supports/", "/damping", "dashpot of support"),
-        ("supports/", "/rotational_stiffness", "rotational stiffness of support"),
-    ];
-    for (start, end, words) in known {
-        if let Some(name) = between(start, end).filter(|name| !name.contains('/')) {
-            return format!("{words} {name}");
-        }
-    }
-    if let Some(index) = path.strip_prefix("damping/modal_ratios/").and_then(|i| i.parse::<usize>().ok()) {
-        return format!("damping ratio of mode {}", index.saturating_add(1));
-    }
-    match path {
-        "damping/loss_factor" => "loss factor".to_owned(),
-        _ => path.rsplit('/').next().unwrap_or(path).replace('_', " "),
-    }
+    let what = match quantity.key {
+        Key::Mass => "mass of",
+        Key::Inertia => "inertia of",
+        Key::CentreOfGravity => "centre of gravity of",
+        Key::Abscissa => "place of point",
+        Key::YoungsModulus => "Young's modulus of",
+        Key::SecondMoment => "second moment of area of",
+        Key::SupportStiffness(Dof::Translation) => "stiffness of support",
+        Key::SupportStiffness(Dof::Rotation) => "rotational stiffness of support",
+        Key::SupportDamping(Dof::Translation) => "dashpot of support",
+        Key::ModalRatio(index) => return format!("damping ratio of mode {}", index + 1),
+        _ => return quantity.path.rsplit('/').next().unwrap_or_default().replace('_', " "),
+    };
+    format!("{what} {name}")
 }
 
 /// How to know the quantity better that matters most.
-fn advice(path: &str, quantities: &[NamedQuantity], fixture: &Fixture) -> String {
-    let what = in_words(path);
-    let nature = quantities.iter().find(|quantity| quantity.path == path).map(|quantity| quantity.nature);
-    let how = match nature {
-        Some(Nature::Abscissa) if path.ends_with("/x_cg") => {
+fn advice(quantity: &NamedQuantity, fixture: &Fixture) -> String {
+    let is_joint_end =
+        |point: usize| fixture.joints().iter().any(|joint| [joint.from, joint.to].contains(&point));
+    let how = match (quantity.nature, quantity.owner) {
+        (Nature::Abscissa, _) if quantity.key == Key::CentreOfGravity => {
             "balance the block on an edge, or take it from the drawing with the sensors' masses"
         }
-        Some(Nature::Abscissa) if is_joint_end(path, fixture) => {
+        (Nature::Abscissa, QuantityOwner::Point(point)) if is_joint_end(point) => {
             "measure the joint's free length with a calliper and all other places from its ends"
         }
-        Some(Nature::Abscissa) => {
+        (Nature::Abscissa, _) => {
             "measure sensors and hammer points from the joint's end with a calliper, and strike through a punch mark"
         }
-        Some(Nature::Mass) => "weigh the block as tested, sensors and half of the cables included",
-        Some(Nature::Inertia) => {
+        (Nature::Mass, _) => "weigh the block as tested, sensors and half of the cables included",
+        (Nature::Inertia, _) => {
             "swing the block as a pendulum, or take it from the drawing with the sensors' masses"
         }
-        Some(Nature::Support) => {
+        (Nature::Support, _) => {
             "find it from the rigid-body frequencies of the hung assembly, or hang the assembly softer"
         }
         _ => "measure it by itself",
     };
-    format!("What matters most is the {what}: to know the joint better, {how}.")
-}
-
-fn is_joint_end(path: &str, fixture: &Fixture) -> bool {
-    let point = path.strip_prefix("points/").and_then(|rest| rest.strip_suffix("/x"));
-    let index = point.and_then(|name| fixture.points().iter().position(|p| p.name == name));
-    index.is_some_and(|index| fixture.joints().iter().any(|joint| joint.from == index || joint.to == index))
+    format!("What matters most is the {}: to know the joint better, {how}.", in_words(quantity, fixture))
 }

@@ -1,13 +1,16 @@
 //! δ(ω): the missing component as measured, line by line, and the law that names it.
 
-use jointscope_diagnosis::{Finding, LineEstimate, Location, Site};
+use jointscope_diagnosis::{Finding, LawFit, LawParameter, LineEstimate, Location, Site};
 use jointscope_fixture::EffectKind;
+use jointscope_wording::{Says, effect_name};
 use num_complex::Complex64;
 
+use super::Subject;
 use super::law::Law;
-use super::{LINE_LIMIT, Subject};
 use crate::format::{NOT_DETERMINED, quantity, significant};
-use crate::{Axis, Column, Plot, Role, Section, Table, YRange};
+use crate::plot::{Axis, Plot, Role, Span, YRange};
+use crate::section::Section;
+use crate::table::Table;
 
 /// Real or imaginary part.
 type Part = fn(Complex64) -> f64;
@@ -24,7 +27,7 @@ pub(super) fn section(subject: &Subject) -> Option<Section> {
         .filter(|(_, _, location)| !location.delta.is_empty())
         .collect();
     // Only what has no name is drawn without a law.
-    let best = diagnosis.locations.first().filter(|l| diagnosis.is_unnamed() && !l.delta.is_empty());
+    let best = diagnosis.best_place().filter(|place| !place.delta.is_empty());
     if measured.is_empty() && best.is_none() {
         return None;
     }
@@ -37,7 +40,8 @@ pub(super) fn section(subject: &Subject) -> Option<Section> {
         let curve = law
             .map(|law| (law.formula, known(location).map(|d| law.at(d.frequency)).collect()))
             .or_else(|| roving(finding, location));
-        section = section.plots(2, panes(&format!("{}. {}", index + 1, finding.name()), location, curve));
+        section = section
+            .plots(2, panes(&format!("{}. {}", index + 1, effect_name(&finding.effect)), location, curve));
         section = with_laws(section, location);
     }
     if let Some(best) = best {
@@ -71,32 +75,20 @@ fn with_laws(section: Section, location: &Location) -> Section {
     if location.laws.is_empty() {
         return section;
     }
-    let columns = [
-        Column::text("Law tried on δ(ω)"),
-        Column::text("Formula"),
-        Column::text("Parameters"),
-        Column::numbers("χ² per degree of freedom", ""),
-    ];
-    let mut table = Table::new(columns).caption(format!("Laws at {}", location.site.says()));
-    for law in &location.laws {
-        let parameters: Vec<String> = law
-            .parameters
-            .iter()
-            .map(|p| format!("{} {}", p.name.replace('_', " "), quantity(p.value, p.std, p.unit)))
-            .collect();
-        table = table.row([
-            law.name.to_owned(),
-            law.formula.to_owned(),
-            parameters.join(", "),
-            // Where nothing fits the yielding tolerances may take more than there is.
-            if law.chi2_per_dof >= 0.0 {
-                significant(law.chi2_per_dof, 3)
-            } else {
-                NOT_DETERMINED.to_owned()
-            },
-        ]);
-    }
-    section.table(table.footnote(format!(
+    let parameters = |law: &LawFit| -> Vec<String> {
+        let text =
+            |p: &LawParameter| format!("{} {}", p.name.replace('_', " "), quantity(p.value, p.std, p.unit));
+        law.parameters.iter().map(text).collect()
+    };
+    // Where nothing fits the yielding tolerances may take more than there is.
+    let misfit = |chi2: f64| if chi2 >= 0.0 { significant(chi2, 3) } else { NOT_DETERMINED.to_owned() };
+    let table = Table::of(&location.laws)
+        .caption(format!("Laws at {}", location.site.says()))
+        .words("Law tried on δ(ω)", |law| law.name)
+        .words("Formula", |law| law.formula)
+        .words("Parameters", |law| parameters(law).join(", "))
+        .numbers("χ² per degree of freedom", "", |law| misfit(law.chi2_per_dof));
+    section.with(table.footnote(format!(
         "χ² is that of δ on {} lines against its law, tolerances yielding; {} lines do not determine δ.",
         location.delta.len(),
         location.masked
@@ -109,46 +101,32 @@ fn panes(title: &str, location: &Location, law: Option<Curve>) -> [Plot; 2] {
     parts.map(|(part, of)| pane(&format!("{part} δ, {title}"), part, of, location, law.as_ref()))
 }
 
-fn pane(title: &str, part: &str, of: fn(Complex64) -> f64, location: &Location, law: Option<&Curve>) -> Plot {
+fn pane(title: &str, part: &str, of: Part, location: &Location, law: Option<&Curve>) -> Plot {
     let known: Vec<&LineEstimate> = known(location).collect();
-    let hz: Vec<f64> = known.iter().map(|d| d.frequency).collect();
-    let values: Vec<f64> = known.iter().map(|d| of(d.value)).collect();
-    let low = known.iter().map(|d| of(d.value) - 1.96 * d.std);
-    let high = known.iter().map(|d| of(d.value) + 1.96 * d.std);
-    let curve: Option<Vec<f64>> = law.map(|(_, values)| values.iter().map(|value| of(*value)).collect());
-    let range = range(&values, &known, curve.as_deref());
-    let mut plot =
-        Plot::new(title, Axis::frequency(), Axis::linear(format!("{part} δ"), location.site.unit()))
-            .over(&hz)
-            .band("95 % interval", Role::Uncertainty, low, high)
-            .points("measured", Role::Measured, &values);
-    if let (Some((formula, _)), Some(curve)) = (law, curve) {
+    let edge = |times: f64| known.iter().map(move |d| of(d.value) + times * 1.96 * d.std);
+    let curve = law.map(|(formula, values)| (formula, values.iter().map(|v| of(*v)).collect::<Vec<f64>>()));
+    let delta = Axis::linear(format!("{part} δ"), location.site.unit());
+    let mut plot = Plot::new(title, Axis::frequency(), delta)
+        .over(known.iter().map(|d| d.frequency))
+        .y_range(range(&known, of, curve.as_ref().map_or(&[], |(_, values)| values)))
+        .band("95 % interval", Role::Uncertainty, edge(-1.0), edge(1.0))
+        .points("measured", Role::Measured, known.iter().map(|d| of(d.value)));
+    if let Some((formula, curve)) = curve {
         plot = plot.line(format!("law: {formula}"), Role::Highlight, curve);
     }
     // In series nothing missing would be an infinite stiffness.
     if !matches!(location.site, Site::Series { .. }) {
         plot = plot.horizontal("nothing missing", Role::Reference, 0.0);
     }
-    plot.height(240)
-        .line_limit(LINE_LIMIT)
-        .y_range(range)
-        .caption(format!("{part} δ at {}.", location.site.says()))
+    plot.caption(format!("{part} δ at {}.", location.site.says()))
 }
 
 /// Room for the law and for the lines that are best known; lines that know little would squash both.
-fn range(values: &[f64], known: &[&LineEstimate], curve: Option<&[f64]>) -> YRange {
+fn range(known: &[&LineEstimate], of: Part, curve: &[f64]) -> YRange {
     let mut stds: Vec<f64> = known.iter().map(|d| d.std).collect();
     stds.sort_unstable_by(f64::total_cmp);
     let Some(&limit) = stds.get(stds.len() / 4) else { return YRange::Full };
-    let mut best: Vec<f64> =
-        values.iter().zip(known).filter(|(_, d)| d.std <= limit).map(|(v, _)| *v).collect();
-    best.sort_unstable_by(f64::total_cmp);
-    let at = |share: f64| best.get((share * best.len().saturating_sub(1) as f64).round() as usize).copied();
-    let (Some(mut low), Some(mut high)) = (at(0.05), at(0.95)) else { return YRange::Full };
-    for value in curve.unwrap_or(&[]).iter().filter(|v| v.is_finite()) {
-        (low, high) = (low.min(*value), high.max(*value));
-    }
-    (low, high) = (low.min(0.0), high.max(0.0));
-    let room = (0.4 * (high - low)).max(2.0 * limit);
-    if room > 0.0 { YRange::Fixed { low: low - room, high: high + room } } else { YRange::Full }
+    let best = known.iter().filter(|d| d.std <= limit).map(|d| of(d.value));
+    let span = Span::percentiles(best, (5.0, 95.0)).and(Span::of(curve.iter().copied().chain([0.0])));
+    YRange::about(span, (0.4 * span.width()).max(2.0 * limit))
 }

@@ -1,10 +1,14 @@
 //! What was found: parameters with intervals, probability, look-alikes.
 
-use jointscope_diagnosis::{Estimate, Verdict};
+use jointscope_diagnosis::{Estimate, Finding, Verdict};
+use jointscope_wording::effect_name;
+use maud::Render;
 
 use super::Subject;
-use crate::format::{NOT_DETERMINED, percent, quantity, significant};
-use crate::{Column, Scale, Section, Table};
+use crate::format::{self, NOT_DETERMINED, percent, quantity, significant};
+use crate::section::Section;
+use crate::table::Table;
+use crate::unit::Scale;
 
 /// Look-alikes below this probability are not listed.
 const LISTED: f64 = 1e-3;
@@ -24,73 +28,70 @@ pub(super) fn section(subject: &Subject) -> Section {
             }
         });
     }
-    let section = section.table(parameters(subject));
-    let names = section.table(names(subject));
-    names.paragraph(format!(
+    section.with(parameters(subject)).with(names(subject)).paragraph(format!(
         "{} names were tried. A probability is of kind, place and dof together; what is missing to 100 % is something not listed.",
         diagnosis.search.candidates.len()
     ))
 }
 
-fn parameters(subject: &Subject) -> Table {
-    let columns = [
-        Column::text("Finding"),
-        Column::text("Parameter"),
-        Column::text("Value ± standard deviation"),
-        Column::text("95 % interval"),
-        Column::numbers("Probability", ""),
-        Column::numbers("χ² gained", ""),
-    ];
-    let mut table = Table::new(columns);
-    for (index, finding) in subject.diagnosis.findings.iter().enumerate() {
-        for (row, estimate) in finding.estimates.iter().enumerate() {
-            let first = row == 0;
-            let only_first = |text: String| if first { text } else { String::new() };
-            table = table.row([
-                only_first(format!("{}. {}", index + 1, finding.name())),
-                estimate.parameter.name.replace('_', " "),
-                quantity(estimate.value, estimate.std, estimate.unit),
-                interval(estimate),
-                only_first(percent(finding.probability, 1)),
-                only_first(significant(finding.gain, 4)),
-            ]);
-        }
-    }
-    table.footnote(
-        "Intervals hold noise and the fixture's tolerances; where the best model leaves χ² per degree of freedom above 1 they are widened by its \
-         root. χ² gained: what the fit loses without the finding, priors included.",
-    )
+/// One thing of each finding a row; the finding's own cells stand in its first row only.
+fn by_finding<'a, T>(
+    subject: &Subject<'a>,
+    rows: impl Fn(&'a Finding) -> Vec<T>,
+) -> Table<(Option<(usize, &'a Finding)>, T)> {
+    let findings = subject.diagnosis.findings.iter().enumerate();
+    let rows = findings.flat_map(|finding| {
+        let rows = rows(finding.1).into_iter().enumerate();
+        rows.map(move |(row, item)| ((row == 0).then_some(finding), item))
+    });
+    Table::of(rows).words("Finding", |(finding, _)| {
+        finding.map_or(String::new(), |(index, finding)| {
+            format!("{}. {}", index + 1, effect_name(&finding.effect))
+        })
+    })
+}
+
+fn parameters(subject: &Subject) -> impl Render {
+    by_finding(subject, |finding| finding.estimates.iter().collect())
+        .words("Parameter", |(_, estimate)| estimate.parameter.name.replace('_', " "))
+        .words("Value ± standard deviation", |(_, e)| quantity(e.value, e.std, e.unit))
+        .words("95 % interval", |(_, estimate)| interval(estimate))
+        .numbers("Probability", "", |(finding, _)| {
+            finding.map_or(String::new(), |(_, finding)| percent(finding.probability, 1))
+        })
+        .numbers("χ² gained", "", |(finding, _)| {
+            finding.map_or(String::new(), |(_, finding)| significant(finding.gain, 4))
+        })
+        .footnote(
+            "Intervals hold noise and the fixture's tolerances; where the best model leaves χ² per degree of freedom above 1 they are widened by its \
+             root. χ² gained: what the fit loses without the finding, priors included.",
+        )
 }
 
 fn interval(estimate: &Estimate) -> String {
     if estimate.std.is_none() && estimate.value == 0.0 {
         return "not sought".to_owned();
     }
-    let Some([low, high]) = estimate.interval.filter(|[low, high]| low.is_finite() && high.is_finite())
-    else {
-        return NOT_DETERMINED.to_owned();
-    };
-    let scale = Scale::for_values([low, high, estimate.value], estimate.unit);
-    let digits = |value: f64| significant(scale.of(value), 4);
-    let unit = if scale.unit().is_empty() { String::new() } else { format!(" {}", scale.unit()) };
-    format!("{} to {}{unit}", digits(low), digits(high))
+    match estimate.interval.filter(|[low, high]| low.is_finite() && high.is_finite()) {
+        Some([low, high]) => {
+            let scale = Scale::for_values([low, high, estimate.value], estimate.unit);
+            format::interval([low, high], &scale, 4)
+        }
+        None => NOT_DETERMINED.to_owned(),
+    }
 }
 
-fn names(subject: &Subject) -> Table {
-    let columns =
-        [Column::text("Finding"), Column::text("What else it may be"), Column::numbers("Probability", "")];
-    let mut table = Table::new(columns);
-    for (index, finding) in subject.diagnosis.findings.iter().enumerate() {
-        let others: Vec<(String, f64)> =
-            finding.other_names().into_iter().filter(|(_, probability)| *probability >= LISTED).collect();
-        let of = format!("{}. {}", index + 1, finding.name());
-        if others.is_empty() {
-            table = table.row([of.clone(), "nothing that was tried".to_owned(), String::new()]);
-        }
-        for (row, (name, probability)) in others.into_iter().enumerate() {
-            let of = if row == 0 { of.clone() } else { String::new() };
-            table = table.row([of, name, percent(probability, 1)]);
-        }
-    }
-    table
+fn names(subject: &Subject) -> impl Render {
+    let others = |finding: &Finding| {
+        let listed = finding.alternatives.iter().filter(|(_, probability)| *probability >= LISTED);
+        let listed: Vec<_> =
+            listed.map(|(effect, probability)| (effect_name(effect), percent(*probability, 1))).collect();
+        let nothing = || vec![("nothing that was tried".to_owned(), String::new())];
+        if listed.is_empty() { nothing() } else { listed }
+    };
+    by_finding(subject, others).words("What else it may be", |(_, (name, _))| name.clone()).numbers(
+        "Probability",
+        "",
+        |(_, (_, probability))| probability.clone(),
+    )
 }

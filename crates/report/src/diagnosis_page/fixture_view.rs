@@ -1,22 +1,27 @@
 //! The fixture from the side, with the places of the findings marked.
 
-use jointscope_diagnosis::{Finding, Site};
+use jointscope_diagnosis::Site;
 use jointscope_fixture::{BodyKind, Effect, Fixture, Place};
 
 use super::Subject;
-use crate::Section;
-use crate::drawing::{FixtureDrawing, Highlight};
+use crate::drawing::{Highlight, SideView};
+use crate::section::Section;
 
 pub(super) fn section(subject: &Subject) -> Section {
     let (fixture, diagnosis) = (subject.fixture, subject.diagnosis);
-    let mut drawing = FixtureDrawing::of_fixture(fixture, diagnosis.observation.pairs());
+    let mut view = SideView::new(fixture, diagnosis.observation.pairs());
     for (index, finding) in diagnosis.findings.iter().enumerate() {
-        mark(&mut drawing, fixture, index, finding);
+        let effect = &finding.effect;
+        if let Place::Joint(name) = &effect.place {
+            view.joints.push(name);
+        }
+        view.highlights.extend(place(fixture, effect).map(|(x, body)| {
+            let label = format!("{}. {}", index + 1, effect.kind.name().replace('_', " "));
+            Highlight { x, body, label }
+        }));
     }
-    let best = diagnosis.locations.first().filter(|_| diagnosis.is_unnamed());
-    if let Some(highlight) = best.and_then(|location| at_site(fixture, &location.site)) {
-        drawing.highlights.push(highlight);
-    }
+    let best = diagnosis.best_place();
+    view.highlights.extend(best.and_then(|location| at_site(fixture, &location.site)));
     let marked = match (diagnosis.findings.len(), best) {
         (0, None) => "no place is marked",
         (0, Some(_)) => "marked is the place that would explain most of what is left",
@@ -29,27 +34,12 @@ pub(super) fn section(subject: &Subject) -> Section {
     let everywhere = diagnosis.findings.iter().any(|finding| finding.effect.place == Place::All);
     let all = if everywhere { " One finding concerns the whole measurement and has no place." } else { "" };
     Section::new("Where").drawing(
-        drawing.to_svg(),
+        view.draw(),
         format!(
             "Side view with the channels in use, responses (sensors) in blue and references (hammer) in green; {marked}.{all} The outlines of \
              blocks are sketched."
         ),
     )
-}
-
-fn mark(drawing: &mut FixtureDrawing, fixture: &Fixture, index: usize, finding: &Finding) {
-    let effect = &finding.effect;
-    if let Place::Joint(name) = &effect.place {
-        drawing
-            .joints
-            .iter_mut()
-            .filter(|joint| joint.name == *name)
-            .for_each(|joint| joint.highlight = true);
-    }
-    if let Some((x, body)) = place(fixture, effect) {
-        let words = effect.kind.name().replace('_', " ");
-        drawing.highlights.push(Highlight { x, body, label: format!("{}. {words}", index + 1) });
-    }
 }
 
 /// Abscissa and body of an effect; nothing for what concerns the whole measurement.
@@ -77,7 +67,7 @@ fn at_site(fixture: &Fixture, site: &Site) -> Option<Highlight> {
         Site::Series { point: Some(point), .. }
         | Site::Response(point)
         | Site::Reference(point)
-        | Site::Seat(point) => {
+        | Site::Position(point) => {
             let point = fixture.point(point)?;
             (point.x.value, Some(point.body))
         }

@@ -1,10 +1,10 @@
 //! The FRFs: measured with their noise, and what the models make of them.
 
-use num_complex::Complex64;
+use jointscope_spectra::Dof;
 
-use super::{LINE_LIMIT, SHOWN, Subject};
-use crate::phase::{degrees, in_the_quietest_turn};
-use crate::{Axis, Plot, Role, Section, YRange};
+use super::{SHOWN, Subject};
+use crate::plot::{Curve, FrfPanes, Role, Style, YRange};
+use crate::section::Section;
 
 pub(super) fn section(subject: &Subject) -> Section {
     let observation = &subject.diagnosis.observation;
@@ -21,7 +21,13 @@ pub(super) fn section(subject: &Subject) -> Section {
         names.join(", ")
     ));
     for index in shown {
-        section = section.plots(2, [magnitude(subject, index), phase(subject, index)]);
+        let panes = panes(subject, index);
+        let magnitude = panes
+            .magnitude()
+            .y_range(YRange::decades(panes.measured.iter().flatten().map(|v| v.norm())))
+            .caption("Magnitude; where a model leaves the noise band, it leaves something out.");
+        let phase = panes.phase().caption("Phase, in the turn that the curves cross least.");
+        section = section.plots(2, [magnitude, phase]);
     }
     section
 }
@@ -37,97 +43,38 @@ fn shown(subject: &Subject) -> Vec<usize> {
     order
 }
 
-fn role(model: &str) -> Role {
+/// Colour and line of a model.
+fn look(model: &str) -> (Role, Style) {
     match model {
-        "nominal" => Role::Nominal,
-        "refitted" => Role::Reference,
-        _ => Role::Highlight,
+        "nominal" => (Role::Nominal, Style::Dashed),
+        "refitted" => (Role::Reference, Style::Dashed),
+        _ => (Role::Highlight, Style::Line),
     }
 }
 
-fn unit(subject: &Subject, index: usize) -> &'static str {
-    use jointscope_spectra::Dof;
-    let pair = &subject.diagnosis.observation.pairs()[index];
-    match (pair.response.dof, pair.reference.dof) {
-        (Dof::Translation, Dof::Translation) => "(m/s^2)/N",
-        (Dof::Translation, Dof::Rotation) => "(m/s^2)/(N*m)",
-        (Dof::Rotation, Dof::Translation) => "(rad/s^2)/N",
-        (Dof::Rotation, Dof::Rotation) => "(rad/s^2)/(N*m)",
-    }
-}
-
-fn magnitude(subject: &Subject, index: usize) -> Plot {
+fn panes<'a>(subject: &Subject<'a>, index: usize) -> FrfPanes<'a> {
     let observation = &subject.diagnosis.observation;
-    let n = observation.lines().len();
+    let (pair, n) = (&observation.pairs()[index], observation.lines().len());
     let lines = index * n..(index + 1) * n;
-    let measured = &observation.values()[lines.clone()];
     // Each part of a value has half its variance, and the modulus takes one part of the noise.
-    let half = |weight: f64| (weight > 0.0).then(|| 1.96 / weight.sqrt());
-    let weights = &observation.weights()[lines.clone()];
-    let low = measured
-        .iter()
-        .zip(weights)
-        .map(|(v, w)| half(*w).map(|half| (v.norm() - half).max(0.05 * v.norm())));
-    let high = measured.iter().zip(weights).map(|(v, w)| half(*w).map(|half| v.norm() + half));
-    let name = observation.pairs()[index].to_string();
-    let mut plot = Plot::new(
-        format!("FRF {name}"),
-        Axis::frequency(),
-        Axis::logarithmic(format!("|H {name}|"), unit(subject, index)),
-    )
-    .over(observation.lines().hz())
-    .band("noise, 95 %", Role::Uncertainty, low, high)
-    .line("measured", Role::Measured, measured.iter().map(|v| v.norm()));
-    for (name, fit) in subject.models() {
-        let values = fit.predicted[lines.clone()].iter().map(|v| v.norm());
-        plot = if name == "repaired" {
-            plot.line(name, role(name), values)
-        } else {
-            plot.dashed(name, role(name), values)
-        };
+    let half = |weight: &f64| (*weight > 0.0).then(|| 1.96 / weight.sqrt());
+    let curve = |(label, fit): (&'static str, &jointscope_diagnosis::Fit)| {
+        let (role, style) = look(label);
+        Curve { label, role, style, values: fit.predicted[lines.clone()].iter().map(|v| Some(*v)).collect() }
+    };
+    FrfPanes {
+        title: format!("FRF {pair}"),
+        phase_title: format!("Phase of FRF {pair}"),
+        symbol: format!("H {pair}"),
+        unit: match (pair.response.dof, pair.reference.dof) {
+            (Dof::Translation, Dof::Translation) => "(m/s^2)/N",
+            (Dof::Translation, Dof::Rotation) => "(m/s^2)/(N*m)",
+            (Dof::Rotation, Dof::Translation) => "(rad/s^2)/N",
+            (Dof::Rotation, Dof::Rotation) => "(rad/s^2)/(N*m)",
+        },
+        hz: observation.lines().hz(),
+        measured: observation.values()[lines.clone()].iter().map(|v| Some(*v)).collect(),
+        noise: observation.weights()[lines.clone()].iter().map(half).collect(),
+        curves: subject.models().into_iter().map(curve).collect(),
     }
-    plot.height(220)
-        .y_range(decades(measured))
-        .line_limit(LINE_LIMIT)
-        .caption("Magnitude; where a model leaves the noise band, it leaves something out.")
-}
-
-/// Whole decades about the measured values: a model's sharp antiresonance does not squash them, and the axis is labelled with powers of ten.
-fn decades(measured: &[Complex64]) -> YRange {
-    let logarithms = measured.iter().map(|v| v.norm().log10()).filter(|v| v.is_finite());
-    let (low, high) =
-        logarithms.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)));
-    if low > high {
-        return YRange::Full;
-    }
-    let (low, high) = ((low - 0.1).floor(), (high + 0.1).ceil());
-    YRange::Fixed { low: 10f64.powf(low), high: 10f64.powf(high) }
-}
-
-fn phase(subject: &Subject, index: usize) -> Plot {
-    let observation = &subject.diagnosis.observation;
-    let n = observation.lines().len();
-    let lines = index * n..(index + 1) * n;
-    let of = |values: &[Complex64]| degrees(values[lines.clone()].iter().map(|v| Some(*v)));
-    let mut measured = of(observation.values());
-    let models = subject.models();
-    let mut curves: Vec<Vec<Option<f64>>> = models.iter().map(|(_, fit)| of(&fit.predicted)).collect();
-    let mut all: Vec<&mut Vec<Option<f64>>> = std::iter::once(&mut measured).chain(&mut curves).collect();
-    in_the_quietest_turn(&mut all);
-    let name = observation.pairs()[index].to_string();
-    let mut plot = Plot::new(
-        format!("Phase of FRF {name}"),
-        Axis::frequency(),
-        Axis::linear(format!("arg H {name}"), "°"),
-    )
-    .over(observation.lines().hz())
-    .line("measured", Role::Measured, measured);
-    for ((name, _), values) in models.into_iter().zip(curves) {
-        plot = if name == "repaired" {
-            plot.line(name, role(name), values)
-        } else {
-            plot.dashed(name, role(name), values)
-        };
-    }
-    plot.height(220).line_limit(LINE_LIMIT).caption("Phase, in the turn that the curves cross least.")
 }

@@ -2,7 +2,8 @@
 
 use super::Subject;
 use crate::format::{percent, significant};
-use crate::{Card, Column, Section, Table};
+use crate::section::{Card, Section};
+use crate::table::Table;
 
 pub(super) fn section(subject: &Subject) -> Section {
     let diagnosis = subject.diagnosis;
@@ -12,29 +13,26 @@ pub(super) fn section(subject: &Subject) -> Section {
         "refitted: within its tolerances, no effects",
         "repaired: tolerances and findings",
     ];
-    let columns = [
-        Column::text("Model"),
-        Column::numbers("Relative error of the FRFs", "%"),
-        Column::numbers("χ² per degree of freedom", ""),
-    ];
-    let mut table = Table::new(columns);
-    for ((what, error), chi2) in what.into_iter().zip(errors).zip(chi2).take(subject.models().len()) {
-        table = table.row([what.to_owned(), significant(100.0 * error, 3), significant(chi2, 4)]);
-    }
-    table = table.footnote(format!(
-        "Relative error: √(Σ|H model − H measured|²/Σ|H measured|²) over all FRFs and lines in use, as accelerance. χ² counts {} real values.",
-        diagnosis.observation.degrees()
-    ));
-    let section = Section::new("Before and after").table(table);
+    let models = what.into_iter().zip(errors).zip(chi2).take(subject.models().len());
+    let table = Table::of(models)
+        .words("Model", |((what, _), _)| *what)
+        .numbers("Relative error of the FRFs", "%", |((_, error), _)| significant(100.0 * error, 3))
+        .numbers("χ² per degree of freedom", "", |(_, chi2)| significant(*chi2, 4))
+        .footnote(format!(
+            "Relative error: √(Σ|H model − H measured|²/Σ|H measured|²) over all FRFs and lines in use, as accelerance. χ² counts {} real values.",
+            diagnosis.observation.degrees()
+        ));
+    let section = Section::new("Before and after").with(table);
     match &diagnosis.held_out {
         None => section.paragraph(
             "There were too few lines to hold any out of the fit: the errors above are of what was fitted.",
         ),
         Some(held_out) => {
             let same = match (held_out.same_findings, diagnosis.findings.is_empty()) {
-                (true, true) => "Without them the search finds nothing either.",
-                (true, false) => "Without them the search finds the same names.",
-                (false, _) => {
+                (None, _) => "",
+                (Some(true), true) => "Without them the search finds nothing either.",
+                (Some(true), false) => "Without them the search finds the same names.",
+                (Some(false), _) => {
                     "Without them the search finds other names: the findings hang on what was held out."
                 }
             };

@@ -1,69 +1,69 @@
 //! Maps of the misfit: by FRF and band, by place and band.
 
-use jointscope_diagnosis::Fit;
+use jointscope_diagnosis::{BandMisfit, Fit};
+use jointscope_wording::Says;
 
 use super::{SHOWN, Subject};
-use crate::format::significant;
-use crate::{HeatMap, Section};
+use crate::format::{significant, trimmed};
+use crate::section::Section;
+use crate::table::{Cell, Table};
 
 pub(super) fn section(subject: &Subject) -> Section {
     let diagnosis = subject.diagnosis;
-    let mut section = Section::new("Misfit").heat_map(
-        by_frf(subject, &diagnosis.search.refitted)
-            .caption("Refitted within tolerances: χ² per value by FRF and band")
-            .footnote("1 is noise alone; shaded from there to 100. A dash: no value of the band counts."),
-    );
+    let refitted = by_frf(subject, &diagnosis.search.refitted)
+        .caption("Refitted within tolerances: χ² per value by FRF and band")
+        .footnote("1 is noise alone; shaded from there to 100. A dash: no value of the band counts.");
+    let mut section = Section::new("Misfit").with(refitted);
     if !diagnosis.findings.is_empty() {
-        section = section.heat_map(
-            by_frf(subject, &diagnosis.search.repaired).caption("Repaired: χ² per value by FRF and band"),
-        );
+        let repaired = by_frf(subject, &diagnosis.search.repaired);
+        section = section.with(repaired.caption("Repaired: χ² per value by FRF and band"));
     }
-    if let Some(map) = by_place(subject) {
-        section = section.heat_map(map);
+    match by_place(subject) {
+        Some(map) => section.with(map),
+        None => section,
     }
-    section
 }
 
-fn by_frf(subject: &Subject, fit: &Fit) -> HeatMap {
-    let misfit = subject.diagnosis.misfit(fit);
-    let bands = misfit.first().map_or_else(Vec::new, |frf| frf.bands.clone());
-    let columns = bands.iter().map(|(from, to, _)| band(*from, *to));
-    let map = HeatMap::new("FRF", std::iter::once("all lines".to_owned()).chain(columns));
-    misfit.iter().fold(map, |map, frf| {
-        let values = std::iter::once(frf.whole).chain(frf.bands.iter().map(|(_, _, chi2)| *chi2));
-        map.row(frf.frf.to_string(), values)
+/// Name, χ² over all lines, χ² by band.
+type Row = (String, Option<f64>, Vec<BandMisfit>);
+
+fn map(corner: &str, bands: &[BandMisfit], rows: impl Iterator<Item = Row>) -> Table<Row> {
+    let table = Table::of(rows).names(corner, |row| row.0.clone());
+    let table = table.shaded("all lines", |row| Cell::misfit(row.1));
+    bands.iter().enumerate().fold(table, |table, (index, band)| {
+        let heading = format!("{} to {} Hz", plain(band.from), plain(band.to));
+        table.shaded(heading, |row| Cell::misfit(row.2.get(index).and_then(|band| band.chi2_per_dof)))
     })
 }
 
-/// What each place leaves with one free value a line, the best place first.
-fn by_place(subject: &Subject) -> Option<HeatMap> {
-    let locations = &subject.diagnosis.locations;
-    let bands = &locations.first()?.bands;
-    let columns = bands.iter().map(|(from, to, _)| band(*from, *to));
-    let mut map = HeatMap::new("Place", std::iter::once("all lines".to_owned()).chain(columns));
-    for location in locations.iter().take(SHOWN) {
-        let mut values: Vec<Option<f64>> = vec![Some(location.chi2_per_dof)];
-        values.extend(location.bands.iter().map(|(_, _, chi2)| Some(*chi2)));
-        values.resize(bands.len() + 1, None);
-        map = map.row(location.site.says(), values);
-    }
-    let shown = locations.len().min(SHOWN);
-    Some(
-        map.caption("What a place leaves unexplained, with one unknown value a line there and no law assumed: χ² per degree of freedom, best place first")
-            .footnote(format!(
-                "{shown} of {} places. At the right place one unknown a line explains all FRFs within their noise; a small mismatch is explained at \
-                 several.",
-                locations.len()
-            )),
-    )
+fn by_frf(subject: &Subject, fit: &Fit) -> Table<Row> {
+    let misfit = subject.diagnosis.misfit(fit);
+    let bands = misfit.first().map_or(&[][..], |frf| &frf.bands);
+    map("FRF", bands, misfit.iter().map(|frf| (frf.frf.to_string(), frf.whole, frf.bands.clone())))
 }
 
-fn band(from: f64, to: f64) -> String {
-    format!("{} to {} Hz", plain(from), plain(to))
+/// What each place leaves with one free value a line, the best place first.
+fn by_place(subject: &Subject) -> Option<Table<Row>> {
+    let locations = &subject.diagnosis.locations;
+    let bands = &locations.first()?.bands;
+    let rows = locations
+        .iter()
+        .take(SHOWN)
+        .map(|location| (location.site.says(), Some(location.chi2_per_dof), location.bands.clone()));
+    let shown = locations.len().min(SHOWN);
+    let footnote = format!(
+        "{shown} of {} places. At the right place one unknown a line explains all FRFs within their noise; a small mismatch is explained at \
+         several.",
+        locations.len()
+    );
+    Some(
+        map("Place", bands, rows)
+            .caption("What a place leaves unexplained, with one unknown value a line there and no law assumed: χ² per degree of freedom, best place first")
+            .footnote(footnote),
+    )
 }
 
 /// Four digits, without the zeros that say nothing.
 fn plain(hz: f64) -> String {
-    let text = significant(hz, 4);
-    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
+    trimmed(&significant(hz, 4))
 }

@@ -2,7 +2,8 @@
 
 use super::Subject;
 use crate::format::{quantity, significant};
-use crate::{Column, Section, Table, Tone};
+use crate::section::{Section, Tone};
+use crate::table::Table;
 
 /// Standard deviations beyond which a quantity has been bent rather than adjusted.
 const BENT: f64 = 2.0;
@@ -16,38 +17,26 @@ pub(super) fn section(subject: &Subject) -> Option<Section> {
                 .paragraph("The fixture states every quantity as exact: there was nothing to refit."),
         );
     }
-    let mut columns = vec![Column::text("Quantity"), Column::text("Stated")];
-    for (name, _) in &models {
-        columns.push(Column::text(*name));
-        columns.push(Column::numbers(format!("departure, {name}"), "std"));
-    }
-    let mut table = Table::new(columns);
-    let mut bent = 0;
-    for (index, tolerance) in tolerances.iter().enumerate() {
-        let stated = match tolerance.std {
-            Some(_) => quantity(tolerance.nominal, tolerance.std, tolerance.unit()),
-            None => format!("{} (unknown, left free)", quantity(tolerance.nominal, None, tolerance.unit())),
-        };
-        let mut cells = vec![tolerance.path.clone(), stated];
-        let mut farthest = 0.0_f64;
-        for (_, fit) in &models {
-            let departure = fit.hypothesis.departure(index);
-            cells.push(quantity(fit.hypothesis.ended_at(index), None, tolerance.unit()));
-            cells.push(match tolerance.std {
-                Some(_) => significant(departure, 2),
+    let farthest = |index: usize| {
+        let departures = models.iter().map(|(_, fit)| fit.hypothesis.departure(index).abs());
+        tolerances[index].quantity.std.map_or(0.0, |_| departures.fold(0.0, f64::max))
+    };
+    let bent = (0..tolerances.len()).filter(|index| farthest(*index) > BENT).count();
+    let mut table = Table::of(tolerances.iter().map(|tolerance| &tolerance.quantity).enumerate())
+        .words("Quantity", |(_, own)| own.path.clone())
+        .words("Stated", |(_, own)| {
+            let stated = quantity(own.value, own.std, own.key.unit());
+            if own.std.is_some() { stated } else { format!("{stated} (unknown, left free)") }
+        });
+    for (name, fit) in &models {
+        table = table
+            .words(*name, |(index, own)| quantity(fit.hypothesis.ended_at(*index), None, own.key.unit()))
+            .numbers(format!("departure, {name}"), "std", |(index, own)| match own.std {
+                Some(_) => significant(fit.hypothesis.departure(*index), 2),
                 None => "free".to_owned(),
             });
-            if tolerance.std.is_some() {
-                farthest = farthest.max(departure.abs());
-            }
-        }
-        if farthest > BENT {
-            bent += 1;
-            table = table.marked_row(Tone::Attention, cells);
-        } else {
-            table = table.row(cells);
-        }
     }
+    let table = table.marked(|(index, _)| (farthest(*index) > BENT).then_some(Tone::Attention));
     let words = match (bent, subject.diagnosis.findings.is_empty()) {
         (0, _) => "No quantity had to move by more than two of its standard deviations.".to_owned(),
         (n, true) => format!(
@@ -60,7 +49,7 @@ pub(super) fn section(subject: &Subject) -> Option<Section> {
              imitate what is missing."
         ),
     };
-    Some(Section::new("Tolerances").paragraph(words).table(table.footnote(
+    Some(Section::new("Tolerances").paragraph(words).with(table.footnote(
         "Young's modulus and second moment of a joint act as a product only: one of them carries the deviation of both.",
     )))
 }

@@ -1,13 +1,18 @@
 //! Where things go: abscissae to pixels, overlapping bodies to rows, labels to lanes.
 
-use super::{ChannelKind, FixtureDrawing};
+use jointscope_fixture::{Body, BodyKind, Fixture};
+
+use super::outline::outlines;
+use super::{ChannelKind, SideView};
+use crate::format::{fixed, trimmed};
+use crate::plot::Span;
 
 /// Width of the drawing in its own pixels.
 pub(super) const WIDTH: f64 = 860.0;
 const MARGIN: f64 = 46.0;
 /// Height of a block, and of a slender beam.
-pub(super) const BLOCK: f64 = 64.0;
-pub(super) const BEAM: f64 = 12.0;
+const BLOCK: f64 = 64.0;
+const BEAM: f64 = 12.0;
 /// Height of one lane of labels.
 pub(super) const LANE: f64 = 17.0;
 /// Room between a body's top and the first lane: the arrows.
@@ -34,25 +39,34 @@ pub(super) struct Scale {
 }
 
 impl Scale {
-    fn new(drawing: &FixtureDrawing) -> Self {
-        let abscissae = (drawing.bodies.iter().flat_map(|body| [body.from, body.to]))
-            .chain(drawing.points.iter().map(|point| point.x))
-            .chain(drawing.supports.iter().map(|support| support.x))
-            .chain(drawing.highlights.iter().map(|highlight| highlight.x))
-            .filter(|x| x.is_finite());
-        let (start, end) =
-            abscissae.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)));
-        let length = end - start;
-        if length > 1e-9 && length < 1e9 {
-            Self { start, per_metre: (WIDTH - 2.0 * MARGIN) / length }
-        } else {
-            Self { start: 0.0, per_metre: 0.0 }
+    fn new(view: &SideView, outlines: &[(f64, f64)]) -> Self {
+        let fixture = view.fixture;
+        let abscissae = (outlines.iter().flat_map(|(from, to)| [*from, *to]))
+            .chain(fixture.points().iter().map(|point| point.x.value))
+            .chain(fixture.supports().iter().map(|support| fixture.support_place(support).1))
+            .chain(view.highlights.iter().map(|highlight| highlight.x));
+        match Span::of(abscissae).0 {
+            Some((start, end)) if end - start > 1e-9 && end - start < 1e9 => {
+                Self { start, per_metre: (WIDTH - 2.0 * MARGIN) / (end - start) }
+            }
+            _ => Self { start: 0.0, per_metre: 0.0 },
         }
     }
 
     pub fn px(&self, x: f64) -> f64 {
         if self.per_metre == 0.0 { WIDTH / 2.0 } else { MARGIN + (x - self.start) * self.per_metre }
     }
+}
+
+/// What ties a label to its place.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Tie {
+    /// A channel's arrow at the top of the body.
+    Arrow(ChannelKind),
+    /// A line to the middle of the body, where a circle stands.
+    Circle,
+    /// A line to the body's edge.
+    Line,
 }
 
 /// A label in a lane.
@@ -66,12 +80,9 @@ pub(super) struct Label {
     pub anchor: f64,
     /// Half the height of the body it belongs to.
     pub half: f64,
-    /// Where the arrow of a channel goes; other labels get a leader or nothing.
-    pub channel: Option<ChannelKind>,
-    /// Where a leader to the place ends: `true` at the middle of the body, `false` at its top.
-    pub to_middle: bool,
+    pub tie: Tie,
     /// Whether it stands to the right of its place rather than centred on it.
-    pub aside: bool,
+    aside: bool,
     /// Filled by [`assign_lanes`].
     pub centre: f64,
     /// Filled by [`assign_lanes`]; 0 is next to the body.
@@ -79,19 +90,9 @@ pub(super) struct Label {
 }
 
 impl Label {
-    pub fn new(text: impl Into<String>, class: &'static str, anchor: f64) -> Self {
-        Self {
-            text: text.into(),
-            below: None,
-            class,
-            anchor,
-            half: 0.5 * BLOCK,
-            channel: None,
-            to_middle: false,
-            aside: false,
-            centre: anchor,
-            lane: 0,
-        }
+    fn new(text: impl Into<String>, class: &'static str, tie: Tie, anchor: f64) -> Self {
+        let (below, half) = (None, 0.5 * BLOCK);
+        Self { text: text.into(), below, class, anchor, half, tie, aside: false, centre: anchor, lane: 0 }
     }
 
     fn width(&self) -> f64 {
@@ -102,29 +103,37 @@ impl Label {
 
 /// Gives each label the lane nearest to the body in which it meets no other, from left to right, and keeps it within the drawing. Returns how
 /// many lanes were needed.
-pub(super) fn assign_lanes(labels: &mut [Label]) -> usize {
+fn assign_lanes(labels: &mut [Label]) -> usize {
     labels.sort_by(|a, b| (a.anchor.total_cmp(&b.anchor)).then_with(|| a.text.cmp(&b.text)));
     // Leaders of the far lanes must not run through labels of the near ones, so short labels go near.
     let mut order: Vec<usize> = (0..labels.len()).collect();
     order.sort_by(|a, b| labels[*a].width().total_cmp(&labels[*b].width()));
-    let mut lanes: Vec<Vec<(f64, f64)>> = Vec::new();
+    let mut lanes = Lanes::default();
     for index in order {
         let label = &mut labels[index];
         let half = 0.5 * label.width();
         let most = (WIDTH - half - 2.0).max(half);
         let wanted = label.anchor + if label.aside { half + 9.0 } else { 0.0 };
         label.centre = wanted.clamp(half.min(most) + 2.0, most.max(half + 2.0));
-        let (from, to) =
-            ((label.centre - half).min(label.anchor - 3.0), (label.centre + half).max(label.anchor + 3.0));
-        let meets = |lane: &Vec<(f64, f64)>| lane.iter().any(|(a, b)| from < *b && to > *a);
-        let lane = lanes.iter().position(|lane| !meets(lane)).unwrap_or(lanes.len());
-        if lane == lanes.len() {
-            lanes.push(Vec::new());
-        }
-        lanes[lane].push((from, to));
-        label.lane = lane;
+        let (from, to) = (label.centre - half, label.centre + half);
+        label.lane = lanes.take(from.min(label.anchor - 3.0), to.max(label.anchor + 3.0));
     }
-    lanes.len()
+    lanes.0.len()
+}
+
+/// Stretches taken of each lane, px.
+#[derive(Default)]
+struct Lanes(Vec<Vec<(f64, f64)>>);
+
+impl Lanes {
+    /// The first lane in which a stretch meets no other.
+    fn take(&mut self, from: f64, to: f64) -> usize {
+        let meets = |lane: &Vec<(f64, f64)>| lane.iter().any(|(a, b)| from < *b && to > *a);
+        let lane = self.0.iter().position(|lane| !meets(lane)).unwrap_or(self.0.len());
+        self.0.resize(self.0.len().max(lane + 1), Vec::new());
+        self.0[lane].push((from, to));
+        lane
+    }
 }
 
 /// A body as drawn.
@@ -152,92 +161,75 @@ pub(super) struct Row {
 #[derive(Debug, Clone)]
 pub(super) struct Layout {
     pub scale: Scale,
-    /// By body; none where its abscissae are not finite.
+    /// By body; none where nothing is known to lie on it.
     pub bodies: Vec<Option<Placed>>,
     pub rows: Vec<Row>,
     pub height: f64,
 }
 
 impl Layout {
-    pub fn new(drawing: &FixtureDrawing) -> Self {
-        let scale = Scale::new(drawing);
-        let bodies = place_bodies(drawing, scale);
+    pub fn new(view: &SideView) -> Self {
+        let outlines = outlines(view.fixture);
+        let scale = Scale::new(view, &outlines);
+        let bodies = place_bodies(view.fixture, &outlines, scale);
         let count = bodies.iter().flatten().map(|b| b.row + 1).max().unwrap_or(1);
         let mut layout = Self { scale, bodies, rows: vec![Row::default(); count], height: 0.0 };
-        layout.collect_labels(drawing);
+        layout.label_bodies(view.fixture);
+        layout.label_points(view);
+        for highlight in view.highlights.iter().filter(|highlight| highlight.x.is_finite()) {
+            let row = highlight.body.and_then(|body| layout.bodies[body]).map_or(0, |body| body.row);
+            let anchor = layout.scale.px(highlight.x);
+            let label = Label::new(&highlight.label, "fx-highlight-name", Tie::Circle, anchor);
+            layout.rows[row].above.push(label);
+        }
         layout.stack();
         layout
     }
 
-    /// Row of a body, if it is drawn.
-    pub fn body(&self, index: usize) -> Option<&Placed> {
-        self.bodies.get(index)?.as_ref()
-    }
-
     /// Pixel position of a point.
-    pub fn point(&self, drawing: &FixtureDrawing, index: usize) -> Option<(f64, f64)> {
-        let point = drawing.points.get(index).filter(|point| point.x.is_finite())?;
-        let body = self.body(point.body)?;
-        Some((self.scale.px(point.x), self.rows[body.row].middle))
+    pub fn point(&self, fixture: &Fixture, index: usize) -> Option<(f64, f64)> {
+        let point = &fixture.points()[index];
+        Some((self.scale.px(point.x.value), self.rows[self.bodies[point.body]?.row].middle))
     }
 
-    fn collect_labels(&mut self, drawing: &FixtureDrawing) {
-        // Between stacked rows joints run along y, where point names would stand.
-        let stacked = self.rows.len() > 1;
-        for (body, placed) in drawing.bodies.iter().zip(&self.bodies) {
+    fn label_bodies(&mut self, fixture: &Fixture) {
+        for (body, placed) in fixture.bodies().iter().zip(&self.bodies) {
             let Some(placed) = placed else { continue };
             let row = &mut self.rows[placed.row];
             row.half = row.half.max(0.5 * placed.height);
             if !name_fits(&body_name(body), placed) {
                 let middle = 0.5 * (placed.left + placed.right);
-                let mut label = Label::new(body_name(body), "fx-name", middle);
-                label.half = 0.5 * placed.height;
-                row.above.push(label);
+                let label = Label::new(body_name(body), "fx-name", Tie::Line, middle);
+                row.above.push(Label { half: 0.5 * placed.height, ..label });
             }
         }
-        for point in drawing.points.iter().filter(|point| point.x.is_finite()) {
-            let Some(row) = self.body(point.body).map(|body| body.row) else {
-                continue;
-            };
-            let mut label = Label::new(&point.name, "fx-point-name", self.scale.px(point.x));
-            label.below = Some(format!("{} mm", millimetres(point.x)));
-            label.aside = stacked;
-            self.rows[row].below.push(label);
-        }
-        for channel in &drawing.channels {
-            let Some(point) = drawing.points.get(channel.point).filter(|p| p.x.is_finite()) else {
-                continue;
-            };
-            let Some(&Placed { row, height, .. }) = self.body(point.body) else {
-                continue;
-            };
-            let (word, class) = match channel.kind {
-                ChannelKind::Response => ("response", "fx-response"),
-                ChannelKind::Reference => ("reference", "fx-reference"),
-            };
-            let both = (drawing.channels.iter())
-                .any(|other| other.point == channel.point && other.kind != channel.kind);
-            let aside = match (both, channel.kind) {
-                (false, _) => 0.0,
-                (true, ChannelKind::Response) => 7.0,
-                (true, ChannelKind::Reference) => -7.0,
-            };
-            let anchor = self.scale.px(point.x) + aside;
-            let mut label = Label::new(format!("{word} {}", point.name), class, anchor);
-            label.channel = Some(channel.kind);
-            label.half = 0.5 * height;
-            self.rows[row].above.push(label);
-        }
-        for highlight in drawing.highlights.iter().filter(|h| h.x.is_finite()) {
-            let row = highlight.body.and_then(|body| self.body(body)).map_or(0, |b| b.row);
-            let mut label = Label::new(&highlight.label, "fx-highlight-name", self.scale.px(highlight.x));
-            label.to_middle = true;
-            self.rows[row].above.push(label);
-        }
-        for support in drawing.supports.iter().filter(|support| support.x.is_finite()) {
-            if let Some(row) = self.body(support.body).map(|body| body.row) {
-                self.rows[row].supported = true;
+        for support in fixture.supports() {
+            if let Some(body) = &self.bodies[fixture.support_place(support).0] {
+                self.rows[body.row].supported = true;
             }
+        }
+    }
+
+    fn label_points(&mut self, view: &SideView) {
+        // Between stacked rows joints run along y, where point names would stand.
+        let aside = self.rows.len() > 1;
+        for point in view.fixture.points() {
+            let Some(body) = &self.bodies[point.body] else { continue };
+            let label = Label::new(&point.name, "fx-point-name", Tie::Line, self.scale.px(point.x.value));
+            let below = Some(format!("{} mm", millimetres(point.x.value)));
+            self.rows[body.row].below.push(Label { below, aside, ..label });
+        }
+        for &(index, kind) in &view.channels {
+            let point = &view.fixture.points()[index];
+            let Some(body) = &self.bodies[point.body] else { continue };
+            let (word, class, side) = match kind {
+                ChannelKind::Response => ("response", "fx-response", 7.0),
+                ChannelKind::Reference => ("reference", "fx-reference", -7.0),
+            };
+            let both = view.channels.iter().filter(|(other, _)| *other == index).count() > 1;
+            let anchor = self.scale.px(point.x.value) + if both { side } else { 0.0 };
+            let label = Label::new(format!("{word} {}", point.name), class, Tie::Arrow(kind), anchor);
+            self.rows[body.row].above.push(Label { half: 0.5 * body.height, ..label });
         }
     }
 
@@ -258,8 +250,11 @@ impl Layout {
 }
 
 /// The name as drawn; what cannot rotate says so.
-pub(super) fn body_name(body: &super::Body) -> String {
-    if body.rotates || body.is_beam { body.name.clone() } else { format!("{} (y only)", body.name) }
+pub(super) fn body_name(body: &Body) -> String {
+    match &body.kind {
+        BodyKind::Rigid(rigid) if !rigid.rotates => format!("{} (y only)", body.name),
+        _ => body.name.clone(),
+    }
 }
 
 /// Whether a name has room inside its body.
@@ -269,34 +264,22 @@ pub(super) fn name_fits(name: &str, placed: &Placed) -> bool {
 
 /// An abscissa in millimetres to the hundredth, which is finer than any tape, without zeros at its end.
 fn millimetres(x: f64) -> String {
-    let text = crate::format::fixed(x * 1e3, 2);
-    text.trim_end_matches('0').trim_end_matches('.').to_owned()
+    trimmed(&fixed(x * 1e3, 2))
 }
 
-fn place_bodies(drawing: &FixtureDrawing, scale: Scale) -> Vec<Option<Placed>> {
-    let mut rows: Vec<Vec<(f64, f64)>> = Vec::new();
-    drawing
-        .bodies
-        .iter()
-        .map(|body| {
-            if !body.from.is_finite() || !body.to.is_finite() {
-                return None;
-            }
-            let (a, b) = (scale.px(body.from), scale.px(body.to));
-            let (mut left, mut right) = (a.min(b), a.max(b));
-            let narrowest = if scale.per_metre == 0.0 { WITHOUT_EXTENT } else { NARROWEST };
-            if right - left < narrowest && !body.is_beam {
-                let middle = (0.5 * (left + right)).clamp(0.5 * narrowest, WIDTH - 0.5 * narrowest);
-                (left, right) = (middle - 0.5 * narrowest, middle + 0.5 * narrowest);
-            }
-            let overlaps =
-                |row: &Vec<(f64, f64)>| row.iter().any(|(from, to)| left < *to - 0.5 && right > *from + 0.5);
-            let row = rows.iter().position(|row| !overlaps(row)).unwrap_or(rows.len());
-            if row == rows.len() {
-                rows.push(Vec::new());
-            }
-            rows[row].push((left, right));
-            Some(Placed { left, right, row, height: if body.is_beam { BEAM } else { BLOCK } })
-        })
-        .collect()
+fn place_bodies(fixture: &Fixture, outlines: &[(f64, f64)], scale: Scale) -> Vec<Option<Placed>> {
+    let narrowest = if scale.per_metre == 0.0 { WITHOUT_EXTENT } else { NARROWEST };
+    let mut rows = Lanes::default();
+    let place = |(body, (from, to)): (&Body, &(f64, f64))| {
+        let is_beam = matches!(body.kind, BodyKind::Beam(_));
+        let (mut left, mut right) = Span::of([*from, *to]).0.map(|(a, b)| (scale.px(a), scale.px(b)))?;
+        if right - left < narrowest && !is_beam {
+            let middle = (0.5 * (left + right)).clamp(0.5 * narrowest, WIDTH - 0.5 * narrowest);
+            (left, right) = (middle - 0.5 * narrowest, middle + 0.5 * narrowest);
+        }
+        // Bodies that touch stand side by side.
+        let row = rows.take(left + 0.25, right - 0.25);
+        Some(Placed { left, right, row, height: if is_beam { BEAM } else { BLOCK } })
+    };
+    fixture.bodies().iter().zip(outlines).map(place).collect()
 }

@@ -1,10 +1,13 @@
 //! The arrangement written as SVG.
 
+use jointscope_fixture::{Fixture, Joint, JointLaw};
+use maud::{Markup, PreEscaped, html};
+
 use super::layout::{
-    ARROW, LANE, Label, Layout, POINT_LANE, Row, SUPPORT, WIDTH, body_name, name_fits, text_width,
+    ARROW, LANE, Label, Layout, POINT_LANE, Row, SUPPORT, Tie, WIDTH, body_name, name_fits, text_width,
 };
-use super::{ChannelKind, FixtureDrawing, Joint};
-use crate::html::{escaped, push_element};
+use super::{ChannelKind, SideView};
+use crate::format::significant;
 
 /// Colours come from the page's variables; without a page the drawing is dark on light.
 const STYLE: &str = "<style>\
@@ -23,83 +26,79 @@ const STYLE: &str = "<style>\
 .fx-highlight{stroke:var(--highlight,#b0257e)}.fx-highlight-name{fill:var(--highlight,#b0257e);font-weight:600}\
 </style>";
 
-pub(super) fn draw(drawing: &FixtureDrawing) -> String {
-    let layout = Layout::new(drawing);
-    let mut svg = format!(
-        "<svg class=\"fx\" xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {WIDTH} {:.0}\" role=\"img\" aria-label=\"{}\">{STYLE}\n",
-        layout.height,
-        escaped(&description(drawing))
-    );
-    for support in drawing.supports.iter().filter(|support| support.x.is_finite()) {
-        if let Some(body) = layout.body(support.body) {
-            let top = layout.rows[body.row].middle + 0.5 * body.height;
-            draw_support(&mut svg, layout.scale.px(support.x), top);
+type Place = (f64, f64);
+
+pub(super) fn draw(view: &SideView) -> Markup {
+    let (layout, fixture) = (Layout::new(view), view.fixture);
+    let base = layout.height - 14.0;
+    let point = |index: usize| layout.point(fixture, index);
+    html! {
+        svg.fx xmlns="http://www.w3.org/2000/svg" viewBox={ "0 0 " (WIDTH) " " (format!("{:.0}", layout.height)) }
+            role="img" aria-label=(description(fixture)) {
+            (PreEscaped(STYLE))
+            @for (body, x) in fixture.supports().iter().map(|support| fixture.support_place(support)) {
+                @if let Some(body) = layout.bodies[body] {
+                    (ground(layout.scale.px(x), layout.rows[body.row].middle + 0.5 * body.height))
+                }
+            }
+            (bodies(fixture, &layout))
+            @for row in &layout.rows { (leaders(row)) }
+            @for joint in fixture.joints() {
+                @if let Some((from, to)) = point(joint.from).zip(point(joint.to)) {
+                    (line_of_joint(joint, view.joints.contains(&joint.name.as_str()), from, to))
+                }
+            }
+            @for (x, y) in (0..fixture.points().len()).filter_map(point) {
+                circle.fx-dot cx=(px(x)) cy=(px(y)) r="4" {}
+            }
+            @for row in &layout.rows { (labels(row)) }
+            @if layout.scale.per_metre > 0.0 { (scale_bar(layout.scale.per_metre, base)) }
+            (axes(base))
         }
     }
-    for (body, placed) in drawing.bodies.iter().zip(&layout.bodies) {
-        let Some(placed) = placed else { continue };
-        let middle = layout.rows[placed.row].middle;
-        svg.push_str(&format!(
-            "<rect class=\"fx-body\" x=\"{:.1}\" y=\"{:.1}\" width=\"{:.1}\" height=\"{:.1}\" rx=\"3\"/>\n",
-            placed.left,
-            middle - 0.5 * placed.height,
-            (placed.right - placed.left).max(1.0),
-            placed.height
-        ));
-        let name = body_name(body);
-        if name_fits(&name, placed) {
-            // Joints between stacked rows run through the middle of their bodies.
-            let centre = if layout.rows.len() > 1 {
-                placed.left + 4.0 + 0.5 * text_width(&name)
-            } else {
-                0.5 * (placed.left + placed.right)
-            };
-            text(&mut svg, "fx-inside", centre, middle - 13.0, &name);
-        }
-    }
-    for row in &layout.rows {
-        draw_leaders(&mut svg, row);
-    }
-    for joint in &drawing.joints {
-        let ends = (layout.point(drawing, joint.from), layout.point(drawing, joint.to));
-        if let (Some(from), Some(to)) = ends {
-            draw_joint(&mut svg, joint, from, to);
-        }
-    }
-    for index in 0..drawing.points.len() {
-        if let Some((x, y)) = layout.point(drawing, index) {
-            svg.push_str(&format!("<circle class=\"fx-dot\" cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"4\"/>\n"));
-        }
-    }
-    for row in &layout.rows {
-        draw_labels(&mut svg, row);
-    }
-    draw_scale_bar(&mut svg, layout.scale.per_metre, layout.height - 14.0);
-    draw_axes(&mut svg, layout.height - 14.0);
-    svg.push_str("</svg>\n");
-    svg
+}
+
+/// A coordinate, or several in a path, to the tenth of a pixel.
+fn px(at: f64) -> String {
+    format!("{at:.1}")
 }
 
 /// The drawing in one sentence for who cannot see it.
-fn description(drawing: &FixtureDrawing) -> String {
-    let names = |names: Vec<&str>| names.join(", ");
-    let bodies = names(drawing.bodies.iter().map(|b| b.name.as_str()).collect());
-    let points = names(drawing.points.iter().map(|p| p.name.as_str()).collect());
-    let joints = names(drawing.joints.iter().map(|j| j.name.as_str()).collect());
+fn description(fixture: &Fixture) -> String {
+    let bodies: Vec<&str> = fixture.bodies().iter().map(|body| body.name.as_str()).collect();
+    let points: Vec<&str> = fixture.points().iter().map(|point| point.name.as_str()).collect();
+    let joints: Vec<&str> = fixture.joints().iter().map(|joint| joint.name.as_str()).collect();
+    let [bodies, points, joints] = [bodies, points, joints].map(|names| names.join(", "));
     format!("Side view of the fixture. Bodies: {bodies}. Points: {points}. Joints: {joints}.")
 }
 
-fn text(svg: &mut String, class: &str, x: f64, y: f64, text: &str) {
-    svg.push_str(&format!("<g transform=\"translate({x:.1} {y:.1})\">"));
-    push_element(svg, "text", class, text);
-    svg.push_str("</g>\n");
+fn text(class: &str, (x, y): Place, text: &str) -> Markup {
+    html! { g transform={ "translate(" (px(x)) " " (px(y)) ")" } { text class=(class) { (text) } } }
 }
 
-fn line(svg: &mut String, class: &str, from: (f64, f64), to: (f64, f64)) {
-    svg.push_str(&format!(
-        "<line class=\"{class}\" x1=\"{:.1}\" y1=\"{:.1}\" x2=\"{:.1}\" y2=\"{:.1}\"/>",
-        from.0, from.1, to.0, to.1
-    ));
+fn path(class: &str, width: Option<f64>, d: String) -> Markup {
+    html! { path class=(class) style=[width.map(|width| format!("stroke-width:{width}"))] d=(d) {} }
+}
+
+fn leader(class: &str, from: Place, to: Place) -> Markup {
+    path(class, None, format!("M{:.1} {:.1}L{:.1} {:.1}", from.0, from.1, to.0, to.1))
+}
+
+fn bodies(fixture: &Fixture, layout: &Layout) -> Markup {
+    let placed =
+        fixture.bodies().iter().zip(&layout.bodies).filter_map(|(body, at)| Some((body, at.as_ref()?)));
+    html! {
+        @for (body, at) in placed {
+            @let middle = layout.rows[at.row].middle;
+            @let name = body_name(body);
+            // Joints between stacked rows run through the middle of their bodies.
+            @let stacked = layout.rows.len() > 1;
+            @let centre = if stacked { at.left + 4.0 + 0.5 * text_width(&name) } else { 0.5 * (at.left + at.right) };
+            rect.fx-body x=(px(at.left)) y=(px(middle - 0.5 * at.height)) width=(px((at.right - at.left).max(1.0)))
+                height=(px(at.height)) rx="3" {}
+            @if name_fits(&name, at) { (text("fx-inside", (centre, middle - 13.0), &name)) }
+        }
+    }
 }
 
 /// Baseline of a label above its row.
@@ -107,159 +106,143 @@ fn baseline_above(row: &Row, label: &Label) -> f64 {
     row.middle - row.half - ARROW - 4.0 - label.lane as f64 * LANE
 }
 
-/// Everything that ties a label to its place, drawn before the labels so that these stay on top.
-fn draw_leaders(svg: &mut String, row: &Row) {
-    for label in &row.above {
-        let top = row.middle - label.half;
-        let start = (label.anchor, baseline_above(row, label) + 4.0);
-        match label.channel {
-            Some(kind) => {
-                // Beyond the first lane, or above a beam among blocks, a thin leader leads down to the arrow.
-                if label.lane > 0 || label.half < row.half {
-                    line(svg, "fx-leader", start, (label.anchor, top - ARROW + 2.0));
-                }
-                draw_arrow(svg, kind, label.anchor, top);
-            }
-            None if label.to_middle => {
-                // Beside the arrow that may end at the same place.
-                let x = label.anchor + 11.0;
-                line(svg, "fx-highlight", (x, start.1), (x, row.middle - 9.0));
-                svg.push_str(&format!(
-                    "<circle class=\"fx-highlight\" cx=\"{:.1}\" cy=\"{:.1}\" r=\"14\" fill=\"none\" stroke-width=\"2.2\"/>\n",
-                    label.anchor, row.middle
-                ));
-            }
-            None => line(svg, "fx-leader", start, (label.anchor, top)),
-        }
-    }
-    for label in &row.below {
-        let end = row.middle + row.half + below_offset(row) + label.lane as f64 * POINT_LANE;
-        line(svg, "fx-leader", (label.anchor, row.middle + 4.0), (label.anchor, end + 2.0));
-    }
-    svg.push('\n');
+/// Top of a label below its row.
+fn top_below(row: &Row, label: &Label) -> f64 {
+    let offset = if row.supported { SUPPORT } else { 6.0 };
+    row.middle + row.half + offset + label.lane as f64 * POINT_LANE
 }
 
-fn below_offset(row: &Row) -> f64 {
-    if row.supported { SUPPORT } else { 6.0 }
+/// Everything that ties a label to its place, drawn before the labels so that these stay on top.
+fn leaders(row: &Row) -> Markup {
+    html! {
+        @for label in &row.above { (leader_above(row, label)) }
+        @for label in &row.below {
+            (leader("fx-leader", (label.anchor, row.middle + 4.0), (label.anchor, top_below(row, label) + 2.0)))
+        }
+    }
+}
+
+fn leader_above(row: &Row, label: &Label) -> Markup {
+    let (x, top, start) = (label.anchor, row.middle - label.half, baseline_above(row, label) + 4.0);
+    match label.tie {
+        Tie::Arrow(kind) => html! {
+            // Beyond the first lane, or above a beam among blocks, a thin leader leads down to the arrow.
+            @if label.lane > 0 || label.half < row.half { (leader("fx-leader", (x, start), (x, top - ARROW + 2.0))) }
+            (arrow(kind, x, top))
+        },
+        Tie::Circle => html! {
+            // Beside the arrow that may end at the same place.
+            (leader("fx-highlight", (x + 11.0, start), (x + 11.0, row.middle - 9.0)))
+            circle.fx-highlight cx=(px(x)) cy=(px(row.middle)) r="14" fill="none" stroke-width="2.2" {}
+        },
+        Tie::Line => leader("fx-leader", (x, start), (x, top)),
+    }
 }
 
 /// A force points at the body; a response stands on its sensor and points along y.
-fn draw_arrow(svg: &mut String, kind: ChannelKind, x: f64, top: f64) {
+fn arrow(kind: ChannelKind, x: f64, top: f64) -> Markup {
+    let head = |tip: f64, end: f64| {
+        let (left, right) = (x - 4.5, x + 4.5);
+        format!("{x:.1},{tip:.1} {left:.1},{end:.1} {right:.1},{end:.1}")
+    };
+    let shaft = |from: f64, to: f64| format!("M{x:.1} {from:.1}V{to:.1}");
     match kind {
-        ChannelKind::Reference => svg.push_str(&format!(
-            "<path class=\"fx-reference-line\" d=\"M{x:.1} {:.1}V{:.1}\" stroke-width=\"1.8\"/><polygon class=\"fx-reference\" points=\"{x:.1},{:.1} {:.1},{:.1} {:.1},{:.1}\"/>\n",
-            top - ARROW + 3.0, top - 8.0, top - 1.0, x - 4.5, top - 10.0, x + 4.5, top - 10.0
-        )),
-        ChannelKind::Response => svg.push_str(&format!(
-            "<rect class=\"fx-response\" x=\"{:.1}\" y=\"{:.1}\" width=\"10\" height=\"7\" rx=\"1\"/><path class=\"fx-response-line\" d=\"M{x:.1} {:.1}V{:.1}\" stroke-width=\"1.8\"/><polygon class=\"fx-response\" points=\"{x:.1},{:.1} {:.1},{:.1} {:.1},{:.1}\"/>\n",
-            x - 5.0, top - 7.0, top - 7.0, top - ARROW + 10.0, top - ARROW + 2.0, x - 4.5, top - ARROW + 11.0, x + 4.5, top - ARROW + 11.0
-        )),
+        ChannelKind::Reference => html! {
+            (path("fx-reference-line", Some(1.8), shaft(top - ARROW + 3.0, top - 8.0)))
+            polygon.fx-reference points=(head(top - 1.0, top - 10.0)) {}
+        },
+        ChannelKind::Response => html! {
+            rect.fx-response x=(px(x - 5.0)) y=(px(top - 7.0)) width="10" height="7" rx="1" {}
+            (path("fx-response-line", Some(1.8), shaft(top - 7.0, top - ARROW + 10.0)))
+            polygon.fx-response points=(head(top - ARROW + 2.0, top - ARROW + 11.0)) {}
+        },
     }
 }
 
-fn draw_labels(svg: &mut String, row: &Row) {
-    for label in &row.above {
-        text(svg, label.class, label.centre, baseline_above(row, label), &label.text);
-    }
-    for label in &row.below {
-        let top = row.middle + row.half + below_offset(row) + label.lane as f64 * POINT_LANE;
-        text(svg, label.class, label.centre, top + 14.0, &label.text);
-        if let Some(below) = &label.below {
-            text(svg, "fx-soft", label.centre, top + 27.0, below);
+fn labels(row: &Row) -> Markup {
+    html! {
+        @for label in &row.above {
+            (text(label.class, (label.centre, baseline_above(row, label)), &label.text))
+        }
+        @for label in &row.below {
+            @let top = top_below(row, label);
+            (text(label.class, (label.centre, top + 14.0), &label.text))
+            @if let Some(below) = &label.below { (text("fx-soft", (label.centre, top + 27.0), below)) }
         }
     }
 }
 
-fn draw_joint(svg: &mut String, joint: &Joint, from: (f64, f64), to: (f64, f64)) {
-    let class = if joint.highlight { "fx-highlight" } else { "fx-joint" };
+fn line_of_joint(joint: &Joint, highlight: bool, from: Place, to: Place) -> Markup {
+    let (class, name_class) =
+        if highlight { ("fx-highlight", "fx-highlight-name") } else { ("fx-joint", "fx-joint-name") };
     let (dx, dy) = (to.0 - from.0, to.1 - from.1);
     let length = dx.hypot(dy);
-    if joint.is_beam || length < 30.0 {
-        svg.push_str(&format!(
-            "<path class=\"{class}\" style=\"stroke-width:5\" d=\"M{:.1} {:.1}L{:.1} {:.1}\"/>\n",
-            from.0, from.1, to.0, to.1
-        ));
+    let start = format!("M{:.1} {:.1}", from.0, from.1);
+    let is_beam = matches!(joint.law, JointLaw::Beam { .. });
+    let line = if is_beam || length < 30.0 {
+        path(class, Some(5.0), format!("{start}L{:.1} {:.1}", to.0, to.1))
     } else {
-        svg.push_str(&format!(
-            "<path class=\"{class}\" style=\"stroke-width:1.8\" d=\"M{:.1} {:.1}",
-            from.0, from.1
-        ));
-        svg.push_str(&zigzag(from, (dx / length, dy / length), length, 7.0));
-        svg.push_str("\"/>\n");
-    }
-    let name_class = if joint.highlight { "fx-highlight-name" } else { "fx-joint-name" };
-    // Beside a line that runs upwards, above one that runs along x.
-    let beside = dy.abs() > dx.abs();
+        path(class, Some(1.8), start + &zigzag(from, (dx / length, dy / length), length, 7.0))
+    };
     let (x, y) = (0.5 * (from.0 + to.0), 0.5 * (from.1 + to.1));
-    if beside {
-        text(svg, name_class, x - 14.0 - 0.5 * text_width(&joint.name), y + 4.0, &joint.name);
-    } else {
-        // Above a short joint stand the sensors at its ends.
-        let short = dx.abs() < text_width(&joint.name) + 14.0;
-        let baseline = if short { y + 24.0 } else { y - 13.0 };
-        text(svg, name_class, x, baseline, &joint.name);
-    }
+    let width = text_width(&joint.name);
+    // Beside a line that runs upwards, above one that runs along x; above a short joint stand the sensors at its ends.
+    let place = match dy.abs() > dx.abs() {
+        true => (x - 14.0 - 0.5 * width, y + 4.0),
+        false if dx.abs() < width + 14.0 => (x, y + 24.0),
+        false => (x, y - 13.0),
+    };
+    html! { (line) (text(name_class, place, &joint.name)) }
 }
 
 /// The rest of a path along a unit direction: straight ends, zigzag between.
-fn zigzag(from: (f64, f64), along: (f64, f64), length: f64, amplitude: f64) -> String {
+fn zigzag(from: Place, along: Place, length: f64, amplitude: f64) -> String {
     let coils = ((length - 16.0) / 10.0).round().clamp(4.0, 12.0) as usize;
     let end = (0.15 * length).max(6.0);
     let pitch = (length - 2.0 * end) / coils as f64;
-    let at = |s: f64, side: f64| {
+    let at = |(s, side): (f64, f64)| {
         format!("L{:.1} {:.1}", from.0 + along.0 * s - along.1 * side, from.1 + along.1 * s + along.0 * side)
     };
-    let mut path = at(end, 0.0);
-    for coil in 0..coils {
-        let side = if coil % 2 == 0 { amplitude } else { -amplitude };
-        path.push_str(&at(end + (coil as f64 + 0.5) * pitch, side));
-    }
-    path.push_str(&at(length - end, 0.0));
-    path.push_str(&at(length, 0.0));
-    path
+    let coil = |coil: usize| {
+        let side = if coil.is_multiple_of(2) { amplitude } else { -amplitude };
+        (end + (coil as f64 + 0.5) * pitch, side)
+    };
+    let ends = [(length - end, 0.0), (length, 0.0)];
+    std::iter::once((end, 0.0)).chain((0..coils).map(coil)).chain(ends).map(at).collect()
 }
 
 /// A spring down to hatched ground.
-fn draw_support(svg: &mut String, x: f64, top: f64) {
+fn ground(x: f64, top: f64) -> Markup {
     let ground = top + SUPPORT - 12.0;
-    svg.push_str(&format!("<path class=\"fx-ground\" d=\"M{x:.1} {top:.1}"));
-    svg.push_str(&zigzag((x, top), (0.0, 1.0), ground - top, 5.0));
-    svg.push_str(&format!("M{:.1} {ground:.1}h28", x - 14.0));
-    for stroke in 0..5 {
-        svg.push_str(&format!("M{:.1} {ground:.1}l-5 6", x - 10.0 + 6.0 * f64::from(stroke)));
-    }
-    svg.push_str("\"/>\n");
+    let spring = zigzag((x, top), (0.0, 1.0), ground - top, 5.0);
+    let hatching =
+        (0..5).map(|stroke| format!("M{:.1} {ground:.1}l-5 6", x - 10.0 + 6.0 * f64::from(stroke)));
+    let left = x - 14.0;
+    let d = format!("M{x:.1} {top:.1}{spring}M{left:.1} {ground:.1}h28{}", hatching.collect::<String>());
+    path("fx-ground", None, d)
 }
 
 /// A bar of 1, 2 or 5 times a power of ten millimetres, some 80 to 200 pixels long.
-fn draw_scale_bar(svg: &mut String, per_metre: f64, y: f64) {
-    if per_metre == 0.0 {
-        return;
-    }
+fn scale_bar(per_metre: f64, y: f64) -> Markup {
     let most = 200.0 / per_metre * 1e3;
     let decade = 10f64.powf(most.log10().floor());
-    let length = [5.0, 2.0, 1.0]
-        .into_iter()
-        .map(|factor| factor * decade)
-        .find(|length| *length <= most)
-        .unwrap_or(decade);
-    let end = 24.0 + length * 1e-3 * per_metre;
-    svg.push_str(&format!(
-        "<path class=\"fx-line\" d=\"M24 {:.1}v6M24 {y:.1}H{end:.1}M{end:.1} {:.1}v6\"/>",
-        y - 3.0,
-        y - 3.0
-    ));
-    let label = format!("{} mm", crate::format::significant(length, 1));
-    text(svg, "fx-soft", 0.5 * (24.0 + end), y - 6.0, &label);
+    let lengths = [5.0, 2.0, 1.0].into_iter().map(|factor| factor * decade);
+    let length = lengths.into_iter().find(|length| *length <= most).unwrap_or(decade);
+    let (top, end) = (y - 3.0, 24.0 + length * 1e-3 * per_metre);
+    let bar = format!("M24 {top:.1}v6M24 {y:.1}H{end:.1}M{end:.1} {top:.1}v6");
+    let label = format!("{} mm", significant(length, 1));
+    html! { (path("fx-line", None, bar)) (text("fx-soft", (0.5 * (24.0 + end), y - 6.0), &label)) }
 }
 
 /// The directions of the convention: x along the fixture, y transverse.
-fn draw_axes(svg: &mut String, y: f64) {
-    let x = WIDTH - 62.0;
-    svg.push_str(&format!(
-        "<path class=\"fx-line\" d=\"M{x:.1} {:.1}V{y:.1}H{:.1}M{:.1} {:.1}l-5 -3m5 3l-5 3M{x:.1} {:.1}l-3 5m3 -5l3 5\"/>",
-        y - 26.0, x + 28.0, x + 28.0, y, y - 26.0
-    ));
-    text(svg, "fx-soft", x + 38.0, y + 4.0, "x");
-    text(svg, "fx-soft", x - 9.0, y - 20.0, "y");
+fn axes(y: f64) -> Markup {
+    let (x, top, right) = (WIDTH - 62.0, y - 26.0, WIDTH - 34.0);
+    let lines = format!(
+        "M{x:.1} {top:.1}V{y:.1}H{right:.1}M{right:.1} {y:.1}l-5 -3m5 3l-5 3M{x:.1} {top:.1}l-3 5m3 -5l3 5"
+    );
+    html! {
+        (path("fx-line", None, lines))
+        (text("fx-soft", (x + 38.0, y + 4.0), "x"))
+        (text("fx-soft", (x - 9.0, y - 20.0), "y"))
+    }
 }

@@ -2,8 +2,11 @@
 
 use jointscope_modes::{ChartPole, ModalAnalysis, Stability};
 
-use super::LINE_LIMIT;
-use crate::{Axis, Plot, Role, Section, YRange};
+use crate::plot::{Axis, Plot, Role, YRange};
+use crate::section::Section;
+
+/// Poles above which the chart is drawn thinned.
+const POLES: usize = 8_000;
 
 pub(super) fn section(analysis: &ModalAnalysis) -> Section {
     let (lowest, highest) = analysis.orders;
@@ -38,7 +41,6 @@ fn sum(analysis: &ModalAnalysis) -> Plot {
             .dashed("rebuilt from the modes", Role::Highlight, rebuilt),
     )
     .height(200)
-    .line_limit(LINE_LIMIT)
 }
 
 fn poles(analysis: &ModalAnalysis) -> Plot {
@@ -68,6 +70,7 @@ fn poles(analysis: &ModalAnalysis) -> Plot {
         .y_range(YRange::Fixed { low: 0.0, high: analysis.orders.1 as f64 + 1.0 })
         .height(320)
         .masked(0)
+        .line_limit(POLES)
         .caption("Stays: within 0.2 % of the frequency, and within 10 % of the damping ratio, of the order before.")
 }
 

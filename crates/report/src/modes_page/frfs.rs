@@ -2,9 +2,9 @@
 
 use jointscope_modes::ModalAnalysis;
 
-use super::{LINE_LIMIT, SHOWN};
-use crate::phase::{degrees, in_the_quietest_turn};
-use crate::{Axis, Plot, Role, Section};
+use super::SHOWN;
+use crate::plot::{Curve, FrfPanes, Role, Style};
+use crate::section::Section;
 
 pub(super) fn section(analysis: &ModalAnalysis) -> Section {
     let errors = analysis.relative_errors();
@@ -20,41 +20,25 @@ pub(super) fn section(analysis: &ModalAnalysis) -> Section {
     let section = Section::new("FRFs").paragraph(format!(
         "Accelerances as measured with the 95 % band of their noise, and rebuilt from modes and residual terms.{some}"
     ));
-    shown
-        .into_iter()
-        .fold(section, |section, frf| section.plots(2, [magnitude(analysis, frf), phase(analysis, frf)]))
+    shown.into_iter().fold(section, |section, frf| {
+        let panes = panes(analysis, frf);
+        section.plots(2, [panes.magnitude(), panes.phase()])
+    })
 }
 
-fn magnitude(analysis: &ModalAnalysis, frf: usize) -> Plot {
-    let measured = analysis.measured();
-    let (name, values) = (analysis.pairs()[frf].to_string(), measured.values(frf));
+fn panes(analysis: &ModalAnalysis, frf: usize) -> FrfPanes<'_> {
+    let (measured, name) = (analysis.measured(), analysis.pairs()[frf].to_string());
     // Each part of a value has half its variance, and the modulus takes one part of the noise.
-    let half: Vec<f64> = measured
-        .variance(frf)
-        .unwrap_or_default()
-        .iter()
-        .map(|variance| 1.96 * (0.5 * variance).sqrt())
-        .collect();
-    let low = values.iter().zip(&half).map(|(v, half)| (v.norm() - half).max(0.05 * v.norm()));
-    let high = values.iter().zip(&half).map(|(v, half)| v.norm() + half);
-    Plot::new(format!("FRF {name}"), Axis::frequency(), Axis::logarithmic(format!("|H {name}|"), "(m/s^2)/N"))
-        .over(analysis.lines().hz())
-        .band("noise, 95 %", Role::Uncertainty, low, high)
-        .line("measured", Role::Measured, values.iter().map(|v| v.norm()))
-        .dashed("rebuilt", Role::Highlight, analysis.rebuilt(frf).iter().map(|v| v.norm()))
-        .height(220)
-        .line_limit(LINE_LIMIT)
-}
-
-fn phase(analysis: &ModalAnalysis, frf: usize) -> Plot {
-    let name = analysis.pairs()[frf].to_string();
-    let mut measured = degrees(analysis.measured().values(frf).iter().map(|v| Some(*v)));
-    let mut rebuilt = degrees(analysis.rebuilt(frf).iter().map(|v| Some(*v)));
-    in_the_quietest_turn(&mut [&mut measured, &mut rebuilt]);
-    Plot::new(format!("Phase of FRF {name}"), Axis::frequency(), Axis::linear(format!("arg H {name}"), "°"))
-        .over(analysis.lines().hz())
-        .line("measured", Role::Measured, measured)
-        .dashed("rebuilt", Role::Highlight, rebuilt)
-        .height(220)
-        .line_limit(LINE_LIMIT)
+    let half = |variance: &f64| Some(1.96 * (0.5 * variance).sqrt());
+    let values = analysis.rebuilt(frf).iter().map(|value| Some(*value)).collect();
+    FrfPanes {
+        title: format!("FRF {name}"),
+        phase_title: format!("Phase of FRF {name}"),
+        symbol: format!("H {name}"),
+        unit: "(m/s^2)/N",
+        hz: analysis.lines().hz(),
+        measured: measured.values(frf).iter().map(|value| Some(*value)).collect(),
+        noise: measured.variance(frf).unwrap_or_default().iter().map(half).collect(),
+        curves: vec![Curve { label: "rebuilt", role: Role::Highlight, style: Style::Dashed, values }],
+    }
 }

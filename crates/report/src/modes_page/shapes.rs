@@ -3,13 +3,14 @@
 use jointscope_fixture::Fixture;
 use jointscope_modes::{ModalAnalysis, Mode};
 use jointscope_spectra::{Channel, Dof};
+use maud::{Markup, PreEscaped, Render, html};
 use num_complex::Complex64;
 
 use super::SHOWN;
-use crate::drawing::Svg;
 use crate::format::significant;
-use crate::html::escaped;
-use crate::{Column, Section, Table};
+use crate::plot::Span;
+use crate::section::Section;
+use crate::table::Table;
 
 pub(super) fn section(analysis: &ModalAnalysis, fixture: Option<&Fixture>) -> Section {
     let section = Section::new("Mode shapes");
@@ -35,9 +36,10 @@ pub(super) fn section(analysis: &ModalAnalysis, fixture: Option<&Fixture>) -> Se
         let caption = format!("Mode {} at {} Hz", index + 1, significant(mode.frequency, 5));
         section = section.drawing(draw(mode, fixture, &caption), caption);
     }
-    section.table(entries(analysis))
+    section.with(entries(analysis))
 }
 
+#[derive(Clone)]
 struct Entry {
     name: String,
     x: f64,
@@ -50,7 +52,8 @@ const WIDTH: f64 = 860.0;
 const HEIGHT: f64 = 170.0;
 const SIDE: f64 = 30.0;
 
-fn draw(mode: &Mode, fixture: Option<&Fixture>, title: &str) -> Svg {
+/// Translations of a mode, responses first, from left to right.
+fn translations(mode: &Mode, fixture: Option<&Fixture>) -> Vec<Entry> {
     let mut names: Vec<&Channel> = mode.responses.iter().chain(&mode.references).map(|(c, _)| c).collect();
     names.sort_by_key(|channel| (channel.point.parse::<i64>().ok(), (*channel).clone()));
     names.dedup();
@@ -60,53 +63,46 @@ fn draw(mode: &Mode, fixture: Option<&Fixture>, title: &str) -> Svg {
     };
     let listed = |shape: &[(Channel, Complex64)], response: bool| {
         let translations = shape.iter().filter(|(channel, _)| channel.dof == Dof::Translation);
-        translations
-            .map(|(channel, value)| Entry {
-                name: channel.to_string(),
-                x: place(channel),
-                value: value.re,
-                response,
-            })
-            .collect::<Vec<_>>()
+        let entry = |(channel, value): &(Channel, Complex64)| Entry {
+            name: channel.to_string(),
+            x: place(channel),
+            value: value.re,
+            response,
+        };
+        translations.map(entry).collect::<Vec<_>>()
     };
-    let mut all = listed(&mode.responses, true);
-    all.extend(listed(&mode.references, false));
+    let mut all = [listed(&mode.responses, true), listed(&mode.references, false)].concat();
     all.sort_by(|a, b| a.x.total_cmp(&b.x));
-    let (low, high) =
-        all.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), e| (low.min(e.x), high.max(e.x)));
-    let width = (high - low).max(f64::MIN_POSITIVE);
-    let px = |x: f64| if high > low { SIDE + (WIDTH - 2.0 * SIDE) * (x - low) / width } else { 0.5 * WIDTH };
-    let py = |value: f64| 0.5 * HEIGHT - value.clamp(-1.0, 1.0) * (0.5 * HEIGHT - 30.0);
+    all
+}
+
+fn draw(mode: &Mode, fixture: Option<&Fixture>, title: &str) -> Markup {
+    let all = translations(mode, fixture);
+    let (low, high) = Span::of(all.iter().map(|entry| entry.x)).0.unwrap_or((0.0, 0.0));
+    let px = |x: f64| {
+        if high > low { SIDE + (WIDTH - 2.0 * SIDE) * (x - low) / (high - low) } else { 0.5 * WIDTH }
+    };
     let middle = 0.5 * HEIGHT;
-    let mut svg = format!(
-        "<svg class=\"fx\" xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {WIDTH} {HEIGHT}\" role=\"img\" aria-label=\"{}\">{STYLE}\n\
-         <line class=\"shape-rest\" x1=\"{SIDE}\" x2=\"{}\" y1=\"{middle}\" y2=\"{middle}\"/>\n",
-        escaped(title),
-        WIDTH - SIDE
-    );
-    for response in [true, false] {
-        let points: Vec<String> = all
-            .iter()
-            .filter(|e| e.response == response)
-            .map(|e| format!("{:.1},{:.1}", px(e.x), py(e.value)))
-            .collect();
-        let class = if response { "shape-response" } else { "shape-reference" };
-        svg.push_str(&format!("<polyline class=\"{class}\" points=\"{}\"/>\n", points.join(" ")));
+    let py = |value: f64| middle - value.clamp(-1.0, 1.0) * (middle - 30.0);
+    let points = |response: bool| -> Vec<String> {
+        let shape = all.iter().filter(|entry| entry.response == response);
+        shape.map(|entry| format!("{:.1},{:.1}", px(entry.x), py(entry.value))).collect()
+    };
+    html! {
+        svg.fx xmlns="http://www.w3.org/2000/svg" viewBox={ "0 0 " (WIDTH) " " (HEIGHT) } role="img" aria-label=(title) {
+            (PreEscaped(STYLE))
+            line.shape-rest x1=(SIDE) x2=(WIDTH - SIDE) y1=(middle) y2=(middle) {}
+            polyline.shape-response points=(points(true).join(" ")) {}
+            polyline.shape-reference points=(points(false).join(" ")) {}
+            @for entry in &all {
+                @let (x, y) = (format!("{:.1}", px(entry.x)), format!("{:.1}", py(entry.value)));
+                @let label = py(entry.value) + if entry.value >= 0.0 { -9.0 } else { 18.0 };
+                line.shape-stem x1=(x) x2=(x) y1=(middle) y2=(y) {}
+                circle class=(if entry.response { "shape-response-dot" } else { "shape-reference-dot" }) cx=(x) cy=(y) r="4" {}
+                text x=(x) y=(format!("{label:.1}")) { (entry.name) }
+            }
+        }
     }
-    for entry in &all {
-        let (x, y) = (px(entry.x), py(entry.value));
-        let class = if entry.response { "shape-response-dot" } else { "shape-reference-dot" };
-        let label = if entry.value >= 0.0 { y - 9.0 } else { y + 18.0 };
-        svg.push_str(&format!(
-            "<line class=\"shape-stem\" x1=\"{x:.1}\" x2=\"{x:.1}\" y1=\"{:.1}\" y2=\"{y:.1}\"/>\
-             <circle class=\"{class}\" cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"4\"/>\
-             <text x=\"{x:.1}\" y=\"{label:.1}\">{}</text>\n",
-            middle,
-            escaped(&entry.name)
-        ));
-    }
-    svg.push_str("</svg>\n");
-    Svg::trusted(svg)
 }
 
 /// Colours come from the page's variables; without a page the drawing is dark on light.
@@ -121,23 +117,23 @@ const STYLE: &str = "<style>\
 .shape-reference-dot{fill:var(--ground,#fff);stroke:var(--estimate,#00845f);stroke-width:1.8}\
 </style>";
 
-fn entries(analysis: &ModalAnalysis) -> Table {
-    let mut columns = vec![Column::text("Channel")];
-    columns.extend((0..analysis.modes.len()).map(|index| Column::numbers(format!("Mode {}", index + 1), "")));
-    let mut table = Table::new(columns);
-    let Some(first) = analysis.modes.first() else { return table };
-    type Shape = fn(&Mode) -> &[(Channel, Complex64)];
-    let parts: [(&str, Shape); 2] =
-        [("response", |mode| &mode.responses), ("reference", |mode| &mode.references)];
-    for (what, shape) in parts {
-        for (row, (channel, _)) in shape(first).iter().enumerate() {
-            let mut cells = vec![format!("{what} {channel}")];
-            cells.extend(analysis.modes.iter().map(|mode| {
-                let value = shape(mode)[row].1;
-                format!("{} ∠ {}°", significant(value.norm(), 3), significant(value.arg().to_degrees(), 2))
-            }));
-            table = table.row(cells);
-        }
-    }
+fn shape<'a>(mode: &'a Mode, what: &str) -> &'a [(Channel, Complex64)] {
+    if what == "response" { &mode.responses } else { &mode.references }
+}
+
+fn entries(analysis: &ModalAnalysis) -> impl Render {
+    let first = analysis.modes.first();
+    let rows = ["response", "reference"].into_iter().flat_map(|what| {
+        let channels = first.map_or(&[][..], |mode| shape(mode, what)).iter().enumerate();
+        channels.map(move |(row, (channel, _))| (what, row, format!("{what} {channel}")))
+    });
+    let table = Table::of(rows).words("Channel", |(_, _, name)| name.clone());
+    let modes = analysis.modes.iter().enumerate();
+    let table = modes.fold(table, |table, (index, mode)| {
+        table.numbers(format!("Mode {}", index + 1), "", |(what, row, _)| {
+            let value = shape(mode, what)[*row].1;
+            format!("{} ∠ {}°", significant(value.norm(), 3), significant(value.arg().to_degrees(), 2))
+        })
+    });
     table.footnote("Size and phase against the largest.")
 }

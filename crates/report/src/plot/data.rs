@@ -1,15 +1,16 @@
-//! A plot as the script on the page reads it: thinned, in display units, its columns shared between plots.
+//! Plots as the script on the page reads them: thinned, in display units, their columns shared.
 
 use std::collections::HashMap;
-use std::fmt::Write;
 
+use maud::Markup;
 use serde::Serialize;
 
-use super::range::limits;
-use super::{Mark, Plot, Series, Spacing, Style, YRange, kept_lines};
+use super::range::{Limits, limits};
+use super::thin::kept_lines;
+use super::{Axis, Mark, Plot, Role, Style, YRange};
 use crate::error::PageError;
-use crate::html::push_number;
-use crate::unit::Scale;
+use crate::json::number;
+use crate::unit::{Scale, typeset};
 
 /// Digits of the ordinates; more than a screen can show at any sensible zoom.
 const DIGITS: usize = 6;
@@ -18,14 +19,27 @@ const BAND_DIGITS: usize = 5;
 /// Digits of an abscissa: neighbouring lines must stay apart however fine the resolution is.
 const ABSCISSA_DIGITS: usize = 9;
 
-/// Columns of numbers of all plots of a page; equal columns are kept once.
+/// All plots of a page in the order of their figures, with their columns of numbers; equal columns are kept once.
 #[derive(Debug, Default)]
-pub(crate) struct ColumnPool {
+pub(crate) struct PlotBook {
+    plots: Vec<PlotData>,
     columns: Vec<String>,
     index: HashMap<String, usize>,
 }
 
-impl ColumnPool {
+impl PlotBook {
+    pub fn is_empty(&self) -> bool {
+        self.plots.is_empty()
+    }
+
+    /// The figure of a plot, whose data are kept under its number.
+    pub fn figure(&mut self, plot: &Plot) -> Result<Markup, PageError> {
+        check(plot)?;
+        let (data, drawing) = PlotData::new(plot, self);
+        self.plots.push(data);
+        Ok(super::figure::figure(self.plots.len() - 1, plot, &drawing))
+    }
+
     fn add(&mut self, column: String) -> usize {
         let next = self.columns.len();
         *self.index.entry(column).or_insert_with_key(|column| {
@@ -34,246 +48,175 @@ impl ColumnPool {
         })
     }
 
-    /// The columns as one JSON array.
+    /// What the script reads.
     pub fn to_json(&self) -> String {
-        format!("[{}]", self.columns.join(",\n"))
+        // Plain data without maps: serialising it cannot fail, and without plots the page would still be readable.
+        let described = serde_json::to_string(&self.plots).unwrap_or_else(|_| "[]".to_owned());
+        format!("{{\"plots\":{described},\n\"columns\":[{}]}}", self.columns.join(",\n"))
     }
+}
+
+/// What the figure around a plot has to say of how it is drawn.
+pub(super) struct Drawing {
+    /// Display unit of the ordinates.
+    pub scale: Scale,
+    /// Whether only a part of the ordinate is drawn at first.
+    pub is_cut: bool,
+    /// What the reader must know.
+    pub remarks: Vec<String>,
 }
 
 /// What the script needs to know of one plot. Ordinates are in the display unit.
 #[derive(Debug, Serialize)]
-pub(crate) struct PlotData {
-    pub group: Option<String>,
-    pub height: u32,
-    pub x: AxisData,
-    pub y: AxisData,
+struct PlotData {
+    group: Option<String>,
+    height: u32,
+    x: Axis,
+    y: Axis,
     /// Ordinate range at first, when the plot does not show everything.
-    pub first: Option<(f64, f64)>,
+    first: Option<(f64, f64)>,
     /// Whether `first` is to be found again among the lines in view when the reader zooms in: the percentiles.
-    pub percentiles: Option<(f64, f64)>,
+    percentiles: Option<(f64, f64)>,
     /// Columns by table, abscissa first.
-    pub tables: Vec<Vec<usize>>,
-    pub series: Vec<SeriesData>,
-    pub marks: Vec<MarkData>,
-    /// What the reader must know of how it is drawn.
-    #[serde(skip)]
-    pub remarks: Vec<String>,
-    #[serde(skip)]
-    pub scale: Scale,
+    tables: Vec<Vec<usize>>,
+    series: Vec<SeriesData>,
+    marks: Vec<Mark>,
 }
 
 #[derive(Debug, Serialize)]
-pub(crate) struct AxisData {
-    pub label: String,
-    pub unit: String,
-    pub spacing: Spacing,
-}
-
-#[derive(Debug, Serialize)]
-pub(crate) struct SeriesData {
-    pub style: Style,
-    pub colour: &'static str,
-    pub table: usize,
+struct SeriesData {
+    style: Style,
+    colour: Role,
+    table: usize,
     /// Places of its columns in the table: one, or a band's lower and upper edge.
-    pub places: Vec<usize>,
-}
-
-#[derive(Debug, Serialize)]
-#[serde(rename_all = "lowercase")]
-pub(crate) enum MarkData {
-    Horizontal { colour: &'static str, at: f64 },
-    Vertical { colour: &'static str, at: f64 },
-    Shaded { from: f64, to: f64 },
+    places: Vec<usize>,
 }
 
 impl PlotData {
-    /// Checks a plot, thins it and puts its columns into the pool.
-    pub fn new(plot: &Plot, pool: &mut ColumnPool) -> Result<Self, PageError> {
-        check(plot)?;
-        let limits = limits(plot);
-        let scale = if plot.y.spacing == Spacing::Logarithmic {
+    /// Thins a plot and puts its columns into the book.
+    fn new(plot: &Plot, book: &mut PlotBook) -> (Self, Drawing) {
+        let Limits { first, full, outside } = limits(plot);
+        let scale = if plot.y.is_logarithmic() {
             // Decades are read off the powers of ten, which a prefix would only shift.
             Scale::plain(&plot.y.unit)
         } else {
-            Scale::for_values([limits.first.0 * 0.95, limits.first.1 * 0.95], &plot.y.unit)
+            Scale::for_values([first.0 * 0.95, first.1 * 0.95], &plot.y.unit)
         };
-        let mut data = Self {
+        let is_cut = first != full;
+        let mut drawing = Drawing { scale, is_cut, remarks: Vec::new() };
+        let (tables, series) = columns(plot, book, &mut drawing);
+        drawing.remark(outside, "value lies", "values lie", "outside the range drawn at first");
+        let scale = &drawing.scale;
+        let data = Self {
             group: plot.group.clone(),
             height: plot.height,
-            x: AxisData {
-                label: plot.x.label.clone(),
-                unit: crate::unit::typeset(&plot.x.unit),
-                spacing: plot.x.spacing,
-            },
-            y: AxisData {
-                label: plot.y.label.clone(),
-                unit: scale.unit().to_owned(),
-                spacing: plot.y.spacing,
-            },
-            first: (limits.first != limits.full)
-                .then(|| (scale.of(limits.first.0), scale.of(limits.first.1))),
-            percentiles: match plot.y_range {
-                YRange::Percentiles { low, high } => Some((low, high)),
-                _ => None,
-            },
-            tables: Vec::with_capacity(plot.tables.len()),
-            series: Vec::with_capacity(plot.series.len()),
-            marks: plot.marks.iter().map(|mark| mark_data(mark, &scale)).collect(),
-            remarks: Vec::new(),
-            scale,
+            x: Axis { unit: typeset(&plot.x.unit), ..plot.x.clone() },
+            y: Axis { unit: scale.unit().to_owned(), ..plot.y.clone() },
+            first: is_cut.then(|| (scale.of(first.0), scale.of(first.1))),
+            percentiles: (plot.y_range == YRange::Robust).then_some(YRange::ROBUST),
+            tables,
+            series,
+            marks: plot.marks.iter().map(|mark| mark.scaled(scale)).collect(),
         };
-        data.add_tables(plot, pool);
-        if limits.outside > 0 {
-            let outside = limits.outside;
-            let verb = if outside == 1 { "value lies" } else { "values lie" };
-            data.remarks.push(format!("{outside} {verb} outside the range drawn at first"));
-        }
-        Ok(data)
-    }
-
-    fn add_tables(&mut self, plot: &Plot, pool: &mut ColumnPool) {
-        let logarithmic_y = plot.y.spacing == Spacing::Logarithmic;
-        let logarithmic_x = plot.x.spacing == Spacing::Logarithmic;
-        let mut placed: Vec<Option<SeriesData>> = plot.series.iter().map(|_| None).collect();
-        let mut undrawable = 0;
-        for (table, abscissa) in plot.tables.iter().enumerate() {
-            let members: Vec<(usize, &Series)> =
-                (plot.series.iter().enumerate()).filter(|(_, series)| series.table == table).collect();
-            if members.is_empty() {
-                self.tables.push(Vec::new());
-                continue;
-            }
-            let columns: Vec<&[f64]> = members.iter().flat_map(|(_, series)| edges(series)).collect();
-            let mut kept = kept_lines(abscissa, &columns, plot.line_limit, logarithmic_x);
-            if kept.len() < abscissa.len() {
-                self.remarks.push(format!(
-                    "drawn thinned to {} of {} lines, extremes kept",
-                    kept.len(),
-                    abscissa.len()
-                ));
-            }
-            if logarithmic_x {
-                kept.retain(|line| abscissa[*line] > 0.0);
-            }
-            let mut indices = vec![pool.add(abscissa_column(abscissa, &kept))];
-            for (series_index, series) in members {
-                let first_place = indices.len();
-                for edge in edges(series) {
-                    let digits = if series.style == Style::Band { BAND_DIGITS } else { DIGITS };
-                    let drawable = |value: f64| !logarithmic_y || value > 0.0;
-                    undrawable += edge.iter().filter(|v| !v.is_nan() && !drawable(**v)).count();
-                    let column = column(
-                        kept.iter()
-                            .map(|line| edge[*line])
-                            .map(|value| if drawable(value) { self.scale.of(value) } else { f64::NAN }),
-                        digits,
-                    );
-                    indices.push(pool.add(column));
-                }
-                placed[series_index] = Some(SeriesData {
-                    style: series.style,
-                    colour: series.role.colour_name(),
-                    table,
-                    places: (first_place..indices.len()).collect(),
-                });
-            }
-            self.tables.push(indices);
-        }
-        self.series = placed.into_iter().flatten().collect();
-        if undrawable > 0 {
-            let verb = if undrawable == 1 {
-                "value is not positive and has"
-            } else {
-                "values are not positive and have"
-            };
-            self.remarks.push(format!("{undrawable} {verb} no place on a logarithmic axis"));
-        }
-        let gaps = plot.masked.unwrap_or_else(|| plot.series.iter().map(masked_lines).max().unwrap_or(0));
-        if gaps > 0 {
-            let lines = if gaps == 1 { "line is" } else { "lines are" };
-            self.remarks.push(format!("{gaps} {lines} masked (gaps)"));
-        }
+        (data, drawing)
     }
 }
 
-/// Lines at which a series has nothing to draw.
-fn masked_lines(series: &Series) -> usize {
-    series.values.iter().filter(|value| value.is_nan()).count()
-}
-
-/// The columns of a series: its values, or a band's lower and upper edge.
-fn edges(series: &Series) -> impl Iterator<Item = &[f64]> {
-    let low = (series.style == Style::Band).then_some(series.low.as_slice());
-    low.into_iter().chain([series.values.as_slice()])
-}
-
-fn mark_data(mark: &Mark, scale: &Scale) -> MarkData {
-    match mark {
-        Mark::Horizontal { role, at, .. } => {
-            MarkData::Horizontal { colour: role.colour_name(), at: scale.of(*at) }
-        }
-        Mark::Vertical { role, at, .. } => MarkData::Vertical { colour: role.colour_name(), at: *at },
-        Mark::Shaded { from, to, .. } => MarkData::Shaded { from: *from, to: *to },
+impl Drawing {
+    fn remark(&mut self, count: usize, one: &str, several: &str, what: &str) {
+        let noun = if count == 1 { one } else { several };
+        self.remarks.extend((count > 0).then(|| format!("{count} {noun} {what}")));
     }
+}
+
+impl Mark {
+    fn scaled(&self, scale: &Scale) -> Self {
+        let mut mark = self.clone();
+        if let Mark::Horizontal { at, .. } = &mut mark {
+            *at = scale.of(*at);
+        }
+        mark
+    }
+}
+
+/// Columns of all tables, and which of them make each series.
+fn columns(plot: &Plot, book: &mut PlotBook, drawing: &mut Drawing) -> (Vec<Vec<usize>>, Vec<SeriesData>) {
+    let mut undrawable = 0;
+    let mut tables = Vec::with_capacity(plot.tables.len());
+    let mut series: Vec<SeriesData> = (plot.series.iter())
+        .map(|s| SeriesData { style: s.style, colour: s.role, table: s.table, places: Vec::new() })
+        .collect();
+    for (table, abscissa) in plot.tables.iter().enumerate() {
+        let members = || plot.series.iter().enumerate().filter(|(_, series)| series.table == table);
+        let edges: Vec<&[f64]> = members().flat_map(|(_, series)| series.edges()).collect();
+        if edges.is_empty() {
+            tables.push(Vec::new());
+            continue;
+        }
+        let mut kept = kept_lines(abscissa, &edges, plot.line_limit, plot.x.is_logarithmic());
+        if kept.len() < abscissa.len() {
+            let (some, all) = (kept.len(), abscissa.len());
+            drawing.remarks.push(format!("drawn thinned to {some} of {all} lines, extremes kept"));
+        }
+        kept.retain(|line| plot.x.can_show(abscissa[*line]));
+        let mut indices = vec![book.add(abscissa_column(abscissa, &kept))];
+        for (index, member) in members() {
+            let digits = if member.style == Style::Band { BAND_DIGITS } else { DIGITS };
+            for edge in member.edges() {
+                undrawable += edge.iter().filter(|v| !v.is_nan() && !plot.y.can_show(**v)).count();
+                let shown = |v: f64| if plot.y.can_show(v) { drawing.scale.of(v) } else { f64::NAN };
+                series[index].places.push(indices.len());
+                indices.push(book.add(column(kept.iter().map(|line| shown(edge[*line])), digits)));
+            }
+        }
+        tables.push(indices);
+    }
+    let (one, several) = ("value is not positive and has", "values are not positive and have");
+    drawing.remark(undrawable, one, several, "no place on a logarithmic axis");
+    let gaps = |values: &[f64]| values.iter().filter(|value| value.is_nan()).count();
+    let most = || plot.series.iter().map(|series| gaps(&series.values)).max().unwrap_or(0);
+    drawing.remark(plot.masked.unwrap_or_else(most), "line is", "lines are", "masked (gaps)");
+    (tables, series)
 }
 
 /// Lengths and order of what the caller gave.
 fn check(plot: &Plot) -> Result<(), PageError> {
+    let title = || plot.title.clone();
     for abscissa in &plot.tables {
-        for (index, value) in abscissa.iter().enumerate() {
-            if !value.is_finite() || (index > 0 && *value <= abscissa[index - 1]) {
-                let plot = plot.title.clone();
-                return Err(PageError::Abscissa { plot, index });
-            }
+        let ascends = |i: usize| abscissa[i].is_finite() && (i == 0 || abscissa[i] > abscissa[i - 1]);
+        if let Some(index) = (0..abscissa.len()).find(|index| !ascends(*index)) {
+            return Err(PageError::Abscissa { plot: title(), index });
         }
     }
     for series in &plot.series {
+        let label = || series.label.clone();
         let Some(abscissa) = plot.tables.get(series.table) else {
-            return Err(PageError::NoAbscissa { plot: plot.title.clone(), series: series.label.clone() });
+            return Err(PageError::NoAbscissa { plot: title(), series: label() });
         };
-        for edge in edges(series) {
-            if edge.len() != abscissa.len() {
-                return Err(PageError::SeriesLength {
-                    plot: plot.title.clone(),
-                    series: series.label.clone(),
-                    expected: abscissa.len(),
-                    got: edge.len(),
-                });
-            }
+        let expected = abscissa.len();
+        if let Some(got) = series.edges().map(<[f64]>::len).find(|got| *got != expected) {
+            return Err(PageError::SeriesLength { plot: title(), series: label(), expected, got });
         }
     }
     Ok(())
 }
 
 fn column(values: impl Iterator<Item = f64>, digits: usize) -> String {
-    let mut json = String::from("[");
-    for (index, value) in values.enumerate() {
-        if index > 0 {
-            json.push(',');
-        }
-        push_number(&mut json, value, digits);
-    }
-    json.push(']');
-    json
+    let numbers: Vec<String> = values.map(|value| number(value, digits)).collect();
+    format!("[{}]", numbers.join(","))
 }
 
 /// An abscissa in equal steps is written as first value, step and count: that is what most spectra have.
 fn abscissa_column(abscissa: &[f64], kept: &[usize]) -> String {
-    let lines = kept.len();
-    if lines == abscissa.len() && lines > 2 {
-        let (first, last) = (abscissa[0], abscissa[lines - 1]);
-        let step = (last - first) / (lines - 1) as f64;
+    let count = kept.len();
+    if count == abscissa.len() && count > 2 {
+        let (first, last) = (abscissa[0], abscissa[count - 1]);
+        let step = (last - first) / (count - 1) as f64;
         let tolerance = 1e-9 * first.abs().max(last.abs());
-        let even = (abscissa.iter().enumerate())
-            .all(|(line, x)| (x - (first + step * line as f64)).abs() <= tolerance);
-        if even {
-            let mut json = String::from("{\"from\":");
-            push_number(&mut json, first, 17);
-            json.push_str(",\"step\":");
-            push_number(&mut json, step, 17);
-            // Writing to a String does not fail.
-            let _ = write!(json, ",\"count\":{lines}}}");
-            return json;
+        let expected = (0..count).map(|line| first + step * line as f64);
+        if abscissa.iter().zip(expected).all(|(x, expected)| (x - expected).abs() <= tolerance) {
+            let (from, step) = (number(first, 17), number(step, 17));
+            return format!("{{\"from\":{from},\"step\":{step},\"count\":{count}}}");
         }
     }
     column(kept.iter().map(|line| abscissa[*line]), ABSCISSA_DIGITS)

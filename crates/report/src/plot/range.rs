@@ -1,39 +1,84 @@
 //! Which part of the ordinate is drawn at first.
 
-use super::{Mark, Plot, Spacing, Style};
+use super::{Axis, Mark, Plot, Style};
 
 /// The part of the ordinate that a plot shows before the reader asks for more.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum YRange {
+pub(crate) enum YRange {
     /// All values, bands included.
     Full,
-    /// From the `low` to the `high` percentile of each series (0–100), widened by that span on either side but never past the values. Bands do
-    /// not count, reference lines always do.
-    Percentiles {
-        /// Lower percentile.
-        low: f64,
-        /// Upper percentile.
-        high: f64,
-    },
+    /// From the tenth to the ninetieth percentile of each series, widened by that span on either side but never past the values: a resonance or a few
+    /// noisy lines do not squash the rest. Gaussian scatter is drawn whole (±3.8 standard deviations). Bands do not count, reference lines always do.
+    /// The reader is told how many values lie outside and can have the full range.
+    Robust,
     /// Between two ordinates, SI.
-    Fixed {
-        /// Lower end.
-        low: f64,
-        /// Upper end.
-        high: f64,
-    },
+    Fixed { low: f64, high: f64 },
 }
 
 impl YRange {
-    /// Percentiles 10 to 90: Gaussian scatter is drawn whole (±3.8 standard deviations), while a tenth of the lines may run away on either side.
-    pub fn robust() -> Self {
-        Self::Percentiles { low: 10.0, high: 90.0 }
+    pub const ROBUST: (f64, f64) = (10.0, 90.0);
+
+    /// A span with some room on either side; the robust range where there is no span to speak of.
+    pub fn about(span: Span, room: f64) -> Self {
+        match span.0 {
+            Some((low, high)) if room > 0.0 && room.is_finite() => {
+                YRange::Fixed { low: low - room, high: high + room }
+            }
+            _ => YRange::Robust,
+        }
+    }
+
+    /// Whole decades about the values: a model's sharp antiresonance does not squash them, and the axis is labelled with powers of ten.
+    pub fn decades(values: impl IntoIterator<Item = f64>) -> Self {
+        match Span::of(values.into_iter().map(f64::log10)).0 {
+            Some((low, high)) => {
+                let (low, high) = ((low - 0.1).floor(), (high + 0.1).ceil());
+                YRange::Fixed { low: 10f64.powf(low), high: 10f64.powf(high) }
+            }
+            None => YRange::Full,
+        }
+    }
+}
+
+/// Smallest and largest of some values; nothing of none.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub(crate) struct Span(pub Option<(f64, f64)>);
+
+impl Span {
+    /// Of those values that are finite.
+    pub fn of(values: impl IntoIterator<Item = f64>) -> Self {
+        values.into_iter().filter(|value| value.is_finite()).fold(Self::default(), |span, value| {
+            let (low, high) = span.0.unwrap_or((value, value));
+            Span(Some((low.min(value), high.max(value))))
+        })
+    }
+
+    /// Two percentiles (0 to 100) of those values that are finite.
+    pub fn percentiles(values: impl IntoIterator<Item = f64>, (low, high): (f64, f64)) -> Self {
+        let mut values: Vec<f64> = values.into_iter().filter(|value| value.is_finite()).collect();
+        values.sort_unstable_by(f64::total_cmp);
+        let last = values.len().saturating_sub(1) as f64;
+        let at = |percent: f64| values.get((last * percent / 100.0).round() as usize).copied();
+        Span(at(low).zip(at(high)))
+    }
+
+    pub fn and(self, other: Self) -> Self {
+        Self::of([self.0, other.0].into_iter().flatten().flat_map(|(low, high)| [low, high]))
+    }
+
+    pub fn width(self) -> f64 {
+        self.0.map_or(0.0, |(low, high)| high - low)
+    }
+
+    /// Its largest magnitude.
+    pub fn magnitude(self) -> f64 {
+        self.0.map_or(0.0, |(low, high)| low.abs().max(high.abs()))
     }
 }
 
 /// Ordinates between which a plot is drawn, in SI.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Limits {
+pub(super) struct Limits {
     /// At first.
     pub first: (f64, f64),
     /// All there is.
@@ -45,90 +90,55 @@ pub(crate) struct Limits {
 /// A robust range this close to the full one gains nothing: the full one is drawn then.
 const WORTH_CUTTING: f64 = 0.75;
 
-pub(crate) fn limits(plot: &Plot) -> Limits {
-    let logarithmic = plot.y.spacing == Spacing::Logarithmic;
-    let drawable = |value: &f64| value.is_finite() && (!logarithmic || *value > 0.0);
-    let mut full = Extent::default();
-    for series in &plot.series {
-        for value in series.values.iter().chain(&series.low).filter(|v| drawable(v)) {
-            full.include(*value);
-        }
-    }
-    let mut references = Extent::default();
-    for mark in &plot.marks {
-        if let Mark::Horizontal { at, .. } = mark
-            && drawable(at)
-        {
-            references.include(*at);
-        }
-    }
-    full.join(references);
-    let full_limits = finish(full, plot.y.spacing);
-
+pub(super) fn limits(plot: &Plot) -> Limits {
+    let drawable = |value: &f64| plot.y.can_show(*value);
+    let all = plot.series.iter().flat_map(|series| series.values.iter().chain(&series.low));
+    let references = Span::of(plot.marks.iter().filter_map(|mark| match mark {
+        Mark::Horizontal { at, .. } => Some(*at).filter(drawable),
+        _ => None,
+    }));
+    let full = finish(Span::of(all.copied().filter(drawable)).and(references), &plot.y);
+    let curves = || plot.series.iter().filter(|series| series.style != Style::Band).map(|s| &s.values);
     let first = match plot.y_range {
-        YRange::Full => full_limits,
         YRange::Fixed { low, high } if low < high && drawable(&low) && high.is_finite() => (low, high),
-        YRange::Fixed { .. } => full_limits,
-        YRange::Percentiles { low, high } => {
-            let mut robust = references;
-            for series in plot.series.iter().filter(|s| s.style != Style::Band) {
-                let values = series.values.iter().copied().filter(drawable);
-                robust.join(robust_extent(values.collect(), low, high, logarithmic));
-            }
-            let robust = finish(robust, plot.y.spacing);
-            if span(robust, logarithmic) < WORTH_CUTTING * span(full_limits, logarithmic) {
-                robust
-            } else {
-                full_limits
-            }
+        YRange::Full | YRange::Fixed { .. } => full,
+        YRange::Robust => {
+            let robust = curves().map(|values| robust_span(values.iter().copied().filter(drawable), &plot.y));
+            let robust = finish(robust.fold(references, Span::and), &plot.y);
+            let length = |(low, high): (f64, f64)| {
+                if plot.y.is_logarithmic() { (high / low).ln() } else { high - low }
+            };
+            if length(robust) < WORTH_CUTTING * length(full) { robust } else { full }
         }
     };
-    let outside = plot
-        .series
-        .iter()
-        .filter(|series| series.style != Style::Band)
-        .flat_map(|series| &series.values)
-        .filter(|value| drawable(value) && (**value < first.0 || **value > first.1))
-        .count();
-    Limits { first, full: full_limits, outside }
+    let is_outside = |value: &&f64| drawable(value) && (**value < first.0 || **value > first.1);
+    Limits { first, full, outside: curves().flatten().filter(is_outside).count() }
 }
 
 /// Percentiles of one series, widened by their span but not past its extremes.
-fn robust_extent(mut values: Vec<f64>, low: f64, high: f64, logarithmic: bool) -> Extent {
-    values.sort_unstable_by(f64::total_cmp);
-    let (Some(&smallest), Some(&largest)) = (values.first(), values.last()) else {
-        return Extent::default();
-    };
-    let at = |percent: f64| {
-        let place = (values.len() - 1) as f64 * (percent / 100.0).clamp(0.0, 1.0);
-        values[place.round() as usize]
-    };
-    let (low, high) = (at(low.min(high)), at(low.max(high)));
-    let (low, high) = if logarithmic {
+fn robust_span(values: impl Iterator<Item = f64> + Clone, axis: &Axis) -> Span {
+    let (whole, middle) = (Span::of(values.clone()), Span::percentiles(values, YRange::ROBUST));
+    let (Some((smallest, largest)), Some((low, high))) = (whole.0, middle.0) else { return Span::default() };
+    let (low, high) = if axis.is_logarithmic() {
         (low * low / high, high * high / low)
     } else {
         (low - (high - low), high + (high - low))
     };
-    Extent(Some((low.max(smallest), high.min(largest))))
+    Span(Some((low.max(smallest), high.min(largest))))
 }
 
-/// A little air around the values, zero in the middle of a symmetric axis, and never an empty range.
-fn finish(extent: Extent, spacing: Spacing) -> (f64, f64) {
-    match (spacing, extent.0) {
-        (Spacing::Logarithmic, None) => (1.0, 10.0),
-        (Spacing::Logarithmic, Some((low, high))) => {
+/// A little air around the values, and never an empty range.
+fn finish(span: Span, axis: &Axis) -> (f64, f64) {
+    match (axis.is_logarithmic(), span.0) {
+        (true, None) => (1.0, 10.0),
+        (true, Some((low, high))) => {
             let air = (high / low).powf(0.04).max(1.05);
             (low / air, high * air)
         }
-        (_, None) => (-1.0, 1.0),
-        (Spacing::Symmetric, Some((low, high))) => {
-            let largest = low.abs().max(high.abs());
-            let largest = if largest > 0.0 { 1.05 * largest } else { 1.0 };
-            (-largest, largest)
-        }
-        (Spacing::Linear, Some((low, high))) => {
+        (false, None) => (-1.0, 1.0),
+        (false, Some((low, high))) => {
             let air = match high - low {
-                span if span > 1e-9 * low.abs().max(high.abs()) => 0.05 * span,
+                width if width > 1e-9 * span.magnitude() => 0.05 * width,
                 _ if high != 0.0 => 0.1 * high.abs(),
                 _ => 1.0,
             };
@@ -137,38 +147,16 @@ fn finish(extent: Extent, spacing: Spacing) -> (f64, f64) {
     }
 }
 
-fn span((low, high): (f64, f64), logarithmic: bool) -> f64 {
-    if logarithmic { (high / low).ln() } else { high - low }
-}
-
-/// Smallest and largest value met so far.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-struct Extent(Option<(f64, f64)>);
-
-impl Extent {
-    fn include(&mut self, value: f64) {
-        let (low, high) = self.0.unwrap_or((value, value));
-        self.0 = Some((low.min(value), high.max(value)));
-    }
-
-    fn join(&mut self, other: Self) {
-        if let Some((low, high)) = other.0 {
-            self.include(low);
-            self.include(high);
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Axis, Role};
+    use crate::plot::Role;
 
     fn stiffness(values: Vec<f64>) -> Plot {
         Plot::new("k", Axis::frequency(), Axis::linear("k", "N/m"))
             .over((0..values.len()).map(|line| line as f64))
             .line("measured", Role::Measured, values)
-            .robust()
+            .y_range(YRange::Robust)
     }
 
     #[test]
@@ -198,11 +186,7 @@ mod tests {
     }
 
     #[test]
-    fn a_symmetric_axis_has_zero_in_its_middle_and_no_range_is_empty() {
-        let mut plot = stiffness(vec![1.0, -3.0]);
-        plot.y = Axis::symmetric("residual", "1");
-        let (low, high) = limits(&plot).first;
-        assert_eq!(low, -high);
+    fn no_range_is_empty() {
         for values in [vec![], vec![0.0], vec![5.0, 5.0], vec![f64::NAN]] {
             let (low, high) = limits(&stiffness(values)).first;
             assert!(low < high);

@@ -2,7 +2,8 @@
 
 use jointscope_proof::{Bin, Score, Share};
 
-use crate::{Axis, Plot, Role, Section};
+use crate::plot::{Axis, Plot, Role};
+use crate::section::Section;
 
 pub(super) fn section(score: &Score) -> Section {
     let log_score = score.figure("log_score").and_then(|figure| figure.value);
@@ -32,7 +33,7 @@ fn square(title: &str, x: &str, y: &str) -> Plot {
         .over([0.0, 1.0])
         .dashed("as it should be", Role::Nominal, [0.0, 1.0])
         .height(320)
-        .unsynchronised()
+        .alone()
 }
 
 fn reliability(score: &Score) -> Option<Plot> {

@@ -2,26 +2,35 @@
 
 use jointscope_proof::{Judged, Role};
 
-use crate::{Cell, Column, Section, Table, Tone};
+use super::{ProofContext, case_number, tone};
+use crate::section::Section;
+use crate::table::Table;
 
-use super::ProofContext;
+/// Faults of the second order.
+const LESSER: [&str; 3] = ["false minimum", "unseen FRFs worse", "held-out lines worse"];
 
 pub(super) fn section(judged: &[Judged], context: &ProofContext) -> Section {
-    let columns = [
-        Column::text("case"),
-        Column::text("hidden"),
-        Column::numbers("Δχ²", ""),
-        Column::text("verdict"),
-        Column::text("found, with its probability"),
-        Column::text("went wrong"),
-    ];
-    let table = judged.iter().fold(Table::new(columns), |table, judged| {
-        let cells = cells(judged, context);
-        match tone(judged) {
-            Some(tone) => table.marked_row(tone, cells),
-            None => table.row(cells),
-        }
-    });
+    let table = Table::of(judged)
+        .words("case", |j| case_number(j.truth.index, context.pages && j.answer.is_ok()))
+        .words("hidden", |j| j.truth.hidden())
+        .numbers("Δχ²", "", |j| match j.truth.role {
+            Role::Null => "–".to_owned(),
+            _ => format!("{:.0}", j.size()),
+        })
+        .words("verdict", |j| match &j.answer {
+            Ok(answer) => answer.verdict.name().replace('_', " "),
+            Err(_) => "no answer".to_owned(),
+        })
+        .words("found, with its probability", |j| match &j.answer {
+            Ok(_) => found(j),
+            Err(why) => why.to_string(),
+        })
+        .words("went wrong", |j| j.faults().join(", "))
+        .marked(|j| {
+            // What does not show and was not found was not asked for.
+            let asked = j.truth.role == Role::Null || j.is_visible() || !j.found().is_empty();
+            tone(&j.faults(), asked, &LESSER)
+        });
     let section = Section::new("Every case");
     let section = if context.pages {
         section.paragraph(
@@ -32,28 +41,10 @@ pub(super) fn section(judged: &[Judged], context: &ProofContext) -> Section {
     } else {
         section
     };
-    section.table(table.footnote(
+    section.with(table.footnote(
         "Δχ²: what the hidden physics costs a fit that does without it; below 50 it is not asked for. Every finding is marked as right if it was hidden (=) \
          or fits as well (≈).",
     ))
-}
-
-fn cells(judged: &Judged, context: &ProofContext) -> Vec<Cell> {
-    let number = judged.truth.index;
-    let case = match context.pages && judged.answer.is_ok() {
-        true => Cell::link(format!("{number:03}"), format!("cases/{number:03}/report.html")),
-        false => format!("{number:03}").into(),
-    };
-    let (verdict, found) = match &judged.answer {
-        Ok(answer) => (answer.verdict.name().replace('_', " "), found(judged)),
-        Err(why) => ("no answer".to_owned(), why.to_string()),
-    };
-    let size = match judged.truth.role {
-        Role::Null => "–".to_owned(),
-        _ => format!("{:.0}", judged.size()),
-    };
-    let faults = judged.faults().join(", ");
-    vec![case, judged.truth.hidden().into(), size.into(), verdict.into(), found.into(), faults.into()]
 }
 
 fn found(judged: &Judged) -> String {
@@ -70,17 +61,4 @@ fn found(judged: &Judged) -> String {
     });
     let told: Vec<String> = told.collect();
     if told.is_empty() { "nothing".to_owned() } else { told.join(", ") }
-}
-
-/// Green where all is right, red where a fault would mislead a reader, amber where it is of the second order.
-fn tone(judged: &Judged) -> Option<Tone> {
-    let faults = judged.faults();
-    let lesser = ["false minimum", "unseen FRFs worse", "held-out lines worse"];
-    if faults.is_empty() {
-        // What does not show and was not found was not asked for.
-        let asked = judged.truth.role == Role::Null || judged.is_visible() || !judged.found().is_empty();
-        return asked.then_some(Tone::Ok);
-    }
-    let grave = faults.iter().any(|fault| !lesser.contains(&fault.as_str()));
-    Some(if grave { Tone::Problem } else { Tone::Attention })
 }

@@ -3,9 +3,13 @@
 use std::collections::BTreeSet;
 
 use jointscope_proof::{Confusion, Detection, NOTHING, Smallest};
+use maud::Render;
 
 use crate::format::significant;
-use crate::{Axis, Column, HeatMap, Plot, Role, Section, Table, typeset};
+use crate::plot::{Axis, Plot, Role};
+use crate::section::Section;
+use crate::table::{Cell, Table};
+use crate::unit::typeset;
 
 /// Ends of the drawn course, Δχ², the second at the least.
 const DRAWN: [f64; 2] = [1.0, 1e4];
@@ -21,7 +25,7 @@ pub(super) fn section(detection: &Detection) -> Section {
         Some(plot) => section.plot(plot),
         None => section,
     };
-    section.table(smallest(detection))
+    section.with(smallest(detection))
 }
 
 fn plot(detection: &Detection) -> Option<Plot> {
@@ -47,7 +51,7 @@ fn plot(detection: &Detection) -> Option<Plot> {
         shown.iter().map(|(class, _)| class.noticed.value()),
     )
     .height(300)
-    .unsynchronised();
+    .alone();
     if detection.course.is_some() {
         let end = sizes.iter().copied().fold(DRAWN[1], f64::max);
         let step = (end / DRAWN[0]).ln() / (POINTS - 1) as f64;
@@ -55,7 +59,7 @@ fn plot(detection: &Detection) -> Option<Plot> {
         let shares: Vec<Option<f64>> = course.iter().map(|size| detection.share_at(*size)).collect();
         plot = plot.over(course).line("fitted course, named", Role::Estimate, shares);
     }
-    Some(plot.caption(match (detection.size_of_share(0.5), detection.sure_from()) {
+    Some(plot.caption(match (detection.half_named_from, detection.sure_from) {
         (Some(half), Some(sure)) => format!(
             "Half of the effects are named from Δχ² = {half:.0}, nineteen of twenty from {sure:.0}. Points: classes of size, at their median."
         ),
@@ -63,26 +67,18 @@ fn plot(detection: &Detection) -> Option<Plot> {
     }))
 }
 
-fn smallest(detection: &Detection) -> Table {
-    let columns = [
-        Column::text("kind"),
-        Column::text("parameter"),
-        Column::text("is found from"),
-        Column::text("over the cases"),
-        Column::numbers("cases", ""),
-    ];
-    let table = detection.smallest.iter().fold(Table::new(columns), |table, smallest| {
-        let Smallest { parameter, unit, value, range: [least, largest], is_upper, cases, .. } = smallest;
-        let unit = typeset(unit);
-        table.row([
-            smallest.name().replace('_', " "),
-            parameter.replace('_', " "),
-            format!("{} {} {unit}", if *is_upper { "≤" } else { "≥" }, significant(*value, 2)),
-            format!("{} to {}", significant(*least, 2), significant(*largest, 2)),
-            cases.to_string(),
-        ])
-    });
-    table
+fn smallest(detection: &Detection) -> impl Render {
+    let bound = |s: &Smallest| {
+        format!("{} {} {}", if s.is_upper { "≤" } else { "≥" }, significant(s.value, 2), typeset(s.unit))
+    };
+    Table::of(&detection.smallest)
+        .words("kind", |s| s.name().replace('_', " "))
+        .words("parameter", |s| s.parameter.replace('_', " "))
+        .words("is found from", |s| bound(s))
+        .words("over the cases", |s| {
+            format!("{} to {}", significant(s.range[0], 2), significant(s.range[1], 2))
+        })
+        .numbers("cases", "", |s| s.cases.to_string())
         .caption("The smallest effect of each kind that is named in nineteen of twenty cases")
         .footnote(
             "By the Cramér–Rao bound of the hidden parameter, which counts what tolerances can imitate: √Δχ² standard deviations. Where ≤ stands a \
@@ -96,12 +92,15 @@ pub(super) fn confusion(confusion: &Confusion) -> Section {
         confusion.0.iter().flat_map(|(hidden, found)| found.keys().chain([hidden])).copied().collect();
     let name = |kind: &str| kind.replace('_', " ");
     let kinds: Vec<&str> = kinds.into_iter().filter(|kind| *kind != NOTHING).chain([NOTHING]).collect();
-    let map = HeatMap::new("hidden, found:", kinds.iter().map(|kind| name(kind))).of_counts();
+    let count = |hidden: &str, found: &str| confusion.count(hidden, found) as f64;
     let rows = kinds.iter().filter(|kind| confusion.0.contains_key(**kind));
-    let map = rows.fold(map, |map, hidden| {
-        map.row(name(hidden), kinds.iter().map(|found| Some(confusion.count(hidden, found) as f64)))
+    let map = Table::of(rows).names("hidden, found:", |hidden| name(hidden));
+    let map = kinds.iter().fold(map, |map, found| {
+        map.shaded(name(found), |hidden| {
+            Cell::count(count(hidden, found), kinds.iter().map(|found| count(hidden, found)).sum())
+        })
     });
-    Section::new("Which kind was taken for which").heat_map(
+    Section::new("Which kind was taken for which").with(
         map.footnote("Nulls and single effects that show, by the strongest finding. A kind beside the diagonal may fit as well as the hidden one."),
     )
 }

@@ -2,12 +2,13 @@
 
 use jointscope_proof::{Method, Methods, Share, WIDER};
 
-use crate::{Column, Section, Table};
+use super::or_dash;
+use crate::section::Section;
+use crate::table::Table;
 
 pub(super) fn section(methods: &Methods) -> Section {
-    let share = |share: Option<Share>| share.map_or_else(|| "–".to_owned(), super::counted);
-    let number =
-        |value: Option<f64>, times: f64| value.map_or_else(|| "–".to_owned(), |value| short(times * value));
+    let share = |share: Option<Share>| or_dash(share.map(super::counted));
+    let number = |value: Option<f64>, times: f64| or_dash(value.map(|value| short(times * value)));
     type Row<'a> = (&'a str, Box<dyn Fn(&Method) -> String + 'a>);
     let rows: [Row; 7] = [
         ("nulls left alone", Box::new(|m| share(m.nulls))),
@@ -18,14 +19,11 @@ pub(super) fn section(methods: &Methods) -> Section {
         ("joint stiffness off, %", Box::new(|m| number(m.joint_stiffness, 100.0))),
         ("unmeasured FRFs off, %", Box::new(|m| number(m.unmeasured, 100.0))),
     ];
-    let heads = methods.0.iter().map(|method| Column::numbers(method.what, ""));
-    let table = rows.iter().fold(
-        Table::new(std::iter::once(Column::text("on the same cases")).chain(heads)),
-        |table, (what, cell)| {
-            let cells = methods.0.iter().map(cell);
-            table.row(std::iter::once((*what).to_owned()).chain(cells))
-        },
-    );
+    let table = Table::of(rows).words("on the same cases", |(what, _)| *what);
+    let table = methods
+        .0
+        .iter()
+        .fold(table, |table, method| table.numbers(method.what, "", |(_, cell)| cell(method)));
     Section::new("Beside what people do today")
         .paragraph(format!(
             "Parameter updating moves the quantities that the file states until the model fits: once within their stated tolerances, and once within \
@@ -33,7 +31,7 @@ pub(super) fn section(methods: &Methods) -> Section {
              the truth. It names nothing. The nearest signature is that of the effect, of all kinds at all places in a few sizes, whose change of the \
              FRFs points most nearly where the misfit does."
         ))
-        .table(
+        .with(
             table
                 .footnote(
                     "Right name and kind: of single effects that show, to the letter; the scores above also count a name that fits as well as the \

@@ -1,22 +1,31 @@
 //! A route of its own: scores, sizes, every case.
 
 use jointscope_proof::{CaseLine, RouteScore};
+use maud::Render;
 
-use super::{ProofContext, counted, scores};
-use crate::{Card, Cell, Column, Section, Table, Tone};
+use super::{ProofContext, case_number, counted, scores, tone};
+use crate::section::{Card, Section};
+use crate::table::Table;
+
+/// Faults of the second order.
+const LESSER: [&str; 4] =
+    ["unseen FRFs worse", "held-out lines worse", "held-out hits worse", "a size off by more than 10 %"];
 
 pub(super) fn section(route: &RouteScore, context: &ProofContext) -> Section {
-    let cards = route.cases.iter().filter(|(_, all, _)| *all > 0).map(|(role, all, asked)| {
-        let card = Card::text(format!("cases: {role}"), all.to_string());
-        if *asked > 0 { card.note(format!("{asked} asked for")) } else { card }
+    let cards = route.roles.iter().filter(|count| count.cases > 0).map(|count| {
+        let card = Card::text(format!("cases: {}", count.role), count.cases.to_string());
+        match count.asked {
+            Some(asked) if asked > 0 => card.note(format!("{asked} asked for")),
+            _ => card,
+        }
     });
     let section = Section::new(title(route))
         .paragraph(paragraph(route))
         .cards(cards)
-        .table(scores::rates(&route.rates))
-        .table(scores::figures(&route.figures));
-    let section = if route.sizes.is_empty() { section } else { section.table(sizes(route)) };
-    section.table(cases(&route.lines, context))
+        .with(scores::rates(&route.rates))
+        .with(scores::figures(&route.figures));
+    let section = if route.sizes.is_empty() { section } else { section.with(sizes(route)) };
+    section.with(cases(&route.lines, context))
 }
 
 fn title(route: &RouteScore) -> &'static str {
@@ -59,60 +68,25 @@ pub(super) fn sentence(route: &RouteScore) -> String {
     }
 }
 
-fn sizes(route: &RouteScore) -> Table {
-    let columns = [
-        Column::text("size of what was found"),
-        Column::numbers("median error", "%"),
-        Column::numbers("within 10 %", ""),
-        Column::numbers("95 % intervals that hold", ""),
-    ];
-    route.sizes.iter().fold(Table::new(columns), |table, size| {
-        let error = format!("{:.2}", 100.0 * size.median);
-        table.row([size.what.replace('_', " "), error, counted(size.within), counted(size.held)])
-    })
+fn sizes(route: &RouteScore) -> impl Render {
+    Table::of(&route.sizes)
+        .words("size of what was found", |size| size.what.replace('_', " "))
+        .numbers("median error", "%", |size| format!("{:.2}", 100.0 * size.median))
+        .numbers("within 10 %", "", |size| counted(size.within))
+        .numbers("95 % intervals that hold", "", |size| counted(size.held))
 }
 
-fn cases(lines: &[CaseLine], context: &ProofContext) -> Table {
-    let columns = [
-        Column::text("case"),
-        Column::text("hidden"),
-        Column::text("how it shows"),
-        Column::text("verdict"),
-        Column::text("found, with its probability"),
-        Column::text("went wrong"),
-    ];
-    let table = lines.iter().fold(Table::new(columns), |table, line| {
-        let number = format!("{:03}", line.index);
-        let number = match context.pages && line.answered {
-            true => Cell::link(number.clone(), format!("cases/{number}/report.html")),
-            false => number.into(),
-        };
-        let cells: [Cell; 6] = [
-            number,
-            line.hidden.as_str().into(),
-            line.size.as_str().into(),
-            line.verdict.as_str().into(),
-            line.found.as_str().into(),
-            line.faults.join(", ").into(),
-        ];
-        match tone(line) {
-            Some(tone) => table.marked_row(tone, cells),
-            None => table.row(cells),
-        }
-    });
-    table.footnote(
-        "How it shows: Δχ² of solids, the probability by chance of levels as different in hits. Findings are marked as hidden (=) or the same by \
-         mechanics (≈).",
-    )
-}
-
-/// Green where all is right, red where a fault would mislead a reader, amber where it is of the second order.
-fn tone(line: &CaseLine) -> Option<Tone> {
-    let lesser =
-        ["unseen FRFs worse", "held-out lines worse", "held-out hits worse", "a size off by more than 10 %"];
-    if line.faults.is_empty() {
-        return line.asked.then_some(Tone::Ok);
-    }
-    let grave = line.faults.iter().any(|fault| !lesser.contains(&fault.as_str()));
-    Some(if grave { Tone::Problem } else { Tone::Attention })
+fn cases(lines: &[CaseLine], context: &ProofContext) -> impl Render {
+    Table::of(lines)
+        .words("case", |line| case_number(line.index, context.pages && line.answered))
+        .words("hidden", |line| line.hidden.clone())
+        .words("how it shows", |line| line.size.clone())
+        .words("verdict", |line| line.verdict.clone())
+        .words("found, with its probability", |line| line.found.clone())
+        .words("went wrong", |line| line.faults.join(", "))
+        .marked(|line| tone(&line.faults, line.asked, &LESSER))
+        .footnote(
+            "How it shows: Δχ² of solids, the probability by chance of levels as different in hits. Findings are marked as hidden (=) or the same by \
+             mechanics (≈).",
+        )
 }

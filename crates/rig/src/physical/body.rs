@@ -1,8 +1,8 @@
 use super::bar_mode::UniformBar;
 use super::{Assembly, BeamElement, Law, Station};
 use crate::StructureError;
-use crate::effects::{all_at_body, product, shear_compliance};
-use jointscope_fixture::{BeamBody, Body, BodyKind, Effect, EffectKind, Fixture, RigidBody};
+use crate::effects::{at, product, shear_compliance};
+use jointscope_fixture::{BeamBody, Body, BodyKind, Effect, EffectKind, Fixture, Place, RigidBody};
 use std::f64::consts::TAU;
 
 /// The bodies of an assembly, each able to say how any place on it moves.
@@ -41,7 +41,7 @@ impl Bodies {
         }
         let mut bodies = Bodies { shapes };
         for (index, body) in fixture.bodies().iter().enumerate() {
-            for effect in all_at_body(effects, EffectKind::BodyFlexibility, &body.name) {
+            for effect in at(effects, EffectKind::BodyFlexibility, Place::Body(body.name.clone())) {
                 bodies.release_bending(assembly, index, body, effect)?;
             }
         }
@@ -139,7 +139,7 @@ fn deformable(
     effects: &[Effect],
     loss_factor: f64,
 ) -> Result<Shape, StructureError> {
-    let at_body = |kind| all_at_body(effects, kind, &body.name);
+    let at_body = |kind| at(effects, kind, Place::Body(body.name.clone()));
     let factor = product(at_body(EffectKind::StiffnessChange));
     let shear_compliance = shear_compliance(at_body(EffectKind::ShearDeformation));
     let element = BeamElement {

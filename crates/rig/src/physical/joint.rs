@@ -1,8 +1,8 @@
 use super::body::Bodies;
 use super::{Assembly, BeamElement, Law, Row, Station};
 use crate::StructureError;
-use crate::effects::{all_at_joint, all_at_point, product, shear_compliance, sum};
-use jointscope_fixture::{Dof, Effect, EffectKind, Fixture, Joint, JointLaw, Quantity};
+use crate::effects::{at, product, shear_compliance, sum};
+use jointscope_fixture::{Dof, Effect, EffectKind, Fixture, Joint, JointLaw, Place, Quantity};
 
 /// Elements of a joint that has mass; six would give 1e-4.
 const ELEMENTS: usize = 16;
@@ -23,7 +23,7 @@ impl Properties {
         effects: &[Effect],
         loss_factor: f64,
     ) -> Result<Self, StructureError> {
-        let here = |kind| all_at_joint(effects, kind, &joint.name);
+        let here = |kind| at(effects, kind, Place::Joint(joint.name.clone()));
         let mut law = Law { loss_factor: loss_factor + sum(here(EffectKind::LossFactor)), ..Law::ELASTIC };
         let mut relaxations = here(EffectKind::Relaxation);
         if let Some(relaxation) = relaxations.next() {
@@ -82,7 +82,7 @@ fn joint_end(
 ) -> Result<Station, StructureError> {
     let point = &fixture.points()[point];
     let mut end = bodies.station(point.body, point.x.value)?;
-    for interface in all_at_point(effects, EffectKind::InterfaceCompliance, &point.name) {
+    for interface in at(effects, EffectKind::InterfaceCompliance, Place::Point(point.name.clone())) {
         let beyond = Row::coordinate(assembly.coordinate());
         let held = match interface.dof {
             Some(Dof::Rotation) => &mut end.theta,

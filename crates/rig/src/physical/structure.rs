@@ -4,7 +4,7 @@ use super::joint::assemble_joint;
 use super::mesh::meshes;
 use super::{Assembly, Law, Row, Station};
 use crate::StructureError;
-use crate::effects::{all, all_at_point, sum};
+use crate::effects::{all, at, sum};
 use jointscope_fixture::{Effect, EffectKind, Fixture, Place};
 use jointscope_linalg::generalized_symmetric_eigen;
 use jointscope_spectra::{Channel, Dof};
@@ -49,7 +49,7 @@ impl Structure {
         for point in fixture.points() {
             let x = point.x.value;
             structure.points.insert(point.name.clone(), bodies.station(point.body, x)?);
-            let dx = sum(all_at_point(effects, EffectKind::PointOffset, &point.name));
+            let dx = sum(at(effects, EffectKind::PointOffset, Place::Point(point.name.clone())));
             if dx != 0.0 {
                 structure.displaced.insert(point.name.clone(), bodies.station(point.body, x + dx)?);
             }

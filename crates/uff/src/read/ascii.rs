@@ -1,10 +1,10 @@
 //! Record 12 in ASCII: numbers in columns, or, where the columns do not fit, numbers between blanks.
 
 use super::cursor::{Cursor, Line, excerpt, is_delimiter};
-use super::dataset58::Values;
 use super::header::Form;
 use super::number::{self, BadNumber};
-use crate::{Precision, ReadError};
+use super::values::Values;
+use crate::{Precision, ReadError, TextProblem};
 
 /// Column widths of one line: `6E13.5`, `4E20.12`, `2(E13.5,E20.12)` or `E13.5,2E20.12`.
 fn line_layout(form: &Form) -> &'static [usize] {
@@ -17,36 +17,33 @@ fn line_layout(form: &Form) -> &'static [usize] {
 }
 
 /// Reads the values of a dataset 58 and its closing delimiter.
-pub(super) fn read(cursor: &mut Cursor, dataset: usize, form: &Form) -> Result<Values, ReadError> {
+pub(super) fn read(cursor: &mut Cursor, form: &Form) -> Result<Values, ReadError> {
     let per_point = form.values_per_point();
     // A count beyond all bounds reads as one that the file cannot fulfil.
     let expected = form.points.saturating_mul(per_point);
-    let numbers = numbers(cursor, dataset, line_layout(form), expected, per_point)?;
+    let numbers = numbers(cursor, line_layout(form), expected, per_point)?;
     Ok(Values::from_interleaved(numbers, form))
 }
 
 /// Reads `expected` numbers, `per_point` of them a point, laid out in lines of `widths`, and the closing delimiter.
 pub(super) fn numbers(
     cursor: &mut Cursor,
-    dataset: usize,
     widths: &'static [usize],
     expected: usize,
     per_point: usize,
 ) -> Result<Vec<f64>, ReadError> {
     // No number takes less than two bytes: a wild count allocates no more than the file could hold.
     let mut numbers = Vec::with_capacity(expected.min(cursor.rest().len() / 2 + widths.len()));
-    let mut reader = LineReader { dataset, widths, per_point, expected, numbers: &mut numbers };
+    let mut reader = LineReader { widths, per_point, expected, numbers: &mut numbers };
     while let Some(line) = cursor.next_filled_line() {
         if is_delimiter(line.bytes) {
             let found = numbers.len();
             if found == expected {
                 return Ok(numbers);
             }
-            let line = cursor.line_number(line.start);
-            return Err(ReadError::TooFewValues { dataset, line, expected, found });
+            return Err(cursor.error(line, TextProblem::TooFew { expected, found }));
         }
-        let too_many =
-            || ReadError::TooManyValues { dataset, line: cursor.line_number(line.start), expected };
+        let too_many = || cursor.error(line, TextProblem::TooMany(expected));
         if reader.numbers.len() >= expected {
             return Err(too_many());
         }
@@ -59,7 +56,7 @@ pub(super) fn numbers(
             reader.numbers.truncate(expected);
         }
     }
-    Err(cursor.truncated(dataset, "data or the `    -1` line that closes the dataset"))
+    Err(cursor.truncated("data or the `    -1` line that closes the dataset"))
 }
 
 /// Why the columns of a line do not fit.
@@ -71,7 +68,6 @@ enum Misfit {
 }
 
 struct LineReader<'n> {
-    dataset: usize,
     widths: &'static [usize],
     per_point: usize,
     expected: usize,
@@ -82,12 +78,9 @@ impl LineReader<'_> {
     fn read(&mut self, cursor: &Cursor, line: Line) -> Result<(), ReadError> {
         let before = self.numbers.len();
         let text = line.bytes.trim_ascii_end();
-        let (dataset, line_number) = (self.dataset, || cursor.line_number(line.start));
         match self.by_columns(text, false) {
             Ok(()) => return Ok(()),
-            Err(Misfit::Blank(column)) => {
-                return Err(ReadError::BlankValue { dataset, line: line_number(), column });
-            }
+            Err(Misfit::Blank(column)) => return Err(cursor.error(line, TextProblem::Blank(column))),
             Err(Misfit::OtherLayout) => self.numbers.truncate(before),
         }
         let Err((word, bad)) = self.by_blanks(text) else { return Ok(()) };
@@ -95,13 +88,13 @@ impl LineReader<'_> {
         self.numbers.truncate(before);
         if bad == BadNumber::NotFinite {
             let value = blank_delimited.min(self.expected.saturating_sub(1));
-            return Err(ReadError::NotFinite { dataset, point: value / self.per_point });
+            return Err(ReadError::NotFinite { dataset: cursor.dataset, point: value / self.per_point });
         }
         // Unsigned numbers that fill their columns touch without a mark: only the columns can part them.
         if self.by_columns(text, true).is_ok() {
             return Ok(());
         }
-        Err(ReadError::NotANumber { dataset, line: line_number(), found: excerpt(word) })
+        Err(cursor.error(line, TextProblem::NotANumber(excerpt(word))))
     }
 
     /// Reads a line by its columns. Unless `touching`, a number that runs into an unsigned one counts as a misfit: it is

@@ -3,9 +3,9 @@
 use num_complex::Complex64;
 
 use super::cursor::Cursor;
-use super::dataset58::Values;
 use super::header::Form;
-use crate::{ByteOrder, Data, Precision, ReadError};
+use super::values::Values;
+use crate::{BinaryProblem, ByteOrder, Data, Precision, ReadError};
 
 /// How wide the numbers of a payload are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -43,15 +43,14 @@ fn width(precision: Precision) -> usize {
 /// Reads the payload and its closing delimiter; the precision is that of the ordinates as they are stored.
 pub(super) fn read(
     cursor: &mut Cursor,
-    dataset: usize,
     form: &Form,
     order: ByteOrder,
     stated: u64,
 ) -> Result<(Values, Precision), ReadError> {
-    let (layout, payload, after) = find_layout(cursor, dataset, form, stated)?;
+    let (layout, payload, after) = find_layout(cursor, form, stated)?;
     let values = decode(payload, form, layout, order).map_err(|NotFinite { value }| {
         let values_per_element = if form.even { 1 } else { form.values_per_point() };
-        ReadError::NotFinite { dataset, point: value / values_per_element }
+        ReadError::NotFinite { dataset: cursor.dataset, point: value / values_per_element }
     })?;
     cursor.position = after;
     // An empty payload fits every layout and says nothing of its precision.
@@ -61,7 +60,6 @@ pub(super) fn read(
 /// The layout after which a closing delimiter stands; of several, the one whose length the header states.
 fn find_layout<'a>(
     cursor: &Cursor<'a>,
-    dataset: usize,
     form: &Form,
     stated: u64,
 ) -> Result<(Layout, &'a [u8], usize), ReadError> {
@@ -76,25 +74,30 @@ fn find_layout<'a>(
             found = Some((layout, payload, after));
         }
     }
-    found.ok_or_else(|| explain(cursor, dataset, form, stated))
+    found.ok_or_else(|| explain(cursor, form, stated))
 }
 
 /// Why no layout fits.
-fn explain(cursor: &Cursor, dataset: usize, form: &Form, stated: u64) -> ReadError {
+fn explain(cursor: &Cursor, form: &Form, stated: u64) -> ReadError {
     let points = form.points;
     let per_point = Layout::candidates(form)[0].bytes_per_point(form);
-    let offset = cursor.position;
+    let (dataset, offset) = (cursor.dataset, cursor.position);
     let expected = points as u64 * per_point as u64;
     let left = cursor.rest().len();
     let stated_end = usize::try_from(stated).ok().and_then(|stated| offset.checked_add(stated));
     if stated_end.and_then(|end| cursor.after_closing_delimiter(end)).is_some() {
-        return ReadError::PointsAgainstBytes { dataset, offset, points, stated };
+        let problem = BinaryProblem::PointsAgainstBytes { points, stated };
+        return ReadError::Binary { dataset, offset, problem };
     }
     match usize::try_from(expected) {
         Ok(expected) if expected < left => {
-            ReadError::BinaryEnd { dataset, offset: offset + expected, points, stated }
+            let problem = BinaryProblem::NoEnd { points, stated };
+            ReadError::Binary { dataset, offset: offset + expected, problem }
         }
-        _ => ReadError::TruncatedBinary { dataset, offset, points, expected, found: left },
+        _ => {
+            let problem = BinaryProblem::Truncated { points, expected, found: left };
+            ReadError::Binary { dataset, offset, problem }
+        }
     }
 }
 

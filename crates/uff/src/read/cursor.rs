@@ -1,12 +1,14 @@
 //! Where the reader stands in the file: lines, delimiters, and line numbers for messages.
 
-use crate::ReadError;
+use crate::{ReadError, TextProblem};
 
 /// Reading position in the bytes of a file.
 #[derive(Clone)]
 pub(super) struct Cursor<'a> {
     pub(super) bytes: &'a [u8],
     pub(super) position: usize,
+    /// The dataset that is being read, counted from 1.
+    pub(super) dataset: usize,
 }
 
 /// One line without its line end (LF or CRLF).
@@ -15,13 +17,6 @@ pub(super) struct Line<'a> {
     /// Byte offset of its first character.
     pub(super) start: usize,
     pub(super) bytes: &'a [u8],
-}
-
-impl Line<'_> {
-    /// The line as a message quotes it.
-    pub(super) fn excerpt(&self) -> String {
-        excerpt(self.bytes)
-    }
 }
 
 /// Text as a message quotes it: what is printable of its first 40 characters.
@@ -44,7 +39,7 @@ impl<'a> Cursor<'a> {
     /// At the first line, behind a byte order mark if there is one.
     pub(super) fn new(bytes: &'a [u8]) -> Self {
         let position = if bytes.starts_with(b"\xef\xbb\xbf") { 3 } else { 0 };
-        Cursor { bytes, position }
+        Cursor { bytes, position, dataset: 0 }
     }
 
     /// What is left of the file.
@@ -87,7 +82,7 @@ impl<'a> Cursor<'a> {
     pub(super) fn after_closing_delimiter(&self, end: usize) -> Option<usize> {
         let tail = self.bytes.get(end..)?;
         let line_ends = tail.iter().take_while(|byte| matches!(byte, b'\r' | b'\n')).count();
-        let mut cursor = Cursor { bytes: self.bytes, position: end + line_ends };
+        let mut cursor = Cursor { position: end + line_ends, ..*self };
         // A delimiter line is at most 80 columns and some: no search through megabytes of binary data for its end.
         let line = Cursor { bytes: self.bytes.get(..cursor.position + 200).unwrap_or(self.bytes), ..cursor }
             .next_line()?;
@@ -104,9 +99,34 @@ impl<'a> Cursor<'a> {
         1 + before.iter().filter(|&&byte| byte == b'\n').count()
     }
 
+    /// The error of a line.
+    pub(super) fn error(&self, line: Line, problem: TextProblem) -> ReadError {
+        ReadError::Text { dataset: self.dataset, line: self.line_number(line.start), problem }
+    }
+
+    /// The error of a line that holds something else than what is expected.
+    pub(super) fn unexpected(&self, line: Line, expected: &'static str, found: &[u8]) -> ReadError {
+        self.error(line, TextProblem::Field { expected, found: excerpt(found) })
+    }
+
+    /// The next line, which the file must have.
+    pub(super) fn expect_line(&mut self, expected: &'static str) -> Result<Line<'a>, ReadError> {
+        self.next_line().ok_or_else(|| self.truncated(expected))
+    }
+
+    /// The next line of a header, which must not close the dataset yet.
+    pub(super) fn header_line(&mut self, expected: &'static str) -> Result<Line<'a>, ReadError> {
+        let line = self.expect_line(expected)?;
+        if is_delimiter(line.bytes) {
+            return Err(self.error(line, TextProblem::ClosedEarly(expected)));
+        }
+        Ok(line)
+    }
+
     /// The error of a file that ends too early.
-    pub(super) fn truncated(&self, dataset: usize, expected: &'static str) -> ReadError {
-        ReadError::Truncated { dataset, line: self.line_number(self.bytes.len().saturating_sub(1)), expected }
+    pub(super) fn truncated(&self, expected: &'static str) -> ReadError {
+        let last = Line { start: self.bytes.len().saturating_sub(1), bytes: &[] };
+        self.error(last, TextProblem::Truncated(expected))
     }
 }
 

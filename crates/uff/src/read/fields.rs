@@ -27,12 +27,23 @@ pub(super) struct Cut<'a, const N: usize> {
     pub(super) clean: bool,
 }
 
+impl<'a, const N: usize> Cut<'a, N> {
+    /// The fields, by the record's blanks where its columns are off.
+    pub(super) fn or_by_blanks(self, by_blanks: impl FnOnce() -> Option<[&'a str; N]>) -> [&'a str; N] {
+        if self.clean { self.fields } else { by_blanks().unwrap_or(self.fields) }
+    }
+}
+
 /// Cuts a record by its columns. `N` is the number of number and text fields.
-pub(super) fn cut<'a, const N: usize>(line: &'a str, columns: &[Column]) -> Cut<'a, N> {
+pub(super) fn cut<'a, 'c, const N: usize>(
+    line: &'a str,
+    columns: impl IntoIterator<Item = &'c Column>,
+) -> Cut<'a, N> {
     let mut cut = Cut { fields: [""; N], clean: true };
     let mut slots = cut.fields.iter_mut();
     let mut start = 0;
-    for &column in columns {
+    for column in columns {
+        let column = *column;
         let (width, numeric) = match column {
             Column::Gap(width) => {
                 cut.clean &= columns_of(line, start, start + width).trim().is_empty();
@@ -87,13 +98,9 @@ impl BinaryForm {
     pub(super) fn read(form: &[u8]) -> Option<Self> {
         let form = line_text(form);
         let columns = [Column::Number(6), Column::Number(6), Column::Number(12), Column::Number(12)];
-        let by_columns: Cut<4> = cut(&form, &columns);
         let mut words = form.split_ascii_whitespace();
-        let fields = if by_columns.clean {
-            by_columns.fields
-        } else {
-            std::array::from_fn(|_| words.next().unwrap_or_default())
-        };
+        let by_blanks = || Some(std::array::from_fn(|_| words.next().unwrap_or_default()));
+        let fields = cut::<4>(&form, &columns).or_by_blanks(by_blanks);
         Some(BinaryForm {
             byte_order: fields[0].parse().ok()?,
             float_format: fields[1].parse().ok()?,

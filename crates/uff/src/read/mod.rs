@@ -8,9 +8,10 @@ mod fields;
 mod header;
 mod number;
 mod units;
+mod values;
 
 use crate::{ReadError, UffFile, Units};
-use cursor::{Cursor, Line, is_delimiter};
+use cursor::{Cursor, Line, excerpt, is_delimiter};
 
 /// Reads every function (dataset 58 and 58b) of a universal file.
 ///
@@ -21,18 +22,13 @@ pub fn read(bytes: &[u8]) -> Result<UffFile, ReadError> {
     let mut cursor = Cursor::new(bytes);
     let mut file = UffFile::default();
     let mut units: Option<Units> = None;
-    let mut dataset = 0;
-    while open_dataset(&mut cursor, dataset + 1)? {
-        dataset += 1;
-        let identification = Identification::read(&mut cursor, dataset)?;
+    while open_dataset(&mut cursor)? {
+        let identification = Identification::read(&mut cursor)?;
         match identification.number {
-            58 => {
-                let function = dataset58::read(&mut cursor, dataset, &identification, units.as_ref())?;
-                file.datasets.push(function);
-            }
-            164 => units = Some(units::read(&mut cursor, dataset)?),
+            58 => file.datasets.push(dataset58::read(&mut cursor, &identification, units.as_ref())?),
+            164 => units = Some(units::read(&mut cursor)?),
             other => {
-                skip(&mut cursor, dataset, &identification)?;
+                skip(&mut cursor, &identification)?;
                 *file.skipped.entry(other).or_default() += 1;
             }
         }
@@ -40,18 +36,20 @@ pub fn read(bytes: &[u8]) -> Result<UffFile, ReadError> {
     Ok(file)
 }
 
-/// Passes the opening delimiter; false at the end of the file.
-fn open_dataset(cursor: &mut Cursor, dataset: usize) -> Result<bool, ReadError> {
-    let Some(line) = cursor.next_filled_line() else {
-        return if dataset == 1 { Err(ReadError::Empty) } else { Ok(false) };
-    };
-    if is_delimiter(line.bytes) {
-        return Ok(true);
+/// Passes the opening delimiter of the next dataset; false at the end of the file.
+fn open_dataset(cursor: &mut Cursor) -> Result<bool, ReadError> {
+    cursor.dataset += 1;
+    let dataset = cursor.dataset;
+    match cursor.next_filled_line() {
+        None if dataset == 1 => Err(ReadError::Empty),
+        None => Ok(false),
+        Some(line) if is_delimiter(line.bytes) => Ok(true),
+        Some(_) if dataset == 1 => Err(ReadError::NotUff),
+        Some(line) => {
+            let (line, found) = (cursor.line_number(line.start), excerpt(line.bytes));
+            Err(ReadError::BetweenDatasets { dataset, line, found })
+        }
     }
-    if dataset == 1 {
-        return Err(ReadError::NotUff);
-    }
-    Err(ReadError::BetweenDatasets { dataset, line: cursor.line_number(line.start), found: line.excerpt() })
 }
 
 /// The line after the delimiter: dataset number, and for binary datasets how they are stored.
@@ -63,8 +61,8 @@ struct Identification<'a> {
 }
 
 impl<'a> Identification<'a> {
-    fn read(cursor: &mut Cursor<'a>, dataset: usize) -> Result<Self, ReadError> {
-        let line = cursor.next_line().ok_or_else(|| cursor.truncated(dataset, "a dataset number"))?;
+    fn read(cursor: &mut Cursor<'a>) -> Result<Self, ReadError> {
+        let line = cursor.expect_line("a dataset number")?;
         let text = line.bytes.trim_ascii_start();
         let digits = text.iter().take_while(|byte| byte.is_ascii_digit()).count();
         let (number, rest) = text.split_at(digits);
@@ -77,17 +75,13 @@ impl<'a> Identification<'a> {
         let number = std::str::from_utf8(number).ok().and_then(|number| number.parse().ok());
         match (number, binary) {
             (Some(number), Some(binary)) => Ok(Identification { line, number, binary }),
-            _ => Err(ReadError::DatasetNumber {
-                dataset,
-                line: cursor.line_number(line.start),
-                found: line.excerpt(),
-            }),
+            _ => Err(cursor.unexpected(line, "a dataset number in columns 1 to 6", line.bytes)),
         }
     }
 }
 
 /// Passes a dataset this crate does not read, to behind its closing delimiter.
-fn skip(cursor: &mut Cursor, dataset: usize, identification: &Identification) -> Result<(), ReadError> {
+fn skip(cursor: &mut Cursor, identification: &Identification) -> Result<(), ReadError> {
     if let Some(form) = identification.binary
         && let Some(after) = end_of_foreign_binary(cursor, form)
     {
@@ -99,7 +93,7 @@ fn skip(cursor: &mut Cursor, dataset: usize, identification: &Identification) ->
             return Ok(());
         }
     }
-    Err(cursor.truncated(dataset, "the `    -1` line that closes the dataset"))
+    Err(cursor.truncated("the `    -1` line that closes the dataset"))
 }
 
 /// Where a binary dataset of another number ends, by the text lines and bytes it states.

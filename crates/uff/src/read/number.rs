@@ -11,134 +11,36 @@ pub(super) enum BadNumber {
     NotFinite,
 }
 
-/// Powers of ten that a double holds exactly.
-const POWERS: [f64; 23] = [
-    1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18,
-    1e19, 1e20, 1e21, 1e22,
-];
-
 /// Value of a number with blanks around it, correctly rounded. Exponent letters e, E, d and D; three exponent digits may
 /// stand without a letter (`1.00000-100`), as Fortran prints them where the letter finds no room.
 pub(super) fn parse(text: &[u8]) -> Result<f64, BadNumber> {
-    let text = text.trim_ascii();
-    let scanned = match Scanned::scan(text) {
-        Some(scanned) => scanned,
-        None if text.is_empty() => return Err(BadNumber::Blank),
-        None if names_no_number(text) => return Err(BadNumber::NotFinite),
-        None => return Err(BadNumber::NotANumber),
+    let text = std::str::from_utf8(text.trim_ascii()).map_err(|_| BadNumber::NotANumber)?;
+    let value: f64 = match text.parse() {
+        Ok(value) => value,
+        Err(_) if text.is_empty() => return Err(BadNumber::Blank),
+        Err(_) if names_no_number(text) => return Err(BadNumber::NotFinite),
+        Err(_) => with_exponent_letter(text).parse().map_err(|_| BadNumber::NotANumber)?,
     };
-    let value = scanned.value(text);
     if value.is_finite() { Ok(value) } else { Err(BadNumber::NotFinite) }
 }
 
-/// A number taken apart: mantissa·10^exponent.
-struct Scanned {
-    negative: bool,
-    mantissa: u64,
-    /// The mantissa holds every digit.
-    complete: bool,
-    exponent: i32,
-    /// Length of the mantissa's text, and the written exponent: what the slow path reads again.
-    mantissa_length: usize,
-    written_exponent: i32,
-}
-
-impl Scanned {
-    fn scan(text: &[u8]) -> Option<Self> {
-        let mut at = 0;
-        let negative = text.first() == Some(&b'-');
-        if matches!(text.first(), Some(b'-' | b'+')) {
-            at = 1;
-        }
-        let (mut mantissa, mut digits, mut fraction, mut point, mut complete) =
-            (0_u64, 0_usize, 0_i32, false, true);
-        while let Some(&byte) = text.get(at) {
-            match byte {
-                b'0'..=b'9' => {
-                    digits += 1;
-                    // 10¹⁸ leaves room for one more digit in 64 bits.
-                    if mantissa < 1_000_000_000_000_000_000 {
-                        mantissa = mantissa * 10 + u64::from(byte - b'0');
-                        fraction += i32::from(point);
-                    } else {
-                        complete = false;
-                    }
-                }
-                b'.' if !point => point = true,
-                _ => break,
-            }
-            at += 1;
-        }
-        if digits == 0 {
-            return None;
-        }
-        let written_exponent = scan_exponent(&text[at..], point)?;
-        Some(Scanned {
-            negative,
-            mantissa,
-            complete,
-            exponent: written_exponent - fraction,
-            mantissa_length: at,
-            written_exponent,
-        })
+/// The text with `e` for its exponent letter, or before an exponent that has none.
+fn with_exponent_letter(text: &str) -> String {
+    if let Some((mantissa, exponent)) = text.rfind(['+', '-']).map(|sign| text.split_at(sign))
+        // Three digits behind a decimal point, or `1.5-2.5` would be a number.
+        && exponent.len() == 4
+        && mantissa.contains('.')
+        && mantissa.ends_with(|c: char| c.is_ascii_digit() || c == '.')
+    {
+        return format!("{mantissa}e{exponent}");
     }
-
-    fn value(&self, text: &[u8]) -> f64 {
-        let power = POWERS.get(self.exponent.unsigned_abs() as usize);
-        // Both factors exact in a double, so the one operation rounds correctly.
-        if let (true, true, Some(power)) = (self.complete, self.mantissa <= 1 << 53, power) {
-            let mantissa = self.mantissa as f64;
-            let magnitude = if self.exponent < 0 { mantissa / power } else { mantissa * power };
-            return if self.negative { -magnitude } else { magnitude };
-        }
-        self.value_by_the_standard_library(&text[..self.mantissa_length])
-    }
-
-    /// The rare rest, respelled in the standard library's grammar.
-    fn value_by_the_standard_library(&self, mantissa: &[u8]) -> f64 {
-        use std::io::Write;
-        let mut buffer = [0_u8; 64];
-        let mut room = &mut buffer[..];
-        let written = room.write_all(mantissa).and_then(|()| write!(room, "e{}", self.written_exponent));
-        let left = room.len();
-        let respelled = match written {
-            Ok(()) => std::str::from_utf8(&buffer[..64 - left]).unwrap_or_default().parse(),
-            Err(_) => format!("{}e{}", String::from_utf8_lossy(mantissa), self.written_exponent).parse(),
-        };
-        respelled.unwrap_or(f64::NAN)
-    }
-}
-
-/// The exponent that ends a number; 0 if there is none.
-fn scan_exponent(text: &[u8], mantissa_has_point: bool) -> Option<i32> {
-    let digits = match text {
-        [] => return Some(0),
-        [b'e' | b'E' | b'd' | b'D', rest @ ..] => rest,
-        // Without a letter: three digits, or `1.5-2.5` would be a number.
-        [b'+' | b'-', a, b, c]
-            if mantissa_has_point && [a, b, c].iter().all(|digit| digit.is_ascii_digit()) =>
-        {
-            text
-        }
-        _ => return None,
-    };
-    let (negative, digits) = match digits {
-        [b'-', digits @ ..] => (true, digits),
-        [b'+', digits @ ..] => (false, digits),
-        digits => (false, digits),
-    };
-    if digits.is_empty() || !digits.iter().all(u8::is_ascii_digit) {
-        return None;
-    }
-    let magnitude = digits.iter().fold(0_i32, |sum, digit| (sum * 10 + i32::from(digit - b'0')).min(100_000));
-    Some(if negative { -magnitude } else { magnitude })
+    text.replace(['d', 'D'], "e")
 }
 
 /// NaN and infinity in the spellings of Fortran and of Microsoft's C.
-fn names_no_number(text: &[u8]) -> bool {
-    let text = text.strip_prefix(b"-").or(text.strip_prefix(b"+")).unwrap_or(text);
-    let starts = |name: &[u8]| text.get(..name.len()).is_some_and(|start| start.eq_ignore_ascii_case(name));
-    starts(b"nan") || starts(b"inf") || starts(b"1.#")
+fn names_no_number(text: &str) -> bool {
+    let name = text.trim_start_matches(['+', '-']).get(..3).unwrap_or_default().to_ascii_lowercase();
+    ["nan", "inf", "1.#"].contains(&name.as_str())
 }
 
 #[cfg(test)]

@@ -1,48 +1,31 @@
 //! Dataset 164: units.
 
 use super::ascii;
-use super::cursor::{Cursor, excerpt, is_delimiter};
+use super::cursor::{Cursor, Line};
 use super::fields::{Column, columns_of, cut, line_text};
-use crate::{ReadError, TemperatureMode, Units};
+use crate::{ReadError, TemperatureMode, TextProblem, Units};
 
 const EXPECTED: &str = "a units code, a description and a temperature mode (dataset 164, record 1)";
 const FACTORS: &str = "factors of length, force and temperature above zero (dataset 164, record 2)";
 
 /// Reads a dataset 164 from behind its identification line to behind its closing delimiter.
-pub(super) fn read(cursor: &mut Cursor, dataset: usize) -> Result<Units, ReadError> {
-    let line = cursor.next_line().ok_or_else(|| cursor.truncated(dataset, EXPECTED))?;
-    let line_number = cursor.line_number(line.start);
-    if is_delimiter(line.bytes) {
-        return Err(ReadError::HeaderEndsEarly { dataset, line: line_number, expected: EXPECTED });
-    }
+pub(super) fn read(cursor: &mut Cursor) -> Result<Units, ReadError> {
+    let line = cursor.header_line(EXPECTED)?;
     let text = line_text(line.bytes);
-    let (code, description, temperature_mode) = record1(&text).ok_or_else(|| ReadError::Header {
-        dataset,
-        line: line_number,
-        expected: EXPECTED,
-        found: excerpt(line.bytes),
-    })?;
-    let factors = ascii::numbers(cursor, dataset, &[25; 3], 4, 4).map_err(|error| match error {
+    let (code, description, temperature_mode) =
+        record1(&text).ok_or_else(|| cursor.unexpected(line, EXPECTED, line.bytes))?;
+    let second = Line { start: cursor.position, bytes: &[] };
+    let factors = ascii::numbers(cursor, &[25; 3], 4, 4).map_err(|error| match error {
         // Said of spectral lines, which units do not have.
-        ReadError::NotFinite { .. } => ReadError::Header {
-            dataset,
-            line: line_number + 1,
-            expected: FACTORS,
-            found: "NaN or infinity".to_owned(),
-        },
+        ReadError::NotFinite { .. } => cursor.unexpected(second, FACTORS, b"NaN or infinity"),
         error => error,
     })?;
     let &[length_factor, force_factor, temperature_factor, temperature_offset] = factors.as_slice() else {
-        return Err(ReadError::TooFewValues {
-            dataset,
-            line: line_number + 1,
-            expected: 4,
-            found: factors.len(),
-        });
+        return Err(cursor.error(second, TextProblem::TooFew { expected: 4, found: factors.len() }));
     };
     if [length_factor, force_factor, temperature_factor].iter().any(|&factor| factor <= 0.0) {
         let found = format!("{length_factor} {force_factor} {temperature_factor}");
-        return Err(ReadError::Header { dataset, line: line_number + 1, expected: FACTORS, found });
+        return Err(cursor.unexpected(second, FACTORS, found.as_bytes()));
     }
     Ok(Units {
         code,

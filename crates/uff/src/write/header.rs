@@ -2,12 +2,12 @@
 
 use std::io::Write;
 
-use super::{DELIMITER, WriteError, number, values_per_point};
+use super::{DELIMITER, WriteProblem, number, values_per_point};
 use crate::{Abscissa, Axis, ByteOrder, Data, Dataset58, Encoding, Node, Precision, TemperatureMode, Units};
 
 /// Writes everything from the opening delimiter to record 11.
-pub(super) fn write(out: &mut Vec<u8>, function: &Dataset58, number: usize) -> Result<(), WriteError> {
-    let mut record = Record { out, function: number };
+pub(super) fn write(out: &mut Vec<u8>, function: &Dataset58) -> Result<(), WriteProblem> {
+    let mut record = Record { out };
     record.out.extend_from_slice(DELIMITER);
     record.identification(function)?;
     for (id_line, field) in function.id_lines.iter().zip(ID_LINES) {
@@ -23,13 +23,13 @@ pub(super) fn write(out: &mut Vec<u8>, function: &Dataset58, number: usize) -> R
 }
 
 /// Writes a dataset 164.
-pub(super) fn write_units(out: &mut Vec<u8>, units: &Units, number: usize) -> Result<(), WriteError> {
+pub(super) fn write_units(out: &mut Vec<u8>, units: &Units) -> Result<(), WriteProblem> {
     let factors = [units.length_factor, units.force_factor, units.temperature_factor];
     let positive = factors.iter().all(|factor| factor.is_finite() && *factor > 0.0);
     if !positive || !units.temperature_offset.is_finite() {
-        return Err(WriteError::UnitFactors { function: number });
+        return Err(WriteProblem::UnitFactors);
     }
-    let mut record = Record { out, function: number };
+    let mut record = Record { out };
     record.out.extend_from_slice(DELIMITER);
     record.out.extend_from_slice(b"   164");
     record.blanks(74);
@@ -57,7 +57,6 @@ const ID_LINES: [&str; 5] = ["ID line 1", "ID line 2", "ID line 3", "ID line 4",
 /// The header under construction.
 struct Record<'o> {
     out: &'o mut Vec<u8>,
-    function: usize,
 }
 
 impl Record<'_> {
@@ -70,30 +69,30 @@ impl Record<'_> {
     }
 
     /// Right-justified integer.
-    fn integer(&mut self, value: i64, width: usize, field: &'static str) -> Result<(), WriteError> {
+    fn integer(&mut self, value: i64, width: usize, field: &'static str) -> Result<(), WriteProblem> {
         let before = self.out.len();
         // Writing to a vector cannot fail.
         let _ = write!(self.out, "{value:width$}");
         if self.out.len() - before > width {
-            return Err(WriteError::Number { function: self.function, field, width, found: value });
+            return Err(WriteProblem::Number { field, width, found: value });
         }
         Ok(())
     }
 
     /// Left-justified text; none is spelled `NONE`, as the specification demands.
-    fn text(&mut self, text: &str, width: usize, field: &'static str) -> Result<(), WriteError> {
+    fn text(&mut self, text: &str, width: usize, field: &'static str) -> Result<(), WriteProblem> {
         let text = if text.trim().is_empty() { "NONE" } else { text };
         let columns = text.chars().count();
         if columns > width || text.chars().any(char::is_control) || text.trim() == "-1" {
             let found = text.chars().take(100).collect();
-            return Err(WriteError::Text { function: self.function, field, width, found });
+            return Err(WriteProblem::Text { field, width, found });
         }
         self.out.extend_from_slice(text.as_bytes());
         self.blanks(width - columns);
         Ok(())
     }
 
-    fn identification(&mut self, function: &Dataset58) -> Result<(), WriteError> {
+    fn identification(&mut self, function: &Dataset58) -> Result<(), WriteProblem> {
         self.out.extend_from_slice(b"    58");
         match function.encoding {
             Encoding::Ascii => self.blanks(74),
@@ -119,7 +118,7 @@ impl Record<'_> {
     }
 
     /// Record 6.
-    fn identity(&mut self, function: &Dataset58) -> Result<(), WriteError> {
+    fn identity(&mut self, function: &Dataset58) -> Result<(), WriteProblem> {
         self.integer(i64::from(function.function.code()), 5, "the function type")?;
         self.integer(function.function_id, 10, "the function identification number")?;
         self.integer(function.sequence_number, 5, "the sequence number")?;
@@ -136,7 +135,7 @@ impl Record<'_> {
         Ok(())
     }
 
-    fn node(&mut self, node: &Node, fields: [&'static str; 3]) -> Result<(), WriteError> {
+    fn node(&mut self, node: &Node, fields: [&'static str; 3]) -> Result<(), WriteProblem> {
         self.blanks(1);
         self.text(&node.entity, 10, fields[0])?;
         self.integer(node.number, 10, fields[1])?;
@@ -144,7 +143,7 @@ impl Record<'_> {
     }
 
     /// Record 7.
-    fn form(&mut self, function: &Dataset58) -> Result<(), WriteError> {
+    fn form(&mut self, function: &Dataset58) -> Result<(), WriteProblem> {
         let data_type = match (&function.data, function.precision) {
             (Data::Real(_), Precision::Single) => 2,
             (Data::Real(_), Precision::Double) => 4,
@@ -167,7 +166,7 @@ impl Record<'_> {
     }
 
     /// Records 8 to 11.
-    fn axis(&mut self, axis: &Axis) -> Result<(), WriteError> {
+    fn axis(&mut self, axis: &Axis) -> Result<(), WriteProblem> {
         self.integer(i64::from(axis.data_type), 10, "the data type of an axis")?;
         for exponent in axis.exponents {
             self.integer(i64::from(exponent), 5, "a unit exponent of an axis")?;

@@ -5,7 +5,7 @@ mod header;
 mod number;
 mod write_error;
 
-pub use write_error::WriteError;
+pub use write_error::{WriteError, WriteProblem};
 
 use crate::{Abscissa, Data, Dataset58, Encoding, Precision, Units};
 
@@ -24,23 +24,33 @@ use crate::{Abscissa, Data, Dataset58, Encoding, Precision, Units};
 /// or a number wider than its columns, an abscissa of another length than the data. Nothing is cut off or rounded to fit.
 pub fn write(datasets: &[Dataset58]) -> Result<Vec<u8>, WriteError> {
     let mut out = Vec::with_capacity(datasets.iter().map(size_estimate).sum());
-    let mut in_force: Option<&Units> = None;
+    let mut in_force = None;
     for (index, function) in datasets.iter().enumerate() {
-        let number = index + 1;
-        check_values(function, number)?;
-        match (&function.units, in_force) {
-            (Some(units), before) if Some(units) != before => {
-                header::write_units(&mut out, units, number)?;
-                in_force = Some(units);
-            }
-            (None, Some(_)) => return Err(WriteError::UnitsWithdrawn { function: number }),
-            _ => {}
-        }
-        header::write(&mut out, function, number)?;
-        data::write(&mut out, function);
-        out.extend_from_slice(DELIMITER);
+        write_function(&mut out, function, &mut in_force)
+            .map_err(|problem| WriteError { function: index + 1, problem })?;
     }
     Ok(out)
+}
+
+/// Writes a function, its units before it where others are `in_force`.
+fn write_function<'d>(
+    out: &mut Vec<u8>,
+    function: &'d Dataset58,
+    in_force: &mut Option<&'d Units>,
+) -> Result<(), WriteProblem> {
+    check_values(function)?;
+    match (&function.units, *in_force) {
+        (Some(units), before) if Some(units) != before => {
+            header::write_units(out, units)?;
+            *in_force = Some(units);
+        }
+        (None, Some(_)) => return Err(WriteProblem::UnitsWithdrawn),
+        _ => {}
+    }
+    header::write(out, function)?;
+    data::write(out, function);
+    out.extend_from_slice(DELIMITER);
+    Ok(())
 }
 
 const DELIMITER: &[u8] = b"    -1\n";
@@ -66,30 +76,30 @@ fn values_per_point(function: &Dataset58) -> usize {
 }
 
 /// Refuses what no reader could take for a value.
-fn check_values(function: &Dataset58, number: usize) -> Result<(), WriteError> {
+fn check_values(function: &Dataset58) -> Result<(), WriteProblem> {
     let (ordinates, abscissae) = (function.data.len(), function.abscissa.len());
     if ordinates != abscissae {
-        return Err(WriteError::LengthMismatch { function: number, ordinates, abscissae });
+        return Err(WriteProblem::LengthMismatch { ordinates, abscissae });
     }
     if let Some(point) = function.data.first_non_finite() {
-        return Err(WriteError::NotFinite { function: number, point });
+        return Err(WriteProblem::NotFinite(point));
     }
     let header_values = match function.abscissa {
         Abscissa::Even { start, step, .. } => [start, step, function.z_value],
         Abscissa::Uneven(_) => [0.0, 0.0, function.z_value],
     };
     if !header_values.iter().all(|value| value.is_finite()) {
-        return Err(WriteError::HeaderNotFinite { function: number });
+        return Err(WriteProblem::HeaderNotFinite);
     }
     if let Abscissa::Uneven(values) = &function.abscissa
         && let Some(point) = values.iter().position(|value| !value.is_finite())
     {
-        return Err(WriteError::NotFinite { function: number, point });
+        return Err(WriteProblem::NotFinite(point));
     }
     // Binary single precision has the range of a 4-byte float.
     let single = function.precision == Precision::Single && function.encoding != Encoding::Ascii;
     if single && let Some(point) = first_beyond_single(function) {
-        return Err(WriteError::BeyondSingle { function: number, point });
+        return Err(WriteProblem::BeyondSingle(point));
     }
     Ok(())
 }

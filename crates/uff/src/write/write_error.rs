@@ -2,50 +2,42 @@
 
 use thiserror::Error;
 
-/// Why functions could not be written. Functions are counted from 1 in the order given.
+/// Why functions could not be written.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
-pub enum WriteError {
+#[error("function {function}: {problem}")]
+pub struct WriteError {
+    /// Which function, counted from 1 in the order given.
+    pub function: usize,
+    /// What is wrong with it.
+    pub problem: WriteProblem,
+}
+
+/// What is wrong with a function that is to be written.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+#[non_exhaustive]
+pub enum WriteProblem {
     /// Abscissa and data differ in length.
-    #[error("function {function}: {ordinates} ordinates on {abscissae} abscissae")]
+    #[error("{ordinates} ordinates on {abscissae} abscissae")]
     LengthMismatch {
-        /// Which function.
-        function: usize,
         /// Number of ordinates.
         ordinates: usize,
         /// Number of abscissae.
         abscissae: usize,
     },
-    /// NaN or infinity among ordinates or abscissae.
-    #[error(
-        "function {function}: the value at spectral line (point) {point}, counted from 0, is not finite; nothing was written"
-    )]
-    NotFinite {
-        /// Which function.
-        function: usize,
-        /// Which point, counted from 0.
-        point: usize,
-    },
+    /// NaN or infinity at this ordinate or abscissa, counted from 0.
+    #[error("the value at spectral line (point) {0}, counted from 0, is not finite; nothing was written")]
+    NotFinite(usize),
     /// NaN or infinity as abscissa start, step or z-value.
-    #[error("function {function}: abscissa start, step or z-value is not finite; nothing was written")]
-    HeaderNotFinite {
-        /// Which function.
-        function: usize,
-    },
-    /// Too large for a 4-byte float.
+    #[error("abscissa start, step or z-value is not finite; nothing was written")]
+    HeaderNotFinite,
+    /// Too large for a 4-byte float, at this point.
     #[error(
-        "function {function}: the value at spectral line (point) {point}, counted from 0, is beyond single precision; write it in double"
+        "the value at spectral line (point) {0}, counted from 0, is beyond single precision; write it in double"
     )]
-    BeyondSingle {
-        /// Which function.
-        function: usize,
-        /// Which point, counted from 0.
-        point: usize,
-    },
+    BeyondSingle(usize),
     /// Text that is wider than its columns, or that a reader would take for something else.
-    #[error("function {function}: {field} takes at most {width} characters of plain text, not `{found}`")]
+    #[error("{field} takes at most {width} characters of plain text, not `{found}`")]
     Text {
-        /// Which function.
-        function: usize,
         /// Which field.
         field: &'static str,
         /// Its columns.
@@ -54,10 +46,8 @@ pub enum WriteError {
         found: String,
     },
     /// A number that is wider than its columns.
-    #[error("function {function}: {field} has {width} columns, too few for {found}")]
+    #[error("{field} has {width} columns, too few for {found}")]
     Number {
-        /// Which function.
-        function: usize,
         /// Which field.
         field: &'static str,
         /// Its columns.
@@ -66,20 +56,12 @@ pub enum WriteError {
         found: i64,
     },
     /// Unit factors that convert nothing.
-    #[error(
-        "function {function}: the unit factors of length, force and temperature must be above zero and all finite"
-    )]
-    UnitFactors {
-        /// Which function.
-        function: usize,
-    },
+    #[error("the unit factors of length, force and temperature must be above zero and all finite")]
+    UnitFactors,
     /// No units after a function with units.
     #[error(
-        "function {function} states no units but follows one that does, and a file cannot take units back; \
+        "states no units but follows one that does, and a file cannot take units back; \
          state its units or write it first"
     )]
-    UnitsWithdrawn {
-        /// Which function.
-        function: usize,
-    },
+    UnitsWithdrawn,
 }

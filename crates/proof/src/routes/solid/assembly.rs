@@ -1,6 +1,7 @@
 //! Two solid blocks on a strip, random, and the lumped fixture that says the same of them.
 
 use crate::GenerationError;
+use crate::generate::{between, log_uniform};
 use jointscope_fixture::Fixture;
 use jointscope_rig::{Structure, StructureError};
 use rand::{Rng, RngExt};
@@ -251,14 +252,4 @@ fn known_to(value: f64, share: f64) -> Value {
 /// An abscissa, known to a tenth of a millimetre.
 fn abscissa(x: f64) -> Value {
     json!({ "value": x, "std": 1e-4 })
-}
-
-/// Uniform between two bounds.
-pub(super) fn between(random: &mut impl Rng, [from, to]: [f64; 2]) -> f64 {
-    random.random_range(from..to)
-}
-
-/// Uniform in the logarithm between two positive bounds.
-pub(super) fn log_uniform(random: &mut impl Rng, [from, to]: [f64; 2]) -> f64 {
-    between(random, [from.ln(), to.ln()]).exp()
 }

@@ -1,8 +1,9 @@
 //! What a solid has that its lumped fixture leaves out, with the effect that says the same in closed form.
 
-use super::assembly::{Assembly, Stoutness, log_uniform};
+use super::assembly::{Assembly, Stoutness};
 use super::twin::Shown;
 use crate::GenerationError;
+use crate::generate::log_uniform;
 use jointscope_fixture::{Dof, Effect, EffectKind, Place};
 use jointscope_rig::random_effect;
 use jointscope_spectra::FrfPair;

@@ -14,28 +14,29 @@ mod score;
 mod tests;
 mod twin;
 
-pub use judged::{SolidEvidence, SolidJudged};
+pub use judged::SolidJudged;
 pub use twin::Shown;
 
-use crate::case::describe;
-use crate::generate::{drawn_hammer, recorded_lines, seed_of};
+use crate::case::effect_value;
+use crate::generate::{drawn_hammer, recorded_lines, seed_of, turn};
 use crate::seal::Sealable;
-use crate::truth_file::{hammer_of, hammer_value};
-use crate::{Case, GenerationError, Role};
+use crate::{Case, GenerationError, Judgeable, Role};
 use assembly::{Assembly, Stoutness};
 use hidden::{CONCEALED, Hidden, IN_THE_SOLID};
 use jointscope_fixture::{Effect, EffectKind, Fixture, Place};
 use jointscope_rig::{HammerTest, StructureError, drawn_within_tolerance, generator};
 use jointscope_spectra::{FrfPair, FrfSet};
 use rand::{Rng, RngExt};
+use serde::Deserialize;
 use serde_json::{Value, json};
 
 pub(crate) use score::score;
 
 /// What is true of a solid case.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Deserialize)]
 pub struct SolidTruth {
     /// The case's number among all.
+    #[serde(rename = "case")]
     pub index: usize,
     /// What its random numbers were seeded with.
     pub source: String,
@@ -48,6 +49,7 @@ pub struct SolidTruth {
     /// The lumped fixture at its true quantities, what is hidden as its `physics`, sizes in closed form.
     pub lumped: Fixture,
     /// Effects that come with what is hidden and are true if found, though they are not asked for.
+    #[serde(skip)]
     pub besides: Vec<Effect>,
     /// How it was measured.
     pub hammer: HammerTest,
@@ -108,17 +110,6 @@ impl SolidTruth {
         Err(GenerationError::Unlucky(index))
     }
 
-    /// The hidden effects, sizes in closed form.
-    pub fn effects(&self) -> &[Effect] {
-        self.lumped.physics()
-    }
-
-    /// What was hidden, in words.
-    pub fn hidden(&self) -> String {
-        let all: Vec<String> = self.effects().iter().map(describe).collect();
-        if all.is_empty() { "nothing".to_owned() } else { all.join(" and ") }
-    }
-
     /// Noise-free accelerances: those recorded, as the measuring chain reads them, and those that nobody records, as a perfect
     /// instrument would.
     ///
@@ -149,25 +140,10 @@ impl SolidTruth {
 
     /// The truth that [`Sealable::to_value`] has written; `None` of anything else.
     pub(crate) fn from_value(value: &Value) -> Option<Self> {
-        let shown = &value["shown"];
-        let lumped = Fixture::from_value(&value["lumped"]).ok()?;
-        let besides = lumped.clone().with_physics(Vec::new()).ok()?.to_value();
-        let mut besides = besides;
-        besides["physics"] = value["besides"].clone();
-        Some(SolidTruth {
-            index: usize::try_from(value["case"].as_u64()?).ok()?,
-            source: value["source"].as_str()?.to_owned(),
-            role: Role::from_name(value["role"].as_str()?)?,
-            solid: Fixture::from_value(&value["solid"]).ok()?,
-            shown: Shown {
-                strip_mass: shown["strip_mass"].as_bool()?,
-                strip_shear: shown["strip_shear"].as_f64(),
-                layer_shear: shown["layer_shear"].as_f64(),
-            },
-            besides: Fixture::from_value(&besides).ok()?.physics().to_vec(),
-            lumped,
-            hammer: hammer_of(&value["hammer"])?,
-        })
+        let mut with_besides = value["lumped"].clone();
+        with_besides["physics"] = value["besides"].clone();
+        let besides = Fixture::from_value(&with_besides).ok()?.physics().to_vec();
+        Some(SolidTruth { besides, ..SolidTruth::deserialize(value).ok()? })
     }
 }
 
@@ -177,16 +153,13 @@ impl Sealable for SolidTruth {
             "case": self.index,
             "route": "solid",
             "source": self.source,
-            "role": self.role.name(),
+            "role": self.role,
             "hidden": self.hidden(),
-            "lumped": self.lumped.to_value(),
-            "besides": self.besides.iter().map(crate::case::effect_value).collect::<Vec<_>>(),
-            "solid": self.solid.to_value(),
-            "shown": {
-                "strip_mass": self.shown.strip_mass, "strip_shear": self.shown.strip_shear,
-                "layer_shear": self.shown.layer_shear,
-            },
-            "hammer": hammer_value(&self.hammer),
+            "lumped": self.lumped,
+            "besides": self.besides.iter().map(effect_value).collect::<Vec<_>>(),
+            "solid": self.solid,
+            "shown": self.shown,
+            "hammer": self.hammer,
         })
     }
 }
@@ -197,12 +170,8 @@ fn transverse<const N: usize>(pairs: [(&str, &str); N]) -> [FrfPair; N] {
 
 /// What is concealed in a case: singles take all in turn, of two the first is in the solid itself.
 fn concealed(role: Role, number: usize, random: &mut impl Rng) -> Vec<hidden::Concealed> {
-    let singles = |number: usize| {
-        let count = |roles: &[Role]| roles.iter().filter(|role| **role == Role::Single).count();
-        number / ROLES.len() * count(&ROLES) + count(&ROLES[..number % ROLES.len()])
-    };
     match role {
-        Role::Single => vec![CONCEALED[singles(number) % CONCEALED.len()]],
+        Role::Single => vec![CONCEALED[turn(&ROLES, number) % CONCEALED.len()]],
         Role::Double => {
             let first = random.random_range(0..IN_THE_SOLID);
             let step = random.random_range(1..CONCEALED.len());

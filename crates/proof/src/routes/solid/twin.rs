@@ -5,9 +5,10 @@ use jointscope_fem::{Element, Mesh, MeshOptions, ModeRange, Omissions, Part, Sup
 use jointscope_fixture::{Effect, EffectKind, Fixture, Place};
 use jointscope_spectra::{Channel, FrfForm, FrfPair, FrfSet, SpectralLines};
 use num_complex::Complex64;
+use serde::{Deserialize, Serialize};
 
 /// What of the solid is left on, of all that the lumped model leaves out.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Shown {
     /// The strip weighs what it weighs.
     pub strip_mass: bool,

@@ -1,8 +1,9 @@
 //! Truth and answer of a case of hits side by side.
 
-use super::{StruckAnswer, StruckAnswers, StruckNoAnswer, StruckRole, StruckTruth};
-use crate::routes::score::Size;
-use crate::{Found, Name};
+use super::{StruckAnswer, StruckAnswers, StruckRole, StruckTruth};
+use crate::case_line::is_worse;
+use crate::size::Size;
+use crate::{Found, Name, NoAnswer};
 use jointscope_diagnosis::Verdict as LinearVerdict;
 use jointscope_nonlinear::Verdict;
 
@@ -12,7 +13,7 @@ pub struct StruckJudged {
     /// What was true.
     pub truth: StruckTruth,
     /// What was answered.
-    pub answer: Result<StruckAnswer, StruckNoAnswer>,
+    pub answer: Result<StruckAnswer, NoAnswer>,
 }
 
 impl StruckJudged {
@@ -23,13 +24,13 @@ impl StruckJudged {
     }
 
     /// The laws found, the strongest first.
-    pub fn found(&self) -> &[Found] {
+    pub fn findings(&self) -> &[Found] {
         self.answer.as_ref().map_or(&[], |answer| &answer.findings)
     }
 
     /// Whether FRFs were said to change with the strength of the hits.
     pub fn is_noticed(&self) -> bool {
-        self.answer.as_ref().is_ok_and(|answer| answer.verdict != Verdict::Homogeneous)
+        self.answer.as_ref().is_ok_and(|answer| answer.verdict != Verdict::Consistent)
     }
 
     /// Whether a law that was found is the hidden one: kind, joint and degree of freedom.
@@ -39,12 +40,12 @@ impl StruckJudged {
 
     /// Whether the hidden law was found, and nothing else.
     pub fn is_named(&self) -> bool {
-        matches!(self.found(), [found] if self.is_hidden(found))
+        matches!(self.findings(), [found] if self.is_hidden(found))
     }
 
     /// Whether a law was found that is not there.
     pub fn has_extra(&self) -> bool {
-        self.found().iter().any(|found| !self.is_hidden(found))
+        self.findings().iter().any(|found| !self.is_hidden(found))
     }
 
     /// Of hits in which nothing was seen to depend on amplitude: whether the fixture was called consistent with their FRFs.
@@ -55,18 +56,11 @@ impl StruckJudged {
 
     /// Sizes of the hidden law, where it was found.
     pub(crate) fn sizes(&self) -> Vec<Size> {
-        let (Some(law), Some(found)) = (self.truth.law(), self.found().iter().find(|f| self.is_hidden(f)))
+        let (Some(law), Some(found)) = (self.truth.law(), self.findings().iter().find(|f| self.is_hidden(f)))
         else {
             return Vec::new();
         };
-        let parameters = law.kind.spec().parameters.iter().enumerate();
-        let size = |(index, parameter): (usize, &jointscope_fixture::ParameterSpec)| Size {
-            what: format!("{}: {}", law.kind.name(), parameter.name),
-            truth: law.value(index),
-            found: found.effect.value(index),
-            interval: found.intervals.get(index).copied().flatten(),
-        };
-        parameters.map(size).collect()
+        Size::of_each(law, found, &format!("{}: ", law.kind.name()))
     }
 
     /// What went wrong, in a phrase each.
@@ -77,11 +71,11 @@ impl StruckJudged {
         let mut faults = Vec::new();
         match self.truth.role {
             StruckRole::Linear if self.is_noticed() => faults.push("called non-linear"),
-            StruckRole::Idle if !self.found().is_empty() => faults.push("named what was not exercised"),
+            StruckRole::Idle if !self.findings().is_empty() => faults.push("named what was not exercised"),
             StruckRole::Idle if self.is_noticed() => faults.push("called non-linear"),
             StruckRole::Law if !self.is_noticed() => faults.push("not noticed"),
-            StruckRole::Law if self.found().is_empty() => faults.push("no name"),
-            StruckRole::Law if !self.found().iter().any(|found| self.is_hidden(found)) => {
+            StruckRole::Law if self.findings().is_empty() => faults.push("no name"),
+            StruckRole::Law if !self.findings().iter().any(|found| self.is_hidden(found)) => {
                 faults.push("wrong name")
             }
             StruckRole::Law if self.has_extra() => faults.push("extra law"),
@@ -94,7 +88,7 @@ impl StruckJudged {
             faults.push("its FRFs called inconsistent");
         }
         let held_out = self.answer.as_ref().ok().and_then(|answer| answer.held_out);
-        if !self.found().is_empty() && held_out.is_some_and(|[refitted, repaired]| repaired > refitted) {
+        if !self.findings().is_empty() && held_out.is_some_and(is_worse) {
             faults.push("held-out hits worse");
         }
         faults.into_iter().map(str::to_owned).collect()

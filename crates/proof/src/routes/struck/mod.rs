@@ -6,68 +6,53 @@ mod answer;
 mod judged;
 mod score;
 
-pub(crate) use answer::Timed;
-pub use answer::{StruckAnswer, StruckAnswers, StruckDiagnosis, StruckNoAnswer, StruckOutcome};
+pub use answer::{StruckAnswer, StruckAnswers};
 pub use judged::StruckJudged;
 
-use crate::GenerationError;
 use crate::case::{describe, effect_value};
-use crate::generate::seed_of;
+use crate::generate::{seed_of, turn};
 use crate::seal::Sealable;
+use crate::{Case, GenerationError};
 use jointscope_fixture::{Damping, Dof, Effect, EffectKind, Fixture, JointLaw};
 use jointscope_hits::Hit;
-use jointscope_recordings::{DatasetsError, hits_to_datasets};
-use jointscope_rig::universal_file::Precision;
+use jointscope_recordings::hits_to_datasets;
+use jointscope_rig::universal_file::{FileError, Precision};
 use jointscope_rig::{
     Family, StrikeTest, StructureError, drawn_within_tolerance, generator, random_law, reach,
 };
 use jointscope_spectra::Channel;
-use jointscope_uff::{Encoding, WriteError};
+use jointscope_uff::Encoding;
 use rand::{Rng, RngExt};
+use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
 pub(crate) use score::score;
 
-/// What the diagnosis is given: the analyst's fixture and the hits.
-#[derive(Debug, Clone, PartialEq)]
-pub struct StruckCase {
-    /// The fixture as the analyst believes it.
-    pub believed: Fixture,
-    /// Force and accelerations of every hit.
-    pub hits: Vec<Hit>,
-}
-
-/// Why hits cannot be written.
-#[derive(Debug, thiserror::Error)]
-pub enum HitsFileError {
-    /// A point whose name is no node number.
-    #[error(transparent)]
-    Datasets(#[from] DatasetsError),
-    /// Values that the format cannot hold.
-    #[error(transparent)]
-    Write(#[from] WriteError),
-}
+/// A case of hits over time.
+pub type StruckCase = Case<Vec<Hit>>;
 
 impl StruckCase {
     /// The hits as a universal file (58b): time histories, the hit's number as sequence number.
     ///
     /// # Errors
     /// A point whose name is no node number.
-    pub fn recording(&self, precision: Precision) -> Result<Vec<u8>, HitsFileError> {
-        let mut datasets = hits_to_datasets(&self.hits, "hammer test", Encoding::default(), true)?;
+    pub fn recording(&self, precision: Precision) -> Result<Vec<u8>, FileError> {
+        let mut datasets = hits_to_datasets(&self.recorded, "hammer test", Encoding::default(), true)?;
         datasets.iter_mut().for_each(|dataset| dataset.precision = precision);
         Ok(jointscope_uff::write(&datasets)?)
     }
 }
 
 /// How much was hidden in hits.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum StruckRole {
     /// A linear structure.
     Linear,
     /// A law that the hits exercise.
     Law,
     /// A law that they do not: a gap that never closes, friction that never slips, a cubic term that is not reached.
+    #[serde(rename = "idle law")]
     Idle,
 }
 
@@ -86,9 +71,10 @@ impl StruckRole {
 }
 
 /// What is true of a case of hits.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Deserialize)]
 pub struct StruckTruth {
     /// The case's number among all.
+    #[serde(rename = "case")]
     pub index: usize,
     /// What its random numbers were seeded with.
     pub source: String,
@@ -161,15 +147,18 @@ impl StruckTruth {
             let point = |i: usize| Channel::transverse(believed.points()[i].name.clone());
             let last = believed.points().len() - 1;
             let (struck, read) = ([point(0), point(1)], [point(last - 1), point(last)]);
-            let law = match kind(role, number) {
-                Some(kind) => Some(law(&mut random, kind, role, &truth, &struck, &test)?),
-                None => None,
+            let law = match role {
+                StruckRole::Linear => None,
+                role => {
+                    let kind = KINDS[turn(&ROLES, number) % KINDS.len()];
+                    Some(law(&mut random, kind, role, &truth, &struck, &test)?)
+                }
             };
             let (effects, reach) = law.map_or((Vec::new(), None), |(law, reach)| (vec![law], Some(reach)));
             let fixture = truth.with_physics(effects).map_err(StructureError::from)?;
             let hits = test.record(&fixture, &struck, &read, &mut random)?;
             let truth = StruckTruth { index, source, role, fixture, test, reach };
-            return Ok((StruckCase { believed, hits }, truth));
+            return Ok((Case { believed, recorded: hits }, truth));
         }
         Err(GenerationError::Unlucky(index))
     }
@@ -186,60 +175,21 @@ impl StruckTruth {
         let idle = if self.role == StruckRole::Idle { ", idle" } else { "" };
         format!("{}{idle}, reach {reach:.2e}", describe(law))
     }
-
-    /// The truth that [`Sealable::to_value`] has written; `None` of anything else.
-    pub(crate) fn from_value(value: &Value) -> Option<Self> {
-        let test = &value["test"];
-        let number = |key: &str| test[key].as_f64();
-        let count = |key: &str| test[key].as_u64().and_then(|count| usize::try_from(count).ok());
-        Some(StruckTruth {
-            index: usize::try_from(value["case"].as_u64()?).ok()?,
-            source: value["source"].as_str()?.to_owned(),
-            role: StruckRole::ALL.into_iter().find(|role| value["role"].as_str() == Some(role.name()))?,
-            fixture: Fixture::from_value(&value["fixture"]).ok()?,
-            test: StrikeTest {
-                rate: number("rate")?,
-                samples: count("samples")?,
-                steps: count("steps")?,
-                pulse: number("pulse")?,
-                levels: test["levels"].as_array()?.iter().map(Value::as_f64).collect::<Option<_>>()?,
-                hits: count("hits")?,
-                noise_response: number("noise_response")?,
-                noise_force: number("noise_force")?,
-            },
-            reach: value["reach"].as_f64(),
-        })
-    }
 }
 
 impl Sealable for StruckTruth {
     fn to_value(&self) -> Value {
-        let test = &self.test;
         json!({
             "case": self.index,
             "route": "struck",
             "source": self.source,
-            "role": self.role.name(),
+            "role": self.role,
             "hidden": self.hidden(),
             "law": self.law().map(effect_value),
             "reach": self.reach,
-            "fixture": self.fixture.to_value(),
-            "test": {
-                "rate": test.rate, "samples": test.samples, "steps": test.steps, "pulse": test.pulse, "levels": test.levels,
-                "hits": test.hits, "noise_response": test.noise_response, "noise_force": test.noise_force,
-            },
+            "fixture": self.fixture,
+            "test": self.test,
         })
-    }
-}
-
-/// The kind of law of a case.
-fn kind(role: StruckRole, number: usize) -> Option<EffectKind> {
-    let round = number / ROLES.len();
-    let before = |role: StruckRole| ROLES[..number % ROLES.len()].iter().filter(|r| **r == role).count();
-    let a_round = |role: StruckRole| ROLES.iter().filter(|r| **r == role).count();
-    match role {
-        StruckRole::Linear => None,
-        role => Some(KINDS[(round * a_round(role) + before(role)) % KINDS.len()]),
     }
 }
 

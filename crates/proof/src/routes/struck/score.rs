@@ -2,108 +2,84 @@
 
 use super::{StruckJudged, StruckRole};
 use crate::case::describe;
-use crate::routes::score::{CaseLine, RouteScore, Size, SizeScore};
+use crate::case_line::{errors, in_full, is_worse, marked, named};
+use crate::routes::RouteScore;
 use crate::seal::Sealable;
-use crate::statistics::{median, quantile};
-use crate::{Figure, Name, Rate, Share, Target};
+use crate::sheet::Line;
+use crate::sheet::Target::{AtLeast, AtMost, Within};
+use crate::size::{Size, SizeScore};
+use crate::statistics::{middle, quantile};
+use crate::{CaseLine, Figure, Found, Rate, RoleCount, Share, Sheet};
 use serde_json::json;
 
 /// Probability below which it is not told how small it is.
 const LEAST: f64 = 1e-12;
 
+const RATES: [Line; 9] = [
+    ("linear_alarm", "linear structures called non-linear", Some(AtMost(0.01))),
+    (
+        "linear_consistent",
+        "linear structures: fixture called consistent with the hits' FRFs",
+        Some(AtLeast(0.95)),
+    ),
+    ("law_noticed", "laws: FRFs said to change with strength", None),
+    ("law_named", "laws: kind, joint and dof right, and no other law", Some(AtLeast(0.95))),
+    ("law_wrong", "laws: a law named that is not there", Some(AtMost(0.02))),
+    ("idle_named", "laws that the hits do not exercise: a law named", Some(AtMost(0.0))),
+    ("sizes", "sizes within 10 % of the truth", Some(AtLeast(0.95))),
+    ("coverage", "95 % intervals that hold the true size", Some(Within(0.92, 0.98))),
+    ("held_out_worse", "hits held out: repaired worse than refitted", Some(AtMost(0.01))),
+];
+
+const HELD_OUT: &str = "hits held out, right names: median error refitted over repaired";
+const FIGURES: [Line; 2] =
+    [("held_out_ratio", HELD_OUT, Some(AtLeast(10.0))), ("held_out_least", "the same: the least", None)];
+
 /// Scores cases of hits.
 pub(crate) fn score(judged: &[StruckJudged]) -> RouteScore {
-    let of_role = |role: StruckRole| judged.iter().filter(move |case| case.truth.role == role);
-    let asked = |role: StruckRole| if role == StruckRole::Law { of_role(role).count() } else { 0 };
     let sizes: Vec<Size> = judged.iter().flat_map(StruckJudged::sizes).collect();
+    let roles = StruckRole::ALL.map(|role| {
+        let cases = judged.iter().filter(|case| case.truth.role == role).count();
+        let asked = if role == StruckRole::Law { cases } else { 0 };
+        RoleCount { role: role.name(), cases, visible: None, asked: Some(asked) }
+    });
+    let named = judged.iter().filter(|case| case.is_named());
+    let ratios: Vec<f64> = held_out(named).map(|[refitted, repaired]| refitted / repaired).collect();
     RouteScore {
         key: "struck",
         what: "hits over time on joints that may depend on amplitude",
-        cases: StruckRole::ALL.map(|role| (role.name(), of_role(role).count(), asked(role))).to_vec(),
-        rates: rates(judged, &sizes),
-        figures: figures(judged),
+        sheet: Sheet {
+            roles: roles.to_vec(),
+            rates: Rate::all(&RATES, |key| share(judged, &sizes, key)),
+            figures: Figure::all(&FIGURES, |key| match key {
+                "held_out_ratio" => middle(ratios.iter().copied()),
+                "held_out_least" => (quantile(&ratios, 0.0), ratios.len()),
+                _ => (None, 0),
+            }),
+            lines: judged.iter().map(line).collect(),
+        },
         sizes: SizeScore::all(&sizes),
-        lines: judged.iter().map(line).collect(),
     }
 }
 
-fn rates(judged: &[StruckJudged], sizes: &[Size]) -> Vec<Rate> {
-    use Target::{AtLeast, AtMost, Within};
+/// The share of a key of [`RATES`].
+fn share(judged: &[StruckJudged], sizes: &[Size], key: &str) -> Share {
     let of_role = |role: StruckRole| judged.iter().filter(move |case| case.truth.role == role);
-    let rate = |key, what, share, target| Rate { key, what, share, target };
-    let worse = |[refitted, repaired]: [f64; 2]| repaired > refitted;
-    let consistent = of_role(StruckRole::Linear).filter_map(StruckJudged::is_linearly_consistent);
-    vec![
-        rate(
-            "linear_alarm",
-            "linear structures called non-linear",
-            Share::count(of_role(StruckRole::Linear), StruckJudged::is_noticed),
-            Some(AtMost(0.01)),
-        ),
-        rate(
-            "linear_consistent",
-            "linear structures: fixture called consistent with the hits' FRFs",
-            Share::count(consistent, |consistent| consistent),
-            Some(AtLeast(0.95)),
-        ),
-        rate(
-            "law_noticed",
-            "laws: FRFs said to change with strength",
-            Share::count(of_role(StruckRole::Law), StruckJudged::is_noticed),
-            None,
-        ),
-        rate(
-            "law_named",
-            "laws: kind, joint and dof right, and no other law",
-            Share::count(of_role(StruckRole::Law), StruckJudged::is_named),
-            Some(AtLeast(0.95)),
-        ),
-        rate(
-            "law_wrong",
-            "laws: a law named that is not there",
-            Share::count(of_role(StruckRole::Law), StruckJudged::has_extra),
-            Some(AtMost(0.02)),
-        ),
-        rate(
-            "idle_named",
-            "laws that the hits do not exercise: a law named",
-            Share::count(of_role(StruckRole::Idle), |case| !case.found().is_empty()),
-            Some(AtMost(0.0)),
-        ),
-        rate(
-            "sizes",
-            "sizes within 10 % of the truth",
-            Share::count(sizes, Size::is_right),
-            Some(AtLeast(0.95)),
-        ),
-        rate(
-            "coverage",
-            "95 % intervals that hold the true size",
-            Share::count(sizes, Size::is_held),
-            Some(Within(0.92, 0.98)),
-        ),
-        rate(
-            "held_out_worse",
-            "hits held out: repaired worse than refitted",
-            Share::count(held_out(judged.iter()), worse),
-            Some(AtMost(0.01)),
-        ),
-    ]
-}
-
-fn figures(judged: &[StruckJudged]) -> Vec<Figure> {
-    let named = judged.iter().filter(|case| case.is_named());
-    let ratios: Vec<f64> = held_out(named).map(|[refitted, repaired]| refitted / repaired).collect();
-    let figure = |key, what, value, target| Figure { key, what, value, from: ratios.len(), target };
-    vec![
-        figure(
-            "held_out_ratio",
-            "hits held out, right names: median error refitted over repaired",
-            median(&ratios),
-            Some(Target::AtLeast(10.0)),
-        ),
-        figure("held_out_least", "the same: the least", quantile(&ratios, 0.0), None),
-    ]
+    match key {
+        "linear_alarm" => Share::count(of_role(StruckRole::Linear), StruckJudged::is_noticed),
+        "linear_consistent" => {
+            let consistent = of_role(StruckRole::Linear).filter_map(StruckJudged::is_linearly_consistent);
+            Share::count(consistent, |consistent| consistent)
+        }
+        "law_noticed" => Share::count(of_role(StruckRole::Law), StruckJudged::is_noticed),
+        "law_named" => Share::count(of_role(StruckRole::Law), StruckJudged::is_named),
+        "law_wrong" => Share::count(of_role(StruckRole::Law), StruckJudged::has_extra),
+        "idle_named" => Share::count(of_role(StruckRole::Idle), |case| !case.findings().is_empty()),
+        "sizes" => Share::count(sizes, Size::is_right),
+        "coverage" => Share::count(sizes, Size::is_held),
+        "held_out_worse" => Share::count(held_out(judged.iter()), is_worse),
+        _ => Share::default(),
+    }
 }
 
 fn held_out<'a>(judged: impl Iterator<Item = &'a StruckJudged>) -> impl Iterator<Item = [f64; 2]> {
@@ -111,74 +87,55 @@ fn held_out<'a>(judged: impl Iterator<Item = &'a StruckJudged>) -> impl Iterator
 }
 
 fn line(case: &StruckJudged) -> CaseLine {
-    let told = case.found().iter().map(|found| {
-        let mark = if case.is_hidden(found) { "= " } else { "" };
-        format!("{mark}{} ({:.2})", Name::of(&found.effect), found.probability)
-    });
-    let told: Vec<String> = told.collect();
-    let mut details: Vec<String> = Vec::new();
-    for found in case.found() {
-        details.push(format!("  p={:.3} {}", found.probability, describe(&found.effect)));
-        details.extend(
-            found.alternatives.iter().map(|(effect, p)| format!("    or p={p:.3} {}", describe(effect))),
-        );
+    let is_hidden = |found: &Found| case.is_hidden(found);
+    let answer = case.answer.as_ref().ok();
+    let linear = answer.and_then(|answer| answer.linear.as_ref());
+    let mut details = in_full(case.findings());
+    if let Some([stated, refitted, repaired]) = answer.and_then(|answer| answer.chi2_per_dof) {
+        details.push(format!(
+            "χ² per degree of freedom: {stated:.3e} stated, {refitted:.3e} refitted, {repaired:.3e} repaired"
+        ));
     }
-    let (mut verdict, mut size) = (String::new(), String::new());
-    match &case.answer {
-        Err(why) => verdict.push_str(&format!("no answer: {why}")),
-        Ok(answer) => {
-            verdict.push_str(&answer.verdict.name().replace('_', " "));
-            size = match answer.p_value {
-                p if p < LEAST => format!("p < {LEAST:.0e}"),
-                p => format!("p = {p:.0e}"),
-            };
-            if let Some([stated, refitted, repaired]) = answer.chi2_per_dof {
-                details.push(format!("χ² per degree of freedom: {stated:.3e} stated, {refitted:.3e} refitted, {repaired:.3e} repaired"));
-            }
-            if let Some([refitted, repaired]) = answer.held_out {
-                details
-                    .push(format!("hits held out: error {refitted:.2e} refitted, {repaired:.2e} repaired"));
-            }
-            if let Some(linear) = &answer.linear {
-                verdict.push_str(&format!("; FRFs {}", linear.verdict.name().replace('_', " ")));
-                let names = linear
-                    .findings
-                    .iter()
-                    .map(|f| format!("  FRFs: p={:.3} {}", f.probability, describe(&f.effect)));
-                details.extend(names);
-                details.push(format!(
-                    "FRFs: χ² per degree of freedom {:.3} refitted, {:.3} repaired",
-                    linear.chi2_per_dof[1], linear.chi2_per_dof[2]
-                ));
-            }
-        }
+    details.extend(errors("hits held out", answer.and_then(|answer| answer.held_out)));
+    if let Some(linear) = linear {
+        let names = linear.findings.iter();
+        details.extend(names.map(|f| format!("  FRFs: p={:.3} {}", f.probability, describe(&f.effect))));
+        let [_, refitted, repaired] = linear.chi2_per_dof;
+        details
+            .push(format!("FRFs: χ² per degree of freedom {refitted:.3} refitted, {repaired:.3} repaired"));
     }
-    for size in case.sizes() {
-        let held = if size.is_held() { "" } else { ", not in its interval" };
-        details.push(format!("{}: {:+.2} % off{held}", size.what, 100.0 * size.error()));
-    }
+    let sizes = case.sizes();
+    details.extend(sizes.iter().map(Size::says));
+    let says = |name: &str| name.replace('_', " ");
+    let of_frfs = linear.map_or_else(String::new, |l| format!("; FRFs {}", says(l.verdict.name())));
     let faults = case.faults();
     CaseLine {
         index: case.truth.index,
+        role: String::new(),
         hidden: case.truth.hidden(),
-        size,
+        size: answer.map_or_else(String::new, |answer| match answer.p_value {
+            Some(p) if p < LEAST => format!("p < {LEAST:.0e}"),
+            Some(p) => format!("p = {p:.0e}"),
+            None => "not judged".to_owned(),
+        }),
+        verdict: match &case.answer {
+            Ok(answer) => format!("{}{of_frfs}", says(answer.verdict.name())),
+            Err(why) => format!("no answer: {why}"),
+        },
+        found: marked(case.findings(), |found| if case.is_hidden(found) { "= " } else { "" }),
+        answered: answer.is_some(),
+        asked: true,
+        details,
         value: json!({
             "truth": case.truth.to_value(),
-            "verdict": case.answer.as_ref().map(|answer| answer.verdict.name()).ok(),
-            "p_value": case.answer.as_ref().map(|answer| answer.p_value).ok(),
-            "found": case.found().iter().map(|found| json!({
-                "name": Name::of(&found.effect).to_string(), "probability": found.probability, "true": case.is_hidden(found),
-            })).collect::<Vec<_>>(),
-            "linear_verdict": case.answer.iter().filter_map(|answer| answer.linear.as_ref()).map(|l| l.verdict.name()).next(),
+            "verdict": answer.map(|answer| answer.verdict.name()),
+            "p_value": answer.map(|answer| answer.p_value),
+            "found": named(case.findings(), is_hidden),
+            "linear_verdict": linear.map(|linear| linear.verdict.name()),
             "faults": faults,
-            "sizes": case.sizes().iter().map(Size::to_value).collect::<Vec<_>>(),
-            "held_out": case.answer.iter().filter_map(|answer| answer.held_out).next(),
+            "sizes": sizes,
+            "held_out": answer.and_then(|answer| answer.held_out),
         }),
-        verdict,
-        found: if told.is_empty() { "nothing".to_owned() } else { told.join(", ") },
-        answered: case.answer.is_ok(),
-        asked: true,
         faults,
-        details,
     }
 }

@@ -1,0 +1,77 @@
+//! The commands of the program, each with its arguments in a file of its own.
+
+mod compare;
+mod decompose;
+mod diagnose;
+mod estimate;
+mod fem;
+mod modes;
+mod prove;
+mod simulate;
+mod synthesize;
+mod tables;
+
+use clap::{Parser, Subcommand};
+
+use crate::refusal::Refusal;
+
+/// Stiffness and damping of a joint from hammer tests on the blocks it connects.
+#[derive(Debug, Parser)]
+#[command(name = "jointscope", version, max_term_width = 110)]
+pub struct Program {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// FRFs of an assembly, computed from its fixture file, its effects included.
+    Synthesize(synthesize::SynthesizeArguments),
+    /// FRFs with coherence from hammer hits: time histories of force and responses.
+    Estimate(estimate::EstimateArguments),
+    /// Stiffness and damping of a joint by frequency, from the FRFs of the assembly: stiffness.json and report.html.
+    Decompose(decompose::DecomposeArguments),
+    /// What physics the fixture leaves out, where it sits and how sure that is: diagnosis.json, refitted.json, repaired.json, report.html.
+    Diagnose(diagnose::DiagnoseArguments),
+    /// Several decompositions side by side, and which joint is the stiffer: comparison.json and report.html.
+    Compare(compare::CompareArguments),
+    /// FRFs of the fixture's finite-element twin, the assembly as a deformable solid.
+    Fem(fem::FemArguments),
+    /// Natural frequencies, damping ratios and mode shapes from FRFs, with their standard deviations: modes.json and report.html.
+    Modes(modes::ModesArguments),
+    /// Accelerations of an assembly over time under recorded forces, effects that depend on amplitude included.
+    Simulate(simulate::SimulateArguments),
+    /// How often the diagnosis is right: concealed cases of a simulated laboratory, and a table of scores.
+    Prove(prove::ProveArguments),
+    /// The paper's Tables 1–6, its values beside the program's.
+    Tables(tables::TablesArguments),
+}
+
+impl Program {
+    /// Runs the command; what it has done is told on standard output.
+    pub fn run(&self) -> Result<String, Refusal> {
+        match &self.command {
+            Command::Synthesize(arguments) => synthesize::run(arguments),
+            Command::Estimate(arguments) => estimate::run(arguments),
+            Command::Decompose(arguments) => decompose::run(arguments),
+            Command::Diagnose(arguments) => diagnose::run(arguments),
+            Command::Compare(arguments) => compare::run(arguments),
+            Command::Fem(arguments) => fem::run(arguments),
+            Command::Modes(arguments) => modes::run(arguments),
+            Command::Simulate(arguments) => simulate::run(arguments),
+            Command::Prove(arguments) => prove::run(arguments),
+            Command::Tables(arguments) => tables::run(arguments),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_command_line_is_consistent() {
+        use clap::CommandFactory;
+        Program::command().debug_assert();
+    }
+}

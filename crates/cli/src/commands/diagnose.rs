@@ -1,0 +1,96 @@
+//! `jointscope diagnose`: a fixture and recordings in, what the fixture leaves out and a page out.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use jointscope::estimation::ResponseWindow;
+use jointscope::pipeline::{Options, Progress};
+use jointscope::report::answer_page;
+use jointscope::spectra::FrfPair;
+use jointscope::{Answer, Band, DiagnosisOptions, answer_file, diagnose};
+
+use crate::estimation_arguments::EstimationArguments;
+use crate::input::FixtureFile;
+use crate::origin;
+use crate::output::{Outputs, pretty};
+use crate::progress::spinner;
+use crate::recording::RecordingArguments;
+use crate::refusal::Refusal;
+use crate::values::{band, frf_pair};
+
+#[derive(Debug, Args)]
+pub struct DiagnoseArguments {
+    /// The fixture file (JSON).
+    pub fixture: PathBuf,
+    #[command(flatten)]
+    pub recording: RecordingArguments,
+    /// The band to use, in Hz [default: all lines].
+    #[arg(long, value_name = "F1:F2", value_parser = band)]
+    pub band: Option<Band>,
+    /// Bands to leave out, in Hz, such as mains hum.
+    #[arg(long, value_name = "F1:F2", value_parser = band, num_args = 1..)]
+    pub exclude: Vec<Band>,
+    /// FRFs to judge by, which no fit sees [default: one, where there are four or more].
+    #[arg(long, value_name = "OUT/IN", value_parser = frf_pair, num_args = 1..)]
+    pub hold_out: Vec<FrfPair>,
+    /// Take numbers of the fixture without a standard deviation as exact.
+    #[arg(long)]
+    pub exact: bool,
+    /// Print diagnosis.json to standard output, for scripts.
+    #[arg(long)]
+    pub json: bool,
+    /// The directory to write to; may be left out with --json.
+    #[arg(short, long, value_name = "DIR", required_unless_present = "json")]
+    pub output: Option<PathBuf>,
+    #[command(flatten)]
+    pub estimation: EstimationArguments,
+}
+
+/// Diagnoses, and writes `diagnosis.json`, `refitted.json`, `repaired.json` and `report.html`; answers with what was found and where the page
+/// is, or with `diagnosis.json` itself.
+pub fn run(arguments: &DiagnoseArguments) -> Result<String, Refusal> {
+    let fixture = FixtureFile::read(&arguments.fixture)?;
+    let measurement = arguments.recording.measurement(&fixture)?;
+    let options = Options {
+        diagnosis: DiagnosisOptions {
+            band: arguments.band.map(|band| (band.from, band.to)),
+            exclude: arguments.exclude.iter().map(|band| (band.from, band.to)).collect(),
+            hold_out: arguments.hold_out.clone(),
+            exact: arguments.exact,
+            ..DiagnosisOptions::default()
+        },
+        estimate: arguments.estimation.options(ResponseWindow::Auto),
+    };
+    let watched = spinner();
+    let answer = diagnose(&fixture, &measurement, &options, |Progress::Searching { frfs, lines }| {
+        watched.set_message(format!("searching {frfs} FRFs on {lines} lines …"));
+    });
+    watched.finish_and_clear();
+    let mut answer = answer.map_err(|error| arguments.recording.unanswered(&error, &fixture))?;
+    answer.notes.extend(arguments.estimation.unused_with(&measurement));
+    written(arguments, &answer)
+}
+
+/// Writes the files of an answer.
+fn written(arguments: &DiagnoseArguments, answer: &Answer) -> Result<String, Refusal> {
+    let files = || std::iter::once(&arguments.fixture).chain(&arguments.recording.files);
+    let context = origin::context(files(), answer.notes.clone(), answer.hammer_test.clone())?;
+    let mut file = answer_file(answer);
+    origin::add(&mut file, &context);
+    let file = pretty(&file);
+    let Some(folder) = &arguments.output else { return Ok(file.trim_end().to_owned()) };
+    let page_path = folder.join("report.html");
+    let mut outputs = Outputs::new(files());
+    outputs.add(folder.join("diagnosis.json"), file.clone());
+    outputs.add(folder.join("refitted.json"), answer.refitted.to_json());
+    outputs.add(folder.join("repaired.json"), answer.repaired.to_json());
+    outputs.add(&page_path, answer_page(answer, &context).map_err(Refusal::new)?);
+    outputs.write()?;
+    if arguments.json {
+        return Ok(file.trim_end().to_owned());
+    }
+    let mut lines = context.notes;
+    lines.extend(answer.summary());
+    lines.push(page_path.display().to_string());
+    Ok(lines.join("\n"))
+}

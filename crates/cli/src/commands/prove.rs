@@ -1,0 +1,148 @@
+//! `jointscope prove`: concealed cases made, diagnosed, and only then opened and scored.
+
+mod arguments;
+mod cases;
+mod pages;
+mod recordings;
+mod shipped;
+
+use std::path::Path;
+
+use jointscope::proof::{
+    Baseline, Judged, Limits, Methods, Opened, Replies, RouteScores, Score, SolidJudged, StruckJudged, Timing,
+};
+use jointscope::report::{ProofContext, ProofResults, proof_page};
+use serde_json::json;
+
+use crate::input::FixtureFile;
+use crate::origin;
+use crate::output::{Outputs, pretty};
+use crate::progress::{self, tell};
+use crate::recording::RecordingArguments;
+use crate::refusal::Refusal;
+use cases::Concealed;
+use pages::CasePages;
+
+pub use arguments::ProveArguments;
+
+/// Has all cases diagnosed, opens the truths and scores; answers with the table.
+pub fn run(arguments: &ProveArguments) -> Result<String, Refusal> {
+    if let Some(directory) = &arguments.real.recordings {
+        return recordings::run(directory, arguments);
+    }
+    if let [fixture, recording] = arguments.limits.as_slice() {
+        return limits(fixture, recording, arguments.json);
+    }
+    let mut concealed = Concealed::of(arguments)?;
+    let digest = concealed.truths.digest().to_owned();
+    tell(&format!("truths sealed, SHA-256 {digest}"));
+    if let Some(directory) = &arguments.output {
+        // A directory that cannot be written to is found out before the work, not after it.
+        let seal = json!({ "plan": concealed.plan, "sealed_truths_sha256": digest });
+        Outputs::one(directory.join("seal.json"), &seal)?;
+    }
+    let threads = arguments.workers();
+    let answers = diagnosed(arguments, &concealed, threads)?;
+    let baselines = {
+        let bar = progress::cases(concealed.cases.laboratory.len(), "looked up and updated");
+        Baseline::all(&concealed.cases.laboratory, threads, |done| bar.set_position(done as u64))
+    };
+    if let Some(directory) = &arguments.output {
+        // On disk before the truths are opened.
+        Outputs::one(directory.join("answers.json"), &answers.to_value())?;
+        Outputs::one(directory.join("baselines.json"), &json!(baselines))?;
+    }
+    let truths = concealed.truths.open(&answers).ok_or_else(|| Refusal::new("answers are missing"))?;
+    let truths: Opened = truths.into_iter().collect();
+    let judged = {
+        let bar = progress::cases(concealed.cases.laboratory.len(), "judged");
+        let told = |done: usize| bar.set_position(done as u64);
+        Judged::all(&concealed.cases.laboratory, truths.laboratory, &answers.laboratory, threads, told)
+    };
+    let solid = {
+        let bar = progress::cases(concealed.cases.solid.len(), "judged");
+        let told = |done: usize| bar.set_position(done as u64);
+        SolidJudged::all(&concealed.cases.solid, truths.solid, &answers.solid, threads, told)
+    };
+    let routes = RouteScores::of(&solid, &StruckJudged::all(truths.struck, &answers.struck));
+    let timing = Timing::of(&answers.seconds());
+    tell(&timing.to_string());
+    let score = Score::of(&judged);
+    let believed: Vec<_> = concealed.cases.laboratory.iter().map(|case| &case.believed).collect();
+    let methods = Methods::of(&judged, &believed, &baselines);
+    let mut value = json!(score);
+    value["methods"] = json!(methods);
+    value["plan"] = concealed.plan.take();
+    value["sealed_truths_sha256"] = digest.clone().into();
+    value["routes"] = json!(routes);
+    if let Some(directory) = &arguments.output {
+        let context = ProofContext {
+            program: origin::program(),
+            command: origin::command_line(),
+            cases: concealed.what.clone(),
+            sealed: digest.clone(),
+            pages: !arguments.no_case_pages,
+        };
+        let results = ProofResults { score: &score, methods: &methods, judged: &judged, routes: &routes };
+        let mut outputs = Outputs::default();
+        outputs.add(directory.join("report.html"), proof_page(&results, &context).map_err(Refusal::new)?);
+        outputs.add_json(directory.join("proof.json"), &value);
+        outputs.add_json(directory.join("timing.json"), &timing.to_value());
+        outputs.write()?;
+    }
+    if arguments.json {
+        return Ok(pretty(&value).trim_end().to_owned());
+    }
+    let what = &concealed.what;
+    let mut text = format!("{what}\ntruths sealed before the first answer, SHA-256 {digest}\n");
+    if !judged.is_empty() {
+        text.push_str(&format!("\n{score}\n{methods}"));
+    }
+    text.push_str(&routes.to_string());
+    if arguments.wrong || arguments.only.is_some() {
+        let all = arguments.only.is_some();
+        let sheets = std::iter::once(&score.sheet).chain(routes.0.iter().map(|route| &route.sheet));
+        let lines = sheets.flat_map(|sheet| &sheet.lines);
+        for line in lines.filter(|line| all || !line.faults.is_empty()) {
+            text.push_str(&format!("\n{line}"));
+        }
+    }
+    if let Some(directory) = &arguments.output {
+        text.push_str(&format!("\n{}", directory.join("report.html").display()));
+    }
+    Ok(text.trim_end().to_owned())
+}
+
+/// All cases diagnosed, and a page written of each where a directory was given.
+fn diagnosed(arguments: &ProveArguments, concealed: &Concealed, threads: usize) -> Result<Replies, Refusal> {
+    let bar = progress::cases(concealed.numbers.len(), "diagnosed");
+    let directory = arguments.output.as_ref().filter(|_| !arguments.no_case_pages);
+    let pages = directory.map(|directory| CasePages::below(directory, concealed));
+    let replies = Replies::to(
+        &concealed.cases,
+        threads,
+        |done| bar.set_position(done as u64),
+        |position, answer| {
+            if let Some(pages) = &pages {
+                pages.write(position, answer);
+            }
+        },
+    );
+    pages.map_or(Ok(()), CasePages::finish)?;
+    Ok(replies)
+}
+
+/// What a recording cannot tell apart or show.
+fn limits(fixture: &Path, recording: &Path, json: bool) -> Result<String, Refusal> {
+    let believed = FixtureFile::read(fixture)?;
+    let files = vec![recording.to_owned()];
+    let read = RecordingArguments { files, map: Vec::new(), assume_units: None }.recording(&believed)?;
+    let frfs = read.frfs().map_err(|error| Refusal::at(recording, error))?;
+    let limits = Limits::of(&believed, frfs).ok_or_else(|| {
+        Refusal::at(
+            recording,
+            "has no coherence with a number of averages, from which the noise could be taken",
+        )
+    })?;
+    Ok(if json { pretty(&json!(limits)) } else { limits.to_string() }.trim_end().to_owned())
+}

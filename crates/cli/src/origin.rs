@@ -1,0 +1,58 @@
+//! What pages and files say of their origin: program, command, inputs with their hashes.
+
+use std::path::PathBuf;
+
+use jointscope::pipeline::HammerTest;
+use jointscope::report::{InputFile, PageContext};
+use serde_json::{Value, json};
+use sha2::{Digest, Sha256};
+
+use crate::input;
+use crate::refusal::Refusal;
+
+/// The origin of a page, with notes and hits.
+pub fn context<'a>(
+    files: impl IntoIterator<Item = &'a PathBuf>,
+    notes: Vec<String>,
+    hits: Option<HammerTest>,
+) -> Result<PageContext, Refusal> {
+    Ok(PageContext { program: program(), command: command_line(), inputs: inputs(files)?, notes, hits })
+}
+
+/// Adds to a file's contents what they were made from.
+pub fn add(answer: &mut Value, context: &PageContext) {
+    answer["notes"] = json!(context.notes);
+    answer["made"] = json!({
+        "program": context.program,
+        "command": context.command,
+        "inputs": inputs_value(&context.inputs),
+    });
+}
+
+/// Inputs as files state them.
+pub fn inputs_value(inputs: &[InputFile]) -> Value {
+    inputs.iter().map(|input| json!({"file": input.name, "sha256": input.sha256})).collect()
+}
+
+/// Names and hashes of the files.
+pub fn inputs<'a>(files: impl IntoIterator<Item = &'a PathBuf>) -> Result<Vec<InputFile>, Refusal> {
+    files.into_iter().map(|path| Ok(input_file(path.display().to_string(), &input::bytes(path)?))).collect()
+}
+
+/// A file's name and the SHA-256 of its contents.
+pub fn input_file(name: String, contents: &[u8]) -> InputFile {
+    let sha256 = Sha256::digest(contents).iter().map(|byte| format!("{byte:02x}")).collect();
+    InputFile { name, sha256 }
+}
+
+/// The program and its version.
+pub fn program() -> String {
+    format!("jointscope {}", env!("CARGO_PKG_VERSION"))
+}
+
+/// The command as it was typed; the program by its name alone, wherever it lies.
+pub fn command_line() -> String {
+    let quoted = |word: String| if word.contains([' ', '"', '\'']) { format!("{word:?}") } else { word };
+    let arguments = std::env::args_os().skip(1).map(|word| quoted(word.to_string_lossy().into_owned()));
+    std::iter::once("jointscope".to_owned()).chain(arguments).collect::<Vec<_>>().join(" ")
+}

@@ -1,0 +1,18 @@
+//! The tests of this crate's public functions, in one program: linking is what costs time.
+#![allow(clippy::unwrap_used)] // helpers of tests fail as tests do
+
+mod bad_input;
+mod common;
+mod compare;
+mod decompose;
+mod diagnose;
+mod estimate;
+mod fem;
+mod hits;
+mod levels;
+mod modes;
+mod prove;
+mod prove_floors;
+mod prove_recordings;
+mod synthesize;
+mod tables;

@@ -1,0 +1,72 @@
+//! What the diagnosis must score at the least on the shipped cases, so that no change costs a score unseen.
+
+use crate::common::Bench;
+use serde_json::Value;
+
+/// Bounds on how many cases a share counts, and on how many it is taken of.
+struct Floor {
+    /// Where the share stands in `proof.json`.
+    path: &'static str,
+    /// The least of them that count.
+    least: u64,
+    /// The most of them that count.
+    most: u64,
+    /// Of so many: fewer would be an easier test, more another one.
+    of: u64,
+}
+
+/// All of `of` count.
+const fn all(path: &'static str, of: u64) -> Floor {
+    Floor { path, least: of, most: of, of }
+}
+
+/// None of `of` counts.
+const fn none(path: &'static str, of: u64) -> Floor {
+    Floor { path, least: 0, most: 0, of }
+}
+
+/// Scores of the 27 shipped cases. Each holds what was reached; where a share is not perfect, no less than that.
+const FLOORS: [Floor; 23] = [
+    all("/rates/nulls_consistent", 4),
+    none("/rates/null_finding", 4),
+    all("/rates/single_kind", 7),
+    all("/rates/single_place", 7),
+    none("/rates/single_extra", 7),
+    all("/rates/single_certain", 4),
+    all("/rates/double_both", 2),
+    Floor { path: "/rates/coverage", least: 16, most: 17, of: 17 },
+    Floor { path: "/rates/held_out_worse", least: 0, most: 3, of: 20 },
+    none("/rates/unseen_worse", 20),
+    none("/rates/outside_wrong_name", 2),
+    none("/rates/false_minimum", 14),
+    all("/routes/solid/rates/nulls_consistent", 1),
+    none("/routes/solid/rates/null_finding", 1),
+    all("/routes/solid/rates/single_place", 3),
+    none("/routes/solid/rates/wrong_name", 4),
+    all("/routes/solid/rates/sizes", 3),
+    none("/routes/solid/rates/unseen_worse", 4),
+    none("/routes/struck/rates/linear_alarm", 1),
+    all("/routes/struck/rates/law_named", 2),
+    none("/routes/struck/rates/law_wrong", 2),
+    all("/routes/struck/rates/sizes", 3),
+    none("/routes/struck/rates/held_out_worse", 2),
+];
+
+#[test]
+fn the_shipped_cases_score_no_less_than_they_did() {
+    let bench = Bench::new("prove-floors");
+    let output = bench.run(&["prove", "--json"]);
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    let proof: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let missed: Vec<String> = FLOORS
+        .iter()
+        .filter_map(|floor| {
+            let count = |key: &str| proof.pointer(floor.path).and_then(|rate| rate[key].as_u64());
+            let (found, of) = (count("count").unwrap(), count("of").unwrap());
+            let kept = of == floor.of && (floor.least..=floor.most).contains(&found);
+            let asked = format!("{} to {} of {}", floor.least, floor.most, floor.of);
+            (!kept).then(|| format!("{}: {found} of {of}, and not {asked}", floor.path))
+        })
+        .collect();
+    assert!(missed.is_empty(), "scores that were reached are no longer:\n{}", missed.join("\n"));
+}

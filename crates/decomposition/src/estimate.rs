@@ -1,0 +1,176 @@
+use jointscope_linalg::RealMatrix2;
+use serde::Serialize;
+
+use crate::{Analysis, MatrixAverage, Relation};
+
+/// An element of the joint's 2×2 matrices.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+pub struct Element {
+    /// 0 for the force, 1 for the moment.
+    pub row: usize,
+    /// 0 for the displacement, 1 for the rotation.
+    pub column: usize,
+}
+
+const ELEMENTS: [Element; 4] = [
+    Element { row: 0, column: 0 },
+    Element { row: 0, column: 1 },
+    Element { row: 1, column: 0 },
+    Element { row: 1, column: 1 },
+];
+
+impl Element {
+    /// The elements that mean anything: all four, or (1,1) where the blocks do not rotate.
+    pub fn all(scalar: bool) -> &'static [Element] {
+        if scalar { &ELEMENTS[..1] } else { &ELEMENTS }
+    }
+
+    /// The elements of a symmetric matrix: 11, 12, 22.
+    pub fn distinct(scalar: bool) -> impl Iterator<Item = Element> {
+        Self::all(scalar).iter().copied().filter(|e| e.column >= e.row)
+    }
+
+    /// Its value in a matrix.
+    pub fn of(self, matrix: &RealMatrix2) -> f64 {
+        matrix.at(self.row, self.column)
+    }
+}
+
+/// Which of the joint's two matrices is spoken of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Part {
+    /// K, N/m and so on.
+    Stiffness,
+    /// C, N·s/m and so on.
+    Damping,
+}
+
+impl Part {
+    /// Both.
+    pub const ALL: [Part; 2] = [Part::Stiffness, Part::Damping];
+
+    /// This one of a pair of stiffness and damping.
+    pub fn of<T>(self, (stiffness, damping): (T, T)) -> T {
+        match self {
+            Part::Stiffness => stiffness,
+            Part::Damping => damping,
+        }
+    }
+}
+
+/// Where an estimate comes from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Method {
+    /// The mean over the band, eq (35) and (42).
+    PlainMean,
+    /// The mean weighted by the noise of each line.
+    WeightedMean,
+    /// The fit of a constant joint to the FRFs.
+    MaximumLikelihood,
+}
+
+/// K and C with standard deviations from noise and from the fixture's tolerances. The fit's noise holds also what it costs that
+/// a constant joint does not explain the FRFs.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Estimate {
+    /// Where it comes from.
+    pub method: Method,
+    /// Whether it is of the matrices of eq (7) rather than of the joint's own k and c.
+    pub paper: bool,
+    value: (RealMatrix2, RealMatrix2),
+    noise: (RealMatrix2, RealMatrix2),
+    tolerance: Option<(RealMatrix2, RealMatrix2)>,
+}
+
+/// An element of an estimate, SI.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Figure {
+    /// Its value.
+    pub value: f64,
+    /// Standard deviation by noise (of a fit: and misfit).
+    pub noise: f64,
+    /// Standard deviation by the fixture's tolerances; not known for weighted means.
+    pub tolerance: Option<f64>,
+}
+
+/// Relative uncertainty above which a figure counts as not determined.
+const NOT_DETERMINED: f64 = 0.5;
+
+impl Figure {
+    /// Noise and tolerance together, independent of each other.
+    pub fn total(&self) -> f64 {
+        self.noise.hypot(self.tolerance.unwrap_or(0.0))
+    }
+
+    /// Whether the figure could as well be zero, at 95 %.
+    pub fn may_be_zero(&self) -> bool {
+        self.value.abs() < 1.96 * self.total()
+    }
+
+    /// Whether it is known to half of its magnitude or better.
+    pub fn is_determined(&self) -> bool {
+        self.value.is_finite() && self.total() <= NOT_DETERMINED * self.value.abs()
+    }
+}
+
+impl Estimate {
+    /// The maximum-likelihood joint; where there is none, the mean of what the relation gives.
+    pub fn best(analysis: &Analysis) -> Self {
+        let mean = || {
+            let tolerance = Some(analysis.tolerance_of_averages());
+            Self::weighted(analysis).map(|mean| Estimate { tolerance, ..mean })
+        };
+        Self::maximum_likelihood(analysis).or_else(mean).unwrap_or_else(|| Self::plain(analysis))
+    }
+
+    /// The exact joint's, whichever relation the spectra show.
+    pub fn maximum_likelihood(analysis: &Analysis) -> Option<Self> {
+        let fit = analysis.likelihood.as_ref().ok()?;
+        let model = fit.model_std();
+        let together =
+            |a: &RealMatrix2, b: &RealMatrix2| (a.map(|e| e * e) + b.map(|e| e * e)).map(f64::sqrt);
+        Some(Estimate {
+            method: Method::MaximumLikelihood,
+            paper: false,
+            value: (fit.stiffness, fit.damping),
+            noise: (together(&fit.stiffness_std, &model.0), together(&fit.damping_std, &model.1)),
+            tolerance: Some(analysis.tolerance_of_likelihood()),
+        })
+    }
+
+    /// The weighted mean over the band, where the lines' noise is known.
+    pub fn weighted(analysis: &Analysis) -> Option<Self> {
+        let average = analysis.averages.weighted.as_ref()?;
+        Some(Self::mean(analysis, average, Method::WeightedMean, None))
+    }
+
+    /// The plain mean over the band.
+    pub fn plain(analysis: &Analysis) -> Self {
+        let tolerance = Some(analysis.tolerance_of_averages());
+        Self::mean(analysis, &analysis.averages.plain, Method::PlainMean, tolerance)
+    }
+
+    fn mean(
+        analysis: &Analysis,
+        average: &MatrixAverage,
+        method: Method,
+        tolerance: Option<(RealMatrix2, RealMatrix2)>,
+    ) -> Self {
+        Estimate {
+            method,
+            paper: analysis.spectrum.relation == Relation::Paper,
+            value: (average.stiffness, average.damping),
+            noise: (average.stiffness_std, average.damping_std),
+            tolerance,
+        }
+    }
+
+    /// An element with its deviations.
+    pub fn figure(&self, part: Part, element: Element) -> Figure {
+        Figure {
+            value: element.of(&part.of(self.value)),
+            noise: element.of(&part.of(self.noise)),
+            tolerance: self.tolerance.map(|tolerance| element.of(&part.of(tolerance))),
+        }
+    }
+}

@@ -1,0 +1,264 @@
+//! What a diagnosis shows besides its findings: where the mismatch sits, how it goes with frequency, what else the reader must know.
+
+use crate::diagnosis::{BandShare, Diagnosis, Finding};
+use crate::fit::Fit;
+use crate::location::{BandMisfit, Location};
+use jointscope_findings::Estimate;
+use jointscope_fixture::{EffectKind, Place};
+use jointscope_spectra::FrfPair;
+use serde::Serialize;
+
+/// Standard deviations beyond which a refit has bent a quantity to imitate what is missing.
+const BENT: f64 = 4.0;
+/// Correlation of neighbouring lines from which residuals are not called white.
+const WHITE: f64 = 0.2;
+/// Ratio of the relative errors at the ends of the band from which they count as different.
+const UNEVEN: f64 = 2.0;
+/// How close to the other point an offset must lead, as a share of the distance between the two.
+const CLOSE: f64 = 0.1;
+
+/// χ² per real value of one FRF, over all lines and in bands; nothing where no value counts.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FrfMisfit {
+    /// The FRF.
+    pub frf: FrfPair,
+    /// Over all lines.
+    pub whole: Option<f64>,
+    /// By band, ascending.
+    pub bands: Vec<BandMisfit>,
+}
+
+/// Relative errors at the two ends of the band.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct EndErrors {
+    /// √(Σ|H_model − H_measured|²/Σ|H_measured|²) of the lowest third of the lines.
+    pub low: f64,
+    /// Highest of them, Hz.
+    pub below: f64,
+    /// The same of the highest third.
+    pub high: f64,
+    /// Lowest of them, Hz.
+    pub above: f64,
+}
+
+/// How something goes with frequency.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Trend {
+    /// It grows.
+    Grows,
+    /// It falls.
+    Falls,
+    /// It is about the same at both ends.
+    Level,
+}
+
+/// How δ(ω) varies, with no physics named.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Variation {
+    /// Exponent n of |δ| ∝ ωⁿ; `None` where δ follows no power of frequency.
+    pub power: Option<f64>,
+    /// Its phase.
+    pub phase: Phase,
+}
+
+/// The phase that most of δ(ω) has.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+#[allow(missing_docs)]
+pub enum Phase {
+    RealPositive,
+    RealNegative,
+    ImaginaryPositive,
+    ImaginaryNegative,
+    /// Real and imaginary part are of about one size.
+    Mixed,
+    /// It changes over the band.
+    Changing,
+}
+
+impl EndErrors {
+    /// How the error goes with frequency.
+    pub fn trend(&self) -> Trend {
+        match self.high / self.low {
+            ratio if ratio > UNEVEN => Trend::Grows,
+            ratio if ratio < 1.0 / UNEVEN => Trend::Falls,
+            _ => Trend::Level,
+        }
+    }
+}
+
+impl Finding {
+    /// Whether neither it nor any of its look-alikes is likelier than something that is not listed.
+    pub fn is_doubtful(&self) -> bool {
+        self.probability + self.alternatives.iter().map(|(_, probability)| probability).sum::<f64>() < 0.5
+    }
+
+    /// A parameter, by its name in files.
+    pub fn estimate(&self, parameter: &str) -> Option<&Estimate> {
+        self.estimates.iter().find(|estimate| estimate.parameter.name == parameter)
+    }
+}
+
+impl Diagnosis {
+    /// Whether no finding names the mismatch: there is none, or something that is not listed is likelier than any. Then the places, which assume
+    /// no law, are what there is to see.
+    pub fn is_unnamed(&self) -> bool {
+        self.findings.iter().all(Finding::is_doubtful)
+    }
+
+    /// The place that explains most of a mismatch without a name.
+    pub fn best_place(&self) -> Option<&Location> {
+        self.locations.first().filter(|_| self.is_unnamed())
+    }
+
+    /// Whether what the best model leaves is as random from line to line as noise is.
+    pub fn is_white(&self) -> bool {
+        self.residual_correlation.abs() <= WHITE
+    }
+
+    /// The quantity that the refit without effects took farthest from what is stated, and by how many standard deviations, where that is
+    /// beyond belief.
+    pub fn bent(&self) -> Option<(&str, f64)> {
+        let refitted = &self.search.refitted.hypothesis;
+        let stated = refitted
+            .tolerances()
+            .iter()
+            .enumerate()
+            .filter(|(_, tolerance)| tolerance.quantity.std.is_some());
+        let all = stated
+            .map(|(index, tolerance)| (tolerance.quantity.path.as_str(), refitted.departure(index).abs()));
+        all.max_by(|a, b| a.1.total_cmp(&b.1)).filter(|(_, departure)| *departure > BENT)
+    }
+
+    /// χ² per real value that `fit` leaves, by FRF and band (the bands of [`Diagnosis::mismatch`]).
+    pub fn misfit(&self, fit: &Fit) -> Vec<FrfMisfit> {
+        let (hz, n) = (self.observation.lines().hz(), self.observation.lines().len());
+        let (values, weights) = (self.observation.values(), self.observation.weights());
+        let mean = |index: usize, lines: std::ops::Range<usize>| {
+            let (mut sum, mut count) = (0.0, 0_usize);
+            for at in lines.map(|line| index * n + line) {
+                if weights[at] > 0.0 {
+                    sum += weights[at] * (values[at] - fit.predicted[at]).norm_sqr();
+                    count += 2;
+                }
+            }
+            (count > 0).then(|| sum / count as f64)
+        };
+        let of = |(index, mismatch): (usize, &crate::diagnosis::FrfMismatch)| {
+            let bands = mismatch.bands.iter().map(|&BandShare { from, to, .. }| {
+                let lines = hz.partition_point(|f| *f < from)..hz.partition_point(|f| *f <= to);
+                BandMisfit { from, to, chi2_per_dof: mean(index, lines) }
+            });
+            FrfMisfit { frf: mismatch.frf.clone(), whole: mean(index, 0..n), bands: bands.collect() }
+        };
+        self.mismatch.iter().enumerate().map(of).collect()
+    }
+
+    /// The FRF and band in which `fit` leaves most.
+    pub fn worst_band(&self, fit: &Fit) -> Option<(FrfPair, BandMisfit)> {
+        let misfit = self.misfit(fit);
+        let all = misfit.iter().flat_map(|frf| frf.bands.iter().map(move |band| (&frf.frf, band)));
+        let counted = all.filter_map(|(frf, band)| Some((frf, band, band.chi2_per_dof?)));
+        let worst = counted.max_by(|a, b| a.2.total_cmp(&b.2));
+        worst.map(|(frf, band, _)| (frf.clone(), *band))
+    }
+
+    /// The relative errors that `fit` leaves at the ends of the band; `None` with fewer than three lines.
+    pub fn end_errors(&self, fit: &Fit) -> Option<EndErrors> {
+        let (hz, n) = (self.observation.lines().hz(), self.observation.lines().len());
+        let error = |lines: std::ops::Range<usize>| {
+            let (mut left, mut size) = (0.0, 0.0);
+            for index in 0..self.observation.pairs().len() {
+                for at in lines.clone().map(|line| index * n + line) {
+                    left += (self.observation.values()[at] - fit.predicted[at]).norm_sqr();
+                    size += self.observation.values()[at].norm_sqr();
+                }
+            }
+            (left / size).sqrt()
+        };
+        let third = n / 3;
+        (third > 0).then(|| EndErrors {
+            low: error(0..third),
+            below: hz[third - 1],
+            high: error(n - third..n),
+            above: hz[n - third],
+        })
+    }
+
+    /// Pairs of points whose offsets lead each to the place of the other: channels that were swapped.
+    pub fn swapped_points(&self) -> Vec<[&str; 2]> {
+        let Ok(fixture) = self.search.nominal.hypothesis.to_fixture() else { return Vec::new() };
+        let offsets = self.findings.iter().filter(|finding| finding.effect.kind == EffectKind::PointOffset);
+        let moved: Vec<(&str, usize, f64, f64)> = offsets
+            .filter_map(|finding| match &finding.effect.place {
+                Place::Point(name) => {
+                    let point = fixture.point(name)?;
+                    let x = point.x.value;
+                    Some((name.as_str(), point.body, x, x + finding.effect.value(0)))
+                }
+                _ => None,
+            })
+            .collect();
+        let mut pairs = Vec::new();
+        for (index, a) in moved.iter().enumerate() {
+            for b in &moved[index + 1..] {
+                let near = |to: f64, at: f64| (to - at).abs() <= CLOSE * (a.2 - b.2).abs();
+                if a.1 == b.1 && near(a.3, b.2) && near(b.3, a.2) {
+                    pairs.push([a.0, b.0]);
+                }
+            }
+        }
+        pairs
+    }
+}
+
+/// Departures of the logarithm from a straight line beyond which a dynamic stiffness follows no power of frequency.
+const NO_POWER: f64 = 0.7;
+/// Fewest lines that tell how δ varies.
+const FEWEST: usize = 8;
+
+impl Location {
+    /// How δ(ω) varies with frequency; `None` where too few lines determine it.
+    pub fn variation(&self) -> Option<Variation> {
+        let known: Vec<_> = self
+            .delta
+            .iter()
+            .filter(|d| d.frequency > 0.0 && d.std > 0.0 && d.value.norm() > 2.0 * d.std)
+            .collect();
+        if known.len() < FEWEST {
+            return None;
+        }
+        // ln|δ| over ln f, weighted by how well it is known.
+        let points: Vec<(f64, f64, f64)> = known
+            .iter()
+            .map(|d| {
+                let (size, share) = (d.value.norm(), d.std / d.value.norm());
+                (d.frequency.ln(), size.ln(), 1.0 / (share * share + 1e-4))
+            })
+            .collect();
+        let total: f64 = points.iter().map(|p| p.2).sum();
+        let mean =
+            |of: &dyn Fn(&(f64, f64, f64)) -> f64| points.iter().map(|p| p.2 * of(p)).sum::<f64>() / total;
+        let (x, y) = (mean(&|p| p.0), mean(&|p| p.1));
+        let spread = mean(&|p| (p.0 - x).powi(2));
+        if spread <= 0.0 {
+            return None;
+        }
+        let power = mean(&|p| (p.0 - x) * (p.1 - y)) / spread;
+        let scatter = mean(&|p| (p.1 - y - power * (p.0 - x)).powi(2)).sqrt();
+        let sum: num_complex::Complex64 = known.iter().map(|d| d.value / d.value.norm()).sum();
+        let direction = sum / known.len() as f64;
+        let (re, im) = (direction.re, direction.im);
+        let phase = if direction.norm() < 0.7 {
+            Phase::Changing
+        } else if re.abs() > 2.0 * im.abs() {
+            if re > 0.0 { Phase::RealPositive } else { Phase::RealNegative }
+        } else if im.abs() > 2.0 * re.abs() {
+            if im > 0.0 { Phase::ImaginaryPositive } else { Phase::ImaginaryNegative }
+        } else {
+            Phase::Mixed
+        };
+        Some(Variation { power: (scatter <= NO_POWER).then_some(power), phase })
+    }
+}

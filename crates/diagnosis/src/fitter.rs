@@ -1,0 +1,257 @@
+//! Fits of hypotheses to an observation: from nearby, and from afar by stages in which a share of the signal counts as noise.
+
+use crate::settings::Settings;
+use crate::{Fit, Hypothesis, Linearisation, Observation};
+use jointscope_inference::{Convergence, LeastSquares, Limit, NormalEquations, Precision, descend};
+use num_complex::Complex64;
+use rayon::prelude::*;
+use std::borrow::Cow;
+
+/// An observation with the settings by which hypotheses are fitted to it.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Fitter<'a> {
+    pub observation: &'a Observation,
+    pub settings: &'a Settings,
+}
+
+/// A fit under way: where it stands, and derivatives taken there or on the way.
+pub(crate) struct Iterate {
+    pub hypothesis: Hypothesis,
+    pub predicted: Vec<Complex64>,
+    linear: Option<Linearisation>,
+}
+
+/// The FRFs of an observation with a share of the signal, `inflation`, counted as noise.
+struct Problem<'a> {
+    fitter: Fitter<'a>,
+    inflation: f64,
+}
+
+/// How far one stage of a fit goes.
+struct Stage {
+    inflation: f64,
+    /// Convergence as a share of the objective, where noise is inflated.
+    share: f64,
+    /// Objective to be reached, where noise is not inflated.
+    limit: f64,
+}
+
+impl<'a> LeastSquares for Problem<'a> {
+    type Point = Iterate;
+    type Weights = Cow<'a, [f64]>;
+    type Derivatives = Linearisation;
+    type Equations = NormalEquations;
+    const FIXED_WEIGHTS: bool = false;
+
+    fn weights(&self, at: &Iterate) -> Cow<'a, [f64]> {
+        self.fitter.observation.inflated_weights(&at.predicted, self.inflation)
+    }
+
+    fn objective(&self, at: &Iterate, weights: &Cow<'a, [f64]>) -> f64 {
+        self.fitter.observation.weighted_squares(&at.predicted, weights) + at.hypothesis.penalty()
+    }
+
+    fn derivatives(&self, at: &Iterate, precision: Precision) -> Option<Linearisation> {
+        let Fitter { observation, settings } = self.fitter;
+        Some(match precision {
+            Precision::Exact => self.fitter.linearised(&at.hypothesis),
+            Precision::Rough => {
+                Linearisation::forward(&at.hypothesis, &at.predicted, observation, settings.fit.difference)
+            }
+        })
+    }
+
+    fn equations(&self, at: &Iterate, linear: &Linearisation, weights: &Cow<'a, [f64]>) -> NormalEquations {
+        linear.equations(&at.hypothesis, weights, &self.fitter.observation.residual(&at.predicted))
+    }
+
+    fn stepped(&self, at: &Iterate, equations: &NormalEquations, damping: f64) -> Option<Iterate> {
+        let step = equations.bounded_step(damping, &at.hypothesis.coordinates, at.hypothesis.parameters())?;
+        self.fitter.iterate(at.hypothesis.stepped(&step))
+    }
+
+    fn promised(&self, at: &Iterate, equations: &NormalEquations) -> f64 {
+        equations.promised(&at.hypothesis.coordinates, at.hypothesis.parameters())
+    }
+}
+
+impl<'a> Fitter<'a> {
+    /// The same settings on another observation.
+    pub fn on<'b>(self, observation: &'b Observation) -> Fitter<'b>
+    where
+        'a: 'b,
+    {
+        Fitter { observation, settings: self.settings }
+    }
+
+    /// The observation on the few lines of a thinned fit.
+    pub fn thinned(&self) -> Observation {
+        self.observation.thinned(self.settings.fit.thinned_lines)
+    }
+
+    /// A fit's first iterate; `None` where the hypothesis predicts no finite FRFs.
+    pub fn iterate(&self, hypothesis: Hypothesis) -> Option<Iterate> {
+        let predicted = hypothesis.predict(self.observation).ok()?;
+        Some(Iterate { hypothesis, predicted, linear: None })
+    }
+
+    /// Central differences about a hypothesis.
+    pub fn linearised(&self, at: &Hypothesis) -> Linearisation {
+        Linearisation::default().extended(at, self.observation, |_| self.settings.fit.difference)
+    }
+
+    /// Central differences by steps so small that every digit counts which rounding leaves: for uncertainties.
+    fn linearised_exactly(&self, at: &Hypothesis) -> Linearisation {
+        let difference = self.settings.fit.difference;
+        let (change, least) = self.settings.fit.small_difference;
+        let small = |m: usize| {
+            let predicted = [0.0, difference].map(|step| at.predict_moved(m, step, None, self.observation));
+            let [Ok(here), Ok(there)] = predicted else { return difference };
+            let relative = |(a, b): (&Complex64, &Complex64)| (a - b).norm() / a.norm().max(b.norm());
+            let changes = here.iter().zip(&there).map(relative).filter(|c| c.is_finite());
+            difference * (change / changes.fold(0.0, f64::max)).clamp(least, 1.0)
+        };
+        Linearisation::default().extended(at, self.observation, small)
+    }
+
+    /// The normal equations of a hypothesis at its optimum, for uncertainties.
+    pub fn information(&self, at: &Hypothesis) -> NormalEquations {
+        let residual = vec![Complex64::ZERO; self.observation.values().len()];
+        self.linearised_exactly(at).equations(at, self.observation.weights(), &residual)
+    }
+
+    /// Goes on with a fit by one stage; with its objective at the end of it, by the weights that hold there.
+    fn improve(&self, at: Iterate, stage: &Stage) -> Option<(Iterate, f64)> {
+        let own = &self.settings.fit;
+        let problem = Problem { fitter: *self, inflation: stage.inflation };
+        let whole = stage.inflation == 0.0;
+        let limit = Limit { objective: stage.limit, ..own.limit };
+        let degrees = self.observation.degrees() as f64;
+        let settings = jointscope_inference::Settings {
+            steps: if whole { own.steps.1 } else { own.steps.0 },
+            damping: own.damping,
+            convergence: match whole {
+                true => Convergence { gain: own.converged, share: own.negligible, floor: degrees },
+                false => Convergence { gain: 0.0, share: stage.share, floor: 0.0 },
+            },
+            reuse: Some(own.reuse),
+            exact_at_end: whole,
+            limit: (whole && limit.objective.is_finite()).then_some(limit),
+            valleys: if whole { own.valleys } else { 0 },
+            ..Default::default()
+        };
+        let Iterate { hypothesis, predicted, linear } = at;
+        let end = descend(&problem, Iterate { hypothesis, predicted, linear: None }, linear, &settings)?;
+        let objective = problem.objective(&end.point, &problem.weights(&end.point));
+        Some((Iterate { linear: Some(end.derivatives), ..end.point }, objective))
+    }
+
+    /// A stage with inflated noise.
+    fn improve_inflated(&self, at: Iterate, inflation: f64) -> Option<(Iterate, f64)> {
+        let share = self.settings.fit.inflated;
+        self.improve(at, &Stage { inflation, share, limit: f64::INFINITY })
+    }
+
+    /// A stage with inflated noise of a fit that many others are compared with.
+    pub fn improve_among_many(&self, at: Iterate, inflation: f64) -> Option<(Iterate, f64)> {
+        let share = self.settings.fit.inflated_among_many;
+        self.improve(at, &Stage { inflation, share, limit: f64::INFINITY })
+    }
+
+    /// The last stage, without inflation, given up where it will hardly come below `limit`.
+    fn end(&self, at: Iterate, limit: f64) -> Option<Fit> {
+        let (at, _) = self.improve(at, &Stage { inflation: 0.0, share: 0.0, limit })?;
+        Some(self.fit(at))
+    }
+
+    fn inflated(&self, start: &Hypothesis, stages: &[f64]) -> Option<Fit> {
+        let mut at = (self.iterate(start.clone())?, f64::INFINITY);
+        for &inflation in stages {
+            at = self.improve_inflated(at.0, inflation)?;
+        }
+        Some(Fit { objective: at.1, ..self.fit(at.0) })
+    }
+
+    /// The stages of a fit from afar on a thinned observation, which this is: good enough to compare hypotheses by. Its objective is that of
+    /// the last stage.
+    pub fn on_thinned_lines(&self, start: &Hypothesis) -> Option<Fit> {
+        self.inflated(start, &self.settings.fit.inflation.0)
+    }
+
+    /// The last stage with inflated noise, on all lines; its objective is that stage's.
+    pub fn on_whole_lines(&self, start: &Hypothesis) -> Option<Fit> {
+        self.inflated(start, &[self.settings.fit.inflation.1])
+    }
+
+    fn fit(&self, at: Iterate) -> Fit {
+        let chi2 = self.observation.chi2(&at.predicted);
+        let objective = chi2 + at.hypothesis.penalty();
+        Fit { hypothesis: at.hypothesis, predicted: at.predicted, chi2, objective }
+    }
+
+    /// A fit from nearby, given up where it will hardly come below `limit`, with derivatives of the first coordinates where these are known.
+    ///
+    /// `None` where the start predicts no finite FRFs.
+    pub fn local(&self, start: &Hypothesis, nearby: Option<&Linearisation>, limit: f64) -> Option<Fit> {
+        let difference = self.settings.fit.difference;
+        let extended =
+            |linear: &Linearisation| linear.clone().extended(start, self.observation, |_| difference);
+        let at = self.iterate(start.clone())?;
+        self.end(Iterate { linear: nearby.map(extended), ..at }, limit)
+    }
+
+    /// A fit from afar: stages on thinned lines first, then on all.
+    pub fn global(&self, start: &Hypothesis) -> Option<Fit> {
+        let thinned = self.on(&self.thinned()).on_thinned_lines(start)?;
+        self.after_thinned(&thinned.hypothesis)
+    }
+
+    fn after_thinned(&self, start: &Hypothesis) -> Option<Fit> {
+        let (at, _) = self.improve_inflated(self.iterate(start.clone())?, self.settings.fit.inflation.1)?;
+        self.end(at, f64::INFINITY)
+    }
+
+    /// The best of a local and a global fit and, where those leave much, of global fits from about the start: one deviation up and down each
+    /// quantity that is widely known.
+    pub fn searched(&self, start: &Hypothesis) -> Option<Fit> {
+        let first = [self.global(start), self.local(start, None, f64::INFINITY)];
+        let best = |a: Fit, b: Fit| if b.objective < a.objective { b } else { a };
+        let first = first.into_iter().flatten().reduce(best)?;
+        let (much, followed) = self.settings.fit.other_starts;
+        if first.chi2_per_dof(self.observation) < much {
+            return Some(first);
+        }
+        let observation = self.thinned();
+        let thinned = self.on(&observation);
+        let is_wide = |m: &usize| start.tolerances()[*m].is_wide(self.settings.fit.wide);
+        let starts: Vec<Hypothesis> = (0..start.tolerances().len())
+            .filter(is_wide)
+            .flat_map(|m| [-1.0, 1.0].map(|sign| start.moved(m, sign)))
+            .collect();
+        let mut fits: Vec<Fit> = starts.par_iter().filter_map(|s| thinned.on_thinned_lines(s)).collect();
+        fits.sort_by(|a, b| a.objective.total_cmp(&b.objective));
+        fits.truncate(followed);
+        let fits: Vec<Option<Fit>> = fits.par_iter().map(|f| self.after_thinned(&f.hypothesis)).collect();
+        fits.into_iter().flatten().chain([first]).reduce(best)
+    }
+
+    /// The fit without effect `index` that is reached by making the effect smaller step by step, so that the quantities can take over
+    /// what they are able to imitate.
+    ///
+    /// `None` as well where a part of the effect is already missed by more than `limit`.
+    pub fn faded(&self, full: &Hypothesis, index: usize, limit: f64) -> Option<Fit> {
+        let effect = &full.effects()[index];
+        let without = full.without(index);
+        let mut at = without.clone();
+        for share in self.settings.fit.fading {
+            let smaller = crate::catalogue::scaled(effect, share).and_then(|effect| without.beside(effect));
+            let Some(smaller) = smaller.map(|h| h.with_coordinates_of(&at)) else { break };
+            let Some(fit) = self.local(&smaller, None, limit) else { break };
+            if fit.objective > limit {
+                return None;
+            }
+            at = fit.hypothesis;
+        }
+        self.local(&without.with_coordinates_of(&at), None, f64::INFINITY)
+    }
+}

@@ -1,0 +1,208 @@
+//! Every constant of the search, with the reason or the measurement behind it.
+//!
+//! "Measured" means: by `jointscope prove` on 200 to 500 concealed cases (`docs/records`), where a value was varied by about a factor of two
+//! each way and the one kept that lost no score; times are processor time.
+
+mod location;
+
+use jointscope_inference::{Damping, Limit};
+pub use location::{LawSettings, LocationSettings};
+
+/// How a diagnosis searches.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct Settings {
+    /// Fits of a hypothesis to the FRFs.
+    pub fit: FitSettings,
+    /// Which candidates are fitted, and how far.
+    pub ranking: RankingSettings,
+    /// When an effect is believed, and when a search ends.
+    pub selection: SelectionSettings,
+    /// Probabilities and verdict.
+    pub evidence: EvidenceSettings,
+    /// The map of places with no law assumed.
+    pub location: LocationSettings,
+}
+
+/// Fits of a hypothesis to the FRFs.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct FitSettings {
+    /// Steps of one stage with inflated noise, and of the last stage.
+    pub steps: (usize, usize),
+    /// Damping of the steps. An effect and a quantity that do almost the same need nearly undamped ones.
+    pub damping: Damping,
+    /// Decrease of the objective below which a fit has converged: a hundredth of what one parameter gains by chance.
+    pub converged: f64,
+    /// The same as a share of what a poor fit leaves beyond the degrees of freedom: such fits are compared across large differences.
+    pub negligible: f64,
+    /// Convergence of a stage with inflated noise, as a share of its objective: it only has to find the way.
+    pub inflated: f64,
+    /// The same where many such fits are compared.
+    pub inflated_among_many: f64,
+    /// Derivatives are taken anew when a step gains less than this share of their first one's gain. They cost as much as twenty predictions.
+    pub reuse: f64,
+    /// How often an undamped step is tried along a flat valley.
+    pub valleys: usize,
+    /// When a fit that competes with others is given up; its objective is the competition's. Small effects are found along flat valleys, a
+    /// little at a time: within `reach` no fit is too slow.
+    pub limit: Limit,
+    /// Noise inflation of the stages on thinned lines, then of the one on all lines. 1 is as far as a resonance may be from its place.
+    pub inflation: ([f64; 4], f64),
+    /// Lines of a thinned fit: enough for the course of the FRFs between resonances.
+    pub thinned_lines: usize,
+    /// χ² per degree of freedom above which a refit tries other starts too, and how many of these it follows to the end.
+    pub other_starts: (f64, usize),
+    /// Relative deviation from which on a quantity counts as widely known, so that its resonances may lie anywhere between others.
+    pub wide: f64,
+    /// Shares of its size by which an effect fades when it is dropped.
+    pub fading: [f64; 4],
+    /// Step of differences in units of a coordinate: small against a resonance's width, large against rounding.
+    pub difference: f64,
+    /// Relative change of an FRF that a difference may make at any line where uncertainties are stated, and the least share of `difference`:
+    /// collinear parameters need accurate derivatives, or the prior does not decide between them.
+    pub small_difference: (f64, f64),
+}
+
+/// Which candidates are fitted, and how far.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct RankingSettings {
+    /// Candidates of the local search that are refined, and starts of each.
+    pub local: (usize, usize),
+    /// Candidates of the global search that are kept after the stages on thinned lines, and those of them kept from two starts.
+    pub thinned: (usize, usize),
+    /// The same after the stage on all lines.
+    pub whole: (usize, usize),
+    /// Fits that leave more than this many times the best one's objective are dropped, after each stage: one in a false minimum may still
+    /// win, the likelier the more the noise is inflated.
+    pub dropped: [f64; 4],
+    /// The stage at which starts join to which a thinned fit without the candidate has led.
+    pub joins: usize,
+    /// χ² per degree of freedom above which the best single effect leaves so much that several starts of each candidate are tried, and how many.
+    pub several: (f64, usize),
+    /// χ² of one deviation, noise inflated, below which a quantity stays where it is in a thinned fit.
+    pub insensitive: f64,
+    /// Noise inflation at which starts are scored.
+    pub scored: f64,
+    /// Fits made without a limit before the others are measured against the best of them.
+    pub unlimited: usize,
+    /// A fit whose objective will stay this far above the best is not finished: e⁻³⁰ as probable.
+    pub margin: f64,
+}
+
+/// When an effect is believed, and when a search ends.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct SelectionSettings {
+    /// What any effect must gain in χ², beyond its parameters and 2 ln(candidates): measured, no false finding in 50 nulls.
+    pub penalty: f64,
+    /// What each of its parameters must gain besides: a χ² of one, and its prior's width.
+    pub parameter_penalty: f64,
+    /// Standard deviations of χ² up to which nothing large is left to be found, without and with effects.
+    pub fits: (f64, f64),
+    /// Standard deviations of Σ(deviation/std)² up to which quantities are deviated by chance. A layer of glue once hid behind 12 deviations
+    /// of one modulus.
+    pub deviated: f64,
+    /// Penalties that an effect must be worth, faded by a quarter, to be kept without a further fit.
+    pub clear: f64,
+    /// Rounds of adding and dropping.
+    pub rounds: usize,
+    /// Effects at the most: three at once imitate almost anything.
+    pub effects: usize,
+    /// Rounds of exchanging each of several effects.
+    pub exchanges: usize,
+}
+
+/// Probabilities and verdict.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct EvidenceSettings {
+    /// Hypotheses whose cost is farther than this from the best one's are not listed: probability below 0.03 %.
+    pub listed: f64,
+    /// Cost, above the best hypothesis', of physics that none covers: 3 % where the fit is good. Measured: calibrated to 0.97.
+    pub unlisted: f64,
+    /// Reduction of that cost for each additional effect: pairs of effects can imitate much.
+    pub company: f64,
+    /// Probability that a finding and its look-alikes must have together to be stated.
+    pub stated: f64,
+    /// Odds ratio required to replace a finding: two that cannot be told apart stay as they are.
+    pub replace: f64,
+    /// Replacements at the most, one less for each effect.
+    pub replacements: usize,
+    /// χ² per degree of freedom above which a model leaves something unexplained, with variances from coherence (known to a few per cent)
+    /// and from scatter (known to a fifth).
+    pub explained: (f64, f64),
+    /// Probability by chance below which a mismatch is located.
+    pub located: f64,
+    /// Bands by which a mismatch is stated.
+    pub bands: usize,
+    /// Share of the lines in each of the two bands held out.
+    pub held_out: f64,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Settings {
+            fit: FitSettings {
+                steps: (12, 60),
+                damping: Damping { initial: 1e-8, decrease: 0.1, least: 1e-13, raised: 0.0, most: 1e7 },
+                converged: 0.01,
+                negligible: 1e-5,
+                inflated: 0.01,
+                inflated_among_many: 0.03,
+                reuse: 0.15,
+                valleys: 3,
+                limit: Limit {
+                    objective: f64::INFINITY,
+                    promises: 3.0,
+                    gains: 5.0,
+                    patience: 2,
+                    reach: 60.0,
+                },
+                inflation: ([1.0, 0.3, 0.1, 0.03], 0.01),
+                thinned_lines: 100,
+                other_starts: (1.3, 3),
+                wide: 0.1,
+                fading: [0.75, 0.5, 0.25, 0.1],
+                difference: 2e-4,
+                small_difference: (1e-3, 1e-3),
+            },
+            ranking: RankingSettings {
+                local: (12, 2),
+                thinned: (16, 6),
+                whole: (10, 3),
+                dropped: [12.0, 10.0, 4.0, 3.0],
+                joins: 2,
+                several: (1.3, 3),
+                insensitive: 8.0,
+                scored: 0.1,
+                unlimited: 4,
+                margin: 60.0,
+            },
+            selection: SelectionSettings {
+                penalty: 8.0,
+                parameter_penalty: 3.0,
+                fits: (0.7, 2.0),
+                deviated: 8.0,
+                clear: 2.0,
+                rounds: 5,
+                effects: 3,
+                exchanges: 2,
+            },
+            evidence: EvidenceSettings {
+                listed: 16.0,
+                unlisted: 7.0,
+                company: 3.2,
+                stated: 0.5,
+                replace: 1.5,
+                replacements: 4,
+                explained: (1.2, 1.6),
+                located: 0.01,
+                bands: 12,
+                held_out: 0.06,
+            },
+            location: LocationSettings::default(),
+        }
+    }
+}

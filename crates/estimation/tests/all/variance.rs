@@ -1,0 +1,115 @@
+//! Whether the stated variances are those of the FRFs, on average over lines, whatever the number of hits.
+
+use crate::common::{TWO_MODES, Test};
+use jointscope_estimation::{Estimate, EstimateOptions, ResponseWindow, Weighting};
+
+/// Mean of |H − truth|²/variance over the lines from 20 to 480 Hz of `tests` tests.
+fn ratio(test: &Test, options: &EstimateOptions, tests: u64) -> f64 {
+    let (mut sum, mut count) = (0.0, 0.0);
+    for seed in 0..tests {
+        let estimate = Estimate::of(&Test { seed, ..test.clone() }.hits(), options).unwrap();
+        let hz = estimate.frfs.lines().hz();
+        let variance = estimate.frfs.variance(0).unwrap();
+        for line in (0..hz.len()).filter(|&l| (20.0..480.0).contains(&hz[l])) {
+            let truth = TWO_MODES.frf(0.0, hz[line]);
+            sum += (estimate.frfs.values(0)[line] - truth).norm_sqr() / variance[line];
+            count += 1.0;
+        }
+    }
+    sum / count
+}
+
+fn check(what: &str, ratio: f64, from: f64, to: f64) {
+    println!("{what}: chi2 per degree of freedom {ratio:.3}");
+    assert!((from..to).contains(&ratio), "{what}: {ratio}");
+}
+
+#[test]
+fn stated_variances_are_right_on_average_from_two_hits_on() {
+    for n in 2..=5 {
+        let test = Test {
+            response_noise: vec![0.02; n],
+            force_noise: vec![0.02; n],
+            strengths: (0..n).map(|k| 80.0 + 15.0 * k as f64).collect(),
+            ..Test::quiet(n, 2048)
+        };
+        check(&format!("{n} hits of equal noise"), ratio(&test, &EstimateOptions::default(), 60), 0.94, 1.08);
+    }
+}
+
+#[test]
+fn hits_of_several_strengths_whose_noise_is_a_share_of_them_state_it_rightly_too() {
+    for levels in
+        [vec![30.0; 3], vec![30.0, 33.0, 160.0, 150.0], vec![30.0, 33.0, 160.0, 150.0, 500.0, 480.0]]
+    {
+        let n = levels.len();
+        let share = |by: f64| levels.iter().map(|level| by * level).collect::<Vec<f64>>();
+        let test = Test {
+            response_noise: share(5e-4),
+            force_noise: share(2e-4),
+            strengths: levels.clone(),
+            ..Test::quiet(n, 2048)
+        };
+        let auto = ratio(&test, &EstimateOptions::default(), 60);
+        check(&format!("{n} hits, noise a share of their strength"), auto, 0.94, 1.08);
+        let plain = EstimateOptions { weighting: Weighting::Plain, ..EstimateOptions::default() };
+        check(&format!("the same, plain average of {n}"), ratio(&test, &plain, 60), 0.9, 1.15);
+    }
+}
+
+#[test]
+fn weights_by_noise_make_the_average_more_certain() {
+    let levels = [30.0, 31.0, 32.0, 160.0, 150.0, 170.0, 500.0, 480.0, 460.0];
+    let test = Test {
+        response_noise: levels.map(|level| 5e-4 * level).to_vec(),
+        force_noise: vec![0.0; 9],
+        strengths: levels.to_vec(),
+        ..Test::quiet(9, 2048)
+    };
+    let error = |weighting| {
+        let options = EstimateOptions { weighting, ..EstimateOptions::default() };
+        let estimate = Estimate::of(&test.hits(), &options).unwrap();
+        let hz = estimate.frfs.lines().hz();
+        let lines = (0..hz.len()).filter(|&l| (20.0..480.0).contains(&hz[l]));
+        lines.map(|l| (estimate.frfs.values(0)[l] - TWO_MODES.frf(0.0, hz[l])).norm_sqr()).sum::<f64>()
+    };
+    let gain = error(Weighting::Plain) / error(Weighting::Auto);
+    assert!((2.2..4.0).contains(&gain), "nine hits count as nine instead of about three: {gain}");
+}
+
+/// As [`ratio`], under an exponential window.
+fn ratio_under(decay: f64, test: &Test) -> f64 {
+    let options =
+        EstimateOptions { response_window: ResponseWindow::Decay(decay), ..EstimateOptions::default() };
+    let (mut sum, mut count) = (0.0, 0.0);
+    for seed in 0..60 {
+        let estimate = Estimate::of(&Test { seed, ..test.clone() }.hits(), &options).unwrap();
+        let hz = estimate.frfs.lines().hz();
+        let variance = estimate.frfs.variance(0).unwrap();
+        for line in (0..hz.len()).filter(|&l| (20.0..480.0).contains(&hz[l])) {
+            let truth = TWO_MODES.frf(decay, hz[line]);
+            sum += (estimate.frfs.values(0)[line] - truth).norm_sqr() / variance[line];
+            count += 1.0;
+        }
+    }
+    sum / count
+}
+
+#[test]
+fn a_window_leaves_the_variances_right() {
+    // Under 14 1/s on one second the noise of some fourteen neighbouring lines is one.
+    for (hits, decay) in [(4, 8.0), (3, 14.0), (4, 14.0), (6, 14.0)] {
+        let noise = |share: f64| vec![share; hits];
+        let test = Test { response_noise: noise(0.02), force_noise: noise(0.01), ..Test::quiet(hits, 2048) };
+        check(&format!("{hits} hits under {decay} 1/s"), ratio_under(decay, &test), 0.96, 1.035);
+    }
+}
+
+#[test]
+fn a_single_hit_has_neither_coherence_nor_variance_and_says_what_that_costs() {
+    let test = Test { response_noise: vec![0.02], ..Test::quiet(1, 2048) };
+    let estimate = Estimate::of(&test.hits(), &EstimateOptions::default()).unwrap();
+    assert_eq!((estimate.frfs.coherence(0), estimate.frfs.variance(0)), (None, None));
+    assert_eq!(estimate.frfs.averages(0), Some(1));
+    assert!(estimate.remarks.iter().any(|r| r.contains("no coherence")), "{:?}", estimate.remarks);
+}

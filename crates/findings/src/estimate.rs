@@ -1,0 +1,54 @@
+use jointscope_fixture::{Dof, ParameterSpec};
+use serde::Serialize;
+
+/// Quantile of the standard normal distribution of a 95 % interval.
+const QUANTILE: f64 = 1.96;
+/// Largest exponent of an interval's ratio: its ends stay finite.
+const MOST_EXPONENT: f64 = 50.0;
+
+/// A parameter of an effect that was found, SI units.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Estimate {
+    /// Name and range.
+    #[serde(skip)]
+    pub parameter: ParameterSpec,
+    /// The value.
+    pub value: f64,
+    /// One standard deviation; `None` where the data do not determine it.
+    pub std: Option<f64>,
+    /// 95 % interval.
+    #[serde(rename = "ci95")]
+    pub interval: Option<[f64; 2]>,
+    /// The unit, which the effect's degree of freedom decides.
+    pub unit: &'static str,
+}
+
+impl Estimate {
+    /// A value that nothing is known of yet beyond itself.
+    pub fn of(parameter: ParameterSpec, dof: Option<Dof>, value: f64) -> Self {
+        Estimate { parameter, value, std: None, interval: None, unit: parameter.unit_in(dof) }
+    }
+
+    /// The same known to ± `std`, its errors normal.
+    pub fn within(self, std: f64) -> Self {
+        let interval = [self.value - QUANTILE * std, self.value + QUANTILE * std];
+        Estimate { std: Some(std), interval: Some(interval), ..self }
+    }
+
+    /// The same known to ± `deviation` in its logarithm: an interval of ratios, lopsided where it is wide.
+    pub fn within_ratio(self, deviation: f64) -> Self {
+        let factor = (QUANTILE * deviation).min(MOST_EXPONENT).exp();
+        let interval = [self.value / factor, self.value * factor];
+        Estimate { std: Some(deviation * self.value.abs()), interval: Some(interval), ..self }
+    }
+
+    /// Whether the data leave the value open.
+    pub fn is_undetermined(&self) -> bool {
+        self.interval.is_none_or(|[low, high]| !(low.is_finite() && high.is_finite()))
+    }
+
+    /// Whether the whole interval lies above zero.
+    pub fn is_positive(&self) -> bool {
+        self.interval.is_some_and(|[low, _]| low > 0.0)
+    }
+}

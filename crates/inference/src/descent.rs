@@ -1,0 +1,376 @@
+//! The damped Gauss–Newton method, from derivatives that are taken anew as seldom as possible.
+
+/// How exactly derivatives are wanted.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Precision {
+    /// Good enough to find the way: forward differences, say.
+    Rough,
+    /// Good enough to decide between nearly collinear parameters: central differences or closed forms.
+    Exact,
+}
+
+/// A weighted sum of squared residuals with priors, to be minimised.
+pub trait LeastSquares {
+    /// Coordinates with everything that the model computes from them.
+    type Point;
+    /// Weights of the residuals, frozen while a step is made so that it is judged by what it was made for.
+    type Weights;
+    /// What the coordinates do to the residuals, near the point where it was found.
+    type Derivatives;
+    /// Normal equations at a point.
+    type Equations;
+
+    /// Whether the weights are the same everywhere.
+    const FIXED_WEIGHTS: bool;
+
+    /// The weights that hold about a point.
+    fn weights(&self, point: &Self::Point) -> Self::Weights;
+
+    /// Weighted squared residuals and squared deviations from the priors.
+    fn objective(&self, point: &Self::Point, weights: &Self::Weights) -> f64;
+
+    /// Derivatives at a point; `None` where it has none.
+    fn derivatives(&self, point: &Self::Point, precision: Precision) -> Option<Self::Derivatives>;
+
+    /// The normal equations at a point, from derivatives taken there or nearby.
+    fn equations(
+        &self,
+        point: &Self::Point,
+        derivatives: &Self::Derivatives,
+        weights: &Self::Weights,
+    ) -> Self::Equations;
+
+    /// The point that a step with the given relative damping leads to; `None` where there is none.
+    fn stepped(&self, point: &Self::Point, equations: &Self::Equations, damping: f64) -> Option<Self::Point>;
+
+    /// Decrease of the objective that an undamped step promises where the model follows its derivatives. Needed for
+    /// [`Settings::limit`] and [`Settings::valleys`].
+    fn promised(&self, _point: &Self::Point, _equations: &Self::Equations) -> f64 {
+        0.0
+    }
+}
+
+/// Damping of the steps, relative to each coordinate's own curvature.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Damping {
+    /// To begin with.
+    pub initial: f64,
+    /// Factor after a step that lowered the objective.
+    pub decrease: f64,
+    /// Never less.
+    pub least: f64,
+    /// At least this after a step that did not; tenfold otherwise.
+    pub raised: f64,
+    /// Beyond this no step is expected to lower the objective.
+    pub most: f64,
+}
+
+/// Decrease of the objective below which a fit has converged: the larger of the two.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Convergence {
+    /// Absolute decrease.
+    pub gain: f64,
+    /// Decrease as a share of what the objective exceeds `floor` by.
+    pub share: f64,
+    /// Objective of a perfect model: its degrees of freedom where noise is known, else zero.
+    pub floor: f64,
+}
+
+impl Convergence {
+    fn needed(&self, objective: f64) -> f64 {
+        self.gain.max(self.share * (objective - self.floor).max(0.0))
+    }
+}
+
+/// When a fit that competes with others is given up.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Limit {
+    /// Objective that it has to reach.
+    pub objective: f64,
+    /// Given up where this many times what its derivatives promise would not reach it.
+    pub promises: f64,
+    /// Given up where it is farther away than this many gains like that of its last derivatives…
+    pub gains: f64,
+    /// … from this many sets of derivatives on …
+    pub patience: usize,
+    /// … and farther than this. Within it, derivatives are exact.
+    pub reach: f64,
+}
+
+/// How a descent goes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Settings {
+    /// Steps at the most.
+    pub steps: usize,
+    /// Sets of derivatives at the most.
+    pub derivatives: usize,
+    /// Damping of the steps.
+    pub damping: Damping,
+    /// When it has converged.
+    pub convergence: Convergence,
+    /// Derivatives serve for as long as a step gains this share of their first one's gain; `None` takes them anew for every step.
+    pub reuse: Option<f64>,
+    /// Whether a fit may be called converged by derivatives that were taken elsewhere.
+    pub trust_old: bool,
+    /// Whether the last steps use [`Precision::Exact`] derivatives.
+    pub exact_at_end: bool,
+    /// Objective to be reached, for one fit among many.
+    pub limit: Option<Limit>,
+    /// How often an undamped step is tried where the damped ones gain little of what is promised, as along a flat valley.
+    pub valleys: usize,
+}
+
+impl Default for Settings {
+    /// Derivatives anew for every step, to convergence at a relative decrease of 1e-9.
+    fn default() -> Self {
+        Settings {
+            steps: 60,
+            derivatives: usize::MAX,
+            damping: Damping { initial: 1e-6, decrease: 0.1, least: 1e-15, raised: 0.0, most: 1e8 },
+            convergence: Convergence { gain: 0.0, share: 1e-9, floor: 0.0 },
+            reuse: None,
+            trust_old: false,
+            exact_at_end: false,
+            limit: None,
+            valleys: 0,
+        }
+    }
+}
+
+/// Where a descent ended.
+#[derive(Debug, Clone)]
+pub struct Descent<Point, Derivatives> {
+    /// The point.
+    pub point: Point,
+    /// The derivatives last used, taken there or on the way.
+    pub derivatives: Derivatives,
+    /// Objective with the last weights.
+    pub objective: f64,
+}
+
+/// A promise that exceeds the decrease of convergence this many times is worth an undamped step.
+const VALLEY: f64 = 3.0;
+/// Dampings tried with old derivatives before new ones are taken.
+const ATTEMPTS_WITH_OLD: usize = 2;
+
+/// Goes down from `start` until it has converged or is given up; with derivatives known from nearby where there are any.
+///
+/// `None` where a point on the way has no derivatives.
+pub fn descend<P: LeastSquares>(
+    problem: &P,
+    start: P::Point,
+    nearby: Option<P::Derivatives>,
+    settings: &Settings,
+) -> Option<Descent<P::Point, P::Derivatives>> {
+    let mut point = start;
+    let mut objective = problem.objective(&point, &problem.weights(&point));
+    let within_reach = |objective: f64| {
+        settings.exact_at_end
+            && settings.limit.is_some_and(|limit| objective - limit.objective <= limit.reach)
+    };
+    let mut precision = if within_reach(objective) { Precision::Exact } else { Precision::Rough };
+    let mut fresh = nearby.is_none();
+    let mut derivatives = match nearby {
+        Some(nearby) => nearby,
+        None => problem.derivatives(&point, precision)?,
+    };
+    let mut damping = settings.damping.initial;
+    let mut least_gain = 0.0_f64;
+    let mut valleys = 0;
+    let mut taken = 1;
+    let mut pace = Pace::default();
+    for _ in 0..settings.steps {
+        let weights = problem.weights(&point);
+        let before = if P::FIXED_WEIGHTS { objective } else { problem.objective(&point, &weights) };
+        let equations = problem.equations(&point, &derivatives, &weights);
+        let promised = if fresh { problem.promised(&point, &equations) } else { 0.0 };
+        if let Some(limit) = settings.limit.filter(|_| fresh)
+            && (before - limit.promises * promised > limit.objective || pace.is_too_slow(before, &limit))
+        {
+            objective = before;
+            break;
+        }
+        let attempts = if fresh { usize::MAX } else { ATTEMPTS_WITH_OLD };
+        let next = lower(problem, &point, (&equations, &weights, before), (&mut damping, attempts), settings);
+        let stepped = next.is_some();
+        if let Some((next, after)) = next {
+            (point, objective) = (next, after);
+        } else {
+            objective = before;
+        }
+        let gain = before - objective;
+        let needed = settings.convergence.needed(before);
+        if gain < needed && (fresh || (settings.trust_old && stepped)) {
+            let valley = promised > VALLEY * needed && gain > 0.0 && valleys < settings.valleys;
+            if valley {
+                valleys += 1;
+                damping = settings.damping.least;
+            } else if precision == Precision::Exact || !settings.exact_at_end {
+                break;
+            }
+            precision = Precision::Exact;
+            derivatives = problem.derivatives(&point, precision)?;
+            (fresh, least_gain) = (true, 0.0);
+            continue;
+        }
+        let slow = gain < least_gain.max(needed) || settings.reuse.is_none();
+        if fresh {
+            least_gain = settings.reuse.map_or(0.0, |share| (share * gain).max(needed));
+        }
+        if slow {
+            if taken == settings.derivatives {
+                break;
+            }
+            taken += 1;
+            if within_reach(objective) {
+                precision = Precision::Exact;
+            }
+            derivatives = problem.derivatives(&point, precision)?;
+            least_gain = 0.0;
+        }
+        fresh = slow;
+    }
+    Some(Descent { point, derivatives, objective })
+}
+
+/// The first step, ever more damped, that lowers the objective.
+fn lower<P: LeastSquares>(
+    problem: &P,
+    point: &P::Point,
+    (equations, weights, before): (&P::Equations, &P::Weights, f64),
+    (damping, attempts): (&mut f64, usize),
+    settings: &Settings,
+) -> Option<(P::Point, f64)> {
+    for _ in 0..attempts {
+        if let Some(next) = problem.stepped(point, equations, *damping) {
+            let after = problem.objective(&next, weights);
+            if after < before {
+                *damping = (*damping * settings.damping.decrease).max(settings.damping.least);
+                return Some((next, after));
+            }
+        }
+        *damping = (*damping * 10.0).max(settings.damping.raised);
+        if *damping > settings.damping.most {
+            return None;
+        }
+    }
+    None
+}
+
+/// How fast a fit comes nearer to its limit, from one set of derivatives to the next.
+#[derive(Default)]
+struct Pace {
+    seen: usize,
+    last: f64,
+}
+
+impl Pace {
+    fn is_too_slow(&mut self, objective: f64, limit: &Limit) -> bool {
+        let gained = self.last - objective;
+        self.last = objective;
+        self.seen += 1;
+        self.seen > limit.patience && objective - limit.objective > limit.reach.max(limit.gains * gained)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::NormalEquations;
+    use proptest::prelude::*;
+    use std::cell::Cell;
+
+    /// A damped oscillation sampled at forty instants: amplitude, decay and frequency from a start nearby.
+    struct Oscillation {
+        measured: Vec<f64>,
+        linearised: Cell<usize>,
+    }
+
+    fn value(q: &[f64; 3], t: f64) -> f64 {
+        q[0] * (-q[1] * t).exp() * (q[2] * t).cos()
+    }
+
+    impl Oscillation {
+        fn of(truth: [f64; 3]) -> Self {
+            let measured = (0..40).map(|i| value(&truth, 0.1 * f64::from(i))).collect();
+            Oscillation { measured, linearised: Cell::new(0) }
+        }
+    }
+
+    impl LeastSquares for Oscillation {
+        type Point = [f64; 3];
+        type Weights = ();
+        type Derivatives = Vec<[f64; 3]>;
+        type Equations = NormalEquations;
+        const FIXED_WEIGHTS: bool = true;
+
+        fn weights(&self, _: &[f64; 3]) {}
+
+        fn objective(&self, q: &[f64; 3], _: &()) -> f64 {
+            let squares =
+                self.measured.iter().enumerate().map(|(i, m)| (m - value(q, 0.1 * i as f64)).powi(2));
+            squares.sum()
+        }
+
+        fn derivatives(&self, q: &[f64; 3], _: Precision) -> Option<Vec<[f64; 3]>> {
+            self.linearised.set(self.linearised.get() + 1);
+            let at = |i: usize| {
+                let t = 0.1 * i as f64;
+                let decay = (-q[1] * t).exp();
+                [decay * (q[2] * t).cos(), -t * value(q, t), -q[0] * decay * t * (q[2] * t).sin()]
+            };
+            Some((0..self.measured.len()).map(at).collect())
+        }
+
+        fn equations(&self, q: &[f64; 3], slopes: &Vec<[f64; 3]>, _: &()) -> NormalEquations {
+            let mut equations = NormalEquations::zero(3);
+            for (i, slopes) in slopes.iter().enumerate() {
+                equations.add(1.0, self.measured[i] - value(q, 0.1 * i as f64), slopes);
+            }
+            equations
+        }
+
+        fn stepped(&self, q: &[f64; 3], equations: &NormalEquations, damping: f64) -> Option<[f64; 3]> {
+            let step = equations.step(damping)?;
+            Some([q[0] + step[0], q[1] + step[1], q[2] + step[2]])
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn a_damped_oscillation_is_found_from_a_start_nearby(
+            truth in (0.5f64..3.0, 0.05f64..0.5, 2.0f64..4.0), off in prop::array::uniform3(-0.1f64..0.1)
+        ) {
+            let truth = [truth.0, truth.1, truth.2];
+            let start = [0, 1, 2].map(|i| truth[i] * (1.0 + off[i]));
+            let fit = descend(&Oscillation::of(truth), start, None, &Settings::default()).unwrap();
+            for i in 0..3 {
+                prop_assert!((fit.point[i] / truth[i] - 1.0).abs() < 1e-6, "{:?} for {truth:?}", fit.point);
+            }
+        }
+
+        #[test]
+        fn old_derivatives_lead_to_the_same_place_and_are_taken_more_rarely(off in prop::array::uniform3(-0.05f64..0.05)) {
+            let truth = [1.0, 0.2, 3.0];
+            let start = [0, 1, 2].map(|i| truth[i] * (1.0 + off[i]));
+            let (anew, reused) = (Oscillation::of(truth), Oscillation::of(truth));
+            let converged = Convergence { gain: 1e-18, share: 0.0, floor: 0.0 };
+            let settings = Settings { convergence: converged, ..Settings::default() };
+            let first = descend(&anew, start, None, &settings).unwrap();
+            let second = descend(&reused, start, None, &Settings { reuse: Some(0.0), ..settings }).unwrap();
+            for i in 0..3 {
+                prop_assert!((first.point[i] - second.point[i]).abs() < 1e-6);
+            }
+            prop_assert!(reused.linearised.get() <= anew.linearised.get());
+        }
+
+        #[test]
+        fn no_step_ever_raises_the_objective(start in (0.1f64..5.0, 0.0f64..2.0, 0.5f64..8.0), steps in 1usize..20) {
+            let problem = Oscillation::of([1.0, 0.2, 3.0]);
+            let start = [start.0, start.1, start.2];
+            let fit = descend(&problem, start, None, &Settings { steps, ..Settings::default() }).unwrap();
+            prop_assert!(fit.objective <= problem.objective(&start, &()));
+            prop_assert!((fit.objective - problem.objective(&fit.point, &())).abs() <= 1e-12);
+        }
+    }
+}

@@ -1,0 +1,11 @@
+//! The tests of this crate's public functions, in one program: linking is what costs time.
+#![allow(clippy::panic, clippy::unwrap_used)] // helpers of tests fail as tests do
+
+mod against_the_rig;
+mod common;
+mod diagnosis;
+mod layers;
+mod links;
+mod location;
+mod modes;
+mod real_beam;

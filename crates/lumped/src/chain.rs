@@ -1,0 +1,145 @@
+//! What stands between the structure and a recorded value: where sensors sit, their masses, gains, delays, window.
+
+use crate::effects::{Action, actions};
+use crate::{Instrument, LumpedError, Station};
+use jointscope_fixture::{BodyKind, Fixture, Place};
+use jointscope_spectra::{Channel, Dof, FrfPair};
+use num_complex::Complex64;
+
+/// How one FRF is read from the structure.
+#[derive(Debug, Clone)]
+pub struct Reading {
+    /// Where the response is read.
+    pub output: Station,
+    /// Where the structure is struck.
+    pub input: Station,
+    /// Place and mass (kg) of a sensor that is there only while this FRF is measured.
+    pub load: Option<(Station, f64)>,
+    /// Factor on the FRF: a response is multiplied by its channel's gain, a reference divides.
+    pub gain: f64,
+    /// Delay of the response against the reference, s.
+    pub delay: f64,
+}
+
+/// How all FRFs of a recording are read.
+#[derive(Debug, Clone)]
+pub struct MeasuringChain {
+    /// One reading a pair, in their order.
+    pub readings: Vec<Reading>,
+    decay: f64,
+}
+
+impl MeasuringChain {
+    /// The chain that the fixture's effects describe, or a perfect one.
+    ///
+    /// # Errors
+    /// Channels at points that do not exist, rotations of bodies that have none.
+    pub fn of(fixture: &Fixture, pairs: &[FrfPair], instrument: Instrument) -> Result<Self, LumpedError> {
+        let effects: Vec<Action> = match instrument {
+            Instrument::AsRecorded => actions(fixture).collect(),
+            Instrument::Perfect => Vec::new(),
+        };
+        let read = |pair| reading(fixture, &effects, pair);
+        Ok(MeasuringChain {
+            readings: pairs.iter().map(read).collect::<Result<_, _>>()?,
+            decay: decay(effects),
+        })
+    }
+
+    /// Where on the s-plane a line is read.
+    pub fn s(&self, omega: f64) -> Complex64 {
+        Complex64::new(self.decay, omega)
+    }
+
+    /// Recorded accelerance per receptance of FRF `index`.
+    pub fn factor(&self, index: usize, omega: f64) -> Complex64 {
+        let s = self.s(omega);
+        let Reading { gain, delay, .. } = self.readings[index];
+        let turned = if delay == 0.0 { Complex64::ONE } else { Complex64::cis(-omega * delay) };
+        s * s * turned * gain
+    }
+}
+
+/// Gain and delay (s) of a channel's own signal.
+pub fn channel_signal(fixture: &Fixture, place: &Place) -> (f64, f64) {
+    actions(fixture).fold((1.0, 0.0), |(all, late), action| match action {
+        Action::Signal { channel, gain, delay } if channel == place => (all * gain, late + delay),
+        _ => (all, late),
+    })
+}
+
+/// Decay of the responses' exponential window, 1/s; zero where there is none.
+pub fn window_decay(fixture: &Fixture) -> f64 {
+    decay(actions(fixture))
+}
+
+/// Where a channel sits, offsets included; `None` where its point does not exist.
+pub fn channel_station(fixture: &Fixture, channel: &Channel) -> Option<Station> {
+    station(fixture, actions(fixture), channel)
+}
+
+fn decay<'a>(effects: impl IntoIterator<Item = Action<'a>>) -> f64 {
+    let of = |action| if let Action::Window { decay } = action { decay } else { 0.0 };
+    effects.into_iter().map(of).sum()
+}
+
+fn station<'a>(
+    fixture: &Fixture,
+    effects: impl IntoIterator<Item = Action<'a>>,
+    channel: &Channel,
+) -> Option<Station> {
+    let point = fixture.point(&channel.point)?;
+    let offset = |action| match action {
+        Action::Offset { point, dx } if point == channel.point => dx,
+        _ => 0.0,
+    };
+    let x = point.x.value + effects.into_iter().map(offset).sum::<f64>();
+    Some(Station { body: point.body, x, dof: channel.dof })
+}
+
+fn reading(fixture: &Fixture, effects: &[Action], pair: &FrfPair) -> Result<Reading, LumpedError> {
+    let at = |channel: &Channel| placed(fixture, effects, pair, channel);
+    let (mut gain, mut delay, mut load) = (1.0, 0.0, 0.0);
+    for effect in effects {
+        match *effect {
+            Action::Signal { channel: Place::Response(name), gain: g, delay: t }
+                if pair.response.is_named(name) =>
+            {
+                gain *= g;
+                delay += t;
+            }
+            Action::Signal { channel: Place::Reference(name), gain: g, delay: t }
+                if pair.reference.is_named(name) =>
+            {
+                gain *= 1.0 / g;
+                delay -= t;
+            }
+            Action::SensorLoad { response, mass } if pair.response.is_named(response) => load += mass,
+            _ => {}
+        }
+    }
+    let load = match load {
+        0.0 => None,
+        mass => Some((at(&Channel::transverse(pair.response.point.clone()))?, mass)),
+    };
+    Ok(Reading { output: at(&pair.response)?, input: at(&pair.reference)?, load, gain, delay })
+}
+
+fn placed(
+    fixture: &Fixture,
+    effects: &[Action],
+    pair: &FrfPair,
+    channel: &Channel,
+) -> Result<Station, LumpedError> {
+    let station =
+        station(fixture, effects.iter().copied(), channel).ok_or_else(|| LumpedError::UnknownPoint {
+            frf: pair.to_string(),
+            point: channel.point.clone(),
+            known: fixture.points().iter().map(|p| p.name.as_str()).collect::<Vec<_>>().join(", "),
+        })?;
+    let fixed = matches!(&fixture.bodies()[station.body].kind, BodyKind::Rigid(rigid) if !rigid.rotates);
+    if channel.dof == Dof::Rotation && fixed {
+        return Err(LumpedError::NoRotation { frf: pair.to_string(), point: channel.point.clone() });
+    }
+    Ok(station)
+}

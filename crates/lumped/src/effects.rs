@@ -1,0 +1,128 @@
+//! What each effect does to the model: the one place that knows.
+
+use crate::Station;
+use crate::terms::{PointLaw, TermStation};
+use jointscope_fixture::{Dof, Effect, EffectKind as Kind, Fixture, Place};
+use std::f64::consts::TAU;
+
+/// What an effect does.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Action<'a> {
+    /// A dynamic stiffness through one motion.
+    Through { motion: TermStation, law: PointLaw },
+    /// A block gets its first free-free bending mode as a coordinate.
+    Bending { body: usize, omega: f64, ratio: f64 },
+    /// A beam body changes as a whole: its matrices are built again.
+    OnBeam { body: usize, change: Change },
+    /// A joint changes.
+    OnJoint { joint: usize, change: Change },
+    /// Channels at the point sit `dx` further along x.
+    Offset { point: &'a str, dx: f64 },
+    /// A channel's signal is multiplied by `gain` and late by `delay`, s.
+    Signal { channel: &'a Place, gain: f64, delay: f64 },
+    /// A mass sits at the response while it is measured.
+    SensorLoad { response: &'a str, mass: f64 },
+    /// Responses were multiplied by e^{−decay·t}.
+    Window { decay: f64 },
+    /// A force that depends on the amplitude, over time only.
+    Amplitude,
+}
+
+/// What changes in a joint or a beam body.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Change {
+    /// The elastic stiffness by this factor.
+    Factor(f64),
+    /// The elastic stiffness by iη more.
+    Loss(f64),
+    /// The elastic stiffness by ratio·sτ/(1 + sτ) more.
+    Relaxation { ratio: f64, time: f64 },
+    /// Shear gives way too: κGA, N, and ρI, kg·m.
+    Shear { stiffness: f64, rotary_inertia: f64 },
+    /// Mass of its own, spread evenly.
+    Mass(f64),
+    /// The free length by dx more.
+    Length(f64),
+    /// A spring and dashpot in series with one end.
+    Interface(Interface),
+}
+
+/// A spring and dashpot in series with one end of a joint.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Interface {
+    pub at_far_end: bool,
+    pub dof: Dof,
+    pub stiffness: f64,
+    pub damping: f64,
+}
+
+/// What the effects of a fixture do, in the order of its file.
+pub(crate) fn actions(fixture: &Fixture) -> impl Iterator<Item = Action<'_>> {
+    fixture.physics().iter().filter_map(|effect| action(fixture, effect))
+}
+
+/// What an effect does; `None` where its place does not exist.
+fn action<'a>(fixture: &'a Fixture, effect: &'a Effect) -> Option<Action<'a>> {
+    let value = |index: usize| effect.value(index);
+    let on_body = |law: PointLaw| {
+        let body = body_of(fixture, &effect.place)?;
+        Some(Action::Through { motion: TermStation::single(Station::transverse(body, value(0))), law })
+    };
+    let changed = |change: Change| match joint_of(fixture, &effect.place) {
+        Some(joint) => Some(Action::OnJoint { joint, change }),
+        None => Some(Action::OnBeam { body: body_of(fixture, &effect.place)?, change }),
+    };
+    match effect.kind {
+        Kind::AddedMass => on_body(PointLaw::Mass(value(1))),
+        Kind::Support => on_body(PointLaw::Spring { stiffness: value(1), damping: value(2) }),
+        Kind::AttachedResonator => {
+            on_body(PointLaw::Resonator { mass: value(1), omega: TAU * value(2), ratio: value(3) })
+        }
+        Kind::BodyFlexibility => {
+            let body = body_of(fixture, &effect.place)?;
+            Some(Action::Bending { body, omega: TAU * value(0), ratio: value(1) })
+        }
+        Kind::InterfaceCompliance => {
+            let (joint, at_far_end) = end_of(fixture, &effect.place)?;
+            let dof = effect.dof.unwrap_or(Dof::Translation);
+            let interface = Interface { at_far_end, dof, stiffness: value(0), damping: value(1) };
+            Some(Action::OnJoint { joint, change: Change::Interface(interface) })
+        }
+        Kind::ShearDeformation => changed(Change::Shear { stiffness: value(0), rotary_inertia: value(1) }),
+        Kind::JointMass => changed(Change::Mass(value(0))),
+        Kind::StiffnessChange => changed(Change::Factor(value(0))),
+        Kind::LossFactor => changed(Change::Loss(value(0))),
+        Kind::Relaxation => changed(Change::Relaxation { ratio: value(0), time: value(1) }),
+        Kind::JointLength => changed(Change::Length(value(0))),
+        Kind::PointOffset => match &effect.place {
+            Place::Point(point) => Some(Action::Offset { point, dx: value(0) }),
+            _ => None,
+        },
+        Kind::ChannelGain => Some(Action::Signal { channel: &effect.place, gain: value(0), delay: 0.0 }),
+        Kind::ChannelDelay => Some(Action::Signal { channel: &effect.place, gain: 1.0, delay: value(0) }),
+        Kind::SensorMass => match &effect.place {
+            Place::Response(response) => Some(Action::SensorLoad { response, mass: value(0) }),
+            _ => None,
+        },
+        Kind::ExponentialWindow => Some(Action::Window { decay: value(0) }),
+        Kind::CubicStiffness | Kind::Friction | Kind::Gap => Some(Action::Amplitude),
+    }
+}
+
+fn body_of(fixture: &Fixture, place: &Place) -> Option<usize> {
+    let Place::Body(name) = place else { return None };
+    fixture.bodies().iter().position(|body| body.name == *name)
+}
+
+fn joint_of(fixture: &Fixture, place: &Place) -> Option<usize> {
+    let Place::Joint(name) = place else { return None };
+    fixture.joints().iter().position(|joint| joint.name == *name)
+}
+
+/// The joint that ends at a point, and whether with its far end.
+fn end_of(fixture: &Fixture, place: &Place) -> Option<(usize, bool)> {
+    let Place::Point(name) = place else { return None };
+    let is_here = |point: usize| fixture.points()[point].name == *name;
+    let joint = fixture.joints().iter().position(|joint| is_here(joint.from) || is_here(joint.to))?;
+    Some((joint, is_here(fixture.joints()[joint].to)))
+}

@@ -1,0 +1,167 @@
+//! What a fit may move: quantities of the fixture within their tolerances, and the parameters of amplitude-dependent effects.
+
+use crate::RestoringLaw;
+use jointscope_fixture::{
+    Effect, Fixture, FixtureError, NamedQuantity, Nature, Quantity, QuantityOwner, SupportPlace,
+};
+use jointscope_inference::{Parameter, Transform};
+use std::sync::Arc;
+
+/// A fixture with quantities and effects to be fitted, at coordinates in units of which one is a typical step.
+#[derive(Debug, Clone)]
+pub(crate) struct Hypothesis {
+    fixture: Arc<Fixture>,
+    /// The quantities that may move, each with its position among the fixture's.
+    pub quantities: Arc<[(usize, NamedQuantity)]>,
+    /// Amplitude-dependent effects beyond the fixture's, as they were added.
+    effects: Vec<Effect>,
+    /// Of the quantities, then of the effects.
+    parameters: Vec<Parameter>,
+    pub coordinates: Vec<f64>,
+}
+
+/// Longest step of a coordinate: beyond it a linearised model says nothing.
+const LONGEST: f64 = 4.0;
+/// The same of an effect's, a logarithm or a part of where it began: a spring that no longer slips, or never touches, would not find back.
+const LONGEST_OF_EFFECT: f64 = 0.4;
+
+impl Hypothesis {
+    /// The fixture as stated. Points that no joint, support or channel uses stay where they are.
+    pub fn nominal(fixture: &Fixture, exact: bool, channels: &[String]) -> Self {
+        let mut quantities = fixture.uncertain_quantities(exact);
+        quantities.retain(|(_, quantity)| is_used(fixture, quantity, channels));
+        Hypothesis {
+            fixture: Arc::new(fixture.clone()),
+            effects: Vec::new(),
+            parameters: quantities.iter().map(|(_, quantity)| parameter(quantity)).collect(),
+            coordinates: vec![0.0; quantities.len()],
+            quantities: quantities.into(),
+        }
+    }
+
+    /// The same with one more effect, at the parameters it is given with.
+    pub fn with(&self, effect: Effect) -> Self {
+        let mut more = self.clone();
+        for (transform, quantity) in transforms(&effect).into_iter().zip(&effect.parameters) {
+            more.parameters.push(Parameter::new(transform));
+            more.coordinates.extend(transform.coordinate(quantity.value));
+        }
+        more.effects.push(effect);
+        more
+    }
+
+    /// The same quantities without any effect.
+    pub fn without_effects(&self) -> Self {
+        let mut less = self.clone();
+        less.coordinates.truncate(less.quantities.len());
+        less.parameters.truncate(less.quantities.len());
+        less.effects.clear();
+        less
+    }
+
+    /// The effects at the present coordinates.
+    pub fn effects(&self) -> Vec<Effect> {
+        let all = self.parameters.iter().zip(&self.coordinates).skip(self.quantities.len());
+        let mut values = all.filter_map(|(parameter, at)| parameter.transform.value(*at));
+        let at = |effect: &Effect| {
+            let own: Vec<f64> = values.by_ref().take(effect.parameters.len()).collect();
+            Effect::new(effect.kind, effect.place.clone(), effect.dof, &own)
+        };
+        self.effects.iter().map(at).collect()
+    }
+
+    /// The parameters of effect `index`: transform of each, and its coordinate's place.
+    pub fn parameters_of(&self, index: usize) -> impl Iterator<Item = (Transform, usize)> {
+        let before = self.effects[..index].iter().map(|e| e.parameters.len()).sum::<usize>();
+        let first = self.quantities.len() + before;
+        (first..first + self.effects[index].parameters.len())
+            .map(|place| (self.parameters[place].transform, place))
+    }
+
+    pub fn parameters(&self) -> &[Parameter] {
+        &self.parameters
+    }
+
+    /// What departures from the stated values cost: Σ (departure/std)².
+    pub fn penalty(&self) -> f64 {
+        self.parameters.iter().zip(&self.coordinates).map(|(p, at)| p.penalty(*at)).sum()
+    }
+
+    /// Step of coordinate `index` for a difference quotient.
+    pub fn difference(&self, index: usize) -> f64 {
+        let Some((_, quantity)) = self.quantities.get(index) else { return 1e-3 };
+        match quantity.nature {
+            Nature::Damping => 0.02,
+            Nature::Abscissa => 2e-6 / scale(quantity),
+            // A step of 2e-5 of a size is felt by no phase, and is far above rounding.
+            _ => (2e-5 * quantity.value.abs() / scale(quantity)).clamp(1e-6, 0.1),
+        }
+    }
+
+    pub fn moved(&self, index: usize, step: f64) -> Self {
+        let mut moved = self.clone();
+        moved.coordinates[index] += step;
+        moved
+    }
+
+    /// Moved by `step`, no coordinate farther than derivatives reach; damping stops at zero.
+    pub fn stepped(&self, step: &[f64]) -> Self {
+        let mut next = self.clone();
+        for (i, (coordinate, step)) in next.coordinates.iter_mut().zip(step).enumerate() {
+            let longest = if i < self.quantities.len() { LONGEST } else { LONGEST_OF_EFFECT };
+            *coordinate = self.parameters[i].clamp(*coordinate + step.clamp(-longest, longest));
+        }
+        next
+    }
+
+    /// The fixture at these coordinates, the effects in its physics.
+    pub fn to_fixture(&self) -> Result<Fixture, FixtureError> {
+        let mut fixture = Fixture::clone(&self.fixture);
+        let values = self.quantities.iter().zip(&self.parameters).zip(&self.coordinates);
+        fixture.set_quantities(
+            values.filter_map(|(((index, _), p), at)| Some((*index, p.transform.value(*at)?))),
+        );
+        let physics = [self.fixture.physics(), &self.effects()].concat();
+        fixture.with_physics(physics)
+    }
+}
+
+/// Whether kind, joint and component are the same.
+pub(crate) fn same_name(a: &Effect, b: &Effect) -> bool {
+    (a.kind, &a.place, a.dof) == (b.kind, &b.place, b.dof)
+}
+
+/// How each parameter of an amplitude-dependent effect moves: by its logarithm, or in parts of where it started.
+fn transforms(effect: &Effect) -> Vec<Transform> {
+    let positive = RestoringLaw::of(effect).is_none_or(|law| law.is_positive());
+    let transform = |quantity: &Quantity| match positive {
+        true => Transform::Logarithmic { centre: 1.0, scale: 1.0 },
+        false => Transform::Linear { centre: 0.0, scale: quantity.value.abs().max(f64::MIN_POSITIVE) },
+    };
+    effect.parameters.iter().map(transform).collect()
+}
+
+/// A typical change of a quantity: its standard deviation, a tenth of the value where it is free.
+fn scale(quantity: &NamedQuantity) -> f64 {
+    quantity.std.unwrap_or(if quantity.value != 0.0 { 0.1 * quantity.value.abs() } else { 1.0 })
+}
+
+/// How a quantity moves: in standard deviations (tenths of the value where it is free), damping not below zero.
+fn parameter(quantity: &NamedQuantity) -> Parameter {
+    let (centre, scale) = (quantity.value, scale(quantity));
+    let parameter = Parameter::new(Transform::Linear { centre, scale })
+        .with_precision(if quantity.std.is_some() { 1.0 } else { 0.0 });
+    match quantity.nature == Nature::Damping && centre > 0.0 {
+        true => parameter.between(-centre / scale, f64::INFINITY),
+        false => parameter,
+    }
+}
+
+/// Whether a quantity enters the model: of the points, those at which something is joined, held, struck or read.
+fn is_used(fixture: &Fixture, quantity: &NamedQuantity, channels: &[String]) -> bool {
+    let QuantityOwner::Point(point) = quantity.owner else { return true };
+    let held = |place: &SupportPlace| matches!(place, SupportPlace::Point(p) if *p == point);
+    channels.contains(&fixture.points()[point].name)
+        || fixture.joints().iter().any(|joint| joint.from == point || joint.to == point)
+        || fixture.supports().iter().any(|support| held(&support.place))
+}

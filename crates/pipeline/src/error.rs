@@ -1,0 +1,102 @@
+use jointscope_diagnosis::DiagnosisError;
+use jointscope_estimation::EstimateError;
+use jointscope_fixture::FixtureError;
+use jointscope_nonlinear::{Held, SteppedError};
+use jointscope_recordings::{HitsError, RecordingError};
+
+/// Why files are no recording of a fixture.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum MeasurementError {
+    /// They hold no FRFs or hits that suit the fixture, or the channel map suits neither.
+    #[error(transparent)]
+    Recording(#[from] RecordingError),
+    /// Their time histories are no hits.
+    #[error(transparent)]
+    Hits(HitsError),
+}
+
+impl From<HitsError> for MeasurementError {
+    fn from(error: HitsError) -> Self {
+        match error {
+            HitsError::Map(error) => MeasurementError::Recording(error),
+            error => MeasurementError::Hits(error),
+        }
+    }
+}
+
+/// Why a measurement got no answer.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// FRFs at several levels, of which the amplitude is not stated for all.
+    #[error(transparent)]
+    Levels(#[from] RecordingError),
+    /// No FRFs can be estimated from the hits.
+    #[error("{0}{remedy}", remedy = remedy_of_estimate(.0))]
+    Estimate(#[from] EstimateError),
+    /// The hammer excites no line.
+    #[error("the hits excite no spectral line; record harder or longer ones")]
+    NothingExcited,
+    /// Band and excluded bands leave no line.
+    #[error(
+        "`--band` and `--exclude` leave no spectral line of the recording, which runs from {first} to {last} Hz; choose them anew"
+    )]
+    NoLineInUse {
+        /// First line of the recording, Hz.
+        first: f64,
+        /// Its last line, Hz.
+        last: f64,
+    },
+    /// Excluded bands leave no line of a level.
+    #[error("`--exclude` leaves no spectral line of level {0}; choose it anew")]
+    NoLineOfLevel(Held),
+    /// The levels cannot be diagnosed.
+    #[error(transparent)]
+    Stepped(#[from] SteppedError),
+    /// The FRFs cannot be diagnosed.
+    #[error("{0}{remedy}", remedy = remedy_of_diagnosis(.0))]
+    Linear(#[from] DiagnosisError),
+    /// The fixture cannot have the window or the effects found beside its own.
+    #[error(transparent)]
+    Fixture(#[from] FixtureError),
+}
+
+/// What an error is about: the file to name before its sentence.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Concern {
+    /// The fixture.
+    Fixture,
+    /// The recording.
+    Recording,
+    /// The options alone.
+    Options,
+}
+
+impl Error {
+    /// What the error is about.
+    pub fn concern(&self) -> Concern {
+        match self {
+            Error::Fixture(_)
+            | Error::Stepped(SteppedError::Model(_))
+            | Error::Linear(DiagnosisError::Model(_)) => Concern::Fixture,
+            Error::Estimate(EstimateError::Window { .. }) => Concern::Options,
+            _ => Concern::Recording,
+        }
+    }
+}
+
+fn remedy_of_estimate(error: &EstimateError) -> &'static str {
+    match error {
+        EstimateError::NoSuchHit { .. } => "; give `--keep` and `--reject` numbers of these",
+        _ => "",
+    }
+}
+
+fn remedy_of_diagnosis(error: &DiagnosisError) -> &'static str {
+    match error {
+        DiagnosisError::HoldOut(_) => {
+            "; name FRFs of the recording with `--hold-out`, and leave one at the least"
+        }
+        _ => "",
+    }
+}

@@ -1,0 +1,46 @@
+//! Hammer hits with the FRFs estimated from them.
+
+use jointscope_estimation::{Estimate, EstimateError, EstimateOptions, Estimator};
+use jointscope_hits::Hit;
+use jointscope_spectra::FrfSet;
+
+/// Hammer hits and what was estimated from them.
+#[derive(Debug, Clone, PartialEq)]
+pub struct HammerTest {
+    /// The hits.
+    pub hits: Vec<Hit>,
+    /// FRFs, and what became of each hit.
+    pub estimate: Estimate,
+}
+
+impl HammerTest {
+    /// Estimates the FRFs of `hits`.
+    ///
+    /// # Errors
+    /// See [`EstimateError`].
+    pub fn of(hits: &[Hit], options: &EstimateOptions) -> Result<Self, EstimateError> {
+        Ok(HammerTest { hits: hits.to_vec(), estimate: Estimate::of(hits, options)? })
+    }
+
+    /// The hits that the estimate uses.
+    pub(crate) fn hits_in_use(&self) -> Vec<Hit> {
+        let in_use = self.hits.iter().zip(&self.estimate.hits).filter(|(_, report)| report.used);
+        in_use.map(|(hit, _)| hit.clone()).collect()
+    }
+
+    /// `FRFs were estimated from the hits: H1, 9 hits at 1, 9 at 2, on 1975 lines from 0.78125 to 1543 Hz`, of those FRFs that are used.
+    pub fn says(&self, frfs: &FrfSet, estimator: Estimator) -> String {
+        let count = |count: usize| format!("{count} hit{}", if count == 1 { "" } else { "s" });
+        let excitations = self.estimate.excitations.iter();
+        let points: Vec<String> =
+            excitations.map(|e| format!("{} at {}", count(e.hits.len()), e.struck)).collect();
+        let hz = frfs.lines().hz();
+        let (first, last) = (hz.first().copied().unwrap_or(0.0), hz.last().copied().unwrap_or(0.0));
+        format!(
+            "FRFs were estimated from the hits: {}, {}, on {} lines from {first:.6} to {last:.6} Hz",
+            estimator.name(),
+            points.join(", "),
+            hz.len()
+        )
+    }
+}

@@ -1,0 +1,98 @@
+//! The way from a measurement to an answer.
+
+use crate::{Answer, Error, MeasuredFrfs, Measurement, hits, levels};
+use jointscope_diagnosis::{Diagnosis, DiagnosisOptions};
+use jointscope_estimation::{EstimateOptions, ResponseWindow};
+use jointscope_fixture::Fixture;
+use jointscope_nonlinear::NonlinearOptions;
+use jointscope_spectra::FrfSet;
+
+/// What to use of a measurement.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Options {
+    /// Lines in use, FRFs to hold out, numbers to take as exact. Bands in Hz.
+    pub diagnosis: DiagnosisOptions,
+    /// How FRFs follow from hits.
+    pub estimate: EstimateOptions,
+}
+
+impl Default for Options {
+    /// All lines and FRFs; FRFs by H1, under an exponential window where a record ends before the motion does.
+    fn default() -> Self {
+        let estimate = EstimateOptions {
+            response_window: ResponseWindow::Auto,
+            zero_padding: 1,
+            ..EstimateOptions::default()
+        };
+        Options { diagnosis: DiagnosisOptions::default(), estimate }
+    }
+}
+
+impl Options {
+    pub(crate) fn nonlinear(&self) -> NonlinearOptions {
+        NonlinearOptions { band: self.diagnosis.band, exact: self.diagnosis.exact }
+    }
+
+    /// Refuses a choice of lines that leaves none.
+    fn check(&self, frfs: &FrfSet) -> Result<(), Error> {
+        let within = |hz: f64, &(from, to): &(f64, f64)| hz >= from && hz <= to;
+        let in_use = |hz: f64| {
+            hz > 0.0
+                && self.diagnosis.band.is_none_or(|band| within(hz, &band))
+                && !self.diagnosis.exclude.iter().any(|band| within(hz, band))
+        };
+        let hz = frfs.lines().hz();
+        match (hz.first(), hz.last()) {
+            (Some(&first), Some(&last)) if !hz.iter().any(|hz| in_use(*hz)) => {
+                Err(Error::NoLineInUse { first, last })
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
+/// How far a diagnosis has come.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Progress {
+    /// The FRFs are known, and the search for effects begins.
+    Searching {
+        /// Number of FRFs.
+        frfs: usize,
+        /// Number of spectral lines.
+        lines: usize,
+    },
+}
+
+/// What the test of homogeneity leads to.
+pub(crate) enum Homogeneity {
+    /// Something changes with amplitude.
+    Changes(Box<Answer>),
+    /// Nothing does, with the probability by chance, or it was not judged: the FRFs to be diagnosed.
+    Linear(Box<MeasuredFrfs>, Option<f64>),
+}
+
+/// Finds what `fixture` leaves out of `measurement`; `progress` is called as it comes along.
+///
+/// # Errors
+/// See [`Error`]; [`Error::concern`] says which of the inputs is at fault.
+pub fn diagnose(
+    fixture: &Fixture,
+    measurement: &Measurement,
+    options: &Options,
+    progress: impl FnOnce(Progress),
+) -> Result<Answer, Error> {
+    let homogeneity = match measurement {
+        Measurement::Frfs(recording) => levels::homogeneity(fixture, recording, options)?,
+        Measurement::Hits(hits) => hits::homogeneity(fixture, hits, options)?,
+    };
+    let (measured, homogeneity) = match homogeneity {
+        Homogeneity::Changes(answer) => return Ok(*answer),
+        Homogeneity::Linear(measured, p_value) => (*measured, p_value),
+    };
+    let fixture = measured.as_recorded(fixture)?;
+    let frfs = &measured.frfs;
+    options.check(frfs)?;
+    progress(Progress::Searching { frfs: frfs.pairs().len(), lines: frfs.lines().len() });
+    let diagnosis = Diagnosis::of(&fixture, frfs, &options.diagnosis)?;
+    Answer::linear(fixture, diagnosis, homogeneity, measured)
+}

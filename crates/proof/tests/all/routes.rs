@@ -1,0 +1,247 @@
+//! Cases by the other routes: sealed with the rest, judged by rules of their own.
+
+use jointscope_diagnosis::Verdict;
+use jointscope_fixture::{Dof, Effect, EffectKind, Place};
+use jointscope_nonlinear::Verdict as Conclusion;
+use jointscope_proof::{
+    Answer, Answers, Case, Found, Judgeable, NoAnswer, Opened, Plan, Precision, Questions, Replies, Role,
+    RouteScore, RouteScores, SolidJudged, SolidTruth, StruckAnswer, StruckAnswers, StruckCase, StruckJudged,
+    StruckRole, StruckTruth,
+};
+use jointscope_recordings::{ReadOptions, Source, hits_of};
+
+fn silent(cases: &[Case]) -> Answers {
+    Answers::by(cases, 1, |_| (), |_| Err(NoAnswer::BrokeDown))
+}
+
+fn silent_to_all(questions: &Questions) -> Replies {
+    Replies {
+        laboratory: silent(&questions.laboratory),
+        solid: silent(&questions.solid),
+        struck: StruckAnswers::by(&questions.struck, 1, |_| (), |_| Err(NoAnswer::BrokeDown)),
+    }
+}
+
+fn drawn(plan: &Plan) -> (Questions, Opened) {
+    let (questions, sealed) = plan.draw_routes().unwrap();
+    let truths = sealed.open(&silent_to_all(&questions)).unwrap();
+    (questions, truths.into_iter().collect())
+}
+
+fn found(effect: &Effect) -> Found {
+    Found {
+        effect: effect.clone(),
+        intervals: effect.parameters.iter().map(|q| Some([0.9 * q.value, 1.1 * q.value])).collect(),
+        probability: 1.0,
+        alternatives: Vec::new(),
+    }
+}
+
+/// Solid cases answered by `name`, from their truths.
+fn solid_score(
+    cases: &[Case],
+    truths: &[SolidTruth],
+    name: impl Fn(&SolidTruth) -> Vec<Effect> + Sync,
+) -> RouteScore {
+    let answers = Answers::by(
+        cases,
+        1,
+        |_| (),
+        |case| {
+            let position = cases.iter().position(|known| known == case).unwrap();
+            let truth = &truths[position];
+            let effects = name(truth);
+            let repaired =
+                truth.lumped.clone().with_physics(Vec::new()).unwrap().with_physics(effects.clone());
+            Ok(Answer {
+                verdict: if effects.is_empty() { Verdict::Consistent } else { Verdict::Explained },
+                findings: effects.iter().map(found).collect(),
+                objectives: [0.0; 2],
+                chi2_per_dof: [1.0; 3],
+                refitted: case.believed.clone(),
+                repaired: repaired.unwrap(),
+                held_out: None,
+            })
+        },
+    );
+    let judged = SolidJudged::all(cases, truths.to_vec(), &answers, 1, |_| ());
+    RouteScores::of(&judged, &[]).0.remove(0)
+}
+
+fn share(score: &RouteScore, key: &str) -> (usize, usize) {
+    let share = score.rate(key).unwrap().share;
+    (share.of, share.all)
+}
+
+#[test]
+fn all_routes_are_under_one_seal_that_opens_against_all_answers_only() {
+    let plan = Plan { cases: 2, solid: 1, struck: 1, seed: 4, ..Plan::default() };
+    let (questions, sealed) = plan.draw_routes().unwrap();
+    assert_eq!(questions.all().len(), 4);
+    let (_, without) = Plan { struck: 0, ..plan.clone() }.draw_routes().unwrap();
+    assert_ne!(sealed.digest(), without.digest(), "the seal holds every truth");
+    let some = Replies { solid: silent(&[]), ..silent_to_all(&questions) };
+    assert!(sealed.open(&some).is_none(), "an answer is missing");
+    let (_, laboratory) = plan.draw().unwrap();
+    let (_, alone) = Plan { solid: 0, struck: 0, ..plan }.draw_routes().unwrap();
+    assert_eq!(laboratory.digest(), alone.digest(), "the laboratory's truths are sealed as ever");
+}
+
+#[test]
+fn a_case_is_the_same_however_many_are_drawn_with_it() {
+    let plan = Plan { cases: 0, solid: 3, struck: 2, seed: 9, ..Plan::default() };
+    let (all, _) = drawn(&plan);
+    for (only, solid) in [(2, Some(2)), (4, None)] {
+        let (one, truths) = drawn(&Plan { only: Some(only), ..plan.clone() });
+        match solid {
+            Some(position) => {
+                assert_eq!(one.solid, all.solid[position..=position]);
+                assert_eq!(truths.solid[0].index, only);
+            }
+            None => {
+                assert_eq!(one.struck, all.struck[1..]);
+                assert_eq!(truths.struck[0].index, only);
+            }
+        }
+    }
+    assert_eq!((Plan::along_with(19), Plan::along_with(20), Plan::along_with(300)), (0, 1, 15));
+}
+
+#[test]
+fn solids_are_judged_by_what_is_in_them() {
+    let plan = Plan { cases: 0, solid: 8, seed: 1, ..Plan::default() };
+    let (questions, truths) = drawn(&plan);
+    let (cases, truths) = (&questions.solid, &truths.solid);
+    let singles = truths.iter().filter(|truth| truth.role == Role::Single).count();
+    let perfect = solid_score(cases, truths, |truth| truth.effects().to_vec());
+    assert_eq!(share(&perfect, "nulls_consistent"), (2, 2));
+    let (right, asked) = share(&perfect, "single_place");
+    assert!(right == asked && asked + 1 >= singles, "{right} of {asked}, {singles} drawn");
+    assert_eq!(share(&perfect, "sizes").0, share(&perfect, "sizes").1);
+    assert!(perfect.figure("unseen_ratio").unwrap().value.unwrap() > 1.0, "{perfect}");
+    let nothing = solid_score(cases, truths, |_| Vec::new());
+    assert_eq!(share(&nothing, "single_place"), (0, asked));
+    assert!(nothing.lines.iter().any(|line| line.faults.contains(&"missed".to_owned())));
+    let always = solid_score(cases, truths, |_| {
+        vec![Effect::new(EffectKind::LossFactor, Place::Joint("J".into()), None, &[0.02])]
+    });
+    assert_eq!(share(&always, "null_finding"), (2, 2));
+    assert_eq!((share(&always, "single_place").0, share(&always, "wrong_name").0), (0, 8));
+}
+
+#[test]
+fn a_spring_across_the_strip_is_right_by_any_of_its_names_and_a_soft_rotation_is_not() {
+    let plan = Plan { cases: 0, solid: 8, seed: 1, ..Plan::default() };
+    let (questions, truths) = drawn(&plan);
+    let is_sliding =
+        |truth: &SolidTruth| truth.role == Role::Single && truth.effects()[0].dof == Some(Dof::Translation);
+    let position = truths.solid.iter().position(is_sliding).unwrap();
+    let (case, truth) = (&questions.solid[position..=position], &truths.solid[position..=position]);
+    let score = |name: &dyn Fn(&Effect, f64) -> Effect| {
+        let name = |truth: &SolidTruth| {
+            let length = truth.lumped.joint_length(&truth.lumped.joints()[0]);
+            vec![name(&truth.effects()[0], length)]
+        };
+        let answers = |truth: &SolidTruth| name(truth);
+        // A trait object is not shared between workers; the answer is made beforehand.
+        let made = answers(&truth[0]);
+        solid_score(case, truth, move |_| made.clone())
+    };
+    let sheared = score(&|hidden, length| {
+        Effect::new(
+            EffectKind::ShearDeformation,
+            Place::Joint("J".into()),
+            None,
+            &[hidden.value(0) * length, 0.0],
+        )
+    });
+    assert_eq!((share(&sheared, "single_place"), share(&sheared, "sizes")), ((1, 1), (1, 1)));
+    let turned = score(&|hidden, _| {
+        Effect::new(EffectKind::InterfaceCompliance, hidden.place.clone(), Some(Dof::Rotation), &[1e4, 0.0])
+    });
+    assert_eq!(share(&turned, "single_place"), (0, 1));
+    assert_eq!(turned.lines[0].faults[0], "wrong name");
+}
+
+/// Cases of hits answered by `laws`, from their truths.
+fn struck_score(
+    cases: &[StruckCase],
+    truths: &[StruckTruth],
+    laws: impl Fn(&StruckTruth) -> Vec<Effect> + Sync,
+) -> RouteScore {
+    let reply = |case: &StruckCase| {
+        let position = cases.iter().position(|known| known == case).unwrap();
+        let laws = laws(&truths[position]);
+        Ok(StruckAnswer {
+            verdict: if laws.is_empty() { Conclusion::Consistent } else { Conclusion::Explained },
+            p_value: Some(if laws.is_empty() { 0.5 } else { 0.0 }),
+            findings: laws.iter().map(found).collect(),
+            chi2_per_dof: None,
+            held_out: (!laws.is_empty()).then_some([0.3, 0.01]),
+            linear: None,
+        })
+    };
+    let answers = StruckAnswers::by(cases, 1, |_| (), reply);
+    RouteScores::of(&[], &StruckJudged::all(truths.to_vec(), &answers)).0.remove(0)
+}
+
+#[test]
+fn hits_are_judged_by_the_law_that_they_exercise() {
+    let plan = Plan { cases: 0, struck: 8, seed: 5, ..Plan::default() };
+    let (questions, truths) = drawn(&plan);
+    let (cases, truths) = (&questions.struck, &truths.struck);
+    let perfect = struck_score(cases, truths, |truth| match truth.role {
+        StruckRole::Law => truth.law().into_iter().cloned().collect(),
+        _ => Vec::new(),
+    });
+    assert_eq!((share(&perfect, "law_named"), share(&perfect, "linear_alarm")), ((5, 5), (0, 2)));
+    assert_eq!((share(&perfect, "idle_named"), share(&perfect, "law_wrong")), ((0, 1), (0, 5)));
+    assert_eq!(share(&perfect, "coverage").0, share(&perfect, "coverage").1);
+    let never = struck_score(cases, truths, |_| Vec::new());
+    assert_eq!((share(&never, "law_noticed"), share(&never, "linear_alarm")), ((0, 5), (0, 2)));
+    let always = struck_score(cases, truths, |truth| {
+        // A law that is another's: of the other kind.
+        let kind = match truth.law().map(|law| law.kind) {
+            Some(EffectKind::Gap) => EffectKind::CubicStiffness,
+            _ => EffectKind::Gap,
+        };
+        let values: &[f64] = if kind == EffectKind::Gap { &[1e-5, 1e6] } else { &[1e14] };
+        vec![Effect::new(kind, Place::Joint("J".into()), Some(Dof::Translation), values)]
+    });
+    assert_eq!((share(&always, "law_named").0, share(&always, "law_wrong").0), (0, 5));
+    assert_eq!((share(&always, "linear_alarm"), share(&always, "idle_named")), ((2, 2), (1, 1)));
+}
+
+#[test]
+fn hits_are_written_as_they_are_and_an_idle_law_leaves_them_in_proportion() {
+    let plan = Plan { cases: 0, struck: 5, seed: 2, ..Plan::default() };
+    let (questions, truths) = drawn(&plan);
+    let case = &questions.struck[4];
+    let file = jointscope_uff::read(&case.recording(Precision::Double).unwrap()).unwrap();
+    let sources = [Source { name: "hammer-test.uff".into(), file }];
+    let read = hits_of(&sources, Some(&case.believed), &ReadOptions::default()).unwrap();
+    assert_eq!(read.hits, case.recorded);
+    let truth = &truths.struck[4];
+    assert_eq!(truth.role, StruckRole::Idle);
+    // The same blows without the law give the same motion, noise included: it is drawn alike.
+    let plain = truth.fixture.clone().with_physics(Vec::new()).unwrap();
+    let (struck, read) =
+        ([case.recorded[0].struck().clone()], [case.recorded[0].responses()[0].channel.clone()]);
+    let recorded =
+        |fixture| truth.test.record(fixture, &struck, &read, &mut jointscope_rig::generator(3)).unwrap();
+    for (a, b) in recorded(&truth.fixture).iter().zip(&recorded(&plain)) {
+        let (a, b) = (&a.responses()[0].values, &b.responses()[0].values);
+        let off: f64 = a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum();
+        let size: f64 = b.iter().map(|b| b * b).sum();
+        assert!((off / size).sqrt() < 1e-4, "{}", (off / size).sqrt());
+    }
+}
+
+#[test]
+fn a_plan_says_which_routes_it_takes() {
+    let plan =
+        |cases, solid, struck, only| Plan { cases, solid, struck, only, ..Plan::default() }.to_string();
+    assert_eq!(plan(40, 2, 2, None), "40 cases, seed 1, and 2 solid, and 2 struck");
+    assert_eq!(plan(0, 8, 3, None), "8 solid cases, seed 1, and 3 struck");
+    assert_eq!(plan(0, 0, 3, Some(1)), "case 1 of 3, seed 1");
+}

@@ -1,0 +1,212 @@
+//! FRFs, coherences, levels and lines of several files as one test.
+
+use crate::common::*;
+use jointscope_recordings::{FunctionError, HeldAmplitude, ReadOptions, Recording, RecordingError};
+use jointscope_uff::{Abscissa, Axis, Data, Dataset58, FunctionType, UffFile};
+use num_complex::Complex64;
+use proptest::prelude::*;
+
+fn id(dataset: Dataset58, line: usize, text: &str) -> Dataset58 {
+    let mut dataset = dataset;
+    dataset.id_lines[line - 1] = text.to_owned();
+    dataset
+}
+
+fn on(dataset: Dataset58, start: f64, step: f64) -> Dataset58 {
+    Dataset58 { abscissa: Abscissa::Even { start, step, count: 3 }, ..dataset }
+}
+
+#[test]
+fn coherence_belongs_to_the_frf_of_the_same_channels_whatever_their_sense() {
+    let gamma = [0.9, 0.95, 1.0];
+    let recording =
+        read(vec![coherence((4, 2), (1, 2), gamma), frf((4, -2), (1, 2)), frf((3, 2), (1, 2))]).unwrap();
+    let frfs = recording.frfs().unwrap();
+    assert_eq!(names(&recording), ["3/1", "4/1"]);
+    assert_eq!((frfs.coherence(0), frfs.coherence(1)), (None, Some(gamma.as_slice())));
+}
+
+#[test]
+fn a_coherence_above_one_by_rounding_passes_and_beyond_that_is_refused() {
+    let with = |value| vec![frf((4, 2), (1, 2)), coherence((4, 2), (1, 2), [0.5, value, 0.5])];
+    assert!(read(with(1.0 + 1e-7)).is_ok());
+    let parts = ["function 2 (coherence 4:+y/1:+y)", "1.5 at 12.5 Hz"];
+    refused(with(1.5), &ReadOptions::default(), &parts);
+    refused(with(-0.1), &ReadOptions::default(), &["-0.1 at 12.5 Hz"]);
+}
+
+#[test]
+fn a_coherence_without_its_frf_is_left_out_and_named() {
+    let recording = read(vec![frf((4, 2), (1, 2)), coherence((3, 2), (1, 2), [1.0; 3])]).unwrap();
+    assert_eq!(recording.notes, ["coherences without their FRF left out: 3/1"]);
+}
+
+#[test]
+fn averages_come_from_id_line_five_of_the_frf_or_of_its_coherence() {
+    let averages = |datasets| read(datasets).unwrap().frfs().unwrap().averages(0);
+    assert_eq!(averages(vec![frf((4, 2), (1, 2))]), None);
+    assert_eq!(averages(vec![id(frf((4, 2), (1, 2)), 5, "averages 8")]), Some(8));
+    let gamma = id(coherence((4, 2), (1, 2), [1.0; 3]), 5, "Averages  5");
+    assert_eq!(averages(vec![frf((4, 2), (1, 2)), gamma]), Some(5));
+    assert_eq!(averages(vec![id(frf((4, 2), (1, 2)), 5, "taken on a Monday")]), None);
+    for bad in ["averages", "averages 0", "averages many", "averages 5 or so"] {
+        let answer = read(vec![id(frf((4, 2), (1, 2)), 5, bad)]).unwrap_err();
+        assert!(
+            matches!(&answer, RecordingError::Function { problem: FunctionError::Averages(line), .. } if line == bad),
+            "{answer}"
+        );
+    }
+}
+
+#[test]
+fn several_files_are_one_test_and_the_same_frf_in_two_of_them_is_named() {
+    let files = |second: Dataset58| {
+        let sources = [source("a.uff", vec![frf((4, 2), (1, 2))]), source("b.uff", vec![second])];
+        Recording::of(&sources, &fixture(), &ReadOptions::default())
+    };
+    assert_eq!(names(&files(frf((3, 2), (1, 2))).unwrap()), ["3/1", "4/1"]);
+    let message = files(frf((4, -2), (1, 2))).unwrap_err().to_string();
+    assert!(message.starts_with("b.uff, function 1 (FRF 4:-y/1:+y): FRF 4/1 was given already"), "{message}");
+    assert!(message.contains("a.uff, function 1"), "{message}");
+}
+
+#[test]
+fn the_same_coherence_twice_is_named() {
+    let gamma = || coherence((4, 2), (1, 2), [1.0; 3]);
+    refused(
+        vec![frf((4, 2), (1, 2)), gamma(), gamma()],
+        &ReadOptions::default(),
+        &["coherence 4/1 was given already"],
+    );
+}
+
+#[test]
+fn levels_are_kept_apart_each_on_its_own_lines() {
+    let at = |level: &str, start| on(id(frf((3, 2), (3, 2)), 4, level), start, 0.05);
+    let recording =
+        read(vec![at("response 20 m/s^2", 79.0), at("force 0.5 N", 79.0), at("response 5 m/s^2", 79.2)])
+            .unwrap();
+    let held: Vec<_> = recording.levels.iter().map(|level| level.held.unwrap()).collect();
+    assert_eq!(
+        held,
+        [HeldAmplitude::Force(0.5), HeldAmplitude::Response(5.0), HeldAmplitude::Response(20.0)]
+    );
+    assert_eq!(recording.levels[1].frfs.lines().hz()[0], 79.2);
+    let message = recording.frfs().unwrap_err().to_string();
+    assert!(message.contains("3 levels (force 0.5 N, response 5 m/s^2, response 20 m/s^2)"), "{message}");
+}
+
+#[test]
+fn the_same_frf_twice_at_one_level_is_named_with_the_level() {
+    let at = || id(frf((3, 2), (3, 2)), 4, "force 0.5 N");
+    refused(vec![at(), at()], &ReadOptions::default(), &["FRF 3/3 at force 0.5 N was given already"]);
+}
+
+#[test]
+fn functions_on_different_lines_are_named_with_their_lines() {
+    let datasets = vec![frf((3, 2), (1, 2)), on(frf((4, 2), (1, 2)), 10.0, 5.0)];
+    refused(
+        datasets,
+        &ReadOptions::default(),
+        &["(FRF 4:+y/1:+y) has 3 lines from 10 to 20 Hz", "(FRF 3:+y/1:+y) has 3 lines from 10 to 15 Hz"],
+    );
+    let gamma = on(coherence((4, 2), (1, 2), [1.0; 3]), 0.0, 2.5);
+    refused(vec![frf((4, 2), (1, 2)), gamma], &ReadOptions::default(), &["coherence 4:+y/1:+y"]);
+}
+
+#[test]
+fn the_same_numbers_in_other_units_of_frequency_are_other_lines() {
+    let kilohertz = Axis::new(18, "Frequency", "kHz");
+    let datasets = vec![frf((3, 2), (1, 2)), Dataset58 { abscissa_axis: kilohertz, ..frf((4, 2), (1, 2)) }];
+    refused(datasets, &ReadOptions::default(), &["10000 to 15000 Hz", "10 to 15 Hz"]);
+}
+
+#[test]
+fn a_force_and_a_response_of_the_same_number_are_two_levels() {
+    let at = |level: &str| id(frf((3, 2), (3, 2)), 4, level);
+    let recording = read(vec![at("response 5 m/s^2"), at("force 5 N"), frf((3, 2), (3, 2))]).unwrap();
+    let held: Vec<_> = recording.levels.iter().map(|level| level.held).collect();
+    assert_eq!(held, [None, Some(HeldAmplitude::Force(5.0)), Some(HeldAmplitude::Response(5.0))]);
+}
+
+#[test]
+fn lines_that_do_not_ascend_name_their_function() {
+    refused(
+        vec![on(frf((4, 2), (1, 2)), 10.0, 0.0)],
+        &ReadOptions::default(),
+        &["function 1", "spectral lines must ascend"],
+    );
+}
+
+#[test]
+fn the_line_at_zero_hertz_is_kept_in_every_form() {
+    for axis in [Axis::acceleration(), Axis::velocity(), Axis::displacement()] {
+        let expected = if axis == Axis::acceleration() { VALUES[0] } else { Complex64::ZERO };
+        let dataset = Dataset58 { ordinate_axis: axis, ..on(frf((4, 2), (1, 2)), 0.0, 2.5) };
+        let recording = read(vec![dataset]).unwrap();
+        assert_eq!(recording.frfs().unwrap().lines().hz(), [0.0, 2.5, 5.0]);
+        assert_eq!(first_values(&recording)[0], expected);
+    }
+}
+
+#[test]
+fn a_magnitude_without_phase_is_refused() {
+    let real = Dataset58 { data: Data::Real(vec![1.0; 3]), ..frf((4, 2), (1, 2)) };
+    refused(vec![real], &ReadOptions::default(), &["without phase"]);
+}
+
+#[test]
+fn time_histories_alone_ask_for_an_estimate_and_beside_frfs_are_noted() {
+    let hits = || vec![history(1, Axis::excitation_force()), history(4, Axis::acceleration())];
+    let answer = read(hits()).unwrap_err();
+    assert!(
+        matches!(&answer, RecordingError::OnlyTimeHistories { count: 2, channels, .. } if channels.len() == 2)
+    );
+    assert!(answer.to_string().contains("`jointscope estimate`"), "{answer}");
+    let recording = read([hits(), vec![frf((4, 2), (1, 2))]].concat()).unwrap();
+    assert_eq!(recording.time_histories.count, 2);
+    assert_eq!(recording.notes, ["2 time histories left aside: the files hold FRFs"]);
+}
+
+#[test]
+fn files_without_frfs_say_what_they_hold_instead() {
+    let spectrum = Dataset58 { function: FunctionType::AutoSpectrum, ..frf((4, 2), (4, 2)) };
+    refused(vec![spectrum], &ReadOptions::default(), &["test.uff", "1 function of type 2"]);
+    refused(vec![], &ReadOptions::default(), &["no function"]);
+    refused(
+        vec![coherence((4, 2), (1, 2), [1.0; 3])],
+        &ReadOptions::default(),
+        &["what there is: coherences"],
+    );
+    let mut header = source("header.uff", vec![]);
+    header.file = UffFile { skipped: [(15, 1), (151, 2)].into(), ..header.file };
+    let message = Recording::of(&[header], &fixture(), &ReadOptions::default()).unwrap_err().to_string();
+    assert!(message.contains("what there is: dataset 15, 2 datasets 151; export"), "{message}");
+}
+
+#[test]
+fn datasets_of_other_numbers_are_counted_over_all_files() {
+    let file = |name: &str, datasets| {
+        let mut source = source(name, datasets);
+        source.file = UffFile { skipped: [(15, 1), (2411, 2)].into(), ..source.file };
+        source
+    };
+    let sources = [file("a.uff", vec![frf((4, 2), (1, 2))]), file("b.uff", vec![])];
+    let recording = Recording::of(&sources, &fixture(), &ReadOptions::default()).unwrap();
+    assert_eq!(recording.skipped_datasets, [(15, 2), (2411, 4)].into());
+}
+
+proptest! {
+    #[test]
+    fn the_order_of_datasets_means_nothing(order in Just((0..9).collect::<Vec<usize>>()).prop_shuffle()) {
+        let mut all = Vec::new();
+        for (response, reference) in [((4, -2), (1, 2)), ((3, 2), (1, -2)), ((4, 6), (2, 2))] {
+            all.push(id(frf(response, reference), 5, "averages 4"));
+            all.push(coherence(response, reference, [0.9, 0.99, response.0 as f64 / 10.0]));
+            all.push(frf((9, 2), reference));
+        }
+        let expected = read(all.clone()).unwrap();
+        let shuffled = read(order.iter().map(|&index| all[index].clone()).collect()).unwrap();
+        prop_assert_eq!(shuffled, expected);
+    }
+}

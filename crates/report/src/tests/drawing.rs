@@ -1,0 +1,157 @@
+//! The side view of a fixture: what is drawn, and that labels keep clear of each other.
+
+use jointscope_fixture::Fixture;
+use jointscope_spectra::FrfPair;
+use serde_json::{Value, json};
+
+use crate::drawing::{Highlight, SideView};
+
+fn fixture(json: &Value) -> Fixture {
+    Fixture::from_value(json).expect("a fixture")
+}
+
+fn block(x_cg: f64) -> Value {
+    json!({ "mass": 1.0, "inertia": 1e-3, "x_cg": x_cg })
+}
+
+fn point(body: &str, x: f64) -> Value {
+    json!({ "body": body, "x": x })
+}
+
+/// FRFs of every point to every point, or of every point to the first.
+fn frfs(fixture: &Fixture, references: usize) -> Vec<FrfPair> {
+    let names = || fixture.points().iter().map(|point| point.name.as_str());
+    names().flat_map(|o| names().take(references).map(move |i| FrfPair::transverse(o, i))).collect()
+}
+
+fn two_blocks_named(body: &str, point_1: &str) -> Fixture {
+    fixture(&json!({
+        "bodies": { body: block(-0.030), "B": block(0.095) },
+        "points": { point_1: point(body, -0.060), "2": point(body, 0.0),
+                    "3": point("B", 0.065), "4": point("B", 0.125) },
+        "joints": { "J": { "from": "2", "to": "3", "beam": { "youngs_modulus": 2.07e11, "second_moment": 3.67e-10 } } }
+    }))
+}
+
+pub(super) fn two_blocks() -> Fixture {
+    two_blocks_named("A", "1")
+}
+
+fn drawn(fixture: &Fixture, highlights: Vec<Highlight>) -> String {
+    let frfs = frfs(fixture, usize::MAX);
+    SideView { highlights, ..SideView::new(fixture, &frfs) }.draw().into_string()
+}
+
+/// Four bodies in a row, eight points, three joints, a support under each body.
+pub(super) fn chain() -> Fixture {
+    let (mut bodies, mut points, mut joints, mut supports) = (json!({}), json!({}), json!({}), json!({}));
+    for i in 0..4 {
+        let (name, from) = (format!("block {i}"), 0.1 * f64::from(i));
+        bodies[&name] = block(from + 0.035);
+        points[(2 * i + 1).to_string()] = point(&name, from);
+        points[(2 * i + 2).to_string()] = point(&name, from + 0.07);
+        supports[format!("S{i}")] = json!({ "body": name, "x": from + 0.03, "stiffness": 1e3 });
+        if i > 0 {
+            joints[format!("J{}", i - 1)] = json!({ "from": (2 * i).to_string(), "to": (2 * i + 1).to_string(), "stiffness": [[1e6, 0], [0, 1e3]] });
+        }
+    }
+    fixture(&json!({ "bodies": bodies, "points": points, "joints": joints, "supports": supports }))
+}
+
+/// Storeys above each other.
+pub(super) fn frame() -> Fixture {
+    let storey = json!({ "mass": 6.0, "rotates": false });
+    fixture(&json!({
+        "bodies": { "one": storey, "two": storey },
+        "points": { "1": point("one", 0.0), "2": point("two", 0.0) },
+        "joints": { "columns": { "from": "1", "to": "2", "stiffness": [[3.4e6, 0], [0, 0]] } }
+    }))
+}
+
+/// Texts with centre and baseline, read from the markup.
+fn texts(svg: &str) -> Vec<(String, f64, f64)> {
+    svg.split("<g transform=\"translate(")
+        .skip(1)
+        .map(|rest| {
+            let (place, rest) = rest.split_once(')').expect("a place");
+            let (x, y) = place.split_once(' ').expect("two numbers");
+            let text = rest.split_once("\">").expect("attributes end").1;
+            let text = text.split_once("<text").expect("a text").1.split_once('>').expect("attributes").1;
+            let text = text.split_once('<').expect("an end tag").0;
+            (text.to_owned(), x.parse().expect("x"), y.parse().expect("y"))
+        })
+        .collect()
+}
+
+fn check_labels_keep_clear(svg: &str) {
+    let texts = texts(svg);
+    for (i, (a, ax, ay)) in texts.iter().enumerate() {
+        let width = |text: &str| 6.4 * text.chars().count() as f64;
+        assert!(
+            ax - 0.5 * width(a) > -3.0 && ax + 0.5 * width(a) < 863.0,
+            "'{a}' leaves the drawing at {ax}"
+        );
+        for (b, bx, by) in &texts[i + 1..] {
+            let meet = (ax - bx).abs() < 0.5 * (width(a) + width(b)) && (ay - by).abs() < 11.0;
+            assert!(!meet, "'{a}' at ({ax}, {ay}) meets '{b}' at ({bx}, {by})");
+        }
+    }
+}
+
+#[test]
+fn the_labels_of_two_blocks_with_four_points_keep_clear_of_each_other() {
+    check_labels_keep_clear(&drawn(&two_blocks(), vec![]));
+}
+
+#[test]
+fn the_labels_of_a_chain_of_four_bodies_keep_clear_of_each_other() {
+    let chain = chain();
+    let svg = SideView::new(&chain, &frfs(&chain, 1)).draw().into_string();
+    assert_eq!(svg.matches("fx-ground").count(), 5, "four supports and their style");
+    check_labels_keep_clear(&svg);
+}
+
+#[test]
+fn a_long_highlight_stays_within_the_drawing() {
+    let label = "rotational compliance of the interface at 4: 12.0 ± 0.3 kN·m/rad".to_owned();
+    let svg = drawn(&two_blocks(), vec![Highlight { x: 0.125, body: Some(1), label: label.clone() }]);
+    check_labels_keep_clear(&svg);
+    assert!(svg.contains(&label));
+}
+
+#[test]
+fn names_are_escaped() {
+    let svg = drawn(&two_blocks_named("<script>", "\"><b>"), vec![]);
+    assert!(!svg.contains("<script") && !svg.contains("<b>"));
+    assert!(svg.contains("&lt;script&gt;"));
+}
+
+#[test]
+fn storeys_at_one_abscissa_are_drawn_above_each_other() {
+    let frame = frame();
+    let svg = SideView::new(&frame, []).draw().into_string();
+    check_labels_keep_clear(&svg);
+    let texts = texts(&svg);
+    let height = |name: &str| texts.iter().find(|text| text.0.starts_with(name)).expect(name).2;
+    assert!(height("two") > height("one") + 60.0);
+    assert!(
+        !texts.iter().any(|text| text.0.ends_with(" mm") && text.0.len() > 4),
+        "no scale bar without a scale"
+    );
+}
+
+#[test]
+fn bodies_without_a_place_and_highlights_at_no_abscissa_are_left_out() {
+    let mut json: Value = serde_json::from_str(&two_blocks().to_json()).expect("json");
+    json["bodies"]["nowhere"] = json!({ "mass": 1.0, "rotates": false });
+    let ghost = Highlight { x: f64::NAN, body: None, label: "ghost".into() };
+    let elsewhere = FrfPair::transverse("lost", "1");
+    let fixture = fixture(&json);
+    let view = SideView { highlights: vec![ghost], ..SideView::new(&fixture, [&elsewhere]) };
+    let svg = view.draw().into_string();
+    assert!(!svg.contains("NaN") && !svg.contains("inf"), "{svg}");
+    let drawn = texts(&svg);
+    assert!(
+        !drawn.iter().any(|text| ["response lost", "nowhere (y only)", "ghost"].contains(&text.0.as_str()))
+    );
+}

@@ -1,0 +1,123 @@
+//! What the page of a diagnosis must say, and what it must not hide.
+
+use jointscope_diagnosis::{Diagnosis, DiagnosisOptions, Verdict};
+use jointscope_fixture::Fixture;
+use jointscope_lumped::{Instrument, synthesize};
+use jointscope_report::{InputFile, PageContext, diagnosis_page};
+use jointscope_spectra::{FrfPair, FrfSet, SpectralLines};
+use jointscope_wording::Says;
+use num_complex::Complex64;
+
+fn storeys(physics: &str) -> Fixture {
+    Fixture::from_json(&format!(
+        r#"{{ "name": "two <storeys>",
+             "bodies": {{ "low": {{ "mass": {{"value": 6.9, "std": 0.007}}, "rotates": false }},
+                          "high": {{ "mass": {{"value": 6.0, "std": 0.006}}, "rotates": false }} }},
+             "points": {{ "1": {{ "body": "low", "x": 0 }}, "2": {{ "body": "high", "x": 0.18 }} }},
+             "joints": {{ "C": {{ "from": "1", "to": "2", "stiffness": [[{{"value": 3.4e6, "std": 2e4}}, 0], [0, 0]] }} }},
+             "damping": {{ "modal_ratios": [{{"value": 0.02, "std": 0.004}}] }}, "physics": [{physics}] }}"#
+    ))
+    .unwrap()
+}
+
+/// FRFs 1/1 and 2/1 with half a per cent of noise that is the same each time, changed by `change` (FRF, line's share of the band).
+fn recorded(truth: &Fixture, change: impl Fn(usize, f64) -> Complex64) -> FrfSet {
+    let pairs = [("1", "1"), ("2", "1")].map(|(o, i)| FrfPair::transverse(o, i));
+    let lines = SpectralLines::even(20.0, 5.0, 77).unwrap();
+    let frfs = synthesize(truth, &pairs, &lines, Instrument::AsRecorded).unwrap();
+    let mut state = 3_u64;
+    let mut uniform = || {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
+    };
+    let mut variance = Vec::new();
+    let n = lines.len();
+    let values = frfs
+        .all_values()
+        .iter()
+        .enumerate()
+        .map(|(index, value)| {
+            let value = value * change(index / n, (index % n) as f64 / n as f64);
+            let std = 0.005 * value.norm();
+            variance.push(std * std);
+            value + Complex64::new(uniform(), uniform()) * (6.0_f64.sqrt() * std)
+        })
+        .collect();
+    FrfSet::new(lines, frfs.form(), pairs.to_vec(), values).unwrap().with_variance(variance).unwrap()
+}
+
+fn page(physics: &str, change: impl Fn(usize, f64) -> Complex64) -> (Diagnosis, String) {
+    let believed = storeys("");
+    let frfs = recorded(&storeys(physics), change);
+    let diagnosis = Diagnosis::of(&believed, &frfs, &DiagnosisOptions::default()).unwrap();
+    let context = PageContext {
+        program: "jointscope 0.0.0".into(),
+        command: "jointscope diagnose storeys.json frf.uff -o out".into(),
+        inputs: vec![InputFile { name: "storeys.json".into(), sha256: "ab".repeat(32) }],
+        notes: vec!["one remark".into()],
+        hits: None,
+    };
+    let html = diagnosis_page(&diagnosis, &believed, &context).unwrap();
+    assert_eq!(html, diagnosis_page(&diagnosis, &believed, &context).unwrap(), "the same input, other bytes");
+    (diagnosis, html)
+}
+
+fn unchanged(_: usize, _: f64) -> Complex64 {
+    Complex64::ONE
+}
+
+#[track_caller]
+fn holds(html: &str, parts: &[&str]) {
+    parts.iter().for_each(|part| assert!(html.contains(part), "`{part}` is missing from the page"));
+    for not in ["NaN", "src=\"http", "href=\"http", "<storeys>"] {
+        assert!(!html.contains(not), "the page contains {not}");
+    }
+}
+
+#[test]
+fn a_finding_is_marked_measured_and_judged() {
+    let (diagnosis, html) =
+        page(r#"{ "kind": "added_mass", "place": "high", "x": 0.18, "mass": 0.6 }"#, unchanged);
+    assert_eq!(diagnosis.verdict, Verdict::Explained, "{}", diagnosis.says());
+    holds(
+        &html,
+        &[
+            "class=\"verdict attention\"",
+            "1. added mass",
+            "95 % interval",
+            "Probability",
+            "Held out, repaired",
+        ],
+    );
+    holds(
+        &html,
+        &["Measured δ(ω)", "law: −ω²m", "Repaired: χ² per value", "departure, repaired", "bodies/low/mass"],
+    );
+    holds(&html, &["jointscope diagnose storeys.json", "sha256 abab", "one remark"]);
+    // Verdict first, then where, what, how much better.
+    let at = |text: &str| html.find(text).unwrap();
+    assert!(at("class=\"verdict") < at("id=\"where\"") && at("id=\"where\"") < at("id=\"findings\""));
+}
+
+#[test]
+fn where_nothing_is_left_out_the_page_says_so_and_shows_no_repaired_model() {
+    let (diagnosis, html) = page("", unchanged);
+    assert_eq!(diagnosis.verdict, Verdict::Consistent, "{}", diagnosis.says());
+    holds(&html, &["class=\"verdict ok\"", "Nothing is left out", "None of the effects tried here"]);
+    assert!(!html.contains("Repaired: χ² per value") && !html.contains("Measured δ(ω)"));
+}
+
+#[test]
+fn a_mismatch_without_a_name_is_shown_by_place_and_band() {
+    let odd = |frf: usize, share: f64| match frf {
+        0 => Complex64::from_polar(1.0 + 0.2 * (9.0 * share).sin(), 0.6 * share * share),
+        _ => Complex64::ONE,
+    };
+    let (diagnosis, html) = page("", odd);
+    assert!(
+        matches!(diagnosis.verdict, Verdict::Unexplained | Verdict::PartlyExplained),
+        "{}",
+        diagnosis.says()
+    );
+    holds(&html, &["class=\"verdict problem\"", "Refitted within tolerances: χ² per value by FRF and band"]);
+}

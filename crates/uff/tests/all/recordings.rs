@@ -1,0 +1,116 @@
+//! Recordings of real and simulated structures that lie beside the workspace, where they are at hand.
+
+use std::path::{Path, PathBuf};
+
+use jointscope_uff::{Abscissa, Data, Encoding, FunctionType, Precision, UffFile, data_type, read, write};
+
+/// A folder beside the workspace, or nothing and a message.
+fn beside_the_workspace(folder: &str) -> Option<PathBuf> {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared").join(folder);
+    if !path.is_dir() {
+        println!("skipped: no folder `shared/{folder}` beside the workspace");
+        return None;
+    }
+    Some(path)
+}
+
+fn open(path: &Path) -> UffFile {
+    let bytes = std::fs::read(path).unwrap();
+    read(&bytes).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
+}
+
+fn universal_files(folder: &Path, found: &mut Vec<PathBuf>) {
+    for entry in std::fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.is_dir() {
+            universal_files(&path, found);
+        } else if path.extension().is_some_and(|extension| extension == "uff") {
+            found.push(path);
+        }
+    }
+}
+
+#[test]
+fn every_recording_is_read_and_its_second_writing_holds_the_same() {
+    for folder in ["recordings", "concealed/open"] {
+        let Some(folder) = beside_the_workspace(folder) else { continue };
+        let mut files = Vec::new();
+        universal_files(&folder, &mut files);
+        assert!(!files.is_empty());
+        for path in files {
+            let file = open(&path);
+            assert!(!file.datasets.is_empty() && file.skipped.is_empty(), "{}", path.display());
+            assert_eq!(read(&write(&file.datasets).unwrap()).unwrap(), file, "{}", path.display());
+        }
+    }
+}
+
+#[test]
+fn the_modelab_beam_has_nine_frfs_of_50689_lines() {
+    let Some(folder) = beside_the_workspace("recordings") else { return };
+    let file = open(&folder.join("modelab-beam/frf.uff"));
+    assert_eq!(file.datasets.len(), 9);
+    for (index, frf) in file.datasets.iter().enumerate() {
+        assert_eq!(frf.function, FunctionType::FrequencyResponse);
+        assert_eq!(frf.abscissa, Abscissa::Even { start: 10.0, step: 0.01953125, count: 50_689 });
+        assert!((frf.abscissa.value(50_688) - 1000.0).abs() < 0.02);
+        assert_eq!((frf.response.number, frf.response.direction), (4, -2));
+        assert_eq!((frf.reference.number, frf.reference.direction), (index as i64 + 1, 2));
+        assert_eq!(frf.precision, Precision::Single);
+        assert!(matches!(&frf.data, Data::Complex(lines) if lines.len() == 50_689));
+    }
+}
+
+#[test]
+fn the_brake_reuss_beam_has_twelve_levels_of_41_lines_and_a_ring_down() {
+    let Some(folder) = beside_the_workspace("recordings") else { return };
+    let folder = folder.join("brake-reuss-beam");
+    let mut levels = Vec::new();
+    for name in ["response-5-to-40.uff", "response-50-to-80.uff", "force-controlled.uff"] {
+        for frf in open(&folder.join(name)).datasets {
+            assert_eq!((frf.data.len(), frf.encoding), (41, Encoding::Ascii));
+            levels.push(frf.id_lines[3].clone());
+        }
+    }
+    let expected =
+        ["5", "20", "30", "40", "50", "60", "70", "80"].map(|level| format!("response {level} m/s^2"));
+    assert_eq!(levels[..8], expected);
+    assert_eq!(levels[8..], ["0.19", "0.52", "0.95", "1.43"].map(|level| format!("force {level} N")));
+
+    let ring_down = open(&folder.join("ringdown.uff"));
+    let channels: Vec<_> = ring_down
+        .datasets
+        .iter()
+        .map(|channel| (channel.response.number, channel.response.direction))
+        .collect();
+    assert_eq!(channels, [(1, 2), (2, -2), (3, -2)]);
+    for channel in &ring_down.datasets {
+        // 12.8 kHz for 5.12 s from −0.01 s.
+        assert_eq!(channel.abscissa, Abscissa::Even { start: -0.01, step: 1.0 / 12_800.0, count: 65_536 });
+    }
+}
+
+#[test]
+fn two_hammer_hits_have_three_channels_of_8192_samples() {
+    let Some(folder) = beside_the_workspace("recordings") else { return };
+    let hits = open(&folder.join("hammer-hit/hits.uff"));
+    let channels: Vec<_> = hits
+        .datasets
+        .iter()
+        .map(|channel| (channel.sequence_number, channel.response.number, channel.ordinate_axis.data_type))
+        .collect();
+    let [force, response] = [data_type::EXCITATION_FORCE, data_type::ACCELERATION];
+    for hit in [1, 2] {
+        for channel in [(hit, 3, force), (hit, 1, response), (hit, 2, response)] {
+            assert!(channels.contains(&channel), "{channel:?} is missing from {channels:?}");
+        }
+    }
+    assert_eq!(channels.len(), 6);
+    for channel in &hits.datasets {
+        assert_eq!(channel.function, FunctionType::TimeResponse);
+        assert_eq!(channel.abscissa, Abscissa::Even { start: 0.0, step: 0.000977, count: 8192 });
+        if channel.ordinate_axis.data_type == force {
+            assert_eq!(channel.response.direction, -2);
+        }
+    }
+}

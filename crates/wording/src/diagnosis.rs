@@ -1,0 +1,186 @@
+//! A diagnosis in sentences: what is left out, or where what has no name sits and how it goes with frequency.
+
+use crate::effects::named_with_size;
+use crate::numbers::{figures, listed, percent, plain, significant};
+use crate::places::variation;
+use crate::{Remarks, Says};
+use jointscope_diagnosis::{Diagnosis, Fit, Observation, Trend};
+use jointscope_findings::Verdict;
+use jointscope_frf::noise::NoiseSource;
+
+/// The verdict in one plain sentence.
+impl Says for Diagnosis {
+    fn says(&self) -> String {
+        let [nominal, refitted, repaired] = self.chi2_per_dof();
+        let [_, error_refitted, error_repaired] = self.nrmse();
+        let found: Vec<String> = self.findings.iter().map(named_with_size).collect();
+        match self.verdict {
+            Verdict::Consistent if refitted < 0.5 * nominal => format!(
+                "Nothing is left out: within its stated tolerances the fixture explains the FRFs down to their noise (χ² per degree of \
+                 freedom {}, {} before the refit).",
+                figures(refitted),
+                figures(nominal)
+            ),
+            Verdict::Consistent => format!(
+                "Nothing is left out: the fixture explains the FRFs down to their noise (χ² per degree of freedom {}).",
+                figures(refitted)
+            ),
+            Verdict::Explained => format!(
+                "The fixture leaves out {}; with {} the FRFs are explained down to their noise (χ² per degree of freedom {}; without {}{}; \
+                 error {}, without {}).",
+                listed(&found),
+                if found.len() == 1 { "it" } else { "them" },
+                figures(repaired),
+                figures(refitted),
+                bent(self),
+                percent(error_repaired),
+                percent(error_refitted)
+            ),
+            Verdict::PartlyExplained if self.is_unnamed() => format!(
+                "Something is left out that none of the effects known here accounts for: the closest, {}, takes χ² per degree of freedom from {} \
+                 to {} only, and what is left sits {}{}.",
+                listed(&found),
+                figures(refitted),
+                figures(repaired),
+                sits(self, &self.search.repaired),
+                varies(self, &self.search.repaired)
+            ),
+            Verdict::PartlyExplained => format!(
+                "The fixture leaves out {}, but that is not all: χ² per degree of freedom falls from {} to {}, and what is left sits {}{}.",
+                listed(&found),
+                figures(refitted),
+                figures(repaired),
+                sits(self, &self.search.repaired),
+                varies(self, &self.search.repaired)
+            ),
+            Verdict::Unexplained => format!(
+                "Something is left out that none of the effects known here accounts for (χ² per degree of freedom {}): it sits {}{}.",
+                figures(refitted),
+                sits(self, &self.search.refitted),
+                varies(self, &self.search.refitted)
+            ),
+        }
+    }
+}
+
+/// What the reader must know of the test itself: too few FRFs, noise that had to be estimated.
+impl Remarks for Diagnosis {
+    fn remarks(&self) -> Vec<String> {
+        let mut remarks = Vec::new();
+        let pairs = self.observation.pairs();
+        if let [only] = pairs {
+            remarks.push(format!(
+                "There is one FRF only, {only}: it shows whether the fixture explains it, and which laws would; it cannot say where \
+                 something sits, for one free value a line at any place explains one FRF, and nothing can be held out. Record at least \
+                 one more response or reference point."
+            ));
+        }
+        let noise = self.observation.noise().iter().zip(pairs);
+        let scatter: Vec<String> = noise
+            .filter(|(source, _)| **source == NoiseSource::Scatter)
+            .map(|(_, pair)| pair.to_string())
+            .collect();
+        if !scatter.is_empty() {
+            remarks.push(format!(
+                "The noise of {} was estimated from the scatter over neighbouring lines, for want of coherence over several averages: χ² \
+                 and intervals are that much less certain.",
+                if scatter.len() == pairs.len() { "all FRFs".to_owned() } else { listed(&scatter) }
+            ));
+        }
+        remarks.extend(self.swapped_points().iter().map(|[a, b]| {
+            format!(
+                "Points {a} and {b} have each other's place: their channels are swapped, in the cables or in the node numbers of the file."
+            )
+        }));
+        remarks.extend(of_observation(&self.observation));
+        if !self.is_white() {
+            remarks.push(format!(
+                "What the best model leaves is not white (neighbouring lines correlate by {:.2}): gains count for that much less \
+                 and intervals are wider, as far as that is all there is to it.",
+                self.residual_correlation
+            ));
+        }
+        remarks
+    }
+}
+
+/// What the reader must know of the lines and the noise.
+fn of_observation(observation: &Observation) -> Vec<String> {
+    let mut remarks = Vec::new();
+    let used = observation.lines().len();
+    if observation.recorded_lines() > used {
+        remarks.push(format!(
+            "Of {} lines {used} are used: all that tell one resonance from another, ever fewer with the distance from them, and evenly \
+             spread ones. χ², errors and drawings are of these; the noise was estimated on all of them.",
+            observation.recorded_lines()
+        ));
+    }
+    if let Some(drift) = observation.drift() {
+        let told: Vec<String> = drift
+            .resonances
+            .iter()
+            .map(|(hz, deviation, ratio)| {
+                format!(
+                    "{hz:.2} Hz by {:.1} parts in 100,000 ({:.0} % of its half-width)",
+                    1e5 * deviation,
+                    100.0 * deviation / ratio.max(f64::MIN_POSITIVE)
+                )
+            })
+            .collect();
+        remarks.push(format!(
+            "The resonances moved between the FRFs, by more than their noise and more than any structure that stays the same could \
+             make them: {} (standard deviations among FRFs of one response). That much is taken as noise about each resonance; no \
+             model is asked to follow it.",
+            told.join(", ")
+        ));
+    }
+    remarks
+}
+
+/// `, and bodies/A/mass would have to be 33 standard deviations off`, where the refit without effects takes a quantity that far.
+fn bent(diagnosis: &Diagnosis) -> String {
+    diagnosis.bent().map_or_else(String::new, |(path, deviations)| {
+        format!(", and {path} would have to be {} standard deviations off", significant(deviations, 2))
+    })
+}
+
+/// `most clearly in FRF 4/1 from 180 Hz to 240 Hz`.
+fn sits(diagnosis: &Diagnosis, fit: &Fit) -> String {
+    let place = diagnosis.best_place().map_or_else(String::new, |location| {
+        format!(
+            "; of all single places {} would explain most (χ² per degree of freedom {})",
+            location.site.says(),
+            figures(location.chi2_per_dof)
+        )
+    });
+    match diagnosis.worst_band(fit) {
+        Some((frf, band)) => {
+            format!(
+                "most clearly in FRF {frf} from {} to {}{place}",
+                plain(band.from, "Hz"),
+                plain(band.to, "Hz")
+            )
+        }
+        None => format!("in no line that counts{place}"),
+    }
+}
+
+/// How the mismatch goes with frequency: by δ(ω) of the best place, or by the relative error at both ends of the band.
+fn varies(diagnosis: &Diagnosis, fit: &Fit) -> String {
+    if let Some(variation) = diagnosis.best_place().and_then(variation) {
+        return format!(", where what is missing, δ(ω), {variation}");
+    }
+    let Some(errors) = diagnosis.end_errors(fit) else { return String::new() };
+    let course = match errors.trend() {
+        Trend::Grows => "grows with frequency",
+        Trend::Falls => "falls with frequency",
+        Trend::Level => "is about as large at both ends of the band",
+    };
+    format!(
+        ", and {course} (relative error {} below {}, {} above {})",
+        percent(errors.low),
+        plain(errors.below, "Hz"),
+        percent(errors.high),
+        plain(errors.above, "Hz")
+    )
+}

@@ -1,0 +1,215 @@
+//! Findings: one sentence each.
+
+use crate::effects::{effect_name, meaning};
+use crate::numbers::{Short, listed};
+use crate::{Says, amplitude};
+use jointscope_diagnosis::Finding;
+use jointscope_fixture::{Dof, Effect};
+use jointscope_nonlinear::{Finding as HitFinding, LevelFinding};
+
+/// Probability from which another name for a finding is told in its sentence.
+const NOTABLE: f64 = 0.05;
+/// Names of alternatives that a sentence holds at the most.
+const NAMES: usize = 3;
+
+/// `; these FRFs cannot tell it from gain of response 3 (12 %)`, or nothing where no other name is likely.
+fn look_alikes(alternatives: &[(Effect, f64)], data: &str) -> String {
+    let notable = alternatives.iter().filter(|(_, probability)| *probability >= NOTABLE);
+    let named: Vec<String> =
+        notable.map(|(effect, p)| format!("{} ({:.0} %)", effect_name(effect), 100.0 * p)).collect();
+    let more = named.len().saturating_sub(NAMES);
+    let listed = listed(&named[..named.len() - more]);
+    match (named.is_empty(), more) {
+        (true, _) => String::new(),
+        (false, 0) => format!("; these {data} cannot tell it from {listed}"),
+        (false, _) => format!("; these {data} cannot tell it from {listed} and {more} more"),
+    }
+}
+
+/// ` or its look-alike`, where other names are likely.
+pub(crate) fn or_look_alike(alternatives: &[(Effect, f64)]) -> &'static str {
+    match alternatives.iter().filter(|(_, probability)| *probability >= NOTABLE).count() {
+        0 => "",
+        1 => " or its look-alike",
+        _ => " or one of its look-alikes",
+    }
+}
+
+/// What, where, how much with its 95 % interval, what that means, and what the data cannot tell from it.
+impl Says for Finding {
+    fn says(&self) -> String {
+        let doubt = if self.is_doubtful() { "Doubtful, for something not listed is likelier: " } else { "" };
+        let meaning = meaning(&self.effect, &self.estimates, "FRFs");
+        format!("{doubt}{meaning}{}.", look_alikes(&self.alternatives, "FRFs"))
+    }
+}
+
+/// The same, with the range of motion that it was seen in.
+impl Says for HitFinding {
+    fn says(&self) -> String {
+        let (motion, _) = amplitude::units(self.effect.dof.unwrap_or(Dof::Translation));
+        format!(
+            "{}; the hits move it by up to {} {motion}{}.",
+            meaning(&self.effect, &self.estimates, "hits"),
+            Short(self.reach),
+            look_alikes(&self.alternatives, "hits")
+        )
+    }
+}
+
+impl Says for LevelFinding {
+    fn says(&self) -> String {
+        let (motion, _) = amplitude::units(self.effect.dof.unwrap_or(Dof::Translation));
+        format!(
+            "{}; seen at relative motions of {:.3e} to {:.3e} {motion}{}.",
+            meaning(&self.effect, &self.estimates, "levels"),
+            self.motions.0,
+            self.motions.1,
+            look_alikes(&self.alternatives, "levels")
+        )
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+    use jointscope_findings::Estimate;
+    use jointscope_fixture::{EffectKind, Place};
+
+    fn finding(kind: EffectKind, place: Place, dof: Option<Dof>, values: &[f64], share: f64) -> Finding {
+        let effect = Effect::new(kind, place, dof, values);
+        let estimates = kind
+            .spec()
+            .parameters
+            .iter()
+            .zip(values)
+            .map(|(parameter, &value)| Estimate::of(*parameter, dof, value).within(share * value.abs()));
+        Finding {
+            estimates: estimates.collect(),
+            effect,
+            probability: 0.9,
+            alternatives: Vec::new(),
+            gain: 100.0,
+            measured: None,
+        }
+    }
+
+    #[track_caller]
+    fn says(finding: &Finding, parts: &[&str]) {
+        let sentence = finding.says();
+        assert!(sentence.ends_with('.') && !sentence.contains("NaN"), "{sentence}");
+        parts
+            .iter()
+            .for_each(|part| assert!(sentence.contains(part), "`{part}` is missing from: {sentence}"));
+    }
+
+    #[test]
+    fn every_linear_kind_says_what_where_and_how_much() {
+        let body = || Place::Body("B".into());
+        let joint = || Place::Joint("J".into());
+        type Case<'a> = (EffectKind, Place, Option<Dof>, &'a [f64], &'a [&'a str]);
+        let cases: [Case; 19] = [
+            (
+                EffectKind::AddedMass,
+                body(),
+                None,
+                &[0.11, 0.05],
+                &["Body B", "50.0 g (95 %: 49.0 to 51.0 g)", "x = 110"],
+            ),
+            (
+                EffectKind::AddedMass,
+                body(),
+                None,
+                &[0.11, -0.05],
+                &["lacks", "50.0 g (95 %: 49.0 to 51.0 g)"],
+            ),
+            (EffectKind::Support, body(), None, &[0.1, 12e3, 3.0], &["12.00 kN/m", "3.000 N·s/m", "ground"]),
+            (
+                EffectKind::AttachedResonator,
+                body(),
+                None,
+                &[0.1, 0.02, 312.0, 0.01],
+                &["20.00 g", "312.0 Hz"],
+            ),
+            (EffectKind::BodyFlexibility, body(), None, &[1500.0, 0.01], &["not rigid", "1500 Hz"]),
+            (
+                EffectKind::InterfaceCompliance,
+                Place::Point("3".into()),
+                Some(Dof::Translation),
+                &[9e6, 0.0],
+                &["point 3", "9.00 MN/m", "shear"],
+            ),
+            (
+                EffectKind::InterfaceCompliance,
+                Place::Point("3".into()),
+                Some(Dof::Rotation),
+                &[12e3, 0.0],
+                &["12.00 kN·m/rad", "bending"],
+            ),
+            (EffectKind::ShearDeformation, joint(), None, &[1e7, 0.0], &["10.00 MN", "Euler–Bernoulli"]),
+            (EffectKind::JointMass, joint(), None, &[0.077], &["77.0", "massless"]),
+            (EffectKind::StiffnessChange, joint(), None, &[0.8], &["softer", "0.800"]),
+            (EffectKind::LossFactor, joint(), None, &[0.02], &["0.0200"]),
+            (EffectKind::Relaxation, joint(), None, &[0.3, 1e-3], &["viscoelastic", "159", "1.000 ms"]),
+            (EffectKind::PointOffset, Place::Point("4".into()), None, &[-0.002], &["point 4", "−2.000 mm"]),
+            (EffectKind::JointLength, joint(), None, &[0.001], &["longer", "1.000 mm"]),
+            (
+                EffectKind::ChannelGain,
+                Place::Response("3".into()),
+                None,
+                &[0.8],
+                &["response 3", "low", "0.800"],
+            ),
+            (
+                EffectKind::ChannelGain,
+                Place::Reference("1".into()),
+                None,
+                &[-1.0],
+                &["reference 1", "wrong sign"],
+            ),
+            (EffectKind::ChannelDelay, Place::Response("4".into()), None, &[22e-6], &["lags", "22.00 µs"]),
+            (EffectKind::SensorMass, Place::Response("4".into()), None, &[0.012], &["12.00 g", "moved"]),
+            (EffectKind::ExponentialWindow, Place::All, None, &[12.0], &["12.00 1/s", "damped"]),
+        ];
+        for (kind, place, dof, values, parts) in cases {
+            says(&finding(kind, place, dof, values, 0.0103), parts);
+        }
+    }
+
+    #[test]
+    fn look_alikes_are_told_with_their_probabilities_and_unlikely_ones_are_not() {
+        let mut found =
+            finding(EffectKind::ShearDeformation, Place::Joint("J".into()), None, &[1e7, 0.0], 0.01);
+        let compliance = |point: &str| {
+            Effect::new(
+                EffectKind::InterfaceCompliance,
+                Place::Point(point.into()),
+                Some(Dof::Translation),
+                &[1e8, 0.0],
+            )
+        };
+        found.alternatives = vec![(compliance("2"), 0.31), (compliance("3"), 0.01)];
+        says(&found, &["cannot tell it from interface compliance at point 2 in translation (31 %)."]);
+        assert!(!found.says().contains("point 3"));
+    }
+
+    #[test]
+    fn a_finding_that_is_likelier_something_else_is_told_with_doubt() {
+        let mut found = finding(EffectKind::JointMass, Place::Joint("J".into()), None, &[0.077], 0.01);
+        assert!(!found.says().contains("Doubtful"));
+        found.probability = 0.1;
+        says(&found, &["Doubtful", "Joint J has a mass"]);
+    }
+
+    #[test]
+    fn what_the_data_do_not_determine_is_said_and_not_printed_with_digits() {
+        let mut found = finding(EffectKind::JointMass, Place::Joint("J".into()), None, &[0.077], 0.01);
+        found.estimates[0].interval = None;
+        says(&found, &["77.0 g (not determined"]);
+        found.estimates[0].interval = Some([1e-9, 1e9]);
+        says(&found, &["order of magnitude"]);
+        found.estimates[0].interval = Some([f64::NAN, f64::NAN]);
+        says(&found, &["77.0 g (order"]);
+    }
+}

@@ -1,0 +1,63 @@
+//! A diagnosis of hits in sentences.
+
+use crate::numbers::Short;
+use crate::{Remarks, Says, amplitude};
+use jointscope_findings::Verdict;
+use jointscope_nonlinear::NonlinearDiagnosis;
+
+/// The conclusion in a sentence.
+impl Says for NonlinearDiagnosis {
+    fn says(&self) -> String {
+        let homogeneity = &self.homogeneity;
+        let (weakest, strongest) = match (homogeneity.levels.first(), homogeneity.levels.last()) {
+            (Some(first), Some(last)) => (first.peak_force, last.peak_force),
+            _ => (0.0, 0.0),
+        };
+        let range = format!("between hits of {} N and {} N", Short(weakest), Short(strongest));
+        let chance = match homogeneity.p_value < 1e-3 {
+            true => "p < 0.001".to_owned(),
+            false => format!("p = {:.2}", homogeneity.p_value),
+        };
+        match self.verdict {
+            Verdict::Consistent => format!(
+                "FRFs do not change {range} beyond noise ({chance}): nothing depends on amplitude there."
+            ),
+            Verdict::Explained => format!("FRFs change {range} ({chance}), and what was found explains how."),
+            Verdict::PartlyExplained => {
+                format!(
+                    "FRFs change {range} ({chance}); what was found is needed and explains most of it, but something is left."
+                )
+            }
+            Verdict::Unexplained => format!(
+                "FRFs change {range} ({chance}), most between {:.0} and {:.0} Hz, and neither a cubic spring nor friction nor a gap at a joint explains it.",
+                homogeneity.band.0, homogeneity.band.1
+            ),
+        }
+    }
+}
+
+/// How far the hits reach, and how the noise was measured.
+impl Remarks for NonlinearDiagnosis {
+    fn remarks(&self) -> Vec<String> {
+        let mut remarks = Vec::new();
+        if self.verdict == Verdict::Consistent {
+            for reach in &self.reach {
+                let (motion, force) = amplitude::units(reach.dof);
+                remarks.push(format!(
+                    "Joint {} was moved by {} {motion} at the most in {}: a gap wider than that, and friction that sticks up to about {} {force}, are out of reach of these hits.",
+                    reach.joint, Short(reach.motion), reach.dof.name(), Short(reach.force)
+                ));
+            }
+        }
+        if let Some(time) = self.followed {
+            remarks.push(format!(
+                "Some hits are compared only up to {} s after the blow: from there on the motion depends on more than the force is known to, and no model could follow it.",
+                Short(time)
+            ));
+        }
+        if !self.homogeneity.from_repeats {
+            remarks.push("No two hits are alike, so noise was taken from the ends of the records: repeat each strength to have it measured.".to_owned());
+        }
+        remarks
+    }
+}

@@ -1,0 +1,149 @@
+//! A diagnosis of stepped-sine FRFs at several levels in sentences.
+
+use crate::numbers::capitalised;
+use crate::{Remarks, Says, amplitude};
+use jointscope_findings::Verdict;
+use jointscope_fixture::EffectKind;
+use jointscope_nonlinear::{Held, LevelFinding, LevelResult, SteppedDiagnosis};
+
+/// The conclusion in a sentence or two.
+impl Says for SteppedDiagnosis {
+    fn says(&self) -> String {
+        let course = course(self);
+        let place = format!("joint {} in {}", self.place.0, self.place.1.name());
+        let held = |index: usize| self.levels.get(index).map_or_else(String::new, |l| l.held.to_string());
+        match (self.verdict, self.findings.as_slice()) {
+            (Verdict::Consistent, _) => format!(
+                "From {} to {} neither frequency nor damping changes beyond noise (p = {:.2}): nothing depends on amplitude there.",
+                held(0),
+                held(self.levels.len() - 1),
+                self.change.0
+            ),
+            (Verdict::Unexplained, _) | (_, []) => format!(
+                "{course} One cubic spring, friction element or gap at a joint does not explain it: the change sits at {place} as well as anywhere, and is left without a name."
+            ),
+            (verdict, findings) => {
+                let names: Vec<String> = findings.iter().map(|f| kind(f).to_owned()).collect();
+                let names = names.join(" with ");
+                let share = 100.0 * findings[0].share;
+                let left = if verdict == Verdict::Explained { "" } else { ", and something is left" };
+                if self.holds == self.levels.len() {
+                    return format!(
+                        "{course} {} at {place} explains {share:.0} % of the change{left}.",
+                        capitalised(&names)
+                    );
+                }
+                format!(
+                    "{course} Up to {} {names} at {place} explains {share:.0} % of the change; above, from {}, neither that law nor anything else in the catalogue explains how the levels go on.",
+                    held(self.holds - 1),
+                    held(self.holds)
+                )
+            }
+        }
+    }
+}
+
+/// How frequency and damping go with level.
+fn course(diagnosis: &SteppedDiagnosis) -> String {
+    let (Some(first), Some(last)) = (diagnosis.levels.first(), diagnosis.levels.last()) else {
+        return String::new();
+    };
+    let hz = |l: &LevelResult| l.resonance.frequency.0;
+    let percent = |l: &LevelResult| 100.0 * l.resonance.damping_ratio.0;
+    let least = diagnosis.levels.iter().min_by(|a, b| hz(a).total_cmp(&hz(b))).unwrap_or(first);
+    let most = diagnosis.levels.iter().max_by(|a, b| hz(a).total_cmp(&hz(b))).unwrap_or(last);
+    // A turn counts where it is well beyond the scatter of the fits.
+    let beyond = |from: &LevelResult, to: &LevelResult| {
+        (hz(from) - hz(to)).abs() > 5.0 * from.resonance.frequency.1.hypot(to.resonance.frequency.1)
+    };
+    let turns = |at: &LevelResult| {
+        at.held != first.held && at.held != last.held && beyond(at, first) && beyond(at, last)
+    };
+    let frequency = if turns(least) {
+        format!(
+            "the frequency falls from {:.3} Hz to {:.3} Hz at {} and rises again to {:.3} Hz",
+            hz(first),
+            hz(least),
+            least.held,
+            hz(last)
+        )
+    } else if turns(most) {
+        format!(
+            "the frequency rises from {:.3} Hz to {:.3} Hz at {} and falls again to {:.3} Hz",
+            hz(first),
+            hz(most),
+            most.held,
+            hz(last)
+        )
+    } else {
+        let verb = if !beyond(first, last) {
+            "stays"
+        } else if hz(last) < hz(first) {
+            "falls"
+        } else {
+            "rises"
+        };
+        format!("the frequency {verb} from {:.3} to {:.3} Hz", hz(first), hz(last))
+            .replace("stays from", "stays:")
+    };
+    let spread = first.resonance.damping_ratio.1.hypot(last.resonance.damping_ratio.1);
+    let moved = last.resonance.damping_ratio.0 - first.resonance.damping_ratio.0;
+    let damping = match moved {
+        m if m.abs() < 3.0 * spread => "damping stays at",
+        m if m > 0.0 => "damping grows from",
+        _ => "damping falls from",
+    };
+    format!(
+        "From {} to {} {frequency}, and {damping} {:.3} to {:.3} %.",
+        first.held,
+        last.held,
+        percent(first),
+        percent(last)
+    )
+}
+
+/// What the levels can tell and what not.
+impl Remarks for SteppedDiagnosis {
+    fn remarks(&self) -> Vec<String> {
+        if self.verdict == Verdict::Consistent {
+            return vec![format!(
+                "Levels were compared on the lines from {:.4} to {:.4} Hz, about their strongest resonance.",
+                self.band.0, self.band.1
+            )];
+        }
+        let mut remarks = self.unplaced.clone();
+        let (motion, force) = amplitude::units(self.place.1);
+        if let (Some(first), Some(last)) = (self.levels.first(), self.levels.last()) {
+            remarks.push(format!(
+                "The relative motion of joint {} in {} runs from {:.3e} to {:.3e} {}; with one resonance its components and other joints that the mode moves keep a fixed ratio, so which of them changes cannot be told by these FRFs alone.",
+                self.place.0, self.place.1.name(), first.motion, last.motion, motion
+            ));
+            remarks.push(format!(
+                "Beyond the fixture's, the joint's stiffness goes from {:.3e} to {:.3e} {force}/{motion} and its loss stiffness from {:.3e} to {:.3e} {force}/{motion}.",
+                first.stiffness.0, last.stiffness.0, first.loss.0, last.loss.0
+            ));
+        }
+        if self.levels.iter().any(|l| matches!(l.held, Held::Force(_))) {
+            remarks.push("Where the force was held the response changes along the lines, so frequency and damping of such a level are averages over its amplitudes; laws are fitted at each line's own amplitude.".to_owned());
+        }
+        let two = self.tried.iter().find(|t| t.form.contains('+') && t.share >= 0.9);
+        if let (Some(two), [] | [_]) = (two, self.findings.as_slice()) {
+            remarks.push(format!(
+                "Friction and a cubic spring together at {} in {} would leave a relative error of {:.3}, but two laws follow {} levels by their freedom: that is no evidence for either.",
+                two.joint, two.dof.name(), two.nrmse, self.levels.len()
+            ));
+        }
+        if self.levels.len() < 3 {
+            remarks.push("Two levels show that something changes, not by which law: add a third.".to_owned());
+        }
+        remarks
+    }
+}
+
+fn kind(finding: &LevelFinding) -> &'static str {
+    match finding.effect.kind {
+        EffectKind::CubicStiffness => "a cubic spring",
+        EffectKind::Friction => "friction",
+        _ => "a gap",
+    }
+}

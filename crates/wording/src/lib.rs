@@ -1,0 +1,49 @@
+//! Sentences: results as the user is told them.
+//!
+//! Results are typed facts; this crate alone turns them into words, for files, pages and the terminal alike. It decides nothing: what is
+//! doubtful, white, bent or not determined stands in the results.
+//!
+//! * [`Says`]: a result, a finding or a place in one plain sentence or a few words;
+//! * [`Remarks`]: what a reader should know besides;
+//! * [`Summary`]: what was found, a line each, for a terminal;
+//! * [`effect_name`]: an effect's kind and place in a few words.
+//!
+//! ```
+//! use jointscope_fixture::{Effect, EffectKind, Place};
+//! use jointscope_wording::effect_name;
+//!
+//! let effect = Effect::new(EffectKind::JointMass, Place::Joint("J".into()), None, &[0.05]);
+//! assert_eq!(effect_name(&effect), "mass of joint J");
+//! ```
+
+mod amplitude;
+mod diagnosis;
+mod effects;
+mod estimate;
+mod finding;
+mod hits;
+mod levels;
+mod modes;
+mod numbers;
+mod places;
+mod summary;
+
+pub use effects::effect_name;
+
+/// Something that can be said in one plain sentence, or in a few words.
+pub trait Says {
+    /// The sentence.
+    fn says(&self) -> String;
+}
+
+/// A result that is told on a terminal.
+pub trait Summary {
+    /// Verdict, findings with their probabilities, errors of the models, remarks: a line each.
+    fn summary(&self) -> Vec<String>;
+}
+
+/// A result that a reader should know more of.
+pub trait Remarks {
+    /// One plain sentence each.
+    fn remarks(&self) -> Vec<String>;
+}

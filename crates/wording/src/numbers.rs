@@ -1,0 +1,101 @@
+//! Numbers and lists as they are spoken.
+
+use std::fmt;
+
+/// `a`, `a and b`, `a, b and c`.
+pub(crate) fn listed(items: &[String]) -> String {
+    match items {
+        [] => String::new(),
+        [only] => only.clone(),
+        [most @ .., last] => format!("{} and {last}", most.join(", ")),
+    }
+}
+
+/// Factor from SI to the prefixed unit in which a magnitude is spoken of, and that unit.
+pub(crate) fn prefixed(value: f64, unit: &str) -> (f64, String) {
+    let size = value.abs();
+    let printed = unit.replace('*', "·").replace("^2", "²").replace("^3", "³").replace("^4", "⁴");
+    let large = matches!(unit, "N/m" | "N*m/rad" | "N" | "N/rad" | "Pa" | "N*s/m");
+    match unit {
+        "kg" if size > 0.0 && size < 1e-4 => (1e6, "mg".to_owned()),
+        "kg" if size < 0.1 => (1e3, "g".to_owned()),
+        "m" if size < 1.0 => (1e3, "mm".to_owned()),
+        "s" if size < 1e-3 => (1e6, "µs".to_owned()),
+        "s" if size < 1.0 => (1e3, "ms".to_owned()),
+        _ if large && size >= 1e9 => (1e-9, format!("G{printed}")),
+        _ if large && size >= 1e6 => (1e-6, format!("M{printed}")),
+        _ if large && size >= 1e3 => (1e-3, format!("k{printed}")),
+        _ => (1.0, printed),
+    }
+}
+
+/// A number with three significant digits and its unit.
+pub(crate) fn plain(value: f64, unit: &str) -> String {
+    let (factor, unit) = prefixed(value, unit);
+    let number = significant(value * factor, if unit == "Hz" { 4 } else { 3 });
+    if unit.is_empty() { number } else { format!("{number} {unit}") }
+}
+
+pub(crate) fn significant(value: f64, digits: i32) -> String {
+    if value == 0.0 || !value.is_finite() {
+        return if value == 0.0 { "0".to_owned() } else { "of no finite value".to_owned() };
+    }
+    let exponent = value.abs().log10().floor() as i32;
+    if (-4..5).contains(&exponent) {
+        rounded(value, digits - 1 - exponent)
+    } else {
+        format!("{value:.*e}", (digits - 1).max(0) as usize)
+    }
+}
+
+/// Decimals that show two significant digits of a half-width.
+pub(crate) fn decimals(half_width: f64) -> i32 {
+    if half_width > 0.0 && half_width.is_finite() { 1 - half_width.log10().floor() as i32 } else { 3 }
+}
+
+/// A number with so many decimals, negative ones meaning tens and hundreds; never a negative zero.
+pub(crate) fn rounded(value: f64, decimals: i32) -> String {
+    if value != 0.0 && value.abs() < 1e-4 {
+        return format!("{value:.2e}").replace('-', "−");
+    }
+    // Negative decimals round to tens and hundreds.
+    let step = 10f64.powi(-decimals.min(0));
+    let value = if step > 1.0 { (value / step).round() * step } else { value };
+    let text = format!("{value:.*}", decimals.clamp(0, 9) as usize);
+    match text.strip_prefix('-') {
+        Some(digits) if digits.chars().all(|c| matches!(c, '0' | '.')) => digits.to_owned(),
+        Some(digits) => format!("−{digits}"),
+        None => text,
+    }
+}
+
+/// χ² per degree of freedom: three digits, no decimals once they mean nothing.
+pub(crate) fn figures(chi2: f64) -> String {
+    significant(chi2, 3)
+}
+
+pub(crate) fn percent(share: f64) -> String {
+    format!("{} %", significant(100.0 * share, 2))
+}
+
+/// A number with four digits, by powers of ten where it is large or small.
+pub(crate) struct Short(pub f64);
+
+impl fmt::Display for Short {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let size = self.0.abs();
+        if size == 0.0 {
+            f.write_str("0")
+        } else if (0.01..1e5).contains(&size) {
+            let decimals = (3 - size.log10().floor() as i32).max(0) as usize;
+            write!(f, "{:.decimals$}", self.0)
+        } else {
+            write!(f, "{:.3e}", self.0)
+        }
+    }
+}
+
+pub(crate) fn capitalised(text: &str) -> String {
+    let mut letters = text.chars();
+    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
+}

@@ -1,0 +1,100 @@
+//! What was found, a line each, for a terminal.
+
+use crate::{Remarks, Says, Summary};
+use jointscope_diagnosis::Diagnosis;
+use jointscope_nonlinear::{NonlinearDiagnosis, SteppedDiagnosis};
+
+/// The verdict, and each finding with its probability.
+fn found(verdict: &str, says: String, findings: impl Iterator<Item = (String, f64)>) -> Vec<String> {
+    let findings = findings
+        .enumerate()
+        .map(|(index, (says, probability))| format!("{}. {says} Probability {probability:.2}.", index + 1));
+    std::iter::once(format!("{}: {says}", verdict.replace('_', " "))).chain(findings).collect()
+}
+
+impl Summary for Diagnosis {
+    fn summary(&self) -> Vec<String> {
+        let findings = self.findings.iter().map(|finding| (finding.says(), finding.probability));
+        let mut lines = found(self.verdict.name(), self.says(), findings);
+        let [nominal, refitted, repaired] = self.nrmse();
+        let [chi2_nominal, chi2_refitted, chi2_repaired] = self.chi2_per_dof();
+        let row = |name: &str, error: f64, chi2: f64| {
+            let chi2 = if chi2 < 1e3 { format!("{chi2:.3}") } else { format!("{chi2:.2e}") };
+            format!("{name}: relative error of the FRFs {error:.2e}, chi2 per degree of freedom {chi2}")
+        };
+        lines.push(row("fixture as stated", nominal, chi2_nominal));
+        lines.push(row("refitted within its tolerances", refitted, chi2_refitted));
+        if !self.findings.is_empty() {
+            lines.push(row("repaired", repaired, chi2_repaired));
+        }
+        if let Some(held_out) = self.held_out.as_ref().filter(|_| !self.findings.is_empty()) {
+            lines.push(format!(
+                "held out ({}): relative error {:.2e} refitted, {:.2e} repaired",
+                held_out.what.join(", "),
+                held_out.nrmse_refitted,
+                held_out.nrmse_repaired
+            ));
+        }
+        lines.extend(self.remarks());
+        lines
+    }
+}
+
+impl Summary for NonlinearDiagnosis {
+    fn summary(&self) -> Vec<String> {
+        let findings = self.findings.iter().map(|finding| (finding.says(), finding.probability));
+        let mut lines = found(self.verdict.name(), self.says(), findings);
+        let models = ["fixture as stated", "refitted within its tolerances", "repaired"];
+        for (name, model) in models.iter().zip(self.models.iter().flatten()) {
+            lines.push(format!(
+                "{name}: relative error of the responses {:.2e}, chi2 per degree of freedom {:.3e}",
+                model.nrmse, model.chi2_per_dof
+            ));
+        }
+        if let Some(held) = &self.held_out {
+            lines.push(format!(
+                "held out ({} hits): relative error {:.2e} refitted, {:.2e} repaired",
+                held.what.len(),
+                held.nrmse_refitted,
+                held.nrmse_repaired
+            ));
+        }
+        lines.extend(self.remarks());
+        lines
+    }
+}
+
+impl Summary for SteppedDiagnosis {
+    fn summary(&self) -> Vec<String> {
+        let findings = self.findings.iter().map(|finding| (finding.says(), finding.probability));
+        let mut lines = found(self.verdict.name(), self.says(), findings);
+        for level in &self.levels {
+            lines.push(format!(
+            "{}: {:.3} Hz, damping {:.4} %, relative motion {:.3e}, relative error {:.3} refitted, {:.3} repaired, {:.3} with a stiffness of its own",
+            level.held,
+            level.resonance.frequency.0,
+            100.0 * level.resonance.damping_ratio.0,
+            level.motion,
+            level.nrmse[1],
+            level.nrmse[2],
+            level.nrmse[3]
+        ));
+        }
+        let tried = self
+            .tried
+            .iter()
+            .map(|t| format!("{} at {} in {} {:.3}", t.form, t.joint, t.dof.name(), t.nrmse));
+        lines.push(format!("relative errors over all levels: {}", tried.collect::<Vec<_>>().join(", ")));
+        for (name, chi2) in ["fixture as stated", "refitted", "repaired"].iter().zip(self.chi2_per_dof) {
+            lines.extend(chi2.map(|chi2| format!("{name}: chi2 per degree of freedom {chi2:.4e}")));
+        }
+        if let Some(held) = &self.held_out {
+            lines.push(format!(
+                "levels left out one by one: relative error {:.3} refitted, {:.3} repaired",
+                held.nrmse_refitted, held.nrmse_repaired
+            ));
+        }
+        lines.extend(self.remarks());
+        lines
+    }
+}
