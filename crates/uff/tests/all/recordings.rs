@@ -32,7 +32,8 @@ fn universal_files(folder: &Path, found: &mut Vec<PathBuf>) {
 
 #[test]
 fn every_recording_is_read_and_its_second_writing_holds_the_same() {
-    for folder in ["recordings", "concealed/open"] {
+    let structures = ["brake-reuss-beam", "clamped-beam-masses", "hammer-hit", "modelab-beam"].map(|name| format!("recordings/{name}"));
+    for folder in structures.iter().map(String::as_str).chain(["concealed/open", "concealed/solids"]) {
         let Some(folder) = beside_the_workspace(folder) else { continue };
         let mut files = Vec::new();
         universal_files(&folder, &mut files);
@@ -43,6 +44,23 @@ fn every_recording_is_read_and_its_second_writing_holds_the_same() {
             assert_eq!(read(&write(&file.datasets).unwrap()).unwrap(), file, "{}", path.display());
         }
     }
+}
+
+/// Files of many programs with datasets of every kind: functions among them come back, the rest is skipped or refused.
+#[test]
+fn functions_among_datasets_of_other_kinds_come_back_after_a_second_writing() {
+    let Some(folder) = beside_the_workspace("recordings/pyuff-data") else { return };
+    let mut files = Vec::new();
+    universal_files(&folder, &mut files);
+    let mut with_functions = 0;
+    for path in files {
+        let Ok(file) = read(&std::fs::read(&path).unwrap()) else { continue };
+        if !file.datasets.is_empty() {
+            with_functions += 1;
+            assert_eq!(read(&write(&file.datasets).unwrap()).unwrap().datasets, file.datasets, "{}", path.display());
+        }
+    }
+    assert!(with_functions >= 8, "{with_functions} files with functions");
 }
 
 #[test]
