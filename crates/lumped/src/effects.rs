@@ -2,7 +2,7 @@
 
 use crate::Station;
 use crate::terms::{PointLaw, TermStation};
-use jointscope_fixture::{Dof, Effect, EffectKind as Kind, Fixture, Place};
+use jointscope_fixture::{Dof, Effect, EffectKind as Kind, Fixture, Joint, Place};
 use std::f64::consts::TAU;
 
 /// What an effect does.
@@ -105,8 +105,25 @@ fn action<'a>(fixture: &'a Fixture, effect: &'a Effect) -> Option<Action<'a>> {
             _ => None,
         },
         Kind::ExponentialWindow => Some(Action::Window { decay: value(0) }),
+        Kind::ParallelStiffness => {
+            let joint = &fixture.joints()[joint_of(fixture, &effect.place)?];
+            let [deflection, rotation] = relative_motion(fixture, joint);
+            let motion = if effect.dof == Some(Dof::Rotation) { rotation } else { deflection };
+            let law = PointLaw::Spring { stiffness: value(0), damping: value(1) };
+            Some(Action::Through { motion, law })
+        }
         Kind::CubicStiffness | Kind::Friction | Kind::Gap => Some(Action::Amplitude),
     }
+}
+
+/// d = u_to − R·u_from over the joint's free length, all that lengthens it included.
+fn relative_motion(fixture: &Fixture, joint: &Joint) -> [TermStation; 2] {
+    let longer = |effect: &&Effect| {
+        effect.kind == Kind::JointLength && matches!(&effect.place, Place::Joint(name) if *name == joint.name)
+    };
+    let extra: f64 = fixture.physics().iter().filter(longer).map(|effect| effect.value(0)).sum();
+    let [from, to] = [joint.from, joint.to].map(|p| &fixture.points()[p]).map(|p| (p.body, p.x.value));
+    TermStation::relative(from, to, fixture.joint_length(joint) + extra, false)
 }
 
 fn body_of(fixture: &Fixture, place: &Place) -> Option<usize> {

@@ -33,6 +33,7 @@ pub fn random_effect(
         EffectKind::JointMass | EffectKind::LossFactor | EffectKind::Relaxation | EffectKind::JointLength => {
             scene.of_a_joint(rng, kind)
         }
+        EffectKind::ParallelStiffness => scene.beside_a_joint(rng, kind),
         EffectKind::CubicStiffness | EffectKind::Friction | EffectKind::Gap => scene.nonlinear(rng, kind),
         EffectKind::PointOffset
         | EffectKind::ChannelGain
@@ -104,6 +105,18 @@ impl Scene<'_> {
         let dashpot = stiffness * log_uniform(rng, 0.003, 0.1) / (TAU * self.highest);
         let place = Place::Point(self.fixture.points()[point].name.clone());
         Some(Effect::new(EffectKind::InterfaceCompliance, place, Some(dof), &[stiffness, dashpot]))
+    }
+
+    fn beside_a_joint(&self, rng: &mut impl Rng, kind: EffectKind) -> Option<Effect> {
+        let mut candidates = Vec::new();
+        for joint in self.fixture.joints() {
+            let dofs = [Dof::Translation, Dof::Rotation].into_iter().zip(stiffness(self.fixture, joint));
+            candidates.extend(dofs.filter(|(_, k)| *k > 0.0).map(|(dof, k)| (joint, dof, k)));
+        }
+        let &(joint, dof, joint_stiffness) = choice(rng, &candidates)?;
+        let stiffness = joint_stiffness * log_uniform(rng, 0.03, 0.5);
+        let dashpot = stiffness * log_uniform(rng, 0.003, 0.1) / (TAU * self.highest);
+        Some(Effect::new(kind, Place::Joint(joint.name.clone()), Some(dof), &[stiffness, dashpot]))
     }
 
     fn of_the_material(&self, rng: &mut impl Rng, kind: EffectKind) -> Option<Effect> {

@@ -109,7 +109,7 @@ mod tests {
         let body = || Place::Body("B".into());
         let joint = || Place::Joint("J".into());
         type Case<'a> = (EffectKind, Place, Option<Dof>, &'a [f64], &'a [&'a str]);
-        let cases: [Case; 19] = [
+        let cases: [Case; 20] = [
             (
                 EffectKind::AddedMass,
                 body(),
@@ -171,6 +171,13 @@ mod tests {
             (EffectKind::ChannelDelay, Place::Response("4".into()), None, &[22e-6], &["lags", "22.00 µs"]),
             (EffectKind::SensorMass, Place::Response("4".into()), None, &[0.012], &["12.00 g", "moved"]),
             (EffectKind::ExponentialWindow, Place::All, None, &[12.0], &["12.00 1/s", "damped"]),
+            (
+                EffectKind::ParallelStiffness,
+                joint(),
+                Some(Dof::Rotation),
+                &[2e3, 0.0],
+                &["Beside joint J", "2.000 kN·m/rad", "rotation"],
+            ),
         ];
         for (kind, place, dof, values, parts) in cases {
             says(&finding(kind, place, dof, values, 0.0103), parts);

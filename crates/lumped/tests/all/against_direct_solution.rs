@@ -2,49 +2,73 @@
 //! dynamic stiffness matrix by another library.
 
 use jointscope_fixture::Fixture;
-use jointscope_lumped::{Model, Station};
+use jointscope_lumped::{Assembly, Model, Station};
 use nalgebra::{Complex, DMatrix};
 use num_complex::Complex64;
 use proptest::prelude::*;
 use std::f64::consts::TAU;
 
-/// Dense receptances of the fixture: free assembly by its matrices, supports and dashpots added by hand.
-fn direct(fixture: &Fixture, outputs: &[Station], inputs: &[Station], hz: f64) -> Vec<Complex64> {
-    let model = Model::new(fixture, hz).unwrap();
-    let assembly = model.assembly();
-    let n = assembly.order();
-    let omega = TAU * hz;
-    let structural = match assembly.damping_law() {
+/// η of the assembly's structural damping.
+fn loss_factor(assembly: &Assembly) -> f64 {
+    match assembly.damping_law() {
         jointscope_damping::DampingLaw::LossFactor(eta) => *eta,
         _ => 0.0,
-    };
+    }
+}
+
+/// Adds value · row rowᵀ.
+fn add(z: &mut DMatrix<Complex64>, row: &[f64], value: Complex64) {
+    for i in 0..row.len() {
+        for j in 0..row.len() {
+            z[(i, j)] += value * row[i] * row[j];
+        }
+    }
+}
+
+/// The dense dynamic stiffness of the fixture without its effects: free assembly by its matrices, supports added by hand.
+fn dynamic_stiffness(fixture: &Fixture, assembly: &Assembly, hz: f64) -> DMatrix<Complex64> {
+    let n = assembly.order();
+    let omega = TAU * hz;
+    let structural = loss_factor(assembly);
     let viscous = assembly.viscous_damping();
     let mut z = DMatrix::from_fn(n, n, |i, j| {
         let k = assembly.stiffness()[i * n + j];
         let re = k - omega * omega * assembly.mass()[i * n + j];
         Complex::new(re, omega * viscous[i * n + j] + structural * k)
     });
-    let mut add = |row: Vec<f64>, value: Complex<f64>| {
-        for i in 0..n {
-            for j in 0..n {
-                z[(i, j)] += value * row[i] * row[j];
-            }
-        }
-    };
     for support in fixture.supports() {
         let (body, x) = fixture.support_place(support);
         let damping = support.damping.map_or(0.0, |d| d.value);
         let row = assembly.station_row(&Station::transverse(body, x));
-        add(row, Complex::new(support.stiffness.value, omega * damping));
+        add(&mut z, &row, Complex::new(support.stiffness.value, omega * damping));
         let turning = support.rotational_stiffness.map_or(0.0, |d| d.value);
-        add(assembly.station_row(&Station::rotational(body, x)), Complex::new(turning, 0.0));
+        add(&mut z, &assembly.station_row(&Station::rotational(body, x)), Complex::new(turning, 0.0));
     }
+    z
+}
+
+/// Receptances by one dense solution; coordinates beyond the assembly's are read by no station.
+fn solved(
+    z: DMatrix<Complex64>,
+    assembly: &Assembly,
+    outputs: &[Station],
+    inputs: &[Station],
+) -> Vec<Complex64> {
     let rows = |stations: &[Station]| {
-        DMatrix::from_fn(stations.len(), n, |s, i| Complex::new(assembly.station_row(&stations[s])[i], 0.0))
+        DMatrix::from_fn(stations.len(), z.nrows(), |s, i| {
+            Complex::from(assembly.station_row(&stations[s]).get(i).copied().unwrap_or(0.0))
+        })
     };
-    let solution = z.lu().solve(&rows(inputs).transpose()).unwrap();
-    let h = rows(outputs) * solution;
+    let (read, forced) = (rows(outputs), rows(inputs).transpose());
+    let h = read * z.lu().solve(&forced).unwrap();
     (0..outputs.len()).flat_map(|o| (0..inputs.len()).map(move |i| (o, i))).map(|(o, i)| h[(o, i)]).collect()
+}
+
+/// Dense receptances of a fixture without effects.
+fn direct(fixture: &Fixture, outputs: &[Station], inputs: &[Station], hz: f64) -> Vec<Complex64> {
+    let model = Model::new(fixture, hz).unwrap();
+    let assembly = model.assembly();
+    solved(dynamic_stiffness(fixture, assembly, hz), assembly, outputs, inputs)
 }
 
 fn damping() -> impl Strategy<Value = String> {
@@ -134,4 +158,65 @@ fn a_clamped_beam_deflects_statically_as_the_textbook_says() {
     assert!(model.receptances(&tip, &tip).at(Complex64::new(0.0, 0.01), &mut value));
     let expected = 0.5f64.powi(3) / (3.0 * 200.0);
     assert!((value[0].re / expected - 1.0).abs() < 1e-5, "{} instead of {expected}", value[0].re);
+}
+
+const BAR: f64 = 0.06;
+const BENDING: f64 = 76.0;
+
+/// Two blocks on a bar of length [`BAR`] with an effect on it.
+fn two_blocks(damping: &str, effect: &str) -> Fixture {
+    Fixture::from_json(&format!(
+        r#"{{ "bodies": {{ "A": {{ "mass": 1.1, "inertia": 9.5e-4, "x_cg": -0.03 }}, "B": {{ "mass": 1.3, "inertia": 1.1e-3, "x_cg": 0.095 }} }},
+              "points": {{ "1": {{ "body": "A", "x": -0.06 }}, "2": {{ "body": "A", "x": 0 }}, "3": {{ "body": "B", "x": {BAR} }}, "4": {{ "body": "B", "x": 0.125 }} }},
+              "joints": {{ "J": {{ "from": "2", "to": "3", "beam": {{ "youngs_modulus": 2e11, "second_moment": {} }} }} }},
+              "damping": {damping}, "physics": [{effect}] }}"#,
+        BENDING / 2e11
+    ))
+    .unwrap()
+}
+
+/// Receptances of [`two_blocks`] with `effect` against those of the bare blocks' dense dynamic stiffness as `by_hand` changes it.
+#[track_caller]
+fn check_effect(effect: &str, by_hand: impl Fn(DMatrix<Complex64>, &Assembly, f64) -> DMatrix<Complex64>) {
+    let stations =
+        [Station::transverse(0, -0.06), Station::rotational(0, 0.0), Station::transverse(1, 0.125)];
+    for damping in [r#"{"loss_factor": 0.01}"#, r#"{"modal_ratios": [0.004, 0.007]}"#] {
+        let bare = two_blocks(damping, "");
+        let model = Model::new(&bare, 900.0).unwrap();
+        let changed = Model::new(&two_blocks(damping, effect), 900.0).unwrap();
+        let mut receptances = changed.receptances(&stations, &stations);
+        for hz in [7.0, 61.0, 240.0, 870.0] {
+            let mut found = vec![Complex64::ZERO; 9];
+            assert!(receptances.at(Complex64::new(0.0, TAU * hz), &mut found));
+            let z = by_hand(dynamic_stiffness(&bare, model.assembly(), hz), model.assembly(), hz);
+            let expected = solved(z, model.assembly(), &stations, &stations);
+            for (index, (a, b)) in found.iter().zip(&expected).enumerate() {
+                assert!((a - b).norm() < 1e-9 * b.norm(), "{effect} at {hz} Hz, {index}: {a} against {b}");
+            }
+        }
+    }
+}
+
+/// Motions (y, θ) at the bar's near end and (y, θ) at its far end.
+fn ends(assembly: &Assembly) -> [Vec<f64>; 4] {
+    let [y1, t1] = Station::both(0, 0.0);
+    let [y2, t2] = Station::both(1, BAR);
+    [y1, t1, y2, t2].map(|station| assembly.station_row(&station))
+}
+
+#[test]
+fn a_spring_beside_a_joint_acts_on_the_relative_motion_of_its_ends() {
+    for (dof, stiffness, damping) in [("translation", 3e5, 40.0), ("rotation", 900.0, 0.2)] {
+        let effect = format!(
+            r#"{{"kind": "parallel_stiffness", "place": "J", "dof": "{dof}", "stiffness": {stiffness}, "damping": {damping}}}"#
+        );
+        check_effect(&effect, |mut z, assembly, hz| {
+            let [y1, t1, y2, t2] = ends(assembly);
+            let stretch: Vec<f64> = (0..y1.len())
+                .map(|i| if dof == "rotation" { t2[i] - t1[i] } else { y2[i] - y1[i] - BAR * t1[i] })
+                .collect();
+            add(&mut z, &stretch, Complex::new(stiffness, TAU * hz * damping));
+            z
+        });
+    }
 }

@@ -59,6 +59,7 @@ pub(crate) fn assemble_joint(
     let properties = Properties::of(fixture, joint, effects, loss_factor)?;
     let from = joint_end(assembly, fixture, bodies, joint.from, effects)?;
     let to = joint_end(assembly, fixture, bodies, joint.to, effects)?;
+    add_parallel(assembly, fixture, bodies, joint, effects, properties.length)?;
     match &joint.law {
         JointLaw::Beam { youngs_modulus, second_moment } => {
             let bending_stiffness = youngs_modulus.value * second_moment.value;
@@ -69,6 +70,28 @@ pub(crate) fn assemble_joint(
             Ok(())
         }
     }
+}
+
+/// Springs and dashpots beside a joint, from body to body past its interfaces.
+fn add_parallel(
+    assembly: &mut Assembly,
+    fixture: &Fixture,
+    bodies: &Bodies,
+    joint: &Joint,
+    effects: &[Effect],
+    length: f64,
+) -> Result<(), StructureError> {
+    let station = |point: usize| {
+        let point = &fixture.points()[point];
+        bodies.station(point.body, point.x.value)
+    };
+    let [deflection, rotation] = station(joint.to)?.relative_to(&station(joint.from)?, length);
+    for beside in at(effects, EffectKind::ParallelStiffness, Place::Joint(joint.name.clone())) {
+        let stretch = if beside.dof == Some(Dof::Rotation) { &rotation } else { &deflection };
+        assembly.spring(stretch, beside.value(0), Law::ELASTIC);
+        assembly.dashpot(stretch, beside.value(1));
+    }
+    Ok(())
 }
 
 /// The end of a joint at a point: the body's own place there, or, behind an interface, a place that can move

@@ -192,6 +192,12 @@ fn two_masses_and_a_spring_follow_the_closed_form_with_every_law_of_the_joint() 
         |s| ((5e6 + c(s)).inv() + (2e7 + s * 100.0).inv()).inv(),
         0.0,
     );
+    check_two_masses(
+        r#"{"kind": "parallel_stiffness", "place": "J", "dof": "translation", "stiffness": 1e6, "damping": 30.0}"#,
+        (2.0, 3.0),
+        |s| 6e6 + c(s) + s * 30.0,
+        0.0,
+    );
 }
 
 #[test]
