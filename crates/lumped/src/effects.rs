@@ -58,7 +58,24 @@ pub(crate) struct Interface {
 
 /// What the effects of a fixture do, in the order of its file.
 pub(crate) fn actions(fixture: &Fixture) -> impl Iterator<Item = Action<'_>> {
-    fixture.physics().iter().filter_map(|effect| action(fixture, effect))
+    fixture
+        .physics()
+        .iter()
+        .flat_map(|effect| match effect.kind {
+            Kind::Footing => footing(fixture, effect),
+            _ => [action(fixture, effect), None],
+        })
+        .flatten()
+}
+
+/// Both ends of a joint turn on springs of one size.
+fn footing<'a>(fixture: &'a Fixture, effect: &'a Effect) -> [Option<Action<'a>>; 2] {
+    let (stiffness, damping) = (effect.value(0), effect.value(1));
+    [false, true].map(|at_far_end| {
+        let interface = Interface { at_far_end, dof: Dof::Rotation, stiffness, damping };
+        let joint = joint_of(fixture, &effect.place)?;
+        Some(Action::OnJoint { joint, change: Change::Interface(interface) })
+    })
 }
 
 /// What an effect does; `None` where its place does not exist.
@@ -112,6 +129,8 @@ fn action<'a>(fixture: &'a Fixture, effect: &'a Effect) -> Option<Action<'a>> {
             let law = PointLaw::Spring { stiffness: value(0), damping: value(1) };
             Some(Action::Through { motion, law })
         }
+        // It does two things at once.
+        Kind::Footing => None,
         Kind::CubicStiffness | Kind::Friction | Kind::Gap => Some(Action::Amplitude),
     }
 }

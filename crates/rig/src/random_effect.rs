@@ -33,6 +33,7 @@ pub fn random_effect(
         EffectKind::JointMass | EffectKind::LossFactor | EffectKind::Relaxation | EffectKind::JointLength => {
             scene.of_a_joint(rng, kind)
         }
+        EffectKind::Footing => scene.footing(rng),
         EffectKind::ParallelStiffness => scene.beside_a_joint(rng, kind),
         EffectKind::CubicStiffness | EffectKind::Friction | EffectKind::Gap => scene.nonlinear(rng, kind),
         EffectKind::PointOffset
@@ -117,6 +118,15 @@ impl Scene<'_> {
         let stiffness = joint_stiffness * log_uniform(rng, 0.03, 0.5);
         let dashpot = stiffness * log_uniform(rng, 0.003, 0.1) / (TAU * self.highest);
         Some(Effect::new(kind, Place::Joint(joint.name.clone()), Some(dof), &[stiffness, dashpot]))
+    }
+
+    fn footing(&self, rng: &mut impl Rng) -> Option<Effect> {
+        let bending = |joint: &&Joint| stiffness(self.fixture, joint)[1] > 0.0;
+        let joints: Vec<&Joint> = self.fixture.joints().iter().filter(bending).collect();
+        let joint = choice(rng, &joints)?;
+        let stiffness = stiffness(self.fixture, joint)[1] * log_uniform(rng, 1.0, 30.0);
+        let dashpot = stiffness * log_uniform(rng, 0.003, 0.1) / (TAU * self.highest);
+        Some(Effect::new(EffectKind::Footing, Place::Joint(joint.name.clone()), None, &[stiffness, dashpot]))
     }
 
     fn of_the_material(&self, rng: &mut impl Rng, kind: EffectKind) -> Option<Effect> {

@@ -109,7 +109,7 @@ mod tests {
         let body = || Place::Body("B".into());
         let joint = || Place::Joint("J".into());
         type Case<'a> = (EffectKind, Place, Option<Dof>, &'a [f64], &'a [&'a str]);
-        let cases: [Case; 20] = [
+        let cases: [Case; 21] = [
             (
                 EffectKind::AddedMass,
                 body(),
@@ -178,6 +178,7 @@ mod tests {
                 &[2e3, 0.0],
                 &["Beside joint J", "2.000 kN·m/rad", "rotation"],
             ),
+            (EffectKind::Footing, joint(), None, &[7e3, 0.0], &["Both ends of joint J", "7.00 kN·m/rad"]),
         ];
         for (kind, place, dof, values, parts) in cases {
             says(&finding(kind, place, dof, values, 0.0103), parts);

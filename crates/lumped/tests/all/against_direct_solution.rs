@@ -1,6 +1,7 @@
 //! The modal sums with their low-rank changes, against one dense solution per line of the whole
 //! dynamic stiffness matrix by another library.
 
+use jointscope_beam::element_stiffness;
 use jointscope_fixture::Fixture;
 use jointscope_lumped::{Assembly, Model, Station};
 use nalgebra::{Complex, DMatrix};
@@ -219,4 +220,37 @@ fn a_spring_beside_a_joint_acts_on_the_relative_motion_of_its_ends() {
             z
         });
     }
+}
+
+#[test]
+fn a_footing_is_a_rotational_spring_at_either_end_of_the_bar() {
+    let (stiffness, damping) = (4e3, 0.7);
+    let effect =
+        format!(r#"{{"kind": "footing", "place": "J", "stiffness": {stiffness}, "damping": {damping}}}"#);
+    check_effect(&effect, |bare, assembly, hz| {
+        // Two coordinates more: the rotations of the bar's own ends.
+        let n = bare.nrows();
+        let mut z = bare.resize(n + 2, n + 2, Complex64::ZERO);
+        let wide = |mut row: Vec<f64>| {
+            row.resize(n + 2, 0.0);
+            row
+        };
+        let [y1, t1, y2, t2] = ends(assembly).map(wide);
+        let own = |index: usize| wide((0..=index).map(|i| f64::from(u8::from(i == index))).collect());
+        let (turned1, turned2) = (own(n), own(n + 1));
+        let element = element_stiffness(BENDING, BAR);
+        let modulus = Complex64::new(1.0, loss_factor(assembly));
+        for (rows, sign) in [([&y1, &t1, &y2, &t2], -1.0), ([&y1, &turned1, &y2, &turned2], 1.0)] {
+            for (a, b) in (0..4).flat_map(|a| (0..4).map(move |b| (a, b))) {
+                for (i, j) in (0..n + 2).flat_map(|i| (0..n + 2).map(move |j| (i, j))) {
+                    z[(i, j)] += modulus * (sign * element[a][b] * rows[a][i] * rows[b][j]);
+                }
+            }
+        }
+        for (held, turned) in [(&t1, &turned1), (&t2, &turned2)] {
+            let slip: Vec<f64> = held.iter().zip(turned).map(|(held, turned)| held - turned).collect();
+            add(&mut z, &slip, Complex64::new(stiffness, TAU * hz * damping));
+        }
+        z
+    });
 }

@@ -57,8 +57,8 @@ pub(crate) fn assemble_joint(
     loss_factor: f64,
 ) -> Result<(), StructureError> {
     let properties = Properties::of(fixture, joint, effects, loss_factor)?;
-    let from = joint_end(assembly, fixture, bodies, joint.from, effects)?;
-    let to = joint_end(assembly, fixture, bodies, joint.to, effects)?;
+    let from = joint_end(assembly, fixture, bodies, joint, joint.from, effects)?;
+    let to = joint_end(assembly, fixture, bodies, joint, joint.to, effects)?;
     add_parallel(assembly, fixture, bodies, joint, effects, properties.length)?;
     match &joint.law {
         JointLaw::Beam { youngs_modulus, second_moment } => {
@@ -100,17 +100,18 @@ fn joint_end(
     assembly: &mut Assembly,
     fixture: &Fixture,
     bodies: &Bodies,
+    joint: &Joint,
     point: usize,
     effects: &[Effect],
 ) -> Result<Station, StructureError> {
     let point = &fixture.points()[point];
     let mut end = bodies.station(point.body, point.x.value)?;
-    for interface in at(effects, EffectKind::InterfaceCompliance, Place::Point(point.name.clone())) {
+    let interfaces = at(effects, EffectKind::InterfaceCompliance, Place::Point(point.name.clone()));
+    let footings = at(effects, EffectKind::Footing, Place::Joint(joint.name.clone()));
+    for interface in interfaces.chain(footings) {
         let beyond = Row::coordinate(assembly.coordinate());
-        let held = match interface.dof {
-            Some(Dof::Rotation) => &mut end.theta,
-            _ => &mut end.y,
-        };
+        let turns = interface.kind == EffectKind::Footing || interface.dof == Some(Dof::Rotation);
+        let held = if turns { &mut end.theta } else { &mut end.y };
         let slip = beyond.minus(held);
         assembly.spring(&slip, interface.value(0), Law::ELASTIC);
         assembly.dashpot(&slip, interface.value(1));

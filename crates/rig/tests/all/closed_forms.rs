@@ -277,6 +277,22 @@ fn a_longer_joint_moves_what_lies_beyond_it_outward() {
 }
 
 #[test]
+fn a_footing_is_a_rotational_interface_of_one_size_at_either_end() {
+    let end = |point: &str| {
+        format!(
+            r#"{{"kind": "interface_compliance", "place": "{point}", "dof": "rotation", "stiffness": 7e3, "damping": 0.4}}"#
+        )
+    };
+    let pairs = transverse(&[("4", "1"), ("1", "1")]);
+    let read = |physics: &str| {
+        frfs(&two_blocks(0.065, 0.125, 0.095, physics), &pairs, &lines(), Instrument::Perfect).unwrap()
+    };
+    let footing = read(r#"{"kind": "footing", "place": "J", "stiffness": 7e3, "damping": 0.4}"#);
+    let both = read(&format!("{}, {}", end("2"), end("3")));
+    assert!(largest_error(&both, &footing) < 1e-11);
+}
+
+#[test]
 fn a_displaced_point_reads_where_it_is_and_leaves_the_joint_alone() {
     let offset = two_blocks(0.065, 0.125, 0.095, r#"{"kind": "point_offset", "place": "3", "dx": 0.06}"#);
     let bare = two_blocks(0.065, 0.125, 0.095, "");
