@@ -21,8 +21,9 @@ pub(crate) struct Iterate {
     linear: Option<Linearisation>,
 }
 
-/// The FRFs of an observation with a share of the signal, `inflation`, counted as noise.
-struct Problem<'a> {
+/// The FRFs of an observation with a share of the signal, `inflation`, counted as noise; `FIXED` where there is none of that, so that the
+/// weights stay.
+struct Problem<'a, const FIXED: bool> {
     fitter: Fitter<'a>,
     inflation: f64,
 }
@@ -36,12 +37,12 @@ struct Stage {
     limit: f64,
 }
 
-impl<'a> LeastSquares for Problem<'a> {
+impl<'a, const FIXED: bool> LeastSquares for Problem<'a, FIXED> {
     type Point = Iterate;
     type Weights = Cow<'a, [f64]>;
     type Derivatives = Linearisation;
     type Equations = NormalEquations;
-    const FIXED_WEIGHTS: bool = false;
+    const FIXED_WEIGHTS: bool = FIXED;
 
     fn weights(&self, at: &Iterate) -> Cow<'a, [f64]> {
         self.fitter.observation.inflated_weights(&at.predicted, self.inflation)
@@ -123,7 +124,6 @@ impl<'a> Fitter<'a> {
     /// Goes on with a fit by one stage; with its objective at the end of it, by the weights that hold there.
     fn improve(&self, at: Iterate, stage: &Stage) -> Option<(Iterate, f64)> {
         let own = &self.settings.fit;
-        let problem = Problem { fitter: *self, inflation: stage.inflation };
         let whole = stage.inflation == 0.0;
         let limit = Limit { objective: stage.limit, ..own.limit };
         let degrees = self.observation.degrees() as f64;
@@ -141,8 +141,18 @@ impl<'a> Fitter<'a> {
             ..Default::default()
         };
         let Iterate { hypothesis, predicted, linear } = at;
-        let end = descend(&problem, Iterate { hypothesis, predicted, linear: None }, linear, &settings)?;
-        let objective = problem.objective(&end.point, &problem.weights(&end.point));
+        let start = Iterate { hypothesis, predicted, linear: None };
+        let (end, objective) = if whole {
+            let problem = Problem::<true> { fitter: *self, inflation: 0.0 };
+            let end = descend(&problem, start, linear, &settings)?;
+            let objective = end.objective;
+            (end, objective)
+        } else {
+            let problem = Problem::<false> { fitter: *self, inflation: stage.inflation };
+            let end = descend(&problem, start, linear, &settings)?;
+            let objective = problem.objective(&end.point, &problem.weights(&end.point));
+            (end, objective)
+        };
         Some((Iterate { linear: Some(end.derivatives), ..end.point }, objective))
     }
 
