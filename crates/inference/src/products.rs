@@ -77,11 +77,17 @@ impl pulp::WithSimd for Products<'_> {
         let padded = n.next_multiple_of(ACROSS);
         let mut all = vec![0.0; padded * padded];
         let mut parts = vec![0.0; 2 * BLOCK * padded];
+        let mut roots = [[0.0; 2]; BLOCK];
         for (block, weights) in self.weights.chunks(BLOCK).enumerate() {
             let first = block * BLOCK;
+            // One root a line for all columns, as often as a value has parts.
+            roots.iter_mut().zip(weights).for_each(|(root, weight)| *root = [weight.sqrt(); 2]);
             for (column, parts) in self.columns.iter().zip(parts.chunks_exact_mut(2 * BLOCK)) {
                 let (used, rest) = parts.split_at_mut(2 * weights.len());
-                whiten(&column[first..first + weights.len()], weights, used);
+                let values = &column[first..first + weights.len()];
+                for ((part, value), root) in used.as_chunks_mut::<2>().0.iter_mut().zip(values).zip(&roots) {
+                    *part = [value.re * root[0], value.im * root[1]];
+                }
                 rest.fill(0.0);
             }
             for row in (0..padded).step_by(DOWN) {

@@ -82,14 +82,17 @@ impl Lanes {
         }
     }
 
-    /// Whether every line's number is finite.
+    /// Whether all numbers on all lines are finite.
     #[inline(always)]
-    pub fn is_finite(&self) -> bool {
-        let mut nothing = 0.0;
-        for lane in 0..WIDTH {
-            nothing += 0.0 * self.re[lane] + 0.0 * self.im[lane];
+    pub fn all_finite(values: &[Lanes]) -> bool {
+        // Zero times what is not finite is not zero; a sum for each line, so that none waits for the others.
+        let mut nothing = [0.0; WIDTH];
+        for value in values {
+            for lane in 0..WIDTH {
+                nothing[lane] += 0.0 * value.re[lane] + 0.0 * value.im[lane];
+            }
         }
-        nothing == 0.0
+        nothing.iter().sum::<f64>() == 0.0
     }
 
     /// Writes the first lines over `to`.
@@ -98,6 +101,13 @@ impl Lanes {
         for ((to, re), im) in to.iter_mut().zip(self.re).zip(self.im) {
             *to = Complex64::new(re, im);
         }
+    }
+
+    /// Writes all lines over the first of `re` and `im`.
+    #[inline(always)]
+    pub fn write_parts(&self, re: &mut [f64], im: &mut [f64]) {
+        re[..WIDTH].copy_from_slice(&self.re);
+        im[..WIDTH].copy_from_slice(&self.im);
     }
 }
 

@@ -79,16 +79,17 @@ impl ModalSystem {
         elements: &[(usize, usize)],
         solution: &mut [T],
     ) -> bool {
-        let matrix = self.matrix::<N, T>(s, delta, elements);
+        let mut matrix = self.matrix::<N, T>(s, delta, elements);
         let inputs = self.inputs.as_chunks::<N>().0;
         let columns = solution.as_chunks_mut::<N>().0;
-        if let Some(factors) = symmetric_factors(matrix) {
+        if factorize_symmetric(&mut matrix) {
             for (input, column) in inputs.iter().zip(columns) {
                 *column = input.map(|shape| T::constant(Complex64::new(shape, 0.0)));
-                substitute(&factors, column);
+                substitute(&matrix, column);
             }
             return true;
         }
+        let matrix = self.matrix::<N, T>(s, delta, elements);
         (0..T::COUNT).all(|line| solve_line(&matrix, line, inputs, columns))
     }
 
@@ -126,9 +127,10 @@ impl ModalSystem {
     }
 }
 
-/// L D Lᵀ of a symmetric matrix given by its lower triangle, L below the diagonal and D⁻¹ on it; `None` where on any line a pivot is weak.
+/// L D Lᵀ of a symmetric matrix given by its lower triangle, in place of it: L below the diagonal and D⁻¹ on it; `false`, the matrix spoilt, where on
+/// any line a pivot is weak.
 #[inline(always)]
-fn symmetric_factors<const N: usize, T: Lines>(mut matrix: [[T; N]; N]) -> Option<[[T; N]; N]> {
+fn factorize_symmetric<const N: usize, T: Lines>(matrix: &mut [[T; N]; N]) -> bool {
     let mut largest = matrix[0][0].sizes();
     for i in 1..N {
         for j in 0..=i {
@@ -137,7 +139,7 @@ fn symmetric_factors<const N: usize, T: Lines>(mut matrix: [[T; N]; N]) -> Optio
     }
     for k in 0..N {
         if !T::all_exceed(matrix[k][k].sizes(), WEAK, largest) {
-            return None;
+            return false;
         }
         let inverse = matrix[k][k].reciprocal();
         let mut scaled = [T::ZERO; N];
@@ -152,7 +154,7 @@ fn symmetric_factors<const N: usize, T: Lines>(mut matrix: [[T; N]; N]) -> Optio
             matrix[i][k] = scaled[i];
         }
     }
-    Some(matrix)
+    true
 }
 
 #[inline(always)]

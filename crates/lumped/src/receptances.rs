@@ -135,7 +135,7 @@ impl<F: FnMut(usize, Lanes, &mut [Lanes])> pulp::WithSimd for Blocks<'_, '_, '_,
         for (block, s) in s.chunks(WIDTH).enumerate() {
             let lanes = Lanes::of(s);
             let solved = receptances.prepared.evaluate(lanes, &mut receptances.several, &mut values);
-            if !(solved && values.iter().all(|value| value.is_finite())) {
+            if !(solved && Lanes::all_finite(&values)) {
                 receptances.line_by_line(s, &mut values).map_err(|line| block * WIDTH + line)?;
             }
             read(block * WIDTH, lanes, &mut values);

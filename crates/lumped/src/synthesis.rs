@@ -128,24 +128,31 @@ fn record(
     let omegas = lines.hz().iter().map(|hz| TAU * hz.max(NEARLY_ZERO_HZ));
     let s: Vec<Complex64> = omegas.map(|omega| chain.s(omega)).collect();
     let count = lines.len();
-    let mut values = vec![Complex64::ZERO; loads.len() * count];
+    // Real and imaginary parts apart, as many as fill the last block: the kernel then stores whole blocks, and nothing else in it is done line by line.
+    let padded = count.next_multiple_of(WIDTH);
+    let mut parts = [vec![0.0; loads.len() * padded], vec![0.0; loads.len() * padded]];
+    let [re, im] = &mut parts;
     let recorded = receptances.in_blocks(
         &s,
         #[inline(always)]
         |first, s, block| {
-            let last = (first + WIDTH).min(count);
             let squared = s * s;
-            let courses = values.chunks_exact_mut(count).map(|course| &mut course[first..last]);
-            for (index, (course, reading)) in courses.zip(&chain.readings).enumerate() {
+            let courses = re.chunks_exact_mut(padded).zip(im.chunks_exact_mut(padded));
+            for (index, ((re, im), reading)) in courses.zip(&chain.readings).enumerate() {
                 let receptance = match &loads[index] {
                     Some(load) => load.change(s, block[index], block),
                     None => block[index],
                 };
-                (squared * receptance * reading.gain).write(course);
+                let value = squared * receptance * reading.gain;
+                value.write_parts(&mut re[first..first + WIDTH], &mut im[first..first + WIDTH]);
             }
         },
     );
     recorded.map_err(|line| LumpedError::Unbounded { frequency: lines.hz()[line] })?;
+    let mut values = Vec::with_capacity(loads.len() * count);
+    for (re, im) in parts[0].chunks_exact(padded).zip(parts[1].chunks_exact(padded)) {
+        values.extend(re.iter().zip(im).take(count).map(|(re, im)| Complex64::new(*re, *im)));
+    }
     for (course, reading) in
         values.chunks_exact_mut(count).zip(&chain.readings).filter(|(_, r)| r.delay != 0.0)
     {
