@@ -46,6 +46,11 @@ impl MeasuringChain {
         })
     }
 
+    /// Decay of the responses' exponential window, 1/s.
+    pub fn decay(&self) -> f64 {
+        self.decay
+    }
+
     /// Where on the s-plane a line is read.
     pub fn s(&self, omega: f64) -> Complex64 {
         Complex64::new(self.decay, omega)

@@ -13,6 +13,7 @@
 //! * [`Model`]: the assembly with supports and effects, and its receptances between any [`Station`]s;
 //! * [`StateSpace`]: the assembly over time, for what has no FRF;
 //! * [`MeasuringChain`]: what stands between the structure and a recorded value;
+//! * [`ModelledTest`]: the model with a test's channels; [`ContinuedFrfs`], its FRFs at complex frequencies;
 //! * [`synthesize`], [`accelerances`]: the FRFs an analyser would record (eq 18, 41), measuring-chain effects included.
 //!
 //! ```
@@ -59,7 +60,7 @@ pub use model::Model;
 pub use receptances::Receptances;
 pub use state_space::StateSpace;
 pub use station::Station;
-pub use synthesis::{Instrument, accelerances, synthesize};
+pub use synthesis::{ContinuedFrfs, Instrument, ModelledTest, accelerances, synthesize};
 
 /// Why an assembly cannot be modelled.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

@@ -1,7 +1,6 @@
-use crate::lanes::{Lanes, WIDTH};
+use crate::lanes::{Lines, WIDTH};
 use crate::{LumpedError, MeasuringChain, Model, Receptances, Station};
 use jointscope_fixture::Fixture;
-use jointscope_linalg::Field;
 use jointscope_spectra::{FrfForm, FrfPair, FrfSet, SpectralLines};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
@@ -45,23 +44,98 @@ pub fn accelerances(
     lines: &SpectralLines,
     instrument: Instrument,
 ) -> Result<Vec<Complex64>, LumpedError> {
-    let model = Model::new(fixture, lines.hz()[lines.len() - 1])?;
-    let chain = MeasuringChain::of(fixture, pairs, instrument)?;
-    let mut stations = Stations::default();
-    let mut wanted = Vec::with_capacity(pairs.len());
-    for reading in &chain.readings {
-        wanted.push((stations.output(reading.output), stations.input(reading.input)));
+    ModelledTest::new(fixture, pairs, lines.hz()[lines.len() - 1], instrument)?.accelerances(lines)
+}
+
+/// A model with the channels of a test, ready to tell what would be recorded: on spectral lines, or anywhere on the plane of complex frequencies.
+#[derive(Debug, Clone)]
+pub struct ModelledTest {
+    model: Model,
+    chain: MeasuringChain,
+    stations: Stations,
+    /// (output, input) of each receptance that is needed, those of the FRFs first.
+    wanted: Vec<(usize, usize)>,
+    loads: Vec<Option<SensorLoad>>,
+}
+
+impl ModelledTest {
+    /// Models the fixture between the channels of `pairs`, beams meshed for lines up to `highest_hz`.
+    ///
+    /// # Errors
+    /// Unknown points, rotations of bodies that have none, effects that depend on amplitude.
+    pub fn new(
+        fixture: &Fixture,
+        pairs: &[FrfPair],
+        highest_hz: f64,
+        instrument: Instrument,
+    ) -> Result<Self, LumpedError> {
+        let model = Model::new(fixture, highest_hz)?;
+        let chain = MeasuringChain::of(fixture, pairs, instrument)?;
+        let mut stations = Stations::default();
+        let mut wanted = Vec::with_capacity(pairs.len());
+        for reading in &chain.readings {
+            wanted.push((stations.output(reading.output), stations.input(reading.input)));
+        }
+        let mut loads = Vec::with_capacity(pairs.len());
+        for (index, reading) in chain.readings.iter().enumerate() {
+            loads.push(reading.load.map(|(seat, mass)| stations.sensor(mass, seat, &mut wanted, index)));
+        }
+        Ok(ModelledTest { model, chain, stations, wanted, loads })
     }
-    let mut loads = Vec::with_capacity(pairs.len());
-    for (index, reading) in chain.readings.iter().enumerate() {
-        loads.push(reading.load.map(|(seat, mass)| stations.sensor(mass, seat, &mut wanted, index)));
+
+    fn receptances(&self) -> Receptances<'_> {
+        self.model.receptances_of(&self.stations.outputs, &self.stations.inputs, self.wanted.clone())
     }
-    let mut receptances = model.receptances_of(&stations.outputs, &stations.inputs, wanted);
-    record(&chain, &mut receptances, &loads, lines)
+
+    /// What would be recorded: all lines of the first FRF, then of the second, …
+    ///
+    /// # Errors
+    /// Undamped resonances on a line.
+    pub fn accelerances(&self, lines: &SpectralLines) -> Result<Vec<Complex64>, LumpedError> {
+        record(&self.chain, &mut self.receptances(), &self.loads, lines)
+    }
+
+    /// The recorded accelerances as analytic functions of the complex frequency.
+    pub fn continued(&self) -> ContinuedFrfs<'_> {
+        let receptances = self.receptances();
+        let values = vec![Complex64::ZERO; receptances.count()];
+        ContinuedFrfs { test: self, receptances, values }
+    }
+}
+
+/// Recorded accelerances continued from the spectral lines, where s = iω, to complex frequencies: there lie a structure's poles, and the residues
+/// of the FRFs at them.
+#[derive(Debug, Clone)]
+pub struct ContinuedFrfs<'a> {
+    test: &'a ModelledTest,
+    receptances: Receptances<'a>,
+    values: Vec<Complex64>,
+}
+
+impl ContinuedFrfs<'_> {
+    /// Writes all FRFs at complex frequency `s`, rad/s, over `frfs`; `false` where they are not finite, as at a pole.
+    pub fn at(&mut self, s: Complex64, frfs: &mut [Complex64]) -> bool {
+        let read = s + self.test.chain.decay();
+        if !self.receptances.at(read, &mut self.values) {
+            return false;
+        }
+        let squared = read * read;
+        for (index, (frf, reading)) in frfs.iter_mut().zip(&self.test.chain.readings).enumerate() {
+            let receptance = match &self.test.loads[index] {
+                Some(load) => load.change(read, self.values[index], &self.values),
+                None => self.values[index],
+            };
+            *frf = squared * receptance * reading.gain;
+            if reading.delay != 0.0 {
+                *frf *= (-s * reading.delay).exp();
+            }
+        }
+        true
+    }
 }
 
 /// Stations in use, each once.
-#[derive(Default)]
+#[derive(Debug, Clone, Default)]
 struct Stations {
     outputs: Vec<Station>,
     inputs: Vec<Station>,
@@ -94,6 +168,7 @@ impl Stations {
 }
 
 /// A sensor's mass and where its three receptances stand among the wanted ones.
+#[derive(Debug, Clone)]
 struct SensorLoad {
     mass: f64,
     first: usize,
@@ -102,11 +177,11 @@ struct SensorLoad {
 impl SensorLoad {
     /// H_oi − H_os δ H_si / (1 + δ H_ss), δ = s² m.
     #[inline(always)]
-    fn change(&self, s: Lanes, receptance: Lanes, all: &[Lanes]) -> Lanes {
+    fn change<T: Lines>(&self, s: T, receptance: T, all: &[T]) -> T {
         let inertia = s * s * self.mass;
         let (driving, to_response, from_reference) =
             (all[self.first], all[self.first + 1], all[self.first + 2]);
-        let loaded = (Lanes::ONE + inertia * driving).reciprocal();
+        let loaded = (T::ONE + inertia * driving).reciprocal();
         receptance - to_response * inertia * from_reference * loaded
     }
 }

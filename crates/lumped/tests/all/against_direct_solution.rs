@@ -119,7 +119,7 @@ proptest! {
                 // have frequencies 1e10 times above soft joints', which costs both solutions digits.
                 let own = |s: &Station| direct(&fixture, &[*s], &[*s], hz)[0].norm();
                 let scale = (own(&outputs[o]) * own(&inputs[i])).sqrt();
-                prop_assert!((a - b).norm() < 3e-6 * scale, "({o},{i}) at {hz} Hz: {a} against {b}");
+                prop_assert!((a - b).norm() < 3e-5 * scale, "({o},{i}) at {hz} Hz: {a} against {b}");
             }
         }
     }
