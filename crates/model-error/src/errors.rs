@@ -1,0 +1,203 @@
+//! How wrong a model may be: kinds of error with their scales, and the covariance that they make of the features.
+//!
+//! Errors of different kinds are independent, and so are those of different modes. An error of a shape at a channel is common to all FRFs of that channel.
+
+use crate::matching::Pairing;
+use crate::modelled::ModelledModes;
+use crate::recorded::RecordedModes;
+use crate::shapes::Shapes;
+
+/// Sizes of a model's error by kind, as relative standard deviations (0.003 is 0.3 %): what is known of them before, or what a recording says.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ErrorSizes {
+    /// Of every natural frequency.
+    pub frequency: f64,
+    /// Of every damping ratio.
+    pub damping: f64,
+    /// Of every mode's shape at every channel, against the shape's root mean square.
+    pub shape: f64,
+    /// The same in quadrature: the imaginary part of the residues.
+    pub quadrature: f64,
+    /// Of every FRF's mass line.
+    pub mass_line: f64,
+    /// Of every FRF's upper residual.
+    pub upper_residual: f64,
+    /// Of every FRF's gain, the same in all of its modes: sensors turned, hits off the point.
+    pub gain: f64,
+}
+
+/// Number of kinds.
+pub(crate) const KINDS: usize = 7;
+/// Place of the gain among them.
+pub(crate) const GAIN: usize = 6;
+
+impl Default for ErrorSizes {
+    /// What lumped models of machined parts are wrong by: 0.3 % in natural frequencies, 10 % in damping ratios, 0.5 % in shapes, 0.05 % in quadrature, 0.1 % in
+    /// mass lines, 2 % in upper residuals. Meant as the scales of half-normal priors: fixed beforehand, not fitted.
+    fn default() -> Self {
+        ErrorSizes {
+            frequency: 0.003,
+            damping: 0.1,
+            shape: 0.005,
+            quadrature: 0.0005,
+            mass_line: 0.001,
+            upper_residual: 0.02,
+            gain: 0.01,
+        }
+    }
+}
+
+impl ErrorSizes {
+    /// In the order of the fields.
+    pub fn to_array(self) -> [f64; KINDS] {
+        let ErrorSizes { frequency, damping, shape, quadrature, mass_line, upper_residual, gain } = self;
+        [frequency, damping, shape, quadrature, mass_line, upper_residual, gain]
+    }
+
+    /// All of them times a factor.
+    pub fn times(self, factor: f64) -> Self {
+        ErrorSizes::from_array(self.to_array().map(|size| factor * size))
+    }
+
+    /// From the order of the fields.
+    pub fn from_array(sizes: [f64; KINDS]) -> Self {
+        let [frequency, damping, shape, quadrature, mass_line, upper_residual, gain] = sizes;
+        ErrorSizes { frequency, damping, shape, quadrature, mass_line, upper_residual, gain }
+    }
+}
+
+/// The features that a recording and a model both have, and what each kind of error makes of them.
+#[derive(Debug, Clone)]
+pub struct Comparison {
+    /// Places of the compared features among the recording's.
+    pub(crate) places: Vec<usize>,
+    /// Covariance of the recorded features.
+    pub(crate) noise: Vec<f64>,
+    /// By kind, the covariance for a size of one: the entries that are not zero, by their place in the matrix.
+    pub(crate) kinds: Vec<Vec<(usize, f64)>>,
+}
+
+impl Comparison {
+    /// Of the modes that are paired, with the model's modes and shapes.
+    pub fn new(
+        recorded: &RecordedModes,
+        pairing: &Pairing,
+        modelled: &ModelledModes,
+        shapes: &Shapes,
+    ) -> Self {
+        let (modes, frfs, all) = (recorded.modes.len(), recorded.frfs(), recorded.count());
+        let mut places = Vec::new();
+        for &(r, _) in &pairing.pairs {
+            places.extend([2 * r, 2 * r + 1]);
+        }
+        let of_residues = |r: usize| 2 * modes + 2 * r * frfs;
+        for &(r, _) in &pairing.pairs {
+            places.extend(of_residues(r)..of_residues(r) + 2 * frfs);
+        }
+        places.extend(2 * modes + 2 * modes * frfs..all);
+        let n = places.len();
+        let entry = |e: usize| recorded.covariance[places[e / n] * all + places[e % n]];
+        let noise = (0..n * n).map(entry).collect();
+        let mut kinds = vec![vec![0.0; n * n]; KINDS];
+        let matched = pairing.pairs.len();
+        for k in 0..matched {
+            kinds[0][2 * k * (n + 1)] = 1.0;
+            kinds[1][(2 * k + 1) * (n + 1)] = 1.0;
+        }
+        for (k, &(r, m)) in pairing.pairs.iter().enumerate() {
+            let shape = &shapes.amplitudes[m];
+            let rms = (shape.iter().map(|a| a * a).sum::<f64>() / shape.len() as f64).sqrt();
+            let size = rms / recorded.modes[r].scale;
+            // An error ε_c of the shape at channel c changes the residue φ_o·φ_i by ε_o·φ_i + ε_i·φ_o.
+            let by_channel = |frf: usize, channel: usize| {
+                let (o, i) = shapes.frfs[frf];
+                let at = |own: usize, other: usize| if own == channel { shape[other] } else { 0.0 };
+                size * (at(o, i) + at(i, o))
+            };
+            let first = 2 * matched + 2 * k * frfs;
+            for a in 0..frfs {
+                for b in 0..frfs {
+                    let (o, i) = shapes.frfs[a];
+                    let mut shared = by_channel(a, o) * by_channel(b, o);
+                    if i != o {
+                        shared += by_channel(a, i) * by_channel(b, i);
+                    }
+                    kinds[2][(first + 2 * a) * n + first + 2 * b] = shared;
+                    kinds[3][(first + 2 * a + 1) * n + first + 2 * b + 1] = shared;
+                }
+            }
+        }
+        let first = 2 * matched + 2 * matched * frfs;
+        for frf in 0..frfs {
+            for (term, kind) in [(0, 4), (1, 5)] {
+                let at = first + 2 * frf + term;
+                // Relative to what is there, and where little is there to the others.
+                let value = recorded.residual_terms[frf][term] / recorded.residual_scales[term];
+                kinds[kind][at * (n + 1)] = value.powi(2).max(LITTLE);
+            }
+        }
+        // An FRF's gain changes its features in proportion to what the model makes of them.
+        for frf in 0..frfs {
+            let mut of_frf = Vec::new();
+            for (k, &(r, m)) in pairing.pairs.iter().enumerate() {
+                let at = 2 * matched + 2 * k * frfs + 2 * frf;
+                let residue = modelled.modes[m].residues[frf] / recorded.modes[r].scale;
+                of_frf.extend([(at, residue.re), (at + 1, residue.im)]);
+            }
+            for term in 0..2 {
+                let value = modelled.residual_terms[frf][term] / recorded.residual_scales[term];
+                of_frf.push((first + 2 * frf + term, value));
+            }
+            for &(i, a) in &of_frf {
+                of_frf.iter().for_each(|&(j, b)| kinds[GAIN][i * n + j] = a * b);
+            }
+        }
+        let entries =
+            |kind: Vec<f64>| kind.into_iter().enumerate().filter(|(_, value)| *value != 0.0).collect();
+        Comparison { places, noise, kinds: kinds.into_iter().map(entries).collect() }
+    }
+
+    /// Recorded features less those of the model: ln ω and ln ζ of the paired modes, their residues FRF by FRF, then all residual terms. Residues and
+    /// residual terms are in units of the recording's root mean squares.
+    pub fn residual(
+        &self,
+        recorded: &RecordedModes,
+        features: &[f64],
+        modelled: &ModelledModes,
+        pairing: &Pairing,
+    ) -> Vec<f64> {
+        let frfs = recorded.frfs();
+        let mut model = Vec::with_capacity(self.places.len());
+        for &(_, m) in &pairing.pairs {
+            let pole = modelled.modes[m].pole;
+            model.extend([pole.omega.ln(), pole.damping_ratio.max(f64::MIN_POSITIVE).ln()]);
+        }
+        for &(r, m) in &pairing.pairs {
+            let scale = recorded.modes[r].scale;
+            let with_leak =
+                modelled.modes[m].residues.iter().zip(&modelled.leaks).map(|(a, leaks)| a + leaks[r]);
+            model.extend(with_leak.flat_map(|a| [a.re / scale, a.im / scale]));
+        }
+        for frf in 0..frfs {
+            model.extend((0..2).map(|k| modelled.residual_terms[frf][k] / recorded.residual_scales[k]));
+        }
+        self.places.iter().zip(model).map(|(&place, model)| features[place] - model).collect()
+    }
+
+    /// Number of features compared.
+    pub fn count(&self) -> usize {
+        self.places.len()
+    }
+
+    /// S = noise + Σ size²·kind, row-major: the covariance of the features of a model whose error has these sizes.
+    pub fn covariance(&self, sizes: &ErrorSizes) -> Vec<f64> {
+        let mut sum = self.noise.clone();
+        for (kind, size) in self.kinds.iter().zip(sizes.to_array()) {
+            kind.iter().for_each(|&(place, value)| sum[place] += size * size * value);
+        }
+        sum
+    }
+}
+
+/// Square of the share of the root mean square from which a residual term counts as much as it is.
+const LITTLE: f64 = 0.1;

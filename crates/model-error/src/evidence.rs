@@ -1,0 +1,168 @@
+//! How probable the recorded features are under a model, its error's sizes at their most probable.
+//!
+//! The parameters of a linear model are integrated out, S + J·Jᵀ; the sizes τ, whose priors are half-normal with scales s, are maximised over:
+//! ln Z = max over τ of [ln N(d; 0, S(τ) + J·Jᵀ) − ½ Σ (τ/s)²].
+
+use crate::errors::{Comparison, ErrorSizes, GAIN, KINDS};
+use jointscope_linalg::Cholesky;
+use std::f64::consts::TAU;
+
+/// A model linearised about its parameters: recorded features less those of the model at the parameters' prior means, and how the model's
+/// features move with each parameter, in prior standard deviations.
+#[derive(Debug, Clone)]
+pub struct Linear {
+    /// Recorded less modelled, at the prior means.
+    pub difference: Vec<f64>,
+    /// Derivatives of the model's features by each parameter, for a prior standard deviation.
+    pub slopes: Vec<Vec<f64>>,
+}
+
+/// The most probable sizes of a model's error, and the logarithm of the evidence there.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Evidence {
+    /// ln p(features), nats, the sizes' prior included, without its normalisation.
+    pub ln: f64,
+    /// The most probable sizes; a thousandth of the prior's at least.
+    pub sizes: ErrorSizes,
+}
+
+/// Sizes that are tried first, as multiples of the prior's.
+const COARSE: [f64; 7] = [1e-3, 0.1, 0.4, 1.0, 3.0, 10.0, 40.0];
+/// Factors by which each is refined.
+const FINE: [f64; 4] = [3.0, 1.6, 1.25, 1.1];
+/// Least size, as a multiple of the prior's.
+const LEAST: f64 = 1e-3;
+const SWEEPS: usize = 2;
+/// Sizes over which a mean is taken.
+const GRID: usize = 24;
+
+impl Linear {
+    /// ln N(difference; 0, S + J·Jᵀ), nats; `None` where that covariance is not positive definite.
+    pub fn ln_density(&self, comparison: &Comparison, sizes: &ErrorSizes) -> Option<f64> {
+        Density::of(self, comparison).ln(sizes)
+    }
+
+    /// Root mean squares of each size over its posterior, the others at their most probable: with few modes a size may well be larger than the
+    /// most probable one, and intervals must know it.
+    pub fn mean_sizes(&self, comparison: &Comparison, prior: &ErrorSizes, best: &Evidence) -> ErrorSizes {
+        let (prior, at) = (prior.to_array(), best.sizes.to_array());
+        let mut density = Density::of(self, comparison);
+        let mut mean = |kind: usize| {
+            let (mut total, mut squares) = (0.0, 0.0);
+            let widest = (4.0 * prior[kind]).max(3.0 * at[kind]);
+            for k in 0..GRID {
+                let size = widest * (k as f64 + 0.5) / GRID as f64;
+                let mut sizes = at;
+                sizes[kind] = size;
+                let Some(density) = density.ln(&ErrorSizes::from_array(sizes)) else { continue };
+                let weight = (density + ln_prior(&sizes, &prior) - best.ln).min(50.0).exp();
+                total += weight;
+                squares += weight * size * size;
+            }
+            if total > 0.0 { (squares / total).sqrt() } else { at[kind] }
+        };
+        ErrorSizes::from_array(std::array::from_fn(&mut mean))
+    }
+
+    /// The evidence at the most probable sizes, whose priors have the scales `prior`; searched from `start`, or over five decades of each.
+    pub fn evidence(
+        &self,
+        comparison: &Comparison,
+        prior: &ErrorSizes,
+        start: Option<&ErrorSizes>,
+    ) -> Option<Evidence> {
+        let prior = prior.to_array();
+        let mut density = Density::of(self, comparison);
+        let mut value = |sizes: &[f64; KINDS]| -> f64 {
+            let density = density.ln(&ErrorSizes::from_array(*sizes));
+            density.map_or(f64::NEG_INFINITY, |density| density + ln_prior(sizes, &prior))
+        };
+        let mut best = start.map_or(prior, |sizes| sizes.to_array());
+        let mut ln = value(&best);
+        let mut try_size = |best: &mut [f64; KINDS], ln: &mut f64, kind: usize, size: f64| {
+            let mut other = *best;
+            other[kind] = size.max(LEAST * prior[kind]);
+            let found = value(&other);
+            let better = found > *ln;
+            if better {
+                (*best, *ln) = (other, found);
+            }
+            better
+        };
+        if start.is_none() {
+            for _ in 0..SWEEPS {
+                for kind in 0..KINDS {
+                    for times in COARSE {
+                        try_size(&mut best, &mut ln, kind, times * prior[kind]);
+                    }
+                }
+            }
+        }
+        for factor in FINE {
+            for kind in 0..KINDS {
+                for step in [factor, 1.0 / factor] {
+                    let mut left = 6;
+                    while left > 0 && best[kind] > LEAST * prior[kind] * 0.999 {
+                        let size = best[kind] * step;
+                        if !try_size(&mut best, &mut ln, kind, size) {
+                            break;
+                        }
+                        left -= 1;
+                    }
+                }
+            }
+        }
+        ln.is_finite().then(|| Evidence { ln, sizes: ErrorSizes::from_array(best) })
+    }
+}
+
+/// ln of the sizes' prior but for its normalisation: half-normal, and half-Cauchy for gains, of which a test may have any.
+fn ln_prior(sizes: &[f64; KINDS], scales: &[f64; KINDS]) -> f64 {
+    let of = |kind: usize| {
+        let squared = (sizes[kind] / scales[kind]).powi(2);
+        if kind == GAIN { -(1.0 + squared).ln() } else { -0.5 * squared }
+    };
+    (0..KINDS).map(of).sum()
+}
+
+/// The density at many sizes of the error: what does not depend on them is formed once.
+struct Density<'a> {
+    comparison: &'a Comparison,
+    difference: &'a [f64],
+    /// Noise and J·Jᵀ, lower triangle.
+    fixed: Vec<f64>,
+    covariance: Vec<f64>,
+    white: Vec<f64>,
+}
+
+impl<'a> Density<'a> {
+    fn of(linear: &'a Linear, comparison: &'a Comparison) -> Self {
+        let n = comparison.count();
+        let mut fixed = comparison.noise.clone();
+        for slope in &linear.slopes {
+            for i in 0..n {
+                let a = slope[i];
+                if a != 0.0 {
+                    fixed[i * n..=i * n + i].iter_mut().zip(slope).for_each(|(entry, b)| *entry += a * b);
+                }
+            }
+        }
+        let covariance = vec![0.0; n * n];
+        Density { comparison, difference: &linear.difference, fixed, covariance, white: vec![0.0; n] }
+    }
+
+    fn ln(&mut self, sizes: &ErrorSizes) -> Option<f64> {
+        self.covariance.copy_from_slice(&self.fixed);
+        for (kind, size) in self.comparison.kinds.iter().zip(sizes.to_array()) {
+            for &(place, value) in kind {
+                self.covariance[place] += size * size * value;
+            }
+        }
+        let n = self.comparison.count();
+        let factor = Cholesky::of(n, &self.covariance)?;
+        self.white.copy_from_slice(self.difference);
+        factor.solve_lower_in_place(&mut self.white);
+        let chi2: f64 = self.white.iter().map(|v| v * v).sum();
+        Some(-0.5 * (chi2 + factor.ln_determinant() + n as f64 * TAU.ln()))
+    }
+}

@@ -1,0 +1,275 @@
+//! The free fit of a recording: poles by Gauss–Newton steps, residues and residual terms eliminated (variable projection, Golub & Pereyra, *SIAM J. Numer.
+//! Anal.* 10 (1973) 413), and the covariance of all of them.
+//!
+//! At given poles each FRF is linear in its coefficients c, which a [`Projection`] gives. A pole parameter p moves the fit by the part of c·∂b/∂p that lies across the
+//! columns (Kaufman's approximation), and c by the part along them.
+
+use crate::basis::{MASS_LINE, Pole, UPPER, row};
+use crate::outline::Outline;
+use crate::projection::Projection;
+use crate::recorded::{RecordedMode, RecordedModes, Recording, resolved_from};
+use jointscope_linalg::Cholesky;
+use num_complex::Complex64;
+use std::f64::consts::TAU;
+
+/// χ² per degree of freedom of a free fit from which it may lack a pole, and the share of χ² that is left where one is worth it.
+const POOR: f64 = 1.3;
+const WORTH: f64 = 0.8;
+/// Prior deviations of ln ω and ln ζ about where a free fit starts: they matter only to modes that the lines do not resolve.
+const VAGUE: [f64; 2] = [0.2, 1.0];
+/// Steps of the free fit, at most, and the change of ln ω and ln ζ, in standard deviations, at which it ends.
+const STEPS: usize = 12;
+const CONVERGED: f64 = 0.02;
+/// Shares of a step that are tried in turn until χ² falls.
+const SHARES: [f64; 3] = [1.0, 0.3, 0.05];
+
+/// Poles, and each FRF's fit with them.
+pub(crate) struct FreeFit {
+    pub poles: Vec<Pole>,
+    /// How many of the poles are modes in the band; they come first.
+    pub inside: usize,
+    /// Residual terms of each FRF.
+    pub terms: usize,
+    fits: Vec<FrfFit>,
+    /// Information on ln ω and ln ζ of all poles, and the Gauss–Newton step of them.
+    information: Vec<f64>,
+    step: Vec<f64>,
+    chi2: f64,
+}
+
+/// One FRF at given poles.
+struct FrfFit {
+    projection: Projection,
+    coefficients: Vec<Complex64>,
+    /// Change of the coefficients with each pole's ln ω and ln ζ.
+    sensitivity: Vec<Vec<Complex64>>,
+}
+
+impl FreeFit {
+    /// Whether more than noise is left.
+    pub fn is_poor(&self, recording: Recording) -> bool {
+        self.chi2_per_dof(recording) > POOR
+    }
+
+    /// Whether the residual terms that `more` has are worth their number by Akaike's criterion. What too few of them leave biases the poles
+    /// long before χ² as a whole looks poor.
+    pub fn lacks(&self, more: &FreeFit, recording: Recording) -> bool {
+        let coefficients = 2.0 * ((more.terms - self.terms) * self.fits.len()) as f64;
+        self.chi2 - more.chi2 > 2.0 * coefficients * more.chi2_per_dof(recording).max(1.0)
+    }
+
+    /// With one pole more, where the fit is poor without it and better for it.
+    pub fn with(self, recording: Recording, pole: Pole, inside: bool) -> Self {
+        if !self.is_poor(recording) {
+            return self;
+        }
+        let (mut own, mut outside) = (self.poles[..self.inside].to_vec(), self.poles[self.inside..].to_vec());
+        if inside {
+            own.push(pole)
+        } else {
+            outside.push(pole)
+        }
+        let more = FreeFit::converged(recording, own, &outside, self.terms);
+        more.filter(|more| more.chi2 < WORTH * self.chi2).unwrap_or(self)
+    }
+
+    fn chi2_per_dof(&self, recording: Recording) -> f64 {
+        let degrees = 2.0 * recording.weights.iter().filter(|w| **w > 0.0).count() as f64;
+        let unknowns = 2 * self.poles.len() + self.fits.len() * 2 * (self.poles.len() + self.terms);
+        self.chi2 / (degrees - unknowns as f64).max(1.0)
+    }
+
+    /// With the poles that Gauss–Newton steps lead to.
+    pub fn converged(
+        recording: Recording,
+        inside: Vec<Pole>,
+        outside: &[Pole],
+        terms: usize,
+    ) -> Option<Self> {
+        let count = inside.len();
+        if count == 0 {
+            return None;
+        }
+        let mut poles = inside;
+        poles.sort_by(|a, b| a.omega.total_cmp(&b.omega));
+        poles.extend_from_slice(outside);
+        let mut fit = FreeFit::at(recording, poles, count, terms)?;
+        for _ in 0..STEPS {
+            let relative = |(i, step): (usize, &f64)| step * fit.information[i * fit.step.len() + i].sqrt();
+            let largest = fit.step.iter().enumerate().map(relative).fold(0.0, |m: f64, s| m.max(s.abs()));
+            if largest < CONVERGED {
+                break;
+            }
+            let moved = |share: f64| {
+                let step = |(pole, step): (&Pole, &[f64; 2])| Pole {
+                    omega: pole.omega * (share * step[0].clamp(-0.02, 0.02)).exp(),
+                    damping_ratio: (pole.damping_ratio * (share * step[1].clamp(-0.3, 0.3)).exp()).min(0.9),
+                };
+                let poles = fit.poles.iter().zip(fit.step.as_chunks::<2>().0).map(step).collect();
+                FreeFit::at(recording, poles, count, terms)
+            };
+            match SHARES.into_iter().find_map(|share| moved(share).filter(|next| next.chi2 < fit.chi2)) {
+                Some(next) => fit = next,
+                None => break,
+            }
+        }
+        // Close modes may have passed each other.
+        let mut poles = fit.poles.clone();
+        poles[..count].sort_by(|a, b| a.omega.total_cmp(&b.omega));
+        if poles != fit.poles {
+            fit = FreeFit::at(recording, poles, count, terms)?;
+        }
+        Some(fit)
+    }
+
+    /// At given poles.
+    fn at(recording: Recording, poles: Vec<Pole>, inside: usize, terms: usize) -> Option<Self> {
+        let omegas: Vec<f64> = recording.frfs.lines().omegas().collect();
+        let reference = *omegas.last()?;
+        let rows: Vec<Vec<Complex64>> =
+            omegas.iter().map(|w| row(&poles, terms, *w, reference).collect()).collect();
+        let order = 2 * poles.len();
+        let mut information = vec![0.0; order * order];
+        let mut right = vec![0.0; order];
+        let mut chi2 = 0.0;
+        let mut fits = Vec::new();
+        for frf in 0..recording.frfs.pairs().len() {
+            let n = omegas.len();
+            let projection = Projection::new(&rows, &recording.weights[frf * n..(frf + 1) * n])?;
+            let (coefficients, left) = projection.split(recording.frfs.values(frf));
+            chi2 += left.iter().map(|v| v.norm_sqr()).sum::<f64>();
+            let mut sensitivity = Vec::with_capacity(order);
+            let mut slopes = Vec::with_capacity(order);
+            for (index, pole) in poles.iter().enumerate() {
+                let by: [fn(&Pole, Complex64) -> Complex64; 2] = [Pole::by_frequency, Pole::by_damping];
+                for derivative in by {
+                    let s = omegas.iter().map(|w| Complex64::new(0.0, *w));
+                    let values: Vec<Complex64> =
+                        s.map(|s| derivative(pole, s) * coefficients[index]).collect();
+                    let (along, across) = projection.split(&values);
+                    sensitivity.push(along.into_iter().map(|c| -c).collect());
+                    slopes.push(across);
+                }
+            }
+            let product = |a: &[Complex64], b: &[Complex64]| -> f64 {
+                a.iter().zip(b).map(|(a, b)| a.re * b.re + a.im * b.im).sum()
+            };
+            for i in 0..order {
+                right[i] += product(&slopes[i], &left);
+                for j in 0..=i {
+                    information[i * order + j] += product(&slopes[i], &slopes[j]);
+                }
+            }
+            fits.push(FrfFit { projection, coefficients, sensitivity });
+        }
+        for i in 0..order {
+            for j in 0..i {
+                information[j * order + i] = information[i * order + j];
+            }
+        }
+        for k in 0..order {
+            information[k * (order + 1)] += VAGUE[k % 2].powi(-2);
+        }
+        let mut step = right;
+        Cholesky::of(order, &information)?.solve_in_place(&mut step);
+        Some(FreeFit { poles, inside, terms, fits, information, step, chi2 })
+    }
+
+    /// What it says of the modes in the band.
+    pub fn told(self, recording: Recording) -> Option<RecordedModes> {
+        let lines = recording.frfs.lines();
+        let frfs = self.fits.len();
+        let (modes, all) = (self.inside, self.poles.len());
+        let residues = |r: usize| -> Vec<Complex64> { self.fits.iter().map(|f| f.coefficients[r]).collect() };
+        let scale = |values: &[f64]| (values.iter().map(|v| v * v).sum::<f64>() / values.len() as f64).sqrt();
+        let mut recorded: Vec<RecordedMode> = (0..modes)
+            .map(|r| {
+                let residues = residues(r);
+                let sizes: Vec<f64> = residues.iter().map(|a| a.norm()).collect();
+                let resolved = self.poles[r].omega / TAU > resolved_from(lines.hz());
+                let scale = scale(&sizes).max(f64::MIN_POSITIVE);
+                RecordedMode { pole: self.poles[r], scale, residues, resolved }
+            })
+            .collect();
+        let term = |k: usize| self.fits.iter().map(move |f| f.coefficients[all + k].re).collect::<Vec<f64>>();
+        let terms = [term(MASS_LINE), term(UPPER)];
+        let residual_scales = [0, 1].map(|k| scale(&terms[k]).max(f64::MIN_POSITIVE));
+        let chi2_per_dof = self.chi2_per_dof(recording);
+        let covariance = self.covariance(&recorded, &residual_scales, chi2_per_dof.max(1.0))?;
+        recorded.iter_mut().for_each(|mode| mode.residues.shrink_to_fit());
+        Some(RecordedModes {
+            pairs: recording.frfs.pairs().to_vec(),
+            band: (lines.hz()[0], lines.hz()[lines.len() - 1]),
+            resolved_from: resolved_from(lines.hz()),
+            chi2_per_dof,
+            residual_terms: (0..frfs).map(|j| [terms[0][j], terms[1][j]]).collect(),
+            residual_scales,
+            covariance,
+            outline: Outline::of(recording, &self.poles, self.inside, self.terms)?,
+            modes: recorded,
+        })
+    }
+
+    /// Covariance of the features: each FRF's own at given poles, and what the poles' covariance makes of all of them.
+    fn covariance(&self, modes: &[RecordedMode], scales: &[f64; 2], inflation: f64) -> Option<Vec<f64>> {
+        let (m, all, frfs) = (modes.len(), self.poles.len(), self.fits.len());
+        let count = 2 * m + 2 * m * frfs + 2 * frfs;
+        let order = 2 * all;
+        let of_poles = Cholesky::of(order, &self.information)?.inverse();
+        // Each feature as (FRF, coefficient, imaginary part or not, scale); poles stand for themselves.
+        let residue = |r: usize, frf: usize, im: bool| (frf, r, im, modes[r].scale);
+        let mut told = Vec::new();
+        for r in 0..m {
+            told.extend((0..frfs).flat_map(|frf| [residue(r, frf, false), residue(r, frf, true)]));
+        }
+        for frf in 0..frfs {
+            told.push((frf, all + MASS_LINE, false, scales[0]));
+            told.push((frf, all + UPPER, false, scales[1]));
+        }
+        // How each feature moves with the poles.
+        let mut with_poles = vec![0.0; count * order];
+        for k in 0..2 * m {
+            with_poles[k * order + k] = 1.0;
+        }
+        for (k, &(frf, coefficient, im, scale)) in told.iter().enumerate() {
+            for (p, change) in self.fits[frf].sensitivity.iter().enumerate() {
+                let change = change[coefficient];
+                with_poles[(2 * m + k) * order + p] = if im { change.im } else { change.re } / scale;
+            }
+        }
+        let mut moved = vec![0.0; count * order];
+        for i in 0..count {
+            for p in 0..order {
+                let value = with_poles[i * order + p];
+                if value != 0.0 {
+                    for q in 0..order {
+                        moved[i * order + q] += value * of_poles[p * order + q];
+                    }
+                }
+            }
+        }
+        let mut covariance = vec![0.0; count * count];
+        for i in 0..count {
+            for j in 0..count {
+                let dot: f64 = (0..order).map(|p| moved[i * order + p] * with_poles[j * order + p]).sum();
+                covariance[i * count + j] = dot;
+            }
+        }
+        let own: Vec<Vec<Complex64>> = self.fits.iter().map(|f| f.projection.covariance()).collect();
+        for (i, &(frf, a, im_a, scale_a)) in told.iter().enumerate() {
+            for (j, &(other, b, im_b, scale_b)) in told.iter().enumerate() {
+                if frf == other {
+                    let entry = own[frf][a * self.fits[frf].projection.columns() + b];
+                    let part = match (im_a, im_b) {
+                        (false, false) | (true, true) => entry.re,
+                        (true, false) => entry.im,
+                        (false, true) => -entry.im,
+                    };
+                    covariance[(2 * m + i) * count + 2 * m + j] += part / (scale_a * scale_b);
+                }
+            }
+        }
+        covariance.iter_mut().for_each(|value| *value *= inflation);
+        Some(covariance)
+    }
+}

@@ -1,0 +1,236 @@
+//! The modes of a model as a recording would have them: poles by the secant method from nearby, residues by a contour about each pole, and
+//! residual terms by projection on the recording's own.
+//!
+//! The FRFs are analytic functions of the complex frequency, effects and measuring chain included, so nothing here knows what an effect does.
+
+use crate::basis::{MASS_LINE, Pole, UPPER};
+use crate::matching::Pairing;
+use crate::outline::grid;
+use crate::recorded::RecordedModes;
+use jointscope_fixture::Fixture;
+use jointscope_lumped::{ContinuedFrfs, Instrument, ModelledTest};
+use jointscope_spectra::{FrfSet, SpectralLines};
+use num_complex::Complex64;
+use std::f64::consts::TAU;
+
+/// One mode of a model.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ModelledMode {
+    /// Natural frequency and damping ratio.
+    pub pole: Pole,
+    /// Residue in each FRF of the recording, as [`RecordedMode::residues`](crate::RecordedMode::residues).
+    pub residues: Vec<Complex64>,
+}
+
+/// Modes and residual terms of a model, between the channels of a recording.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ModelledModes {
+    /// The modes in and near the band, ascending.
+    pub modes: Vec<ModelledMode>,
+    /// Real parts of mass line and upper residual of each FRF.
+    pub(crate) residual_terms: Vec<[f64; 2]>,
+    /// What a free fit with the recording's poles adds to the residue of each of them, FRF by FRF, as the residual terms cannot write all that
+    /// the modes out of the band do.
+    pub(crate) leaks: Vec<Vec<Complex64>>,
+}
+
+/// How far beyond the band's ends a model's mode may lie to be one of the recording's.
+const BEYOND: (f64, f64) = (0.5, 1.6);
+/// Steps of the secant method, at most, and the relative change at which it ends.
+const STEPS: usize = 14;
+const CONVERGED: f64 = 1e-9;
+/// Relative distance below which two poles are one.
+const SAME: f64 = 1e-6;
+/// Relative distance below which a pole is the one that a recorded mode hints at.
+const AT_HAND: f64 = 1e-3;
+/// Points of the contour about a pole.
+const POINTS: usize = 4;
+/// Its radius as a share of the pole's decay, and at least of the pole: modes that overlap lie well outside of it, rounding well below.
+const RADIUS: (f64, f64) = (0.01, 1e-6);
+/// Largest relative step of a pole from where it was looked for.
+const REACH: f64 = 0.5;
+
+/// Number of modes that a fixture has within the lines of FRFs, as far as they make peaks; `None` where it cannot be modelled.
+///
+/// A mode that is weak in all FRFs and close to a stronger one makes none and is not counted.
+pub fn modes_within(fixture: &Fixture, frfs: &FrfSet) -> Option<usize> {
+    let hz = frfs.lines().hz();
+    let (low, high) = (hz[0], hz[hz.len() - 1]);
+    let test = ModelledTest::new(fixture, frfs.pairs(), high, Instrument::AsRecorded).ok()?;
+    let found = peaking(&test, &grid(low, high, 0)?, frfs.pairs().len());
+    Some(found.iter().filter(|pole| (TAU * low..=TAU * high).contains(&pole.norm())).count())
+}
+
+/// The poles of a fixture in and near the band of a recording (from half its lowest line to 1.6 times its highest), rad/s, ascending: from the peaks
+/// of its FRFs over a grid of frequencies, and from the recording's own modes.
+///
+/// A mode that makes no peak in any FRF between the recording's channels is found only where the recording has one nearby.
+pub fn poles(fixture: &Fixture, recorded: &RecordedModes) -> Vec<Complex64> {
+    let test = ModelledTest::new(fixture, &recorded.pairs, recorded.band.1, Instrument::AsRecorded);
+    let Ok(test) = test else { return Vec::new() };
+    let mut all = peaking(&test, &recorded.outline.grid, recorded.frfs());
+    // A narrow mode that is weak in all FRFs may lie between two frequencies of the grid: then a recorded one shows where to look.
+    let mut frfs = test.continued();
+    for guess in recorded.modes.iter().map(|mode| mode.pole.lambda()) {
+        if all.iter().all(|pole| (pole - guess).norm() > AT_HAND * guess.norm())
+            && let Some((pole, _)) = followed(&mut frfs, guess + apart(guess), guess, recorded.frfs())
+        {
+            add(&mut all, pole);
+        }
+    }
+    ascending(&mut all);
+    let (low, high) = (BEYOND.0 * TAU * recorded.band.0, BEYOND.1 * TAU * recorded.band.1);
+    all.retain(|pole| pole.norm() >= low && pole.norm() <= high);
+    all
+}
+
+/// The poles that peaks of the FRFs over a grid of frequencies lead to, ascending.
+fn peaking(test: &ModelledTest, grid: &SpectralLines, count: usize) -> Vec<Complex64> {
+    let Ok(values) = test.accelerances(grid) else { return Vec::new() };
+    let hz = grid.hz();
+    let peaks = |k: usize| {
+        let peak = |frf: &[Complex64]| {
+            let size = |k: usize| frf[k].norm_sqr();
+            size(k) > size(k - 1) && size(k) >= size(k + 1)
+        };
+        values.chunks_exact(hz.len()).any(peak)
+    };
+    let mut frfs = test.continued();
+    let mut all: Vec<Complex64> = Vec::new();
+    for k in (1..hz.len() - 1).filter(|&k| peaks(k)) {
+        let guess = Complex64::new(0.0, TAU * hz[k]);
+        let apart = Complex64::new(0.0, 0.5 * TAU * (hz[k + 1] - hz[k]));
+        if let Some((pole, _)) = followed(&mut frfs, guess + apart, guess, count) {
+            add(&mut all, pole);
+        }
+    }
+    ascending(&mut all);
+    all
+}
+
+/// Adds a pole that is not there yet.
+fn add(all: &mut Vec<Complex64>, pole: Complex64) {
+    if all.iter().all(|other| (pole - other).norm() > SAME * pole.norm()) {
+        all.push(pole);
+    }
+}
+
+fn ascending(all: &mut [Complex64]) {
+    all.sort_by(|a, b| a.norm().total_cmp(&b.norm()));
+}
+
+/// Where the secant method starts beside a pole's guess.
+fn apart(guess: Complex64) -> Complex64 {
+    Complex64::new(-0.01 * guess.re.abs() - 1e-6 * guess.norm(), 1e-4 * guess.norm())
+}
+
+impl RecordedModes {
+    /// The modes in the band that a fixture has and this recording, as far as it is told, has not.
+    pub fn unpaired(&self, fixture: &Fixture) -> Vec<Pole> {
+        let found = poles(fixture, self);
+        let Some(modelled) = ModelledModes::near(fixture, self, &found) else { return Vec::new() };
+        let pairing = Pairing::of(self, &modelled);
+        let band = TAU * self.band.0..TAU * self.band.1;
+        let alone = |(index, mode): &(usize, &ModelledMode)| {
+            band.contains(&mode.pole.omega) && pairing.pairs.iter().all(|(_, m)| m != index)
+        };
+        modelled.modes.iter().enumerate().filter(alone).map(|(_, mode)| mode.pole).collect()
+    }
+}
+
+impl ModelledModes {
+    /// The modes of a fixture near `poles`, rad/s; `None` where a pole cannot be followed or the model has no finite FRFs.
+    pub fn near(fixture: &Fixture, recorded: &RecordedModes, poles: &[Complex64]) -> Option<Self> {
+        let test =
+            ModelledTest::new(fixture, &recorded.pairs, recorded.band.1, Instrument::AsRecorded).ok()?;
+        let mut frfs = test.continued();
+        let modes: Vec<ModelledMode> =
+            poles.iter().map(|pole| mode(&mut frfs, *pole, recorded.frfs())).collect::<Option<_>>()?;
+        let lines = &recorded.outline.lines;
+        let mut left = test.accelerances(lines).ok()?;
+        let (low, high) = (TAU * recorded.band.0, TAU * recorded.band.1);
+        // What modes just outside the band add is of the residual terms, unless the recording's own fit had a pole there.
+        let inside = |mode: &&ModelledMode| mode.pole.omega >= low && mode.pole.omega <= high;
+        let recorded_poles = recorded.outline.poles;
+        let mut residual_terms = Vec::with_capacity(recorded.frfs());
+        let mut leaks = Vec::with_capacity(recorded.frfs());
+        for (frf, values) in left.chunks_exact_mut(lines.len()).enumerate() {
+            for (value, omega) in values.iter_mut().zip(lines.omegas()) {
+                let s = Complex64::new(0.0, omega);
+                let modal =
+                    modes.iter().filter(inside).map(|mode| mode.pole.accelerance(s) * mode.residues[frf]);
+                *value -= modal.sum::<Complex64>();
+            }
+            let coefficients = recorded.outline.projections[frf].coefficients(values);
+            let term = |k: usize| coefficients[recorded_poles + k].re;
+            residual_terms.push([term(MASS_LINE), term(UPPER)]);
+            leaks.push(coefficients[..recorded.outline.inside].to_vec());
+        }
+        Some(ModelledModes { modes, residual_terms, leaks })
+    }
+
+    /// The poles, rad/s.
+    pub fn poles(&self) -> Vec<Complex64> {
+        self.modes.iter().map(|mode| mode.pole.lambda()).collect()
+    }
+}
+
+/// The pole that the secant method leads to from two points, and the FRFs' values on the way there.
+fn followed(
+    frfs: &mut ContinuedFrfs,
+    mut before: Complex64,
+    mut at: Complex64,
+    count: usize,
+) -> Option<(Complex64, Vec<Complex64>)> {
+    let guess = at;
+    let mut values = vec![Complex64::ZERO; count];
+    if !frfs.at(before, &mut values) {
+        return None;
+    }
+    // The sum of all FRFs in which those that see the mode most weigh most.
+    let weights: Vec<Complex64> = values.iter().map(|v| v.conj()).collect();
+    let inverse = |frfs: &mut ContinuedFrfs, s: Complex64, values: &mut [Complex64]| -> Complex64 {
+        match frfs.at(s, values) {
+            true => values.iter().zip(&weights).map(|(v, w)| v * w).sum::<Complex64>().inv(),
+            false => Complex64::ZERO,
+        }
+    };
+    let mut earlier = inverse(frfs, before, &mut values);
+    for _ in 0..STEPS {
+        let now = inverse(frfs, at, &mut values);
+        if now == Complex64::ZERO {
+            return (at.im > 0.0 && at.re <= 0.0).then_some((at, values));
+        }
+        if now == earlier {
+            return None;
+        }
+        let next = at - now * (at - before) / (now - earlier);
+        if !next.is_finite() || (next - guess).norm() > REACH * guess.norm() {
+            return None;
+        }
+        (before, earlier) = (at, now);
+        at = next;
+        if (at - before).norm() <= CONVERGED * at.norm() {
+            return (at.im > 0.0 && at.re <= 0.0).then_some((at, values));
+        }
+    }
+    None
+}
+
+/// Pole and residues near `guess`.
+pub(crate) fn mode(frfs: &mut ContinuedFrfs, guess: Complex64, count: usize) -> Option<ModelledMode> {
+    let (at, mut values) = followed(frfs, guess + apart(guess), guess, count)?;
+    let radius = (RADIUS.0 * at.re.abs()).max(RADIUS.1 * at.norm());
+    let mut residues = vec![Complex64::ZERO; count];
+    for point in 0..POINTS {
+        let step = Complex64::from_polar(radius, TAU * (point as f64 + 0.5) / POINTS as f64);
+        if !frfs.at(at + step, &mut values) {
+            return None;
+        }
+        residues.iter_mut().zip(&values).for_each(|(sum, value)| *sum += value * step / POINTS as f64);
+    }
+    // Of s²A/((s − λ)(s − λ̄)) the residue at λ is λ²A/(λ − λ̄).
+    let factor = Complex64::new(0.0, 2.0 * at.im) / (at * at);
+    residues.iter_mut().for_each(|residue| *residue *= factor);
+    Some(ModelledMode { pole: Pole::of(at), residues })
+}

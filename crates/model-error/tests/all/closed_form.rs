@@ -1,0 +1,179 @@
+//! Features of two masses on a spring against the textbook.
+
+use crate::common::*;
+use jointscope_model_error::{Comparison, ErrorSizes, Pairing, Pole, Shapes, modes_within};
+use num_complex::Complex64;
+use proptest::prelude::*;
+use std::f64::consts::{PI, TAU};
+
+/// Masses of [`two_masses`], kg, and the spring, N/m.
+const MASSES: (f64, f64) = (2.0, 3.0);
+const SPRING: f64 = 5e6;
+
+/// ω = √(k(1/m₁ + 1/m₂)), rad/s.
+fn natural() -> f64 {
+    (SPRING * (1.0 / MASSES.0 + 1.0 / MASSES.1)).sqrt()
+}
+
+/// Mass-normalised shape of the elastic mode: φ₁ = √(m₂/(m₁M)), φ₂ = −√(m₁/(m₂M)).
+fn shape() -> (f64, f64) {
+    let (m1, m2) = MASSES;
+    ((m2 / (m1 * (m1 + m2))).sqrt(), -(m1 / (m2 * (m1 + m2))).sqrt())
+}
+
+#[test]
+fn poles_and_residues_of_two_masses_are_those_of_the_textbook() {
+    let pairs = pairs(&[("1", "1"), ("2", "1"), ("2", "2")]);
+    let (a, b) = shape();
+    for ratio in [0.001, 0.01, 0.1] {
+        let fixture = two_masses(ratio, "");
+        let recorded = Recorded::of(&fixture, &pairs, &lines(600.0), noise(None)).modes();
+        let modes = modelled(&fixture, &recorded).modes;
+        assert_eq!(modes.len(), 1, "elastic modes of two masses");
+        let Pole { omega, damping_ratio } = modes[0].pole;
+        assert!(
+            (omega / natural() - 1.0).abs() < 1e-8,
+            "{} Hz, expected {} Hz",
+            omega / TAU,
+            natural() / TAU
+        );
+        assert!(
+            (damping_ratio / ratio - 1.0).abs() < 1e-6,
+            "damping ratio {damping_ratio}, expected {ratio}"
+        );
+        for (residue, expected) in modes[0].residues.iter().zip([a * a, a * b, b * b]) {
+            assert!((residue - expected).norm() < 1e-7, "residue {residue} 1/kg, expected {expected} 1/kg");
+        }
+    }
+}
+
+#[test]
+fn the_free_fit_finds_the_textbook_values_where_noise_is_nil() {
+    let pairs = pairs(&[("1", "1"), ("2", "1")]);
+    let (a, b) = shape();
+    let recorded = Recorded::of(&two_masses(0.01, ""), &pairs, &lines(600.0), noise(None)).modes();
+    assert_eq!(recorded.modes.len(), 1);
+    let mode = &recorded.modes[0];
+    assert!(
+        (mode.pole.omega / natural() - 1.0).abs() < 1e-7,
+        "{} of {} Hz",
+        mode.pole.omega / TAU,
+        natural() / TAU
+    );
+    assert!((mode.pole.damping_ratio - 0.01).abs() < 1e-7, "damping ratio {}", mode.pole.damping_ratio);
+    for (residue, expected) in mode.residues.iter().zip([a * a, a * b]) {
+        assert!((residue - expected).norm() < 1e-5, "residue {residue} 1/kg, expected {expected} 1/kg");
+    }
+    // The mass line of either FRF is 1/(m₁ + m₂); it stands after poles and residues, the upper residual behind it.
+    let features = recorded.features();
+    let mass_lines = &features[2 + 4..];
+    assert!(
+        (mass_lines[0] - 1.0).abs() < 1e-4 && (mass_lines[2] - 1.0).abs() < 1e-4,
+        "mass lines {mass_lines:?}"
+    );
+}
+
+#[test]
+fn a_mode_makes_one_of_the_band_only_where_it_lies_in_it() {
+    let fixture = two_masses(0.01, "");
+    let within = |to: f64| {
+        modes_within(&fixture, &Recorded::of(&fixture, &pairs(&[("2", "1")]), &lines(to), noise(None)).set)
+    };
+    assert_eq!(
+        (within(600.0), within(300.0)),
+        (Some(1), Some(0)),
+        "the mode lies at {:.1} Hz",
+        natural() / TAU
+    );
+}
+
+#[test]
+fn all_modes_of_masses_in_a_row_are_found_where_they_should_be() {
+    for count in 3..=10 {
+        let fixture = chain(count);
+        let set = Recorded::of(&fixture, &pairs(&[("1", "1"), ("2", "1")]), &lines(800.0), noise(None));
+        let modes = modelled(&fixture, &set.modes()).modes;
+        // ω = 2√(k/m) sin(jπ/2N), with k = 5 MN/m and m = 1 kg.
+        let expected = |j: usize| 2.0 * 5e6f64.sqrt() * (j as f64 * PI / (2 * count) as f64).sin();
+        assert_eq!(modes.len(), count - 1, "modes of {count} masses");
+        for (j, mode) in modes.iter().enumerate() {
+            let (found, expected) = (mode.pole.omega, expected(j + 1));
+            assert!(
+                (found / expected - 1.0).abs() < 1e-7,
+                "{} Hz, expected {} Hz",
+                found / TAU,
+                expected / TAU
+            );
+        }
+    }
+}
+
+#[test]
+fn an_error_of_the_shape_moves_residues_by_both_channels() {
+    let pairs = pairs(&[("1", "1"), ("2", "1")]);
+    let fixture = two_masses(0.01, "");
+    let compared = Compared::of(&fixture, Recorded::of(&fixture, &pairs, &lines(600.0), noise(None)).modes());
+    let n = compared.comparison.count();
+    let of = |sizes| {
+        let with = compared.comparison.covariance(&sizes);
+        with.iter().zip(compared.noise()).map(|(a, b)| a - b).collect::<Vec<f64>>()
+    };
+    let none = ErrorSizes::from_array([0.0; 7]);
+    let (a, b) = shape();
+    let rms = ((a * a + b * b) / 2.0).sqrt();
+    let scale = compared.recorded.modes[0].scale;
+    // With independent errors e₁, e₂ of the two channels, of deviation rms: δ(φ₁φ₁) = 2φ₁e₁, δ(φ₂φ₁) = φ₁e₂ + φ₂e₁.
+    let expected = [[4.0 * a * a, 2.0 * a * b], [2.0 * a * b, a * a + b * b]];
+    for (sizes, part) in [(ErrorSizes { shape: 1.0, ..none }, 0), (ErrorSizes { quadrature: 1.0, ..none }, 1)]
+    {
+        let covariance = of(sizes);
+        for (i, row) in expected.iter().enumerate() {
+            for (j, value) in row.iter().enumerate() {
+                let entry = covariance[(2 + 2 * i + part) * n + 2 + 2 * j + part];
+                let value = value * rms * rms / (scale * scale);
+                assert!(
+                    (entry - value).abs() < 1e-6,
+                    "covariance of residues {i} and {j}: {entry}, expected {value}"
+                );
+            }
+        }
+    }
+    let poles = of(ErrorSizes { frequency: 0.003, damping: 0.1, ..none });
+    assert!(
+        (poles[0] - 9e-6).abs() < 1e-12 && (poles[n + 1] - 0.01).abs() < 1e-9,
+        "{} {}",
+        poles[0],
+        poles[n + 1]
+    );
+    assert!(poles[1] == 0.0, "errors of frequency and damping are independent");
+}
+
+#[test]
+fn modes_left_alone_are_not_compared() {
+    let fixture = two_masses(0.01, "");
+    let recorded = Recorded::of(&fixture, &pairs(&[("2", "1")]), &lines(600.0), noise(None)).modes();
+    let mut model = modelled(&fixture, &recorded);
+    model.modes.clear();
+    let pairing = Pairing::of(&recorded, &model);
+    let shapes = Shapes::of(&fixture, &recorded, &[]).unwrap();
+    let comparison = Comparison::new(&recorded, &pairing, &model, &shapes);
+    // The two residual terms are left.
+    assert_eq!((pairing.pairs.len(), comparison.count()), (0, 2));
+}
+
+proptest! {
+    #[test]
+    fn a_pole_is_its_frequency_and_damping_ratio(omega in 1.0..1e5f64, damping_ratio in 1e-6..0.99f64) {
+        let lambda = Pole { omega, damping_ratio }.lambda();
+        let again = Pole::of(lambda);
+        prop_assert!((again.omega / omega - 1.0).abs() < 1e-12 && (again.damping_ratio - damping_ratio).abs() < 1e-12, "{again:?}");
+        // λ is a root of s² + 2ζωs + ω².
+        let left = lambda * lambda + lambda * (2.0 * damping_ratio * omega) + Complex64::from(omega * omega);
+        prop_assert!(left.norm() < 1e-12 * omega * omega, "{left}");
+    }
+
+    #[test]
+    fn sizes_go_to_an_array_and_back(sizes in prop::array::uniform7(0.0..1.0f64)) {
+        prop_assert_eq!(ErrorSizes::from_array(sizes).to_array(), sizes);
+    }
+}
