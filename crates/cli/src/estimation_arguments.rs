@@ -18,7 +18,7 @@ pub struct EstimationArguments {
     pub weights: Weighting,
     /// What is taken off every signal: its offset, a straight line, or nothing.
     #[arg(long, value_parser = one_of(&BASELINES), default_value = "offset")]
-    pub baseline: Baseline,
+    pub detrend: Baseline,
     /// Keep the force for so many seconds after its onset, then fade it out; `auto` for ten widths of the pulse [default: none].
     #[arg(long, value_name = "SECONDS", value_parser = force_window)]
     pub force_window: Option<ForceWindow>,
@@ -48,7 +48,7 @@ impl EstimationArguments {
         EstimateOptions {
             estimator: self.estimator,
             weighting: self.weights,
-            baseline: self.baseline,
+            baseline: self.detrend,
             force_window: self.force_window.unwrap_or_default(),
             response_window: self.response_window.unwrap_or(response_window),
             zero_padding: self.zero_padding,

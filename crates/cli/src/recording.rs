@@ -13,7 +13,7 @@ use crate::input::{self, FixtureFile};
 use crate::refusal::Refusal;
 
 /// Recordings and what the analyst says of them, for every command that reads FRFs or time histories.
-#[derive(Debug, Args)]
+#[derive(Debug, Clone, Args)]
 pub struct RecordingArguments {
     /// The recordings (UFF, UNV): all files of one test, in any order.
     #[arg(required = true, value_name = "F.uff")]
@@ -31,6 +31,11 @@ impl RecordingArguments {
     pub fn options(&self) -> Result<ReadOptions, Refusal> {
         let map = ChannelMap::parse(&self.map).map_err(Refusal::new)?;
         Ok(ReadOptions { map, assume_units: self.assume_units.clone() })
+    }
+
+    /// Other files, read alike.
+    pub fn of_files(&self, files: &[PathBuf]) -> Self {
+        RecordingArguments { files: files.to_vec(), ..self.clone() }
     }
 
     /// The files as they are.

@@ -1,12 +1,15 @@
 use crate::alternatives::{Alternative, alternatives};
+use crate::catalogue::catalogue;
 use crate::estimates::estimates;
 use crate::evidence::{excess, nothing_can_be_stated};
+use crate::fit::Fit;
 use crate::fitter::Fitter;
 use crate::held_out::Division;
 use crate::location::{Location, located, measured};
+use crate::modal::{Departure, ModalJudgement, ModelError, explains};
 use crate::search::Search;
 use crate::settings::Settings;
-use crate::{Hypothesis, Observation};
+use crate::{Hypothesis, Observation, Tolerance};
 use jointscope_findings::{Estimate, HeldOut, Verdict};
 use jointscope_fixture::{Effect, Fixture};
 use jointscope_frf::noise::NoiseSource;
@@ -69,6 +72,8 @@ pub struct DiagnosisOptions {
     pub exclude: Vec<(f64, f64)>,
     /// FRFs to hold out; one is chosen where there are four or more and none is named.
     pub hold_out: Vec<FrfPair>,
+    /// FRFs of the same structure as it was known to be right: what is diagnosed is what has changed since.
+    pub baseline: Option<FrfSet>,
     /// Take the fixture's bare numbers as exact.
     pub exact: bool,
     /// How the search goes.
@@ -84,6 +89,9 @@ pub enum DiagnosisError {
     /// The fixture predicts nothing finite.
     #[error("the fixture's model predicts no finite FRFs: {0}")]
     Model(#[from] crate::PredictionError),
+    /// The baseline and the recording have no modes in common.
+    #[error("baseline and recording have no FRFs or no modes in common")]
+    Baseline,
     /// An FRF to be held out is not there, or nothing would be left.
     #[error("FRF {0} cannot be held out: the recording does not have it, or has nothing else")]
     HoldOut(String),
@@ -111,7 +119,28 @@ pub struct Diagnosis {
     pub held_out: Option<HeldOut>,
     /// Correlation of neighbouring lines' residuals of the repaired model: near zero if they are white.
     pub residual_correlation: f64,
+    /// Error of the refitted and of the repaired model, where it is larger than the noise and decides; `None` where the noise does.
+    pub model_error: Option<[ModelError; 2]>,
+    /// Error of the model on the baseline, where there was one; then [`Diagnosis::model_error`] is of the change since.
+    pub baseline_error: Option<ModelError>,
+    /// Quantities that had to leave their stated values by more than chance makes, the farthest first.
+    pub departures: Vec<Departure>,
+    /// Effects that were tried by themselves where the model's error decides, the most probable first.
+    pub tried: Vec<Tried>,
 }
+
+/// An effect that was tried by itself.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Tried {
+    /// Kind, place, dof and parameters.
+    #[serde(flatten, serialize_with = "jointscope_findings::effect_name")]
+    pub effect: Effect,
+    /// What it gains in ln p over the fixture without it.
+    pub ln_gain: f64,
+}
+
+/// Standard deviations beyond which a quantity has departed by more than chance.
+const DEPARTED: f64 = 4.0;
 
 impl Diagnosis {
     /// Diagnoses `frfs` against `fixture`.
@@ -125,47 +154,42 @@ impl Diagnosis {
         };
         let observation = Observation::new(frfs, in_use)?;
         Hypothesis::nominal(fixture, options.exact).predict(&observation)?;
-        // What is to be judged on unseen lines must not have chosen the names either: the search that sees less goes first, and the whole
-        // recording only has to confirm or correct it.
-        let settings = &options.settings;
-        let fitter = Fitter { observation: &observation, settings };
-        let division = Division::of(&observation, options)?;
-        let blind = division
-            .as_ref()
-            .and_then(|division| Search::from_nothing(&fitter.on(&division.seen), fixture, options.exact));
-        let search = match &blind {
-            Some(blind) => Search::continued(&fitter, blind, fixture, options.exact),
-            None => Search::from_nothing(&fitter, fixture, options.exact),
-        };
-        let mut search = search.ok_or(DiagnosisError::Lines(SpectraError::NoLines))?;
-        let chi2_per_dof = search.refitted.chi2_per_dof(&observation);
-        let mut findings = match nothing_can_be_stated(&fitter, &search.repaired, search.candidates.len()) {
-            true => Vec::new(),
-            false => findings(&fitter, &mut search),
-        };
-        let stated = |f: &Finding| f.probability + f.alternatives.iter().map(|(_, p)| p).sum::<f64>();
-        if findings.is_empty() || findings.iter().any(|finding| stated(finding) < settings.evidence.stated) {
-            // What the best hypotheses leave says that none of them is right: they would only adapt the model to the recording.
-            findings.clear();
-            search.repaired = search.refitted.clone();
+        let fitter = Fitter { observation: &observation, settings: &options.settings };
+        if let Some(baseline) = &options.baseline {
+            let baseline = Observation::new(baseline, in_use)?;
+            return Ok(since(&fitter, &baseline, fixture, options.exact)?.with(observation));
         }
-        let held_out = division.zip(blind).and_then(|(d, blind)| d.judge(&blind, &search, &observation));
-        let chance = upper_tail(excess(chi2_per_dof, observation.degrees(), observation.noise_uncertainty()));
-        let locations = match chance < settings.evidence.located {
-            true => located(fitter, &search.nominal.hypothesis, &search.refitted),
-            false => Vec::new(),
+        let division = Division::of(&observation, options)?;
+        let within = Search::without_effects(&fitter, fixture, options.exact)
+            .ok_or(DiagnosisError::Lines(SpectraError::NoLines))?;
+        // Where the fixture as refitted leaves more than noise, the comparison by modes says whether the model itself is in error: if it is, the noise
+        // of the lines decides nothing.
+        let modal = match within.lacks_much(&fitter, &within.refitted) {
+            true => ModalJudgement::of(&fitter, &within.nominal.hypothesis, &within.candidates, None),
+            false => None,
         };
-        Ok(Diagnosis {
-            verdict: verdict(&fitter, &search, &findings),
-            refitted: (chi2_per_dof, chance),
-            mismatch: mismatch(&observation, &search.refitted.predicted, settings.evidence.bands),
-            residual_correlation: observation.residual_correlation(&search.repaired.predicted),
-            findings,
-            locations,
-            held_out,
-            search,
-            observation,
-        })
+        let Some(modal) = modal.filter(|modal| !modal.needs_nothing()) else {
+            return Ok(by_lines(&fitter, within, (fixture, options.exact), None, division)?.with(observation));
+        };
+        // What explains the lines down to their noise without any error of the model needs none: found among the modes, or, where these are
+        // dubious, by a search on lines.
+        let exact = modal.exact(&fitter).or_else(|| {
+            let search = modal.is_dubious(&fitter).then(|| Search::searched(&fitter, within.clone()));
+            search.map(|search| search.repaired).filter(|fit| explains(&fitter, fit, true))
+        });
+        let parts = match exact {
+            Some(exact) => {
+                let seed = Some((&modal, exact));
+                by_lines(&fitter, within, (fixture, options.exact), seed, division)?
+            }
+            // Modes that need no error of the model, or that do not tell all there is, beside lines that are not explained: it is not the modes of the model
+            // that are in error.
+            None if modal.search.best.exact || modal.tells_little(&fitter) => {
+                by_lines(&fitter, within, (fixture, options.exact), None, division)?
+            }
+            None => by_modes(&fitter, within, &modal, division.as_ref()),
+        };
+        Ok(parts.with(observation))
     }
 
     /// (nominal, refitted, repaired) errors over all FRFs and lines in use.
@@ -179,6 +203,179 @@ impl Diagnosis {
         [&self.search.nominal, &self.search.refitted, &self.search.repaired]
             .map(|fit| fit.chi2_per_dof(&self.observation))
     }
+}
+
+/// A diagnosis but for the observation that it rests on.
+struct Parts {
+    verdict: Verdict,
+    search: Search,
+    refitted: (f64, f64),
+    mismatch: Vec<FrfMismatch>,
+    findings: Vec<Finding>,
+    locations: Vec<Location>,
+    held_out: Option<HeldOut>,
+    residual_correlation: f64,
+    model_error: Option<[ModelError; 2]>,
+    baseline_error: Option<ModelError>,
+    tried: Vec<Tried>,
+}
+
+impl Parts {
+    fn with(self, observation: Observation) -> Diagnosis {
+        let Parts { verdict, search, refitted, mismatch, findings, locations, held_out, .. } = self;
+        let departures = departures(&search);
+        Diagnosis {
+            verdict,
+            observation,
+            search,
+            refitted,
+            mismatch,
+            findings,
+            locations,
+            held_out,
+            residual_correlation: self.residual_correlation,
+            model_error: self.model_error,
+            baseline_error: self.baseline_error,
+            departures,
+            tried: self.tried,
+        }
+    }
+}
+
+/// The diagnosis where the noise of the lines decides; what was found among the modes is where it sets out.
+fn by_lines(
+    fitter: &Fitter,
+    within: Search,
+    (fixture, exact): (&Fixture, bool),
+    seed: Option<(&ModalJudgement, Fit)>,
+    division: Option<Division>,
+) -> Result<Parts, DiagnosisError> {
+    let Fitter { observation, settings } = *fitter;
+    // What is to be judged on unseen lines must not have chosen the names either: the search that sees less goes first, and the whole
+    // recording only has to confirm or correct it.
+    let blind = division.as_ref().and_then(|division| {
+        let fitter = fitter.on(&division.seen);
+        let start = Search::without_effects(&fitter, fixture, exact)?;
+        let known = seed.as_ref().map(|(modal, _)| modal.known(settings.modal.blind));
+        let modal = known.and_then(|known| {
+            ModalJudgement::of(&fitter, &start.nominal.hypothesis, &start.candidates, Some(&known))
+        });
+        let exact = modal.as_ref().and_then(|modal| modal.exact(&fitter));
+        Some(match modal.zip(exact) {
+            Some((modal, exact)) => {
+                let part = Search { repaired: exact, ..modal.search_on(&division.seen, &start) };
+                Search::continued(&fitter, start, &part)
+            }
+            None => Search::searched(&fitter, start),
+        })
+    });
+    let seed = seed.map(|(modal, exact)| Search { repaired: exact, ..modal.search_on(observation, &within) });
+    let mut search = match seed.as_ref().or(blind.as_ref()) {
+        Some(part) => Search::continued(fitter, within, part),
+        None => Search::searched(fitter, within),
+    };
+    let chi2_per_dof = search.refitted.chi2_per_dof(observation);
+    let mut findings = match nothing_can_be_stated(fitter, &search.repaired, search.candidates.len()) {
+        true => Vec::new(),
+        false => findings(fitter, &mut search),
+    };
+    let stated = |f: &Finding| f.probability + f.alternatives.iter().map(|(_, p)| p).sum::<f64>();
+    if findings.is_empty() || findings.iter().any(|finding| stated(finding) < settings.evidence.stated) {
+        // What the best hypotheses leave says that none of them is right: they would only adapt the model to the recording.
+        findings.clear();
+        search.repaired = search.refitted.clone();
+    }
+    let held_out = division.zip(blind).and_then(|(d, blind)| d.judge(&blind, &search, observation));
+    let chance = upper_tail(excess(chi2_per_dof, observation.degrees(), observation.noise_uncertainty()));
+    let locations = match chance < settings.evidence.located {
+        true => located(*fitter, &search.nominal.hypothesis, &search.refitted),
+        false => Vec::new(),
+    };
+    Ok(Parts {
+        verdict: verdict(fitter, &search, &findings),
+        refitted: (chi2_per_dof, chance),
+        mismatch: mismatch(observation, &search.refitted.predicted, settings.evidence.bands),
+        residual_correlation: observation.residual_correlation(&search.repaired.predicted),
+        findings,
+        locations,
+        held_out,
+        search,
+        model_error: None,
+        baseline_error: None,
+        tried: Vec::new(),
+    })
+}
+
+/// The diagnosis where the model's own error decides.
+fn by_modes(fitter: &Fitter, within: Search, modal: &ModalJudgement, division: Option<&Division>) -> Parts {
+    let Fitter { observation, settings } = *fitter;
+    let search = modal.search_on(observation, &within);
+    let held_out = division.and_then(|division| {
+        let blind = fitter.on(&division.seen);
+        let known = modal.known(settings.modal.blind);
+        let judged =
+            ModalJudgement::of(&blind, &within.nominal.hypothesis, &within.candidates, Some(&known))?;
+        division.judge(&judged.search_on(&division.seen, &within), &search, observation)
+    });
+    let chi2_per_dof = search.refitted.chi2_per_dof(observation);
+    let chance = upper_tail(excess(chi2_per_dof, observation.degrees(), observation.noise_uncertainty()));
+    let locations = match modal.verdict {
+        Verdict::Unexplained => located(*fitter, &search.nominal.hypothesis, &search.refitted),
+        _ => Vec::new(),
+    };
+    Parts {
+        verdict: modal.verdict,
+        refitted: (chi2_per_dof, chance),
+        mismatch: mismatch(observation, &search.refitted.predicted, settings.evidence.bands),
+        residual_correlation: observation.residual_correlation(&search.repaired.predicted),
+        findings: modal.findings(&search.candidates),
+        locations,
+        held_out,
+        search,
+        model_error: Some(modal.errors),
+        baseline_error: None,
+        tried: modal.tried(settings.modal.tried),
+    }
+}
+
+/// The diagnosis of what has changed since a baseline.
+fn since(
+    fitter: &Fitter,
+    baseline: &Observation,
+    fixture: &Fixture,
+    exact: bool,
+) -> Result<Parts, DiagnosisError> {
+    let observation = fitter.observation;
+    let hypothesis = Hypothesis::nominal(fixture, exact);
+    let candidates = catalogue(fixture, observation);
+    let (modal, before) =
+        ModalJudgement::since(fitter, baseline, &hypothesis, &candidates).ok_or(DiagnosisError::Baseline)?;
+    let predicted = hypothesis.predict(observation)?;
+    let chi2 = observation.chi2(&predicted);
+    let nominal = Fit { hypothesis, predicted, chi2, objective: chi2 };
+    let within = Search { refitted: nominal.clone(), repaired: nominal.clone(), nominal, candidates };
+    let parts = by_modes(fitter, within, &modal, None);
+    Ok(Parts { baseline_error: Some(before), ..parts })
+}
+
+/// Quantities that the refitted or the repaired model took farther from what is stated than chance does, the farthest first.
+fn departures(search: &Search) -> Vec<Departure> {
+    let [refitted, repaired] = [&search.refitted, &search.repaired].map(|fit| &fit.hypothesis);
+    let of = |(index, tolerance): (usize, &Tolerance)| {
+        let largest = refitted.departure(index).abs().max(repaired.departure(index).abs());
+        let std = tolerance.quantity.std.filter(|_| largest > DEPARTED)?;
+        Some(Departure {
+            path: tolerance.quantity.path.clone(),
+            stated: tolerance.quantity.value,
+            std,
+            refitted: refitted.ended_at(index),
+            repaired: repaired.ended_at(index),
+            deviations: repaired.departure(index),
+        })
+    };
+    let mut all: Vec<Departure> = repaired.tolerances().iter().enumerate().filter_map(of).collect();
+    all.sort_by(|a, b| b.deviations.abs().total_cmp(&a.deviations.abs()));
+    all
 }
 
 fn verdict(fitter: &Fitter, search: &Search, findings: &[Finding]) -> Verdict {
@@ -228,6 +425,7 @@ fn findings(fitter: &Fitter, search: &mut Search) -> Vec<Finding> {
     let search = &*search;
     let repaired = &search.repaired;
     let covariance = fitter.information(&repaired.hypothesis).covariance();
+    let widening = repaired.inflation(fitter.observation).sqrt();
     let finding = |(index, effect): (usize, Effect)| {
         let own = |a: &Alternative| search.candidates[a.candidate].names(&effect);
         let without = repaired.hypothesis.without(index);
@@ -237,7 +435,7 @@ fn findings(fitter: &Fitter, search: &mut Search) -> Vec<Finding> {
         };
         let alternative = |a: &Alternative| Some((a.fit.hypothesis.effects().pop()?, a.probability));
         Finding {
-            estimates: estimates(repaired, index, &effect, covariance.as_ref(), fitter.observation),
+            estimates: estimates(&repaired.hypothesis, index, &effect, covariance.as_ref(), widening),
             probability: all_names[index].iter().find(|a| own(a)).map_or(0.0, |a| a.probability),
             alternatives: all_names[index].iter().filter(|a| !own(a)).filter_map(alternative).collect(),
             gain: without.map_or(0.0, |fit| fit.objective - repaired.objective),

@@ -1,21 +1,20 @@
 //! The parameters of a finding with their intervals.
 
-use crate::{Fit, Observation};
+use crate::Hypothesis;
 use jointscope_findings::Estimate;
 use jointscope_fixture::Effect;
 use jointscope_inference::{Covariance, Transform};
 
-/// The parameters of effect `index` of a fit, with deviations from its `covariance`.
+/// The parameters of effect `index` of a hypothesis, with deviations from the coordinates' `covariance`, times `widening`.
 pub(crate) fn estimates(
-    fit: &Fit,
+    hypothesis: &Hypothesis,
     index: usize,
     effect: &Effect,
     covariance: Option<&Covariance>,
-    observation: &Observation,
+    widening: f64,
 ) -> Vec<Estimate> {
-    let mut coordinate = fit.hypothesis.range_of(index).start;
-    let widening = fit.inflation(observation).sqrt();
-    let moves = fit.hypothesis.effect_parameters_of(index).iter();
+    let mut coordinate = hypothesis.range_of(index).start;
+    let moves = hypothesis.effect_parameters_of(index).iter();
     effect
         .kind
         .spec()

@@ -8,6 +8,10 @@
 //! probabilities. *Is it better?* The search goes first without two bands and one FRF, which are then predicted; the whole recording
 //! continues from what was found.
 //!
+//! No model of a real structure is right to the noise. Where the fixture as refitted leaves more, modes are compared before lines, the model's own error a
+//! part of the likelihood ([`ModelError`]): what explains the modes without any error is confirmed on lines, down to their noise; otherwise the name wins
+//! that makes the error smaller. With a [baseline](DiagnosisOptions::baseline) what is diagnosed is what has changed since.
+//!
 //! * [`Observation`]: the FRFs on the lines in use, each value with its weight;
 //! * [`Hypothesis`]: quantities of the fixture that may move, and effects with free parameters;
 //! * [`Fit`]: a hypothesis at its maximum of likelihood and prior;
@@ -38,6 +42,7 @@ mod held_out;
 mod hypothesis;
 mod linearisation;
 mod location;
+mod modal;
 mod observation;
 mod penalty;
 mod quantities;
@@ -49,16 +54,17 @@ mod settings;
 
 pub use alternatives::Alternative;
 pub use catalogue::{Candidate, catalogue};
-pub use diagnosis::{BandShare, Diagnosis, DiagnosisError, DiagnosisOptions, Finding, FrfMismatch};
+pub use diagnosis::{BandShare, Diagnosis, DiagnosisError, DiagnosisOptions, Finding, FrfMismatch, Tried};
 pub use facts::{EndErrors, FrfMisfit, Phase, Trend, Variation};
 pub use fit::Fit;
 pub use hypothesis::{Hypothesis, PredictionError, Tolerance};
 pub use jointscope_findings::{Estimate, HeldOut, Verdict};
 pub use linearisation::Linearisation;
 pub use location::{BandMisfit, LawFit, LawParameter, LineEstimate, Location, Site, locate, measure};
+pub use modal::{Departure, ModelError};
 pub use observation::Observation;
 pub use search::Search;
 pub use settings::{
-    EvidenceSettings, FitSettings, LawSettings, LocationSettings, RankingSettings, SelectionSettings,
-    Settings,
+    EvidenceSettings, FitSettings, LawSettings, LocationSettings, ModalSettings, RankingSettings,
+    SelectionSettings, Settings,
 };

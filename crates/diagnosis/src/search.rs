@@ -25,7 +25,7 @@ pub struct Search {
 
 impl Search {
     /// The fixture as it stands and refitted, and nothing searched for yet. `None` where it predicts no finite FRFs.
-    fn without_effects(fitter: &Fitter, fixture: &Fixture, exact: bool) -> Option<Self> {
+    pub(crate) fn without_effects(fitter: &Fitter, fixture: &Fixture, exact: bool) -> Option<Self> {
         let observation = fitter.observation;
         let start = Hypothesis::nominal(fixture, exact);
         let predicted = start.predict(observation).ok()?;
@@ -38,20 +38,21 @@ impl Search {
 
     /// Searches for effects with the default settings. `None` where the fixture predicts no finite FRFs.
     pub fn of(fixture: &Fixture, observation: &Observation, exact: bool) -> Option<Self> {
-        Search::from_nothing(&Fitter { observation, settings: &Settings::default() }, fixture, exact)
+        let fitter = Fitter { observation, settings: &Settings::default() };
+        Some(Search::searched(&fitter, Search::without_effects(&fitter, fixture, exact)?))
     }
 
-    /// Searches for effects. `None` where the fixture predicts no finite FRFs.
-    pub(crate) fn from_nothing(fitter: &Fitter, fixture: &Fixture, exact: bool) -> Option<Self> {
-        let mut search = Search::without_effects(fitter, fixture, exact)?;
+    /// Searches for effects from the fixture as it stands and refitted.
+    pub(crate) fn searched(fitter: &Fitter, start: Search) -> Self {
+        let mut search = start;
         search.extend(fitter);
-        Some(search)
+        search
     }
 
-    /// As [`Search::from_nothing`], from what was found in a part of the observation: its effects are fitted to the whole, exchanged, dropped
-    /// and added to as the whole demands.
-    pub(crate) fn continued(fitter: &Fitter, part: &Search, fixture: &Fixture, exact: bool) -> Option<Self> {
-        let mut search = Search::without_effects(fitter, fixture, exact)?;
+    /// As [`Search::searched`], from `start`, which is the fixture as it stands and refitted, and from what was found elsewhere: in a part of
+    /// the observation, or among its modes. The effects are fitted to the whole, exchanged, dropped and added to as the whole demands.
+    pub(crate) fn continued(fitter: &Fitter, start: Search, part: &Search) -> Self {
+        let mut search = start;
         let local = |fit: &Fit| fitter.local(&fit.hypothesis, None, f64::INFINITY);
         if let Some(refitted) = local(&part.refitted).filter(|fit| fit.objective < search.refitted.objective)
         {
@@ -70,7 +71,7 @@ impl Search {
             }
         }
         search.extend(fitter);
-        Some(search)
+        search
     }
 
     /// Adds effects one at a time as long as they are worth it.
@@ -117,7 +118,7 @@ impl Search {
     }
 
     /// Whether a fit may still lack something large; what fits already can only lack something small, which the local search finds.
-    fn lacks_much(&self, fitter: &Fitter, fit: &Fit) -> bool {
+    pub(crate) fn lacks_much(&self, fitter: &Fitter, fit: &Fit) -> bool {
         let (observation, settings) = (fitter.observation, &fitter.settings.selection);
         let degrees = observation.degrees() as f64;
         // With effects the noise's own uncertainty counts too: what they leave may be no more than that.

@@ -6,6 +6,7 @@
 mod location;
 
 use jointscope_inference::{Damping, Limit};
+use jointscope_model_error::ErrorSizes;
 pub use location::{LawSettings, LocationSettings};
 
 /// How a diagnosis searches.
@@ -20,6 +21,8 @@ pub struct Settings {
     pub selection: SelectionSettings,
     /// Probabilities and verdict.
     pub evidence: EvidenceSettings,
+    /// The comparison by modes.
+    pub modal: ModalSettings,
     /// The map of places with no law assumed.
     pub location: LocationSettings,
 }
@@ -114,6 +117,71 @@ pub struct SelectionSettings {
     pub exchanges: usize,
 }
 
+/// The comparison by modes, with the model's own error.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct ModalSettings {
+    /// Sizes of a model's error that are usual.
+    pub usual: ErrorSizes,
+    /// Sizes of what changes between two recordings of one structure, as multiples of those.
+    pub own: f64,
+    /// Candidates that are fitted alone, and beside others.
+    pub refined: (usize, usize),
+    /// Starts of each.
+    pub starts: usize,
+    /// Singles that are tried with a second effect, at the most, and ln p below the best from which they are not.
+    pub bases: (usize, f64),
+    /// Names that are tried on lines, to see whether one of them leaves no more than noise.
+    pub tried: usize,
+    /// Names that are tried where the recording without what is held out is searched, of the most probable of the whole.
+    pub blind: usize,
+    /// Effects at the most.
+    pub effects: usize,
+    /// Odds that an effect must gain beyond those of one among all candidates.
+    pub odds: f64,
+    /// ln p below the best at which a name is no longer listed: probability below 0.03 %.
+    pub listed: f64,
+    /// Sizes of errors as multiples of what is usual, and departures of quantities in standard deviations, up to which a fit is adequate.
+    pub adequate: (f64, f64),
+    /// Gain in ln p by errors of the model up to which a recording shows none. Measured: 0 to 1 for what is hidden in lumped structures, 10 and more in
+    /// solids.
+    pub exact: f64,
+    /// χ² per degree of freedom of a free fit of modes from which it does not reach the noise.
+    pub free_fit: f64,
+    /// χ² per degree of freedom of a free fit from which no poles explain the recording: names say nothing then.
+    pub hopeless: f64,
+    /// ln of the weight of physics that no candidate covers, against one for the best: usually, and at the most, however badly it fits.
+    pub unlisted: (f64, f64),
+    /// Multiple of the usual sizes by which starts are scored that compare other modes than their base.
+    pub wide: f64,
+    /// Standard deviation, in coordinates, within which a start's own parameters count as linear when it is scored.
+    pub near: f64,
+}
+
+impl Default for ModalSettings {
+    fn default() -> Self {
+        ModalSettings {
+            usual: ErrorSizes::default(),
+            own: 0.2,
+            refined: (20, 6),
+            starts: 2,
+            bases: (3, 20.0),
+            tried: 8,
+            blind: 8,
+            effects: 3,
+            odds: 100.0,
+            listed: 8.0,
+            adequate: (2.0, 4.0),
+            exact: 5.0,
+            free_fit: 1.3,
+            hopeless: 100.0,
+            unlisted: (-3.5, -0.7),
+            wide: 5.0,
+            near: 0.7,
+        }
+    }
+}
+
 /// Probabilities and verdict.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
@@ -202,6 +270,7 @@ impl Default for Settings {
                 bands: 12,
                 held_out: 0.06,
             },
+            modal: ModalSettings::default(),
             location: LocationSettings::default(),
         }
     }

@@ -165,7 +165,7 @@ impl Remarks {
         if !drifting.is_empty() {
             let names: Vec<String> = drifting.into_iter().collect();
             self.texts.push(format!(
-                "the baseline of {} drifts, which shows in the lowest lines: `--baseline drift` takes a straight line off",
+                "the baseline of {} drifts, which shows in the lowest lines: `--detrend drift` takes a straight line off",
                 names.join(", ")
             ));
         }

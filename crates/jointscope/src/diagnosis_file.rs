@@ -1,7 +1,7 @@
 use crate::file::{told, value};
 use jointscope_diagnosis::{
-    Diagnosis, EndErrors, Finding, FrfMismatch, HeldOut, Hypothesis, LawFit, LineEstimate, Location,
-    Variation, Verdict,
+    Departure, Diagnosis, EndErrors, Finding, FrfMismatch, HeldOut, Hypothesis, LawFit, LineEstimate,
+    Location, ModelError, Tried, Variation, Verdict,
 };
 use jointscope_findings::by_model;
 use jointscope_frf::noise::NoiseSource;
@@ -37,6 +37,9 @@ pub fn diagnosis_file(diagnosis: &Diagnosis) -> Value {
         bent: diagnosis.bent().map(|(path, deviations)| Bent { path, deviations }),
         swapped_points: diagnosis.swapped_points(),
         remarks: diagnosis.remarks(),
+        model_error: ModelErrors::of(diagnosis),
+        departures: &diagnosis.departures,
+        tried: &diagnosis.tried,
     })
 }
 
@@ -61,6 +64,26 @@ struct DiagnosisFile<'a> {
     bent: Option<Bent<'a>>,
     swapped_points: Vec<[&'a str; 2]>,
     remarks: Vec<String>,
+    model_error: ModelErrors,
+    departures: &'a [Departure],
+    tried: &'a [Tried],
+}
+
+/// Error of the repaired model, and of the refitted one; zero where the noise explains what is left.
+#[derive(Serialize)]
+struct ModelErrors {
+    #[serde(flatten)]
+    repaired: ModelError,
+    refitted: ModelError,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    baseline: Option<ModelError>,
+}
+
+impl ModelErrors {
+    fn of(diagnosis: &Diagnosis) -> Self {
+        let [refitted, repaired] = diagnosis.model_error.unwrap_or_default();
+        ModelErrors { repaired, refitted, baseline: diagnosis.baseline_error }
+    }
 }
 
 /// The quantity that the refit without effects took farthest from what is stated, beyond belief.

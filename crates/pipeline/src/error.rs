@@ -94,6 +94,9 @@ fn remedy_of_estimate(error: &EstimateError) -> &'static str {
 
 fn remedy_of_diagnosis(error: &DiagnosisError) -> &'static str {
     match error {
+        DiagnosisError::Baseline => {
+            "; give `--baseline` a recording of the same FRFs over the same band, as the structure was before"
+        }
         DiagnosisError::HoldOut(_) => {
             "; name FRFs of the recording with `--hold-out`, and leave one at the least"
         }

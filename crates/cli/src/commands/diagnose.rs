@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use jointscope::estimation::ResponseWindow;
-use jointscope::pipeline::{Options, Progress};
+use jointscope::pipeline::{MeasuredFrfs, Options, Progress};
 use jointscope::report::answer_page;
 use jointscope::spectra::FrfPair;
 use jointscope::{Answer, Band, DiagnosisOptions, answer_file, diagnose};
@@ -24,6 +24,9 @@ pub struct DiagnoseArguments {
     pub fixture: PathBuf,
     #[command(flatten)]
     pub recording: RecordingArguments,
+    /// A recording of the same structure when it was known to be right: what has changed since is diagnosed. May be given again.
+    #[arg(long, value_name = "B.uff")]
+    pub baseline: Vec<PathBuf>,
     /// The band to use, in Hz [default: all lines].
     #[arg(long, value_name = "F1:F2", value_parser = band)]
     pub band: Option<Band>,
@@ -51,15 +54,25 @@ pub struct DiagnoseArguments {
 pub fn run(arguments: &DiagnoseArguments) -> Result<String, Refusal> {
     let fixture = FixtureFile::read(&arguments.fixture)?;
     let measurement = arguments.recording.measurement(&fixture)?;
+    let estimate = arguments.estimation.options(ResponseWindow::Auto);
+    let baseline = match arguments.baseline.is_empty() {
+        true => None,
+        false => {
+            let recording = arguments.recording.of_files(&arguments.baseline);
+            let measured = MeasuredFrfs::of(&recording.measurement(&fixture)?, &estimate);
+            Some(measured.map_err(|error| recording.unanswered(&error, &fixture))?.frfs)
+        }
+    };
     let options = Options {
         diagnosis: DiagnosisOptions {
             band: arguments.band.map(|band| (band.from, band.to)),
             exclude: arguments.exclude.iter().map(|band| (band.from, band.to)).collect(),
             hold_out: arguments.hold_out.clone(),
             exact: arguments.exact,
+            baseline,
             ..DiagnosisOptions::default()
         },
-        estimate: arguments.estimation.options(ResponseWindow::Auto),
+        estimate,
     };
     let watched = spinner();
     let answer = diagnose(&fixture, &measurement, &options, |Progress::Searching { frfs, lines }| {
@@ -73,7 +86,8 @@ pub fn run(arguments: &DiagnoseArguments) -> Result<String, Refusal> {
 
 /// Writes the files of an answer.
 fn written(arguments: &DiagnoseArguments, answer: &Answer) -> Result<String, Refusal> {
-    let files = || std::iter::once(&arguments.fixture).chain(&arguments.recording.files);
+    let files =
+        || std::iter::once(&arguments.fixture).chain(&arguments.recording.files).chain(&arguments.baseline);
     let context = origin::context(files(), answer.notes.clone(), answer.hammer_test.clone())?;
     let mut file = answer_file(answer);
     origin::add(&mut file, &context);

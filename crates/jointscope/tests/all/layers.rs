@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::process::Command;
 
 /// Crates by floor, from the ground up: a crate stands only on crates of floors below its own.
-const FLOORS: [&[&str]; 11] = [
+const FLOORS: [&[&str]; 12] = [
     &["jointscope-linalg", "jointscope-spectra", "jointscope-uff"],
     &[
         "jointscope-beam",
@@ -16,8 +16,9 @@ const FLOORS: [&[&str]; 11] = [
     ],
     &["jointscope-damping", "jointscope-estimation", "jointscope-findings", "jointscope-recordings"],
     &["jointscope-fem", "jointscope-lumped", "jointscope-modes", "jointscope-rig"],
-    &["jointscope-comparison", "jointscope-decomposition", "jointscope-diagnosis", "jointscope-nonlinear"],
-    &["jointscope-wording", "jointscope-tables"],
+    &["jointscope-comparison", "jointscope-decomposition", "jointscope-model-error", "jointscope-nonlinear"],
+    &["jointscope-diagnosis", "jointscope-tables"],
+    &["jointscope-wording"],
     &["jointscope-pipeline"],
     &["jointscope-proof"],
     &["jointscope-report"],
@@ -110,6 +111,7 @@ fn the_simulated_laboratory_and_what_it_judges_share_no_model() {
         "jointscope-lumped",
         "jointscope-decomposition",
         "jointscope-diagnosis",
+        "jointscope-model-error",
         "jointscope-nonlinear",
     ];
     let laboratory = built_of("jointscope-rig", &packages);

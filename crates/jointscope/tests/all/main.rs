@@ -7,5 +7,6 @@ mod diagnosis;
 mod layers;
 mod links;
 mod location;
+mod model_error;
 mod modes;
 mod real_beam;

@@ -1,0 +1,19 @@
+//! Hypotheses compared by modes, the model's own error a part of the likelihood.
+//!
+//! No model of a real structure is exact: its natural frequencies are off by some tenths of a per cent, its shapes and damping by some per cent, and
+//! against the noise of the FRFs every name is refuted. What decides is which name leaves the smallest error of the model, and how much smaller
+//! than no name. So the error is a part of the likelihood, common to all hypotheses, its sizes estimated for each
+//! ([`jointscope_model_error`]): a name wins by making it smaller.
+//!
+//! * [`fit`]: one hypothesis at its most probable parameters and sizes of error;
+//! * [`prior`]: what is known of parameters beforehand;
+//! * [`search`]: every candidate, alone and beside others;
+//! * [`judgement`]: what it comes to: names with their probabilities and intervals, errors, departures.
+
+mod fit;
+mod judgement;
+mod prior;
+mod search;
+
+pub use judgement::{Departure, ModelError};
+pub(crate) use judgement::{ModalJudgement, explains};

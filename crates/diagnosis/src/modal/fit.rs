@@ -1,0 +1,293 @@
+//! One hypothesis at its most probable parameters and sizes of error.
+
+use crate::Hypothesis;
+use crate::modal::prior::Prior;
+use jointscope_inference::{
+    Convergence, Covariance, Damping, LeastSquares, NormalEquations, Precision, Settings, descend, dot,
+};
+use jointscope_linalg::Cholesky;
+use jointscope_model_error::{
+    Comparison, ErrorSizes, Evidence, Linear, ModelledModes, Pairing, RecordedModes, Shapes, poles,
+};
+use num_complex::Complex64;
+
+/// The recording's modes and what is known of the model's error.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Problem<'a> {
+    pub recorded: &'a RecordedModes,
+    pub features: &'a [f64],
+    pub sizes: &'a ErrorSizes,
+}
+
+/// A hypothesis where it stands: its modes, paired with the recording's.
+#[derive(Debug, Clone)]
+pub(crate) struct Standing {
+    pub modelled: ModelledModes,
+    pub pairing: Pairing,
+    pub comparison: Comparison,
+    pub poles: Vec<Complex64>,
+}
+
+/// A hypothesis at its most probable parameters.
+#[derive(Debug, Clone)]
+pub(crate) struct ModalFit {
+    pub hypothesis: Hypothesis,
+    pub priors: Vec<Prior>,
+    pub standing: Standing,
+    pub linear: Linear,
+    pub evidence: Evidence,
+    /// Derivatives of the model's features by each coordinate, for a step of one.
+    pub slopes: Vec<Vec<f64>>,
+    /// Recorded less modelled features.
+    pub residual: Vec<f64>,
+    /// ln of the evidence, modes without a partner included.
+    pub ln: f64,
+}
+
+/// Step of differences, in prior standard deviations and at most in coordinates.
+const DIFFERENCE: (f64, f64) = (1e-3, 2e-3);
+/// Fits at sizes of the error that are taken anew after each, at most, and the gain in ln p at which that ends.
+const ROUNDS: usize = 4;
+const CONVERGED: f64 = 0.02;
+/// Gauss–Newton steps, at most.
+const STEPS: usize = 40;
+/// A step that gains less than this share of what the first one with its derivatives gained asks for new ones.
+const REUSE: f64 = 0.2;
+
+impl ModalFit {
+    /// The largest departure of the fixture's quantities, in standard deviations.
+    pub fn largest_pull(&self) -> f64 {
+        let pulls = self.hypothesis.coordinates.iter().zip(&self.priors);
+        let pulls = pulls.take(self.hypothesis.tolerances().len());
+        pulls.map(|(at, prior)| ((at - prior.mean) / prior.std).abs()).fold(0.0, f64::max)
+    }
+}
+
+impl<'a> Problem<'a> {
+    /// Where a hypothesis stands, its poles found anew.
+    pub fn standing(&self, hypothesis: &Hypothesis) -> Option<Standing> {
+        let fixture = hypothesis.to_fixture().ok()?;
+        let found = poles(&fixture, self.recorded);
+        let modelled = ModelledModes::near(&fixture, self.recorded, &found)?;
+        let poles = modelled.poles();
+        let pairing = Pairing::of(self.recorded, &modelled);
+        let shapes = Shapes::of(&fixture, self.recorded, &poles)?;
+        let comparison = Comparison::new(self.recorded, &pairing, &modelled, &shapes);
+        Some(Standing { modelled, pairing, comparison, poles })
+    }
+
+    fn modelled(&self, hypothesis: &Hypothesis, poles: &[Complex64]) -> Option<ModelledModes> {
+        let fixture = hypothesis.to_fixture().ok()?;
+        ModelledModes::near(&fixture, self.recorded, poles)
+    }
+
+    /// Recorded less modelled features, of the modes that are paired.
+    pub fn residual(&self, standing: &Standing, modelled: &ModelledModes) -> Vec<f64> {
+        standing.comparison.residual(self.recorded, self.features, modelled, &standing.pairing)
+    }
+
+    /// Derivatives of the model's features by coordinates `of`, for a step of one.
+    pub fn slopes(
+        &self,
+        hypothesis: &Hypothesis,
+        standing: &Standing,
+        poles: &[Complex64],
+        residual: &[f64],
+        priors: &[Prior],
+        of: std::ops::Range<usize>,
+    ) -> Option<Vec<Vec<f64>>> {
+        of.map(|index| {
+            let size = (DIFFERENCE.0 * priors[index].std).min(DIFFERENCE.1);
+            let inward = hypothesis.inward(index, size);
+            // A beam that ends at a support cannot become shorter: then longer.
+            let moved = |step: f64| Some((step, self.modelled(&hypothesis.moved(index, step), poles)?));
+            let (step, moved) = moved(inward).or_else(|| moved(-inward))?;
+            let there = self.residual(standing, &moved);
+            Some(residual.iter().zip(&there).map(|(at, there)| (at - there) / step).collect())
+        })
+        .collect()
+    }
+
+    /// The most probable parameters from where `start` stands, and the sizes of the error there; with derivatives known from nearby where there
+    /// are any.
+    pub fn fitted(
+        &self,
+        start: &Hypothesis,
+        priors: Vec<Prior>,
+        nearby: Option<Vec<Vec<f64>>>,
+    ) -> Option<ModalFit> {
+        let mut standing = self.standing(start)?;
+        let residual = self.residual(&standing, &standing.modelled);
+        let nearby = nearby.filter(|slopes| slopes.iter().all(|slope| slope.len() == residual.len()));
+        let mut point = Iterate {
+            hypothesis: start.clone(),
+            modelled: standing.modelled.clone(),
+            poles: standing.poles.clone(),
+            residual,
+        };
+        let mut derivatives = nearby;
+        let mut sizes = *self.sizes;
+        let mut best: Option<ModalFit> = None;
+        for round in 0..ROUNDS {
+            let factor = Cholesky::of(standing.comparison.count(), &standing.comparison.covariance(&sizes))?;
+            let descent = Descent { problem: self, standing: &standing, factor, priors: &priors };
+            let end = descend(&descent, point, derivatives.take(), &settings())?;
+            point = end.point;
+            // The evidence of a linear model is by derivatives taken where the fit ended.
+            let fresh = descent.derivatives(&point, Precision::Rough)?;
+            let linear = linear(&point.hypothesis, &priors, &point.residual, &fresh);
+            derivatives = Some(fresh);
+            let known = best.as_ref().map(|fit| &fit.evidence.sizes);
+            let evidence = linear.evidence(&standing.comparison, self.sizes, known)?;
+            let ln = evidence.ln + standing.pairing.alone();
+            let before = best.as_ref().map_or(f64::NEG_INFINITY, |fit| fit.ln);
+            sizes = evidence.sizes;
+            if ln > before {
+                let mut standing = standing.clone();
+                standing.modelled = point.modelled.clone();
+                standing.poles = point.poles.clone();
+                best = Some(ModalFit {
+                    hypothesis: point.hypothesis.clone(),
+                    priors: priors.clone(),
+                    standing,
+                    linear,
+                    evidence,
+                    slopes: derivatives.clone().unwrap_or_default(),
+                    residual: point.residual.clone(),
+                    ln,
+                });
+            }
+            if round > 0 && ln - before < CONVERGED {
+                // Modes may have moved past others on the way, and shapes with them.
+                let anew = self.standing(&point.hypothesis)?;
+                if round + 1 == ROUNDS || anew.pairing.pairs == standing.pairing.pairs {
+                    break;
+                }
+                point.residual = self.residual(&anew, &anew.modelled);
+                (point.modelled, point.poles) = (anew.modelled.clone(), anew.poles.clone());
+                (standing, derivatives, best) = (anew, None, None);
+            }
+        }
+        best
+    }
+}
+
+impl Problem<'_> {
+    /// The most probable parameters at given sizes of the error, with the covariance of their coordinates.
+    pub fn at_sizes(&self, fit: &ModalFit, sizes: &ErrorSizes) -> Option<(Hypothesis, Option<Covariance>)> {
+        let standing = &fit.standing;
+        let factor = Cholesky::of(standing.comparison.count(), &standing.comparison.covariance(sizes))?;
+        let descent = Descent { problem: self, standing, factor, priors: &fit.priors };
+        let start = Iterate {
+            hypothesis: fit.hypothesis.clone(),
+            modelled: standing.modelled.clone(),
+            poles: standing.poles.clone(),
+            residual: fit.residual.clone(),
+        };
+        let point = descend(&descent, start, Some(fit.slopes.clone()), &settings())?.point;
+        let slopes = descent.derivatives(&point, Precision::Rough)?;
+        let equations = descent.equations(&point, &slopes, &());
+        let order = equations.order;
+        let inverse = Cholesky::of(order, &equations.information).map(|factor| factor.inverse());
+        Some((point.hypothesis, inverse.map(|entries| Covariance::new(order, entries))))
+    }
+}
+
+fn settings() -> Settings {
+    Settings {
+        steps: STEPS,
+        damping: Damping { initial: 1e-6, decrease: 0.1, least: 1e-9, raised: 1e-3, most: 1e5 },
+        convergence: Convergence { gain: CONVERGED, share: 1e-4, floor: 0.0 },
+        reuse: Some(REUSE),
+        trust_old: true,
+        ..Settings::default()
+    }
+}
+
+/// Where a fit stands on its way.
+struct Iterate {
+    hypothesis: Hypothesis,
+    modelled: ModelledModes,
+    poles: Vec<Complex64>,
+    residual: Vec<f64>,
+}
+
+/// Parameters to be fitted at given sizes of the error.
+struct Descent<'a> {
+    problem: &'a Problem<'a>,
+    standing: &'a Standing,
+    /// Of the covariance of noise and error.
+    factor: Cholesky,
+    priors: &'a [Prior],
+}
+
+impl Descent<'_> {
+    fn whitened(&self, values: &[f64]) -> Vec<f64> {
+        let mut white = values.to_vec();
+        self.factor.solve_lower_in_place(&mut white);
+        white
+    }
+}
+
+impl LeastSquares for Descent<'_> {
+    type Point = Iterate;
+    type Weights = ();
+    type Derivatives = Vec<Vec<f64>>;
+    type Equations = NormalEquations;
+    const FIXED_WEIGHTS: bool = true;
+
+    fn weights(&self, _: &Iterate) {}
+
+    fn objective(&self, point: &Iterate, _: &()) -> f64 {
+        let departures = point.hypothesis.coordinates.iter().zip(self.priors);
+        let departures = departures.map(|(at, prior)| ((at - prior.mean) / prior.std).powi(2));
+        self.whitened(&point.residual).iter().map(|v| v * v).sum::<f64>() + departures.sum::<f64>()
+    }
+
+    fn derivatives(&self, point: &Iterate, _: Precision) -> Option<Vec<Vec<f64>>> {
+        let all = 0..point.hypothesis.coordinates.len();
+        self.problem.slopes(&point.hypothesis, self.standing, &point.poles, &point.residual, self.priors, all)
+    }
+
+    fn equations(&self, point: &Iterate, slopes: &Vec<Vec<f64>>, _: &()) -> NormalEquations {
+        let white: Vec<Vec<f64>> = slopes.iter().map(|slope| self.whitened(slope)).collect();
+        let residual = self.whitened(&point.residual);
+        let mut equations = NormalEquations::zero(white.len());
+        for (i, a) in white.iter().enumerate() {
+            equations.right[i] = dot(a, &residual);
+            for (j, b) in white.iter().enumerate() {
+                equations.information[i * white.len() + j] = dot(a, b);
+            }
+            let prior = self.priors[i];
+            equations.add_prior(i, prior.std.powi(-2), point.hypothesis.coordinates[i] - prior.mean);
+        }
+        equations
+    }
+
+    fn stepped(&self, point: &Iterate, equations: &NormalEquations, damping: f64) -> Option<Iterate> {
+        let hypothesis = &point.hypothesis;
+        let step = equations.bounded_step(damping, &hypothesis.coordinates, hypothesis.parameters())?;
+        let hypothesis = hypothesis.stepped(&step);
+        let modelled = self.problem.modelled(&hypothesis, &point.poles)?;
+        let residual = self.problem.residual(self.standing, &modelled);
+        Some(Iterate { hypothesis, poles: modelled.poles(), residual, modelled })
+    }
+}
+
+/// The linearised model, in prior standard deviations.
+pub(crate) fn linear(
+    hypothesis: &Hypothesis,
+    priors: &[Prior],
+    residual: &[f64],
+    slopes: &[Vec<f64>],
+) -> Linear {
+    let mut difference = residual.to_vec();
+    let mut scaled = Vec::with_capacity(slopes.len());
+    for ((slope, prior), at) in slopes.iter().zip(priors).zip(&hypothesis.coordinates) {
+        for (value, slope) in difference.iter_mut().zip(slope) {
+            *value += slope * (at - prior.mean);
+        }
+        scaled.push(slope.iter().map(|s| s * prior.std).collect());
+    }
+    Linear { difference, slopes: scaled }
+}

@@ -1,0 +1,351 @@
+//! What a comparison by modes comes to.
+
+use crate::catalogue::Candidate;
+use crate::diagnosis::{Finding, Tried};
+use crate::estimates::estimates;
+use crate::evidence::excess;
+use crate::fit::Fit;
+use crate::fitter::Fitter;
+use crate::modal::fit::{ModalFit, Problem};
+use crate::modal::prior::priors;
+use crate::modal::search::{ModalSearch, Named, Searcher};
+use crate::penalty::parameter_penalty;
+use crate::search::Search;
+use crate::settings::ModalSettings;
+use crate::{Hypothesis, Observation};
+use jointscope_findings::Verdict;
+use jointscope_fixture::Effect;
+use jointscope_frf::noise::NoiseSource;
+use jointscope_inference::Covariance;
+use jointscope_model_error::{ErrorSizes, Pairing, RecordedModes, Recording};
+use jointscope_modes::ModesOptions;
+use serde::Serialize;
+
+/// How wrong a model is, as relative standard deviations over its modes; zero where the noise explains what is left.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
+pub struct ModelError {
+    /// Of natural frequencies.
+    pub frequency: f64,
+    /// Of damping ratios.
+    pub damping: f64,
+    /// Of residues, that is of shapes.
+    pub residue: f64,
+}
+
+/// A quantity that had to leave its stated value by more than chance makes.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Departure {
+    /// Its path in the fixture file.
+    pub path: String,
+    /// Stated value.
+    pub stated: f64,
+    /// Stated standard deviation.
+    pub std: f64,
+    /// Value of the refitted fixture.
+    pub refitted: f64,
+    /// Value of the repaired one.
+    pub repaired: f64,
+    /// Departure of the repaired value, in standard deviations.
+    pub deviations: f64,
+}
+
+/// The outcome of a comparison by modes.
+#[derive(Debug, Clone)]
+pub(crate) struct ModalJudgement {
+    pub search: ModalSearch,
+    pub verdict: Verdict,
+    /// By effect of the best hypothesis: probability of its name, and other names with theirs.
+    pub names: Vec<Vec<(usize, f64, Hypothesis)>>,
+    /// χ² per degree of freedom of the free fit that the recorded modes are from.
+    pub free_fit: f64,
+    /// Whether that fit took all the residual terms it may.
+    pub strained: bool,
+    /// Error of the refitted and of the repaired model.
+    pub errors: [ModelError; 2],
+    /// The fixture by itself at the most probable sizes of error.
+    pub refitted: Hypothesis,
+    /// The best hypothesis at the most probable sizes of error, and the covariance of its coordinates with sizes that may be larger.
+    pub last: (Hypothesis, Option<Covariance>),
+}
+
+impl ModalJudgement {
+    /// Compares a fixture with a recording by modes; `None` where there are no modes to compare. Of a recording that lacks what is held out of
+    /// another, those effects are tried that were `known` there.
+    pub fn of(
+        fitter: &Fitter,
+        nominal: &Hypothesis,
+        candidates: &[Candidate],
+        known: Option<&[Effect]>,
+    ) -> Option<Self> {
+        let Fitter { observation, settings } = fitter;
+        let recorded = recorded(observation, nominal, &settings.modal)?;
+        let features = recorded.features();
+        let problem = Problem { recorded: &recorded, features: &features, sizes: &settings.modal.usual };
+        let searcher =
+            Searcher { problem, candidates, nominal, settings: &settings.modal, known, calibrated: false };
+        let search = searcher.search()?;
+        Some(Judge { searcher, search }.judged())
+    }
+
+    /// What has changed since a `baseline` of the same structure: the fixture is calibrated on it, its error there is taken off, and what differs beyond
+    /// repetition is searched for. `None` where the two have no modes in common.
+    pub fn since(
+        fitter: &Fitter,
+        baseline: &Observation,
+        nominal: &Hypothesis,
+        candidates: &[Candidate],
+    ) -> Option<(Self, ModelError)> {
+        let Fitter { observation, settings } = fitter;
+        let before = recorded(baseline, nominal, &settings.modal)?;
+        let features = before.features();
+        let problem = Problem { recorded: &before, features: &features, sizes: &settings.modal.usual };
+        let calibrated = problem.fitted(nominal, priors(nominal, &[]), None)?;
+        let now = recorded(observation, &calibrated.hypothesis, &settings.modal)?;
+        let model = &calibrated.standing.modelled;
+        let own = Pairing::of(&now, model);
+        let change = now.relative_to(&before, model, [&own, &calibrated.standing.pairing])?;
+        let features = change.features();
+        let sizes =
+            ErrorSizes { gain: settings.modal.usual.gain, ..settings.modal.usual.times(settings.modal.own) };
+        let problem = Problem { recorded: &change, features: &features, sizes: &sizes };
+        let nominal = &calibrated.hypothesis;
+        let searcher = Searcher {
+            problem,
+            candidates,
+            nominal,
+            settings: &settings.modal,
+            known: None,
+            calibrated: true,
+        };
+        let search = searcher.search()?;
+        Some((Judge { searcher, search }.judged(), error(&calibrated)))
+    }
+}
+
+/// The recording's modes, with the help of the model's where they are not resolved.
+pub(super) fn recorded(
+    observation: &Observation,
+    nominal: &Hypothesis,
+    settings: &ModalSettings,
+) -> Option<RecordedModes> {
+    let recording = Recording { frfs: observation.frfs(), weights: observation.weights() };
+    // Where nothing but the FRFs tells their noise, every ripple looks like a mode: no more are asked for than a model may have.
+    let from_scatter = observation.noise().contains(&NoiseSource::Scatter);
+    let expected = || jointscope_model_error::modes_within(&nominal.to_fixture().ok()?, observation.frfs());
+    let orders = from_scatter.then(expected).flatten().map(|modes| (2, 2 * modes + 8));
+    let options = ModesOptions { orders, ..ModesOptions::default() };
+    let alone = RecordedModes::of(recording, &options, &[])?;
+    if alone.chi2_per_dof < settings.free_fit {
+        return Some(alone);
+    }
+    let expected = alone.unpaired(&nominal.to_fixture().ok()?);
+    match expected.is_empty() {
+        true => Some(alone),
+        false => RecordedModes::of(recording, &options, &expected),
+    }
+}
+
+/// Whether a fit leaves no more than noise, its quantities no farther than chance; `strictly` not a tenth of the noise more.
+pub(crate) fn explains(fitter: &Fitter, fit: &Fit, strictly: bool) -> bool {
+    let Fitter { observation, settings } = fitter;
+    let (coherence, scatter) = settings.evidence.explained;
+    let from_scatter = observation.noise().contains(&NoiseSource::Scatter);
+    let chi2_per_dof = fit.chi2_per_dof(observation);
+    let fits = match (strictly, from_scatter) {
+        (_, true) => chi2_per_dof < scatter,
+        (true, false) => {
+            excess(chi2_per_dof, observation.degrees(), 0.5 * observation.noise_uncertainty()) < 2.0
+        }
+        (false, false) => chi2_per_dof < coherence,
+    };
+    let quantities = fit.hypothesis.tolerances().len() as f64;
+    let departures = quantities + settings.selection.deviated * (2.0 * quantities).sqrt();
+    fits && fit.hypothesis.penalty() < departures
+}
+
+struct Judge<'a> {
+    searcher: Searcher<'a>,
+    search: ModalSearch,
+}
+
+impl Judge<'_> {
+    fn judged(mut self) -> ModalJudgement {
+        let verdict = self.verdict();
+        if matches!(verdict, Verdict::Consistent | Verdict::Unexplained) {
+            let exact = self.searcher.is_exact(&self.search.none);
+            self.search.best = Named { names: Vec::new(), fit: self.search.none.clone(), exact };
+            self.search.alternatives.clear();
+            self.search.without.clear();
+        }
+        let best = &self.search.best.fit;
+        let widened =
+            best.linear.mean_sizes(&best.standing.comparison, self.searcher.problem.sizes, &best.evidence);
+        let problem = &self.searcher.problem;
+        let nearest = |fit: &ModalFit| {
+            let fitted = problem.at_sizes(fit, &fit.evidence.sizes);
+            fitted.map_or_else(|| fit.hypothesis.clone(), |(hypothesis, _)| hypothesis)
+        };
+        let covariance = problem.at_sizes(best, &widened).and_then(|(_, covariance)| covariance);
+        let last = (nearest(best), covariance);
+        let refitted = nearest(&self.search.none);
+        let names = self.search.alternatives.iter().map(|all| self.probabilities(all)).collect();
+        ModalJudgement {
+            verdict,
+            names,
+            free_fit: self.searcher.problem.recorded.chi2_per_dof,
+            strained: self.searcher.problem.recorded.is_strained(),
+            errors: [error(&self.search.none), error(&self.search.best.fit)],
+            last,
+            refitted,
+            search: self.search,
+        }
+    }
+
+    fn verdict(&self) -> Verdict {
+        let (none, best) = (&self.search.none, &self.search.best);
+        let adequate = self.searcher.is_adequate(&best.fit);
+        // Of a recording that no poles explain, names say nothing, but for what has changed since another one like it.
+        let hopeless = self.searcher.problem.recorded.chi2_per_dof > self.searcher.settings.hopeless;
+        if hopeless && !self.searcher.calibrated && !(best.names.is_empty() && adequate) {
+            return Verdict::Unexplained;
+        }
+        let squares = |fit: &ModalFit| self.searcher.relative_sizes(fit).iter().map(|s| s * s).sum::<f64>();
+        match (best.names.is_empty(), adequate) {
+            (true, true) => Verdict::Consistent,
+            (true, false) => Verdict::Unexplained,
+            (false, true) => Verdict::Explained,
+            (false, false) if squares(&best.fit) < 0.5 * squares(none) => Verdict::PartlyExplained,
+            (false, false) => Verdict::Unexplained,
+        }
+    }
+
+    /// Probabilities of the names that may stand in one effect's stead; the rest to one is something not listed.
+    fn probabilities(&self, all: &[Named]) -> Vec<(usize, f64, Hypothesis)> {
+        let highest = all.iter().map(|n| n.fit.ln).fold(f64::NEG_INFINITY, f64::max);
+        let weight = |named: &Named| (named.fit.ln - highest).exp();
+        let total = all.iter().map(weight).sum::<f64>() + self.unlisted(&self.search.best.fit);
+        let of =
+            |named: &Named| Some((*named.names.last()?, weight(named) / total, named.fit.hypothesis.clone()));
+        all.iter().filter_map(of).collect()
+    }
+
+    /// The weight, against one for the best hypothesis, of physics that none covers: the larger the errors and departures that even the best
+    /// needs, the more.
+    fn unlisted(&self, best: &ModalFit) -> f64 {
+        let (usual, most) = self.searcher.settings.unlisted;
+        let sizes = self.searcher.relative_sizes(best);
+        let strain: f64 = sizes.iter().map(|s| 0.5 * (s * s - 1.0).max(0.0)).sum();
+        let pull = 0.5 * (best.largest_pull().powi(2) - self.searcher.settings.adequate.1.powi(2)).max(0.0);
+        // What no poles explain in the recording itself is nothing that a name could be held against.
+        let untold = 0.5 * self.searcher.problem.recorded.chi2_per_dof.max(1.0).ln();
+        (usual + strain + pull + untold).min(most).exp()
+    }
+}
+
+fn error(fit: &ModalFit) -> ModelError {
+    let ErrorSizes { frequency, damping, shape, .. } = fit.evidence.sizes;
+    let usual = ErrorSizes::default();
+    // What is at its least is not there.
+    let told = |size: f64, usual: f64| if size > 0.01 * usual { size } else { 0.0 };
+    ModelError {
+        frequency: told(frequency, usual.frequency),
+        damping: told(damping, usual.damping),
+        residue: told(shape, usual.shape),
+    }
+}
+
+impl ModalJudgement {
+    /// Whether the modes need nothing, neither an effect nor an error of the model: what is left, if anything, only lines can show.
+    pub fn needs_nothing(&self) -> bool {
+        self.verdict == Verdict::Consistent && self.search.best.exact
+    }
+
+    /// Whether the comparison rests on modes that may not be all there are, a free fit short of the noise or modes without a partner, or on records that
+    /// are not alike, and a search by lines may do better.
+    pub fn is_dubious(&self, fitter: &Fitter) -> bool {
+        let alone = self.search.best.fit.standing.pairing.alone();
+        // Records taken one after another, their noise told by scatter alone: an outlier among their gains passes for an error of all gains.
+        let unsure = self.is_unexplained() && fitter.observation.noise().contains(&NoiseSource::Scatter);
+        let told = self.free_fit <= fitter.settings.modal.hopeless;
+        self.tells_little(fitter) || (told && (alone != 0.0 || unsure))
+    }
+
+    /// Whether modes tell a part of the recording only.
+    pub fn tells_little(&self, fitter: &Fitter) -> bool {
+        let ModalSettings { free_fit, hopeless, .. } = fitter.settings.modal;
+        (self.free_fit > free_fit || self.strained) && self.free_fit <= hopeless
+    }
+
+    /// Whether errors of the usual size explain the modes of no hypothesis.
+    fn is_unexplained(&self) -> bool {
+        !matches!(self.verdict, Verdict::Consistent | Verdict::Explained)
+    }
+
+    /// What explains the recording without any error of the model, by its modes and down to the noise of its lines: the best of those that do. Where
+    /// errors of the usual size do not explain the modes either, or these are dubious, lines decide alone, but more strictly.
+    pub fn exact(&self, fitter: &Fitter) -> Option<Fit> {
+        let by_lines = self.is_unexplained() || self.is_dubious(fitter);
+        let singles = self.search.singles.iter().take(fitter.settings.modal.tried);
+        let all = singles.chain(&self.search.more).chain([&self.search.best]);
+        let explaining = |named: &Named| {
+            let fit = fitter.local(&named.fit.hypothesis, None, f64::INFINITY)?;
+            explains(fitter, &fit, !named.exact).then_some(fit)
+        };
+        let cost = |fit: &Fit| fit.objective + parameter_penalty(&fitter.settings.selection, &fit.hypothesis);
+        let tried = all.filter(|named| named.exact || by_lines).filter_map(explaining);
+        tried.min_by(|a, b| cost(a).total_cmp(&cost(b)))
+    }
+
+    /// What was found, and the most probable effects by themselves.
+    pub fn known(&self, count: usize) -> Vec<Effect> {
+        let singles = self.search.singles.iter().take(count).flat_map(|s| s.fit.hypothesis.effects());
+        self.search.best.fit.hypothesis.effects().into_iter().chain(singles).collect()
+    }
+
+    /// The most probable effects by themselves.
+    pub fn tried(&self, count: usize) -> Vec<Tried> {
+        let of = |single: &Named| {
+            let ln_gain = single.fit.ln - self.search.none.ln;
+            Some(Tried { effect: single.fit.hypothesis.effects().pop()?, ln_gain })
+        };
+        self.search.singles.iter().take(count).filter_map(of).collect()
+    }
+
+    /// The models that the comparison ended with, on lines; `within` is the fixture refitted on lines.
+    pub fn search_on(&self, observation: &Observation, within: &Search) -> Search {
+        let on_lines = |hypothesis: &Hypothesis| {
+            let predicted = hypothesis.predict(observation).ok()?;
+            let chi2 = observation.chi2(&predicted);
+            let objective = chi2 + hypothesis.penalty();
+            Some(Fit { hypothesis: hypothesis.clone(), predicted, chi2, objective })
+        };
+        let nominal = on_lines(&within.nominal.hypothesis).unwrap_or_else(|| within.nominal.clone());
+        let refitted = on_lines(&self.refitted).unwrap_or_else(|| nominal.clone());
+        let repaired = on_lines(&self.last.0).unwrap_or_else(|| refitted.clone());
+        Search { nominal, refitted, repaired, candidates: within.candidates.clone() }
+    }
+
+    /// The findings, the strongest first.
+    pub fn findings(&self, candidates: &[Candidate]) -> Vec<Finding> {
+        let (hypothesis, covariance) = &self.last;
+        let finding = |(index, effect): (usize, Effect)| {
+            let names = self.names.get(index)?;
+            let own = |candidate: usize| candidates[candidate].names(&effect);
+            let other = |(c, probability, hypothesis): &(usize, f64, Hypothesis)| {
+                (!own(*c)).then(|| Some((hypothesis.effects().pop()?, *probability)))?
+            };
+            Some(Finding {
+                estimates: estimates(hypothesis, index, &effect, covariance.as_ref(), 1.0),
+                probability: names.iter().find(|(c, _, _)| own(*c)).map_or(0.0, |(_, p, _)| *p),
+                alternatives: names.iter().filter_map(other).collect(),
+                gain: 2.0 * (self.search.best.fit.ln - self.search.without[index]),
+                measured: None,
+                effect,
+            })
+        };
+        let mut all: Vec<Finding> =
+            hypothesis.effects().into_iter().enumerate().filter_map(finding).collect();
+        all.sort_by(|a, b| b.gain.total_cmp(&a.gain));
+        all
+    }
+}

@@ -1,0 +1,65 @@
+//! What is known of a hypothesis' coordinates before the recording: normal distributions.
+
+use crate::Hypothesis;
+use crate::catalogue::Candidate;
+use jointscope_fixture::{Motion, ParameterSpec};
+use jointscope_inference::{Parameter, Transform};
+
+/// Mean and standard deviation of a coordinate.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Prior {
+    pub mean: f64,
+    pub std: f64,
+}
+
+/// Standard deviation, in units of the coordinate, of a quantity of which nothing is known: its own size.
+const FREE: f64 = 10.0;
+/// Least standard deviation of a logarithm: a factor of four either way.
+const LOGARITHM: f64 = 1.4;
+
+/// Standard deviation of a size of either sign, as a share of the largest that a search starts from.
+const SIZE: f64 = 0.6;
+/// The same of a dashpot beside a spring, whose starts are next to nothing.
+const DASHPOT: f64 = 30.0;
+
+/// The priors of a hypothesis whose effects go by the names `candidates`, in their order.
+pub(crate) fn priors(hypothesis: &Hypothesis, candidates: &[&Candidate]) -> Vec<Prior> {
+    let tolerance = |index: usize| {
+        let precision = hypothesis.prior(index);
+        Prior { mean: 0.0, std: if precision > 0.0 { precision.sqrt().recip() } else { FREE } }
+    };
+    let mut all: Vec<Prior> = (0..hypothesis.tolerances().len()).map(tolerance).collect();
+    for (index, candidate) in candidates.iter().enumerate() {
+        all.extend(of_effect(hypothesis, index, candidate));
+    }
+    all
+}
+
+/// Priors of the free parameters of effect `index`: logarithms over the range of a search's starts, abscissae over the body, sizes of either sign about
+/// nothing.
+fn of_effect(hypothesis: &Hypothesis, index: usize, candidate: &Candidate) -> Vec<Prior> {
+    let spec = candidate.kind.spec();
+    let parameters = spec.parameters.iter().zip(hypothesis.effect_parameters_of(index));
+    let prior = |(place, (parameter, moves)): (usize, (&ParameterSpec, &Parameter))| {
+        let coordinate = |start: &Vec<f64>| moves.transform.coordinate(start[place]);
+        let coordinates: Vec<f64> = candidate.starts.iter().filter_map(coordinate).collect();
+        let low = coordinates.iter().copied().reduce(f64::min)?;
+        let high = coordinates.iter().copied().reduce(f64::max)?;
+        let largest = low.abs().max(high.abs());
+        Some(match (moves.transform, parameter.motion) {
+            (Transform::Logarithmic { .. }, _) => {
+                Prior { mean: 0.5 * (low + high), std: (0.5 * (high - low)).max(LOGARITHM) }
+            }
+            (_, Motion::AlongBody) => {
+                let (from, to) = (moves.low, moves.high);
+                Prior { mean: 0.5 * (from + to), std: (to - from) / 12f64.sqrt() }
+            }
+            // A dashpot beside a spring starts at next to nothing.
+            (_, Motion::NonNegative(_)) if place != spec.size.parameter => {
+                Prior { mean: 0.0, std: (DASHPOT * largest).max(f64::MIN_POSITIVE.sqrt()) }
+            }
+            _ => Prior { mean: 0.0, std: (SIZE * largest).max(f64::MIN_POSITIVE.sqrt()) },
+        })
+    };
+    parameters.enumerate().filter_map(prior).collect()
+}

@@ -1,0 +1,292 @@
+//! Which effects the recorded modes need: every candidate fitted to them, alone and beside others.
+
+use crate::Hypothesis;
+use crate::catalogue::Candidate;
+use crate::modal::fit::{ModalFit, Problem, Standing, linear};
+use crate::modal::prior::{Prior, priors};
+use crate::settings::ModalSettings;
+use jointscope_fixture::{Effect, EffectKind};
+use jointscope_model_error::{ErrorSizes, Linear};
+use rayon::prelude::*;
+
+/// Multiple of the usual size of an error that is none.
+const NOTHING: f64 = 1e-3;
+
+/// Standard deviation, in stated ones, that a calibrated quantity keeps.
+const CALIBRATED: f64 = 1e-4;
+
+/// Effects by their candidates' indices, and their fit.
+#[derive(Debug, Clone)]
+pub(crate) struct Named {
+    pub names: Vec<usize>,
+    pub fit: ModalFit,
+    /// Whether the evidence is hardly less without any error of the model.
+    pub exact: bool,
+}
+
+/// The outcome of a search among modes.
+#[derive(Debug, Clone)]
+pub(crate) struct ModalSearch {
+    /// The fixture by itself.
+    pub none: ModalFit,
+    /// What the recording needs beyond it, nothing included.
+    pub best: Named,
+    /// Every candidate by itself, the most probable first.
+    pub singles: Vec<Named>,
+    /// The best with one effect more, whether or not that is needed.
+    pub more: Vec<Named>,
+    /// What else may stand in the stead of each effect of the best, itself included, the most probable first.
+    pub alternatives: Vec<Vec<Named>>,
+    /// ln p of the best without each of its effects.
+    pub without: Vec<f64>,
+}
+
+/// A search under way.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Searcher<'a> {
+    pub problem: Problem<'a>,
+    pub candidates: &'a [Candidate],
+    pub nominal: &'a Hypothesis,
+    pub settings: &'a ModalSettings,
+    /// Where to set out from in place of all candidates' starts: the effects found in more than what is searched here.
+    pub known: Option<&'a [Effect]>,
+    /// Whether the fixture's quantities are where another recording of the structure put them, and stay there.
+    pub calibrated: bool,
+}
+
+impl Searcher<'_> {
+    /// Searches for effects; `None` where the fixture has no modes that could be compared.
+    pub fn search(&self) -> Option<ModalSearch> {
+        let none = self.problem.fitted(self.nominal, self.priors(self.nominal, &[]), None)?;
+        let start = Named { names: Vec::new(), exact: self.is_exact(&none), fit: none.clone() };
+        let singles = self.extended(&start, self.settings.refined.0);
+        let mut best = start.clone();
+        let mut more = Vec::new();
+        for count in 1..=self.settings.effects {
+            // What the fixture itself explains, and no effect alone improves, needs no pair.
+            if count > 1 && best.names.is_empty() && self.is_adequate(&none) {
+                break;
+            }
+            let ranked = match count {
+                1 => singles.clone(),
+                2 => self.pairs(&singles),
+                _ => self.extended(&best, self.settings.refined.1),
+            };
+            let Some(first) = ranked.first() else { break };
+            if count > 1 {
+                more.extend(ranked.iter().take(self.settings.bases.0).cloned());
+            }
+            // A pair may be needed where neither effect alone is.
+            let added = (count - best.names.len()) as f64;
+            if first.fit.ln - best.fit.ln > added * self.needed() {
+                best = first.clone();
+            } else if count > 1 {
+                break;
+            }
+        }
+        let (alternatives, without) = self.alternatives(&best, &singles, &none);
+        Some(ModalSearch { none, best, singles, more, alternatives, without })
+    }
+
+    /// Priors of a hypothesis whose effects go by the names of `company`.
+    fn priors(&self, hypothesis: &Hypothesis, company: &[&Candidate]) -> Vec<Prior> {
+        let mut all = priors(hypothesis, company);
+        if self.calibrated {
+            let stay = all.iter_mut().zip(&self.nominal.coordinates);
+            stay.for_each(|(prior, at)| *prior = Prior { mean: *at, std: CALIBRATED });
+        }
+        all
+    }
+
+    /// What an effect must gain in ln p: the odds of one among so many, and ten to one.
+    pub fn needed(&self) -> f64 {
+        (self.candidates.len() as f64).ln() + self.settings.odds.ln()
+    }
+
+    /// The best singles each with one effect more; all but the best only where that leaves an error of the model.
+    fn pairs(&self, singles: &[Named]) -> Vec<Named> {
+        let Some(first) = singles.first() else { return Vec::new() };
+        let close = |s: &&Named| first.fit.ln - s.fit.ln < self.settings.bases.1;
+        let count = if first.exact { 1 } else { self.settings.bases.0 };
+        let mut all: Vec<Named> = singles
+            .iter()
+            .take(count)
+            .filter(close)
+            .flat_map(|s| self.extended(s, self.settings.refined.1))
+            .collect();
+        all.sort_by(|a, b| b.fit.ln.total_cmp(&a.fit.ln));
+        all
+    }
+
+    /// For each effect what may stand in its stead in the company of the others, and ln p without it.
+    fn alternatives(&self, best: &Named, singles: &[Named], none: &ModalFit) -> (Vec<Vec<Named>>, Vec<f64>) {
+        let count = best.names.len();
+        let of = |index: usize| {
+            let own = best.names[index];
+            let (mut all, without) = if count == 1 {
+                (singles.to_vec(), none.ln)
+            } else {
+                let mut names = best.names.clone();
+                names.remove(index);
+                let hypothesis = best.fit.hypothesis.without(index);
+                let company: Vec<&Candidate> = names.iter().map(|&c| &self.candidates[c]).collect();
+                let fit = self.problem.fitted(&hypothesis, self.priors(&hypothesis, &company), None);
+                match fit.map(|fit| Named { names, exact: self.is_exact(&fit), fit }) {
+                    Some(base) => (self.extended(&base, self.settings.refined.1), base.fit.ln),
+                    None => (Vec::new(), f64::NEG_INFINITY),
+                }
+            };
+            all.retain(|other| other.names.last() != Some(&own));
+            all.push(Named { names: vec![own], fit: best.fit.clone(), exact: best.exact });
+            all.sort_by(|a, b| b.fit.ln.total_cmp(&a.fit.ln));
+            all.retain(|other| best.fit.ln - other.fit.ln < self.settings.listed);
+            (all, without)
+        };
+        (0..count).map(of).unzip()
+    }
+
+    /// Whether what a fit needs of errors and departures is no more than chance makes.
+    pub fn is_adequate(&self, fit: &ModalFit) -> bool {
+        self.largest_size(fit) <= self.settings.adequate.0 && fit.largest_pull() <= self.settings.adequate.1
+    }
+
+    /// Whether the evidence is hardly less without any error of the model.
+    pub fn is_exact(&self, fit: &ModalFit) -> bool {
+        fit.standing.pairing.alone() == 0.0 && self.gained_by_errors(fit) < self.settings.exact
+    }
+
+    /// What errors of the model gain in ln p.
+    pub fn gained_by_errors(&self, fit: &ModalFit) -> f64 {
+        let without = fit.linear.ln_density(&fit.standing.comparison, &self.problem.sizes.times(NOTHING));
+        without.map_or(f64::INFINITY, |ln| fit.evidence.ln - ln)
+    }
+
+    /// The largest size of an error, as a multiple of what is usual.
+    fn largest_size(&self, fit: &ModalFit) -> f64 {
+        self.relative_sizes(fit).into_iter().fold(0.0, f64::max)
+    }
+
+    /// Sizes of the errors as multiples of what is usual.
+    /// Gains are the test's, not the model's.
+    pub fn relative_sizes(&self, fit: &ModalFit) -> Vec<f64> {
+        let none = ErrorSizes { gain: 0.0, ..fit.evidence.sizes };
+        let usual = self.problem.sizes.to_array();
+        none.to_array().iter().zip(usual).map(|(size, usual)| size / usual).collect()
+    }
+
+    /// Fits of `base` with one effect more, the most probable first.
+    fn extended(&self, base: &Named, refined: usize) -> Vec<Named> {
+        // What resonates makes a mode more: where every mode has its partner, nothing of the kind is there.
+        let partners = base.fit.standing.pairing.alone() == 0.0;
+        let idle = |c: usize| partners && self.candidates[c].kind == EffectKind::AttachedResonator;
+        let free = |c: &usize| !base.names.contains(c) && !idle(*c);
+        let bases = match base.names.is_empty() {
+            true => vec![self.nominal, &base.fit.hypothesis],
+            false => vec![&base.fit.hypothesis],
+        };
+        let count = bases.len();
+        if let Some(known) = self.known {
+            return self.fitted(base, self.starts_at(base, known));
+        }
+        let starts: Vec<(usize, usize, usize)> = (0..self.candidates.len())
+            .filter(free)
+            .flat_map(|c| {
+                let each = move |s| (0..count).map(move |b| (c, s, b));
+                (0..self.candidates[c].starts.len()).flat_map(each)
+            })
+            .collect();
+        let mut scored: Vec<(f64, usize, Hypothesis)> = starts
+            .par_iter()
+            .filter_map(|&(c, s, b)| {
+                let hypothesis = bases[b].with(self.candidates[c].effect(s));
+                Some((self.score(&hypothesis, &base.fit)?, c, hypothesis))
+            })
+            .collect();
+        scored.sort_by(|a, b| b.0.total_cmp(&a.0));
+        let mut taken = vec![0; self.candidates.len()];
+        let mut chosen = Vec::new();
+        for (_, c, hypothesis) in scored {
+            let distinct = taken.iter().filter(|t| **t > 0).count();
+            let starts = if base.names.is_empty() { self.settings.starts } else { 1 };
+            if taken[c] < starts && (taken[c] > 0 || distinct < refined) {
+                taken[c] += 1;
+                chosen.push((c, hypothesis));
+            }
+        }
+        self.fitted(base, chosen)
+    }
+
+    /// Starts at effects that are known, of names that `base` does not have.
+    fn starts_at(&self, base: &Named, known: &[Effect]) -> Vec<(usize, Hypothesis)> {
+        let start = |effect: &Effect| {
+            let c = self.candidates.iter().position(|candidate| candidate.names(effect))?;
+            (!base.names.contains(&c)).then(|| (c, base.fit.hypothesis.with(effect.clone())))
+        };
+        known.iter().filter_map(start).collect()
+    }
+
+    /// Fits from starts with one effect more than `base`, the best of each candidate, the most probable first.
+    fn fitted(&self, base: &Named, starts: Vec<(usize, Hypothesis)>) -> Vec<Named> {
+        let fit = |(c, hypothesis): (usize, Hypothesis)| {
+            let names: Vec<usize> = base.names.iter().copied().chain([c]).collect();
+            let company: Vec<&Candidate> = names.iter().map(|&c| &self.candidates[c]).collect();
+            let nearby = self.nearby(&hypothesis, &base.fit);
+            let fit = self.problem.fitted(&hypothesis, self.priors(&hypothesis, &company), nearby)?;
+            Some(Named { names, exact: self.is_exact(&fit), fit })
+        };
+        let mut fits: Vec<Named> = starts.into_par_iter().filter_map(fit).collect();
+        fits.sort_by(|a, b| b.fit.ln.total_cmp(&a.fit.ln));
+        let mut seen = vec![false; self.candidates.len()];
+        fits.retain(|f| f.names.last().is_some_and(|&c| !std::mem::replace(&mut seen[c], true)));
+        fits
+    }
+
+    /// The density of the recorded features with one more effect at a start, everything else linear about `base`.
+    fn score(&self, hypothesis: &Hypothesis, base: &ModalFit) -> Option<f64> {
+        let problem = &self.problem;
+        let standing = problem.standing(hypothesis)?;
+        let residual = problem.residual(&standing, &standing.modelled);
+        let alone = standing.pairing.alone();
+        if standing.pairing.pairs != base.standing.pairing.pairs {
+            // Derivatives of the base are of other features: none at all, and errors so much larger.
+            let linear = Linear { difference: residual, slopes: Vec::new() };
+            let wide = problem.sizes.times(self.settings.wide);
+            return Some(linear.ln_density(&standing.comparison, &wide)? + alone);
+        }
+        let slopes = self.slopes(hypothesis, &standing, &residual, base)?;
+        let linear = linear(hypothesis, &self.local_priors(hypothesis, base), &residual, &slopes);
+        Some(linear.ln_density(&standing.comparison, problem.sizes)? + alone)
+    }
+
+    /// Priors of the base, and of what it does not have a factor of two about where it stands.
+    fn local_priors(&self, hypothesis: &Hypothesis, base: &ModalFit) -> Vec<Prior> {
+        let own = |at: &f64| Prior { mean: *at, std: self.settings.near };
+        let prior = |(i, at): (usize, &f64)| base.priors.get(i).copied().unwrap_or_else(|| own(at));
+        hypothesis.coordinates.iter().enumerate().map(prior).collect()
+    }
+
+    /// Derivatives of the base, and of what it does not have where `hypothesis` stands.
+    fn slopes(
+        &self,
+        hypothesis: &Hypothesis,
+        standing: &Standing,
+        residual: &[f64],
+        base: &ModalFit,
+    ) -> Option<Vec<Vec<f64>>> {
+        let known = base.slopes.len();
+        let local = self.local_priors(hypothesis, base);
+        let own = known..hypothesis.coordinates.len();
+        let own = self.problem.slopes(hypothesis, standing, &standing.poles, residual, &local, own)?;
+        Some(base.slopes.iter().cloned().chain(own).collect())
+    }
+
+    /// [`Searcher::slopes`] where the base compares the same modes.
+    fn nearby(&self, hypothesis: &Hypothesis, base: &ModalFit) -> Option<Vec<Vec<f64>>> {
+        let standing = self.problem.standing(hypothesis)?;
+        if standing.pairing.pairs != base.standing.pairing.pairs {
+            return None;
+        }
+        let residual = self.problem.residual(&standing, &standing.modelled);
+        self.slopes(hypothesis, &standing, &residual, base)
+    }
+}

@@ -1,0 +1,112 @@
+//! Models that are a little wrong in every mode: what is left out is told from the model's own error.
+
+use crate::common;
+use jointscope::diagnosis::{Diagnosis, DiagnosisOptions, Verdict};
+use jointscope::fixture::{Effect, EffectKind, Place};
+use jointscope::{Fixture, FrfSet};
+use jointscope_rig::{Instrument, drawn_within_tolerance, frfs, generator};
+use std::path::Path;
+
+/// Physics that the fixture does not state and no effect imitates exactly: blocks that bend far above the band, a joint with mass.
+fn everywhere_a_little_wrong() -> Vec<Effect> {
+    let bending = |body: &str, hz: f64| {
+        Effect::new(EffectKind::BodyFlexibility, Place::Body(body.into()), None, &[hz, 0.003])
+    };
+    let mass = Effect::new(EffectKind::JointMass, Place::Joint("J".into()), None, &[0.004]);
+    vec![bending("A", 26_000.0), bending("B", 22_000.0), mass]
+}
+
+fn lump(mass: f64) -> Effect {
+    Effect::new(EffectKind::AddedMass, Place::Body("B".into()), None, &[0.11, mass])
+}
+
+fn diagnosed(fixture: &Fixture, frfs: &FrfSet, baseline: Option<FrfSet>) -> Diagnosis {
+    Diagnosis::of(fixture, frfs, &DiagnosisOptions { baseline, ..DiagnosisOptions::default() }).unwrap()
+}
+
+fn told(diagnosis: &Diagnosis) -> String {
+    let names = diagnosis.findings.iter().map(|f| format!("{:?} {:.2}", f.effect, f.probability));
+    format!("{:?} {:?} {:?}", diagnosis.verdict, diagnosis.model_error, names.collect::<Vec<_>>())
+}
+
+/// Hammer tests of one structure, as it is and with more effects.
+fn before_and_after(more: Vec<Effect>, seed: u64) -> (Fixture, [FrfSet; 2]) {
+    let believed = common::believed(common::RATIOS);
+    let drawn = drawn_within_tolerance(&believed, &mut generator(seed)).unwrap();
+    let recorded = |effects: Vec<Effect>, seed: u64| {
+        let truth = drawn.clone().with_physics(effects).unwrap();
+        let exact = frfs(&truth, &common::four_pairs(), &common::lines(), Instrument::AsDescribed).unwrap();
+        common::hammer(seed).measure(&exact).unwrap()
+    };
+    let after = [everywhere_a_little_wrong(), more].concat();
+    (believed, [recorded(everywhere_a_little_wrong(), seed + 1), recorded(after, seed + 2)])
+}
+
+#[test]
+fn a_baseline_of_itself_has_not_changed() {
+    let (fixture, frfs) = common::recorded(everywhere_a_little_wrong(), 5);
+    let diagnosis = diagnosed(&fixture, &frfs, Some(frfs.clone()));
+    assert_eq!(diagnosis.verdict, Verdict::Consistent, "{}", told(&diagnosis));
+    assert!(diagnosis.findings.is_empty(), "{}", told(&diagnosis));
+}
+
+#[test]
+fn against_a_baseline_a_mass_is_named_with_its_size_whatever_the_model_leaves_out() {
+    let mass = 0.02;
+    let (fixture, [before, after]) = before_and_after(vec![lump(mass)], 6);
+    let diagnosis = diagnosed(&fixture, &after, Some(before));
+    let [finding] = diagnosis.findings.as_slice() else { panic!("{}", told(&diagnosis)) };
+    assert_eq!(finding.effect.kind, EffectKind::AddedMass, "{}", told(&diagnosis));
+    let estimate = finding.estimates.iter().find(|e| e.parameter.name == "mass").unwrap();
+    let [low, high] = estimate.interval.unwrap();
+    assert!(low <= mass && mass <= high, "{low} to {high} kg for {mass} kg");
+    assert!((estimate.value / mass - 1.0).abs() < 0.1, "{} kg for {mass} kg", estimate.value);
+}
+
+#[test]
+fn another_structure_is_no_baseline() {
+    let (fixture, frfs) = common::recorded(Vec::new(), 8);
+    let other = frfs.on_lines(|line| line < 12).unwrap();
+    let options = DiagnosisOptions { baseline: Some(other), ..DiagnosisOptions::default() };
+    assert!(Diagnosis::of(&fixture, &frfs, &options).is_err());
+}
+
+/// A case that lies beside the workspace: its fixture, recording and truth.
+fn solid(name: &str) -> Option<(Fixture, FrfSet)> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/concealed/solids").join(name);
+    let Ok(json) = std::fs::read_to_string(folder.join("fixture.json")) else {
+        println!("skipped: no solids beside the workspace");
+        return None;
+    };
+    let fixture = Fixture::from_json(&json).unwrap();
+    let recording = jointscope::read(&fixture, &std::fs::read(folder.join("frfs.uff")).unwrap()).unwrap();
+    let frfs = recording.frfs().unwrap().clone();
+    Some((fixture, frfs))
+}
+
+#[test]
+fn a_solid_without_anything_hidden_is_consistent_with_an_error_of_usual_size() {
+    let Some((fixture, frfs)) = solid("null-steel") else { return };
+    let diagnosis = diagnosed(&fixture, &frfs, None);
+    assert_eq!(diagnosis.verdict, Verdict::Consistent, "{}", told(&diagnosis));
+    let [_, error] = diagnosis.model_error.unwrap();
+    assert!(error.frequency < 0.006 && error.residue < 0.01, "{error:?}");
+    assert!(diagnosis.departures.is_empty(), "{:?}", diagnosis.departures);
+}
+
+#[test]
+fn what_is_hidden_in_a_solid_is_named_alone_and_with_its_size() {
+    for (name, kind, parameter, size) in [
+        ("lump-5", EffectKind::AddedMass, "mass", 0.0377),
+        ("modulus", EffectKind::StiffnessChange, "factor", 0.85),
+        ("delay", EffectKind::ChannelDelay, "seconds", 8e-6),
+        ("ground-lumped", EffectKind::Support, "stiffness", 150e3),
+    ] {
+        let Some((fixture, frfs)) = solid(name) else { return };
+        let diagnosis = diagnosed(&fixture, &frfs, None);
+        let [finding] = diagnosis.findings.as_slice() else { panic!("{name}: {}", told(&diagnosis)) };
+        assert_eq!(finding.effect.kind, kind, "{name}: {}", told(&diagnosis));
+        let estimate = finding.estimates.iter().find(|e| e.parameter.name == parameter).unwrap();
+        assert!((estimate.value / size - 1.0).abs() < 0.15, "{name}: {} for {size}", estimate.value);
+    }
+}
