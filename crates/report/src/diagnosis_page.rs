@@ -1,21 +1,24 @@
 //! The page of one diagnosis: what was left out, where it sits, what shows it, and how far to believe it.
 
 mod delta;
+mod departures;
 mod findings;
 mod fixture_view;
 mod frfs;
 mod judgement;
 mod law;
 mod misfit;
+mod model_error;
 mod noise;
 mod tolerances;
 
-use jointscope_diagnosis::{Diagnosis, Fit};
+use jointscope_diagnosis::{Diagnosis, Fit, Verdict};
 use jointscope_fixture::Fixture;
 use jointscope_wording::{Remarks, Says};
 
 use crate::context::PageContext;
 use crate::error::PageError;
+use crate::section::Tone;
 
 /// FRFs and places that are shown at the most; the page says how many there are.
 const SHOWN: usize = 12;
@@ -40,7 +43,7 @@ impl<'a> Subject<'a> {
 }
 
 /// The page of a diagnosis as one self-contained HTML file: the verdict in a sentence; the fixture with the places marked; findings with
-/// intervals, probabilities and look-alikes; errors before and after, held-out lines included; δ(ω) with the law that names it; the FRFs of all
+/// intervals, probabilities and look-alikes; the error of the model and the departures, where there are any; errors before and after, held-out lines included; δ(ω) with the law that names it; the FRFs of all
 /// models; maps of the misfit; tolerances and where they ended; the noise.
 ///
 /// `fixture` is the one that `diagnosis` was made with. The same input gives the same bytes.
@@ -54,15 +57,19 @@ pub fn diagnosis_page(
 ) -> Result<String, PageError> {
     let subject = Subject { diagnosis, fixture };
     let said = diagnosis.findings.iter().map(|finding| finding.says());
-    let verdict = context.verdict(diagnosis.verdict, diagnosis.says(), said.chain(diagnosis.remarks()));
+    // A quantity far from what is stated is to be looked at even where nothing else is missing.
+    let tone = match diagnosis.verdict {
+        Verdict::Consistent if !diagnosis.departures.is_empty() => Tone::Attention,
+        verdict => verdict.into(),
+    };
+    let verdict = context.verdict(tone, diagnosis.says(), said.chain(diagnosis.remarks()));
     context
         .page("Diagnosis: what the fixture leaves out", context.subtitle(fixture), verdict)
         .sections(context.hits())
-        .sections([
-            fixture_view::section(&subject),
-            findings::section(&subject),
-            judgement::section(&subject),
-        ])
+        .sections([fixture_view::section(&subject), findings::section(&subject)])
+        .sections(model_error::section(&subject))
+        .sections(departures::section(&subject))
+        .sections([judgement::section(&subject)])
         .sections(delta::section(&subject))
         .sections([frfs::section(&subject), misfit::section(&subject)])
         .sections(tolerances::section(&subject))

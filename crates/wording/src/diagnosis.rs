@@ -1,66 +1,91 @@
 //! A diagnosis in sentences: what is left out, or where what has no name sits and how it goes with frequency.
 
+use crate::departures::{departed, remaining};
 use crate::effects::named_with_size;
 use crate::numbers::{figures, listed, percent, plain, significant};
 use crate::places::variation;
-use crate::{Remarks, Says};
-use jointscope_diagnosis::{Diagnosis, Fit, Observation, Trend};
+use crate::{Remarks, Says, model_error};
+use jointscope_diagnosis::{Diagnosis, Fit, Location, Observation, Trend};
 use jointscope_findings::Verdict;
 use jointscope_frf::noise::NoiseSource;
 
-/// The verdict in one plain sentence.
+/// The verdict: what it is, and what to do about it. What the stated quantities would have to be goes before everything else.
 impl Says for Diagnosis {
     fn says(&self) -> String {
-        let [nominal, refitted, repaired] = self.chi2_per_dof();
-        let [_, error_refitted, error_repaired] = self.nrmse();
-        let found: Vec<String> = self.findings.iter().map(named_with_size).collect();
-        match self.verdict {
-            Verdict::Consistent if refitted < 0.5 * nominal => format!(
-                "Nothing is left out: within its stated tolerances the fixture explains the FRFs down to their noise (χ² per degree of \
-                 freedom {}, {} before the refit).",
-                figures(refitted),
-                figures(nominal)
-            ),
-            Verdict::Consistent => format!(
-                "Nothing is left out: the fixture explains the FRFs down to their noise (χ² per degree of freedom {}).",
-                figures(refitted)
-            ),
-            Verdict::Explained => format!(
-                "The fixture leaves out {}; with {} the FRFs are explained down to their noise (χ² per degree of freedom {}; without {}{}; \
-                 error {}, without {}).",
-                listed(&found),
-                if found.len() == 1 { "it" } else { "them" },
-                figures(repaired),
-                figures(refitted),
-                bent(self),
-                percent(error_repaired),
-                percent(error_refitted)
-            ),
-            Verdict::PartlyExplained if self.is_unnamed() => format!(
-                "Something is left out that none of the effects known here accounts for: the closest, {}, takes χ² per degree of freedom from {} \
-                 to {} only, and what is left sits {}{}.",
-                listed(&found),
-                figures(refitted),
-                figures(repaired),
-                sits(self, &self.search.repaired),
-                varies(self, &self.search.repaired)
-            ),
-            Verdict::PartlyExplained => format!(
-                "The fixture leaves out {}, but that is not all: χ² per degree of freedom falls from {} to {}, and what is left sits {}{}.",
-                listed(&found),
-                figures(refitted),
-                figures(repaired),
-                sits(self, &self.search.repaired),
-                varies(self, &self.search.repaired)
-            ),
-            Verdict::Unexplained => format!(
-                "Something is left out that none of the effects known here accounts for (χ² per degree of freedom {}): it sits {}{}.",
-                figures(refitted),
-                sits(self, &self.search.refitted),
-                varies(self, &self.search.refitted)
-            ),
-        }
+        let verdict = match &self.model_error {
+            Some(errors) => model_error::verdict(self, errors),
+            None => by_noise(self),
+        };
+        format!("{}{verdict}", departed(self))
     }
+}
+
+/// The verdict where the noise of the FRFs decides.
+fn by_noise(diagnosis: &Diagnosis) -> String {
+    let [nominal, refitted, repaired] = diagnosis.chi2_per_dof();
+    let [_, error_refitted, error_repaired] = diagnosis.nrmse();
+    match diagnosis.verdict {
+        Verdict::Consistent if remaining(diagnosis).next().is_some() => format!(
+            "No effect is needed besides: the fixture so changed explains the FRFs down to their noise (χ² per degree of freedom {}, {} \
+             before the refit).",
+            figures(refitted),
+            figures(nominal)
+        ),
+        Verdict::Consistent if refitted < 0.5 * nominal => format!(
+            "Nothing is left out: within its stated tolerances the fixture explains the FRFs down to their noise (χ² per degree of \
+             freedom {}, {} before the refit).",
+            figures(refitted),
+            figures(nominal)
+        ),
+        Verdict::Consistent => format!(
+            "Nothing is left out: the fixture explains the FRFs down to their noise (χ² per degree of freedom {}).",
+            figures(refitted)
+        ),
+        Verdict::Explained => format!(
+            "The fixture leaves out {}; with {} the FRFs are explained down to their noise (χ² per degree of freedom {}; without {}{}; \
+             error {}, without {}).",
+            found(diagnosis),
+            it(diagnosis),
+            figures(repaired),
+            figures(refitted),
+            bent(diagnosis),
+            percent(error_repaired),
+            percent(error_refitted)
+        ),
+        Verdict::PartlyExplained if diagnosis.is_unnamed() => format!(
+            "Something is left out that none of the effects known here accounts for: the closest, {}, takes χ² per degree of freedom from {} \
+             to {} only, and what is left sits {}{}.",
+            found(diagnosis),
+            figures(refitted),
+            figures(repaired),
+            sits(diagnosis, &diagnosis.search.repaired),
+            varies(diagnosis, &diagnosis.search.repaired)
+        ),
+        Verdict::PartlyExplained => format!(
+            "The fixture leaves out {}, but that is not all: χ² per degree of freedom falls from {} to {}, and what is left sits {}{}.",
+            found(diagnosis),
+            figures(refitted),
+            figures(repaired),
+            sits(diagnosis, &diagnosis.search.repaired),
+            varies(diagnosis, &diagnosis.search.repaired)
+        ),
+        Verdict::Unexplained => format!(
+            "Something is left out that none of the effects known here accounts for (χ² per degree of freedom {}): it sits {}{}.",
+            figures(refitted),
+            sits(diagnosis, &diagnosis.search.refitted),
+            varies(diagnosis, &diagnosis.search.refitted)
+        ),
+    }
+}
+
+/// The effects found, with their sizes.
+pub(crate) fn found(diagnosis: &Diagnosis) -> String {
+    listed(&diagnosis.findings.iter().map(named_with_size).collect::<Vec<_>>())
+}
+
+/// `it` or `them`, the effects found.
+pub(crate) fn it(diagnosis: &Diagnosis) -> &'static str {
+    if diagnosis.findings.len() == 1 { "it" } else { "them" }
 }
 
 /// What the reader must know of the test itself: too few FRFs, noise that had to be estimated.
@@ -93,7 +118,8 @@ impl Remarks for Diagnosis {
             )
         }));
         remarks.extend(of_observation(&self.observation));
-        if !self.is_white() {
+        // Among modes correlation is a part of the likelihood.
+        if self.model_error.is_none() && !self.is_white() {
             remarks.push(format!(
                 "What the best model leaves is not white (neighbouring lines correlate by {:.2}): gains count for that much less \
                  and intervals are wider, as far as that is all there is to it.",
@@ -144,29 +170,34 @@ fn bent(diagnosis: &Diagnosis) -> String {
     })
 }
 
-/// `most clearly in FRF 4/1 from 180 Hz to 240 Hz`.
+/// `most clearly in FRF 4/1 from 180 Hz to 240 Hz`, and the best place with what it leaves.
 fn sits(diagnosis: &Diagnosis, fit: &Fit) -> String {
     let place = diagnosis.best_place().map_or_else(String::new, |location| {
-        format!(
-            "; of all single places {} would explain most (χ² per degree of freedom {})",
-            location.site.says(),
-            figures(location.chi2_per_dof)
-        )
+        format!("{} (χ² per degree of freedom {})", best(location), figures(location.chi2_per_dof))
     });
+    format!("{}{place}", most_clearly(diagnosis, fit))
+}
+
+/// `most clearly in FRF 4/1 from 180 Hz to 240 Hz`, and the best place.
+pub(crate) fn shows(diagnosis: &Diagnosis, fit: &Fit) -> String {
+    format!("{}{}", most_clearly(diagnosis, fit), diagnosis.best_place().map_or_else(String::new, best))
+}
+
+fn best(location: &Location) -> String {
+    format!("; of all single places {} would explain most", location.site.says())
+}
+
+fn most_clearly(diagnosis: &Diagnosis, fit: &Fit) -> String {
     match diagnosis.worst_band(fit) {
         Some((frf, band)) => {
-            format!(
-                "most clearly in FRF {frf} from {} to {}{place}",
-                plain(band.from, "Hz"),
-                plain(band.to, "Hz")
-            )
+            format!("most clearly in FRF {frf} from {} to {}", plain(band.from, "Hz"), plain(band.to, "Hz"))
         }
-        None => format!("in no line that counts{place}"),
+        None => "in no line that counts".to_owned(),
     }
 }
 
 /// How the mismatch goes with frequency: by δ(ω) of the best place, or by the relative error at both ends of the band.
-fn varies(diagnosis: &Diagnosis, fit: &Fit) -> String {
+pub(crate) fn varies(diagnosis: &Diagnosis, fit: &Fit) -> String {
     if let Some(variation) = diagnosis.best_place().and_then(variation) {
         return format!(", where what is missing, δ(ω), {variation}");
     }

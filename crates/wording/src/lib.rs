@@ -6,7 +6,8 @@
 //! * [`Says`]: a result, a finding or a place in one plain sentence or a few words;
 //! * [`Remarks`]: what a reader should know besides;
 //! * [`Summary`]: what was found, a line each, for a terminal;
-//! * [`effect_name`]: an effect's kind and place in a few words.
+//! * [`effect_name`]: an effect's kind and place in a few words;
+//! * [`error_in_words`]: how wrong a model is, beside what is usual.
 //!
 //! ```
 //! use jointscope_fixture::{Effect, EffectKind, Place};
@@ -17,18 +18,21 @@
 //! ```
 
 mod amplitude;
+mod departures;
 mod diagnosis;
 mod effects;
 mod estimate;
 mod finding;
 mod hits;
 mod levels;
+mod model_error;
 mod modes;
 mod numbers;
 mod places;
 mod summary;
 
 pub use effects::effect_name;
+pub use model_error::{ErrorInWords, error_in_words};
 
 /// Something that can be said in one plain sentence, or in a few words.
 pub trait Says {

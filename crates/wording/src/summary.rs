@@ -1,6 +1,6 @@
 //! What was found, a line each, for a terminal.
 
-use crate::{Remarks, Says, Summary};
+use crate::{Remarks, Says, Summary, model_error};
 use jointscope_diagnosis::Diagnosis;
 use jointscope_nonlinear::{NonlinearDiagnosis, SteppedDiagnosis};
 
@@ -26,6 +26,11 @@ impl Summary for Diagnosis {
         lines.push(row("refitted within its tolerances", refitted, chi2_refitted));
         if !self.findings.is_empty() {
             lines.push(row("repaired", repaired, chi2_repaired));
+        }
+        for (name, error) in ["refitted", "repaired"].iter().zip(self.model_error.iter().flatten()) {
+            if *name == "refitted" || !self.findings.is_empty() {
+                lines.push(format!("{name}: the model is off by {}", model_error::sizes(error)));
+            }
         }
         if let Some(held_out) = self.held_out.as_ref().filter(|_| !self.findings.is_empty()) {
             lines.push(format!(

@@ -18,6 +18,14 @@ pub(super) fn section(subject: &Subject) -> Section {
     let section = Section::new("Findings");
     if diagnosis.findings.is_empty() {
         return section.paragraph(match diagnosis.verdict {
+            Verdict::Consistent if diagnosis.model_error.is_some() => {
+                "None of the effects tried here, at any legal place, makes the error of the model enough smaller: what the refit within the \
+                 stated tolerances leaves is as large as such models are usually off by."
+            }
+            Verdict::Consistent if !diagnosis.departures.is_empty() => {
+                "None of the effects tried here, at any legal place, earns its parameters; but quantities would have to be far from what is \
+                 stated, see the departures below."
+            }
             Verdict::Consistent => {
                 "Nothing is left out. None of the effects tried here, at any legal place, earns its parameters: what the refit within the \
                  stated tolerances leaves is noise."
@@ -52,6 +60,16 @@ fn by_finding<'a, T>(
 }
 
 fn parameters(subject: &Subject) -> impl Render {
+    let by_modes = subject.diagnosis.model_error.is_some();
+    // Half a gain in χ² is one in ln of the evidence.
+    let (gained, share) = if by_modes { ("Evidence gained, ln", 0.5) } else { ("χ² gained", 1.0) };
+    let footnote = if by_modes {
+        "Intervals hold noise, the fixture's tolerances and the error of the model. Evidence gained: ln of the odds that the recorded modes lose \
+         without the finding."
+    } else {
+        "Intervals hold noise and the fixture's tolerances; where the best model leaves χ² per degree of freedom above 1 they are widened by its \
+         root. χ² gained: what the fit loses without the finding, priors included."
+    };
     by_finding(subject, |finding| finding.estimates.iter().collect())
         .words("Parameter", |(_, estimate)| estimate.parameter.name.replace('_', " "))
         .words("Value ± standard deviation", |(_, e)| quantity(e.value, e.std, e.unit))
@@ -59,13 +77,10 @@ fn parameters(subject: &Subject) -> impl Render {
         .numbers("Probability", "", |(finding, _)| {
             finding.map_or(String::new(), |(_, finding)| percent(finding.probability, 1))
         })
-        .numbers("χ² gained", "", |(finding, _)| {
-            finding.map_or(String::new(), |(_, finding)| significant(finding.gain, 4))
+        .numbers(gained, "", |(finding, _)| {
+            finding.map_or(String::new(), |(_, finding)| significant(share * finding.gain, 4))
         })
-        .footnote(
-            "Intervals hold noise and the fixture's tolerances; where the best model leaves χ² per degree of freedom above 1 they are widened by its \
-             root. χ² gained: what the fit loses without the finding, priors included.",
-        )
+        .footnote(footnote)
 }
 
 fn interval(estimate: &Estimate) -> String {

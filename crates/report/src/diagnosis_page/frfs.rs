@@ -25,7 +25,12 @@ pub(super) fn section(subject: &Subject) -> Section {
         let magnitude = panes
             .magnitude()
             .y_range(YRange::decades(panes.measured.iter().flatten().map(|v| v.norm())))
-            .caption("Magnitude; where a model leaves the noise band, it leaves something out.");
+            .caption(match subject.diagnosis.model_error {
+                Some(_) => {
+                    "Magnitude; a model leaves the noise band by its error as well as by what it leaves out."
+                }
+                None => "Magnitude; where a model leaves the noise band, it leaves something out.",
+            });
         let phase = panes.phase().caption("Phase, in the turn that the curves cross least.");
         section = section.plots(2, [magnitude, phase]);
     }

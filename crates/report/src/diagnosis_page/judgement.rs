@@ -22,6 +22,13 @@ pub(super) fn section(subject: &Subject) -> Section {
             "Relative error: √(Σ|H model − H measured|²/Σ|H measured|²) over all FRFs and lines in use, as accelerance. χ² counts {} real values.",
             diagnosis.observation.degrees()
         ));
+    let table = if diagnosis.model_error.is_some() {
+        table.footnote(
+            "The error of the model by modes decides, not these two: next to a resonance a small error of its frequency is a large one of the FRFs.",
+        )
+    } else {
+        table
+    };
     let section = Section::new("Before and after").with(table);
     match &diagnosis.held_out {
         None => section.paragraph(
@@ -44,9 +51,15 @@ pub(super) fn section(subject: &Subject) -> Section {
                         .note(gain(held_out.nrmse_refitted, held_out.nrmse_repaired)),
                 );
             }
+            let searched = match diagnosis.model_error {
+                Some(_) => {
+                    "the search was done again without them, among the effects that came nearest with them"
+                }
+                None => "the whole search was done again without them",
+            };
             section
                 .paragraph(format!(
-                    "Held out were {}: the whole search was done again without them, and its models then predicted them. {same}",
+                    "Held out were {}: {searched}, and its models then predicted them. {same}",
                     what.join(", ")
                 ))
                 .cards(cards)

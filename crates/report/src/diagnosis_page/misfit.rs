@@ -12,7 +12,11 @@ pub(super) fn section(subject: &Subject) -> Section {
     let diagnosis = subject.diagnosis;
     let refitted = by_frf(subject, &diagnosis.search.refitted)
         .caption("Refitted within tolerances: χ² per value by FRF and band")
-        .footnote("1 is noise alone; shaded from there to 100. A dash: no value of the band counts.");
+        .footnote(if diagnosis.model_error.is_some() {
+            "1 is noise alone; shaded from there to 100, where the error of the model may well lead. A dash: no value of the band counts."
+        } else {
+            "1 is noise alone; shaded from there to 100. A dash: no value of the band counts."
+        });
     let mut section = Section::new("Misfit").with(refitted);
     if !diagnosis.findings.is_empty() {
         let repaired = by_frf(subject, &diagnosis.search.repaired);

@@ -1,4 +1,4 @@
-//! The noise that everything is judged against, and whether it holds.
+//! The noise of the FRFs, and whether it holds.
 
 use jointscope_frf::noise::NoiseSource;
 use maud::Render;
@@ -11,7 +11,9 @@ use crate::table::Table;
 pub(super) fn section(subject: &Subject) -> Section {
     let diagnosis = subject.diagnosis;
     let correlation = diagnosis.residual_correlation;
-    let white = if diagnosis.is_white() {
+    let white = if diagnosis.model_error.is_some() {
+        "the error of the model is larger than the noise, and correlates over lines as noise does not"
+    } else if diagnosis.is_white() {
         "they are white, as noise is"
     } else {
         "they are not white: either something is left in them, or the noise is not what coherence says, and gains count for less and intervals are wider \

@@ -1,6 +1,6 @@
 //! What the page of a diagnosis must say, and what it must not hide.
 
-use jointscope_diagnosis::{Diagnosis, DiagnosisOptions, Verdict};
+use jointscope_diagnosis::{Departure, Diagnosis, DiagnosisOptions, ModelError, Verdict};
 use jointscope_fixture::Fixture;
 use jointscope_lumped::{Instrument, synthesize};
 use jointscope_report::{InputFile, PageContext, diagnosis_page};
@@ -50,6 +50,12 @@ fn page(physics: &str, change: impl Fn(usize, f64) -> Complex64) -> (Diagnosis, 
     let believed = storeys("");
     let frfs = recorded(&storeys(physics), change);
     let diagnosis = Diagnosis::of(&believed, &frfs, &DiagnosisOptions::default()).unwrap();
+    let html = rendered(&diagnosis);
+    (diagnosis, html)
+}
+
+fn rendered(diagnosis: &Diagnosis) -> String {
+    let believed = storeys("");
     let context = PageContext {
         program: "jointscope 0.0.0".into(),
         command: "jointscope diagnose storeys.json frf.uff -o out".into(),
@@ -57,9 +63,9 @@ fn page(physics: &str, change: impl Fn(usize, f64) -> Complex64) -> (Diagnosis, 
         notes: vec!["one remark".into()],
         hits: None,
     };
-    let html = diagnosis_page(&diagnosis, &believed, &context).unwrap();
-    assert_eq!(html, diagnosis_page(&diagnosis, &believed, &context).unwrap(), "the same input, other bytes");
-    (diagnosis, html)
+    let html = diagnosis_page(diagnosis, &believed, &context).unwrap();
+    assert_eq!(html, diagnosis_page(diagnosis, &believed, &context).unwrap(), "the same input, other bytes");
+    html
 }
 
 fn unchanged(_: usize, _: f64) -> Complex64 {
@@ -120,4 +126,69 @@ fn a_mismatch_without_a_name_is_shown_by_place_and_band() {
         diagnosis.says()
     );
     holds(&html, &["class=\"verdict problem\"", "Refitted within tolerances: χ² per value by FRF and band"]);
+}
+
+#[test]
+fn where_the_model_is_off_by_more_than_the_noise_its_error_stands_beside_the_usual_one() {
+    let (mut diagnosis, html) =
+        page(r#"{ "kind": "added_mass", "place": "high", "x": 0.18, "mass": 0.6 }"#, unchanged);
+    assert!(!html.contains("Error of the model") && html.contains("χ² gained"));
+    let refitted = ModelError { frequency: 0.014, damping: 1e-4, residue: 0.02 };
+    diagnosis.model_error = Some([refitted, ModelError { frequency: 0.002, damping: 0.0, residue: 0.013 }]);
+    let html = rendered(&diagnosis);
+    for part in [
+        "Error of the model",
+        "natural frequency",
+        "1.4 %",
+        "0.2 %",
+        "none seen",
+        "1.3 %",
+        "0.5 %",
+        "Evidence gained",
+    ] {
+        holds(&html, &[part]);
+    }
+    for claim in ["down to their noise", "χ² gained", "as noise is"] {
+        assert!(!html.contains(claim), "the page says `{claim}`");
+    }
+}
+
+#[test]
+fn a_consistent_fixture_off_by_a_usual_error_is_not_called_explained_by_noise() {
+    let (mut diagnosis, _) = page("", unchanged);
+    let usual = ModelError { frequency: 5e-4, damping: 0.0, residue: 0.003 };
+    diagnosis.model_error = Some([usual, usual]);
+    let html = rendered(&diagnosis);
+    holds(
+        &html,
+        &[
+            "class=\"verdict ok\"",
+            "Nothing is left out that a name would explain",
+            "usually off by",
+            "0.05 %",
+        ],
+    );
+    for claim in ["leaves is noise", "down to their noise", "repaired"] {
+        assert!(!html.contains(claim), "the page says `{claim}`");
+    }
+}
+
+#[test]
+fn a_quantity_far_from_what_is_stated_takes_the_green_tick_away() {
+    let (mut diagnosis, html) = page("", unchanged);
+    assert!(!html.contains("Departures from what is stated"));
+    diagnosis.departures = vec![Departure {
+        path: "bodies/low/mass".into(),
+        stated: 6.9,
+        std: 0.007,
+        refitted: 6.97,
+        repaired: 6.97,
+        deviations: 10.0,
+    }];
+    let html = rendered(&diagnosis);
+    holds(
+        &html,
+        &["class=\"verdict attention\"", "Departures from what is stated", "6.9000 ± 0.0070 kg", "6.970 kg"],
+    );
+    assert!(!html.contains("class=\"verdict ok\""));
 }

@@ -1,0 +1,34 @@
+//! How wrong the models are beside what is usual, where that decides instead of the noise.
+
+use jointscope_wording::{ErrorInWords, error_in_words};
+
+use super::Subject;
+use crate::section::{Section, Tone};
+use crate::table::Table;
+
+pub(super) fn section(subject: &Subject) -> Option<Section> {
+    let [refitted, repaired] = subject.diagnosis.model_error.as_ref()?.each_ref().map(error_in_words);
+    let has_findings = !subject.diagnosis.findings.is_empty();
+    let size = |error: &ErrorInWords| error.size.clone().unwrap_or_else(|| "none seen".to_owned());
+    let mut table = Table::of(refitted.into_iter().zip(repaired))
+        .words("Error of", |(refitted, _)| refitted.kind)
+        .words("refitted", |(refitted, _)| size(refitted));
+    if has_findings {
+        table = table.words("repaired", |(_, repaired)| size(repaired));
+    }
+    let table = table
+        .words("usual", |(refitted, _)| refitted.usual.clone())
+        .marked(|(_, repaired)| repaired.large.then_some(Tone::Attention))
+        .footnote(
+            "Standard deviations over the modes in the band, relative; of residues relative to the mode's root mean square. Marked: more than \
+             twice the usual, which no adequate model has.",
+        );
+    let words = if has_findings {
+        "The model's own error is larger than the noise of the FRFs, so the hypotheses were compared by modes: a finding is needed where it makes \
+         the error smaller. χ² against the noise decides nothing here."
+    } else {
+        "The model's own error is larger than the noise of the FRFs, so the hypotheses were compared by modes: an effect would be needed where it \
+         made the error smaller, and none does by enough. χ² against the noise decides nothing here."
+    };
+    Some(Section::new("Error of the model").paragraph(words).with(table))
+}

@@ -1,0 +1,62 @@
+//! Quantities of the repaired model that are farther from what is stated than chance takes them.
+
+use crate::numbers::{decimals, listed, prefixed, rounded, significant};
+use jointscope_diagnosis::{Departure, Diagnosis};
+use jointscope_findings::Verdict;
+
+/// Standard deviations beyond which the repaired model keeps a departure: as many as make one.
+const DEPARTED: f64 = 4.0;
+/// Further quantities that are named at the most.
+const NAMES: usize = 3;
+
+/// What the repaired model still asks of the stated quantities, and what to do about it, with a space behind; nothing where it asks nothing.
+pub(crate) fn departed(diagnosis: &Diagnosis) -> String {
+    let mut remaining = remaining(diagnosis);
+    let Some(first) = remaining.next() else { return String::new() };
+    let others: Vec<String> = remaining.map(|departure| departure.path.clone()).collect();
+    let again = if others.is_empty() { "measure it again" } else { "measure them again" };
+    let to_do = match diagnosis.verdict {
+        Verdict::Consistent => again.to_owned(),
+        Verdict::Unexplained => format!("{again}, or take it as a sign of what is left out"),
+        Verdict::Explained | Verdict::PartlyExplained => {
+            format!("{again}, or look for more that is left out, for what was found does not account for it")
+        }
+    };
+    format!("{}{}: {to_do}. ", moved(diagnosis, first), also(&others))
+}
+
+/// The departures that the effects found do not take away, the farthest first.
+pub(crate) fn remaining(diagnosis: &Diagnosis) -> impl Iterator<Item = &Departure> {
+    diagnosis.departures.iter().filter(|departure| departure.deviations.abs() > DEPARTED)
+}
+
+/// `bodies/F1/mass would have to be 4.23 kg, 10 standard deviations from the stated 3.50 kg`.
+fn moved(diagnosis: &Diagnosis, departure: &Departure) -> String {
+    let Departure { path, stated, std, repaired, deviations, .. } = departure;
+    let tolerances = diagnosis.search.repaired.hypothesis.tolerances();
+    let own = tolerances.iter().find(|tolerance| tolerance.quantity.path == *path);
+    let unit = own.map_or("", |tolerance| tolerance.quantity.key.unit());
+    let (factor, unit) = prefixed(*stated, unit);
+    let unit = if unit.is_empty() { unit } else { format!(" {unit}") };
+    // One digit of the standard deviation.
+    let number = |value: f64| rounded(value * factor, decimals(std * factor) - 1);
+    format!(
+        "{path} would have to be {}{unit}, {} standard deviations from the stated {}{unit}",
+        number(*repaired),
+        significant(deviations.abs(), 2),
+        number(*stated)
+    )
+}
+
+/// ` (as would be too far from what is stated: joints/J/length and 2 more)`.
+fn also(others: &[String]) -> String {
+    let mut names = others[..others.len().min(NAMES)].to_vec();
+    if others.len() > NAMES {
+        names.push(format!("{} more", others.len() - NAMES));
+    }
+    if names.is_empty() {
+        String::new()
+    } else {
+        format!(" (also too far from what is stated: {})", listed(&names))
+    }
+}

@@ -1,0 +1,337 @@
+//! The verdict where the model's own error decides instead of the noise.
+
+use crate::departures::remaining;
+use crate::diagnosis::{found, it, shows, varies};
+use crate::numbers::{listed, percent, significant};
+use jointscope_diagnosis::{Diagnosis, ModalSettings, ModelError};
+use jointscope_findings::Verdict;
+
+/// The verdict on a fixture whose model, refitted and repaired, is off by `errors`.
+pub(crate) fn verdict(diagnosis: &Diagnosis, [refitted, repaired]: &[ModelError; 2]) -> String {
+    if let Some(baseline) = &diagnosis.baseline_error {
+        return since(diagnosis, baseline, [refitted, repaired]);
+    }
+    match diagnosis.verdict {
+        Verdict::Consistent => format!(
+            "Nothing is left out that a name would explain: the model is off by {}, as such models are.",
+            sizes(refitted)
+        ),
+        Verdict::Explained => format!(
+            "The fixture leaves out {}: check {it}. Without {it} the model would be off by {}{}, with {it} by {}.",
+            found(diagnosis),
+            sizes(refitted),
+            bent(diagnosis),
+            sizes(repaired),
+            it = it(diagnosis)
+        ),
+        Verdict::PartlyExplained if diagnosis.is_unnamed() => format!(
+            "Something is left out that none of the effects known here accounts for: with the closest, {}, the model is off by {}, without it \
+             by {}. What remains shows {}{}.",
+            found(diagnosis),
+            sizes(repaired),
+            sizes(refitted),
+            shows(diagnosis, &diagnosis.search.repaired),
+            varies(diagnosis, &diagnosis.search.repaired)
+        ),
+        Verdict::PartlyExplained => format!(
+            "The fixture leaves out {}, but that is not all: without {it} the model would be off by {}{}, with {it} by {}. What remains is {}; it \
+             shows {}{}.",
+            found(diagnosis),
+            sizes(refitted),
+            bent(diagnosis),
+            sizes(repaired),
+            excess(diagnosis, repaired),
+            shows(diagnosis, &diagnosis.search.repaired),
+            varies(diagnosis, &diagnosis.search.repaired),
+            it = it(diagnosis)
+        ),
+        Verdict::Unexplained => format!(
+            "Something is left out that none of the effects known here accounts for: the model is off by {}, and no effect makes that much \
+             smaller. That is {}; it shows {}{}.",
+            sizes(refitted),
+            excess(diagnosis, refitted),
+            shows(diagnosis, &diagnosis.search.refitted),
+            varies(diagnosis, &diagnosis.search.refitted)
+        ),
+    }
+}
+
+/// What has changed since a baseline, on which the model is off by `baseline`; of the change it misses `refitted` without the findings and `repaired` with.
+fn since(diagnosis: &Diagnosis, baseline: &ModelError, [refitted, repaired]: [&ModelError; 2]) -> String {
+    let change = match diagnosis.verdict {
+        Verdict::Consistent => {
+            "Nothing has changed since the baseline beyond what a repetition changes.".to_owned()
+        }
+        Verdict::Explained => format!(
+            "Since the baseline this has changed: {}. Without {it} the change would be {}, with {it} what is left is {}.",
+            found(diagnosis),
+            sizes(refitted),
+            sizes(repaired),
+            it = it(diagnosis)
+        ),
+        Verdict::PartlyExplained => format!(
+            "Since the baseline this has changed: {}; but that is not all: of a change of {} it leaves {}.",
+            found(diagnosis),
+            sizes(refitted),
+            sizes(repaired)
+        ),
+        Verdict::Unexplained => format!(
+            "Something has changed since the baseline that no single effect known here accounts for: {}.",
+            sizes(refitted)
+        ),
+    };
+    format!("{change} On the baseline itself the calibrated model is off by {}.", sizes(baseline))
+}
+
+/// One kind of a model's error, for a table or a sentence.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ErrorInWords {
+    /// What is off.
+    pub kind: &'static str,
+    /// By how much; `None` where the recording shows no such error.
+    pub size: Option<String>,
+    /// By how much usual models are.
+    pub usual: String,
+    /// Whether it is larger than an adequate model has it.
+    pub large: bool,
+}
+
+/// A model's error by kind.
+pub fn error_in_words(error: &ModelError) -> [ErrorInWords; 3] {
+    let settings = ModalSettings::default();
+    let kinds = [
+        ("natural frequency", error.frequency, settings.usual.frequency),
+        ("damping ratio", error.damping, settings.usual.damping),
+        ("residues", error.residue, settings.usual.shape),
+    ];
+    kinds.map(|(kind, size, usual)| ErrorInWords {
+        kind,
+        size: (size > NEGLIGIBLE * usual).then(|| short(size)),
+        usual: short(usual),
+        large: size > settings.adequate.0 * usual,
+    })
+}
+
+/// Share of the usual size below which an error is none.
+const NEGLIGIBLE: f64 = 0.01;
+
+/// `0.05 % in natural frequency and 0.3 % in residues`, kinds that are not there left out.
+pub(crate) fn sizes(error: &ModelError) -> String {
+    let told = |error: ErrorInWords| Some(format!("{} in {}", error.size?, error.kind));
+    let told: Vec<String> = error_in_words(error).into_iter().filter_map(told).collect();
+    if told.is_empty() { "no more than the noise".to_owned() } else { listed(&told) }
+}
+
+/// Why what is left is more than the error of a usual model.
+fn excess(diagnosis: &Diagnosis, error: &ModelError) -> String {
+    let large = error_in_words(error).into_iter().filter(|error| error.large);
+    let told: Vec<String> =
+        large.map(|error| format!("in {} (usually {})", error.kind, error.usual)).collect();
+    match (told.is_empty(), remaining(diagnosis).next().is_some()) {
+        (false, _) => format!("larger than usual {}", listed(&told)),
+        (true, true) => "not larger than usual, but for the departure".to_owned(),
+        (true, false) => {
+            "larger than usual in mass lines, upper residuals or phases, not in the modes themselves"
+                .to_owned()
+        }
+    }
+}
+
+/// ` (and bodies/A/mass 33 standard deviations from what is stated)`, where the refit without effects takes a quantity that far and the effects
+/// bring it back.
+fn bent(diagnosis: &Diagnosis) -> String {
+    let bent =
+        diagnosis.bent().filter(|(path, _)| remaining(diagnosis).all(|departure| departure.path != *path));
+    bent.map_or_else(String::new, |(path, deviations)| {
+        format!(" (and {path} {} standard deviations from what is stated)", significant(deviations, 2))
+    })
+}
+
+/// Two digits of a per cent, without the zeros that say nothing.
+fn short(share: f64) -> String {
+    let text = percent(share);
+    match text.strip_suffix(" %").filter(|number| number.contains('.')) {
+        Some(number) => format!("{} %", number.trim_end_matches('0').trim_end_matches('.')),
+        None => text,
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+    use crate::Says;
+    use jointscope_diagnosis::{Departure, DiagnosisOptions, Finding};
+    use jointscope_findings::Estimate;
+    use jointscope_fixture::{Effect, EffectKind, Fixture, Place};
+    use jointscope_lumped::{Instrument, synthesize};
+    use jointscope_spectra::{FrfPair, SpectralLines};
+
+    /// Two storeys that leave nothing out.
+    fn diagnosis() -> Diagnosis {
+        let fixture = Fixture::from_json(
+            r#"{ "bodies": { "low": { "mass": {"value": 3.5, "std": 0.07}, "rotates": false },
+                             "high": { "mass": {"value": 6.0, "std": 0.006}, "rotates": false } },
+                 "points": { "1": { "body": "low", "x": 0 }, "2": { "body": "high", "x": 0.18 } },
+                 "joints": { "C": { "from": "1", "to": "2", "stiffness": [[{"value": 3.4e6, "std": 2e4}, 0], [0, 0]] } },
+                 "damping": { "modal_ratios": [{"value": 0.02, "std": 0.004}] } }"#,
+        )
+        .unwrap();
+        let pairs = [FrfPair::transverse("1", "1"), FrfPair::transverse("2", "1")];
+        let lines = SpectralLines::even(20.0, 5.0, 77).unwrap();
+        let frfs = synthesize(&fixture, &pairs, &lines, Instrument::AsRecorded).unwrap();
+        let variance = frfs.all_values().iter().map(|value| 1e-4 * value.norm_sqr()).collect();
+        Diagnosis::of(&fixture, &frfs.with_variance(variance).unwrap(), &DiagnosisOptions::default()).unwrap()
+    }
+
+    fn error(frequency: f64, damping: f64, residue: f64) -> ModelError {
+        ModelError { frequency, damping, residue }
+    }
+
+    fn judged(verdict: Verdict, refitted: ModelError, repaired: ModelError) -> Diagnosis {
+        Diagnosis { verdict, model_error: Some([refitted, repaired]), ..diagnosis() }
+    }
+
+    fn mass(probability: f64) -> Finding {
+        let kind = EffectKind::AddedMass;
+        let values = [0.18, 0.05];
+        let parameters = kind.spec().parameters.iter().zip(values);
+        Finding {
+            effect: Effect::new(kind, Place::Body("high".into()), None, &values),
+            estimates: parameters
+                .map(|(p, value)| Estimate::of(*p, None, value).within(0.01 * value))
+                .collect(),
+            probability,
+            alternatives: Vec::new(),
+            gain: 70.0,
+            measured: None,
+        }
+    }
+
+    fn departure(path: &str, deviations: f64) -> Departure {
+        let repaired = 3.5 + 0.07 * deviations;
+        Departure { path: path.into(), stated: 3.5, std: 0.07, refitted: 4.3, repaired, deviations }
+    }
+
+    #[track_caller]
+    fn says(diagnosis: &Diagnosis, parts: &[&str], not: &[&str]) {
+        let said = diagnosis.says();
+        assert!(said.ends_with('.') && !said.contains("NaN"), "{said}");
+        parts.iter().for_each(|part| assert!(said.contains(part), "`{part}` is missing from: {said}"));
+        not.iter().for_each(|part| assert!(!said.contains(part), "`{part}` is said in: {said}"));
+    }
+
+    #[test]
+    fn a_usual_error_of_the_model_is_told_by_its_kinds_and_calls_for_no_name() {
+        let usual = error(5e-4, 1e-4, 0.003);
+        let diagnosis = judged(Verdict::Consistent, usual, usual);
+        assert_eq!(
+            diagnosis.says(),
+            "Nothing is left out that a name would explain: the model is off by 0.05 % in natural frequency and 0.3 % in residues, as such \
+             models are."
+        );
+    }
+
+    #[test]
+    fn a_finding_is_told_by_the_error_of_the_model_without_it_and_with_it() {
+        let mut diagnosis = judged(Verdict::Explained, error(0.014, 0.05, 0.02), error(0.004, 0.0, 0.0));
+        diagnosis.findings = vec![mass(0.9)];
+        says(
+            &diagnosis,
+            &[
+                "The fixture leaves out added mass on body high (50.00 g): check it.",
+                "Without it the model would be off by 1.4 % in natural frequency, 5 % in damping ratio and 2 % in residues, with it by 0.4 % in \
+                 natural frequency.",
+            ],
+            &["χ²", "noise", "departure"],
+        );
+    }
+
+    #[test]
+    fn an_error_that_vanishes_with_the_finding_is_no_more_than_noise() {
+        let mut diagnosis = judged(Verdict::Explained, error(0.014, 0.0, 0.0), ModelError::default());
+        diagnosis.findings = vec![mass(0.9), mass(0.9)];
+        says(&diagnosis, &["check them. Without them", "with them by no more than the noise."], &["0 %"]);
+    }
+
+    #[test]
+    fn what_remains_beside_a_finding_is_told_as_larger_than_usual_and_by_where_it_shows() {
+        let mut diagnosis = judged(Verdict::PartlyExplained, error(0.06, 0.0, 0.02), error(0.01, 0.3, 0.0));
+        diagnosis.findings = vec![mass(0.9)];
+        says(
+            &diagnosis,
+            &[
+                "but that is not all",
+                "with it by 1 % in natural frequency and 30 % in damping ratio.",
+                "What remains is larger than usual in natural frequency (usually 0.3 %) and in damping ratio (usually 10 %)",
+                "most clearly in FRF",
+            ],
+            &["χ²"],
+        );
+        diagnosis.findings = vec![mass(0.2)];
+        says(
+            &diagnosis,
+            &["none of the effects known here", "with the closest, added mass on body high (50.00 g)"],
+            &["χ²"],
+        );
+    }
+
+    #[test]
+    fn an_error_without_a_name_is_told_with_its_size_and_where_to_look() {
+        let odd = error(0.0064, 0.0, 0.0014);
+        says(
+            &judged(Verdict::Unexplained, odd, odd),
+            &[
+                "the model is off by 0.64 % in natural frequency and 0.14 % in residues, and no effect makes that much smaller",
+                "larger than usual in natural frequency (usually 0.3 %)",
+                "most clearly in FRF",
+            ],
+            &["χ²"],
+        );
+        let usual = error(0.001, 0.0, 0.001);
+        says(&judged(Verdict::Unexplained, usual, usual), &["in mass lines, upper residuals or phases"], &[]);
+    }
+
+    #[test]
+    fn a_quantity_far_from_what_is_stated_goes_before_everything_else() {
+        let usual = error(5e-4, 0.0, 0.0);
+        let mut diagnosis = judged(Verdict::Unexplained, usual, usual);
+        diagnosis.departures = vec![departure("bodies/low/mass", 10.4), departure("points/1/x", -6.0)];
+        let said = diagnosis.says();
+        let first = "bodies/low/mass would have to be 4.23 kg, 10 standard deviations from the stated 3.50 kg (also too far from what is stated: \
+                     points/1/x): measure them again, or take it as a sign of what is left out. Something is left out";
+        assert!(said.starts_with(first), "{said}");
+        says(&diagnosis, &["not larger than usual, but for the departure"], &[]);
+    }
+
+    #[test]
+    fn a_departure_that_the_findings_take_away_is_told_with_the_model_that_lacks_them_only() {
+        let mut diagnosis = judged(Verdict::Explained, error(0.014, 0.0, 0.0), error(0.001, 0.0, 0.0));
+        diagnosis.findings = vec![mass(0.9)];
+        diagnosis.departures = vec![departure("bodies/low/mass", 0.3)];
+        says(&diagnosis, &["The fixture leaves out added mass"], &["would have to be"]);
+        diagnosis.departures = vec![departure("bodies/low/mass", 5.0)];
+        says(
+            &diagnosis,
+            &["bodies/low/mass would have to be 3.85 kg", "what was found does not account for it"],
+            &[],
+        );
+    }
+
+    #[test]
+    fn where_the_noise_decides_a_departure_keeps_the_fixture_from_being_within_its_tolerances() {
+        let mut diagnosis = diagnosis();
+        assert_eq!((diagnosis.verdict, diagnosis.model_error), (Verdict::Consistent, None));
+        says(&diagnosis, &["Nothing is left out", "down to their noise"], &[]);
+        diagnosis.departures = vec![departure("bodies/low/mass", 10.4)];
+        says(
+            &diagnosis,
+            &[
+                "bodies/low/mass would have to be 4.23 kg, 10 standard deviations from the stated 3.50 kg: measure it again. No effect is needed \
+                 besides",
+                "down to their noise (χ² per degree of freedom",
+            ],
+            &["within its stated tolerances", "Nothing is left out"],
+        );
+    }
+}
