@@ -184,7 +184,7 @@ impl Diagnosis {
             }
             // Modes that need no error of the model, or that do not tell all there is, beside lines that are not explained: it is not the modes of the model
             // that are in error.
-            None if modal.search.best.exact || modal.tells_little(&fitter) => {
+            None if modal.search.best.exact || modal.has_right_modes() || modal.tells_little(&fitter) => {
                 by_lines(&fitter, within, (fixture, options.exact), None, division)?
             }
             None => by_modes(&fitter, within, &modal, division.as_ref()),

@@ -270,6 +270,11 @@ impl ModalJudgement {
         self.tells_little(fitter) || (told && (alone != 0.0 || unsure))
     }
 
+    /// Whether frequencies, damping and shapes of the best hypothesis are right to the noise.
+    pub fn has_right_modes(&self) -> bool {
+        self.errors[1] == ModelError::default()
+    }
+
     /// Whether modes tell a part of the recording only.
     pub fn tells_little(&self, fitter: &Fitter) -> bool {
         let ModalSettings { free_fit, hopeless, .. } = fitter.settings.modal;
