@@ -1,18 +1,17 @@
 use crate::alternatives::{Alternative, alternatives};
-use crate::catalogue::catalogue;
+use crate::departures::{Departure, departures};
 use crate::estimates::estimates;
-use crate::evidence::{excess, nothing_can_be_stated};
+use crate::evidence::{excess, explained, nothing_can_be_stated};
 use crate::fit::Fit;
 use crate::fitter::Fitter;
 use crate::held_out::Division;
 use crate::location::{Location, located, measured};
-use crate::modal::{Departure, ModalJudgement, ModelError, explains};
+use crate::modal::{ModalJudgement, ModelError, explains};
 use crate::search::Search;
 use crate::settings::Settings;
-use crate::{Hypothesis, Observation, Tolerance};
+use crate::{Hypothesis, Observation};
 use jointscope_findings::{Estimate, HeldOut, Verdict};
 use jointscope_fixture::{Effect, Fixture};
-use jointscope_frf::noise::NoiseSource;
 use jointscope_spectra::{FrfPair, FrfSet, SpectraError};
 use num_complex::Complex64;
 use serde::Serialize;
@@ -139,9 +138,6 @@ pub struct Tried {
     pub ln_gain: f64,
 }
 
-/// Standard deviations beyond which a quantity has departed by more than chance.
-const DEPARTED: f64 = 4.0;
-
 impl Diagnosis {
     /// Diagnoses `frfs` against `fixture`.
     ///
@@ -157,7 +153,9 @@ impl Diagnosis {
         let fitter = Fitter { observation: &observation, settings: &options.settings };
         if let Some(baseline) = &options.baseline {
             let baseline = Observation::new(baseline, in_use)?;
-            return Ok(since(&fitter, &baseline, fixture, options.exact)?.with(observation));
+            return Ok(
+                since(&fitter, &baseline, fixture, options.exact)?.with(observation, &options.settings)
+            );
         }
         let division = Division::of(&observation, options)?;
         let within = Search::without_effects(&fitter, fixture, options.exact)
@@ -169,7 +167,8 @@ impl Diagnosis {
             false => None,
         };
         let Some(modal) = modal.filter(|modal| !modal.needs_nothing()) else {
-            return Ok(by_lines(&fitter, within, (fixture, options.exact), None, division)?.with(observation));
+            return Ok(by_lines(&fitter, within, (fixture, options.exact), None, division)?
+                .with(observation, &options.settings));
         };
         // What explains the lines down to their noise without any error of the model needs none: found among the modes, or, where these are
         // dubious, by a search on lines.
@@ -189,7 +188,7 @@ impl Diagnosis {
             }
             None => by_modes(&fitter, within, &modal, division.as_ref()),
         };
-        Ok(parts.with(observation))
+        Ok(parts.with(observation, &options.settings))
     }
 
     /// (nominal, refitted, repaired) errors over all FRFs and lines in use.
@@ -205,41 +204,44 @@ impl Diagnosis {
     }
 }
 
-/// A diagnosis but for the observation that it rests on.
+/// A diagnosis but for what follows from its models and the observation.
 struct Parts {
     verdict: Verdict,
     search: Search,
-    refitted: (f64, f64),
-    mismatch: Vec<FrfMismatch>,
     findings: Vec<Finding>,
     locations: Vec<Location>,
     held_out: Option<HeldOut>,
-    residual_correlation: f64,
     model_error: Option<[ModelError; 2]>,
     baseline_error: Option<ModelError>,
     tried: Vec<Tried>,
 }
 
 impl Parts {
-    fn with(self, observation: Observation) -> Diagnosis {
-        let Parts { verdict, search, refitted, mismatch, findings, locations, held_out, .. } = self;
-        let departures = departures(&search);
+    fn with(self, observation: Observation, settings: &Settings) -> Diagnosis {
+        let search = self.search;
         Diagnosis {
-            verdict,
+            verdict: self.verdict,
+            refitted: chance(&observation, &search.refitted),
+            mismatch: mismatch(&observation, &search.refitted.predicted, settings.evidence.bands),
+            residual_correlation: observation.residual_correlation(&search.repaired.predicted),
+            departures: departures(&search),
             observation,
             search,
-            refitted,
-            mismatch,
-            findings,
-            locations,
-            held_out,
-            residual_correlation: self.residual_correlation,
+            findings: self.findings,
+            locations: self.locations,
+            held_out: self.held_out,
             model_error: self.model_error,
             baseline_error: self.baseline_error,
-            departures,
             tried: self.tried,
         }
     }
+}
+
+/// χ² per degree of freedom that a fit leaves, and the probability of one as large by chance.
+fn chance(observation: &Observation, fit: &Fit) -> (f64, f64) {
+    let chi2_per_dof = fit.chi2_per_dof(observation);
+    let excess = excess(chi2_per_dof, observation.degrees(), observation.noise_uncertainty());
+    (chi2_per_dof, upper_tail(excess))
 }
 
 /// The diagnosis where the noise of the lines decides; what was found among the modes is where it sets out.
@@ -274,7 +276,6 @@ fn by_lines(
         Some(part) => Search::continued(fitter, within, part),
         None => Search::searched(fitter, within),
     };
-    let chi2_per_dof = search.refitted.chi2_per_dof(observation);
     let mut findings = match nothing_can_be_stated(fitter, &search.repaired, search.candidates.len()) {
         true => Vec::new(),
         false => findings(fitter, &mut search),
@@ -286,16 +287,12 @@ fn by_lines(
         search.repaired = search.refitted.clone();
     }
     let held_out = division.zip(blind).and_then(|(d, blind)| d.judge(&blind, &search, observation));
-    let chance = upper_tail(excess(chi2_per_dof, observation.degrees(), observation.noise_uncertainty()));
-    let locations = match chance < settings.evidence.located {
+    let locations = match chance(observation, &search.refitted).1 < settings.evidence.located {
         true => located(*fitter, &search.nominal.hypothesis, &search.refitted),
         false => Vec::new(),
     };
     Ok(Parts {
         verdict: verdict(fitter, &search, &findings),
-        refitted: (chi2_per_dof, chance),
-        mismatch: mismatch(observation, &search.refitted.predicted, settings.evidence.bands),
-        residual_correlation: observation.residual_correlation(&search.repaired.predicted),
         findings,
         locations,
         held_out,
@@ -317,17 +314,12 @@ fn by_modes(fitter: &Fitter, within: Search, modal: &ModalJudgement, division: O
             ModalJudgement::of(&blind, &within.nominal.hypothesis, &within.candidates, Some(&known))?;
         division.judge(&judged.search_on(&division.seen, &within), &search, observation)
     });
-    let chi2_per_dof = search.refitted.chi2_per_dof(observation);
-    let chance = upper_tail(excess(chi2_per_dof, observation.degrees(), observation.noise_uncertainty()));
     let locations = match modal.verdict {
         Verdict::Unexplained => located(*fitter, &search.nominal.hypothesis, &search.refitted),
         _ => Vec::new(),
     };
     Parts {
         verdict: modal.verdict,
-        refitted: (chi2_per_dof, chance),
-        mismatch: mismatch(observation, &search.refitted.predicted, settings.evidence.bands),
-        residual_correlation: observation.residual_correlation(&search.repaired.predicted),
         findings: modal.findings(&search.candidates),
         locations,
         held_out,
@@ -345,44 +337,15 @@ fn since(
     fixture: &Fixture,
     exact: bool,
 ) -> Result<Parts, DiagnosisError> {
-    let observation = fitter.observation;
-    let hypothesis = Hypothesis::nominal(fixture, exact);
-    let candidates = catalogue(fixture, observation);
-    let (modal, before) =
-        ModalJudgement::since(fitter, baseline, &hypothesis, &candidates).ok_or(DiagnosisError::Baseline)?;
-    let predicted = hypothesis.predict(observation)?;
-    let chi2 = observation.chi2(&predicted);
-    let nominal = Fit { hypothesis, predicted, chi2, objective: chi2 };
-    let within = Search { refitted: nominal.clone(), repaired: nominal.clone(), nominal, candidates };
+    let within = Search::as_stated(fitter, fixture, exact).ok_or(DiagnosisError::Baseline)?;
+    let judged = ModalJudgement::since(fitter, baseline, &within.nominal.hypothesis, &within.candidates);
+    let (modal, before) = judged.ok_or(DiagnosisError::Baseline)?;
     let parts = by_modes(fitter, within, &modal, None);
     Ok(Parts { baseline_error: Some(before), ..parts })
 }
 
-/// Quantities that the refitted or the repaired model took farther from what is stated than chance does, the farthest first.
-fn departures(search: &Search) -> Vec<Departure> {
-    let [refitted, repaired] = [&search.refitted, &search.repaired].map(|fit| &fit.hypothesis);
-    let of = |(index, tolerance): (usize, &Tolerance)| {
-        let largest = refitted.departure(index).abs().max(repaired.departure(index).abs());
-        let std = tolerance.quantity.std.filter(|_| largest > DEPARTED)?;
-        Some(Departure {
-            path: tolerance.quantity.path.clone(),
-            stated: tolerance.quantity.value,
-            std,
-            refitted: refitted.ended_at(index),
-            repaired: repaired.ended_at(index),
-            deviations: repaired.departure(index),
-        })
-    };
-    let mut all: Vec<Departure> = repaired.tolerances().iter().enumerate().filter_map(of).collect();
-    all.sort_by(|a, b| b.deviations.abs().total_cmp(&a.deviations.abs()));
-    all
-}
-
 fn verdict(fitter: &Fitter, search: &Search, findings: &[Finding]) -> Verdict {
-    let (coherence, scatter) = fitter.settings.evidence.explained;
-    let from_scatter = fitter.observation.noise().contains(&NoiseSource::Scatter);
-    let limit = if from_scatter { scatter } else { coherence };
-    let fits = search.repaired.chi2_per_dof(fitter.observation) < limit;
+    let fits = search.repaired.chi2_per_dof(fitter.observation) < explained(fitter);
     match (findings.is_empty(), fits) {
         (true, true) => Verdict::Consistent,
         (true, false) => Verdict::Unexplained,

@@ -1,5 +1,6 @@
 //! How probable it is that a hypothesis is right, against others and against physics that none covers.
 
+use crate::Hypothesis;
 use crate::fit::Fit;
 use crate::fitter::Fitter;
 use crate::penalty::parameter_penalty;
@@ -7,6 +8,18 @@ use crate::penalty::parameter_penalty;
 /// Standard deviations by which χ² per degree of freedom exceeds one, the relative uncertainty of the noise's variances included.
 pub(crate) fn excess(chi2_per_dof: f64, degrees: usize, noise_uncertainty: f64) -> f64 {
     (chi2_per_dof - 1.0) / (2.0 / degrees.max(1) as f64).sqrt().hypot(noise_uncertainty)
+}
+
+/// χ² per degree of freedom up to which a fit leaves no more than noise.
+pub(crate) fn explained(fitter: &Fitter) -> f64 {
+    let (coherence, scatter) = fitter.settings.evidence.explained;
+    if fitter.observation.has_scatter_for_noise() { scatter } else { coherence }
+}
+
+/// Whether a hypothesis' quantities lie no farther from what is stated than chance takes them.
+pub(crate) fn deviates_by_chance(fitter: &Fitter, hypothesis: &Hypothesis) -> bool {
+    let quantities = hypothesis.tolerances().len() as f64;
+    hypothesis.penalty() <= quantities + fitter.settings.selection.deviated * (2.0 * quantities).sqrt()
 }
 
 /// Minus twice the logarithm of the evidence, up to a constant: χ² and priors, divided by the variance `inflation`, and a penalty for every

@@ -1,5 +1,6 @@
 //! What a diagnosis shows besides its findings: where the mismatch sits, how it goes with frequency, what else the reader must know.
 
+use crate::departures::DEPARTED;
 use crate::diagnosis::{BandShare, Diagnosis, Finding};
 use crate::fit::Fit;
 use crate::location::{BandMisfit, Location};
@@ -8,8 +9,6 @@ use jointscope_fixture::{EffectKind, Place};
 use jointscope_spectra::FrfPair;
 use serde::Serialize;
 
-/// Standard deviations beyond which a refit has bent a quantity to imitate what is missing.
-const BENT: f64 = 4.0;
 /// Correlation of neighbouring lines from which residuals are not called white.
 const WHITE: f64 = 0.2;
 /// Ratio of the relative errors at the ends of the band from which they count as different.
@@ -128,7 +127,7 @@ impl Diagnosis {
             .filter(|(_, tolerance)| tolerance.quantity.std.is_some());
         let all = stated
             .map(|(index, tolerance)| (tolerance.quantity.path.as_str(), refitted.departure(index).abs()));
-        all.max_by(|a, b| a.1.total_cmp(&b.1)).filter(|(_, departure)| *departure > BENT)
+        all.max_by(|a, b| a.1.total_cmp(&b.1)).filter(|(_, departure)| *departure > DEPARTED)
     }
 
     /// χ² per real value that `fit` leaves, by FRF and band (the bands of [`Diagnosis::mismatch`]).

@@ -26,6 +26,13 @@ impl Fit {
         if global { fitter.global(start) } else { fitter.local(start, None, f64::INFINITY) }
     }
 
+    /// A hypothesis as it stands; `None` where it predicts no finite FRFs.
+    pub(crate) fn at(hypothesis: Hypothesis, observation: &Observation) -> Option<Self> {
+        let predicted = hypothesis.predict(observation).ok()?;
+        let chi2 = observation.chi2(&predicted);
+        Some(Fit { objective: chi2 + hypothesis.penalty(), hypothesis, predicted, chi2 })
+    }
+
     /// Covariance of the coordinates; `None` where the FRFs leave a combination free.
     pub fn covariance(&self, observation: &Observation) -> Option<Covariance> {
         Fitter { observation, settings: &Settings::default() }.information(&self.hypothesis).covariance()

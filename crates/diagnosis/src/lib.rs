@@ -31,6 +31,7 @@
 
 mod alternatives;
 mod catalogue;
+mod departures;
 mod diagnosis;
 mod estimates;
 mod evidence;
@@ -54,6 +55,7 @@ mod settings;
 
 pub use alternatives::Alternative;
 pub use catalogue::{Candidate, catalogue};
+pub use departures::Departure;
 pub use diagnosis::{BandShare, Diagnosis, DiagnosisError, DiagnosisOptions, Finding, FrfMismatch, Tried};
 pub use facts::{EndErrors, FrfMisfit, Phase, Trend, Variation};
 pub use fit::Fit;
@@ -61,7 +63,7 @@ pub use hypothesis::{Hypothesis, PredictionError, Tolerance};
 pub use jointscope_findings::{Estimate, HeldOut, Verdict};
 pub use linearisation::Linearisation;
 pub use location::{BandMisfit, LawFit, LawParameter, LineEstimate, Location, Site, locate, measure};
-pub use modal::{Departure, ModelError};
+pub use modal::ModelError;
 pub use observation::Observation;
 pub use search::Search;
 pub use settings::{

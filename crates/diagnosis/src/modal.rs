@@ -8,12 +8,12 @@
 //! * [`fit`]: one hypothesis at its most probable parameters and sizes of error;
 //! * [`prior`]: what is known of parameters beforehand;
 //! * [`search`]: every candidate, alone and beside others;
-//! * [`judgement`]: what it comes to: names with their probabilities and intervals, errors, departures.
+//! * [`judgement`]: what it comes to: names with their probabilities and intervals, and errors.
 
 mod fit;
 mod judgement;
 mod prior;
 mod search;
 
-pub use judgement::{Departure, ModelError};
+pub use judgement::ModelError;
 pub(crate) use judgement::{ModalJudgement, explains};

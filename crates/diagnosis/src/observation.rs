@@ -151,6 +151,11 @@ impl Observation {
         &self.noise
     }
 
+    /// Whether some FRF's noise is told by nothing but the scatter of its lines.
+    pub(crate) fn has_scatter_for_noise(&self) -> bool {
+        self.noise.contains(&NoiseSource::Scatter)
+    }
+
     /// Measured values, FRF after FRF.
     pub fn values(&self) -> &[Complex64] {
         self.frfs.all_values()

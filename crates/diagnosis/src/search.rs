@@ -1,7 +1,7 @@
 //! Which effects a recording needs: forward selection with exchange, every candidate fitted with the tolerances.
 
 use crate::catalogue::{Candidate, catalogue};
-use crate::evidence::nothing_can_be_stated;
+use crate::evidence::{deviates_by_chance, nothing_can_be_stated};
 use crate::fit::Fit;
 use crate::fitter::Fitter;
 use crate::penalty::{parameter_penalty, penalty};
@@ -24,16 +24,18 @@ pub struct Search {
 }
 
 impl Search {
+    /// The fixture as it stands, not refitted, and nothing searched for yet. `None` where it predicts no finite FRFs.
+    pub(crate) fn as_stated(fitter: &Fitter, fixture: &Fixture, exact: bool) -> Option<Self> {
+        let nominal = Fit::at(Hypothesis::nominal(fixture, exact), fitter.observation)?;
+        let candidates = catalogue(fixture, fitter.observation);
+        Some(Search { refitted: nominal.clone(), repaired: nominal.clone(), nominal, candidates })
+    }
+
     /// The fixture as it stands and refitted, and nothing searched for yet. `None` where it predicts no finite FRFs.
     pub(crate) fn without_effects(fitter: &Fitter, fixture: &Fixture, exact: bool) -> Option<Self> {
-        let observation = fitter.observation;
-        let start = Hypothesis::nominal(fixture, exact);
-        let predicted = start.predict(observation).ok()?;
-        let chi2 = observation.chi2(&predicted);
-        let nominal = Fit { hypothesis: start.clone(), predicted, chi2, objective: chi2 };
-        let refitted = fitter.searched(&start)?;
-        let candidates = catalogue(fixture, observation);
-        Some(Search { nominal, repaired: refitted.clone(), refitted, candidates })
+        let start = Search::as_stated(fitter, fixture, exact)?;
+        let refitted = fitter.searched(&start.nominal.hypothesis)?;
+        Some(Search { repaired: refitted.clone(), refitted, ..start })
     }
 
     /// Searches for effects with the default settings. `None` where the fixture predicts no finite FRFs.
@@ -127,9 +129,8 @@ impl Search {
             _ => (settings.fits.1, observation.noise_uncertainty()),
         };
         // Quantities that had to deviate are a misfit too, which a χ² that is small by chance must not hide.
-        let quantities = fit.hypothesis.tolerances().len() as f64;
         fit.objective > degrees * (1.0 + fits * (2.0 / degrees).sqrt().hypot(noise))
-            || fit.hypothesis.penalty() > quantities + settings.deviated * (2.0 * quantities).sqrt()
+            || !deviates_by_chance(fitter, &fit.hypothesis)
     }
 
     /// Fits of `base` with one more effect, best first by objective and penalty of parameters, with the candidate's index.

@@ -48,6 +48,9 @@ impl Default for ErrorSizes {
 }
 
 impl ErrorSizes {
+    /// Multiple of its usual size below which an error is none: what is told from noise lies far above.
+    pub const LEAST: f64 = 1e-3;
+
     /// In the order of the fields.
     pub fn to_array(self) -> [f64; KINDS] {
         let ErrorSizes { frequency, damping, shape, quadrature, mass_line, upper_residual, gain } = self;

@@ -22,7 +22,7 @@ pub struct Linear {
 pub struct Evidence {
     /// ln p(features), nats, the sizes' prior included, without its normalisation.
     pub ln: f64,
-    /// The most probable sizes; a thousandth of the prior's at least.
+    /// The most probable sizes, [`ErrorSizes::LEAST`] of the prior's at least.
     pub sizes: ErrorSizes,
 }
 
@@ -30,8 +30,6 @@ pub struct Evidence {
 const COARSE: [f64; 7] = [1e-3, 0.1, 0.4, 1.0, 3.0, 10.0, 40.0];
 /// Factors by which each is refined.
 const FINE: [f64; 4] = [3.0, 1.6, 1.25, 1.1];
-/// Least size, as a multiple of the prior's.
-const LEAST: f64 = 1e-3;
 const SWEEPS: usize = 2;
 /// Sizes over which a mean is taken.
 const GRID: usize = 24;
@@ -81,7 +79,7 @@ impl Linear {
         let mut ln = value(&best);
         let mut try_size = |best: &mut [f64; KINDS], ln: &mut f64, kind: usize, size: f64| {
             let mut other = *best;
-            other[kind] = size.max(LEAST * prior[kind]);
+            other[kind] = size.max(ErrorSizes::LEAST * prior[kind]);
             let found = value(&other);
             let better = found > *ln;
             if better {
@@ -102,7 +100,7 @@ impl Linear {
             for kind in 0..KINDS {
                 for step in [factor, 1.0 / factor] {
                     let mut left = 6;
-                    while left > 0 && best[kind] > LEAST * prior[kind] * 0.999 {
+                    while left > 0 && best[kind] > ErrorSizes::LEAST * prior[kind] * 0.999 {
                         let size = best[kind] * step;
                         if !try_size(&mut best, &mut ln, kind, size) {
                             break;

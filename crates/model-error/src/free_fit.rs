@@ -182,7 +182,7 @@ impl FreeFit {
         let (modes, all) = (self.inside, self.poles.len());
         let residues = |r: usize| -> Vec<Complex64> { self.fits.iter().map(|f| f.coefficients[r]).collect() };
         let scale = |values: &[f64]| (values.iter().map(|v| v * v).sum::<f64>() / values.len() as f64).sqrt();
-        let mut recorded: Vec<RecordedMode> = (0..modes)
+        let recorded: Vec<RecordedMode> = (0..modes)
             .map(|r| {
                 let residues = residues(r);
                 let sizes: Vec<f64> = residues.iter().map(|a| a.norm()).collect();
@@ -196,7 +196,6 @@ impl FreeFit {
         let residual_scales = [0, 1].map(|k| scale(&terms[k]).max(f64::MIN_POSITIVE));
         let chi2_per_dof = self.chi2_per_dof(recording);
         let covariance = self.covariance(&recorded, &residual_scales, chi2_per_dof.max(1.0))?;
-        recorded.iter_mut().for_each(|mode| mode.residues.shrink_to_fit());
         Some(RecordedModes {
             pairs: recording.frfs.pairs().to_vec(),
             band: (lines.hz()[0], lines.hz()[lines.len() - 1]),

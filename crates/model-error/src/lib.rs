@@ -7,8 +7,8 @@
 //! 1. **Recording.** [`RecordedModes::of`] fits all FRFs freely with common poles,
 //!    H(s) = Σ s²A/(s² + 2ζωs + ω²) + residual terms, and gives the *features*: ln ω and ln ζ of each mode, its residue A in each FRF, each FRF's mass line and
 //!    upper residual. Their covariance is the Cramér–Rao bound times χ² per degree of freedom where that is above one.
-//! 2. **Model.** [`poles`] finds a fixture's poles by the peaks of its FRFs and the modes of the recording; [`ModelledModes::near`] follows them from there, by analytic continuation of the
-//!    FRFs as they would be recorded, and takes residues by contour integrals. [`modes_within`] counts the modes in a band.
+//! 2. **Model.** [`ModelledModes::of`] finds a fixture's poles by the peaks of its FRFs and the modes of the recording, follows them by analytic continuation of the FRFs as they would be
+//!    recorded, and takes residues by contour integrals; [`ModelledModes::near`] sets out from poles that are known. [`modes_within`] counts the modes in a band.
 //! 3. **Pairing.** [`Pairing::of`] tells which mode of the model is which of the recording, by frequency and shape, and what modes without a partner cost.
 //! 4. **Error.** [`ErrorSizes`] are relative standard deviations by kind: natural frequency, damping ratio, shape (in phase and in quadrature), mass line, upper residual.
 //!    [`Comparison`] makes the covariance S = noise + Σ size²·kind of them, with the model's [`Shapes`].
@@ -21,7 +21,7 @@
 //! ```
 //! use jointscope_fixture::Fixture;
 //! use jointscope_lumped::{Instrument, synthesize};
-//! use jointscope_model_error::{Comparison, ErrorSizes, Linear, ModelledModes, Pairing, RecordedModes, Recording, Shapes, poles};
+//! use jointscope_model_error::{Comparison, ErrorSizes, Linear, ModelledModes, Pairing, RecordedModes, Recording, Shapes};
 //! use jointscope_modes::ModesOptions;
 //! use jointscope_spectra::{FrfPair, SpectralLines};
 //!
@@ -46,7 +46,7 @@
 //! assert!((recorded.modes[0].pole.omega / natural - 1.0).abs() < 1e-6);
 //!
 //! // The model's spring is 1 % too stiff, its natural frequency 0.5 % too high.
-//! let modelled = ModelledModes::near(&model, &recorded, &poles(&model, &recorded)).ok_or("no poles")?;
+//! let modelled = ModelledModes::of(&model, &recorded).ok_or("no poles")?;
 //! let ratio = modelled.modes[0].pole.omega / recorded.modes[0].pole.omega;
 //! assert!((ratio - 1.01_f64.sqrt()).abs() < 1e-6);
 //!
@@ -75,6 +75,6 @@ pub use basis::Pole;
 pub use errors::{Comparison, ErrorSizes};
 pub use evidence::{Evidence, Linear};
 pub use matching::Pairing;
-pub use modelled::{ModelledMode, ModelledModes, modes_within, poles};
+pub use modelled::{ModelledMode, ModelledModes, modes_within};
 pub use recorded::{RecordedMode, RecordedModes, Recording};
 pub use shapes::Shapes;

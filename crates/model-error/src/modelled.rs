@@ -61,14 +61,10 @@ pub fn modes_within(fixture: &Fixture, frfs: &FrfSet) -> Option<usize> {
     Some(found.iter().filter(|pole| (TAU * low..=TAU * high).contains(&pole.norm())).count())
 }
 
-/// The poles of a fixture in and near the band of a recording (from half its lowest line to 1.6 times its highest), rad/s, ascending: from the peaks
-/// of its FRFs over a grid of frequencies, and from the recording's own modes.
-///
-/// A mode that makes no peak in any FRF between the recording's channels is found only where the recording has one nearby.
-pub fn poles(fixture: &Fixture, recorded: &RecordedModes) -> Vec<Complex64> {
-    let test = ModelledTest::new(fixture, &recorded.pairs, recorded.band.1, Instrument::AsRecorded);
-    let Ok(test) = test else { return Vec::new() };
-    let mut all = peaking(&test, &recorded.outline.grid, recorded.frfs());
+/// The poles in and near the band of a recording (from half its lowest line to 1.6 times its highest), rad/s, ascending: from the peaks of the FRFs
+/// over a grid of frequencies, and from the recording's own modes.
+fn poles(test: &ModelledTest, recorded: &RecordedModes) -> Vec<Complex64> {
+    let mut all = peaking(test, &recorded.outline.grid, recorded.frfs());
     // A narrow mode that is weak in all FRFs may lie between two frequencies of the grid: then a recorded one shows where to look.
     let mut frfs = test.continued();
     for guess in recorded.modes.iter().map(|mode| mode.pole.lambda()) {
@@ -125,10 +121,14 @@ fn apart(guess: Complex64) -> Complex64 {
 }
 
 impl RecordedModes {
+    /// A fixture as this recording's test would have read it.
+    fn modelled(&self, fixture: &Fixture) -> Option<ModelledTest> {
+        ModelledTest::new(fixture, &self.pairs, self.band.1, Instrument::AsRecorded).ok()
+    }
+
     /// The modes in the band that a fixture has and this recording, as far as it is told, has not.
     pub fn unpaired(&self, fixture: &Fixture) -> Vec<Pole> {
-        let found = poles(fixture, self);
-        let Some(modelled) = ModelledModes::near(fixture, self, &found) else { return Vec::new() };
+        let Some(modelled) = ModelledModes::of(fixture, self) else { return Vec::new() };
         let pairing = Pairing::of(self, &modelled);
         let band = TAU * self.band.0..TAU * self.band.1;
         let alone = |(index, mode): &(usize, &ModelledMode)| {
@@ -139,10 +139,21 @@ impl RecordedModes {
 }
 
 impl ModelledModes {
+    /// The modes of a fixture in and near the band of a recording: from half its lowest line to 1.6 times its highest. `None` where a pole cannot be
+    /// followed or the model has no finite FRFs.
+    ///
+    /// A mode that makes no peak in any FRF between the recording's channels is found only where the recording has one nearby.
+    pub fn of(fixture: &Fixture, recorded: &RecordedModes) -> Option<Self> {
+        let test = recorded.modelled(fixture)?;
+        ModelledModes::followed(&test, recorded, &poles(&test, recorded))
+    }
+
     /// The modes of a fixture near `poles`, rad/s; `None` where a pole cannot be followed or the model has no finite FRFs.
     pub fn near(fixture: &Fixture, recorded: &RecordedModes, poles: &[Complex64]) -> Option<Self> {
-        let test =
-            ModelledTest::new(fixture, &recorded.pairs, recorded.band.1, Instrument::AsRecorded).ok()?;
+        ModelledModes::followed(&recorded.modelled(fixture)?, recorded, poles)
+    }
+
+    fn followed(test: &ModelledTest, recorded: &RecordedModes, poles: &[Complex64]) -> Option<Self> {
         let mut frfs = test.continued();
         let modes: Vec<ModelledMode> =
             poles.iter().map(|pole| mode(&mut frfs, *pole, recorded.frfs())).collect::<Option<_>>()?;

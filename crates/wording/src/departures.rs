@@ -4,8 +4,6 @@ use crate::numbers::{decimals, listed, prefixed, rounded, significant};
 use jointscope_diagnosis::{Departure, Diagnosis};
 use jointscope_findings::Verdict;
 
-/// Standard deviations beyond which the repaired model keeps a departure: as many as make one.
-const DEPARTED: f64 = 4.0;
 /// Further quantities that are named at the most.
 const NAMES: usize = 3;
 
@@ -27,7 +25,7 @@ pub(crate) fn departed(diagnosis: &Diagnosis) -> String {
 
 /// The departures that the effects found do not take away, the farthest first.
 pub(crate) fn remaining(diagnosis: &Diagnosis) -> impl Iterator<Item = &Departure> {
-    diagnosis.departures.iter().filter(|departure| departure.deviations.abs() > DEPARTED)
+    diagnosis.departures.iter().filter(|departure| departure.remains())
 }
 
 /// `bodies/F1/mass would have to be 4.23 kg, 10 standard deviations from the stated 3.50 kg`.

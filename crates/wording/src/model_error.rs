@@ -106,14 +106,11 @@ pub fn error_in_words(error: &ModelError) -> [ErrorInWords; 3] {
     ];
     kinds.map(|(kind, size, usual)| ErrorInWords {
         kind,
-        size: (size > NEGLIGIBLE * usual).then(|| short(size)),
+        size: (size > 0.0).then(|| short(size)),
         usual: short(usual),
         large: size > settings.adequate.0 * usual,
     })
 }
-
-/// Share of the usual size below which an error is none.
-const NEGLIGIBLE: f64 = 0.01;
 
 /// `0.05 % in natural frequency and 0.3 % in residues`, kinds that are not there left out.
 pub(crate) fn sizes(error: &ModelError) -> String {

@@ -7,9 +7,8 @@ use jointscope_inference::{
 };
 use jointscope_linalg::Cholesky;
 use jointscope_model_error::{
-    Comparison, ErrorSizes, Evidence, Linear, ModelledModes, Pairing, RecordedModes, Shapes, poles,
+    Comparison, ErrorSizes, Evidence, Linear, ModelledModes, Pairing, RecordedModes, Shapes,
 };
-use num_complex::Complex64;
 
 /// The recording's modes and what is known of the model's error.
 #[derive(Debug, Clone, Copy)]
@@ -25,7 +24,6 @@ pub(crate) struct Standing {
     pub modelled: ModelledModes,
     pub pairing: Pairing,
     pub comparison: Comparison,
-    pub poles: Vec<Complex64>,
 }
 
 /// A hypothesis at its most probable parameters.
@@ -67,18 +65,17 @@ impl<'a> Problem<'a> {
     /// Where a hypothesis stands, its poles found anew.
     pub fn standing(&self, hypothesis: &Hypothesis) -> Option<Standing> {
         let fixture = hypothesis.to_fixture().ok()?;
-        let found = poles(&fixture, self.recorded);
-        let modelled = ModelledModes::near(&fixture, self.recorded, &found)?;
-        let poles = modelled.poles();
+        let modelled = ModelledModes::of(&fixture, self.recorded)?;
         let pairing = Pairing::of(self.recorded, &modelled);
-        let shapes = Shapes::of(&fixture, self.recorded, &poles)?;
+        let shapes = Shapes::of(&fixture, self.recorded, &modelled.poles())?;
         let comparison = Comparison::new(self.recorded, &pairing, &modelled, &shapes);
-        Some(Standing { modelled, pairing, comparison, poles })
+        Some(Standing { modelled, pairing, comparison })
     }
 
-    fn modelled(&self, hypothesis: &Hypothesis, poles: &[Complex64]) -> Option<ModelledModes> {
+    /// The modes of a hypothesis, followed from those of another one near it.
+    fn modelled(&self, hypothesis: &Hypothesis, near: &ModelledModes) -> Option<ModelledModes> {
         let fixture = hypothesis.to_fixture().ok()?;
-        ModelledModes::near(&fixture, self.recorded, poles)
+        ModelledModes::near(&fixture, self.recorded, &near.poles())
     }
 
     /// Recorded less modelled features, of the modes that are paired.
@@ -91,7 +88,7 @@ impl<'a> Problem<'a> {
         &self,
         hypothesis: &Hypothesis,
         standing: &Standing,
-        poles: &[Complex64],
+        modelled: &ModelledModes,
         residual: &[f64],
         priors: &[Prior],
         of: std::ops::Range<usize>,
@@ -100,7 +97,7 @@ impl<'a> Problem<'a> {
             let size = (DIFFERENCE.0 * priors[index].std).min(DIFFERENCE.1);
             let inward = hypothesis.inward(index, size);
             // A beam that ends at a support cannot become shorter: then longer.
-            let moved = |step: f64| Some((step, self.modelled(&hypothesis.moved(index, step), poles)?));
+            let moved = |step: f64| Some((step, self.modelled(&hypothesis.moved(index, step), modelled)?));
             let (step, moved) = moved(inward).or_else(|| moved(-inward))?;
             let there = self.residual(standing, &moved);
             Some(residual.iter().zip(&there).map(|(at, there)| (at - there) / step).collect())
@@ -108,23 +105,22 @@ impl<'a> Problem<'a> {
         .collect()
     }
 
-    /// The most probable parameters from where `start` stands, and the sizes of the error there; with derivatives known from nearby where there
-    /// are any.
-    pub fn fitted(
+    /// The most probable parameters from where `start` stands, and the sizes of the error there.
+    pub fn fitted(&self, start: &Hypothesis, priors: Vec<Prior>) -> Option<ModalFit> {
+        self.fitted_from(start, self.standing(start)?, priors, None)
+    }
+
+    /// [`Problem::fitted`] from where `start` is known to stand, with derivatives known from nearby where there are any.
+    pub fn fitted_from(
         &self,
         start: &Hypothesis,
+        mut standing: Standing,
         priors: Vec<Prior>,
         nearby: Option<Vec<Vec<f64>>>,
     ) -> Option<ModalFit> {
-        let mut standing = self.standing(start)?;
         let residual = self.residual(&standing, &standing.modelled);
         let nearby = nearby.filter(|slopes| slopes.iter().all(|slope| slope.len() == residual.len()));
-        let mut point = Iterate {
-            hypothesis: start.clone(),
-            modelled: standing.modelled.clone(),
-            poles: standing.poles.clone(),
-            residual,
-        };
+        let mut point = Iterate { hypothesis: start.clone(), modelled: standing.modelled.clone(), residual };
         let mut derivatives = nearby;
         let mut sizes = *self.sizes;
         let mut best: Option<ModalFit> = None;
@@ -145,7 +141,6 @@ impl<'a> Problem<'a> {
             if ln > before {
                 let mut standing = standing.clone();
                 standing.modelled = point.modelled.clone();
-                standing.poles = point.poles.clone();
                 best = Some(ModalFit {
                     hypothesis: point.hypothesis.clone(),
                     priors: priors.clone(),
@@ -164,15 +159,13 @@ impl<'a> Problem<'a> {
                     break;
                 }
                 point.residual = self.residual(&anew, &anew.modelled);
-                (point.modelled, point.poles) = (anew.modelled.clone(), anew.poles.clone());
+                point.modelled = anew.modelled.clone();
                 (standing, derivatives, best) = (anew, None, None);
             }
         }
         best
     }
-}
 
-impl Problem<'_> {
     /// The most probable parameters at given sizes of the error, with the covariance of their coordinates.
     pub fn at_sizes(&self, fit: &ModalFit, sizes: &ErrorSizes) -> Option<(Hypothesis, Option<Covariance>)> {
         let standing = &fit.standing;
@@ -181,7 +174,6 @@ impl Problem<'_> {
         let start = Iterate {
             hypothesis: fit.hypothesis.clone(),
             modelled: standing.modelled.clone(),
-            poles: standing.poles.clone(),
             residual: fit.residual.clone(),
         };
         let point = descend(&descent, start, Some(fit.slopes.clone()), &settings())?.point;
@@ -208,7 +200,6 @@ fn settings() -> Settings {
 struct Iterate {
     hypothesis: Hypothesis,
     modelled: ModelledModes,
-    poles: Vec<Complex64>,
     residual: Vec<f64>,
 }
 
@@ -246,7 +237,14 @@ impl LeastSquares for Descent<'_> {
 
     fn derivatives(&self, point: &Iterate, _: Precision) -> Option<Vec<Vec<f64>>> {
         let all = 0..point.hypothesis.coordinates.len();
-        self.problem.slopes(&point.hypothesis, self.standing, &point.poles, &point.residual, self.priors, all)
+        self.problem.slopes(
+            &point.hypothesis,
+            self.standing,
+            &point.modelled,
+            &point.residual,
+            self.priors,
+            all,
+        )
     }
 
     fn equations(&self, point: &Iterate, slopes: &Vec<Vec<f64>>, _: &()) -> NormalEquations {
@@ -268,9 +266,9 @@ impl LeastSquares for Descent<'_> {
         let hypothesis = &point.hypothesis;
         let step = equations.bounded_step(damping, &hypothesis.coordinates, hypothesis.parameters())?;
         let hypothesis = hypothesis.stepped(&step);
-        let modelled = self.problem.modelled(&hypothesis, &point.poles)?;
+        let modelled = self.problem.modelled(&hypothesis, &point.modelled)?;
         let residual = self.problem.residual(self.standing, &modelled);
-        Some(Iterate { hypothesis, poles: modelled.poles(), residual, modelled })
+        Some(Iterate { hypothesis, residual, modelled })
     }
 }
 

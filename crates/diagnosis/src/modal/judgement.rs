@@ -3,7 +3,7 @@
 use crate::catalogue::Candidate;
 use crate::diagnosis::{Finding, Tried};
 use crate::estimates::estimates;
-use crate::evidence::excess;
+use crate::evidence::{deviates_by_chance, excess, explained};
 use crate::fit::Fit;
 use crate::fitter::Fitter;
 use crate::modal::fit::{ModalFit, Problem};
@@ -15,7 +15,6 @@ use crate::settings::ModalSettings;
 use crate::{Hypothesis, Observation};
 use jointscope_findings::Verdict;
 use jointscope_fixture::Effect;
-use jointscope_frf::noise::NoiseSource;
 use jointscope_inference::Covariance;
 use jointscope_model_error::{ErrorSizes, Pairing, RecordedModes, Recording};
 use jointscope_modes::ModesOptions;
@@ -30,23 +29,6 @@ pub struct ModelError {
     pub damping: f64,
     /// Of residues, that is of shapes.
     pub residue: f64,
-}
-
-/// A quantity that had to leave its stated value by more than chance makes.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Departure {
-    /// Its path in the fixture file.
-    pub path: String,
-    /// Stated value.
-    pub stated: f64,
-    /// Stated standard deviation.
-    pub std: f64,
-    /// Value of the refitted fixture.
-    pub refitted: f64,
-    /// Value of the repaired one.
-    pub repaired: f64,
-    /// Departure of the repaired value, in standard deviations.
-    pub deviations: f64,
 }
 
 /// The outcome of a comparison by modes.
@@ -99,7 +81,7 @@ impl ModalJudgement {
         let before = recorded(baseline, nominal, &settings.modal)?;
         let features = before.features();
         let problem = Problem { recorded: &before, features: &features, sizes: &settings.modal.usual };
-        let calibrated = problem.fitted(nominal, priors(nominal, &[]), None)?;
+        let calibrated = problem.fitted(nominal, priors(nominal, &[]))?;
         let now = recorded(observation, &calibrated.hypothesis, &settings.modal)?;
         let model = &calibrated.standing.modelled;
         let own = Pairing::of(&now, model);
@@ -130,9 +112,8 @@ pub(super) fn recorded(
 ) -> Option<RecordedModes> {
     let recording = Recording { frfs: observation.frfs(), weights: observation.weights() };
     // Where nothing but the FRFs tells their noise, every ripple looks like a mode: no more are asked for than a model may have.
-    let from_scatter = observation.noise().contains(&NoiseSource::Scatter);
     let expected = || jointscope_model_error::modes_within(&nominal.to_fixture().ok()?, observation.frfs());
-    let orders = from_scatter.then(expected).flatten().map(|modes| (2, 2 * modes + 8));
+    let orders = observation.has_scatter_for_noise().then(expected).flatten().map(|modes| (2, 2 * modes + 8));
     let options = ModesOptions { orders, ..ModesOptions::default() };
     let alone = RecordedModes::of(recording, &options, &[])?;
     if alone.chi2_per_dof < settings.free_fit {
@@ -147,20 +128,13 @@ pub(super) fn recorded(
 
 /// Whether a fit leaves no more than noise, its quantities no farther than chance; `strictly` not a tenth of the noise more.
 pub(crate) fn explains(fitter: &Fitter, fit: &Fit, strictly: bool) -> bool {
-    let Fitter { observation, settings } = fitter;
-    let (coherence, scatter) = settings.evidence.explained;
-    let from_scatter = observation.noise().contains(&NoiseSource::Scatter);
+    let observation = fitter.observation;
     let chi2_per_dof = fit.chi2_per_dof(observation);
-    let fits = match (strictly, from_scatter) {
-        (_, true) => chi2_per_dof < scatter,
-        (true, false) => {
-            excess(chi2_per_dof, observation.degrees(), 0.5 * observation.noise_uncertainty()) < 2.0
-        }
-        (false, false) => chi2_per_dof < coherence,
+    let fits = match strictly && !observation.has_scatter_for_noise() {
+        true => excess(chi2_per_dof, observation.degrees(), 0.5 * observation.noise_uncertainty()) < 2.0,
+        false => chi2_per_dof < explained(fitter),
     };
-    let quantities = fit.hypothesis.tolerances().len() as f64;
-    let departures = quantities + settings.selection.deviated * (2.0 * quantities).sqrt();
-    fits && fit.hypothesis.penalty() < departures
+    fits && deviates_by_chance(fitter, &fit.hypothesis)
 }
 
 struct Judge<'a> {
@@ -242,11 +216,13 @@ impl Judge<'_> {
     }
 }
 
+/// Share of the usual size below which an error is none: ten times the least that is tried.
+const NEGLIGIBLE: f64 = 10.0 * ErrorSizes::LEAST;
+
 fn error(fit: &ModalFit) -> ModelError {
     let ErrorSizes { frequency, damping, shape, .. } = fit.evidence.sizes;
     let usual = ErrorSizes::default();
-    // What is at its least is not there.
-    let told = |size: f64, usual: f64| if size > 0.01 * usual { size } else { 0.0 };
+    let told = |size: f64, usual: f64| if size > NEGLIGIBLE * usual { size } else { 0.0 };
     ModelError {
         frequency: told(frequency, usual.frequency),
         damping: told(damping, usual.damping),
@@ -265,7 +241,7 @@ impl ModalJudgement {
     pub fn is_dubious(&self, fitter: &Fitter) -> bool {
         let alone = self.search.best.fit.standing.pairing.alone();
         // Records taken one after another, their noise told by scatter alone: an outlier among their gains passes for an error of all gains.
-        let unsure = self.is_unexplained() && fitter.observation.noise().contains(&NoiseSource::Scatter);
+        let unsure = self.is_unexplained() && fitter.observation.has_scatter_for_noise();
         let told = self.free_fit <= fitter.settings.modal.hopeless;
         self.tells_little(fitter) || (told && (alone != 0.0 || unsure))
     }
@@ -318,12 +294,7 @@ impl ModalJudgement {
 
     /// The models that the comparison ended with, on lines; `within` is the fixture refitted on lines.
     pub fn search_on(&self, observation: &Observation, within: &Search) -> Search {
-        let on_lines = |hypothesis: &Hypothesis| {
-            let predicted = hypothesis.predict(observation).ok()?;
-            let chi2 = observation.chi2(&predicted);
-            let objective = chi2 + hypothesis.penalty();
-            Some(Fit { hypothesis: hypothesis.clone(), predicted, chi2, objective })
-        };
+        let on_lines = |hypothesis: &Hypothesis| Fit::at(hypothesis.clone(), observation);
         let nominal = on_lines(&within.nominal.hypothesis).unwrap_or_else(|| within.nominal.clone());
         let refitted = on_lines(&self.refitted).unwrap_or_else(|| nominal.clone());
         let repaired = on_lines(&self.last.0).unwrap_or_else(|| refitted.clone());

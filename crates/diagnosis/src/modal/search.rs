@@ -9,9 +9,6 @@ use jointscope_fixture::{Effect, EffectKind};
 use jointscope_model_error::{ErrorSizes, Linear};
 use rayon::prelude::*;
 
-/// Multiple of the usual size of an error that is none.
-const NOTHING: f64 = 1e-3;
-
 /// Standard deviation, in stated ones, that a calibrated quantity keeps.
 const CALIBRATED: f64 = 1e-4;
 
@@ -57,7 +54,7 @@ pub(crate) struct Searcher<'a> {
 impl Searcher<'_> {
     /// Searches for effects; `None` where the fixture has no modes that could be compared.
     pub fn search(&self) -> Option<ModalSearch> {
-        let none = self.problem.fitted(self.nominal, self.priors(self.nominal, &[]), None)?;
+        let none = self.problem.fitted(self.nominal, self.priors(self.nominal, &[]))?;
         let start = Named { names: Vec::new(), exact: self.is_exact(&none), fit: none.clone() };
         let singles = self.extended(&start, self.settings.refined.0);
         let mut best = start.clone();
@@ -98,7 +95,7 @@ impl Searcher<'_> {
         all
     }
 
-    /// What an effect must gain in ln p: the odds of one among so many, and ten to one.
+    /// What an effect must gain in ln p: the odds of one among so many, and those of the settings.
     pub fn needed(&self) -> f64 {
         (self.candidates.len() as f64).ln() + self.settings.odds.ln()
     }
@@ -130,7 +127,7 @@ impl Searcher<'_> {
                 names.remove(index);
                 let hypothesis = best.fit.hypothesis.without(index);
                 let company: Vec<&Candidate> = names.iter().map(|&c| &self.candidates[c]).collect();
-                let fit = self.problem.fitted(&hypothesis, self.priors(&hypothesis, &company), None);
+                let fit = self.problem.fitted(&hypothesis, self.priors(&hypothesis, &company));
                 match fit.map(|fit| Named { names, exact: self.is_exact(&fit), fit }) {
                     Some(base) => (self.extended(&base, self.settings.refined.1), base.fit.ln),
                     None => (Vec::new(), f64::NEG_INFINITY),
@@ -156,8 +153,9 @@ impl Searcher<'_> {
     }
 
     /// What errors of the model gain in ln p.
-    pub fn gained_by_errors(&self, fit: &ModalFit) -> f64 {
-        let without = fit.linear.ln_density(&fit.standing.comparison, &self.problem.sizes.times(NOTHING));
+    fn gained_by_errors(&self, fit: &ModalFit) -> f64 {
+        let without =
+            fit.linear.ln_density(&fit.standing.comparison, &self.problem.sizes.times(ErrorSizes::LEAST));
         without.map_or(f64::INFINITY, |ln| fit.evidence.ln - ln)
     }
 
@@ -176,6 +174,9 @@ impl Searcher<'_> {
 
     /// Fits of `base` with one effect more, the most probable first.
     fn extended(&self, base: &Named, refined: usize) -> Vec<Named> {
+        if let Some(known) = self.known {
+            return self.fitted(base, self.starts_at(base, known));
+        }
         // What resonates makes a mode more: where every mode has its partner, nothing of the kind is there.
         let partners = base.fit.standing.pairing.alone() == 0.0;
         let idle = |c: usize| partners && self.candidates[c].kind == EffectKind::AttachedResonator;
@@ -185,9 +186,6 @@ impl Searcher<'_> {
             false => vec![&base.fit.hypothesis],
         };
         let count = bases.len();
-        if let Some(known) = self.known {
-            return self.fitted(base, self.starts_at(base, known));
-        }
         let starts: Vec<(usize, usize, usize)> = (0..self.candidates.len())
             .filter(free)
             .flat_map(|c| {
@@ -230,8 +228,10 @@ impl Searcher<'_> {
         let fit = |(c, hypothesis): (usize, Hypothesis)| {
             let names: Vec<usize> = base.names.iter().copied().chain([c]).collect();
             let company: Vec<&Candidate> = names.iter().map(|&c| &self.candidates[c]).collect();
-            let nearby = self.nearby(&hypothesis, &base.fit);
-            let fit = self.problem.fitted(&hypothesis, self.priors(&hypothesis, &company), nearby)?;
+            let standing = self.problem.standing(&hypothesis)?;
+            let nearby = self.nearby(&hypothesis, &standing, &base.fit);
+            let priors = self.priors(&hypothesis, &company);
+            let fit = self.problem.fitted_from(&hypothesis, standing, priors, nearby)?;
             Some(Named { names, exact: self.is_exact(&fit), fit })
         };
         let mut fits: Vec<Named> = starts.into_par_iter().filter_map(fit).collect();
@@ -276,17 +276,16 @@ impl Searcher<'_> {
         let known = base.slopes.len();
         let local = self.local_priors(hypothesis, base);
         let own = known..hypothesis.coordinates.len();
-        let own = self.problem.slopes(hypothesis, standing, &standing.poles, residual, &local, own)?;
+        let own = self.problem.slopes(hypothesis, standing, &standing.modelled, residual, &local, own)?;
         Some(base.slopes.iter().cloned().chain(own).collect())
     }
 
     /// [`Searcher::slopes`] where the base compares the same modes.
-    fn nearby(&self, hypothesis: &Hypothesis, base: &ModalFit) -> Option<Vec<Vec<f64>>> {
-        let standing = self.problem.standing(hypothesis)?;
+    fn nearby(&self, hypothesis: &Hypothesis, standing: &Standing, base: &ModalFit) -> Option<Vec<Vec<f64>>> {
         if standing.pairing.pairs != base.standing.pairing.pairs {
             return None;
         }
-        let residual = self.problem.residual(&standing, &standing.modelled);
-        self.slopes(hypothesis, &standing, &residual, base)
+        let residual = self.problem.residual(standing, &standing.modelled);
+        self.slopes(hypothesis, standing, &residual, base)
     }
 }

@@ -3,7 +3,7 @@
 use jointscope_fixture::Fixture;
 use jointscope_lumped::{Instrument, synthesize};
 use jointscope_model_error::{
-    Comparison, ErrorSizes, ModelledModes, Pairing, RecordedModes, Recording, Shapes, poles,
+    Comparison, ErrorSizes, ModelledModes, Pairing, RecordedModes, Recording, Shapes,
 };
 use jointscope_modes::ModesOptions;
 use jointscope_spectra::{FrfPair, FrfSet, SpectralLines};
@@ -200,7 +200,7 @@ impl Compared {
 }
 
 pub fn modelled(fixture: &Fixture, recorded: &RecordedModes) -> ModelledModes {
-    ModelledModes::near(fixture, recorded, &poles(fixture, recorded)).unwrap()
+    ModelledModes::of(fixture, recorded).unwrap()
 }
 
 /// χ² = dᵀS⁻¹d and ln det S by Gaussian elimination of the dense matrix.

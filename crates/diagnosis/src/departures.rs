@@ -1,0 +1,52 @@
+//! Quantities that had to leave their stated values.
+
+use crate::Tolerance;
+use crate::search::Search;
+use serde::Serialize;
+
+/// Standard deviations beyond which a quantity has departed by more than chance makes: once in sixteen thousand.
+pub(crate) const DEPARTED: f64 = 4.0;
+
+/// A quantity that had to leave its stated value by more than chance makes.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Departure {
+    /// Its path in the fixture file.
+    pub path: String,
+    /// Stated value.
+    pub stated: f64,
+    /// Stated standard deviation.
+    pub std: f64,
+    /// Value of the refitted fixture.
+    pub refitted: f64,
+    /// Value of the repaired one.
+    pub repaired: f64,
+    /// Departure of the repaired value, in standard deviations.
+    pub deviations: f64,
+}
+
+impl Departure {
+    /// Whether the repaired model, too, takes it farther than chance does.
+    pub fn remains(&self) -> bool {
+        self.deviations.abs() > DEPARTED
+    }
+}
+
+/// Quantities that the refitted or the repaired model took farther from what is stated than chance does, the farthest first.
+pub(crate) fn departures(search: &Search) -> Vec<Departure> {
+    let [refitted, repaired] = [&search.refitted, &search.repaired].map(|fit| &fit.hypothesis);
+    let of = |(index, tolerance): (usize, &Tolerance)| {
+        let largest = refitted.departure(index).abs().max(repaired.departure(index).abs());
+        let std = tolerance.quantity.std.filter(|_| largest > DEPARTED)?;
+        Some(Departure {
+            path: tolerance.quantity.path.clone(),
+            stated: tolerance.quantity.value,
+            std,
+            refitted: refitted.ended_at(index),
+            repaired: repaired.ended_at(index),
+            deviations: repaired.departure(index),
+        })
+    };
+    let mut all: Vec<Departure> = repaired.tolerances().iter().enumerate().filter_map(of).collect();
+    all.sort_by(|a, b| b.deviations.abs().total_cmp(&a.deviations.abs()));
+    all
+}
