@@ -5,6 +5,7 @@
 //! * [`LuWorkspace`]: dense complex LU with row equilibration, its memory reused from line to line;
 //! * [`LeastSquares`]: weighted linear least squares by Householder reflections, with a rank check;
 //! * [`Cholesky`], [`solve_positive_definite`]: symmetric positive definite matrices: normal equations, covariances, masses;
+//! * [`products`] of the rows of two square matrices;
 //! * [`matrix_exponential`]: real matrices of a few rows, such as those of a state space;
 //! * [`generalized_symmetric_eigen`]: `K φ = λ M φ`, scaled and with its residuals checked;
 //! * [`complex_eigenvalues`]: eigenvalues of a general complex matrix;
@@ -33,6 +34,7 @@ mod least_squares;
 mod lu;
 mod matrix2;
 mod modal_basis;
+mod products;
 #[cfg(feature = "sparse")]
 mod sparse;
 #[cfg(feature = "sparse")]
@@ -52,6 +54,7 @@ pub use least_squares::{LeastSquares, LeastSquaresError};
 pub use lu::{LuWorkspace, Singular};
 pub use matrix2::{ComplexMatrix2, Field, Matrix2, RealMatrix2, Scalar};
 pub use modal_basis::{EigenError, ModalBasis};
+pub use products::products;
 #[cfg(feature = "sparse")]
 pub use sparse::{SparseError, SparsePattern, SparseSymmetric};
 #[cfg(feature = "sparse")]

@@ -54,6 +54,11 @@ impl ModalBasis {
         &self.eigenvalues
     }
 
+    /// The mass-normalised shapes, one after the other.
+    pub fn shapes(&self) -> &[f64] {
+        &self.shapes
+    }
+
     /// The mass-normalised shape of mode `r` over the coordinates.
     pub fn shape(&self, r: usize) -> &[f64] {
         &self.shapes[r * self.order..(r + 1) * self.order]

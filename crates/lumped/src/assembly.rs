@@ -1,7 +1,7 @@
 use crate::effects::{Action, Change, actions};
-use crate::mesh::Mesh;
+use crate::mesh::{Attachment, Mesh};
 use crate::modes_cache::modes;
-use crate::uniform_beam::UniformBeam;
+use crate::uniform_beam::{UniformBeam, UnitMesh};
 use crate::{LumpedError, Station};
 use jointscope_beam::{
     Matrix4, consistent_mass, consistent_rotary_inertia, element_stiffness, end_stiffness,
@@ -9,7 +9,7 @@ use jointscope_beam::{
 };
 use jointscope_damping::{DampingLaw, ModeDamping, viscous_matrix};
 use jointscope_fixture::{BeamBody, Body, BodyKind, Damping, Fixture, Joint, JointLaw};
-use jointscope_linalg::{Matrix2, ModalBasis, RealMatrix2};
+use jointscope_linalg::{Matrix2, ModalBasis, RealMatrix2, products};
 use jointscope_spectra::Dof;
 use std::f64::consts::TAU;
 
@@ -64,7 +64,7 @@ impl Assembly {
         }
     }
 
-    /// One uniform beam with nothing on it, whose modes need no eigenproblem of the whole mesh.
+    /// One uniform beam by itself, whose modes are those of a problem without dimensions.
     fn of_free_beam(
         fixture: &Fixture,
         mut places: Vec<Coordinates>,
@@ -78,7 +78,7 @@ impl Assembly {
             bending_stiffness: plain.bending_stiffness * altered.factor,
             shear,
             rotary_inertia: altered.rotary_inertia,
-            ..plain
+            ..plain.clone()
         };
         if let [Coordinates::Beam { mesh, .. }] = places.as_mut_slice() {
             mesh.shear = shear;
@@ -131,15 +131,11 @@ impl Assembly {
     /// φᵀ C φ of every shape of `basis`: C = Σ v_r (Mξ_r)(Mξ_r)ᵀ over this assembly's own modes.
     fn viscous_diagonal(&self, basis: &ModalBasis) -> Vec<f64> {
         let n = self.order;
+        let momenta = products(n, self.basis.shapes(), &self.mass);
+        let shares = products(n, &momenta, basis.shapes());
         let mut all = vec![0.0; n];
-        let mut momentum = vec![0.0; n];
-        for (r, mode) in self.damping.iter().enumerate().filter(|(_, mode)| mode.viscous != 0.0) {
-            for (value, row) in momentum.iter_mut().zip(self.mass.chunks_exact(n)) {
-                *value = dot(row, self.basis.shape(r));
-            }
-            for (k, value) in all.iter_mut().enumerate() {
-                *value += mode.viscous * dot(&momentum, basis.shape(k)).powi(2);
-            }
+        for (row, mode) in shares.chunks_exact(n).zip(&self.damping) {
+            all.iter_mut().zip(row).for_each(|(all, share)| *all += mode.viscous * share * share);
         }
         all
     }
@@ -235,18 +231,22 @@ impl Coordinates {
     }
 }
 
-/// The fixture's only body where that is a beam with nothing on it, and its name.
+/// The fixture's only body where that is a beam without known masses, and its name. Supports are no part of the free assembly.
 fn free_beam(fixture: &Fixture, places: &[Coordinates]) -> Option<(UniformBeam, String)> {
     let ([body], [Coordinates::Beam { mesh, .. }]) = (fixture.bodies(), places) else { return None };
     let BodyKind::Beam(beam) = &body.kind else { return None };
-    if !is_bare(fixture) {
+    if !body.masses.is_empty() || !fixture.joints().is_empty() {
         return None;
     }
     let length = beam.to.value - beam.from.value;
     let bending_stiffness = beam.youngs_modulus.value * beam.second_moment.value;
     let mass_per_length = beam.mass_per_length.value;
+    let unit_mesh = match is_bare(fixture) {
+        true => UnitMesh::Even(mesh.nodes.len() - 1),
+        false => UnitMesh::Nodes(mesh.unit.clone()),
+    };
     let beam = UniformBeam {
-        elements: mesh.nodes.len() - 1,
+        mesh: unit_mesh,
         length,
         bending_stiffness,
         mass_per_length,
@@ -296,18 +296,21 @@ fn coordinates(fixture: &Fixture, highest_hz: f64) -> Result<Vec<Coordinates>, L
     Ok(places)
 }
 
-/// Abscissae where something holds the body, the most important first: joints bend it there. A bare beam is meshed evenly.
-fn attachments(fixture: &Fixture, body: usize) -> Vec<f64> {
+/// Where something holds the body, the most important first: joints bend it there. A bare beam is meshed evenly.
+fn attachments(fixture: &Fixture, body: usize) -> Vec<Attachment> {
     if is_bare(fixture) {
         return Vec::new();
     }
     let points = fixture.points();
-    let joints =
-        fixture.joints().iter().flat_map(|j| [j.from, j.to]).map(|p| (points[p].body, points[p].x.value));
-    let supports = fixture.supports().iter().map(|s| fixture.support_place(s));
-    let masses = fixture.bodies()[body].masses.iter().map(|m| (body, m.x.value));
-    let sensors = points.iter().map(|p| (p.body, p.x.value));
-    joints.chain(supports).chain(masses).chain(sensors).filter(|(b, _)| *b == body).map(|(_, x)| x).collect()
+    let ends = fixture.joints().iter().flat_map(|joint| [joint.from, joint.to]).map(|point| &points[point]);
+    let joints = ends.map(|point| (point.body, Attachment { x: point.x.value, turns: true }));
+    let supports = fixture.supports().iter().map(|support| {
+        let (body, x) = fixture.support_place(support);
+        (body, Attachment { x, turns: support.rotational_stiffness.is_some() })
+    });
+    let masses = fixture.bodies()[body].masses.iter();
+    let masses = masses.map(|mass| (body, Attachment { x: mass.x.value, turns: false }));
+    joints.chain(supports).chain(masses).filter(|(b, _)| *b == body).map(|(_, at)| at).collect()
 }
 
 /// Stiffness of a joint as the fixture states it, without effects, on d = u_to − R·u_from.
@@ -329,19 +332,6 @@ pub(crate) fn damping_law(damping: &Damping) -> DampingLaw {
         }
         Damping::LossFactor(factor) => DampingLaw::LossFactor(factor.value),
     }
-}
-
-/// Σ aᵢ bᵢ, in four sums at once: a single one would wait for each addition.
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    let mut sums = [0.0; 4];
-    let (left, right) = (a.chunks_exact(4), b.chunks_exact(4));
-    let rest: f64 = left.remainder().iter().zip(right.remainder()).map(|(x, y)| x * y).sum();
-    for (x, y) in left.zip(right) {
-        for lane in 0..4 {
-            sums[lane] += x[lane] * y[lane];
-        }
-    }
-    rest + sums.iter().sum::<f64>()
 }
 
 /// Mass and stiffness under construction.

@@ -8,9 +8,12 @@ use std::f64::consts::TAU;
 const ELEMENT_WAVE: f64 = 0.35;
 /// Fewest elements of a body, for bodies that hardly bend within the band.
 const FEWEST: f64 = 8.0;
-/// A node is set at an attachment only if no other is nearer than this share of an element: very short
-/// elements ruin the eigenproblem's accuracy.
-const NEAREST: f64 = 0.2;
+/// Parts of an element to which nodes are rounded at attachments that do not turn the beam: one that moves a little leaves the mesh, and with it the
+/// modes, as they are. What an element yields to a force between node and attachment is less than a hundredth of what it does at its middle; to a
+/// moment it would not be.
+const PARTS: f64 = 8.0;
+/// A node is set at an attachment only if no other is nearer than this many of those parts: very short elements ruin the eigenproblem's accuracy.
+const NEAREST: f64 = 2.0;
 /// Most elements of a body: its modes come from a dense eigenproblem.
 pub(crate) const MOST: usize = 256;
 
@@ -18,13 +21,24 @@ pub(crate) const MOST: usize = 256;
 #[derive(Debug, Clone)]
 pub(crate) struct Mesh {
     pub nodes: Vec<f64>,
+    /// Nodes as shares of the length.
+    pub unit: Vec<f64>,
     /// EI/κGA, m², by which sections turn less than the beam slopes; zero without shear.
     pub shear: f64,
 }
 
+/// Where something holds a beam.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Attachment {
+    /// m.
+    pub x: f64,
+    /// Whether it acts against rotation too.
+    pub turns: bool,
+}
+
 impl Mesh {
-    /// Meshes the beam from `from` to `to` with EI and mass per length, fine enough for `highest_hz`, with
-    /// nodes at the `attachments` in their order of importance.
+    /// Meshes the beam from `from` to `to` with EI and mass per length, fine enough for `highest_hz`, with nodes all but at the `attachments` in their
+    /// order of importance.
     ///
     /// # Errors
     /// The number of elements that would be needed, where that is more than [`MOST`].
@@ -34,7 +48,7 @@ impl Mesh {
         bending_stiffness: f64,
         mass_per_length: f64,
         highest_hz: f64,
-        attachments: &[f64],
+        attachments: &[Attachment],
     ) -> Result<Self, f64> {
         let omega = TAU * highest_hz;
         let wave_number = (omega * omega * mass_per_length / bending_stiffness).sqrt().sqrt();
@@ -43,19 +57,27 @@ impl Mesh {
         if needed.is_nan() || needed > MOST as f64 {
             return Err(needed);
         }
-        let mut nodes = vec![from, to];
-        for &x in attachments {
-            if nodes.iter().all(|n| (n - x).abs() > NEAREST * longest) && x > from && x < to {
-                nodes.push(x);
+        // In parts of an equal division of the whole length.
+        let elements = needed.ceil();
+        let parts = PARTS * elements;
+        let part = |at: &Attachment| {
+            let exact = parts * (at.x - from) / (to - from);
+            if at.turns { exact } else { exact.round() }
+        };
+        let mut nodes = vec![0.0, parts];
+        for at in attachments.iter().map(part) {
+            if nodes.iter().all(|n| (n - at).abs() >= NEAREST) && at > 0.0 && at < parts {
+                nodes.push(at);
             }
         }
         nodes.sort_by(f64::total_cmp);
-        let mut mesh = vec![from];
+        let mut mesh = vec![0.0];
         for pair in nodes.windows(2) {
-            let count = ((pair[1] - pair[0]) / longest).ceil().max(1.0);
+            let count = ((pair[1] - pair[0]) / PARTS).ceil();
             mesh.extend((1..=count as usize).map(|i| pair[0] + (pair[1] - pair[0]) * i as f64 / count));
         }
-        Ok(Mesh { nodes: mesh, shear: 0.0 })
+        let unit: Vec<f64> = mesh.iter().map(|node| node / parts).collect();
+        Ok(Mesh { nodes: unit.iter().map(|share| from + (to - from) * share).collect(), unit, shear: 0.0 })
     }
 
     /// Number of coordinates: y and θ of each node.
@@ -123,12 +145,23 @@ mod tests {
     }
 
     #[test]
-    fn nodes_sit_at_attachments_unless_two_are_all_but_the_same() {
-        let mesh = Mesh::new(0.0, 1.0, 1e3, 1.0, 100.0, &[0.333, 0.3331, 0.9999]).unwrap();
-        assert!(
-            mesh.nodes.contains(&0.333) && !mesh.nodes.contains(&0.3331) && !mesh.nodes.contains(&0.9999)
-        );
+    fn nodes_sit_at_attachments_that_turn_the_beam_unless_two_are_all_but_the_same() {
+        let turning = [0.333, 0.3331, 0.9999].map(|x| Attachment { x, turns: true });
+        let mesh = Mesh::new(0.0, 1.0, 1e3, 1.0, 100.0, &turning).unwrap();
+        let has = |x: f64| mesh.nodes.iter().any(|node| (node - x).abs() < 1e-12);
+        assert!(has(0.333) && !has(0.3331) && !has(0.9999));
         assert!(mesh.nodes.windows(2).all(|w| w[1] > w[0]));
+    }
+
+    #[test]
+    fn a_support_that_moves_a_little_leaves_the_mesh_as_it_is() {
+        let mesh = |x| Mesh::new(0.0, 1.0, 1e3, 1.0, 100.0, &[Attachment { x, turns: false }]).unwrap();
+        assert_eq!(mesh(0.333).unit, mesh(0.334).unit);
+        let near = |x: f64| mesh(x).nodes.iter().map(|node| (node - x).abs()).fold(1.0, f64::min);
+        assert!(
+            (0..50).all(|k| near(0.2 + 0.01 * f64::from(k)) < 0.009),
+            "an element is an eighth, a part a sixty-fourth"
+        );
     }
 
     #[test]
