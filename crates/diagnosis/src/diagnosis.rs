@@ -1,12 +1,8 @@
-use crate::alternatives::{Alternative, alternatives};
-use crate::departures::{Departure, departures};
-use crate::estimates::estimates;
-use crate::evidence::{excess, explained, nothing_can_be_stated};
-use crate::fit::Fit;
+use crate::departures::Departure;
 use crate::fitter::Fitter;
-use crate::held_out::Division;
-use crate::location::{Location, located, measured};
-use crate::modal::{ModalJudgement, ModelError, explains};
+use crate::location::Location;
+use crate::modal::ModelError;
+use crate::routes;
 use crate::search::Search;
 use crate::settings::Settings;
 use crate::{Hypothesis, Observation};
@@ -150,44 +146,20 @@ impl Diagnosis {
         };
         let observation = Observation::new(frfs, in_use)?;
         Hypothesis::nominal(fixture, options.exact).predict(&observation)?;
-        let fitter = Fitter { observation: &observation, settings: &options.settings };
-        if let Some(baseline) = &options.baseline {
-            let baseline = Observation::new(baseline, in_use)?;
-            return Ok(
-                since(&fitter, &baseline, fixture, options.exact)?.with(observation, &options.settings)
-            );
+        let few = observation.searched(&options.hold_out);
+        let fitter =
+            Fitter { observation: few.as_ref().unwrap_or(&observation), settings: &options.settings };
+        let mut parts = match &options.baseline {
+            Some(baseline) => {
+                let pairs = fitter.observation.pairs();
+                let baseline = Observation::new(baseline, in_use)?.reduced(|_| true, |p| pairs.contains(p));
+                routes::since(&fitter, &baseline.ok_or(DiagnosisError::Baseline)?, fixture, options.exact)?
+            }
+            None => routes::judged(&fitter, fixture, options)?,
+        };
+        if few.is_some() {
+            parts = parts.on_all(&fitter.on(&observation));
         }
-        let division = Division::of(&observation, options)?;
-        let within = Search::without_effects(&fitter, fixture, options.exact)
-            .ok_or(DiagnosisError::Lines(SpectraError::NoLines))?;
-        // Where the fixture as refitted leaves more than noise, the comparison by modes says whether the model itself is in error: if it is, the noise
-        // of the lines decides nothing.
-        let modal = match within.lacks_much(&fitter, &within.refitted) {
-            true => ModalJudgement::of(&fitter, &within.nominal.hypothesis, &within.candidates, None),
-            false => None,
-        };
-        let Some(modal) = modal.filter(|modal| !modal.needs_nothing()) else {
-            return Ok(by_lines(&fitter, within, (fixture, options.exact), None, division)?
-                .with(observation, &options.settings));
-        };
-        // What explains the lines down to their noise without any error of the model needs none: found among the modes, or, where these are
-        // dubious, by a search on lines.
-        let exact = modal.exact(&fitter).or_else(|| {
-            let search = modal.is_dubious(&fitter).then(|| Search::searched(&fitter, within.clone()));
-            search.map(|search| search.repaired).filter(|fit| explains(&fitter, fit, true))
-        });
-        let parts = match exact {
-            Some(exact) => {
-                let seed = Some((&modal, exact));
-                by_lines(&fitter, within, (fixture, options.exact), seed, division)?
-            }
-            // Modes that need no error of the model, or that do not tell all there is, beside lines that are not explained: it is not the modes of the model
-            // that are in error.
-            None if modal.search.best.exact || modal.has_right_modes() || modal.tells_little(&fitter) => {
-                by_lines(&fitter, within, (fixture, options.exact), None, division)?
-            }
-            None => by_modes(&fitter, within, &modal, division.as_ref()),
-        };
         Ok(parts.with(observation, &options.settings))
     }
 
@@ -204,214 +176,8 @@ impl Diagnosis {
     }
 }
 
-/// A diagnosis but for what follows from its models and the observation.
-struct Parts {
-    verdict: Verdict,
-    search: Search,
-    findings: Vec<Finding>,
-    locations: Vec<Location>,
-    held_out: Option<HeldOut>,
-    model_error: Option<[ModelError; 2]>,
-    baseline_error: Option<ModelError>,
-    tried: Vec<Tried>,
-}
-
-impl Parts {
-    fn with(self, observation: Observation, settings: &Settings) -> Diagnosis {
-        let search = self.search;
-        Diagnosis {
-            verdict: self.verdict,
-            refitted: chance(&observation, &search.refitted),
-            mismatch: mismatch(&observation, &search.refitted.predicted, settings.evidence.bands),
-            residual_correlation: observation.residual_correlation(&search.repaired.predicted),
-            departures: departures(&search),
-            observation,
-            search,
-            findings: self.findings,
-            locations: self.locations,
-            held_out: self.held_out,
-            model_error: self.model_error,
-            baseline_error: self.baseline_error,
-            tried: self.tried,
-        }
-    }
-}
-
-/// χ² per degree of freedom that a fit leaves, and the probability of one as large by chance.
-fn chance(observation: &Observation, fit: &Fit) -> (f64, f64) {
-    let chi2_per_dof = fit.chi2_per_dof(observation);
-    let excess = excess(chi2_per_dof, observation.degrees(), observation.noise_uncertainty());
-    (chi2_per_dof, upper_tail(excess))
-}
-
-/// The diagnosis where the noise of the lines decides; what was found among the modes is where it sets out.
-fn by_lines(
-    fitter: &Fitter,
-    within: Search,
-    (fixture, exact): (&Fixture, bool),
-    seed: Option<(&ModalJudgement, Fit)>,
-    division: Option<Division>,
-) -> Result<Parts, DiagnosisError> {
-    let Fitter { observation, settings } = *fitter;
-    // What is to be judged on unseen lines must not have chosen the names either: the search that sees less goes first, and the whole
-    // recording only has to confirm or correct it.
-    let blind = division.as_ref().and_then(|division| {
-        let fitter = fitter.on(&division.seen);
-        let start = Search::without_effects(&fitter, fixture, exact)?;
-        let known = seed.as_ref().map(|(modal, _)| modal.known(settings.modal.blind));
-        let modal = known.and_then(|known| {
-            ModalJudgement::of(&fitter, &start.nominal.hypothesis, &start.candidates, Some(&known))
-        });
-        let exact = modal.as_ref().and_then(|modal| modal.exact(&fitter));
-        Some(match modal.zip(exact) {
-            Some((modal, exact)) => {
-                let part = Search { repaired: exact, ..modal.search_on(&division.seen, &start) };
-                Search::continued(&fitter, start, &part)
-            }
-            None => Search::searched(&fitter, start),
-        })
-    });
-    let seed = seed.map(|(modal, exact)| Search { repaired: exact, ..modal.search_on(observation, &within) });
-    let mut search = match seed.as_ref().or(blind.as_ref()) {
-        Some(part) => Search::continued(fitter, within, part),
-        None => Search::searched(fitter, within),
-    };
-    let mut findings = match nothing_can_be_stated(fitter, &search.repaired, search.candidates.len()) {
-        true => Vec::new(),
-        false => findings(fitter, &mut search),
-    };
-    let stated = |f: &Finding| f.probability + f.alternatives.iter().map(|(_, p)| p).sum::<f64>();
-    if findings.is_empty() || findings.iter().any(|finding| stated(finding) < settings.evidence.stated) {
-        // What the best hypotheses leave says that none of them is right: they would only adapt the model to the recording.
-        findings.clear();
-        search.repaired = search.refitted.clone();
-    }
-    let held_out = division.zip(blind).and_then(|(d, blind)| d.judge(&blind, &search, observation));
-    let locations = match chance(observation, &search.refitted).1 < settings.evidence.located {
-        true => located(*fitter, &search.nominal.hypothesis, &search.refitted),
-        false => Vec::new(),
-    };
-    Ok(Parts {
-        verdict: verdict(fitter, &search, &findings),
-        findings,
-        locations,
-        held_out,
-        search,
-        model_error: None,
-        baseline_error: None,
-        tried: Vec::new(),
-    })
-}
-
-/// The diagnosis where the model's own error decides.
-fn by_modes(fitter: &Fitter, within: Search, modal: &ModalJudgement, division: Option<&Division>) -> Parts {
-    let Fitter { observation, settings } = *fitter;
-    let search = modal.search_on(observation, &within);
-    let held_out = division.and_then(|division| {
-        let blind = fitter.on(&division.seen);
-        let known = modal.known(settings.modal.blind);
-        let judged =
-            ModalJudgement::of(&blind, &within.nominal.hypothesis, &within.candidates, Some(&known))?;
-        division.judge(&judged.search_on(&division.seen, &within), &search, observation)
-    });
-    let locations = match modal.verdict {
-        Verdict::Unexplained => located(*fitter, &search.nominal.hypothesis, &search.refitted),
-        _ => Vec::new(),
-    };
-    Parts {
-        verdict: modal.verdict,
-        findings: modal.findings(&search.candidates),
-        locations,
-        held_out,
-        search,
-        model_error: Some(modal.errors),
-        baseline_error: None,
-        tried: modal.tried(settings.modal.tried),
-    }
-}
-
-/// The diagnosis of what has changed since a baseline.
-fn since(
-    fitter: &Fitter,
-    baseline: &Observation,
-    fixture: &Fixture,
-    exact: bool,
-) -> Result<Parts, DiagnosisError> {
-    let within = Search::as_stated(fitter, fixture, exact).ok_or(DiagnosisError::Baseline)?;
-    let judged = ModalJudgement::since(fitter, baseline, &within.nominal.hypothesis, &within.candidates);
-    let (modal, before) = judged.ok_or(DiagnosisError::Baseline)?;
-    let parts = by_modes(fitter, within, &modal, None);
-    Ok(Parts { baseline_error: Some(before), ..parts })
-}
-
-fn verdict(fitter: &Fitter, search: &Search, findings: &[Finding]) -> Verdict {
-    let fits = search.repaired.chi2_per_dof(fitter.observation) < explained(fitter);
-    match (findings.is_empty(), fits) {
-        (true, true) => Verdict::Consistent,
-        (true, false) => Verdict::Unexplained,
-        (false, true) => Verdict::Explained,
-        (false, false) => Verdict::PartlyExplained,
-    }
-}
-
-/// The hypotheses for each effect of the repaired fit. Where one is more probable than what was found, it takes its place and everything is
-/// asked again: a search goes one effect at a time, and what was best alone, or in a part of the recording, need not be best in company
-/// and in the whole.
-fn settled(fitter: &Fitter, search: &mut Search) -> Vec<Vec<Alternative>> {
-    let settings = &fitter.settings.evidence;
-    // Each replacement costs the fits of all candidates for all effects.
-    let mut left = settings.replacements.saturating_sub(search.repaired.hypothesis.effect_count());
-    loop {
-        let count = search.repaired.hypothesis.effect_count();
-        let all: Vec<Vec<Alternative>> =
-            (0..count).map(|index| alternatives(fitter, search, index)).collect();
-        let effects = search.repaired.hypothesis.effects();
-        let better = all.iter().zip(&effects).find_map(|(all, effect)| {
-            let own = all.iter().find(|other| search.candidates[other.candidate].names(effect));
-            let own = own.map_or(0.0, |own| own.probability);
-            all.first().filter(|best| best.probability > settings.replace * own).map(|best| best.fit.clone())
-        });
-        match better.filter(|_| left > 0) {
-            Some(fit) => {
-                search.repaired = fit;
-                // Beside the new effect an earlier one may no longer be needed.
-                search.prune(fitter);
-            }
-            None => return all,
-        }
-        left -= 1;
-    }
-}
-
-fn findings(fitter: &Fitter, search: &mut Search) -> Vec<Finding> {
-    let all_names = settled(fitter, search);
-    let search = &*search;
-    let repaired = &search.repaired;
-    let covariance = fitter.information(&repaired.hypothesis).covariance();
-    let widening = repaired.inflation(fitter.observation).sqrt();
-    let finding = |(index, effect): (usize, Effect)| {
-        let own = |a: &Alternative| search.candidates[a.candidate].names(&effect);
-        let without = repaired.hypothesis.without(index);
-        let without = match without.effect_count() {
-            0 => Some(search.refitted.clone()),
-            _ => fitter.global(&without.with_tolerances_of(&search.nominal.hypothesis)),
-        };
-        let alternative = |a: &Alternative| Some((a.fit.hypothesis.effects().pop()?, a.probability));
-        Finding {
-            estimates: estimates(&repaired.hypothesis, index, &effect, covariance.as_ref(), widening),
-            probability: all_names[index].iter().find(|a| own(a)).map_or(0.0, |a| a.probability),
-            alternatives: all_names[index].iter().filter(|a| !own(a)).filter_map(alternative).collect(),
-            gain: without.map_or(0.0, |fit| fit.objective - repaired.objective),
-            measured: measured(*fitter, repaired, index),
-            effect,
-        }
-    };
-    let mut all: Vec<Finding> = repaired.hypothesis.effects().into_iter().enumerate().map(finding).collect();
-    all.sort_by(|a, b| b.gain.total_cmp(&a.gain));
-    all
-}
-
-fn mismatch(observation: &Observation, predicted: &[Complex64], bands: usize) -> Vec<FrfMismatch> {
+/// Mismatch of a prediction by FRF and band.
+pub(crate) fn mismatch(observation: &Observation, predicted: &[Complex64], bands: usize) -> Vec<FrfMismatch> {
     let n = observation.lines().len();
     let hz = observation.lines().hz();
     let bands = bands.min(n);

@@ -44,13 +44,16 @@ mod hypothesis;
 mod linearisation;
 mod location;
 mod modal;
+mod named;
 mod observation;
 mod penalty;
 mod quantities;
 mod ranking;
 mod recorded_lines;
+mod routes;
 mod scan;
 mod search;
+mod searched_frfs;
 mod settings;
 
 pub use alternatives::Alternative;

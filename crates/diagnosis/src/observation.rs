@@ -62,7 +62,7 @@ impl Observation {
         let from_scatter = !noise.is_empty() && noise.iter().all(|source| *source == NoiseSource::Scatter);
         let drift = if from_scatter { Drift::of(&frfs) } else { None };
         let whole = Observation { frfs, weight, level, noise, recorded_lines: n, drift };
-        let kept = lines_in_use(&whole.frfs);
+        let kept = lines_in_use(&whole.frfs, crate::searched_frfs::count(whole.pairs().len()));
         let mut used = whole.on(&kept, &vec![true; whole.pairs().len()]).ok_or(SpectraError::NoLines)?;
         used.allow_for_drift(&whole.frfs, &kept);
         Ok(used)

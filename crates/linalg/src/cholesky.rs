@@ -1,3 +1,5 @@
+use faer::{MatRef, Side};
+
 /// Cholesky factor of a symmetric positive definite matrix of any order, scaled to a unit diagonal first so that parameters of different
 /// units can share it.
 #[derive(Debug, Clone, PartialEq)]
@@ -9,6 +11,9 @@ pub struct Cholesky {
 
 /// Of a unit diagonal, less than this left of a pivot is rounding.
 const ROUNDING: f64 = 1e-15;
+
+/// Order from which the library's blocks pay for copying to them and back.
+const MANY: usize = 64;
 
 impl Cholesky {
     /// Factorises `matrix`, row-major of order `order`, of which only the lower triangle is read; `None` where it is not positive definite to
@@ -25,7 +30,11 @@ impl Cholesky {
                 lower[i * order + j] = matrix[i * order + j] * unit[i] * unit[j];
             }
         }
-        factorise(order, order, &mut lower, ROUNDING).then_some(Cholesky { order, lower, unit })
+        let positive = match order < MANY {
+            true => factorise(order, order, &mut lower, ROUNDING),
+            false => factorise_many(order, &mut lower),
+        };
+        positive.then_some(Cholesky { order, lower, unit })
     }
 
     /// The matrix' order.
@@ -102,6 +111,17 @@ pub(crate) fn factorise(order: usize, width: usize, matrix: &mut [f64], least: f
     true
 }
 
+/// [`factorise`] of a whole matrix with a unit diagonal, by the library.
+fn factorise_many(order: usize, matrix: &mut [f64]) -> bool {
+    let rows = MatRef::from_row_major_slice(&*matrix, order, order).to_owned();
+    let Ok(factor) = rows.llt(Side::Lower) else { return false };
+    let lower = factor.L();
+    for (i, row) in matrix.chunks_exact_mut(order).enumerate() {
+        row[..=i].iter_mut().enumerate().for_each(|(j, entry)| *entry = lower[(i, j)]);
+    }
+    (0..order).all(|i| lower[(i, i)].powi(2) > ROUNDING && lower[(i, i)].is_finite())
+}
+
 /// Overwrites `b` by the solution of A x = b for a symmetric positive definite A, row-major of order `b.len()`; false where A is not positive
 /// definite to working precision.
 pub fn solve_positive_definite(a: &mut [f64], b: &mut [f64]) -> bool {
@@ -150,6 +170,24 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn the_library_factorises_as_the_few_lines_here_do() {
+        let n = MANY + 13;
+        let entry = |i: usize, j: usize| {
+            f64::from(u8::from(i == j)) + 0.3 * (0.7 * i as f64).sin() * (0.7 * j as f64).sin()
+        };
+        let matrix: Vec<f64> = (0..n * n).map(|e| entry(e / n, e % n)).collect();
+        let (mut few, mut many) = (matrix.clone(), matrix.clone());
+        assert!(factorise(n, n, &mut few, ROUNDING) && factorise_many(n, &mut many));
+        let lower = (0..n).flat_map(|i| (0..=i).map(move |j| i * n + j));
+        assert!(lower.clone().all(|at| (few[at] - many[at]).abs() < 1e-14));
+        let mut singular = matrix;
+        (0..n).for_each(|k| singular[(n - 1) * n + k] = singular[(n - 2) * n + k]);
+        singular[n * n - 1] = singular[(n - 2) * n + n - 2];
+        singular[(n - 1) * n + n - 2] = singular[n * n - 1];
+        assert!(!factorise_many(n, &mut singular));
     }
 
     #[test]

@@ -268,8 +268,10 @@ impl ModalJudgement {
         let by_lines = self.is_unexplained() || self.is_dubious(fitter);
         let singles = self.search.singles.iter().take(fitter.settings.modal.tried);
         let all = singles.chain(&self.search.more).chain([&self.search.best]);
+        // What will hardly come down to the noise is given up.
+        let noise = explained(fitter) * fitter.observation.degrees() as f64;
         let explaining = |named: &Named| {
-            let fit = fitter.local(&named.fit.hypothesis, None, f64::INFINITY)?;
+            let fit = fitter.local(&named.fit.hypothesis, None, noise)?;
             explains(fitter, &fit, !named.exact).then_some(fit)
         };
         let cost = |fit: &Fit| fit.objective + parameter_penalty(&fitter.settings.selection, &fit.hypothesis);

@@ -1,0 +1,231 @@
+//! The ways to a diagnosis: by the noise of the lines, by the error of the model, by what has changed since a baseline; and which of them a recording
+//! asks for.
+
+use crate::Observation;
+use crate::departures::departures;
+use crate::diagnosis::{Diagnosis, DiagnosisError, DiagnosisOptions, Finding, Tried, mismatch, upper_tail};
+use crate::evidence::{excess, nothing_can_be_stated};
+use crate::fit::Fit;
+use crate::fitter::Fitter;
+use crate::held_out::Division;
+use crate::location::{Location, located};
+use crate::modal::{ModalJudgement, ModelError, explains};
+use crate::named::{findings, re_estimated, verdict};
+use crate::search::Search;
+use crate::settings::Settings;
+use jointscope_findings::{HeldOut, Verdict};
+use jointscope_fixture::Fixture;
+use jointscope_spectra::SpectraError;
+
+/// What a search by lines of the whole recording sets out from.
+enum Start<'a> {
+    /// The fixture alone, or what the search finds that sees less.
+    Anew,
+    /// What was found among the modes.
+    Modes(&'a ModalJudgement, Fit),
+    /// It was made already.
+    Searched(Box<Search>),
+}
+
+/// The diagnosis by the route that fits the recording.
+pub(crate) fn judged(
+    fitter: &Fitter,
+    fixture: &Fixture,
+    options: &DiagnosisOptions,
+) -> Result<Parts, DiagnosisError> {
+    let division = Division::of(fitter.observation, options)?;
+    let within = Search::without_effects(fitter, fixture, options.exact)
+        .ok_or(DiagnosisError::Lines(SpectraError::NoLines))?;
+    // Where the fixture as refitted leaves more than noise, the comparison by modes says whether the model itself is in error: if it is, the noise
+    // of the lines decides nothing.
+    let modal = match within.lacks_much(fitter, &within.refitted) {
+        true => ModalJudgement::of(fitter, &within.nominal.hypothesis, &within.candidates, None),
+        false => None,
+    };
+    let of = (fixture, options.exact);
+    let Some(modal) = modal.filter(|modal| !modal.needs_nothing()) else {
+        return Ok(by_lines(fitter, within, of, Start::Anew, division));
+    };
+    // What explains the lines down to their noise without any error of the model needs none: found among the modes, or, where these are dubious, by a
+    // search on lines.
+    if let Some(exact) = modal.exact(fitter) {
+        return Ok(by_lines(fitter, within, of, Start::Modes(&modal, exact), division));
+    }
+    let searched = modal.is_dubious(fitter).then(|| Search::searched(fitter, within.clone()));
+    let explained = searched.as_ref().is_some_and(|search| explains(fitter, &search.repaired, true));
+    // Modes that need no error of the model, or that do not tell all there is, beside lines that are not explained: it is not the modes of the model that
+    // are in error.
+    let not_in_error = modal.search.best.exact || modal.has_right_modes() || modal.tells_little(fitter);
+    if explained || not_in_error {
+        let start = searched.map_or(Start::Anew, |search| Start::Searched(Box::new(search)));
+        return Ok(by_lines(fitter, within, of, start, division));
+    }
+    Ok(by_modes(fitter, within, &modal, division.as_ref()))
+}
+
+/// A diagnosis but for what follows from its models and the observation.
+pub(crate) struct Parts {
+    verdict: Verdict,
+    search: Search,
+    findings: Vec<Finding>,
+    locations: Vec<Location>,
+    held_out: Option<HeldOut>,
+    model_error: Option<[ModelError; 2]>,
+    baseline_error: Option<ModelError>,
+    tried: Vec<Tried>,
+}
+
+impl Parts {
+    pub fn with(self, observation: Observation, settings: &Settings) -> Diagnosis {
+        let search = self.search;
+        Diagnosis {
+            verdict: self.verdict,
+            refitted: chance(&observation, &search.refitted),
+            mismatch: mismatch(&observation, &search.refitted.predicted, settings.evidence.bands),
+            residual_correlation: observation.residual_correlation(&search.repaired.predicted),
+            departures: departures(&search),
+            observation,
+            search,
+            findings: self.findings,
+            locations: self.locations,
+            held_out: self.held_out,
+            model_error: self.model_error,
+            baseline_error: self.baseline_error,
+            tried: self.tried,
+        }
+    }
+
+    /// The same on all FRFs of a recording of which a part was searched: models that were fitted to lines are fitted to all of them.
+    pub fn on_all(mut self, fitter: &Fitter) -> Self {
+        let by_lines = self.model_error.is_none();
+        let again = |fit: &Fit| match by_lines {
+            true => fitter.local(&fit.hypothesis, None, f64::INFINITY),
+            false => Fit::at(fit.hypothesis.clone(), fitter.observation),
+        };
+        let Search { nominal, refitted, repaired, candidates } = self.search;
+        let nominal = Fit::at(nominal.hypothesis.clone(), fitter.observation).unwrap_or(nominal);
+        let refitted = again(&refitted).unwrap_or(refitted);
+        let repaired = again(&repaired).unwrap_or(repaired);
+        self.search = Search { nominal, refitted, repaired, candidates };
+        if by_lines {
+            self.findings = re_estimated(fitter, &self.search, self.findings);
+            self.verdict = verdict(fitter, &self.search, &self.findings);
+        }
+        self
+    }
+}
+
+/// χ² per degree of freedom that a fit leaves, and the probability of one as large by chance.
+fn chance(observation: &Observation, fit: &Fit) -> (f64, f64) {
+    let chi2_per_dof = fit.chi2_per_dof(observation);
+    let excess = excess(chi2_per_dof, observation.degrees(), observation.noise_uncertainty());
+    (chi2_per_dof, upper_tail(excess))
+}
+
+/// The diagnosis where the noise of the lines decides.
+fn by_lines(
+    fitter: &Fitter,
+    within: Search,
+    (fixture, exact): (&Fixture, bool),
+    start: Start,
+    division: Option<Division>,
+) -> Parts {
+    let Fitter { observation, settings } = *fitter;
+    // What is to be judged on unseen lines must not have chosen the names either: the search that sees less goes first, and the whole
+    // recording only has to confirm or correct it.
+    let blind = division.as_ref().and_then(|division| {
+        let fitter = fitter.on(&division.seen);
+        let alone = Search::without_effects(&fitter, fixture, exact)?;
+        let modal = match &start {
+            Start::Modes(modal, _) => {
+                let known = modal.known(settings.modal.blind);
+                ModalJudgement::of(&fitter, &alone.nominal.hypothesis, &alone.candidates, Some(&known))
+            }
+            _ => None,
+        };
+        let found = modal.and_then(|modal| {
+            let exact = modal.exact(&fitter)?;
+            Some(Search { repaired: exact, ..modal.search_on(&division.seen, &alone) })
+        });
+        Some(match found {
+            Some(part) => Search::continued(&fitter, alone, &part),
+            None => Search::searched(&fitter, alone),
+        })
+    });
+    let mut search = match (start, &blind) {
+        (Start::Searched(search), _) => *search,
+        (Start::Modes(modal, exact), _) => {
+            let part = Search { repaired: exact, ..modal.search_on(observation, &within) };
+            Search::continued(fitter, within, &part)
+        }
+        (Start::Anew, Some(part)) => Search::continued(fitter, within, part),
+        (Start::Anew, None) => Search::searched(fitter, within),
+    };
+    let findings = match nothing_can_be_stated(fitter, &search.repaired, search.candidates.len()) {
+        true => Vec::new(),
+        false => findings(fitter, &mut search),
+    };
+    let stated = |f: &Finding| f.probability + f.alternatives.iter().map(|(_, p)| p).sum::<f64>();
+    // What the best hypotheses leave may say that none of them is right: they would only adapt the model to the recording.
+    let doubtful = findings.iter().any(|finding| stated(finding) < settings.evidence.stated);
+    let findings = if doubtful { Vec::new() } else { findings };
+    if findings.is_empty() {
+        search.repaired = search.refitted.clone();
+    }
+    let held_out = division.zip(blind).and_then(|(d, blind)| d.judge(&blind, &search, observation));
+    let locations = match chance(observation, &search.refitted).1 < settings.evidence.located {
+        true => located(*fitter, &search.nominal.hypothesis, &search.refitted),
+        false => Vec::new(),
+    };
+    Parts {
+        verdict: verdict(fitter, &search, &findings),
+        findings,
+        locations,
+        held_out,
+        search,
+        model_error: None,
+        baseline_error: None,
+        tried: Vec::new(),
+    }
+}
+
+/// The diagnosis where the model's own error decides.
+fn by_modes(fitter: &Fitter, within: Search, modal: &ModalJudgement, division: Option<&Division>) -> Parts {
+    let Fitter { observation, settings } = *fitter;
+    let search = modal.search_on(observation, &within);
+    let held_out = division.and_then(|division| {
+        let blind = fitter.on(&division.seen);
+        let known = modal.known(settings.modal.blind);
+        let judged =
+            ModalJudgement::of(&blind, &within.nominal.hypothesis, &within.candidates, Some(&known))?;
+        division.judge(&judged.search_on(&division.seen, &within), &search, observation)
+    });
+    let locations = match modal.verdict {
+        Verdict::Unexplained => located(*fitter, &search.nominal.hypothesis, &search.refitted),
+        _ => Vec::new(),
+    };
+    Parts {
+        verdict: modal.verdict,
+        findings: modal.findings(&search.candidates),
+        locations,
+        held_out,
+        search,
+        model_error: Some(modal.errors),
+        baseline_error: None,
+        tried: modal.tried(settings.modal.tried),
+    }
+}
+
+/// The diagnosis of what has changed since a baseline.
+pub(crate) fn since(
+    fitter: &Fitter,
+    baseline: &Observation,
+    fixture: &Fixture,
+    exact: bool,
+) -> Result<Parts, DiagnosisError> {
+    let within = Search::as_stated(fitter, fixture, exact).ok_or(DiagnosisError::Baseline)?;
+    let judged = ModalJudgement::since(fitter, baseline, &within.nominal.hypothesis, &within.candidates);
+    let (modal, before) = judged.ok_or(DiagnosisError::Baseline)?;
+    let parts = by_modes(fitter, within, &modal, None);
+    Ok(Parts { baseline_error: Some(before), ..parts })
+}

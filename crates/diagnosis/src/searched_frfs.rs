@@ -1,0 +1,71 @@
+//! Of very many FRFs those that a search looks at.
+//!
+//! With every channel in at least one of them, few FRFs tell nearly all that all of them tell about a structure: H_ij is made of φ_i and φ_j, mode by
+//! mode. The rest confirms: what is found is fitted to all of them, judged on all of them, and its uncertainty is by all of them.
+
+use crate::Observation;
+use jointscope_spectra::{Channel, FrfPair};
+
+/// FRFs from which not all of them are searched, unless more are needed to show every channel.
+const MANY: usize = 16;
+
+/// How many of so many FRFs are searched, as far as channels allow.
+pub(crate) fn count(frfs: usize) -> usize {
+    frfs.min(MANY)
+}
+
+/// The FRFs to be searched: those with channels that are shown least so far, one after the other, and all of `besides`.
+fn chosen<'a>(pairs: &'a [FrfPair], besides: &[FrfPair]) -> Vec<&'a FrfPair> {
+    let mut chosen: Vec<&FrfPair> = pairs.iter().filter(|pair| besides.contains(pair)).collect();
+    let shown = |chosen: &[&FrfPair], channel: &Channel, of: fn(&FrfPair) -> &Channel| {
+        chosen.iter().filter(|pair| of(pair) == channel).count()
+    };
+    while chosen.len() < pairs.len() {
+        let left = pairs.iter().filter(|pair| !chosen.contains(pair));
+        let counts = |pair: &&FrfPair| {
+            let response = shown(&chosen, &pair.response, |pair| &pair.response);
+            (response.min(shown(&chosen, &pair.reference, |pair| &pair.reference)), response)
+        };
+        let Some(next) = left.min_by_key(counts) else { break };
+        if chosen.len() >= MANY && counts(&next).0 > 0 {
+            break;
+        }
+        chosen.push(next);
+    }
+    chosen
+}
+
+impl Observation {
+    /// The part of it that is searched, `besides` in it; `None` where that is all of it.
+    pub(crate) fn searched(&self, besides: &[FrfPair]) -> Option<Observation> {
+        let chosen = chosen(self.pairs(), besides);
+        (chosen.len() < self.pairs().len()).then(|| self.reduced(|_| true, |pair| chosen.contains(&pair)))?
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn grid(responses: usize, references: usize) -> Vec<FrfPair> {
+        let pair = |o: usize, i: usize| FrfPair::transverse(&o.to_string(), &format!("r{i}"));
+        (0..responses).flat_map(|o| (0..references).map(move |i| pair(o, i))).collect()
+    }
+
+    #[test]
+    fn few_of_many_frfs_show_every_channel() {
+        let pairs = grid(16, 4);
+        let few = chosen(&pairs, &pairs[7..8]);
+        assert_eq!(few.len(), MANY + 1, "the one asked for has a response that another one shows too");
+        assert!(pairs.iter().all(|p| few.iter().any(|f| f.response == p.response)));
+        let of = |reference: usize| few.iter().filter(|f| f.reference == pairs[reference].reference).count();
+        assert!((0..4).all(|reference| of(reference) >= 3), "references are shown alike");
+    }
+
+    #[test]
+    fn channels_are_shown_though_they_are_more_than_are_searched_else() {
+        let pairs = grid(40, 1);
+        assert_eq!(chosen(&pairs, &[]).len(), 40);
+        assert_eq!(chosen(&grid(4, 4), &[]).len(), 16);
+    }
+}
