@@ -61,7 +61,7 @@ pub use hypothesis::{Hypothesis, PredictionError, Tolerance};
 pub use jointscope_findings::{Estimate, HeldOut, Verdict};
 pub use linearisation::Linearisation;
 pub use location::{BandMisfit, LawFit, LawParameter, LineEstimate, Location, Site, locate, measure};
-pub use modal::{Departure, ModelError};
+pub use modal::{Departure, ErrorIntervals, ModelError};
 pub use observation::Observation;
 pub use search::Search;
 pub use settings::{

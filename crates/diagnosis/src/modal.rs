@@ -7,6 +7,7 @@
 //!
 //! * [`fit`]: one hypothesis at its most probable parameters and sizes of error;
 //! * [`prior`]: what is known of parameters beforehand;
+//! * [`sizes`]: what is known of the sizes of error, and what a fit says of them;
 //! * [`search`]: every candidate, alone and beside others;
 //! * [`judgement`]: what it comes to: names with their probabilities and intervals, errors, departures.
 
@@ -14,6 +15,8 @@ mod fit;
 mod judgement;
 mod prior;
 mod search;
+mod sizes;
 
-pub use judgement::{Departure, ModelError};
+pub use judgement::Departure;
 pub(crate) use judgement::{ModalJudgement, explains};
+pub use sizes::{ErrorIntervals, ModelError};

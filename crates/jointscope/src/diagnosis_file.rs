@@ -9,6 +9,7 @@ use jointscope_spectra::FrfPair;
 use jointscope_wording::{Remarks, Says};
 use serde::{Serialize, Serializer};
 use serde_json::Value;
+use std::collections::BTreeMap;
 
 /// The contents of `diagnosis.json`: verdict, mismatch, findings with intervals and alternatives, errors of the three models, and beyond the
 /// contract where the tolerances ended, where each FRF's noise came from, and what every place leaves unexplained. SI units; what is not
@@ -77,12 +78,16 @@ struct ModelErrors {
     refitted: ModelError,
     #[serde(skip_serializing_if = "Option::is_none")]
     baseline: Option<ModelError>,
+    /// What of it the fixture states.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    stated: BTreeMap<&'static str, f64>,
 }
 
 impl ModelErrors {
     fn of(diagnosis: &Diagnosis) -> Self {
         let [refitted, repaired] = diagnosis.model_error.unwrap_or_default();
-        ModelErrors { repaired, refitted, baseline: diagnosis.baseline_error }
+        let stated = diagnosis.baseline_error.as_ref().unwrap_or(&repaired).stated.by_key().collect();
+        ModelErrors { repaired, refitted, baseline: diagnosis.baseline_error, stated }
     }
 }
 

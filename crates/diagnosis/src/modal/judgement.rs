@@ -9,6 +9,7 @@ use crate::fitter::Fitter;
 use crate::modal::fit::{ModalFit, Problem};
 use crate::modal::prior::priors;
 use crate::modal::search::{ModalSearch, Named, Searcher};
+use crate::modal::sizes::{ModelError, known as known_sizes};
 use crate::penalty::parameter_penalty;
 use crate::search::Search;
 use crate::settings::ModalSettings;
@@ -17,20 +18,9 @@ use jointscope_findings::Verdict;
 use jointscope_fixture::Effect;
 use jointscope_frf::noise::NoiseSource;
 use jointscope_inference::Covariance;
-use jointscope_model_error::{ErrorSizes, Pairing, RecordedModes, Recording};
+use jointscope_model_error::{ErrorSizes, KINDS, Pairing, RecordedModes, Recording, SizePrior};
 use jointscope_modes::ModesOptions;
 use serde::Serialize;
-
-/// How wrong a model is, as relative standard deviations over its modes; zero where the noise explains what is left.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
-pub struct ModelError {
-    /// Of natural frequencies.
-    pub frequency: f64,
-    /// Of damping ratios.
-    pub damping: f64,
-    /// Of residues, that is of shapes.
-    pub residue: f64,
-}
 
 /// A quantity that had to leave its stated value by more than chance makes.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -62,6 +52,8 @@ pub(crate) struct ModalJudgement {
     pub strained: bool,
     /// Error of the refitted and of the repaired model.
     pub errors: [ModelError; 2],
+    /// Whether the fixture states how well the gains of its records are known.
+    pub states_gain: bool,
     /// The fixture by itself at the most probable sizes of error.
     pub refitted: Hypothesis,
     /// The best hypothesis at the most probable sizes of error, and the covariance of its coordinates with sizes that may be larger.
@@ -80,11 +72,14 @@ impl ModalJudgement {
         let Fitter { observation, settings } = fitter;
         let recorded = recorded(observation, nominal, &settings.modal)?;
         let features = recorded.features();
-        let problem = Problem { recorded: &recorded, features: &features, sizes: &settings.modal.usual };
+        let fixture = nominal.to_fixture().ok()?;
+        let SizePrior { scales, stated } = known_sizes(&settings.modal, &fixture);
+        let problem = Problem { recorded: &recorded, features: &features, sizes: &scales, stated };
         let searcher =
             Searcher { problem, candidates, nominal, settings: &settings.modal, known, calibrated: false };
         let search = searcher.search()?;
-        Some(Judge { searcher, search }.judged())
+        let states_gain = fixture.record_gain().is_some();
+        Some(ModalJudgement { states_gain, ..Judge { searcher, search }.judged() })
     }
 
     /// What has changed since a `baseline` of the same structure: the fixture is calibrated on it, its error there is taken off, and what differs beyond
@@ -98,16 +93,19 @@ impl ModalJudgement {
         let Fitter { observation, settings } = fitter;
         let before = recorded(baseline, nominal, &settings.modal)?;
         let features = before.features();
-        let problem = Problem { recorded: &before, features: &features, sizes: &settings.modal.usual };
+        let SizePrior { scales, stated } = known_sizes(&settings.modal, &nominal.to_fixture().ok()?);
+        let problem = Problem { recorded: &before, features: &features, sizes: &scales, stated };
         let calibrated = problem.fitted(nominal, priors(nominal, &[]), None)?;
+        let before_error = problem.error(&calibrated, settings.modal.adequate.0);
         let now = recorded(observation, &calibrated.hypothesis, &settings.modal)?;
         let model = &calibrated.standing.modelled;
         let own = Pairing::of(&now, model);
         let change = now.relative_to(&before, model, [&own, &calibrated.standing.pairing])?;
         let features = change.features();
-        let sizes =
-            ErrorSizes { gain: settings.modal.usual.gain, ..settings.modal.usual.times(settings.modal.own) };
-        let problem = Problem { recorded: &change, features: &features, sizes: &sizes };
+        // What is stated is the error that both states share; the change has its own.
+        let sizes = ErrorSizes { gain: scales.gain, ..scales.times(settings.modal.own) };
+        let stated = [false; KINDS];
+        let problem = Problem { recorded: &change, features: &features, sizes: &sizes, stated };
         let nominal = &calibrated.hypothesis;
         let searcher = Searcher {
             problem,
@@ -118,7 +116,7 @@ impl ModalJudgement {
             calibrated: true,
         };
         let search = searcher.search()?;
-        Some((Judge { searcher, search }.judged(), error(&calibrated)))
+        Some((Judge { searcher, search }.judged(), before_error))
     }
 }
 
@@ -177,9 +175,11 @@ impl Judge<'_> {
             self.search.alternatives.clear();
             self.search.without.clear();
         }
+        let adequate = self.searcher.settings.adequate.0;
+        let error = |fit: &ModalFit| self.searcher.problem.error(fit, adequate);
         let best = &self.search.best.fit;
         let widened =
-            best.linear.mean_sizes(&best.standing.comparison, self.searcher.problem.sizes, &best.evidence);
+            best.linear.mean_sizes(&best.standing.comparison, self.searcher.problem.prior(), &best.evidence);
         let problem = &self.searcher.problem;
         let nearest = |fit: &ModalFit| {
             let fitted = problem.at_sizes(fit, &fit.evidence.sizes);
@@ -194,7 +194,8 @@ impl Judge<'_> {
             names,
             free_fit: self.searcher.problem.recorded.chi2_per_dof,
             strained: self.searcher.problem.recorded.is_strained(),
-            errors: [error(&self.search.none), error(&self.search.best.fit)],
+            errors: [&self.search.none, &self.search.best.fit].map(error),
+            states_gain: false,
             last,
             refitted,
             search: self.search,
@@ -242,18 +243,6 @@ impl Judge<'_> {
     }
 }
 
-fn error(fit: &ModalFit) -> ModelError {
-    let ErrorSizes { frequency, damping, shape, .. } = fit.evidence.sizes;
-    let usual = ErrorSizes::default();
-    // What is at its least is not there.
-    let told = |size: f64, usual: f64| if size > 0.01 * usual { size } else { 0.0 };
-    ModelError {
-        frequency: told(frequency, usual.frequency),
-        damping: told(damping, usual.damping),
-        residue: told(shape, usual.shape),
-    }
-}
-
 impl ModalJudgement {
     /// Whether the modes need nothing, neither an effect nor an error of the model: what is left, if anything, only lines can show.
     pub fn needs_nothing(&self) -> bool {
@@ -270,9 +259,9 @@ impl ModalJudgement {
         self.tells_little(fitter) || (told && (alone != 0.0 || unsure))
     }
 
-    /// Whether frequencies, damping and shapes of the best hypothesis are right to the noise.
+    /// Whether frequencies, damping and shapes of the best hypothesis are right to the noise, and gains of records are not known to be wrong: lines know of none.
     pub fn has_right_modes(&self) -> bool {
-        self.errors[1] == ModelError::default()
+        self.errors[1].is_none() && !self.states_gain
     }
 
     /// Whether modes tell a part of the recording only.

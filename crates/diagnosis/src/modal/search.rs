@@ -158,7 +158,7 @@ impl Searcher<'_> {
     /// What errors of the model gain in ln p.
     pub fn gained_by_errors(&self, fit: &ModalFit) -> f64 {
         let without = fit.linear.ln_density(&fit.standing.comparison, &self.problem.sizes.times(NOTHING));
-        without.map_or(f64::INFINITY, |ln| fit.evidence.ln - ln)
+        without.map_or(f64::INFINITY, |ln| self.problem.seen(fit).ln - ln)
     }
 
     /// The largest size of an error, as a multiple of what is usual.
@@ -166,10 +166,10 @@ impl Searcher<'_> {
         self.relative_sizes(fit).into_iter().fold(0.0, f64::max)
     }
 
-    /// Sizes of the errors as multiples of what is usual.
+    /// Sizes of the errors as multiples of what is usual, or of what is stated: the sizes that the recording asks for.
     /// Gains are the test's, not the model's.
     pub fn relative_sizes(&self, fit: &ModalFit) -> Vec<f64> {
-        let none = ErrorSizes { gain: 0.0, ..fit.evidence.sizes };
+        let none = ErrorSizes { gain: 0.0, ..self.problem.seen(fit).sizes };
         let usual = self.problem.sizes.to_array();
         none.to_array().iter().zip(usual).map(|(size, usual)| size / usual).collect()
     }

@@ -133,8 +133,9 @@ fn where_the_model_is_off_by_more_than_the_noise_its_error_stands_beside_the_usu
     let (mut diagnosis, html) =
         page(r#"{ "kind": "added_mass", "place": "high", "x": 0.18, "mass": 0.6 }"#, unchanged);
     assert!(!html.contains("Error of the model") && html.contains("χ² gained"));
-    let refitted = ModelError { frequency: 0.014, damping: 1e-4, residue: 0.02 };
-    diagnosis.model_error = Some([refitted, ModelError { frequency: 0.002, damping: 0.0, residue: 0.013 }]);
+    let refitted = ModelError { frequency: 0.014, damping: 1e-4, residue: 0.02, ..ModelError::default() };
+    let repaired = ModelError { frequency: 0.002, residue: 0.013, ..ModelError::default() };
+    diagnosis.model_error = Some([refitted, repaired]);
     let html = rendered(&diagnosis);
     for part in [
         "Error of the model",
@@ -156,7 +157,7 @@ fn where_the_model_is_off_by_more_than_the_noise_its_error_stands_beside_the_usu
 #[test]
 fn a_consistent_fixture_off_by_a_usual_error_is_not_called_explained_by_noise() {
     let (mut diagnosis, _) = page("", unchanged);
-    let usual = ModelError { frequency: 5e-4, damping: 0.0, residue: 0.003 };
+    let usual = ModelError { frequency: 5e-4, residue: 0.003, ..ModelError::default() };
     diagnosis.model_error = Some([usual, usual]);
     let html = rendered(&diagnosis);
     holds(
