@@ -9,7 +9,7 @@ use crate::location::{Location, located, measured};
 use crate::modal::{Departure, ModalJudgement, ModelError, explains};
 use crate::search::Search;
 use crate::settings::Settings;
-use crate::{Hypothesis, Observation, Tolerance};
+use crate::{Baseline, Hypothesis, Observation, Tolerance, Watch};
 use jointscope_findings::{Estimate, HeldOut, Verdict};
 use jointscope_fixture::{Effect, Fixture};
 use jointscope_frf::noise::NoiseSource;
@@ -123,6 +123,8 @@ pub struct Diagnosis {
     pub model_error: Option<[ModelError; 2]>,
     /// Error of the model on the baseline, where there was one; then [`Diagnosis::model_error`] is of the change since.
     pub baseline_error: Option<ModelError>,
+    /// The state that a change is told from, where there was a baseline.
+    pub baseline: Option<Baseline>,
     /// Quantities that had to leave their stated values by more than chance makes, the farthest first.
     pub departures: Vec<Departure>,
     /// Effects that were tried by themselves where the model's error decides, the most probable first.
@@ -148,16 +150,32 @@ impl Diagnosis {
     /// # Errors
     /// See [`DiagnosisError`].
     pub fn of(fixture: &Fixture, frfs: &FrfSet, options: &DiagnosisOptions) -> Result<Self, DiagnosisError> {
+        Self::watched(fixture, frfs, options, Watch::default())
+    }
+
+    /// As [`Diagnosis::of`], telling what it is doing.
+    ///
+    /// # Errors
+    /// See [`DiagnosisError`].
+    pub fn watched(
+        fixture: &Fixture,
+        frfs: &FrfSet,
+        options: &DiagnosisOptions,
+        watch: Watch,
+    ) -> Result<Self, DiagnosisError> {
         let in_use = |hz: f64| {
             options.band.is_none_or(|(from, to)| hz >= from && hz <= to)
                 && !options.exclude.iter().any(|(from, to)| hz >= *from && hz <= *to)
         };
         let observation = Observation::new(frfs, in_use)?;
         Hypothesis::nominal(fixture, options.exact).predict(&observation)?;
-        let fitter = Fitter { observation: &observation, settings: &options.settings };
+        let fitter = Fitter { observation: &observation, settings: &options.settings, watch };
         if let Some(baseline) = &options.baseline {
             let baseline = Observation::new(baseline, in_use)?;
-            return Ok(since(&fitter, &baseline, fixture, options.exact)?.with(observation));
+            if baseline.pairs() != observation.pairs() {
+                return Err(DiagnosisError::Baseline);
+            }
+            return Ok(since(&fitter, baseline, fixture, options.exact)?.with(observation));
         }
         let division = Division::of(&observation, options)?;
         let within = Search::without_effects(&fitter, fixture, options.exact)
@@ -217,6 +235,7 @@ struct Parts {
     residual_correlation: f64,
     model_error: Option<[ModelError; 2]>,
     baseline_error: Option<ModelError>,
+    baseline: Option<Baseline>,
     tried: Vec<Tried>,
 }
 
@@ -236,6 +255,7 @@ impl Parts {
             residual_correlation: self.residual_correlation,
             model_error: self.model_error,
             baseline_error: self.baseline_error,
+            baseline: self.baseline,
             departures,
             tried: self.tried,
         }
@@ -250,10 +270,11 @@ fn by_lines(
     seed: Option<(&ModalJudgement, Fit)>,
     division: Option<Division>,
 ) -> Result<Parts, DiagnosisError> {
-    let Fitter { observation, settings } = *fitter;
+    let Fitter { observation, settings, .. } = *fitter;
     // What is to be judged on unseen lines must not have chosen the names either: the search that sees less goes first, and the whole
     // recording only has to confirm or correct it.
     let blind = division.as_ref().and_then(|division| {
+        fitter.watch.stage("searching without the lines that are held out");
         let fitter = fitter.on(&division.seen);
         let start = Search::without_effects(&fitter, fixture, exact)?;
         let known = seed.as_ref().map(|(modal, _)| modal.known(settings.modal.blind));
@@ -270,6 +291,7 @@ fn by_lines(
         })
     });
     let seed = seed.map(|(modal, exact)| Search { repaired: exact, ..modal.search_on(observation, &within) });
+    fitter.watch.stage("searching the whole recording");
     let mut search = match seed.as_ref().or(blind.as_ref()) {
         Some(part) => Search::continued(fitter, within, part),
         None => Search::searched(fitter, within),
@@ -288,7 +310,10 @@ fn by_lines(
     let held_out = division.zip(blind).and_then(|(d, blind)| d.judge(&blind, &search, observation));
     let chance = upper_tail(excess(chi2_per_dof, observation.degrees(), observation.noise_uncertainty()));
     let locations = match chance < settings.evidence.located {
-        true => located(*fitter, &search.nominal.hypothesis, &search.refitted),
+        true => {
+            fitter.watch.stage("locating what is left");
+            located(*fitter, &search.nominal.hypothesis, &search.refitted)
+        }
         false => Vec::new(),
     };
     Ok(Parts {
@@ -302,15 +327,17 @@ fn by_lines(
         search,
         model_error: None,
         baseline_error: None,
+        baseline: None,
         tried: Vec::new(),
     })
 }
 
 /// The diagnosis where the model's own error decides.
 fn by_modes(fitter: &Fitter, within: Search, modal: &ModalJudgement, division: Option<&Division>) -> Parts {
-    let Fitter { observation, settings } = *fitter;
+    let Fitter { observation, settings, .. } = *fitter;
     let search = modal.search_on(observation, &within);
     let held_out = division.and_then(|division| {
+        fitter.watch.stage("comparing by modes without what is held out");
         let blind = fitter.on(&division.seen);
         let known = modal.known(settings.modal.blind);
         let judged =
@@ -334,6 +361,7 @@ fn by_modes(fitter: &Fitter, within: Search, modal: &ModalJudgement, division: O
         search,
         model_error: Some(modal.errors),
         baseline_error: None,
+        baseline: None,
         tried: modal.tried(settings.modal.tried),
     }
 }
@@ -341,7 +369,7 @@ fn by_modes(fitter: &Fitter, within: Search, modal: &ModalJudgement, division: O
 /// The diagnosis of what has changed since a baseline.
 fn since(
     fitter: &Fitter,
-    baseline: &Observation,
+    baseline: Observation,
     fixture: &Fixture,
     exact: bool,
 ) -> Result<Parts, DiagnosisError> {
@@ -349,13 +377,13 @@ fn since(
     let hypothesis = Hypothesis::nominal(fixture, exact);
     let candidates = catalogue(fixture, observation);
     let (modal, before) =
-        ModalJudgement::since(fitter, baseline, &hypothesis, &candidates).ok_or(DiagnosisError::Baseline)?;
-    let predicted = hypothesis.predict(observation)?;
-    let chi2 = observation.chi2(&predicted);
-    let nominal = Fit { hypothesis, predicted, chi2, objective: chi2 };
+        ModalJudgement::since(fitter, &baseline, &hypothesis, &candidates).ok_or(DiagnosisError::Baseline)?;
+    let calibrated = Fit::standing(before.calibrated, &baseline)?;
+    let nominal = Fit::standing(hypothesis, observation)?;
     let within = Search { refitted: nominal.clone(), repaired: nominal.clone(), nominal, candidates };
     let parts = by_modes(fitter, within, &modal, None);
-    Ok(Parts { baseline_error: Some(before), ..parts })
+    let baseline = Baseline { observation: baseline, calibrated, modes: before.modes };
+    Ok(Parts { baseline_error: Some(before.error), baseline: Some(baseline), ..parts })
 }
 
 /// Quantities that the refitted or the repaired model took farther from what is stated than chance does, the farthest first.

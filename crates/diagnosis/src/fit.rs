@@ -1,6 +1,6 @@
 use crate::fitter::Fitter;
 use crate::settings::Settings;
-use crate::{Hypothesis, Observation};
+use crate::{Hypothesis, Observation, PredictionError, Watch};
 use jointscope_inference::{Covariance, variance_inflation};
 use num_complex::Complex64;
 
@@ -22,13 +22,27 @@ impl Fit {
     ///
     /// `None` where the start itself predicts no finite FRFs.
     pub fn of(start: &Hypothesis, observation: &Observation, global: bool) -> Option<Self> {
-        let fitter = Fitter { observation, settings: &Settings::default() };
+        let fitter = Fitter { observation, settings: &Settings::default(), watch: Watch::default() };
         if global { fitter.global(start) } else { fitter.local(start, None, f64::INFINITY) }
+    }
+
+    /// A hypothesis as it stands; priors do not count.
+    ///
+    /// # Errors
+    /// One that predicts nothing finite.
+    pub(crate) fn standing(
+        hypothesis: Hypothesis,
+        observation: &Observation,
+    ) -> Result<Self, PredictionError> {
+        let predicted = hypothesis.predict(observation)?;
+        let chi2 = observation.chi2(&predicted);
+        Ok(Fit { hypothesis, predicted, chi2, objective: chi2 })
     }
 
     /// Covariance of the coordinates; `None` where the FRFs leave a combination free.
     pub fn covariance(&self, observation: &Observation) -> Option<Covariance> {
-        Fitter { observation, settings: &Settings::default() }.information(&self.hypothesis).covariance()
+        let fitter = Fitter { observation, settings: &Settings::default(), watch: Watch::default() };
+        fitter.information(&self.hypothesis).covariance()
     }
 
     /// χ² over the real values that count less the effects' free parameters.

@@ -30,6 +30,7 @@
 //! ```
 
 mod alternatives;
+mod baseline;
 mod catalogue;
 mod diagnosis;
 mod estimates;
@@ -51,8 +52,10 @@ mod recorded_lines;
 mod scan;
 mod search;
 mod settings;
+mod watch;
 
 pub use alternatives::Alternative;
+pub use baseline::{Baseline, ModeChange, ModeState};
 pub use catalogue::{Candidate, catalogue};
 pub use diagnosis::{BandShare, Diagnosis, DiagnosisError, DiagnosisOptions, Finding, FrfMismatch, Tried};
 pub use facts::{EndErrors, FrfMisfit, Phase, Trend, Variation};
@@ -68,3 +71,4 @@ pub use settings::{
     EvidenceSettings, FitSettings, LawSettings, LocationSettings, ModalSettings, RankingSettings,
     SelectionSettings, Settings,
 };
+pub use watch::{Step, Watch};

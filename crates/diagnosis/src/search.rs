@@ -7,7 +7,7 @@ use crate::fitter::Fitter;
 use crate::penalty::{parameter_penalty, penalty};
 use crate::ranking::Ranking;
 use crate::settings::Settings;
-use crate::{Hypothesis, Observation};
+use crate::{Hypothesis, Observation, Watch};
 use jointscope_fixture::Fixture;
 
 /// The outcome of a search.
@@ -29,6 +29,7 @@ impl Search {
         let observation = fitter.observation;
         let start = Hypothesis::nominal(fixture, exact);
         let predicted = start.predict(observation).ok()?;
+        fitter.watch.stage("refitting the fixture within its tolerances");
         let chi2 = observation.chi2(&predicted);
         let nominal = Fit { hypothesis: start.clone(), predicted, chi2, objective: chi2 };
         let refitted = fitter.searched(&start)?;
@@ -38,7 +39,7 @@ impl Search {
 
     /// Searches for effects with the default settings. `None` where the fixture predicts no finite FRFs.
     pub fn of(fixture: &Fixture, observation: &Observation, exact: bool) -> Option<Self> {
-        let fitter = Fitter { observation, settings: &Settings::default() };
+        let fitter = Fitter { observation, settings: &Settings::default(), watch: Watch::default() };
         Some(Search::searched(&fitter, Search::without_effects(&fitter, fixture, exact)?))
     }
 
@@ -78,6 +79,10 @@ impl Search {
     fn extend(&mut self, fitter: &Fitter) {
         let settings = &fitter.settings.selection;
         for _ in 0..settings.rounds {
+            fitter.watch.stage(match self.repaired.hypothesis.effect_count() {
+                0 => "searching the lines for an effect",
+                _ => "searching the lines for one more effect",
+            });
             if self.repaired.hypothesis.effect_count() >= settings.effects {
                 break;
             }

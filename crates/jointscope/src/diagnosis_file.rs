@@ -1,7 +1,7 @@
 use crate::file::{told, value};
 use jointscope_diagnosis::{
     Departure, Diagnosis, EndErrors, Finding, FrfMismatch, HeldOut, Hypothesis, LawFit, LineEstimate,
-    Location, ModelError, Tried, Variation, Verdict,
+    Location, ModeChange, ModelError, Tried, Variation, Verdict,
 };
 use jointscope_findings::by_model;
 use jointscope_frf::noise::NoiseSource;
@@ -41,6 +41,7 @@ pub fn diagnosis_file(diagnosis: &Diagnosis) -> Value {
         model_error: ModelErrors::of(diagnosis),
         departures: &diagnosis.departures,
         tried: &diagnosis.tried,
+        modes: diagnosis.baseline.as_ref().map(|baseline| baseline.modes.as_slice()),
     })
 }
 
@@ -68,6 +69,9 @@ struct DiagnosisFile<'a> {
     model_error: ModelErrors,
     departures: &'a [Departure],
     tried: &'a [Tried],
+    /// The modes then and now, with a baseline.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    modes: Option<&'a [ModeChange]>,
 }
 
 /// Error of the repaired model, and of the refitted one; zero where the noise explains what is left.

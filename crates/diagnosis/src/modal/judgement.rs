@@ -6,6 +6,7 @@ use crate::estimates::estimates;
 use crate::evidence::excess;
 use crate::fit::Fit;
 use crate::fitter::Fitter;
+use crate::modal::changes::States;
 use crate::modal::fit::{ModalFit, Problem};
 use crate::modal::prior::priors;
 use crate::modal::search::{ModalSearch, Named, Searcher};
@@ -13,7 +14,7 @@ use crate::modal::sizes::{ModelError, known as known_sizes};
 use crate::penalty::parameter_penalty;
 use crate::search::Search;
 use crate::settings::ModalSettings;
-use crate::{Hypothesis, Observation};
+use crate::{Hypothesis, ModeChange, Observation};
 use jointscope_findings::Verdict;
 use jointscope_fixture::Effect;
 use jointscope_frf::noise::NoiseSource;
@@ -60,6 +61,17 @@ pub(crate) struct ModalJudgement {
     pub last: (Hypothesis, Option<Covariance>),
 }
 
+/// What a baseline says of the fixture.
+#[derive(Debug, Clone)]
+pub(crate) struct Before {
+    /// The fixture as calibrated on it.
+    pub calibrated: Hypothesis,
+    /// Error of that model.
+    pub error: ModelError,
+    /// The modes then and now.
+    pub modes: Vec<ModeChange>,
+}
+
 impl ModalJudgement {
     /// Compares a fixture with a recording by modes; `None` where there are no modes to compare. Of a recording that lacks what is held out of
     /// another, those effects are tried that were `known` there.
@@ -69,14 +81,22 @@ impl ModalJudgement {
         candidates: &[Candidate],
         known: Option<&[Effect]>,
     ) -> Option<Self> {
-        let Fitter { observation, settings } = fitter;
+        let Fitter { observation, settings, watch } = fitter;
+        watch.stage("fitting the modes of the recording");
         let recorded = recorded(observation, nominal, &settings.modal)?;
         let features = recorded.features();
         let fixture = nominal.to_fixture().ok()?;
         let SizePrior { scales, stated } = known_sizes(&settings.modal, &fixture);
         let problem = Problem { recorded: &recorded, features: &features, sizes: &scales, stated };
-        let searcher =
-            Searcher { problem, candidates, nominal, settings: &settings.modal, known, calibrated: false };
+        let searcher = Searcher {
+            problem,
+            candidates,
+            nominal,
+            settings: &settings.modal,
+            known,
+            calibrated: false,
+            watch: fitter.watch,
+        };
         let search = searcher.search()?;
         let states_gain = fixture.record_gain().is_some();
         Some(ModalJudgement { states_gain, ..Judge { searcher, search }.judged() })
@@ -89,14 +109,17 @@ impl ModalJudgement {
         baseline: &Observation,
         nominal: &Hypothesis,
         candidates: &[Candidate],
-    ) -> Option<(Self, ModelError)> {
-        let Fitter { observation, settings } = fitter;
+    ) -> Option<(Self, Before)> {
+        let Fitter { observation, settings, watch } = fitter;
+        watch.stage("fitting the modes of the baseline");
         let before = recorded(baseline, nominal, &settings.modal)?;
         let features = before.features();
         let SizePrior { scales, stated } = known_sizes(&settings.modal, &nominal.to_fixture().ok()?);
         let problem = Problem { recorded: &before, features: &features, sizes: &scales, stated };
+        watch.stage("calibrating the fixture on the baseline");
         let calibrated = problem.fitted(nominal, priors(nominal, &[]), None)?;
         let before_error = problem.error(&calibrated, settings.modal.adequate.0);
+        watch.stage("fitting the modes of the recording");
         let now = recorded(observation, &calibrated.hypothesis, &settings.modal)?;
         let model = &calibrated.standing.modelled;
         let own = Pairing::of(&now, model);
@@ -114,9 +137,13 @@ impl ModalJudgement {
             settings: &settings.modal,
             known: None,
             calibrated: true,
+            watch: fitter.watch,
         };
         let search = searcher.search()?;
-        Some((Judge { searcher, search }.judged(), before_error))
+        let judged = Judge { searcher, search }.judged();
+        let states = States { before: &before, now: &now, own: &own, calibrated: &calibrated };
+        let modes = states.modes(&judged.search.best);
+        Some((judged, Before { calibrated: calibrated.hypothesis.clone(), error: before_error, modes }))
     }
 }
 
@@ -145,7 +172,7 @@ pub(super) fn recorded(
 
 /// Whether a fit leaves no more than noise, its quantities no farther than chance; `strictly` not a tenth of the noise more.
 pub(crate) fn explains(fitter: &Fitter, fit: &Fit, strictly: bool) -> bool {
-    let Fitter { observation, settings } = fitter;
+    let Fitter { observation, settings, .. } = fitter;
     let (coherence, scatter) = settings.evidence.explained;
     let from_scatter = observation.noise().contains(&NoiseSource::Scatter);
     let chi2_per_dof = fit.chi2_per_dof(observation);
