@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use jointscope::diagnosis::Step;
 use jointscope::estimation::ResponseWindow;
 use jointscope::pipeline::{MeasuredFrfs, Options, Progress};
 use jointscope::report::answer_page;
@@ -13,7 +14,7 @@ use crate::estimation_arguments::EstimationArguments;
 use crate::input::FixtureFile;
 use crate::origin;
 use crate::output::{Outputs, pretty};
-use crate::progress::spinner;
+use crate::progress::Steps;
 use crate::recording::RecordingArguments;
 use crate::refusal::Refusal;
 use crate::values::{band, frf_pair};
@@ -74,11 +75,13 @@ pub fn run(arguments: &DiagnoseArguments) -> Result<String, Refusal> {
         },
         estimate,
     };
-    let watched = spinner();
-    let answer = diagnose(&fixture, &measurement, &options, |Progress::Searching { frfs, lines }| {
-        watched.set_message(format!("searching {frfs} FRFs on {lines} lines …"));
+    let steps = Steps::new();
+    let answer = diagnose(&fixture, &measurement, &options, |progress| match progress {
+        Progress::Searching { frfs, lines } => steps.over(&format!("{frfs} FRFs on {lines} lines")),
+        Progress::Searched(Step::Stage(what)) => steps.stage(what),
+        Progress::Searched(step) => steps.within(|| step.to_string()),
     });
-    watched.finish_and_clear();
+    steps.finish();
     let mut answer = answer.map_err(|error| arguments.recording.unanswered(&error, &fixture))?;
     answer.notes.extend(arguments.estimation.unused_with(&measurement));
     written(arguments, &answer)
