@@ -147,11 +147,14 @@ pub(crate) fn sizes(error: &ModelError) -> String {
 
 /// Why what is left is more than the error of a usual model.
 fn excess(diagnosis: &Diagnosis, error: &ModelError) -> String {
-    let large = error_in_words(error).into_iter().filter(|error| error.large);
-    let told: Vec<String> =
-        large.map(|error| format!("in {} ({} {})", error.kind, known_by(&error), error.usual)).collect();
+    let large: Vec<ErrorInWords> = error_in_words(error).into_iter().filter(|error| error.large).collect();
+    let than = if large.iter().all(|error| error.is_stated) { "stated" } else { "usual" };
+    let told: Vec<String> = large
+        .iter()
+        .map(|error| format!("in {} ({} {})", error.kind, known_by(error), error.usual))
+        .collect();
     match (told.is_empty(), remaining(diagnosis).next().is_some()) {
-        (false, _) => format!("larger than usual {}", listed(&told)),
+        (false, _) => format!("larger than {than} {}", listed(&told)),
         (true, true) => "not larger than usual, but for the departure".to_owned(),
         (true, false) => {
             "larger than usual in mass lines, upper residuals or phases, not in the modes themselves"
@@ -189,9 +192,9 @@ fn short(share: f64) -> String {
 mod tests {
     use super::*;
     use crate::Says;
-    use jointscope_diagnosis::{Departure, DiagnosisOptions, Finding};
+    use jointscope_diagnosis::{Departure, DiagnosisOptions, ErrorIntervals, Finding};
     use jointscope_findings::Estimate;
-    use jointscope_fixture::{Effect, EffectKind, Fixture, Place};
+    use jointscope_fixture::{Effect, EffectKind, Fixture, Place, StatedError};
     use jointscope_lumped::{Instrument, synthesize};
     use jointscope_spectra::{FrfPair, SpectralLines};
 
@@ -318,6 +321,27 @@ mod tests {
         );
         let usual = error(0.001, 0.0, 0.001);
         says(&judged(Verdict::Unexplained, usual, usual), &["in mass lines, upper residuals or phases"], &[]);
+    }
+
+    #[test]
+    fn what_the_fixture_states_is_told_as_stated_and_what_is_larger_as_that() {
+        let stated = StatedError { frequency: Some(0.003), ..StatedError::default() };
+        let told = ModelError { stated, ..error(0.003, 0.0, 0.002) };
+        let off = "the model is off by 0.3 % in natural frequency (as stated) and 0.2 % in residues, as such";
+        says(&judged(Verdict::Consistent, told, told), &[off], &[]);
+        let farther = ModelError { stated, ..error(0.012, 0.0, 0.002) };
+        let off = "the model is off by 1.2 % in natural frequency and 0.2 % in residues";
+        let than = "larger than stated in natural frequency (stated 0.3 %)";
+        says(&judged(Verdict::Unexplained, farther, farther), &[off, than], &["as stated", "usual"]);
+    }
+
+    #[test]
+    fn an_interval_stands_beside_a_size_and_beside_none() {
+        let interval = [0.001, 0.004];
+        let ci95 = ErrorIntervals { frequency: interval, damping: [0.0, 0.05], residue: [0.01; 2] };
+        let error = ModelError { ci95: Some(ci95), ..error(0.002, 0.0, 0.01) };
+        let told = error_in_words(&error).map(|error| error.with_interval);
+        assert_eq!(told, ["0.2 % (0.1 % to 0.4 %)", "none seen (below 5 %)", "1 %"]);
     }
 
     #[test]

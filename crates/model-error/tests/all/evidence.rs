@@ -160,8 +160,7 @@ fn the_interval_of_an_error_that_is_not_there_begins_at_zero() {
 
 #[test]
 fn a_stated_size_stays_whatever_the_recording_says() {
-    let mut scales = ErrorSizes::default();
-    scales.frequency = 0.01;
+    let scales = ErrorSizes { frequency: 0.01, ..ErrorSizes::default() };
     let mut stated = [false; KINDS];
     stated[0] = true;
     let prior = SizePrior { scales, stated };
