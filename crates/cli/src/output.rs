@@ -66,8 +66,12 @@ impl Outputs {
         Ok(())
     }
 
-    fn check(&self) -> Result<(), Refusal> {
+    /// Whether the files have places where they may be written: to be asked before anything that takes long.
+    pub fn check(&self) -> Result<(), Refusal> {
         for (path, _) in &self.files {
+            if let Some(above) = parent(path).ancestors().find(|above| above.exists() && !above.is_dir()) {
+                return Err(Refusal::at(above, "is a file where a directory is needed; choose another `-o`"));
+            }
             if path.file_name().is_none() || path.is_dir() {
                 return Err(Refusal::at(path, "is a directory where a file is to be written"));
             }

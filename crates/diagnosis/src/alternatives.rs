@@ -19,6 +19,7 @@ pub struct Alternative {
 /// The hypotheses for effect `index` of the repaired fit, the most probable first, each fitted in the company of the other
 /// effects.
 pub(crate) fn alternatives(fitter: &Fitter, search: &Search, index: usize) -> Vec<Alternative> {
+    fitter.watch.stage("asking what else would explain a finding");
     let repaired = &search.repaired;
     let own = &repaired.hypothesis.effects()[index];
     // Look-alikes are found from the solution's quantities: there the fixture alone does badly, and whatever serves as well takes few steps.

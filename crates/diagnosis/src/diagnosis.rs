@@ -5,7 +5,7 @@ use crate::modal::ModelError;
 use crate::routes;
 use crate::search::Search;
 use crate::settings::Settings;
-use crate::{Hypothesis, Observation};
+use crate::{Baseline, Hypothesis, Observation, Watch};
 use jointscope_findings::{Estimate, HeldOut, Verdict};
 use jointscope_fixture::{Effect, Fixture};
 use jointscope_spectra::{FrfPair, FrfSet, SpectraError};
@@ -118,6 +118,8 @@ pub struct Diagnosis {
     pub model_error: Option<[ModelError; 2]>,
     /// Error of the model on the baseline, where there was one; then [`Diagnosis::model_error`] is of the change since.
     pub baseline_error: Option<ModelError>,
+    /// The state that a change is told from, where there was a baseline.
+    pub baseline: Option<Baseline>,
     /// Quantities that had to leave their stated values by more than chance makes, the farthest first.
     pub departures: Vec<Departure>,
     /// Effects that were tried by themselves where the model's error decides, the most probable first.
@@ -140,6 +142,19 @@ impl Diagnosis {
     /// # Errors
     /// See [`DiagnosisError`].
     pub fn of(fixture: &Fixture, frfs: &FrfSet, options: &DiagnosisOptions) -> Result<Self, DiagnosisError> {
+        Self::watched(fixture, frfs, options, Watch::default())
+    }
+
+    /// As [`Diagnosis::of`], telling what it is doing.
+    ///
+    /// # Errors
+    /// See [`DiagnosisError`].
+    pub fn watched(
+        fixture: &Fixture,
+        frfs: &FrfSet,
+        options: &DiagnosisOptions,
+        watch: Watch,
+    ) -> Result<Self, DiagnosisError> {
         let in_use = |hz: f64| {
             options.band.is_none_or(|(from, to)| hz >= from && hz <= to)
                 && !options.exclude.iter().any(|(from, to)| hz >= *from && hz <= *to)
@@ -147,13 +162,17 @@ impl Diagnosis {
         let observation = Observation::new(frfs, in_use)?;
         Hypothesis::nominal(fixture, options.exact).predict(&observation)?;
         let few = observation.searched(&options.hold_out);
-        let fitter =
-            Fitter { observation: few.as_ref().unwrap_or(&observation), settings: &options.settings };
+        let searched = few.as_ref().unwrap_or(&observation);
+        let fitter = Fitter { observation: searched, settings: &options.settings, watch };
         let mut parts = match &options.baseline {
             Some(baseline) => {
-                let pairs = fitter.observation.pairs();
-                let baseline = Observation::new(baseline, in_use)?.reduced(|_| true, |p| pairs.contains(p));
-                routes::since(&fitter, &baseline.ok_or(DiagnosisError::Baseline)?, fixture, options.exact)?
+                let baseline = Observation::new(baseline, in_use)?;
+                if baseline.pairs() != observation.pairs() {
+                    return Err(DiagnosisError::Baseline);
+                }
+                let pairs = searched.pairs();
+                let part = baseline.reduced(|_| true, |pair| pairs.contains(pair));
+                routes::since(&fitter, part.unwrap_or(baseline), fixture, options.exact)?
             }
             None => routes::judged(&fitter, fixture, options)?,
         };

@@ -31,7 +31,7 @@ pub(crate) fn cost(fitter: &Fitter, fit: &Fit, inflation: f64) -> f64 {
 /// The weight, against one for the best hypothesis, of physics that none covers: the worse the best fit is, the likelier it is that none is
 /// right.
 fn unlisted(fitter: &Fitter, best: &Fit) -> f64 {
-    let Fitter { observation, settings } = fitter;
+    let Fitter { observation, settings, .. } = fitter;
     let chi2_per_dof = best.chi2_per_dof(observation);
     let strain = excess(chi2_per_dof, observation.degrees(), observation.noise_uncertainty()).max(0.0);
     let company = best.hypothesis.effect_count().saturating_sub(1) as f64;

@@ -1,6 +1,6 @@
 use crate::fitter::Fitter;
 use crate::settings::Settings;
-use crate::{Hypothesis, Observation};
+use crate::{Hypothesis, Observation, Watch};
 use jointscope_inference::{Covariance, variance_inflation};
 use num_complex::Complex64;
 
@@ -22,7 +22,7 @@ impl Fit {
     ///
     /// `None` where the start itself predicts no finite FRFs.
     pub fn of(start: &Hypothesis, observation: &Observation, global: bool) -> Option<Self> {
-        let fitter = Fitter { observation, settings: &Settings::default() };
+        let fitter = Fitter { observation, settings: &Settings::default(), watch: Watch::default() };
         if global { fitter.global(start) } else { fitter.local(start, None, f64::INFINITY) }
     }
 
@@ -35,7 +35,8 @@ impl Fit {
 
     /// Covariance of the coordinates; `None` where the FRFs leave a combination free.
     pub fn covariance(&self, observation: &Observation) -> Option<Covariance> {
-        Fitter { observation, settings: &Settings::default() }.information(&self.hypothesis).covariance()
+        let fitter = Fitter { observation, settings: &Settings::default(), watch: Watch::default() };
+        fitter.information(&self.hypothesis).covariance()
     }
 
     /// χ² over the real values that count less the effects' free parameters.

@@ -1,7 +1,7 @@
 //! Fits of hypotheses to an observation: from nearby, and from afar by stages in which a share of the signal counts as noise.
 
 use crate::settings::Settings;
-use crate::{Fit, Hypothesis, Linearisation, Observation};
+use crate::{Fit, Hypothesis, Linearisation, Observation, Watch};
 use jointscope_inference::{Convergence, LeastSquares, Limit, NormalEquations, Precision, descend};
 use num_complex::Complex64;
 use rayon::prelude::*;
@@ -12,6 +12,7 @@ use std::borrow::Cow;
 pub(crate) struct Fitter<'a> {
     pub observation: &'a Observation,
     pub settings: &'a Settings,
+    pub watch: Watch<'a>,
 }
 
 /// A fit under way: where it stands, and derivatives taken there or on the way.
@@ -53,7 +54,7 @@ impl<'a, const FIXED: bool> LeastSquares for Problem<'a, FIXED> {
     }
 
     fn derivatives(&self, at: &Iterate, precision: Precision) -> Option<Linearisation> {
-        let Fitter { observation, settings } = self.fitter;
+        let Fitter { observation, settings, .. } = self.fitter;
         Some(match precision {
             Precision::Exact => self.fitter.linearised(&at.hypothesis),
             Precision::Rough => {
@@ -82,7 +83,7 @@ impl<'a> Fitter<'a> {
     where
         'a: 'b,
     {
-        Fitter { observation, settings: self.settings }
+        Fitter { observation, ..self }
     }
 
     /// The observation on the few lines of a thinned fit.

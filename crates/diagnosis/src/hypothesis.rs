@@ -1,6 +1,8 @@
 use crate::Observation;
 use crate::freedom::parameters_of;
-use jointscope_fixture::{Effect, Fixture, FixtureError, NamedQuantity, Nature, QuantityKey, QuantityOwner};
+use jointscope_fixture::{
+    Effect, Fixture, FixtureError, Motion, NamedQuantity, Nature, ParameterSpec, QuantityKey, QuantityOwner,
+};
 use jointscope_inference::{Parameter, Transform};
 use jointscope_lumped::{Instrument, LumpedError, accelerances};
 use jointscope_spectra::FrfPair;
@@ -35,7 +37,13 @@ const NARROW: f64 = 0.12;
 impl Tolerance {
     fn new(index: usize, quantity: NamedQuantity) -> Self {
         let nominal = quantity.value;
-        let scale = quantity.std.unwrap_or(if nominal != 0.0 { 0.1 * nominal.abs() } else { 1.0 });
+        let effects = parameter_spec(quantity.key);
+        let free = || match effects.map(|spec| spec.motion) {
+            Some(Motion::Signed(scale) | Motion::NonNegative(scale)) => scale.of(nominal),
+            _ if nominal != 0.0 => 0.1 * nominal.abs(),
+            _ => 1.0,
+        };
+        let scale = quantity.std.unwrap_or_else(free);
         // Masses and stiffnesses trade against factors of each other: by their logarithms such a trade is a straight line.
         let relative = !matches!(quantity.nature, Nature::Abscissa | Nature::Damping)
             && nominal > 0.0
@@ -47,9 +55,11 @@ impl Tolerance {
         let known = f64::from(u8::from(quantity.std.is_some()));
         let parameter = Parameter::new(transform).with_precision(known);
         // A dashpot stops at zero.
-        let dissipates = quantity.nature == Nature::Damping && nominal > 0.0;
-        let parameter =
-            if dissipates { parameter.between(-nominal / scale, f64::INFINITY) } else { parameter };
+        let stops = match effects {
+            Some(spec) => !spec.range.contains(-1.0),
+            None => quantity.nature == Nature::Damping && nominal > 0.0,
+        };
+        let parameter = if stops { parameter.between(-nominal / scale, f64::INFINITY) } else { parameter };
         Tolerance { index, quantity, parameter }
     }
 
@@ -83,8 +93,16 @@ pub struct Hypothesis {
     pub(crate) coordinates: Vec<f64>,
 }
 
+/// What is known of a quantity that is a parameter of an effect.
+fn parameter_spec(key: QuantityKey) -> Option<&'static ParameterSpec> {
+    match key {
+        QuantityKey::Parameter { kind, index, .. } => kind.spec().parameters.get(index),
+        _ => None,
+    }
+}
+
 impl Hypothesis {
-    /// The fixture by itself, its own effects kept as they stand. `exact` takes bare numbers as exact.
+    /// The fixture by itself, its own effects kept as they stand but for parameters with a deviation. `exact` takes bare numbers as exact.
     ///
     /// Young's modulus and second moment of one beam enter as their product ([`Fixture::uncertain_quantities`]).
     pub fn nominal(fixture: &Fixture, exact: bool) -> Self {
@@ -249,7 +267,7 @@ impl Hypothesis {
         fixture.set_quantities(
             moved.map(|(tolerance, coordinate)| (tolerance.index, tolerance.value(*coordinate))),
         );
-        let mut physics = self.fixture.physics().to_vec();
+        let mut physics = fixture.physics().to_vec();
         physics.extend(self.effects());
         fixture.with_physics(physics)
     }

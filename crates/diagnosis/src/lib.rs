@@ -30,6 +30,7 @@
 //! ```
 
 mod alternatives;
+mod baseline;
 mod catalogue;
 mod departures;
 mod diagnosis;
@@ -55,8 +56,10 @@ mod scan;
 mod search;
 mod searched_frfs;
 mod settings;
+mod watch;
 
 pub use alternatives::Alternative;
+pub use baseline::{Baseline, ModeChange, ModeState};
 pub use catalogue::{Candidate, catalogue};
 pub use departures::Departure;
 pub use diagnosis::{BandShare, Diagnosis, DiagnosisError, DiagnosisOptions, Finding, FrfMismatch, Tried};
@@ -66,10 +69,11 @@ pub use hypothesis::{Hypothesis, PredictionError, Tolerance};
 pub use jointscope_findings::{Estimate, HeldOut, Verdict};
 pub use linearisation::Linearisation;
 pub use location::{BandMisfit, LawFit, LawParameter, LineEstimate, Location, Site, locate, measure};
-pub use modal::ModelError;
+pub use modal::{ErrorIntervals, ModelError};
 pub use observation::Observation;
 pub use search::Search;
 pub use settings::{
     EvidenceSettings, FitSettings, LawSettings, LocationSettings, ModalSettings, RankingSettings,
     SelectionSettings, Settings,
 };
+pub use watch::{Step, Watch};

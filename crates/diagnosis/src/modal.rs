@@ -5,15 +5,19 @@
 //! than no name. So the error is a part of the likelihood, common to all hypotheses, its sizes estimated for each
 //! ([`jointscope_model_error`]): a name wins by making it smaller.
 //!
+//! * [`changes`]: the modes of two states side by side;
 //! * [`fit`]: one hypothesis at its most probable parameters and sizes of error;
 //! * [`prior`]: what is known of parameters beforehand;
+//! * [`sizes`]: what is known of the sizes of error, and what a fit says of them;
 //! * [`search`]: every candidate, alone and beside others;
 //! * [`judgement`]: what it comes to: names with their probabilities and intervals, and errors.
 
+mod changes;
 mod fit;
 mod judgement;
 mod prior;
 mod search;
+mod sizes;
 
-pub use judgement::ModelError;
 pub(crate) use judgement::{ModalJudgement, explains};
+pub use sizes::{ErrorIntervals, ModelError};

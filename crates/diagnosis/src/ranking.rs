@@ -143,7 +143,9 @@ impl Ranking<'_> {
         }
         let held = Scan::about(thinned, base.clone(), settings.scored, true)
             .map_or(Vec::new(), |scan| scan.insensitive());
+        let count = self.fitter.watch.count(begun.len() + joining.len());
         let begin = |(candidate, start): (usize, Hypothesis)| {
+            count.trying(&self.candidates[candidate]);
             let iterate = thinned.iterate(start.holding(&held))?;
             Some(Thinned { candidate, iterate, objective: f64::INFINITY })
         };
@@ -229,7 +231,9 @@ impl Ranking<'_> {
     /// where they come near them; all of them only where they come below `limit`.
     fn fitted(&self, starts: Vec<Start>, nearby: Option<&Linearisation>, limit: f64) -> Vec<(usize, Fit)> {
         let settings = &self.fitter.settings.ranking;
+        let count = self.fitter.watch.count(starts.len());
         let fit = |start: &Start, limit: f64| {
+            count.trying(&self.candidates[start.candidate]);
             self.fitter.local(&start.hypothesis, nearby, limit).map(|fit| (start.candidate, fit))
         };
         let (first, rest) = starts.split_at(settings.unlimited.min(starts.len()));

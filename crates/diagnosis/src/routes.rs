@@ -1,7 +1,6 @@
 //! The ways to a diagnosis: by the noise of the lines, by the error of the model, by what has changed since a baseline; and which of them a recording
 //! asks for.
 
-use crate::Observation;
 use crate::departures::departures;
 use crate::diagnosis::{Diagnosis, DiagnosisError, DiagnosisOptions, Finding, Tried, mismatch, upper_tail};
 use crate::evidence::{excess, nothing_can_be_stated};
@@ -13,6 +12,7 @@ use crate::modal::{ModalJudgement, ModelError, explains};
 use crate::named::{findings, re_estimated, verdict};
 use crate::search::Search;
 use crate::settings::Settings;
+use crate::{Baseline, Observation};
 use jointscope_findings::{HeldOut, Verdict};
 use jointscope_fixture::Fixture;
 use jointscope_spectra::SpectraError;
@@ -72,6 +72,7 @@ pub(crate) struct Parts {
     held_out: Option<HeldOut>,
     model_error: Option<[ModelError; 2]>,
     baseline_error: Option<ModelError>,
+    baseline: Option<Baseline>,
     tried: Vec<Tried>,
 }
 
@@ -91,6 +92,7 @@ impl Parts {
             held_out: self.held_out,
             model_error: self.model_error,
             baseline_error: self.baseline_error,
+            baseline: self.baseline,
             tried: self.tried,
         }
     }
@@ -130,10 +132,11 @@ fn by_lines(
     start: Start,
     division: Option<Division>,
 ) -> Parts {
-    let Fitter { observation, settings } = *fitter;
+    let Fitter { observation, settings, .. } = *fitter;
     // What is to be judged on unseen lines must not have chosen the names either: the search that sees less goes first, and the whole
     // recording only has to confirm or correct it.
     let blind = division.as_ref().and_then(|division| {
+        fitter.watch.stage("searching without the lines that are held out");
         let fitter = fitter.on(&division.seen);
         let alone = Search::without_effects(&fitter, fixture, exact)?;
         let modal = match &start {
@@ -152,6 +155,7 @@ fn by_lines(
             None => Search::searched(&fitter, alone),
         })
     });
+    fitter.watch.stage("searching the whole recording");
     let mut search = match (start, &blind) {
         (Start::Searched(search), _) => *search,
         (Start::Modes(modal, exact), _) => {
@@ -174,7 +178,10 @@ fn by_lines(
     }
     let held_out = division.zip(blind).and_then(|(d, blind)| d.judge(&blind, &search, observation));
     let locations = match chance(observation, &search.refitted).1 < settings.evidence.located {
-        true => located(*fitter, &search.nominal.hypothesis, &search.refitted),
+        true => {
+            fitter.watch.stage("locating what is left");
+            located(*fitter, &search.nominal.hypothesis, &search.refitted)
+        }
         false => Vec::new(),
     };
     Parts {
@@ -185,15 +192,17 @@ fn by_lines(
         search,
         model_error: None,
         baseline_error: None,
+        baseline: None,
         tried: Vec::new(),
     }
 }
 
 /// The diagnosis where the model's own error decides.
 fn by_modes(fitter: &Fitter, within: Search, modal: &ModalJudgement, division: Option<&Division>) -> Parts {
-    let Fitter { observation, settings } = *fitter;
+    let Fitter { observation, settings, .. } = *fitter;
     let search = modal.search_on(observation, &within);
     let held_out = division.and_then(|division| {
+        fitter.watch.stage("comparing by modes without what is held out");
         let blind = fitter.on(&division.seen);
         let known = modal.known(settings.modal.blind);
         let judged =
@@ -212,6 +221,7 @@ fn by_modes(fitter: &Fitter, within: Search, modal: &ModalJudgement, division: O
         search,
         model_error: Some(modal.errors),
         baseline_error: None,
+        baseline: None,
         tried: modal.tried(settings.modal.tried),
     }
 }
@@ -219,13 +229,15 @@ fn by_modes(fitter: &Fitter, within: Search, modal: &ModalJudgement, division: O
 /// The diagnosis of what has changed since a baseline.
 pub(crate) fn since(
     fitter: &Fitter,
-    baseline: &Observation,
+    baseline: Observation,
     fixture: &Fixture,
     exact: bool,
 ) -> Result<Parts, DiagnosisError> {
     let within = Search::as_stated(fitter, fixture, exact).ok_or(DiagnosisError::Baseline)?;
-    let judged = ModalJudgement::since(fitter, baseline, &within.nominal.hypothesis, &within.candidates);
+    let judged = ModalJudgement::since(fitter, &baseline, &within.nominal.hypothesis, &within.candidates);
     let (modal, before) = judged.ok_or(DiagnosisError::Baseline)?;
+    let calibrated = Fit::at(before.calibrated, &baseline).ok_or(DiagnosisError::Baseline)?;
     let parts = by_modes(fitter, within, &modal, None);
-    Ok(Parts { baseline_error: Some(before), ..parts })
+    let baseline = Baseline { observation: baseline, calibrated, modes: before.modes };
+    Ok(Parts { baseline_error: Some(before.error), baseline: Some(baseline), ..parts })
 }

@@ -7,7 +7,7 @@ use crate::fitter::Fitter;
 use crate::penalty::{parameter_penalty, penalty};
 use crate::ranking::Ranking;
 use crate::settings::Settings;
-use crate::{Hypothesis, Observation};
+use crate::{Hypothesis, Observation, Watch};
 use jointscope_fixture::Fixture;
 
 /// The outcome of a search.
@@ -34,13 +34,14 @@ impl Search {
     /// The fixture as it stands and refitted, and nothing searched for yet. `None` where it predicts no finite FRFs.
     pub(crate) fn without_effects(fitter: &Fitter, fixture: &Fixture, exact: bool) -> Option<Self> {
         let start = Search::as_stated(fitter, fixture, exact)?;
+        fitter.watch.stage("refitting the fixture within its tolerances");
         let refitted = fitter.searched(&start.nominal.hypothesis)?;
         Some(Search { repaired: refitted.clone(), refitted, ..start })
     }
 
     /// Searches for effects with the default settings. `None` where the fixture predicts no finite FRFs.
     pub fn of(fixture: &Fixture, observation: &Observation, exact: bool) -> Option<Self> {
-        let fitter = Fitter { observation, settings: &Settings::default() };
+        let fitter = Fitter { observation, settings: &Settings::default(), watch: Watch::default() };
         Some(Search::searched(&fitter, Search::without_effects(&fitter, fixture, exact)?))
     }
 
@@ -80,6 +81,10 @@ impl Search {
     fn extend(&mut self, fitter: &Fitter) {
         let settings = &fitter.settings.selection;
         for _ in 0..settings.rounds {
+            fitter.watch.stage(match self.repaired.hypothesis.effect_count() {
+                0 => "searching the lines for an effect",
+                _ => "searching the lines for one more effect",
+            });
             if self.repaired.hypothesis.effect_count() >= settings.effects {
                 break;
             }

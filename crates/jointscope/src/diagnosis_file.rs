@@ -1,7 +1,7 @@
 use crate::file::{told, value};
 use jointscope_diagnosis::{
     Departure, Diagnosis, EndErrors, Finding, FrfMismatch, HeldOut, Hypothesis, LawFit, LineEstimate,
-    Location, ModelError, Tried, Variation, Verdict,
+    Location, ModeChange, ModelError, Tried, Variation, Verdict,
 };
 use jointscope_findings::by_model;
 use jointscope_frf::noise::NoiseSource;
@@ -9,6 +9,7 @@ use jointscope_spectra::FrfPair;
 use jointscope_wording::{Remarks, Says};
 use serde::{Serialize, Serializer};
 use serde_json::Value;
+use std::collections::BTreeMap;
 
 /// The contents of `diagnosis.json`: verdict, mismatch, findings with intervals and alternatives, errors of the three models, and beyond the
 /// contract where the tolerances ended, where each FRF's noise came from, and what every place leaves unexplained. SI units; what is not
@@ -40,6 +41,7 @@ pub fn diagnosis_file(diagnosis: &Diagnosis) -> Value {
         model_error: ModelErrors::of(diagnosis),
         departures: &diagnosis.departures,
         tried: &diagnosis.tried,
+        modes: diagnosis.baseline.as_ref().map(|baseline| baseline.modes.as_slice()),
     })
 }
 
@@ -67,6 +69,9 @@ struct DiagnosisFile<'a> {
     model_error: ModelErrors,
     departures: &'a [Departure],
     tried: &'a [Tried],
+    /// The modes then and now, with a baseline.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    modes: Option<&'a [ModeChange]>,
 }
 
 /// Error of the repaired model, and of the refitted one; zero where the noise explains what is left.
@@ -77,12 +82,16 @@ struct ModelErrors {
     refitted: ModelError,
     #[serde(skip_serializing_if = "Option::is_none")]
     baseline: Option<ModelError>,
+    /// What of it the fixture states.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    stated: BTreeMap<&'static str, f64>,
 }
 
 impl ModelErrors {
     fn of(diagnosis: &Diagnosis) -> Self {
         let [refitted, repaired] = diagnosis.model_error.unwrap_or_default();
-        ModelErrors { repaired, refitted, baseline: diagnosis.baseline_error }
+        let stated = diagnosis.baseline_error.as_ref().unwrap_or(&repaired).stated.by_key().collect();
+        ModelErrors { repaired, refitted, baseline: diagnosis.baseline_error, stated }
     }
 }
 

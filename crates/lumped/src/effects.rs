@@ -59,8 +59,7 @@ pub(crate) struct Interface {
 /// What the effects of a fixture do, in the order of its file.
 pub(crate) fn actions(fixture: &Fixture) -> impl Iterator<Item = Action<'_>> {
     fixture
-        .physics()
-        .iter()
+        .effects()
         .flat_map(|effect| match effect.kind {
             Kind::Footing => footing(fixture, effect),
             _ => [action(fixture, effect), None],

@@ -27,7 +27,7 @@ pub struct ErrorSizes {
 }
 
 /// Number of kinds.
-pub(crate) const KINDS: usize = 7;
+pub const KINDS: usize = 7;
 /// Place of the gain among them.
 pub(crate) const GAIN: usize = 6;
 
@@ -66,6 +66,22 @@ impl ErrorSizes {
     pub fn from_array(sizes: [f64; KINDS]) -> Self {
         let [frequency, damping, shape, quadrature, mass_line, upper_residual, gain] = sizes;
         ErrorSizes { frequency, damping, shape, quadrature, mass_line, upper_residual, gain }
+    }
+}
+
+/// What is known of the sizes of a model's error before a recording.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SizePrior {
+    /// Scales of the sizes' priors; of those that are stated the sizes themselves.
+    pub scales: ErrorSizes,
+    /// Which sizes are stated, in the order of [`ErrorSizes`]: they are taken as they are.
+    pub stated: [bool; KINDS],
+}
+
+impl From<&ErrorSizes> for SizePrior {
+    /// Nothing stated.
+    fn from(scales: &ErrorSizes) -> Self {
+        SizePrior { scales: *scales, stated: [false; KINDS] }
     }
 }
 

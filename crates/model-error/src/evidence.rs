@@ -1,9 +1,9 @@
 //! How probable the recorded features are under a model, its error's sizes at their most probable.
 //!
 //! The parameters of a linear model are integrated out, S + J·Jᵀ; the sizes τ, whose priors are half-normal with scales s, are maximised over:
-//! ln Z = max over τ of [ln N(d; 0, S(τ) + J·Jᵀ) − ½ Σ (τ/s)²].
+//! ln Z = max over τ of [ln N(d; 0, S(τ) + J·Jᵀ) − ½ Σ (τ/s)²]. A size that is stated is taken as it is.
 
-use crate::errors::{Comparison, ErrorSizes, GAIN, KINDS};
+use crate::errors::{Comparison, ErrorSizes, GAIN, KINDS, SizePrior};
 use jointscope_linalg::Cholesky;
 use std::f64::consts::TAU;
 
@@ -33,6 +33,11 @@ const FINE: [f64; 4] = [3.0, 1.6, 1.25, 1.1];
 const SWEEPS: usize = 2;
 /// Sizes over which a mean is taken.
 const GRID: usize = 24;
+/// Sizes over which an interval is taken, on a logarithmic scale, and the least of them as a multiple of the prior's.
+const FINE_GRID: usize = 40;
+const FINEST: f64 = 0.02;
+/// Multiple of the prior's below which a size is next to nothing.
+const NEXT_TO_NOTHING: f64 = 0.01;
 
 impl Linear {
     /// ln N(difference; 0, S + J·Jᵀ), nats; `None` where that covariance is not positive definite.
@@ -42,10 +47,19 @@ impl Linear {
 
     /// Root mean squares of each size over its posterior, the others at their most probable: with few modes a size may well be larger than the
     /// most probable one, and intervals must know it.
-    pub fn mean_sizes(&self, comparison: &Comparison, prior: &ErrorSizes, best: &Evidence) -> ErrorSizes {
-        let (prior, at) = (prior.to_array(), best.sizes.to_array());
+    pub fn mean_sizes(
+        &self,
+        comparison: &Comparison,
+        prior: impl Into<SizePrior>,
+        best: &Evidence,
+    ) -> ErrorSizes {
+        let SizePrior { scales, stated } = prior.into();
+        let (prior, at) = (scales.to_array(), best.sizes.to_array());
         let mut density = Density::of(self, comparison);
         let mut mean = |kind: usize| {
+            if stated[kind] {
+                return at[kind];
+            }
             let (mut total, mut squares) = (0.0, 0.0);
             let widest = (4.0 * prior[kind]).max(3.0 * at[kind]);
             for k in 0..GRID {
@@ -53,7 +67,7 @@ impl Linear {
                 let mut sizes = at;
                 sizes[kind] = size;
                 let Some(density) = density.ln(&ErrorSizes::from_array(sizes)) else { continue };
-                let weight = (density + ln_prior(&sizes, &prior) - best.ln).min(50.0).exp();
+                let weight = (density + ln_prior(&sizes, &prior, &stated) - best.ln).min(50.0).exp();
                 total += weight;
                 squares += weight * size * size;
             }
@@ -62,20 +76,70 @@ impl Linear {
         ErrorSizes::from_array(std::array::from_fn(&mut mean))
     }
 
-    /// The evidence at the most probable sizes, whose priors have the scales `prior`; searched from `start`, or over five decades of each.
+    /// The interval that holds a size of this kind, by its place in [`ErrorSizes`], with a probability of 95 %, the others at their most probable. It starts at zero where the
+    /// most probable size is next to nothing.
+    pub fn size_interval(
+        &self,
+        comparison: &Comparison,
+        prior: impl Into<SizePrior>,
+        best: &Evidence,
+        kind: usize,
+    ) -> [f64; 2] {
+        let SizePrior { scales, stated } = prior.into();
+        let (prior, at) = (scales.to_array(), best.sizes.to_array());
+        if stated[kind] {
+            return [at[kind]; 2];
+        }
+        let mut density = Density::of(self, comparison);
+        let (low, high) = (FINEST * prior[kind], (4.0 * prior[kind]).max(6.0 * at[kind]));
+        let size = |k: usize| low * (high / low).powf(k as f64 / (FINE_GRID - 1) as f64);
+        let mut weight = |size: f64| {
+            let mut sizes = at;
+            sizes[kind] = size;
+            let density = density.ln(&ErrorSizes::from_array(sizes));
+            density.map_or(0.0, |d| (d + ln_prior(&sizes, &prior, &stated) - best.ln).min(50.0).exp())
+        };
+        // Below the first size the density is that at none.
+        let mut ends = vec![(0.0, 0.0)];
+        let (mut before, mut total) = ((0.0, weight(low)), 0.0);
+        for k in 0..FINE_GRID {
+            let at = (size(k), weight(size(k)));
+            total += 0.5 * (at.0 - before.0) * (at.1 + before.1);
+            ends.push((at.0, total));
+            before = at;
+        }
+        let quantile = |share: f64| {
+            let found = ends.windows(2).find(|pair| pair[1].1 >= share * total);
+            found.map_or(at[kind], |pair| {
+                let [(a, below), (b, above)] = [pair[0], pair[1]];
+                let part = (share * total - below) / (above - below).max(f64::MIN_POSITIVE);
+                a + (b - a) * part.clamp(0.0, 1.0)
+            })
+        };
+        match at[kind] > NEXT_TO_NOTHING * prior[kind] {
+            true => [quantile(0.025).min(at[kind]), quantile(0.975).max(at[kind])],
+            false => [0.0, quantile(0.95)],
+        }
+    }
+
+    /// The evidence at the most probable sizes, whose priors have the scales `prior`; searched from `start`, or over five decades of each. What is stated stays.
     pub fn evidence(
         &self,
         comparison: &Comparison,
-        prior: &ErrorSizes,
+        prior: impl Into<SizePrior>,
         start: Option<&ErrorSizes>,
     ) -> Option<Evidence> {
-        let prior = prior.to_array();
+        let SizePrior { scales, stated } = prior.into();
+        let prior = scales.to_array();
+        let free = (0..KINDS).filter(|kind| !stated[*kind]);
         let mut density = Density::of(self, comparison);
         let mut value = |sizes: &[f64; KINDS]| -> f64 {
             let density = density.ln(&ErrorSizes::from_array(*sizes));
-            density.map_or(f64::NEG_INFINITY, |density| density + ln_prior(sizes, &prior))
+            density.map_or(f64::NEG_INFINITY, |density| density + ln_prior(sizes, &prior, &stated))
         };
-        let mut best = start.map_or(prior, |sizes| sizes.to_array());
+        let start_at = start.map_or(prior, |sizes| sizes.to_array());
+        let mut best: [f64; KINDS] =
+            std::array::from_fn(|kind| if stated[kind] { prior[kind] } else { start_at[kind] });
         let mut ln = value(&best);
         let mut try_size = |best: &mut [f64; KINDS], ln: &mut f64, kind: usize, size: f64| {
             let mut other = *best;
@@ -89,7 +153,7 @@ impl Linear {
         };
         if start.is_none() {
             for _ in 0..SWEEPS {
-                for kind in 0..KINDS {
+                for kind in free.clone() {
                     for times in COARSE {
                         try_size(&mut best, &mut ln, kind, times * prior[kind]);
                     }
@@ -97,7 +161,7 @@ impl Linear {
             }
         }
         for factor in FINE {
-            for kind in 0..KINDS {
+            for kind in free.clone() {
                 for step in [factor, 1.0 / factor] {
                     let mut left = 6;
                     while left > 0 && best[kind] > ErrorSizes::LEAST * prior[kind] * 0.999 {
@@ -115,12 +179,12 @@ impl Linear {
 }
 
 /// ln of the sizes' prior but for its normalisation: half-normal, and half-Cauchy for gains, of which a test may have any.
-fn ln_prior(sizes: &[f64; KINDS], scales: &[f64; KINDS]) -> f64 {
+fn ln_prior(sizes: &[f64; KINDS], scales: &[f64; KINDS], stated: &[bool; KINDS]) -> f64 {
     let of = |kind: usize| {
         let squared = (sizes[kind] / scales[kind]).powi(2);
         if kind == GAIN { -(1.0 + squared).ln() } else { -0.5 * squared }
     };
-    (0..KINDS).map(of).sum()
+    (0..KINDS).filter(|kind| !stated[*kind]).map(of).sum()
 }
 
 /// The density at many sizes of the error: what does not depend on them is formed once.

@@ -157,6 +157,12 @@ impl RecordedModes {
         Some(relative)
     }
 
+    /// Standard deviations of ln ω and ln ζ of mode `index` by the noise.
+    pub fn deviations(&self, index: usize) -> [f64; 2] {
+        let (n, first) = (self.count(), 2 * index);
+        [first, first + 1].map(|at| self.covariance[at * (n + 1)].max(0.0).sqrt())
+    }
+
     /// Whether the free fit took all the residual terms it may: then something smooth that is no mode is in the FRFs.
     pub fn is_strained(&self) -> bool {
         self.outline.projections[0].columns() - self.outline.poles >= TERMS.1

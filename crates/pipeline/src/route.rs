@@ -1,7 +1,7 @@
 //! The way from a measurement to an answer.
 
 use crate::{Answer, Error, MeasuredFrfs, Measurement, hits, levels};
-use jointscope_diagnosis::{Diagnosis, DiagnosisOptions};
+use jointscope_diagnosis::{Diagnosis, DiagnosisOptions, Step, Watch};
 use jointscope_estimation::{EstimateOptions, ResponseWindow};
 use jointscope_fixture::Fixture;
 use jointscope_nonlinear::NonlinearOptions;
@@ -52,8 +52,8 @@ impl Options {
 }
 
 /// How far a diagnosis has come.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Progress {
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Progress<'a> {
     /// The FRFs are known, and the search for effects begins.
     Searching {
         /// Number of FRFs.
@@ -61,6 +61,8 @@ pub enum Progress {
         /// Number of spectral lines.
         lines: usize,
     },
+    /// What the search is doing.
+    Searched(Step<'a>),
 }
 
 /// What the test of homogeneity leads to.
@@ -71,7 +73,7 @@ pub(crate) enum Homogeneity {
     Linear(Box<MeasuredFrfs>, Option<f64>),
 }
 
-/// Finds what `fixture` leaves out of `measurement`; `progress` is called as it comes along.
+/// Finds what `fixture` leaves out of `measurement`; `progress` is called as it comes along, from any thread.
 ///
 /// # Errors
 /// See [`Error`]; [`Error::concern`] says which of the inputs is at fault.
@@ -79,7 +81,7 @@ pub fn diagnose(
     fixture: &Fixture,
     measurement: &Measurement,
     options: &Options,
-    progress: impl FnOnce(Progress),
+    progress: impl Fn(Progress) + Sync,
 ) -> Result<Answer, Error> {
     let homogeneity = match measurement {
         Measurement::Frfs(recording) => levels::homogeneity(fixture, recording, options)?,
@@ -93,6 +95,7 @@ pub fn diagnose(
     let frfs = &measured.frfs;
     options.check(frfs)?;
     progress(Progress::Searching { frfs: frfs.pairs().len(), lines: frfs.lines().len() });
-    let diagnosis = Diagnosis::of(&fixture, frfs, &options.diagnosis)?;
+    let told = |step: Step| progress(Progress::Searched(step));
+    let diagnosis = Diagnosis::watched(&fixture, frfs, &options.diagnosis, Watch::by(&told))?;
     Answer::linear(fixture, diagnosis, homogeneity, measured)
 }

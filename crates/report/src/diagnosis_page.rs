@@ -1,5 +1,6 @@
 //! The page of one diagnosis: what was left out, where it sits, what shows it, and how far to believe it.
 
+mod changes;
 mod delta;
 mod departures;
 mod findings;
@@ -11,6 +12,7 @@ mod misfit;
 mod model_error;
 mod noise;
 mod tolerances;
+mod two_states;
 
 use jointscope_diagnosis::{Diagnosis, Fit, Verdict};
 use jointscope_fixture::Fixture;
@@ -43,7 +45,7 @@ impl<'a> Subject<'a> {
 }
 
 /// The page of a diagnosis as one self-contained HTML file: the verdict in a sentence; the fixture with the places marked; findings with
-/// intervals, probabilities and look-alikes; the error of the model and the departures, where there are any; errors before and after, held-out lines included; δ(ω) with the law that names it; the FRFs of all
+/// intervals, probabilities and look-alikes; with a baseline the modes then and now; the error of the model and the departures, where there are any; errors before and after, held-out lines included; δ(ω) with the law that names it; the FRFs of all
 /// models; maps of the misfit; tolerances and where they ended; the noise.
 ///
 /// `fixture` is the one that `diagnosis` was made with. The same input gives the same bytes.
@@ -62,16 +64,25 @@ pub fn diagnosis_page(
         Verdict::Consistent if !diagnosis.departures.is_empty() => Tone::Attention,
         verdict => verdict.into(),
     };
+    let title = match &diagnosis.baseline {
+        None => "Diagnosis: what the fixture leaves out",
+        Some(_) => "Diagnosis: what has changed since the baseline",
+    };
+    let frfs = match &diagnosis.baseline {
+        None => frfs::section(&subject),
+        Some(baseline) => two_states::section(&subject, baseline),
+    };
     let verdict = context.verdict(tone, diagnosis.says(), said.chain(diagnosis.remarks()));
     context
-        .page("Diagnosis: what the fixture leaves out", context.subtitle(fixture), verdict)
+        .page(title, context.subtitle(fixture), verdict)
         .sections(context.hits())
         .sections([fixture_view::section(&subject), findings::section(&subject)])
+        .sections(changes::section(&subject))
         .sections(model_error::section(&subject))
         .sections(departures::section(&subject))
         .sections([judgement::section(&subject)])
         .sections(delta::section(&subject))
-        .sections([frfs::section(&subject), misfit::section(&subject)])
+        .sections([frfs, misfit::section(&subject)])
         .sections(tolerances::section(&subject))
         .sections([noise::section(&subject)])
         .to_html()

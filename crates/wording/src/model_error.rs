@@ -90,8 +90,12 @@ pub struct ErrorInWords {
     pub kind: &'static str,
     /// By how much; `None` where the recording shows no such error.
     pub size: Option<String>,
-    /// By how much usual models are.
+    /// The same with the interval of 95 %, where it was estimated.
+    pub with_interval: String,
+    /// By how much usual models are; what the fixture states, where it does.
     pub usual: String,
+    /// Whether the fixture states it.
+    pub is_stated: bool,
     /// Whether it is larger than an adequate model has it.
     pub large: bool,
 }
@@ -99,39 +103,66 @@ pub struct ErrorInWords {
 /// A model's error by kind.
 pub fn error_in_words(error: &ModelError) -> [ErrorInWords; 3] {
     let settings = ModalSettings::default();
+    let ModelError { frequency, damping, residue, ci95, stated } = error;
+    let (usual, ci95) = (settings.usual, ci95.as_ref());
     let kinds = [
-        ("natural frequency", error.frequency, settings.usual.frequency),
-        ("damping ratio", error.damping, settings.usual.damping),
-        ("residues", error.residue, settings.usual.shape),
+        ("natural frequency", frequency, usual.frequency, stated.frequency, ci95.map(|ci| ci.frequency)),
+        ("damping ratio", damping, usual.damping, stated.damping, ci95.map(|ci| ci.damping)),
+        ("residues", residue, usual.shape, stated.residue, ci95.map(|ci| ci.residue)),
     ];
-    kinds.map(|(kind, size, usual)| ErrorInWords {
-        kind,
-        size: (size > 0.0).then(|| short(size)),
-        usual: short(usual),
-        large: size > settings.adequate.0 * usual,
+    kinds.map(|(kind, size, usual, stated, interval)| {
+        let usual = stated.unwrap_or(usual);
+        let seen = (*size > 0.0).then(|| short(*size));
+        let with_interval = match (&seen, interval) {
+            (Some(seen), Some([low, high])) if low < high => {
+                format!("{seen} ({} to {})", short(low), short(high))
+            }
+            (Some(seen), _) => seen.clone(),
+            (None, Some([_, high])) => format!("none seen (below {})", short(high)),
+            (None, None) => "none seen".to_owned(),
+        };
+        ErrorInWords {
+            kind,
+            size: seen,
+            with_interval,
+            usual: short(usual),
+            is_stated: stated.is_some(),
+            large: *size > settings.adequate.0 * usual,
+        }
     })
 }
 
 /// `0.05 % in natural frequency and 0.3 % in residues`, kinds that are not there left out.
 pub(crate) fn sizes(error: &ModelError) -> String {
-    let told = |error: ErrorInWords| Some(format!("{} in {}", error.size?, error.kind));
+    let as_stated = |error: &ErrorInWords| if error.is_stated && !error.large { " (as stated)" } else { "" };
+    let told = |error: ErrorInWords| {
+        Some(format!("{} in {}{}", error.size.as_ref()?, error.kind, as_stated(&error)))
+    };
     let told: Vec<String> = error_in_words(error).into_iter().filter_map(told).collect();
     if told.is_empty() { "no more than the noise".to_owned() } else { listed(&told) }
 }
 
 /// Why what is left is more than the error of a usual model.
 fn excess(diagnosis: &Diagnosis, error: &ModelError) -> String {
-    let large = error_in_words(error).into_iter().filter(|error| error.large);
-    let told: Vec<String> =
-        large.map(|error| format!("in {} (usually {})", error.kind, error.usual)).collect();
+    let large: Vec<ErrorInWords> = error_in_words(error).into_iter().filter(|error| error.large).collect();
+    let than = if large.iter().all(|error| error.is_stated) { "stated" } else { "usual" };
+    let told: Vec<String> = large
+        .iter()
+        .map(|error| format!("in {} ({} {})", error.kind, known_by(error), error.usual))
+        .collect();
     match (told.is_empty(), remaining(diagnosis).next().is_some()) {
-        (false, _) => format!("larger than usual {}", listed(&told)),
+        (false, _) => format!("larger than {than} {}", listed(&told)),
         (true, true) => "not larger than usual, but for the departure".to_owned(),
         (true, false) => {
             "larger than usual in mass lines, upper residuals or phases, not in the modes themselves"
                 .to_owned()
         }
     }
+}
+
+/// Where the size comes from that an error is held against.
+fn known_by(error: &ErrorInWords) -> &'static str {
+    if error.is_stated { "stated" } else { "usually" }
 }
 
 /// ` (and bodies/A/mass 33 standard deviations from what is stated)`, where the refit without effects takes a quantity that far and the effects
@@ -158,9 +189,9 @@ fn short(share: f64) -> String {
 mod tests {
     use super::*;
     use crate::Says;
-    use jointscope_diagnosis::{Departure, DiagnosisOptions, Finding};
+    use jointscope_diagnosis::{Departure, DiagnosisOptions, ErrorIntervals, Finding};
     use jointscope_findings::Estimate;
-    use jointscope_fixture::{Effect, EffectKind, Fixture, Place};
+    use jointscope_fixture::{Effect, EffectKind, Fixture, Place, StatedError};
     use jointscope_lumped::{Instrument, synthesize};
     use jointscope_spectra::{FrfPair, SpectralLines};
 
@@ -182,7 +213,7 @@ mod tests {
     }
 
     fn error(frequency: f64, damping: f64, residue: f64) -> ModelError {
-        ModelError { frequency, damping, residue }
+        ModelError { frequency, damping, residue, ..ModelError::default() }
     }
 
     fn judged(verdict: Verdict, refitted: ModelError, repaired: ModelError) -> Diagnosis {
@@ -287,6 +318,27 @@ mod tests {
         );
         let usual = error(0.001, 0.0, 0.001);
         says(&judged(Verdict::Unexplained, usual, usual), &["in mass lines, upper residuals or phases"], &[]);
+    }
+
+    #[test]
+    fn what_the_fixture_states_is_told_as_stated_and_what_is_larger_as_that() {
+        let stated = StatedError { frequency: Some(0.003), ..StatedError::default() };
+        let told = ModelError { stated, ..error(0.003, 0.0, 0.002) };
+        let off = "the model is off by 0.3 % in natural frequency (as stated) and 0.2 % in residues, as such";
+        says(&judged(Verdict::Consistent, told, told), &[off], &[]);
+        let farther = ModelError { stated, ..error(0.012, 0.0, 0.002) };
+        let off = "the model is off by 1.2 % in natural frequency and 0.2 % in residues";
+        let than = "larger than stated in natural frequency (stated 0.3 %)";
+        says(&judged(Verdict::Unexplained, farther, farther), &[off, than], &["as stated", "usual"]);
+    }
+
+    #[test]
+    fn an_interval_stands_beside_a_size_and_beside_none() {
+        let interval = [0.001, 0.004];
+        let ci95 = ErrorIntervals { frequency: interval, damping: [0.0, 0.05], residue: [0.01; 2] };
+        let error = ModelError { ci95: Some(ci95), ..error(0.002, 0.0, 0.01) };
+        let told = error_in_words(&error).map(|error| error.with_interval);
+        assert_eq!(told, ["0.2 % (0.1 % to 0.4 %)", "none seen (below 5 %)", "1 %"]);
     }
 
     #[test]

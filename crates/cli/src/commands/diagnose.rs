@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use jointscope::diagnosis::Step;
 use jointscope::estimation::ResponseWindow;
 use jointscope::pipeline::{MeasuredFrfs, Options, Progress};
 use jointscope::report::answer_page;
@@ -13,7 +14,7 @@ use crate::estimation_arguments::EstimationArguments;
 use crate::input::FixtureFile;
 use crate::origin;
 use crate::output::{Outputs, pretty};
-use crate::progress::spinner;
+use crate::progress::Steps;
 use crate::recording::RecordingArguments;
 use crate::refusal::Refusal;
 use crate::values::{band, frf_pair};
@@ -74,15 +75,34 @@ pub fn run(arguments: &DiagnoseArguments) -> Result<String, Refusal> {
         },
         estimate,
     };
-    let watched = spinner();
-    let answer = diagnose(&fixture, &measurement, &options, |Progress::Searching { frfs, lines }| {
-        watched.set_message(format!("searching {frfs} FRFs on {lines} lines …"));
+    outputs(arguments, std::array::from_fn(|_| String::new())).check()?;
+    let steps = Steps::new();
+    let answer = diagnose(&fixture, &measurement, &options, |progress| match progress {
+        Progress::Searching { frfs, lines } => steps.over(&format!("{frfs} FRFs on {lines} lines")),
+        Progress::Searched(Step::Stage(what)) => steps.stage(what),
+        Progress::Searched(step) => steps.within(|| step.to_string()),
     });
-    watched.finish_and_clear();
+    steps.finish();
     let mut answer = answer.map_err(|error| arguments.recording.unanswered(&error, &fixture))?;
     answer.notes.extend(arguments.estimation.unused_with(&measurement));
     written(arguments, &answer)
 }
+
+/// The files of the command with their contents.
+fn outputs(arguments: &DiagnoseArguments, contents: [String; 4]) -> Outputs {
+    let inputs =
+        std::iter::once(&arguments.fixture).chain(&arguments.recording.files).chain(&arguments.baseline);
+    let mut outputs = Outputs::new(inputs);
+    if let Some(folder) = &arguments.output {
+        for (name, contents) in FILES.into_iter().zip(contents) {
+            outputs.add(folder.join(name), contents);
+        }
+    }
+    outputs
+}
+
+/// What the command writes, the page last.
+const FILES: [&str; 4] = ["diagnosis.json", "refitted.json", "repaired.json", "report.html"];
 
 /// Writes the files of an answer.
 fn written(arguments: &DiagnoseArguments, answer: &Answer) -> Result<String, Refusal> {
@@ -93,18 +113,13 @@ fn written(arguments: &DiagnoseArguments, answer: &Answer) -> Result<String, Ref
     origin::add(&mut file, &context);
     let file = pretty(&file);
     let Some(folder) = &arguments.output else { return Ok(file.trim_end().to_owned()) };
-    let page_path = folder.join("report.html");
-    let mut outputs = Outputs::new(files());
-    outputs.add(folder.join("diagnosis.json"), file.clone());
-    outputs.add(folder.join("refitted.json"), answer.refitted.to_json());
-    outputs.add(folder.join("repaired.json"), answer.repaired.to_json());
-    outputs.add(&page_path, answer_page(answer, &context).map_err(Refusal::new)?);
-    outputs.write()?;
+    let page = answer_page(answer, &context).map_err(Refusal::new)?;
+    outputs(arguments, [file.clone(), answer.refitted.to_json(), answer.repaired.to_json(), page]).write()?;
     if arguments.json {
         return Ok(file.trim_end().to_owned());
     }
     let mut lines = context.notes;
     lines.extend(answer.summary());
-    lines.push(page_path.display().to_string());
+    lines.push(folder.join(FILES[3]).display().to_string());
     Ok(lines.join("\n"))
 }

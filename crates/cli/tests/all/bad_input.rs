@@ -380,7 +380,7 @@ fn a_recording_of_another_fixture_is_refused_by_file_and_point() {
 
 #[test]
 fn a_fixture_that_would_be_overwritten_and_a_folder_that_is_a_file_are_refused() {
-    // A recording of few lines: the search is done before anything is written.
+    // Before the search, which may take long.
     let bench = Bench::new("bad-diagnose-write");
     bench.write("refitted.json", STOREY);
     bench.write("plain", "a file, no folder");

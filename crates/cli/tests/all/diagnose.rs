@@ -245,3 +245,31 @@ fn the_shipped_example_is_explained_and_its_readme_does_not_give_it_away() {
         assert!(!readme.contains(word), "`{word}` gives the example away");
     }
 }
+
+#[test]
+fn on_a_pipe_each_stage_is_a_line_and_standard_output_holds_the_answer_alone() {
+    let bench = storeys("stages", r#"{ "kind": "added_mass", "place": "high", "x": 0.18, "mass": 0.6 }"#);
+    let arguments = ["diagnose", "believed.json", "frf.uff", "--json"];
+    let output = bench.run(&arguments);
+    assert_eq!(output.status.code(), Some(0));
+    let told = String::from_utf8(output.stderr).unwrap();
+    for stage in [
+        "refitting the fixture within its tolerances (2 FRFs on 96 lines) …",
+        "searching the whole recording …",
+    ] {
+        assert!(told.lines().any(|line| line == stage), "`{stage}` is missing from:\n{told}");
+    }
+    assert!(!told.contains('\r') && !told.contains('\u{1b}'), "{told:?}");
+    let answer = String::from_utf8(output.stdout).unwrap();
+    let file: Value = serde_json::from_str(&answer).unwrap();
+    assert_eq!(file["findings"][0]["kind"], "added_mass", "{answer}");
+    assert_eq!(answer, bench.done(&arguments), "the answer depends on when something was told");
+}
+
+#[test]
+fn a_baseline_with_other_frfs_is_refused_before_anything_is_told() {
+    let bench = storeys("other-baseline", "");
+    bench.rewrite("frf.uff", "one.uff", |datasets| datasets.retain(|dataset| dataset.response.number == 1));
+    let refused = ["diagnose", "believed.json", "frf.uff", "--baseline", "one.uff", "-o", "out"];
+    bench.refused(&refused, &["baseline and recording have no FRFs or no modes in common"]);
+}

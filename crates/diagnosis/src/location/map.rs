@@ -12,7 +12,7 @@ use crate::evidence::excess;
 use crate::fit::Fit;
 use crate::fitter::Fitter;
 use crate::settings::Settings;
-use crate::{Hypothesis, Observation};
+use crate::{Hypothesis, Observation, Watch};
 use jointscope_linalg::Cholesky;
 use num_complex::Complex64;
 use rayon::prelude::*;
@@ -24,12 +24,12 @@ use rayon::prelude::*;
 /// lines, of the others only what they leave there is stated. δ and laws are those of the best three. A recording of more than two thousand
 /// lines is thinned: every k-th line, and as many of those with the largest signal against noise.
 pub fn locate(base: &Hypothesis, refitted: &Fit, observation: &Observation) -> Vec<Location> {
-    located(Fitter { observation, settings: &Settings::default() }, base, refitted)
+    located(Fitter { observation, settings: &Settings::default(), watch: Watch::default() }, base, refitted)
 }
 
 /// As [`locate`], with the settings of a search.
 pub(crate) fn located(fitter: Fitter, base: &Hypothesis, refitted: &Fit) -> Vec<Location> {
-    let Fitter { observation, settings } = fitter;
+    let Fitter { observation, settings, .. } = fitter;
     let settings = &settings.location;
     if observation.pairs().len() < 2 {
         return Vec::new();
@@ -97,12 +97,12 @@ fn least(values: impl Iterator<Item = f64>) -> f64 {
 /// fitted, tolerances yielding from where the fit left them. `None` for an effect that does not act through one site, and with fewer
 /// than two FRFs.
 pub fn measure(repaired: &Fit, index: usize, observation: &Observation) -> Option<Location> {
-    measured(Fitter { observation, settings: &Settings::default() }, repaired, index)
+    measured(Fitter { observation, settings: &Settings::default(), watch: Watch::default() }, repaired, index)
 }
 
 /// As [`measure`], with the settings of a search.
 pub(crate) fn measured(fitter: Fitter, repaired: &Fit, index: usize) -> Option<Location> {
-    let Fitter { observation, settings } = fitter;
+    let Fitter { observation, settings, .. } = fitter;
     let settings = &settings.location;
     if observation.pairs().len() < 2 {
         return None;

@@ -18,7 +18,7 @@ pub(super) struct Recorded<'a> {
 
 impl<'a> Recorded<'a> {
     pub fn of(fitter: Fitter<'a>) -> Self {
-        let Fitter { observation, settings } = fitter;
+        let Fitter { observation, settings, .. } = fitter;
         let (lines, frfs) = (observation.lines().len(), observation.pairs().len());
         let indices = || (0..lines).flat_map(move |line| (0..frfs).map(move |k| k * lines + line));
         Recorded {

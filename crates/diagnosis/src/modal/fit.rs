@@ -7,7 +7,7 @@ use jointscope_inference::{
 };
 use jointscope_linalg::Cholesky;
 use jointscope_model_error::{
-    Comparison, ErrorSizes, Evidence, Linear, ModelledModes, Pairing, RecordedModes, Shapes,
+    Comparison, ErrorSizes, Evidence, KINDS, Linear, ModelledModes, Pairing, RecordedModes, Shapes, SizePrior,
 };
 
 /// The recording's modes and what is known of the model's error.
@@ -16,6 +16,8 @@ pub(crate) struct Problem<'a> {
     pub recorded: &'a RecordedModes,
     pub features: &'a [f64],
     pub sizes: &'a ErrorSizes,
+    /// Which of the sizes are stated.
+    pub stated: [bool; KINDS],
 }
 
 /// A hypothesis where it stands: its modes, paired with the recording's.
@@ -62,6 +64,11 @@ impl ModalFit {
 }
 
 impl<'a> Problem<'a> {
+    /// What is known of the sizes of the error beforehand.
+    pub fn prior(&self) -> SizePrior {
+        SizePrior { scales: *self.sizes, stated: self.stated }
+    }
+
     /// Where a hypothesis stands, its poles found anew.
     pub fn standing(&self, hypothesis: &Hypothesis) -> Option<Standing> {
         let fixture = hypothesis.to_fixture().ok()?;
@@ -134,7 +141,7 @@ impl<'a> Problem<'a> {
             let linear = linear(&point.hypothesis, &priors, &point.residual, &fresh);
             derivatives = Some(fresh);
             let known = best.as_ref().map(|fit| &fit.evidence.sizes);
-            let evidence = linear.evidence(&standing.comparison, self.sizes, known)?;
+            let evidence = linear.evidence(&standing.comparison, self.prior(), known)?;
             let ln = evidence.ln + standing.pairing.alone();
             let before = best.as_ref().map_or(f64::NEG_INFINITY, |fit| fit.ln);
             sizes = evidence.sizes;

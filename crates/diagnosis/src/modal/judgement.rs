@@ -6,30 +6,20 @@ use crate::estimates::estimates;
 use crate::evidence::{deviates_by_chance, excess, explained};
 use crate::fit::Fit;
 use crate::fitter::Fitter;
+use crate::modal::changes::States;
 use crate::modal::fit::{ModalFit, Problem};
 use crate::modal::prior::priors;
 use crate::modal::search::{ModalSearch, Named, Searcher};
+use crate::modal::sizes::{ModelError, known as known_sizes};
 use crate::penalty::parameter_penalty;
 use crate::search::Search;
 use crate::settings::ModalSettings;
-use crate::{Hypothesis, Observation};
+use crate::{Hypothesis, ModeChange, Observation};
 use jointscope_findings::Verdict;
 use jointscope_fixture::Effect;
 use jointscope_inference::Covariance;
-use jointscope_model_error::{ErrorSizes, Pairing, RecordedModes, Recording};
+use jointscope_model_error::{ErrorSizes, KINDS, Pairing, RecordedModes, Recording, SizePrior};
 use jointscope_modes::ModesOptions;
-use serde::Serialize;
-
-/// How wrong a model is, as relative standard deviations over its modes; zero where the noise explains what is left.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
-pub struct ModelError {
-    /// Of natural frequencies.
-    pub frequency: f64,
-    /// Of damping ratios.
-    pub damping: f64,
-    /// Of residues, that is of shapes.
-    pub residue: f64,
-}
 
 /// The outcome of a comparison by modes.
 #[derive(Debug, Clone)]
@@ -44,10 +34,23 @@ pub(crate) struct ModalJudgement {
     pub strained: bool,
     /// Error of the refitted and of the repaired model.
     pub errors: [ModelError; 2],
+    /// Whether the fixture states how well the gains of its records are known.
+    pub states_gain: bool,
     /// The fixture by itself at the most probable sizes of error.
     pub refitted: Hypothesis,
     /// The best hypothesis at the most probable sizes of error, and the covariance of its coordinates with sizes that may be larger.
     pub last: (Hypothesis, Option<Covariance>),
+}
+
+/// What a baseline says of the fixture.
+#[derive(Debug, Clone)]
+pub(crate) struct Before {
+    /// The fixture as calibrated on it.
+    pub calibrated: Hypothesis,
+    /// Error of that model.
+    pub error: ModelError,
+    /// The modes then and now.
+    pub modes: Vec<ModeChange>,
 }
 
 impl ModalJudgement {
@@ -59,14 +62,25 @@ impl ModalJudgement {
         candidates: &[Candidate],
         known: Option<&[Effect]>,
     ) -> Option<Self> {
-        let Fitter { observation, settings } = fitter;
+        let Fitter { observation, settings, watch } = fitter;
+        watch.stage("fitting the modes of the recording");
         let recorded = recorded(observation, nominal, &settings.modal)?;
         let features = recorded.features();
-        let problem = Problem { recorded: &recorded, features: &features, sizes: &settings.modal.usual };
-        let searcher =
-            Searcher { problem, candidates, nominal, settings: &settings.modal, known, calibrated: false };
+        let fixture = nominal.to_fixture().ok()?;
+        let SizePrior { scales, stated } = known_sizes(&settings.modal, &fixture);
+        let problem = Problem { recorded: &recorded, features: &features, sizes: &scales, stated };
+        let searcher = Searcher {
+            problem,
+            candidates,
+            nominal,
+            settings: &settings.modal,
+            known,
+            calibrated: false,
+            watch: fitter.watch,
+        };
         let search = searcher.search()?;
-        Some(Judge { searcher, search }.judged())
+        let states_gain = fixture.record_gain().is_some();
+        Some(ModalJudgement { states_gain, ..Judge { searcher, search }.judged() })
     }
 
     /// What has changed since a `baseline` of the same structure: the fixture is calibrated on it, its error there is taken off, and what differs beyond
@@ -76,20 +90,26 @@ impl ModalJudgement {
         baseline: &Observation,
         nominal: &Hypothesis,
         candidates: &[Candidate],
-    ) -> Option<(Self, ModelError)> {
-        let Fitter { observation, settings } = fitter;
+    ) -> Option<(Self, Before)> {
+        let Fitter { observation, settings, watch } = fitter;
+        watch.stage("fitting the modes of the baseline");
         let before = recorded(baseline, nominal, &settings.modal)?;
         let features = before.features();
-        let problem = Problem { recorded: &before, features: &features, sizes: &settings.modal.usual };
+        let SizePrior { scales, stated } = known_sizes(&settings.modal, &nominal.to_fixture().ok()?);
+        let problem = Problem { recorded: &before, features: &features, sizes: &scales, stated };
+        watch.stage("calibrating the fixture on the baseline");
         let calibrated = problem.fitted(nominal, priors(nominal, &[]))?;
+        let before_error = problem.error(&calibrated, settings.modal.adequate.0);
+        watch.stage("fitting the modes of the recording");
         let now = recorded(observation, &calibrated.hypothesis, &settings.modal)?;
         let model = &calibrated.standing.modelled;
         let own = Pairing::of(&now, model);
         let change = now.relative_to(&before, model, [&own, &calibrated.standing.pairing])?;
         let features = change.features();
-        let sizes =
-            ErrorSizes { gain: settings.modal.usual.gain, ..settings.modal.usual.times(settings.modal.own) };
-        let problem = Problem { recorded: &change, features: &features, sizes: &sizes };
+        // What is stated is the error that both states share; the change has its own.
+        let sizes = ErrorSizes { gain: scales.gain, ..scales.times(settings.modal.own) };
+        let stated = [false; KINDS];
+        let problem = Problem { recorded: &change, features: &features, sizes: &sizes, stated };
         let nominal = &calibrated.hypothesis;
         let searcher = Searcher {
             problem,
@@ -98,9 +118,13 @@ impl ModalJudgement {
             settings: &settings.modal,
             known: None,
             calibrated: true,
+            watch: fitter.watch,
         };
         let search = searcher.search()?;
-        Some((Judge { searcher, search }.judged(), error(&calibrated)))
+        let judged = Judge { searcher, search }.judged();
+        let states = States { before: &before, now: &now, own: &own, calibrated: &calibrated };
+        let modes = states.modes(&judged.search.best);
+        Some((judged, Before { calibrated: calibrated.hypothesis.clone(), error: before_error, modes }))
     }
 }
 
@@ -151,9 +175,11 @@ impl Judge<'_> {
             self.search.alternatives.clear();
             self.search.without.clear();
         }
+        let adequate = self.searcher.settings.adequate.0;
+        let error = |fit: &ModalFit| self.searcher.problem.error(fit, adequate);
         let best = &self.search.best.fit;
         let widened =
-            best.linear.mean_sizes(&best.standing.comparison, self.searcher.problem.sizes, &best.evidence);
+            best.linear.mean_sizes(&best.standing.comparison, self.searcher.problem.prior(), &best.evidence);
         let problem = &self.searcher.problem;
         let nearest = |fit: &ModalFit| {
             let fitted = problem.at_sizes(fit, &fit.evidence.sizes);
@@ -168,7 +194,8 @@ impl Judge<'_> {
             names,
             free_fit: self.searcher.problem.recorded.chi2_per_dof,
             strained: self.searcher.problem.recorded.is_strained(),
-            errors: [error(&self.search.none), error(&self.search.best.fit)],
+            errors: [&self.search.none, &self.search.best.fit].map(error),
+            states_gain: false,
             last,
             refitted,
             search: self.search,
@@ -216,20 +243,6 @@ impl Judge<'_> {
     }
 }
 
-/// Share of the usual size below which an error is none: ten times the least that is tried.
-const NEGLIGIBLE: f64 = 10.0 * ErrorSizes::LEAST;
-
-fn error(fit: &ModalFit) -> ModelError {
-    let ErrorSizes { frequency, damping, shape, .. } = fit.evidence.sizes;
-    let usual = ErrorSizes::default();
-    let told = |size: f64, usual: f64| if size > NEGLIGIBLE * usual { size } else { 0.0 };
-    ModelError {
-        frequency: told(frequency, usual.frequency),
-        damping: told(damping, usual.damping),
-        residue: told(shape, usual.shape),
-    }
-}
-
 impl ModalJudgement {
     /// Whether the modes need nothing, neither an effect nor an error of the model: what is left, if anything, only lines can show.
     pub fn needs_nothing(&self) -> bool {
@@ -246,9 +259,9 @@ impl ModalJudgement {
         self.tells_little(fitter) || (told && (alone != 0.0 || unsure))
     }
 
-    /// Whether frequencies, damping and shapes of the best hypothesis are right to the noise.
+    /// Whether frequencies, damping and shapes of the best hypothesis are right to the noise, and gains of records are not known to be wrong: lines know of none.
     pub fn has_right_modes(&self) -> bool {
-        self.errors[1] == ModelError::default()
+        self.errors[1].is_none() && !self.states_gain
     }
 
     /// Whether modes tell a part of the recording only.

@@ -1,10 +1,10 @@
 //! Which effects the recorded modes need: every candidate fitted to them, alone and beside others.
 
-use crate::Hypothesis;
 use crate::catalogue::Candidate;
 use crate::modal::fit::{ModalFit, Problem, Standing, linear};
 use crate::modal::prior::{Prior, priors};
 use crate::settings::ModalSettings;
+use crate::{Hypothesis, Watch};
 use jointscope_fixture::{Effect, EffectKind};
 use jointscope_model_error::{ErrorSizes, Linear};
 use rayon::prelude::*;
@@ -49,13 +49,16 @@ pub(crate) struct Searcher<'a> {
     pub known: Option<&'a [Effect]>,
     /// Whether the fixture's quantities are where another recording of the structure put them, and stay there.
     pub calibrated: bool,
+    pub watch: Watch<'a>,
 }
 
 impl Searcher<'_> {
     /// Searches for effects; `None` where the fixture has no modes that could be compared.
     pub fn search(&self) -> Option<ModalSearch> {
+        self.watch.stage("fitting the fixture to the modes");
         let none = self.problem.fitted(self.nominal, self.priors(self.nominal, &[]))?;
         let start = Named { names: Vec::new(), exact: self.is_exact(&none), fit: none.clone() };
+        self.watch.stage("comparing effects by modes");
         let singles = self.extended(&start, self.settings.refined.0);
         let mut best = start.clone();
         let mut more = Vec::new();
@@ -63,6 +66,9 @@ impl Searcher<'_> {
             // What the fixture itself explains, and no effect alone improves, needs no pair.
             if count > 1 && best.names.is_empty() && self.is_adequate(&none) {
                 break;
+            }
+            if count > 1 {
+                self.watch.stage("comparing several effects together by modes");
             }
             let ranked = match count {
                 1 => singles.clone(),
@@ -81,6 +87,7 @@ impl Searcher<'_> {
                 break;
             }
         }
+        self.watch.stage("asking by modes what else would explain a finding");
         let (alternatives, without) = self.alternatives(&best, &singles, &none);
         Some(ModalSearch { none, best, singles, more, alternatives, without })
     }
@@ -156,7 +163,7 @@ impl Searcher<'_> {
     fn gained_by_errors(&self, fit: &ModalFit) -> f64 {
         let without =
             fit.linear.ln_density(&fit.standing.comparison, &self.problem.sizes.times(ErrorSizes::LEAST));
-        without.map_or(f64::INFINITY, |ln| fit.evidence.ln - ln)
+        without.map_or(f64::INFINITY, |ln| self.problem.seen(fit).ln - ln)
     }
 
     /// The largest size of an error, as a multiple of what is usual.
@@ -164,10 +171,10 @@ impl Searcher<'_> {
         self.relative_sizes(fit).into_iter().fold(0.0, f64::max)
     }
 
-    /// Sizes of the errors as multiples of what is usual.
+    /// Sizes of the errors as multiples of what is usual, or of what is stated: the sizes that the recording asks for.
     /// Gains are the test's, not the model's.
     pub fn relative_sizes(&self, fit: &ModalFit) -> Vec<f64> {
-        let none = ErrorSizes { gain: 0.0, ..fit.evidence.sizes };
+        let none = ErrorSizes { gain: 0.0, ..self.problem.seen(fit).sizes };
         let usual = self.problem.sizes.to_array();
         none.to_array().iter().zip(usual).map(|(size, usual)| size / usual).collect()
     }
@@ -193,9 +200,11 @@ impl Searcher<'_> {
                 (0..self.candidates[c].starts.len()).flat_map(each)
             })
             .collect();
+        let tried = self.watch.count(starts.len());
         let mut scored: Vec<(f64, usize, Hypothesis)> = starts
             .par_iter()
             .filter_map(|&(c, s, b)| {
+                tried.trying(&self.candidates[c]);
                 let hypothesis = bases[b].with(self.candidates[c].effect(s));
                 Some((self.score(&hypothesis, &base.fit)?, c, hypothesis))
             })
@@ -225,7 +234,9 @@ impl Searcher<'_> {
 
     /// Fits from starts with one effect more than `base`, the best of each candidate, the most probable first.
     fn fitted(&self, base: &Named, starts: Vec<(usize, Hypothesis)>) -> Vec<Named> {
+        let tried = self.watch.count(starts.len());
         let fit = |(c, hypothesis): (usize, Hypothesis)| {
+            tried.trying(&self.candidates[c]);
             let names: Vec<usize> = base.names.iter().copied().chain([c]).collect();
             let company: Vec<&Candidate> = names.iter().map(|&c| &self.candidates[c]).collect();
             let standing = self.problem.standing(&hypothesis)?;

@@ -10,3 +10,4 @@ mod location;
 mod model_error;
 mod modes;
 mod real_beam;
+mod stated;

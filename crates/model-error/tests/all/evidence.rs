@@ -1,7 +1,7 @@
 //! Evidence, and the sizes of a model's error at their most probable.
 
 use crate::common::*;
-use jointscope_model_error::{ErrorSizes, Linear};
+use jointscope_model_error::{ErrorSizes, KINDS, Linear, SizePrior};
 use proptest::prelude::*;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
@@ -132,6 +132,50 @@ fn what_a_recording_does_not_tell_keeps_its_prior() {
         prior.damping
     );
     assert!(mean.frequency < 0.1 * prior.frequency, "frequencies are told: {}", mean.frequency);
+}
+
+#[test]
+fn intervals_hold_the_size_of_a_frequency_error_as_often_as_they_say() {
+    let prior = ErrorSizes::default();
+    const DRAWS: u64 = 40;
+    let holds = |seed: &u64| {
+        let linear = drawn(0.003, *seed);
+        let best = linear.evidence(&NINE.comparison, &prior, None).unwrap();
+        let [low, high] = linear.size_interval(&NINE.comparison, &prior, &best, 0);
+        assert!(low <= best.sizes.frequency && best.sizes.frequency <= high, "draw {seed}: {low} to {high}");
+        low <= 0.003 && 0.003 <= high
+    };
+    let count = (0..DRAWS).filter(holds).count();
+    assert!(count >= 34, "{count} of {DRAWS} intervals of 95 % hold the size drawn with");
+}
+
+#[test]
+fn the_interval_of_an_error_that_is_not_there_begins_at_zero() {
+    let prior = ErrorSizes::default();
+    let linear = drawn(0.0, 1);
+    let best = linear.evidence(&NINE.comparison, &prior, None).unwrap();
+    let [low, high] = linear.size_interval(&NINE.comparison, &prior, &best, 0);
+    assert!(low == 0.0 && high > 0.0 && high < prior.frequency, "{low} to {high}");
+}
+
+#[test]
+fn a_stated_size_stays_whatever_the_recording_says() {
+    let scales = ErrorSizes { frequency: 0.01, ..ErrorSizes::default() };
+    let mut stated = [false; KINDS];
+    stated[0] = true;
+    let prior = SizePrior { scales, stated };
+    let linear = drawn(0.003, 3);
+    for start in [None, Some(&ErrorSizes::default())] {
+        let best = linear.evidence(&NINE.comparison, prior, start).unwrap();
+        assert_eq!(best.sizes.frequency, 0.01);
+        assert_eq!(linear.mean_sizes(&NINE.comparison, prior, &best).frequency, 0.01);
+        assert_eq!(linear.size_interval(&NINE.comparison, prior, &best, 0), [0.01; 2]);
+        // A size that is known is no surprise: the density at it is all that counts.
+        let density = linear.ln_density(&NINE.comparison, &best.sizes).unwrap();
+        let others = best.sizes.to_array().into_iter().zip(scales.to_array()).skip(1).take(5);
+        let surprise: f64 = others.map(|(size, scale)| 0.5 * (size / scale).powi(2)).sum();
+        assert!((best.ln - density + surprise).abs() < 1e-3, "{} {density} {surprise}", best.ln);
+    }
 }
 
 proptest! {

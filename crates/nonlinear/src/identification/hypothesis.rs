@@ -121,7 +121,7 @@ impl Hypothesis {
         fixture.set_quantities(
             values.filter_map(|(((index, _), p), at)| Some((*index, p.transform.value(*at)?))),
         );
-        let physics = [self.fixture.physics(), &self.effects()].concat();
+        let physics = [fixture.physics(), &self.effects()].concat();
         fixture.with_physics(physics)
     }
 }

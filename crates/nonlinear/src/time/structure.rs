@@ -142,5 +142,5 @@ pub(crate) fn abscissa_m(fixture: &Fixture, point: &Point) -> f64 {
 
 /// The effects of one kind at one place.
 pub(crate) fn effects(fixture: &Fixture, kind: EffectKind, place: Place) -> impl Iterator<Item = &Effect> {
-    fixture.physics().iter().filter(move |e| e.kind == kind && e.place == place)
+    fixture.effects().filter(move |e| e.kind == kind && e.place == place)
 }

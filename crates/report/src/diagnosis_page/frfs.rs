@@ -7,21 +7,14 @@ use crate::plot::{Curve, FrfPanes, Role, Style, YRange};
 use crate::section::Section;
 
 pub(super) fn section(subject: &Subject) -> Section {
-    let observation = &subject.diagnosis.observation;
-    let shown = shown(subject);
+    let (shown, some) = (shown(subject), shown_of(subject));
     let names: Vec<&str> = subject.models().iter().map(|(name, _)| *name).collect();
-    let all = observation.pairs().len();
-    let some = if shown.len() < all {
-        format!(" Shown are the {} of {all} FRFs that the refitted fixture explains worst.", shown.len())
-    } else {
-        String::new()
-    };
     let mut section = Section::new("FRFs").paragraph(format!(
         "Accelerances as measured, with the 95 % band of their noise, and as the models predict them: {}.{some}",
         names.join(", ")
     ));
     for index in shown {
-        let panes = panes(subject, index);
+        let panes = panes(subject, index, models(subject, index));
         let magnitude = panes
             .magnitude()
             .y_range(YRange::decades(panes.measured.iter().flatten().map(|v| v.norm())))
@@ -38,7 +31,7 @@ pub(super) fn section(subject: &Subject) -> Section {
 }
 
 /// Indices of the FRFs to show: all, or those with the largest misfit, in the order of the recording.
-fn shown(subject: &Subject) -> Vec<usize> {
+pub(super) fn shown(subject: &Subject) -> Vec<usize> {
     let misfit = subject.diagnosis.misfit(&subject.diagnosis.search.refitted);
     let mut order: Vec<usize> = (0..misfit.len()).collect();
     let size = |index: usize| misfit[index].whole.unwrap_or(0.0);
@@ -46,6 +39,15 @@ fn shown(subject: &Subject) -> Vec<usize> {
     order.truncate(SHOWN);
     order.sort_unstable();
     order
+}
+
+/// Which FRFs are shown, where that is not all.
+pub(super) fn shown_of(subject: &Subject) -> String {
+    let all = subject.diagnosis.observation.pairs().len();
+    if all <= SHOWN {
+        return String::new();
+    }
+    format!(" Shown are the {SHOWN} of {all} FRFs that the refitted fixture explains worst.")
 }
 
 /// Colour and line of a model.
@@ -57,16 +59,24 @@ fn look(model: &str) -> (Role, Style) {
     }
 }
 
-fn panes<'a>(subject: &Subject<'a>, index: usize) -> FrfPanes<'a> {
+/// What the models make of an FRF.
+fn models(subject: &Subject, index: usize) -> Vec<Curve> {
+    let n = subject.diagnosis.observation.lines().len();
+    let curve = |(label, fit): (&'static str, &jointscope_diagnosis::Fit)| {
+        let (role, style) = look(label);
+        let values = fit.predicted[index * n..(index + 1) * n].iter().map(|v| Some(*v)).collect();
+        Curve { label, role, style, values }
+    };
+    subject.models().into_iter().map(curve).collect()
+}
+
+/// An FRF as measured, with other curves beside it.
+pub(super) fn panes<'a>(subject: &Subject<'a>, index: usize, curves: Vec<Curve>) -> FrfPanes<'a> {
     let observation = &subject.diagnosis.observation;
     let (pair, n) = (&observation.pairs()[index], observation.lines().len());
     let lines = index * n..(index + 1) * n;
     // Each part of a value has half its variance, and the modulus takes one part of the noise.
     let half = |weight: &f64| (*weight > 0.0).then(|| 1.96 / weight.sqrt());
-    let curve = |(label, fit): (&'static str, &jointscope_diagnosis::Fit)| {
-        let (role, style) = look(label);
-        Curve { label, role, style, values: fit.predicted[lines.clone()].iter().map(|v| Some(*v)).collect() }
-    };
     FrfPanes {
         title: format!("FRF {pair}"),
         phase_title: format!("Phase of FRF {pair}"),
@@ -80,6 +90,6 @@ fn panes<'a>(subject: &Subject<'a>, index: usize) -> FrfPanes<'a> {
         hz: observation.lines().hz(),
         measured: observation.values()[lines.clone()].iter().map(|v| Some(*v)).collect(),
         noise: observation.weights()[lines.clone()].iter().map(half).collect(),
-        curves: subject.models().into_iter().map(curve).collect(),
+        curves,
     }
 }

@@ -9,7 +9,11 @@ use crate::table::Table;
 pub(super) fn section(subject: &Subject) -> Option<Section> {
     let [refitted, repaired] = subject.diagnosis.model_error.as_ref()?.each_ref().map(error_in_words);
     let has_findings = !subject.diagnosis.findings.is_empty();
-    let size = |error: &ErrorInWords| error.size.clone().unwrap_or_else(|| "none seen".to_owned());
+    let size = |error: &ErrorInWords| error.with_interval.clone();
+    let known = |error: &ErrorInWords| match error.is_stated {
+        true => format!("{} (stated)", error.usual),
+        false => error.usual.clone(),
+    };
     let mut table = Table::of(refitted.into_iter().zip(repaired))
         .words("Error of", |(refitted, _)| refitted.kind)
         .words("refitted", |(refitted, _)| size(refitted));
@@ -17,11 +21,11 @@ pub(super) fn section(subject: &Subject) -> Option<Section> {
         table = table.words("repaired", |(_, repaired)| size(repaired));
     }
     let table = table
-        .words("usual", |(refitted, _)| refitted.usual.clone())
+        .words("usual", |(refitted, _)| known(refitted))
         .marked(|(_, repaired)| repaired.large.then_some(Tone::Attention))
         .footnote(
-            "Standard deviations over the modes in the band, relative; of residues relative to the mode's root mean square. Marked: more than \
-             twice the usual, which no adequate model has.",
+            "Standard deviations over the modes in the band, relative, with their intervals of 95 %; of residues relative to the mode's root mean square. What the \
+             fixture states is taken as it is. Marked: more than twice the usual or stated, which no adequate model has.",
         );
     let words = if has_findings {
         "The model's own error is larger than the noise of the FRFs, so the hypotheses were compared by modes: a finding is needed where it makes \

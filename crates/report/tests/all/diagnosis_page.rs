@@ -133,8 +133,9 @@ fn where_the_model_is_off_by_more_than_the_noise_its_error_stands_beside_the_usu
     let (mut diagnosis, html) =
         page(r#"{ "kind": "added_mass", "place": "high", "x": 0.18, "mass": 0.6 }"#, unchanged);
     assert!(!html.contains("Error of the model") && html.contains("χ² gained"));
-    let refitted = ModelError { frequency: 0.014, damping: 1e-4, residue: 0.02 };
-    diagnosis.model_error = Some([refitted, ModelError { frequency: 0.002, damping: 0.0, residue: 0.013 }]);
+    let refitted = ModelError { frequency: 0.014, damping: 1e-4, residue: 0.02, ..ModelError::default() };
+    let repaired = ModelError { frequency: 0.002, residue: 0.013, ..ModelError::default() };
+    diagnosis.model_error = Some([refitted, repaired]);
     let html = rendered(&diagnosis);
     for part in [
         "Error of the model",
@@ -154,9 +155,46 @@ fn where_the_model_is_off_by_more_than_the_noise_its_error_stands_beside_the_usu
 }
 
 #[test]
+fn the_page_of_a_baseline_shows_both_states_and_their_modes() {
+    let believed = storeys("");
+    let before = recorded(&believed, unchanged);
+    let mass = r#"{ "kind": "added_mass", "place": "high", "x": 0.18, "mass": 0.6 }"#;
+    let after = recorded(&storeys(mass), unchanged);
+    let options = DiagnosisOptions { baseline: Some(before.clone()), ..DiagnosisOptions::default() };
+    let diagnosis = Diagnosis::of(&believed, &after, &options).unwrap();
+    let modes = &diagnosis.baseline.as_ref().unwrap().modes;
+    let [mode] = modes.as_slice() else { panic!("{modes:?}") };
+    // 3.4 MN/m between 6.9 kg and 6.0 kg, then 6.6 kg.
+    let hz = |high: f64| (3.4e6 * (1.0 / 6.9 + 1.0 / high)).sqrt() / std::f64::consts::TAU;
+    let (was, now) = (mode.baseline.unwrap().frequency, mode.now.unwrap().frequency);
+    assert!((was / hz(6.0) - 1.0).abs() < 1e-3, "{was} Hz, then {} Hz", hz(6.0));
+    assert!((now / hz(6.6) - 1.0).abs() < 1e-3, "{now} Hz, then {} Hz", hz(6.6));
+    let (change, predicted) = (mode.change.unwrap().frequency, mode.predicted.unwrap().frequency);
+    assert!((change - (now / was).ln()).abs() < 1e-12 && (predicted / change - 1.0).abs() < 0.1);
+    let html = rendered(&diagnosis);
+    holds(
+        &html,
+        &[
+            "what has changed since the baseline",
+            "Modes, baseline and now",
+            "Δf, predicted",
+            "Change of FRF 2/1",
+            ">baseline</button>",
+            ">calibrated</button>",
+            ">repaired</button>",
+        ],
+    );
+
+    let options = DiagnosisOptions { baseline: Some(before.clone()), ..DiagnosisOptions::default() };
+    let html = rendered(&Diagnosis::of(&believed, &before, &options).unwrap());
+    holds(&html, &["the recording is that of the baseline"]);
+    assert!(!html.contains("Δf, predicted") && !html.contains("Change of FRF"));
+}
+
+#[test]
 fn a_consistent_fixture_off_by_a_usual_error_is_not_called_explained_by_noise() {
     let (mut diagnosis, _) = page("", unchanged);
-    let usual = ModelError { frequency: 5e-4, damping: 0.0, residue: 0.003 };
+    let usual = ModelError { frequency: 5e-4, residue: 0.003, ..ModelError::default() };
     diagnosis.model_error = Some([usual, usual]);
     let html = rendered(&diagnosis);
     holds(

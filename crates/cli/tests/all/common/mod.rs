@@ -110,7 +110,9 @@ impl Bench {
         let output = self.run(arguments);
         let complaint = String::from_utf8_lossy(&output.stderr);
         assert_eq!(output.status.code(), Some(0), "{arguments:?}: {complaint}");
-        assert!(complaint.is_empty(), "{complaint}");
+        // A diagnosis tells how it comes along.
+        let tells = arguments.first() == Some(&"diagnose");
+        assert!(complaint.is_empty() || (tells && !complaint.contains("jointscope: ")), "{complaint}");
         String::from_utf8(output.stdout).unwrap()
     }
 

@@ -1,0 +1,112 @@
+//! Sizes of a model's error: what is known of them beforehand, and what a fit says of them.
+
+use crate::modal::fit::{ModalFit, Problem};
+use crate::settings::ModalSettings;
+use jointscope_fixture::{Fixture, StatedError};
+use jointscope_model_error::{ErrorSizes, Evidence, KINDS, SizePrior};
+use serde::Serialize;
+
+/// How wrong a model is, as relative standard deviations over its modes; zero where the noise explains what is left.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
+pub struct ModelError {
+    /// Of natural frequencies.
+    pub frequency: f64,
+    /// Of damping ratios.
+    pub damping: f64,
+    /// Of residues, that is of shapes.
+    pub residue: f64,
+    /// How well these are known; `None` where nothing was estimated.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub ci95: Option<ErrorIntervals>,
+    /// Which of them the fixture states.
+    #[serde(skip)]
+    pub stated: StatedError,
+}
+
+/// Intervals that hold the sizes of a model's error with a probability of 95 %.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct ErrorIntervals {
+    /// Of natural frequencies.
+    pub frequency: [f64; 2],
+    /// Of damping ratios.
+    pub damping: [f64; 2],
+    /// Of residues.
+    pub residue: [f64; 2],
+}
+
+impl ModelError {
+    /// Whether the noise explains what is left.
+    pub fn is_none(&self) -> bool {
+        [self.frequency, self.damping, self.residue] == [0.0; 3]
+    }
+}
+
+/// Places of frequency, damping and shape among [`ErrorSizes`].
+const FREQUENCY: usize = 0;
+const DAMPING: usize = 1;
+const SHAPE: usize = 2;
+
+/// Share of the usual size below which an error is none: ten times the least that is tried.
+const NEGLIGIBLE: f64 = 10.0 * ErrorSizes::LEAST;
+
+/// The sizes that are usual but for those that the fixture states.
+pub(super) fn known(settings: &ModalSettings, fixture: &Fixture) -> SizePrior {
+    let StatedError { frequency, damping, residue } = fixture.model_error();
+    let usual = settings.usual;
+    let scales = ErrorSizes {
+        frequency: frequency.unwrap_or(usual.frequency),
+        damping: damping.unwrap_or(usual.damping),
+        shape: residue.unwrap_or(usual.shape),
+        gain: fixture.record_gain().unwrap_or(usual.gain),
+        ..usual
+    };
+    let mut stated = [false; KINDS];
+    stated[FREQUENCY] = frequency.is_some();
+    stated[DAMPING] = damping.is_some();
+    stated[SHAPE] = residue.is_some();
+    SizePrior { scales, stated }
+}
+
+impl Problem<'_> {
+    /// The sizes that the recording asks for, those that are stated included: what is stated may be too little.
+    pub fn seen(&self, fit: &ModalFit) -> Evidence {
+        if !self.stated.contains(&true) {
+            return fit.evidence;
+        }
+        let freed = fit.linear.evidence(&fit.standing.comparison, self.sizes, Some(&fit.evidence.sizes));
+        freed.unwrap_or(fit.evidence)
+    }
+
+    /// The error of a fitted model. A stated size is told as stated, unless the recording asks for more than `adequate` times as much.
+    pub fn error(&self, fit: &ModalFit, adequate: f64) -> ModelError {
+        let seen = self.seen(fit);
+        let (sizes, found) = (self.sizes.to_array(), seen.sizes.to_array());
+        let usual = ErrorSizes::default().to_array();
+        let holds = |kind: usize| self.stated[kind] && found[kind] <= adequate * sizes[kind];
+        let size = |kind: usize| match found[kind] {
+            _ if holds(kind) => sizes[kind],
+            size if size > NEGLIGIBLE * usual[kind] => size,
+            _ => 0.0,
+        };
+        let interval = |kind: usize| match holds(kind) {
+            true => [sizes[kind]; 2],
+            false => fit.linear.size_interval(&fit.standing.comparison, self.sizes, &seen, kind),
+        };
+        let stated = |kind: usize| self.stated[kind].then_some(sizes[kind]);
+        ModelError {
+            frequency: size(FREQUENCY),
+            damping: size(DAMPING),
+            residue: size(SHAPE),
+            ci95: Some(ErrorIntervals {
+                frequency: interval(FREQUENCY),
+                damping: interval(DAMPING),
+                residue: interval(SHAPE),
+            }),
+            stated: StatedError {
+                frequency: stated(FREQUENCY),
+                damping: stated(DAMPING),
+                residue: stated(SHAPE),
+            },
+        }
+    }
+}
