@@ -1,7 +1,7 @@
 //! Every effect at every legal place of a fixture, with starts from which a fit may set out.
 
 use crate::Observation;
-use crate::freedom::{extent, turns};
+use crate::freedom::{extent, mass_of, turns};
 use jointscope_fixture::{
     BodyKind, Dof, Effect, EffectKind, EffectSpec, Entry, Fixture, Joint, Measure, Motion, ParameterRange,
     Place, PlaceKind, SizeLaw, Starts,
@@ -281,12 +281,5 @@ impl At<'_> {
             }
             _ => None,
         }
-    }
-}
-
-fn mass_of(fixture: &Fixture, body: usize) -> f64 {
-    match &fixture.bodies()[body].kind {
-        BodyKind::Rigid(rigid) => rigid.mass.value,
-        BodyKind::Beam(beam) => beam.mass_per_length.value * (beam.to.value - beam.from.value),
     }
 }

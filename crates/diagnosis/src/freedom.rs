@@ -1,6 +1,6 @@
 //! How the parameters of an effect move in a fit: by themselves or by their logarithms, and between which bounds.
 
-use jointscope_fixture::{BodyKind, Effect, Fixture, Motion, ParameterSpec, Place, Quantity};
+use jointscope_fixture::{BodyKind, Effect, Fixture, Motion, ParameterSpec, Place, Possible, Quantity};
 use jointscope_inference::{Parameter, Transform};
 
 /// A positive quantity that moves by its logarithm, between bounds of that.
@@ -33,10 +33,48 @@ pub(crate) fn parameters_of(fixture: &Fixture, effect: &Effect) -> Vec<Parameter
             let start = quantity.value.max(f64::MIN_POSITIVE).ln();
             logarithm(start - reach, start + reach)
         }
-        Motion::Signed(scale) => between(scale.of(quantity.value), f64::NEG_INFINITY, f64::INFINITY),
+        Motion::Signed(scale) => {
+            let (low, high) = possible(parameter.possible, fixture, &effect.place);
+            between(scale.of(quantity.value), low, high)
+        }
         Motion::NonNegative(scale) => between(scale.of(quantity.value), 0.0, f64::INFINITY),
     };
     effect.kind.spec().parameters.iter().zip(&effect.parameters).map(of).collect()
+}
+
+/// Share of a joint's length that may be missing.
+const MISSING: f64 = 0.95;
+/// Masses of the whole structure that may be added.
+const ADDED: f64 = 2.0;
+
+/// Between which values a parameter of either sign is possible at a place.
+fn possible(possible: Possible, fixture: &Fixture, place: &Place) -> (f64, f64) {
+    let any = (f64::NEG_INFINITY, f64::INFINITY);
+    match (possible, place) {
+        (Possible::MassOfBody, Place::Body(name)) => {
+            let masses =
+                || fixture.bodies().iter().enumerate().map(|(index, body)| (body, mass_of(fixture, index)));
+            let own: f64 = masses().filter(|(body, _)| body.name == *name).map(|(_, mass)| mass).sum();
+            (-own, ADDED * masses().map(|(_, mass)| mass).sum::<f64>())
+        }
+        (Possible::OnBody, Place::Point(name)) => fixture.point(name).map_or(any, |point| {
+            let (low, high) = extent(fixture, point.body);
+            (low - point.x.value, high - point.x.value)
+        }),
+        (Possible::LengthOfJoint, Place::Joint(name)) => {
+            let joint = fixture.joints().iter().find(|joint| joint.name == *name);
+            joint.map_or(any, |joint| (-MISSING * fixture.joint_length(joint), f64::INFINITY))
+        }
+        _ => any,
+    }
+}
+
+/// Mass of a body without what is stated to sit on it, kg.
+pub(crate) fn mass_of(fixture: &Fixture, body: usize) -> f64 {
+    match &fixture.bodies()[body].kind {
+        BodyKind::Rigid(rigid) => rigid.mass.value,
+        BodyKind::Beam(beam) => beam.mass_per_length.value * (beam.to.value - beam.from.value),
+    }
 }
 
 /// Whether a body has slopes.
