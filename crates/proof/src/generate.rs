@@ -292,7 +292,7 @@ impl Scene {
 }
 
 /// Pairs of points of which neither the FRF nor its reciprocal is recorded.
-fn unseen_pairs(fixture: &Fixture, recorded: &[FrfPair], random: &mut impl Rng) -> Vec<FrfPair> {
+pub(crate) fn unseen_pairs(fixture: &Fixture, recorded: &[FrfPair], random: &mut impl Rng) -> Vec<FrfPair> {
     let names: Vec<&str> = fixture.points().iter().map(|point| point.name.as_str()).collect();
     let mut all = Vec::new();
     for (i, response) in names.iter().enumerate() {
