@@ -86,7 +86,8 @@ impl ModalErrors {
             // 2ζω on the diagonal.
             factors[mode] = ((1.0 + of(&self.damping, which)) * faster).sqrt();
             if let Some(errors) = self.shape.get(which) {
-                let motions = fixture.points().iter().map(|point| modes.at_point(structure, &point.name, mode));
+                let motions =
+                    fixture.points().iter().map(|point| modes.at_point(structure, &point.name, mode));
                 let squares: Vec<f64> = motions.map(|motion| motion * motion).collect();
                 let rms = (squares.iter().sum::<f64>() / squares.len().max(1) as f64).sqrt();
                 departures[mode] = errors.iter().map(|error| rms * error).collect();

@@ -63,12 +63,13 @@ fn errors_are_those_of_frequency_damping_and_residue_in_closed_form() {
     let set = errors.frfs(&fixture, &pairs, &lines(), Instrument::Perfect).unwrap();
     let omega_r = std::f64::consts::TAU * 101.0;
     for (omega, value) in lines().omegas().zip(set.values(0)) {
-        let denominator = num_complex::Complex64::new(
-            omega_r * omega_r - omega * omega,
-            2.0 * 0.012 * omega_r * omega,
-        );
+        let denominator =
+            num_complex::Complex64::new(omega_r * omega_r - omega * omega, 2.0 * 0.012 * omega_r * omega);
         let expected = -omega * omega * 0.97 * 0.97 / 2.0 / denominator;
-        assert!((value - expected).norm() < 1e-7 * expected.norm(), "{value} for {expected} at {omega} rad/s");
+        assert!(
+            (value - expected).norm() < 1e-7 * expected.norm(),
+            "{value} for {expected} at {omega} rad/s"
+        );
     }
 }
 
