@@ -29,7 +29,7 @@ pub struct ProveArguments {
     /// Make so many cases of hits over time [default: as --solid].
     #[arg(long, value_name = "N")]
     pub struck: Option<usize>,
-    /// Make so many cases whose recording comes from a solid of which nothing is idealised [default: as --solid].
+    /// Make so many cases whose recording comes from a solid with nothing idealised, so that no fixture is right to the noise [default: as --solid].
     #[arg(long, value_name = "N")]
     pub solid_as_is: Option<usize>,
     /// Make so many cases of lumped structures with an error in every mode [default: as --solid].
