@@ -4,11 +4,13 @@ use jointscope_diagnosis::Verdict;
 use jointscope_fixture::{Dof, Effect, EffectKind, Place};
 use jointscope_nonlinear::Verdict as Conclusion;
 use jointscope_proof::{
-    Answer, Answers, Case, Found, Judgeable, Judged, JudgedRoutes, NoAnswer, Opened, Plan, Precision,
-    Questions, Replies, Role, RouteScore, RouteScores, SolidJudged, SolidTruth, StruckAnswer, StruckAnswers,
-    StruckCase, StruckJudged, StruckRole, StruckTruth,
+    Answer, Answers, Case, Filed, Found, Judgeable, Judged, JudgedRoutes, ModalErrorsTruth, NoAnswer, Opened,
+    Plan, Precision, Questions, Replies, Role, RouteScore, RouteScores, Sealable, SolidJudged, SolidTruth,
+    StruckAnswer, StruckAnswers, StruckCase, StruckJudged, StruckRole, StruckTruth,
 };
 use jointscope_recordings::{ReadOptions, Source, hits_of};
+use jointscope_rig::{Instrument, frfs};
+use jointscope_spectra::FrfSet;
 
 fn silent(cases: &[Case]) -> Answers {
     Answers::by(cases, 1, |_| (), |_| Err(NoAnswer::BrokeDown))
@@ -330,4 +332,24 @@ fn cases_with_a_wrong_model_come_last_and_change_no_other() {
     assert_eq!((truths.as_is[0].index, truths.modal_errors[0].index()), (4, 5));
     let (one, _) = drawn(&Plan { only: Some(5), ..with });
     assert_eq!((one.as_is.len(), one.modal_errors), (0, after.modal_errors));
+}
+
+#[test]
+fn errors_of_every_mode_are_filed_with_the_truth_and_are_more_than_noise() {
+    let (questions, truths) = drawn(&Plan { cases: 0, modal_errors: 3, seed: 6, ..Plan::default() });
+    for (case, truth) in questions.modal_errors.iter().zip(&truths.modal_errors) {
+        let text = truth.to_value().to_string();
+        let read = ModalErrorsTruth::from_value(&serde_json::from_str(&text).unwrap()).unwrap();
+        assert_eq!(read.to_value().to_string(), text);
+        let (pairs, lines) = (case.recorded.pairs(), case.recorded.lines());
+        let error_of = |set: &FrfSet| {
+            let both = set.all_values().iter().zip(case.recorded.all_values());
+            let (off, size) =
+                both.fold((0.0, 0.0), |(off, size), (a, b)| (off + (a - b).norm_sqr(), size + b.norm_sqr()));
+            (off / size).sqrt()
+        };
+        let wrong = error_of(&read.frfs(pairs, lines, Instrument::AsDescribed).unwrap());
+        let without = error_of(&frfs(&truth.truth.fixture, pairs, lines, Instrument::AsDescribed).unwrap());
+        assert!(wrong < 5e-3 && without > 5.0 * wrong, "{wrong:e} with the errors, {without:e} without");
+    }
 }
