@@ -54,7 +54,7 @@ fn paragraph(route: &RouteScore) -> &'static str {
         "modal_errors" => {
             "Lumped structures of which every natural frequency, damping ratio and shape has an error of its own: frequencies of 0.05 to 0.5 %, damping \
              of 1 to 10 %, shapes of 0.1 to 1 %. Right is the hidden name first, with nothing untrue beside it; a name that fits as well as the true one \
-             counts as true. Hidden things are asked for if without them χ² is ten times as large."
+             counts as right. Hidden things are asked for if without them χ² is ten times as large."
         }
         _ => {
             "Structures of which a joint may have a cubic spring, friction or a gap are struck at three strengths, and their motion is integrated \

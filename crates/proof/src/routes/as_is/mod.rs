@@ -274,7 +274,11 @@ impl Erring for AsIsTruth {
         self.gap
     }
 
-    fn is_true(&self, found: &Effect, _: &Evidence) -> bool {
+    fn stands_for(&self, _: &Effect, _: &Evidence) -> bool {
+        false
+    }
+
+    fn is_true(&self, found: &Effect) -> bool {
         self.also_true.iter().any(|name| name.is_of(found))
     }
 

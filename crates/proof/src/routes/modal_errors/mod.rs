@@ -157,10 +157,14 @@ impl Erring for ModalErrorsTruth {
     }
 
     /// What fits alone as well as the truth: within what chance makes, χ² per degree of freedom being what the errors make it.
-    fn is_true(&self, found: &Effect, evidence: &Evidence) -> bool {
+    fn stands_for(&self, found: &Effect, evidence: &Evidence) -> bool {
         let inflation = (evidence.truth / evidence.values.max(1) as f64).max(1.0);
         let as_good = |objective: &f64| *objective <= evidence.truth + AS_GOOD * inflation;
         self.role() == Role::Single && evidence.others.get(&Name::of(found)).is_some_and(as_good)
+    }
+
+    fn is_true(&self, _: &Effect) -> bool {
+        false
     }
 
     fn shows(&self, evidence: &Evidence) -> bool {

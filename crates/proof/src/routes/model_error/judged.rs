@@ -14,14 +14,19 @@ impl<T: Erring> Judged<T> {
         self.truth.concealed().is_some_and(|hidden| Name::of(hidden) == Name::of(&found.effect))
     }
 
+    /// Whether a finding is what was hidden, or says the same.
+    fn is_accepted(&self, found: &Found) -> bool {
+        self.is_hidden(found) || self.truth.stands_for(&found.effect, &self.evidence)
+    }
+
     /// Whether a finding is in the structure, hidden or not.
     pub(super) fn is_in_it(&self, found: &Found) -> bool {
-        self.is_hidden(found) || self.truth.is_true(&found.effect, &self.evidence)
+        self.is_accepted(found) || self.truth.is_true(&found.effect)
     }
 
     /// Whether what was hidden is the first name.
     pub(super) fn is_first(&self) -> bool {
-        self.findings().first().is_some_and(|found| self.is_hidden(found))
+        self.findings().first().is_some_and(|found| self.is_accepted(found))
     }
 
     /// Whether a name of this probability or more is untrue.
@@ -61,8 +66,8 @@ impl<T: Erring> Judged<T> {
         if self.is_asked() && !self.is_first() {
             let what = match answer.findings.as_slice() {
                 [] => "missed",
-                all if all.iter().any(|found| self.is_hidden(found)) => "not named first",
-                all if all.iter().all(|found| self.is_in_it(found)) => "named beside it",
+                all if all.iter().any(|found| self.is_accepted(found)) => "not named first",
+                all if all.iter().all(|found| self.is_in_it(found)) => "something true named in its place",
                 _ => "wrong name",
             };
             fault(true, what);

@@ -24,8 +24,10 @@ pub trait Erring: Judgeable {
     }
     /// Whether physics that everybody knows of was left unstated.
     fn is_gap(&self) -> bool;
-    /// Whether an effect that was found is in the structure, hidden or not.
-    fn is_true(&self, found: &Effect, evidence: &Evidence) -> bool;
+    /// Whether an effect by another name says the same of the recording as what is hidden.
+    fn stands_for(&self, found: &Effect, evidence: &Evidence) -> bool;
+    /// Whether an effect that was found is in the structure although it is not hidden.
+    fn is_true(&self, found: &Effect) -> bool;
     /// Whether what is hidden shows beside the model's own error.
     fn shows(&self, evidence: &Evidence) -> bool;
 }
