@@ -75,6 +75,8 @@ impl<T: Erring> Judged<T> {
         fault(self.is_untrue_from(0.9), "an untrue name with 0.9 or more");
         let likely = self.is_untrue_from(LIKELY) && !self.is_untrue_from(0.9);
         fault(likely, "an untrue name with 0.5 or more");
+        let beside = self.is_first() && !self.is_right() && !self.is_untrue_from(LIKELY);
+        fault(beside, "an untrue name beside it");
         fault(self.is_asked() && self.is_consistent(), "called consistent");
         fault(self.found_size().is_some_and(|size| !size.is_right()), "a size off by more than 10 %");
         faults.extend(self.faults_of_prediction());
