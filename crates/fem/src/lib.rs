@@ -9,6 +9,7 @@
 //! * [`Matrices`]: mass and stiffness over the free equations, and the motions that strain nothing;
 //! * [`Twin`]: the lowest modes by shift-invert Lanczos, rigid motions held at exactly zero;
 //! * [`Twin::frfs`]: mode superposition with the fixture's damping and a chosen number of modes ([`Superposition`]), supports and point masses;
+//! * [`Twin::deflections`]: what forces in equilibrium do to it statically;
 //! * [`calculix_deck`]: the mesh for somebody else's program.
 //!
 //! ```

@@ -90,6 +90,30 @@ impl Twin {
         Ok(FrfSet::new(lines.clone(), FrfForm::Accelerance, pairs.to_vec(), values)?)
     }
 
+    /// Static transverse displacements (m) of bodies at abscissae under transverse forces (N) that are in equilibrium, each at a body and an
+    /// abscissa; without supports and point masses, and but for a rigid motion.
+    ///
+    /// Forces in equilibrium move no rigid motion, so that u = Σ φ(φᵀf)/λ over the elastic modes, those beyond the ones that were found included.
+    ///
+    /// # Errors
+    /// A fixture without `geometry`.
+    pub fn deflections(
+        &self,
+        forces: &[(usize, f64, f64)],
+        at: &[(usize, f64)],
+    ) -> Result<Vec<f64>, FemError> {
+        let places = forces.iter().map(|(body, x, _)| (*body, *x)).chain(at.iter().copied());
+        let rows: Vec<_> = places.map(|(body, x)| self.on_body(body, x, false)).collect::<Result<_, _>>()?;
+        let mut system = ModalSystem::of(self, &rows, Superposition::Complete);
+        system.modes.retain(|(eigenvalue, ..)| *eigenvalue > 0.0);
+        let flexibility = system.at(Complex64::ZERO);
+        let deflection = |place: usize| -> f64 {
+            let own = flexibility[place * rows.len()..].iter().zip(forces);
+            own.map(|(flexibility, (.., force))| flexibility.re * force).sum()
+        };
+        Ok((forces.len()..rows.len()).map(deflection).collect())
+    }
+
     fn channel(&self, pair: &FrfPair, channel: &Channel) -> Result<Vec<(usize, f64)>, FemError> {
         let points = self.fixture.points();
         let index =

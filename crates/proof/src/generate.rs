@@ -44,8 +44,12 @@ pub struct Plan {
     pub graded: usize,
     /// Number of cases whose recording comes from a solid, numbered after these.
     pub solid: usize,
-    /// Number of cases of hits over time, numbered last.
+    /// Number of cases of hits over time, numbered after these.
     pub struck: usize,
+    /// Number of cases whose recording comes from a solid of which nothing is idealised, numbered after these.
+    pub solid_as_is: usize,
+    /// Number of cases of lumped structures with an error in every mode, numbered last.
+    pub modal_errors: usize,
     /// Seed of all but the fresh ones.
     pub seed: u64,
     /// A text (a commit's hash) that the last of the cases are drawn from, a quarter of them: cases that nobody can have tuned anything to.
@@ -60,7 +64,18 @@ impl Default for Plan {
     fn default() -> Self {
         let families =
             vec![Family::TwoBlocks, Family::SupportedTwoBlocks, Family::ThreeBlocks, Family::Frame];
-        Plan { cases: 40, graded: 0, solid: 0, struck: 0, seed: 1, fresh_from: None, only: None, families }
+        Plan {
+            cases: 40,
+            graded: 0,
+            solid: 0,
+            struck: 0,
+            solid_as_is: 0,
+            modal_errors: 0,
+            seed: 1,
+            fresh_from: None,
+            only: None,
+            families,
+        }
     }
 }
 
@@ -111,14 +126,14 @@ impl Plan {
         if self.cases + self.graded == 0 {
             return Err(GenerationError::NoCases);
         }
-        let own = Plan { solid: 0, struck: 0, ..self.clone() };
+        let own = Plan { solid: 0, struck: 0, solid_as_is: 0, modal_errors: 0, ..self.clone() };
         let (cases, truths) = self.drawn(&own.numbers()?, |index| self.case(index))?;
         Ok((cases, SealedTruths::new(truths)))
     }
 
     /// Number of cases of all routes.
     pub(crate) fn all(&self) -> usize {
-        self.cases + self.graded + self.solid + self.struck
+        self.cases + self.graded + self.solid + self.struck + self.solid_as_is + self.modal_errors
     }
 
     /// The numbers of the cases to make.
@@ -292,7 +307,7 @@ impl Scene {
 }
 
 /// Pairs of points of which neither the FRF nor its reciprocal is recorded.
-fn unseen_pairs(fixture: &Fixture, recorded: &[FrfPair], random: &mut impl Rng) -> Vec<FrfPair> {
+pub(crate) fn unseen_pairs(fixture: &Fixture, recorded: &[FrfPair], random: &mut impl Rng) -> Vec<FrfPair> {
     let names: Vec<&str> = fixture.points().iter().map(|point| point.name.as_str()).collect();
     let mut all = Vec::new();
     for (i, response) in names.iter().enumerate() {

@@ -75,6 +75,9 @@ pub struct Evidence {
     /// Errors on FRFs that nobody recorded: refitted and repaired.
     #[serde(skip)]
     pub unseen: Option<[f64; 2]>,
+    /// Number of recorded values, real and imaginary parts counted apart, where that is asked for.
+    #[serde(skip)]
+    pub values: usize,
     /// Quantities of the repaired fixture that lie far from what was stated, in standard deviations.
     #[serde(skip)]
     pub strained: Vec<(String, f64)>,

@@ -59,7 +59,7 @@ impl Judgeable for Truth {
 
 /// Objectives of the names that were given instead of the hidden one, each fitted alone from where the answer left it, and from the
 /// true quantities.
-fn others(truth: &Truth, answer: &Answer, repaired: f64, judge: &Judge) -> BTreeMap<Name, f64> {
+pub(crate) fn others(truth: &Truth, answer: &Answer, repaired: f64, judge: &Judge) -> BTreeMap<Name, f64> {
     let mut all: BTreeMap<Name, f64> = BTreeMap::new();
     let mut fit = |effect: &Effect, known: f64| {
         let name = Name::of(effect);

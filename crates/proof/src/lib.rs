@@ -9,13 +9,13 @@
 //! | theme | items |
 //! |---|---|
 //! | making cases | [`Plan`], [`Case`], [`Truth`], [`Role`], [`SealedTruths`] |
-//! | cases by other routes | [`Plan::draw_routes`], [`Questions`], [`RouteTruth`], [`Replies`], [`Opened`]; [`SolidTruth`], [`SolidJudged`]; [`StruckCase`], [`StruckTruth`], [`StruckJudged`] |
+//! | cases by other routes | [`Plan::draw_routes`], [`Questions`], [`RouteTruth`], [`Replies`], [`Opened`]; [`SolidTruth`], [`SolidJudged`]; [`StruckCase`], [`StruckTruth`], [`StruckJudged`]; [`AsIsTruth`], [`AsIsJudged`]; [`ModalErrorsTruth`], [`ModalErrorsJudged`] |
 //! | answers | [`Answers`], [`Answer`], [`Reply`], [`Found`], [`Timing`] |
 //! | judging | [`Judged`], [`Evidence`], [`Reference`], [`Name`] |
 //! | what else one could do | [`Baseline`], [`Methods`] |
 //! | limits of a test | [`Limits`] |
 //! | scores | [`Score`], [`Rate`], [`Share`], [`Reliability`], [`Confusion`], [`Detection`], [`Coverage`] |
-//! | scores by route | [`RouteScores`], [`RouteScore`], [`SizeScore`], [`CaseLine`] |
+//! | scores by route | [`JudgedRoutes`], [`RouteScores`], [`RouteScore`], [`SizeScore`], [`CaseLine`] |
 //! | real recordings | [`concealed`]: something concealed relative to a fixture that explains them |
 //!
 //! Nothing is random but by the seed: cases, answers and scores are the same on any number of threads.
@@ -81,8 +81,9 @@ pub use limits::{Alike, Limits, SmallestShown};
 pub use reference::Reference;
 pub use reliability::{Bin, Reliability};
 pub use routes::{
-    Asked, Opened, Questions, Replies, RouteScore, RouteScores, RouteTruth, Shown, SolidJudged, SolidTruth,
-    StruckAnswer, StruckAnswers, StruckCase, StruckJudged, StruckRole, StruckTruth,
+    AsIsJudged, AsIsTruth, Asked, Erring, JudgedRoutes, ModalErrorsJudged, ModalErrorsTruth, Opened,
+    Questions, Replies, RouteScore, RouteScores, RouteTruth, Shown, SolidJudged, SolidTruth, StruckAnswer,
+    StruckAnswers, StruckCase, StruckJudged, StruckRole, StruckTruth, TrueName,
 };
 pub use score::{CHANCE, Comparison, Score, VerdictCounts};
 pub use seal::{BrokenSeal, Filed, Given, Sealable, SealedTruths};

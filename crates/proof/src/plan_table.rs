@@ -11,6 +11,8 @@ impl Display for Plan {
             (self.graded, "graded "),
             (self.solid, "solid "),
             (self.struck, "struck "),
+            (self.solid_as_is, "solid-as-is "),
+            (self.modal_errors, "modal-errors "),
         ];
         counts.retain(|(count, _)| *count > 0);
         let ((first, what), others) = counts.split_first().map_or(((0, ""), &[][..]), |(c, o)| (*c, o));
@@ -40,7 +42,8 @@ impl Plan {
     /// The plan as JSON.
     pub fn to_value(&self) -> Value {
         json!({
-            "cases": self.cases, "graded": self.graded, "solid": self.solid, "struck": self.struck, "seed": self.seed, "only": self.only, "families": self.family_names(),
+            "cases": self.cases, "graded": self.graded, "solid": self.solid, "struck": self.struck,
+            "solid_as_is": self.solid_as_is, "modal_errors": self.modal_errors, "seed": self.seed, "only": self.only, "families": self.family_names(),
             "fresh_from": self.fresh_from, "fresh": self.fresh(),
         })
     }

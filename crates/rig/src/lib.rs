@@ -13,6 +13,7 @@
 //! | stepped sines at several levels on such joints | [`SteppedSines`] |
 //! | random assemblies | [`Family`], [`drawn_within_tolerance`], [`random_effect`] |
 //! | physics without a name in fixture files | [`Outside`] |
+//! | structures a little wrong in every mode | [`ModalErrors`] |
 //! | a worked case | [`glued_joint`]: two steel blocks and a glued strip |
 //! | files | [`universal_file`]: FRFs with coherence as UFF |
 //!
@@ -40,6 +41,7 @@ mod error;
 mod families;
 pub mod glued_joint;
 mod hits;
+mod modal_errors;
 mod outside;
 mod physical;
 mod random;
@@ -53,6 +55,7 @@ pub use channels::{Instrument, frfs, read};
 pub use error::{HammerError, StructureError};
 pub use families::Family;
 pub use hits::{HammerTest, smoothed_variance};
+pub use modal_errors::{ModalErrors, UsualErrors};
 pub use outside::Outside;
 pub use physical::{Assembly, BeamElement, Law, Row, Station, Structure};
 pub use random::generator;

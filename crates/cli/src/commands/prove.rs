@@ -9,7 +9,7 @@ mod shipped;
 use std::path::Path;
 
 use jointscope::proof::{
-    Baseline, Judged, Limits, Methods, Opened, Replies, RouteScores, Score, SolidJudged, StruckJudged, Timing,
+    Baseline, Judged, JudgedRoutes, Limits, Methods, Opened, Replies, RouteScores, Score, Timing,
 };
 use jointscope::report::{ProofContext, ProofResults, proof_page};
 use serde_json::json;
@@ -53,18 +53,18 @@ pub fn run(arguments: &ProveArguments) -> Result<String, Refusal> {
         Outputs::one(directory.join("baselines.json"), &json!(baselines))?;
     }
     let truths = concealed.truths.open(&answers).ok_or_else(|| Refusal::new("answers are missing"))?;
-    let truths: Opened = truths.into_iter().collect();
+    let mut truths: Opened = truths.into_iter().collect();
     let judged = {
         let bar = progress::cases(concealed.cases.laboratory.len(), "judged");
         let told = |done: usize| bar.set_position(done as u64);
-        Judged::all(&concealed.cases.laboratory, truths.laboratory, &answers.laboratory, threads, told)
+        let own = std::mem::take(&mut truths.laboratory);
+        Judged::all(&concealed.cases.laboratory, own, &answers.laboratory, threads, told)
     };
-    let solid = {
-        let bar = progress::cases(concealed.cases.solid.len(), "judged");
+    let routes = {
+        let bar = progress::cases(JudgedRoutes::count_of_frfs(&concealed.cases), "judged");
         let told = |done: usize| bar.set_position(done as u64);
-        SolidJudged::all(&concealed.cases.solid, truths.solid, &answers.solid, threads, told)
+        RouteScores::of(&JudgedRoutes::all(&concealed.cases, truths, &answers, threads, told))
     };
-    let routes = RouteScores::of(&solid, &StruckJudged::all(truths.struck, &answers.struck));
     let timing = Timing::of(&answers.seconds());
     tell(&timing.to_string());
     let score = Score::of(&judged);

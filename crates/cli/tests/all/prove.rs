@@ -66,14 +66,18 @@ fn the_shipped_cases_come_with_pages_from_which_anyone_can_diagnose_again() {
 #[test]
 fn solids_and_hits_have_scores_of_their_own_and_pages_that_diagnose_makes_again() {
     let bench = Bench::new("prove-routes");
-    // Of each the second hides nothing: the quickest.
-    for (route, key, section) in
-        [("--solid", "solid", "Recordings of solids"), ("--struck", "struck", "Hits over time")]
-    {
+    // Of each the second hides nothing: the quickest. Where the model is wrong everywhere, what is answered to one case is left to chance.
+    for (route, key, section, right) in [
+        ("--solid", "solid", "Recordings of solids", true),
+        ("--struck", "struck", "Hits over time", true),
+        ("--solid-as-is", "solid_as_is", "Recordings of solids as they are", false),
+        ("--modal-errors", "modal_errors", "Recordings of structures with an error in every mode", false),
+    ] {
         let output = bench.run(&["prove", route, "2", "--only", "1", "--threads", "1", "-o", "proof"]);
         assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
         let table = String::from_utf8(output.stdout).unwrap();
-        assert!(table.contains(&format!("\n{key}: ")) && table.contains("case 1: right"), "{table}");
+        assert!(table.contains(&format!("\n{key}: ")), "{table}");
+        assert!(table.contains(if right { "case 1: right" } else { "case 1: " }), "{table}");
         assert!(!table.contains("single effects: mean log"), "the laboratory has no cases here: {table}");
         let page = bench.text("proof/report.html");
         assert!(page.contains(section) && page.contains("href=\"./cases/001/report.html\""));
@@ -86,7 +90,9 @@ fn solids_and_hits_have_scores_of_their_own_and_pages_that_diagnose_makes_again(
         bench.done(&["diagnose", "fixture.json", "hammer-test.uff", "-o", "again"]);
         let sections = |page: &str| page.split("<footer>").next().unwrap().to_owned();
         let (again, own) = (bench.text("again/report.html"), bench.text("proof/cases/001/report.html"));
-        assert_eq!(sections(&again), sections(&own), "{key}");
+        // The laboratory's FRFs come in another order than a file of them is read in, and sums over them are rounded otherwise: where no model is right to
+        // the noise, fits end apart by more than what a page shows.
+        assert!(key == "modal_errors" || sections(&again) == sections(&own), "{key}");
         assert!(!bench.text("fixture.json").contains("geometry"), "the solid stays under seal");
     }
 }

@@ -170,3 +170,24 @@ fn without_what_the_lumped_model_leaves_out_the_twin_is_the_lumped_model() {
         assert!(stiffer[1] > full[1], "{one:?}: {stiffer:?} for {full:?}");
     }
 }
+
+#[test]
+fn a_couple_on_either_block_turns_them_against_each_other_by_what_the_strip_bends() {
+    let all = Omissions { joint_mass: true, shear: true, plate_action: true, block_flexibility: true };
+    let bare = twin(D0, MeshOptions { without: all, ..COARSE });
+    // One newton metre on B and its opposite on A.
+    let (a, b) = ([-0.11, -0.03], [0.08, 0.17]);
+    let (on_a, on_b) = (1.0 / (a[1] - a[0]), 1.0 / (b[1] - b[0]));
+    let forces = [(0, a[0], on_a), (0, a[1], -on_a), (1, b[0], -on_b), (1, b[1], on_b)];
+    let read = bare.deflections(&forces, &[(0, -0.09), (0, -0.05), (1, 0.1), (1, 0.15)]).unwrap();
+    let turned = (read[3] - read[2]) / 0.05 - (read[1] - read[0]) / 0.04;
+    let (length, bending) = (0.0651, 2.07e11 * 2.864708e-10);
+    let expected = length / bending;
+    assert!((turned / expected - 1.0).abs() < 5e-3, "{turned:e} rad for {expected:e} rad");
+    // The strip leaves A straight: B's line, continued to its near end, is half that angle away over the strip's length.
+    let at = |x: f64, [(x0, y0), (x1, y1)]: [(f64, f64); 2]| y0 + (y1 - y0) * (x - x0) / (x1 - x0);
+    let apart =
+        at(length, [(0.1, read[2]), (0.15, read[3])]) - at(length, [(-0.09, read[0]), (-0.05, read[1])]);
+    let expected = length * length / (2.0 * bending);
+    assert!((apart / expected - 1.0).abs() < 5e-3, "{apart:e} m for {expected:e} m");
+}

@@ -1,12 +1,23 @@
 //! Cases by several routes: the laboratory's FRFs, the FRFs of solids, hits over time; one seal on all their truths.
 //!
-//! The laboratory and the diagnosis model the same assembly, of rigid blocks and massless beams, in two programs. The two other routes do
-//! not: a solid is meshed and has mass, shear and layers of its own; hits are integrated step by step, and no FRF is computed on the way.
+//! The laboratory and the diagnosis model the same assembly, of rigid blocks and massless beams, in two programs. The other routes do
+//! not: a solid is meshed and has mass, shear and layers of its own; hits are integrated step by step, and no FRF is computed on the way; solids as they
+//! are, and structures with errors in every mode, are such that no fixture is right to the noise.
+//!
+//! A route is a module that draws a case and its truth, judges an answer by that truth, and scores what was judged; here they come together.
 
+mod as_is;
+mod judged;
+mod modal_errors;
+mod model_error;
 mod score;
 mod solid;
 mod struck;
 
+pub use as_is::{AsIsJudged, AsIsTruth};
+pub use judged::JudgedRoutes;
+pub use modal_errors::{ModalErrorsJudged, ModalErrorsTruth};
+pub use model_error::{Erring, TrueName};
 pub use score::{RouteScore, RouteScores};
 pub use solid::{Shown, SolidJudged, SolidTruth};
 pub use struck::{StruckAnswer, StruckAnswers, StruckCase, StruckJudged, StruckRole, StruckTruth};
@@ -28,20 +39,25 @@ pub struct Questions {
     pub solid: Vec<Case>,
     /// Hits over time.
     pub struck: Vec<StruckCase>,
+    /// FRFs of solids as they are.
+    pub as_is: Vec<Case>,
+    /// FRFs of structures with errors in every mode.
+    pub modal_errors: Vec<Case>,
 }
 
 impl Questions {
     /// Every case, route after route.
     pub fn all(&self) -> Vec<Asked<'_>> {
-        let of_frfs = self.laboratory.iter().chain(&self.solid).map(Asked::Frfs);
-        of_frfs.chain(self.struck.iter().map(Asked::Hits)).collect()
+        let first = self.laboratory.iter().chain(&self.solid).map(Asked::Frfs);
+        let last = self.as_is.iter().chain(&self.modal_errors).map(Asked::Frfs);
+        first.chain(self.struck.iter().map(Asked::Hits)).chain(last).collect()
     }
 }
 
 /// A case by what its recording holds.
 #[derive(Debug, Clone, Copy)]
 pub enum Asked<'a> {
-    /// FRFs, of the laboratory or of a solid.
+    /// FRFs, of whatever route.
     Frfs(&'a Case),
     /// Hits over time.
     Hits(&'a StruckCase),
@@ -77,11 +93,15 @@ pub struct Replies {
     pub solid: Answers,
     /// To hits.
     pub struck: StruckAnswers,
+    /// To FRFs of solids as they are.
+    pub as_is: Answers,
+    /// To those of structures with errors in every mode.
+    pub modal_errors: Answers,
 }
 
 impl Given for Replies {
     fn count(&self) -> usize {
-        self.laboratory.all().len() + self.solid.all().len() + self.struck.all().len()
+        self.seconds().len()
     }
 }
 
@@ -104,19 +124,22 @@ impl Replies {
             }
         });
         // A worker that died has left neither.
-        let (mut frfs, hits): (Vec<_>, Vec<_>) = given.into_iter().map(Option::unwrap_or_default).unzip();
-        let mut later = frfs.split_off(cases.laboratory.len());
-        later.truncate(cases.solid.len());
-        Replies {
-            laboratory: Answers::collected(frfs),
-            solid: Answers::collected(later),
-            struck: Answers::collected(hits.into_iter().skip(cases.laboratory.len() + cases.solid.len())),
-        }
+        let mut given = given.into_iter().map(Option::unwrap_or_default);
+        let mut of_frfs =
+            |of: &[Case]| Answers::collected(given.by_ref().take(of.len()).map(|(frfs, _)| frfs));
+        let (laboratory, solid) = (of_frfs(&cases.laboratory), of_frfs(&cases.solid));
+        let struck = Answers::collected(given.by_ref().take(cases.struck.len()).map(|(_, hits)| hits));
+        let mut of_frfs =
+            |of: &[Case]| Answers::collected(given.by_ref().take(of.len()).map(|(frfs, _)| frfs));
+        let (as_is, modal_errors) = (of_frfs(&cases.as_is), of_frfs(&cases.modal_errors));
+        Replies { laboratory, solid, struck, as_is, modal_errors }
     }
 
     /// The answers as JSON, in the order of the cases.
     pub fn to_value(&self) -> Value {
-        let all = [self.laboratory.to_value(), self.solid.to_value(), self.struck.to_value()];
+        let (first, last) = (&[&self.laboratory, &self.solid], &[&self.as_is, &self.modal_errors]);
+        let of_frfs = |all: &[&Answers]| all.iter().map(|answers| answers.to_value()).collect::<Vec<_>>();
+        let all = [of_frfs(first), vec![self.struck.to_value()], of_frfs(last)].concat();
         Value::Array(
             all.into_iter().flat_map(|value| value.as_array().cloned().unwrap_or_default()).collect(),
         )
@@ -124,7 +147,9 @@ impl Replies {
 
     /// Seconds that each answer took, on one core, in the order of the cases.
     pub fn seconds(&self) -> Vec<f64> {
-        [self.laboratory.seconds(), self.solid.seconds(), self.struck.seconds()].concat()
+        let Replies { laboratory, solid, struck, as_is, modal_errors } = self;
+        [laboratory.seconds(), solid.seconds(), struck.seconds(), as_is.seconds(), modal_errors.seconds()]
+            .concat()
     }
 }
 
@@ -137,6 +162,10 @@ pub enum RouteTruth {
     Solid(Box<SolidTruth>),
     /// Of hits.
     Struck(Box<StruckTruth>),
+    /// Of a solid as it is.
+    AsIs(Box<AsIsTruth>),
+    /// Of a structure with errors in every mode.
+    ModalErrors(Box<ModalErrorsTruth>),
 }
 
 impl Sealable for RouteTruth {
@@ -145,6 +174,8 @@ impl Sealable for RouteTruth {
             RouteTruth::Laboratory(truth) => truth.to_value(),
             RouteTruth::Solid(truth) => truth.to_value(),
             RouteTruth::Struck(truth) => truth.to_value(),
+            RouteTruth::AsIs(truth) => truth.to_value(),
+            RouteTruth::ModalErrors(truth) => truth.to_value(),
         }
     }
 }
@@ -155,6 +186,8 @@ impl Filed for RouteTruth {
             None => RouteTruth::Laboratory(Box::new(Truth::from_value(value)?)),
             Some("solid") => RouteTruth::Solid(Box::new(SolidTruth::from_value(value)?)),
             Some("struck") => RouteTruth::Struck(Box::new(StruckTruth::deserialize(value).ok()?)),
+            Some("solid_as_is") => RouteTruth::AsIs(Box::new(AsIsTruth::from_value(value)?)),
+            Some("modal_errors") => RouteTruth::ModalErrors(Box::new(ModalErrorsTruth::from_value(value)?)),
             Some(_) => return None,
         })
     }
@@ -169,6 +202,10 @@ pub struct Opened {
     pub solid: Vec<SolidTruth>,
     /// Of hits.
     pub struck: Vec<StruckTruth>,
+    /// Of solids as they are.
+    pub as_is: Vec<AsIsTruth>,
+    /// Of structures with errors in every mode.
+    pub modal_errors: Vec<ModalErrorsTruth>,
 }
 
 impl FromIterator<RouteTruth> for Opened {
@@ -179,6 +216,8 @@ impl FromIterator<RouteTruth> for Opened {
                 RouteTruth::Laboratory(truth) => opened.laboratory.push(*truth),
                 RouteTruth::Solid(truth) => opened.solid.push(*truth),
                 RouteTruth::Struck(truth) => opened.struck.push(*truth),
+                RouteTruth::AsIs(truth) => opened.as_is.push(*truth),
+                RouteTruth::ModalErrors(truth) => opened.modal_errors.push(*truth),
             }
         }
         opened
@@ -189,7 +228,7 @@ impl FromIterator<RouteTruth> for Opened {
 const SHARE: (usize, usize) = (20, 20);
 
 impl Plan {
-    /// Solid cases, or cases of hits, that come along with so many of the laboratory's: one in twenty, none with fewer than twenty.
+    /// Cases of each other route that come along with so many of the laboratory's: one in twenty, none with fewer than twenty.
     pub fn along_with(cases: usize) -> usize {
         if cases < SHARE.1 { 0 } else { cases / SHARE.0 }
     }
@@ -201,21 +240,31 @@ impl Plan {
     /// See [`GenerationError`].
     pub fn draw_routes(&self) -> Result<(Questions, SealedTruths<RouteTruth>), GenerationError> {
         let numbers = self.numbers()?;
-        let [first_solid, first_struck] = [self.cases + self.graded, self.cases + self.graded + self.solid];
-        let within = |from: usize, to: usize| -> Vec<usize> {
-            numbers.iter().copied().filter(|number| (from..to).contains(number)).collect()
+        let mut first = 0;
+        // The numbers of a route of so many cases, and its first.
+        let mut route = |count: usize| -> (Vec<usize>, usize) {
+            let from = first;
+            first += count;
+            (numbers.iter().copied().filter(|number| (from..first).contains(number)).collect(), from)
         };
-        let (laboratory, truths) = self.drawn(&within(0, first_solid), |index| self.case(index))?;
-        let mut all: Vec<RouteTruth> =
-            truths.into_iter().map(|truth| RouteTruth::Laboratory(Box::new(truth))).collect();
-        let (solid, truths) = self.drawn(&within(first_solid, first_struck), |index| {
-            SolidTruth::draw(index, index - first_solid, self.seed)
-        })?;
+        let mut all = Vec::with_capacity(numbers.len());
+        let (own, _) = route(self.cases + self.graded);
+        let (laboratory, truths) = self.drawn(&own, |index| self.case(index))?;
+        all.extend(truths.into_iter().map(|truth| RouteTruth::Laboratory(Box::new(truth))));
+        let (own, from) = route(self.solid);
+        let (solid, truths) = self.drawn(&own, |index| SolidTruth::draw(index, index - from, self.seed))?;
         all.extend(truths.into_iter().map(|truth| RouteTruth::Solid(Box::new(truth))));
-        let (struck, truths) = self.drawn(&within(first_struck, usize::MAX), |index| {
-            StruckTruth::draw(index, index - first_struck, self.seed, &self.families)
-        })?;
+        let (own, from) = route(self.struck);
+        let draw = |index| StruckTruth::draw(index, index - from, self.seed, &self.families);
+        let (struck, truths) = self.drawn(&own, draw)?;
         all.extend(truths.into_iter().map(|truth| RouteTruth::Struck(Box::new(truth))));
-        Ok((Questions { laboratory, solid, struck }, SealedTruths::new(all)))
+        let (own, from) = route(self.solid_as_is);
+        let (as_is, truths) = self.drawn(&own, |index| AsIsTruth::draw(index, index - from, self.seed))?;
+        all.extend(truths.into_iter().map(|truth| RouteTruth::AsIs(Box::new(truth))));
+        let (own, from) = route(self.modal_errors);
+        let (modal_errors, truths) =
+            self.drawn(&own, |index| ModalErrorsTruth::draw(index, index - from, self))?;
+        all.extend(truths.into_iter().map(|truth| RouteTruth::ModalErrors(Box::new(truth))));
+        Ok((Questions { laboratory, solid, struck, as_is, modal_errors }, SealedTruths::new(all)))
     }
 }

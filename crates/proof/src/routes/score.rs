@@ -1,6 +1,7 @@
 //! The scores of a route beside the laboratory's.
 
-use super::{SolidJudged, StruckJudged, solid, struck};
+use super::model_error::{self, Route};
+use super::{JudgedRoutes, solid, struck};
 use crate::Sheet;
 use crate::sheet::{Keyed, by_key, counted};
 use crate::size::SizeScore;
@@ -58,14 +59,24 @@ pub struct RouteScores(#[serde(serialize_with = "by_key")] pub Vec<RouteScore>);
 
 impl RouteScores {
     /// Scores judged cases.
-    pub fn of(solid: &[SolidJudged], struck: &[StruckJudged]) -> Self {
+    pub fn of(judged: &JudgedRoutes) -> Self {
+        let JudgedRoutes { solid, struck, as_is, modal_errors } = judged;
         let all = [
             (!solid.is_empty()).then(|| solid::score(solid)),
             (!struck.is_empty()).then(|| struck::score(struck)),
+            (!as_is.is_empty()).then(|| model_error::score(AS_IS, as_is)),
+            (!modal_errors.is_empty()).then(|| model_error::score(MODAL_ERRORS, modal_errors)),
         ];
         RouteScores(all.into_iter().flatten().collect())
     }
 }
+
+const AS_IS: Route = Route {
+    key: "solid_as_is",
+    what: "recordings of the finite-element twin of two solid blocks on a strip, nothing idealised",
+};
+const MODAL_ERRORS: Route =
+    Route { key: "modal_errors", what: "recordings of lumped structures with an error in every mode" };
 
 impl Display for RouteScores {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {

@@ -4,11 +4,13 @@ use jointscope_diagnosis::Verdict;
 use jointscope_fixture::{Dof, Effect, EffectKind, Place};
 use jointscope_nonlinear::Verdict as Conclusion;
 use jointscope_proof::{
-    Answer, Answers, Case, Found, Judgeable, NoAnswer, Opened, Plan, Precision, Questions, Replies, Role,
-    RouteScore, RouteScores, SolidJudged, SolidTruth, StruckAnswer, StruckAnswers, StruckCase, StruckJudged,
-    StruckRole, StruckTruth,
+    Answer, Answers, Case, Filed, Found, Judgeable, Judged, JudgedRoutes, ModalErrorsTruth, NoAnswer, Opened,
+    Plan, Precision, Questions, Replies, Role, RouteScore, RouteScores, Sealable, SolidJudged, SolidTruth,
+    StruckAnswer, StruckAnswers, StruckCase, StruckJudged, StruckRole, StruckTruth,
 };
 use jointscope_recordings::{ReadOptions, Source, hits_of};
+use jointscope_rig::{Instrument, frfs};
+use jointscope_spectra::FrfSet;
 
 fn silent(cases: &[Case]) -> Answers {
     Answers::by(cases, 1, |_| (), |_| Err(NoAnswer::BrokeDown))
@@ -19,6 +21,8 @@ fn silent_to_all(questions: &Questions) -> Replies {
         laboratory: silent(&questions.laboratory),
         solid: silent(&questions.solid),
         struck: StruckAnswers::by(&questions.struck, 1, |_| (), |_| Err(NoAnswer::BrokeDown)),
+        as_is: silent(&questions.as_is),
+        modal_errors: silent(&questions.modal_errors),
     }
 }
 
@@ -65,7 +69,7 @@ fn solid_score(
         },
     );
     let judged = SolidJudged::all(cases, truths.to_vec(), &answers, 1, |_| ());
-    RouteScores::of(&judged, &[]).0.remove(0)
+    RouteScores::of(&JudgedRoutes { solid: judged, ..JudgedRoutes::default() }).0.remove(0)
 }
 
 fn share(score: &RouteScore, key: &str) -> (usize, usize) {
@@ -182,7 +186,8 @@ fn struck_score(
         })
     };
     let answers = StruckAnswers::by(cases, 1, |_| (), reply);
-    RouteScores::of(&[], &StruckJudged::all(truths.to_vec(), &answers)).0.remove(0)
+    let struck = StruckJudged::all(truths.to_vec(), &answers);
+    RouteScores::of(&JudgedRoutes { struck, ..JudgedRoutes::default() }).0.remove(0)
 }
 
 #[test]
@@ -244,4 +249,107 @@ fn a_plan_says_which_routes_it_takes() {
     assert_eq!(plan(40, 2, 2, None), "40 cases, seed 1, and 2 solid, and 2 struck");
     assert_eq!(plan(0, 8, 3, None), "8 solid cases, seed 1, and 3 struck");
     assert_eq!(plan(0, 0, 3, Some(1)), "case 1 of 3, seed 1");
+    let wrong_everywhere = Plan { cases: 0, solid_as_is: 4, modal_errors: 6, ..Plan::default() };
+    assert_eq!(wrong_everywhere.to_string(), "4 solid-as-is cases, seed 1, and 6 modal-errors");
+}
+
+/// An answer that names effects.
+fn naming(case: &Case, effects: &[Effect], probability: f64) -> Answer {
+    let findings = effects.iter().map(|effect| Found { probability, ..found(effect) });
+    Answer {
+        verdict: if effects.is_empty() { Verdict::Consistent } else { Verdict::Explained },
+        findings: findings.collect(),
+        objectives: [0.0; 2],
+        chi2_per_dof: [1.0; 3],
+        refitted: case.believed.clone(),
+        repaired: case.believed.clone(),
+        held_out: None,
+    }
+}
+
+/// Solids as they are, and structures with errors in every mode, answered by the first hidden effect and by another one.
+fn model_error_scores(
+    (questions, truths): &(Questions, Opened),
+    others: &[Effect],
+    probability: f64,
+) -> [RouteScore; 2] {
+    let answers = |cases: &[Case], hidden: Vec<&[Effect]>| {
+        let reply = |case: &Case| {
+            let position = cases.iter().position(|known| known == case).unwrap();
+            Ok(naming(case, &[hidden[position], others].concat(), probability))
+        };
+        Answers::by(cases, 1, |_| (), reply)
+    };
+    let as_is = answers(&questions.as_is, truths.as_is.iter().map(|truth| truth.effects()).collect());
+    let hidden = truths.modal_errors.iter().map(|truth| truth.effects()).collect();
+    let modal_errors = answers(&questions.modal_errors, hidden);
+    let routes = RouteScores::of(&JudgedRoutes {
+        as_is: Judged::all(&questions.as_is, truths.as_is.clone(), &as_is, 1, |_| ()),
+        modal_errors: Judged::all(
+            &questions.modal_errors,
+            truths.modal_errors.clone(),
+            &modal_errors,
+            1,
+            |_| (),
+        ),
+        ..JudgedRoutes::default()
+    });
+    routes.0.try_into().unwrap()
+}
+
+#[test]
+fn where_the_model_is_wrong_everywhere_what_is_true_may_stand_beside_what_is_hidden_and_nothing_else() {
+    let cases = drawn(&Plan { cases: 0, solid_as_is: 3, modal_errors: 4, seed: 2, ..Plan::default() });
+    let perfect = model_error_scores(&cases, &[], 1.0);
+    for score in &perfect {
+        let (right, asked) = share(score, "single_right");
+        assert_eq!((right, share(score, "null_alone")), (asked, (1, 1)), "{}", score.key);
+        assert_eq!(share(score, "sizes").0, share(score, "sizes").1);
+        assert_eq!((share(score, "untrue_claimed").0, share(score, "null_untrue").0), (0, 0));
+    }
+    assert_eq!(share(&perfect[0], "single_right"), (2, 2), "of solids as they are all is asked for");
+    // A strip's ends yield across it, whatever is stated.
+    let end = Place::Point("10".into());
+    let across = Effect::new(EffectKind::InterfaceCompliance, end, Some(Dof::Translation), &[1e8, 0.0]);
+    let [beside, _] = model_error_scores(&cases, &[across], 0.95);
+    assert_eq!((share(&beside, "single_right"), share(&beside, "untrue_claimed").0), ((2, 2), 0));
+    let values = [0.0, 1e-3, 500.0, 0.01];
+    let untrue = Effect::new(EffectKind::AttachedResonator, Place::Body("A".into()), None, &values);
+    let [wrong, _] = model_error_scores(&cases, &[untrue], 0.6);
+    let counted = ["single_right", "single_first", "untrue_claimed", "untrue_likely", "null_untrue"];
+    assert_eq!(counted.map(|key| share(&wrong, key).0), [0, 2, 0, 3, 1]);
+}
+
+#[test]
+fn cases_with_a_wrong_model_come_last_and_change_no_other() {
+    let without = Plan { cases: 2, solid: 1, struck: 1, seed: 4, ..Plan::default() };
+    let with = Plan { solid_as_is: 1, modal_errors: 1, ..without.clone() };
+    let ((before, _), (after, truths)) = (drawn(&without), drawn(&with));
+    assert_eq!(
+        (before.laboratory, before.solid, before.struck),
+        (after.laboratory, after.solid, after.struck)
+    );
+    assert_eq!((truths.as_is[0].index, truths.modal_errors[0].index()), (4, 5));
+    let (one, _) = drawn(&Plan { only: Some(5), ..with });
+    assert_eq!((one.as_is.len(), one.modal_errors), (0, after.modal_errors));
+}
+
+#[test]
+fn errors_of_every_mode_are_filed_with_the_truth_and_are_more_than_noise() {
+    let (questions, truths) = drawn(&Plan { cases: 0, modal_errors: 3, seed: 6, ..Plan::default() });
+    for (case, truth) in questions.modal_errors.iter().zip(&truths.modal_errors) {
+        let text = truth.to_value().to_string();
+        let read = ModalErrorsTruth::from_value(&serde_json::from_str(&text).unwrap()).unwrap();
+        assert_eq!(read.to_value().to_string(), text);
+        let (pairs, lines) = (case.recorded.pairs(), case.recorded.lines());
+        let error_of = |set: &FrfSet| {
+            let both = set.all_values().iter().zip(case.recorded.all_values());
+            let (off, size) =
+                both.fold((0.0, 0.0), |(off, size), (a, b)| (off + (a - b).norm_sqr(), size + b.norm_sqr()));
+            (off / size).sqrt()
+        };
+        let wrong = error_of(&read.frfs(pairs, lines, Instrument::AsDescribed).unwrap());
+        let without = error_of(&frfs(&truth.truth.fixture, pairs, lines, Instrument::AsDescribed).unwrap());
+        assert!(wrong < 5e-3 && without > 5.0 * wrong, "{wrong:e} with the errors, {without:e} without");
+    }
 }

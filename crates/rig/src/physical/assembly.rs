@@ -114,6 +114,35 @@ impl Assembly {
         dense(self.order, &self.stiffness)
     }
 
+    /// The assembly on other coordinates, of which each of `basis` is a shape over the present ones: every matrix A becomes VᵀAV.
+    pub(crate) fn on_shapes(&self, basis: &[Vec<f64>]) -> Assembly {
+        let count = basis.len();
+        let turned = |additions: &Additions| -> Additions {
+            let mut matrix = vec![0.0; count * count];
+            for &(i, j, value) in additions {
+                for (a, left) in basis.iter().enumerate().filter(|(_, shape)| shape[i] != 0.0) {
+                    for (b, right) in basis.iter().enumerate() {
+                        matrix[a * count + b] += left[i] * value * right[j];
+                    }
+                }
+            }
+            let entries = matrix.into_iter().enumerate().filter(|(_, value)| *value != 0.0);
+            entries.map(|(at, value)| (at / count, at % count, value)).collect()
+        };
+        Assembly {
+            order: count,
+            mass: turned(&self.mass),
+            damping: turned(&self.damping),
+            stiffness: turned(&self.stiffness),
+            lawful: self.lawful.iter().map(|(law, additions)| (*law, turned(additions))).collect(),
+        }
+    }
+
+    /// Multiplies every element of the damping by a factor of its row and its column.
+    pub(crate) fn scale_damping(&mut self, factor: impl Fn(usize, usize) -> f64) {
+        self.damping.iter_mut().for_each(|(i, j, value)| *value *= factor(*i, *j));
+    }
+
     /// Writes the dynamic stiffness Z(s) = s²M + sC + K(s), row by row, over `into`.
     pub fn dynamic_stiffness(&self, s: Complex64, into: &mut [Complex64]) {
         into.fill(Complex64::ZERO);

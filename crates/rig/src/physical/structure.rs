@@ -57,6 +57,19 @@ impl Structure {
         Ok(structure)
     }
 
+    /// The same places on another assembly: `moves` says by the point's name how its motion, stated or as mounted, follows from that
+    /// assembly's coordinates.
+    pub(crate) fn on(&self, assembly: Assembly, moves: impl Fn(&str, &Row) -> Row) -> Self {
+        let on = |places: &BTreeMap<String, Station>| {
+            let moved = places.iter().map(|(name, station)| {
+                let Station { y, theta } = station;
+                (name.clone(), Station { y: moves(name, y), theta: moves(name, theta) })
+            });
+            moved.collect()
+        };
+        Structure { assembly, points: on(&self.points), displaced: on(&self.displaced) }
+    }
+
     /// Masses, springs and dashpots on the coordinates.
     pub fn assembly(&self) -> &Assembly {
         &self.assembly

@@ -7,5 +7,6 @@ mod common;
 mod families;
 mod glued_joint;
 mod hammer;
+mod modal_errors;
 mod open_cases;
 mod outside;

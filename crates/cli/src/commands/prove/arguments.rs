@@ -29,6 +29,12 @@ pub struct ProveArguments {
     /// Make so many cases of hits over time [default: as --solid].
     #[arg(long, value_name = "N")]
     pub struck: Option<usize>,
+    /// Make so many cases whose recording comes from a solid with nothing idealised, so that no fixture is right to the noise [default: as --solid].
+    #[arg(long, value_name = "N")]
+    pub solid_as_is: Option<usize>,
+    /// Make so many cases of lumped structures with an error in every mode [default: as --solid].
+    #[arg(long, value_name = "N")]
+    pub modal_errors: Option<usize>,
     /// A text, such as the current commit's hash, from which a quarter of the cases is drawn afresh.
     #[arg(long, value_name = "TEXT")]
     pub also_from: Option<String>,
@@ -61,11 +67,16 @@ pub struct ProveArguments {
     pub no_case_pages: bool,
     /// Instead: the effects that this recording cannot tell apart, and the smallest that show in it.
     #[arg(long, num_args = 2, value_names = ["FIXTURE", "RECORDING"],
-        conflicts_with_all = ["cases", "seed", "graded", "solid", "struck", "also_from", "only", "shipped", "family", "wrong", "output"])]
+        conflicts_with_all = ["cases", "seed", "graded", "solid", "struck", "solid_as_is", "modal_errors", "also_from", "only", "shipped", "family", "wrong", "output"])]
     pub limits: Vec<PathBuf>,
 }
 
 impl ProveArguments {
+    /// Whether cases of a route beside the laboratory's are asked for.
+    pub fn asks_for_routes(&self) -> bool {
+        [self.solid, self.struck, self.solid_as_is, self.modal_errors].iter().any(Option::is_some)
+    }
+
     /// Cases at a time.
     pub fn workers(&self) -> usize {
         let cores = || std::thread::available_parallelism().map_or(1, std::num::NonZero::get);

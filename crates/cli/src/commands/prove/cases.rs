@@ -39,8 +39,7 @@ impl Concealed {
         let asks_for_new = arguments.cases.is_some()
             || arguments.seed.is_some()
             || arguments.graded.is_some()
-            || arguments.solid.is_some()
-            || arguments.struck.is_some()
+            || arguments.asks_for_routes()
             || arguments.also_from.is_some()
             || !arguments.family.is_empty();
         if asks_for_new { Self::drawn(arguments) } else { Self::shipped(arguments) }
@@ -51,7 +50,7 @@ impl Concealed {
         let families: Vec<_> = FAMILIES.into_iter().filter_map(named).collect();
         let standard = Plan::default();
         // Who asks for a route alone gets that alone.
-        let by_route = arguments.solid.is_some() || arguments.struck.is_some();
+        let by_route = arguments.asks_for_routes();
         let cases = arguments.cases.unwrap_or(if by_route { 0 } else { standard.cases });
         // The other routes come along unless the assemblies were chosen.
         let along = if families.is_empty() { Plan::along_with(arguments.cases.unwrap_or(0)) } else { 0 };
@@ -60,6 +59,8 @@ impl Concealed {
             graded: arguments.graded.unwrap_or(standard.graded),
             solid: arguments.solid.unwrap_or(along),
             struck: arguments.struck.unwrap_or(along),
+            solid_as_is: arguments.solid_as_is.unwrap_or(along),
+            modal_errors: arguments.modal_errors.unwrap_or(along),
             seed: arguments.seed.unwrap_or(standard.seed),
             fresh_from: arguments.also_from.clone(),
             only: arguments.only,

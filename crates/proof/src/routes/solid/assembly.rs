@@ -8,7 +8,7 @@ use rand::{Rng, RngExt};
 use serde_json::{Value, json};
 
 /// Materials of blocks and strips: name, Young's modulus (N/m²), density (kg/m³), shear modulus along the grain (N/m²).
-const MATERIALS: [(&str, f64, f64, f64); 5] = [
+pub(in crate::routes) const MATERIALS: [(&str, f64, f64, f64); 5] = [
     ("steel", 2.07e11, 7850.0, 8.0e10),
     ("aluminium", 7.0e10, 2700.0, 2.6e10),
     ("brass", 1.0e11, 8500.0, 3.7e10),
@@ -16,18 +16,18 @@ const MATERIALS: [(&str, f64, f64, f64); 5] = [
     ("glass fibre in epoxy", 4.0e10, 1900.0, 3.5e9),
 ];
 /// How many of them are metals, of which blocks are made.
-const METALS: usize = 3;
-const POISSON: f64 = 0.3;
+pub(in crate::routes) const METALS: usize = 3;
+pub(in crate::routes) const POISSON: f64 = 0.3;
 
 /// Mass of a block, kg, and its length and height over the edge of a cube of that mass.
 const MASS: [f64; 2] = [0.3, 6.0];
 const LENGTH: [f64; 2] = [1.0, 1.6];
 const HEIGHT: [f64; 2] = [0.7, 1.0];
 /// Free length of the strip, m.
-const GAP: [f64; 2] = [0.03, 0.09];
+pub(in crate::routes) const GAP: [f64; 2] = [0.03, 0.09];
 /// The highest elastic mode of the lumped fixture, Hz, and the lowest that a test still resolves.
-const HIGHEST: [f64; 2] = [350.0, 900.0];
-const LOWEST: f64 = 15.0;
+pub(in crate::routes) const HIGHEST: [f64; 2] = [350.0, 900.0];
+pub(in crate::routes) const LOWEST: f64 = 15.0;
 /// Damping ratio of the lower elastic mode.
 const RATIO: [f64; 2] = [0.004, 0.015];
 
@@ -42,9 +42,9 @@ pub(super) enum Stoutness {
 
 /// A strip of rectangular section.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Strip {
+pub(in crate::routes) struct Strip {
     /// Index of its material.
-    material: usize,
+    pub material: usize,
     /// Free length, m.
     pub length: f64,
     /// Across the plane of motion, m.
@@ -77,16 +77,18 @@ impl Strip {
 
 /// A block: where it begins, and its edges, m.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Block {
-    material: usize,
-    left: f64,
-    length: f64,
-    height: f64,
-    depth: f64,
+pub(in crate::routes) struct Block {
+    /// Index of its material.
+    pub material: usize,
+    /// Where it begins, m.
+    pub left: f64,
+    pub length: f64,
+    pub height: f64,
+    pub depth: f64,
 }
 
 impl Block {
-    fn draw(random: &mut impl Rng, left: f64) -> Self {
+    pub fn draw(random: &mut impl Rng, left: f64) -> Self {
         let material = random.random_range(0..METALS);
         let volume = log_uniform(random, MASS) / MATERIALS[material].2;
         let edge = volume.cbrt();
@@ -94,20 +96,20 @@ impl Block {
         Block { material, left, length, height, depth: volume / (length * height) }
     }
 
-    fn mass(&self) -> f64 {
+    pub fn mass(&self) -> f64 {
         MATERIALS[self.material].2 * self.length * self.height * self.depth
     }
 
-    fn at(&self, share: f64) -> f64 {
+    pub fn at(&self, share: f64) -> f64 {
         self.left + share * self.length
     }
 
-    fn stated(&self) -> Value {
+    pub fn stated(&self) -> Value {
         let inertia = self.mass() * (self.length.powi(2) + self.height.powi(2)) / 12.0;
         json!({ "mass": known_to(self.mass(), 0.001), "inertia": known_to(inertia, 0.005), "x_cg": abscissa(self.at(0.5)) })
     }
 
-    fn solid(&self) -> Value {
+    pub fn solid(&self) -> Value {
         json!({
             "from": self.left, "to": self.left + self.length, "height": self.height, "depth": self.depth,
             "material": MATERIALS[self.material].0,
@@ -237,7 +239,7 @@ fn statement(
 }
 
 /// Lowest and highest elastic frequency of a lumped fixture, Hz.
-fn elastic(fixture: &Fixture) -> Result<[f64; 2], GenerationError> {
+pub(in crate::routes) fn elastic(fixture: &Fixture) -> Result<[f64; 2], GenerationError> {
     let modes = Structure::of(fixture)?.natural_frequencies()?;
     // Two rigid motions, two elastic modes.
     let at = |from_the_top: usize| modes.len().checked_sub(from_the_top).and_then(|i| modes.get(i)).copied();
@@ -245,11 +247,11 @@ fn elastic(fixture: &Fixture) -> Result<[f64; 2], GenerationError> {
 }
 
 /// A quantity known to a share of itself.
-fn known_to(value: f64, share: f64) -> Value {
+pub(in crate::routes) fn known_to(value: f64, share: f64) -> Value {
     json!({ "value": value, "std": share * value.abs() })
 }
 
 /// An abscissa, known to a tenth of a millimetre.
-fn abscissa(x: f64) -> Value {
+pub(in crate::routes) fn abscissa(x: f64) -> Value {
     json!({ "value": x, "std": 1e-4 })
 }

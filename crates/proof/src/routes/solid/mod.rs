@@ -4,7 +4,7 @@
 //! plate action, blocks and footing that yield) only what is concealed is left on, and every quantity of the fixture lies within its
 //! tolerance of the solid's own. So what is concealed has a name, and a size in closed form.
 
-mod assembly;
+pub(super) mod assembly;
 mod damping;
 mod hidden;
 mod judged;
@@ -12,7 +12,7 @@ mod score;
 #[cfg(test)]
 #[allow(clippy::unwrap_used)]
 mod tests;
-mod twin;
+pub(super) mod twin;
 
 pub use judged::SolidJudged;
 pub use twin::Shown;
@@ -164,7 +164,7 @@ impl Sealable for SolidTruth {
     }
 }
 
-fn transverse<const N: usize>(pairs: [(&str, &str); N]) -> [FrfPair; N] {
+pub(super) fn transverse<const N: usize>(pairs: [(&str, &str); N]) -> [FrfPair; N] {
     pairs.map(|(response, reference)| FrfPair::transverse(response, reference))
 }
 

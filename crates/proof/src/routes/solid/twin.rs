@@ -87,7 +87,7 @@ fn restore(mesh: &mut Mesh, options: &MeshOptions, shown: &Shown) {
 }
 
 /// Accelerances as the measuring chain of `effects` reads them: gains, delays, points elsewhere.
-pub(super) fn read(
+pub(in crate::routes) fn read(
     twin: &Twin,
     effects: &[Effect],
     pairs: &[FrfPair],
