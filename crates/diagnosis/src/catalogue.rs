@@ -156,6 +156,17 @@ pub fn catalogue(fixture: &Fixture, observation: &Observation) -> Vec<Candidate>
     all
 }
 
+/// Places along a beam from which a search sets out, by half-wave of the highest mode: between two of them what something on the beam does to that mode
+/// changes once.
+const PLACES_A_HALF_WAVE: f64 = 2.0;
+/// Half-waves beyond which no more places are tried.
+const MOST_HALF_WAVES: f64 = 12.0;
+
+/// Middles of so many equal parts of one.
+fn evenly(count: f64) -> impl Iterator<Item = f64> {
+    (0..count as usize).map(move |index| (index as f64 + 0.5) / count)
+}
+
 fn sorted(names: impl Iterator<Item = String>) -> Vec<String> {
     let mut all: Vec<String> = names.collect();
     all.sort();
@@ -226,13 +237,28 @@ impl At<'_> {
             Starts::AlongBody(shares) => match self.body.filter(|&body| turns(self.fixture, body)) {
                 Some(body) => {
                     let (low, high) = extent(self.fixture, body);
-                    shares.iter().map(|share| low + share * (high - low)).collect()
+                    let at = |share: f64| low + share * (high - low);
+                    match self.half_waves(body) {
+                        Some(waves) => evenly((PLACES_A_HALF_WAVE * waves).ceil()).map(at).collect(),
+                        None => shares.iter().map(|share| at(*share)).collect(),
+                    }
                 }
                 None => vec![0.0],
             },
             Starts::OverBand { count, low, high } => self.frequencies(count, low, high),
             Starts::OfLeading(_) => vec![0.0],
         }
+    }
+
+    /// Half-waves of bending along a beam at the highest line, three at least.
+    fn half_waves(&self, body: usize) -> Option<f64> {
+        let BodyKind::Beam(beam) = &self.fixture.bodies()[body].kind else { return None };
+        let hz = self.observation.lines().hz();
+        let omega = TAU * hz[hz.len() - 1];
+        let bending = beam.youngs_modulus.value * beam.second_moment.value;
+        let wave_number = (omega * omega * beam.mass_per_length.value / bending).sqrt().sqrt();
+        let waves = wave_number * (beam.to.value - beam.from.value) / std::f64::consts::PI;
+        Some(waves.clamp(1.5, MOST_HALF_WAVES))
     }
 
     /// Frequencies over the band, evenly on a logarithmic scale.
