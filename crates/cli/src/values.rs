@@ -1,6 +1,8 @@
 //! How values are spelled on the command line.
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
+use std::time::Duration;
+
 use jointscope::Band;
 use jointscope::spectra::{Channel, Dof, FrfPair, SpectralLines};
 
@@ -50,6 +52,13 @@ pub fn spectral_lines(text: &str) -> Result<SpectralLines, String> {
         return Err(format!("these are {} lines; take a larger step", steps + 1.0));
     }
     SpectralLines::even(from, step, steps as usize + 1).map_err(|error| error.to_string())
+}
+
+/// Reads seconds, above zero.
+pub fn seconds(text: &str) -> Result<Duration, String> {
+    let seconds = text.trim().parse().ok().filter(|seconds: &f64| *seconds > 0.0);
+    let duration = seconds.and_then(|seconds| Duration::try_from_secs_f64(seconds).ok());
+    duration.ok_or_else(|| "a number of seconds above zero is needed, such as 30".to_owned())
 }
 
 /// A finite number of Hz, zero or above.

@@ -26,7 +26,10 @@ pub(crate) fn alternatives(fitter: &Fitter, search: &Search, index: usize) -> Ve
     let inflation = repaired.inflation(fitter.observation);
     let listed = fitter.settings.evidence.listed;
     let base = repaired.hypothesis.without(index);
-    let mut fits = search.look_alikes(fitter, &base, repaired.objective + 2.0 * listed * inflation);
+    let mut fits = match fitter.observation.work().allows("look-alikes of effects found") {
+        true => search.look_alikes(fitter, &base, repaired.objective + 2.0 * listed * inflation),
+        false => Vec::new(),
+    };
     if let Some(candidate) = search.candidates.iter().position(|c| c.names(own)) {
         fits.retain(|(c, _)| *c != candidate);
         fits.push((candidate, repaired.clone()));

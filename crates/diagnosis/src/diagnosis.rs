@@ -5,6 +5,7 @@ use crate::modal::ModelError;
 use crate::routes;
 use crate::search::Search;
 use crate::settings::Settings;
+use crate::work::Work;
 use crate::{Baseline, Hypothesis, Observation, Watch};
 use jointscope_findings::{Estimate, HeldOut, Verdict};
 use jointscope_fixture::{Effect, Fixture};
@@ -12,6 +13,8 @@ use jointscope_spectra::{FrfPair, FrfSet, SpectraError};
 use num_complex::Complex64;
 use serde::Serialize;
 use statrs::distribution::{ContinuousCDF, Normal};
+use std::sync::Arc;
+use std::time::Duration;
 
 /// A piece of physics that the recordings need.
 #[derive(Debug, Clone, Serialize)]
@@ -69,6 +72,8 @@ pub struct DiagnosisOptions {
     pub hold_out: Vec<FrfPair>,
     /// FRFs of the same structure as it was known to be right: what is diagnosed is what has changed since.
     pub baseline: Option<FrfSet>,
+    /// How long a search may take; what it has then is the answer. Without, its limit of work is all that ends it ([`Settings::work`]).
+    pub time_limit: Option<Duration>,
     /// Take the fixture's bare numbers as exact.
     pub exact: bool,
     /// How the search goes.
@@ -122,6 +127,8 @@ pub struct Diagnosis {
     pub baseline: Option<Baseline>,
     /// Quantities that had to leave their stated values by more than chance makes, the farthest first.
     pub departures: Vec<Departure>,
+    /// What the search did not come to within its limit of work or time.
+    pub stopped: Vec<&'static str>,
     /// Effects that were tried by themselves where the model's error decides, the most probable first.
     pub tried: Vec<Tried>,
 }
@@ -159,7 +166,8 @@ impl Diagnosis {
             options.band.is_none_or(|(from, to)| hz >= from && hz <= to)
                 && !options.exclude.iter().any(|(from, to)| hz >= *from && hz <= *to)
         };
-        let observation = Observation::new(frfs, in_use)?;
+        let work = Arc::new(Work::of(options.settings.work, options.time_limit));
+        let observation = Observation::new(frfs, in_use)?.counted(work);
         Hypothesis::nominal(fixture, options.exact).predict(&observation)?;
         let few = observation.searched(&options.hold_out);
         let searched = few.as_ref().unwrap_or(&observation);

@@ -278,6 +278,7 @@ impl Hypothesis {
     /// Impossible quantities, or a model without finite FRFs.
     pub fn predict(&self, observation: &Observation) -> Result<Vec<Complex64>, PredictionError> {
         let fixture = self.to_fixture()?;
+        observation.work().count(observation.values().len());
         Ok(accelerances(&fixture, observation.pairs(), observation.lines(), Instrument::AsRecorded)?)
     }
 
@@ -298,6 +299,7 @@ impl Hypothesis {
         let pairs: Vec<FrfPair> = frfs.iter().map(|&i| observation.pairs()[i].clone()).collect();
         if !pairs.is_empty() {
             let fixture = moved.to_fixture()?;
+            observation.work().count(count * pairs.len());
             let some = accelerances(&fixture, &pairs, observation.lines(), Instrument::AsRecorded)?;
             for (values, &i) in some.chunks_exact(count).zip(&frfs) {
                 all[i * count..(i + 1) * count].copy_from_slice(values);

@@ -57,6 +57,7 @@ mod search;
 mod searched_frfs;
 mod settings;
 mod watch;
+mod work;
 
 pub use alternatives::Alternative;
 pub use baseline::{Baseline, ModeChange, ModeState};

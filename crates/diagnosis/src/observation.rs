@@ -1,10 +1,12 @@
 use crate::recorded_lines::{drift_variance, lines_in_use};
+use crate::work::Work;
 use jointscope_frf::Drift;
 use jointscope_frf::noise::{NoiseSource, with_variances};
 use jointscope_inference::{autocorrelation, inflated_weight};
 use jointscope_spectra::{FrfForm, FrfPair, FrfSet, SpectraError, SpectralLines};
 use num_complex::Complex64;
 use std::borrow::Cow;
+use std::sync::Arc;
 
 /// FRFs as a fit sees them: accelerances on the lines in use, each with its weight.
 #[derive(Debug, Clone)]
@@ -17,6 +19,7 @@ pub struct Observation {
     noise: Vec<NoiseSource>,
     recorded_lines: usize,
     drift: Option<Drift>,
+    work: Arc<Work>,
 }
 
 /// Relative uncertainty of variances from coherence, and from scatter.
@@ -61,7 +64,8 @@ impl Observation {
         }
         let from_scatter = !noise.is_empty() && noise.iter().all(|source| *source == NoiseSource::Scatter);
         let drift = if from_scatter { Drift::of(&frfs) } else { None };
-        let whole = Observation { frfs, weight, level, noise, recorded_lines: n, drift };
+        let whole =
+            Observation { frfs, weight, level, noise, recorded_lines: n, drift, work: Arc::default() };
         let kept = lines_in_use(&whole.frfs, crate::searched_frfs::count(whole.pairs().len()));
         let mut used = whole.on(&kept, &vec![true; whole.pairs().len()]).ok_or(SpectraError::NoLines)?;
         used.allow_for_drift(&whole.frfs, &kept);
@@ -119,6 +123,7 @@ impl Observation {
             noise: kept_frfs.iter().filter_map(|&i| self.noise.get(i).copied()).collect(),
             recorded_lines: self.recorded_lines,
             drift: self.drift.clone(),
+            work: Arc::clone(&self.work),
         })
     }
 
@@ -149,6 +154,16 @@ impl Observation {
     /// Where each FRF's noise came from; empty where the set carried its variances.
     pub fn noise(&self) -> &[NoiseSource] {
         &self.noise
+    }
+
+    /// The same, its predictions counted as `work`.
+    pub(crate) fn counted(self, work: Arc<Work>) -> Self {
+        Observation { work, ..self }
+    }
+
+    /// Work done on it and its parts.
+    pub(crate) fn work(&self) -> &Work {
+        &self.work
     }
 
     /// Whether some FRF's noise is told by nothing but the scatter of its lines.

@@ -158,18 +158,20 @@ impl Ranking<'_> {
             if stage == settings.joins {
                 fits.par_extend(std::mem::take(&mut joining).into_par_iter().filter_map(begin));
             }
-            fits = fits.into_par_iter().filter_map(|fit| improve(fit, inflation)).collect();
+            let work = self.fitter.observation.work();
+            fits = work.each(fits, "effects from afar", |fit| improve(fit, inflation));
             let best = fits.iter().map(|fit| fit.objective).fold(f64::INFINITY, f64::min);
             fits.retain(|fit| fit.objective <= settings.dropped[stage] * best + settings.margin);
         }
         let released = |fit: Thinned| (fit.candidate, fit.objective, fit.iterate.hypothesis.holding(&[]));
         let kept = self.front(fits.into_iter().map(released).collect(), settings.thinned);
-        let fits = kept.into_par_iter().filter_map(|(candidate, _, hypothesis)| {
+        let work = self.fitter.observation.work();
+        let fits = work.each(kept, "effects from afar", |(candidate, _, hypothesis)| {
             let fit = self.fitter.on_whole_lines(&hypothesis)?;
             Some((candidate, fit.objective, fit.hypothesis))
         });
         let start = |(candidate, _, hypothesis)| Start { candidate, hypothesis };
-        self.front(fits.collect(), settings.whole).into_iter().map(start).collect()
+        self.front(fits, settings.whole).into_iter().map(start).collect()
     }
 
     /// The candidates that gain most about a scan's base to first order, each at the size that serves best: (gain, candidate, effect).
@@ -240,7 +242,10 @@ impl Ranking<'_> {
         let mut fits: Vec<(usize, Fit)> = first.par_iter().filter_map(|s| fit(s, limit)).collect();
         let best = fits.iter().map(|(_, fit)| fit.objective).fold(f64::INFINITY, f64::min);
         let limit = limit.min(best + settings.margin);
-        fits.extend(rest.par_iter().filter_map(|s| fit(s, limit)).collect::<Vec<_>>());
+        let work = self.fitter.observation.work();
+        fits.extend(
+            work.each(rest.iter().collect(), "the less promising effects", |start| fit(start, limit)),
+        );
         fits
     }
 

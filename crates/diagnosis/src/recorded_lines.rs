@@ -6,8 +6,8 @@ use jointscope_spectra::FrfSet;
 /// Lines, and values, from which a recording is thinned, and how many lines are kept of it at the most.
 const LONG: (usize, usize) = (4000, 16_000);
 const KEPT: usize = 900;
-/// Of these, evenly spread ones.
-const EVENLY: usize = 350;
+/// Share of these that are evenly spread.
+const EVENLY: f64 = 0.39;
 /// Lines about a resonance are kept one by one up to this distance and ever more rarely beyond, in proportion to it: the first that
 /// keeps the limit.
 const GRADES: [usize; 10] = [64, 48, 32, 24, 16, 12, 8, 6, 4, 2];
@@ -16,10 +16,20 @@ const GRADES: [usize; 10] = [64, 48, 32, 24, 16, 12, 8, 6, 4, 2];
 /// sparsely with the distance, and evenly spread ones.
 pub(crate) fn lines_in_use(frfs: &FrfSet, searched: usize) -> Vec<bool> {
     let n = frfs.lines().len();
-    if n <= KEPT || (n <= LONG.0 && n * searched <= LONG.1) {
+    if n <= LONG.0 && n * searched <= LONG.1 {
         return vec![true; n];
     }
-    let evenly: Vec<bool> = (0..n).map(|line| line % n.div_ceil(EVENLY) == 0).collect();
+    telling(frfs, KEPT)
+}
+
+/// At most so many lines: those about resonances, ever more sparsely with the distance, and evenly spread ones.
+pub(crate) fn telling(frfs: &FrfSet, most: usize) -> Vec<bool> {
+    let n = frfs.lines().len();
+    if n <= most {
+        return vec![true; n];
+    }
+    let evenly = most as f64 * EVENLY;
+    let evenly: Vec<bool> = (0..n).map(|line| line % n.div_ceil(evenly as usize) == 0).collect();
     let resonances = resonant_lines(frfs);
     let graded = |grade: usize| {
         let mut kept = evenly.clone();
@@ -37,7 +47,7 @@ pub(crate) fn lines_in_use(frfs: &FrfSet, searched: usize) -> Vec<bool> {
         kept
     };
     let count = |kept: &Vec<bool>| kept.iter().filter(|keep| **keep).count();
-    GRADES.iter().map(|grade| graded(*grade)).find(|kept| count(kept) <= KEPT).unwrap_or(evenly)
+    GRADES.iter().map(|grade| graded(*grade)).find(|kept| count(kept) <= most).unwrap_or(evenly)
 }
 
 /// The variances that drift adds to `variance` (by used line) of one FRF, given the |change of the FRF|² for one standard deviation.

@@ -17,6 +17,10 @@ use jointscope_findings::{HeldOut, Verdict};
 use jointscope_fixture::Fixture;
 use jointscope_spectra::SpectraError;
 
+/// Names of what a search may not come to any more.
+const UNSEEN: &str = "the judgement on what is held out";
+const PLACES: &str = "the places of what is left";
+
 /// What a search by lines of the whole recording sets out from.
 enum Start<'a> {
     /// The fixture alone, or what the search finds that sees less.
@@ -51,7 +55,8 @@ pub(crate) fn judged(
     if let Some(exact) = modal.exact(fitter) {
         return Ok(by_lines(fitter, within, of, Start::Modes(&modal, exact), division));
     }
-    let searched = modal.is_dubious(fitter).then(|| Search::searched(fitter, within.clone()));
+    let may = modal.is_dubious(fitter) && fitter.observation.work().allows("what lines would find");
+    let searched = may.then(|| Search::searched(fitter, within.clone()));
     let explained = searched.as_ref().is_some_and(|search| explains(fitter, &search.repaired, true));
     // Modes that need no error of the model, or that do not tell all there is, beside lines that are not explained: it is not the modes of the model that
     // are in error.
@@ -85,6 +90,7 @@ impl Parts {
             mismatch: mismatch(&observation, &search.refitted.predicted, settings.evidence.bands),
             residual_correlation: observation.residual_correlation(&search.repaired.predicted),
             departures: departures(&search),
+            stopped: observation.work().left_out(),
             observation,
             search,
             findings: self.findings,
@@ -133,30 +139,16 @@ fn by_lines(
     division: Option<Division>,
 ) -> Parts {
     let Fitter { observation, settings, .. } = *fitter;
-    // What is to be judged on unseen lines must not have chosen the names either: the search that sees less goes first, and the whole
-    // recording only has to confirm or correct it.
-    let blind = division.as_ref().and_then(|division| {
-        fitter.watch.stage("searching without the lines that are held out");
-        let fitter = fitter.on(&division.seen);
-        let alone = Search::without_effects(&fitter, fixture, exact)?;
-        let modal = match &start {
-            Start::Modes(modal, _) => {
-                let known = modal.known(settings.modal.blind);
-                ModalJudgement::of(&fitter, &alone.nominal.hypothesis, &alone.candidates, Some(&known))
-            }
-            _ => None,
-        };
-        let found = modal.and_then(|modal| {
-            let exact = modal.exact(&fitter)?;
-            Some(Search { repaired: exact, ..modal.search_on(&division.seen, &alone) })
-        });
-        Some(match found {
-            Some(part) => Search::continued(&fitter, alone, &part),
-            None => Search::searched(&fitter, alone),
-        })
-    });
+    let seen = |known: Option<&ModalJudgement>| {
+        let division = division.as_ref().filter(|_| observation.work().allows(UNSEEN))?;
+        blind(&fitter.on(&division.seen), (fixture, exact), known)
+    };
+    // What sees less goes first where nothing is known, and the whole recording only has to confirm or correct it.
+    let first = if matches!(start, Start::Anew) { seen(None) } else { None };
     fitter.watch.stage("searching the whole recording");
-    let mut search = match (start, &blind) {
+    let known = if let Start::Modes(modal, _) = &start { Some(*modal) } else { None };
+    let found_anew = matches!(start, Start::Anew);
+    let mut search = match (start, &first) {
         (Start::Searched(search), _) => *search,
         (Start::Modes(modal, exact), _) => {
             let part = Search { repaired: exact, ..modal.search_on(observation, &within) };
@@ -176,8 +168,10 @@ fn by_lines(
     if findings.is_empty() {
         search.repaired = search.refitted.clone();
     }
+    let blind = if found_anew { first } else { seen(known) };
     let held_out = division.zip(blind).and_then(|(d, blind)| d.judge(&blind, &search, observation));
-    let locations = match chance(observation, &search.refitted).1 < settings.evidence.located {
+    let unlikely = chance(observation, &search.refitted).1 < settings.evidence.located;
+    let locations = match unlikely && observation.work().allows(PLACES) {
         true => {
             fitter.watch.stage("locating what is left");
             located(*fitter, &search.nominal.hypothesis, &search.refitted)
@@ -197,11 +191,35 @@ fn by_lines(
     }
 }
 
+/// The search that does not see what is held out: that must not have chosen the names either. Of what the whole recording's modes told, `known`, it may
+/// try the same names.
+fn blind(
+    fitter: &Fitter,
+    (fixture, exact): (&Fixture, bool),
+    known: Option<&ModalJudgement>,
+) -> Option<Search> {
+    fitter.watch.stage("searching without the lines that are held out");
+    let alone = Search::without_effects(fitter, fixture, exact)?;
+    let modal = known.and_then(|modal| {
+        let known = modal.known(fitter.settings.modal.blind);
+        ModalJudgement::of(fitter, &alone.nominal.hypothesis, &alone.candidates, Some(&known))
+    });
+    let found = modal.and_then(|modal| {
+        let exact = modal.exact(fitter)?;
+        Some(Search { repaired: exact, ..modal.search_on(fitter.observation, &alone) })
+    });
+    Some(match found {
+        Some(part) => Search::continued(fitter, alone, &part),
+        None => Search::searched(fitter, alone),
+    })
+}
+
 /// The diagnosis where the model's own error decides.
 fn by_modes(fitter: &Fitter, within: Search, modal: &ModalJudgement, division: Option<&Division>) -> Parts {
     let Fitter { observation, settings, .. } = *fitter;
     let search = modal.search_on(observation, &within);
-    let held_out = division.and_then(|division| {
+    let work = observation.work();
+    let held_out = division.filter(|_| work.allows(UNSEEN)).and_then(|division| {
         fitter.watch.stage("comparing by modes without what is held out");
         let blind = fitter.on(&division.seen);
         let known = modal.known(settings.modal.blind);
@@ -210,7 +228,9 @@ fn by_modes(fitter: &Fitter, within: Search, modal: &ModalJudgement, division: O
         division.judge(&judged.search_on(&division.seen, &within), &search, observation)
     });
     let locations = match modal.verdict {
-        Verdict::Unexplained => located(*fitter, &search.nominal.hypothesis, &search.refitted),
+        Verdict::Unexplained if work.allows(PLACES) => {
+            located(*fitter, &search.nominal.hypothesis, &search.refitted)
+        }
         _ => Vec::new(),
     };
     Parts {

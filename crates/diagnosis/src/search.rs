@@ -85,7 +85,9 @@ impl Search {
                 0 => "searching the lines for an effect",
                 _ => "searching the lines for one more effect",
             });
-            if self.repaired.hypothesis.effect_count() >= settings.effects {
+            if self.repaired.hypothesis.effect_count() >= settings.effects
+                || !fitter.observation.work().allows("more effects, by lines")
+            {
                 break;
             }
             let best = self.ranked(fitter, &self.repaired).into_iter().next().map(|(_, fit)| fit);
@@ -164,6 +166,9 @@ impl Search {
         for _ in 0..fitter.settings.selection.exchanges {
             let mut changed = false;
             for index in 0..self.repaired.hypothesis.effect_count() {
+                if !fitter.observation.work().allows("others in the stead of effects found") {
+                    return;
+                }
                 let without = self.repaired.hypothesis.without(index);
                 // Three effects that leave a large misfit: skip the global search.
                 let global =

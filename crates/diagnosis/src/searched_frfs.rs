@@ -1,13 +1,19 @@
-//! Of very many FRFs those that a search looks at.
+//! Of very many FRFs and lines those that a search looks at.
 //!
 //! With every channel in at least one of them, few FRFs tell nearly all that all of them tell about a structure: H_ij is made of φ_i and φ_j, mode by
 //! mode. The rest confirms: what is found is fitted to all of them, judged on all of them, and its uncertainty is by all of them.
 
 use crate::Observation;
+use crate::recorded_lines::telling;
 use jointscope_spectra::{Channel, FrfPair};
 
 /// FRFs from which not all of them are searched, unless more are needed to show every channel.
 const MANY: usize = 16;
+
+/// Values from which not all lines are searched, and how many values then are, with so many lines at the least.
+const ENOUGH: usize = 10_000;
+const VALUES: usize = 8000;
+const FEWEST_LINES: usize = 250;
 
 /// How many of so many FRFs are searched, as far as channels allow.
 pub(crate) fn count(frfs: usize) -> usize {
@@ -39,7 +45,18 @@ impl Observation {
     /// The part of it that is searched, `besides` in it; `None` where that is all of it.
     pub(crate) fn searched(&self, besides: &[FrfPair]) -> Option<Observation> {
         let chosen = chosen(self.pairs(), besides);
-        (chosen.len() < self.pairs().len()).then(|| self.reduced(|_| true, |pair| chosen.contains(&pair)))?
+        let fewer = chosen.len() < self.pairs().len();
+        let part = fewer.then(|| self.reduced(|_| true, |pair| chosen.contains(&pair))).flatten();
+        let frfs = part.as_ref().unwrap_or(self);
+        let (lines, most) = (frfs.lines().len(), (VALUES / frfs.pairs().len()).max(FEWEST_LINES));
+        if lines * frfs.pairs().len() <= ENOUGH || lines <= most {
+            return part;
+        }
+        let kept = telling(frfs.frfs(), most);
+        let hz = frfs.lines().hz();
+        let kept: Vec<f64> = hz.iter().zip(kept).filter(|(_, kept)| *kept).map(|(hz, _)| *hz).collect();
+        let is_kept = |hz: f64| kept.binary_search_by(|line| line.total_cmp(&hz)).is_ok();
+        frfs.reduced(is_kept, |_| true).or(part)
     }
 }
 

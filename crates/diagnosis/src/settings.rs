@@ -25,6 +25,9 @@ pub struct Settings {
     pub modal: ModalSettings,
     /// The map of places with no law assumed.
     pub location: LocationSettings,
+    /// Predicted values of FRFs after which a search ends with what it has, a model counted as a thousand besides: about a minute on one core. A case of
+    /// four FRFs on 400 lines takes 5 to 50 million.
+    pub work: u64,
 }
 
 /// Fits of a hypothesis to the FRFs.
@@ -152,6 +155,10 @@ pub struct ModalSettings {
     pub hopeless: f64,
     /// ln of the weight of physics that no candidate covers, against one for the best: usually, and at the most, however badly it fits.
     pub unlisted: (f64, f64),
+    /// What each effect beside the first adds to that: pairs of effects can imitate much.
+    pub company: f64,
+    /// ln p below the best at which a name is not tried on lines: e⁻⁵⁰ as probable.
+    pub told: f64,
     /// Multiple of the usual sizes by which starts are scored that compare other modes than their base.
     pub wide: f64,
     /// Standard deviation, in coordinates, within which a start's own parameters count as linear when it is scored.
@@ -176,6 +183,8 @@ impl Default for ModalSettings {
             free_fit: 1.3,
             hopeless: 100.0,
             unlisted: (-3.5, -0.7),
+            company: 1.6,
+            told: 50.0,
             wide: 5.0,
             near: 0.7,
         }
@@ -272,6 +281,7 @@ impl Default for Settings {
             },
             modal: ModalSettings::default(),
             location: LocationSettings::default(),
+            work: 300_000_000,
         }
     }
 }

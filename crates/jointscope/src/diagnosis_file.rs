@@ -41,6 +41,7 @@ pub fn diagnosis_file(diagnosis: &Diagnosis) -> Value {
         model_error: ModelErrors::of(diagnosis),
         departures: &diagnosis.departures,
         tried: &diagnosis.tried,
+        stopped: &diagnosis.stopped,
         modes: diagnosis.baseline.as_ref().map(|baseline| baseline.modes.as_slice()),
     })
 }
@@ -69,6 +70,9 @@ struct DiagnosisFile<'a> {
     model_error: ModelErrors,
     departures: &'a [Departure],
     tried: &'a [Tried],
+    /// What the search did not come to within its limit.
+    #[serde(skip_serializing_if = "<[_]>::is_empty")]
+    stopped: &'a [&'static str],
     /// The modes then and now, with a baseline.
     #[serde(skip_serializing_if = "Option::is_none")]
     modes: Option<&'a [ModeChange]>,

@@ -117,6 +117,14 @@ impl Remarks for Diagnosis {
                 "Points {a} and {b} have each other's place: their channels are swapped, in the cables or in the node numbers of the file."
             )
         }));
+        if !self.stopped.is_empty() {
+            let names: Vec<String> = self.stopped.iter().map(|name| (*name).to_owned()).collect();
+            remarks.push(format!(
+                "The search ended at its limit; what it did not come to any more: {}. A narrower band, or fewer FRFs or quantities with a \
+                 standard deviation, let it come farther.",
+                listed(&names)
+            ));
+        }
         remarks.extend(of_observation(&self.observation));
         // Among modes correlation is a part of the likelihood.
         if self.model_error.is_none() && !self.is_white() {

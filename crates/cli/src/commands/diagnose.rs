@@ -1,6 +1,7 @@
 //! `jointscope diagnose`: a fixture and recordings in, what the fixture leaves out and a page out.
 
 use std::path::PathBuf;
+use std::time::Duration;
 
 use clap::Args;
 use jointscope::diagnosis::Step;
@@ -17,7 +18,7 @@ use crate::output::{Outputs, pretty};
 use crate::progress::Steps;
 use crate::recording::RecordingArguments;
 use crate::refusal::Refusal;
-use crate::values::{band, frf_pair};
+use crate::values::{band, frf_pair, seconds};
 
 #[derive(Debug, Args)]
 pub struct DiagnoseArguments {
@@ -37,6 +38,9 @@ pub struct DiagnoseArguments {
     /// FRFs to judge by, which no fit sees [default: one, where there are four or more].
     #[arg(long, value_name = "OUT/IN", value_parser = frf_pair, num_args = 1..)]
     pub hold_out: Vec<FrfPair>,
+    /// Seconds after which the search ends with what it has found [default: it ends after a fixed amount of work, most of a minute].
+    #[arg(long, value_name = "S", value_parser = seconds)]
+    pub time_limit: Option<Duration>,
     /// Take numbers of the fixture without a standard deviation as exact.
     #[arg(long)]
     pub exact: bool,
@@ -69,6 +73,7 @@ pub fn run(arguments: &DiagnoseArguments) -> Result<String, Refusal> {
             band: arguments.band.map(|band| (band.from, band.to)),
             exclude: arguments.exclude.iter().map(|band| (band.from, band.to)).collect(),
             hold_out: arguments.hold_out.clone(),
+            time_limit: arguments.time_limit,
             exact: arguments.exact,
             baseline,
             ..DiagnosisOptions::default()

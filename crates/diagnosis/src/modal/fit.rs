@@ -2,6 +2,7 @@
 
 use crate::Hypothesis;
 use crate::modal::prior::Prior;
+use crate::work::Work;
 use jointscope_inference::{
     Convergence, Covariance, Damping, LeastSquares, NormalEquations, Precision, Settings, descend, dot,
 };
@@ -18,6 +19,8 @@ pub(crate) struct Problem<'a> {
     pub sizes: &'a ErrorSizes,
     /// Which of the sizes are stated.
     pub stated: [bool; KINDS],
+    /// Work done.
+    pub work: &'a Work,
 }
 
 /// A hypothesis where it stands: its modes, paired with the recording's.
@@ -44,6 +47,9 @@ pub(crate) struct ModalFit {
     pub ln: f64,
 }
 
+/// Values of an FRF that the search for a model's poles, and following known ones, cost about.
+const SEARCHED: usize = 1000;
+const FOLLOWED: usize = 300;
 /// Step of differences, in prior standard deviations and at most in coordinates.
 const DIFFERENCE: (f64, f64) = (1e-3, 2e-3);
 /// Fits at sizes of the error that are taken anew after each, at most, and the gain in ln p at which that ends.
@@ -72,6 +78,7 @@ impl<'a> Problem<'a> {
     /// Where a hypothesis stands, its poles found anew.
     pub fn standing(&self, hypothesis: &Hypothesis) -> Option<Standing> {
         let fixture = hypothesis.to_fixture().ok()?;
+        self.work.count(SEARCHED * self.recorded.frfs());
         let modelled = ModelledModes::of(&fixture, self.recorded)?;
         let pairing = Pairing::of(self.recorded, &modelled);
         let shapes = Shapes::of(&fixture, self.recorded, &modelled.poles())?;
@@ -82,6 +89,7 @@ impl<'a> Problem<'a> {
     /// The modes of a hypothesis, followed from those of another one near it.
     fn modelled(&self, hypothesis: &Hypothesis, near: &ModelledModes) -> Option<ModelledModes> {
         let fixture = hypothesis.to_fixture().ok()?;
+        self.work.count(FOLLOWED * self.recorded.frfs());
         ModelledModes::near(&fixture, self.recorded, &near.poles())
     }
 

@@ -68,7 +68,13 @@ impl ModalJudgement {
         let features = recorded.features();
         let fixture = nominal.to_fixture().ok()?;
         let SizePrior { scales, stated } = known_sizes(&settings.modal, &fixture);
-        let problem = Problem { recorded: &recorded, features: &features, sizes: &scales, stated };
+        let problem = Problem {
+            recorded: &recorded,
+            features: &features,
+            sizes: &scales,
+            stated,
+            work: observation.work(),
+        };
         let searcher = Searcher {
             problem,
             candidates,
@@ -96,7 +102,13 @@ impl ModalJudgement {
         let before = recorded(baseline, nominal, &settings.modal)?;
         let features = before.features();
         let SizePrior { scales, stated } = known_sizes(&settings.modal, &nominal.to_fixture().ok()?);
-        let problem = Problem { recorded: &before, features: &features, sizes: &scales, stated };
+        let problem = Problem {
+            recorded: &before,
+            features: &features,
+            sizes: &scales,
+            stated,
+            work: observation.work(),
+        };
         watch.stage("calibrating the fixture on the baseline");
         let calibrated = problem.fitted(nominal, priors(nominal, &[]))?;
         let before_error = problem.error(&calibrated, settings.modal.adequate.0);
@@ -109,7 +121,13 @@ impl ModalJudgement {
         // What is stated is the error that both states share; the change has its own.
         let sizes = ErrorSizes { gain: scales.gain, ..scales.times(settings.modal.own) };
         let stated = [false; KINDS];
-        let problem = Problem { recorded: &change, features: &features, sizes: &sizes, stated };
+        let problem = Problem {
+            recorded: &change,
+            features: &features,
+            sizes: &sizes,
+            stated,
+            work: observation.work(),
+        };
         let nominal = &calibrated.hypothesis;
         let searcher = Searcher {
             problem,
@@ -239,7 +257,10 @@ impl Judge<'_> {
         let pull = 0.5 * (best.largest_pull().powi(2) - self.searcher.settings.adequate.1.powi(2)).max(0.0);
         // What no poles explain in the recording itself is nothing that a name could be held against.
         let untold = 0.5 * self.searcher.problem.recorded.chi2_per_dof.max(1.0).ln();
-        (usual + strain + pull + untold).min(most).exp()
+        // Several effects together imitate much, as among lines.
+        let company =
+            self.searcher.settings.company * best.hypothesis.effect_count().saturating_sub(1) as f64;
+        (usual + company + strain + pull + untold).min(most).exp()
     }
 }
 
@@ -279,17 +300,24 @@ impl ModalJudgement {
     /// errors of the usual size do not explain the modes either, or these are dubious, lines decide alone, but more strictly.
     pub fn exact(&self, fitter: &Fitter) -> Option<Fit> {
         let by_lines = self.is_unexplained() || self.is_dubious(fitter);
-        let singles = self.search.singles.iter().take(fitter.settings.modal.tried);
+        // What modes tell from the best is no better on lines.
+        let best = self.search.best.fit.ln;
+        let close = |named: &&Named| best - named.fit.ln < fitter.settings.modal.told;
+        let singles = self.search.singles.iter().take(fitter.settings.modal.tried).filter(close);
         let all = singles.chain(&self.search.more).chain([&self.search.best]);
+        let all: Vec<&Named> = all.filter(|named| named.exact || by_lines).collect();
         // What will hardly come down to the noise is given up.
         let noise = explained(fitter) * fitter.observation.degrees() as f64;
-        let explaining = |named: &Named| {
+        let explaining = |named: &&Named| {
             let fit = fitter.local(&named.fit.hypothesis, None, noise)?;
             explains(fitter, &fit, !named.exact).then_some(fit)
         };
         let cost = |fit: &Fit| fit.objective + parameter_penalty(&fitter.settings.selection, &fit.hypothesis);
-        let tried = all.filter(|named| named.exact || by_lines).filter_map(explaining);
-        tried.min_by(|a, b| cost(a).total_cmp(&cost(b)))
+        // More effects than explain the lines are for the lines to ask for.
+        (0..=fitter.settings.modal.effects).find_map(|count| {
+            let of_count = all.iter().filter(|named| named.names.len() == count);
+            of_count.filter_map(explaining).min_by(|a, b| cost(a).total_cmp(&cost(b)))
+        })
     }
 
     /// What was found, and the most probable effects by themselves.

@@ -7,10 +7,12 @@ use crate::settings::ModalSettings;
 use crate::{Hypothesis, Watch};
 use jointscope_fixture::{Effect, EffectKind};
 use jointscope_model_error::{ErrorSizes, Linear};
-use rayon::prelude::*;
 
 /// Standard deviation, in stated ones, that a calibrated quantity keeps.
 const CALIBRATED: f64 = 1e-4;
+
+/// Name of what a search may not come to any more.
+const STARTS: &str = "the less promising effects, by modes";
 
 /// Effects by their candidates' indices, and their fit.
 #[derive(Debug, Clone)]
@@ -65,6 +67,9 @@ impl Searcher<'_> {
         for count in 1..=self.settings.effects {
             // What the fixture itself explains, and no effect alone improves, needs no pair.
             if count > 1 && best.names.is_empty() && self.is_adequate(&none) {
+                break;
+            }
+            if count > 1 && !self.problem.work.allows("several effects together, by modes") {
                 break;
             }
             if count > 1 {
@@ -201,14 +206,12 @@ impl Searcher<'_> {
             })
             .collect();
         let tried = self.watch.count(starts.len());
-        let mut scored: Vec<(f64, usize, Hypothesis)> = starts
-            .par_iter()
-            .filter_map(|&(c, s, b)| {
-                tried.trying(&self.candidates[c]);
-                let hypothesis = bases[b].with(self.candidates[c].effect(s));
-                Some((self.score(&hypothesis, &base.fit)?, c, hypothesis))
-            })
-            .collect();
+        let work = self.problem.work;
+        let mut scored: Vec<(f64, usize, Hypothesis)> = work.each(starts, STARTS, |(c, s, b)| {
+            tried.trying(&self.candidates[c]);
+            let hypothesis = bases[b].with(self.candidates[c].effect(s));
+            Some((self.score(&hypothesis, &base.fit)?, c, hypothesis))
+        });
         scored.sort_by(|a, b| b.0.total_cmp(&a.0));
         let mut taken = vec![0; self.candidates.len()];
         let mut chosen = Vec::new();
@@ -245,7 +248,7 @@ impl Searcher<'_> {
             let fit = self.problem.fitted_from(&hypothesis, standing, priors, nearby)?;
             Some(Named { names, exact: self.is_exact(&fit), fit })
         };
-        let mut fits: Vec<Named> = starts.into_par_iter().filter_map(fit).collect();
+        let mut fits = self.problem.work.each(starts, STARTS, fit);
         fits.sort_by(|a, b| b.fit.ln.total_cmp(&a.fit.ln));
         let mut seen = vec![false; self.candidates.len()];
         fits.retain(|f| f.names.last().is_some_and(|&c| !std::mem::replace(&mut seen[c], true)));

@@ -1,0 +1,105 @@
+//! How much a diagnosis may do, and how much it has done.
+//!
+//! Work is counted in predicted values of FRFs, so that the same input ends at the same place on any machine and any number of threads. It is asked
+//! for only where no others work at the same time. What a search does not come to any more is remembered by name.
+
+use rayon::prelude::*;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::{Duration, Instant};
+
+/// Values that a model costs besides those it predicts: its matrices, modes and participations.
+const MODEL: u64 = 1000;
+/// Fits between which the work done is looked at.
+const TOGETHER: usize = 16;
+
+/// Work done and allowed.
+#[derive(Debug)]
+pub(crate) struct Work {
+    done: AtomicU64,
+    most: u64,
+    until: Option<Instant>,
+    left_out: Mutex<Vec<&'static str>>,
+}
+
+impl Default for Work {
+    fn default() -> Self {
+        Work::of(u64::MAX, None)
+    }
+}
+
+impl Work {
+    /// So many values at the most, and for so long.
+    pub fn of(most: u64, time: Option<Duration>) -> Self {
+        let until = time.and_then(|time| Instant::now().checked_add(time));
+        Work { done: AtomicU64::new(0), most, until, left_out: Mutex::default() }
+    }
+
+    /// Counts a model and the values that it predicts.
+    pub fn count(&self, values: usize) {
+        self.done.fetch_add(MODEL + values as u64, Ordering::Relaxed);
+    }
+
+    /// Whether `what` may still be done; if not, that is remembered.
+    pub fn allows(&self, what: &'static str) -> bool {
+        let spent = self.done.load(Ordering::Relaxed) >= self.most;
+        let late = self.until.is_some_and(|until| Instant::now() >= until);
+        if !(spent || late) {
+            return true;
+        }
+        // A thread that panicked while it held the list leaves it whole.
+        let mut left_out = self.left_out.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
+        if !left_out.contains(&what) {
+            left_out.push(what);
+        }
+        false
+    }
+
+    /// What was not done any more, in the order in which it was asked for.
+    pub fn left_out(&self) -> Vec<&'static str> {
+        self.left_out.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).clone()
+    }
+
+    /// What becomes of each of several items, as far as there is work left for `what`, some at a time on all threads.
+    pub fn each<T: Send, R: Send>(
+        &self,
+        items: Vec<T>,
+        what: &'static str,
+        of: impl Fn(T) -> Option<R> + Sync + Send,
+    ) -> Vec<R> {
+        let mut all = Vec::with_capacity(items.len());
+        let mut items = items.into_iter();
+        loop {
+            let some: Vec<T> = items.by_ref().take(TOGETHER).collect();
+            if some.is_empty() || !self.allows(what) {
+                return all;
+            }
+            all.par_extend(some.into_par_iter().filter_map(&of));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_left_over_when_the_work_is_done_is_remembered_once() {
+        let work = Work::of(20 * (MODEL + 10), None);
+        let done = work.each((0..100).collect(), "numbers", |n| {
+            work.count(10);
+            Some(n)
+        });
+        assert_eq!(done, (0..32).collect::<Vec<_>>());
+        assert!(!work.allows("numbers") && !work.allows("letters"));
+        assert_eq!(work.left_out(), ["numbers", "letters"]);
+    }
+
+    #[test]
+    fn a_time_that_is_over_ends_it_too() {
+        assert!(!Work::of(u64::MAX, Some(Duration::ZERO)).allows("anything"));
+        assert!(
+            Work::of(u64::MAX, Some(Duration::MAX)).allows("anything") && Work::default().allows("anything")
+        );
+    }
+}
