@@ -266,3 +266,73 @@ impl<'a> Fitter<'a> {
         self.local(&without.with_coordinates_of(&at), None, f64::INFINITY)
     }
 }
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+    use crate::Watch;
+    use jointscope_fixture::{Dof, Effect, EffectKind, Fixture, Place};
+    use jointscope_lumped::{Instrument, synthesize};
+    use jointscope_spectra::{FrfPair, SpectralLines};
+    use proptest::prelude::*;
+
+    /// Two blocks on a strip, each group of quantities known to so many times its usual deviation.
+    fn blocks([masses, places, modulus, damping]: [f64; 4]) -> Fixture {
+        let known =
+            |value: f64, std: f64, times: f64| format!(r#"{{"value": {value}, "std": {}}}"#, std * times);
+        let block = |mass: f64, x: f64| {
+            let (mass, inertia) = (known(mass, 0.002, masses), known(9.5e-4, 9.5e-6, masses));
+            format!(r#"{{ "mass": {mass}, "inertia": {inertia}, "x_cg": {} }}"#, known(x, 2e-4, places))
+        };
+        let point =
+            |body: &str, x: f64| format!(r#"{{ "body": "{body}", "x": {} }}"#, known(x, 2e-4, places));
+        Fixture::from_json(&format!(
+            r#"{{ "bodies": {{ "A": {}, "B": {} }}, "points": {{ "1": {}, "2": {}, "3": {}, "4": {} }},
+                 "joints": {{ "J": {{ "from": "2", "to": "3", "beam": {{ "youngs_modulus": {}, "second_moment": 4e-10 }} }} }},
+                 "damping": {{ "modal_ratios": [{}, {}] }} }}"#,
+            block(1.1, -0.03),
+            block(1.2, 0.095),
+            point("A", -0.06),
+            point("A", 0.0),
+            point("B", 0.065),
+            point("B", 0.125),
+            known(2e11, 2e9, modulus),
+            known(0.003, 6e-4, damping),
+            known(0.004, 8e-4, damping)
+        ))
+        .unwrap()
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(12))]
+
+        #[test]
+        fn a_looser_tolerance_never_makes_a_refit_worse(
+            group in 0usize..4,
+            times in 1.5f64..8.0,
+            spring in 2e4f64..2e5,
+            mass in 0.002f64..0.02,
+        ) {
+            let hidden = [
+                Effect::new(EffectKind::InterfaceCompliance, Place::Point("2".into()), Some(Dof::Rotation), &[spring, 0.0]),
+                Effect::new(EffectKind::AddedMass, Place::Body("B".into()), None, &[0.11, mass]),
+            ];
+            let truth = blocks([1.0; 4]).with_physics(hidden.to_vec()).unwrap();
+            let pairs = [("4", "1"), ("3", "1"), ("4", "2")].map(|(o, i)| FrfPair::transverse(o, i));
+            let lines = SpectralLines::even(10.0, 5.0, 200).unwrap();
+            let frfs = synthesize(&truth, &pairs, &lines, Instrument::AsRecorded).unwrap();
+            let variance = frfs.all_values().iter().map(|value| 1e-5 * value.norm_sqr()).collect();
+            let observation = Observation::new(&frfs.with_variance(variance).unwrap(), |_| true).unwrap();
+            let settings = Settings::default();
+            let fitter = Fitter { observation: &observation, settings: &settings, watch: Watch::default() };
+            let objective = |known: [f64; 4]| {
+                fitter.searched(&Hypothesis::nominal(&blocks(known), true)).unwrap().objective
+            };
+            let mut looser = [1.0; 4];
+            looser[group] = times;
+            let (tight, loose) = (objective([1.0; 4]), objective(looser));
+            prop_assert!(loose <= tight * (1.0 + 1e-4) + 0.1, "{tight} to {loose} with {looser:?}");
+        }
+    }
+}

@@ -46,6 +46,11 @@ pub(crate) fn judged(
         true => ModalJudgement::of(fitter, &within.nominal.hypothesis, &within.candidates, None),
         false => None,
     };
+    // Modes lead to the nearest minimum where lines, peak beside peak, may end in another.
+    let within = match &modal {
+        Some(modal) => within.refitted_from(fitter, &modal.refitted),
+        None => within,
+    };
     let of = (fixture, options.exact);
     let Some(modal) = modal.filter(|modal| !modal.needs_nothing()) else {
         return Ok(by_lines(fitter, within, of, Start::Anew, division));

@@ -39,6 +39,15 @@ impl Search {
         Some(Search { repaired: refitted.clone(), refitted, ..start })
     }
 
+    /// The same, the fixture refitted from elsewhere too.
+    pub(crate) fn refitted_from(self, fitter: &Fitter, start: &Hypothesis) -> Self {
+        let found = fitter.local(start, None, self.refitted.objective);
+        match found.filter(|fit| fit.objective < self.refitted.objective) {
+            Some(refitted) => Search { repaired: refitted.clone(), refitted, ..self },
+            None => self,
+        }
+    }
+
     /// Searches for effects with the default settings. `None` where the fixture predicts no finite FRFs.
     pub fn of(fixture: &Fixture, observation: &Observation, exact: bool) -> Option<Self> {
         let fitter = Fitter { observation, settings: &Settings::default(), watch: Watch::default() };

@@ -181,6 +181,26 @@ fn the_answer_goes_to_standard_output_for_scripts_and_no_file_is_written() {
 }
 
 #[test]
+fn a_search_that_is_out_of_time_answers_with_what_it_has_and_says_what_it_did_not_come_to() {
+    let bench = storeys("diagnose-time", r#"{ "kind": "added_mass", "place": "low", "x": 0, "mass": 0.2 }"#);
+    let told = bench.done(&["diagnose", "believed.json", "frf.uff", "--time-limit", "0.000001", "-o", "out"]);
+    assert!(told.contains("The search ended at its limit"), "{told}");
+    let answer = bench.json("out/diagnosis.json");
+    assert!(!answer["stopped"].as_array().unwrap().is_empty());
+    assert!(answer["fit"]["nrmse"]["refitted"].as_f64().unwrap() > 0.0);
+    let told = bench.done(&["diagnose", "believed.json", "frf.uff", "--time-limit", "600", "-o", "out"]);
+    assert!(!told.contains("ended at its limit"), "{told}");
+    assert_eq!(bench.json("out/diagnosis.json").get("stopped"), None);
+    for limit in ["0", "-3", "NaN", "soon"] {
+        let limit = format!("--time-limit={limit}");
+        bench.refused(
+            &["diagnose", "believed.json", "frf.uff", &limit, "-o", "out"],
+            &["time-limit", "a number of seconds above zero is needed"],
+        );
+    }
+}
+
+#[test]
 fn one_frf_alone_is_diagnosed_with_a_word_on_what_it_cannot_say() {
     let bench = storeys("diagnose-one", "");
     bench.rewrite("frf.uff", "one.uff", |datasets| datasets.retain(|d| d.response.number == 1));
