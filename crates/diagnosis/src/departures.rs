@@ -1,7 +1,7 @@
 //! Quantities that had to leave their stated values.
 
-use crate::Tolerance;
 use crate::search::Search;
+use crate::{Hypothesis, Tolerance};
 use serde::Serialize;
 
 /// Standard deviations beyond which a quantity has departed by more than chance makes: once in sixteen thousand.
@@ -29,6 +29,14 @@ impl Departure {
     pub fn remains(&self) -> bool {
         self.deviations.abs() > DEPARTED
     }
+}
+
+/// Whether a hypothesis takes some stated quantity farther than chance does.
+pub(crate) fn has_departed(hypothesis: &Hypothesis) -> bool {
+    let stated = |(index, tolerance): (usize, &Tolerance)| {
+        tolerance.quantity.std.is_some() && hypothesis.departure(index).abs() > DEPARTED
+    };
+    hypothesis.tolerances().iter().enumerate().any(stated)
 }
 
 /// Quantities that the refitted or the repaired model took farther from what is stated than chance does, the farthest first.

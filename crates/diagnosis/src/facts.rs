@@ -1,10 +1,11 @@
 //! What a diagnosis shows besides its findings: where the mismatch sits, how it goes with frequency, what else the reader must know.
 
-use crate::departures::DEPARTED;
+use crate::departures::{DEPARTED, Departure};
 use crate::diagnosis::{BandShare, Diagnosis, Finding};
 use crate::fit::Fit;
 use crate::location::{BandMisfit, Location};
-use jointscope_findings::Estimate;
+use crate::settings::Settings;
+use jointscope_findings::{Estimate, Verdict};
 use jointscope_fixture::{EffectKind, Place};
 use jointscope_spectra::FrfPair;
 use serde::Serialize;
@@ -114,6 +115,16 @@ impl Diagnosis {
     /// Whether what the best model leaves is as random from line to line as noise is.
     pub fn is_white(&self) -> bool {
         self.residual_correlation.abs() <= WHITE
+    }
+
+    /// Whether all that is amiss are quantities far from what is stated: with them there, the FRFs are explained down to their noise.
+    pub fn is_only_departed(&self) -> bool {
+        let (coherence, scatter) = Settings::default().evidence.explained;
+        let limit = if self.observation.has_scatter_for_noise() { scatter } else { coherence };
+        self.verdict == Verdict::Unexplained
+            && self.model_error.is_none()
+            && self.departures.iter().any(Departure::remains)
+            && self.search.repaired.chi2_per_dof(&self.observation) < limit
     }
 
     /// The quantity that the refit without effects took farthest from what is stated, and by how many standard deviations, where that is

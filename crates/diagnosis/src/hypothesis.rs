@@ -177,6 +177,13 @@ impl Hypothesis {
         Hypothesis { coordinates: other.coordinates.clone(), ..self.clone() }
     }
 
+    /// The same with nothing known of these quantities beforehand.
+    pub(crate) fn freeing(&self, quantities: &[usize]) -> Self {
+        let mut parameters = self.parameters.to_vec();
+        quantities.iter().for_each(|&index| parameters[index].precision = 0.0);
+        Hypothesis { parameters: parameters.into(), ..self.clone() }
+    }
+
     /// The same with these coordinates (and no others) held where they are.
     pub(crate) fn holding(mut self, held: &[usize]) -> Self {
         self.held = held.to_vec();

@@ -6,6 +6,7 @@ use crate::diagnosis::{Diagnosis, DiagnosisError, DiagnosisOptions, Finding, Tri
 use crate::evidence::{excess, nothing_can_be_stated};
 use crate::fit::Fit;
 use crate::fitter::Fitter;
+use crate::freed::Freed;
 use crate::held_out::Division;
 use crate::location::{Location, located};
 use crate::modal::{ModalJudgement, ModelError, explains};
@@ -52,13 +53,27 @@ pub(crate) fn judged(
         None => within,
     };
     let of = (fixture, options.exact);
+    let freed = || match within.lacks_much(fitter, &within.refitted) {
+        true => Freed::of(fitter, &within),
+        false => None,
+    };
     let Some(modal) = modal.filter(|modal| !modal.needs_nothing()) else {
-        return Ok(by_lines(fitter, within, of, Start::Anew, division));
+        let freed = freed();
+        return Ok(by_lines(fitter, within, of, Start::Anew, division, freed));
     };
     // What explains the lines down to their noise without any error of the model needs none: found among the modes, or, where these are dubious, by a
     // search on lines.
     if let Some(exact) = modal.exact(fitter) {
-        return Ok(by_lines(fitter, within, of, Start::Modes(&modal, exact), division));
+        let freed = freed();
+        return Ok(by_lines(fitter, within, of, Start::Modes(&modal, exact), division, freed));
+    }
+    // Where no error of a usual size explains the modes, few quantities that are wrong may explain the lines.
+    let freed = match modal.verdict {
+        Verdict::Unexplained => freed(),
+        _ => None,
+    };
+    if freed.is_some() {
+        return Ok(by_lines(fitter, within, of, Start::Anew, division, freed));
     }
     let may = modal.is_dubious(fitter) && fitter.observation.work().allows("what lines would find");
     let searched = may.then(|| Search::searched(fitter, within.clone()));
@@ -68,7 +83,7 @@ pub(crate) fn judged(
     let not_in_error = modal.search.best.exact || modal.has_right_modes() || modal.tells_little(fitter);
     if explained || not_in_error {
         let start = searched.map_or(Start::Anew, |search| Start::Searched(Box::new(search)));
-        return Ok(by_lines(fitter, within, of, start, division));
+        return Ok(by_lines(fitter, within, of, start, division, None));
     }
     Ok(by_modes(fitter, within, &modal, division.as_ref()))
 }
@@ -142,6 +157,7 @@ fn by_lines(
     (fixture, exact): (&Fixture, bool),
     start: Start,
     division: Option<Division>,
+    freed: Option<Freed>,
 ) -> Parts {
     let Fitter { observation, settings, .. } = *fitter;
     let seen = |known: Option<&ModalJudgement>| {
@@ -162,10 +178,15 @@ fn by_lines(
         (Start::Anew, Some(part)) => Search::continued(fitter, within, part),
         (Start::Anew, None) => Search::searched(fitter, within),
     };
-    let findings = match nothing_can_be_stated(fitter, &search.repaired, search.candidates.len()) {
-        true => Vec::new(),
-        false => findings(fitter, &mut search),
-    };
+    let freed = freed.filter(|freed| freed.serves_better(fitter, &search));
+    if let Some(freed) = &freed {
+        (search.refitted, search.repaired) = (freed.fit.clone(), freed.fit.clone());
+    }
+    let findings =
+        match freed.is_some() || nothing_can_be_stated(fitter, &search.repaired, search.candidates.len()) {
+            true => Vec::new(),
+            false => findings(fitter, &mut search),
+        };
     let stated = |f: &Finding| f.probability + f.alternatives.iter().map(|(_, p)| p).sum::<f64>();
     // What the best hypotheses leave may say that none of them is right: they would only adapt the model to the recording.
     let doubtful = findings.iter().any(|finding| stated(finding) < settings.evidence.stated);

@@ -14,7 +14,7 @@ mod noise;
 mod tolerances;
 mod two_states;
 
-use jointscope_diagnosis::{Diagnosis, Fit, Verdict};
+use jointscope_diagnosis::{Diagnosis, Fit};
 use jointscope_fixture::Fixture;
 use jointscope_wording::{Remarks, Says};
 
@@ -60,10 +60,7 @@ pub fn diagnosis_page(
     let subject = Subject { diagnosis, fixture };
     let said = diagnosis.findings.iter().map(|finding| finding.says());
     // A quantity far from what is stated is to be looked at even where nothing else is missing.
-    let tone = match diagnosis.verdict {
-        Verdict::Consistent if !diagnosis.departures.is_empty() => Tone::Attention,
-        verdict => verdict.into(),
-    };
+    let tone = if diagnosis.is_only_departed() { Tone::Attention } else { diagnosis.verdict.into() };
     let title = match &diagnosis.baseline {
         None => "Diagnosis: what the fixture leaves out",
         Some(_) => "Diagnosis: what has changed since the baseline",

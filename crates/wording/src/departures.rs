@@ -14,8 +14,10 @@ pub(crate) fn departed(diagnosis: &Diagnosis) -> String {
     let others: Vec<String> = remaining.map(|departure| departure.path.clone()).collect();
     let again = if others.is_empty() { "measure it again" } else { "measure them again" };
     let to_do = match diagnosis.verdict {
-        Verdict::Consistent => again.to_owned(),
-        Verdict::Unexplained => format!("{again}, or take it as a sign of what is left out"),
+        _ if diagnosis.is_only_departed() => again.to_owned(),
+        Verdict::Consistent | Verdict::Unexplained => {
+            format!("{again}, or take it as a sign of what is left out")
+        }
         Verdict::Explained | Verdict::PartlyExplained => {
             format!("{again}, or look for more that is left out, for what was found does not account for it")
         }

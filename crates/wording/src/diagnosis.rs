@@ -1,6 +1,6 @@
 //! A diagnosis in sentences: what is left out, or where what has no name sits and how it goes with frequency.
 
-use crate::departures::{departed, remaining};
+use crate::departures::departed;
 use crate::effects::named_with_size;
 use crate::numbers::{figures, listed, percent, plain, significant};
 use crate::places::variation;
@@ -25,7 +25,7 @@ fn by_noise(diagnosis: &Diagnosis) -> String {
     let [nominal, refitted, repaired] = diagnosis.chi2_per_dof();
     let [_, error_refitted, error_repaired] = diagnosis.nrmse();
     match diagnosis.verdict {
-        Verdict::Consistent if remaining(diagnosis).next().is_some() => format!(
+        Verdict::Unexplained if diagnosis.is_only_departed() => format!(
             "No effect is needed besides: the fixture so changed explains the FRFs down to their noise (χ² per degree of freedom {}, {} \
              before the refit).",
             figures(refitted),

@@ -373,6 +373,7 @@ mod tests {
         assert_eq!((diagnosis.verdict, diagnosis.model_error), (Verdict::Consistent, None));
         says(&diagnosis, &["Nothing is left out", "down to their noise"], &[]);
         diagnosis.departures = vec![departure("bodies/low/mass", 10.4)];
+        diagnosis.verdict = Verdict::Unexplained;
         says(
             &diagnosis,
             &[

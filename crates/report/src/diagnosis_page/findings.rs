@@ -22,7 +22,7 @@ pub(super) fn section(subject: &Subject) -> Section {
                 "None of the effects tried here, at any legal place, makes the error of the model enough smaller: what the refit within the \
                  stated tolerances leaves is as large as such models are usually off by."
             }
-            Verdict::Consistent if !diagnosis.departures.is_empty() => {
+            _ if diagnosis.is_only_departed() => {
                 "None of the effects tried here, at any legal place, earns its parameters; but quantities would have to be far from what is \
                  stated, see the departures below."
             }

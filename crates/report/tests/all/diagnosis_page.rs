@@ -223,6 +223,7 @@ fn a_quantity_far_from_what_is_stated_takes_the_green_tick_away() {
         repaired: 6.97,
         deviations: 10.0,
     }];
+    diagnosis.verdict = Verdict::Unexplained;
     let html = rendered(&diagnosis);
     holds(
         &html,
