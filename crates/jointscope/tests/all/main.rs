@@ -11,3 +11,4 @@ mod model_error;
 mod modes;
 mod real_beam;
 mod stated;
+mod wrong_quantities;
