@@ -70,7 +70,11 @@ impl Outputs {
     pub fn check(&self) -> Result<(), Refusal> {
         for (path, _) in &self.files {
             if let Some(above) = parent(path).ancestors().find(|above| above.exists() && !above.is_dir()) {
-                return Err(Refusal::at(above, "is a file where a directory is needed; choose another `-o`"));
+                let above = above.display();
+                let why = format!(
+                    "cannot be written: {above} is a file where a directory is needed; choose another `-o`"
+                );
+                return Err(Refusal::at(path, why));
             }
             if path.file_name().is_none() || path.is_dir() {
                 return Err(Refusal::at(path, "is a directory where a file is to be written"));

@@ -251,7 +251,7 @@ mod tests {
 
     #[test]
     fn a_usual_error_of_the_model_is_told_by_its_kinds_and_calls_for_no_name() {
-        let usual = error(5e-4, 1e-4, 0.003);
+        let usual = error(5e-4, 0.0, 0.003);
         let diagnosis = judged(Verdict::Consistent, usual, usual);
         assert_eq!(
             diagnosis.says(),
