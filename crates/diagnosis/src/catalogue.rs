@@ -250,7 +250,7 @@ impl At<'_> {
         }
     }
 
-    /// Half-waves of bending along a beam at the highest line, three at least.
+    /// Half-waves of bending along a beam at the highest line, at least as many as make three places.
     fn half_waves(&self, body: usize) -> Option<f64> {
         let BodyKind::Beam(beam) = &self.fixture.bodies()[body].kind else { return None };
         let hz = self.observation.lines().hz();

@@ -33,10 +33,12 @@ impl Departure {
 
 /// Whether a hypothesis takes some stated quantity farther than chance does.
 pub(crate) fn has_departed(hypothesis: &Hypothesis) -> bool {
-    let stated = |(index, tolerance): (usize, &Tolerance)| {
-        tolerance.quantity.std.is_some() && hypothesis.departure(index).abs() > DEPARTED
-    };
-    hypothesis.tolerances().iter().enumerate().any(stated)
+    (0..hypothesis.tolerances().len()).any(|index| departed(hypothesis, index))
+}
+
+/// Whether it does so with one of them.
+pub(crate) fn departed(hypothesis: &Hypothesis, index: usize) -> bool {
+    hypothesis.tolerances()[index].quantity.std.is_some() && hypothesis.departure(index).abs() > DEPARTED
 }
 
 /// Quantities that the refitted or the repaired model took farther from what is stated than chance does, the farthest first.

@@ -1,9 +1,10 @@
 //! How probable it is that a hypothesis is right, against others and against physics that none covers.
 
-use crate::Hypothesis;
 use crate::fit::Fit;
 use crate::fitter::Fitter;
 use crate::penalty::parameter_penalty;
+use crate::settings::Settings;
+use crate::{Hypothesis, Observation};
 
 /// Standard deviations by which χ² per degree of freedom exceeds one, the relative uncertainty of the noise's variances included.
 pub(crate) fn excess(chi2_per_dof: f64, degrees: usize, noise_uncertainty: f64) -> f64 {
@@ -11,9 +12,9 @@ pub(crate) fn excess(chi2_per_dof: f64, degrees: usize, noise_uncertainty: f64) 
 }
 
 /// χ² per degree of freedom up to which a fit leaves no more than noise.
-pub(crate) fn explained(fitter: &Fitter) -> f64 {
-    let (coherence, scatter) = fitter.settings.evidence.explained;
-    if fitter.observation.has_scatter_for_noise() { scatter } else { coherence }
+pub(crate) fn explained(observation: &Observation, settings: &Settings) -> f64 {
+    let (coherence, scatter) = settings.evidence.explained;
+    if observation.has_scatter_for_noise() { scatter } else { coherence }
 }
 
 /// Whether a hypothesis' quantities lie no farther from what is stated than chance takes them.

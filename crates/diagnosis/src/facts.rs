@@ -2,6 +2,7 @@
 
 use crate::departures::{DEPARTED, Departure};
 use crate::diagnosis::{BandShare, Diagnosis, Finding};
+use crate::evidence::explained;
 use crate::fit::Fit;
 use crate::location::{BandMisfit, Location};
 use crate::settings::Settings;
@@ -119,8 +120,7 @@ impl Diagnosis {
 
     /// Whether all that is amiss are quantities far from what is stated: with them there, the FRFs are explained down to their noise.
     pub fn is_only_departed(&self) -> bool {
-        let (coherence, scatter) = Settings::default().evidence.explained;
-        let limit = if self.observation.has_scatter_for_noise() { scatter } else { coherence };
+        let limit = explained(&self.observation, &Settings::default());
         self.verdict == Verdict::Unexplained
             && self.model_error.is_none()
             && self.departures.iter().any(Departure::remains)

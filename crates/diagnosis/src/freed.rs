@@ -4,7 +4,7 @@
 //! another one missing. So the fixture with the quantities that had to depart most set free competes with the effects found: each pays for itself
 //! as an effect does.
 
-use crate::departures::{DEPARTED, has_departed};
+use crate::departures::{departed, has_departed};
 use crate::evidence::deviates_by_chance;
 use crate::fit::Fit;
 use crate::fitter::Fitter;
@@ -31,11 +31,8 @@ impl Freed {
         let mut free: Vec<usize> = Vec::new();
         while free.len() < settings.freed.0 {
             let hypothesis = &best.hypothesis;
-            let departed = |m: &usize| {
-                let stated = hypothesis.tolerances()[*m].quantity.std.is_some();
-                stated && !free.contains(m) && hypothesis.departure(*m).abs() > DEPARTED
-            };
-            let mut farthest: Vec<usize> = (0..hypothesis.tolerances().len()).filter(departed).collect();
+            let bent = |m: &usize| !free.contains(m) && departed(hypothesis, *m);
+            let mut farthest: Vec<usize> = (0..hypothesis.tolerances().len()).filter(bent).collect();
             let distance = |m: usize| hypothesis.departure(m).abs();
             farthest.sort_by(|a, b| distance(*b).total_cmp(&distance(*a)));
             farthest.truncate(settings.freed.1);

@@ -1,7 +1,7 @@
 //! The names of what a search by lines has found: how probable, what else it could be, how large.
 
 use crate::alternatives::{Alternative, alternatives};
-use crate::departures::{Departure, departures};
+use crate::departures::has_departed;
 use crate::diagnosis::Finding;
 use crate::estimates::estimates;
 use crate::evidence::explained;
@@ -13,9 +13,10 @@ use jointscope_fixture::Effect;
 
 /// What a search by lines comes to.
 pub(crate) fn verdict(fitter: &Fitter, search: &Search, findings: &[Finding]) -> Verdict {
-    let fits = search.repaired.chi2_per_dof(fitter.observation) < explained(fitter);
+    let fits =
+        search.repaired.chi2_per_dof(fitter.observation) < explained(fitter.observation, fitter.settings);
     // A quantity far from what is stated is a finding too, if none with a name of its own.
-    let departed = departures(search).iter().any(Departure::remains);
+    let departed = has_departed(&search.repaired.hypothesis);
     match (findings.is_empty(), fits) {
         (true, true) if departed => Verdict::Unexplained,
         (true, true) => Verdict::Consistent,

@@ -165,10 +165,10 @@ fn by_lines(
         blind(&fitter.on(&division.seen), (fixture, exact), known)
     };
     // What sees less goes first where nothing is known, and the whole recording only has to confirm or correct it.
-    let first = if matches!(start, Start::Anew) { seen(None) } else { None };
+    let anew = matches!(start, Start::Anew);
+    let first = if anew { seen(None) } else { None };
     fitter.watch.stage("searching the whole recording");
     let known = if let Start::Modes(modal, _) = &start { Some(*modal) } else { None };
-    let found_anew = matches!(start, Start::Anew);
     let mut search = match (start, &first) {
         (Start::Searched(search), _) => *search,
         (Start::Modes(modal, exact), _) => {
@@ -194,7 +194,7 @@ fn by_lines(
     if findings.is_empty() {
         search.repaired = search.refitted.clone();
     }
-    let blind = if found_anew { first } else { seen(known) };
+    let blind = if anew { first } else { seen(known) };
     let held_out = division.zip(blind).and_then(|(d, blind)| d.judge(&blind, &search, observation));
     let unlikely = chance(observation, &search.refitted).1 < settings.evidence.located;
     let locations = match unlikely && observation.work().allows(PLACES) {

@@ -122,6 +122,14 @@ impl<'a> Judge<'a> {
         objective(&self.observation, predicted, &self.tolerances, &values(fixture))
     }
 
+    /// The same of noise-free FRFs on all lines of the recording.
+    pub fn objective_of_clean(&self, clean: &FrfSet, fixture: &Fixture) -> Option<f64> {
+        // Exactly the lines in use: of many a diagnosis thins out.
+        let (hz, in_use) = (clean.lines().hz(), self.observation.lines().hz());
+        let is_used = |line: usize| in_use.iter().any(|used| (used - hz[line]).abs() <= 1e-6 * hz[line]);
+        Some(self.objective_of(clean.on_lines(is_used)?.all_values(), fixture))
+    }
+
     /// The best fit about a fixture, by the laboratory's own model.
     pub fn best(&self, start: &Fixture) -> Option<Reference> {
         Reference::of(self.believed, start, &self.observation)

@@ -17,6 +17,16 @@ pub enum Instrument {
     AsDescribed,
 }
 
+impl Instrument {
+    /// The effects that it reads through.
+    pub(crate) fn effects(self, fixture: &Fixture) -> &[Effect] {
+        match self {
+            Instrument::Perfect => &[],
+            Instrument::AsDescribed => fixture.physics(),
+        }
+    }
+}
+
 /// Noise-free accelerances of the assembly that `fixture` describes, its structural effects included.
 ///
 /// # Errors
@@ -28,11 +38,7 @@ pub fn frfs(
     instrument: Instrument,
 ) -> Result<FrfSet, StructureError> {
     let structure = Structure::of(fixture)?;
-    let effects = match instrument {
-        Instrument::Perfect => &[],
-        Instrument::AsDescribed => fixture.physics(),
-    };
-    read(&structure, effects, pairs, lines)
+    read(&structure, instrument.effects(fixture), pairs, lines)
 }
 
 /// Noise-free accelerances of a structure, read through the instrumental ones among `effects`.

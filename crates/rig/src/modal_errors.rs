@@ -67,11 +67,7 @@ impl ModalErrors {
         instrument: Instrument,
     ) -> Result<FrfSet, StructureError> {
         let structure = Structure::of(fixture)?;
-        let effects = match instrument {
-            Instrument::Perfect => &[],
-            Instrument::AsDescribed => fixture.physics(),
-        };
-        read(&self.within(fixture, &structure)?, effects, pairs, lines)
+        read(&self.within(fixture, &structure)?, instrument.effects(fixture), pairs, lines)
     }
 
     fn within(&self, fixture: &Fixture, structure: &Structure) -> Result<Structure, StructureError> {

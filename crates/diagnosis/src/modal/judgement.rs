@@ -174,7 +174,7 @@ pub(crate) fn explains(fitter: &Fitter, fit: &Fit, strictly: bool) -> bool {
     let chi2_per_dof = fit.chi2_per_dof(observation);
     let fits = match strictly && !observation.has_scatter_for_noise() {
         true => excess(chi2_per_dof, observation.degrees(), 0.5 * observation.noise_uncertainty()) < 2.0,
-        false => chi2_per_dof < explained(fitter),
+        false => chi2_per_dof < explained(fitter.observation, fitter.settings),
     };
     fits && deviates_by_chance(fitter, &fit.hypothesis)
 }
@@ -307,7 +307,7 @@ impl ModalJudgement {
         let all = singles.chain(&self.search.more).chain([&self.search.best]);
         let all: Vec<&Named> = all.filter(|named| named.exact || by_lines).collect();
         // What will hardly come down to the noise is given up.
-        let noise = explained(fitter) * fitter.observation.degrees() as f64;
+        let noise = explained(fitter.observation, fitter.settings) * fitter.observation.degrees() as f64;
         let explaining = |named: &&Named| {
             let fit = fitter.local(&named.fit.hypothesis, None, noise)?;
             explains(fitter, &fit, !named.exact).then_some(fit)

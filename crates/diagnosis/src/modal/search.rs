@@ -69,10 +69,10 @@ impl Searcher<'_> {
             if count > 1 && best.names.is_empty() && self.is_adequate(&none) {
                 break;
             }
-            if count > 1 && !self.problem.work.allows("several effects together, by modes") {
-                break;
-            }
             if count > 1 {
+                if !self.problem.work.allows("several effects together, by modes") {
+                    break;
+                }
                 self.watch.stage("comparing several effects together by modes");
             }
             let ranked = match count {

@@ -15,7 +15,7 @@ mod tests;
 use super::model_error::{Erring, TrueName, quiet_hammer};
 use super::solid::transverse;
 use super::solid::twin::read;
-use crate::case::effect_value;
+use crate::case::{effect_value, filed_effects};
 use crate::generate::{seed_of, turn};
 use crate::judged::error_on;
 use crate::objective::Judge;
@@ -219,9 +219,7 @@ impl Sealable for AsIsTruth {
 
 impl Filed for AsIsTruth {
     fn from_value(value: &Value) -> Option<Self> {
-        let mut with_hidden = value["lumped"].clone();
-        with_hidden["physics"] = value["right"].clone();
-        let hidden = Fixture::from_value(&with_hidden).ok()?.physics().to_vec();
+        let hidden = filed_effects(&value["lumped"], &value["right"])?;
         Some(AsIsTruth { hidden, ..AsIsTruth::deserialize(value).ok()? })
     }
 }
@@ -256,13 +254,9 @@ impl Judgeable for AsIsTruth {
     fn evidence(&self, case: &Case, answer: &Answer) -> Option<Evidence> {
         let [clean, unseen] = self.frfs().ok()?;
         let judge = Judge::of(case)?;
-        // Exactly the lines in use: of many a diagnosis thins out.
-        let (hz, in_use) = (clean.lines().hz(), judge.observation.lines().hz());
-        let is_used = |line: usize| in_use.iter().any(|used| (used - hz[line]).abs() <= 1e-6 * hz[line]);
-        let used = clean.on_lines(is_used)?;
         let error = |fixture: &Fixture| error_on(&unseen, &self.with_points_apart(fixture)?);
         Some(Evidence {
-            truth: judge.objective_of(used.all_values(), &self.lumped),
+            truth: judge.objective_of_clean(&clean, &self.lumped)?,
             unseen: error(&answer.refitted).zip(error(&answer.repaired)).map(Into::into),
             ..Evidence::of_answer(&judge, answer)?
         })

@@ -26,13 +26,9 @@ impl Judgeable for SolidTruth {
     fn evidence(&self, case: &Case, answer: &Answer) -> Option<Evidence> {
         let [clean, unseen] = self.frfs().ok()?;
         let judge = Judge::of(case)?;
-        // Exactly the lines in use: of many a diagnosis thins out.
-        let (hz, in_use) = (clean.lines().hz(), judge.observation.lines().hz());
-        let is_used = |line: usize| in_use.iter().any(|used| (used - hz[line]).abs() <= 1e-6 * hz[line]);
-        let used = clean.on_lines(is_used)?;
         let error = |fixture: &Fixture| error_on(&unseen, &self.with_points_apart(fixture)?);
         Some(Evidence {
-            truth: judge.objective_of(used.all_values(), &self.lumped),
+            truth: judge.objective_of_clean(&clean, &self.lumped)?,
             lumped: Some(judge.best(&self.lumped)?.objective),
             without: if self.effects().len() == 2 { judge.without_each(&self.lumped) } else { Vec::new() },
             unseen: error(&answer.refitted).zip(error(&answer.repaired)).map(Into::into),

@@ -17,7 +17,7 @@ pub(super) mod twin;
 pub use judged::SolidJudged;
 pub use twin::Shown;
 
-use crate::case::effect_value;
+use crate::case::{effect_value, filed_effects};
 use crate::generate::{drawn_hammer, recorded_lines, seed_of, turn};
 use crate::seal::Sealable;
 use crate::{Case, GenerationError, Judgeable, Role};
@@ -140,9 +140,7 @@ impl SolidTruth {
 
     /// The truth that [`Sealable::to_value`] has written; `None` of anything else.
     pub(crate) fn from_value(value: &Value) -> Option<Self> {
-        let mut with_besides = value["lumped"].clone();
-        with_besides["physics"] = value["besides"].clone();
-        let besides = Fixture::from_value(&with_besides).ok()?.physics().to_vec();
+        let besides = filed_effects(&value["lumped"], &value["besides"])?;
         Some(SolidTruth { besides, ..SolidTruth::deserialize(value).ok()? })
     }
 }
