@@ -22,7 +22,7 @@
 
 use jointscope_linalg::ModalBasis;
 
-/// How the free assembly is damped.
+/// How an assembly is damped.
 #[derive(Debug, Clone, PartialEq)]
 pub enum DampingLaw {
     /// Not at all.
@@ -39,6 +39,30 @@ pub enum DampingLaw {
     },
     /// K(1 + iη) (eq 17).
     LossFactor(f64),
+}
+
+/// Share of a mode's strain energy in supports above which it is a suspension's: a structure hung up for a test moves as rigid at less than a fifth of the
+/// frequency at which it bends.
+const SUSPENDED: f64 = 0.95;
+
+/// A mass-normalised mode of an assembly on supports.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct HeldMode {
+    /// λ_r, (rad/s)².
+    pub eigenvalue: f64,
+    /// Share of its strain energy in supports.
+    pub in_supports: f64,
+    /// What the supports' dashpots do to it, Σ c φ², 1/s.
+    pub dashpots: f64,
+}
+
+/// The places of the modes that have a ratio of their own: not motions as rigid, and not modes of a suspension, in which hardly anything but supports is strained,
+/// unless no mode is any other.
+pub fn elastic_modes(modes: &[HeldMode]) -> Vec<usize> {
+    let moves = |r: &usize| modes[*r].eigenvalue > 0.0;
+    let strains = |r: &usize| modes[*r].in_supports <= SUSPENDED;
+    let elastic: Vec<usize> = (0..modes.len()).filter(moves).filter(strains).collect();
+    if elastic.is_empty() { (0..modes.len()).filter(moves).collect() } else { elastic }
 }
 
 /// Damping of one mass-normalised mode.
@@ -74,6 +98,23 @@ impl DampingLaw {
                 }
             })
             .collect()
+    }
+
+    /// The damping of each mode of an assembly that is tested as it stands on its supports, modes in ascending frequency; what its dashpots contribute to the
+    /// ratios that a test reads is taken off, for they stand in the model themselves.
+    ///
+    /// Ratios are those of the [`elastic_modes`]. Laws other than [`DampingLaw::ModalRatios`] know no supports.
+    pub fn of_held_modes(&self, modes: &[HeldMode]) -> Vec<ModeDamping> {
+        let DampingLaw::ModalRatios(ratios) = self else {
+            return self.of_modes(&modes.iter().map(|mode| mode.eigenvalue).collect::<Vec<_>>());
+        };
+        let mut all = vec![ModeDamping::default(); modes.len()];
+        for (which, r) in elastic_modes(modes).into_iter().enumerate() {
+            let ratio = ratios.get(which).or(ratios.last()).copied().unwrap_or(0.0);
+            let viscous = 2.0 * ratio * modes[r].eigenvalue.sqrt() - modes[r].dashpots;
+            all[r].viscous = viscous.max(0.0);
+        }
+        all
     }
 
     /// The part of the damping that acts on a rigid side of the assembly by itself, 1/s: only a

@@ -159,7 +159,7 @@ impl Twin {
     fn damping(&self) -> Vec<ModeDamping> {
         let law = match self.fixture.damping() {
             Damping::Undamped => DampingLaw::Undamped,
-            Damping::ModalRatios(ratios) => {
+            Damping::ModalRatios { ratios, .. } => {
                 // The list counts transverse modes; the others go with the one before them.
                 let ratio = |at: usize| ratios.get(at).or(ratios.last()).map_or(0.0, |ratio| ratio.value);
                 let mut following = 0;

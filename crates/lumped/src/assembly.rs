@@ -1,4 +1,5 @@
 use crate::effects::{Action, Change, actions};
+use crate::held::{in_the_modes, supports};
 use crate::mesh::{Attachment, Mesh};
 use crate::modes_cache::modes;
 use crate::uniform_beam::{UniformBeam, UnitMesh};
@@ -7,7 +8,7 @@ use jointscope_beam::{
     Matrix4, consistent_mass, consistent_rotary_inertia, element_stiffness, end_stiffness,
     from_end_stiffness, shear_element_stiffness,
 };
-use jointscope_damping::{DampingLaw, ModeDamping, viscous_matrix};
+use jointscope_damping::{DampingLaw, HeldMode, ModeDamping, elastic_modes, viscous_matrix};
 use jointscope_fixture::{BeamBody, Body, BodyKind, Damping, Fixture, Joint, JointLaw};
 use jointscope_linalg::{Matrix2, ModalBasis, RealMatrix2, products};
 use jointscope_spectra::Dof;
@@ -24,8 +25,8 @@ enum Coordinates {
     Beam { first: usize, mesh: Mesh },
 }
 
-/// The free assembly: bodies with their known masses, and joints; no supports, no effects but those that
-/// rebuild a beam body (its shear, its stiffness factor).
+/// The assembly as its modes have it: bodies with their known masses, and joints; the springs of supports where damping ratios are those of the assembly as it
+/// stands, otherwise none; no effects but those that rebuild a beam body (its shear, its stiffness factor).
 ///
 /// Coordinates are (y, θ) of each rigid body's centre of gravity, y of a body that does not rotate, and
 /// (y, θ) of every node of a beam, in the order of the fixture's bodies.
@@ -37,6 +38,7 @@ pub struct Assembly {
     stiffness: Vec<f64>,
     basis: ModalBasis,
     damping: Vec<ModeDamping>,
+    elastic: Vec<usize>,
     law: DampingLaw,
 }
 
@@ -48,15 +50,25 @@ impl Assembly {
     pub fn new(fixture: &Fixture, highest_hz: f64) -> Result<Self, LumpedError> {
         let places = coordinates(fixture, highest_hz)?;
         let order = places.iter().map(Coordinates::count).sum();
-        if let Some((beam, first)) = free_beam(fixture, &places) {
+        let free_beam = if in_the_modes(fixture) { None } else { free_beam(fixture, &places) };
+        if let Some((beam, first)) = free_beam {
             return Assembly::of_free_beam(fixture, places, order, beam, &first);
         }
         let plain = Matrices::of(fixture, &places, order, false);
         let basis = modes(order, &plain.mass, &plain.stiffness)?;
         let law = damping_law(fixture.damping());
-        let damping = law.of_modes(basis.eigenvalues());
-        let assembly =
-            Assembly { order, places, mass: plain.mass, stiffness: plain.stiffness, basis, damping, law };
+        let mut assembly = Assembly {
+            order,
+            places,
+            mass: plain.mass,
+            stiffness: plain.stiffness,
+            basis,
+            damping: Vec::new(),
+            elastic: Vec::new(),
+            law,
+        };
+        let held = assembly.held_modes(fixture);
+        (assembly.damping, assembly.elastic) = (assembly.law.of_held_modes(&held), elastic_modes(&held));
         if actions(fixture).any(|action| matches!(action, Action::OnBeam { .. })) {
             assembly.rebuilt(fixture)
         } else {
@@ -107,7 +119,17 @@ impl Assembly {
             (modes.basis, damping)
         };
         let with = Matrices::of(fixture, &places, order, true);
-        Ok(Assembly { order, places, mass: with.mass, stiffness: with.stiffness, basis, damping, law })
+        let elastic = (0..order).filter(|&r| basis.eigenvalues()[r] > 0.0).collect();
+        Ok(Assembly {
+            order,
+            places,
+            mass: with.mass,
+            stiffness: with.stiffness,
+            basis,
+            damping,
+            elastic,
+            law,
+        })
     }
 
     /// The assembly with the effects that rebuild a beam body. Its viscous matrix stays that of the
@@ -126,6 +148,20 @@ impl Assembly {
             .map(|(&viscous, eigenvalue)| ModeDamping { viscous, structural: structural * eigenvalue })
             .collect();
         Ok(Assembly { mass: with.mass, stiffness: with.stiffness, basis, damping, ..self })
+    }
+
+    /// The modes with what supports are to them; nothing where no mode holds supports.
+    fn held_modes(&self, fixture: &Fixture) -> Vec<HeldMode> {
+        let eigenvalues = self.basis.eigenvalues().iter();
+        let mut modes: Vec<HeldMode> =
+            eigenvalues.map(|&eigenvalue| HeldMode { eigenvalue, in_supports: 0.0, dashpots: 0.0 }).collect();
+        for held in supports(fixture).filter(|_| in_the_modes(fixture)) {
+            for (mode, motion) in modes.iter_mut().zip(self.participation(&held.station)) {
+                mode.in_supports += held.stiffness * motion * motion / mode.eigenvalue.max(f64::MIN_POSITIVE);
+                mode.dashpots += held.damping * motion * motion;
+            }
+        }
+        modes
     }
 
     /// φᵀ C φ of every shape of `basis`: C = Σ v_r (Mξ_r)(Mξ_r)ᵀ over this assembly's own modes.
@@ -170,12 +206,17 @@ impl Assembly {
         &self.damping
     }
 
-    /// Undamped natural frequencies of the free assembly in Hz, ascending; rigid motions are exactly zero.
+    /// Undamped natural frequencies in Hz, ascending; motions of a free assembly as rigid are exactly zero.
     pub fn natural_frequencies_hz(&self) -> Vec<f64> {
         self.basis.eigenvalues().iter().map(|l| l.max(0.0).sqrt() / TAU).collect()
     }
 
-    /// How the free assembly is damped.
+    /// The modes that have a damping ratio of their own, by place: not those as rigid, nor those of a suspension.
+    pub fn elastic_modes(&self) -> &[usize] {
+        &self.elastic
+    }
+
+    /// How the assembly is damped.
     pub fn damping_law(&self) -> &DampingLaw {
         &self.law
     }
@@ -326,7 +367,9 @@ pub fn nominal_stiffness(law: &JointLaw, length: f64) -> RealMatrix2 {
 pub(crate) fn damping_law(damping: &Damping) -> DampingLaw {
     match damping {
         Damping::Undamped => DampingLaw::Undamped,
-        Damping::ModalRatios(ratios) => DampingLaw::ModalRatios(ratios.iter().map(|r| r.value).collect()),
+        Damping::ModalRatios { ratios, .. } => {
+            DampingLaw::ModalRatios(ratios.iter().map(|r| r.value).collect())
+        }
         Damping::Rayleigh { mass, stiffness } => {
             DampingLaw::Rayleigh { mass: mass.value, stiffness: stiffness.value }
         }
@@ -349,6 +392,15 @@ impl Matrices {
         }
         for joint in fixture.joints() {
             all.add_joint(fixture, joint, places);
+        }
+        for held in supports(fixture).filter(|_| in_the_modes(fixture)) {
+            let mut row = vec![0.0; order];
+            places[held.station.body].read(held.station.x, held.station.dof, &mut row);
+            for i in (0..order).filter(|&i| row[i] != 0.0) {
+                for j in 0..order {
+                    all.stiffness[i * order + j] += row[i] * held.stiffness * row[j];
+                }
+            }
         }
         all
     }

@@ -39,6 +39,7 @@ mod bar;
 mod chain;
 mod effects;
 mod far_modes;
+mod held;
 mod joint;
 mod joint_element;
 mod lanes;

@@ -2,9 +2,10 @@
 
 use crate::Station;
 use crate::effects::{Action, actions};
+use crate::held::{Held, in_the_modes, supports};
 use crate::joint::{JointDynamics, TwoEnds};
 use crate::lanes::Lines;
-use jointscope_fixture::{Dof, Fixture};
+use jointscope_fixture::Fixture;
 use jointscope_linalg::ComplexMatrix2;
 use num_complex::Complex64;
 
@@ -86,24 +87,18 @@ impl TermStation {
 impl Terms {
     pub fn of(fixture: &Fixture, flexible: &[bool]) -> Self {
         let mut all = Terms::default();
-        for support in fixture.supports() {
-            let (body, x) = fixture.support_place(support);
-            let springs = [
-                (Dof::Translation, support.stiffness.value, support.damping),
-                (
-                    Dof::Rotation,
-                    support.rotational_stiffness.map_or(0.0, |q| q.value),
-                    support.rotational_damping,
-                ),
-            ];
-            for (dof, stiffness, damping) in springs {
-                let damping = damping.map_or(0.0, |q| q.value);
-                if stiffness != 0.0 || damping != 0.0 {
-                    all.point(
-                        TermStation::single(Station { body, x, dof }),
-                        PointLaw::Spring { stiffness, damping },
-                    );
-                }
+        let in_the_modes = in_the_modes(fixture);
+        for Held { station, stiffness, damping } in supports(fixture) {
+            let motion = TermStation::single(station);
+            let bends = flexible[station.body];
+            // The modes hold a spring by the body's rigid motion alone.
+            if in_the_modes && bends {
+                let held = PointLaw::Spring { stiffness: -stiffness, damping: 0.0 };
+                all.point(TermStation { rigid_only: true, ..motion }, held);
+            }
+            let stiffness = if in_the_modes && !bends { 0.0 } else { stiffness };
+            if stiffness != 0.0 || damping != 0.0 {
+                all.point(motion, PointLaw::Spring { stiffness, damping });
             }
         }
         for joint in fixture.joints() {

@@ -1,6 +1,6 @@
-//! Measured damping ratios into a fixture: measured modes matched with the elastic modes of the free assembly.
+//! Measured damping ratios into a fixture: measured modes matched with the modes of the assembly as it stands.
 
-use jointscope_fixture::{Damping, Fixture, FixtureError, Quantity, Spread};
+use jointscope_fixture::{Damping, Fixture, FixtureError, Quantity, RatiosOf, Spread};
 use jointscope_lumped::{Assembly, LumpedError, Station};
 use jointscope_modes::{ExpectedMode, Matches, ModalAnalysis, match_modes};
 use jointscope_spectra::Channel;
@@ -60,9 +60,15 @@ pub fn measured_damping(
 ) -> Result<MeasuredDamping, MeasuredDampingError> {
     let hz = analysis.lines().hz();
     let highest = BEYOND * hz[hz.len() - 1];
-    let assembly = Assembly::new(fixture, highest)?;
+    let stated = match fixture.damping() {
+        Damping::ModalRatios { ratios, of: RatiosOf::AsItStands } => ratios.clone(),
+        _ => Vec::new(),
+    };
+    let as_it_stands = |ratios| Damping::ModalRatios { ratios, of: RatiosOf::AsItStands };
+    let assembly = Assembly::new(&fixture.clone().with_damping(as_it_stands(stated.clone()))?, highest)?;
+    let by_law = Assembly::new(fixture, highest)?.damping_law().of_modes(assembly.modes().eigenvalues());
     let frequencies = assembly.natural_frequencies_hz();
-    let elastic: Vec<usize> = (0..assembly.order()).filter(|&r| frequencies[r] > 0.0).collect();
+    let elastic = assembly.elastic_modes();
     let shown = elastic.iter().filter(|&&r| frequencies[r] <= highest).count();
     let participation = |channel: &Channel| -> Result<Vec<f64>, MeasuredDampingError> {
         let point = fixture.point(&channel.point);
@@ -75,7 +81,7 @@ pub fn measured_damping(
         .collect();
     for pair in analysis.pairs() {
         let (response, reference) = (participation(&pair.response)?, participation(&pair.reference)?);
-        for (mode, &r) in expected.iter_mut().zip(&elastic) {
+        for (mode, &r) in expected.iter_mut().zip(elastic) {
             mode.products.push(response[r] * reference[r]);
         }
     }
@@ -92,15 +98,11 @@ pub fn measured_damping(
     };
     let mean = matches.pairs.iter().map(|pair| analysis.modes[pair.measured].damping_ratio).sum::<f64>()
         / matches.pairs.len() as f64;
-    let stated = match fixture.damping() {
-        Damping::ModalRatios(ratios) => ratios.clone(),
-        _ => Vec::new(),
-    };
     let believed = |e: usize| {
         if let Some(ratio) = stated.get(e).or(stated.last()) {
             return *ratio;
         }
-        let (r, damping) = (elastic[e], assembly.mode_damping()[elastic[e]]);
+        let (r, damping) = (elastic[e], by_law[elastic[e]]);
         let omega = std::f64::consts::TAU * frequencies[r];
         let ratio = 0.5 * (damping.viscous / omega + damping.structural / (omega * omega));
         if ratio > 0.0 { Quantity::bare(ratio) } else { Quantity { value: mean, spread: Spread::Unknown } }
@@ -112,7 +114,7 @@ pub fn measured_damping(
         })
         .collect();
     let remarks = remarks(analysis, &matches, &elastic_hz, last);
-    let fixture = fixture.clone().with_damping(Damping::ModalRatios(ratios))?;
+    let fixture = fixture.clone().with_damping(as_it_stands(ratios))?;
     Ok(MeasuredDamping { fixture, matches, elastic: elastic_hz, remarks })
 }
 

@@ -263,7 +263,8 @@ fn assemble(truth: &Fixture, strip: &BeamElement, layers: &[Layer; 2]) -> Result
         left = right;
     }
     layers[1].assemble(&mut assembly, &b.rigidly_at(x3), &left);
-    add_viscous(&mut assembly, &firm, truth.damping())?;
+    // Free: it has no supports.
+    add_viscous(&mut assembly, &firm, &firm, truth.damping())?;
 
     let (x1, x4) = (point("1")?, point("4")?);
     let points =

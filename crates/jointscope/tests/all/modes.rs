@@ -27,7 +27,9 @@ fn the_ratios_of_a_synthesized_test_go_back_into_its_fixture_without_a_file() {
     let analysis = ModalAnalysis::of(&frfs, &ModesOptions::default()).unwrap();
     let undamped = fixture.clone().with_damping(Damping::Undamped).unwrap();
     let measured = measured_damping(&undamped, &analysis).unwrap();
-    let Damping::ModalRatios(ratios) = measured.fixture.damping() else { panic!("ratios were measured") };
+    let Damping::ModalRatios { ratios, .. } = measured.fixture.damping() else {
+        panic!("ratios were measured")
+    };
     for (ratio, truth) in ratios.iter().zip([0.003, 0.0045]) {
         assert!((ratio.value / truth - 1.0).abs() < 1e-4, "{ratio:?} of {truth}");
     }
@@ -50,7 +52,9 @@ fn a_band_that_holds_the_second_mode_alone_leaves_the_first_ratio_as_it_was() {
     let analysis = ModalAnalysis::of(&frfs, &options).unwrap();
     let believed = Fixture::from_json(&BLOCKS.replace("[0.003, 0.0045]", "[0.007]")).unwrap();
     let measured = measured_damping(&believed, &analysis).unwrap();
-    let Damping::ModalRatios(ratios) = measured.fixture.damping() else { panic!("ratios were measured") };
+    let Damping::ModalRatios { ratios, .. } = measured.fixture.damping() else {
+        panic!("ratios were measured")
+    };
     assert_eq!(ratios[0].value, 0.007);
     assert!((ratios[1].value / 0.0045 - 1.0).abs() < 1e-3, "{:?}", ratios[1]);
     assert!(measured.remarks.iter().any(|r| r.contains("not measured")), "{:?}", measured.remarks);

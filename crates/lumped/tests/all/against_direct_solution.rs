@@ -2,7 +2,7 @@
 //! dynamic stiffness matrix by another library.
 
 use jointscope_beam::element_stiffness;
-use jointscope_fixture::Fixture;
+use jointscope_fixture::{Damping, Fixture, RatiosOf};
 use jointscope_lumped::{Assembly, Model, Station};
 use nalgebra::{Complex, DMatrix};
 use num_complex::Complex64;
@@ -26,7 +26,7 @@ fn add(z: &mut DMatrix<Complex64>, row: &[f64], value: Complex64) {
     }
 }
 
-/// The dense dynamic stiffness of the fixture without its effects: free assembly by its matrices, supports added by hand.
+/// The dense dynamic stiffness of the fixture without its effects: the assembly by its matrices, what they do not hold of supports added by hand.
 fn dynamic_stiffness(fixture: &Fixture, assembly: &Assembly, hz: f64) -> DMatrix<Complex64> {
     let n = assembly.order();
     let omega = TAU * hz;
@@ -37,12 +37,15 @@ fn dynamic_stiffness(fixture: &Fixture, assembly: &Assembly, hz: f64) -> DMatrix
         let re = k - omega * omega * assembly.mass()[i * n + j];
         Complex::new(re, omega * viscous[i * n + j] + structural * k)
     });
+    // Ratios of the assembly as it stands belong to matrices that hold the springs.
+    let held = matches!(fixture.damping(), Damping::ModalRatios { of: RatiosOf::AsItStands, .. });
+    let spring = |stiffness: f64| if held { 0.0 } else { stiffness };
     for support in fixture.supports() {
         let (body, x) = fixture.support_place(support);
         let damping = support.damping.map_or(0.0, |d| d.value);
         let row = assembly.station_row(&Station::transverse(body, x));
-        add(&mut z, &row, Complex::new(support.stiffness.value, omega * damping));
-        let turning = support.rotational_stiffness.map_or(0.0, |d| d.value);
+        add(&mut z, &row, Complex::new(spring(support.stiffness.value), omega * damping));
+        let turning = spring(support.rotational_stiffness.map_or(0.0, |d| d.value));
         add(&mut z, &assembly.station_row(&Station::rotational(body, x)), Complex::new(turning, 0.0));
     }
     z
@@ -75,6 +78,8 @@ fn direct(fixture: &Fixture, outputs: &[Station], inputs: &[Station], hz: f64) -
 fn damping() -> impl Strategy<Value = String> {
     prop_oneof![
         (1e-3f64..0.03, 1e-3f64..0.03).prop_map(|(a, b)| format!(r#"{{"modal_ratios": [{a}, {b}]}}"#)),
+        (1e-3f64..0.03, 1e-3f64..0.03)
+            .prop_map(|(a, b)| format!(r#"{{"modal_ratios": [{a}, {b}], "of": "free"}}"#)),
         (0.0f64..5.0, 1e-6f64..1e-4)
             .prop_map(|(a, b)| format!(r#"{{"rayleigh": {{"mass": {a}, "stiffness": {b}}}}}"#)),
         (1e-3f64..0.05).prop_map(|a| format!(r#"{{"loss_factor": {a}}}"#)),
@@ -123,6 +128,96 @@ proptest! {
             }
         }
     }
+}
+
+/// Three storeys of 2, 2 and 1.5 kg on columns of 300, 250 and 200 kN/m.
+fn frame(of: &str, dashpot: f64) -> Fixture {
+    Fixture::from_json(&format!(
+        r#"{{ "bodies": {{ "F1": {{"mass": 2.0, "rotates": false}}, "F2": {{"mass": 2.0, "rotates": false}}, "F3": {{"mass": 1.5, "rotates": false}} }},
+             "points": {{ "1": {{"body": "F1", "x": 0.2}}, "2": {{"body": "F2", "x": 0.4}}, "3": {{"body": "F3", "x": 0.6}} }},
+             "joints": {{ "S2": {{"from": "1", "to": "2", "stiffness": [[2.5e5, 0], [0, 0]]}}, "S3": {{"from": "2", "to": "3", "stiffness": [[2e5, 0], [0, 0]]}} }},
+             "supports": {{ "S1": {{"point": "1", "stiffness": 3e5, "damping": {dashpot}}} }},
+             "damping": {{ "modal_ratios": [0.008, 0.011, 0.015]{of} }} }}"#
+    ))
+    .unwrap()
+}
+
+#[test]
+fn the_modes_of_a_frame_on_its_columns_have_the_ratios_that_its_fixture_states() {
+    let mass = [2.0_f64, 2.0, 1.5];
+    let stiffness = DMatrix::from_row_slice(3, 3, &[5.5e5, -2.5e5, 0.0, -2.5e5, 4.5e5, -2e5, 0.0, -2e5, 2e5]);
+    // K of coordinates √m·y, whose eigenvectors are the mass-normalised shapes times √m.
+    let scaled = DMatrix::from_fn(3, 3, |i, j| stiffness[(i, j)] / (mass[i] * mass[j]).sqrt());
+    let eigen = scaled.symmetric_eigen();
+    let mut order = [0, 1, 2];
+    order.sort_by(|&a, &b| eigen.eigenvalues[a].total_cmp(&eigen.eigenvalues[b]));
+    for dashpot in [0.0, 6.0] {
+        let mut viscous = DMatrix::<f64>::zeros(3, 3);
+        for (r, ratio) in order.into_iter().zip([0.008, 0.011, 0.015]) {
+            let shape = |i: usize| eigen.eigenvectors[(i, r)] / mass[i].sqrt();
+            // A test reads what the dashpot to ground does too.
+            let rest = 2.0 * ratio * eigen.eigenvalues[r].sqrt() - dashpot * shape(0) * shape(0);
+            assert!(rest > 0.0);
+            for (i, j) in (0..3).flat_map(|i| (0..3).map(move |j| (i, j))) {
+                viscous[(i, j)] += mass[i] * shape(i) * rest * shape(j) * mass[j];
+            }
+        }
+        viscous[(0, 0)] += dashpot;
+        let fixture = frame("", dashpot);
+        let model = Model::new(&fixture, 200.0).unwrap();
+        let (top, first) = (Station::transverse(2, 0.6), Station::transverse(0, 0.2));
+        let mut receptances = model.receptances(&[top], &[first]);
+        for hz in [10.0, 25.4, 61.0, 62.0, 90.0, 130.0] {
+            let omega = TAU * hz;
+            let z = DMatrix::from_fn(3, 3, |i, j| {
+                let inertia = if i == j { omega * omega * mass[i] } else { 0.0 };
+                Complex::new(stiffness[(i, j)] - inertia, omega * viscous[(i, j)])
+            });
+            let expected = z.try_inverse().unwrap()[(2, 0)];
+            let mut found = [Complex64::ZERO];
+            assert!(receptances.at(Complex64::new(0.0, omega), &mut found));
+            assert!((found[0] - expected).norm() < 1e-10 * expected.norm(), "{hz} Hz: {found:?}, {expected}");
+        }
+    }
+}
+
+#[test]
+fn ratios_of_the_free_frame_leave_its_first_mode_on_the_columns_hardly_damped() {
+    let ratio = |fixture: &Fixture| {
+        let free = Assembly::new(fixture, 200.0).unwrap();
+        free.mode_damping()[0].viscous
+    };
+    assert_eq!(ratio(&frame(r#", "of": "free""#, 0.0)), 0.0);
+    assert!(ratio(&frame("", 0.0)) > 1.0);
+}
+
+#[test]
+fn modes_of_a_soft_suspension_use_up_no_damping_ratio() {
+    let hung = |supports: &str| {
+        let fixture = Fixture::from_json(&format!(
+            r#"{{ "bodies": {{ "A": {{"mass": 1.1, "inertia": 9.5e-4, "x_cg": -0.03}}, "B": {{"mass": 1.1, "inertia": 9.5e-4, "x_cg": 0.095}} }},
+                 "points": {{ "1": {{"body": "A", "x": -0.06}}, "2": {{"body": "A", "x": 0}}, "3": {{"body": "B", "x": 0.065}}, "4": {{"body": "B", "x": 0.125}} }},
+                 "joints": {{ "J": {{"from": "2", "to": "3", "beam": {{"youngs_modulus": 2.07e11, "second_moment": 3.67e-10}} }} }},
+                 {supports} "damping": {{ "modal_ratios": [0.002, 0.003] }} }}"#
+        ));
+        Assembly::new(&fixture.unwrap(), 1000.0).unwrap()
+    };
+    let free = hung("");
+    let soft = hung(
+        r#""supports": { "L": {"point": "1", "stiffness": 500, "damping": 0.5}, "R": {"point": "4", "stiffness": 500} },"#,
+    );
+    assert_eq!(free.elastic_modes(), [2, 3]);
+    assert_eq!(soft.elastic_modes(), [2, 3]);
+    let omega = |assembly: &Assembly, r: usize| assembly.modes().eigenvalues()[r].sqrt();
+    for r in [2, 3] {
+        let (free, soft) = (
+            free.mode_damping()[r].viscous / omega(&free, r),
+            soft.mode_damping()[r].viscous / omega(&soft, r),
+        );
+        // All but what the suspension's own dashpot does.
+        assert!(soft < free && soft > 0.9 * free, "{soft}, {free}");
+    }
+    assert_eq!(soft.mode_damping()[0].viscous, 0.0);
 }
 
 #[test]

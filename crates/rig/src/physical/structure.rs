@@ -38,9 +38,11 @@ impl Structure {
             });
         }
         let meshes = meshes(fixture);
-        let (free, _) = free_assembly(fixture, &meshes, &[])?;
+        let (free, plain) = free_assembly(fixture, &meshes, &[])?;
+        let mut standing = free.clone();
+        add_supports(&mut standing, fixture, &plain)?;
         let (mut assembly, bodies) = free_assembly(fixture, &meshes, effects)?;
-        add_viscous(&mut assembly, &free, fixture.damping())?;
+        add_viscous(&mut assembly, &free, &standing, fixture.damping())?;
         add_supports(&mut assembly, fixture, &bodies)?;
         for effect in effects {
             attach(&mut assembly, fixture, &bodies, effect)?;

@@ -99,7 +99,7 @@ mod tests {
     #[test]
     fn a_pole_has_the_ratio_that_the_fixture_states_where_nothing_is_left_out() {
         let (_, truth) = SolidTruth::draw(1, 1, 1).unwrap();
-        let jointscope_fixture::Damping::ModalRatios(stated) = truth.lumped.damping() else {
+        let jointscope_fixture::Damping::ModalRatios { ratios: stated, .. } = truth.lumped.damping() else {
             panic!("ratios")
         };
         let structure = jointscope_rig::Structure::of(&truth.lumped).unwrap();
