@@ -2,8 +2,9 @@ use crate::Observation;
 use crate::freedom::parameters_of;
 use jointscope_fixture::{
     Effect, Fixture, FixtureError, Motion, NamedQuantity, Nature, ParameterSpec, QuantityKey, QuantityOwner,
+    SizeLaw,
 };
-use jointscope_inference::{Parameter, Transform};
+use jointscope_inference::{Covariance, Parameter, Transform};
 use jointscope_lumped::{Instrument, LumpedError, accelerances};
 use jointscope_spectra::FrfPair;
 use num_complex::Complex64;
@@ -262,6 +263,44 @@ impl Hypothesis {
     /// How each parameter of effect `index` moves, those that stay included.
     pub(crate) fn effect_parameters_of(&self, index: usize) -> &[Parameter] {
         &self.effects[index].1
+    }
+
+    /// The coordinates that are at a bound.
+    pub(crate) fn stopped(&self) -> Vec<usize> {
+        let at_bound = |(at, parameter): (&f64, &Parameter)| *at <= parameter.low || *at >= parameter.high;
+        let all = self.coordinates.iter().zip(self.parameters.iter()).enumerate();
+        all.filter(|(_, pair)| at_bound(*pair)).map(|(index, _)| index).collect()
+    }
+
+    /// How many standard deviations the size of effect `index`, or that of its dashpot, is from nothing.
+    pub(crate) fn deviations_of(&self, index: usize, covariance: &Covariance) -> f64 {
+        let (effect, parameters) = &self.effects[index];
+        let size = &effect.kind.spec().size;
+        let mut at = self.range_of(index).start;
+        let mut most = 0.0_f64;
+        for (place, parameter) in parameters.iter().enumerate() {
+            if !parameter.is_free() {
+                continue;
+            }
+            let (coordinate, std) = (self.coordinates[at], covariance.std(at));
+            at += 1;
+            let none = match size.law {
+                SizeLaw::FromOne if place == size.parameter => 1.0,
+                _ => 0.0,
+            };
+            let is_size = place == size.parameter || Some(place) == size.dashpot;
+            let deviations = match parameter.transform {
+                _ if !is_size => continue,
+                // The size is the parameter, or a power of it: its relative deviation is that of the logarithm, or a multiple.
+                Transform::Logarithmic { scale, .. } if none == 0.0 => (std * scale).recip(),
+                transform => {
+                    let nothing = transform.coordinate(none).unwrap_or(0.0);
+                    ((coordinate - nothing) / std).abs()
+                }
+            };
+            most = most.max(deviations);
+        }
+        most
     }
 
     /// The fixture at the present quantities, its own effects and the fitted ones in its `physics`.

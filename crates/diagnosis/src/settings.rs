@@ -147,6 +147,8 @@ pub struct ModalSettings {
     pub effects: usize,
     /// Odds that an effect must gain beyond those of one among all candidates.
     pub odds: f64,
+    /// Standard deviations that the size of an effect must be from nothing, the model's errors as large as they may well be.
+    pub least: f64,
     /// ln p below the best at which a name is no longer listed: probability below 0.03 %.
     pub listed: f64,
     /// Sizes of errors as multiples of what is usual, and departures of quantities in standard deviations, up to which a fit is adequate.
@@ -164,6 +166,8 @@ pub struct ModalSettings {
     pub company: f64,
     /// ln p below the best at which a name is not tried on lines: e⁻⁵⁰ as probable.
     pub told: f64,
+    /// Starts that compare other modes than their base, at the most.
+    pub apart: usize,
     /// Multiple of the usual sizes by which starts are scored that compare other modes than their base.
     pub wide: f64,
     /// Standard deviation, in coordinates, within which a start's own parameters count as linear when it is scored.
@@ -182,6 +186,7 @@ impl Default for ModalSettings {
             blind: 8,
             effects: 3,
             odds: 100.0,
+            least: 3.0,
             listed: 8.0,
             adequate: (2.0, 4.0),
             exact: 5.0,
@@ -190,6 +195,7 @@ impl Default for ModalSettings {
             unlisted: (-3.5, -0.7),
             company: 1.6,
             told: 50.0,
+            apart: 24,
             wide: 5.0,
             near: 0.7,
         }

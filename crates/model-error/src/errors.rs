@@ -94,6 +94,8 @@ pub struct Comparison {
     pub(crate) noise: Vec<f64>,
     /// By kind, the covariance for a size of one: the entries that are not zero, by their place in the matrix.
     pub(crate) kinds: Vec<Vec<(usize, f64)>>,
+    /// What errors of a shape at both channels of an FRF make together, for a size of one each: of residues' real parts, and of their imaginary parts.
+    both: [Vec<(usize, f64)>; 2],
 }
 
 impl Comparison {
@@ -119,6 +121,7 @@ impl Comparison {
         let noise = (0..n * n).map(entry).collect();
         let mut kinds = vec![vec![0.0; n * n]; KINDS];
         let matched = pairing.pairs.len();
+        let mut both = [Vec::new(), Vec::new()];
         for k in 0..matched {
             kinds[0][2 * k * (n + 1)] = 1.0;
             kinds[1][(2 * k + 1) * (n + 1)] = 1.0;
@@ -135,6 +138,11 @@ impl Comparison {
             };
             let first = 2 * matched + 2 * k * frfs;
             for a in 0..frfs {
+                // Near a node of a channel the product of both errors is all there is.
+                let product = (size * rms).powi(2);
+                for (part, both) in both.iter_mut().enumerate() {
+                    both.push(((first + 2 * a + part) * (n + 1), product));
+                }
                 for b in 0..frfs {
                     let (o, i) = shapes.frfs[a];
                     let mut shared = by_channel(a, o) * by_channel(b, o);
@@ -173,7 +181,7 @@ impl Comparison {
         }
         let entries =
             |kind: Vec<f64>| kind.into_iter().enumerate().filter(|(_, value)| *value != 0.0).collect();
-        Comparison { places, noise, kinds: kinds.into_iter().map(entries).collect() }
+        Comparison { places, noise, kinds: kinds.into_iter().map(entries).collect(), both }
     }
 
     /// Recorded features less those of the model: ln ω and ln ζ of the paired modes, their residues FRF by FRF, then all residual terms. Residues and
@@ -211,10 +219,19 @@ impl Comparison {
     /// S = noise + Σ size²·kind, row-major: the covariance of the features of a model whose error has these sizes.
     pub fn covariance(&self, sizes: &ErrorSizes) -> Vec<f64> {
         let mut sum = self.noise.clone();
+        self.add_errors(sizes, &mut sum);
+        sum
+    }
+
+    /// Adds the covariance that errors of these sizes make, row-major, to `sum`.
+    pub(crate) fn add_errors(&self, sizes: &ErrorSizes, sum: &mut [f64]) {
         for (kind, size) in self.kinds.iter().zip(sizes.to_array()) {
             kind.iter().for_each(|&(place, value)| sum[place] += size * size * value);
         }
-        sum
+        let (shape, quadrature) = (sizes.shape.powi(2), sizes.quadrature.powi(2));
+        for (both, size) in self.both.iter().zip([shape * shape, 2.0 * shape * quadrature]) {
+            both.iter().for_each(|&(place, value)| sum[place] += size * value);
+        }
     }
 }
 

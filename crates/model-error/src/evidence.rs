@@ -215,11 +215,7 @@ impl<'a> Density<'a> {
 
     fn ln(&mut self, sizes: &ErrorSizes) -> Option<f64> {
         self.covariance.copy_from_slice(&self.fixed);
-        for (kind, size) in self.comparison.kinds.iter().zip(sizes.to_array()) {
-            for &(place, value) in kind {
-                self.covariance[place] += size * size * value;
-            }
-        }
+        self.comparison.add_errors(sizes, &mut self.covariance);
         let n = self.comparison.count();
         let factor = Cholesky::of(n, &self.covariance)?;
         self.white.copy_from_slice(self.difference);

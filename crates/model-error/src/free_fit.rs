@@ -37,6 +37,13 @@ pub(crate) struct FreeFit {
     chi2: f64,
 }
 
+/// The columns whose coefficients make up mass line and upper residual. Modes too low to be told from a mass line, a suspension's, are a part of it: what they and
+/// the residual term by itself are no recording tells apart, what they are together it tells well.
+fn residual_columns(modes: &[RecordedMode], poles: usize) -> [Vec<usize>; 2] {
+    let low = modes.iter().enumerate().filter(|(_, mode)| !mode.resolved).map(|(r, _)| r);
+    [low.chain([poles + MASS_LINE]).collect(), vec![poles + UPPER]]
+}
+
 /// One FRF at given poles.
 struct FrfFit {
     projection: Projection,
@@ -191,8 +198,11 @@ impl FreeFit {
                 RecordedMode { pole: self.poles[r], scale, residues, resolved }
             })
             .collect();
-        let term = |k: usize| self.fits.iter().map(move |f| f.coefficients[all + k].re).collect::<Vec<f64>>();
-        let terms = [term(MASS_LINE), term(UPPER)];
+        let sum = |columns: Vec<usize>| -> Vec<f64> {
+            let of_frf = |f: &FrfFit| columns.iter().map(|&c| f.coefficients[c].re).sum();
+            self.fits.iter().map(of_frf).collect()
+        };
+        let terms = residual_columns(&recorded, all).map(sum);
         let residual_scales = [0, 1].map(|k| scale(&terms[k]).max(f64::MIN_POSITIVE));
         let chi2_per_dof = self.chi2_per_dof(recording);
         let covariance = self.covariance(&recorded, &residual_scales, chi2_per_dof.max(1.0))?;
@@ -215,25 +225,26 @@ impl FreeFit {
         let count = 2 * m + 2 * m * frfs + 2 * frfs;
         let order = 2 * all;
         let of_poles = Cholesky::of(order, &self.information)?.inverse();
-        // Each feature as (FRF, coefficient, imaginary part or not, scale); poles stand for themselves.
-        let residue = |r: usize, frf: usize, im: bool| (frf, r, im, modes[r].scale);
+        // Each feature as (FRF, coefficients of which it is the sum, imaginary part or not, scale); poles stand for themselves.
+        let residue = |r: usize, frf: usize, im: bool| (frf, vec![r], im, modes[r].scale);
+        let [mass_line, upper] = residual_columns(modes, all);
         let mut told = Vec::new();
         for r in 0..m {
             told.extend((0..frfs).flat_map(|frf| [residue(r, frf, false), residue(r, frf, true)]));
         }
         for frf in 0..frfs {
-            told.push((frf, all + MASS_LINE, false, scales[0]));
-            told.push((frf, all + UPPER, false, scales[1]));
+            told.push((frf, mass_line.clone(), false, scales[0]));
+            told.push((frf, upper.clone(), false, scales[1]));
         }
         // How each feature moves with the poles.
         let mut with_poles = vec![0.0; count * order];
         for k in 0..2 * m {
             with_poles[k * order + k] = 1.0;
         }
-        for (k, &(frf, coefficient, im, scale)) in told.iter().enumerate() {
-            for (p, change) in self.fits[frf].sensitivity.iter().enumerate() {
-                let change = change[coefficient];
-                with_poles[(2 * m + k) * order + p] = if im { change.im } else { change.re } / scale;
+        for (k, (frf, columns, im, scale)) in told.iter().enumerate() {
+            for (p, change) in self.fits[*frf].sensitivity.iter().enumerate() {
+                let change: Complex64 = columns.iter().map(|&c| change[c]).sum();
+                with_poles[(2 * m + k) * order + p] = if *im { change.im } else { change.re } / scale;
             }
         }
         let mut moved = vec![0.0; count * order];
@@ -255,10 +266,12 @@ impl FreeFit {
             }
         }
         let own: Vec<Vec<Complex64>> = self.fits.iter().map(|f| f.projection.covariance()).collect();
-        for (i, &(frf, a, im_a, scale_a)) in told.iter().enumerate() {
-            for (j, &(other, b, im_b, scale_b)) in told.iter().enumerate() {
+        for (i, (frf, of_a, im_a, scale_a)) in told.iter().enumerate() {
+            for (j, (other, of_b, im_b, scale_b)) in told.iter().enumerate() {
                 if frf == other {
-                    let entry = own[frf][a * self.fits[frf].projection.columns() + b];
+                    let columns = self.fits[*frf].projection.columns();
+                    let pairs = of_a.iter().flat_map(|a| of_b.iter().map(move |b| a * columns + b));
+                    let entry: Complex64 = pairs.map(|place| own[*frf][place]).sum();
                     let part = match (im_a, im_b) {
                         (false, false) | (true, true) => entry.re,
                         (true, false) => entry.im,

@@ -174,7 +174,13 @@ impl ModelledModes {
             }
             let coefficients = recorded.outline.projections[frf].coefficients(values);
             let term = |k: usize| coefficients[recorded_poles + k].re;
-            residual_terms.push([term(MASS_LINE), term(UPPER)]);
+            // Modes too low to be told from a mass line are a part of it, on both sides.
+            let low =
+                modes.iter().filter(inside).filter(|mode| mode.pole.omega <= TAU * recorded.resolved_from);
+            let low: f64 = low.map(|mode| mode.residues[frf].re).sum();
+            let unresolved = recorded.modes.iter().zip(&coefficients).filter(|(mode, _)| !mode.resolved);
+            let leaked: f64 = unresolved.map(|(_, leak)| leak.re).sum();
+            residual_terms.push([term(MASS_LINE) + low + leaked, term(UPPER)]);
             leaks.push(coefficients[..recorded.outline.inside].to_vec());
         }
         Some(ModelledModes { modes, residual_terms, leaks })

@@ -69,6 +69,31 @@ impl ModalFit {
     }
 }
 
+impl ModalFit {
+    /// Covariance of the coordinates of the linear model where an error has these sizes.
+    pub fn covariance_at(&self, sizes: &ErrorSizes) -> Option<Covariance> {
+        let comparison = &self.standing.comparison;
+        let factor = Cholesky::of(comparison.count(), &comparison.covariance(sizes))?;
+        let white = |slope: &Vec<f64>| {
+            let mut white = slope.clone();
+            factor.solve_lower_in_place(&mut white);
+            white
+        };
+        let white: Vec<Vec<f64>> = self.linear.slopes.iter().map(white).collect();
+        let order = white.len();
+        let entry = |e: usize| {
+            let own = if e / order == e % order { 1.0 } else { 0.0 };
+            own + dot(&white[e / order], &white[e % order])
+        };
+        let information: Vec<f64> = (0..order * order).map(entry).collect();
+        let mut entries = Cholesky::of(order, &information)?.inverse();
+        for (e, entry) in entries.iter_mut().enumerate() {
+            *entry *= self.priors[e / order].std * self.priors[e % order].std;
+        }
+        Some(Covariance::new(order, entries))
+    }
+}
+
 impl<'a> Problem<'a> {
     /// What is known of the sizes of the error beforehand.
     pub fn prior(&self) -> SizePrior {
@@ -146,10 +171,9 @@ impl<'a> Problem<'a> {
             point = end.point;
             // The evidence of a linear model is by derivatives taken where the fit ended.
             let fresh = descent.derivatives(&point, Precision::Rough)?;
-            let linear = linear(&point.hypothesis, &priors, &point.residual, &fresh);
-            derivatives = Some(fresh);
             let known = best.as_ref().map(|fit| &fit.evidence.sizes);
-            let evidence = linear.evidence(&standing.comparison, self.prior(), known)?;
+            let (linear, evidence) = self.evidence(&point, &priors, &fresh, (&standing.comparison, known))?;
+            derivatives = Some(fresh);
             let ln = evidence.ln + standing.pairing.alone();
             let before = best.as_ref().map_or(f64::NEG_INFINITY, |fit| fit.ln);
             sizes = evidence.sizes;
@@ -179,6 +203,35 @@ impl<'a> Problem<'a> {
             }
         }
         best
+    }
+
+    /// The linear model at a point and its evidence. Of a coordinate that stopped at its bound the linear model knows no bound: a spring that would be negative does
+    /// not explain what only a negative one explains. The lesser evidence counts, with such coordinates free or where they are.
+    fn evidence(
+        &self,
+        point: &Iterate,
+        priors: &[Prior],
+        slopes: &[Vec<f64>],
+        (comparison, known): (&Comparison, Option<&ErrorSizes>),
+    ) -> Option<(Linear, Evidence)> {
+        let of = |linear: Linear| {
+            let evidence = linear.evidence(comparison, self.prior(), known)?;
+            Some((linear, evidence))
+        };
+        let free = of(linear(&point.hypothesis, priors, &point.residual, slopes))?;
+        let stopped = point.hypothesis.stopped();
+        if stopped.is_empty() {
+            return Some(free);
+        }
+        let mut slopes = slopes.to_vec();
+        stopped.iter().for_each(|&index| slopes[index].fill(0.0));
+        let mut held = of(linear(&point.hypothesis, priors, &point.residual, &slopes))?;
+        let pull = |&index: &usize| {
+            let prior = priors[index];
+            0.5 * ((point.hypothesis.coordinates[index] - prior.mean) / prior.std).powi(2)
+        };
+        held.1.ln -= stopped.iter().map(pull).sum::<f64>();
+        Some(if held.1.ln < free.1.ln { held } else { free })
     }
 
     /// The most probable parameters at given sizes of the error, with the covariance of their coordinates.

@@ -228,12 +228,16 @@ impl Judge<'_> {
         if hopeless && !self.searcher.calibrated && !(best.names.is_empty() && adequate) {
             return Verdict::Unexplained;
         }
-        let squares = |fit: &ModalFit| self.searcher.relative_sizes(fit).iter().map(|s| s * s).sum::<f64>();
+        let squares = |sizes: Vec<f64>| sizes.iter().map(|s| s * s).sum::<f64>();
+        // Errors of the model, or these and those of the records' gains: a channel of the wrong sign looks like gains that are off by all they are.
+        let model = |fit: &ModalFit| squares(self.searcher.relative_sizes(fit));
+        let all = |fit: &ModalFit| squares(self.searcher.relative_sizes_with_gains(fit));
+        let halves = || model(&best.fit) < 0.5 * model(none) || all(&best.fit) < 0.5 * all(none);
         match (best.names.is_empty(), adequate) {
             (true, true) => Verdict::Consistent,
             (true, false) => Verdict::Unexplained,
             (false, true) => Verdict::Explained,
-            (false, false) if squares(&best.fit) < 0.5 * squares(none) => Verdict::PartlyExplained,
+            (false, false) if halves() => Verdict::PartlyExplained,
             (false, false) => Verdict::Unexplained,
         }
     }

@@ -11,6 +11,14 @@ use jointscope_model_error::{ErrorSizes, Linear};
 /// Standard deviation, in stated ones, that a calibrated quantity keeps.
 const CALIBRATED: f64 = 1e-4;
 
+/// ln of a start's density.
+enum Score {
+    /// With the derivatives of its base.
+    Alike(f64),
+    /// Without any: it compares other modes than its base.
+    Apart(f64),
+}
+
 /// Name of what a search may not come to any more.
 const STARTS: &str = "the less promising effects, by modes";
 
@@ -80,7 +88,10 @@ impl Searcher<'_> {
                 2 => self.pairs(&singles),
                 _ => self.extended(&best, self.settings.refined.1),
             };
-            let Some(first) = ranked.first() else { break };
+            let Some(first) = ranked.iter().take(self.settings.tried).find(|named| self.is_told(named))
+            else {
+                break;
+            };
             if count > 1 {
                 more.extend(ranked.iter().take(self.settings.bases.0).cloned());
             }
@@ -148,10 +159,24 @@ impl Searcher<'_> {
             all.retain(|other| other.names.last() != Some(&own));
             all.push(Named { names: vec![own], fit: best.fit.clone(), exact: best.exact });
             all.sort_by(|a, b| b.fit.ln.total_cmp(&a.fit.ln));
-            all.retain(|other| best.fit.ln - other.fit.ln < self.settings.listed);
+            all.retain(|other| {
+                let close = best.fit.ln - other.fit.ln < self.settings.listed;
+                other.names.last() == Some(&own) || (close && self.is_told(other))
+            });
             (all, without)
         };
         (0..count).map(of).unzip()
+    }
+
+    /// Whether the size of every effect is told from nothing, the model's errors as large as they may well be: with few modes the most probable errors are
+    /// none, and whatever fits them exactly seems to be needed.
+    fn is_told(&self, named: &Named) -> bool {
+        let fit = &named.fit;
+        let sizes = fit.linear.mean_sizes(&fit.standing.comparison, self.problem.prior(), &fit.evidence);
+        let Some(covariance) = fit.covariance_at(&sizes) else { return false };
+        let least = self.settings.least;
+        (0..fit.hypothesis.effect_count())
+            .all(|index| fit.hypothesis.deviations_of(index, &covariance) >= least)
     }
 
     /// Whether what a fit needs of errors and departures is no more than chance makes.
@@ -179,9 +204,18 @@ impl Searcher<'_> {
     /// Sizes of the errors as multiples of what is usual, or of what is stated: the sizes that the recording asks for.
     /// Gains are the test's, not the model's.
     pub fn relative_sizes(&self, fit: &ModalFit) -> Vec<f64> {
-        let none = ErrorSizes { gain: 0.0, ..self.problem.seen(fit).sizes };
+        let without = ErrorSizes { gain: 0.0, ..self.problem.seen(fit).sizes };
+        self.over_usual(&without)
+    }
+
+    /// The same with the gains of records among them.
+    pub fn relative_sizes_with_gains(&self, fit: &ModalFit) -> Vec<f64> {
+        self.over_usual(&self.problem.seen(fit).sizes)
+    }
+
+    fn over_usual(&self, sizes: &ErrorSizes) -> Vec<f64> {
         let usual = self.problem.sizes.to_array();
-        none.to_array().iter().zip(usual).map(|(size, usual)| size / usual).collect()
+        sizes.to_array().iter().zip(usual).map(|(size, usual)| size / usual).collect()
     }
 
     /// Fits of `base` with one effect more, the most probable first.
@@ -207,12 +241,12 @@ impl Searcher<'_> {
             .collect();
         let tried = self.watch.count(starts.len());
         let work = self.problem.work;
-        let mut scored: Vec<(f64, usize, Hypothesis)> = work.each(starts, STARTS, |(c, s, b)| {
+        let scored: Vec<(Score, usize, Hypothesis)> = work.each(starts, STARTS, |(c, s, b)| {
             tried.trying(&self.candidates[c]);
             let hypothesis = bases[b].with(self.candidates[c].effect(s));
             Some((self.score(&hypothesis, &base.fit)?, c, hypothesis))
         });
-        scored.sort_by(|a, b| b.0.total_cmp(&a.0));
+        let scored = self.rescored(scored);
         let mut taken = vec![0; self.candidates.len()];
         let mut chosen = Vec::new();
         for (_, c, hypothesis) in scored {
@@ -255,8 +289,44 @@ impl Searcher<'_> {
         fits
     }
 
+    /// Starts by their density, the highest first. Those that compare other modes than their base, of which the base's derivatives say nothing, are compared with the
+    /// others by their own derivatives, the best of them; the rest are behind all others.
+    fn rescored(&self, scored: Vec<(Score, usize, Hypothesis)>) -> Vec<(f64, usize, Hypothesis)> {
+        let (mut alike, mut apart) = (Vec::new(), Vec::new());
+        for (score, c, hypothesis) in scored {
+            match score {
+                Score::Alike(density) => alike.push((density, c, hypothesis)),
+                Score::Apart(density) => apart.push((density, c, hypothesis)),
+            }
+        }
+        let by_density = |all: &mut Vec<(f64, usize, Hypothesis)>| all.sort_by(|a, b| b.0.total_cmp(&a.0));
+        by_density(&mut apart);
+        apart.truncate(self.settings.apart);
+        let anew = self.problem.work.each(apart, STARTS, |(_, c, hypothesis)| {
+            Some((self.score_by_itself(&hypothesis)?, c, hypothesis))
+        });
+        alike.extend(anew);
+        by_density(&mut alike);
+        alike
+    }
+
+    /// The density at a start by derivatives taken there.
+    fn score_by_itself(&self, hypothesis: &Hypothesis) -> Option<f64> {
+        let problem = &self.problem;
+        let standing = problem.standing(hypothesis)?;
+        let residual = problem.residual(&standing, &standing.modelled);
+        let own = |at: &f64| Prior { mean: *at, std: self.settings.near };
+        let mut local: Vec<Prior> = hypothesis.coordinates.iter().map(own).collect();
+        let tolerances = self.priors(self.nominal, &[]);
+        local[..tolerances.len()].copy_from_slice(&tolerances);
+        let all = 0..local.len();
+        let slopes = problem.slopes(hypothesis, &standing, &standing.modelled, &residual, &local, all)?;
+        let linear = linear(hypothesis, &local, &residual, &slopes);
+        Some(linear.ln_density(&standing.comparison, problem.sizes)? + standing.pairing.alone())
+    }
+
     /// The density of the recorded features with one more effect at a start, everything else linear about `base`.
-    fn score(&self, hypothesis: &Hypothesis, base: &ModalFit) -> Option<f64> {
+    fn score(&self, hypothesis: &Hypothesis, base: &ModalFit) -> Option<Score> {
         let problem = &self.problem;
         let standing = problem.standing(hypothesis)?;
         let residual = problem.residual(&standing, &standing.modelled);
@@ -265,11 +335,11 @@ impl Searcher<'_> {
             // Derivatives of the base are of other features: none at all, and errors so much larger.
             let linear = Linear { difference: residual, slopes: Vec::new() };
             let wide = problem.sizes.times(self.settings.wide);
-            return Some(linear.ln_density(&standing.comparison, &wide)? + alone);
+            return Some(Score::Apart(linear.ln_density(&standing.comparison, &wide)? + alone));
         }
         let slopes = self.slopes(hypothesis, &standing, &residual, base)?;
         let linear = linear(hypothesis, &self.local_priors(hypothesis, base), &residual, &slopes);
-        Some(linear.ln_density(&standing.comparison, problem.sizes)? + alone)
+        Some(Score::Alike(linear.ln_density(&standing.comparison, problem.sizes)? + alone))
     }
 
     /// Priors of the base, and of what it does not have a factor of two about where it stands.
