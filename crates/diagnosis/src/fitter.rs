@@ -72,6 +72,28 @@ impl<'a, const FIXED: bool> LeastSquares for Problem<'a, FIXED> {
         self.fitter.iterate(at.hypothesis.stepped(&step))
     }
 
+    fn shortened(&self, at: &Iterate, equations: &NormalEquations, share: f64) -> Option<Iterate> {
+        let step = equations.bounded_step(0.0, &at.hypothesis.coordinates, at.hypothesis.parameters())?;
+        let step: Vec<f64> = step.iter().map(|step| share * step).collect();
+        self.fitter.iterate(at.hypothesis.stepped(&step))
+    }
+
+    fn corrected(
+        &self,
+        at: &Iterate,
+        from: &Iterate,
+        [own, equations]: [&NormalEquations; 2],
+        share: f64,
+    ) -> Option<Iterate> {
+        let step = |equations: &NormalEquations, at: &Iterate| {
+            equations.bounded_step(0.0, &at.hypothesis.coordinates, at.hypothesis.parameters())
+        };
+        let (here, before) = (step(own, at)?, step(equations, from)?);
+        let across: Vec<f64> =
+            here.iter().zip(&before).map(|(here, before)| here - (1.0 - share) * before).collect();
+        self.fitter.iterate(at.hypothesis.stepped(&across))
+    }
+
     fn promised(&self, at: &Iterate, equations: &NormalEquations) -> f64 {
         equations.promised(&at.hypothesis.coordinates, at.hypothesis.parameters())
     }
@@ -139,6 +161,7 @@ impl<'a> Fitter<'a> {
             exact_at_end: whole,
             limit: (whole && limit.objective.is_finite()).then_some(limit),
             valleys: if whole { own.valleys } else { 0 },
+            bent: if whole { own.bent } else { 0.0 },
             ..Default::default()
         };
         let Iterate { hypothesis, predicted, linear } = at;

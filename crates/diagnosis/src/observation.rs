@@ -62,7 +62,7 @@ impl Observation {
                 level.push(values[near].iter().map(|v| v.norm_sqr()).sum::<f64>() / count);
             }
         }
-        let from_scatter = !noise.is_empty() && noise.iter().all(|source| *source == NoiseSource::Scatter);
+        let from_scatter = !noise.is_empty() && noise.iter().all(|source| source.is_by_scatter());
         let drift = if from_scatter { Drift::of(&frfs) } else { None };
         let whole =
             Observation { frfs, weight, level, noise, recorded_lines: n, drift, work: Arc::default() };
@@ -168,7 +168,7 @@ impl Observation {
 
     /// Whether some FRF's noise is told by nothing but the scatter of its lines.
     pub(crate) fn has_scatter_for_noise(&self) -> bool {
-        self.noise.contains(&NoiseSource::Scatter)
+        self.noise.iter().any(|source| source.is_by_scatter())
     }
 
     /// Measured values, FRF after FRF.
@@ -230,7 +230,7 @@ impl Observation {
     /// Relative uncertainty of the noise's variances: those from coherence are smoothed over lines, those from scatter rest on the lines
     /// nearby alone.
     pub(crate) fn noise_uncertainty(&self) -> f64 {
-        if self.noise.contains(&NoiseSource::Scatter) { SCATTER_UNCERTAINTY } else { COHERENCE_UNCERTAINTY }
+        if self.has_scatter_for_noise() { SCATTER_UNCERTAINTY } else { COHERENCE_UNCERTAINTY }
     }
 
     /// Correlation of the normalised residuals of neighbouring lines.

@@ -43,6 +43,28 @@ pub trait LeastSquares {
     /// The point that a step with the given relative damping leads to; `None` where there is none.
     fn stepped(&self, point: &Self::Point, equations: &Self::Equations, damping: f64) -> Option<Self::Point>;
 
+    /// The point at a share of an undamped step; `None` where there is none. Needed for [`Settings::bent`].
+    fn shortened(
+        &self,
+        _point: &Self::Point,
+        _equations: &Self::Equations,
+        _share: f64,
+    ) -> Option<Self::Point> {
+        None
+    }
+
+    /// From `at`, to which [`LeastSquares::shortened`] led from another point: moved across the valley by what an undamped step from here differs from what is left of
+    /// the first one; `None` where there is none. The equations are those of both points, from the same derivatives.
+    fn corrected(
+        &self,
+        _at: &Self::Point,
+        _from: &Self::Point,
+        _equations: [&Self::Equations; 2],
+        _share: f64,
+    ) -> Option<Self::Point> {
+        None
+    }
+
     /// Decrease of the objective that an undamped step promises where the model follows its derivatives. Needed for
     /// [`Settings::limit`] and [`Settings::valleys`].
     fn promised(&self, _point: &Self::Point, _equations: &Self::Equations) -> f64 {
@@ -97,6 +119,14 @@ pub struct Limit {
     pub reach: f64,
 }
 
+impl Limit {
+    /// Whether a fit that stands at `objective` will not reach the limit by what its derivatives promise. Along a bent valley they promise little of what there is, so
+    /// within reach no promise is too small.
+    fn is_out_of_reach(&self, objective: f64, promised: f64) -> bool {
+        objective - self.promises * promised > self.objective && objective - self.objective > self.reach
+    }
+}
+
 /// How a descent goes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Settings {
@@ -116,6 +146,9 @@ pub struct Settings {
     pub exact_at_end: bool,
     /// Objective to be reached, for one fit among many.
     pub limit: Option<Limit>,
+    /// Share of what an undamped step promises below which a step with new derivatives follows a bent valley: then shares of the undamped step are tried, which
+    /// goes along the valley where damping goes hardly anywhere. Zero tries none.
+    pub bent: f64,
     /// How often an undamped step is tried where the damped ones gain little of what is promised, as along a flat valley.
     pub valleys: usize,
 }
@@ -132,6 +165,7 @@ impl Default for Settings {
             trust_old: false,
             exact_at_end: false,
             limit: None,
+            bent: 0.0,
             valleys: 0,
         }
     }
@@ -185,13 +219,22 @@ pub fn descend<P: LeastSquares>(
         let equations = problem.equations(&point, &derivatives, &weights);
         let promised = if fresh { problem.promised(&point, &equations) } else { 0.0 };
         if let Some(limit) = settings.limit.filter(|_| fresh)
-            && (before - limit.promises * promised > limit.objective || pace.is_too_slow(before, &limit))
+            && (limit.is_out_of_reach(before, promised) || pace.is_too_slow(before, &limit))
         {
             objective = before;
             break;
         }
         let attempts = if fresh { usize::MAX } else { ATTEMPTS_WITH_OLD };
         let next = lower(problem, &point, (&equations, &weights, before), (&mut damping, attempts), settings);
+        let gained = next.as_ref().map_or(0.0, |(_, after)| before - after);
+        let needs = settings.convergence.needed(before);
+        // A fit far from what it competes with follows no valley.
+        let near = settings.limit.is_none_or(|limit| before - limit.objective <= limit.reach);
+        let bent = fresh && near && promised > VALLEY * needs && gained < settings.bent * promised;
+        let start = (&point, &equations, &derivatives, &weights);
+        let along = if bent { along_valley(problem, start, before - gained) } else { None };
+        let followed = along.is_some();
+        let next = along.or(next);
         let stepped = next.is_some();
         if let Some((next, after)) = next {
             (point, objective) = (next, after);
@@ -213,7 +256,7 @@ pub fn descend<P: LeastSquares>(
             (fresh, least_gain) = (true, 0.0);
             continue;
         }
-        let slow = gain < least_gain.max(needed) || settings.reuse.is_none();
+        let slow = followed || gain < least_gain.max(needed) || settings.reuse.is_none();
         if fresh {
             least_gain = settings.reuse.map_or(0.0, |share| (share * gain).max(needed));
         }
@@ -255,6 +298,36 @@ fn lower<P: LeastSquares>(
         }
     }
     None
+}
+
+/// Shares of an undamped step that are tried in turn.
+const SHARES: [f64; 4] = [1.0, 0.4, 0.15, 0.05];
+
+/// The point beside the way of an undamped step that lowers the objective below `than`, the lowest of those tried.
+///
+/// What a share α of the step does across a bent valley grows as α², and its cost as α⁴: damped steps creep. One more step from there, by the same derivatives, takes
+/// that back but for what grows as α³ (the geodesic acceleration of Transtrum & Sethna, arXiv:1201.5885, by a finite step).
+fn along_valley<P: LeastSquares>(
+    problem: &P,
+    (point, equations, derivatives, weights): (&P::Point, &P::Equations, &P::Derivatives, &P::Weights),
+    than: f64,
+) -> Option<(P::Point, f64)> {
+    let mut best: Option<(P::Point, f64)> = None;
+    for share in SHARES {
+        let next = problem.shortened(point, equations, share).and_then(|there| {
+            let own = problem.equations(&there, derivatives, weights);
+            problem.corrected(&there, point, [&own, equations], share)
+        });
+        let Some(next) = next else { continue };
+        let after = problem.objective(&next, weights);
+        let lowest = best.as_ref().map_or(than, |(_, lowest)| *lowest);
+        if after < lowest {
+            best = Some((next, after));
+        } else if best.is_some() {
+            break;
+        }
+    }
+    best
 }
 
 /// How fast a fit comes nearer to its limit, from one set of derivatives to the next.

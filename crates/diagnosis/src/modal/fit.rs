@@ -57,6 +57,8 @@ const ROUNDS: usize = 4;
 const CONVERGED: f64 = 0.02;
 /// Gauss–Newton steps, at most.
 const STEPS: usize = 40;
+/// Share of what an undamped step promises below which a fit follows a bent valley.
+const BENT: f64 = 0.1;
 /// A step that gains less than this share of what the first one with its derivatives gained asks for new ones.
 const REUSE: f64 = 0.2;
 
@@ -259,6 +261,7 @@ fn settings() -> Settings {
         damping: Damping { initial: 1e-6, decrease: 0.1, least: 1e-9, raised: 1e-3, most: 1e5 },
         convergence: Convergence { gain: CONVERGED, share: 1e-4, floor: 0.0 },
         reuse: Some(REUSE),
+        bent: BENT,
         trust_old: true,
         ..Settings::default()
     }
@@ -280,7 +283,19 @@ struct Descent<'a> {
     priors: &'a [Prior],
 }
 
+/// The step that the equations at a point ask for, within its bounds.
+fn step(equations: &NormalEquations, point: &Iterate, damping: f64) -> Option<Vec<f64>> {
+    equations.bounded_step(damping, &point.hypothesis.coordinates, point.hypothesis.parameters())
+}
+
 impl Descent<'_> {
+    fn moved(&self, point: &Iterate, step: &[f64]) -> Option<Iterate> {
+        let hypothesis = point.hypothesis.stepped(step);
+        let modelled = self.problem.modelled(&hypothesis, &point.modelled)?;
+        let residual = self.problem.residual(self.standing, &modelled);
+        Some(Iterate { hypothesis, residual, modelled })
+    }
+
     fn whitened(&self, values: &[f64]) -> Vec<f64> {
         let mut white = values.to_vec();
         self.factor.solve_lower_in_place(&mut white);
@@ -331,12 +346,29 @@ impl LeastSquares for Descent<'_> {
     }
 
     fn stepped(&self, point: &Iterate, equations: &NormalEquations, damping: f64) -> Option<Iterate> {
-        let hypothesis = &point.hypothesis;
-        let step = equations.bounded_step(damping, &hypothesis.coordinates, hypothesis.parameters())?;
-        let hypothesis = hypothesis.stepped(&step);
-        let modelled = self.problem.modelled(&hypothesis, &point.modelled)?;
-        let residual = self.problem.residual(self.standing, &modelled);
-        Some(Iterate { hypothesis, residual, modelled })
+        self.moved(point, &step(equations, point, damping)?)
+    }
+
+    fn shortened(&self, point: &Iterate, equations: &NormalEquations, share: f64) -> Option<Iterate> {
+        let step: Vec<f64> = step(equations, point, 0.0)?.iter().map(|step| share * step).collect();
+        self.moved(point, &step)
+    }
+
+    fn corrected(
+        &self,
+        at: &Iterate,
+        from: &Iterate,
+        [own, equations]: [&NormalEquations; 2],
+        share: f64,
+    ) -> Option<Iterate> {
+        let (here, before) = (step(own, at, 0.0)?, step(equations, from, 0.0)?);
+        let across: Vec<f64> =
+            here.iter().zip(&before).map(|(here, before)| here - (1.0 - share) * before).collect();
+        self.moved(at, &across)
+    }
+
+    fn promised(&self, point: &Iterate, equations: &NormalEquations) -> f64 {
+        equations.promised(&point.hypothesis.coordinates, point.hypothesis.parameters())
     }
 }
 
