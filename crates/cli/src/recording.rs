@@ -24,13 +24,35 @@ pub struct RecordingArguments {
     /// Units of response and force where a file states none, such as g,lbf.
     #[arg(long, value_name = "RESPONSE,FORCE", value_parser = AssumedUnits::parse)]
     pub assume_units: Option<AssumedUnits>,
+    /// Number of averages of every FRF, where the files do not state it: with it, coherence tells the noise.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    pub averages: Option<u32>,
+    /// Leave coherences aside, and take the noise from the scatter over the lines.
+    #[arg(long)]
+    pub ignore_coherence: bool,
 }
 
 impl RecordingArguments {
+    /// Files that say all that there is to know of them.
+    pub fn plain(files: Vec<PathBuf>) -> Self {
+        RecordingArguments {
+            files,
+            map: Vec::new(),
+            assume_units: None,
+            averages: None,
+            ignore_coherence: false,
+        }
+    }
+
     /// The arguments as options of the reading.
     pub fn options(&self) -> Result<ReadOptions, Refusal> {
         let map = ChannelMap::parse(&self.map).map_err(Refusal::new)?;
-        Ok(ReadOptions { map, assume_units: self.assume_units.clone() })
+        Ok(ReadOptions {
+            map,
+            assume_units: self.assume_units.clone(),
+            averages: self.averages,
+            ignore_coherence: self.ignore_coherence,
+        })
     }
 
     /// Other files, read alike.
@@ -143,6 +165,8 @@ mod tests {
                 files: vec![self.0.join(file)],
                 map: map.iter().map(|entry| entry.to_string()).collect(),
                 assume_units: None,
+                averages: None,
+                ignore_coherence: false,
             };
             let path = self.0.join("one.json");
             fs::write(&path, FIXTURE).unwrap();

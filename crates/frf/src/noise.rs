@@ -16,9 +16,48 @@ pub enum NoiseSource {
     /// Coherence and number of averages of the recording.
     #[serde(rename = "coherence and averages")]
     Coherence,
+    /// Coherence, with a number of averages that scatter tells: files seldom state it.
+    #[serde(rename = "coherence, averages by scatter")]
+    CoherenceAlone,
     /// The scatter of the FRF about its course from line to line.
     #[serde(rename = "scatter over the lines")]
     Scatter,
+}
+
+impl NoiseSource {
+    /// Whether the size of the noise is told by the scatter of the FRF, which is known to a fifth or so.
+    pub fn is_by_scatter(self) -> bool {
+        self != NoiseSource::Coherence
+    }
+
+    /// What it is, in a few words.
+    pub fn says(self) -> &'static str {
+        match self {
+            NoiseSource::Coherence => "coherence and averages",
+            NoiseSource::CoherenceAlone => "coherence, averages by scatter",
+            NoiseSource::Scatter => "scatter over the lines",
+        }
+    }
+}
+
+/// Averages that a recording may have.
+const AVERAGES: (f64, f64) = (1.5, 1000.0);
+
+/// The number of averages with which a coherence states the noise that the scatter over the lines shows; `None` where they do not go together.
+fn averages_by_scatter(hz: &[f64], values: &[Complex64], coherence: &[f64]) -> Option<u32> {
+    let scatter = from_scatter(hz, values);
+    // One less than the averages, line by line: (1 − γ²)/γ²·|H|² over the variance.
+    let stated = of_lines(values, coherence, 2);
+    let told =
+        stated.iter().zip(&scatter).zip(coherence).filter(|(_, gamma2)| **gamma2 > 0.0 && **gamma2 < 1.0);
+    let mut ratios: Vec<f64> = told.map(|((stated, scatter), _)| stated / scatter).collect();
+    if ratios.len() < FEWEST.max(coherence.len() / 2) {
+        return None;
+    }
+    let middle = ratios.len() / 2;
+    let median = *ratios.select_nth_unstable_by(middle, f64::total_cmp).1;
+    let averages = 1.0 + median;
+    (AVERAGES.0..AVERAGES.1).contains(&averages).then(|| averages.round() as u32)
 }
 
 /// Half-width of the window, in lines, within which the noise is taken as constant.
@@ -56,6 +95,12 @@ pub fn with_variances(frfs: &FrfSet) -> Result<(FrfSet, Vec<NoiseSource>), Spect
             (Some(coherence), Some(averages)) => {
                 (from_coherence(&values, coherence, averages), NoiseSource::Coherence)
             }
+            (Some(coherence), None) => match averages_by_scatter(frfs.lines().hz(), &values, coherence) {
+                Some(averages) if frfs.averages(index).is_none() => {
+                    (from_coherence(&values, coherence, averages), NoiseSource::CoherenceAlone)
+                }
+                _ => (from_scatter(frfs.lines().hz(), &values), NoiseSource::Scatter),
+            },
             _ => (from_scatter(frfs.lines().hz(), &values), NoiseSource::Scatter),
         };
         variance.extend(estimate.iter().zip(&scale).map(|(v, s)| v / (s * s)));

@@ -69,6 +69,7 @@ fn frfs(analysis: &ModalAnalysis, names: &[String]) -> Value {
         let terms = &analysis.residual_terms[index];
         let noise = analysis.noise.get(index).map(|noise| match noise {
             NoiseSource::Coherence => "coherence",
+            NoiseSource::CoherenceAlone => "coherence, averages by scatter",
             NoiseSource::Scatter => "scatter",
         });
         json!({

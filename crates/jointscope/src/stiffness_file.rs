@@ -1,5 +1,4 @@
 use jointscope_decomposition::{Analysis, Compliance, InterfaceStiffness, JointLine, MatrixAverage};
-use jointscope_frf::noise::NoiseSource;
 use jointscope_linalg::RealMatrix2;
 use serde_json::{Map, Value, json};
 
@@ -127,13 +126,7 @@ fn recording(analysis: &Analysis) -> Value {
         .pairs()
         .iter()
         .zip(&analysis.noise)
-        .map(|(pair, source)| {
-            let source = match source {
-                NoiseSource::Coherence => "coherence and averages",
-                NoiseSource::Scatter => "scatter over the lines",
-            };
-            (pair.to_string(), json!(source))
-        })
+        .map(|(pair, source)| (pair.to_string(), json!(source.says())))
         .collect();
     json!({
         "used": used,

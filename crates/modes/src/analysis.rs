@@ -107,7 +107,7 @@ impl ModalAnalysis {
         let condensed = observed.condensed(&start.poles);
         let by_hand = !options.pick.is_empty();
         let fit = refine(&condensed, start, by_hand)?;
-        let (observed, condensed, fit) = if noise.contains(&NoiseSource::Scatter) {
+        let (observed, condensed, fit) = if noise.iter().any(|source| source.is_by_scatter()) {
             with_residual_noise(observed, condensed, fit, &noise)
         } else {
             (observed, condensed, fit)
@@ -269,7 +269,7 @@ fn with_residual_noise(
 ) -> (Observed, Observed, Likelihood) {
     let n = observed.lines();
     let mut better = observed.clone();
-    let untold: Vec<usize> = (0..noise.len()).filter(|&frf| noise[frf] == NoiseSource::Scatter).collect();
+    let untold: Vec<usize> = (0..noise.len()).filter(|&frf| noise[frf].is_by_scatter()).collect();
     for (frf, variances) in noise::variances(&observed, &condensed, &fit, &untold) {
         for (weight, variance) in better.weights[frf * n..(frf + 1) * n].iter_mut().zip(variances) {
             *weight = if *weight > 0.0 { 1.0 / variance } else { 0.0 };

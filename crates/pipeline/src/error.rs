@@ -3,6 +3,7 @@ use jointscope_estimation::EstimateError;
 use jointscope_fixture::FixtureError;
 use jointscope_nonlinear::{Held, SteppedError};
 use jointscope_recordings::{HitsError, RecordingError};
+use jointscope_screening::ScreeningError;
 
 /// Why files are no recording of a fixture.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -34,6 +35,9 @@ pub enum Error {
     /// No FRFs can be estimated from the hits.
     #[error("{0}{remedy}", remedy = remedy_of_estimate(.0))]
     Estimate(#[from] EstimateError),
+    /// The FRFs hold nothing.
+    #[error(transparent)]
+    Screening(#[from] ScreeningError),
     /// The hammer excites no line.
     #[error("the hits excite no spectral line; record harder or longer ones")]
     NothingExcited,

@@ -4,6 +4,7 @@ use crate::{Error, HammerTest, Measurement};
 use jointscope_estimation::EstimateOptions;
 use jointscope_fixture::{Effect, EffectKind, Fixture, FixtureError, Place};
 use jointscope_recordings::{Hits, Recording};
+use jointscope_screening::screened;
 use jointscope_spectra::FrfSet;
 
 /// The FRFs of a test at one level, recorded as such or estimated from its hits.
@@ -54,6 +55,17 @@ impl MeasuredFrfs {
         notes.push(test.says(&frfs, options.estimator));
         notes.extend(test.estimate.remarks.iter().cloned());
         Ok(MeasuredFrfs { frfs, notes, window_decay: test.estimate.decay, hammer_test: Some(test) })
+    }
+
+    /// The same as the FRFs are meant: what slips of the test or its files made of them is put right or left out, and said in the notes.
+    ///
+    /// # Errors
+    /// FRFs without any signal.
+    pub fn screened(mut self, fixture: &Fixture) -> Result<Self, Error> {
+        let screened = screened(&self.frfs, fixture)?;
+        self.notes.extend(screened.oddities.iter().map(ToString::to_string));
+        self.frfs = screened.frfs;
+        Ok(self)
     }
 
     /// `fixture` as these FRFs show it: under their exponential window, if there is one. The fixture's own effects stay.

@@ -91,6 +91,7 @@ pub fn diagnose(
         Homogeneity::Changes(answer) => return Ok(*answer),
         Homogeneity::Linear(measured, p_value) => (*measured, p_value),
     };
+    let measured = measured.screened(fixture)?;
     let fixture = measured.as_recorded(fixture)?;
     let frfs = &measured.frfs;
     options.check(frfs)?;

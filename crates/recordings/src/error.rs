@@ -33,14 +33,6 @@ pub enum FunctionError {
     /// A coherence with an imaginary part.
     #[error("a coherence is real, but its values are complex")]
     ComplexCoherence,
-    /// A coherence outside 0 … 1.
-    #[error("the coherence is {value} at {frequency} Hz, but it lies between 0 and 1: export it again")]
-    Coherence {
-        /// What stands there.
-        value: f64,
-        /// The line, Hz.
-        frequency: f64,
-    },
     /// ID line 5 starts with `averages`, but no count follows.
     #[error("ID line 5 reads `{0}`: a whole number of averages, 1 or more, is needed, such as `averages 5`")]
     Averages(String),

@@ -25,9 +25,6 @@ pub(crate) fn functions(sources: &[Source]) -> impl Iterator<Item = Function<'_>
     })
 }
 
-/// How far a coherence may leave 0 … 1 by rounding.
-const COHERENCE_SLACK: f64 = 1e-6;
-
 impl<'a> Function<'a> {
     pub fn response(&self) -> FileChannel {
         FileChannel::from(&self.dataset.response)
@@ -98,18 +95,13 @@ impl<'a> Function<'a> {
     }
 
     /// Values of a coherence; analysers store some as complex numbers without imaginary part.
-    pub fn coherence(&self, lines: &SpectralLines) -> Result<Vec<f64>, FunctionError> {
-        let values = match &self.dataset.data {
-            Data::Real(values) => values.clone(),
+    pub fn coherence(&self) -> Result<Vec<f64>, FunctionError> {
+        match &self.dataset.data {
+            Data::Real(values) => Ok(values.clone()),
             Data::Complex(values) if values.iter().all(|value| value.im == 0.0) => {
-                values.iter().map(|value| value.re).collect()
+                Ok(values.iter().map(|value| value.re).collect())
             }
-            Data::Complex(_) => return Err(FunctionError::ComplexCoherence),
-        };
-        let possible = -COHERENCE_SLACK..=1.0 + COHERENCE_SLACK;
-        match values.iter().zip(lines.hz()).find(|(value, _)| !possible.contains(value)) {
-            Some((&value, &frequency)) => Err(FunctionError::Coherence { value, frequency }),
-            None => Ok(values),
+            Data::Complex(_) => Err(FunctionError::ComplexCoherence),
         }
     }
 }

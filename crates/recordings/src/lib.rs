@@ -42,6 +42,7 @@
 
 mod assumed_units;
 mod channel_map;
+mod coherence;
 mod datasets;
 mod error;
 mod function;

@@ -96,7 +96,7 @@ mod tests {
 
     fn pairs(datasets: Vec<Dataset58>, map: &[&str]) -> Vec<String> {
         let source = Source { name: "t.uff".into(), file: UffFile { datasets, ..UffFile::default() } };
-        let options = ReadOptions { map: ChannelMap::parse(map).unwrap(), assume_units: None };
+        let options = ReadOptions { map: ChannelMap::parse(map).unwrap(), ..ReadOptions::default() };
         let recording = Recording::of_nodes(&[source], &options).unwrap();
         recording.frfs().unwrap().pairs().iter().map(ToString::to_string).collect()
     }

@@ -4,6 +4,7 @@ use jointscope_fixture::Fixture;
 use jointscope_spectra::{FrfForm, FrfSet, SpectralLines};
 use jointscope_uff::UffFile;
 
+use crate::coherence::CoherenceNotes;
 use crate::error::enumeration;
 use crate::function::{LinesCache, append_accelerances};
 use crate::gather::{Entry, Gathered, example, gather, in_order, points};
@@ -26,6 +27,10 @@ pub struct ReadOptions {
     pub map: ChannelMap,
     /// Units, where a file states none.
     pub assume_units: Option<AssumedUnits>,
+    /// Number of averages of every FRF, whatever the files state.
+    pub averages: Option<u32>,
+    /// Whether coherences are left aside.
+    pub ignore_coherence: bool,
 }
 
 /// The FRFs of one test, level by level, in the fixture's terms and SI units.
@@ -86,7 +91,9 @@ impl Recording {
             return Err(not_on_fixture(&gathered, fixture));
         }
         notes.of_lone_coherences(&usable, &gathered.coherences);
-        let levels = levels(&usable, &gathered.coherences)?;
+        let mut of_coherence = CoherenceNotes::default();
+        let levels = levels(&usable, &gathered.coherences, options, &mut of_coherence)?;
+        notes.texts.extend(of_coherence.into_texts());
         Ok(Recording {
             levels,
             time_histories: TimeHistories {
@@ -270,10 +277,15 @@ fn not_on_fixture(gathered: &Gathered, fixture: &Fixture) -> RecordingError {
 }
 
 /// One set of FRFs for each run of equal levels.
-fn levels(frfs: &[Usable], coherences: &[Entry]) -> Result<Vec<Level>, RecordingError> {
+fn levels(
+    frfs: &[Usable],
+    coherences: &[Entry],
+    options: &ReadOptions,
+    notes: &mut CoherenceNotes,
+) -> Result<Vec<Level>, RecordingError> {
     let mut cache = LinesCache::default();
     frfs.chunk_by(|(a, _), (b, _)| a.level == b.level)
-        .map(|frfs| level(frfs, coherences, &mut cache))
+        .map(|frfs| level(frfs, coherences, &mut cache, (options, &mut *notes)))
         .collect()
 }
 
@@ -281,6 +293,7 @@ fn level<'a>(
     frfs: &[Usable<'a>],
     coherences: &[Entry<'a>],
     cache: &mut LinesCache<'a>,
+    (options, notes): (&ReadOptions, &mut CoherenceNotes),
 ) -> Result<Level, RecordingError> {
     let first = &frfs[0].0;
     let lines = cache.lines(first.function.dataset).map_err(|problem| first.refuse(problem))?;
@@ -304,15 +317,17 @@ fn level<'a>(
     let mut set = FrfSet::new(lines.clone(), FrfForm::Accelerance, pairs, values)?;
     for (index, (entry, _)) in frfs.iter().enumerate() {
         let mut averages = entry.function.averages().map_err(|problem| entry.refuse(problem))?;
-        if let Some(coherence) = entry.counterpart(coherences) {
+        if let Some(coherence) = entry.counterpart(coherences).filter(|_| !options.ignore_coherence) {
             same_lines(cache, first, &lines, coherence)?;
-            let values = coherence.function.coherence(&lines).map_err(|problem| coherence.refuse(problem))?;
-            set.set_coherence(index, values)?;
+            let values = coherence.function.coherence().map_err(|problem| coherence.refuse(problem))?;
+            if let Some(values) = notes.usable(entry.pair.to_string(), values) {
+                set.set_coherence(index, values)?;
+            }
             if averages.is_none() {
                 averages = coherence.function.averages().map_err(|problem| coherence.refuse(problem))?;
             }
         }
-        set.set_averages(index, averages);
+        set.set_averages(index, options.averages.or(averages));
     }
     let recorded_forms = frfs.iter().map(|(_, ordinate)| ordinate.form).collect();
     Ok(Level { held: first.level, frfs: set, recorded_forms, window_decay })

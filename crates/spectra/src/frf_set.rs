@@ -256,6 +256,47 @@ impl FrfSet {
         Ok(converted)
     }
 
+    /// The set with other values, by their place and what they were: FRF after FRF. Variances go with the square of the size, coherence does not change.
+    pub fn with_values(mut self, value: impl Fn(usize, Complex64) -> Complex64) -> Self {
+        for (at, old) in self.values.iter_mut().enumerate() {
+            let new = value(at, *old);
+            if let Some(variance) = &mut self.variance
+                && *old != Complex64::ZERO
+            {
+                variance[at] *= new.norm_sqr() / old.norm_sqr();
+            }
+            *old = new;
+        }
+        self
+    }
+
+    /// The set under other labels, as many as it has FRFs.
+    pub fn with_pairs(mut self, pairs: Vec<FrfPair>) -> Self {
+        if pairs.len() == self.pairs.len() {
+            self.pairs = pairs;
+        }
+        self
+    }
+
+    /// The set of the FRFs of which `keep` holds true, by index; `None` where that leaves none.
+    pub fn of_frfs(&self, keep: impl Fn(usize) -> bool) -> Option<Self> {
+        let kept: Vec<usize> = (0..self.pairs.len()).filter(|&index| keep(index)).collect();
+        if kept.is_empty() {
+            return None;
+        }
+        let variance = |&index: &usize| self.variance(index).map(<[f64]>::to_vec);
+        let variance: Option<Vec<Vec<f64>>> = kept.iter().map(variance).collect();
+        Some(FrfSet {
+            lines: self.lines.clone(),
+            form: self.form,
+            pairs: kept.iter().map(|&index| self.pairs[index].clone()).collect(),
+            values: kept.iter().flat_map(|&index| self.values(index)).copied().collect(),
+            variance: variance.map(|all| all.concat()),
+            coherence: kept.iter().map(|&index| self.coherence[index].clone()).collect(),
+            averages: kept.iter().map(|&index| self.averages[index]).collect(),
+        })
+    }
+
     /// The set on the lines of which `keep` holds true, by index; `None` where that leaves none.
     pub fn on_lines(&self, keep: impl Fn(usize) -> bool + Copy) -> Option<Self> {
         let lines = self.lines.retain(keep)?;

@@ -105,6 +105,13 @@ impl Remarks for Diagnosis {
             .filter(|(source, _)| **source == NoiseSource::Scatter)
             .map(|(_, pair)| pair.to_string())
             .collect();
+        if self.observation.noise().contains(&NoiseSource::CoherenceAlone) {
+            remarks.push(
+                "The number of averages is not stated: it was taken from the scatter over neighbouring lines, and with it the noise from the \
+                 coherence. State it by --averages, and χ² and intervals are more certain."
+                    .to_owned(),
+            );
+        }
         if !scatter.is_empty() {
             remarks.push(format!(
                 "The noise of {} was estimated from the scatter over neighbouring lines, for want of coherence over several averages: χ² \

@@ -1,7 +1,6 @@
 //! What a reader of the modes should know.
 
 use crate::Remarks;
-use jointscope_frf::noise::NoiseSource;
 use jointscope_modes::ModalAnalysis;
 
 /// How far to trust the modes.
@@ -24,7 +23,7 @@ impl Remarks for ModalAnalysis {
                 all.push(format!("FRF {pair} is zero on all lines: it was left out"));
             }
         }
-        let scattered = self.noise.iter().filter(|n| **n == NoiseSource::Scatter).count();
+        let scattered = self.noise.iter().filter(|n| n.is_by_scatter()).count();
         if scattered > 0 {
             let of_all = if scattered == self.noise.len() { "the".to_owned() } else { scattered.to_string() };
             all.push(format!(

@@ -49,6 +49,7 @@ pub fn run(arguments: &DecomposeArguments) -> Result<String, Refusal> {
     let fixture = FixtureFile::read(&arguments.fixture)?;
     let measurement = arguments.recording.measurement(&fixture)?;
     let mut measured = MeasuredFrfs::of(&measurement, &arguments.estimation.options(ResponseWindow::Auto))
+        .and_then(|measured| measured.screened(&fixture))
         .map_err(|error| arguments.recording.unanswered(&error, &fixture))?;
     measured.notes.extend(arguments.estimation.unused_with(&measurement));
     let as_recorded = measured.as_recorded(&fixture).map_err(|error| fixture.refusal(error))?;

@@ -64,7 +64,8 @@ pub fn run(arguments: &DiagnoseArguments) -> Result<String, Refusal> {
         true => None,
         false => {
             let recording = arguments.recording.of_files(&arguments.baseline);
-            let measured = MeasuredFrfs::of(&recording.measurement(&fixture)?, &estimate);
+            let measured = MeasuredFrfs::of(&recording.measurement(&fixture)?, &estimate)
+                .and_then(|measured| measured.screened(&fixture));
             Some(measured.map_err(|error| recording.unanswered(&error, &fixture))?.frfs)
         }
     };

@@ -136,7 +136,7 @@ fn diagnosed(arguments: &ProveArguments, concealed: &Concealed, threads: usize) 
 fn limits(fixture: &Path, recording: &Path, json: bool) -> Result<String, Refusal> {
     let believed = FixtureFile::read(fixture)?;
     let files = vec![recording.to_owned()];
-    let read = RecordingArguments { files, map: Vec::new(), assume_units: None }.recording(&believed)?;
+    let read = RecordingArguments::plain(files).recording(&believed)?;
     let frfs = read.frfs().map_err(|error| Refusal::at(recording, error))?;
     let limits = Limits::of(&believed, frfs).ok_or_else(|| {
         Refusal::at(

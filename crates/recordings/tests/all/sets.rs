@@ -27,12 +27,27 @@ fn coherence_belongs_to_the_frf_of_the_same_channels_whatever_their_sense() {
 }
 
 #[test]
-fn a_coherence_above_one_by_rounding_passes_and_beyond_that_is_refused() {
-    let with = |value| vec![frf((4, 2), (1, 2)), coherence((4, 2), (1, 2), [0.5, value, 0.5])];
-    assert!(read(with(1.0 + 1e-7)).is_ok());
-    let parts = ["function 2 (coherence 4:+y/1:+y)", "1.5 at 12.5 Hz"];
-    refused(with(1.5), &ReadOptions::default(), &parts);
-    refused(with(-0.1), &ReadOptions::default(), &["-0.1 at 12.5 Hz"]);
+fn a_coherence_above_one_by_rounding_passes_and_what_is_no_coherence_is_left_out_and_named() {
+    let with = |value| read(vec![frf((4, 2), (1, 2)), coherence((4, 2), (1, 2), [0.5, value, 0.5])]).unwrap();
+    let used = |recording: &Recording| recording.frfs().unwrap().coherence(0).is_some();
+    assert!(used(&with(1.0 + 1e-7)));
+    for (value, why) in [(1.5, "4/1 is above one"), (-0.1, "4/1 is negative")] {
+        let recording = with(value);
+        assert!(!used(&recording));
+        assert!(recording.notes[0].contains(why), "{:?}", recording.notes);
+    }
+    let zero = read(vec![frf((4, 2), (1, 2)), coherence((4, 2), (1, 2), [0.0; 3])]).unwrap();
+    assert!(!used(&zero) && zero.notes[0].contains("is zero on all lines"), "{:?}", zero.notes);
+}
+
+#[test]
+fn averages_may_be_stated_and_coherence_left_aside() {
+    let files = || vec![id(frf((4, 2), (1, 2)), 5, "averages 8"), coherence((4, 2), (1, 2), [0.5, 0.6, 0.7])];
+    let stated = ReadOptions { averages: Some(12), ..ReadOptions::default() };
+    let recording = read_with(files(), &stated).unwrap();
+    assert_eq!(recording.frfs().unwrap().averages(0), Some(12));
+    let aside = ReadOptions { ignore_coherence: true, ..ReadOptions::default() };
+    assert_eq!(read_with(files(), &aside).unwrap().frfs().unwrap().coherence(0), None);
 }
 
 #[test]

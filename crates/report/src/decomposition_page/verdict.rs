@@ -186,7 +186,7 @@ fn noise(subject: &Subject) -> String {
     let analysis = subject.analysis;
     let used = analysis.plan.layout.channels.iter().filter_map(|(index, ..)| analysis.noise.get(*index));
     let sources: Vec<&NoiseSource> = used.collect();
-    let scatter = sources.iter().filter(|source| ***source == NoiseSource::Scatter).count();
+    let scatter = sources.iter().filter(|source| source.is_by_scatter()).count();
     match (sources.len(), scatter) {
         (0, _) => "noise as stated with the FRFs".into(),
         (_, 0) => "noise from coherence and averages".into(),

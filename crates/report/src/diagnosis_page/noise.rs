@@ -1,6 +1,5 @@
 //! The noise of the FRFs, and whether it holds.
 
-use jointscope_frf::noise::NoiseSource;
 use maud::Render;
 
 use super::Subject;
@@ -36,10 +35,8 @@ fn table(subject: &Subject) -> impl Render {
     let observation = &diagnosis.observation;
     let table = Table::of(0..observation.pairs().len())
         .words("FRF", |index| observation.pairs()[*index].to_string())
-        .words("Noise from", |index| match observation.noise().get(*index) {
-            Some(NoiseSource::Coherence) => "coherence and averages",
-            Some(NoiseSource::Scatter) => "scatter over the lines",
-            None => "variances given",
+        .words("Noise from", |index| {
+            observation.noise().get(*index).map_or("variances given", |source| source.says())
         })
         .numbers("Noise to signal, median", "%", |index| {
             let ratios = noise_to_signal(subject, *index);

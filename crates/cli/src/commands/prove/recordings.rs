@@ -110,9 +110,9 @@ impl Test {
             ));
         }
         let arguments = RecordingArguments {
-            files,
             map: options.map.clone(),
             assume_units: options.assume_units.clone(),
+            ..RecordingArguments::plain(files)
         };
         let recording = arguments.recording(&fixture)?;
         let Level { held, frfs, .. } = the_level(directory, &recording, options.level)?;

@@ -74,6 +74,7 @@ pub fn options(map: &[&str], units: Option<&str>) -> ReadOptions {
     ReadOptions {
         map: ChannelMap::parse(map).unwrap(),
         assume_units: units.map(|units| AssumedUnits::parse(units).unwrap()),
+        ..ReadOptions::default()
     }
 }
 

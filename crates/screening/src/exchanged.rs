@@ -1,0 +1,42 @@
+//! FRFs under each other's labels.
+
+use crate::levels::median;
+use jointscope_spectra::FrfSet;
+use num_complex::Complex64;
+
+/// Median |ln(H/Ĥ)|² over the lines up to which an FRF is like a modelled one, and from which it is not.
+const LIKE: f64 = 0.15;
+/// What is left of that by an exchange, at most.
+const LEFT: f64 = 0.1;
+/// Fewest lines that tell.
+const FEWEST: usize = 20;
+
+/// Pairs of FRFs, by place, each of which is like what the fixture makes of the other one, and neither like its own.
+pub(crate) fn exchanged(frfs: &FrfSet, modelled: &[Complex64]) -> Vec<(usize, usize)> {
+    let (count, lines) = (frfs.pairs().len(), frfs.lines().len());
+    if lines < FEWEST {
+        return Vec::new();
+    }
+    let distance = |recorded: usize, model: usize| {
+        let pairs = frfs.values(recorded).iter().zip(&modelled[model * lines..(model + 1) * lines]);
+        let apart: Vec<f64> =
+            pairs.map(|(a, b)| (a / b).ln().norm_sqr()).filter(|apart| apart.is_finite()).collect();
+        median(apart).unwrap_or(f64::INFINITY)
+    };
+    let own: Vec<f64> = (0..count).map(|index| distance(index, index)).collect();
+    let mut taken = vec![false; count];
+    let mut found = Vec::new();
+    for a in 0..count {
+        for b in a + 1..count {
+            if taken[a] || taken[b] || own[a] < LIKE || own[b] < LIKE {
+                continue;
+            }
+            let (there, back) = (distance(a, b), distance(b, a));
+            if there < LIKE && back < LIKE && there + back < LEFT * (own[a] + own[b]) {
+                (taken[a], taken[b]) = (true, true);
+                found.push((a, b));
+            }
+        }
+    }
+    found
+}
