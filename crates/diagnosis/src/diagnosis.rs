@@ -1,3 +1,4 @@
+use crate::contradiction::contradictory;
 use crate::departures::Departure;
 use crate::fitter::Fitter;
 use crate::location::Location;
@@ -129,6 +130,8 @@ pub struct Diagnosis {
     pub departures: Vec<Departure>,
     /// What the search did not come to within its limit of work or time.
     pub stopped: Vec<&'static str>,
+    /// Bands, Hz, of lines that contradict all others whatever the structure, and were left out.
+    pub contradictory: Vec<(f64, f64)>,
     /// Effects that were tried by themselves where the model's error decides, the most probable first.
     pub tried: Vec<Tried>,
 }
@@ -162,13 +165,20 @@ impl Diagnosis {
         options: &DiagnosisOptions,
         watch: Watch,
     ) -> Result<Self, DiagnosisError> {
-        let in_use = |hz: f64| {
+        let asked = |hz: f64| {
             options.band.is_none_or(|(from, to)| hz >= from && hz <= to)
                 && !options.exclude.iter().any(|(from, to)| hz >= *from && hz <= *to)
         };
         let work = Arc::new(Work::of(options.settings.work, options.time_limit));
-        let observation = Observation::new(frfs, in_use)?.counted(work);
-        Hypothesis::nominal(fixture, options.exact).predict(&observation)?;
+        let observation = Observation::new(frfs, asked)?.counted(Arc::clone(&work));
+        let nominal = Hypothesis::nominal(fixture, options.exact);
+        nominal.predict(&observation)?;
+        let contradictory = contradictory(&observation, &nominal, &options.settings.modal);
+        let in_use = |hz: f64| asked(hz) && !contradictory.iter().any(|(from, to)| hz >= *from && hz <= *to);
+        let observation = match contradictory.is_empty() {
+            true => observation,
+            false => Observation::new(frfs, in_use)?.counted(work),
+        };
         let few = observation.searched(&options.hold_out);
         let searched = few.as_ref().unwrap_or(&observation);
         let fitter = Fitter { observation: searched, settings: &options.settings, watch };
@@ -187,7 +197,7 @@ impl Diagnosis {
         if few.is_some() {
             parts = parts.on_all(&fitter.on(&observation));
         }
-        Ok(parts.with(observation, &options.settings))
+        Ok(Diagnosis { contradictory, ..parts.with(observation, &options.settings) })
     }
 
     /// (nominal, refitted, repaired) errors over all FRFs and lines in use.

@@ -32,6 +32,7 @@
 mod alternatives;
 mod baseline;
 mod catalogue;
+mod contradiction;
 mod departures;
 mod diagnosis;
 mod estimates;

@@ -19,5 +19,5 @@ mod prior;
 mod search;
 mod sizes;
 
-pub(crate) use judgement::{ModalJudgement, explains};
+pub(crate) use judgement::{ModalJudgement, explains, recorded};
 pub use sizes::{ErrorIntervals, ModelError};

@@ -110,6 +110,7 @@ impl Parts {
             mismatch: mismatch(&observation, &search.refitted.predicted, settings.evidence.bands),
             residual_correlation: observation.residual_correlation(&search.repaired.predicted),
             departures: departures(&search),
+            contradictory: Vec::new(),
             stopped: observation.work().left_out(),
             observation,
             search,

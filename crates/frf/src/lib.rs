@@ -19,12 +19,14 @@
 //! assert!(h41.at(0, 1).norm() < 1e-12, "the same response to both hits: a moment does nothing");
 //! ```
 
+mod breaks;
 mod drift;
 mod local_rational;
 pub mod noise;
 mod rigid_motion;
 mod two_accelerometers;
 
+pub use breaks::breaks;
 pub use drift::{Drift, resonant_lines};
 pub use rigid_motion::{BlockChannel, BlockFrf, BlockLayout, MaskReason, RigidMotionError, fit_rigid_motion};
 pub use two_accelerometers::{from_four_frfs, per_moment_from_two, rotation_from_two};

@@ -42,6 +42,7 @@ pub fn diagnosis_file(diagnosis: &Diagnosis) -> Value {
         departures: &diagnosis.departures,
         tried: &diagnosis.tried,
         stopped: &diagnosis.stopped,
+        contradictory: &diagnosis.contradictory,
         modes: diagnosis.baseline.as_ref().map(|baseline| baseline.modes.as_slice()),
     })
 }
@@ -73,6 +74,9 @@ struct DiagnosisFile<'a> {
     /// What the search did not come to within its limit.
     #[serde(skip_serializing_if = "<[_]>::is_empty")]
     stopped: &'a [&'static str],
+    /// Bands, Hz, left out since their lines contradict all others.
+    #[serde(skip_serializing_if = "<[_]>::is_empty")]
+    contradictory: &'a [(f64, f64)],
     /// The modes then and now, with a baseline.
     #[serde(skip_serializing_if = "Option::is_none")]
     modes: Option<&'a [ModeChange]>,

@@ -35,6 +35,8 @@ pub(crate) struct FreeFit {
     information: Vec<f64>,
     step: Vec<f64>,
     chi2: f64,
+    /// Squared residuals in units of the noise, by line, over all FRFs.
+    misfit: Vec<f64>,
 }
 
 /// The columns whose coefficients make up mass line and upper residual. Modes too low to be told from a mass line, a suspension's, are a part of it: what they and
@@ -139,12 +141,14 @@ impl FreeFit {
         let mut information = vec![0.0; order * order];
         let mut right = vec![0.0; order];
         let mut chi2 = 0.0;
+        let mut misfit = vec![0.0; omegas.len()];
         let mut fits = Vec::new();
         for frf in 0..recording.frfs.pairs().len() {
             let n = omegas.len();
             let projection = Projection::new(&rows, &recording.weights[frf * n..(frf + 1) * n])?;
             let (coefficients, left) = projection.split(recording.frfs.values(frf));
             chi2 += left.iter().map(|v| v.norm_sqr()).sum::<f64>();
+            misfit.iter_mut().zip(&left).for_each(|(sum, v)| *sum += v.norm_sqr());
             let mut sensitivity = Vec::with_capacity(order);
             let mut slopes = Vec::with_capacity(order);
             for (index, pole) in poles.iter().enumerate() {
@@ -179,7 +183,7 @@ impl FreeFit {
         }
         let mut step = right;
         Cholesky::of(order, &information)?.solve_in_place(&mut step);
-        Some(FreeFit { poles, inside, terms, fits, information, step, chi2 })
+        Some(FreeFit { poles, inside, terms, fits, information, step, chi2, misfit })
     }
 
     /// What it says of the modes in the band.
@@ -211,6 +215,7 @@ impl FreeFit {
             band: (lines.hz()[0], lines.hz()[lines.len() - 1]),
             resolved_from: resolved_from(lines.hz()),
             chi2_per_dof,
+            misfit: self.misfit.iter().map(|sum| sum / (2 * frfs) as f64).collect(),
             residual_terms: (0..frfs).map(|j| [terms[0][j], terms[1][j]]).collect(),
             residual_scales,
             covariance,

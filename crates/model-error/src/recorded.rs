@@ -44,6 +44,8 @@ pub struct RecordedModes {
     pub(crate) resolved_from: f64,
     /// χ² per degree of freedom of the free fit.
     pub chi2_per_dof: f64,
+    /// What the free fit leaves on each line, mean square in units of the noise.
+    pub misfit: Vec<f64>,
     /// Real parts of mass line and upper residual of each FRF.
     pub(crate) residual_terms: Vec<[f64; 2]>,
     /// Root mean squares of those over the FRFs.

@@ -119,6 +119,18 @@ impl Remarks for Diagnosis {
                 if scatter.len() == pairs.len() { "all FRFs".to_owned() } else { listed(&scatter) }
             ));
         }
+        if !self.contradictory.is_empty() {
+            let band = |(from, to): &(f64, f64)| match from == to {
+                true => format!("{} Hz", significant(*from, 4)),
+                false => format!("{} to {} Hz", significant(*from, 4), significant(*to, 4)),
+            };
+            let bands: Vec<String> = self.contradictory.iter().map(band).collect();
+            remarks.push(format!(
+                "Lines that contradict all others were left out: {}. No structure's modes make such a break in its FRFs; mains hum, a tone from elsewhere or \
+                 an overload does: look at the time signals there.",
+                listed(&bands)
+            ));
+        }
         remarks.extend(self.swapped_points().iter().map(|[a, b]| {
             format!(
                 "Points {a} and {b} have each other's place: their channels are swapped, in the cables or in the node numbers of the file."

@@ -130,7 +130,9 @@ fn an_error_of_the_shape_moves_residues_by_both_channels() {
         for (i, row) in expected.iter().enumerate() {
             for (j, value) in row.iter().enumerate() {
                 let entry = covariance[(2 + 2 * i + part) * n + 2 + 2 * j + part];
-                let value = value * rms * rms / (scale * scale);
+                // Of shapes in phase, both errors together besides: e₁² and e₁e₂, as if independent.
+                let both = if i == j && part == 0 { rms.powi(4) } else { 0.0 };
+                let value = (value * rms * rms + both) / (scale * scale);
                 assert!(
                     (entry - value).abs() < 1e-6,
                     "covariance of residues {i} and {j}: {entry}, expected {value}"

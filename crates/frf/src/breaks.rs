@@ -1,0 +1,28 @@
+//! Lines at which FRFs break off their course.
+
+use crate::local_rational::LocalRationalFit;
+use jointscope_spectra::FrfSet;
+
+/// Lines on each side from which the course through a line is taken.
+const NEIGHBOURS: usize = 5;
+/// χ² of a line against its neighbours from which it breaks off.
+const BREAKS: f64 = 200.0;
+/// A line whose own noise is followed to more than this share tells nothing about it.
+const FOLLOWED: f64 = 0.8;
+
+/// The lines, by index, on which at least half of the FRFs break off their course: as they do at the edges of mains hum and of peaks that were clipped, and where no
+/// mode of a structure makes them. `weights` are 1/variance of the real part, and of the imaginary part, FRF after FRF.
+pub fn breaks(frfs: &FrfSet, weights: &[f64]) -> Vec<usize> {
+    let (hz, count) = (frfs.lines().hz(), frfs.pairs().len());
+    let mut fit = LocalRationalFit::new();
+    let mut breaking = vec![0; hz.len()];
+    for index in 0..count {
+        let (values, weights) = (frfs.values(index), &weights[index * hz.len()..(index + 1) * hz.len()]);
+        for line in 0..hz.len() {
+            let Some(local) = fit.about(hz, values, line, NEIGHBOURS) else { continue };
+            let off = weights[line] * local.residual.norm_sqr() / (1.0 - local.leverage).max(1e-3);
+            breaking[line] += usize::from(local.leverage < FOLLOWED && off > BREAKS);
+        }
+    }
+    (0..hz.len()).filter(|&line| breaking[line] > 0 && 2 * breaking[line] >= count).collect()
+}
