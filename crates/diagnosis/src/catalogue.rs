@@ -1,7 +1,7 @@
 //! Every effect at every legal place of a fixture, with starts from which a fit may set out.
 
 use crate::Observation;
-use crate::freedom::{extent, mass_of, turns};
+use crate::freedom::{extent, inertia_of, mass_of, turns};
 use jointscope_fixture::{
     BodyKind, Dof, Effect, EffectKind, EffectSpec, Entry, Fixture, Joint, Measure, Motion, ParameterRange,
     Place, PlaceKind, SizeLaw, Starts,
@@ -98,12 +98,18 @@ fn made_small(kind: EffectKind, start: &[f64], all: &[Vec<f64>]) -> Vec<f64> {
 pub fn catalogue(fixture: &Fixture, observation: &Observation) -> Vec<Candidate> {
     let mut all = Vec::new();
     let mut add = |kind: EffectKind, place: Place, joint: Option<&Joint>| {
-        let dofs: &[Option<Dof>] = match kind.spec().has_dof {
-            true => &[Some(Dof::Translation), Some(Dof::Rotation)],
-            false => &[None],
+        let dofs: &[Option<Dof>] = match (kind.spec().has_dof, kind.spec().may_turn) {
+            (true, _) => &[Some(Dof::Translation), Some(Dof::Rotation)],
+            (false, true) => &[None, Some(Dof::Rotation)],
+            (false, false) => &[None],
         };
         for &dof in dofs {
-            let at = At { fixture, observation, body: body_at(fixture, &place), joint, dof };
+            let body = body_at(fixture, &place);
+            let second = match &place {
+                Place::Between(_, other) => body_at(fixture, &Place::Body(other.clone())),
+                _ => None,
+            };
+            let at = At { fixture, observation, body, second, joint, dof };
             let starts = at.starts(kind);
             let possible = |values| {
                 let effect = Effect::new(kind, place.clone(), dof, values);
@@ -135,12 +141,19 @@ pub fn catalogue(fixture: &Fixture, observation: &Observation) -> Vec<Candidate>
             }
         }
     }
+    for (index, one) in fixture.bodies().iter().enumerate() {
+        for other in &fixture.bodies()[index + 1..] {
+            kinds(|spec| spec.place == PlaceKind::TwoBodies)
+                .for_each(|kind| add(kind, Place::Between(one.name.clone(), other.name.clone()), None));
+        }
+    }
     let pairs = observation.pairs();
     let responses = sorted(pairs.iter().map(|pair| pair.response.to_string()));
     let references = sorted(pairs.iter().map(|pair| pair.reference.to_string()));
-    // With one reference only, its gain is that of all responses together: still a name of its own.
+    // With one reference only, its gain is that of all responses together: still a name of its own. With several, one hammer struck them all.
+    let force = (references.len() > 1).then_some(Place::Force);
     let channels = responses.iter().cloned().map(Place::Response);
-    for channel in channels.chain(references.into_iter().map(Place::Reference)) {
+    for channel in channels.chain(references.into_iter().map(Place::Reference)).chain(force) {
         kinds(|spec| spec.place == Channel).for_each(|kind| add(kind, channel.clone(), None));
     }
     let points = pairs.iter().flat_map(|pair| [pair.response.point.clone(), pair.reference.point.clone()]);
@@ -177,7 +190,9 @@ fn sorted(names: impl Iterator<Item = String>) -> Vec<String> {
 /// The body that a place is on, where it is on one.
 fn body_at(fixture: &Fixture, place: &Place) -> Option<usize> {
     match place {
-        Place::Body(name) => fixture.bodies().iter().position(|body| body.name == *name),
+        Place::Body(name) | Place::Between(name, _) => {
+            fixture.bodies().iter().position(|body| body.name == *name)
+        }
         Place::Point(name) => fixture.point(name).map(|point| point.body),
         Place::Response(name) | Place::Reference(name) => {
             let point = name.strip_suffix(":theta").unwrap_or(name);
@@ -192,6 +207,7 @@ struct At<'a> {
     fixture: &'a Fixture,
     observation: &'a Observation,
     body: Option<usize>,
+    second: Option<usize>,
     joint: Option<&'a Joint>,
     dof: Option<Dof>,
 }
@@ -234,19 +250,23 @@ impl At<'_> {
             Starts::OnJointOrBody(measure, on_joint, on_body) => {
                 times(measure, if self.joint.is_some() { on_joint } else { on_body })
             }
-            Starts::AlongBody(shares) => match self.body.filter(|&body| turns(self.fixture, body)) {
-                Some(body) => {
-                    let (low, high) = extent(self.fixture, body);
-                    let at = |share: f64| low + share * (high - low);
-                    match self.half_waves(body) {
-                        Some(waves) => evenly((PLACES_A_HALF_WAVE * waves).ceil()).map(at).collect(),
-                        None => shares.iter().map(|share| at(*share)).collect(),
-                    }
-                }
-                None => vec![0.0],
-            },
+            // What holds a whole body against rotation does so anywhere.
+            Starts::AlongBody(_) if self.joint.is_none() && self.dof == Some(Dof::Rotation) => vec![0.0],
+            Starts::AlongBody(shares) => self.along(self.body, shares),
+            Starts::AlongSecondBody(shares) => self.along(self.second, shares),
             Starts::OverBand { count, low, high } => self.frequencies(count, low, high),
             Starts::OfLeading(_) => vec![0.0],
+        }
+    }
+
+    /// Shares of the way along a body, of a beam as many as its modes ask for.
+    fn along(&self, body: Option<usize>, shares: &[f64]) -> Vec<f64> {
+        let Some(body) = body.filter(|&body| turns(self.fixture, body)) else { return vec![0.0] };
+        let (low, high) = extent(self.fixture, body);
+        let at = |share: f64| low + share * (high - low);
+        match self.half_waves(body).filter(|_| self.second.is_none()) {
+            Some(waves) => evenly((PLACES_A_HALF_WAVE * waves).ceil()).map(at).collect(),
+            None => shares.iter().map(|share| at(*share)).collect(),
         }
     }
 
@@ -281,8 +301,13 @@ impl At<'_> {
             Measure::BodyMass => self.body.map(mass),
             Measure::BodySpring => {
                 let middle = self.frequencies(1, 1.0, 1.0)[0] * TAU;
-                self.body.map(|body| mass(body) * middle * middle)
+                let own = |body: usize| match self.dof {
+                    Some(Dof::Rotation) => inertia_of(self.fixture, body),
+                    _ => self.second.map_or(mass(body), |second| mass(body).min(mass(second))),
+                };
+                self.body.map(|body| own(body) * middle * middle)
             }
+            Measure::LowestLine => Some(self.observation.lines().hz()[0]),
             Measure::LighterBody => {
                 self.joint.map(|joint| mass(point(joint.from).body).min(mass(point(joint.to).body)))
             }

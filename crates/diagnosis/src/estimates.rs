@@ -22,6 +22,7 @@ pub(crate) fn estimates(
         .iter()
         .zip(moves)
         .enumerate()
+        .filter(|(place, _)| effect.has_parameter(*place))
         .map(|(place, (parameter, moves))| {
             let value = effect.value(place);
             let deviation = moves.is_free().then(|| {

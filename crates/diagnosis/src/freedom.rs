@@ -15,20 +15,26 @@ fn between(scale: f64, low: f64, high: f64) -> Parameter {
 
 /// How a fit moves each of an effect's parameters, in their order.
 pub(crate) fn parameters_of(fixture: &Fixture, effect: &Effect) -> Vec<Parameter> {
-    let body = match &effect.place {
-        Place::Body(name) => fixture.bodies().iter().position(|b| b.name == *name),
-        _ => None,
+    let named = |name: &String| fixture.bodies().iter().position(|b| b.name == *name);
+    let (body, second) = match &effect.place {
+        Place::Body(name) => (named(name), None),
+        Place::Between(one, other) => (named(one), named(other)),
+        _ => (None, None),
+    };
+    let along = |body: Option<usize>| match body.filter(|b| turns(fixture, *b)) {
+        Some(body) => {
+            let (low, high) = extent(fixture, body);
+            between(0.1 * (high - low).max(1e-6), low, high)
+        }
+        None => Parameter::new(Transform::Fixed),
     };
     let fixed = Parameter::new(Transform::Fixed);
     let of = |(parameter, quantity): (&ParameterSpec, &Quantity)| match parameter.motion {
         _ if parameter.of_bodies_only && body.is_none() => fixed,
-        Motion::AlongBody => match body.filter(|b| turns(fixture, *b)) {
-            Some(body) => {
-                let (low, high) = extent(fixture, body);
-                between(0.1 * (high - low).max(1e-6), low, high)
-            }
-            None => fixed,
-        },
+        // What holds a whole body against rotation does so anywhere.
+        Motion::AlongBody if effect.kind.spec().may_turn && effect.dof.is_some() => fixed,
+        Motion::AlongBody => along(body),
+        Motion::AlongSecondBody => along(second),
         Motion::Logarithm { reach } => {
             let start = quantity.value.max(f64::MIN_POSITIVE).ln();
             logarithm(start - reach, start + reach)
@@ -37,7 +43,10 @@ pub(crate) fn parameters_of(fixture: &Fixture, effect: &Effect) -> Vec<Parameter
             let (low, high) = possible(parameter.possible, fixture, &effect.place);
             between(scale.of(quantity.value), low, high)
         }
-        Motion::NonNegative(scale) => between(scale.of(quantity.value), 0.0, f64::INFINITY),
+        Motion::NonNegative(scale) => {
+            let most = if parameter.possible == Possible::UpToOne { 1.0 } else { f64::INFINITY };
+            between(scale.of(quantity.value), 0.0, most)
+        }
     };
     effect.kind.spec().parameters.iter().zip(&effect.parameters).map(of).collect()
 }
@@ -74,6 +83,17 @@ pub(crate) fn mass_of(fixture: &Fixture, body: usize) -> f64 {
     match &fixture.bodies()[body].kind {
         BodyKind::Rigid(rigid) => rigid.mass.value,
         BodyKind::Beam(beam) => beam.mass_per_length.value * (beam.to.value - beam.from.value),
+    }
+}
+
+/// Moment of inertia of a body about its middle, kg·m²; zero of one that does not rotate.
+pub(crate) fn inertia_of(fixture: &Fixture, body: usize) -> f64 {
+    match &fixture.bodies()[body].kind {
+        BodyKind::Rigid(rigid) => rigid.inertia.filter(|_| rigid.rotates).map_or(0.0, |q| q.value),
+        BodyKind::Beam(beam) => {
+            let length = beam.to.value - beam.from.value;
+            beam.mass_per_length.value * length.powi(3) / 12.0
+        }
     }
 }
 

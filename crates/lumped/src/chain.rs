@@ -1,6 +1,6 @@
 //! What stands between the structure and a recorded value: where sensors sit, their masses, gains, delays, window.
 
-use crate::effects::{Action, actions};
+use crate::effects::{Action, SignalFilter, actions};
 use crate::{Instrument, LumpedError, Station};
 use jointscope_fixture::{BodyKind, Fixture, Place};
 use jointscope_spectra::{Channel, Dof, FrfPair};
@@ -19,6 +19,19 @@ pub struct Reading {
     pub gain: f64,
     /// Delay of the response against the reference, s.
     pub delay: f64,
+    /// Filters: those of the response as they are, those of reference and force with `true`: they divide.
+    pub filters: Vec<(SignalFilter, bool)>,
+}
+
+impl Reading {
+    /// Product of the filters at s, those of reference and force inverted.
+    pub fn filtered(&self, s: Complex64) -> Complex64 {
+        self.filters.iter().fold(Complex64::ONE, |all, (filter, divides)| {
+            let own = filter.at(s);
+            // At 0 Hz a high-pass passes nothing: no recorded value says anything there.
+            if *divides && own != Complex64::ZERO { all / own } else { all * own }
+        })
+    }
 }
 
 /// How all FRFs of a recording are read.
@@ -59,9 +72,9 @@ impl MeasuringChain {
     /// Recorded accelerance per receptance of FRF `index`.
     pub fn factor(&self, index: usize, omega: f64) -> Complex64 {
         let s = self.s(omega);
-        let Reading { gain, delay, .. } = self.readings[index];
-        let turned = if delay == 0.0 { Complex64::ONE } else { Complex64::cis(-omega * delay) };
-        s * s * turned * gain
+        let Reading { gain, delay, .. } = &self.readings[index];
+        let turned = if *delay == 0.0 { Complex64::ONE } else { Complex64::cis(-omega * delay) };
+        s * s * turned * self.readings[index].filtered(s) * *gain
     }
 }
 
@@ -105,6 +118,7 @@ fn station<'a>(
 fn reading(fixture: &Fixture, effects: &[Action], pair: &FrfPair) -> Result<Reading, LumpedError> {
     let at = |channel: &Channel| placed(fixture, effects, pair, channel);
     let (mut gain, mut delay, mut load) = (1.0, 0.0, 0.0);
+    let mut filters = Vec::new();
     for effect in effects {
         match *effect {
             Action::Signal { channel: Place::Response(name), gain: g, delay: t }
@@ -113,12 +127,14 @@ fn reading(fixture: &Fixture, effects: &[Action], pair: &FrfPair) -> Result<Read
                 gain *= g;
                 delay += t;
             }
-            Action::Signal { channel: Place::Reference(name), gain: g, delay: t }
-                if pair.reference.is_named(name) =>
-            {
+            Action::Signal { channel, gain: g, delay: t } if divides(channel, pair) => {
                 gain *= 1.0 / g;
                 delay -= t;
             }
+            Action::Filtered { channel: Place::Response(name), filter } if pair.response.is_named(name) => {
+                filters.push((filter, false));
+            }
+            Action::Filtered { channel, filter } if divides(channel, pair) => filters.push((filter, true)),
             Action::SensorLoad { response, mass } if pair.response.is_named(response) => load += mass,
             _ => {}
         }
@@ -127,7 +143,16 @@ fn reading(fixture: &Fixture, effects: &[Action], pair: &FrfPair) -> Result<Read
         0.0 => None,
         mass => Some((at(&Channel::transverse(pair.response.point.clone()))?, mass)),
     };
-    Ok(Reading { output: at(&pair.response)?, input: at(&pair.reference)?, load, gain, delay })
+    Ok(Reading { output: at(&pair.response)?, input: at(&pair.reference)?, load, gain, delay, filters })
+}
+
+/// Whether an FRF is divided by a channel's signal: its own reference, or the force of all references.
+fn divides(channel: &Place, pair: &FrfPair) -> bool {
+    match channel {
+        Place::Reference(name) => pair.reference.is_named(name),
+        Place::Force => true,
+        _ => false,
+    }
 }
 
 fn placed(

@@ -3,6 +3,7 @@
 use crate::Station;
 use crate::terms::{PointLaw, TermStation};
 use jointscope_fixture::{Dof, Effect, EffectKind as Kind, Fixture, Joint, Place};
+use num_complex::Complex64;
 use std::f64::consts::TAU;
 
 /// What an effect does.
@@ -20,12 +21,37 @@ pub(crate) enum Action<'a> {
     Offset { point: &'a str, dx: f64 },
     /// A channel's signal is multiplied by `gain` and late by `delay`, s.
     Signal { channel: &'a Place, gain: f64, delay: f64 },
+    /// A channel's signal passes a filter.
+    Filtered { channel: &'a Place, filter: SignalFilter },
     /// A mass sits at the response while it is measured.
     SensorLoad { response: &'a str, mass: f64 },
     /// Responses were multiplied by e^{−decay·t}.
     Window { decay: f64 },
     /// A force that depends on the amplitude, over time only.
     Amplitude,
+}
+
+/// A filter over frequency on a channel's signal.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum SignalFilter {
+    /// s/(s + ω_c): AC coupling. ω_c in rad/s.
+    HighPass(f64),
+    /// ω₀²/(s² + 2ζω₀s + ω₀²): a sensor on its mounting, with ω₀ in rad/s and ζ.
+    Resonance(f64, f64),
+}
+
+impl SignalFilter {
+    /// Its value at s; one where it is no filter at all.
+    pub fn at(self, s: Complex64) -> Complex64 {
+        match self {
+            SignalFilter::HighPass(0.0) => Complex64::ONE,
+            SignalFilter::HighPass(corner) => s / (s + corner),
+            SignalFilter::Resonance(omega, ratio) => {
+                let stiffness = omega * omega;
+                stiffness / (s * s + s * (2.0 * ratio * omega) + stiffness)
+            }
+        }
+    }
 }
 
 /// What changes in a joint or a beam body.
@@ -82,7 +108,14 @@ fn action<'a>(fixture: &'a Fixture, effect: &'a Effect) -> Option<Action<'a>> {
     let value = |index: usize| effect.value(index);
     let on_body = |law: PointLaw| {
         let body = body_of(fixture, &effect.place)?;
-        Some(Action::Through { motion: TermStation::single(Station::transverse(body, value(0))), law })
+        let station = Station { body, x: value(0), dof: effect.dof.unwrap_or(Dof::Translation) };
+        Some(Action::Through { motion: TermStation::single(station), law })
+    };
+    let on_joint = |law: PointLaw| {
+        let joint = &fixture.joints()[joint_of(fixture, &effect.place)?];
+        let [deflection, rotation] = relative_motion(fixture, joint);
+        let motion = if effect.dof == Some(Dof::Rotation) { rotation } else { deflection };
+        Some(Action::Through { motion, law })
     };
     let changed = |change: Change| match joint_of(fixture, &effect.place) {
         Some(joint) => Some(Action::OnJoint { joint, change }),
@@ -121,12 +154,22 @@ fn action<'a>(fixture: &'a Fixture, effect: &'a Effect) -> Option<Action<'a>> {
             _ => None,
         },
         Kind::ExponentialWindow => Some(Action::Window { decay: value(0) }),
-        Kind::ParallelStiffness => {
-            let joint = &fixture.joints()[joint_of(fixture, &effect.place)?];
-            let [deflection, rotation] = relative_motion(fixture, joint);
-            let motion = if effect.dof == Some(Dof::Rotation) { rotation } else { deflection };
-            let law = PointLaw::Spring { stiffness: value(0), damping: value(1) };
+        Kind::ParallelStiffness => on_joint(PointLaw::Spring { stiffness: value(0), damping: value(1) }),
+        Kind::Springpot => on_joint(PointLaw::Springpot { stiffness: value(0), exponent: value(1) }),
+        Kind::Bypass => {
+            let Place::Between(one, other) = &effect.place else { return None };
+            let body = |name: &String| fixture.bodies().iter().position(|body| body.name == *name);
+            let motion = TermStation::between((body(one)?, value(0)), (body(other)?, value(1)));
+            let law = PointLaw::Spring { stiffness: value(2), damping: value(3) };
             Some(Action::Through { motion, law })
+        }
+        Kind::ChannelHighpass => {
+            let filter = SignalFilter::HighPass(TAU * value(0));
+            Some(Action::Filtered { channel: &effect.place, filter })
+        }
+        Kind::ChannelResonance => {
+            let filter = SignalFilter::Resonance(TAU * value(0), value(1));
+            Some(Action::Filtered { channel: &effect.place, filter })
         }
         // It does two things at once.
         Kind::Footing => None,

@@ -97,6 +97,9 @@ impl StateSpace {
                     let motion = row(*station);
                     equations.spring(&motion, *stiffness, *damping);
                 }
+                Term::Point { law: PointLaw::Springpot { .. }, .. } => {
+                    return Err(LumpedError::NotInTime { kind: "springpot" });
+                }
                 Term::Point { station, law: PointLaw::Mass(mass) } => {
                     let motion = row(*station);
                     add_outer(&mut equations.mass, equations.n, &motion, &motion, *mass);

@@ -129,6 +129,9 @@ impl ContinuedFrfs<'_> {
             if reading.delay != 0.0 {
                 *frf *= (-s * reading.delay).exp();
             }
+            if !reading.filters.is_empty() {
+                *frf *= reading.filtered(read);
+            }
         }
         true
     }
@@ -234,6 +237,11 @@ fn record(
         for (value, s) in course.iter_mut().zip(&s) {
             *value *= Complex64::cis(-s.im * reading.delay);
         }
+    }
+    for (course, reading) in
+        values.chunks_exact_mut(count).zip(&chain.readings).filter(|(_, r)| !r.filters.is_empty())
+    {
+        course.iter_mut().zip(&s).for_each(|(value, s)| *value *= reading.filtered(*s));
     }
     Ok(values)
 }

@@ -16,6 +16,8 @@ pub(crate) enum PointLaw {
     Spring { stiffness: f64, damping: f64 },
     /// s² m.
     Mass(f64),
+    /// k sᵅ, between a spring and a dashpot.
+    Springpot { stiffness: f64, exponent: f64 },
     /// A mass on a spring: s² m (ω_a² + 2ζω_a s)/(s² + 2ζω_a s + ω_a²).
     Resonator { mass: f64, omega: f64, ratio: f64 },
 }
@@ -26,6 +28,13 @@ impl PointLaw {
         match *self {
             PointLaw::Spring { stiffness, damping } => T::ONE * stiffness + s * damping,
             PointLaw::Mass(mass) => s * s * mass,
+            PointLaw::Springpot { stiffness, exponent } => {
+                let mut value = T::ZERO;
+                for line in 0..T::COUNT {
+                    value.set_line(line, stiffness * s.line(line).powf(exponent));
+                }
+                value
+            }
             PointLaw::Resonator { mass, omega, ratio } => {
                 let spring = T::ONE * (omega * omega) + s * (2.0 * ratio * omega);
                 let squared = s * s;
@@ -76,6 +85,12 @@ impl TermStation {
             TermStation { parts: [(1.0, far[0]), (-1.0, near[0]), (-length, near[1])], rigid_only },
             TermStation { parts: [(1.0, far[1]), (-1.0, near[1]), (0.0, near[1])], rigid_only },
         ]
+    }
+
+    /// How far two places move apart.
+    pub fn between(one: (usize, f64), other: (usize, f64)) -> Self {
+        let [one, other] = [one, other].map(|(body, x)| Station::transverse(body, x));
+        TermStation { parts: [(1.0, other), (-1.0, one), (0.0, one)], rigid_only: false }
     }
 
     /// Motions and their weights.

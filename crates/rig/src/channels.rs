@@ -7,6 +7,7 @@ use jointscope_fixture::{Effect, EffectKind, Fixture, Place};
 use jointscope_linalg::LuWorkspace;
 use jointscope_spectra::{Channel, FrfForm, FrfPair, FrfSet, SpectralLines};
 use num_complex::Complex64;
+use std::f64::consts::TAU;
 
 /// Who reads the structure.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -98,6 +99,9 @@ struct Circuit {
     reference: usize,
     gain: f64,
     delay: f64,
+    /// Corners of high-passes (rad/s), and natural frequencies (rad/s) and damping ratios of resonating sensors, each with the power by which it enters.
+    corners: Vec<(f64, i32)>,
+    resonances: Vec<([f64; 2], i32)>,
     sensor: Option<Sensor>,
 }
 
@@ -124,9 +128,19 @@ impl Circuit {
             all(effects, kind).filter_map(move |effect| match &effect.place {
                 Place::Response(name) if *name == response => Some((effect.value(0), 1)),
                 Place::Reference(name) if *name == reference => Some((effect.value(0), -1)),
+                Place::Force => Some((effect.value(0), -1)),
                 _ => None,
             })
         };
+        let power = |place: &Place| match place {
+            Place::Response(name) if *name == pair.response.to_string() => Some(1),
+            Place::Reference(name) if *name == pair.reference.to_string() => Some(-1),
+            Place::Force => Some(-1),
+            _ => None,
+        };
+        let resonances = all(effects, EffectKind::ChannelResonance);
+        let resonances =
+            resonances.filter_map(|e| Some(([TAU * e.value(0), e.value(1)], power(&e.place)?))).collect();
         let mass: f64 = on(EffectKind::SensorMass).map(|(mass, _)| mass).sum();
         let sensor = if mass == 0.0 {
             None
@@ -139,6 +153,8 @@ impl Circuit {
             reference: forces.index_of(place(&pair.reference)?),
             gain: on(EffectKind::ChannelGain).map(|(factor, side): (f64, i32)| factor.powi(side)).product(),
             delay: on(EffectKind::ChannelDelay).map(|(seconds, side)| seconds * f64::from(side)).sum(),
+            corners: on(EffectKind::ChannelHighpass).map(|(corner, side)| (TAU * corner, side)).collect(),
+            resonances,
             sensor,
         })
     }
@@ -156,7 +172,14 @@ impl Circuit {
             let loaded = unloaded / (1.0 + inertia * receptance(&sensor.place, sensor.force));
             value -= inertia * receptance(&self.response, sensor.force) * loaded;
         }
-        let signal = s * s * value * self.gain;
+        let mut signal = s * s * value * self.gain;
+        for &(corner, power) in &self.corners {
+            signal *= (1.0 + corner / s).powi(-power);
+        }
+        for &([omega, ratio], power) in &self.resonances {
+            let scaled = s / omega;
+            signal *= (1.0 + 2.0 * ratio * scaled + scaled * scaled).powi(-power);
+        }
         // Most channels are not late, and a sine and cosine cost as much as the rest.
         if self.delay == 0.0 { signal } else { signal * Complex64::from_polar(1.0, -s.im * self.delay) }
     }

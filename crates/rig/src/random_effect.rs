@@ -34,11 +34,14 @@ pub fn random_effect(
             scene.of_a_joint(rng, kind)
         }
         EffectKind::Footing => scene.footing(rng),
-        EffectKind::ParallelStiffness => scene.beside_a_joint(rng, kind),
+        EffectKind::ParallelStiffness | EffectKind::Springpot => scene.beside_a_joint(rng, kind),
+        EffectKind::Bypass => scene.bypass(rng),
         EffectKind::CubicStiffness | EffectKind::Friction | EffectKind::Gap => scene.nonlinear(rng, kind),
         EffectKind::PointOffset
         | EffectKind::ChannelGain
         | EffectKind::ChannelDelay
+        | EffectKind::ChannelHighpass
+        | EffectKind::ChannelResonance
         | EffectKind::SensorMass
         | EffectKind::ExponentialWindow => scene.of_the_instrument(rng, kind),
     })
@@ -116,8 +119,32 @@ impl Scene<'_> {
         }
         let &(joint, dof, joint_stiffness) = choice(rng, &candidates)?;
         let stiffness = joint_stiffness * log_uniform(rng, 0.03, 0.5);
-        let dashpot = stiffness * log_uniform(rng, 0.003, 0.1) / (TAU * self.highest);
-        Some(Effect::new(kind, Place::Joint(joint.name.clone()), Some(dof), &[stiffness, dashpot]))
+        let values = match kind {
+            // As stiff as that where the highest mode is.
+            EffectKind::Springpot => {
+                let exponent = uniform(rng, 0.2, 0.8);
+                [stiffness / (TAU * self.highest).powf(exponent), exponent]
+            }
+            _ => [stiffness, stiffness * log_uniform(rng, 0.003, 0.1) / (TAU * self.highest)],
+        };
+        Some(Effect::new(kind, Place::Joint(joint.name.clone()), Some(dof), &values))
+    }
+
+    fn bypass(&self, rng: &mut impl Rng) -> Option<Effect> {
+        let bodies = self.fixture.bodies();
+        let one = choice(rng, bodies)?;
+        let others: Vec<&Body> = bodies.iter().filter(|body| body.name != one.name).collect();
+        let other = choice(rng, &others)?;
+        let place = |rng: &mut _, body: &Body| {
+            let (from, to, _) = extent(body);
+            uniform(rng, from, to)
+        };
+        let (x_from, x_to) = (place(rng, one), place(rng, other));
+        let mass = extent(one).2.min(extent(other).2);
+        let omega = TAU * self.highest * log_uniform(rng, 0.03, 0.3);
+        let values = [x_from, x_to, mass * omega * omega, 2.0 * uniform(rng, 0.01, 0.1) * mass * omega];
+        let place = Place::Between(one.name.clone(), other.name.clone());
+        Some(Effect::new(EffectKind::Bypass, place, None, &values))
     }
 
     fn footing(&self, rng: &mut impl Rng) -> Option<Effect> {
@@ -228,9 +255,15 @@ impl Scene<'_> {
             EffectKind::ChannelGain => (sign(rng) * log_uniform(rng, 0.05, 0.5)).exp(),
             EffectKind::ChannelDelay => sign(rng) * log_uniform(rng, 1e-5, 1e-4),
             EffectKind::SensorMass => log_uniform(rng, 0.002, 0.02),
+            EffectKind::ChannelHighpass => log_uniform(rng, 0.2, 5.0),
+            EffectKind::ChannelResonance => self.highest * log_uniform(rng, 1.5, 6.0),
             _ => log_uniform(rng, 2.0, 20.0),
         };
-        Some(Effect::new(kind, place, None, &[value]))
+        let values = match kind {
+            EffectKind::ChannelResonance => vec![value, log_uniform(rng, 0.01, 0.05)],
+            _ => vec![value],
+        };
+        Some(Effect::new(kind, place, None, &values))
     }
 
     /// A displacement of 2 to 9 mm, inwards where the point is near the end of a deformable body; `None` on a storey,

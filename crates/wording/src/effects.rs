@@ -122,7 +122,9 @@ fn word(effect: &Effect, key: &str) -> String {
         _ => ("joint", "Joint"),
     };
     match key {
+        "place" if *place == Place::Force => "the force of all references".to_owned(),
         "place" => place.to_string(),
+        "against rotation" if effect.dof == Some(Dof::Rotation) => " against rotation".to_owned(),
         "owner" => format!("{owner} {place}"),
         "Owner" => format!("{at_the_start} {place}"),
         "dof" => effect.dof.map_or("translation", Dof::name).to_owned(),

@@ -93,7 +93,9 @@ impl Site {
     /// Whether `effect` would act through this site of `fixture`. A body's abscissa is not compared: the effect's own is fitted.
     pub fn holds(&self, effect: &Effect, fixture: &Fixture) -> bool {
         match (self, &effect.place, effect.kind.spec().entry) {
-            (Site::Body { body, .. }, Place::Body(name), Entry::RankOne) => body == name,
+            (Site::Body { body, .. }, Place::Body(name), Entry::RankOne) => {
+                body == name && effect.dof.is_none()
+            }
             (Site::Series { joint, point, dof }, Place::Point(name), Entry::InSeries) => {
                 let ends = fixture.joint(joint).map(|j| [j.from, j.to]);
                 let at_an_end = ends.is_some_and(|e| e.iter().any(|p| fixture.points()[*p].name == *name));
@@ -116,7 +118,7 @@ impl Site {
     /// The site through which `effect` acts in `fixture`; `None` for an effect of higher rank.
     pub fn of(fixture: &Fixture, effect: &Effect) -> Option<Self> {
         let sites = match (&effect.place, effect.kind.spec().entry) {
-            (Place::Body(body), Entry::RankOne) => {
+            (Place::Body(body), Entry::RankOne) if effect.dof.is_none() => {
                 vec![Site::Body { body: body.clone(), x: effect.value(0) }]
             }
             (Place::Point(name), Entry::Offset) => vec![Site::Position(name.clone())],

@@ -147,7 +147,7 @@ impl ModalJudgement {
 }
 
 /// The recording's modes, with the help of the model's where they are not resolved.
-pub(super) fn recorded(
+pub(crate) fn recorded(
     observation: &Observation,
     nominal: &Hypothesis,
     settings: &ModalSettings,

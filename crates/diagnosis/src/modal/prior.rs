@@ -50,7 +50,7 @@ fn of_effect(hypothesis: &Hypothesis, index: usize, candidate: &Candidate) -> Ve
             (Transform::Logarithmic { .. }, _) => {
                 Prior { mean: 0.5 * (low + high), std: (0.5 * (high - low)).max(LOGARITHM) }
             }
-            (_, Motion::AlongBody) => {
+            (_, Motion::AlongBody | Motion::AlongSecondBody) => {
                 let (from, to) = (moves.low, moves.high);
                 Prior { mean: 0.5 * (from + to), std: (to - from) / 12f64.sqrt() }
             }

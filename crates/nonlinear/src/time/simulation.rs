@@ -55,7 +55,9 @@ pub(crate) fn simulate_one(
     let system = structure.system(structure.load(hit.struck())?, readings, &[])?;
     // The force that acts, of which a gain or delay of the hammer's channel makes the one recorded.
     let hammer = Chain::of(fixture, Place::Reference(hit.struck().to_string()));
-    let real_force = shifted(hit.force(), 1.0 / hammer.gain, -hammer.delay_s / hit.interval());
+    let all = Chain::of(fixture, Place::Force);
+    let (gain, delay_s) = (hammer.gain * all.gain, hammer.delay_s + all.delay_s);
+    let real_force = shifted(hit.force(), 1.0 / gain, -delay_s / hit.interval());
     let run = |within: usize| {
         let steps = Steps { interval: hit.interval(), within, halvings: HALVINGS };
         let stepper = Stepper::new(&system, steps)?;

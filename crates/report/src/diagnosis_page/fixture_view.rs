@@ -31,7 +31,8 @@ pub(super) fn section(subject: &Subject) -> Section {
         (1, _) => "marked is where the finding sits",
         _ => "marked is where the findings sit, by their numbers",
     };
-    let everywhere = diagnosis.findings.iter().any(|finding| finding.effect.place == Place::All);
+    let everywhere =
+        diagnosis.findings.iter().any(|finding| matches!(finding.effect.place, Place::All | Place::Force));
     let all = if everywhere { " One finding concerns the whole measurement and has no place." } else { "" };
     Section::new("Where").drawing(
         view.draw(),
@@ -56,7 +57,11 @@ fn place(fixture: &Fixture, effect: &Effect) -> Option<(f64, Option<usize>)> {
             Some((point.x.value, Some(point.body)))
         }
         Place::Joint(name) => middle(fixture, name).map(|x| (x, None)),
-        Place::All => None,
+        Place::Between(one, _) => {
+            let body = fixture.bodies().iter().position(|body| body.name == *one)?;
+            Some((effect.value(0), Some(body)))
+        }
+        Place::Force | Place::All => None,
     }
 }
 

@@ -1,7 +1,7 @@
 use super::{Row, Station};
 use num_complex::Complex64;
 
-/// How an element's restoring force follows its static stiffness: K(s) = K·(1 + ratio·sτ/(1 + sτ) + iη).
+/// How an element's restoring force follows its static stiffness: K(s) = K·(1 + ratio·sτ/(1 + sτ) + iη), or K·sᵅ where it has an exponent.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Law {
     /// Loss factor η of structural damping (eq 17).
@@ -10,14 +10,21 @@ pub struct Law {
     pub relaxation_ratio: f64,
     /// Its relaxation time τ, s.
     pub relaxation_time: f64,
+    /// Exponent α of a springpot; zero of all else.
+    pub exponent: f64,
 }
 
 impl Law {
     /// A spring and nothing else.
-    pub const ELASTIC: Law = Law { loss_factor: 0.0, relaxation_ratio: 0.0, relaxation_time: 0.0 };
+    pub const ELASTIC: Law =
+        Law { loss_factor: 0.0, relaxation_ratio: 0.0, relaxation_time: 0.0, exponent: 0.0 };
 
     /// The part of K(s)/K beyond one, at s in rad/s.
     pub fn excess(&self, s: Complex64) -> Complex64 {
+        if self.exponent != 0.0 {
+            let (size, angle) = s.to_polar();
+            return Complex64::from_polar(size.powf(self.exponent), self.exponent * angle) - 1.0;
+        }
         let s_tau = s * self.relaxation_time;
         self.relaxation_ratio * s_tau / (1.0 + s_tau) + Complex64::new(0.0, self.loss_factor)
     }

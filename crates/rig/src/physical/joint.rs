@@ -91,6 +91,10 @@ fn add_parallel(
         assembly.spring(stretch, beside.value(0), Law::ELASTIC);
         assembly.dashpot(stretch, beside.value(1));
     }
+    for pot in at(effects, EffectKind::Springpot, Place::Joint(joint.name.clone())) {
+        let stretch = if pot.dof == Some(Dof::Rotation) { &rotation } else { &deflection };
+        assembly.spring(stretch, pot.value(0), Law { exponent: pot.value(1), ..Law::ELASTIC });
+    }
     Ok(())
 }
 

@@ -152,9 +152,21 @@ fn attach(
     bodies: &Bodies,
     effect: &Effect,
 ) -> Result<(), StructureError> {
+    let number = |name: &str| fixture.bodies().iter().position(|b| b.name == name);
+    if let Place::Between(one, other) = &effect.place {
+        let (Some(one), Some(other)) = (number(one), number(other)) else { return Ok(()) };
+        let [from, to] = [bodies.station(one, effect.value(0))?, bodies.station(other, effect.value(1))?];
+        let stretch = to.y.minus(&from.y);
+        assembly.spring(&stretch, effect.value(2), Law::ELASTIC);
+        assembly.dashpot(&stretch, effect.value(3));
+        return Ok(());
+    }
     let Place::Body(name) = &effect.place else { return Ok(()) };
-    let Some(body) = fixture.bodies().iter().position(|b| b.name == *name) else { return Ok(()) };
-    let place = || Ok::<Row, StructureError>(bodies.station(body, effect.value(0))?.y);
+    let Some(body) = number(name) else { return Ok(()) };
+    let place = || {
+        let station = bodies.station(body, effect.value(0))?;
+        Ok::<Row, StructureError>(if effect.dof == Some(Dof::Rotation) { station.theta } else { station.y })
+    };
     match effect.kind {
         EffectKind::AddedMass => assembly.inertia(&place()?, effect.value(1)),
         EffectKind::Support => {

@@ -1,0 +1,125 @@
+//! Slips of a test, made on FRFs of two blocks on a strip, and FRFs without any.
+
+#![allow(clippy::unwrap_used, clippy::panic)]
+
+use jointscope_fixture::Fixture;
+use jointscope_lumped::{Instrument, synthesize};
+use jointscope_screening::{Oddity, ScreeningError, screened};
+use jointscope_spectra::{FrfForm, FrfPair, FrfSet, SpectralLines};
+use num_complex::Complex64;
+use proptest::prelude::*;
+
+fn fixture(physics: &str) -> Fixture {
+    Fixture::from_json(&format!(
+        r#"{{ "bodies": {{ "A": {{ "mass": 1.1, "inertia": 9.5e-4, "x_cg": -0.03 }}, "B": {{ "mass": 1.4, "inertia": 1.3e-3, "x_cg": 0.095 }} }},
+             "points": {{ "1": {{ "body": "A", "x": -0.06 }}, "2": {{ "body": "A", "x": 0.0 }}, "3": {{ "body": "B", "x": 0.065 }}, "4": {{ "body": "B", "x": 0.125 }} }},
+             "joints": {{ "J": {{ "from": "2", "to": "3", "beam": {{ "youngs_modulus": 2.07e11, "second_moment": 3.67e-10 }} }} }},
+             "damping": {{ "modal_ratios": [0.004] }}, "physics": [{physics}] }}"#
+    ))
+    .unwrap()
+}
+
+fn pairs() -> Vec<FrfPair> {
+    [("4", "1"), ("3", "1"), ("4", "2"), ("3", "2")].map(|(o, i)| FrfPair::transverse(o, i)).to_vec()
+}
+
+/// FRFs of a structure with physics that its fixture does not have: resonances are elsewhere.
+fn recorded(physics: &str) -> FrfSet {
+    let lines = SpectralLines::even(2.5, 2.5, 400).unwrap();
+    synthesize(&fixture(physics), &pairs(), &lines, Instrument::AsRecorded).unwrap()
+}
+
+const WELD: &str =
+    r#"{ "kind": "interface_compliance", "place": "3", "dof": "rotation", "stiffness": 9000.0 }"#;
+
+fn oddities(frfs: &FrfSet) -> (FrfSet, Vec<Oddity>) {
+    let screened = screened(frfs, &fixture("")).unwrap();
+    (screened.frfs, screened.oddities)
+}
+
+#[test]
+fn frfs_without_a_signal_are_left_out() {
+    let frfs = recorded(WELD);
+    let dead = frfs.clone().with_values(|at, value| if at < 400 { Complex64::ZERO } else { value });
+    let (left, found) = oddities(&dead);
+    assert_eq!(found, [Oddity::Dead(vec![pairs()[0].clone()])]);
+    assert_eq!(left.pairs(), &pairs()[1..]);
+    let nothing = frfs.with_values(|_, _| Complex64::ZERO);
+    assert_eq!(screened(&nothing, &fixture("")).unwrap_err(), ScreeningError::NothingRecorded);
+}
+
+#[test]
+fn conjugates_are_taken_back() {
+    let frfs = recorded(WELD);
+    let (back, found) = oddities(&frfs.clone().with_values(|_, value| value.conj()));
+    assert_eq!(found, [Oddity::Conjugated(pairs())]);
+    assert_eq!(back, frfs);
+}
+
+#[test]
+fn receptances_and_mobilities_labelled_accelerance_are_taken_as_what_they_are() {
+    let frfs = recorded(WELD);
+    let omegas: Vec<f64> = frfs.lines().omegas().collect();
+    for form in [FrfForm::Mobility, FrfForm::Receptance] {
+        let factor = |at: usize| FrfForm::Accelerance.factor_to(form, omegas[at % 400]).unwrap();
+        let (back, found) = oddities(&frfs.clone().with_values(|at, value| value * factor(at)));
+        assert_eq!(found, [Oddity::Form(form)]);
+        for (a, b) in back.all_values().iter().zip(frfs.all_values()) {
+            assert!((a - b).norm() < 1e-12 * b.norm());
+        }
+    }
+}
+
+#[test]
+fn two_frfs_under_each_others_labels_are_exchanged() {
+    let frfs = recorded(WELD);
+    let mut labels = pairs();
+    labels.swap(0, 3);
+    let (back, found) = oddities(&frfs.with_pairs(labels));
+    assert!(matches!(&found[..], [Oddity::Exchanged(..)]), "{found:?}");
+    assert_eq!(back.pairs(), pairs());
+}
+
+#[test]
+fn a_band_without_coherence_is_laid_to_the_hammer_where_all_its_frfs_lack_it_and_to_a_sensor_otherwise() {
+    let without = |of: fn(&FrfPair) -> bool| {
+        let mut frfs = recorded("");
+        for (index, pair) in pairs().iter().enumerate() {
+            let gamma = |line: usize| if line > 280 && of(pair) { 0.1 } else { 0.98 };
+            frfs.set_coherence(index, (0..400).map(gamma).collect()).unwrap();
+        }
+        oddities(&frfs).1
+    };
+    let told = |found: &[Oddity]| match found {
+        [Oddity::Unexcited { point, is_reference, from }] => (point.clone(), *is_reference, *from),
+        other => panic!("{other:?}"),
+    };
+    let (point, is_reference, from) = told(&without(|pair| pair.reference.point == "1"));
+    assert!(point == "1" && is_reference && (from - 705.0).abs() < 30.0, "{from}");
+    let (point, is_reference, _) = told(&without(|pair| pair.response.point == "4"));
+    assert!(point == "4" && !is_reference);
+    assert!(without(|_| false).is_empty());
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 48, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn physics_that_a_fixture_leaves_out_is_no_slip(
+        kind in 0usize..6, size in 0.05f64..1.0, sign in prop::bool::ANY
+    ) {
+        let signed = if sign { size } else { -size };
+        let physics = match kind {
+            0 => format!(r#"{{ "kind": "added_mass", "place": "B", "x": 0.12, "mass": {} }}"#, 0.3 * signed),
+            1 => format!(r#"{{ "kind": "interface_compliance", "place": "3", "dof": "rotation", "stiffness": {} }}"#, 2e3 / size),
+            2 => format!(r#"{{ "kind": "channel_gain", "place": "response 4", "factor": {} }}"#, if sign { -1.0 } else { 1.0 + 0.5 * size }),
+            3 => format!(r#"{{ "kind": "channel_delay", "place": "reference 1", "seconds": {} }}"#, 1e-4 * signed),
+            4 => format!(r#"{{ "kind": "support", "place": "A", "x": -0.05, "stiffness": {}, "damping": 5 }}"#, 1e6 * size),
+            _ => format!(r#"{{ "kind": "stiffness_change", "place": "J", "factor": {} }}"#, 1.0 + 0.8 * signed),
+        };
+        let frfs = recorded(&physics);
+        let screened = screened(&frfs, &fixture("")).unwrap();
+        prop_assert!(screened.oddities.is_empty(), "{:?} of {physics}", screened.oddities);
+        prop_assert_eq!(screened.frfs, frfs);
+    }
+}
