@@ -22,6 +22,8 @@ const FREQUENCY: (f64, f64) = (60.0, 10.0);
 const SHAPE: f64 = 5.0;
 /// What a mode without a partner costs.
 const ALONE: f64 = 8.0;
+/// Deviation of ln ω up to which a mode too low to be resolved counts as one.
+const PLACED: f64 = 0.01;
 /// Decades that the damping ratio of a mode of anything may lie in.
 const DAMPING_DECADES: f64 = 4.0;
 /// Most that an unseen mode may cost, nats: a free fit may miss one.
@@ -64,7 +66,9 @@ impl Pairing {
                 pairs.push((i - 1, j - 1));
                 (i, j) = (i - 1, j - 1);
             } else if i > 0 && best[i][j] == best[i - 1][j] + ALONE {
-                unmodelled += if a[i - 1].resolved { of_anything(recorded, &a[i - 1]) } else { 0.0 };
+                // Too low to be compared in its residues, a mode that stands where it stands is there all the same.
+                let is_there = a[i - 1].resolved || recorded.deviations(i - 1)[0] < PLACED;
+                unmodelled += if is_there { of_anything(recorded, &a[i - 1]) } else { 0.0 };
                 i -= 1;
             } else {
                 unseen -= visible(recorded, &b[j - 1]).min(UNSEEN);
