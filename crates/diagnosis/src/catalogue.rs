@@ -98,13 +98,15 @@ fn made_small(kind: EffectKind, start: &[f64], all: &[Vec<f64>]) -> Vec<f64> {
 pub fn catalogue(fixture: &Fixture, observation: &Observation) -> Vec<Candidate> {
     let mut all = Vec::new();
     let mut add = |kind: EffectKind, place: Place, joint: Option<&Joint>| {
-        let dofs: &[Option<Dof>] = match (kind.spec().has_dof, kind.spec().may_turn) {
+        let body = body_at(fixture, &place);
+        // What holds a whole body against rotation: of a beam there is no such thing.
+        let whole = body.is_some_and(|body| matches!(fixture.bodies()[body].kind, BodyKind::Rigid(_)));
+        let dofs: &[Option<Dof>] = match (kind.spec().has_dof, kind.spec().may_turn && whole) {
             (true, _) => &[Some(Dof::Translation), Some(Dof::Rotation)],
             (false, true) => &[None, Some(Dof::Rotation)],
             (false, false) => &[None],
         };
         for &dof in dofs {
-            let body = body_at(fixture, &place);
             let second = match &place {
                 Place::Between(_, other) => body_at(fixture, &Place::Body(other.clone())),
                 _ => None,

@@ -85,6 +85,7 @@ pub use jointscope_pipeline as pipeline;
 pub use jointscope_proof as proof;
 pub use jointscope_recordings as recordings;
 pub use jointscope_report as report;
+pub use jointscope_screening as screening;
 pub use jointscope_spectra as spectra;
 pub use jointscope_tables as tables;
 pub use jointscope_uff as uff;

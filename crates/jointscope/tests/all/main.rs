@@ -10,5 +10,6 @@ mod location;
 mod model_error;
 mod modes;
 mod real_beam;
+mod slips;
 mod stated;
 mod wrong_quantities;

@@ -1,0 +1,128 @@
+//! What tests really do to data: the one hammer, filters of channels, paths past the joint, hum and overloads. Each from the simulated laboratory, named as such or left out.
+
+use crate::common::{believed, four_pairs, hammer, measured};
+use crate::model_error::told;
+use jointscope::diagnosis::{Diagnosis, DiagnosisOptions, Verdict};
+use jointscope::fixture::{Dof, Effect, EffectKind, Place};
+use jointscope::{Fixture, FrfPair, FrfSet, SpectralLines};
+use num_complex::Complex64;
+
+/// The four FRFs across the joint, and those on block A.
+fn eight_pairs() -> Vec<FrfPair> {
+    let near = [("1", "1"), ("2", "1"), ("1", "2"), ("2", "2")];
+    four_pairs().into_iter().chain(near.map(|(o, i)| FrfPair::transverse(o, i))).collect()
+}
+
+fn diagnosed(effect: &Effect, pairs: &[FrfPair], seed: u64) -> Diagnosis {
+    let fixture = believed([0.004, 0.004]);
+    let lines = SpectralLines::even(2.5, 2.5, 400).unwrap();
+    let frfs = measured(&fixture, vec![effect.clone()], (pairs, &lines), &hammer(seed));
+    Diagnosis::of(&fixture, &frfs, &DiagnosisOptions::default()).unwrap()
+}
+
+/// Expects the effect by its name alone, its parameters within a share of what they are.
+#[track_caller]
+fn named(effect: &Effect, pairs: &[FrfPair], seed: u64, share: f64) {
+    let diagnosis = diagnosed(effect, pairs, seed);
+    let [found] = &diagnosis.findings[..] else { panic!("{}", told(&diagnosis)) };
+    let same = |e: &Effect| (e.kind, e.place.clone(), e.dof);
+    assert!(
+        same(&found.effect) == same(effect)
+            && found.probability > 0.5
+            && diagnosis.verdict == Verdict::Explained,
+        "{}",
+        told(&diagnosis)
+    );
+    let leading = effect.kind.spec().size.parameter;
+    let ratio = found.effect.value(leading) / effect.value(leading);
+    assert!((ratio - 1.0).abs() < share, "{ratio} of {effect:?}");
+}
+
+fn on(kind: EffectKind, place: Place, values: &[f64]) -> Effect {
+    Effect::new(kind, place, None, values)
+}
+
+#[test]
+fn a_late_hammer_is_one_channel_and_not_two_early_responses() {
+    named(&on(EffectKind::ChannelDelay, Place::Force, &[5e-5]), &four_pairs(), 11, 0.02);
+    named(&on(EffectKind::ChannelDelay, Place::Force, &[5e-5]), &eight_pairs(), 12, 0.02);
+}
+
+#[test]
+fn a_hammer_that_reads_high_is_no_mass_that_is_missing() {
+    named(&on(EffectKind::ChannelGain, Place::Force, &[1.05]), &eight_pairs(), 13, 0.005);
+}
+
+#[test]
+fn ac_coupling_is_a_high_pass_and_no_dashpots_to_ground() {
+    named(&on(EffectKind::ChannelHighpass, Place::Response("3".into()), &[1.5]), &four_pairs(), 14, 0.1);
+    named(&on(EffectKind::ChannelHighpass, Place::Force, &[1.5]), &eight_pairs(), 15, 0.1);
+}
+
+#[test]
+fn a_softly_mounted_sensor_resonates_above_the_band() {
+    named(
+        &on(EffectKind::ChannelResonance, Place::Response("4".into()), &[2600.0, 0.02]),
+        &four_pairs(),
+        16,
+        0.05,
+    );
+}
+
+#[test]
+fn a_cable_from_block_to_block_is_a_bypass_where_it_is() {
+    let place = Place::Between("A".into(), "B".into());
+    named(&on(EffectKind::Bypass, place, &[-0.02, 0.1, 2e5, 3.0]), &eight_pairs(), 17, 0.05);
+}
+
+#[test]
+fn fractional_damping_of_a_joint_is_neither_a_dashpot_nor_a_loss_factor() {
+    let pot = Effect::new(EffectKind::Springpot, Place::Joint("J".into()), Some(Dof::Rotation), &[4.0, 0.5]);
+    named(&pot, &four_pairs(), 18, 0.25);
+}
+
+#[test]
+fn a_body_may_be_held_against_rotation_alone() {
+    let held =
+        Effect::new(EffectKind::Support, Place::Body("A".into()), Some(Dof::Rotation), &[0.0, 5000.0, 0.3]);
+    let diagnosis = diagnosed(&held, &eight_pairs(), 19);
+    let [found] = &diagnosis.findings[..] else { panic!("{}", told(&diagnosis)) };
+    assert!(found.effect.kind == EffectKind::Support && found.effect.dof == Some(Dof::Rotation));
+    assert!((found.effect.value(1) / 5000.0 - 1.0).abs() < 0.02 && found.estimate("x").is_none());
+}
+
+/// A test with nothing left out, its values changed on lines.
+fn disturbed(change: impl Fn(usize, Complex64) -> Complex64) -> (Fixture, FrfSet) {
+    let fixture = believed([0.004, 0.004]);
+    let lines = SpectralLines::even(2.5, 2.5, 400).unwrap();
+    let frfs = measured(&fixture, Vec::new(), (&four_pairs(), &lines), &hammer(20));
+    (fixture, frfs.with_values(|at, value| change(at % 400, value)))
+}
+
+#[test]
+fn mains_hum_is_left_out_and_nothing_is_named_for_it() {
+    let (fixture, frfs) =
+        disturbed(|line, value| if (18..21).contains(&line) { 30.0 * value } else { value });
+    let diagnosis = Diagnosis::of(&fixture, &frfs, &DiagnosisOptions::default()).unwrap();
+    assert_eq!(diagnosis.verdict, Verdict::Consistent, "{}", told(&diagnosis));
+    let [(from, to)] = diagnosis.contradictory[..] else { panic!("{:?}", diagnosis.contradictory) };
+    assert!(from >= 40.0 && from <= 47.5 && (52.5..=60.0).contains(&to), "{from} to {to} Hz");
+}
+
+#[test]
+fn a_peak_that_an_overload_flattened_is_left_out() {
+    let fixture = believed([0.004, 0.004]);
+    let lines = SpectralLines::even(2.5, 2.5, 400).unwrap();
+    let frfs = measured(&fixture, Vec::new(), (&four_pairs(), &lines), &hammer(20));
+    let size = |line: usize| frfs.values(0)[line].norm();
+    let peak = (40..400).fold(40, |best, line| if size(line) > size(best) { line } else { best });
+    let (fixture, frfs) = disturbed(|line, value| if line.abs_diff(peak) < 4 { 0.4 * value } else { value });
+    let diagnosis = Diagnosis::of(&fixture, &frfs, &DiagnosisOptions::default()).unwrap();
+    assert_eq!(diagnosis.verdict, Verdict::Consistent, "{}", told(&diagnosis));
+    let at = 2.5 * (peak as f64 + 1.0);
+    assert!(
+        diagnosis.contradictory.iter().any(|(from, to)| *from < at && at < *to),
+        "{:?}",
+        diagnosis.contradictory
+    );
+}
