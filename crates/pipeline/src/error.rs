@@ -3,7 +3,7 @@ use jointscope_estimation::EstimateError;
 use jointscope_fixture::FixtureError;
 use jointscope_nonlinear::{Held, SteppedError};
 use jointscope_recordings::{HitsError, RecordingError};
-use jointscope_screening::ScreeningError;
+use jointscope_screening::{Implausible, ScreeningError};
 
 /// Why files are no recording of a fixture.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -35,6 +35,9 @@ pub enum Error {
     /// No FRFs can be estimated from the hits.
     #[error("{0}{remedy}", remedy = remedy_of_estimate(.0))]
     Estimate(#[from] EstimateError),
+    /// Numbers of the fixture that belong to no structure together.
+    #[error(transparent)]
+    Implausible(#[from] Implausible),
     /// The FRFs hold nothing.
     #[error(transparent)]
     Screening(#[from] ScreeningError),
@@ -81,6 +84,7 @@ impl Error {
     pub fn concern(&self) -> Concern {
         match self {
             Error::Fixture(_)
+            | Error::Implausible(_)
             | Error::Stepped(SteppedError::Model(_))
             | Error::Linear(DiagnosisError::Model(_)) => Concern::Fixture,
             Error::Estimate(EstimateError::Window { .. }) => Concern::Options,

@@ -3,8 +3,10 @@
 use crate::{Answer, Error, MeasuredFrfs, Measurement, hits, levels};
 use jointscope_diagnosis::{Diagnosis, DiagnosisOptions, Step, Watch};
 use jointscope_estimation::{EstimateOptions, ResponseWindow};
-use jointscope_fixture::Fixture;
+use jointscope_fixture::{Damping, Fixture, JointLaw, Quantity, RatiosOf, Spread};
+use jointscope_lumped::Assembly;
 use jointscope_nonlinear::NonlinearOptions;
+use jointscope_screening::plausible;
 use jointscope_spectra::FrfSet;
 
 /// What to use of a measurement.
@@ -14,6 +16,8 @@ pub struct Options {
     pub diagnosis: DiagnosisOptions,
     /// How FRFs follow from hits.
     pub estimate: EstimateOptions,
+    /// Whether numbers of the fixture that belong to no structure together are taken as they are.
+    pub as_stated: bool,
 }
 
 impl Default for Options {
@@ -24,7 +28,7 @@ impl Default for Options {
             zero_padding: 1,
             ..EstimateOptions::default()
         };
-        Options { diagnosis: DiagnosisOptions::default(), estimate }
+        Options { diagnosis: DiagnosisOptions::default(), estimate, as_stated: false }
     }
 }
 
@@ -49,6 +53,38 @@ impl Options {
             _ => Ok(()),
         }
     }
+}
+
+/// Damping ratio from which that of a fixture without any is sought.
+const RATIO: f64 = 0.005;
+/// Modes that have one of their own, at the most.
+const MODES: usize = 12;
+
+/// The fixture, with damping ratios of which nothing is known where it has no damping at all: nothing that was recorded has none.
+fn damped(fixture: Fixture, measured: &mut MeasuredFrfs) -> Result<Fixture, Error> {
+    let of_supports =
+        fixture.supports().iter().any(|s| s.damping.is_some() || s.rotational_damping.is_some());
+    let of_joints = fixture
+        .joints()
+        .iter()
+        .any(|joint| matches!(joint.law, JointLaw::Stiffness { damping: Some(_), .. }));
+    if *fixture.damping() != Damping::Undamped || of_supports || of_joints {
+        return Ok(fixture);
+    }
+    let hz = measured.frfs.lines().hz();
+    let highest = hz[hz.len() - 1];
+    let with = |count: usize| {
+        let ratios = vec![Quantity { value: RATIO, spread: Spread::Unknown }; count];
+        fixture.clone().with_damping(Damping::ModalRatios { ratios, of: RatiosOf::AsItStands })
+    };
+    let Ok(assembly) = Assembly::new(&with(1)?, highest) else { return Ok(fixture) };
+    let frequencies = assembly.natural_frequencies_hz();
+    let shown = assembly.elastic_modes().iter().filter(|r| frequencies[**r] <= highest).count();
+    measured.notes.push(
+        "the fixture states no damping: ratios of its modes were fitted without knowing anything of them; state `damping`, or measure it with `jointscope modes`"
+            .to_owned(),
+    );
+    Ok(with(shown.clamp(1, MODES))?)
 }
 
 /// How far a diagnosis has come.
@@ -83,6 +119,9 @@ pub fn diagnose(
     options: &Options,
     progress: impl Fn(Progress) + Sync,
 ) -> Result<Answer, Error> {
+    if !options.as_stated {
+        plausible(fixture)?;
+    }
     let homogeneity = match measurement {
         Measurement::Frfs(recording) => levels::homogeneity(fixture, recording, options)?,
         Measurement::Hits(hits) => hits::homogeneity(fixture, hits, options)?,
@@ -91,8 +130,9 @@ pub fn diagnose(
         Homogeneity::Changes(answer) => return Ok(*answer),
         Homogeneity::Linear(measured, p_value) => (*measured, p_value),
     };
-    let measured = measured.screened(fixture)?;
+    let mut measured = measured.screened(fixture)?;
     let fixture = measured.as_recorded(fixture)?;
+    let fixture = damped(fixture, &mut measured)?;
     let frfs = &measured.frfs;
     options.check(frfs)?;
     progress(Progress::Searching { frfs: frfs.pairs().len(), lines: frfs.lines().len() });

@@ -4,19 +4,26 @@
 //! what no physics does, put right where it is plain what was meant, left out otherwise, and always said.
 //!
 //! 1. [dead](Oddity::Dead): no signal on any line. Left out.
-//! 2. [another form](Oddity::Form): the levels fall behind the fixture's as frequency to the power −1 or −2, whatever the resonances do. Taken as mobility or
+//! 2. [another axis](Oddity::Axis): FRFs are nothing like the fixture's, and like them at frequencies over 1000, 2π or 60. Taken there.
+//! 3. [another form](Oddity::Form): the levels fall behind the fixture's as frequency to the power −1 or −2, whatever the resonances do. Taken as mobility or
 //!    receptance.
-//! 3. [conjugated](Oddity::Conjugated): the phase rises through resonances, so the file's time dependence is e^{−iωt}. Conjugated.
-//! 4. [exchanged](Oddity::Exchanged): two FRFs are each like the fixture's other one, and neither like its own. Exchanged.
-//! 5. [unexcited](Oddity::Unexcited): no coherence over the upper part of the band. Only said: the noise says the rest.
+//! 4. [another unit](Oddity::Unit): all levels are off by what lies between two units. Taken in the other one.
+//! 5. [conjugated](Oddity::Conjugated): the phase rises through resonances, so the file's time dependence is e^{−iωt}. Conjugated.
+//! 6. [exchanged](Oddity::Exchanged): two FRFs are each like the fixture's other one, and neither like its own. Exchanged.
+//! 7. [unexcited](Oddity::Unexcited): no coherence over the upper part of the band. Only said: the noise says the rest.
 //!
 //! The fixture is compared as it stands. What it leaves out moves resonances; levels and phases between them hardly change, so all of it goes by medians over the lines.
 
+mod axis;
 mod conjugated;
 mod exchanged;
 mod form;
 mod levels;
+mod plausibility;
 mod unexcited;
+mod unit;
+
+pub use plausibility::{Implausible, plausible};
 
 use jointscope_fixture::Fixture;
 use jointscope_lumped::{Instrument, accelerances};
@@ -33,6 +40,15 @@ pub enum Oddity {
     Conjugated(Vec<FrfPair>),
     /// FRFs that are of this form, and not what the file says: taken as such.
     Form(FrfForm),
+    /// The frequencies of all lines are this many times too large: divided by it.
+    Axis(f64),
+    /// All FRFs are larger by this factor, which lies between two units: divided by it.
+    Unit {
+        /// The factor.
+        factor: f64,
+        /// The units that were taken for each other.
+        between: &'static str,
+    },
     /// Two FRFs that stand under each other's labels: exchanged.
     Exchanged(FrfPair, FrfPair),
     /// No coherence from this frequency (Hz) to the end of the band in all FRFs of a channel: `true` of a reference.
@@ -78,7 +94,15 @@ const DEAD: f64 = 1e-9;
 pub fn screened(frfs: &FrfSet, fixture: &Fixture) -> Result<Screened, ScreeningError> {
     let mut oddities = Vec::new();
     let mut frfs = alive(frfs, &mut oddities)?;
-    let modelled = modelled(&frfs, fixture);
+    let mut modelled = modelled(&frfs, fixture);
+    if let Some(at_these) = &modelled
+        && let Some(factor) = axis::off_axis(&frfs, at_these, fixture)
+        && let Some(lines) = axis::over(frfs.lines(), factor)
+    {
+        frfs = frfs.with_lines(lines);
+        modelled = self::modelled(&frfs, fixture);
+        oddities.push(Oddity::Axis(factor));
+    }
     if let Some(modelled) = &modelled
         && let Some(form) = form::other_form(&frfs, modelled)
     {
@@ -90,6 +114,12 @@ pub fn screened(frfs: &FrfSet, fixture: &Fixture) -> Result<Screened, ScreeningE
         };
         frfs = frfs.with_values(|at, value| value * factor(at));
         oddities.push(Oddity::Form(form));
+    }
+    if let Some(modelled) = &modelled
+        && let Some((factor, between)) = unit::off_by_units(&frfs, modelled)
+    {
+        frfs = frfs.with_values(|_, value| value / factor);
+        oddities.push(Oddity::Unit { factor, between });
     }
     let conjugates = conjugated::conjugated(&frfs);
     if !conjugates.is_empty() {
@@ -154,6 +184,14 @@ impl fmt::Display for Oddity {
                 f,
                 "the levels are not those of what the file says it holds: taken as {}; correct the file's function and unit codes",
                 form.name()
+            ),
+            Oddity::Axis(factor) => write!(
+                f,
+                "the frequency axis is {factor:.4} times what it should be, as where kHz, rad/s or cycles a minute are taken for Hz: divided by it; correct the axis in the file"
+            ),
+            Oddity::Unit { factor, between } => write!(
+                f,
+                "all FRFs are {factor:.4} times what the fixture makes of them, as where {between} are taken for each other: divided by it; correct the units in the file, or with --assume-units"
             ),
             Oddity::Exchanged(a, b) => write!(
                 f,

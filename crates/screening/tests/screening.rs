@@ -71,6 +71,29 @@ fn receptances_and_mobilities_labelled_accelerance_are_taken_as_what_they_are() 
 }
 
 #[test]
+fn frfs_in_another_unit_than_stated_are_taken_in_it() {
+    let frfs = recorded(WELD);
+    for factor in [9.80665, 0.101972, 1000.0, 39.3701, 4.44822] {
+        let (back, found) = oddities(&frfs.clone().with_values(|_, value| value * factor));
+        assert!(matches!(&found[..], [Oddity::Unit { .. }]), "{factor}: {found:?}");
+        for (a, b) in back.all_values().iter().zip(frfs.all_values()) {
+            assert!((a - b).norm() < 1e-4 * b.norm());
+        }
+    }
+}
+
+#[test]
+fn an_axis_in_khz_or_rad_s_is_taken_as_what_it_is() {
+    let frfs = recorded(r#"{ "kind": "added_mass", "place": "B", "x": 0.12, "mass": 0.02 }"#);
+    for factor in [1000.0, 0.001, std::f64::consts::TAU] {
+        let hz = frfs.lines().hz().iter().map(|hz| factor * hz).collect();
+        let (back, found) = oddities(&frfs.clone().with_lines(SpectralLines::new(hz).unwrap()));
+        assert!(matches!(&found[..], [Oddity::Axis(_)]), "{factor}: {found:?}");
+        assert!((back.lines().hz()[399] - 1000.0).abs() < 1e-9);
+    }
+}
+
+#[test]
 fn two_frfs_under_each_others_labels_are_exchanged() {
     let frfs = recorded(WELD);
     let mut labels = pairs();

@@ -270,6 +270,14 @@ impl FrfSet {
         self
     }
 
+    /// The set at other frequencies, as many as it has lines.
+    pub fn with_lines(mut self, lines: SpectralLines) -> Self {
+        if lines.len() == self.lines.len() {
+            self.lines = lines;
+        }
+        self
+    }
+
     /// The set under other labels, as many as it has FRFs.
     pub fn with_pairs(mut self, pairs: Vec<FrfPair>) -> Self {
         if pairs.len() == self.pairs.len() {

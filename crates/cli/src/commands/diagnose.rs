@@ -44,6 +44,9 @@ pub struct DiagnoseArguments {
     /// Take numbers of the fixture without a standard deviation as exact.
     #[arg(long)]
     pub exact: bool,
+    /// Take numbers of the fixture as they are stated, even where they belong to no structure together.
+    #[arg(long)]
+    pub as_stated: bool,
     /// Print diagnosis.json to standard output, for scripts.
     #[arg(long)]
     pub json: bool,
@@ -80,6 +83,7 @@ pub fn run(arguments: &DiagnoseArguments) -> Result<String, Refusal> {
             ..DiagnosisOptions::default()
         },
         estimate,
+        as_stated: arguments.as_stated,
     };
     outputs(arguments, std::array::from_fn(|_| String::new())).check()?;
     let steps = Steps::new();

@@ -1,0 +1,36 @@
+//! A frequency axis in another unit than its file says.
+
+use crate::levels::median;
+use jointscope_fixture::Fixture;
+use jointscope_lumped::{Instrument, accelerances};
+use jointscope_spectra::{FrfSet, SpectralLines};
+use num_complex::Complex64;
+use std::f64::consts::TAU;
+
+/// What lies between units of frequency that are taken for each other: kHz, rad/s, and cycles a minute.
+const BETWEEN: [f64; 3] = [1000.0, TAU, 60.0];
+/// Median |ln(|H|/|Ĥ|)| from which FRFs are unlike the fixture's, and up to which they are like them.
+const UNLIKE: f64 = 0.7;
+const LIKE: f64 = 0.2;
+
+/// The factor by which the frequencies of all lines are too large: FRFs are nothing like the fixture's at these frequencies, `modelled`, and like them at those over the
+/// factor.
+pub(crate) fn off_axis(frfs: &FrfSet, modelled: &[Complex64], fixture: &Fixture) -> Option<f64> {
+    let apart = |modelled: &[Complex64]| {
+        let pairs = frfs.all_values().iter().zip(modelled);
+        median(pairs.map(|(a, b)| (a / b).norm().ln().abs()).filter(|apart| apart.is_finite()).collect())
+    };
+    if apart(modelled)? < UNLIKE {
+        return None;
+    }
+    BETWEEN.into_iter().flat_map(|factor| [factor, factor.recip()]).find(|factor| {
+        let there = over(frfs.lines(), *factor)
+            .and_then(|lines| accelerances(fixture, frfs.pairs(), &lines, Instrument::AsRecorded).ok());
+        there.and_then(|modelled| apart(&modelled)).is_some_and(|apart| apart < LIKE)
+    })
+}
+
+/// The same lines at frequencies over a factor.
+pub(crate) fn over(lines: &SpectralLines, factor: f64) -> Option<SpectralLines> {
+    SpectralLines::new(lines.hz().iter().map(|hz| hz / factor).collect()).ok()
+}

@@ -1,0 +1,165 @@
+//! Whether the numbers of a fixture can belong to one structure.
+//!
+//! A mass in grams beside an inertia in kg·m², abscissae in mm, a modulus in GPa: each number by itself is possible, together they are of no structure, and a diagnosis would
+//! explain the slip as physics. Where a change of unit alone makes them fit, that is said.
+
+use jointscope_fixture::{BodyKind, Fixture, JointLaw};
+
+/// A number that no structure has beside the others.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[error("{place}: {problem}{advice}; correct it, or insist on it with --as-stated")]
+pub struct Implausible {
+    /// Its place in the file.
+    pub place: String,
+    /// What is wrong with it.
+    pub problem: String,
+    /// What it may have been meant as, `: it looks like grams`; empty where nothing fits.
+    pub advice: &'static str,
+}
+
+/// Distances from the centre of gravity to a body's points, over its radius of gyration, that bodies have: a bar with points at its ends has √3, one with points near its
+/// middle alone next to none.
+const SPAN: (f64, f64) = (0.01, 8.0);
+/// The same of a body whose numbers are in the right units, and its mass over the cube of a bar as long as its radius of gyration asks for, kg/m³: of slender bars that is less
+/// than their density, of foam and of lead between these.
+const USUAL_SPAN: (f64, f64) = (0.3, 6.0);
+const USUAL_DENSITY: (f64, f64) = (1.0, 1e5);
+/// Young's moduli below which nothing is that carries a structure, Pa.
+const SOFT: f64 = 5e5;
+/// Depth of a section, (12 I)^¼, over the length of its beam above which that is none.
+const DEEP: f64 = 10.0;
+
+/// The first number of a fixture that cannot belong to the same structure as the others.
+///
+/// # Errors
+/// [`Implausible`].
+pub fn plausible(fixture: &Fixture) -> Result<(), Implausible> {
+    for (index, body) in fixture.bodies().iter().enumerate() {
+        match &body.kind {
+            BodyKind::Rigid(rigid) if rigid.rotates => {
+                let (Some(inertia), Some(x_cg)) = (rigid.inertia, rigid.x_cg) else { continue };
+                let points = fixture.points().iter().filter(|point| point.body == index);
+                let away = points.map(|point| (point.x.value - x_cg.value).abs());
+                span(&body.name, away.fold(0.0, f64::max), rigid.mass.value, inertia.value)?;
+            }
+            BodyKind::Beam(beam) => {
+                let place = format!("bodies/{}/beam", body.name);
+                let length = beam.to.value - beam.from.value;
+                section(&place, length, beam.youngs_modulus.value, beam.second_moment.value)?;
+            }
+            BodyKind::Rigid(_) => {}
+        }
+    }
+    for joint in fixture.joints() {
+        if let JointLaw::Beam { youngs_modulus, second_moment } = &joint.law {
+            let place = format!("joints/{}/beam", joint.name);
+            section(&place, fixture.joint_length(joint), youngs_modulus.value, second_moment.value)?;
+        }
+    }
+    Ok(())
+}
+
+fn span(body: &str, farthest: f64, mass: f64, inertia: f64) -> Result<(), Implausible> {
+    if farthest == 0.0 || mass <= 0.0 || inertia <= 0.0 {
+        return Ok(());
+    }
+    let ratio = |farthest: f64, mass: f64, inertia: f64| farthest / (inertia / mass).sqrt();
+    let stated = ratio(farthest, mass, inertia);
+    if stated >= SPAN.0 && stated <= SPAN.1 {
+        return Ok(());
+    }
+    let usual = |farthest: f64, mass: f64, inertia: f64| {
+        let ratio = ratio(farthest, mass, inertia);
+        let density = mass / (12.0 * inertia / mass).sqrt().powi(3);
+        ratio >= USUAL_SPAN.0
+            && ratio <= USUAL_SPAN.1
+            && density >= USUAL_DENSITY.0
+            && density <= USUAL_DENSITY.1
+    };
+    let (key, advice) = if usual(farthest, mass, 1e-6 * inertia) {
+        ("inertia", ": the inertia looks like kg·mm²")
+    } else if usual(farthest, 1e-3 * mass, inertia) {
+        ("mass", ": the mass looks like grams")
+    } else if usual(1e-3 * farthest, mass, inertia) {
+        ("x_cg", ": abscissae look like millimetres")
+    } else {
+        ("inertia", "")
+    };
+    Err(Implausible {
+        place: format!("bodies/{body}/{key}"),
+        problem: format!(
+            "a radius of gyration of {:.3e} m does not go with points up to {farthest:.3e} m from the centre of gravity",
+            (inertia / mass).sqrt()
+        ),
+        advice,
+    })
+}
+
+fn section(place: &str, length: f64, modulus: f64, second_moment: f64) -> Result<(), Implausible> {
+    if modulus > 0.0 && modulus < SOFT {
+        let metal = |modulus: f64| (1e9..1.5e12).contains(&modulus);
+        let advice = match (metal(1e9 * modulus), metal(1e6 * modulus)) {
+            (true, _) => ": it looks like GPa",
+            (false, true) => ": it looks like MPa",
+            (false, false) => "",
+        };
+        return Err(Implausible {
+            place: format!("{place}/youngs_modulus"),
+            problem: format!("a Young's modulus of {modulus} Pa is that of no strip or beam"),
+            advice,
+        });
+    }
+    let depth = |second_moment: f64| (12.0 * second_moment).sqrt().sqrt();
+    if second_moment > 0.0 && length > 0.0 && depth(second_moment) > DEEP * length {
+        let advice = if depth(1e-12 * second_moment) < length { ": it looks like mm⁴" } else { "" };
+        return Err(Implausible {
+            place: format!("{place}/second_moment"),
+            problem: format!(
+                "a second moment of {second_moment} m⁴ is that of a section {:.3} m deep, of a beam {length:.3} m long",
+                depth(second_moment)
+            ),
+            advice,
+        });
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+    use serde_json::{Value, json};
+
+    fn changed(path: &str, value: Value) -> Result<(), Implausible> {
+        let mut file = json!({
+            "bodies": { "A": { "mass": 1.102, "inertia": 5.9e-4, "x_cg": -0.031 }, "B": { "mass": 1.485, "inertia": 1.02e-3, "x_cg": 0.104 } },
+            "points": { "1": { "body": "A", "x": -0.056 }, "2": { "body": "A", "x": 0.0 }, "3": { "body": "B", "x": 0.07 }, "4": { "body": "B", "x": 0.131 } },
+            "joints": { "J": { "from": "2", "to": "3", "beam": { "youngs_modulus": 2.07e11, "second_moment": 3.4e-10 } } } });
+        *file.pointer_mut(path).unwrap() = value;
+        plausible(&Fixture::from_value(&file).unwrap())
+    }
+
+    #[test]
+    fn numbers_of_one_structure_are_plausible() {
+        assert_eq!(changed("/bodies/A/mass", json!(1.102)), Ok(()));
+        assert_eq!(changed("/joints/J/beam/youngs_modulus", json!(2e6)), Ok(()));
+    }
+
+    #[test]
+    fn slips_of_a_unit_are_told_by_what_they_look_like() {
+        for (path, value, place, advice) in [
+            ("/bodies/A/mass", 1102.0, "bodies/A/mass", "grams"),
+            ("/bodies/A/inertia", 590.0, "bodies/A/inertia", "kg·mm²"),
+            ("/points/4/x", 131.0, "bodies/B/x_cg", "millimetres"),
+            ("/joints/J/beam/youngs_modulus", 207.0, "joints/J/beam/youngs_modulus", "GPa"),
+            ("/joints/J/beam/youngs_modulus", 207e3, "joints/J/beam/youngs_modulus", "MPa"),
+            ("/joints/J/beam/second_moment", 340.0, "joints/J/beam/second_moment", "mm⁴"),
+            ("/bodies/B/x_cg", 5.0, "bodies/B/inertia", "radius of gyration"),
+            ("/points/4/x", -0.5, "bodies/B/inertia", "radius of gyration"),
+            ("/bodies/B/inertia", 1e-12, "bodies/B/inertia", "radius of gyration"),
+        ] {
+            let found = changed(path, json!(value)).unwrap_err();
+            assert!(found.place == place && found.to_string().contains(advice), "{path} {value}: {found}");
+        }
+    }
+}
