@@ -263,8 +263,11 @@ impl At<'_> {
 
     /// Shares of the way along a body, of a beam as many as its modes ask for.
     fn along(&self, body: Option<usize>, shares: &[f64]) -> Vec<f64> {
-        let Some(body) = body.filter(|&body| turns(self.fixture, body)) else { return vec![0.0] };
+        let Some(body) = body else { return vec![0.0] };
         let (low, high) = extent(self.fixture, body);
+        if !turns(self.fixture, body) {
+            return vec![low];
+        }
         let at = |share: f64| low + share * (high - low);
         match self.half_waves(body).filter(|_| self.second.is_none()) {
             Some(waves) => evenly((PLACES_A_HALF_WAVE * waves).ceil()).map(at).collect(),

@@ -116,7 +116,9 @@ pub(crate) fn extent(fixture: &Fixture, body: usize) -> (f64, f64) {
                 let half = (3.0 * inertia.value / rigid.mass.value).sqrt();
                 (low.min(x_cg.value - half), high.max(x_cg.value + half))
             }
-            _ => (low.min(0.0), high.max(0.0)),
+            // Any place of it is as good; one where the structure is can be shown.
+            _ if low.is_finite() => (low, high),
+            _ => (0.0, 0.0),
         },
     }
 }

@@ -1,5 +1,6 @@
 //! The answer, whichever way it was found.
 
+use crate::idle::as_known;
 use crate::{Error, HammerTest, MeasuredFrfs};
 use jointscope_diagnosis::Diagnosis;
 use jointscope_fixture::Fixture;
@@ -55,8 +56,8 @@ impl Answer {
     ) -> Result<Self, Error> {
         let search = &diagnosis.search;
         Ok(Answer {
-            refitted: search.refitted.hypothesis.to_fixture()?,
-            repaired: search.repaired.hypothesis.to_fixture()?,
+            refitted: as_known(search.refitted.hypothesis.to_fixture()?, &fixture),
+            repaired: as_known(search.repaired.hypothesis.to_fixture()?, &fixture),
             fixture,
             outcome: Outcome::Linear(Box::new(diagnosis)),
             homogeneity,

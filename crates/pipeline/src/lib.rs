@@ -49,6 +49,7 @@ mod error;
 mod frfs;
 mod hammer_test;
 mod hits;
+mod idle;
 mod levels;
 mod measurement;
 mod modal_damping;

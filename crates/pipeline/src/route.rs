@@ -1,5 +1,6 @@
 //! The way from a measurement to an answer.
 
+use crate::idle::with_idle_points_exact;
 use crate::{Answer, Error, MeasuredFrfs, Measurement, hits, levels};
 use jointscope_diagnosis::{Diagnosis, DiagnosisOptions, Step, Watch};
 use jointscope_estimation::{EstimateOptions, ResponseWindow};
@@ -137,6 +138,7 @@ pub fn diagnose(
     options.check(frfs)?;
     progress(Progress::Searching { frfs: frfs.pairs().len(), lines: frfs.lines().len() });
     let told = |step: Step| progress(Progress::Searched(step));
-    let diagnosis = Diagnosis::watched(&fixture, frfs, &options.diagnosis, Watch::by(&told))?;
+    let searched = with_idle_points_exact(fixture.clone(), frfs.pairs());
+    let diagnosis = Diagnosis::watched(&searched, frfs, &options.diagnosis, Watch::by(&told))?;
     Answer::linear(fixture, diagnosis, homogeneity, measured)
 }

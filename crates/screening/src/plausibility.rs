@@ -39,8 +39,9 @@ pub fn plausible(fixture: &Fixture) -> Result<(), Implausible> {
             BodyKind::Rigid(rigid) if rigid.rotates => {
                 let (Some(inertia), Some(x_cg)) = (rigid.inertia, rigid.x_cg) else { continue };
                 let points = fixture.points().iter().filter(|point| point.body == index);
-                let away = points.map(|point| (point.x.value - x_cg.value).abs());
-                span(&body.name, away.fold(0.0, f64::max), rigid.mass.value, inertia.value)?;
+                let away = points.map(|point| ((point.x.value - x_cg.value).abs(), point.name.as_str()));
+                let farthest = away.max_by(|a, b| a.0.total_cmp(&b.0));
+                span(&body.name, farthest.unwrap_or_default(), rigid.mass.value, inertia.value)?;
             }
             BodyKind::Beam(beam) => {
                 let place = format!("bodies/{}/beam", body.name);
@@ -59,7 +60,7 @@ pub fn plausible(fixture: &Fixture) -> Result<(), Implausible> {
     Ok(())
 }
 
-fn span(body: &str, farthest: f64, mass: f64, inertia: f64) -> Result<(), Implausible> {
+fn span(body: &str, (farthest, point): (f64, &str), mass: f64, inertia: f64) -> Result<(), Implausible> {
     if farthest == 0.0 || mass <= 0.0 || inertia <= 0.0 {
         return Ok(());
     }
@@ -76,23 +77,29 @@ fn span(body: &str, farthest: f64, mass: f64, inertia: f64) -> Result<(), Implau
             && density >= USUAL_DENSITY.0
             && density <= USUAL_DENSITY.1
     };
-    let (key, advice) = if usual(farthest, mass, 1e-6 * inertia) {
-        ("inertia", ": the inertia looks like kg·mm²")
+    let (place, advice) = if usual(farthest, mass, 1e-6 * inertia) {
+        (format!("bodies/{body}/inertia"), ": the inertia looks like kg·mm²")
     } else if usual(farthest, 1e-3 * mass, inertia) {
-        ("mass", ": the mass looks like grams")
+        (format!("bodies/{body}/mass"), ": the mass looks like grams")
     } else if usual(1e-3 * farthest, mass, inertia) {
-        ("x_cg", ": abscissae look like millimetres")
+        (format!("points/{point}/x"), ": abscissae look like millimetres")
     } else {
-        ("inertia", "")
+        (format!("bodies/{body}"), ", be it the point's abscissa, `x_cg`, `inertia` or `mass`")
     };
     Err(Implausible {
-        place: format!("bodies/{body}/{key}"),
+        place,
         problem: format!(
-            "a radius of gyration of {:.3e} m does not go with points up to {farthest:.3e} m from the centre of gravity",
-            (inertia / mass).sqrt()
+            "point {point} lies {} from the centre of gravity of body {body}, whose radius of gyration is {}",
+            millimetres(farthest),
+            millimetres((inertia / mass).sqrt())
         ),
         advice,
     })
+}
+
+fn millimetres(metres: f64) -> String {
+    let value = 1e3 * metres;
+    if value < 0.1 { format!("{value:.1e} mm") } else { format!("{value:.1} mm") }
 }
 
 fn section(place: &str, length: f64, modulus: f64, second_moment: f64) -> Result<(), Implausible> {
@@ -150,13 +157,13 @@ mod tests {
         for (path, value, place, advice) in [
             ("/bodies/A/mass", 1102.0, "bodies/A/mass", "grams"),
             ("/bodies/A/inertia", 590.0, "bodies/A/inertia", "kg·mm²"),
-            ("/points/4/x", 131.0, "bodies/B/x_cg", "millimetres"),
+            ("/points/4/x", 131.0, "points/4/x", "millimetres"),
             ("/joints/J/beam/youngs_modulus", 207.0, "joints/J/beam/youngs_modulus", "GPa"),
             ("/joints/J/beam/youngs_modulus", 207e3, "joints/J/beam/youngs_modulus", "MPa"),
             ("/joints/J/beam/second_moment", 340.0, "joints/J/beam/second_moment", "mm⁴"),
-            ("/bodies/B/x_cg", 5.0, "bodies/B/inertia", "radius of gyration"),
-            ("/points/4/x", -0.5, "bodies/B/inertia", "radius of gyration"),
-            ("/bodies/B/inertia", 1e-12, "bodies/B/inertia", "radius of gyration"),
+            ("/bodies/B/x_cg", 5.0, "bodies/B", "radius of gyration"),
+            ("/points/4/x", -0.5, "bodies/B", "point 4 lies 604"),
+            ("/bodies/B/inertia", 1e-12, "bodies/B", "radius of gyration"),
         ] {
             let found = changed(path, json!(value)).unwrap_err();
             assert!(found.place == place && found.to_string().contains(advice), "{path} {value}: {found}");

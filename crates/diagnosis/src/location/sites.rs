@@ -49,10 +49,10 @@ pub(super) fn sites(fixture: &Fixture, observation: &Observation) -> Vec<Vec<Sit
 fn on_body(fixture: &Fixture, body: usize) -> Vec<Site> {
     let name = &fixture.bodies()[body].name;
     let at = |x: f64| Site::Body { body: name.clone(), x };
-    if !turns(fixture, body) {
-        return vec![at(0.0)];
-    }
     let (low, high) = extent(fixture, body);
+    if !turns(fixture, body) {
+        return vec![at(low)];
+    }
     let count = match &fixture.bodies()[body].kind {
         BodyKind::Rigid(_) => GRID,
         // Between two nodes of a bending mode there are several places.

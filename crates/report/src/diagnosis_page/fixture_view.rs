@@ -49,7 +49,10 @@ fn place(fixture: &Fixture, effect: &Effect) -> Option<(f64, Option<usize>)> {
         Place::Body(name) => {
             let body = fixture.bodies().iter().position(|body| body.name == *name)?;
             let parameters = effect.kind.spec().parameters;
-            let x = parameters.iter().position(|p| p.name == "x").map(|index| effect.value(index));
+            let turns = !matches!(&fixture.bodies()[body].kind, BodyKind::Rigid(rigid) if !rigid.rotates);
+            let placed = |index: &usize| turns && effect.has_parameter(*index);
+            let x = parameters.iter().position(|p| p.name == "x").filter(placed);
+            let x = x.map(|index| effect.value(index));
             Some((x.unwrap_or_else(|| centre(fixture, body)), Some(body)))
         }
         Place::Point(name) | Place::Response(name) | Place::Reference(name) => {
