@@ -85,12 +85,9 @@ impl<'a, const FIXED: bool> LeastSquares for Problem<'a, FIXED> {
         [own, equations]: [&NormalEquations; 2],
         share: f64,
     ) -> Option<Iterate> {
-        let step = |equations: &NormalEquations, at: &Iterate| {
-            equations.bounded_step(0.0, &at.hypothesis.coordinates, at.hypothesis.parameters())
-        };
-        let (here, before) = (step(own, at)?, step(equations, from)?);
-        let across: Vec<f64> =
-            here.iter().zip(&before).map(|(here, before)| here - (1.0 - share) * before).collect();
+        let coordinates = &at.hypothesis.coordinates;
+        let earlier = (equations, from.hypothesis.coordinates.as_slice());
+        let across = own.correction(coordinates, earlier, share, at.hypothesis.parameters())?;
         self.fitter.iterate(at.hypothesis.stepped(&across))
     }
 

@@ -227,10 +227,12 @@ pub fn descend<P: LeastSquares>(
         let attempts = if fresh { usize::MAX } else { ATTEMPTS_WITH_OLD };
         let next = lower(problem, &point, (&equations, &weights, before), (&mut damping, attempts), settings);
         let gained = next.as_ref().map_or(0.0, |(_, after)| before - after);
-        let needs = settings.convergence.needed(before);
         // A fit far from what it competes with follows no valley.
         let near = settings.limit.is_none_or(|limit| before - limit.objective <= limit.reach);
-        let bent = fresh && near && promised > VALLEY * needs && gained < settings.bent * promised;
+        let bent = fresh
+            && near
+            && promised > VALLEY * settings.convergence.needed(before)
+            && gained < settings.bent * promised;
         let start = (&point, &equations, &derivatives, &weights);
         let along = if bent { along_valley(problem, start, before - gained) } else { None };
         let followed = along.is_some();
@@ -349,7 +351,7 @@ impl Pace {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::NormalEquations;
+    use crate::{NormalEquations, Parameter, Transform};
     use proptest::prelude::*;
     use std::cell::Cell;
 
@@ -407,6 +409,78 @@ mod tests {
             let step = equations.step(damping)?;
             Some([q[0] + step[0], q[1] + step[1], q[2] + step[2]])
         }
+    }
+
+    /// A valley along y = x² with its lowest point at x = 1: residuals steep·(y − x²) and 1 − x.
+    struct Bent {
+        steep: f64,
+    }
+
+    impl LeastSquares for Bent {
+        type Point = [f64; 2];
+        type Weights = ();
+        type Derivatives = Vec<[f64; 2]>;
+        type Equations = NormalEquations;
+        const FIXED_WEIGHTS: bool = true;
+
+        fn weights(&self, _: &[f64; 2]) {}
+
+        fn objective(&self, q: &[f64; 2], _: &()) -> f64 {
+            (self.steep * (q[1] - q[0] * q[0])).powi(2) + (1.0 - q[0]).powi(2)
+        }
+
+        fn derivatives(&self, q: &[f64; 2], _: Precision) -> Option<Vec<[f64; 2]>> {
+            Some(vec![[-2.0 * self.steep * q[0], self.steep], [-1.0, 0.0]])
+        }
+
+        fn equations(&self, q: &[f64; 2], slopes: &Vec<[f64; 2]>, _: &()) -> NormalEquations {
+            let mut equations = NormalEquations::zero(2);
+            let left = [-self.steep * (q[1] - q[0] * q[0]), q[0] - 1.0];
+            for (slopes, left) in slopes.iter().zip(left) {
+                equations.add(1.0, left, slopes);
+            }
+            equations
+        }
+
+        fn stepped(&self, q: &[f64; 2], equations: &NormalEquations, damping: f64) -> Option<[f64; 2]> {
+            let step = equations.step(damping)?;
+            Some([q[0] + step[0], q[1] + step[1]])
+        }
+
+        fn shortened(&self, q: &[f64; 2], equations: &NormalEquations, share: f64) -> Option<[f64; 2]> {
+            let step = equations.step(0.0)?;
+            Some([q[0] + share * step[0], q[1] + share * step[1]])
+        }
+
+        fn corrected(
+            &self,
+            at: &[f64; 2],
+            from: &[f64; 2],
+            [own, before]: [&NormalEquations; 2],
+            share: f64,
+        ) -> Option<[f64; 2]> {
+            let free = [Parameter::new(Transform::Linear { centre: 0.0, scale: 1.0 }); 2];
+            let step = own.correction(at, (before, from), share, &free)?;
+            Some([at[0] + step[0], at[1] + step[1]])
+        }
+
+        fn promised(&self, _: &[f64; 2], equations: &NormalEquations) -> f64 {
+            let step = equations.step(0.0).unwrap_or_default();
+            step.iter().zip(&equations.right).map(|(step, right)| step * right).sum()
+        }
+    }
+
+    #[test]
+    fn a_bent_valley_is_followed_to_its_end_where_damped_steps_creep() {
+        let problem = Bent { steep: 1e4 };
+        let damping = Damping { initial: 1e-8, decrease: 0.1, least: 1e-13, raised: 0.0, most: 1e7 };
+        let convergence = Convergence { gain: 1e-9, share: 0.0, floor: 0.0 };
+        let end = |bent: f64| {
+            let settings = Settings { steps: 40, damping, convergence, bent, ..Settings::default() };
+            descend(&problem, [-1.2, 1.44], None, &settings).unwrap().objective
+        };
+        assert!(end(0.0) > 0.1, "{}", end(0.0));
+        assert!(end(0.1) < 1e-6, "{}", end(0.1));
     }
 
     proptest! {

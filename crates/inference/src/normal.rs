@@ -133,6 +133,20 @@ impl NormalEquations {
         None
     }
 
+    /// The step across a bent valley that corrects a `share` of an undamped one: what an undamped step from where it led (`self`, at `coordinates`) differs from the
+    /// rest of the first one (`before`, at `earlier`).
+    pub fn correction(
+        &self,
+        coordinates: &[f64],
+        (before, earlier): (&NormalEquations, &[f64]),
+        share: f64,
+        parameters: &[Parameter],
+    ) -> Option<Vec<f64>> {
+        let here = self.bounded_step(0.0, coordinates, parameters)?;
+        let first = before.bounded_step(0.0, earlier, parameters)?;
+        Some(here.iter().zip(&first).map(|(here, first)| here - (1.0 - share) * first).collect())
+    }
+
     /// Decrease of the objective by an undamped step within bounds, if the model follows its derivatives.
     pub fn promised(&self, coordinates: &[f64], parameters: &[Parameter]) -> f64 {
         let step = self.bounded_step(0.0, coordinates, parameters).unwrap_or_default();

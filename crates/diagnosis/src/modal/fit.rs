@@ -361,10 +361,9 @@ impl LeastSquares for Descent<'_> {
         [own, equations]: [&NormalEquations; 2],
         share: f64,
     ) -> Option<Iterate> {
-        let (here, before) = (step(own, at, 0.0)?, step(equations, from, 0.0)?);
-        let across: Vec<f64> =
-            here.iter().zip(&before).map(|(here, before)| here - (1.0 - share) * before).collect();
-        self.moved(at, &across)
+        let coordinates = &at.hypothesis.coordinates;
+        let earlier = (equations, from.hypothesis.coordinates.as_slice());
+        self.moved(at, &own.correction(coordinates, earlier, share, at.hypothesis.parameters())?)
     }
 
     fn promised(&self, point: &Iterate, equations: &NormalEquations) -> f64 {
