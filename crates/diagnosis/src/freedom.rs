@@ -37,14 +37,22 @@ pub(crate) fn parameters_of(fixture: &Fixture, effect: &Effect) -> Vec<Parameter
         Motion::AlongSecondBody => along(second),
         Motion::Logarithm { reach } => {
             let start = quantity.value.max(f64::MIN_POSITIVE).ln();
-            logarithm(start - reach, start + reach)
+            // What hangs on a body is lighter than the body.
+            let most = match (parameter.possible, body) {
+                (Possible::MassOfBody, Some(body)) => mass_of(fixture, body).ln(),
+                _ => f64::INFINITY,
+            };
+            logarithm(start - reach, (start + reach).min(most.max(start)))
         }
         Motion::Signed(scale) => {
             let (low, high) = possible(parameter.possible, fixture, &effect.place);
             between(scale.of(quantity.value), low, high)
         }
         Motion::NonNegative(scale) => {
-            let most = if parameter.possible == Possible::UpToOne { 1.0 } else { f64::INFINITY };
+            let most = match parameter.possible {
+                Possible::UpTo(most) => most.max(quantity.value),
+                _ => f64::INFINITY,
+            };
             between(scale.of(quantity.value), 0.0, most)
         }
     };

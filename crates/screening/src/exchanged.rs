@@ -1,7 +1,7 @@
 //! FRFs under each other's labels.
 
 use crate::levels::median;
-use jointscope_spectra::FrfSet;
+use jointscope_spectra::{FrfPair, FrfSet};
 use num_complex::Complex64;
 
 /// Median |ln(H/Ĥ)|² over the lines up to which an FRF is like a modelled one, and from which it is not.
@@ -39,4 +39,28 @@ pub(crate) fn exchanged(frfs: &FrfSet, modelled: &[Complex64]) -> Vec<(usize, us
         }
     }
     found
+}
+
+/// The two points whose channels, all responses or all references of them, have each other's place, where that is all that was exchanged.
+pub(crate) fn swapped(pairs: &[FrfPair], exchanged: &[(usize, usize)]) -> Option<(String, String)> {
+    for is_reference in [false, true] {
+        let channel = |index: usize| {
+            let pair = &pairs[index];
+            if is_reference { (&pair.reference, &pair.response) } else { (&pair.response, &pair.reference) }
+        };
+        let points = |&(a, b): &(usize, usize)| {
+            let ((one, across), (other, also)) = (channel(a), channel(b));
+            let both = if one <= other { (one, other) } else { (other, one) };
+            (across == also).then_some(both)
+        };
+        let Some(first) = exchanged.first().and_then(points) else { continue };
+        let own = (0..pairs.len()).filter(|&index| [first.0, first.1].contains(&channel(index).0)).count();
+        if exchanged.len() > 1
+            && own == 2 * exchanged.len()
+            && exchanged.iter().all(|pair| points(pair) == Some(first))
+        {
+            return Some((first.0.to_string(), first.1.to_string()));
+        }
+    }
+    None
 }

@@ -51,6 +51,8 @@ pub enum Oddity {
     },
     /// Two FRFs that stand under each other's labels: exchanged.
     Exchanged(FrfPair, FrfPair),
+    /// Two points whose channels, responses or references, have each other's place in all FRFs: exchanged.
+    Swapped(String, String),
     /// No coherence from this frequency (Hz) to the end of the band in all FRFs of a channel: `true` of a reference.
     Unexcited {
         /// The channel's point.
@@ -130,12 +132,15 @@ pub fn screened(frfs: &FrfSet, fixture: &Fixture) -> Result<Screened, ScreeningE
             .push(Oddity::Conjugated(conjugates.iter().map(|&index| frfs.pairs()[index].clone()).collect()));
     }
     if let Some(modelled) = &modelled {
-        for (a, b) in exchanged::exchanged(&frfs, modelled) {
-            let mut pairs = frfs.pairs().to_vec();
-            pairs.swap(a, b);
-            oddities.push(Oddity::Exchanged(pairs[a].clone(), pairs[b].clone()));
-            frfs = frfs.with_pairs(pairs);
+        let found = exchanged::exchanged(&frfs, modelled);
+        let mut pairs = frfs.pairs().to_vec();
+        match exchanged::swapped(&pairs, &found) {
+            Some((a, b)) => oddities.push(Oddity::Swapped(a, b)),
+            None => oddities
+                .extend(found.iter().map(|&(a, b)| Oddity::Exchanged(pairs[a].clone(), pairs[b].clone()))),
         }
+        found.into_iter().for_each(|(a, b)| pairs.swap(a, b));
+        frfs = frfs.with_pairs(pairs);
     }
     oddities.extend(unexcited::unexcited(&frfs));
     Ok(Screened { frfs, oddities })
@@ -196,6 +201,10 @@ impl fmt::Display for Oddity {
             Oddity::Exchanged(a, b) => write!(
                 f,
                 "FRFs {a} and {b} stand under each other's labels: exchanged; correct the node numbers in the file"
+            ),
+            Oddity::Swapped(a, b) => write!(
+                f,
+                "points {a} and {b} have each other's place: their channels are swapped, in the cables or in the node numbers of the file: exchanged"
             ),
             Oddity::Unexcited { point, is_reference: true, from } => write!(
                 f,

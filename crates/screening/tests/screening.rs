@@ -104,6 +104,18 @@ fn two_frfs_under_each_others_labels_are_exchanged() {
 }
 
 #[test]
+fn two_points_whose_channels_are_swapped_are_told_as_points() {
+    let frfs = recorded(WELD);
+    // Responses 3 and 4 in each other's place under both references, then references 1 and 2.
+    for (order, points) in [([1, 0, 3, 2], ("3", "4")), ([2, 3, 0, 1], ("1", "2"))] {
+        let labels = order.map(|index| pairs()[index].clone()).to_vec();
+        let (back, found) = oddities(&frfs.clone().with_pairs(labels));
+        assert_eq!(found, [Oddity::Swapped(points.0.into(), points.1.into())]);
+        assert_eq!(back.pairs(), pairs());
+    }
+}
+
+#[test]
 fn a_band_without_coherence_is_laid_to_the_hammer_where_all_its_frfs_lack_it_and_to_a_sensor_otherwise() {
     let without = |of: fn(&FrfPair) -> bool| {
         let mut frfs = recorded("");
