@@ -1,5 +1,5 @@
 use crate::contradiction::contradictory;
-use crate::departures::Departure;
+use crate::departures::{Departure, departures, has_departed};
 use crate::fitter::Fitter;
 use crate::location::Location;
 use crate::modal::ModelError;
@@ -77,6 +77,8 @@ pub struct DiagnosisOptions {
     pub time_limit: Option<Duration>,
     /// Take the fixture's bare numbers as exact.
     pub exact: bool,
+    /// Whether the FRFs were estimated from hits: they carry leakage and errors that neighbouring lines share, and no name may live on those.
+    pub estimated: bool,
     /// How the search goes.
     pub settings: Settings,
 }
@@ -197,7 +199,22 @@ impl Diagnosis {
         if few.is_some() {
             parts = parts.on_all(&fitter.on(&observation));
         }
-        Ok(Diagnosis { contradictory, ..parts.with(observation, &options.settings) })
+        let diagnosis = Diagnosis { contradictory, ..parts.with(observation, &options.settings) };
+        let within_estimates = options.estimated
+            && diagnosis.refitted.0 < options.settings.evidence.explained.0
+            && !has_departed(&diagnosis.search.refitted.hypothesis);
+        Ok(if within_estimates { diagnosis.without_findings() } else { diagnosis })
+    }
+
+    /// The same where the fixture as refitted explains all that there is to explain.
+    fn without_findings(mut self) -> Self {
+        self.search.repaired = self.search.refitted.clone();
+        self.verdict = Verdict::Consistent;
+        self.residual_correlation = self.observation.residual_correlation(&self.search.repaired.predicted);
+        self.departures = departures(&self.search);
+        (self.findings, self.locations, self.tried) = (Vec::new(), Vec::new(), Vec::new());
+        (self.held_out, self.model_error) = (None, None);
+        self
     }
 
     /// (nominal, refitted, repaired) errors over all FRFs and lines in use.

@@ -62,13 +62,20 @@ impl Estimate {
         Ok(Estimate { frfs, hits: reports, excitations, decay, remarks: remarks.texts })
     }
 
-    /// The FRFs on the lines above 0 Hz that the hammer excites at every struck point.
+    /// The FRFs on the lines above 0 Hz that the hammer excites at every struck point; under a window without the lowest ones, on which what is left of a baseline shows
+    /// and passes for something that holds the structure, or for AC coupling.
     pub fn usable(&self) -> Option<FrfSet> {
         let to = self.excitations.iter().map(|e| e.usable_to).fold(f64::INFINITY, f64::min);
         let hz = self.frfs.lines().hz();
-        self.frfs.on_lines(|line| hz[line] > 0.0 && hz[line] <= to)
+        let spacing = hz.get(1).map_or(0.0, |second| second - hz[0]);
+        let windowed = LOWEST * spacing + self.decay / std::f64::consts::PI;
+        let from = if self.decay > 0.0 { windowed.min(0.1 * to) } else { 0.0 };
+        self.frfs.on_lines(|line| hz[line] > from && hz[line] <= to)
     }
 }
+
+/// Line spacings below which lines are left out under a window, beside its own width.
+const LOWEST: f64 = 4.0;
 
 fn check(hits: &[Hit], options: &EstimateOptions) -> Result<(), EstimateError> {
     let first = hits.first().ok_or(EstimateError::NoHits)?;

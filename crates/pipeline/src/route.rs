@@ -139,6 +139,7 @@ pub fn diagnose(
     progress(Progress::Searching { frfs: frfs.pairs().len(), lines: frfs.lines().len() });
     let told = |step: Step| progress(Progress::Searched(step));
     let searched = with_idle_points_exact(fixture.clone(), frfs.pairs());
-    let diagnosis = Diagnosis::watched(&searched, frfs, &options.diagnosis, Watch::by(&told))?;
+    let asked = DiagnosisOptions { estimated: measured.hammer_test.is_some(), ..options.diagnosis.clone() };
+    let diagnosis = Diagnosis::watched(&searched, frfs, &asked, Watch::by(&told))?;
     Answer::linear(fixture, diagnosis, homogeneity, measured)
 }

@@ -91,6 +91,27 @@ fn a_body_may_be_held_against_rotation_alone() {
     assert!((found.effect.value(1) / 5000.0 - 1.0).abs() < 0.02 && found.estimate("x").is_none());
 }
 
+#[test]
+fn what_hardly_shows_is_not_named_where_frfs_were_estimated_from_hits() {
+    let fixture = believed([0.004, 0.004]);
+    let lines = SpectralLines::even(2.5, 2.5, 400).unwrap();
+    let coupled = on(EffectKind::ChannelHighpass, Place::Response("4".into()), &[0.25]);
+    let frfs = measured(&fixture, vec![coupled], (&four_pairs(), &lines), &hammer(21));
+    let diagnosed = |estimated: bool| {
+        let options = DiagnosisOptions { estimated, ..DiagnosisOptions::default() };
+        Diagnosis::of(&fixture, &frfs, &options).unwrap()
+    };
+    let recorded = diagnosed(false);
+    assert!(
+        recorded.findings.len() == 1 && recorded.refitted.0 < 1.2,
+        "{:?} {}",
+        recorded.refitted,
+        told(&recorded)
+    );
+    let estimated = diagnosed(true);
+    assert!(estimated.findings.is_empty() && estimated.verdict == Verdict::Consistent);
+}
+
 /// A test with nothing left out, its values changed on lines.
 fn disturbed(change: impl Fn(usize, Complex64) -> Complex64) -> (Fixture, FrfSet) {
     let fixture = believed([0.004, 0.004]);
