@@ -168,7 +168,7 @@ pub struct ModalSettings {
     pub company: f64,
     /// ln p below the best at which a name is not tried on lines: e⁻⁵⁰ as probable.
     pub told: f64,
-    /// Starts of a candidate that compare other modes than their base, at the most.
+    /// Starts that compare other modes than their base, at the most, beside the best of each candidate.
     pub apart: usize,
     /// Multiple of the usual sizes by which starts are scored that compare other modes than their base.
     pub wide: f64,
@@ -197,7 +197,7 @@ impl Default for ModalSettings {
             unlisted: (-3.5, -0.7),
             company: 1.6,
             told: 50.0,
-            apart: 1,
+            apart: 24,
             wide: 5.0,
             near: 0.7,
         }

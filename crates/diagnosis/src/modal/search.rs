@@ -290,7 +290,7 @@ impl Searcher<'_> {
     }
 
     /// Starts by their density, the highest first. Those that compare other modes than their base, of which the base's derivatives say nothing, are compared with the
-    /// others by their own derivatives, the best of each candidate; the rest are left out.
+    /// others by their own derivatives, the best of all and the best of each candidate; the rest are left out.
     fn rescored(&self, scored: Vec<(Score, usize, Hypothesis)>) -> Vec<(f64, usize, Hypothesis)> {
         let (mut alike, mut apart) = (Vec::new(), Vec::new());
         for (score, c, hypothesis) in scored {
@@ -301,10 +301,11 @@ impl Searcher<'_> {
         }
         let by_density = |all: &mut Vec<(f64, usize, Hypothesis)>| all.sort_by(|a, b| b.0.total_cmp(&a.0));
         by_density(&mut apart);
-        let mut seen = vec![0; self.candidates.len()];
+        let mut seen = vec![false; self.candidates.len()];
+        let mut rank = 0;
         apart.retain(|(_, c, _)| {
-            seen[*c] += 1;
-            seen[*c] <= self.settings.apart
+            rank += 1;
+            !std::mem::replace(&mut seen[*c], true) || rank <= self.settings.apart
         });
         let anew = self.problem.work.each(apart, STARTS, |(_, c, hypothesis)| {
             Some((self.score_by_itself(&hypothesis)?, c, hypothesis))
