@@ -31,6 +31,8 @@ struct Thinned {
 /// Candidates to be fitted beside a base, and where from.
 pub(crate) struct Ranking<'a> {
     pub candidates: &'a [Candidate],
+    /// Candidates that are out of the question.
+    pub excluded: &'a [usize],
     pub nominal: &'a Hypothesis,
     pub fitter: Fitter<'a>,
 }
@@ -112,10 +114,11 @@ impl Ranking<'_> {
         self.fitted(chosen.into_iter().map(start).collect(), Some(&scan.linear), limit)
     }
 
-    /// Candidates that `base` does not have yet.
+    /// Candidates in question that `base` does not have yet.
     fn names_without(&self, base: &Hypothesis) -> impl Iterator<Item = usize> {
         let effects = base.effects();
-        (0..self.candidates.len()).filter(move |&c| !effects.iter().any(|e| self.candidates[c].names(e)))
+        let has = move |c: usize| effects.iter().any(|e| self.candidates[c].names(e));
+        (0..self.candidates.len()).filter(move |&c| !self.excluded.contains(&c) && !has(c))
     }
 
     /// Where the best fits with inflated noise lead, from the base and from where a fit without a candidate leads.

@@ -131,11 +131,11 @@ impl Parts {
             true => fitter.local(&fit.hypothesis, None, f64::INFINITY),
             false => Fit::at(fit.hypothesis.clone(), fitter.observation),
         };
-        let Search { nominal, refitted, repaired, candidates } = self.search;
+        let Search { nominal, refitted, repaired, candidates, told_apart } = self.search;
         let nominal = Fit::at(nominal.hypothesis.clone(), fitter.observation).unwrap_or(nominal);
         let refitted = again(&refitted).unwrap_or(refitted);
         let repaired = again(&repaired).unwrap_or(repaired);
-        self.search = Search { nominal, refitted, repaired, candidates };
+        self.search = Search { nominal, refitted, repaired, candidates, told_apart };
         if by_lines {
             self.findings = re_estimated(fitter, &self.search, self.findings);
             self.verdict = verdict(fitter, &self.search, &self.findings);
@@ -174,7 +174,9 @@ fn by_lines(
         (Start::Searched(search), _) => *search,
         (Start::Modes(modal, exact), _) => {
             let part = Search { repaired: exact, ..modal.search_on(observation, &within) };
-            Search::continued(fitter, within, &part)
+            let mut search = Search::continued(fitter, within, &part);
+            search.told_apart = modal.told_from(&search.repaired.hypothesis, &search.candidates, settings.modal.bases.1);
+            search
         }
         (Start::Anew, Some(part)) => Search::continued(fitter, within, part),
         (Start::Anew, None) => Search::searched(fitter, within),

@@ -21,6 +21,8 @@ pub struct Search {
     pub repaired: Fit,
     /// All names that were tried.
     pub candidates: Vec<Candidate>,
+    /// Those that modes tell from what was found: they need not be asked for on lines.
+    pub(crate) told_apart: Vec<usize>,
 }
 
 impl Search {
@@ -28,7 +30,13 @@ impl Search {
     pub(crate) fn as_stated(fitter: &Fitter, fixture: &Fixture, exact: bool) -> Option<Self> {
         let nominal = Fit::at(Hypothesis::nominal(fixture, exact), fitter.observation)?;
         let candidates = catalogue(fixture, fitter.observation);
-        Some(Search { refitted: nominal.clone(), repaired: nominal.clone(), nominal, candidates })
+        Some(Search {
+            refitted: nominal.clone(),
+            repaired: nominal.clone(),
+            nominal,
+            candidates,
+            told_apart: Vec::new(),
+        })
     }
 
     /// The fixture as it stands and refitted, and nothing searched for yet. `None` where it predicts no finite FRFs.
@@ -159,11 +167,16 @@ impl Search {
     /// As [`Search::ranked`], for a `base` whose quantities stand already where the effect that is looked for would leave
     /// them; fits that will not come near `limit` are left unfinished.
     pub(crate) fn look_alikes(&self, fitter: &Fitter, base: &Hypothesis, limit: f64) -> Vec<(usize, Fit)> {
-        self.ranking(fitter).look_alikes(base, limit)
+        Ranking { excluded: &self.told_apart, ..self.ranking(fitter) }.look_alikes(base, limit)
     }
 
     fn ranking<'a>(&'a self, fitter: &Fitter<'a>) -> Ranking<'a> {
-        Ranking { candidates: &self.candidates, nominal: &self.nominal.hypothesis, fitter: *fitter }
+        Ranking {
+            candidates: &self.candidates,
+            excluded: &[],
+            nominal: &self.nominal.hypothesis,
+            fitter: *fitter,
+        }
     }
 
     /// Replaces each effect by whatever serves better in the company of the others, until nothing does.

@@ -139,7 +139,7 @@ pub struct ModalSettings {
     pub refined: (usize, usize),
     /// Starts of each.
     pub starts: usize,
-    /// Singles that are tried with a second effect, at the most, and ln p below the best from which they are not.
+    /// Singles that are tried with a second effect, at the most, and ln p below the best from which they are not, nor as look-alikes on lines.
     pub bases: (usize, f64),
     /// Names that are tried on lines, to see whether one of them leaves no more than noise.
     pub tried: usize,

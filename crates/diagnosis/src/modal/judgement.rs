@@ -82,6 +82,7 @@ impl ModalJudgement {
             settings: &settings.modal,
             known,
             calibrated: false,
+            suffices: &|named| fitted_to_lines(fitter, named).is_some(),
             watch: fitter.watch,
         };
         let search = searcher.search()?;
@@ -136,6 +137,7 @@ impl ModalJudgement {
             settings: &settings.modal,
             known: None,
             calibrated: true,
+            suffices: &|_| false,
             watch: fitter.watch,
         };
         let search = searcher.search()?;
@@ -177,6 +179,14 @@ pub(crate) fn explains(fitter: &Fitter, fit: &Fit, strictly: bool) -> bool {
         false => chi2_per_dof < explained(fitter.observation, fitter.settings),
     };
     fits && deviates_by_chance(fitter, &fit.hypothesis)
+}
+
+/// What the modes led to, fitted to lines, where that leaves no more than noise: the more strictly if the modes seem to need an error of the model.
+fn fitted_to_lines(fitter: &Fitter, named: &Named) -> Option<Fit> {
+    // What will hardly come down to the noise is given up.
+    let noise = explained(fitter.observation, fitter.settings) * fitter.observation.degrees() as f64;
+    let fit = fitter.local(&named.fit.hypothesis, None, noise)?;
+    explains(fitter, &fit, !named.exact).then_some(fit)
 }
 
 struct Judge<'a> {
@@ -310,12 +320,7 @@ impl ModalJudgement {
         let singles = self.search.singles.iter().take(fitter.settings.modal.tried).filter(close);
         let all = singles.chain(&self.search.more).chain([&self.search.best]);
         let all: Vec<&Named> = all.filter(|named| named.exact || by_lines).collect();
-        // What will hardly come down to the noise is given up.
-        let noise = explained(fitter.observation, fitter.settings) * fitter.observation.degrees() as f64;
-        let explaining = |named: &&Named| {
-            let fit = fitter.local(&named.fit.hypothesis, None, noise)?;
-            explains(fitter, &fit, !named.exact).then_some(fit)
-        };
+        let explaining = |named: &&Named| fitted_to_lines(fitter, named);
         let cost = |fit: &Fit| fit.objective + parameter_penalty(&fitter.settings.selection, &fit.hypothesis);
         // More effects than explain the lines are for the lines to ask for.
         (0..=fitter.settings.modal.effects).find_map(|count| {
@@ -345,7 +350,16 @@ impl ModalJudgement {
         let nominal = on_lines(&within.nominal.hypothesis).unwrap_or_else(|| within.nominal.clone());
         let refitted = on_lines(&self.refitted).unwrap_or_else(|| nominal.clone());
         let repaired = on_lines(&self.last.0).unwrap_or_else(|| refitted.clone());
-        Search { nominal, refitted, repaired, candidates: within.candidates.clone() }
+        Search { nominal, refitted, repaired, ..within.clone() }
+    }
+
+    /// Candidates that modes tell from the one effect of `hypothesis`, each fitted to them by itself, by more than `told` in ln p.
+    pub fn told_from(&self, hypothesis: &Hypothesis, candidates: &[Candidate], told: f64) -> Vec<usize> {
+        let [effect] = &hypothesis.effects()[..] else { return Vec::new() };
+        let of = |named: &&Named| named.names.iter().any(|&c| candidates[c].names(effect));
+        let Some(own) = self.search.singles.iter().find(of) else { return Vec::new() };
+        let told = |named: &&Named| own.fit.ln - named.fit.ln > told;
+        self.search.singles.iter().filter(told).flat_map(|named| named.names.clone()).collect()
     }
 
     /// The findings, the strongest first.

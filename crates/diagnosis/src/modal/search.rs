@@ -49,7 +49,7 @@ pub(crate) struct ModalSearch {
 }
 
 /// A search under way.
-#[derive(Debug, Clone, Copy)]
+#[derive(Clone, Copy)]
 pub(crate) struct Searcher<'a> {
     pub problem: Problem<'a>,
     pub candidates: &'a [Candidate],
@@ -59,6 +59,8 @@ pub(crate) struct Searcher<'a> {
     pub known: Option<&'a [Effect]>,
     /// Whether the fixture's quantities are where another recording of the structure put them, and stay there.
     pub calibrated: bool,
+    /// Whether a hypothesis leaves no more than noise on lines.
+    pub suffices: &'a (dyn Fn(&Named) -> bool + Sync),
     pub watch: Watch<'a>,
 }
 
@@ -75,6 +77,10 @@ impl Searcher<'_> {
         for count in 1..=self.settings.effects {
             // What the fixture itself explains, and no effect alone improves, needs no pair.
             if count > 1 && best.names.is_empty() && self.is_adequate(&none) {
+                break;
+            }
+            // What explains modes and lines needs no company that modes could tell.
+            if count > 1 && !best.names.is_empty() && (self.suffices)(&best) {
                 break;
             }
             if count > 1 {
