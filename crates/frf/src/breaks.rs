@@ -1,14 +1,11 @@
 //! Lines at which FRFs break off their course.
 
 use crate::local_rational::LocalRationalFit;
+use crate::noise::{FOLLOWED, NEIGHBOURS};
 use jointscope_spectra::FrfSet;
 
-/// Lines on each side from which the course through a line is taken.
-const NEIGHBOURS: usize = 5;
 /// χ² of a line against its neighbours from which it breaks off.
 const BREAKS: f64 = 200.0;
-/// A line whose own noise is followed to more than this share tells nothing about it.
-const FOLLOWED: f64 = 0.8;
 
 /// The lines, by index, on which at least half of the FRFs break off their course: as they do at the edges of mains hum and of peaks that were clipped, and where no
 /// mode of a structure makes them. `weights` are 1/variance of the real part, and of the imaginary part, FRF after FRF.

@@ -43,13 +43,12 @@ impl NoiseSource {
 /// Averages that a recording may have.
 const AVERAGES: (f64, f64) = (1.5, 1000.0);
 
-/// The number of averages with which a coherence states the noise that the scatter over the lines shows; `None` where they do not go together.
-fn averages_by_scatter(hz: &[f64], values: &[Complex64], coherence: &[f64]) -> Option<u32> {
-    let scatter = from_scatter(hz, values);
+/// The number of averages with which a coherence states the noise that the `scatter` over the lines shows; `None` where they do not go together.
+fn averages_by_scatter(values: &[Complex64], coherence: &[f64], scatter: &[f64]) -> Option<u32> {
     // One less than the averages, line by line: (1 − γ²)/γ²·|H|² over the variance.
     let stated = of_lines(values, coherence, 2);
     let told =
-        stated.iter().zip(&scatter).zip(coherence).filter(|(_, gamma2)| **gamma2 > 0.0 && **gamma2 < 1.0);
+        stated.iter().zip(scatter).zip(coherence).filter(|(_, gamma2)| **gamma2 > 0.0 && **gamma2 < 1.0);
     let mut ratios: Vec<f64> = told.map(|((stated, scatter), _)| stated / scatter).collect();
     if ratios.len() < FEWEST.max(coherence.len() / 2) {
         return None;
@@ -90,23 +89,26 @@ pub fn with_variances(frfs: &FrfSet) -> Result<(FrfSet, Vec<NoiseSource>), Spect
             .zip(frfs.lines().omegas())
             .map(|(v, w)| v * frfs.form().factor_to(FrfForm::Accelerance, w).unwrap_or(Complex64::ZERO))
             .collect();
-        let averages = frfs.averages(index).filter(|n| *n > 1);
-        let (estimate, source) = match (frfs.coherence(index), averages) {
-            (Some(coherence), Some(averages)) => {
-                (from_coherence(&values, coherence, averages), NoiseSource::Coherence)
-            }
-            (Some(coherence), None) => match averages_by_scatter(frfs.lines().hz(), &values, coherence) {
-                Some(averages) if frfs.averages(index).is_none() => {
-                    (from_coherence(&values, coherence, averages), NoiseSource::CoherenceAlone)
-                }
-                _ => (from_scatter(frfs.lines().hz(), &values), NoiseSource::Scatter),
-            },
-            _ => (from_scatter(frfs.lines().hz(), &values), NoiseSource::Scatter),
-        };
+        let (estimate, source) = variances(frfs, index, &values);
         variance.extend(estimate.iter().zip(&scale).map(|(v, s)| v / (s * s)));
         sources.push(source);
     }
     Ok((frfs.clone().with_variance(variance)?, sources))
+}
+
+/// Variances of an FRF's `values`, accelerances, by the best that is known of them.
+fn variances(frfs: &FrfSet, index: usize, values: &[Complex64]) -> (Vec<f64>, NoiseSource) {
+    let averages = frfs.averages(index);
+    if let (Some(coherence), Some(averages @ 2..)) = (frfs.coherence(index), averages) {
+        return (from_coherence(values, coherence, averages), NoiseSource::Coherence);
+    }
+    let scatter = from_scatter(frfs.lines().hz(), values);
+    if let (Some(coherence), None) = (frfs.coherence(index), averages)
+        && let Some(averages) = averages_by_scatter(values, coherence, &scatter)
+    {
+        return (from_coherence(values, coherence, averages), NoiseSource::CoherenceAlone);
+    }
+    (scatter, NoiseSource::Scatter)
 }
 
 /// Variances E|ε|² of one FRF from its coherence and number of averages, smoothed over the lines.
@@ -162,11 +164,11 @@ pub fn smoothed(
 }
 
 /// Lines on each side from which the course of an FRF through a line is taken.
-const NEIGHBOURS: usize = 5;
+pub(crate) const NEIGHBOURS: usize = 5;
 /// |H|² below this share of the largest counts as nothing.
 const NOTHING: f64 = 1e-30;
 /// A line whose own noise is followed to more than this share tells nothing about it.
-const FOLLOWED: f64 = 0.8;
+pub(crate) const FOLLOWED: f64 = 0.8;
 /// Squared errors beyond this many times their expected size are peaks that the local function missed, not noise.
 const CLIPPED: f64 = 8.0;
 

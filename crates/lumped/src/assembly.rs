@@ -1,5 +1,5 @@
 use crate::effects::{Action, Change, actions};
-use crate::held::{in_the_modes, supports};
+use crate::held::{held_by_modes, in_the_modes};
 use crate::mesh::{Attachment, Mesh};
 use crate::modes_cache::modes;
 use crate::uniform_beam::{UniformBeam, UnitMesh};
@@ -155,7 +155,7 @@ impl Assembly {
         let eigenvalues = self.basis.eigenvalues().iter();
         let mut modes: Vec<HeldMode> =
             eigenvalues.map(|&eigenvalue| HeldMode { eigenvalue, in_supports: 0.0, dashpots: 0.0 }).collect();
-        for held in supports(fixture).filter(|_| in_the_modes(fixture)) {
+        for held in held_by_modes(fixture) {
             for (mode, motion) in modes.iter_mut().zip(self.participation(&held.station)) {
                 mode.in_supports += held.stiffness * motion * motion / mode.eigenvalue.max(f64::MIN_POSITIVE);
                 mode.dashpots += held.damping * motion * motion;
@@ -393,7 +393,7 @@ impl Matrices {
         for joint in fixture.joints() {
             all.add_joint(fixture, joint, places);
         }
-        for held in supports(fixture).filter(|_| in_the_modes(fixture)) {
+        for held in held_by_modes(fixture) {
             let mut row = vec![0.0; order];
             places[held.station.body].read(held.station.x, held.station.dof, &mut row);
             for i in (0..order).filter(|&i| row[i] != 0.0) {

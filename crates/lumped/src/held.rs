@@ -31,6 +31,12 @@ pub(crate) fn supports(fixture: &Fixture) -> impl Iterator<Item = Held> {
     })
 }
 
+/// What the modes hold of all supports: nothing where they are those of the assembly without.
+pub(crate) fn held_by_modes(fixture: &Fixture) -> impl Iterator<Item = Held> {
+    let holds = in_the_modes(fixture);
+    supports(fixture).filter(move |_| holds)
+}
+
 /// Whether the modes are those of the assembly on its supports.
 pub(crate) fn in_the_modes(fixture: &Fixture) -> bool {
     let as_it_stands = matches!(fixture.damping(), Damping::ModalRatios { of: RatiosOf::AsItStands, .. });
