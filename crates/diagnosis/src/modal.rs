@@ -6,18 +6,24 @@
 //! ([`jointscope_model_error`]): a name wins by making it smaller.
 //!
 //! * [`changes`]: the modes of two states side by side;
+//! * [`features`]: a recording as its modes tell it;
 //! * [`fit`]: one hypothesis at its most probable parameters and sizes of error;
 //! * [`prior`]: what is known of parameters beforehand;
 //! * [`sizes`]: what is known of the sizes of error, and what a fit says of them;
+//! * [`needs`]: which effects modes need that were found on lines;
 //! * [`search`]: every candidate, alone and beside others;
 //! * [`judgement`]: what it comes to: names with their probabilities and intervals, and errors.
 
 mod changes;
+mod features;
 mod fit;
 mod judgement;
+mod needs;
 mod prior;
 mod search;
 mod sizes;
 
-pub(crate) use judgement::{ModalJudgement, explains, recorded};
+pub(crate) use features::recorded;
+pub(crate) use judgement::{ModalJudgement, explains};
+pub(crate) use needs::without_imitations;
 pub use sizes::{ErrorIntervals, ModelError};

@@ -9,7 +9,7 @@ use crate::fitter::Fitter;
 use crate::freed::Freed;
 use crate::held_out::Division;
 use crate::location::{Location, located};
-use crate::modal::{ModalJudgement, ModelError, explains};
+use crate::modal::{ModalJudgement, ModelError, explains, without_imitations};
 use crate::named::{findings, re_estimated, verdict};
 use crate::search::Search;
 use crate::settings::Settings;
@@ -57,15 +57,16 @@ pub(crate) fn judged(
         true => Freed::of(fitter, &within),
         false => None,
     };
-    let Some(modal) = modal.filter(|modal| !modal.needs_nothing()) else {
+    let known = modal.as_ref();
+    let Some(modal) = known.filter(|modal| !modal.needs_nothing()) else {
         let freed = freed();
-        return Ok(by_lines(fitter, within, of, Start::Anew, division, freed));
+        return Ok(by_lines(fitter, within, of, (Start::Anew, known), division, freed));
     };
     // What explains the lines down to their noise without any error of the model needs none: found among the modes, or, where these are dubious, by a
     // search on lines.
     if let Some(exact) = modal.exact(fitter) {
         let freed = freed();
-        return Ok(by_lines(fitter, within, of, Start::Modes(&modal, exact), division, freed));
+        return Ok(by_lines(fitter, within, of, (Start::Modes(modal, exact), known), division, freed));
     }
     // Where no error of a usual size explains the modes, few quantities that are wrong may explain the lines.
     let freed = match modal.verdict {
@@ -73,7 +74,7 @@ pub(crate) fn judged(
         _ => None,
     };
     if freed.is_some() {
-        return Ok(by_lines(fitter, within, of, Start::Anew, division, freed));
+        return Ok(by_lines(fitter, within, of, (Start::Anew, known), division, freed));
     }
     let may = modal.is_dubious(fitter) && fitter.observation.work().allows("what lines would find");
     let searched = may.then(|| Search::searched(fitter, within.clone()));
@@ -83,9 +84,9 @@ pub(crate) fn judged(
     let not_in_error = modal.search.best.exact || modal.has_right_modes() || modal.tells_little(fitter);
     if explained || not_in_error {
         let start = searched.map_or(Start::Anew, |search| Start::Searched(Box::new(search)));
-        return Ok(by_lines(fitter, within, of, start, division, None));
+        return Ok(by_lines(fitter, within, of, (start, known), division, None));
     }
-    Ok(by_modes(fitter, within, &modal, division.as_ref()))
+    Ok(by_modes(fitter, &within, modal, division.as_ref()))
 }
 
 /// A diagnosis but for what follows from its models and the observation.
@@ -151,12 +152,12 @@ fn chance(observation: &Observation, fit: &Fit) -> (f64, f64) {
     (chi2_per_dof, upper_tail(excess))
 }
 
-/// The diagnosis where the noise of the lines decides.
+/// The diagnosis where the noise of the lines decides, unless what they ask for imitates an error of the model.
 fn by_lines(
     fitter: &Fitter,
     within: Search,
     (fixture, exact): (&Fixture, bool),
-    start: Start,
+    (start, modal): (Start, Option<&ModalJudgement>),
     division: Option<Division>,
     freed: Option<Freed>,
 ) -> Parts {
@@ -184,6 +185,14 @@ fn by_lines(
     let freed = freed.filter(|freed| freed.serves_better(fitter, &search));
     if let Some(freed) = &freed {
         (search.refitted, search.repaired) = (freed.fit.clone(), freed.fit.clone());
+    }
+    if freed.is_none()
+        && let Some(fewer) = without_imitations(fitter, &search)
+    {
+        match modal.filter(|modal| modal.explains()) {
+            Some(modal) => return by_modes(fitter, &search, modal, division.as_ref()),
+            None => search = fewer,
+        }
     }
     let findings =
         match freed.is_some() || nothing_can_be_stated(fitter, &search.repaired, search.candidates.len()) {
@@ -244,9 +253,9 @@ fn blind(
 }
 
 /// The diagnosis where the model's own error decides.
-fn by_modes(fitter: &Fitter, within: Search, modal: &ModalJudgement, division: Option<&Division>) -> Parts {
+fn by_modes(fitter: &Fitter, within: &Search, modal: &ModalJudgement, division: Option<&Division>) -> Parts {
     let Fitter { observation, settings, .. } = *fitter;
-    let search = modal.search_on(observation, &within);
+    let search = modal.search_on(observation, within);
     let work = observation.work();
     let held_out = division.filter(|_| work.allows(UNSEEN)).and_then(|division| {
         fitter.watch.stage("comparing by modes without what is held out");
@@ -254,7 +263,7 @@ fn by_modes(fitter: &Fitter, within: Search, modal: &ModalJudgement, division: O
         let known = modal.known(settings.modal.blind);
         let judged =
             ModalJudgement::of(&blind, &within.nominal.hypothesis, &within.candidates, Some(&known))?;
-        division.judge(&judged.search_on(&division.seen, &within), &search, observation)
+        division.judge(&judged.search_on(&division.seen, within), &search, observation)
     });
     let locations = match modal.verdict {
         Verdict::Unexplained if work.allows(PLACES) => {
@@ -286,7 +295,7 @@ pub(crate) fn since(
     let judged = ModalJudgement::since(fitter, &baseline, &within.nominal.hypothesis, &within.candidates);
     let (modal, before) = judged.ok_or(DiagnosisError::Baseline)?;
     let calibrated = Fit::at(before.calibrated, &baseline).ok_or(DiagnosisError::Baseline)?;
-    let parts = by_modes(fitter, within, &modal, None);
+    let parts = by_modes(fitter, &within, &modal, None);
     let baseline = Baseline { observation: baseline, calibrated, modes: before.modes };
     Ok(Parts { baseline_error: Some(before.error), baseline: Some(baseline), ..parts })
 }

@@ -176,6 +176,13 @@ pub struct ModalSettings {
     pub near: f64,
 }
 
+impl ModalSettings {
+    /// What one of so many effects must gain in ln p.
+    pub(crate) fn needed(&self, candidates: usize) -> f64 {
+        (candidates as f64).ln() + self.odds.ln()
+    }
+}
+
 impl Default for ModalSettings {
     fn default() -> Self {
         ModalSettings {

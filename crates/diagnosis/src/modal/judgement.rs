@@ -7,10 +7,11 @@ use crate::evidence::{deviates_by_chance, excess, explained};
 use crate::fit::Fit;
 use crate::fitter::Fitter;
 use crate::modal::changes::States;
-use crate::modal::fit::{ModalFit, Problem};
+use crate::modal::features::{Features, recorded};
+use crate::modal::fit::ModalFit;
 use crate::modal::prior::priors;
 use crate::modal::search::{ModalSearch, Named, Searcher};
-use crate::modal::sizes::{ModelError, known as known_sizes};
+use crate::modal::sizes::ModelError;
 use crate::penalty::parameter_penalty;
 use crate::search::Search;
 use crate::settings::ModalSettings;
@@ -18,8 +19,7 @@ use crate::{Hypothesis, ModeChange, Observation};
 use jointscope_findings::Verdict;
 use jointscope_fixture::Effect;
 use jointscope_inference::Covariance;
-use jointscope_model_error::{ErrorSizes, KINDS, Pairing, RecordedModes, Recording, SizePrior};
-use jointscope_modes::ModesOptions;
+use jointscope_model_error::{ErrorSizes, KINDS, Pairing, SizePrior};
 
 /// The outcome of a comparison by modes.
 #[derive(Debug, Clone)]
@@ -64,19 +64,9 @@ impl ModalJudgement {
     ) -> Option<Self> {
         let Fitter { observation, settings, watch } = fitter;
         watch.stage("fitting the modes of the recording");
-        let recorded = recorded(observation, nominal, &settings.modal)?;
-        let features = recorded.features();
-        let fixture = nominal.to_fixture().ok()?;
-        let SizePrior { scales, stated } = known_sizes(&settings.modal, &fixture);
-        let problem = Problem {
-            recorded: &recorded,
-            features: &features,
-            sizes: &scales,
-            stated,
-            work: observation.work(),
-        };
+        let features = Features::of(observation, nominal, &settings.modal)?;
         let searcher = Searcher {
-            problem,
+            problem: features.problem(observation.work()),
             candidates,
             nominal,
             settings: &settings.modal,
@@ -86,7 +76,7 @@ impl ModalJudgement {
             watch: fitter.watch,
         };
         let search = searcher.search()?;
-        let states_gain = fixture.record_gain().is_some();
+        let states_gain = nominal.to_fixture().is_ok_and(|fixture| fixture.record_gain().is_some());
         Some(ModalJudgement { states_gain, ..Judge { searcher, search }.judged() })
     }
 
@@ -100,16 +90,8 @@ impl ModalJudgement {
     ) -> Option<(Self, Before)> {
         let Fitter { observation, settings, watch } = fitter;
         watch.stage("fitting the modes of the baseline");
-        let before = recorded(baseline, nominal, &settings.modal)?;
-        let features = before.features();
-        let SizePrior { scales, stated } = known_sizes(&settings.modal, &nominal.to_fixture().ok()?);
-        let problem = Problem {
-            recorded: &before,
-            features: &features,
-            sizes: &scales,
-            stated,
-            work: observation.work(),
-        };
+        let before = Features::of(baseline, nominal, &settings.modal)?;
+        let problem = before.problem(observation.work());
         watch.stage("calibrating the fixture on the baseline");
         let calibrated = problem.fitted(nominal, priors(nominal, &[]))?;
         let before_error = problem.error(&calibrated, settings.modal.adequate.0);
@@ -117,21 +99,14 @@ impl ModalJudgement {
         let now = recorded(observation, &calibrated.hypothesis, &settings.modal)?;
         let model = &calibrated.standing.modelled;
         let own = Pairing::of(&now, model);
-        let change = now.relative_to(&before, model, [&own, &calibrated.standing.pairing])?;
-        let features = change.features();
+        let change = now.relative_to(&before.recorded, model, [&own, &calibrated.standing.pairing])?;
         // What is stated is the error that both states share; the change has its own.
-        let sizes = ErrorSizes { gain: scales.gain, ..scales.times(settings.modal.own) };
-        let stated = [false; KINDS];
-        let problem = Problem {
-            recorded: &change,
-            features: &features,
-            sizes: &sizes,
-            stated,
-            work: observation.work(),
-        };
+        let shared = before.known.scales;
+        let scales = ErrorSizes { gain: shared.gain, ..shared.times(settings.modal.own) };
+        let features = Features::new(change, SizePrior { scales, stated: [false; KINDS] });
         let nominal = &calibrated.hypothesis;
         let searcher = Searcher {
-            problem,
+            problem: features.problem(observation.work()),
             candidates,
             nominal,
             settings: &settings.modal,
@@ -142,31 +117,9 @@ impl ModalJudgement {
         };
         let search = searcher.search()?;
         let judged = Judge { searcher, search }.judged();
-        let states = States { before: &before, now: &now, own: &own, calibrated: &calibrated };
+        let states = States { before: &before.recorded, now: &now, own: &own, calibrated: &calibrated };
         let modes = states.modes(&judged.search.best);
         Some((judged, Before { calibrated: calibrated.hypothesis.clone(), error: before_error, modes }))
-    }
-}
-
-/// The recording's modes, with the help of the model's where they are not resolved.
-pub(crate) fn recorded(
-    observation: &Observation,
-    nominal: &Hypothesis,
-    settings: &ModalSettings,
-) -> Option<RecordedModes> {
-    let recording = Recording { frfs: observation.frfs(), weights: observation.weights() };
-    // Where nothing but the FRFs tells their noise, every ripple looks like a mode: no more are asked for than a model may have.
-    let expected = || jointscope_model_error::modes_within(&nominal.to_fixture().ok()?, observation.frfs());
-    let orders = observation.has_scatter_for_noise().then(expected).flatten().map(|modes| (2, 2 * modes + 8));
-    let options = ModesOptions { orders, ..ModesOptions::default() };
-    let alone = RecordedModes::of(recording, &options, &[])?;
-    if alone.chi2_per_dof < settings.free_fit {
-        return Some(alone);
-    }
-    let expected = alone.unpaired(&nominal.to_fixture().ok()?);
-    match expected.is_empty() {
-        true => Some(alone),
-        false => RecordedModes::of(recording, &options, &expected),
     }
 }
 
@@ -284,6 +237,11 @@ impl ModalJudgement {
         self.verdict == Verdict::Consistent && self.search.best.exact
     }
 
+    /// Whether errors of the usual size explain the modes, with what was found or but for the lesser part.
+    pub fn explains(&self) -> bool {
+        self.verdict != Verdict::Unexplained
+    }
+
     /// Whether the comparison rests on modes that may not be all there are, a free fit short of the noise or modes without a partner, or on records that
     /// are not alike, and a search by lines may do better.
     pub fn is_dubious(&self, fitter: &Fitter) -> bool {
@@ -319,7 +277,9 @@ impl ModalJudgement {
         let close = |named: &&Named| best - named.fit.ln < fitter.settings.modal.told;
         let singles = self.search.singles.iter().take(fitter.settings.modal.tried).filter(close);
         let all = singles.chain(&self.search.more).chain([&self.search.best]);
-        let all: Vec<&Named> = all.filter(|named| named.exact || by_lines).collect();
+        // More effects than modes need imitate an error of the model.
+        let needed = |named: &&Named| named.exact && named.names.len() <= self.search.best.names.len();
+        let all: Vec<&Named> = all.filter(|named| needed(named) || by_lines).collect();
         let explaining = |named: &&Named| fitted_to_lines(fitter, named);
         let cost = |fit: &Fit| fit.objective + parameter_penalty(&fitter.settings.selection, &fit.hypothesis);
         // More effects than explain the lines are for the lines to ask for.

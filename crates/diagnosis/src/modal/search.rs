@@ -124,9 +124,9 @@ impl Searcher<'_> {
         all
     }
 
-    /// What an effect must gain in ln p: the odds of one among so many, and those of the settings.
-    pub fn needed(&self) -> f64 {
-        (self.candidates.len() as f64).ln() + self.settings.odds.ln()
+    /// What an effect must gain in ln p.
+    fn needed(&self) -> f64 {
+        self.settings.needed(self.candidates.len())
     }
 
     /// The best singles each with one effect more; all but the best only where that leaves an error of the model.

@@ -1,0 +1,68 @@
+//! A recording as its modes tell it, and what is known of a model's error beforehand: what hypotheses are held against.
+
+use crate::modal::fit::Problem;
+use crate::modal::sizes::known;
+use crate::settings::ModalSettings;
+use crate::work::Work;
+use crate::{Hypothesis, Observation};
+use jointscope_model_error::{RecordedModes, Recording, SizePrior};
+use jointscope_modes::ModesOptions;
+
+/// Features of a recording's modes, and sizes of error.
+#[derive(Debug, Clone)]
+pub(crate) struct Features {
+    pub recorded: RecordedModes,
+    values: Vec<f64>,
+    pub known: SizePrior,
+}
+
+impl Features {
+    /// Those of a recording; `None` where it has no modes that could be compared.
+    pub fn of(observation: &Observation, nominal: &Hypothesis, settings: &ModalSettings) -> Option<Self> {
+        let known = known(settings, &nominal.to_fixture().ok()?);
+        Some(Features::new(recorded(observation, nominal, settings)?, known))
+    }
+
+    /// Those of modes, with what is known of the sizes of error.
+    pub fn new(recorded: RecordedModes, known: SizePrior) -> Self {
+        Features { values: recorded.features(), recorded, known }
+    }
+
+    /// What hypotheses are fitted to; the work done for that is counted in `work`.
+    pub fn problem<'a>(&'a self, work: &'a Work) -> Problem<'a> {
+        Problem {
+            recorded: &self.recorded,
+            features: &self.values,
+            sizes: &self.known.scales,
+            stated: self.known.stated,
+            work,
+        }
+    }
+
+    /// Whether the modes tell a part of the recording only.
+    pub fn tells_little(&self, settings: &ModalSettings) -> bool {
+        self.recorded.chi2_per_dof > settings.free_fit || self.recorded.is_strained()
+    }
+}
+
+/// The recording's modes, with the help of the model's where they are not resolved.
+pub(crate) fn recorded(
+    observation: &Observation,
+    nominal: &Hypothesis,
+    settings: &ModalSettings,
+) -> Option<RecordedModes> {
+    let recording = Recording { frfs: observation.frfs(), weights: observation.weights() };
+    // Where nothing but the FRFs tells their noise, every ripple looks like a mode: no more are asked for than a model may have.
+    let expected = || jointscope_model_error::modes_within(&nominal.to_fixture().ok()?, observation.frfs());
+    let orders = observation.has_scatter_for_noise().then(expected).flatten().map(|modes| (2, 2 * modes + 8));
+    let options = ModesOptions { orders, ..ModesOptions::default() };
+    let alone = RecordedModes::of(recording, &options, &[])?;
+    if alone.chi2_per_dof < settings.free_fit {
+        return Some(alone);
+    }
+    let expected = alone.unpaired(&nominal.to_fixture().ok()?);
+    match expected.is_empty() {
+        true => Some(alone),
+        false => RecordedModes::of(recording, &options, &expected),
+    }
+}

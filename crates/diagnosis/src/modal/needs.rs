@@ -1,0 +1,56 @@
+//! Which effects modes need that were found on lines.
+//!
+//! The noise of lines knows no error of the model: where a body is a little softer than rigid, or a strip's foot gives way, some effect of the list takes that
+//! up, at a size that means nothing, and χ² asks for it. Modes tell such an imitation from what is there. If the model may be in error as models are, what is
+//! there still gains 11 in ln p and more (the least of 41 effects hidden in lumped structures), and what imitates an error gains 3 at the most and mostly loses.
+
+use crate::Hypothesis;
+use crate::catalogue::Candidate;
+use crate::fitter::Fitter;
+use crate::modal::features::Features;
+use crate::modal::prior::priors;
+use crate::search::Search;
+use jointscope_fixture::Effect;
+
+/// A search on lines but for the effects that modes do not need; `None` where they need all, or do not tell.
+pub(crate) fn without_imitations(fitter: &Fitter, search: &Search) -> Option<Search> {
+    if search.repaired.hypothesis.effect_count() == 0 {
+        return None;
+    }
+    let settings = &fitter.settings.modal;
+    let features = Features::of(fitter.observation, &search.nominal.hypothesis, settings)?;
+    if features.tells_little(settings) {
+        return None;
+    }
+    let mut repaired = search.repaired.clone();
+    while let Some(index) = least_needed(fitter, &features, &search.candidates, &repaired.hypothesis) {
+        let without = repaired.hypothesis.without(index);
+        repaired = match without.effect_count() {
+            0 => search.refitted.clone(),
+            _ => fitter.local(&without, None, f64::INFINITY)?,
+        };
+    }
+    let fewer = repaired.hypothesis.effect_count() < search.repaired.hypothesis.effect_count();
+    fewer.then(|| Search { repaired, ..search.clone() })
+}
+
+/// The effect of a hypothesis that modes need least, by its index; `None` where they need all.
+fn least_needed(
+    fitter: &Fitter,
+    features: &Features,
+    candidates: &[Candidate],
+    hypothesis: &Hypothesis,
+) -> Option<usize> {
+    let settings = &fitter.settings.modal;
+    let problem = features.problem(fitter.observation.work());
+    let ln = |hypothesis: &Hypothesis| {
+        let named = |effect: &Effect| candidates.iter().find(|candidate| candidate.names(effect));
+        let company: Option<Vec<&Candidate>> = hypothesis.effects().iter().map(named).collect();
+        Some(problem.fitted(hypothesis, priors(hypothesis, &company?))?.ln)
+    };
+    let with = ln(hypothesis)?;
+    let gain = |index: usize| Some((index, with - ln(&hypothesis.without(index))?));
+    let gains = (0..hypothesis.effect_count()).filter_map(gain);
+    let (index, gain) = gains.min_by(|a, b| a.1.total_cmp(&b.1))?;
+    (gain < settings.needed(candidates.len())).then_some(index)
+}
