@@ -147,7 +147,7 @@ pub struct ModalSettings {
     pub blind: usize,
     /// Effects at the most.
     pub effects: usize,
-    /// Odds that an effect must gain beyond those of one among all candidates.
+    /// Odds that an effect must gain beyond those of one among all candidates, or that modes must hold for one that lines ask for.
     pub odds: f64,
     /// Standard deviations that the size of an effect must be from nothing, the model's errors as large as they may well be.
     pub least: f64,

@@ -277,9 +277,9 @@ impl ModalJudgement {
         let close = |named: &&Named| best - named.fit.ln < fitter.settings.modal.told;
         let singles = self.search.singles.iter().take(fitter.settings.modal.tried).filter(close);
         let all = singles.chain(&self.search.more).chain([&self.search.best]);
-        // More effects than modes need imitate an error of the model.
-        let needed = |named: &&Named| named.exact && named.names.len() <= self.search.best.names.len();
-        let all: Vec<&Named> = all.filter(|named| needed(named) || by_lines).collect();
+        let odds = fitter.settings.modal.odds;
+        let all: Vec<&Named> =
+            all.filter(|named| by_lines || named.exact && self.search.needs_all_of(named, odds.ln())).collect();
         let explaining = |named: &&Named| fitted_to_lines(fitter, named);
         let cost = |fit: &Fit| fit.objective + parameter_penalty(&fitter.settings.selection, &fit.hypothesis);
         // More effects than explain the lines are for the lines to ask for.

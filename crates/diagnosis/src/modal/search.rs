@@ -48,6 +48,19 @@ pub(crate) struct ModalSearch {
     pub without: Vec<f64>,
 }
 
+impl ModalSearch {
+    /// Whether each effect of a hypothesis gains as much as `needed` in ln p over the others, as far as these were tried: one that does not may imitate an error
+    /// of the model.
+    pub fn needs_all_of(&self, named: &Named, needed: f64) -> bool {
+        let part = |fewer: &&Named| {
+            fewer.names.len() + 1 == named.names.len() && fewer.names.iter().all(|c| named.names.contains(c))
+        };
+        let fewer = self.singles.iter().chain(&self.more).filter(part).map(|fewer| fewer.fit.ln);
+        let none = (named.names.len() == 1).then_some(self.none.ln);
+        fewer.chain(none).all(|ln| named.fit.ln - ln >= needed)
+    }
+}
+
 /// A search under way.
 #[derive(Clone, Copy)]
 pub(crate) struct Searcher<'a> {
