@@ -147,8 +147,10 @@ pub struct ModalSettings {
     pub blind: usize,
     /// Effects at the most.
     pub effects: usize,
-    /// Odds that an effect must gain beyond those of one among all candidates, or that modes must hold for one that lines ask for.
+    /// Odds that an effect must gain beyond those of one among all candidates, and by themselves beside other effects that lines ask for.
     pub odds: f64,
+    /// Objective per degree of freedom that may be left without an effect that imitates an error of the model: about three times the noise.
+    pub slight: f64,
     /// Standard deviations that the size of an effect must be from nothing, the model's errors as large as they may well be.
     pub least: f64,
     /// ln p below the best at which a name is no longer listed: probability below 0.03 %.
@@ -195,6 +197,7 @@ impl Default for ModalSettings {
             blind: 8,
             effects: 3,
             odds: 100.0,
+            slight: 10.0,
             least: 3.0,
             listed: 8.0,
             adequate: (2.0, 4.0),

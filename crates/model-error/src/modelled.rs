@@ -7,7 +7,7 @@ use crate::basis::{MASS_LINE, Pole, UPPER};
 use crate::matching::Pairing;
 use crate::outline::grid;
 use crate::recorded::RecordedModes;
-use jointscope_fixture::Fixture;
+use jointscope_fixture::{Effect, Fixture};
 use jointscope_lumped::{ContinuedFrfs, Instrument, ModelledTest};
 use jointscope_spectra::{FrfSet, SpectralLines};
 use num_complex::Complex64;
@@ -43,6 +43,9 @@ const CONVERGED: f64 = 1e-9;
 const SAME: f64 = 1e-6;
 /// Relative distance below which a pole is the one that a recorded mode hints at.
 const AT_HAND: f64 = 1e-3;
+/// ln f about a resonator's own frequency within which its mode is looked for, and damping ratio of the narrowest that is not missed.
+const ABOUT: f64 = 0.1;
+const NARROWEST: f64 = 0.003;
 /// Points of the contour about a pole.
 const POINTS: usize = 4;
 /// Its radius as a share of the pole's decay, and at least of the pole: modes that overlap lie well outside of it, rounding well below.
@@ -62,9 +65,14 @@ pub fn modes_within(fixture: &Fixture, frfs: &FrfSet) -> Option<usize> {
 }
 
 /// The poles in and near the band of a recording (from half its lowest line to 1.6 times its highest), rad/s, ascending: from the peaks of the FRFs
-/// over a grid of frequencies, and from the recording's own modes.
-fn poles(test: &ModelledTest, recorded: &RecordedModes) -> Vec<Complex64> {
+/// over a grid of frequencies, close by where effects resonate by themselves, and from the recording's own modes.
+fn poles(test: &ModelledTest, fixture: &Fixture, recorded: &RecordedModes) -> Vec<Complex64> {
     let mut all = peaking(test, &recorded.outline.grid, recorded.frfs());
+    let (low, high) = (BEYOND.0 * recorded.band.0, BEYOND.1 * recorded.band.1);
+    let near = |about: &SpectralLines| about.hz()[0] < high && about.hz().iter().any(|hz| *hz > low);
+    for about in fixture.effects().filter_map(about_own_resonance).filter(near) {
+        peaking(test, &about, recorded.frfs()).into_iter().for_each(|pole| add(&mut all, pole));
+    }
     // A narrow mode that is weak in all FRFs may lie between two frequencies of the grid: then a recorded one shows where to look.
     let mut frfs = test.continued();
     for guess in recorded.modes.iter().map(|mode| mode.pole.lambda()) {
@@ -75,9 +83,20 @@ fn poles(test: &ModelledTest, recorded: &RecordedModes) -> Vec<Complex64> {
         }
     }
     ascending(&mut all);
-    let (low, high) = (BEYOND.0 * TAU * recorded.band.0, BEYOND.1 * TAU * recorded.band.1);
-    all.retain(|pole| pole.norm() >= low && pole.norm() <= high);
+    all.retain(|pole| pole.norm() >= TAU * low && pole.norm() <= TAU * high);
     all
+}
+
+/// Frequencies about the one at which an effect resonates by itself, half a resonance's width from one to the next: a light resonator's peak falls between two of
+/// any other grid.
+fn about_own_resonance(effect: &Effect) -> Option<SpectralLines> {
+    let parameters = effect.kind.spec().parameters;
+    let value = |name: &str| Some(effect.value(parameters.iter().position(|p| p.name == name)?));
+    let (hz, ratio) = (value("frequency")?, value("damping_ratio")?);
+    let step = ratio.clamp(NARROWEST, ABOUT / 2.0);
+    let count = (ABOUT / step).ceil() as i32;
+    let lines = (-count..=count).map(|k| hz * (step * f64::from(k)).exp());
+    SpectralLines::new(lines.collect()).ok()
 }
 
 /// The poles that peaks of the FRFs over a grid of frequencies lead to, ascending.
@@ -95,13 +114,38 @@ fn peaking(test: &ModelledTest, grid: &SpectralLines, count: usize) -> Vec<Compl
     let mut all: Vec<Complex64> = Vec::new();
     for k in (1..hz.len() - 1).filter(|&k| peaks(k)) {
         let guess = Complex64::new(0.0, TAU * hz[k]);
-        let apart = Complex64::new(0.0, 0.5 * TAU * (hz[k + 1] - hz[k]));
-        if let Some((pole, _)) = followed(&mut frfs, guess + apart, guess, count) {
-            add(&mut all, pole);
+        let step = Complex64::new(0.0, 0.5 * TAU * (hz[k + 1] - hz[k]));
+        // From the peak a mode that is weak in all FRFs leads to a stronger one; from where a single pole would make it, to itself.
+        let about = [k - 1, k, k + 1].map(|k| (Complex64::new(0.0, TAU * hz[k]), k));
+        let single = single_pole(about, values.chunks_exact(hz.len()));
+        let near = |pole: &Complex64| (pole - guess).norm() < 2.0 * TAU * (hz[k + 1] - hz[k - 1]);
+        let single = single.filter(near).map(|pole| (pole + apart(pole), pole));
+        for (before, at) in [(guess + step, guess)].into_iter().chain(single) {
+            if let Some((pole, _)) = followed(&mut frfs, before, at, count) {
+                add(&mut all, pole);
+            }
         }
     }
     ascending(&mut all);
     all
+}
+
+/// The pole p of c + r/(s − p), c and r of each FRF its own, through the values at three points (s, index): from two of the differences the constant is gone, and
+/// from their quotient the residue. FRFs that change most count most.
+fn single_pole<'a>(
+    [(s1, k1), (s2, k2), (s3, k3)]: [(Complex64, usize); 3],
+    frfs: impl Iterator<Item = &'a [Complex64]>,
+) -> Option<Complex64> {
+    let (mut above, mut below) = (Complex64::ZERO, 0.0);
+    for frf in frfs {
+        let [first, second] = [(frf[k1] - frf[k2]) / (s2 - s1), (frf[k2] - frf[k3]) / (s3 - s2)];
+        above += first * second.conj();
+        below += second.norm_sqr();
+    }
+    // (s₃ − p)/(s₁ − p)
+    let quotient = above / below;
+    let pole = (quotient * s1 - s3) / (quotient - 1.0);
+    (pole.is_finite() && pole.im > 0.0).then_some(pole)
 }
 
 /// Adds a pole that is not there yet.
@@ -145,7 +189,7 @@ impl ModelledModes {
     /// A mode that makes no peak in any FRF between the recording's channels is found only where the recording has one nearby.
     pub fn of(fixture: &Fixture, recorded: &RecordedModes) -> Option<Self> {
         let test = recorded.modelled(fixture)?;
-        ModelledModes::followed(&test, recorded, &poles(&test, recorded))
+        ModelledModes::followed(&test, recorded, &poles(&test, fixture, recorded))
     }
 
     /// The modes of a fixture near `poles`, rad/s; `None` where a pole cannot be followed or the model has no finite FRFs.

@@ -1,7 +1,7 @@
 //! Which effects modes need that were found on lines.
 //!
 //! The noise of lines knows no error of the model: where a body is a little softer than rigid, or a strip's foot gives way, some effect of the list takes that
-//! up, at a size that means nothing, and χ² asks for it. Modes tell such an imitation from what is there. If the model may be in error as models are, what is
+//! up, at a size that means nothing, and a χ² little above the noise asks for it. Modes tell such an imitation from what is there. If the model may be in error as models are, what is
 //! there still gains 11 in ln p and more (the least of 41 effects hidden in lumped structures), and what imitates an error gains 3 at the most and mostly loses.
 
 use crate::Hypothesis;
@@ -12,7 +12,7 @@ use crate::modal::prior::priors;
 use crate::search::Search;
 use jointscope_fixture::Effect;
 
-/// A search on lines but for the effects that modes do not need; `None` where they need all, or do not tell.
+/// A search on lines but for the effects that modes do not need and lines hardly miss; `None` where there are none, or modes do not tell.
 pub(crate) fn without_imitations(fitter: &Fitter, search: &Search) -> Option<Search> {
     if search.repaired.hypothesis.effect_count() == 0 {
         return None;
@@ -25,16 +25,21 @@ pub(crate) fn without_imitations(fitter: &Fitter, search: &Search) -> Option<Sea
     let mut repaired = search.repaired.clone();
     while let Some(index) = least_needed(fitter, &features, &search.candidates, &repaired.hypothesis) {
         let without = repaired.hypothesis.without(index);
-        repaired = match without.effect_count() {
+        let without = match without.effect_count() {
             0 => search.refitted.clone(),
             _ => fitter.local(&without, None, f64::INFINITY)?,
         };
+        if without.objective > settings.slight * fitter.observation.degrees() as f64 {
+            break;
+        }
+        repaired = without;
     }
     let fewer = repaired.hypothesis.effect_count() < search.repaired.hypothesis.effect_count();
     fewer.then(|| Search { repaired, ..search.clone() })
 }
 
-/// The effect of a hypothesis that modes need least, by its index; `None` where they need all. That it is one of many names has been paid for on lines.
+/// The effect of a hypothesis that modes need least, by its index; `None` where they need all. Beside others an effect needs no more than its odds: something is
+/// left out then in any case.
 fn least_needed(
     fitter: &Fitter,
     features: &Features,
@@ -52,5 +57,9 @@ fn least_needed(
     let gain = |index: usize| Some((index, with - ln(&hypothesis.without(index))?));
     let gains = (0..hypothesis.effect_count()).filter_map(gain);
     let (index, gain) = gains.min_by(|a, b| a.1.total_cmp(&b.1))?;
-    (gain < settings.odds.ln()).then_some(index)
+    let needed = match hypothesis.effect_count() {
+        1 => settings.needed(candidates.len()),
+        _ => settings.odds.ln(),
+    };
+    (gain < needed).then_some(index)
 }

@@ -7,6 +7,7 @@ use crate::settings::ModalSettings;
 use crate::{Hypothesis, Watch};
 use jointscope_fixture::{Effect, EffectKind};
 use jointscope_model_error::{ErrorSizes, Linear};
+use std::f64::consts::TAU;
 
 /// Standard deviation, in stated ones, that a calibrated quantity keeps.
 const CALIBRATED: f64 = 1e-4;
@@ -48,16 +49,32 @@ pub(crate) struct ModalSearch {
     pub without: Vec<f64>,
 }
 
+/// The starts of something that resonates by itself, at these frequencies (Hz).
+fn resonating_at(candidate: &Candidate, hz: &[f64]) -> Vec<Effect> {
+    if candidate.kind != EffectKind::AttachedResonator {
+        return Vec::new();
+    }
+    let parameters = candidate.kind.spec().parameters;
+    let Some(frequency) = parameters.iter().position(|p| p.name == "frequency") else { return Vec::new() };
+    let first = candidate.starts.first().map(|start| start[frequency]);
+    // Every abscissa, mass and damping ratio once.
+    let others = candidate.starts.iter().filter(|start| Some(start[frequency]) == first);
+    let at = |start: &Vec<f64>, hz: f64| {
+        let mut start = start.clone();
+        start[frequency] = hz;
+        Effect::new(candidate.kind, candidate.place.clone(), candidate.dof, &start)
+    };
+    others.flat_map(|start| hz.iter().map(move |hz| at(start, *hz))).collect()
+}
+
 impl ModalSearch {
-    /// Whether each effect of a hypothesis gains as much as `needed` in ln p over the others, as far as these were tried: one that does not may imitate an error
-    /// of the model.
+    /// Whether each of several effects gains as much as `needed` in ln p over the others, as far as these were tried: one that does not may imitate an error of
+    /// the model.
     pub fn needs_all_of(&self, named: &Named, needed: f64) -> bool {
         let part = |fewer: &&Named| {
             fewer.names.len() + 1 == named.names.len() && fewer.names.iter().all(|c| named.names.contains(c))
         };
-        let fewer = self.singles.iter().chain(&self.more).filter(part).map(|fewer| fewer.fit.ln);
-        let none = (named.names.len() == 1).then_some(self.none.ln);
-        fewer.chain(none).all(|ln| named.fit.ln - ln >= needed)
+        self.singles.iter().chain(&self.more).filter(part).all(|fewer| named.fit.ln - fewer.fit.ln >= needed)
     }
 }
 
@@ -250,19 +267,21 @@ impl Searcher<'_> {
             true => vec![self.nominal, &base.fit.hypothesis],
             false => vec![&base.fit.hypothesis],
         };
-        let count = bases.len();
-        let starts: Vec<(usize, usize, usize)> = (0..self.candidates.len())
+        let unmatched = self.unmatched(&base.fit);
+        let starts: Vec<(usize, Hypothesis)> = (0..self.candidates.len())
             .filter(free)
             .flat_map(|c| {
-                let each = move |s| (0..count).map(move |b| (c, s, b));
-                (0..self.candidates[c].starts.len()).flat_map(each)
+                let candidate = &self.candidates[c];
+                let own = (0..candidate.starts.len()).map(|start| candidate.effect(start));
+                let all = own.chain(resonating_at(candidate, &unmatched));
+                let on_each = |e: Effect| bases.iter().map(|b| (c, b.with(e.clone()))).collect::<Vec<_>>();
+                all.flat_map(on_each).collect::<Vec<_>>()
             })
             .collect();
         let tried = self.watch.count(starts.len());
         let work = self.problem.work;
-        let scored: Vec<(Score, usize, Hypothesis)> = work.each(starts, STARTS, |(c, s, b)| {
+        let scored: Vec<(Score, usize, Hypothesis)> = work.each(starts, STARTS, |(c, hypothesis)| {
             tried.trying(&self.candidates[c]);
-            let hypothesis = bases[b].with(self.candidates[c].effect(s));
             Some((self.score(&hypothesis, &base.fit)?, c, hypothesis))
         });
         let scored = self.rescored(scored);
@@ -277,6 +296,21 @@ impl Searcher<'_> {
             }
         }
         self.fitted(base, chosen)
+    }
+
+    /// Frequencies (Hz) at which the recording has a mode that a fit has not, and halfway from there to the next one that it has: what resonates beside a mode parts
+    /// the two.
+    fn unmatched(&self, fit: &ModalFit) -> Vec<f64> {
+        let Standing { modelled, pairing, .. } = &fit.standing;
+        let recorded = &self.problem.recorded.modes;
+        let alone = (0..recorded.len()).filter(|&r| pairing.pairs.iter().all(|(other, _)| *other != r));
+        let both = |r: usize| {
+            let own = recorded[r].pole.omega;
+            let next = modelled.modes.iter().map(|mode| mode.pole.omega);
+            let next = next.min_by(|a, b| (a / own).ln().abs().total_cmp(&(b / own).ln().abs()));
+            [own, next.map_or(own, |next| (own * next).sqrt())]
+        };
+        alone.flat_map(both).map(|omega| omega / TAU).collect()
     }
 
     /// Starts at effects that are known, of names that `base` does not have.
