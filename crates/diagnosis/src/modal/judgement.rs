@@ -263,6 +263,18 @@ impl ModalJudgement {
         (self.free_fit > free_fit || self.strained) && self.free_fit <= hopeless
     }
 
+    /// Whether a free fit that needed all it may for the noise, as what relaxes or damps heavily makes it need, leaves no doubt of the names: these explain the modes,
+    /// and none else comes near.
+    pub fn stands_out(&self, fitter: &Fitter) -> bool {
+        let ModalSettings { free_fit, told, .. } = fitter.settings.modal;
+        let best = &self.search.best;
+        let alone = |index: usize| {
+            let others = self.search.alternatives[index].iter().filter(|other| other.names.last() != Some(&best.names[index]));
+            others.count() == 0 && best.fit.ln - self.search.without[index] > told
+        };
+        self.verdict == Verdict::Explained && self.free_fit <= free_fit && (0..best.names.len()).all(alone)
+    }
+
     /// Whether errors of the usual size explain the modes of no hypothesis.
     fn is_unexplained(&self) -> bool {
         !matches!(self.verdict, Verdict::Consistent | Verdict::Explained)
