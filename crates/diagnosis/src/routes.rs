@@ -81,7 +81,8 @@ pub(crate) fn judged(
     let explained = searched.as_ref().is_some_and(|search| explains(fitter, &search.repaired, true));
     // Modes that need no error of the model, or that do not tell all there is, beside lines that are not explained: it is not the modes of the model that
     // are in error.
-    let not_in_error = modal.search.best.exact || modal.has_right_modes() || modal.tells_little(fitter);
+    let told = !modal.tells_little(fitter) || modal.stands_out(fitter);
+    let not_in_error = modal.search.best.exact || modal.has_right_modes() || !told;
     if explained || not_in_error {
         let start = searched.map_or(Start::Anew, |search| Start::Searched(Box::new(search)));
         return Ok(by_lines(fitter, within, of, (start, known), division, None));
@@ -176,7 +177,8 @@ fn by_lines(
         (Start::Modes(modal, exact), _) => {
             let part = Search { repaired: exact, ..modal.search_on(observation, &within) };
             let mut search = Search::continued(fitter, within, &part);
-            search.told_apart = modal.told_from(&search.repaired.hypothesis, &search.candidates, settings.modal.bases.1);
+            search.told_apart =
+                modal.told_from(&search.repaired.hypothesis, &search.candidates, settings.modal.bases.1);
             search
         }
         (Start::Anew, Some(part)) => Search::continued(fitter, within, part),

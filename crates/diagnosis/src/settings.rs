@@ -137,8 +137,8 @@ pub struct ModalSettings {
     pub own: f64,
     /// Candidates that are fitted alone, and beside others.
     pub refined: (usize, usize),
-    /// Starts of each.
-    pub starts: usize,
+    /// Starts of each that is fitted alone, and where none of them explains the modes so.
+    pub starts: (usize, usize),
     /// Singles that are tried with a second effect, at the most, and ln p below the best from which they are not, nor as look-alikes on lines.
     pub bases: (usize, f64),
     /// Names that are tried on lines, to see whether one of them leaves no more than noise.
@@ -191,7 +191,7 @@ impl Default for ModalSettings {
             usual: ErrorSizes::default(),
             own: 0.2,
             refined: (20, 6),
-            starts: 2,
+            starts: (2, 8),
             bases: (3, 20.0),
             tried: 8,
             blind: 8,

@@ -269,7 +269,9 @@ impl ModalJudgement {
         let ModalSettings { free_fit, told, .. } = fitter.settings.modal;
         let best = &self.search.best;
         let alone = |index: usize| {
-            let others = self.search.alternatives[index].iter().filter(|other| other.names.last() != Some(&best.names[index]));
+            let others = self.search.alternatives[index]
+                .iter()
+                .filter(|other| other.names.last() != Some(&best.names[index]));
             others.count() == 0 && best.fit.ln - self.search.without[index] > told
         };
         self.verdict == Verdict::Explained && self.free_fit <= free_fit && (0..best.names.len()).all(alone)
@@ -290,8 +292,9 @@ impl ModalJudgement {
         let singles = self.search.singles.iter().take(fitter.settings.modal.tried).filter(close);
         let all = singles.chain(&self.search.more).chain([&self.search.best]);
         let odds = fitter.settings.modal.odds;
-        let all: Vec<&Named> =
-            all.filter(|named| by_lines || named.exact && self.search.needs_all_of(named, odds.ln())).collect();
+        let all: Vec<&Named> = all
+            .filter(|named| by_lines || named.exact && self.search.needs_all_of(named, odds.ln()))
+            .collect();
         let explaining = |named: &&Named| fitted_to_lines(fitter, named);
         let cost = |fit: &Fit| fit.objective + parameter_penalty(&fitter.settings.selection, &fit.hypothesis);
         // More effects than explain the lines are for the lines to ask for.

@@ -101,7 +101,14 @@ impl Searcher<'_> {
         let none = self.problem.fitted(self.nominal, self.priors(self.nominal, &[]))?;
         let start = Named { names: Vec::new(), exact: self.is_exact(&none), fit: none.clone() };
         self.watch.stage("comparing effects by modes");
-        let singles = self.extended(&start, self.settings.refined.0);
+        let mut singles = self.extended(&start, self.settings.refined.0, self.settings.starts.0);
+        // Where neither the fixture nor any effect explains the modes, the right one may have set out from the wrong place.
+        let explains = |named: &Named| {
+            named.fit.ln - none.ln > self.needed() && self.is_adequate(&named.fit) && self.is_told(named)
+        };
+        if !self.is_adequate(&none) && !singles.iter().any(explains) {
+            singles = self.extended(&start, self.settings.refined.0, self.settings.starts.1);
+        }
         let mut best = start.clone();
         let mut more = Vec::new();
         for count in 1..=self.settings.effects {
@@ -122,7 +129,7 @@ impl Searcher<'_> {
             let ranked = match count {
                 1 => singles.clone(),
                 2 => self.pairs(&singles),
-                _ => self.extended(&best, self.settings.refined.1),
+                _ => self.extended(&best, self.settings.refined.1, 1),
             };
             let Some(first) = ranked.iter().take(self.settings.tried).find(|named| self.is_told(named))
             else {
@@ -168,7 +175,7 @@ impl Searcher<'_> {
             .iter()
             .take(count)
             .filter(close)
-            .flat_map(|s| self.extended(s, self.settings.refined.1))
+            .flat_map(|s| self.extended(s, self.settings.refined.1, 1))
             .collect();
         all.sort_by(|a, b| b.fit.ln.total_cmp(&a.fit.ln));
         all
@@ -188,7 +195,7 @@ impl Searcher<'_> {
                 let company: Vec<&Candidate> = names.iter().map(|&c| &self.candidates[c]).collect();
                 let fit = self.problem.fitted(&hypothesis, self.priors(&hypothesis, &company));
                 match fit.map(|fit| Named { names, exact: self.is_exact(&fit), fit }) {
-                    Some(base) => (self.extended(&base, self.settings.refined.1), base.fit.ln),
+                    Some(base) => (self.extended(&base, self.settings.refined.1, 1), base.fit.ln),
                     None => (Vec::new(), f64::NEG_INFINITY),
                 }
             };
@@ -254,8 +261,8 @@ impl Searcher<'_> {
         sizes.to_array().iter().zip(usual).map(|(size, usual)| size / usual).collect()
     }
 
-    /// Fits of `base` with one effect more, the most probable first.
-    fn extended(&self, base: &Named, refined: usize) -> Vec<Named> {
+    /// Fits of `base` with one effect more, the most probable first: the `refined` best candidates, each from so many starts.
+    fn extended(&self, base: &Named, refined: usize, each: usize) -> Vec<Named> {
         if let Some(known) = self.known {
             return self.fitted(base, self.starts_at(base, known));
         }
@@ -289,8 +296,7 @@ impl Searcher<'_> {
         let mut chosen = Vec::new();
         for (_, c, hypothesis) in scored {
             let distinct = taken.iter().filter(|t| **t > 0).count();
-            let starts = if base.names.is_empty() { self.settings.starts } else { 1 };
-            if taken[c] < starts && (taken[c] > 0 || distinct < refined) {
+            if taken[c] < each && (taken[c] > 0 || distinct < refined) {
                 taken[c] += 1;
                 chosen.push((c, hypothesis));
             }
