@@ -64,8 +64,8 @@ impl Freed {
         penalty(settings, settings.parameter_penalty, within.candidates.len())
     }
 
-    /// Whether it serves better than the effects found, if there are any: where it is about as good, an effect goes before a slip, if it leaves no
-    /// quantity far from what is stated.
+    /// Whether it serves better than the effects found, if there are any: where it is about as good, an effect goes before a slip, unless it leaves
+    /// quantities far from what is stated.
     pub fn serves_better(&self, fitter: &Fitter, search: &Search) -> bool {
         let settings = &fitter.settings.selection;
         let effects = search.repaired.hypothesis.effect_count() as f64;
@@ -76,6 +76,7 @@ impl Freed {
         let own = self.fit.objective + self.count as f64 * Freed::price(fitter, search);
         let bent = !deviates_by_chance(fitter, &search.repaired.hypothesis)
             || has_departed(&search.repaired.hypothesis);
-        effects == 0.0 || bent || own + settings.slip < theirs
+        let slip = if bent { 0.0 } else { settings.slip };
+        effects == 0.0 || own + slip < theirs
     }
 }
