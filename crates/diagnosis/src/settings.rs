@@ -147,7 +147,7 @@ pub struct ModalSettings {
     pub blind: usize,
     /// Effects at the most.
     pub effects: usize,
-    /// Odds that an effect must gain beyond those of one among all candidates, and by themselves beside other effects that lines ask for.
+    /// Odds that an effect must gain beyond those of one among all candidates, and by themselves where lines ask for it.
     pub odds: f64,
     /// Objective per degree of freedom that may be left without an effect that imitates an error of the model: about three times the noise.
     pub slight: f64,

@@ -38,8 +38,7 @@ pub(crate) fn without_imitations(fitter: &Fitter, search: &Search) -> Option<Sea
     fewer.then(|| Search { repaired, ..search.clone() })
 }
 
-/// The effect of a hypothesis that modes need least, by its index; `None` where they need all. Beside others an effect needs no more than its odds: something is
-/// left out then in any case.
+/// The effect of a hypothesis that modes need least, by its index; `None` where they need all. That it is one name of many has been paid for on lines.
 fn least_needed(
     fitter: &Fitter,
     features: &Features,
@@ -57,9 +56,5 @@ fn least_needed(
     let gain = |index: usize| Some((index, with - ln(&hypothesis.without(index))?));
     let gains = (0..hypothesis.effect_count()).filter_map(gain);
     let (index, gain) = gains.min_by(|a, b| a.1.total_cmp(&b.1))?;
-    let needed = match hypothesis.effect_count() {
-        1 => settings.needed(candidates.len()),
-        _ => settings.odds.ln(),
-    };
-    (gain < needed).then_some(index)
+    (gain < settings.odds.ln()).then_some(index)
 }

@@ -104,7 +104,9 @@ impl Searcher<'_> {
         let mut singles = self.extended(&start, self.settings.refined.0, self.settings.starts.0);
         // Where neither the fixture nor any effect explains the modes, the right one may have set out from the wrong place.
         let explains = |named: &Named| {
-            named.fit.ln - none.ln > self.needed() && self.is_adequate(&named.fit) && self.is_told(named)
+            named.fit.ln - none.ln > self.needed()
+                && self.is_adequate(&named.fit)
+                && self.is_told(named, &none)
         };
         if !self.is_adequate(&none) && !singles.iter().any(explains) {
             singles = self.extended(&start, self.settings.refined.0, self.settings.starts.1);
@@ -131,7 +133,8 @@ impl Searcher<'_> {
                 2 => self.pairs(&singles),
                 _ => self.extended(&best, self.settings.refined.1, 1),
             };
-            let Some(first) = ranked.iter().take(self.settings.tried).find(|named| self.is_told(named))
+            let Some(first) =
+                ranked.iter().take(self.settings.tried).find(|named| self.is_told(named, &none))
             else {
                 break;
             };
@@ -204,7 +207,7 @@ impl Searcher<'_> {
             all.sort_by(|a, b| b.fit.ln.total_cmp(&a.fit.ln));
             all.retain(|other| {
                 let close = best.fit.ln - other.fit.ln < self.settings.listed;
-                other.names.last() == Some(&own) || (close && self.is_told(other))
+                other.names.last() == Some(&own) || (close && self.is_told(other, none))
             });
             (all, without)
         };
@@ -212,9 +215,12 @@ impl Searcher<'_> {
     }
 
     /// Whether the size of every effect is told from nothing, the model's errors as large as they may well be: with few modes the most probable errors are
-    /// none, and whatever fits them exactly seems to be needed.
-    fn is_told(&self, named: &Named) -> bool {
+    /// none, and whatever fits them exactly seems to be needed. What gains very much over nothing is told in any case.
+    fn is_told(&self, named: &Named, none: &ModalFit) -> bool {
         let fit = &named.fit;
+        if fit.ln - none.ln > self.settings.told * named.names.len() as f64 {
+            return true;
+        }
         let sizes = fit.linear.mean_sizes(&fit.standing.comparison, self.problem.prior(), &fit.evidence);
         let Some(covariance) = fit.covariance_at(&sizes) else { return false };
         let least = self.settings.least;
