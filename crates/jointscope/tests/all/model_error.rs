@@ -110,3 +110,24 @@ fn what_is_hidden_in_a_solid_is_named_alone_and_with_its_size() {
         assert!((estimate.value / size - 1.0).abs() < 0.15, "{name}: {} for {size}", estimate.value);
     }
 }
+
+/// What lines ask for without knowing of errors of the model: bending of blocks far above the band leaves χ² a little above the noise.
+#[test]
+fn bodies_a_little_softer_than_rigid_are_not_named() {
+    let mut asked_for = 0;
+    for seed in 0..4 {
+        let (fixture, frfs) = common::recorded(everywhere_a_little_softer(), 40 + seed);
+        let diagnosis = diagnosed(&fixture, &frfs, None);
+        assert!(diagnosis.findings.is_empty(), "{}", told(&diagnosis));
+        assert_eq!(diagnosis.verdict, Verdict::Consistent, "{}", told(&diagnosis));
+        asked_for += usize::from(diagnosis.refitted.1 < 1e-3);
+    }
+    assert!(asked_for >= 2, "the lines of {asked_for} of 4 tests ask for something");
+}
+
+fn everywhere_a_little_softer() -> Vec<Effect> {
+    let bending = |body: &str, hz: f64| {
+        Effect::new(EffectKind::BodyFlexibility, Place::Body(body.into()), None, &[hz, 0.003])
+    };
+    vec![bending("A", 9_000.0), bending("B", 11_000.0)]
+}

@@ -1,6 +1,7 @@
 //! What effects do to a model's features: by their definition, and as a recording of them shows.
 
 use crate::common::*;
+use jointscope_model_error::ModelledMode;
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 
@@ -124,5 +125,23 @@ fn a_recording_of_an_effect_shows_the_features_that_are_modelled_for_it() {
             worst.1.1,
             worst.0
         );
+    }
+}
+
+/// A resonator of 20 g on a block of 1.2 kg, at 620 Hz between modes of 247 and 908 Hz: its peak is lower than what the others leave there, and a search from it leads
+/// to one of these.
+#[test]
+fn the_mode_of_a_light_resonator_is_found_between_strong_ones() {
+    for ratio in [0.0005, 0.003, 0.01] {
+        let physics = format!(
+            r#"{{"kind": "attached_resonator", "place": "B", "x": 0.1, "mass": 0.02, "frequency": 620, "damping_ratio": {ratio}}}"#
+        );
+        let recorded = Recorded::of(&blocks(""), &four(), &lines(1000.0), noise(None)).modes();
+        let with = modelled(&blocks(&physics), &recorded);
+        let near = |mode: &&ModelledMode| (mode.pole.omega / TAU / 620.0 - 1.0).abs() < 0.03;
+        let own: Vec<f64> = with.modes.iter().filter(near).map(|mode| mode.pole.damping_ratio).collect();
+        let [own] = own[..] else { panic!("damping ratio {ratio}: modes {:?}", with.poles()) };
+        assert!((own / ratio - 1.0).abs() < 0.3, "damping ratio {own}, by itself {ratio}");
+        assert_eq!(with.modes.len(), recorded.modes.len() + 1);
     }
 }
