@@ -2,7 +2,7 @@
 //!
 //! The noise of lines knows no error of the model: where a body is a little softer than rigid, or a strip's foot gives way, some effect of the list takes that
 //! up, at a size that means nothing, and a χ² little above the noise asks for it. Modes tell such an imitation from what is there. If the model may be in error as models are, what is
-//! there still gains 11 in ln p and more (the least of 41 effects hidden in lumped structures), and what imitates an error gains 3 at the most and mostly loses.
+//! there still gains 7 in ln p and more (effects hidden in lumped structures), and what imitates an error gains 3 at the most and mostly loses.
 
 use crate::Hypothesis;
 use crate::catalogue::Candidate;
