@@ -137,7 +137,7 @@ pub struct ModalSettings {
     pub own: f64,
     /// Candidates that are fitted alone, and beside others.
     pub refined: (usize, usize),
-    /// Starts of each that is fitted alone, and where none of them explains the modes so.
+    /// Starts of each that is fitted alone, and of the best of them (as many as are `tried`) where none explains the modes so.
     pub starts: (usize, usize),
     /// Singles that are tried with a second effect, at the most, and ln p below the best from which they are not, nor as look-alikes on lines.
     pub bases: (usize, f64),

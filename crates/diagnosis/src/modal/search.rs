@@ -7,6 +7,7 @@ use crate::settings::ModalSettings;
 use crate::{Hypothesis, Watch};
 use jointscope_fixture::{Effect, EffectKind};
 use jointscope_model_error::{ErrorSizes, Linear};
+use std::collections::BTreeSet;
 use std::f64::consts::TAU;
 
 /// Standard deviation, in stated ones, that a calibrated quantity keeps.
@@ -67,6 +68,14 @@ fn resonating_at(candidate: &Candidate, hz: &[f64]) -> Vec<Effect> {
     others.flat_map(|start| hz.iter().map(move |hz| at(start, *hz))).collect()
 }
 
+/// The best fit of each name that was added last, the most probable first.
+fn best_of_each(mut fits: Vec<Named>) -> Vec<Named> {
+    fits.sort_by(|a, b| b.fit.ln.total_cmp(&a.fit.ln));
+    let mut seen = BTreeSet::new();
+    fits.retain(|named| named.names.last().is_some_and(|&name| seen.insert(name)));
+    fits
+}
+
 impl ModalSearch {
     /// Whether each of several effects gains as much as `needed` in ln p over the others, as far as these were tried: one that does not may imitate an error of
     /// the model.
@@ -109,7 +118,8 @@ impl Searcher<'_> {
                 && self.is_told(named, &none)
         };
         if !self.is_adequate(&none) && !singles.iter().any(explains) {
-            singles = self.extended(&start, self.settings.refined.0, self.settings.starts.1);
+            let again = self.extended(&start, self.settings.tried, self.settings.starts.1);
+            singles = best_of_each(singles.into_iter().chain(again).collect());
         }
         let mut best = start.clone();
         let mut more = Vec::new();
@@ -347,11 +357,7 @@ impl Searcher<'_> {
             let fit = self.problem.fitted_from(&hypothesis, standing, priors, nearby)?;
             Some(Named { names, exact: self.is_exact(&fit), fit })
         };
-        let mut fits = self.problem.work.each(starts, STARTS, fit);
-        fits.sort_by(|a, b| b.fit.ln.total_cmp(&a.fit.ln));
-        let mut seen = vec![false; self.candidates.len()];
-        fits.retain(|f| f.names.last().is_some_and(|&c| !std::mem::replace(&mut seen[c], true)));
-        fits
+        best_of_each(self.problem.work.each(starts, STARTS, fit))
     }
 
     /// Starts by their density, the highest first. Those that compare other modes than their base, of which the base's derivatives say nothing, are compared with the
