@@ -139,6 +139,8 @@ pub struct ModalSettings {
     pub refined: (usize, usize),
     /// Starts of each that is fitted alone, and of the best of them (as many as are `tried`) where none explains the modes so.
     pub starts: (usize, usize),
+    /// Share of all work that may be done by then: lines want the rest.
+    pub again: f64,
     /// Singles that are tried with a second effect, at the most, and ln p below the best from which they are not, nor as look-alikes on lines.
     pub bases: (usize, f64),
     /// Names that are tried on lines, to see whether one of them leaves no more than noise.
@@ -153,6 +155,8 @@ pub struct ModalSettings {
     pub slight: f64,
     /// Standard deviations that the size of an effect must be from nothing, the model's errors as large as they may well be.
     pub least: f64,
+    /// Gain in ln p of each effect over nothing that needs no such question. A fixture that ended in a false minimum has been 70 short.
+    pub undoubted: f64,
     /// ln p below the best at which a name is no longer listed: probability below 0.03 %.
     pub listed: f64,
     /// Sizes of errors as multiples of what is usual, and departures of quantities in standard deviations, up to which a fit is adequate.
@@ -192,6 +196,7 @@ impl Default for ModalSettings {
             own: 0.2,
             refined: (20, 6),
             starts: (2, 8),
+            again: 0.15,
             bases: (3, 20.0),
             tried: 8,
             blind: 8,
@@ -199,6 +204,7 @@ impl Default for ModalSettings {
             odds: 100.0,
             slight: 10.0,
             least: 3.0,
+            undoubted: 200.0,
             listed: 8.0,
             adequate: (2.0, 4.0),
             exact: 5.0,

@@ -40,6 +40,11 @@ impl Work {
         self.done.fetch_add(MODEL + values as u64, Ordering::Relaxed);
     }
 
+    /// Share of the work that is done already.
+    pub fn spent(&self) -> f64 {
+        self.done.load(Ordering::Relaxed) as f64 / self.most as f64
+    }
+
     /// Whether `what` may still be done; if not, that is remembered.
     pub fn allows(&self, what: &'static str) -> bool {
         let spent = self.done.load(Ordering::Relaxed) >= self.most;

@@ -108,16 +108,19 @@ impl Searcher<'_> {
     pub fn search(&self) -> Option<ModalSearch> {
         self.watch.stage("fitting the fixture to the modes");
         let none = self.problem.fitted(self.nominal, self.priors(self.nominal, &[]))?;
-        let start = Named { names: Vec::new(), exact: self.is_exact(&none), fit: none.clone() };
+        let start = Named { names: Vec::new(), exact: self.is_exact(&none), fit: none };
         self.watch.stage("comparing effects by modes");
         let mut singles = self.extended(&start, self.settings.refined.0, self.settings.starts.0);
+        let start = self.at_its_best(start, &singles);
+        let none = start.fit.clone();
         // Where neither the fixture nor any effect explains the modes, the right one may have set out from the wrong place.
         let explains = |named: &Named| {
             named.fit.ln - none.ln > self.needed()
                 && self.is_adequate(&named.fit)
                 && self.is_told(named, &none)
         };
-        if !self.is_adequate(&none) && !singles.iter().any(explains) {
+        let little = self.problem.work.spent() < self.settings.again;
+        if little && !self.is_adequate(&none) && !singles.iter().any(explains) {
             let again = self.extended(&start, self.settings.tried, self.settings.starts.1);
             singles = best_of_each(singles.into_iter().chain(again).collect());
         }
@@ -162,6 +165,17 @@ impl Searcher<'_> {
         self.watch.stage("asking by modes what else would explain a finding");
         let (alternatives, without) = self.alternatives(&best, &singles, &none);
         Some(ModalSearch { none, best, singles, more, alternatives, without })
+    }
+
+    /// The fixture by itself from where the best effects left its quantities too: what gains much at a size of nothing has only led out of a false minimum.
+    fn at_its_best(&self, none: Named, singles: &[Named]) -> Named {
+        let priors = self.priors(self.nominal, &[]);
+        let without = |named: &Named| self.problem.fitted(&named.fit.hypothesis.without(0), priors.clone());
+        let fits = singles.iter().take(self.settings.bases.0).filter_map(without);
+        match fits.max_by(|a, b| a.ln.total_cmp(&b.ln)).filter(|fit| fit.ln > none.fit.ln) {
+            Some(fit) => Named { exact: self.is_exact(&fit), fit, ..none },
+            None => none,
+        }
     }
 
     /// Priors of a hypothesis whose effects go by the names of `company`.
@@ -228,7 +242,7 @@ impl Searcher<'_> {
     /// none, and whatever fits them exactly seems to be needed. What gains very much over nothing is told in any case.
     fn is_told(&self, named: &Named, none: &ModalFit) -> bool {
         let fit = &named.fit;
-        if fit.ln - none.ln > self.settings.told * named.names.len() as f64 {
+        if fit.ln - none.ln > self.settings.undoubted * named.names.len() as f64 {
             return true;
         }
         let sizes = fit.linear.mean_sizes(&fit.standing.comparison, self.problem.prior(), &fit.evidence);
