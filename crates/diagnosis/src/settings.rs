@@ -172,7 +172,7 @@ pub struct ModalSettings {
     pub unlisted: (f64, f64),
     /// What each effect beside the first adds to that: pairs of effects can imitate much.
     pub company: f64,
-    /// ln p below the best at which a name is not tried on lines: e⁻⁵⁰ as probable.
+    /// ln p below the best at which a name is not tried on lines, and by which names must stand above nothing where a free fit took all its terms: e⁻⁵⁰ as probable.
     pub told: f64,
     /// Starts that compare other modes than their base, at the most, beside the best of each candidate.
     pub apart: usize,

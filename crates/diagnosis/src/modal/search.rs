@@ -305,20 +305,21 @@ impl Searcher<'_> {
             false => vec![&base.fit.hypothesis],
         };
         let unmatched = self.unmatched(&base.fit);
-        let starts: Vec<(usize, Hypothesis)> = (0..self.candidates.len())
+        let count = bases.len();
+        let starts: Vec<(usize, Effect, usize)> = (0..self.candidates.len())
             .filter(free)
             .flat_map(|c| {
                 let candidate = &self.candidates[c];
                 let own = (0..candidate.starts.len()).map(|start| candidate.effect(start));
                 let all = own.chain(resonating_at(candidate, &unmatched));
-                let on_each = |e: Effect| bases.iter().map(|b| (c, b.with(e.clone()))).collect::<Vec<_>>();
-                all.flat_map(on_each).collect::<Vec<_>>()
+                all.flat_map(move |effect| (0..count).map(move |b| (c, effect.clone(), b)))
             })
             .collect();
         let tried = self.watch.count(starts.len());
         let work = self.problem.work;
-        let scored: Vec<(Score, usize, Hypothesis)> = work.each(starts, STARTS, |(c, hypothesis)| {
+        let scored: Vec<(Score, usize, Hypothesis)> = work.each(starts, STARTS, |(c, effect, b)| {
             tried.trying(&self.candidates[c]);
+            let hypothesis = bases[b].with(effect);
             Some((self.score(&hypothesis, &base.fit)?, c, hypothesis))
         });
         let scored = self.rescored(scored);
