@@ -1,7 +1,8 @@
 //! Every effect at every legal place of a fixture, with starts from which a fit may set out.
 
-use crate::Observation;
+use crate::departures::departed;
 use crate::freedom::{extent, inertia_of, mass_of, turns};
+use crate::{Hypothesis, Observation};
 use jointscope_fixture::{
     BodyKind, Dof, Effect, EffectKind, EffectSpec, Entry, Fixture, Joint, Measure, Motion, ParameterRange,
     Place, PlaceKind, SizeLaw, Starts,
@@ -84,7 +85,7 @@ fn made_small(kind: EffectKind, start: &[f64], all: &[Vec<f64>]) -> Vec<f64> {
     let largest = all.iter().map(|start| start[size.parameter]).fold(0.0, f64::max);
     let mut small = start.to_vec();
     small[size.parameter] = match size.law {
-        SizeLaw::Value => size.tiny,
+        SizeLaw::Value | SizeLaw::FromStated => size.tiny,
         SizeLaw::FromOne => 1.0 + size.tiny,
         SizeLaw::Inverse | SizeLaw::InverseSquare => size.tiny * largest,
     };
@@ -168,6 +169,36 @@ pub fn catalogue(fixture: &Fixture, observation: &Observation) -> Vec<Candidate>
         kinds(|spec| spec.place == ResponseChannel).for_each(|kind| add(kind, place(), None));
     }
     kinds(|spec| spec.place == All).for_each(|kind| add(kind, Place::All, None));
+    all
+}
+
+/// Departures from which a search for a wrong quantity sets out, as multiples of that which the refit made: what else it bent was bent in its stead.
+const DEPARTURES: [f64; 4] = [0.5, 1.0, 2.0, 4.0];
+
+/// The candidates and, of the quantities that a refit took beyond what chance makes, the `count` farthest: each may be wrong as it is stated.
+pub(crate) fn with_wrong_quantities(
+    candidates: &[Candidate],
+    refitted: &Hypothesis,
+    count: usize,
+) -> Vec<Candidate> {
+    let tolerances = refitted.tolerances();
+    let mut farthest: Vec<usize> = (0..tolerances.len()).filter(|&index| departed(refitted, index)).collect();
+    let distance = |index: usize| refitted.departure(index).abs();
+    farthest.sort_by(|a, b| distance(*b).total_cmp(&distance(*a)));
+    farthest.truncate(count);
+    let wrong = farthest.into_iter().map(|index| {
+        let tolerance = &tolerances[index];
+        let at = |times: f64| vec![tolerance.value(times * refitted.departure(index))];
+        let place = Place::Quantity(tolerance.quantity.path.clone(), tolerance.quantity.key);
+        let starts = DEPARTURES.map(at).to_vec();
+        Candidate { kind: EffectKind::QuantityError, place, dof: None, starts, directions: Vec::new() }
+    });
+    let mut all = candidates.to_vec();
+    for other in wrong {
+        if all.iter().all(|known| known.place != other.place) {
+            all.push(other);
+        }
+    }
     all
 }
 

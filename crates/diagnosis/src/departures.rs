@@ -45,15 +45,16 @@ pub(crate) fn departed(hypothesis: &Hypothesis, index: usize) -> bool {
 pub(crate) fn departures(search: &Search) -> Vec<Departure> {
     let [refitted, repaired] = [&search.refitted, &search.repaired].map(|fit| &fit.hypothesis);
     let of = |(index, tolerance): (usize, &Tolerance)| {
-        let largest = refitted.departure(index).abs().max(repaired.departure(index).abs());
+        let deviations = repaired.deviations(index);
+        let largest = refitted.departure(index).abs().max(deviations.abs());
         let std = tolerance.quantity.std.filter(|_| largest > DEPARTED)?;
         Some(Departure {
             path: tolerance.quantity.path.clone(),
             stated: tolerance.quantity.value,
             std,
             refitted: refitted.ended_at(index),
-            repaired: repaired.ended_at(index),
-            deviations: repaired.departure(index),
+            repaired: tolerance.value(deviations),
+            deviations,
         })
     };
     let mut all: Vec<Departure> = repaired.tolerances().iter().enumerate().filter_map(of).collect();

@@ -13,8 +13,8 @@ fn between(scale: f64, low: f64, high: f64) -> Parameter {
     Parameter::new(Transform::Linear { centre: 0.0, scale }).between(low / scale, high / scale)
 }
 
-/// How a fit moves each of an effect's parameters, in their order.
-pub(crate) fn parameters_of(fixture: &Fixture, effect: &Effect) -> Vec<Parameter> {
+/// How a fit moves each of an effect's parameters, in their order; the value of a quantity that is `wrong` as that quantity moves.
+pub(crate) fn parameters_of(fixture: &Fixture, effect: &Effect, wrong: Parameter) -> Vec<Parameter> {
     let named = |name: &String| fixture.bodies().iter().position(|b| b.name == *name);
     let (body, second) = match &effect.place {
         Place::Body(name) => (named(name), None),
@@ -35,6 +35,7 @@ pub(crate) fn parameters_of(fixture: &Fixture, effect: &Effect) -> Vec<Parameter
         Motion::AlongBody if effect.kind.spec().may_turn && effect.dof.is_some() => fixed,
         Motion::AlongBody => along(body),
         Motion::AlongSecondBody => along(second),
+        Motion::OfQuantity => wrong,
         Motion::Logarithm { reach } => {
             let start = quantity.value.max(f64::MIN_POSITIVE).ln();
             // What hangs on a body is lighter than the body.

@@ -1,8 +1,8 @@
 use crate::Observation;
 use crate::freedom::parameters_of;
 use jointscope_fixture::{
-    Effect, Fixture, FixtureError, Motion, NamedQuantity, Nature, ParameterSpec, QuantityKey, QuantityOwner,
-    SizeLaw,
+    Effect, Fixture, FixtureError, Motion, NamedQuantity, Nature, ParameterSpec, Place, QuantityKey,
+    QuantityOwner, SizeLaw,
 };
 use jointscope_inference::{Covariance, Parameter, Transform};
 use jointscope_lumped::{Instrument, LumpedError, accelerances};
@@ -132,7 +132,12 @@ impl Hypothesis {
     /// The same with one more effect, at the parameters it is given with.
     pub fn with(&self, effect: Effect) -> Self {
         let mut more = self.clone();
-        let parameters = parameters_of(&self.fixture, &effect);
+        let wrong = match &effect.place {
+            Place::Quantity(path, _) => self.tolerances.iter().find(|t| t.quantity.path == *path),
+            _ => None,
+        };
+        let wrong = wrong.map_or(Parameter::new(Transform::Fixed), |tolerance| tolerance.parameter);
+        let parameters = parameters_of(&self.fixture, &effect, wrong.with_precision(0.0));
         for (parameter, quantity) in parameters.iter().zip(&effect.parameters) {
             more.coordinates.extend(parameter.transform.coordinate(quantity.value));
         }
@@ -176,13 +181,6 @@ impl Hypothesis {
     /// The same where `other`, of the same quantities and effects, stands.
     pub(crate) fn with_coordinates_of(&self, other: &Hypothesis) -> Self {
         Hypothesis { coordinates: other.coordinates.clone(), ..self.clone() }
-    }
-
-    /// The same with nothing known of these quantities beforehand.
-    pub(crate) fn freeing(&self, quantities: &[usize]) -> Self {
-        let mut parameters = self.parameters.to_vec();
-        quantities.iter().for_each(|&index| parameters[index].precision = 0.0);
-        Hypothesis { parameters: parameters.into(), ..self.clone() }
     }
 
     /// The same with these coordinates (and no others) held where they are.
@@ -286,6 +284,7 @@ impl Hypothesis {
             at += 1;
             let none = match size.law {
                 SizeLaw::FromOne if place == size.parameter => 1.0,
+                SizeLaw::FromStated => parameter.transform.value(0.0).unwrap_or(0.0),
                 _ => 0.0,
             };
             let is_size = place == size.parameter || Some(place) == size.dashpot;

@@ -40,7 +40,6 @@ mod evidence;
 mod facts;
 mod fit;
 mod fitter;
-mod freed;
 mod freedom;
 mod held_out;
 mod hypothesis;

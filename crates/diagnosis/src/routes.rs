@@ -1,12 +1,12 @@
 //! The ways to a diagnosis: by the noise of the lines, by the error of the model, by what has changed since a baseline; and which of them a recording
 //! asks for.
 
+use crate::catalogue::Candidate;
 use crate::departures::departures;
 use crate::diagnosis::{Diagnosis, DiagnosisError, DiagnosisOptions, Finding, Tried, mismatch, upper_tail};
 use crate::evidence::{excess, nothing_can_be_stated};
 use crate::fit::Fit;
 use crate::fitter::Fitter;
-use crate::freed::Freed;
 use crate::held_out::Division;
 use crate::location::{Location, located};
 use crate::modal::{ModalJudgement, ModelError, explains, without_imitations};
@@ -40,7 +40,8 @@ pub(crate) fn judged(
 ) -> Result<Parts, DiagnosisError> {
     let division = Division::of(fitter.observation, options)?;
     let within = Search::without_effects(fitter, fixture, options.exact)
-        .ok_or(DiagnosisError::Lines(SpectraError::NoLines))?;
+        .ok_or(DiagnosisError::Lines(SpectraError::NoLines))?
+        .with_wrong_quantities(fitter);
     // Where the fixture as refitted leaves more than noise, the comparison by modes says whether the model itself is in error: if it is, the noise
     // of the lines decides nothing.
     let modal = match within.lacks_much(fitter, &within.refitted) {
@@ -49,32 +50,23 @@ pub(crate) fn judged(
     };
     // Modes lead to the nearest minimum where lines, peak beside peak, may end in another.
     let within = match &modal {
-        Some(modal) => within.refitted_from(fitter, &modal.refitted),
+        Some(modal) => Search { candidates: modal.candidates.clone(), ..within }
+            .refitted_from(fitter, &modal.refitted),
         None => within,
     };
     let of = (fixture, options.exact);
-    let freed = || match within.lacks_much(fitter, &within.refitted) {
-        true => Freed::of(fitter, &within),
-        false => None,
-    };
     let known = modal.as_ref();
     let Some(modal) = known.filter(|modal| !modal.needs_nothing()) else {
-        let freed = freed();
-        return Ok(by_lines(fitter, within, of, (Start::Anew, known), division, freed));
+        return Ok(by_lines(fitter, within, of, (Start::Anew, known), division));
     };
     // What explains the lines down to their noise without any error of the model needs none: found among the modes, or, where these are dubious, by a
     // search on lines.
     if let Some(exact) = modal.exact(fitter) {
-        let freed = freed();
-        return Ok(by_lines(fitter, within, of, (Start::Modes(modal, exact), known), division, freed));
+        return Ok(by_lines(fitter, within, of, (Start::Modes(modal, exact), known), division));
     }
     // Where no error of a usual size explains the modes, few quantities that are wrong may explain the lines.
-    let freed = match modal.verdict {
-        Verdict::Unexplained => freed(),
-        _ => None,
-    };
-    if freed.is_some() {
-        return Ok(by_lines(fitter, within, of, (Start::Anew, known), division, freed));
+    if modal.verdict == Verdict::Unexplained && within.is_explained_by_wrong_quantities(fitter) {
+        return Ok(by_lines(fitter, within, of, (Start::Anew, known), division));
     }
     let may = modal.is_dubious(fitter) && fitter.observation.work().allows("what lines would find");
     let searched = may.then(|| Search::searched(fitter, within.clone()));
@@ -85,7 +77,7 @@ pub(crate) fn judged(
     let not_in_error = modal.search.best.exact || modal.has_right_modes() || !told;
     if explained || not_in_error {
         let start = searched.map_or(Start::Anew, |search| Start::Searched(Box::new(search)));
-        return Ok(by_lines(fitter, within, of, (start, known), division, None));
+        return Ok(by_lines(fitter, within, of, (start, known), division));
     }
     Ok(by_modes(fitter, &within, modal, division.as_ref()))
 }
@@ -160,12 +152,12 @@ fn by_lines(
     (fixture, exact): (&Fixture, bool),
     (start, modal): (Start, Option<&ModalJudgement>),
     division: Option<Division>,
-    freed: Option<Freed>,
 ) -> Parts {
     let Fitter { observation, settings, .. } = *fitter;
+    let candidates = within.candidates.clone();
     let seen = |known: Option<&ModalJudgement>| {
         let division = division.as_ref().filter(|_| observation.work().allows(UNSEEN))?;
-        blind(&fitter.on(&division.seen), (fixture, exact), known)
+        blind(&fitter.on(&division.seen), (fixture, exact), &candidates, known)
     };
     // What sees less goes first where nothing is known, and the whole recording only has to confirm or correct it.
     let anew = matches!(start, Start::Anew);
@@ -184,20 +176,14 @@ fn by_lines(
         (Start::Anew, Some(part)) => Search::continued(fitter, within, part),
         (Start::Anew, None) => Search::searched(fitter, within),
     };
-    let freed = freed.filter(|freed| freed.serves_better(fitter, &search));
-    if let Some(freed) = &freed {
-        (search.refitted, search.repaired) = (freed.fit.clone(), freed.fit.clone());
-    }
-    if freed.is_none()
-        && let Some(fewer) = without_imitations(fitter, &search)
-    {
+    if let Some(fewer) = without_imitations(fitter, &search) {
         match modal.filter(|modal| modal.explains()) {
             Some(modal) => return by_modes(fitter, &search, modal, division.as_ref()),
             None => search = fewer,
         }
     }
     let findings =
-        match freed.is_some() || nothing_can_be_stated(fitter, &search.repaired, search.candidates.len()) {
+        match nothing_can_be_stated(fitter, &search.repaired, search.candidates.len()) {
             true => Vec::new(),
             false => findings(fitter, &mut search),
         };
@@ -236,13 +222,15 @@ fn by_lines(
 fn blind(
     fitter: &Fitter,
     (fixture, exact): (&Fixture, bool),
+    candidates: &[Candidate],
     known: Option<&ModalJudgement>,
 ) -> Option<Search> {
     fitter.watch.stage("searching without the lines that are held out");
     let alone = Search::without_effects(fitter, fixture, exact)?;
+    let alone = Search { candidates: candidates.to_vec(), ..alone };
     let modal = known.and_then(|modal| {
         let known = modal.known(fitter.settings.modal.blind);
-        ModalJudgement::of(fitter, &alone.nominal.hypothesis, &alone.candidates, Some(&known))
+        ModalJudgement::of(fitter, &alone.nominal.hypothesis, candidates, Some(&known))
     });
     let found = modal.and_then(|modal| {
         let exact = modal.exact(fitter)?;

@@ -1,14 +1,15 @@
 //! Which effects a recording needs: forward selection with exchange, every candidate fitted with the tolerances.
 
-use crate::catalogue::{Candidate, catalogue};
+use crate::catalogue::{Candidate, catalogue, with_wrong_quantities};
 use crate::evidence::{deviates_by_chance, nothing_can_be_stated};
 use crate::fit::Fit;
 use crate::fitter::Fitter;
+use crate::modal::explains;
 use crate::penalty::{parameter_penalty, penalty};
 use crate::ranking::Ranking;
 use crate::settings::Settings;
 use crate::{Hypothesis, Observation, Watch};
-use jointscope_fixture::Fixture;
+use jointscope_fixture::{EffectKind, Fixture};
 
 /// The outcome of a search.
 #[derive(Debug, Clone)]
@@ -45,6 +46,21 @@ impl Search {
         fitter.watch.stage("refitting the fixture within its tolerances");
         let refitted = fitter.searched(&start.nominal.hypothesis)?;
         Some(Search { repaired: refitted.clone(), refitted, ..start })
+    }
+
+    /// The same with quantities that had to depart among the candidates.
+    pub(crate) fn with_wrong_quantities(self, fitter: &Fitter) -> Self {
+        let count = fitter.settings.selection.wrong;
+        let candidates = with_wrong_quantities(&self.candidates, &self.refitted.hypothesis, count);
+        Search { candidates, ..self }
+    }
+
+    /// Whether quantities that are wrong, and nothing else, explain the lines down to their noise.
+    pub(crate) fn is_explained_by_wrong_quantities(&self, fitter: &Fitter) -> bool {
+        let is_wrong = |candidate: &&Candidate| candidate.kind == EffectKind::QuantityError;
+        let candidates: Vec<Candidate> = self.candidates.iter().filter(is_wrong).cloned().collect();
+        let any = !candidates.is_empty();
+        any && explains(fitter, &Search::searched(fitter, Search { candidates, ..self.clone() }).repaired, false)
     }
 
     /// The same, the fixture refitted from elsewhere too.

@@ -112,11 +112,8 @@ pub struct SelectionSettings {
     /// Standard deviations of Σ(deviation/std)² up to which quantities are deviated by chance. A layer of glue once hid behind 12 deviations
     /// of one modulus.
     pub deviated: f64,
-    /// Quantities that may be wrong beyond their deviations at the most, and how many of those that departed farthest are tried for each.
-    pub freed: (usize, usize),
-    /// What wrong quantities must cost less than effects to go before them: five times as probable beforehand is a thing left out, and half of what
-    /// one more parameter of an effect gains by chance.
-    pub slip: f64,
+    /// How many of the quantities that a refit took farthest from what is stated compete with effects as wrong ones.
+    pub wrong: usize,
     /// Penalties that an effect must be worth, faded by a quarter, to be kept without a further fit.
     pub clear: f64,
     /// Rounds of adding and dropping.
@@ -292,8 +289,7 @@ impl Default for Settings {
                 parameter_penalty: 3.0,
                 fits: (0.7, 2.0),
                 deviated: 8.0,
-                freed: (3, 3),
-                slip: 10.0,
+                wrong: 3,
                 clear: 2.0,
                 rounds: 5,
                 effects: 3,

@@ -154,7 +154,7 @@ fn quantities(hypothesis: &Hypothesis) -> Vec<Quantity<'_>> {
         nominal: tolerance.quantity.value,
         std: tolerance.quantity.std,
         value: hypothesis.ended_at(index),
-        departure: tolerance.quantity.std.map(|_| hypothesis.departure(index)),
+        departure: tolerance.quantity.std.map(|_| hypothesis.deviations(index)),
         unit: tolerance.quantity.key.unit(),
     });
     all.collect()

@@ -171,8 +171,8 @@ fn action<'a>(fixture: &'a Fixture, effect: &'a Effect) -> Option<Action<'a>> {
             let filter = SignalFilter::Resonance(TAU * value(0), value(1));
             Some(Action::Filtered { channel: &effect.place, filter })
         }
-        // It does two things at once.
-        Kind::Footing => None,
+        // A footing does two things at once; a wrong quantity has its value in the fixture already.
+        Kind::Footing | Kind::QuantityError => None,
         Kind::CubicStiffness | Kind::Friction | Kind::Gap => Some(Action::Amplitude),
     }
 }

@@ -3,7 +3,7 @@
 use crate::StructureError;
 use crate::families::elastic_frequencies;
 use crate::random::{choice, log_uniform, sign, uniform};
-use jointscope_fixture::{Body, BodyKind, Dof, Effect, EffectKind, Fixture, Joint, JointLaw, Place};
+use jointscope_fixture::{Body, BodyKind, Dof, Effect, EffectKind, Fixture, Joint, JointLaw, Nature, Place};
 use jointscope_spectra::FrfPair;
 use rand::Rng;
 use std::f64::consts::TAU;
@@ -36,6 +36,7 @@ pub fn random_effect(
         EffectKind::Footing => scene.footing(rng),
         EffectKind::ParallelStiffness | EffectKind::Springpot => scene.beside_a_joint(rng, kind),
         EffectKind::Bypass => scene.bypass(rng),
+        EffectKind::QuantityError => scene.wrong_quantity(rng),
         EffectKind::CubicStiffness | EffectKind::Friction | EffectKind::Gap => scene.nonlinear(rng, kind),
         EffectKind::PointOffset
         | EffectKind::ChannelGain
@@ -55,6 +56,20 @@ struct Scene<'a> {
 }
 
 impl Scene<'_> {
+    /// A number that was written down wrong, by more than anybody would take for its deviation.
+    fn wrong_quantity(&self, rng: &mut impl Rng) -> Option<Effect> {
+        let mut all = self.fixture.quantities();
+        all.retain(|quantity| {
+            !matches!(quantity.nature, Nature::Damping | Nature::Effect) && quantity.std.is_some_and(|std| std > 0.0)
+        });
+        let quantity = choice(rng, &all)?;
+        let wrong = quantity.value + sign(rng) * quantity.std? * log_uniform(rng, 8.0, 30.0);
+        // Nothing that is positive is written down as negative.
+        let wrong = if quantity.nature == Nature::Abscissa { wrong } else { wrong.max(0.3 * quantity.value) };
+        let place = Place::Quantity(quantity.path.clone(), quantity.key);
+        Some(Effect::new(EffectKind::QuantityError, place, None, &[wrong]))
+    }
+
     fn on_a_body(&self, rng: &mut impl Rng, kind: EffectKind) -> Option<Effect> {
         let suits = |body: &&Body| match (&body.kind, kind) {
             (BodyKind::Rigid(rigid), EffectKind::BodyFlexibility) => rigid.rotates,

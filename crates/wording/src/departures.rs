@@ -25,9 +25,10 @@ pub(crate) fn departed(diagnosis: &Diagnosis) -> String {
     format!("{}{}: {to_do}. ", moved(diagnosis, first), also(&others))
 }
 
-/// The departures that the effects found do not take away, the farthest first.
+/// The departures that the effects found neither take away nor name, the farthest first.
 pub(crate) fn remaining(diagnosis: &Diagnosis) -> impl Iterator<Item = &Departure> {
-    diagnosis.departures.iter().filter(|departure| departure.remains())
+    let named = |path: &str| diagnosis.findings.iter().any(|finding| finding.effect.place.to_string() == path);
+    diagnosis.departures.iter().filter(move |departure| departure.remains() && !named(&departure.path))
 }
 
 /// `bodies/F1/mass would have to be 4.23 kg, 10 standard deviations from the stated 3.50 kg`.

@@ -164,6 +164,7 @@ impl<'a> Problem<'a> {
         let nearby = nearby.filter(|slopes| slopes.iter().all(|slope| slope.len() == residual.len()));
         let mut point = Iterate { hypothesis: start.clone(), modelled: standing.modelled.clone(), residual };
         let mut derivatives = nearby;
+        let rarity: f64 = start.effects().iter().map(|effect| effect.kind.spec().rarity).sum();
         let mut sizes = *self.sizes;
         let mut best: Option<ModalFit> = None;
         for round in 0..ROUNDS {
@@ -176,7 +177,7 @@ impl<'a> Problem<'a> {
             let known = best.as_ref().map(|fit| &fit.evidence.sizes);
             let (linear, evidence) = self.evidence(&point, &priors, &fresh, (&standing.comparison, known))?;
             derivatives = Some(fresh);
-            let ln = evidence.ln + standing.pairing.alone();
+            let ln = evidence.ln + standing.pairing.alone() - rarity;
             let before = best.as_ref().map_or(f64::NEG_INFINITY, |fit| fit.ln);
             sizes = evidence.sizes;
             if ln > before {

@@ -1,6 +1,6 @@
 //! What a comparison by modes comes to.
 
-use crate::catalogue::Candidate;
+use crate::catalogue::{Candidate, with_wrong_quantities};
 use crate::diagnosis::{Finding, Tried};
 use crate::estimates::estimates;
 use crate::evidence::{deviates_by_chance, excess, explained};
@@ -25,6 +25,8 @@ use jointscope_model_error::{ErrorSizes, KINDS, Pairing, SizePrior};
 #[derive(Debug, Clone)]
 pub(crate) struct ModalJudgement {
     pub search: ModalSearch,
+    /// All names that were tried.
+    pub candidates: Vec<Candidate>,
     pub verdict: Verdict,
     /// By effect of the best hypothesis: probability of its name, and other names with theirs.
     pub names: Vec<Vec<(usize, f64, Hypothesis)>>,
@@ -75,7 +77,10 @@ impl ModalJudgement {
             suffices: &|named| fitted_to_lines(fitter, named).is_some(),
             watch: fitter.watch,
         };
-        let search = searcher.search()?;
+        let alone = searcher.fixture_alone()?;
+        let candidates = with_wrong_quantities(candidates, &alone.hypothesis, settings.selection.wrong);
+        let searcher = Searcher { candidates: &candidates, ..searcher };
+        let search = searcher.search(alone);
         let states_gain = nominal.to_fixture().is_ok_and(|fixture| fixture.record_gain().is_some());
         Some(ModalJudgement { states_gain, ..Judge { searcher, search }.judged() })
     }
@@ -115,7 +120,7 @@ impl ModalJudgement {
             suffices: &|_| false,
             watch: fitter.watch,
         };
-        let search = searcher.search()?;
+        let search = searcher.search(searcher.fixture_alone()?);
         let judged = Judge { searcher, search }.judged();
         let states = States { before: &before.recorded, now: &now, own: &own, calibrated: &calibrated };
         let modes = states.modes(&judged.search.best);
@@ -172,6 +177,7 @@ impl Judge<'_> {
         let names = self.search.alternatives.iter().map(|all| self.probabilities(all)).collect();
         ModalJudgement {
             verdict,
+            candidates: self.searcher.candidates.to_vec(),
             names,
             free_fit: self.searcher.problem.recorded.chi2_per_dof,
             strained: self.searcher.problem.recorded.is_strained(),

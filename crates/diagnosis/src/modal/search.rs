@@ -104,10 +104,15 @@ pub(crate) struct Searcher<'a> {
 }
 
 impl Searcher<'_> {
-    /// Searches for effects; `None` where the fixture has no modes that could be compared.
-    pub fn search(&self) -> Option<ModalSearch> {
+    /// The fixture by itself; `None` where it has no modes that could be compared.
+    pub fn fixture_alone(&self) -> Option<ModalFit> {
         self.watch.stage("fitting the fixture to the modes");
-        let none = self.problem.fitted(self.nominal, self.priors(self.nominal, &[]))?;
+        self.problem.fitted(self.nominal, self.priors(self.nominal, &[]))
+    }
+
+    /// Searches for effects beside the fixture `alone`.
+    pub fn search(&self, alone: ModalFit) -> ModalSearch {
+        let none = alone;
         let start = Named { names: Vec::new(), exact: self.is_exact(&none), fit: none };
         self.watch.stage("comparing effects by modes");
         let mut singles = self.extended(&start, self.settings.refined.0, self.settings.starts.0);
@@ -164,7 +169,7 @@ impl Searcher<'_> {
         }
         self.watch.stage("asking by modes what else would explain a finding");
         let (alternatives, without) = self.alternatives(&best, &singles, &none);
-        Some(ModalSearch { none, best, singles, more, alternatives, without })
+        ModalSearch { none, best, singles, more, alternatives, without }
     }
 
     /// The fixture by itself from where the best effects left its quantities too: what gains much at a size of nothing has only led out of a false minimum.

@@ -2,7 +2,7 @@
 
 use crate::common::{self, believed, four_pairs, hammer, lines, measured};
 use crate::model_error::told;
-use jointscope::diagnosis::{Diagnosis, DiagnosisOptions, Verdict};
+use jointscope::diagnosis::{Diagnosis, DiagnosisOptions, Finding, Verdict};
 use jointscope::fixture::{Effect, EffectKind, Place};
 use jointscope::{Fixture, FrfPair, FrfSet, SpectralLines};
 use serde_json::json;
@@ -19,29 +19,68 @@ fn wrong(values: &[(&str, f64)], seed: u64) -> (Fixture, FrfSet) {
     (believed, frfs)
 }
 
-/// Diagnoses, and expects nothing but departures at these paths.
+/// Diagnoses, and expects these quantities to be called wrong, and nothing else.
 #[track_caller]
-fn only_departed(values: &[(&str, f64)], seed: u64) {
+fn called_wrong(values: &[(&str, f64)], seed: u64) {
     let (fixture, frfs) = wrong(values, seed);
     let diagnosis = Diagnosis::of(&fixture, &frfs, &DiagnosisOptions::default()).unwrap();
     let said = told(&diagnosis);
-    assert!(diagnosis.findings.is_empty() && diagnosis.is_only_departed(), "{said}");
+    assert_eq!((diagnosis.verdict, diagnosis.findings.len()), (Verdict::Explained, values.len()), "{said}");
     for (path, value) in values {
         let path = path.trim_start_matches('/');
+        let of_it = |finding: &&Finding| finding.effect.place.to_string() == path;
+        let found = diagnosis.findings.iter().find(of_it).unwrap_or_else(|| panic!("{path}: {said}"));
+        let estimate = found.estimates[0];
+        assert_eq!((found.effect.kind, found.estimates.len()), (EffectKind::QuantityError, 1));
+        assert!((estimate.value / value - 1.0).abs() < 0.05 && estimate.interval.is_some(), "{estimate:?}");
+        assert!(found.probability > 0.5, "{said}");
         let departure = diagnosis.departures.iter().find(|departure| departure.path == path);
         let departure = departure.unwrap_or_else(|| panic!("{path} of {:?}", diagnosis.departures));
-        assert!(departure.remains() && (departure.repaired / value - 1.0).abs() < 0.05, "{departure:?}");
+        assert!(departure.remains() && departure.repaired == estimate.value, "{departure:?}");
+        let repaired = diagnosis.search.repaired.hypothesis.to_fixture().unwrap().to_value();
+        assert_eq!(repaired.pointer(&format!("/{path}")).unwrap()["value"], json!(estimate.value));
     }
 }
 
 #[test]
-fn a_centre_of_gravity_that_is_elsewhere_is_a_departure_and_no_pair_of_masses() {
-    only_departed(&[("/bodies/A/x_cg", -0.0325)], 3);
+fn a_centre_of_gravity_that_is_elsewhere_is_called_wrong_and_is_no_pair_of_masses() {
+    called_wrong(&[("/bodies/A/x_cg", -0.0325)], 3);
 }
 
 #[test]
-fn damping_that_is_far_from_what_is_stated_is_a_departure() {
-    only_departed(&[("/damping/modal_ratios/0", 0.02), ("/damping/modal_ratios/1", 0.028)], 4);
+fn damping_that_is_far_from_what_is_stated_is_called_wrong() {
+    called_wrong(&[("/damping/modal_ratios/0", 0.02), ("/damping/modal_ratios/1", 0.028)], 4);
+}
+
+/// Three storeys on their columns, which a mass of the first one is wrong of, or on which something stands.
+#[test]
+fn a_storey_too_heavy_is_a_wrong_mass_or_an_added_one() {
+    let frame = |mass: f64| {
+        let storey = |mass: f64| json!({ "mass": {"value": mass, "std": 0.02 * 3.5}, "rotates": false });
+        let columns = |stiffness: f64| json!([[{"value": stiffness, "std": 0.02 * stiffness}, 0.0], [0.0, 0.0]]);
+        Fixture::from_value(&json!({
+            "bodies": { "F1": storey(mass), "F2": storey(3.5), "F3": storey(3.5) },
+            "points": { "1": { "body": "F1", "x": 0.0 }, "2": { "body": "F2", "x": 0.0 }, "3": { "body": "F3", "x": 0.0 } },
+            "joints": { "J12": { "from": "1", "to": "2", "stiffness": columns(6.1e5) }, "J23": { "from": "2", "to": "3", "stiffness": columns(5.7e5) } },
+            "supports": { "S": { "point": "1", "stiffness": {"value": 6.4e5, "std": 1.3e4} } },
+            "damping": { "loss_factor": 0.018 },
+        }))
+        .unwrap()
+    };
+    let pairs = [("1", "1"), ("2", "1"), ("3", "1")].map(|(o, i)| FrfPair::transverse(o, i));
+    let lines = SpectralLines::even(5.0, 0.25, 600).unwrap();
+    let frfs = measured(&frame(4.6), Vec::new(), (&pairs, &lines), &hammer(8));
+    let diagnosis = Diagnosis::of(&frame(3.5), &frfs, &DiagnosisOptions::default()).unwrap();
+    let said = told(&diagnosis);
+    assert_eq!((diagnosis.verdict, diagnosis.findings.len()), (Verdict::Explained, 1), "{said}");
+    let found = &diagnosis.findings[0];
+    let mut names = vec![(found.effect.clone(), found.probability)];
+    names.extend(found.alternatives.iter().cloned());
+    for (kind, place) in [(EffectKind::AddedMass, "F1"), (EffectKind::QuantityError, "bodies/F1/mass")] {
+        let own = names.iter().find(|(effect, _)| effect.kind == kind && effect.place.to_string() == place);
+        assert!(own.is_some_and(|(_, probability)| *probability > 0.05), "{kind:?}: {said}");
+    }
+    assert_eq!(diagnosis.departures[0].path, "bodies/F1/mass");
 }
 
 #[test]

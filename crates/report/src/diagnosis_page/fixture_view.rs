@@ -64,7 +64,7 @@ fn place(fixture: &Fixture, effect: &Effect) -> Option<(f64, Option<usize>)> {
             let body = fixture.bodies().iter().position(|body| body.name == *one)?;
             Some((effect.value(0), Some(body)))
         }
-        Place::Force | Place::All => None,
+        Place::Force | Place::All | Place::Quantity(..) => None,
     }
 }
 
