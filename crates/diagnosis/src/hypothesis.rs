@@ -35,6 +35,9 @@ pub struct Tolerance {
 /// Relative deviation up to which a quantity moves by its logarithm.
 const NARROW: f64 = 0.12;
 
+/// Standard deviation of a quantity that is wrong, in stated ones: a slip of the calliper or the scales is many of them, a hundred is none.
+const WRONG: f64 = 10.0;
+
 impl Tolerance {
     fn new(index: usize, quantity: NamedQuantity) -> Self {
         let nominal = quantity.value;
@@ -137,7 +140,7 @@ impl Hypothesis {
             _ => None,
         };
         let wrong = wrong.map_or(Parameter::new(Transform::Fixed), |tolerance| tolerance.parameter);
-        let parameters = parameters_of(&self.fixture, &effect, wrong.with_precision(0.0));
+        let parameters = parameters_of(&self.fixture, &effect, wrong.with_precision(WRONG.powi(-2)));
         for (parameter, quantity) in parameters.iter().zip(&effect.parameters) {
             more.coordinates.extend(parameter.transform.coordinate(quantity.value));
         }

@@ -17,8 +17,6 @@ const FREE: f64 = 10.0;
 /// Least standard deviation of a logarithm: a factor of four either way.
 const LOGARITHM: f64 = 1.4;
 
-/// Standard deviation of a quantity that is wrong, in stated ones: where it is looked for at all it lies beyond what chance makes, and seldom tens of them.
-const WRONG: f64 = 30.0;
 /// Standard deviation of a size of either sign, as a share of the largest that a search starts from.
 const SIZE: f64 = 0.6;
 /// The same of a dashpot beside a spring, whose starts are next to nothing.
@@ -49,7 +47,7 @@ fn of_effect(hypothesis: &Hypothesis, index: usize, candidate: &Candidate) -> Ve
         let high = coordinates.iter().copied().reduce(f64::max)?;
         let largest = low.abs().max(high.abs());
         Some(match (moves.transform, parameter.motion) {
-            (_, Motion::OfQuantity) => Prior { mean: 0.0, std: WRONG },
+            (_, Motion::OfQuantity) => Prior { mean: 0.0, std: moves.precision.sqrt().recip() },
             (Transform::Logarithmic { .. }, _) => {
                 Prior { mean: 0.5 * (low + high), std: (0.5 * (high - low)).max(LOGARITHM) }
             }
