@@ -39,6 +39,8 @@ const BEYOND: (f64, f64) = (0.5, 1.6);
 /// Steps of the secant method, at most, and the relative change at which it ends.
 const STEPS: usize = 14;
 const CONVERGED: f64 = 1e-9;
+/// Damping ratio of what has none: its logarithm is finite, and beyond that of anything recorded.
+const UNDAMPED: f64 = 1e-9;
 /// Relative distance below which two poles are one.
 const SAME: f64 = 1e-6;
 /// Relative distance below which a pole is the one that a recorded mode hints at.
@@ -236,6 +238,11 @@ impl ModelledModes {
     }
 }
 
+/// Whether a mode at this pole dies away, or at least does not grow beyond rounding: a suspension may have no damping at all.
+fn is_damped(pole: Complex64) -> bool {
+    pole.im > 0.0 && pole.re <= CONVERGED * pole.norm()
+}
+
 /// The pole that the secant method leads to from two points, and the FRFs' values on the way there.
 fn followed(
     frfs: &mut ContinuedFrfs,
@@ -260,7 +267,7 @@ fn followed(
     for _ in 0..STEPS {
         let now = inverse(frfs, at, &mut values);
         if now == Complex64::ZERO {
-            return (at.im > 0.0 && at.re <= 0.0).then_some((at, values));
+            return is_damped(at).then_some((at, values));
         }
         if now == earlier {
             return None;
@@ -272,7 +279,7 @@ fn followed(
         (before, earlier) = (at, now);
         at = next;
         if (at - before).norm() <= CONVERGED * at.norm() {
-            return (at.im > 0.0 && at.re <= 0.0).then_some((at, values));
+            return is_damped(at).then_some((at, values));
         }
     }
     None
@@ -293,5 +300,7 @@ pub(crate) fn mode(frfs: &mut ContinuedFrfs, guess: Complex64, count: usize) -> 
     // Of s²A/((s − λ)(s − λ̄)) the residue at λ is λ²A/(λ − λ̄).
     let factor = Complex64::new(0.0, 2.0 * at.im) / (at * at);
     residues.iter_mut().for_each(|residue| *residue *= factor);
-    Some(ModelledMode { pole: Pole::of(at), residues })
+    let mut pole = Pole::of(at);
+    pole.damping_ratio = pole.damping_ratio.max(UNDAMPED);
+    Some(ModelledMode { pole, residues })
 }

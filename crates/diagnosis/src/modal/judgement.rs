@@ -289,9 +289,9 @@ impl ModalJudgement {
     }
 
     /// What explains the recording without any error of the model, by its modes and down to the noise of its lines: the best of those that do. Where
-    /// errors of the usual size do not explain the modes either, or these are dubious, lines decide alone, but more strictly.
+    /// errors of the usual size do not explain the modes either, or these are dubious or right whatever their evidence says, lines decide alone, but more strictly.
     pub fn exact(&self, fitter: &Fitter) -> Option<Fit> {
-        let by_lines = self.is_unexplained() || self.is_dubious(fitter);
+        let by_lines = self.is_unexplained() || self.is_dubious(fitter) || self.has_right_modes();
         // What modes tell from the best is no better on lines.
         let best = self.search.best.fit.ln;
         let close = |named: &&Named| best - named.fit.ln < fitter.settings.modal.told;

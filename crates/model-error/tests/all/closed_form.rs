@@ -1,7 +1,7 @@
 //! Features of two masses on a spring against the textbook.
 
 use crate::common::*;
-use jointscope_model_error::{Comparison, ErrorSizes, Pairing, Pole, Shapes, modes_within};
+use jointscope_model_error::{Comparison, ErrorSizes, ModelledModes, Pairing, Pole, Shapes, modes_within};
 use num_complex::Complex64;
 use proptest::prelude::*;
 use std::f64::consts::{PI, TAU};
@@ -44,6 +44,22 @@ fn poles_and_residues_of_two_masses_are_those_of_the_textbook() {
         for (residue, expected) in modes[0].residues.iter().zip([a * a, a * b, b * b]) {
             assert!((residue - expected).norm() < 1e-7, "residue {residue} 1/kg, expected {expected} 1/kg");
         }
+    }
+}
+
+#[test]
+fn a_mode_without_damping_is_followed_as_any_other() {
+    let pairs = pairs(&[("1", "1"), ("2", "1")]);
+    let recorded = Recorded::of(&two_masses(0.01, ""), &pairs, &lines(600.0), noise(None)).modes();
+    let poles = modelled(&two_masses(1e-5, ""), &recorded).poles();
+    for step in 1..40 {
+        let factor = 1.0 + 1e-5 * f64::from(step);
+        let softer = format!(r#"{{"kind": "stiffness_change", "place": "J", "factor": {factor}}}"#);
+        let modes = ModelledModes::near(&two_masses(0.0, &softer), &recorded, &poles);
+        let modes = modes.unwrap_or_else(|| panic!("factor {factor}"));
+        let Pole { omega, damping_ratio } = modes.modes[0].pole;
+        assert!((omega / natural() / factor.sqrt() - 1.0).abs() < 1e-8 && damping_ratio < 1e-8);
+        assert!(damping_ratio > 0.0, "its logarithm is a feature");
     }
 }
 
