@@ -136,6 +136,9 @@ pub struct ModalSettings {
     pub refined: (usize, usize),
     /// Starts of each that is fitted alone, and of the best of them (as many as are `tried`) where none explains the modes so.
     pub starts: (usize, usize),
+    /// Starts that are fitted in any case, and how far in ln p the density of another may lie below the best of these fits for it to be fitted too: a fit seldom
+    /// gains so much over its start, and e⁻¹⁵⁰ is no probability.
+    pub foremost: (usize, f64),
     /// Share of all work that may be done by then: lines want the rest.
     pub again: f64,
     /// Singles that are tried with a second effect, at the most, and ln p below the best from which they are not, nor as look-alikes on lines.
@@ -193,6 +196,7 @@ impl Default for ModalSettings {
             own: 0.2,
             refined: (20, 6),
             starts: (2, 8),
+            foremost: (8, 150.0),
             again: 0.15,
             bases: (3, 20.0),
             tried: 8,

@@ -334,13 +334,18 @@ impl ModalJudgement {
         Search { nominal, refitted, repaired, ..within.clone() }
     }
 
-    /// Candidates that modes tell from the one effect of `hypothesis`, each fitted to them by itself, by more than `told` in ln p.
+    /// Candidates that modes tell from the one effect of `hypothesis`, each fitted to them by itself, by more than `told` in ln p, or not even fitted, so far below
+    /// did it start.
     pub fn told_from(&self, hypothesis: &Hypothesis, candidates: &[Candidate], told: f64) -> Vec<usize> {
         let [effect] = &hypothesis.effects()[..] else { return Vec::new() };
         let of = |named: &&Named| named.names.iter().any(|&c| candidates[c].names(effect));
         let Some(own) = self.search.singles.iter().find(of) else { return Vec::new() };
         let told = |named: &&Named| own.fit.ln - named.fit.ln > told;
-        self.search.singles.iter().filter(told).flat_map(|named| named.names.clone()).collect()
+        let fitted = self.search.singles.iter().filter(told).flat_map(|named| named.names.clone());
+        // What is far below the best is told from what comes first, not from any other.
+        let first = self.search.singles.first().is_some_and(|first| first.names == own.names);
+        let far = self.search.far.iter().copied().filter(|_| first);
+        fitted.chain(far).collect()
     }
 
     /// The findings, the strongest first.

@@ -7,7 +7,7 @@ use crate::settings::ModalSettings;
 use crate::{Hypothesis, Watch};
 use jointscope_fixture::{Effect, EffectKind};
 use jointscope_model_error::{ErrorSizes, Linear};
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::TAU;
 
 /// Standard deviation, in stated ones, that a calibrated quantity keeps.
@@ -42,6 +42,8 @@ pub(crate) struct ModalSearch {
     pub best: Named,
     /// Every candidate by itself, the most probable first.
     pub singles: Vec<Named>,
+    /// Candidates that by themselves start too far below the best of these to be fitted.
+    pub far: Vec<usize>,
     /// The best with one effect more, whether or not that is needed.
     pub more: Vec<Named>,
     /// What else may stand in the stead of each effect of the best, itself included, the most probable first.
@@ -115,7 +117,7 @@ impl Searcher<'_> {
         let none = alone;
         let start = Named { names: Vec::new(), exact: self.is_exact(&none), fit: none };
         self.watch.stage("comparing effects by modes");
-        let mut singles = self.extended(&start, self.settings.refined.0, self.settings.starts.0);
+        let (mut singles, far) = self.extended(&start, self.settings.refined.0, self.settings.starts.0);
         let start = self.at_its_best(start, &singles);
         let none = start.fit.clone();
         // Where neither the fixture nor any effect explains the modes, the right one may have set out from the wrong place.
@@ -126,7 +128,7 @@ impl Searcher<'_> {
         };
         let little = self.problem.work.spent() < self.settings.again;
         if little && !self.is_adequate(&none) && !singles.iter().any(explains) {
-            let again = self.extended(&start, self.settings.tried, self.settings.starts.1);
+            let (again, _) = self.extended(&start, self.settings.tried, self.settings.starts.1);
             singles = best_of_each(singles.into_iter().chain(again).collect());
         }
         let mut best = start.clone();
@@ -149,7 +151,7 @@ impl Searcher<'_> {
             let ranked = match count {
                 1 => singles.clone(),
                 2 => self.pairs(&singles),
-                _ => self.extended(&best, self.settings.refined.1, 1),
+                _ => self.extended(&best, self.settings.refined.1, 1).0,
             };
             let Some(first) =
                 ranked.iter().take(self.settings.tried).find(|named| self.is_told(named, &none))
@@ -169,7 +171,7 @@ impl Searcher<'_> {
         }
         self.watch.stage("asking by modes what else would explain a finding");
         let (alternatives, without) = self.alternatives(&best, &singles, &none);
-        ModalSearch { none, best, singles, more, alternatives, without }
+        ModalSearch { none, best, singles, far, more, alternatives, without }
     }
 
     /// The fixture by itself from where the best effects left its quantities too: what gains much at a size of nothing has only led out of a false minimum.
@@ -207,7 +209,7 @@ impl Searcher<'_> {
             .iter()
             .take(count)
             .filter(close)
-            .flat_map(|s| self.extended(s, self.settings.refined.1, 1))
+            .flat_map(|s| self.extended(s, self.settings.refined.1, 1).0)
             .collect();
         all.sort_by(|a, b| b.fit.ln.total_cmp(&a.fit.ln));
         all
@@ -227,7 +229,7 @@ impl Searcher<'_> {
                 let company: Vec<&Candidate> = names.iter().map(|&c| &self.candidates[c]).collect();
                 let fit = self.problem.fitted(&hypothesis, self.priors(&hypothesis, &company));
                 match fit.map(|fit| Named { names, exact: self.is_exact(&fit), fit }) {
-                    Some(base) => (self.extended(&base, self.settings.refined.1, 1), base.fit.ln),
+                    Some(base) => (self.extended(&base, self.settings.refined.1, 1).0, base.fit.ln),
                     None => (Vec::new(), f64::NEG_INFINITY),
                 }
             };
@@ -296,10 +298,11 @@ impl Searcher<'_> {
         sizes.to_array().iter().zip(usual).map(|(size, usual)| size / usual).collect()
     }
 
-    /// Fits of `base` with one effect more, the most probable first: the `refined` best candidates, each from so many starts.
-    fn extended(&self, base: &Named, refined: usize, each: usize) -> Vec<Named> {
+    /// Fits of `base` with one effect more, the most probable first: the `refined` best candidates, each from so many starts; and the candidates all of whose starts
+    /// lie too far below the best of these to be fitted.
+    fn extended(&self, base: &Named, refined: usize, each: usize) -> (Vec<Named>, Vec<usize>) {
         if let Some(known) = self.known {
-            return self.fitted(base, self.starts_at(base, known));
+            return (self.fitted(base, self.starts_at(base, known)), Vec::new());
         }
         // What resonates makes a mode more: where every mode has its partner, nothing of the kind is there.
         let partners = base.fit.standing.pairing.alone() == 0.0;
@@ -328,16 +331,32 @@ impl Searcher<'_> {
             Some((self.score(&hypothesis, &base.fit)?, c, hypothesis))
         });
         let scored = self.rescored(scored);
+        let mut densities: BTreeMap<usize, f64> = BTreeMap::new();
+        for (density, c, _) in &scored {
+            let own = densities.entry(*c).or_insert(f64::NEG_INFINITY);
+            *own = own.max(*density);
+        }
         let mut taken = vec![0; self.candidates.len()];
         let mut chosen = Vec::new();
-        for (_, c, hypothesis) in scored {
+        for (density, c, hypothesis) in scored {
             let distinct = taken.iter().filter(|t| **t > 0).count();
             if taken[c] < each && (taken[c] > 0 || distinct < refined) {
                 taken[c] += 1;
-                chosen.push((c, hypothesis));
+                chosen.push((density, c, hypothesis));
             }
         }
-        self.fitted(base, chosen)
+        let (first, far) = self.settings.foremost;
+        let rest = chosen.split_off(first.min(chosen.len()));
+        let start = |(_, c, hypothesis)| (c, hypothesis);
+        let mut fits = self.fitted(base, chosen.into_iter().map(start).collect());
+        let best = fits.first().map_or(f64::NEG_INFINITY, |best| best.fit.ln);
+        let near = rest.into_iter().filter(|(density, _, _)| best - density < far).map(start).collect();
+        fits.extend(self.fitted(base, near));
+        let fits = best_of_each(fits);
+        let unfitted = |c: &usize| fits.iter().all(|named| named.names.last() != Some(c));
+        let below = densities.into_iter().filter(|(_, density)| best - density >= far).map(|(c, _)| c);
+        let far = below.filter(unfitted).collect();
+        (fits, far)
     }
 
     /// Frequencies (Hz) at which the recording has a mode that a fit has not, and halfway from there to the next one that it has: what resonates beside a mode parts
