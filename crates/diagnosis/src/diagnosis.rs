@@ -1,5 +1,6 @@
 use crate::contradiction::contradictory;
 use crate::departures::{Departure, departures, has_departed};
+use crate::drift::{Drifted, TestDrift};
 use crate::fitter::Fitter;
 use crate::location::Location;
 use crate::modal::ModelError;
@@ -134,6 +135,8 @@ pub struct Diagnosis {
     pub stopped: Vec<&'static str>,
     /// Bands, Hz, of lines that contradict all others whatever the structure, and were left out.
     pub contradictory: Vec<(f64, f64)>,
+    /// How the structure changed from reference to reference, where it did: the diagnosis is of the references that agree.
+    pub drift: Option<TestDrift>,
     /// Effects that were tried by themselves where the model's error decides, the most probable first.
     pub tried: Vec<Tried>,
 }
@@ -181,12 +184,21 @@ impl Diagnosis {
             true => observation,
             false => Observation::new(frfs, in_use)?.counted(work),
         };
+        let drifted = Drifted::of(&observation, &nominal, &options.settings.modal);
+        let agreeing = |pair: &FrfPair| drifted.as_ref().is_none_or(|drifted| drifted.keeps(&pair.reference));
+        let observation = match drifted {
+            Some(_) => observation.reduced(|_| true, agreeing).unwrap_or(observation),
+            None => observation,
+        };
+        let hold_out: Vec<FrfPair> = options.hold_out.iter().filter(|pair| agreeing(pair)).cloned().collect();
+        let options = &DiagnosisOptions { hold_out, ..options.clone() };
         let few = observation.searched(&options.hold_out);
         let searched = few.as_ref().unwrap_or(&observation);
         let fitter = Fitter { observation: searched, settings: &options.settings, watch };
         let mut parts = match &options.baseline {
             Some(baseline) => {
                 let baseline = Observation::new(baseline, in_use)?;
+                let baseline = baseline.reduced(|_| true, agreeing).unwrap_or(baseline);
                 if baseline.pairs() != observation.pairs() {
                     return Err(DiagnosisError::Baseline);
                 }
@@ -203,7 +215,14 @@ impl Diagnosis {
         let within_estimates = options.estimated
             && diagnosis.refitted.0 < options.settings.evidence.explained.0
             && !has_departed(&diagnosis.search.refitted.hypothesis);
-        Ok(if within_estimates { diagnosis.without_findings() } else { diagnosis })
+        let diagnosis = if within_estimates { diagnosis.without_findings() } else { diagnosis };
+        Ok(Diagnosis { drift: drifted.and_then(|drifted| diagnosis.told_drift(&drifted)), ..diagnosis })
+    }
+
+    /// What drifted, by the model that the diagnosis ends with.
+    fn told_drift(&self, drifted: &Drifted) -> Option<TestDrift> {
+        let model = self.search.repaired.hypothesis.to_fixture();
+        Some(drifted.attributed(&model.ok()?))
     }
 
     /// The same where the fixture as refitted explains all that there is to explain.

@@ -17,6 +17,7 @@
 //! * [`Fit`]: a hypothesis at its maximum of likelihood and prior;
 //! * [`Search`]: nominal, refitted and repaired model;
 //! * [`locate`], [`measure`]: the place of a mismatch with no law assumed, and the δ(ω) found there;
+//! * [`TestDrift`]: a structure that changed while it was tested: told from the poles of the references, before any physics is named;
 //! * [`Diagnosis`]: verdict, findings with intervals and alternatives, mismatch by FRF and band, the held-out judgement.
 //!
 //! ```no_run
@@ -35,6 +36,7 @@ mod catalogue;
 mod contradiction;
 mod departures;
 mod diagnosis;
+mod drift;
 mod estimates;
 mod evidence;
 mod facts;
@@ -65,6 +67,7 @@ pub use baseline::{Baseline, ModeChange, ModeState};
 pub use catalogue::{Candidate, catalogue};
 pub use departures::Departure;
 pub use diagnosis::{BandShare, Diagnosis, DiagnosisError, DiagnosisOptions, Finding, FrfMismatch, Tried};
+pub use drift::{ModeDrift, ReferenceChange, TestDrift};
 pub use facts::{EndErrors, FrfMisfit, Phase, Trend, Variation};
 pub use fit::Fit;
 pub use hypothesis::{Hypothesis, PredictionError, Tolerance};

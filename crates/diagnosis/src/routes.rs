@@ -105,6 +105,7 @@ impl Parts {
             residual_correlation: observation.residual_correlation(&search.repaired.predicted),
             departures: departures(&search),
             contradictory: Vec::new(),
+            drift: None,
             stopped: observation.work().left_out(),
             observation,
             search,

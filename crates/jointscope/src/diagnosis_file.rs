@@ -43,6 +43,7 @@ pub fn diagnosis_file(diagnosis: &Diagnosis) -> Value {
         tried: &diagnosis.tried,
         stopped: &diagnosis.stopped,
         contradictory: &diagnosis.contradictory,
+        drift: diagnosis.drift.as_ref().map(|drift| told(drift, drift.says())),
         modes: diagnosis.baseline.as_ref().map(|baseline| baseline.modes.as_slice()),
     })
 }
@@ -77,6 +78,9 @@ struct DiagnosisFile<'a> {
     /// Bands, Hz, left out since their lines contradict all others.
     #[serde(skip_serializing_if = "<[_]>::is_empty")]
     contradictory: &'a [(f64, f64)],
+    /// How the structure changed from reference to reference.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    drift: Option<Value>,
     /// The modes then and now, with a baseline.
     #[serde(skip_serializing_if = "Option::is_none")]
     modes: Option<&'a [ModeChange]>,

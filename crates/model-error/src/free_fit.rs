@@ -220,6 +220,7 @@ impl FreeFit {
             residual_scales,
             covariance,
             outline: Outline::of(recording, &self.poles, self.inside, self.terms)?,
+            surroundings: (self.poles[modes..].to_vec(), self.terms),
             modes: recorded,
         })
     }

@@ -53,6 +53,8 @@ pub struct RecordedModes {
     /// Covariance of the [features](RecordedModes::features), row-major.
     pub(crate) covariance: Vec<f64>,
     pub(crate) outline: Outline,
+    /// Poles outside the band, and number of residual terms of each FRF.
+    pub(crate) surroundings: (Vec<Pole>, usize),
 }
 
 /// Where modes above the band are looked for, as multiples of its upper end.
@@ -157,6 +159,22 @@ impl RecordedModes {
             }
         }
         Some(relative)
+    }
+
+    /// The same modes as each FRF of the `recording` has them by itself, the free fit begun at the common poles; `None` for an FRF whose fit fails.
+    ///
+    /// Where a structure stays the same they differ by their noise.
+    pub fn one_by_one(&self, recording: Recording) -> Vec<Option<RecordedModes>> {
+        let n = recording.frfs.lines().len();
+        let poles: Vec<Pole> = self.modes.iter().map(|mode| mode.pole).collect();
+        let (outside, terms) = &self.surroundings;
+        let of = |index: usize| {
+            let frfs = recording.frfs.of_frfs(|frf| frf == index)?;
+            let weights = recording.weights.get(index * n..(index + 1) * n)?;
+            let alone = Recording { frfs: &frfs, weights };
+            FreeFit::converged(alone, poles.clone(), outside, *terms)?.told(alone)
+        };
+        (0..recording.frfs.pairs().len()).map(of).collect()
     }
 
     /// Standard deviations of ln ω and ln ζ of mode `index` by the noise.

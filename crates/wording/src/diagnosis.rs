@@ -9,14 +9,15 @@ use jointscope_diagnosis::{Diagnosis, Fit, Location, Observation, Trend};
 use jointscope_findings::Verdict;
 use jointscope_frf::noise::NoiseSource;
 
-/// The verdict: what it is, and what to do about it. What the stated quantities would have to be goes before everything else.
+/// The verdict: what it is, and what to do about it. What the test itself did goes before everything else, then what the stated quantities would have to be.
 impl Says for Diagnosis {
     fn says(&self) -> String {
         let verdict = match &self.model_error {
             Some(errors) => model_error::verdict(self, errors),
             None => by_noise(self),
         };
-        format!("{}{verdict}", departed(self))
+        let drifted = self.drift.as_ref().map_or_else(String::new, |drift| format!("{} ", drift.says()));
+        format!("{drifted}{}{verdict}", departed(self))
     }
 }
 

@@ -20,6 +20,7 @@
 mod amplitude;
 mod departures;
 mod diagnosis;
+mod drift;
 mod effects;
 mod estimate;
 mod finding;

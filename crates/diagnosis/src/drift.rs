@@ -1,0 +1,112 @@
+//! A test that drifted: the structure was another one while one reference was struck than while another was.
+//!
+//! A hammer test takes an hour; temperature and settling change joints and moduli meanwhile. All FRFs of a structure that stays the same share its poles, whatever a model of it
+//! leaves out: masses, interfaces and laws move the poles of all FRFs alike, gains, delays and misplaced points move none, and an accelerometer that roves
+//! moves those of its own response. Poles that differ between references beyond what responses explain are therefore drift (or a structure that depends on
+//! amplitude, struck differently), and no physics.
+//!
+//! 1. **Quick test** ([`seen`]). Each reference's FRFs are fitted freely by themselves; ln ω of the modes that several references show are compared.
+//! 2. **FRF by FRF** ([`seen`]). Where they differ, each FRF's own poles are taken; what differs by response is no drift ([`table`]).
+//! 3. **Agreeing references** ([`agreement`]). The most references whose poles agree; the diagnosis goes on with theirs.
+//! 4. **What drifted** ([`attribution`]). Each stiffness moves each mode by its share of the strain energy, d ln ω/d ln k = s/2. The shares of the model that the diagnosis ends with
+//!    tell which stiffness explains the differences, and by how much.
+
+mod agreement;
+mod attribution;
+mod seen;
+mod table;
+
+use crate::settings::ModalSettings;
+use crate::{Hypothesis, Observation};
+use jointscope_fixture::Fixture;
+use jointscope_model_error::RecordedModes;
+use jointscope_spectra::Channel;
+use serde::Serialize;
+use table::Table;
+
+/// Probability by chance below which poles that differ between references are called drift.
+const CERTAIN: f64 = 1e-3;
+
+/// How far one reference's FRFs are from those of the references that agree.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ReferenceChange {
+    /// Where was struck.
+    pub reference: Channel,
+    /// Relative change of the stiffness that drifted while this reference was struck: zero by definition where the references agree.
+    pub change: f64,
+    /// Its standard deviation.
+    pub std: f64,
+    /// Its interval of 95 %.
+    pub ci95: [f64; 2],
+    /// Whether the diagnosis goes on with this reference's FRFs.
+    pub kept: bool,
+}
+
+/// How far one mode moved.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ModeDrift {
+    /// Natural frequency, Hz.
+    pub frequency: f64,
+    /// Relative change of it by reference, in the order of [`TestDrift::references`]; `None` where a reference does not show the mode.
+    pub changes: Vec<Option<f64>>,
+    /// Standard deviations of these.
+    pub std: Vec<Option<f64>>,
+}
+
+/// A test that drifted between references.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct TestDrift {
+    /// Whose stiffness explains it: `joints/J`, `bodies/F` or `all stiffnesses`; `None` where the modes do not tell one.
+    pub what: Option<String>,
+    /// What else explains it as well, or where `what` is `None` all that do; empty then where nothing does.
+    pub could_be: Vec<String>,
+    /// The course, in the order in which the recording has the references. Changes are of `what`; without, of all stiffnesses alike.
+    pub references: Vec<ReferenceChange>,
+    /// Probability of poles that differ as much between references by chance.
+    pub p_value: f64,
+    /// The modes that tell it.
+    pub modes: Vec<ModeDrift>,
+}
+
+/// Drift as the recording alone tells it.
+pub(crate) struct Drifted {
+    references: Vec<Channel>,
+    /// Whether each reference is one of those that agree.
+    kept: Vec<bool>,
+    /// The modes of one reference, to which [`Table::modes`] refer.
+    modes: RecordedModes,
+    table: Table,
+    p_value: f64,
+}
+
+impl Drifted {
+    /// Drift between the references of a recording; `None` where their poles agree, or there is nothing to compare.
+    pub fn of(observation: &Observation, nominal: &Hypothesis, settings: &ModalSettings) -> Option<Self> {
+        let references = seen::references(observation);
+        if references.len() < 2 {
+            return None;
+        }
+        let seen::Seen { modes, table } = seen::seen(observation, nominal, settings, &references)?;
+        let p_value = table.chance()?;
+        if p_value >= CERTAIN {
+            return None;
+        }
+        let frfs = |reference: &Channel| {
+            observation.pairs().iter().filter(|pair| pair.reference == *reference).count()
+        };
+        let frfs: Vec<usize> = references.iter().map(frfs).collect();
+        let kept = agreement::agreeing(&table, &frfs);
+        Some(Drifted { references, kept, modes, table, p_value })
+    }
+
+    /// Whether the diagnosis goes on with FRFs of this reference.
+    pub fn keeps(&self, reference: &Channel) -> bool {
+        let at = self.references.iter().position(|own| own == reference);
+        at.is_none_or(|at| self.kept[at])
+    }
+
+    /// What drifted, told by the shares of strain energy in a model of the structure.
+    pub fn attributed(&self, model: &Fixture) -> TestDrift {
+        attribution::attributed(self, model)
+    }
+}

@@ -1,0 +1,36 @@
+//! References whose poles agree.
+
+use super::table::{Table, chance};
+
+/// Probability by chance from which two references agree.
+const AGREE: f64 = 0.01;
+
+/// Whether each reference belongs to the most that agree, each with each: of as many the one with more FRFs (`frfs` of each), then the first.
+pub(super) fn agreeing(table: &Table, frfs: &[usize]) -> Vec<bool> {
+    let count = table.references;
+    let agree: Vec<Vec<bool>> = (0..count).map(|a| (0..count).map(|b| a == b || pair(table, a, b)).collect()).collect();
+    let group = |first: usize| {
+        let mut group = vec![first];
+        for other in 0..count {
+            if !group.contains(&other) && group.iter().all(|&own| agree[own][other]) {
+                group.push(other);
+            }
+        }
+        group
+    };
+    let size = |group: &Vec<usize>| (group.len(), group.iter().map(|&own| frfs[own]).sum::<usize>());
+    let best = (0..count).map(group).rev().max_by_key(size).unwrap_or_default();
+    (0..count).map(|reference| best.contains(&reference)).collect()
+}
+
+/// Whether two references' modes agree. Where they have none in common they do not.
+fn pair(table: &Table, a: usize, b: usize) -> bool {
+    let cells = table.cells.iter().filter(|cell| cell.reference == a || cell.reference == b).copied().collect();
+    let part = Table { cells, modes: table.modes.clone(), ..*table };
+    let (of_references, left) = part.degrees();
+    let [Some(together), Some(apart)] = [part.by_reference(|_| true), part.by_reference(|_| false)] else {
+        return false;
+    };
+    let inflation = part.inflation();
+    of_references > 0 && chance((together.chi2 - apart.chi2).max(0.0), of_references, inflation, left) >= AGREE
+}

@@ -1,0 +1,170 @@
+//! Which stiffness drifted: by the share of the strain energy that it has in each mode.
+
+use super::table::{Cell, Fit, Table, chance};
+use super::{Drifted, ModeDrift, ReferenceChange, TestDrift};
+use jointscope_fixture::{BodyKind, Effect, EffectKind, Fixture, Place};
+use jointscope_model_error::{ModelledModes, Pairing, RecordedModes};
+use std::f64::consts::TAU;
+
+/// Relative deviation of a model's shares of strain energy.
+const SHARE: f64 = 0.1;
+/// Step in ln k that shares are taken with.
+const STEP: f64 = 0.005;
+/// Probability by chance from which a stiffness explains the differences, and probability among those that do from which it is the one.
+const EXPLAINS: f64 = 0.01;
+const NAMED: f64 = 0.9;
+/// Fits of one stiffness: the deviation of shares counts in proportion to the change.
+const ROUNDS: usize = 4;
+/// Normal quantile of an interval of 95 %.
+const QUANTILE: f64 = 1.959_964;
+const ALL: &str = "all stiffnesses";
+
+/// A stiffness with its share in each mode of the table: 2·d ln ω/d ln k.
+struct Candidate {
+    name: String,
+    shares: Vec<f64>,
+}
+
+/// Changes of one stiffness in ln k by reference, with their variances, and χ² with its degrees of freedom.
+struct Course {
+    changes: Vec<(f64, f64)>,
+    chi2: f64,
+}
+
+pub(super) fn attributed(drifted: &Drifted, model: &Fixture) -> TestDrift {
+    let Drifted { table, kept, .. } = drifted;
+    let candidates = candidates(model, &drifted.modes, &table.modes);
+    let inflation = table.inflation();
+    let fitted: Vec<(&Candidate, Course)> =
+        candidates.iter().filter_map(|c| Some((c, course(table, kept, c, inflation)?))).collect();
+    let (degrees, left) = table.degrees();
+    let own = table.by_reference(|_| false).map_or(0.0, |fit| fit.chi2);
+    let apart = kept.iter().filter(|kept| !**kept).count();
+    let explains = |course: &Course| {
+        let excess = (course.chi2 - own / inflation).max(0.0);
+        chance(excess, degrees.saturating_sub(apart), 1.0, left) >= EXPLAINS
+    };
+    let lowest = fitted.iter().map(|(_, course)| course.chi2).fold(f64::INFINITY, f64::min);
+    let weight = |course: &Course| (-0.5 * (course.chi2 - lowest)).exp();
+    let total: f64 = fitted.iter().map(|(_, course)| weight(course)).sum();
+    let mut able: Vec<&(&Candidate, Course)> = fitted.iter().filter(|(_, c)| explains(c)).collect();
+    able.sort_by(|a, b| a.1.chi2.total_cmp(&b.1.chi2));
+    let best = able.first().filter(|(_, course)| weight(course) / total > NAMED);
+    let alike = Candidate { name: ALL.to_owned(), shares: vec![1.0; table.modes.len()] };
+    let told = best.map(|(_, course)| &course.changes);
+    let whole = course(table, kept, &alike, inflation).map(|course| course.changes);
+    let changes = told.or(whole.as_ref());
+    let reference = |(index, reference): (usize, &jointscope_spectra::Channel)| {
+        let (ln, variance) = changes.map_or((0.0, 0.0), |changes| changes[index]);
+        let deviation = variance.sqrt();
+        ReferenceChange {
+            reference: reference.clone(),
+            change: ln.exp_m1(),
+            std: ln.exp() * deviation,
+            ci95: [(ln - QUANTILE * deviation).exp_m1(), (ln + QUANTILE * deviation).exp_m1()],
+            kept: kept[index],
+        }
+    };
+    let considered = able.iter().skip(usize::from(best.is_some()));
+    TestDrift {
+        what: best.map(|(candidate, _)| candidate.name.clone()),
+        could_be: considered
+            .filter(|(_, course)| weight(course) / total > 1.0 - NAMED)
+            .map(|(candidate, _)| candidate.name.clone())
+            .collect(),
+        references: drifted.references.iter().enumerate().map(reference).collect(),
+        p_value: drifted.p_value,
+        modes: modes(drifted, inflation),
+    }
+}
+
+/// Changes of one stiffness by reference. The shares of a model that is not exact are off by a factor common to all references of a mode, which is fitted beside them.
+fn course(table: &Table, kept: &[bool], candidate: &Candidate, inflation: f64) -> Option<Course> {
+    let first = table.constants();
+    let errors = first + table.references;
+    let mut changes = vec![0.0; table.references];
+    let mut fit = None;
+    for _ in 0..ROUNDS {
+        let more = |cell: &Cell| match kept[cell.reference] {
+            true => Vec::new(),
+            false => {
+                let half = 0.5 * candidate.shares[cell.mode];
+                let by_error = half * changes[cell.reference];
+                vec![(first + cell.reference, half), (errors + cell.mode, by_error)]
+            }
+        };
+        let mut equations = table.equations(more);
+        equations.iter_mut().for_each(|(_, _, variance)| *variance *= inflation);
+        equations.extend((0..table.modes.len()).map(|mode| (vec![(errors + mode, 1.0)], 0.0, SHARE * SHARE)));
+        let found = Fit::of(&equations, errors + table.modes.len())?;
+        changes.copy_from_slice(&found.values[first..errors]);
+        fit = Some(found);
+    }
+    let fit = fit?;
+    let unknowns = fit.values.len();
+    let of = |reference: usize| {
+        let at = first + reference;
+        let is_kept = kept[reference];
+        if is_kept { (0.0, 0.0) } else { (fit.values[at], fit.covariance[at * (unknowns + 1)]) }
+    };
+    Some(Course { changes: (0..table.references).map(of).collect(), chi2: fit.chi2 })
+}
+
+/// The stiffnesses of a model with their shares in the modes `told` of a recording: joints, beams, and all of them together.
+fn candidates(model: &Fixture, recorded: &RecordedModes, told: &[usize]) -> Vec<Candidate> {
+    let Some(modelled) = ModelledModes::of(model, recorded) else { return Vec::new() };
+    let pairing = Pairing::of(recorded, &modelled);
+    let partner = |r: &usize| pairing.pairs.iter().find(|(own, _)| own == r).map(|(_, m)| *m);
+    let Some(partners) = told.iter().map(partner).collect::<Option<Vec<usize>>>() else { return Vec::new() };
+    let poles = modelled.poles();
+    let ln_omega = |places: &[Place], by: f64| -> Option<Vec<f64>> {
+        let mut physics = model.physics().to_vec();
+        let change = |place: &Place| Effect::new(EffectKind::StiffnessChange, place.clone(), None, &[by.exp()]);
+        physics.extend(places.iter().map(change));
+        let changed = ModelledModes::near(&model.clone().with_physics(physics).ok()?, recorded, &poles)?;
+        Some(partners.iter().map(|&m| changed.modes[m].pole.omega.ln()).collect())
+    };
+    let shares = |places: &[Place]| -> Option<Vec<f64>> {
+        let (up, down) = (ln_omega(places, STEP)?, ln_omega(places, -STEP)?);
+        Some(up.iter().zip(&down).map(|(up, down)| (up - down) / STEP).collect())
+    };
+    let joints = model.joints().iter().map(|joint| (format!("joints/{}", joint.name), Place::Joint(joint.name.clone())));
+    let beams = model.bodies().iter().filter(|body| matches!(body.kind, BodyKind::Beam(_)));
+    let beams = beams.map(|body| (format!("bodies/{}", body.name), Place::Body(body.name.clone())));
+    let single: Vec<(String, Place)> = joints.chain(beams).collect();
+    let mut all: Vec<Candidate> = single
+        .iter()
+        .filter_map(|(name, place)| Some(Candidate { name: name.clone(), shares: shares(std::slice::from_ref(place))? }))
+        .collect();
+    if single.len() > 1 {
+        let places: Vec<Place> = single.into_iter().map(|(_, place)| place).collect();
+        all.extend(shares(&places).map(|shares| Candidate { name: ALL.to_owned(), shares }));
+    }
+    all
+}
+
+/// How far each mode moved by itself.
+fn modes(drifted: &Drifted, inflation: f64) -> Vec<ModeDrift> {
+    let Drifted { table, kept, .. } = drifted;
+    let Some(fit) = table.by_reference(|reference| kept[reference]) else { return Vec::new() };
+    let (first, unknowns) = (table.constants(), fit.values.len());
+    let of = |(mode, &recorded): (usize, &usize)| {
+        let is_seen = |reference: usize| table.cells.iter().any(|c| c.mode == mode && c.reference == reference);
+        let at = |reference: usize| first + mode * table.references + reference;
+        let change = |reference: usize| match kept[reference] {
+            true => (0.0, 0.0),
+            false => (
+                fit.values[at(reference)].exp_m1(),
+                (inflation * fit.covariance[at(reference) * (unknowns + 1)]).sqrt(),
+            ),
+        };
+        let changes: Vec<Option<(f64, f64)>> =
+            (0..table.references).map(|reference| is_seen(reference).then(|| change(reference))).collect();
+        ModeDrift {
+            frequency: drifted.modes.modes[recorded].pole.omega / TAU,
+            changes: changes.iter().map(|c| c.map(|c| c.0)).collect(),
+            std: changes.iter().map(|c| c.map(|c| c.1)).collect(),
+        }
+    };
+    table.modes.iter().enumerate().map(of).collect()
+}

@@ -1,0 +1,145 @@
+//! Modes of each reference's FRFs, and of each FRF, as a free fit has them.
+
+use super::CERTAIN;
+use super::table::{Cell, Table, chance};
+use crate::modal::recorded;
+use crate::settings::ModalSettings;
+use crate::{Hypothesis, Observation};
+use jointscope_model_error::{RecordedMode, RecordedModes, Recording};
+use jointscope_spectra::Channel;
+use rayon::prelude::*;
+
+/// Farthest that a mode may have moved between references, in ln ω.
+const REACH: f64 = 0.05;
+/// A natural frequency is told where it is known to this share of its half-width.
+const KNOWN: f64 = 0.3;
+/// What a free fit's residual terms leave wrong in a natural frequency, as a share of the half-width.
+const OWN_ERROR: f64 = 0.005;
+
+/// The recording's references, in its order.
+pub(super) fn references(observation: &Observation) -> Vec<Channel> {
+    distinct(observation.pairs().iter().map(|pair| &pair.reference))
+}
+
+fn distinct<'a>(channels: impl Iterator<Item = &'a Channel>) -> Vec<Channel> {
+    let mut all: Vec<Channel> = Vec::new();
+    for channel in channels {
+        if !all.contains(channel) {
+            all.push(channel.clone());
+        }
+    }
+    all
+}
+
+/// Modes of one reference, and what all FRFs say of them.
+pub(super) struct Seen {
+    pub modes: RecordedModes,
+    pub table: Table,
+}
+
+/// One reference's FRFs and their modes.
+struct Struck {
+    part: Observation,
+    modes: RecordedModes,
+}
+
+/// What the FRFs say; `None` where the references' modes do not differ, taken together or FRF by FRF.
+pub(super) fn seen(
+    observation: &Observation,
+    nominal: &Hypothesis,
+    settings: &ModalSettings,
+    references: &[Channel],
+) -> Option<Seen> {
+    let of = |reference: &Channel| {
+        let part = observation.reduced(|_| true, |pair| pair.reference == *reference)?;
+        let modes = recorded(&part, nominal, settings)?;
+        Some(Struck { part, modes })
+    };
+    let struck: Vec<Option<Struck>> = references.par_iter().map(of).collect();
+    // The reference that tells most modes is the one that the others are compared with.
+    let told = |struck: &Option<Struck>| {
+        struck.as_ref().map_or(0, |s| (0..s.modes.modes.len()).filter(|&r| variance(&s.modes, r).is_some()).count())
+    };
+    let (first, _) = struck.iter().enumerate().rev().max_by_key(|(_, struck)| told(struck))?;
+    let base = &struck[first].as_ref()?.modes;
+    let mut partners: Vec<Vec<Option<usize>>> = Vec::new();
+    for struck in &struck {
+        partners.push(match struck {
+            Some(struck) => partners_of(base, &struck.modes),
+            None => vec![None; base.modes.len()],
+        });
+    }
+    let is_compared =
+        |r: &usize| variance(base, *r).is_some() && partners.iter().filter(|of| of[*r].is_some()).count() > 1;
+    let compared: Vec<usize> = (0..base.modes.len()).filter(is_compared).collect();
+    let (mut chi2, mut degrees) = (0.0, 0);
+    for &r in &compared {
+        let values: Vec<(f64, f64)> = struck
+            .iter()
+            .zip(&partners)
+            .filter_map(|(struck, of)| {
+                let (modes, own) = (&struck.as_ref()?.modes, of[r]?);
+                Some(((modes.modes[own].pole.omega / base.modes[r].pole.omega).ln(), variance(modes, own)?))
+            })
+            .collect();
+        let weight: f64 = values.iter().map(|(_, variance)| 1.0 / variance).sum();
+        let mean = values.iter().map(|(x, variance)| x / variance).sum::<f64>() / weight;
+        chi2 += values.iter().map(|(x, variance)| (x - mean).powi(2) / variance).sum::<f64>();
+        degrees += values.len() - 1;
+    }
+    if chance(chi2, degrees, 1.0, 0) >= CERTAIN {
+        return None;
+    }
+    let responses = distinct(observation.pairs().iter().map(|pair| &pair.response));
+    let mut cells = Vec::new();
+    for (reference, (struck, of)) in struck.iter().zip(&partners).enumerate() {
+        let Some(Struck { part, modes }) = struck else { continue };
+        let alone = match part.pairs().len() {
+            1 => vec![Some(modes.clone())],
+            _ => modes.one_by_one(Recording { frfs: part.frfs(), weights: part.weights() }),
+        };
+        for (pair, alone) in part.pairs().iter().zip(&alone) {
+            let (Some(alone), Some(response)) = (alone, responses.iter().position(|o| *o == pair.response)) else {
+                continue;
+            };
+            for (mode, &r) in compared.iter().enumerate() {
+                let own = of[r].filter(|&own| same(&alone.modes[own], &modes.modes[own]));
+                if let Some(variance) = own.and_then(|own| variance(alone, own)) {
+                    let omega = own.map_or(f64::NAN, |own| alone.modes[own].pole.omega);
+                    let ln_omega = (omega / base.modes[r].pole.omega).ln();
+                    cells.push(Cell { mode, response, reference, ln_omega, variance });
+                }
+            }
+        }
+    }
+    let table = Table { cells, modes: compared, responses: responses.len(), references: references.len() };
+    Some(Seen { modes: base.clone(), table })
+}
+
+/// Whether an FRF's own mode is the one that its fit began with.
+fn same(own: &RecordedMode, begun: &RecordedMode) -> bool {
+    (own.pole.omega / begun.pole.omega).ln().abs() < REACH
+}
+
+/// Variance of ln ω of a mode; `None` where it is not well told.
+fn variance(modes: &RecordedModes, r: usize) -> Option<f64> {
+    let mode = &modes.modes[r];
+    let [deviation, _] = modes.deviations(r);
+    let half_width = mode.pole.damping_ratio;
+    let told = mode.resolved && deviation < KNOWN * half_width;
+    told.then(|| deviation.powi(2) + (OWN_ERROR * half_width).powi(2))
+}
+
+/// For each mode of `base` the mode that is nearest among `other`'s and has it nearest too.
+fn partners_of(base: &RecordedModes, other: &RecordedModes) -> Vec<Option<usize>> {
+    let nearest = |to: f64, among: &[RecordedMode]| {
+        let apart = |r: &usize| (among[*r].pole.omega / to).ln().abs();
+        (0..among.len()).min_by(|a, b| apart(a).total_cmp(&apart(b))).filter(|r| apart(r) < REACH)
+    };
+    let partner = |r: usize| {
+        let own = nearest(base.modes[r].pole.omega, &other.modes)?;
+        let back = nearest(other.modes[own].pole.omega, &base.modes)?;
+        (back == r && variance(other, own).is_some()).then_some(own)
+    };
+    (0..base.modes.len()).map(partner).collect()
+}
