@@ -16,16 +16,18 @@ mod attribution;
 mod seen;
 mod table;
 
-use crate::settings::ModalSettings;
+use crate::settings::{ModalSettings, Settings};
 use crate::{Hypothesis, Observation};
 use jointscope_fixture::Fixture;
 use jointscope_model_error::RecordedModes;
-use jointscope_spectra::Channel;
+use jointscope_spectra::{Channel, FrfSet};
 use serde::Serialize;
 use table::Table;
 
 /// Probability by chance below which poles that differ between references are called drift.
 const CERTAIN: f64 = 1e-3;
+/// Differences of natural frequencies, as a share of the half-width, below which nothing is called drift: a free fit's residual terms leave as much wrong.
+const LEAST: f64 = 0.005;
 
 /// How far one reference's FRFs are from those of the references that agree.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -79,6 +81,18 @@ pub(crate) struct Drifted {
     p_value: f64,
 }
 
+impl TestDrift {
+    /// Probability by chance of poles that differ between references as much as in this recording, drift or not; `None` where nothing can be compared. The FRFs' own
+    /// noise is taken, or estimated where they have none.
+    pub fn chance(fixture: &Fixture, frfs: &FrfSet) -> Option<f64> {
+        let observation = Observation::new(frfs, |_| true).ok()?;
+        let references = seen::references(&observation);
+        let nominal = Hypothesis::nominal(fixture, false);
+        let settings = Settings::default().modal;
+        seen::seen(&observation, &nominal, &settings, (&references, 1.0 + CERTAIN))?.table.chance()
+    }
+}
+
 impl Drifted {
     /// Drift between the references of a recording; `None` where their poles agree, or there is nothing to compare.
     pub fn of(observation: &Observation, nominal: &Hypothesis, settings: &ModalSettings) -> Option<Self> {
@@ -86,9 +100,11 @@ impl Drifted {
         if references.len() < 2 {
             return None;
         }
-        let seen::Seen { modes, table } = seen::seen(observation, nominal, settings, &references)?;
+        let seen::Seen { modes, table } =
+            seen::seen(observation, nominal, settings, (&references, CERTAIN))?;
         let p_value = table.chance()?;
-        if p_value >= CERTAIN {
+        let all: Vec<usize> = (0..references.len()).collect();
+        if p_value >= CERTAIN || table.farthest(&all) < LEAST {
             return None;
         }
         let frfs = |reference: &Channel| {
@@ -106,7 +122,8 @@ impl Drifted {
     }
 
     /// What drifted, told by the shares of strain energy in a model of the structure.
-    pub fn attributed(&self, model: &Fixture) -> TestDrift {
-        attribution::attributed(self, model)
+    /// `explains`: whether that model explains the recording down to its noise.
+    pub fn attributed(&self, model: &Fixture, explains: bool) -> TestDrift {
+        attribution::attributed(self, model, explains)
     }
 }

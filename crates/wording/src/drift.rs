@@ -28,13 +28,13 @@ impl Says for TestDrift {
             (Some(_), _) => format!(" ({} would explain it too)", self.could_be.join(" or ")),
         };
         format!(
-            "The test drifted: {subject}{} than while {} {} struck (poles differ as much by chance with a probability of {}){unknown}. Measure again, \
+            "The test drifted: {subject}{} than while {} {} struck (poles differ as much by chance with a probability {}){unknown}. Measure again, \
              or give each reference's FRFs alone; a joint that depends on amplitude and was struck with other strength would look the same. What follows is of \
              the FRFs of {} alone.",
             listed(&course),
             named(&kept),
             if kept.len() == 1 { "was" } else { "were" },
-            significant(self.p_value.max(1e-300), 1),
+            by_chance(self.p_value),
             named(&kept),
         )
     }
@@ -56,6 +56,14 @@ fn frequencies(drift: &TestDrift, own: &ReferenceChange) -> Option<String> {
         [lowest, .., highest] => format!("natural frequencies were {} to {}", of(lowest), of(highest)),
     };
     Some(format!("{range} while reference {} was struck", own.reference))
+}
+
+/// `of 0.0003`, or `below 1e-9`.
+fn by_chance(p_value: f64) -> String {
+    match p_value < 1e-9 {
+        true => "below 1e-9".to_owned(),
+        false => format!("of {p_value:.1e}"),
+    }
 }
 
 /// `joint J was `.

@@ -1,5 +1,6 @@
 //! References whose poles agree.
 
+use super::LEAST;
 use super::table::{Table, chance};
 
 /// Probability by chance from which two references agree.
@@ -26,11 +27,12 @@ pub(super) fn agreeing(table: &Table, frfs: &[usize]) -> Vec<bool> {
 /// Whether two references' modes agree. Where they have none in common they do not.
 fn pair(table: &Table, a: usize, b: usize) -> bool {
     let cells = table.cells.iter().filter(|cell| cell.reference == a || cell.reference == b).copied().collect();
-    let part = Table { cells, modes: table.modes.clone(), ..*table };
+    let part = Table { cells, ..table.clone() };
     let (of_references, left) = part.degrees();
     let [Some(together), Some(apart)] = [part.by_reference(|_| true), part.by_reference(|_| false)] else {
         return false;
     };
     let inflation = part.inflation();
-    of_references > 0 && chance((together.chi2 - apart.chi2).max(0.0), of_references, inflation, left) >= AGREE
+    let by_chance = || chance((together.chi2 - apart.chi2).max(0.0), of_references, inflation, left);
+    of_references > 0 && (by_chance() >= AGREE || part.farthest(&[a, b]) < LEAST)
 }

@@ -1,6 +1,5 @@
 //! Modes of each reference's FRFs, and of each FRF, as a free fit has them.
 
-use super::CERTAIN;
 use super::table::{Cell, Table, chance};
 use crate::modal::recorded;
 use crate::settings::ModalSettings;
@@ -13,8 +12,6 @@ use rayon::prelude::*;
 const REACH: f64 = 0.05;
 /// A natural frequency is told where it is known to this share of its half-width.
 const KNOWN: f64 = 0.3;
-/// What a free fit's residual terms leave wrong in a natural frequency, as a share of the half-width.
-const OWN_ERROR: f64 = 0.005;
 
 /// The recording's references, in its order.
 pub(super) fn references(observation: &Observation) -> Vec<Channel> {
@@ -43,12 +40,12 @@ struct Struck {
     modes: RecordedModes,
 }
 
-/// What the FRFs say; `None` where the references' modes do not differ, taken together or FRF by FRF.
+/// What the FRFs say; `None` where the references' modes differ no more than chance makes with the probability `certain`, each reference's FRFs taken together.
 pub(super) fn seen(
     observation: &Observation,
     nominal: &Hypothesis,
     settings: &ModalSettings,
-    references: &[Channel],
+    (references, certain): (&[Channel], f64),
 ) -> Option<Seen> {
     let of = |reference: &Channel| {
         let part = observation.reduced(|_| true, |pair| pair.reference == *reference)?;
@@ -87,7 +84,7 @@ pub(super) fn seen(
         chi2 += values.iter().map(|(x, variance)| (x - mean).powi(2) / variance).sum::<f64>();
         degrees += values.len() - 1;
     }
-    if chance(chi2, degrees, 1.0, 0) >= CERTAIN {
+    if chance(chi2, degrees, 1.0, 0) >= certain {
         return None;
     }
     let responses = distinct(observation.pairs().iter().map(|pair| &pair.response));
@@ -112,7 +109,8 @@ pub(super) fn seen(
             }
         }
     }
-    let table = Table { cells, modes: compared, responses: responses.len(), references: references.len() };
+    let half_widths = compared.iter().map(|&r| base.modes[r].pole.damping_ratio).collect();
+    let table = Table { cells, modes: compared, half_widths, responses: responses.len(), references: references.len() };
     Some(Seen { modes: base.clone(), table })
 }
 
@@ -127,7 +125,7 @@ fn variance(modes: &RecordedModes, r: usize) -> Option<f64> {
     let [deviation, _] = modes.deviations(r);
     let half_width = mode.pole.damping_ratio;
     let told = mode.resolved && deviation < KNOWN * half_width;
-    told.then(|| deviation.powi(2) + (OWN_ERROR * half_width).powi(2))
+    told.then(|| deviation.powi(2))
 }
 
 /// For each mode of `base` the mode that is nearest among `other`'s and has it nearest too.

@@ -20,6 +20,8 @@ pub(super) struct Table {
     pub cells: Vec<Cell>,
     /// Indices of the modes in the reference's list that they were taken from.
     pub modes: Vec<usize>,
+    /// Half-width of each mode over its natural frequency: the damping ratio.
+    pub half_widths: Vec<f64>,
     pub responses: usize,
     pub references: usize,
 }
@@ -96,6 +98,27 @@ impl Table {
         Fit::of(&self.equations(more), first + self.modes.len() * self.references)
     }
 
+    /// The largest difference of a natural frequency among these references, as a share of the half-width.
+    pub fn farthest(&self, among: &[usize]) -> f64 {
+        let Some(fit) = self.by_reference(|_| false) else { return f64::INFINITY };
+        let first = self.constants();
+        let mut farthest: f64 = 0.0;
+        for (mode, half_width) in self.half_widths.iter().enumerate() {
+            let is_seen =
+                |&&own: &&usize| self.cells.iter().any(|c| c.mode == mode && c.reference == own);
+            let seen: Vec<f64> = among
+                .iter()
+                .filter(is_seen)
+                .map(|own| fit.values[first + mode * self.references + own])
+                .collect();
+            let (low, high) = seen
+                .iter()
+                .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(*x), high.max(*x)));
+            farthest = farthest.max((high - low) / half_width);
+        }
+        farthest
+    }
+
     /// Parts of a mode's cells that no response and no reference connects.
     fn parts(&self, mode: usize) -> (usize, usize, usize) {
         let nodes = self.responses + self.references;
@@ -169,7 +192,7 @@ mod tests {
             let ln_omega = value(response, reference)?;
             Some(Cell { mode: 0, response, reference, ln_omega, variance: 1e-8 })
         };
-        Table { cells: all.filter_map(cell).collect(), modes: vec![0], responses: 3, references }
+        Table { cells: all.filter_map(cell).collect(), modes: vec![0], half_widths: vec![0.01], responses: 3, references }
     }
 
     #[test]

@@ -4,6 +4,7 @@
 mod against_the_rig;
 mod common;
 mod diagnosis;
+mod drift;
 mod layers;
 mod links;
 mod location;
