@@ -222,7 +222,8 @@ impl Diagnosis {
     /// What drifted, by the model that the diagnosis ends with.
     fn told_drift(&self, drifted: &Drifted) -> Option<TestDrift> {
         let model = self.search.repaired.hypothesis.to_fixture();
-        let explains = self.model_error.is_none() && matches!(self.verdict, Verdict::Consistent | Verdict::Explained);
+        let explains =
+            self.model_error.is_none() && matches!(self.verdict, Verdict::Consistent | Verdict::Explained);
         Some(drifted.attributed(&model.ok()?, explains))
     }
 

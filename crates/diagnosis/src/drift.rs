@@ -100,8 +100,7 @@ impl Drifted {
         if references.len() < 2 {
             return None;
         }
-        let seen::Seen { modes, table } =
-            seen::seen(observation, nominal, settings, (&references, CERTAIN))?;
+        let seen::Seen { modes, table } = seen::seen(observation, nominal, settings, (&references, CERTAIN))?;
         let p_value = table.chance()?;
         let all: Vec<usize> = (0..references.len()).collect();
         if p_value >= CERTAIN || table.farthest(&all) < LEAST {

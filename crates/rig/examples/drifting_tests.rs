@@ -144,8 +144,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         fs::create_dir_all(&folder)?;
         let mut fixture: serde_json::Value = serde_json::from_str(case.fixture)?;
         if case.gains > 0.0 {
-            fixture["channels"] =
-                serde_json::json!({ "*": { "gain": { "value": 1.0, "std": case.gains } } });
+            fixture["channels"] = serde_json::json!({ "*": { "gain": { "value": 1.0, "std": case.gains } } });
         }
         fs::write(folder.join("fixture.json"), serde_json::to_string_pretty(&fixture)?)?;
         fs::write(folder.join("test.uff"), to_bytes(case.name, &recording(&case)?, Precision::Single)?)?;

@@ -9,7 +9,8 @@ const AGREE: f64 = 0.01;
 /// Whether each reference belongs to the most that agree, each with each: of as many the one with more FRFs (`frfs` of each), then the first.
 pub(super) fn agreeing(table: &Table, frfs: &[usize]) -> Vec<bool> {
     let count = table.references;
-    let agree: Vec<Vec<bool>> = (0..count).map(|a| (0..count).map(|b| a == b || pair(table, a, b)).collect()).collect();
+    let agree: Vec<Vec<bool>> =
+        (0..count).map(|a| (0..count).map(|b| a == b || pair(table, a, b)).collect()).collect();
     let group = |first: usize| {
         let mut group = vec![first];
         for other in 0..count {
@@ -24,15 +25,17 @@ pub(super) fn agreeing(table: &Table, frfs: &[usize]) -> Vec<bool> {
     (0..count).map(|reference| best.contains(&reference)).collect()
 }
 
-/// Whether two references' modes agree. Where they have none in common they do not.
+/// Whether two references' modes agree: nothing that they have in common says otherwise.
 fn pair(table: &Table, a: usize, b: usize) -> bool {
-    let cells = table.cells.iter().filter(|cell| cell.reference == a || cell.reference == b).copied().collect();
+    let cells =
+        table.cells.iter().filter(|cell| cell.reference == a || cell.reference == b).copied().collect();
     let part = Table { cells, ..table.clone() };
     let (of_references, left) = part.degrees();
     let [Some(together), Some(apart)] = [part.by_reference(|_| true), part.by_reference(|_| false)] else {
         return false;
     };
     let inflation = part.inflation();
-    let by_chance = || chance((together.chi2 - apart.chi2).max(0.0), of_references, inflation, left);
-    of_references > 0 && (by_chance() >= AGREE || part.farthest(&[a, b]) < LEAST)
+    let between = (together.chi2 - apart.chi2).max(0.0) / part.shared();
+    let by_chance = || chance(between, of_references, inflation, left);
+    of_references == 0 || (by_chance() >= AGREE || part.farthest(&[a, b]) < LEAST)
 }

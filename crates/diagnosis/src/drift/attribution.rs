@@ -37,9 +37,11 @@ pub(super) fn attributed(drifted: &Drifted, model: &Fixture, explains: bool) -> 
     let deviation = SHARE[usize::from(!explains)];
     let Drifted { table, kept, .. } = drifted;
     let candidates = candidates(model, &drifted.modes, &table.modes);
-    let inflation = table.inflation();
-    let fitted: Vec<(&Candidate, Course)> =
-        candidates.iter().filter_map(|c| Some((c, course(table, kept, c, [inflation, deviation])?))).collect();
+    let inflation = table.inflation() * table.shared();
+    let fitted: Vec<(&Candidate, Course)> = candidates
+        .iter()
+        .filter_map(|c| Some((c, course(table, kept, c, [inflation, deviation])?)))
+        .collect();
     let (degrees, left) = table.degrees();
     let own = table.by_reference(|_| false).map_or(0.0, |fit| fit.chi2);
     let apart = kept.iter().filter(|kept| !**kept).count();
@@ -103,7 +105,9 @@ fn course(
         };
         let mut equations = table.equations(more);
         equations.iter_mut().for_each(|(_, _, variance)| *variance *= inflation);
-        equations.extend((0..table.modes.len()).map(|mode| (vec![(errors + mode, 1.0)], 0.0, deviation * deviation)));
+        equations.extend(
+            (0..table.modes.len()).map(|mode| (vec![(errors + mode, 1.0)], 0.0, deviation * deviation)),
+        );
         let found = Fit::of(&equations, errors + table.modes.len())?;
         changes.copy_from_slice(&found.values[first..errors]);
         fit = Some(found);
@@ -128,7 +132,8 @@ fn candidates(model: &Fixture, recorded: &RecordedModes, told: &[usize]) -> Vec<
     let poles: Vec<_> = modelled.poles().into_iter().map(|pole| pole * (1.0 + BESIDE)).collect();
     let ln_omega = |places: &[Place], by: f64| -> Option<Vec<f64>> {
         let mut physics = model.physics().to_vec();
-        let change = |place: &Place| Effect::new(EffectKind::StiffnessChange, place.clone(), None, &[by.exp()]);
+        let change =
+            |place: &Place| Effect::new(EffectKind::StiffnessChange, place.clone(), None, &[by.exp()]);
         physics.extend(places.iter().map(change));
         let changed = ModelledModes::near(&model.clone().with_physics(physics).ok()?, recorded, &poles)?;
         Some(partners.iter().map(|&m| changed.modes[m].pole.omega.ln()).collect())
@@ -137,13 +142,18 @@ fn candidates(model: &Fixture, recorded: &RecordedModes, told: &[usize]) -> Vec<
         let (up, down) = (ln_omega(places, STEP)?, ln_omega(places, -STEP)?);
         Some(up.iter().zip(&down).map(|(up, down)| (up - down) / STEP).collect())
     };
-    let joints = model.joints().iter().map(|joint| (format!("joints/{}", joint.name), Place::Joint(joint.name.clone())));
+    let joints = model
+        .joints()
+        .iter()
+        .map(|joint| (format!("joints/{}", joint.name), Place::Joint(joint.name.clone())));
     let beams = model.bodies().iter().filter(|body| matches!(body.kind, BodyKind::Beam(_)));
     let beams = beams.map(|body| (format!("bodies/{}", body.name), Place::Body(body.name.clone())));
     let single: Vec<(String, Place)> = joints.chain(beams).collect();
     let mut all: Vec<Candidate> = single
         .iter()
-        .filter_map(|(name, place)| Some(Candidate { name: name.clone(), shares: shares(std::slice::from_ref(place))? }))
+        .filter_map(|(name, place)| {
+            Some(Candidate { name: name.clone(), shares: shares(std::slice::from_ref(place))? })
+        })
         .collect();
     if single.len() > 1 {
         let places: Vec<Place> = single.into_iter().map(|(_, place)| place).collect();
@@ -158,7 +168,8 @@ fn modes(drifted: &Drifted, inflation: f64) -> Vec<ModeDrift> {
     let Some(fit) = table.by_reference(|reference| kept[reference]) else { return Vec::new() };
     let (first, unknowns) = (table.constants(), fit.values.len());
     let of = |(mode, &recorded): (usize, &usize)| {
-        let is_seen = |reference: usize| table.cells.iter().any(|c| c.mode == mode && c.reference == reference);
+        let is_seen =
+            |reference: usize| table.cells.iter().any(|c| c.mode == mode && c.reference == reference);
         let at = |reference: usize| first + mode * table.references + reference;
         let change = |reference: usize| match kept[reference] {
             true => (0.0, 0.0),

@@ -10,6 +10,8 @@ use rayon::prelude::*;
 
 /// Farthest that a mode may have moved between references, in ln ω.
 const REACH: f64 = 0.05;
+/// Farthest that the damping ratio of the same mode may differ: a pole that only follows what a fit leaves has any damping.
+const DAMPING: f64 = 2.0;
 /// A natural frequency is told where it is known to this share of its half-width.
 const KNOWN: f64 = 0.3;
 
@@ -49,13 +51,16 @@ pub(super) fn seen(
 ) -> Option<Seen> {
     let of = |reference: &Channel| {
         let part = observation.reduced(|_| true, |pair| pair.reference == *reference)?;
-        let modes = recorded(&part, nominal, settings)?;
+        // Where modes do not tell all there is in the FRFs, what they leave moves them too.
+        let modes = recorded(&part, nominal, settings).filter(|m| m.chi2_per_dof < settings.free_fit)?;
         Some(Struck { part, modes })
     };
     let struck: Vec<Option<Struck>> = references.par_iter().map(of).collect();
     // The reference that tells most modes is the one that the others are compared with.
     let told = |struck: &Option<Struck>| {
-        struck.as_ref().map_or(0, |s| (0..s.modes.modes.len()).filter(|&r| variance(&s.modes, r).is_some()).count())
+        struck
+            .as_ref()
+            .map_or(0, |s| (0..s.modes.modes.len()).filter(|&r| variance(&s.modes, r).is_some()).count())
     };
     let (first, _) = struck.iter().enumerate().rev().max_by_key(|(_, struck)| told(struck))?;
     let base = &struck[first].as_ref()?.modes;
@@ -96,7 +101,8 @@ pub(super) fn seen(
             _ => modes.one_by_one(Recording { frfs: part.frfs(), weights: part.weights() }),
         };
         for (pair, alone) in part.pairs().iter().zip(&alone) {
-            let (Some(alone), Some(response)) = (alone, responses.iter().position(|o| *o == pair.response)) else {
+            let (Some(alone), Some(response)) = (alone, responses.iter().position(|o| *o == pair.response))
+            else {
                 continue;
             };
             for (mode, &r) in compared.iter().enumerate() {
@@ -110,13 +116,21 @@ pub(super) fn seen(
         }
     }
     let half_widths = compared.iter().map(|&r| base.modes[r].pole.damping_ratio).collect();
-    let table = Table { cells, modes: compared, half_widths, responses: responses.len(), references: references.len() };
+    let table = Table {
+        cells,
+        modes: compared,
+        half_widths,
+        responses: responses.len(),
+        references: references.len(),
+    };
     Some(Seen { modes: base.clone(), table })
 }
 
-/// Whether an FRF's own mode is the one that its fit began with.
+/// Whether two fits' modes can be the same mode of a structure.
 fn same(own: &RecordedMode, begun: &RecordedMode) -> bool {
-    (own.pole.omega / begun.pole.omega).ln().abs() < REACH
+    let apart = |own: f64, begun: f64| (own / begun).ln().abs();
+    apart(own.pole.omega, begun.pole.omega) < REACH
+        && apart(own.pole.damping_ratio, begun.pole.damping_ratio) < DAMPING.ln()
 }
 
 /// Variance of ln ω of a mode; `None` where it is not well told.
@@ -137,7 +151,8 @@ fn partners_of(base: &RecordedModes, other: &RecordedModes) -> Vec<Option<usize>
     let partner = |r: usize| {
         let own = nearest(base.modes[r].pole.omega, &other.modes)?;
         let back = nearest(other.modes[own].pole.omega, &base.modes)?;
-        (back == r && variance(other, own).is_some()).then_some(own)
+        let is_one = back == r && same(&other.modes[own], &base.modes[r]);
+        (is_one && variance(other, own).is_some()).then_some(own)
     };
     (0..base.modes.len()).map(partner).collect()
 }

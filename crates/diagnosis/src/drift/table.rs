@@ -104,8 +104,7 @@ impl Table {
         let first = self.constants();
         let mut farthest: f64 = 0.0;
         for (mode, half_width) in self.half_widths.iter().enumerate() {
-            let is_seen =
-                |&&own: &&usize| self.cells.iter().any(|c| c.mode == mode && c.reference == own);
+            let is_seen = |&&own: &&usize| self.cells.iter().any(|c| c.mode == mode && c.reference == own);
             let seen: Vec<f64> = among
                 .iter()
                 .filter(is_seen)
@@ -149,6 +148,17 @@ impl Table {
         (of_references, left)
     }
 
+    /// Responses of one reference, at the most. Where they were recorded in the same hits they share the noise of the force, and all of them together tell a
+    /// natural frequency no better than one. Whether they were no recording says: variances of what goes with references are multiplied by this number, which is
+    /// the most that any correlation makes of them.
+    pub fn shared(&self) -> f64 {
+        let responses = |mode: usize, reference: usize| {
+            self.cells.iter().filter(|cell| cell.mode == mode && cell.reference == reference).count()
+        };
+        let all = (0..self.modes.len()).flat_map(|m| (0..self.references).map(move |r| (m, r)));
+        all.map(|(mode, reference)| responses(mode, reference)).max().unwrap_or(1).max(1) as f64
+    }
+
     /// What variances have to be multiplied by for FRFs that agree neither by response nor by reference; at least 1.
     pub fn inflation(&self) -> f64 {
         let (_, left) = self.degrees();
@@ -165,7 +175,8 @@ impl Table {
             return None;
         }
         let (all, own) = (self.by_reference(|_| true)?, self.by_reference(|_| false)?);
-        Some(chance((all.chi2 - own.chi2).max(0.0), of_references, self.inflation(), left))
+        let between = (all.chi2 - own.chi2).max(0.0) / self.shared();
+        Some(chance(between, of_references, self.inflation(), left))
     }
 }
 
@@ -192,7 +203,13 @@ mod tests {
             let ln_omega = value(response, reference)?;
             Some(Cell { mode: 0, response, reference, ln_omega, variance: 1e-8 })
         };
-        Table { cells: all.filter_map(cell).collect(), modes: vec![0], half_widths: vec![0.01], responses: 3, references }
+        Table {
+            cells: all.filter_map(cell).collect(),
+            modes: vec![0],
+            half_widths: vec![0.01],
+            responses: 3,
+            references,
+        }
     }
 
     #[test]
@@ -206,16 +223,16 @@ mod tests {
 
     #[test]
     fn where_each_response_has_a_reference_of_its_own_nothing_tells_them_apart() {
-        let diagonal = table(3, |response, reference| (response == reference).then_some(0.01 * response as f64));
+        let diagonal =
+            table(3, |response, reference| (response == reference).then_some(0.01 * response as f64));
         assert_eq!(diagonal.degrees(), (0, 0));
         assert_eq!(diagonal.chance(), None);
     }
 
     #[test]
     fn frfs_that_agree_neither_by_response_nor_by_reference_widen_what_chance_may_do() {
-        let scattered = |response, reference| {
-            Some(1e-3 * [[0.3, -1.1], [1.2, 0.1], [-0.4, 0.9]][response][reference])
-        };
+        let scattered =
+            |response, reference| Some(1e-3 * [[0.3, -1.1], [1.2, 0.1], [-0.4, 0.9]][response][reference]);
         let chance = table(2, scattered).chance().unwrap();
         assert!(chance > 0.05, "{chance}");
     }

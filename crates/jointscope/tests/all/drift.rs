@@ -142,7 +142,8 @@ fn physics_without_drift_is_no_drift() {
 
 #[test]
 fn an_accelerometer_that_roves_is_no_drift_though_responses_differ() {
-    let sensor = |point: &str| Effect::new(EffectKind::SensorMass, Place::Response(point.into()), None, &[8e-3]);
+    let sensor =
+        |point: &str| Effect::new(EffectKind::SensorMass, Place::Response(point.into()), None, &[8e-3]);
     let fixture = believed(RATIOS);
     // In the second test a response is missing at one reference: then the mean over responses does differ between references.
     for (seed, count) in [(51, 4), (52, 3)] {
@@ -188,15 +189,22 @@ fn without_drift_few_tests_look_as_if_there_were() {
 #[ignore = "measures: how often tests without drift look as if there were, and from which size drift is found"]
 fn measures_false_alarms_and_power() {
     let common = |seed, noise: (f64, f64)| {
-        let hammer = HammerTest { common_hits: true, noise_response: noise.0, noise_force: noise.1, ..hammer(seed) };
+        let hammer =
+            HammerTest { common_hits: true, noise_response: noise.0, noise_force: noise.1, ..hammer(seed) };
         let fixture = believed(RATIOS);
         let frfs = struck(&fixture, &[], &[], (&four_pairs(), &lines()), &hammer);
         (fixture, frfs)
     };
     println!("two blocks: {}", shares(&chances(0..300, |seed| blocks(&[], &[], seed))));
-    println!("two blocks, compliance: {}", shares(&chances(0..300, |seed| blocks(&[compliance()], &[], seed))));
+    println!(
+        "two blocks, compliance: {}",
+        shares(&chances(0..300, |seed| blocks(&[compliance()], &[], seed)))
+    );
     println!("two blocks, common hits: {}", shares(&chances(0..300, |seed| common(seed, (0.005, 0.0007)))));
-    println!("two blocks, common hits, force noise: {}", shares(&chances(0..300, |seed| common(seed, (0.001, 0.005)))));
+    println!(
+        "two blocks, common hits, force noise: {}",
+        shares(&chances(0..300, |seed| common(seed, (0.001, 0.005))))
+    );
     println!("three storeys: {}", shares(&chances(0..200, |seed| frame(&[], seed))));
     for percent in [0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.5, 1.5, 5.0] {
         let found = (0..20).filter(|seed| {
