@@ -231,8 +231,9 @@ mod tests {
 
     #[test]
     fn frfs_that_agree_neither_by_response_nor_by_reference_widen_what_chance_may_do() {
-        let scattered =
-            |response, reference| Some(1e-3 * [[0.3, -1.1], [1.2, 0.1], [-0.4, 0.9]][response][reference]);
+        let scattered = |response: usize, reference: usize| {
+            Some(1e-3 * [[0.3, -1.1], [1.2, 0.1], [-0.4, 0.9]][response][reference])
+        };
         let chance = table(2, scattered).chance().unwrap();
         assert!(chance > 0.05, "{chance}");
     }
