@@ -19,6 +19,10 @@ pub enum Instrument {
 }
 
 impl Instrument {
+    pub(crate) fn is_perfect(self) -> bool {
+        self == Instrument::Perfect
+    }
+
     /// The effects that it reads through.
     pub(crate) fn effects(self, fixture: &Fixture) -> &[Effect] {
         match self {

@@ -48,6 +48,19 @@ pub fn random_effect(
     })
 }
 
+/// A random rotational spring and dashpot that hold a block to ground, as stiff as turn it alone at 5 to 50 Hz; `None` where no body turns.
+pub fn random_rotational_support(rng: &mut impl Rng, fixture: &Fixture) -> Option<Effect> {
+    let inertia = |body: &Body| match &body.kind {
+        BodyKind::Rigid(rigid) if rigid.rotates => Some((body.name.clone(), rigid.inertia?.value)),
+        _ => None,
+    };
+    let blocks: Vec<(String, f64)> = fixture.bodies().iter().filter_map(inertia).collect();
+    let (name, inertia) = choice(rng, &blocks)?;
+    let omega = TAU * log_uniform(rng, 5.0, 50.0);
+    let values = [0.0, inertia * omega * omega, 2.0 * uniform(rng, 0.01, 0.1) * inertia * omega];
+    Some(Effect::new(EffectKind::Support, Place::Body(name.clone()), Some(Dof::Rotation), &values))
+}
+
 struct Scene<'a> {
     fixture: &'a Fixture,
     recorded: &'a [FrfPair],

@@ -1,9 +1,8 @@
-use super::bar_mode::UniformBar;
+use super::bar_mode::{BodyMode, Order, UniformBar};
 use super::{Assembly, BeamElement, Law, Station};
 use crate::StructureError;
 use crate::effects::{at, product, shear_compliance};
 use jointscope_fixture::{BeamBody, Body, BodyKind, Effect, EffectKind, Fixture, Place, RigidBody};
-use std::f64::consts::TAU;
 
 /// The bodies of an assembly, each able to say how any place on it moves.
 #[derive(Debug, Clone, PartialEq)]
@@ -14,7 +13,7 @@ pub(crate) struct Bodies {
 #[derive(Debug, Clone, PartialEq)]
 enum Shape {
     /// A block: its centre of gravity, and the bending coordinates it was given.
-    Block { centre: Station, x_cg: f64, bending: Vec<(UniformBar, usize)> },
+    Block { centre: Station, x_cg: f64, bending: Vec<(UniformBar, Order, usize)> },
     /// A storey: one transverse coordinate.
     Storey { station: Station },
     /// A deformable body: its nodes and the element between neighbours (its length set for each).
@@ -23,13 +22,14 @@ enum Shape {
 
 impl Bodies {
     /// Adds the bodies' own coordinates, first of all those of the bodies without effects, in the order of the
-    /// fixture, then the bending coordinates of blocks that `effects` make flexible; with masses and, for
-    /// deformable bodies, elements that carry `loss_factor`.
+    /// fixture, then the bending coordinates of blocks that `effects` make flexible and those of `beyond` what effects
+    /// can say; with masses and, for deformable bodies, elements that carry `loss_factor`.
     pub(crate) fn assemble(
         assembly: &mut Assembly,
         fixture: &Fixture,
         meshes: &[Vec<f64>],
         effects: &[Effect],
+        beyond: &[BodyMode<'_>],
         loss_factor: f64,
     ) -> Result<Self, StructureError> {
         let mut shapes = Vec::with_capacity(meshes.len());
@@ -41,8 +41,13 @@ impl Bodies {
         }
         let mut bodies = Bodies { shapes };
         for (index, body) in fixture.bodies().iter().enumerate() {
-            for effect in at(effects, EffectKind::BodyFlexibility, Place::Body(body.name.clone())) {
-                bodies.release_bending(assembly, index, body, effect)?;
+            let stated =
+                at(effects, EffectKind::BodyFlexibility, Place::Body(body.name.clone())).map(|effect| {
+                    let (frequency, damping_ratio) = (effect.value(0), effect.value(1));
+                    BodyMode { body: &body.name, order: Order::First, frequency, damping_ratio }
+                });
+            for mode in stated.chain(beyond.iter().copied().filter(|mode| mode.body == body.name)) {
+                bodies.release_bending(assembly, index, body, mode)?;
             }
         }
         for (index, body) in fixture.bodies().iter().enumerate() {
@@ -59,8 +64,8 @@ impl Bodies {
             Shape::Storey { station } => Ok(station.clone()),
             Shape::Block { centre, x_cg, bending } => {
                 let mut station = centre.rigidly_at(x - x_cg);
-                for (bar, coordinate) in bending {
-                    let (deflection, slope) = bar.first_mode(x);
+                for (bar, order, coordinate) in bending {
+                    let (deflection, slope) = bar.mode(*order, x);
                     let coordinate = super::Row::coordinate(*coordinate);
                     station.y = station.y.plus(deflection, &coordinate);
                     station.theta = station.theta.plus(slope, &coordinate);
@@ -93,10 +98,10 @@ impl Bodies {
         assembly: &mut Assembly,
         index: usize,
         body: &Body,
-        effect: &Effect,
+        mode: BodyMode<'_>,
     ) -> Result<(), StructureError> {
         let misplaced = StructureError::Misplaced {
-            kind: effect.kind.name(),
+            kind: EffectKind::BodyFlexibility.name(),
             place: body.name.clone(),
             why: "only a block that rotates can be taken for a uniform bar",
         };
@@ -106,13 +111,13 @@ impl Bodies {
             return Err(misplaced);
         };
         let Some(inertia) = rigid.inertia else { return Err(misplaced) };
-        let (mass, omega) = (rigid.mass.value, TAU * effect.value(0));
+        let (mass, omega) = (rigid.mass.value, mode.omega());
         let coordinate = assembly.coordinate();
         let motion = super::Row::coordinate(coordinate);
         assembly.inertia(&motion, mass);
         assembly.spring(&motion, mass * omega * omega, Law::ELASTIC);
-        assembly.dashpot(&motion, 2.0 * effect.value(1) * omega * mass);
-        bending.push((UniformBar::of(mass, inertia.value, *x_cg), coordinate));
+        assembly.dashpot(&motion, 2.0 * mode.damping_ratio * omega * mass);
+        bending.push((UniformBar::of(mass, inertia.value, *x_cg), mode.order, coordinate));
         Ok(())
     }
 }

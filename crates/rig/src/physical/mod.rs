@@ -15,6 +15,7 @@ mod station;
 mod structure;
 
 pub use assembly::{Assembly, Law};
+pub(crate) use bar_mode::{BodyMode, FIRST_TO_SECOND, Order};
 pub use beam_element::BeamElement;
 pub(crate) use damping::add_viscous;
 pub use station::{Row, Station};

@@ -1,3 +1,4 @@
+use super::bar_mode::BodyMode;
 use super::body::Bodies;
 use super::damping::{add_viscous, loss_factor};
 use super::joint::assemble_joint;
@@ -30,6 +31,14 @@ impl Structure {
     /// # Errors
     /// A non-linear effect, or physics that cannot be built.
     pub fn of(fixture: &Fixture) -> Result<Self, StructureError> {
+        Ok(Self::with_modes(fixture, &[])?.0)
+    }
+
+    /// The same with bending modes of blocks that no effect of a fixture describes, and the bodies, which say how any place moves.
+    pub(crate) fn with_modes(
+        fixture: &Fixture,
+        modes: &[BodyMode<'_>],
+    ) -> Result<(Self, Bodies), StructureError> {
         let effects = fixture.physics();
         if let Some(effect) = effects.iter().find(|e| e.kind.is_nonlinear()) {
             return Err(StructureError::Nonlinear {
@@ -38,10 +47,10 @@ impl Structure {
             });
         }
         let meshes = meshes(fixture);
-        let (free, plain) = free_assembly(fixture, &meshes, &[])?;
+        let (free, plain) = free_assembly(fixture, &meshes, &[], &[])?;
         let mut standing = free.clone();
         add_supports(&mut standing, fixture, &plain)?;
-        let (mut assembly, bodies) = free_assembly(fixture, &meshes, effects)?;
+        let (mut assembly, bodies) = free_assembly(fixture, &meshes, effects, modes)?;
         add_viscous(&mut assembly, &free, &standing, fixture.damping())?;
         add_supports(&mut assembly, fixture, &bodies)?;
         for effect in effects {
@@ -56,7 +65,7 @@ impl Structure {
                 structure.displaced.insert(point.name.clone(), bodies.station(point.body, x + dx)?);
             }
         }
-        Ok(structure)
+        Ok((structure, bodies))
     }
 
     /// The same places on another assembly: `moves` says by the point's name how its motion, stated or as mounted, follows from that
@@ -122,10 +131,11 @@ fn free_assembly(
     fixture: &Fixture,
     meshes: &[Vec<f64>],
     effects: &[Effect],
+    modes: &[BodyMode<'_>],
 ) -> Result<(Assembly, Bodies), StructureError> {
     let mut assembly = Assembly::new();
     let loss_factor = loss_factor(fixture.damping());
-    let bodies = Bodies::assemble(&mut assembly, fixture, meshes, effects, loss_factor)?;
+    let bodies = Bodies::assemble(&mut assembly, fixture, meshes, effects, modes, loss_factor)?;
     for joint in fixture.joints() {
         assemble_joint(&mut assembly, fixture, &bodies, joint, effects, loss_factor)?;
     }
