@@ -40,6 +40,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         struck: StruckAnswers::by(&questions.struck, 1, |_| (), |_| Err(NoAnswer::BrokeDown)),
         as_is: silent(&questions.as_is),
         modal_errors: silent(&questions.modal_errors),
+        lumped: silent(&questions.lumped),
     };
     let truths = sealed.open(&replies).ok_or("the seal does not open")?;
     let values = serde_json::Value::Array(truths.iter().map(Sealable::to_value).collect());

@@ -86,11 +86,12 @@ pub struct Truth {
     /// How it was measured.
     pub hammer: HammerTest,
     /// FRFs that nobody recorded.
-    #[serde(deserialize_with = "pairs")]
+    #[serde(deserialize_with = "filed_pairs")]
     pub unseen: Vec<FrfPair>,
 }
 
-fn pairs<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<FrfPair>, D::Error> {
+/// FRFs by their names, `4/1`.
+pub(crate) fn filed_pairs<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Vec<FrfPair>, D::Error> {
     let names = Vec::<String>::deserialize(deserializer)?;
     let pair = |name: &String| name.split_once('/').map(|(to, from)| FrfPair::transverse(to, from));
     names.iter().map(pair).collect::<Option<_>>().ok_or_else(|| D::Error::custom("no FRF has such a name"))

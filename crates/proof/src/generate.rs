@@ -1,14 +1,10 @@
 //! Cases from a seed: random assemblies, true quantities within tolerances, hidden physics, hammer tests.
 
 use crate::answers::on_workers;
-use crate::graded::scaled_to;
-use crate::objective::relative_error;
-use crate::{Case, GenerationError, Role, SealedTruths, Truth};
+use crate::scene::{Hides, Scene};
+use crate::{Case, GenerationError, LumpedRoute, Role, SealedTruths, Truth};
 use jointscope_fixture::{Effect, EffectKind, Fixture};
-use jointscope_rig::{
-    Family, HammerTest, Instrument, Outside, StructureError, drawn_within_tolerance, frfs, generator,
-    random_effect,
-};
+use jointscope_rig::{Family, HammerTest, Outside, generator, random_effect};
 use jointscope_spectra::{FrfPair, SpectraError, SpectralLines};
 use rand::seq::SliceRandom;
 use rand::{Rng, RngExt};
@@ -48,8 +44,14 @@ pub struct Plan {
     pub struck: usize,
     /// Number of cases whose recording comes from a solid of which nothing is idealised, numbered after these.
     pub solid_as_is: usize,
-    /// Number of cases of lumped structures with an error in every mode, numbered last.
+    /// Number of cases of lumped structures with an error in every mode, numbered after these.
     pub modal_errors: usize,
+    /// Number of lumped cases whose one hidden thing is a flaw of the measuring chain, numbered after these.
+    pub channel_flaws: usize,
+    /// Number of lumped cases whose one hidden thing is a load path beside a joint or to ground, or the footing of a joint, numbered after these.
+    pub load_paths: usize,
+    /// Number of lumped cases of physics that no effect of a fixture file is, small and large, numbered last.
+    pub unknown_physics: usize,
     /// Seed of all but the fresh ones.
     pub seed: u64,
     /// A text (a commit's hash) that the last of the cases are drawn from, a quarter of them: cases that nobody can have tuned anything to.
@@ -71,6 +73,9 @@ impl Default for Plan {
             struck: 0,
             solid_as_is: 0,
             modal_errors: 0,
+            channel_flaws: 0,
+            load_paths: 0,
+            unknown_physics: 0,
             seed: 1,
             fresh_from: None,
             only: None,
@@ -102,11 +107,6 @@ const ROLES: [Role; 8] = [
 
 /// Spectral lines of every recording: number and spacing in Hz.
 const LINES: (usize, f64) = (400, 2.5);
-/// Relative change of the recorded FRFs between which physics outside the vocabulary is drawn: it shows, and leaves the
-/// assembly recognisable.
-const OUTSIDE_SHOWS: [f64; 2] = [0.03, 0.8];
-/// Costs Δχ² of graded effects: from what chance makes to what is plain.
-const GRADED: [f64; 2] = [3.0, 300.0];
 /// Draws of a case before giving up.
 const DRAWS: usize = 60;
 /// FRFs that nobody records, at the most.
@@ -126,14 +126,17 @@ impl Plan {
         if self.cases + self.graded == 0 {
             return Err(GenerationError::NoCases);
         }
-        let own = Plan { solid: 0, struck: 0, solid_as_is: 0, modal_errors: 0, ..self.clone() };
+        let Plan { cases, graded, seed, only, .. } = *self;
+        let (fresh_from, families) = (self.fresh_from.clone(), self.families.clone());
+        let own = Plan { cases, graded, seed, only, fresh_from, families, ..Plan::default() };
         let (cases, truths) = self.drawn(&own.numbers()?, |index| self.case(index))?;
         Ok((cases, SealedTruths::new(truths)))
     }
 
     /// Number of cases of all routes.
     pub(crate) fn all(&self) -> usize {
-        self.cases + self.graded + self.solid + self.struck + self.solid_as_is + self.modal_errors
+        let lumped: usize = LumpedRoute::ALL.iter().map(|route| route.count(self)).sum();
+        self.cases + self.graded + self.solid + self.struck + self.solid_as_is + self.modal_errors + lumped
     }
 
     /// The numbers of the cases to make.
@@ -177,7 +180,7 @@ impl Plan {
         let role = if index >= self.cases { Role::Graded } else { ROLES[number % ROLES.len()] };
         for _ in 0..DRAWS {
             let family = self.families[random.random_range(0..self.families.len())];
-            let scene = Scene { family, role, number, seed };
+            let scene = Scene { family, role, seed, hides: InTurn { role, number } };
             if let Some((case, drawn)) = scene.draw(&mut random)? {
                 return Ok((case, Truth { index, source, fresh, ..drawn }));
             }
@@ -227,57 +230,13 @@ pub(crate) fn drawn_hammer(random: &mut impl Rng, seed: u64) -> HammerTest {
     }
 }
 
-struct Scene {
-    family: Family,
+/// What the laboratory's own cases hide: the kinds in turn, by the case's number.
+struct InTurn {
     role: Role,
     number: usize,
-    seed: u64,
 }
 
-impl Scene {
-    /// A case with its truth, not numbered yet; `None` where the fixture that was drawn has no place for what is to be hidden.
-    fn draw(&self, random: &mut impl Rng) -> Result<Option<(Case, Truth)>, GenerationError> {
-        let believed = self.family.draw("concealed case", random)?;
-        let truth = drawn_within_tolerance(&believed, random)?;
-        let pairs = self.family.usual_pairs();
-        let lines = recorded_lines()?;
-        let Some(effects) = self.effects(random, &truth, &pairs)? else { return Ok(None) };
-        let mut truth = truth.with_physics(effects).map_err(StructureError::from)?;
-        let plain = match frfs(&truth, &pairs, &lines, Instrument::AsDescribed) {
-            Ok(plain) => plain,
-            // Two effects that cannot be together, or a place that has gone: another draw.
-            Err(_) if self.role == Role::Double => return Ok(None),
-            Err(error) => return Err(error.into()),
-        };
-        let (mut clean, outside) = if self.role == Role::Outside {
-            let kind = self.number / ROLES.len();
-            let Some(outside) = Outside::draw(random, &truth, kind, &pairs) else { return Ok(None) };
-            let clean = outside.frfs(&truth, &pairs, &lines, Instrument::AsDescribed)?;
-            let change = relative_error(&clean, &plain);
-            if !(OUTSIDE_SHOWS[0]..=OUTSIDE_SHOWS[1]).contains(&change) {
-                return Ok(None);
-            }
-            (clean, Some(outside))
-        } else {
-            (plain, None)
-        };
-        let hammer = drawn_hammer(random, self.seed);
-        if self.role == Role::Graded {
-            let wanted = log_uniform(random, GRADED);
-            let noisy = hammer.measure(&clean)?;
-            let Some(scaled) = scaled_to(wanted, &believed, &truth, &noisy) else { return Ok(None) };
-            clean = frfs(&scaled, &pairs, &lines, Instrument::AsDescribed)?;
-            truth = scaled;
-        }
-        let recorded = hammer.measure(&clean)?;
-        let unseen = unseen_pairs(&truth, &pairs, random);
-        let (fixture, role) = (truth, self.role);
-        let (index, source, fresh) = (self.number, String::new(), false);
-        let truth = Truth { index, source, fresh, role, fixture, outside, hammer, unseen };
-        Ok(Some((Case { believed, recorded }, truth)))
-    }
-
-    /// The effects to hide; `None` where the fixture has no place for them.
+impl Hides for InTurn {
     fn effects(
         &self,
         random: &mut impl Rng,
@@ -303,6 +262,10 @@ impl Scene {
             }
         }
         Ok(Some(effects))
+    }
+
+    fn outside(&self, random: &mut impl Rng, truth: &Fixture, pairs: &[FrfPair]) -> Option<Outside> {
+        Outside::draw(random, truth, self.number / ROLES.len(), pairs)
     }
 }
 

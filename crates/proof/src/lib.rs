@@ -9,7 +9,7 @@
 //! | theme | items |
 //! |---|---|
 //! | making cases | [`Plan`], [`Case`], [`Truth`], [`Role`], [`SealedTruths`] |
-//! | cases by other routes | [`Plan::draw_routes`], [`Questions`], [`RouteTruth`], [`Replies`], [`Opened`]; [`SolidTruth`], [`SolidJudged`]; [`StruckCase`], [`StruckTruth`], [`StruckJudged`]; [`AsIsTruth`], [`AsIsJudged`]; [`ModalErrorsTruth`], [`ModalErrorsJudged`] |
+//! | cases by other routes | [`Plan::draw_routes`], [`Questions`], [`RouteTruth`], [`Replies`], [`Opened`]; [`SolidTruth`], [`SolidJudged`]; [`StruckCase`], [`StruckTruth`], [`StruckJudged`]; [`AsIsTruth`], [`AsIsJudged`]; [`ModalErrorsTruth`], [`ModalErrorsJudged`]; [`LumpedRoute`], [`LumpedTruth`], [`LumpedJudged`] |
 //! | answers | [`Answers`], [`Answer`], [`Reply`], [`Found`], [`Timing`] |
 //! | judging | [`Judged`], [`Evidence`], [`Reference`], [`Name`] |
 //! | what else one could do | [`Baseline`], [`Methods`] |
@@ -55,6 +55,7 @@ mod plan_table;
 mod reference;
 mod reliability;
 mod routes;
+mod scene;
 mod score;
 mod seal;
 mod sensitivity;
@@ -81,9 +82,10 @@ pub use limits::{Alike, Limits, SmallestShown};
 pub use reference::Reference;
 pub use reliability::{Bin, Reliability};
 pub use routes::{
-    AsIsJudged, AsIsTruth, Asked, Erring, JudgedRoutes, ModalErrorsJudged, ModalErrorsTruth, Opened,
-    Questions, Replies, RouteScore, RouteScores, RouteTruth, Shown, SolidJudged, SolidTruth, StruckAnswer,
-    StruckAnswers, StruckCase, StruckJudged, StruckRole, StruckTruth, TrueName,
+    AsIsJudged, AsIsTruth, Asked, JudgedRoutes, LumpedJudged, LumpedRoute, LumpedTruth, ModalErrorsJudged,
+    ModalErrorsTruth, Nameable, Opened, Questions, Replies, RouteScore, RouteScores, RouteTruth, Shown,
+    SolidJudged, SolidTruth, StruckAnswer, StruckAnswers, StruckCase, StruckJudged, StruckRole, StruckTruth,
+    TrueName,
 };
 pub use score::{CHANCE, Comparison, Score, VerdictCounts};
 pub use seal::{BrokenSeal, Filed, Given, Sealable, SealedTruths};

@@ -13,6 +13,9 @@ impl Display for Plan {
             (self.struck, "struck "),
             (self.solid_as_is, "solid-as-is "),
             (self.modal_errors, "modal-errors "),
+            (self.channel_flaws, "channel-flaws "),
+            (self.load_paths, "load-paths "),
+            (self.unknown_physics, "unknown-physics "),
         ];
         counts.retain(|(count, _)| *count > 0);
         let ((first, what), others) = counts.split_first().map_or(((0, ""), &[][..]), |(c, o)| (*c, o));
@@ -43,7 +46,9 @@ impl Plan {
     pub fn to_value(&self) -> Value {
         json!({
             "cases": self.cases, "graded": self.graded, "solid": self.solid, "struck": self.struck,
-            "solid_as_is": self.solid_as_is, "modal_errors": self.modal_errors, "seed": self.seed, "only": self.only, "families": self.family_names(),
+            "solid_as_is": self.solid_as_is, "modal_errors": self.modal_errors, "channel_flaws": self.channel_flaws,
+            "load_paths": self.load_paths, "unknown_physics": self.unknown_physics,
+            "seed": self.seed, "only": self.only, "families": self.family_names(),
             "fresh_from": self.fresh_from, "fresh": self.fresh(),
         })
     }

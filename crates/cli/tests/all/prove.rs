@@ -72,6 +72,9 @@ fn solids_and_hits_have_scores_of_their_own_and_pages_that_diagnose_makes_again(
         ("--struck", "struck", "Hits over time", true),
         ("--solid-as-is", "solid_as_is", "Recordings of solids as they are", false),
         ("--modal-errors", "modal_errors", "Recordings of structures with an error in every mode", false),
+        ("--channel-flaws", "channel_flaws", "Flaws of the measuring chain", true),
+        ("--load-paths", "load_paths", "Load paths and footings", true),
+        ("--unknown-physics", "unknown_physics", "Physics without a name, small and large", false),
     ] {
         let output = bench.run(&["prove", route, "2", "--only", "1", "--threads", "1", "-o", "proof"]);
         assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));

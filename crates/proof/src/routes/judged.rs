@@ -1,6 +1,8 @@
 //! Truths and answers of all routes beside the laboratory's, side by side.
 
-use super::{AsIsJudged, ModalErrorsJudged, Opened, Questions, Replies, SolidJudged, StruckJudged};
+use super::{
+    AsIsJudged, LumpedJudged, ModalErrorsJudged, Opened, Questions, Replies, SolidJudged, StruckJudged,
+};
 use crate::Judged;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -15,6 +17,8 @@ pub struct JudgedRoutes {
     pub as_is: Vec<AsIsJudged>,
     /// Structures with errors in every mode.
     pub modal_errors: Vec<ModalErrorsJudged>,
+    /// Lumped structures that hide one thing of a route's own.
+    pub lumped: Vec<LumpedJudged>,
 }
 
 impl JudgedRoutes {
@@ -28,7 +32,7 @@ impl JudgedRoutes {
     ) -> Self {
         let done = AtomicUsize::new(0);
         let told = |_: usize| told(done.fetch_add(1, Ordering::Relaxed) + 1);
-        let Opened { laboratory: _, solid, struck, as_is, modal_errors } = truths;
+        let Opened { laboratory: _, solid, struck, as_is, modal_errors, lumped } = truths;
         JudgedRoutes {
             solid: Judged::all(&cases.solid, solid, &answers.solid, threads, told),
             struck: StruckJudged::all(struck, &answers.struck),
@@ -40,11 +44,12 @@ impl JudgedRoutes {
                 threads,
                 told,
             ),
+            lumped: Judged::all(&cases.lumped, lumped, &answers.lumped, threads, told),
         }
     }
 
     /// How many of the cases are FRFs.
     pub fn count_of_frfs(cases: &Questions) -> usize {
-        cases.solid.len() + cases.as_is.len() + cases.modal_errors.len()
+        cases.solid.len() + cases.as_is.len() + cases.modal_errors.len() + cases.lumped.len()
     }
 }

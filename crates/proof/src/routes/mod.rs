@@ -2,22 +2,25 @@
 //!
 //! The laboratory and the diagnosis model the same assembly, of rigid blocks and massless beams, in two programs. The other routes do
 //! not: a solid is meshed and has mass, shear and layers of its own; hits are integrated step by step, and no FRF is computed on the way; solids as they
-//! are, and structures with errors in every mode, are such that no fixture is right to the noise.
+//! are, and structures with errors in every mode, are such that no fixture is right to the noise; lumped cases hide what the laboratory's own do not.
 //!
 //! A route is a module that draws a case and its truth, judges an answer by that truth, and scores what was judged; here they come together.
 
 mod as_is;
+mod by_name;
 mod judged;
+mod lumped;
 mod modal_errors;
-mod model_error;
+mod quiet;
 mod score;
 mod solid;
 mod struck;
 
 pub use as_is::{AsIsJudged, AsIsTruth};
+pub use by_name::{Nameable, TrueName};
 pub use judged::JudgedRoutes;
+pub use lumped::{LumpedJudged, LumpedRoute, LumpedTruth};
 pub use modal_errors::{ModalErrorsJudged, ModalErrorsTruth};
-pub use model_error::{Erring, TrueName};
 pub use score::{RouteScore, RouteScores};
 pub use solid::{Shown, SolidJudged, SolidTruth};
 pub use struck::{StruckAnswer, StruckAnswers, StruckCase, StruckJudged, StruckRole, StruckTruth};
@@ -43,13 +46,15 @@ pub struct Questions {
     pub as_is: Vec<Case>,
     /// FRFs of structures with errors in every mode.
     pub modal_errors: Vec<Case>,
+    /// FRFs of lumped structures that hide one thing of a route's own.
+    pub lumped: Vec<Case>,
 }
 
 impl Questions {
     /// Every case, route after route.
     pub fn all(&self) -> Vec<Asked<'_>> {
         let first = self.laboratory.iter().chain(&self.solid).map(Asked::Frfs);
-        let last = self.as_is.iter().chain(&self.modal_errors).map(Asked::Frfs);
+        let last = self.as_is.iter().chain(&self.modal_errors).chain(&self.lumped).map(Asked::Frfs);
         first.chain(self.struck.iter().map(Asked::Hits)).chain(last).collect()
     }
 }
@@ -97,6 +102,8 @@ pub struct Replies {
     pub as_is: Answers,
     /// To those of structures with errors in every mode.
     pub modal_errors: Answers,
+    /// To those of lumped structures that hide one thing of a route's own.
+    pub lumped: Answers,
 }
 
 impl Given for Replies {
@@ -132,12 +139,14 @@ impl Replies {
         let mut of_frfs =
             |of: &[Case]| Answers::collected(given.by_ref().take(of.len()).map(|(frfs, _)| frfs));
         let (as_is, modal_errors) = (of_frfs(&cases.as_is), of_frfs(&cases.modal_errors));
-        Replies { laboratory, solid, struck, as_is, modal_errors }
+        let lumped = of_frfs(&cases.lumped);
+        Replies { laboratory, solid, struck, as_is, modal_errors, lumped }
     }
 
     /// The answers as JSON, in the order of the cases.
     pub fn to_value(&self) -> Value {
-        let (first, last) = (&[&self.laboratory, &self.solid], &[&self.as_is, &self.modal_errors]);
+        let first = &[&self.laboratory, &self.solid];
+        let last = &[&self.as_is, &self.modal_errors, &self.lumped];
         let of_frfs = |all: &[&Answers]| all.iter().map(|answers| answers.to_value()).collect::<Vec<_>>();
         let all = [of_frfs(first), vec![self.struck.to_value()], of_frfs(last)].concat();
         Value::Array(
@@ -147,9 +156,10 @@ impl Replies {
 
     /// Seconds that each answer took, on one core, in the order of the cases.
     pub fn seconds(&self) -> Vec<f64> {
-        let Replies { laboratory, solid, struck, as_is, modal_errors } = self;
-        [laboratory.seconds(), solid.seconds(), struck.seconds(), as_is.seconds(), modal_errors.seconds()]
-            .concat()
+        let Replies { laboratory, solid, struck, as_is, modal_errors, lumped } = self;
+        let (first, last) = ([laboratory, solid], [as_is, modal_errors, lumped]);
+        let of_frfs = |all: &[&Answers]| all.iter().flat_map(|answers| answers.seconds().to_vec()).collect();
+        [of_frfs(&first), struck.seconds().to_vec(), of_frfs(&last)].concat()
     }
 }
 
@@ -166,6 +176,8 @@ pub enum RouteTruth {
     AsIs(Box<AsIsTruth>),
     /// Of a structure with errors in every mode.
     ModalErrors(Box<ModalErrorsTruth>),
+    /// Of a lumped structure that hides one thing of a route's own.
+    Lumped(Box<LumpedTruth>),
 }
 
 impl Sealable for RouteTruth {
@@ -176,6 +188,7 @@ impl Sealable for RouteTruth {
             RouteTruth::Struck(truth) => truth.to_value(),
             RouteTruth::AsIs(truth) => truth.to_value(),
             RouteTruth::ModalErrors(truth) => truth.to_value(),
+            RouteTruth::Lumped(truth) => truth.to_value(),
         }
     }
 }
@@ -188,7 +201,7 @@ impl Filed for RouteTruth {
             Some("struck") => RouteTruth::Struck(Box::new(StruckTruth::deserialize(value).ok()?)),
             Some("solid_as_is") => RouteTruth::AsIs(Box::new(AsIsTruth::from_value(value)?)),
             Some("modal_errors") => RouteTruth::ModalErrors(Box::new(ModalErrorsTruth::from_value(value)?)),
-            Some(_) => return None,
+            Some(_) => RouteTruth::Lumped(Box::new(LumpedTruth::from_value(value)?)),
         })
     }
 }
@@ -206,6 +219,8 @@ pub struct Opened {
     pub as_is: Vec<AsIsTruth>,
     /// Of structures with errors in every mode.
     pub modal_errors: Vec<ModalErrorsTruth>,
+    /// Of lumped structures that hide one thing of a route's own.
+    pub lumped: Vec<LumpedTruth>,
 }
 
 impl FromIterator<RouteTruth> for Opened {
@@ -218,6 +233,7 @@ impl FromIterator<RouteTruth> for Opened {
                 RouteTruth::Struck(truth) => opened.struck.push(*truth),
                 RouteTruth::AsIs(truth) => opened.as_is.push(*truth),
                 RouteTruth::ModalErrors(truth) => opened.modal_errors.push(*truth),
+                RouteTruth::Lumped(truth) => opened.lumped.push(*truth),
             }
         }
         opened
@@ -265,6 +281,15 @@ impl Plan {
         let (modal_errors, truths) =
             self.drawn(&own, |index| ModalErrorsTruth::draw(index, index - from, self))?;
         all.extend(truths.into_iter().map(|truth| RouteTruth::ModalErrors(Box::new(truth))));
-        Ok((Questions { laboratory, solid, struck, as_is, modal_errors }, SealedTruths::new(all)))
+        let mut lumped = Vec::new();
+        for of in LumpedRoute::ALL {
+            let (own, from) = route(of.count(self));
+            let (cases, truths) =
+                self.drawn(&own, |index| LumpedTruth::draw(of, index, index - from, self))?;
+            lumped.extend(cases);
+            all.extend(truths.into_iter().map(|truth| RouteTruth::Lumped(Box::new(truth))));
+        }
+        let questions = Questions { laboratory, solid, struck, as_is, modal_errors, lumped };
+        Ok((questions, SealedTruths::new(all)))
     }
 }

@@ -23,6 +23,7 @@ fn silent_to_all(questions: &Questions) -> Replies {
         struck: StruckAnswers::by(&questions.struck, 1, |_| (), |_| Err(NoAnswer::BrokeDown)),
         as_is: silent(&questions.as_is),
         modal_errors: silent(&questions.modal_errors),
+        lumped: silent(&questions.lumped),
     }
 }
 

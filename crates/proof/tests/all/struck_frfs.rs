@@ -14,8 +14,8 @@ fn linear(only: usize) -> (StruckCase, StruckTruth) {
     let (mut questions, sealed) = plan.draw_routes().unwrap();
     let silent = || Answers::by(&[] as &[Case], 1, |_| (), |_| Err(NoAnswer::BrokeDown));
     let struck = StruckAnswers::by(&questions.struck, 1, |_| (), |_| Err(NoAnswer::BrokeDown));
-    let [laboratory, solid, as_is, modal_errors] = [(); 4].map(|()| silent());
-    let replies = Replies { laboratory, solid, struck, as_is, modal_errors };
+    let [laboratory, solid, as_is, modal_errors, lumped] = [(); 5].map(|()| silent());
+    let replies = Replies { laboratory, solid, struck, as_is, modal_errors, lumped };
     let mut opened: Opened = sealed.open(&replies).unwrap().into_iter().collect();
     (questions.struck.remove(0), opened.struck.remove(0))
 }

@@ -33,6 +33,9 @@ fn title(route: &RouteScore) -> &'static str {
         "solid" => "Recordings of solids",
         "solid_as_is" => "Recordings of solids as they are",
         "modal_errors" => "Recordings of structures with an error in every mode",
+        "channel_flaws" => "Flaws of the measuring chain",
+        "load_paths" => "Load paths and footings",
+        "unknown_physics" => "Physics without a name, small and large",
         _ => "Hits over time",
     }
 }
@@ -55,6 +58,20 @@ fn paragraph(route: &RouteScore) -> &'static str {
             "Lumped structures of which every natural frequency, damping ratio and shape has an error of its own: frequencies of 0.05 to 0.5 %, damping \
              of 1 to 10 %, shapes of 0.1 to 1 %. Right is the hidden name first, with nothing untrue beside it; a name that fits as well as the true one \
              counts as right. Hidden things are asked for if without them χ² is ten times as large."
+        }
+        "channel_flaws" => {
+            "Lumped structures, three of four read through one flaw: a gain, a delay, a high-pass or a resonance of a response, a reference or the force, a \
+             roving sensor's mass, a response window, a point that is elsewhere. Two of five tests strike one point only, or read one only, where an equal flaw \
+             elsewhere is exactly the same thing. Right is the hidden name, one that is the same thing or one that fits as well, first and alone."
+        }
+        "load_paths" => {
+            "Lumped structures, three of four with one thing about a joint that the fixture leaves out: a spring or a springpot beside it, a spring past it from body \
+             to body, footings that turn alike, a rotational spring to ground. Right is the hidden name, or one that fits as well, first and alone."
+        }
+        "unknown_physics" => {
+            "Lumped structures with physics that no effect of a fixture file is, in turn: a sensor that reads across its axis, an inerter, a sample clock of its own, a second \
+             bending mode of a block, a cable that resonates, a joint that changed between references, supports on a table, a rotor. The FRFs change by 0.01 to 80 %. A name \
+             is untrue where the repaired fixture fits worse than the structure itself by more than 9 in χ²."
         }
         _ => {
             "Structures of which a joint may have a cubic spring, friction or a gap are struck at three strengths, and their motion is integrated \
@@ -81,6 +98,20 @@ pub(super) fn sentence(route: &RouteScore) -> String {
                 "structures with an error in every mode"
             },
             share("single_right"),
+            share("untrue_claimed")
+        ),
+        "channel_flaws" | "load_paths" => format!(
+            "{} were named first and alone in {}; of the cases that hide nothing something was found in {}.",
+            if route.key == "channel_flaws" {
+                "Flaws of the measuring chain"
+            } else {
+                "Load paths and footings"
+            },
+            share("single_alone"),
+            share("null_named")
+        ),
+        "unknown_physics" => format!(
+            "Physics without a name, small and large, got an untrue name with 0.9 or more in {}.",
             share("untrue_claimed")
         ),
         _ => format!(

@@ -35,6 +35,15 @@ pub struct ProveArguments {
     /// Make so many cases of lumped structures with an error in every mode [default: as --solid].
     #[arg(long, value_name = "N")]
     pub modal_errors: Option<usize>,
+    /// Make so many lumped cases of which the one hidden thing is a flaw of the measuring chain [default: as --solid].
+    #[arg(long, value_name = "N")]
+    pub channel_flaws: Option<usize>,
+    /// Make so many lumped cases with a load path beside a joint or to ground, or footings that turn [default: as --solid].
+    #[arg(long, value_name = "N")]
+    pub load_paths: Option<usize>,
+    /// Make so many lumped cases of physics that no effect of a fixture file is, small and large [default: as --solid].
+    #[arg(long, value_name = "N")]
+    pub unknown_physics: Option<usize>,
     /// A text, such as the current commit's hash, from which a quarter of the cases is drawn afresh.
     #[arg(long, value_name = "TEXT")]
     pub also_from: Option<String>,
@@ -67,14 +76,16 @@ pub struct ProveArguments {
     pub no_case_pages: bool,
     /// Instead: the effects that this recording cannot tell apart, and the smallest that show in it.
     #[arg(long, num_args = 2, value_names = ["FIXTURE", "RECORDING"],
-        conflicts_with_all = ["cases", "seed", "graded", "solid", "struck", "solid_as_is", "modal_errors", "also_from", "only", "shipped", "family", "wrong", "output"])]
+        conflicts_with_all = ["cases", "seed", "graded", "solid", "struck", "solid_as_is", "modal_errors", "channel_flaws", "load_paths", "unknown_physics", "also_from", "only", "shipped", "family", "wrong", "output"])]
     pub limits: Vec<PathBuf>,
 }
 
 impl ProveArguments {
     /// Whether cases of a route beside the laboratory's are asked for.
     pub fn asks_for_routes(&self) -> bool {
-        [self.solid, self.struck, self.solid_as_is, self.modal_errors].iter().any(Option::is_some)
+        let lumped = [self.channel_flaws, self.load_paths, self.unknown_physics];
+        let others = [self.solid, self.struck, self.solid_as_is, self.modal_errors];
+        others.iter().chain(&lumped).any(Option::is_some)
     }
 
     /// Cases at a time.

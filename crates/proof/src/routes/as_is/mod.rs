@@ -12,7 +12,8 @@ mod statics;
 #[allow(clippy::unwrap_used)]
 mod tests;
 
-use super::model_error::{Erring, TrueName, quiet_hammer};
+use super::by_name::{Nameable, TrueName};
+use super::quiet::quiet_hammer;
 use super::solid::transverse;
 use super::solid::twin::read;
 use crate::case::{effect_value, filed_effects};
@@ -263,7 +264,7 @@ impl Judgeable for AsIsTruth {
     }
 }
 
-impl Erring for AsIsTruth {
+impl Nameable for AsIsTruth {
     fn is_gap(&self) -> bool {
         self.gap
     }
@@ -277,7 +278,7 @@ impl Erring for AsIsTruth {
     }
 
     /// Sizes are drawn so that all show.
-    fn shows(&self, _: &Evidence) -> bool {
+    fn shows(_: &Judged<Self>) -> bool {
         true
     }
 }

@@ -1,7 +1,7 @@
 //! Names that are true of a solid beyond what is hidden in it.
 
 use super::assembly::{ENDS, Stated};
-use crate::routes::model_error::TrueName;
+use crate::routes::by_name::TrueName;
 use jointscope_fixture::{Dof, EffectKind};
 use rand::{Rng, RngExt};
 

@@ -3,15 +3,14 @@
 //! The laboratory's structures are what their fixtures say, but for what is hidden. Here every natural frequency, damping ratio and shape of the true
 //! structure has an error of its own besides, as real structures have, and the hammer test is quiet enough for that to matter.
 
-use super::model_error::{Erring, quiet_hammer};
+use super::by_name::Nameable;
+use super::quiet::quiet_hammer;
 use crate::generate::{HIDDEN_KINDS, log_uniform, recorded_lines, seed_of, turn, unseen_pairs};
 use crate::judged::error_on;
 use crate::laboratory::others;
 use crate::objective::Judge;
 use crate::seal::{Filed, Sealable};
-use crate::{
-    AS_GOOD, Answer, Case, Evidence, GenerationError, Judgeable, Judged, Name, Plan, Role, Truth, VISIBLE,
-};
+use crate::{AS_GOOD, Answer, Case, Evidence, GenerationError, Judgeable, Judged, Name, Plan, Role, Truth};
 use jointscope_fixture::{Effect, Fixture};
 use jointscope_rig::{
     Instrument, ModalErrors, StructureError, UsualErrors, drawn_within_tolerance, generator, random_effect,
@@ -151,11 +150,7 @@ impl Judgeable for ModalErrorsTruth {
     }
 }
 
-impl Erring for ModalErrorsTruth {
-    fn is_gap(&self) -> bool {
-        false
-    }
-
+impl Nameable for ModalErrorsTruth {
     /// What fits alone as well as the truth: within what chance makes, χ² per degree of freedom being what the errors make it.
     fn stands_for(&self, found: &Effect, evidence: &Evidence) -> bool {
         let inflation = (evidence.truth / evidence.values.max(1) as f64).max(1.0);
@@ -163,12 +158,7 @@ impl Erring for ModalErrorsTruth {
         self.role() == Role::Single && evidence.others.get(&Name::of(found)).is_some_and(as_good)
     }
 
-    fn is_true(&self, _: &Effect) -> bool {
-        false
-    }
-
-    fn shows(&self, evidence: &Evidence) -> bool {
-        let without = evidence.without.iter().copied().fold(evidence.refitted, f64::min);
-        without - evidence.truth >= VISIBLE && without >= SHOWS * evidence.truth
+    fn shows(judged: &Judged<Self>) -> bool {
+        judged.is_visible() && judged.size() >= (SHOWS - 1.0) * judged.evidence.truth
     }
 }

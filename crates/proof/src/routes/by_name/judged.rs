@@ -1,6 +1,6 @@
 //! Truth and answer side by side.
 
-use super::Erring;
+use super::Nameable;
 use crate::size::Size;
 use crate::strength::leading_parameter;
 use crate::{Found, Judged, Name};
@@ -8,7 +8,7 @@ use crate::{Found, Judged, Name};
 /// Stated probability from which a name counts as given.
 pub(super) const LIKELY: f64 = 0.5;
 
-impl<T: Erring> Judged<T> {
+impl<T: Nameable> Judged<T> {
     /// Whether a finding is what was hidden: kind, place and dof.
     pub(super) fn is_hidden(&self, found: &Found) -> bool {
         self.truth.concealed().is_some_and(|hidden| Name::of(hidden) == Name::of(&found.effect))
@@ -16,7 +16,8 @@ impl<T: Erring> Judged<T> {
 
     /// Whether a finding is what was hidden, or says the same.
     fn is_accepted(&self, found: &Found) -> bool {
-        self.is_hidden(found) || self.truth.stands_for(&found.effect, &self.evidence)
+        let (truth, effect) = (&self.truth, &found.effect);
+        self.is_hidden(found) || truth.is_the_same(effect) || truth.stands_for(effect, &self.evidence)
     }
 
     /// Whether a finding is in the structure, hidden or not.
@@ -39,9 +40,19 @@ impl<T: Erring> Judged<T> {
         self.is_first() && !self.is_untrue_from(0.0)
     }
 
+    /// Whether what was hidden is the one name given.
+    pub(super) fn is_alone(&self) -> bool {
+        self.findings().len() == 1 && self.is_first()
+    }
+
+    /// Whether the one name given is the hidden one, or exactly the same thing.
+    pub(super) fn is_its_own(&self) -> bool {
+        matches!(self.findings(), [found] if self.is_hidden(found) || self.truth.is_the_same(&found.effect))
+    }
+
     /// Whether what was hidden is asked for.
     pub(super) fn is_asked(&self) -> bool {
-        self.truth.concealed().is_some() && self.truth.shows(&self.evidence)
+        self.truth.concealed().is_some() && T::shows(self)
     }
 
     /// The size of what was hidden, where it was found.
