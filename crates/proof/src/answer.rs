@@ -2,7 +2,7 @@
 
 use crate::case::{effect_value, in_file};
 use crate::{Case, Name};
-use jointscope_diagnosis::Verdict;
+use jointscope_diagnosis::{Estimate, Verdict};
 use jointscope_fixture::{Effect, Fixture};
 use jointscope_pipeline::{Answer as Diagnosed, Measurement, Options, Outcome, diagnose};
 use serde::{Serialize, Serializer};
@@ -87,7 +87,7 @@ impl Reply for Answer {
         let Outcome::Linear(diagnosis) = &diagnosed.outcome else { return None };
         let found = diagnosis.findings.iter().map(|finding| Found {
             effect: finding.effect.clone(),
-            intervals: finding.estimates.iter().map(|estimate| estimate.interval).collect(),
+            intervals: intervals(&finding.effect, &finding.estimates),
             probability: finding.probability,
             alternatives: finding.alternatives.clone(),
         });
@@ -116,6 +116,13 @@ impl Reply for Answer {
     }
 }
 
+/// The 95 % interval of each of an effect's parameters: what holds a block against rotation has no abscissa, and none is stated.
+fn intervals(effect: &Effect, estimates: &[Estimate]) -> Vec<Option<[f64; 2]>> {
+    let own = |name: &str| estimates.iter().find(|estimate| estimate.parameter.name == name);
+    let parameters = effect.kind.spec().parameters.iter();
+    parameters.map(|spec| own(spec.name).and_then(|estimate| estimate.interval)).collect()
+}
+
 impl Answer {
     /// What is answered to a case.
     ///
@@ -128,5 +135,26 @@ impl Answer {
     /// The names found, the strongest first.
     pub fn names(&self) -> Vec<Name> {
         self.findings.iter().map(|found| Name::of(&found.effect)).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use jointscope_fixture::{Dof, EffectKind, Place};
+
+    #[test]
+    fn intervals_are_those_of_their_own_parameters() {
+        let place = Place::Body("A".into());
+        let effect = Effect::new(EffectKind::Support, place, Some(Dof::Rotation), &[0.0, 800.0, 0.2]);
+        let parameters = &EffectKind::Support.spec().parameters[1..];
+        let estimate = |index: usize, value: f64| {
+            Estimate::of(parameters[index], effect.dof, value).within(0.01 * value)
+        };
+        let all = intervals(&effect, &[estimate(0, 800.0), estimate(1, 0.2)]);
+        assert_eq!(all[0], None, "a spring against rotation has no abscissa");
+        let holds =
+            |index: usize, value: f64| all[index].is_some_and(|[low, high]| low < value && value < high);
+        assert!(holds(1, 800.0) && holds(2, 0.2), "{all:?}");
     }
 }

@@ -1,7 +1,7 @@
 //! What a recording cannot tell apart, and what it cannot show, before anything is diagnosed.
 
-use crate::sensitivity::{Direction, Sensitivity};
-use crate::strength;
+use crate::sensitivity::{Direction, Sensitivity, WHOLE};
+use crate::strength::{self, strength, with_strength};
 use crate::{Name, VISIBLE};
 use jointscope_diagnosis::{Observation, catalogue};
 use jointscope_fixture::{Effect, Fixture};
@@ -11,6 +11,8 @@ use std::fmt;
 
 /// Angle below which two names are listed as alike, degrees.
 const ALIKE: f64 = 25.0;
+/// Times that the strength of a weak effect is found again at itself: each halves its error.
+const AGAIN: usize = 8;
 /// Turns below which what one name does beyond the tolerances is rounding: there is nothing to compare.
 const ROUNDING: f64 = 1e-9;
 
@@ -59,7 +61,7 @@ pub struct Limits {
 
 struct Signature {
     name: Name,
-    effect: Effect,
+    effects: Vec<Effect>,
     directions: Vec<Direction>,
 }
 
@@ -82,11 +84,11 @@ impl Limits {
                 .filter_map(|effect| sensitivity.direction(&effect).map(|direction| (effect, direction)))
                 .collect();
             let (effects, directions): (Vec<_>, Vec<_>) = both.into_iter().unzip();
-            if let Some(effect) = effects.into_iter().next() {
-                signatures.push(Signature { name: Name::of(&effect), effect, directions });
+            if let Some(name) = effects.first().map(Name::of) {
+                signatures.push(Signature { name, effects, directions });
             }
         }
-        let smallest = signatures.iter().map(Signature::smallest).collect();
+        let smallest = signatures.iter().map(|signature| signature.smallest(&sensitivity)).collect();
         let mut alike = Vec::new();
         for (index, first) in signatures.iter().enumerate() {
             alike.extend(signatures[..index].iter().filter_map(|second| first.beside(second)));
@@ -97,26 +99,55 @@ impl Limits {
 }
 
 impl Signature {
-    fn smallest(&self) -> SmallestShown {
+    fn smallest(&self, sensitivity: &Sensitivity<'_>) -> SmallestShown {
         let largest = |information: &dyn Fn(&Direction) -> f64| {
             self.directions.iter().map(information).fold(0.0, f64::max)
         };
         let (whole, left) = (largest(&|d| d.whole(d)), largest(&|d| d.beyond_tolerances(d)));
-        let shown = |information: f64| match information > ROUNDING * whole {
-            true => strength::stated(self.name.kind, (VISIBLE / information).sqrt()),
-            false if strength::is_inverse(self.name.kind) => 0.0,
-            false => f64::INFINITY,
-        };
-        let (parameter, unit) = strength::parameter(self.effect.kind, self.effect.dof);
+        let shown =
+            |information: &dyn Fn(&Direction) -> f64| match self.strength(sensitivity, information, whole) {
+                Some(strength) => strength::stated(self.name.kind, strength),
+                None if strength::is_inverse(self.name.kind) => 0.0,
+                None => f64::INFINITY,
+            };
+        let (parameter, unit) = strength::parameter(self.name.kind, self.name.dof);
         SmallestShown {
             name: self.name.clone(),
             parameter,
             unit,
-            shows: shown(left),
-            shows_if_exact: shown(whole),
+            shows: shown(&|d| d.beyond_tolerances(d)),
+            shows_if_exact: shown(&|d| d.whole(d)),
             is_upper: strength::is_inverse(self.name.kind),
             imitated: if whole > 0.0 { (1.0 - left / whole).clamp(0.0, 1.0) } else { 1.0 },
         }
+    }
+
+    /// The strength that costs a fit without the effect [`VISIBLE`], `information` being Δχ² by its square; `None` where nothing shows.
+    ///
+    /// By first order; where that is of a stronger effect than this, again at the strength itself: a damped resonance far above the band delays, which
+    /// falls with its frequency and not with the square.
+    fn strength(
+        &self,
+        sensitivity: &Sensitivity<'_>,
+        information: &dyn Fn(&Direction) -> f64,
+        whole: f64,
+    ) -> Option<f64> {
+        let all = self.effects.iter().zip(&self.directions).map(|(effect, d)| (effect, information(d)));
+        let (effect, most) = all.max_by(|(_, a), (_, b)| a.total_cmp(b))?;
+        if most <= ROUNDING * whole {
+            return None;
+        }
+        let mut shown = (VISIBLE / most).sqrt();
+        for _ in 0..AGAIN {
+            if whole * shown * shown >= WHOLE {
+                break;
+            }
+            let as_strong = with_strength(effect, shown * strength(effect).signum());
+            let at = sensitivity.direction_as_it_is(&as_strong).map(|direction| information(&direction));
+            let Some(at) = at.filter(|at| *at > 0.0) else { break };
+            shown = (VISIBLE / at).sqrt();
+        }
+        Some(shown)
     }
 
     /// The closest of both names' directions; `None` where they are told apart easily.

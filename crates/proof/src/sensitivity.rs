@@ -14,7 +14,7 @@ const DIFFERENCE: f64 = 2e-3;
 /// Times that an effect is made weaker to be linear: the first is still measured where it bends.
 const WEAKENED: usize = 2;
 /// What it then costs a fit that yields nothing, Δχ².
-const WHOLE: f64 = 1e3;
+pub(crate) const WHOLE: f64 = 1e3;
 
 /// Derivatives of a fixture's FRFs by its tolerances, in units of the noise, by the laboratory's own model.
 #[derive(Debug)]
@@ -121,6 +121,15 @@ impl<'a> Sensitivity<'a> {
         }
         let half = self.change(&with_strength(&weak, 0.5 * strength(&weak)))?;
         values.iter_mut().zip(&half).for_each(|(value, half)| *value = 2.0 * half - *value);
+        self.imitated(values)
+    }
+
+    /// The same of the effect as strong as it is, bend and all: of what is weaker than first order was taken at, and does not grow in proportion.
+    pub fn direction_as_it_is(&self, effect: &Effect) -> Option<Direction> {
+        self.imitated(self.change(effect)?)
+    }
+
+    fn imitated(&self, values: Vec<Complex64>) -> Option<Direction> {
         let pull: Vec<f64> = self.columns.iter().map(|column| dot(column, &values)).collect();
         let mut imitation = pull.clone();
         let usable = values.iter().all(|v| v.is_finite());

@@ -4,13 +4,15 @@ use jointscope_diagnosis::Verdict;
 use jointscope_fixture::{Dof, Effect, EffectKind, Place};
 use jointscope_nonlinear::Verdict as Conclusion;
 use jointscope_proof::{
-    Answer, Answers, Case, Filed, Found, Judgeable, Judged, JudgedRoutes, ModalErrorsTruth, NoAnswer, Opened,
-    Plan, Precision, Questions, Replies, Role, RouteScore, RouteScores, Sealable, SolidJudged, SolidTruth,
-    StruckAnswer, StruckAnswers, StruckCase, StruckJudged, StruckRole, StruckTruth,
+    Answer, Answers, Case, Family, Filed, Found, Judgeable, Judged, JudgedRoutes, LumpedTruth,
+    ModalErrorsTruth, NoAnswer, Opened, Plan, Precision, Questions, Replies, Role, RouteScore, RouteScores,
+    Sealable, SolidJudged, SolidTruth, StruckAnswer, StruckAnswers, StruckCase, StruckJudged, StruckRole,
+    StruckTruth,
 };
 use jointscope_recordings::{ReadOptions, Source, hits_of};
-use jointscope_rig::{Instrument, frfs};
+use jointscope_rig::{Instrument, Outside, frfs};
 use jointscope_spectra::FrfSet;
+use std::collections::BTreeSet;
 
 fn silent(cases: &[Case]) -> Answers {
     Answers::by(cases, 1, |_| (), |_| Err(NoAnswer::BrokeDown))
@@ -252,6 +254,8 @@ fn a_plan_says_which_routes_it_takes() {
     assert_eq!(plan(0, 0, 3, Some(1)), "case 1 of 3, seed 1");
     let wrong_everywhere = Plan { cases: 0, solid_as_is: 4, modal_errors: 6, ..Plan::default() };
     assert_eq!(wrong_everywhere.to_string(), "4 solid-as-is cases, seed 1, and 6 modal-errors");
+    let lumped = Plan { cases: 0, channel_flaws: 3, load_paths: 2, unknown_physics: 1, ..Plan::default() };
+    assert_eq!(lumped.to_string(), "3 channel-flaws cases, seed 1, and 2 load-paths, and 1 unknown-physics");
 }
 
 /// An answer that names effects.
@@ -352,5 +356,93 @@ fn errors_of_every_mode_are_filed_with_the_truth_and_are_more_than_noise() {
         let wrong = error_of(&read.frfs(pairs, lines, Instrument::AsDescribed).unwrap());
         let without = error_of(&frfs(&truth.truth.fixture, pairs, lines, Instrument::AsDescribed).unwrap());
         assert!(wrong < 5e-3 && without > 5.0 * wrong, "{wrong:e} with the errors, {without:e} without");
+    }
+}
+
+/// Lumped cases of each route, answered by what is hidden and by other effects.
+fn lumped_scores(
+    (questions, truths): &(Questions, Opened),
+    others: &[Effect],
+    probability: f64,
+) -> Vec<RouteScore> {
+    let reply = |case: &Case| {
+        let position = questions.lumped.iter().position(|known| known == case).unwrap();
+        let truth = &truths.lumped[position];
+        let answer = naming(case, &[truth.effects(), others].concat(), probability);
+        // Where nothing has a name, what is handed back is the fixture at its true quantities.
+        let repaired =
+            if truth.role() == Role::Outside { truth.truth.fixture.clone() } else { answer.repaired };
+        Ok(Answer { repaired, ..answer })
+    };
+    let answers = Answers::by(&questions.lumped, 1, |_| (), reply);
+    let lumped = Judged::all(&questions.lumped, truths.lumped.clone(), &answers, 1, |_| ());
+    RouteScores::of(&JudgedRoutes { lumped, ..JudgedRoutes::default() }).0
+}
+
+fn lumped_plan() -> Plan {
+    let families = vec![Family::TwoBlocks, Family::SupportedTwoBlocks];
+    let (channel_flaws, load_paths, unknown_physics) = (8, 6, 8);
+    Plan { cases: 0, channel_flaws, load_paths, unknown_physics, seed: 2, families, ..Plan::default() }
+}
+
+#[test]
+fn flaws_and_load_paths_are_right_by_name_and_alone() {
+    let cases = drawn(&lumped_plan());
+    let kinds: BTreeSet<_> =
+        cases.1.lumped.iter().filter_map(|t| t.truth.outside.as_ref()).map(Outside::kind).collect();
+    assert_eq!(kinds.len(), Outside::UNLISTED.len(), "{kinds:?}");
+    let keys = |scores: &[RouteScore]| scores.iter().map(|score| score.key).collect::<Vec<_>>();
+    let perfect = lumped_scores(&cases, &[], 1.0);
+    assert_eq!(keys(&perfect), ["channel_flaws", "load_paths", "unknown_physics"]);
+    for score in &perfect[..2] {
+        let (alone, asked) = share(score, "single_alone");
+        assert!(alone == asked && asked > 0, "{}", score.key);
+        assert_eq!(share(score, "single_own"), (asked, asked));
+        assert_eq!((share(score, "untrue_claimed").0, share(score, "null_named").0), (0, 0));
+        assert_eq!(share(score, "sizes").0, share(score, "sizes").1);
+    }
+    // A gram that resonates at 500 Hz is nowhere here.
+    let values = [0.0, 1e-3, 500.0, 0.01];
+    let untrue = Effect::new(EffectKind::AttachedResonator, Place::Body("A".into()), None, &values);
+    let wrong = lumped_scores(&cases, &[untrue], 0.6);
+    for score in &wrong[..2] {
+        assert_eq!(share(score, "single_alone").0, 0, "{}", score.key);
+        assert_eq!(share(score, "null_named").0, share(score, "null_named").1);
+        let all = share(score, "untrue_likely").1;
+        assert_eq!((share(score, "untrue_likely"), share(score, "untrue_claimed").0), ((all, all), 0));
+    }
+}
+
+#[test]
+fn a_name_of_what_has_none_is_untrue_unless_it_fits_as_well() {
+    let cases = drawn(&Plan { channel_flaws: 0, load_paths: 0, ..lumped_plan() });
+    let values = [0.0, 1e-3, 7e3, 0.01];
+    let wrong = Effect::new(EffectKind::AttachedResonator, Place::Body("A".into()), None, &values);
+    let [score] = lumped_scores(&cases, &[wrong], 0.95).try_into().unwrap();
+    let (untrue, all) = share(&score, "untrue_claimed");
+    let imitated = share(&score, "imitated").0;
+    // Sizes run down to what nobody could see: there the true quantities alone fit as well.
+    assert_eq!((untrue + imitated, all), (8, 8));
+    assert!(untrue >= 4, "{untrue}");
+    let silent = lumped_scores(&cases, &[], 0.95);
+    assert_eq!(share(&silent[0], "untrue_likely").0, 0);
+}
+
+#[test]
+fn lumped_cases_of_their_own_routes_come_last_and_read_back_as_they_were_written() {
+    let without = Plan { cases: 2, modal_errors: 1, seed: 4, ..Plan::default() };
+    let with = Plan { channel_flaws: 2, load_paths: 2, unknown_physics: 4, ..without.clone() };
+    let ((before, _), (after, truths)) = (drawn(&without), drawn(&with));
+    assert_eq!((before.laboratory, before.modal_errors), (after.laboratory, after.modal_errors));
+    let numbers: Vec<usize> = truths.lumped.iter().map(|truth| truth.index()).collect();
+    assert_eq!(numbers, (3..11).collect::<Vec<_>>());
+    let (one, _) = drawn(&Plan { only: Some(6), ..with });
+    assert_eq!(one.lumped, after.lumped[3..4]);
+    for (case, truth) in after.lumped.iter().zip(&truths.lumped) {
+        let text = truth.to_value().to_string();
+        let read = LumpedTruth::from_value(&serde_json::from_str(&text).unwrap()).unwrap();
+        assert_eq!(read.to_value().to_string(), text);
+        assert_eq!(read.recorded, case.recorded.pairs());
+        assert_eq!(read.truth.unseen().unwrap(), truth.truth.unseen().unwrap());
     }
 }

@@ -99,11 +99,15 @@ fn the_smallest_effect_that_shows_costs_a_fit_without_it_what_was_stated() {
     let limits = Limits::of(&case.believed, &case.recorded).unwrap();
     let mut checked = 0;
     for shown in &limits.smallest {
-        // Kinds of one parameter: of the others the best abscissa or frequency is not told.
-        if shown.name.kind.spec().parameters.len() > 1 || shown.parameter == "factor − 1" {
-            continue;
-        }
-        let effect = Effect::new(shown.name.kind, shown.name.place.clone(), None, &[shown.shows]);
+        // Of the others the best abscissa or frequency is not told. Dashpots count as none, a sensor's damping ratio is the one that was tried.
+        let more: &[f64] = match shown.name.kind {
+            EffectKind::Footing => &[0.0],
+            EffectKind::ChannelResonance => &[0.03],
+            kind if kind.spec().parameters.len() > 1 || shown.parameter == "factor − 1" => continue,
+            _ => &[],
+        };
+        let values = [&[shown.shows], more].concat();
+        let effect = Effect::new(shown.name.kind, shown.name.place.clone(), shown.name.dof, &values);
         let with = truth.fixture.clone().with_physics(vec![effect]).unwrap();
         let (pairs, lines) = (case.recorded.pairs(), case.recorded.lines());
         let clean =
@@ -115,5 +119,23 @@ fn the_smallest_effect_that_shows_costs_a_fit_without_it_what_was_stated() {
         assert!((16.0..121.0).contains(&cost), "{}: Δχ² {cost}", shown.name);
         checked += 1;
     }
-    assert!(checked >= 10, "{checked}");
+    assert!(checked >= 20, "{checked}");
+}
+
+#[test]
+fn every_linear_kind_has_a_limit() {
+    let (cases, _) = opened(&plan(0));
+    let limits = Limits::of(&cases[1].believed, &cases[1].recorded).unwrap();
+    for kind in EffectKind::ALL.into_iter().filter(|kind| !kind.is_nonlinear()) {
+        let own: Vec<_> = limits.smallest.iter().filter(|shown| shown.name.kind == kind).collect();
+        assert!(!own.is_empty(), "{}", kind.name());
+        assert!(own.iter().all(|shown| shown.shows.is_finite() && shown.shows > 0.0), "{own:?}");
+    }
+    let force =
+        |shown: &&jointscope_proof::SmallestShown| shown.name.place == jointscope_fixture::Place::Force;
+    assert_eq!(
+        limits.smallest.iter().filter(force).count(),
+        4,
+        "gain, delay, high-pass and resonance of the hammer"
+    );
 }
