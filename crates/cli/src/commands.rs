@@ -4,6 +4,7 @@ mod compare;
 mod decompose;
 mod diagnose;
 mod estimate;
+mod export;
 mod fem;
 mod modes;
 mod prove;
@@ -35,6 +36,8 @@ enum Command {
     Diagnose(diagnose::DiagnoseArguments),
     /// Several decompositions side by side, and which joint is the stiffer: comparison.json and report.html.
     Compare(compare::CompareArguments),
+    /// The joint of a decomposition, or what a diagnosis found, as elements for Nastran, ANSYS, Abaqus or CalculiX, or as plain matrices.
+    Export(export::ExportArguments),
     /// FRFs of the fixture's finite-element twin, the assembly as a deformable solid.
     Fem(fem::FemArguments),
     /// Natural frequencies, damping ratios and mode shapes from FRFs, with their standard deviations: modes.json and report.html.
@@ -56,6 +59,7 @@ impl Program {
             Command::Decompose(arguments) => decompose::run(arguments),
             Command::Diagnose(arguments) => diagnose::run(arguments),
             Command::Compare(arguments) => compare::run(arguments),
+            Command::Export(arguments) => export::run(arguments),
             Command::Fem(arguments) => fem::run(arguments),
             Command::Modes(arguments) => modes::run(arguments),
             Command::Simulate(arguments) => simulate::run(arguments),

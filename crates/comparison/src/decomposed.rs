@@ -1,3 +1,5 @@
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Deserializer};
 use serde_json::Value;
 
 /// A 2×2 matrix, rows (force, moment), columns (displacement, rotation).
@@ -27,6 +29,54 @@ pub struct Line {
     pub damping: Matrix,
     /// Standard deviations of K and C from noise, where the recording had any.
     pub std: Option<(Matrix, Matrix)>,
+    /// Whether noise dominates it.
+    pub noisy: bool,
+}
+
+/// Where a joint's K and C act: on d = u_to − R·u_from over `length`.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+pub struct Ends {
+    /// L, m.
+    pub length: f64,
+    /// The near end.
+    pub from: End,
+    /// The far end.
+    pub to: End,
+}
+
+/// One end of a joint.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+pub struct End {
+    /// The point's name.
+    pub point: String,
+    /// Its body's name.
+    pub body: String,
+    /// Its abscissa, m.
+    pub x: f64,
+}
+
+/// The joint from all FRFs, the fixture's quantities moving within their deviations.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+pub struct FittedJoint {
+    /// K.
+    pub stiffness: Matrix,
+    /// C.
+    pub damping: Matrix,
+    /// Covariance of k11, k12, k22, c11, c12, c22.
+    pub covariance: [[f64; 6]; 6],
+    /// How it is damped, as far as the file says.
+    #[serde(default)]
+    pub law: Option<String>,
+}
+
+/// How an estimate may be used.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+pub struct Judged {
+    /// `sound`, `with_care` or `unusable`.
+    pub verdict: String,
+    /// χ² per degree of freedom of the fit, where a constant joint does not explain the FRFs.
+    #[serde(default)]
+    pub poor_fit: Option<f64>,
 }
 
 /// One joint, as `stiffness.json` tells it.
@@ -36,6 +86,8 @@ pub struct Decomposed {
     pub name: String,
     /// The joint's name in its fixture.
     pub joint: String,
+    /// Where it acts; files of earlier versions do not say.
+    pub ends: Option<Ends>,
     /// `exact` or `paper`: how lines and averages were found.
     pub relation: String,
     /// Lines that were solved, ascending.
@@ -46,6 +98,12 @@ pub struct Decomposed {
     pub average: Estimate,
     /// The maximum-likelihood joint, by the exact relation, where there is one.
     pub likelihood: Option<Estimate>,
+    /// Why there is none.
+    pub failed: Option<String>,
+    /// The joint with the fixture's quantities moving, where the file has it.
+    pub fitted: Option<FittedJoint>,
+    /// How the estimate may be used, where the file says it.
+    pub judgement: Option<Judged>,
 }
 
 /// What is missing from a `stiffness.json`: the place in it.
@@ -60,57 +118,134 @@ impl Decomposed {
     /// The first entry that is missing.
     pub fn of(name: impl Into<String>, file: &Value) -> Result<Self, DecomposedError> {
         let missing = |what: &str| DecomposedError(what.to_owned());
-        let text = |key: &str| file[key].as_str().map(str::to_owned).ok_or_else(|| missing(key));
         let lines = file["lines"].as_array().ok_or_else(|| missing("lines"))?;
-        let lines = lines
-            .iter()
-            .enumerate()
-            .map(|(i, value)| line(value).ok_or_else(|| missing(&format!("lines/{i}"))));
-        let lines = lines.collect::<Result<Vec<_>, _>>()?;
+        let lines = lines.iter().enumerate().map(|(i, entry)| {
+            let line: LineEntry = read(entry).ok_or_else(|| missing(&format!("lines/{i}")))?;
+            Ok(line.into())
+        });
+        let lines: Vec<Line> = lines.collect::<Result<_, _>>()?;
         if lines.windows(2).any(|pair| pair[0].frequency >= pair[1].frequency) {
             return Err(missing("lines: ascending frequencies"));
         }
-        let band = &file["average"]["band"];
-        let band = band[0].as_f64().zip(band[1].as_f64()).ok_or_else(|| missing("average/band"))?;
+        let band: BandEntry = read(&file["average"]).ok_or_else(|| missing("average/band"))?;
+        let average: EstimateEntry = read(&file["average"]).ok_or_else(|| missing("average"))?;
+        let (joint, fitted) = joint(file).ok_or_else(|| missing("joint"))?;
         Ok(Decomposed {
             name: name.into(),
-            joint: text("joint")?,
-            relation: text("relation")?,
+            joint,
+            ends: optional(file, "ends")?,
+            relation: read(&file["relation"]).ok_or_else(|| missing("relation"))?,
             lines,
-            band,
-            average: estimate(&file["average"]).ok_or_else(|| missing("average"))?,
-            likelihood: estimate(&file["maximum_likelihood"]),
+            band: band.band,
+            average: average.into(),
+            likelihood: read(&file["maximum_likelihood"]).map(EstimateEntry::into),
+            failed: read(&file["maximum_likelihood"]["failed"]),
+            fitted,
+            judgement: optional(file, "judgement")?,
         })
     }
 }
 
-fn matrix(value: &Value) -> Option<Matrix> {
-    let element = |i: usize, j: usize| value[i][j].as_f64().filter(|v| v.is_finite());
-    Some([[element(0, 0)?, element(0, 1)?], [element(1, 0)?, element(1, 1)?]])
+/// The joint's name, and the joint itself where the file has it: `joint` is either.
+fn joint(file: &Value) -> Option<(String, Option<FittedJoint>)> {
+    #[derive(Deserialize)]
+    #[serde(untagged)]
+    enum Entry {
+        Name(String),
+        Fitted {
+            #[serde(default)]
+            name: Option<String>,
+            #[serde(flatten)]
+            joint: FittedJoint,
+        },
+    }
+    match read(&file["joint"])? {
+        Entry::Name(name) => Some((name, None)),
+        Entry::Fitted { name, joint } => {
+            let name = name.or_else(|| read(&file["name"])).unwrap_or_else(|| "J".to_owned());
+            Some((name, Some(joint)))
+        }
+    }
 }
 
-fn line(value: &Value) -> Option<Line> {
-    let std = matrix(&value["std"]["stiffness"]).zip(matrix(&value["std"]["damping"]));
-    Some(Line {
-        frequency: value["frequency"].as_f64()?,
-        stiffness: matrix(&value["stiffness"])?,
-        damping: matrix(&value["damping"])?,
-        std,
-    })
+fn read<T: DeserializeOwned>(value: &Value) -> Option<T> {
+    T::deserialize(value).ok()
 }
 
-/// K and C with all their deviations in one: `std`, `std_fixture` and `std_model` are of independent causes.
-fn estimate(value: &Value) -> Option<Estimate> {
-    let together = |what: &str| -> Matrix {
-        let parts = ["std", "std_fixture", "std_model"].map(|key| matrix(&value[key][what]));
-        let element =
-            |i: usize, j: usize| parts.iter().flatten().map(|m| m[i][j].powi(2)).sum::<f64>().sqrt();
-        [[element(0, 0), element(0, 1)], [element(1, 0), element(1, 1)]]
-    };
-    Some(Estimate {
-        stiffness: matrix(&value["stiffness"])?,
-        damping: matrix(&value["damping"])?,
-        stiffness_std: together("stiffness"),
-        damping_std: together("damping"),
-    })
+/// An entry that may be left out, but not be wrong.
+fn optional<T: DeserializeOwned>(file: &Value, key: &str) -> Result<Option<T>, DecomposedError> {
+    match &file[key] {
+        Value::Null => Ok(None),
+        value => read(value).map(Some).ok_or_else(|| DecomposedError(key.to_owned())),
+    }
+}
+
+/// Deviations, left out where an element has none: what is not determined is `null`.
+fn where_determined<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Pair>, D::Error> {
+    Ok(read(&Value::deserialize(deserializer)?))
+}
+
+#[derive(Deserialize)]
+struct BandEntry {
+    band: (f64, f64),
+}
+
+#[derive(Clone, Copy, Deserialize)]
+struct Pair {
+    stiffness: Matrix,
+    damping: Matrix,
+}
+
+#[derive(Deserialize)]
+struct LineEntry {
+    frequency: f64,
+    #[serde(flatten)]
+    value: Pair,
+    #[serde(default, deserialize_with = "where_determined")]
+    std: Option<Pair>,
+    #[serde(default)]
+    noisy: bool,
+}
+
+impl From<LineEntry> for Line {
+    fn from(line: LineEntry) -> Self {
+        Line {
+            frequency: line.frequency,
+            stiffness: line.value.stiffness,
+            damping: line.value.damping,
+            std: line.std.map(|std| (std.stiffness, std.damping)),
+            noisy: line.noisy,
+        }
+    }
+}
+
+#[derive(Deserialize)]
+struct EstimateEntry {
+    #[serde(flatten)]
+    value: Pair,
+    #[serde(default, deserialize_with = "where_determined")]
+    std: Option<Pair>,
+    #[serde(default, deserialize_with = "where_determined")]
+    std_fixture: Option<Pair>,
+    #[serde(default, deserialize_with = "where_determined")]
+    std_model: Option<Pair>,
+}
+
+impl From<EstimateEntry> for Estimate {
+    /// K and C with all their deviations in one: `std`, `std_fixture` and `std_model` are of independent causes.
+    fn from(entry: EstimateEntry) -> Self {
+        let parts = [entry.std, entry.std_fixture, entry.std_model];
+        let together = |of: &dyn Fn(&Pair) -> Matrix| -> Matrix {
+            let element = |i: usize, j: usize| {
+                parts.iter().flatten().map(|part| of(part)[i][j].powi(2)).sum::<f64>().sqrt()
+            };
+            [[element(0, 0), element(0, 1)], [element(1, 0), element(1, 1)]]
+        };
+        Estimate {
+            stiffness: entry.value.stiffness,
+            damping: entry.value.damping,
+            stiffness_std: together(&|part| part.stiffness),
+            damping_std: together(&|part| part.damping),
+        }
+    }
 }

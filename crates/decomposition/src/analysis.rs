@@ -11,6 +11,7 @@ use jointscope_linalg::{ComplexMatrix2, Matrix2, RealMatrix2};
 use jointscope_lumped::{Model, Station};
 use jointscope_spectra::FrfSet;
 use num_complex::Complex64;
+use serde::Serialize;
 
 /// What to decompose and how.
 #[derive(Debug, Clone, PartialEq)]
@@ -31,11 +32,48 @@ impl Default for AnalysisOptions {
     }
 }
 
+/// Where a joint's K and C act: on d = u_to − R·u_from over `length`.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct JointEnds {
+    /// L, m.
+    pub length: f64,
+    /// The near end.
+    pub from: JointEnd,
+    /// The far end.
+    pub to: JointEnd,
+}
+
+/// One end of a joint.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct JointEnd {
+    /// The point's name.
+    pub point: String,
+    /// Its body's name.
+    pub body: String,
+    /// Its abscissa, m.
+    pub x: f64,
+}
+
+impl JointEnds {
+    fn of(sides: &Sides) -> Self {
+        let fixture = sides.fixture();
+        let end = |point: usize| {
+            let point = &fixture.points()[point];
+            let body = fixture.bodies()[point.body].name.clone();
+            JointEnd { point: point.name.clone(), body, x: point.x.value }
+        };
+        let joint = sides.joint();
+        JointEnds { length: sides.length(), from: end(joint.from), to: end(joint.to) }
+    }
+}
+
 /// A recording decomposed for a joint: everything that the file and the page say of it.
 #[derive(Debug, Clone)]
 pub struct Analysis {
     /// The joint's name.
     pub joint: String,
+    /// Where K and C act.
+    pub ends: JointEnds,
     /// The FRFs with the variances that were used.
     pub frfs: FrfSet,
     /// Where each FRF's variance came from.
@@ -109,6 +147,7 @@ impl Analysis {
         let nominal = predicted(&sides, &plan, &spectrum)?;
         let mut analysis = Analysis {
             joint,
+            ends: JointEnds::of(&sides),
             frfs,
             noise,
             plan,

@@ -63,7 +63,7 @@
 //!
 //! The parts are crates of their own, re-exported as modules for what this page leaves out: [`uff`], [`recordings`],
 //! [`fixture`], [`spectra`], [`frf`], [`hits`], [`estimation`], [`beam`], [`damping`], [`lumped`], [`modes`], [`averaging`],
-//! [`decomposition`], [`diagnosis`], [`nonlinear`], [`findings`], [`pipeline`], [`fem`], [`comparison`], [`tables`], [`proof`], [`report`].
+//! [`decomposition`], [`diagnosis`], [`nonlinear`], [`findings`], [`pipeline`], [`fem`], [`comparison`], [`export`], [`tables`], [`proof`], [`report`].
 
 pub use jointscope_averaging as averaging;
 pub use jointscope_beam as beam;
@@ -72,6 +72,7 @@ pub use jointscope_damping as damping;
 pub use jointscope_decomposition as decomposition;
 pub use jointscope_diagnosis as diagnosis;
 pub use jointscope_estimation as estimation;
+pub use jointscope_export as export;
 pub use jointscope_fem as fem;
 pub use jointscope_findings as findings;
 pub use jointscope_fixture as fixture;

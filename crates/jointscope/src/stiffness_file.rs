@@ -10,6 +10,7 @@ pub fn stiffness_file(analysis: &Analysis) -> Value {
     let mut root = Map::new();
     let spectrum = &analysis.spectrum;
     root.insert("joint".into(), json!(analysis.joint));
+    root.insert("ends".into(), json!(analysis.ends));
     root.insert("relation".into(), json!(spectrum.relation.name()));
     root.insert("lines".into(), spectrum.solved.iter().map(line).collect());
     let frequencies = spectrum.h41.lines.hz();

@@ -23,7 +23,7 @@ const FLOORS: [&[&str]; 12] = [
         "jointscope-nonlinear",
         "jointscope-screening",
     ],
-    &["jointscope-diagnosis", "jointscope-tables"],
+    &["jointscope-diagnosis", "jointscope-export", "jointscope-tables"],
     &["jointscope-wording"],
     &["jointscope-pipeline"],
     &["jointscope-proof"],

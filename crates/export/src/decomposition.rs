@@ -1,0 +1,157 @@
+//! The joint of a decomposition.
+
+use crate::joint::symmetric;
+use crate::numbering::Numbering;
+use crate::{Export, ExportError, ExportOptions, Joint, JointEnd, JointLine};
+use jointscope_comparison::{Decomposed, Ends, Matrix};
+
+/// A joint of a decomposition as an export: the joint with the fixture's quantities moving where the file has it, otherwise the maximum-likelihood one.
+///
+/// # Errors
+/// A file that does not say where its joint acts, an estimate judged unusable, numbers that cannot be.
+pub fn of_decomposition(decomposed: &Decomposed, options: &ExportOptions) -> Result<Export, ExportError> {
+    if let Some(name) = options.joint.as_ref().filter(|name| **name != decomposed.joint) {
+        return Err(ExportError::NoSuchJoint { name: name.clone(), known: decomposed.joint.clone() });
+    }
+    let ends = decomposed.ends.as_ref().ok_or(ExportError::NoEnds)?;
+    let mut notes = judged(decomposed, options.anyway)?;
+    let estimate = Estimate::best(decomposed)?;
+    let mut numbering = Numbering::from(options.first_id);
+    let mut joint = placed(decomposed, ends, estimate, options, &mut numbering)?;
+    if options.by_line {
+        joint.lines = lines(decomposed)?;
+        let noisy = decomposed.lines.len() - joint.lines.len();
+        if noisy > 0 {
+            notes.push(format!("{noisy} lines that noise dominates are left out of K and C by line"));
+        }
+    }
+    let (nodes, first_id) = numbering.finish();
+    Ok(Export {
+        title: format!("joint {} of a decomposition", decomposed.joint),
+        notes,
+        nodes,
+        joints: vec![joint],
+        parts: Vec::new(),
+        not_exported: Vec::new(),
+        first_id,
+    })
+}
+
+/// What is exported of several estimates.
+struct Estimate {
+    says: String,
+    stiffness: Matrix,
+    damping: Matrix,
+    std: Option<(Matrix, Matrix)>,
+    covariance: Option<crate::Covariance>,
+}
+
+impl Estimate {
+    fn best(decomposed: &Decomposed) -> Result<Self, ExportError> {
+        if let Some(fitted) = &decomposed.fitted {
+            let std = |i: usize| fitted.covariance[i][i].max(0.0).sqrt();
+            let matrix = |first: usize| [[std(first), std(first + 1)], [std(first + 1), std(first + 2)]];
+            let law = fitted.law.as_ref().map_or(String::new(), |law| format!(", damping law {law}"));
+            return Ok(Estimate {
+                says: format!(
+                    "the joint from all FRFs, the fixture's quantities moving within their deviations{law}"
+                ),
+                stiffness: symmetric(&fitted.stiffness),
+                damping: symmetric(&fitted.damping),
+                std: Some((matrix(0), matrix(3))),
+                covariance: Some(fitted.covariance),
+            });
+        }
+        let (says, estimate) = match &decomposed.likelihood {
+            Some(estimate) => ("the maximum-likelihood joint".to_owned(), estimate),
+            None if decomposed.relation == "paper" => return Err(ExportError::OnlyPaper),
+            None => {
+                let (from, to) = decomposed.band;
+                (format!("the plain average over {from} to {to} Hz"), &decomposed.average)
+            }
+        };
+        Ok(Estimate {
+            says,
+            stiffness: symmetric(&estimate.stiffness),
+            damping: symmetric(&estimate.damping),
+            std: Some((estimate.stiffness_std, estimate.damping_std)),
+            covariance: None,
+        })
+    }
+}
+
+/// Remarks on what the estimate is worth; refuses one that is of no use.
+fn judged(decomposed: &Decomposed, anyway: bool) -> Result<Vec<String>, ExportError> {
+    let Some(judgement) = &decomposed.judgement else { return Ok(Vec::new()) };
+    let why = match (judgement.poor_fit, &decomposed.failed) {
+        (_, Some(failed)) => failed.clone(),
+        (Some(chi2), None) => format!("a constant joint leaves chi2 per degree of freedom {chi2:.3}"),
+        (None, None) => "k11 is not determined, or fit and means exclude each other".to_owned(),
+    };
+    match judgement.verdict.as_str() {
+        "unusable" if !anyway => Err(ExportError::Unusable(why)),
+        "unusable" => Ok(vec![format!("THE JOINT IS JUDGED UNUSABLE: {why}")]),
+        "with_care" => {
+            let mut notes = vec!["use with care: the joint departs from the fixture, or the model does not explain the test in full".to_owned()];
+            if let Some(chi2) = judgement.poor_fit {
+                notes.push(format!("chi2 per degree of freedom of this constant joint: {chi2:.3}"));
+            }
+            Ok(notes)
+        }
+        _ => Ok(Vec::new()),
+    }
+}
+
+fn placed(
+    decomposed: &Decomposed,
+    ends: &Ends,
+    estimate: Estimate,
+    options: &ExportOptions,
+    numbering: &mut Numbering,
+) -> Result<Joint, ExportError> {
+    let mut end = |end: &jointscope_comparison::End, existing: Option<u64>| {
+        let says = format!("point {} of body {}", end.point, end.body);
+        let node = match existing {
+            Some(number) => numbering.existing(number, end.x, says)?,
+            None => numbering.point(&end.point, end.x, says),
+        };
+        Ok::<_, ExportError>(JointEnd { point: end.point.clone(), body: end.body.clone(), x: end.x, node })
+    };
+    let [[_, k12], [_, k22]] = estimate.stiffness;
+    let [[_, c12], [_, c22]] = estimate.damping;
+    Ok(Joint {
+        name: decomposed.joint.clone(),
+        says: estimate.says,
+        from: end(&ends.from, options.nodes.map(|nodes| nodes[0]))?,
+        to: end(&ends.to, options.nodes.map(|nodes| nodes[1]))?,
+        length: ends.length,
+        scalar: [k12, k22, c12, c22].iter().all(|element| *element == 0.0),
+        stiffness: estimate.stiffness,
+        damping: estimate.damping,
+        structural: [[0.0; 2]; 2],
+        mass: None,
+        std: estimate.std,
+        covariance: estimate.covariance,
+        lines: Vec::new(),
+    })
+}
+
+fn lines(decomposed: &Decomposed) -> Result<Vec<JointLine>, ExportError> {
+    if decomposed.relation != "exact" {
+        return Err(ExportError::PaperLines);
+    }
+    let lines: Vec<JointLine> = decomposed
+        .lines
+        .iter()
+        .filter(|line| !line.noisy)
+        .map(|line| JointLine {
+            frequency: line.frequency,
+            stiffness: symmetric(&line.stiffness),
+            damping: symmetric(&line.damping),
+        })
+        .collect();
+    match lines.len() {
+        0 | 1 => Err(ExportError::NoLines(format!("noise dominates all but {} of them", lines.len()))),
+        _ => Ok(lines),
+    }
+}

@@ -1,0 +1,253 @@
+//! The matrices of a joint: its elastic centre, its 4×4 form on both ends, what its uncertainty leaves of them.
+
+use jointscope_beam::{Matrix4, from_end_stiffness};
+use jointscope_comparison::Matrix;
+use jointscope_linalg::Matrix2;
+use serde::{Serialize, Serializer};
+
+/// Standard deviations beyond which two centres contradict each other, at 95 %.
+const QUANTILE: f64 = 1.96;
+/// Share of √(c11·c22) to which centres agree where nothing is known of their uncertainty.
+const ROUNDING: f64 = 1e-9;
+
+/// One end of a joint in the finite-element model.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct JointEnd {
+    /// The point's name in the fixture.
+    pub point: String,
+    /// The body's name.
+    pub body: String,
+    /// Abscissa, m.
+    pub x: f64,
+    /// Node number.
+    pub node: u64,
+}
+
+/// Covariance of k11, k12, k22, c11, c12, c22.
+pub type Covariance = [[f64; 6]; 6];
+
+/// A joint between two nodes: matrices on d = u_to − R·u_from, u = (y, θ), R = [[1, L], [0, 1]], at the far end, SI.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Joint {
+    /// Its name.
+    pub name: String,
+    /// What the matrices are.
+    pub says: String,
+    /// The near end.
+    pub from: JointEnd,
+    /// The far end.
+    pub to: JointEnd,
+    /// L, m.
+    pub length: f64,
+    /// Whether the bodies do not rotate: only the elements (1,1) mean anything.
+    pub scalar: bool,
+    /// K, N/m to N·m/rad.
+    pub stiffness: Matrix,
+    /// C, N·s/m to N·m·s/rad; all zero where there is none.
+    pub damping: Matrix,
+    /// Imaginary part of K that does not depend on frequency, N/m to N·m/rad; all zero where there is none.
+    pub structural: Matrix,
+    /// Mass on (y, θ) of both ends, kg to kg·m², where the joint has any.
+    pub mass: Option<Matrix4>,
+    /// Standard deviations of K and C, where they are known.
+    pub std: Option<(Matrix, Matrix)>,
+    /// Covariance, where it is known.
+    pub covariance: Option<Covariance>,
+    /// K and C by frequency, where they are asked for, ascending.
+    pub lines: Vec<JointLine>,
+}
+
+/// K and C at a frequency.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct JointLine {
+    /// Hz.
+    pub frequency: f64,
+    /// K.
+    pub stiffness: Matrix,
+    /// C.
+    pub damping: Matrix,
+}
+
+/// Where a force causes no rotation: there the matrix is diagonal.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct ElasticCentre {
+    /// Its place from the far end along x, m: k12/k11.
+    pub offset: f64,
+    /// k11, N/m.
+    pub translation: f64,
+    /// k22 − k12²/k11, N·m/rad.
+    pub rotation: f64,
+}
+
+impl ElasticCentre {
+    /// Of a symmetric 2×2 matrix; none where k11 is not positive.
+    pub fn of(matrix: &Matrix) -> Option<Self> {
+        let [[k11, k12], [_, k22]] = *matrix;
+        (k11 > 0.0).then(|| ElasticCentre {
+            offset: k12 / k11,
+            translation: k11,
+            rotation: k22 - k12 * k12 / k11,
+        })
+    }
+}
+
+/// A symmetric matrix on the relative motion at another place, `offset` from the far end along x.
+pub fn about(matrix: &Matrix, offset: f64) -> Matrix {
+    let [[k11, k12], [_, k22]] = *matrix;
+    let coupling = k12 - offset * k11;
+    [[k11, coupling], [coupling, k22 - 2.0 * offset * k12 + offset * offset * k11]]
+}
+
+/// `[−R, I]ᵀ m [−R, I]`: a matrix on (y, θ) of the near end, (y, θ) of the far end.
+pub fn both_ends(matrix: &Matrix, length: f64) -> Matrix4 {
+    let [[a, b], [c, d]] = *matrix;
+    let mut ends = from_end_stiffness(Matrix2::new(a, b, c, d), length);
+    // Summed in another order on both sides of the diagonal, the last digit may differ.
+    for i in 0..4 {
+        for j in 0..i {
+            ends[i][j] = ends[j][i];
+        }
+    }
+    ends
+}
+
+/// Whether every element is zero.
+pub fn is_zero(matrix: &Matrix) -> bool {
+    matrix.iter().flatten().all(|element| *element == 0.0)
+}
+
+/// Equal elements off the diagonal: their mean.
+pub fn symmetric(matrix: &Matrix) -> Matrix {
+    let [[a, b], [c, d]] = *matrix;
+    let mean = 0.5 * (b + c);
+    [[a, mean], [mean, d]]
+}
+
+/// How far the centre of C, or of the structural damping, is from that of K.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CentreAgreement {
+    /// c12 − (k12/k11)·c11: zero where both share their centre.
+    pub coupling: f64,
+    /// Its standard deviation, where it is known.
+    pub std: Option<f64>,
+    /// Whether they share it within their uncertainty.
+    pub agrees: bool,
+}
+
+impl Joint {
+    /// Elastic centre of K.
+    pub fn centre(&self) -> Option<ElasticCentre> {
+        ElasticCentre::of(&self.stiffness)
+    }
+
+    /// Abscissa of the elastic centre, m.
+    pub fn centre_x(&self) -> Option<f64> {
+        self.centre().map(|centre| self.to.x + centre.offset)
+    }
+
+    /// Standard deviation of the centre's offset, m, to first order.
+    pub fn centre_std(&self) -> Option<f64> {
+        let [[k11, k12], _] = self.stiffness;
+        let gradient = [-k12 / (k11 * k11), 1.0 / k11, 0.0, 0.0, 0.0, 0.0];
+        self.propagated(&gradient)
+    }
+
+    /// Whether C acts about the centre of K, within its uncertainty.
+    pub fn damping_centre(&self) -> Option<CentreAgreement> {
+        let centre = self.centre()?;
+        let [[k11, k12], _] = self.stiffness;
+        let [[c11, c12], [_, c22]] = self.damping;
+        let coupling = c12 - centre.offset * c11;
+        let gradient = [k12 / (k11 * k11) * c11, -c11 / k11, 0.0, -centre.offset, 1.0, 0.0];
+        let std = self.propagated(&gradient);
+        let rounding = ROUNDING * (c11.abs() * c22.abs()).sqrt().max(c12.abs());
+        let limit = std.map_or(0.0, |std| QUANTILE * std).max(rounding);
+        Some(CentreAgreement { coupling, std, agrees: coupling.abs() <= limit })
+    }
+
+    /// Whether the structural damping acts about the centre of K.
+    pub fn structural_shares_centre(&self) -> bool {
+        let Some(centre) = self.centre() else { return false };
+        let [[s11, s12], [_, s22]] = self.structural;
+        let scale = (s11.abs() * s22.abs()).sqrt().max(s12.abs());
+        (s12 - centre.offset * s11).abs() <= ROUNDING * scale
+    }
+
+    /// Standard deviation of a function of K and C with this gradient; without a covariance as if their errors were independent.
+    fn propagated(&self, gradient: &[f64; 6]) -> Option<f64> {
+        if let Some(covariance) = &self.covariance {
+            let product = |row: &[f64; 6]| row.iter().zip(gradient).map(|(c, g)| c * g).sum::<f64>();
+            let variance: f64 = covariance.iter().zip(gradient).map(|(row, g)| g * product(row)).sum();
+            return Some(variance.max(0.0).sqrt());
+        }
+        let (k, c) = self.std?;
+        let std = [k[0][0], k[0][1], k[1][1], c[0][0], c[0][1], c[1][1]];
+        Some(std.iter().zip(gradient).map(|(s, g)| (s * g).powi(2)).sum::<f64>().sqrt())
+    }
+}
+
+impl Serialize for Joint {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        #[derive(Serialize)]
+        struct Pair<M> {
+            stiffness: M,
+            damping: M,
+        }
+        #[derive(Serialize)]
+        struct BothEnds {
+            order: [&'static str; 4],
+            stiffness: Matrix4,
+            damping: Matrix4,
+            #[serde(skip_serializing_if = "Option::is_none")]
+            structural_damping: Option<Matrix4>,
+            #[serde(skip_serializing_if = "Option::is_none")]
+            mass: Option<Matrix4>,
+        }
+        #[derive(Serialize)]
+        struct Written<'a> {
+            name: &'a str,
+            says: &'a str,
+            from: &'a JointEnd,
+            to: &'a JointEnd,
+            length: f64,
+            rotates: bool,
+            stiffness: Matrix,
+            damping: Matrix,
+            #[serde(skip_serializing_if = "Option::is_none")]
+            structural_damping: Option<Matrix>,
+            #[serde(skip_serializing_if = "Option::is_none")]
+            std: Option<Pair<Matrix>>,
+            #[serde(skip_serializing_if = "Option::is_none")]
+            covariance: Option<&'a Covariance>,
+            #[serde(skip_serializing_if = "Option::is_none")]
+            elastic_centre: Option<ElasticCentre>,
+            both_ends: BothEnds,
+            #[serde(skip_serializing_if = "<[_]>::is_empty")]
+            lines: &'a [JointLine],
+        }
+        let structural = (!is_zero(&self.structural)).then_some(self.structural);
+        Written {
+            name: &self.name,
+            says: &self.says,
+            from: &self.from,
+            to: &self.to,
+            length: self.length,
+            rotates: !self.scalar,
+            stiffness: self.stiffness,
+            damping: self.damping,
+            structural_damping: structural,
+            std: self.std.map(|(stiffness, damping)| Pair { stiffness, damping }),
+            covariance: self.covariance.as_ref(),
+            elastic_centre: self.centre(),
+            both_ends: BothEnds {
+                order: ["y from", "theta from", "y to", "theta to"],
+                stiffness: both_ends(&self.stiffness, self.length),
+                damping: both_ends(&self.damping, self.length),
+                structural_damping: structural.map(|matrix| both_ends(&matrix, self.length)),
+                mass: self.mass,
+            },
+            lines: &self.lines,
+        }
+        .serialize(serializer)
+    }
+}

@@ -1,0 +1,69 @@
+//! Node numbers: points keep theirs where their names are numbers.
+
+use crate::{ExportError, Node};
+
+/// The largest number that every program reads.
+const LARGEST: u64 = 99_999_999;
+
+/// Numbers given so far.
+#[derive(Debug)]
+pub(crate) struct Numbering {
+    nodes: Vec<Node>,
+    next: u64,
+}
+
+impl Numbering {
+    /// None yet; what has no number of its own is numbered from `first`.
+    pub fn from(first: u64) -> Self {
+        Numbering { nodes: Vec::new(), next: first }
+    }
+
+    /// A node that the model has already.
+    pub fn existing(&mut self, number: u64, x: f64, says: String) -> Result<u64, ExportError> {
+        if number == 0 || number > LARGEST {
+            return Err(ExportError::NodeNumber(number));
+        }
+        if self.nodes.iter().any(|node| node.number == number) {
+            return Err(ExportError::NodeTwice(number));
+        }
+        self.nodes.push(Node { number, x, says, existing: true, only_y: false });
+        Ok(number)
+    }
+
+    /// The node of a point: its name, where that is a number that is free.
+    pub fn point(&mut self, name: &str, x: f64, says: String) -> u64 {
+        let own = name.parse().ok().filter(|number: &u64| (1..=LARGEST).contains(number));
+        let number = match own.filter(|number| self.is_free(*number)) {
+            Some(number) => number,
+            None => self.free(),
+        };
+        self.nodes.push(Node { number, x, says, existing: false, only_y: false });
+        number
+    }
+
+    /// A node that is no point.
+    pub fn added(&mut self, x: f64, says: String, only_y: bool) -> u64 {
+        let number = self.free();
+        self.nodes.push(Node { number, x, says, existing: false, only_y });
+        number
+    }
+
+    fn is_free(&self, number: u64) -> bool {
+        self.nodes.iter().all(|node| node.number != number)
+    }
+
+    fn free(&mut self) -> u64 {
+        while !self.is_free(self.next) {
+            self.next += 1;
+        }
+        self.next += 1;
+        self.next - 1
+    }
+
+    /// The nodes, ascending, and the first number that is free for everything else.
+    pub fn finish(mut self) -> (Vec<Node>, u64) {
+        let next = self.free();
+        self.nodes.sort_by_key(|node| node.number);
+        (self.nodes, next)
+    }
+}
