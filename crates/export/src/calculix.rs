@@ -28,7 +28,8 @@ pub(crate) fn body(export: &Export) -> Result<Body, ExportError> {
         notes: Vec::new(),
     };
     for node in export.nodes.iter().filter(|node| !node.existing) {
-        writer.nodes += &format!("{}, {}, 0., 0.\n", node.number, twenty(node.x));
+        let y = if node.only_y { "1." } else { "0." };
+        writer.nodes += &format!("{}, {}, {y}, 0.\n", node.number, twenty(node.x));
     }
     for joint in &export.joints {
         writer.joint(joint)?;
@@ -43,6 +44,17 @@ pub(crate) fn body(export: &Export) -> Result<Body, ExportError> {
         writer.notes.push(format!(
             "node {rotation} holds the rotation at node {node} in its third translation: make it the ROT NODE of the *RIGID BODY that node {node} belongs to"
         ));
+    }
+    if export.nodes.iter().any(|node| node.only_y) {
+        writer.notes.push(
+            "a resonator's mass stands 1 m along y from its foot, which gives its spring its direction"
+                .to_owned(),
+        );
+    }
+    if writer.rest.contains("*EQUATION") {
+        writer.notes.push(
+            "include this file after every *RIGID BODY, since CalculiX 2.20 takes equations that come before them wrongly; define the nodes of this file that they need before them too (twice does no harm), and keep node sets of rigid bodies ascending".to_owned(),
+        );
     }
     let nodes = if writer.nodes.is_empty() { String::new() } else { format!("*NODE\n{}", writer.nodes) };
     Ok(Body { text: nodes + &writer.rest, notes: writer.notes })
@@ -128,12 +140,14 @@ impl Writer {
                 self.to_ground("DASHPOT", vec![motion], damping);
             }
             Element::Spring { from, to, stiffness, damping } => {
-                // A massless motion at a mass alone would leave nothing to eliminate it by.
-                let added = |node: &u64| export.nodes.iter().any(|n| n.number == *node && n.only_y);
-                let (one, other) = if added(&to) { (from, to) } else { (to, from) };
-                let motion = vec![(other, 2, 1.0), (one, 2, -1.0)];
-                self.to_ground("SPRING", motion.clone(), stiffness);
-                self.to_ground("DASHPOT", motion, damping);
+                let added = |node: u64| export.nodes.iter().any(|n| n.number == node && n.only_y);
+                for (name, value) in [("SPRING", stiffness), ("DASHPOT", damping)] {
+                    match added(from) || added(to) {
+                        // Its mass lies along y, so the element does.
+                        true => self.between(name, from, to, value),
+                        false => self.to_ground(name, vec![(to, 2, 1.0), (from, 2, -1.0)], value),
+                    }
+                }
             }
         }
     }
@@ -143,7 +157,7 @@ impl Writer {
         if value == 0.0 {
             return;
         }
-        let (moving, fixed, number) = (self.next(), self.next(), self.next());
+        let (moving, fixed) = (self.next(), self.next());
         self.nodes += &format!("{moving}, 0., 0., 0.\n{fixed}, 1., 0., 0.\n");
         let mut terms = vec![(moving, 1, 1.0)];
         terms.extend(motion.iter().map(|(node, dof, coefficient)| (*node, *dof, -coefficient)));
@@ -154,8 +168,17 @@ impl Writer {
             self.rest += &format!("{}\n", line.join(", "));
         }
         self.rest += &format!("*BOUNDARY\n{moving}, 2, 3\n{fixed}, 1, 3\n");
+        self.between(element, moving, fixed, value);
+    }
+
+    /// A spring or dashpot along the line between two nodes.
+    fn between(&mut self, element: &str, one: u64, other: u64, value: f64) {
+        if value == 0.0 {
+            return;
+        }
+        let number = self.next();
         self.rest += &format!(
-            "*ELEMENT, TYPE={element}A, ELSET=JS_{number}\n{number}, {moving}, {fixed}\n*{element}, ELSET=JS_{number}\n{}\n",
+            "*ELEMENT, TYPE={element}A, ELSET=JS_{number}\n{number}, {one}, {other}\n*{element}, ELSET=JS_{number}\n{}\n",
             twenty(value)
         );
     }

@@ -9,8 +9,8 @@ const WIDTH: usize = 100;
 
 /// A file's comment: every line behind `mark`, in ASCII.
 pub(crate) fn comment(mark: &str, export: &Export, made: &[String], notes: &[String]) -> String {
-    let mut lines = vec![export.title.clone()];
-    lines.extend(made.iter().cloned());
+    let mut lines = Vec::new();
+
     lines.push(
         "SI units: m, kg, s, N, rad; stiffness N/m, N/rad, N*m/m, N*m/rad; damping the same times s"
             .to_owned(),
@@ -30,7 +30,9 @@ pub(crate) fn comment(mark: &str, export: &Export, made: &[String], notes: &[Str
     lines.extend(
         export.not_exported.iter().map(|omitted| format!("not exported: {}; {}", omitted.what, omitted.why)),
     );
-    lines.iter().map(|line| wrapped(mark, &ascii(line))).collect()
+    // Hashes and commands are copied from here, so they stay on one line.
+    let origin = std::iter::once(&export.title).chain(made).map(|line| format!("{mark}{}\n", ascii(line)));
+    origin.chain(lines.iter().map(|line| wrapped(mark, &ascii(line)))).collect()
 }
 
 /// A joint's matrices and their uncertainty.
