@@ -84,7 +84,8 @@ mod tests {
             prop_assert!(text.len() <= 16 && text.contains('.'));
             // 1.5-3 is 1.5e-3.
             let at = text.rfind(['+', '-']).unwrap();
-            prop_assert!(close(format!("{}e{}", &text[..at], &text[at..]).parse().unwrap(), 1e-9));
+            let read: f64 = format!("{}e{}", &text[..at], &text[at..]).parse().unwrap();
+            prop_assert!(close(read, 1e-9), "{text} for {value}");
             let text = nastran_double(value);
             prop_assert!(text.len() <= 16 && close(text.replace('D', "e").parse().unwrap(), 1e-9));
             let text = twenty(value);

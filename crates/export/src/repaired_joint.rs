@@ -13,7 +13,7 @@ use std::f64::consts::TAU;
 /// Where a joint does not depend on frequency: its derivative with respect to s is read here, rad/s, without cancellation since it is imaginary.
 const NEAR_ZERO: f64 = 1e-6;
 /// Share of the stiffness that inertia makes where the mass is read.
-const INERTIA: f64 = 1e-4;
+const INERTIA: f64 = 1e-2;
 
 /// A joint's constant matrices.
 pub(crate) struct Matrices {

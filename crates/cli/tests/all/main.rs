@@ -7,6 +7,7 @@ mod compare;
 mod decompose;
 mod diagnose;
 mod estimate;
+mod export;
 mod fem;
 mod hits;
 mod levels;

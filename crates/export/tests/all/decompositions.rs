@@ -1,0 +1,90 @@
+//! Which joint of a decomposition is exported, between which nodes, and what is refused.
+
+use crate::common::{LENGTH, beam, exported, file};
+use jointscope_export::{ElasticCentre, ExportError, ExportOptions};
+use serde_json::{Value, json};
+
+fn plain() -> Value {
+    file(beam(76.0, LENGTH), [[30.0, -0.9], [-0.9, 0.1]])
+}
+
+#[test]
+fn the_elastic_centre_of_a_beam_is_its_middle_with_the_textbook_stiffnesses() {
+    let centre = ElasticCentre::of(&beam(76.0, LENGTH)).unwrap();
+    assert!((centre.offset + LENGTH / 2.0).abs() < 1e-15);
+    assert!((centre.translation / (12.0 * 76.0 / LENGTH.powi(3)) - 1.0).abs() < 1e-14);
+    assert!((centre.rotation / (76.0 / LENGTH) - 1.0).abs() < 1e-12);
+    assert_eq!(ElasticCentre::of(&[[0.0, 0.0], [0.0, 5.0]]), None);
+}
+
+#[test]
+fn the_uncertainty_of_the_centre_follows_from_that_of_the_stiffness() {
+    let export = exported(&plain(), &ExportOptions::default()).unwrap();
+    let joint = &export.joints[0];
+    let [[k11, k12], _] = joint.stiffness;
+    let expected = ((1e4 * k12 / (k11 * k11)).powi(2) + (3e2 / k11).powi(2)).sqrt();
+    assert!((joint.centre_std().unwrap() / expected - 1.0).abs() < 1e-12);
+}
+
+#[test]
+fn the_joint_with_moving_quantities_is_preferred_and_brings_its_covariance() {
+    let mut file = plain();
+    let mut covariance = [[0.0; 6]; 6];
+    (0..6).for_each(|i| covariance[i][i] = 4.0);
+    (covariance[0][1], covariance[1][0]) = (1.0, 1.0);
+    file["joint"] = json!({"name": "J", "stiffness": [[2e6, -5e4], [-5e4, 2e3]], "damping": [[1.0, 0.0], [0.0, 1.0]], "covariance": covariance});
+    let export = exported(&file, &ExportOptions::default()).unwrap();
+    let joint = &export.joints[0];
+    assert_eq!((joint.name.as_str(), joint.stiffness[0][0]), ("J", 2e6));
+    assert_eq!((joint.covariance, joint.std.unwrap().0[0][0]), (Some(covariance), 2.0));
+    // Correlated errors: g² + h² at variance 4 and twice g·h at covariance 1.
+    let (g, h): (f64, f64) = (5e4 / 4e12, 1.0 / 2e6);
+    let expected = (4.0 * (g * g + h * h) + 2.0 * g * h).sqrt();
+    assert!((joint.centre_std().unwrap() / expected - 1.0).abs() < 1e-12);
+}
+
+#[test]
+fn nodes_of_the_model_are_taken_and_points_keep_their_numbers_otherwise() {
+    let numbers = |options: &ExportOptions| {
+        let export = exported(&plain(), options).unwrap();
+        export.nodes.iter().map(|node| (node.number, node.existing)).collect::<Vec<_>>()
+    };
+    assert_eq!(numbers(&ExportOptions::default()), [(2, false), (3, false)]);
+    let options = ExportOptions { nodes: Some([505, 101]), ..ExportOptions::default() };
+    assert_eq!(numbers(&options), [(101, true), (505, true)]);
+    let mut named = plain();
+    named["ends"]["to"]["point"] = json!("end");
+    let export = exported(&named, &ExportOptions::default()).unwrap();
+    assert_eq!(export.joints[0].to.node, 900_001, "a name that is no number");
+    let twice = ExportOptions { nodes: Some([7, 7]), ..ExportOptions::default() };
+    assert_eq!(exported(&plain(), &twice), Err(ExportError::NodeTwice(7)));
+    let nought = ExportOptions { nodes: Some([0, 7]), ..ExportOptions::default() };
+    assert_eq!(exported(&plain(), &nought), Err(ExportError::NodeNumber(0)));
+}
+
+#[test]
+fn an_unusable_joint_is_refused_unless_it_is_wanted_anyway() {
+    let mut file = plain();
+    file["judgement"] = json!({"verdict": "unusable", "poor_fit": 80.0});
+    let error = exported(&file, &ExportOptions::default()).unwrap_err();
+    assert!(error.to_string().contains("80") && error.to_string().contains("--anyway"), "{error}");
+    let anyway = ExportOptions { anyway: true, ..ExportOptions::default() };
+    assert!(exported(&file, &anyway).unwrap().notes[0].contains("UNUSABLE"));
+    file["judgement"] = json!({"verdict": "with_care"});
+    assert!(exported(&file, &ExportOptions::default()).unwrap().notes[0].contains("with care"));
+}
+
+#[test]
+fn what_a_file_does_not_say_is_refused() {
+    let mut file = plain();
+    file.as_object_mut().unwrap().remove("ends");
+    assert_eq!(exported(&file, &ExportOptions::default()), Err(ExportError::NoEnds));
+    let mut paper = plain();
+    paper["relation"] = json!("paper");
+    let by_line = ExportOptions { by_line: true, ..ExportOptions::default() };
+    assert_eq!(exported(&paper, &by_line), Err(ExportError::PaperLines));
+    paper["maximum_likelihood"] = json!({"failed": "singular"});
+    assert_eq!(exported(&paper, &ExportOptions::default()), Err(ExportError::OnlyPaper));
+    let other = ExportOptions { joint: Some("K".into()), ..ExportOptions::default() };
+    assert!(matches!(exported(&plain(), &other), Err(ExportError::NoSuchJoint { .. })));
+}

@@ -1,0 +1,8 @@
+//! The tests of this crate's public functions, in one program: linking is what costs time.
+#![allow(clippy::panic, clippy::unwrap_used)] // helpers of tests fail as tests do
+
+mod common;
+mod decompositions;
+mod diagnoses;
+mod formats;
+mod readers;
