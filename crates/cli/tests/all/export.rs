@@ -24,7 +24,10 @@ fn a_decomposition_is_written_for_every_program_with_its_origin_and_alike_each_t
     let bench = decomposed("export-all");
     for (program, file) in PROGRAMS {
         let summary = bench.done(&["export", "answer", "--to", program, "-o", program]);
-        assert!(summary.contains("joint J between nodes 2 and 3") && summary.trim_end().ends_with(file), "{summary}");
+        assert!(
+            summary.contains("joint J between nodes 2 and 3") && summary.trim_end().ends_with(file),
+            "{summary}"
+        );
         let first = bench.text(&format!("{program}/{file}"));
         assert!(first.contains("answer/stiffness.json"), "{first}");
         assert!(first.contains(&format!("jointscope export answer --to {program} -o {program}")));

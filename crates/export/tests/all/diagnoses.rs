@@ -1,7 +1,8 @@
 //! What of a repaired fixture is exported.
 
 use crate::common::{beam, same};
-use jointscope_export::{Element, Export, ExportError, ExportOptions, of_diagnosis};
+use crate::readers;
+use jointscope_export::{Element, Export, ExportError, ExportOptions, Form, Program, of_diagnosis, write};
 use jointscope_fixture::{Dof, Fixture};
 use serde_json::{Value, json};
 
@@ -172,4 +173,90 @@ fn an_unexplained_diagnosis_is_refused_unless_it_is_wanted_anyway() {
     assert!(of_diagnosis(&unexplained, &fixture, &anyway).is_ok());
     let broken = of_diagnosis(&json!({"findings": []}), &fixture, &anyway);
     assert!(matches!(broken, Err(ExportError::Diagnosis(_))));
+}
+
+#[test]
+fn of_several_joints_one_is_chosen_for_node_numbers_and_the_others_are_told() {
+    let chain = Fixture::from_json(
+        r#"{ "bodies": { "A": { "mass": 1, "rotates": false }, "B": { "mass": 1, "rotates": false }, "C": { "mass": 1, "rotates": false } },
+          "points": { "1": { "body": "A", "x": 0 }, "2": { "body": "B", "x": 0.1 }, "3": { "body": "C", "x": 0.2 } },
+          "joints": { "J": { "from": "1", "to": "2", "stiffness": [[1e6, 0], [0, 0]] }, "K": { "from": "2", "to": "3", "stiffness": [[2e6, 0], [0, 0]] } } }"#,
+    )
+    .unwrap();
+    let with = |joint: Option<&str>, nodes| ExportOptions {
+        joint: joint.map(str::to_owned),
+        nodes,
+        ..ExportOptions::default()
+    };
+    let export = |options| of_diagnosis(&diagnosis(json!([])), &chain, &options);
+    assert_eq!(export(with(None, None)).unwrap().joints.len(), 2);
+    assert!(matches!(export(with(None, Some([7, 8]))), Err(ExportError::WhichJoint { .. })));
+    assert!(matches!(export(with(Some("L"), None)), Err(ExportError::NoSuchJoint { .. })));
+    let one = export(with(Some("K"), Some([7, 8]))).unwrap();
+    assert_eq!((one.joints[0].from.node, one.joints[0].to.node, one.joints[0].scalar), (7, 8, true));
+    assert!(one.not_exported[0].what.contains("joint J"));
+}
+
+/// The fields of the first entry or line that begins so, without blanks.
+fn fields(text: &str, beginning: &str) -> Vec<String> {
+    let at = text.find(&format!("\n{beginning}")).unwrap_or_else(|| panic!("no {beginning} in\n{text}"));
+    text[at..]
+        .lines()
+        .skip(1)
+        .take(3)
+        .flat_map(|l| l.split([',', ' ']))
+        .filter(|w| !w.is_empty())
+        .map(str::to_owned)
+        .collect()
+}
+
+#[test]
+fn parts_are_masses_springs_and_dashpots_of_every_program() {
+    let export = exported(
+        r#"{"kind": "added_mass", "place": "B", "x": 0.1, "mass": 0.05}, {"kind": "support", "place": "A", "x": -0.05, "stiffness": 2000, "damping": 4}"#,
+    );
+    let text = |program| write(&export, program, None, &[]).unwrap();
+    let nastran = text(Program::Nastran);
+    assert_eq!(fields(&nastran, "CONM2*")[2..5], ["900001", "0", "5.000000000000-2"]);
+    assert_eq!(fields(&nastran, "CELAS2*")[2..5], ["2.000000000000+3", "1", "2"]);
+    assert_eq!(fields(&nastran, "CDAMP2*")[2..5], ["4.000000000000+0", "1", "2"]);
+    let ansys = text(Program::Ansys);
+    let mass = &ansys[ansys.find("ET,JS_ET,MASS21").unwrap()..];
+    assert!(
+        mass.contains("KEYOPT,JS_ET,3,2\n")
+            && mass.contains("R,JS_R,5.0E-2\n")
+            && mass.contains("\nE,900001\n")
+    );
+    let spring = &ansys[ansys.find("ET,JS_ET,COMBIN14").unwrap()..];
+    assert!(
+        spring.contains("KEYOPT,JS_ET,2,2\n")
+            && spring.contains("R,JS_R,2.0E3,4.0E0\n")
+            && spring.contains("\nE,1,900002\n")
+    );
+    assert!(ansys.contains("D,900002,ALL,0"), "the spring leads to a fixed node");
+    let abaqus = text(Program::Abaqus);
+    assert!(
+        abaqus.contains("TYPE=MASS") && abaqus.contains("TYPE=SPRING1") && abaqus.contains("TYPE=DASHPOT1")
+    );
+    assert!(abaqus.contains("\n2\n2.000000000000000E+3\n") && abaqus.contains("\n2\n4.000000000000000E+0\n"));
+}
+
+#[test]
+fn a_loss_factor_is_the_same_in_a_bush_and_in_dmig_and_told_where_it_cannot_be_written() {
+    let export = exported(r#"{"kind": "loss_factor", "place": "J", "loss_factor": 0.04}"#);
+    let entries = readers::entries(&write(&export, Program::Nastran, None, &[]).unwrap());
+    let bush = &entries.iter().find(|(name, _)| name == "PBUSH").unwrap().1;
+    let row = bush.chunks(8).find(|row| row[1] == "GE").unwrap();
+    assert!(row[2..].iter().all(|field| !field.is_empty()), "a blank would count otherwise");
+    assert!((readers::real(&row[3]) - 0.04).abs() < 1e-12 && (readers::real(&row[7]) - 0.04).abs() < 1e-9);
+    let dmig = write(&export, Program::Nastran, Some(Form::Dmig), &[]).unwrap();
+    let [stiffness, loss] = ["KJOINT", "SJOINT"].map(|name| readers::nastran_dmig(&dmig, name));
+    same(&loss, &stiffness.map(|row| row.map(|e| 0.04 * e)), 1e-9);
+    assert!(dmig.contains("K42GG = SJOINT"));
+    for program in [Program::Ansys, Program::Abaqus, Program::Calculix] {
+        let text = write(&export, program, None, &[]).unwrap();
+        assert!(text.contains("structural damping is not written"), "{program}");
+    }
+    let matrix = readers::abaqus_matrix(&write(&export, Program::Abaqus, Some(Form::Matrix), &[]).unwrap());
+    same(&matrix["STRUCTURAL DAMPING"], &loss, 1e-9);
 }
