@@ -148,24 +148,13 @@ impl Decomposed {
 
 /// The joint's name, and the joint itself where the file has it: `joint` is either.
 fn joint(file: &Value) -> Option<(String, Option<FittedJoint>)> {
-    #[derive(Deserialize)]
-    #[serde(untagged)]
-    enum Entry {
-        Name(String),
-        Fitted {
-            #[serde(default)]
-            name: Option<String>,
-            #[serde(flatten)]
-            joint: FittedJoint,
-        },
+    let joint = &file["joint"];
+    if let Some(name) = joint.as_str() {
+        return Some((name.to_owned(), None));
     }
-    match read(&file["joint"])? {
-        Entry::Name(name) => Some((name, None)),
-        Entry::Fitted { name, joint } => {
-            let name = name.or_else(|| read(&file["name"])).unwrap_or_else(|| "J".to_owned());
-            Some((name, Some(joint)))
-        }
-    }
+    let fitted: FittedJoint = read(joint)?;
+    let name = read(&joint["name"]).or_else(|| read(&file["name"])).unwrap_or_else(|| "J".to_owned());
+    Some((name, Some(fitted)))
 }
 
 fn read<T: DeserializeOwned>(value: &Value) -> Option<T> {

@@ -79,7 +79,7 @@ impl Writer {
         for (element, matrix) in [("SPRING", &joint.stiffness), ("DASHPOT", &joint.damping)] {
             for (direction, value) in terms(joint, element, matrix)? {
                 let motion = self.relative(joint, direction);
-                self.to_ground(element, motion, value);
+                self.grounded(element, motion, value);
             }
         }
         for (what, there) in
@@ -136,8 +136,8 @@ impl Writer {
                     Dof::Translation => (node, 2, 1.0),
                     Dof::Rotation => (self.rotation(node), 3, 1.0),
                 };
-                self.to_ground("SPRING", vec![motion], stiffness);
-                self.to_ground("DASHPOT", vec![motion], damping);
+                self.grounded("SPRING", vec![motion], stiffness);
+                self.grounded("DASHPOT", vec![motion], damping);
             }
             Element::Spring { from, to, stiffness, damping } => {
                 let added = |node: u64| export.nodes.iter().any(|n| n.number == node && n.only_y);
@@ -145,7 +145,7 @@ impl Writer {
                     match added(from) || added(to) {
                         // Its mass lies along y, so the element does.
                         true => self.between(name, from, to, value),
-                        false => self.to_ground(name, vec![(to, 2, 1.0), (from, 2, -1.0)], value),
+                        false => self.grounded(name, vec![(to, 2, 1.0), (from, 2, -1.0)], value),
                     }
                 }
             }
@@ -153,7 +153,7 @@ impl Writer {
     }
 
     /// A spring or dashpot on a motion: an added node makes the motion along x, the element leads on to a fixed one.
-    fn to_ground(&mut self, element: &str, motion: Terms, value: f64) {
+    fn grounded(&mut self, element: &str, motion: Terms, value: f64) {
         if value == 0.0 {
             return;
         }

@@ -197,29 +197,19 @@ fn of_several_joints_one_is_chosen_for_node_numbers_and_the_others_are_told() {
     assert!(one.not_exported[0].what.contains("joint J"));
 }
 
-/// The fields of the first entry or line that begins so, without blanks.
-fn fields(text: &str, beginning: &str) -> Vec<String> {
-    let at = text.find(&format!("\n{beginning}")).unwrap_or_else(|| panic!("no {beginning} in\n{text}"));
-    text[at..]
-        .lines()
-        .skip(1)
-        .take(3)
-        .flat_map(|l| l.split([',', ' ']))
-        .filter(|w| !w.is_empty())
-        .map(str::to_owned)
-        .collect()
-}
-
 #[test]
 fn parts_are_masses_springs_and_dashpots_of_every_program() {
     let export = exported(
         r#"{"kind": "added_mass", "place": "B", "x": 0.1, "mass": 0.05}, {"kind": "support", "place": "A", "x": -0.05, "stiffness": 2000, "damping": 4}"#,
     );
     let text = |program| write(&export, program, None, &[]).unwrap();
-    let nastran = text(Program::Nastran);
-    assert_eq!(fields(&nastran, "CONM2*")[2..5], ["900001", "0", "5.000000000000-2"]);
-    assert_eq!(fields(&nastran, "CELAS2*")[2..5], ["2.000000000000+3", "1", "2"]);
-    assert_eq!(fields(&nastran, "CDAMP2*")[2..5], ["4.000000000000+0", "1", "2"]);
+    let entries = readers::entries(&text(Program::Nastran));
+    let fields = |name: &str| &entries.iter().find(|(entry, _)| entry == name).unwrap().1;
+    assert_eq!((fields("CONM2")[1].as_str(), readers::real(&fields("CONM2")[3])), ("900001", 0.05));
+    for (name, value) in [("CELAS2", 2000.0), ("CDAMP2", 4.0)] {
+        let [_, size, node, dof, to, ..] = fields(name).as_slice() else { panic!("{name}") };
+        assert_eq!((readers::real(size), node.as_str(), dof.as_str(), to.as_str()), (value, "1", "2", ""));
+    }
     let ansys = text(Program::Ansys);
     let mass = &ansys[ansys.find("ET,JS_ET,MASS21").unwrap()..];
     assert!(
