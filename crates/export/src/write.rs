@@ -86,7 +86,7 @@ pub(crate) struct Body {
     pub notes: Vec<String>,
 }
 
-/// The text of a file for a program, with what it was `made` of in its header; [`json`] writes JSON.
+/// The text of a file for a program, with what it was `made` of in its header; [`json()`] writes JSON.
 ///
 /// # Errors
 /// A form that the program does not have, matrices that it cannot hold.
