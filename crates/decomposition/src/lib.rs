@@ -15,6 +15,7 @@
 //! * [`Analysis`]: all of it for one recording, with what the fixture's tolerances add;
 //! * [`Averages`]: means over a band, plain (eq 35, 42) and weighted;
 //! * [`maximum_likelihood`]: symmetric, passive k and c straight from the FRFs;
+//! * [`fit_joint`]: the same from every FRF, the fixture's quantities moving within their tolerances; tests of the joint, laws over frequency;
 //! * [`interfaces`]: what the joint's ends add to its beam (eq 6, scalar and matrix form).
 //!
 //! ```
@@ -38,6 +39,7 @@ mod analysis;
 mod averages;
 mod estimate;
 mod interfaces;
+mod joint_fit;
 mod judgement;
 mod likelihood;
 mod plan;
@@ -50,6 +52,9 @@ pub use analysis::{Analysis, AnalysisOptions, JointEnd, JointEnds};
 pub use averages::{Averages, MatrixAverage};
 pub use estimate::{Element, Estimate, Figure, Method, Part};
 pub use interfaces::{Compliance, InterfaceStiffness, Interfaces, interfaces};
+pub use joint_fit::{
+    Admissible, FittedQuantity, JointFit, JointFitOptions, JointTests, LawFit, LawKind, fit_joint,
+};
 pub use judgement::{Contradiction, Judgement, Use};
 pub use likelihood::{LikelihoodFit, maximum_likelihood};
 pub use plan::{MeasurementPlan, PlanError};

@@ -149,6 +149,21 @@ impl Sides {
         })
     }
 
+    /// Side α (or β) as a fixture of its own.
+    pub(crate) fn side(&self, alpha: bool) -> &Fixture {
+        if alpha { &self.alpha } else { &self.beta }
+    }
+
+    /// A station of the whole fixture as one of the side that its body belongs to.
+    pub(crate) fn on_its_side(&self, station: Station) -> Station {
+        Station { body: self.index_on_side(station.body), ..station }
+    }
+
+    /// Place of the joint among the whole fixture's.
+    pub(crate) fn joint_index(&self) -> usize {
+        self.joint
+    }
+
     /// Index of a body within its side.
     fn index_on_side(&self, body: usize) -> usize {
         (0..body).filter(|&other| self.on_alpha[other] == self.on_alpha[body]).count()

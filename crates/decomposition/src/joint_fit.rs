@@ -1,0 +1,412 @@
+//! The joint from all FRFs at once, the fixture's quantities moving within their tolerances.
+//!
+//! [`maximum_likelihood`](crate::maximum_likelihood) fits k and c to the FRFs across the joint with the fixture taken as exact; what its tolerances do is added afterwards.
+//! But the other FRFs weigh the blocks, so to say: a mass that is 0.2 % off shifts every resonance. Here the maximum of the posterior is
+//! sought over k, c and every uncertain quantity of the fixture, each with its own standard deviation as prior, from all FRFs whose channels the fixture
+//! has; the fixture's quantities are then integrated out of the covariance. Each side is modelled as for the decomposition: with its own supports, masses and
+//! mass-proportional damping, all other losses being the joint's.
+
+mod admissible;
+mod law;
+mod laws;
+mod problem;
+mod quantities;
+mod recorded;
+mod uncoupled;
+
+pub use admissible::{Admissible, JointTests};
+pub use law::LawKind;
+pub use laws::LawFit;
+
+use crate::{DecompositionError, LikelihoodFit, Sides};
+use jointscope_averaging::Band;
+use jointscope_inference::{Covariance, Parameter, Transform, autocorrelation, jackknife, variance_inflation};
+use jointscope_linalg::{Matrix2, RealMatrix2};
+use jointscope_spectra::{FrfPair, FrfSet};
+use law::{Dynamics, Form};
+use num_complex::Complex64;
+use problem::{Columns, Point, Problem, Test};
+use quantities::Uncertain;
+use recorded::Recorded;
+use serde::Serialize;
+
+/// The joint from all FRFs.
+#[derive(Debug, Clone, PartialEq)]
+pub struct JointFit {
+    /// K, symmetric: N/m, N/rad, N·m/rad.
+    pub stiffness: RealMatrix2,
+    /// C, symmetric and passive: N·s/m, N·s/rad, N·m·s/rad.
+    pub damping: RealMatrix2,
+    /// Posterior covariance of (k11, k12, k22, c11, c12, c22), the fixture's quantities integrated out; with what the model's error adds.
+    pub covariance: [[f64; 6]; 6],
+    /// The part of it that comes from the model's error: how far the joint moves when one of eight blocks of lines is left out. Zero where noise explains
+    /// what is left.
+    pub model_covariance: [[f64; 6]; 6],
+    /// χ² and priors per degree of freedom: 1 where noise and tolerances explain the FRFs.
+    pub chi2_per_dof: f64,
+    /// What the noise's variance was multiplied by because the model does not explain the FRFs; 1 where it does.
+    pub inflation: f64,
+    /// Whether c would give out energy if it were free, and was held to c = v vᵀ.
+    pub is_on_the_boundary: bool,
+    /// The fixture's quantities that the FRFs depend on, where the fit has them.
+    pub quantities: Vec<FittedQuantity>,
+    /// What is wrong with a joint that physics forbids.
+    pub tests: JointTests,
+    /// The nearest joint that physics allows, where a test fails.
+    pub admissible: Option<Admissible>,
+    /// How stiffness and damping depend on frequency, the most probable law first; empty if not asked for.
+    pub laws: Vec<LawFit>,
+    /// The FRFs fitted.
+    pub frfs: Vec<FrfPair>,
+    /// Spectral lines fitted.
+    pub lines: usize,
+    /// Whether the bodies do not rotate: only the elements (1,1) mean anything then.
+    pub scalar: bool,
+}
+
+/// A quantity of the fixture as the fit has it.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct FittedQuantity {
+    /// Path in the fixture file.
+    pub path: String,
+    /// As stated, SI.
+    pub stated: f64,
+    /// Its stated standard deviation; nothing where it is unknown.
+    pub std: Option<f64>,
+    /// As fitted.
+    pub fitted: f64,
+    /// Standard deviation after the fit.
+    pub fitted_std: f64,
+    /// Stated standard deviations between the two (tenths of the value where it is unknown).
+    pub deviations: f64,
+}
+
+/// What a fit of the joint is asked for.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct JointFitOptions {
+    /// Lines fitted; all without.
+    pub band: Option<Band>,
+    /// Take the fixture's bare numbers as exact.
+    pub exact: bool,
+    /// Whether laws over frequency are compared.
+    pub laws: bool,
+}
+
+/// χ² per degree of freedom up to which noise and tolerances count as explaining the FRFs: variances from few averages are themselves known to a few per cent.
+const EXPLAINED: f64 = 1.2;
+/// χ² per degree of freedom above which another start is tried.
+const DOUBTFUL: f64 = 1.3;
+/// Blocks of neighbouring lines that the jackknife leaves out in turn.
+const BLOCKS: usize = 8;
+/// Damping of a start without any, as a loss factor.
+const START_LOSS: f64 = 3e-3;
+
+/// Fits the joint that `sides` were taken apart at to every FRF whose channels the fixture has.
+///
+/// It starts from the fit to the FRFs across the joint, if there is one, and from the fixture's own joint, `nominal`.
+///
+/// # Errors
+/// No FRF that can be used, no start with finite FRFs, or FRFs that leave an element undetermined.
+pub fn fit_joint(
+    frfs: &FrfSet,
+    sides: &Sides,
+    scalar: bool,
+    near: Option<&LikelihoodFit>,
+    nominal: RealMatrix2,
+    options: JointFitOptions,
+) -> Result<JointFit, DecompositionError> {
+    let recorded = Recorded::of(frfs, sides, options.band)
+        .ok_or(DecompositionError::NoFit("no FRF has both of its channels in the fixture and a value in the band"))?;
+    let start = near.map_or(nominal, |fit| fit.stiffness);
+    let root = |i: usize| start.at(i, i).abs().max(f64::MIN_POSITIVE).sqrt();
+    let unit = |i: usize, j: usize| if scalar && i + j > 0 { 1.0 } else { root(i) * root(j) };
+    let unit = Matrix2::new(unit(0, 0), unit(0, 1), unit(1, 0), unit(1, 1));
+    let middle = recorded.s.iter().map(|s| s.im).sum::<f64>() / recorded.s.len() as f64;
+    let law = Dynamics::new(LawKind::Viscous, unit, middle, scalar);
+    let quantities = quantities::uncertain(sides, options.exact);
+    let starts = [near.map(|fit| (fit.stiffness, fit.damping.scale(middle))), Some((nominal, nominal.scale(START_LOSS)))];
+    let starts: Vec<Vec<f64>> = starts.into_iter().flatten().map(|(k, d)| coordinates(&law, k, d)).collect();
+    let fitter = Fitter { recorded: &recorded, sides, scalar };
+    let quantities = fitter.that_matter(law, &starts, quantities)?;
+    fitter.fit(law, &starts, &quantities, options.laws)
+}
+
+/// Coordinates of K and of an imaginary stiffness D.
+fn coordinates(law: &Dynamics, k: RealMatrix2, d: RealMatrix2) -> Vec<f64> {
+    let of = |form: Form, m: RealMatrix2| {
+        let e = |i: usize, j: usize| m.at(i, j) / law.unit.at(i, j);
+        match form {
+            Form::Scalar => vec![e(0, 0)],
+            Form::Symmetric => vec![e(0, 0), 0.5 * (e(0, 1) + e(1, 0)), e(1, 1)],
+            Form::Free => vec![e(0, 0), e(0, 1), e(1, 1), e(1, 0)],
+            Form::RankOne => rank_one(e(0, 0), 0.5 * (e(0, 1) + e(1, 0)), e(1, 1)),
+            Form::Zero => Vec::new(),
+        }
+    };
+    [of(law.stiffness, k), of(law.damping, d)].concat()
+}
+
+/// v of the nearest v vᵀ to [[a, b], [b, d]].
+fn rank_one(a: f64, b: f64, d: f64) -> Vec<f64> {
+    let (mean, half) = (0.5 * (a + d), 0.5 * (a - d));
+    let largest = (mean + half.hypot(b)).max(0.0).sqrt();
+    let angle = 0.5 * b.atan2(half);
+    vec![largest * angle.cos(), largest * angle.sin()]
+}
+
+/// What all fits of one recording share.
+struct Fitter<'a> {
+    recorded: &'a Recorded,
+    sides: &'a Sides,
+    scalar: bool,
+}
+
+/// A finished fit.
+struct Fitted {
+    point: Point,
+    others: Columns,
+}
+
+const NO_START: DecompositionError = DecompositionError::NoFit("no start gives finite FRFs");
+const UNDETERMINED: DecompositionError =
+    DecompositionError::NoFit("the FRFs leave an element of k or c undetermined");
+
+impl<'a> Fitter<'a> {
+    fn test<'b>(&'b self, quantities: &'b [Uncertain], weights: &'b [f64]) -> Test<'b> {
+        Test {
+            recorded: self.recorded,
+            fixture: self.sides.fixture(),
+            joint: &self.sides.joint().name,
+            quantities,
+            weights,
+        }
+    }
+
+    /// The quantities that the FRFs depend on.
+    fn that_matter(
+        &self,
+        law: Dynamics,
+        starts: &[Vec<f64>],
+        quantities: Vec<Uncertain>,
+    ) -> Result<Vec<Uncertain>, DecompositionError> {
+        let weights = &self.recorded.weights;
+        let test = self.test(&quantities, weights);
+        let problem = Problem::viscous(&test, law);
+        let matter = starts.iter().find_map(|start| {
+            let columns = problem.other_columns(&problem.point(problem.whole(start), None)?)?;
+            let size = |column: &Vec<Complex64>| -> f64 {
+                column.iter().zip(weights).map(|(value, weight)| weight * value.norm_sqr()).sum()
+            };
+            Some(columns.iter().map(|column| size(column) > NEGLIGIBLE).collect::<Vec<bool>>())
+        });
+        let matter = matter.ok_or(NO_START)?;
+        Ok(quantities.into_iter().zip(matter).filter_map(|(quantity, matters)| matters.then_some(quantity)).collect())
+    }
+
+    fn fit(
+        &self,
+        law: Dynamics,
+        starts: &[Vec<f64>],
+        quantities: &[Uncertain],
+        with_laws: bool,
+    ) -> Result<JointFit, DecompositionError> {
+        let test = self.test(quantities, &self.recorded.weights);
+        let problem = Problem::viscous(&test, law);
+        let mut best: Option<Fitted> = None;
+        for start in starts {
+            let Some((point, others)) = problem.fit(problem.whole(start), None) else { continue };
+            if best.as_ref().is_none_or(|best| point.objective < best.point.objective) {
+                best = Some(Fitted { point, others });
+            }
+            if best.as_ref().is_some_and(|best| self.per_degree(&problem, &best.point) < DOUBTFUL) {
+                break;
+            }
+        }
+        let first = best.filter(|best| best.point.objective.is_finite()).ok_or(NO_START)?;
+        let chi2_per_dof = self.per_degree(&problem, &first.point);
+        let laws = match with_laws {
+            true => laws::compared(self, &problem, &first, quantities),
+            false => Vec::new(),
+        };
+        let inflation = self.inflation(&problem, &first.point);
+        let weights: Vec<f64> = self.recorded.weights.iter().map(|weight| weight / inflation).collect();
+        let inflated = self.test(quantities, &weights);
+        let problem = Problem::viscous(&inflated, law);
+        let fitted = if inflation > 1.0 {
+            let (point, others) = problem.fit(first.point.coordinates, None).ok_or(NO_START)?;
+            Fitted { point, others }
+        } else {
+            first
+        };
+        let mut result = self.result(&problem, &fitted, quantities)?;
+        (result.chi2_per_dof, result.inflation, result.laws) = (chi2_per_dof, inflation, laws);
+        Ok(result)
+    }
+
+    fn per_degree(&self, problem: &Problem, point: &Point) -> f64 {
+        point.objective / self.recorded.degrees().saturating_sub(problem.own()).max(1) as f64
+    }
+
+    /// What the noise is multiplied by so that it explains what is left, correlated from line to line as that is.
+    fn inflation(&self, problem: &Problem, point: &Point) -> f64 {
+        let per_degree = self.per_degree(problem, point);
+        if per_degree <= EXPLAINED {
+            return 1.0;
+        }
+        let residual = problem.residual(point).into_iter().zip(&self.recorded.weights);
+        let normalised: Vec<Complex64> = residual.map(|(r, weight)| r * weight.sqrt()).collect();
+        variance_inflation(per_degree, autocorrelation(&normalised, self.recorded.s.len()))
+    }
+
+    /// The joint, tests and covariance at an optimum whose c is free.
+    fn result(
+        &self,
+        problem: &Problem,
+        free: &Fitted,
+        quantities: &[Uncertain],
+    ) -> Result<JointFit, DecompositionError> {
+        let law = &problem.law;
+        let covariance = self.covariance_at(problem, &free.point)?;
+        let (tests, admissible) = admissible::examined(problem, free, &covariance);
+        let [_, d, _] = law.matrices(&free.point.coordinates[..law.count()]);
+        let is_passive = d.at(0, 0) >= 0.0 && (self.scalar || (d.at(1, 1) >= 0.0 && d.determinant() >= 0.0));
+        let held = if is_passive { None } else { admissible::on_the_boundary_of_c(problem, free) };
+        let (k, d, at) = match &held {
+            Some((point, law)) => {
+                let [k, d, _] = law.matrices(&point.coordinates[..law.count()]);
+                let own = problem.law.count();
+                let rest = &point.coordinates[law.count()..];
+                let mut at = coordinates(&problem.law, k, d);
+                debug_assert_eq!(at.len(), own);
+                at.extend_from_slice(rest);
+                (k, d, problem.point(at, None).ok_or(NO_START)?)
+            }
+            None => {
+                let [k, d, _] = law.matrices(&free.point.coordinates[..law.count()]);
+                (k, d, problem.point(free.point.coordinates.clone(), None).ok_or(NO_START)?)
+            }
+        };
+        // Deviations are those of free elements, on the boundary too.
+        let covariance = if held.is_some() { self.covariance_at(problem, &at)? } else { covariance };
+        let inflated = self.recorded.weights.first().zip(problem.test.weights.first()).is_some_and(|(a, b)| a != b);
+        let model = if inflated { self.jackknifed(problem, &at) } else { None };
+        let model_covariance = model.map_or([[0.0; 6]; 6], |model| self.in_si(law, &model));
+        let posterior = self.in_si(law, &covariance);
+        let own = problem.own();
+        let quantities = quantities.iter().enumerate().map(|(index, uncertain)| {
+            let transform = uncertain.parameter.transform;
+            let coordinate = at.coordinates[own + index];
+            let fitted = transform.value(coordinate).unwrap_or(uncertain.quantity.value);
+            FittedQuantity {
+                path: uncertain.quantity.path.clone(),
+                stated: uncertain.quantity.value,
+                std: uncertain.quantity.std,
+                fitted,
+                fitted_std: transform.slope(fitted).abs() * covariance.std(own + index),
+                deviations: coordinate,
+            }
+        });
+        Ok(JointFit {
+            stiffness: k,
+            damping: d.scale(1.0 / law.middle),
+            covariance: std::array::from_fn(|m| std::array::from_fn(|n| posterior[m][n] + model_covariance[m][n])),
+            model_covariance,
+            chi2_per_dof: 0.0,
+            inflation: 1.0,
+            is_on_the_boundary: held.is_some(),
+            quantities: quantities.collect(),
+            tests,
+            admissible,
+            laws: Vec::new(),
+            frfs: self.recorded.pairs.clone(),
+            lines: self.recorded.s.len(),
+            scalar: self.scalar,
+        })
+    }
+
+    fn covariance_at(&self, problem: &Problem, point: &Point) -> Result<Covariance, DecompositionError> {
+        let others = problem.other_columns(point).ok_or(UNDETERMINED)?;
+        problem.equations_of(point, &others, problem.test.weights).covariance().ok_or(UNDETERMINED)
+    }
+
+    /// Covariance of (k11, k12, k22, c11, c12, c22) in SI units from that of a viscous law's coordinates.
+    fn in_si(&self, law: &Dynamics, covariance: &Covariance) -> [[f64; 6]; 6] {
+        let u = &law.unit;
+        let elements = [u.at(0, 0), u.at(0, 1), u.at(1, 1)];
+        let slots: &[usize] = if self.scalar { &[0, 3] } else { &[0, 1, 2, 3, 4, 5] };
+        let scale = |slot: usize| elements[slot % 3] * if slot < 3 { 1.0 } else { 1.0 / law.middle };
+        let mut all = [[0.0; 6]; 6];
+        for (a, &m) in slots.iter().enumerate() {
+            for (b, &n) in slots.iter().enumerate() {
+                all[m][n] = covariance.at(a, b) * scale(m) * scale(n);
+            }
+        }
+        all
+    }
+
+    /// How far the coordinates move when each of eight blocks of lines is left out, to first order.
+    fn jackknifed(&self, problem: &Problem, at: &Point) -> Option<Covariance> {
+        let n = self.recorded.s.len();
+        let blocks = BLOCKS.min(n);
+        let others = problem.other_columns(at)?;
+        let without = |block: usize| {
+            let (from, to) = (block * n / blocks, (block + 1) * n / blocks);
+            let outside = |i: usize| i % n < from || i % n >= to;
+            let weights: Vec<f64> = problem.test.weights.iter().enumerate().map(|(i, w)| if outside(i) { *w } else { 0.0 }).collect();
+            let step = problem.equations_of(at, &others, &weights).step(0.0)?;
+            Some(at.coordinates.iter().zip(&step).map(|(at, step)| at + step).collect::<Vec<f64>>())
+        };
+        let fits: Option<Vec<Vec<f64>>> = (0..blocks).map(without).collect();
+        Some(jackknife(&fits?))
+    }
+}
+
+/// Weighted squared change by one standard deviation of a quantity below which the FRFs do not depend on it.
+const NEGLIGIBLE: f64 = 1e-9;
+
+impl<'a> Problem<'a> {
+    /// A viscous joint without mass, of which nothing is known beforehand.
+    fn viscous(test: &'a Test<'a>, law: Dynamics) -> Self {
+        let own = Parameter::new(Transform::Linear { centre: 0.0, scale: 1.0 });
+        let quantities = test.quantities.iter().map(|quantity| quantity.parameter);
+        let parameters = std::iter::repeat_n(own, law.count()).chain(quantities).collect();
+        Problem { test, law, parameters, mass: None }
+    }
+
+    /// The law's coordinates with the fixture as stated.
+    fn whole(&self, own: &[f64]) -> Vec<f64> {
+        let mut all = own.to_vec();
+        all.resize(self.parameters.len(), 0.0);
+        all
+    }
+}
+
+impl JointFit {
+    /// Standard deviations of K and C, everything included.
+    pub fn std(&self) -> (RealMatrix2, RealMatrix2) {
+        deviations(&self.covariance)
+    }
+
+    /// Standard deviations of K and C from the model's error alone.
+    pub fn model_std(&self) -> (RealMatrix2, RealMatrix2) {
+        deviations(&self.model_covariance)
+    }
+
+    /// Whether noise and tolerances explain the FRFs.
+    pub fn explains(&self) -> bool {
+        self.inflation == 1.0
+    }
+
+    /// The most probable law, if laws were compared.
+    pub fn law(&self) -> Option<&LawFit> {
+        self.laws.first()
+    }
+}
+
+fn deviations(covariance: &[[f64; 6]; 6]) -> (RealMatrix2, RealMatrix2) {
+    let of = |first: usize| {
+        let s = |m: usize| covariance[first + m][first + m].max(0.0).sqrt();
+        Matrix2::new(s(0), s(1), s(1), s(2))
+    };
+    (of(0), of(3))
+}

@@ -1,0 +1,136 @@
+//! Whether physics allows the joint found: reciprocal, never giving out energy, at rest without load.
+
+use super::law::{Dynamics, Form};
+use super::problem::{Point, Problem};
+use super::{Fitted, coordinates};
+use jointscope_inference::{Covariance, Parameter, Transform};
+use jointscope_linalg::RealMatrix2;
+use serde::Serialize;
+use std::f64::consts::SQRT_2;
+
+/// Probabilities of FRFs that speak at least as much against a property, if the joint has it. Nothing where it cannot be tested.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct JointTests {
+    /// k12 = k21 and c12 = c21: by how much χ² falls where they may differ, against χ² of two degrees of freedom.
+    pub reciprocity: Option<f64>,
+    /// The smallest eigenvalue of k is not negative (one-sided); of k in units of its diagonal, since N/m and N·m/rad do not compare.
+    pub definite: Option<f64>,
+    /// The smallest eigenvalue of c is not negative (one-sided), in the same units.
+    pub passive: Option<f64>,
+}
+
+impl JointTests {
+    /// Probability below which a test fails.
+    pub const FAILED: f64 = 0.05;
+
+    /// Names of the tests that fail.
+    pub fn failed(&self) -> Vec<&'static str> {
+        let all = [("reciprocity", self.reciprocity), ("definite", self.definite), ("passive", self.passive)];
+        all.into_iter().filter(|(_, p)| p.is_some_and(|p| p < Self::FAILED)).map(|(name, _)| name).collect()
+    }
+}
+
+/// The most probable joint among those that physics allows.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Admissible {
+    /// K, symmetric and positive semidefinite.
+    pub stiffness: [[f64; 2]; 2],
+    /// C, symmetric and positive semidefinite.
+    pub damping: [[f64; 2]; 2],
+    /// By how much χ² and priors exceed those of the joint without constraint.
+    pub costs: f64,
+}
+
+/// Tests of the free optimum, and the nearest admissible joint where one fails.
+pub(super) fn examined(
+    problem: &Problem,
+    free: &Fitted,
+    covariance: &Covariance,
+) -> (JointTests, Option<Admissible>) {
+    let at = &free.point.coordinates;
+    let count = problem.law.stiffness.count();
+    let lowest = |first: usize| match problem.law.stiffness {
+        Form::Scalar => below_zero(at[first], covariance.at(first, first).sqrt()),
+        _ => {
+            let [a, b, d] = [0, 1, 2].map(|e| at[first + e]);
+            let (half, mean) = (0.5 * (a - d), 0.5 * (a + d));
+            let lambda = mean - half.hypot(b);
+            // v of the smallest eigenvalue; dλ = vᵀ dM v.
+            let angle = 0.5 * b.atan2(half);
+            let (v, w) = (-angle.sin(), angle.cos());
+            let by = [v * v, 2.0 * v * w, w * w];
+            let mut variance = 0.0;
+            for i in 0..3 {
+                for j in 0..3 {
+                    variance += by[i] * by[j] * covariance.at(first + i, first + j);
+                }
+            }
+            below_zero(lambda, variance.sqrt())
+        }
+    };
+    let reciprocal = reciprocity(problem, free);
+    let gain = reciprocal.as_ref().map(|point| (free.point.objective - point.objective).max(0.0));
+    let tests = JointTests {
+        reciprocity: gain.map(|gain| (-0.5 * gain).exp()),
+        definite: lowest(0),
+        passive: lowest(count),
+    };
+    let failed = tests.failed();
+    let admissible = if failed.is_empty() { None } else { nearest(problem, free, &failed, gain.unwrap_or(0.0)) };
+    (tests, admissible)
+}
+
+/// P(an estimate this low | zero).
+fn below_zero(value: f64, std: f64) -> Option<f64> {
+    (std > 0.0).then(|| 0.5 * statrs::function::erf::erfc(-value / (std * SQRT_2)))
+}
+
+/// The optimum with k and c free of symmetry.
+fn reciprocity(problem: &Problem, free: &Fitted) -> Option<Point> {
+    if problem.law.stiffness != Form::Symmetric {
+        return None;
+    }
+    let law = problem.law.free();
+    Some(refitted(problem, free, law)?.0)
+}
+
+/// The problem with another form of the law's matrices, from the optimum of the first.
+fn refitted(problem: &Problem, free: &Fitted, law: Dynamics) -> Option<(Point, Dynamics)> {
+    let own = problem.law.count();
+    let [k, d, _] = problem.law.matrices(&free.point.coordinates[..own]);
+    let mut start = coordinates(&law, k, d);
+    start.extend_from_slice(&free.point.coordinates[own..]);
+    let linear = Parameter::new(Transform::Linear { centre: 0.0, scale: 1.0 });
+    let parameters = std::iter::repeat_n(linear, law.count()).chain(problem.parameters[own..].iter().copied());
+    let other = Problem { test: problem.test, law, parameters: parameters.collect(), mass: None };
+    let (point, _) = other.fit(start, Some(free.others.clone()))?;
+    Some((point, law))
+}
+
+/// The optimum with c = v vᵀ (zero for bodies that do not rotate), and its law.
+pub(super) fn on_the_boundary_of_c(problem: &Problem, free: &Fitted) -> Option<(Point, Dynamics)> {
+    refitted(problem, free, Dynamics { damping: boundary(problem.law.damping), ..problem.law })
+}
+
+fn boundary(form: Form) -> Form {
+    if form == Form::Scalar { Form::Zero } else { Form::RankOne }
+}
+
+fn nearest(problem: &Problem, free: &Fitted, failed: &[&str], gain: f64) -> Option<Admissible> {
+    let mut law = problem.law;
+    if failed.contains(&"definite") {
+        law.stiffness = boundary(law.stiffness);
+    }
+    if failed.contains(&"passive") {
+        law.damping = boundary(law.damping);
+    }
+    let matrices = |law: &Dynamics, point: &Point| -> [RealMatrix2; 3] { law.matrices(&point.coordinates[..law.count()]) };
+    let ([k, d, _], objective) = if law == problem.law {
+        (matrices(&law, &free.point), free.point.objective)
+    } else {
+        let (point, law) = refitted(problem, free, law)?;
+        (matrices(&law, &point), point.objective)
+    };
+    let costs = objective - free.point.objective + gain;
+    Some(Admissible { stiffness: k.0, damping: d.scale(1.0 / law.middle).0, costs })
+}

@@ -1,0 +1,267 @@
+//! How a joint's dynamic stiffness depends on frequency, in coordinates that a fit can move.
+
+use jointscope_linalg::{ComplexMatrix2, Matrix2, RealMatrix2};
+use num_complex::Complex64;
+use serde::Serialize;
+use std::f64::consts::FRAC_PI_2;
+
+/// How a joint's stiffness and damping depend on frequency. D, K₁ are symmetric matrices of their own, so that every law holds a proportional
+/// one and any other distribution of the losses over the elements.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum LawKind {
+    /// K, without damping.
+    Constant,
+    /// K + sC.
+    Viscous,
+    /// K + iH: losses per cycle that do not depend on frequency (eq 17).
+    Structural,
+    /// K + D·sτ/(1 + sτ): a spring beside a spring and a dashpot in series.
+    StandardLinearSolid,
+    /// K + D·s^α, 0 < α < 1: a spring beside a springpot.
+    Fractional,
+    /// K + K₁·ω + sC.
+    LinearStiffness,
+}
+
+impl LawKind {
+    /// All of them.
+    pub const ALL: [LawKind; 6] = [
+        LawKind::Constant,
+        LawKind::Viscous,
+        LawKind::Structural,
+        LawKind::StandardLinearSolid,
+        LawKind::Fractional,
+        LawKind::LinearStiffness,
+    ];
+
+    /// As result files write it.
+    pub fn name(self) -> &'static str {
+        match self {
+            LawKind::Constant => "constant",
+            LawKind::Viscous => "viscous",
+            LawKind::Structural => "structural",
+            LawKind::StandardLinearSolid => "standard_linear_solid",
+            LawKind::Fractional => "fractional",
+            LawKind::LinearStiffness => "linear_stiffness",
+        }
+    }
+}
+
+/// What is asked of one 2×2 matrix of a law.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Form {
+    /// The element (1,1) alone: bodies that do not rotate.
+    Scalar,
+    /// 11, 12, 22.
+    Symmetric,
+    /// 11, 12, 22, 21.
+    Free,
+    /// v vᵀ, the boundary of what is positive semidefinite.
+    RankOne,
+    /// Nothing, the boundary of what is not negative.
+    Zero,
+}
+
+impl Form {
+    pub fn count(self) -> usize {
+        match self {
+            Form::Scalar => 1,
+            Form::Symmetric => 3,
+            Form::Free => 4,
+            Form::RankOne => 2,
+            Form::Zero => 0,
+        }
+    }
+
+    /// The matrix at these coordinates, in units of its elements.
+    fn matrix(self, at: &[f64]) -> RealMatrix2 {
+        match (self, at) {
+            (Form::Scalar, [a]) => Matrix2::new(*a, 0.0, 0.0, 0.0),
+            (Form::Symmetric, [a, b, d]) => Matrix2::new(*a, *b, *b, *d),
+            (Form::Free, [a, b, d, c]) => Matrix2::new(*a, *b, *c, *d),
+            (Form::RankOne, [v, w]) => Matrix2::new(v * v, v * w, v * w, w * w),
+            _ => RealMatrix2::zero(),
+        }
+    }
+
+    /// Adds derivatives by the coordinates to `slots`, from those by the elements (11, 12, 21, 22).
+    fn chain(self, at: &[f64], by: [Complex64; 4], slots: &mut [Complex64]) {
+        let [p11, p12, p21, p22] = by;
+        match (self, at, slots) {
+            (Form::Scalar, _, [a]) => *a = p11,
+            (Form::Symmetric, _, [a, b, d]) => (*a, *b, *d) = (p11, p12 + p21, p22),
+            (Form::Free, _, [a, b, d, c]) => (*a, *b, *d, *c) = (p11, p12, p22, p21),
+            (Form::RankOne, [v, w], [a, b]) => {
+                *a = p11 * (2.0 * v) + (p12 + p21) * *w;
+                *b = (p12 + p21) * *v + p22 * (2.0 * w);
+            }
+            _ => {}
+        }
+    }
+}
+
+/// A law with the form of its matrices and the units of their elements.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Dynamics {
+    pub kind: LawKind,
+    /// Form of K.
+    pub stiffness: Form,
+    /// Form of the damping matrix.
+    pub damping: Form,
+    /// Form of K₁.
+    pub change: Form,
+    /// √(k_ii k_jj) of a joint nearby.
+    pub unit: RealMatrix2,
+    /// Circular frequency in the middle of the band, rad/s: damping matrices are in units of stiffness there.
+    pub middle: f64,
+}
+
+/// Most coordinates that a law has.
+pub(super) const MOST: usize = 12;
+
+impl Dynamics {
+    pub fn new(kind: LawKind, unit: RealMatrix2, middle: f64, scalar: bool) -> Self {
+        let matrix = if scalar { Form::Scalar } else { Form::Symmetric };
+        Dynamics {
+            kind,
+            stiffness: matrix,
+            damping: if kind == LawKind::Constant { Form::Zero } else { matrix },
+            change: if kind == LawKind::LinearStiffness { matrix } else { Form::Zero },
+            unit,
+            middle,
+        }
+    }
+
+    /// The same with both matrices free of symmetry.
+    pub fn free(self) -> Self {
+        Dynamics { stiffness: Form::Free, damping: Form::Free, ..self }
+    }
+
+    /// Number of coordinates: K, damping, K₁, then ln(ωτ) in the middle of the band, or α − ½.
+    pub fn count(&self) -> usize {
+        self.stiffness.count() + self.damping.count() + self.change.count() + self.shapes()
+    }
+
+    /// Whether the law has a time or an exponent besides its matrices.
+    pub fn shapes(&self) -> usize {
+        usize::from(matches!(self.kind, LawKind::StandardLinearSolid | LawKind::Fractional))
+    }
+
+    fn split<'a>(&self, at: &'a [f64]) -> [&'a [f64]; 4] {
+        let (stiffness, rest) = at.split_at(self.stiffness.count());
+        let (damping, rest) = rest.split_at(self.damping.count());
+        let (change, rest) = rest.split_at(self.change.count());
+        [stiffness, damping, change, &rest[..self.shapes()]]
+    }
+
+    fn in_units(&self, matrix: RealMatrix2) -> RealMatrix2 {
+        let u = &self.unit;
+        Matrix2::new(
+            matrix.at(0, 0) * u.at(0, 0),
+            matrix.at(0, 1) * u.at(0, 1),
+            matrix.at(1, 0) * u.at(1, 0),
+            matrix.at(1, 1) * u.at(1, 1),
+        )
+    }
+
+    /// K; the damping matrix as an imaginary stiffness in the middle of the band; K₁ there. N/m and so on.
+    pub fn matrices(&self, at: &[f64]) -> [RealMatrix2; 3] {
+        let [k, d, l, _] = self.split(at);
+        [self.stiffness.matrix(k), self.damping.matrix(d), self.change.matrix(l)].map(|m| self.in_units(m))
+    }
+
+    /// τ in s, or α.
+    pub fn shape(&self, at: &[f64]) -> Option<f64> {
+        let [.., shape] = self.split(at);
+        let shape = shape.first()?;
+        Some(if self.kind == LawKind::Fractional { 0.5 + shape } else { shape.exp() / self.middle })
+    }
+
+    /// By how much the losses stiffen the joint in the middle of the band, as a share of the damping matrix.
+    pub fn stiffening(&self, shape: f64) -> f64 {
+        self.losses(Complex64::new(0.0, self.middle), shape).re
+    }
+
+    /// What the damping matrix is multiplied by; its imaginary part is one in the middle of the band.
+    fn losses(&self, s: Complex64, shape: f64) -> Complex64 {
+        let relative = s / self.middle;
+        match self.kind {
+            LawKind::Constant => Complex64::ZERO,
+            LawKind::Viscous | LawKind::LinearStiffness => relative,
+            LawKind::Structural => Complex64::I,
+            LawKind::StandardLinearSolid => {
+                let (turned, time) = (relative * shape.exp(), shape.exp());
+                turned / (turned + 1.0) * ((1.0 + time * time) / time)
+            }
+            LawKind::Fractional => relative.powf(0.5 + shape) / (FRAC_PI_2 * (0.5 + shape)).sin(),
+        }
+    }
+
+    /// What the damping matrix in units of stiffness is multiplied by to be the law's own: C, H, D of the solid, D of the springpot.
+    pub fn own_damping(&self, at: &[f64]) -> f64 {
+        let [.., shape] = self.split(at);
+        match (self.kind, shape.first()) {
+            (LawKind::StandardLinearSolid, Some(x)) => (1.0 + (2.0 * x).exp()) / x.exp(),
+            (LawKind::Fractional, Some(x)) => {
+                1.0 / ((FRAC_PI_2 * (0.5 + x)).sin() * self.middle.powf(0.5 + x))
+            }
+            (LawKind::Viscous | LawKind::LinearStiffness, _) => 1.0 / self.middle,
+            _ => 1.0,
+        }
+    }
+
+    /// The law at these coordinates, ready for many lines.
+    pub fn placed<'a>(&'a self, at: &'a [f64]) -> Placed<'a> {
+        let [.., shape] = self.split(at);
+        Placed { law: self, at, matrices: self.matrices(at), shape: shape.first().copied().unwrap_or(0.0) }
+    }
+}
+
+/// A law with its coordinates.
+pub(super) struct Placed<'a> {
+    law: &'a Dynamics,
+    at: &'a [f64],
+    matrices: [RealMatrix2; 3],
+    shape: f64,
+}
+
+impl Placed<'_> {
+    /// K + losses·D + K₁·ω at s.
+    pub fn stiffness(&self, s: Complex64) -> ComplexMatrix2 {
+        let [k, d, l] = &self.matrices;
+        let losses = self.law.losses(s, self.shape);
+        let relative = s.im / self.law.middle;
+        let at = |i: usize, j: usize| losses * d.at(i, j) + (k.at(i, j) + relative * l.at(i, j));
+        Matrix2::new(at(0, 0), at(0, 1), at(1, 0), at(1, 1))
+    }
+
+    /// Losses at s and their derivative by the law's time or exponent: what derivatives need of a line.
+    pub fn factors(&self, s: Complex64) -> [Complex64; 3] {
+        const STEP: f64 = 1e-5;
+        let losses = |shape: f64| self.law.losses(s, shape);
+        let by_shape = match self.law.shapes() {
+            0 => Complex64::ZERO,
+            _ => (losses(self.shape + STEP) - losses(self.shape - STEP)) / (2.0 * STEP),
+        };
+        [losses(self.shape), by_shape, Complex64::new(s.im / self.law.middle, 0.0)]
+    }
+
+    /// Writes derivatives by the coordinates over `slots`, from those by the elements (11, 12, 21, 22) of the dynamic stiffness.
+    pub fn chain(&self, by: [Complex64; 4], [losses, by_shape, relative]: [Complex64; 3], slots: &mut [Complex64]) {
+        let u = &self.law.unit;
+        let scaled = [by[0] * u.at(0, 0), by[1] * u.at(0, 1), by[2] * u.at(1, 0), by[3] * u.at(1, 1)];
+        let [k, d, l, _] = self.law.split(self.at);
+        let (own, rest) = slots.split_at_mut(k.len());
+        self.law.stiffness.chain(k, scaled, own);
+        let (own, rest) = rest.split_at_mut(d.len());
+        self.law.damping.chain(d, scaled.map(|p| p * losses), own);
+        let (own, rest) = rest.split_at_mut(l.len());
+        self.law.change.chain(l, scaled.map(|p| p * relative), own);
+        if let Some(own) = rest.first_mut() {
+            let d = &self.matrices[1];
+            let elements = [d.at(0, 0), d.at(0, 1), d.at(1, 0), d.at(1, 1)];
+            *own = by_shape * by.iter().zip(elements).map(|(p, e)| p * e).sum::<Complex64>();
+        }
+    }
+}

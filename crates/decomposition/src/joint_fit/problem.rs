@@ -1,0 +1,171 @@
+//! The fit itself: a law's coordinates, perhaps the joint's mass, and the fixture's uncertain quantities.
+
+use super::law::Dynamics;
+use super::quantities::{Uncertain, moved};
+use super::recorded::Recorded;
+use super::uncoupled::Uncoupled;
+use crate::Sides;
+use jointscope_fixture::Fixture;
+use jointscope_inference::{
+    Convergence, Damping, LeastSquares, NormalEquations, Parameter, Precision, Settings, descend,
+};
+use num_complex::Complex64;
+use std::sync::Arc;
+
+/// What a joint is fitted to, whatever its law.
+pub(super) struct Test<'a> {
+    pub recorded: &'a Recorded,
+    pub fixture: &'a Fixture,
+    pub joint: &'a str,
+    pub quantities: &'a [Uncertain],
+    /// 2/σ², divided by what the model's error inflates the noise by.
+    pub weights: &'a [f64],
+}
+
+/// A law to be fitted to a test.
+pub(super) struct Problem<'a> {
+    pub test: &'a Test<'a>,
+    pub law: Dynamics,
+    /// Coordinates: those of the law, the joint's mass if it has one, the fixture's quantities.
+    pub parameters: Vec<Parameter>,
+    /// kg for one unit of the mass's coordinate.
+    pub mass: Option<f64>,
+}
+
+/// Where a fit stands.
+pub(super) struct Point {
+    pub coordinates: Vec<f64>,
+    uncoupled: Arc<Uncoupled>,
+    pub predicted: Vec<Complex64>,
+    pub objective: f64,
+}
+
+/// What the mass and the quantities do to each value, in their order.
+pub(super) type Columns = Vec<Vec<Complex64>>;
+
+/// Step of forward differences by a quantity, in standard deviations: resonances bend within a tenth of one.
+const DIFFERENCE: f64 = 1e-3;
+/// Steps of a fit at the most.
+const STEPS: usize = 80;
+/// Change of χ² below which a fit has converged: a thousandth of what one standard deviation makes.
+const CONVERGED: f64 = 1e-3;
+/// Differences by quantities serve for as long as steps gain this share of the first one's.
+const REUSE: f64 = 0.02;
+
+impl<'a> Problem<'a> {
+    /// Number of coordinates before those of the fixture's quantities.
+    pub fn own(&self) -> usize {
+        self.law.count() + usize::from(self.mass.is_some())
+    }
+
+    /// The joint's mass at these coordinates, kg.
+    pub fn mass_at(&self, coordinates: &[f64]) -> f64 {
+        self.mass.map_or(0.0, |scale| scale * coordinates[self.law.count()])
+    }
+
+    fn uncoupled(&self, coordinates: &[f64], before: Option<&Uncoupled>) -> Option<Uncoupled> {
+        let fixture = moved(self.test.fixture, self.test.quantities, &coordinates[self.own()..]);
+        let sides = Sides::of(&fixture, Some(self.test.joint)).ok()?;
+        Uncoupled::of(self.test.recorded, &sides, self.mass_at(coordinates), before)
+    }
+
+    /// `None` where nothing finite is predicted.
+    pub fn point(&self, coordinates: Vec<f64>, before: Option<&Uncoupled>) -> Option<Point> {
+        let uncoupled = Arc::new(self.uncoupled(&coordinates, before)?);
+        let law = self.law.placed(&coordinates[..self.law.count()]);
+        let predicted = uncoupled.coupled(self.test.recorded, &law, None)?;
+        let terms = self.test.recorded.values.iter().zip(&predicted).zip(self.test.weights);
+        let chi2: f64 = terms.map(|((m, p), weight)| weight * (m - p).norm_sqr()).sum();
+        let penalties = self.parameters.iter().zip(&coordinates).map(|(parameter, at)| parameter.penalty(*at));
+        let objective = chi2 + penalties.sum::<f64>();
+        Some(Point { coordinates, uncoupled, predicted, objective })
+    }
+
+    /// Derivatives by the law's coordinates.
+    fn own_columns(&self, at: &Point) -> Columns {
+        let mut columns = vec![vec![Complex64::ZERO; at.predicted.len()]; self.law.count()];
+        let law = self.law.placed(&at.coordinates[..self.law.count()]);
+        // The point was predicted by the same law, so it has finite derivatives.
+        let _ = at.uncoupled.coupled(self.test.recorded, &law, Some(&mut columns));
+        columns
+    }
+
+    /// Derivatives by the mass and the quantities, by forward differences of the sides alone.
+    pub fn other_columns(&self, at: &Point) -> Option<Columns> {
+        let law = self.law.placed(&at.coordinates[..self.law.count()]);
+        let column = |index: usize| {
+            let mut coordinates = at.coordinates.clone();
+            coordinates[index] += DIFFERENCE;
+            let moved = self.uncoupled(&coordinates, Some(&at.uncoupled))?;
+            let there = moved.coupled(self.test.recorded, &law, None)?;
+            Some(there.iter().zip(&at.predicted).map(|(t, h)| (t - h) / DIFFERENCE).collect())
+        };
+        (self.law.count()..at.coordinates.len()).map(column).collect()
+    }
+
+    pub fn residual(&self, at: &Point) -> Vec<Complex64> {
+        self.test.recorded.values.iter().zip(&at.predicted).map(|(m, p)| m - p).collect()
+    }
+
+    /// Normal equations with these weights.
+    pub fn equations_of(&self, at: &Point, others: &[Vec<Complex64>], weights: &[f64]) -> NormalEquations {
+        let mut columns = self.own_columns(at);
+        columns.extend(others.iter().cloned());
+        let priors = |m: usize| (self.parameters[m].precision, at.coordinates[m]);
+        NormalEquations::of_columns(&columns, &self.residual(at), weights, |_| false, priors)
+    }
+
+    /// The optimum next to `start`, with derivatives by the quantities known from nearby where there are any.
+    pub fn fit(&self, start: Vec<f64>, nearby: Option<Columns>) -> Option<(Point, Columns)> {
+        self.fit_within(start, nearby, STEPS)
+    }
+
+    /// The same within a number of steps.
+    pub fn fit_within(
+        &self,
+        start: Vec<f64>,
+        nearby: Option<Columns>,
+        steps: usize,
+    ) -> Option<(Point, Columns)> {
+        let start = self.point(start, None)?;
+        let degrees = self.test.recorded.degrees() as f64;
+        let settings = Settings {
+            steps,
+            damping: Damping { initial: 1e-6, decrease: 0.03, least: 1e-15, raised: 0.0, most: 1e8 },
+            convergence: Convergence { gain: CONVERGED, share: 1e-6, floor: degrees },
+            reuse: Some(REUSE),
+            trust_old: true,
+            ..Settings::default()
+        };
+        let end = descend(self, start, nearby, &settings)?;
+        Some((end.point, end.derivatives))
+    }
+}
+
+impl LeastSquares for Problem<'_> {
+    type Point = Point;
+    type Weights = ();
+    type Derivatives = Columns;
+    type Equations = NormalEquations;
+    const FIXED_WEIGHTS: bool = true;
+
+    fn weights(&self, _: &Point) {}
+
+    fn objective(&self, at: &Point, _: &()) -> f64 {
+        at.objective
+    }
+
+    fn derivatives(&self, at: &Point, _: Precision) -> Option<Columns> {
+        self.other_columns(at)
+    }
+
+    fn equations(&self, at: &Point, others: &Columns, _: &()) -> NormalEquations {
+        self.equations_of(at, others, self.test.weights)
+    }
+
+    fn stepped(&self, at: &Point, equations: &NormalEquations, damping: f64) -> Option<Point> {
+        let step = equations.bounded_step(damping, &at.coordinates, &self.parameters)?;
+        let coordinates = at.coordinates.iter().zip(&step).map(|(at, step)| at + step).collect();
+        self.point(coordinates, Some(&at.uncoupled))
+    }
+}

@@ -1,0 +1,87 @@
+//! The FRFs that a joint is fitted to: every one whose channels the fixture has, as accelerances with weights.
+
+use crate::Sides;
+use jointscope_averaging::Band;
+use jointscope_lumped::{Instrument, MeasuringChain};
+use jointscope_spectra::{Channel, FrfForm, FrfPair, FrfSet};
+use num_complex::Complex64;
+
+/// Values and weights, FRF after FRF.
+#[derive(Debug, Clone)]
+pub(super) struct Recorded {
+    pub pairs: Vec<FrfPair>,
+    /// s = δ + iω of the lines in use.
+    pub s: Vec<Complex64>,
+    /// Highest line of the recording, Hz.
+    pub highest: f64,
+    pub values: Vec<Complex64>,
+    /// 2/σ²; zero where a value says nothing.
+    pub weights: Vec<f64>,
+    /// (response, reference) of each FRF among the distinct channels, and one FRF that each channel is taken from.
+    pub channels: Vec<(usize, usize)>,
+    pub responses: Vec<usize>,
+    pub references: Vec<usize>,
+}
+
+/// Relative deviation of a value whose noise is not known.
+const UNKNOWN_NOISE: f64 = 1e-3;
+
+impl Recorded {
+    /// `None` where nothing can be used.
+    pub fn of(frfs: &FrfSet, sides: &Sides, band: Option<Band>) -> Option<Self> {
+        let readable = |pair: &FrfPair| {
+            let chain = MeasuringChain::of(sides.fixture(), std::slice::from_ref(pair), Instrument::AsRecorded);
+            chain.is_ok_and(|chain| chain.readings.iter().all(|reading| reading.load.is_none()))
+        };
+        let used: Vec<usize> = (0..frfs.pairs().len()).filter(|&i| readable(&frfs.pairs()[i])).collect();
+        let hz = frfs.lines().hz();
+        let inside = |hz: f64| hz > 0.0 && band.is_none_or(|band| band.contains(hz));
+        let lines: Vec<usize> = (0..hz.len()).filter(|&line| inside(hz[line])).collect();
+        let mut recorded = Recorded {
+            pairs: used.iter().map(|&index| frfs.pairs()[index].clone()).collect(),
+            s: lines.iter().map(|&line| sides.s(frfs.lines().omega(line))).collect(),
+            highest: hz[hz.len() - 1],
+            values: Vec::with_capacity(used.len() * lines.len()),
+            weights: Vec::with_capacity(used.len() * lines.len()),
+            channels: Vec::new(),
+            responses: Vec::new(),
+            references: Vec::new(),
+        };
+        for &index in &used {
+            let (values, variance) = (frfs.values(index), frfs.variance(index));
+            let coherence = frfs.coherence(index);
+            for &line in &lines {
+                let factor = frfs.form().factor_to(FrfForm::Accelerance, frfs.lines().omega(line))?;
+                let value = values[line] * factor;
+                let variance = match variance {
+                    Some(variance) => variance[line] * factor.norm_sqr(),
+                    None => UNKNOWN_NOISE * UNKNOWN_NOISE * value.norm_sqr(),
+                };
+                let coherent = coherence.is_none_or(|c| c[line] > 0.0);
+                recorded.values.push(value);
+                recorded.weights.push(if coherent && variance > 0.0 { 2.0 / variance } else { 0.0 });
+            }
+        }
+        recorded.list_channels();
+        recorded.weights.iter().any(|weight| *weight > 0.0).then_some(recorded)
+    }
+
+    fn list_channels(&mut self) {
+        let place = |seen: &mut Vec<usize>, pairs: &[FrfPair], index: usize, of: fn(&FrfPair) -> &Channel| {
+            seen.iter().position(|&other| of(&pairs[other]) == of(&pairs[index])).unwrap_or_else(|| {
+                seen.push(index);
+                seen.len() - 1
+            })
+        };
+        for index in 0..self.pairs.len() {
+            let response = place(&mut self.responses, &self.pairs, index, |pair| &pair.response);
+            let reference = place(&mut self.references, &self.pairs, index, |pair| &pair.reference);
+            self.channels.push((response, reference));
+        }
+    }
+
+    /// Number of real values that count.
+    pub fn degrees(&self) -> usize {
+        2 * self.weights.iter().filter(|weight| **weight > 0.0).count()
+    }
+}
