@@ -178,12 +178,7 @@ impl Dynamics {
         Some(if self.kind == LawKind::Fractional { 0.5 + shape } else { shape.exp() / self.middle })
     }
 
-    /// By how much the losses stiffen the joint in the middle of the band, as a share of the damping matrix.
-    pub fn stiffening(&self, shape: f64) -> f64 {
-        self.losses(Complex64::new(0.0, self.middle), shape).re
-    }
-
-    /// What the damping matrix is multiplied by; its imaginary part is one in the middle of the band.
+    /// What the damping matrix is multiplied by: i in the middle of the band, so that K is the stiffness there and a change of time or exponent leaves it.
     fn losses(&self, s: Complex64, shape: f64) -> Complex64 {
         let relative = s / self.middle;
         match self.kind {
@@ -192,9 +187,22 @@ impl Dynamics {
             LawKind::Structural => Complex64::I,
             LawKind::StandardLinearSolid => {
                 let (turned, time) = (relative * shape.exp(), shape.exp());
-                turned / (turned + 1.0) * ((1.0 + time * time) / time)
+                turned / (turned + 1.0) * ((1.0 + time * time) / time) - time
             }
-            LawKind::Fractional => relative.powf(0.5 + shape) / (FRAC_PI_2 * (0.5 + shape)).sin(),
+            LawKind::Fractional => {
+                let angle = FRAC_PI_2 * (0.5 + shape);
+                relative.powf(0.5 + shape) / angle.sin() - angle.cos() / angle.sin()
+            }
+        }
+    }
+
+    /// By how much less than K in the middle of the band the law's own K is, as a share of the damping matrix.
+    pub fn stiffening(&self, at: &[f64]) -> f64 {
+        let [.., shape] = self.split(at);
+        match (self.kind, shape.first()) {
+            (LawKind::StandardLinearSolid, Some(x)) => x.exp(),
+            (LawKind::Fractional, Some(x)) => (FRAC_PI_2 * (0.5 + x)).tan().recip(),
+            _ => 0.0,
         }
     }
 

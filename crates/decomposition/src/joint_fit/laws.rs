@@ -63,7 +63,13 @@ const MASS: f64 = 0.02;
 const UNKNOWN: f64 = 1e4;
 
 /// Most steps of a law's fit: one that needs more is far from the FRFs.
-const STEPS: usize = 25;
+const STEPS: usize = 40;
+/// Of the law without damping, whose resonances are infinite: it is near at once or not at all.
+const UNDAMPED_STEPS: usize = 8;
+/// The most probable laws without mass are tried with mass.
+const WITH_MASS: usize = 3;
+/// Coordinate of the mass that they begin with.
+const FIRST_MASS: f64 = 0.05;
 
 /// A law at its optimum.
 struct Candidate {
@@ -105,24 +111,40 @@ fn candidates(
     weights: &[f64],
 ) -> Vec<Candidate> {
     let test = fitter.test(quantities, weights);
-    let scale = MASS * lighter_side(fitter);
-    let laws = LawKind::ALL.into_iter().flat_map(|kind| [None, Some(scale)].map(|mass| (kind, mass)));
-    let fitted = laws.filter_map(|(kind, mass)| {
+    let mut all: Vec<(Candidate, Vec<f64>)> = Vec::new();
+    for kind in LawKind::ALL {
         let law = Dynamics::new(kind, viscous.law.unit, viscous.law.middle, fitter.scalar);
+        let problem = Problem { test: &test, law, parameters: parameters(&law, None, quantities), mass: None };
+        let Some(mut start) = nearest_start(viscous, first, &law) else { continue };
+        start.extend_from_slice(&first.point.coordinates[viscous.law.count()..]);
+        let steps = if kind == LawKind::Constant { UNDAMPED_STEPS } else { STEPS };
+        let Some((point, others)) = problem.fit_within(start, Some(first.others.clone()), steps) else { continue };
+        let at = point.coordinates.clone();
+        all.extend(candidate(fitter, &problem, &point, &others).map(|candidate| (candidate, at)));
+    }
+    all.sort_by(|a, b| b.0.evidence.total_cmp(&a.0.evidence));
+    let heavy = all.iter().take(WITH_MASS).filter_map(|(light, at)| {
+        let law = light.fit.law;
+        let mass = Some(MASS * lighter_side(fitter));
         let problem = Problem { test: &test, law, parameters: parameters(&law, mass, quantities), mass };
-        let starts: &[f64] = match kind {
-            LawKind::StandardLinearSolid => &[-1.0, 1.0],
-            LawKind::Fractional => &[-0.2, 0.2],
-            _ => &[0.0],
-        };
-        let fits = starts.iter().filter_map(|&shape| {
-            let nearby = if mass.is_none() { Some(first.others.clone()) } else { None };
-            problem.fit_within(start(&law, mass, viscous, &first.point, shape), nearby, STEPS)
-        });
-        let (point, others) = fits.reduce(|a, b| if b.0.objective < a.0.objective { b } else { a })?;
+        let mut start = at.clone();
+        start.insert(law.count(), FIRST_MASS);
+        let (point, others) = problem.fit_within(start, None, STEPS)?;
         candidate(fitter, &problem, &point, &others)
     });
-    fitted.collect()
+    let heavy: Vec<Candidate> = heavy.collect();
+    all.into_iter().map(|(candidate, _)| candidate).chain(heavy).collect()
+}
+
+/// The start of a law from which the viscous joint is imitated best.
+fn nearest_start(viscous: &Problem, first: &Fitted, law: &Dynamics) -> Option<Vec<f64>> {
+    let shapes: &[f64] = match law.kind {
+        LawKind::StandardLinearSolid => &[-2.0, -1.0, 0.0, 1.0, 2.0],
+        LawKind::Fractional => &[-0.4, -0.2, 0.0, 0.2, 0.4],
+        _ => &[0.0],
+    };
+    let starts = shapes.iter().filter_map(|&shape| viscous.imitated(&first.point, law, shape));
+    starts.reduce(|a, b| if b.1 < a.1 { b } else { a }).map(|(start, _)| start)
 }
 
 fn lighter_side(fitter: &Fitter) -> f64 {
@@ -154,23 +176,6 @@ fn parameters(law: &Dynamics, mass: Option<f64>, quantities: &[Uncertain]) -> Ve
     all
 }
 
-/// Where a law starts: at the viscous joint, with the same losses in the middle of the band.
-fn start(law: &Dynamics, mass: Option<f64>, viscous: &Problem, at: &Point, shape: f64) -> Vec<f64> {
-    let own = viscous.law.count();
-    let elements = law.stiffness.count();
-    let (k, d) = at.coordinates[..own].split_at(elements);
-    let stiffening = law.stiffening(shape);
-    let mut all: Vec<f64> = k.iter().zip(d).map(|(k, d)| k - stiffening * d).collect();
-    if law.damping != Form::Zero {
-        all.extend_from_slice(d);
-    }
-    all.extend(std::iter::repeat_n(0.0, law.change.count()));
-    all.extend(std::iter::repeat_n(shape, law.shapes()));
-    all.extend(mass.map(|_| 0.05));
-    all.extend_from_slice(&at.coordinates[own..]);
-    all
-}
-
 fn candidate(
     fitter: &Fitter,
     problem: &Problem,
@@ -188,7 +193,7 @@ fn candidate(
         mass: problem.mass.map(|_| problem.mass_at(&point.coordinates)),
         probability: 0.0,
         objective: point.objective,
-        stiffness: k,
+        stiffness: k - d.scale(problem.law.stiffening(own)),
         damping: d.scale(problem.law.own_damping(own)),
         change: (problem.law.change != Form::Zero).then(|| l.scale(1.0 / problem.law.middle)),
         shape: problem.law.shape(own),

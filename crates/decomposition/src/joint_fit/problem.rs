@@ -45,6 +45,8 @@ pub(super) type Columns = Vec<Vec<Complex64>>;
 
 /// Step of forward differences by a quantity, in standard deviations: resonances bend within a tenth of one.
 const DIFFERENCE: f64 = 1e-3;
+/// Share of a promised decrease below which a step follows a bent valley: resonances tie the joint to the blocks along one.
+const BENT: f64 = 0.5;
 /// Steps of a fit at the most.
 const STEPS: usize = 80;
 /// Change of χ² below which a fit has converged: a thousandth of what one standard deviation makes.
@@ -86,7 +88,7 @@ impl<'a> Problem<'a> {
         let mut columns = vec![vec![Complex64::ZERO; at.predicted.len()]; self.law.count()];
         let law = self.law.placed(&at.coordinates[..self.law.count()]);
         // The point was predicted by the same law, so it has finite derivatives.
-        let _ = at.uncoupled.coupled(self.test.recorded, &law, Some(&mut columns));
+        let _ = at.uncoupled.coupled(self.test.recorded, &law, Some((&law, &mut columns)));
         columns
     }
 
@@ -115,6 +117,37 @@ impl<'a> Problem<'a> {
         NormalEquations::of_columns(&columns, &self.residual(at), weights, |_| false, priors)
     }
 
+    fn from(&self, at: &Point, step: &[f64]) -> Option<Point> {
+        let moved = at.coordinates.iter().zip(step).zip(&self.parameters);
+        let coordinates = moved.map(|((at, step), parameter)| parameter.clamp(at + step)).collect();
+        self.point(coordinates, Some(&at.uncoupled))
+    }
+
+    /// Coordinates of `law` by which it comes nearest to what the law here does at a point, with what that leaves of the FRFs: the FRFs are taken
+    /// as linear in the dynamic stiffness, so that resonances weigh most. K, damping matrix and K₁ alone; `shape` is the law's time or exponent.
+    pub fn imitated(&self, at: &Point, law: &Dynamics, shape: f64) -> Option<(Vec<f64>, f64)> {
+        let own = &at.coordinates[..self.law.count()];
+        let here = self.law.placed(own);
+        let mut columns = self.own_columns(at);
+        let mut target = self.residual(at);
+        for (column, coordinate) in columns.iter().zip(own) {
+            target.iter_mut().zip(column).for_each(|(value, by)| *value += by * coordinate);
+        }
+        let matrices = law.count() - law.shapes();
+        let mut start = vec![0.0; law.count()];
+        start[matrices..].fill(shape);
+        columns.resize(law.count(), Vec::new());
+        columns.iter_mut().for_each(|column| column.resize(target.len(), Complex64::ZERO));
+        let other = law.placed(&start);
+        at.uncoupled.coupled(self.test.recorded, &here, Some((&other, &mut columns)))?;
+        columns.truncate(matrices);
+        let equations = NormalEquations::of_columns(&columns, &target, self.test.weights, |_| false, |_| (1e-6, 0.0));
+        let found = equations.step(0.0)?;
+        let gain: f64 = found.iter().zip(&equations.right).map(|(a, b)| a * b).sum();
+        start[..matrices].copy_from_slice(&found);
+        Some((start, -gain))
+    }
+
     /// The optimum next to `start`, with derivatives by the quantities known from nearby where there are any.
     pub fn fit(&self, start: Vec<f64>, nearby: Option<Columns>) -> Option<(Point, Columns)> {
         self.fit_within(start, nearby, STEPS)
@@ -135,6 +168,7 @@ impl<'a> Problem<'a> {
             convergence: Convergence { gain: CONVERGED, share: 1e-6, floor: degrees },
             reuse: Some(REUSE),
             trust_old: true,
+            bent: BENT,
             ..Settings::default()
         };
         let end = descend(self, start, nearby, &settings)?;
@@ -165,7 +199,26 @@ impl LeastSquares for Problem<'_> {
 
     fn stepped(&self, at: &Point, equations: &NormalEquations, damping: f64) -> Option<Point> {
         let step = equations.bounded_step(damping, &at.coordinates, &self.parameters)?;
-        let coordinates = at.coordinates.iter().zip(&step).map(|(at, step)| at + step).collect();
-        self.point(coordinates, Some(&at.uncoupled))
+        self.from(at, &step)
+    }
+
+    fn shortened(&self, at: &Point, equations: &NormalEquations, share: f64) -> Option<Point> {
+        let step = equations.bounded_step(0.0, &at.coordinates, &self.parameters)?;
+        self.from(at, &step.iter().map(|step| share * step).collect::<Vec<_>>())
+    }
+
+    fn corrected(
+        &self,
+        at: &Point,
+        from: &Point,
+        [own, before]: [&NormalEquations; 2],
+        share: f64,
+    ) -> Option<Point> {
+        let earlier = (before, from.coordinates.as_slice());
+        self.from(at, &own.correction(&at.coordinates, earlier, share, &self.parameters)?)
+    }
+
+    fn promised(&self, at: &Point, equations: &NormalEquations) -> f64 {
+        equations.promised(&at.coordinates, &self.parameters)
     }
 }

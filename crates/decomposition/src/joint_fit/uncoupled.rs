@@ -255,14 +255,15 @@ impl Uncoupled {
         Some(())
     }
 
-    /// What is recorded with a joint of this law, FRF after FRF; its derivatives by the law's coordinates over `columns`, if wanted.
+    /// What is recorded with a joint of this law, FRF after FRF; its derivatives by the coordinates of a law (this one or another that takes its place)
+    /// over `columns`, if wanted.
     ///
     /// `None` where a line has no finite response.
     pub fn coupled(
         &self,
         recorded: &Recorded,
         law: &Placed,
-        mut columns: Option<&mut [Vec<Complex64>]>,
+        mut columns: Option<(&Placed, &mut [Vec<Complex64>])>,
     ) -> Option<Vec<Complex64>> {
         let n = recorded.s.len();
         let mut values = vec![Complex64::ZERO; recorded.pairs.len() * n];
@@ -289,13 +290,13 @@ impl Uncoupled {
                 let times = |m: &ComplexMatrix2| [0, 1].map(|i| m.at(i, 0) * a + m.at(i, 1) * b);
                 *column = (times(&stiffness), times(&back));
             }
-            let factors = if columns.is_some() { law.factors(s) } else { [Complex64::ZERO; 3] };
+            let factors = columns.as_ref().map_or([Complex64::ZERO; 3], |(law, _)| law.factors(s));
             for (frf, &(response, reference)) in recorded.channels.iter().enumerate() {
                 let (at, row) = (frf * n + line, &from[response]);
                 let (force, motion) = &to[reference];
                 let factor = self.factors[at];
                 values[at] = factor * (self.between[at] - row[0] * force[0] - row[1] * force[1]);
-                if let Some(columns) = columns.as_deref_mut() {
+                if let Some((law, columns)) = &mut columns {
                     let [a, b] = row.map(|r| -factor * r);
                     let by = [a * motion[0], a * motion[1], b * motion[0], b * motion[1]];
                     let slots = &mut slots[..columns.len()];
