@@ -1,8 +1,8 @@
 use crate::spectrum::scalar_stiffness;
 use crate::{
-    Averages, DecompositionError, Element, Interfaces, JointSpectrum, Judgement, LikelihoodFit,
-    MeasurementPlan, Part, Relation, Sides, ToleranceShare, ToleranceShares, decompose, interfaces,
-    maximum_likelihood, tolerance_shares,
+    Averages, DecompositionError, Element, Interfaces, JointFit, JointFitOptions, JointSpectrum, Judgement,
+    LikelihoodFit, MeasurementPlan, Part, Relation, Sides, ToleranceShare, ToleranceShares, decompose,
+    fit_joint, interfaces, maximum_likelihood, tolerance_shares,
 };
 use jointscope_averaging::Band;
 use jointscope_fixture::{Fixture, JointLaw};
@@ -24,11 +24,13 @@ pub struct AnalysisOptions {
     pub band: Option<Band>,
     /// Take the fixture's bare numbers as exact.
     pub exact: bool,
+    /// Compare laws of the joint's stiffness and damping over frequency, which takes ten times as long as all else.
+    pub laws: bool,
 }
 
 impl Default for AnalysisOptions {
     fn default() -> Self {
-        AnalysisOptions { joint: None, relation: Relation::Exact, band: None, exact: false }
+        AnalysisOptions { joint: None, relation: Relation::Exact, band: None, exact: false, laws: false }
     }
 }
 
@@ -84,7 +86,9 @@ pub struct Analysis {
     pub spectrum: JointSpectrum,
     /// Averages over the band.
     pub averages: Averages,
-    /// The maximum-likelihood joint, or why there is none.
+    /// The joint from all FRFs, the fixture moving within its tolerances, or why there is none.
+    pub joint_fit: Result<JointFit, DecompositionError>,
+    /// The maximum-likelihood joint from the FRFs across it, or why there is none.
     pub likelihood: Result<LikelihoodFit, DecompositionError>,
     /// The joint's interfaces, where it is a beam and the fit succeeded.
     pub interfaces: Option<Interfaces>,
@@ -128,6 +132,9 @@ impl Analysis {
         };
         let nominal_stiffness = jointscope_lumped::nominal_stiffness(&sides.joint().law, sides.length());
         let likelihood = maximum_likelihood(&frfs, &sides, &exact, options.band, Some(nominal_stiffness));
+        let fit_options = JointFitOptions { band: options.band, exact: options.exact, laws: options.laws };
+        let near = likelihood.as_ref().ok();
+        let joint_fit = fit_joint(&frfs, &sides, exact.scalar, near, nominal_stiffness, fit_options);
         let model = match &likelihood {
             Ok(fit) => (fit.stiffness, fit.damping),
             Err(_) => (nominal_stiffness, RealMatrix2::zero()),
@@ -153,6 +160,7 @@ impl Analysis {
             plan,
             spectrum,
             averages,
+            joint_fit,
             likelihood,
             interfaces,
             tolerances,

@@ -65,8 +65,10 @@ pub enum Method {
     PlainMean,
     /// The mean weighted by the noise of each line.
     WeightedMean,
-    /// The fit of a constant joint to the FRFs.
+    /// The fit of a constant joint to the FRFs across it.
     MaximumLikelihood,
+    /// The fit of a constant joint to all FRFs, the fixture moving within its tolerances.
+    AllFrfs,
 }
 
 /// K and C with standard deviations from noise and from the fixture's tolerances. The fit's noise holds also what it costs that
@@ -89,7 +91,7 @@ pub struct Figure {
     pub value: f64,
     /// Standard deviation by noise (of a fit: and misfit).
     pub noise: f64,
-    /// Standard deviation by the fixture's tolerances; not known for weighted means.
+    /// Standard deviation by the fixture's tolerances; not known for weighted means, part of the other one for the joint from all FRFs.
     pub tolerance: Option<f64>,
 }
 
@@ -114,13 +116,27 @@ impl Figure {
 }
 
 impl Estimate {
-    /// The maximum-likelihood joint; where there is none, the mean of what the relation gives.
+    /// The joint from all FRFs; where there is none, the maximum-likelihood joint, then the mean of what the relation gives.
     pub fn best(analysis: &Analysis) -> Self {
         let mean = || {
             let tolerance = Some(analysis.tolerance_of_averages());
             Self::weighted(analysis).map(|mean| Estimate { tolerance, ..mean })
         };
-        Self::maximum_likelihood(analysis).or_else(mean).unwrap_or_else(|| Self::plain(analysis))
+        Self::all_frfs(analysis)
+            .or_else(|| Self::maximum_likelihood(analysis))
+            .or_else(mean).unwrap_or_else(|| Self::plain(analysis))
+    }
+
+    /// From all FRFs; the deviations hold noise, the fixture's tolerances and the model's error in one.
+    pub fn all_frfs(analysis: &Analysis) -> Option<Self> {
+        let fit = analysis.joint_fit.as_ref().ok()?;
+        Some(Estimate {
+            method: Method::AllFrfs,
+            paper: false,
+            value: (fit.stiffness, fit.damping),
+            noise: fit.std(),
+            tolerance: None,
+        })
     }
 
     /// The exact joint's, whichever relation the spectra show.

@@ -29,6 +29,7 @@ use problem::{Columns, Point, Problem, Test};
 use quantities::Uncertain;
 use recorded::Recorded;
 use serde::Serialize;
+use statrs::function::gamma::gamma_ur;
 
 /// The joint from all FRFs.
 #[derive(Debug, Clone, PartialEq)]
@@ -46,6 +47,8 @@ pub struct JointFit {
     pub chi2_per_dof: f64,
     /// What the noise's variance was multiplied by because the model does not explain the FRFs; 1 where it does.
     pub inflation: f64,
+    /// What the posterior covariance was multiplied by because the fixture's quantities are farther from what is stated than chance takes them; 1 where they are not.
+    pub strain: f64,
     /// Whether c would give out energy if it were free, and was held to c = v vᵀ.
     pub is_on_the_boundary: bool,
     /// The fixture's quantities that the FRFs depend on, where the fit has them.
@@ -60,6 +63,8 @@ pub struct JointFit {
     pub frfs: Vec<FrfPair>,
     /// Spectral lines fitted.
     pub lines: usize,
+    /// The joint's own mass and its standard deviation, kg, where the laws compared show that it has one; k and c are those of a joint with it.
+    pub mass: Option<(f64, f64)>,
     /// Whether the bodies do not rotate: only the elements (1,1) mean anything then.
     pub scalar: bool,
 }
@@ -96,6 +101,8 @@ pub struct JointFitOptions {
 const EXPLAINED: f64 = 1.2;
 /// χ² per degree of freedom above which another start is tried.
 const DOUBTFUL: f64 = 1.3;
+/// Probability of the laws with mass from which the joint is said to have one.
+const HEAVY: f64 = 0.95;
 /// Blocks of neighbouring lines that the jackknife leaves out in turn.
 const BLOCKS: usize = 8;
 /// Damping of a start without any, as a loss factor.
@@ -191,7 +198,7 @@ impl<'a> Fitter<'a> {
     ) -> Result<Vec<Uncertain>, DecompositionError> {
         let weights = &self.recorded.weights;
         let test = self.test(&quantities, weights);
-        let problem = Problem::viscous(&test, law);
+        let problem = Problem::viscous(&test, law, None);
         let matter = starts.iter().find_map(|start| {
             let columns = problem.other_columns(&problem.point(problem.whole(start), None)?)?;
             let size = |column: &Vec<Complex64>| -> f64 {
@@ -211,7 +218,7 @@ impl<'a> Fitter<'a> {
         with_laws: bool,
     ) -> Result<JointFit, DecompositionError> {
         let test = self.test(quantities, &self.recorded.weights);
-        let problem = Problem::viscous(&test, law);
+        let problem = Problem::viscous(&test, law, None);
         let mut best: Option<Fitted> = None;
         for start in starts {
             let Some((point, others)) = problem.fit(problem.whole(start), None) else { continue };
@@ -228,10 +235,22 @@ impl<'a> Fitter<'a> {
             true => laws::compared(self, &problem, &first, quantities),
             false => Vec::new(),
         };
+        // A joint whose mass the FRFs show is not taken for a softer one.
+        let heavy = laws.iter().filter(|fit| fit.mass.is_some()).map(|fit| fit.probability).sum::<f64>() > HEAVY;
+        let mass = heavy.then(|| laws::mass_scale(self));
+        let light = (problem, first);
+        let problem = Problem::viscous(&test, law, mass);
+        let first = match mass {
+            Some(_) => self.with_mass(&problem, &light.0, &light.1).unwrap_or(light.1),
+            None => light.1,
+        };
+        let problem = if first.point.coordinates.len() == problem.parameters.len() { problem } else { light.0 };
+        let mass = problem.mass;
+        let chi2_per_dof = if mass.is_some() { self.per_degree(&problem, &first.point) } else { chi2_per_dof };
         let inflation = self.inflation(&problem, &first.point);
         let weights: Vec<f64> = self.recorded.weights.iter().map(|weight| weight / inflation).collect();
         let inflated = self.test(quantities, &weights);
-        let problem = Problem::viscous(&inflated, law);
+        let problem = Problem::viscous(&inflated, law, mass);
         let fitted = if inflation > 1.0 {
             let (point, others) = problem.fit(first.point.coordinates, None).ok_or(NO_START)?;
             Fitted { point, others }
@@ -241,6 +260,14 @@ impl<'a> Fitter<'a> {
         let mut result = self.result(&problem, &fitted, quantities)?;
         (result.chi2_per_dof, result.inflation, result.laws) = (chi2_per_dof, inflation, laws);
         Ok(result)
+    }
+
+    /// The fit of a joint with mass, from that without.
+    fn with_mass(&self, problem: &Problem, light: &Problem, from: &Fitted) -> Option<Fitted> {
+        let mut start = from.point.coordinates.clone();
+        start.insert(light.law.count(), laws::FIRST_MASS);
+        let (point, others) = problem.fit(start, None)?;
+        Some(Fitted { point, others })
     }
 
     fn per_degree(&self, problem: &Problem, point: &Point) -> f64 {
@@ -267,17 +294,16 @@ impl<'a> Fitter<'a> {
     ) -> Result<JointFit, DecompositionError> {
         let law = &problem.law;
         let covariance = self.covariance_at(problem, &free.point)?;
-        let (tests, admissible) = admissible::examined(problem, free, &covariance);
+        let strain = strain(problem, &free.point, &covariance);
+        let (tests, admissible) = admissible::examined(problem, free, &covariance, strain);
         let [_, d, _] = law.matrices(&free.point.coordinates[..law.count()]);
         let is_passive = d.at(0, 0) >= 0.0 && (self.scalar || (d.at(1, 1) >= 0.0 && d.determinant() >= 0.0));
         let held = if is_passive { None } else { admissible::on_the_boundary_of_c(problem, free) };
         let (k, d, at) = match &held {
             Some((point, law)) => {
                 let [k, d, _] = law.matrices(&point.coordinates[..law.count()]);
-                let own = problem.law.count();
                 let rest = &point.coordinates[law.count()..];
                 let mut at = coordinates(&problem.law, k, d);
-                debug_assert_eq!(at.len(), own);
                 at.extend_from_slice(rest);
                 (k, d, problem.point(at, None).ok_or(NO_START)?)
             }
@@ -291,7 +317,7 @@ impl<'a> Fitter<'a> {
         let inflated = self.recorded.weights.first().zip(problem.test.weights.first()).is_some_and(|(a, b)| a != b);
         let model = if inflated { self.jackknifed(problem, &at) } else { None };
         let model_covariance = model.map_or([[0.0; 6]; 6], |model| self.in_si(law, &model));
-        let posterior = self.in_si(law, &covariance);
+        let posterior = self.in_si(law, &covariance).map(|row| row.map(|v| strain * v));
         let own = problem.own();
         let quantities = quantities.iter().enumerate().map(|(index, uncertain)| {
             let transform = uncertain.parameter.transform;
@@ -313,6 +339,7 @@ impl<'a> Fitter<'a> {
             model_covariance,
             chi2_per_dof: 0.0,
             inflation: 1.0,
+            strain,
             is_on_the_boundary: held.is_some(),
             quantities: quantities.collect(),
             tests,
@@ -320,6 +347,9 @@ impl<'a> Fitter<'a> {
             laws: Vec::new(),
             frfs: self.recorded.pairs.clone(),
             lines: self.recorded.s.len(),
+            mass: problem.mass.map(|scale| {
+                (problem.mass_at(&at.coordinates), scale * covariance.std(problem.law.count()))
+            }),
             scalar: self.scalar,
         })
     }
@@ -361,16 +391,37 @@ impl<'a> Fitter<'a> {
     }
 }
 
+/// Probability below which the quantities' departures are no chance.
+const NO_CHANCE: f64 = 0.01;
+
+/// Squared departures of the quantities from what is stated, per what chance would make of them (Birge's ratio): what of a quantity the FRFs tell may depart, what
+/// they do not tell stays. 1 where chance explains them.
+fn strain(problem: &Problem, at: &Point, covariance: &Covariance) -> f64 {
+    let (mut squares, mut expected) = (0.0, 0.0);
+    for (index, parameter) in problem.parameters.iter().enumerate().skip(problem.own()) {
+        if parameter.precision > 0.0 {
+            squares += parameter.penalty(at.coordinates[index]);
+            expected += (1.0 - parameter.precision * covariance.at(index, index)).clamp(0.0, 1.0);
+        }
+    }
+    let ratio = squares / expected;
+    if !(expected > 0.0 && ratio > 1.0) {
+        return 1.0;
+    }
+    let by_chance = gamma_ur(0.5 * expected, 0.5 * squares);
+    if by_chance < NO_CHANCE { ratio } else { 1.0 }
+}
+
 /// Weighted squared change by one standard deviation of a quantity below which the FRFs do not depend on it.
 const NEGLIGIBLE: f64 = 1e-9;
 
 impl<'a> Problem<'a> {
-    /// A viscous joint without mass, of which nothing is known beforehand.
-    fn viscous(test: &'a Test<'a>, law: Dynamics) -> Self {
+    /// A viscous joint of which nothing is known beforehand, with mass if there is a scale for it (kg).
+    fn viscous(test: &'a Test<'a>, law: Dynamics, mass: Option<f64>) -> Self {
         let own = Parameter::new(Transform::Linear { centre: 0.0, scale: 1.0 });
         let quantities = test.quantities.iter().map(|quantity| quantity.parameter);
-        let parameters = std::iter::repeat_n(own, law.count()).chain(quantities).collect();
-        Problem { test, law, parameters, mass: None }
+        let parameters = std::iter::repeat_n(own, law.count()).chain(mass.map(|_| laws::mass_parameter()));
+        Problem { test, law, parameters: parameters.chain(quantities).collect(), mass }
     }
 
     /// The law's coordinates with the fixture as stated.
@@ -394,7 +445,7 @@ impl JointFit {
 
     /// Whether noise and tolerances explain the FRFs.
     pub fn explains(&self) -> bool {
-        self.inflation == 1.0
+        self.inflation == 1.0 && self.strain == 1.0
     }
 
     /// The most probable law, if laws were compared.

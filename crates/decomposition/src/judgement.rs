@@ -71,33 +71,38 @@ impl Judgement {
         let scalar = analysis.spectrum.scalar;
         let fit = analysis.likelihood.as_ref().ok();
         let first = best.figure(Part::Stiffness, Element::all(scalar)[0]);
-        let poor_fit = fit.filter(|fit| !fit.explains()).map(|fit| fit.chi2_per_dof);
+        let whole = analysis.joint_fit.as_ref().ok();
+        let poor_fit = match whole {
+            Some(whole) => (!whole.explains()).then_some(whole.chi2_per_dof),
+            None => fit.filter(|fit| !fit.explains()).map(|fit| fit.chi2_per_dof),
+        };
         let contradiction = contradiction(analysis, &best);
         let not_rigid = analysis.spectrum.h41.rigidity().filter(|chi2| *chi2 > NOT_RIGID);
         let agrees_with_fixture =
             Element::distinct(scalar).all(|element| agrees(analysis, fixture, &best, element));
         let excluded = contradiction.is_some_and(|contradiction| contradiction.excludes_use());
-        let verdict = if fit.is_none() || !first.is_determined() || excluded {
+        let verdict = if (fit.is_none() && whole.is_none()) || !first.is_determined() || excluded {
             Use::Unusable
         } else if poor_fit.or(not_rigid).is_some() || contradiction.is_some() || !agrees_with_fixture {
             Use::WithCare
         } else {
             Use::Sound
         };
-        let damping_at_limit = fit.is_some_and(|fit| {
+        let of_fit = || fit.is_some_and(|fit| {
             let c = &fit.damping;
             match scalar {
                 true => c.at(0, 0) == 0.0,
                 false => c.determinant() <= ON_THE_BOUNDARY * c.at(0, 0) * c.at(1, 1),
             }
         });
+        let damping_at_limit = whole.map_or_else(of_fit, |whole| whole.is_on_the_boundary);
         Judgement { verdict, poor_fit, contradiction, not_rigid, agrees_with_fixture, damping_at_limit }
     }
 }
 
 /// The element that the fit and the weighted mean differ in most; nothing where they agree or are of different relations.
 fn contradiction(analysis: &Analysis, best: &Estimate) -> Option<Contradiction> {
-    if best.method != Method::MaximumLikelihood || analysis.spectrum.relation == Relation::Paper {
+    if !matches!(best.method, Method::MaximumLikelihood | Method::AllFrfs) || analysis.spectrum.relation == Relation::Paper {
         return None;
     }
     let weighted = Estimate::weighted(analysis)?;

@@ -1,4 +1,6 @@
-use jointscope_decomposition::{Analysis, Compliance, InterfaceStiffness, JointLine, MatrixAverage};
+use jointscope_decomposition::{
+    Analysis, Compliance, InterfaceStiffness, JointFit, JointLine, LawFit, LawKind, MatrixAverage,
+};
 use jointscope_linalg::RealMatrix2;
 use serde_json::{Map, Value, json};
 
@@ -9,7 +11,7 @@ use serde_json::{Map, Value, json};
 pub fn stiffness_file(analysis: &Analysis) -> Value {
     let mut root = Map::new();
     let spectrum = &analysis.spectrum;
-    root.insert("joint".into(), json!(analysis.joint));
+    root.insert("joint".into(), joint(analysis));
     root.insert("ends".into(), json!(analysis.ends));
     root.insert("relation".into(), json!(spectrum.relation.name()));
     root.insert("lines".into(), spectrum.solved.iter().map(line).collect());
@@ -38,6 +40,69 @@ pub fn stiffness_file(analysis: &Analysis) -> Value {
     root.insert("nominal_stiffness".into(), matrix(&analysis.nominal_stiffness));
     root.insert("recording".into(), recording(analysis));
     Value::Object(root)
+}
+
+/// The joint from all FRFs, by the name it has in the fixture.
+fn joint(analysis: &Analysis) -> Value {
+    let mut entry = match &analysis.joint_fit {
+        Ok(fit) => fitted(fit),
+        Err(error) => json!({"failed": error.to_string()}),
+    };
+    entry["name"] = json!(analysis.joint);
+    entry
+}
+
+fn fitted(fit: &JointFit) -> Value {
+    let (k, c) = fit.std();
+    let mut entry = json!({
+        "name": null,
+        "stiffness": matrix(&fit.stiffness),
+        "damping": matrix(&fit.damping),
+        "std": pair(&k, &c),
+        "covariance": fit.covariance,
+        "chi2_per_dof": fit.chi2_per_dof,
+        "model_error": {"inflation": fit.inflation, "strain": fit.strain, "covariance": fit.model_covariance},
+        "on_the_boundary_of_passive": fit.is_on_the_boundary,
+        "tests": fit.tests,
+        "quantities": fit.quantities,
+        "frfs": fit.frfs.iter().map(ToString::to_string).collect::<Vec<_>>(),
+        "lines": fit.lines,
+    });
+    if let Some((mass, std)) = fit.mass {
+        entry["mass"] = json!({"value": mass, "std": std});
+    }
+    if let Some(admissible) = &fit.admissible {
+        entry["admissible"] = json!(admissible);
+    }
+    if let Some(best) = fit.law() {
+        entry["law"] = json!(best.name());
+        entry["laws"] = fit.laws.iter().map(law).collect();
+    }
+    entry
+}
+
+fn law(law: &LawFit) -> Value {
+    let mut parameters = json!({"stiffness": matrix(&law.stiffness)});
+    let (damping, shape) = match law.kind {
+        LawKind::Constant => (None, None),
+        LawKind::Viscous | LawKind::LinearStiffness => (Some("damping"), None),
+        LawKind::Structural => (Some("imaginary_stiffness"), None),
+        LawKind::StandardLinearSolid => (Some("relaxing_stiffness"), Some("time")),
+        LawKind::Fractional => (Some("springpot"), Some("exponent")),
+    };
+    if let Some(key) = damping {
+        parameters[key] = matrix(&law.damping);
+    }
+    if let Some((key, value)) = shape.zip(law.shape) {
+        parameters[key] = json!(value);
+    }
+    if let Some(change) = &law.change {
+        parameters["stiffness_per_rad_per_s"] = matrix(change);
+    }
+    if let Some(mass) = law.mass {
+        parameters["mass"] = json!(mass);
+    }
+    json!({"law": law.name(), "probability": law.probability, "parameters": parameters})
 }
 
 fn matrix(m: &RealMatrix2) -> Value {

@@ -25,6 +25,7 @@ mod effects;
 mod estimate;
 mod finding;
 mod hits;
+mod joint;
 mod levels;
 mod model_error;
 mod modes;

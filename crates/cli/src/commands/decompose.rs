@@ -7,7 +7,8 @@ use jointscope::estimation::ResponseWindow;
 use jointscope::pipeline::MeasuredFrfs;
 use jointscope::report::decomposition_page;
 use jointscope::report::format::quantity;
-use jointscope::{Analysis, AnalysisOptions, Band, DecompositionError, Relation, stiffness_file};
+use jointscope::decomposition::{JointFit, LikelihoodFit};
+use jointscope::{Analysis, AnalysisOptions, Band, DecompositionError, Relation, Remarks, stiffness_file};
 
 use crate::estimation_arguments::EstimationArguments;
 use crate::input::FixtureFile;
@@ -58,6 +59,7 @@ pub fn run(arguments: &DecomposeArguments) -> Result<String, Refusal> {
         relation: arguments.relation,
         band: arguments.band,
         exact: arguments.exact,
+        laws: true,
     };
     let analysis = Analysis::of(&as_recorded, &measured.frfs, &options).map_err(|error| match error {
         DecompositionError::Sides(_) | DecompositionError::Model(_) => fixture.refusal(error),
@@ -117,32 +119,63 @@ fn summary(analysis: &Analysis) -> Vec<String> {
         }
     }
     let elements: &[(usize, usize)] = if spectrum.scalar { &[(0, 0)] } else { &[(0, 0), (0, 1), (1, 1)] };
-    match &analysis.likelihood {
-        Ok(fit) => {
-            let (k_fixture, c_fixture) = analysis.tolerance_of_likelihood();
-            let (k_model, c_model) = fit.model_std();
-            let units = [["N/m", "N/rad", "N*m/rad"], ["N*s/m", "N*s/rad", "N*m*s/rad"]];
-            let parts = [
-                ("k", &fit.stiffness, [fit.stiffness_std, k_fixture, k_model]),
-                ("c", &fit.damping, [fit.damping_std, c_fixture, c_model]),
-            ];
-            for ((symbol, value, shares), units) in parts.into_iter().zip(units) {
-                for &(i, j) in elements {
-                    let std = shares.iter().map(|share| share.at(i, j).powi(2)).sum::<f64>().sqrt();
-                    let text = quantity(value.at(i, j), std, units[i + j]);
-                    lines.push(format!("{symbol}{}{} = {text}", i + 1, j + 1));
-                }
-            }
-            lines.push(format!("chi2 per degree of freedom of this constant joint: {:.3}", fit.chi2_per_dof));
-            if !fit.explains() {
-                lines.push(
-                    "with the fixture as stated, a constant joint does not explain the FRFs within their noise; the ± allow for \
-                     it as far as the band shows, and the page says what may be behind it"
-                        .to_owned(),
-                );
-            }
+    match (&analysis.joint_fit, &analysis.likelihood) {
+        (Ok(fit), _) => lines.extend(all_frfs(fit, elements)),
+        (Err(error), Ok(fit)) => {
+            lines.push(format!("{error}; from the FRFs across the joint alone:"));
+            lines.extend(across(analysis, fit, elements));
         }
-        Err(error) => lines.push(error.to_string()),
+        (Err(error), Err(_)) => lines.push(error.to_string()),
+    }
+    lines
+}
+
+const UNITS: [[&str; 3]; 2] = [["N/m", "N/rad", "N*m/rad"], ["N*s/m", "N*s/rad", "N*m*s/rad"]];
+
+/// The joint from all FRFs, an element a line, and what is to be known of it.
+fn all_frfs(fit: &JointFit, elements: &[(usize, usize)]) -> Vec<String> {
+    let (k_std, c_std) = fit.std();
+    let parts = [("k", &fit.stiffness, k_std), ("c", &fit.damping, c_std)];
+    let mut lines = Vec::new();
+    for ((symbol, value, std), units) in parts.into_iter().zip(UNITS) {
+        for &(i, j) in elements {
+            let text = quantity(value.at(i, j), std.at(i, j), units[i + j]);
+            lines.push(format!("{symbol}{}{} = {text}", i + 1, j + 1));
+        }
+    }
+    lines.push(format!(
+        "from {} over {}, the fixture moving within its tolerances; chi2 per degree of freedom {:.3}",
+        counted(fit.frfs.len(), "FRF"),
+        counted(fit.lines, "line"),
+        fit.chi2_per_dof
+    ));
+    lines.extend(fit.remarks());
+    lines
+}
+
+/// The joint from the FRFs across it, with the fixture taken as exact.
+fn across(analysis: &Analysis, fit: &LikelihoodFit, elements: &[(usize, usize)]) -> Vec<String> {
+    let (k_fixture, c_fixture) = analysis.tolerance_of_likelihood();
+    let (k_model, c_model) = fit.model_std();
+    let parts = [
+        ("k", &fit.stiffness, [fit.stiffness_std, k_fixture, k_model]),
+        ("c", &fit.damping, [fit.damping_std, c_fixture, c_model]),
+    ];
+    let mut lines = Vec::new();
+    for ((symbol, value, shares), units) in parts.into_iter().zip(UNITS) {
+        for &(i, j) in elements {
+            let std = shares.iter().map(|share| share.at(i, j).powi(2)).sum::<f64>().sqrt();
+            let text = quantity(value.at(i, j), std, units[i + j]);
+            lines.push(format!("{symbol}{}{} = {text}", i + 1, j + 1));
+        }
+    }
+    lines.push(format!("chi2 per degree of freedom of this constant joint: {:.3}", fit.chi2_per_dof));
+    if !fit.explains() {
+        lines.push(
+            "with the fixture as stated, a constant joint does not explain the FRFs within their noise; the ± allow for \
+             it as far as the band shows, and the page says what may be behind it"
+                .to_owned(),
+        );
     }
     lines
 }

@@ -41,16 +41,17 @@ pub struct Admissible {
     pub costs: f64,
 }
 
-/// Tests of the free optimum, and the nearest admissible joint where one fails.
+/// Tests of the free optimum, and the nearest admissible joint where one fails. Variances count `strain` times.
 pub(super) fn examined(
     problem: &Problem,
     free: &Fitted,
     covariance: &Covariance,
+    strain: f64,
 ) -> (JointTests, Option<Admissible>) {
     let at = &free.point.coordinates;
     let count = problem.law.stiffness.count();
     let lowest = |first: usize| match problem.law.stiffness {
-        Form::Scalar => below_zero(at[first], covariance.at(first, first).sqrt()),
+        Form::Scalar => below_zero(at[first], (strain * covariance.at(first, first)).sqrt()),
         _ => {
             let [a, b, d] = [0, 1, 2].map(|e| at[first + e]);
             let (half, mean) = (0.5 * (a - d), 0.5 * (a + d));
@@ -65,11 +66,11 @@ pub(super) fn examined(
                     variance += by[i] * by[j] * covariance.at(first + i, first + j);
                 }
             }
-            below_zero(lambda, variance.sqrt())
+            below_zero(lambda, (strain * variance).sqrt())
         }
     };
     let reciprocal = reciprocity(problem, free);
-    let gain = reciprocal.as_ref().map(|point| (free.point.objective - point.objective).max(0.0));
+    let gain = reciprocal.as_ref().map(|point| (free.point.objective - point.objective).max(0.0) / strain);
     let tests = JointTests {
         reciprocity: gain.map(|gain| (-0.5 * gain).exp()),
         definite: lowest(0),
@@ -102,7 +103,7 @@ fn refitted(problem: &Problem, free: &Fitted, law: Dynamics) -> Option<(Point, D
     start.extend_from_slice(&free.point.coordinates[own..]);
     let linear = Parameter::new(Transform::Linear { centre: 0.0, scale: 1.0 });
     let parameters = std::iter::repeat_n(linear, law.count()).chain(problem.parameters[own..].iter().copied());
-    let other = Problem { test: problem.test, law, parameters: parameters.collect(), mass: None };
+    let other = Problem { test: problem.test, law, parameters: parameters.collect(), mass: problem.mass };
     let (point, _) = other.fit(start, Some(free.others.clone()))?;
     Some((point, law))
 }

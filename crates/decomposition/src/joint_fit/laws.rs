@@ -18,7 +18,7 @@ pub struct LawFit {
     pub mass: Option<f64>,
     /// Probability among the laws compared.
     pub probability: f64,
-    /// χ² and priors, in units of the noise as inflated.
+    /// χ² and priors.
     pub objective: f64,
     /// K: N/m, N/rad, N·m/rad.
     pub stiffness: RealMatrix2,
@@ -66,10 +66,11 @@ const UNKNOWN: f64 = 1e4;
 const STEPS: usize = 40;
 /// Of the law without damping, whose resonances are infinite: it is near at once or not at all.
 const UNDAMPED_STEPS: usize = 8;
-/// The most probable laws without mass are tried with mass.
-const WITH_MASS: usize = 3;
+/// So many of the most probable laws without mass are tried with mass, and all if one of them gains as much by it.
+const WITH_MASS: usize = 2;
+const WORTHWHILE: f64 = 20.0;
 /// Coordinate of the mass that they begin with.
-const FIRST_MASS: f64 = 0.05;
+pub(super) const FIRST_MASS: f64 = 0.05;
 
 /// A law at its optimum.
 struct Candidate {
@@ -82,15 +83,14 @@ struct Candidate {
 
 /// All laws with and without mass, the most probable first. `first` is the viscous one at its optimum.
 pub(super) fn compared(fitter: &Fitter, viscous: &Problem, first: &Fitted, quantities: &[Uncertain]) -> Vec<LawFit> {
-    let all = candidates(fitter, viscous, first, quantities, viscous.test.weights);
+    let mut all = candidates(fitter, viscous, first, quantities);
     // Noise is inflated by what the best law leaves.
     let best = all.iter().min_by(|a, b| a.fit.objective.total_cmp(&b.fit.objective));
     let inflation = best.map_or(1.0, |best| best.inflation);
-    if inflation == 1.0 {
-        return ranked(all);
+    for candidate in &mut all {
+        candidate.evidence += 0.5 * candidate.fit.objective * (1.0 - 1.0 / inflation);
     }
-    let weights: Vec<f64> = viscous.test.weights.iter().map(|weight| weight / inflation).collect();
-    ranked(candidates(fitter, viscous, first, quantities, &weights))
+    ranked(all)
 }
 
 fn ranked(mut all: Vec<Candidate>) -> Vec<LawFit> {
@@ -108,9 +108,8 @@ fn candidates(
     viscous: &Problem,
     first: &Fitted,
     quantities: &[Uncertain],
-    weights: &[f64],
 ) -> Vec<Candidate> {
-    let test = fitter.test(quantities, weights);
+    let test = fitter.test(quantities, viscous.test.weights);
     let mut all: Vec<(Candidate, Vec<f64>)> = Vec::new();
     for kind in LawKind::ALL {
         let law = Dynamics::new(kind, viscous.law.unit, viscous.law.middle, fitter.scalar);
@@ -123,16 +122,26 @@ fn candidates(
         all.extend(candidate(fitter, &problem, &point, &others).map(|candidate| (candidate, at)));
     }
     all.sort_by(|a, b| b.0.evidence.total_cmp(&a.0.evidence));
-    let heavy = all.iter().take(WITH_MASS).filter_map(|(light, at)| {
+    let mass = Some(mass_scale(fitter));
+    let with_mass = |(light, at): &(Candidate, Vec<f64>)| {
         let law = light.fit.law;
-        let mass = Some(MASS * lighter_side(fitter));
         let problem = Problem { test: &test, law, parameters: parameters(&law, mass, quantities), mass };
         let mut start = at.clone();
         start.insert(law.count(), FIRST_MASS);
         let (point, others) = problem.fit_within(start, None, STEPS)?;
-        candidate(fitter, &problem, &point, &others)
-    });
-    let heavy: Vec<Candidate> = heavy.collect();
+        Some((candidate(fitter, &problem, &point, &others)?, light.fit.objective - point.objective))
+    };
+    let (mut heavy, mut most): (Vec<Candidate>, f64) = (Vec::new(), 0.0);
+    for (place, light) in all.iter().filter(|(light, _)| light.fit.kind != LawKind::Constant).enumerate() {
+        // Where mass gains nothing for the laws nearest to the FRFs, it does not for the others.
+        if place >= WITH_MASS && most < WORTHWHILE {
+            break;
+        }
+        if let Some((candidate, gain)) = with_mass(light) {
+            heavy.push(candidate);
+            most = most.max(gain);
+        }
+    }
     all.into_iter().map(|(candidate, _)| candidate).chain(heavy).collect()
 }
 
@@ -145,6 +154,16 @@ fn nearest_start(viscous: &Problem, first: &Fitted, law: &Dynamics) -> Option<Ve
     };
     let starts = shapes.iter().filter_map(|&shape| viscous.imitated(&first.point, law, shape));
     starts.reduce(|a, b| if b.1 < a.1 { b } else { a }).map(|(start, _)| start)
+}
+
+/// Mass for one unit of its coordinate, kg.
+pub(super) fn mass_scale(fitter: &Fitter) -> f64 {
+    MASS * lighter_side(fitter)
+}
+
+/// How a joint's mass moves in a fit.
+pub(super) fn mass_parameter() -> Parameter {
+    Parameter::new(Transform::Linear { centre: 0.0, scale: 1.0 }).with_precision(1.0).between(0.0, f64::INFINITY)
 }
 
 fn lighter_side(fitter: &Fitter) -> f64 {
@@ -171,7 +190,7 @@ fn parameters(law: &Dynamics, mass: Option<f64>, quantities: &[Uncertain]) -> Ve
             _ => own(TIME),
         });
     }
-    all.extend(mass.map(|_| own(1.0).between(0.0, f64::INFINITY)));
+    all.extend(mass.map(|_| mass_parameter()));
     all.extend(quantities.iter().map(|quantity| quantity.parameter));
     all
 }

@@ -9,9 +9,9 @@
 use super::law::{MOST, Placed};
 use super::recorded::Recorded;
 use crate::Sides;
-use jointscope_beam::consistent_mass;
+use jointscope_beam::{Matrix4, consistent_mass};
 use jointscope_fixture::Fixture;
-use jointscope_linalg::{ComplexMatrix2, LuWorkspace, Matrix2};
+use jointscope_linalg::{ComplexMatrix2, Matrix2};
 use jointscope_lumped::{Instrument, MeasuringChain, Model, Station};
 use num_complex::Complex64;
 use std::sync::Arc;
@@ -188,71 +188,69 @@ impl Uncoupled {
             (0..recorded.responses.len()).map(|c| first(on_alpha.outputs.contains(&c))).collect();
         let inputs: Vec<usize> =
             (0..recorded.references.len()).map(|c| first(on_alpha.inputs.contains(&c))).collect();
-        let mut lu = LuWorkspace::new();
-        // Loads on the four motions of the ends, then the references.
-        let columns = 4 + inputs.len();
-        let mut loads = vec![[Complex64::ZERO; 4]; columns];
-        let mut rows = vec![[Complex64::ZERO; 4]; outputs.len()];
-        let mut right = vec![Complex64::ZERO; 4 * columns];
+        let factor = square_root(&mass);
+        // Rows: motions of the ends, then responses; columns: loads on the ends, then references.
+        let (height, width) = (4 + outputs.len(), 4 + inputs.len());
+        let mut all = vec![Complex64::ZERO; height * width];
+        let mut row = vec![Complex64::ZERO; width];
+        let mut column = vec![Complex64::ZERO; height];
         for line in 0..n {
             let squared = recorded.s[line] * recorded.s[line];
-            loads.fill([Complex64::ZERO; 4]);
-            rows.fill([Complex64::ZERO; 4]);
+            all.fill(Complex64::ZERO);
             for i in 0..2 {
                 for j in 0..2 {
-                    loads[j][i] = self.alpha.values[(2 * i + j) * n + line];
-                    loads[j + 2][i + 2] = self.beta.values[(2 * i + j) * n + line];
+                    all[i * width + j] = self.alpha.values[(2 * i + j) * n + line];
+                    all[(i + 2) * width + j + 2] = self.beta.values[(2 * i + j) * n + line];
+                }
+                for (c, &at) in inputs.iter().enumerate() {
+                    all[(at + i) * width + 4 + c] = self.to_joint[(2 * c + i) * n + line];
+                }
+                for (c, &at) in outputs.iter().enumerate() {
+                    all[(4 + c) * width + at + i] = self.from_joint[(2 * c + i) * n + line];
                 }
             }
-            for (c, &at) in inputs.iter().enumerate() {
-                (0..2).for_each(|i| loads[4 + c][at + i] = self.to_joint[(2 * c + i) * n + line]);
+            for (frf, &(response, reference)) in recorded.channels.iter().enumerate() {
+                all[(4 + response) * width + 4 + reference] = self.between[frf * n + line];
             }
-            for (c, &at) in outputs.iter().enumerate() {
-                (0..2).for_each(|i| rows[c][at + i] = self.from_joint[(2 * c + i) * n + line]);
-            }
-            let inertial = |i: usize, load: &[Complex64; 4]| -> Complex64 {
-                squared * (0..4).map(|k| load[k] * mass[i][k]).sum::<Complex64>()
-            };
-            for i in 0..4 {
-                loads.iter().enumerate().for_each(|(c, load)| right[i * columns + c] = inertial(i, load));
-            }
-            let factorized = lu.factorize(4, |matrix| {
-                for i in 0..4 {
-                    (0..4).for_each(|j| matrix[i * 4 + j] += inertial(i, &loads[j]));
-                    matrix[i * 4 + i] += 1.0;
+            // M = Σ l lᵀ: four changes of rank one.
+            for l in &factor {
+                for (c, value) in row.iter_mut().enumerate() {
+                    *value = (0..4).map(|k| all[k * width + c] * l[k]).sum();
                 }
-            });
-            factorized.ok()?;
-            lu.solve_columns_in_place(&mut right, columns);
-            let less = |row: &[Complex64; 4], column: usize, before: Complex64| {
-                before - (0..4).map(|k| row[k] * right[k * columns + column]).sum::<Complex64>()
-            };
+                for (r, value) in column.iter_mut().enumerate() {
+                    *value = (0..4).map(|k| all[r * width + k] * l[k]).sum();
+                }
+                let own: Complex64 = (0..4).map(|k| row[k] * l[k]).sum();
+                let share = squared / (squared * own + 1.0);
+                for (r, value) in column.iter().enumerate() {
+                    let scaled = share * value;
+                    let changed = all[r * width..(r + 1) * width].iter_mut();
+                    changed.zip(&row).for_each(|(entry, by)| *entry -= scaled * by);
+                }
+            }
             // d = [−R, I] on (near, far).
             let relative = |v: [Complex64; 4]| [v[2] - v[0] - v[1] * length, v[3] - v[1]];
-            let end_row = |i: usize| -> [Complex64; 4] { std::array::from_fn(|j| loads[j][i]) };
-            let by_ends: [[Complex64; 2]; 4] = std::array::from_fn(|i| {
-                let row = end_row(i);
-                relative(std::array::from_fn(|j| less(&row, j, row[j])))
-            });
+            let end = |r: usize, c: usize| all[r * width + c];
+            let by_ends: [[Complex64; 2]; 4] =
+                std::array::from_fn(|i| relative(std::array::from_fn(|j| end(i, j))));
             for j in 0..2 {
                 let [y, theta] = relative(std::array::from_fn(|i| by_ends[i][j]));
                 self.at_joint[j * n + line] = y;
                 self.at_joint[(2 + j) * n + line] = theta;
             }
             for (frf, &(response, reference)) in recorded.channels.iter().enumerate() {
-                let value = &mut self.between[frf * n + line];
-                *value = less(&rows[response], 4 + reference, *value);
+                self.between[frf * n + line] = end(4 + response, 4 + reference);
             }
-            for (c, row) in rows.iter().enumerate() {
-                let moved = relative(std::array::from_fn(|e| less(row, e, row[e])));
+            for c in 0..outputs.len() {
+                let moved = relative(std::array::from_fn(|e| end(4 + c, e)));
                 (0..2).for_each(|i| self.from_joint[(2 * c + i) * n + line] = moved[i]);
             }
             for c in 0..inputs.len() {
-                let moved = relative(std::array::from_fn(|e| less(&end_row(e), 4 + c, loads[4 + c][e])));
+                let moved = relative(std::array::from_fn(|e| end(e, 4 + c)));
                 (0..2).for_each(|i| self.to_joint[(2 * c + i) * n + line] = moved[i]);
             }
         }
-        Some(())
+        all.iter().all(|value| value.is_finite()).then_some(())
     }
 
     /// What is recorded with a joint of this law, FRF after FRF; its derivatives by the coordinates of a law (this one or another that takes its place)
@@ -325,4 +323,20 @@ impl SideFrfs {
         receptances.on_lines(&recorded.s, &mut values).ok()?;
         Some(SideFrfs { fixture: fixture.clone(), end, outputs, inputs, values })
     }
+}
+
+/// Columns l of a lower triangular factor, M = Σ l lᵀ, of a matrix that is positive semidefinite.
+fn square_root(matrix: &Matrix4) -> [[f64; 4]; 4] {
+    let mut rest = *matrix;
+    std::array::from_fn(|k| {
+        let pivot = rest[k][k];
+        let mut column = [0.0; 4];
+        if pivot > 0.0 {
+            (k..4).for_each(|i| column[i] = rest[i][k] / pivot.sqrt());
+            for i in k..4 {
+                (k..4).for_each(|j| rest[i][j] -= column[i] * column[j]);
+            }
+        }
+        column
+    })
 }

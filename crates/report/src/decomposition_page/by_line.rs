@@ -89,6 +89,7 @@ fn level(subject: &Subject, part: Part, element: Element) -> Option<(&'static st
     };
     let label = match estimate.method {
         Method::MaximumLikelihood => "maximum likelihood",
+        Method::AllFrfs => "all FRFs",
         Method::WeightedMean => "weighted mean",
         Method::PlainMean => "mean",
     };

@@ -33,6 +33,7 @@ pub(super) fn method(method: Method) -> &'static str {
     match method {
         Method::PlainMean => "plain mean over the band",
         Method::WeightedMean => "weighted mean over the band",
-        Method::MaximumLikelihood => "maximum likelihood",
+        Method::MaximumLikelihood => "maximum likelihood from the FRFs across it",
+        Method::AllFrfs => "all FRFs, the fixture moving within its tolerances",
     }
 }

@@ -91,7 +91,7 @@ fn effect<'a>(
 ) -> Option<Effect<'a>> {
     let quantity = quantities.iter().find(|quantity| quantity.path == share.path)?;
     let changes: (RealMatrix2, RealMatrix2) = match subject.best.method {
-        Method::MaximumLikelihood => share.likelihood?,
+        Method::MaximumLikelihood | Method::AllFrfs => share.likelihood?,
         Method::WeightedMean | Method::PlainMean => share.plain,
     };
     let relative = |&(part, element): &(Part, Element)| {

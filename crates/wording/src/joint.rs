@@ -1,0 +1,93 @@
+//! What a reader should know of the joint found from all FRFs.
+
+use crate::numbers::{listed, percent, plain, significant};
+use crate::{Remarks, Says};
+use jointscope_decomposition::{JointFit, JointTests, LawFit, LawKind};
+
+/// Standard deviations from which a quantity of the fixture is worth a word.
+const FAR: f64 = 2.0;
+/// Probability from which a law is said to hold, rather than to be the most probable one.
+const CERTAIN: f64 = 0.95;
+
+impl Says for LawFit {
+    fn says(&self) -> String {
+        let law = match (self.kind, self.shape) {
+            (LawKind::Constant, _) => "constant, without damping".to_owned(),
+            (LawKind::Viscous, _) => "constant stiffness with viscous damping".to_owned(),
+            (LawKind::Structural, _) => {
+                "constant stiffness with structural damping (a loss factor that does not depend on frequency)".to_owned()
+            }
+            (LawKind::StandardLinearSolid, Some(time)) => {
+                format!("a standard linear solid, relaxation time {}", plain(time, "s"))
+            }
+            (LawKind::Fractional, Some(exponent)) => {
+                format!("a springpot beside a spring, exponent {}", significant(exponent, 2))
+            }
+            (LawKind::LinearStiffness, _) => "a stiffness linear in frequency with viscous damping".to_owned(),
+            (kind, None) => kind.name().replace('_', " "),
+        };
+        match self.mass {
+            Some(mass) => format!("{law}, with a mass of {} of its own", plain(mass, "kg")),
+            None => law,
+        }
+    }
+}
+
+impl Remarks for JointFit {
+    fn remarks(&self) -> Vec<String> {
+        let mut all = Vec::new();
+        all.extend(self.law().map(|law| {
+            let sure = if law.probability >= CERTAIN { "" } else { "most probably " };
+            format!("over frequency the joint is {sure}{} (probability {})", law.says(), percent(law.probability))
+        }));
+        all.extend(self.mass.map(|(mass, std)| {
+            format!(
+                "the FRFs show a mass of the joint of {} ± {}; k and c are those of a joint with it",
+                plain(mass, "kg"),
+                plain(std, "kg")
+            )
+        }));
+        if self.strain > 1.0 {
+            all.push(format!(
+                "the fixture's quantities would be farther from what is stated than chance takes them: the ± are {} times as large as noise and tolerances make \
+                 them; something is stated wrongly or left out, which `jointscope diagnose` may name",
+                significant(self.strain.sqrt(), 2)
+            ));
+        }
+        if self.inflation > 1.0 {
+            all.push(format!(
+                "noise and tolerances do not explain the FRFs (χ² per degree of freedom {}): the noise is taken {} times as large, and the ± hold \
+                 how far the joint moves when an eighth of the lines is left out",
+                significant(self.chi2_per_dof, 3),
+                significant(self.inflation.sqrt(), 2)
+            ));
+        }
+        if self.is_on_the_boundary {
+            all.push("a free c would give out energy; it is held at the limit of what a passive joint can do".to_owned());
+        }
+        all.extend(self.tests.remarks());
+        let far = self.quantities.iter().filter(|quantity| quantity.std.is_some() && quantity.deviations.abs() >= FAR);
+        let far: Vec<String> = far
+            .map(|quantity| format!("{} by {} standard deviations", quantity.path, significant(quantity.deviations, 2)))
+            .collect();
+        if !far.is_empty() {
+            all.push(format!("the FRFs move {}", listed(&far)));
+        }
+        all
+    }
+}
+
+impl Remarks for JointTests {
+    fn remarks(&self) -> Vec<String> {
+        let said = |name: &str| match name {
+            "reciprocity" => (self.reciprocity, "k12 and k21 differ: the joint is not reciprocal"),
+            "definite" => (self.definite, "k has a negative eigenvalue: the joint would not stay at rest"),
+            _ => (self.passive, "c has a negative eigenvalue: the joint would give out energy"),
+        };
+        let sentence = |name: &str| {
+            let (p, what) = said(name);
+            Some(format!("{what} (p = {}); a sensor, a place or a block is to be looked at", significant(p?, 2)))
+        };
+        self.failed().into_iter().filter_map(sentence).collect()
+    }
+}
