@@ -20,7 +20,9 @@ pub use laws::LawFit;
 
 use crate::{DecompositionError, LikelihoodFit, Sides};
 use jointscope_averaging::Band;
-use jointscope_inference::{Covariance, Parameter, Transform, autocorrelation, jackknife, variance_inflation};
+use jointscope_inference::{
+    Covariance, Parameter, Transform, autocorrelation, inflated_weight, jackknife, variance_inflation,
+};
 use jointscope_linalg::{Matrix2, RealMatrix2};
 use jointscope_spectra::{FrfPair, FrfSet};
 use law::{Dynamics, Form};
@@ -103,6 +105,8 @@ const EXPLAINED: f64 = 1.2;
 const DOUBTFUL: f64 = 1.3;
 /// Probability of the laws with mass from which the joint is said to have one.
 const HEAVY: f64 = 0.95;
+/// Shares of the signal that count as noise in the stages of a fit from afar.
+const SHARES_AS_NOISE: [f64; 4] = [1.0, 0.3, 0.06, 0.01];
 /// Blocks of neighbouring lines that the jackknife leaves out in turn.
 const BLOCKS: usize = 8;
 /// Damping of a start without any, as a loss factor.
@@ -229,7 +233,13 @@ impl<'a> Fitter<'a> {
                 break;
             }
         }
+        if best.as_ref().is_none_or(|best| self.per_degree(&problem, &best.point) > DOUBTFUL) {
+            best = starts.iter().filter_map(|start| self.from_afar(&problem, start)).chain(best).reduce(|a, b| {
+                if b.point.objective < a.point.objective { b } else { a }
+            });
+        }
         let first = best.filter(|best| best.point.objective.is_finite()).ok_or(NO_START)?;
+        let first = admissible::settled(&problem, first);
         let chi2_per_dof = self.per_degree(&problem, &first.point);
         let laws = match with_laws {
             true => laws::compared(self, &problem, &first, quantities),
@@ -260,6 +270,20 @@ impl<'a> Fitter<'a> {
         let mut result = self.result(&problem, &fitted, quantities)?;
         (result.chi2_per_dof, result.inflation, result.laws) = (chi2_per_dof, inflation, laws);
         Ok(result)
+    }
+
+    /// A fit by stages in which less and less of the signal counts as noise, so that sharp resonances do not decide where it goes.
+    fn from_afar(&self, problem: &Problem, start: &[f64]) -> Option<Fitted> {
+        let mut at = problem.whole(start);
+        for share in SHARES_AS_NOISE {
+            let values = self.recorded.values.iter().zip(&self.recorded.weights);
+            let weights: Vec<f64> =
+                values.map(|(value, weight)| inflated_weight(*weight, value.norm_sqr(), share)).collect();
+            let test = self.test(problem.test.quantities, &weights);
+            at = Problem::viscous(&test, problem.law, None).fit(at, None)?.0.coordinates;
+        }
+        let (point, others) = problem.fit(at, None)?;
+        Some(Fitted { point, others })
     }
 
     /// The fit of a joint with mass, from that without.

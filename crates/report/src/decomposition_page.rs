@@ -1,5 +1,6 @@
 //! The page of one decomposition: what the joint is, what that rests on, and how far to believe it.
 
+mod all_frfs;
 mod by_line;
 mod element;
 mod fixture_view;
@@ -53,7 +54,7 @@ impl<'a> Subject<'a> {
 }
 
 /// The page of a joint's decomposition as one self-contained HTML file: verdict, fixture, key figures with noise and
-/// tolerances apart, K and C by line, the FRFs behind them, interfaces, what the tolerances do, what was left out.
+/// tolerances apart, the joint from all FRFs with its laws and tests, K and C by line, the FRFs behind them, interfaces, what the tolerances do, what was left out.
 ///
 /// `fixture` is the one that `analysis` was made with. The same input gives the same bytes.
 ///
@@ -76,6 +77,7 @@ pub fn decomposition_page(
         .page(title, context.subtitle(fixture), verdict)
         .sections(context.hits())
         .sections([fixture_view::section(&subject), result::section(&subject)])
+        .sections(all_frfs::section(&subject))
         .sections(by_line::sections(&subject))
         .sections([frfs::section(&subject)])
         .sections(interface_table::section(&subject))

@@ -2,18 +2,42 @@
 
 use crate::common::Noise;
 use jointscope_decomposition::{
-    Analysis, AnalysisOptions, JointFit, JointFitOptions, LawKind, Relation, Sides, decompose, fit_joint, maximum_likelihood,
+    JointFit, JointFitOptions, LawFit, LawKind, Relation, Sides, decompose, fit_joint, maximum_likelihood,
 };
 use jointscope_fixture::{Fixture, JointLaw};
 use jointscope_lumped::nominal_stiffness;
 use jointscope_rig::{Instrument, drawn_within_tolerance, generator};
-use jointscope_spectra::{FrfPair, FrfSet, SpectralLines};
+use jointscope_linalg::Matrix2;
+use jointscope_spectra::{FrfForm, FrfPair, FrfSet, SpectralLines};
+use num_complex::Complex64;
 
 const EIGHT: [(&str, &str); 8] =
     [("4", "1"), ("3", "1"), ("4", "2"), ("3", "2"), ("1", "1"), ("2", "1"), ("4", "4"), ("3", "4")];
 
-/// Two blocks whose joint has a stiffness and dashpots of its own, tolerances as of a weighed and measured fixture.
-fn fixture(physics: &str) -> Fixture {
+/// What the joint is.
+#[derive(Clone, Copy)]
+struct Case {
+    /// k11, k12, k22.
+    stiffness: [f64; 3],
+    /// c11, c12, c22; nothing where they are zero.
+    damping: [f64; 3],
+    /// A beam with structural damping of the whole in place of the matrices.
+    beam: bool,
+}
+
+impl Case {
+    fn ordinary() -> Self {
+        Case { stiffness: [2.4e6, -8.4e4, 4.1e3], damping: [12.0, -0.35, 0.02], beam: false }
+    }
+
+    /// k and c of rank one: smallest eigenvalues of zero.
+    fn edge() -> Self {
+        Case { stiffness: [2.4e6, -8.4e4, 2.94e3], damping: [12.0, -0.36, 0.0108], beam: false }
+    }
+}
+
+/// Two blocks on a joint, tolerances as of a weighed and measured fixture.
+fn fixture(case: &Case, physics: &str) -> Fixture {
     let q = |value: f64, std: f64| format!(r#"{{"value": {value}, "std": {std}}}"#);
     let block = |mass: f64, inertia: f64, x: f64| {
         format!(
@@ -24,20 +48,31 @@ fn fixture(physics: &str) -> Fixture {
         )
     };
     let point = |body: &str, x: f64| format!(r#"{{ "body": "{body}", "x": {} }}"#, q(x, 1e-4));
+    let matrix = |[a, b, d]: [f64; 3], std: f64| {
+        let [a, b, d] = [a, b, d].map(|e| q(e, std * e.abs()));
+        format!("[[{a}, {b}], [{b}, {d}]]")
+    };
+    // On the edge a drawn matrix would be beyond it.
+    let stiffness_std = if case.stiffness[2] == 4.1e3 { 0.01 } else { 0.0 };
+    let damping = match case.damping {
+        [0.0, ..] => String::new(),
+        damping => format!(r#", "damping": {}"#, matrix(damping, 0.0)),
+    };
+    let (joint, losses) = if case.beam {
+        let beam = r#""beam": { "youngs_modulus": {"value": 2.07e11, "std": 1e9}, "second_moment": {"value": 3.4e-10, "std": 2e-12} }"#;
+        (beam.to_owned(), r#""damping": {"rayleigh": {"mass": {"value": 0, "std": 0}, "stiffness": {"value": 5e-6, "std": 0}}},"#)
+    } else {
+        (format!(r#""stiffness": {}{damping}"#, matrix(case.stiffness, stiffness_std)), "")
+    };
     Fixture::from_json(&format!(
         r#"{{ "bodies": {{ "A": {}, "B": {} }}, "points": {{ "1": {}, "2": {}, "3": {}, "4": {} }},
-            "joints": {{ "J": {{ "from": "2", "to": "3",
-                "stiffness": [[{}, {}], [{}, {}]], "damping": [[12.0, -0.35], [-0.35, 0.02]] }} }}, "physics": [{physics}] }}"#,
+            "joints": {{ "J": {{ "from": "2", "to": "3", {joint} }} }}, {losses} "physics": [{physics}] }}"#,
         block(1.102, 5.9e-4, -0.031),
         block(1.485, 1.02e-3, 0.104),
         point("A", -0.056),
         point("A", 0.0),
         point("B", 0.07),
         point("B", 0.131),
-        q(2.4e6, 2.4e5),
-        q(-8.4e4, 4e3),
-        q(-8.4e4, 4e3),
-        q(4.1e3, 4e2),
     ))
     .unwrap()
 }
@@ -82,13 +117,13 @@ struct Runs {
     chi2: Vec<f64>,
 }
 
-fn run(count: u64, relative: f64, seed: u64) -> Runs {
-    let fixture = fixture("");
+fn run(case: &Case, count: u64, seed: u64) -> Runs {
+    let fixture = fixture(case, "");
     let (mut rng, mut noise) = (generator(seed), Noise::new(seed));
     let mut runs = Runs::default();
     for _ in 0..count {
         let truth = drawn_within_tolerance(&fixture, &mut rng).unwrap();
-        let fit = fit(&fixture, &recorded(&truth, &mut noise, relative, &EIGHT), false);
+        let fit = fit(&fixture, &recorded(&truth, &mut noise, 0.01, &EIGHT), false);
         let (found, expected) = (found(&fit), six(&truth));
         runs.scores.push(std::array::from_fn(|e| (found[e] - expected[e]) / fit.covariance[e][e].sqrt()));
         runs.errors.push(std::array::from_fn(|e| found[e] / expected[e] - 1.0));
@@ -127,27 +162,195 @@ fn report(runs: &Runs) {
 
 #[test]
 fn on_fixtures_drawn_from_their_tolerances_the_six_numbers_are_as_far_off_as_stated() {
-    let runs = run(40, 0.01, 7);
+    let runs = run(&Case::ordinary(), 40, 7);
     report(&runs);
+    let chi2 = runs.chi2.iter().sum::<f64>() / 40.0;
+    assert!((0.98..1.02).contains(&chi2), "{chi2}");
+    for (e, name) in NAMES.iter().enumerate() {
+        // The rms of 40 scores has a standard deviation of 0.11.
+        let score = rms(runs.scores.iter().map(|s| s[e]));
+        assert!((0.66..1.34).contains(&score), "{name}: {score}");
+    }
 }
 
 #[test]
-fn scratch_times() {
-    let fixture = fixture("");
-    let mut noise = Noise::new(1);
-    let truth = drawn_within_tolerance(&fixture, &mut generator(3)).unwrap();
-    for (pairs, laws) in [(&EIGHT[..4], false), (&EIGHT[..], false), (&EIGHT[..], true)] {
-        let frfs = recorded(&truth, &mut noise, 0.01, pairs);
-        let start = std::time::Instant::now();
-        let fit = fit(&fixture, &frfs, laws);
-        println!("{} FRFs, laws {laws}: {:?}", pairs.len(), start.elapsed());
-        for q in &fit.quantities { println!("{} {:.3} std after {:.3}", q.path, q.deviations, q.fitted_std / q.std.unwrap()); }
-        println!("{:?} {:?}", fit.tests, fit.admissible);
-        for law in &fit.laws { println!("{} {:.4} {:.2} {:?} {:?}", law.name(), law.probability, law.objective, law.mass, law.shape); }
-        let start = std::time::Instant::now();
-        let analysis = Analysis::of(&fixture, &frfs, &AnalysisOptions::default()).unwrap();
-        println!("analysis {:?}", start.elapsed());
-        let ml = analysis.likelihood.unwrap();
-        println!("ml {:?}", found(&fit).iter().zip([ml.stiffness.at(0,0), ml.stiffness.at(0,1), ml.stiffness.at(1,1)]).map(|(a,b)| b/a).collect::<Vec<_>>());
+#[ignore = "five minutes; the record of the joint from all FRFs has its figures"]
+fn in_three_hundred_runs_the_six_numbers_keep_to_their_bound_and_intervals() {
+    let runs = run(&Case::ordinary(), 400, 11);
+    report(&runs);
+    for (e, name) in NAMES.iter().enumerate() {
+        let score = rms(runs.scores.iter().map(|s| s[e]));
+        let inside = runs.scores.iter().filter(|s| s[e].abs() < 1.96).count() as f64 / runs.scores.len() as f64;
+        assert!(score <= 1.1 && (0.92..0.98).contains(&inside), "{name}: {score}, {inside}");
     }
+}
+
+#[test]
+fn frfs_on_one_side_of_the_joint_make_it_several_times_better_known_than_those_across_it() {
+    let fixture = fixture(&Case::ordinary(), "");
+    let (mut rng, mut noise) = (generator(5), Noise::new(5));
+    let (mut all, mut across) = (Vec::new(), Vec::new());
+    for _ in 0..10 {
+        let truth = drawn_within_tolerance(&fixture, &mut rng).unwrap();
+        let frfs = recorded(&truth, &mut noise, 0.01, &EIGHT);
+        let sides = Sides::of(&fixture, None).unwrap();
+        let spectrum = decompose(&frfs, &sides, Relation::Exact).unwrap();
+        let four = maximum_likelihood(&frfs, &sides, &spectrum, None, None).unwrap();
+        let (six, eight) = (six(&truth), found(&fit(&fixture, &frfs, false)));
+        let k = &four.stiffness;
+        let four = [k.at(0, 0), k.at(0, 1), k.at(1, 1)];
+        all.push(std::array::from_fn::<f64, 3, _>(|e| eight[e] / six[e] - 1.0));
+        across.push(std::array::from_fn::<f64, 3, _>(|e| four[e] / six[e] - 1.0));
+    }
+    for e in 0..3 {
+        let [all, across] = [&all, &across].map(|runs| rms(runs.iter().map(|run| run[e])));
+        println!("{}: all FRFs {:.3} %, FRFs across {:.3} %", NAMES[e], 100.0 * all, 100.0 * across);
+        assert!(across > 2.0 * all, "{}: {all} against {across}", NAMES[e]);
+    }
+}
+
+/// Largest difference between the share of p-values below a probability and that probability.
+fn from_uniform(p: &[f64]) -> f64 {
+    let mut p = p.to_vec();
+    p.sort_by(f64::total_cmp);
+    let n = p.len() as f64;
+    p.iter().enumerate().map(|(i, p)| (p - i as f64 / n).abs().max((p - (i + 1) as f64 / n).abs())).fold(0.0, f64::max)
+}
+
+#[test]
+fn p_values_are_uniform_where_the_joint_is_on_the_edge_of_what_physics_allows() {
+    let runs = run(&Case::edge(), 60, 3);
+    report(&runs);
+    for (name, p) in ["reciprocity", "definite", "passive"].iter().zip(&runs.p) {
+        // Kolmogorov and Smirnov's bound for 60 values at 1 %.
+        assert!(from_uniform(p) < 1.63 / (p.len() as f64).sqrt(), "{name}: {}", from_uniform(p));
+    }
+}
+
+#[test]
+#[ignore = "minutes; the record of the joint from all FRFs has its figures"]
+fn p_values_are_uniform_in_three_hundred_runs() {
+    let runs = run(&Case::edge(), 400, 4);
+    report(&runs);
+    for (name, p) in ["reciprocity", "definite", "passive"].iter().zip(&runs.p) {
+        println!("{name}: farthest from uniform {:.3}", from_uniform(p));
+        assert!(from_uniform(p) < 1.63 / (p.len() as f64).sqrt(), "{name}");
+    }
+}
+
+#[test]
+fn a_joint_whose_k21_is_a_tenth_off_its_k12_fails_reciprocity_and_a_symmetric_one_does_not() {
+    let fixture = fixture(&Case::ordinary(), "");
+    let sides = Sides::of(&fixture, None).unwrap();
+    let dummy = recorded(&fixture, &mut Noise::new(1), 1e-6, &EIGHT[..4]);
+    let compliances = decompose(&dummy, &sides, Relation::Exact).unwrap().sides;
+    let p = |k21: f64| {
+        let mut values = vec![Complex64::ZERO; dummy.all_values().len()];
+        let n = lines().len();
+        for (line, omega) in lines().omegas().enumerate() {
+            let c = |k: f64, c: f64| Complex64::new(k, omega * c);
+            let joint = Matrix2::new(c(2.4e6, 12.0), c(-8.4e4, -0.35), c(k21, -0.35), c(4.1e3, 0.02));
+            let s = &compliances;
+            let [a21, a22, b33, b43] = [&s.alpha21, &s.alpha22, &s.beta33, &s.beta43].map(|all| all[line]);
+            let h = Relation::synthesize(joint, a21, a22, b33, b43, s.length).unwrap();
+            // Reference points 4 and 1; points 3 and 2 lie 61 mm before and 56 mm behind them.
+            for (index, (out, input)) in [(0.0, 0.0), (-0.061, 0.0), (0.0, 0.056), (-0.061, 0.056)].into_iter().enumerate() {
+                let row = [h.at(0, 0) + h.at(1, 0) * out, h.at(0, 1) + h.at(1, 1) * out];
+                values[index * n + line] = -(row[0] + row[1] * input) * (omega * omega);
+            }
+        }
+        let frfs = FrfSet::new(lines(), FrfForm::Accelerance, dummy.pairs().to_vec(), values).unwrap();
+        let fit = fit(&fixture, &Noise::new(4).on(&frfs, 0.01), false);
+        assert!(k21 != -8.4e4 || (fit.stiffness.at(0, 0) / 2.4e6 - 1.0).abs() < 0.01, "{:?}", fit.stiffness);
+        assert_eq!(fit.admissible.is_some(), k21 != -8.4e4);
+        fit.tests.reciprocity.unwrap()
+    };
+    let (symmetric, not) = (p(-8.4e4), p(-8.4e4 * 1.1));
+    println!("symmetric {symmetric}, not {not}");
+    assert!(symmetric > 0.05 && not < 1e-3, "{symmetric} {not}");
+}
+
+#[test]
+fn an_frf_that_is_a_tenth_too_large_widens_the_deviations() {
+    let fixture = fixture(&Case::ordinary(), "");
+    let truth = drawn_within_tolerance(&fixture, &mut generator(9)).unwrap();
+    let frfs = recorded(&truth, &mut Noise::new(9), 0.01, &EIGHT);
+    let n = frfs.lines().len();
+    let right = fit(&fixture, &frfs, false);
+    let frfs = frfs.with_values(|index, value| if index / n == 3 { value * 1.1 } else { value });
+    let wrong = fit(&fixture, &frfs, false);
+    assert!(right.explains() && !wrong.explains());
+    for (e, (found, expected)) in found(&wrong).iter().zip(six(&truth)).enumerate() {
+        let std = wrong.covariance[e][e].sqrt();
+        assert!(std > right.covariance[e][e].sqrt(), "{}", NAMES[e]);
+        assert!((found - expected).abs() < 4.0 * std, "{}: {found} for {expected}, std {std}", NAMES[e]);
+    }
+}
+
+/// What the joint really does, and the law that is to be named.
+fn truths() -> [(LawKind, bool, &'static str); 5] {
+    [
+        (LawKind::Viscous, false, ""),
+        (LawKind::Structural, false, r#"{"kind": "loss_factor", "place": "J", "loss_factor": 0.012}"#),
+        (LawKind::StandardLinearSolid, false, r#"{"kind": "relaxation", "place": "J", "ratio": 0.06, "time": 4e-4}"#),
+        (LawKind::Fractional, false, r#"{"kind": "springpot", "place": "J", "dof": "translation", "stiffness": 900.0, "exponent": 0.5}"#),
+        (LawKind::Viscous, true, r#"{"kind": "joint_mass", "place": "J", "mass": 0.03}"#),
+    ]
+}
+
+fn parameters_of(kind: LawKind, heavy: bool) -> usize {
+    let own = match kind {
+        LawKind::Constant => 3,
+        LawKind::Viscous | LawKind::Structural => 6,
+        LawKind::StandardLinearSolid | LawKind::Fractional => 7,
+        LawKind::LinearStiffness => 9,
+    };
+    own + usize::from(heavy)
+}
+
+fn parameters(law: &LawFit) -> usize {
+    parameters_of(law.kind, law.mass.is_some())
+}
+
+/// Of each truth: how often χ² tells the law from all others by 30, how often it is named then, and how often at all.
+fn named(count: u64, seed: u64, relative: f64) -> Vec<[usize; 3]> {
+    let (mut rng, mut noise) = (generator(seed), Noise::new(seed));
+    let of = |(kind, heavy, physics): (LawKind, bool, &str)| {
+        let case = if kind == LawKind::Viscous { Case::ordinary() } else { Case { damping: [0.0; 3], ..Case::ordinary() } };
+        let case = Case { beam: heavy, ..case };
+        let (analyst, real) = (fixture(&case, ""), fixture(&case, physics));
+        let mut counts = [0; 3];
+        for _ in 0..count {
+            let truth = drawn_within_tolerance(&real, &mut rng).unwrap();
+            let fit = fit(&analyst, &recorded(&truth, &mut noise, relative, &EIGHT), true);
+            let is_truth = |law: &&LawFit| law.kind == kind && law.mass.is_some() == heavy;
+            let least = |laws: Vec<&LawFit>| laws.iter().map(|law| law.objective).fold(f64::INFINITY, f64::min);
+            let own: Vec<&LawFit> = fit.laws.iter().filter(is_truth).collect();
+            // A law that holds this one as a special case is never farther from the FRFs.
+            let others = fit.laws.iter().filter(|law| !is_truth(law) && parameters(law) <= parameters_of(kind, heavy)).collect();
+            let told = least(others) - least(own) >= 30.0;
+            let right = fit.law().is_some_and(|law| is_truth(&law));
+            counts[0] += usize::from(told);
+            counts[1] += usize::from(told && right);
+            counts[2] += usize::from(right);
+        }
+        println!("{kind:?} mass {heavy}: told apart {}, named then {}, named {} of {count}", counts[0], counts[1], counts[2]);
+        counts
+    };
+    truths().into_iter().map(of).collect()
+}
+
+#[test]
+fn the_law_of_a_joint_is_named_where_the_frfs_tell_it_apart() {
+    let counts = named(2, 21, 0.01);
+    let (told, right) = counts.iter().fold((0, 0), |(told, right), counts| (told + counts[0], right + counts[1]));
+    assert!(told >= 4 && right == told, "{right} of {told}");
+}
+
+#[test]
+#[ignore = "minutes; the record of the joint from all FRFs has its figures"]
+fn laws_that_the_frfs_tell_apart_are_named_95_times_in_100() {
+    let counts = named(40, 22, 0.01);
+    let (told, right) = counts.iter().fold((0, 0), |(told, right), counts| (told + counts[0], right + counts[1]));
+    assert!(right as f64 >= 0.95 * told as f64, "{right} of {told}");
 }

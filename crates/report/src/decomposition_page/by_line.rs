@@ -1,6 +1,7 @@
 //! K and C over the spectral lines.
 
-use jointscope_decomposition::{Analysis, Element, Estimate, Method, Part};
+use jointscope_decomposition::{Analysis, Element, Estimate, LawKind, Method, Part};
+use num_complex::Complex64;
 
 use super::Subject;
 use super::element::{meaning, symbol, unit};
@@ -71,13 +72,32 @@ fn plot(subject: &Subject, part: Part, element: Element) -> Plot {
     } else if let Some(nominal) = analysis.nominal_average(part, element, paper) {
         plot = plot.horizontal("nominal", Role::Nominal, nominal);
     }
-    if let Some((label, value)) = level {
-        plot = plot.horizontal(label, Role::Estimate, value);
+    match law(subject, part, element) {
+        Some(values) => plot = plot.line("law from all FRFs", Role::Estimate, values),
+        None => {
+            if let Some((label, value)) = level {
+                plot = plot.horizontal(label, Role::Estimate, value);
+            }
+        }
     }
     plot.shaded("averaging band", band.from, band.to)
         .y_range(range)
         .masked(analysis.spectrum.masked.len())
         .caption(caption(subject, part, element))
+}
+
+/// The most probable law over the lines, of spectra by the exact relation, where it is not level.
+fn law(subject: &Subject, part: Part, element: Element) -> Option<Vec<Option<f64>>> {
+    let law = subject.analysis.joint_fit.as_ref().ok()?.law().filter(|_| !subject.is_paper())?;
+    if law.kind == LawKind::Viscous && law.mass.is_none() {
+        return None;
+    }
+    let spectrum = &subject.analysis.spectrum;
+    let at = |omega: f64| {
+        let s = Complex64::new(spectrum.decay, omega);
+        (omega > 0.0).then(|| element.of(&part.of(law.stiffness_and_damping(s))))
+    };
+    Some(spectrum.h41.lines.omegas().map(at).collect())
 }
 
 /// The horizontal line: the best figure of the same relation as the spectrum.

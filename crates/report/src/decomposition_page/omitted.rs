@@ -60,7 +60,7 @@ fn remarks(subject: &Subject, context: &PageContext) -> Vec<String> {
     if !unused.is_empty() {
         let noun = if unused.len() == 1 { "FRF does" } else { "FRFs do" };
         remarks.push(format!(
-            "{} {noun} not cross the joint between the two blocks and {} not used: {}.",
+            "{} {noun} not cross the joint between the two blocks and {} not part of K and C by line: {}.",
             unused.len(),
             if unused.len() == 1 { "is" } else { "are" },
             unused.join(", ")

@@ -12,15 +12,16 @@ use crate::unit::Scale;
 
 pub(super) fn section(subject: &Subject) -> Section {
     let likelihood = Estimate::maximum_likelihood(subject.analysis);
+    let all = Estimate::all_frfs(subject.analysis);
     let section = Section::new("Result")
         .paragraph(introduction(subject))
         .cards(cards(subject))
         .warnings(warning(subject));
     match likelihood {
         Some(fit) if subject.is_paper() => {
-            section.with(means_table(subject, None)).with(likelihood_table(subject, &fit))
+            section.with(means_table(subject, None, None)).with(likelihood_table(subject, &fit, all.as_ref()))
         }
-        fit => section.with(means_table(subject, fit.as_ref())),
+        fit => section.with(means_table(subject, fit.as_ref(), all.as_ref().filter(|_| !subject.is_paper()))),
     }
 }
 
@@ -112,10 +113,10 @@ fn with_nominal(table: Table<Row>) -> Table<Row> {
 }
 
 /// Means over the band, and the maximum-likelihood joint where it is of the same relation.
-fn means_table(subject: &Subject, likelihood: Option<&Estimate>) -> Table<Row> {
+fn means_table(subject: &Subject, likelihood: Option<&Estimate>, all: Option<&Estimate>) -> Table<Row> {
     let (analysis, paper) = (subject.analysis, subject.is_paper());
     let (plain, weighted) = (Estimate::plain(analysis), Estimate::weighted(analysis));
-    let reference = likelihood.or(weighted.as_ref()).unwrap_or(&plain);
+    let reference = all.or(likelihood).or(weighted.as_ref()).unwrap_or(&plain);
     let rows = Part::ALL.into_iter().flat_map(|part| {
         Element::all(subject.is_scalar()).iter().map(move |&element| {
             let nominal = analysis.nominal_average(part, element, paper);
@@ -137,7 +138,10 @@ fn means_table(subject: &Subject, likelihood: Option<&Estimate>) -> Table<Row> {
             analysis.averages.lines
         ));
     if let Some(fit) = likelihood {
-        table = table.numbers("Maximum likelihood", "", |row| row.text(fit, 0.0));
+        table = table.numbers("FRFs across", "", |row| row.text(fit, 0.0));
+    }
+    if let Some(fit) = all {
+        table = table.numbers("All FRFs", "", |row| row.text(fit, 0.0));
     }
     footnotes(subject, likelihood.is_some()).into_iter().fold(with_nominal(table), Table::footnote)
 }
@@ -146,7 +150,8 @@ fn footnotes(subject: &Subject, with_likelihood: bool) -> Vec<&'static str> {
     let mut notes = Vec::new();
     if with_likelihood && !subject.is_scalar() {
         notes.push(
-            "The maximum-likelihood k and c are symmetric by construction; 21 repeats 12. The means are not held to that: what 12 \
+            "FRFs across: maximum likelihood from those alone, the fixture as stated; all FRFs: with the fixture moving within its tolerances, noise and \
+             tolerances in one ±. Fitted k and c are symmetric by construction; 21 repeats 12. The means are not held to that: what 12 \
              and 21 differ by beyond their ± is an error of the model or the test.",
         );
     }
@@ -166,7 +171,7 @@ fn footnotes(subject: &Subject, with_likelihood: bool) -> Vec<&'static str> {
 }
 
 /// The exact joint beside the matrices of eq (7).
-fn likelihood_table(subject: &Subject, likelihood: &Estimate) -> Table<Row> {
+fn likelihood_table(subject: &Subject, likelihood: &Estimate, all: Option<&Estimate>) -> Table<Row> {
     let rows = Part::ALL.into_iter().flat_map(|part| {
         Element::distinct(subject.is_scalar()).map(move |element| {
             let nominal = subject.analysis.nominal_average(part, element, false);
@@ -174,6 +179,9 @@ fn likelihood_table(subject: &Subject, likelihood: &Estimate) -> Table<Row> {
             Row::new(part, element, likelihood.figure(part, element).value, nominal)
         })
     });
-    let table = table(rows, false).numbers("Maximum likelihood", "", |row| row.text(likelihood, 0.0));
+    let mut table = table(rows, false).numbers("FRFs across", "", |row| row.text(likelihood, 0.0));
+    if let Some(all) = all {
+        table = table.numbers("All FRFs", "", |row| row.text(all, 0.0));
+    }
     with_nominal(table).caption("The exact joint's k and c, fitted to the FRFs: value ± noise and misfit ± tolerances (not eq 7, and not to be compared with it element by element)")
 }

@@ -1,7 +1,10 @@
 //! The headline and what it rests on, in sentences: what is decided is decided by [`Judgement`](jointscope_decomposition::Judgement).
 
-use jointscope_decomposition::{Contradiction, Element, Estimate, Figure, LikelihoodFit, Method, Part, Use};
+use jointscope_decomposition::{
+    Contradiction, Element, Estimate, Figure, JointFit, LikelihoodFit, Method, Part, Use,
+};
 use jointscope_frf::noise::NoiseSource;
+use jointscope_wording::Remarks;
 
 use super::Subject;
 use super::element::{symbol, unit};
@@ -32,8 +35,9 @@ pub(super) fn headline(subject: &Subject) -> String {
     let symbol = symbol(Part::Stiffness, element, best.paper);
     let (figure, value) = value(best, element);
     let mean = match best.method {
+        Method::AllFrfs if subject.is_paper() => " (exact joint, all FRFs)",
         Method::MaximumLikelihood if subject.is_paper() => " (exact joint, maximum likelihood)",
-        Method::MaximumLikelihood => "",
+        Method::AllFrfs | Method::MaximumLikelihood => "",
         _ if best.paper => " by eq (7), a mean over the band",
         _ => ", a mean over the band",
     };
@@ -66,9 +70,11 @@ pub(super) fn share(ratio: f64) -> String {
 
 pub(super) fn details(subject: &Subject) -> Vec<String> {
     let judgement = &subject.analysis.judgement;
-    let rests_on = match &subject.analysis.likelihood {
-        Ok(fit) => rests_on(subject, fit),
-        Err(error) => format!(
+    let whole = subject.analysis.joint_fit.as_ref().ok();
+    let rests_on = match (whole, &subject.analysis.likelihood) {
+        (Some(whole), _) => rests_on_all(subject, whole),
+        (None, Ok(fit)) => rests_on(subject, fit),
+        (None, Err(error)) => format!(
             "{}. The figures below are means over {} ({} lines, {}).",
             capitalised(&error.to_string()),
             band(subject),
@@ -76,7 +82,8 @@ pub(super) fn details(subject: &Subject) -> Vec<String> {
             noise(subject)
         ),
     };
-    let poor_fit = judgement.poor_fit.map(|chi2| {
+    let remarks = whole.map(Remarks::remarks).unwrap_or_default();
+    let poor_fit = judgement.poor_fit.filter(|_| whole.is_none()).map(|chi2| {
         format!(
             "χ²/dof = {}: one constant k and c does not explain the FRFs within their noise. What may be behind it: \
              masses, lengths or sensor places that are a little off (enough where noise is as low as here), a block, \
@@ -95,7 +102,8 @@ pub(super) fn details(subject: &Subject) -> Vec<String> {
     let contradiction = judgement.contradiction.map(|contradiction| contradicted(subject, contradiction));
     let sentences =
         [other_elements(subject), Some(rests_on), paper_means(subject), poor_fit, contradiction, not_rigid];
-    sentences.into_iter().flatten().collect()
+    let remarks = remarks.iter().map(|remark| format!("{}.", capitalised(remark)));
+    sentences.into_iter().flatten().chain(remarks).collect()
 }
 
 fn contradicted(subject: &Subject, Contradiction { element, fit, mean, .. }: Contradiction) -> String {
@@ -141,6 +149,25 @@ fn other_elements(subject: &Subject) -> Option<String> {
     });
     let shares: Vec<String> = shares.collect();
     (!shares.is_empty()).then(|| format!("Compared with {}, {}.", subject.nominal_owner(), shares.join(", ")))
+}
+
+/// What the joint from all FRFs rests on.
+fn rests_on_all(subject: &Subject, fit: &JointFit) -> String {
+    let range = match (&subject.analysis.spectrum.solved[..], fit.lines) {
+        ([first, .., last], lines) if lines == subject.analysis.spectrum.h41.lines.len() => {
+            format!(" ({})", hertz(first.frequency, last.frequency))
+        }
+        _ => String::new(),
+    };
+    format!(
+        "From {} {} on {} lines{range}, {}, the fixture's quantities moving within their tolerances. The ± are one standard deviation, noise and \
+         tolerances together. χ²/dof = {}.",
+        fit.frfs.len(),
+        if fit.frfs.len() == 1 { "FRF" } else { "FRFs" },
+        fit.lines,
+        noise(subject),
+        significant(fit.chi2_per_dof, 3)
+    )
 }
 
 fn rests_on(subject: &Subject, fit: &LikelihoodFit) -> String {

@@ -1,0 +1,86 @@
+//! The joint from all FRFs: laws over frequency, tests, and where the fixture moved.
+
+use jointscope_decomposition::{FittedQuantity, JointFit, JointTests, LawFit};
+use jointscope_wording::{Remarks, Says};
+use maud::Render;
+
+use super::Subject;
+use crate::format::{capitalised, quantity, significant};
+use crate::section::{Section, Tone};
+use crate::table::Table;
+
+/// Probability below which a law is left out of the table.
+const NEGLIGIBLE: f64 = 1e-3;
+/// Standard deviations beyond which a quantity is marked.
+const FAR: f64 = 2.0;
+
+pub(super) fn section(subject: &Subject) -> Option<Section> {
+    let fit = subject.analysis.joint_fit.as_ref().ok()?;
+    let names: Vec<String> = fit.frfs.iter().map(ToString::to_string).collect();
+    let mut section = Section::new("The joint from all FRFs")
+        .paragraph(format!(
+            "k and c are fitted to {} ({}) together with the fixture's uncertain quantities, each of which may move as far as its standard deviation lets \
+             it: FRFs on one side of the joint weigh that side's block. The ± hold noise and tolerances at once.",
+            if names.len() == 1 { "one FRF".to_owned() } else { format!("all {} FRFs", names.len()) },
+            names.join(", ")
+        ))
+        .notes(fit.remarks().iter().map(|remark| capitalised(remark)));
+    if !fit.laws.is_empty() {
+        section = section.with(laws(fit));
+    }
+    section = section.with(tests(&fit.tests));
+    Some(if fit.quantities.is_empty() { section } else { section.with(moved(subject, fit)) })
+}
+
+fn laws(fit: &JointFit) -> impl Render {
+    let shown = fit.laws.iter().enumerate().filter(|(place, law)| *place < 2 || law.probability >= NEGLIGIBLE);
+    let probability = |law: &LawFit| match law.probability {
+        p if p >= NEGLIGIBLE => format!("{} %", significant(100.0 * p, 3)),
+        _ => "< 0.1 %".to_owned(),
+    };
+    let element = |value: f64, unit: &'static str| quantity(value, None, unit);
+    let mut table = Table::of(shown.map(|(_, law)| law))
+        .words("Law over frequency", |law| capitalised(&law.says()))
+        .numbers("Probability", "", move |law| probability(law))
+        .numbers("k₁₁", "", move |law| element(law.stiffness.at(0, 0), "N/m"));
+    if !fit.scalar {
+        table = table
+            .numbers("k₁₂", "", move |law| element(law.stiffness.at(0, 1), "N/rad"))
+            .numbers("k₂₂", "", move |law| element(law.stiffness.at(1, 1), "N*m/rad"));
+    }
+    table.caption("How stiffness and damping depend on frequency, by the evidence of the FRFs").footnote(
+        "k: of the law's own spring, at rest for laws whose stiffness changes. The damping matrix of every law has three free elements; a law pays for \
+         what it adjusts.",
+    )
+}
+
+fn tests(tests: &JointTests) -> impl Render {
+    let rows = [
+        ("k₁₂ = k₂₁ and c₁₂ = c₂₁ (reciprocal)", tests.reciprocity),
+        ("No negative eigenvalue of k (stays at rest)", tests.definite),
+        ("No negative eigenvalue of c (gives out no energy)", tests.passive),
+    ];
+    Table::of(rows.into_iter().filter_map(|(what, p)| Some((what, p?))))
+        .words("What physics asks of a joint", |(what, _)| (*what).to_owned())
+        .numbers("p", "", |(_, p)| significant(*p, 2))
+        .marked(|(_, p)| (*p < JointTests::FAILED).then_some(Tone::Problem))
+        .caption("p: how often chance speaks as much against it, if it holds")
+}
+
+fn moved(subject: &Subject, fit: &JointFit) -> impl Render {
+    let stated = subject.fixture.quantities();
+    let unit = move |path: &str| stated.iter().find(|own| own.path == path).map_or("", |own| own.key.unit());
+    let mut rows: Vec<(&FittedQuantity, &'static str)> =
+        fit.quantities.iter().map(|quantity| (quantity, unit(&quantity.path))).collect();
+    rows.sort_by(|a, b| b.0.deviations.abs().total_cmp(&a.0.deviations.abs()));
+    Table::of(rows)
+        .words("Quantity", |(own, _)| own.path.clone())
+        .words("Stated", |(own, unit)| quantity(own.stated, own.std, unit))
+        .words("With the FRFs", |(own, unit)| quantity(own.fitted, own.fitted_std, unit))
+        .numbers("moved by", "std", |(own, _)| match own.std {
+            Some(_) => significant(own.deviations, 2),
+            None => "free".to_owned(),
+        })
+        .marked(|(own, _)| (own.std.is_some() && own.deviations.abs() > FAR).then_some(Tone::Attention))
+        .caption("What of the fixture the FRFs depend on, and where they take it")
+}
