@@ -258,6 +258,7 @@ impl<'a> Fitter<'a> {
         let mass = problem.mass;
         let chi2_per_dof = if mass.is_some() { self.per_degree(&problem, &first.point) } else { chi2_per_dof };
         let inflation = self.inflation(&problem, &first.point);
+        let asymmetry = admissible::asymmetry(self, &problem, &first);
         let weights: Vec<f64> = self.recorded.weights.iter().map(|weight| weight / inflation).collect();
         let inflated = self.test(quantities, &weights);
         let problem = Problem::viscous(&inflated, law, mass);
@@ -267,7 +268,7 @@ impl<'a> Fitter<'a> {
         } else {
             first
         };
-        let mut result = self.result(&problem, &fitted, quantities)?;
+        let mut result = self.result(&problem, &fitted, quantities, asymmetry)?;
         (result.chi2_per_dof, result.inflation, result.laws) = (chi2_per_dof, inflation, laws);
         Ok(result)
     }
@@ -315,11 +316,12 @@ impl<'a> Fitter<'a> {
         problem: &Problem,
         free: &Fitted,
         quantities: &[Uncertain],
+        asymmetry: Option<f64>,
     ) -> Result<JointFit, DecompositionError> {
         let law = &problem.law;
         let covariance = self.covariance_at(problem, &free.point)?;
         let strain = strain(problem, &free.point, &covariance);
-        let (tests, admissible) = admissible::examined(problem, free, &covariance, strain);
+        let (tests, admissible) = admissible::examined(problem, free, &covariance, (strain, asymmetry));
         let [_, d, _] = law.matrices(&free.point.coordinates[..law.count()]);
         let is_passive = d.at(0, 0) >= 0.0 && (self.scalar || (d.at(1, 1) >= 0.0 && d.determinant() >= 0.0));
         let held = if is_passive { None } else { admissible::on_the_boundary_of_c(problem, free) };
@@ -372,7 +374,8 @@ impl<'a> Fitter<'a> {
             frfs: self.recorded.pairs.clone(),
             lines: self.recorded.s.len(),
             mass: problem.mass.map(|scale| {
-                (problem.mass_at(&at.coordinates), scale * covariance.std(problem.law.count()))
+                let variance = strain * covariance.at(problem.law.count(), problem.law.count());
+                (problem.mass_at(&at.coordinates), scale * variance.sqrt())
             }),
             scalar: self.scalar,
         })

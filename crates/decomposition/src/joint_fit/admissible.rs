@@ -2,7 +2,7 @@
 
 use super::law::{Dynamics, Form};
 use super::problem::{Point, Problem};
-use super::{Fitted, coordinates};
+use super::{Fitted, Fitter, coordinates};
 use jointscope_inference::{Covariance, Parameter, Transform};
 use jointscope_linalg::RealMatrix2;
 use serde::Serialize;
@@ -41,12 +41,13 @@ pub struct Admissible {
     pub costs: f64,
 }
 
-/// Tests of the free optimum, and the nearest admissible joint where one fails. Variances count `strain` times.
+/// Tests of the free optimum, and the nearest admissible joint where one fails. Variances count `strain` times; `asymmetry` is by how much χ² falls where
+/// k and c are free of symmetry.
 pub(super) fn examined(
     problem: &Problem,
     free: &Fitted,
     covariance: &Covariance,
-    strain: f64,
+    (strain, asymmetry): (f64, Option<f64>),
 ) -> (JointTests, Option<Admissible>) {
     let at = &free.point.coordinates;
     let count = problem.law.stiffness.count();
@@ -69,15 +70,13 @@ pub(super) fn examined(
             below_zero(lambda, (strain * variance).sqrt())
         }
     };
-    let reciprocal = reciprocity(problem, free);
-    let gain = reciprocal.as_ref().map(|point| (free.point.objective - point.objective).max(0.0) / strain);
     let tests = JointTests {
-        reciprocity: gain.map(|gain| (-0.5 * gain).exp()),
+        reciprocity: asymmetry.map(|gain| (-0.5 * gain).exp()),
         definite: lowest(0),
         passive: lowest(count),
     };
     let failed = tests.failed();
-    let admissible = if failed.is_empty() { None } else { nearest(problem, free, &failed, gain.unwrap_or(0.0)) };
+    let admissible = if failed.is_empty() { None } else { nearest(problem, free, &failed, asymmetry.unwrap_or(0.0)) };
     (tests, admissible)
 }
 
@@ -119,15 +118,32 @@ fn reciprocity(problem: &Problem, free: &Fitted) -> Option<Point> {
     Some(refitted(problem, free, law)?.0)
 }
 
+/// By how much χ² and priors fall where k and c may be unsymmetric, in units of what such a joint leaves of the FRFs and of the tolerances: what asymmetry
+/// explains is not taken for noise.
+pub(super) fn asymmetry(fitter: &Fitter, problem: &Problem, symmetric: &Fitted) -> Option<f64> {
+    let point = reciprocity(problem, symmetric)?;
+    let law = problem.law.free();
+    let free = Problem { law, parameters: free_parameters(problem, &law), ..*problem };
+    let inflation = fitter.inflation(&free, &point);
+    let covariance = fitter.covariance_at(&free, &point).ok()?;
+    let scale = inflation * super::strain(&free, &point, &covariance);
+    Some((symmetric.point.objective - point.objective).max(0.0) / scale)
+}
+
+/// The parameters of a problem with another form of the law's matrices.
+fn free_parameters(problem: &Problem, law: &Dynamics) -> Vec<Parameter> {
+    let linear = Parameter::new(Transform::Linear { centre: 0.0, scale: 1.0 });
+    let rest = problem.parameters[problem.law.count()..].iter().copied();
+    std::iter::repeat_n(linear, law.count()).chain(rest).collect()
+}
+
 /// The problem with another form of the law's matrices, from the optimum of the first.
 fn refitted(problem: &Problem, free: &Fitted, law: Dynamics) -> Option<(Point, Dynamics)> {
     let own = problem.law.count();
     let [k, d, _] = problem.law.matrices(&free.point.coordinates[..own]);
     let mut start = coordinates(&law, k, d);
     start.extend_from_slice(&free.point.coordinates[own..]);
-    let linear = Parameter::new(Transform::Linear { centre: 0.0, scale: 1.0 });
-    let parameters = std::iter::repeat_n(linear, law.count()).chain(problem.parameters[own..].iter().copied());
-    let other = Problem { test: problem.test, law, parameters: parameters.collect(), mass: problem.mass };
+    let other = Problem { test: problem.test, law, parameters: free_parameters(problem, &law), mass: problem.mass };
     let (point, _) = other.fit(start, Some(free.others.clone()))?;
     Some((point, law))
 }
