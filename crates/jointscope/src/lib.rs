@@ -9,7 +9,7 @@
 //! let fixture = Fixture::from_json(include_str!("../../../fixtures/glued-joint/fixture.json"))?;
 //! let recording = jointscope::read(&fixture, include_bytes!("../../../fixtures/glued-joint/hammer-test.uff"))?;
 //! let analysis = Analysis::of(&fixture, recording.frfs()?, &AnalysisOptions::default())?;
-//! let joint = analysis.likelihood?;
+//! let joint = analysis.joint_fit?;
 //! assert!(joint.stiffness.at(0, 0) < 0.6 * analysis.nominal_stiffness.at(0, 0), "glue is soft");
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
