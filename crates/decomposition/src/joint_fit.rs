@@ -234,12 +234,14 @@ impl<'a> Fitter<'a> {
             }
         }
         if best.as_ref().is_none_or(|best| self.per_degree(&problem, &best.point) > DOUBTFUL) {
-            best = starts.iter().filter_map(|start| self.from_afar(&problem, start)).chain(best).reduce(|a, b| {
+            // The last start is the nominal joint.
+            let afar = starts.last().and_then(|start| self.from_afar(&problem, start));
+            best = afar.into_iter().chain(best).reduce(|a, b| {
                 if b.point.objective < a.point.objective { b } else { a }
             });
         }
         let first = best.filter(|best| best.point.objective.is_finite()).ok_or(NO_START)?;
-        let first = admissible::settled(&problem, first);
+        let (first, free) = admissible::settled(&problem, first);
         let chi2_per_dof = self.per_degree(&problem, &first.point);
         let laws = match with_laws {
             true => laws::compared(self, &problem, &first, quantities),
@@ -248,6 +250,7 @@ impl<'a> Fitter<'a> {
         // A joint whose mass the FRFs show is not taken for a softer one.
         let heavy = laws.iter().filter(|fit| fit.mass.is_some()).map(|fit| fit.probability).sum::<f64>() > HEAVY;
         let mass = heavy.then(|| laws::mass_scale(self));
+        let free = free.filter(|_| !heavy);
         let light = (problem, first);
         let problem = Problem::viscous(&test, law, mass);
         let first = match mass {
@@ -258,7 +261,7 @@ impl<'a> Fitter<'a> {
         let mass = problem.mass;
         let chi2_per_dof = if mass.is_some() { self.per_degree(&problem, &first.point) } else { chi2_per_dof };
         let inflation = self.inflation(&problem, &first.point);
-        let asymmetry = admissible::asymmetry(self, &problem, &first);
+        let asymmetry = admissible::asymmetry(self, &problem, &first, free);
         let weights: Vec<f64> = self.recorded.weights.iter().map(|weight| weight / inflation).collect();
         let inflated = self.test(quantities, &weights);
         let problem = Problem::viscous(&inflated, law, mass);

@@ -90,12 +90,12 @@ const LARGE_GAIN: f64 = 3.2;
 /// Times that it is asked.
 const ROUNDS: usize = 4;
 
-/// The symmetric optimum, sought again from the free one for as long as that leads lower: freedom goes round what keeps a symmetric fit on its way.
-pub(super) fn settled(problem: &Problem, mut at: Fitted) -> Fitted {
+/// The symmetric optimum, sought again from the free one for as long as that leads lower, and the free one: freedom goes round what keeps a symmetric fit on its way.
+pub(super) fn settled(problem: &Problem, mut at: Fitted) -> (Fitted, Option<Point>) {
     for _ in 0..ROUNDS {
         let Some(free) = reciprocity(problem, &at) else { break };
         if at.point.objective - free.objective < LARGE_GAIN {
-            break;
+            return (at, Some(free));
         }
         let law = problem.law.free();
         let [k, d, _] = law.matrices(&free.coordinates[..law.count()]);
@@ -103,10 +103,10 @@ pub(super) fn settled(problem: &Problem, mut at: Fitted) -> Fitted {
         start.extend_from_slice(&free.coordinates[law.count()..]);
         match problem.fit(start, None) {
             Some((point, others)) if point.objective < at.point.objective => at = Fitted { point, others },
-            _ => break,
+            _ => return (at, Some(free)),
         }
     }
-    at
+    (at, None)
 }
 
 /// The optimum with k and c free of symmetry.
@@ -120,8 +120,13 @@ fn reciprocity(problem: &Problem, free: &Fitted) -> Option<Point> {
 
 /// By how much χ² and priors fall where k and c may be unsymmetric, in units of what such a joint leaves of the FRFs and of the tolerances: what asymmetry
 /// explains is not taken for noise.
-pub(super) fn asymmetry(fitter: &Fitter, problem: &Problem, symmetric: &Fitted) -> Option<f64> {
-    let point = reciprocity(problem, symmetric)?;
+pub(super) fn asymmetry(
+    fitter: &Fitter,
+    problem: &Problem,
+    symmetric: &Fitted,
+    known: Option<Point>,
+) -> Option<f64> {
+    let point = known.or_else(|| reciprocity(problem, symmetric))?;
     let law = problem.law.free();
     let free = Problem { law, parameters: free_parameters(problem, &law), ..*problem };
     let inflation = fitter.inflation(&free, &point);

@@ -64,8 +64,10 @@ const UNKNOWN: f64 = 1e4;
 
 /// Most steps of a law's fit: one that needs more is far from the FRFs.
 const STEPS: usize = 40;
-/// Of the law without damping, whose resonances are infinite: it is near at once or not at all.
-const UNDAMPED_STEPS: usize = 8;
+/// Steps of a law that promises a χ² larger by so much than the best one, and of the one without damping, whose resonances are infinite: it is near at once
+/// or not at all.
+const FEW_STEPS: usize = 10;
+const HOPELESS: f64 = 1000.0;
 /// So many of the most probable laws without mass are tried with mass, and all if one of them gains as much by it.
 const WITH_MASS: usize = 2;
 const WORTHWHILE: f64 = 20.0;
@@ -111,12 +113,17 @@ fn candidates(
 ) -> Vec<Candidate> {
     let test = fitter.test(quantities, viscous.test.weights);
     let mut all: Vec<(Candidate, Vec<f64>)> = Vec::new();
-    for kind in LawKind::ALL {
-        let law = Dynamics::new(kind, viscous.law.unit, viscous.law.middle, fitter.scalar);
+    let starts: Vec<(Dynamics, Vec<f64>, f64)> = LawKind::ALL
+        .into_iter()
+        .map(|kind| Dynamics::new(kind, viscous.law.unit, viscous.law.middle, fitter.scalar))
+        .filter_map(|law| nearest_start(viscous, first, &law).map(|(start, misfit)| (law, start, misfit)))
+        .collect();
+    let least = starts.iter().map(|(.., misfit)| *misfit).fold(f64::INFINITY, f64::min);
+    for (law, mut start, misfit) in starts {
         let problem = Problem { test: &test, law, parameters: parameters(&law, None, quantities), mass: None };
-        let Some(mut start) = nearest_start(viscous, first, &law) else { continue };
         start.extend_from_slice(&first.point.coordinates[viscous.law.count()..]);
-        let steps = if kind == LawKind::Constant { UNDAMPED_STEPS } else { STEPS };
+        let hopeless = misfit - least > HOPELESS || law.kind == LawKind::Constant;
+        let steps = if hopeless { FEW_STEPS } else { STEPS };
         let Some((point, others)) = problem.fit_within(start, Some(first.others.clone()), steps) else { continue };
         let at = point.coordinates.clone();
         all.extend(candidate(fitter, &problem, &point, &others).map(|candidate| (candidate, at)));
@@ -145,15 +152,15 @@ fn candidates(
     all.into_iter().map(|(candidate, _)| candidate).chain(heavy).collect()
 }
 
-/// The start of a law from which the viscous joint is imitated best.
-fn nearest_start(viscous: &Problem, first: &Fitted, law: &Dynamics) -> Option<Vec<f64>> {
+/// The start of a law from which the viscous joint is imitated best, and what χ² it promises, up to what all laws have in common.
+fn nearest_start(viscous: &Problem, first: &Fitted, law: &Dynamics) -> Option<(Vec<f64>, f64)> {
     let shapes: &[f64] = match law.kind {
         LawKind::StandardLinearSolid => &[-2.0, -1.0, 0.0, 1.0, 2.0],
         LawKind::Fractional => &[-0.4, -0.2, 0.0, 0.2, 0.4],
         _ => &[0.0],
     };
     let starts = shapes.iter().filter_map(|&shape| viscous.imitated(&first.point, law, shape));
-    starts.reduce(|a, b| if b.1 < a.1 { b } else { a }).map(|(start, _)| start)
+    starts.reduce(|a, b| if b.1 < a.1 { b } else { a })
 }
 
 /// Mass for one unit of its coordinate, kg.

@@ -51,6 +51,8 @@ const BENT: f64 = 0.5;
 const STEPS: usize = 80;
 /// Change of χ² below which a fit has converged: a thousandth of what one standard deviation makes.
 const CONVERGED: f64 = 1e-3;
+/// The same as a share of what χ² exceeds noise by: what the model gets wrong is counted as noise anyway.
+const NEGLIGIBLE: f64 = 1e-4;
 /// Differences by quantities serve for as long as steps gain this share of the first one's.
 const REUSE: f64 = 0.02;
 
@@ -165,7 +167,7 @@ impl<'a> Problem<'a> {
         let settings = Settings {
             steps,
             damping: Damping { initial: 1e-6, decrease: 0.03, least: 1e-15, raised: 0.0, most: 1e8 },
-            convergence: Convergence { gain: CONVERGED, share: 1e-6, floor: degrees },
+            convergence: Convergence { gain: CONVERGED, share: NEGLIGIBLE, floor: degrees },
             reuse: Some(REUSE),
             trust_old: true,
             bent: BENT,
