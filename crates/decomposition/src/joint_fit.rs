@@ -235,7 +235,7 @@ impl<'a> Fitter<'a> {
         }
         if best.as_ref().is_none_or(|best| self.per_degree(&problem, &best.point) > DOUBTFUL) {
             // The last start is the nominal joint.
-            let afar = starts.last().and_then(|start| self.from_afar(&problem, start));
+            let afar = starts.last().and_then(|start| self.from_afar(&problem, problem.whole(start)));
             best = afar.into_iter().chain(best).reduce(|a, b| {
                 if b.point.objective < a.point.objective { b } else { a }
             });
@@ -243,23 +243,30 @@ impl<'a> Fitter<'a> {
         let first = best.filter(|best| best.point.objective.is_finite()).ok_or(NO_START)?;
         let (first, free) = admissible::settled(&problem, first);
         let chi2_per_dof = self.per_degree(&problem, &first.point);
+        let mass = Some(laws::mass_scale(self));
+        let with_mass = Problem::viscous(&test, law, mass);
+        // Where a joint without mass explains the FRFs, one with mass is next to it.
+        let heavy = match with_laws && chi2_per_dof > EXPLAINED {
+            true => self.with_mass(&with_mass, &first, starts.last()),
+            false => None,
+        };
         let laws = match with_laws {
-            true => laws::compared(self, &problem, &first, quantities),
+            true => laws::compared(self, (&problem, &first), heavy.as_ref().map(|heavy| (&with_mass, heavy)), quantities),
             false => Vec::new(),
         };
         // A joint whose mass the FRFs show is not taken for a softer one.
-        let heavy = laws.iter().filter(|fit| fit.mass.is_some()).map(|fit| fit.probability).sum::<f64>() > HEAVY;
-        let mass = heavy.then(|| laws::mass_scale(self));
-        let free = free.filter(|_| !heavy);
-        let light = (problem, first);
-        let problem = Problem::viscous(&test, law, mass);
-        let first = match mass {
-            Some(_) => self.with_mass(&problem, &light.0, &light.1).unwrap_or(light.1),
-            None => light.1,
+        let is_heavy = laws.iter().filter(|fit| fit.mass.is_some()).map(|fit| fit.probability).sum::<f64>() > HEAVY;
+        let heavy = match (is_heavy, heavy) {
+            (true, None) => self.with_mass(&with_mass, &first, None),
+            (true, found) => found,
+            (false, _) => None,
         };
-        let problem = if first.point.coordinates.len() == problem.parameters.len() { problem } else { light.0 };
+        let (problem, first, free) = match heavy {
+            Some(heavy) => (with_mass, heavy, None),
+            None => (problem, first, free),
+        };
         let mass = problem.mass;
-        let chi2_per_dof = if mass.is_some() { self.per_degree(&problem, &first.point) } else { chi2_per_dof };
+        let chi2_per_dof = self.per_degree(&problem, &first.point);
         let inflation = self.inflation(&problem, &first.point);
         let asymmetry = admissible::asymmetry(self, &problem, &first, free);
         let weights: Vec<f64> = self.recorded.weights.iter().map(|weight| weight / inflation).collect();
@@ -277,25 +284,30 @@ impl<'a> Fitter<'a> {
     }
 
     /// A fit by stages in which less and less of the signal counts as noise, so that sharp resonances do not decide where it goes.
-    fn from_afar(&self, problem: &Problem, start: &[f64]) -> Option<Fitted> {
-        let mut at = problem.whole(start);
+    fn from_afar(&self, problem: &Problem, start: Vec<f64>) -> Option<Fitted> {
+        let mut at = start;
         for share in SHARES_AS_NOISE {
             let values = self.recorded.values.iter().zip(&self.recorded.weights);
             let weights: Vec<f64> =
                 values.map(|(value, weight)| inflated_weight(*weight, value.norm_sqr(), share)).collect();
             let test = self.test(problem.test.quantities, &weights);
-            at = Problem::viscous(&test, problem.law, None).fit(at, None)?.0.coordinates;
+            at = Problem::viscous(&test, problem.law, problem.mass).fit(at, None)?.0.coordinates;
         }
         let (point, others) = problem.fit(at, None)?;
         Some(Fitted { point, others })
     }
 
-    /// The fit of a joint with mass, from that without.
-    fn with_mass(&self, problem: &Problem, light: &Problem, from: &Fitted) -> Option<Fitted> {
-        let mut start = from.point.coordinates.clone();
-        start.insert(light.law.count(), laws::FIRST_MASS);
-        let (point, others) = problem.fit(start, None)?;
-        Some(Fitted { point, others })
+    /// The fit of a joint with mass from that without and, if wanted, from afar: a mass left out bends the blocks, and on the way back lie other optima.
+    fn with_mass(&self, problem: &Problem, light: &Fitted, afar: Option<&Vec<f64>>) -> Option<Fitted> {
+        let mut start = light.point.coordinates.clone();
+        start.insert(problem.law.count(), laws::FIRST_MASS);
+        let near = problem.fit(start, None).map(|(point, others)| Fitted { point, others });
+        let afar = afar.and_then(|start| {
+            let mut start = problem.whole(start);
+            start[problem.law.count()] = laws::FIRST_MASS;
+            self.from_afar(problem, start)
+        });
+        near.into_iter().chain(afar).reduce(|a, b| if b.point.objective < a.point.objective { b } else { a })
     }
 
     fn per_degree(&self, problem: &Problem, point: &Point) -> f64 {

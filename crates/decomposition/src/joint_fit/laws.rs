@@ -83,9 +83,14 @@ struct Candidate {
     inflation: f64,
 }
 
-/// All laws with and without mass, the most probable first. `first` is the viscous one at its optimum.
-pub(super) fn compared(fitter: &Fitter, viscous: &Problem, first: &Fitted, quantities: &[Uncertain]) -> Vec<LawFit> {
-    let mut all = candidates(fitter, viscous, first, quantities);
+/// All laws with and without mass, the most probable first. `viscous` is that law at its optimum, `heavy` the same with mass where that is known.
+pub(super) fn compared(
+    fitter: &Fitter,
+    viscous: (&Problem, &Fitted),
+    heavy: Option<(&Problem, &Fitted)>,
+    quantities: &[Uncertain],
+) -> Vec<LawFit> {
+    let mut all = candidates(fitter, viscous, heavy, quantities);
     // Noise is inflated by what the best law leaves.
     let best = all.iter().min_by(|a, b| a.fit.objective.total_cmp(&b.fit.objective));
     let inflation = best.map_or(1.0, |best| best.inflation);
@@ -107,8 +112,8 @@ fn ranked(mut all: Vec<Candidate>) -> Vec<LawFit> {
 
 fn candidates(
     fitter: &Fitter,
-    viscous: &Problem,
-    first: &Fitted,
+    (viscous, first): (&Problem, &Fitted),
+    heavy: Option<(&Problem, &Fitted)>,
     quantities: &[Uncertain],
 ) -> Vec<Candidate> {
     let test = fitter.test(quantities, viscous.test.weights);
@@ -130,11 +135,22 @@ fn candidates(
     }
     all.sort_by(|a, b| b.0.evidence.total_cmp(&a.0.evidence));
     let mass = Some(mass_scale(fitter));
+    let known = heavy;
     let with_mass = |(light, at): &(Candidate, Vec<f64>)| {
         let law = light.fit.law;
         let problem = Problem { test: &test, law, parameters: parameters(&law, mass, quantities), mass };
-        let mut start = at.clone();
-        start.insert(law.count(), FIRST_MASS);
+        let start = match known {
+            Some((heavy, optimum)) => {
+                let (mut start, _) = nearest_start(heavy, optimum, &law)?;
+                start.extend_from_slice(&optimum.point.coordinates[heavy.law.count()..]);
+                start
+            }
+            None => {
+                let mut start = at.clone();
+                start.insert(law.count(), FIRST_MASS);
+                start
+            }
+        };
         let (point, others) = problem.fit_within(start, None, STEPS)?;
         Some((candidate(fitter, &problem, &point, &others)?, light.fit.objective - point.objective))
     };
