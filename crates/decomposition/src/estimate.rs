@@ -124,7 +124,8 @@ impl Estimate {
         };
         Self::all_frfs(analysis)
             .or_else(|| Self::maximum_likelihood(analysis))
-            .or_else(mean).unwrap_or_else(|| Self::plain(analysis))
+            .or_else(mean)
+            .unwrap_or_else(|| Self::plain(analysis))
     }
 
     /// From all FRFs; the deviations hold noise, the fixture's tolerances and the model's error in one.

@@ -126,8 +126,9 @@ pub fn fit_joint(
     nominal: RealMatrix2,
     options: JointFitOptions,
 ) -> Result<JointFit, DecompositionError> {
-    let recorded = Recorded::of(frfs, sides, options.band)
-        .ok_or(DecompositionError::NoFit("no FRF has both of its channels in the fixture and a value in the band"))?;
+    let recorded = Recorded::of(frfs, sides, options.band).ok_or(DecompositionError::NoFit(
+        "no FRF has both of its channels in the fixture and a value in the band",
+    ))?;
     let start = near.map_or(nominal, |fit| fit.stiffness);
     let root = |i: usize| start.at(i, i).abs().max(f64::MIN_POSITIVE).sqrt();
     let unit = |i: usize, j: usize| if scalar && i + j > 0 { 1.0 } else { root(i) * root(j) };
@@ -135,7 +136,10 @@ pub fn fit_joint(
     let middle = recorded.s.iter().map(|s| s.im).sum::<f64>() / recorded.s.len() as f64;
     let law = Dynamics::new(LawKind::Viscous, unit, middle, scalar);
     let quantities = quantities::uncertain(sides, options.exact);
-    let starts = [near.map(|fit| (fit.stiffness, fit.damping.scale(middle))), Some((nominal, nominal.scale(START_LOSS)))];
+    let starts = [
+        near.map(|fit| (fit.stiffness, fit.damping.scale(middle))),
+        Some((nominal, nominal.scale(START_LOSS))),
+    ];
     let starts: Vec<Vec<f64>> = starts.into_iter().flatten().map(|(k, d)| coordinates(&law, k, d)).collect();
     let fitter = Fitter { recorded: &recorded, sides, scalar };
     let quantities = fitter.that_matter(law, &starts, quantities)?;
@@ -211,7 +215,11 @@ impl<'a> Fitter<'a> {
             Some(columns.iter().map(|column| size(column) > NEGLIGIBLE).collect::<Vec<bool>>())
         });
         let matter = matter.ok_or(NO_START)?;
-        Ok(quantities.into_iter().zip(matter).filter_map(|(quantity, matters)| matters.then_some(quantity)).collect())
+        Ok(quantities
+            .into_iter()
+            .zip(matter)
+            .filter_map(|(quantity, matters)| matters.then_some(quantity))
+            .collect())
     }
 
     fn fit(
@@ -236,9 +244,10 @@ impl<'a> Fitter<'a> {
         if best.as_ref().is_none_or(|best| self.per_degree(&problem, &best.point) > DOUBTFUL) {
             // The last start is the nominal joint.
             let afar = starts.last().and_then(|start| self.from_afar(&problem, problem.whole(start)));
-            best = afar.into_iter().chain(best).reduce(|a, b| {
-                if b.point.objective < a.point.objective { b } else { a }
-            });
+            best = afar
+                .into_iter()
+                .chain(best)
+                .reduce(|a, b| if b.point.objective < a.point.objective { b } else { a });
         }
         let first = best.filter(|best| best.point.objective.is_finite()).ok_or(NO_START)?;
         let (first, free) = admissible::settled(&problem, first);
@@ -251,11 +260,17 @@ impl<'a> Fitter<'a> {
             false => None,
         };
         let laws = match with_laws {
-            true => laws::compared(self, (&problem, &first), heavy.as_ref().map(|heavy| (&with_mass, heavy)), quantities),
+            true => laws::compared(
+                self,
+                (&problem, &first),
+                heavy.as_ref().map(|heavy| (&with_mass, heavy)),
+                quantities,
+            ),
             false => Vec::new(),
         };
         // A joint whose mass the FRFs show is not taken for a softer one.
-        let is_heavy = laws.iter().filter(|fit| fit.mass.is_some()).map(|fit| fit.probability).sum::<f64>() > HEAVY;
+        let is_heavy =
+            laws.iter().filter(|fit| fit.mass.is_some()).map(|fit| fit.probability).sum::<f64>() > HEAVY;
         let heavy = match (is_heavy, heavy) {
             (true, None) => self.with_mass(&with_mass, &first, None),
             (true, found) => found,
@@ -355,7 +370,8 @@ impl<'a> Fitter<'a> {
         };
         // Deviations are those of free elements, on the boundary too.
         let covariance = if held.is_some() { self.covariance_at(problem, &at)? } else { covariance };
-        let inflated = self.recorded.weights.first().zip(problem.test.weights.first()).is_some_and(|(a, b)| a != b);
+        let inflated =
+            self.recorded.weights.first().zip(problem.test.weights.first()).is_some_and(|(a, b)| a != b);
         let model = if inflated { self.jackknifed(problem, &at) } else { None };
         let model_covariance = model.map_or([[0.0; 6]; 6], |model| self.in_si(law, &model));
         let posterior = self.in_si(law, &covariance).map(|row| row.map(|v| strain * v));
@@ -376,7 +392,9 @@ impl<'a> Fitter<'a> {
         Ok(JointFit {
             stiffness: k,
             damping: d.scale(1.0 / law.middle),
-            covariance: std::array::from_fn(|m| std::array::from_fn(|n| posterior[m][n] + model_covariance[m][n])),
+            covariance: std::array::from_fn(|m| {
+                std::array::from_fn(|n| posterior[m][n] + model_covariance[m][n])
+            }),
             model_covariance,
             chi2_per_dof: 0.0,
             inflation: 1.0,
@@ -424,7 +442,13 @@ impl<'a> Fitter<'a> {
         let without = |block: usize| {
             let (from, to) = (block * n / blocks, (block + 1) * n / blocks);
             let outside = |i: usize| i % n < from || i % n >= to;
-            let weights: Vec<f64> = problem.test.weights.iter().enumerate().map(|(i, w)| if outside(i) { *w } else { 0.0 }).collect();
+            let weights: Vec<f64> = problem
+                .test
+                .weights
+                .iter()
+                .enumerate()
+                .map(|(i, w)| if outside(i) { *w } else { 0.0 })
+                .collect();
             let step = problem.equations_of(at, &others, &weights).step(0.0)?;
             Some(at.coordinates.iter().zip(&step).map(|(at, step)| at + step).collect::<Vec<f64>>())
         };

@@ -88,13 +88,15 @@ impl Judgement {
         } else {
             Use::Sound
         };
-        let of_fit = || fit.is_some_and(|fit| {
-            let c = &fit.damping;
-            match scalar {
-                true => c.at(0, 0) == 0.0,
-                false => c.determinant() <= ON_THE_BOUNDARY * c.at(0, 0) * c.at(1, 1),
-            }
-        });
+        let of_fit = || {
+            fit.is_some_and(|fit| {
+                let c = &fit.damping;
+                match scalar {
+                    true => c.at(0, 0) == 0.0,
+                    false => c.determinant() <= ON_THE_BOUNDARY * c.at(0, 0) * c.at(1, 1),
+                }
+            })
+        };
         let damping_at_limit = whole.map_or_else(of_fit, |whole| whole.is_on_the_boundary);
         Judgement { verdict, poor_fit, contradiction, not_rigid, agrees_with_fixture, damping_at_limit }
     }
@@ -102,7 +104,9 @@ impl Judgement {
 
 /// The element that the fit and the weighted mean differ in most; nothing where they agree or are of different relations.
 fn contradiction(analysis: &Analysis, best: &Estimate) -> Option<Contradiction> {
-    if !matches!(best.method, Method::MaximumLikelihood | Method::AllFrfs) || analysis.spectrum.relation == Relation::Paper {
+    if !matches!(best.method, Method::MaximumLikelihood | Method::AllFrfs)
+        || analysis.spectrum.relation == Relation::Paper
+    {
         return None;
     }
     let weighted = Estimate::weighted(analysis)?;

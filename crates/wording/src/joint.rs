@@ -15,7 +15,8 @@ impl Says for LawFit {
             (LawKind::Constant, _) => "constant, without damping".to_owned(),
             (LawKind::Viscous, _) => "constant stiffness with viscous damping".to_owned(),
             (LawKind::Structural, _) => {
-                "constant stiffness with structural damping (a loss factor that does not depend on frequency)".to_owned()
+                "constant stiffness with structural damping (a loss factor that does not depend on frequency)"
+                    .to_owned()
             }
             (LawKind::StandardLinearSolid, Some(time)) => {
                 format!("a standard linear solid, relaxation time {}", plain(time, "s"))
@@ -23,7 +24,9 @@ impl Says for LawFit {
             (LawKind::Fractional, Some(exponent)) => {
                 format!("a springpot beside a spring, exponent {}", significant(exponent, 2))
             }
-            (LawKind::LinearStiffness, _) => "a stiffness linear in frequency with viscous damping".to_owned(),
+            (LawKind::LinearStiffness, _) => {
+                "a stiffness linear in frequency with viscous damping".to_owned()
+            }
             (kind, None) => kind.name().replace('_', " "),
         };
         match self.mass {
@@ -38,7 +41,11 @@ impl Remarks for JointFit {
         let mut all = Vec::new();
         all.extend(self.law().map(|law| {
             let sure = if law.probability >= CERTAIN { "" } else { "most probably " };
-            format!("over frequency the joint is {sure}{} (probability {})", law.says(), percent(law.probability))
+            format!(
+                "over frequency the joint is {sure}{} (probability {})",
+                law.says(),
+                percent(law.probability)
+            )
         }));
         all.extend(self.mass.map(|(mass, std)| {
             format!(
@@ -63,12 +70,20 @@ impl Remarks for JointFit {
             ));
         }
         if self.is_on_the_boundary {
-            all.push("a free c would give out energy; it is held at the limit of what a passive joint can do".to_owned());
+            all.push(
+                "a free c would give out energy; it is held at the limit of what a passive joint can do"
+                    .to_owned(),
+            );
         }
         all.extend(self.tests.remarks());
-        let far = self.quantities.iter().filter(|quantity| quantity.std.is_some() && quantity.deviations.abs() >= FAR);
+        let far = self
+            .quantities
+            .iter()
+            .filter(|quantity| quantity.std.is_some() && quantity.deviations.abs() >= FAR);
         let far: Vec<String> = far
-            .map(|quantity| format!("{} by {} standard deviations", quantity.path, significant(quantity.deviations, 2)))
+            .map(|quantity| {
+                format!("{} by {} standard deviations", quantity.path, significant(quantity.deviations, 2))
+            })
             .collect();
         if !far.is_empty() {
             all.push(format!("the FRFs move {}", listed(&far)));
@@ -86,7 +101,10 @@ impl Remarks for JointTests {
         };
         let sentence = |name: &str| {
             let (p, what) = said(name);
-            Some(format!("{what} (p = {}); a sensor, a place or a block is to be looked at", significant(p?, 2)))
+            Some(format!(
+                "{what} (p = {}); a sensor, a place or a block is to be looked at",
+                significant(p?, 2)
+            ))
         };
         self.failed().into_iter().filter_map(sentence).collect()
     }

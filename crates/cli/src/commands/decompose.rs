@@ -3,11 +3,11 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use jointscope::decomposition::{JointFit, LikelihoodFit};
 use jointscope::estimation::ResponseWindow;
 use jointscope::pipeline::MeasuredFrfs;
 use jointscope::report::decomposition_page;
 use jointscope::report::format::quantity;
-use jointscope::decomposition::{JointFit, LikelihoodFit};
 use jointscope::{Analysis, AnalysisOptions, Band, DecompositionError, Relation, Remarks, stiffness_file};
 
 use crate::estimation_arguments::EstimationArguments;

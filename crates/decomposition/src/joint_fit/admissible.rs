@@ -76,7 +76,8 @@ pub(super) fn examined(
         passive: lowest(count),
     };
     let failed = tests.failed();
-    let admissible = if failed.is_empty() { None } else { nearest(problem, free, &failed, asymmetry.unwrap_or(0.0)) };
+    let admissible =
+        if failed.is_empty() { None } else { nearest(problem, free, &failed, asymmetry.unwrap_or(0.0)) };
     (tests, admissible)
 }
 
@@ -148,7 +149,8 @@ fn refitted(problem: &Problem, free: &Fitted, law: Dynamics) -> Option<(Point, D
     let [k, d, _] = problem.law.matrices(&free.point.coordinates[..own]);
     let mut start = coordinates(&law, k, d);
     start.extend_from_slice(&free.point.coordinates[own..]);
-    let other = Problem { test: problem.test, law, parameters: free_parameters(problem, &law), mass: problem.mass };
+    let other =
+        Problem { test: problem.test, law, parameters: free_parameters(problem, &law), mass: problem.mass };
     let (point, _) = other.fit(start, Some(free.others.clone()))?;
     Some((point, law))
 }
@@ -170,7 +172,9 @@ fn nearest(problem: &Problem, free: &Fitted, failed: &[&str], gain: f64) -> Opti
     if failed.contains(&"passive") {
         law.damping = boundary(law.damping);
     }
-    let matrices = |law: &Dynamics, point: &Point| -> [RealMatrix2; 3] { law.matrices(&point.coordinates[..law.count()]) };
+    let matrices = |law: &Dynamics, point: &Point| -> [RealMatrix2; 3] {
+        law.matrices(&point.coordinates[..law.count()])
+    };
     let ([k, d, _], objective) = if law == problem.law {
         (matrices(&law, &free.point), free.point.objective)
     } else {

@@ -256,7 +256,12 @@ impl Placed<'_> {
     }
 
     /// Writes derivatives by the coordinates over `slots`, from those by the elements (11, 12, 21, 22) of the dynamic stiffness.
-    pub fn chain(&self, by: [Complex64; 4], [losses, by_shape, relative]: [Complex64; 3], slots: &mut [Complex64]) {
+    pub fn chain(
+        &self,
+        by: [Complex64; 4],
+        [losses, by_shape, relative]: [Complex64; 3],
+        slots: &mut [Complex64],
+    ) {
         let u = &self.law.unit;
         let scaled = [by[0] * u.at(0, 0), by[1] * u.at(0, 1), by[2] * u.at(1, 0), by[3] * u.at(1, 1)];
         let [k, d, l, _] = self.law.split(self.at);

@@ -125,11 +125,14 @@ fn candidates(
         .collect();
     let least = starts.iter().map(|(.., misfit)| *misfit).fold(f64::INFINITY, f64::min);
     for (law, mut start, misfit) in starts {
-        let problem = Problem { test: &test, law, parameters: parameters(&law, None, quantities), mass: None };
+        let problem =
+            Problem { test: &test, law, parameters: parameters(&law, None, quantities), mass: None };
         start.extend_from_slice(&first.point.coordinates[viscous.law.count()..]);
         let hopeless = misfit - least > HOPELESS || law.kind == LawKind::Constant;
         let steps = if hopeless { FEW_STEPS } else { STEPS };
-        let Some((point, others)) = problem.fit_within(start, Some(first.others.clone()), steps) else { continue };
+        let Some((point, others)) = problem.fit_within(start, Some(first.others.clone()), steps) else {
+            continue;
+        };
         let at = point.coordinates.clone();
         all.extend(candidate(fitter, &problem, &point, &others).map(|candidate| (candidate, at)));
     }
@@ -186,7 +189,9 @@ pub(super) fn mass_scale(fitter: &Fitter) -> f64 {
 
 /// How a joint's mass moves in a fit.
 pub(super) fn mass_parameter() -> Parameter {
-    Parameter::new(Transform::Linear { centre: 0.0, scale: 1.0 }).with_precision(1.0).between(0.0, f64::INFINITY)
+    Parameter::new(Transform::Linear { centre: 0.0, scale: 1.0 })
+        .with_precision(1.0)
+        .between(0.0, f64::INFINITY)
 }
 
 fn lighter_side(fitter: &Fitter) -> f64 {
@@ -225,7 +230,8 @@ fn candidate(
     others: &[Vec<Complex64>],
 ) -> Option<Candidate> {
     let information = problem.equations_of(point, others, problem.test.weights).information;
-    let variance = |parameter: &Parameter| if parameter.precision > 0.0 { 1.0 / parameter.precision } else { UNKNOWN };
+    let variance =
+        |parameter: &Parameter| if parameter.precision > 0.0 { 1.0 / parameter.precision } else { UNKNOWN };
     let variances: Vec<f64> = problem.parameters.iter().map(variance).collect();
     let evidence = laplace_evidence(point.objective, &information, &variances)?;
     let own = &point.coordinates[..problem.law.count()];

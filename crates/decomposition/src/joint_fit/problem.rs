@@ -80,7 +80,8 @@ impl<'a> Problem<'a> {
         let predicted = uncoupled.coupled(self.test.recorded, &law, None)?;
         let terms = self.test.recorded.values.iter().zip(&predicted).zip(self.test.weights);
         let chi2: f64 = terms.map(|((m, p), weight)| weight * (m - p).norm_sqr()).sum();
-        let penalties = self.parameters.iter().zip(&coordinates).map(|(parameter, at)| parameter.penalty(*at));
+        let penalties =
+            self.parameters.iter().zip(&coordinates).map(|(parameter, at)| parameter.penalty(*at));
         let objective = chi2 + penalties.sum::<f64>();
         Some(Point { coordinates, uncoupled, predicted, objective })
     }
@@ -143,7 +144,8 @@ impl<'a> Problem<'a> {
         let other = law.placed(&start);
         at.uncoupled.coupled(self.test.recorded, &here, Some((&other, &mut columns)))?;
         columns.truncate(matrices);
-        let equations = NormalEquations::of_columns(&columns, &target, self.test.weights, |_| false, |_| (1e-6, 0.0));
+        let equations =
+            NormalEquations::of_columns(&columns, &target, self.test.weights, |_| false, |_| (1e-6, 0.0));
         let found = equations.step(0.0)?;
         let gain: f64 = found.iter().zip(&equations.right).map(|(a, b)| a * b).sum();
         start[..matrices].copy_from_slice(&found);

@@ -43,9 +43,8 @@ fn parameter_of(quantity: &NamedQuantity) -> Parameter {
 /// The fixture with its uncertain quantities at these coordinates.
 pub(super) fn moved(fixture: &Fixture, quantities: &[Uncertain], coordinates: &[f64]) -> Fixture {
     let mut moved = fixture.clone();
-    let value = |(q, at): (&Uncertain, &f64)| {
-        (q.index, q.parameter.transform.value(*at).unwrap_or(q.quantity.value))
-    };
+    let value =
+        |(q, at): (&Uncertain, &f64)| (q.index, q.parameter.transform.value(*at).unwrap_or(q.quantity.value));
     moved.set_quantities(quantities.iter().zip(coordinates).map(value));
     moved
 }

@@ -30,7 +30,8 @@ impl Recorded {
     /// `None` where nothing can be used.
     pub fn of(frfs: &FrfSet, sides: &Sides, band: Option<Band>) -> Option<Self> {
         let readable = |pair: &FrfPair| {
-            let chain = MeasuringChain::of(sides.fixture(), std::slice::from_ref(pair), Instrument::AsRecorded);
+            let chain =
+                MeasuringChain::of(sides.fixture(), std::slice::from_ref(pair), Instrument::AsRecorded);
             chain.is_ok_and(|chain| chain.readings.iter().all(|reading| reading.load.is_none()))
         };
         let used: Vec<usize> = (0..frfs.pairs().len()).filter(|&i| readable(&frfs.pairs()[i])).collect();

@@ -174,7 +174,13 @@ impl Uncoupled {
     }
 
     /// Adds the joint's mass at its ends, s²M with M consistent, of rank four, and goes on to d: what is left of the joint acts on d alone.
-    fn add_mass(&mut self, recorded: &Recorded, mass: f64, length: f64, [on_alpha, _]: &[OnSide; 2]) -> Option<()> {
+    fn add_mass(
+        &mut self,
+        recorded: &Recorded,
+        mass: f64,
+        length: f64,
+        [on_alpha, _]: &[OnSide; 2],
+    ) -> Option<()> {
         let n = recorded.s.len();
         let mass = if length > 0.0 {
             consistent_mass(mass / length, length)

@@ -5,9 +5,9 @@ use jointscope_decomposition::{
     JointFit, JointFitOptions, LawFit, LawKind, Relation, Sides, decompose, fit_joint, maximum_likelihood,
 };
 use jointscope_fixture::{Fixture, JointLaw};
+use jointscope_linalg::Matrix2;
 use jointscope_lumped::nominal_stiffness;
 use jointscope_rig::{Instrument, drawn_within_tolerance, generator};
-use jointscope_linalg::Matrix2;
 use jointscope_spectra::{FrfForm, FrfPair, FrfSet, SpectralLines};
 use num_complex::Complex64;
 
@@ -60,7 +60,10 @@ fn fixture(case: &Case, physics: &str) -> Fixture {
     };
     let (joint, losses) = if case.beam {
         let beam = r#""beam": { "youngs_modulus": {"value": 2.07e11, "std": 1e9}, "second_moment": {"value": 3.4e-10, "std": 2e-12} }"#;
-        (beam.to_owned(), r#""damping": {"rayleigh": {"mass": {"value": 0, "std": 0}, "stiffness": {"value": 5e-6, "std": 0}}},"#)
+        (
+            beam.to_owned(),
+            r#""damping": {"rayleigh": {"mass": {"value": 0, "std": 0}, "stiffness": {"value": 5e-6, "std": 0}}},"#,
+        )
     } else {
         (format!(r#""stiffness": {}{damping}"#, matrix(case.stiffness, stiffness_std)), "")
     };
@@ -89,7 +92,9 @@ fn recorded(truth: &Fixture, noise: &mut Noise, relative: f64, pairs: &[(&str, &
 /// k11, k12, k22, c11, c12, c22 that a fixture states.
 fn six(fixture: &Fixture) -> [f64; 6] {
     match &fixture.joints()[0].law {
-        JointLaw::Stiffness { stiffness: [a, b, d], damping: Some([e, f, g]) } => [a, b, d, e, f, g].map(|q| q.value),
+        JointLaw::Stiffness { stiffness: [a, b, d], damping: Some([e, f, g]) } => {
+            [a, b, d, e, f, g].map(|q| q.value)
+        }
         _ => unreachable!(),
     }
 }
@@ -127,7 +132,8 @@ fn run(case: &Case, count: u64, seed: u64) -> Runs {
         let (found, expected) = (found(&fit), six(&truth));
         runs.scores.push(std::array::from_fn(|e| (found[e] - expected[e]) / fit.covariance[e][e].sqrt()));
         runs.errors.push(std::array::from_fn(|e| found[e] / expected[e] - 1.0));
-        for (all, p) in runs.p.iter_mut().zip([fit.tests.reciprocity, fit.tests.definite, fit.tests.passive]) {
+        for (all, p) in runs.p.iter_mut().zip([fit.tests.reciprocity, fit.tests.definite, fit.tests.passive])
+        {
             all.extend(p);
         }
         runs.chi2.push(fit.chi2_per_dof);
@@ -156,7 +162,14 @@ fn report(runs: &Runs) {
     }
     for (name, p) in ["reciprocity", "definite", "passive"].iter().zip(&runs.p) {
         let below = |q: f64| p.iter().filter(|p| **p < q).count() as f64 / p.len() as f64;
-        println!("{name}: p below 0.01, 0.05, 0.2, 0.5, 0.8: {:.3} {:.3} {:.3} {:.3} {:.3}", below(0.01), below(0.05), below(0.2), below(0.5), below(0.8));
+        println!(
+            "{name}: p below 0.01, 0.05, 0.2, 0.5, 0.8: {:.3} {:.3} {:.3} {:.3} {:.3}",
+            below(0.01),
+            below(0.05),
+            below(0.2),
+            below(0.5),
+            below(0.8)
+        );
     }
 }
 
@@ -180,7 +193,8 @@ fn in_three_hundred_runs_the_six_numbers_keep_to_their_bound_and_intervals() {
     report(&runs);
     for (e, name) in NAMES.iter().enumerate() {
         let score = rms(runs.scores.iter().map(|s| s[e]));
-        let inside = runs.scores.iter().filter(|s| s[e].abs() < 1.96).count() as f64 / runs.scores.len() as f64;
+        let inside =
+            runs.scores.iter().filter(|s| s[e].abs() < 1.96).count() as f64 / runs.scores.len() as f64;
         assert!(score <= 1.1 && (0.92..0.98).contains(&inside), "{name}: {score}, {inside}");
     }
 }
@@ -214,7 +228,10 @@ fn from_uniform(p: &[f64]) -> f64 {
     let mut p = p.to_vec();
     p.sort_by(f64::total_cmp);
     let n = p.len() as f64;
-    p.iter().enumerate().map(|(i, p)| (p - i as f64 / n).abs().max((p - (i + 1) as f64 / n).abs())).fold(0.0, f64::max)
+    p.iter()
+        .enumerate()
+        .map(|(i, p)| (p - i as f64 / n).abs().max((p - (i + 1) as f64 / n).abs()))
+        .fold(0.0, f64::max)
 }
 
 #[test]
@@ -254,7 +271,9 @@ fn a_joint_whose_k21_is_a_tenth_off_its_k12_fails_reciprocity_and_a_symmetric_on
             let [a21, a22, b33, b43] = [&s.alpha21, &s.alpha22, &s.beta33, &s.beta43].map(|all| all[line]);
             let h = Relation::synthesize(joint, a21, a22, b33, b43, s.length).unwrap();
             // Reference points 4 and 1; points 3 and 2 lie 61 mm before and 56 mm behind them.
-            for (index, (out, input)) in [(0.0, 0.0), (-0.061, 0.0), (0.0, 0.056), (-0.061, 0.056)].into_iter().enumerate() {
+            for (index, (out, input)) in
+                [(0.0, 0.0), (-0.061, 0.0), (0.0, 0.056), (-0.061, 0.056)].into_iter().enumerate()
+            {
                 let row = [h.at(0, 0) + h.at(1, 0) * out, h.at(0, 1) + h.at(1, 1) * out];
                 values[index * n + line] = -(row[0] + row[1] * input) * (omega * omega);
             }
@@ -292,8 +311,16 @@ fn truths() -> [(LawKind, bool, &'static str); 5] {
     [
         (LawKind::Viscous, false, ""),
         (LawKind::Structural, false, r#"{"kind": "loss_factor", "place": "J", "loss_factor": 0.012}"#),
-        (LawKind::StandardLinearSolid, false, r#"{"kind": "relaxation", "place": "J", "ratio": 0.06, "time": 4e-4}"#),
-        (LawKind::Fractional, false, r#"{"kind": "springpot", "place": "J", "dof": "translation", "stiffness": 900.0, "exponent": 0.5}"#),
+        (
+            LawKind::StandardLinearSolid,
+            false,
+            r#"{"kind": "relaxation", "place": "J", "ratio": 0.06, "time": 4e-4}"#,
+        ),
+        (
+            LawKind::Fractional,
+            false,
+            r#"{"kind": "springpot", "place": "J", "dof": "translation", "stiffness": 900.0, "exponent": 0.5}"#,
+        ),
         (LawKind::Viscous, true, r#"{"kind": "joint_mass", "place": "J", "mass": 0.03}"#),
     ]
 }
@@ -316,7 +343,11 @@ fn parameters(law: &LawFit) -> usize {
 fn named(count: u64, seed: u64, relative: f64) -> Vec<[usize; 3]> {
     let (mut rng, mut noise) = (generator(seed), Noise::new(seed));
     let of = |(kind, heavy, physics): (LawKind, bool, &str)| {
-        let case = if kind == LawKind::Viscous { Case::ordinary() } else { Case { damping: [0.0; 3], ..Case::ordinary() } };
+        let case = if kind == LawKind::Viscous {
+            Case::ordinary()
+        } else {
+            Case { damping: [0.0; 3], ..Case::ordinary() }
+        };
         let case = Case { beam: heavy, ..case };
         let (analyst, real) = (fixture(&case, ""), fixture(&case, physics));
         let mut counts = [0; 3];
@@ -324,17 +355,25 @@ fn named(count: u64, seed: u64, relative: f64) -> Vec<[usize; 3]> {
             let truth = drawn_within_tolerance(&real, &mut rng).unwrap();
             let fit = fit(&analyst, &recorded(&truth, &mut noise, relative, &EIGHT), true);
             let is_truth = |law: &&LawFit| law.kind == kind && law.mass.is_some() == heavy;
-            let least = |laws: Vec<&LawFit>| laws.iter().map(|law| law.objective).fold(f64::INFINITY, f64::min);
+            let least =
+                |laws: Vec<&LawFit>| laws.iter().map(|law| law.objective).fold(f64::INFINITY, f64::min);
             let own: Vec<&LawFit> = fit.laws.iter().filter(is_truth).collect();
             // A law that holds this one as a special case is never farther from the FRFs.
-            let others = fit.laws.iter().filter(|law| !is_truth(law) && parameters(law) <= parameters_of(kind, heavy)).collect();
+            let others = fit
+                .laws
+                .iter()
+                .filter(|law| !is_truth(law) && parameters(law) <= parameters_of(kind, heavy))
+                .collect();
             let told = least(others) - least(own) >= 30.0;
             let right = fit.law().is_some_and(|law| is_truth(&law));
             counts[0] += usize::from(told);
             counts[1] += usize::from(told && right);
             counts[2] += usize::from(right);
         }
-        println!("{kind:?} mass {heavy}: told apart {}, named then {}, named {} of {count}", counts[0], counts[1], counts[2]);
+        println!(
+            "{kind:?} mass {heavy}: told apart {}, named then {}, named {} of {count}",
+            counts[0], counts[1], counts[2]
+        );
         counts
     };
     truths().into_iter().map(of).collect()
@@ -343,7 +382,8 @@ fn named(count: u64, seed: u64, relative: f64) -> Vec<[usize; 3]> {
 #[test]
 fn the_law_of_a_joint_is_named_where_the_frfs_tell_it_apart() {
     let counts = named(2, 21, 0.01);
-    let (told, right) = counts.iter().fold((0, 0), |(told, right), counts| (told + counts[0], right + counts[1]));
+    let (told, right) =
+        counts.iter().fold((0, 0), |(told, right), counts| (told + counts[0], right + counts[1]));
     assert!(told >= 4 && right == told, "{right} of {told}");
 }
 
@@ -351,6 +391,7 @@ fn the_law_of_a_joint_is_named_where_the_frfs_tell_it_apart() {
 #[ignore = "minutes; the record of the joint from all FRFs has its figures"]
 fn laws_that_the_frfs_tell_apart_are_named_95_times_in_100() {
     let counts = named(40, 22, 0.01);
-    let (told, right) = counts.iter().fold((0, 0), |(told, right), counts| (told + counts[0], right + counts[1]));
+    let (told, right) =
+        counts.iter().fold((0, 0), |(told, right), counts| (told + counts[0], right + counts[1]));
     assert!(right as f64 >= 0.95 * told as f64, "{right} of {told}");
 }

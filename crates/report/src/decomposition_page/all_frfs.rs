@@ -33,7 +33,8 @@ pub(super) fn section(subject: &Subject) -> Option<Section> {
 }
 
 fn laws(fit: &JointFit) -> impl Render {
-    let shown = fit.laws.iter().enumerate().filter(|(place, law)| *place < 2 || law.probability >= NEGLIGIBLE);
+    let shown =
+        fit.laws.iter().enumerate().filter(|(place, law)| *place < 2 || law.probability >= NEGLIGIBLE);
     let probability = |law: &LawFit| match law.probability {
         p if p >= NEGLIGIBLE => format!("{} %", significant(100.0 * p, 3)),
         _ => "< 0.1 %".to_owned(),
@@ -44,9 +45,11 @@ fn laws(fit: &JointFit) -> impl Render {
         .numbers("Probability", "", move |law| probability(law))
         .numbers("k₁₁", "", move |law| element(law.stiffness.at(0, 0), "N/m"));
     if !fit.scalar {
-        table = table
-            .numbers("k₁₂", "", move |law| element(law.stiffness.at(0, 1), "N/rad"))
-            .numbers("k₂₂", "", move |law| element(law.stiffness.at(1, 1), "N*m/rad"));
+        table = table.numbers("k₁₂", "", move |law| element(law.stiffness.at(0, 1), "N/rad")).numbers(
+            "k₂₂",
+            "",
+            move |law| element(law.stiffness.at(1, 1), "N*m/rad"),
+        );
     }
     table.caption("How stiffness and damping depend on frequency, by the evidence of the FRFs").footnote(
         "k: of the law's own spring, at rest for laws whose stiffness changes. The damping matrix of every law has three free elements; a law pays for \
