@@ -66,6 +66,20 @@ fn the_shipped_example_gives_every_field_of_the_contract() {
         matrix(&average["std"]["stiffness"]);
         matrix(&average["std"]["damping"]);
     }
+    let joint = &file["joint"];
+    for entry in [joint, &joint["std"]] {
+        matrix(&entry["stiffness"]);
+        matrix(&entry["damping"]);
+    }
+    let covariance: Vec<Vec<f64>> = serde_json::from_value(joint["covariance"].clone()).unwrap();
+    assert!(covariance.len() == 6 && covariance.iter().all(|row| row.len() == 6), "{covariance:?}");
+    let total: f64 =
+        joint["laws"].as_array().unwrap().iter().map(|law| law["probability"].as_f64().unwrap()).sum();
+    assert!((total - 1.0).abs() < 1e-9, "{total}");
+    assert_eq!(joint["law"], joint["laws"][0]["law"]);
+    for test in ["reciprocity", "definite", "passive"] {
+        assert!((0.0..=1.0).contains(&joint["tests"][test].as_f64().unwrap()), "{test}");
+    }
     let band: Vec<f64> =
         file["average"]["band"].as_array().unwrap().iter().map(|f| f.as_f64().unwrap()).collect();
     assert!(band.len() == 2 && 2.5 <= band[0] && band[0] < band[1] && band[1] <= 1000.0, "{band:?}");
@@ -75,7 +89,16 @@ fn the_shipped_example_gives_every_field_of_the_contract() {
 fn the_shipped_examples_joint_comes_out_as_soft_as_its_readme_says() {
     let bench = Bench::shipped("truth");
     bench.done(&decompose(ON_SHIPPED, &["-o", "out"]));
-    let fit = &bench.json("out/stiffness.json")["maximum_likelihood"];
+    let file = bench.json("out/stiffness.json");
+    // The joint from all FRFs has a mass of its own, and with it the static stiffness.
+    let (found, std) = (matrix(&file["joint"]["stiffness"]), matrix(&file["joint"]["std"]["stiffness"]));
+    for (i, j, truth) in [(0, 0, 1.4339e6), (0, 1, -4.5212e4), (1, 1, 2.1887e3)] {
+        assert!((found[i][j] - truth).abs() < 3.0 * std[i][j], "k{}{} is {}", i + 1, j + 1, found[i][j]);
+        assert!(std[i][j] < 0.03 * truth.abs(), "k{}{} ± {}", i + 1, j + 1, std[i][j]);
+    }
+    let mass = file["joint"]["mass"]["value"].as_f64().unwrap();
+    assert!((mass / 0.0768 - 1.0).abs() < 0.1, "{mass} kg");
+    let fit = &file["maximum_likelihood"];
     let found = matrix(&fit["stiffness"]);
     // The table of fixtures/glued-joint/README.md. The strip's mass, which the fixture leaves out, costs a tenth;
     // what the fixture believes lies twice as high.

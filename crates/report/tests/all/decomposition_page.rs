@@ -7,6 +7,7 @@ use jointscope_lumped::{Instrument, synthesize};
 use jointscope_report::format::quantity;
 use jointscope_report::{InputFile, PageContext, decomposition_page};
 use jointscope_spectra::{FrfPair, FrfSet, SpectralLines};
+use jointscope_wording::Says;
 use num_complex::Complex64;
 
 const PAIRS: [(&str, &str); 5] = [("4", "1"), ("3", "1"), ("4", "2"), ("3", "2"), ("1", "1")];
@@ -105,9 +106,8 @@ fn plots(html: &str) -> serde_json::Value {
 #[test]
 fn the_headline_states_the_stiffness_with_noise_and_tolerance_together() {
     let (fixture, analysis) = two_blocks(Relation::Exact);
-    let fit = analysis.likelihood.as_ref().unwrap();
-    let std = fit.stiffness_std.at(0, 0).hypot(analysis.tolerance_of_likelihood().0.at(0, 0));
-    let value = quantity(fit.stiffness.at(0, 0), std, "N/m");
+    let fit = analysis.joint_fit.as_ref().unwrap();
+    let value = quantity(fit.stiffness.at(0, 0), fit.std().0.at(0, 0), "N/m");
     let html = page(&fixture, &analysis);
     let headline = format!("Joint J: k₁₁ = {value}, as the nominal beam's within uncertainty.");
     assert!(html.contains(&headline), "{headline}");
@@ -115,10 +115,10 @@ fn the_headline_states_the_stiffness_with_noise_and_tolerance_together() {
 }
 
 #[test]
-fn figures_of_all_three_estimates_and_the_nominal_stand_in_one_table() {
+fn figures_of_all_four_estimates_and_the_nominal_stand_in_one_table() {
     let (fixture, analysis) = two_blocks(Relation::Exact);
     let html = page(&fixture, &analysis);
-    for heading in ["Plain mean (eq 35, 42)", "Weighted mean", "Maximum likelihood", "Nominal"] {
+    for heading in ["Plain mean (eq 35, 42)", "Weighted mean", "FRFs across", "All FRFs", "Nominal"] {
         assert!(html.contains(heading), "{heading}");
     }
     for unit in ["MN/m", "kN/rad", "kN·m/m", "kN·m/rad", "N·s/m", "N·s/rad", "N·s<", "N·m·s/rad"] {
@@ -160,7 +160,9 @@ fn masked_lines_are_gaps_in_every_curve_and_their_reasons_are_listed() {
 fn frfs_that_do_not_cross_the_joint_and_remarks_of_the_reading_are_listed() {
     let (fixture, analysis) = two_blocks(Relation::Exact);
     let html = page(&fixture, &analysis);
-    assert!(html.contains("1 FRF does not cross the joint between the two blocks and is not used: 1/1."));
+    assert!(html.contains(
+        "1 FRF does not cross the joint between the two blocks and is not part of K and C by line: 1/1."
+    ));
     assert!(html.contains("1 FRF at nodes that the fixture does not have left out: 9/1"));
 }
 
@@ -220,14 +222,15 @@ fn bodies_that_do_not_rotate_show_one_element_and_no_interfaces() {
 #[test]
 fn without_a_fit_the_means_are_stated_with_the_reason() {
     let (fixture, mut analysis) = two_blocks(Relation::Exact);
-    analysis.likelihood = Err(DecompositionError::NoFit("the FRFs leave an element of k or c undetermined"));
+    let error = || DecompositionError::NoFit("the FRFs leave an element of k or c undetermined");
+    (analysis.likelihood, analysis.joint_fit) = (Err(error()), Err(error()));
     analysis.interfaces = None;
     analysis.judgement = Judgement::of(&analysis, &fixture);
     let html = page(&fixture, &analysis);
     assert!(html.contains("<div class=\"verdict problem\">"));
     assert!(html.contains("did not converge: the FRFs leave an element of k or c undetermined"));
     assert!(html.contains("a mean over the band"));
-    assert!(!html.contains("<th scope=\"col\" class=\"number\">Maximum likelihood"));
+    assert!(!html.contains("<th scope=\"col\" class=\"number\">FRFs across"));
 }
 
 #[test]
@@ -237,7 +240,7 @@ fn eq_7_is_said_to_leave_out_the_transport_and_the_fit_to_be_the_exact_joint() {
     assert!(html.contains("It leaves out the transport"));
     assert!(html.contains("Signs are those of eq (7)"));
     assert!(html.contains("K₂₁ and K₂₂ are negative"));
-    assert!(html.contains("(exact joint, maximum likelihood)"));
+    assert!(html.contains("(exact joint, all FRFs)"));
     assert!(html.contains("K₁₁") && html.contains("k₁₁"));
     assert!(html.contains("not eq 7"));
 }
@@ -265,7 +268,33 @@ fn a_fit_that_contradicts_the_means_is_not_to_be_used() {
     assert!(
         html.contains("no constant k and c fits these FRFs") || html.contains("this test does not determine")
     );
-    assert!(html.contains("one constant k and c does not explain the FRFs within their noise"));
+    assert!(html.contains("Noise and tolerances do not explain the FRFs"));
+}
+
+#[test]
+fn laws_tests_and_quantities_of_the_joint_from_all_frfs_have_a_section_of_their_own() {
+    let fixture = blocks("");
+    let frfs = recorded(&fixture, &PAIRS);
+    let options = AnalysisOptions { laws: true, ..AnalysisOptions::default() };
+    let analysis = Analysis::of(&fixture, &frfs, &options).unwrap();
+    let html = page(&fixture, &analysis);
+    let best = analysis.joint_fit.as_ref().unwrap().law().unwrap().says();
+    let said = ["The joint from all FRFs", "(reciprocal)", "gives out no energy", "bodies/A/mass", &best];
+    for text in said {
+        assert!(html.to_lowercase().contains(&text.to_lowercase()), "{text}");
+    }
+}
+
+#[test]
+fn where_only_the_fit_across_the_joint_succeeds_the_page_states_that() {
+    let (fixture, mut analysis) = two_blocks(Relation::Exact);
+    analysis.joint_fit = Err(DecompositionError::NoFit("no start gives finite FRFs"));
+    analysis.judgement = Judgement::of(&analysis, &fixture);
+    let html = page(&fixture, &analysis);
+    assert!(
+        html.contains("Maximum likelihood by the exact relation")
+            && !html.contains("The joint from all FRFs")
+    );
 }
 
 #[test]
