@@ -243,7 +243,7 @@ impl<'a> Fitter<'a> {
         }
         if best.as_ref().is_none_or(|best| self.per_degree(&problem, &best.point) > DOUBTFUL) {
             // The last start is the nominal joint.
-            let afar = starts.last().and_then(|start| self.from_afar(&problem, problem.whole(start)));
+            let afar = starts.last().and_then(|start| self.searched(&problem, problem.whole(start)));
             best = afar
                 .into_iter()
                 .chain(best)
@@ -299,7 +299,7 @@ impl<'a> Fitter<'a> {
     }
 
     /// A fit by stages in which less and less of the signal counts as noise, so that sharp resonances do not decide where it goes.
-    fn from_afar(&self, problem: &Problem, start: Vec<f64>) -> Option<Fitted> {
+    fn searched(&self, problem: &Problem, start: Vec<f64>) -> Option<Fitted> {
         let mut at = start;
         for share in SHARES_AS_NOISE {
             let values = self.recorded.values.iter().zip(&self.recorded.weights);
@@ -320,7 +320,7 @@ impl<'a> Fitter<'a> {
         let afar = afar.and_then(|start| {
             let mut start = problem.whole(start);
             start[problem.law.count()] = laws::FIRST_MASS;
-            self.from_afar(problem, start)
+            self.searched(problem, start)
         });
         near.into_iter().chain(afar).reduce(|a, b| if b.point.objective < a.point.objective { b } else { a })
     }

@@ -120,7 +120,7 @@ impl<'a> Problem<'a> {
         NormalEquations::of_columns(&columns, &self.residual(at), weights, |_| false, priors)
     }
 
-    fn from(&self, at: &Point, step: &[f64]) -> Option<Point> {
+    fn moved_by(&self, at: &Point, step: &[f64]) -> Option<Point> {
         let moved = at.coordinates.iter().zip(step).zip(&self.parameters);
         let coordinates = moved.map(|((at, step), parameter)| parameter.clamp(at + step)).collect();
         self.point(coordinates, Some(&at.uncoupled))
@@ -203,12 +203,12 @@ impl LeastSquares for Problem<'_> {
 
     fn stepped(&self, at: &Point, equations: &NormalEquations, damping: f64) -> Option<Point> {
         let step = equations.bounded_step(damping, &at.coordinates, &self.parameters)?;
-        self.from(at, &step)
+        self.moved_by(at, &step)
     }
 
     fn shortened(&self, at: &Point, equations: &NormalEquations, share: f64) -> Option<Point> {
         let step = equations.bounded_step(0.0, &at.coordinates, &self.parameters)?;
-        self.from(at, &step.iter().map(|step| share * step).collect::<Vec<_>>())
+        self.moved_by(at, &step.iter().map(|step| share * step).collect::<Vec<_>>())
     }
 
     fn corrected(
@@ -219,7 +219,7 @@ impl LeastSquares for Problem<'_> {
         share: f64,
     ) -> Option<Point> {
         let earlier = (before, from.coordinates.as_slice());
-        self.from(at, &own.correction(&at.coordinates, earlier, share, &self.parameters)?)
+        self.moved_by(at, &own.correction(&at.coordinates, earlier, share, &self.parameters)?)
     }
 
     fn promised(&self, at: &Point, equations: &NormalEquations) -> f64 {

@@ -395,3 +395,58 @@ fn laws_that_the_frfs_tell_apart_are_named_95_times_in_100() {
         counts.iter().fold((0, 0), |(told, right), counts| (told + counts[0], right + counts[1]));
     assert!(right as f64 >= 0.95 * told as f64, "{right} of {told}");
 }
+
+#[test]
+fn in_a_chain_the_joint_asked_for_is_found_with_the_other_one_within_its_tolerance() {
+    let q = |value: f64, std: f64| format!(r#"{{"value": {value}, "std": {std}}}"#);
+    let block = |mass: f64, x: f64| {
+        format!(
+            r#"{{ "mass": {}, "inertia": {}, "x_cg": {} }}"#,
+            q(mass, 1e-3 * mass),
+            q(8e-4, 4e-6),
+            q(x, 1e-4)
+        )
+    };
+    let joint = |from: &str, to: &str, k: f64| {
+        let matrix = |s: f64| {
+            format!(
+                "[[{}, {}], [{}, {}]]",
+                q(s, 2e-2 * s),
+                q(-0.035 * s, 7e-4 * s),
+                q(-0.035 * s, 7e-4 * s),
+                q(1.7e-3 * s, 3.4e-5 * s)
+            )
+        };
+        format!(
+            r#"{{ "from": "{from}", "to": "{to}", "stiffness": {}, "damping": {} }}"#,
+            matrix(k),
+            matrix(5e-6 * k)
+        )
+    };
+    let fixture = Fixture::from_json(&format!(
+        r#"{{ "bodies": {{ "A": {}, "B": {}, "C": {} }},
+            "points": {{ "1": {{ "body": "A", "x": -0.06 }}, "2": {{ "body": "A", "x": 0 }}, "3": {{ "body": "B", "x": 0.07 }}, "4": {{ "body": "B", "x": 0.13 }},
+                         "5": {{ "body": "C", "x": 0.2 }}, "6": {{ "body": "C", "x": 0.26 }} }},
+            "joints": {{ "J": {}, "K": {} }} }}"#,
+        block(1.1, -0.03),
+        block(1.3, 0.1),
+        block(1.2, 0.23),
+        joint("2", "3", 2.4e6),
+        joint("4", "5", 1.6e6),
+    ))
+    .unwrap();
+    let truth = drawn_within_tolerance(&fixture, &mut generator(17)).unwrap();
+    let pairs =
+        [("4", "1"), ("3", "1"), ("4", "2"), ("3", "2"), ("1", "1"), ("6", "1"), ("6", "6"), ("5", "6")];
+    let frfs = recorded(&truth, &mut Noise::new(17), 0.01, &pairs);
+    let sides = Sides::of(&fixture, Some("J")).unwrap();
+    let nominal = nominal_stiffness(&sides.joint().law, sides.length());
+    let fit = fit_joint(&frfs, &sides, false, None, nominal, JointFitOptions::default()).unwrap();
+    assert!((0.93..1.07).contains(&fit.chi2_per_dof) && fit.explains(), "{}", fit.chi2_per_dof);
+    assert!(fit.quantities.iter().any(|quantity| quantity.path.starts_with("joints/K/")));
+    assert!(fit.quantities.iter().all(|quantity| !quantity.path.starts_with("joints/J/")));
+    for (e, (found, expected)) in found(&fit).into_iter().zip(six(&truth)).enumerate() {
+        let score = (found - expected) / fit.covariance[e][e].sqrt();
+        assert!(score.abs() < 3.5, "{}: {found} for {expected}, {score} deviations", NAMES[e]);
+    }
+}
