@@ -2,7 +2,6 @@
 #![allow(clippy::unwrap_used)] // helpers of tests fail as tests do
 
 mod common;
-mod joint_fit;
 mod round_trip;
 mod tolerances;
 mod uncertainty;

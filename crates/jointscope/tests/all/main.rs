@@ -5,6 +5,7 @@ mod against_the_rig;
 mod common;
 mod diagnosis;
 mod drift;
+mod joint_fit;
 mod layers;
 mod links;
 mod location;

@@ -1,18 +1,53 @@
 //! The joint from all FRFs, on recordings that the simulated laboratory makes: it shares no mechanics with the model fitted.
 
-use crate::common::Noise;
-use jointscope_decomposition::{
+use jointscope::decomposition::{
     JointFit, JointFitOptions, LawFit, LawKind, Relation, Sides, decompose, fit_joint, maximum_likelihood,
 };
-use jointscope_fixture::{Fixture, JointLaw};
-use jointscope_linalg::Matrix2;
-use jointscope_lumped::nominal_stiffness;
+use jointscope::fixture::{Fixture, JointLaw};
+use jointscope::linalg::Matrix2;
+use jointscope::lumped::nominal_stiffness;
+use jointscope::spectra::{FrfForm, FrfPair, FrfSet, SpectralLines};
 use jointscope_rig::{Instrument, drawn_within_tolerance, generator};
-use jointscope_spectra::{FrfForm, FrfPair, FrfSet, SpectralLines};
 use num_complex::Complex64;
 
 const EIGHT: [(&str, &str); 8] =
     [("4", "1"), ("3", "1"), ("4", "2"), ("3", "2"), ("1", "1"), ("2", "1"), ("4", "4"), ("3", "4")];
+
+/// A deterministic stream of circular complex normals.
+struct Noise(u64);
+
+impl Noise {
+    fn new(seed: u64) -> Self {
+        Noise(seed.wrapping_mul(0x9E3779B97F4A7C15) | 1)
+    }
+
+    fn uniform(&mut self) -> f64 {
+        self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        ((self.0 >> 11) as f64 + 0.5) / (1u64 << 53) as f64
+    }
+
+    fn complex(&mut self, variance: f64) -> Complex64 {
+        let radius = (-variance * self.uniform().ln()).sqrt();
+        Complex64::from_polar(radius, std::f64::consts::TAU * self.uniform())
+    }
+
+    /// The set with noise of `relative` times each FRF's rms accelerance, and the variances that go with it.
+    fn on(&mut self, frfs: &FrfSet, relative: f64) -> FrfSet {
+        let n = frfs.lines().len();
+        let mut values = frfs.all_values().to_vec();
+        let mut variance = Vec::new();
+        for (index, block) in values.chunks_mut(n).enumerate() {
+            let mean: f64 = frfs.values(index).iter().map(|v| v.norm_sqr()).sum::<f64>() / n as f64;
+            let floor = relative * relative * mean;
+            block.iter_mut().for_each(|v| *v += self.complex(floor));
+            variance.extend(std::iter::repeat_n(floor, n));
+        }
+        FrfSet::new(frfs.lines().clone(), frfs.form(), frfs.pairs().to_vec(), values)
+            .unwrap()
+            .with_variance(variance)
+            .unwrap()
+    }
+}
 
 /// What the joint is.
 #[derive(Clone, Copy)]
