@@ -4,8 +4,8 @@ use crate::departures::departed;
 use crate::freedom::{extent, inertia_of, mass_of, turns};
 use crate::{Hypothesis, Observation};
 use jointscope_fixture::{
-    BodyKind, Dof, Effect, EffectKind, EffectSpec, Entry, Fixture, Joint, Measure, Motion, ParameterRange,
-    Place, PlaceKind, SizeLaw, Starts,
+    BodyKind, Dof, Effect, EffectKind, EffectSpec, Entry, Fixture, Joint, Measure, Motion, NamedQuantity,
+    ParameterRange, Place, PlaceKind, QuantityKey, QuantityOwner, SizeLaw, Starts, SupportPlace,
 };
 use jointscope_lumped::nominal_stiffness;
 use std::f64::consts::TAU;
@@ -175,6 +175,22 @@ pub fn catalogue(fixture: &Fixture, observation: &Observation) -> Vec<Candidate>
 /// Departures from which a search for a wrong quantity sets out, as multiples of that which the refit made: what else it bent was bent in its stead.
 const DEPARTURES: [f64; 4] = [0.5, 1.0, 2.0, 4.0];
 
+/// Whether an effect of another kind says the very same of a quantity: a modulus is a factor of stiffness, a point that holds nothing an offset.
+fn has_a_name(fixture: &Fixture, quantity: &NamedQuantity) -> bool {
+    match (quantity.owner, quantity.key) {
+        (_, QuantityKey::YoungsModulus | QuantityKey::SecondMoment | QuantityKey::Parameter { .. }) => true,
+        (QuantityOwner::Point(point), _) => {
+            let ends = fixture.joints().iter().flat_map(|joint| [joint.from, joint.to]);
+            let held = fixture.supports().iter().filter_map(|support| match support.place {
+                SupportPlace::Point(point) => Some(point),
+                SupportPlace::Body { .. } => None,
+            });
+            ends.chain(held).all(|other| other != point)
+        }
+        _ => false,
+    }
+}
+
 /// The candidates and, of the quantities that a refit took beyond what chance makes, the `count` farthest: each may be wrong as it is stated.
 pub(crate) fn with_wrong_quantities(
     candidates: &[Candidate],
@@ -182,7 +198,9 @@ pub(crate) fn with_wrong_quantities(
     count: usize,
 ) -> Vec<Candidate> {
     let tolerances = refitted.tolerances();
-    let mut farthest: Vec<usize> = (0..tolerances.len()).filter(|&index| departed(refitted, index)).collect();
+    let is_unnamed = |index: usize| !has_a_name(refitted.fixture(), &tolerances[index].quantity);
+    let all = (0..tolerances.len()).filter(|&index| departed(refitted, index) && is_unnamed(index));
+    let mut farthest: Vec<usize> = all.collect();
     let distance = |index: usize| refitted.departure(index).abs();
     farthest.sort_by(|a, b| distance(*b).total_cmp(&distance(*a)));
     farthest.truncate(count);

@@ -29,7 +29,8 @@ pub(crate) fn estimates(
                 coordinate += 1;
                 Some(covariance?.std(coordinate - 1) * widening).filter(|deviation| deviation.is_finite())
             });
-            let estimate = Estimate { unit: effect.unit(place), ..Estimate::of(*parameter, effect.dof, value) };
+            let estimate =
+                Estimate { unit: effect.unit(place), ..Estimate::of(*parameter, effect.dof, value) };
             match (moves.transform, deviation.flatten()) {
                 (Transform::Fixed, _) | (_, None) => estimate,
                 (Transform::Linear { scale, .. }, Some(deviation)) => estimate.within(deviation * scale),

@@ -197,6 +197,11 @@ impl Hypothesis {
         self.held.contains(&index)
     }
 
+    /// The fixture as it is stated.
+    pub(crate) fn fixture(&self) -> &Fixture {
+        &self.fixture
+    }
+
     /// Number of effects.
     pub fn effect_count(&self) -> usize {
         self.effects.len()

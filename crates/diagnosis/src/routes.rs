@@ -50,8 +50,9 @@ pub(crate) fn judged(
     };
     // Modes lead to the nearest minimum where lines, peak beside peak, may end in another.
     let within = match &modal {
-        Some(modal) => Search { candidates: modal.candidates.clone(), ..within }
-            .refitted_from(fitter, &modal.refitted),
+        Some(modal) => {
+            Search { candidates: modal.candidates.clone(), ..within }.refitted_from(fitter, &modal.refitted)
+        }
         None => within,
     };
     let of = (fixture, options.exact);
@@ -183,11 +184,10 @@ fn by_lines(
             None => search = fewer,
         }
     }
-    let findings =
-        match nothing_can_be_stated(fitter, &search.repaired, search.candidates.len()) {
-            true => Vec::new(),
-            false => findings(fitter, &mut search),
-        };
+    let findings = match nothing_can_be_stated(fitter, &search.repaired, search.candidates.len()) {
+        true => Vec::new(),
+        false => findings(fitter, &mut search),
+    };
     let stated = |f: &Finding| f.probability + f.alternatives.iter().map(|(_, p)| p).sum::<f64>();
     // What the best hypotheses leave may say that none of them is right: they would only adapt the model to the recording.
     let doubtful = findings.iter().any(|finding| stated(finding) < settings.evidence.stated);

@@ -60,7 +60,11 @@ impl Search {
         let is_wrong = |candidate: &&Candidate| candidate.kind == EffectKind::QuantityError;
         let candidates: Vec<Candidate> = self.candidates.iter().filter(is_wrong).cloned().collect();
         let any = !candidates.is_empty();
-        any && explains(fitter, &Search::searched(fitter, Search { candidates, ..self.clone() }).repaired, false)
+        any && explains(
+            fitter,
+            &Search::searched(fitter, Search { candidates, ..self.clone() }).repaired,
+            false,
+        )
     }
 
     /// The same, the fixture refitted from elsewhere too.

@@ -27,7 +27,8 @@ pub(crate) fn departed(diagnosis: &Diagnosis) -> String {
 
 /// The departures that the effects found neither take away nor name, the farthest first.
 pub(crate) fn remaining(diagnosis: &Diagnosis) -> impl Iterator<Item = &Departure> {
-    let named = |path: &str| diagnosis.findings.iter().any(|finding| finding.effect.place.to_string() == path);
+    let named =
+        |path: &str| diagnosis.findings.iter().any(|finding| finding.effect.place.to_string() == path);
     diagnosis.departures.iter().filter(move |departure| departure.remains() && !named(&departure.path))
 }
 

@@ -57,7 +57,8 @@ fn damping_that_is_far_from_what_is_stated_is_called_wrong() {
 fn a_storey_too_heavy_is_a_wrong_mass_or_an_added_one() {
     let frame = |mass: f64| {
         let storey = |mass: f64| json!({ "mass": {"value": mass, "std": 0.02 * 3.5}, "rotates": false });
-        let columns = |stiffness: f64| json!([[{"value": stiffness, "std": 0.02 * stiffness}, 0.0], [0.0, 0.0]]);
+        let columns =
+            |stiffness: f64| json!([[{"value": stiffness, "std": 0.02 * stiffness}, 0.0], [0.0, 0.0]]);
         Fixture::from_value(&json!({
             "bodies": { "F1": storey(mass), "F2": storey(3.5), "F3": storey(3.5) },
             "points": { "1": { "body": "F1", "x": 0.0 }, "2": { "body": "F2", "x": 0.0 }, "3": { "body": "F3", "x": 0.0 } },
