@@ -4,8 +4,9 @@ use crate::departures::departed;
 use crate::freedom::{extent, inertia_of, mass_of, turns};
 use crate::{Hypothesis, Observation};
 use jointscope_fixture::{
-    BodyKind, Dof, Effect, EffectKind, EffectSpec, Entry, Fixture, Joint, Measure, Motion, NamedQuantity,
-    ParameterRange, Place, PlaceKind, QuantityKey, QuantityOwner, SizeLaw, Starts, SupportPlace,
+    BodyKind, Dof, Effect, EffectKind, EffectSpec, Entry, Fixture, Joint, JointLaw, Measure, Motion,
+    NamedQuantity, ParameterRange, Place, PlaceKind, QuantityKey, QuantityOwner, SizeLaw, Starts,
+    SupportPlace,
 };
 use jointscope_lumped::nominal_stiffness;
 use std::f64::consts::TAU;
@@ -175,9 +176,20 @@ pub fn catalogue(fixture: &Fixture, observation: &Observation) -> Vec<Candidate>
 /// Departures from which a search for a wrong quantity sets out, as multiples of that which the refit made: what else it bent was bent in its stead.
 const DEPARTURES: [f64; 4] = [0.5, 1.0, 2.0, 4.0];
 
-/// Whether an effect of another kind says the very same of a quantity: a modulus is a factor of stiffness, a point that holds nothing an offset.
+/// Whether an effect of another kind says the very same of a quantity: a modulus is a factor of stiffness, a support's spring another support, a point that holds
+/// nothing an offset.
 fn has_a_name(fixture: &Fixture, quantity: &NamedQuantity) -> bool {
     match (quantity.owner, quantity.key) {
+        (QuantityOwner::Joint(joint), QuantityKey::JointStiffness(..)) => {
+            match &fixture.joints()[joint].law {
+                // The only element of a matrix is all of it.
+                JointLaw::Stiffness { stiffness, .. } => {
+                    stiffness.iter().filter(|k| k.value != 0.0).count() == 1
+                }
+                JointLaw::Beam { .. } => false,
+            }
+        }
+        (_, QuantityKey::SupportStiffness(_)) => true,
         (_, QuantityKey::YoungsModulus | QuantityKey::SecondMoment | QuantityKey::Parameter { .. }) => true,
         (QuantityOwner::Point(point), _) => {
             let ends = fixture.joints().iter().flat_map(|joint| [joint.from, joint.to]);

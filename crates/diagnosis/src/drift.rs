@@ -60,7 +60,7 @@ pub struct ModeDrift {
 pub struct TestDrift {
     /// Whose stiffness explains it: `joints/J`, `bodies/F` or `all stiffnesses`; `None` where the modes do not tell one.
     pub what: Option<String>,
-    /// What else explains it as well, or where `what` is `None` all that do; empty then where nothing does.
+    /// All that explain it, where `what` is `None`; empty where nothing does.
     pub could_be: Vec<String>,
     /// The course, in the order in which the recording has the references. Changes are of `what`; without, of all stiffnesses alike.
     pub references: Vec<ReferenceChange>,
@@ -111,6 +111,10 @@ impl Drifted {
         };
         let frfs: Vec<usize> = references.iter().map(frfs).collect();
         let kept = agreement::agreeing(&table, &frfs);
+        // Where each agrees with each, there is nothing to leave out and no course to tell.
+        if kept.iter().all(|kept| *kept) {
+            return None;
+        }
         Some(Drifted { references, kept, modes, table, p_value })
     }
 

@@ -20,7 +20,7 @@ pub(crate) fn explained(observation: &Observation, settings: &Settings) -> f64 {
 /// Whether a hypothesis' quantities lie no farther from what is stated than chance takes them.
 pub(crate) fn deviates_by_chance(fitter: &Fitter, hypothesis: &Hypothesis) -> bool {
     let quantities = hypothesis.tolerances().len() as f64;
-    hypothesis.penalty() <= quantities + fitter.settings.selection.deviated * (2.0 * quantities).sqrt()
+    hypothesis.strain() <= quantities + fitter.settings.selection.deviated * (2.0 * quantities).sqrt()
 }
 
 /// Minus twice the logarithm of the evidence, up to a constant: χ² and priors, divided by the variance `inflation`, and a penalty for every

@@ -110,9 +110,16 @@ impl Hypothesis {
     ///
     /// Young's modulus and second moment of one beam enter as their product ([`Fixture::uncertain_quantities`]).
     pub fn nominal(fixture: &Fixture, exact: bool) -> Self {
+        // A quantity that the fixture itself calls wrong has the value given for it.
+        let called_wrong = |quantity: &NamedQuantity| {
+            let of_it =
+                |effect: &Effect| matches!(&effect.place, Place::Quantity(path, _) if *path == quantity.path);
+            fixture.physics().iter().any(of_it)
+        };
         let tolerances: Vec<Tolerance> = fixture
             .uncertain_quantities(exact)
             .into_iter()
+            .filter(|(_, quantity)| !called_wrong(quantity))
             .map(|(index, quantity)| Tolerance::new(index, quantity))
             .collect();
         Hypothesis {
@@ -236,6 +243,12 @@ impl Hypothesis {
     /// Σ (departure/std)².
     pub fn penalty(&self) -> f64 {
         self.parameters.iter().zip(&self.coordinates).map(|(parameter, at)| parameter.penalty(*at)).sum()
+    }
+
+    /// The same of the fixture's quantities alone: how far one that an effect calls wrong lies from what is stated says nothing against the others.
+    pub(crate) fn strain(&self) -> f64 {
+        let stated = self.parameters.iter().zip(&self.coordinates).take(self.tolerances.len());
+        stated.map(|(parameter, at)| parameter.penalty(*at)).sum()
     }
 
     /// Coordinates of effect `index` within the whole.

@@ -1,7 +1,6 @@
 //! The ways to a diagnosis: by the noise of the lines, by the error of the model, by what has changed since a baseline; and which of them a recording
 //! asks for.
 
-use crate::catalogue::Candidate;
 use crate::departures::departures;
 use crate::diagnosis::{Diagnosis, DiagnosisError, DiagnosisOptions, Finding, Tried, mismatch, upper_tail};
 use crate::evidence::{excess, nothing_can_be_stated};
@@ -156,10 +155,9 @@ fn by_lines(
     division: Option<Division>,
 ) -> Parts {
     let Fitter { observation, settings, .. } = *fitter;
-    let candidates = within.candidates.clone();
     let seen = |known: Option<&ModalJudgement>| {
         let division = division.as_ref().filter(|_| observation.work().allows(UNSEEN))?;
-        blind(&fitter.on(&division.seen), (fixture, exact), &candidates, known)
+        blind(&fitter.on(&division.seen), (fixture, exact), known)
     };
     // What sees less goes first where nothing is known, and the whole recording only has to confirm or correct it.
     let anew = matches!(start, Start::Anew);
@@ -223,15 +221,13 @@ fn by_lines(
 fn blind(
     fitter: &Fitter,
     (fixture, exact): (&Fixture, bool),
-    candidates: &[Candidate],
     known: Option<&ModalJudgement>,
 ) -> Option<Search> {
     fitter.watch.stage("searching without the lines that are held out");
-    let alone = Search::without_effects(fitter, fixture, exact)?;
-    let alone = Search { candidates: candidates.to_vec(), ..alone };
+    let alone = Search::without_effects(fitter, fixture, exact)?.with_wrong_quantities(fitter);
     let modal = known.and_then(|modal| {
         let known = modal.known(fitter.settings.modal.blind);
-        ModalJudgement::of(fitter, &alone.nominal.hypothesis, candidates, Some(&known))
+        ModalJudgement::of(fitter, &alone.nominal.hypothesis, &alone.candidates, Some(&known))
     });
     let found = modal.and_then(|modal| {
         let exact = modal.exact(fitter)?;

@@ -136,8 +136,8 @@ pub struct ModalSettings {
     pub refined: (usize, usize),
     /// Starts of each that is fitted alone, and of the best of them (as many as are `tried`) where none explains the modes so.
     pub starts: (usize, usize),
-    /// Starts that are fitted in any case, and how far in ln p the density of another may lie below the best of these fits for it to be fitted too: a fit seldom
-    /// gains so much over its start, and e⁻¹⁵⁰ is no probability.
+    /// Starts that are fitted in any case, and how far in ln p the density of another may lie below the best of these fits, if that needs no more than usual errors, to be
+    /// fitted too: a fit seldom gains so much over its start, and e⁻¹⁵⁰ is no probability.
     pub foremost: (usize, f64),
     /// Share of all work that may be done by then: lines want the rest.
     pub again: f64,

@@ -132,7 +132,9 @@ fn a_dashpot_of_zero_leaves_the_spring_beside_it_a_deviation() {
 fn the_catalogue_has_every_linear_effect_that_the_fixture_can_have() {
     let observation = observation(&fixture());
     let candidates = catalogue(&fixture(), &observation);
-    for kind in EffectKind::ALL.into_iter().filter(|kind| !kind.is_nonlinear()) {
+    // Which quantity may be wrong, a refit tells first.
+    let is_listed = |kind: &EffectKind| !kind.is_nonlinear() && *kind != EffectKind::QuantityError;
+    for kind in EffectKind::ALL.into_iter().filter(is_listed) {
         let mine: Vec<_> = candidates.iter().filter(|c| c.kind == kind).collect();
         assert!(!mine.is_empty(), "{} is missing", kind.name());
         for candidate in mine {

@@ -73,7 +73,7 @@ impl Scene<'_> {
     fn wrong_quantity(&self, rng: &mut impl Rng) -> Option<Effect> {
         let mut all = self.fixture.quantities();
         all.retain(|quantity| {
-            !matches!(quantity.nature, Nature::Damping | Nature::Effect)
+            !matches!(quantity.nature, Nature::Damping | Nature::Support | Nature::Effect)
                 && quantity.std.is_some_and(|std| std > 0.0)
         });
         let quantity = choice(rng, &all)?;

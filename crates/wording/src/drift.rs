@@ -21,16 +21,12 @@ impl Says for TestDrift {
         };
         let subject = self.what.as_deref().map_or_else(String::new, subject);
         let unknown = match (&self.what, self.could_be.len()) {
-            (None, 0) => {
-                ". Which stiffness it was the modes do not tell: none of the fixture's alone explains it"
-                    .to_owned()
-            }
+            (None, 0) => ". Which stiffness it was the modes do not tell".to_owned(),
             (None, 1..=NAMES) => {
                 format!(". Which stiffness it was the modes cannot tell: {}", self.could_be.join(" or "))
             }
             (None, _) => ". Which stiffness it was the modes cannot tell".to_owned(),
-            (Some(_), 0) => String::new(),
-            (Some(_), _) => format!(" ({} would explain it too)", self.could_be.join(" or ")),
+            (Some(_), _) => String::new(),
         };
         format!(
             "The test drifted: {subject}{} than while {} {} struck (poles differ as much by chance with a probability {}){unknown}. Measure again, \

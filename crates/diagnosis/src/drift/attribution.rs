@@ -70,13 +70,11 @@ pub(super) fn attributed(drifted: &Drifted, model: &Fixture, explains: bool) -> 
             kept: kept[index],
         }
     };
-    let considered = able.iter().skip(usize::from(best.is_some()));
+    // Where one is told there is nothing else to consider.
+    let considered = able.iter().filter(|_| best.is_none());
     TestDrift {
         what: best.map(|(candidate, _)| candidate.name.clone()),
-        could_be: considered
-            .filter(|(_, course)| weight(course) / total > 1.0 - NAMED)
-            .map(|(candidate, _)| candidate.name.clone())
-            .collect(),
+        could_be: considered.map(|(candidate, _)| candidate.name.clone()).collect(),
         references: drifted.references.iter().enumerate().map(reference).collect(),
         p_value: drifted.p_value,
         modes: modes(drifted, inflation),

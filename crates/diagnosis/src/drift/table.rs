@@ -53,7 +53,9 @@ impl Fit {
         }
         let largest = (0..unknowns).map(|i| normal[i * (unknowns + 1)]).fold(0.0, f64::max);
         for i in 0..unknowns {
-            normal[i * (unknowns + 1)] += RIDGE * largest;
+            let own = &mut normal[i * (unknowns + 1)];
+            // A column that is empty has no scale of its own.
+            *own += RIDGE * if *own > 0.0 { *own } else { largest };
         }
         let cholesky = Cholesky::of(unknowns, &normal)?;
         cholesky.solve_in_place(&mut values);

@@ -117,7 +117,7 @@ impl Searcher<'_> {
         let none = alone;
         let start = Named { names: Vec::new(), exact: self.is_exact(&none), fit: none };
         self.watch.stage("comparing effects by modes");
-        let (mut singles, far) = self.extended(&start, self.settings.refined.0, self.settings.starts.0);
+        let (mut singles, mut far) = self.extended(&start, self.settings.refined.0, self.settings.starts.0);
         let start = self.at_its_best(start, &singles);
         let none = start.fit.clone();
         // Where neither the fixture nor any effect explains the modes, the right one may have set out from the wrong place.
@@ -130,6 +130,7 @@ impl Searcher<'_> {
         if little && !self.is_adequate(&none) && !singles.iter().any(explains) {
             let (again, _) = self.extended(&start, self.settings.tried, self.settings.starts.1);
             singles = best_of_each(singles.into_iter().chain(again).collect());
+            far.retain(|c| singles.iter().all(|single| single.names.last() != Some(c)));
         }
         let mut best = start.clone();
         let mut more = Vec::new();
@@ -349,7 +350,9 @@ impl Searcher<'_> {
         let rest = chosen.split_off(first.min(chosen.len()));
         let start = |(_, c, hypothesis)| (c, hypothesis);
         let mut fits = self.fitted(base, chosen.into_iter().map(start).collect());
-        let best = fits.first().map_or(f64::NEG_INFINITY, |best| best.fit.ln);
+        // Only what explains the modes shows that others need not be fitted.
+        let best = fits.first().filter(|best| self.is_adequate(&best.fit));
+        let best = best.map_or(f64::NEG_INFINITY, |best| best.fit.ln);
         let near = rest.into_iter().filter(|(density, _, _)| best - density < far).map(start).collect();
         fits.extend(self.fitted(base, near));
         let fits = best_of_each(fits);

@@ -126,7 +126,9 @@ fn the_smallest_effect_that_shows_costs_a_fit_without_it_what_was_stated() {
 fn every_linear_kind_has_a_limit() {
     let (cases, _) = opened(&plan(0));
     let limits = Limits::of(&cases[1].believed, &cases[1].recorded).unwrap();
-    for kind in EffectKind::ALL.into_iter().filter(|kind| !kind.is_nonlinear()) {
+    // A wrong quantity is looked for where a refit takes it, at any size.
+    let is_listed = |kind: &EffectKind| !kind.is_nonlinear() && *kind != EffectKind::QuantityError;
+    for kind in EffectKind::ALL.into_iter().filter(is_listed) {
         let own: Vec<_> = limits.smallest.iter().filter(|shown| shown.name.kind == kind).collect();
         assert!(!own.is_empty(), "{}", kind.name());
         assert!(own.iter().all(|shown| shown.shows.is_finite() && shown.shows > 0.0), "{own:?}");
