@@ -67,6 +67,18 @@ pub struct FittedJoint {
     /// How it is damped, as far as the file says.
     #[serde(default)]
     pub law: Option<String>,
+    /// The joint's own mass, where the FRFs show one: K and C are then those of a joint with it.
+    #[serde(default)]
+    pub mass: Option<JointMass>,
+}
+
+/// A joint's own mass, uniform over its length.
+#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
+pub struct JointMass {
+    /// kg.
+    pub value: f64,
+    /// Standard deviation, kg.
+    pub std: f64,
 }
 
 /// How an estimate may be used.

@@ -23,6 +23,8 @@ mod file;
 mod ranking;
 
 pub use comparison::{Comparison, ComparisonError, ELEMENTS, ElementRanking, Kind};
-pub use decomposed::{Decomposed, DecomposedError, End, Ends, Estimate, FittedJoint, Judged, Line, Matrix};
+pub use decomposed::{
+    Decomposed, DecomposedError, End, Ends, Estimate, FittedJoint, JointMass, Judged, Line, Matrix,
+};
 pub use file::comparison_file;
 pub use ranking::Ranking;

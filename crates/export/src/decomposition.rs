@@ -2,8 +2,10 @@
 
 use crate::joint::symmetric;
 use crate::numbering::Numbering;
+use crate::numbers::short;
 use crate::{Export, ExportError, ExportOptions, Joint, JointEnd, JointLine};
-use jointscope_comparison::{Decomposed, Ends, Matrix};
+use jointscope_beam::{Matrix4, consistent_mass};
+use jointscope_comparison::{Decomposed, Ends, JointMass, Matrix};
 
 /// A joint of a decomposition as an export: the joint with the fixture's quantities moving where the file has it, otherwise the maximum-likelihood one.
 ///
@@ -21,6 +23,14 @@ pub fn of_decomposition(decomposed: &Decomposed, options: &ExportOptions) -> Res
     if options.by_line {
         joint.lines = lines(decomposed)?;
         let noisy = decomposed.lines.len() - joint.lines.len();
+        if let Some(mass) = decomposed.fitted.as_ref().and_then(|fitted| fitted.mass) {
+            // Each line was solved without a mass, so its K has the inertia in it already.
+            joint.mass = None;
+            notes.push(format!(
+                "the joint's mass of {} kg is not written: K by line has its inertia in it already; the constant K and C belong to a joint with it",
+                short(mass.value)
+            ));
+        }
         if noisy > 0 {
             notes.push(format!("{noisy} lines that noise dominates are left out of K and C by line"));
         }
@@ -44,6 +54,7 @@ struct Estimate {
     damping: Matrix,
     std: Option<(Matrix, Matrix)>,
     covariance: Option<crate::Covariance>,
+    mass: Option<JointMass>,
 }
 
 impl Estimate {
@@ -52,14 +63,22 @@ impl Estimate {
             let std = |i: usize| fitted.covariance[i][i].max(0.0).sqrt();
             let matrix = |first: usize| [[std(first), std(first + 1)], [std(first + 1), std(first + 2)]];
             let law = fitted.law.as_ref().map_or(String::new(), |law| format!(", damping law {law}"));
+            let mass = fitted.mass.map_or(String::new(), |mass| {
+                format!(
+                    ", with a mass of its own of {} ± {} kg, uniform over its length, which K and C belong to",
+                    short(mass.value),
+                    short(mass.std)
+                )
+            });
             return Ok(Estimate {
                 says: format!(
-                    "the joint from all FRFs, the fixture's quantities moving within their deviations{law}"
+                    "the joint from all FRFs, the fixture's quantities moving within their deviations{law}{mass}"
                 ),
                 stiffness: symmetric(&fitted.stiffness),
                 damping: symmetric(&fitted.damping),
                 std: Some((matrix(0), matrix(3))),
                 covariance: Some(fitted.covariance),
+                mass: fitted.mass,
             });
         }
         let (says, estimate) = match &decomposed.likelihood {
@@ -76,8 +95,19 @@ impl Estimate {
             damping: symmetric(&estimate.damping),
             std: Some((estimate.stiffness_std, estimate.damping_std)),
             covariance: None,
+            mass: None,
         })
     }
+}
+
+/// Mass on (y, θ) of both ends: consistent, as the fit has it; halves at the ends of a joint without length.
+fn on_both_ends(mass: f64, length: f64) -> Matrix4 {
+    if length > 0.0 {
+        return consistent_mass(mass / length, length);
+    }
+    let mut halves = [[0.0; 4]; 4];
+    (halves[0][0], halves[2][2]) = (0.5 * mass, 0.5 * mass);
+    halves
 }
 
 /// Remarks on what the estimate is worth; refuses one that is of no use.
@@ -129,7 +159,7 @@ fn placed(
         stiffness: estimate.stiffness,
         damping: estimate.damping,
         structural: [[0.0; 2]; 2],
-        mass: None,
+        mass: estimate.mass.map(|mass| on_both_ends(mass.value, ends.length)),
         std: estimate.std,
         covariance: estimate.covariance,
         lines: Vec::new(),

@@ -1,11 +1,21 @@
 //! Which joint of a decomposition is exported, between which nodes, and what is refused.
 
-use crate::common::{LENGTH, beam, exported, file};
-use jointscope_export::{ElasticCentre, ExportError, ExportOptions};
+use crate::common::{LENGTH, beam, exported, file, same};
+use crate::readers;
+use jointscope_export::{ElasticCentre, ExportError, ExportOptions, Program, write};
 use serde_json::{Value, json};
 
 fn plain() -> Value {
     file(beam(76.0, LENGTH), [[30.0, -0.9], [-0.9, 0.1]])
+}
+
+/// With a joint from all FRFs besides.
+fn fitted() -> Value {
+    let mut file = plain();
+    let mut covariance = [[0.0; 6]; 6];
+    (0..6).for_each(|i| covariance[i][i] = 4.0);
+    file["joint"] = json!({"name": "J", "stiffness": beam(80.0, LENGTH), "damping": [[20.0, -0.6], [-0.6, 0.06]], "covariance": covariance});
+    file
 }
 
 #[test]
@@ -87,4 +97,41 @@ fn what_a_file_does_not_say_is_refused() {
     assert_eq!(exported(&paper, &ExportOptions::default()), Err(ExportError::OnlyPaper));
     let other = ExportOptions { joint: Some("K".into()), ..ExportOptions::default() };
     assert!(matches!(exported(&plain(), &other), Err(ExportError::NoSuchJoint { .. })));
+}
+
+#[test]
+fn a_joints_own_mass_is_written_as_the_fit_has_it() {
+    let mut file = fitted();
+    file["joint"]["mass"] = json!({"value": 0.21, "std": 0.01});
+    let export = exported(&file, &ExportOptions::default()).unwrap();
+    let (l, f) = (LENGTH, 0.21 / 420.0);
+    let consistent = [
+        [156.0, 22.0 * l, 54.0, -13.0 * l],
+        [22.0 * l, 4.0 * l * l, 13.0 * l, -3.0 * l * l],
+        [54.0, 13.0 * l, 156.0, -22.0 * l],
+        [-13.0 * l, -3.0 * l * l, -22.0 * l, 4.0 * l * l],
+    ]
+    .map(|row| row.map(|e| f * e));
+    same(&export.joints[0].mass.unwrap(), &consistent, 1e-12);
+    assert!(export.joints[0].says.contains("0.21 ± 0.01 kg"), "{}", export.joints[0].says);
+    let deck = write(&export, Program::Nastran, None, &[]).unwrap();
+    same(&readers::nastran_dmig(&deck, "MJOINT"), &consistent, 1e-9);
+    assert!(deck.contains("M2GG = MJOINT"));
+    same(&readers::ansys(&write(&export, Program::Ansys, None, &[]).unwrap())[&2], &consistent, 1e-12);
+    let calculix = write(&export, Program::Calculix, None, &[]).unwrap();
+    assert!(calculix.contains("its mass is not written"), "{calculix}");
+    file["ends"]["length"] = json!(0.0);
+    let mut halves = [[0.0; 4]; 4];
+    (halves[0][0], halves[2][2]) = (0.105, 0.105);
+    assert_eq!(exported(&file, &ExportOptions::default()).unwrap().joints[0].mass, Some(halves));
+}
+
+#[test]
+fn lines_have_the_joints_inertia_in_them_so_its_mass_is_not_added() {
+    let mut file = fitted();
+    file["joint"]["mass"] = json!({"value": 0.21, "std": 0.01});
+    let by_line = ExportOptions { by_line: true, ..ExportOptions::default() };
+    let export = exported(&file, &by_line).unwrap();
+    assert_eq!(export.joints[0].mass, None);
+    assert!(export.notes.iter().any(|note| note.contains("0.21 kg is not written")), "{:?}", export.notes);
 }
