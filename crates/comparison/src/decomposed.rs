@@ -158,15 +158,17 @@ impl Decomposed {
     }
 }
 
-/// The joint's name, and the joint itself where the file has it: `joint` is either.
+/// The joint's name, and the joint itself where the file has it: `joint` is a name alone in earlier files, and has `failed` where there is no fit.
 fn joint(file: &Value) -> Option<(String, Option<FittedJoint>)> {
     let joint = &file["joint"];
     if let Some(name) = joint.as_str() {
         return Some((name.to_owned(), None));
     }
-    let fitted: FittedJoint = read(joint)?;
     let name = read(&joint["name"]).or_else(|| read(&file["name"])).unwrap_or_else(|| "J".to_owned());
-    Some((name, Some(fitted)))
+    match joint["failed"].is_string() {
+        true => Some((name, None)),
+        false => Some((name, Some(read(joint)?))),
+    }
 }
 
 fn read<T: DeserializeOwned>(value: &Value) -> Option<T> {
