@@ -56,7 +56,7 @@ pub enum ExportError {
     )]
     Nothing,
     /// A node number outside what programs read.
-    #[error("{0} is no node number: 1 to 99999999 are")]
+    #[error("{0} is no node number: 1 to 99000000 are, and those above are kept for what the file adds")]
     NodeNumber(u64),
     /// One number for two nodes.
     #[error("`--nodes` names node {0} twice; the joint needs two different ones")]

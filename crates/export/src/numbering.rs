@@ -2,8 +2,8 @@
 
 use crate::{ExportError, Node};
 
-/// The largest number that every program reads.
-const LARGEST: u64 = 99_999_999;
+/// The largest number of a node: programs read eight digits, and what is added beyond the nodes needs numbers too.
+const LARGEST: u64 = 99_000_000;
 
 /// Numbers given so far.
 #[derive(Debug)]
@@ -60,10 +60,10 @@ impl Numbering {
         self.next - 1
     }
 
-    /// The nodes, ascending, and the first number that is free for everything else.
+    /// The nodes, ascending, and the first number for everything else: from it on none is taken.
     pub fn finish(mut self) -> (Vec<Node>, u64) {
-        let next = self.free();
         self.nodes.sort_by_key(|node| node.number);
-        (self.nodes, next)
+        let above = self.nodes.last().map_or(1, |node| node.number + 1);
+        (self.nodes, self.next.max(above))
     }
 }

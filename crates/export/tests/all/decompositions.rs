@@ -135,3 +135,29 @@ fn lines_have_the_joints_inertia_in_them_so_its_mass_is_not_added() {
     assert_eq!(export.joints[0].mass, None);
     assert!(export.notes.iter().any(|note| note.contains("0.21 kg is not written")), "{:?}", export.notes);
 }
+
+#[test]
+fn numbers_of_the_models_nodes_are_not_given_again() {
+    for nodes in [[900_001, 900_003], [900_006, 900_002]] {
+        let options = ExportOptions { nodes: Some(nodes), ..ExportOptions::default() };
+        let export = exported(&plain(), &options).unwrap();
+        let deck = write(&export, Program::Calculix, None, &[]).unwrap();
+        let blocks = readers::blocks(&deck);
+        let (_, defined) = blocks.iter().find(|(keyword, _)| keyword == "*NODE").unwrap();
+        assert!(defined.len() >= 8, "rotations, motions and fixed nodes");
+        for number in nodes.map(|number| number.to_string()) {
+            assert!(defined.iter().all(|line| line[0] != number), "{number} is defined anew");
+        }
+    }
+    let high = ExportOptions { nodes: Some([99_000_001, 7]), ..ExportOptions::default() };
+    assert_eq!(exported(&plain(), &high), Err(ExportError::NodeNumber(99_000_001)));
+}
+
+#[test]
+fn without_a_joint_from_all_frfs_the_maximum_likelihood_joint_is_exported() {
+    let mut file = plain();
+    file["joint"] = json!({"name": "weld", "failed": "the fit did not converge"});
+    let export = exported(&file, &ExportOptions::default()).unwrap();
+    let joint = &export.joints[0];
+    assert_eq!((joint.name.as_str(), joint.says.as_str()), ("weld", "the maximum-likelihood joint"));
+}
