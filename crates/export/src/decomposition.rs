@@ -62,7 +62,13 @@ impl Estimate {
         if let Some(fitted) = &decomposed.fitted {
             let std = |i: usize| fitted.covariance[i][i].max(0.0).sqrt();
             let matrix = |first: usize| [[std(first), std(first + 1)], [std(first + 1), std(first + 2)]];
-            let law = fitted.law.as_ref().map_or(String::new(), |law| format!(", damping law {law}"));
+            let law = fitted.law.as_deref().map_or(String::new(), |law| match law.strip_prefix("viscous") {
+                Some(_) => "; viscous, the most probable law over frequency".to_owned(),
+                None => format!(
+                    "; K and C are those of a viscous joint, over frequency the most probable law is {}",
+                    law.replace('_', " ")
+                ),
+            });
             let mass = fitted.mass.map_or(String::new(), |mass| {
                 format!(
                     ", with a mass of its own of {} ± {} kg, uniform over its length, which K and C belong to",
@@ -72,7 +78,7 @@ impl Estimate {
             });
             return Ok(Estimate {
                 says: format!(
-                    "the joint from all FRFs, the fixture's quantities moving within their deviations{law}{mass}"
+                    "the joint from all FRFs, the fixture's quantities moving within their deviations{mass}{law}"
                 ),
                 stiffness: symmetric(&fitted.stiffness),
                 damping: symmetric(&fitted.damping),

@@ -161,3 +161,17 @@ fn without_a_joint_from_all_frfs_the_maximum_likelihood_joint_is_exported() {
     let joint = &export.joints[0];
     assert_eq!((joint.name.as_str(), joint.says.as_str()), ("weld", "the maximum-likelihood joint"));
 }
+
+#[test]
+fn another_law_than_the_one_written_is_not_claimed_for_what_is_written() {
+    let mut file = fitted();
+    for (law, says) in [
+        ("structural", "those of a viscous joint, over frequency the most probable law is structural"),
+        ("standard_linear_solid_with_mass", "law is standard linear solid with mass"),
+        ("viscous", "deviations; viscous, the most probable law"),
+    ] {
+        file["joint"]["law"] = json!(law);
+        let export = exported(&file, &ExportOptions::default()).unwrap();
+        assert!(export.joints[0].says.contains(says), "{}", export.joints[0].says);
+    }
+}
