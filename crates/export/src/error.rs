@@ -76,6 +76,11 @@ pub enum ExportError {
         "`--by-line` is for nastran, csv and json: the elements written for {0} do not depend on frequency"
     )]
     ByLine(Program),
+    /// DMIG by line.
+    #[error(
+        "`--by-line` needs a CBUSH, for DMIG does not depend on frequency; leave `--form dmig` or `--by-line` out"
+    )]
+    DmigByLine,
     /// A matrix without an elastic centre.
     #[error(
         "joint {joint}: {matrix} has no elastic centre (its element 11 is not positive), so {form}; {remedy}"

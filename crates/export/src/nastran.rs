@@ -64,6 +64,7 @@ fn bush_of(joint: &Joint, form: Option<Form>) -> Result<bool, ExportError> {
     let structural = joint.structural_shares_centre();
     let by_line = !joint.lines.is_empty();
     match form {
+        Some(Form::Dmig) if by_line => Err(ExportError::DmigByLine),
         Some(Form::Dmig) => Ok(false),
         Some(Form::Bush) if joint.centre().is_some() && (shares && structural || by_line) => Ok(true),
         Some(_) if joint.centre().is_none() => Err(ExportError::NoCentre {

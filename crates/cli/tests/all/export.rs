@@ -106,6 +106,10 @@ fn bad_input_is_refused_in_one_sentence_and_nothing_is_written() {
         &["`--form dmig`", "ansys"],
     );
     bench.refused(
+        &["export", "answer", "--to", "nastran", "--form", "dmig", "--by-line", "-o", "out"],
+        &["`--by-line`", "leave `--form dmig`"],
+    );
+    bench.refused(
         &["export", "answer", "--to", "json", "-o", "answer/stiffness.json"],
         &["answer/stiffness.json", "would be overwritten"],
     );

@@ -126,6 +126,7 @@ fn tables_by_frequency_hold_stiffness_and_damping_about_the_centre() {
     for program in [Program::Ansys, Program::Abaqus, Program::Calculix] {
         assert_eq!(write(&export, program, None, &[]), Err(ExportError::ByLine(program)));
     }
+    assert_eq!(write(&export, Program::Nastran, Some(Form::Dmig), &[]), Err(ExportError::DmigByLine));
     assert!(write(&export, Program::Csv, None, &[]).unwrap().contains("joint,J,stiffness,2.0E2,y,y,"));
 }
 
