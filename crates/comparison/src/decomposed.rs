@@ -70,6 +70,23 @@ pub struct FittedJoint {
     /// The joint's own mass, where the FRFs show one: K and C are then those of a joint with it.
     #[serde(default)]
     pub mass: Option<JointMass>,
+    /// Whether physics allows it.
+    #[serde(default)]
+    pub tests: JointTests,
+}
+
+/// Probabilities of FRFs that speak at least as much against a property, if the joint has it; nothing where it was not tested.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Deserialize)]
+pub struct JointTests {
+    /// k12 = k21 and c12 = c21.
+    #[serde(default)]
+    pub reciprocity: Option<f64>,
+    /// No eigenvalue of K is negative.
+    #[serde(default)]
+    pub definite: Option<f64>,
+    /// No eigenvalue of C is negative.
+    #[serde(default)]
+    pub passive: Option<f64>,
 }
 
 /// A joint's own mass, uniform over its length.

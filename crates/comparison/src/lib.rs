@@ -24,7 +24,8 @@ mod ranking;
 
 pub use comparison::{Comparison, ComparisonError, ELEMENTS, ElementRanking, Kind};
 pub use decomposed::{
-    Decomposed, DecomposedError, End, Ends, Estimate, FittedJoint, JointMass, Judged, Line, Matrix,
+    Decomposed, DecomposedError, End, Ends, Estimate, FittedJoint, JointMass, JointTests, Judged, Line,
+    Matrix,
 };
 pub use file::comparison_file;
 pub use ranking::Ranking;

@@ -5,7 +5,10 @@ use crate::numbering::Numbering;
 use crate::numbers::short;
 use crate::{Export, ExportError, ExportOptions, Joint, JointEnd, JointLine};
 use jointscope_beam::{Matrix4, consistent_mass};
-use jointscope_comparison::{Decomposed, Ends, JointMass, Matrix};
+use jointscope_comparison::{Decomposed, Ends, JointMass, JointTests, Matrix};
+
+/// Probability below which a test of what physics allows fails, as `decompose` has it.
+const FAILED: f64 = 0.05;
 
 /// A joint of a decomposition as an export: the joint with the fixture's quantities moving where the file has it, otherwise the maximum-likelihood one.
 ///
@@ -20,6 +23,8 @@ pub fn of_decomposition(decomposed: &Decomposed, options: &ExportOptions) -> Res
     let estimate = Estimate::best(decomposed)?;
     let mut numbering = Numbering::from(options.first_id);
     let mut joint = placed(decomposed, ends, estimate, options, &mut numbering)?;
+    notes.extend(joint.indefinite());
+    notes.extend(decomposed.fitted.iter().flat_map(|fitted| failed_tests(&fitted.tests)));
     if options.by_line {
         joint.lines = lines(decomposed)?;
         let noisy = decomposed.lines.len() - joint.lines.len();
@@ -136,6 +141,20 @@ fn judged(decomposed: &Decomposed, anyway: bool) -> Result<Vec<String>, ExportEr
         }
         _ => Ok(Vec::new()),
     }
+}
+
+/// Remarks on what physics forbids of the joint that the FRFs speak for.
+fn failed_tests(tests: &JointTests) -> Vec<String> {
+    let all = [
+        (tests.reciprocity, "a joint that is not reciprocal", "K and C are written symmetric all the same"),
+        (tests.definite, "a K with a negative eigenvalue", "look for what the fixture leaves out"),
+        (tests.passive, "a C that gives out energy", "C is held to the nearest that does not"),
+    ];
+    let failed = all.into_iter().filter_map(|(p, what, but)| {
+        let p = p.filter(|p| *p < FAILED)?;
+        Some(format!("the FRFs speak for {what} (p = {}), which physics forbids: {but}", short(p)))
+    });
+    failed.collect()
 }
 
 fn placed(

@@ -88,6 +88,7 @@ pub fn of_diagnosis(
         );
     }
     let joints = exporter.joints(options)?;
+    exporter.notes.extend(joints.iter().filter_map(Joint::indefinite));
     exporter.supports();
     repaired.physics().iter().for_each(|effect| exporter.effect(effect));
     exporter.findings_beside_effects();

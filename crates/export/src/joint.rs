@@ -140,6 +140,20 @@ impl Joint {
         ElasticCentre::of(&self.stiffness)
     }
 
+    /// What to know of a K that is not positive definite.
+    pub(crate) fn indefinite(&self) -> Option<String> {
+        let [[k11, k12], [_, k22]] = self.stiffness;
+        let what = match (k11 > 0.0, self.scalar || k11 * k22 - k12 * k12 > 0.0) {
+            (true, true) => return None,
+            (false, _) => "k11 is not positive, so there is no elastic centre",
+            (true, false) => "k11*k22 - k12^2 is not positive",
+        };
+        Some(format!(
+            "joint {}: K is not positive definite ({what}): some motion meets no force from it or is driven by it, so a model with it may be unstable",
+            self.name
+        ))
+    }
+
     /// Abscissa of the elastic centre, m.
     pub fn centre_x(&self) -> Option<f64> {
         self.centre().map(|centre| self.to.x + centre.offset)

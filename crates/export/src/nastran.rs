@@ -33,8 +33,9 @@ pub(crate) fn body(export: &Export, form: Option<Form>) -> Result<Body, ExportEr
             text += &bush_cards(joint, &mut id, &mut notes)?;
         } else if form.is_none() {
             notes.push(format!(
-                "joint {}: written as DMIG, for one CBUSH does not hold it: its damping acts about another centre than its stiffness, or k11 is not positive",
-                joint.name
+                "joint {}: written as DMIG, for one CBUSH does not hold it: {}",
+                joint.name,
+                why_no_bush(joint)
             ));
         }
     }
@@ -84,6 +85,14 @@ fn bush_of(joint: &Joint, form: Option<Form>) -> Result<bool, ExportError> {
             remedy: "leave `--by-line` out",
         }),
         None => Ok(by_line || (shares && structural)),
+    }
+}
+
+fn why_no_bush(joint: &Joint) -> &'static str {
+    match joint.damping_centre() {
+        None => "k11 is not positive",
+        Some(centre) if !centre.agrees => "its damping acts about another centre than its stiffness",
+        Some(_) => "its structural damping acts about another centre than its stiffness",
     }
 }
 

@@ -175,3 +175,27 @@ fn another_law_than_the_one_written_is_not_claimed_for_what_is_written() {
         assert!(export.joints[0].says.contains(says), "{}", export.joints[0].says);
     }
 }
+
+#[test]
+fn a_stiffness_that_is_not_positive_definite_is_told() {
+    let noted = |k: [[f64; 2]; 2]| {
+        let export = exported(&file(k, [[0.0; 2]; 2]), &ExportOptions::default()).unwrap();
+        export.notes.iter().find(|note| note.contains("not positive definite")).cloned()
+    };
+    assert_eq!(noted(beam(76.0, LENGTH)), None);
+    assert_eq!(noted([[2e6, 0.0], [0.0, 0.0]]), None, "blocks that do not rotate");
+    assert!(noted([[2e6, -6e4], [-6e4, 1e3]]).unwrap().contains("k11*k22 - k12^2 is not positive"));
+    assert!(noted([[-2e6, 0.0], [0.0, 1e3]]).unwrap().contains("k11 is not positive"));
+}
+
+#[test]
+fn tests_that_the_joint_failed_are_told() {
+    let mut file = fitted();
+    file["joint"]["tests"] = json!({"reciprocity": 0.01, "definite": 0.3, "passive": null});
+    let export = exported(&file, &ExportOptions::default()).unwrap();
+    assert_eq!(export.notes.len(), 1);
+    assert!(export.notes[0].contains("not reciprocal (p = 0.01)"), "{:?}", export.notes);
+    file["joint"]["tests"] = json!({"reciprocity": 0.06, "definite": 0.02, "passive": 0.04});
+    let notes = exported(&file, &ExportOptions::default()).unwrap().notes;
+    assert!(notes[0].contains("negative eigenvalue") && notes[1].contains("gives out energy"), "{notes:?}");
+}

@@ -100,6 +100,22 @@ fn damping_about_another_centre_is_written_as_dmig_and_refused_as_a_bush() {
 }
 
 #[test]
+fn dmig_instead_of_a_bush_has_one_reason() {
+    let reason = |k, c| {
+        let deck = text(k, c, Program::Nastran, None).replace("\n$", "");
+        let words = deck.split_whitespace().collect::<Vec<_>>().join(" ");
+        let (_, reason) = words.split_once("one CBUSH does not hold it: ").unwrap();
+        reason.split(" note: ").next().unwrap().to_owned()
+    };
+    let damping = [[30.0, 0.9], [0.9, 0.1]];
+    assert_eq!(
+        reason(beam(76.0, LENGTH), damping),
+        "its damping acts about another centre than its stiffness"
+    );
+    assert_eq!(reason([[-2e6, 0.0], [0.0, 1e3]], damping), "k11 is not positive");
+}
+
+#[test]
 fn tables_by_frequency_hold_stiffness_and_damping_about_the_centre() {
     let (k, c) = (beam(76.0, LENGTH), [[30.0, -0.9], [-0.9, 0.1]]);
     let options = ExportOptions { by_line: true, ..ExportOptions::default() };
