@@ -168,7 +168,7 @@ fn placed(
         let says = format!("point {} of body {}", end.point, end.body);
         let node = match existing {
             Some(number) => numbering.existing(number, end.x, says)?,
-            None => numbering.point(&end.point, end.x, says),
+            None => numbering.point(&end.point, end.x, &says),
         };
         Ok::<_, ExportError>(JointEnd { point: end.point.clone(), body: end.body.clone(), x: end.x, node })
     };

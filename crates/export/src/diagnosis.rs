@@ -75,6 +75,7 @@ pub fn of_diagnosis(
         fixture: repaired,
         shifts: shifts(repaired),
         numbering: Numbering::from(options.first_id),
+        numbers_are_the_models: options.nodes.is_some(),
         points: BTreeMap::new(),
         notes: vec![format!("verdict of the diagnosis: {}", diagnosis.verdict)],
         parts: Vec::new(),
@@ -141,6 +142,7 @@ struct Exporter<'a> {
     fixture: &'a Fixture,
     shifts: Vec<f64>,
     numbering: Numbering,
+    numbers_are_the_models: bool,
     /// Nodes of points by their index.
     points: BTreeMap<usize, u64>,
     notes: Vec<String>,
@@ -267,7 +269,11 @@ impl Exporter<'_> {
             return *node;
         }
         let (x, says) = (self.x_of(point), self.point_says(point));
-        let node = self.numbering.point(&self.fixture.points()[point].name, x, says);
+        // Beside nodes of the model, names of points are no numbers of its nodes.
+        let node = match self.numbers_are_the_models {
+            true => self.numbering.on_body(x, &says),
+            false => self.numbering.point(&self.fixture.points()[point].name, x, &says),
+        };
         self.points.insert(point, node);
         node
     }
@@ -279,8 +285,8 @@ impl Exporter<'_> {
         if let Some(point) = self.fixture.points().iter().position(here) {
             return self.node_of(point);
         }
-        let says = format!("on body {}: tie it to the body there", self.fixture.bodies()[body].name);
-        self.numbering.added(x + self.shifts[body], says, false)
+        let says = format!("on body {}", self.fixture.bodies()[body].name);
+        self.numbering.on_body(x + self.shifts[body], &says)
     }
 
     fn supports(&mut self) {
@@ -328,7 +334,7 @@ impl Exporter<'_> {
                 let from = self.node_at(body, value(0));
                 let (mass, omega, ratio) = (value(1), TAU * value(2), value(3));
                 let on = format!("mass of the resonator on node {from}, moves along y only");
-                let to = self.numbering.added(value(0) + self.shifts[body], on, true);
+                let to = self.numbering.along_y(value(0) + self.shifts[body], on);
                 let stiffness = mass * omega * omega;
                 let damping = 2.0 * ratio * mass * omega;
                 self.parts.push(Part {

@@ -30,20 +30,29 @@ impl Numbering {
         Ok(number)
     }
 
-    /// The node of a point: its name, where that is a number that is free.
-    pub fn point(&mut self, name: &str, x: f64, says: String) -> u64 {
+    /// The node of a point, defined in the file: its name, where that is a number that is free.
+    pub fn point(&mut self, name: &str, x: f64, says: &str) -> u64 {
         let own = name.parse().ok().filter(|number: &u64| (1..=LARGEST).contains(number));
         let number = match own.filter(|number| self.is_free(*number)) {
             Some(number) => number,
             None => self.free(),
         };
-        self.nodes.push(Node { number, x, says, existing: false, only_y: false });
-        number
+        self.define(number, x, tied(says), false)
     }
 
-    /// A node that is no point.
-    pub fn added(&mut self, x: f64, says: String, only_y: bool) -> u64 {
+    /// A node on a body that is defined in the file, numbered from the first free one.
+    pub fn on_body(&mut self, x: f64, says: &str) -> u64 {
         let number = self.free();
+        self.define(number, x, tied(says), false)
+    }
+
+    /// A node on no body, which moves along y only.
+    pub fn along_y(&mut self, x: f64, says: String) -> u64 {
+        let number = self.free();
+        self.define(number, x, says, true)
+    }
+
+    fn define(&mut self, number: u64, x: f64, says: String, only_y: bool) -> u64 {
         self.nodes.push(Node { number, x, says, existing: false, only_y });
         number
     }
@@ -66,4 +75,9 @@ impl Numbering {
         let above = self.nodes.last().map_or(1, |node| node.number + 1);
         (self.nodes, self.next.max(above))
     }
+}
+
+/// What a node defined in the file needs, for nothing there holds it to its body.
+fn tied(says: &str) -> String {
+    format!("{says}: tie it to the body there")
 }

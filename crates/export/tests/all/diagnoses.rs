@@ -250,3 +250,21 @@ fn a_loss_factor_is_the_same_in_a_bush_and_in_dmig_and_told_where_it_cannot_be_w
     let matrix = readers::abaqus_matrix(&write(&export, Program::Abaqus, Some(Form::Matrix), &[]).unwrap());
     same(&matrix["STRUCTURAL DAMPING"], &loss, 1e-9);
 }
+
+#[test]
+fn beside_nodes_of_the_model_points_are_numbered_from_the_first_number() {
+    let physics = r#"{"kind": "support", "place": "A", "x": -0.05, "stiffness": 2000, "damping": 4},
+        {"kind": "attached_resonator", "place": "A", "x": -0.02, "mass": 0.02, "frequency": 300, "damping_ratio": 0.01}"#;
+    let numbers = |nodes| {
+        let options = ExportOptions { nodes, ..ExportOptions::default() };
+        let export = of_diagnosis(&diagnosis(json!([])), &fixture(physics, ""), &options).unwrap();
+        for node in &export.nodes {
+            let tied = node.says.contains("tie it to the body there");
+            assert_eq!(tied, !node.existing && !node.only_y, "{node:?}");
+        }
+        export.nodes.iter().map(|node| node.number).collect::<Vec<_>>()
+    };
+    // Point 1 at the support is a node of the file, and 1 may be another node of the model.
+    assert_eq!(numbers(Some([7, 8])), [7, 8, 900_001, 900_002, 900_003]);
+    assert_eq!(numbers(None), [1, 2, 3, 900_001, 900_002]);
+}
