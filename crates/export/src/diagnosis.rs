@@ -83,7 +83,7 @@ pub fn of_diagnosis(
         band: diagnosis.band(),
         findings: &diagnosis.findings,
     };
-    if diagnosis.unnamed {
+    if diagnosis.unnamed && !diagnosis.findings.is_empty() {
         exporter.notes.push(
             "no finding is likelier than something that is not listed: what was found is a description, not a cause".to_owned(),
         );
@@ -387,6 +387,7 @@ impl Exporter<'_> {
     fn damping(&mut self) {
         let (what, why) = match self.fixture.damping() {
             Damping::Undamped => return,
+            Damping::LossFactor(factor) if factor.value == 0.0 => return,
             Damping::ModalRatios { ratios, .. } => {
                 let ratios: Vec<String> = ratios.iter().map(|ratio| short(ratio.value)).collect();
                 (

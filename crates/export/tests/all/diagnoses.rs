@@ -268,3 +268,24 @@ fn beside_nodes_of_the_model_points_are_numbered_from_the_first_number() {
     assert_eq!(numbers(Some([7, 8])), [7, 8, 900_001, 900_002, 900_003]);
     assert_eq!(numbers(None), [1, 2, 3, 900_001, 900_002]);
 }
+
+#[test]
+fn what_was_found_is_called_a_description_only_where_something_was_found() {
+    let noted = |findings: Value| {
+        let mut diagnosis = diagnosis(findings);
+        diagnosis["unnamed"] = json!(true);
+        let export = of_diagnosis(&diagnosis, &fixture("", ""), &ExportOptions::default()).unwrap();
+        export.notes.iter().any(|note| note.contains("not a cause"))
+    };
+    assert!(!noted(json!([])));
+    assert!(noted(json!([{"kind": "stiffness_change", "place": "J"}])));
+}
+
+#[test]
+fn a_loss_factor_of_nothing_is_not_listed_as_left_out() {
+    let omitted = |factor: f64| {
+        let fixture = fixture("", &format!(r#", "damping": {{ "loss_factor": {factor} }}"#));
+        of_diagnosis(&diagnosis(json!([])), &fixture, &ExportOptions::default()).unwrap().not_exported.len()
+    };
+    assert_eq!((omitted(0.0), omitted(0.01)), (0, 1));
+}
