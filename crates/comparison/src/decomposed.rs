@@ -167,7 +167,7 @@ impl Decomposed {
             lines,
             band: band.band,
             average: average.into(),
-            likelihood: read(&file["maximum_likelihood"]).map(EstimateEntry::into),
+            likelihood: likelihood(file)?,
             failed: read(&file["maximum_likelihood"]["failed"]),
             fitted,
             judgement: optional(file, "judgement")?,
@@ -186,6 +186,14 @@ fn joint(file: &Value) -> Option<(String, Option<FittedJoint>)> {
         true => Some((name, None)),
         false => Some((name, Some(read(joint)?))),
     }
+}
+
+/// The maximum-likelihood joint; none where the entry says why it failed.
+fn likelihood(file: &Value) -> Result<Option<Estimate>, DecomposedError> {
+    if file["maximum_likelihood"]["failed"].is_string() {
+        return Ok(None);
+    }
+    Ok(optional(file, "maximum_likelihood")?.map(EstimateEntry::into))
 }
 
 fn read<T: DeserializeOwned>(value: &Value) -> Option<T> {

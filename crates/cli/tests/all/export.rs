@@ -114,6 +114,13 @@ fn bad_input_is_refused_in_one_sentence_and_nothing_is_written() {
         &["answer/stiffness.json", "would be overwritten"],
     );
     bench.refused(&["export", "answer", "--to", "csv", "-o", "two.json/x.csv"], &["two.json", "is a file"]);
+    let whole = bench.text("answer/stiffness.json");
+    bench.write("answer/stiffness.json", &whole[..whole.len() / 2]);
+    bench.refused(
+        &["export", "answer", "--to", "csv", "-o", "out"],
+        &["answer/stiffness.json", "EOF", "make the file anew with `jointscope decompose`"],
+    );
+    bench.write("answer/stiffness.json", whole);
     let mut old = bench.json("answer/stiffness.json");
     old["judgement"]["verdict"] = "unusable".into();
     bench.write("answer/stiffness.json", old.to_string());

@@ -2,6 +2,7 @@
 
 use crate::common::{LENGTH, beam, exported, file, same};
 use crate::readers;
+use jointscope_comparison::Decomposed;
 use jointscope_export::{ElasticCentre, ExportError, ExportOptions, Program, write};
 use serde_json::{Value, json};
 
@@ -198,4 +199,15 @@ fn tests_that_the_joint_failed_are_told() {
     file["joint"]["tests"] = json!({"reciprocity": 0.06, "definite": 0.02, "passive": 0.04});
     let notes = exported(&file, &ExportOptions::default()).unwrap().notes;
     assert!(notes[0].contains("negative eigenvalue") && notes[1].contains("gives out energy"), "{notes:?}");
+}
+
+#[test]
+fn a_maximum_likelihood_joint_that_is_not_whole_is_an_error_unless_it_failed() {
+    let mut file = plain();
+    file["maximum_likelihood"].as_object_mut().unwrap().remove("damping");
+    let error = Decomposed::of("J", &file).unwrap_err().to_string();
+    assert!(error.contains("maximum_likelihood") && error.contains("make the file anew"), "{error}");
+    file["maximum_likelihood"] = json!({"failed": "no descent"});
+    assert_eq!(Decomposed::of("J", &file).unwrap().likelihood, None);
+    assert!(exported(&file, &ExportOptions::default()).unwrap().joints[0].says.contains("plain average"));
 }
