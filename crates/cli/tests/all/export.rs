@@ -37,9 +37,12 @@ fn a_decomposition_is_written_for_every_program_with_its_origin_and_alike_each_t
     let json = bench.json("json/joint.json");
     assert_eq!(json["made"]["inputs"][0]["sha256"].as_str().unwrap().len(), 64);
     assert_eq!(json["joints"][0]["from"]["body"], "A");
-    let k11 = json["joints"][0]["stiffness"][0][0].as_f64().unwrap();
+    let found = &bench.json("answer/stiffness.json")["joint"];
+    assert_eq!(json["joints"][0]["stiffness"], found["stiffness"], "the joint from all FRFs");
+    // A viscous joint fitted to structural damping is off by more than rounding, and says by how much.
+    let [k11, std] = [&found["stiffness"], &found["std"]["stiffness"]].map(|m| m[0][0].as_f64().unwrap());
     let expected = 12.0 * 2.07e11 * 3.67e-10 / 0.065_f64.powi(3);
-    assert!((k11 / expected - 1.0).abs() < 1e-4, "{k11} for {expected}");
+    assert!((k11 - expected).abs() < std, "{k11} ± {std} for {expected}");
 }
 
 #[test]
