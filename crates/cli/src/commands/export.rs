@@ -28,7 +28,7 @@ pub struct ExportArguments {
     /// Only this joint of several.
     #[arg(long, value_name = "J")]
     pub joint: Option<String>,
-    /// Nodes of your model at the joint's near and far end; without it the nodes are defined in the file and numbered like the fixture's points.
+    /// Nodes of your model at the joint's near and far end, others are numbered from --first-id; without it all are defined in the file and numbered like the fixture's points.
     #[arg(long, value_name = "FROM,TO", value_parser = nodes)]
     pub nodes: Option<[u64; 2]>,
     /// First number of elements, properties and of nodes that no point has.
