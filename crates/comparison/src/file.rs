@@ -34,7 +34,7 @@ pub fn comparison_file(comparison: &Comparison) -> Value {
     });
     json!({
         "relation": comparison.relation,
-        "estimate": if comparison.by_likelihood { "maximum_likelihood" } else { "average" },
+        "estimate": comparison.compared.name(),
         "joints": joints.collect::<Vec<_>>(),
         "rankings": rankings.collect::<Vec<_>>(),
     })

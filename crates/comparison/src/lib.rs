@@ -22,7 +22,7 @@ mod decomposed;
 mod file;
 mod ranking;
 
-pub use comparison::{Comparison, ComparisonError, ELEMENTS, ElementRanking, Kind};
+pub use comparison::{Compared, Comparison, ComparisonError, ELEMENTS, ElementRanking, Kind};
 pub use decomposed::{
     Decomposed, DecomposedError, End, Ends, Estimate, FittedJoint, JointMass, JointTests, Judged, Line,
     Matrix,

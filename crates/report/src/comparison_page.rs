@@ -89,10 +89,10 @@ fn value_section(comparison: &Comparison) -> Section {
     let table = |kind: Kind| {
         let table = Table::of(&comparison.joints).words("joint", |joint| joint.name.clone());
         let table = ELEMENTS.iter().fold(table, |table, &element| {
-            let values = comparison.joints.iter().map(|j| kind.of(comparison.estimate(j), element).0);
+            let values = comparison.joints.iter().map(|j| kind.of(&comparison.estimate(j), element).0);
             let scale = Scale::for_values(values, kind.unit(element));
             table.numbers(name_of(kind, element), scale.unit(), |joint| {
-                let (value, std) = kind.of(comparison.estimate(joint), element);
+                let (value, std) = kind.of(&comparison.estimate(joint), element);
                 in_column(value, std, &scale)
             })
         });
@@ -145,7 +145,7 @@ fn plot(comparison: &Comparison, kind: Kind, element: (usize, usize)) -> Plot {
         plot = plot.line(&joint.name, role, values);
     }
     for (index, joint) in comparison.joints.iter().enumerate() {
-        let level = kind.of(comparison.estimate(joint), element).0;
+        let level = kind.of(&comparison.estimate(joint), element).0;
         plot = plot.horizontal(format!("{}, estimate", joint.name), Role::Trace(index), level);
     }
     let names: Vec<&str> = comparison.joints.iter().map(|joint| joint.name.as_str()).collect();
@@ -158,7 +158,7 @@ fn range(comparison: &Comparison, kind: Kind, element: (usize, usize)) -> YRange
     let of_joint = |joint: &Decomposed| {
         let inside = joint.lines.iter().filter(|l| (joint.band.0..=joint.band.1).contains(&l.frequency));
         let values = inside.map(|line| at(kind, &line.stiffness, &line.damping, element));
-        let level = kind.of(comparison.estimate(joint), element).0;
+        let level = kind.of(&comparison.estimate(joint), element).0;
         Span::percentiles(values, YRange::ROBUST).and(Span::of([level]))
     };
     let span = comparison.joints.iter().map(of_joint).fold(Span::default(), Span::and);
