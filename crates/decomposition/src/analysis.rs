@@ -1,11 +1,12 @@
+use crate::interfaces::interfaces_of_fit;
 use crate::spectrum::scalar_stiffness;
 use crate::{
     Averages, DecompositionError, Element, Interfaces, JointFit, JointFitOptions, JointSpectrum, Judgement,
-    LikelihoodFit, MeasurementPlan, Part, Relation, Sides, ToleranceShare, ToleranceShares, decompose,
-    fit_joint, interfaces, maximum_likelihood, tolerance_shares,
+    LikelihoodFit, MeasurementPlan, Method, Part, Relation, Sides, ToleranceShare, ToleranceShares,
+    decompose, fit_joint, interfaces, maximum_likelihood, tolerance_shares,
 };
 use jointscope_averaging::Band;
-use jointscope_fixture::{Fixture, JointLaw};
+use jointscope_fixture::{Fixture, JointLaw, Nature};
 use jointscope_frf::noise::{NoiseSource, with_variances};
 use jointscope_linalg::{ComplexMatrix2, Matrix2, RealMatrix2};
 use jointscope_lumped::{Model, Station};
@@ -90,7 +91,7 @@ pub struct Analysis {
     pub joint_fit: Result<JointFit, DecompositionError>,
     /// The maximum-likelihood joint from the FRFs across it, or why there is none.
     pub likelihood: Result<LikelihoodFit, DecompositionError>,
-    /// The joint's interfaces, where it is a beam and the fit succeeded.
+    /// The joint's interfaces, where it is a beam and a fit succeeded; see [`interfaces_rest_on`](Self::interfaces_rest_on).
     pub interfaces: Option<Interfaces>,
     /// What the fixture's tolerances do to the results.
     pub tolerances: Vec<ToleranceShare>,
@@ -150,7 +151,11 @@ impl Analysis {
             likelihood.as_ref().ok(),
             options.exact,
         )?;
-        let interfaces = likelihood.as_ref().ok().and_then(|fit| joint_interfaces(fit, &sides, &tolerances));
+        let interfaces = match interfaces_rest_on(&joint_fit, &likelihood) {
+            Some(InterfaceSource::AllFrfs(fit)) => fitted_interfaces(fit, &sides, options.exact),
+            Some(InterfaceSource::Across(fit)) => joint_interfaces(fit, &sides, &tolerances),
+            None => None,
+        };
         let nominal = predicted(&sides, &plan, &spectrum)?;
         let mut analysis = Analysis {
             joint,
@@ -171,6 +176,21 @@ impl Analysis {
         };
         analysis.judgement = Judgement::of(&analysis, fixture);
         Ok(analysis)
+    }
+
+    /// Whether K and C by line, which know of no mass of the joint, hold one that the joint from all FRFs has: the two are not to be compared.
+    pub fn lines_hold_mass(&self) -> bool {
+        self.joint_fit.as_ref().is_ok_and(|fit| fit.mass.is_some())
+    }
+
+    /// The fit that the interfaces are taken from, and whether it explains the FRFs: the joint from all FRFs, or that from the FRFs across where
+    /// it alone does.
+    pub fn interfaces_rest_on(&self) -> Option<(Method, bool)> {
+        self.interfaces.as_ref()?;
+        Some(match interfaces_rest_on(&self.joint_fit, &self.likelihood)? {
+            InterfaceSource::AllFrfs(fit) => (Method::AllFrfs, fit.explains()),
+            InterfaceSource::Across(fit) => (Method::MaximumLikelihood, fit.explains()),
+        })
     }
 
     /// Standard deviations that the fixture's tolerances give the plain averages of K and C.
@@ -218,6 +238,39 @@ fn root_of_squares(shares: impl Iterator<Item = (RealMatrix2, RealMatrix2)>) -> 
         sums.1 = sums.1 + c.map(|e| e * e);
     }
     (sums.0.map(f64::sqrt), sums.1.map(f64::sqrt))
+}
+
+enum InterfaceSource<'a> {
+    AllFrfs(&'a JointFit),
+    Across(&'a LikelihoodFit),
+}
+
+fn interfaces_rest_on<'a, E>(
+    all: &'a Result<JointFit, E>,
+    across: &'a Result<LikelihoodFit, E>,
+) -> Option<InterfaceSource<'a>> {
+    match (all.as_ref().ok(), across.as_ref().ok()) {
+        (Some(all), Some(across)) if !all.explains() && across.explains() => {
+            Some(InterfaceSource::Across(across))
+        }
+        (Some(all), _) => Some(InterfaceSource::AllFrfs(all)),
+        (None, across) => across.map(InterfaceSource::Across),
+    }
+}
+
+/// Of the joint from all FRFs, whose covariance holds every tolerance but those of the beam's own EI.
+fn fitted_interfaces(fit: &JointFit, sides: &Sides, exact: bool) -> Option<Interfaces> {
+    let JointLaw::Beam { youngs_modulus, second_moment } = &sides.joint().law else { return None };
+    let covariance = std::array::from_fn(|m| std::array::from_fn(|n| fit.covariance[m][n]));
+    let bending_stiffness = youngs_modulus.value * second_moment.value;
+    let known = [(youngs_modulus, Nature::YoungsModulus), (second_moment, Nature::SecondMoment)]
+        .map(|(quantity, nature)| quantity.std(nature, exact).unwrap_or(0.0) / quantity.value);
+    interfaces_of_fit(
+        fit.stiffness,
+        covariance,
+        (bending_stiffness, bending_stiffness * known[0].hypot(known[1])),
+        &fit.length,
+    )
 }
 
 fn joint_interfaces(fit: &LikelihoodFit, sides: &Sides, tolerances: &[ToleranceShare]) -> Option<Interfaces> {

@@ -1,7 +1,9 @@
 //! What the joint's ends add to its beam (eq 6): the compliance left when the beam's is taken out.
 
 use jointscope_beam::{end_compliance, transport};
-use jointscope_linalg::RealMatrix2;
+use jointscope_linalg::{Matrix2, RealMatrix2};
+
+use crate::FittedLength;
 
 /// A compliance with its standard deviation, m/N or rad/(N·m).
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -110,10 +112,39 @@ pub fn interfaces(
     })
 }
 
+/// Interfaces of a joint from all FRFs: `covariance` of (k11, k12, k22) holds the length's uncertainty, to which K is tied.
+///
+/// `bending_stiffness` is the beam's EI with its standard deviation, N·m². `None` where the joint's stiffness is singular.
+pub(crate) fn interfaces_of_fit(
+    joint: RealMatrix2,
+    mut covariance: [[f64; 3]; 3],
+    (bending_stiffness, std): (f64, f64),
+    length: &FittedLength,
+) -> Option<Interfaces> {
+    let half_difference = |of: &dyn Fn(f64) -> Option<[f64; 5]>| -> Option<[f64; 5]> {
+        let (up, down) = (of(1.0)?, of(-1.0)?);
+        Some(std::array::from_fn(|e| 0.5 * (up[e] - down[e])))
+    };
+    let mut shifts =
+        vec![half_difference(&|sign| left_over(joint, bending_stiffness + sign * std, length.value))?];
+    if length.variance > 0.0 {
+        // K as the length takes it along; what is left of its covariance is independent of the length.
+        let deviation = length.variance.sqrt();
+        let along = length.with_stiffness.map(|covariance| covariance / deviation);
+        shifts.push(half_difference(&|sign| {
+            let [a, b, d] = along.map(|by| sign * by);
+            left_over(joint + Matrix2::new(a, b, b, d), bending_stiffness, length.value + sign * deviation)
+        })?);
+        for (m, row) in covariance.iter_mut().enumerate() {
+            row.iter_mut().zip(along).for_each(|(entry, by)| *entry -= along[m] * by);
+        }
+    }
+    interfaces(joint, covariance, bending_stiffness, length.value, &shifts)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use jointscope_linalg::Matrix2;
     use proptest::prelude::*;
 
     proptest! {
@@ -154,6 +185,22 @@ mod tests {
             base.far_rotation.std,
             variance.sqrt()
         );
+    }
+
+    #[test]
+    fn a_length_that_takes_the_stiffness_along_as_a_beam_does_leaves_interfaces_exact() {
+        // K = EI(L) exactly: whatever L is, no interface is left.
+        let (ei, l, variance) = (76.0, 0.065, 1e-8);
+        let of = |l: f64| jointscope_beam::end_stiffness(ei, l);
+        let by_length = (of(l + 1e-6) - of(l - 1e-6)).scale(0.5e6);
+        let slope = [by_length.at(0, 0), by_length.at(0, 1), by_length.at(1, 1)];
+        let covariance = std::array::from_fn(|m| std::array::from_fn(|n| slope[m] * variance * slope[n]));
+        let tied = FittedLength { value: l, variance, with_stiffness: slope.map(|by| by * variance) };
+        let found = interfaces_of_fit(of(l), covariance, (ei, 0.0), &tied).unwrap();
+        let untied = FittedLength { with_stiffness: [0.0; 3], ..tied };
+        let loose = interfaces_of_fit(of(l), covariance, (ei, 0.0), &untied).unwrap();
+        assert!(found.near_rotation.std < 0.05 * loose.near_rotation.std, "{found:?} {loose:?}");
+        assert!(found.scalar[0].std < 0.05 * loose.scalar[0].std);
     }
 
     #[test]

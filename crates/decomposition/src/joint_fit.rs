@@ -20,6 +20,7 @@ pub use laws::LawFit;
 
 use crate::{DecompositionError, LikelihoodFit, Sides};
 use jointscope_averaging::Band;
+use jointscope_fixture::{QuantityKey, QuantityOwner};
 use jointscope_inference::{
     Covariance, Parameter, Transform, autocorrelation, inflated_weight, jackknife, variance_inflation,
 };
@@ -40,11 +41,15 @@ pub struct JointFit {
     pub stiffness: RealMatrix2,
     /// C, symmetric and passive: N·s/m, N·s/rad, N·m·s/rad.
     pub damping: RealMatrix2,
-    /// Posterior covariance of (k11, k12, k22, c11, c12, c22), the fixture's quantities integrated out; with what the model's error adds.
+    /// Posterior covariance of (k11, k12, k22, c11, c12, c22), the fixture's quantities integrated out; with what the model's error and the laws compared add.
     pub covariance: [[f64; 6]; 6],
     /// The part of it that comes from the model's error: how far the joint moves when one of eight blocks of lines is left out. Zero where noise explains
     /// what is left.
     pub model_covariance: [[f64; 6]; 6],
+    /// The part of it that comes from the laws compared: by how much they differ from K + sC in the middle of the band, each as often as it is probable.
+    pub law_covariance: [[f64; 6]; 6],
+    /// The joint's length between its ends where the fit has them.
+    pub length: FittedLength,
     /// χ² and priors per degree of freedom: 1 where noise and tolerances explain the FRFs.
     pub chi2_per_dof: f64,
     /// What the noise's variance was multiplied by because the model does not explain the FRFs; 1 where it does.
@@ -86,6 +91,17 @@ pub struct FittedQuantity {
     pub fitted_std: f64,
     /// Stated standard deviations between the two (tenths of the value where it is unknown).
     pub deviations: f64,
+}
+
+/// The joint's length as a fit has it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FittedLength {
+    /// L, m.
+    pub value: f64,
+    /// Its variance after the fit, m²; zero where both ends are exact.
+    pub variance: f64,
+    /// Its covariance with (k11, k12, k22).
+    pub with_stiffness: [f64; 3],
 }
 
 /// What a fit of the joint is asked for.
@@ -294,6 +310,13 @@ impl<'a> Fitter<'a> {
             first
         };
         let mut result = self.result(&problem, &fitted, quantities, asymmetry)?;
+        if let Some(spread) = laws::Spread::of(&laws, result.mass.is_some()) {
+            result.law_covariance = spread.covariance;
+            for (row, more) in result.covariance.iter_mut().zip(spread.covariance) {
+                row.iter_mut().zip(more).for_each(|(entry, more)| *entry += more);
+            }
+            result.mass = result.mass.map(|(mass, std)| (mass, std.hypot(spread.mass.sqrt())));
+        }
         (result.chi2_per_dof, result.inflation, result.laws) = (chi2_per_dof, inflation, laws);
         Ok(result)
     }
@@ -326,7 +349,10 @@ impl<'a> Fitter<'a> {
     }
 
     fn per_degree(&self, problem: &Problem, point: &Point) -> f64 {
-        point.objective / self.recorded.degrees().saturating_sub(problem.own()).max(1) as f64
+        // Priors count one degree for each quantity that has one.
+        let quantities = problem.parameters.iter().skip(problem.own());
+        let free = problem.own() + quantities.filter(|parameter| parameter.precision == 0.0).count();
+        point.objective / self.recorded.degrees().saturating_sub(free).max(1) as f64
     }
 
     /// What the noise is multiplied by so that it explains what is left, correlated from line to line as that is.
@@ -373,9 +399,10 @@ impl<'a> Fitter<'a> {
         let inflated =
             self.recorded.weights.first().zip(problem.test.weights.first()).is_some_and(|(a, b)| a != b);
         let model = if inflated { self.jackknifed(problem, &at) } else { None };
+        let total = total(&covariance, strain, model.as_ref());
         let model_covariance = model.map_or([[0.0; 6]; 6], |model| self.in_si(law, &model));
-        let posterior = self.in_si(law, &covariance).map(|row| row.map(|v| strain * v));
         let own = problem.own();
+        let length = self.length(problem, &at, &total);
         let quantities = quantities.iter().enumerate().map(|(index, uncertain)| {
             let transform = uncertain.parameter.transform;
             let coordinate = at.coordinates[own + index];
@@ -385,17 +412,17 @@ impl<'a> Fitter<'a> {
                 stated: uncertain.quantity.value,
                 std: uncertain.quantity.std,
                 fitted,
-                fitted_std: transform.slope(fitted).abs() * covariance.std(own + index),
+                fitted_std: transform.slope(fitted).abs() * total.std(own + index),
                 deviations: coordinate,
             }
         });
         Ok(JointFit {
             stiffness: k,
             damping: d.scale(1.0 / law.middle),
-            covariance: std::array::from_fn(|m| {
-                std::array::from_fn(|n| posterior[m][n] + model_covariance[m][n])
-            }),
+            covariance: self.in_si(law, &total),
             model_covariance,
+            law_covariance: [[0.0; 6]; 6],
+            length,
             chi2_per_dof: 0.0,
             inflation: 1.0,
             strain,
@@ -406,10 +433,9 @@ impl<'a> Fitter<'a> {
             laws: Vec::new(),
             frfs: self.recorded.pairs.clone(),
             lines: self.recorded.s.len(),
-            mass: problem.mass.map(|scale| {
-                let variance = strain * covariance.at(problem.law.count(), problem.law.count());
-                (problem.mass_at(&at.coordinates), scale * variance.sqrt())
-            }),
+            mass: problem
+                .mass
+                .map(|scale| (problem.mass_at(&at.coordinates), scale * total.std(problem.law.count()))),
             scalar: self.scalar,
         })
     }
@@ -434,6 +460,44 @@ impl<'a> Fitter<'a> {
         all
     }
 
+    /// The joint's length, to which K is tied by the ends' places.
+    fn length(&self, problem: &Problem, at: &Point, covariance: &Covariance) -> FittedLength {
+        let (joint, own) = (self.sides.joint(), problem.own());
+        let ends: Vec<(usize, f64, f64)> = problem
+            .test
+            .quantities
+            .iter()
+            .enumerate()
+            .filter_map(|(index, uncertain)| {
+                let sign = match (uncertain.quantity.key, uncertain.quantity.owner) {
+                    (QuantityKey::Abscissa, QuantityOwner::Point(point)) if point == joint.to => 1.0,
+                    (QuantityKey::Abscissa, QuantityOwner::Point(point)) if point == joint.from => -1.0,
+                    _ => return None,
+                };
+                let (transform, stated) = (uncertain.parameter.transform, uncertain.quantity.value);
+                let value = transform.value(at.coordinates[own + index]).unwrap_or(stated);
+                Some((own + index, sign * (value - stated), sign * transform.slope(value)))
+            })
+            .collect();
+        let u = &problem.law.unit;
+        let elements: &[(usize, f64)] = match self.scalar {
+            true => &[(0, u.at(0, 0))],
+            false => &[(0, u.at(0, 0)), (1, u.at(0, 1)), (2, u.at(1, 1))],
+        };
+        let mut with_stiffness = [0.0; 3];
+        for &(element, unit) in elements {
+            with_stiffness[element] =
+                ends.iter().map(|(end, _, slope)| unit * slope * covariance.at(element, *end)).sum();
+        }
+        let products =
+            ends.iter().flat_map(|(a, _, s)| ends.iter().map(move |(b, _, t)| s * t * covariance.at(*a, *b)));
+        FittedLength {
+            value: self.sides.length() + ends.iter().map(|(_, moved, _)| moved).sum::<f64>(),
+            variance: products.sum::<f64>().max(0.0),
+            with_stiffness,
+        }
+    }
+
     /// How far the coordinates move when each of eight blocks of lines is left out, to first order.
     fn jackknifed(&self, problem: &Problem, at: &Point) -> Option<Covariance> {
         let n = self.recorded.s.len();
@@ -455,6 +519,13 @@ impl<'a> Fitter<'a> {
         let fits: Option<Vec<Vec<f64>>> = (0..blocks).map(without).collect();
         Some(jackknife(&fits?))
     }
+}
+
+/// Covariance of all coordinates with what strain and the model's error add.
+fn total(posterior: &Covariance, strain: f64, model: Option<&Covariance>) -> Covariance {
+    let entries = posterior.entries().iter().enumerate();
+    let sum = |(e, v): (usize, &f64)| strain * v + model.map_or(0.0, |model| model.entries()[e]);
+    Covariance::new(posterior.order(), entries.map(sum).collect())
 }
 
 /// Probability below which the quantities' departures are no chance.

@@ -102,10 +102,12 @@ impl Judgement {
     }
 }
 
-/// The element that the fit and the weighted mean differ in most; nothing where they agree or are of different relations.
+/// The element that the fit and the weighted mean differ in most; nothing where they agree, are of different relations, or the fitted joint has a mass,
+/// which the lines hold as well.
 fn contradiction(analysis: &Analysis, best: &Estimate) -> Option<Contradiction> {
     if !matches!(best.method, Method::MaximumLikelihood | Method::AllFrfs)
         || analysis.spectrum.relation == Relation::Paper
+        || analysis.lines_hold_mass()
     {
         return None;
     }

@@ -9,26 +9,29 @@ const FAR: f64 = 2.0;
 /// Probability from which a law is said to hold, rather than to be the most probable one.
 const CERTAIN: f64 = 0.95;
 
+/// A law without its mass.
+fn over_frequency(law: &LawFit) -> String {
+    match (law.kind, law.shape) {
+        (LawKind::Constant, _) => "constant, without damping".to_owned(),
+        (LawKind::Viscous, _) => "constant stiffness with viscous damping".to_owned(),
+        (LawKind::Structural, _) => {
+            "constant stiffness with structural damping (a loss factor that does not depend on frequency)"
+                .to_owned()
+        }
+        (LawKind::StandardLinearSolid, Some(time)) => {
+            format!("a standard linear solid, relaxation time {}", plain(time, "s"))
+        }
+        (LawKind::Fractional, Some(exponent)) => {
+            format!("a springpot beside a spring, exponent {}", significant(exponent, 2))
+        }
+        (LawKind::LinearStiffness, _) => "a stiffness linear in frequency with viscous damping".to_owned(),
+        (kind, None) => kind.name().replace('_', " "),
+    }
+}
+
 impl Says for LawFit {
     fn says(&self) -> String {
-        let law = match (self.kind, self.shape) {
-            (LawKind::Constant, _) => "constant, without damping".to_owned(),
-            (LawKind::Viscous, _) => "constant stiffness with viscous damping".to_owned(),
-            (LawKind::Structural, _) => {
-                "constant stiffness with structural damping (a loss factor that does not depend on frequency)"
-                    .to_owned()
-            }
-            (LawKind::StandardLinearSolid, Some(time)) => {
-                format!("a standard linear solid, relaxation time {}", plain(time, "s"))
-            }
-            (LawKind::Fractional, Some(exponent)) => {
-                format!("a springpot beside a spring, exponent {}", significant(exponent, 2))
-            }
-            (LawKind::LinearStiffness, _) => {
-                "a stiffness linear in frequency with viscous damping".to_owned()
-            }
-            (kind, None) => kind.name().replace('_', " "),
-        };
+        let law = over_frequency(self);
         match self.mass {
             Some(mass) => format!("{law}, with a mass of {} of its own", plain(mass, "kg")),
             None => law,
@@ -41,15 +44,18 @@ impl Remarks for JointFit {
         let mut all = Vec::new();
         all.extend(self.law().map(|law| {
             let sure = if law.probability >= CERTAIN { "" } else { "most probably " };
+            // The mass has a sentence of its own.
+            let what = if self.mass.is_some() { over_frequency(law) } else { law.says() };
             format!(
-                "over frequency the joint is {sure}{} (probability {})",
-                law.says(),
+                "of the laws compared, the joint is over frequency {sure}{what} (probability {}); the ± hold by how much the laws differ in the middle of \
+                 the band",
                 percent(law.probability)
             )
         }));
         all.extend(self.mass.map(|(mass, std)| {
             format!(
-                "the FRFs show a mass of the joint of {} ± {}; k and c are those of a joint with it",
+                "the FRFs show a mass of the joint of {} ± {}; k and c are those of a joint with it, and K and C by line, which hold its inertia, are not \
+                 compared with them",
                 plain(mass, "kg"),
                 plain(std, "kg")
             )

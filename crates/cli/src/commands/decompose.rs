@@ -143,8 +143,12 @@ fn all_frfs(fit: &JointFit, elements: &[(usize, usize)]) -> Vec<String> {
             lines.push(format!("{symbol}{}{} = {text}", i + 1, j + 1));
         }
     }
+    let fixture = match fit.quantities.is_empty() {
+        true => "the fixture taken as exact",
+        false => "the fixture moving within its tolerances",
+    };
     lines.push(format!(
-        "from {} over {}, the fixture moving within its tolerances; chi2 per degree of freedom {:.3}",
+        "from {} over {}, {fixture}; chi2 per degree of freedom {:.3}",
         counted(fit.frfs.len(), "FRF"),
         counted(fit.lines, "line"),
         fit.chi2_per_dof

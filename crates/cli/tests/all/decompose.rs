@@ -98,6 +98,14 @@ fn the_shipped_examples_joint_comes_out_as_soft_as_its_readme_says() {
     }
     let mass = file["joint"]["mass"]["value"].as_f64().unwrap();
     assert!((mass / 0.0768 - 1.0).abs() < 0.1, "{mass} kg");
+    let mass_std = file["joint"]["mass"]["std"].as_f64().unwrap();
+    assert!((mass - 0.0768).abs() < 3.0 * mass_std, "{mass} ± {mass_std} kg");
+    // The layers of epoxy, which the fit across the joint makes too soft.
+    for (layer, truth) in [("rotation_from", 7212.0), ("rotation_to", 5515.0)] {
+        let ends = &file["interfaces"][layer]["ci95"];
+        let (low, high) = (ends[0].as_f64().unwrap(), ends[1].as_f64().unwrap());
+        assert!(low < truth && truth < high, "{layer}: {low} to {high}");
+    }
     let fit = &file["maximum_likelihood"];
     let found = matrix(&fit["stiffness"]);
     // The table of fixtures/glued-joint/README.md. The strip's mass, which the fixture leaves out, costs a tenth;

@@ -47,6 +47,43 @@ impl LawFit {
     }
 }
 
+/// By how much the laws compared, each as often as it is probable, are off the viscous one in the middle of the band.
+pub(super) struct Spread {
+    /// Mean products of the differences in (k11, k12, k22, c11, c12, c22).
+    pub covariance: [[f64; 6]; 6],
+    /// Mean square of the difference in mass among the laws with one, kg².
+    pub mass: f64,
+}
+
+impl Spread {
+    /// `heavy`: whether the viscous joint stated is the one with mass. Nothing where it is not among the laws.
+    pub fn of(laws: &[LawFit], heavy: bool) -> Option<Self> {
+        let stated = laws.iter().find(|fit| fit.kind == LawKind::Viscous && fit.mass.is_some() == heavy)?;
+        let six = |fit: &LawFit| {
+            let (k, c) = fit.stiffness_and_damping(Complex64::new(0.0, fit.law.middle));
+            [k.at(0, 0), k.at(0, 1), k.at(1, 1), c.at(0, 0), c.at(0, 1), c.at(1, 1)]
+        };
+        let reference = six(stated);
+        let mut spread = Spread { covariance: [[0.0; 6]; 6], mass: 0.0 };
+        let mut heavy_ones = 0.0;
+        for fit in laws {
+            let own = six(fit);
+            let by: [f64; 6] = std::array::from_fn(|e| own[e] - reference[e]);
+            for (row, a) in spread.covariance.iter_mut().zip(by) {
+                row.iter_mut().zip(by).for_each(|(entry, b)| *entry += fit.probability * a * b);
+            }
+            if let Some((mass, stated)) = fit.mass.zip(stated.mass) {
+                heavy_ones += fit.probability;
+                spread.mass += fit.probability * (mass - stated).powi(2);
+            }
+        }
+        if heavy_ones > 0.0 {
+            spread.mass /= heavy_ones;
+        }
+        Some(spread)
+    }
+}
+
 /// Standard deviation beforehand of an element of K, in units of the diagonal of a joint nearby.
 const STIFFNESS: f64 = 2.0;
 /// Of a loss factor in the middle of the band, and of the change of stiffness up to there as a share.
@@ -249,4 +286,40 @@ fn candidate(
         coordinates: own.to_vec(),
     };
     Some(Candidate { fit, evidence, inflation: fitter.inflation(problem, point) })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_spread_of_laws_is_their_difference_as_often_as_they_are_probable() {
+        let unit = RealMatrix2::new(1.0, 1.0, 1.0, 1.0);
+        let fit = |kind: LawKind, probability: f64, k: f64, mass: f64| {
+            let law = Dynamics::new(kind, unit, 100.0, false);
+            let mut coordinates = vec![0.0; law.count()];
+            coordinates[0] = k;
+            let zero = RealMatrix2::zero();
+            let (stiffness, damping, change, shape) = (zero, zero, None, None);
+            let mass = Some(mass);
+            LawFit {
+                kind,
+                mass,
+                probability,
+                objective: 0.0,
+                stiffness,
+                damping,
+                change,
+                shape,
+                law,
+                coordinates,
+            }
+        };
+        let laws = [fit(LawKind::Structural, 0.75, 1.2, 0.08), fit(LawKind::Viscous, 0.25, 1.0, 0.07)];
+        let spread = Spread::of(&laws, true).unwrap();
+        assert!((spread.covariance[0][0] - 0.75 * 0.04).abs() < 1e-12);
+        assert_eq!(spread.covariance[2][2], 0.0);
+        assert!((spread.mass - 0.75 * 1e-4).abs() < 1e-12);
+        assert!(Spread::of(&laws, false).is_none());
+    }
 }
