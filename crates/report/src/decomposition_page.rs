@@ -39,6 +39,11 @@ impl<'a> Subject<'a> {
         self.analysis.spectrum.scalar
     }
 
+    /// Whether the joint from all FRFs was found with nothing of the fixture moving.
+    fn is_exact(&self) -> bool {
+        self.analysis.joint_fit.as_ref().is_ok_and(|fit| fit.quantities.is_empty())
+    }
+
     /// Whose the nominal stiffness is.
     fn nominal_owner(&self) -> &'static str {
         match self.joint().map(|joint| &joint.law) {

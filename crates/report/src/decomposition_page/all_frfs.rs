@@ -17,10 +17,16 @@ const FAR: f64 = 2.0;
 pub(super) fn section(subject: &Subject) -> Option<Section> {
     let fit = subject.analysis.joint_fit.as_ref().ok()?;
     let names: Vec<String> = fit.frfs.iter().map(ToString::to_string).collect();
+    let fixture = match fit.quantities.is_empty() {
+        true => ", the fixture taken as exact. The ± hold noise.",
+        false => {
+            " together with the fixture's uncertain quantities, each of which may move as far as its standard deviation lets \
+             it: FRFs on one side of the joint weigh that side's block. The ± hold noise and tolerances at once."
+        }
+    };
     let mut section = Section::new("The joint from all FRFs")
         .paragraph(format!(
-            "k and c are fitted to {} ({}) together with the fixture's uncertain quantities, each of which may move as far as its standard deviation lets \
-             it: FRFs on one side of the joint weigh that side's block. The ± hold noise and tolerances at once.",
+            "k and c are fitted to {} ({}){fixture}",
             if names.len() == 1 { "one FRF".to_owned() } else { format!("all {} FRFs", names.len()) },
             names.join(", ")
         ))

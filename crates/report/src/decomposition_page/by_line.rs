@@ -43,8 +43,14 @@ fn introduction(subject: &Subject, part: Part, symbol: &str) -> String {
             " Dots: {n} of {solved} lines on which noise exceeds 30 % of an element of k; the interval is only indicative there."
         ),
     };
+    let mass = if analysis.lines_hold_mass() {
+        " The joint has a mass of its own, of which these lines know nothing: they hold its inertia and are no stiffness of the joint alone, so \
+         neither the fitted joint nor a law is drawn over them, and the two are not held against each other."
+    } else {
+        ""
+    };
     format!(
-        "{symbol} on each line, {of}, by {}. The light band is the 95 % interval from noise alone, gaps are masked lines.{dots}",
+        "{symbol} on each line, {of}, by {}. The light band is the 95 % interval from noise alone, gaps are masked lines.{dots}{mass}",
         subject.relation_words()
     )
 }
@@ -89,7 +95,8 @@ fn plot(subject: &Subject, part: Part, element: Element) -> Plot {
 /// The most probable law over the lines, of spectra by the exact relation, where it is not level.
 fn law(subject: &Subject, part: Part, element: Element) -> Option<Vec<Option<f64>>> {
     let law = subject.analysis.joint_fit.as_ref().ok()?.law().filter(|_| !subject.is_paper())?;
-    if law.kind == LawKind::Viscous && law.mass.is_none() {
+    // K by line would hold the mass, the law does not.
+    if law.kind == LawKind::Viscous || law.mass.is_some() || subject.analysis.lines_hold_mass() {
         return None;
     }
     let spectrum = &subject.analysis.spectrum;
@@ -102,6 +109,9 @@ fn law(subject: &Subject, part: Part, element: Element) -> Option<Vec<Option<f64
 
 /// The horizontal line: the best figure of the same relation as the spectrum.
 fn level(subject: &Subject, part: Part, element: Element) -> Option<(&'static str, f64)> {
+    if subject.analysis.lines_hold_mass() {
+        return None;
+    }
     let estimate = if subject.best.paper == subject.is_paper() {
         *subject.best
     } else {
@@ -120,6 +130,8 @@ fn caption(subject: &Subject, part: Part, element: Element) -> String {
     let symbol = symbol(part, element, subject.is_paper());
     let what = if subject.is_paper() {
         "eq (7) varies over the lines even for a constant joint; the dashed curve is what it makes of the fixture's".to_owned()
+    } else if subject.analysis.lines_hold_mass() {
+        "with the inertia of the joint's mass; without one a constant joint would be level".to_owned()
     } else {
         "a constant joint would be level".to_owned()
     };

@@ -28,12 +28,13 @@ pub(super) fn meaning(part: Part, element: Element) -> String {
     format!("{load} per {motion}")
 }
 
-/// Where an estimate comes from, in words.
-pub(super) fn method(method: Method) -> &'static str {
+/// Where an estimate comes from, in words; `exact`: the fit moved nothing of the fixture.
+pub(super) fn method(method: Method, exact: bool) -> &'static str {
     match method {
         Method::PlainMean => "plain mean over the band",
         Method::WeightedMean => "weighted mean over the band",
         Method::MaximumLikelihood => "maximum likelihood from the FRFs across it",
+        Method::AllFrfs if exact => "all FRFs, the fixture taken as exact",
         Method::AllFrfs => "all FRFs, the fixture moving within its tolerances",
     }
 }

@@ -1,6 +1,6 @@
 //! The joint's interfaces: what its ends add to its beam (eq 6).
 
-use jointscope_decomposition::{Compliance, InterfaceStiffness};
+use jointscope_decomposition::{Compliance, InterfaceStiffness, Method};
 
 use super::Subject;
 use crate::format::{interval, magnitude, quantity};
@@ -30,9 +30,18 @@ pub(super) fn section(subject: &Subject) -> Option<Section> {
         );
     let scalar = table("Element", scalar)
         .caption("Element by element, as in eq (6): 1/k_I = 1/k_J − 1/k_E, both interfaces together");
-    let section = Section::new("Interfaces").paragraph(
-        "What glue, weld or bolts at the joint's two ends add to the beam between them, from the maximum-likelihood stiffness; \
+    let (source, explains) = subject.analysis.interfaces_rest_on()?;
+    let from = match source {
+        Method::AllFrfs => "the joint from all FRFs",
+        _ => "the joint from the FRFs across it",
+    };
+    let section = Section::new("Interfaces").paragraph(format!(
+        "What glue, weld or bolts at the joint's two ends add to the beam between them, by the stiffness of {from}; \
          intervals hold noise and tolerances, the beam's own EI and length included.",
+    ));
+    let unexplained = (!explains).then_some(
+        "No fit explains these FRFs within noise and tolerances. What the model gets wrong passes into the interfaces, which are small differences: \
+         read them as orders of magnitude.",
     );
     let wrong = [interfaces.translation, interfaces.near_rotation, interfaces.far_rotation]
         .iter()
@@ -41,7 +50,7 @@ pub(super) fn section(subject: &Subject) -> Option<Section> {
         "A negative compliance says that the joint is stiffer than the beam it is said to be: EI, the free length or a place in \
          the fixture file is off, or the interfaces cannot be told apart as modelled. Read the other interfaces with that in mind.",
     );
-    Some(section.with(matrix).warnings(warning).with(scalar))
+    Some(section.warnings(unexplained).with(matrix).warnings(warning).with(scalar))
 }
 
 /// Units of a stiffness and of its compliance.

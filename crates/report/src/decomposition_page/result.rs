@@ -26,7 +26,7 @@ pub(super) fn section(subject: &Subject) -> Section {
 }
 
 fn introduction(subject: &Subject) -> String {
-    let method = method(subject.best.method);
+    let method = method(subject.best.method, subject.is_exact());
     let which = if subject.best.paper { "the matrices of eq (7)" } else { "the joint" };
     let signs = if subject.is_scalar() {
         "k and c act between the displacements of the two bodies."
@@ -149,9 +149,15 @@ fn means_table(subject: &Subject, likelihood: Option<&Estimate>, all: Option<&Es
 fn footnotes(subject: &Subject, with_likelihood: bool) -> Vec<&'static str> {
     let mut notes = Vec::new();
     if with_likelihood && !subject.is_scalar() {
+        notes.push(match subject.is_exact() {
+            true => "FRFs across: maximum likelihood from those alone; all FRFs: from the others as well; the fixture taken as exact.",
+            false => {
+                "FRFs across: maximum likelihood from those alone, the fixture as stated; all FRFs: with the fixture moving within its tolerances, noise and \
+                 tolerances in one ±."
+            }
+        });
         notes.push(
-            "FRFs across: maximum likelihood from those alone, the fixture as stated; all FRFs: with the fixture moving within its tolerances, noise and \
-             tolerances in one ±. Fitted k and c are symmetric by construction; 21 repeats 12. The means are not held to that: what 12 \
+            "Fitted k and c are symmetric by construction; 21 repeats 12. The means are not held to that: what 12 \
              and 21 differ by beyond their ± is an error of the model or the test.",
         );
     }

@@ -1,6 +1,6 @@
 //! Which tolerances of the fixture matter.
 
-use jointscope_decomposition::{Element, Method, Part, ToleranceShare};
+use jointscope_decomposition::{Element, Estimate, Method, Part, ToleranceShare};
 use jointscope_fixture::{Dof, Fixture, NamedQuantity, Nature, QuantityKey as Key, QuantityOwner};
 use jointscope_linalg::RealMatrix2;
 
@@ -49,15 +49,27 @@ pub(super) fn section(subject: &Subject) -> Section {
         b.on_stiffness().total_cmp(&a.on_stiffness()).then_with(|| a.quantity.path.cmp(&b.quantity.path))
     });
     let section = Section::new("Tolerances");
-    let Some(strongest) = effects.first() else {
+    if subject.analysis.tolerances.is_empty() {
         return section.paragraph(
             "No quantity of the fixture has a tolerance: all are taken as exact, and the ± hold noise alone.",
         );
+    }
+    let Some(strongest) = effects.first() else {
+        return section.paragraph(
+            "The fit to the FRFs across the joint could not follow any tolerance of the fixture.",
+        );
     };
     let advice = advice(strongest.quantity, subject.fixture);
-    let paragraph = format!(
-        "By how much the result moves when one quantity of the fixture is larger by its standard deviation. {advice}"
-    );
+    let result = match subject.best.method {
+        Method::AllFrfs => {
+            "By how much the fit to the FRFs across the joint, the fixture as stated, moves when one quantity of the fixture is larger by its \
+             standard deviation. The joint from all FRFs moves less: those FRFs weigh the fixture as well, as the table above shows, and its ± hold what is left."
+        }
+        _ => {
+            "By how much the result moves when one quantity of the fixture is larger by its standard deviation."
+        }
+    };
+    let paragraph = format!("{result} {advice}");
     let mut table = Table::of(effects.iter().take(SHOWN))
         .words("Quantity", |effect| in_words(effect.quantity, subject.fixture))
         .words("In the file", |effect| effect.quantity.path.clone())
@@ -94,8 +106,13 @@ fn effect<'a>(
         Method::MaximumLikelihood | Method::AllFrfs => share.likelihood?,
         Method::WeightedMean | Method::PlainMean => share.plain,
     };
+    let across = match subject.best.method {
+        Method::AllFrfs => Estimate::maximum_likelihood(subject.analysis),
+        _ => None,
+    };
+    let of = across.as_ref().unwrap_or(subject.best);
     let relative = |&(part, element): &(Part, Element)| {
-        element.of(&part.of(changes)) / subject.best.figure(part, element).value.abs()
+        element.of(&part.of(changes)) / of.figure(part, element).value.abs()
     };
     Some(Effect { quantity, std: share.std, relative: watched.iter().map(relative).collect() })
 }

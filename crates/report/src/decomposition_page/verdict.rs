@@ -159,9 +159,14 @@ fn rests_on_all(subject: &Subject, fit: &JointFit) -> String {
         }
         _ => String::new(),
     };
+    let fixture = match fit.quantities.is_empty() {
+        true => "the fixture taken as exact. The ± are one standard deviation, from noise",
+        false => {
+            "the fixture's quantities moving within their tolerances. The ± are one standard deviation, noise and tolerances together"
+        }
+    };
     format!(
-        "From {} {} on {} lines{range}, {}, the fixture's quantities moving within their tolerances. The ± are one standard deviation, noise and \
-         tolerances together. χ²/dof = {}.",
+        "From {} {} on {} lines{range}, {}, {fixture}. χ²/dof = {}.",
         fit.frfs.len(),
         if fit.frfs.len() == 1 { "FRF" } else { "FRFs" },
         fit.lines,

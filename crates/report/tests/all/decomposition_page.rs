@@ -1,7 +1,7 @@
 //! What the page of a decomposition must say, and what it must not hide.
 
 use jointscope_averaging::Band;
-use jointscope_decomposition::{Analysis, AnalysisOptions, DecompositionError, Judgement, Relation};
+use jointscope_decomposition::{Analysis, AnalysisOptions, DecompositionError, Judgement, Method, Relation};
 use jointscope_fixture::Fixture;
 use jointscope_lumped::{Instrument, synthesize};
 use jointscope_report::format::quantity;
@@ -313,4 +313,59 @@ fn surplus_frfs_that_contradict_each_other_are_reported_as_blocks_that_bend() {
     let believed = with_five("0.12");
     let html = page(&believed, &analysis(&believed, &frfs, Relation::Exact));
     assert!(html.contains("The blocks did not move rigidly"));
+}
+
+#[test]
+fn neither_law_nor_level_nor_contradiction_is_taken_from_lines_that_hold_the_joints_mass() {
+    let fixture = blocks("");
+    let frfs = recorded(&fixture, &PAIRS);
+    let mut analysis = analysis(&fixture, &frfs, Relation::Exact);
+    // A fit a quarter softer than the lines: a contradiction, unless the joint has a mass.
+    let fit = analysis.joint_fit.as_mut().unwrap();
+    fit.stiffness = fit.stiffness.scale(0.75);
+    let light = Judgement::of(&analysis, &fixture);
+    assert!(light.contradiction.is_some());
+    let level = ">all FRFs</button>";
+    assert!(page(&fixture, &analysis).contains(level), "drawn for a joint without mass");
+    analysis.joint_fit.as_mut().unwrap().mass = Some((0.08, 0.001));
+    analysis.judgement = Judgement::of(&analysis, &fixture);
+    assert!(analysis.judgement.contradiction.is_none());
+    let html = page(&fixture, &analysis);
+    assert!(html.contains("they hold its inertia and are no stiffness of the joint alone"));
+    assert!(!html.contains(level) && !html.contains("law from all FRFs"));
+}
+
+#[test]
+fn tolerances_are_said_to_be_those_of_the_fit_across_and_none_only_where_there_is_none() {
+    let (fixture, mut analysis) = two_blocks(Relation::Exact);
+    assert!(
+        page(&fixture, &analysis)
+            .contains("By how much the fit to the FRFs across the joint, the fixture as stated, moves")
+    );
+    analysis.tolerances.iter_mut().for_each(|share| share.likelihood = None);
+    let html = page(&fixture, &analysis);
+    assert!(!html.contains("No quantity of the fixture has a tolerance"));
+    analysis.tolerances.clear();
+    assert!(page(&fixture, &analysis).contains("No quantity of the fixture has a tolerance"));
+}
+
+#[test]
+fn a_fixture_without_tolerances_is_said_to_be_taken_as_exact() {
+    let (fixture, mut analysis) = two_blocks(Relation::Exact);
+    assert!(page(&fixture, &analysis).contains("moving within"));
+    analysis.joint_fit.as_mut().unwrap().quantities.clear();
+    let html = page(&fixture, &analysis);
+    assert!(html.contains("the fixture taken as exact") && !html.contains("moving within"));
+}
+
+#[test]
+fn interfaces_name_their_fit_and_are_marked_where_none_explains_the_frfs() {
+    let (fixture, mut analysis) = two_blocks(Relation::Exact);
+    assert_eq!(analysis.interfaces_rest_on(), Some((Method::AllFrfs, true)));
+    let marked = "No fit explains these FRFs within noise and tolerances";
+    let html = page(&fixture, &analysis);
+    assert!(html.contains("by the stiffness of the joint from all FRFs") && !html.contains(marked));
+    analysis.joint_fit.as_mut().unwrap().inflation = 30.0;
+    analysis.likelihood.as_mut().unwrap().chi2_per_dof = 75.0;
+    assert!(page(&fixture, &analysis).contains(marked));
 }
