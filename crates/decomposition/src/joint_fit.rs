@@ -7,102 +7,31 @@
 //! mass-proportional damping, all other losses being the joint's.
 
 mod admissible;
+mod found;
 mod law;
 mod laws;
 mod problem;
 mod quantities;
 mod recorded;
+mod uncertainty;
 mod uncoupled;
 
 pub use admissible::{Admissible, JointTests};
+pub use found::{FittedLength, FittedQuantity, JointFit};
 pub use law::LawKind;
 pub use laws::LawFit;
 
 use crate::{DecompositionError, LikelihoodFit, Sides};
 use jointscope_averaging::Band;
-use jointscope_fixture::{QuantityKey, QuantityOwner};
-use jointscope_inference::{
-    Covariance, Parameter, Transform, autocorrelation, inflated_weight, jackknife, variance_inflation,
-};
+use jointscope_inference::{Parameter, Transform, inflated_weight};
 use jointscope_linalg::{Matrix2, RealMatrix2};
-use jointscope_spectra::{FrfPair, FrfSet};
+use jointscope_spectra::FrfSet;
 use law::{Dynamics, Form};
 use num_complex::Complex64;
 use problem::{Columns, Point, Problem, Test};
 use quantities::Uncertain;
 use recorded::Recorded;
-use serde::Serialize;
-use statrs::function::gamma::gamma_ur;
-
-/// The joint from all FRFs.
-#[derive(Debug, Clone, PartialEq)]
-pub struct JointFit {
-    /// K, symmetric: N/m, N/rad, N·m/rad.
-    pub stiffness: RealMatrix2,
-    /// C, symmetric and passive: N·s/m, N·s/rad, N·m·s/rad.
-    pub damping: RealMatrix2,
-    /// Posterior covariance of (k11, k12, k22, c11, c12, c22), the fixture's quantities integrated out; with what the model's error and the laws compared add.
-    pub covariance: [[f64; 6]; 6],
-    /// The part of it that comes from the model's error: how far the joint moves when one of eight blocks of lines is left out. Zero where noise explains
-    /// what is left.
-    pub model_covariance: [[f64; 6]; 6],
-    /// The part of it that comes from the laws compared: by how much they differ from K + sC in the middle of the band, each as often as it is probable.
-    pub law_covariance: [[f64; 6]; 6],
-    /// The joint's length between its ends where the fit has them.
-    pub length: FittedLength,
-    /// χ² and priors per degree of freedom: 1 where noise and tolerances explain the FRFs.
-    pub chi2_per_dof: f64,
-    /// What the noise's variance was multiplied by because the model does not explain the FRFs; 1 where it does.
-    pub inflation: f64,
-    /// What the posterior covariance was multiplied by because the fixture's quantities are farther from what is stated than chance takes them; 1 where they are not.
-    pub strain: f64,
-    /// Whether c would give out energy if it were free, and was held to c = v vᵀ.
-    pub is_on_the_boundary: bool,
-    /// The fixture's quantities that the FRFs depend on, where the fit has them.
-    pub quantities: Vec<FittedQuantity>,
-    /// What is wrong with a joint that physics forbids.
-    pub tests: JointTests,
-    /// The nearest joint that physics allows, where a test fails.
-    pub admissible: Option<Admissible>,
-    /// How stiffness and damping depend on frequency, the most probable law first; empty if not asked for.
-    pub laws: Vec<LawFit>,
-    /// The FRFs fitted.
-    pub frfs: Vec<FrfPair>,
-    /// Spectral lines fitted.
-    pub lines: usize,
-    /// The joint's own mass and its standard deviation, kg, where the laws compared show that it has one; k and c are those of a joint with it.
-    pub mass: Option<(f64, f64)>,
-    /// Whether the bodies do not rotate: only the elements (1,1) mean anything then.
-    pub scalar: bool,
-}
-
-/// A quantity of the fixture as the fit has it.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct FittedQuantity {
-    /// Path in the fixture file.
-    pub path: String,
-    /// As stated, SI.
-    pub stated: f64,
-    /// Its stated standard deviation; nothing where it is unknown.
-    pub std: Option<f64>,
-    /// As fitted.
-    pub fitted: f64,
-    /// Standard deviation after the fit.
-    pub fitted_std: f64,
-    /// Stated standard deviations between the two (tenths of the value where it is unknown).
-    pub deviations: f64,
-}
-
-/// The joint's length as a fit has it.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct FittedLength {
-    /// L, m.
-    pub value: f64,
-    /// Its variance after the fit, m²; zero where both ends are exact.
-    pub variance: f64,
-    /// Its covariance with (k11, k12, k22).
-    pub with_stiffness: [f64; 3],
-}
+use uncertainty::{strain, total};
 
 /// What a fit of the joint is asked for.
 #[derive(Debug, Clone, Copy, Default)]
@@ -123,8 +52,6 @@ const DOUBTFUL: f64 = 1.3;
 const HEAVY: f64 = 0.95;
 /// Shares of the signal that count as noise in the stages of a fit from afar.
 const SHARES_AS_NOISE: [f64; 4] = [1.0, 0.3, 0.06, 0.01];
-/// Blocks of neighbouring lines that the jackknife leaves out in turn.
-const BLOCKS: usize = 8;
 /// Damping of a start without any, as a loss factor.
 const START_LOSS: f64 = 3e-3;
 
@@ -348,24 +275,6 @@ impl<'a> Fitter<'a> {
         near.into_iter().chain(afar).reduce(|a, b| if b.point.objective < a.point.objective { b } else { a })
     }
 
-    fn per_degree(&self, problem: &Problem, point: &Point) -> f64 {
-        // Priors count one degree for each quantity that has one.
-        let quantities = problem.parameters.iter().skip(problem.own());
-        let free = problem.own() + quantities.filter(|parameter| parameter.precision == 0.0).count();
-        point.objective / self.recorded.degrees().saturating_sub(free).max(1) as f64
-    }
-
-    /// What the noise is multiplied by so that it explains what is left, correlated from line to line as that is.
-    fn inflation(&self, problem: &Problem, point: &Point) -> f64 {
-        let per_degree = self.per_degree(problem, point);
-        if per_degree <= EXPLAINED {
-            return 1.0;
-        }
-        let residual = problem.residual(point).into_iter().zip(&self.recorded.weights);
-        let normalised: Vec<Complex64> = residual.map(|(r, weight)| r * weight.sqrt()).collect();
-        variance_inflation(per_degree, autocorrelation(&normalised, self.recorded.s.len()))
-    }
-
     /// The joint, tests and covariance at an optimum whose c is free.
     fn result(
         &self,
@@ -439,114 +348,6 @@ impl<'a> Fitter<'a> {
             scalar: self.scalar,
         })
     }
-
-    fn covariance_at(&self, problem: &Problem, point: &Point) -> Result<Covariance, DecompositionError> {
-        let others = problem.other_columns(point).ok_or(UNDETERMINED)?;
-        problem.equations_of(point, &others, problem.test.weights).covariance().ok_or(UNDETERMINED)
-    }
-
-    /// Covariance of (k11, k12, k22, c11, c12, c22) in SI units from that of a viscous law's coordinates.
-    fn in_si(&self, law: &Dynamics, covariance: &Covariance) -> [[f64; 6]; 6] {
-        let u = &law.unit;
-        let elements = [u.at(0, 0), u.at(0, 1), u.at(1, 1)];
-        let slots: &[usize] = if self.scalar { &[0, 3] } else { &[0, 1, 2, 3, 4, 5] };
-        let scale = |slot: usize| elements[slot % 3] * if slot < 3 { 1.0 } else { 1.0 / law.middle };
-        let mut all = [[0.0; 6]; 6];
-        for (a, &m) in slots.iter().enumerate() {
-            for (b, &n) in slots.iter().enumerate() {
-                all[m][n] = covariance.at(a, b) * scale(m) * scale(n);
-            }
-        }
-        all
-    }
-
-    /// The joint's length, to which K is tied by the ends' places.
-    fn length(&self, problem: &Problem, at: &Point, covariance: &Covariance) -> FittedLength {
-        let (joint, own) = (self.sides.joint(), problem.own());
-        let ends: Vec<(usize, f64, f64)> = problem
-            .test
-            .quantities
-            .iter()
-            .enumerate()
-            .filter_map(|(index, uncertain)| {
-                let sign = match (uncertain.quantity.key, uncertain.quantity.owner) {
-                    (QuantityKey::Abscissa, QuantityOwner::Point(point)) if point == joint.to => 1.0,
-                    (QuantityKey::Abscissa, QuantityOwner::Point(point)) if point == joint.from => -1.0,
-                    _ => return None,
-                };
-                let (transform, stated) = (uncertain.parameter.transform, uncertain.quantity.value);
-                let value = transform.value(at.coordinates[own + index]).unwrap_or(stated);
-                Some((own + index, sign * (value - stated), sign * transform.slope(value)))
-            })
-            .collect();
-        let u = &problem.law.unit;
-        let elements: &[(usize, f64)] = match self.scalar {
-            true => &[(0, u.at(0, 0))],
-            false => &[(0, u.at(0, 0)), (1, u.at(0, 1)), (2, u.at(1, 1))],
-        };
-        let mut with_stiffness = [0.0; 3];
-        for &(element, unit) in elements {
-            with_stiffness[element] =
-                ends.iter().map(|(end, _, slope)| unit * slope * covariance.at(element, *end)).sum();
-        }
-        let products =
-            ends.iter().flat_map(|(a, _, s)| ends.iter().map(move |(b, _, t)| s * t * covariance.at(*a, *b)));
-        FittedLength {
-            value: self.sides.length() + ends.iter().map(|(_, moved, _)| moved).sum::<f64>(),
-            variance: products.sum::<f64>().max(0.0),
-            with_stiffness,
-        }
-    }
-
-    /// How far the coordinates move when each of eight blocks of lines is left out, to first order.
-    fn jackknifed(&self, problem: &Problem, at: &Point) -> Option<Covariance> {
-        let n = self.recorded.s.len();
-        let blocks = BLOCKS.min(n);
-        let others = problem.other_columns(at)?;
-        let without = |block: usize| {
-            let (from, to) = (block * n / blocks, (block + 1) * n / blocks);
-            let outside = |i: usize| i % n < from || i % n >= to;
-            let weights: Vec<f64> = problem
-                .test
-                .weights
-                .iter()
-                .enumerate()
-                .map(|(i, w)| if outside(i) { *w } else { 0.0 })
-                .collect();
-            let step = problem.equations_of(at, &others, &weights).step(0.0)?;
-            Some(at.coordinates.iter().zip(&step).map(|(at, step)| at + step).collect::<Vec<f64>>())
-        };
-        let fits: Option<Vec<Vec<f64>>> = (0..blocks).map(without).collect();
-        Some(jackknife(&fits?))
-    }
-}
-
-/// Covariance of all coordinates with what strain and the model's error add.
-fn total(posterior: &Covariance, strain: f64, model: Option<&Covariance>) -> Covariance {
-    let entries = posterior.entries().iter().enumerate();
-    let sum = |(e, v): (usize, &f64)| strain * v + model.map_or(0.0, |model| model.entries()[e]);
-    Covariance::new(posterior.order(), entries.map(sum).collect())
-}
-
-/// Probability below which the quantities' departures are no chance.
-const NO_CHANCE: f64 = 0.01;
-
-/// Squared departures of the quantities from what is stated, per what chance would make of them (Birge's ratio): what of a quantity the FRFs tell may depart, what
-/// they do not tell stays. 1 where chance explains them.
-fn strain(problem: &Problem, at: &Point, covariance: &Covariance) -> f64 {
-    let (mut squares, mut expected) = (0.0, 0.0);
-    for (index, parameter) in problem.parameters.iter().enumerate().skip(problem.own()) {
-        if parameter.precision > 0.0 {
-            squares += parameter.penalty(at.coordinates[index]);
-            expected += (1.0 - parameter.precision * covariance.at(index, index)).clamp(0.0, 1.0);
-        }
-    }
-    let ratio = squares / expected;
-    if !(expected > 0.0 && ratio > 1.0) {
-        return 1.0;
-    }
-    let by_chance = gamma_ur(0.5 * expected, 0.5 * squares);
-    if by_chance < NO_CHANCE { ratio } else { 1.0 }
 }
 
 /// Weighted squared change by one standard deviation of a quantity below which the FRFs do not depend on it.
@@ -567,34 +368,4 @@ impl<'a> Problem<'a> {
         all.resize(self.parameters.len(), 0.0);
         all
     }
-}
-
-impl JointFit {
-    /// Standard deviations of K and C, everything included.
-    pub fn std(&self) -> (RealMatrix2, RealMatrix2) {
-        deviations(&self.covariance)
-    }
-
-    /// Standard deviations of K and C from the model's error alone.
-    pub fn model_std(&self) -> (RealMatrix2, RealMatrix2) {
-        deviations(&self.model_covariance)
-    }
-
-    /// Whether noise and tolerances explain the FRFs.
-    pub fn explains(&self) -> bool {
-        self.inflation == 1.0 && self.strain == 1.0
-    }
-
-    /// The most probable law, if laws were compared.
-    pub fn law(&self) -> Option<&LawFit> {
-        self.laws.first()
-    }
-}
-
-fn deviations(covariance: &[[f64; 6]; 6]) -> (RealMatrix2, RealMatrix2) {
-    let of = |first: usize| {
-        let s = |m: usize| covariance[first + m][first + m].max(0.0).sqrt();
-        Matrix2::new(s(0), s(1), s(1), s(2))
-    };
-    (of(0), of(3))
 }

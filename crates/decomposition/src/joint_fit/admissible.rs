@@ -132,7 +132,7 @@ pub(super) fn asymmetry(
     let free = Problem { law, parameters: free_parameters(problem, &law), ..*problem };
     let inflation = fitter.inflation(&free, &point);
     let covariance = fitter.covariance_at(&free, &point).ok()?;
-    let scale = inflation * super::strain(&free, &point, &covariance);
+    let scale = inflation * super::uncertainty::strain(&free, &point, &covariance);
     Some((symmetric.point.objective - point.objective).max(0.0) / scale)
 }
 

@@ -1,0 +1,106 @@
+//! What a fit of the joint finds.
+
+use super::{Admissible, JointTests, LawFit};
+use jointscope_linalg::{Matrix2, RealMatrix2};
+use jointscope_spectra::FrfPair;
+use serde::Serialize;
+
+/// The joint from all FRFs.
+#[derive(Debug, Clone, PartialEq)]
+pub struct JointFit {
+    /// K, symmetric: N/m, N/rad, N·m/rad.
+    pub stiffness: RealMatrix2,
+    /// C, symmetric and passive: N·s/m, N·s/rad, N·m·s/rad.
+    pub damping: RealMatrix2,
+    /// Posterior covariance of (k11, k12, k22, c11, c12, c22), the fixture's quantities integrated out; with what the model's error and the laws compared add.
+    pub covariance: [[f64; 6]; 6],
+    /// The part of it that comes from the model's error: how far the joint moves when one of eight blocks of lines is left out. Zero where noise explains
+    /// what is left.
+    pub model_covariance: [[f64; 6]; 6],
+    /// The part of it that comes from the laws compared: by how much they differ from K + sC in the middle of the band, each as often as it is probable.
+    pub law_covariance: [[f64; 6]; 6],
+    /// The joint's length between its ends where the fit has them.
+    pub length: FittedLength,
+    /// χ² and priors per degree of freedom: 1 where noise and tolerances explain the FRFs.
+    pub chi2_per_dof: f64,
+    /// What the noise's variance was multiplied by because the model does not explain the FRFs; 1 where it does.
+    pub inflation: f64,
+    /// What the posterior covariance was multiplied by because the fixture's quantities are farther from what is stated than chance takes them; 1 where they are not.
+    pub strain: f64,
+    /// Whether c would give out energy if it were free, and was held to c = v vᵀ.
+    pub is_on_the_boundary: bool,
+    /// The fixture's quantities that the FRFs depend on, where the fit has them.
+    pub quantities: Vec<FittedQuantity>,
+    /// What is wrong with a joint that physics forbids.
+    pub tests: JointTests,
+    /// The nearest joint that physics allows, where a test fails.
+    pub admissible: Option<Admissible>,
+    /// How stiffness and damping depend on frequency, the most probable law first; empty if not asked for.
+    pub laws: Vec<LawFit>,
+    /// The FRFs fitted.
+    pub frfs: Vec<FrfPair>,
+    /// Spectral lines fitted.
+    pub lines: usize,
+    /// The joint's own mass and its standard deviation, kg, where the laws compared show that it has one; k and c are those of a joint with it.
+    pub mass: Option<(f64, f64)>,
+    /// Whether the bodies do not rotate: only the elements (1,1) mean anything then.
+    pub scalar: bool,
+}
+
+/// A quantity of the fixture as the fit has it.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct FittedQuantity {
+    /// Path in the fixture file.
+    pub path: String,
+    /// As stated, SI.
+    pub stated: f64,
+    /// Its stated standard deviation; nothing where it is unknown.
+    pub std: Option<f64>,
+    /// As fitted.
+    pub fitted: f64,
+    /// Standard deviation after the fit.
+    pub fitted_std: f64,
+    /// Stated standard deviations between the two (tenths of the value where it is unknown).
+    pub deviations: f64,
+}
+
+/// The joint's length as a fit has it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FittedLength {
+    /// L, m.
+    pub value: f64,
+    /// Its variance after the fit, m²; zero where both ends are exact.
+    pub variance: f64,
+    /// Its covariance with (k11, k12, k22).
+    pub with_stiffness: [f64; 3],
+}
+
+impl JointFit {
+    /// Standard deviations of K and C, everything included.
+    pub fn std(&self) -> (RealMatrix2, RealMatrix2) {
+        deviations(&self.covariance)
+    }
+
+    /// Standard deviations of K and C from the model's error alone.
+    pub fn model_std(&self) -> (RealMatrix2, RealMatrix2) {
+        deviations(&self.model_covariance)
+    }
+
+    /// Whether noise and tolerances explain the FRFs.
+    pub fn explains(&self) -> bool {
+        self.inflation == 1.0 && self.strain == 1.0
+    }
+
+    /// The most probable law, if laws were compared.
+    pub fn law(&self) -> Option<&LawFit> {
+        self.laws.first()
+    }
+}
+
+fn deviations(covariance: &[[f64; 6]; 6]) -> (RealMatrix2, RealMatrix2) {
+    let of = |first: usize| {
+        let s = |m: usize| covariance[first + m][first + m].max(0.0).sqrt();
+        Matrix2::new(s(0), s(1), s(1), s(2))
+    };
+    (of(0), of(3))
+}

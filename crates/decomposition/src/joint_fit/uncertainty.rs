@@ -1,0 +1,158 @@
+//! How well the joint is known: by noise and tolerances, by what the model gets wrong, by a fixture stated too surely.
+
+use super::law::Dynamics;
+use super::problem::{Point, Problem};
+use super::{EXPLAINED, FittedLength, Fitter, UNDETERMINED};
+use crate::DecompositionError;
+use jointscope_fixture::{QuantityKey, QuantityOwner};
+use jointscope_inference::{Covariance, autocorrelation, jackknife, variance_inflation};
+use num_complex::Complex64;
+use statrs::function::gamma::gamma_ur;
+
+/// Blocks of neighbouring lines that the jackknife leaves out in turn.
+const BLOCKS: usize = 8;
+
+impl Fitter<'_> {
+    pub(super) fn per_degree(&self, problem: &Problem, point: &Point) -> f64 {
+        // Priors count one degree for each quantity that has one.
+        let quantities = problem.parameters.iter().skip(problem.own());
+        let free = problem.own() + quantities.filter(|parameter| parameter.precision == 0.0).count();
+        point.objective / self.recorded.degrees().saturating_sub(free).max(1) as f64
+    }
+
+    /// What the noise is multiplied by so that it explains what is left, correlated from line to line as that is.
+    pub(super) fn inflation(&self, problem: &Problem, point: &Point) -> f64 {
+        let per_degree = self.per_degree(problem, point);
+        if per_degree <= EXPLAINED {
+            return 1.0;
+        }
+        let residual = problem.residual(point).into_iter().zip(&self.recorded.weights);
+        let normalised: Vec<Complex64> = residual.map(|(r, weight)| r * weight.sqrt()).collect();
+        variance_inflation(per_degree, autocorrelation(&normalised, self.recorded.s.len()))
+    }
+
+    pub(super) fn covariance_at(
+        &self,
+        problem: &Problem,
+        point: &Point,
+    ) -> Result<Covariance, DecompositionError> {
+        let others = problem.other_columns(point).ok_or(UNDETERMINED)?;
+        problem.equations_of(point, &others, problem.test.weights).covariance().ok_or(UNDETERMINED)
+    }
+
+    /// Covariance of (k11, k12, k22, c11, c12, c22) in SI units from that of a viscous law's coordinates.
+    pub(super) fn in_si(&self, law: &Dynamics, covariance: &Covariance) -> [[f64; 6]; 6] {
+        let u = &law.unit;
+        let elements = [u.at(0, 0), u.at(0, 1), u.at(1, 1)];
+        let slots: &[usize] = if self.scalar { &[0, 3] } else { &[0, 1, 2, 3, 4, 5] };
+        let scale = |slot: usize| elements[slot % 3] * if slot < 3 { 1.0 } else { 1.0 / law.middle };
+        let mut all = [[0.0; 6]; 6];
+        for (a, &m) in slots.iter().enumerate() {
+            for (b, &n) in slots.iter().enumerate() {
+                all[m][n] = covariance.at(a, b) * scale(m) * scale(n);
+            }
+        }
+        all
+    }
+
+    /// The joint's length, to which K is tied by the ends' places.
+    pub(super) fn length(&self, problem: &Problem, at: &Point, covariance: &Covariance) -> FittedLength {
+        let (joint, own) = (self.sides.joint(), problem.own());
+        let ends: Vec<(usize, f64, f64)> = problem
+            .test
+            .quantities
+            .iter()
+            .enumerate()
+            .filter_map(|(index, uncertain)| {
+                let sign = match (uncertain.quantity.key, uncertain.quantity.owner) {
+                    (QuantityKey::Abscissa, QuantityOwner::Point(point)) if point == joint.to => 1.0,
+                    (QuantityKey::Abscissa, QuantityOwner::Point(point)) if point == joint.from => -1.0,
+                    _ => return None,
+                };
+                let (transform, stated) = (uncertain.parameter.transform, uncertain.quantity.value);
+                let value = transform.value(at.coordinates[own + index]).unwrap_or(stated);
+                Some((own + index, sign * (value - stated), sign * transform.slope(value)))
+            })
+            .collect();
+        let u = &problem.law.unit;
+        let elements: &[(usize, f64)] = match self.scalar {
+            true => &[(0, u.at(0, 0))],
+            false => &[(0, u.at(0, 0)), (1, u.at(0, 1)), (2, u.at(1, 1))],
+        };
+        let mut with_stiffness = [0.0; 3];
+        for &(element, unit) in elements {
+            with_stiffness[element] =
+                ends.iter().map(|(end, _, slope)| unit * slope * covariance.at(element, *end)).sum();
+        }
+        let products =
+            ends.iter().flat_map(|(a, _, s)| ends.iter().map(move |(b, _, t)| s * t * covariance.at(*a, *b)));
+        FittedLength {
+            value: self.sides.length() + ends.iter().map(|(_, moved, _)| moved).sum::<f64>(),
+            variance: products.sum::<f64>().max(0.0),
+            with_stiffness,
+        }
+    }
+
+    /// How far the coordinates move when each of eight blocks of lines is left out, to first order.
+    pub(super) fn jackknifed(&self, problem: &Problem, at: &Point) -> Option<Covariance> {
+        let n = self.recorded.s.len();
+        let blocks = BLOCKS.min(n);
+        let others = problem.other_columns(at)?;
+        let without = |block: usize| {
+            let (from, to) = (block * n / blocks, (block + 1) * n / blocks);
+            let outside = |i: usize| i % n < from || i % n >= to;
+            let weights: Vec<f64> = problem
+                .test
+                .weights
+                .iter()
+                .enumerate()
+                .map(|(i, w)| if outside(i) { *w } else { 0.0 })
+                .collect();
+            let step = problem.equations_of(at, &others, &weights).step(0.0)?;
+            Some(at.coordinates.iter().zip(&step).map(|(at, step)| at + step).collect::<Vec<f64>>())
+        };
+        let fits: Option<Vec<Vec<f64>>> = (0..blocks).map(without).collect();
+        Some(jackknife(&fits?))
+    }
+}
+
+/// Covariance of all coordinates with what strain and the model's error add.
+pub(super) fn total(posterior: &Covariance, strain: f64, model: Option<&Covariance>) -> Covariance {
+    let entries = posterior.entries().iter().enumerate();
+    let sum = |(e, v): (usize, &f64)| strain * v + model.map_or(0.0, |model| model.entries()[e]);
+    Covariance::new(posterior.order(), entries.map(sum).collect())
+}
+
+/// Probability below which the quantities' departures are no chance.
+const NO_CHANCE: f64 = 0.01;
+
+/// Squared departures of the quantities from what is stated, per what chance would make of them (Birge's ratio): what of a quantity the FRFs tell may depart, what
+/// they do not tell stays. 1 where chance explains them.
+pub(super) fn strain(problem: &Problem, at: &Point, covariance: &Covariance) -> f64 {
+    let (mut squares, mut expected) = (0.0, 0.0);
+    for (index, parameter) in problem.parameters.iter().enumerate().skip(problem.own()) {
+        if parameter.precision > 0.0 {
+            squares += parameter.penalty(at.coordinates[index]);
+            expected += (1.0 - parameter.precision * covariance.at(index, index)).clamp(0.0, 1.0);
+        }
+    }
+    let ratio = squares / expected;
+    if !(expected > 0.0 && ratio > 1.0) {
+        return 1.0;
+    }
+    let by_chance = gamma_ur(0.5 * expected, 0.5 * squares);
+    if by_chance < NO_CHANCE { ratio } else { 1.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn strain_widens_every_coordinate_and_the_models_error_is_added_to_it() {
+        let posterior = Covariance::new(2, vec![4.0, 1.0, 1.0, 9.0]);
+        let model = Covariance::new(2, vec![0.0, 0.5, 0.5, 7.0]);
+        assert_eq!(total(&posterior, 2.0, Some(&model)).entries(), [8.0, 2.5, 2.5, 25.0]);
+        assert_eq!(total(&posterior, 3.0, None).std(1), 27.0_f64.sqrt());
+    }
+}
