@@ -63,7 +63,7 @@ pub(super) fn section(subject: &Subject) -> Section {
     let result = match subject.best.method {
         Method::AllFrfs => {
             "By how much the fit to the FRFs across the joint, the fixture as stated, moves when one quantity of the fixture is larger by its \
-             standard deviation. The joint from all FRFs moves less: those FRFs weigh the fixture as well, as the table above shows, and its ± hold what is left."
+             standard deviation. The joint from all FRFs moves by other amounts: those FRFs weigh the fixture as well, and its ± hold what is left."
         }
         _ => {
             "By how much the result moves when one quantity of the fixture is larger by its standard deviation."
