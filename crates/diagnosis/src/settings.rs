@@ -139,6 +139,8 @@ pub struct ModalSettings {
     /// Starts that are fitted in any case, and how far in ln p the density of another may lie below the best of these fits, if that needs no more than usual errors, to be
     /// fitted too: a fit seldom gains so much over its start, and e⁻¹⁵⁰ is no probability.
     pub foremost: (usize, f64),
+    /// Share of all work done from which on starts are left out so.
+    pub costly: f64,
     /// Share of all work that may be done by then: lines want the rest.
     pub again: f64,
     /// Singles that are tried with a second effect, at the most, and ln p below the best from which they are not, nor as look-alikes on lines.
@@ -197,6 +199,7 @@ impl Default for ModalSettings {
             refined: (20, 6),
             starts: (2, 8),
             foremost: (8, 150.0),
+            costly: 0.1,
             again: 0.15,
             bases: (3, 20.0),
             tried: 8,
