@@ -6,7 +6,6 @@ use crate::{Hypothesis, Observation};
 use jointscope_fixture::{
     BodyKind, Dof, Effect, EffectKind, EffectSpec, Entry, Fixture, Joint, JointLaw, Measure, Motion,
     NamedQuantity, ParameterRange, Place, PlaceKind, QuantityKey, QuantityOwner, SizeLaw, Starts,
-    SupportPlace,
 };
 use jointscope_lumped::nominal_stiffness;
 use std::f64::consts::TAU;
@@ -191,14 +190,7 @@ fn has_a_name(fixture: &Fixture, quantity: &NamedQuantity) -> bool {
         }
         (_, QuantityKey::SupportStiffness(_)) => true,
         (_, QuantityKey::YoungsModulus | QuantityKey::SecondMoment | QuantityKey::Parameter { .. }) => true,
-        (QuantityOwner::Point(point), _) => {
-            let ends = fixture.joints().iter().flat_map(|joint| [joint.from, joint.to]);
-            let held = fixture.supports().iter().filter_map(|support| match support.place {
-                SupportPlace::Point(point) => Some(point),
-                SupportPlace::Body { .. } => None,
-            });
-            ends.chain(held).all(|other| other != point)
-        }
+        (QuantityOwner::Point(point), _) => fixture.held_points().all(|held| held != point),
         _ => false,
     }
 }

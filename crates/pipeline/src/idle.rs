@@ -1,6 +1,6 @@
 //! Points that nothing in a test depends on: thousands of them, as a geometry file has, must not be fitted.
 
-use jointscope_fixture::{Fixture, Place, QuantityOwner, Spread, SupportPlace};
+use jointscope_fixture::{Fixture, Place, QuantityOwner, Spread};
 use jointscope_spectra::FrfPair;
 
 /// Which points neither hold anything nor are channels of `pairs`.
@@ -12,14 +12,9 @@ fn idle(fixture: &Fixture, pairs: &[FrfPair]) -> Vec<bool> {
         Place::Response(name) | Place::Reference(name) => Some(name.strip_suffix(":theta").unwrap_or(name)),
         _ => None,
     });
-    let ends = fixture.joints().iter().flat_map(|joint| [joint.from, joint.to]);
-    let held = fixture.supports().iter().filter_map(|support| match support.place {
-        SupportPlace::Point(point) => Some(point),
-        SupportPlace::Body { .. } => None,
-    });
     let of_names = channels.map(String::as_str).chain(places).filter_map(named);
     let mut idle = vec![true; fixture.points().len()];
-    of_names.chain(ends).chain(held).for_each(|point| idle[point] = false);
+    of_names.chain(fixture.held_points()).for_each(|point| idle[point] = false);
     idle
 }
 
