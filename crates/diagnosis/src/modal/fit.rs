@@ -55,6 +55,8 @@ const DIFFERENCE: (f64, f64) = (1e-3, 2e-3);
 /// Fits at sizes of the error that are taken anew after each, at most, and the gain in ln p at which that ends.
 const ROUNDS: usize = 4;
 const CONVERGED: f64 = 0.02;
+/// Decrease of χ² that a step promises below which a fit stands where it belongs.
+const STILL: f64 = 1.0;
 /// Gauss–Newton steps, at most.
 const STEPS: usize = 40;
 /// Share of what an undamped step promises below which a fit follows a bent valley.
@@ -153,6 +155,9 @@ impl<'a> Problem<'a> {
     }
 
     /// [`Problem::fitted`] from where `start` is known to stand, with derivatives known from nearby where there are any.
+    ///
+    /// Sizes of the error and parameters are taken in turn, the sizes first: a fit that begins with errors too small follows whatever features are recorded most
+    /// sharply, and its errors then grow to suit it.
     pub fn fitted_from(
         &self,
         start: &Hypothesis,
@@ -163,38 +168,40 @@ impl<'a> Problem<'a> {
         let residual = self.residual(&standing, &standing.modelled);
         let nearby = nearby.filter(|slopes| slopes.iter().all(|slope| slope.len() == residual.len()));
         let mut point = Iterate { hypothesis: start.clone(), modelled: standing.modelled.clone(), residual };
-        let mut derivatives = nearby;
+        let mut derivatives = match nearby {
+            Some(nearby) => nearby,
+            None => self.slopes_at(&point, &standing, &priors)?,
+        };
         let rarity: f64 = start.effects().iter().map(|effect| effect.kind.spec().rarity).sum();
-        let mut sizes = *self.sizes;
+        let mut sizes = self.evidence(&point, &priors, &derivatives, (&standing.comparison, None))?.1.sizes;
         let mut best: Option<ModalFit> = None;
         for round in 0..ROUNDS {
             let factor = Cholesky::of(standing.comparison.count(), &standing.comparison.covariance(&sizes))?;
             let descent = Descent { problem: self, standing: &standing, factor, priors: &priors };
-            let end = descend(&descent, point, derivatives.take(), &settings())?;
-            point = end.point;
+            point = descend(&descent, point, Some(derivatives), &settings())?.point;
             // The evidence of a linear model is by derivatives taken where the fit ended.
-            let fresh = descent.derivatives(&point, Precision::Rough)?;
-            let known = best.as_ref().map(|fit| &fit.evidence.sizes);
-            let (linear, evidence) = self.evidence(&point, &priors, &fresh, (&standing.comparison, known))?;
-            derivatives = Some(fresh);
+            derivatives = descent.derivatives(&point, Precision::Rough)?;
+            let (linear, evidence) =
+                self.evidence(&point, &priors, &derivatives, (&standing.comparison, Some(&sizes)))?;
+            // It says nothing of a point from where the parameters are still to move.
+            let promised = descent.promised(&point, &descent.equations(&point, &derivatives, &()));
             let ln = evidence.ln + standing.pairing.alone() - rarity;
-            let before = best.as_ref().map_or(f64::NEG_INFINITY, |fit| fit.ln);
+            let before = best.as_ref().map(|fit| fit.ln);
             sizes = evidence.sizes;
-            if ln > before {
-                let mut standing = standing.clone();
-                standing.modelled = point.modelled.clone();
-                best = Some(ModalFit {
+            if promised < STILL || round + 1 == ROUNDS && best.is_none() {
+                let fit = ModalFit {
                     hypothesis: point.hypothesis.clone(),
                     priors: priors.clone(),
-                    standing,
+                    standing: Standing { modelled: point.modelled.clone(), ..standing.clone() },
                     linear,
                     evidence,
-                    slopes: derivatives.clone().unwrap_or_default(),
+                    slopes: derivatives.clone(),
                     residual: point.residual.clone(),
                     ln,
-                });
+                };
+                best = Some(fit).filter(|_| before.is_none_or(|before| ln > before)).or(best);
             }
-            if round > 0 && ln - before < CONVERGED {
+            if before.is_some_and(|before| ln - before < CONVERGED) {
                 // Modes may have moved past others on the way, and shapes with them.
                 let anew = self.standing(&point.hypothesis)?;
                 if round + 1 == ROUNDS || anew.pairing.pairs == standing.pairing.pairs {
@@ -202,10 +209,17 @@ impl<'a> Problem<'a> {
                 }
                 point.residual = self.residual(&anew, &anew.modelled);
                 point.modelled = anew.modelled.clone();
-                (standing, derivatives, best) = (anew, None, None);
+                derivatives = self.slopes_at(&point, &anew, &priors)?;
+                (standing, best) = (anew, None);
             }
         }
         best
+    }
+
+    /// [`Problem::slopes`] by all coordinates.
+    fn slopes_at(&self, point: &Iterate, standing: &Standing, priors: &[Prior]) -> Option<Vec<Vec<f64>>> {
+        let all = 0..point.hypothesis.coordinates.len();
+        self.slopes(&point.hypothesis, standing, &point.modelled, &point.residual, priors, all)
     }
 
     /// The linear model at a point and its evidence. Of a coordinate that stopped at its bound the linear model knows no bound: a spring that would be negative does
@@ -320,15 +334,7 @@ impl LeastSquares for Descent<'_> {
     }
 
     fn derivatives(&self, point: &Iterate, _: Precision) -> Option<Vec<Vec<f64>>> {
-        let all = 0..point.hypothesis.coordinates.len();
-        self.problem.slopes(
-            &point.hypothesis,
-            self.standing,
-            &point.modelled,
-            &point.residual,
-            self.priors,
-            all,
-        )
+        self.problem.slopes_at(point, self.standing, self.priors)
     }
 
     fn equations(&self, point: &Iterate, slopes: &Vec<Vec<f64>>, _: &()) -> NormalEquations {
