@@ -35,7 +35,8 @@ pub struct Tolerance {
 /// Relative deviation up to which a quantity moves by its logarithm.
 const NARROW: f64 = 0.12;
 
-/// Standard deviation of a quantity that is wrong, in stated ones: a slip of the calliper or the scales is many of them, a hundred is none.
+/// Least standard deviation of a quantity that is wrong, in stated ones: a slip of the calliper or the scales is many of them. One that sets out farther, as a wrong sign
+/// or decimal point asks for, may lie anywhere that far: a narrower expectation would bend the rest of the fixture to bring it back.
 const WRONG: f64 = 10.0;
 
 impl Tolerance {
@@ -147,7 +148,9 @@ impl Hypothesis {
             _ => None,
         };
         let wrong = wrong.map_or(Parameter::new(Transform::Fixed), |tolerance| tolerance.parameter);
-        let parameters = parameters_of(&self.fixture, &effect, wrong.with_precision(WRONG.powi(-2)));
+        let sets_out = effect.parameters.first().and_then(|value| wrong.transform.coordinate(value.value));
+        let expected = sets_out.map_or(WRONG, |at| WRONG.max(at.abs()));
+        let parameters = parameters_of(&self.fixture, &effect, wrong.with_precision(expected.powi(-2)));
         for (parameter, quantity) in parameters.iter().zip(&effect.parameters) {
             more.coordinates.extend(parameter.transform.coordinate(quantity.value));
         }

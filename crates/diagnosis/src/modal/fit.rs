@@ -149,21 +149,34 @@ impl<'a> Problem<'a> {
         .collect()
     }
 
-    /// The most probable parameters from where `start` stands, and the sizes of the error there.
-    pub fn fitted(&self, start: &Hypothesis, priors: Vec<Prior>) -> Option<ModalFit> {
-        self.fitted_from(start, self.standing(start)?, priors, None)
+    /// The most probable parameters from where `start` stands, and the sizes of the error there: from the usual sizes, and from those that the start asks for. What is far
+    /// from the recording may have an end for small errors and another for large ones.
+    pub fn fitted(&self, start: &Hypothesis, priors: &[Prior]) -> Option<ModalFit> {
+        let standing = self.standing(start)?;
+        let from = |sizes| self.fitted_with(start, standing.clone(), priors.to_vec(), (None, sizes));
+        let fits = [from(Some(*self.sizes)), from(None)];
+        fits.into_iter().flatten().reduce(|best, fit| if fit.ln > best.ln { fit } else { best })
     }
 
-    /// [`Problem::fitted`] from where `start` is known to stand, with derivatives known from nearby where there are any.
-    ///
-    /// Sizes of the error and parameters are taken in turn, the sizes first: a fit that begins with errors too small follows whatever features are recorded most
-    /// sharply, and its errors then grow to suit it.
+    /// The same from where `start` is known to stand, with derivatives known from nearby where there are any, and from the sizes that the start asks for.
     pub fn fitted_from(
+        &self,
+        start: &Hypothesis,
+        standing: Standing,
+        priors: Vec<Prior>,
+        nearby: Option<Vec<Vec<f64>>>,
+    ) -> Option<ModalFit> {
+        self.fitted_with(start, standing, priors, (nearby, None))
+    }
+
+    /// Sizes of the error and parameters are taken in turn, the sizes first, unless they are given: a fit that begins with errors too small follows whatever features
+    /// are recorded most sharply, and its errors then grow to suit it.
+    fn fitted_with(
         &self,
         start: &Hypothesis,
         mut standing: Standing,
         priors: Vec<Prior>,
-        nearby: Option<Vec<Vec<f64>>>,
+        (nearby, sizes): (Option<Vec<Vec<f64>>>, Option<ErrorSizes>),
     ) -> Option<ModalFit> {
         let residual = self.residual(&standing, &standing.modelled);
         let nearby = nearby.filter(|slopes| slopes.iter().all(|slope| slope.len() == residual.len()));
@@ -173,7 +186,10 @@ impl<'a> Problem<'a> {
             None => self.slopes_at(&point, &standing, &priors)?,
         };
         let rarity: f64 = start.effects().iter().map(|effect| effect.kind.spec().rarity).sum();
-        let mut sizes = self.evidence(&point, &priors, &derivatives, (&standing.comparison, None))?.1.sizes;
+        let mut sizes = match sizes {
+            Some(sizes) => sizes,
+            None => self.evidence(&point, &priors, &derivatives, (&standing.comparison, None))?.1.sizes,
+        };
         let mut best: Option<ModalFit> = None;
         for round in 0..ROUNDS {
             let factor = Cholesky::of(standing.comparison.count(), &standing.comparison.covariance(&sizes))?;

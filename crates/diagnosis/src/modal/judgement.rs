@@ -98,7 +98,7 @@ impl ModalJudgement {
         let before = Features::of(baseline, nominal, &settings.modal)?;
         let problem = before.problem(observation.work());
         watch.stage("calibrating the fixture on the baseline");
-        let calibrated = problem.fitted(nominal, priors(nominal, &[]))?;
+        let calibrated = problem.fitted(nominal, &priors(nominal, &[]))?;
         let before_error = problem.error(&calibrated, settings.modal.adequate.0);
         watch.stage("fitting the modes of the recording");
         let now = recorded(observation, &calibrated.hypothesis, &settings.modal)?;

@@ -50,7 +50,7 @@ fn least_needed(
     let ln = |hypothesis: &Hypothesis| {
         let named = |effect: &Effect| candidates.iter().find(|candidate| candidate.names(effect));
         let company: Option<Vec<&Candidate>> = hypothesis.effects().iter().map(named).collect();
-        Some(problem.fitted(hypothesis, priors(hypothesis, &company?))?.ln)
+        Some(problem.fitted(hypothesis, &priors(hypothesis, &company?))?.ln)
     };
     let with = ln(hypothesis)?;
     let gain = |index: usize| Some((index, with - ln(&hypothesis.without(index))?));

@@ -109,7 +109,7 @@ impl Searcher<'_> {
     /// The fixture by itself; `None` where it has no modes that could be compared.
     pub fn fixture_alone(&self) -> Option<ModalFit> {
         self.watch.stage("fitting the fixture to the modes");
-        self.problem.fitted(self.nominal, self.priors(self.nominal, &[]))
+        self.problem.fitted(self.nominal, &self.priors(self.nominal, &[]))
     }
 
     /// Searches for effects beside the fixture `alone`.
@@ -178,7 +178,7 @@ impl Searcher<'_> {
     /// The fixture by itself from where the best effects left its quantities too: what gains much at a size of nothing has only led out of a false minimum.
     fn at_its_best(&self, none: Named, singles: &[Named]) -> Named {
         let priors = self.priors(self.nominal, &[]);
-        let without = |named: &Named| self.problem.fitted(&named.fit.hypothesis.without(0), priors.clone());
+        let without = |named: &Named| self.problem.fitted(&named.fit.hypothesis.without(0), &priors);
         let fits = singles.iter().take(self.settings.bases.0).filter_map(without);
         match fits.max_by(|a, b| a.ln.total_cmp(&b.ln)).filter(|fit| fit.ln > none.fit.ln) {
             Some(fit) => Named { exact: self.is_exact(&fit), fit, ..none },
@@ -228,7 +228,7 @@ impl Searcher<'_> {
                 names.remove(index);
                 let hypothesis = best.fit.hypothesis.without(index);
                 let company: Vec<&Candidate> = names.iter().map(|&c| &self.candidates[c]).collect();
-                let fit = self.problem.fitted(&hypothesis, self.priors(&hypothesis, &company));
+                let fit = self.problem.fitted(&hypothesis, &self.priors(&hypothesis, &company));
                 match fit.map(|fit| Named { names, exact: self.is_exact(&fit), fit }) {
                     Some(base) => (self.extended(&base, self.settings.refined.1, 1).0, base.fit.ln),
                     None => (Vec::new(), f64::NEG_INFINITY),

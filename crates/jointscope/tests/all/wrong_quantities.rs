@@ -7,22 +7,27 @@ use jointscope::fixture::{Effect, EffectKind, Place};
 use jointscope::{Fixture, FrfPair, FrfSet, SpectralLines};
 use serde_json::json;
 
-/// What is believed of two blocks, and a recording of blocks with other values at these places of the file.
-fn wrong(values: &[(&str, f64)], seed: u64) -> (Fixture, FrfSet) {
-    let believed = believed(common::RATIOS);
-    let mut truth = believed.to_value();
+/// What is believed of two blocks, with other values at these places of the file.
+fn with(values: &[(&str, f64)]) -> Fixture {
+    let mut file = believed(common::RATIOS).to_value();
     for (path, value) in values {
-        truth.pointer_mut(path).unwrap()["value"] = json!(value);
+        file.pointer_mut(path).unwrap()["value"] = json!(value);
     }
-    let truth = Fixture::from_value(&truth).unwrap();
-    let frfs = measured(&truth, Vec::new(), (&four_pairs(), &lines()), &hammer(seed));
-    (believed, frfs)
+    Fixture::from_value(&file).unwrap()
 }
 
-/// Diagnoses, and expects these quantities to be called wrong, and nothing else.
+fn recording_of(truth: &Fixture, seed: u64) -> FrfSet {
+    measured(truth, Vec::new(), (&four_pairs(), &lines()), &hammer(seed))
+}
+
+/// What is believed of two blocks, and a recording of blocks with other values at these places of the file.
+fn wrong(values: &[(&str, f64)], seed: u64) -> (Fixture, FrfSet) {
+    (believed(common::RATIOS), recording_of(&with(values), seed))
+}
+
+/// Diagnoses, and expects these quantities to be called wrong, their true values found, and nothing else.
 #[track_caller]
-fn called_wrong(values: &[(&str, f64)], seed: u64) {
-    let (fixture, frfs) = wrong(values, seed);
+fn called_wrong((fixture, frfs): (Fixture, FrfSet), values: &[(&str, f64)]) {
     let diagnosis = Diagnosis::of(&fixture, &frfs, &DiagnosisOptions::default()).unwrap();
     let said = told(&diagnosis);
     assert_eq!((diagnosis.verdict, diagnosis.findings.len()), (Verdict::Explained, values.len()), "{said}");
@@ -44,12 +49,22 @@ fn called_wrong(values: &[(&str, f64)], seed: u64) {
 
 #[test]
 fn a_centre_of_gravity_that_is_elsewhere_is_called_wrong_and_is_no_pair_of_masses() {
-    called_wrong(&[("/bodies/A/x_cg", -0.0325)], 3);
+    let values = [("/bodies/A/x_cg", -0.0325)];
+    called_wrong(wrong(&values, 3), &values);
+}
+
+#[test]
+fn a_wrong_sign_or_decimal_point_is_called_wrong_and_bends_nothing_else() {
+    for (path, stated, truth) in [("/bodies/A/x_cg", 0.030, -0.030), ("/bodies/A/inertia", 9.5e-3, 9.5e-4)] {
+        let frfs = recording_of(&with(&[(path, truth)]), 7);
+        called_wrong((with(&[(path, stated)]), frfs), &[(path, truth)]);
+    }
 }
 
 #[test]
 fn damping_that_is_far_from_what_is_stated_is_called_wrong() {
-    called_wrong(&[("/damping/modal_ratios/0", 0.02), ("/damping/modal_ratios/1", 0.028)], 4);
+    let values = [("/damping/modal_ratios/0", 0.02), ("/damping/modal_ratios/1", 0.028)];
+    called_wrong(wrong(&values, 4), &values);
 }
 
 /// Three storeys on their columns, which a mass of the first one is wrong of, or on which something stands.
