@@ -13,6 +13,28 @@ use jointscope_spectra::{FrfSet, SpectralLines};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 
+/// What a mode of a model counts as beside a recording. A mode that is followed keeps it: where it crosses an end of the band on the way, its features go on smoothly.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Part {
+    /// Beyond the band's ends: what it adds is of the residual terms, as the recording's fit would have it.
+    Beyond,
+    /// In the band, too low to be told from a mass line: it is a part of that, on both sides.
+    Unresolved,
+    /// In the band.
+    Within,
+}
+
+impl Part {
+    fn of(recorded: &RecordedModes, pole: &Complex64) -> Self {
+        let hz = pole.norm() / TAU;
+        match (hz >= recorded.band.0 && hz <= recorded.band.1, hz <= recorded.resolved_from) {
+            (false, _) => Part::Beyond,
+            (true, true) => Part::Unresolved,
+            (true, false) => Part::Within,
+        }
+    }
+}
+
 /// One mode of a model.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ModelledMode {
@@ -27,6 +49,8 @@ pub struct ModelledMode {
 pub struct ModelledModes {
     /// The modes in and near the band, ascending.
     pub modes: Vec<ModelledMode>,
+    /// What each of them counts as.
+    parts: Vec<Part>,
     /// Real parts of mass line and upper residual of each FRF.
     pub(crate) residual_terms: Vec<[f64; 2]>,
     /// What a free fit with the recording's poles adds to the residue of each of them, FRF by FRF, as the residual terms cannot write all that
@@ -191,45 +215,59 @@ impl ModelledModes {
     /// A mode that makes no peak in any FRF between the recording's channels is found only where the recording has one nearby.
     pub fn of(fixture: &Fixture, recorded: &RecordedModes) -> Option<Self> {
         let test = recorded.modelled(fixture)?;
-        ModelledModes::followed(&test, recorded, &poles(&test, fixture, recorded))
+        let poles = poles(&test, fixture, recorded);
+        let parts = poles.iter().map(|pole| Part::of(recorded, pole)).collect();
+        ModelledModes::followed(&test, recorded, &poles, parts)
     }
 
-    /// The modes of a fixture near `poles`, rad/s; `None` where a pole cannot be followed or the model has no finite FRFs.
-    pub fn near(fixture: &Fixture, recorded: &RecordedModes, poles: &[Complex64]) -> Option<Self> {
-        ModelledModes::followed(&recorded.modelled(fixture)?, recorded, poles)
+    /// The modes of a fixture near those of another one, as which they count; `None` where a pole cannot be followed or the model has no finite FRFs.
+    pub fn near(fixture: &Fixture, recorded: &RecordedModes, other: &ModelledModes) -> Option<Self> {
+        ModelledModes::followed(&recorded.modelled(fixture)?, recorded, &other.poles(), other.parts.clone())
     }
 
-    fn followed(test: &ModelledTest, recorded: &RecordedModes, poles: &[Complex64]) -> Option<Self> {
+    fn followed(
+        test: &ModelledTest,
+        recorded: &RecordedModes,
+        poles: &[Complex64],
+        parts: Vec<Part>,
+    ) -> Option<Self> {
         let mut frfs = test.continued();
         let modes: Vec<ModelledMode> =
             poles.iter().map(|pole| mode(&mut frfs, *pole, recorded.frfs())).collect::<Option<_>>()?;
         let lines = &recorded.outline.lines;
         let mut left = test.accelerances(lines).ok()?;
-        let (low, high) = (TAU * recorded.band.0, TAU * recorded.band.1);
-        // What modes just outside the band add is of the residual terms, unless the recording's own fit had a pole there.
-        let inside = |mode: &&ModelledMode| mode.pole.omega >= low && mode.pole.omega <= high;
+        let of = |wanted: fn(Part) -> bool| {
+            modes.iter().zip(&parts).filter(move |(_, part)| wanted(**part)).map(|(mode, _)| mode)
+        };
         let recorded_poles = recorded.outline.poles;
         let mut residual_terms = Vec::with_capacity(recorded.frfs());
         let mut leaks = Vec::with_capacity(recorded.frfs());
         for (frf, values) in left.chunks_exact_mut(lines.len()).enumerate() {
             for (value, omega) in values.iter_mut().zip(lines.omegas()) {
                 let s = Complex64::new(0.0, omega);
-                let modal =
-                    modes.iter().filter(inside).map(|mode| mode.pole.accelerance(s) * mode.residues[frf]);
-                *value -= modal.sum::<Complex64>();
+                let modal = of(|part| part != Part::Beyond);
+                *value -= modal.map(|mode| mode.pole.accelerance(s) * mode.residues[frf]).sum::<Complex64>();
             }
             let coefficients = recorded.outline.projections[frf].coefficients(values);
             let term = |k: usize| coefficients[recorded_poles + k].re;
-            // Modes too low to be told from a mass line are a part of it, on both sides.
-            let low =
-                modes.iter().filter(inside).filter(|mode| mode.pole.omega <= TAU * recorded.resolved_from);
-            let low: f64 = low.map(|mode| mode.residues[frf].re).sum();
+            let low: f64 = of(|part| part == Part::Unresolved).map(|mode| mode.residues[frf].re).sum();
             let unresolved = recorded.modes.iter().zip(&coefficients).filter(|(mode, _)| !mode.resolved);
             let leaked: f64 = unresolved.map(|(_, leak)| leak.re).sum();
             residual_terms.push([term(MASS_LINE) + low + leaked, term(UPPER)]);
             leaks.push(coefficients[..recorded.outline.inside].to_vec());
         }
-        Some(ModelledModes { modes, residual_terms, leaks })
+        Some(ModelledModes { modes, parts, residual_terms, leaks })
+    }
+
+    /// Whether both count their modes as the same.
+    pub fn counts_like(&self, other: &ModelledModes) -> bool {
+        self.parts == other.parts
+    }
+
+    /// The same with all natural frequencies higher by this share, to set out from where exactly at a pole FRFs have no value.
+    pub fn beside(mut self, share: f64) -> Self {
+        self.modes.iter_mut().for_each(|mode| mode.pole.omega *= 1.0 + share);
+        self
     }
 
     /// The poles, rad/s.

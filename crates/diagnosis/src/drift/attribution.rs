@@ -127,13 +127,13 @@ fn candidates(model: &Fixture, recorded: &RecordedModes, told: &[usize]) -> Vec<
     let partner = |r: &usize| pairing.pairs.iter().find(|(own, _)| own == r).map(|(_, m)| *m);
     let Some(partners) = told.iter().map(partner).collect::<Option<Vec<usize>>>() else { return Vec::new() };
     // Exactly at a pole of the unchanged model its FRFs have no value to set out from.
-    let poles: Vec<_> = modelled.poles().into_iter().map(|pole| pole * (1.0 + BESIDE)).collect();
+    let beside = modelled.beside(BESIDE);
     let ln_omega = |places: &[Place], by: f64| -> Option<Vec<f64>> {
         let mut physics = model.physics().to_vec();
         let change =
             |place: &Place| Effect::new(EffectKind::StiffnessChange, place.clone(), None, &[by.exp()]);
         physics.extend(places.iter().map(change));
-        let changed = ModelledModes::near(&model.clone().with_physics(physics).ok()?, recorded, &poles)?;
+        let changed = ModelledModes::near(&model.clone().with_physics(physics).ok()?, recorded, &beside)?;
         Some(partners.iter().map(|&m| changed.modes[m].pole.omega.ln()).collect())
     };
     let shares = |places: &[Place]| -> Option<Vec<f64>> {

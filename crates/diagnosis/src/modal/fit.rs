@@ -47,14 +47,26 @@ pub(crate) struct ModalFit {
     pub ln: f64,
 }
 
+/// The sizes of error that a fit sets out with. One that begins with errors too small follows whatever features are recorded most sharply, and its errors then grow
+/// to suit it; one that begins with large ones may rest content with them.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum SetOut {
+    /// The usual ones.
+    Usual,
+    /// These, and where the fit ends with larger ones also those that the start asks for; the more probable end counts.
+    Both,
+}
+
 /// Values of an FRF that the search for a model's poles, and following known ones, cost about.
 const SEARCHED: usize = 1000;
 const FOLLOWED: usize = 300;
 /// Step of differences, in prior standard deviations and at most in coordinates.
 const DIFFERENCE: (f64, f64) = (1e-3, 2e-3);
 /// Fits at sizes of the error that are taken anew after each, at most, and the gain in ln p at which that ends.
-const ROUNDS: usize = 4;
+const ROUNDS: usize = 8;
 const CONVERGED: f64 = 0.02;
+/// Factor by which a size may shrink from one round to the next: where errors are next to none, a fit that starts far away hangs on whatever is recorded most sharply.
+const SHRINK: f64 = 0.1;
 /// Decrease of χ² that a step promises below which a fit stands where it belongs.
 const STILL: f64 = 1.0;
 /// Gauss–Newton steps, at most.
@@ -119,7 +131,7 @@ impl<'a> Problem<'a> {
     fn modelled(&self, hypothesis: &Hypothesis, near: &ModelledModes) -> Option<ModelledModes> {
         let fixture = hypothesis.to_fixture().ok()?;
         self.work.count(FOLLOWED * self.recorded.frfs());
-        ModelledModes::near(&fixture, self.recorded, &near.poles())
+        ModelledModes::near(&fixture, self.recorded, near)
     }
 
     /// Recorded less modelled features, of the modes that are paired.
@@ -149,33 +161,38 @@ impl<'a> Problem<'a> {
         .collect()
     }
 
-    /// The most probable parameters from where `start` stands, and the sizes of the error there: from the usual sizes, and from those that the start asks for. What is far
-    /// from the recording may have an end for small errors and another for large ones.
+    /// The most probable parameters from where `start` stands, and the sizes of the error there.
     pub fn fitted(&self, start: &Hypothesis, priors: &[Prior]) -> Option<ModalFit> {
-        let standing = self.standing(start)?;
-        let from = |sizes| self.fitted_with(start, standing.clone(), priors.to_vec(), (None, sizes));
-        let fits = [from(Some(*self.sizes)), from(None)];
-        fits.into_iter().flatten().reduce(|best, fit| if fit.ln > best.ln { fit } else { best })
+        self.fitted_from(start, self.standing(start)?, priors, (None, SetOut::Both))
     }
 
-    /// The same from where `start` is known to stand, with derivatives known from nearby where there are any, and from the sizes that the start asks for.
+    /// [`Problem::fitted`] from where `start` is known to stand, with derivatives known from nearby where there are any.
     pub fn fitted_from(
         &self,
         start: &Hypothesis,
         standing: Standing,
-        priors: Vec<Prior>,
-        nearby: Option<Vec<Vec<f64>>>,
+        priors: &[Prior],
+        (nearby, set_out): (Option<Vec<Vec<f64>>>, SetOut),
     ) -> Option<ModalFit> {
-        self.fitted_with(start, standing, priors, (nearby, None))
+        let from = |sizes| self.fitted_with(start, standing.clone(), priors, (nearby.clone(), sizes));
+        let usual = from(Some(*self.sizes));
+        if set_out == SetOut::Usual || usual.as_ref().is_some_and(|fit| self.is_usual(&fit.evidence.sizes)) {
+            return usual;
+        }
+        more_probable(usual, from(None))
     }
 
-    /// Sizes of the error and parameters are taken in turn, the sizes first, unless they are given: a fit that begins with errors too small follows whatever features
-    /// are recorded most sharply, and its errors then grow to suit it.
+    /// Whether no error is larger than the usual one.
+    fn is_usual(&self, sizes: &ErrorSizes) -> bool {
+        sizes.to_array().iter().zip(self.sizes.to_array()).all(|(size, usual)| *size <= usual)
+    }
+
+    /// Sizes of the error and parameters taken in turn, from these sizes, or from those that the start asks for and the usual ones at least.
     fn fitted_with(
         &self,
         start: &Hypothesis,
         mut standing: Standing,
-        priors: Vec<Prior>,
+        priors: &[Prior],
         (nearby, sizes): (Option<Vec<Vec<f64>>>, Option<ErrorSizes>),
     ) -> Option<ModalFit> {
         let residual = self.residual(&standing, &standing.modelled);
@@ -183,31 +200,36 @@ impl<'a> Problem<'a> {
         let mut point = Iterate { hypothesis: start.clone(), modelled: standing.modelled.clone(), residual };
         let mut derivatives = match nearby {
             Some(nearby) => nearby,
-            None => self.slopes_at(&point, &standing, &priors)?,
+            None => self.slopes_at(&point, &standing, priors)?,
         };
         let rarity: f64 = start.effects().iter().map(|effect| effect.kind.spec().rarity).sum();
         let mut sizes = match sizes {
             Some(sizes) => sizes,
-            None => self.evidence(&point, &priors, &derivatives, (&standing.comparison, None))?.1.sizes,
+            None => {
+                let (_, asked) = self.evidence(&point, priors, &derivatives, (&standing.comparison, None))?;
+                largest(&asked.sizes, self.sizes)
+            }
         };
-        let mut best: Option<ModalFit> = None;
+        let (mut best, mut otherwise): (Option<ModalFit>, Option<ModalFit>) = (None, None);
         for round in 0..ROUNDS {
             let factor = Cholesky::of(standing.comparison.count(), &standing.comparison.covariance(&sizes))?;
-            let descent = Descent { problem: self, standing: &standing, factor, priors: &priors };
+            let descent = Descent { problem: self, standing: &standing, factor, priors };
             point = descend(&descent, point, Some(derivatives), &settings())?.point;
             // The evidence of a linear model is by derivatives taken where the fit ended.
             derivatives = descent.derivatives(&point, Precision::Rough)?;
             let (linear, evidence) =
-                self.evidence(&point, &priors, &derivatives, (&standing.comparison, Some(&sizes)))?;
+                self.evidence(&point, priors, &derivatives, (&standing.comparison, Some(&sizes)))?;
             // It says nothing of a point from where the parameters are still to move.
             let promised = descent.promised(&point, &descent.equations(&point, &derivatives, &()));
             let ln = evidence.ln + standing.pairing.alone() - rarity;
             let before = best.as_ref().map(|fit| fit.ln);
-            sizes = evidence.sizes;
+            let next = largest(&evidence.sizes, &sizes.times(SHRINK));
+            let settled = next == evidence.sizes;
+            sizes = next;
             if promised < STILL || round + 1 == ROUNDS && best.is_none() {
                 let fit = ModalFit {
                     hypothesis: point.hypothesis.clone(),
-                    priors: priors.clone(),
+                    priors: priors.to_vec(),
                     standing: Standing { modelled: point.modelled.clone(), ..standing.clone() },
                     linear,
                     evidence,
@@ -217,19 +239,21 @@ impl<'a> Problem<'a> {
                 };
                 best = Some(fit).filter(|_| before.is_none_or(|before| ln > before)).or(best);
             }
-            if before.is_some_and(|before| ln - before < CONVERGED) {
+            if settled && before.is_some_and(|before| ln - before < CONVERGED) {
                 // Modes may have moved past others on the way, and shapes with them.
                 let anew = self.standing(&point.hypothesis)?;
-                if round + 1 == ROUNDS || anew.pairing.pairs == standing.pairing.pairs {
+                let alike = anew.pairing.pairs == standing.pairing.pairs;
+                if round + 1 == ROUNDS || alike && anew.modelled.counts_like(&standing.modelled) {
                     break;
                 }
                 point.residual = self.residual(&anew, &anew.modelled);
                 point.modelled = anew.modelled.clone();
-                derivatives = self.slopes_at(&point, &anew, &priors)?;
-                (standing, best) = (anew, None);
+                derivatives = self.slopes_at(&point, &anew, priors)?;
+                otherwise = more_probable(otherwise, best.take());
+                standing = anew;
             }
         }
-        best
+        more_probable(otherwise, best)
     }
 
     /// [`Problem::slopes`] by all coordinates.
@@ -284,6 +308,17 @@ impl<'a> Problem<'a> {
         let inverse = Cholesky::of(order, &equations.information).map(|factor| factor.inverse());
         Some((point.hypothesis, inverse.map(|entries| Covariance::new(order, entries))))
     }
+}
+
+/// The more probable of two fits, as far as there are any.
+fn more_probable(a: Option<ModalFit>, b: Option<ModalFit>) -> Option<ModalFit> {
+    a.into_iter().chain(b).reduce(|best, fit| if fit.ln > best.ln { fit } else { best })
+}
+
+/// Size by size the larger one.
+fn largest(a: &ErrorSizes, b: &ErrorSizes) -> ErrorSizes {
+    let (a, b) = (a.to_array(), b.to_array());
+    ErrorSizes::from_array(std::array::from_fn(|kind| a[kind].max(b[kind])))
 }
 
 fn settings() -> Settings {

@@ -1,7 +1,7 @@
 //! Which effects the recorded modes need: every candidate fitted to them, alone and beside others.
 
 use crate::catalogue::Candidate;
-use crate::modal::fit::{ModalFit, Problem, Standing, linear};
+use crate::modal::fit::{ModalFit, Problem, SetOut, Standing, linear};
 use crate::modal::prior::{Prior, priors};
 use crate::settings::ModalSettings;
 use crate::{Hypothesis, Watch};
@@ -303,7 +303,7 @@ impl Searcher<'_> {
     /// lie too far below the best of these to be fitted.
     fn extended(&self, base: &Named, refined: usize, each: usize) -> (Vec<Named>, Vec<usize>) {
         if let Some(known) = self.known {
-            return (self.fitted(base, self.starts_at(base, known)), Vec::new());
+            return (self.fitted(base, self.starts_at(base, known), SetOut::Both), Vec::new());
         }
         // What resonates makes a mode more: where every mode has its partner, nothing of the kind is there.
         let partners = base.fit.standing.pairing.alone() == 0.0;
@@ -349,13 +349,13 @@ impl Searcher<'_> {
         let (first, far) = self.settings.foremost;
         let rest = chosen.split_off(first.min(chosen.len()));
         let start = |(_, c, hypothesis)| (c, hypothesis);
-        let mut fits = self.fitted(base, chosen.into_iter().map(start).collect());
+        let mut fits = self.fitted(base, chosen.into_iter().map(start).collect(), SetOut::Both);
         // Only what explains the modes shows that others need not be fitted; where fits are cheap they all are, for some may lead the fixture itself out of a false minimum.
         let is_costly = self.problem.work.spent() > self.settings.costly;
         let best = fits.first().filter(|best| is_costly && self.is_adequate(&best.fit));
         let best = best.map_or(f64::NEG_INFINITY, |best| best.fit.ln);
         let near = rest.into_iter().filter(|(density, _, _)| best - density < far).map(start).collect();
-        fits.extend(self.fitted(base, near));
+        fits.extend(self.fitted(base, near, SetOut::Usual));
         let fits = best_of_each(fits);
         let unfitted = |c: &usize| fits.iter().all(|named| named.names.last() != Some(c));
         let below = densities.into_iter().filter(|(_, density)| best - density >= far).map(|(c, _)| c);
@@ -388,7 +388,7 @@ impl Searcher<'_> {
     }
 
     /// Fits from starts with one effect more than `base`, the best of each candidate, the most probable first.
-    fn fitted(&self, base: &Named, starts: Vec<(usize, Hypothesis)>) -> Vec<Named> {
+    fn fitted(&self, base: &Named, starts: Vec<(usize, Hypothesis)>, set_out: SetOut) -> Vec<Named> {
         let tried = self.watch.count(starts.len());
         let fit = |(c, hypothesis): (usize, Hypothesis)| {
             tried.trying(&self.candidates[c]);
@@ -397,7 +397,7 @@ impl Searcher<'_> {
             let standing = self.problem.standing(&hypothesis)?;
             let nearby = self.nearby(&hypothesis, &standing, &base.fit);
             let priors = self.priors(&hypothesis, &company);
-            let fit = self.problem.fitted_from(&hypothesis, standing, priors, nearby)?;
+            let fit = self.problem.fitted_from(&hypothesis, standing, &priors, (nearby, set_out))?;
             Some(Named { names, exact: self.is_exact(&fit), fit })
         };
         best_of_each(self.problem.work.each(starts, STARTS, fit))
