@@ -195,3 +195,31 @@ proptest! {
         prop_assert_eq!(ErrorSizes::from_array(sizes).to_array(), sizes);
     }
 }
+
+#[test]
+fn features_go_on_smoothly_where_a_suspension_crosses_the_lowest_line() {
+    let pairs = pairs(&[("1", "1"), ("2", "1"), ("2", "2")]);
+    let lowest = 5.0 * (TAU * 20.0).powi(2);
+    let on = |stiffness: f64| {
+        two_masses(
+            0.01,
+            &format!(
+                r#"{{"kind": "support", "place": "A", "x": 0, "stiffness": {stiffness}, "damping": 20}}"#
+            ),
+        )
+    };
+    let recorded = || Recorded::of(&on(lowest), &pairs, &lines(600.0), noise(None)).modes();
+    // A hair below the lowest line, and from there to either side.
+    let at = 0.99999 * lowest;
+    let mut compared = Compared::of(&on(at), recorded());
+    let (here, found) = (compared.model(), compared.modelled.clone());
+    let mut features = |factor: f64| {
+        compared.modelled = ModelledModes::near(&on(factor * at), &compared.recorded, &found).unwrap();
+        compared.model()
+    };
+    let (above, below) = (features(1.0001), features(0.9999));
+    let size = |values: &mut dyn Iterator<Item = f64>| values.map(|v| v * v).sum::<f64>().sqrt();
+    let change = size(&mut above.iter().zip(&below).map(|(a, b)| a - b));
+    let bend = size(&mut above.iter().zip(&below).zip(&here).map(|((a, b), h)| a + b - 2.0 * h));
+    assert!(change > 1e-6 && bend < 0.02 * change, "change {change}, of which {bend} is no straight line");
+}
