@@ -187,7 +187,7 @@ impl<'a> Problem<'a> {
         sizes.to_array().iter().zip(self.sizes.to_array()).all(|(size, usual)| *size <= usual)
     }
 
-    /// Sizes of the error and parameters taken in turn, from these sizes, or from those that the start asks for and the usual ones at least.
+    /// Sizes of the error and parameters taken in turn, from these sizes, or from those that the start asks for.
     fn fitted_with(
         &self,
         start: &Hypothesis,
@@ -205,10 +205,7 @@ impl<'a> Problem<'a> {
         let rarity: f64 = start.effects().iter().map(|effect| effect.kind.spec().rarity).sum();
         let mut sizes = match sizes {
             Some(sizes) => sizes,
-            None => {
-                let (_, asked) = self.evidence(&point, priors, &derivatives, (&standing.comparison, None))?;
-                largest(&asked.sizes, self.sizes)
-            }
+            None => self.evidence(&point, priors, &derivatives, (&standing.comparison, None))?.1.sizes,
         };
         let (mut best, mut otherwise): (Option<ModalFit>, Option<ModalFit>) = (None, None);
         for round in 0..ROUNDS {
