@@ -1,5 +1,6 @@
 //! The commands of the program, each with its arguments in a file of its own.
 
+mod check;
 mod compare;
 mod decompose;
 mod diagnose;
@@ -26,6 +27,8 @@ pub struct Program {
 
 #[derive(Debug, Subcommand)]
 enum Command {
+    /// What a fixture weighs, its modes, what every number of it means, and what is odd in each channel of its recordings: check.json and report.html.
+    Check(check::CheckArguments),
     /// FRFs of an assembly, computed from its fixture file, its effects included.
     Synthesize(synthesize::SynthesizeArguments),
     /// FRFs with coherence from hammer hits: time histories of force and responses.
@@ -54,6 +57,7 @@ impl Program {
     /// Runs the command; what it has done is told on standard output.
     pub fn run(&self) -> Result<String, Refusal> {
         match &self.command {
+            Command::Check(arguments) => check::run(arguments),
             Command::Synthesize(arguments) => synthesize::run(arguments),
             Command::Estimate(arguments) => estimate::run(arguments),
             Command::Decompose(arguments) => decompose::run(arguments),

@@ -18,6 +18,13 @@ pub struct RecordingArguments {
     /// The recordings (UFF, UNV): all files of one test, in any order.
     #[arg(required = true, value_name = "F.uff")]
     pub files: Vec<PathBuf>,
+    #[command(flatten)]
+    pub reading: ReadingArguments,
+}
+
+/// What the analyst says of recordings where the files do not.
+#[derive(Debug, Clone, Default, Args)]
+pub struct ReadingArguments {
     /// Which channel of the files is which of the fixture, such as 101:+z=1:+y.
     #[arg(long, value_name = "NODE:DIR=POINT:DIR", value_parser = map_entry, num_args = 1..)]
     pub map: Vec<String>,
@@ -35,24 +42,14 @@ pub struct RecordingArguments {
 impl RecordingArguments {
     /// Files that say all that there is to know of them.
     pub fn plain(files: Vec<PathBuf>) -> Self {
-        RecordingArguments {
-            files,
-            map: Vec::new(),
-            assume_units: None,
-            averages: None,
-            ignore_coherence: false,
-        }
+        RecordingArguments { files, reading: ReadingArguments::default() }
     }
 
     /// The arguments as options of the reading.
     pub fn options(&self) -> Result<ReadOptions, Refusal> {
-        let map = ChannelMap::parse(&self.map).map_err(Refusal::new)?;
-        Ok(ReadOptions {
-            map,
-            assume_units: self.assume_units.clone(),
-            averages: self.averages,
-            ignore_coherence: self.ignore_coherence,
-        })
+        let ReadingArguments { map, assume_units, averages, ignore_coherence } = self.reading.clone();
+        let map = ChannelMap::parse(&map).map_err(Refusal::new)?;
+        Ok(ReadOptions { map, assume_units, averages, ignore_coherence })
     }
 
     /// Other files, read alike.
@@ -163,10 +160,10 @@ mod tests {
         fn read(&self, file: &str, map: &[&str]) -> Result<Recording, String> {
             let arguments = RecordingArguments {
                 files: vec![self.0.join(file)],
-                map: map.iter().map(|entry| entry.to_string()).collect(),
-                assume_units: None,
-                averages: None,
-                ignore_coherence: false,
+                reading: ReadingArguments {
+                    map: map.iter().map(|entry| entry.to_string()).collect(),
+                    ..ReadingArguments::default()
+                },
             };
             let path = self.0.join("one.json");
             fs::write(&path, FIXTURE).unwrap();

@@ -5,8 +5,10 @@
 
 use crate::modal::recorded;
 use crate::settings::ModalSettings;
-use crate::{Hypothesis, Observation};
+use crate::{DiagnosisError, Hypothesis, Observation, Settings};
+use jointscope_fixture::Fixture;
 use jointscope_frf::breaks;
+use jointscope_spectra::FrfSet;
 
 /// χ² of a line, per value, from which it contradicts, as a multiple of the median line's.
 const CONTRADICTS: f64 = 25.0;
@@ -19,6 +21,17 @@ const LEFT: f64 = 0.3;
 const APART: usize = 12;
 /// Rounds in which more of them are found: a fit that has to follow a wrong line hides its neighbours.
 const ROUNDS: usize = 4;
+
+/// Bands (Hz) of lines of `frfs` that contradict all others: what a diagnosis leaves out before it begins.
+///
+/// # Errors
+/// FRFs that cannot be used, or a fixture that cannot be modelled between their channels.
+pub fn contradictory_lines(fixture: &Fixture, frfs: &FrfSet) -> Result<Vec<(f64, f64)>, DiagnosisError> {
+    let observation = Observation::new(frfs, |_| true)?;
+    let nominal = Hypothesis::nominal(fixture, false);
+    nominal.predict(&observation)?;
+    Ok(contradictory(&observation, &nominal, &Settings::default().modal))
+}
 
 /// Bands (Hz) of lines that contradict all others; none where there is nothing of the kind.
 pub(crate) fn contradictory(

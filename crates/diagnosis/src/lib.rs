@@ -65,6 +65,7 @@ mod work;
 pub use alternatives::Alternative;
 pub use baseline::{Baseline, ModeChange, ModeState};
 pub use catalogue::{Candidate, catalogue};
+pub use contradiction::contradictory_lines;
 pub use departures::Departure;
 pub use diagnosis::{BandShare, Diagnosis, DiagnosisError, DiagnosisOptions, Finding, FrfMismatch, Tried};
 pub use drift::{ModeDrift, ReferenceChange, TestDrift};

@@ -63,10 +63,11 @@
 //!
 //! The parts are crates of their own, re-exported as modules for what this page leaves out: [`uff`], [`recordings`],
 //! [`fixture`], [`spectra`], [`frf`], [`hits`], [`estimation`], [`beam`], [`damping`], [`lumped`], [`modes`], [`averaging`],
-//! [`decomposition`], [`diagnosis`], [`nonlinear`], [`findings`], [`pipeline`], [`fem`], [`comparison`], [`export`], [`tables`], [`proof`], [`report`].
+//! [`decomposition`], [`diagnosis`], [`nonlinear`], [`findings`], [`pipeline`], [`check`], [`fem`], [`comparison`], [`export`], [`tables`], [`proof`], [`report`].
 
 pub use jointscope_averaging as averaging;
 pub use jointscope_beam as beam;
+pub use jointscope_check as check;
 pub use jointscope_comparison as comparison;
 pub use jointscope_damping as damping;
 pub use jointscope_decomposition as decomposition;
@@ -106,6 +107,7 @@ pub use jointscope_spectra::{FrfForm, FrfPair, FrfSet, SpectralLines};
 pub use jointscope_wording::{Remarks, Says, effect_name};
 
 mod answer_file;
+mod check_file;
 mod diagnosis_file;
 mod file;
 mod modes_file;
@@ -114,6 +116,7 @@ mod stepped_file;
 mod stiffness_file;
 
 pub use answer_file::answer_file;
+pub use check_file::check_file;
 pub use diagnosis_file::diagnosis_file;
 pub use modes_file::modes_file;
 pub use nonlinear_file::nonlinear_file;

@@ -10,6 +10,7 @@
 //! | [`diagnosis_page`] | what a fixture leaves out |
 //! | [`answer_page`] | the same, or what changes with amplitude: whichever the test answers |
 //! | [`modes_page`] | natural frequencies, damping ratios, shapes |
+//! | [`check_page`] | a fixture, and its recording before any diagnosis |
 //! | [`comparison_page`] | joints side by side |
 //! | [`proof_page`] | concealed cases: what the diagnosis is worth |
 //!
@@ -26,6 +27,7 @@
 //! move together without delay, where general plotting libraries would add megabytes to each report or load themselves from a server.
 
 mod answer_page;
+mod check_page;
 mod comparison_page;
 mod context;
 mod decomposition_page;
@@ -50,6 +52,7 @@ mod tests;
 mod unit;
 
 pub use answer_page::answer_page;
+pub use check_page::check_page;
 pub use comparison_page::comparison_page;
 pub use context::{InputFile, PageContext};
 pub use decomposition_page::decomposition_page;

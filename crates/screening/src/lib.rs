@@ -23,7 +23,7 @@ mod plausibility;
 mod unexcited;
 mod unit;
 
-pub use plausibility::{Implausible, plausible};
+pub use plausibility::{Implausible, implausible, plausible};
 
 use jointscope_fixture::Fixture;
 use jointscope_lumped::{Instrument, accelerances};

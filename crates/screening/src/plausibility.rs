@@ -34,30 +34,38 @@ const DEEP: f64 = 10.0;
 /// # Errors
 /// [`Implausible`].
 pub fn plausible(fixture: &Fixture) -> Result<(), Implausible> {
-    for (index, body) in fixture.bodies().iter().enumerate() {
-        match &body.kind {
-            BodyKind::Rigid(rigid) if rigid.rotates => {
-                let (Some(inertia), Some(x_cg)) = (rigid.inertia, rigid.x_cg) else { continue };
-                let points = fixture.points().iter().filter(|point| point.body == index);
-                let away = points.map(|point| ((point.x.value - x_cg.value).abs(), point.name.as_str()));
-                let farthest = away.max_by(|a, b| a.0.total_cmp(&b.0));
-                span(&body.name, farthest.unwrap_or_default(), rigid.mass.value, inertia.value)?;
-            }
-            BodyKind::Beam(beam) => {
-                let place = format!("bodies/{}/beam", body.name);
-                let length = beam.to.value - beam.from.value;
-                section(&place, length, beam.youngs_modulus.value, beam.second_moment.value)?;
-            }
-            BodyKind::Rigid(_) => {}
+    judged(fixture).find_map(Result::err).map_or(Ok(()), Err)
+}
+
+/// Every number of a fixture that cannot belong to the same structure as the others, in the order of the file.
+pub fn implausible(fixture: &Fixture) -> Vec<Implausible> {
+    judged(fixture).filter_map(Result::err).collect()
+}
+
+fn judged(fixture: &Fixture) -> impl Iterator<Item = Result<(), Implausible>> {
+    let bodies = fixture.bodies().iter().enumerate().map(move |(index, body)| match &body.kind {
+        BodyKind::Rigid(rigid) if rigid.rotates => {
+            let (Some(inertia), Some(x_cg)) = (rigid.inertia, rigid.x_cg) else { return Ok(()) };
+            let points = fixture.points().iter().filter(|point| point.body == index);
+            let away = points.map(|point| ((point.x.value - x_cg.value).abs(), point.name.as_str()));
+            let farthest = away.max_by(|a, b| a.0.total_cmp(&b.0));
+            span(&body.name, farthest.unwrap_or_default(), rigid.mass.value, inertia.value)
         }
-    }
-    for joint in fixture.joints() {
-        if let JointLaw::Beam { youngs_modulus, second_moment } = &joint.law {
+        BodyKind::Beam(beam) => {
+            let place = format!("bodies/{}/beam", body.name);
+            let length = beam.to.value - beam.from.value;
+            section(&place, length, beam.youngs_modulus.value, beam.second_moment.value)
+        }
+        BodyKind::Rigid(_) => Ok(()),
+    });
+    let joints = fixture.joints().iter().map(|joint| match &joint.law {
+        JointLaw::Beam { youngs_modulus, second_moment } => {
             let place = format!("joints/{}/beam", joint.name);
-            section(&place, fixture.joint_length(joint), youngs_modulus.value, second_moment.value)?;
+            section(&place, fixture.joint_length(joint), youngs_modulus.value, second_moment.value)
         }
-    }
-    Ok(())
+        JointLaw::Stiffness { .. } => Ok(()),
+    });
+    bodies.chain(joints)
 }
 
 fn span(body: &str, (farthest, point): (f64, &str), mass: f64, inertia: f64) -> Result<(), Implausible> {
@@ -150,6 +158,17 @@ mod tests {
     fn numbers_of_one_structure_are_plausible() {
         assert_eq!(changed("/bodies/A/mass", json!(1.102)), Ok(()));
         assert_eq!(changed("/joints/J/beam/youngs_modulus", json!(2e6)), Ok(()));
+    }
+
+    #[test]
+    fn every_slip_is_told_not_only_the_first() {
+        let file = json!({
+            "bodies": { "A": { "mass": 1102.0, "inertia": 5.9e-4, "x_cg": -0.031 }, "B": { "mass": 1.485, "inertia": 1.02e-3, "x_cg": 0.104 } },
+            "points": { "1": { "body": "A", "x": -0.056 }, "2": { "body": "A", "x": 0.0 }, "3": { "body": "B", "x": 0.07 } },
+            "joints": { "J": { "from": "2", "to": "3", "beam": { "youngs_modulus": 207.0, "second_moment": 3.4e-10 } } } });
+        let places: Vec<String> =
+            implausible(&Fixture::from_value(&file).unwrap()).into_iter().map(|slip| slip.place).collect();
+        assert_eq!(places, ["bodies/A/mass", "joints/J/beam/youngs_modulus"]);
     }
 
     #[test]

@@ -26,7 +26,7 @@ const FLOORS: [&[&str]; 12] = [
     &["jointscope-diagnosis", "jointscope-export", "jointscope-tables"],
     &["jointscope-wording"],
     &["jointscope-pipeline"],
-    &["jointscope-proof"],
+    &["jointscope-check", "jointscope-proof"],
     &["jointscope-report"],
     &["jointscope"],
     &["jointscope-cli", "jointscope-benches"],

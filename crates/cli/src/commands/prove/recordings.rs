@@ -15,7 +15,7 @@ use crate::input::{self, FixtureFile};
 use crate::origin;
 use crate::output::{Outputs, pretty};
 use crate::progress::{self, tell};
-use crate::recording::RecordingArguments;
+use crate::recording::{ReadingArguments, RecordingArguments};
 use crate::refusal::Refusal;
 
 /// Cases where no number is given: each takes a whole diagnosis of the recording.
@@ -110,9 +110,12 @@ impl Test {
             ));
         }
         let arguments = RecordingArguments {
-            map: options.map.clone(),
-            assume_units: options.assume_units.clone(),
-            ..RecordingArguments::plain(files)
+            files,
+            reading: ReadingArguments {
+                map: options.map.clone(),
+                assume_units: options.assume_units.clone(),
+                ..ReadingArguments::default()
+            },
         };
         let recording = arguments.recording(&fixture)?;
         let Level { held, frfs, .. } = the_level(directory, &recording, options.level)?;

@@ -1,0 +1,116 @@
+//! Every channel by itself: what its FRFs have in common beside those of the others.
+
+use crate::FrfCheck;
+use crate::frfs::median;
+use crate::remark::Remark;
+use serde::Serialize;
+use std::collections::BTreeMap;
+
+/// A channel of the recording.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ChannelCheck {
+    /// `response 3` or `reference 1`.
+    pub channel: String,
+    /// Number of its FRFs.
+    pub frfs: usize,
+    /// Median level of its FRFs against the fixture's, over that of all others; `None` where there are no others or no fixture's.
+    pub level: Option<f64>,
+    /// Whether all its FRFs have the opposite sign to the fixture's, and the others have not.
+    pub turned: bool,
+    /// Median over its FRFs of their relative noise.
+    pub noise: f64,
+    /// What is odd, one sentence each.
+    pub odd: Vec<String>,
+}
+
+/// Mean cosine below which an FRF is turned round, and from which it is not.
+const TURNED: f64 = -0.6;
+const UPRIGHT: f64 = 0.3;
+/// Factor from which a channel's level is odd beside the others'.
+const OFF: f64 = 1.25;
+/// Noise of a channel, relative to that of the others, from which it is odd, and its least size.
+const NOISIER: f64 = 5.0;
+const NOISE: f64 = 0.05;
+
+/// Responses, then references, each in the order of the FRFs.
+pub(crate) fn of(frfs: &[FrfCheck], remarks: &mut Vec<Remark>) -> Vec<ChannelCheck> {
+    let turned = |frf: &FrfCheck| frf.sign.is_some_and(|sign| sign < TURNED);
+    let upright = |frf: &FrfCheck| frf.sign.is_some_and(|sign| sign > UPRIGHT);
+    let all_turned = frfs.len() > 1 && frfs.iter().all(turned);
+    if all_turned {
+        remarks.push(Remark::odd(
+            "force",
+            "all FRFs have the opposite sign to the fixture's: the force is recorded the other way round; turn its direction with --map, or in the analyser",
+        ));
+    }
+    let mut channels = Vec::new();
+    for is_reference in [false, true] {
+        let name = |frf: &FrfCheck| match is_reference {
+            true => format!("reference {}", frf.frf.reference),
+            false => format!("response {}", frf.frf.response),
+        };
+        let mut order: BTreeMap<String, usize> = BTreeMap::new();
+        for frf in frfs {
+            let next = order.len();
+            order.entry(name(frf)).or_insert(next);
+        }
+        let mut names: Vec<(String, usize)> = order.into_iter().collect();
+        names.sort_by_key(|(_, place)| *place);
+        for (channel, _) in names {
+            let (own, others): (Vec<&FrfCheck>, Vec<&FrfCheck>) =
+                frfs.iter().partition(|frf| name(frf) == channel);
+            channels.push(checked(channel, &own, &others, &turned, &upright));
+        }
+    }
+    // Where an FRF is the only one of its response and of its reference, either may be meant: it is told once.
+    for channel in &channels {
+        remarks.extend(channel.odd.iter().map(|says| Remark::odd(&channel.channel, says)));
+    }
+    let by_channel = channels.iter().any(|channel| channel.turned);
+    for frf in frfs.iter().filter(|frf| turned(frf) && !all_turned && !by_channel) {
+        remarks.push(Remark::odd(
+            frf.frf.to_string(),
+            "it has the opposite sign to the fixture's FRF, and neither all of its response nor of its reference have: check the directions of this record, and the points' order in the fixture",
+        ));
+    }
+    channels
+}
+
+fn checked(
+    channel: String,
+    own: &[&FrfCheck],
+    others: &[&FrfCheck],
+    turned: &dyn Fn(&FrfCheck) -> bool,
+    upright: &dyn Fn(&FrfCheck) -> bool,
+) -> ChannelCheck {
+    let level_of = |frfs: &[&FrfCheck]| median(frfs.iter().filter_map(|frf| frf.level).collect());
+    let noise_of = |frfs: &[&FrfCheck]| median(frfs.iter().map(|frf| frf.noise).collect());
+    let level = level_of(own).zip(level_of(others)).map(|(own, others)| own / others);
+    let noise = noise_of(own).unwrap_or(0.0);
+    // Others of which most are turned say that it is the rest that is right.
+    let most_upright = 2 * others.iter().filter(|frf| upright(frf)).count() > others.len();
+    let is_turned = own.iter().all(|frf| turned(frf)) && most_upright;
+    let mut odd = Vec::new();
+    if is_turned {
+        odd.push("its FRFs have the opposite sign to the fixture's, those of the other channels have not: it points the other way; turn its direction with --map, or correct the file".to_owned());
+    }
+    if let Some(level) = level
+        && !(OFF.recip()..=OFF).contains(&level)
+        && own.len() > 1
+    {
+        odd.push(format!(
+            "it reads {level:.2} times what the other channels do beside the fixture: its calibration, its place, or physics that the fixture leaves out there"
+        ));
+    }
+    if let Some(others) = noise_of(others)
+        && noise > NOISE
+        && noise > NOISIER * others
+    {
+        odd.push(format!(
+            "its noise is {:.0} % of the signal, {:.0} times that of the other channels: a loose sensor, a bad cable or a range set too high",
+            100.0 * noise,
+            noise / others
+        ));
+    }
+    ChannelCheck { channel, frfs: own.len(), level, turned: is_turned, noise, odd }
+}

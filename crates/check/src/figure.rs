@@ -1,0 +1,47 @@
+//! Figures with the deviations that a fixture's tolerances leave them.
+
+use jointscope_fixture::Fixture;
+use serde::Serialize;
+
+/// A figure computed from a fixture.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Figure {
+    /// Its value, SI.
+    pub value: f64,
+    /// One standard deviation from those of the fixture's numbers; `None` where it rests on a number of unknown deviation.
+    pub std: Option<f64>,
+    /// Its unit.
+    pub unit: &'static str,
+}
+
+/// Step by which a number of unknown deviation is moved to see whether a figure rests on it, relative; and of one that is zero.
+const STEP: f64 = 1e-3;
+/// Relative change of a figure from which it rests on a number.
+const RESTS: f64 = 1e-9;
+
+/// Standard deviations of what `of` makes of a fixture, as a Taylor series of first order has them: each uncertain number is moved by its deviation, the
+/// changes are added as squares. `None` where the figure rests on a number of unknown deviation.
+pub(crate) fn deviations(
+    fixture: &Fixture,
+    nominal: &[f64],
+    of: impl Fn(&Fixture) -> Option<Vec<f64>>,
+) -> Vec<Option<f64>> {
+    let mut squares = vec![Some(0.0); nominal.len()];
+    let mut moved = fixture.clone();
+    for (index, quantity) in fixture.uncertain_quantities(false) {
+        let unknown = STEP * if quantity.value == 0.0 { 1.0 } else { quantity.value.abs() };
+        moved.set_quantities([(index, quantity.value + quantity.std.unwrap_or(unknown))]);
+        let figures = of(&moved);
+        moved.set_quantities([(index, quantity.value)]);
+        let Some(figures) = figures else { continue };
+        for ((square, figure), nominal) in squares.iter_mut().zip(figures).zip(nominal) {
+            let change = figure - nominal;
+            match quantity.std {
+                Some(_) => *square = square.map(|square| square + change * change),
+                None if change.abs() > RESTS * nominal.abs() => *square = None,
+                None => {}
+            }
+        }
+    }
+    squares.into_iter().map(|square| square.map(f64::sqrt)).collect()
+}

@@ -1,0 +1,92 @@
+//! Every FRF by itself: averages, coherence, noise, and how far it is from what the fixture makes of it.
+
+use jointscope_frf::noise::NoiseSource;
+use jointscope_spectra::{FrfPair, FrfSet};
+use num_complex::Complex64;
+use serde::Serialize;
+
+/// Coherence over the lines.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Coherence {
+    /// Its median.
+    pub median: f64,
+    /// Share of the lines on which it is below 0.8.
+    pub low: f64,
+}
+
+/// An FRF.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct FrfCheck {
+    /// Response and reference.
+    pub frf: FrfPair,
+    /// Number of averages, where the file states it.
+    pub averages: Option<u32>,
+    /// Coherence, where it was recorded.
+    pub coherence: Option<Coherence>,
+    /// Median over the lines of the noise's standard deviation, relative to the FRF.
+    pub noise: f64,
+    /// What the noise was taken from.
+    pub noise_from: NoiseSource,
+    /// √(Σ|Ĥ − H|²/Σ|H|²), Ĥ the fixture's, as it stands; `None` where the fixture has no FRF.
+    pub nrmse: Option<f64>,
+    /// Median over the lines of |H|/|Ĥ|.
+    pub level: Option<f64>,
+    /// Mean over the lines of the cosine of the angle between H and Ĥ: 1 alike, −1 turned round.
+    pub sign: Option<f64>,
+}
+
+/// Coherence below which a line is poor.
+const POOR: f64 = 0.8;
+
+/// The FRFs of a set of accelerances with variances, beside the fixture's, FRF after FRF.
+pub(crate) fn of(
+    frfs: &FrfSet,
+    sources: &[NoiseSource],
+    modelled: Option<&[Complex64]>,
+) -> Vec<FrfCheck> {
+    let count = frfs.lines().len();
+    (0..frfs.pairs().len())
+        .map(|index| {
+            let values = frfs.values(index);
+            let variance = frfs.variance(index).unwrap_or_default();
+            let noise = values.iter().zip(variance).map(|(v, variance)| variance.sqrt() / v.norm());
+            let own = modelled.map(|all| &all[index * count..(index + 1) * count]);
+            let coherence = frfs.coherence(index).and_then(|coherence| {
+                let low = coherence.iter().filter(|gamma2| **gamma2 < POOR).count();
+                let median = median(coherence.to_vec())?;
+                Some(Coherence { median, low: low as f64 / coherence.len() as f64 })
+            });
+            FrfCheck {
+                frf: frfs.pairs()[index].clone(),
+                averages: frfs.averages(index),
+                coherence,
+                noise: median(noise.filter(|noise| noise.is_finite()).collect()).unwrap_or(0.0),
+                noise_from: sources.get(index).copied().unwrap_or(NoiseSource::Scatter),
+                nrmse: own.and_then(|own| nrmse(values, own)),
+                level: own.and_then(|own| {
+                    let levels = values.iter().zip(own).map(|(a, b)| a.norm() / b.norm());
+                    median(levels.filter(|level| level.is_finite() && *level > 0.0).collect())
+                }),
+                sign: own.and_then(|own| sign(values, own)),
+            }
+        })
+        .collect()
+}
+
+fn nrmse(measured: &[Complex64], modelled: &[Complex64]) -> Option<f64> {
+    let apart: f64 = measured.iter().zip(modelled).map(|(a, b)| (a - b).norm_sqr()).sum();
+    let size: f64 = measured.iter().map(|a| a.norm_sqr()).sum();
+    (size > 0.0).then(|| (apart / size).sqrt())
+}
+
+fn sign(measured: &[Complex64], modelled: &[Complex64]) -> Option<f64> {
+    let cosines = measured.iter().zip(modelled).map(|(a, b)| (a * b.conj()).re / (a.norm() * b.norm()));
+    let cosines: Vec<f64> = cosines.filter(|cosine| cosine.is_finite()).collect();
+    (!cosines.is_empty()).then(|| cosines.iter().sum::<f64>() / cosines.len() as f64)
+}
+
+/// The median; `None` of nothing.
+pub(crate) fn median(mut values: Vec<f64>) -> Option<f64> {
+    let middle = values.len() / 2;
+    (!values.is_empty()).then(|| *values.select_nth_unstable_by(middle, f64::total_cmp).1)
+}

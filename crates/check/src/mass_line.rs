@@ -1,0 +1,177 @@
+//! The mass line: below its first bending mode a free structure moves as one rigid body, and its accelerances tell its mass.
+//!
+//! There A_ij = 1/M + (x_i − x_G)(x_j − x_G)/J, and what the bending modes add grows as ω². Real parts are fitted by a₀ + a₁ω² + a₂ω⁴ (on supports with
+//! a₋₁/ω² besides); the same fit is made to the fixture's own FRFs on the same lines, so that what it gets wrong is wrong in both. The a₀ of three or more
+//! FRFs at different places give mass, centre of gravity and inertia as the recording weighs them, linear in 1/M + x_G²/J, x_G/J and 1/J.
+
+use crate::{Figure, ModelModes, Totals};
+use jointscope_fixture::{BodyKind, Fixture};
+use jointscope_linalg::LeastSquares;
+use jointscope_spectra::{Dof, FrfPair, FrfSet};
+use num_complex::Complex64;
+use serde::Serialize;
+
+/// The mass line of one FRF.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct MassLineFrf {
+    /// The FRF.
+    pub frf: FrfPair,
+    /// Its accelerance as a rigid body, 1/kg.
+    pub recorded: Figure,
+    /// The fixture's by the same fit, 1/kg.
+    pub fixture: f64,
+    /// Whether the two are apart by more than their deviation and a tenth of the largest.
+    pub odd: bool,
+}
+
+/// What the recording weighs.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct MassLine {
+    /// Lines in use, Hz.
+    pub band: (f64, f64),
+    /// FRF by FRF.
+    pub frfs: Vec<MassLineFrf>,
+    /// Total mass as the recording has it; `None` where its FRFs do not tell it.
+    pub mass: Option<Figure>,
+    /// The same from the fixture's FRFs between the same channels, kg: how well they tell it.
+    pub fixture_mass: Option<f64>,
+    /// Whether the two are apart by more than their deviations and 3 %.
+    pub odd: bool,
+}
+
+/// Lines from this many times the highest mode on supports up to this share of the first elastic mode.
+const BAND: (f64, f64) = (2.5, 0.5);
+/// Fewest lines.
+const FEWEST: usize = 5;
+/// How far off an FRF's line may be, of the largest, and the mass, relative; deviations that it must be off by.
+const OFF_FRF: f64 = 0.1;
+const OFF: f64 = 0.03;
+const BEYOND: f64 = 3.0;
+/// A mass is told where the fixture's own FRFs tell its mass to this share, and the recording's to that.
+const OWN: f64 = 0.03;
+const TOLD: f64 = 0.2;
+/// What a fit of few lines gets wrong at best, relative to the largest a₀.
+const AT_BEST: f64 = 0.005;
+
+/// The mass line of accelerances with variances, `modelled` the fixture's of the same FRFs.
+///
+/// # Errors
+/// Why there is none, in a sentence.
+pub(crate) fn of(
+    fixture: &Fixture,
+    frfs: &FrfSet,
+    modelled: &[Complex64],
+    totals: &Totals,
+    modes: &ModelModes,
+) -> Result<MassLine, String> {
+    if modes.rigid == 0 && modes.highest_on_supports() == 0.0 {
+        return Err("the structure is held: it has no rigid-body motion to weigh it by".to_owned());
+    }
+    let first = modes.first_elastic().ok_or("the model has no elastic mode above which a mass line would end")?;
+    let (low, high) = (BAND.0 * modes.highest_on_supports(), BAND.1 * first);
+    let hz = frfs.lines().hz();
+    let used: Vec<usize> = (0..hz.len()).filter(|&k| hz[k] > 0.0 && hz[k] >= low && hz[k] <= high).collect();
+    if used.len() < FEWEST {
+        return Err(format!(
+            "{} of the recording lie between {low:.1} and {high:.1} Hz, where the structure moves as one rigid body: a finer resolution or a lower first line would weigh it",
+            if used.is_empty() { "no lines".to_owned() } else { format!("only {} lines", used.len()) },
+        ));
+    }
+    let band = (hz[used[0]], hz[used[used.len() - 1]]);
+    let supported = modes.highest_on_supports() > 0.0;
+    let transverse = |pair: &FrfPair| {
+        pair.response.dof == Dof::Translation && pair.reference.dof == Dof::Translation
+    };
+    let mut all = Vec::new();
+    for index in (0..frfs.pairs().len()).filter(|&index| transverse(&frfs.pairs()[index])) {
+        let variance = frfs.variance(index).unwrap_or_default();
+        let weight = |k: usize| variance.get(k).map_or(1.0, |v| 1.0 / (0.5 * v).max(f64::MIN_POSITIVE));
+        let own = &modelled[index * hz.len()..(index + 1) * hz.len()];
+        let recorded = intercept(hz, frfs.values(index), &used, weight, supported);
+        let model = intercept(hz, own, &used, weight, supported);
+        if let (Some((value, std)), Some((fixture, _))) = (recorded, model) {
+            let recorded = Figure { value, std: Some(std), unit: "1/kg" };
+            all.push(MassLineFrf { frf: frfs.pairs()[index].clone(), recorded, fixture, odd: false });
+        }
+    }
+    let largest = all.iter().map(|line| line.fixture.abs()).fold(0.0, f64::max);
+    for line in &mut all {
+        let apart = (line.recorded.value - line.fixture).abs();
+        line.odd = apart > OFF_FRF * largest && apart > BEYOND * line.recorded.std.unwrap_or(0.0);
+    }
+    let rotating = fixture.bodies().iter().all(|body| !matches!(&body.kind, BodyKind::Rigid(r) if !r.rotates));
+    let recorded = |line: &MassLineFrf| (line.recorded.value, line.recorded.std.unwrap_or(0.0).max(AT_BEST * largest));
+    let fixtures = |line: &MassLineFrf| (line.fixture, AT_BEST * largest);
+    let mass = weighed(fixture, &all, recorded, rotating).filter(|(mass, std)| *std < TOLD * mass);
+    let fixture_mass = weighed(fixture, &all, fixtures, rotating).map(|(mass, _)| mass);
+    // Where the fixture's own FRFs do not tell its mass, the recording's do not either.
+    let fixture_mass = fixture_mass.filter(|mass| (mass / totals.mass.value - 1.0).abs() < OWN);
+    let mass = mass.filter(|_| fixture_mass.is_some());
+    let odd = mass.is_some_and(|(mass, std)| {
+        let apart = (mass - totals.mass.value).abs();
+        apart > OFF * totals.mass.value && apart > BEYOND * std.hypot(totals.mass.std.unwrap_or(0.0))
+    });
+    let mass = mass.map(|(value, std)| Figure { value, std: Some(std), unit: "kg" });
+    Ok(MassLine { band, frfs: all, mass, fixture_mass, odd })
+}
+
+/// a₀ of the real parts on the lines `used`, with its standard deviation, that of the noise or of what the fit leaves, whichever is larger.
+fn intercept(
+    hz: &[f64],
+    values: &[Complex64],
+    used: &[usize],
+    weight: impl Fn(usize) -> f64,
+    supported: bool,
+) -> Option<(f64, f64)> {
+    let top = hz[*used.last()?];
+    let unknowns = if supported { 4 } else { 3 };
+    let mut fit = LeastSquares::new();
+    fit.begin(unknowns);
+    for &k in used {
+        let t = (hz[k] / top).powi(2);
+        let terms = [1.0, t, t * t, 1.0 / t];
+        fit.equation(&terms[..unknowns], Complex64::from(values[k].re), weight(k));
+    }
+    let mut solution = [Complex64::ZERO; 4];
+    let left = fit.solve(&mut solution[..unknowns]).ok()?;
+    let degrees = used.len().saturating_sub(unknowns).max(1) as f64;
+    Some((solution[0].re, (fit.covariance(0, 0) * (left / degrees).max(1.0)).sqrt()))
+}
+
+/// The mass that the intercepts of FRFs tell, with its standard deviation.
+fn weighed(
+    fixture: &Fixture,
+    lines: &[MassLineFrf],
+    intercept: impl Fn(&MassLineFrf) -> (f64, f64),
+    rotating: bool,
+) -> Option<(f64, f64)> {
+    let unknowns = if rotating { 3 } else { 1 };
+    if lines.len() < unknowns {
+        return None;
+    }
+    let x = |point: &str| fixture.point(point).map(|point| point.x.value);
+    let reach = fixture.points().iter().map(|point| point.x.value.abs()).fold(0.0, f64::max).max(1e-9);
+    let mut fit = LeastSquares::new();
+    fit.begin(unknowns);
+    for line in lines {
+        let (out, at) = (x(&line.frf.response.point)? / reach, x(&line.frf.reference.point)? / reach);
+        let (value, std) = intercept(line);
+        fit.equation(&[1.0, out + at, out * at][..unknowns], Complex64::from(value), 1.0 / (std * std));
+    }
+    let mut solution = [Complex64::ZERO; 3];
+    let left = fit.solve(&mut solution[..unknowns]).ok()?;
+    let scatter = (left / lines.len().saturating_sub(unknowns).max(1) as f64).max(1.0);
+    let [p, q, r] = solution.map(|value| value.re);
+    // 1/M = p − q²/r, and its derivatives.
+    let (inverse, gradient) = match rotating {
+        true if r > 0.0 => (p - q * q / r, [1.0, -2.0 * q / r, (q / r).powi(2)]),
+        true => return None,
+        false => (p, [1.0, 0.0, 0.0]),
+    };
+    let variance: f64 = (0..unknowns)
+        .flat_map(|i| (0..unknowns).map(move |j| (i, j)))
+        .map(|(i, j)| gradient[i] * gradient[j] * fit.covariance(i, j))
+        .sum();
+    let std = (scatter * variance).sqrt() / (inverse * inverse);
+    (inverse > 0.0 && std.is_finite()).then(|| (1.0 / inverse, std))
+}

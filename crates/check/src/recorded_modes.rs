@@ -1,0 +1,68 @@
+//! The recording's modes beside the fixture's.
+
+use jointscope_fixture::Fixture;
+use jointscope_modes::{ModalAnalysis, ModesOptions};
+use jointscope_pipeline::measured_damping;
+use jointscope_spectra::FrfSet;
+use serde::Serialize;
+
+/// A mode of the recording and the fixture's that it is.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct ModePair {
+    /// Natural frequency of the recording, Hz.
+    pub frequency: f64,
+    /// Its standard deviation, Hz.
+    pub std: f64,
+    /// Its damping ratio.
+    pub damping_ratio: f64,
+    /// Natural frequency of the fixture's elastic mode, Hz; `None` where none is alike.
+    pub fixture: Option<f64>,
+    /// Correlation of their shapes, 0 to 1.
+    pub mac: Option<f64>,
+}
+
+/// The recording's modes.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct RecordedModes {
+    /// Each with the fixture's that it is.
+    pub modes: Vec<ModePair>,
+    /// Elastic modes of the fixture in the band that the recording does not show, Hz.
+    pub missing: Vec<f64>,
+}
+
+/// Values of FRFs above which a modal analysis takes longer than one waits for a check.
+const MOST: usize = 30_000;
+
+/// The modes of accelerances.
+///
+/// # Errors
+/// Why there are none, in a sentence.
+pub(crate) fn of(fixture: &Fixture, frfs: &FrfSet) -> Result<RecordedModes, String> {
+    if frfs.all_values().len() > MOST {
+        return Err("there are too many FRFs and lines for a quick look at their modes: `jointscope modes` takes its time".to_owned());
+    }
+    let analysis = ModalAnalysis::of(frfs, &ModesOptions::default()).map_err(|error| error.to_string())?;
+    let matched = measured_damping(fixture, &analysis);
+    let pairs = |index: usize| {
+        let matched = matched.as_ref().ok()?;
+        let pair = matched.matches.pairs.iter().find(|pair| pair.measured == index)?;
+        Some((matched.elastic[pair.expected], pair.mac))
+    };
+    let modes = analysis.modes.iter().enumerate().map(|(index, mode)| ModePair {
+        frequency: mode.frequency,
+        std: mode.frequency_std,
+        damping_ratio: mode.damping_ratio,
+        fixture: pairs(index).map(|pair| pair.0),
+        mac: pairs(index).map(|pair| pair.1),
+    });
+    let hz = analysis.lines().hz();
+    let within = |f: &f64| *f >= hz[0] && *f <= hz[hz.len() - 1];
+    let missing = match &matched {
+        Ok(matched) => {
+            let others = matched.matches.other_expected.iter().map(|e| matched.elastic[*e]);
+            others.filter(within).collect()
+        }
+        Err(_) => Vec::new(),
+    };
+    Ok(RecordedModes { modes: modes.collect(), missing })
+}

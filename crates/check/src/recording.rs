@@ -1,0 +1,256 @@
+//! What a test of the fixture recorded.
+
+use crate::channels::{self, ChannelCheck};
+use crate::driving_point::{self, DrivingPoint, DrivingPointVerdict};
+use crate::reciprocity::{self, Reciprocity};
+use crate::recorded_modes::{self, RecordedModes};
+use crate::{CheckOptions, FrfCheck, MassLine, ModelModes, Remark, Totals, frfs, has_dashpots, mass_line};
+use jointscope_diagnosis::contradictory_lines;
+use jointscope_fixture::{Damping, Fixture, Quantity, RatiosOf};
+use jointscope_frf::noise::with_variances;
+use jointscope_lumped::{Instrument, accelerances};
+use jointscope_pipeline::{Error, MeasuredFrfs, Measurement};
+use jointscope_screening::{Oddity, screened};
+use jointscope_spectra::FrfSet;
+use num_complex::Complex64;
+use serde::Serialize;
+
+/// A recording, as it is beside its fixture.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct RecordingCheck {
+    /// What the files themselves say, one sentence each.
+    pub notes: Vec<String>,
+    /// First and last line, Hz, and their number.
+    pub lines: (f64, f64, usize),
+    /// Points of the fixture at which nothing was recorded.
+    pub without_recording: Vec<String>,
+    /// FRF by FRF.
+    pub frfs: Vec<FrfCheck>,
+    /// Channel by channel.
+    pub channels: Vec<ChannelCheck>,
+    /// Driving points.
+    pub driving_points: Vec<DrivingPoint>,
+    /// Reciprocal pairs.
+    pub reciprocity: Vec<Reciprocity>,
+    /// The mass line; `None` with a sentence where there is none.
+    pub mass_line: Option<MassLine>,
+    /// Why there is no mass line.
+    pub no_mass_line: Option<String>,
+    /// Modes side by side.
+    pub modes: Option<RecordedModes>,
+    /// Why there are none.
+    pub no_modes: Option<String>,
+    /// √(Σ|Ĥ − H|²/Σ|H|²) over all FRFs; `None` where the fixture has no FRFs.
+    pub nrmse: Option<f64>,
+    /// The FRFs as they are meant, with variances.
+    #[serde(skip)]
+    pub measured: FrfSet,
+    /// The fixture's, FRF after FRF.
+    #[serde(skip)]
+    pub modelled: Option<Vec<Complex64>>,
+}
+
+/// Damping ratio with which the FRFs of a fixture without any are drawn.
+const ASSUMED: f64 = 0.005;
+
+impl RecordingCheck {
+    pub(crate) fn of(
+        fixture: &Fixture,
+        measurement: &Measurement,
+        options: &CheckOptions,
+        remarks: &mut Vec<Remark>,
+    ) -> Result<Self, Error> {
+        let measured = at_one_level(measurement, options)?;
+        let screened = screened(&measured.frfs, fixture)?;
+        remarks.extend(screened.oddities.iter().map(of_oddity));
+        let fixture = &drawn(measured.as_recorded(fixture)?);
+        let (measured_frfs, sources) = match with_variances(&screened.frfs) {
+            Ok(found) => found,
+            Err(_) => (screened.frfs.clone(), Vec::new()),
+        };
+        let modelled =
+            match accelerances(fixture, measured_frfs.pairs(), measured_frfs.lines(), Instrument::AsRecorded) {
+                Ok(values) => Some(values),
+                Err(error) => {
+                    remarks.push(Remark::wrong("fixture", format!("it has no FRFs to lay beside the recording's: {error}")));
+                    None
+                }
+            };
+        let frfs = frfs::of(&measured_frfs, &sources, modelled.as_deref());
+        let channels = channels::of(&frfs, remarks);
+        let driving_points = driving_point::of(&measured_frfs, measured.window_decay);
+        remarks.extend(driving_points.iter().filter_map(of_driving_point));
+        let reciprocity = reciprocity::of(&measured_frfs);
+        remarks.extend(reciprocity.iter().filter(|pair| pair.odd).map(of_reciprocity));
+        if let Ok(bands) = contradictory_lines(fixture, &screened.frfs) {
+            remarks.extend(bands.iter().map(|(from, to)| of_contradiction(*from, *to)));
+        }
+        remarks.extend(frfs.iter().filter_map(of_coherence));
+        let (modes, no_modes) = split(recorded_modes::of(fixture, &measured_frfs));
+        let hz = measured_frfs.lines().hz();
+        let recorded = |name: &str| {
+            let of = |pair: &jointscope_spectra::FrfPair| pair.response.point == name || pair.reference.point == name;
+            measured_frfs.pairs().iter().any(of)
+        };
+        let joined: Vec<usize> = fixture.held_points().collect();
+        let points = fixture.points().iter().enumerate();
+        let without = points.filter(|(index, point)| !recorded(&point.name) && !joined.contains(index));
+        Ok(RecordingCheck {
+            notes: measured.notes,
+            lines: (hz[0], hz[hz.len() - 1], hz.len()),
+            without_recording: without.map(|(_, point)| point.name.clone()).collect(),
+            nrmse: modelled.as_deref().and_then(|modelled| nrmse(measured_frfs.all_values(), modelled)),
+            frfs,
+            channels,
+            driving_points,
+            reciprocity,
+            mass_line: None,
+            no_mass_line: None,
+            modes,
+            no_modes,
+            measured: measured_frfs,
+            modelled,
+        })
+    }
+
+    /// The last line, Hz.
+    pub(crate) fn highest(&self) -> f64 {
+        self.lines.1
+    }
+
+    /// Holds the recording's mass line against the fixture's mass.
+    pub(crate) fn weigh(
+        &mut self,
+        fixture: &Fixture,
+        totals: &Totals,
+        modes: &ModelModes,
+        remarks: &mut Vec<Remark>,
+    ) {
+        let found = match &self.modelled {
+            Some(modelled) => mass_line::of(fixture, &self.measured, modelled, totals, modes),
+            None => Err("the fixture has no FRFs".to_owned()),
+        };
+        (self.mass_line, self.no_mass_line) = split(found);
+        let Some(line) = &self.mass_line else { return };
+        if let (true, Some(mass)) = (line.odd, line.mass) {
+            remarks.push(Remark::odd(
+                "mass line",
+                format!(
+                    "from {:.1} to {:.1} Hz the recording weighs {:.3} kg ± {:.3} kg, the fixture {:.3} kg ({:.2} times as much): the calibration of force or sensors, or mass that the fixture lacks or has too much of",
+                    line.band.0,
+                    line.band.1,
+                    mass.value,
+                    mass.std.unwrap_or(0.0),
+                    totals.mass.value,
+                    totals.mass.value / mass.value
+                ),
+            ));
+        }
+        // All of them together are the mass; some of them are channels or points.
+        let odd: Vec<String> = line.frfs.iter().filter(|frf| frf.odd).map(|frf| frf.frf.to_string()).collect();
+        if !odd.is_empty() && !line.odd {
+            remarks.push(Remark::odd(
+                "mass line",
+                format!(
+                    "below the first bending mode FRFs {} are not those of the fixture as a rigid body: their points' abscissae, the centres of gravity, the inertias, or these channels' calibration",
+                    odd.join(", ")
+                ),
+            ));
+        }
+    }
+}
+
+/// The FRFs at one level, the first where there are several.
+fn at_one_level(measurement: &Measurement, options: &CheckOptions) -> Result<MeasuredFrfs, Error> {
+    let Measurement::Frfs(recording) = measurement else {
+        return MeasuredFrfs::of(measurement, &options.estimate);
+    };
+    let count = recording.levels.len();
+    if count < 2 {
+        return MeasuredFrfs::of(measurement, &options.estimate);
+    }
+    let mut first = recording.clone();
+    first.levels.truncate(1);
+    let mut measured = MeasuredFrfs::of(&Measurement::Frfs(first), &options.estimate)?;
+    measured.notes.push(format!(
+        "the files hold FRFs at {count} levels: those of the first are looked at here; `jointscope diagnose` says whether anything depends on amplitude"
+    ));
+    Ok(measured)
+}
+
+/// The fixture with some damping, where it has none at all: resonances without any have no height to compare.
+fn drawn(fixture: Fixture) -> Fixture {
+    if *fixture.damping() != Damping::Undamped || has_dashpots(&fixture) {
+        return fixture;
+    }
+    let ratios = Damping::ModalRatios { ratios: vec![Quantity::bare(ASSUMED)], of: RatiosOf::AsItStands };
+    fixture.clone().with_damping(ratios).unwrap_or(fixture)
+}
+
+fn nrmse(measured: &[Complex64], modelled: &[Complex64]) -> Option<f64> {
+    let apart: f64 = measured.iter().zip(modelled).map(|(a, b)| (a - b).norm_sqr()).sum();
+    let size: f64 = measured.iter().map(|a| a.norm_sqr()).sum();
+    (size > 0.0).then(|| (apart / size).sqrt())
+}
+
+fn split<T>(found: Result<T, String>) -> (Option<T>, Option<String>) {
+    match found {
+        Ok(found) => (Some(found), None),
+        Err(why) => (None, Some(why)),
+    }
+}
+
+fn of_oddity(oddity: &Oddity) -> Remark {
+    match oddity {
+        Oddity::Unexcited { point, is_reference, .. } => {
+            let kind = if *is_reference { "reference" } else { "response" };
+            Remark::odd(format!("{kind} {point}"), oddity.to_string())
+        }
+        oddity => Remark::wrong("recording", format!("{oddity} (here and in a diagnosis)")),
+    }
+}
+
+fn of_driving_point(point: &DrivingPoint) -> Option<Remark> {
+    let share = 100.0 * point.negative;
+    let says = match point.verdict {
+        DrivingPointVerdict::Turned => format!(
+            "a driving point that would give out power on {share:.0} % of its lines: sensor and hammer point opposite ways; turn one of them with --map, or correct the file"
+        ),
+        DrivingPointVerdict::Mixed => format!(
+            "a driving point that would give out power on {share:.0} % of its lines: the sensor is not where the hammer strikes, or a delay or filter turns the phase of one channel"
+        ),
+        DrivingPointVerdict::Passive | DrivingPointVerdict::NotJudged => return None,
+    };
+    Some(Remark::odd(point.frf.to_string(), says))
+}
+
+fn of_reciprocity(pair: &Reciprocity) -> Remark {
+    let level = match pair.level {
+        level if !(0.9..=1.1).contains(&level) => format!("; the first reads {level:.2} times the second, as a calibration would have it"),
+        _ => String::new(),
+    };
+    Remark::odd(
+        format!("{} and {}", pair.frf, pair.other),
+        format!(
+            "by reciprocity they are one FRF, but they are {:.0} % apart where noise makes {:.1} %{level}: a point hit beside its mark, a sensor whose mass roves, calibration, or something that is not linear",
+            100.0 * pair.difference,
+            100.0 * pair.expected
+        ),
+    )
+}
+
+fn of_contradiction(from: f64, to: f64) -> Remark {
+    let lines = if from == to { format!("the line at {from} Hz") } else { format!("the lines from {from} to {to} Hz") };
+    Remark::wrong("recording", format!("{lines} contradict all others, as mains hum, clipped peaks or a tone from elsewhere do: a diagnosis leaves them out"))
+}
+
+/// Share of poor lines from which an FRF's coherence is worth a word.
+const POOR: f64 = 0.3;
+
+fn of_coherence(frf: &FrfCheck) -> Option<Remark> {
+    let coherence = frf.coherence.filter(|coherence| coherence.low > POOR)?;
+    Some(Remark::odd(
+        frf.frf.to_string(),
+        format!("its coherence is below 0.8 on {:.0} % of the lines (median {:.2}): more averages, a harder tip, or no double hits", 100.0 * coherence.low, coherence.median),
+    ))
+}

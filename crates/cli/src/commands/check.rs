@@ -1,0 +1,147 @@
+//! `jointscope check`: a fixture in, and recordings if there are any; what they are like and what is odd out.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use jointscope::check::{Check, CheckOptions, Figure, Weight};
+use jointscope::check_file;
+use jointscope::estimation::ResponseWindow;
+use jointscope::report::check_page;
+use jointscope::report::format::quantity;
+use serde_json::Value;
+
+use crate::estimation_arguments::EstimationArguments;
+use crate::input::FixtureFile;
+use crate::origin;
+use crate::output::{Outputs, counted, pretty};
+use crate::recording::{ReadingArguments, RecordingArguments};
+use crate::refusal::Refusal;
+
+#[derive(Debug, Args)]
+pub struct CheckArguments {
+    /// The fixture file (JSON).
+    pub fixture: PathBuf,
+    /// Recordings of it, if there are any (UFF, UNV): all files of one test, in any order.
+    #[arg(value_name = "F.uff")]
+    pub files: Vec<PathBuf>,
+    #[command(flatten)]
+    pub reading: ReadingArguments,
+    /// Print check.json to standard output, for scripts.
+    #[arg(long)]
+    pub json: bool,
+    /// The directory to write check.json and report.html to [default: nothing is written].
+    #[arg(short, long, value_name = "DIR")]
+    pub output: Option<PathBuf>,
+    #[command(flatten)]
+    pub estimation: EstimationArguments,
+}
+
+/// Checks, writes `check.json` and `report.html` if a directory is given, and answers with what is odd and the figures that matter.
+pub fn run(arguments: &CheckArguments) -> Result<String, Refusal> {
+    let fixture = FixtureFile::read(&arguments.fixture)?;
+    let recording =
+        RecordingArguments { files: arguments.files.clone(), reading: arguments.reading.clone() };
+    let measurement = match arguments.files.is_empty() {
+        true => None,
+        false => Some(recording.measurement(&fixture)?),
+    };
+    let options = CheckOptions { estimate: arguments.estimation.options(ResponseWindow::Auto) };
+    let check = Check::of(&fixture, measurement.as_ref(), &options)
+        .map_err(|error| recording.unanswered(&error, &fixture))?;
+    let files = || std::iter::once(&arguments.fixture).chain(&arguments.files);
+    let context = origin::context(files(), Vec::new(), None)?;
+    let mut file: Value = check_file(&check);
+    origin::add(&mut file, &context);
+    if let Some(recording) = &check.recording {
+        file["notes"] = recording.notes.clone().into();
+    }
+    let file = pretty(&file);
+    let mut lines = match arguments.json {
+        true => vec![file.trim_end().to_owned()],
+        false => summary(&check),
+    };
+    if let Some(folder) = &arguments.output {
+        let page = check_page(&check, &fixture, &context).map_err(Refusal::new)?;
+        let path = folder.join("report.html");
+        let mut outputs = Outputs::new(files());
+        outputs.add(folder.join("check.json"), file);
+        outputs.add(&path, page);
+        outputs.write()?;
+        if !arguments.json {
+            lines.push(path.display().to_string());
+        }
+    }
+    Ok(lines.join("\n"))
+}
+
+/// What it comes to, a line each.
+fn summary(check: &Check) -> Vec<String> {
+    let figure = |figure: &Figure| quantity(figure.value, figure.std, figure.unit);
+    let mut lines = vec![format!("{}.", check.headline())];
+    lines.extend(check.remarks.iter().map(|remark| {
+        let sign = if remark.weight == Weight::Wrong { "✕" } else { "!" };
+        format!("  {sign} {}: {}", remark.place, remark.says)
+    }));
+    let totals = &check.totals;
+    let mut weighs = format!("total mass {}", figure(&totals.mass));
+    if let Some(x_cg) = &totals.x_cg {
+        weighs += &format!(", centre of gravity at x = {}", figure(x_cg));
+    }
+    if let Some(inertia) = &totals.inertia {
+        weighs += &format!(", inertia about it {}", figure(inertia));
+    }
+    lines.push(weighs);
+    if let Some(modes) = &check.modes {
+        lines.push(format!("{} at 0 Hz, and up to {:.0} Hz:", counted(modes.rigid, "rigid-body mode"), modes.to));
+        lines.extend(modes.modes.iter().map(|mode| {
+            let on_supports = if mode.on_supports { ", as rigid on its supports" } else { "" };
+            let ratio = 100.0 * mode.damping_ratio;
+            format!("  {}, damping ratio {ratio:.3} %{on_supports}", figure(&mode.frequency))
+        }));
+    }
+    if let Some(recording) = &check.recording {
+        lines.extend(recording.notes.iter().cloned());
+        lines.extend(of_recording(recording));
+    } else {
+        lines.push(format!("{} read; -o DIR writes what each of them means, and a page", counted(check.numbers.len(), "number")));
+    }
+    lines
+}
+
+/// The recording beside the fixture, a line each.
+fn of_recording(recording: &jointscope::check::RecordingCheck) -> Vec<String> {
+    let percent = |share: Option<f64>| share.map_or("–".to_owned(), |share| format!("{:.1} %", 100.0 * share));
+    let (from, to, count) = recording.lines;
+    let mut lines = vec![format!(
+        "{} on {count} lines from {from} to {to} Hz; distance from the fixture's as it stands (nrmse) {}:",
+        counted(recording.frfs.len(), "FRF"),
+        percent(recording.nrmse)
+    )];
+    lines.extend(recording.frfs.iter().map(|frf| {
+        let averages = frf.averages.map_or(String::new(), |n| format!(", {}", counted(n as usize, "average")));
+        let coherence = frf.coherence.map_or(String::new(), |c| format!(", coherence {:.3}", c.median));
+        format!("  {}: nrmse {}, noise {:.2} %{averages}{coherence}", frf.frf, percent(frf.nrmse), 100.0 * frf.noise)
+    }));
+    if let Some(modes) = &recording.modes {
+        let shown = modes.modes.iter().map(|mode| match mode.fixture {
+            Some(fixture) => format!("{:.1} Hz ({:+.1} %)", mode.frequency, 100.0 * (mode.frequency / fixture - 1.0)),
+            None => format!("{:.1} Hz (none of the fixture's)", mode.frequency),
+        });
+        let shown: Vec<String> = shown.collect();
+        lines.push(format!("modes of the recording, beside the fixture's: {}", shown.join(", ")));
+    }
+    match (&recording.mass_line, &recording.no_mass_line) {
+        (Some(line), _) => {
+            let told = line.mass.map_or("does not tell the total mass".to_owned(), |mass| {
+                format!("weighs {}", quantity(mass.value, mass.std, mass.unit))
+            });
+            lines.push(format!("from {:.1} to {:.1} Hz the recording {told}", line.band.0, line.band.1));
+        }
+        (None, Some(why)) => lines.push(format!("mass line not judged: {why}")),
+        (None, None) => {}
+    }
+    if !recording.without_recording.is_empty() {
+        lines.push(format!("nothing was recorded at points {}", recording.without_recording.join(", ")));
+    }
+    lines
+}

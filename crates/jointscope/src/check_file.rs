@@ -1,0 +1,8 @@
+use crate::file::value;
+use jointscope_check::Check;
+use serde_json::Value;
+
+/// The contents of `check.json`: the result as it is, SI units.
+pub fn check_file(check: &Check) -> Value {
+    value(check)
+}

@@ -1,0 +1,26 @@
+//! Every number of the fixture file.
+
+use jointscope_check::{Check, Known};
+
+use crate::format::quantity;
+use crate::section::Section;
+use crate::table::Table;
+
+pub(super) fn section(check: &Check) -> Section {
+    let table = Table::of(&check.numbers)
+        .names("number", |number| number.path.clone())
+        .words("value", |number| {
+            let std = number.std.filter(|std| *std > 0.0);
+            quantity(number.value, std, number.unit)
+        })
+        .words("its deviation", |number| match number.known {
+            Known::Stated => "stated",
+            Known::Default => "default",
+            Known::Unknown => "unknown: left free",
+            Known::Exact => "exact",
+        })
+        .words("means", |number| number.means.clone().unwrap_or_default());
+    Section::new("Every number").paragraph(
+        "What the file says, as the program reads it, with one standard deviation: the one that is stated, or the default of a bare number.",
+    ).with(table)
+}

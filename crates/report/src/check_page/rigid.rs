@@ -1,0 +1,44 @@
+//! The model's modes, beside the recording's.
+
+use jointscope_check::{ModelModes, RecordingCheck};
+
+use crate::format::{percent, significant};
+use crate::section::Section;
+use crate::table::Table;
+
+use super::hertz;
+
+pub(super) fn modes(modes: &ModelModes, recording: Option<&RecordingCheck>) -> Section {
+    let table = Table::of(&modes.modes)
+        .numbers("natural frequency", "Hz", |mode| hertz(mode.frequency.value, mode.frequency.std))
+        .numbers("damping ratio", "%", |mode| significant(100.0 * mode.damping_ratio, 3))
+        .words("", |mode| if mode.on_supports { "as rigid on its supports" } else { "" })
+        .footnote(format!(
+            "{} rigid-body mode{} at 0 Hz; modes up to {} Hz. The deviations are those that the fixture's own tolerances leave.",
+            modes.rigid,
+            if modes.rigid == 1 { "" } else { "s" },
+            significant(modes.to, 4)
+        ));
+    let section = Section::new("Modes of the model").with(table);
+    let Some(recording) = recording else { return section };
+    let Some(found) = &recording.modes else {
+        let why = recording.no_modes.as_deref().unwrap_or_default();
+        return section.paragraph(format!("No modes of the recording beside them: {why}."));
+    };
+    let shift = |mode: &&jointscope_check::ModePair| {
+        mode.fixture.map_or("–".to_owned(), |fixture| format!("{:+.2} %", 100.0 * (mode.frequency / fixture - 1.0)))
+    };
+    let beside = Table::of(&found.modes)
+        .caption("Modes of the recording, and the fixture's that they are by frequency and shape")
+        .numbers("recorded", "Hz", |mode| hertz(mode.frequency, Some(mode.std)))
+        .numbers("damping ratio", "%", |mode| significant(100.0 * mode.damping_ratio, 3))
+        .numbers("fixture", "Hz", |mode| mode.fixture.map_or("–".to_owned(), |hz| hertz(hz, None)))
+        .numbers("recorded is", "", shift)
+        .numbers("MAC", "", |mode| mode.mac.map_or("–".to_owned(), |mac| percent(mac, 0)));
+    let section = section.with(beside);
+    if found.missing.is_empty() {
+        return section;
+    }
+    let missing: Vec<String> = found.missing.iter().map(|hz| hertz(*hz, None)).collect();
+    section.paragraph(format!("The recording does not show the fixture's elastic modes at {} Hz.", missing.join(", ")))
+}
