@@ -32,17 +32,19 @@ const OFF: f64 = 1.25;
 const NOISIER: f64 = 5.0;
 const NOISE: f64 = 0.05;
 
+/// Share of FRFs that must be turned for the force, which all have in common, to be so.
+const ALL: f64 = 0.8;
+
+/// Whether next to all FRFs have the opposite sign to the fixture's: then it is the force that is recorded the other way round.
+pub(crate) fn all_turned(frfs: &[FrfCheck]) -> bool {
+    let turned = frfs.iter().filter(|frf| frf.sign.is_some_and(|sign| sign < TURNED)).count();
+    frfs.len() > 1 && turned as f64 > ALL * frfs.len() as f64
+}
+
 /// Responses, then references, each in the order of the FRFs.
 pub(crate) fn of(frfs: &[FrfCheck], remarks: &mut Vec<Remark>) -> Vec<ChannelCheck> {
     let turned = |frf: &FrfCheck| frf.sign.is_some_and(|sign| sign < TURNED);
     let upright = |frf: &FrfCheck| frf.sign.is_some_and(|sign| sign > UPRIGHT);
-    let all_turned = frfs.len() > 1 && frfs.iter().all(turned);
-    if all_turned {
-        remarks.push(Remark::odd(
-            "force",
-            "all FRFs have the opposite sign to the fixture's: the force is recorded the other way round; turn its direction with --map, or in the analyser",
-        ));
-    }
     let mut channels = Vec::new();
     for is_reference in [false, true] {
         let name = |frf: &FrfCheck| match is_reference {
@@ -67,7 +69,7 @@ pub(crate) fn of(frfs: &[FrfCheck], remarks: &mut Vec<Remark>) -> Vec<ChannelChe
         remarks.extend(channel.odd.iter().map(|says| Remark::odd(&channel.channel, says)));
     }
     let by_channel = channels.iter().any(|channel| channel.turned);
-    for frf in frfs.iter().filter(|frf| turned(frf) && !all_turned && !by_channel) {
+    for frf in frfs.iter().filter(|frf| turned(frf) && !by_channel) {
         remarks.push(Remark::odd(
             frf.frf.to_string(),
             "it has the opposite sign to the fixture's FRF, and neither all of its response nor of its reference have: check the directions of this record, and the points' order in the fixture",

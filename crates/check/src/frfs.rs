@@ -39,11 +39,7 @@ pub struct FrfCheck {
 const POOR: f64 = 0.8;
 
 /// The FRFs of a set of accelerances with variances, beside the fixture's, FRF after FRF.
-pub(crate) fn of(
-    frfs: &FrfSet,
-    sources: &[NoiseSource],
-    modelled: Option<&[Complex64]>,
-) -> Vec<FrfCheck> {
+pub(crate) fn of(frfs: &FrfSet, sources: &[NoiseSource], modelled: Option<&[Complex64]>) -> Vec<FrfCheck> {
     let count = frfs.lines().len();
     (0..frfs.pairs().len())
         .map(|index| {

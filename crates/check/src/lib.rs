@@ -105,7 +105,8 @@ impl Check {
         let mut remarks: Vec<Remark> = jointscope_screening::implausible(fixture)
             .into_iter()
             .map(|slip| {
-                let says = format!("{}{}; correct it, or insist on it with --as-stated", slip.problem, slip.advice);
+                let says =
+                    format!("{}{}; correct it, or insist on it with --as-stated", slip.problem, slip.advice);
                 Remark::wrong(slip.place, says)
             })
             .collect();
@@ -123,7 +124,7 @@ impl Check {
             }
         };
         if let (Some(recording), Some(modes)) = (&mut recording, &modes) {
-            recording.weigh(fixture, &totals, modes, &mut remarks);
+            recording.compare(fixture, &totals, modes, &mut remarks);
         }
         if *fixture.damping() == Damping::Undamped && !has_dashpots(fixture) {
             remarks.push(Remark::odd(

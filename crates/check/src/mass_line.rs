@@ -1,10 +1,11 @@
 //! The mass line: below its first bending mode a free structure moves as one rigid body, and its accelerances tell its mass.
 //!
-//! There A_ij = 1/M + (x_i − x_G)(x_j − x_G)/J, and what the bending modes add grows as ω². Real parts are fitted by a₀ + a₁ω² + a₂ω⁴ (on supports with
-//! a₋₁/ω² besides); the same fit is made to the fixture's own FRFs on the same lines, so that what it gets wrong is wrong in both. The a₀ of three or more
+//! There A_ij = 1/M + (x_i − x_G)(x_j − x_G)/J, and what the bending modes add grows as ω². Real parts are fitted by a₀ + a₁ω²/(1 − ω²/ω₁²) + a₂ω², the first
+//! bending mode and all others (on supports with a₋₁/ω² besides); the same fit is made to the fixture's own FRFs on the same lines. The a₀ of three or more
 //! FRFs at different places give mass, centre of gravity and inertia as the recording weighs them, linear in 1/M + x_G²/J, x_G/J and 1/J.
 
-use crate::{Figure, ModelModes, Totals};
+use crate::figure::deviations;
+use crate::{Figure, ModelModes, RecordedModes, Totals};
 use jointscope_fixture::{BodyKind, Fixture};
 use jointscope_linalg::LeastSquares;
 use jointscope_spectra::{Dof, FrfPair, FrfSet};
@@ -63,12 +64,18 @@ pub(crate) fn of(
     modelled: &[Complex64],
     totals: &Totals,
     modes: &ModelModes,
+    recorded: Option<&RecordedModes>,
 ) -> Result<MassLine, String> {
     if modes.rigid == 0 && modes.highest_on_supports() == 0.0 {
         return Err("the structure is held: it has no rigid-body motion to weigh it by".to_owned());
     }
-    let first = modes.first_elastic().ok_or("the model has no elastic mode above which a mass line would end")?;
-    let (low, high) = (BAND.0 * modes.highest_on_supports(), BAND.1 * first);
+    let first =
+        modes.first_elastic().ok_or("the model has no elastic mode above which a mass line would end")?;
+    // The recording's own first bending mode may lie lower than the fixture's.
+    let bending = recorded.iter().flat_map(|recorded| &recorded.modes).map(|mode| mode.frequency);
+    let lowest = bending.filter(|hz| *hz > BAND.0 * modes.highest_on_supports()).reduce(f64::min);
+    let own = lowest.unwrap_or(first);
+    let (low, high) = (BAND.0 * modes.highest_on_supports(), BAND.1 * own.min(first));
     let hz = frfs.lines().hz();
     let used: Vec<usize> = (0..hz.len()).filter(|&k| hz[k] > 0.0 && hz[k] >= low && hz[k] <= high).collect();
     if used.len() < FEWEST {
@@ -79,16 +86,15 @@ pub(crate) fn of(
     }
     let band = (hz[used[0]], hz[used[used.len() - 1]]);
     let supported = modes.highest_on_supports() > 0.0;
-    let transverse = |pair: &FrfPair| {
-        pair.response.dof == Dof::Translation && pair.reference.dof == Dof::Translation
-    };
+    let transverse =
+        |pair: &FrfPair| pair.response.dof == Dof::Translation && pair.reference.dof == Dof::Translation;
     let mut all = Vec::new();
     for index in (0..frfs.pairs().len()).filter(|&index| transverse(&frfs.pairs()[index])) {
         let variance = frfs.variance(index).unwrap_or_default();
         let weight = |k: usize| variance.get(k).map_or(1.0, |v| 1.0 / (0.5 * v).max(f64::MIN_POSITIVE));
-        let own = &modelled[index * hz.len()..(index + 1) * hz.len()];
-        let recorded = intercept(hz, frfs.values(index), &used, weight, supported);
-        let model = intercept(hz, own, &used, weight, supported);
+        let fixtures = &modelled[index * hz.len()..(index + 1) * hz.len()];
+        let recorded = intercept(hz, frfs.values(index), &used, weight, (supported, own));
+        let model = intercept(hz, fixtures, &used, weight, (supported, first));
         if let (Some((value, std)), Some((fixture, _))) = (recorded, model) {
             let recorded = Figure { value, std: Some(std), unit: "1/kg" };
             all.push(MassLineFrf { frf: frfs.pairs()[index].clone(), recorded, fixture, odd: false });
@@ -99,10 +105,19 @@ pub(crate) fn of(
         let apart = (line.recorded.value - line.fixture).abs();
         line.odd = apart > OFF_FRF * largest && apart > BEYOND * line.recorded.std.unwrap_or(0.0);
     }
-    let rotating = fixture.bodies().iter().all(|body| !matches!(&body.kind, BodyKind::Rigid(r) if !r.rotates));
-    let recorded = |line: &MassLineFrf| (line.recorded.value, line.recorded.std.unwrap_or(0.0).max(AT_BEST * largest));
+    let rotating =
+        fixture.bodies().iter().all(|body| !matches!(&body.kind, BodyKind::Rigid(r) if !r.rotates));
+    let recorded =
+        |line: &MassLineFrf| (line.recorded.value, line.recorded.std.unwrap_or(0.0).max(AT_BEST * largest));
     let fixtures = |line: &MassLineFrf| (line.fixture, AT_BEST * largest);
-    let mass = weighed(fixture, &all, recorded, rotating).filter(|(mass, std)| *std < TOLD * mass);
+    // Places that are not quite where they are said to be weigh more than noise.
+    let places = |mass: f64| {
+        let moved = |moved: &Fixture| Some(vec![weighed(moved, &all, recorded, rotating)?.0]);
+        deviations(fixture, &[mass], moved)[0].unwrap_or(f64::INFINITY)
+    };
+    let mass = weighed(fixture, &all, recorded, rotating);
+    let mass =
+        mass.map(|(mass, std)| (mass, std.hypot(places(mass)))).filter(|(mass, std)| *std < TOLD * mass);
     let fixture_mass = weighed(fixture, &all, fixtures, rotating).map(|(mass, _)| mass);
     // Where the fixture's own FRFs do not tell its mass, the recording's do not either.
     let fixture_mass = fixture_mass.filter(|mass| (mass / totals.mass.value - 1.0).abs() < OWN);
@@ -121,15 +136,14 @@ fn intercept(
     values: &[Complex64],
     used: &[usize],
     weight: impl Fn(usize) -> f64,
-    supported: bool,
+    (supported, first): (bool, f64),
 ) -> Option<(f64, f64)> {
-    let top = hz[*used.last()?];
     let unknowns = if supported { 4 } else { 3 };
     let mut fit = LeastSquares::new();
     fit.begin(unknowns);
     for &k in used {
-        let t = (hz[k] / top).powi(2);
-        let terms = [1.0, t, t * t, 1.0 / t];
+        let t = (hz[k] / first).powi(2);
+        let terms = [1.0, t / (1.0 - t), t, 1.0 / t];
         fit.equation(&terms[..unknowns], Complex64::from(values[k].re), weight(k));
     }
     let mut solution = [Complex64::ZERO; 4];

@@ -48,7 +48,11 @@ pub(crate) fn of(fixture: &Fixture, quantity: &NamedQuantity, total_mass: f64) -
             (low <= high).then(|| match value {
                 x if x < low => format!("left of its points by {}", millimetres(low - x)),
                 x if x > high => format!("right of its points by {}", millimetres(x - high)),
-                x => format!("{} right of its first point, {} left of its last", millimetres(x - low), millimetres(high - x)),
+                x => format!(
+                    "{} right of its first point, {} left of its last",
+                    millimetres(x - low),
+                    millimetres(high - x)
+                ),
             })
         }
         (_, Key::YoungsModulus) => Some(match material(value) {
@@ -121,7 +125,13 @@ fn engineering(value: f64, unit: &str) -> String {
         _ => (1.0, ""),
     };
     let value = value / factor;
-    let decimals = if value.abs() >= 100.0 { 0 } else if value.abs() >= 10.0 { 1 } else { 2 };
+    let decimals = if value.abs() >= 100.0 {
+        0
+    } else if value.abs() >= 10.0 {
+        1
+    } else {
+        2
+    };
     format!("{value:.decimals$} {prefix}{unit}")
 }
 
@@ -156,7 +166,10 @@ mod tests {
 
     #[test]
     fn inertia_centre_and_support_are_told_as_lengths_and_a_frequency() {
-        assert_eq!(means("bodies/A/inertia"), "radius of gyration 28.9 mm, that of a slender bar 100.0 mm long");
+        assert_eq!(
+            means("bodies/A/inertia"),
+            "radius of gyration 28.9 mm, that of a slender bar 100.0 mm long"
+        );
         assert_eq!(means("bodies/A/x_cg"), "30.0 mm right of its first point, 30.0 mm left of its last");
         let hz = (1000.0f64 / 2.142).sqrt() / TAU;
         assert_eq!(means("supports/G/stiffness"), format!("alone it carries the whole at {hz:.3} Hz"));

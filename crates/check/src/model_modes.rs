@@ -41,8 +41,8 @@ const LISTED: usize = 20;
 const BEYOND: f64 = 1.2;
 /// Share of the highest frequency below which a pole is at zero: rounding of a double one is the root of the machine's.
 const ZERO: f64 = 1e-6;
-/// A mode as rigid on supports is below this share of the next one.
-const SOFT: f64 = 0.5;
+/// Relative distance of natural frequencies with and without effects up to which a mode is the same one.
+const SAME: f64 = 0.1;
 
 impl ModelModes {
     /// The modes up to beyond `highest` (Hz), or up to where there are some.
@@ -60,8 +60,8 @@ impl ModelModes {
             let hz: Vec<f64> = moved.iter().take(nominal.len()).map(|pole| pole.norm() / TAU).collect();
             (hz.len() == nominal.len()).then_some(hz)
         });
-        let suspended = rigid_when_free(fixture, to).saturating_sub(rigid);
-        let soft = |k: usize| k < suspended && nominal.get(suspended).is_none_or(|next| nominal[k] < SOFT * next);
+        let suspended = on_supports(fixture, to);
+        let soft = |k: usize| suspended.iter().any(|hz| (hz / nominal[k] - 1.0).abs() < SAME);
         let modes = found.iter().zip(std).enumerate().map(|(k, (pole, std))| ModelMode {
             frequency: Figure { value: nominal[k], std, unit: "Hz" },
             damping_ratio: (-pole.re / pole.norm()).max(0.0),
@@ -103,11 +103,17 @@ fn poles(fixture: &Fixture, highest: f64) -> Result<(usize, Vec<Complex64>), Lum
     Ok((rigid, all))
 }
 
-/// Number of modes as rigid of the assembly without its supports.
-fn rigid_when_free(fixture: &Fixture, highest: f64) -> usize {
-    let ratios = Damping::ModalRatios { ratios: vec![Quantity::bare(0.01)], of: RatiosOf::Free };
-    let free = fixture.clone().with_damping(ratios).ok().and_then(|free| Assembly::new(&free, highest).ok());
-    free.map_or(0, |free| free.natural_frequencies_hz().iter().filter(|hz| **hz == 0.0).count())
+/// Natural frequencies (Hz) of the modes whose strain energy is in the supports, effects left aside.
+fn on_supports(fixture: &Fixture, highest: f64) -> Vec<f64> {
+    if fixture.supports().is_empty() {
+        return Vec::new();
+    }
+    let ratios = Damping::ModalRatios { ratios: vec![Quantity::bare(0.01)], of: RatiosOf::AsItStands };
+    let held = fixture.clone().with_damping(ratios).ok().and_then(|held| Assembly::new(&held, highest).ok());
+    let Some(held) = held else { return Vec::new() };
+    let hz = held.natural_frequencies_hz();
+    let suspended = (0..hz.len()).filter(|r| hz[*r] > 0.0 && !held.elastic_modes().contains(r));
+    suspended.map(|r| hz[r]).collect()
 }
 
 #[cfg(test)]
@@ -146,7 +152,9 @@ mod tests {
         let first = 4.730_040_745f64.powi(2) / (TAU * 0.25) * (2.1e11f64 * 7.2e-10 / 1.8).sqrt();
         assert_eq!(free.rigid, 2);
         assert!((free.first_elastic().unwrap() / first - 1.0).abs() < 1e-4, "{free:?} {first}");
-        let hung = beam(r#""supports": { "left": { "point": "1", "stiffness": 50 }, "right": { "point": "2", "stiffness": 50 } },"#);
+        let hung = beam(
+            r#""supports": { "left": { "point": "1", "stiffness": 50 }, "right": { "point": "2", "stiffness": 50 } },"#,
+        );
         assert_eq!((hung.rigid, hung.modes.iter().filter(|mode| mode.on_supports).count()), (0, 2));
         assert!((hung.first_elastic().unwrap() / first - 1.0).abs() < 1e-3);
     }

@@ -86,7 +86,11 @@ fn odd(quantity: &NamedQuantity, known: Known, remarks: &mut Vec<Remark>) {
     {
         remarks.push(Remark::odd(
             &quantity.path,
-            format!("a damping ratio of {} is {:.0} % of critical: 1 % is written 0.01", quantity.value, 100.0 * quantity.value),
+            format!(
+                "a damping ratio of {} is {:.0} % of critical: 1 % is written 0.01",
+                quantity.value,
+                100.0 * quantity.value
+            ),
         ));
     }
     let of_place = quantity.nature == jointscope_fixture::Nature::Abscissa;

@@ -1,7 +1,8 @@
 //! The recording's modes beside the fixture's.
 
+use crate::ModelModes;
 use jointscope_fixture::Fixture;
-use jointscope_modes::{ModalAnalysis, ModesOptions};
+use jointscope_modes::{ModalAnalysis, ModesError, ModesOptions};
 use jointscope_pipeline::measured_damping;
 use jointscope_spectra::FrfSet;
 use serde::Serialize;
@@ -32,16 +33,27 @@ pub struct RecordedModes {
 
 /// Values of FRFs above which a modal analysis takes longer than one waits for a check.
 const MOST: usize = 30_000;
+/// Orders beyond two for every mode of the model.
+const MORE: usize = 10;
 
 /// The modes of accelerances.
 ///
 /// # Errors
 /// Why there are none, in a sentence.
-pub(crate) fn of(fixture: &Fixture, frfs: &FrfSet) -> Result<RecordedModes, String> {
+pub(crate) fn of(fixture: &Fixture, frfs: &FrfSet, model: &ModelModes) -> Result<RecordedModes, String> {
     if frfs.all_values().len() > MOST {
         return Err("there are too many FRFs and lines for a quick look at their modes: `jointscope modes` takes its time".to_owned());
     }
-    let analysis = ModalAnalysis::of(frfs, &ModesOptions::default()).map_err(|error| error.to_string())?;
+    let last = frfs.lines().hz()[frfs.lines().len() - 1];
+    let expected = model.modes.iter().filter(|mode| mode.frequency.value <= last).count();
+    // No more than the model may have, and some: with all orders that a chart can have, ripples of the noise are looked at one by one.
+    let orders = Some((2, 2 * expected + MORE));
+    let quick = ModalAnalysis::of(frfs, &ModesOptions { orders, ..ModesOptions::default() });
+    let analysis = match quick {
+        Err(ModesError::Orders { .. }) => ModalAnalysis::of(frfs, &ModesOptions::default()),
+        quick => quick,
+    };
+    let analysis = analysis.map_err(|error| error.to_string())?;
     let matched = measured_damping(fixture, &analysis);
     let pairs = |index: usize| {
         let matched = matched.as_ref().ok()?;

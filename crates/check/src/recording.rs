@@ -52,6 +52,8 @@ pub struct RecordingCheck {
 
 /// Damping ratio with which the FRFs of a fixture without any are drawn.
 const ASSUMED: f64 = 0.005;
+/// Values of FRFs above which lines that contradict others take longer to find than one waits for a check.
+const MOST: usize = 30_000;
 
 impl RecordingCheck {
     pub(crate) fn of(
@@ -60,7 +62,15 @@ impl RecordingCheck {
         options: &CheckOptions,
         remarks: &mut Vec<Remark>,
     ) -> Result<Self, Error> {
-        let measured = at_one_level(measurement, options)?;
+        let mut measured = at_one_level(measurement, options)?;
+        if is_turned(&measured.frfs, fixture) {
+            // FRFs of the wrong sign are like none of the fixture's, and labels would be looked for that suit them better.
+            measured.frfs = measured.frfs.with_values(|_, value| -value);
+            remarks.push(Remark::wrong(
+                "force",
+                "next to all FRFs have the opposite sign to the fixture's: the force is recorded the other way round; turn it with --map, or in the file (for all that follows here it is turned)",
+            ));
+        }
         let screened = screened(&measured.frfs, fixture)?;
         remarks.extend(screened.oddities.iter().map(of_oddity));
         let fixture = &drawn(measured.as_recorded(fixture)?);
@@ -69,10 +79,14 @@ impl RecordingCheck {
             Err(_) => (screened.frfs.clone(), Vec::new()),
         };
         let modelled =
-            match accelerances(fixture, measured_frfs.pairs(), measured_frfs.lines(), Instrument::AsRecorded) {
+            match accelerances(fixture, measured_frfs.pairs(), measured_frfs.lines(), Instrument::AsRecorded)
+            {
                 Ok(values) => Some(values),
                 Err(error) => {
-                    remarks.push(Remark::wrong("fixture", format!("it has no FRFs to lay beside the recording's: {error}")));
+                    remarks.push(Remark::wrong(
+                        "fixture",
+                        format!("it has no FRFs to lay beside the recording's: {error}"),
+                    ));
                     None
                 }
             };
@@ -82,21 +96,25 @@ impl RecordingCheck {
         remarks.extend(driving_points.iter().filter_map(of_driving_point));
         let reciprocity = reciprocity::of(&measured_frfs);
         remarks.extend(reciprocity.iter().filter(|pair| pair.odd).map(of_reciprocity));
-        if let Ok(bands) = contradictory_lines(fixture, &screened.frfs) {
+        let mut notes = measured.notes;
+        if screened.frfs.all_values().len() > MOST {
+            notes.push("there are too many FRFs and lines for a quick look at lines that contradict all others: `jointscope diagnose` takes its time".to_owned());
+        } else if let Ok(bands) = contradictory_lines(fixture, &screened.frfs) {
             remarks.extend(bands.iter().map(|(from, to)| of_contradiction(*from, *to)));
         }
         remarks.extend(frfs.iter().filter_map(of_coherence));
-        let (modes, no_modes) = split(recorded_modes::of(fixture, &measured_frfs));
         let hz = measured_frfs.lines().hz();
         let recorded = |name: &str| {
-            let of = |pair: &jointscope_spectra::FrfPair| pair.response.point == name || pair.reference.point == name;
+            let of = |pair: &jointscope_spectra::FrfPair| {
+                pair.response.point == name || pair.reference.point == name
+            };
             measured_frfs.pairs().iter().any(of)
         };
         let joined: Vec<usize> = fixture.held_points().collect();
         let points = fixture.points().iter().enumerate();
         let without = points.filter(|(index, point)| !recorded(&point.name) && !joined.contains(index));
         Ok(RecordingCheck {
-            notes: measured.notes,
+            notes,
             lines: (hz[0], hz[hz.len() - 1], hz.len()),
             without_recording: without.map(|(_, point)| point.name.clone()).collect(),
             nrmse: modelled.as_deref().and_then(|modelled| nrmse(measured_frfs.all_values(), modelled)),
@@ -106,8 +124,8 @@ impl RecordingCheck {
             reciprocity,
             mass_line: None,
             no_mass_line: None,
-            modes,
-            no_modes,
+            modes: None,
+            no_modes: None,
             measured: measured_frfs,
             modelled,
         })
@@ -118,16 +136,20 @@ impl RecordingCheck {
         self.lines.1
     }
 
-    /// Holds the recording's mass line against the fixture's mass.
-    pub(crate) fn weigh(
+    /// Holds the recording's modes and mass line against the fixture's.
+    pub(crate) fn compare(
         &mut self,
         fixture: &Fixture,
         totals: &Totals,
         modes: &ModelModes,
         remarks: &mut Vec<Remark>,
     ) {
+        (self.modes, self.no_modes) =
+            split(recorded_modes::of(&drawn(fixture.clone()), &self.measured, modes));
         let found = match &self.modelled {
-            Some(modelled) => mass_line::of(fixture, &self.measured, modelled, totals, modes),
+            Some(modelled) => {
+                mass_line::of(fixture, &self.measured, modelled, totals, modes, self.modes.as_ref())
+            }
             None => Err("the fixture has no FRFs".to_owned()),
         };
         (self.mass_line, self.no_mass_line) = split(found);
@@ -147,7 +169,8 @@ impl RecordingCheck {
             ));
         }
         // All of them together are the mass; some of them are channels or points.
-        let odd: Vec<String> = line.frfs.iter().filter(|frf| frf.odd).map(|frf| frf.frf.to_string()).collect();
+        let odd: Vec<String> =
+            line.frfs.iter().filter(|frf| frf.odd).map(|frf| frf.frf.to_string()).collect();
         if !odd.is_empty() && !line.odd {
             remarks.push(Remark::odd(
                 "mass line",
@@ -158,6 +181,13 @@ impl RecordingCheck {
             ));
         }
     }
+}
+
+/// Whether next to all FRFs have the opposite sign to the fixture's.
+fn is_turned(measured: &FrfSet, fixture: &Fixture) -> bool {
+    let modelled =
+        accelerances(&drawn(fixture.clone()), measured.pairs(), measured.lines(), Instrument::AsRecorded);
+    modelled.is_ok_and(|modelled| channels::all_turned(&frfs::of(measured, &[], Some(&modelled))))
 }
 
 /// The FRFs at one level, the first where there are several.
@@ -226,7 +256,9 @@ fn of_driving_point(point: &DrivingPoint) -> Option<Remark> {
 
 fn of_reciprocity(pair: &Reciprocity) -> Remark {
     let level = match pair.level {
-        level if !(0.9..=1.1).contains(&level) => format!("; the first reads {level:.2} times the second, as a calibration would have it"),
+        level if !(0.9..=1.1).contains(&level) => {
+            format!("; the first reads {level:.2} times the second, as a calibration would have it")
+        }
         _ => String::new(),
     };
     Remark::odd(
@@ -240,8 +272,17 @@ fn of_reciprocity(pair: &Reciprocity) -> Remark {
 }
 
 fn of_contradiction(from: f64, to: f64) -> Remark {
-    let lines = if from == to { format!("the line at {from} Hz") } else { format!("the lines from {from} to {to} Hz") };
-    Remark::wrong("recording", format!("{lines} contradict all others, as mains hum, clipped peaks or a tone from elsewhere do: a diagnosis leaves them out"))
+    let lines = if from == to {
+        format!("the line at {from} Hz")
+    } else {
+        format!("the lines from {from} to {to} Hz")
+    };
+    Remark::wrong(
+        "recording",
+        format!(
+            "{lines} contradict all others, as mains hum, clipped peaks or a tone from elsewhere do: a diagnosis leaves them out"
+        ),
+    )
 }
 
 /// Share of poor lines from which an FRF's coherence is worth a word.
@@ -251,6 +292,10 @@ fn of_coherence(frf: &FrfCheck) -> Option<Remark> {
     let coherence = frf.coherence.filter(|coherence| coherence.low > POOR)?;
     Some(Remark::odd(
         frf.frf.to_string(),
-        format!("its coherence is below 0.8 on {:.0} % of the lines (median {:.2}): more averages, a harder tip, or no double hits", 100.0 * coherence.low, coherence.median),
+        format!(
+            "its coherence is below 0.8 on {:.0} % of the lines (median {:.2}): more averages, a harder tip, or no double hits",
+            100.0 * coherence.low,
+            coherence.median
+        ),
     ))
 }

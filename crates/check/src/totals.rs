@@ -36,9 +36,8 @@ impl Totals {
         let parts = parts(fixture);
         let nominal = sums(&parts);
         let std = deviations(fixture, &nominal, |moved| Some(sums(&self::parts(moved))));
-        let figure = |k: usize, unit| {
-            nominal[k].is_finite().then(|| Figure { value: nominal[k], std: std[k], unit })
-        };
+        let figure =
+            |k: usize, unit| nominal[k].is_finite().then(|| Figure { value: nominal[k], std: std[k], unit });
         Totals {
             mass: Figure { value: nominal[0], std: std[0], unit: "kg" },
             x_cg: figure(1, "m"),

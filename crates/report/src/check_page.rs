@@ -77,11 +77,20 @@ fn assembly(check: &Check, fixture: &Fixture) -> Section {
         .names("part", |part| part.path.clone())
         .numbers("mass", "kg", |part| significant(part.mass, 5))
         .numbers("x of its centre", "mm", |part| millimetres(part.x_cg))
-        .numbers("inertia about it", "kg*m^2", |part| part.inertia.map_or("–".to_owned(), |i| significant(i, 4)));
-    let channels = if check.recording.is_some() { ", responses (sensors) in blue and references (hammer) in green" } else { "" };
+        .numbers("inertia about it", "kg*m^2", |part| {
+            part.inertia.map_or("–".to_owned(), |i| significant(i, 4))
+        });
+    let channels = if check.recording.is_some() {
+        ", responses (sensors) in blue and references (hammer) in green"
+    } else {
+        ""
+    };
     Section::new("The assembly")
         .cards(cards)
-        .drawing(SideView::new(fixture, pairs).draw(), format!("Side view with all points{channels}. The outlines of blocks are sketched."))
+        .drawing(
+            SideView::new(fixture, pairs).draw(),
+            format!("Side view with all points{channels}. The outlines of blocks are sketched."),
+        )
         .with(table)
 }
 

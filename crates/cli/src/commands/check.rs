@@ -39,8 +39,7 @@ pub struct CheckArguments {
 /// Checks, writes `check.json` and `report.html` if a directory is given, and answers with what is odd and the figures that matter.
 pub fn run(arguments: &CheckArguments) -> Result<String, Refusal> {
     let fixture = FixtureFile::read(&arguments.fixture)?;
-    let recording =
-        RecordingArguments { files: arguments.files.clone(), reading: arguments.reading.clone() };
+    let recording = RecordingArguments { files: arguments.files.clone(), reading: arguments.reading.clone() };
     let measurement = match arguments.files.is_empty() {
         true => None,
         false => Some(recording.measurement(&fixture)?),
@@ -92,7 +91,11 @@ fn summary(check: &Check) -> Vec<String> {
     }
     lines.push(weighs);
     if let Some(modes) = &check.modes {
-        lines.push(format!("{} at 0 Hz, and up to {:.0} Hz:", counted(modes.rigid, "rigid-body mode"), modes.to));
+        lines.push(format!(
+            "{} at 0 Hz, and up to {:.0} Hz:",
+            counted(modes.rigid, "rigid-body mode"),
+            modes.to
+        ));
         lines.extend(modes.modes.iter().map(|mode| {
             let on_supports = if mode.on_supports { ", as rigid on its supports" } else { "" };
             let ratio = 100.0 * mode.damping_ratio;
@@ -103,14 +106,21 @@ fn summary(check: &Check) -> Vec<String> {
         lines.extend(recording.notes.iter().cloned());
         lines.extend(of_recording(recording));
     } else {
-        lines.push(format!("{} read; -o DIR writes what each of them means, and a page", counted(check.numbers.len(), "number")));
+        lines.push(format!(
+            "{} read; -o DIR writes what each of them means, and a page",
+            counted(check.numbers.len(), "number")
+        ));
     }
     lines
 }
 
+/// Modes that are listed at the most.
+const LISTED: usize = 8;
+
 /// The recording beside the fixture, a line each.
 fn of_recording(recording: &jointscope::check::RecordingCheck) -> Vec<String> {
-    let percent = |share: Option<f64>| share.map_or("–".to_owned(), |share| format!("{:.1} %", 100.0 * share));
+    let percent =
+        |share: Option<f64>| share.map_or("–".to_owned(), |share| format!("{:.1} %", 100.0 * share));
     let (from, to, count) = recording.lines;
     let mut lines = vec![format!(
         "{} on {count} lines from {from} to {to} Hz; distance from the fixture's as it stands (nrmse) {}:",
@@ -118,16 +128,28 @@ fn of_recording(recording: &jointscope::check::RecordingCheck) -> Vec<String> {
         percent(recording.nrmse)
     )];
     lines.extend(recording.frfs.iter().map(|frf| {
-        let averages = frf.averages.map_or(String::new(), |n| format!(", {}", counted(n as usize, "average")));
+        let averages =
+            frf.averages.map_or(String::new(), |n| format!(", {}", counted(n as usize, "average")));
         let coherence = frf.coherence.map_or(String::new(), |c| format!(", coherence {:.3}", c.median));
-        format!("  {}: nrmse {}, noise {:.2} %{averages}{coherence}", frf.frf, percent(frf.nrmse), 100.0 * frf.noise)
+        format!(
+            "  {}: nrmse {}, noise {:.2} %{averages}{coherence}",
+            frf.frf,
+            percent(frf.nrmse),
+            100.0 * frf.noise
+        )
     }));
     if let Some(modes) = &recording.modes {
         let shown = modes.modes.iter().map(|mode| match mode.fixture {
-            Some(fixture) => format!("{:.1} Hz ({:+.1} %)", mode.frequency, 100.0 * (mode.frequency / fixture - 1.0)),
+            Some(fixture) => {
+                format!("{:.1} Hz ({:+.1} %)", mode.frequency, 100.0 * (mode.frequency / fixture - 1.0))
+            }
             None => format!("{:.1} Hz (none of the fixture's)", mode.frequency),
         });
-        let shown: Vec<String> = shown.collect();
+        let mut shown: Vec<String> = shown.collect();
+        if shown.len() > LISTED {
+            let more = shown.split_off(LISTED).len();
+            shown.push(format!("and {more} more"));
+        }
         lines.push(format!("modes of the recording, beside the fixture's: {}", shown.join(", ")));
     }
     match (&recording.mass_line, &recording.no_mass_line) {

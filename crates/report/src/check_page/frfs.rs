@@ -2,7 +2,7 @@
 
 use jointscope_check::{DrivingPointVerdict, FrfCheck, RecordingCheck};
 
-use crate::format::{percent, quantity, significant};
+use crate::format::{percent, quantity, significant, trimmed};
 use crate::plot::{Curve, FrfPanes, Role, Style};
 use crate::section::{Section, Tone};
 use crate::table::Table;
@@ -21,7 +21,9 @@ fn or_dash(text: Option<String>) -> String {
 fn frfs(recording: &RecordingCheck) -> Section {
     let (from, to, count) = recording.lines;
     let coherence = |frf: &&FrfCheck| {
-        or_dash(frf.coherence.map(|c| format!("{} ({} below 0.8)", significant(c.median, 3), percent(c.low, 0))))
+        or_dash(
+            frf.coherence.map(|c| format!("{} ({} below 0.8)", significant(c.median, 3), percent(c.low, 0))),
+        )
     };
     let table = Table::of(&recording.frfs)
         .names("FRF", |frf| frf.frf.to_string())
@@ -33,9 +35,13 @@ fn frfs(recording: &RecordingCheck) -> Section {
         .numbers("level", "", |frf| or_dash(frf.level.map(|level| significant(level, 3))))
         .numbers("sign", "", |frf| or_dash(frf.sign.map(|sign| format!("{sign:+.2}"))))
         .footnote(
-            "nrmse: distance from the fixture's FRF as it stands. Level: median of recorded over the fixture's. Sign: mean cosine of the angle between them, 1 alike, −1 turned round. Noise: median over the lines.",
+            "nrmse: distance from the fixture's FRF as it stands. A narrow resonance that has moved by its width makes 100 % and more. Level: median of recorded over the fixture's. Sign: mean cosine of the angle between them, 1 alike, −1 turned round. Noise: median over the lines.",
         );
-    let lines = format!("{count} lines from {} to {} Hz.", significant(from, 5), significant(to, 6));
+    let lines = format!(
+        "{count} lines from {} to {} Hz.",
+        trimmed(&significant(from, 6)),
+        trimmed(&significant(to, 6))
+    );
     let section = Section::new("FRFs").paragraph(lines).with(table);
     match recording.without_recording.as_slice() {
         [] => section,
@@ -47,7 +53,9 @@ fn channels(recording: &RecordingCheck) -> Section {
     let table = Table::of(&recording.channels)
         .names("channel", |channel| channel.channel.clone())
         .numbers("FRFs", "", |channel| channel.frfs.to_string())
-        .numbers("level beside the others", "", |channel| or_dash(channel.level.map(|level| significant(level, 3))))
+        .numbers("level beside the others", "", |channel| {
+            or_dash(channel.level.map(|level| significant(level, 3)))
+        })
         .numbers("noise", "%", |channel| significant(100.0 * channel.noise, 2))
         .words("odd", |channel| channel.odd.join("; "))
         .marked(|channel| (!channel.odd.is_empty()).then_some(Tone::Attention));
@@ -140,7 +148,9 @@ fn overlays(recording: &RecordingCheck) -> Section {
             style: Style::Dashed,
             values: values.iter().map(|value| Some(*value)).collect(),
         };
-        let nrmse = recording.frfs[index].nrmse.map_or(String::new(), |nrmse| format!(", nrmse {}", percent(nrmse, 1)));
+        let nrmse = recording.frfs[index]
+            .nrmse
+            .map_or(String::new(), |nrmse| format!(", nrmse {}", percent(nrmse, 1)));
         let panes = FrfPanes {
             title: format!("FRF {name}{nrmse}"),
             phase_title: format!("Phase of FRF {name}"),

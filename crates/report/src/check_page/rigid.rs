@@ -26,7 +26,8 @@ pub(super) fn modes(modes: &ModelModes, recording: Option<&RecordingCheck>) -> S
         return section.paragraph(format!("No modes of the recording beside them: {why}."));
     };
     let shift = |mode: &&jointscope_check::ModePair| {
-        mode.fixture.map_or("–".to_owned(), |fixture| format!("{:+.2} %", 100.0 * (mode.frequency / fixture - 1.0)))
+        mode.fixture
+            .map_or("–".to_owned(), |fixture| format!("{:+.2} %", 100.0 * (mode.frequency / fixture - 1.0)))
     };
     let beside = Table::of(&found.modes)
         .caption("Modes of the recording, and the fixture's that they are by frequency and shape")
@@ -40,5 +41,8 @@ pub(super) fn modes(modes: &ModelModes, recording: Option<&RecordingCheck>) -> S
         return section;
     }
     let missing: Vec<String> = found.missing.iter().map(|hz| hertz(*hz, None)).collect();
-    section.paragraph(format!("The recording does not show the fixture's elastic modes at {} Hz.", missing.join(", ")))
+    section.paragraph(format!(
+        "The recording does not show the fixture's elastic modes at {} Hz.",
+        missing.join(", ")
+    ))
 }
