@@ -1,7 +1,7 @@
 //! Every number of a fixture file.
 
 use crate::{Remark, Totals, meaning};
-use jointscope_fixture::{Fixture, NamedQuantity, QuantityKey, Spread};
+use jointscope_fixture::{Fixture, NamedQuantity, QuantityKey, QuantityOwner, Spread};
 use serde::Serialize;
 
 /// How a number's deviation is known.
@@ -91,6 +91,12 @@ fn odd(quantity: &NamedQuantity, known: Known, remarks: &mut Vec<Remark>) {
                 quantity.value,
                 100.0 * quantity.value
             ),
+        ));
+    }
+    if let (QuantityOwner::Point(_), Known::Unknown) = (quantity.owner, known) {
+        remarks.push(Remark::odd(
+            &quantity.path,
+            "its place is unknown: measure it, and put it with its deviation, such as {\"value\": 0.031, \"std\": 0.0005}",
         ));
     }
     let of_place = quantity.nature == jointscope_fixture::Nature::Abscissa;

@@ -7,8 +7,10 @@ mod diagnose;
 mod estimate;
 mod export;
 mod fem;
+mod init;
 mod modes;
 mod prove;
+mod schema;
 mod simulate;
 mod synthesize;
 mod tables;
@@ -27,6 +29,10 @@ pub struct Program {
 
 #[derive(Debug, Subcommand)]
 enum Command {
+    /// A fixture file from dimensions and materials: two blocks and a strip, a frame, or a beam.
+    Init(init::InitArguments),
+    /// The JSON Schema of fixture files, with which editors complete and check them.
+    Schema(schema::SchemaArguments),
     /// What a fixture weighs, its modes, what every number of it means, and what is odd in each channel of its recordings: check.json and report.html.
     Check(check::CheckArguments),
     /// FRFs of an assembly, computed from its fixture file, its effects included.
@@ -57,6 +63,8 @@ impl Program {
     /// Runs the command; what it has done is told on standard output.
     pub fn run(&self) -> Result<String, Refusal> {
         match &self.command {
+            Command::Init(arguments) => init::run(arguments),
+            Command::Schema(arguments) => schema::run(arguments),
             Command::Check(arguments) => check::run(arguments),
             Command::Synthesize(arguments) => synthesize::run(arguments),
             Command::Estimate(arguments) => estimate::run(arguments),

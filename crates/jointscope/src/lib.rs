@@ -62,7 +62,7 @@
 //! ```
 //!
 //! The parts are crates of their own, re-exported as modules for what this page leaves out: [`uff`], [`recordings`],
-//! [`fixture`], [`spectra`], [`frf`], [`hits`], [`estimation`], [`beam`], [`damping`], [`lumped`], [`modes`], [`averaging`],
+//! [`fixture`], [`schema`], [`draft`], [`spectra`], [`frf`], [`hits`], [`estimation`], [`beam`], [`damping`], [`lumped`], [`modes`], [`averaging`],
 //! [`decomposition`], [`diagnosis`], [`nonlinear`], [`findings`], [`pipeline`], [`check`], [`fem`], [`comparison`], [`export`], [`tables`], [`proof`], [`report`].
 
 pub use jointscope_averaging as averaging;
@@ -72,6 +72,7 @@ pub use jointscope_comparison as comparison;
 pub use jointscope_damping as damping;
 pub use jointscope_decomposition as decomposition;
 pub use jointscope_diagnosis as diagnosis;
+pub use jointscope_draft as draft;
 pub use jointscope_estimation as estimation;
 pub use jointscope_export as export;
 pub use jointscope_fem as fem;
@@ -87,6 +88,7 @@ pub use jointscope_pipeline as pipeline;
 pub use jointscope_proof as proof;
 pub use jointscope_recordings as recordings;
 pub use jointscope_report as report;
+pub use jointscope_schema as schema;
 pub use jointscope_screening as screening;
 pub use jointscope_spectra as spectra;
 pub use jointscope_tables as tables;

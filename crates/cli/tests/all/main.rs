@@ -11,6 +11,7 @@ mod estimate;
 mod export;
 mod fem;
 mod hits;
+mod init;
 mod levels;
 mod modes;
 mod prove;

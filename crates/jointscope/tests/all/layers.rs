@@ -14,7 +14,14 @@ const FLOORS: [&[&str]; 12] = [
         "jointscope-hits",
         "jointscope-inference",
     ],
-    &["jointscope-damping", "jointscope-estimation", "jointscope-findings", "jointscope-recordings"],
+    &[
+        "jointscope-damping",
+        "jointscope-estimation",
+        "jointscope-findings",
+        "jointscope-recordings",
+        "jointscope-schema",
+        "jointscope-draft",
+    ],
     &["jointscope-fem", "jointscope-lumped", "jointscope-modes", "jointscope-rig"],
     &[
         "jointscope-comparison",

@@ -1,0 +1,149 @@
+//! `jointscope init`: dimensions and materials in, a fixture file with notes out.
+
+use std::collections::BTreeSet;
+use std::path::PathBuf;
+
+use clap::{ArgGroup, Args};
+use jointscope::draft::{Bar, Draft, Structure};
+use jointscope::recordings::FileChannel;
+
+use crate::input;
+use crate::output::Outputs;
+use crate::refusal::Refusal;
+use crate::values::positive;
+
+/// Bars are LENGTHxWIDTHxHEIGHT:MATERIAL in mm: LENGTH along x, WIDTH across, HEIGHT along y, the direction that is struck and measured. Materials: steel, stainless,
+/// aluminium, brass, copper, titanium, magnesium, cast-iron, glass, pmma, abs, or Young's modulus in Pa and density in kg/m^3, such as 2.07e11,7850.
+#[derive(Debug, Args)]
+#[command(group(ArgGroup::new("structure").required(true).args(["blocks", "frame", "beam"])))]
+pub struct InitArguments {
+    /// Two rigid blocks with a strip between them: one bar for both, or the left and the right one.
+    #[arg(long, value_name = "BAR", num_args = 1..=2, requires = "strip")]
+    pub blocks: Vec<Bar>,
+    /// The strip between the blocks.
+    #[arg(long, value_name = "BAR", requires = "blocks")]
+    pub strip: Option<Bar>,
+    /// A frame of so many storeys on columns.
+    #[arg(long, value_name = "STOREYS", requires = "columns", requires = "storey_mass")]
+    pub frame: Option<usize>,
+    /// Mass of a storey, kg.
+    #[arg(long, value_name = "KG", value_parser = kilograms, requires = "frame")]
+    pub storey_mass: Option<f64>,
+    /// One column of a storey, its LENGTH the storey's height, its HEIGHT the side along the motion.
+    #[arg(long, value_name = "BAR", requires = "frame")]
+    pub columns: Option<Bar>,
+    /// Columns of each storey.
+    #[arg(long, value_name = "N", default_value_t = 4, requires = "frame")]
+    pub column_count: usize,
+    /// A beam that bends.
+    #[arg(long, value_name = "BAR")]
+    pub beam: Option<Bar>,
+    /// The beam's left end is clamped.
+    #[arg(long, requires = "beam")]
+    pub clamped: bool,
+    /// One standard deviation of a dimension, mm.
+    #[arg(long, value_name = "MM", value_parser = millimetres, default_value = "0.1")]
+    pub ruler: f64,
+    /// Recordings whose nodes become the points; their places are to be filled in.
+    #[arg(long, value_name = "F.uff", num_args = 1..)]
+    pub points_from: Vec<PathBuf>,
+    /// Overwrite a fixture that is there already.
+    #[arg(long)]
+    pub force: bool,
+    /// The fixture file to write.
+    #[arg(short, long, value_name = "FIXTURE.json")]
+    pub output: PathBuf,
+}
+
+/// Drafts the fixture and writes it; answers with its notes, which also stand in the file.
+pub fn run(arguments: &InitArguments) -> Result<String, Refusal> {
+    let mut lines = Vec::new();
+    let points = points(&arguments.points_from, &mut lines)?;
+    let draft = Draft { structure: structure(arguments)?, ruler: 1e-3 * arguments.ruler, points };
+    let fixture = draft.fixture().map_err(Refusal::new)?;
+    if arguments.output.exists() && !arguments.force {
+        return Err(Refusal::at(
+            &arguments.output,
+            "is there already, and may hold work of yours; choose another `-o`, or overwrite it with --force",
+        ));
+    }
+    let mut outputs = Outputs::new(&arguments.points_from);
+    outputs.add(&arguments.output, fixture.to_json());
+    outputs.write()?;
+    let path = arguments.output.display();
+    let mut told = vec![format!("{path}: {}, {} points", fixture.name(), fixture.points().len())];
+    told.extend(fixture.notes().iter().map(|note| format!("  {note}")));
+    told.extend(lines);
+    told.push(format!("next: jointscope check {path}"));
+    Ok(told.join("\n"))
+}
+
+fn structure(arguments: &InitArguments) -> Result<Structure, Refusal> {
+    let InitArguments { blocks, strip, frame, storey_mass, columns, column_count, beam, clamped, .. } =
+        arguments;
+    match (blocks.as_slice(), strip, frame, storey_mass, columns, beam) {
+        ([a, rest @ ..], Some(strip), ..) => {
+            let b = rest.first().unwrap_or(a);
+            Ok(Structure::Blocks { blocks: [a.clone(), b.clone()], strip: strip.clone() })
+        }
+        ([], None, Some(storeys), Some(mass), Some(column), None) => Ok(Structure::Frame {
+            storeys: *storeys,
+            mass: *mass,
+            column: column.clone(),
+            columns: *column_count,
+        }),
+        ([], None, None, None, None, Some(bar)) => {
+            Ok(Structure::Beam { bar: bar.clone(), clamped: *clamped })
+        }
+        _ => Err(Refusal::new(
+            "what is to be drafted is not clear: `--blocks BAR --strip BAR`, `--frame N --storey-mass KG --columns BAR`, or `--beam BAR`",
+        )),
+    }
+}
+
+/// The nodes of recordings, as names of points, and what is to be said of their directions.
+fn points(files: &[PathBuf], lines: &mut Vec<String>) -> Result<Vec<String>, Refusal> {
+    let mut channels: BTreeSet<FileChannel> = BTreeSet::new();
+    for path in files {
+        let source = input::source(path)?;
+        let before = channels.len();
+        for dataset in &source.file.datasets {
+            channels.insert(FileChannel::from(&dataset.response));
+            // A time history is of one node: its reference means nothing.
+            if dataset.function != jointscope::uff::FunctionType::TimeResponse {
+                channels.insert(FileChannel::from(&dataset.reference));
+            }
+        }
+        if channels.len() == before && before == 0 {
+            return Err(Refusal::at(
+                path,
+                "there are no FRFs or time histories in it, so it has no points; choose a recording",
+            ));
+        }
+    }
+    let nodes: BTreeSet<i64> =
+        channels.iter().map(|channel| channel.node).filter(|node| *node != 0).collect();
+    let elsewhere: BTreeSet<String> = channels
+        .iter()
+        .filter(|channel| !matches!(channel.direction.abs(), 0 | 2 | 6) && nodes.contains(&channel.node))
+        .map(|channel| format!("{channel}={}:+y", channel.node))
+        .collect();
+    if !elsewhere.is_empty() {
+        let entries: Vec<String> = elsewhere.into_iter().collect();
+        lines.push(format!(
+            "the recording's directions are not ±y throughout: say with every command which of them are the fixture's, `--map {}`",
+            entries.join(" ")
+        ));
+    }
+    Ok(nodes.iter().map(i64::to_string).collect())
+}
+
+/// Reads a mass, above zero.
+fn kilograms(text: &str) -> Result<f64, String> {
+    positive(text).ok_or_else(|| "a mass in kg above zero is needed, such as 3.5".to_owned())
+}
+
+/// Reads a length, above zero.
+fn millimetres(text: &str) -> Result<f64, String> {
+    positive(text).ok_or_else(|| "a length in mm above zero is needed, such as 0.1".to_owned())
+}

@@ -1,0 +1,78 @@
+//! `jointscope init` and `jointscope schema` as a user runs them.
+
+use crate::common::{Bench, TWO_BLOCKS, shipped};
+
+#[test]
+fn every_draft_reads_checks_and_synthesizes() {
+    let bench = Bench::new("init");
+    let drafts: [(&str, &[&str], &str); 4] = [
+        ("blocks.json", &["--blocks", "50x50x80:steel", "--strip", "60x40x6:steel"], "4/1"),
+        ("frame.json", &["--frame", "3", "--storey-mass", "3.5", "--columns", "300x25x6:aluminium"], "3/1"),
+        ("beam.json", &["--beam", "500x40x6:steel"], "5/1"),
+        ("clamped.json", &["--beam", "500x40x6:7e10,2700", "--clamped"], "5/1"),
+    ];
+    for (file, options, frf) in drafts {
+        let arguments: Vec<&str> = ["init"].iter().chain(options).chain(&["-o", file]).copied().collect();
+        let said = bench.done(&arguments);
+        assert!(
+            said.contains("weigh") && said.ends_with(&format!("next: jointscope check {file}\n")),
+            "{said}"
+        );
+        bench.done(&["synthesize", file, "--frf", frf, "--lines", "1:1000:1", "-o", "frf.uff"]);
+        let checked = bench.done(&["check", file, "frf.uff"]);
+        assert!(checked.starts_with("Nothing odd in fixture and recording.\n"), "{file}: {checked}");
+        assert!(bench.json(file)["notes"].as_array().unwrap().len() > 2);
+    }
+    // The solid comes with the blocks.
+    assert!(bench.json("blocks.json")["geometry"]["bodies"]["A"].is_object());
+}
+
+#[test]
+fn points_of_a_recording_are_named_and_have_to_be_filled_in() {
+    let bench = Bench::new("init-points");
+    let recording = shipped().join("hammer-test.uff");
+    let recording = recording.to_str().unwrap();
+    let said = bench.done(&[
+        "init",
+        "--blocks",
+        "60x50x50:steel",
+        "--strip",
+        "65x30x5:steel",
+        "--points-from",
+        recording,
+        "-o",
+        "own.json",
+    ]);
+    assert!(said.contains("FILL IN: points 1, 2, 3, 4"), "{said}");
+    let checked = bench.done(&["check", "own.json"]);
+    assert!(checked.contains("! points/3/x: its place is unknown"), "{checked}");
+}
+
+#[test]
+fn what_cannot_be_drafted_is_refused_in_a_sentence_and_work_is_not_overwritten() {
+    let bench = Bench::new("init-refused");
+    bench.write("two.json", TWO_BLOCKS);
+    let blocks = ["init", "--blocks", "50x50x80:steel", "--strip", "60x40x6:steel", "-o", "two.json"];
+    bench.refused(&blocks, &["two.json", "is there already", "--force"]);
+    bench.refused(&["init", "-o", "new.json"], &["--blocks", "--frame", "--beam"]);
+    bench.refused(&["init", "--blocks", "50x50x80:steel", "-o", "new.json"], &["--strip"]);
+    bench.refused(&["init", "--beam", "500x40:steel", "-o", "new.json"], &["LENGTHxWIDTHxHEIGHT"]);
+    bench.refused(&["init", "--beam", "500x40x6:stel", "-o", "new.json"], &["no material `stel`", "steel"]);
+    bench.refused(
+        &["init", "--beam", "500x40x6:steel", "--points-from", "none.uff", "-o", "new.json"],
+        &["none.uff", "no such file"],
+    );
+    bench.refused(&["init", "--frame", "3", "-o", "new.json"], &["--columns"]);
+    bench.done(&[&blocks[..], &["--force"]].concat());
+    assert_eq!(bench.json("two.json")["name"], "two blocks and a strip");
+}
+
+#[test]
+fn the_schema_is_printed_or_written_and_is_one() {
+    let bench = Bench::new("schema");
+    let printed = bench.json_of(&["schema"]);
+    bench.done(&["schema", "-o", "fixture.schema.json"]);
+    assert_eq!(bench.json("fixture.schema.json"), printed);
+    assert_eq!(printed["$schema"], "https://json-schema.org/draft/2020-12/schema");
+    assert!(printed["properties"]["bodies"]["description"].as_str().unwrap().contains("rigid blocks"));
+}

@@ -1,0 +1,159 @@
+//! Drafted fixtures against closed forms.
+#![allow(clippy::unwrap_used)] // helpers of tests fail as tests do
+
+use jointscope_draft::{Bar, Draft, DraftError, Structure};
+use jointscope_fixture::{BodyKind, Fixture, JointLaw};
+use jointscope_lumped::Assembly;
+use std::f64::consts::{PI, TAU};
+
+fn bar(text: &str) -> Bar {
+    text.parse().unwrap()
+}
+
+fn near(found: f64, expected: f64, relative: f64) {
+    assert!((found / expected - 1.0).abs() < relative, "{found} instead of {expected}");
+}
+
+fn blocks() -> Fixture {
+    let structure = Structure::Blocks {
+        blocks: [bar("50x50x80:steel"), bar("40x60x30:aluminium")],
+        strip: bar("60x40x6:brass"),
+    };
+    Draft::new(structure).fixture().unwrap()
+}
+
+fn first_modes(fixture: &Fixture, highest: f64) -> Vec<f64> {
+    let hz = Assembly::new(fixture, highest).unwrap().natural_frequencies_hz();
+    hz.into_iter().filter(|hz| *hz > 0.0).collect()
+}
+
+#[test]
+fn blocks_weigh_and_turn_as_cuboids_do_and_the_strip_bends_as_a_rectangle() {
+    let fixture = blocks();
+    let expected = [(7850.0, 0.05, 0.05, 0.08, -0.025), (2700.0, 0.04, 0.06, 0.03, 0.08)];
+    for (body, (density, length, width, height, centre)) in fixture.bodies().iter().zip(expected) {
+        let BodyKind::Rigid(rigid) = &body.kind else { panic!("a block is rigid") };
+        let mass: f64 = density * length * width * height;
+        near(rigid.mass.value, mass, 1e-5);
+        near(rigid.inertia.unwrap().value, mass * (length * length + height * height) / 12.0, 1e-5);
+        near(rigid.x_cg.unwrap().value, centre, 1e-5);
+    }
+    let joint = fixture.joint("J").unwrap();
+    let JointLaw::Beam { youngs_modulus, second_moment } = &joint.law else { panic!("the strip is a beam") };
+    near(youngs_modulus.value * second_moment.value, 1e11 * 0.04 * 0.006f64.powi(3) / 12.0, 1e-5);
+    near(fixture.joint_length(joint), 0.06, 1e-9);
+    // The solid weighs the same.
+    let geometry = fixture.geometry().unwrap();
+    for (solid, body) in geometry.bodies.iter().zip(fixture.bodies()) {
+        let BodyKind::Rigid(rigid) = &body.kind else { panic!("a block is rigid") };
+        let material = &geometry.materials[solid.material].1;
+        near(solid.mass(material), rigid.mass.value, 1e-5);
+        near(solid.inertia(material), rigid.inertia.unwrap().value, 1e-5);
+    }
+}
+
+#[test]
+fn deviations_are_those_of_ruler_and_material() {
+    let fixture = blocks();
+    let quantity = |path: &str| {
+        let found = fixture.quantities().into_iter().find(|quantity| quantity.path == path).unwrap();
+        found.std.unwrap() / found.value.abs()
+    };
+    let mass = (0.005f64.powi(2) + (0.1f64 / 50.0).powi(2) * 2.0 + (0.1f64 / 80.0).powi(2)).sqrt();
+    near(quantity("bodies/A/mass"), mass, 0.05);
+    near(
+        quantity("joints/J/beam/second_moment"),
+        ((0.1f64 / 40.0).powi(2) + (0.3f64 / 6.0).powi(2)).sqrt(),
+        0.05,
+    );
+    near(quantity("joints/J/beam/youngs_modulus"), 0.05, 0.05);
+}
+
+#[test]
+fn beams_have_the_natural_frequencies_of_the_closed_form_free_and_clamped() {
+    let (modulus, density, length, height) = (7e10f64, 2700.0, 0.4f64, 0.005);
+    let beam =
+        |clamped| Draft::new(Structure::Beam { bar: bar("400x30x5:aluminium"), clamped }).fixture().unwrap();
+    // √(EI/ρA) of a rectangle is h √(E/12ρ).
+    let closed = |beta: f64| (beta / length).powi(2) / TAU * height * (modulus / (12.0 * density)).sqrt();
+    let free = first_modes(&beam(false), 1500.0);
+    for (hz, beta) in free.iter().zip([4.730_040_745, 7.853_204_624, 10.995_607_838]) {
+        near(*hz, closed(beta), 1e-3);
+    }
+    let clamped = first_modes(&beam(true), 1500.0);
+    for (hz, beta) in clamped.iter().zip([1.875_104_069, 4.694_091_133, 7.854_757_438]) {
+        // A clamp of finite stiffness lowers the third by 0.13 %.
+        near(*hz, closed(beta), 2e-3);
+    }
+}
+
+#[test]
+fn a_frame_of_equal_storeys_has_the_natural_frequencies_of_the_closed_form() {
+    let (storeys, mass) = (4, 3.5);
+    let structure = Structure::Frame { storeys, mass, column: bar("300x25x6:aluminium"), columns: 4 };
+    let fixture = Draft::new(structure).fixture().unwrap();
+    let stiffness: f64 = 4.0 * 12.0 * 7e10 * 0.025 * 0.006f64.powi(3) / 12.0 / 0.3f64.powi(3);
+    let modes = first_modes(&fixture, 500.0);
+    assert_eq!(modes.len(), storeys);
+    for (index, hz) in modes.iter().enumerate() {
+        let sine = ((2 * index + 1) as f64 * PI / (2.0 * (2 * storeys + 1) as f64)).sin();
+        near(*hz, 2.0 * (stiffness / mass).sqrt() * sine / TAU, 1e-4);
+    }
+}
+
+#[test]
+fn a_draft_that_is_written_and_read_again_is_the_same() {
+    let beam = Structure::Beam { bar: bar("500x40x6:2.1e11,7800"), clamped: true };
+    for structure in
+        [beam, Structure::Frame { storeys: 2, mass: 1.5, column: bar("200x20x2:steel"), columns: 2 }]
+    {
+        let fixture = Draft::new(structure).fixture().unwrap();
+        assert_eq!(Fixture::from_json(&fixture.to_json()).unwrap(), fixture);
+        assert!(fixture.notes().len() >= 3);
+    }
+    assert_eq!(Fixture::from_json(&blocks().to_json()).unwrap(), blocks());
+}
+
+#[test]
+fn points_of_a_recording_are_placeholders_that_the_notes_name() {
+    let points: Vec<String> = ["101", "102", "103", "104", "105"].map(String::from).to_vec();
+    let structure = Structure::Blocks {
+        blocks: [bar("50x50x50:steel"), bar("50x50x50:steel")],
+        strip: bar("60x40x6:steel"),
+    };
+    let draft = Draft { points: points.clone(), ..Draft::new(structure) };
+    let fixture = draft.fixture().unwrap();
+    let on = |name: &str| fixture.bodies()[fixture.point(name).unwrap().body].name.clone();
+    assert_eq!(points.iter().map(|name| on(name)).collect::<String>(), "AAABB");
+    let unknown: Vec<String> =
+        fixture.quantities().into_iter().filter(|q| q.std.is_none()).map(|q| q.path).collect();
+    assert!(points.iter().all(|name| unknown.contains(&format!("points/{name}/x"))), "{unknown:?}");
+    assert!(fixture.notes().iter().any(|note| note.starts_with("FILL IN") && note.contains("101, 102")));
+}
+
+#[test]
+fn what_cannot_be_built_is_told_in_a_sentence() {
+    let refused = |blocks: [&str; 2], strip: &str| {
+        let structure = Structure::Blocks { blocks: blocks.map(bar), strip: bar(strip) };
+        Draft::new(structure).fixture().unwrap_err().to_string()
+    };
+    let told = refused(["50x50x50:steel", "50x30x50:steel"], "60x40x6:steel");
+    assert!(told.contains("the strip is 40.0 mm wide and block B only 30.0 mm"), "{told}");
+    let frame = |storeys, mass| {
+        let structure = Structure::Frame { storeys, mass, column: bar("200x20x2:steel"), columns: 4 };
+        Draft::new(structure).fixture()
+    };
+    assert_eq!(frame(0, 1.0), Err(DraftError::Storeys { storeys: 0, columns: 4 }));
+    assert_eq!(frame(3, -1.0), Err(DraftError::Mass(-1.0)));
+    for (text, part) in [
+        ("60x40:steel", "LENGTHxWIDTHxHEIGHT"),
+        ("60x40x0:steel", "above zero"),
+        ("60x40x6", "60x40x6:steel"),
+        ("60x40x6:cheese", "take one of steel"),
+        ("60x40x6:2e11", "2.07e11,7850"),
+        ("60x40x6:nan,7800", "2.07e11,7850"),
+    ] {
+        let told = text.parse::<Bar>().unwrap_err().to_string();
+        assert!(told.contains(part), "{text}: {told}");
+    }
+}
