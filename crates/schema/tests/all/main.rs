@@ -1,6 +1,8 @@
 //! The schema beside the reader: what one takes, the other takes.
 #![allow(clippy::unwrap_used)] // helpers of tests fail as tests do
 
+mod documents;
+
 use jointscope_fixture::Fixture;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
