@@ -10,6 +10,7 @@ mod diagnose;
 mod estimate;
 mod export;
 mod fem;
+mod guide;
 mod hits;
 mod init;
 mod levels;

@@ -1,0 +1,63 @@
+//! The guide to a structure of one's own, typed along: its commands in their order, its excerpts put into the files that they name.
+
+use crate::common::Bench;
+use serde_json::Value;
+
+/// The guide's code blocks: what stands behind the fence, and the text.
+fn blocks() -> Vec<(String, String)> {
+    let page = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/guide/own-structure.md");
+    let page = std::fs::read_to_string(page).unwrap();
+    let mut all = Vec::new();
+    let mut lines = page.lines();
+    while let Some(line) = lines.next() {
+        if let Some(kind) = line.strip_prefix("```") {
+            let text: Vec<&str> = lines.by_ref().take_while(|line| *line != "```").collect();
+            all.push((kind.to_owned(), text.join("\n")));
+        }
+    }
+    all
+}
+
+/// Puts the keys of an excerpt into a fixture; a file that is not there yet is a copy of `fixture.json`.
+fn edit(bench: &Bench, file: &str, excerpt: &str) {
+    let from = if bench.0.join(file).exists() { file } else { "fixture.json" };
+    let mut fixture = bench.json(from);
+    let keys: Value = serde_json::from_str(&format!("{{{excerpt}}}")).unwrap();
+    for (key, value) in keys.as_object().unwrap() {
+        fixture[key] = value.clone();
+    }
+    bench.write(file, fixture.to_string());
+}
+
+#[test]
+fn the_first_own_structure_goes_from_ruler_to_finding_as_the_guide_says() {
+    let bench = Bench::new("guide");
+    let mut said: Vec<(String, String)> = Vec::new();
+    for (kind, text) in blocks() {
+        if let Some(file) = kind.strip_prefix("json excerpt ") {
+            edit(&bench, file, &text);
+            continue;
+        }
+        assert_eq!(kind, "sh", "{text}");
+        for line in text.lines() {
+            let words: Vec<&str> = line.split_whitespace().collect();
+            assert_eq!(words[0], "jointscope", "{line}");
+            said.push((line.to_owned(), bench.done(&words[1..])));
+        }
+    }
+    let of = |start: &str| {
+        let mut all = said.iter().filter(|(line, _)| line.starts_with(start));
+        all.next().unwrap_or_else(|| panic!("{start} is not in the guide")).1.as_str()
+    };
+    assert!(of("jointscope check fixture.json -o").starts_with("Nothing odd in the fixture."));
+    assert!(of("jointscope check fixture.json test.uff").starts_with("Nothing odd in fixture and recording."));
+    let finding = &bench.json("out/diagnosis.json")["findings"][0];
+    assert_eq!((&finding["kind"], &finding["place"]), (&"added_mass".into(), &"B".into()));
+    let mass = finding["parameters"]["mass"]["value"].as_f64().unwrap();
+    let x = finding["parameters"]["x"]["value"].as_f64().unwrap();
+    assert!((mass - 0.06).abs() < 0.003 && (x - 0.135).abs() < 0.001, "{finding}");
+    assert!(finding["probability"].as_f64().unwrap() > 0.9, "{finding}");
+    let before = bench.json("checked/check.json")["recording"]["nrmse"].as_f64().unwrap();
+    let after = bench.json("repaired/check.json")["recording"]["nrmse"].as_f64().unwrap();
+    assert!(before > 0.1 && after < 0.02, "{before} {after}");
+}
