@@ -69,10 +69,23 @@ pub(crate) fn of(frfs: &FrfSet, sources: &[NoiseSource], modelled: Option<&[Comp
         .collect()
 }
 
-fn nrmse(measured: &[Complex64], modelled: &[Complex64]) -> Option<f64> {
-    let apart: f64 = measured.iter().zip(modelled).map(|(a, b)| (a - b).norm_sqr()).sum();
-    let size: f64 = measured.iter().map(|a| a.norm_sqr()).sum();
-    (size > 0.0).then(|| (apart / size).sqrt())
+/// √(Σ|a − b|²/Σ|a|²); in parts of the largest value, for squares of absurd ones overflow.
+pub(crate) fn nrmse(measured: &[Complex64], modelled: &[Complex64]) -> Option<f64> {
+    let largest = measured.iter().chain(modelled).map(|value| value.norm()).fold(0.0, f64::max);
+    let apart: f64 = measured.iter().zip(modelled).map(|(a, b)| ((a - b) / largest).norm_sqr()).sum();
+    let size: f64 = measured.iter().map(|a| (a / largest).norm_sqr()).sum();
+    (size > 0.0 && apart.is_finite()).then(|| (apart / size).sqrt())
+}
+
+/// Times the median of an FRF's values from which one of them is none of a structure's: the highest peak of a damping ratio of 1e-5 is less.
+const ABSURD: f64 = 1e6;
+
+/// The frequency (Hz) of a value that no structure has beside the others of its FRF.
+pub(crate) fn absurd(frfs: &FrfSet, index: usize) -> Option<f64> {
+    let sizes: Vec<f64> = frfs.values(index).iter().map(|value| value.norm()).collect();
+    let usual = median(sizes.clone())?;
+    let line = sizes.iter().position(|size| usual > 0.0 && *size > ABSURD * usual)?;
+    Some(frfs.lines().hz()[line])
 }
 
 fn sign(measured: &[Complex64], modelled: &[Complex64]) -> Option<f64> {

@@ -105,8 +105,10 @@ impl Check {
         let mut remarks: Vec<Remark> = jointscope_screening::implausible(fixture)
             .into_iter()
             .map(|slip| {
-                let says =
-                    format!("{}{}; correct it, or insist on it with --as-stated", slip.problem, slip.advice);
+                let says = format!(
+                    "{}{}; correct it, or insist on it with `diagnose --as-stated`",
+                    slip.problem, slip.advice
+                );
                 Remark::wrong(slip.place, says)
             })
             .collect();
@@ -132,6 +134,13 @@ impl Check {
                 "none is stated: state `modal_ratios`, or measure them with `jointscope modes --fixture … --update …`; a diagnosis fits them without knowing anything of them",
             ));
         }
+        // What is wrong in itself need not be called odd besides.
+        let wrong: Vec<String> = remarks
+            .iter()
+            .filter(|remark| remark.weight == Weight::Wrong)
+            .map(|remark| remark.place.clone())
+            .collect();
+        remarks.retain(|remark| remark.weight == Weight::Wrong || !wrong.contains(&remark.place));
         remarks.sort_by_key(|remark| remark.weight);
         Ok(Check { name: fixture.name().to_owned(), remarks, totals, modes, numbers, recording })
     }

@@ -31,7 +31,7 @@ pub struct ModelModes {
     pub to: f64,
 }
 
-/// Frequency up to which modes are looked for without a recording, Hz, the factor by which it grows where there is none, and where that ends.
+/// Frequency up to which modes are looked for without a recording, Hz, the factor by which it grows where there is no mode, and where that ends.
 const TO: f64 = 2000.0;
 const FARTHER: f64 = 4.0;
 const FARTHEST: f64 = 1e6;
@@ -49,7 +49,7 @@ impl ModelModes {
     pub(crate) fn of(fixture: &Fixture, highest: Option<f64>) -> Result<Self, LumpedError> {
         let mut to = highest.map_or(TO, |highest| BEYOND * highest);
         let (mut rigid, mut found) = poles(fixture, to)?;
-        while highest.is_none() && found.is_empty() && to < FARTHEST {
+        while found.is_empty() && to < FARTHEST {
             to *= FARTHER;
             (rigid, found) = poles(fixture, to)?;
         }

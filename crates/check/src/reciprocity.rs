@@ -43,7 +43,8 @@ fn of_pair(frfs: &FrfSet, i: usize, j: usize) -> Reciprocity {
     let size: f64 = a.iter().zip(b).map(|(a, b)| (0.5 * (a + b)).norm_sqr()).sum();
     let noise: f64 = [i, j].iter().flat_map(|index| frfs.variance(*index).unwrap_or_default()).sum();
     let levels = a.iter().zip(b).map(|(a, b)| a.norm() / b.norm()).filter(|level| level.is_finite());
-    let relative = |square: f64| if size > 0.0 { (square / size).sqrt() } else { f64::MAX };
+    let relative =
+        |square: f64| Some((square / size).sqrt()).filter(|share| share.is_finite()).unwrap_or(f64::MAX);
     let (difference, expected) = (relative(apart), relative(noise));
     Reciprocity {
         frf: frfs.pairs()[i].clone(),

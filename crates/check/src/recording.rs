@@ -6,7 +6,7 @@ use crate::reciprocity::{self, Reciprocity};
 use crate::recorded_modes::{self, RecordedModes};
 use crate::{CheckOptions, FrfCheck, MassLine, ModelModes, Remark, Totals, frfs, has_dashpots, mass_line};
 use jointscope_diagnosis::contradictory_lines;
-use jointscope_fixture::{Damping, Fixture, Quantity, RatiosOf};
+use jointscope_fixture::{Damping, Effect, Fixture, Quantity, RatiosOf};
 use jointscope_frf::noise::with_variances;
 use jointscope_lumped::{Instrument, accelerances};
 use jointscope_pipeline::{Error, MeasuredFrfs, Measurement};
@@ -63,16 +63,20 @@ impl RecordingCheck {
         remarks: &mut Vec<Remark>,
     ) -> Result<Self, Error> {
         let mut measured = at_one_level(measurement, options)?;
-        if is_turned(&measured.frfs, fixture) {
+        let mut screened = self::screened(&measured.frfs, fixture)?;
+        // A receptance that is called an accelerance has the opposite sign as well.
+        let of_another_form = screened.oddities.iter().any(|oddity| matches!(oddity, Oddity::Form(_)));
+        if !of_another_form && is_turned(&measured.frfs, fixture) {
             // FRFs of the wrong sign are like none of the fixture's, and labels would be looked for that suit them better.
             measured.frfs = measured.frfs.with_values(|_, value| -value);
+            screened = self::screened(&measured.frfs, fixture)?;
             remarks.push(Remark::wrong(
                 "force",
                 "next to all FRFs have the opposite sign to the fixture's: the force is recorded the other way round; turn it with --map, or in the file (for all that follows here it is turned)",
             ));
         }
-        let screened = screened(&measured.frfs, fixture)?;
         remarks.extend(screened.oddities.iter().map(of_oddity));
+        let with_own_effects = fixture;
         let fixture = &drawn(measured.as_recorded(fixture)?);
         let (measured_frfs, sources) = match with_variances(&screened.frfs) {
             Ok(found) => found,
@@ -91,12 +95,21 @@ impl RecordingCheck {
                 }
             };
         let frfs = frfs::of(&measured_frfs, &sources, modelled.as_deref());
+        for (index, pair) in measured_frfs.pairs().iter().enumerate() {
+            remarks.extend(crate::frfs::absurd(&measured_frfs, index).map(|hz| {
+                let says = format!("its value at {hz} Hz is more than a million times its median: no structure has that; export it again, or leave that line out with --exclude");
+                Remark::wrong(pair.to_string(), says)
+            }));
+        }
         let channels = channels::of(&frfs, remarks);
         let driving_points = driving_point::of(&measured_frfs, measured.window_decay);
         remarks.extend(driving_points.iter().filter_map(of_driving_point));
         let reciprocity = reciprocity::of(&measured_frfs);
         remarks.extend(reciprocity.iter().filter(|pair| pair.odd).map(of_reciprocity));
         let mut notes = measured.notes;
+        if with_own_effects.physics().iter().any(|effect| effect.kind.is_nonlinear()) {
+            notes.push("effects of the fixture that depend on amplitude have no FRF: they are left aside beside the recording's".to_owned());
+        }
         if screened.frfs.all_values().len() > MOST {
             notes.push("there are too many FRFs and lines for a quick look at lines that contradict all others: `jointscope diagnose` takes its time".to_owned());
         } else if let Ok(bands) = contradictory_lines(fixture, &screened.frfs) {
@@ -117,7 +130,9 @@ impl RecordingCheck {
             notes,
             lines: (hz[0], hz[hz.len() - 1], hz.len()),
             without_recording: without.map(|(_, point)| point.name.clone()).collect(),
-            nrmse: modelled.as_deref().and_then(|modelled| nrmse(measured_frfs.all_values(), modelled)),
+            nrmse: modelled
+                .as_deref()
+                .and_then(|modelled| crate::frfs::nrmse(measured_frfs.all_values(), modelled)),
             frfs,
             channels,
             driving_points,
@@ -144,6 +159,15 @@ impl RecordingCheck {
         modes: &ModelModes,
         remarks: &mut Vec<Remark>,
     ) {
+        if let Some(first) = modes.first_elastic().filter(|first| *first > self.lines.1) {
+            remarks.push(Remark::odd(
+                "recording",
+                format!(
+                    "its lines end at {} Hz, below the first mode in which the fixture bends, at {first:.1} Hz: record farther, or correct the fixture",
+                    self.lines.1
+                ),
+            ));
+        }
         (self.modes, self.no_modes) =
             split(recorded_modes::of(&drawn(fixture.clone()), &self.measured, modes));
         let found = match &self.modelled {
@@ -208,19 +232,19 @@ fn at_one_level(measurement: &Measurement, options: &CheckOptions) -> Result<Mea
     Ok(measured)
 }
 
-/// The fixture with some damping, where it has none at all: resonances without any have no height to compare.
+/// The fixture as its FRFs are drawn: without effects that have none, and with some damping where it has none at all, for resonances without any have no height to compare.
 fn drawn(fixture: Fixture) -> Fixture {
+    let linear: Vec<Effect> =
+        fixture.physics().iter().filter(|effect| !effect.kind.is_nonlinear()).cloned().collect();
+    let fixture = match linear.len() == fixture.physics().len() {
+        true => fixture,
+        false => fixture.clone().with_physics(linear).unwrap_or(fixture),
+    };
     if *fixture.damping() != Damping::Undamped || has_dashpots(&fixture) {
         return fixture;
     }
     let ratios = Damping::ModalRatios { ratios: vec![Quantity::bare(ASSUMED)], of: RatiosOf::AsItStands };
     fixture.clone().with_damping(ratios).unwrap_or(fixture)
-}
-
-fn nrmse(measured: &[Complex64], modelled: &[Complex64]) -> Option<f64> {
-    let apart: f64 = measured.iter().zip(modelled).map(|(a, b)| (a - b).norm_sqr()).sum();
-    let size: f64 = measured.iter().map(|a| a.norm_sqr()).sum();
-    (size > 0.0).then(|| (apart / size).sqrt())
 }
 
 fn split<T>(found: Result<T, String>) -> (Option<T>, Option<String>) {

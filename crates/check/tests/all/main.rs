@@ -103,6 +103,18 @@ fn physics_that_the_fixture_leaves_out_is_no_slip() {
 }
 
 #[test]
+fn effects_that_depend_on_amplitude_are_left_aside_and_said() {
+    let cubic = json!([{ "kind": "cubic_stiffness", "place": "J", "dof": "translation", "stiffness3": 1e9 }]);
+    let check = check(&fixture(&[("/physics", cubic)]), recorded(&fixture(&[])));
+    assert!(check.remarks.is_empty(), "{:#?}", check.remarks);
+    let recording = check.recording.unwrap();
+    assert!(
+        recording.notes.iter().any(|note| note.contains("depend on amplitude"))
+            && recording.nrmse.unwrap() < 0.02
+    );
+}
+
+#[test]
 fn a_response_that_points_the_other_way_is_named_with_its_driving_point() {
     let fixture = fixture(&[]);
     let frfs = changed(&recorded(&fixture), |pair| pair.response.point == "4", |value, _| -value);
@@ -120,6 +132,31 @@ fn a_force_recorded_the_other_way_round_turns_all() {
     let check = check(&fixture, changed(&recorded(&fixture), |_| true, |value, _| -value));
     says(&check, "force", "opposite sign");
     assert!(check.recording.unwrap().channels.iter().all(|channel| !channel.turned));
+}
+
+#[test]
+fn a_receptance_that_is_called_an_accelerance_is_not_a_turned_force() {
+    let fixture = fixture(&[]);
+    let omega2 = |hz: f64| (2.0 * std::f64::consts::PI * hz).powi(2);
+    let check = check(&fixture, changed(&recorded(&fixture), |_| true, |value, hz| -value / omega2(hz)));
+    says(&check, "recording", "taken as receptance");
+    assert_eq!(check.remarks.len(), 1, "{:#?}", check.remarks);
+}
+
+#[test]
+fn an_absurd_value_and_lines_that_end_too_early_are_told() {
+    let fixture = fixture(&[]);
+    let absurd = changed(
+        &recorded(&fixture),
+        |pair| pair.to_string() == "3/1",
+        |value, hz| if hz == 500.0 { value * 1e300 } else { value },
+    );
+    let check_of_absurd = check(&fixture, absurd);
+    says(&check_of_absurd, "3/1", "at 500 Hz is more than a million times");
+    let numbers = |check: &Check| serde_json::to_string(check).unwrap();
+    assert!(!numbers(&check_of_absurd).contains("\"nrmse\":null"), "{}", numbers(&check_of_absurd));
+    let short = recorded(&fixture).on_lines(|line| line < 20).unwrap();
+    says(&check(&fixture, short), "recording", "its lines end at 52.5 Hz, below the first mode");
 }
 
 #[test]

@@ -50,7 +50,9 @@ fn the_first_own_structure_goes_from_ruler_to_finding_as_the_guide_says() {
         all.next().unwrap_or_else(|| panic!("{start} is not in the guide")).1.as_str()
     };
     assert!(of("jointscope check fixture.json -o").starts_with("Nothing odd in the fixture."));
-    assert!(of("jointscope check fixture.json test.uff").starts_with("Nothing odd in fixture and recording."));
+    assert!(
+        of("jointscope check fixture.json test.uff").starts_with("Nothing odd in fixture and recording.")
+    );
     let finding = &bench.json("out/diagnosis.json")["findings"][0];
     assert_eq!((&finding["kind"], &finding["place"]), (&"added_mass".into(), &"B".into()));
     let mass = finding["parameters"]["mass"]["value"].as_f64().unwrap();

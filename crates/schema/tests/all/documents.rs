@@ -53,7 +53,10 @@ fn every_example_of_a_fixture_in_the_documentation_reads_and_is_valid() {
                     let whole = object(&text, &place);
                     // Other files than fixtures are shown as well, on other pages.
                     if !whole.contains_key("bodies") {
-                        assert!(!place.ends_with("fixture-file.md"), "{place}: neither a fixture nor a fragment: {text}");
+                        assert!(
+                            !place.ends_with("fixture-file.md"),
+                            "{place}: neither a fixture nor a fragment: {text}"
+                        );
                         continue;
                     }
                     first.get_or_insert_with(|| whole.clone());
@@ -61,7 +64,8 @@ fn every_example_of_a_fixture_in_the_documentation_reads_and_is_valid() {
                 }
                 Block::Fragment(text) => {
                     fragments += 1;
-                    let mut fixture = first.clone().unwrap_or_else(|| panic!("{place}: a fragment before any fixture"));
+                    let mut fixture =
+                        first.clone().unwrap_or_else(|| panic!("{place}: a fragment before any fixture"));
                     fixture.extend(object(&format!("{{{text}}}"), &place));
                     fixture
                 }
@@ -81,7 +85,9 @@ fn every_example_of_a_fixture_in_the_documentation_reads_and_is_valid() {
 
 #[test]
 fn the_reference_names_every_effect_with_all_its_parameters_and_every_key() {
-    let page = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/reference/fixture-file.md"));
+    let page = std::fs::read_to_string(
+        Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/reference/fixture-file.md"),
+    );
     let page = page.unwrap();
     for kind in jointscope_fixture::EffectKind::ALL {
         let row = page.lines().find(|line| line.starts_with(&format!("| `{}` |", kind.name())));
@@ -93,11 +99,18 @@ fn the_reference_names_every_effect_with_all_its_parameters_and_every_key() {
     let schema = jointscope_schema::fixture_schema();
     let mut keys: Vec<&String> = schema["properties"].as_object().unwrap().keys().collect();
     for (name, definition) in schema["$defs"].as_object().unwrap() {
-        if !["Geometry", "Material", "BodySolid", "JointSolid", "Layer", "PointHeight"].contains(&name.as_str()) {
-            keys.extend(definition.get("properties").and_then(Value::as_object).into_iter().flat_map(Map::keys));
+        if !["Geometry", "Material", "BodySolid", "JointSolid", "Layer", "PointHeight"]
+            .contains(&name.as_str())
+        {
+            keys.extend(
+                definition.get("properties").and_then(Value::as_object).into_iter().flat_map(Map::keys),
+            );
         }
     }
     for key in keys {
-        assert!(page.contains(&format!("`{key}`")) || page.contains(&format!("\"{key}\"")), "`{key}` is missing");
+        assert!(
+            page.contains(&format!("`{key}`")) || page.contains(&format!("\"{key}\"")),
+            "`{key}` is missing"
+        );
     }
 }
