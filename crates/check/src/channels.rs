@@ -94,7 +94,7 @@ fn checked(
     let is_turned = own.iter().all(|frf| turned(frf)) && most_upright;
     let mut odd = Vec::new();
     if is_turned {
-        odd.push("its FRFs have the opposite sign to the fixture's, those of the other channels have not: it points the other way; turn its direction with --map, or correct the file".to_owned());
+        odd.push("its FRFs have the opposite sign to the fixture's, those of the other channels have not: it points the other way; turn its direction with --map, or correct the file (for modes and mass line here it is turned)".to_owned());
     }
     if let Some(level) = level
         && !(OFF.recip()..=OFF).contains(&level)

@@ -45,6 +45,9 @@ pub struct RecordingCheck {
     /// The FRFs as they are meant, with variances.
     #[serde(skip)]
     pub measured: FrfSet,
+    /// The same, channels that point the other way turned round: for modes and mass line.
+    #[serde(skip)]
+    upright: FrfSet,
     /// The fixture's, FRF after FRF.
     #[serde(skip)]
     pub modelled: Option<Vec<Complex64>>,
@@ -134,13 +137,14 @@ impl RecordingCheck {
                 .as_deref()
                 .and_then(|modelled| crate::frfs::nrmse(measured_frfs.all_values(), modelled)),
             frfs,
-            channels,
             driving_points,
             reciprocity,
             mass_line: None,
             no_mass_line: None,
             modes: None,
             no_modes: None,
+            upright: upright(&measured_frfs, &channels),
+            channels,
             measured: measured_frfs,
             modelled,
         })
@@ -169,10 +173,10 @@ impl RecordingCheck {
             ));
         }
         (self.modes, self.no_modes) =
-            split(recorded_modes::of(&drawn(fixture.clone()), &self.measured, modes));
+            split(recorded_modes::of(&drawn(fixture.clone()), &self.upright, modes));
         let found = match &self.modelled {
             Some(modelled) => {
-                mass_line::of(fixture, &self.measured, modelled, totals, modes, self.modes.as_ref())
+                mass_line::of(fixture, &self.upright, modelled, totals, modes, self.modes.as_ref())
             }
             None => Err("the fixture has no FRFs".to_owned()),
         };
@@ -245,6 +249,21 @@ fn drawn(fixture: Fixture) -> Fixture {
     }
     let ratios = Damping::ModalRatios { ratios: vec![Quantity::bare(ASSUMED)], of: RatiosOf::AsItStands };
     fixture.clone().with_damping(ratios).unwrap_or(fixture)
+}
+
+/// The FRFs with the channels turned round that point the other way.
+fn upright(measured: &FrfSet, channels: &[ChannelCheck]) -> FrfSet {
+    let turned = |name: String| channels.iter().any(|channel| channel.turned && channel.channel == name);
+    let signs: Vec<f64> = measured
+        .pairs()
+        .iter()
+        .map(|pair| {
+            let response = turned(format!("response {}", pair.response));
+            if response != turned(format!("reference {}", pair.reference)) { -1.0 } else { 1.0 }
+        })
+        .collect();
+    let count = measured.lines().len();
+    measured.clone().with_values(|at, value| value * signs[at / count])
 }
 
 fn split<T>(found: Result<T, String>) -> (Option<T>, Option<String>) {

@@ -17,7 +17,7 @@ pub(crate) fn spread(
         }
     }
     format!(
-        "FILL IN: points {} are the recording's; which body each is on and its x are placeholders (\"std\": \"unknown\"): put the body, and x in metres with its deviation, such as {{\"value\": 0.031, \"std\": 0.0005}}",
+        "FILL IN: the recording has points {}; which body each is on and its x are placeholders (\"std\": \"unknown\"): put the body, and x in metres with its deviation, such as {{\"value\": 0.031, \"std\": 0.0005}}",
         names.join(", ")
     )
 }

@@ -49,7 +49,7 @@ fn tone(weight: Weight) -> Tone {
 
 fn remarks(remarks: &[Remark]) -> Section {
     let table = Table::of(remarks)
-        .names("where", |remark| remark.place.clone())
+        .words("where", |remark| remark.place.clone())
         .words("what", |remark| remark.says.clone())
         .marked(|remark| Some(tone(remark.weight)));
     Section::new("What is odd").with(table)
@@ -74,7 +74,7 @@ fn assembly(check: &Check, fixture: &Fixture) -> Section {
     }
     let pairs = check.recording.iter().flat_map(|recording| recording.measured.pairs());
     let table = Table::of(&totals.parts)
-        .names("part", |part| part.path.clone())
+        .words("part", |part| part.path.clone())
         .numbers("mass", "kg", |part| significant(part.mass, 5))
         .numbers("x of its centre", "mm", |part| millimetres(part.x_cg))
         .numbers("inertia about it", "kg*m^2", |part| {

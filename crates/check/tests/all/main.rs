@@ -121,9 +121,12 @@ fn a_response_that_points_the_other_way_is_named_with_its_driving_point() {
     let check = check(&fixture, frfs);
     says(&check, "response 4", "opposite sign");
     says(&check, "4/4", "opposite ways");
+    let check_again = check.clone();
     let turned: Vec<String> =
         check.recording.unwrap().channels.into_iter().filter(|c| c.turned).map(|c| c.channel).collect();
     assert_eq!(turned, ["response 4"]);
+    // What it does to modes and mass line is not told a second time.
+    assert_eq!(check_again.remarks.iter().filter(|remark| remark.place == "mass line").count(), 0);
 }
 
 #[test]

@@ -121,7 +121,10 @@ const LISTED: usize = 8;
 fn of_recording(recording: &jointscope::check::RecordingCheck) -> Vec<String> {
     let percent =
         |share: Option<f64>| share.map_or("–".to_owned(), |share| format!("{:.1} %", 100.0 * share));
+    // To a tenth of a millihertz: lines carry rounding of their own.
+    let rounded = |hz: f64| (1e4 * hz).round() / 1e4;
     let (from, to, count) = recording.lines;
+    let (from, to) = (rounded(from), rounded(to));
     let mut lines = vec![format!(
         "{} on {count} lines from {from} to {to} Hz; distance from the fixture's as it stands (nrmse) {}:",
         counted(recording.frfs.len(), "FRF"),

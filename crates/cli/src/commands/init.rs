@@ -6,6 +6,7 @@ use std::path::PathBuf;
 use clap::{ArgGroup, Args};
 use jointscope::draft::{Bar, Draft, Structure};
 use jointscope::recordings::FileChannel;
+use jointscope::uff::FunctionType;
 
 use crate::input;
 use crate::output::Outputs;
@@ -105,24 +106,27 @@ fn structure(arguments: &InitArguments) -> Result<Structure, Refusal> {
 fn points(files: &[PathBuf], lines: &mut Vec<String>) -> Result<Vec<String>, Refusal> {
     let mut channels: BTreeSet<FileChannel> = BTreeSet::new();
     for path in files {
-        let source = input::source(path)?;
-        let before = channels.len();
-        for dataset in &source.file.datasets {
-            channels.insert(FileChannel::from(&dataset.response));
+        for dataset in &input::source(path)?.file.datasets {
+            if matches!(
+                dataset.function,
+                FunctionType::FrequencyResponse | FunctionType::Coherence | FunctionType::TimeResponse
+            ) {
+                channels.insert(FileChannel::from(&dataset.response));
+            }
             // A time history is of one node: its reference means nothing.
-            if dataset.function != jointscope::uff::FunctionType::TimeResponse {
+            if matches!(dataset.function, FunctionType::FrequencyResponse | FunctionType::Coherence) {
                 channels.insert(FileChannel::from(&dataset.reference));
             }
-        }
-        if channels.len() == before && before == 0 {
-            return Err(Refusal::at(
-                path,
-                "there are no FRFs or time histories in it, so it has no points; choose a recording",
-            ));
         }
     }
     let nodes: BTreeSet<i64> =
         channels.iter().map(|channel| channel.node).filter(|node| *node != 0).collect();
+    if nodes.is_empty() && !files.is_empty() {
+        return Err(Refusal::new(format_args!(
+            "{}: no FRF or time history in it names a node, so there are no points to take; number the channels in the analyser, or leave out --points-from",
+            input::names(files)
+        )));
+    }
     let elsewhere: BTreeSet<String> = channels
         .iter()
         .filter(|channel| !matches!(channel.direction.abs(), 0 | 2 | 6) && nodes.contains(&channel.node))

@@ -43,7 +43,7 @@ fn points_of_a_recording_are_named_and_have_to_be_filled_in() {
         "-o",
         "own.json",
     ]);
-    assert!(said.contains("FILL IN: points 1, 2, 3, 4"), "{said}");
+    assert!(said.contains("FILL IN: the recording has points 1, 2, 3, 4"), "{said}");
     let checked = bench.done(&["check", "own.json"]);
     assert!(checked.contains("! points/3/x: its place is unknown"), "{checked}");
 }

@@ -26,7 +26,7 @@ fn frfs(recording: &RecordingCheck) -> Section {
         )
     };
     let table = Table::of(&recording.frfs)
-        .names("FRF", |frf| frf.frf.to_string())
+        .words("FRF", |frf| frf.frf.to_string())
         .numbers("averages", "", |frf| or_dash(frf.averages.map(|n| n.to_string())))
         .words("coherence, median", coherence)
         .numbers("noise", "%", |frf| significant(100.0 * frf.noise, 2))
@@ -51,7 +51,7 @@ fn frfs(recording: &RecordingCheck) -> Section {
 
 fn channels(recording: &RecordingCheck) -> Section {
     let table = Table::of(&recording.channels)
-        .names("channel", |channel| channel.channel.clone())
+        .words("channel", |channel| channel.channel.clone())
         .numbers("FRFs", "", |channel| channel.frfs.to_string())
         .numbers("level beside the others", "", |channel| {
             or_dash(channel.level.map(|level| significant(level, 3)))
@@ -68,7 +68,7 @@ fn pairs(recording: &RecordingCheck) -> Section {
         [] => section.paragraph("There is no driving point: no sensor sits where the hammer strikes, so signs and places cannot be judged by one."),
         points => section.with(
             Table::of(points)
-                .names("driving point", |point| point.frf.to_string())
+                .words("driving point", |point| point.frf.to_string())
                 .numbers("lines judged", "", |point| point.judged_lines.to_string())
                 .numbers("power comes out on", "", |point| percent(point.negative, 1))
                 .words("so", |point| match point.verdict {
@@ -88,7 +88,7 @@ fn pairs(recording: &RecordingCheck) -> Section {
         [] => section.paragraph("No two FRFs are each other's reciprocal."),
         pairs => section.with(
             Table::of(pairs)
-                .names("FRFs", |pair| format!("{} and {}", pair.frf, pair.other))
+                .words("FRFs", |pair| format!("{} and {}", pair.frf, pair.other))
                 .numbers("apart", "", |pair| percent(pair.difference, 1))
                 .numbers("by noise", "", |pair| percent(pair.expected, 1))
                 .numbers("level", "", |pair| significant(pair.level, 3))
@@ -115,7 +115,7 @@ fn mass_line(recording: &RecordingCheck) -> Section {
         ))
         .with(
             Table::of(&line.frfs)
-                .names("FRF", |frf| frf.frf.to_string())
+                .words("FRF", |frf| frf.frf.to_string())
                 .words("recorded", |frf| quantity(frf.recorded.value, frf.recorded.std, "1/kg"))
                 .words("fixture", |frf| quantity(frf.fixture, None, "1/kg"))
                 .marked(|frf| frf.odd.then_some(Tone::Attention)),

@@ -8,7 +8,7 @@ use crate::table::Table;
 
 pub(super) fn section(check: &Check) -> Section {
     let table = Table::of(&check.numbers)
-        .names("number", |number| number.path.clone())
+        .words("number", |number| number.path.clone())
         .words("value", |number| {
             let std = number.std.filter(|std| *std > 0.0);
             quantity(number.value, std, number.unit)

@@ -42,7 +42,8 @@ pub(super) fn modes(modes: &ModelModes, recording: Option<&RecordingCheck>) -> S
     }
     let missing: Vec<String> = found.missing.iter().map(|hz| hertz(*hz, None)).collect();
     section.paragraph(format!(
-        "The recording does not show the fixture's elastic modes at {} Hz.",
+        "The recording does not show the fixture's elastic mode{} at {} Hz.",
+        if missing.len() == 1 { "" } else { "s" },
         missing.join(", ")
     ))
 }
