@@ -13,10 +13,12 @@ use crate::output::Outputs;
 use crate::refusal::Refusal;
 use crate::values::positive;
 
-/// Bars are LENGTHxWIDTHxHEIGHT:MATERIAL in mm: LENGTH along x, WIDTH across, HEIGHT along y, the direction that is struck and measured. Materials: steel, stainless,
-/// aluminium, brass, copper, titanium, magnesium, cast-iron, glass, pmma, abs, or Young's modulus in Pa and density in kg/m^3, such as 2.07e11,7850.
+/// How bars are written.
+const BARS: &str = "BAR is LENGTHxWIDTHxHEIGHT:MATERIAL in mm, such as 60x40x6:steel: LENGTH along x, WIDTH across, HEIGHT along y, the direction that is struck and measured.
+MATERIAL is steel, stainless, aluminium, brass, copper, titanium, magnesium, cast-iron, glass, pmma or abs, or Young's modulus in Pa and density in kg/m^3, such as 2.07e11,7850.";
+
 #[derive(Debug, Args)]
-#[command(group(ArgGroup::new("structure").required(true).args(["blocks", "frame", "beam"])))]
+#[command(after_help = BARS, group(ArgGroup::new("structure").required(true).args(["blocks", "frame", "beam"])))]
 pub struct InitArguments {
     /// Two rigid blocks with a strip between them: one bar for both, or the left and the right one.
     #[arg(long, value_name = "BAR", num_args = 1..=2, requires = "strip")]

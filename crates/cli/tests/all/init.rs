@@ -28,6 +28,12 @@ fn every_draft_reads_checks_and_synthesizes() {
 }
 
 #[test]
+fn the_help_says_how_bars_are_written() {
+    let help = Bench::new("init-help").done(&["init", "--help"]);
+    assert!(help.contains("LENGTHxWIDTHxHEIGHT:MATERIAL in mm") && help.contains("pmma"), "{help}");
+}
+
+#[test]
 fn points_of_a_recording_are_named_and_have_to_be_filled_in() {
     let bench = Bench::new("init-points");
     let recording = shipped().join("hammer-test.uff");
