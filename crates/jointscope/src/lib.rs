@@ -61,7 +61,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! The parts are crates of their own, re-exported as modules for what this page leaves out: [`uff`], [`recordings`],
+//! The parts are crates of their own, re-exported as modules for what this page leaves out: [`uff`], [`import`], [`recordings`],
 //! [`fixture`], [`spectra`], [`frf`], [`hits`], [`estimation`], [`beam`], [`damping`], [`lumped`], [`modes`], [`averaging`],
 //! [`decomposition`], [`diagnosis`], [`nonlinear`], [`findings`], [`pipeline`], [`fem`], [`comparison`], [`export`], [`tables`], [`proof`], [`report`].
 
@@ -78,6 +78,7 @@ pub use jointscope_findings as findings;
 pub use jointscope_fixture as fixture;
 pub use jointscope_frf as frf;
 pub use jointscope_hits as hits;
+pub use jointscope_import as import;
 pub use jointscope_linalg as linalg;
 pub use jointscope_lumped as lumped;
 pub use jointscope_modes as modes;

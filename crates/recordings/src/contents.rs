@@ -12,6 +12,8 @@ use crate::function::functions;
 /// What the files of a test hold.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct Contents {
+    /// Number of files with a header (dataset 151).
+    pub headers: usize,
     /// Who wrote the files, where they say.
     pub written_by: Vec<String>,
     /// Unit systems (dataset 164) in force.
@@ -44,7 +46,7 @@ pub struct FunctionKind {
     /// Function type of the format.
     pub function_type: i32,
     /// What they measure: `acceleration per excitation force`, `pressure`, …
-    pub quantity: String,
+    pub quantity: Option<String>,
     /// Unit labels as stored.
     pub units: String,
     /// How many there are.
@@ -84,6 +86,7 @@ impl Contents {
         let mut all = Contents::default();
         for file in sources.iter().map(|source| &source.file) {
             if let Some(header) = &file.header {
+                all.headers += 1;
                 push_new(&mut all.written_by, header.written_by.clone());
             }
             let functions = file.datasets.iter().filter_map(|dataset| dataset.units.as_ref());
@@ -105,9 +108,11 @@ impl Contents {
             for (number, count) in &file.skipped {
                 *all.other_datasets.entry(*number).or_default() += count;
             }
-            all.unreadable.extend(file.unreadable.iter().map(|dataset| {
-                format!("dataset {} cannot be read: {}", dataset.number, dataset.error)
-            }));
+            all.unreadable.extend(
+                file.unreadable
+                    .iter()
+                    .map(|dataset| format!("dataset {} cannot be read: {}", dataset.number, dataset.error)),
+            );
         }
         for function in functions(sources) {
             let channel = match function.dataset.function {
@@ -122,7 +127,9 @@ impl Contents {
     fn add(&mut self, dataset: &Dataset58, channel: String) {
         let kind = function_kind(dataset);
         let same = |other: &&mut FunctionKind| {
-            let fields = |k: &FunctionKind| (k.function_type, k.quantity.clone(), k.units.clone(), k.values, k.stated_values);
+            let fields = |k: &FunctionKind| {
+                (k.function_type, k.quantity.clone(), k.units.clone(), k.values, k.stated_values)
+            };
             fields(other) == fields(&kind) && (other.from, other.to) == (kind.from, kind.to)
         };
         match self.functions.iter_mut().find(same) {
@@ -139,10 +146,11 @@ impl Contents {
         let mut parts: Vec<String> = Vec::new();
         let mut by_type: BTreeMap<(i32, &str, &str), usize> = BTreeMap::new();
         for kind in &self.functions {
-            let quantity = if kind.function_type == 1 { kind.quantity.as_str() } else { "" };
+            let quantity = kind.quantity.as_deref().filter(|_| kind.function_type == 1).unwrap_or_default();
             *by_type.entry((kind.function_type, &kind.what, quantity)).or_default() += kind.count;
         }
         parts.extend(by_type.into_iter().map(|((code, what, quantity), count)| match code {
+            1 if quantity.is_empty() => counted(count, what),
             1 => format!("{} ({quantity})", counted(count, what)),
             _ => format!("{} (function type {code})", counted(count, what)),
         }));
@@ -156,7 +164,11 @@ impl Contents {
         if !self.unreadable.is_empty() {
             parts.push(format!("{} that cannot be read", counted(self.unreadable.len(), "dataset")));
         }
-        if parts.is_empty() { "nothing".to_owned() } else { enumeration(parts) }
+        match (parts.is_empty(), self.headers) {
+            (false, _) => enumeration(parts),
+            (true, 0) => "nothing".to_owned(),
+            (true, _) => "a header (dataset 151) and nothing else".to_owned(),
+        }
     }
 
     fn mesh(&self) -> Option<String> {
@@ -195,11 +207,12 @@ impl Contents {
             let stated = kind.stated_values.map_or(String::new(), |stated| {
                 format!(" of the {} that the header states", thousands(stated))
             });
-            let units = if kind.units.is_empty() { "no unit stated" } else { &kind.units };
+            let quantity = kind.quantity.as_ref().map_or(String::new(), |quantity| format!(" of {quantity}"));
+            let units =
+                if kind.units.is_empty() { ", no unit stated".into() } else { format!(" in {}", kind.units) };
             lines.push(format!(
-                "{} of {} in {units}: {} values{stated} from {} to {} {}; channels {}",
+                "{}{quantity}{units}: {} values{stated} from {} to {} {}; channels {}",
                 counted(kind.count, &kind.what),
-                kind.quantity,
                 thousands(kind.values),
                 short(kind.from),
                 short(kind.to),
@@ -213,11 +226,17 @@ impl Contents {
         }
         lines.extend(self.modes_phrase());
         for (index, mode) in self.modes.iter().enumerate().take(SHOWN_MODES) {
-            let frequency = mode.frequency.map_or("no frequency stated".into(), |f| format!("{} Hz", short(f)));
-            let damping =
-                mode.damping_ratio.map_or(String::new(), |d| format!(", damping ratio {} %", short(100.0 * d)));
+            let frequency =
+                mode.frequency.map_or("no frequency stated".into(), |f| format!("{} Hz", short(f)));
+            let damping = mode
+                .damping_ratio
+                .map_or(String::new(), |d| format!(", damping ratio {} %", short(100.0 * d)));
             let complex = if mode.complex { ", complex" } else { "" };
-            lines.push(format!("  {}. {frequency}{damping}, {}{complex}", index + 1, counted(mode.nodes, "node")));
+            lines.push(format!(
+                "  {}. {frequency}{damping}, {}{complex}",
+                index + 1,
+                counted(mode.nodes, "node")
+            ));
         }
         if self.modes.len() > SHOWN_MODES {
             lines.push(format!("  and {} more", self.modes.len() - SHOWN_MODES));
@@ -254,7 +273,7 @@ fn mode_shape(data: &NodalData) -> ModeShape {
 }
 
 fn data_name(data: &NodalData) -> String {
-    let quantity = quantity_name(i32::try_from(data.quantity).unwrap_or(0));
+    let quantity = quantity_name(i32::try_from(data.quantity).unwrap_or(0)).unwrap_or("data");
     match data.location {
         Location::Nodes => format!("{quantity} at {}", counted(data.values.len(), "node")),
         Location::Other(2) => format!("{quantity} on elements"),
@@ -265,13 +284,12 @@ fn data_name(data: &NodalData) -> String {
 
 fn function_kind(dataset: &Dataset58) -> FunctionKind {
     let (numerator, denominator) = (&dataset.ordinate_axis, &dataset.denominator_axis);
-    let ratio = denominator.data_type != data_type::UNKNOWN;
     let label = |text: &str| {
         let text = text.trim();
         if text.eq_ignore_ascii_case("none") { String::new() } else { text.to_owned() }
     };
     let mut units = label(&numerator.units);
-    if ratio && !label(&denominator.units).is_empty() && !units.contains('/') {
+    if !label(&denominator.units).is_empty() {
         units = format!("{units} per {}", label(&denominator.units));
     }
     let count = dataset.data.len();
@@ -279,9 +297,9 @@ fn function_kind(dataset: &Dataset58) -> FunctionKind {
     FunctionKind {
         what: function_name(dataset.function).to_owned(),
         function_type: dataset.function.code(),
-        quantity: match ratio {
-            true => format!("{} per {}", quantity_name(numerator.data_type), quantity_name(denominator.data_type)),
-            false => quantity_name(numerator.data_type).to_owned(),
+        quantity: match (quantity_name(numerator.data_type), quantity_name(denominator.data_type)) {
+            (Some(numerator), Some(denominator)) => Some(format!("{numerator} per {denominator}")),
+            (numerator, _) => numerator.map(str::to_owned),
         },
         units,
         count: 1,
@@ -317,8 +335,8 @@ fn function_name(function: FunctionType) -> &'static str {
 }
 
 /// What a quantity is; for those of dataset 58 and of 55 and 2414, whose codes agree where both have them.
-fn quantity_name(code: i32) -> &'static str {
-    match code {
+fn quantity_name(code: i32) -> Option<&'static str> {
+    Some(match code {
         data_type::STRESS => "stress",
         data_type::STRAIN => "strain",
         4 => "element force",
@@ -332,8 +350,8 @@ fn quantity_name(code: i32) -> &'static str {
         data_type::PRESSURE => "pressure",
         data_type::MASS => "mass",
         94 => "a scalar",
-        _ => "a quantity that is not stated",
-    }
+        _ => return None,
+    })
 }
 
 /// A dataset that is not read, named where many programs write it.

@@ -153,7 +153,7 @@ pub enum RecordingError {
     },
     /// Time histories only.
     #[error(
-        "{files}: there {} and no FRF; {}", histories(*count), remedy(*forces)
+        "{files}: there {} and no FRF; {}", histories(*count), remedy(*count, *forces)
     )]
     OnlyTimeHistories {
         /// The files.
@@ -221,10 +221,13 @@ fn histories(count: usize) -> String {
     if count == 1 { "is 1 time history".to_owned() } else { format!("are {count} time histories") }
 }
 
-fn remedy(forces: bool) -> &'static str {
-    match forces {
-        true => "make FRFs of them first: `jointscope estimate`",
-        false => {
+fn remedy(count: usize, forces: bool) -> &'static str {
+    match (forces, count) {
+        (true, _) => "make FRFs of them first: `jointscope estimate`",
+        (false, 1) => {
+            "it is no force (ordinate type 13), without which there is no FRF: give the file that holds it, or export the FRFs as dataset 58"
+        }
+        (false, _) => {
             "none of them is a force (ordinate type 13), without which there is no FRF: give the file that holds it, or export the FRFs as dataset 58"
         }
     }

@@ -5,8 +5,8 @@ use jointscope_spectra::{FrfForm, FrfSet, SpectralLines};
 use jointscope_uff::UffFile;
 
 use crate::coherence::CoherenceNotes;
-use crate::error::enumeration;
 use crate::contents::Contents;
+use crate::error::enumeration;
 use crate::function::{LinesCache, append_accelerances, functions};
 use crate::gather::{Entry, Gathered, example, gather, in_order, points};
 use crate::ordinate::{Ordinate, UnitNotes, may_be_force, ordinate};

@@ -15,7 +15,9 @@ fn main() -> Result<(), Box<dyn Error>> {
     let option = |name: &str| {
         arguments.iter().position(|argument| argument == name).and_then(|at| arguments.get(at + 1))
     };
-    let bytes = std::fs::read(arguments.first().ok_or("usage: dump FILE [--values OUT] [--beside] [--time REPEATS]")?)?;
+    let bytes = std::fs::read(
+        arguments.first().ok_or("usage: dump FILE [--values OUT] [--beside] [--time REPEATS]")?,
+    )?;
     if let Some(repeats) = option("--time") {
         let mut best = f64::INFINITY;
         for _ in 0..repeats.parse::<usize>()? {
@@ -53,7 +55,8 @@ fn beside(file: &UffFile) {
         println!("node {} {} {x:e} {y:e} {z:e}", node.label, node.displacement_system);
     }
     for system in &file.systems {
-        let values: Vec<String> = system.axes.iter().flatten().chain(&system.origin).map(|v| format!("{v:e}")).collect();
+        let values: Vec<String> =
+            system.axes.iter().flatten().chain(&system.origin).map(|v| format!("{v:e}")).collect();
         println!("system {} {}", system.label, values.join(" "));
     }
     for element in &file.elements {

@@ -5,7 +5,8 @@ use std::collections::BTreeMap;
 use num_complex::Complex64;
 
 use crate::{
-    Abscissa, Axis, CoordinateSystem, Element, FunctionType, Header, NodalData, Nodes, ReadError, TraceLine, Units,
+    Abscissa, Axis, CoordinateSystem, Element, FunctionType, Header, NodalData, Nodes, ReadError, TraceLine,
+    Units,
 };
 
 /// What a universal file holds.

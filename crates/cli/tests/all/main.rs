@@ -9,6 +9,7 @@ mod diagnose;
 mod estimate;
 mod export;
 mod fem;
+mod formats;
 mod hits;
 mod levels;
 mod modes;

@@ -25,7 +25,8 @@ fn each(
 
 /// Dataset 15: `4I10,3E13.5`, also with wider reals.
 pub(super) fn nodes15(cursor: &mut Cursor) -> Result<Vec<GridPoint>, ReadError> {
-    const EXPECTED: &str = "label, definition system, displacement system, colour and three coordinates of a node (dataset 15)";
+    const EXPECTED: &str =
+        "label, definition system, displacement system, colour and three coordinates of a node (dataset 15)";
     let mut nodes = Vec::new();
     each(cursor, "a node or the `    -1` line that closes dataset 15", |cursor| {
         let line = cursor.header_line(EXPECTED)?;
@@ -48,8 +49,10 @@ pub(super) fn nodes15(cursor: &mut Cursor) -> Result<Vec<GridPoint>, ReadError> 
 pub(super) fn nodes2411(cursor: &mut Cursor) -> Result<Vec<GridPoint>, ReadError> {
     let mut nodes = Vec::new();
     each(cursor, "a node or the `    -1` line that closes dataset 2411", |cursor| {
-        let [label, _, displacement_system, _] =
-            record(cursor, "label, export system, displacement system and colour of a node (dataset 2411, record 1)")?;
+        let [label, _, displacement_system, _] = record(
+            cursor,
+            "label, export system, displacement system and colour of a node (dataset 2411, record 1)",
+        )?;
         let coordinates = reals(cursor, &[25; 3], "three coordinates of a node (dataset 2411, record 2)")?;
         nodes.push(GridPoint { label, definition_system: 0, displacement_system, coordinates });
         Ok(())
@@ -65,7 +68,11 @@ fn kind(cursor: &Cursor, code: i64) -> Result<SystemKind, ReadError> {
         other => {
             let line = Line { start: cursor.position.saturating_sub(1), bytes: &[] };
             let found = other.to_string();
-            Err(cursor.unexpected(line, "coordinate system type 0, 1 or 2 (datasets 18 and 2420)", found.as_bytes()))
+            Err(cursor.unexpected(
+                line,
+                "coordinate system type 0, 1 or 2 (datasets 18 and 2420)",
+                found.as_bytes(),
+            ))
         }
     }
 }
@@ -89,11 +96,14 @@ fn unit(a: [f64; 3]) -> Option<[f64; 3]> {
 
 /// Dataset 18: origin, a point on +x, a point of the +xz plane.
 pub(super) fn systems18(cursor: &mut Cursor) -> Result<Vec<CoordinateSystem>, ReadError> {
-    const POINTS: &str = "origin, a point on +x and a point of the +xz plane, not on one line (dataset 18, record 3)";
+    const POINTS: &str =
+        "origin, a point on +x and a point of the +xz plane, not on one line (dataset 18, record 3)";
     let mut systems = Vec::new();
     each(cursor, "a coordinate system or the `    -1` line that closes dataset 18", |cursor| {
-        let [label, code, reference, _, _] =
-            record(cursor, "label, type, reference system, colour and method of a coordinate system (dataset 18, record 1)")?;
+        let [label, code, reference, _, _] = record(
+            cursor,
+            "label, type, reference system, colour and method of a coordinate system (dataset 18, record 1)",
+        )?;
         let kind = kind(cursor, code)?;
         let name = text(cursor, "the name of a coordinate system (dataset 18, record 2)")?;
         let start = Line { start: cursor.position, bytes: &[] };
@@ -102,7 +112,11 @@ pub(super) fn systems18(cursor: &mut Cursor) -> Result<Vec<CoordinateSystem>, Re
         let x = unit(minus([d, e, f], origin));
         let y = x.and_then(|x| unit(cross(minus([g, h, i], origin), x)));
         let (Some(x), Some(y)) = (x, y) else {
-            return Err(cursor.unexpected(start, POINTS, format!("{a} {b} {c} {d} {e} {f} {g} {h} {i}").as_bytes()));
+            return Err(cursor.unexpected(
+                start,
+                POINTS,
+                format!("{a} {b} {c} {d} {e} {f} {g} {h} {i}").as_bytes(),
+            ));
         };
         systems.push(CoordinateSystem { label, name, kind, reference, axes: [x, y, cross(x, y)], origin });
         Ok(())
@@ -141,10 +155,13 @@ pub(super) fn systems2420(cursor: &mut Cursor) -> Result<Vec<CoordinateSystem>, 
 pub(super) fn elements(cursor: &mut Cursor) -> Result<Vec<Element>, ReadError> {
     let mut elements = Vec::new();
     each(cursor, "an element or the `    -1` line that closes dataset 2412", |cursor| {
-        let [label, descriptor, _, _, _, count] =
-            record(cursor, "label, descriptor, tables, colour and number of nodes of an element (dataset 2412, record 1)")?;
+        let [label, descriptor, _, _, _, count] = record(
+            cursor,
+            "label, descriptor, tables, colour and number of nodes of an element (dataset 2412, record 1)",
+        )?;
         if matches!(descriptor, 11 | 21..=24) {
-            let [_, _, _] = record(cursor, "orientation node and cross-sections of a beam (dataset 2412, record 2)")?;
+            let [_, _, _] =
+                record(cursor, "orientation node and cross-sections of a beam (dataset 2412, record 2)")?;
         }
         let nodes = list(cursor, count, "the nodes of an element (dataset 2412)")?;
         elements.push(Element { label, descriptor, nodes });
@@ -155,7 +172,8 @@ pub(super) fn elements(cursor: &mut Cursor) -> Result<Vec<Element>, ReadError> {
 
 /// Dataset 82: one trace line.
 pub(super) fn trace(cursor: &mut Cursor) -> Result<TraceLine, ReadError> {
-    let [number, count, _] = record(cursor, "number, number of nodes and colour of a trace line (dataset 82, record 1)")?;
+    let [number, count, _] =
+        record(cursor, "number, number of nodes and colour of a trace line (dataset 82, record 1)")?;
     let name = text(cursor, "the name of a trace line (dataset 82, record 2)")?;
     let nodes = list(cursor, count, "the nodes of a trace line (dataset 82, record 3)")?;
     close(cursor, "the `    -1` line that closes dataset 82")?;
@@ -185,9 +203,6 @@ pub(super) fn close(cursor: &mut Cursor, expected: &'static str) -> Result<(), R
     match cursor.next_filled_line() {
         None => Err(cursor.truncated(expected)),
         Some(line) if is_delimiter(line.bytes) => Ok(()),
-        Some(line) => Err(cursor.error(
-            line,
-            TextProblem::Field { expected, found: excerpt(line.bytes) },
-        )),
+        Some(line) => Err(cursor.error(line, TextProblem::Field { expected, found: excerpt(line.bytes) })),
     }
 }

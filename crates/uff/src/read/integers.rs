@@ -6,7 +6,12 @@ use super::fields::{columns_of, line_text};
 use crate::ReadError;
 
 /// The whole numbers of a line in columns of `width`: those that fit, by blanks where the columns cut a number.
-pub(super) fn of_line(cursor: &Cursor, line: Line, width: usize, expected: &'static str) -> Result<Vec<i64>, ReadError> {
+pub(super) fn of_line(
+    cursor: &Cursor,
+    line: Line,
+    width: usize,
+    expected: &'static str,
+) -> Result<Vec<i64>, ReadError> {
     let text = line_text(line.bytes);
     let text = text.trim_end();
     by_blanks(text)
@@ -25,7 +30,10 @@ fn by_columns(text: &str, width: usize) -> Option<Vec<i64>> {
 }
 
 /// The next line, which must hold at least `N` whole numbers in columns of ten; more are left aside.
-pub(super) fn record<const N: usize>(cursor: &mut Cursor, expected: &'static str) -> Result<[i64; N], ReadError> {
+pub(super) fn record<const N: usize>(
+    cursor: &mut Cursor,
+    expected: &'static str,
+) -> Result<[i64; N], ReadError> {
     let line = cursor.header_line(expected)?;
     let numbers = of_line(cursor, line, 10, expected)?;
     numbers

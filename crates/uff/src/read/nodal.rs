@@ -28,8 +28,7 @@ struct Form {
 }
 
 fn form(cursor: &mut Cursor) -> Result<Form, ReadError> {
-    const EXPECTED: &str =
-        "model, analysis, characteristic, quantity, data type (2, 4, 5 or 6) and values a node (record 6 of dataset 55, 9 of 2414)";
+    const EXPECTED: &str = "model, analysis, characteristic, quantity, data type (2, 4, 5 or 6) and values a node (record 6 of dataset 55, 9 of 2414)";
     let line = cursor.clone();
     let [_, analysis, _, quantity, data_type, per_node] = record(cursor, EXPECTED)?;
     let (complex, widths) = match data_type {
@@ -117,7 +116,9 @@ pub(super) fn read55(cursor: &mut Cursor) -> Result<NodalData, ReadError> {
     data.mode = integers.get(3).copied().unwrap_or(0);
     match data.analysis {
         Analysis::NormalMode => of_normal_mode(&mut data, [real(0), real(1), real(2), real(3)]),
-        Analysis::ComplexFirstOrder | Analysis::ComplexSecondOrder => of_complex_mode(&mut data, real(0), real(1)),
+        Analysis::ComplexFirstOrder | Analysis::ComplexSecondOrder => {
+            of_complex_mode(&mut data, real(0), real(1))
+        }
         Analysis::FrequencyResponse => data.frequency = above_zero(real(0)),
         Analysis::Other(_) => {}
     }
@@ -137,13 +138,20 @@ pub(super) fn read2414(cursor: &mut Cursor) -> Result<NodalData, ReadError> {
     let form = form(cursor)?;
     let widths = form.widths;
     let mut data = form.empty(2414, name, location);
-    let integers = list(cursor, 10, "the integer parameters of the analysis (dataset 2414, records 10 and 11)")?;
-    let reals =
-        ascii::some_numbers(cursor, SINGLE, 12, "the real parameters of the analysis (dataset 2414, records 12 and 13)")?;
+    let integers =
+        list(cursor, 10, "the integer parameters of the analysis (dataset 2414, records 10 and 11)")?;
+    let reals = ascii::some_numbers(
+        cursor,
+        SINGLE,
+        12,
+        "the real parameters of the analysis (dataset 2414, records 12 and 13)",
+    )?;
     data.mode = integers.get(5).copied().unwrap_or(0);
     let real = |at: usize| reals.get(at).copied().unwrap_or(0.0);
     match data.analysis {
-        Analysis::ComplexFirstOrder | Analysis::ComplexSecondOrder => of_complex_mode(&mut data, real(6), real(7)),
+        Analysis::ComplexFirstOrder | Analysis::ComplexSecondOrder => {
+            of_complex_mode(&mut data, real(6), real(7))
+        }
         Analysis::Other(_) => {}
         _ => of_normal_mode(&mut data, [real(1), real(3), real(4), real(5)]),
     }

@@ -1,6 +1,8 @@
 //! Geometry, shapes and header beside the functions: as pyuff writes them, as finite-element programs do, and damaged.
 
-use jointscope_uff::{Analysis, CoordinateSystem, Element, GridPoint, Location, SystemKind, TraceLine, UffFile, read};
+use jointscope_uff::{
+    Analysis, CoordinateSystem, Element, GridPoint, Location, SystemKind, TraceLine, UffFile, read,
+};
 use num_complex::Complex64;
 
 /// Written by pyuff 2.5.8, see `docs/development/checks/geometry_with_pyuff.py`.
@@ -29,17 +31,10 @@ fn nodes_come_with_their_systems_and_units() {
     };
     assert_eq!(
         file.nodes[0].nodes,
-        [
-            point(1, 0, 0, [0.0; 3]),
-            point(2, 7, 7, [20.0, 5.0, -1.0]),
-            point(3, 0, 0, [150.0, -2.5, 0.0])
-        ]
+        [point(1, 0, 0, [0.0; 3]), point(2, 7, 7, [20.0, 5.0, -1.0]), point(3, 0, 0, [150.0, -2.5, 0.0])]
     );
     // The export system of 2411 says nothing of the coordinates.
-    assert_eq!(
-        file.nodes[1].nodes,
-        [point(11, 0, 3, [1.5, 0.0, 1e5]), point(12, 0, 0, [-2.25, 1e-3, 3.0])]
-    );
+    assert_eq!(file.nodes[1].nodes, [point(11, 0, 3, [1.5, 0.0, 1e5]), point(12, 0, 0, [-2.25, 1e-3, 3.0])]);
     for nodes in &file.nodes {
         assert_eq!(nodes.units.as_ref().unwrap().length_factor, 1000.0);
     }
@@ -128,7 +123,8 @@ fn a_mode_of_dataset_2414_is_read_whatever_its_precision() {
              \x20 0.00000E+00  0.00000E+00  0.00000E+00  0.00000E+00  0.00000E+00  0.00000E+00\n"
         )
     };
-    let single = head(5) + "        17\n-1.00000E+00-2.00000E-01 3.00000E+00 0.00000E+00-4.00000E+00 5.00000E-01\n";
+    let single =
+        head(5) + "        17\n-1.00000E+00-2.00000E-01 3.00000E+00 0.00000E+00-4.00000E+00 5.00000E-01\n";
     let file = read(&dataset(2414, &single)).unwrap();
     assert!(file.unreadable.is_empty(), "{:?}", file.unreadable);
     let mode = &file.nodal[0];
@@ -137,8 +133,8 @@ fn a_mode_of_dataset_2414_is_read_whatever_its_precision() {
     let expected = [Complex64::new(-1.0, -0.2), Complex64::new(3.0, 0.0), Complex64::new(-4.0, 0.5)];
     assert_eq!(mode.values[0].values, expected);
 
-    let double = head(4)
-        + "        17\n   1.0000000000000002D+00  -2.0000000000000000D+00   3.0000000000000000D-01\n";
+    let double =
+        head(4) + "        17\n   1.0000000000000002D+00  -2.0000000000000000D+00   3.0000000000000000D-01\n";
     let file = read(&dataset(2414, &double)).unwrap();
     assert_eq!(file.nodal[0].values[0].values[0].re, 1.0000000000000002);
 }
@@ -170,7 +166,9 @@ fn numbers_that_fill_their_columns_are_told_apart() {
 #[test]
 fn a_damaged_geometry_is_named_and_keeps_nobody_from_the_rest() {
     let nodes = "         1         0         0         8  0.00000E+00  0.00000E+00\n";
-    let bytes = [dataset(15, nodes), dataset(82, "         2         2        30\nline\n         1         2\n")].concat();
+    let bytes =
+        [dataset(15, nodes), dataset(82, "         2         2        30\nline\n         1         2\n")]
+            .concat();
     let file = read(&bytes).unwrap();
     assert_eq!(file.traces.len(), 1);
     assert_eq!(file.unreadable[0].number, 15);
