@@ -50,6 +50,11 @@ impl ColumnMap {
         self.entries.iter().enumerate().find(|(_, entry)| same(entry))
     }
 
+    /// An entry without name of this FRF: it states the unit of one that the file names.
+    pub(crate) fn of_pair(&self, pair: &ChannelPair) -> Option<(usize, &ColumnEntry)> {
+        self.entries.iter().enumerate().find(|(_, entry)| entry.name.is_none() && entry.pair == *pair)
+    }
+
     /// The entry of a file with one FRF: one by the file's name, with or without its folder, else one without name.
     pub(crate) fn of_file(&self, file: &str) -> Option<(usize, &ColumnEntry)> {
         let last = file.rsplit(['/', '\\']).next().unwrap_or(file);

@@ -8,6 +8,7 @@ use serde::Serialize;
 use crate::Source;
 use crate::error::enumeration;
 use crate::function::functions;
+use crate::geometry::Geometry;
 
 /// What the files of a test hold.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
@@ -22,6 +23,8 @@ pub struct Contents {
     pub functions: Vec<FunctionKind>,
     /// The nodes of the geometry.
     pub nodes: usize,
+    /// How far they reach along x, y and z, in m, where they can be placed.
+    pub extent: Option<[[f64; 2]; 3]>,
     /// Its elements.
     pub elements: usize,
     /// Its trace lines.
@@ -34,6 +37,8 @@ pub struct Contents {
     pub other_data: BTreeMap<String, usize>,
     /// Datasets that are not read, by number.
     pub other_datasets: BTreeMap<u32, usize>,
+    /// Why the nodes cannot be placed.
+    pub unplaced: Option<String>,
     /// Datasets that are damaged, with the place.
     pub unreadable: Vec<String>,
 }
@@ -113,6 +118,12 @@ impl Contents {
                     .iter()
                     .map(|dataset| format!("dataset {} cannot be read: {}", dataset.number, dataset.error)),
             );
+        }
+        match Geometry::of(sources, None) {
+            Ok(geometry) => all.extent = Some(geometry.extent()),
+            // Nodes that cannot be placed are told of; files without any are not.
+            Err(error) if all.nodes > 0 => all.unplaced = Some(error.to_string()),
+            Err(_) => {}
         }
         for function in functions(sources) {
             let channel = match function.dataset.function {
@@ -220,7 +231,14 @@ impl Contents {
                 enumeration(&kind.channels),
             ));
         }
-        lines.extend(self.mesh());
+        let reach = self.extent.map_or(String::new(), |extent| {
+            let along = ["x", "y", "z"].iter().zip(extent).filter(|(_, [from, to])| from != to);
+            let along =
+                along.map(|(axis, [from, to])| format!("{axis} from {} to {} m", short(from), short(to)));
+            format!(": {}", enumeration(along))
+        });
+        lines.extend(self.mesh().map(|mesh| mesh + &reach));
+        lines.extend(self.unplaced.iter().cloned());
         if self.coordinate_systems > 0 {
             lines.push(counted(self.coordinate_systems, "local coordinate system"));
         }
@@ -390,7 +408,7 @@ fn thousands(count: usize) -> String {
     let digits = count.to_string();
     let mut text = String::with_capacity(digits.len() + digits.len() / 3);
     for (at, digit) in digits.chars().enumerate() {
-        if at > 0 && (digits.len() - at) % 3 == 0 {
+        if at > 0 && (digits.len() - at).is_multiple_of(3) {
             text.push(',');
         }
         text.push(digit);

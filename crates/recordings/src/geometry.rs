@@ -183,12 +183,18 @@ impl Geometry {
         points
     }
 
+    /// How far the nodes reach along x, y and z, in m.
+    pub fn extent(&self) -> [[f64; 2]; 3] {
+        std::array::from_fn(|axis| {
+            let values = || self.nodes.iter().map(|node| node.position[axis]);
+            [values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max)]
+        })
+    }
+
     /// The axis along which the nodes reach farthest; of equal ones the first.
     pub fn longest_axis(&self) -> SpatialAxis {
-        let extent = |axis: &SpatialAxis| {
-            let values = || self.nodes.iter().map(|node| node.position[axis.index()]);
-            values().fold(f64::NEG_INFINITY, f64::max) - values().fold(f64::INFINITY, f64::min)
-        };
+        let all = self.extent();
+        let extent = |axis: &SpatialAxis| all[axis.index()][1] - all[axis.index()][0];
         let mut best = SpatialAxis::X;
         for axis in [SpatialAxis::Y, SpatialAxis::Z] {
             if extent(&axis) > extent(&best) {

@@ -107,7 +107,7 @@ fn what_files_hold_is_shown_and_said_where_frfs_are_missing() {
     let shown = bench.done(&["show", "mesh.uff", "frf.uff"]);
     for part in [
         "mesh.uff:\n  written by pyuff 2.5\n",
-        "a geometry of 5 nodes and 1 trace line",
+        "a geometry of 5 nodes and 1 trace line: x from -0.00225 to 0.15 m",
         "2 mode shapes (312.5 to 636.6 Hz)",
         "1. 312.5 Hz, damping ratio 0.3 %, 3 nodes",
         "frf.uff:\n  4 FRFs of acceleration per excitation force in m/s^2 per N: 96 values from 50 to 1000 Hz",

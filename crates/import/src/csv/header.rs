@@ -117,9 +117,7 @@ fn column(index: usize, header: &str) -> Option<Column> {
         let lower = before.to_lowercase();
         if let Some(found) = Part::of_word(&lower).filter(|_| part.is_none()) {
             part = Some(found);
-        } else if matches!(lower.as_str(), "hz" | "khz") && part == Some(Part::Frequency) {
-            unit = before.to_owned();
-        } else if matches!(lower.as_str(), "deg" | "rad") && part == Some(Part::Phase) {
+        } else if is_unit_word(&lower, part) {
             unit = before.to_owned();
         } else if lower == "part" || (inner.is_empty() && lower == "frf") {
             continue;
@@ -149,6 +147,15 @@ fn column(index: usize, header: &str) -> Option<Column> {
         return None;
     }
     Some(Column { index, part, pair, stem: stem.join(" "), unit })
+}
+
+/// `frequency_hz`, `phase deg`: a unit without brackets, of those that say nothing else.
+fn is_unit_word(word: &str, part: Option<Part>) -> bool {
+    match part {
+        Some(Part::Frequency) => matches!(word, "hz" | "khz"),
+        Some(Part::Phase) => matches!(word, "deg" | "rad"),
+        _ => false,
+    }
 }
 
 /// Name and unit: `4/1 real [m/s^2/N]`, or `frequency (Hz)` with a blank before the bracket, so that `H(4/1)` stays whole.

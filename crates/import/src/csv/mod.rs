@@ -71,6 +71,7 @@ fn groups<'c>(
         let by_name = map.of_name(header).or_else(|| map.of_name(&column.stem));
         let entry = match (&column.pair, by_name) {
             (_, Some(entry)) => Some(entry),
+            (Some(pair), None) => map.of_pair(pair),
             (None, None) if column.stem.is_empty() => map.of_file(name),
             _ => None,
         };

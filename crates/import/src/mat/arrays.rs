@@ -99,7 +99,11 @@ fn array(
                 (entry.pair.clone(), entry.unit.clone().unwrap_or_default())
             }
             None => match pair_of(last).filter(|_| slices.len() == 1) {
-                Some(pair) => (pair, String::new()),
+                Some(pair) => {
+                    let stated = sink.map.of_pair(&pair);
+                    sink.used.extend(stated.map(|(used, _)| used));
+                    (pair, stated.and_then(|(_, entry)| entry.unit.clone()).unwrap_or_default())
+                }
                 None => {
                     unnamed.get_or_insert(key);
                     continue;

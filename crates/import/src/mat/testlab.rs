@@ -25,7 +25,7 @@ pub(super) fn read(variable: &str, block: &Value, sink: &mut Sink) -> Result<(),
     let lines = lines(block).ok_or_else(|| {
         wrong("`x_values` holds no start_value, increment and number_of_values; export it again")
     })?;
-    if lines.is_empty() || re.len() % lines.len() != 0 || re.is_empty() {
+    if lines.is_empty() || !re.len().is_multiple_of(lines.len()) || re.is_empty() {
         let problem = format!(
             "{} values do not make functions of {} lines (x_values.number_of_values); export it again",
             re.len(),

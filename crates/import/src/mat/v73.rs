@@ -30,7 +30,9 @@ pub(super) fn read(bytes: &[u8]) -> Result<Vec<(String, Value)>, ImportError> {
     if let Some(refs) = groups.iter().find(|group| leaf(group.name()) == "#refs#") {
         let (groups, datasets) = refs.members().map_err(hdf5)?;
         referred.extend(groups.into_iter().map(|group| (group.address(), Object::Group(group))));
-        referred.extend(datasets.into_iter().map(|dataset| (dataset.address(), Object::Dataset(dataset))));
+        referred.extend(
+            datasets.into_iter().map(|dataset| (dataset.address(), Object::Dataset(Box::new(dataset)))),
+        );
     }
     let mut reader = Reader { referred, left: MOST };
     let mut variables = Vec::new();
@@ -51,7 +53,7 @@ fn leaf(name: &str) -> &str {
 
 enum Object {
     Group(Group),
-    Dataset(Dataset),
+    Dataset(Box<Dataset>),
 }
 
 struct Reader {

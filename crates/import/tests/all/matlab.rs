@@ -94,6 +94,11 @@ fn variables_named_for_their_frf_are_read_beside_their_frequencies() {
         check(&datasets[0], 0, 1.0);
         check(&datasets[1], 1, 1.0);
         assert_eq!(datasets[0].ordinate_axis.units, "NONE", "no unit is stated, none is made up");
+        let stated = imported(bytes, &["4/1 [g/N]"]);
+        assert_eq!(stated.used.len(), 1);
+        assert!(
+            stated.file.datasets.iter().any(|d| d.response.number == 4 && d.ordinate_axis.units == "g/N")
+        );
     }
 }
 

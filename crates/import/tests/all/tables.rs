@@ -53,6 +53,7 @@ fn one_frf_comes_in_every_usual_layout() {
     );
     check("frequency,real,imag\n10,0,2\n12.5,-1.5,0\n", &["frf.csv=4:+y/1 [m/s^2/N]"], unit);
     check("frequency,H1 real,H1 imag\n10,0,2\n12.5,-1.5,0\n", &["H1=4/1 [m/s^2/N]"], unit);
+    check("f,4/1 real,4/1 imag\n10,0,2\n12.5,-1.5,0\n", &["4/1 [m/s^2/N]"], unit);
     // Lines before the header, remarks, and a line of units below it.
     let preamble = "Analyser 9000;v1\nSerial;42\n# remark\n\nFrequency;4/1 real;4/1 imag\nHz;m/s^2/N;m/s^2/N\n10;0;2\n12,5;-1,5;0\n";
     check(preamble, &[], unit);

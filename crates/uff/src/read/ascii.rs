@@ -23,7 +23,7 @@ pub(super) fn read(cursor: &mut Cursor, form: &Form) -> Result<Values, ReadError
     let expected = form.points.saturating_mul(per_point);
     let (numbers, closing) = numbers(cursor, line_layout(form), expected, per_point)?;
     let found = numbers.len();
-    if found < expected && (found == 0 || found % per_point != 0) {
+    if found < expected && (found == 0 || !found.is_multiple_of(per_point)) {
         return Err(cursor.error(closing, TextProblem::TooFew { expected, found }));
     }
     Ok(Values::from_interleaved(numbers, form))
