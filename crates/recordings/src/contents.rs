@@ -219,8 +219,12 @@ impl Contents {
                 format!(" of the {} that the header states", thousands(stated))
             });
             let quantity = kind.quantity.as_ref().map_or(String::new(), |quantity| format!(" of {quantity}"));
-            let units =
-                if kind.units.is_empty() { ", no unit stated".into() } else { format!(" in {}", kind.units) };
+            let units = match kind.units.as_str() {
+                // A coherence has none.
+                "" if kind.function_type == FunctionType::Coherence.code() => String::new(),
+                "" => ", no unit stated".to_owned(),
+                units => format!(" in {units}"),
+            };
             lines.push(format!(
                 "{}{quantity}{units}: {} values{stated} from {} to {} {}; channels {}",
                 counted(kind.count, &kind.what),
