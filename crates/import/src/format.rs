@@ -17,12 +17,13 @@ pub enum Format {
 const HDF5: &[u8] = b"\x89HDF\r\n\x1a\n";
 
 /// Starts of files that people mistake for recordings, and what they are.
-const OTHERS: [(&[u8], &str, &str); 6] = [
+const OTHERS: [(&[u8], &str, &str); 7] = [
     (b"PK\x03\x04", "a ZIP archive or an Excel workbook (.xlsx)", "unpack it, or save the sheet as CSV"),
     (b"\xd0\xcf\x11\xe0", "an old Excel workbook (.xls)", "save the sheet as CSV"),
     (b"\x1f\x8b", "compressed by gzip", "unpack it first"),
     (b"TDSm", "a TDMS file", "export the FRFs as UFF (dataset 58)"),
     (b"RIFF", "a WAVE file", "export the FRFs as UFF (dataset 58)"),
+    (b"\xff\xfe", "text in UTF-16", "save it as CSV in UTF-8"),
     (b"%PDF", "a PDF document", "give the recording itself"),
 ];
 
