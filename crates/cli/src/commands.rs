@@ -11,6 +11,7 @@ mod init;
 mod modes;
 mod prove;
 mod schema;
+mod show;
 mod simulate;
 mod synthesize;
 mod tables;
@@ -51,6 +52,8 @@ enum Command {
     Fem(fem::FemArguments),
     /// Natural frequencies, damping ratios and mode shapes from FRFs, with their standard deviations: modes.json and report.html.
     Modes(modes::ModesArguments),
+    /// What recordings hold: functions and their units, geometry, modes.
+    Show(show::ShowArguments),
     /// Accelerations of an assembly over time under recorded forces, effects that depend on amplitude included.
     Simulate(simulate::SimulateArguments),
     /// How often the diagnosis is right: concealed cases of a simulated laboratory, and a table of scores.
@@ -74,6 +77,7 @@ impl Program {
             Command::Export(arguments) => export::run(arguments),
             Command::Fem(arguments) => fem::run(arguments),
             Command::Modes(arguments) => modes::run(arguments),
+            Command::Show(arguments) => show::run(arguments),
             Command::Simulate(arguments) => simulate::run(arguments),
             Command::Prove(arguments) => prove::run(arguments),
             Command::Tables(arguments) => tables::run(arguments),

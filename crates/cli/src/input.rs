@@ -1,11 +1,15 @@
 //! Files in: every fault a sentence that starts with the file's name.
 
+use std::collections::BTreeSet;
 use std::fmt;
 use std::fs;
+use std::io::Read;
 use std::ops::Deref;
 use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
 
 use jointscope::fixture::Fixture;
+use jointscope::import::{self, ColumnMap};
 use jointscope::recordings::Source;
 use serde_json::Value;
 
@@ -47,13 +51,47 @@ impl Deref for FixtureFile {
 
 /// The files' names for a message about all of them.
 pub fn names(files: &[PathBuf]) -> String {
-    files.iter().map(|path| path.display().to_string()).collect::<Vec<_>>().join(", ")
+    files.iter().map(|path| name(path)).collect::<Vec<_>>().join(", ")
 }
 
-/// Reads a universal file.
+/// A file's name in messages; `-` is standard input.
+pub fn name(path: &Path) -> String {
+    if is_standard_input(path) { "standard input".to_owned() } else { path.display().to_string() }
+}
+
+fn is_standard_input(path: &Path) -> bool {
+    path.as_os_str() == "-"
+}
+
+/// Refuses standard input that is given twice.
+pub fn once<'a>(files: impl IntoIterator<Item = &'a PathBuf>) -> Result<(), Refusal> {
+    match files.into_iter().filter(|path| is_standard_input(path)).count() {
+        0 | 1 => Ok(()),
+        _ => Err(Refusal::new("standard input (`-`) is given twice; it can be read once")),
+    }
+}
+
+/// Reads the recordings of a test, whatever their formats; with the entries of `columns` that were of no use.
+pub fn sources(files: &[PathBuf], columns: &ColumnMap) -> Result<(Vec<Source>, Vec<String>), Refusal> {
+    once(files)?;
+    let mut used = BTreeSet::new();
+    let mut sources = Vec::with_capacity(files.len());
+    for path in files {
+        let name = name(path);
+        let imported =
+            import::read(&bytes(path)?, &name, columns).map_err(|error| Refusal::about(&name, error))?;
+        used.extend(imported.used);
+        sources.push(Source { name, file: imported.file });
+    }
+    let unused = columns.entries().iter().enumerate().filter(|(at, _)| !used.contains(at));
+    let unused = unused.map(|(_, entry)| entry.text.clone()).collect();
+    Ok((sources, unused))
+}
+
+/// Reads a recording that says all that there is to know of it.
 pub fn source(path: &Path) -> Result<Source, Refusal> {
-    let file = jointscope::uff::read(&bytes(path)?).map_err(|error| Refusal::at(path, error))?;
-    Ok(Source { name: path.display().to_string(), file })
+    let (mut sources, _) = sources(std::slice::from_ref(&path.to_owned()), &ColumnMap::default())?;
+    sources.pop().ok_or_else(|| Refusal::at(path, "holds nothing"))
 }
 
 /// Reads a JSON file.
@@ -62,9 +100,21 @@ pub fn json(path: &Path) -> Result<Value, Refusal> {
     serde_json::from_str(without_mark(&text)).map_err(|error| Refusal::at(path, error))
 }
 
-/// Reads a file.
+/// Reads a file, or standard input, which is kept: its hash is told of it, too.
 pub fn bytes(path: &Path) -> Result<Vec<u8>, Refusal> {
-    fs::read(path).map_err(|error| Refusal::io(path, &error))
+    static STANDARD_INPUT: OnceLock<Vec<u8>> = OnceLock::new();
+    if !is_standard_input(path) {
+        return fs::read(path).map_err(|error| Refusal::io(path, &error));
+    }
+    if let Some(bytes) = STANDARD_INPUT.get() {
+        return Ok(bytes.clone());
+    }
+    let mut bytes = Vec::new();
+    std::io::stdin()
+        .lock()
+        .read_to_end(&mut bytes)
+        .map_err(|error| Refusal::about("standard input", error))?;
+    Ok(STANDARD_INPUT.get_or_init(|| bytes).clone())
 }
 
 /// A byte order mark is no JSON, but editors leave one.

@@ -36,7 +36,7 @@ pub fn inputs_value(inputs: &[InputFile]) -> Value {
 
 /// Names and hashes of the files.
 pub fn inputs<'a>(files: impl IntoIterator<Item = &'a PathBuf>) -> Result<Vec<InputFile>, Refusal> {
-    files.into_iter().map(|path| Ok(input_file(path.display().to_string(), &input::bytes(path)?))).collect()
+    files.into_iter().map(|path| Ok(input_file(input::name(path), &input::bytes(path)?))).collect()
 }
 
 /// A file's name and the SHA-256 of its contents.

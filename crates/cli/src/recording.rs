@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use jointscope::Measurement;
+use jointscope::import::{ColumnMap, ColumnMapError};
 use jointscope::pipeline::{Concern, Error, MeasurementError};
 use jointscope::recordings::{
     AssumedUnits, ChannelMap, ChannelMapError, ReadOptions, Recording, RecordingError, Source,
@@ -15,7 +16,7 @@ use crate::refusal::Refusal;
 /// Recordings and what the analyst says of them, for every command that reads FRFs or time histories.
 #[derive(Debug, Clone, Args)]
 pub struct RecordingArguments {
-    /// The recordings (UFF, UNV): all files of one test, in any order.
+    /// The recordings (UFF, UNV, CSV, MAT): all files of one test, in any order; `-` is standard input.
     #[arg(required = true, value_name = "F.uff")]
     pub files: Vec<PathBuf>,
     #[command(flatten)]
@@ -31,12 +32,18 @@ pub struct ReadingArguments {
     /// Units of response and force where a file states none, such as g,lbf.
     #[arg(long, value_name = "RESPONSE,FORCE", value_parser = AssumedUnits::parse)]
     pub assume_units: Option<AssumedUnits>,
+    /// Which column of a CSV file or variable of a MATLAB file is which FRF, in which unit, such as "H1=4/1 [m/s^2/N]".
+    #[arg(long, value_name = "NAME=OUT/IN [UNIT]", value_parser = column_entry, num_args = 1..)]
+    pub columns: Vec<String>,
     /// Number of averages of every FRF, where the files do not state it: with it, coherence tells the noise.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     pub averages: Option<u32>,
     /// Leave coherences aside, and take the noise from the scatter over the lines.
     #[arg(long)]
     pub ignore_coherence: bool,
+    /// Whether other files of the same command may use the entries of `columns`.
+    #[arg(skip)]
+    pub beside_others: bool,
 }
 
 impl RecordingArguments {
@@ -47,19 +54,28 @@ impl RecordingArguments {
 
     /// The arguments as options of the reading.
     pub fn options(&self) -> Result<ReadOptions, Refusal> {
-        let ReadingArguments { map, assume_units, averages, ignore_coherence } = self.reading.clone();
+        let ReadingArguments { map, assume_units, averages, ignore_coherence, .. } = self.reading.clone();
         let map = ChannelMap::parse(&map).map_err(Refusal::new)?;
         Ok(ReadOptions { map, assume_units, averages, ignore_coherence })
     }
 
     /// Other files, read alike.
     pub fn of_files(&self, files: &[PathBuf]) -> Self {
-        RecordingArguments { files: files.to_vec(), ..self.clone() }
+        let reading = ReadingArguments { beside_others: true, ..self.reading.clone() };
+        RecordingArguments { files: files.to_vec(), reading }
     }
 
     /// The files as they are.
     pub fn sources(&self) -> Result<Vec<Source>, Refusal> {
-        self.files.iter().map(|path| input::source(path)).collect()
+        let columns = ColumnMap::parse(&self.reading.columns).map_err(Refusal::new)?;
+        let (sources, unused) = input::sources(&self.files, &columns)?;
+        // An entry that applies to nothing is a slip.
+        match unused.into_iter().next().filter(|_| !self.reading.beside_others) {
+            None => Ok(sources),
+            Some(entry) => Err(self.refusal(format_args!(
+                "the entry `{entry}` of `--columns` names no column, variable or file of one FRF; universal files name their nodes themselves (`--map`)"
+            ))),
+        }
     }
 
     /// The FRFs of a test of the fixture.
@@ -120,6 +136,11 @@ impl RecordingArguments {
     pub fn refusal(&self, problem: impl std::fmt::Display) -> Refusal {
         Refusal::new(format_args!("{}: {problem}", input::names(&self.files)))
     }
+}
+
+/// One entry of `--columns`, checked by itself.
+pub fn column_entry(text: &str) -> Result<String, ColumnMapError> {
+    ColumnMap::parse([text]).map(|_| text.to_owned())
 }
 
 /// One map entry, checked by itself; entries are checked against each other in [`RecordingArguments::options`].
@@ -201,7 +222,7 @@ mod tests {
         let bench = Bench::new("missing", "1");
         holds(&bench.read("g.uff", &[]).unwrap_err(), &["g.uff", "no such file"]);
         fs::write(bench.0.join("g.uff"), FIXTURE).unwrap();
-        holds(&bench.read("g.uff", &[]).unwrap_err(), &["g.uff", "is it a UFF file?"]);
+        holds(&bench.read("g.uff", &[]).unwrap_err(), &["g.uff", "is a JSON file, such as a fixture"]);
     }
 
     #[test]

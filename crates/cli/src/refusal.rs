@@ -13,7 +13,12 @@ impl Refusal {
 
     /// A sentence about a file.
     pub fn at(file: &Path, problem: impl fmt::Display) -> Self {
-        Refusal::new(format_args!("{}: {problem}", file.display()))
+        Refusal::about(&crate::input::name(file), problem)
+    }
+
+    /// A sentence about what goes by this name.
+    pub fn about(name: &str, problem: impl fmt::Display) -> Self {
+        Refusal::new(format_args!("{name}: {problem}"))
     }
 
     /// A file that could not be read or written.

@@ -61,7 +61,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! The parts are crates of their own, re-exported as modules for what this page leaves out: [`uff`], [`recordings`],
+//! The parts are crates of their own, re-exported as modules for what this page leaves out: [`uff`], [`import`], [`recordings`],
 //! [`fixture`], [`schema`], [`draft`], [`spectra`], [`frf`], [`hits`], [`estimation`], [`beam`], [`damping`], [`lumped`], [`modes`], [`averaging`],
 //! [`decomposition`], [`diagnosis`], [`nonlinear`], [`findings`], [`pipeline`], [`check`], [`fem`], [`comparison`], [`export`], [`tables`], [`proof`], [`report`].
 
@@ -80,6 +80,7 @@ pub use jointscope_findings as findings;
 pub use jointscope_fixture as fixture;
 pub use jointscope_frf as frf;
 pub use jointscope_hits as hits;
+pub use jointscope_import as import;
 pub use jointscope_linalg as linalg;
 pub use jointscope_lumped as lumped;
 pub use jointscope_modes as modes;
@@ -125,26 +126,28 @@ pub use nonlinear_file::nonlinear_file;
 pub use stepped_file::stepped_file;
 pub use stiffness_file::stiffness_file;
 
-/// Why the bytes of a universal file are no recording of a fixture.
+/// Why the bytes of a file are no recording of a fixture.
 #[derive(Debug, thiserror::Error)]
 pub enum ReadError {
-    /// They are no universal file.
+    /// They are no universal file, table or MATLAB file that can be read.
     #[error(transparent)]
-    Uff(#[from] jointscope_uff::ReadError),
+    Import(#[from] jointscope_import::ImportError),
     /// What they hold does not suit the fixture.
     #[error(transparent)]
     Recording(Box<RecordingError>),
 }
 
-/// Reads one universal file as a recording of `fixture`: node numbers are point names, directions ±2 are ±y.
+/// Reads one file as a recording of `fixture`: node numbers are point names, directions ±2 are ±y. Universal files, tables and MATLAB files are told
+/// apart by their bytes, see [`import`].
 ///
 /// For several files, other names or missing units see [`Recording::of`].
 ///
 /// # Errors
 /// See [`ReadError`].
 pub fn read(fixture: &Fixture, bytes: &[u8]) -> Result<Recording, ReadError> {
-    let file = jointscope_uff::read(bytes)?;
-    let source = jointscope_recordings::Source { name: "the recording".into(), file };
+    let name = "the recording".to_owned();
+    let file = import::read(bytes, &name, &import::ColumnMap::default())?.file;
+    let source = jointscope_recordings::Source { name, file };
     Recording::of(&[source], fixture, &ReadOptions::default())
         .map_err(|error| ReadError::Recording(Box::new(error)))
 }

@@ -33,6 +33,16 @@ pub enum FunctionError {
     /// A coherence with an imaginary part.
     #[error("a coherence is real, but its values are complex")]
     ComplexCoherence,
+    /// Fewer points than the header states.
+    #[error(
+        "its header states {stated} points, but the dataset is closed after {found}: which are missing is not known, export the file again"
+    )]
+    Short {
+        /// Points stated.
+        stated: usize,
+        /// Points there.
+        found: usize,
+    },
     /// ID line 5 starts with `averages`, but no count follows.
     #[error("ID line 5 reads `{0}`: a whole number of averages, 1 or more, is needed, such as `averages 5`")]
     Averages(String),
@@ -143,19 +153,21 @@ pub enum RecordingError {
     },
     /// Time histories only.
     #[error(
-        "{files}: there are {count} time histories and no FRF; make FRFs of them first: `jointscope estimate`"
+        "{files}: there {} and no FRF; {}", histories(*count), remedy(*count, *forces)
     )]
     OnlyTimeHistories {
         /// The files.
         files: String,
         /// Number of time histories.
         count: usize,
+        /// Whether a force is among them, or may be.
+        forces: bool,
         /// Their channels.
         channels: Vec<FileChannel>,
     },
     /// Neither FRFs nor time histories.
     #[error(
-        "{files}: there is no FRF (function type 4); what there is: {found}; export the FRFs as dataset 58"
+        "{files}: there is no FRF (function type 4), which every answer is made from; what there is: {found}; export the FRFs as dataset 58"
     )]
     NoFrf {
         /// The files.
@@ -203,6 +215,22 @@ pub enum RecordingError {
     /// The FRFs are no valid set.
     #[error("the FRFs do not make a set: {0}")]
     Spectra(#[from] SpectraError),
+}
+
+fn histories(count: usize) -> String {
+    if count == 1 { "is 1 time history".to_owned() } else { format!("are {count} time histories") }
+}
+
+fn remedy(count: usize, forces: bool) -> &'static str {
+    match (forces, count) {
+        (true, _) => "make FRFs of them first: `jointscope estimate`",
+        (false, 1) => {
+            "it is no force (ordinate type 13), without which there is no FRF: give the file that holds it, or export the FRFs as dataset 58"
+        }
+        (false, _) => {
+            "none of them is a force (ordinate type 13), without which there is no FRF: give the file that holds it, or export the FRFs as dataset 58"
+        }
+    }
 }
 
 impl RecordingError {

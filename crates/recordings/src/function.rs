@@ -53,6 +53,14 @@ impl<'a> Function<'a> {
         Box::new(Place { source: self.source.to_owned(), function: self.index + 1, what })
     }
 
+    /// Refuses a function that holds fewer points than its header states.
+    pub fn whole(&self) -> Result<(), FunctionError> {
+        match self.dataset.stated_points {
+            None => Ok(()),
+            Some(stated) => Err(FunctionError::Short { stated, found: self.dataset.data.len() }),
+        }
+    }
+
     /// Held amplitude, ID line 4.
     pub fn level(&self) -> Option<HeldAmplitude> {
         HeldAmplitude::parse(&self.dataset.id_lines[3])

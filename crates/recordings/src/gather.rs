@@ -167,6 +167,7 @@ impl<'f> Locator<'f> {
         gathered.scalars.extend(
             scalar.iter().filter(|c| c.direction == 0 && !self.map.names_node(c.node)).map(|c| c.node),
         );
+        function.whole()?;
         let level = function.level();
         let entry = Entry {
             pair: FrfPair::new(response, reference),

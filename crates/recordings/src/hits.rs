@@ -7,6 +7,7 @@ use jointscope_hits::{Hit, Motion, Response};
 use jointscope_spectra::{Channel, Dof, FrfForm};
 use jointscope_uff::{Abscissa, Data, FunctionType};
 
+use crate::contents::Contents;
 use crate::error::enumeration;
 use crate::function::{Function, functions};
 use crate::gather::{Located, Locator, check_entries_apply, check_points, example, points};
@@ -63,6 +64,12 @@ pub fn hits_of(
     check_entries_apply(&options.map, &channels).map_err(HitsError::Map)?;
     let mut notes = Vec::new();
     let located = located(&histories, fixture, options, &mut notes)?;
+    if located.is_empty() && fixture.is_none() {
+        return Err(HitsError::NoSignal {
+            files: enumeration(sources.iter().map(|source| &source.name)),
+            found: Contents::of(sources).phrase(),
+        });
+    }
     let (groups, renumbered) = groups(&located);
     let files = || enumeration(sources.iter().map(|source| &source.name));
     let mut hits = Vec::with_capacity(groups.len());
@@ -96,17 +103,15 @@ fn refused(function: &Function, problem: impl Into<FunctionError>) -> HitsError 
 }
 
 fn time_histories(sources: &[Source]) -> Result<Vec<Function<'_>>, HitsError> {
-    let (histories, others): (Vec<_>, Vec<_>) =
-        functions(sources).partition(|function| function.dataset.function == FunctionType::TimeResponse);
+    let histories: Vec<Function> = functions(sources)
+        .filter(|function| function.dataset.function == FunctionType::TimeResponse)
+        .collect();
     if !histories.is_empty() {
         return Ok(histories);
     }
-    let mut found: BTreeMap<i32, usize> = BTreeMap::new();
-    others.iter().for_each(|other| *found.entry(other.dataset.function.code()).or_default() += 1);
-    let found = enumeration(found.iter().map(|(code, count)| format!("{count} of type {code}")));
     Err(HitsError::NoTimeHistory {
         files: enumeration(sources.iter().map(|source| &source.name)),
-        found: if others.is_empty() { String::new() } else { format!(", only {found}") },
+        found: Contents::of(sources).phrase(),
     })
 }
 
@@ -152,6 +157,7 @@ fn located<'a>(
             elsewhere.insert(channel);
             continue;
         }
+        history.whole().map_err(|problem| refused(history, problem))?;
         let named = (history.source, history.dataset);
         let read = signal(named, options.assume_units.as_ref(), &mut units);
         let Some((signal, si)) = read.map_err(|problem| refused(history, problem))? else {

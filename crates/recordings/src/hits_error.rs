@@ -7,12 +7,22 @@ use crate::{FunctionError, Place, RecordingError};
 pub enum HitsError {
     /// Files without time histories.
     #[error(
-        "{files}: there are no time histories (function type 1){found}; export force and responses over time as dataset 58"
+        "{files}: there are no time histories (function type 1); what there is: {found}; export force and responses over time as dataset 58"
     )]
     NoTimeHistory {
         /// The files.
         files: String,
         /// What there is instead.
+        found: String,
+    },
+    /// Time histories of other things than forces and motions.
+    #[error(
+        "{files}: no time history is a force or a motion along y; what there is: {found}; export excitation force (13) and acceleration (12) over time"
+    )]
+    NoSignal {
+        /// The files.
+        files: String,
+        /// What there is.
         found: String,
     },
     /// A map that does not fit.

@@ -7,6 +7,8 @@
 //! * [`Recording`]: the FRFs of each level as accelerances in SI units, with coherence and averages where they were recorded;
 //! * [`hits_of`]: the hammer hits among the time histories, force and responses in SI units;
 //! * [`Recording::of_nodes`]: the same of a structure that no fixture file describes, its points the files' nodes;
+//! * [`Contents`]: what files hold, FRFs or not;
+//! * [`Geometry`]: the files' nodes in global axes and metres, as points of a fixture along one of them;
 //! * [`ReadOptions`]: what the files do not say and the analyst does, a [`ChannelMap`] and [`AssumedUnits`];
 //! * [`hits_to_datasets`]: time histories as functions of a universal file;
 //! * [`to_datasets`]: FRFs as functions of a universal file;
@@ -43,10 +45,12 @@
 mod assumed_units;
 mod channel_map;
 mod coherence;
+mod contents;
 mod datasets;
 mod error;
 mod function;
 mod gather;
+mod geometry;
 mod histories;
 mod hits;
 mod hits_error;
@@ -59,8 +63,10 @@ mod units_error;
 
 pub use assumed_units::{AssumedUnits, AssumedUnitsError};
 pub use channel_map::{ChannelMap, ChannelMapError, FileChannel, MapEntry};
+pub use contents::{Contents, FunctionKind, ModeShape};
 pub use datasets::{DatasetsError, to_datasets};
 pub use error::{FunctionError, Place, RecordingError};
+pub use geometry::{Geometry, GeometryError, PlacedNode, PointAlong, SpatialAxis};
 pub use histories::hits_to_datasets;
 pub use hits::{Hits, hits_of};
 pub use hits_error::HitsError;

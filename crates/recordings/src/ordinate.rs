@@ -388,6 +388,11 @@ fn stated_form(axis: &Axis) -> Option<FrfForm> {
     }
 }
 
+/// Whether an axis is one of a force, or its data type leaves that open.
+pub(crate) fn may_be_force(axis: &Axis) -> bool {
+    axis.data_type == data_type::EXCITATION_FORCE || open(axis)
+}
+
 /// Whether the data type leaves open what the axis is.
 fn open(axis: &Axis) -> bool {
     matches!(axis.data_type, data_type::UNKNOWN | data_type::GENERAL)

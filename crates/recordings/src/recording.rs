@@ -5,10 +5,11 @@ use jointscope_spectra::{FrfForm, FrfSet, SpectralLines};
 use jointscope_uff::UffFile;
 
 use crate::coherence::CoherenceNotes;
+use crate::contents::Contents;
 use crate::error::enumeration;
-use crate::function::{LinesCache, append_accelerances};
+use crate::function::{LinesCache, append_accelerances, functions};
 use crate::gather::{Entry, Gathered, example, gather, in_order, points};
-use crate::ordinate::{Ordinate, UnitNotes, ordinate};
+use crate::ordinate::{Ordinate, UnitNotes, may_be_force, ordinate};
 use crate::{AssumedUnits, ChannelMap, FileChannel, HeldAmplitude, RecordingError};
 
 /// A universal file and the name it goes by in messages.
@@ -240,32 +241,16 @@ fn without_frfs(sources: &[Source], gathered: &Gathered) -> RecordingError {
         [] => "no files".to_owned(),
         _ => enumeration(sources.iter().map(|source| &source.name)),
     };
-    let mut found: Vec<String> = gathered
-        .others
-        .iter()
-        .map(|(code, count)| format!("{} of type {code}", counted(*count, "function")))
-        .collect();
-    if !gathered.time_histories.is_empty() && found.is_empty() && gathered.channels.is_empty() {
+    let only_histories = gathered.others.is_empty() && gathered.channels.is_empty();
+    if !gathered.time_histories.is_empty() && only_histories {
         return RecordingError::OnlyTimeHistories {
             files,
             count: gathered.time_histories.len(),
+            forces: functions(sources).any(|function| may_be_force(&function.dataset.ordinate_axis)),
             channels: distinct(&gathered.time_histories),
         };
     }
-    if !gathered.channels.is_empty() {
-        found.push("coherences".to_owned());
-    }
-    if !gathered.time_histories.is_empty() {
-        found.push(format!("{} time histories", gathered.time_histories.len()));
-    }
-    found.extend(skipped(sources).iter().map(|(number, count)| match count {
-        1 => format!("dataset {number}"),
-        _ => format!("{count} datasets {number}"),
-    }));
-    RecordingError::NoFrf {
-        files,
-        found: if found.is_empty() { "no function".into() } else { enumeration(found) },
-    }
+    RecordingError::NoFrf { files, found: Contents::of(sources).phrase() }
 }
 
 fn not_on_fixture(gathered: &Gathered, fixture: &Fixture) -> RecordingError {

@@ -4,15 +4,41 @@ use std::collections::BTreeMap;
 
 use num_complex::Complex64;
 
-use crate::{Abscissa, Axis, FunctionType, Units};
+use crate::{
+    Abscissa, Axis, CoordinateSystem, Element, FunctionType, Header, NodalData, Nodes, ReadError, TraceLine,
+    Units,
+};
 
 /// What a universal file holds.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct UffFile {
     /// Every function of the file, in file order.
     pub datasets: Vec<Dataset58>,
-    /// How many datasets of each other number were skipped (geometry, headers, …); units (164) are read, not skipped.
+    /// Who wrote the file (dataset 151), if it says.
+    pub header: Option<Header>,
+    /// The nodes of each dataset 15 or 2411.
+    pub nodes: Vec<Nodes>,
+    /// All coordinate systems (datasets 18 and 2420).
+    pub systems: Vec<CoordinateSystem>,
+    /// All elements (dataset 2412).
+    pub elements: Vec<Element>,
+    /// All trace lines (dataset 82).
+    pub traces: Vec<TraceLine>,
+    /// Mode shapes and other data at nodes (datasets 55 and 2414).
+    pub nodal: Vec<NodalData>,
+    /// Datasets of geometry or shapes that cannot be read, and why.
+    pub unreadable: Vec<Unreadable>,
+    /// How many datasets of each other number were skipped.
     pub skipped: BTreeMap<u32, usize>,
+}
+
+/// A dataset beside the functions that cannot be read.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Unreadable {
+    /// Its number: 15, 2411, …
+    pub number: u32,
+    /// Why, with the place.
+    pub error: ReadError,
 }
 
 /// A function at a nodal degree of freedom (dataset 58 or 58b).
@@ -32,6 +58,9 @@ pub struct Dataset58 {
     pub response: Node,
     /// Where and in which direction the structure was excited.
     pub reference: Node,
+    /// Number of points that the header states, where an ASCII dataset is closed after fewer: those there are have been read, but which of
+    /// them are missing nobody knows.
+    pub stated_points: Option<usize>,
     /// Where the ordinates sit.
     pub abscissa: Abscissa,
     /// Value on the z-axis; 0 if not used.
@@ -65,6 +94,7 @@ impl Dataset58 {
             load_case: 0,
             response: Node::default(),
             reference: Node::default(),
+            stated_points: None,
             abscissa,
             z_value: 0.0,
             abscissa_axis: Axis::default(),

@@ -12,7 +12,7 @@ use jointscope::spectra::FrfPair;
 use jointscope::{Answer, Band, DiagnosisOptions, answer_file, diagnose};
 
 use crate::estimation_arguments::EstimationArguments;
-use crate::input::FixtureFile;
+use crate::input::{self, FixtureFile};
 use crate::origin;
 use crate::output::{Outputs, pretty};
 use crate::progress::Steps;
@@ -60,6 +60,9 @@ pub struct DiagnoseArguments {
 /// Diagnoses, and writes `diagnosis.json`, `refitted.json`, `repaired.json` and `report.html`; answers with what was found and where the page
 /// is, or with `diagnosis.json` itself.
 pub fn run(arguments: &DiagnoseArguments) -> Result<String, Refusal> {
+    input::once(
+        std::iter::once(&arguments.fixture).chain(&arguments.recording.files).chain(&arguments.baseline),
+    )?;
     let fixture = FixtureFile::read(&arguments.fixture)?;
     let measurement = arguments.recording.measurement(&fixture)?;
     let estimate = arguments.estimation.options(ResponseWindow::Auto);

@@ -79,7 +79,10 @@ fn a_file_without_any_function_says_which_datasets_it_has() {
 fn a_file_that_is_no_universal_file_is_doubted() {
     let bench = Bench::new("bad-json");
     bench.write("two.json", TWO_BLOCKS);
-    bench.refused(&["decompose", "two.json", "two.json", "-o", "out"], &["two.json", "is it a UFF file?"]);
+    bench.refused(
+        &["decompose", "two.json", "two.json", "-o", "out"],
+        &["two.json", "is a JSON file, such as a fixture"],
+    );
     bench.write("empty.uff", "");
     bench.refused(&["decompose", "two.json", "empty.uff", "-o", "out"], &["empty.uff", "empty", "export"]);
 }
@@ -125,7 +128,7 @@ fn a_missing_value_is_placed() {
         lines.remove(40);
         lines.join("\n") + "\n"
     };
-    text("bad-short", short, &["bad.uff: dataset 1", "of 382 values", "export"]);
+    text("bad-short", short, &["bad.uff, function 1", "states 191 points", "after 189", "export"]);
 }
 
 /// Puts 13 characters over the first ones of a line's second value (double precision, 20 columns each).

@@ -180,7 +180,10 @@ fn hits_that_are_no_good_are_refused_in_one_sentence() {
         },
         &["every hit is rejected: hit 1: the record starts when", "pre-trigger"],
     );
-    bench.refused(&["estimate", "frf.uff", "-o", "out.uff"], &["no time histories", "4 of type 4"]);
+    bench.refused(
+        &["estimate", "frf.uff", "-o", "out.uff"],
+        &["no time histories", "what there is: 4 FRFs (function type 4)"],
+    );
     bench.refused(
         &["estimate", "hits.uff", "--reject", "9", "-o", "out.uff"],
         &["there is no hit 9", "1, 2, 3, 4"],

@@ -10,6 +10,7 @@ mod diagnose;
 mod estimate;
 mod export;
 mod fem;
+mod formats;
 mod guide;
 mod hits;
 mod init;

@@ -87,7 +87,7 @@ fn what_holds_no_modes_is_refused_in_a_sentence() {
     modes(&["--orders", "0"], &["such as 40 or 4:40"]);
     modes(&["--update", "new.json"], &["--fixture"]);
     bench.refused(&["modes", "none.uff", "-o", "out"], &["none.uff", "no such file"]);
-    bench.refused(&["modes", "two.json", "-o", "out"], &["two.json", "is it a UFF file?"]);
+    bench.refused(&["modes", "two.json", "-o", "out"], &["two.json", "is a JSON file"]);
     bench.refused(&["modes", "frf.uff"], &["--output"]);
     // A fixture of another structure.
     bench.write("stiff.json", bench.text("two.json").replace("3.67e-10", "3.67e-8"));

@@ -12,6 +12,7 @@ const FLOORS: [&[&str]; 12] = [
         "jointscope-averaging",
         "jointscope-frf",
         "jointscope-hits",
+        "jointscope-import",
         "jointscope-inference",
     ],
     &[

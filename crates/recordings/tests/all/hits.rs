@@ -136,7 +136,10 @@ fn channels_on_different_instants_are_refused_with_both() {
 
 #[test]
 fn files_without_time_histories_and_hits_elsewhere_are_refused_with_the_remedy() {
-    refused(&[source("a.uff", vec![common::frf((4, 2), (1, 2))])], &["a.uff", "1 of type 4"]);
+    refused(
+        &[source("a.uff", vec![common::frf((4, 2), (1, 2))])],
+        &["a.uff", "what there is: 1 FRF (function type 4)"],
+    );
     refused(&[source("a.uff", vec![])], &["a.uff: there are no time histories (function type 1);"]);
     refused(
         &[source("a.uff", vec![force(1, 101), sensor(1, 4)])],

@@ -4,6 +4,7 @@
 mod channels;
 mod common;
 mod datasets;
+mod geometry;
 mod hits;
 mod sets;
 mod shared;

@@ -2,7 +2,7 @@
 
 use crate::common::*;
 use jointscope_recordings::{FunctionError, HeldAmplitude, ReadOptions, Recording, RecordingError};
-use jointscope_uff::{Abscissa, Axis, Data, Dataset58, FunctionType, UffFile};
+use jointscope_uff::{Abscissa, Axis, Data, Dataset58, FunctionType, UffFile, data_type};
 use num_complex::Complex64;
 use proptest::prelude::*;
 
@@ -178,6 +178,9 @@ fn time_histories_alone_ask_for_an_estimate_and_beside_frfs_are_noted() {
         matches!(&answer, RecordingError::OnlyTimeHistories { count: 2, channels, .. } if channels.len() == 2)
     );
     assert!(answer.to_string().contains("`jointscope estimate`"), "{answer}");
+    let sound = vec![history(1, Axis::new(data_type::PRESSURE, "Sound", "Pa"))];
+    let answer = read(sound).unwrap_err().to_string();
+    assert!(answer.contains("there is 1 time history") && answer.contains("it is no force"), "{answer}");
     let recording = read([hits(), vec![frf((4, 2), (1, 2))]].concat()).unwrap();
     assert_eq!(recording.time_histories.count, 2);
     assert_eq!(recording.notes, ["2 time histories left aside: the files hold FRFs"]);
@@ -186,17 +189,44 @@ fn time_histories_alone_ask_for_an_estimate_and_beside_frfs_are_noted() {
 #[test]
 fn files_without_frfs_say_what_they_hold_instead() {
     let spectrum = Dataset58 { function: FunctionType::AutoSpectrum, ..frf((4, 2), (4, 2)) };
-    refused(vec![spectrum], &ReadOptions::default(), &["test.uff", "1 function of type 2"]);
-    refused(vec![], &ReadOptions::default(), &["no function"]);
+    refused(
+        vec![spectrum],
+        &ReadOptions::default(),
+        &["test.uff", "what there is: 1 auto spectrum (function type 2)"],
+    );
+    refused(vec![], &ReadOptions::default(), &["what there is: nothing"]);
     refused(
         vec![coherence((4, 2), (1, 2), [1.0; 3])],
         &ReadOptions::default(),
-        &["what there is: coherences"],
+        &["what there is: 1 coherence (function type 6)"],
     );
     let mut header = source("header.uff", vec![]);
-    header.file = UffFile { skipped: [(15, 1), (151, 2)].into(), ..header.file };
+    header.file = UffFile { skipped: [(2467, 1), (1858, 2)].into(), ..header.file };
     let message = Recording::of(&[header], &fixture(), &ReadOptions::default()).unwrap_err().to_string();
-    assert!(message.contains("what there is: dataset 15, 2 datasets 151; export"), "{message}");
+    assert!(
+        message.contains(
+            "what there is: 2 datasets 1858 (qualifiers of functions), dataset 2467 (groups); export"
+        ),
+        "{message}"
+    );
+}
+
+/// The values there are may be the wrong ones: nobody knows where the missing ones would have stood.
+#[test]
+fn a_function_cut_short_is_refused_where_it_is_needed_and_only_there() {
+    let cut = |dataset: Dataset58| Dataset58 { stated_points: Some(400), ..dataset };
+    let (here, elsewhere) = (frf((4, 2), (1, 2)), frf((99, 2), (1, 2)));
+    let parts =
+        ["test.uff, function 1 (FRF 4:+y/1:+y)", "states 400 points", "after 3", "export the file again"];
+    refused(vec![cut(here.clone())], &ReadOptions::default(), &parts);
+    let short_coherence = cut(coherence((4, 2), (1, 2), [1.0; 3]));
+    refused(
+        vec![here.clone(), short_coherence],
+        &ReadOptions::default(),
+        &["function 2 (coherence", "after 3"],
+    );
+    let recording = read(vec![here, cut(elsewhere), cut(history(1, Axis::acceleration()))]).unwrap();
+    assert_eq!(names(&recording), ["4/1"]);
 }
 
 #[test]

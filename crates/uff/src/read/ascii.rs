@@ -16,32 +16,32 @@ fn line_layout(form: &Form) -> &'static [usize] {
     }
 }
 
-/// Reads the values of a dataset 58 and its closing delimiter.
+/// Reads the values of a dataset 58 and its closing delimiter: all that the header states, or fewer whole points.
 pub(super) fn read(cursor: &mut Cursor, form: &Form) -> Result<Values, ReadError> {
     let per_point = form.values_per_point();
     // A count beyond all bounds reads as one that the file cannot fulfil.
     let expected = form.points.saturating_mul(per_point);
-    let numbers = numbers(cursor, line_layout(form), expected, per_point)?;
+    let (numbers, closing) = numbers(cursor, line_layout(form), expected, per_point)?;
+    let found = numbers.len();
+    if found < expected && (found == 0 || !found.is_multiple_of(per_point)) {
+        return Err(cursor.error(closing, TextProblem::TooFew { expected, found }));
+    }
     Ok(Values::from_interleaved(numbers, form))
 }
 
-/// Reads `expected` numbers, `per_point` of them a point, laid out in lines of `widths`, and the closing delimiter.
-pub(super) fn numbers(
-    cursor: &mut Cursor,
+/// Reads up to `expected` numbers, `per_point` of them a point, laid out in lines of `widths`, and the closing delimiter, which is handed back.
+pub(super) fn numbers<'a>(
+    cursor: &mut Cursor<'a>,
     widths: &'static [usize],
     expected: usize,
     per_point: usize,
-) -> Result<Vec<f64>, ReadError> {
+) -> Result<(Vec<f64>, Line<'a>), ReadError> {
     // No number takes less than two bytes: a wild count allocates no more than the file could hold.
     let mut numbers = Vec::with_capacity(expected.min(cursor.rest().len() / 2 + widths.len()));
     let mut reader = LineReader { widths, per_point, expected, numbers: &mut numbers };
     while let Some(line) = cursor.next_filled_line() {
         if is_delimiter(line.bytes) {
-            let found = numbers.len();
-            if found == expected {
-                return Ok(numbers);
-            }
-            return Err(cursor.error(line, TextProblem::TooFew { expected, found }));
+            return Ok((numbers, line));
         }
         let too_many = || cursor.error(line, TextProblem::TooMany(expected));
         if reader.numbers.len() >= expected {
@@ -57,6 +57,32 @@ pub(super) fn numbers(
         }
     }
     Err(cursor.truncated("data or the `    -1` line that closes the dataset"))
+}
+
+/// Reads the lines that hold the next `count` numbers, laid out in `widths`; what more a last line holds is left aside. The closing
+/// delimiter must not come before.
+pub(super) fn some_numbers(
+    cursor: &mut Cursor,
+    widths: &'static [usize],
+    count: usize,
+    expected: &'static str,
+) -> Result<Vec<f64>, ReadError> {
+    let mut numbers = Vec::with_capacity(count.min(cursor.rest().len() / 2 + widths.len()));
+    let mut reader = LineReader { widths, per_point: 1, expected: count, numbers: &mut numbers };
+    while reader.numbers.len() < count {
+        let line = cursor.header_line(expected)?;
+        let before = reader.numbers.len();
+        reader.read(cursor, line).map_err(|error| match error {
+            // Said of spectral lines, which this is not.
+            ReadError::NotFinite { .. } => cursor.unexpected(line, expected, line.bytes),
+            error => error,
+        })?;
+        if reader.numbers.len() == before {
+            return Err(cursor.unexpected(line, expected, line.bytes));
+        }
+    }
+    numbers.truncate(count);
+    Ok(numbers)
 }
 
 /// Why the columns of a line do not fit.

@@ -28,6 +28,12 @@ pub(super) fn read(
     if !form.even {
         function.abscissa = Abscissa::Uneven(values.abscissa);
     }
+    if values.data.len() < form.points {
+        function.stated_points = Some(form.points);
+        if let Abscissa::Even { count, .. } = &mut function.abscissa {
+            *count = values.data.len();
+        }
+    }
     Ok(Dataset58 { data: values.data, units: units.cloned(), ..function })
 }
 

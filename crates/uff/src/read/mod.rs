@@ -5,19 +5,23 @@ mod binary;
 mod cursor;
 mod dataset58;
 mod fields;
+mod geometry;
 mod header;
+mod integers;
+mod nodal;
 mod number;
 mod units;
 mod values;
 
-use crate::{ReadError, UffFile, Units};
+use crate::{Nodes, ReadError, UffFile, Units, Unreadable};
 use cursor::{Cursor, Line, excerpt, is_delimiter};
 
-/// Reads every function (dataset 58 and 58b) of a universal file.
+/// Reads every function (dataset 58 and 58b), the geometry and the mode shapes of a universal file.
 ///
 /// # Errors
-/// A [`ReadError`] naming the dataset and the line or byte for anything that is damaged, missing or not finite; a file is
-/// read whole or not at all.
+/// A [`ReadError`] naming the dataset and the line or byte for anything in a function or in the units that is damaged, missing or not finite;
+/// functions are read whole or not at all. A damaged dataset of geometry or shapes is passed and told in [`UffFile::unreadable`]: it says
+/// nothing of the functions beside it.
 pub fn read(bytes: &[u8]) -> Result<UffFile, ReadError> {
     let mut cursor = Cursor::new(bytes);
     let mut file = UffFile::default();
@@ -27,13 +31,48 @@ pub fn read(bytes: &[u8]) -> Result<UffFile, ReadError> {
         match identification.number {
             58 => file.datasets.push(dataset58::read(&mut cursor, &identification, units.as_ref())?),
             164 => units = Some(units::read(&mut cursor)?),
-            other => {
-                skip(&mut cursor, &identification)?;
-                *file.skipped.entry(other).or_default() += 1;
+            number => {
+                let mut inside = cursor.clone();
+                match beside_functions(&mut inside, &identification, units.as_ref(), &mut file) {
+                    None => {
+                        skip(&mut cursor, &identification)?;
+                        *file.skipped.entry(number).or_default() += 1;
+                    }
+                    Some(Ok(())) => cursor.position = inside.position,
+                    Some(Err(error)) => {
+                        skip(&mut cursor, &identification)?;
+                        file.unreadable.push(Unreadable { number, error });
+                    }
+                }
             }
         }
     }
     Ok(file)
+}
+
+/// Reads a dataset of geometry, shapes or the header into the file; nothing for one of another number.
+fn beside_functions(
+    cursor: &mut Cursor,
+    identification: &Identification,
+    units: Option<&Units>,
+    file: &mut UffFile,
+) -> Option<Result<(), ReadError>> {
+    if identification.binary.is_some() {
+        return None;
+    }
+    let nodes = |nodes| Nodes { nodes, units: units.cloned() };
+    Some(match identification.number {
+        15 => geometry::nodes15(cursor).map(|found| file.nodes.push(nodes(found))),
+        2411 => geometry::nodes2411(cursor).map(|found| file.nodes.push(nodes(found))),
+        18 => geometry::systems18(cursor).map(|found| file.systems.extend(found)),
+        2420 => geometry::systems2420(cursor).map(|found| file.systems.extend(found)),
+        2412 => geometry::elements(cursor).map(|found| file.elements.extend(found)),
+        82 => geometry::trace(cursor).map(|found| file.traces.push(found)),
+        151 => geometry::header(cursor).map(|found| file.header = Some(found)),
+        55 => nodal::read55(cursor).map(|found| file.nodal.push(found)),
+        2414 => nodal::read2414(cursor).map(|found| file.nodal.push(found)),
+        _ => return None,
+    })
 }
 
 /// Passes the opening delimiter of the next dataset; false at the end of the file.
@@ -88,6 +127,11 @@ fn skip(cursor: &mut Cursor, identification: &Identification) -> Result<(), Read
         cursor.position = after;
         return Ok(());
     }
+    skip_to_delimiter(cursor)
+}
+
+/// Passes everything up to and with the next closing delimiter.
+fn skip_to_delimiter(cursor: &mut Cursor) -> Result<(), ReadError> {
     while let Some(line) = cursor.next_line() {
         if is_delimiter(line.bytes) {
             return Ok(());

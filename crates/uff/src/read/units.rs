@@ -15,7 +15,7 @@ pub(super) fn read(cursor: &mut Cursor) -> Result<Units, ReadError> {
     let (code, description, temperature_mode) =
         record1(&text).ok_or_else(|| cursor.unexpected(line, EXPECTED, line.bytes))?;
     let second = Line { start: cursor.position, bytes: &[] };
-    let factors = ascii::numbers(cursor, &[25; 3], 4, 4).map_err(|error| match error {
+    let (factors, _) = ascii::numbers(cursor, &[25; 3], 4, 4).map_err(|error| match error {
         // Said of spectral lines, which units do not have.
         ReadError::NotFinite { .. } => cursor.unexpected(second, FACTORS, b"NaN or infinity"),
         error => error,

@@ -16,6 +16,8 @@ fn valid_file() -> Vec<u8> {
         &dataset("    58", &even(2, 7), ascii),
         &dataset(BINARY, &even(6, 3), &[0x3f; 48]),
         b"    -1\n   151\ntitle\n    -1\n",
+        include_bytes!("samples/geometry-by-pyuff.uff"),
+        b"    -1\n  2412\n         1        21         1         1         7         2\n         0         1         1\n         1         2\n    -1\n",
         &dataset("    58", &uneven(6, 1), mixed),
         &dataset(BINARY, &uneven(5, 4), &[0x40; 48]),
     ]
@@ -55,6 +57,12 @@ proptest! {
         swallow(&dataset("    58", &even(data_type, points), data.as_bytes()));
         swallow(&dataset("    58", &uneven(data_type, points), data.as_bytes()));
         swallow(&dataset("   164", "", data.as_bytes()));
+    }
+
+    #[test]
+    fn arbitrary_geometry_is_survived(records in "[-+0-9.eEdD \n]{0,300}", number in prop::sample::select(vec![15, 18, 55, 82, 151, 2411, 2412, 2414, 2420])) {
+        let bytes = format!("    -1\n{number:6}\n{records}\n    -1\n");
+        swallow(bytes.as_bytes());
     }
 
     #[test]

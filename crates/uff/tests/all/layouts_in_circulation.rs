@@ -172,18 +172,20 @@ fn doubles_under_a_header_that_says_single_are_read_as_doubles() {
 
 #[test]
 fn other_datasets_are_skipped_and_counted_by_number() {
-    let nodes = "    -1\n    15\n         1         0         0         1  0.00000e+00  0.00000e+00  0.00000e+00\n    -1\n";
+    let groups = "    -1\n  2467\n         1         0         0         0         0         0         0         4\n    -1\n";
     let title = "    -1\n   151\ntitle\nNONE\nNONE\n    -1\n";
     let file = [
-        nodes.as_bytes(),
+        groups.as_bytes(),
         title.as_bytes(),
         &dataset("    58", &even(2, 1), b"  1.00000e+00\n"),
-        nodes.as_bytes(),
+        groups.as_bytes(),
     ]
     .concat();
     let file = read(&file).unwrap();
     assert_eq!(file.datasets.len(), 1);
-    assert_eq!(file.skipped.into_iter().collect::<Vec<_>>(), [(15, 2), (151, 1)]);
+    assert_eq!(file.skipped.into_iter().collect::<Vec<_>>(), [(2467, 2)]);
+    // A header of fewer lines than it should have names what it can.
+    assert_eq!((file.header.unwrap().model.as_str(), file.unreadable.len()), ("title", 0));
 }
 
 #[test]

@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used)] // helpers of tests fail as tests do
 
 mod common;
+mod geometry;
 mod hostile_bytes;
 mod layouts_in_circulation;
 mod malformed_files;

@@ -156,9 +156,14 @@ fn a_blank_value_is_named_with_its_place_in_the_line() {
 #[test]
 fn too_few_and_too_many_values_are_told_apart() {
     check_data(
+        &even(5, 3),
+        "  1.00000e+00  2.00000e+00  3.00000e+00\n",
+        "dataset 1, line 15: the dataset ends after 3 of 6 values; export the file again",
+    );
+    check_data(
         &even(2, 3),
-        "  1.00000e+00  2.00000e+00\n",
-        "dataset 1, line 15: the dataset ends after 2 of 3 values; export the file again",
+        "",
+        "dataset 1, line 14: the dataset ends after 0 of 3 values; export the file again",
     );
     let too_many =
         "dataset 1, line 14: more data than the 1 values the header states; is the number of points right?";
@@ -169,10 +174,24 @@ fn too_few_and_too_many_values_are_told_apart() {
         "dataset 1, line 15: more data than the 1 values the header states; is the number of points right?",
     );
     check_data(
-        &even(2, 999_999_999),
+        &even(5, 999_999_999),
         "  1.00000e+00\n",
-        "dataset 1, line 15: the dataset ends after 1 of 999999999 values; export the file again",
+        "dataset 1, line 15: the dataset ends after 1 of 1999999998 values; export the file again",
     );
+}
+
+/// A throughput cut by hand and closed in good order; its ID lines hold `-1` in dates and paths.
+#[test]
+fn fewer_whole_points_than_stated_are_read_and_said() {
+    let data = b"  1.00000e+00  2.00000e+00\n";
+    let bytes = dataset("    58", &even(2, 2_508_876), data);
+    let text = String::from_utf8(bytes).unwrap().replacen("beam\n", "[.../20EH -1 2017-12-06 a/1 :1]\n", 1);
+    let file = read(text.as_bytes()).unwrap();
+    let function = &file.datasets[0];
+    assert_eq!(function.data, Data::Real(vec![1.0, 2.0]));
+    assert_eq!((function.abscissa.len(), function.stated_points), (2, Some(2_508_876)));
+    let whole = read(&dataset("    58", &even(2, 2), data)).unwrap();
+    assert_eq!(whole.datasets[0].stated_points, None);
 }
 
 #[test]

@@ -104,6 +104,23 @@ impl Bench {
         Command::new(env!("CARGO_BIN_EXE_jointscope")).args(arguments).current_dir(&self.0).output().unwrap()
     }
 
+    /// The program with these bytes on its standard input.
+    pub fn run_with_input(&self, arguments: &[&str], input: &[u8]) -> Output {
+        use std::io::Write;
+        use std::process::Stdio;
+        let mut program = Command::new(env!("CARGO_BIN_EXE_jointscope"))
+            .args(arguments)
+            .current_dir(&self.0)
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        // A program that refuses its arguments reads nothing.
+        let _ = program.stdin.take().unwrap().write_all(input);
+        program.wait_with_output().unwrap()
+    }
+
     /// The program must do it; what it says.
     #[track_caller]
     pub fn done(&self, arguments: &[&str]) -> String {

@@ -1,0 +1,6 @@
+//! The tests of this crate's public functions, in one program: linking is what costs time.
+#![allow(clippy::unwrap_used)] // helpers of tests fail as tests do
+
+mod hostile_bytes;
+mod matlab;
+mod tables;
