@@ -1,3 +1,4 @@
+use crate::FittedJoint;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Deserializer};
 use serde_json::Value;
@@ -53,49 +54,6 @@ pub struct End {
     pub body: String,
     /// Its abscissa, m.
     pub x: f64,
-}
-
-/// The joint from all FRFs, the fixture's quantities moving within their deviations.
-#[derive(Debug, Clone, PartialEq, Deserialize)]
-pub struct FittedJoint {
-    /// K.
-    pub stiffness: Matrix,
-    /// C.
-    pub damping: Matrix,
-    /// Covariance of k11, k12, k22, c11, c12, c22.
-    pub covariance: [[f64; 6]; 6],
-    /// How it is damped, as far as the file says.
-    #[serde(default)]
-    pub law: Option<String>,
-    /// The joint's own mass, where the FRFs show one: K and C are then those of a joint with it.
-    #[serde(default)]
-    pub mass: Option<JointMass>,
-    /// Whether physics allows it.
-    #[serde(default)]
-    pub tests: JointTests,
-}
-
-/// Probabilities of FRFs that speak at least as much against a property, if the joint has it; nothing where it was not tested.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Deserialize)]
-pub struct JointTests {
-    /// k12 = k21 and c12 = c21.
-    #[serde(default)]
-    pub reciprocity: Option<f64>,
-    /// No eigenvalue of K is negative.
-    #[serde(default)]
-    pub definite: Option<f64>,
-    /// No eigenvalue of C is negative.
-    #[serde(default)]
-    pub passive: Option<f64>,
-}
-
-/// A joint's own mass, uniform over its length.
-#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
-pub struct JointMass {
-    /// kg.
-    pub value: f64,
-    /// Standard deviation, kg.
-    pub std: f64,
 }
 
 /// How an estimate may be used.

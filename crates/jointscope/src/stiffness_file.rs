@@ -65,9 +65,13 @@ fn fitted(fit: &JointFit) -> Value {
         "on_the_boundary_of_passive": fit.is_on_the_boundary,
         "tests": fit.tests,
         "quantities": fit.quantities,
+        "law_covariance": fit.law_covariance,
         "frfs": fit.frfs.iter().map(ToString::to_string).collect::<Vec<_>>(),
         "lines": fit.lines,
     });
+    if let Some(likelihood) = &fit.likelihood {
+        entry["likelihood"] = json!(likelihood);
+    }
     if let Some((mass, std)) = fit.mass {
         entry["mass"] = json!({"value": mass, "std": std});
     }

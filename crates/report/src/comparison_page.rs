@@ -87,11 +87,12 @@ fn order_section(comparison: &Comparison) -> Section {
 
 fn value_section(comparison: &Comparison) -> Section {
     let table = |kind: Kind| {
-        let table = Table::of(&comparison.joints).words("joint", |joint| joint.name.clone());
+        let table = Table::of(0..comparison.joints.len())
+            .words("joint", |&joint| comparison.joints[joint].name.clone());
         let table = ELEMENTS.iter().fold(table, |table, &element| {
-            let values = comparison.joints.iter().map(|j| kind.of(&comparison.estimate(j), element).0);
+            let values = (0..comparison.joints.len()).map(|j| kind.of(&comparison.estimate(j), element).0);
             let scale = Scale::for_values(values, kind.unit(element));
-            table.numbers(name_of(kind, element), scale.unit(), |joint| {
+            table.numbers(name_of(kind, element), scale.unit(), |&joint| {
                 let (value, std) = kind.of(&comparison.estimate(joint), element);
                 in_column(value, std, &scale)
             })
@@ -145,7 +146,7 @@ fn plot(comparison: &Comparison, kind: Kind, element: (usize, usize)) -> Plot {
         plot = plot.line(&joint.name, role, values);
     }
     for (index, joint) in comparison.joints.iter().enumerate() {
-        let level = kind.of(&comparison.estimate(joint), element).0;
+        let level = kind.of(&comparison.estimate(index), element).0;
         plot = plot.horizontal(format!("{}, estimate", joint.name), Role::Trace(index), level);
     }
     let names: Vec<&str> = comparison.joints.iter().map(|joint| joint.name.as_str()).collect();
@@ -155,13 +156,13 @@ fn plot(comparison: &Comparison, kind: Kind, element: (usize, usize)) -> Plot {
 
 /// What is drawn at first: the estimates and the middle of the lines in the joints' averaging bands, which poles and noise would squash.
 fn range(comparison: &Comparison, kind: Kind, element: (usize, usize)) -> YRange {
-    let of_joint = |joint: &Decomposed| {
+    let of_joint = |(index, joint): (usize, &Decomposed)| {
         let inside = joint.lines.iter().filter(|l| (joint.band.0..=joint.band.1).contains(&l.frequency));
         let values = inside.map(|line| at(kind, &line.stiffness, &line.damping, element));
-        let level = kind.of(&comparison.estimate(joint), element).0;
+        let level = kind.of(&comparison.estimate(index), element).0;
         Span::percentiles(values, YRange::ROBUST).and(Span::of([level]))
     };
-    let span = comparison.joints.iter().map(of_joint).fold(Span::default(), Span::and);
+    let span = comparison.joints.iter().enumerate().map(of_joint).fold(Span::default(), Span::and);
     YRange::about(span, (0.4 * span.width()).max(0.02 * span.magnitude()))
 }
 
