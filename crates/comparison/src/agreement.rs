@@ -4,7 +4,7 @@
 //! normal with mean zero and the covariance A₁ + A₂ − A₁A₂ − A₂A₁, A = 1 − S being what a test has told of q: what neither tells does not count.
 
 use crate::normal::chi2_above;
-use crate::{Caution, Decomposed, Together};
+use crate::{Decomposed, Together};
 use jointscope_linalg::{Cholesky, generalized_symmetric_eigen};
 
 /// Probability below which two tests do not agree.
@@ -13,18 +13,17 @@ const DISAGREE: f64 = 0.01;
 const UNTOLD: f64 = 1e-4;
 
 impl Together {
-    /// Every two tests that share a body and do not agree on it.
-    pub(crate) fn disagreements(&self, joints: &[Decomposed]) -> Vec<Caution> {
-        let pairs = (0..joints.len()).flat_map(|a| (a + 1..joints.len()).map(move |b| [a, b]));
-        let caution = |[a, b]: [usize; 2]| {
-            let p_value = self.agreement(&joints[a], &joints[b])?;
-            (p_value < DISAGREE).then(|| Caution::BodiesDisagree {
-                first: joints[a].name.clone(),
-                second: joints[b].name.clone(),
-                p_value,
-            })
+    /// The test that contradicts most others on the bodies they share, of as many the one of the least probable agreement; nothing where all agree.
+    pub(crate) fn most_at_odds(&self, joints: &[Decomposed]) -> Option<usize> {
+        let at_odds = |joint: usize| {
+            let others = (0..joints.len()).filter(|&other| other != joint);
+            let probabilities = others.filter_map(|other| self.agreement(&joints[joint], &joints[other]));
+            let low: Vec<f64> = probabilities.filter(|p| *p < DISAGREE).collect();
+            let least = low.iter().copied().fold(1.0, f64::min);
+            (!low.is_empty()).then_some((joint, low.len(), least))
         };
-        pairs.filter_map(caution).collect()
+        let all = (0..joints.len()).filter_map(at_odds);
+        all.max_by(|a, b| a.1.cmp(&b.1).then(b.2.total_cmp(&a.2))).map(|(joint, ..)| joint)
     }
 
     /// Probability of shared quantities as far apart or farther, if they are the same; `None` where nothing is shared or told.

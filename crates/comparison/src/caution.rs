@@ -1,6 +1,6 @@
 //! What keeps a comparison from being taken as it stands.
 
-use crate::Decomposed;
+use crate::{Decomposed, Together, WhyApart};
 use serde::Serialize;
 
 /// One thing to be known before anything else.
@@ -40,14 +40,10 @@ pub enum Caution {
         /// Those without.
         without: Vec<String>,
     },
-    /// The two tests do not agree on the quantities that they are said to share.
+    /// Its FRFs contradict those of another test on bodies that both fixtures state alike; it is compared as tested on bodies of its own.
     BodiesDisagree {
-        /// One joint.
-        first: String,
-        /// The other.
-        second: String,
-        /// Probability of quantities this far apart, if the bodies are the same.
-        p_value: f64,
+        /// Which joint.
+        joint: String,
     },
 }
 
@@ -56,7 +52,7 @@ const FAILED: f64 = 0.05;
 
 impl Caution {
     /// What is to be known of the joints as their files tell it.
-    pub(crate) fn of(joints: &[Decomposed]) -> Vec<Self> {
+    pub(crate) fn of(joints: &[Decomposed], together: &Together) -> Vec<Self> {
         let mut all: Vec<Caution> = joints.iter().flat_map(Caution::of_joint).collect();
         let heavy = |joint: &&Decomposed| joint.fitted.as_ref().is_some_and(|fit| fit.mass.is_some());
         let names = |joints: Vec<&Decomposed>| joints.iter().map(|joint| joint.name.clone()).collect();
@@ -64,6 +60,8 @@ impl Caution {
         if !with.is_empty() && !without.is_empty() {
             all.push(Caution::Masses { with: names(with), without: names(without) });
         }
+        let disagreeing = together.apart.iter().filter(|apart| apart.why == WhyApart::Disagrees);
+        all.extend(disagreeing.map(|apart| Caution::BodiesDisagree { joint: apart.joint.clone() }));
         all
     }
 
@@ -133,10 +131,9 @@ impl Caution {
                 if with.len() == 1 { "has" } else { "have" },
                 without.join(", ")
             ),
-            Caution::BodiesDisagree { first, second, p_value } => format!(
-                "{first} and {second} do not agree on the blocks that both fixtures state alike (p = {}): they may be different specimens; \
-                 `--independent` takes them so",
-                short(*p_value)
+            Caution::BodiesDisagree { joint } => format!(
+                "{joint}: its FRFs contradict those of another test on the blocks that both fixtures state alike, so it is compared as if on blocks of its own: \
+                 they may be others, or the fixture leaves something out"
             ),
         }
     }

@@ -89,6 +89,13 @@ pub struct ElementRanking {
     pub ranking: Ranking,
 }
 
+impl ElementRanking {
+    /// The number ranked by.
+    pub fn number(&self) -> Number {
+        Number { kind: self.kind, element: self.element }
+    }
+}
+
 /// Which of its estimates stands for each joint: the first one that all of them have.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Compared {
@@ -236,8 +243,7 @@ impl Comparison {
         let relation = first.relation.clone();
         let compared = Compared::of(&relation, &joints);
         let (numbers, together) = numbers(&joints, compared, options.independent);
-        let mut cautions = Caution::of(&joints);
-        cautions.extend(together.disagreements(&joints));
+        let cautions = Caution::of(&joints, &together);
         let all: Vec<usize> = (0..joints.len()).collect();
         let name = |joint: usize| joints[joint].name.as_str();
         let pair = |(a, b): (usize, usize)| Pair::of(&together, &numbers, (a, b), [name(a), name(b)]);

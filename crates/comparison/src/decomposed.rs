@@ -32,6 +32,17 @@ pub struct Line {
     pub std: Option<(Matrix, Matrix)>,
     /// Whether noise dominates it.
     pub noisy: bool,
+    /// H41, real and imaginary parts: m/N, m/(N·m), rad/N, rad/(N·m); files of earlier versions do not have it.
+    pub h41: Option<[[[f64; 2]; 2]; 2]>,
+}
+
+/// What the fixture as it stands gives, element by element, where it does.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Deserialize)]
+pub struct Nominal {
+    /// K.
+    pub stiffness: [[Option<f64>; 2]; 2],
+    /// C, averaged over the band.
+    pub damping: [[Option<f64>; 2]; 2],
 }
 
 /// Where a joint's K and C act: on d = u_to − R·u_from over `length`.
@@ -91,6 +102,8 @@ pub struct Decomposed {
     pub fitted: Option<FittedJoint>,
     /// How the estimate may be used, where the file says it.
     pub judgement: Option<Judged>,
+    /// The fixture's own joint, where the file says it.
+    pub nominal: Option<Nominal>,
 }
 
 /// What is missing from a `stiffness.json`: the place in it.
@@ -129,6 +142,7 @@ impl Decomposed {
             failed: read(&file["maximum_likelihood"]["failed"]),
             fitted,
             judgement: optional(file, "judgement")?,
+            nominal: optional(file, "nominal")?,
         })
     }
 }
@@ -191,6 +205,8 @@ struct LineEntry {
     std: Option<Pair>,
     #[serde(default)]
     noisy: bool,
+    #[serde(default)]
+    h41: Option<[[[f64; 2]; 2]; 2]>,
 }
 
 impl From<LineEntry> for Line {
@@ -201,6 +217,7 @@ impl From<LineEntry> for Line {
             damping: line.value.damping,
             std: line.std.map(|std| (std.stiffness, std.damping)),
             noisy: line.noisy,
+            h41: line.h41,
         }
     }
 }

@@ -69,7 +69,7 @@ pub fn comparison_file(comparison: &Comparison) -> Value {
     });
     let order = |entry: &'_ ElementRanking| entry.ranking.order.iter().map(|index| name(*index)).collect();
     let rankings = comparison.rankings.iter().map(|entry| Order {
-        element: format!("{}{}{}", entry.kind.symbol(), entry.element.0 + 1, entry.element.1 + 1),
+        element: entry.number().name(),
         order: order(entry),
         probability: entry.ranking.probability,
         adjacent: &entry.ranking.adjacent,

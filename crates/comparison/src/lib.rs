@@ -32,6 +32,7 @@ mod fitted;
 mod normal;
 mod pair;
 mod ranking;
+pub mod says;
 mod specimens;
 mod together;
 
@@ -39,7 +40,7 @@ pub use caution::Caution;
 pub use comparison::{
     Compared, Comparison, ComparisonError, ComparisonOptions, ELEMENTS, ElementRanking, Kind, Number,
 };
-pub use decomposed::{Decomposed, DecomposedError, End, Ends, Estimate, Judged, Line, Matrix};
+pub use decomposed::{Decomposed, DecomposedError, End, Ends, Estimate, Judged, Line, Matrix, Nominal};
 pub use file::comparison_file;
 pub use fitted::{FittedJoint, JointLikelihood, JointMass, JointTests, ModelError, StatedQuantity};
 pub use pair::{Equality, Figure, Pair, PairedNumber, Ratio};

@@ -4,12 +4,15 @@
 //! the likelihoods are multiplied, with one set of quantities, whose prior enters once. The posterior then has both joints, and what the blocks' tolerances do to one they do to
 //! the other: it cancels in their difference. What the fits get wrong besides (model error, laws over frequency) is added to each joint by itself.
 //!
+//! Where the common quantities are farther from what is stated than chance takes them, the posterior is widened by Birge's ratio, as that of one fit is.
+//!
 //! A body is the same in two tests where both fixtures say the same of it: every quantity of it and of the points on it that both fits moved has the same value and standard
 //! deviation. Supports, damping, channels and other joints are taken as set up anew.
 
 use crate::{Decomposed, Estimate, FittedJoint, Number};
 use jointscope_inference::NormalEquations;
 use serde::Serialize;
+use statrs::function::gamma::gamma_ur;
 use std::collections::BTreeMap;
 
 /// The numbers of all joints with their covariance.
@@ -54,8 +57,8 @@ pub enum WhyApart {
     Asked,
     /// Its file does not say how the fixture's quantities act on it: an earlier version's, or one without a fit to all FRFs.
     NotStated,
-    /// Its fit moved the quantities farther than chance does: what bends them is not what the other tests share.
-    Strained,
+    /// Its FRFs contradict those of another test on the quantities that the fixtures state alike: the bodies are not the same, or the fit bends them for something else.
+    Disagrees,
     /// No other fixture says the same of a body.
     OtherBodies,
     /// Its numbers and quantities cannot be told apart to working precision.
@@ -95,17 +98,23 @@ impl Together {
             .iter()
             .map(|joint| match &joint.fitted {
                 _ if asked_apart => Some(WhyApart::Asked),
-                Some(fit) if fit.likelihood().is_some() => {
-                    (fit.model_error.strain > 1.0).then_some(WhyApart::Strained)
-                }
+                Some(fit) if fit.likelihood().is_some() => None,
                 _ => Some(WhyApart::NotStated),
             })
             .collect();
-        let parts = parts(joints, &why);
-        together.shared = shared(joints, &parts);
-        let shares = |joint: usize| together.shared.iter().any(|s| s.joints.contains(&joints[joint].name));
-        let (tied, alone): (Vec<Part>, Vec<Part>) = parts.into_iter().partition(|part| shares(part.joint));
-        alone.iter().for_each(|part| why[part.joint] = Some(WhyApart::OtherBodies));
+        let tied = loop {
+            let parts = parts(joints, &why);
+            together.shared = shared(joints, &parts);
+            let shares =
+                |joint: usize| together.shared.iter().any(|s| s.joints.contains(&joints[joint].name));
+            let (tied, alone): (Vec<Part>, Vec<Part>) =
+                parts.into_iter().partition(|part| shares(part.joint));
+            let Some(odd) = together.most_at_odds(joints) else {
+                alone.iter().for_each(|part| why[part.joint] = Some(WhyApart::OtherBodies));
+                break tied;
+            };
+            why[odd] = Some(WhyApart::Disagrees);
+        };
         if !tied.is_empty() && together.tie(&tied, numbers).is_none() {
             tied.iter().for_each(|part| why[part.joint] = Some(WhyApart::Singular));
             together.shared.clear();
@@ -181,6 +190,9 @@ impl Together {
         }
         precision.iter().enumerate().for_each(|(i, p)| equations.add_prior(order + i, *p, 0.0));
         let (step, covariance) = (equations.step(0.0)?, equations.covariance()?);
+        let quantities = precision.iter().enumerate().filter(|(_, p)| **p > 0.0).map(|(i, _)| order + i);
+        let departures = quantities.map(|i| (step[i] * step[i], 1.0 - covariance.at(i, i)));
+        let strain = strain(departures);
         let own_place = |part: usize, slot: usize| {
             let (slots, _, own) = &likelihoods[part];
             slots.iter().position(|other| *other == slot).map(|index| own[index])
@@ -193,7 +205,7 @@ impl Together {
                     for (j, with) in numbers.iter().enumerate() {
                         let Some(column) = own_place(b, with.slot()) else { continue };
                         let own = if a == b { one.fit.added(number.slot(), with.slot()) } else { 0.0 };
-                        self.put((one.joint, i), (other.joint, j), covariance.at(row, column) + own);
+                        self.put((one.joint, i), (other.joint, j), strain * covariance.at(row, column) + own);
                     }
                 }
             }
@@ -216,6 +228,18 @@ impl Together {
     pub fn std(&self, joint: usize, number: usize) -> f64 {
         self.covariance((joint, number), (joint, number)).max(0.0).sqrt()
     }
+}
+
+/// Probability below which the quantities' departures are no chance, as in the decomposition.
+const NO_CHANCE: f64 = 0.01;
+
+/// Birge's ratio of quantities' squared departures from what is stated to what chance makes of them (each given with it); 1 where chance explains them.
+fn strain(departures: impl Iterator<Item = (f64, f64)>) -> f64 {
+    let (squares, expected) =
+        departures.fold((0.0, 0.0), |(s, e), (square, chance)| (s + square, e + chance.clamp(0.0, 1.0)));
+    let ratio: f64 = squares / expected;
+    let by_chance = |ratio: f64| gamma_ur(0.5 * expected, 0.5 * ratio * expected) >= NO_CHANCE;
+    if !(expected > 0.0 && ratio > 1.0) || by_chance(ratio) { 1.0 } else { ratio }
 }
 
 impl FittedJoint {

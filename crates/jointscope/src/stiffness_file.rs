@@ -1,5 +1,6 @@
 use jointscope_decomposition::{
-    Analysis, Compliance, InterfaceStiffness, JointFit, JointLine, LawFit, LawKind, MatrixAverage,
+    Analysis, Compliance, Element, InterfaceStiffness, JointFit, JointLine, LawFit, LawKind, MatrixAverage,
+    Part, Relation,
 };
 use jointscope_linalg::RealMatrix2;
 use serde_json::{Map, Value, json};
@@ -14,7 +15,7 @@ pub fn stiffness_file(analysis: &Analysis) -> Value {
     root.insert("joint".into(), joint(analysis));
     root.insert("ends".into(), json!(analysis.ends));
     root.insert("relation".into(), json!(spectrum.relation.name()));
-    root.insert("lines".into(), spectrum.solved.iter().map(line).collect());
+    root.insert("lines".into(), spectrum.solved.iter().map(|solved| line(analysis, solved)).collect());
     let frequencies = spectrum.h41.lines.hz();
     let masked =
         spectrum.masked.iter().map(|(i, why)| json!({"frequency": frequencies[*i], "why": why.why()}));
@@ -38,6 +39,7 @@ pub fn stiffness_file(analysis: &Analysis) -> Value {
     }
     root.insert("judgement".into(), json!(analysis.judgement));
     root.insert("nominal_stiffness".into(), matrix(&analysis.nominal_stiffness));
+    root.insert("nominal".into(), nominal(analysis));
     root.insert("recording".into(), recording(analysis));
     Value::Object(root)
 }
@@ -117,13 +119,16 @@ fn pair(k: &RealMatrix2, c: &RealMatrix2) -> Value {
     json!({"stiffness": matrix(k), "damping": matrix(c)})
 }
 
-fn line(line: &JointLine) -> Value {
+fn line(analysis: &Analysis, line: &JointLine) -> Value {
     let mut entry = json!({
         "frequency": line.frequency,
         "stiffness": matrix(&line.stiffness),
         "damping": matrix(&line.damping),
         "condition": line.condition,
     });
+    if let Some(h41) = analysis.spectrum.h41.values.get(line.line) {
+        entry["h41"] = json!(h41.0.map(|row| row.map(|value| [value.re, value.im])));
+    }
     if let (Some(k), Some(c)) = (&line.stiffness_std, &line.damping_std) {
         entry["std"] = pair(k, c);
         entry["noisy"] = json!(line.is_noisy());
@@ -146,6 +151,16 @@ fn averages(analysis: &Analysis) -> Value {
     entry["lines"] = json!(analysis.averages.lines);
     entry["std_fixture"] = pair(&k, &c);
     entry
+}
+
+/// K and C of the fixture as it stands, read as the lines are; `null` where no line of the band has them.
+fn nominal(analysis: &Analysis) -> Value {
+    let paper = analysis.spectrum.relation == Relation::Paper;
+    let element = |part: Part, row: usize, column: usize| {
+        analysis.nominal_average(part, Element { row, column }, paper)
+    };
+    let of = |part: Part| [0, 1].map(|row| [0, 1].map(|column| element(part, row, column)));
+    json!({"stiffness": of(Part::Stiffness), "damping": of(Part::Damping)})
 }
 
 fn likelihood(analysis: &Analysis) -> Value {
