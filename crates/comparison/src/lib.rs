@@ -34,6 +34,8 @@ mod pair;
 mod ranking;
 pub mod says;
 mod specimens;
+#[cfg(test)]
+mod tests;
 mod together;
 
 pub use caution::Caution;

@@ -98,7 +98,8 @@ pub(crate) fn mahalanobis(values: &[f64], covariance: &[f64]) -> Option<(f64, us
     let scale: Vec<f64> =
         (0..n).map(|i| if largest(i) { covariance[i * n + i].sqrt() } else { 1.0 }).collect();
     // Cholesky's factor with the largest pivot first, of the correlations.
-    let (mut rows, mut chi2, mut solved): (Vec<(usize, Vec<f64>)>, f64, Vec<f64>) = Default::default();
+    let mut rows: Vec<(usize, Vec<f64>)> = Vec::new();
+    let (mut chi2, mut solved) = (0.0, Vec::<f64>::new());
     let row = |i: usize, rows: &[(usize, Vec<f64>)]| {
         let mut entries: Vec<f64> = Vec::with_capacity(rows.len() + 1);
         for (k, (pivot, above)) in rows.iter().enumerate() {

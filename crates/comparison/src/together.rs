@@ -305,25 +305,37 @@ impl Part<'_> {
     }
 }
 
+/// The tests of a body, and how many of them moved each of its quantities.
+#[derive(Default)]
+struct Tests<'a> {
+    joints: Vec<usize>,
+    moved: BTreeMap<&'a str, usize>,
+}
+
 /// The bodies that more than one of the fits has.
 fn shared(joints: &[Decomposed], parts: &[Part]) -> Vec<SharedBody> {
-    let mut bodies: BTreeMap<(&str, usize), (Vec<usize>, BTreeMap<&str, usize>)> = BTreeMap::new();
+    let mut bodies: BTreeMap<(&str, usize), Tests> = BTreeMap::new();
     for part in parts {
         for (quantity, owner) in part.fit.quantities.iter().zip(&part.owners) {
             let Some(body) = quantity.body.as_deref() else { continue };
-            let (tests, paths) = bodies.entry((body, *owner)).or_default();
-            if tests.last() != Some(&part.joint) {
-                tests.push(part.joint);
+            let tests = bodies.entry((body, *owner)).or_default();
+            if tests.joints.last() != Some(&part.joint) {
+                tests.joints.push(part.joint);
             }
-            *paths.entry(&quantity.path).or_default() += 1;
+            *tests.moved.entry(&quantity.path).or_default() += 1;
         }
     }
-    let several = bodies.into_iter().filter(|(_, (tests, _))| tests.len() > 1);
+    let several = bodies.into_iter().filter(|(_, tests)| tests.joints.len() > 1);
     several
-        .map(|((body, _), (tests, paths))| SharedBody {
+        .map(|((body, _), tests)| SharedBody {
             body: body.to_owned(),
-            joints: tests.iter().map(|joint| joints[*joint].name.clone()).collect(),
-            quantities: paths.into_iter().filter(|(_, n)| *n > 1).map(|(path, _)| path.to_owned()).collect(),
+            joints: tests.joints.iter().map(|joint| joints[*joint].name.clone()).collect(),
+            quantities: tests
+                .moved
+                .iter()
+                .filter(|(_, n)| **n > 1)
+                .map(|(path, _)| (*path).to_owned())
+                .collect(),
         })
         .collect()
 }

@@ -1,6 +1,6 @@
 use jointscope_decomposition::{
     Analysis, Compliance, Element, InterfaceStiffness, JointFit, JointLine, LawFit, LawKind, MatrixAverage,
-    Part, Relation,
+    Method, Part, Relation,
 };
 use jointscope_linalg::RealMatrix2;
 use serde_json::{Map, Value, json};
@@ -29,6 +29,9 @@ pub fn stiffness_file(analysis: &Analysis) -> Value {
         root.insert(
             "interfaces".into(),
             json!({
+                "rest_on": analysis.interfaces_rest_on().map(|(method, explains)| {
+                    json!({"fit": method_name(method), "explains_the_frfs": explains})
+                }),
                 "translation_both": stiffness(&interfaces.translation, "N/m"),
                 "rotation_from": stiffness(&interfaces.near_rotation, "N*m/rad"),
                 "rotation_to": stiffness(&interfaces.far_rotation, "N*m/rad"),
@@ -179,6 +182,16 @@ fn likelihood(analysis: &Analysis) -> Value {
             })
         }
         Err(error) => json!({"failed": error.to_string()}),
+    }
+}
+
+/// The entry of the file that an estimate stands in.
+fn method_name(method: Method) -> &'static str {
+    match method {
+        Method::AllFrfs => "joint",
+        Method::MaximumLikelihood => "maximum_likelihood",
+        Method::WeightedMean => "weighted_average",
+        Method::PlainMean => "average",
     }
 }
 

@@ -3,12 +3,13 @@
 mod spectra;
 
 use jointscope_comparison::{
-    Comparison, ELEMENTS, ElementRanking, Equality, Kind, Pair, PairedNumber, Scatter, Specimens, says,
+    Caution, Comparison, ELEMENTS, ElementRanking, Equality, Kind, Pair, PairedNumber, Scatter, Specimens,
+    says,
 };
 
 use crate::context::PageContext;
 use crate::error::PageError;
-use crate::format::{in_column, interval, percent, quantity};
+use crate::format::{capitalised, in_column, interval, percent, quantity};
 use crate::section::{Section, Tone, Verdict};
 use crate::table::Table;
 use crate::unit::Scale;
@@ -91,10 +92,15 @@ fn verdict(comparison: &Comparison) -> Verdict {
         _ => "There is nothing to compare.".to_owned(),
     };
     details.extend(comparison.cautions.iter().map(|caution| sentence(&caution.says())));
-    details.extend(says::shared(comparison).iter().map(|text| sentence(text)));
+    details.extend(says::shared(comparison).iter().map(|text| capitalised(&sentence(text))));
     // What does not explain its recording earns no approval, however sure the order.
     let is_settled = !settled.is_empty() && settled.len() == stiffness().count();
-    let tone = if is_settled && comparison.is_sound() { Tone::Ok } else { Tone::Attention };
+    let unusable = comparison.cautions.iter().any(|caution| matches!(caution, Caution::Unusable { .. }));
+    let tone = match (unusable, is_settled && comparison.is_sound()) {
+        (true, _) => Tone::Problem,
+        (false, true) => Tone::Ok,
+        (false, false) => Tone::Attention,
+    };
     Verdict { tone, headline, details }
 }
 
@@ -197,14 +203,16 @@ fn order_section(comparison: &Comparison) -> Section {
         table.words(symbol(entry), |&joint| {
             let ranks = &entry.ranking.ranks[joint];
             let shown = ranks.iter().enumerate().filter(|(_, p)| **p >= SELDOM);
-            shown.map(|(rank, p)| format!("{}: {}", rank + 1, sure(*p))).collect::<Vec<_>>().join(", ")
+            shown.map(|(rank, p)| format!("{} ({})", rank + 1, sure(*p))).collect::<Vec<_>>().join(", ")
         })
     });
-    Section::new("Rank order").with(table).with(ranks.caption("Probability of each rank (1: the smallest)"))
+    Section::new("Rank order")
+        .with(table)
+        .with(ranks.caption("Ranks with their probabilities (1: the smallest magnitude)"))
 }
 
 /// Probability below which a rank is not listed.
-const SELDOM: f64 = 0.005;
+const SELDOM: f64 = 0.05;
 
 fn specimen_section(specimens: &Specimens) -> Section {
     let relative = |scatter: &&Scatter, value: f64| percent((value / scatter.mean.value).abs(), 2);

@@ -87,7 +87,7 @@ fn plot(comparison: &Comparison, kind: Kind, element: (usize, usize)) -> Plot {
         plot = plot.horizontal(format!("{}, estimate", joint.name), Role::Trace(index), level);
     }
     if let Some(level) = nominal(comparison, kind, element) {
-        plot = plot.horizontal("fixture", Role::Nominal, level);
+        plot = plot.horizontal("fixture", Role::Reference, level);
     }
     let names: Vec<&str> = comparison.joints.iter().map(|joint| joint.name.as_str()).collect();
     let caption = format!("{symbol} of {}.", names.join(", "));
