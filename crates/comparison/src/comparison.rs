@@ -170,7 +170,7 @@ pub struct Comparison {
     pub together: Together,
     /// Every two of them, in the order given.
     pub pairs: Vec<Pair>,
-    /// Whether all joints are the same; nothing where no number has a deviation.
+    /// Whether all joints are the same; nothing where that of two has none.
     pub equality: Option<Equality>,
     /// Orders by each number of K, then of C.
     pub rankings: Vec<ElementRanking>,
@@ -394,6 +394,8 @@ mod tests {
         let found = compared([file(Some(100.0), Some(300.0), 500.0), file(None, Some(250.0), 400.0)]);
         assert_eq!((found.compared, found.compared.name()), (Compared::Likelihood, "maximum_likelihood"));
         assert_eq!(found.rankings[0].ranking.order, [1, 0]);
+        // Nothing is known of how the errors of their numbers go together.
+        assert!(found.pairs[0].equality.is_none() && found.pairs[0].number("elastic_centre").is_none());
         let found = compared([file(Some(100.0), None, 500.0), file(None, Some(250.0), 400.0)]);
         assert_eq!(found.compared, Compared::Average);
         assert_eq!(found.estimate(1).stiffness[0][0], 400.0);

@@ -70,8 +70,11 @@ impl Equality {
         Some(Equality { chi2, degrees, p_value: chi2_above(chi2, degrees) })
     }
 
-    /// Of all numbers of several joints at once.
+    /// Of all numbers of several joints at once; nothing where it is not known how their errors go together.
     pub(crate) fn of_all(together: &Together, joints: &[usize], numbers: &[Number]) -> Option<Self> {
+        if !together.has_covariances {
+            return None;
+        }
         let (first, others) = joints.split_first()?;
         let entries: Vec<(usize, usize)> =
             others.iter().flat_map(|&joint| (0..numbers.len()).map(move |n| (joint, n))).collect();
@@ -102,7 +105,8 @@ pub struct Pair {
     pub second: String,
     /// By number.
     pub numbers: Vec<PairedNumber>,
-    /// Whether all numbers of both are the same; nothing where none has a deviation.
+    /// Whether all numbers of both are the same; nothing where none has a deviation, or where averages and fits to the FRFs across are compared, whose files do not say
+    /// how the errors of their numbers go together.
     pub equality: Option<Equality>,
 }
 
@@ -146,7 +150,9 @@ impl Pair {
                 PairedNumber::of((numbers[n].name(), numbers[n].unit()), values, variances, false)
             })
             .collect();
-        all.extend(derived(together, numbers, (first, second)));
+        if together.has_covariances {
+            all.extend(derived(together, numbers, (first, second)));
+        }
         Pair {
             first: names[0].to_owned(),
             second: names[1].to_owned(),

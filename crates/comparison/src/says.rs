@@ -51,6 +51,11 @@ pub fn shared(comparison: &Comparison) -> Vec<String> {
         together.shared.iter().map(|shared| format!("{} ({})", shared.body, shared.joints.join(", ")));
     let bodies: Vec<String> = bodies.collect();
     let mut all = Vec::new();
+    if !together.has_covariances {
+        all.push(
+            "taken as independent: these estimates do not say what the tests have in common, so that ratios and orders look less sure than they are on the same blocks".to_owned(),
+        );
+    }
     if !bodies.is_empty() {
         all.push(format!(
             "taken as the same blocks, which the fixtures state alike: {}; what is not known of them cancels in differences and ratios, and numbers are those that all these \

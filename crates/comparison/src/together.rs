@@ -21,6 +21,8 @@ pub struct Together {
     count: usize,
     mean: Vec<f64>,
     covariance: Vec<f64>,
+    /// Whether the files say how the errors of one joint's numbers go together.
+    pub has_covariances: bool,
     /// Bodies that several tests share.
     pub shared: Vec<SharedBody>,
     /// Joints that share nothing, and why.
@@ -91,6 +93,7 @@ impl Together {
     /// Of joints fitted to all FRFs; `asked_apart` takes them all as tested on blocks of their own.
     pub(crate) fn of(joints: &[Decomposed], numbers: &[Number], asked_apart: bool) -> Self {
         let mut together = Together::empty(joints.len(), numbers.len());
+        together.has_covariances = true;
         for (joint, fit) in joints.iter().enumerate().filter_map(|(i, j)| Some((i, j.fitted.as_ref()?))) {
             together.put_alone(joint, fit, numbers);
         }
@@ -134,6 +137,7 @@ impl Together {
             count,
             mean: vec![0.0; n],
             covariance: vec![0.0; n * n],
+            has_covariances: false,
             shared: Vec::new(),
             apart: Vec::new(),
         }

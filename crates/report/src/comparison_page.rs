@@ -172,7 +172,11 @@ fn pair_table<'a>(comparison: &Comparison, pair: &'a Pair) -> Table<&'a PairedNu
             equality.chi2,
             equality.degrees
         ),
-        None => "No number has a standard deviation: equality cannot be tested.".to_owned(),
+        None if comparison.together.has_covariances => {
+            "No number has a standard deviation: equality cannot be tested.".to_owned()
+        }
+        None => "The files do not say how the errors of these estimates go together: equality is not tested."
+            .to_owned(),
     };
     let differs = |number: &&PairedNumber| {
         let [low, high] = number.difference.ci95;
@@ -236,11 +240,17 @@ fn specimen_section(specimens: &Specimens) -> Section {
         .with(table)
 }
 
+/// The elements that any joint has: the first alone of bodies that do not rotate.
+fn elements(comparison: &Comparison) -> &'static [(usize, usize)] {
+    let is_scalar = comparison.numbers.iter().all(|number| number.element == (0, 0));
+    if is_scalar { &ELEMENTS[..1] } else { &ELEMENTS }
+}
+
 fn value_section(comparison: &Comparison) -> Section {
     let table = |kind: Kind| {
         let table = Table::of(0..comparison.joints.len())
             .words("joint", |&joint| comparison.joints[joint].name.clone());
-        let table = ELEMENTS.iter().fold(table, |table, &element| {
+        let table = elements(comparison).iter().fold(table, |table, &element| {
             let values = (0..comparison.joints.len()).map(|j| kind.of(&comparison.estimate(j), element).0);
             let scale = Scale::for_values(values, kind.unit(element));
             table.numbers(name_of(kind, element), scale.unit(), |&joint| {

@@ -1,8 +1,8 @@
 //! The spectra of all joints in common plots: K and C (Figures 5–9), and the assemblies' H41 (Figure 4).
 
-use jointscope_comparison::{Comparison, Decomposed, ELEMENTS, Kind, Line, Matrix};
+use jointscope_comparison::{Comparison, Decomposed, Kind, Line, Matrix};
 
-use super::name_of;
+use super::{elements, name_of};
 use crate::plot::{Axis, Plot, Role, Span, YRange};
 use crate::section::Section;
 
@@ -15,8 +15,7 @@ pub(super) fn compliance_section(comparison: &Comparison) -> Option<Section> {
     if !comparison.joints.iter().any(has) {
         return None;
     }
-    let is_scalar = comparison.numbers.iter().all(|number| number.element == (0, 0));
-    let elements = if is_scalar { &ELEMENTS[..1] } else { &ELEMENTS };
+    let elements = elements(comparison);
     let plots = elements.iter().map(|&(i, j)| {
         const DIGITS: [&str; 2] = ["₁", "₂"];
         let symbol = format!("H41{}{}", DIGITS[i], DIGITS[j]);
@@ -29,7 +28,7 @@ pub(super) fn compliance_section(comparison: &Comparison) -> Option<Section> {
         }
         plot.masked(0).caption(format!("|{symbol}| of the assemblies."))
     });
-    let columns = if is_scalar { 1 } else { 2 };
+    let columns = if elements.len() == 1 { 1 } else { 2 };
     Some(
         Section::new("Assemblies")
             .paragraph(
@@ -48,11 +47,12 @@ pub(super) fn spectra_section(comparison: &Comparison, kind: Kind) -> Section {
         "paper" => "eq (7), signs included; its peaks are its own",
         _ => "the exact relation",
     };
+    let elements = elements(comparison);
     Section::new(word)
         .paragraph(format!(
             "By {relation}. Bands are 95 % intervals from noise alone; gaps are masked lines."
         ))
-        .plots(2, ELEMENTS.map(|element| plot(comparison, kind, element)))
+        .plots(elements.len().min(2), elements.iter().map(|&element| plot(comparison, kind, element)))
 }
 
 fn at(kind: Kind, stiffness: &Matrix, damping: &Matrix, (i, j): (usize, usize)) -> f64 {
