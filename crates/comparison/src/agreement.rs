@@ -7,20 +7,24 @@ use crate::normal::chi2_above;
 use crate::{Decomposed, Together};
 use jointscope_linalg::{Cholesky, generalized_symmetric_eigen};
 
-/// Probability below which two tests do not agree.
+/// Probability below which two tests do not agree; of several pairs, divided by their number.
 const DISAGREE: f64 = 0.01;
 /// Variance of a combination, in those of the prior, below which the tests tell nothing of it.
 const UNTOLD: f64 = 1e-4;
 
 impl Together {
-    /// The test that contradicts most others on the bodies they share, of as many the one of the least probable agreement; nothing where all agree.
+    /// The test that contradicts most others on the bodies they share, of as many the one of the least probable agreement; nothing where all agree. The more pairs are
+    /// looked at, the less probable each has to be.
     pub(crate) fn most_at_odds(&self, joints: &[Decomposed]) -> Option<usize> {
+        let all = (0..joints.len()).flat_map(|a| (a + 1..joints.len()).map(move |b| [a, b]));
+        let looked_at: Vec<([usize; 2], f64)> =
+            all.filter_map(|[a, b]| Some(([a, b], self.agreement(&joints[a], &joints[b])?))).collect();
+        let disagree = DISAGREE / looked_at.len() as f64;
         let at_odds = |joint: usize| {
-            let others = (0..joints.len()).filter(|&other| other != joint);
-            let probabilities = others.filter_map(|other| self.agreement(&joints[joint], &joints[other]));
-            let low: Vec<f64> = probabilities.filter(|p| *p < DISAGREE).collect();
-            let least = low.iter().copied().fold(1.0, f64::min);
-            (!low.is_empty()).then_some((joint, low.len(), least))
+            let own = looked_at.iter().filter(|(pair, p)| pair.contains(&joint) && *p < disagree);
+            let least = own.clone().map(|(_, p)| *p).fold(1.0, f64::min);
+            let count = own.count();
+            (count > 0).then_some((joint, count, least))
         };
         let all = (0..joints.len()).filter_map(at_odds);
         all.max_by(|a, b| a.1.cmp(&b.1).then(b.2.total_cmp(&a.2))).map(|(joint, ..)| joint)

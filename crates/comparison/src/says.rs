@@ -5,6 +5,9 @@ use crate::{Comparison, Equality, Pair, Ratio, Scatter, WhyApart};
 /// Pairs beyond which only those with the first joint are listed.
 const MANY: usize = 6;
 
+/// Paths listed at the most.
+const LISTED: usize = 4;
+
 /// The pairs that are worth listing: all of a few, those with the first joint of many.
 pub fn main_pairs(comparison: &Comparison) -> impl Iterator<Item = &Pair> {
     let few = comparison.pairs.len() <= MANY;
@@ -65,31 +68,33 @@ pub fn shared(comparison: &Comparison) -> Vec<String> {
     }
     for why in [WhyApart::NotStated, WhyApart::OtherBodies, WhyApart::Singular, WhyApart::Asked] {
         let apart = together.apart.iter().filter(|apart| apart.why == why);
-        let names: Vec<&str> = apart.clone().map(|apart| apart.joint.as_str()).collect();
+        let names: Vec<&str> = apart.map(|apart| apart.joint.as_str()).collect();
         if names.is_empty() {
             continue;
         }
-        let mut differing: Vec<&str> = apart.flat_map(|apart| &apart.differing).map(String::as_str).collect();
-        differing.sort_unstable();
-        differing.dedup();
         let reason = match why {
             WhyApart::Asked => "as asked for",
             WhyApart::NotStated => {
                 "since their files do not say how the fixture acts on them; make them anew with `jointscope decompose`"
             }
-            WhyApart::OtherBodies if differing.is_empty() => "since their fixtures have no body in common",
-            WhyApart::OtherBodies => "since their fixtures state other values",
+            WhyApart::OtherBodies => "since no other fixture states a body as theirs do",
             WhyApart::Singular => {
                 "since their numbers and the fixture's cannot be told apart to working precision"
             }
             WhyApart::Disagrees => "since their FRFs contradict those of another test",
         };
-        let which = match differing.len() {
-            0 => String::new(),
-            n if n > 4 => format!(": {} and {} more", differing[..4].join(", "), n - 4),
-            _ => format!(": {}", differing.join(", ")),
+        all.push(format!("taken as on blocks of their own: {}, {reason}", names.join(", ")));
+    }
+    let differing = &together.differing;
+    if !differing.is_empty() {
+        let listed = differing.iter().take(LISTED).map(String::as_str).collect::<Vec<_>>().join(", ");
+        let more = match differing.len() {
+            n if n > LISTED => format!(" and {} more", n - LISTED),
+            _ => String::new(),
         };
-        all.push(format!("taken as on blocks of their own: {}, {reason}{which}", names.join(", ")));
+        all.push(format!(
+            "the fixtures differ in {listed}{more}: bodies with these are not taken as the same"
+        ));
     }
     all
 }

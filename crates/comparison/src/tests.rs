@@ -72,8 +72,10 @@ fn tests_on_other_blocks_are_independent_and_said_to_be() {
     assert!((apart(&other) - whole).abs() < 1e-9);
     assert!(other.together.shared.is_empty());
     assert_eq!(other.together.apart[0].why, WhyApart::OtherBodies);
-    assert_eq!(other.together.apart[0].differing, ["bodies/A/mass"]);
+    assert_eq!(other.together.differing, ["bodies/A/mass"]);
     let options = ComparisonOptions { independent: true, ..Default::default() };
+    let said = crate::says::shared(&other).join("\n");
+    assert!(said.contains("bodies/A/mass"), "{said}");
     let asked = compared(&[file(1000.0, 20.0, 5.0), file(1050.0, 20.0, 5.0)], &options);
     assert!((apart(&asked) - whole).abs() < 1e-9);
     let mut earlier = file(1050.0, 20.0, 5.0);
@@ -140,6 +142,19 @@ fn tests_that_contradict_each_other_on_the_blocks_are_not_taken_as_on_the_same()
         far.cautions
     );
     assert!(!far.is_sound());
+}
+
+#[test]
+fn of_three_tests_the_one_that_contradicts_the_others_is_taken_apart() {
+    let files = [telling(1000.0, 0.5, 100.0), telling(1050.0, -1.5, 100.0), telling(1020.0, 0.6, 100.0)];
+    let found = compared(&files, &ComparisonOptions::default());
+    assert_eq!(found.together.shared[0].joints, ["a", "c"]);
+    assert_eq!(found.together.apart.len(), 1);
+    assert_eq!(
+        (found.together.apart[0].joint.as_str(), found.together.apart[0].why),
+        ("b", WhyApart::Disagrees)
+    );
+    assert_eq!(found.cautions, [Caution::BodiesDisagree { joint: "b".into() }]);
 }
 
 #[test]

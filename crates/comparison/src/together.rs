@@ -9,11 +9,11 @@
 //! A body is the same in two tests where both fixtures say the same of it: every quantity of it and of the points on it that both fits moved has the same value and standard
 //! deviation. Supports, damping, channels and other joints are taken as set up anew.
 
-use crate::{Decomposed, Estimate, FittedJoint, Number};
+use crate::{Decomposed, Estimate, FittedJoint, Number, StatedQuantity};
 use jointscope_inference::NormalEquations;
 use serde::Serialize;
 use statrs::function::gamma::gamma_ur;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// The numbers of all joints with their covariance.
 #[derive(Debug, Clone, PartialEq)]
@@ -27,6 +27,8 @@ pub struct Together {
     pub shared: Vec<SharedBody>,
     /// Joints that share nothing, and why.
     pub apart: Vec<Apart>,
+    /// Paths of quantities that not all fixtures state alike, where that keeps a body from being the same.
+    pub differing: Vec<String>,
 }
 
 /// A body that several tests have in common.
@@ -47,8 +49,6 @@ pub struct Apart {
     pub joint: String,
     /// Why.
     pub why: WhyApart,
-    /// Paths of quantities that another fixture states otherwise, where that is why.
-    pub differing: Vec<String>,
 }
 
 /// Why a joint shares no quantity with the others.
@@ -123,10 +123,11 @@ impl Together {
             together.shared.clear();
         }
         let apart = |(joint, why): (usize, &Option<WhyApart>)| {
-            let why = (*why)?;
-            let differing = if why == WhyApart::OtherBodies { differing(joints, joint) } else { Vec::new() };
-            Some(Apart { joint: joints[joint].name.clone(), why, differing })
+            Some(Apart { joint: joints[joint].name.clone(), why: (*why)? })
         };
+        if !asked_apart {
+            together.differing = differing(joints);
+        }
         together.apart = why.iter().enumerate().filter_map(apart).collect();
         together
     }
@@ -140,6 +141,7 @@ impl Together {
             has_covariances: false,
             shared: Vec::new(),
             apart: Vec::new(),
+            differing: Vec::new(),
         }
     }
 
@@ -266,21 +268,17 @@ fn is_same(a: &FittedJoint, b: &FittedJoint, body: &str) -> bool {
     common > 0
 }
 
-/// Paths of quantities of a joint's fixture that another's states otherwise.
-fn differing(joints: &[Decomposed], joint: usize) -> Vec<String> {
-    let of = |index: usize| joints[index].fitted.iter().flat_map(|fit| &fit.quantities);
-    let otherwise = |index: usize| {
-        of(joint).filter(move |quantity| {
-            of(index).any(|other| {
-                other.path == quantity.path && (other.stated, other.std) != (quantity.stated, quantity.std)
-            })
-        })
-    };
-    let others = (0..joints.len()).filter(|index| *index != joint);
-    let mut paths: Vec<String> = others.flat_map(otherwise).map(|quantity| quantity.path.clone()).collect();
-    paths.sort();
-    paths.dedup();
-    paths
+/// Paths of bodies' quantities that two fixtures state differently.
+fn differing(joints: &[Decomposed]) -> Vec<String> {
+    let fits: Vec<&FittedJoint> = joints.iter().filter_map(|joint| joint.fitted.as_ref()).collect();
+    let mut stated: BTreeMap<&str, &StatedQuantity> = BTreeMap::new();
+    let mut paths = BTreeSet::new();
+    for quantity in fits.iter().flat_map(|fit| &fit.quantities).filter(|quantity| quantity.body.is_some()) {
+        if *stated.entry(&quantity.path).or_insert(quantity) != quantity {
+            paths.insert(quantity.path.clone());
+        }
+    }
+    paths.into_iter().collect()
 }
 
 /// The fits that may share quantities: each body belongs to the first test that states the same of it, and with which all that share it agree.

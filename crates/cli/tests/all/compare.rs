@@ -84,6 +84,7 @@ fn joints_are_as_well_known_as_alone_where_blocks_are_said_to_be_different() {
     let file = bench.json("out/comparison.json");
     assert_eq!(file["shared"].as_array().unwrap().len(), 1, "{summary}");
     assert_eq!(file["shared"][0]["body"], "A");
+    assert!(summary.contains("the fixtures differ in bodies/B/mass"), "{summary}");
 }
 
 #[test]
