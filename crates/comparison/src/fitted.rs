@@ -31,6 +31,9 @@ pub struct FittedJoint {
     /// How it is damped, as far as the file says.
     #[serde(default)]
     pub law: Option<String>,
+    /// The laws compared, the most probable first.
+    #[serde(default)]
+    pub laws: Vec<ComparedLaw>,
     /// The joint's own mass, where the FRFs show one: K and C are then those of a joint with it.
     #[serde(default)]
     pub mass: Option<JointMass>,
@@ -60,6 +63,27 @@ pub struct JointMass {
     pub value: f64,
     /// Standard deviation, kg.
     pub std: f64,
+}
+
+/// A law over frequency, as one joint's FRFs have it.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+pub struct ComparedLaw {
+    /// Its name; with a mass of the joint another one.
+    pub law: String,
+    /// Probability among those compared.
+    pub probability: f64,
+    /// K and C in the middle of the band; files of earlier versions do not say.
+    #[serde(default)]
+    pub in_the_middle: Option<InTheMiddle>,
+}
+
+/// K and C of a law.
+#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
+pub struct InTheMiddle {
+    /// K.
+    pub stiffness: Matrix,
+    /// C.
+    pub damping: Matrix,
 }
 
 /// By how much the deviations were widened for what the model gets wrong.
@@ -129,7 +153,21 @@ impl FittedJoint {
 
     /// k11, k12, k22, c11, c12, c22.
     pub(crate) fn six(&self) -> [f64; 6] {
-        let (k, c) = (&self.stiffness, &self.damping);
-        [k[0][0], k[0][1], k[1][1], c[0][0], c[0][1], c[1][1]]
+        six(&self.stiffness, &self.damping)
     }
+
+    /// By how much a law is off the joint stated in the middle of the band; nothing where the file does not have it.
+    pub(crate) fn departure(&self, law: &str) -> Option<[f64; 6]> {
+        let of = |name: &str| {
+            let law = self.laws.iter().find(|other| other.law == name)?.in_the_middle?;
+            Some(six(&law.stiffness, &law.damping))
+        };
+        let stated = of(if self.mass.is_some() { "viscous_with_mass" } else { "viscous" })?;
+        let own = of(law)?;
+        Some(std::array::from_fn(|e| own[e] - stated[e]))
+    }
+}
+
+fn six(k: &Matrix, c: &Matrix) -> [f64; 6] {
+    [k[0][0], k[0][1], k[1][1], c[0][0], c[0][1], c[1][1]]
 }

@@ -25,6 +25,7 @@
 
 mod agreement;
 mod caution;
+mod common_law;
 mod comparison;
 mod decomposed;
 mod file;
@@ -44,7 +45,9 @@ pub use comparison::{
 };
 pub use decomposed::{Decomposed, DecomposedError, End, Ends, Estimate, Judged, Line, Matrix, Nominal};
 pub use file::comparison_file;
-pub use fitted::{FittedJoint, JointLikelihood, JointMass, JointTests, ModelError, StatedQuantity};
+pub use fitted::{
+    ComparedLaw, FittedJoint, InTheMiddle, JointLikelihood, JointMass, JointTests, ModelError, StatedQuantity,
+};
 pub use pair::{Equality, Figure, Pair, PairedNumber, Ratio};
 pub use ranking::Ranking;
 pub use specimens::{Scatter, Specimens};

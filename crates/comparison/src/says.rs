@@ -85,6 +85,12 @@ pub fn shared(comparison: &Comparison) -> Vec<String> {
         };
         all.push(format!("taken as on blocks of their own: {}, {reason}", names.join(", ")));
     }
+    for joints in &together.one_law {
+        all.push(format!(
+            "taken to follow one law over frequency, the same being the most probable of each: {}",
+            joints.join(", ")
+        ));
+    }
     let differing = &together.differing;
     if !differing.is_empty() {
         let listed = differing.iter().take(LISTED).map(String::as_str).collect::<Vec<_>>().join(", ");

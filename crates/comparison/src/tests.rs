@@ -187,3 +187,39 @@ fn a_likelihood_that_does_not_fit_its_quantities_is_not_used() {
         assert!(found.together.shared.is_empty());
     }
 }
+
+/// A joint whose FRFs do not tell a viscous law from one that is `off` in K11.
+fn with_laws(k11: f64, off: f64, probability: f64, best: &str) -> Value {
+    let mut file = file(k11, 0.0, 5.0);
+    let middle = |k: f64| json!({"stiffness": [[k, 0.0], [0.0, 0.0]], "damping": [[0.0, 0.0], [0.0, 0.0]]});
+    file["joint"]["law"] = json!(best);
+    file["joint"]["laws"] = json!([
+        {"law": "structural", "probability": probability, "in_the_middle": middle(k11 + off)},
+        {"law": "viscous", "probability": 1.0 - probability, "in_the_middle": middle(k11)},
+    ]);
+    let law = probability * off * off;
+    let mut of_laws = [[0.0; 6]; 6];
+    of_laws[0][0] = law;
+    file["joint"]["law_covariance"] = json!(of_laws);
+    file["joint"]["covariance"][0][0] = json!(1.0 + law);
+    file
+}
+
+#[test]
+fn what_one_law_changes_in_two_joints_alike_cancels_in_their_difference() {
+    let files = [with_laws(1000.0, 30.0, 0.8, "structural"), with_laws(1050.0, 32.0, 0.8, "structural")];
+    let found = compared(&files, &ComparisonOptions::default());
+    // The law is structural with 0.8²/(0.8² + 0.2²) = 16/17: then the difference is 2 larger.
+    assert!((apart(&found) - (2.0 + 4.0 * 16.0 / 17.0f64).sqrt()).abs() < 1e-9, "{}", apart(&found));
+    assert!((found.together.std(0, 0) - (1.0 + 900.0 * 16.0 / 17.0f64).sqrt()).abs() < 1e-9);
+    assert_eq!(found.together.one_law, [["a", "b"]]);
+}
+
+#[test]
+fn joints_of_other_laws_keep_what_laws_change_in_each() {
+    let files = [with_laws(1000.0, 30.0, 0.8, "structural"), with_laws(1050.0, 32.0, 0.3, "viscous")];
+    let found = compared(&files, &ComparisonOptions::default());
+    let expected = 2.0 + 0.8 * 900.0 + 0.3 * 1024.0;
+    assert!((apart(&found) - f64::sqrt(expected)).abs() < 1e-9, "{}", apart(&found));
+    assert!(found.together.one_law.is_empty());
+}

@@ -2,13 +2,15 @@
 //!
 //! Each fit tells of its joint and of the fixture's quantities what a Gaussian likelihood does. Of joints tested on the same blocks these quantities are the same:
 //! the likelihoods are multiplied, with one set of quantities, whose prior enters once. The posterior then has both joints, and what the blocks' tolerances do to one they do to
-//! the other: it cancels in their difference. What the fits get wrong besides (model error, laws over frequency) is added to each joint by itself.
+//! the other: it cancels in their difference. What the fits get wrong besides is added to each joint by itself, what laws over frequency differ by to joints of one law
+//! [together](CommonLaw).
 //!
 //! Where the common quantities are farther from what is stated than chance takes them, the posterior is widened by Birge's ratio, as that of one fit is.
 //!
 //! A body is the same in two tests where both fixtures say the same of it: every quantity of it and of the points on it that both fits moved has the same value and standard
 //! deviation. Supports, damping, channels and other joints are taken as set up anew.
 
+use crate::common_law::CommonLaw;
 use crate::{Decomposed, Estimate, FittedJoint, Number, StatedQuantity};
 use jointscope_inference::NormalEquations;
 use serde::Serialize;
@@ -27,6 +29,8 @@ pub struct Together {
     pub shared: Vec<SharedBody>,
     /// Joints that share nothing, and why.
     pub apart: Vec<Apart>,
+    /// Joints that are taken to follow one law over frequency, group by group.
+    pub one_law: Vec<Vec<String>>,
     /// Paths of quantities that not all fixtures state alike, where that keeps a body from being the same.
     pub differing: Vec<String>,
 }
@@ -122,6 +126,9 @@ impl Together {
             tied.iter().for_each(|part| why[part.joint] = Some(WhyApart::Singular));
             together.shared.clear();
         }
+        for law in CommonLaw::of(joints) {
+            together.put_law(&law, joints, numbers);
+        }
         let apart = |(joint, why): (usize, &Option<WhyApart>)| {
             Some(Apart { joint: joints[joint].name.clone(), why: (*why)? })
         };
@@ -141,6 +148,7 @@ impl Together {
             has_covariances: false,
             shared: Vec::new(),
             apart: Vec::new(),
+            one_law: Vec::new(),
             differing: Vec::new(),
         }
     }
@@ -159,6 +167,24 @@ impl Together {
                 self.put((joint, a), (joint, b), fit.covariance[number.slot()][other.slot()]);
             }
         }
+    }
+
+    /// Replaces what the laws make of each of these joints by what one law makes of all.
+    fn put_law(&mut self, law: &CommonLaw, joints: &[Decomposed], numbers: &[Number]) {
+        for (a, &joint) in law.joints.iter().enumerate() {
+            let own = joints[joint].fitted.as_ref().map_or([[0.0; 6]; 6], |fit| fit.law_covariance);
+            for (b, &other) in law.joints.iter().enumerate() {
+                for (i, number) in numbers.iter().enumerate() {
+                    for (j, with) in numbers.iter().enumerate() {
+                        let (m, n) = (number.slot(), with.slot());
+                        let before = self.covariance((joint, i), (other, j));
+                        let alone = if a == b { own[m][n] } else { 0.0 };
+                        self.put((joint, i), (other, j), before - alone + law.covariance((a, m), (b, n)));
+                    }
+                }
+            }
+        }
+        self.one_law.push(law.joints.iter().map(|&joint| joints[joint].name.clone()).collect());
     }
 
     /// Puts in the posterior of all these fits with the quantities that they share; `None` where it is not determined to working precision.

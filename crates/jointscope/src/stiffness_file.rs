@@ -111,7 +111,13 @@ fn law(law: &LawFit) -> Value {
     if let Some(mass) = law.mass {
         parameters["mass"] = json!(mass);
     }
-    json!({"law": law.name(), "probability": law.probability, "parameters": parameters})
+    let (k, c) = law.in_the_middle();
+    json!({
+        "law": law.name(),
+        "probability": law.probability,
+        "parameters": parameters,
+        "in_the_middle": pair(&k, &c),
+    })
 }
 
 fn matrix(m: &RealMatrix2) -> Value {

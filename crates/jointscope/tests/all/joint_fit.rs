@@ -57,7 +57,7 @@ pub struct Case {
     /// c11, c12, c22; nothing where they are zero.
     pub damping: [f64; 3],
     /// A beam with structural damping of the whole in place of the matrices.
-    beam: bool,
+    pub beam: bool,
 }
 
 impl Case {
