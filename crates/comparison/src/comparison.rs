@@ -1,4 +1,4 @@
-use crate::{Decomposed, Estimate, FittedJoint, Ranking};
+use crate::{Caution, Decomposed, Equality, Estimate, FittedJoint, Pair, Ranking, Specimens, Together};
 
 /// K or C.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -43,8 +43,42 @@ impl Kind {
 
 /// Rows and columns of the elements.
 pub const ELEMENTS: [(usize, usize); 4] = [(0, 0), (0, 1), (1, 0), (1, 1)];
+/// Those of a symmetric matrix.
+const DISTINCT: [(usize, usize); 3] = [(0, 0), (0, 1), (1, 1)];
 
-/// The order of the joints by one element.
+/// One of the numbers by which joints are compared.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Number {
+    /// K or C.
+    pub kind: Kind,
+    /// Row and column, from 0.
+    pub element: (usize, usize),
+}
+
+impl Number {
+    /// `K11` ….
+    pub fn name(self) -> String {
+        format!("{}{}{}", self.kind.symbol(), self.element.0 + 1, self.element.1 + 1)
+    }
+
+    /// Its unit, SI.
+    pub fn unit(self) -> &'static str {
+        self.kind.unit(self.element)
+    }
+
+    /// Its place among k11, k12, k22, c11, c12, c22.
+    pub(crate) fn slot(self) -> usize {
+        let first = if self.kind == Kind::Stiffness { 0 } else { 3 };
+        first + self.element.0 + self.element.1
+    }
+
+    /// Value and standard deviation of an estimate's.
+    pub(crate) fn of(self, estimate: &Estimate) -> (f64, f64) {
+        self.kind.of(estimate, self.element)
+    }
+}
+
+/// The order of the joints by one number.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ElementRanking {
     /// K or C.
@@ -53,6 +87,13 @@ pub struct ElementRanking {
     pub element: (usize, usize),
     /// The order.
     pub ranking: Ranking,
+}
+
+impl ElementRanking {
+    /// The number ranked by.
+    pub fn number(&self) -> Number {
+        Number { kind: self.kind, element: self.element }
+    }
 }
 
 /// Which of its estimates stands for each joint: the first one that all of them have.
@@ -105,6 +146,15 @@ impl From<&FittedJoint> for Estimate {
     }
 }
 
+/// What is known besides the files.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct ComparisonOptions {
+    /// Take every joint as tested on blocks of its own, whatever the fixtures state.
+    pub independent: bool,
+    /// Names of kinds, and their specimens by their places among the joints.
+    pub specimens: Vec<(String, Vec<usize>)>,
+}
+
 /// Several joints side by side.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Comparison {
@@ -114,8 +164,20 @@ pub struct Comparison {
     pub relation: String,
     /// Which estimates are compared.
     pub compared: Compared,
-    /// Orders by each element of K, then of C.
+    /// The numbers compared: six of symmetric matrices, eight of averages.
+    pub numbers: Vec<Number>,
+    /// All joints in one Gaussian.
+    pub together: Together,
+    /// Every two of them, in the order given.
+    pub pairs: Vec<Pair>,
+    /// Whether all joints are the same; nothing where that of two has none.
+    pub equality: Option<Equality>,
+    /// Orders by each number of K, then of C.
     pub rankings: Vec<ElementRanking>,
+    /// Kinds with several specimens.
+    pub specimens: Vec<Specimens>,
+    /// What keeps the comparison from being taken as it stands; none where it may be.
+    pub cautions: Vec<Caution>,
 }
 
 /// Why joints cannot be compared.
@@ -141,15 +203,25 @@ pub enum ComparisonError {
     /// A name twice.
     #[error("two decompositions are called `{0}`")]
     Twice(String),
+    /// A kind of one specimen.
+    #[error("`{0}` has one specimen, whose scatter nothing tells: name two or more")]
+    OneSpecimen(String),
 }
 
 impl Comparison {
-    /// Ranks joints by every element: by the first of [`Compared`] that all of them have; fits only where the relation is the exact one, which they
-    /// are of.
+    /// Compares joints on the blocks that their fixtures state alike; see [`Comparison::with`].
     ///
     /// # Errors
     /// See [`ComparisonError`].
     pub fn of(joints: Vec<Decomposed>) -> Result<Self, ComparisonError> {
+        Comparison::with(joints, &ComparisonOptions::default())
+    }
+
+    /// Compares joints by the first of [`Compared`] that all of them have; by fits only where the relation is the exact one, which they are of.
+    ///
+    /// # Errors
+    /// See [`ComparisonError`].
+    pub fn with(joints: Vec<Decomposed>, options: &ComparisonOptions) -> Result<Self, ComparisonError> {
         let [first, others @ ..] = joints.as_slice() else { return Err(ComparisonError::TooFew) };
         if others.is_empty() {
             return Err(ComparisonError::TooFew);
@@ -165,31 +237,68 @@ impl Comparison {
         if let Some(i) = (1..joints.len()).find(|&i| joints[..i].iter().any(|j| j.name == joints[i].name)) {
             return Err(ComparisonError::Twice(joints[i].name.clone()));
         }
+        if let Some((name, _)) = options.specimens.iter().find(|(_, places)| places.len() < 2) {
+            return Err(ComparisonError::OneSpecimen(name.clone()));
+        }
         let relation = first.relation.clone();
         let compared = Compared::of(&relation, &joints);
-        let mut comparison = Comparison { joints, relation, compared, rankings: Vec::new() };
-        for kind in [Kind::Stiffness, Kind::Damping] {
-            for element in ELEMENTS {
-                let values: Vec<(f64, f64)> = comparison
-                    .joints
-                    .iter()
-                    .map(|joint| kind.of(&comparison.estimate(joint), element))
-                    .collect();
-                comparison.rankings.push(ElementRanking { kind, element, ranking: Ranking::of(&values) });
-            }
-        }
-        Ok(comparison)
+        let (numbers, together) = numbers(&joints, compared, options.independent);
+        let cautions = Caution::of(&joints, &together);
+        let all: Vec<usize> = (0..joints.len()).collect();
+        let name = |joint: usize| joints[joint].name.as_str();
+        let pair = |(a, b): (usize, usize)| Pair::of(&together, &numbers, (a, b), [name(a), name(b)]);
+        let pairs = all.iter().flat_map(|&a| (a + 1..joints.len()).map(move |b| (a, b))).map(pair).collect();
+        let rankings = numbers.iter().enumerate().map(|(n, number)| {
+            let values: Vec<f64> = all.iter().map(|&joint| together.value(joint, n)).collect();
+            let covariance: Vec<f64> = all
+                .iter()
+                .flat_map(|&a| all.iter().map(move |&b| (a, b)))
+                .map(|(a, b)| together.covariance((a, n), (b, n)))
+                .collect();
+            let ranking = Ranking::joint(&values, &covariance);
+            ElementRanking { kind: number.kind, element: number.element, ranking }
+        });
+        let specimens = options.specimens.iter().map(|(kind, places)| {
+            let named: Vec<(usize, &str)> = places.iter().map(|&joint| (joint, name(joint))).collect();
+            Specimens::of(kind, &together, &numbers, &named)
+        });
+        let (rankings, specimens) = (rankings.collect(), specimens.collect());
+        let equality = Equality::of_all(&together, &all, &numbers);
+        Ok(Comparison {
+            relation,
+            compared,
+            pairs,
+            equality,
+            rankings,
+            specimens,
+            cautions,
+            numbers,
+            together,
+            joints,
+        })
     }
 
-    /// The estimate by which a joint is compared.
-    pub fn estimate(&self, joint: &Decomposed) -> Estimate {
-        let fitted = || joint.fitted.as_ref().map(Estimate::from);
-        let found = match self.compared {
-            Compared::AllFrfs => fitted(),
-            Compared::Likelihood => joint.likelihood,
-            Compared::Average => None,
-        };
-        found.unwrap_or(joint.average)
+    /// What is compared of a joint: of fits to tests on the same blocks what all of them tell of it.
+    pub fn estimate(&self, joint: usize) -> Estimate {
+        let mut estimate = stated(&self.joints[joint], self.compared);
+        for (n, number) in self.numbers.iter().enumerate() {
+            let (value, std) = (self.together.value(joint, n), self.together.std(joint, n));
+            let (i, j) = number.element;
+            let (values, stds) = match number.kind {
+                Kind::Stiffness => (&mut estimate.stiffness, &mut estimate.stiffness_std),
+                Kind::Damping => (&mut estimate.damping, &mut estimate.damping_std),
+            };
+            (values[i][j], stds[i][j]) = (value, std);
+            if self.compared != Compared::Average {
+                (values[j][i], stds[j][i]) = (value, std);
+            }
+        }
+        estimate
+    }
+
+    /// Whether nothing speaks against taking it as it stands.
+    pub fn is_sound(&self) -> bool {
+        self.cautions.is_empty()
     }
 
     /// What is compared, in words.
@@ -200,6 +309,33 @@ impl Comparison {
             Compared::Average => "averages over each joint's band",
         }
     }
+}
+
+/// The estimate that stands for a joint, as its file states it.
+fn stated(joint: &Decomposed, compared: Compared) -> Estimate {
+    let found = match compared {
+        Compared::AllFrfs => joint.fitted.as_ref().map(Estimate::from),
+        Compared::Likelihood => joint.likelihood,
+        Compared::Average => None,
+    };
+    found.unwrap_or(joint.average)
+}
+
+/// The numbers that any of the joints has, and all of them in one Gaussian.
+fn numbers(joints: &[Decomposed], compared: Compared, independent: bool) -> (Vec<Number>, Together) {
+    let estimates: Vec<Estimate> = joints.iter().map(|joint| stated(joint, compared)).collect();
+    let elements: &[(usize, usize)] = if compared == Compared::Average { &ELEMENTS } else { &DISTINCT };
+    let all = [Kind::Stiffness, Kind::Damping]
+        .into_iter()
+        .flat_map(|kind| elements.iter().map(move |&element| Number { kind, element }));
+    // Bodies that do not rotate leave all but the first element empty.
+    let numbers: Vec<Number> =
+        all.filter(|number| estimates.iter().any(|estimate| number.of(estimate) != (0.0, 0.0))).collect();
+    let together = match compared {
+        Compared::AllFrfs => Together::of(joints, &numbers, independent),
+        _ => Together::independent(&estimates, &numbers),
+    };
+    (numbers, together)
 }
 
 #[cfg(test)]
@@ -245,7 +381,7 @@ mod tests {
         assert_eq!(found.compared, Compared::AllFrfs);
         let first = &found.rankings[0].ranking;
         assert_eq!(first.order, [0, 1]);
-        let estimate = found.estimate(&found.joints[0]);
+        let estimate = found.estimate(0);
         assert_eq!(estimate.stiffness[0][0], 100.0);
         let roots = [1.0, 2.0, 3.0, 4.0, 5.0, 6.0].map(f64::sqrt);
         assert_eq!(estimate.stiffness_std, [[roots[0], roots[1]], [roots[1], roots[2]]]);
@@ -258,8 +394,10 @@ mod tests {
         let found = compared([file(Some(100.0), Some(300.0), 500.0), file(None, Some(250.0), 400.0)]);
         assert_eq!((found.compared, found.compared.name()), (Compared::Likelihood, "maximum_likelihood"));
         assert_eq!(found.rankings[0].ranking.order, [1, 0]);
+        // Nothing is known of how the errors of their numbers go together.
+        assert!(found.pairs[0].equality.is_none() && found.pairs[0].number("elastic_centre").is_none());
         let found = compared([file(Some(100.0), None, 500.0), file(None, Some(250.0), 400.0)]);
         assert_eq!(found.compared, Compared::Average);
-        assert_eq!(found.estimate(&found.joints[1]).stiffness[0][0], 400.0);
+        assert_eq!(found.estimate(1).stiffness[0][0], 400.0);
     }
 }

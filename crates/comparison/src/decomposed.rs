@@ -1,3 +1,4 @@
+use crate::FittedJoint;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Deserializer};
 use serde_json::Value;
@@ -31,6 +32,17 @@ pub struct Line {
     pub std: Option<(Matrix, Matrix)>,
     /// Whether noise dominates it.
     pub noisy: bool,
+    /// H41, real and imaginary parts: m/N, m/(N·m), rad/N, rad/(N·m); files of earlier versions do not have it.
+    pub h41: Option<[[[f64; 2]; 2]; 2]>,
+}
+
+/// What the fixture as it stands gives, element by element, where it does.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Deserialize)]
+pub struct Nominal {
+    /// K.
+    pub stiffness: [[Option<f64>; 2]; 2],
+    /// C, averaged over the band.
+    pub damping: [[Option<f64>; 2]; 2],
 }
 
 /// Where a joint's K and C act: on d = u_to − R·u_from over `length`.
@@ -53,49 +65,6 @@ pub struct End {
     pub body: String,
     /// Its abscissa, m.
     pub x: f64,
-}
-
-/// The joint from all FRFs, the fixture's quantities moving within their deviations.
-#[derive(Debug, Clone, PartialEq, Deserialize)]
-pub struct FittedJoint {
-    /// K.
-    pub stiffness: Matrix,
-    /// C.
-    pub damping: Matrix,
-    /// Covariance of k11, k12, k22, c11, c12, c22.
-    pub covariance: [[f64; 6]; 6],
-    /// How it is damped, as far as the file says.
-    #[serde(default)]
-    pub law: Option<String>,
-    /// The joint's own mass, where the FRFs show one: K and C are then those of a joint with it.
-    #[serde(default)]
-    pub mass: Option<JointMass>,
-    /// Whether physics allows it.
-    #[serde(default)]
-    pub tests: JointTests,
-}
-
-/// Probabilities of FRFs that speak at least as much against a property, if the joint has it; nothing where it was not tested.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Deserialize)]
-pub struct JointTests {
-    /// k12 = k21 and c12 = c21.
-    #[serde(default)]
-    pub reciprocity: Option<f64>,
-    /// No eigenvalue of K is negative.
-    #[serde(default)]
-    pub definite: Option<f64>,
-    /// No eigenvalue of C is negative.
-    #[serde(default)]
-    pub passive: Option<f64>,
-}
-
-/// A joint's own mass, uniform over its length.
-#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
-pub struct JointMass {
-    /// kg.
-    pub value: f64,
-    /// Standard deviation, kg.
-    pub std: f64,
 }
 
 /// How an estimate may be used.
@@ -133,6 +102,8 @@ pub struct Decomposed {
     pub fitted: Option<FittedJoint>,
     /// How the estimate may be used, where the file says it.
     pub judgement: Option<Judged>,
+    /// The fixture's own joint, where the file says it.
+    pub nominal: Option<Nominal>,
 }
 
 /// What is missing from a `stiffness.json`: the place in it.
@@ -171,6 +142,7 @@ impl Decomposed {
             failed: read(&file["maximum_likelihood"]["failed"]),
             fitted,
             judgement: optional(file, "judgement")?,
+            nominal: optional(file, "nominal")?,
         })
     }
 }
@@ -233,6 +205,8 @@ struct LineEntry {
     std: Option<Pair>,
     #[serde(default)]
     noisy: bool,
+    #[serde(default)]
+    h41: Option<[[[f64; 2]; 2]; 2]>,
 }
 
 impl From<LineEntry> for Line {
@@ -243,6 +217,7 @@ impl From<LineEntry> for Line {
             damping: line.value.damping,
             std: line.std.map(|std| (std.stiffness, std.damping)),
             noisy: line.noisy,
+            h41: line.h41,
         }
     }
 }

@@ -1,41 +1,103 @@
-use crate::Comparison;
-use serde_json::{Map, Value, json};
+use crate::{Apart, Caution, Comparison, ElementRanking, Equality, Matrix, Pair, SharedBody, Specimens};
+use serde::Serialize;
+use serde_json::{Value, json};
+use std::collections::BTreeMap;
 
-/// The contents of `comparison.json`: the joints' matrices with standard deviations, and the order by each element with its probability.
+#[derive(Serialize)]
+struct File<'a> {
+    relation: &'a str,
+    estimate: &'static str,
+    sound: bool,
+    cautions: Vec<Said<'a>>,
+    shared: &'a [SharedBody],
+    apart: &'a [Apart],
+    differing: &'a [String],
+    one_law: &'a [Vec<String>],
+    joints: Vec<Joint<'a>>,
+    equality: Option<Equality>,
+    pairs: &'a [Pair],
+    rankings: Vec<Order<'a>>,
+    #[serde(skip_serializing_if = "<[Specimens]>::is_empty")]
+    specimens: &'a [Specimens],
+}
+
+#[derive(Serialize)]
+struct Said<'a> {
+    #[serde(flatten)]
+    caution: &'a Caution,
+    says: String,
+}
+
+#[derive(Serialize)]
+struct Joint<'a> {
+    name: &'a str,
+    joint: &'a str,
+    stiffness: Matrix,
+    damping: Matrix,
+    std: Matrices,
+    band: [f64; 2],
+}
+
+#[derive(Serialize)]
+struct Matrices {
+    stiffness: Matrix,
+    damping: Matrix,
+}
+
+#[derive(Serialize)]
+struct Order<'a> {
+    element: String,
+    order: Vec<&'a str>,
+    probability: f64,
+    adjacent: &'a [f64],
+    rank_probabilities: BTreeMap<&'a str, &'a [f64]>,
+    settled: bool,
+}
+
+/// The contents of `comparison.json`: the joints' matrices with standard deviations, what they share, every two of them, the order by each number with its probability,
+/// the scatter of specimens, and what is to be known before any of it.
 pub fn comparison_file(comparison: &Comparison) -> Value {
-    let joints = comparison.joints.iter().map(|joint| {
-        let estimate = comparison.estimate(joint);
-        json!({
-            "name": joint.name,
-            "joint": joint.joint,
-            "stiffness": estimate.stiffness,
-            "damping": estimate.damping,
-            "std": { "stiffness": estimate.stiffness_std, "damping": estimate.damping_std },
-            "band": [joint.band.0, joint.band.1],
-        })
+    let name = |index: usize| comparison.joints[index].name.as_str();
+    let joints = comparison.joints.iter().enumerate().map(|(index, joint)| {
+        let estimate = comparison.estimate(index);
+        Joint {
+            name: &joint.name,
+            joint: &joint.joint,
+            stiffness: estimate.stiffness,
+            damping: estimate.damping,
+            std: Matrices { stiffness: estimate.stiffness_std, damping: estimate.damping_std },
+            band: [joint.band.0, joint.band.1],
+        }
     });
-    let rankings = comparison.rankings.iter().map(|entry| {
-        let name = |index: &usize| comparison.joints[*index].name.clone();
-        let ranks: Map<String, Value> = entry
+    let order = |entry: &'_ ElementRanking| entry.ranking.order.iter().map(|index| name(*index)).collect();
+    let rankings = comparison.rankings.iter().map(|entry| Order {
+        element: entry.number().name(),
+        order: order(entry),
+        probability: entry.ranking.probability,
+        adjacent: &entry.ranking.adjacent,
+        rank_probabilities: entry
             .ranking
             .ranks
             .iter()
             .enumerate()
-            .map(|(index, ranks)| (name(&index), json!(ranks)))
-            .collect();
-        json!({
-            "element": format!("{}{}{}", entry.kind.symbol(), entry.element.0 + 1, entry.element.1 + 1),
-            "order": entry.ranking.order.iter().map(name).collect::<Vec<_>>(),
-            "probability": entry.ranking.probability,
-            "adjacent": entry.ranking.adjacent,
-            "rank_probabilities": ranks,
-            "settled": entry.ranking.is_settled(),
-        })
+            .map(|(index, ranks)| (name(index), ranks.as_slice()))
+            .collect(),
+        settled: entry.ranking.is_settled(),
     });
-    json!({
-        "relation": comparison.relation,
-        "estimate": comparison.compared.name(),
-        "joints": joints.collect::<Vec<_>>(),
-        "rankings": rankings.collect::<Vec<_>>(),
+    let said = |caution| Said { caution, says: Caution::says(caution) };
+    json!(File {
+        relation: &comparison.relation,
+        estimate: comparison.compared.name(),
+        sound: comparison.is_sound(),
+        cautions: comparison.cautions.iter().map(said).collect(),
+        shared: &comparison.together.shared,
+        apart: &comparison.together.apart,
+        differing: &comparison.together.differing,
+        one_law: &comparison.together.one_law,
+        joints: joints.collect(),
+        equality: comparison.equality,
+        pairs: &comparison.pairs,
+        rankings: rankings.collect(),
+        specimens: &comparison.specimens,
     })
 }

@@ -1,10 +1,16 @@
 //! Decompositions of several joints side by side, and which of them is the stiffer (Table 4), with the probability that the order is right.
 //!
 //! The paper arranges joints by the averages of each element of K and says nothing of how sure the order is. Here every
-//! element has a standard deviation, and an order has a probability: [`Ranking`].
+//! number has a standard deviation, and errors that joints have in common are known as such: two joints on the same blocks share what is not known of
+//! the blocks, which cancels in their ratio.
 //!
 //! * [`Decomposed`]: what `stiffness.json` says of one joint;
-//! * [`Comparison`]: several of them, by one relation and one estimate, ranked element by element;
+//! * [`Comparison`]: several of them, by one relation and one estimate;
+//! * [`Together`]: their numbers in one Gaussian, the quantities of shared bodies in it once;
+//! * [`Pair`]: difference and ratio of two with intervals, who is the larger, whether they are the same ([`Equality`]);
+//! * [`Ranking`]: the order by each number with its probability;
+//! * [`Specimens`]: the scatter between specimens of one kind, apart from that of measurement;
+//! * [`Caution`]: why a comparison may not be taken as it stands;
 //! * [`comparison_file`]: the contents of `comparison.json`.
 //!
 //! ```
@@ -17,15 +23,32 @@
 //! assert!(ranking.adjacent[1] > 0.999);
 //! ```
 
+mod agreement;
+mod caution;
+mod common_law;
 mod comparison;
 mod decomposed;
 mod file;
+mod fitted;
+mod normal;
+mod pair;
 mod ranking;
+pub mod says;
+mod specimens;
+#[cfg(test)]
+mod tests;
+mod together;
 
-pub use comparison::{Compared, Comparison, ComparisonError, ELEMENTS, ElementRanking, Kind};
-pub use decomposed::{
-    Decomposed, DecomposedError, End, Ends, Estimate, FittedJoint, JointMass, JointTests, Judged, Line,
-    Matrix,
+pub use caution::Caution;
+pub use comparison::{
+    Compared, Comparison, ComparisonError, ComparisonOptions, ELEMENTS, ElementRanking, Kind, Number,
 };
+pub use decomposed::{Decomposed, DecomposedError, End, Ends, Estimate, Judged, Line, Matrix, Nominal};
 pub use file::comparison_file;
+pub use fitted::{
+    ComparedLaw, FittedJoint, InTheMiddle, JointLikelihood, JointMass, JointTests, ModelError, StatedQuantity,
+};
+pub use pair::{Equality, Figure, Pair, PairedNumber, Ratio};
 pub use ranking::Ranking;
+pub use specimens::{Scatter, Specimens};
+pub use together::{Apart, SharedBody, Together, WhyApart};

@@ -10,6 +10,7 @@ mod admissible;
 mod found;
 mod law;
 mod laws;
+mod likelihood;
 mod problem;
 mod quantities;
 mod recorded;
@@ -20,6 +21,7 @@ pub use admissible::{Admissible, JointTests};
 pub use found::{FittedLength, FittedQuantity, JointFit};
 pub use law::LawKind;
 pub use laws::LawFit;
+pub use likelihood::JointLikelihood;
 
 use crate::{DecompositionError, LikelihoodFit, Sides};
 use jointscope_averaging::Band;
@@ -318,6 +320,7 @@ impl<'a> Fitter<'a> {
             let fitted = transform.value(coordinate).unwrap_or(uncertain.quantity.value);
             FittedQuantity {
                 path: uncertain.quantity.path.clone(),
+                body: uncertain.body(self.sides.fixture()),
                 stated: uncertain.quantity.value,
                 std: uncertain.quantity.std,
                 fitted,
@@ -346,6 +349,7 @@ impl<'a> Fitter<'a> {
                 .mass
                 .map(|scale| (problem.mass_at(&at.coordinates), scale * total.std(problem.law.count()))),
             scalar: self.scalar,
+            likelihood: self.likelihood(problem, &free.point),
         })
     }
 }

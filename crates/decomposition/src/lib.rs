@@ -53,8 +53,8 @@ pub use averages::{Averages, MatrixAverage};
 pub use estimate::{Element, Estimate, Figure, Method, Part};
 pub use interfaces::{Compliance, InterfaceStiffness, Interfaces, interfaces};
 pub use joint_fit::{
-    Admissible, FittedLength, FittedQuantity, JointFit, JointFitOptions, JointTests, LawFit, LawKind,
-    fit_joint,
+    Admissible, FittedLength, FittedQuantity, JointFit, JointFitOptions, JointLikelihood, JointTests, LawFit,
+    LawKind, fit_joint,
 };
 pub use judgement::{Contradiction, Judgement, Use};
 pub use likelihood::{LikelihoodFit, maximum_likelihood};

@@ -12,6 +12,7 @@
 //! * [`inflated_weight`]: weights that count a share of the signal as noise, so that sharp resonances do not decide
 //!   where a fit from afar goes;
 //! * [`Covariance`], [`jackknife`], [`autocorrelation`], [`variance_inflation`]: uncertainty;
+//! * [`QuadraticLikelihood`]: what one recording tells of parameters that others tell of as well, put together in closed form;
 //! * [`laplace_evidence`]: marginal likelihood of a hypothesis at its optimum;
 //! * [`LowRankCovariance`]: residuals whose covariance is diagonal noise and a few nuisance directions of estimated
 //!   size, such as an error of each natural frequency.
@@ -51,6 +52,7 @@
 
 mod descent;
 mod evidence;
+mod likelihood;
 mod low_rank;
 mod noise;
 mod normal;
@@ -60,6 +62,7 @@ mod uncertainty;
 
 pub use descent::{Convergence, Damping, Descent, LeastSquares, Limit, Precision, Settings, descend};
 pub use evidence::laplace_evidence;
+pub use likelihood::QuadraticLikelihood;
 pub use low_rank::LowRankCovariance;
 pub use noise::inflated_weight;
 pub use normal::NormalEquations;

@@ -1,5 +1,6 @@
 use jointscope_decomposition::{
-    Analysis, Compliance, InterfaceStiffness, JointFit, JointLine, LawFit, LawKind, MatrixAverage,
+    Analysis, Compliance, Element, InterfaceStiffness, JointFit, JointLine, LawFit, LawKind, MatrixAverage,
+    Method, Part, Relation,
 };
 use jointscope_linalg::RealMatrix2;
 use serde_json::{Map, Value, json};
@@ -14,7 +15,7 @@ pub fn stiffness_file(analysis: &Analysis) -> Value {
     root.insert("joint".into(), joint(analysis));
     root.insert("ends".into(), json!(analysis.ends));
     root.insert("relation".into(), json!(spectrum.relation.name()));
-    root.insert("lines".into(), spectrum.solved.iter().map(line).collect());
+    root.insert("lines".into(), spectrum.solved.iter().map(|solved| line(analysis, solved)).collect());
     let frequencies = spectrum.h41.lines.hz();
     let masked =
         spectrum.masked.iter().map(|(i, why)| json!({"frequency": frequencies[*i], "why": why.why()}));
@@ -28,6 +29,9 @@ pub fn stiffness_file(analysis: &Analysis) -> Value {
         root.insert(
             "interfaces".into(),
             json!({
+                "rest_on": analysis.interfaces_rest_on().map(|(method, explains)| {
+                    json!({"fit": method_name(method), "explains_the_frfs": explains})
+                }),
                 "translation_both": stiffness(&interfaces.translation, "N/m"),
                 "rotation_from": stiffness(&interfaces.near_rotation, "N*m/rad"),
                 "rotation_to": stiffness(&interfaces.far_rotation, "N*m/rad"),
@@ -38,6 +42,7 @@ pub fn stiffness_file(analysis: &Analysis) -> Value {
     }
     root.insert("judgement".into(), json!(analysis.judgement));
     root.insert("nominal_stiffness".into(), matrix(&analysis.nominal_stiffness));
+    root.insert("nominal".into(), nominal(analysis));
     root.insert("recording".into(), recording(analysis));
     Value::Object(root)
 }
@@ -65,9 +70,13 @@ fn fitted(fit: &JointFit) -> Value {
         "on_the_boundary_of_passive": fit.is_on_the_boundary,
         "tests": fit.tests,
         "quantities": fit.quantities,
+        "law_covariance": fit.law_covariance,
         "frfs": fit.frfs.iter().map(ToString::to_string).collect::<Vec<_>>(),
         "lines": fit.lines,
     });
+    if let Some(likelihood) = &fit.likelihood {
+        entry["likelihood"] = json!(likelihood);
+    }
     if let Some((mass, std)) = fit.mass {
         entry["mass"] = json!({"value": mass, "std": std});
     }
@@ -102,7 +111,13 @@ fn law(law: &LawFit) -> Value {
     if let Some(mass) = law.mass {
         parameters["mass"] = json!(mass);
     }
-    json!({"law": law.name(), "probability": law.probability, "parameters": parameters})
+    let (k, c) = law.in_the_middle();
+    json!({
+        "law": law.name(),
+        "probability": law.probability,
+        "parameters": parameters,
+        "in_the_middle": pair(&k, &c),
+    })
 }
 
 fn matrix(m: &RealMatrix2) -> Value {
@@ -113,13 +128,16 @@ fn pair(k: &RealMatrix2, c: &RealMatrix2) -> Value {
     json!({"stiffness": matrix(k), "damping": matrix(c)})
 }
 
-fn line(line: &JointLine) -> Value {
+fn line(analysis: &Analysis, line: &JointLine) -> Value {
     let mut entry = json!({
         "frequency": line.frequency,
         "stiffness": matrix(&line.stiffness),
         "damping": matrix(&line.damping),
         "condition": line.condition,
     });
+    if let Some(h41) = analysis.spectrum.h41.values.get(line.line) {
+        entry["h41"] = json!(h41.0.map(|row| row.map(|value| [value.re, value.im])));
+    }
     if let (Some(k), Some(c)) = (&line.stiffness_std, &line.damping_std) {
         entry["std"] = pair(k, c);
         entry["noisy"] = json!(line.is_noisy());
@@ -144,6 +162,16 @@ fn averages(analysis: &Analysis) -> Value {
     entry
 }
 
+/// K and C of the fixture as it stands, read as the lines are; `null` where no line of the band has them.
+fn nominal(analysis: &Analysis) -> Value {
+    let paper = analysis.spectrum.relation == Relation::Paper;
+    let element = |part: Part, row: usize, column: usize| {
+        analysis.nominal_average(part, Element { row, column }, paper)
+    };
+    let of = |part: Part| [0, 1].map(|row| [0, 1].map(|column| element(part, row, column)));
+    json!({"stiffness": of(Part::Stiffness), "damping": of(Part::Damping)})
+}
+
 fn likelihood(analysis: &Analysis) -> Value {
     match &analysis.likelihood {
         Ok(fit) => {
@@ -160,6 +188,16 @@ fn likelihood(analysis: &Analysis) -> Value {
             })
         }
         Err(error) => json!({"failed": error.to_string()}),
+    }
+}
+
+/// The entry of the file that an estimate stands in.
+fn method_name(method: Method) -> &'static str {
+    match method {
+        Method::AllFrfs => "joint",
+        Method::MaximumLikelihood => "maximum_likelihood",
+        Method::WeightedMean => "weighted_average",
+        Method::PlainMean => "average",
     }
 }
 

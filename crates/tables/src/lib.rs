@@ -7,7 +7,7 @@
 //! * [`paper`]: the printed values, with their units;
 //! * [`examples`]: fixtures with their bands and inferences;
 //! * [`ProgramRow`]: SIM and FEM averages of an example by eq (7) and by the exact relation;
-//! * [`Reach`]: which printed rows eq (7) can give at all;
+//! * [`Reach`]: on which side of its poles eq (7) can give a printed row, [`Witness`]: a fixture that does;
 //! * [`Tables`]: all of it as text or JSON.
 //!
 //! ```
@@ -33,7 +33,7 @@ mod text;
 pub use cells::{Extracted, ProgramRow};
 pub use example::{Example, Inference, examples};
 pub use measured::{Measured, MeasuredError};
-pub use reach::Reach;
+pub use reach::{Reach, Side, Witness};
 pub use tables::Tables;
 
 /// Why a table cannot be made.

@@ -1,5 +1,5 @@
 use crate::paper::{DAMPING, ELEMENTS, Elements, GROUPS, STIFFNESS, STIFFNESS_UNITS};
-use crate::{Extracted, Measured, ProgramRow, Reach, TablesError, examples};
+use crate::{Extracted, Measured, ProgramRow, Reach, Side, TablesError, examples};
 use jointscope_fem::MeshOptions;
 use jointscope_linalg::RealMatrix2;
 use serde_json::{Map, Value, json};
@@ -77,7 +77,11 @@ impl Tables {
                 entry["paper"]["damping"] = json!({ "elements": ELEMENTS, "in": damping.input, "sim": damping.sim, "fem": damping.fem });
             }
             if let Some(reach) = Reach::of_sim(row) {
-                entry["paper"]["k11_k22_over_k12_k21"] = json!({ "value": reach.ratio, "rounding": [reach.rounding.0, reach.rounding.1], "bound": 1.0 });
+                entry["paper"]["k11_k22_over_k12_k21"] = json!({
+                    "value": reach.ratio,
+                    "rounding": [reach.rounding.0, reach.rounding.1],
+                    "met": reach.sides().into_iter().map(Side::name).collect::<Vec<_>>(),
+                });
             }
             if let Some(program) = self.row(row.example) {
                 let inference = program.example.inference;

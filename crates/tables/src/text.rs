@@ -1,7 +1,7 @@
 //! The tables as text, in Markdown, so that they read in a terminal and on a page alike.
 
 use crate::paper::{DAMPING, DAMPING_UNITS, ELEMENTS, Elements, GROUPS, RANKS, STIFFNESS, STIFFNESS_UNITS};
-use crate::{ProgramRow, Reach, Tables};
+use crate::{ProgramRow, Reach, Tables, Witness};
 use std::fmt::Write;
 
 /// A table of equally wide columns.
@@ -188,8 +188,12 @@ impl Tables {
     }
 
     fn reach(&self, text: &mut String) {
-        text.push_str("Which SIM rows any fixture can reach: K11 K22 / (K12 K21) stays below 1 for two equal blocks in a band without poles\n\n");
-        let mut grid = Grid::new("example | as printed | within rounding | program | finding");
+        text.push_str(
+            "Where eq (7) can give a SIM row, two blocks and a massless strip in a band that holds no pole of eq (7): K11 K22 / (K12 K21), in magnitudes, is 2/3 to 1 above the upper pole,\n\
+             below 1 below the lower one and above 1 between them (two equal blocks)\n\n",
+        );
+        let mut grid = Grid::new("example | as printed | within rounding | program | can be met");
+        let mut witnesses = String::new();
         for row in &STIFFNESS {
             let Some(reach) = Reach::of_sim(row) else { continue };
             let program = self.own(row.example).map(|r| {
@@ -201,10 +205,22 @@ impl Tables {
                 digits(reach.ratio),
                 format!("{} to {}", digits(reach.rounding.0), digits(reach.rounding.1)),
                 program.unwrap_or("-".to_owned()),
-                reach.says().to_owned(),
+                reach.says(),
             ]);
+            if let Some(witness) = row.sim.as_ref().and_then(Witness::between_the_poles) {
+                let _ = writeln!(
+                    witnesses,
+                    "{}, as printed, between the poles: {}.  ",
+                    row.example,
+                    witness.says()
+                );
+            }
         }
         grid.write(text);
+        text.push_str(&witnesses);
+        text.push_str(
+            "Between the poles the signs turn round; the paper prints magnitudes. D0's K12 and K21 differ by more than rounding, so its blocks are not equal. Whether D0 and F02 are met by plausible dimensions is open.\n\n",
+        );
     }
 
     fn ranks(&self, text: &mut String) {

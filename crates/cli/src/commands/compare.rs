@@ -1,9 +1,11 @@
-//! `jointscope compare`: decompositions in, their joints side by side and ranked out.
+//! `jointscope compare`: decompositions in, their joints side by side out: differences, ratios, orders, scatter of specimens.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
-use jointscope::comparison::{Comparison, Decomposed, comparison_file};
+use jointscope::comparison::{
+    Comparison, ComparisonOptions, Decomposed, Pair, Specimens, comparison_file, says,
+};
 use jointscope::report::comparison_page;
 
 use crate::input;
@@ -15,32 +17,91 @@ use crate::refusal::Refusal;
 #[derive(Debug, Args)]
 pub struct CompareArguments {
     /// Directories with the stiffness.json of a decomposition each; a joint is called by its directory.
-    #[arg(required = true, value_name = "DIR")]
+    #[arg(required_unless_present = "specimens", value_name = "DIR")]
     pub directories: Vec<PathBuf>,
+    /// Directories of several specimens of one kind, whose scatter is wanted: `glued=a1,a2,a3`. May be given several times.
+    #[arg(long, value_name = "NAME=DIR,DIR…", value_parser = kind)]
+    pub specimens: Vec<Kind>,
+    /// Take every joint as tested on blocks of its own, though the fixtures state the same ones.
+    #[arg(long)]
+    pub independent: bool,
     /// The directory to write to.
     #[arg(short, long, value_name = "DIR")]
     pub output: PathBuf,
 }
 
-/// Compares and writes `comparison.json` and `report.html`; answers with the orders and where the page is.
+/// A kind of joint and the directories of its specimens.
+#[derive(Debug, Clone)]
+pub struct Kind {
+    name: String,
+    directories: Vec<PathBuf>,
+}
+
+/// Reads `NAME=DIR,DIR…`.
+fn kind(text: &str) -> Result<Kind, String> {
+    let form = "a name and two directories or more are needed, such as glued=a1,a2,a3";
+    let (name, directories) = text.split_once('=').ok_or(form)?;
+    let directories: Vec<PathBuf> =
+        directories.split(',').filter(|part| !part.is_empty()).map(PathBuf::from).collect();
+    match !name.is_empty() && directories.len() > 1 {
+        true => Ok(Kind { name: name.to_owned(), directories }),
+        false => Err(form.to_owned()),
+    }
+}
+
+/// Every directory once, those of specimens after the others, and the places of each kind's.
+fn listed(arguments: &CompareArguments) -> (Vec<PathBuf>, Vec<(String, Vec<usize>)>) {
+    let mut all = arguments.directories.clone();
+    let mut place = |directory: &PathBuf| {
+        let same = |other: &PathBuf| other.components().eq(directory.components());
+        all.iter().position(same).unwrap_or_else(|| {
+            all.push(directory.clone());
+            all.len() - 1
+        })
+    };
+    let mut kinds = Vec::new();
+    for kind in &arguments.specimens {
+        let mut places: Vec<usize> = kind.directories.iter().map(&mut place).collect();
+        places.sort_unstable();
+        places.dedup();
+        kinds.push((kind.name.clone(), places));
+    }
+    (all, kinds)
+}
+
+/// Compares and writes `comparison.json` and `report.html`; answers with ratios, orders and where the page is.
 pub fn run(arguments: &CompareArguments) -> Result<String, Refusal> {
-    let files: Vec<PathBuf> =
-        arguments.directories.iter().map(|directory| directory.join("stiffness.json")).collect();
-    let names = names(&arguments.directories);
+    let (directories, specimens) = listed(arguments);
+    let files: Vec<PathBuf> = directories.iter().map(|directory| directory.join("stiffness.json")).collect();
+    let names = names(&directories);
     let joint = |(name, path): (&String, &PathBuf)| {
         Decomposed::of(name, &input::json(path)?).map_err(|error| Refusal::at(path, error))
     };
     let joints = names.iter().zip(&files).map(joint).collect::<Result<Vec<_>, _>>()?;
-    let comparison = Comparison::of(joints).map_err(Refusal::new)?;
+    let options = ComparisonOptions { independent: arguments.independent, specimens };
+    let comparison = Comparison::with(joints, &options).map_err(Refusal::new)?;
     let context = origin::context(&files, Vec::new(), None)?;
     let page = comparison_page(&comparison, &context).map_err(Refusal::new)?;
     let page_path = arguments.output.join("report.html");
     let mut outputs = Outputs::new(&files);
-    outputs.add_json(arguments.output.join("comparison.json"), &comparison_file(&comparison));
+    let mut file = comparison_file(&comparison);
+    origin::add(&mut file, &context);
+    outputs.add_json(arguments.output.join("comparison.json"), &file);
     outputs.add(&page_path, page);
     outputs.write()?;
-    let mut lines =
-        vec![format!("from the smallest magnitude to the largest, by {}", comparison.estimate_words())];
+    Ok(summary(&comparison, &page_path).join("\n"))
+}
+
+/// What was found, a line each: what to mind first.
+fn summary(comparison: &Comparison, page: &Path) -> Vec<String> {
+    let mut lines: Vec<String> =
+        comparison.cautions.iter().map(|c| format!("caution: {}", c.says())).collect();
+    lines.push(format!("by {}", comparison.estimate_words()));
+    lines.extend(says::shared(comparison));
+    for pair in says::main_pairs(comparison) {
+        lines.extend(paired(pair));
+    }
+    lines.push("from the smallest magnitude to the largest:".to_owned());
     lines.extend(comparison.rankings.iter().map(|entry| {
         let order: Vec<&str> =
             entry.ranking.order.iter().map(|i| comparison.joints[*i].name.as_str()).collect();
@@ -50,15 +111,29 @@ pub fn run(arguments: &CompareArguments) -> Result<String, Refusal> {
             p => format!("{p:.3}"),
         };
         format!(
-            "{}{}{}: {} (right with a probability of {probability})",
-            entry.kind.symbol(),
-            entry.element.0 + 1,
-            entry.element.1 + 1,
-            order.join(" < "),
+            "{}: {} (right with a probability of {probability})",
+            entry.number().name(),
+            order.join(" < ")
         )
     }));
-    lines.push(page_path.display().to_string());
-    Ok(lines.join("\n"))
+    lines.extend(comparison.specimens.iter().flat_map(scatter));
+    lines.push(page.display().to_string());
+    lines
+}
+
+fn paired(pair: &Pair) -> Vec<String> {
+    let ratios = pair.numbers.iter().filter_map(|number| {
+        let ratio = number.ratio?;
+        Some(format!("{}: {} is {} of {}", number.element, pair.second, says::percents(&ratio), pair.first))
+    });
+    let equality = pair.equality.map(|equality| says::equality(&equality, [&pair.first, &pair.second]));
+    ratios.chain(equality).collect()
+}
+
+fn scatter(specimens: &Specimens) -> Vec<String> {
+    let head = format!("{}: {} specimens", specimens.name, specimens.joints.len());
+    let lines = specimens.numbers.iter().map(says::scatter);
+    std::iter::once(head).chain(lines.map(|line| format!("  {line}"))).collect()
 }
 
 /// The directories' last names; the whole paths of those that share one.

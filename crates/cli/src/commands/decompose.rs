@@ -71,7 +71,9 @@ pub fn run(arguments: &DecomposeArguments) -> Result<String, Refusal> {
     let page = decomposition_page(&analysis, &as_recorded, &context).map_err(Refusal::new)?;
     let mut outputs = Outputs::new(files());
     let page_path = arguments.output.join("report.html");
-    outputs.add_json(arguments.output.join("stiffness.json"), &stiffness_file(&analysis));
+    let mut file = stiffness_file(&analysis);
+    origin::add(&mut file, &context);
+    outputs.add_json(arguments.output.join("stiffness.json"), &file);
     outputs.add(&page_path, page);
     outputs.write()?;
     let mut lines = context.notes.clone();

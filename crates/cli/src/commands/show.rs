@@ -7,7 +7,7 @@ use jointscope::recordings::Contents;
 use serde_json::{Value, json};
 
 use crate::output::pretty;
-use crate::recording::{RecordingArguments, column_entry};
+use crate::recording::{ReadingArguments, RecordingArguments, column_entry};
 use crate::refusal::Refusal;
 
 #[derive(Debug, Args)]

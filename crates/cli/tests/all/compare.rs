@@ -34,8 +34,74 @@ fn joints_are_ranked_with_the_probability_of_the_order() {
     assert_eq!(file["joints"][0]["name"], "sim");
     let page = bench.text("out/report.html");
     assert!(page.contains("3 joints side by side") && page.contains("Rank order"));
-    bench.done(&["compare", "sim", "fem", "soft", "-o", "again"]);
-    assert_eq!(bench.text("again/comparison.json"), bench.text("out/comparison.json"));
+    // The strip of the second is 2.3/2.864708 of the first's, which the fixture they share knows to a thousandth at best.
+    let ratio = &file["pairs"][1]["numbers"][0];
+    assert_eq!((&file["pairs"][1]["second"], &ratio["element"]), (&"soft".into(), &"K11".into()));
+    let value = ratio["ratio"]["value"].as_f64().unwrap();
+    assert!((value - 2.3 / 2.864708).abs() < 1e-5, "{value}");
+    assert_eq!(file["made"]["inputs"].as_array().unwrap().len(), 3);
+    let first = bench.text("out/comparison.json");
+    bench.done(&["compare", "sim", "fem", "soft", "-o", "out"]);
+    assert_eq!(bench.text("out/comparison.json"), first);
+}
+
+#[test]
+fn what_a_fit_does_not_explain_gets_a_caution_and_no_approval() {
+    let bench = bench("cautions");
+    let summary = bench.done(&["compare", "sim", "fem", "-o", "bad"]);
+    assert!(summary.starts_with("caution: fem: its fit leaves a chi2 of"), "{summary}");
+    let file = bench.json("bad/comparison.json");
+    assert_eq!(file["sound"], false);
+    let cautions: Vec<&str> =
+        file["cautions"].as_array().unwrap().iter().filter_map(|c| c["what"].as_str()).collect();
+    assert!(cautions.contains(&"poor_fit") && cautions.contains(&"bodies_disagree"), "{cautions:?}");
+    assert!(!bench.text("bad/report.html").contains("verdict ok"));
+    bench.done(&["compare", "sim", "soft", "-o", "good"]);
+    assert_eq!(bench.json("good/comparison.json")["sound"], true);
+    assert!(bench.text("good/report.html").contains("verdict ok"));
+}
+
+#[test]
+fn joints_are_as_well_known_as_alone_where_blocks_are_said_to_be_different() {
+    let bench = bench("independent");
+    let deviation = |arguments: &[&str]| {
+        let summary = bench.done(arguments);
+        let file = bench.json("out/comparison.json");
+        let deviation = file["pairs"][0]["numbers"][0]["ratio"]["std"].as_f64().unwrap();
+        (summary, file, deviation)
+    };
+    let (summary, shared, paired) = deviation(&["compare", "sim", "soft", "-o", "out"]);
+    assert!(summary.contains("taken as the same blocks") && shared["shared"][0]["body"] == "A", "{summary}");
+    let (summary, apart, alone) = deviation(&["compare", "sim", "soft", "--independent", "-o", "out"]);
+    assert!(summary.contains("as asked for") && apart["apart"][0]["why"] == "asked", "{summary}");
+    assert!(alone > 30.0 * paired, "{alone} {paired}");
+    // Another mass of a block, or as sure of it as not: that block is another one.
+    let d0 = bench.text("d0.json");
+    bench.write("other.json", d0.replacen("5.113312", "{\"value\": 5.113312, \"std\": 0.0011}", 1));
+    assert!(bench.text("other.json") != d0, "{d0}");
+    bench.done(&["decompose", "other.json", "soft.uff", "--band", "474:843", "-o", "other"]);
+    let summary = bench.done(&["compare", "sim", "other", "-o", "out"]);
+    let file = bench.json("out/comparison.json");
+    assert_eq!(file["shared"].as_array().unwrap().len(), 1, "{summary}");
+    assert_eq!(file["shared"][0]["body"], "A");
+    assert!(summary.contains("the fixtures differ in bodies/B/mass"), "{summary}");
+}
+
+#[test]
+fn specimens_of_a_kind_scatter() {
+    let bench = bench("specimens");
+    let summary = bench.done(&["compare", "sim", "--specimens", "strips=sim,soft", "-o", "out"]);
+    assert!(summary.contains("strips: 2 specimens"), "{summary}");
+    let file = bench.json("out/comparison.json");
+    assert_eq!(file["joints"].as_array().unwrap().len(), 2);
+    let scatter = &file["specimens"][0]["numbers"][0];
+    // Two values 19.7 % apart scatter by their difference over √2.
+    let relative = scatter["between"].as_f64().unwrap() / scatter["mean"]["value"].as_f64().unwrap();
+    let expected = (1.0 - 2.3 / 2.864708) / (1.0 + 2.3 / 2.864708) * 2.0_f64.sqrt();
+    assert!((relative - expected).abs() < 1e-3, "{relative} {expected}");
+    assert!(bench.text("out/report.html").contains("Specimens: strips"));
+    bench.refused(&["compare", "--specimens", "strips=sim", "-o", "out"], &["two directories"]);
+    bench.refused(&["compare", "soft", "--specimens", "strips=sim,sim", "-o", "out"], &["one specimen"]);
 }
 
 #[test]

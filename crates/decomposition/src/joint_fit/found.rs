@@ -1,6 +1,6 @@
 //! What a fit of the joint finds.
 
-use super::{Admissible, JointTests, LawFit};
+use super::{Admissible, JointLikelihood, JointTests, LawFit};
 use jointscope_linalg::{Matrix2, RealMatrix2};
 use jointscope_spectra::FrfPair;
 use serde::Serialize;
@@ -45,6 +45,8 @@ pub struct JointFit {
     pub mass: Option<(f64, f64)>,
     /// Whether the bodies do not rotate: only the elements (1,1) mean anything then.
     pub scalar: bool,
+    /// What the FRFs alone tell of the joint and of the quantities; nothing where they leave the joint's mass open.
+    pub likelihood: Option<JointLikelihood>,
 }
 
 /// A quantity of the fixture as the fit has it.
@@ -52,6 +54,8 @@ pub struct JointFit {
 pub struct FittedQuantity {
     /// Path in the fixture file.
     pub path: String,
+    /// The body that it belongs to, by itself or as a place on it; nothing for supports, damping, channels and other joints.
+    pub body: Option<String>,
     /// As stated, SI.
     pub stated: f64,
     /// Its stated standard deviation; nothing where it is unknown.

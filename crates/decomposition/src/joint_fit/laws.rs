@@ -39,6 +39,11 @@ impl LawFit {
         format!("{}{with_mass}", self.kind.name())
     }
 
+    /// K(ω) and C(ω) in the middle of the band, where laws are compared.
+    pub fn in_the_middle(&self) -> (RealMatrix2, RealMatrix2) {
+        self.stiffness_and_damping(Complex64::new(0.0, self.law.middle))
+    }
+
     /// K(ω) and C(ω) of the dynamic stiffness K + sC on d at s = δ + iω, without the mass.
     pub fn stiffness_and_damping(&self, s: Complex64) -> (RealMatrix2, RealMatrix2) {
         let dynamic = self.law.placed(&self.coordinates).stiffness(s);
@@ -60,7 +65,7 @@ impl Spread {
     pub fn of(laws: &[LawFit], heavy: bool) -> Option<Self> {
         let stated = laws.iter().find(|fit| fit.kind == LawKind::Viscous && fit.mass.is_some() == heavy)?;
         let six = |fit: &LawFit| {
-            let (k, c) = fit.stiffness_and_damping(Complex64::new(0.0, fit.law.middle));
+            let (k, c) = fit.in_the_middle();
             [k.at(0, 0), k.at(0, 1), k.at(1, 1), c.at(0, 0), c.at(0, 1), c.at(1, 1)]
         };
         let reference = six(stated);

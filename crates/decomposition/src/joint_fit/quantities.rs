@@ -13,6 +13,18 @@ pub(super) struct Uncertain {
     pub parameter: Parameter,
 }
 
+impl Uncertain {
+    /// The name of the body that it belongs to.
+    pub fn body(&self, fixture: &Fixture) -> Option<String> {
+        let body = match self.quantity.owner {
+            QuantityOwner::Body(body) => body,
+            QuantityOwner::Point(point) => fixture.points()[point].body,
+            _ => return None,
+        };
+        Some(fixture.bodies()[body].name.clone())
+    }
+}
+
 /// Relative deviation up to which a positive quantity moves by its logarithm.
 const NARROW: f64 = 0.12;
 

@@ -40,16 +40,21 @@ impl Fitter<'_> {
         problem.equations_of(point, &others, problem.test.weights).covariance().ok_or(UNDETERMINED)
     }
 
-    /// Covariance of (k11, k12, k22, c11, c12, c22) in SI units from that of a viscous law's coordinates.
-    pub(super) fn in_si(&self, law: &Dynamics, covariance: &Covariance) -> [[f64; 6]; 6] {
+    /// k11, k12, k22, c11, c12, c22 in SI units for one unit of a viscous law's coordinates.
+    pub(super) fn units(&self, law: &Dynamics) -> [f64; 6] {
         let u = &law.unit;
         let elements = [u.at(0, 0), u.at(0, 1), u.at(1, 1)];
+        std::array::from_fn(|slot| elements[slot % 3] * if slot < 3 { 1.0 } else { 1.0 / law.middle })
+    }
+
+    /// Covariance of (k11, k12, k22, c11, c12, c22) in SI units from that of a viscous law's coordinates.
+    pub(super) fn in_si(&self, law: &Dynamics, covariance: &Covariance) -> [[f64; 6]; 6] {
+        let scales = self.units(law);
         let slots: &[usize] = if self.scalar { &[0, 3] } else { &[0, 1, 2, 3, 4, 5] };
-        let scale = |slot: usize| elements[slot % 3] * if slot < 3 { 1.0 } else { 1.0 / law.middle };
         let mut all = [[0.0; 6]; 6];
         for (a, &m) in slots.iter().enumerate() {
             for (b, &n) in slots.iter().enumerate() {
-                all[m][n] = covariance.at(a, b) * scale(m) * scale(n);
+                all[m][n] = covariance.at(a, b) * scales[m] * scales[n];
             }
         }
         all

@@ -10,14 +10,14 @@ use jointscope::spectra::{FrfForm, FrfPair, FrfSet, SpectralLines};
 use jointscope_rig::{Instrument, drawn_within_tolerance, generator};
 use num_complex::Complex64;
 
-const EIGHT: [(&str, &str); 8] =
+pub const EIGHT: [(&str, &str); 8] =
     [("4", "1"), ("3", "1"), ("4", "2"), ("3", "2"), ("1", "1"), ("2", "1"), ("4", "4"), ("3", "4")];
 
 /// A deterministic stream of circular complex normals.
-struct Noise(u64);
+pub struct Noise(u64);
 
 impl Noise {
-    fn new(seed: u64) -> Self {
+    pub fn new(seed: u64) -> Self {
         Noise(seed.wrapping_mul(0x9E3779B97F4A7C15) | 1)
     }
 
@@ -51,17 +51,17 @@ impl Noise {
 
 /// What the joint is.
 #[derive(Clone, Copy)]
-struct Case {
+pub struct Case {
     /// k11, k12, k22.
-    stiffness: [f64; 3],
+    pub stiffness: [f64; 3],
     /// c11, c12, c22; nothing where they are zero.
-    damping: [f64; 3],
+    pub damping: [f64; 3],
     /// A beam with structural damping of the whole in place of the matrices.
-    beam: bool,
+    pub beam: bool,
 }
 
 impl Case {
-    fn ordinary() -> Self {
+    pub fn ordinary() -> Self {
         Case { stiffness: [2.4e6, -8.4e4, 4.1e3], damping: [12.0, -0.35, 0.02], beam: false }
     }
 
@@ -72,7 +72,7 @@ impl Case {
 }
 
 /// Two blocks on a joint, tolerances as of a weighed and measured fixture.
-fn fixture(case: &Case, physics: &str) -> Fixture {
+pub fn fixture(case: &Case, physics: &str) -> Fixture {
     let q = |value: f64, std: f64| format!(r#"{{"value": {value}, "std": {std}}}"#);
     let block = |mass: f64, inertia: f64, x: f64| {
         format!(
@@ -119,13 +119,13 @@ fn lines() -> SpectralLines {
     SpectralLines::even(4.0, 4.0, 300).unwrap()
 }
 
-fn recorded(truth: &Fixture, noise: &mut Noise, relative: f64, pairs: &[(&str, &str)]) -> FrfSet {
+pub fn recorded(truth: &Fixture, noise: &mut Noise, relative: f64, pairs: &[(&str, &str)]) -> FrfSet {
     let pairs: Vec<FrfPair> = pairs.iter().map(|(o, i)| FrfPair::transverse(o, i)).collect();
     noise.on(&jointscope_rig::frfs(truth, &pairs, &lines(), Instrument::Perfect).unwrap(), relative)
 }
 
 /// k11, k12, k22, c11, c12, c22 that a fixture states.
-fn six(fixture: &Fixture) -> [f64; 6] {
+pub fn six(fixture: &Fixture) -> [f64; 6] {
     match &fixture.joints()[0].law {
         JointLaw::Stiffness { stiffness: [a, b, d], damping: Some([e, f, g]) } => {
             [a, b, d, e, f, g].map(|q| q.value)
@@ -176,12 +176,12 @@ fn run(case: &Case, count: u64, seed: u64) -> Runs {
     runs
 }
 
-fn rms(values: impl Iterator<Item = f64>) -> f64 {
+pub fn rms(values: impl Iterator<Item = f64>) -> f64 {
     let (sum, count) = values.fold((0.0, 0), |(sum, count), v| (sum + v * v, count + 1));
     (sum / f64::from(count)).sqrt()
 }
 
-const NAMES: [&str; 6] = ["k11", "k12", "k22", "c11", "c12", "c22"];
+pub const NAMES: [&str; 6] = ["k11", "k12", "k22", "c11", "c12", "c22"];
 
 fn report(runs: &Runs) {
     let n = runs.scores.len();
@@ -259,7 +259,7 @@ fn frfs_on_one_side_of_the_joint_make_it_several_times_better_known_than_those_a
 }
 
 /// Largest difference between the share of p-values below a probability and that probability.
-fn from_uniform(p: &[f64]) -> f64 {
+pub fn from_uniform(p: &[f64]) -> f64 {
     let mut p = p.to_vec();
     p.sort_by(f64::total_cmp);
     let n = p.len() as f64;

@@ -3,6 +3,7 @@
 
 mod against_the_rig;
 mod common;
+mod comparison;
 mod diagnosis;
 mod drift;
 mod joint_fit;

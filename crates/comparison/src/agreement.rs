@@ -1,0 +1,90 @@
+//! Whether two tests agree on the bodies that they are said to share.
+//!
+//! Each test by itself, with the prior, has the shared quantities q at m = E(q) with the covariance S, in standard deviations of the prior. If q is the same in both, m₁ − m₂ is
+//! normal with mean zero and the covariance A₁ + A₂ − A₁A₂ − A₂A₁, A = 1 − S being what a test has told of q: what neither tells does not count.
+
+use crate::normal::chi2_above;
+use crate::{Decomposed, Together};
+use jointscope_linalg::{Cholesky, generalized_symmetric_eigen};
+
+/// Probability below which two tests do not agree; of several pairs, divided by their number.
+const DISAGREE: f64 = 0.01;
+/// Variance of a combination, in those of the prior, below which the tests tell nothing of it.
+const UNTOLD: f64 = 1e-4;
+
+impl Together {
+    /// The test that contradicts most others on the bodies they share, of as many the one of the least probable agreement; nothing where all agree. The more pairs are
+    /// looked at, the less probable each has to be.
+    pub(crate) fn most_at_odds(&self, joints: &[Decomposed]) -> Option<usize> {
+        let all = (0..joints.len()).flat_map(|a| (a + 1..joints.len()).map(move |b| [a, b]));
+        let looked_at: Vec<([usize; 2], f64)> =
+            all.filter_map(|[a, b]| Some(([a, b], self.agreement(&joints[a], &joints[b])?))).collect();
+        let disagree = DISAGREE / looked_at.len() as f64;
+        let at_odds = |joint: usize| {
+            let own = looked_at.iter().filter(|(pair, p)| pair.contains(&joint) && *p < disagree);
+            let least = own.clone().map(|(_, p)| *p).fold(1.0, f64::min);
+            let count = own.count();
+            (count > 0).then_some((joint, count, least))
+        };
+        let all = (0..joints.len()).filter_map(at_odds);
+        all.max_by(|a, b| a.1.cmp(&b.1).then(b.2.total_cmp(&a.2))).map(|(joint, ..)| joint)
+    }
+
+    /// Probability of shared quantities as far apart or farther, if they are the same; `None` where nothing is shared or told.
+    pub fn agreement(&self, a: &Decomposed, b: &Decomposed) -> Option<f64> {
+        let both = |names: &[String]| [a, b].iter().all(|joint| names.contains(&joint.name));
+        let shared = self.shared.iter().filter(|body| both(&body.joints));
+        let paths: Vec<&str> = shared.flat_map(|body| body.quantities.iter().map(String::as_str)).collect();
+        let known = |path: &&str| {
+            let of = |joint: &Decomposed| {
+                let fit = joint.fitted.as_ref()?;
+                fit.quantities.iter().find(|quantity| quantity.path == **path)?.std
+            };
+            of(a).is_some() && of(b).is_some()
+        };
+        let paths: Vec<&str> = paths.into_iter().filter(known).collect();
+        let n = paths.len();
+        let (first, second) = (told(a, &paths)?, told(b, &paths)?);
+        let dot = |x: &[f64], y: &[f64], i: usize, j: usize| -> f64 {
+            (0..n).map(|k| x[i * n + k] * y[k * n + j]).sum()
+        };
+        let [x, y] = [&first.1, &second.1];
+        let entry = |e: usize| {
+            let (i, j) = (e / n, e % n);
+            x[e] + y[e] - 0.5 * (dot(x, y, i, j) + dot(x, y, j, i) + dot(y, x, i, j) + dot(y, x, j, i))
+        };
+        let covariance: Vec<f64> = (0..n * n).map(entry).collect();
+        let unit: Vec<f64> = (0..n * n).map(|e| f64::from(u8::from(e / n == e % n))).collect();
+        let basis = generalized_symmetric_eigen(n, &unit, &covariance).ok()?;
+        let apart: Vec<f64> = first.0.iter().zip(&second.0).map(|(a, b)| a - b).collect();
+        let (mut chi2, mut degrees) = (0.0, 0);
+        for (mode, variance) in basis.eigenvalues().iter().enumerate().filter(|(_, v)| **v > UNTOLD) {
+            let along: f64 = basis.shape(mode).iter().zip(&apart).map(|(s, d)| s * d).sum();
+            chi2 += along * along / variance;
+            degrees += 1;
+        }
+        (degrees > 0).then(|| chi2_above(chi2, degrees))
+    }
+}
+
+/// The posterior mean of these quantities by one test, and 1 − S.
+fn told(joint: &Decomposed, paths: &[&str]) -> Option<(Vec<f64>, Vec<f64>)> {
+    let fit = joint.fitted.as_ref()?;
+    let (slots, likelihood) = fit.likelihood()?;
+    let place = |path: &&str| fit.quantities.iter().position(|quantity| quantity.path == **path);
+    let kept: Vec<usize> = paths.iter().map(|p| Some(slots.len() + place(p)?)).collect::<Option<_>>()?;
+    let known = |index: usize| fit.quantities[index].std.is_some();
+    let precision = |m: usize| if m >= slots.len() && known(m - slots.len()) { 1.0 } else { 0.0 };
+    let own = likelihood.marginal(&kept, precision)?;
+    let n = kept.len();
+    let mut with_prior = own.information.clone();
+    (0..n).for_each(|i| with_prior[i * n + i] += 1.0);
+    let factor = Cholesky::of(n, &with_prior)?;
+    let mut step: Vec<f64> = own.gradient.iter().zip(&own.at).map(|(g, at)| g - at).collect();
+    factor.solve_in_place(&mut step);
+    let mean = own.at.iter().zip(&step).map(|(at, step)| at + step).collect();
+    let mut told = factor.inverse();
+    told.iter_mut().for_each(|entry| *entry = -*entry);
+    (0..n).for_each(|i| told[i * n + i] += 1.0);
+    Some((mean, told))
+}

@@ -1,0 +1,173 @@
+//! What `stiffness.json` says of the joint from all FRFs.
+
+use crate::Matrix;
+use jointscope_inference::QuadraticLikelihood;
+use serde::Deserialize;
+
+/// The joint from all FRFs, the fixture's quantities moving within their deviations.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+pub struct FittedJoint {
+    /// K.
+    pub stiffness: Matrix,
+    /// C.
+    pub damping: Matrix,
+    /// Covariance of k11, k12, k22, c11, c12, c22.
+    pub covariance: [[f64; 6]; 6],
+    /// χ² and priors per degree of freedom.
+    #[serde(default)]
+    pub chi2_per_dof: Option<f64>,
+    /// What the model gets wrong.
+    #[serde(default)]
+    pub model_error: ModelError,
+    /// What of the covariance comes from the laws over frequency.
+    #[serde(default)]
+    pub law_covariance: [[f64; 6]; 6],
+    /// The fixture's quantities that moved.
+    #[serde(default)]
+    pub quantities: Vec<StatedQuantity>,
+    /// What the FRFs alone tell of it and of the quantities; files of earlier versions do not say.
+    #[serde(default)]
+    pub likelihood: Option<JointLikelihood>,
+    /// How it is damped, as far as the file says.
+    #[serde(default)]
+    pub law: Option<String>,
+    /// The laws compared, the most probable first.
+    #[serde(default)]
+    pub laws: Vec<ComparedLaw>,
+    /// The joint's own mass, where the FRFs show one: K and C are then those of a joint with it.
+    #[serde(default)]
+    pub mass: Option<JointMass>,
+    /// Whether physics allows it.
+    #[serde(default)]
+    pub tests: JointTests,
+}
+
+/// Probabilities of FRFs that speak at least as much against a property, if the joint has it; nothing where it was not tested.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Deserialize)]
+pub struct JointTests {
+    /// k12 = k21 and c12 = c21.
+    #[serde(default)]
+    pub reciprocity: Option<f64>,
+    /// No eigenvalue of K is negative.
+    #[serde(default)]
+    pub definite: Option<f64>,
+    /// No eigenvalue of C is negative.
+    #[serde(default)]
+    pub passive: Option<f64>,
+}
+
+/// A joint's own mass, uniform over its length.
+#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
+pub struct JointMass {
+    /// kg.
+    pub value: f64,
+    /// Standard deviation, kg.
+    pub std: f64,
+}
+
+/// A law over frequency, as one joint's FRFs have it.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+pub struct ComparedLaw {
+    /// Its name; with a mass of the joint another one.
+    pub law: String,
+    /// Probability among those compared.
+    pub probability: f64,
+    /// K and C in the middle of the band; files of earlier versions do not say.
+    #[serde(default)]
+    pub in_the_middle: Option<InTheMiddle>,
+}
+
+/// K and C of a law.
+#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
+pub struct InTheMiddle {
+    /// K.
+    pub stiffness: Matrix,
+    /// C.
+    pub damping: Matrix,
+}
+
+/// By how much the deviations were widened for what the model gets wrong.
+#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
+pub struct ModelError {
+    /// Of the noise's variance; 1 where noise and tolerances explain the FRFs.
+    pub inflation: f64,
+    /// Of the posterior's, where quantities are farther from what is stated than chance takes them; 1 where they are not.
+    pub strain: f64,
+    /// What of the covariance comes from it besides.
+    pub covariance: [[f64; 6]; 6],
+}
+
+impl Default for ModelError {
+    fn default() -> Self {
+        ModelError { inflation: 1.0, strain: 1.0, covariance: [[0.0; 6]; 6] }
+    }
+}
+
+/// A quantity of the fixture as the file states it.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+pub struct StatedQuantity {
+    /// Its path.
+    pub path: String,
+    /// The body that it belongs to.
+    #[serde(default)]
+    pub body: Option<String>,
+    /// Its value, SI.
+    pub stated: f64,
+    /// Its standard deviation; nothing where it is unknown.
+    pub std: Option<f64>,
+}
+
+/// The likelihood of the joint's numbers and of the quantities, Gaussian about a point, without the quantities' priors.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+pub struct JointLikelihood {
+    elements: Vec<String>,
+    at: Vec<f64>,
+    gradient: Vec<f64>,
+    information: Vec<Vec<f64>>,
+}
+
+/// Names of the six numbers.
+const ELEMENTS: [&str; 6] = ["k11", "k12", "k22", "c11", "c12", "c22"];
+
+impl FittedJoint {
+    /// The likelihood of the joint's numbers, by their places among the six, and after them of the quantities; nothing where the file has none that fits
+    /// its quantities.
+    pub(crate) fn likelihood(&self) -> Option<(Vec<usize>, QuadraticLikelihood)> {
+        let written = self.likelihood.as_ref()?;
+        let place = |name: &String| ELEMENTS.iter().position(|element| element == name);
+        let slots: Vec<usize> = written.elements.iter().map(place).collect::<Option<_>>()?;
+        let n = slots.len() + self.quantities.len();
+        let triangular = written.information.iter().enumerate().all(|(i, row)| row.len() == i + 1);
+        if !triangular || [written.at.len(), written.gradient.len(), written.information.len()] != [n; 3] {
+            return None;
+        }
+        let rows = &written.information;
+        let entry = |e: usize| rows[(e / n).max(e % n)][(e / n).min(e % n)];
+        let likelihood = QuadraticLikelihood {
+            at: written.at.clone(),
+            gradient: written.gradient.clone(),
+            information: (0..n * n).map(entry).collect(),
+        };
+        Some((slots, likelihood))
+    }
+
+    /// k11, k12, k22, c11, c12, c22.
+    pub(crate) fn six(&self) -> [f64; 6] {
+        six(&self.stiffness, &self.damping)
+    }
+
+    /// By how much a law is off the joint stated in the middle of the band; nothing where the file does not have it.
+    pub(crate) fn departure(&self, law: &str) -> Option<[f64; 6]> {
+        let of = |name: &str| {
+            let law = self.laws.iter().find(|other| other.law == name)?.in_the_middle?;
+            Some(six(&law.stiffness, &law.damping))
+        };
+        let stated = of(if self.mass.is_some() { "viscous_with_mass" } else { "viscous" })?;
+        let own = of(law)?;
+        Some(std::array::from_fn(|e| own[e] - stated[e]))
+    }
+}
+
+fn six(k: &Matrix, c: &Matrix) -> [f64; 6] {
+    [k[0][0], k[0][1], k[1][1], c[0][0], c[0][1], c[1][1]]
+}

@@ -1,0 +1,219 @@
+//! Two joints: by how much they differ, in what ratio, and whether they are the same.
+
+use crate::normal::{Z95, chi2_above, larger_magnitude, mahalanobis, ratio_interval};
+use crate::{Kind, Number, Together};
+use serde::Serialize;
+
+/// A value with its standard deviation and 95 % interval, SI.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Figure {
+    /// The value.
+    pub value: f64,
+    /// Its standard deviation.
+    pub std: f64,
+    /// Its 95 % interval.
+    pub ci95: [f64; 2],
+}
+
+impl Figure {
+    pub(crate) fn normal(value: f64, variance: f64) -> Self {
+        let std = variance.max(0.0).sqrt();
+        Figure { value, std, ci95: [value - Z95 * std, value + Z95 * std] }
+    }
+}
+
+/// The second joint's number over the first one's.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Ratio {
+    /// The ratio.
+    pub value: f64,
+    /// Its standard deviation, to first order.
+    pub std: f64,
+    /// Its 95 % interval (Fieller's).
+    pub ci95: [f64; 2],
+}
+
+/// One number of two joints.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct PairedNumber {
+    /// `K11` …, `elastic_centre` (k12/k11, m from the far end), `K22_at_centre` (k22 − k12²/k11).
+    pub element: String,
+    /// SI unit of the difference.
+    pub unit: &'static str,
+    /// Second less first.
+    pub difference: Figure,
+    /// Second over first; nothing where the first cannot be told from zero, and for places.
+    pub ratio: Option<Ratio>,
+    /// Correlation of the two errors; nothing where one of them has none.
+    pub correlation: Option<f64>,
+    /// Probability that the second is the larger, by magnitude.
+    pub second_is_larger: f64,
+}
+
+/// A test of equal numbers.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Equality {
+    /// χ² of the differences.
+    pub chi2: f64,
+    /// Degrees of freedom: numbers that have a deviation and are not fixed by others.
+    pub degrees: usize,
+    /// Probability of differences as large or larger, if the joints are the same.
+    pub p_value: f64,
+}
+
+impl Equality {
+    /// Probability below which joints count as different.
+    pub const DIFFERENT: f64 = 0.05;
+
+    fn of(differences: &[f64], covariance: &[f64]) -> Option<Self> {
+        let (chi2, degrees) = mahalanobis(differences, covariance)?;
+        Some(Equality { chi2, degrees, p_value: chi2_above(chi2, degrees) })
+    }
+
+    /// Of all numbers of several joints at once; nothing where it is not known how their errors go together.
+    pub(crate) fn of_all(together: &Together, joints: &[usize], numbers: &[Number]) -> Option<Self> {
+        if !together.has_covariances {
+            return None;
+        }
+        let (first, others) = joints.split_first()?;
+        let entries: Vec<(usize, usize)> =
+            others.iter().flat_map(|&joint| (0..numbers.len()).map(move |n| (joint, n))).collect();
+        let difference = |&(joint, n): &(usize, usize)| together.value(joint, n) - together.value(*first, n);
+        let covariance = |a: (usize, usize), b: (usize, usize)| {
+            let of = |a, b| together.covariance(a, b);
+            let (a0, b0) = ((*first, a.1), (*first, b.1));
+            // What is left of nearly equal terms is rounding where it is nothing beside them.
+            let left = of(a, b) - of(a, b0) - of(a0, b) + of(a0, b0);
+            let size = (of(a, a) + of(a0, a0)).sqrt() * (of(b, b) + of(b0, b0)).sqrt();
+            if left.abs() <= ROUNDING * size { 0.0 } else { left }
+        };
+        let matrix: Vec<f64> =
+            entries.iter().flat_map(|&a| entries.iter().map(move |&b| covariance(a, b))).collect();
+        Equality::of(&entries.iter().map(difference).collect::<Vec<_>>(), &matrix)
+    }
+}
+
+/// Share of a difference's terms below which it is rounding.
+const ROUNDING: f64 = 1e-13;
+
+/// Two joints, number by number.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Pair {
+    /// The joint that the other is set against.
+    pub first: String,
+    /// The other.
+    pub second: String,
+    /// By number.
+    pub numbers: Vec<PairedNumber>,
+    /// Whether all numbers of both are the same; nothing where none has a deviation, or where averages and fits to the FRFs across are compared, whose files do not say
+    /// how the errors of their numbers go together.
+    pub equality: Option<Equality>,
+}
+
+/// A function of a joint's numbers with its derivatives.
+struct Derived {
+    name: &'static str,
+    unit: &'static str,
+    is_place: bool,
+    of: fn([f64; 3]) -> (f64, [f64; 3]),
+}
+
+/// k12/k11 and k22 − k12²/k11 of (k11, k12, k22).
+const DERIVED: [Derived; 2] = [
+    Derived {
+        name: "elastic_centre",
+        unit: "m",
+        is_place: true,
+        of: |[a, b, _]| (b / a, [-b / (a * a), 1.0 / a, 0.0]),
+    },
+    Derived {
+        name: "K22_at_centre",
+        unit: "N*m/rad",
+        is_place: false,
+        of: |[a, b, d]| (d - b * b / a, [(b / a).powi(2), -2.0 * b / a, 1.0]),
+    },
+];
+
+impl Pair {
+    /// Of two joints of all.
+    pub(crate) fn of(
+        together: &Together,
+        numbers: &[Number],
+        (first, second): (usize, usize),
+        names: [&str; 2],
+    ) -> Self {
+        let mut all: Vec<PairedNumber> = (0..numbers.len())
+            .map(|n| {
+                let of = |a, b| together.covariance((a, n), (b, n));
+                let values = [first, second].map(|joint| together.value(joint, n));
+                let variances = [of(first, first), of(first, second), of(second, second)];
+                PairedNumber::of((numbers[n].name(), numbers[n].unit()), values, variances, false)
+            })
+            .collect();
+        if together.has_covariances {
+            all.extend(derived(together, numbers, (first, second)));
+        }
+        Pair {
+            first: names[0].to_owned(),
+            second: names[1].to_owned(),
+            numbers: all,
+            equality: Equality::of_all(together, &[first, second], numbers),
+        }
+    }
+
+    /// One of its numbers.
+    pub fn number(&self, element: &str) -> Option<&PairedNumber> {
+        self.numbers.iter().find(|number| number.element == element)
+    }
+}
+
+fn derived(together: &Together, numbers: &[Number], (first, second): (usize, usize)) -> Vec<PairedNumber> {
+    let place = |i, j| numbers.iter().position(|n| (n.kind, n.element) == (Kind::Stiffness, (i, j)));
+    let (Some(a), Some(b), Some(d)) = (place(0, 0), place(0, 1), place(1, 1)) else { return Vec::new() };
+    let places = [a, b, d];
+    let three = [first, second].map(|joint| places.map(|n| together.value(joint, n)));
+    if three.iter().any(|k| k[0] <= 0.0) {
+        return Vec::new();
+    }
+    let of = |entry: &Derived| {
+        let [one, other] = three.map(entry.of);
+        let covariance = |(joint, by): (usize, &[f64; 3]), (other, with): (usize, &[f64; 3])| {
+            let products = places.iter().zip(by).flat_map(|(&m, x)| {
+                let inner =
+                    move |(&n, y): (&usize, &f64)| x * y * together.covariance((joint, m), (other, n));
+                places.iter().zip(with).map(inner)
+            });
+            products.sum::<f64>()
+        };
+        let (one_by, other_by) = ((first, &one.1), (second, &other.1));
+        let variances =
+            [covariance(one_by, one_by), covariance(one_by, other_by), covariance(other_by, other_by)];
+        PairedNumber::of((entry.name.to_owned(), entry.unit), [one.0, other.0], variances, entry.is_place)
+    };
+    DERIVED.iter().map(of).collect()
+}
+
+impl PairedNumber {
+    fn of(
+        (element, unit): (String, &'static str),
+        [a, b]: [f64; 2],
+        variances: [f64; 3],
+        is_place: bool,
+    ) -> Self {
+        let [aa, ab, bb] = variances;
+        let ratio = || {
+            let ci95 = ratio_interval(a, b, variances)?;
+            let value = b / a;
+            let variance = (bb - 2.0 * value * ab + value * value * aa) / (a * a);
+            Some(Ratio { value, std: variance.max(0.0).sqrt(), ci95 })
+        };
+        PairedNumber {
+            element,
+            unit,
+            difference: Figure::normal(b - a, aa + bb - 2.0 * ab),
+            ratio: if is_place { None } else { ratio() },
+            correlation: (aa > 0.0 && bb > 0.0).then(|| (ab / (aa * bb).sqrt()).clamp(-1.0, 1.0)),
+            second_is_larger: larger_magnitude(a, b, variances),
+        }
+    }
+}

@@ -1,0 +1,225 @@
+//! Joints whose files are made by hand, against closed forms.
+
+use crate::{Caution, Comparison, ComparisonOptions, Decomposed, WhyApart};
+use serde_json::{Value, json};
+
+/// A test that reads k11 + s·q off a scale of deviation 1, with q the mass of block A in standard deviations: J over (k11, q) is [[1, s], [s, s²]].
+fn file(k11: f64, by_mass: f64, stated: f64) -> Value {
+    let zero = [[0.0; 2]; 2];
+    let mut covariance = [[0.0; 6]; 6];
+    covariance[0][0] = 1.0 + by_mass * by_mass;
+    let pair = json!({"stiffness": zero, "damping": zero});
+    json!({
+        "relation": "exact",
+        "lines": [],
+        "average": {"band": [100.0, 200.0], "stiffness": zero, "damping": zero, "std": pair},
+        "joint": {
+            "name": "J",
+            "stiffness": [[k11, 0.0], [0.0, 0.0]],
+            "damping": zero,
+            "covariance": covariance,
+            "chi2_per_dof": 1.01,
+            "quantities": [{"path": "bodies/A/mass", "body": "A", "stated": stated, "std": 0.1}],
+            "likelihood": {
+                "elements": ["k11"],
+                "at": [k11, 0.0],
+                "gradient": [0.0, 0.0],
+                "information": [[1.0], [by_mass, by_mass * by_mass]],
+            },
+        },
+    })
+}
+
+fn compared(files: &[Value], options: &ComparisonOptions) -> Comparison {
+    let names = ["a", "b", "c", "d"];
+    let joints = names.iter().zip(files).map(|(name, file)| Decomposed::of(*name, file).unwrap());
+    Comparison::with(joints.collect(), options).unwrap()
+}
+
+/// Standard deviation of the difference of K11 of the first two.
+fn apart(comparison: &Comparison) -> f64 {
+    comparison.pairs[0].number("K11").unwrap().difference.std
+}
+
+#[test]
+fn what_two_tests_share_cancels_in_their_difference_and_stays_in_each() {
+    let found = compared(&[file(1000.0, 20.0, 5.0), file(1050.0, 20.0, 5.0)], &ComparisonOptions::default());
+    assert!((apart(&found) - 2f64.sqrt()).abs() < 1e-9, "{}", apart(&found));
+    let number = found.pairs[0].number("K11").unwrap();
+    assert!((number.difference.value - 50.0).abs() < 1e-9);
+    assert!((number.correlation.unwrap() - 400.0 / 401.0).abs() < 1e-9);
+    assert!((found.together.std(0, 0) - 401f64.sqrt()).abs() < 1e-9);
+    // Var(b/a) = (V_bb − 2r V_ab + r² V_aa)/a².
+    let r: f64 = 1.05;
+    let variance = (401.0 - 2.0 * r * 400.0 + r * r * 401.0) / 1e6;
+    assert!((number.ratio.unwrap().std - variance.sqrt()).abs() < 1e-9);
+    let equality = found.pairs[0].equality.unwrap();
+    assert!((equality.chi2 - 1250.0).abs() < 1e-6 && equality.degrees == 1, "{equality:?}");
+    assert_eq!(found.together.shared[0].quantities, ["bodies/A/mass"]);
+}
+
+#[test]
+fn a_quantity_that_acts_otherwise_on_the_other_joint_cancels_as_far_as_it_does_the_same() {
+    // b − a: 2 of noise and (30 − 20)² of the mass.
+    let found = compared(&[file(1000.0, 20.0, 5.0), file(1050.0, 30.0, 5.0)], &ComparisonOptions::default());
+    assert!((apart(&found) - 102f64.sqrt()).abs() < 1e-9, "{}", apart(&found));
+}
+
+#[test]
+fn tests_on_other_blocks_are_independent_and_said_to_be() {
+    let whole = 802f64.sqrt();
+    let other = compared(&[file(1000.0, 20.0, 5.0), file(1050.0, 20.0, 5.1)], &ComparisonOptions::default());
+    assert!((apart(&other) - whole).abs() < 1e-9);
+    assert!(other.together.shared.is_empty());
+    assert_eq!(other.together.apart[0].why, WhyApart::OtherBodies);
+    assert_eq!(other.together.differing, ["bodies/A/mass"]);
+    let options = ComparisonOptions { independent: true, ..Default::default() };
+    let said = crate::says::shared(&other).join("\n");
+    assert!(said.contains("bodies/A/mass"), "{said}");
+    let asked = compared(&[file(1000.0, 20.0, 5.0), file(1050.0, 20.0, 5.0)], &options);
+    assert!((apart(&asked) - whole).abs() < 1e-9);
+    let mut earlier = file(1050.0, 20.0, 5.0);
+    earlier["joint"].as_object_mut().unwrap().remove("likelihood");
+    let found = compared(&[file(1000.0, 20.0, 5.0), earlier], &ComparisonOptions::default());
+    assert!((apart(&found) - whole).abs() < 1e-9);
+    assert_eq!(
+        found.together.apart.iter().find(|apart| apart.joint == "b").unwrap().why,
+        WhyApart::NotStated
+    );
+}
+
+#[test]
+fn each_of_four_joints_shares_with_those_of_its_own_blocks() {
+    let files = [5.0, 5.1, 5.0, 5.1].map(|mass| file(1000.0, 20.0, mass));
+    let found = compared(&files, &ComparisonOptions::default());
+    assert_eq!(found.together.shared.len(), 2);
+    assert_eq!(found.together.shared[0].joints, ["a", "c"]);
+    assert!((found.together.covariance((0, 0), (2, 0)) - 400.0).abs() < 1e-9);
+    assert_eq!(found.together.covariance((0, 0), (1, 0)), 0.0);
+}
+
+#[test]
+fn errors_of_the_model_are_each_joints_own() {
+    let mut model = [[0.0; 6]; 6];
+    model[0][0] = 7.0;
+    let mut wrong = file(1050.0, 20.0, 5.0);
+    wrong["joint"]["model_error"] = json!({"inflation": 3.0, "strain": 1.0, "covariance": model});
+    let found = compared(&[file(1000.0, 20.0, 5.0), wrong], &ComparisonOptions::default());
+    assert!((apart(&found) - 9f64.sqrt()).abs() < 1e-9);
+    assert!(!found.is_sound());
+    assert!(
+        matches!(&found.cautions[..], [Caution::PoorFit { joint, chi2_per_dof }] if joint == "b" && *chi2_per_dof == 1.01)
+    );
+}
+
+/// The same test with q told by it as well: at `at` deviations with the precision `told`.
+fn telling(k11: f64, at: f64, told: f64) -> Value {
+    let mut file = file(k11, 20.0, 5.0);
+    file["joint"]["likelihood"] = json!({
+        "elements": ["k11"], "at": [k11, at], "gradient": [0.0, 0.0], "information": [[1.0], [20.0, 400.0 + told]],
+    });
+    file
+}
+
+#[test]
+fn tests_that_contradict_each_other_on_the_blocks_are_not_taken_as_on_the_same() {
+    // Each knows q to 0.1: 0.2 apart is chance, 2 apart is not.
+    let near =
+        compared(&[telling(1000.0, 0.5, 100.0), telling(1050.0, 0.7, 100.0)], &ComparisonOptions::default());
+    assert!(near.is_sound() && near.together.shared.len() == 1);
+    // Each posterior has the variance 1/101 and (1 − S) of the prior: m₁ − m₂ = 0.2·100/101, of variance 2A − 2A².
+    let a: f64 = 100.0 / 101.0;
+    let z = 0.2 * a / (2.0 * a - 2.0 * a * a).sqrt();
+    let expected = statrs::function::erf::erfc(z / 2f64.sqrt());
+    let p = near.together.agreement(&near.joints[0], &near.joints[1]).unwrap();
+    assert!((p - expected).abs() < 1e-6, "{p} {expected}");
+    let far =
+        compared(&[telling(1000.0, -1.0, 100.0), telling(1050.0, 1.0, 100.0)], &ComparisonOptions::default());
+    assert!(far.together.shared.is_empty());
+    assert!(
+        far.cautions.iter().any(|caution| matches!(caution, Caution::BodiesDisagree { .. })),
+        "{:?}",
+        far.cautions
+    );
+    assert!(!far.is_sound());
+}
+
+#[test]
+fn of_three_tests_the_one_that_contradicts_the_others_is_taken_apart() {
+    let files = [telling(1000.0, 0.5, 100.0), telling(1050.0, -1.5, 100.0), telling(1020.0, 0.6, 100.0)];
+    let found = compared(&files, &ComparisonOptions::default());
+    assert_eq!(found.together.shared[0].joints, ["a", "c"]);
+    assert_eq!(found.together.apart.len(), 1);
+    assert_eq!(
+        (found.together.apart[0].joint.as_str(), found.together.apart[0].why),
+        ("b", WhyApart::Disagrees)
+    );
+    assert_eq!(found.cautions, [Caution::BodiesDisagree { joint: "b".into() }]);
+}
+
+#[test]
+fn blocks_farther_from_what_is_stated_than_chance_widen_what_rests_on_them() {
+    // Both have q at 4 of the deviations stated.
+    let found =
+        compared(&[telling(1000.0, 4.0, 1e4), telling(1050.0, 4.0, 1e4)], &ComparisonOptions::default());
+    let expected =
+        compared(&[telling(1000.0, 0.1, 1e4), telling(1050.0, 0.1, 1e4)], &ComparisonOptions::default());
+    assert!((apart(&found) / apart(&expected) - 4.0).abs() < 0.01, "{} {}", apart(&found), apart(&expected));
+}
+
+#[test]
+fn failed_tests_and_unusable_decompositions_are_told() {
+    let mut refused = file(1050.0, 20.0, 5.0);
+    refused["joint"]["tests"] = json!({"reciprocity": 0.001, "definite": 0.5, "passive": null});
+    refused["judgement"] = json!({"verdict": "unusable"});
+    let found = compared(&[file(1000.0, 20.0, 5.0), refused], &ComparisonOptions::default());
+    assert!(found.cautions.contains(&Caution::Refused { joint: "b".into(), tests: vec!["reciprocity"] }));
+    assert!(found.cautions.contains(&Caution::Unusable { joint: "b".into() }));
+    assert!(found.cautions.iter().all(|caution| caution.says().starts_with("b: ")));
+}
+
+#[test]
+fn a_likelihood_that_does_not_fit_its_quantities_is_not_used() {
+    for broken in [json!([[1.0], [20.0]]), json!([[1.0]]), json!([])] {
+        let mut file_b = file(1050.0, 20.0, 5.0);
+        file_b["joint"]["likelihood"]["information"] = broken;
+        let found = compared(&[file(1000.0, 20.0, 5.0), file_b], &ComparisonOptions::default());
+        assert!(found.together.shared.is_empty());
+    }
+}
+
+/// A joint whose FRFs do not tell a viscous law from one that is `off` in K11.
+fn with_laws(k11: f64, off: f64, probability: f64, best: &str) -> Value {
+    let mut file = file(k11, 0.0, 5.0);
+    let middle = |k: f64| json!({"stiffness": [[k, 0.0], [0.0, 0.0]], "damping": [[0.0, 0.0], [0.0, 0.0]]});
+    file["joint"]["law"] = json!(best);
+    file["joint"]["laws"] = json!([
+        {"law": "structural", "probability": probability, "in_the_middle": middle(k11 + off)},
+        {"law": "viscous", "probability": 1.0 - probability, "in_the_middle": middle(k11)},
+    ]);
+    let law = probability * off * off;
+    let mut of_laws = [[0.0; 6]; 6];
+    of_laws[0][0] = law;
+    file["joint"]["law_covariance"] = json!(of_laws);
+    file["joint"]["covariance"][0][0] = json!(1.0 + law);
+    file
+}
+
+#[test]
+fn what_one_law_changes_in_two_joints_alike_cancels_in_their_difference() {
+    let files = [with_laws(1000.0, 30.0, 0.8, "structural"), with_laws(1050.0, 32.0, 0.8, "structural")];
+    let found = compared(&files, &ComparisonOptions::default());
+    // The law is structural with 0.8²/(0.8² + 0.2²) = 16/17: then the difference is 2 larger.
+    assert!((apart(&found) - (2.0 + 4.0 * 16.0 / 17.0f64).sqrt()).abs() < 1e-9, "{}", apart(&found));
+    assert!((found.together.std(0, 0) - (1.0 + 900.0 * 16.0 / 17.0f64).sqrt()).abs() < 1e-9);
+    assert_eq!(found.together.one_law, [["a", "b"]]);
+}
+
+#[test]
+fn joints_of_other_laws_keep_what_laws_change_in_each() {
+    let files = [with_laws(1000.0, 30.0, 0.8, "structural"), with_laws(1050.0, 32.0, 0.3, "viscous")];
+    let found = compared(&files, &ComparisonOptions::default());
+    let expected = 2.0 + 0.8 * 900.0 + 0.3 * 1024.0;
+    assert!((apart(&found) - f64::sqrt(expected)).abs() < 1e-9, "{}", apart(&found));
+    assert!(found.together.one_law.is_empty());
+}

@@ -1,0 +1,49 @@
+//! What the FRFs alone tell of the joint and of the fixture's quantities: two joints on the same blocks share these, and only with the likelihood of both, their prior
+//! entering once, is the difference of the joints as well known as it is.
+
+use super::Fitter;
+use super::problem::{Point, Problem};
+use jointscope_inference::QuadraticLikelihood;
+use serde::Serialize;
+
+/// Names of the six numbers of a joint.
+const ELEMENTS: [&str; 6] = ["k11", "k12", "k22", "c11", "c12", "c22"];
+
+/// The likelihood of a joint's numbers and of the fixture's quantities, Gaussian about a point, without the quantities' priors; the joint's mass, if it has one, is
+/// integrated out. c is free of constraints in it.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct JointLikelihood {
+    /// The joint's numbers, SI; after them come the coordinates of [`JointFit::quantities`](super::JointFit::quantities): standard deviations from what is stated
+    /// (tenths of it where its deviation is unknown), of ln(value) where a positive quantity is known to 12 % or better.
+    pub elements: Vec<&'static str>,
+    /// Where it is taken.
+    pub at: Vec<f64>,
+    /// Gradient of ln L there.
+    pub gradient: Vec<f64>,
+    /// Minus the second derivatives of ln L: the lower triangle by rows.
+    pub information: Vec<Vec<f64>>,
+}
+
+impl Fitter<'_> {
+    /// At an optimum with c free; nothing where the FRFs leave the joint's mass undetermined.
+    pub(super) fn likelihood(&self, problem: &Problem, free: &Point) -> Option<JointLikelihood> {
+        let others = problem.other_columns(free)?;
+        let equations = problem.equations_of(free, &others, problem.test.weights);
+        let precision = |m: usize| problem.parameters[m].precision;
+        let all = QuadraticLikelihood::without_priors(&equations, &free.coordinates, precision);
+        let (count, own) = (problem.law.count(), problem.own());
+        let kept: Vec<usize> = (0..count).chain(own..problem.parameters.len()).collect();
+        let slots: &[usize] = if self.scalar { &[0, 3] } else { &[0, 1, 2, 3, 4, 5] };
+        let scales = self.units(&problem.law);
+        let si = all
+            .marginal(&kept, precision)?
+            .scaled(|index| slots.get(index).map_or(1.0, |&slot| scales[slot]));
+        let n = si.order();
+        Some(JointLikelihood {
+            elements: slots.iter().map(|&slot| ELEMENTS[slot]).collect(),
+            information: (0..n).map(|i| si.information[i * n..=i * n + i].to_vec()).collect(),
+            at: si.at,
+            gradient: si.gradient,
+        })
+    }
+}
