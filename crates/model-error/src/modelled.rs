@@ -264,6 +264,14 @@ impl ModelledModes {
         self.parts == other.parts
     }
 
+    /// Whether a mode that was followed is no longer what it counts as.
+    pub fn strays(&self, recorded: &RecordedModes) -> bool {
+        self.modes
+            .iter()
+            .zip(&self.parts)
+            .any(|(mode, part)| Part::of(recorded, &mode.pole.lambda()) != *part)
+    }
+
     /// The same with all natural frequencies higher by this share, to set out from where exactly at a pole FRFs have no value.
     pub fn beside(mut self, share: f64) -> Self {
         self.modes.iter_mut().for_each(|mode| mode.pole.omega *= 1.0 + share);

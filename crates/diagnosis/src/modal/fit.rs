@@ -236,11 +236,12 @@ impl<'a> Problem<'a> {
                 };
                 best = Some(fit).filter(|_| before.is_none_or(|before| ln > before)).or(best);
             }
-            if settled && before.is_some_and(|before| ln - before < CONVERGED) {
-                // Modes may have moved past others on the way, and shapes with them.
+            let ends = settled && before.is_some_and(|before| ln - before < CONVERGED);
+            // Modes may have moved past others on the way, and shapes with them, or into the band or out of it.
+            if ends || point.modelled.strays(self.recorded) {
                 let anew = self.standing(&point.hypothesis)?;
                 let alike = anew.pairing.pairs == standing.pairing.pairs;
-                if round + 1 == ROUNDS || alike && anew.modelled.counts_like(&standing.modelled) {
+                if round + 1 == ROUNDS || ends && alike && anew.modelled.counts_like(&standing.modelled) {
                     break;
                 }
                 point.residual = self.residual(&anew, &anew.modelled);
