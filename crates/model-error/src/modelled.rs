@@ -25,8 +25,8 @@ enum Part {
 }
 
 impl Part {
-    fn of(recorded: &RecordedModes, pole: &Complex64) -> Self {
-        let hz = pole.norm() / TAU;
+    fn of(recorded: &RecordedModes, pole: &Pole) -> Self {
+        let hz = pole.omega / TAU;
         match (hz >= recorded.band.0 && hz <= recorded.band.1, hz <= recorded.resolved_from) {
             (false, _) => Part::Beyond,
             (true, true) => Part::Unresolved,
@@ -215,25 +215,25 @@ impl ModelledModes {
     /// A mode that makes no peak in any FRF between the recording's channels is found only where the recording has one nearby.
     pub fn of(fixture: &Fixture, recorded: &RecordedModes) -> Option<Self> {
         let test = recorded.modelled(fixture)?;
-        let poles = poles(&test, fixture, recorded);
-        let parts = poles.iter().map(|pole| Part::of(recorded, pole)).collect();
-        ModelledModes::followed(&test, recorded, &poles, parts)
+        ModelledModes::followed(&test, recorded, &poles(&test, fixture, recorded), None)
     }
 
     /// The modes of a fixture near those of another one, as which they count; `None` where a pole cannot be followed or the model has no finite FRFs.
     pub fn near(fixture: &Fixture, recorded: &RecordedModes, other: &ModelledModes) -> Option<Self> {
-        ModelledModes::followed(&recorded.modelled(fixture)?, recorded, &other.poles(), other.parts.clone())
+        ModelledModes::followed(&recorded.modelled(fixture)?, recorded, &other.poles(), Some(&other.parts))
     }
 
     fn followed(
         test: &ModelledTest,
         recorded: &RecordedModes,
         poles: &[Complex64],
-        parts: Vec<Part>,
+        parts: Option<&[Part]>,
     ) -> Option<Self> {
         let mut frfs = test.continued();
         let modes: Vec<ModelledMode> =
             poles.iter().map(|pole| mode(&mut frfs, *pole, recorded.frfs())).collect::<Option<_>>()?;
+        let own = || modes.iter().map(|mode| Part::of(recorded, &mode.pole)).collect();
+        let parts: Vec<Part> = parts.map_or_else(own, <[Part]>::to_vec);
         let lines = &recorded.outline.lines;
         let mut left = test.accelerances(lines).ok()?;
         let of = |wanted: fn(Part) -> bool| {
@@ -266,10 +266,7 @@ impl ModelledModes {
 
     /// Whether a mode that was followed is no longer what it counts as.
     pub fn strays(&self, recorded: &RecordedModes) -> bool {
-        self.modes
-            .iter()
-            .zip(&self.parts)
-            .any(|(mode, part)| Part::of(recorded, &mode.pole.lambda()) != *part)
+        self.modes.iter().zip(&self.parts).any(|(mode, part)| Part::of(recorded, &mode.pole) != *part)
     }
 
     /// The same with all natural frequencies higher by this share, to set out from where exactly at a pole FRFs have no value.

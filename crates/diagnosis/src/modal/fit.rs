@@ -67,6 +67,10 @@ const ROUNDS: usize = 8;
 const CONVERGED: f64 = 0.02;
 /// Factor by which a size may shrink from one round to the next: where errors are next to none, a fit that starts far away hangs on whatever is recorded most sharply.
 const SHRINK: f64 = 0.1;
+/// Relative difference of sizes that are as good as the same: they are searched no closer.
+const ALIKE: f64 = 0.1;
+/// How often a mode that has strayed into the band or out of it is counted anew: one at the very end of it may do so for ever.
+const STRAYS: usize = 2;
 /// Decrease of χ² that a step promises below which a fit stands where it belongs.
 const STILL: f64 = 1.0;
 /// Gauss–Newton steps, at most.
@@ -208,50 +212,72 @@ impl<'a> Problem<'a> {
             None => self.evidence(&point, priors, &derivatives, (&standing.comparison, None))?.1.sizes,
         };
         let (mut best, mut otherwise): (Option<ModalFit>, Option<ModalFit>) = (None, None);
+        let mut strayed = 0;
         for round in 0..ROUNDS {
-            let factor = Cholesky::of(standing.comparison.count(), &standing.comparison.covariance(&sizes))?;
-            let descent = Descent { problem: self, standing: &standing, factor, priors };
-            point = descend(&descent, point, Some(derivatives), &settings())?.point;
-            // The evidence of a linear model is by derivatives taken where the fit ended.
-            derivatives = descent.derivatives(&point, Precision::Rough)?;
-            let (linear, evidence) =
-                self.evidence(&point, priors, &derivatives, (&standing.comparison, Some(&sizes)))?;
-            // It says nothing of a point from where the parameters are still to move.
-            let promised = descent.promised(&point, &descent.equations(&point, &derivatives, &()));
-            let ln = evidence.ln + standing.pairing.alone() - rarity;
+            // What fails on the way takes nothing from what was found before.
+            let Some(end) = self.settled(&standing, point, derivatives, (priors, &sizes)) else { break };
+            (point, derivatives) = (end.point, end.derivatives);
+            let ln = end.evidence.ln + standing.pairing.alone() - rarity;
             let before = best.as_ref().map(|fit| fit.ln);
-            let next = largest(&evidence.sizes, &sizes.times(SHRINK));
-            let settled = next == evidence.sizes;
+            let next = largest(&end.evidence.sizes, &sizes.times(SHRINK));
+            // The evidence says nothing of a point from where the parameters are still to move, or the sizes to shrink.
+            let settled = next == end.evidence.sizes;
+            let same = settled && are_alike(&next, &sizes);
             sizes = next;
-            if promised < STILL || round + 1 == ROUNDS && best.is_none() {
+            let last = round + 1 == ROUNDS;
+            if settled && end.promised < STILL || last && best.is_none() && otherwise.is_none() {
                 let fit = ModalFit {
                     hypothesis: point.hypothesis.clone(),
                     priors: priors.to_vec(),
                     standing: Standing { modelled: point.modelled.clone(), ..standing.clone() },
-                    linear,
-                    evidence,
+                    linear: end.linear,
+                    evidence: end.evidence,
                     slopes: derivatives.clone(),
                     residual: point.residual.clone(),
                     ln,
                 };
-                best = Some(fit).filter(|_| before.is_none_or(|before| ln > before)).or(best);
+                best = more_probable(best, Some(fit));
             }
-            let ends = settled && before.is_some_and(|before| ln - before < CONVERGED);
+            let ends =
+                best.is_some() && (same || settled && before.is_some_and(|before| ln - before < CONVERGED));
             // Modes may have moved past others on the way, and shapes with them, or into the band or out of it.
-            if ends || point.modelled.strays(self.recorded) {
-                let anew = self.standing(&point.hypothesis)?;
-                let alike = anew.pairing.pairs == standing.pairing.pairs;
-                if round + 1 == ROUNDS || ends && alike && anew.modelled.counts_like(&standing.modelled) {
-                    break;
-                }
-                point.residual = self.residual(&anew, &anew.modelled);
-                point.modelled = anew.modelled.clone();
-                derivatives = self.slopes_at(&point, &anew, priors)?;
-                otherwise = more_probable(otherwise, best.take());
-                standing = anew;
+            let strays = strayed < STRAYS && point.modelled.strays(self.recorded);
+            if last || !(ends || strays) {
+                continue;
             }
+            let Some(anew) = self.standing(&point.hypothesis) else { break };
+            let alike = anew.pairing.pairs == standing.pairing.pairs;
+            if ends && alike && anew.modelled.counts_like(&standing.modelled) {
+                break;
+            }
+            point.residual = self.residual(&anew, &anew.modelled);
+            point.modelled = anew.modelled.clone();
+            let Some(there) = self.slopes_at(&point, &anew, priors) else { break };
+            derivatives = there;
+            // What counted a mode as what it is not says nothing.
+            otherwise = more_probable(otherwise, best.take().filter(|_| !strays));
+            strayed += usize::from(strays);
+            standing = anew;
         }
         more_probable(otherwise, best)
+    }
+
+    /// Where parameters come to rest at these sizes of the error, with derivatives taken there, and the evidence by these.
+    fn settled(
+        &self,
+        standing: &Standing,
+        start: Iterate,
+        derivatives: Vec<Vec<f64>>,
+        (priors, sizes): (&[Prior], &ErrorSizes),
+    ) -> Option<Rest> {
+        let factor = Cholesky::of(standing.comparison.count(), &standing.comparison.covariance(sizes))?;
+        let descent = Descent { problem: self, standing, factor, priors };
+        let point = descend(&descent, start, Some(derivatives), &settings())?.point;
+        let derivatives = descent.derivatives(&point, Precision::Rough)?;
+        let (linear, evidence) =
+            self.evidence(&point, priors, &derivatives, (&standing.comparison, Some(sizes)))?;
+        let promised = descent.promised(&point, &descent.equations(&point, &derivatives, &()));
+        Some(Rest { point, derivatives, linear, evidence, promised })
     }
 
     /// [`Problem::slopes`] by all coordinates.
@@ -313,6 +339,11 @@ fn more_probable(a: Option<ModalFit>, b: Option<ModalFit>) -> Option<ModalFit> {
     a.into_iter().chain(b).reduce(|best, fit| if fit.ln > best.ln { fit } else { best })
 }
 
+/// Whether parameters fitted at one of these sizes are as good as fitted at the other.
+fn are_alike(a: &ErrorSizes, b: &ErrorSizes) -> bool {
+    a.to_array().iter().zip(b.to_array()).all(|(a, b)| (a / b).ln().abs() < ALIKE)
+}
+
 /// Size by size the larger one.
 fn largest(a: &ErrorSizes, b: &ErrorSizes) -> ErrorSizes {
     let (a, b) = (a.to_array(), b.to_array());
@@ -329,6 +360,16 @@ fn settings() -> Settings {
         trust_old: true,
         ..Settings::default()
     }
+}
+
+/// Where a fit came to rest.
+struct Rest {
+    point: Iterate,
+    derivatives: Vec<Vec<f64>>,
+    linear: Linear,
+    evidence: Evidence,
+    /// Decrease of χ² that one more step promises.
+    promised: f64,
 }
 
 /// Where a fit stands on its way.

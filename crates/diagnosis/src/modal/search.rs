@@ -349,10 +349,11 @@ impl Searcher<'_> {
         let (first, far) = self.settings.foremost;
         let rest = chosen.split_off(first.min(chosen.len()));
         let start = |(_, c, hypothesis)| (c, hypothesis);
-        let mut fits = self.fitted(base, chosen.into_iter().map(start).collect(), SetOut::Both);
+        let is_costly = || self.problem.work.spent() > self.settings.costly;
+        let set_out = if is_costly() { SetOut::Usual } else { SetOut::Both };
+        let mut fits = self.fitted(base, chosen.into_iter().map(start).collect(), set_out);
         // Only what explains the modes shows that others need not be fitted; where fits are cheap they all are, for some may lead the fixture itself out of a false minimum.
-        let is_costly = self.problem.work.spent() > self.settings.costly;
-        let best = fits.first().filter(|best| is_costly && self.is_adequate(&best.fit));
+        let best = fits.first().filter(|best| is_costly() && self.is_adequate(&best.fit));
         let best = best.map_or(f64::NEG_INFINITY, |best| best.fit.ln);
         let near = rest.into_iter().filter(|(density, _, _)| best - density < far).map(start).collect();
         fits.extend(self.fitted(base, near, SetOut::Usual));
