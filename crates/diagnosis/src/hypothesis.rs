@@ -1,8 +1,8 @@
 use crate::Observation;
 use crate::freedom::parameters_of;
 use jointscope_fixture::{
-    Effect, Fixture, FixtureError, Motion, NamedQuantity, Nature, ParameterSpec, Place, QuantityKey,
-    QuantityOwner, SizeLaw,
+    Effect, EffectKind, Fixture, FixtureError, Motion, NamedQuantity, Nature, ParameterSpec, Place,
+    QuantityKey, QuantityOwner, SizeLaw,
 };
 use jointscope_inference::{Covariance, Parameter, Transform};
 use jointscope_lumped::{Instrument, LumpedError, accelerances};
@@ -285,6 +285,20 @@ impl Hypothesis {
     /// How each parameter of effect `index` moves, those that stay included.
     pub(crate) fn effect_parameters_of(&self, index: usize) -> &[Parameter] {
         &self.effects[index].1
+    }
+
+    /// ln of how much rarer the effects are than the commonest, nats: by kind, and a quantity that is expected twice as far off is wrong half as often.
+    pub(crate) fn rarity(&self) -> f64 {
+        let of = |(effect, parameters): &(Effect, Vec<Parameter>)| {
+            let far = match effect.kind {
+                EffectKind::QuantityError => {
+                    parameters.iter().map(|p| -(p.precision.sqrt() * WRONG).ln()).sum()
+                }
+                _ => 0.0,
+            };
+            effect.kind.spec().rarity + far
+        };
+        self.effects.iter().map(of).sum()
     }
 
     /// The coordinates that are at a bound.

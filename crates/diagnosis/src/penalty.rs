@@ -2,7 +2,6 @@
 
 use crate::Hypothesis;
 use crate::settings::SelectionSettings;
-use jointscope_fixture::Effect;
 
 /// What an effect must gain in χ² to be believed, given the penalty of its parameters. A search over many candidates at several starts each gains
 /// 2 ln(candidates) more by its best one: the price of looking.
@@ -11,9 +10,8 @@ pub(crate) fn penalty(settings: &SelectionSettings, parameters: f64, candidates:
 }
 
 /// What the effects of a hypothesis cost in χ² when hypotheses are compared: every parameter gains something by chance, one
-/// that is searched over a range (a frequency, a time) has as many chances as the range has resolvable values, and a rare kind has the odds against it.
+/// that is searched over a range (a frequency, a time) has as many chances as the range has resolvable values, and what is rare has the odds against it.
 pub(crate) fn parameter_penalty(settings: &SelectionSettings, hypothesis: &Hypothesis) -> f64 {
-    let own = |effect: &Effect| effect.kind.spec().range_penalty + 2.0 * effect.kind.spec().rarity;
-    let kinds: f64 = hypothesis.effects().iter().map(own).sum();
-    settings.parameter_penalty * hypothesis.effect_parameters() as f64 + kinds
+    let ranges: f64 = hypothesis.effects().iter().map(|effect| effect.kind.spec().range_penalty).sum();
+    settings.parameter_penalty * hypothesis.effect_parameters() as f64 + ranges + 2.0 * hypothesis.rarity()
 }

@@ -206,7 +206,7 @@ impl<'a> Problem<'a> {
             Some(nearby) => nearby,
             None => self.slopes_at(&point, &standing, priors)?,
         };
-        let rarity: f64 = start.effects().iter().map(|effect| effect.kind.spec().rarity).sum();
+        let rarity = start.rarity();
         let mut sizes = match sizes {
             Some(sizes) => sizes,
             None => self.evidence(&point, priors, &derivatives, (&standing.comparison, None))?.1.sizes,
