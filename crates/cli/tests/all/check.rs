@@ -65,7 +65,7 @@ fn what_cannot_be_read_is_refused_in_a_sentence() {
     let bench = Bench::synthesized("check-refused", TWO_BLOCKS, "5:500:5");
     bench.refused(&["check", "none.json"], &["none.json", "no such file"]);
     bench.refused(&["check", "two.json", "none.uff"], &["none.uff", "no such file"]);
-    bench.refused(&["check", "two.json", "two.json"], &["two.json", "is it a UFF file?"]);
+    bench.refused(&["check", "two.json", "two.json"], &["two.json", "is a JSON file, such as a fixture"]);
     bench.refused(&["check", "two.json", "frf.uff", "-o", "two.json"], &["two.json"]);
     bench.write("bad.json", TWO_BLOCKS.replace("\"mass\": 1.10,", ""));
     bench.refused(&["check", "bad.json"], &["bad.json", "bodies/A", "the key `mass` is missing"]);
