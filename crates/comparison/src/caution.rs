@@ -28,6 +28,11 @@ pub enum Caution {
         /// The tests that fail.
         tests: Vec<&'static str>,
     },
+    /// C is held where it just gives out no energy: the FRFs ask for one beyond, and the deviations are those of a C without this constraint.
+    OnTheBoundary {
+        /// Which joint.
+        joint: String,
+    },
     /// The decomposition's own judgement: of no use.
     Unusable {
         /// Which joint.
@@ -82,6 +87,9 @@ impl Caution {
         if strain > 1.0 {
             all.push(Caution::StrainedFixture { joint: joint(), strain });
         }
+        if fit.is_some_and(|fit| fit.on_the_boundary_of_passive) {
+            all.push(Caution::OnTheBoundary { joint: joint() });
+        }
         if let Some(tests) = fit.map(|fit| fit.tests) {
             let named = [
                 ("reciprocity", tests.reciprocity),
@@ -120,6 +128,10 @@ impl Caution {
                     .collect();
                 format!("{joint}: physics forbids what its FRFs ask for: {}", tests.join(", "))
             }
+            Caution::OnTheBoundary { joint } => format!(
+                "{joint}: its C is held where it just gives out no energy, since its FRFs ask for one that would; it is compared as if on blocks of its own, and the intervals \
+                 of its C are those without this limit"
+            ),
             Caution::Unusable { joint } => {
                 format!(
                     "{joint}: its decomposition is judged unusable; its page says why, and nothing here rests on it"

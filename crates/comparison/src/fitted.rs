@@ -40,6 +40,9 @@ pub struct FittedJoint {
     /// Whether physics allows it.
     #[serde(default)]
     pub tests: JointTests,
+    /// Whether C was held where it just gives out no energy: what the FRFs alone ask for is then another C.
+    #[serde(default)]
+    pub on_the_boundary_of_passive: bool,
 }
 
 /// Probabilities of FRFs that speak at least as much against a property, if the joint has it; nothing where it was not tested.
@@ -136,6 +139,10 @@ impl FittedJoint {
         let written = self.likelihood.as_ref()?;
         let place = |name: &String| ELEMENTS.iter().position(|element| element == name);
         let slots: Vec<usize> = written.elements.iter().map(place).collect::<Option<_>>()?;
+        let is_repeated = (1..slots.len()).any(|i| slots[..i].contains(&slots[i]));
+        if slots.is_empty() || is_repeated {
+            return None;
+        }
         let n = slots.len() + self.quantities.len();
         let triangular = written.information.iter().enumerate().all(|(i, row)| row.len() == i + 1);
         if !triangular || [written.at.len(), written.gradient.len(), written.information.len()] != [n; 3] {

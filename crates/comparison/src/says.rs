@@ -66,7 +66,14 @@ pub fn shared(comparison: &Comparison) -> Vec<String> {
             bodies.join(", ")
         ));
     }
-    for why in [WhyApart::NotStated, WhyApart::OtherBodies, WhyApart::Singular, WhyApart::Asked] {
+    for why in [
+        WhyApart::NotStated,
+        WhyApart::OnTheBoundary,
+        WhyApart::LeftAlone,
+        WhyApart::OtherBodies,
+        WhyApart::Singular,
+        WhyApart::Asked,
+    ] {
         let apart = together.apart.iter().filter(|apart| apart.why == why);
         let names: Vec<&str> = apart.map(|apart| apart.joint.as_str()).collect();
         if names.is_empty() {
@@ -77,6 +84,10 @@ pub fn shared(comparison: &Comparison) -> Vec<String> {
             WhyApart::NotStated => {
                 "since their files do not say how the fixture acts on them; make them anew with `jointscope decompose`"
             }
+            WhyApart::OnTheBoundary => {
+                "since C is held where it just gives out no energy, which what the FRFs alone tell knows nothing of"
+            }
+            WhyApart::LeftAlone => "since the other tests on the same bodies are taken apart",
             WhyApart::OtherBodies => "since no other fixture states a body as theirs do",
             WhyApart::Singular => {
                 "since their numbers and the fixture's cannot be told apart to working precision"

@@ -223,3 +223,68 @@ fn joints_of_other_laws_keep_what_laws_change_in_each() {
     assert!((apart(&found) - f64::sqrt(expected)).abs() < 1e-9, "{}", apart(&found));
     assert!(found.together.one_law.is_empty());
 }
+
+#[test]
+fn a_joint_held_at_the_boundary_of_passivity_keeps_what_its_file_states() {
+    // What the FRFs alone tell is of another joint, which must not take its place.
+    let mut held = file(1050.0, 20.0, 5.0);
+    held["joint"]["on_the_boundary_of_passive"] = json!(true);
+    held["joint"]["likelihood"]["at"] = json!([900.0, 0.0]);
+    let files = [file(1000.0, 20.0, 5.0), held, file(1020.0, 20.0, 5.0)];
+    let found = compared(&files, &ComparisonOptions::default());
+    assert_eq!(found.together.value(1, 0), 1050.0);
+    assert_eq!(found.together.covariance((0, 0), (1, 0)), 0.0);
+    assert_eq!(found.together.shared[0].joints, ["a", "c"]);
+    assert_eq!(found.together.apart.len(), 1);
+    assert_eq!(found.together.apart[0].why, WhyApart::OnTheBoundary);
+    assert_eq!(found.cautions, [Caution::OnTheBoundary { joint: "b".into() }]);
+    let alone = compared(&files[..2], &ComparisonOptions::default());
+    assert_eq!(alone.together.apart[0].why, WhyApart::LeftAlone);
+}
+
+#[test]
+fn blocks_that_are_strained_widen_nothing_that_does_not_rest_on_them() {
+    // a and c have q at 4 of the deviations stated; b and d are on other blocks, where it is at 0.1.
+    let other = |k11: f64| {
+        let mut file = telling(k11, 0.1, 1e4);
+        file["joint"]["quantities"][0]["stated"] = json!(5.1);
+        file
+    };
+    let files = [telling(1000.0, 4.0, 1e4), other(1000.0), telling(1050.0, 4.0, 1e4), other(1050.0)];
+    let found = compared(&files, &ComparisonOptions::default());
+    let calm = compared(&[other(1000.0), other(1050.0)], &ComparisonOptions::default());
+    assert!((found.together.std(1, 0) / calm.together.std(0, 0) - 1.0).abs() < 1e-9);
+    let strained = compared(&[files[0].clone(), files[2].clone()], &ComparisonOptions::default());
+    assert!((found.together.std(0, 0) / strained.together.std(0, 0) - 1.0).abs() < 1e-9);
+    assert!((found.together.std(0, 0) / calm.together.std(0, 0) - 4.0).abs() < 0.01);
+}
+
+#[test]
+fn a_test_left_alone_is_not_said_to_be_on_other_bodies() {
+    let far =
+        compared(&[telling(1000.0, -1.0, 100.0), telling(1050.0, 1.0, 100.0)], &ComparisonOptions::default());
+    let mut why: Vec<WhyApart> = far.together.apart.iter().map(|apart| apart.why).collect();
+    why.sort_by_key(|why| *why != WhyApart::Disagrees);
+    assert_eq!(why, [WhyApart::Disagrees, WhyApart::LeftAlone]);
+    let said = crate::says::shared(&far).join("\n");
+    assert!(!said.contains("no other fixture") && said.contains("are taken apart"), "{said}");
+}
+
+#[test]
+fn a_likelihood_of_no_number_or_of_one_twice_is_not_used() {
+    for (elements, at, information) in [
+        (json!([]), json!([0.0]), json!([[400.0]])),
+        (json!(["k11", "k11"]), json!([1050.0, 1050.0, 0.0]), json!([[1.0], [0.0, 1.0], [20.0, 0.0, 400.0]])),
+    ] {
+        let mut broken = file(1050.0, 20.0, 5.0);
+        let gradient = vec![0.0; at.as_array().unwrap().len()];
+        broken["joint"]["likelihood"] =
+            json!({"elements": elements, "at": at, "gradient": gradient, "information": information});
+        let found = compared(&[file(1000.0, 20.0, 5.0), broken], &ComparisonOptions::default());
+        assert!(found.together.shared.is_empty());
+        assert_eq!(
+            found.together.apart.iter().find(|apart| apart.joint == "b").unwrap().why,
+            WhyApart::NotStated
+        );
+    }
+}
