@@ -288,3 +288,36 @@ fn a_likelihood_of_no_number_or_of_one_twice_is_not_used() {
         );
     }
 }
+
+/// The same with the abscissa of block A's point among what its fixture is not sure of, moved by the fit or not.
+fn with_point(mut file: Value, moved: bool) -> Value {
+    let point = json!({"path": "points/1/x", "body": "A", "stated": 0.2, "std": 1e-4});
+    if moved {
+        file["joint"]["quantities"].as_array_mut().unwrap().push(point);
+        file["joint"]["likelihood"]["at"].as_array_mut().unwrap().push(json!(0.0));
+        file["joint"]["likelihood"]["gradient"].as_array_mut().unwrap().push(json!(0.0));
+        file["joint"]["likelihood"]["information"].as_array_mut().unwrap().push(json!([0.0, 0.0, 1.0]));
+    } else {
+        file["joint"]["unmoved"] = json!([point]);
+    }
+    file
+}
+
+#[test]
+fn a_body_of_which_one_fixture_is_sure_and_the_other_is_not_is_not_the_same() {
+    let plain = || file(1000.0, 20.0, 5.0);
+    for files in [[plain(), with_point(plain(), true)], [with_point(plain(), true), plain()]] {
+        let found = compared(&files, &ComparisonOptions::default());
+        assert!(found.together.shared.is_empty());
+        assert_eq!(found.together.differing, ["points/1/x"]);
+    }
+    // Stated alike, though one test's FRFs do not depend on it.
+    for files in [
+        [with_point(plain(), false), with_point(plain(), true)],
+        [with_point(plain(), true), with_point(plain(), false)],
+    ] {
+        let found = compared(&files, &ComparisonOptions::default());
+        assert_eq!(found.together.shared[0].quantities, ["bodies/A/mass"]);
+        assert!(found.together.differing.is_empty());
+    }
+}

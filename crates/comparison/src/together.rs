@@ -8,8 +8,8 @@
 //! Where the common quantities are farther from what is stated than chance takes them, the posterior is widened by Birge's ratio, as that of one fit is: each group of joints
 //! that bodies connect by its own.
 //!
-//! A body is the same in two tests where both fixtures say the same of it: every quantity of it and of the points on it that both fits moved has the same value and standard
-//! deviation. Supports, damping, channels and other joints are taken as set up anew.
+//! A body is the same in two tests where both fixtures say the same of it: every quantity of it and of the points on it that either fit moved has the same value and standard
+//! deviation in both. Supports, damping, channels and other joints are taken as set up anew.
 //!
 //! A joint whose C is held where it just gives out no energy keeps what its file states: the likelihood is that of a C without this constraint, and with it the joint would be one that
 //! physics forbids.
@@ -303,30 +303,27 @@ impl FittedJoint {
     }
 }
 
-/// Whether two fits have a body in common: no quantity of it is stated otherwise, and at least one is stated by both.
+/// Whether two fits have a body in common: every quantity of it that one of them moved is stated alike by both, and at least one was moved by both. What one fixture takes as exact and the other
+/// does not is not stated alike.
 fn is_same(a: &FittedJoint, b: &FittedJoint, body: &str) -> bool {
-    let mut common = 0;
-    for quantity in a.quantities.iter().filter(|quantity| quantity.body.as_deref() == Some(body)) {
-        match b.quantities.iter().find(|other| other.path == quantity.path) {
-            Some(other) if other == quantity => common += 1,
-            Some(_) => return false,
-            None => {}
-        }
-    }
-    common > 0
+    let is_stated_by =
+        |other: &FittedJoint, quantity: &StatedQuantity| other.statement(&quantity.path) == Some(quantity);
+    let moved = |path: &str| b.quantities.iter().any(|other| other.path == path);
+    a.of_body(body).all(|quantity| is_stated_by(b, quantity))
+        && b.of_body(body).all(|quantity| is_stated_by(a, quantity))
+        && a.of_body(body).any(|quantity| moved(&quantity.path))
 }
 
-/// Paths of bodies' quantities that two fixtures state differently.
+/// Paths of bodies' quantities that one fixture states and another one with this body otherwise or not at all.
 fn differing(joints: &[Decomposed]) -> Vec<String> {
     let fits: Vec<&FittedJoint> = joints.iter().filter_map(|joint| joint.fitted.as_ref()).collect();
-    let mut stated: BTreeMap<&str, &StatedQuantity> = BTreeMap::new();
-    let mut paths = BTreeSet::new();
-    for quantity in fits.iter().flat_map(|fit| &fit.quantities).filter(|quantity| quantity.body.is_some()) {
-        if *stated.entry(&quantity.path).or_insert(quantity) != quantity {
-            paths.insert(quantity.path.clone());
-        }
-    }
-    paths.into_iter().collect()
+    let differs = |quantity: &StatedQuantity, body: &str| {
+        let others = fits.iter().filter(|fit| fit.of_body(body).next().is_some());
+        others.into_iter().any(|fit| fit.statement(&quantity.path) != Some(quantity))
+    };
+    let moved = fits.iter().flat_map(|fit| &fit.quantities);
+    let paths = moved.filter(|q| q.body.as_deref().is_some_and(|body| differs(q, body)));
+    paths.map(|quantity| quantity.path.clone()).collect::<BTreeSet<String>>().into_iter().collect()
 }
 
 /// The fits that may share quantities: each body belongs to the first test that states the same of it, and with which all that share it agree.
