@@ -321,3 +321,80 @@ fn a_body_of_which_one_fixture_is_sure_and_the_other_is_not_is_not_the_same() {
         assert!(found.together.differing.is_empty());
     }
 }
+
+fn cautions(files: &[Value]) -> Vec<Caution> {
+    compared(files, &ComparisonOptions::default()).cautions
+}
+
+#[test]
+fn a_joint_whose_fit_failed_is_told_with_the_reason() {
+    let mut failed = file(1050.0, 20.0, 5.0);
+    failed["joint"] = json!({"name": "J", "failed": "no start gives finite FRFs"});
+    let found = cautions(&[file(1000.0, 20.0, 5.0), failed.clone()]);
+    let told = Caution::NoFit { joint: "b".into(), why: "no start gives finite FRFs".into() };
+    assert!(found.contains(&told) && told.says().contains("no start gives finite FRFs"), "{found:?}");
+    // Where all are compared by another relation, fits do not enter.
+    failed["relation"] = json!("paper");
+    let mut other = file(1000.0, 20.0, 5.0);
+    other["relation"] = json!("paper");
+    assert!(!cautions(&[other, failed]).iter().any(|caution| matches!(caution, Caution::NoFit { .. })));
+}
+
+#[test]
+fn numbers_without_a_deviation_settle_nothing() {
+    let mut bare = file(1050.0, 0.0, 5.0);
+    bare["joint"].as_object_mut().unwrap().remove("likelihood");
+    bare["joint"]["covariance"][0][0] = json!(0.0);
+    let found = compared(&[bare.clone(), file(1000.0, 20.0, 5.0)], &ComparisonOptions::default());
+    assert_eq!(found.cautions, [Caution::NoDeviations { joint: "a".into(), numbers: vec!["K11".into()] }]);
+    assert!(!found.is_sound() && !found.rankings[0].is_settled());
+    assert!(found.pairs[0].number("K11").unwrap().ratio.is_none());
+    let settled = crate::comparison_file(&found)["rankings"][0]["settled"].clone();
+    assert_eq!(settled, json!(false));
+}
+
+#[test]
+fn tests_of_one_recording_are_told() {
+    let mut first = file(1000.0, 20.0, 5.0);
+    let mut second = file(1050.0, 20.0, 5.0);
+    let made = |recording: &str| json!({"inputs": [{"file": "f.json", "sha256": "f"}, {"file": "r", "sha256": recording}]});
+    let one = Caution::SameRecording { first: "a".into(), second: "b".into() };
+    first["made"] = made("1");
+    second["made"] = made("2");
+    assert!(cautions(&[first.clone(), second.clone()]).is_empty());
+    second["made"] = made("1");
+    assert_eq!(cautions(&[first.clone(), second]), [one.clone()]);
+    // The same to the last digit, wherever it comes from.
+    let mut copied = file(1000.0, 20.0, 5.0);
+    copied["made"] = made("2");
+    assert_eq!(cautions(&[first, copied]), [one]);
+}
+
+#[test]
+fn joints_over_different_lengths_are_told() {
+    let over = |k11: f64, stated: f64, fitted: f64| {
+        let mut file = file(k11, 20.0, 5.0);
+        let end = |x: f64| json!({"point": "p", "body": "A", "x": x});
+        file["ends"] = json!({"length": stated, "from": end(0.0), "to": end(stated)});
+        file["joint"]["length"] = json!({"value": fitted, "std": 1e-4});
+        file
+    };
+    let told = cautions(&[over(1000.0, 0.030, 0.030), over(1050.0, 0.032, 0.032)]);
+    let expected = Caution::Lengths { joints: vec!["a".into(), "b".into()], lengths: vec![0.030, 0.032] };
+    assert_eq!(told, [expected]);
+    assert!(told[0].says().contains("a 30.00 mm, b 32.00 mm"), "{}", told[0].says());
+    // √2 of 0.1 mm at 95 % is 0.277 mm; what both fixtures state alike is one length.
+    assert!(cautions(&[over(1000.0, 0.030, 0.030), over(1050.0, 0.0302, 0.0302)]).is_empty());
+    assert!(cautions(&[over(1000.0, 0.030, 0.030), over(1050.0, 0.030, 0.032)]).is_empty());
+}
+
+#[test]
+fn a_share_is_said_with_its_significant_digits() {
+    assert_eq!(crate::says::share(2.0, 1000.0), "0.200 %");
+    assert_eq!(crate::says::share(0.012, -1000.0), "0.00120 %");
+    assert_eq!(crate::says::share(1e-7, 1000.0), "1.0e-8 %");
+    assert_eq!(
+        (crate::says::share(0.0, 3.0), crate::says::share(12.0, 10.0)),
+        ("0 %".into(), "120 %".into())
+    );
+}

@@ -109,7 +109,11 @@ fn what_cannot_be_compared_is_refused() {
     let bench = bench("refused");
     bench.refused(&["compare", "sim", "-o", "out"], &["two decompositions"]);
     bench.refused(&["compare", "sim", "nowhere", "-o", "out"], &["nowhere/stiffness.json", "no such file"]);
-    bench.refused(&["compare", "sim", "sim", "-o", "out"], &["called `sim`"]);
+    for again in ["sim", "sim/", "./sim", "soft/../sim"] {
+        let words = ["`sim` and `", "are the same directory"];
+        bench.refused(&["compare", "sim", again, "-o", "out"], &words);
+    }
+    bench.refused(&["compare", "--specimens", "strips=sim,./sim/", "-o", "out"], &["one specimen"]);
     bench.done(&["decompose", "d0.json", "sim.uff", "--relation", "paper", "-o", "paper"]);
     bench.refused(&["compare", "sim", "paper", "-o", "out"], &["`exact`", "`paper`", "--relation"]);
     std::fs::create_dir(bench.0.join("bad")).unwrap();
