@@ -358,16 +358,16 @@ fn tests_of_one_recording_are_told() {
     let mut first = file(1000.0, 20.0, 5.0);
     let mut second = file(1050.0, 20.0, 5.0);
     let made = |recording: &str| json!({"inputs": [{"file": "f.json", "sha256": "f"}, {"file": "r", "sha256": recording}]});
-    let one = Caution::SameRecording { first: "a".into(), second: "b".into() };
+    let one = || Caution::SameRecording { first: "a".into(), second: "b".into() };
     first["made"] = made("1");
     second["made"] = made("2");
     assert!(cautions(&[first.clone(), second.clone()]).is_empty());
     second["made"] = made("1");
-    assert_eq!(cautions(&[first.clone(), second]), [one.clone()]);
+    assert_eq!(cautions(&[first.clone(), second]), [one()]);
     // The same to the last digit, wherever it comes from.
     let mut copied = file(1000.0, 20.0, 5.0);
     copied["made"] = made("2");
-    assert_eq!(cautions(&[first, copied]), [one]);
+    assert_eq!(cautions(&[first, copied]), [one()]);
 }
 
 #[test]

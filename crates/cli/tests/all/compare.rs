@@ -113,7 +113,7 @@ fn what_cannot_be_compared_is_refused() {
         let words = ["`sim` and `", "are the same directory"];
         bench.refused(&["compare", "sim", again, "-o", "out"], &words);
     }
-    bench.refused(&["compare", "--specimens", "strips=sim,./sim/", "-o", "out"], &["one specimen"]);
+    bench.refused(&["compare", "soft", "--specimens", "strips=sim,./sim/", "-o", "out"], &["one specimen"]);
     bench.done(&["decompose", "d0.json", "sim.uff", "--relation", "paper", "-o", "paper"]);
     bench.refused(&["compare", "sim", "paper", "-o", "out"], &["`exact`", "`paper`", "--relation"]);
     std::fs::create_dir(bench.0.join("bad")).unwrap();
