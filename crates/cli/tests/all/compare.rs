@@ -62,6 +62,31 @@ fn what_a_fit_does_not_explain_gets_a_caution_and_no_approval() {
 }
 
 #[test]
+fn joints_compared_by_less_than_all_frfs_get_no_approval() {
+    let bench = bench("less");
+    let compared = |joint: serde_json::Value| {
+        for case in ["sim", "soft"] {
+            let path = format!("{case}/stiffness.json");
+            let mut file = bench.json(&path);
+            file["joint"] = joint.clone();
+            bench.write(&path, file.to_string());
+        }
+        let summary = bench.done(&["compare", "sim", "soft", "-o", "out"]);
+        assert!(!bench.text("out/report.html").contains("verdict ok"));
+        (summary, bench.json("out/comparison.json"))
+    };
+    // As files of earlier versions have it.
+    let (_, file) = compared("J".into());
+    assert_eq!(file["estimate"], "maximum_likelihood");
+    let (summary, file) = compared(serde_json::json!({"name": "J", "failed": "no start gives finite FRFs"}));
+    assert!(
+        summary.contains("sim: there is no fit to all its FRFs (no start gives finite FRFs)"),
+        "{summary}"
+    );
+    assert_eq!((&file["sound"], &file["cautions"][0]["what"]), (&false.into(), &"no_fit".into()));
+}
+
+#[test]
 fn joints_are_as_well_known_as_alone_where_blocks_are_said_to_be_different() {
     let bench = bench("independent");
     let deviation = |arguments: &[&str]| {
