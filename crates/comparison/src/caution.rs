@@ -1,6 +1,7 @@
 //! What keeps a comparison from being taken as it stands.
 
-use crate::{Decomposed, Together, WhyApart};
+use crate::normal::Z95;
+use crate::{Compared, Decomposed, Estimate, Number, Together, WhyApart};
 use serde::Serialize;
 
 /// One thing to be known before anything else.
@@ -28,6 +29,11 @@ pub enum Caution {
         /// The tests that fail.
         tests: Vec<&'static str>,
     },
+    /// C is held where it just gives out no energy: the FRFs ask for one beyond, and the deviations are those of a C without this constraint.
+    OnTheBoundary {
+        /// Which joint.
+        joint: String,
+    },
     /// The decomposition's own judgement: of no use.
     Unusable {
         /// Which joint.
@@ -40,6 +46,34 @@ pub enum Caution {
         /// Those without.
         without: Vec<String>,
     },
+    /// It has no fit to all FRFs, so that all joints are compared by less.
+    NoFit {
+        /// Which joint.
+        joint: String,
+        /// Why.
+        why: String,
+    },
+    /// Numbers of it have no standard deviation, so that nothing tells how sure their orders and ratios are.
+    NoDeviations {
+        /// Which joint.
+        joint: String,
+        /// Which numbers.
+        numbers: Vec<String>,
+    },
+    /// Both are of the same recording, whose noise is in both.
+    SameRecording {
+        /// A joint.
+        first: String,
+        /// Another.
+        second: String,
+    },
+    /// Their K and C act over lengths that differ by more than their deviations.
+    Lengths {
+        /// The joints.
+        joints: Vec<String>,
+        /// The length of each, m.
+        lengths: Vec<f64>,
+    },
     /// Its FRFs contradict those of another test on bodies that both fixtures state alike; it is compared as tested on bodies of its own.
     BodiesDisagree {
         /// Which joint.
@@ -47,13 +81,30 @@ pub enum Caution {
     },
 }
 
+/// Share of a length below which two are the same number.
+const SAME_LENGTH: f64 = 1e-9;
 /// Probability below which a test of a joint fails, as in the decomposition.
 const FAILED: f64 = 0.05;
 
 impl Caution {
     /// What is to be known of the joints as their files tell it.
-    pub(crate) fn of(joints: &[Decomposed], together: &Together) -> Vec<Self> {
+    pub(crate) fn of(
+        joints: &[Decomposed],
+        estimates: &[Estimate],
+        (compared, numbers): (Compared, &[Number]),
+        together: &Together,
+    ) -> Vec<Self> {
         let mut all: Vec<Caution> = joints.iter().flat_map(Caution::of_joint).collect();
+        if compared != Compared::AllFrfs {
+            all.extend(without_fit(joints));
+        }
+        all.extend(joints.iter().zip(estimates).filter_map(|(joint, estimate)| {
+            let is_bare = |number: &&Number| number.has_no_deviation(estimate);
+            let numbers: Vec<String> = numbers.iter().filter(is_bare).map(|number| number.name()).collect();
+            (!numbers.is_empty()).then(|| Caution::NoDeviations { joint: joint.name.clone(), numbers })
+        }));
+        all.extend(of_one_recording(joints));
+        all.extend(of_other_lengths(joints));
         let heavy = |joint: &&Decomposed| joint.fitted.as_ref().is_some_and(|fit| fit.mass.is_some());
         let names = |joints: Vec<&Decomposed>| joints.iter().map(|joint| joint.name.clone()).collect();
         let (with, without): (Vec<&Decomposed>, Vec<&Decomposed>) = joints.iter().partition(heavy);
@@ -81,6 +132,9 @@ impl Caution {
         }
         if strain > 1.0 {
             all.push(Caution::StrainedFixture { joint: joint(), strain });
+        }
+        if fit.is_some_and(|fit| fit.on_the_boundary_of_passive) {
+            all.push(Caution::OnTheBoundary { joint: joint() });
         }
         if let Some(tests) = fit.map(|fit| fit.tests) {
             let named = [
@@ -120,6 +174,10 @@ impl Caution {
                     .collect();
                 format!("{joint}: physics forbids what its FRFs ask for: {}", tests.join(", "))
             }
+            Caution::OnTheBoundary { joint } => format!(
+                "{joint}: its C is held where it just gives out no energy, since its FRFs ask for one that would; it is compared as if on blocks of its own, and the intervals \
+                 of its C are those without this limit"
+            ),
             Caution::Unusable { joint } => {
                 format!(
                     "{joint}: its decomposition is judged unusable; its page says why, and nothing here rests on it"
@@ -131,12 +189,76 @@ impl Caution {
                 if with.len() == 1 { "has" } else { "have" },
                 without.join(", ")
             ),
+            Caution::NoFit { joint, why } => format!(
+                "{joint}: there is no fit to all its FRFs ({why}), so all joints are compared by estimates that know less"
+            ),
+            Caution::NoDeviations { joint, numbers } => format!(
+                "{joint}: {} {} no standard deviation, so nothing tells how sure what follows from {} is",
+                numbers.join(", "),
+                if numbers.len() == 1 { "has" } else { "have" },
+                if numbers.len() == 1 { "it" } else { "them" },
+            ),
+            Caution::SameRecording { first, second } => format!(
+                "{first} and {second}: both are of the same recording, so that its noise is in both, and that they agree is no second test"
+            ),
+            Caution::Lengths { joints, lengths } => {
+                let each = joints.iter().zip(lengths).map(|(joint, l)| format!("{joint} {:.2} mm", 1e3 * l));
+                let each: Vec<String> = each.collect();
+                format!(
+                    "K and C act over lengths that differ, and are so not of the same thing: {}",
+                    each.join(", ")
+                )
+            }
             Caution::BodiesDisagree { joint } => format!(
                 "{joint}: its FRFs contradict those of another test on the blocks that both fixtures state alike, so it is compared as if on blocks of its own: \
                  they may be others, or the fixture leaves something out"
             ),
         }
     }
+}
+
+/// The joints that have no fit to all FRFs, by which the others are therefore not compared.
+fn without_fit(joints: &[Decomposed]) -> Vec<Caution> {
+    // Fits are of the exact relation.
+    let any = joints.iter().any(|joint| joint.fitted.is_some());
+    let entitled = joints.iter().filter(|joint| joint.relation == "exact" && joint.fitted.is_none());
+    let why =
+        |joint: &Decomposed| joint.not_fitted.clone().or_else(|| any.then(|| "its file has none".to_owned()));
+    entitled
+        .filter_map(|joint| Some(Caution::NoFit { joint: joint.name.clone(), why: why(joint)? }))
+        .collect()
+}
+
+/// Pairs of joints of one recording: their files say that they were made from it, or what the FRFs tell is the same to the last digit.
+fn of_one_recording(joints: &[Decomposed]) -> Vec<Caution> {
+    let told = |joint: &Decomposed| joint.fitted.as_ref().and_then(|fit| fit.likelihood.clone());
+    let is_one = |a: &Decomposed, b: &Decomposed| {
+        a.recording.iter().any(|file| b.recording.contains(file)) || (told(a).is_some() && told(a) == told(b))
+    };
+    let pairs = joints.iter().enumerate().flat_map(|(i, a)| joints[i + 1..].iter().map(move |b| (a, b)));
+    pairs
+        .filter(|(a, b)| is_one(a, b))
+        .map(|(a, b)| Caution::SameRecording { first: a.name.clone(), second: b.name.clone() })
+        .collect()
+}
+
+/// Whether K and C act over the same length in all joints whose files say it.
+fn of_other_lengths(joints: &[Decomposed]) -> Option<Caution> {
+    let known: Vec<(&Decomposed, f64)> =
+        joints.iter().filter_map(|joint| Some((joint, joint.ends.as_ref()?.length))).collect();
+    let fitted = |joint: &Decomposed| joint.fitted.as_ref().and_then(|fit| fit.length);
+    let differ = |(a, stated): (&Decomposed, f64), (b, other): (&Decomposed, f64)| {
+        let std = fitted(a).map_or(0.0, |l| l.std).hypot(fitted(b).map_or(0.0, |l| l.std));
+        let apart = (fitted(a).map_or(stated, |l| l.value) - fitted(b).map_or(other, |l| l.value)).abs();
+        // Alike as stated, they are one length that two tests know.
+        let is_stated_alike = (stated - other).abs() <= SAME_LENGTH * stated.abs();
+        !is_stated_alike && apart > (Z95 * std).max(SAME_LENGTH * stated.abs())
+    };
+    let any = known.iter().enumerate().any(|(i, a)| known[i + 1..].iter().any(|b| differ(*a, *b)));
+    any.then(|| Caution::Lengths {
+        joints: known.iter().map(|(joint, _)| joint.name.clone()).collect(),
+        lengths: known.iter().map(|(_, length)| *length).collect(),
+    })
 }
 
 fn short(value: f64) -> String {

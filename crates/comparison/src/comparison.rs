@@ -72,6 +72,12 @@ impl Number {
         first + self.element.0 + self.element.1
     }
 
+    /// Whether an estimate has a value of it without saying how sure that is.
+    pub(crate) fn has_no_deviation(self, estimate: &Estimate) -> bool {
+        let (value, std) = self.of(estimate);
+        value != 0.0 && std == 0.0
+    }
+
     /// Value and standard deviation of an estimate's.
     pub(crate) fn of(self, estimate: &Estimate) -> (f64, f64) {
         self.kind.of(estimate, self.element)
@@ -87,12 +93,19 @@ pub struct ElementRanking {
     pub element: (usize, usize),
     /// The order.
     pub ranking: Ranking,
+    /// Whether all joints' numbers have a standard deviation: without, the order's probabilities say nothing.
+    pub has_deviations: bool,
 }
 
 impl ElementRanking {
     /// The number ranked by.
     pub fn number(&self) -> Number {
         Number { kind: self.kind, element: self.element }
+    }
+
+    /// Whether the whole order is as good as sure.
+    pub fn is_settled(&self) -> bool {
+        self.has_deviations && self.ranking.is_settled()
     }
 }
 
@@ -243,7 +256,8 @@ impl Comparison {
         let relation = first.relation.clone();
         let compared = Compared::of(&relation, &joints);
         let (numbers, together) = numbers(&joints, compared, options.independent);
-        let cautions = Caution::of(&joints, &together);
+        let estimates: Vec<Estimate> = joints.iter().map(|joint| stated(joint, compared)).collect();
+        let cautions = Caution::of(&joints, &estimates, (compared, &numbers), &together);
         let all: Vec<usize> = (0..joints.len()).collect();
         let name = |joint: usize| joints[joint].name.as_str();
         let pair = |(a, b): (usize, usize)| Pair::of(&together, &numbers, (a, b), [name(a), name(b)]);
@@ -256,7 +270,8 @@ impl Comparison {
                 .map(|(a, b)| together.covariance((a, n), (b, n)))
                 .collect();
             let ranking = Ranking::joint(&values, &covariance);
-            ElementRanking { kind: number.kind, element: number.element, ranking }
+            let has_deviations = !estimates.iter().any(|estimate| number.has_no_deviation(estimate));
+            ElementRanking { kind: number.kind, element: number.element, ranking, has_deviations }
         });
         let specimens = options.specimens.iter().map(|(kind, places)| {
             let named: Vec<(usize, &str)> = places.iter().map(|&joint| (joint, name(joint))).collect();

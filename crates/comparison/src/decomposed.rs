@@ -100,6 +100,10 @@ pub struct Decomposed {
     pub failed: Option<String>,
     /// The joint with the fixture's quantities moving, where the file has it.
     pub fitted: Option<FittedJoint>,
+    /// Why it has none, where the file says it.
+    pub not_fitted: Option<String>,
+    /// SHA-256 of the files of its recording, where the file says what it was made from.
+    pub recording: Vec<String>,
     /// How the estimate may be used, where the file says it.
     pub judgement: Option<Judged>,
     /// The fixture's own joint, where the file says it.
@@ -141,6 +145,8 @@ impl Decomposed {
             likelihood: likelihood(file)?,
             failed: read(&file["maximum_likelihood"]["failed"]),
             fitted,
+            not_fitted: read(&file["joint"]["failed"]),
+            recording: recording(file),
             judgement: optional(file, "judgement")?,
             nominal: optional(file, "nominal")?,
         })
@@ -158,6 +164,12 @@ fn joint(file: &Value) -> Option<(String, Option<FittedJoint>)> {
         true => Some((name, None)),
         false => Some((name, Some(read(joint)?))),
     }
+}
+
+/// Hashes of what it was made from but for the fixture, which comes first.
+fn recording(file: &Value) -> Vec<String> {
+    let inputs = file["made"]["inputs"].as_array().into_iter().flatten().skip(1);
+    inputs.filter_map(|input| read(&input["sha256"])).collect()
 }
 
 /// The maximum-likelihood joint; none where the entry says why it failed.

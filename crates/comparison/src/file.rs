@@ -82,7 +82,7 @@ pub fn comparison_file(comparison: &Comparison) -> Value {
             .enumerate()
             .map(|(index, ranks)| (name(index), ranks.as_slice()))
             .collect(),
-        settled: entry.ranking.is_settled(),
+        settled: entry.is_settled(),
     });
     let said = |caution| Said { caution, says: Caution::says(caution) };
     json!(File {

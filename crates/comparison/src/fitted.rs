@@ -25,6 +25,12 @@ pub struct FittedJoint {
     /// The fixture's quantities that moved.
     #[serde(default)]
     pub quantities: Vec<StatedQuantity>,
+    /// The fixture's other uncertain quantities, on which its FRFs do not depend; files of earlier versions do not say.
+    #[serde(default)]
+    pub unmoved: Vec<StatedQuantity>,
+    /// Its length where the fit has its ends; files of earlier versions do not say.
+    #[serde(default)]
+    pub length: Option<FittedLength>,
     /// What the FRFs alone tell of it and of the quantities; files of earlier versions do not say.
     #[serde(default)]
     pub likelihood: Option<JointLikelihood>,
@@ -40,6 +46,9 @@ pub struct FittedJoint {
     /// Whether physics allows it.
     #[serde(default)]
     pub tests: JointTests,
+    /// Whether C was held where it just gives out no energy: what the FRFs alone ask for is then another C.
+    #[serde(default)]
+    pub on_the_boundary_of_passive: bool,
 }
 
 /// Probabilities of FRFs that speak at least as much against a property, if the joint has it; nothing where it was not tested.
@@ -117,6 +126,15 @@ pub struct StatedQuantity {
     pub std: Option<f64>,
 }
 
+/// A joint's length after its fit.
+#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
+pub struct FittedLength {
+    /// m.
+    pub value: f64,
+    /// Standard deviation, m; zero where both ends are exact.
+    pub std: f64,
+}
+
 /// The likelihood of the joint's numbers and of the quantities, Gaussian about a point, without the quantities' priors.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 pub struct JointLikelihood {
@@ -136,6 +154,10 @@ impl FittedJoint {
         let written = self.likelihood.as_ref()?;
         let place = |name: &String| ELEMENTS.iter().position(|element| element == name);
         let slots: Vec<usize> = written.elements.iter().map(place).collect::<Option<_>>()?;
+        let is_repeated = (1..slots.len()).any(|i| slots[..i].contains(&slots[i]));
+        if slots.is_empty() || is_repeated {
+            return None;
+        }
         let n = slots.len() + self.quantities.len();
         let triangular = written.information.iter().enumerate().all(|(i, row)| row.len() == i + 1);
         if !triangular || [written.at.len(), written.gradient.len(), written.information.len()] != [n; 3] {
@@ -149,6 +171,16 @@ impl FittedJoint {
             information: (0..n * n).map(entry).collect(),
         };
         Some((slots, likelihood))
+    }
+
+    /// What its fixture states under a path, if the file says it.
+    pub(crate) fn statement(&self, path: &str) -> Option<&StatedQuantity> {
+        self.quantities.iter().chain(&self.unmoved).find(|quantity| quantity.path == path)
+    }
+
+    /// The quantities of a body that the fit moved.
+    pub(crate) fn of_body<'a>(&'a self, body: &'a str) -> impl Iterator<Item = &'a StatedQuantity> {
+        self.quantities.iter().filter(move |quantity| quantity.body.as_deref() == Some(body))
     }
 
     /// k11, k12, k22, c11, c12, c22.

@@ -42,7 +42,7 @@ pub struct PairedNumber {
     pub unit: &'static str,
     /// Second less first.
     pub difference: Figure,
-    /// Second over first; nothing where the first cannot be told from zero, and for places.
+    /// Second over first; nothing where the first cannot be told from zero, where one of them has no deviation, and for places.
     pub ratio: Option<Ratio>,
     /// Correlation of the two errors; nothing where one of them has none.
     pub correlation: Option<f64>,
@@ -202,6 +202,9 @@ impl PairedNumber {
     ) -> Self {
         let [aa, ab, bb] = variances;
         let ratio = || {
+            if aa <= 0.0 || bb <= 0.0 {
+                return None;
+            }
             let ci95 = ratio_interval(a, b, variances)?;
             let value = b / a;
             let variance = (bb - 2.0 * value * ab + value * value * aa) / (a * a);

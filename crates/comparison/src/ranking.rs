@@ -1,5 +1,6 @@
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
+use std::cmp::Ordering;
 
 /// The order of several quantities by magnitude, and how sure it is.
 #[derive(Debug, Clone, PartialEq)]
@@ -46,9 +47,10 @@ impl Ranking {
         order.sort_by(|a, b| values[*a].abs().total_cmp(&values[*b].abs()));
         let factor = semidefinite_factor(covariance, count);
         let mut random = ChaCha8Rng::seed_from_u64(1);
-        let mut right = 0_usize;
-        let mut adjacent = vec![0_usize; count.saturating_sub(1)];
-        let mut ranks = vec![vec![0_usize; count]; count];
+        // What is drawn alike is in either order as often.
+        let mut right = 0.0;
+        let mut adjacent = vec![0.0; count.saturating_sub(1)];
+        let mut ranks = vec![vec![0.0; count]; count];
         let (mut drawn, mut normals) = (vec![0.0; count], vec![0.0; count]);
         let mut sorted: Vec<usize> = order.clone();
         for _ in 0..DRAWS {
@@ -57,17 +59,28 @@ impl Ranking {
                 let error: f64 = row.iter().zip(&normals).map(|(a, b)| a * b).sum();
                 *draw = (value + error).abs();
             }
-            let mut all = true;
+            let mut all = 1.0;
             for (pair, count) in order.windows(2).zip(&mut adjacent) {
-                let larger = drawn[pair[1]] >= drawn[pair[0]];
-                *count += usize::from(larger);
-                all &= larger;
+                let larger = match drawn[pair[1]].total_cmp(&drawn[pair[0]]) {
+                    Ordering::Greater => 1.0,
+                    Ordering::Equal => 0.5,
+                    Ordering::Less => 0.0,
+                };
+                *count += larger;
+                all *= larger;
             }
-            right += usize::from(all);
+            right += all;
             sorted.sort_by(|a, b| drawn[*a].total_cmp(&drawn[*b]).then(a.cmp(b)));
-            sorted.iter().enumerate().for_each(|(rank, index)| ranks[*index][rank] += 1);
+            let mut rank = 0;
+            for alike in sorted.chunk_by(|a, b| drawn[*a] == drawn[*b]) {
+                let share = 1.0 / alike.len() as f64;
+                for index in alike {
+                    ranks[*index][rank..rank + alike.len()].iter_mut().for_each(|entry| *entry += share);
+                }
+                rank += alike.len();
+            }
         }
-        let share = |count: usize| count as f64 / DRAWS as f64;
+        let share = |count: f64| count / DRAWS as f64;
         Ranking {
             order,
             probability: share(right),
@@ -131,6 +144,13 @@ mod tests {
         let ranking = Ranking::of(&[(-3.0, 0.0), (2.0, 0.0), (-1.0, 0.0)]);
         assert_eq!((ranking.order.as_slice(), ranking.probability), ([2, 1, 0].as_slice(), 1.0));
         assert_eq!(ranking.ranks[0], [0.0, 0.0, 1.0]);
+    }
+
+    #[test]
+    fn what_is_equal_is_in_either_order_as_often() {
+        let ranking = Ranking::of(&[(2.0, 0.0), (2.0, 0.0), (1.0, 0.0)]);
+        assert_eq!((ranking.probability, ranking.adjacent.as_slice()), (0.5, [1.0, 0.5].as_slice()));
+        assert_eq!(ranking.ranks, [[0.0, 0.5, 0.5], [0.0, 0.5, 0.5], [1.0, 0.0, 0.0]]);
     }
 
     #[test]

@@ -66,7 +66,14 @@ pub fn shared(comparison: &Comparison) -> Vec<String> {
             bodies.join(", ")
         ));
     }
-    for why in [WhyApart::NotStated, WhyApart::OtherBodies, WhyApart::Singular, WhyApart::Asked] {
+    for why in [
+        WhyApart::NotStated,
+        WhyApart::OnTheBoundary,
+        WhyApart::LeftAlone,
+        WhyApart::OtherBodies,
+        WhyApart::Singular,
+        WhyApart::Asked,
+    ] {
         let apart = together.apart.iter().filter(|apart| apart.why == why);
         let names: Vec<&str> = apart.map(|apart| apart.joint.as_str()).collect();
         if names.is_empty() {
@@ -77,6 +84,10 @@ pub fn shared(comparison: &Comparison) -> Vec<String> {
             WhyApart::NotStated => {
                 "since their files do not say how the fixture acts on them; make them anew with `jointscope decompose`"
             }
+            WhyApart::OnTheBoundary => {
+                "since C is held where it just gives out no energy, which what the FRFs alone tell knows nothing of"
+            }
+            WhyApart::LeftAlone => "since the other tests on the same bodies are taken apart",
             WhyApart::OtherBodies => "since no other fixture states a body as theirs do",
             WhyApart::Singular => {
                 "since their numbers and the fixture's cannot be told apart to working precision"
@@ -105,16 +116,36 @@ pub fn shared(comparison: &Comparison) -> Vec<String> {
     all
 }
 
+/// `0.53 % to 2.1 %` of the mean: the interval of what specimens differ by.
+pub fn between(scatter: &Scatter) -> String {
+    let (low, high) = scatter.between_ci95;
+    let relative = |value: f64| share(value, scatter.mean.value);
+    match high {
+        Some(high) => format!("{} to {}", relative(low), relative(high)),
+        None => "open: they are closer to each other than they are measured".to_owned(),
+    }
+}
+
+/// A share of a mean in percent, to three significant digits.
+pub fn share(value: f64, mean: f64) -> String {
+    let percent = 100.0 * (value / mean).abs();
+    match percent {
+        p if p == 0.0 || !p.is_finite() => "0 %".to_owned(),
+        p if p < 1e-4 => format!("{p:.1e} %"),
+        p => format!("{p:.*} %", (2 - p.log10().floor() as i32).clamp(0, 6) as usize),
+    }
+}
+
 /// How a number scatters between specimens.
 pub fn scatter(scatter: &Scatter) -> String {
-    let relative = |value: f64| format!("{:.2} %", 100.0 * (value / scatter.mean.value).abs());
-    let [low, high] = scatter.between_ci95.map(relative);
+    let relative = |value: f64| share(value, scatter.mean.value);
     format!(
-        "{}: mean {:.4e} {}, specimens differ by {} (95 %: {low} to {high}), measured to {}; the same specimen has {}",
+        "{}: mean {:.4e} {}, specimens differ by {} (95 %: {}), measured to {}; the same specimen has {}",
         scatter.element,
         scatter.mean.value,
         scatter.unit,
         relative(scatter.between),
+        between(scatter),
         relative(scatter.measurement),
         p_value(scatter.p_value)
     )

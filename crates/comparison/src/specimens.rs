@@ -32,8 +32,9 @@ pub struct Scatter {
     pub mean: Figure,
     /// Standard deviation between specimens.
     pub between: f64,
-    /// Its 95 % interval; from zero where the measurement explains the scatter.
-    pub between_ci95: [f64; 2],
+    /// Its 95 % interval: from zero where the measurement explains the scatter, without an upper end where specimens are closer to each other than errors of measurement leave them
+    /// in 97.5 of 100 cases, so that no scatter at all explains them.
+    pub between_ci95: (f64, Option<f64>),
     /// Standard deviation of measurement in what specimens differ by: errors that all share are no part of it.
     pub measurement: f64,
     /// Probability of a scatter as large or larger, if the specimens are the same.
@@ -75,6 +76,10 @@ impl Scatter {
         let whole = covariance.iter().sum::<f64>() / (n * n) as f64;
         let common = (whole - own / n as f64).max(0.0);
         let t = StudentsT::new(0.0, 1.0, degrees as f64).map_or(Z95, |t| t.inverse_cdf(0.975));
+        // A mean is never known better than its values are measured.
+        let scatter = scatter.max(own);
+        let highest = chi2_quantile(0.975, degrees);
+        let has_upper = contrasts.q(0.0) > highest;
         let half = (t * t * scatter / n as f64 + Z95 * Z95 * common).sqrt();
         let std = (scatter / n as f64 + common).sqrt();
         Scatter {
@@ -82,7 +87,7 @@ impl Scatter {
             unit,
             mean: Figure { value: mean, std, ci95: [mean - half, mean + half] },
             between: root(degrees as f64),
-            between_ci95: [root(chi2_quantile(0.025, degrees)), root(chi2_quantile(0.975, degrees))],
+            between_ci95: (root(chi2_quantile(0.025, degrees)), has_upper.then(|| root(highest))),
             measurement: own.max(0.0).sqrt(),
             p_value: if size > 0.0 { chi2_above(contrasts.q(0.0), degrees) } else { 1.0 },
         }
@@ -164,10 +169,19 @@ mod tests {
         let found = of(&values, &errors(4, 0.0, 0.0));
         // s² = 14/3; its interval by χ² of three degrees of freedom: 9.3484 and 0.2158.
         assert!((found.between - (14.0_f64 / 3.0).sqrt()).abs() < 1e-9, "{found:?}");
-        assert!((found.between_ci95[0] - (14.0_f64 / 9.348_404).sqrt()).abs() < 1e-5, "{found:?}");
-        assert!((found.between_ci95[1] - (14.0_f64 / 0.215_795).sqrt()).abs() < 1e-4, "{found:?}");
+        assert!((found.between_ci95.0 - (14.0_f64 / 9.348_404).sqrt()).abs() < 1e-5, "{found:?}");
+        assert!((found.between_ci95.1.unwrap() - (14.0_f64 / 0.215_795).sqrt()).abs() < 1e-4, "{found:?}");
         // Student's t of three degrees of freedom: 3.1824.
         assert!((found.mean.ci95[1] - 12.0 - 3.182_446 * (14.0_f64 / 12.0).sqrt()).abs() < 1e-5);
+    }
+
+    #[test]
+    fn specimens_closer_than_they_are_measured_tell_no_upper_end_and_no_better_mean() {
+        // Q(0) = 0.5·10⁻⁴, below the 9.8·10⁻⁴ that it exceeds in 97.5 of 100 cases.
+        let found = of(&[10.0, 10.01], &errors(2, 1.0, 0.0));
+        assert_eq!((found.between, found.between_ci95), (0.0, (0.0, None)));
+        assert!((found.mean.std - 0.5_f64.sqrt()).abs() < 1e-9, "{found:?}");
+        assert!((found.mean.ci95[1] - 10.005 - 12.706_205 * 0.5_f64.sqrt()).abs() < 1e-4, "{found:?}");
     }
 
     #[test]
@@ -198,7 +212,8 @@ mod tests {
             let values: Vec<f64> = errors.iter().map(|error| 50.0 + 1.3 * normal() + error).collect();
             let covariance = super::tests::errors(5, 0.49, 4.0);
             let found = of(&values, &covariance);
-            holds += usize::from((found.between_ci95[0]..=found.between_ci95[1]).contains(&1.3));
+            let (low, high) = found.between_ci95;
+            holds += usize::from(low <= 1.3 && high.is_some_and(|high| 1.3 <= high));
             mean_holds += usize::from((found.mean.ci95[0]..=found.mean.ci95[1]).contains(&50.0));
             told += usize::from(of(&errors, &covariance).p_value < 0.05);
         }

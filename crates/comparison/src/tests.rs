@@ -223,3 +223,178 @@ fn joints_of_other_laws_keep_what_laws_change_in_each() {
     assert!((apart(&found) - f64::sqrt(expected)).abs() < 1e-9, "{}", apart(&found));
     assert!(found.together.one_law.is_empty());
 }
+
+#[test]
+fn a_joint_held_at_the_boundary_of_passivity_keeps_what_its_file_states() {
+    // What the FRFs alone tell is of another joint, which must not take its place.
+    let mut held = file(1050.0, 20.0, 5.0);
+    held["joint"]["on_the_boundary_of_passive"] = json!(true);
+    held["joint"]["likelihood"]["at"] = json!([900.0, 0.0]);
+    let files = [file(1000.0, 20.0, 5.0), held, file(1020.0, 20.0, 5.0)];
+    let found = compared(&files, &ComparisonOptions::default());
+    assert_eq!(found.together.value(1, 0), 1050.0);
+    assert_eq!(found.together.covariance((0, 0), (1, 0)), 0.0);
+    assert_eq!(found.together.shared[0].joints, ["a", "c"]);
+    assert_eq!(found.together.apart.len(), 1);
+    assert_eq!(found.together.apart[0].why, WhyApart::OnTheBoundary);
+    assert_eq!(found.cautions, [Caution::OnTheBoundary { joint: "b".into() }]);
+    let alone = compared(&files[..2], &ComparisonOptions::default());
+    assert_eq!(alone.together.apart[0].why, WhyApart::LeftAlone);
+}
+
+#[test]
+fn blocks_that_are_strained_widen_nothing_that_does_not_rest_on_them() {
+    // a and c have q at 4 of the deviations stated; b and d are on other blocks, where it is at 0.1.
+    let other = |k11: f64| {
+        let mut file = telling(k11, 0.1, 1e4);
+        file["joint"]["quantities"][0]["stated"] = json!(5.1);
+        file
+    };
+    let files = [telling(1000.0, 4.0, 1e4), other(1000.0), telling(1050.0, 4.0, 1e4), other(1050.0)];
+    let found = compared(&files, &ComparisonOptions::default());
+    let calm = compared(&[other(1000.0), other(1050.0)], &ComparisonOptions::default());
+    assert!((found.together.std(1, 0) / calm.together.std(0, 0) - 1.0).abs() < 1e-9);
+    let strained = compared(&[files[0].clone(), files[2].clone()], &ComparisonOptions::default());
+    assert!((found.together.std(0, 0) / strained.together.std(0, 0) - 1.0).abs() < 1e-9);
+    assert!((found.together.std(0, 0) / calm.together.std(0, 0) - 4.0).abs() < 0.01);
+}
+
+#[test]
+fn a_test_left_alone_is_not_said_to_be_on_other_bodies() {
+    let far =
+        compared(&[telling(1000.0, -1.0, 100.0), telling(1050.0, 1.0, 100.0)], &ComparisonOptions::default());
+    let mut why: Vec<WhyApart> = far.together.apart.iter().map(|apart| apart.why).collect();
+    why.sort_by_key(|why| *why != WhyApart::Disagrees);
+    assert_eq!(why, [WhyApart::Disagrees, WhyApart::LeftAlone]);
+    let said = crate::says::shared(&far).join("\n");
+    assert!(!said.contains("no other fixture") && said.contains("are taken apart"), "{said}");
+}
+
+#[test]
+fn a_likelihood_of_no_number_or_of_one_twice_is_not_used() {
+    for (elements, at, information) in [
+        (json!([]), json!([0.0]), json!([[400.0]])),
+        (json!(["k11", "k11"]), json!([1050.0, 1050.0, 0.0]), json!([[1.0], [0.0, 1.0], [20.0, 0.0, 400.0]])),
+    ] {
+        let mut broken = file(1050.0, 20.0, 5.0);
+        let gradient = vec![0.0; at.as_array().unwrap().len()];
+        broken["joint"]["likelihood"] =
+            json!({"elements": elements, "at": at, "gradient": gradient, "information": information});
+        let found = compared(&[file(1000.0, 20.0, 5.0), broken], &ComparisonOptions::default());
+        assert!(found.together.shared.is_empty());
+        assert_eq!(
+            found.together.apart.iter().find(|apart| apart.joint == "b").unwrap().why,
+            WhyApart::NotStated
+        );
+    }
+}
+
+/// The same with the abscissa of block A's point among what its fixture is not sure of, moved by the fit or not.
+fn with_point(mut file: Value, moved: bool) -> Value {
+    let point = json!({"path": "points/1/x", "body": "A", "stated": 0.2, "std": 1e-4});
+    if moved {
+        file["joint"]["quantities"].as_array_mut().unwrap().push(point);
+        file["joint"]["likelihood"]["at"].as_array_mut().unwrap().push(json!(0.0));
+        file["joint"]["likelihood"]["gradient"].as_array_mut().unwrap().push(json!(0.0));
+        file["joint"]["likelihood"]["information"].as_array_mut().unwrap().push(json!([0.0, 0.0, 1.0]));
+    } else {
+        file["joint"]["unmoved"] = json!([point]);
+    }
+    file
+}
+
+#[test]
+fn a_body_of_which_one_fixture_is_sure_and_the_other_is_not_is_not_the_same() {
+    let plain = || file(1000.0, 20.0, 5.0);
+    for files in [[plain(), with_point(plain(), true)], [with_point(plain(), true), plain()]] {
+        let found = compared(&files, &ComparisonOptions::default());
+        assert!(found.together.shared.is_empty());
+        assert_eq!(found.together.differing, ["points/1/x"]);
+    }
+    // Stated alike, though one test's FRFs do not depend on it.
+    for files in [
+        [with_point(plain(), false), with_point(plain(), true)],
+        [with_point(plain(), true), with_point(plain(), false)],
+    ] {
+        let found = compared(&files, &ComparisonOptions::default());
+        assert_eq!(found.together.shared[0].quantities, ["bodies/A/mass"]);
+        assert!(found.together.differing.is_empty());
+    }
+}
+
+fn cautions(files: &[Value]) -> Vec<Caution> {
+    compared(files, &ComparisonOptions::default()).cautions
+}
+
+#[test]
+fn a_joint_whose_fit_failed_is_told_with_the_reason() {
+    let mut failed = file(1050.0, 20.0, 5.0);
+    failed["joint"] = json!({"name": "J", "failed": "no start gives finite FRFs"});
+    let found = cautions(&[file(1000.0, 20.0, 5.0), failed.clone()]);
+    let told = Caution::NoFit { joint: "b".into(), why: "no start gives finite FRFs".into() };
+    assert!(found.contains(&told) && told.says().contains("no start gives finite FRFs"), "{found:?}");
+    // Where all are compared by another relation, fits do not enter.
+    failed["relation"] = json!("paper");
+    let mut other = file(1000.0, 20.0, 5.0);
+    other["relation"] = json!("paper");
+    assert!(!cautions(&[other, failed]).iter().any(|caution| matches!(caution, Caution::NoFit { .. })));
+}
+
+#[test]
+fn numbers_without_a_deviation_settle_nothing() {
+    let mut bare = file(1050.0, 0.0, 5.0);
+    bare["joint"].as_object_mut().unwrap().remove("likelihood");
+    bare["joint"]["covariance"][0][0] = json!(0.0);
+    let found = compared(&[bare.clone(), file(1000.0, 20.0, 5.0)], &ComparisonOptions::default());
+    assert_eq!(found.cautions, [Caution::NoDeviations { joint: "a".into(), numbers: vec!["K11".into()] }]);
+    assert!(!found.is_sound() && !found.rankings[0].is_settled());
+    assert!(found.pairs[0].number("K11").unwrap().ratio.is_none());
+    let settled = crate::comparison_file(&found)["rankings"][0]["settled"].clone();
+    assert_eq!(settled, json!(false));
+}
+
+#[test]
+fn tests_of_one_recording_are_told() {
+    let mut first = file(1000.0, 20.0, 5.0);
+    let mut second = file(1050.0, 20.0, 5.0);
+    let made = |recording: &str| json!({"inputs": [{"file": "f.json", "sha256": "f"}, {"file": "r", "sha256": recording}]});
+    let one = || Caution::SameRecording { first: "a".into(), second: "b".into() };
+    first["made"] = made("1");
+    second["made"] = made("2");
+    assert!(cautions(&[first.clone(), second.clone()]).is_empty());
+    second["made"] = made("1");
+    assert_eq!(cautions(&[first.clone(), second]), [one()]);
+    // The same to the last digit, wherever it comes from.
+    let mut copied = file(1000.0, 20.0, 5.0);
+    copied["made"] = made("2");
+    assert_eq!(cautions(&[first, copied]), [one()]);
+}
+
+#[test]
+fn joints_over_different_lengths_are_told() {
+    let over = |k11: f64, stated: f64, fitted: f64| {
+        let mut file = file(k11, 20.0, 5.0);
+        let end = |x: f64| json!({"point": "p", "body": "A", "x": x});
+        file["ends"] = json!({"length": stated, "from": end(0.0), "to": end(stated)});
+        file["joint"]["length"] = json!({"value": fitted, "std": 1e-4});
+        file
+    };
+    let told = cautions(&[over(1000.0, 0.030, 0.030), over(1050.0, 0.032, 0.032)]);
+    let expected = Caution::Lengths { joints: vec!["a".into(), "b".into()], lengths: vec![0.030, 0.032] };
+    assert_eq!(told, [expected]);
+    assert!(told[0].says().contains("a 30.00 mm, b 32.00 mm"), "{}", told[0].says());
+    // √2 of 0.1 mm at 95 % is 0.277 mm; what both fixtures state alike is one length.
+    assert!(cautions(&[over(1000.0, 0.030, 0.030), over(1050.0, 0.0302, 0.0302)]).is_empty());
+    assert!(cautions(&[over(1000.0, 0.030, 0.030), over(1050.0, 0.030, 0.032)]).is_empty());
+}
+
+#[test]
+fn a_share_is_said_with_its_significant_digits() {
+    assert_eq!(crate::says::share(2.0, 1000.0), "0.200 %");
+    assert_eq!(crate::says::share(0.012, -1000.0), "0.00120 %");
+    assert_eq!(crate::says::share(1e-7, 1000.0), "1.0e-8 %");
+    assert_eq!(
+        (crate::says::share(0.0, 3.0), crate::says::share(12.0, 10.0)),
+        ("0 %".into(), "120 %".into())
+    );
+}

@@ -5,10 +5,14 @@
 //! the other: it cancels in their difference. What the fits get wrong besides is added to each joint by itself, what laws over frequency differ by to joints of one law
 //! [together](CommonLaw).
 //!
-//! Where the common quantities are farther from what is stated than chance takes them, the posterior is widened by Birge's ratio, as that of one fit is.
+//! Where the common quantities are farther from what is stated than chance takes them, the posterior is widened by Birge's ratio, as that of one fit is: each group of joints
+//! that bodies connect by its own.
 //!
-//! A body is the same in two tests where both fixtures say the same of it: every quantity of it and of the points on it that both fits moved has the same value and standard
-//! deviation. Supports, damping, channels and other joints are taken as set up anew.
+//! A body is the same in two tests where both fixtures say the same of it: every quantity of it and of the points on it that either fit moved has the same value and standard
+//! deviation in both. Supports, damping, channels and other joints are taken as set up anew.
+//!
+//! A joint whose C is held where it just gives out no energy keeps what its file states: the likelihood is that of a C without this constraint, and with it the joint would be one that
+//! physics forbids.
 
 use crate::common_law::CommonLaw;
 use crate::{Decomposed, Estimate, FittedJoint, Number, StatedQuantity};
@@ -65,6 +69,10 @@ pub enum WhyApart {
     NotStated,
     /// Its FRFs contradict those of another test on the quantities that the fixtures state alike: the bodies are not the same, or the fit bends them for something else.
     Disagrees,
+    /// Its C is held where it just gives out no energy, which what its FRFs alone tell knows nothing of.
+    OnTheBoundary,
+    /// The other tests on the bodies that its fixture states are themselves taken apart.
+    LeftAlone,
     /// No other fixture says the same of a body.
     OtherBodies,
     /// Its numbers and quantities cannot be told apart to working precision.
@@ -109,22 +117,36 @@ impl Together {
                 _ => Some(WhyApart::NotStated),
             })
             .collect();
-        let tied = loop {
+        let has_company = in_company(joints, &why);
+        let on_the_boundary =
+            |joint: &Decomposed| joint.fitted.as_ref().is_some_and(|fit| fit.on_the_boundary_of_passive);
+        for (why, joint) in why.iter_mut().zip(joints) {
+            if why.is_none() && on_the_boundary(joint) {
+                *why = Some(WhyApart::OnTheBoundary);
+            }
+        }
+        let groups = loop {
             let parts = parts(joints, &why);
             together.shared = shared(joints, &parts);
-            let shares =
-                |joint: usize| together.shared.iter().any(|s| s.joints.contains(&joints[joint].name));
-            let (tied, alone): (Vec<Part>, Vec<Part>) =
-                parts.into_iter().partition(|part| shares(part.joint));
-            let Some(odd) = together.most_at_odds(joints) else {
-                alone.iter().for_each(|part| why[part.joint] = Some(WhyApart::OtherBodies));
-                break tied;
-            };
-            why[odd] = Some(WhyApart::Disagrees);
+            if let Some(odd) = together.most_at_odds(joints) {
+                why[odd] = Some(WhyApart::Disagrees);
+                continue;
+            }
+            let (groups, alone) = connected(parts);
+            for joint in alone {
+                why[joint] =
+                    Some(if has_company[joint] { WhyApart::LeftAlone } else { WhyApart::OtherBodies });
+            }
+            break groups;
         };
-        if !tied.is_empty() && together.tie(&tied, numbers).is_none() {
-            tied.iter().for_each(|part| why[part.joint] = Some(WhyApart::Singular));
-            together.shared.clear();
+        for group in &groups {
+            if together.tie(group, numbers).is_some() {
+                continue;
+            }
+            let names = |part: &Part| joints[part.joint].name.clone();
+            let of_it: Vec<String> = group.iter().map(names).collect();
+            together.shared.retain(|body| body.joints.iter().all(|name| !of_it.contains(name)));
+            group.iter().for_each(|part| why[part.joint] = Some(WhyApart::Singular));
         }
         for law in CommonLaw::of(joints) {
             together.put_law(&law, joints, numbers);
@@ -281,30 +303,27 @@ impl FittedJoint {
     }
 }
 
-/// Whether two fits have a body in common: no quantity of it is stated otherwise, and at least one is stated by both.
+/// Whether two fits have a body in common: every quantity of it that one of them moved is stated alike by both, and at least one was moved by both. What one fixture takes as exact and the other
+/// does not is not stated alike.
 fn is_same(a: &FittedJoint, b: &FittedJoint, body: &str) -> bool {
-    let mut common = 0;
-    for quantity in a.quantities.iter().filter(|quantity| quantity.body.as_deref() == Some(body)) {
-        match b.quantities.iter().find(|other| other.path == quantity.path) {
-            Some(other) if other == quantity => common += 1,
-            Some(_) => return false,
-            None => {}
-        }
-    }
-    common > 0
+    let is_stated_by =
+        |other: &FittedJoint, quantity: &StatedQuantity| other.statement(&quantity.path) == Some(quantity);
+    let moved = |path: &str| b.quantities.iter().any(|other| other.path == path);
+    a.of_body(body).all(|quantity| is_stated_by(b, quantity))
+        && b.of_body(body).all(|quantity| is_stated_by(a, quantity))
+        && a.of_body(body).any(|quantity| moved(&quantity.path))
 }
 
-/// Paths of bodies' quantities that two fixtures state differently.
+/// Paths of bodies' quantities that one fixture states and another one with this body otherwise or not at all.
 fn differing(joints: &[Decomposed]) -> Vec<String> {
     let fits: Vec<&FittedJoint> = joints.iter().filter_map(|joint| joint.fitted.as_ref()).collect();
-    let mut stated: BTreeMap<&str, &StatedQuantity> = BTreeMap::new();
-    let mut paths = BTreeSet::new();
-    for quantity in fits.iter().flat_map(|fit| &fit.quantities).filter(|quantity| quantity.body.is_some()) {
-        if *stated.entry(&quantity.path).or_insert(quantity) != quantity {
-            paths.insert(quantity.path.clone());
-        }
-    }
-    paths.into_iter().collect()
+    let differs = |quantity: &StatedQuantity, body: &str| {
+        let others = fits.iter().filter(|fit| fit.of_body(body).next().is_some());
+        others.into_iter().any(|fit| fit.statement(&quantity.path) != Some(quantity))
+    };
+    let moved = fits.iter().flat_map(|fit| &fit.quantities);
+    let paths = moved.filter(|q| q.body.as_deref().is_some_and(|body| differs(q, body)));
+    paths.map(|quantity| quantity.path.clone()).collect::<BTreeSet<String>>().into_iter().collect()
 }
 
 /// The fits that may share quantities: each body belongs to the first test that states the same of it, and with which all that share it agree.
@@ -325,7 +344,36 @@ fn parts<'a>(joints: &'a [Decomposed], why: &[Option<WhyApart>]) -> Vec<Part<'a>
     parts
 }
 
+/// Which joints have a body in common with another one's fixture, whatever becomes of the other one.
+fn in_company(joints: &[Decomposed], why: &[Option<WhyApart>]) -> Vec<bool> {
+    let unless_asked: Vec<Option<WhyApart>> =
+        why.iter().map(|why| why.filter(|why| *why == WhyApart::Asked)).collect();
+    let shared = shared(joints, &parts(joints, &unless_asked));
+    joints.iter().map(|joint| shared.iter().any(|body| body.joints.contains(&joint.name))).collect()
+}
+
+/// The fits in groups that bodies connect, and the joints that have no body in common with another.
+fn connected(parts: Vec<Part>) -> (Vec<Vec<Part>>, Vec<usize>) {
+    let mut groups: Vec<Vec<Part>> = Vec::new();
+    for part in parts {
+        let (with, without): (Vec<_>, Vec<_>) =
+            groups.into_iter().partition(|group| group.iter().any(|other| other.meets(&part)));
+        groups = without;
+        groups.push(with.into_iter().flatten().chain([part]).collect());
+    }
+    let (mut groups, alone): (Vec<_>, Vec<_>) = groups.into_iter().partition(|group| group.len() > 1);
+    groups.iter_mut().for_each(|group| group.sort_by_key(|part| part.joint));
+    (groups, alone.into_iter().flatten().map(|part| part.joint).collect())
+}
+
 impl Part<'_> {
+    /// Whether a body is the same in both tests.
+    fn meets(&self, other: &Part) -> bool {
+        let bodies = self.fit.quantities.iter().filter_map(|quantity| quantity.body.as_deref());
+        let mut bodies = bodies.map(|body| (self.owner(body), other.owner(body)));
+        bodies.any(|(own, others)| own.is_some() && own == others)
+    }
+
     /// The test that a body belongs to.
     fn owner(&self, body: &str) -> Option<usize> {
         let mut all = self.fit.quantities.iter().zip(&self.owners);

@@ -18,7 +18,7 @@ mod uncertainty;
 mod uncoupled;
 
 pub use admissible::{Admissible, JointTests};
-pub use found::{FittedLength, FittedQuantity, JointFit};
+pub use found::{FittedLength, FittedQuantity, JointFit, UnmovedQuantity};
 pub use law::LawKind;
 pub use laws::LawFit;
 pub use likelihood::JointLikelihood;
@@ -87,8 +87,16 @@ pub fn fit_joint(
     ];
     let starts: Vec<Vec<f64>> = starts.into_iter().flatten().map(|(k, d)| coordinates(&law, k, d)).collect();
     let fitter = Fitter { recorded: &recorded, sides, scalar };
-    let quantities = fitter.that_matter(law, &starts, quantities)?;
-    fitter.fit(law, &starts, &quantities, options.laws)
+    let (quantities, others) = fitter.that_matter(law, &starts, quantities)?;
+    let mut fit = fitter.fit(law, &starts, &quantities, options.laws)?;
+    let unmoved = others.into_iter().map(|uncertain| UnmovedQuantity {
+        body: uncertain.body(sides.fixture()),
+        path: uncertain.quantity.path,
+        stated: uncertain.quantity.value,
+        std: uncertain.quantity.std,
+    });
+    fit.unmoved = unmoved.collect();
+    Ok(fit)
 }
 
 /// Coordinates of K and of an imaginary stiffness D.
@@ -142,13 +150,13 @@ impl<'a> Fitter<'a> {
         }
     }
 
-    /// The quantities that the FRFs depend on.
+    /// The quantities that the FRFs depend on, and the others.
     fn that_matter(
         &self,
         law: Dynamics,
         starts: &[Vec<f64>],
         quantities: Vec<Uncertain>,
-    ) -> Result<Vec<Uncertain>, DecompositionError> {
+    ) -> Result<(Vec<Uncertain>, Vec<Uncertain>), DecompositionError> {
         let weights = &self.recorded.weights;
         let test = self.test(&quantities, weights);
         let problem = Problem::viscous(&test, law, None);
@@ -160,11 +168,10 @@ impl<'a> Fitter<'a> {
             Some(columns.iter().map(|column| size(column) > NEGLIGIBLE).collect::<Vec<bool>>())
         });
         let matter = matter.ok_or(NO_START)?;
-        Ok(quantities
-            .into_iter()
-            .zip(matter)
-            .filter_map(|(quantity, matters)| matters.then_some(quantity))
-            .collect())
+        let (matter, others): (Vec<_>, Vec<_>) =
+            quantities.into_iter().zip(matter).partition(|(_, matters)| *matters);
+        let bare = |all: Vec<(Uncertain, bool)>| all.into_iter().map(|(quantity, _)| quantity).collect();
+        Ok((bare(matter), bare(others)))
     }
 
     fn fit(
@@ -340,6 +347,7 @@ impl<'a> Fitter<'a> {
             strain,
             is_on_the_boundary: held.is_some(),
             quantities: quantities.collect(),
+            unmoved: Vec::new(),
             tests,
             admissible,
             laws: Vec::new(),

@@ -54,7 +54,7 @@ pub use estimate::{Element, Estimate, Figure, Method, Part};
 pub use interfaces::{Compliance, InterfaceStiffness, Interfaces, interfaces};
 pub use joint_fit::{
     Admissible, FittedLength, FittedQuantity, JointFit, JointFitOptions, JointLikelihood, JointTests, LawFit,
-    LawKind, fit_joint,
+    LawKind, UnmovedQuantity, fit_joint,
 };
 pub use judgement::{Contradiction, Judgement, Use};
 pub use likelihood::{LikelihoodFit, maximum_likelihood};

@@ -70,6 +70,8 @@ fn fitted(fit: &JointFit) -> Value {
         "on_the_boundary_of_passive": fit.is_on_the_boundary,
         "tests": fit.tests,
         "quantities": fit.quantities,
+        "unmoved": fit.unmoved,
+        "length": {"value": fit.length.value, "std": fit.length.variance.max(0.0).sqrt()},
         "law_covariance": fit.law_covariance,
         "frfs": fit.frfs.iter().map(ToString::to_string).collect::<Vec<_>>(),
         "lines": fit.lines,

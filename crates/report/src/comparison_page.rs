@@ -3,8 +3,8 @@
 mod spectra;
 
 use jointscope_comparison::{
-    Caution, Comparison, ELEMENTS, ElementRanking, Equality, Kind, Pair, PairedNumber, Scatter, Specimens,
-    says,
+    Caution, Compared, Comparison, ELEMENTS, ElementRanking, Equality, Kind, Pair, PairedNumber, Scatter,
+    Specimens, says,
 };
 
 use crate::context::PageContext;
@@ -56,15 +56,15 @@ fn typeset(element: &str) -> String {
 }
 
 fn order_words(comparison: &Comparison, entry: &ElementRanking) -> String {
-    let signs = entry.ranking.adjacent.iter().map(|p| if *p >= SURE { " < " } else { " ≲ " });
+    let is_sure = |p: &f64| entry.has_deviations && *p >= SURE;
+    let signs = entry.ranking.adjacent.iter().map(|p| if is_sure(p) { " < " } else { " ≲ " });
     let names = entry.ranking.order.iter().map(|index| comparison.joints[*index].name.as_str());
     std::iter::once("").chain(signs).zip(names).flat_map(|(sign, name)| [sign, name]).collect()
 }
 
 fn verdict(comparison: &Comparison) -> Verdict {
     let stiffness = || comparison.rankings.iter().filter(|entry| entry.kind == Kind::Stiffness);
-    let settled: Vec<String> =
-        stiffness().filter(|entry| entry.ranking.probability >= SURE).map(symbol).collect();
+    let settled: Vec<String> = stiffness().filter(|entry| entry.is_settled()).map(symbol).collect();
     let mut details = Vec::new();
     let headline = match (comparison.pairs.as_slice(), comparison.rankings.first()) {
         ([pair], _) if pair.numbers.first().is_some_and(|number| number.ratio.is_some()) => {
@@ -82,12 +82,12 @@ fn verdict(comparison: &Comparison) -> Verdict {
                     settled.join(", ")
                 ),
             });
-            format!(
-                "By {}, from the most compliant to the stiffest: {} (right with a probability of {}).",
-                symbol(first),
-                order_words(comparison, first),
-                sure(first.ranking.probability)
-            )
+            let order = order_words(comparison, first);
+            let right = match first.has_deviations {
+                true => format!("right with a probability of {}", sure(first.ranking.probability)),
+                false => "nothing tells how sure that is".to_owned(),
+            };
+            format!("By {}, from the most compliant to the stiffest: {order} ({right}).", symbol(first))
         }
         _ => "There is nothing to compare.".to_owned(),
     };
@@ -96,7 +96,8 @@ fn verdict(comparison: &Comparison) -> Verdict {
     // What does not explain its recording earns no approval, however sure the order.
     let is_settled = !settled.is_empty() && settled.len() == stiffness().count();
     let unusable = comparison.cautions.iter().any(|caution| matches!(caution, Caution::Unusable { .. }));
-    let tone = match (unusable, is_settled && comparison.is_sound()) {
+    let is_whole = comparison.is_sound() && comparison.compared == Compared::AllFrfs;
+    let tone = match (unusable, is_settled && is_whole) {
         (true, _) => Tone::Problem,
         (false, true) => Tone::Ok,
         (false, false) => Tone::Attention,
@@ -159,6 +160,9 @@ fn pair_table<'a>(comparison: &Comparison, pair: &'a Pair) -> Table<&'a PairedNu
         format!("{text} ({})", interval(figure.ci95, &scale, 3))
     };
     let larger = |number: &&PairedNumber| {
+        if number.difference.std == 0.0 {
+            return "–".to_owned();
+        }
         let p = number.second_is_larger;
         let (name, p) = if p >= 0.5 { (&pair.second, p) } else { (&pair.first, 1.0 - p) };
         format!("{name} ({})", sure(p))
@@ -194,17 +198,26 @@ fn pair_table<'a>(comparison: &Comparison, pair: &'a Pair) -> Table<&'a PairedNu
 }
 
 fn order_section(comparison: &Comparison) -> Section {
-    let each = |entry: &ElementRanking| entry.ranking.adjacent.iter().map(|p| sure(*p)).collect::<Vec<_>>();
+    let stated = |entry: &ElementRanking, p: f64| match entry.has_deviations {
+        true => sure(p),
+        false => "–".to_owned(),
+    };
+    let each = |entry: &ElementRanking| -> Vec<String> {
+        entry.ranking.adjacent.iter().map(|p| stated(entry, *p)).collect()
+    };
     let table = Table::of(&comparison.rankings)
         .words("element", |entry| symbol(entry))
         .words("from the smallest magnitude to the largest", |entry| order_words(comparison, entry))
-        .words("whole order right", |entry| sure(entry.ranking.probability))
+        .words("whole order right", |entry| stated(entry, entry.ranking.probability))
         .words("each larger than the one before", |entry| each(entry).join(", "))
         .footnote("≲ : less than 95 % sure. Probabilities by 20 000 draws of all joints at once, errors in common included.");
     let ranks =
         Table::of(0..comparison.joints.len()).words("joint", |&joint| comparison.joints[joint].name.clone());
     let ranks = comparison.rankings.iter().fold(ranks, |table, entry| {
         table.words(symbol(entry), |&joint| {
+            if !entry.has_deviations {
+                return "–".to_owned();
+            }
             let ranks = &entry.ranking.ranks[joint];
             let shown = ranks.iter().enumerate().filter(|(_, p)| **p >= SELDOM);
             shown.map(|(rank, p)| format!("{} ({})", rank + 1, sure(*p))).collect::<Vec<_>>().join(", ")
@@ -219,13 +232,12 @@ fn order_section(comparison: &Comparison) -> Section {
 const SELDOM: f64 = 0.05;
 
 fn specimen_section(specimens: &Specimens) -> Section {
-    let relative = |scatter: &&Scatter, value: f64| percent((value / scatter.mean.value).abs(), 2);
+    let relative = |scatter: &&Scatter, value: f64| says::share(value, scatter.mean.value);
     let table = Table::of(&specimens.numbers)
         .words("number", |scatter| typeset(&scatter.element))
         .words("mean ± std", |scatter| quantity(scatter.mean.value, scatter.mean.std, scatter.unit))
         .words("between specimens (95 %)", |scatter| {
-            let [low, high] = scatter.between_ci95.map(|end| relative(scatter, end));
-            format!("{} ({low} to {high})", relative(scatter, scatter.between))
+            format!("{} ({})", relative(scatter, scatter.between), says::between(scatter))
         })
         .words("of measurement", |scatter| relative(scatter, scatter.measurement))
         .words("the same specimen", |scatter| says::p_value(scatter.p_value))

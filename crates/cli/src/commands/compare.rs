@@ -49,12 +49,23 @@ fn kind(text: &str) -> Result<Kind, String> {
     }
 }
 
+/// Whether two paths lead to one directory.
+fn is_same(a: &Path, b: &Path) -> bool {
+    let whole = |path: &Path| path.canonicalize().unwrap_or_else(|_| path.components().collect());
+    whole(a) == whole(b)
+}
+
+/// A directory that was given before, under this name or another.
+fn given_twice(directories: &[PathBuf]) -> Option<(&PathBuf, &PathBuf)> {
+    let before = |i: usize| directories[..i].iter().find(|other| is_same(other, &directories[i]));
+    (0..directories.len()).find_map(|i| Some((before(i)?, &directories[i])))
+}
+
 /// Every directory once, those of specimens after the others, and the places of each kind's.
 fn listed(arguments: &CompareArguments) -> (Vec<PathBuf>, Vec<(String, Vec<usize>)>) {
     let mut all = arguments.directories.clone();
     let mut place = |directory: &PathBuf| {
-        let same = |other: &PathBuf| other.components().eq(directory.components());
-        all.iter().position(same).unwrap_or_else(|| {
+        all.iter().position(|other| is_same(other, directory)).unwrap_or_else(|| {
             all.push(directory.clone());
             all.len() - 1
         })
@@ -71,6 +82,13 @@ fn listed(arguments: &CompareArguments) -> (Vec<PathBuf>, Vec<(String, Vec<usize
 
 /// Compares and writes `comparison.json` and `report.html`; answers with ratios, orders and where the page is.
 pub fn run(arguments: &CompareArguments) -> Result<String, Refusal> {
+    if let Some((first, again)) = given_twice(&arguments.directories) {
+        return Err(Refusal::new(format!(
+            "`{}` and `{}` are the same directory: name each decomposition once",
+            first.display(),
+            again.display()
+        )));
+    }
     let (directories, specimens) = listed(arguments);
     let files: Vec<PathBuf> = directories.iter().map(|directory| directory.join("stiffness.json")).collect();
     let names = names(&directories);
@@ -106,15 +124,12 @@ fn summary(comparison: &Comparison, page: &Path) -> Vec<String> {
         let order: Vec<&str> =
             entry.ranking.order.iter().map(|i| comparison.joints[*i].name.as_str()).collect();
         // No order is certain.
-        let probability = match entry.ranking.probability {
-            p if p > 0.999 => "more than 0.999".to_owned(),
-            p => format!("{p:.3}"),
+        let right = match entry.ranking.probability {
+            _ if !entry.has_deviations => "nothing tells how sure that is".to_owned(),
+            p if p > 0.999 => "right with a probability of more than 0.999".to_owned(),
+            p => format!("right with a probability of {p:.3}"),
         };
-        format!(
-            "{}: {} (right with a probability of {probability})",
-            entry.number().name(),
-            order.join(" < ")
-        )
+        format!("{}: {} ({right})", entry.number().name(), order.join(" < "))
     }));
     lines.extend(comparison.specimens.iter().flat_map(scatter));
     lines.push(page.display().to_string());

@@ -62,6 +62,31 @@ fn what_a_fit_does_not_explain_gets_a_caution_and_no_approval() {
 }
 
 #[test]
+fn joints_compared_by_less_than_all_frfs_get_no_approval() {
+    let bench = bench("less");
+    let compared = |joint: serde_json::Value| {
+        for case in ["sim", "soft"] {
+            let path = format!("{case}/stiffness.json");
+            let mut file = bench.json(&path);
+            file["joint"] = joint.clone();
+            bench.write(&path, file.to_string());
+        }
+        let summary = bench.done(&["compare", "sim", "soft", "-o", "out"]);
+        assert!(!bench.text("out/report.html").contains("verdict ok"));
+        (summary, bench.json("out/comparison.json"))
+    };
+    // As files of earlier versions have it.
+    let (_, file) = compared("J".into());
+    assert_eq!(file["estimate"], "maximum_likelihood");
+    let (summary, file) = compared(serde_json::json!({"name": "J", "failed": "no start gives finite FRFs"}));
+    assert!(
+        summary.contains("sim: there is no fit to all its FRFs (no start gives finite FRFs)"),
+        "{summary}"
+    );
+    assert_eq!((&file["sound"], &file["cautions"][0]["what"]), (&false.into(), &"no_fit".into()));
+}
+
+#[test]
 fn joints_are_as_well_known_as_alone_where_blocks_are_said_to_be_different() {
     let bench = bench("independent");
     let deviation = |arguments: &[&str]| {
@@ -109,7 +134,11 @@ fn what_cannot_be_compared_is_refused() {
     let bench = bench("refused");
     bench.refused(&["compare", "sim", "-o", "out"], &["two decompositions"]);
     bench.refused(&["compare", "sim", "nowhere", "-o", "out"], &["nowhere/stiffness.json", "no such file"]);
-    bench.refused(&["compare", "sim", "sim", "-o", "out"], &["called `sim`"]);
+    for again in ["sim", "sim/", "./sim", "soft/../sim"] {
+        let words = ["`sim` and `", "are the same directory"];
+        bench.refused(&["compare", "sim", again, "-o", "out"], &words);
+    }
+    bench.refused(&["compare", "soft", "--specimens", "strips=sim,./sim/", "-o", "out"], &["one specimen"]);
     bench.done(&["decompose", "d0.json", "sim.uff", "--relation", "paper", "-o", "paper"]);
     bench.refused(&["compare", "sim", "paper", "-o", "out"], &["`exact`", "`paper`", "--relation"]);
     std::fs::create_dir(bench.0.join("bad")).unwrap();

@@ -31,6 +31,8 @@ pub struct JointFit {
     pub is_on_the_boundary: bool,
     /// The fixture's quantities that the FRFs depend on, where the fit has them.
     pub quantities: Vec<FittedQuantity>,
+    /// The fixture's other uncertain quantities, on which the FRFs do not depend.
+    pub unmoved: Vec<UnmovedQuantity>,
     /// What is wrong with a joint that physics forbids.
     pub tests: JointTests,
     /// The nearest joint that physics allows, where a test fails.
@@ -66,6 +68,19 @@ pub struct FittedQuantity {
     pub fitted_std: f64,
     /// Stated standard deviations between the two (tenths of the value where it is unknown).
     pub deviations: f64,
+}
+
+/// An uncertain quantity of the fixture that the FRFs tell nothing of.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct UnmovedQuantity {
+    /// Path in the fixture file.
+    pub path: String,
+    /// The body that it belongs to, as that of a [`FittedQuantity`].
+    pub body: Option<String>,
+    /// As stated, SI.
+    pub stated: f64,
+    /// Its stated standard deviation; nothing where it is unknown.
+    pub std: Option<f64>,
 }
 
 /// The joint's length as a fit has it.

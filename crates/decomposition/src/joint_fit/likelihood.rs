@@ -30,7 +30,10 @@ impl Fitter<'_> {
         let others = problem.other_columns(free)?;
         let equations = problem.equations_of(free, &others, problem.test.weights);
         let precision = |m: usize| problem.parameters[m].precision;
-        let all = QuadraticLikelihood::without_priors(&equations, &free.coordinates, precision);
+        let mut all = QuadraticLikelihood::without_priors(&equations, &free.coordinates, precision);
+        // At the optimum data and priors pull against each other. That derivatives by differences give a little more or less must not move the joint.
+        let pull_of_priors = free.coordinates.iter().enumerate().map(|(m, at)| precision(m) * at);
+        all.gradient = pull_of_priors.collect();
         let (count, own) = (problem.law.count(), problem.own());
         let kept: Vec<usize> = (0..count).chain(own..problem.parameters.len()).collect();
         let slots: &[usize] = if self.scalar { &[0, 3] } else { &[0, 1, 2, 3, 4, 5] };
