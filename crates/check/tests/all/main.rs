@@ -297,3 +297,13 @@ fn a_soft_suspension_that_the_fixture_lacks_is_not_called_hum_alone() {
         "{told:#?}"
     );
 }
+
+#[test]
+fn a_suspension_too_stiff_to_weigh_by_is_told_with_its_frequency_and_not_with_an_empty_band() {
+    let ground = json!({ "a": { "point": "1", "stiffness": 2e6 }, "b": { "point": "4", "stiffness": 2e6 } });
+    let fixture = fixture(&[("/supports", ground)]);
+    let check = check(&fixture, recorded(&fixture));
+    let recording = check.recording.unwrap();
+    let why = recording.no_mass_line.unwrap();
+    assert!(why.contains("is too near the first bending mode") || why.contains("is held"), "{why}");
+}
