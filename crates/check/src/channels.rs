@@ -64,18 +64,49 @@ pub(crate) fn of(frfs: &[FrfCheck], remarks: &mut Vec<Remark>) -> Vec<ChannelChe
             channels.push(checked(channel, &own, &others, &turned, &upright));
         }
     }
-    // Where an FRF is the only one of its response and of its reference, either may be meant: it is told once.
+    explained_once(&mut channels, frfs);
     for channel in &channels {
         remarks.extend(channel.odd.iter().map(|says| Remark::odd(&channel.channel, says)));
     }
     let by_channel = channels.iter().any(|channel| channel.turned);
     for frf in frfs.iter().filter(|frf| turned(frf) && !by_channel) {
-        remarks.push(Remark::odd(
-            frf.frf.to_string(),
-            "it has the opposite sign to the fixture's FRF, and neither all of its response nor of its reference have: check the directions of this record, and the points' order in the fixture",
-        ));
+        let says = if frfs.len() == 1 {
+            "it has the opposite sign to the fixture's FRF: sensor or hammer points the other way, or the points' order in the fixture is wrong; turn one of the two with --map, or correct the file"
+        } else {
+            "it has the opposite sign to the fixture's FRF, and neither all of its response nor of its reference have: check the directions of this record, and the points' order in the fixture"
+        };
+        remarks.push(Remark::odd(frf.frf.to_string(), says));
     }
     channels
+}
+
+/// What a turned channel has to say of it.
+const SAYS_TURNED: &str = "its FRFs have the opposite sign to the fixture's, those of the other channels have not: it points the other way; turn its direction with --map, or correct the file (for modes and mass line here it is turned)";
+
+/// An FRF that is turned has one turned channel: where all FRFs of a channel are those of turned channels of the other kind, the one with more of them
+/// explains it, the response where both have as many.
+fn explained_once(channels: &mut [ChannelCheck], frfs: &[FrfCheck]) {
+    let before: Vec<(String, usize)> = channels
+        .iter()
+        .filter(|channel| channel.turned)
+        .map(|channel| (channel.channel.clone(), channel.frfs))
+        .collect();
+    let turned = |name: &str| before.iter().find(|(channel, _)| channel == name).map(|(_, frfs)| *frfs);
+    for channel in channels.iter_mut().filter(|channel| channel.turned) {
+        let explained = frfs.iter().all(|frf| {
+            let (response, reference) =
+                (format!("response {}", frf.frf.response), format!("reference {}", frf.frf.reference));
+            match &channel.channel {
+                own if *own == response => turned(&reference).is_some_and(|others| others > channel.frfs),
+                own if *own == reference => turned(&response).is_some_and(|others| others >= channel.frfs),
+                _ => true,
+            }
+        });
+        if explained {
+            channel.turned = false;
+            channel.odd.retain(|says| says != SAYS_TURNED);
+        }
+    }
 }
 
 fn checked(
@@ -94,7 +125,7 @@ fn checked(
     let is_turned = own.iter().all(|frf| turned(frf)) && most_upright;
     let mut odd = Vec::new();
     if is_turned {
-        odd.push("its FRFs have the opposite sign to the fixture's, those of the other channels have not: it points the other way; turn its direction with --map, or correct the file (for modes and mass line here it is turned)".to_owned());
+        odd.push(SAYS_TURNED.to_owned());
     }
     if let Some(level) = level
         && !(OFF.recip()..=OFF).contains(&level)

@@ -20,7 +20,7 @@ const STEP: f64 = 1e-3;
 const RESTS: f64 = 1e-9;
 
 /// Standard deviations of what `of` makes of a fixture, as a Taylor series of first order has them: each uncertain number is moved by its deviation, the
-/// changes are added as squares. `None` where the figure rests on a number of unknown deviation.
+/// changes are added as squares. `None` where the figure rests on a number of unknown deviation, or where the moved fixture has no such figure.
 pub(crate) fn deviations(
     fixture: &Fixture,
     nominal: &[f64],
@@ -33,8 +33,13 @@ pub(crate) fn deviations(
         moved.set_quantities([(index, quantity.value + quantity.std.unwrap_or(unknown))]);
         let figures = of(&moved);
         moved.set_quantities([(index, quantity.value)]);
-        let Some(figures) = figures else { continue };
-        for ((square, figure), nominal) in squares.iter_mut().zip(figures).zip(nominal) {
+        let mut figures = figures.unwrap_or_default().into_iter();
+        for (square, nominal) in squares.iter_mut().zip(nominal) {
+            // What such a step does away with has a deviation that no first-order series tells.
+            let Some(figure) = figures.next() else {
+                *square = None;
+                continue;
+            };
             let change = figure - nominal;
             match quantity.std {
                 Some(_) => *square = square.map(|square| square + change * change),

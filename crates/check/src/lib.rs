@@ -113,6 +113,13 @@ impl Check {
             })
             .collect();
         let numbers = numbers::of(fixture, &mut remarks);
+        // What is wrong in itself need not be called odd besides, number by number; of a channel or an FRF both may be true.
+        let wrong: Vec<String> = remarks
+            .iter()
+            .filter(|remark| remark.weight == Weight::Wrong)
+            .map(|remark| remark.place.clone())
+            .collect();
+        remarks.retain(|remark| remark.weight == Weight::Wrong || !wrong.contains(&remark.place));
         let totals = Totals::of(fixture);
         let mut recording = measurement
             .map(|measurement| RecordingCheck::of(fixture, measurement, options, &mut remarks))
@@ -128,19 +135,15 @@ impl Check {
         if let (Some(recording), Some(modes)) = (&mut recording, &modes) {
             recording.compare(fixture, &totals, modes, &mut remarks);
         }
+        if let Some(recording) = &recording {
+            recording.contradictions(fixture, modes.as_ref(), &mut remarks);
+        }
         if *fixture.damping() == Damping::Undamped && !has_dashpots(fixture) {
             remarks.push(Remark::odd(
                 "damping",
                 "none is stated: state `modal_ratios`, or measure them with `jointscope modes --fixture … --update …`; a diagnosis fits them without knowing anything of them",
             ));
         }
-        // What is wrong in itself need not be called odd besides.
-        let wrong: Vec<String> = remarks
-            .iter()
-            .filter(|remark| remark.weight == Weight::Wrong)
-            .map(|remark| remark.place.clone())
-            .collect();
-        remarks.retain(|remark| remark.weight == Weight::Wrong || !wrong.contains(&remark.place));
         remarks.sort_by_key(|remark| remark.weight);
         Ok(Check { name: fixture.name().to_owned(), remarks, totals, modes, numbers, recording })
     }

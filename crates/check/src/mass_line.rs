@@ -78,6 +78,13 @@ pub(crate) fn of(
     let (low, high) = (BAND.0 * modes.highest_on_supports(), BAND.1 * own.min(first));
     let hz = frfs.lines().hz();
     let used: Vec<usize> = (0..hz.len()).filter(|&k| hz[k] > 0.0 && hz[k] >= low && hz[k] <= high).collect();
+    if low >= high {
+        return Err(format!(
+            "the highest mode on the supports, {:.1} Hz, is too near the first bending mode, {:.1} Hz: at no frequency between them does the structure move as one rigid body; a softer suspension would weigh it",
+            modes.highest_on_supports(),
+            own.min(first)
+        ));
+    }
     if used.len() < FEWEST {
         return Err(format!(
             "{} of the recording lie between {low:.1} and {high:.1} Hz, where the structure moves as one rigid body: a finer resolution or a lower first line would weigh it",

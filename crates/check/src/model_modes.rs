@@ -2,11 +2,13 @@
 
 use crate::Figure;
 use crate::figure::deviations;
+use crate::has_dashpots;
 use jointscope_fixture::{Damping, Fixture, Quantity, RatiosOf};
 use jointscope_linalg::complex_eigenvalues;
 use jointscope_lumped::{Assembly, LumpedError, StateSpace};
 use num_complex::Complex64;
 use serde::Serialize;
+use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
 /// One vibration mode of the model.
@@ -35,6 +37,8 @@ pub struct ModelModes {
 const TO: f64 = 2000.0;
 const FARTHER: f64 = 4.0;
 const FARTHEST: f64 = 1e6;
+/// Share of the highest frequency up to which modes are followed where a number is moved.
+const FARTHER_MOVED: f64 = 1.5;
 /// Modes that are listed at the most.
 const LISTED: usize = 20;
 /// Beyond the last line of a recording modes matter as well.
@@ -48,17 +52,22 @@ impl ModelModes {
     /// The modes up to beyond `highest` (Hz), or up to where there are some.
     pub(crate) fn of(fixture: &Fixture, highest: Option<f64>) -> Result<Self, LumpedError> {
         let mut to = highest.map_or(TO, |highest| BEYOND * highest);
-        let (mut rigid, mut found) = poles(fixture, to)?;
-        while found.is_empty() && to < FARTHEST {
+        let stands = Some(fixture).filter(|fixture| is_held(fixture)).and_then(as_it_stands);
+        let mut poles = Poles::of(fixture, stands.as_ref(), to)?;
+        while poles.up_to(to).is_empty() && to < FARTHEST {
             to *= FARTHER;
-            (rigid, found) = poles(fixture, to)?;
+            poles = Poles::of(fixture, stands.as_ref(), to)?;
         }
+        let (rigid, mut found) = (poles.rigid, poles.up_to(to));
         found.truncate(LISTED);
         let nominal: Vec<f64> = found.iter().map(|pole| pole.norm() / TAU).collect();
         let std = deviations(fixture, &nominal, |moved| {
-            let (_, moved) = poles(moved, to).ok()?;
-            let hz: Vec<f64> = moved.iter().take(nominal.len()).map(|pole| pole.norm() / TAU).collect();
-            (hz.len() == nominal.len()).then_some(hz)
+            let moved =
+                Poles::of(moved, stands.as_ref().map(|stands| moved_alike(stands, moved)).as_ref(), to)
+                    .ok()?;
+            // Where a mode came or went below, the one of the same place in the row is another.
+            let same = (moved.rigid, moved.overdamped) == (poles.rigid, poles.overdamped);
+            same.then(|| moved.oscillating.iter().map(|pole| pole.norm() / TAU).collect())
         });
         let suspended = on_supports(fixture, to);
         let soft = |k: usize| suspended.iter().any(|hz| (hz / nominal[k] - 1.0).abs() < SAME);
@@ -81,8 +90,73 @@ impl ModelModes {
     }
 }
 
-/// Number of modes at zero, and the oscillating poles up to `highest` (Hz), rad/s, ascending.
-fn poles(fixture: &Fixture, highest: f64) -> Result<(usize, Vec<Complex64>), LumpedError> {
+/// The poles of a model.
+struct Poles {
+    /// Number of modes at zero.
+    rigid: usize,
+    /// Number of real poles away from zero, up to a little beyond the highest frequency.
+    overdamped: usize,
+    /// The oscillating ones of positive frequency, up to as far, rad/s, ascending.
+    oscillating: Vec<Complex64>,
+}
+
+impl Poles {
+    /// Of a fixture; `stands` is the same with its supports in its modes, where that has all that moves it.
+    fn of(fixture: &Fixture, stands: Option<&Fixture>, highest: f64) -> Result<Self, LumpedError> {
+        match stands {
+            Some(stands) => held(fixture, stands, highest),
+            None => in_time(fixture, highest),
+        }
+    }
+
+    /// The oscillating ones up to `highest` (Hz).
+    fn up_to(&self, highest: f64) -> Vec<Complex64> {
+        self.oscillating.iter().copied().take_while(|pole| pole.norm() <= TAU * highest).collect()
+    }
+}
+
+/// The poles of an assembly on supports that has neither effects nor dashpots: from its matrices, for a clamp that is put on a few free modes
+/// is softer than it is, and its frequencies far too high. Damping is small: each mode has its own share of it.
+fn held(fixture: &Fixture, stands: &Fixture, highest: f64) -> Result<Poles, LumpedError> {
+    let (stands, free) = (Assembly::new(stands, highest)?, Assembly::new(fixture, highest)?);
+    let n = stands.order();
+    if free.order() != n {
+        return in_time(fixture, highest);
+    }
+    let viscous = free.viscous_damping();
+    let structural = match fixture.damping() {
+        Damping::LossFactor(factor) => factor.value,
+        _ => 0.0,
+    };
+    let square = |matrix: &[f64], shape: &[f64]| -> f64 {
+        let row = |i: usize| -> f64 { (0..n).map(|j| matrix[i * n + j] * shape[j]).sum() };
+        (0..n).map(|i| shape[i] * row(i)).sum()
+    };
+    let limit = TAU * FARTHER_MOVED * highest;
+    let mut poles = Poles { rigid: 0, overdamped: 0, oscillating: Vec::new() };
+    for (r, &eigenvalue) in stands.modes().eigenvalues().iter().enumerate() {
+        let omega = eigenvalue.max(0.0).sqrt();
+        if omega <= ZERO * TAU * highest {
+            poles.rigid += 1;
+            continue;
+        }
+        if omega > limit {
+            break;
+        }
+        let shape = stands.modes().shape(r);
+        let lost = square(&viscous, shape) + structural * square(free.stiffness(), shape) / omega;
+        let ratio = 0.5 * lost / omega;
+        if ratio < 1.0 {
+            poles.oscillating.push(omega * Complex64::new(-ratio, (1.0 - ratio * ratio).sqrt()));
+        } else {
+            poles.overdamped += 2;
+        }
+    }
+    Ok(poles)
+}
+
+/// The poles of the equations of motion over time.
+fn in_time(fixture: &Fixture, highest: f64) -> Result<Poles, LumpedError> {
     let space = StateSpace::new(fixture, highest)?;
     let (size, coordinates) = (space.states(), space.coordinates());
     // Displacements times the highest frequency: all elements are then of its order, and eigenvalues as exact as they can be.
@@ -98,9 +172,32 @@ fn poles(fixture: &Fixture, highest: f64) -> Result<(usize, Vec<Complex64>), Lum
     all.sort_by(|a, b| a.norm().total_cmp(&b.norm()));
     let zero = ZERO * omega;
     let rigid = all.iter().filter(|pole| pole.norm() <= zero).count().div_ceil(2);
-    let oscillating = |pole: &Complex64| pole.norm() > zero && pole.im > zero && pole.norm() <= omega;
-    all.retain(oscillating);
-    Ok((rigid, all))
+    all.retain(|pole| pole.norm() > zero && pole.norm() <= FARTHER_MOVED * omega);
+    let overdamped = all.iter().filter(|pole| pole.im.abs() <= zero).count();
+    all.retain(|pole| pole.im > zero);
+    Ok(Poles { rigid, overdamped, oscillating: all })
+}
+
+/// Whether an assembly is on supports and has neither effects nor dashpots.
+fn is_held(fixture: &Fixture) -> bool {
+    !fixture.supports().is_empty() && fixture.physics().is_empty() && !has_dashpots(fixture)
+}
+
+/// The fixture with its supports in its modes.
+fn as_it_stands(fixture: &Fixture) -> Option<Fixture> {
+    let ratios = Damping::ModalRatios { ratios: vec![Quantity::bare(0.01)], of: RatiosOf::AsItStands };
+    fixture.clone().with_damping(ratios).ok()
+}
+
+/// `stands` with the numbers of `moved`: what is moved a little beyond the end of its beam would be refused if it were stated so.
+fn moved_alike(stands: &Fixture, moved: &Fixture) -> Fixture {
+    let values: BTreeMap<String, f64> =
+        moved.uncertain_quantities(false).into_iter().map(|(_, q)| (q.path.to_string(), q.value)).collect();
+    let mut alike = stands.clone();
+    let quantities = stands.uncertain_quantities(false).into_iter();
+    alike
+        .set_quantities(quantities.filter_map(|(index, q)| Some((index, *values.get(&q.path.to_string())?))));
+    alike
 }
 
 /// Natural frequencies (Hz) of the modes whose strain energy is in the supports, effects left aside.
@@ -108,8 +205,7 @@ fn on_supports(fixture: &Fixture, highest: f64) -> Vec<f64> {
     if fixture.supports().is_empty() {
         return Vec::new();
     }
-    let ratios = Damping::ModalRatios { ratios: vec![Quantity::bare(0.01)], of: RatiosOf::AsItStands };
-    let held = fixture.clone().with_damping(ratios).ok().and_then(|held| Assembly::new(&held, highest).ok());
+    let held = as_it_stands(fixture).and_then(|held| Assembly::new(&held, highest).ok());
     let Some(held) = held else { return Vec::new() };
     let hz = held.natural_frequencies_hz();
     let suspended = (0..hz.len()).filter(|r| hz[*r] > 0.0 && !held.elastic_modes().contains(r));
@@ -157,5 +253,76 @@ mod tests {
         );
         assert_eq!((hung.rigid, hung.modes.iter().filter(|mode| mode.on_supports).count()), (0, 2));
         assert!((hung.first_elastic().unwrap() / first - 1.0).abs() < 1e-3);
+    }
+
+    /// A beam whose left end is clamped, of EI and mass per length as stated.
+    fn cantilever(length: f64, stiffness: f64, mass: f64, damping: &str) -> Fixture {
+        let clamp = 1e5 * stiffness;
+        let text = format!(
+            r#"{{ "bodies": {{ "S": {{ "beam": {{ "from": 0, "to": {length}, "youngs_modulus": {{"value": 2.07e11, "std": 2e9}}, "second_moment": {}, "mass_per_length": {mass} }} }} }},
+              "points": {{ "1": {{ "body": "S", "x": {} }}, "2": {{ "body": "S", "x": {length} }} }},
+              "supports": {{ "clamp": {{ "body": "S", "x": 0, "stiffness": {}, "rotational_stiffness": {} }} }} {damping} }}"#,
+            stiffness / 2.07e11,
+            0.5 * length,
+            clamp / length.powi(3),
+            clamp / length
+        );
+        Fixture::from_json(&text).unwrap()
+    }
+
+    #[test]
+    fn a_clamped_beam_has_every_mode_of_the_closed_form_however_it_is_damped() {
+        // Roots of cos x · cosh x = −1.
+        let roots = [1.875_104_068_7_f64, 4.694_091_133_0, 7.854_757_438_2, 10.995_540_734_9];
+        let damped = [
+            (r#", "damping": { "modal_ratios": [0.003] }"#, None),
+            ("", Some(0.0)),
+            (r#", "damping": { "loss_factor": 0.004 }"#, Some(0.002)),
+        ];
+        for [length, width, height] in
+            [[0.5, 0.04, 0.006], [1.0, 0.03, 0.003], [0.3, 0.02, 0.002], [2.0, 0.1, 0.05]]
+        {
+            let (stiffness, mass) = (2.07e11 * width * f64::powi(height, 3) / 12.0, 7850.0 * width * height);
+            for (damping, ratio) in damped {
+                let modes =
+                    ModelModes::of(&cantilever(length, stiffness, mass, damping), Some(2000.0)).unwrap();
+                assert_eq!(modes.rigid, 0, "{length} m, {damping}");
+                for (r, mode) in modes.modes.iter().enumerate().take(4) {
+                    let hz = f64::powi(roots[r] / length, 2) * (stiffness / mass).sqrt() / TAU;
+                    let error = mode.frequency.value / hz - 1.0;
+                    // A clamp of a hundred thousand times the beam gives way to the shear force, which grows as the cube.
+                    let allowed = 1e-4 + roots[r].powi(3) / 2e5;
+                    assert!(
+                        error.abs() < allowed,
+                        "{length} m, {damping}, mode {}: off by {error:.1e}",
+                        r + 1
+                    );
+                    // d ln f = ½ d ln E, of which the deviation is that of 2/207; lengths are known to their digits.
+                    let std = mode.frequency.std.unwrap() / hz;
+                    assert!((0.5 * 2.0 / 207.0..0.02).contains(&std), "{mode:?}");
+                    assert!(
+                        ratio.is_none_or(|ratio: f64| (mode.damping_ratio - ratio).abs() < 1e-5),
+                        "{mode:?}"
+                    );
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_mode_that_goes_where_a_number_is_moved_leaves_no_deviation_rather_than_a_wrong_one() {
+        // A dashpot of which the deviation makes the mode on the support creep: the mode of the joint is then first in the row.
+        let modes = |std: f64| {
+            let text = format!(
+                r#"{{ "bodies": {{ "A": {{ "mass": {{"value": 2, "std": 0}}, "rotates": false }}, "B": {{ "mass": {{"value": 3, "std": 0}}, "rotates": false }} }},
+                  "points": {{ "1": {{ "body": "A", "x": 0 }}, "2": {{ "body": "B", "x": 0.1 }} }},
+                  "joints": {{ "J": {{ "from": "1", "to": "2", "stiffness": [[5e6, 0], [0, 0]] }} }},
+                  "supports": {{ "S": {{ "point": "1", "stiffness": 1e4, "damping": {{"value": 350, "std": {std}}} }} }} }}"#
+            );
+            ModelModes::of(&Fixture::from_json(&text).unwrap(), None).unwrap().modes
+        };
+        let (small, large) = (modes(10.0), modes(200.0));
+        assert!(small.len() == 2 && small.iter().all(|mode| mode.frequency.std.is_some()), "{small:?}");
+        assert!(large.len() == 2 && large.iter().all(|mode| mode.frequency.std.is_none()), "{large:?}");
     }
 }

@@ -10,7 +10,7 @@ pub struct Reciprocity {
     pub frf: FrfPair,
     /// The other.
     pub other: FrfPair,
-    /// √(Σ|H_ij − H_ji|²/Σ|½(H_ij + H_ji)|²) over all lines.
+    /// √(Σ|H_ij − H_ji|²/Σ½(|H_ij|² + |H_ji|²)) over all lines: 2 where one is the other turned round.
     pub difference: f64,
     /// What noise alone would make of that.
     pub expected: f64,
@@ -40,7 +40,7 @@ pub(crate) fn of(frfs: &FrfSet) -> Vec<Reciprocity> {
 fn of_pair(frfs: &FrfSet, i: usize, j: usize) -> Reciprocity {
     let (a, b) = (frfs.values(i), frfs.values(j));
     let apart: f64 = a.iter().zip(b).map(|(a, b)| (a - b).norm_sqr()).sum();
-    let size: f64 = a.iter().zip(b).map(|(a, b)| (0.5 * (a + b)).norm_sqr()).sum();
+    let size: f64 = a.iter().zip(b).map(|(a, b)| 0.5 * (a.norm_sqr() + b.norm_sqr())).sum();
     let noise: f64 = [i, j].iter().flat_map(|index| frfs.variance(*index).unwrap_or_default()).sum();
     let levels = a.iter().zip(b).map(|(a, b)| a.norm() / b.norm()).filter(|level| level.is_finite());
     let relative =

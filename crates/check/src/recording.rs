@@ -48,6 +48,9 @@ pub struct RecordingCheck {
     /// The same, channels that point the other way turned round: for modes and mass line.
     #[serde(skip)]
     upright: FrfSet,
+    /// Bands of lines that contradict all others, Hz.
+    #[serde(skip)]
+    contradictory: Vec<(f64, f64)>,
     /// The fixture's, FRF after FRF.
     #[serde(skip)]
     pub modelled: Option<Vec<Complex64>>,
@@ -100,7 +103,7 @@ impl RecordingCheck {
         let frfs = frfs::of(&measured_frfs, &sources, modelled.as_deref());
         for (index, pair) in measured_frfs.pairs().iter().enumerate() {
             remarks.extend(crate::frfs::absurd(&measured_frfs, index).map(|hz| {
-                let says = format!("its value at {hz} Hz is more than a million times its median: no structure has that; export it again, or leave that line out with --exclude");
+                let says = format!("its value at {hz} Hz is more than a million times its median: no structure has that; export it again, or leave that line out of a diagnosis with --exclude");
                 Remark::wrong(pair.to_string(), says)
             }));
         }
@@ -113,10 +116,11 @@ impl RecordingCheck {
         if with_own_effects.physics().iter().any(|effect| effect.kind.is_nonlinear()) {
             notes.push("effects of the fixture that depend on amplitude have no FRF: they are left aside beside the recording's".to_owned());
         }
+        let mut contradictory = Vec::new();
         if screened.frfs.all_values().len() > MOST {
             notes.push("there are too many FRFs and lines for a quick look at lines that contradict all others: `jointscope diagnose` takes its time".to_owned());
-        } else if let Ok(bands) = contradictory_lines(fixture, &screened.frfs) {
-            remarks.extend(bands.iter().map(|(from, to)| of_contradiction(*from, *to)));
+        } else {
+            contradictory = contradictory_lines(fixture, &screened.frfs).unwrap_or_default();
         }
         remarks.extend(frfs.iter().filter_map(of_coherence));
         let hz = measured_frfs.lines().hz();
@@ -145,6 +149,7 @@ impl RecordingCheck {
             no_modes: None,
             upright: upright(&measured_frfs, &channels),
             channels,
+            contradictory,
             measured: measured_frfs,
             modelled,
         })
@@ -153,6 +158,22 @@ impl RecordingCheck {
     /// The last line, Hz.
     pub(crate) fn highest(&self) -> f64 {
         self.lines.1
+    }
+
+    /// What is to be said of lines that contradict all others.
+    pub(crate) fn contradictions(
+        &self,
+        fixture: &Fixture,
+        modes: Option<&ModelModes>,
+        remarks: &mut Vec<Remark>,
+    ) {
+        let bending = modes.and_then(ModelModes::first_elastic).unwrap_or(0.0);
+        let (first, last, count) = self.lines;
+        let start = first + AT_START * (last - first) / count.saturating_sub(1).max(1) as f64;
+        for &(from, to) in &self.contradictory {
+            let suspended = fixture.supports().is_empty() && from <= start && to < bending;
+            remarks.push(of_contradiction(from, to, suspended));
+        }
     }
 
     /// Holds the recording's modes and mass line against the fixture's.
@@ -314,18 +335,30 @@ fn of_reciprocity(pair: &Reciprocity) -> Remark {
     )
 }
 
-fn of_contradiction(from: f64, to: f64) -> Remark {
+/// Steps of lines from the first within which a band starts at it: the line just there may fit by chance.
+const AT_START: f64 = 2.5;
+
+/// Of a band; `suspended` where it could be that of a suspension.
+fn of_contradiction(from: f64, to: f64, suspended: bool) -> Remark {
     let lines = if from == to {
         format!("the line at {from} Hz")
     } else {
         format!("the lines from {from} to {to} Hz")
     };
-    Remark::wrong(
-        "recording",
-        format!(
-            "{lines} contradict all others, as mains hum, clipped peaks or a tone from elsewhere do: a diagnosis leaves them out"
+    match suspended {
+        true => Remark::odd(
+            "recording",
+            format!(
+                "{lines}, at the start and below the first bending mode, contradict all others, as drift, mains hum or a suspension that the fixture lacks does: state the suspension as `supports`, or start above it; a diagnosis leaves them out"
+            ),
         ),
-    )
+        false => Remark::wrong(
+            "recording",
+            format!(
+                "{lines} contradict all others, as mains hum, clipped peaks or a tone from elsewhere do: a diagnosis leaves them out"
+            ),
+        ),
+    }
 }
 
 /// Share of poor lines from which an FRF's coherence is worth a word.

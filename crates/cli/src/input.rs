@@ -104,7 +104,7 @@ pub fn json(path: &Path) -> Result<Value, Refusal> {
 pub fn bytes(path: &Path) -> Result<Vec<u8>, Refusal> {
     static STANDARD_INPUT: OnceLock<Vec<u8>> = OnceLock::new();
     if !is_standard_input(path) {
-        return fs::read(path).map_err(|error| Refusal::io(path, &error));
+        return whole(path);
     }
     if let Some(bytes) = STANDARD_INPUT.get() {
         return Ok(bytes.clone());
@@ -117,7 +117,40 @@ pub fn bytes(path: &Path) -> Result<Vec<u8>, Refusal> {
     Ok(STANDARD_INPUT.get_or_init(|| bytes).clone())
 }
 
+/// What may be read of something that is no file of a known length, such as a pipe or a device, bytes.
+const ENDLESS: u64 = 1 << 30;
+
+/// Reads a file; what has no length of its own is refused where it does not end.
+fn whole(path: &Path) -> Result<Vec<u8>, Refusal> {
+    let failed = |error: std::io::Error| Refusal::io(path, &error);
+    let file = fs::File::open(path).map_err(failed)?;
+    if file.metadata().map_err(failed)?.is_file() {
+        return fs::read(path).map_err(failed);
+    }
+    bounded(file, ENDLESS).map_err(failed)?.ok_or_else(|| {
+        Refusal::at(path, "is no file but a device or pipe of more than 1 GiB; save it to a file first")
+    })
+}
+
+/// What `source` holds; `None` where that is more than `most` bytes.
+fn bounded(source: impl Read, most: u64) -> std::io::Result<Option<Vec<u8>>> {
+    let mut bytes = Vec::new();
+    source.take(most + 1).read_to_end(&mut bytes)?;
+    Ok((bytes.len() as u64 <= most).then_some(bytes))
+}
+
 /// A byte order mark is no JSON, but editors leave one.
 fn without_mark(text: &str) -> &str {
     text.trim_start_matches('\u{feff}')
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_never_ends_is_not_read_to_its_end() {
+        assert_eq!(bounded(std::io::repeat(0), 1000).unwrap(), None);
+        assert_eq!(bounded(&b"four"[..], 4).unwrap().as_deref(), Some(&b"four"[..]));
+    }
 }

@@ -30,10 +30,10 @@ pub(crate) fn file(
         (modulus_std / modulus).hypot(moment_std / moment).hypot(3.0 * draft.ruler / column.length);
     let matrix = || json!([[known(stiffness, relative * stiffness), 0.0], [0.0, 0.0]]);
     let (mut bodies, mut points, mut joints) = (Map::new(), Map::new(), Map::new());
-    let name = |storey: usize| match draft.points.get(storey - 1) {
-        Some(name) => name.clone(),
-        None => storey.to_string(),
-    };
+    // Storeys beyond the recording's points take numbers that no point has.
+    let free = (1..).map(|number: usize| number.to_string()).filter(|number| !draft.points.contains(number));
+    let names: Vec<String> = draft.points.iter().cloned().chain(free).take(storeys).collect();
+    let name = |storey: usize| names[storey - 1].clone();
     for storey in 1..=storeys {
         let body = format!("F{storey}");
         bodies.insert(body.clone(), json!({ "mass": mass, "rotates": false }));

@@ -84,8 +84,10 @@ pub enum ImportError {
         "the HDF5 file cannot be read ({0}); save it again with `save(..., '-v7')`, or export the FRFs as UFF (dataset 58)"
     )]
     Hdf5(String),
-    /// An HDF5 file that MATLAB did not write.
-    #[error("is an HDF5 file without FRFs that are known here ({0}); export the FRFs as UFF (dataset 58)")]
+    /// A MATLAB or HDF5 file without anything that is read.
+    #[error(
+        "is a MATLAB or HDF5 file without FRFs that are known here ({0}); export the FRFs as UFF (dataset 58)"
+    )]
     NoFrfInMat(String),
     /// A variable that cannot be used.
     #[error("variable `{variable}`: {problem}")]

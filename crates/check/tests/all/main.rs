@@ -228,3 +228,82 @@ fn the_result_serializes_with_its_decisions() {
     assert_eq!(value["numbers"][0]["path"], "bodies/A/mass");
     assert!(value["recording"].get("measured").is_none());
 }
+
+#[test]
+fn reciprocal_frfs_of_opposite_signs_are_odd() {
+    let fixture = fixture(&[]);
+    let frfs = recorded(&fixture);
+    let both = |pair: &FrfPair| {
+        [("1", "2"), ("2", "1")].contains(&(pair.response.point.as_str(), pair.reference.point.as_str()))
+    };
+    let exact =
+        frfs.index_of(&FrfPair::transverse("1", "2")).map(|index| frfs.values(index).to_vec()).unwrap();
+    let (count, pairs) = (frfs.lines().len(), frfs.pairs().to_vec());
+    let frfs = frfs.clone().with_values(|at, value| match both(&pairs[at / count]) {
+        true if pairs[at / count].response.point == "1" => exact[at % count],
+        true => -exact[at % count],
+        false => value,
+    });
+    let check = check(&fixture, frfs);
+    let pair =
+        check.recording.as_ref().unwrap().reciprocity.iter().find(|pair| both(&pair.frf)).unwrap().clone();
+    assert!((pair.difference - 2.0).abs() < 1e-9 && pair.odd, "{pair:?}");
+}
+
+#[test]
+fn one_turned_frf_of_a_response_and_a_reference_of_its_own_is_told_once_and_turned_once() {
+    let fixture = fixture(&[]);
+    let own: Vec<FrfPair> =
+        [("1", "1"), ("2", "1"), ("3", "1"), ("4", "4")].map(|(i, j)| FrfPair::transverse(i, j)).to_vec();
+    let lines = SpectralLines::even(5.0, 2.5, 400).unwrap();
+    let frfs = synthesize(&fixture, &own, &lines, Instrument::AsRecorded).unwrap();
+    let turned = changed(&frfs, |pair| pair.response.point == "4", |value, _| -value);
+    let check = check(&fixture, turned);
+    let told = check.remarks.iter().filter(|remark| remark.says.contains("opposite sign")).count();
+    assert_eq!(told, 1, "{:#?}", check.remarks);
+    let channels = &check.recording.as_ref().unwrap().channels;
+    assert_eq!(channels.iter().filter(|channel| channel.turned).count(), 1, "{channels:#?}");
+}
+
+#[test]
+fn a_turned_frf_that_is_the_only_one_is_not_held_against_others() {
+    let fixture = fixture(&[]);
+    let lines = SpectralLines::even(5.0, 2.5, 400).unwrap();
+    let frfs =
+        synthesize(&fixture, &[FrfPair::transverse("4", "1")], &lines, Instrument::AsRecorded).unwrap();
+    let check = check(&fixture, changed(&frfs, |_| true, |value, _| -value));
+    assert!(
+        check.remarks.iter().any(|remark| remark.says.contains("sensor or hammer points the other way")),
+        "{:#?}",
+        check.remarks
+    );
+    assert!(!check.remarks.iter().any(|remark| remark.says.contains("neither all")), "{:#?}", check.remarks);
+}
+
+#[test]
+fn a_soft_suspension_that_the_fixture_lacks_is_not_called_hum_alone() {
+    let fixture = fixture(&[]);
+    let hung = self::fixture(&[(
+        "/supports",
+        json!({ "a": { "point": "1", "stiffness": 4e3 }, "b": { "point": "4", "stiffness": 4e3 } }),
+    )]);
+    let check = check(&fixture, recorded(&hung));
+    let told: Vec<_> =
+        check.remarks.iter().filter(|remark| remark.says.contains("contradict all others")).collect();
+    assert!(!told.is_empty(), "{:#?}", check.remarks);
+    assert!(
+        told.iter().all(|remark| remark.weight == Weight::Odd
+            && remark.says.contains("a suspension that the fixture lacks")),
+        "{told:#?}"
+    );
+}
+
+#[test]
+fn a_suspension_too_stiff_to_weigh_by_is_told_with_its_frequency_and_not_with_an_empty_band() {
+    let ground = json!({ "a": { "point": "1", "stiffness": 2e6 }, "b": { "point": "4", "stiffness": 2e6 } });
+    let fixture = fixture(&[("/supports", ground)]);
+    let check = check(&fixture, recorded(&fixture));
+    let recording = check.recording.unwrap();
+    let why = recording.no_mass_line.unwrap();
+    assert!(why.contains("is too near the first bending mode") || why.contains("is held"), "{why}");
+}

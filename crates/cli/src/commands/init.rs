@@ -1,6 +1,6 @@
 //! `jointscope init`: dimensions and materials in, a fixture file with notes out.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
 
 use clap::{ArgGroup, Args};
@@ -84,6 +84,9 @@ pub fn run(arguments: &InitArguments) -> Result<String, Refusal> {
 fn structure(arguments: &InitArguments) -> Result<Structure, Refusal> {
     let InitArguments { blocks, strip, frame, storey_mass, columns, column_count, beam, clamped, .. } =
         arguments;
+    if *clamped && beam.is_none() {
+        return Err(Refusal::new("--clamped is of a beam: give `--beam BAR` with it, or leave it out"));
+    }
     match (blocks.as_slice(), strip, frame, storey_mass, columns, beam) {
         ([a, rest @ ..], Some(strip), ..) => {
             let b = rest.first().unwrap_or(a);
@@ -106,6 +109,7 @@ fn structure(arguments: &InitArguments) -> Result<Structure, Refusal> {
 
 /// The nodes of recordings, as names of points, and what is to be said of their directions.
 fn points(files: &[PathBuf], lines: &mut Vec<String>) -> Result<Vec<String>, Refusal> {
+    input::once(files)?;
     let mut channels: BTreeSet<FileChannel> = BTreeSet::new();
     for path in files {
         for dataset in &input::source(path)?.file.datasets {
@@ -129,13 +133,21 @@ fn points(files: &[PathBuf], lines: &mut Vec<String>) -> Result<Vec<String>, Ref
             input::names(files)
         )));
     }
-    let elsewhere: BTreeSet<String> = channels
+    let upright: BTreeSet<i64> = channels
         .iter()
-        .filter(|channel| !matches!(channel.direction.abs(), 0 | 2 | 6) && nodes.contains(&channel.node))
-        .map(|channel| format!("{channel}={}:+y", channel.node))
+        .filter(|channel| matches!(channel.direction.abs(), 0 | 2))
+        .map(|channel| channel.node)
         .collect();
+    // One direction a node is the fixture's: of a triaxial sensor the first that there is, and none where ±y is among them.
+    let mut elsewhere: BTreeMap<i64, &FileChannel> = BTreeMap::new();
+    for channel in channels.iter().filter(|channel| nodes.contains(&channel.node)) {
+        if !matches!(channel.direction.abs(), 0 | 2 | 6) && !upright.contains(&channel.node) {
+            elsewhere.entry(channel.node).or_insert(channel);
+        }
+    }
     if !elsewhere.is_empty() {
-        let entries: Vec<String> = elsewhere.into_iter().collect();
+        let entries: Vec<String> =
+            elsewhere.into_iter().map(|(node, channel)| format!("{channel}={node}:+y")).collect();
         lines.push(format!(
             "the recording's directions are not ±y throughout: say with every command which of them are the fixture's, `--map {}`",
             entries.join(" ")

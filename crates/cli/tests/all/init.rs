@@ -82,3 +82,35 @@ fn the_schema_is_printed_or_written_and_is_one() {
     assert_eq!(printed["$schema"], "https://json-schema.org/draft/2020-12/schema");
     assert!(printed["properties"]["bodies"]["description"].as_str().unwrap().contains("rigid blocks"));
 }
+
+#[test]
+fn a_clamp_of_what_is_no_beam_and_standard_input_twice_are_refused() {
+    let bench = Bench::new("init-clamped-frame");
+    let frame = [
+        "init",
+        "--frame",
+        "3",
+        "--storey-mass",
+        "3.5",
+        "--columns",
+        "300x25x6:steel",
+        "--clamped",
+        "-o",
+        "a.json",
+    ];
+    bench.refused(&frame, &["--clamped is of a beam"]);
+    let twice = ["init", "--beam", "500x40x6:steel", "--points-from", "-", "-", "-o", "a.json"];
+    bench.refused(&twice, &["given twice"]);
+}
+
+#[test]
+fn a_map_for_triaxial_nodes_names_one_direction_of_each() {
+    let bench = Bench::new("init-triaxial");
+    bench.write(
+        "t.csv",
+        "f,1:+x/1:+z real,1:+x/1:+z imag,1:+z/1:+z real,1:+z/1:+z imag\n10,1,0,2,0\n20,1,0,2,0\n",
+    );
+    let said = bench.done(&["init", "--beam", "500x40x6:steel", "--points-from", "t.csv", "-o", "a.json"]);
+    let map = said.split("`--map ").nth(1).unwrap().split('`').next().unwrap();
+    assert_eq!(map.split_whitespace().count(), 1, "{said}");
+}

@@ -157,3 +157,13 @@ fn what_cannot_be_built_is_told_in_a_sentence() {
         assert!(told.contains(part), "{text}: {told}");
     }
 }
+
+#[test]
+fn storeys_beyond_the_points_of_a_recording_take_names_that_no_point_has() {
+    let structure = Structure::Frame { storeys: 4, mass: 3.5, column: bar("300x25x6:aluminium"), columns: 4 };
+    let draft = Draft { points: vec!["2".into(), "3".into()], ..Draft::new(structure) };
+    let fixture = draft.fixture().unwrap();
+    let names: Vec<&str> = fixture.points().iter().map(|point| point.name.as_str()).collect();
+    assert_eq!(names.len(), 4, "{names:?}");
+    assert!(["1", "2", "3", "4"].iter().all(|name| names.contains(name)), "{names:?}");
+}

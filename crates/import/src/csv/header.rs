@@ -178,10 +178,22 @@ fn split_unit(header: &str) -> (String, String) {
     }
 }
 
-/// Whether a line below a header is one of units: the header says what its columns are, and that line does not.
-pub(super) fn is_line_of_units(header: &[String], below: &[String]) -> bool {
-    let known = |fields: &[String]| fields.iter().enumerate().all(|(at, field)| column(at, field).is_some());
-    known(header) && !known(below)
+/// Whether all fields of a line name columns.
+pub(super) fn is_header(fields: &[String]) -> bool {
+    fields.iter().enumerate().all(|(at, field)| column(at, field).is_some())
+}
+
+/// Whether a line below a header is one of units: the header says what its columns are, and that line does not, and holds no number: a row
+/// with one field that is none is no line of units.
+pub(super) fn is_line_of_units(
+    header: &[String],
+    below: &[String],
+    is_number: impl Fn(&str) -> bool,
+) -> bool {
+    if below.iter().any(|field| is_number(field)) {
+        return false;
+    }
+    is_header(header) && !is_header(below)
 }
 
 #[cfg(test)]

@@ -158,6 +158,16 @@ impl Table {
             });
         };
         let width = all[first].fields.len();
+        // A row with a field that is no number, above the first that has none, is a row of the table all the same.
+        let holds_number = |row: &Row| row.fields.iter().any(|field| rows.number(field).is_some());
+        let mut first = first;
+        while let Some(before) = first.checked_sub(1).map(|before| &all[before])
+            && before.fields.len() == width
+            && holds_number(before)
+            && !super::header::is_header(&before.fields)
+        {
+            first -= 1;
+        }
         let mut above = all[..first].iter().rev().filter(|row| row.fields.len() == width);
         let Some(nearest) = above.next() else {
             let why =
@@ -165,14 +175,20 @@ impl Table {
             return Err(ImportError::NoTable { why });
         };
         let (header, units) = match above.next() {
-            Some(header) if super::header::is_line_of_units(&header.fields, &nearest.fields) => (
-                header,
-                nearest
-                    .fields
-                    .iter()
-                    .map(|unit| unit.trim_matches(['[', ']', '(', ')']).to_owned())
-                    .collect(),
-            ),
+            Some(header)
+                if super::header::is_line_of_units(&header.fields, &nearest.fields, |field| {
+                    rows.number(field).is_some()
+                }) =>
+            {
+                (
+                    header,
+                    nearest
+                        .fields
+                        .iter()
+                        .map(|unit| unit.trim_matches(['[', ']', '(', ')']).to_owned())
+                        .collect(),
+                )
+            }
             _ => (nearest, vec![String::new(); width]),
         };
         let mut table = Table {
@@ -185,6 +201,7 @@ impl Table {
         for row in &all[first..] {
             table.add(row, rows)?;
         }
+        table.of_one_decimal_sign(&all[first..])?;
         Ok(table)
     }
 
@@ -209,6 +226,23 @@ impl Table {
         }
         self.numbers.push(values);
         self.lines.push(row.line);
+        Ok(())
+    }
+
+    /// Refuses a column in which one number has a decimal comma and another a point: one of the two parts thousands, or columns of two
+    /// programs were put together.
+    fn of_one_decimal_sign(&self, rows: &[Row]) -> Result<(), ImportError> {
+        for at in 0..self.headers.len() {
+            let first = |sign: char| rows.iter().find(|row| row.fields[at].contains(sign));
+            if let (Some(comma), Some(point)) = (first(','), first('.')) {
+                let (early, late) = if comma.line < point.line { (comma, point) } else { (point, comma) };
+                let problem = format!(
+                    "`{}`, but `{}` on line {}: a decimal comma and a decimal point in one column; export it with one of them",
+                    late.fields[at], early.fields[at], early.line
+                );
+                return Err(self.error(late.line, at, problem));
+            }
+        }
         Ok(())
     }
 

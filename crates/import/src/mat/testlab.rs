@@ -15,24 +15,29 @@ pub(super) fn is_block(value: &Value) -> bool {
     value.field("x_values").is_some() && value.field("y_values.values").is_some()
 }
 
-/// Reads a block: one function a column.
+/// Reads a block: one function a column, or a row where only the rows are as long as its lines.
 pub(super) fn read(variable: &str, block: &Value, sink: &mut Sink) -> Result<(), ImportError> {
     let wrong =
         |problem: &str| ImportError::Variable { variable: variable.to_owned(), problem: problem.to_owned() };
-    let Some(Value::Numbers { re, im, .. }) = block.field("y_values.values") else {
+    let Some(Value::Numbers { dims, re, im }) = block.field("y_values.values") else {
         return Err(wrong("`y_values.values` holds no numbers; export it again"));
     };
     let lines = lines(block).ok_or_else(|| {
         wrong("`x_values` holds no start_value, increment and number_of_values; export it again")
     })?;
-    if lines.is_empty() || !re.len().is_multiple_of(lines.len()) || re.is_empty() {
+    let Some(by_column) = by_column(dims, lines.len()).filter(|_| !re.is_empty()) else {
+        let size = dims.iter().map(usize::to_string).collect::<Vec<_>>().join("×");
         let problem = format!(
-            "{} values do not make functions of {} lines (x_values.number_of_values); export it again",
-            re.len(),
+            "{size} values do not make functions of {} lines (x_values.number_of_values); export it again",
             lines.len()
         );
         return Err(ImportError::Variable { variable: variable.to_owned(), problem });
-    }
+    };
+    let turned = |values: &[f64]| transposed(values, re.len() / lines.len());
+    let (re, im) = match by_column {
+        true => (re.clone(), im.clone()),
+        false => (turned(re), im.as_deref().map(turned)),
+    };
     let text = |path: &str| block.field(path).map(Value::texts).unwrap_or_default();
     let x_unit = text("x_values.quantity.label").into_iter().next().unwrap_or_default();
     if matches!(x_unit.trim(), "s" | "ms") {
@@ -47,6 +52,17 @@ pub(super) fn read(variable: &str, block: &Value, sink: &mut Sink) -> Result<(),
             })?
         }
     };
+    // Values are stored in SI: the factor brings them to the unit of the label, or one of the two is wrong.
+    if block.field("y_values.quantity.unit_transformation.factor").is_some()
+        && let Some(si) = si_of(&unit)
+        && (factor * si - 1.0).abs() > DISPUTED
+    {
+        let problem = format!(
+            "the factor {factor} of `y_values.quantity.unit_transformation` does not bring SI values to `{unit}`, as {:.6} would; export it again in SI units, or as UFF (dataset 58)",
+            si.recip()
+        );
+        return Err(ImportError::Variable { variable: variable.to_owned(), problem });
+    }
     let names = text("function_record.name");
     let columns = re.len() / lines.len();
     for at in 0..columns {
@@ -70,7 +86,7 @@ pub(super) fn read(variable: &str, block: &Value, sink: &mut Sink) -> Result<(),
                 sink.used.insert(used);
                 entry.pair.clone()
             }
-            None => match (pair_of(&name), im) {
+            None => match (pair_of(&name), &im) {
                 (Some(pair), _) => pair,
                 // What is no FRF is told of, and nobody asks for its nodes.
                 (None, None) => ChannelPair { response: Node::default(), reference: Node::default() },
@@ -80,7 +96,7 @@ pub(super) fn read(variable: &str, block: &Value, sink: &mut Sink) -> Result<(),
             },
         };
         let title = if name.is_empty() { &key } else { &name };
-        let dataset = match im {
+        let dataset = match &im {
             Some(im) => {
                 let values = re[range.clone()].iter().zip(&im[range]);
                 let values = values.map(|(re, im)| Complex64::new(re * factor, im * factor)).collect();
@@ -105,6 +121,56 @@ fn real(pair: &ChannelPair, lines: (&[f64], &str), unit: &str, name: &str, value
         debug_assert!(matches!(dataset.data, Data::Real(_)));
     }
     dataset
+}
+
+/// Relative departure from which a factor is not that of its label.
+const DISPUTED: f64 = 1e-2;
+
+/// Whether functions are the columns of a matrix, or its rows; `None` where neither are so many lines long.
+fn by_column(dims: &[usize], lines: usize) -> Option<bool> {
+    let longer: Vec<usize> = dims.iter().copied().filter(|size| *size != 1).collect();
+    match (lines, dims, longer.as_slice()) {
+        (0, ..) => None,
+        // One function, or functions of one line.
+        (_, _, []) => (lines == 1).then_some(true),
+        (_, _, [one]) if *one == lines || lines == 1 => Some(true),
+        (_, [rows, ..], _) if *rows == lines => Some(true),
+        (_, [_, columns], _) if *columns == lines => Some(false),
+        _ => None,
+    }
+}
+
+/// A matrix of so many rows, column after column, as its rows, one after the other.
+fn transposed(values: &[f64], rows: usize) -> Vec<f64> {
+    let columns = values.len() / rows.max(1);
+    (0..rows).flat_map(|row| (0..columns).map(move |column| values[column * rows + row])).collect()
+}
+
+/// SI units in one of a label such as `g/N`, `(m/s^2)/N` or `mm/s²/kN`; `None` where a name in it is not known here.
+fn si_of(label: &str) -> Option<f64> {
+    let text: String =
+        label.replace('²', "^2").chars().filter(|c| !c.is_whitespace() && !"()[]".contains(*c)).collect();
+    let mut si = 1.0;
+    for (place, part) in text.split('/').enumerate() {
+        let (name, power) = match part.strip_suffix("^2").or_else(|| part.strip_suffix("s2").map(|_| "s")) {
+            Some(name) => (name, 2),
+            None => (part, 1),
+        };
+        let factor: f64 = match name {
+            "m" | "s" | "N" | "rad" => 1.0,
+            "g" | "gn" => 9.80665,
+            "mm" | "mN" => 1e-3,
+            "cm" => 1e-2,
+            "um" | "µm" | "μm" => 1e-6,
+            "in" => 0.0254,
+            "ft" => 0.3048,
+            "kN" => 1e3,
+            "lbf" => 4.448_221_615_260_5,
+            _ => return None,
+        };
+        si *= factor.powi(if place == 0 { power } else { -power });
+    }
+    Some(si)
 }
 
 fn lines(block: &Value) -> Option<Vec<f64>> {
@@ -143,6 +209,85 @@ fn pair_of(name: &str) -> Option<ChannelPair> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    fn block(rows: usize, columns: usize, factor: Option<f64>, label: &str) -> Value {
+        let number = |value: f64| Value::Numbers { dims: vec![1, 1], re: vec![value], im: None };
+        let of = |fields: Vec<(&str, Value)>| {
+            Value::Structs(vec![fields.into_iter().map(|(name, value)| (name.to_owned(), value)).collect()])
+        };
+        // Function 0 of three lines reads 0, 1, 2, function 1 reads 10, 11, 12.
+        let value = |row: usize, column: usize| match rows {
+            3 => 10.0 * column as f64 + row as f64,
+            _ => 10.0 * row as f64 + column as f64,
+        };
+        let re: Vec<f64> = (0..columns).flat_map(|c| (0..rows).map(move |r| value(r, c))).collect();
+        let im = Some(vec![0.0; re.len()]);
+        let mut quantity = vec![("label", Value::Text(vec![label.to_owned()]))];
+        quantity.extend(factor.map(|f| ("unit_transformation", of(vec![("factor", number(f))]))));
+        of(vec![
+            (
+                "x_values",
+                of(vec![
+                    ("start_value", number(10.0)),
+                    ("increment", number(1.0)),
+                    ("number_of_values", number(3.0)),
+                ]),
+            ),
+            (
+                "y_values",
+                of(vec![
+                    ("values", Value::Numbers { dims: vec![rows, columns], re, im }),
+                    ("quantity", of(quantity)),
+                ]),
+            ),
+            ("function_record", of(vec![("name", Value::Text(vec!["4/1".into(), "3/1".into()]))])),
+        ])
+    }
+
+    fn values(block: &Value) -> Result<Vec<Vec<f64>>, String> {
+        let mut used = std::collections::BTreeSet::new();
+        let map = crate::ColumnMap::default();
+        let mut sink =
+            Sink { file: jointscope_uff::UffFile::default(), map: &map, used: &mut used, file_name: "a.mat" };
+        read("FRF", block, &mut sink).map_err(|error| error.to_string())?;
+        let of = |dataset: &Dataset58| match &dataset.data {
+            Data::Complex(values) => values.iter().map(|value| value.re).collect(),
+            _ => Vec::new(),
+        };
+        Ok(sink.file.datasets.iter().map(of).collect())
+    }
+
+    #[test]
+    fn functions_are_the_columns_of_a_block_or_its_rows_where_those_are_as_long_as_its_lines() {
+        let expected = vec![vec![0.0, 1.0, 2.0], vec![10.0, 11.0, 12.0]];
+        for (rows, columns) in [(3, 2), (2, 3)] {
+            assert_eq!(
+                values(&block(rows, columns, None, "m/s^2/N")).as_ref(),
+                Ok(&expected),
+                "{rows}×{columns}"
+            );
+        }
+        for (rows, columns) in [(1, 3), (3, 1)] {
+            assert_eq!(values(&block(rows, columns, None, "m/s^2/N")).unwrap(), expected[..1]);
+        }
+        let refused = values(&block(6, 2, None, "m/s^2/N")).unwrap_err();
+        assert!(refused.contains("6×2 values do not make functions of 3 lines"), "{refused}");
+    }
+
+    #[test]
+    fn a_factor_that_contradicts_its_label_is_refused() {
+        let refused = values(&block(3, 2, Some(9.80665), "g/N")).unwrap_err();
+        assert!(
+            refused.contains("the factor 9.80665") && refused.contains("`g/N`, as 0.101972 would"),
+            "{refused}"
+        );
+        assert!(values(&block(3, 2, Some(1.0), "g/N")).is_err());
+        for (factor, label) in
+            [(1.0 / 9.80665, "g/N"), (1.0, "(m/s^2)/N"), (1e6, "mm/s²/kN"), (7.0, "bogus/N")]
+        {
+            assert!(values(&block(3, 2, Some(factor), label)).is_ok(), "{label}");
+        }
+    }
 
     #[test]
     fn names_of_functions_hold_node_and_direction_or_nothing() {

@@ -12,7 +12,7 @@ use crate::ImportError;
 
 /// Arrays in arrays: deeper than anybody nests structures.
 const DEEPEST: usize = 32;
-/// What a compressed variable may grow to, in bytes.
+/// What the compressed variables of a file may grow to together, in bytes.
 const LARGEST: u64 = 1 << 30;
 
 const MI_MATRIX: u32 = 14;
@@ -26,18 +26,21 @@ pub(super) fn read(bytes: &[u8]) -> Result<Vec<(String, Value)>, ImportError> {
         _ => return Err(damaged(126, "no mark of the byte order in the header of the MAT-file")),
     };
     let mut elements = Elements { bytes, position: 128, base: 0, big_endian };
-    let mut variables = Vec::new();
+    let (mut variables, mut left) = (Vec::new(), LARGEST);
     while let Some(element) = elements.next()? {
         match element.kind {
             MI_MATRIX => variables.push(array(element.inner(big_endian), 0)?),
             MI_COMPRESSED => {
                 let mut inflated = Vec::new();
-                let decoded = ZlibDecoder::new(element.bytes).take(LARGEST + 1).read_to_end(&mut inflated);
+                let decoded = ZlibDecoder::new(element.bytes).take(left + 1).read_to_end(&mut inflated);
                 let why = match decoded {
-                    Ok(size) if size as u64 > LARGEST => {
-                        Some("a compressed variable of more than 1 GiB".to_owned())
+                    Ok(size) if size as u64 > left => {
+                        Some("compressed variables of more than 1 GiB together".to_owned())
                     }
-                    Ok(_) => None,
+                    Ok(size) => {
+                        left -= size as u64;
+                        None
+                    }
                     Err(error) => Some(format!("a compressed variable cannot be unpacked ({error})")),
                 };
                 if let Some(why) = why {

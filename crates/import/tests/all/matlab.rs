@@ -121,7 +121,7 @@ fn damaged_files_and_files_without_frfs_say_so() {
     broken[200] ^= 0x55;
     refused(&broken, &[], &["cannot be unpacked"]);
     refused(&TESTLAB[2].2[..4000], &[], &["HDF5", "'-v7'", "dataset 58"]);
-    refused(&PLAIN[..128], &[], &["without FRFs", "no variable"]);
+    refused(&PLAIN[..128], &[], &["is a MATLAB or HDF5 file without FRFs", "no variable"]);
     let header = [b"MATLAB 5.0 MAT-file".to_vec(), vec![b' '; 109]].concat();
     refused(&header, &[], &["byte 126", "byte order"]);
 }

@@ -144,3 +144,26 @@ proptest! {
         prop_assert_eq!(&all[0].data, &Data::Complex(expected));
     }
 }
+
+#[test]
+fn a_first_row_with_a_field_that_is_no_number_is_named_and_not_passed_over() {
+    let table =
+        |row: &str, units: &str| format!("frequency,4/1 real,4/1 imag\n{units}{row}\n12.5,-1.5,0\n15,1,1\n");
+    for (row, what) in
+        [("10,NaN,2", "`NaN`"), ("10,1e999,2", "`1e999`"), ("10,,2", "blank"), ("10,--,2", "`--`")]
+    {
+        refused(&table(row, ""), &[], &["line 2, column 2 (`4/1 real`)", what]);
+        refused(&table(row, "Hz,m/s^2/N,m/s^2/N\n"), &[], &["line 3, column 2 (`4/1 real`)", what]);
+    }
+    refused(&table("NaN,1,2", ""), &[], &["line 2, column 1 (`frequency`)", "`NaN`"]);
+    let two = "frequency,4/1 real,4/1 imag\n10,NaN,2\n11,NaN,2\n12.5,-1.5,0\n";
+    refused(two, &[], &["line 2, column 2"]);
+}
+
+#[test]
+fn a_column_with_decimal_commas_and_points_is_refused() {
+    let table = "f;4/1 real;4/1 imag\n10;0,5;2\n12,5;-1.500;0\n15,0;1;0\n";
+    refused(table, &[], &["line 3, column 2 (`4/1 real`)", "`-1.500`, but `0,5` on line 2"]);
+    // A column of its own program may have its own sign.
+    check("f;4/1 real [m/s^2/N];4/1 imag\n10;0,0;2.0\n12,5;-1,5;0.0\n", &[], "m/s^2/N");
+}
