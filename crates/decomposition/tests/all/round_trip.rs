@@ -106,11 +106,11 @@ proptest! {
         let k = end_stiffness(blocks.bending_stiffness, blocks.length);
         let mut found = spectrum(&blocks.fixture(), &FOUR, Relation::Exact);
         // Below a side's resonance on its supports its compliance is the difference of two large numbers: up to
-        // support/(ω²m) times the rounding comes on top of the relation's own condition.
+        // support/(ω²m) times the rounding comes on top of the relation's own condition, and that of taking supports and masses off each side.
         for line in &mut found.solved {
             let omega = std::f64::consts::TAU * line.frequency;
             let lightest = blocks.mass[0].min(blocks.mass[1]);
-            line.condition *= 1.0 + support / (omega * omega * lightest);
+            line.condition *= 10.0 * (1.0 + support / (omega * omega * lightest));
         }
         check(&found, k, |_| k.scale(beta), 0.0)?;
     }
