@@ -178,7 +178,15 @@ impl<'a> Problem<'a> {
         priors: &[Prior],
         (nearby, set_out): (Option<Vec<Vec<f64>>>, SetOut),
     ) -> Option<ModalFit> {
-        let from = |sizes| self.fitted_with(start, standing.clone(), priors, (nearby.clone(), sizes));
+        let residual = self.residual(&standing, &standing.modelled);
+        let nearby = nearby.filter(|slopes| slopes.iter().all(|slope| slope.len() == residual.len()));
+        let point = Iterate { hypothesis: start.clone(), modelled: standing.modelled.clone(), residual };
+        let derivatives = match nearby {
+            Some(nearby) => nearby,
+            None => self.slopes_at(&point, &standing, priors)?,
+        };
+        let from =
+            |sizes| self.fitted_with((point.clone(), derivatives.clone()), standing.clone(), priors, sizes);
         let usual = from(Some(*self.sizes));
         if set_out == SetOut::Usual || usual.as_ref().is_some_and(|fit| self.is_usual(&fit.evidence.sizes)) {
             return usual;
@@ -191,22 +199,15 @@ impl<'a> Problem<'a> {
         sizes.to_array().iter().zip(self.sizes.to_array()).all(|(size, usual)| *size <= usual)
     }
 
-    /// Sizes of the error and parameters taken in turn, from these sizes, or from those that the start asks for.
+    /// Sizes of the error and parameters taken in turn from a point with its derivatives, and from these sizes or those that it asks for.
     fn fitted_with(
         &self,
-        start: &Hypothesis,
+        (mut point, mut derivatives): (Iterate, Vec<Vec<f64>>),
         mut standing: Standing,
         priors: &[Prior],
-        (nearby, sizes): (Option<Vec<Vec<f64>>>, Option<ErrorSizes>),
+        sizes: Option<ErrorSizes>,
     ) -> Option<ModalFit> {
-        let residual = self.residual(&standing, &standing.modelled);
-        let nearby = nearby.filter(|slopes| slopes.iter().all(|slope| slope.len() == residual.len()));
-        let mut point = Iterate { hypothesis: start.clone(), modelled: standing.modelled.clone(), residual };
-        let mut derivatives = match nearby {
-            Some(nearby) => nearby,
-            None => self.slopes_at(&point, &standing, priors)?,
-        };
-        let rarity = start.rarity();
+        let rarity = point.hypothesis.rarity();
         let mut sizes = match sizes {
             Some(sizes) => sizes,
             None => self.evidence(&point, priors, &derivatives, (&standing.comparison, None))?.1.sizes,
@@ -373,6 +374,7 @@ struct Rest {
 }
 
 /// Where a fit stands on its way.
+#[derive(Clone)]
 struct Iterate {
     hypothesis: Hypothesis,
     modelled: ModelledModes,
