@@ -1,8 +1,8 @@
 //! Every channel by itself: what its FRFs have in common beside those of the others.
 
 use crate::FrfCheck;
-use crate::frfs::median;
 use crate::remark::Remark;
+use jointscope_screening::median;
 use serde::Serialize;
 use std::collections::BTreeMap;
 

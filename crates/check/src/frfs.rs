@@ -1,6 +1,7 @@
 //! Every FRF by itself: averages, coherence, noise, and how far it is from what the fixture makes of it.
 
 use jointscope_frf::noise::NoiseSource;
+use jointscope_screening::median;
 use jointscope_spectra::{FrfPair, FrfSet};
 use num_complex::Complex64;
 use serde::Serialize;
@@ -92,10 +93,4 @@ fn sign(measured: &[Complex64], modelled: &[Complex64]) -> Option<f64> {
     let cosines = measured.iter().zip(modelled).map(|(a, b)| (a * b.conj()).re / (a.norm() * b.norm()));
     let cosines: Vec<f64> = cosines.filter(|cosine| cosine.is_finite()).collect();
     (!cosines.is_empty()).then(|| cosines.iter().sum::<f64>() / cosines.len() as f64)
-}
-
-/// The median; `None` of nothing.
-pub(crate) fn median(mut values: Vec<f64>) -> Option<f64> {
-    let middle = values.len() / 2;
-    (!values.is_empty()).then(|| *values.select_nth_unstable_by(middle, f64::total_cmp).1)
 }

@@ -57,6 +57,9 @@ use jointscope_fixture::{Damping, Fixture};
 use jointscope_pipeline::{Error, Measurement};
 use serde::Serialize;
 
+/// Values of FRFs above which modes, and lines that contradict others, take longer to find than one waits for a check.
+pub(crate) const MOST_VALUES: usize = 30_000;
+
 /// How FRFs follow from hits, where a recording holds hits.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CheckOptions {

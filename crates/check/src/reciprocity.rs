@@ -1,5 +1,6 @@
 //! Reciprocity: what is measured at i for a blow at j is what is measured at j for a blow at i.
 
+use jointscope_screening::median;
 use jointscope_spectra::{FrfPair, FrfSet};
 use serde::Serialize;
 
@@ -51,7 +52,7 @@ fn of_pair(frfs: &FrfSet, i: usize, j: usize) -> Reciprocity {
         other: frfs.pairs()[j].clone(),
         difference,
         expected,
-        level: crate::frfs::median(levels.collect()).unwrap_or(1.0),
+        level: median(levels.collect()).unwrap_or(1.0),
         odd: difference > LEAST && difference > BEYOND * expected,
     }
 }

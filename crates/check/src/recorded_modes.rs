@@ -1,6 +1,6 @@
 //! The recording's modes beside the fixture's.
 
-use crate::ModelModes;
+use crate::{MOST_VALUES, ModelModes};
 use jointscope_fixture::Fixture;
 use jointscope_modes::{ModalAnalysis, ModesError, ModesOptions};
 use jointscope_pipeline::measured_damping;
@@ -31,8 +31,6 @@ pub struct RecordedModes {
     pub missing: Vec<f64>,
 }
 
-/// Values of FRFs above which a modal analysis takes longer than one waits for a check.
-const MOST: usize = 30_000;
 /// Orders beyond two for every mode of the model.
 const MORE: usize = 10;
 
@@ -41,7 +39,7 @@ const MORE: usize = 10;
 /// # Errors
 /// Why there are none, in a sentence.
 pub(crate) fn of(fixture: &Fixture, frfs: &FrfSet, model: &ModelModes) -> Result<RecordedModes, String> {
-    if frfs.all_values().len() > MOST {
+    if frfs.all_values().len() > MOST_VALUES {
         return Err("there are too many FRFs and lines for a quick look at their modes: `jointscope modes` takes its time".to_owned());
     }
     let last = frfs.lines().hz()[frfs.lines().len() - 1];

@@ -4,7 +4,9 @@ use crate::channels::{self, ChannelCheck};
 use crate::driving_point::{self, DrivingPoint, DrivingPointVerdict};
 use crate::reciprocity::{self, Reciprocity};
 use crate::recorded_modes::{self, RecordedModes};
-use crate::{CheckOptions, FrfCheck, MassLine, ModelModes, Remark, Totals, frfs, has_dashpots, mass_line};
+use crate::{
+    CheckOptions, FrfCheck, MOST_VALUES, MassLine, ModelModes, Remark, Totals, frfs, has_dashpots, mass_line,
+};
 use jointscope_diagnosis::contradictory_lines;
 use jointscope_fixture::{Damping, Effect, Fixture, Quantity, RatiosOf};
 use jointscope_frf::noise::with_variances;
@@ -58,8 +60,6 @@ pub struct RecordingCheck {
 
 /// Damping ratio with which the FRFs of a fixture without any are drawn.
 const ASSUMED: f64 = 0.005;
-/// Values of FRFs above which lines that contradict others take longer to find than one waits for a check.
-const MOST: usize = 30_000;
 
 impl RecordingCheck {
     pub(crate) fn of(
@@ -117,7 +117,7 @@ impl RecordingCheck {
             notes.push("effects of the fixture that depend on amplitude have no FRF: they are left aside beside the recording's".to_owned());
         }
         let mut contradictory = Vec::new();
-        if screened.frfs.all_values().len() > MOST {
+        if screened.frfs.all_values().len() > MOST_VALUES {
             notes.push("there are too many FRFs and lines for a quick look at lines that contradict all others: `jointscope diagnose` takes its time".to_owned());
         } else {
             contradictory = contradictory_lines(fixture, &screened.frfs).unwrap_or_default();

@@ -23,6 +23,7 @@ mod plausibility;
 mod unexcited;
 mod unit;
 
+pub use levels::median;
 pub use plausibility::{Implausible, implausible, plausible};
 
 use jointscope_fixture::Fixture;
