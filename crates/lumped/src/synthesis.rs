@@ -133,7 +133,7 @@ impl ContinuedFrfs<'_> {
                 *frf *= reading.filtered(read);
             }
         }
-        true
+        frfs.iter().all(|frf| frf.is_finite())
     }
 }
 

@@ -1,4 +1,7 @@
 //! Mass-normalised shapes of a model's modes at the channels of a recording, from the residues of driving-point FRFs (φ²) and the signs of transfer FRFs.
+//!
+//! A pole of the measuring chain, as a sensor's mounting makes one, is none of the structure's: it has residues but no shape. Amplitudes whose products are of the
+//! size of these stand for one, so that what errs in them by a share errs in the residues by that share.
 
 use crate::modelled::mode;
 use crate::recorded::RecordedModes;
@@ -16,6 +19,8 @@ pub struct Shapes {
     pub(crate) amplitudes: Vec<Vec<f64>>,
 }
 
+/// Relative distance of natural frequencies below which a pole of the test is one of the structure: an exponential window adds damping alone.
+const SAME: f64 = 1e-3;
 /// References to which the signs of shapes are told, at most.
 const REFERENCES: usize = 4;
 
@@ -46,14 +51,37 @@ impl Shapes {
         let test = ModelledTest::new(fixture, &pairs, recorded.band.1, Instrument::Perfect).ok()?;
         let mut continued = test.continued();
         let n = channels.len();
-        let shape = |pole: &Complex64| -> Option<Vec<f64>> {
-            let residues = mode(&mut continued, *pole, pairs.len())?.residues;
+        let mut of_structure = |pole: &Complex64| -> Option<Vec<f64>> {
+            let mode = mode(&mut continued, *pole, pairs.len())?;
+            if (mode.pole.lambda().im - pole.im).abs() > SAME * pole.norm() {
+                return None;
+            }
+            let residues = mode.residues;
             let squares: Vec<f64> = residues[..n].iter().map(|a| a.norm()).collect();
             let largest = (0..references.len())
                 .max_by(|a, b| squares[references[*a]].total_cmp(&squares[references[*b]]))?;
             let sign = |channel: usize| residues[n + largest * n + channel].re.signum();
             Some((0..n).map(|channel| squares[channel].sqrt() * sign(channel)).collect())
         };
-        Some(Shapes { frfs, amplitudes: poles.iter().map(shape).collect::<Option<_>>()? })
+        let of_chain = |pole: &Complex64| {
+            let test =
+                ModelledTest::new(fixture, &recorded.pairs, recorded.band.1, Instrument::AsRecorded).ok()?;
+            let residues = mode(&mut test.continued(), *pole, recorded.frfs())?.residues;
+            Some(amplitudes_of(&residues, &frfs, n))
+        };
+        let shape = |pole: &Complex64| of_structure(pole).or_else(|| of_chain(pole));
+        let amplitudes = poles.iter().map(shape).collect::<Option<_>>()?;
+        Some(Shapes { frfs, amplitudes })
     }
+}
+
+/// By channel the root of the largest residue among its FRFs.
+fn amplitudes_of(residues: &[Complex64], frfs: &[(usize, usize)], channels: usize) -> Vec<f64> {
+    let mut largest = vec![0.0_f64; channels];
+    for (residue, &(response, reference)) in residues.iter().zip(frfs) {
+        for channel in [response, reference] {
+            largest[channel] = largest[channel].max(residue.norm());
+        }
+    }
+    largest.into_iter().map(f64::sqrt).collect()
 }

@@ -1,7 +1,7 @@
 //! Effects of the measuring chain, each against its definition.
 
 use jointscope_fixture::Fixture;
-use jointscope_lumped::{Instrument, LumpedError, synthesize};
+use jointscope_lumped::{Instrument, LumpedError, ModelledTest, synthesize};
 use jointscope_spectra::{FrfPair, FrfSet, SpectralLines};
 use num_complex::Complex64;
 
@@ -132,4 +132,27 @@ fn physics_that_depends_on_amplitude_has_no_frf_and_the_message_says_what_to_do(
         synthesize(&fixture, &[FrfPair::transverse("4", "1")], &lines, Instrument::Perfect).unwrap_err();
     assert!(matches!(error, LumpedError::NonLinear { index: 0, kind: "gap" }));
     assert!(error.to_string().contains("jointscope simulate"), "{error}");
+}
+
+#[test]
+fn at_the_pole_of_a_sensor_on_its_mounting_frfs_are_not_finite() {
+    let physics =
+        r#"{"kind": "channel_resonance", "place": "response 4", "frequency": 480, "damping_ratio": 0.022}"#;
+    let fixture = fixture(AS_STATED, "", physics);
+    let pairs = [FrfPair::transverse("4", "1"), FrfPair::transverse("3", "2")];
+    let test = ModelledTest::new(&fixture, &pairs, 1000.0, Instrument::AsRecorded).unwrap();
+    let (mut frfs, mut values) = (test.continued(), [Complex64::ZERO; 2]);
+    // s² + 2ζω₀s + ω₀² = 0
+    let (omega, zeta) = (std::f64::consts::TAU * 480.0, 0.022_f64);
+    let pole = omega * Complex64::new(-zeta, (1.0 - zeta * zeta).sqrt());
+    assert!(frfs.at(pole * 1.001, &mut values));
+    let beside = values[0].norm();
+    // Rounding decides whether the pole itself is met; next to it the FRF grows as the distance shrinks.
+    match frfs.at(pole, &mut values) {
+        false => {}
+        true => assert!(values.iter().all(|v| v.is_finite()) && values[0].norm() > 1e6 * beside),
+    }
+    let plain = self::fixture(AS_STATED, "", "");
+    let test = ModelledTest::new(&plain, &pairs, 1000.0, Instrument::AsRecorded).unwrap();
+    assert!(test.continued().at(pole, &mut values), "the structure has no pole there");
 }

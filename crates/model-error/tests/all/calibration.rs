@@ -33,6 +33,24 @@ fn without_noise_recorded_and_modelled_features_are_the_same() {
 }
 
 #[test]
+fn the_resonance_of_a_channel_in_or_near_the_band_is_the_same_in_recording_and_model() {
+    for (to, hz) in [(1500.0, 480.0), (600.0, 720.0), (600.0, 1100.0), (600.0, 480.0)] {
+        let resonance = format!(
+            r#"{{"kind": "channel_resonance", "place": "response 4", "frequency": {hz}, "damping_ratio": 0.022}}"#
+        );
+        let fixture = blocks(&resonance);
+        let compared =
+            Compared::of(&fixture, Recorded::of(&fixture, &four(), &lines(to), noise(None)).modes());
+        for (normalised, (_, name)) in compared.normalised().iter().zip(compared.names()) {
+            assert!(
+                normalised.abs() < 0.5,
+                "{hz} Hz, band to {to} Hz: {name} off by {normalised:.3} deviations"
+            );
+        }
+    }
+}
+
+#[test]
 fn many_modes_above_the_band_are_residual_terms_of_recording_and_model_alike() {
     // Ten masses in a row: four modes below 450 Hz, the fifth at 503 Hz, four more above.
     let fixture = chain(10);
