@@ -136,6 +136,8 @@ pub struct ModalSettings {
     pub refined: (usize, usize),
     /// Starts of each that is fitted alone, and of the best of them (as many as are `tried`) where none explains the modes so.
     pub starts: (usize, usize),
+    /// How often a fit goes on that came to the end of its start's reach.
+    pub farther: usize,
     /// Starts that are fitted in any case, and how far in ln p the density of another may lie below the best of these fits, if that needs no more than usual errors, to be
     /// fitted too: a fit seldom gains so much over its start, and e⁻¹⁵⁰ is no probability.
     pub foremost: (usize, f64),
@@ -198,6 +200,7 @@ impl Default for ModalSettings {
             own: 0.2,
             refined: (20, 6),
             starts: (2, 8),
+            farther: 4,
             foremost: (8, 150.0),
             costly: 0.1,
             again: 0.15,

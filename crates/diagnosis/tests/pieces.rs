@@ -2,7 +2,7 @@
 #![allow(clippy::unwrap_used, missing_docs)]
 
 use jointscope_diagnosis::{Fit, Hypothesis, Observation, catalogue};
-use jointscope_fixture::{Dof, Effect, EffectKind, Fixture, Place};
+use jointscope_fixture::{Dof, Effect, EffectKind, Fixture, Motion, Place, Starts};
 use jointscope_lumped::{Instrument, synthesize};
 use jointscope_spectra::{FrfPair, FrfSet, SpectralLines};
 
@@ -144,6 +144,34 @@ fn the_catalogue_has_every_linear_effect_that_the_fixture_can_have() {
             }
         }
     }
+}
+
+#[test]
+fn what_resonates_between_two_starts_is_within_the_reach_of_one() {
+    // Lines whose lowest is less than a fiftieth of the highest: no band has starts farther apart.
+    let observation = observation(&fixture());
+    let mut seen = 0;
+    for candidate in catalogue(&fixture(), &observation) {
+        for (index, parameter) in candidate.kind.spec().parameters.iter().enumerate() {
+            let (Starts::OverBand { high, .. }, Motion::Logarithm { reach }) =
+                (parameter.starts, parameter.motion)
+            else {
+                continue;
+            };
+            let mut starts: Vec<f64> = candidate.starts.iter().map(|start| start[index]).collect();
+            starts.sort_by(f64::total_cmp);
+            let name = candidate.kind.name();
+            for pair in starts.windows(2) {
+                let apart = (pair[1] / pair[0]).ln();
+                assert!(apart <= 2.0 * reach, "{name}: {pair:?} Hz, reach {reach}");
+            }
+            let end = high * 1200.0;
+            let last = starts[starts.len() - 1];
+            assert!((end / last).ln() <= reach, "{name}: from {last} Hz not to {end} Hz");
+            seen += 1;
+        }
+    }
+    assert!(seen > 0);
 }
 
 #[test]

@@ -5,7 +5,7 @@ use crate::modal::fit::{ModalFit, Problem, SetOut, Standing, linear};
 use crate::modal::prior::{Prior, priors};
 use crate::settings::ModalSettings;
 use crate::{Hypothesis, Watch};
-use jointscope_fixture::{Effect, EffectKind};
+use jointscope_fixture::{Effect, EffectKind, Starts};
 use jointscope_model_error::{ErrorSizes, Linear};
 use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::TAU;
@@ -52,13 +52,14 @@ pub(crate) struct ModalSearch {
     pub without: Vec<f64>,
 }
 
+/// Where among the parameters of a kind the frequency is at which it resonates by itself, if it does.
+fn own_frequency(kind: EffectKind) -> Option<usize> {
+    kind.spec().parameters.iter().position(|parameter| matches!(parameter.starts, Starts::OverBand { .. }))
+}
+
 /// The starts of something that resonates by itself, at these frequencies (Hz).
 fn resonating_at(candidate: &Candidate, hz: &[f64]) -> Vec<Effect> {
-    if candidate.kind != EffectKind::AttachedResonator {
-        return Vec::new();
-    }
-    let parameters = candidate.kind.spec().parameters;
-    let Some(frequency) = parameters.iter().position(|p| p.name == "frequency") else { return Vec::new() };
+    let Some(frequency) = own_frequency(candidate.kind) else { return Vec::new() };
     let first = candidate.starts.first().map(|start| start[frequency]);
     // Every abscissa, mass and damping ratio once.
     let others = candidate.starts.iter().filter(|start| Some(start[frequency]) == first);
@@ -68,6 +69,23 @@ fn resonating_at(candidate: &Candidate, hz: &[f64]) -> Vec<Effect> {
         Effect::new(candidate.kind, candidate.place.clone(), candidate.dof, &start)
     };
     others.flat_map(|start| hz.iter().map(move |hz| at(start, *hz))).collect()
+}
+
+/// A hypothesis whose last effect came to the end of its start's reach, with the reach about where it stands; `None` where it did not, or where that lies
+/// outside of what the candidate's starts span.
+fn farther(hypothesis: &Hypothesis, candidate: &Candidate) -> Option<Hypothesis> {
+    let last = hypothesis.effect_count().checked_sub(1)?;
+    let own = hypothesis.range_of(last);
+    let stopped: Vec<usize> = hypothesis.stopped().into_iter().filter(|at| own.contains(at)).collect();
+    let effect = hypothesis.effects().pop()?;
+    let spanned = own_frequency(candidate.kind).is_some_and(|place| {
+        let starts = || candidate.starts.iter().map(|start| start[place]);
+        let (low, high) = (starts().fold(f64::INFINITY, f64::min), starts().fold(0.0, f64::max));
+        (low..=high).contains(&effect.value(place))
+    });
+    let moved = hypothesis.without(last).with(effect);
+    let released = stopped.iter().any(|at| !moved.stopped().contains(at));
+    (spanned && released).then_some(moved)
 }
 
 /// The best fit of each name that was added last, the most probable first.
@@ -398,7 +416,16 @@ impl Searcher<'_> {
             let standing = self.problem.standing(&hypothesis)?;
             let nearby = self.nearby(&hypothesis, &standing, &base.fit);
             let priors = self.priors(&hypothesis, &company);
-            let fit = self.problem.fitted_from(&hypothesis, standing, &priors, (nearby, set_out))?;
+            let mut fit = self.problem.fitted_from(&hypothesis, standing, &priors, (nearby, set_out))?;
+            // The end of a reach is no place to rest, whatever the evidence says that has a parameter less there.
+            for _ in 0..self.settings.farther {
+                let next = farther(&fit.hypothesis, &self.candidates[c]).and_then(|start| {
+                    let standing = self.problem.standing(&start)?;
+                    self.problem.fitted_from(&start, standing, &priors, (None, set_out))
+                });
+                let Some(next) = next else { break };
+                fit = next;
+            }
             Some(Named { names, exact: self.is_exact(&fit), fit })
         };
         best_of_each(self.problem.work.each(starts, STARTS, fit))

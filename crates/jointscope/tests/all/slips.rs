@@ -70,6 +70,14 @@ fn a_softly_mounted_sensor_resonates_above_the_band() {
 }
 
 #[test]
+fn a_sensor_may_resonate_in_the_band_or_just_above_it_too() {
+    for (hz, seed) in [(690.0, 24), (1250.0, 25)] {
+        let resonance = on(EffectKind::ChannelResonance, Place::Response("3".into()), &[hz, 0.025]);
+        named(&resonance, &four_pairs(), seed, 0.02);
+    }
+}
+
+#[test]
 fn a_cable_from_block_to_block_is_a_bypass_where_it_is() {
     let place = Place::Between("A".into(), "B".into());
     named(&on(EffectKind::Bypass, place, &[-0.02, 0.1, 2e5, 3.0]), &eight_pairs(), 17, 0.05);
