@@ -9,6 +9,7 @@ mod export;
 mod fem;
 mod init;
 mod modes;
+mod plan;
 mod prove;
 mod schema;
 mod show;
@@ -56,6 +57,8 @@ enum Command {
     Show(show::ShowArguments),
     /// Accelerations of an assembly over time under recorded forces, effects that depend on amplitude included.
     Simulate(simulate::SimulateArguments),
+    /// What to measure next: candidate measurements ranked by how well they tell look-alike names apart, or by what they tell of a joint: plan.json and plan.html.
+    Plan(plan::PlanArguments),
     /// How often the diagnosis is right: concealed cases of a simulated laboratory, and a table of scores.
     Prove(prove::ProveArguments),
     /// The paper's Tables 1–6, its values beside the program's.
@@ -79,6 +82,7 @@ impl Program {
             Command::Modes(arguments) => modes::run(arguments),
             Command::Show(arguments) => show::run(arguments),
             Command::Simulate(arguments) => simulate::run(arguments),
+            Command::Plan(arguments) => plan::run(arguments),
             Command::Prove(arguments) => prove::run(arguments),
             Command::Tables(arguments) => tables::run(arguments),
         }
