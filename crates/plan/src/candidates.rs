@@ -1,23 +1,19 @@
-//! What could be measured: every FRF between the fixture's points, masses and springs at them, averages, and every quantity that scales and callipers reach.
+//! What could be measured: every FRF between the fixture's points, masses at them, no supports, averages, and every quantity that scales and callipers reach.
 
 use crate::PlanError;
 use crate::measure::{Measure, two_digits};
 use jointscope_diagnosis::Hypothesis;
 use jointscope_fixture::{BodyKind, Fixture, QuantityKey};
-use jointscope_spectra::{Channel, Dof, FrfPair, SpectralLines};
-use std::f64::consts::TAU;
+use jointscope_spectra::{Channel, Dof, FrfPair};
 
 /// Points that are considered, where none are named.
 const POINTS: usize = 12;
-/// Places of a mass or a spring.
+/// Places of a mass.
 const PLACES: usize = 6;
 /// An added mass as a share of its body's, and how well it and its place are known: a kitchen scale, a ruler.
 const MASS: f64 = 0.1;
 const MASS_KNOWN: f64 = 2e-3;
 const PLACE_KNOWN: f64 = 3e-4;
-/// Natural frequency of the whole structure on an added spring as a share of the middle line's, and how well the spring is known.
-const ON_SPRING: f64 = 0.3;
-const SPRING_KNOWN: f64 = 0.02;
 /// Averages in all.
 const AVERAGES: u32 = 4;
 /// What scales, callipers, a knife edge and a pendulum reach: shares of a mass and an inertia, and lengths in m.
@@ -101,8 +97,8 @@ pub(crate) fn averages() -> Measure {
     Measure::Averages { times: AVERAGES }
 }
 
-/// Masses and springs at the points, one a place.
-pub(crate) fn changes(fixture: &Fixture, points: &[String], lines: &SpectralLines) -> Vec<Measure> {
+/// Masses at the points, one a place, and the structure off its supports.
+pub(crate) fn changes(fixture: &Fixture, points: &[String]) -> Vec<Measure> {
     let mut places: Vec<(usize, f64)> = Vec::new();
     for point in points.iter().filter_map(|name| fixture.point(name)) {
         let same = |&(body, x): &(usize, f64)| body == point.body && (x - point.x.value).abs() < 1e-6;
@@ -116,18 +112,13 @@ pub(crate) fn changes(fixture: &Fixture, points: &[String], lines: &SpectralLine
         let count = places.len();
         places = (0..PLACES).map(|k| places[k * (count - 1) / (PLACES - 1)]).collect();
     }
-    let whole: f64 = (0..fixture.bodies().len()).map(|body| mass_of(fixture, body)).sum();
-    let middle = TAU * lines.hz()[lines.len() / 2] * ON_SPRING;
     let of = |(body, x): (usize, f64)| {
         let name = fixture.bodies()[body].name.clone();
         let mass = one_two_five(MASS * mass_of(fixture, body));
-        let stiffness = one_two_five(whole * middle * middle);
-        [
-            Measure::AddedMass { mass, mass_std: MASS_KNOWN * mass, body: name.clone(), x, x_std: PLACE_KNOWN },
-            Measure::Support { stiffness, stiffness_std: SPRING_KNOWN * stiffness, body: name, x, x_std: PLACE_KNOWN },
-        ]
+        Measure::AddedMass { mass, mass_std: MASS_KNOWN * mass, body: name, x, x_std: PLACE_KNOWN }
     };
-    places.into_iter().flat_map(of).collect()
+    let off_its_supports = (!fixture.supports().is_empty()).then_some(Measure::HungFreely);
+    places.into_iter().map(of).chain(off_its_supports).collect()
 }
 
 /// The quantities of a hypothesis that can be measured better than they are known.

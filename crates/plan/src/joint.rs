@@ -7,7 +7,7 @@ use crate::candidates;
 use crate::expected_noise::ExpectedNoise;
 use crate::measure::Measure;
 use crate::names::{carried, with_wide_priors};
-use crate::plan::{FrfGain, Plan, PlanOptions, changed};
+use crate::plan::{FrfGain, Plan, PlanOptions};
 use crate::products::Products;
 use crate::scene::Scene;
 use crate::suggestion::{ExpectedInterval, Suggestion};
@@ -197,7 +197,7 @@ impl Joints<'_> {
         }
         all.extend(candidates::quantities(self.hypothesis).into_iter().filter_map(|m| self.of_quantity(m)));
         if !present.is_empty() {
-            let changes = candidates::changes(&self.scene.fixture, points, &self.scene.lines);
+            let changes = candidates::changes(&self.scene.fixture, points);
             all.extend(changes.into_iter().filter_map(|measure| self.of_change(measure, present, &known)));
         }
         let now = self.interval(self.hypothesis, &known);
@@ -352,7 +352,7 @@ impl Joints<'_> {
     }
 
     fn of_change(&self, measure: Measure, present: &[FrfPair], known: &[f64]) -> Option<Candidate> {
-        let fixture = changed(&self.scene.fixture, &measure)?;
+        let fixture = measure.changed(&self.scene.fixture)?;
         let hypothesis = self.hypothesis.in_fixture(&fixture, self.scene.exact);
         let by_frf = self.scene.products(std::slice::from_ref(&hypothesis), present)?;
         let mut sum = Products::none(&by_frf.first()?.widths);

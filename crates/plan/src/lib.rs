@@ -20,5 +20,5 @@ pub use further::weighed_by;
 pub use joint::{HalfWidth, Start, Wanted};
 pub use measure::Measure;
 pub use names::Remaining;
-pub use plan::{FrfGain, NameNow, Plan, PlanOptions, changed};
+pub use plan::{FrfGain, NameNow, Plan, PlanOptions};
 pub use suggestion::{ExpectedInterval, Suggestion};

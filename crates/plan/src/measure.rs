@@ -1,6 +1,6 @@
 //! What may be measured next.
 
-use jointscope_fixture::{Effect, EffectKind, Place, Quantity};
+use jointscope_fixture::{Effect, EffectKind, Fixture, Place, Quantity};
 use jointscope_spectra::FrfPair;
 use serde::Serialize;
 use std::fmt;
@@ -46,19 +46,8 @@ pub enum Measure {
         /// Standard deviation of that, m.
         x_std: f64,
     },
-    /// The same FRFs of the structure held to ground by a known spring.
-    Support {
-        /// The spring, N/m.
-        stiffness: f64,
-        /// Its standard deviation, N/m.
-        stiffness_std: f64,
-        /// The body that is held.
-        body: String,
-        /// Where on the body, m.
-        x: f64,
-        /// Standard deviation of that, m.
-        x_std: f64,
-    },
+    /// The same FRFs of the structure off its supports, hung freely.
+    HungFreely,
     /// One quantity of the fixture by itself, on scales or with a calliper.
     Quantity {
         /// Its path in the fixture file.
@@ -71,23 +60,28 @@ pub enum Measure {
 }
 
 impl Measure {
-    /// What of the structure itself is changed for it, as an effect that the fixture has then.
-    pub fn effect(&self) -> Option<Effect> {
-        let known = |value: f64, std: f64| Quantity::with_std(value, std);
-        let of = |kind: EffectKind, body: &String, parameters: Vec<Quantity>| {
-            Some(Effect { kind, place: Place::Body(body.clone()), dof: None, parameters })
-        };
+    /// The structure that is measured, where that is not the one which `fixture` describes; `None` where it is, or cannot be.
+    pub fn changed(&self, fixture: &Fixture) -> Option<Fixture> {
         match self {
             Measure::AddedMass { mass, mass_std, body, x, x_std } => {
-                of(EffectKind::AddedMass, body, vec![known(*x, *x_std), known(*mass, *mass_std)])
+                let known = |value: f64, std: f64| Quantity::with_std(value, std);
+                let (place, parameters) = (Place::Body(body.clone()), vec![known(*x, *x_std), known(*mass, *mass_std)]);
+                let mut physics = fixture.physics().to_vec();
+                physics.push(Effect { kind: EffectKind::AddedMass, place, dof: None, parameters });
+                fixture.clone().with_physics(physics).ok()
             }
-            Measure::Support { stiffness, stiffness_std, body, x, x_std } => of(
-                EffectKind::Support,
-                body,
-                vec![known(*x, *x_std), known(*stiffness, *stiffness_std), known(0.0, 0.0)],
-            ),
+            Measure::HungFreely => {
+                let mut value = fixture.to_value();
+                value.as_object_mut()?.shift_remove("supports");
+                Fixture::from_value(&value).ok()
+            }
             _ => None,
         }
+    }
+
+    /// Whether another structure is measured.
+    pub fn changes_the_structure(&self) -> bool {
+        matches!(self, Measure::AddedMass { .. } | Measure::HungFreely)
     }
 
     /// The FRFs that it records of the structure as it is.
@@ -105,8 +99,8 @@ impl Measure {
             Measure::Frf { .. } | Measure::Quantity { .. } => 1.0,
             Measure::HammerAt { frfs, .. } | Measure::SensorAt { frfs, .. } => frfs.len() as f64,
             Measure::Averages { times } => present as f64 * (f64::from(*times) - 1.0),
-            // And fixing it.
-            Measure::AddedMass { .. } | Measure::Support { .. } => present as f64 + 1.0,
+            // And the change.
+            Measure::AddedMass { .. } | Measure::HungFreely => present as f64 + 1.0,
         }
     }
 }
@@ -122,9 +116,7 @@ impl fmt::Display for Measure {
             Measure::AddedMass { mass, body, x, .. } => {
                 write!(f, "added mass {mass} kg on {body} at {}", rounded(*x))
             }
-            Measure::Support { stiffness, body, x, .. } => {
-                write!(f, "support {stiffness} N/m on {body} at {}", rounded(*x))
-            }
+            Measure::HungFreely => f.write_str("hung freely"),
             Measure::Quantity { path, std, unit } => {
                 let verb = if *unit == "kg" { "weigh" } else { "measure" };
                 write!(f, "{verb} {path} to {} {unit}", two_digits(*std))

@@ -213,14 +213,14 @@ impl Judge<'_> {
         for measure in candidates::quantities(&self.hypotheses[0]) {
             all.extend(self.of_quantity(&measure).map(|products| here(measure, products)));
         }
-        let changes = candidates::changes(&self.scene.fixture, points, &self.scene.lines);
+        let changes = candidates::changes(&self.scene.fixture, points);
         all.extend(changes.into_iter().filter_map(|measure| self.of_change(measure, present)));
         all
     }
 
     /// The present FRFs of the structure with something fixed to it.
     fn of_change(&self, measure: Measure, present: &[FrfPair]) -> Option<Candidate> {
-        let fixture = changed(&self.scene.fixture, &measure)?;
+        let fixture = measure.changed(&self.scene.fixture)?;
         let hypotheses: Vec<Hypothesis> =
             self.hypotheses.iter().map(|own| own.in_fixture(&fixture, self.scene.exact)).collect();
         let by_frf = self.scene.products(&hypotheses, present)?;
@@ -302,11 +302,4 @@ fn order(suggestion: &Suggestion) -> (f64, f64, f64) {
     let sure = (suggestion.sure.unwrap_or(0.0) * STEPS).round() / STEPS;
     let effort = if sure >= SURE { -suggestion.effort } else { 0.0 };
     (sure, effort, suggestion.expected_log_odds.unwrap_or(0.0))
-}
-
-/// The structure with what a measure fixes to it; `None` where that leaves the structure as it is.
-pub fn changed(fixture: &Fixture, measure: &Measure) -> Option<Fixture> {
-    let mut physics = fixture.physics().to_vec();
-    physics.push(measure.effect()?);
-    fixture.clone().with_physics(physics).ok()
 }

@@ -31,6 +31,14 @@ pub(crate) fn three(value: f64) -> String {
     }
 }
 
+/// Odds beyond which no figure means anything: linear predictions do not reach so far.
+const BEYOND_DOUBT: f64 = 100.0;
+
+/// ln of odds, nats.
+pub(crate) fn nats(value: f64) -> String {
+    if value > BEYOND_DOUBT { format!("more than {BEYOND_DOUBT:.0}") } else { three(value) }
+}
+
 pub(crate) fn question(names: &[NameNow]) -> String {
     let each = names.iter().map(|name| format!("{} ({})", effect_name(&name.effect), percent(name.probability)));
     format!("Which is it: {}?", each.collect::<Vec<_>>().join(", or "))
@@ -58,11 +66,7 @@ pub(crate) fn to_do(measure: &Measure) -> String {
             three(1e3 * mass),
             millimetres(x)
         ),
-        Measure::Support { stiffness, body, x, .. } => format!(
-            "Hold body {body} to ground at x = {} by a spring of {} N/m and record the same FRFs again",
-            millimetres(x),
-            three(*stiffness)
-        ),
+        Measure::HungFreely => "Take the structure off its supports, hang it freely and record the same FRFs again".to_owned(),
         Measure::Quantity { path, std, unit } => {
             let verb = if *unit == "kg" { "Weigh" } else { "Measure" };
             let (factor, unit) = match *unit {
@@ -96,7 +100,7 @@ pub(crate) fn of_names(
         "{}. With a probability of {} one name then has 90 % or more; ln of the odds against its nearest rival grows by {} on average{told}.",
         to_do(measure),
         percent(sure),
-        three(expected)
+        nats(expected)
     )
 }
 
@@ -134,9 +138,9 @@ pub(crate) fn remarks(suggestions: &[Suggestion], inflation: f64, softened: bool
         );
     }
     let any = |holds: fn(&Measure) -> bool| suggestions.iter().any(|suggestion| holds(&suggestion.action));
-    if any(|measure| measure.effect().is_some()) {
+    if any(Measure::changes_the_structure) {
         all.push(
-            "A test with a mass or a spring added is one of another structure: put that into a copy of the fixture's `physics`, and diagnose the new FRFs with it by themselves"
+            "With a mass, or off its supports, the structure is another one: state that in a copy of the fixture (`physics`, `supports`), and give both tests together, `--also COPY.json G.uff`"
                 .to_owned(),
         );
     }

@@ -8,15 +8,15 @@ use crate::answers::on_workers;
 use crate::generate::{drawn_hammer, recorded_lines, seed_of};
 use crate::{FAMILIES, GenerationError, HIDDEN_KINDS, Name, Share};
 use jointscope_diagnosis::{Diagnosis, Observation};
-use jointscope_fixture::{Effect, Fixture, Quantity};
+use jointscope_fixture::{Fixture, Quantity, Spread};
 use jointscope_pipeline::{Measurement, Options, Outcome, diagnose};
-use jointscope_plan::{Measure, Plan as TestPlan, PlanOptions, Remaining, changed, weighed_by};
+use jointscope_plan::{Measure, Plan as TestPlan, PlanOptions, Remaining, weighed_by};
 use jointscope_rig::{
     Family, HammerTest, Instrument, StructureError, drawn_within_tolerance, frfs, generator, random_effect,
 };
 use jointscope_spectra::{FrfForm, FrfPair, FrfSet};
-use rand::RngExt;
 use rand::seq::SliceRandom;
+use rand::{Rng, RngExt};
 use serde::Serialize;
 use std::fmt;
 
@@ -242,7 +242,7 @@ impl Scene {
         Ok(match measure {
             Measure::Quantity { path, std, .. } => {
                 let mut random = generator(self.hammer.seed.wrapping_add(2));
-                let error = (0..12).map(|_| random.random_range(0.0..1.0)).sum::<f64>() - 6.0;
+                let error = deviate(&mut random);
                 let mut truth = self.truth.clone();
                 let value = truth.quantities_mut().into_iter().find(|q| q.path == *path).map(|q| q.quantity.value);
                 let mut believed = self.believed.clone();
@@ -257,8 +257,8 @@ impl Scene {
                 let more = more.measured(&self.truth, &self.pairs, 1)?;
                 again(&self.believed, &averaged(recorded, &more)?)
             }
-            Measure::AddedMass { .. } | Measure::Support { .. } => {
-                let (Some(true_state), Some(state)) = (self.with(measure), changed(fixture, measure)) else {
+            Measure::AddedMass { .. } | Measure::HungFreely => {
+                let (Some(true_state), Some(state)) = (self.with(measure), measure.changed(fixture)) else {
                     return Ok(Vec::new());
                 };
                 let more = self.measured(&true_state, &self.pairs, 1)?;
@@ -275,20 +275,24 @@ impl Scene {
         })
     }
 
-    /// The true structure with what a measure fixes to it, of a true size within its deviation.
+    /// The true structure as a measure changes it, what is fixed to it of a true size within its deviation.
     fn with(&self, measure: &Measure) -> Option<Fixture> {
         let mut random = generator(self.hammer.seed.wrapping_add(3));
-        let mut effect: Effect = measure.effect()?;
-        for parameter in &mut effect.parameters {
-            if let jointscope_fixture::Spread::Stated(std) = parameter.spread {
-                let error = (0..12).map(|_| random.random_range(0.0..1.0)).sum::<f64>() - 6.0;
-                *parameter = Quantity::bare(parameter.value + std * error);
+        let stated = self.truth.physics().len();
+        let changed = measure.changed(&self.truth)?;
+        let mut physics = changed.physics().to_vec();
+        for parameter in physics.iter_mut().skip(stated).flat_map(|effect| &mut effect.parameters) {
+            if let Spread::Stated(std) = parameter.spread {
+                *parameter = Quantity::bare(parameter.value + std * deviate(&mut random));
             }
         }
-        let mut physics = self.truth.physics().to_vec();
-        physics.push(effect);
-        self.truth.clone().with_physics(physics).ok()
+        changed.with_physics(physics).ok()
     }
+}
+
+/// A number of mean zero and variance one, near enough normal: the sum of twelve uniform ones.
+fn deviate(random: &mut impl Rng) -> f64 {
+    (0..12).map(|_| random.random_range(0.0..1.0)).sum::<f64>() - 6.0
 }
 
 /// The FRFs of both tests.
