@@ -66,6 +66,14 @@ enum Command {
 }
 
 impl Program {
+    /// The arguments of a command line that diagnoses; `None` of any other.
+    pub fn diagnose_arguments(words: &[String]) -> Option<diagnose::DiagnoseArguments> {
+        match Program::try_parse_from(words).ok()?.command {
+            Command::Diagnose(arguments) => Some(arguments),
+            _ => None,
+        }
+    }
+
     /// Runs the command; what it has done is told on standard output.
     pub fn run(&self) -> Result<String, Refusal> {
         match &self.command {

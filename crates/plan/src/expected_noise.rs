@@ -98,9 +98,8 @@ fn floors(values: &[Complex64], variance: &[f64], share: f64) -> Vec<f64> {
         let (sum, count) = all.fold((0.0, 0usize), |(sum, count), value| (sum + value, count + 1));
         (count > 0).then(|| sum / count as f64)
     };
-    let whole = mean(&mut all.iter().flatten().copied())
-        .or_else(|| mean(&mut variance.iter().copied().filter(|v| *v > 0.0)))
-        .unwrap_or(0.0);
+    // Where the force makes all of it there is no floor to be seen.
+    let whole = mean(&mut all.iter().flatten().copied()).unwrap_or(0.0);
     let near = |line: usize| line.saturating_sub(WINDOW)..(line + WINDOW + 1).min(count);
     (0..count).map(|line| mean(&mut all[near(line)].iter().flatten().copied()).unwrap_or(whole)).collect()
 }

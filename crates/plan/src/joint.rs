@@ -200,7 +200,8 @@ impl Joints<'_> {
             let changes = candidates::changes(&self.scene.fixture, points);
             all.extend(changes.into_iter().filter_map(|measure| self.of_change(measure, present, &known)));
         }
-        let now = self.interval(self.hypothesis, &known);
+        // Before anything is recorded there is no interval.
+        let now = again.as_ref().and_then(|_| self.interval(self.hypothesis, &known));
         let value = self.value();
         let at_most = |interval: f64| now.is_none_or(|now| interval <= (1.0 - WORTH) * now);
         let mut ranked: Vec<(f64, &Candidate)> = all

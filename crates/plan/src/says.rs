@@ -26,7 +26,8 @@ pub(crate) fn three(value: f64) -> String {
     }
     let exponent = value.abs().log10().floor() as i32;
     match exponent {
-        -4..5 => format!("{value:.*}", (2 - exponent).max(0) as usize),
+        -4..3 => format!("{value:.*}", (2 - exponent).max(0) as usize),
+        3..5 => format!("{:.0}", (value / 10f64.powi(exponent - 2)).round() * 10f64.powi(exponent - 2)),
         _ => format!("{value:.2e}"),
     }
 }

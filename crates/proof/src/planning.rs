@@ -136,6 +136,28 @@ impl fmt::Display for Planning {
     }
 }
 
+/// The case in a line.
+impl fmt::Display for PlannedCase {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let listed = |names: &[(Name, f64)]| {
+            names.iter().map(|(name, p)| format!("{name} {p:.2}")).collect::<Vec<_>>().join(", ")
+        };
+        let recorded: Vec<String> = self.recorded.iter().map(ToString::to_string).collect();
+        write!(
+            f,
+            "case {}: {} in {}; {} → {} (promise {:.2}, {:.3} nats) → {}",
+            self.case,
+            self.hidden,
+            recorded.join(" "),
+            listed(&self.before),
+            self.first.as_deref().unwrap_or("nothing"),
+            self.promise,
+            self.expected_log_odds,
+            listed(&self.after)
+        )
+    }
+}
+
 /// A case of a number, planned and carried out; `None` where its name is not open.
 fn planned(seed: u64, number: usize) -> Result<Option<PlannedCase>, GenerationError> {
     let Some(scene) = Scene::draw(seed, number)? else { return Ok(None) };
