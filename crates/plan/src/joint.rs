@@ -331,6 +331,7 @@ impl Joints<'_> {
         };
         Suggestion {
             measure: measure.to_string(),
+            to_do: says::to_do(measure),
             action: measure.clone(),
             expected_log_odds: None,
             box_hill: None,

@@ -14,6 +14,11 @@ pub enum Measure {
         /// The FRF.
         frf: FrfPair,
     },
+    /// Several more FRFs of the structure as it is.
+    Frfs {
+        /// The FRFs.
+        frfs: Vec<FrfPair>,
+    },
     /// The hammer at one more point, with all sensors where they are.
     HammerAt {
         /// Where the hammer strikes.
@@ -88,7 +93,7 @@ impl Measure {
     pub fn frfs(&self) -> Vec<FrfPair> {
         match self {
             Measure::Frf { frf } => vec![frf.clone()],
-            Measure::HammerAt { frfs, .. } | Measure::SensorAt { frfs, .. } => frfs.clone(),
+            Measure::Frfs { frfs } | Measure::HammerAt { frfs, .. } | Measure::SensorAt { frfs, .. } => frfs.clone(),
             _ => Vec::new(),
         }
     }
@@ -97,7 +102,9 @@ impl Measure {
     pub fn effort(&self, present: usize) -> f64 {
         match self {
             Measure::Frf { .. } | Measure::Quantity { .. } => 1.0,
-            Measure::HammerAt { frfs, .. } | Measure::SensorAt { frfs, .. } => frfs.len() as f64,
+            Measure::Frfs { frfs } | Measure::HammerAt { frfs, .. } | Measure::SensorAt { frfs, .. } => {
+                frfs.len() as f64
+            }
             Measure::Averages { times } => present as f64 * (f64::from(*times) - 1.0),
             // And the change.
             Measure::AddedMass { .. } | Measure::HungFreely => present as f64 + 1.0,
@@ -110,6 +117,10 @@ impl fmt::Display for Measure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Measure::Frf { frf } => write!(f, "frf {frf}"),
+            Measure::Frfs { frfs } => {
+                let all: Vec<String> = frfs.iter().map(ToString::to_string).collect();
+                write!(f, "frfs {}", all.join(" "))
+            }
             Measure::HammerAt { point, .. } => write!(f, "hammer at {point}"),
             Measure::SensorAt { point, .. } => write!(f, "sensor at {point}"),
             Measure::Averages { times } => write!(f, "averages times {times}"),

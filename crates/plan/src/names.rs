@@ -3,7 +3,7 @@
 use crate::PlanError;
 use crate::scene::Scene;
 use jointscope_diagnosis::{Diagnosis, Fit, Hypothesis, ModelError, Observation};
-use jointscope_fixture::{Effect, Fixture};
+use jointscope_fixture::{Effect, Fixture, Place};
 use jointscope_linalg::Cholesky;
 use jointscope_wording::effect_name;
 use rayon::prelude::*;
@@ -66,6 +66,28 @@ impl Remaining {
     }
 }
 
+impl Remaining {
+    /// The names, and beside those of a reference that is the only one those of the force of all references: with one reference there is no such name, and what
+    /// is measured next may have others. All of them have the probability that was stated together. Whether there are any is told as well.
+    pub(crate) fn with_the_force(&self) -> (Vec<(Effect, f64)>, bool) {
+        let pairs = self.observation.pairs();
+        let only = |name: &str| pairs.iter().all(|pair| pair.reference.is_named(name));
+        let of_the_force = |(effect, probability): &(Effect, f64)| match &effect.place {
+            Place::Reference(name) if only(name) => Some((Effect { place: Place::Force, ..effect.clone() }, *probability)),
+            _ => None,
+        };
+        let more: Vec<(Effect, f64)> = self.names.iter().filter_map(of_the_force).collect();
+        let any = !more.is_empty();
+        let stated: f64 = self.names.iter().map(|(_, probability)| probability).sum();
+        let mut all: Vec<(Effect, f64)> = self.names.iter().cloned().chain(more).collect();
+        let total: f64 = all.iter().map(|(_, probability)| probability).sum();
+        if any {
+            all.iter_mut().for_each(|(_, probability)| *probability *= stated / total);
+        }
+        (all, any)
+    }
+}
+
 /// One name at its best fit.
 #[derive(Debug, Clone)]
 pub(crate) struct Name {
@@ -86,6 +108,8 @@ pub(crate) struct Names {
     pub unlisted: f64,
     /// Variance inflation that the best leaves.
     pub inflation: f64,
+    /// Whether the force of all references was added.
+    pub added: bool,
 }
 
 impl Names {
@@ -96,7 +120,7 @@ impl Names {
         fixture: &Fixture,
         exact: bool,
     ) -> Result<Self, PlanError> {
-        let mut names = remaining.names.clone();
+        let (mut names, added) = remaining.with_the_force();
         names.sort_by(|a, b| b.1.total_cmp(&a.1));
         let listed: f64 = names.iter().map(|(_, probability)| probability).sum();
         let highest = names.iter().map(|(_, probability)| *probability).fold(f64::MIN_POSITIVE, f64::max);
@@ -131,7 +155,8 @@ impl Names {
             Name { effect, probability: *probability, hypothesis: fit.hypothesis, cost, information: Vec::new() }
         };
         let names = names.iter().zip(fits).map(whole).collect();
-        Ok(Names { names, unlisted: (1.0 - listed).max(0.0) / highest, inflation })
+        let stated = remaining.names.iter().map(|(_, probability)| *probability).fold(highest, f64::max);
+        Ok(Names { names, unlisted: (1.0 - listed).max(0.0) / stated, inflation, added })
     }
 
     /// Takes what the present measurement tells of every name's coordinates.

@@ -78,6 +78,8 @@ const STEPS: f64 = 50.0;
 /// Candidates of which measurements are drawn: the best by expectation.
 const DRAWN: usize = 24;
 const SEED: u64 = 18;
+/// FRFs that others are put beside, at the most.
+const COMBINED: usize = 4;
 
 impl Plan {
     /// Plans what separates the names that a diagnosis has left. `fixture` is the one that was diagnosed.
@@ -144,6 +146,7 @@ impl Judge<'_> {
             })
             .collect();
         ranked.sort_by(|a, b| b.0.total_cmp(&a.0));
+        let both = self.pairs_of_frfs(&ranked);
         let single = |(gain, candidate, _): &(f64, Candidate, Rivals)| match &candidate.measure {
             Measure::Frf { frf } => Some(FrfGain { frf: frf.clone(), gain: *gain }),
             _ => None,
@@ -153,13 +156,23 @@ impl Judge<'_> {
         ranked.retain(|(gain, ..)| *gain >= WORTH);
         ranked.truncate(DRAWN);
         let weights = self.names.weights();
-        let mut suggestions: Vec<Suggestion> = ranked
-            .par_iter()
-            .map(|(gain, candidate, rivals)| {
-                let outlook = rivals.outlook(&weights, self.names.unlisted, SEED);
-                self.suggestion(candidate, *gain, &outlook)
-            })
-            .collect();
+        let drawn = |(gain, candidate, rivals): &(f64, Candidate, Rivals)| {
+            let outlook = rivals.outlook(&weights, self.names.unlisted, SEED);
+            self.suggestion(candidate, *gain, &outlook)
+        };
+        let mut suggestions: Vec<Suggestion> = ranked.par_iter().map(drawn).collect();
+        // Where one measurement does not do it, two FRFs may.
+        if suggestions.iter().all(|suggestion| suggestion.sure.is_none_or(|sure| sure < SURE)) {
+            let both: Vec<(f64, Candidate, Rivals)> = both
+                .into_par_iter()
+                .filter_map(|candidate| {
+                    let rivals = rivals(&candidate)?;
+                    Some((self.expected(&rivals), candidate, rivals))
+                })
+                .filter(|(gain, ..)| *gain >= WORTH)
+                .collect();
+            suggestions.par_extend(both.par_iter().map(drawn));
+        }
         suggestions.sort_by(|a, b| order(b).partial_cmp(&order(a)).unwrap_or(std::cmp::Ordering::Equal));
         let mut whole = Products::none(&by_frf.first().map_or_else(Vec::new, |products| products.widths.clone()));
         by_frf.iter().for_each(|products| whole.add(products));
@@ -176,7 +189,11 @@ impl Judge<'_> {
         Ok(Plan {
             question: says::question(&names),
             says: says::comes_to(&names, &suggestions, &not_by_frfs),
-            remarks: says::remarks(&suggestions, self.names.inflation, self.scene.softening.is_some()),
+            remarks: says::sure_already(&names)
+                .into_iter()
+                .chain(self.names.added.then(says::added_names))
+                .chain(says::remarks(&suggestions, self.names.inflation, self.scene.softening.is_some()))
+                .collect(),
             recorded: present.to_vec(),
             suggestions,
             names,
@@ -216,6 +233,34 @@ impl Judge<'_> {
         let changes = candidates::changes(&self.scene.fixture, points);
         all.extend(changes.into_iter().filter_map(|measure| self.of_change(measure, present)));
         all
+    }
+
+    /// Two FRFs at a time, of those that tell some two of the names apart best.
+    fn pairs_of_frfs(&self, ranked: &[(f64, Candidate, Rivals)]) -> Vec<Candidate> {
+        let count = self.names.names.len();
+        let single: Vec<(&FrfPair, &Products, &Rivals)> = ranked
+            .iter()
+            .filter_map(|(_, candidate, rivals)| match &candidate.measure {
+                Measure::Frf { frf } => Some((frf, &candidate.products, rivals)),
+                _ => None,
+            })
+            .collect();
+        let mut best: Vec<usize> = Vec::new();
+        for (i, j) in (0..count).flat_map(|i| (0..count).map(move |j| (i, j))).filter(|(i, j)| i != j) {
+            let told = |at: &usize| single[*at].2.divergence(i, j);
+            let most = (0..single.len()).max_by(|a, b| told(a).total_cmp(&told(b)));
+            best.extend(most.filter(|at| !best.contains(at)));
+        }
+        best.truncate(COMBINED);
+        let both = |(a, b): (usize, usize)| {
+            let mut products = single[a].1.clone();
+            products.add(single[b].1);
+            let frfs = vec![single[a].0.clone(), single[b].0.clone()];
+            Candidate { measure: Measure::Frfs { frfs }, products, known: None }
+        };
+        // Beside the best for some two names, all others.
+        let pairs = best.iter().flat_map(|&a| (0..single.len()).map(move |b| (a, b)));
+        pairs.filter(|(a, b)| a < b || !best.contains(b) && a != b).map(both).collect()
     }
 
     /// The present FRFs of the structure with something fixed to it.
@@ -277,6 +322,7 @@ impl Judge<'_> {
         let effort = candidate.measure.effort(self.observation.pairs().len());
         Suggestion {
             measure: candidate.measure.to_string(),
+            to_do: says::to_do(&candidate.measure),
             action: candidate.measure.clone(),
             expected_log_odds: Some(expected),
             box_hill: Some(box_hill),

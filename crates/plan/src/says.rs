@@ -2,6 +2,7 @@
 
 use crate::measure::Measure;
 use crate::plan::NameNow;
+use crate::rivals::SURE;
 use crate::suggestion::{ExpectedInterval, Suggestion};
 use jointscope_spectra::FrfPair;
 use jointscope_wording::effect_name;
@@ -17,6 +18,11 @@ fn listed(items: &[String]) -> String {
 
 pub(crate) fn percent(share: f64) -> String {
     format!("{:.0} %", 100.0 * share)
+}
+
+/// A probability that was drawn: a few hundred draws tell no more than that it is nearly one.
+pub(crate) fn probability(share: f64) -> String {
+    if share > 0.99 { "more than 99 %".to_owned() } else { percent(share) }
 }
 
 /// A number with three significant digits.
@@ -53,6 +59,7 @@ pub(crate) fn to_do(measure: &Measure) -> String {
         Measure::Frf { frf } => {
             format!("Record FRF {frf}: hammer at {}, sensor at {}", frf.reference, frf.response)
         }
+        Measure::Frfs { frfs: all } => format!("Record FRFs {}", frfs(all)),
         Measure::HammerAt { point, frfs: all } => {
             format!("Strike point {point} too, sensors as they are: FRFs {}", frfs(all))
         }
@@ -100,7 +107,7 @@ pub(crate) fn of_names(
     format!(
         "{}. With a probability of {} one name then has 90 % or more; ln of the odds against its nearest rival grows by {} on average{told}.",
         to_do(measure),
-        percent(sure),
+        probability(sure),
         nats(expected)
     )
 }
@@ -126,8 +133,28 @@ pub(crate) fn comes_to(names: &[NameNow], suggestions: &[Suggestion], not_by_frf
     };
     match suggestions.first() {
         None => format!("Nothing that was considered tells the names apart.{by_frfs}"),
-        Some(best) => format!("{}.{by_frfs}", best.says.split(". ").next().unwrap_or(&best.says).trim_end_matches('.')),
+        Some(best) => format!(
+            "{}: with a probability of {} one name then has 90 % or more.{by_frfs}",
+            best.to_do,
+            probability(best.sure.unwrap_or(0.0))
+        ),
     }
+}
+
+/// Names that the present test cannot have, and another one can.
+pub(crate) fn added_names() -> String {
+    "As long as the hammer strikes one point, the force of all references does what that reference does: it is a name too, as probable"
+        .to_owned()
+}
+
+/// Names that need no further measurement.
+pub(crate) fn sure_already(names: &[NameNow]) -> Option<String> {
+    let first = names.first().filter(|first| first.probability >= SURE)?;
+    Some(format!(
+        "{} is sure already ({}): a further measurement confirms it, or finds that it was wrong",
+        effect_name(&first.effect),
+        percent(first.probability)
+    ))
 }
 
 pub(crate) fn remarks(suggestions: &[Suggestion], inflation: f64, softened: bool) -> Vec<String> {
@@ -141,7 +168,7 @@ pub(crate) fn remarks(suggestions: &[Suggestion], inflation: f64, softened: bool
     let any = |holds: fn(&Measure) -> bool| suggestions.iter().any(|suggestion| holds(&suggestion.action));
     if any(Measure::changes_the_structure) {
         all.push(
-            "With a mass, or off its supports, the structure is another one: state that in a copy of the fixture (`physics`, `supports`), and give both tests together, `--also COPY.json G.uff`"
+            "With a mass, or off its supports, the structure is another one: state that in a copy of the fixture, under physics or supports, and give both tests together with --also"
                 .to_owned(),
         );
     }

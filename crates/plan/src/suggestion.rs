@@ -6,6 +6,8 @@ use serde::Serialize;
 pub struct Suggestion {
     /// What to measure, in short: `frf 2/1`.
     pub measure: String,
+    /// The same as a sentence without its full stop.
+    pub to_do: String,
     /// The same in its parts.
     pub action: Measure,
     /// Expected ln of the Bayes factor for the true name against its nearest rival, nats; the names as probable as they are now.

@@ -56,16 +56,17 @@ fn gain(place: Place, factor: f64) -> Effect {
 }
 
 #[test]
-fn gains_of_sensor_and_hammer_are_told_apart_by_a_driving_point_as_the_closed_form_says() {
+fn gains_of_two_sensors_are_told_apart_by_a_driving_point_as_the_closed_form_says() {
+    // FRFs 2/1 and 2/2: a gain of response 2, or one of the force.
     let factor = 1.03;
-    let (sensor, hammer) = (gain(Place::Response("2".into()), factor), gain(Place::Reference("1".into()), 1.0 / factor));
-    let remaining = remaining(&chain(), [sensor, hammer], &[("2", "1")]);
+    let (sensor, force) = (gain(Place::Response("2".into()), factor), gain(Place::Force, 1.0 / factor));
+    let remaining = remaining(&chain(), [sensor, force], &[("2", "1"), ("2", "2")]);
     let plan = Plan::between(&chain(), &remaining, &PlanOptions::default()).unwrap();
-    // FRF 1/1 is H by the one name and g·H by the other, whose g the present FRF tells: ln g to a deviation of ε/√(2N).
+    // FRF 1/1 is H by the one name and g·H by the other, whose g the present FRFs tell: ln g to a deviation of ε/√(4N).
     let n = 2.0 * LINES as f64;
     let noise = NOISE * NOISE * 0.5 * (1.0 + factor * factor);
     let d2 = n * (factor - 1.0).powi(2) / noise;
-    let a2 = n * factor * factor / noise * NOISE * NOISE / n;
+    let a2 = n * factor * factor / noise * NOISE * NOISE / (2.0 * n);
     let widened = 0.5 * (d2 - d2 * a2 / (1.0 + a2) - a2 / (1.0 + a2) + (1.0 + a2).ln());
     let exact = 0.5 * (d2 + a2 - (1.0 + a2).ln());
     let expected = 0.5 * (widened + exact);
@@ -73,8 +74,8 @@ fn gains_of_sensor_and_hammer_are_told_apart_by_a_driving_point_as_the_closed_fo
     let found = of("frf 1/1").expected_log_odds.unwrap();
     assert!((found / expected - 1.0).abs() < 0.01, "{found} nats, {expected} by the closed form");
     assert!(of("frf 1/1").sure.unwrap() > 0.97);
-    // An FRF of both channels or of neither tells nothing, nor do more averages.
-    assert!(plan.suggestions.iter().all(|s| !["averages times 4"].contains(&s.measure.as_str())));
+    // More averages of what both names say alike tell nothing.
+    assert!(plan.suggestions.iter().all(|s| s.measure != "averages times 4"));
     assert_eq!(plan.suggestions[0].action.frfs().len(), 1, "{}", plan.suggestions[0].says);
     assert!(plan.not_by_frfs.is_empty(), "{}", plan.says);
 }
@@ -157,8 +158,8 @@ fn a_further_test_with_a_known_mass_says_of_the_names_what_its_frfs_can_tell() {
         let of_the_sensor = |name: &&jointscope_plan::NameNow| name.effect.place == sensor.place;
         names.iter().find(of_the_sensor).unwrap().probability
     };
-    // The same FRF has both channels in it, mass or no mass; the driving point has the hammer alone.
-    assert!((probability_of_the_sensor(("2", "1")) - 0.48).abs() < 0.005);
+    // The same FRF has both channels in it, mass or no mass, and the force beside them; the driving point has no sensor 2.
+    assert!((probability_of_the_sensor(("2", "1")) - 0.32).abs() < 0.01);
     assert!(probability_of_the_sensor(("1", "1")) > 0.9);
 }
 
@@ -172,4 +173,20 @@ fn a_point_that_is_not_there_and_a_dashpot_that_is_not_stated_are_named() {
     let wanted = "J/c11=1%".parse().unwrap();
     let error = Plan::for_interval(&chain(), &Start::Lines(&lines()), &wanted, &PlanOptions::default()).unwrap_err();
     assert!(error.to_string().contains("states no dashpots"), "{error}");
+}
+
+#[test]
+fn with_one_reference_the_force_of_all_references_is_a_name_too_and_takes_two_frfs() {
+    let (sensor, hammer) =
+        (gain(Place::Response("2".into()), 1.03), gain(Place::Reference("1".into()), 1.0 / 1.03));
+    let remaining = remaining(&chain(), [sensor, hammer], &[("2", "1")]);
+    let plan = Plan::between(&chain(), &remaining, &PlanOptions::default()).unwrap();
+    assert!(plan.names.iter().any(|name| name.effect.place == Place::Force), "{}", plan.question);
+    assert!((plan.names.iter().map(|name| name.probability).sum::<f64>() - 0.96).abs() < 1e-9);
+    // 1/1 has only the hammer of the one name and of the force, 1/2 that of the force alone, 2/2 the sensor and the force.
+    let first = &plan.suggestions[0];
+    assert!(matches!(&first.action, Measure::Frfs { frfs } if frfs.len() == 2), "{}", first.says);
+    assert!(first.sure.unwrap() > 0.95 && plan.not_by_frfs.is_empty(), "{}", first.says);
+    let alone = plan.suggestions.iter().filter(|s| matches!(s.action, Measure::Frf { .. }));
+    alone.for_each(|s| assert!(s.sure.unwrap() < 0.7, "{}", s.says));
 }

@@ -52,21 +52,26 @@ fn suggestions(plan: &Plan, fixture: &Fixture) -> Section {
         if plan.names.is_empty() {
             "Half of the 95 % interval that each would leave, beside the present one (dashed)."
         } else {
-            "Probability with which one name has 90 % or more thereafter."
+            "Expected ln of the odds for the true name against its nearest rival, nats, and the probability that one name has 90 % or more thereafter."
         },
     );
-    let table = Table::of(listed()).words("What to do", |suggestion| suggestion.says.clone());
+    let table = Table::of(listed()).words("What to do", |suggestion| suggestion.to_do.clone());
     let table = match plan.names.is_empty() {
         true => table.numbers("95 % interval, ±", "", |suggestion| {
             suggestion.interval.as_ref().map_or(String::new(), |i| quantity(i.then, None, i.unit))
         }),
         false => table
-            .numbers("One name ≥ 90 %", "", |suggestion| suggestion.sure.map_or(String::new(), |sure| percent(sure, 0)))
+            .numbers("One name ≥ 90 %", "", |suggestion| suggestion.sure.map_or(String::new(), promise))
             .numbers("Expected ln of the odds", "nats", |suggestion| {
                 suggestion.expected_log_odds.map_or(String::new(), nats)
             }),
     };
-    section.with(table.numbers("Effort", "FRFs", |suggestion| significant(suggestion.effort, 2)))
+    section.with(table.numbers("Effort", "FRFs", |suggestion| format!("{:.0}", suggestion.effort)))
+}
+
+/// A probability that a few hundred draws tell.
+fn promise(share: f64) -> String {
+    if share > 0.99 { "> 99 %".to_owned() } else { percent(share, 0) }
 }
 
 fn nats(value: f64) -> String {
@@ -112,27 +117,32 @@ fn places(fixture: &Fixture, suggestion: &Suggestion) -> Vec<(f64, Option<usize>
 const WIDTH: f64 = 860.0;
 const ROW: f64 = 26.0;
 const LEFT: f64 = 270.0;
-const RIGHT: f64 = 100.0;
+const RIGHT: f64 = 150.0;
 const STYLE: &str = "<style>.pl{font:13px system-ui,-apple-system,'Segoe UI',Roboto,'Noto Sans','DejaVu Sans',sans-serif;fill:var(--ink,#1b1f24)}\
 .pl-name{text-anchor:end}.pl-bar{fill:var(--measured,#0072b2)}.pl-line{stroke:var(--soft,#5a636e);stroke-dasharray:4 3;fill:none}.pl-base{stroke:var(--rule,#d9dde2)}</style>";
 
-/// A bar a suggestion: its promise, or the interval that it leaves beside the present one.
+/// A bar a suggestion: what it is expected to bring, or the interval that it leaves beside the present one.
 fn bars(all: &[&Suggestion]) -> Markup {
     let intervals = || all.iter().filter_map(|suggestion| suggestion.interval.as_ref());
     let now = intervals().filter_map(|interval| interval.now).fold(0.0, f64::max);
     let widest = intervals().map(|interval| interval.then).fold(now, f64::max).max(f64::MIN_POSITIVE);
+    let nats_of = |suggestion: &&&Suggestion| suggestion.expected_log_odds.unwrap_or(0.0).min(BEYOND_DOUBT);
+    let most = all.iter().map(|s| nats_of(&s)).fold(f64::MIN_POSITIVE, f64::max);
     let share = |suggestion: &Suggestion| match &suggestion.interval {
         Some(interval) => interval.then / widest,
-        None => suggestion.sure.unwrap_or(0.0),
+        None => suggestion.expected_log_odds.unwrap_or(0.0).min(BEYOND_DOUBT) / most,
     };
     let figure = |suggestion: &Suggestion| match &suggestion.interval {
         Some(interval) => format!("± {}", quantity(interval.then, None, interval.unit)),
-        None => percent(suggestion.sure.unwrap_or(0.0), 0),
+        None => {
+            let odds = nats(suggestion.expected_log_odds.unwrap_or(0.0));
+            format!("{odds} nats, {}", promise(suggestion.sure.unwrap_or(0.0)))
+        }
     };
     let height = ROW * all.len() as f64 + 8.0;
     let room = WIDTH - LEFT - RIGHT;
-    // A threshold that all bars are held against: sure, or the present interval.
-    let mark = LEFT + room * if now > 0.0 { now / widest } else { 0.9 };
+    // What all bars are held against: the present interval.
+    let mark = (now > 0.0).then(|| LEFT + room * now / widest);
     let said: Vec<String> = all.iter().map(|s| format!("{}: {}", s.measure, figure(s))).collect();
     html! {
         svg.pl xmlns="http://www.w3.org/2000/svg" viewBox={ "0 0 " (WIDTH) " " (height) } role="img" aria-label=(said.join("; ")) {
@@ -145,7 +155,7 @@ fn bars(all: &[&Suggestion]) -> Markup {
                 text x=(format!("{:.1}", LEFT + width + 8.0)) y=(top + 16.0) { (figure(suggestion)) }
             }
             path.pl-base d={ "M" (LEFT) " 0V" (height) } {}
-            path.pl-line d=(format!("M{mark:.1} 0V{height}")) {}
+            @if let Some(mark) = mark { path.pl-line d=(format!("M{mark:.1} 0V{height}")) {} }
         }
     }
 }

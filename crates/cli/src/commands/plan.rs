@@ -322,7 +322,9 @@ fn row(suggestion: &Suggestion, width: usize) -> String {
         None => {
             let odds = suggestion.expected_log_odds.unwrap_or(0.0);
             let odds = if odds > 100.0 { "> 100 nats".to_owned() } else { format!("{odds:.1} nats") };
-            format!("{:>13.0} %   {odds:>15}", 100.0 * suggestion.sure.unwrap_or(0.0))
+            let sure = suggestion.sure.unwrap_or(0.0);
+            let sure = if sure > 0.99 { "> 99 %".to_owned() } else { format!("{:.0} %", 100.0 * sure) };
+            format!("{sure:>15}   {odds:>15}")
         }
     };
     let effort = counted(suggestion.effort.round() as usize, "FRF");
