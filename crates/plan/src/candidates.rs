@@ -25,12 +25,19 @@ const PENDULUM: f64 = 2e-3;
 const NARROWER: f64 = 0.5;
 
 /// The points between which FRFs are considered: those that are named, or all of a small structure; of many those where something is, and others evenly.
-pub(crate) fn points(fixture: &Fixture, named: &[String], present: &[FrfPair]) -> Result<Vec<String>, PlanError> {
+pub(crate) fn points(
+    fixture: &Fixture,
+    named: &[String],
+    present: &[FrfPair],
+) -> Result<Vec<String>, PlanError> {
     let all: Vec<&String> = fixture.points().iter().map(|point| &point.name).collect();
     if let Some(point) = named.iter().find(|name| !all.contains(name)) {
         let known: Vec<&str> = all.iter().take(POINTS).map(|name| name.as_str()).collect();
         let more = if all.len() > POINTS { ", …" } else { "" };
-        return Err(PlanError::UnknownPoint { point: point.clone(), known: format!("{}{more}", known.join(", ")) });
+        return Err(PlanError::UnknownPoint {
+            point: point.clone(),
+            known: format!("{}{more}", known.join(", ")),
+        });
     }
     if !named.is_empty() {
         return Ok(named.to_vec());
@@ -38,8 +45,9 @@ pub(crate) fn points(fixture: &Fixture, named: &[String], present: &[FrfPair]) -
     if all.len() <= POINTS {
         return Ok(all.into_iter().cloned().collect());
     }
-    let is_channel =
-        |name: &String| present.iter().any(|pair| pair.response.point == *name || pair.reference.point == *name);
+    let is_channel = |name: &String| {
+        present.iter().any(|pair| pair.response.point == *name || pair.reference.point == *name)
+    };
     let held: Vec<usize> = fixture.held_points().collect();
     let mut chosen: Vec<usize> = (0..all.len()).filter(|&i| is_channel(all[i])).collect();
     let mut others: Vec<usize> = (0..all.len()).filter(|i| !chosen.contains(i)).collect();
@@ -56,7 +64,9 @@ pub(crate) fn points(fixture: &Fixture, named: &[String], present: &[FrfPair]) -
 /// The FRFs between these points that were not recorded yet.
 pub(crate) fn frfs(points: &[String], present: &[FrfPair]) -> Vec<FrfPair> {
     let all = points.iter().flat_map(|reference| points.iter().map(move |response| (response, reference)));
-    all.map(|(response, reference)| FrfPair::transverse(response, reference)).filter(|pair| !present.contains(pair)).collect()
+    all.map(|(response, reference)| FrfPair::transverse(response, reference))
+        .filter(|pair| !present.contains(pair))
+        .collect()
 }
 
 /// The transverse channels of one end of the FRFs, each once.
@@ -127,9 +137,10 @@ pub(crate) fn quantities(hypothesis: &Hypothesis) -> Vec<Measure> {
         let reached = match quantity.key {
             QuantityKey::Mass | QuantityKey::PointMass(_) => WEIGHED * quantity.value.abs(),
             QuantityKey::Inertia => PENDULUM * quantity.value.abs(),
-            QuantityKey::Abscissa | QuantityKey::PointMassAbscissa(_) | QuantityKey::From | QuantityKey::To => {
-                CALLIPER
-            }
+            QuantityKey::Abscissa
+            | QuantityKey::PointMassAbscissa(_)
+            | QuantityKey::From
+            | QuantityKey::To => CALLIPER,
             QuantityKey::CentreOfGravity => KNIFE_EDGE,
             _ => return None,
         };

@@ -39,7 +39,9 @@ pub enum PlanError {
         known: String,
     },
     /// A dashpot of a joint that has none.
-    #[error("joint `{0}` states no dashpots, so that there is no interval of one; state `damping` beside its `stiffness`")]
+    #[error(
+        "joint `{0}` states no dashpots, so that there is no interval of one; state `damping` beside its `stiffness`"
+    )]
     NoDashpot(String),
     /// An element that is zero.
     #[error("the fixture states zero where the interval is wanted: {0}; state a value that is not zero")]
@@ -48,6 +50,8 @@ pub enum PlanError {
     #[error(transparent)]
     Prediction(#[from] PredictionError),
     /// Names that cannot be compared: a fit or a covariance has no finite value.
-    #[error("the remaining names cannot be compared: {0} predicts nothing that could be fitted to the recording")]
+    #[error(
+        "the remaining names cannot be compared: {0} predicts nothing that could be fitted to the recording"
+    )]
     NotComparable(String),
 }

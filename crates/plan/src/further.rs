@@ -5,10 +5,10 @@
 
 use crate::PlanError;
 use crate::candidates;
+use crate::expected_noise::ExpectedNoise;
 use crate::names::{Name, Names, Remaining, carried};
 use crate::plan::{NameNow, PlanOptions};
 use crate::scene::Scene;
-use crate::expected_noise::ExpectedNoise;
 use jointscope_diagnosis::{Hypothesis, Linearisation, Observation, with_idle_points_exact};
 use jointscope_fixture::Fixture;
 use jointscope_inference::{LeastSquares, NormalEquations, Precision, Settings, descend};
@@ -50,7 +50,8 @@ pub fn weighed_by(
         let hypothesis = name.hypothesis.in_fixture(&state, options.exact);
         let information = carried(&name.information, &name.hypothesis, &hypothesis);
         let problem = Problem { centre: hypothesis.coordinates().to_vec(), information, observation };
-        let cost = problem.least(hypothesis).ok_or_else(|| PlanError::NotComparable(effect_name(&name.effect)))?;
+        let cost =
+            problem.least(hypothesis).ok_or_else(|| PlanError::NotComparable(effect_name(&name.effect)))?;
         Ok(name.cost + cost / names.inflation)
     };
     let costs: Vec<f64> = names.names.par_iter().map(cost).collect::<Result<_, PlanError>>()?;
@@ -118,8 +119,13 @@ impl LeastSquares for Problem<'_> {
     }
 
     fn equations(&self, at: &At, linear: &Linearisation, (): &()) -> NormalEquations {
-        let residual: Vec<Complex64> =
-            self.observation.values().iter().zip(&at.predicted).map(|(measured, own)| measured - own).collect();
+        let residual: Vec<Complex64> = self
+            .observation
+            .values()
+            .iter()
+            .zip(&at.predicted)
+            .map(|(measured, own)| measured - own)
+            .collect();
         let weights = self.observation.weights();
         let mut equations =
             NormalEquations::of_columns(&linear.derivatives, &residual, weights, |_| false, |_| (0.0, 0.0));

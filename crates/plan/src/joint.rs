@@ -54,7 +54,10 @@ impl FromStr for Wanted {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let form = || "a joint's element and half of its 95 % interval are needed, such as J/k11=1% or J/k11=2e4".to_owned();
+        let form = || {
+            "a joint's element and half of its 95 % interval are needed, such as J/k11=1% or J/k11=2e4"
+                .to_owned()
+        };
         let (path, width) = text.rsplit_once('=').ok_or_else(form)?;
         let (joint, element) = path.rsplit_once('/').ok_or_else(form)?;
         let element = match element.trim() {
@@ -130,8 +133,11 @@ impl Plan {
         };
         let freed = with_free_joint(fixture, wanted)?;
         let points = candidates::points(fixture, &options.points, present)?;
-        let channels: Vec<FrfPair> =
-            points.iter().map(|point| FrfPair::transverse(point, point)).chain(present.iter().cloned()).collect();
+        let channels: Vec<FrfPair> = points
+            .iter()
+            .map(|point| FrfPair::transverse(point, point))
+            .chain(present.iter().cloned())
+            .collect();
         let freed = with_idle_points_exact(freed, &channels);
         let nominal = Hypothesis::nominal(&freed, options.exact);
         let (hypothesis, lines, noise, inflation) = match start {
@@ -214,7 +220,9 @@ impl Joints<'_> {
             .collect();
         ranked.sort_by(|a, b| a.0.total_cmp(&b.0));
         let gain = |(interval, candidate): &(f64, &Candidate)| match &candidate.measure {
-            Measure::Frf { frf } => Some(FrfGain { frf: frf.clone(), gain: interval / now.unwrap_or(*interval) }),
+            Measure::Frf { frf } => {
+                Some(FrfGain { frf: frf.clone(), gain: interval / now.unwrap_or(*interval) })
+            }
             _ => None,
         };
         let mut gains: Vec<FrfGain> = ranked.iter().filter_map(gain).collect();
@@ -227,15 +235,21 @@ impl Joints<'_> {
                     ranked.iter().filter(|(interval, _)| at_most(*interval)).copied().collect();
                 // Of what reaches the interval the least effort; of the rest the narrowest.
                 let effort = |candidate: &Candidate| candidate.measure.effort(present.len());
-                let key = |(interval, candidate): &(f64, &Candidate)| match self.wanted.reached(*interval, value) {
-                    true => (0.0, effort(candidate), *interval),
-                    false => (1.0, *interval, 0.0),
-                };
+                let key =
+                    |(interval, candidate): &(f64, &Candidate)| match self.wanted.reached(*interval, value) {
+                        true => (0.0, effort(candidate), *interval),
+                        false => (1.0, *interval, 0.0),
+                    };
                 told.sort_by(|a, b| key(a).partial_cmp(&key(b)).unwrap_or(std::cmp::Ordering::Equal));
-                told.into_iter().map(|(then, candidate)| self.suggestion(&candidate.measure, now, then, effort(candidate))).collect()
+                told.into_iter()
+                    .map(|(then, candidate)| {
+                        self.suggestion(&candidate.measure, now, then, effort(candidate))
+                    })
+                    .collect()
             }
         };
-        let alone = suggestions.first().and_then(|first| first.interval.as_ref()).is_some_and(|first| first.reaches);
+        let alone =
+            suggestions.first().and_then(|first| first.interval.as_ref()).is_some_and(|first| first.reaches);
         let together = (!reached_now && !alone).then(|| self.together(&all, &known)).flatten();
         let question = format!("What makes the interval narrower: {}?", self.wanted.says());
         let (says, mut remarks) = self.comes_to(reached_now, now, &suggestions, together);
@@ -267,7 +281,8 @@ impl Joints<'_> {
         together: Option<(Vec<String>, f64)>,
     ) -> (String, Vec<String>) {
         let unit = self.wanted.key().unit();
-        let at_present = now.map_or_else(String::new, |now| format!(" It is ± {} {unit} at present.", says::three(now)));
+        let at_present =
+            now.map_or_else(String::new, |now| format!(" It is ± {} {unit} at present.", says::three(now)));
         if reached_now {
             return (format!("The interval is as narrow as wanted already.{at_present}"), Vec::new());
         }
@@ -276,17 +291,16 @@ impl Joints<'_> {
             (None, _) => format!("Nothing that was considered makes the interval narrower.{at_present}"),
             (Some(best), true) => format!("{}.{at_present}", says::to_do(&best.action)),
             (Some(best), false) => {
-                format!("No single measurement makes it as narrow as wanted; the best is: {}.{at_present}", says::to_do(&best.action))
+                format!(
+                    "No single measurement makes it as narrow as wanted; the best is: {}.{at_present}",
+                    says::to_do(&best.action)
+                )
             }
         };
         let remarks = together.map(|(measures, interval)| {
             let value = self.value();
             let reaches = if self.wanted.reached(interval, value) { ", as narrow as wanted" } else { "" };
-            format!(
-                "Together {} leave ± {} {unit}{reaches}",
-                measures.join(", "),
-                says::three(interval)
-            )
+            format!("Together {} leave ± {} {unit}{reaches}", measures.join(", "), says::three(interval))
         });
         (says, remarks.into_iter().collect())
     }
@@ -401,7 +415,9 @@ fn with_free_joint(fixture: &Fixture, wanted: &Wanted) -> Result<Fixture, PlanEr
         0.0 => json!({ "value": 0.0, "std": 0.0 }),
         value => json!({ "value": value, "std": "unknown" }),
     };
-    let matrix = |at: &dyn Fn(usize, usize) -> f64| json!([[free(at(0, 0)), free(at(0, 1))], [free(at(0, 1)), free(at(1, 1))]]);
+    let matrix = |at: &dyn Fn(usize, usize) -> f64| {
+        json!([[free(at(0, 0)), free(at(0, 1))], [free(at(0, 1)), free(at(1, 1))]])
+    };
     let stiffness_entry = matrix(&|i, j| stiffness.at(i, j));
     let dashpots = dashpots(joint);
     let (which, row, column) = wanted.element;

@@ -70,7 +70,8 @@ impl Measure {
         match self {
             Measure::AddedMass { mass, mass_std, body, x, x_std } => {
                 let known = |value: f64, std: f64| Quantity::with_std(value, std);
-                let (place, parameters) = (Place::Body(body.clone()), vec![known(*x, *x_std), known(*mass, *mass_std)]);
+                let (place, parameters) =
+                    (Place::Body(body.clone()), vec![known(*x, *x_std), known(*mass, *mass_std)]);
                 let mut physics = fixture.physics().to_vec();
                 physics.push(Effect { kind: EffectKind::AddedMass, place, dof: None, parameters });
                 fixture.clone().with_physics(physics).ok()
@@ -93,7 +94,9 @@ impl Measure {
     pub fn frfs(&self) -> Vec<FrfPair> {
         match self {
             Measure::Frf { frf } => vec![frf.clone()],
-            Measure::Frfs { frfs } | Measure::HammerAt { frfs, .. } | Measure::SensorAt { frfs, .. } => frfs.clone(),
+            Measure::Frfs { frfs } | Measure::HammerAt { frfs, .. } | Measure::SensorAt { frfs, .. } => {
+                frfs.clone()
+            }
             _ => Vec::new(),
         }
     }

@@ -42,9 +42,10 @@ impl Remaining {
         let findings = &diagnosis.findings;
         let count = findings.len();
         let finding = match asked {
-            Some(asked) => {
-                asked.checked_sub(1).and_then(|i| findings.get(i)).ok_or(PlanError::NoSuchFinding { asked, count })?
-            }
+            Some(asked) => asked
+                .checked_sub(1)
+                .and_then(|i| findings.get(i))
+                .ok_or(PlanError::NoSuchFinding { asked, count })?,
             None => {
                 let open = findings.iter().filter(|finding| !finding.alternatives.is_empty());
                 let open = open.min_by(|a, b| a.probability.total_cmp(&b.probability));
@@ -61,7 +62,8 @@ impl Remaining {
         let name = |effect: &Effect| (effect.kind, effect.place.clone(), effect.dof);
         let index = repaired.effects().iter().position(|effect| name(effect) == name(&finding.effect));
         let index = index.ok_or(PlanError::NothingFound)?;
-        let model_error = diagnosis.model_error.map(|[_, repaired]| repaired).filter(|error| !error.is_none());
+        let model_error =
+            diagnosis.model_error.map(|[_, repaired]| repaired).filter(|error| !error.is_none());
         Ok(Remaining { repaired, index, names, observation: diagnosis.observation.clone(), model_error })
     }
 }
@@ -73,7 +75,9 @@ impl Remaining {
         let pairs = self.observation.pairs();
         let only = |name: &str| pairs.iter().all(|pair| pair.reference.is_named(name));
         let of_the_force = |(effect, probability): &(Effect, f64)| match &effect.place {
-            Place::Reference(name) if only(name) => Some((Effect { place: Place::Force, ..effect.clone() }, *probability)),
+            Place::Reference(name) if only(name) => {
+                Some((Effect { place: Place::Force, ..effect.clone() }, *probability))
+            }
             _ => None,
         };
         let more: Vec<(Effect, f64)> = self.names.iter().filter_map(of_the_force).collect();
@@ -152,7 +156,13 @@ impl Names {
                 None => fit.cost(inflation),
             };
             let effect = fit.hypothesis.effects().pop().unwrap_or_else(|| effect.clone());
-            Name { effect, probability: *probability, hypothesis: fit.hypothesis, cost, information: Vec::new() }
+            Name {
+                effect,
+                probability: *probability,
+                hypothesis: fit.hypothesis,
+                cost,
+                information: Vec::new(),
+            }
         };
         let names = names.iter().zip(fits).map(whole).collect();
         let stated = remaining.names.iter().map(|(_, probability)| *probability).fold(highest, f64::max);
@@ -190,7 +200,9 @@ impl Names {
 
     /// The same for other states of the structure: coordinates that are the same are as well known, others as their priors say.
     pub fn known_in(&self, others: &[Hypothesis]) -> Option<Vec<Cholesky>> {
-        let of = |(name, other): (&Name, &Hypothesis)| factor(&carried(&name.information, &name.hypothesis, other));
+        let of = |(name, other): (&Name, &Hypothesis)| {
+            factor(&carried(&name.information, &name.hypothesis, other))
+        };
         self.names.iter().zip(others).map(of).collect()
     }
 }

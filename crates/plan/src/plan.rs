@@ -7,9 +7,9 @@ use crate::measure::Measure;
 use crate::names::{Names, Remaining};
 use crate::products::Products;
 use crate::rivals::{Outlook, Rivals, SURE};
+use crate::says;
 use crate::scene::Scene;
 use crate::softening::Softening;
-use crate::says;
 use crate::suggestion::Suggestion;
 use jointscope_diagnosis::{Hypothesis, Observation, with_idle_points_exact};
 use jointscope_fixture::{Effect, Fixture, Place};
@@ -86,12 +86,19 @@ impl Plan {
     ///
     /// # Errors
     /// See [`PlanError`].
-    pub fn between(fixture: &Fixture, remaining: &Remaining, options: &PlanOptions) -> Result<Self, PlanError> {
+    pub fn between(
+        fixture: &Fixture,
+        remaining: &Remaining,
+        options: &PlanOptions,
+    ) -> Result<Self, PlanError> {
         let observation = &remaining.observation;
         let present = observation.pairs();
         let points = candidates::points(fixture, &options.points, present)?;
-        let channels: Vec<FrfPair> =
-            points.iter().map(|point| FrfPair::transverse(point, point)).chain(present.iter().cloned()).collect();
+        let channels: Vec<FrfPair> = points
+            .iter()
+            .map(|point| FrfPair::transverse(point, point))
+            .chain(present.iter().cloned())
+            .collect();
         let fixture = with_idle_points_exact(fixture.clone(), &channels);
         let model = remaining.repaired.in_fixture(&fixture, options.exact);
         let softening = remaining.model_error.map(|error| Softening::of(&error, &model, observation));
@@ -174,7 +181,8 @@ impl Judge<'_> {
             suggestions.par_extend(both.par_iter().map(drawn));
         }
         suggestions.sort_by(|a, b| order(b).partial_cmp(&order(a)).unwrap_or(std::cmp::Ordering::Equal));
-        let mut whole = Products::none(&by_frf.first().map_or_else(Vec::new, |products| products.widths.clone()));
+        let mut whole =
+            Products::none(&by_frf.first().map_or_else(Vec::new, |products| products.widths.clone()));
         by_frf.iter().for_each(|products| whole.add(products));
         let not_by_frfs = match Rivals::of(&whole, &known) {
             Some(rivals) if !by_frf.is_empty() => {
@@ -317,7 +325,8 @@ impl Judge<'_> {
         let total: f64 = weights.iter().sum();
         let count = weights.len();
         let pair = |i: usize, j: usize| weights[i] * weights[j] / total / total * outlook.divergence[i][j];
-        let box_hill = (0..count).flat_map(|i| (0..count).map(move |j| (i, j))).map(|(i, j)| pair(i, j)).sum();
+        let box_hill =
+            (0..count).flat_map(|i| (0..count).map(move |j| (i, j))).map(|(i, j)| pair(i, j)).sum();
         let separates = self.pairs(outlook, |apart| apart >= SEPARATED);
         let effort = candidate.measure.effort(self.observation.pairs().len());
         Suggestion {

@@ -34,7 +34,8 @@ impl Products {
             name.values[range.clone()].iter().zip(first).map(|(value, first)| value - first).collect()
         };
         let away: Vec<Vec<Complex64>> = names.iter().map(away).collect();
-        let derivatives = names.iter().flat_map(|name| &name.derivatives).map(|column| &column[range.clone()]);
+        let derivatives =
+            names.iter().flat_map(|name| &name.derivatives).map(|column| &column[range.clone()]);
         let columns: Vec<&[Complex64]> = derivatives.chain(away.iter().map(Vec::as_slice)).collect();
         let widths = names.iter().map(|name| name.derivatives.len()).collect();
         Products { widths, entries: weighted_products(&columns, weights) }
@@ -74,7 +75,10 @@ impl Products {
 
     /// The same measured so many times.
     pub fn times(&self, count: f64) -> Self {
-        Products { widths: self.widths.clone(), entries: self.entries.iter().map(|entry| count * entry).collect() }
+        Products {
+            widths: self.widths.clone(),
+            entries: self.entries.iter().map(|entry| count * entry).collect(),
+        }
     }
 
     /// A name's own information JᵀΣ⁻¹J.

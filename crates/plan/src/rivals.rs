@@ -103,8 +103,9 @@ impl Rivals {
     /// What the measurement would do: names have the weights `weights` now, up to a factor, and physics that none covers has `unlisted` against one for the best.
     pub fn outlook(&self, weights: &[f64], unlisted: f64, seed: u64) -> Outlook {
         let count = weights.len();
-        let divergence =
-            (0..count).map(|i| (0..count).map(|j| if i == j { 0.0 } else { self.divergence(i, j) }).collect()).collect();
+        let divergence = (0..count)
+            .map(|i| (0..count).map(|j| if i == j { 0.0 } else { self.divergence(i, j) }).collect())
+            .collect();
         let mut sure = 0.0;
         let mut told_apart = vec![vec![0.0; count]; count];
         let total: f64 = weights.iter().sum();
@@ -126,7 +127,8 @@ impl Rivals {
                 }
             }
         }
-        let both = |i: usize, j: usize| if i == j { 0.0 } else { f64::min(told_apart[i][j], told_apart[j][i]) };
+        let both =
+            |i: usize, j: usize| if i == j { 0.0 } else { f64::min(told_apart[i][j], told_apart[j][i]) };
         let told_apart = (0..count).map(|i| (0..count).map(|j| both(i, j)).collect()).collect();
         Outlook { divergence, sure, told_apart }
     }
@@ -142,7 +144,8 @@ impl Rivals {
             .map(|row| {
                 let along: f64 =
                     own.iter().enumerate().map(|(m, z)| z * p.at(row, p.first(truth) + m)).sum::<f64>();
-                let noise: f64 = noise[row * order..=row * order + row].iter().zip(&free).map(|(f, z)| f * z).sum();
+                let noise: f64 =
+                    noise[row * order..=row * order + row].iter().zip(&free).map(|(f, z)| f * z).sum();
                 p.at(row, p.value(truth)) + along + noise
             })
             .collect();
@@ -201,7 +204,8 @@ mod tests {
     fn normal_cdf(z: f64) -> f64 {
         // Abramowitz & Stegun 7.1.26, to 1e-7.
         let t = 1.0 / (1.0 + 0.3275911 * z.abs() / 2f64.sqrt());
-        let poly = t * (0.254829592 + t * (-0.284496736 + t * (1.421413741 + t * (-1.453152027 + t * 1.061405429))));
+        let poly =
+            t * (0.254829592 + t * (-0.284496736 + t * (1.421413741 + t * (-1.453152027 + t * 1.061405429))));
         let upper = 0.5 * poly * (-z * z / 2.0).exp();
         if z > 0.0 { 1.0 - upper } else { upper }
     }
@@ -211,7 +215,9 @@ mod tests {
         // y ~ N(0, 1) or N(d, 1): ln of the odds is normal about d²/2 with the variance d², whichever is true.
         for d in [0.5, 2.0, 4.0] {
             let products = Products::of_number(&[(0.0, vec![]), (d, vec![])], 1.0);
-            let rivals = Rivals::of(&products, &[Cholesky::of(0, &[]).unwrap(), Cholesky::of(0, &[]).unwrap()]).unwrap();
+            let rivals =
+                Rivals::of(&products, &[Cholesky::of(0, &[]).unwrap(), Cholesky::of(0, &[]).unwrap()])
+                    .unwrap();
             let outlook = rivals.outlook(&[0.5, 0.5], 0.0, 1);
             assert!((outlook.divergence[0][1] - d * d / 2.0).abs() < 1e-12);
             let expected = normal_cdf((d * d / 2.0 - 9f64.ln()) / d);

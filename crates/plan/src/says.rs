@@ -47,7 +47,8 @@ pub(crate) fn nats(value: f64) -> String {
 }
 
 pub(crate) fn question(names: &[NameNow]) -> String {
-    let each = names.iter().map(|name| format!("{} ({})", effect_name(&name.effect), percent(name.probability)));
+    let each =
+        names.iter().map(|name| format!("{} ({})", effect_name(&name.effect), percent(name.probability)));
     format!("Which is it: {}?", each.collect::<Vec<_>>().join(", or "))
 }
 
@@ -74,7 +75,9 @@ pub(crate) fn to_do(measure: &Measure) -> String {
             three(1e3 * mass),
             millimetres(x)
         ),
-        Measure::HungFreely => "Take the structure off its supports, hang it freely and record the same FRFs again".to_owned(),
+        Measure::HungFreely => {
+            "Take the structure off its supports, hang it freely and record the same FRFs again".to_owned()
+        }
         Measure::Quantity { path, std, unit } => {
             let verb = if *unit == "kg" { "Weigh" } else { "Measure" };
             let (factor, unit) = match *unit {

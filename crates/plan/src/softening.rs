@@ -31,7 +31,11 @@ impl Softening {
         let assembly = model.to_fixture().ok().and_then(|fixture| Assembly::new(&fixture, last).ok());
         let modes = assembly.map_or(1, |assembly| within(&assembly).max(1));
         let times = 2.0 * hz.len() as f64 / (VALUES * modes as f64);
-        Softening { frequency: error.frequency, size: error.damping.hypot(error.residue), times: times.max(1.0) }
+        Softening {
+            frequency: error.frequency,
+            size: error.damping.hypot(error.residue),
+            times: times.max(1.0),
+        }
     }
 
     /// What it adds to the variances of FRFs as `model` predicts them; `None` where it predicts none.
@@ -44,7 +48,8 @@ impl Softening {
     ) -> Option<Vec<f64>> {
         let moved = lines.hz().iter().map(|hz| hz * (1.0 + self.frequency)).collect();
         let fixture = model.to_fixture().ok()?;
-        let moved = accelerances(&fixture, pairs, &SpectralLines::new(moved).ok()?, Instrument::AsRecorded).ok()?;
+        let moved =
+            accelerances(&fixture, pairs, &SpectralLines::new(moved).ok()?, Instrument::AsRecorded).ok()?;
         let of = |(here, there): (&Complex64, &Complex64)| {
             self.times * ((there - here).norm_sqr() + self.size * self.size * here.norm_sqr())
         };

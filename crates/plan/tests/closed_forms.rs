@@ -110,7 +110,11 @@ fn a_mass_that_was_added_and_one_that_was_stated_wrongly_are_told_apart_by_the_s
     let remaining = remaining(&fixture, [added, wrong], &[("2", "1"), ("1", "1")]);
     let plan = Plan::between(&fixture, &remaining, &PlanOptions::default()).unwrap();
     let first = &plan.suggestions[0];
-    assert!(matches!(&first.action, Measure::Quantity { path, .. } if path == "bodies/B/mass"), "{}", first.says);
+    assert!(
+        matches!(&first.action, Measure::Quantity { path, .. } if path == "bodies/B/mass"),
+        "{}",
+        first.says
+    );
     assert!(first.sure.unwrap() > 0.95 && !plan.not_by_frfs.is_empty(), "{}", plan.says);
 }
 
@@ -165,13 +169,15 @@ fn a_further_test_with_a_known_mass_says_of_the_names_what_its_frfs_can_tell() {
 
 #[test]
 fn a_point_that_is_not_there_and_a_dashpot_that_is_not_stated_are_named() {
-    let (sensor, hammer) = (gain(Place::Response("2".into()), 1.03), gain(Place::Reference("1".into()), 0.97));
+    let (sensor, hammer) =
+        (gain(Place::Response("2".into()), 1.03), gain(Place::Reference("1".into()), 0.97));
     let remaining = remaining(&chain(), [sensor, hammer], &[("2", "1")]);
     let options = PlanOptions { points: vec!["9".into()], ..PlanOptions::default() };
     let error = Plan::between(&chain(), &remaining, &options).unwrap_err();
     assert!(matches!(&error, PlanError::UnknownPoint { point, .. } if point == "9"), "{error}");
     let wanted = "J/c11=1%".parse().unwrap();
-    let error = Plan::for_interval(&chain(), &Start::Lines(&lines()), &wanted, &PlanOptions::default()).unwrap_err();
+    let error =
+        Plan::for_interval(&chain(), &Start::Lines(&lines()), &wanted, &PlanOptions::default()).unwrap_err();
     assert!(error.to_string().contains("states no dashpots"), "{error}");
 }
 

@@ -24,8 +24,8 @@ use std::fmt;
 const SURE: f64 = 0.9;
 /// Cases drawn for each that is wanted, at the most: most names are not in doubt.
 const DRAWS: usize = 12;
-/// Cases drawn together.
-const BATCH: usize = 16;
+/// Cases drawn together, for each that is wanted and at the most.
+const BATCH: (usize, usize) = (4, 16);
 /// Ends of the classes of promises.
 const CLASSES: [f64; 5] = [0.0, 0.3, 0.6, 0.9, 1.0];
 
@@ -83,11 +83,17 @@ impl Planning {
     ///
     /// # Errors
     /// See [`GenerationError`].
-    pub fn of(wanted: usize, seed: u64, threads: usize, told: impl Fn(usize)) -> Result<Self, GenerationError> {
+    pub fn of(
+        wanted: usize,
+        seed: u64,
+        threads: usize,
+        told: impl Fn(usize),
+    ) -> Result<Self, GenerationError> {
         let mut cases = Vec::new();
         let mut drawn = 0;
         while cases.len() < wanted && drawn < DRAWS * wanted.max(4) {
-            let numbers: Vec<usize> = (drawn..drawn + BATCH).collect();
+            let batch = (BATCH.0 * wanted).min(BATCH.1);
+            let numbers: Vec<usize> = (drawn..drawn + batch).collect();
             let batch = on_workers(&numbers, threads, |_| (), |number| planned(seed, *number));
             for (number, case) in numbers.into_iter().zip(batch) {
                 if cases.len() == wanted {
@@ -128,9 +134,17 @@ impl fmt::Display for Planning {
         writeln!(f, "{drawn} cases drawn, of {open} the diagnosis left the name open")?;
         let none = cases.iter().filter(|case| case.first.is_none()).count();
         writeln!(f, "nothing to suggest: {none}")?;
-        writeln!(f, "first suggestion separates where it promises that with 0.9 or more: {}", kept.briefly())?;
+        writeln!(
+            f,
+            "first suggestion separates where it promises that with 0.9 or more: {}",
+            kept.briefly()
+        )?;
         for PromiseClass { from, to, promised, separated } in classes {
-            writeln!(f, "  promise {from:.1} to {to:.1}: mean {promised:.2}, separated {}", separated.briefly())?;
+            writeln!(
+                f,
+                "  promise {from:.1} to {to:.1}: mean {promised:.2}, separated {}",
+                separated.briefly()
+            )?;
         }
         Ok(())
     }
@@ -224,8 +238,11 @@ impl Scene {
         let seed = seed_of(&format!("seed {seed} plan"), number);
         let mut random = generator(seed);
         // A deformable beam takes longest.
-        let families: Vec<Family> =
-            FAMILIES.iter().map(|(_, family)| *family).filter(|family| *family != Family::BeamAndBlock).collect();
+        let families: Vec<Family> = FAMILIES
+            .iter()
+            .map(|(_, family)| *family)
+            .filter(|family| *family != Family::BeamAndBlock)
+            .collect();
         let family = families[random.random_range(0..families.len())];
         let believed = family.draw("look-alikes", &mut random)?;
         let truth = drawn_within_tolerance(&believed, &mut random)?;
@@ -244,7 +261,12 @@ impl Scene {
     }
 
     /// A hammer test of a structure; each `round` has hits and noise of its own.
-    fn measured(&self, structure: &Fixture, pairs: &[FrfPair], round: u64) -> Result<FrfSet, GenerationError> {
+    fn measured(
+        &self,
+        structure: &Fixture,
+        pairs: &[FrfPair],
+        round: u64,
+    ) -> Result<FrfSet, GenerationError> {
         let clean = frfs(structure, pairs, &recorded_lines()?, Instrument::AsDescribed)?;
         let hammer = HammerTest { seed: self.hammer.seed.wrapping_add(round), ..self.hammer };
         Ok(hammer.measure(&clean)?)
@@ -266,7 +288,8 @@ impl Scene {
                 let mut random = generator(self.hammer.seed.wrapping_add(2));
                 let error = deviate(&mut random);
                 let mut truth = self.truth.clone();
-                let value = truth.quantities_mut().into_iter().find(|q| q.path == *path).map(|q| q.quantity.value);
+                let value =
+                    truth.quantities_mut().into_iter().find(|q| q.path == *path).map(|q| q.quantity.value);
                 let mut believed = self.believed.clone();
                 for quantity in believed.quantities_mut().into_iter().filter(|q| q.path == *path) {
                     *quantity.quantity = Quantity::with_std(value.unwrap_or(0.0) + std * error, *std);
@@ -275,7 +298,12 @@ impl Scene {
             }
             Measure::Averages { times } => {
                 let hammer = HammerTest { averages: self.hammer.averages * (times - 1), ..self.hammer };
-                let more = Scene { hammer, truth: self.truth.clone(), believed: self.believed.clone(), pairs: self.pairs.clone() };
+                let more = Scene {
+                    hammer,
+                    truth: self.truth.clone(),
+                    believed: self.believed.clone(),
+                    pairs: self.pairs.clone(),
+                };
                 let more = more.measured(&self.truth, &self.pairs, 1)?;
                 again(&self.believed, &averaged(recorded, &more)?)
             }

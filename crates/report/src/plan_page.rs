@@ -30,7 +30,11 @@ pub fn plan_page(plan: &Plan, fixture: &Fixture, context: &PageContext) -> Resul
     });
     let tone = if promised { Tone::Ok } else { Tone::Attention };
     let details = std::iter::once(plan.question.clone()).chain(plan.remarks.iter().cloned());
-    let page = context.page("Plan: what to measure next", context.subtitle(fixture), context.verdict(tone, plan.says.clone(), details));
+    let page = context.page(
+        "Plan: what to measure next",
+        context.subtitle(fixture),
+        context.verdict(tone, plan.says.clone(), details),
+    );
     page.sections([suggestions(plan, fixture)])
         .sections((!plan.names.is_empty()).then(|| names(plan)))
         .sections((!plan.frfs.is_empty()).then(|| frfs(plan)))
@@ -170,9 +174,11 @@ fn short(text: &str) -> String {
 }
 
 fn names(plan: &Plan) -> Section {
-    let table = Table::of(&plan.names)
-        .words("Name", |name| effect_name(&name.effect))
-        .numbers("Probability", "", |name| percent(name.probability, 1));
+    let table = Table::of(&plan.names).words("Name", |name| effect_name(&name.effect)).numbers(
+        "Probability",
+        "",
+        |name| percent(name.probability, 1),
+    );
     let section = Section::new("The names that are left").with(table);
     let pairs: Vec<String> = plan.not_by_frfs.iter().map(|[a, b]| format!("{a} and {b}")).collect();
     match pairs.is_empty() {
@@ -193,15 +199,19 @@ fn frfs(plan: &Plan) -> Section {
         all.dedup();
         all
     };
-    let (responses, references) = (ends(|pair| pair.response.to_string()), ends(|pair| pair.reference.to_string()));
+    let (responses, references) =
+        (ends(|pair| pair.response.to_string()), ends(|pair| pair.reference.to_string()));
     let intervals = plan.names.is_empty();
     let gain = |response: &str, reference: &str| {
-        let is_it = |gain: &&FrfGain| gain.frf.response.is_named(response) && gain.frf.reference.is_named(reference);
+        let is_it =
+            |gain: &&FrfGain| gain.frf.response.is_named(response) && gain.frf.reference.is_named(reference);
         plan.frfs.iter().find(is_it).map(|gain| gain.gain)
     };
     let most = plan.frfs.iter().map(|gain| gain.gain.min(BEYOND_DOUBT)).fold(f64::MIN_POSITIVE, f64::max);
     let recorded = |response: &str, reference: &str| {
-        plan.recorded.iter().any(|pair| pair.response.is_named(response) && pair.reference.is_named(reference))
+        plan.recorded
+            .iter()
+            .any(|pair| pair.response.is_named(response) && pair.reference.is_named(reference))
     };
     let mut table = Table::of(&responses).names("Response", |response| response.to_string());
     for reference in &references {
@@ -214,7 +224,9 @@ fn frfs(plan: &Plan) -> Section {
     }
     let footnote = match intervals {
         true => "The 95 % interval that each FRF by itself would leave, as a share of the present one.",
-        false => "Expected ln of the odds for the true name against its nearest rival, nats, that each FRF by itself would bring.",
+        false => {
+            "Expected ln of the odds for the true name against its nearest rival, nats, that each FRF by itself would bring."
+        }
     };
     Section::new("Every FRF that could be recorded").with(table.footnote(footnote))
 }

@@ -124,7 +124,8 @@ impl Diagnosed {
 
 /// The diagnosis of the recordings, or the one of a directory made again.
 fn diagnosed(arguments: &PlanArguments) -> Result<Diagnosed, Refusal> {
-    let of_directory = |path: &PathBuf| path.is_dir() || path.extension().is_some_and(|ending| ending == "json");
+    let of_directory =
+        |path: &PathBuf| path.is_dir() || path.extension().is_some_and(|ending| ending == "json");
     let directory = arguments.diagnosis.as_ref().or_else(|| match arguments.files.as_slice() {
         [only] if of_directory(only) => Some(only),
         _ => None,
@@ -163,7 +164,10 @@ fn of_diagnosis(path: &Path, fixture: &Path) -> Result<DiagnoseArguments, Refusa
     let path = if path.is_dir() { path.join("diagnosis.json") } else { path.to_owned() };
     let file = input::json(&path)?;
     let not_one = || {
-        Refusal::at(&path, "is no diagnosis.json: it does not say which command made it; make it anew with `jointscope diagnose`")
+        Refusal::at(
+            &path,
+            "is no diagnosis.json: it does not say which command made it; make it anew with `jointscope diagnose`",
+        )
     };
     let command = file["made"]["command"].as_str().ok_or_else(not_one)?;
     let words = origin::words(command);
@@ -180,7 +184,11 @@ fn of_diagnosis(path: &Path, fixture: &Path) -> Result<DiagnoseArguments, Refusa
     }
     let same = |a: &Path, b: &Path| a.canonicalize().is_ok_and(|a| b.canonicalize().is_ok_and(|b| a == b));
     if !same(&arguments.fixture, fixture) {
-        let problem = format!("is not the fixture that {} was made with, {}", path.display(), arguments.fixture.display());
+        let problem = format!(
+            "is not the fixture that {} was made with, {}",
+            path.display(),
+            arguments.fixture.display()
+        );
         return Err(Refusal::at(fixture, problem));
     }
     Ok(arguments)
@@ -257,7 +265,8 @@ fn weighed(
         )
     };
     let before = |name: &NameNow| {
-        let same = remaining.names.iter().find(|(effect, _)| effect_name(effect) == effect_name(&name.effect));
+        let same =
+            remaining.names.iter().find(|(effect, _)| effect_name(effect) == effect_name(&name.effect));
         same.map_or(0.0, |(_, probability)| *probability)
     };
     Ok(names.iter().map(|name| of((name, before(name)))).collect::<Vec<_>>().join("\n"))
@@ -298,7 +307,8 @@ const LISTED: usize = 8;
 fn summary(plan: &Plan) -> Vec<String> {
     let mut lines = vec![plan.question.clone(), plan.says.clone()];
     if !plan.suggestions.is_empty() {
-        let width = plan.suggestions.iter().take(LISTED).map(|s| s.measure.chars().count()).max().unwrap_or(0);
+        let width =
+            plan.suggestions.iter().take(LISTED).map(|s| s.measure.chars().count()).max().unwrap_or(0);
         let heading = match plan.names.is_empty() {
             true => "95 % interval then",
             false => "one name ≥ 90 %   ln of the odds",

@@ -145,7 +145,8 @@ fn plans(arguments: &ProveArguments, wanted: usize) -> Result<String, Refusal> {
     }
     let bar = progress::cases(wanted, "planned");
     let told = |done: usize| bar.set_position(done as u64);
-    let planning = Planning::of(wanted, arguments.seed.unwrap_or(1), arguments.workers(), told).map_err(Refusal::new)?;
+    let planning =
+        Planning::of(wanted, arguments.seed.unwrap_or(1), arguments.workers(), told).map_err(Refusal::new)?;
     drop(bar);
     let value = json!(planning);
     if let Some(path) = path {

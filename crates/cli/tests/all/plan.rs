@@ -56,7 +56,10 @@ fn what_cannot_be_planned_is_refused_in_a_sentence() {
     bench.refused(&["plan", "fixture.json"], &["nothing was recorded", "--interval"]);
     bench.refused(&["plan", "fixture.json", "gone"], &["gone", "no such file"]);
     bench.write("some.json", "{}");
-    bench.refused(&["plan", "fixture.json", "--diagnosis", "some.json"], &["some.json", "is no diagnosis.json"]);
+    bench.refused(
+        &["plan", "fixture.json", "--diagnosis", "some.json"],
+        &["some.json", "is no diagnosis.json"],
+    );
     bench.write("broken.json", "{");
     bench.refused(&["plan", "fixture.json", "broken.json"], &["broken.json"]);
     let interval = |wanted: &str, parts: &[&str]| {
