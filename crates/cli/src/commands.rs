@@ -9,6 +9,7 @@ mod export;
 mod fem;
 mod init;
 mod modes;
+mod plan;
 mod prove;
 mod schema;
 mod show;
@@ -56,6 +57,8 @@ enum Command {
     Show(show::ShowArguments),
     /// Accelerations of an assembly over time under recorded forces, effects that depend on amplitude included.
     Simulate(simulate::SimulateArguments),
+    /// What to measure next: candidate measurements ranked by how well they tell look-alike names apart, or by what they tell of a joint: plan.json and plan.html.
+    Plan(plan::PlanArguments),
     /// How often the diagnosis is right: concealed cases of a simulated laboratory, and a table of scores.
     Prove(prove::ProveArguments),
     /// The paper's Tables 1–6, its values beside the program's.
@@ -63,6 +66,14 @@ enum Command {
 }
 
 impl Program {
+    /// The arguments of a command line that diagnoses; `None` of any other.
+    pub fn diagnose_arguments(words: &[String]) -> Option<diagnose::DiagnoseArguments> {
+        match Program::try_parse_from(words).ok()?.command {
+            Command::Diagnose(arguments) => Some(arguments),
+            _ => None,
+        }
+    }
+
     /// Runs the command; what it has done is told on standard output.
     pub fn run(&self) -> Result<String, Refusal> {
         match &self.command {
@@ -79,6 +90,7 @@ impl Program {
             Command::Modes(arguments) => modes::run(arguments),
             Command::Show(arguments) => show::run(arguments),
             Command::Simulate(arguments) => simulate::run(arguments),
+            Command::Plan(arguments) => plan::run(arguments),
             Command::Prove(arguments) => prove::run(arguments),
             Command::Tables(arguments) => tables::run(arguments),
         }

@@ -50,9 +50,47 @@ pub fn program() -> String {
     format!("jointscope {}", env!("CARGO_PKG_VERSION"))
 }
 
+/// The words of a command line that [`command_line`] has written.
+pub fn words(command: &str) -> Vec<String> {
+    let mut words = Vec::new();
+    let mut rest = command.trim_start();
+    while !rest.is_empty() {
+        let mut quoted = serde_json::Deserializer::from_str(rest).into_iter::<String>();
+        let word = match rest.starts_with('"').then(|| quoted.next()).flatten() {
+            Some(Ok(word)) => {
+                let end = quoted.byte_offset();
+                rest = &rest[end..];
+                word
+            }
+            _ => {
+                let end = rest.find(' ').unwrap_or(rest.len());
+                let word = rest[..end].to_owned();
+                rest = &rest[end..];
+                word
+            }
+        };
+        words.push(word);
+        rest = rest.trim_start();
+    }
+    words
+}
+
 /// The command as it was typed; the program by its name alone, wherever it lies.
 pub fn command_line() -> String {
     let quoted = |word: String| if word.contains([' ', '"', '\'']) { format!("{word:?}") } else { word };
     let arguments = std::env::args_os().skip(1).map(|word| quoted(word.to_string_lossy().into_owned()));
     std::iter::once("jointscope".to_owned()).chain(arguments).collect::<Vec<_>>().join(" ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::words;
+
+    #[test]
+    fn a_command_line_comes_apart_into_the_words_it_was_made_of() {
+        assert_eq!(words("jointscope diagnose a.json b.uff"), ["jointscope", "diagnose", "a.json", "b.uff"]);
+        let quoted = format!("jointscope diagnose {:?} {:?} -o out", "my fixture.json", "it's \"b\".uff");
+        let apart = ["jointscope", "diagnose", "my fixture.json", "it's \"b\".uff", "-o", "out"];
+        assert_eq!(words(&quoted), apart);
+    }
 }

@@ -1,4 +1,5 @@
 use crate::fitter::Fitter;
+use crate::penalty::parameter_penalty;
 use crate::settings::Settings;
 use crate::{Hypothesis, Observation, Watch};
 use jointscope_inference::{Covariance, variance_inflation};
@@ -44,8 +45,14 @@ impl Fit {
         self.chi2 / (observation.degrees().saturating_sub(self.hypothesis.effect_parameters())).max(1) as f64
     }
 
+    /// Minus twice the logarithm of the evidence by the default settings, up to a constant: what was minimised, divided by the variance `inflation`, and a
+    /// penalty for every parameter. Names are weighed by it.
+    pub fn cost(&self, inflation: f64) -> f64 {
+        self.objective / inflation + parameter_penalty(&Settings::default().selection, &self.hypothesis)
+    }
+
     /// Variance inflation of the residuals that it leaves.
-    pub(crate) fn inflation(&self, observation: &Observation) -> f64 {
+    pub fn inflation(&self, observation: &Observation) -> f64 {
         variance_inflation(self.chi2_per_dof(observation), observation.residual_correlation(&self.predicted))
     }
 }

@@ -122,7 +122,7 @@ impl<'a> Fitter<'a> {
     }
 
     /// Central differences by steps so small that every digit counts which rounding leaves: for uncertainties.
-    fn linearised_exactly(&self, at: &Hypothesis) -> Linearisation {
+    pub fn linearised_exactly(&self, at: &Hypothesis) -> Linearisation {
         let difference = self.settings.fit.difference;
         let (change, least) = self.settings.fit.small_difference;
         let small = |m: usize| {

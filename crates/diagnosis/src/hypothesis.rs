@@ -202,6 +202,27 @@ impl Hypothesis {
         self
     }
 
+    /// Where every coordinate stands: tolerances in deviations from the stated values, then the effects' free parameters.
+    pub fn coordinates(&self) -> &[f64] {
+        &self.coordinates
+    }
+
+    /// The same hypothesis of another state of the structure: `fixture` with this one's effects beside its own, quantities of the same path where this
+    /// hypothesis has them, and all others as they are stated. `exact` takes bare numbers as exact.
+    pub fn in_fixture(&self, fixture: &Fixture, exact: bool) -> Self {
+        let mut other = Hypothesis::nominal(fixture, exact);
+        for (index, tolerance) in other.tolerances.iter().enumerate() {
+            let same = |own: &Tolerance| own.quantity.path == tolerance.quantity.path;
+            if let Some(own) = self.tolerances.iter().position(same) {
+                other.coordinates[index] = self.coordinates[own];
+            }
+        }
+        let moving = self.coordinates[self.tolerances.len()..].iter();
+        other.effects = Arc::clone(&self.effects);
+        other.coordinates.extend(moving);
+        other.listed()
+    }
+
     /// Whether a fit leaves coordinate `index` where it is.
     pub(crate) fn is_held(&self, index: usize) -> bool {
         self.held.contains(&index)
@@ -234,7 +255,7 @@ impl Hypothesis {
     }
 
     /// How each coordinate moves: tolerances first, then the effects' free parameters.
-    pub(crate) fn parameters(&self) -> &[Parameter] {
+    pub fn parameters(&self) -> &[Parameter] {
         &self.parameters
     }
 
@@ -255,7 +276,7 @@ impl Hypothesis {
     }
 
     /// Coordinates of effect `index` within the whole.
-    pub(crate) fn range_of(&self, index: usize) -> std::ops::Range<usize> {
+    pub fn range_of(&self, index: usize) -> std::ops::Range<usize> {
         let free = |(_, parameters): &(Effect, Vec<Parameter>)| {
             parameters.iter().filter(|parameter| parameter.is_free()).count()
         };
@@ -411,7 +432,7 @@ impl Hypothesis {
     }
 
     /// Moves by `step`, bounded parameters stopping at their bounds.
-    pub(crate) fn stepped(&self, step: &[f64]) -> Self {
+    pub fn stepped(&self, step: &[f64]) -> Self {
         let mut next = self.clone();
         for ((coordinate, step), parameter) in
             next.coordinates.iter_mut().zip(step).zip(self.parameters.iter())

@@ -63,7 +63,7 @@
 //!
 //! The parts are crates of their own, re-exported as modules for what this page leaves out: [`uff`], [`import`], [`recordings`],
 //! [`fixture`], [`schema`], [`draft`], [`spectra`], [`frf`], [`hits`], [`estimation`], [`beam`], [`damping`], [`lumped`], [`modes`], [`averaging`],
-//! [`decomposition`], [`diagnosis`], [`nonlinear`], [`findings`], [`pipeline`], [`check`], [`fem`], [`comparison`], [`export`], [`tables`], [`proof`], [`report`].
+//! [`decomposition`], [`diagnosis`], [`nonlinear`], [`findings`], [`pipeline`], [`plan`], [`check`], [`fem`], [`comparison`], [`export`], [`tables`], [`proof`], [`report`].
 
 pub use jointscope_averaging as averaging;
 pub use jointscope_beam as beam;
@@ -86,6 +86,7 @@ pub use jointscope_lumped as lumped;
 pub use jointscope_modes as modes;
 pub use jointscope_nonlinear as nonlinear;
 pub use jointscope_pipeline as pipeline;
+pub use jointscope_plan as plan;
 pub use jointscope_proof as proof;
 pub use jointscope_recordings as recordings;
 pub use jointscope_report as report;
@@ -115,6 +116,7 @@ mod diagnosis_file;
 mod file;
 mod modes_file;
 mod nonlinear_file;
+mod plan_file;
 mod stepped_file;
 mod stiffness_file;
 
@@ -123,6 +125,7 @@ pub use check_file::check_file;
 pub use diagnosis_file::diagnosis_file;
 pub use modes_file::modes_file;
 pub use nonlinear_file::nonlinear_file;
+pub use plan_file::plan_file;
 pub use stepped_file::stepped_file;
 pub use stiffness_file::stiffness_file;
 

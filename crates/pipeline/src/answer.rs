@@ -1,8 +1,7 @@
 //! The answer, whichever way it was found.
 
-use crate::idle::as_known;
 use crate::{Error, HammerTest, MeasuredFrfs};
-use jointscope_diagnosis::Diagnosis;
+use jointscope_diagnosis::{Diagnosis, as_known};
 use jointscope_fixture::Fixture;
 use jointscope_nonlinear::{NonlinearDiagnosis, SteppedDiagnosis};
 use jointscope_wording::Summary;

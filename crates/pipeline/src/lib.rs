@@ -49,7 +49,6 @@ mod error;
 mod frfs;
 mod hammer_test;
 mod hits;
-mod idle;
 mod levels;
 mod measurement;
 mod modal_damping;

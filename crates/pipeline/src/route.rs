@@ -1,8 +1,7 @@
 //! The way from a measurement to an answer.
 
-use crate::idle::with_idle_points_exact;
 use crate::{Answer, Error, MeasuredFrfs, Measurement, hits, levels};
-use jointscope_diagnosis::{Diagnosis, DiagnosisOptions, Step, Watch};
+use jointscope_diagnosis::{Diagnosis, DiagnosisOptions, Step, Watch, with_idle_points_exact};
 use jointscope_estimation::{EstimateOptions, ResponseWindow};
 use jointscope_fixture::{Damping, Fixture, JointLaw, Quantity, RatiosOf, Spread};
 use jointscope_lumped::Assembly;

@@ -52,6 +52,7 @@ mod laboratory;
 mod limits;
 mod objective;
 mod plan_table;
+mod planning;
 mod reference;
 mod reliability;
 mod routes;
@@ -79,6 +80,7 @@ pub use jointscope_rig::Family;
 pub use jointscope_rig::universal_file::{FileError, Precision};
 pub use judged::{AS_GOOD, Evidence, Judgeable, Judged, PLAIN, VISIBLE};
 pub use limits::{Alike, Limits, SmallestShown};
+pub use planning::{PlannedCase, Planning, PromiseClass};
 pub use reference::Reference;
 pub use reliability::{Bin, Reliability};
 pub use routes::{

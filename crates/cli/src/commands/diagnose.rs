@@ -60,6 +60,11 @@ pub struct DiagnoseArguments {
 /// Diagnoses, and writes `diagnosis.json`, `refitted.json`, `repaired.json` and `report.html`; answers with what was found and where the page
 /// is, or with `diagnosis.json` itself.
 pub fn run(arguments: &DiagnoseArguments) -> Result<String, Refusal> {
+    written(arguments, &answered(arguments)?)
+}
+
+/// The answer, nothing written.
+pub fn answered(arguments: &DiagnoseArguments) -> Result<Answer, Refusal> {
     input::once(
         std::iter::once(&arguments.fixture).chain(&arguments.recording.files).chain(&arguments.baseline),
     )?;
@@ -98,7 +103,7 @@ pub fn run(arguments: &DiagnoseArguments) -> Result<String, Refusal> {
     steps.finish();
     let mut answer = answer.map_err(|error| arguments.recording.unanswered(&error, &fixture))?;
     answer.notes.extend(arguments.estimation.unused_with(&measurement));
-    written(arguments, &answer)
+    Ok(answer)
 }
 
 /// The files of the command with their contents.

@@ -9,7 +9,7 @@ mod shipped;
 use std::path::Path;
 
 use jointscope::proof::{
-    Baseline, Judged, JudgedRoutes, Limits, Methods, Opened, Replies, RouteScores, Score, Timing,
+    Baseline, Judged, JudgedRoutes, Limits, Methods, Opened, Planning, Replies, RouteScores, Score, Timing,
 };
 use jointscope::report::{ProofContext, ProofResults, proof_page};
 use serde_json::json;
@@ -32,6 +32,9 @@ pub fn run(arguments: &ProveArguments) -> Result<String, Refusal> {
     }
     if let [fixture, recording] = arguments.limits.as_slice() {
         return limits(fixture, recording, arguments.json);
+    }
+    if let Some(wanted) = arguments.plan {
+        return plans(arguments, wanted as usize);
     }
     let mut concealed = Concealed::of(arguments)?;
     let digest = concealed.truths.digest().to_owned();
@@ -130,6 +133,35 @@ fn diagnosed(arguments: &ProveArguments, concealed: &Concealed, threads: usize) 
     );
     pages.map_or(Ok(()), CasePages::finish)?;
     Ok(replies)
+}
+
+/// Whether plans keep what they promise.
+fn plans(arguments: &ProveArguments, wanted: usize) -> Result<String, Refusal> {
+    let path = arguments.output.as_ref().map(|directory| directory.join("planning.json"));
+    if let Some(path) = &path {
+        let mut outputs = Outputs::default();
+        outputs.add(path, "");
+        outputs.check()?;
+    }
+    let bar = progress::cases(wanted, "planned");
+    let told = |done: usize| bar.set_position(done as u64);
+    let planning =
+        Planning::of(wanted, arguments.seed.unwrap_or(1), arguments.workers(), told).map_err(Refusal::new)?;
+    drop(bar);
+    let value = json!(planning);
+    if let Some(path) = path {
+        Outputs::one(path, &value)?;
+    }
+    if arguments.json {
+        return Ok(pretty(&value).trim_end().to_owned());
+    }
+    let mut text = planning.to_string();
+    if arguments.wrong {
+        for case in planning.cases.iter().filter(|case| case.promise >= 0.9 && !case.separated) {
+            text.push_str(&format!("{case}\n"));
+        }
+    }
+    Ok(text.trim_end().to_owned())
 }
 
 /// What a recording cannot tell apart or show.

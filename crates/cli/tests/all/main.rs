@@ -16,6 +16,7 @@ mod hits;
 mod init;
 mod levels;
 mod modes;
+mod plan;
 mod prove;
 mod prove_floors;
 mod prove_recordings;

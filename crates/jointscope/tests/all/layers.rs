@@ -33,7 +33,7 @@ const FLOORS: [&[&str]; 12] = [
     ],
     &["jointscope-diagnosis", "jointscope-export", "jointscope-tables"],
     &["jointscope-wording"],
-    &["jointscope-pipeline"],
+    &["jointscope-pipeline", "jointscope-plan"],
     &["jointscope-check", "jointscope-proof"],
     &["jointscope-report"],
     &["jointscope"],

@@ -74,6 +74,10 @@ pub struct ProveArguments {
     /// Write no cases/NNN.
     #[arg(long)]
     pub no_case_pages: bool,
+    /// Instead: make cases until the diagnosis leaves the name of so many open, carry out what `plan` suggests first, and count how often that keeps what it promises.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000),
+        conflicts_with_all = ["cases", "graded", "solid", "struck", "solid_as_is", "modal_errors", "channel_flaws", "load_paths", "unknown_physics", "also_from", "only", "shipped", "family", "limits", "recordings"])]
+    pub plan: Option<u32>,
     /// Instead: the effects that this recording cannot tell apart, and the smallest that show in it.
     #[arg(long, num_args = 2, value_names = ["FIXTURE", "RECORDING"],
         conflicts_with_all = ["cases", "seed", "graded", "solid", "struck", "solid_as_is", "modal_errors", "channel_flaws", "load_paths", "unknown_physics", "also_from", "only", "shipped", "family", "wrong", "output"])]

@@ -127,8 +127,8 @@ impl Bench {
         let output = self.run(arguments);
         let complaint = String::from_utf8_lossy(&output.stderr);
         assert_eq!(output.status.code(), Some(0), "{arguments:?}: {complaint}");
-        // A diagnosis tells how it comes along.
-        let tells = arguments.first() == Some(&"diagnose");
+        // A diagnosis tells how it comes along, and so do plans, which begin with one.
+        let tells = matches!(arguments.first(), Some(&"diagnose" | &"plan"));
         assert!(complaint.is_empty() || (tells && !complaint.contains("jointscope: ")), "{complaint}");
         String::from_utf8(output.stdout).unwrap()
     }

@@ -19,7 +19,7 @@ fn idle(fixture: &Fixture, pairs: &[FrfPair]) -> Vec<bool> {
 }
 
 /// The fixture with the abscissae of its idle points taken as exact.
-pub(crate) fn with_idle_points_exact(mut fixture: Fixture, pairs: &[FrfPair]) -> Fixture {
+pub fn with_idle_points_exact(mut fixture: Fixture, pairs: &[FrfPair]) -> Fixture {
     let idle = idle(&fixture, pairs);
     for quantity in fixture.quantities_mut() {
         if let QuantityOwner::Point(point) = quantity.owner
@@ -32,7 +32,7 @@ pub(crate) fn with_idle_points_exact(mut fixture: Fixture, pairs: &[FrfPair]) ->
 }
 
 /// A fixture that came of such a one, its points known as well as `stated` says.
-pub(crate) fn as_known(mut fixture: Fixture, stated: &Fixture) -> Fixture {
+pub fn as_known(mut fixture: Fixture, stated: &Fixture) -> Fixture {
     let known: Vec<Spread> = stated.points().iter().map(|point| point.x.spread).collect();
     for quantity in fixture.quantities_mut() {
         if let QuantityOwner::Point(point) = quantity.owner

@@ -1,0 +1,342 @@
+//! `jointscope plan`: a fixture and what was measured of it in, what to measure next out.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use jointscope::diagnosis::Observation;
+use jointscope::estimation::ResponseWindow;
+use jointscope::pipeline::MeasuredFrfs;
+use jointscope::plan::{NameNow, Plan, PlanOptions, Remaining, Start, Suggestion, Wanted, weighed_by};
+use jointscope::report::{PageContext, plan_page};
+use jointscope::{Answer, Band, Fixture, Outcome, SpectralLines, effect_name, plan_file};
+
+use crate::commands::Program;
+use crate::commands::diagnose::{DiagnoseArguments, answered};
+use crate::estimation_arguments::EstimationArguments;
+use crate::input::{self, FixtureFile};
+use crate::origin;
+use crate::output::{Outputs, counted, pretty};
+use crate::recording::{ReadingArguments, RecordingArguments};
+use crate::refusal::Refusal;
+use crate::values::{band, spectral_lines};
+
+/// Options of `jointscope plan`.
+#[derive(Debug, Args)]
+pub struct PlanArguments {
+    /// The fixture file (JSON).
+    pub fixture: PathBuf,
+    /// What was recorded of it (UFF, UNV, CSV, MAT), which is diagnosed first; or the directory of a diagnosis, which is made again from its files.
+    #[arg(value_name = "F.uff|DIR")]
+    pub files: Vec<PathBuf>,
+    #[command(flatten)]
+    pub reading: ReadingArguments,
+    /// The directory of a diagnosis, or its diagnosis.json.
+    #[arg(long, value_name = "DIR", conflicts_with = "files")]
+    pub diagnosis: Option<PathBuf>,
+    /// Instead of names: what makes the 95 % interval of a joint's element narrower, half of it stated, such as J/k11=1% or J/k22=50.
+    #[arg(long, value_name = "JOINT/ELEMENT=WIDTH", value_parser = wanted)]
+    pub interval: Option<Wanted>,
+    /// Lines of a test that nobody has made yet, in Hz, for --interval without recordings.
+    #[arg(long, value_name = "FROM:TO:STEP", value_parser = spectral_lines, requires = "interval", conflicts_with = "files")]
+    pub lines: Option<SpectralLines>,
+    /// A further test of the same structure with a mass added or off its supports: the fixture that describes it then, and what was recorded.
+    #[arg(long, num_args = 2, value_names = ["FIXTURE", "G.uff"], conflicts_with = "interval")]
+    pub also: Vec<PathBuf>,
+    /// The finding whose names are to be told apart, counted from 1 [default: the one that is named least surely].
+    #[arg(long, value_name = "N", conflicts_with = "interval")]
+    pub finding: Option<usize>,
+    /// Points between which FRFs are considered [default: all of a small structure].
+    #[arg(long, value_name = "POINT", num_args = 1..)]
+    pub points: Vec<String>,
+    /// The band to use, in Hz [default: all lines].
+    #[arg(long, value_name = "F1:F2", value_parser = band)]
+    pub band: Option<Band>,
+    /// Bands to leave out, in Hz, such as mains hum.
+    #[arg(long, value_name = "F1:F2", value_parser = band, num_args = 1..)]
+    pub exclude: Vec<Band>,
+    /// Take numbers of the fixture without a standard deviation as exact.
+    #[arg(long)]
+    pub exact: bool,
+    /// Print plan.json to standard output, for scripts.
+    #[arg(long)]
+    pub json: bool,
+    /// The directory to write plan.json and plan.html to [default: nothing is written].
+    #[arg(short, long, value_name = "DIR")]
+    pub output: Option<PathBuf>,
+    #[command(flatten)]
+    pub estimation: EstimationArguments,
+}
+
+/// Reads `JOINT/ELEMENT=WIDTH`.
+fn wanted(text: &str) -> Result<Wanted, String> {
+    text.parse()
+}
+
+/// What was planned, and what it was made of.
+struct Planned {
+    plan: Plan,
+    fixture: Fixture,
+    files: Vec<PathBuf>,
+    notes: Vec<String>,
+}
+
+/// Plans; answers with the suggestions, the best first.
+pub fn run(arguments: &PlanArguments) -> Result<String, Refusal> {
+    input::once(std::iter::once(&arguments.fixture).chain(&arguments.files).chain(&arguments.also))?;
+    outputs(arguments, &[], [String::new(), String::new()]).check()?;
+    let planned = match &arguments.interval {
+        Some(wanted) => for_interval(arguments, wanted)?,
+        None => {
+            let diagnosed = diagnosed(arguments)?;
+            match arguments.also.as_slice() {
+                [state, recording] => return weighed(arguments, &diagnosed, state, recording),
+                _ => between(arguments, diagnosed)?,
+            }
+        }
+    };
+    written(arguments, &planned)
+}
+
+/// A diagnosis, and the arguments with which it was made.
+struct Diagnosed {
+    arguments: DiagnoseArguments,
+    answer: Answer,
+}
+
+impl Diagnosed {
+    fn files(&self) -> Vec<PathBuf> {
+        std::iter::once(&self.arguments.fixture).chain(&self.arguments.recording.files).cloned().collect()
+    }
+
+    fn remaining(&self, finding: Option<usize>) -> Result<Remaining, Refusal> {
+        let Outcome::Linear(diagnosis) = &self.answer.outcome else {
+            return Err(self.arguments.recording.refusal(
+                "what was found depends on amplitude, and no plan is made for that; `--interval` plans for a joint's stiffness",
+            ));
+        };
+        Remaining::of(diagnosis, finding).map_err(|error| self.arguments.recording.refusal(error))
+    }
+
+    fn options(&self, points: &[String]) -> PlanOptions {
+        PlanOptions { points: points.to_vec(), exact: self.arguments.exact }
+    }
+}
+
+/// The diagnosis of the recordings, or the one of a directory made again.
+fn diagnosed(arguments: &PlanArguments) -> Result<Diagnosed, Refusal> {
+    let of_directory =
+        |path: &PathBuf| path.is_dir() || path.extension().is_some_and(|ending| ending == "json");
+    let directory = arguments.diagnosis.as_ref().or_else(|| match arguments.files.as_slice() {
+        [only] if of_directory(only) => Some(only),
+        _ => None,
+    });
+    let again = match directory {
+        Some(path) => of_diagnosis(path, &arguments.fixture)?,
+        None if arguments.files.is_empty() => {
+            return Err(Refusal::new(
+                "nothing was recorded that could be diagnosed; give the recordings or the directory of a diagnosis, or ask for an interval with `--interval JOINT/k11=1%`",
+            ));
+        }
+        None => DiagnoseArguments {
+            fixture: arguments.fixture.clone(),
+            recording: recording(arguments),
+            baseline: Vec::new(),
+            band: arguments.band,
+            exclude: arguments.exclude.clone(),
+            hold_out: Vec::new(),
+            time_limit: None,
+            exact: arguments.exact,
+            as_stated: false,
+            json: false,
+            output: None,
+            estimation: arguments.estimation.clone(),
+        },
+    };
+    Ok(Diagnosed { answer: answered(&again)?, arguments: again })
+}
+
+fn recording(arguments: &PlanArguments) -> RecordingArguments {
+    RecordingArguments { files: arguments.files.clone(), reading: arguments.reading.clone() }
+}
+
+/// The arguments of the diagnosis that wrote a file, its inputs as they were then.
+fn of_diagnosis(path: &Path, fixture: &Path) -> Result<DiagnoseArguments, Refusal> {
+    let path = if path.is_dir() { path.join("diagnosis.json") } else { path.to_owned() };
+    let file = input::json(&path)?;
+    let not_one = || {
+        Refusal::at(
+            &path,
+            "is no diagnosis.json: it does not say which command made it; make it anew with `jointscope diagnose`",
+        )
+    };
+    let command = file["made"]["command"].as_str().ok_or_else(not_one)?;
+    let words = origin::words(command);
+    let arguments = Program::diagnose_arguments(&words).ok_or_else(not_one)?;
+    for made_of in file["made"]["inputs"].as_array().into_iter().flatten() {
+        let (Some(name), Some(hash)) = (made_of["file"].as_str(), made_of["sha256"].as_str()) else {
+            return Err(not_one());
+        };
+        let now = origin::input_file(name.to_owned(), &input::bytes(Path::new(name))?);
+        if now.sha256 != hash {
+            let problem = format!("has changed since {} was made; diagnose anew", path.display());
+            return Err(Refusal::at(Path::new(name), problem));
+        }
+    }
+    let same = |a: &Path, b: &Path| a.canonicalize().is_ok_and(|a| b.canonicalize().is_ok_and(|b| a == b));
+    if !same(&arguments.fixture, fixture) {
+        let problem = format!(
+            "is not the fixture that {} was made with, {}",
+            path.display(),
+            arguments.fixture.display()
+        );
+        return Err(Refusal::at(fixture, problem));
+    }
+    Ok(arguments)
+}
+
+/// A plan for the names that are left.
+fn between(arguments: &PlanArguments, diagnosed: Diagnosed) -> Result<Planned, Refusal> {
+    let remaining = diagnosed.remaining(arguments.finding)?;
+    let fixture = diagnosed.answer.fixture.clone();
+    let plan = Plan::between(&fixture, &remaining, &diagnosed.options(&arguments.points))
+        .map_err(|error| Refusal::at(&arguments.fixture, error))?;
+    let files = diagnosed.files();
+    Ok(Planned { plan, fixture, files, notes: diagnosed.answer.notes })
+}
+
+/// A plan for an interval.
+fn for_interval(arguments: &PlanArguments, wanted: &Wanted) -> Result<Planned, Refusal> {
+    let file = FixtureFile::read(&arguments.fixture)?;
+    let options = PlanOptions { points: arguments.points.clone(), exact: arguments.exact };
+    let planned = |fixture: &Fixture, start: &Start| {
+        Plan::for_interval(fixture, start, wanted, &options).map_err(|error| file.refusal(error))
+    };
+    if let Some(lines) = &arguments.lines {
+        let plan = planned(&file, &Start::Lines(lines))?;
+        let files = vec![arguments.fixture.clone()];
+        return Ok(Planned { plan, fixture: file.fixture.clone(), files, notes: Vec::new() });
+    }
+    if arguments.files.is_empty() {
+        return Err(Refusal::new(
+            "a plan for an interval needs what was recorded, or the lines of the test to come, such as `--lines 2.5:1000:2.5`",
+        ));
+    }
+    let recording = recording(arguments);
+    let estimate = arguments.estimation.options(ResponseWindow::Auto);
+    let measured = MeasuredFrfs::of(&recording.measurement(&file)?, &estimate)
+        .and_then(|measured| measured.screened(&file))
+        .map_err(|error| recording.unanswered(&error, &file))?;
+    let fixture = measured.as_recorded(&file).map_err(|error| file.refusal(error))?;
+    let in_use = |hz: f64| {
+        let within = |band: &Band| hz >= band.from && hz <= band.to;
+        arguments.band.as_ref().is_none_or(within) && !arguments.exclude.iter().any(within)
+    };
+    let observation = Observation::new(&measured.frfs, in_use)
+        .map_err(|error| recording.refusal(format!("{error}; choose `--band` and `--exclude` anew")))?;
+    let plan = planned(&fixture, &Start::Recorded(&observation))?;
+    let files = std::iter::once(&arguments.fixture).chain(&arguments.files).cloned().collect();
+    Ok(Planned { plan, fixture, files, notes: measured.notes })
+}
+
+/// The names with what a further test of a changed structure says of them.
+fn weighed(
+    arguments: &PlanArguments,
+    diagnosed: &Diagnosed,
+    state: &Path,
+    recorded: &Path,
+) -> Result<String, Refusal> {
+    let remaining = diagnosed.remaining(arguments.finding)?;
+    let state = FixtureFile::read(state)?;
+    let recording = diagnosed.arguments.recording.of_files(&[recorded.to_owned()]);
+    let estimate = diagnosed.arguments.estimation.options(ResponseWindow::Auto);
+    let measured = MeasuredFrfs::of(&recording.measurement(&state)?, &estimate)
+        .and_then(|measured| measured.screened(&state))
+        .map_err(|error| recording.unanswered(&error, &state))?;
+    let observation = Observation::new(&measured.frfs, |_| true).map_err(|error| recording.refusal(error))?;
+    let options = diagnosed.options(&arguments.points);
+    let names = weighed_by(&diagnosed.answer.fixture, &remaining, (&state, &observation), &options)
+        .map_err(|error| state.refusal(error))?;
+    let of = |(name, before): (&NameNow, f64)| {
+        format!(
+            "{}: {:.1} %, after {:.1} % without the further test",
+            effect_name(&name.effect),
+            100.0 * name.probability,
+            100.0 * before
+        )
+    };
+    let before = |name: &NameNow| {
+        let same =
+            remaining.names.iter().find(|(effect, _)| effect_name(effect) == effect_name(&name.effect));
+        same.map_or(0.0, |(_, probability)| *probability)
+    };
+    Ok(names.iter().map(|name| of((name, before(name)))).collect::<Vec<_>>().join("\n"))
+}
+
+fn outputs(arguments: &PlanArguments, files: &[PathBuf], contents: [String; 2]) -> Outputs {
+    let mut outputs = Outputs::new(std::iter::once(&arguments.fixture).chain(files));
+    if let Some(folder) = &arguments.output {
+        for (name, contents) in ["plan.json", "plan.html"].into_iter().zip(contents) {
+            outputs.add(folder.join(name), contents);
+        }
+    }
+    outputs
+}
+
+/// Writes the files of a plan.
+fn written(arguments: &PlanArguments, planned: &Planned) -> Result<String, Refusal> {
+    let Planned { plan, fixture, files, notes } = planned;
+    let context: PageContext = origin::context(files, notes.clone(), None)?;
+    let mut file = plan_file(plan);
+    origin::add(&mut file, &context);
+    let file = pretty(&file);
+    let page = plan_page(plan, fixture, &context).map_err(Refusal::new)?;
+    outputs(arguments, files, [file.clone(), page]).write()?;
+    if arguments.json {
+        return Ok(file.trim_end().to_owned());
+    }
+    let mut lines = context.notes;
+    lines.extend(summary(plan));
+    lines.extend(arguments.output.iter().map(|folder| folder.join("plan.html").display().to_string()));
+    Ok(lines.join("\n"))
+}
+
+/// Suggestions that are listed in the terminal.
+const LISTED: usize = 8;
+
+/// What a plan comes to, a line each.
+fn summary(plan: &Plan) -> Vec<String> {
+    let mut lines = vec![plan.question.clone(), plan.says.clone()];
+    if !plan.suggestions.is_empty() {
+        let width =
+            plan.suggestions.iter().take(LISTED).map(|s| s.measure.chars().count()).max().unwrap_or(0);
+        let heading = match plan.names.is_empty() {
+            true => "95 % interval then",
+            false => "one name ≥ 90 %   ln of the odds",
+        };
+        lines.push(format!("  {:<width$}   {heading}   effort", ""));
+        lines.extend(plan.suggestions.iter().take(LISTED).map(|suggestion| row(suggestion, width)));
+    }
+    if plan.suggestions.len() > LISTED {
+        lines.push(format!("  and {}", counted(plan.suggestions.len() - LISTED, "other")));
+    }
+    lines.extend(plan.remarks.iter().map(|remark| format!("{remark}.")));
+    lines
+}
+
+fn row(suggestion: &Suggestion, width: usize) -> String {
+    let brings = match &suggestion.interval {
+        Some(interval) => {
+            let mark = if interval.reaches { " *" } else { "" };
+            format!("{:>18}", format!("± {:.3e} {}{mark}", interval.then, interval.unit))
+        }
+        None => {
+            let odds = suggestion.expected_log_odds.unwrap_or(0.0);
+            let odds = if odds > 100.0 { "> 100 nats".to_owned() } else { format!("{odds:.1} nats") };
+            let sure = suggestion.sure.unwrap_or(0.0);
+            let sure = if sure > 0.99 { "> 99 %".to_owned() } else { format!("{:.0} %", 100.0 * sure) };
+            format!("{sure:>15}   {odds:>15}")
+        }
+    };
+    let effort = counted(suggestion.effort.round() as usize, "FRF");
+    format!("  {:<width$}   {brings}   {effort:>6}", suggestion.measure)
+}

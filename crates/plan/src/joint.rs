@@ -1,0 +1,448 @@
+//! What to measure for a narrower interval of a joint's stiffness or dashpots.
+//!
+//! The joint's own numbers are taken as free, whatever the fixture states of them; everything else is known as the fixture says. Near the fit of the present FRFs, or of the
+//! fixture as it stands where there are none, information adds up: J + J_new, with the covariance (J + J_new)⁻¹.
+
+use crate::candidates;
+use crate::expected_noise::ExpectedNoise;
+use crate::measure::Measure;
+use crate::names::{carried, with_wide_priors};
+use crate::plan::{FrfGain, Plan, PlanOptions};
+use crate::products::Products;
+use crate::scene::Scene;
+use crate::suggestion::{ExpectedInterval, Suggestion};
+use crate::{PlanError, says};
+use jointscope_diagnosis::{Fit, Hypothesis, Observation, with_idle_points_exact};
+use jointscope_fixture::{Fixture, Joint, JointLaw, QuantityKey};
+use jointscope_linalg::Cholesky;
+use jointscope_lumped::nominal_stiffness;
+use jointscope_spectra::{FrfPair, SpectralLines};
+use rayon::prelude::*;
+use serde_json::{Value, json};
+use std::str::FromStr;
+
+/// Half of a 95 % interval in standard deviations.
+const QUANTILE: f64 = 1.96;
+/// Noise of a test that nobody has made: shares of |H| and of its root mean square, as standard deviations of the average.
+const ASSUMED: (f64, f64) = (3e-3, 3e-3);
+/// Share of the present interval that a measurement must leave out to be worth being told.
+const WORTH: f64 = 0.01;
+/// Measurements that are put together at the most.
+const TOGETHER: usize = 5;
+
+/// An interval that is wanted of one element of a joint: `J/k11=1%` or `J/k11=2e4`, half of it, 95 %.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Wanted {
+    /// The joint.
+    pub joint: String,
+    /// `k` or `c`, and the element's row and column, from 1.
+    element: (char, usize, usize),
+    /// Half the width, relative or in the element's unit.
+    pub half_width: HalfWidth,
+}
+
+/// Half the width of an interval.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum HalfWidth {
+    /// As a share of the value.
+    Relative(f64),
+    /// In the unit of the value.
+    Absolute(f64),
+}
+
+impl FromStr for Wanted {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let form = || {
+            "a joint's element and half of its 95 % interval are needed, such as J/k11=1% or J/k11=2e4"
+                .to_owned()
+        };
+        let (path, width) = text.rsplit_once('=').ok_or_else(form)?;
+        let (joint, element) = path.rsplit_once('/').ok_or_else(form)?;
+        let element = match element.trim() {
+            "k11" => ('k', 1, 1),
+            "k12" | "k21" => ('k', 1, 2),
+            "k22" => ('k', 2, 2),
+            "c11" => ('c', 1, 1),
+            "c12" | "c21" => ('c', 1, 2),
+            "c22" => ('c', 2, 2),
+            other => return Err(format!("`{other}` is none of k11, k12, k22, c11, c12 and c22")),
+        };
+        let positive = |text: &str| text.trim().parse().ok().filter(|v: &f64| v.is_finite() && *v > 0.0);
+        let half_width = match width.trim().strip_suffix('%') {
+            Some(percent) => HalfWidth::Relative(positive(percent).ok_or_else(form)? / 100.0),
+            None => HalfWidth::Absolute(positive(width).ok_or_else(form)?),
+        };
+        let joint = joint.trim();
+        let joint = joint.strip_prefix("joints/").unwrap_or(joint).to_owned();
+        if joint.is_empty() { Err(form()) } else { Ok(Wanted { joint, element, half_width }) }
+    }
+}
+
+impl Wanted {
+    fn key(&self) -> QuantityKey {
+        let (which, row, column) = self.element;
+        match which {
+            'k' => QuantityKey::JointStiffness(row - 1, column - 1),
+            _ => QuantityKey::JointDamping(row - 1, column - 1),
+        }
+    }
+
+    fn reached(&self, interval: f64, value: f64) -> bool {
+        interval
+            <= match self.half_width {
+                HalfWidth::Relative(share) => share * value.abs(),
+                HalfWidth::Absolute(width) => width,
+            }
+    }
+
+    fn says(&self) -> String {
+        let (which, row, column) = self.element;
+        let width = match self.half_width {
+            HalfWidth::Relative(share) => format!("{} %", says::three(100.0 * share)),
+            HalfWidth::Absolute(width) => format!("{} {}", says::three(width), self.key().unit()),
+        };
+        format!("{which}{row}{column} of joint {} to within ± {width} (95 %)", self.joint)
+    }
+}
+
+/// What a plan for an interval starts from.
+#[derive(Debug, Clone)]
+pub enum Start<'a> {
+    /// FRFs that were recorded.
+    Recorded(&'a Observation),
+    /// The lines of a test that nobody has made.
+    Lines(&'a SpectralLines),
+}
+
+impl Plan {
+    /// Plans what makes an interval of a joint's element narrower. The joint's elements that are not zero are free; the fixture's own effects are taken as they are.
+    ///
+    /// # Errors
+    /// See [`PlanError`].
+    pub fn for_interval(
+        fixture: &Fixture,
+        start: &Start,
+        wanted: &Wanted,
+        options: &PlanOptions,
+    ) -> Result<Self, PlanError> {
+        let present: &[FrfPair] = match start {
+            Start::Recorded(observation) => observation.pairs(),
+            Start::Lines(_) => &[],
+        };
+        let freed = with_free_joint(fixture, wanted)?;
+        let points = candidates::points(fixture, &options.points, present)?;
+        let channels: Vec<FrfPair> = points
+            .iter()
+            .map(|point| FrfPair::transverse(point, point))
+            .chain(present.iter().cloned())
+            .collect();
+        let freed = with_idle_points_exact(freed, &channels);
+        let nominal = Hypothesis::nominal(&freed, options.exact);
+        let (hypothesis, lines, noise, inflation) = match start {
+            Start::Recorded(observation) => {
+                let not_fitted = || PlanError::NotComparable("the fixture".to_owned());
+                let fit = Fit::of(&nominal, observation, true).ok_or_else(not_fitted)?;
+                let inflation = fit.inflation(observation);
+                (fit.hypothesis, observation.lines().clone(), ExpectedNoise::of(observation), inflation)
+            }
+            Start::Lines(lines) => {
+                (nominal, (*lines).clone(), ExpectedNoise::assumed(lines.len(), ASSUMED.0, ASSUMED.1), 1.0)
+            }
+        };
+        let scene = Scene { fixture: freed, exact: options.exact, lines, noise, inflation, softening: None };
+        Joints { scene: &scene, hypothesis: &hypothesis, start, wanted }.plan(&points)
+    }
+}
+
+struct Joints<'a> {
+    scene: &'a Scene,
+    hypothesis: &'a Hypothesis,
+    start: &'a Start<'a>,
+    wanted: &'a Wanted,
+}
+
+/// A candidate, what it tells of the coordinates of its hypothesis, and what is known of them beforehand.
+struct Candidate {
+    measure: Measure,
+    told: Vec<f64>,
+    known: Option<(Hypothesis, Vec<f64>)>,
+}
+
+impl Joints<'_> {
+    fn plan(&self, points: &[String]) -> Result<Plan, PlanError> {
+        let not_comparable = || PlanError::NotComparable("the fixture".to_owned());
+        let present: &[FrfPair] = match self.start {
+            Start::Recorded(observation) => observation.pairs(),
+            Start::Lines(_) => &[],
+        };
+        let names = std::slice::from_ref(self.hypothesis);
+        let count = self.hypothesis.parameters().len();
+        let again = match self.start {
+            Start::Recorded(observation) => {
+                Some(self.scene.products_of(names, observation).ok_or_else(not_comparable)?.information(0))
+            }
+            Start::Lines(_) => None,
+        };
+        let known =
+            with_wide_priors(self.hypothesis, again.clone().unwrap_or_else(|| vec![0.0; count * count]));
+        let frfs = candidates::frfs(points, present);
+        let by_frf = self.scene.products(names, &frfs).ok_or_else(not_comparable)?;
+        let mut all: Vec<Candidate> = Vec::new();
+        for measure in candidates::of_frfs(points, present) {
+            let mut sum = Products::none(&[count]);
+            for frf in measure.frfs() {
+                frfs.iter().position(|own| *own == frf).into_iter().for_each(|at| sum.add(&by_frf[at]));
+            }
+            all.push(Candidate { measure, told: sum.information(0), known: None });
+        }
+        if let (Some(again), averages @ Measure::Averages { times }) = (&again, candidates::averages()) {
+            let told = again.iter().map(|entry| f64::from(times - 1) * entry).collect();
+            all.push(Candidate { measure: averages, told, known: None });
+        }
+        all.extend(candidates::quantities(self.hypothesis).into_iter().filter_map(|m| self.of_quantity(m)));
+        if !present.is_empty() {
+            let changes = candidates::changes(&self.scene.fixture, points);
+            all.extend(changes.into_iter().filter_map(|measure| self.of_change(measure, present, &known)));
+        }
+        // Before anything is recorded there is no interval.
+        let now = again.as_ref().and_then(|_| self.interval(self.hypothesis, &known));
+        let value = self.value();
+        let at_most = |interval: f64| now.is_none_or(|now| interval <= (1.0 - WORTH) * now);
+        let mut ranked: Vec<(f64, &Candidate)> = all
+            .par_iter()
+            .filter_map(|candidate| {
+                let (hypothesis, known) =
+                    candidate.known.as_ref().map_or((self.hypothesis, &known), |(h, known)| (h, known));
+                Some((self.interval(hypothesis, &added(known, &candidate.told))?, candidate))
+            })
+            .collect();
+        ranked.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let gain = |(interval, candidate): &(f64, &Candidate)| match &candidate.measure {
+            Measure::Frf { frf } => {
+                Some(FrfGain { frf: frf.clone(), gain: interval / now.unwrap_or(*interval) })
+            }
+            _ => None,
+        };
+        let mut gains: Vec<FrfGain> = ranked.iter().filter_map(gain).collect();
+        gains.sort_by_key(|gain| frfs.iter().position(|frf| *frf == gain.frf));
+        let reached_now = now.is_some_and(|now| self.wanted.reached(now, value));
+        let suggestions: Vec<Suggestion> = match reached_now {
+            true => Vec::new(),
+            false => {
+                let mut told: Vec<(f64, &Candidate)> =
+                    ranked.iter().filter(|(interval, _)| at_most(*interval)).copied().collect();
+                // Of what reaches the interval the least effort; of the rest the narrowest.
+                let effort = |candidate: &Candidate| candidate.measure.effort(present.len());
+                let key =
+                    |(interval, candidate): &(f64, &Candidate)| match self.wanted.reached(*interval, value) {
+                        true => (0.0, effort(candidate), *interval),
+                        false => (1.0, *interval, 0.0),
+                    };
+                told.sort_by(|a, b| key(a).partial_cmp(&key(b)).unwrap_or(std::cmp::Ordering::Equal));
+                told.into_iter()
+                    .map(|(then, candidate)| {
+                        self.suggestion(&candidate.measure, now, then, effort(candidate))
+                    })
+                    .collect()
+            }
+        };
+        let alone =
+            suggestions.first().and_then(|first| first.interval.as_ref()).is_some_and(|first| first.reaches);
+        let together = (!reached_now && !alone).then(|| self.together(&all, &known)).flatten();
+        let question = format!("What makes the interval narrower: {}?", self.wanted.says());
+        let (says, mut remarks) = self.comes_to(reached_now, now, &suggestions, together);
+        remarks.extend(says::remarks(&suggestions, self.scene.inflation, false));
+        if let Start::Lines(_) = self.start {
+            remarks.push(format!(
+                "Nothing was recorded yet: the noise is taken as {} % of each value and {} % of each FRF's root mean square",
+                100.0 * ASSUMED.0,
+                100.0 * ASSUMED.1
+            ));
+        }
+        Ok(Plan {
+            question,
+            says,
+            suggestions,
+            names: Vec::new(),
+            not_by_frfs: Vec::new(),
+            frfs: gains,
+            remarks,
+            recorded: present.to_vec(),
+        })
+    }
+
+    fn comes_to(
+        &self,
+        reached_now: bool,
+        now: Option<f64>,
+        suggestions: &[Suggestion],
+        together: Option<(Vec<String>, f64)>,
+    ) -> (String, Vec<String>) {
+        let unit = self.wanted.key().unit();
+        let at_present =
+            now.map_or_else(String::new, |now| format!(" It is ± {} {unit} at present.", says::three(now)));
+        if reached_now {
+            return (format!("The interval is as narrow as wanted already.{at_present}"), Vec::new());
+        }
+        let alone = suggestions.iter().any(|s| s.interval.as_ref().is_some_and(|interval| interval.reaches));
+        let says = match (suggestions.first(), alone) {
+            (None, _) => format!("Nothing that was considered makes the interval narrower.{at_present}"),
+            (Some(best), true) => format!("{}.{at_present}", says::to_do(&best.action)),
+            (Some(best), false) => {
+                format!(
+                    "No single measurement makes it as narrow as wanted; the best is: {}.{at_present}",
+                    says::to_do(&best.action)
+                )
+            }
+        };
+        let remarks = together.map(|(measures, interval)| {
+            let value = self.value();
+            let reaches = if self.wanted.reached(interval, value) { ", as narrow as wanted" } else { "" };
+            format!("Together {} leave ± {} {unit}{reaches}", measures.join(", "), says::three(interval))
+        });
+        (says, remarks.into_iter().collect())
+    }
+
+    /// Where the wanted element is among the coordinates of a hypothesis.
+    fn index(&self, hypothesis: &Hypothesis) -> Option<usize> {
+        let joint = format!("joints/{}/", self.wanted.joint);
+        let is_it = |quantity: &jointscope_fixture::NamedQuantity| {
+            quantity.key == self.wanted.key() && quantity.path.starts_with(&joint)
+        };
+        hypothesis.tolerances().iter().position(|tolerance| is_it(&tolerance.quantity))
+    }
+
+    fn value(&self) -> f64 {
+        self.index(self.hypothesis).map_or(f64::NAN, |index| self.hypothesis.ended_at(index))
+    }
+
+    /// Half of the 95 % interval with this information.
+    fn interval(&self, hypothesis: &Hypothesis, information: &[f64]) -> Option<f64> {
+        let index = self.index(hypothesis)?;
+        let order = hypothesis.parameters().len();
+        let factor = Cholesky::of(order, information)?;
+        let mut unit = vec![0.0; order];
+        unit[index] = 1.0;
+        factor.solve_lower_in_place(&mut unit);
+        let std = unit.iter().map(|u| u * u).sum::<f64>().sqrt();
+        let slope = hypothesis.parameters()[index].transform.slope(hypothesis.ended_at(index));
+        Some(QUANTILE * std * slope.abs()).filter(|interval| interval.is_finite())
+    }
+
+    fn suggestion(&self, measure: &Measure, now: Option<f64>, then: f64, effort: f64) -> Suggestion {
+        let key = self.wanted.key();
+        let value = self.value();
+        let (which, row, column) = self.wanted.element;
+        let interval = ExpectedInterval {
+            element: format!("{which}{row}{column} of joint {}", self.wanted.joint),
+            value,
+            unit: key.unit(),
+            now,
+            then,
+            reaches: self.wanted.reached(then, value),
+        };
+        Suggestion {
+            measure: measure.to_string(),
+            to_do: says::to_do(measure),
+            action: measure.clone(),
+            expected_log_odds: None,
+            box_hill: None,
+            sure: None,
+            separates: Vec::new(),
+            says: says::of_interval(measure, &interval),
+            interval: Some(interval),
+            effort,
+        }
+    }
+
+    fn of_quantity(&self, measure: Measure) -> Option<Candidate> {
+        let Measure::Quantity { path, std, .. } = &measure else { return None };
+        let at = self.hypothesis.tolerances().iter().position(|t| t.quantity.path == *path)?;
+        let slope = self.hypothesis.parameters()[at].transform.slope(self.hypothesis.ended_at(at));
+        let count = self.hypothesis.parameters().len();
+        let mut told = vec![0.0; count * count];
+        told[at * count + at] = (slope / std).powi(2);
+        Some(Candidate { measure, told, known: None })
+    }
+
+    fn of_change(&self, measure: Measure, present: &[FrfPair], known: &[f64]) -> Option<Candidate> {
+        let fixture = measure.changed(&self.scene.fixture)?;
+        let hypothesis = self.hypothesis.in_fixture(&fixture, self.scene.exact);
+        let by_frf = self.scene.products(std::slice::from_ref(&hypothesis), present)?;
+        let mut sum = Products::none(&by_frf.first()?.widths);
+        by_frf.iter().for_each(|own| sum.add(own));
+        let carried = carried(known, self.hypothesis, &hypothesis);
+        Some(Candidate { measure, told: sum.information(0), known: Some((hypothesis, carried)) })
+    }
+
+    /// The best first, then the best beside that, until the interval is as narrow as wanted: of single FRFs and quantities.
+    fn together(&self, all: &[Candidate], known: &[f64]) -> Option<(Vec<String>, f64)> {
+        let single = |candidate: &&Candidate| {
+            matches!(candidate.measure, Measure::Frf { .. } | Measure::Quantity { .. })
+        };
+        let mut left: Vec<&Candidate> = all.iter().filter(single).collect();
+        let (mut known, mut chosen) = (known.to_vec(), Vec::new());
+        let mut interval = f64::INFINITY;
+        while chosen.len() < TOGETHER && !self.wanted.reached(interval, self.value()) {
+            let with = |(place, candidate): (usize, &&Candidate)| {
+                Some((self.interval(self.hypothesis, &added(&known, &candidate.told))?, place))
+            };
+            let best = left.iter().enumerate().filter_map(with).min_by(|a, b| a.0.total_cmp(&b.0));
+            let (narrowest, place) = best.filter(|(narrowest, _)| *narrowest < (1.0 - WORTH) * interval)?;
+            let candidate = left.swap_remove(place);
+            known = added(&known, &candidate.told);
+            chosen.push(candidate.measure.to_string());
+            interval = narrowest;
+        }
+        (chosen.len() > 1).then_some((chosen, interval))
+    }
+}
+
+fn added(known: &[f64], told: &[f64]) -> Vec<f64> {
+    known.iter().zip(told).map(|(known, told)| known + told).collect()
+}
+
+/// The fixture with the elements of a joint free, those that are zero apart.
+fn with_free_joint(fixture: &Fixture, wanted: &Wanted) -> Result<Fixture, PlanError> {
+    let known = || fixture.joints().iter().map(|joint| joint.name.as_str()).collect::<Vec<_>>().join(", ");
+    let joint = fixture
+        .joint(&wanted.joint)
+        .ok_or_else(|| PlanError::UnknownJoint { joint: wanted.joint.clone(), known: known() })?;
+    let stiffness = nominal_stiffness(&joint.law, fixture.joint_length(joint));
+    let free = |value: f64| match value {
+        0.0 => json!({ "value": 0.0, "std": 0.0 }),
+        value => json!({ "value": value, "std": "unknown" }),
+    };
+    let matrix = |at: &dyn Fn(usize, usize) -> f64| {
+        json!([[free(at(0, 0)), free(at(0, 1))], [free(at(0, 1)), free(at(1, 1))]])
+    };
+    let stiffness_entry = matrix(&|i, j| stiffness.at(i, j));
+    let dashpots = dashpots(joint);
+    let (which, row, column) = wanted.element;
+    let element = match (which, dashpots) {
+        ('k', _) => stiffness.at(row - 1, column - 1),
+        (_, Some(damping)) => damping[row + column - 2],
+        (_, None) => return Err(PlanError::NoDashpot(wanted.joint.clone())),
+    };
+    if element == 0.0 {
+        return Err(PlanError::NoElement(wanted.says()));
+    }
+    let mut value = fixture.to_value();
+    let entry: &mut Value = &mut value["joints"][&wanted.joint];
+    let ends = [entry["from"].clone(), entry["to"].clone()];
+    let [from, to] = ends;
+    *entry = json!({ "from": from, "to": to, "stiffness": stiffness_entry });
+    if let Some(damping) = dashpots {
+        entry["damping"] = matrix(&|i, j| damping[i + j]);
+    }
+    Fixture::from_value(&value).map_err(|error| PlanError::Prediction(error.into()))
+}
+
+fn dashpots(joint: &Joint) -> Option<[f64; 3]> {
+    match &joint.law {
+        JointLaw::Stiffness { damping: Some(damping), .. } => Some(damping.map(|quantity| quantity.value)),
+        _ => None,
+    }
+}

@@ -1,0 +1,185 @@
+//! Sentences of a plan.
+
+use crate::measure::Measure;
+use crate::plan::NameNow;
+use crate::rivals::SURE;
+use crate::suggestion::{ExpectedInterval, Suggestion};
+use jointscope_spectra::FrfPair;
+use jointscope_wording::effect_name;
+
+/// `a`, `a and b`, `a, b and c`.
+fn listed(items: &[String]) -> String {
+    match items {
+        [] => String::new(),
+        [only] => only.clone(),
+        [most @ .., last] => format!("{} and {last}", most.join(", ")),
+    }
+}
+
+pub(crate) fn percent(share: f64) -> String {
+    format!("{:.0} %", 100.0 * share)
+}
+
+/// A probability that was drawn: a few hundred draws tell no more than that it is nearly one.
+pub(crate) fn probability(share: f64) -> String {
+    if share > 0.99 { "more than 99 %".to_owned() } else { percent(share) }
+}
+
+/// A number with three significant digits.
+pub(crate) fn three(value: f64) -> String {
+    if value == 0.0 || !value.is_finite() {
+        return value.to_string();
+    }
+    let exponent = value.abs().log10().floor() as i32;
+    match exponent {
+        -4..3 => format!("{value:.*}", (2 - exponent).max(0) as usize),
+        3..5 => format!("{:.0}", (value / 10f64.powi(exponent - 2)).round() * 10f64.powi(exponent - 2)),
+        _ => format!("{value:.2e}"),
+    }
+}
+
+/// Odds beyond which no figure means anything: linear predictions do not reach so far.
+const BEYOND_DOUBT: f64 = 100.0;
+
+/// ln of odds, nats.
+pub(crate) fn nats(value: f64) -> String {
+    if value > BEYOND_DOUBT { format!("more than {BEYOND_DOUBT:.0}") } else { three(value) }
+}
+
+pub(crate) fn question(names: &[NameNow]) -> String {
+    let each =
+        names.iter().map(|name| format!("{} ({})", effect_name(&name.effect), percent(name.probability)));
+    format!("Which is it: {}?", each.collect::<Vec<_>>().join(", or "))
+}
+
+/// What is to be done for a measurement.
+pub(crate) fn to_do(measure: &Measure) -> String {
+    let frfs = |frfs: &[FrfPair]| listed(&frfs.iter().map(ToString::to_string).collect::<Vec<_>>());
+    let millimetres = |x: &f64| format!("{} mm", three(1e3 * x));
+    match measure {
+        Measure::Frf { frf } => {
+            format!("Record FRF {frf}: hammer at {}, sensor at {}", frf.reference, frf.response)
+        }
+        Measure::Frfs { frfs: all } => format!("Record FRFs {}", frfs(all)),
+        Measure::HammerAt { point, frfs: all } => {
+            format!("Strike point {point} too, sensors as they are: FRFs {}", frfs(all))
+        }
+        Measure::SensorAt { point, frfs: all } => {
+            format!("Put a sensor on point {point} too, hammer points as they are: FRFs {}", frfs(all))
+        }
+        Measure::Averages { times } => {
+            format!("Record the same FRFs with {times} times as many averages in all")
+        }
+        Measure::AddedMass { mass, body, x, .. } => format!(
+            "Fix a mass of {} g to body {body} at x = {} and record the same FRFs again",
+            three(1e3 * mass),
+            millimetres(x)
+        ),
+        Measure::HungFreely => {
+            "Take the structure off its supports, hang it freely and record the same FRFs again".to_owned()
+        }
+        Measure::Quantity { path, std, unit } => {
+            let verb = if *unit == "kg" { "Weigh" } else { "Measure" };
+            let (factor, unit) = match *unit {
+                "kg" => (1e3, "g"),
+                "m" => (1e3, "mm"),
+                other => (1.0, other),
+            };
+            format!("{verb} {path} to ± {} {unit} (one standard deviation)", three(factor * std))
+        }
+    }
+}
+
+pub(crate) fn of_names(
+    measure: &Measure,
+    expected: f64,
+    sure: f64,
+    separates: &[[String; 2]],
+    names: usize,
+) -> String {
+    let pairs = names * (names - 1) / 2;
+    let told = match separates.len() {
+        0 => String::new(),
+        _ if names == 2 => String::new(),
+        all if all == pairs => "; it tells every two of the names apart".to_owned(),
+        _ => {
+            let each: Vec<String> = separates.iter().map(|[a, b]| format!("{a} from {b}")).collect();
+            format!("; it tells {}", listed(&each))
+        }
+    };
+    format!(
+        "{}. With a probability of {} one name then has 90 % or more; ln of the odds against its nearest rival grows by {} on average{told}.",
+        to_do(measure),
+        probability(sure),
+        nats(expected)
+    )
+}
+
+pub(crate) fn of_interval(measure: &Measure, interval: &ExpectedInterval) -> String {
+    let reaches = if interval.reaches { ", as narrow as wanted" } else { "" };
+    let now = interval.now.map_or_else(String::new, |now| format!(", after ± {} now", three(now)));
+    format!(
+        "{}. The 95 % interval of {} is then ± {} {}{reaches}{now}.",
+        to_do(measure),
+        interval.element,
+        three(interval.then),
+        interval.unit
+    )
+}
+
+pub(crate) fn comes_to(names: &[NameNow], suggestions: &[Suggestion], not_by_frfs: &[[String; 2]]) -> String {
+    let pairs: Vec<String> = not_by_frfs.iter().map(|[a, b]| format!("{a} from {b}")).collect();
+    let by_frfs = match (pairs.is_empty(), names.len()) {
+        (true, _) => String::new(),
+        (false, 2) => " No FRF of this test separates them.".to_owned(),
+        (false, _) => format!(" No FRF of this test separates {}.", listed(&pairs)),
+    };
+    match suggestions.first() {
+        None => format!("Nothing that was considered tells the names apart.{by_frfs}"),
+        Some(best) => format!(
+            "{}: with a probability of {} one name then has 90 % or more.{by_frfs}",
+            best.to_do,
+            probability(best.sure.unwrap_or(0.0))
+        ),
+    }
+}
+
+/// Names that the present test cannot have, and another one can.
+pub(crate) fn added_names() -> String {
+    "As long as the hammer strikes one point, the force of all references does what that reference does: it is a name too, as probable"
+        .to_owned()
+}
+
+/// Names that need no further measurement.
+pub(crate) fn sure_already(names: &[NameNow]) -> Option<String> {
+    let first = names.first().filter(|first| first.probability >= SURE)?;
+    Some(format!(
+        "{} is sure already ({}): a further measurement confirms it, or finds that it was wrong",
+        effect_name(&first.effect),
+        percent(first.probability)
+    ))
+}
+
+pub(crate) fn remarks(suggestions: &[Suggestion], inflation: f64, softened: bool) -> Vec<String> {
+    let mut all = Vec::new();
+    if softened {
+        all.push(
+            "The names were weighed by modes, with an error of the model: that counts as noise of every measurement to come. Promises are rough then, and unproved"
+                .to_owned(),
+        );
+    }
+    let any = |holds: fn(&Measure) -> bool| suggestions.iter().any(|suggestion| holds(&suggestion.action));
+    if any(Measure::changes_the_structure) {
+        all.push(
+            "With a mass, or off its supports, the structure is another one: state that in a copy of the fixture, under physics or supports, and give both tests together with --also"
+                .to_owned(),
+        );
+    }
+    if inflation > 1.05 {
+        all.push(format!(
+            "The noise of measurements to come is taken {} times as large in variance as coherence or scatter state it, which is what the present residuals show",
+            three(inflation)
+        ));
+    }
+    all
+}

@@ -1,0 +1,86 @@
+//! What a test of the structure would record: predictions of names on the lines and with the noise of a measurement to come.
+
+use crate::expected_noise::ExpectedNoise;
+use crate::products::{Predicted, Products};
+use crate::softening::Softening;
+use jointscope_diagnosis::{Hypothesis, Linearisation, Observation};
+use jointscope_fixture::Fixture;
+use jointscope_spectra::{FrfForm, FrfPair, FrfSet, SpectralLines};
+use rayon::prelude::*;
+
+/// Values of an observation from which lines would be left out of it.
+const MOST_VALUES: usize = 16_000;
+
+/// The structure as it is to be tested.
+pub(crate) struct Scene {
+    /// The fixture, with the deviations of all points that are considered.
+    pub fixture: Fixture,
+    /// Whether bare numbers are exact.
+    pub exact: bool,
+    /// The lines of a measurement to come.
+    pub lines: SpectralLines,
+    /// Its noise.
+    pub noise: ExpectedNoise,
+    /// Variance inflation: what the residuals of the present measurement show beyond their noise, those to come will show too.
+    pub inflation: f64,
+    /// What an error of the model adds, where names were weighed with one.
+    pub softening: Option<Softening>,
+}
+
+impl Scene {
+    /// What each name predicts of FRFs, and their products by FRF; `None` where one of them predicts none.
+    pub fn products(&self, names: &[Hypothesis], pairs: &[FrfPair]) -> Option<Vec<Products>> {
+        // Of a longer set lines would be left out.
+        let together = (MOST_VALUES / self.lines.len()).max(1);
+        let parts = pairs.par_chunks(together).map(|pairs| self.products_of_few(names, pairs));
+        let parts: Vec<Vec<Products>> = parts.collect::<Option<_>>()?;
+        Some(parts.concat())
+    }
+
+    fn products_of_few(&self, names: &[Hypothesis], pairs: &[FrfPair]) -> Option<Vec<Products>> {
+        let blank = vec![Default::default(); pairs.len() * self.lines.len()];
+        let frfs = FrfSet::new(self.lines.clone(), FrfForm::Accelerance, pairs.to_vec(), blank).ok()?;
+        let count = self.lines.len();
+        let frfs = frfs.with_variance(vec![1.0; pairs.len() * count]).ok()?;
+        let observation = Observation::new(&frfs, |_| true).ok()?;
+        let predicted = predicted(names, &observation)?;
+        let more = match &self.softening {
+            Some(softening) => {
+                let (first, values) = (names.first()?, &predicted.first()?.values);
+                softening.variance(first, pairs, observation.lines(), values)?
+            }
+            None => vec![0.0; pairs.len() * count],
+        };
+        let per_pair = observation.lines().len();
+        let products = (0..pairs.len()).map(|index| {
+            let range = index * per_pair..(index + 1) * per_pair;
+            let square = |at: usize| {
+                predicted.iter().map(|name| name.values[at].norm_sqr()).sum::<f64>() / predicted.len() as f64
+            };
+            let squares: Vec<f64> = range.clone().map(square).collect();
+            let weight = |(variance, more): (f64, &f64)| match variance > 0.0 {
+                true => 2.0 / (variance * self.inflation + more),
+                false => 0.0,
+            };
+            let variance = self.noise.variance(&squares).into_iter();
+            let weights: Vec<f64> = variance.zip(&more[range.clone()]).map(weight).collect();
+            Products::of(&predicted, range, &weights)
+        });
+        Some(products.collect())
+    }
+
+    /// The products of a measurement that was made.
+    pub fn products_of(&self, names: &[Hypothesis], observation: &Observation) -> Option<Products> {
+        let predicted = predicted(names, observation)?;
+        let weights: Vec<f64> = observation.weights().iter().map(|w| w / self.inflation).collect();
+        Some(Products::of(&predicted, 0..weights.len(), &weights))
+    }
+}
+
+fn predicted(names: &[Hypothesis], observation: &Observation) -> Option<Vec<Predicted>> {
+    let of = |name: &Hypothesis| {
+        let values = name.predict(observation).ok()?;
+        Some(Predicted { values, derivatives: Linearisation::of(name, observation).derivatives })
+    };
+    names.iter().map(of).collect()
+}
