@@ -2,12 +2,14 @@
 
 mod check;
 mod compare;
+mod completions;
 mod decompose;
 mod diagnose;
 mod estimate;
 mod export;
 mod fem;
 mod init;
+mod man;
 mod modes;
 mod prove;
 mod schema;
@@ -22,10 +24,28 @@ use crate::refusal::Refusal;
 
 /// Stiffness and damping of a joint from hammer tests on the blocks it connects.
 #[derive(Debug, Parser)]
-#[command(name = "jointscope", version, max_term_width = 110)]
+#[command(name = "jointscope", version, max_term_width = 110, after_help = STATUS)]
 pub struct Program {
     #[command(subcommand)]
     command: Command,
+}
+
+/// What scripts have to know.
+const STATUS: &str = "Answers go to standard output, notices and progress to standard error.
+Exit status: 0 done; 1 done in part (standard output took no more); 2 bad usage or bad input: one sentence on standard error, nothing written.";
+
+/// What a command has to say when it is done.
+pub struct Said {
+    /// For standard output, without the last line end.
+    pub text: String,
+    /// Whether all is done that was asked.
+    pub whole: bool,
+}
+
+impl From<String> for Said {
+    fn from(text: String) -> Self {
+        Said { text, whole: true }
+    }
 }
 
 #[derive(Debug, Subcommand)]
@@ -60,12 +80,16 @@ enum Command {
     Prove(prove::ProveArguments),
     /// The paper's Tables 1–6, its values beside the program's.
     Tables(tables::TablesArguments),
+    /// A script with which a shell completes commands and options.
+    Completions(completions::CompletionsArguments),
+    /// Manual pages, of the program or of every command.
+    Man(man::ManArguments),
 }
 
 impl Program {
     /// Runs the command; what it has done is told on standard output.
-    pub fn run(&self) -> Result<String, Refusal> {
-        match &self.command {
+    pub fn run(&self) -> Result<Said, Refusal> {
+        let said = match &self.command {
             Command::Init(arguments) => init::run(arguments),
             Command::Schema(arguments) => schema::run(arguments),
             Command::Check(arguments) => check::run(arguments),
@@ -81,7 +105,10 @@ impl Program {
             Command::Simulate(arguments) => simulate::run(arguments),
             Command::Prove(arguments) => prove::run(arguments),
             Command::Tables(arguments) => tables::run(arguments),
-        }
+            Command::Completions(arguments) => completions::run(arguments),
+            Command::Man(arguments) => man::run(arguments),
+        };
+        said.map(Said::from)
     }
 }
 

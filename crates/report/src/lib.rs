@@ -14,6 +14,8 @@
 //! | [`comparison_page`] | joints side by side |
 //! | [`proof_page`] | concealed cases: what the diagnosis is worth |
 //!
+//! Each but the last is also had as a [`Report`] (`decomposition_report` and so on), which gives its tables and curves as CSV and its figures as SVG.
+//!
 //! Inside, a page is a list of sections (`section`) made of paragraphs, key figures, tables (`table`: one row per item, a column for each question asked of
 //! it), plots (`plot`) and drawings (`drawing`, `scatter`). [`format`](mod@format) prints numbers with their uncertainty.
 //!
@@ -43,6 +45,7 @@ mod modes_page;
 mod page;
 mod plot;
 mod proof_page;
+mod report;
 mod scatter;
 mod section;
 mod stepped_page;
@@ -51,12 +54,13 @@ mod table;
 mod tests;
 mod unit;
 
-pub use answer_page::answer_page;
-pub use check_page::check_page;
-pub use comparison_page::comparison_page;
+pub use answer_page::{answer_page, answer_report};
+pub use check_page::{check_page, check_report};
+pub use comparison_page::{comparison_page, comparison_report};
 pub use context::{InputFile, PageContext};
-pub use decomposition_page::decomposition_page;
-pub use diagnosis_page::diagnosis_page;
+pub use decomposition_page::{decomposition_page, decomposition_report};
+pub use diagnosis_page::{diagnosis_page, diagnosis_report};
 pub use error::PageError;
-pub use modes_page::modes_page;
+pub use modes_page::{modes_page, modes_report};
 pub use proof_page::{ProofContext, ProofResults, proof_page};
+pub use report::{Report, ReportFile};

@@ -6,14 +6,15 @@ use clap::Args;
 use jointscope::decomposition::{JointFit, LikelihoodFit};
 use jointscope::estimation::ResponseWindow;
 use jointscope::pipeline::MeasuredFrfs;
-use jointscope::report::decomposition_page;
+use jointscope::report::decomposition_report;
 use jointscope::report::format::quantity;
 use jointscope::{Analysis, AnalysisOptions, Band, DecompositionError, Relation, Remarks, stiffness_file};
 
+use crate::answered::{Answered, Destination, PAGE};
 use crate::estimation_arguments::EstimationArguments;
 use crate::input::FixtureFile;
 use crate::origin;
-use crate::output::{Outputs, counted};
+use crate::output::{counted, pretty};
 use crate::recording::RecordingArguments;
 use crate::refusal::Refusal;
 use crate::values::{band, one_of};
@@ -36,17 +37,18 @@ pub struct DecomposeArguments {
     /// Take numbers of the fixture without a standard deviation as exact.
     #[arg(long)]
     pub exact: bool,
-    /// The directory to write to.
-    #[arg(short, long, value_name = "DIR")]
-    pub output: PathBuf,
+    #[command(flatten)]
+    pub destination: Destination,
     #[command(flatten)]
     pub estimation: EstimationArguments,
 }
 
 const RELATIONS: [(&str, Relation); 2] = [("exact", Relation::Exact), ("paper", Relation::Paper)];
 
-/// Decomposes and writes `stiffness.json` and `report.html`; answers with what was found and where the page is.
+/// Decomposes and writes `stiffness.json` and `report.html`; answers with what was found and where the page is, or with `stiffness.json` itself.
 pub fn run(arguments: &DecomposeArguments) -> Result<String, Refusal> {
+    arguments.destination.without_frfs("decompose")?;
+    let files = || std::iter::once(&arguments.fixture).chain(&arguments.recording.files);
     let fixture = FixtureFile::read(&arguments.fixture)?;
     let measurement = arguments.recording.measurement(&fixture)?;
     let mut measured = MeasuredFrfs::of(&measurement, &arguments.estimation.options(ResponseWindow::Auto))
@@ -54,6 +56,7 @@ pub fn run(arguments: &DecomposeArguments) -> Result<String, Refusal> {
         .map_err(|error| arguments.recording.unanswered(&error, &fixture))?;
     measured.notes.extend(arguments.estimation.unused_with(&measurement));
     let as_recorded = measured.as_recorded(&fixture).map_err(|error| fixture.refusal(error))?;
+    arguments.destination.foresee(files(), &[FILE, PAGE])?;
     let options = AnalysisOptions {
         joint: arguments.joint.clone(),
         relation: arguments.relation,
@@ -65,22 +68,23 @@ pub fn run(arguments: &DecomposeArguments) -> Result<String, Refusal> {
         DecompositionError::Sides(_) | DecompositionError::Model(_) => fixture.refusal(error),
         error => arguments.recording.refusal(error),
     })?;
-    let files = || std::iter::once(&arguments.fixture).chain(&arguments.recording.files);
     let notes = measured.notes.into_iter().chain(window(&analysis)).chain(lost_tolerances(&analysis));
     let context = origin::context(files(), notes.collect(), measured.hammer_test)?;
-    let page = decomposition_page(&analysis, &as_recorded, &context).map_err(Refusal::new)?;
-    let mut outputs = Outputs::new(files());
-    let page_path = arguments.output.join("report.html");
     let mut file = stiffness_file(&analysis);
     origin::add(&mut file, &context);
-    outputs.add_json(arguments.output.join("stiffness.json"), &file);
-    outputs.add(&page_path, page);
-    outputs.write()?;
-    let mut lines = context.notes.clone();
-    lines.extend(summary(&analysis));
-    lines.push(page_path.display().to_string());
-    Ok(lines.join("\n"))
+    let answered = Answered {
+        answer: (FILE, pretty(&file)),
+        others: Vec::new(),
+        elsewhere: Vec::new(),
+        report: decomposition_report(&analysis, &as_recorded, &context),
+        frfs: Vec::new(),
+        summary: summary(&analysis),
+        notes: context.notes,
+    };
+    answered.end(&arguments.destination, files())
 }
+
+const FILE: &str = "stiffness.json";
 
 /// Where on the complex plane the joint was read, if not on the imaginary axis.
 fn window(analysis: &Analysis) -> Option<String> {

@@ -7,14 +7,15 @@ use clap::Args;
 use jointscope::diagnosis::Step;
 use jointscope::estimation::ResponseWindow;
 use jointscope::pipeline::{MeasuredFrfs, Options, Progress};
-use jointscope::report::answer_page;
+use jointscope::report::answer_report;
 use jointscope::spectra::FrfPair;
-use jointscope::{Answer, Band, DiagnosisOptions, answer_file, diagnose};
+use jointscope::{Answer, Band, DiagnosisOptions, answer_file, diagnose, model_frfs};
 
+use crate::answered::{Also, Answered, Destination, PAGE};
 use crate::estimation_arguments::EstimationArguments;
 use crate::input::{self, FixtureFile};
 use crate::origin;
-use crate::output::{Outputs, pretty};
+use crate::output::pretty;
 use crate::progress::Steps;
 use crate::recording::RecordingArguments;
 use crate::refusal::Refusal;
@@ -47,12 +48,8 @@ pub struct DiagnoseArguments {
     /// Take numbers of the fixture as they are stated, even where they belong to no structure together.
     #[arg(long)]
     pub as_stated: bool,
-    /// Print diagnosis.json to standard output, for scripts.
-    #[arg(long)]
-    pub json: bool,
-    /// The directory to write to; may be left out with --json.
-    #[arg(short, long, value_name = "DIR", required_unless_present = "json")]
-    pub output: Option<PathBuf>,
+    #[command(flatten)]
+    pub destination: Destination,
     #[command(flatten)]
     pub estimation: EstimationArguments,
 }
@@ -60,9 +57,7 @@ pub struct DiagnoseArguments {
 /// Diagnoses, and writes `diagnosis.json`, `refitted.json`, `repaired.json` and `report.html`; answers with what was found and where the page
 /// is, or with `diagnosis.json` itself.
 pub fn run(arguments: &DiagnoseArguments) -> Result<String, Refusal> {
-    input::once(
-        std::iter::once(&arguments.fixture).chain(&arguments.recording.files).chain(&arguments.baseline),
-    )?;
+    input::once(inputs(arguments))?;
     let fixture = FixtureFile::read(&arguments.fixture)?;
     let measurement = arguments.recording.measurement(&fixture)?;
     let estimate = arguments.estimation.options(ResponseWindow::Auto);
@@ -88,7 +83,7 @@ pub fn run(arguments: &DiagnoseArguments) -> Result<String, Refusal> {
         estimate,
         as_stated: arguments.as_stated,
     };
-    outputs(arguments, std::array::from_fn(|_| String::new())).check()?;
+    arguments.destination.foresee(inputs(arguments), &FILES)?;
     let steps = Steps::new();
     let answer = diagnose(&fixture, &measurement, &options, |progress| match progress {
         Progress::Searching { frfs, lines } => steps.over(&format!("{frfs} FRFs on {lines} lines")),
@@ -98,41 +93,38 @@ pub fn run(arguments: &DiagnoseArguments) -> Result<String, Refusal> {
     steps.finish();
     let mut answer = answer.map_err(|error| arguments.recording.unanswered(&error, &fixture))?;
     answer.notes.extend(arguments.estimation.unused_with(&measurement));
-    written(arguments, &answer)
+    answered(arguments, &answer)?.end(&arguments.destination, inputs(arguments))
 }
 
-/// The files of the command with their contents.
-fn outputs(arguments: &DiagnoseArguments, contents: [String; 4]) -> Outputs {
-    let inputs =
-        std::iter::once(&arguments.fixture).chain(&arguments.recording.files).chain(&arguments.baseline);
-    let mut outputs = Outputs::new(inputs);
-    if let Some(folder) = &arguments.output {
-        for (name, contents) in FILES.into_iter().zip(contents) {
-            outputs.add(folder.join(name), contents);
-        }
-    }
-    outputs
+/// What the command reads.
+fn inputs(arguments: &DiagnoseArguments) -> impl Iterator<Item = &PathBuf> {
+    std::iter::once(&arguments.fixture).chain(&arguments.recording.files).chain(&arguments.baseline)
 }
 
-/// What the command writes, the page last.
-const FILES: [&str; 4] = ["diagnosis.json", "refitted.json", "repaired.json", "report.html"];
+/// What the command writes.
+const FILES: [&str; 4] = ["diagnosis.json", "refitted.json", "repaired.json", PAGE];
 
-/// Writes the files of an answer.
-fn written(arguments: &DiagnoseArguments, answer: &Answer) -> Result<String, Refusal> {
-    let files =
-        || std::iter::once(&arguments.fixture).chain(&arguments.recording.files).chain(&arguments.baseline);
-    let context = origin::context(files(), answer.notes.clone(), answer.hammer_test.clone())?;
+/// The files of an answer.
+fn answered(arguments: &DiagnoseArguments, answer: &Answer) -> Result<Answered, Refusal> {
+    let context = origin::context(inputs(arguments), answer.notes.clone(), answer.hammer_test.clone())?;
     let mut file = answer_file(answer);
     origin::add(&mut file, &context);
-    let file = pretty(&file);
-    let Some(folder) = &arguments.output else { return Ok(file.trim_end().to_owned()) };
-    let page = answer_page(answer, &context).map_err(Refusal::new)?;
-    outputs(arguments, [file.clone(), answer.refitted.to_json(), answer.repaired.to_json(), page]).write()?;
-    if arguments.json {
-        return Ok(file.trim_end().to_owned());
+    let report = answer_report(answer, &context);
+    let mut notes = context.notes;
+    let mut frfs = Vec::new();
+    if arguments.destination.also.contains(&Also::Uff) {
+        frfs = model_frfs(answer).map_err(Refusal::new)?;
+        if frfs.is_empty() {
+            notes.push("no FRFs are written: the answer rests on motion over time or on levels, not on one set of FRFs".to_owned());
+        }
     }
-    let mut lines = context.notes;
-    lines.extend(answer.summary());
-    lines.push(folder.join(FILES[3]).display().to_string());
-    Ok(lines.join("\n"))
+    Ok(Answered {
+        notes,
+        answer: (FILES[0], pretty(&file)),
+        others: vec![(FILES[1], answer.refitted.to_json()), (FILES[2], answer.repaired.to_json())],
+        elsewhere: Vec::new(),
+        report,
+        frfs,
+        summary: answer.summary(),
+    })
 }

@@ -19,5 +19,7 @@ mod modes;
 mod prove;
 mod prove_floors;
 mod prove_recordings;
+mod results;
+mod streams;
 mod synthesize;
 mod tables;
