@@ -10,15 +10,17 @@ mod export;
 mod fem;
 mod init;
 mod man;
+mod many;
 mod modes;
 mod prove;
 mod schema;
 mod show;
 mod simulate;
+mod summary;
 mod synthesize;
 mod tables;
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 
 use crate::refusal::Refusal;
 
@@ -32,7 +34,7 @@ pub struct Program {
 
 /// What scripts have to know.
 const STATUS: &str = "Answers go to standard output, notices and progress to standard error.
-Exit status: 0 done; 1 done in part (standard output took no more); 2 bad usage or bad input: one sentence on standard error, nothing written.";
+Exit status: 0 done; 1 done in part (of many cases some have no answer, or standard output took no more); 2 bad usage or bad input: one sentence on standard error, nothing written.";
 
 /// What a command has to say when it is done.
 pub struct Said {
@@ -80,6 +82,8 @@ enum Command {
     Prove(prove::ProveArguments),
     /// The paper's Tables 1–6, its values beside the program's.
     Tables(tables::TablesArguments),
+    /// What came of many cases that were diagnosed or decomposed: summary.csv and summary.html.
+    Summary(summary::SummaryArguments),
     /// A script with which a shell completes commands and options.
     Completions(completions::CompletionsArguments),
     /// Manual pages, of the program or of every command.
@@ -87,6 +91,17 @@ enum Command {
 }
 
 impl Program {
+    /// The arguments that were typed.
+    pub fn read() -> Result<Self, clap::Error> {
+        Program::from_arg_matches(&Program::arguments().try_get_matches()?)
+    }
+
+    /// What can be typed. Where a folder or a list of cases stands for the fixture, there are no recordings.
+    pub fn arguments() -> clap::Command {
+        let of_cases = |command: clap::Command| command.mut_arg("files", |files| files.required(false));
+        Program::command().mut_subcommand("diagnose", of_cases).mut_subcommand("decompose", of_cases)
+    }
+
     /// Runs the command; what it has done is told on standard output.
     pub fn run(&self) -> Result<Said, Refusal> {
         let said = match &self.command {
@@ -95,8 +110,9 @@ impl Program {
             Command::Check(arguments) => check::run(arguments),
             Command::Synthesize(arguments) => synthesize::run(arguments),
             Command::Estimate(arguments) => estimate::run(arguments),
-            Command::Decompose(arguments) => decompose::run(arguments),
-            Command::Diagnose(arguments) => diagnose::run(arguments),
+            Command::Decompose(arguments) => return decompose::run(arguments),
+            Command::Diagnose(arguments) => return diagnose::run(arguments),
+            Command::Summary(arguments) => return summary::run(arguments),
             Command::Compare(arguments) => compare::run(arguments),
             Command::Export(arguments) => export::run(arguments),
             Command::Fem(arguments) => fem::run(arguments),
@@ -118,7 +134,6 @@ mod tests {
 
     #[test]
     fn the_command_line_is_consistent() {
-        use clap::CommandFactory;
-        Program::command().debug_assert();
+        Program::arguments().debug_assert();
     }
 }

@@ -1,6 +1,6 @@
 //! The `jointscope` program: arguments, files and exit codes. What is computed is computed by the crates below.
 //!
-//! Exit status 0: done. 1: done, though not all of it: the files are written and standard output took no more. 2: bad usage or bad input, with one plain sentence on standard error and nothing half-written. Answers go to standard output; notices
+//! Exit status 0: done. 1: done, though not all of it: of many cases some have no answer, or the files are written and standard output took no more. 2: bad usage or bad input, with one plain sentence on standard error and nothing half-written. Answers go to standard output; notices
 //! and progress go to standard error.
 
 mod answered;
@@ -18,13 +18,12 @@ mod values;
 use std::io::{ErrorKind, Write};
 use std::process::ExitCode;
 
-use clap::Parser;
 use commands::{Program, Said};
 use progress::tell;
 use refusal::Refusal;
 
 fn main() -> ExitCode {
-    let program = match Program::try_parse() {
+    let program = match Program::read() {
         Ok(program) => program,
         // Help and version are no errors.
         Err(answer) if !answer.use_stderr() => return say(&answer.render().to_string(), true),

@@ -12,9 +12,10 @@
 //! | [`modes_page`] | natural frequencies, damping ratios, shapes |
 //! | [`check_page`] | a fixture, and its recording before any diagnosis |
 //! | [`comparison_page`] | joints side by side |
+//! | [`summary_page`] | many cases, a row each |
 //! | [`proof_page`] | concealed cases: what the diagnosis is worth |
 //!
-//! Each but the last is also had as a [`Report`] (`decomposition_report` and so on), which gives its tables and curves as CSV and its figures as SVG.
+//! Those of one test are also had as a [`Report`] (`decomposition_report` and so on), which gives its tables and curves as CSV and its figures as SVG.
 //!
 //! Inside, a page is a list of sections (`section`) made of paragraphs, key figures, tables (`table`: one row per item, a column for each question asked of
 //! it), plots (`plot`) and drawings (`drawing`, `scatter`). [`format`](mod@format) prints numbers with their uncertainty.
@@ -49,6 +50,7 @@ mod report;
 mod scatter;
 mod section;
 mod stepped_page;
+mod summary_page;
 mod table;
 #[cfg(test)]
 mod tests;
@@ -64,3 +66,4 @@ pub use error::PageError;
 pub use modes_page::{modes_page, modes_report};
 pub use proof_page::{ProofContext, ProofResults, proof_page};
 pub use report::{Report, ReportFile};
+pub use summary_page::summary_page;

@@ -1,6 +1,6 @@
 //! `jointscope completions`: what a shell has to know to complete commands and options.
 
-use clap::{Args, CommandFactory};
+use clap::Args;
 use clap_complete::{Shell, generate};
 
 use super::Program;
@@ -15,6 +15,6 @@ pub struct CompletionsArguments {
 /// Prints the script.
 pub fn run(arguments: &CompletionsArguments) -> Result<String, Refusal> {
     let mut script = Vec::new();
-    generate(arguments.shell, &mut Program::command(), "jointscope", &mut script);
+    generate(arguments.shell, &mut Program::arguments(), "jointscope", &mut script);
     Ok(String::from_utf8_lossy(&script).trim_end().to_owned())
 }

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use jointscope::cases::Command;
 use jointscope::decomposition::{JointFit, LikelihoodFit};
 use jointscope::estimation::ResponseWindow;
 use jointscope::pipeline::MeasuredFrfs;
@@ -10,6 +11,8 @@ use jointscope::report::decomposition_report;
 use jointscope::report::format::quantity;
 use jointscope::{Analysis, AnalysisOptions, Band, DecompositionError, Relation, Remarks, stiffness_file};
 
+use super::Said;
+use super::many::{self, ManyArguments, Task};
 use crate::answered::{Answered, Destination, PAGE};
 use crate::estimation_arguments::EstimationArguments;
 use crate::input::FixtureFile;
@@ -19,9 +22,9 @@ use crate::recording::RecordingArguments;
 use crate::refusal::Refusal;
 use crate::values::{band, one_of};
 
-#[derive(Debug, Args)]
+#[derive(Debug, Clone, Args)]
 pub struct DecomposeArguments {
-    /// The fixture file (JSON).
+    /// The fixture file (JSON); without recordings, a folder of cases or a list of them.
     pub fixture: PathBuf,
     #[command(flatten)]
     pub recording: RecordingArguments,
@@ -40,15 +43,42 @@ pub struct DecomposeArguments {
     #[command(flatten)]
     pub destination: Destination,
     #[command(flatten)]
+    pub many: ManyArguments,
+    #[command(flatten)]
     pub estimation: EstimationArguments,
 }
 
 const RELATIONS: [(&str, Relation); 2] = [("exact", Relation::Exact), ("paper", Relation::Paper)];
 
 /// Decomposes and writes `stiffness.json` and `report.html`; answers with what was found and where the page is, or with `stiffness.json` itself.
-pub fn run(arguments: &DecomposeArguments) -> Result<String, Refusal> {
+/// Many cases each get a directory.
+pub fn run(arguments: &DecomposeArguments) -> Result<Said, Refusal> {
     arguments.destination.without_frfs("decompose")?;
-    let files = || std::iter::once(&arguments.fixture).chain(&arguments.recording.files);
+    if arguments.recording.files.is_empty() {
+        let task = Task {
+            command: Command::Decompose,
+            cases: &arguments.fixture,
+            many: &arguments.many,
+            destination: &arguments.destination,
+        };
+        return many::run(&task, |case| {
+            let mut single = arguments.clone();
+            (single.fixture, single.recording.files) = (case.fixture.clone(), case.recordings.clone());
+            found(&single, case.command.to_owned())
+        });
+    }
+    arguments.many.unused()?;
+    arguments.destination.foresee(inputs(arguments), &[FILE, PAGE])?;
+    found(arguments, origin::command_line())?.end(&arguments.destination, inputs(arguments)).map(Said::from)
+}
+
+/// What the command reads.
+fn inputs(arguments: &DecomposeArguments) -> impl Iterator<Item = &PathBuf> {
+    std::iter::once(&arguments.fixture).chain(&arguments.recording.files)
+}
+
+/// The joint in the recordings; `command` is the line that gives this answer.
+fn found(arguments: &DecomposeArguments, command: String) -> Result<Answered, Refusal> {
     let fixture = FixtureFile::read(&arguments.fixture)?;
     let measurement = arguments.recording.measurement(&fixture)?;
     let mut measured = MeasuredFrfs::of(&measurement, &arguments.estimation.options(ResponseWindow::Auto))
@@ -56,7 +86,6 @@ pub fn run(arguments: &DecomposeArguments) -> Result<String, Refusal> {
         .map_err(|error| arguments.recording.unanswered(&error, &fixture))?;
     measured.notes.extend(arguments.estimation.unused_with(&measurement));
     let as_recorded = measured.as_recorded(&fixture).map_err(|error| fixture.refusal(error))?;
-    arguments.destination.foresee(files(), &[FILE, PAGE])?;
     let options = AnalysisOptions {
         joint: arguments.joint.clone(),
         relation: arguments.relation,
@@ -69,10 +98,10 @@ pub fn run(arguments: &DecomposeArguments) -> Result<String, Refusal> {
         error => arguments.recording.refusal(error),
     })?;
     let notes = measured.notes.into_iter().chain(window(&analysis)).chain(lost_tolerances(&analysis));
-    let context = origin::context(files(), notes.collect(), measured.hammer_test)?;
+    let context = origin::context_of(command, inputs(arguments), notes.collect(), measured.hammer_test)?;
     let mut file = stiffness_file(&analysis);
     origin::add(&mut file, &context);
-    let answered = Answered {
+    Ok(Answered {
         answer: (FILE, pretty(&file)),
         others: Vec::new(),
         elsewhere: Vec::new(),
@@ -80,8 +109,7 @@ pub fn run(arguments: &DecomposeArguments) -> Result<String, Refusal> {
         frfs: Vec::new(),
         summary: summary(&analysis),
         notes: context.notes,
-    };
-    answered.end(&arguments.destination, files())
+    })
 }
 
 const FILE: &str = "stiffness.json";

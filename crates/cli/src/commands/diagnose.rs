@@ -4,6 +4,7 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use clap::Args;
+use jointscope::cases::Command;
 use jointscope::diagnosis::Step;
 use jointscope::estimation::ResponseWindow;
 use jointscope::pipeline::{MeasuredFrfs, Options, Progress};
@@ -11,6 +12,8 @@ use jointscope::report::answer_report;
 use jointscope::spectra::FrfPair;
 use jointscope::{Answer, Band, DiagnosisOptions, answer_file, diagnose, model_frfs};
 
+use super::Said;
+use super::many::{self, ManyArguments, Task};
 use crate::answered::{Also, Answered, Destination, PAGE};
 use crate::estimation_arguments::EstimationArguments;
 use crate::input::{self, FixtureFile};
@@ -21,9 +24,9 @@ use crate::recording::RecordingArguments;
 use crate::refusal::Refusal;
 use crate::values::{band, frf_pair, seconds};
 
-#[derive(Debug, Args)]
+#[derive(Debug, Clone, Args)]
 pub struct DiagnoseArguments {
-    /// The fixture file (JSON).
+    /// The fixture file (JSON); without recordings, a folder of cases or a list of them.
     pub fixture: PathBuf,
     #[command(flatten)]
     pub recording: RecordingArguments,
@@ -51,12 +54,48 @@ pub struct DiagnoseArguments {
     #[command(flatten)]
     pub destination: Destination,
     #[command(flatten)]
+    pub many: ManyArguments,
+    #[command(flatten)]
     pub estimation: EstimationArguments,
 }
 
 /// Diagnoses, and writes `diagnosis.json`, `refitted.json`, `repaired.json` and `report.html`; answers with what was found and where the page
-/// is, or with `diagnosis.json` itself.
-pub fn run(arguments: &DiagnoseArguments) -> Result<String, Refusal> {
+/// is, or with `diagnosis.json` itself. Many cases each get a directory.
+pub fn run(arguments: &DiagnoseArguments) -> Result<Said, Refusal> {
+    if arguments.recording.files.is_empty() {
+        let task = Task {
+            command: Command::Diagnose,
+            cases: &arguments.fixture,
+            many: &arguments.many,
+            destination: &arguments.destination,
+        };
+        if !arguments.baseline.is_empty() {
+            return Err(Refusal::new("--baseline is of one test: diagnose the cases one by one with it"));
+        }
+        return many::run(&task, |case| {
+            let mut single = arguments.clone();
+            (single.fixture, single.recording.files) = (case.fixture.clone(), case.recordings.clone());
+            found(&single, case.command.to_owned(), |_| ())
+        });
+    }
+    arguments.many.unused()?;
+    arguments.destination.foresee(inputs(arguments), &FILES)?;
+    let steps = Steps::new();
+    let answered = found(arguments, origin::command_line(), |progress| match progress {
+        Progress::Searching { frfs, lines } => steps.over(&format!("{frfs} FRFs on {lines} lines")),
+        Progress::Searched(Step::Stage(what)) => steps.stage(what),
+        Progress::Searched(step) => steps.within(|| step.to_string()),
+    });
+    steps.finish();
+    answered?.end(&arguments.destination, inputs(arguments)).map(Said::from)
+}
+
+/// What the fixture leaves out of the recordings; `command` is the line that gives this answer.
+fn found(
+    arguments: &DiagnoseArguments,
+    command: String,
+    watch: impl Fn(Progress) + Sync,
+) -> Result<Answered, Refusal> {
     input::once(inputs(arguments))?;
     let fixture = FixtureFile::read(&arguments.fixture)?;
     let measurement = arguments.recording.measurement(&fixture)?;
@@ -83,17 +122,10 @@ pub fn run(arguments: &DiagnoseArguments) -> Result<String, Refusal> {
         estimate,
         as_stated: arguments.as_stated,
     };
-    arguments.destination.foresee(inputs(arguments), &FILES)?;
-    let steps = Steps::new();
-    let answer = diagnose(&fixture, &measurement, &options, |progress| match progress {
-        Progress::Searching { frfs, lines } => steps.over(&format!("{frfs} FRFs on {lines} lines")),
-        Progress::Searched(Step::Stage(what)) => steps.stage(what),
-        Progress::Searched(step) => steps.within(|| step.to_string()),
-    });
-    steps.finish();
+    let answer = diagnose(&fixture, &measurement, &options, watch);
     let mut answer = answer.map_err(|error| arguments.recording.unanswered(&error, &fixture))?;
     answer.notes.extend(arguments.estimation.unused_with(&measurement));
-    answered(arguments, &answer)?.end(&arguments.destination, inputs(arguments))
+    answered(arguments, command, &answer)
 }
 
 /// What the command reads.
@@ -105,8 +137,9 @@ fn inputs(arguments: &DiagnoseArguments) -> impl Iterator<Item = &PathBuf> {
 const FILES: [&str; 4] = ["diagnosis.json", "refitted.json", "repaired.json", PAGE];
 
 /// The files of an answer.
-fn answered(arguments: &DiagnoseArguments, answer: &Answer) -> Result<Answered, Refusal> {
-    let context = origin::context(inputs(arguments), answer.notes.clone(), answer.hammer_test.clone())?;
+fn answered(arguments: &DiagnoseArguments, command: String, answer: &Answer) -> Result<Answered, Refusal> {
+    let context =
+        origin::context_of(command, inputs(arguments), answer.notes.clone(), answer.hammer_test.clone())?;
     let mut file = answer_file(answer);
     origin::add(&mut file, &context);
     let report = answer_report(answer, &context);

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use clap::{Args, CommandFactory};
+use clap::Args;
 use clap_mangen::Man;
 
 use super::Program;
@@ -18,7 +18,7 @@ pub struct ManArguments {
 
 /// Prints or writes the pages.
 pub fn run(arguments: &ManArguments) -> Result<String, Refusal> {
-    let mut program = Program::command();
+    let mut program = Program::arguments();
     program.build();
     let Some(folder) = &arguments.output else {
         return Ok(page(program)?.trim_end().to_owned());

@@ -15,6 +15,7 @@ mod guide;
 mod hits;
 mod init;
 mod levels;
+mod many;
 mod modes;
 mod prove;
 mod prove_floors;
