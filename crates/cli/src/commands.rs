@@ -2,31 +2,53 @@
 
 mod check;
 mod compare;
+mod completions;
 mod decompose;
 mod diagnose;
 mod estimate;
 mod export;
 mod fem;
 mod init;
+mod man;
+mod many;
 mod modes;
 mod plan;
 mod prove;
 mod schema;
 mod show;
 mod simulate;
+mod summary;
 mod synthesize;
 mod tables;
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 
 use crate::refusal::Refusal;
 
 /// Stiffness and damping of a joint from hammer tests on the blocks it connects.
 #[derive(Debug, Parser)]
-#[command(name = "jointscope", version, max_term_width = 110)]
+#[command(name = "jointscope", version, max_term_width = 110, after_help = STATUS)]
 pub struct Program {
     #[command(subcommand)]
     command: Command,
+}
+
+/// What scripts have to know.
+const STATUS: &str = "Answers go to standard output, notices and progress to standard error.
+Exit status: 0 done; 1 done in part (of many cases some have no answer, or standard output took no more); 2 bad usage or bad input: one sentence on standard error, nothing written.";
+
+/// What a command has to say when it is done.
+pub struct Said {
+    /// For standard output, without the last line end.
+    pub text: String,
+    /// Whether all is done that was asked.
+    pub whole: bool,
+}
+
+impl From<String> for Said {
+    fn from(text: String) -> Self {
+        Said { text, whole: true }
+    }
 }
 
 #[derive(Debug, Subcommand)]
@@ -63,27 +85,46 @@ enum Command {
     Prove(prove::ProveArguments),
     /// The paper's Tables 1–6, its values beside the program's.
     Tables(tables::TablesArguments),
+    /// What came of many cases that were diagnosed or decomposed: summary.csv and summary.html.
+    Summary(summary::SummaryArguments),
+    /// A script with which a shell completes commands and options.
+    Completions(completions::CompletionsArguments),
+    /// Manual pages, of the program or of every command.
+    Man(man::ManArguments),
 }
 
 impl Program {
+    /// The arguments that were typed.
+    pub fn read() -> Result<Self, clap::Error> {
+        Program::from_arg_matches(&Program::arguments().try_get_matches()?)
+    }
+
+    /// What can be typed. Where a folder or a list of cases stands for the fixture, there are no recordings.
+    pub fn arguments() -> clap::Command {
+        let of_cases = |command: clap::Command| command.mut_arg("files", |files| files.required(false));
+        Program::command().mut_subcommand("diagnose", of_cases).mut_subcommand("decompose", of_cases)
+    }
+
     /// The arguments of a command line that diagnoses; `None` of any other.
     pub fn diagnose_arguments(words: &[String]) -> Option<diagnose::DiagnoseArguments> {
-        match Program::try_parse_from(words).ok()?.command {
+        let typed = Program::arguments().try_get_matches_from(words).ok()?;
+        match Program::from_arg_matches(&typed).ok()?.command {
             Command::Diagnose(arguments) => Some(arguments),
             _ => None,
         }
     }
 
     /// Runs the command; what it has done is told on standard output.
-    pub fn run(&self) -> Result<String, Refusal> {
-        match &self.command {
+    pub fn run(&self) -> Result<Said, Refusal> {
+        let said = match &self.command {
             Command::Init(arguments) => init::run(arguments),
             Command::Schema(arguments) => schema::run(arguments),
             Command::Check(arguments) => check::run(arguments),
             Command::Synthesize(arguments) => synthesize::run(arguments),
             Command::Estimate(arguments) => estimate::run(arguments),
-            Command::Decompose(arguments) => decompose::run(arguments),
-            Command::Diagnose(arguments) => diagnose::run(arguments),
+            Command::Decompose(arguments) => return decompose::run(arguments),
+            Command::Diagnose(arguments) => return diagnose::run(arguments),
+            Command::Summary(arguments) => return summary::run(arguments),
             Command::Compare(arguments) => compare::run(arguments),
             Command::Export(arguments) => export::run(arguments),
             Command::Fem(arguments) => fem::run(arguments),
@@ -93,7 +134,10 @@ impl Program {
             Command::Plan(arguments) => plan::run(arguments),
             Command::Prove(arguments) => prove::run(arguments),
             Command::Tables(arguments) => tables::run(arguments),
-        }
+            Command::Completions(arguments) => completions::run(arguments),
+            Command::Man(arguments) => man::run(arguments),
+        };
+        said.map(Said::from)
     }
 }
 
@@ -103,7 +147,6 @@ mod tests {
 
     #[test]
     fn the_command_line_is_consistent() {
-        use clap::CommandFactory;
-        Program::command().debug_assert();
+        Program::arguments().debug_assert();
     }
 }

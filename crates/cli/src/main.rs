@@ -1,7 +1,9 @@
 //! The `jointscope` program: arguments, files and exit codes. What is computed is computed by the crates below.
 //!
-//! Exit status 0: done. 2: bad usage or bad input, with one plain sentence on standard error and nothing half-written.
+//! Exit status 0: done. 1: done, though not all of it: of many cases some have no answer, or the files are written and standard output took no more. 2: bad usage or bad input, with one plain sentence on standard error and nothing half-written. Answers go to standard output; notices
+//! and progress go to standard error.
 
+mod answered;
 mod commands;
 mod computed_frfs;
 mod estimation_arguments;
@@ -13,39 +15,47 @@ mod recording;
 mod refusal;
 mod values;
 
-use std::io::Write;
+use std::io::{ErrorKind, Write};
 use std::process::ExitCode;
 
-use clap::Parser;
-use commands::Program;
+use commands::{Program, Said};
+use progress::tell;
 use refusal::Refusal;
 
 fn main() -> ExitCode {
-    let program = match Program::try_parse() {
+    let program = match Program::read() {
         Ok(program) => program,
         // Help and version are no errors.
-        Err(answer) if !answer.use_stderr() => {
-            say(&answer.render().to_string());
-            return ExitCode::SUCCESS;
-        }
+        Err(answer) if !answer.use_stderr() => return say(&answer.render().to_string(), true),
         Err(error) => return refuse(&Refusal::from(&error)),
     };
     match program.run() {
-        Ok(summary) => {
-            say(&format!("{summary}\n"));
-            ExitCode::SUCCESS
-        }
+        Ok(Said { text, whole }) => say(&format!("{text}\n"), whole),
         Err(refusal) => refuse(&refusal),
     }
 }
 
+/// What was asked is done in part only.
+const IN_PART: u8 = 1;
+/// Nothing is done.
+const REFUSED: u8 = 2;
+
 fn refuse(refusal: &Refusal) -> ExitCode {
-    // With standard error closed there is nobody left to tell.
-    let _ = writeln!(std::io::stderr(), "jointscope: {refusal}");
-    ExitCode::from(2)
+    tell(&format!("jointscope: {refusal}"));
+    ExitCode::from(REFUSED)
 }
 
-/// Prints to standard output; a reader that has gone away (`jointscope … | head`) is no error.
-fn say(text: &str) {
-    let _ = std::io::stdout().write_all(text.as_bytes());
+/// Prints to standard output. A reader that has gone away (`jointscope … | head`) is no error; an answer that is lost is one.
+fn say(text: &str, whole: bool) -> ExitCode {
+    let mut output = std::io::stdout().lock();
+    match output.write_all(text.as_bytes()).and_then(|()| output.flush()) {
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => {
+            tell(&format!(
+                "jointscope: standard output takes no more ({error}), so the answer is lost there; direct it to a place with room"
+            ));
+            ExitCode::from(IN_PART)
+        }
+        _ if whole => ExitCode::SUCCESS,
+        _ => ExitCode::from(IN_PART),
+    }
 }

@@ -16,7 +16,17 @@ pub fn context<'a>(
     notes: Vec<String>,
     hits: Option<HammerTest>,
 ) -> Result<PageContext, Refusal> {
-    Ok(PageContext { program: program(), command: command_line(), inputs: inputs(files)?, notes, hits })
+    context_of(command_line(), files, notes, hits)
+}
+
+/// The same of another command line than the one that was typed.
+pub fn context_of<'a>(
+    command: String,
+    files: impl IntoIterator<Item = &'a PathBuf>,
+    notes: Vec<String>,
+    hits: Option<HammerTest>,
+) -> Result<PageContext, Refusal> {
+    Ok(PageContext { program: program(), command, inputs: inputs(files)?, notes, hits })
 }
 
 /// Adds to a file's contents what they were made from.
@@ -77,9 +87,14 @@ pub fn words(command: &str) -> Vec<String> {
 
 /// The command as it was typed; the program by its name alone, wherever it lies.
 pub fn command_line() -> String {
+    command_of(std::env::args_os().skip(1).map(|word| word.to_string_lossy().into_owned()))
+}
+
+/// A command line of these words.
+pub fn command_of(words: impl IntoIterator<Item = String>) -> String {
     let quoted = |word: String| if word.contains([' ', '"', '\'']) { format!("{word:?}") } else { word };
-    let arguments = std::env::args_os().skip(1).map(|word| quoted(word.to_string_lossy().into_owned()));
-    std::iter::once("jointscope".to_owned()).chain(arguments).collect::<Vec<_>>().join(" ")
+    let words = words.into_iter().map(quoted);
+    std::iter::once("jointscope".to_owned()).chain(words).collect::<Vec<_>>().join(" ")
 }
 
 #[cfg(test)]

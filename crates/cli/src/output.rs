@@ -1,12 +1,15 @@
 //! Files out: all of a command's, or none.
 
+use std::collections::BTreeSet;
 use std::fs::{self, File};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use jointscope::uff::Dataset58;
 use serde_json::Value;
 
+use crate::progress;
 use crate::refusal::Refusal;
 
 /// The files of a command, written together: each beside its place first, and moved there when all are complete. Whatever
@@ -47,9 +50,20 @@ impl Outputs {
         outputs.write()
     }
 
-    /// Writes the files, creating their directories.
+    /// Whether these files could be written, to be asked before anything that takes long.
+    pub fn foresee<'a>(
+        inputs: impl IntoIterator<Item = &'a PathBuf>,
+        paths: impl IntoIterator<Item = PathBuf>,
+    ) -> Result<(), Refusal> {
+        let mut outputs = Outputs::new(inputs);
+        paths.into_iter().for_each(|path| outputs.add(path, ""));
+        outputs.check()
+    }
+
+    /// Writes the files, creating their directories; a page of another command that is replaced is told of.
     pub fn write(self) -> Result<(), Refusal> {
         self.check()?;
+        let replaced: Vec<String> = self.files.iter().filter_map(|(path, new)| replaced(path, new)).collect();
         let mut undo = Undo::default();
         let mut complete = Vec::with_capacity(self.files.len());
         for (index, (path, contents)) in self.files.iter().enumerate() {
@@ -63,11 +77,13 @@ impl Outputs {
                 .map_err(|error| Refusal::io(path, &error))?;
         }
         undo.keep();
+        replaced.iter().for_each(|notice| progress::notice(notice));
         Ok(())
     }
 
     /// Whether the files have places where they may be written: to be asked before anything that takes long.
     pub fn check(&self) -> Result<(), Refusal> {
+        let mut tried = BTreeSet::new();
         for (path, _) in &self.files {
             if let Some(above) = parent(path).ancestors().find(|above| above.exists() && !above.is_dir()) {
                 let above = above.display();
@@ -92,6 +108,16 @@ impl Outputs {
                     "is read by this command and would be overwritten; choose another `-o`",
                 ));
             }
+            let above = existing(parent(path));
+            if tried.insert(above) {
+                try_to_write(above).map_err(|error| {
+                    let above = above.display();
+                    let why = format!(
+                        "cannot be written: nothing can be put into {above} ({error}); choose another `-o`"
+                    );
+                    Refusal::at(path, why)
+                })?;
+            }
         }
         Ok(())
     }
@@ -109,6 +135,45 @@ pub fn counted(count: usize, what: &str) -> String {
 
 fn parent(path: &Path) -> &Path {
     path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."))
+}
+
+/// The nearest directory that is there.
+fn existing(directory: &Path) -> &Path {
+    let there = |above: &&Path| above.as_os_str().is_empty() || above.is_dir();
+    match directory.ancestors().find(there) {
+        Some(above) if !above.as_os_str().is_empty() => above,
+        _ => Path::new("."),
+    }
+}
+
+/// Makes a file in a directory and takes it away: rights alone do not tell of full or read-only file systems.
+fn try_to_write(directory: &Path) -> io::Result<()> {
+    static TRIED: AtomicUsize = AtomicUsize::new(0);
+    let count = TRIED.fetch_add(1, Ordering::Relaxed);
+    let probe = directory.join(format!(".jointscope.{}-{count}.probe", std::process::id()));
+    let written = File::create_new(&probe).and_then(|mut file| file.write_all(b"?"));
+    let removed = fs::remove_file(&probe);
+    written.and(removed)
+}
+
+/// What is to be said of a page that goes for another command's.
+fn replaced(path: &Path, new: &[u8]) -> Option<String> {
+    let maker = |page: &[u8]| command_of_page(&String::from_utf8_lossy(page)).map(str::to_owned);
+    if path.extension().is_none_or(|extension| extension != "html") {
+        return None;
+    }
+    let before = maker(&fs::read(path).ok()?)?;
+    (Some(&before) != maker(new).as_ref()).then(|| {
+        let path = path.display();
+        format!("{path} was the page of `jointscope {before}` and is replaced; another `-o` keeps both")
+    })
+}
+
+/// The command that a page says it was made by, in its foot.
+fn command_of_page(page: &str) -> Option<&str> {
+    const FOOT: &str = "<pre class=\"command\">jointscope ";
+    let command = &page[page.rfind(FOOT)? + FOOT.len()..];
+    command.split([' ', '<']).next()
 }
 
 /// A hidden name in the same directory, for renaming does not cross file systems.
@@ -280,6 +345,37 @@ mod tests {
         outputs.add(scratch.0.join("./fixture.json"), "FRFs");
         assert!(outputs.write().unwrap_err().to_string().contains("would be overwritten"));
         assert_eq!(fs::read(&fixture).unwrap(), b"{}");
+    }
+
+    #[test]
+    fn a_directory_in_which_nothing_can_be_made_is_found_out_beforehand() {
+        let outputs = Path::new("/proc/jointscope/out.json").to_owned();
+        if !Path::new("/proc/self").exists() {
+            return;
+        }
+        let message = Outputs::foresee([], [outputs]).unwrap_err().to_string();
+        assert!(message.contains("nothing can be put into /proc ("), "{message}");
+        let scratch = Scratch::new("foresee");
+        Outputs::foresee([], [scratch.0.join("a/b.json"), scratch.0.join("c.json")]).unwrap();
+        assert!(scratch.names().is_empty(), "{:?}", scratch.names());
+    }
+
+    #[test]
+    fn a_page_is_told_from_that_of_another_command_by_its_foot() {
+        let page = |command: &str| {
+            format!("<pre class=\"command\">x</pre><pre class=\"command\">jointscope {command}</pre>")
+        };
+        assert_eq!(command_of_page(&page("diagnose a.json -o out")), Some("diagnose"));
+        let scratch = Scratch::new("page");
+        let path = scratch.0.join("report.html");
+        assert_eq!(replaced(&path, page("modes").as_bytes()), None);
+        fs::write(&path, page("decompose a b")).unwrap();
+        assert_eq!(replaced(&path, page("decompose c").as_bytes()), None);
+        assert!(
+            replaced(&path, page("diagnose a").as_bytes())
+                .unwrap()
+                .contains("the page of `jointscope decompose`")
+        );
     }
 
     #[test]

@@ -1,5 +1,6 @@
-//! Progress on standard error: bars on a terminal alone, lines anywhere.
+//! Progress and notices on standard error: bars on a terminal alone, lines anywhere.
 
+use std::fmt;
 use std::io::{IsTerminal, Write};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
@@ -81,16 +82,89 @@ impl Steps {
 /// Time between changes of what a terminal shows.
 const SHOWN: Duration = Duration::from_millis(100);
 
+/// A count of steps: a bar on a terminal, lines elsewhere, no more than one every so often and none for what is done at once.
+pub struct Bar {
+    /// On a terminal alone.
+    bar: Option<ProgressBar>,
+    state: Mutex<BarState>,
+}
+
+struct BarState {
+    done: u64,
+    steps: u64,
+    what: String,
+    last: Instant,
+}
+
+/// Time between lines of a count.
+const BETWEEN: Duration = Duration::from_secs(5);
+
+impl Bar {
+    /// Of so many steps; `template` says what stands beside it on a terminal, `what` what is counted.
+    fn new(steps: u64, template: &str, what: &str) -> Self {
+        let bar = || styled(ProgressBar::new(steps), template).with_message(what.to_owned());
+        let state = BarState { done: 0, steps, what: what.to_owned(), last: Instant::now() };
+        Bar { bar: std::io::stderr().is_terminal().then(bar), state: Mutex::new(state) }
+    }
+
+    /// How many steps there are.
+    pub fn set_length(&self, steps: u64) {
+        self.state().steps = steps;
+        if let Some(bar) = &self.bar {
+            bar.set_length(steps);
+        }
+    }
+
+    /// What is done at present.
+    pub fn set_message(&self, what: String) {
+        if let Some(bar) = &self.bar {
+            bar.set_message(what.clone());
+        }
+        self.state().what = what;
+    }
+
+    /// So many steps are done.
+    pub fn set_position(&self, done: u64) {
+        let mut state = self.state();
+        state.done = done;
+        match &self.bar {
+            Some(bar) => bar.set_position(done),
+            None if state.last.elapsed() >= BETWEEN => {
+                tell(&state.to_string());
+                state.last = Instant::now();
+            }
+            None => {}
+        }
+    }
+
+    fn state(&self) -> MutexGuard<'_, BarState> {
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl fmt::Display for BarState {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} of {} {}", self.done, self.steps, self.what)
+    }
+}
+
+impl Drop for Bar {
+    fn drop(&mut self) {
+        if let Some(bar) = &self.bar {
+            bar.finish_and_clear();
+        }
+    }
+}
+
 /// A bar of `steps`; `template` says what stands beside it.
-pub fn bar(steps: u64, template: &str) -> ProgressBar {
-    styled(ProgressBar::new(steps), template)
+pub fn bar(steps: u64, template: &str, what: &str) -> Bar {
+    Bar::new(steps, template, what)
 }
 
 /// A bar of cases: how many are done, and how long the rest takes.
-pub fn cases(count: usize, what: &'static str) -> ProgressBar {
-    bar(count as u64, "{bar:30} {pos} of {len} cases {msg}, {elapsed} gone, {eta} to go")
-        .with_message(what)
-        .with_finish(indicatif::ProgressFinish::AndClear)
+pub fn cases(count: usize, what: &str) -> Bar {
+    let template = "{bar:30} {pos} of {len} {msg}, {elapsed} gone, {eta} to go";
+    Bar::new(count as u64, template, &format!("cases {what}"))
 }
 
 fn styled(bar: ProgressBar, template: &str) -> ProgressBar {
@@ -101,4 +175,21 @@ fn styled(bar: ProgressBar, template: &str) -> ProgressBar {
 pub fn tell(line: &str) {
     // With standard error closed nobody watches.
     let _ = writeln!(std::io::stderr(), "{line}");
+}
+
+/// What a reader of the answer should know besides.
+pub fn notice(sentence: &str) {
+    tell(&format!("note: {sentence}"));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_line_of_a_count_says_how_much_of_what_is_done() {
+        let bar = cases(12, "diagnosed");
+        bar.set_position(3);
+        assert_eq!(bar.state().to_string(), "3 of 12 cases diagnosed");
+    }
 }

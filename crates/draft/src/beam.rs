@@ -1,7 +1,7 @@
 //! A beam, free or clamped.
 
 use crate::value::{known, rounded, unknown};
-use crate::{Bar, Draft, points};
+use crate::{Bar, Draft, DraftError, points};
 use serde_json::{Map, Value, json};
 
 /// Points of a beam, and elastic modes with a ratio of their own.
@@ -13,7 +13,7 @@ const RATIO: f64 = 0.003;
 /// rounding.
 const CLAMP: f64 = 1e5;
 
-pub(crate) fn file(draft: &Draft, bar: &Bar, clamped: bool) -> Value {
+pub(crate) fn file(draft: &Draft, bar: &Bar, clamped: bool) -> Result<Value, DraftError> {
     let number = |(value, std)| known(value, std);
     let (modulus, moment) = (bar.modulus(), bar.second_moment(draft.ruler));
     let mut notes = vec![
@@ -30,7 +30,11 @@ pub(crate) fn file(draft: &Draft, bar: &Bar, clamped: bool) -> Value {
         "the damping ratios are a guess that a fit leaves free".to_owned(),
     ];
     let mut all = Map::new();
-    if draft.points.is_empty() {
+    let body = [("beam".to_owned(), 0.0, bar.length)];
+    if !draft.placed.is_empty() {
+        notes.extend(points::put(draft, &body, &mut all)?);
+    }
+    if draft.points.is_empty() && draft.placed.is_empty() {
         for index in 0..POINTS {
             // The clamped end itself does not move.
             let share = match clamped {
@@ -48,8 +52,8 @@ pub(crate) fn file(draft: &Draft, bar: &Bar, clamped: bool) -> Value {
             "points 1 to 5 are evenly spaced; move them to where sensors and hammer really are, in metres"
                 .to_owned(),
         );
-    } else {
-        notes.push(points::spread(&draft.points, &[("beam".to_owned(), 0.0, bar.length)], &mut all));
+    } else if !draft.points.is_empty() {
+        notes.push(points::spread(&draft.points, &body, &mut all));
     }
     let mut file = json!({
         "name": if clamped { "clamped beam" } else { "free beam" },
@@ -72,5 +76,5 @@ pub(crate) fn file(draft: &Draft, bar: &Bar, clamped: bool) -> Value {
             notes.push(json!("the clamp is taken as a hundred thousand times as stiff as the beam; a real one is softer, which a diagnosis finds: state its rotational_stiffness with \"std\": \"unknown\" to have it fitted"));
         }
     }
-    file
+    Ok(file)
 }

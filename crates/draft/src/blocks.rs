@@ -32,8 +32,9 @@ pub(crate) fn file(draft: &Draft, blocks: &[Bar; 2], strip: &Bar) -> Result<Valu
         "weigh the blocks, with what is screwed to them, and put the masses with the scales' deviation: it is worth more than any drawing".to_owned(),
         "the strip is taken as massless, and as held firmly by both blocks; the damping ratios are a guess that a fit leaves free".to_owned(),
     ];
-    let ends = match draft.points.is_empty() {
-        true => {
+    let bodies = [("A".to_owned(), left, 0.0), ("B".to_owned(), gap, right)];
+    let ends = match (draft.placed.is_empty(), draft.points.is_empty()) {
+        (true, true) => {
             all.insert("1".into(), at("A", left + inside(a)));
             all.insert("2".into(), at("A", 0.0));
             all.insert("3".into(), at("B", gap));
@@ -41,11 +42,15 @@ pub(crate) fn file(draft: &Draft, blocks: &[Bar; 2], strip: &Bar) -> Result<Valu
             notes.push("points: 1 and 4 near the outer ends of A and B, 2 and 3 at the faces that the strip is fixed to; move them to where sensors and hammer really are, in metres".to_owned());
             ["2", "3"]
         }
-        false => {
+        (no_place, no_name) => {
             all.insert("end at A".into(), at("A", 0.0));
             all.insert("end at B".into(), at("B", gap));
-            let bodies = [("A".to_owned(), left, 0.0), ("B".to_owned(), gap, right)];
-            notes.push(points::spread(&draft.points, &bodies, &mut all));
+            if !no_place {
+                notes.extend(points::put(draft, &bodies, &mut all)?);
+            }
+            if !no_name {
+                notes.push(points::spread(&draft.points, &bodies, &mut all));
+            }
             ["end at A", "end at B"]
         }
     };

@@ -63,10 +63,11 @@
 //!
 //! The parts are crates of their own, re-exported as modules for what this page leaves out: [`uff`], [`import`], [`recordings`],
 //! [`fixture`], [`schema`], [`draft`], [`spectra`], [`frf`], [`hits`], [`estimation`], [`beam`], [`damping`], [`lumped`], [`modes`], [`averaging`],
-//! [`decomposition`], [`diagnosis`], [`nonlinear`], [`findings`], [`pipeline`], [`plan`], [`check`], [`fem`], [`comparison`], [`export`], [`tables`], [`proof`], [`report`].
+//! [`decomposition`], [`diagnosis`], [`nonlinear`], [`findings`], [`pipeline`], [`plan`], [`check`], [`cases`], [`fem`], [`comparison`], [`export`], [`tables`], [`proof`], [`report`].
 
 pub use jointscope_averaging as averaging;
 pub use jointscope_beam as beam;
+pub use jointscope_cases as cases;
 pub use jointscope_check as check;
 pub use jointscope_comparison as comparison;
 pub use jointscope_damping as damping;
@@ -114,6 +115,7 @@ mod answer_file;
 mod check_file;
 mod diagnosis_file;
 mod file;
+mod frf_files;
 mod modes_file;
 mod nonlinear_file;
 mod plan_file;
@@ -123,6 +125,7 @@ mod stiffness_file;
 pub use answer_file::answer_file;
 pub use check_file::check_file;
 pub use diagnosis_file::diagnosis_file;
+pub use frf_files::{model_frfs, rebuilt_frfs};
 pub use modes_file::modes_file;
 pub use nonlinear_file::nonlinear_file;
 pub use plan_file::plan_file;

@@ -11,6 +11,7 @@ use crate::context::PageContext;
 use crate::drawing::SideView;
 use crate::error::PageError;
 use crate::format::{in_column, percent, significant};
+use crate::report::Report;
 use crate::section::{Card, Section, Tone};
 use crate::table::Table;
 use crate::unit::Scale;
@@ -20,6 +21,11 @@ use crate::unit::Scale;
 /// # Errors
 /// A recording whose lists do not fit its spectral lines.
 pub fn check_page(check: &Check, fixture: &Fixture, context: &PageContext) -> Result<String, PageError> {
+    check_report(check, fixture, context).html()
+}
+
+/// The same with its tables, curves and figures to be had apart.
+pub fn check_report(check: &Check, fixture: &Fixture, context: &PageContext) -> Report {
     let tone = match check.remarks.first().map(|remark| remark.weight) {
         None => Tone::Ok,
         Some(Weight::Odd) => Tone::Attention,
@@ -37,7 +43,7 @@ pub fn check_page(check: &Check, fixture: &Fixture, context: &PageContext) -> Re
         Some(recording) => page.sections(frfs::sections(recording)),
         None => page,
     };
-    page.sections(context.hits()).sections([numbers::section(check)]).to_html()
+    Report::of(page.sections(context.hits()).sections([numbers::section(check)]))
 }
 
 fn tone(weight: Weight) -> Tone {

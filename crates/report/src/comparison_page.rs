@@ -10,6 +10,7 @@ use jointscope_comparison::{
 use crate::context::PageContext;
 use crate::error::PageError;
 use crate::format::{capitalised, in_column, interval, percent, quantity};
+use crate::report::Report;
 use crate::section::{Section, Tone, Verdict};
 use crate::table::Table;
 use crate::unit::Scale;
@@ -26,15 +27,21 @@ const SURE: f64 = 0.95;
 /// # Errors
 /// Joints whose lists do not fit their spectral lines.
 pub fn comparison_page(comparison: &Comparison, context: &PageContext) -> Result<String, PageError> {
+    comparison_report(comparison, context).html()
+}
+
+/// The same with its tables, curves and figures to be had apart.
+pub fn comparison_report(comparison: &Comparison, context: &PageContext) -> Report {
     let names: Vec<&str> = comparison.joints.iter().map(|joint| joint.name.as_str()).collect();
-    context
-        .page(format!("{} joints side by side", names.len()), names.join(" · "), verdict(comparison))
-        .sections([ratio_section(comparison), order_section(comparison)])
-        .sections(comparison.specimens.iter().map(specimen_section))
-        .sections([value_section(comparison)])
-        .sections(compliance_section(comparison))
-        .sections([Kind::Stiffness, Kind::Damping].map(|kind| spectra_section(comparison, kind)))
-        .to_html()
+    Report::of(
+        context
+            .page(format!("{} joints side by side", names.len()), names.join(" · "), verdict(comparison))
+            .sections([ratio_section(comparison), order_section(comparison)])
+            .sections(comparison.specimens.iter().map(specimen_section))
+            .sections([value_section(comparison)])
+            .sections(compliance_section(comparison))
+            .sections([Kind::Stiffness, Kind::Damping].map(|kind| spectra_section(comparison, kind))),
+    )
 }
 
 fn symbol(entry: &ElementRanking) -> String {

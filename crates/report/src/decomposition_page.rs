@@ -16,6 +16,7 @@ use jointscope_fixture::{Fixture, Joint, JointLaw};
 
 use crate::context::PageContext;
 use crate::error::PageError;
+use crate::report::Report;
 use crate::section::Verdict;
 
 /// What the sections of the page are made from.
@@ -70,6 +71,11 @@ pub fn decomposition_page(
     fixture: &Fixture,
     context: &PageContext,
 ) -> Result<String, PageError> {
+    decomposition_report(analysis, fixture, context).html()
+}
+
+/// The same with its tables, curves and figures to be had apart.
+pub fn decomposition_report(analysis: &Analysis, fixture: &Fixture, context: &PageContext) -> Report {
     let best = Estimate::best(analysis);
     let subject = Subject { analysis, fixture, best: &best };
     let title = format!("Joint {}: stiffness and damping", analysis.joint);
@@ -78,14 +84,15 @@ pub fn decomposition_page(
         headline: verdict::headline(&subject),
         details: verdict::details(&subject),
     };
-    context
-        .page(title, context.subtitle(fixture), verdict)
-        .sections(context.hits())
-        .sections([fixture_view::section(&subject), result::section(&subject)])
-        .sections(all_frfs::section(&subject))
-        .sections(by_line::sections(&subject))
-        .sections([frfs::section(&subject)])
-        .sections(interface_table::section(&subject))
-        .sections([shares::section(&subject), omitted::section(&subject, context)])
-        .to_html()
+    Report::of(
+        context
+            .page(title, context.subtitle(fixture), verdict)
+            .sections(context.hits())
+            .sections([fixture_view::section(&subject), result::section(&subject)])
+            .sections(all_frfs::section(&subject))
+            .sections(by_line::sections(&subject))
+            .sections([frfs::section(&subject)])
+            .sections(interface_table::section(&subject))
+            .sections([shares::section(&subject), omitted::section(&subject, context)]),
+    )
 }

@@ -20,6 +20,7 @@ use jointscope_wording::{Remarks, Says};
 
 use crate::context::PageContext;
 use crate::error::PageError;
+use crate::report::Report;
 use crate::section::Tone;
 
 /// FRFs and places that are shown at the most; the page says how many there are.
@@ -57,6 +58,11 @@ pub fn diagnosis_page(
     fixture: &Fixture,
     context: &PageContext,
 ) -> Result<String, PageError> {
+    diagnosis_report(diagnosis, fixture, context).html()
+}
+
+/// The same with its tables, curves and figures to be had apart.
+pub fn diagnosis_report(diagnosis: &Diagnosis, fixture: &Fixture, context: &PageContext) -> Report {
     let subject = Subject { diagnosis, fixture };
     let said = diagnosis.findings.iter().map(|finding| finding.says());
     // A quantity far from what is stated is to be looked at even where nothing else is missing.
@@ -70,17 +76,18 @@ pub fn diagnosis_page(
         Some(baseline) => two_states::section(&subject, baseline),
     };
     let verdict = context.verdict(tone, diagnosis.says(), said.chain(diagnosis.remarks()));
-    context
-        .page(title, context.subtitle(fixture), verdict)
-        .sections(context.hits())
-        .sections([fixture_view::section(&subject), findings::section(&subject)])
-        .sections(changes::section(&subject))
-        .sections(model_error::section(&subject))
-        .sections(departures::section(&subject))
-        .sections([judgement::section(&subject)])
-        .sections(delta::section(&subject))
-        .sections([frfs, misfit::section(&subject)])
-        .sections(tolerances::section(&subject))
-        .sections([noise::section(&subject)])
-        .to_html()
+    Report::of(
+        context
+            .page(title, context.subtitle(fixture), verdict)
+            .sections(context.hits())
+            .sections([fixture_view::section(&subject), findings::section(&subject)])
+            .sections(changes::section(&subject))
+            .sections(model_error::section(&subject))
+            .sections(departures::section(&subject))
+            .sections([judgement::section(&subject)])
+            .sections(delta::section(&subject))
+            .sections([frfs, misfit::section(&subject)])
+            .sections(tolerances::section(&subject))
+            .sections([noise::section(&subject)]),
+    )
 }

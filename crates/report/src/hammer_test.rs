@@ -4,11 +4,10 @@ use jointscope_estimation::{Excitation, Fault, HitReport};
 use jointscope_hits::Hit;
 use jointscope_pipeline::HammerTest;
 use jointscope_spectra::Channel;
-use maud::Render;
 
 use crate::format::{fixed, significant};
 use crate::plot::{Axis, Plot, Role, Style, YRange};
-use crate::section::{Section, Tone};
+use crate::section::{Block, Section, Tone};
 use crate::table::Table;
 
 /// Hits drawn at one struck point at the most, and struck points.
@@ -49,7 +48,7 @@ pub(crate) fn section(test: &HammerTest) -> Section {
     section.notes(&estimate.remarks)
 }
 
-fn table(hits: &[HitReport]) -> impl Render {
+fn table(hits: &[HitReport]) -> impl Into<Block> {
     Table::of(hits)
         .words("Hit", |hit| hit.number.to_string())
         .words("Struck", |hit| hit.struck.to_string())

@@ -5,31 +5,25 @@ use jointscope_nonlinear::NonlinearDiagnosis;
 use jointscope_wording::{Remarks, Says, effect_name};
 
 use crate::context::PageContext;
-use crate::error::PageError;
 use crate::force_state;
+use crate::report::Report;
 use crate::section::Section;
 use crate::table::Table;
 
 /// The page of a diagnosis from hits as one self-contained HTML file: the verdict, the laws found with their intervals, levels compared,
 /// force against motion, errors of the three models, and the hits held out. The same input gives the same bytes.
-///
-/// # Errors
-/// A page whose parts cannot be drawn.
-pub fn hits_page(
-    diagnosis: &NonlinearDiagnosis,
-    fixture: &Fixture,
-    context: &PageContext,
-) -> Result<String, PageError> {
+pub fn hits_report(diagnosis: &NonlinearDiagnosis, fixture: &Fixture, context: &PageContext) -> Report {
     let said = diagnosis.findings.iter().map(|finding| finding.says());
     let verdict = context.verdict(diagnosis.verdict, diagnosis.says(), said.chain(diagnosis.remarks()));
-    context
-        .page("Diagnosis: what changes with amplitude", context.subtitle(fixture), verdict)
-        .sections(context.hits())
-        .sections([levels(diagnosis)])
-        .sections((!diagnosis.findings.is_empty()).then(|| laws(diagnosis)))
-        .sections((!diagnosis.maps.is_empty()).then(|| force_state::section(&diagnosis.maps, fixture)))
-        .sections(diagnosis.models.as_ref().map(|_| judgement(diagnosis)))
-        .to_html()
+    Report::of(
+        context
+            .page("Diagnosis: what changes with amplitude", context.subtitle(fixture), verdict)
+            .sections(context.hits())
+            .sections([levels(diagnosis)])
+            .sections((!diagnosis.findings.is_empty()).then(|| laws(diagnosis)))
+            .sections((!diagnosis.maps.is_empty()).then(|| force_state::section(&diagnosis.maps, fixture)))
+            .sections(diagnosis.models.as_ref().map(|_| judgement(diagnosis))),
+    )
 }
 
 fn levels(diagnosis: &NonlinearDiagnosis) -> Section {

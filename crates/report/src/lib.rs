@@ -12,7 +12,10 @@
 //! | [`modes_page`] | natural frequencies, damping ratios, shapes |
 //! | [`check_page`] | a fixture, and its recording before any diagnosis |
 //! | [`comparison_page`] | joints side by side |
+//! | [`summary_page`] | many cases, a row each |
 //! | [`proof_page`] | concealed cases: what the diagnosis is worth |
+//!
+//! Those of one test are also had as a [`Report`] (`decomposition_report` and so on), which gives its tables and curves as CSV and its figures as SVG.
 //!
 //! Inside, a page is a list of sections (`section`) made of paragraphs, key figures, tables (`table`: one row per item, a column for each question asked of
 //! it), plots (`plot`) and drawings (`drawing`, `scatter`). [`format`](mod@format) prints numbers with their uncertainty.
@@ -44,21 +47,25 @@ mod page;
 mod plan_page;
 mod plot;
 mod proof_page;
+mod report;
 mod scatter;
 mod section;
 mod stepped_page;
+mod summary_page;
 mod table;
 #[cfg(test)]
 mod tests;
 mod unit;
 
-pub use answer_page::answer_page;
-pub use check_page::check_page;
-pub use comparison_page::comparison_page;
+pub use answer_page::{answer_page, answer_report};
+pub use check_page::{check_page, check_report};
+pub use comparison_page::{comparison_page, comparison_report};
 pub use context::{InputFile, PageContext};
-pub use decomposition_page::decomposition_page;
-pub use diagnosis_page::diagnosis_page;
+pub use decomposition_page::{decomposition_page, decomposition_report};
+pub use diagnosis_page::{diagnosis_page, diagnosis_report};
 pub use error::PageError;
-pub use modes_page::modes_page;
+pub use modes_page::{modes_page, modes_report};
 pub use plan_page::plan_page;
 pub use proof_page::{ProofContext, ProofResults, proof_page};
+pub use report::{Report, ReportFile};
+pub use summary_page::summary_page;

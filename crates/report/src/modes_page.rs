@@ -11,6 +11,7 @@ use jointscope_wording::Remarks;
 
 use crate::context::PageContext;
 use crate::error::PageError;
+use crate::report::Report;
 use crate::section::{Section, Tone};
 
 /// FRFs and shapes that are shown at the most; the page says how many there are.
@@ -30,6 +31,16 @@ pub fn modes_page(
     matches: &[String],
     context: &PageContext,
 ) -> Result<String, PageError> {
+    modes_report(analysis, fixture, matches, context).html()
+}
+
+/// The same with its tables, curves and figures to be had apart.
+pub fn modes_report(
+    analysis: &ModalAnalysis,
+    fixture: Option<&Fixture>,
+    matches: &[String],
+    context: &PageContext,
+) -> Report {
     let count = analysis.modes.len();
     let hz = analysis.lines().hz();
     // To a tenth of a millihertz: lines carry rounding of their own.
@@ -44,20 +55,21 @@ pub fn modes_page(
     let tone = if remarks.is_empty() { Tone::Ok } else { Tone::Attention };
     let verdict = context.verdict(tone, headline, remarks);
     let matched = Section::new("The fixture's elastic modes").notes(matches);
-    context
-        .page(
-            "Modes: natural frequencies, damping ratios, shapes",
-            context.recordings(fixture.is_some()),
-            verdict,
-        )
-        .sections([table::modes(analysis)])
-        .sections((!matches.is_empty()).then_some(matched))
-        .sections([
-            chart::section(analysis),
-            shapes::section(analysis, fixture),
-            table::auto_mac(analysis),
-            frfs::section(analysis),
-            table::residuals(analysis),
-        ])
-        .to_html()
+    Report::of(
+        context
+            .page(
+                "Modes: natural frequencies, damping ratios, shapes",
+                context.recordings(fixture.is_some()),
+                verdict,
+            )
+            .sections([table::modes(analysis)])
+            .sections((!matches.is_empty()).then_some(matched))
+            .sections([
+                chart::section(analysis),
+                shapes::section(analysis, fixture),
+                table::auto_mac(analysis),
+                frfs::section(analysis),
+                table::residuals(analysis),
+            ]),
+    )
 }

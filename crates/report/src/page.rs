@@ -122,6 +122,11 @@ impl Page {
         Ok(page.into_string().replace(is_foreign, "\u{fffd}"))
     }
 
+    /// The sections with their anchors.
+    pub fn parts(&self) -> impl Iterator<Item = (String, &Section)> {
+        self.anchors().into_iter().zip(&self.sections)
+    }
+
     /// One anchor per section: its heading in lower case with hyphens, numbered where two would be equal.
     fn anchors(&self) -> Vec<String> {
         let mut anchors: Vec<String> = Vec::with_capacity(self.sections.len());
@@ -135,10 +140,35 @@ impl Page {
     }
 }
 
-fn anchor(heading: &str) -> String {
+/// A heading as a part of addresses and file names: lower case and hyphens.
+pub(crate) fn anchor(heading: &str) -> String {
     let words = heading.split(|c: char| !c.is_ascii_alphanumeric()).filter(|word| !word.is_empty());
     let anchor = words.map(str::to_ascii_lowercase).collect::<Vec<_>>().join("-");
     if anchor.is_empty() { "section".to_owned() } else { anchor }
+}
+
+/// A drawing with the page's variables replaced by their values by day, or by what it states itself for a variable that the page does not have.
+pub(crate) fn in_plain_colours(svg: &str) -> String {
+    const VARIABLE: &str = "var(--";
+    let mut plain = String::with_capacity(svg.len());
+    let mut rest = svg;
+    while let Some(at) = rest.find(VARIABLE) {
+        plain.push_str(&rest[..at]);
+        rest = &rest[at + VARIABLE.len()..];
+        let end = rest.find(')').unwrap_or(rest.len());
+        let (name, own) = rest[..end].split_once(',').unwrap_or((&rest[..end], "#000000"));
+        plain.push_str(colour(name).unwrap_or(own.trim()));
+        rest = rest.get(end + 1..).unwrap_or_default();
+    }
+    plain.push_str(rest);
+    plain
+}
+
+/// A colour of the page by day, as the style sheet's first block states it.
+fn colour(name: &str) -> Option<&'static str> {
+    let root = STYLE.split_once(":root {")?.1.split_once('}')?.0;
+    let mut entries = root.split(';').filter_map(|entry| entry.trim().strip_prefix("--")?.split_once(':'));
+    entries.find(|(key, _)| *key == name).map(|(_, value)| value.trim())
 }
 
 /// Data and scripts. The script's text is ours, and the data cannot leave its place.

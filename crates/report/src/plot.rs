@@ -4,6 +4,8 @@ mod data;
 mod figure;
 mod frf;
 mod range;
+mod svg;
+mod table;
 mod thin;
 
 pub(crate) use data::PlotBook;
@@ -315,6 +317,11 @@ impl Plot {
     /// is wrong where one curve is split into two series.
     pub fn masked(self, lines: usize) -> Self {
         Self { masked: Some(lines), ..self }
+    }
+
+    /// Its heading.
+    pub fn title(&self) -> &str {
+        &self.title
     }
 
     /// Lines above which the plot is drawn thinned, its peaks kept.

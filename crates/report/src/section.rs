@@ -6,6 +6,7 @@ use maud::{Markup, Render, html};
 use crate::error::PageError;
 use crate::format::QuantityText;
 use crate::plot::{Plot, PlotBook};
+use crate::table::{Table, TableText};
 
 /// How a statement is meant to be taken.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -119,11 +120,27 @@ impl Render for Card {
     }
 }
 
+/// One of the things below a heading.
 #[derive(Clone)]
-enum Block {
+pub(crate) enum Block {
     Markup(Markup),
+    Table(TableText),
+    /// An SVG image with its caption.
+    Drawing(Markup, String),
     /// In rows of so many; numbered and checked when the page is rendered.
     Plots(usize, Vec<Plot>),
+}
+
+impl From<Markup> for Block {
+    fn from(markup: Markup) -> Self {
+        Block::Markup(markup)
+    }
+}
+
+impl<T> From<Table<T>> for Block {
+    fn from(table: Table<T>) -> Self {
+        Block::Table(table.into())
+    }
 }
 
 /// A part of a [`Page`](crate::page::Page) under a heading of its own, which is also its anchor.
@@ -139,10 +156,15 @@ impl Section {
         Self { heading: heading.into(), blocks: Vec::new() }
     }
 
-    /// What renders itself, such as a [`Table`](crate::table::Table), or nothing.
-    pub fn with(mut self, part: impl Render) -> Self {
-        self.blocks.push(Block::Markup(part.render()));
+    /// A [`Table`], or markup.
+    pub fn with(mut self, part: impl Into<Block>) -> Self {
+        self.blocks.push(part.into());
         self
+    }
+
+    /// What stands below the heading.
+    pub fn blocks(&self) -> &[Block] {
+        &self.blocks
     }
 
     /// A paragraph of plain text.
@@ -179,8 +201,9 @@ impl Section {
     }
 
     /// An SVG image with its caption.
-    pub fn drawing(self, svg: Markup, caption: impl AsRef<str>) -> Self {
-        self.with(html! { figure.sketch { (svg) figcaption { (caption.as_ref()) } } })
+    pub fn drawing(mut self, svg: Markup, caption: impl Into<String>) -> Self {
+        self.blocks.push(Block::Drawing(svg, caption.into()));
+        self
     }
 
     /// One plot over the full width.
@@ -199,6 +222,8 @@ impl Section {
         for block in &self.blocks {
             blocks.push(match block {
                 Block::Markup(markup) => markup.clone(),
+                Block::Table(table) => table.render(),
+                Block::Drawing(svg, caption) => html! { figure.sketch { (svg) figcaption { (caption) } } },
                 Block::Plots(columns, plots) => {
                     let figures = plots.iter().map(|plot| book.figure(plot)).collect::<Result<Vec<_>, _>>()?;
                     html! { div class={ "plots columns-" (columns) } { @for figure in &figures { (figure) } } }

@@ -5,28 +5,22 @@ use jointscope_nonlinear::{LevelResult, SteppedDiagnosis};
 use jointscope_wording::{Remarks, Says};
 
 use crate::context::PageContext;
-use crate::error::PageError;
 use crate::format::quantity;
 use crate::plot::{Axis, Plot, Role};
+use crate::report::Report;
 use crate::section::Section;
 use crate::table::Table;
 
 /// The page of a diagnosis from FRFs at several levels as one self-contained HTML file: the verdict, frequency and damping against the amplitude
 /// of the joint's motion, the levels' table, and every law tried. The same input gives the same bytes.
-///
-/// # Errors
-/// A page whose parts cannot be drawn.
-pub fn stepped_page(
-    diagnosis: &SteppedDiagnosis,
-    fixture: &Fixture,
-    context: &PageContext,
-) -> Result<String, PageError> {
+pub fn stepped_report(diagnosis: &SteppedDiagnosis, fixture: &Fixture, context: &PageContext) -> Report {
     let said = diagnosis.findings.iter().map(|finding| finding.says());
     let verdict = context.verdict(diagnosis.verdict, diagnosis.says(), said.chain(diagnosis.remarks()));
-    context
-        .page("Diagnosis: what changes from level to level", context.subtitle(fixture), verdict)
-        .sections([against_amplitude(diagnosis), levels(diagnosis), tried(diagnosis)])
-        .to_html()
+    Report::of(
+        context
+            .page("Diagnosis: what changes from level to level", context.subtitle(fixture), verdict)
+            .sections([against_amplitude(diagnosis), levels(diagnosis), tried(diagnosis)]),
+    )
 }
 
 fn against_amplitude(diagnosis: &SteppedDiagnosis) -> Section {

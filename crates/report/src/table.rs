@@ -22,6 +22,12 @@ pub(crate) enum Cell {
 }
 
 impl Cell {
+    fn text(&self) -> &str {
+        match self {
+            Cell::Text(text) | Cell::Link(text, _) | Cell::Shaded(text, _) => text,
+        }
+    }
+
     /// χ² per value (or per degree of freedom), shaded from 1, which is noise; a dash where there is none.
     pub fn misfit(chi2: Option<f64>) -> Self {
         let Some(chi2) = chi2.filter(|chi2| chi2.is_finite()) else { return "–".into() };
@@ -81,6 +87,13 @@ enum Kind {
 #[derive(Debug, Clone)]
 pub(crate) struct Table<T> {
     items: Vec<T>,
+    text: TableText,
+}
+
+/// What stands in a table, its items apart.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct TableText {
+    /// Kind, heading and typeset unit.
     columns: Vec<(Kind, String, String)>,
     rows: Vec<Vec<Cell>>,
     marks: Vec<Option<Tone>>,
@@ -93,12 +106,12 @@ impl<T> Table<T> {
     pub fn of(items: impl IntoIterator<Item = T>) -> Self {
         let items: Vec<T> = items.into_iter().collect();
         let (rows, marks) = (vec![Vec::new(); items.len()], vec![None; items.len()]);
-        Self { items, columns: Vec::new(), rows, marks, caption: String::new(), footnotes: Vec::new() }
+        Self { items, text: TableText { rows, marks, ..TableText::default() } }
     }
 
     fn column<C: Into<Cell>>(mut self, kind: Kind, head: (String, &str), cell: impl Fn(&T) -> C) -> Self {
-        self.columns.push((kind, head.0, typeset(head.1)));
-        self.rows.iter_mut().zip(&self.items).for_each(|(row, item)| row.push(cell(item).into()));
+        self.text.columns.push((kind, head.0, typeset(head.1)));
+        self.text.rows.iter_mut().zip(&self.items).for_each(|(row, item)| row.push(cell(item).into()));
         self
     }
 
@@ -129,23 +142,59 @@ impl<T> Table<T> {
 
     /// Marks rows at their edge.
     pub fn marked(mut self, tone: impl Fn(&T) -> Option<Tone>) -> Self {
-        self.marks = self.items.iter().map(tone).collect();
+        self.text.marks = self.items.iter().map(tone).collect();
         self
     }
 
     /// A sentence above the table.
-    pub fn caption(self, caption: impl Into<String>) -> Self {
-        Self { caption: caption.into(), ..self }
+    pub fn caption(mut self, caption: impl Into<String>) -> Self {
+        self.text.caption = caption.into();
+        self
     }
 
     /// A line below the table.
     pub fn footnote(mut self, footnote: impl Into<String>) -> Self {
-        self.footnotes.push(footnote.into());
+        self.text.footnotes.push(footnote.into());
         self
     }
 }
 
+impl<T> From<Table<T>> for TableText {
+    fn from(table: Table<T>) -> Self {
+        table.text
+    }
+}
+
 impl<T> Render for Table<T> {
+    fn render(&self) -> Markup {
+        self.text.render()
+    }
+}
+
+impl TableText {
+    /// A row of headings and rows of cells, for a file: see [`csv`](crate::report).
+    pub fn cells(&self) -> (Vec<TableColumn<'_>>, Vec<Vec<&str>>) {
+        let columns = self.columns.iter();
+        let heads = columns.map(|(kind, heading, unit)| TableColumn {
+            heading,
+            unit,
+            is_number: matches!(kind, Kind::Numbers | Kind::Shaded),
+        });
+        (heads.collect(), self.rows.iter().map(|row| row.iter().map(Cell::text).collect()).collect())
+    }
+}
+
+/// What a column shows.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct TableColumn<'a> {
+    pub heading: &'a str,
+    /// Typeset; empty for words and pure numbers.
+    pub unit: &'a str,
+    /// Whether its cells are numbers as far as they can be.
+    pub is_number: bool,
+}
+
+impl Render for TableText {
     fn render(&self) -> Markup {
         let heat = self.columns.iter().any(|(kind, ..)| *kind == Kind::Shaded).then_some("heat");
         html! {

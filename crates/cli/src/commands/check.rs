@@ -6,14 +6,15 @@ use clap::Args;
 use jointscope::check::{Check, CheckOptions, Figure, Weight};
 use jointscope::check_file;
 use jointscope::estimation::ResponseWindow;
-use jointscope::report::check_page;
+use jointscope::report::check_report;
 use jointscope::report::format::quantity;
 use serde_json::Value;
 
+use crate::answered::{Also, Answered, Destination, PAGE};
 use crate::estimation_arguments::EstimationArguments;
 use crate::input::FixtureFile;
 use crate::origin;
-use crate::output::{Outputs, counted, pretty};
+use crate::output::{counted, pretty};
 use crate::recording::{ReadingArguments, RecordingArguments};
 use crate::refusal::Refusal;
 
@@ -29,6 +30,9 @@ pub struct CheckArguments {
     /// Print check.json to standard output, for scripts.
     #[arg(long)]
     pub json: bool,
+    /// Also write tables and curves of the page (csv) or its figures (svg).
+    #[arg(long, value_name = "KIND", value_enum, value_delimiter = ',', requires = "output")]
+    pub also: Vec<Also>,
     /// The directory to write check.json and report.html to [default: nothing is written].
     #[arg(short, long, value_name = "DIR")]
     pub output: Option<PathBuf>,
@@ -44,34 +48,34 @@ pub fn run(arguments: &CheckArguments) -> Result<String, Refusal> {
         true => None,
         false => Some(recording.measurement(&fixture)?),
     };
+    let files = || std::iter::once(&arguments.fixture).chain(&arguments.files);
+    let destination =
+        Destination { json: arguments.json, also: arguments.also.clone(), output: arguments.output.clone() };
+    destination.without_frfs("check")?;
+    destination.foresee(files(), &[FILE, PAGE])?;
     let options = CheckOptions { estimate: arguments.estimation.options(ResponseWindow::Auto) };
     let check = Check::of(&fixture, measurement.as_ref(), &options)
         .map_err(|error| recording.unanswered(&error, &fixture))?;
-    let files = || std::iter::once(&arguments.fixture).chain(&arguments.files);
     let context = origin::context(files(), Vec::new(), None)?;
     let mut file: Value = check_file(&check);
     origin::add(&mut file, &context);
-    if let Some(recording) = &check.recording {
-        file["notes"] = recording.notes.clone().into();
+    let notes = check.recording.iter().flat_map(|recording| recording.notes.clone()).collect::<Vec<_>>();
+    if check.recording.is_some() {
+        file["notes"] = notes.clone().into();
     }
-    let file = pretty(&file);
-    let mut lines = match arguments.json {
-        true => vec![file.trim_end().to_owned()],
-        false => summary(&check),
+    let answered = Answered {
+        notes,
+        answer: (FILE, pretty(&file)),
+        others: Vec::new(),
+        elsewhere: Vec::new(),
+        report: check_report(&check, &fixture, &context),
+        frfs: Vec::new(),
+        summary: summary(&check),
     };
-    if let Some(folder) = &arguments.output {
-        let page = check_page(&check, &fixture, &context).map_err(Refusal::new)?;
-        let path = folder.join("report.html");
-        let mut outputs = Outputs::new(files());
-        outputs.add(folder.join("check.json"), file);
-        outputs.add(&path, page);
-        outputs.write()?;
-        if !arguments.json {
-            lines.push(path.display().to_string());
-        }
-    }
-    Ok(lines.join("\n"))
+    answered.end(&destination, files())
 }
+
+const FILE: &str = "check.json";
 
 /// What it comes to, a line each.
 fn summary(check: &Check) -> Vec<String> {
@@ -103,7 +107,6 @@ fn summary(check: &Check) -> Vec<String> {
         }));
     }
     if let Some(recording) = &check.recording {
-        lines.extend(recording.notes.iter().cloned());
         lines.extend(of_recording(recording));
     } else {
         lines.push(format!(

@@ -6,11 +6,12 @@ use clap::Args;
 use jointscope::comparison::{
     Comparison, ComparisonOptions, Decomposed, Pair, Specimens, comparison_file, says,
 };
-use jointscope::report::comparison_page;
+use jointscope::report::comparison_report;
 
+use crate::answered::{Answered, Destination, PAGE};
 use crate::input;
 use crate::origin;
-use crate::output::Outputs;
+use crate::output::pretty;
 use crate::refusal::Refusal;
 
 /// Options of `jointscope compare`.
@@ -25,9 +26,8 @@ pub struct CompareArguments {
     /// Take every joint as tested on blocks of its own, though the fixtures state the same ones.
     #[arg(long)]
     pub independent: bool,
-    /// The directory to write to.
-    #[arg(short, long, value_name = "DIR")]
-    pub output: PathBuf,
+    #[command(flatten)]
+    pub destination: Destination,
 }
 
 /// A kind of joint and the directories of its specimens.
@@ -80,7 +80,7 @@ fn listed(arguments: &CompareArguments) -> (Vec<PathBuf>, Vec<(String, Vec<usize
     (all, kinds)
 }
 
-/// Compares and writes `comparison.json` and `report.html`; answers with ratios, orders and where the page is.
+/// Compares and writes `comparison.json` and `report.html`; answers with ratios, orders and where the page is, or with `comparison.json` itself.
 pub fn run(arguments: &CompareArguments) -> Result<String, Refusal> {
     if let Some((first, again)) = given_twice(&arguments.directories) {
         return Err(Refusal::new(format!(
@@ -91,6 +91,8 @@ pub fn run(arguments: &CompareArguments) -> Result<String, Refusal> {
     }
     let (directories, specimens) = listed(arguments);
     let files: Vec<PathBuf> = directories.iter().map(|directory| directory.join("stiffness.json")).collect();
+    arguments.destination.without_frfs("compare")?;
+    arguments.destination.foresee(&files, &[FILE, PAGE])?;
     let names = names(&directories);
     let joint = |(name, path): (&String, &PathBuf)| {
         Decomposed::of(name, &input::json(path)?).map_err(|error| Refusal::at(path, error))
@@ -99,19 +101,24 @@ pub fn run(arguments: &CompareArguments) -> Result<String, Refusal> {
     let options = ComparisonOptions { independent: arguments.independent, specimens };
     let comparison = Comparison::with(joints, &options).map_err(Refusal::new)?;
     let context = origin::context(&files, Vec::new(), None)?;
-    let page = comparison_page(&comparison, &context).map_err(Refusal::new)?;
-    let page_path = arguments.output.join("report.html");
-    let mut outputs = Outputs::new(&files);
     let mut file = comparison_file(&comparison);
     origin::add(&mut file, &context);
-    outputs.add_json(arguments.output.join("comparison.json"), &file);
-    outputs.add(&page_path, page);
-    outputs.write()?;
-    Ok(summary(&comparison, &page_path).join("\n"))
+    let answered = Answered {
+        answer: (FILE, pretty(&file)),
+        others: Vec::new(),
+        elsewhere: Vec::new(),
+        report: comparison_report(&comparison, &context),
+        frfs: Vec::new(),
+        summary: summary(&comparison),
+        notes: context.notes,
+    };
+    answered.end(&arguments.destination, &files)
 }
 
+const FILE: &str = "comparison.json";
+
 /// What was found, a line each: what to mind first.
-fn summary(comparison: &Comparison, page: &Path) -> Vec<String> {
+fn summary(comparison: &Comparison) -> Vec<String> {
     let mut lines: Vec<String> =
         comparison.cautions.iter().map(|c| format!("caution: {}", c.says())).collect();
     lines.push(format!("by {}", comparison.estimate_words()));
@@ -132,7 +139,6 @@ fn summary(comparison: &Comparison, page: &Path) -> Vec<String> {
         format!("{}: {} ({right})", entry.number().name(), order.join(" < "))
     }));
     lines.extend(comparison.specimens.iter().flat_map(scatter));
-    lines.push(page.display().to_string());
     lines
 }
 

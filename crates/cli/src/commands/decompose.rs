@@ -3,24 +3,28 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use jointscope::cases::Command;
 use jointscope::decomposition::{JointFit, LikelihoodFit};
 use jointscope::estimation::ResponseWindow;
 use jointscope::pipeline::MeasuredFrfs;
-use jointscope::report::decomposition_page;
+use jointscope::report::decomposition_report;
 use jointscope::report::format::quantity;
 use jointscope::{Analysis, AnalysisOptions, Band, DecompositionError, Relation, Remarks, stiffness_file};
 
+use super::Said;
+use super::many::{self, ManyArguments, Task};
+use crate::answered::{Answered, Destination, PAGE};
 use crate::estimation_arguments::EstimationArguments;
 use crate::input::FixtureFile;
 use crate::origin;
-use crate::output::{Outputs, counted};
+use crate::output::{counted, pretty};
 use crate::recording::RecordingArguments;
 use crate::refusal::Refusal;
 use crate::values::{band, one_of};
 
-#[derive(Debug, Args)]
+#[derive(Debug, Clone, Args)]
 pub struct DecomposeArguments {
-    /// The fixture file (JSON).
+    /// The fixture file (JSON); without recordings, a folder of cases or a list of them.
     pub fixture: PathBuf,
     #[command(flatten)]
     pub recording: RecordingArguments,
@@ -36,17 +40,45 @@ pub struct DecomposeArguments {
     /// Take numbers of the fixture without a standard deviation as exact.
     #[arg(long)]
     pub exact: bool,
-    /// The directory to write to.
-    #[arg(short, long, value_name = "DIR")]
-    pub output: PathBuf,
+    #[command(flatten)]
+    pub destination: Destination,
+    #[command(flatten)]
+    pub many: ManyArguments,
     #[command(flatten)]
     pub estimation: EstimationArguments,
 }
 
 const RELATIONS: [(&str, Relation); 2] = [("exact", Relation::Exact), ("paper", Relation::Paper)];
 
-/// Decomposes and writes `stiffness.json` and `report.html`; answers with what was found and where the page is.
-pub fn run(arguments: &DecomposeArguments) -> Result<String, Refusal> {
+/// Decomposes and writes `stiffness.json` and `report.html`; answers with what was found and where the page is, or with `stiffness.json` itself.
+/// Many cases each get a directory.
+pub fn run(arguments: &DecomposeArguments) -> Result<Said, Refusal> {
+    arguments.destination.without_frfs("decompose")?;
+    if arguments.recording.files.is_empty() {
+        let task = Task {
+            command: Command::Decompose,
+            cases: &arguments.fixture,
+            many: &arguments.many,
+            destination: &arguments.destination,
+        };
+        return many::run(&task, |case| {
+            let mut single = arguments.clone();
+            (single.fixture, single.recording.files) = (case.fixture.clone(), case.recordings.clone());
+            found(&single, case.command.to_owned())
+        });
+    }
+    arguments.many.unused()?;
+    arguments.destination.foresee(inputs(arguments), &[FILE, PAGE])?;
+    found(arguments, origin::command_line())?.end(&arguments.destination, inputs(arguments)).map(Said::from)
+}
+
+/// What the command reads.
+fn inputs(arguments: &DecomposeArguments) -> impl Iterator<Item = &PathBuf> {
+    std::iter::once(&arguments.fixture).chain(&arguments.recording.files)
+}
+
+/// The joint in the recordings; `command` is the line that gives this answer.
+fn found(arguments: &DecomposeArguments, command: String) -> Result<Answered, Refusal> {
     let fixture = FixtureFile::read(&arguments.fixture)?;
     let measurement = arguments.recording.measurement(&fixture)?;
     let mut measured = MeasuredFrfs::of(&measurement, &arguments.estimation.options(ResponseWindow::Auto))
@@ -65,22 +97,22 @@ pub fn run(arguments: &DecomposeArguments) -> Result<String, Refusal> {
         DecompositionError::Sides(_) | DecompositionError::Model(_) => fixture.refusal(error),
         error => arguments.recording.refusal(error),
     })?;
-    let files = || std::iter::once(&arguments.fixture).chain(&arguments.recording.files);
     let notes = measured.notes.into_iter().chain(window(&analysis)).chain(lost_tolerances(&analysis));
-    let context = origin::context(files(), notes.collect(), measured.hammer_test)?;
-    let page = decomposition_page(&analysis, &as_recorded, &context).map_err(Refusal::new)?;
-    let mut outputs = Outputs::new(files());
-    let page_path = arguments.output.join("report.html");
+    let context = origin::context_of(command, inputs(arguments), notes.collect(), measured.hammer_test)?;
     let mut file = stiffness_file(&analysis);
     origin::add(&mut file, &context);
-    outputs.add_json(arguments.output.join("stiffness.json"), &file);
-    outputs.add(&page_path, page);
-    outputs.write()?;
-    let mut lines = context.notes.clone();
-    lines.extend(summary(&analysis));
-    lines.push(page_path.display().to_string());
-    Ok(lines.join("\n"))
+    Ok(Answered {
+        answer: (FILE, pretty(&file)),
+        others: Vec::new(),
+        elsewhere: Vec::new(),
+        report: decomposition_report(&analysis, &as_recorded, &context),
+        frfs: Vec::new(),
+        summary: summary(&analysis),
+        notes: context.notes,
+    })
 }
+
+const FILE: &str = "stiffness.json";
 
 /// Where on the complex plane the joint was read, if not on the imaginary axis.
 fn window(analysis: &Analysis) -> Option<String> {

@@ -4,25 +4,29 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use clap::Args;
+use jointscope::cases::Command;
 use jointscope::diagnosis::Step;
 use jointscope::estimation::ResponseWindow;
 use jointscope::pipeline::{MeasuredFrfs, Options, Progress};
-use jointscope::report::answer_page;
+use jointscope::report::answer_report;
 use jointscope::spectra::FrfPair;
-use jointscope::{Answer, Band, DiagnosisOptions, answer_file, diagnose};
+use jointscope::{Answer, Band, DiagnosisOptions, answer_file, diagnose, model_frfs};
 
+use super::Said;
+use super::many::{self, ManyArguments, Task};
+use crate::answered::{Also, Answered, Destination, PAGE};
 use crate::estimation_arguments::EstimationArguments;
 use crate::input::{self, FixtureFile};
 use crate::origin;
-use crate::output::{Outputs, pretty};
+use crate::output::pretty;
 use crate::progress::Steps;
 use crate::recording::RecordingArguments;
 use crate::refusal::Refusal;
 use crate::values::{band, frf_pair, seconds};
 
-#[derive(Debug, Args)]
+#[derive(Debug, Clone, Args)]
 pub struct DiagnoseArguments {
-    /// The fixture file (JSON).
+    /// The fixture file (JSON); without recordings, a folder of cases or a list of them.
     pub fixture: PathBuf,
     #[command(flatten)]
     pub recording: RecordingArguments,
@@ -47,27 +51,63 @@ pub struct DiagnoseArguments {
     /// Take numbers of the fixture as they are stated, even where they belong to no structure together.
     #[arg(long)]
     pub as_stated: bool,
-    /// Print diagnosis.json to standard output, for scripts.
-    #[arg(long)]
-    pub json: bool,
-    /// The directory to write to; may be left out with --json.
-    #[arg(short, long, value_name = "DIR", required_unless_present = "json")]
-    pub output: Option<PathBuf>,
+    #[command(flatten)]
+    pub destination: Destination,
+    #[command(flatten)]
+    pub many: ManyArguments,
     #[command(flatten)]
     pub estimation: EstimationArguments,
 }
 
 /// Diagnoses, and writes `diagnosis.json`, `refitted.json`, `repaired.json` and `report.html`; answers with what was found and where the page
-/// is, or with `diagnosis.json` itself.
-pub fn run(arguments: &DiagnoseArguments) -> Result<String, Refusal> {
-    written(arguments, &answered(arguments)?)
+/// is, or with `diagnosis.json` itself. Many cases each get a directory.
+pub fn run(arguments: &DiagnoseArguments) -> Result<Said, Refusal> {
+    if arguments.recording.files.is_empty() {
+        let task = Task {
+            command: Command::Diagnose,
+            cases: &arguments.fixture,
+            many: &arguments.many,
+            destination: &arguments.destination,
+        };
+        if !arguments.baseline.is_empty() {
+            return Err(Refusal::new("--baseline is of one test: diagnose the cases one by one with it"));
+        }
+        return many::run(&task, |case| {
+            let mut single = arguments.clone();
+            (single.fixture, single.recording.files) = (case.fixture.clone(), case.recordings.clone());
+            found(&single, case.command.to_owned(), |_| ())
+        });
+    }
+    arguments.many.unused()?;
+    arguments.destination.foresee(inputs(arguments), &FILES)?;
+    let answered = telling(|watch| found(arguments, origin::command_line(), watch));
+    answered?.end(&arguments.destination, inputs(arguments)).map(Said::from)
 }
 
-/// The answer, nothing written.
-pub fn answered(arguments: &DiagnoseArguments) -> Result<Answer, Refusal> {
-    input::once(
-        std::iter::once(&arguments.fixture).chain(&arguments.recording.files).chain(&arguments.baseline),
-    )?;
+/// Tells what a diagnosis is doing while it does it.
+pub fn telling<T>(diagnosis: impl FnOnce(&(dyn Fn(Progress) + Sync)) -> T) -> T {
+    let steps = Steps::new();
+    let done = diagnosis(&|progress| match progress {
+        Progress::Searching { frfs, lines } => steps.over(&format!("{frfs} FRFs on {lines} lines")),
+        Progress::Searched(Step::Stage(what)) => steps.stage(what),
+        Progress::Searched(step) => steps.within(|| step.to_string()),
+    });
+    steps.finish();
+    done
+}
+
+/// What the fixture leaves out of the recordings; `command` is the line that gives this answer.
+fn found(
+    arguments: &DiagnoseArguments,
+    command: String,
+    watch: impl Fn(Progress) + Sync,
+) -> Result<Answered, Refusal> {
+    answered(arguments, command, &diagnosed(arguments, watch)?)
+}
+
+/// What the fixture leaves out of the recordings, nothing written.
+pub fn diagnosed(arguments: &DiagnoseArguments, watch: impl Fn(Progress) + Sync) -> Result<Answer, Refusal> {
+    input::once(inputs(arguments))?;
     let fixture = FixtureFile::read(&arguments.fixture)?;
     let measurement = arguments.recording.measurement(&fixture)?;
     let estimate = arguments.estimation.options(ResponseWindow::Auto);
@@ -93,51 +133,42 @@ pub fn answered(arguments: &DiagnoseArguments) -> Result<Answer, Refusal> {
         estimate,
         as_stated: arguments.as_stated,
     };
-    outputs(arguments, std::array::from_fn(|_| String::new())).check()?;
-    let steps = Steps::new();
-    let answer = diagnose(&fixture, &measurement, &options, |progress| match progress {
-        Progress::Searching { frfs, lines } => steps.over(&format!("{frfs} FRFs on {lines} lines")),
-        Progress::Searched(Step::Stage(what)) => steps.stage(what),
-        Progress::Searched(step) => steps.within(|| step.to_string()),
-    });
-    steps.finish();
+    let answer = diagnose(&fixture, &measurement, &options, watch);
     let mut answer = answer.map_err(|error| arguments.recording.unanswered(&error, &fixture))?;
     answer.notes.extend(arguments.estimation.unused_with(&measurement));
     Ok(answer)
 }
 
-/// The files of the command with their contents.
-fn outputs(arguments: &DiagnoseArguments, contents: [String; 4]) -> Outputs {
-    let inputs =
-        std::iter::once(&arguments.fixture).chain(&arguments.recording.files).chain(&arguments.baseline);
-    let mut outputs = Outputs::new(inputs);
-    if let Some(folder) = &arguments.output {
-        for (name, contents) in FILES.into_iter().zip(contents) {
-            outputs.add(folder.join(name), contents);
-        }
-    }
-    outputs
+/// What the command reads.
+fn inputs(arguments: &DiagnoseArguments) -> impl Iterator<Item = &PathBuf> {
+    std::iter::once(&arguments.fixture).chain(&arguments.recording.files).chain(&arguments.baseline)
 }
 
-/// What the command writes, the page last.
-const FILES: [&str; 4] = ["diagnosis.json", "refitted.json", "repaired.json", "report.html"];
+/// What the command writes.
+const FILES: [&str; 4] = ["diagnosis.json", "refitted.json", "repaired.json", PAGE];
 
-/// Writes the files of an answer.
-fn written(arguments: &DiagnoseArguments, answer: &Answer) -> Result<String, Refusal> {
-    let files =
-        || std::iter::once(&arguments.fixture).chain(&arguments.recording.files).chain(&arguments.baseline);
-    let context = origin::context(files(), answer.notes.clone(), answer.hammer_test.clone())?;
+/// The files of an answer.
+fn answered(arguments: &DiagnoseArguments, command: String, answer: &Answer) -> Result<Answered, Refusal> {
+    let context =
+        origin::context_of(command, inputs(arguments), answer.notes.clone(), answer.hammer_test.clone())?;
     let mut file = answer_file(answer);
     origin::add(&mut file, &context);
-    let file = pretty(&file);
-    let Some(folder) = &arguments.output else { return Ok(file.trim_end().to_owned()) };
-    let page = answer_page(answer, &context).map_err(Refusal::new)?;
-    outputs(arguments, [file.clone(), answer.refitted.to_json(), answer.repaired.to_json(), page]).write()?;
-    if arguments.json {
-        return Ok(file.trim_end().to_owned());
+    let report = answer_report(answer, &context);
+    let mut notes = context.notes;
+    let mut frfs = Vec::new();
+    if arguments.destination.also.contains(&Also::Uff) {
+        frfs = model_frfs(answer).map_err(Refusal::new)?;
+        if frfs.is_empty() {
+            notes.push("no FRFs are written: the answer rests on motion over time or on levels, not on one set of FRFs".to_owned());
+        }
     }
-    let mut lines = context.notes;
-    lines.extend(answer.summary());
-    lines.push(folder.join(FILES[3]).display().to_string());
-    Ok(lines.join("\n"))
+    Ok(Answered {
+        notes,
+        answer: (FILES[0], pretty(&file)),
+        others: vec![(FILES[1], answer.refitted.to_json()), (FILES[2], answer.repaired.to_json())],
+        elsewhere: Vec::new(),
+        report,
+        frfs,
+        summary: answer.summary(),
+    })
 }

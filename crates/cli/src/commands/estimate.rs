@@ -11,6 +11,7 @@ use jointscope::uff::{Dataset58, FunctionType};
 use crate::computed_frfs::encoding;
 use crate::estimation_arguments::EstimationArguments;
 use crate::output::Outputs;
+use crate::progress::notice;
 use crate::recording::RecordingArguments;
 use crate::refusal::Refusal;
 
@@ -35,6 +36,7 @@ pub fn run(arguments: &EstimateArguments) -> Result<String, Refusal> {
     let hits = hits_of(&sources, None, &recording.options()?)
         .map_err(|error| recording.unreadable(error.into(), None))?;
     let options = estimation.options(ResponseWindow::None);
+    Outputs::foresee(&recording.files, [output.clone()])?;
     let test = HammerTest::of(&hits.hits, &options).map_err(|error| match error {
         EstimateError::Window { .. } => Refusal::new(error),
         error => recording.refusal(Error::from(error)),
@@ -47,8 +49,8 @@ pub fn run(arguments: &EstimateArguments) -> Result<String, Refusal> {
     let mut outputs = Outputs::new(&recording.files);
     outputs.add_datasets(output, &datasets)?;
     outputs.write()?;
-    let mut lines = hits.notes;
-    lines.push(test.says(&estimate.frfs, options.estimator));
+    hits.notes.iter().for_each(|note| notice(note));
+    let mut lines = vec![test.says(&estimate.frfs, options.estimator)];
     for excitation in &estimate.excitations {
         lines.push(format!(
             "the hits at {} excite up to {:.0} Hz, where their force has fallen by 20 dB or the anti-alias filter begins",

@@ -5,14 +5,14 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 use clap::{Args, ValueEnum};
-use indicatif::ProgressBar;
 use jointscope::fem::{
     MeshOptions, ModeKind, ModeRange, Omissions, Progress, Superposition, Twin, calculix_deck,
 };
 
 use crate::computed_frfs::ComputedFrfs;
 use crate::input::FixtureFile;
-use crate::progress;
+use crate::output::Outputs;
+use crate::progress::{self, Bar};
 use crate::refusal::Refusal;
 
 /// Options of `jointscope fem`.
@@ -91,10 +91,11 @@ pub fn run(arguments: &FemArguments) -> Result<String, Refusal> {
     let hz = asked.lines.hz();
     let last = hz[hz.len() - 1];
     let range = ModeRange { at_least: arguments.modes.unwrap_or(0).max(4), up_to: 2.0 * last };
+    Outputs::foresee([&asked.fixture], [asked.output.clone()].into_iter().chain(arguments.deck.clone()))?;
     let start = Instant::now();
-    let bar = progress::bar(STEPS, "{bar:30} {msg} ({elapsed})").with_message("meshing");
+    let bar = progress::bar(STEPS, "{bar:30} {msg} ({elapsed})", "steps: meshing");
     let twin = Twin::of(&fixture, &options, range, |progress| show(&bar, progress));
-    bar.finish_and_clear();
+    drop(bar);
     let twin = twin.map_err(|error| fixture.refusal(error))?;
     let superposition = match arguments.modes {
         None => Superposition::Complete,
@@ -149,19 +150,19 @@ fn summary(twin: &Twin, elapsed: f64) -> Vec<String> {
 /// Steps of the bar: mesh, matrices, and a hundred for the modes.
 const STEPS: u64 = 102;
 
-fn show(bar: &ProgressBar, progress: Progress) {
+fn show(bar: &Bar, progress: Progress) {
     match progress {
         Progress::Meshed(nodes, elements) => {
+            bar.set_message(format!("steps: {elements} elements, {nodes} nodes"));
             bar.set_position(1);
-            bar.set_message(format!("{elements} elements, {nodes} nodes"));
         }
         Progress::Assembled(equations) => {
+            bar.set_message(format!("steps: {equations} equations, factorising"));
             bar.set_position(2);
-            bar.set_message(format!("{equations} equations, factorising"));
         }
         Progress::Modes(found, wanted) => {
+            bar.set_message(format!("steps: {found} of {wanted} modes"));
             bar.set_position(2 + (100 * found / wanted.max(1)) as u64);
-            bar.set_message(format!("{found} of {wanted} modes"));
         }
     }
 }

@@ -4,10 +4,13 @@ use std::path::PathBuf;
 
 use clap::Args;
 use jointscope::report::format::quantity;
-use jointscope::report::{PageContext, modes_page};
-use jointscope::{Band, MeasuredDamping, ModalAnalysis, ModesOptions, Remarks, measured_damping, modes_file};
+use jointscope::report::{PageContext, modes_report};
+use jointscope::{
+    Band, MeasuredDamping, ModalAnalysis, ModesOptions, Remarks, measured_damping, modes_file, rebuilt_frfs,
+};
 use serde_json::{Value, json};
 
+use crate::answered::{Also, Answered, Destination, PAGE};
 use crate::input::FixtureFile;
 use crate::origin;
 use crate::output::{Outputs, counted, pretty};
@@ -34,12 +37,8 @@ pub struct ModesArguments {
     /// Write the fixture with the measured damping ratios to this file.
     #[arg(long, value_name = "OUT.json", requires = "fixture")]
     pub update: Option<PathBuf>,
-    /// Print modes.json to standard output, for scripts.
-    #[arg(long)]
-    pub json: bool,
-    /// The directory to write to; may be left out with --json.
-    #[arg(short, long, value_name = "DIR", required_unless_present = "json")]
-    pub output: Option<PathBuf>,
+    #[command(flatten)]
+    pub destination: Destination,
 }
 
 /// Finds the modes and writes `modes.json` and `report.html`; answers with what was found and where the page is, or with `modes.json` itself.
@@ -50,6 +49,9 @@ pub fn run(arguments: &ModesArguments) -> Result<String, Refusal> {
         None => arguments.recording.recording_of_nodes()?,
     };
     let frfs = recording.frfs().map_err(|error| arguments.recording.refusal(error))?;
+    let files = || arguments.fixture.iter().chain(&arguments.recording.files);
+    arguments.destination.foresee(files(), &[FILE, PAGE])?;
+    Outputs::foresee(files(), arguments.update.clone())?;
     let options = ModesOptions {
         band: arguments.band.map(|band| (band.from, band.to)),
         orders: arguments.orders,
@@ -67,32 +69,35 @@ pub fn run(arguments: &ModesArguments) -> Result<String, Refusal> {
             None
         }
     };
-    let files = || arguments.fixture.iter().chain(&arguments.recording.files);
     let context = origin::context(files(), notes, None)?;
     let answer = answer(&analysis, damping.as_ref(), &context);
-    let answer = pretty(&answer);
-    let mut outputs = Outputs::new(files());
-    if let (Some(path), Some(damping)) = (&arguments.update, &damping) {
-        outputs.add(path, damping.fixture.to_json());
-    }
-    let mut page_path = None;
-    if let Some(folder) = &arguments.output {
-        let remarks = damping.as_ref().map_or(&[][..], |damping| &damping.remarks);
-        let page = modes_page(&analysis, fixture.as_deref(), remarks, &context).map_err(Refusal::new)?;
-        let path = folder.join("report.html");
-        outputs.add(folder.join("modes.json"), answer.clone());
-        outputs.add(&path, page);
-        page_path = Some(path);
-    }
-    outputs.write()?;
-    if arguments.json {
-        return Ok(answer.trim_end().to_owned());
-    }
-    let mut lines = context.notes;
-    lines.extend(summary(&analysis, damping.as_ref()));
-    lines.extend(arguments.update.iter().chain(&page_path).map(|path| path.display().to_string()));
-    Ok(lines.join("\n"))
+    let updated = arguments
+        .update
+        .iter()
+        .zip(&damping)
+        .map(|(path, damping)| (path.clone(), damping.fixture.to_json()));
+    let elsewhere = updated.collect();
+    let remarks = damping.as_ref().map_or(&[][..], |damping| &damping.remarks);
+    let report = modes_report(&analysis, fixture.as_deref(), remarks, &context);
+    let mut summary = summary(&analysis, damping.as_ref());
+    summary.extend(arguments.update.iter().map(|path| path.display().to_string()));
+    let frfs = match arguments.destination.also.contains(&Also::Uff) {
+        true => rebuilt_frfs(&analysis).map_err(Refusal::new)?,
+        false => Vec::new(),
+    };
+    let answered = Answered {
+        notes: context.notes,
+        answer: (FILE, pretty(&answer)),
+        others: Vec::new(),
+        elsewhere,
+        report,
+        frfs,
+        summary,
+    };
+    answered.end(&arguments.destination, files())
 }
+
+const FILE: &str = "modes.json";
 
 /// `modes.json`: the modes, which of them are the fixture's, and what they were made from.
 fn answer(analysis: &ModalAnalysis, damping: Option<&MeasuredDamping>, context: &PageContext) -> Value {

@@ -11,11 +11,14 @@ use jointscope::report::{PageContext, plan_page};
 use jointscope::{Answer, Band, Fixture, Outcome, SpectralLines, effect_name, plan_file};
 
 use crate::commands::Program;
-use crate::commands::diagnose::{DiagnoseArguments, answered};
+use crate::answered::Destination;
+use crate::commands::diagnose::{self, DiagnoseArguments};
 use crate::estimation_arguments::EstimationArguments;
 use crate::input::{self, FixtureFile};
 use crate::origin;
+use crate::commands::many::ManyArguments;
 use crate::output::{Outputs, counted, pretty};
+use crate::progress;
 use crate::recording::{ReadingArguments, RecordingArguments};
 use crate::refusal::Refusal;
 use crate::values::{band, spectral_lines};
@@ -83,7 +86,9 @@ struct Planned {
 /// Plans; answers with the suggestions, the best first.
 pub fn run(arguments: &PlanArguments) -> Result<String, Refusal> {
     input::once(std::iter::once(&arguments.fixture).chain(&arguments.files).chain(&arguments.also))?;
-    outputs(arguments, &[], [String::new(), String::new()]).check()?;
+    let folder = arguments.output.iter();
+    let names = folder.flat_map(|folder| FILES.iter().map(|name| folder.join(name)));
+    Outputs::foresee(std::iter::once(&arguments.fixture), names)?;
     let planned = match &arguments.interval {
         Some(wanted) => for_interval(arguments, wanted)?,
         None => {
@@ -147,12 +152,13 @@ fn diagnosed(arguments: &PlanArguments) -> Result<Diagnosed, Refusal> {
             time_limit: None,
             exact: arguments.exact,
             as_stated: false,
-            json: false,
-            output: None,
+            destination: Destination::default(),
+            many: ManyArguments::default(),
             estimation: arguments.estimation.clone(),
         },
     };
-    Ok(Diagnosed { answer: answered(&again)?, arguments: again })
+    let answer = diagnose::telling(|watch| diagnose::diagnosed(&again, watch))?;
+    Ok(Diagnosed { answer, arguments: again })
 }
 
 fn recording(arguments: &PlanArguments) -> RecordingArguments {
@@ -272,10 +278,13 @@ fn weighed(
     Ok(names.iter().map(|name| of((name, before(name)))).collect::<Vec<_>>().join("\n"))
 }
 
+/// What the command writes.
+const FILES: [&str; 2] = ["plan.json", "plan.html"];
+
 fn outputs(arguments: &PlanArguments, files: &[PathBuf], contents: [String; 2]) -> Outputs {
     let mut outputs = Outputs::new(std::iter::once(&arguments.fixture).chain(files));
     if let Some(folder) = &arguments.output {
-        for (name, contents) in ["plan.json", "plan.html"].into_iter().zip(contents) {
+        for (name, contents) in FILES.into_iter().zip(contents) {
             outputs.add(folder.join(name), contents);
         }
     }
@@ -291,12 +300,12 @@ fn written(arguments: &PlanArguments, planned: &Planned) -> Result<String, Refus
     let file = pretty(&file);
     let page = plan_page(plan, fixture, &context).map_err(Refusal::new)?;
     outputs(arguments, files, [file.clone(), page]).write()?;
+    context.notes.iter().for_each(|note| progress::notice(note));
     if arguments.json {
         return Ok(file.trim_end().to_owned());
     }
-    let mut lines = context.notes;
-    lines.extend(summary(plan));
-    lines.extend(arguments.output.iter().map(|folder| folder.join("plan.html").display().to_string()));
+    let mut lines = summary(plan);
+    lines.extend(arguments.output.iter().map(|folder| folder.join(FILES[1]).display().to_string()));
     Ok(lines.join("\n"))
 }
 

@@ -10,6 +10,7 @@ use jointscope::spectra::Channel;
 use crate::computed_frfs::encoding;
 use crate::input::{self, FixtureFile};
 use crate::output::Outputs;
+use crate::progress::notice;
 use crate::refusal::Refusal;
 use crate::values::one_channel;
 
@@ -47,6 +48,7 @@ pub fn run(arguments: &SimulateArguments) -> Result<String, Refusal> {
         true => fixture.points().iter().map(|p| Channel::transverse(p.name.clone())).collect(),
         false => at.clone(),
     };
+    Outputs::foresee([path, force], [output.clone()])?;
     let Simulation { hits: simulated, error } = simulate(&fixture, &hits.hits, &channels)
         .map_err(|error| fixture.refusal(DiagnoseError::from(error)))?;
     let datasets = hits_to_datasets(&simulated, fixture.name(), encoding(*ascii), *with_force)
@@ -55,14 +57,14 @@ pub fn run(arguments: &SimulateArguments) -> Result<String, Refusal> {
     outputs.add_datasets(output, &datasets)?;
     outputs.write()?;
     let names: Vec<String> = channels.iter().map(ToString::to_string).collect();
-    let mut lines = hits.notes;
-    lines.push(format!(
+    hits.notes.iter().for_each(|note| notice(note));
+    let mut lines = vec![format!(
         "{}: accelerations at {} under {} hits of {} samples; the time steps are right to {error:.0e} of each response",
         output.display(),
         names.join(", "),
         simulated.len(),
         simulated.iter().map(|hit| hit.samples()).max().unwrap_or(0),
-    ));
+    )];
     if error > NOTABLE {
         lines.push("the steps could not be made finer: take the responses with that much doubt".to_owned());
     }

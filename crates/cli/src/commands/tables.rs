@@ -38,15 +38,16 @@ pub fn run(arguments: &TablesArguments) -> Result<String, Refusal> {
         measured.push(decomposed.map_err(|error| Refusal::at(&path, error))?);
         inputs.push(path);
     }
-    let bar = progress::bar(1, "{bar:30} {pos}/{len} {msg} ({elapsed})");
+    Outputs::foresee(&inputs, arguments.output.clone())?;
+    let bar = progress::bar(1, "{bar:30} {pos}/{len} {msg} ({elapsed})", "tables");
     let mesh = MeshOptions::default();
     let mesh = (!arguments.no_fem).then_some(&mesh);
     let tables = Tables::of(mesh, measured, |name, index, count| {
         bar.set_length(count as u64);
-        bar.set_position(index as u64);
         bar.set_message(name.to_owned());
+        bar.set_position(index as u64);
     });
-    bar.finish_and_clear();
+    drop(bar);
     let tables = tables.map_err(Refusal::new)?;
     let text = match arguments.json {
         true => pretty(&tables.to_value()),

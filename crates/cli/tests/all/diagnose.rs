@@ -254,7 +254,7 @@ fn the_shipped_example_is_explained_and_its_readme_does_not_give_it_away() {
     for file in ["fixture.json", "hammer-test.uff"] {
         std::fs::copy(folder.join(file), bench.0.join(file)).unwrap();
     }
-    let told = bench.done(&["diagnose", "fixture.json", "hammer-test.uff", "--json"]);
+    let told = bench.answer(&["diagnose", "fixture.json", "hammer-test.uff", "--json"]);
     let answer: Value = serde_json::from_str(&told).unwrap();
     assert_eq!(answer["verdict"], "explained", "{}", answer["says"]);
     assert_eq!(answer["findings"].as_array().unwrap().len(), 1);
@@ -283,7 +283,7 @@ fn on_a_pipe_each_stage_is_a_line_and_standard_output_holds_the_answer_alone() {
     let answer = String::from_utf8(output.stdout).unwrap();
     let file: Value = serde_json::from_str(&answer).unwrap();
     assert_eq!(file["findings"][0]["kind"], "added_mass", "{answer}");
-    assert_eq!(answer, bench.done(&arguments), "the answer depends on when something was told");
+    assert_eq!(answer, bench.answer(&arguments), "the answer depends on when something was told");
 }
 
 #[test]

@@ -1,11 +1,11 @@
-//! The guide to a structure of one's own, typed along: its commands in their order, its excerpts put into the files that they name.
+//! The guides to a structure of one's own and to many tests, typed along: their commands in their order, their excerpts put into the files that they name.
 
 use crate::common::Bench;
 use serde_json::Value;
 
-/// The guide's code blocks: what stands behind the fence, and the text.
-fn blocks() -> Vec<(String, String)> {
-    let page = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/guide/own-structure.md");
+/// A guide's code blocks: what stands behind the fence, and the text.
+fn blocks(guide: &str) -> Vec<(String, String)> {
+    let page = format!("{}/../../docs/guide/{guide}", env!("CARGO_MANIFEST_DIR"));
     let page = std::fs::read_to_string(page).unwrap();
     let mut all = Vec::new();
     let mut lines = page.lines();
@@ -33,7 +33,7 @@ fn edit(bench: &Bench, file: &str, excerpt: &str) {
 fn the_first_own_structure_goes_from_ruler_to_finding_as_the_guide_says() {
     let bench = Bench::new("guide");
     let mut said: Vec<(String, String)> = Vec::new();
-    for (kind, text) in blocks() {
+    for (kind, text) in blocks("own-structure.md") {
         if let Some(file) = kind.strip_prefix("json excerpt ") {
             edit(&bench, file, &text);
             continue;
@@ -62,4 +62,44 @@ fn the_first_own_structure_goes_from_ruler_to_finding_as_the_guide_says() {
     let before = bench.json("checked/check.json")["recording"]["nrmse"].as_f64().unwrap();
     let after = bench.json("repaired/check.json")["recording"]["nrmse"].as_f64().unwrap();
     assert!(before > 0.1 && after < 0.02, "{before} {after}");
+}
+
+#[test]
+fn many_tests_go_from_folders_to_one_table_as_the_guide_says() {
+    let bench = Bench::new("guide-many");
+    let mut said: Vec<(String, String)> = Vec::new();
+    for (kind, text) in blocks("many.md") {
+        if let Some(file) = kind.strip_prefix("json excerpt ") {
+            edit(&bench, file, &text);
+            continue;
+        }
+        if let Some(file) = kind.strip_prefix("text file ") {
+            bench.write(file, text);
+            continue;
+        }
+        assert_eq!(kind, "sh", "{text}");
+        for line in text.lines() {
+            let words: Vec<&str> = line.split_whitespace().collect();
+            said.push((line.to_owned(), bench.done(&words[1..])));
+        }
+    }
+    let of = |line: &str| -> Vec<&str> {
+        said.iter().filter(|(own, _)| own == line).map(|(_, said)| said.as_str()).collect()
+    };
+    let twice = of("jointscope diagnose specimens -o diagnosed");
+    assert!(twice[0].contains("3 cases: 2 consistent, 1 explained"), "{}", twice[0]);
+    assert_eq!(twice[1].strip_prefix("note: 3 cases had their answers already\n"), Some(twice[0]));
+    let table = bench.text("diagnosed/summary.csv");
+    let heavier = table.lines().find(|line| line.starts_with("b,")).unwrap();
+    assert!(heavier.starts_with("b,done,explained,1,added_mass,B,"), "{heavier}");
+    // Joined shares are what one run gives, but for the paths in the files.
+    assert_eq!(bench.text("shares/summary.csv"), table);
+    assert!(
+        of("jointscope diagnose specimens --shard 1/2 -o shares")[0].starts_with("share 1 of 2: 2 cases")
+    );
+    let decomposed = bench.text("decomposed/summary.csv");
+    assert!(
+        ["a-test,done,J", "b-test,done,J", "c-test,done,J"].iter().all(|row| decomposed.contains(row)),
+        "{decomposed}"
+    );
 }

@@ -114,3 +114,76 @@ fn a_map_for_triaxial_nodes_names_one_direction_of_each() {
     let map = said.split("`--map ").nth(1).unwrap().split('`').next().unwrap();
     assert_eq!(map.split_whitespace().count(), 1, "{said}");
 }
+
+/// FRFs of two blocks with their geometry: nodes 1 to 4 along z, in mm, 1000 mm from where the fixture begins.
+fn with_geometry(name: &str) -> Bench {
+    let bench = Bench::new(name);
+    bench.write("two.json", TWO_BLOCKS);
+    bench.done(&["synthesize", "two.json", "--ascii", "--lines", "50:1000:10", "-o", "frf.uff"]);
+    let mut text = bench.text("frf.uff");
+    text.push_str("    -1\n  2411\n");
+    for (node, z) in [(1, 940.0), (2, 1000.0), (3, 1065.0), (4, 1125.0)] {
+        text.push_str(&format!(
+            "{node:>10}{:>10}{:>10}{:>10}\n{:>25.16}{:>25.16}{z:>25.16}\n",
+            0, 0, 11, 5.0, -2.0
+        ));
+    }
+    text.push_str("    -1\n");
+    bench.write("with.uff", text);
+    bench
+}
+
+const OF_BLOCKS: [&str; 6] = ["init", "--blocks", "60x50x50:steel", "--strip", "65x30x5:steel", "--from-uff"];
+
+#[test]
+fn nodes_of_a_recording_become_points_at_the_places_of_its_geometry() {
+    let bench = with_geometry("init-from-uff");
+    let options = ["with.uff", "--length-unit", "mm", "--origin", "1000", "-o", "own.json"];
+    let said = bench.done(&[&OF_BLOCKS[..], &options].concat());
+    assert!(said.contains("4 nodes along z of the geometry, over 185.0 mm"), "{said}");
+    let points = &bench.json("own.json")["points"];
+    for (name, body, x) in [("1", "A", -0.06), ("2", "A", 0.0), ("3", "B", 0.065), ("4", "B", 0.125)] {
+        let x_of = points[name]["x"]["value"].as_f64().or(points[name]["x"].as_f64()).unwrap();
+        assert!(points[name]["body"] == body && (x_of - x).abs() < 1e-9, "{points}");
+    }
+    let checked = bench.done(&["check", "own.json", "with.uff"]);
+    assert!(!checked.contains("its place is unknown"), "{checked}");
+    // By itself: points, and masses to be filled in.
+    bench.done(&["init", "--from-uff", "with.uff", "--length-unit", "mm", "-o", "alone.json"]);
+    let alone = bench.json("alone.json");
+    assert_eq!(alone["points"]["4"]["body"], "body");
+    assert!(alone["notes"].to_string().contains("FILL IN: one rigid body stands for the whole structure"));
+    bench.done(&["check", "alone.json"]);
+}
+
+#[test]
+fn without_geometry_or_its_unit_a_sentence_says_what_is_missing() {
+    let bench = with_geometry("init-no-geometry");
+    let with = |options: &[&'static str]| [&OF_BLOCKS[..], options].concat();
+    bench.refused(
+        &with(&["frf.uff", "-o", "own.json"]),
+        &["frf.uff: there are no nodes (datasets 15 and 2411)", "--points-from"],
+    );
+    bench.refused(
+        &with(&["with.uff", "-o", "own.json"]),
+        &["with.uff", "unit of its coordinates", "--length-unit mm"],
+    );
+    bench.refused(
+        &with(&["with.uff", "--length-unit", "m", "-o", "own.json"]),
+        &["over 185000.0 mm", "only over 185.0 mm", "--length-unit"],
+    );
+    bench.refused(
+        &[
+            "init",
+            "--beam",
+            "500x40x6:steel",
+            "--blocks",
+            "9x9x9:steel",
+            "--strip",
+            "9x9x9:steel",
+            "-o",
+            "own.json",
+        ],
+        &["--beam", "cannot be used with"],
+    );
+}

@@ -32,7 +32,7 @@ fn modes_of_a_file_come_with_deviations_a_chart_and_a_page() {
     }
     // Scripts need no directory.
     let printed: serde_json::Value =
-        serde_json::from_str(&bench.done(&["modes", "frf.uff", "--json"])).unwrap();
+        serde_json::from_str(&bench.answer(&["modes", "frf.uff", "--json"])).unwrap();
     assert_eq!(printed["modes"], file["modes"]);
 }
 

@@ -167,3 +167,60 @@ fn storeys_beyond_the_points_of_a_recording_take_names_that_no_point_has() {
     assert_eq!(names.len(), 4, "{names:?}");
     assert!(["1", "2", "3", "4"].iter().all(|name| names.contains(name)), "{names:?}");
 }
+
+/// Two blocks of 60 mm with a strip of 65 mm between them, and points at these places of a recording's geometry, mm.
+fn placed(places: &[(&str, f64)], origin: Option<f64>) -> Result<Fixture, DraftError> {
+    let structure = Structure::Blocks {
+        blocks: [bar("60x50x50:steel"), bar("60x50x50:steel")],
+        strip: bar("65x30x5:steel"),
+    };
+    let placed = places.iter().map(|(name, x)| (name.to_string(), 1e-3 * x)).collect();
+    Draft { placed, origin: origin.map(|mm| 1e-3 * mm), ..Draft::new(structure) }.fixture()
+}
+
+/// A point's body and abscissa, mm.
+fn place(fixture: &Fixture, name: &str) -> (String, f64) {
+    let point = fixture.point(name).unwrap();
+    (fixture.bodies()[point.body].name.clone(), (1e6 * point.x.value).round() / 1e3)
+}
+
+#[test]
+fn points_of_a_geometry_lie_on_the_bodies_at_their_places() {
+    let fixture = placed(&[("1", -55.0), ("2", 0.0), ("7", 30.0), ("3", 65.0), ("4", 120.0)], None).unwrap();
+    assert_eq!(place(&fixture, "1"), ("A".into(), -55.0));
+    assert_eq!(place(&fixture, "2"), ("A".into(), 0.0));
+    assert_eq!(place(&fixture, "4"), ("B".into(), 120.0));
+    assert!(
+        fixture.point("7").is_none()
+            && fixture.notes().iter().any(|note| note.contains("points 7 lie between"))
+    );
+    // The same in a geometry that begins elsewhere: stated, and by the middles.
+    for origin in [Some(1000.0), None] {
+        let moved = placed(&[("1", 945.0), ("4", 1120.0)], origin).unwrap();
+        assert_eq!(place(&moved, "1"), ("A".into(), -55.0), "{origin:?}");
+        assert_eq!(moved.notes().iter().any(|note| note.contains("CHECK")), origin.is_none());
+    }
+}
+
+#[test]
+fn points_that_no_body_reaches_are_refused_with_their_places() {
+    let told = placed(&[("1", 0.0), ("2", 400.0)], None).unwrap_err().to_string();
+    assert!(told.contains("over 400.0 mm and the structure only over 185.0 mm"), "{told}");
+    let told = placed(&[("1", 0.0), ("2", 60.0)], Some(-100.0)).unwrap_err().to_string();
+    assert!(told.contains("point 2 would lie at x = 160.0 mm"), "{told}");
+    let frame = Structure::Frame { storeys: 2, mass: 1.0, column: bar("200x20x2:steel"), columns: 2 };
+    let draft = Draft { placed: vec![("1".into(), 0.0)], ..Draft::new(frame) };
+    assert_eq!(draft.fixture(), Err(DraftError::Frame));
+    assert_eq!(Draft::new(Structure::Unknown).fixture(), Err(DraftError::Nothing));
+}
+
+#[test]
+fn points_alone_make_a_fixture_whose_masses_are_free() {
+    let placed: Vec<(String, f64)> = vec![("5".into(), 0.2), ("6".into(), 0.5)];
+    let fixture = Draft { placed, ..Draft::new(Structure::Unknown) }.fixture().unwrap();
+    assert_eq!(place(&fixture, "6"), ("body".into(), 500.0));
+    let free: Vec<String> =
+        fixture.quantities().into_iter().filter(|q| q.std.is_none()).map(|q| q.path).collect();
+    assert_eq!(free, ["bodies/body/mass", "bodies/body/inertia", "bodies/body/x_cg"]);
+    assert!(fixture.notes().iter().any(|note| note.starts_with("FILL IN")));
+}

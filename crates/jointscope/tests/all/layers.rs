@@ -5,7 +5,7 @@ use std::process::Command;
 
 /// Crates by floor, from the ground up: a crate stands only on crates of floors below its own.
 const FLOORS: [&[&str]; 12] = [
-    &["jointscope-linalg", "jointscope-spectra", "jointscope-uff"],
+    &["jointscope-cases", "jointscope-linalg", "jointscope-spectra", "jointscope-uff"],
     &[
         "jointscope-beam",
         "jointscope-fixture",

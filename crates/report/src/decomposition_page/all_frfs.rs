@@ -2,11 +2,10 @@
 
 use jointscope_decomposition::{FittedQuantity, JointFit, JointTests, LawFit};
 use jointscope_wording::{Remarks, Says};
-use maud::Render;
 
 use super::Subject;
 use crate::format::{capitalised, quantity, significant};
-use crate::section::{Section, Tone};
+use crate::section::{Block, Section, Tone};
 use crate::table::Table;
 
 /// Probability below which a law is left out of the table.
@@ -38,7 +37,7 @@ pub(super) fn section(subject: &Subject) -> Option<Section> {
     Some(if fit.quantities.is_empty() { section } else { section.with(moved(subject, fit)) })
 }
 
-fn laws(fit: &JointFit) -> impl Render {
+fn laws(fit: &JointFit) -> impl Into<Block> {
     let shown =
         fit.laws.iter().enumerate().filter(|(place, law)| *place < 2 || law.probability >= NEGLIGIBLE);
     let probability = |law: &LawFit| match law.probability {
@@ -63,7 +62,7 @@ fn laws(fit: &JointFit) -> impl Render {
     )
 }
 
-fn tests(tests: &JointTests) -> impl Render {
+fn tests(tests: &JointTests) -> impl Into<Block> {
     let rows = [
         ("k₁₂ = k₂₁ and c₁₂ = c₂₁ (reciprocal)", tests.reciprocity),
         ("No negative eigenvalue of k (stays at rest)", tests.definite),
@@ -76,7 +75,7 @@ fn tests(tests: &JointTests) -> impl Render {
         .caption("p: how often chance speaks as much against it, if it holds")
 }
 
-fn moved(subject: &Subject, fit: &JointFit) -> impl Render {
+fn moved(subject: &Subject, fit: &JointFit) -> impl Into<Block> {
     let stated = subject.fixture.quantities();
     let unit = move |path: &str| stated.iter().find(|own| own.path == path).map_or("", |own| own.key.unit());
     let mut rows: Vec<(&FittedQuantity, &'static str)> =

@@ -1,12 +1,10 @@
 //! What was left out, what was remarked, and how hard the lines are to decompose.
 
-use maud::Render;
-
 use super::Subject;
 use super::verdict::plain;
 use crate::context::PageContext;
 use crate::plot::{Axis, Plot, Role, YRange};
-use crate::section::Section;
+use crate::section::{Block, Section};
 use crate::table::Table;
 
 pub(super) fn section(subject: &Subject, context: &PageContext) -> Section {
@@ -23,7 +21,7 @@ pub(super) fn section(subject: &Subject, context: &PageContext) -> Section {
     section.notes(remarks(subject, context)).plot(condition(subject))
 }
 
-fn masked_table(subject: &Subject) -> impl Render {
+fn masked_table(subject: &Subject) -> impl Into<Block> {
     let spectrum = &subject.analysis.spectrum;
     Table::of(spectrum.masked_summary())
         .words("Why masked", |(reason, _)| reason.why())

@@ -2,11 +2,10 @@
 
 use jointscope_diagnosis::{Estimate, Finding, Verdict};
 use jointscope_wording::effect_name;
-use maud::Render;
 
 use super::Subject;
 use crate::format::{self, NOT_DETERMINED, percent, quantity, significant};
-use crate::section::Section;
+use crate::section::{Block, Section};
 use crate::table::Table;
 use crate::unit::Scale;
 
@@ -59,7 +58,7 @@ fn by_finding<'a, T>(
     })
 }
 
-fn parameters(subject: &Subject) -> impl Render {
+fn parameters(subject: &Subject) -> impl Into<Block> {
     let by_modes = subject.diagnosis.model_error.is_some();
     // Half a gain in χ² is one in ln of the evidence.
     let (gained, share) = if by_modes { ("Evidence gained, ln", 0.5) } else { ("χ² gained", 1.0) };
@@ -96,7 +95,7 @@ fn interval(estimate: &Estimate) -> String {
     }
 }
 
-fn names(subject: &Subject) -> impl Render {
+fn names(subject: &Subject) -> impl Into<Block> {
     let others = |finding: &Finding| {
         let listed = finding.alternatives.iter().filter(|(_, probability)| *probability >= LISTED);
         let listed: Vec<_> =

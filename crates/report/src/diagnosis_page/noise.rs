@@ -1,10 +1,8 @@
 //! The noise of the FRFs, and whether it holds.
 
-use maud::Render;
-
 use super::Subject;
 use crate::format::{fixed, significant};
-use crate::section::Section;
+use crate::section::{Block, Section};
 use crate::table::Table;
 
 pub(super) fn section(subject: &Subject) -> Section {
@@ -30,7 +28,7 @@ pub(super) fn section(subject: &Subject) -> Section {
         .with(table(subject))
 }
 
-fn table(subject: &Subject) -> impl Render {
+fn table(subject: &Subject) -> impl Into<Block> {
     let diagnosis = subject.diagnosis;
     let observation = &diagnosis.observation;
     let table = Table::of(0..observation.pairs().len())

@@ -3,13 +3,13 @@
 use jointscope_fixture::Fixture;
 use jointscope_modes::{ModalAnalysis, Mode};
 use jointscope_spectra::{Channel, Dof};
-use maud::{Markup, PreEscaped, Render, html};
+use maud::{Markup, PreEscaped, html};
 use num_complex::Complex64;
 
 use super::SHOWN;
 use crate::format::significant;
 use crate::plot::Span;
-use crate::section::Section;
+use crate::section::{Block, Section};
 use crate::table::Table;
 
 pub(super) fn section(analysis: &ModalAnalysis, fixture: Option<&Fixture>) -> Section {
@@ -121,7 +121,7 @@ fn shape<'a>(mode: &'a Mode, what: &str) -> &'a [(Channel, Complex64)] {
     if what == "response" { &mode.responses } else { &mode.references }
 }
 
-fn entries(analysis: &ModalAnalysis) -> impl Render {
+fn entries(analysis: &ModalAnalysis) -> impl Into<Block> {
     let first = analysis.modes.first();
     let rows = ["response", "reference"].into_iter().flat_map(|what| {
         let channels = first.map_or(&[][..], |mode| shape(mode, what)).iter().enumerate();

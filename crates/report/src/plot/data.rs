@@ -96,12 +96,7 @@ impl PlotData {
     /// Thins a plot and puts its columns into the book.
     fn new(plot: &Plot, book: &mut PlotBook) -> (Self, Drawing) {
         let Limits { first, full, outside } = limits(plot);
-        let scale = if plot.y.is_logarithmic() {
-            // Decades are read off the powers of ten, which a prefix would only shift.
-            Scale::plain(&plot.y.unit)
-        } else {
-            Scale::for_values([first.0 * 0.95, first.1 * 0.95], &plot.y.unit)
-        };
+        let scale = ordinate_scale(plot, first);
         let is_cut = first != full;
         let mut drawing = Drawing { scale, is_cut, remarks: Vec::new() };
         let (tables, series) = columns(plot, book, &mut drawing);
@@ -120,6 +115,15 @@ impl PlotData {
         };
         (data, drawing)
     }
+}
+
+/// The unit in which ordinates between these ends are drawn.
+pub(super) fn ordinate_scale(plot: &Plot, first: (f64, f64)) -> Scale {
+    if plot.y.is_logarithmic() {
+        // Decades are read off the powers of ten, which a prefix would only shift.
+        return Scale::plain(&plot.y.unit);
+    }
+    Scale::for_values([first.0 * 0.95, first.1 * 0.95], &plot.y.unit)
 }
 
 impl Drawing {
@@ -180,7 +184,7 @@ fn columns(plot: &Plot, book: &mut PlotBook, drawing: &mut Drawing) -> (Vec<Vec<
 }
 
 /// Lengths and order of what the caller gave.
-fn check(plot: &Plot) -> Result<(), PageError> {
+pub(super) fn check(plot: &Plot) -> Result<(), PageError> {
     let title = || plot.title.clone();
     for abscissa in &plot.tables {
         let ascends = |i: usize| abscissa[i].is_finite() && (i == 0 || abscissa[i] > abscissa[i - 1]);

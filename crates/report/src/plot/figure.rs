@@ -5,7 +5,7 @@ use maud::{Markup, html};
 use super::data::Drawing;
 use super::{Mark, Plot, Series, Style};
 use crate::format::{capitalised, significant};
-use crate::unit::typeset;
+use crate::unit::{Scale, typeset};
 
 /// The figure of a plot; the script finds it by its number and draws into it.
 pub(super) fn figure(number: usize, plot: &Plot, drawing: &Drawing) -> Markup {
@@ -26,7 +26,7 @@ pub(super) fn figure(number: usize, plot: &Plot, drawing: &Drawing) -> Markup {
                     }
                 }
                 @for (key, mark) in plot.marks.iter().enumerate() {
-                    @let (label, swatch, value) = mark_key(mark, plot, drawing);
+                    @let (label, swatch, value) = mark_key(mark, plot, &drawing.scale);
                     li {
                         button type="button" aria-pressed="true" data-mark=(key) { (swatch) (label) }
                         span.value { (value) }
@@ -41,10 +41,10 @@ pub(super) fn figure(number: usize, plot: &Plot, drawing: &Drawing) -> Markup {
 }
 
 fn swatch(content: Markup) -> Markup {
-    html! { svg.swatch viewBox="0 0 22 10" aria-hidden="true" { (content) } }
+    html! { svg.swatch width="22" height="10" viewBox="0 0 22 10" aria-hidden="true" { (content) } }
 }
 
-fn series_swatch(series: &Series) -> Markup {
+pub(super) fn series_swatch(series: &Series) -> Markup {
     let colour = format!("var(--{})", series.role.colour());
     let (stroke, fill) = (format!("stroke:{colour}"), format!("fill:{colour};stroke:none"));
     swatch(html! {
@@ -58,14 +58,14 @@ fn series_swatch(series: &Series) -> Markup {
 }
 
 /// Label, swatch and printed value of a mark.
-fn mark_key<'a>(mark: &'a Mark, plot: &Plot, drawing: &Drawing) -> (&'a str, Markup, String) {
+pub(super) fn mark_key<'a>(mark: &'a Mark, plot: &Plot, scale: &Scale) -> (&'a str, Markup, String) {
     let unit = typeset(&plot.x.unit);
     let line = |colour: &str, path: &str| {
         swatch(html! { path d=(path) stroke-dasharray="4 2" style={ "stroke:var(--" (colour) ")" } {} })
     };
     match mark {
         Mark::Horizontal { label, colour, at } => {
-            let value = with_unit(significant(drawing.scale.of(*at), 4), drawing.scale.unit());
+            let value = with_unit(significant(scale.of(*at), 4), scale.unit());
             (label, line(colour.colour(), "M1 5H21"), value)
         }
         Mark::Vertical { label, colour, at } => {
@@ -85,7 +85,7 @@ fn with_unit(number: String, unit: &str) -> String {
 }
 
 /// The caller's sentence, or one made of the labels.
-fn caption(plot: &Plot) -> String {
+pub(super) fn caption(plot: &Plot) -> String {
     if let Some(caption) = &plot.caption {
         return caption.clone();
     }

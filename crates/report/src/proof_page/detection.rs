@@ -3,11 +3,10 @@
 use std::collections::BTreeSet;
 
 use jointscope_proof::{Confusion, Detection, NOTHING, Smallest};
-use maud::Render;
 
 use crate::format::significant;
 use crate::plot::{Axis, Plot, Role};
-use crate::section::Section;
+use crate::section::{Block, Section};
 use crate::table::{Cell, Table};
 use crate::unit::typeset;
 
@@ -67,7 +66,7 @@ fn plot(detection: &Detection) -> Option<Plot> {
     }))
 }
 
-fn smallest(detection: &Detection) -> impl Render {
+fn smallest(detection: &Detection) -> impl Into<Block> {
     let bound = |s: &Smallest| {
         format!("{} {} {}", if s.is_upper { "≤" } else { "≥" }, significant(s.value, 2), typeset(s.unit))
     };

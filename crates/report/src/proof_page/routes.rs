@@ -1,10 +1,9 @@
 //! A route of its own: scores, sizes, every case.
 
 use jointscope_proof::{CaseLine, RouteScore};
-use maud::Render;
 
 use super::{ProofContext, case_number, counted, scores, tone};
-use crate::section::{Card, Section};
+use crate::section::{Block, Card, Section};
 use crate::table::Table;
 
 /// Faults of the second order.
@@ -122,7 +121,7 @@ pub(super) fn sentence(route: &RouteScore) -> String {
     }
 }
 
-fn sizes(route: &RouteScore) -> impl Render {
+fn sizes(route: &RouteScore) -> impl Into<Block> {
     Table::of(&route.sizes)
         .words("size of what was found", |size| size.what.replace('_', " "))
         .numbers("median error", "%", |size| format!("{:.2}", 100.0 * size.median))
@@ -130,7 +129,7 @@ fn sizes(route: &RouteScore) -> impl Render {
         .numbers("95 % intervals that hold", "", |size| counted(size.held))
 }
 
-fn cases(lines: &[CaseLine], context: &ProofContext) -> impl Render {
+fn cases(lines: &[CaseLine], context: &ProofContext) -> impl Into<Block> {
     Table::of(lines)
         .words("case", |line| case_number(line.index, context.pages && line.answered))
         .words("hidden", |line| line.hidden.clone())

@@ -1,10 +1,9 @@
 //! The scores beside their targets.
 
 use jointscope_proof::{Figure, Rate, Score, Share, Standing};
-use maud::Render;
 
 use super::or_dash;
-use crate::section::{Card, Section, Tone};
+use crate::section::{Block, Card, Section, Tone};
 use crate::table::Table;
 
 fn tone(standing: Option<Standing>) -> Option<Tone> {
@@ -30,7 +29,7 @@ pub(super) fn section(score: &Score) -> Section {
         .with(verdicts(score))
 }
 
-pub(super) fn rates(rates: &[Rate]) -> impl Render {
+pub(super) fn rates(rates: &[Rate]) -> impl Into<Block> {
     let interval = |share: Share| {
         let [low, high] = share.interval();
         (share.all > 0).then(|| format!("{low:.3} to {high:.3}"))
@@ -46,7 +45,7 @@ pub(super) fn rates(rates: &[Rate]) -> impl Render {
         .footnote("Intervals by Clopper and Pearson. Missed within chance: the target lies in the interval.")
 }
 
-pub(super) fn figures(figures: &[Figure]) -> impl Render {
+pub(super) fn figures(figures: &[Figure]) -> impl Into<Block> {
     let is_met =
         |figure: &Figure| figure.target.zip(figure.value).map(|(target, value)| target.is_met(value));
     Table::of(figures)
@@ -59,7 +58,7 @@ pub(super) fn figures(figures: &[Figure]) -> impl Render {
 }
 
 /// Verdicts counted by what was hidden.
-fn verdicts(score: &Score) -> impl Render {
+fn verdicts(score: &Score) -> impl Into<Block> {
     let rows = score.verdicts.iter().filter(|(_, counts)| counts.iter().any(|(_, count)| *count > 0));
     let words = score.verdicts.first().map_or(&[][..], |(_, counts)| counts).iter().enumerate();
     let table = Table::of(rows).words("verdicts by what was hidden", |(role, _)| role.name());

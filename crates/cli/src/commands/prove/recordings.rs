@@ -36,10 +36,11 @@ pub fn run(directory: &Path, arguments: &ProveArguments) -> Result<String, Refus
     };
     // Found out before the first diagnosis, which takes its time.
     plan.check().map_err(Refusal::new)?;
+    Outputs::foresee(test.files(), arguments.output.iter().map(|directory| directory.join("seal.json")))?;
     let bar = progress::cases(1, "diagnosed as they are");
     let explained = Explained::of(&test.fixture, &test.frfs, arguments.real.rounds)
         .map_err(|error| Refusal::at(directory, error))?;
-    bar.finish_and_clear();
+    drop(bar);
     let (cases, truths) =
         plan.conceal(&explained.fixture, &test.frfs).map_err(|error| Refusal::at(directory, error))?;
     let digest = truths.digest().to_owned();
@@ -56,7 +57,7 @@ pub fn run(directory: &Path, arguments: &ProveArguments) -> Result<String, Refus
     let threads = arguments.workers();
     let bar = progress::cases(cases.len(), "diagnosed");
     let answers = explained.answers(&cases, threads, |done| bar.set_position(done as u64));
-    bar.finish_and_clear();
+    drop(bar);
     if let Some(directory) = &arguments.output {
         // On disk before the truths are opened.
         Outputs::one(directory.join("answers.json"), &answers.to_value())?;

@@ -76,7 +76,7 @@ impl Bench {
     /// What the program prints as JSON.
     #[track_caller]
     pub fn json_of(&self, arguments: &[&str]) -> serde_json::Value {
-        serde_json::from_str(&self.done(arguments)).unwrap()
+        serde_json::from_str(&self.answer(arguments)).unwrap()
     }
 
     /// Names of what the directory itself holds, in order.
@@ -121,16 +121,29 @@ impl Bench {
         program.wait_with_output().unwrap()
     }
 
-    /// The program must do it; what it says.
+    /// The program must do it; what a reader at a terminal has of it, progress apart: notices, then the answer.
     #[track_caller]
     pub fn done(&self, arguments: &[&str]) -> String {
+        let (mut notices, answer) = self.notices_and_answer(arguments);
+        notices.push_str(&answer);
+        notices
+    }
+
+    /// The program must do it; what it puts on standard output.
+    #[track_caller]
+    pub fn answer(&self, arguments: &[&str]) -> String {
+        self.notices_and_answer(arguments).1
+    }
+
+    #[track_caller]
+    fn notices_and_answer(&self, arguments: &[&str]) -> (String, String) {
         let output = self.run(arguments);
-        let complaint = String::from_utf8_lossy(&output.stderr);
-        assert_eq!(output.status.code(), Some(0), "{arguments:?}: {complaint}");
-        // A diagnosis tells how it comes along, and so do plans, which begin with one.
-        let tells = matches!(arguments.first(), Some(&"diagnose" | &"plan"));
-        assert!(complaint.is_empty() || (tells && !complaint.contains("jointscope: ")), "{complaint}");
-        String::from_utf8(output.stdout).unwrap()
+        let told = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(0), "{arguments:?}: {told}");
+        assert!(!told.contains("jointscope: "), "{told}");
+        // A diagnosis tells how it comes along; others do so where they take long.
+        let notices = told.lines().filter(|line| line.starts_with("note: ")).map(|line| format!("{line}\n"));
+        (notices.collect(), String::from_utf8(output.stdout).unwrap())
     }
 
     /// The program must refuse in one sentence that holds every part, and leave the directory as it was; the sentence.
