@@ -1,12 +1,12 @@
 use crate::interfaces::interfaces_of_fit;
 use crate::spectrum::scalar_stiffness;
 use crate::{
-    Averages, DecompositionError, Element, Interfaces, JointFit, JointFitOptions, JointSpectrum, Judgement,
-    LikelihoodFit, MeasurementPlan, Method, Part, Relation, Sides, ToleranceShare, ToleranceShares,
-    decompose, fit_joint, interfaces, maximum_likelihood, tolerance_shares,
+    Averages, Decomposed, DecompositionError, Element, Interfaces, JointFit, JointFitOptions, JointSpectrum,
+    Judgement, LikelihoodFit, MeasurementPlan, Method, Part, Relation, Sides, ToleranceShare,
+    ToleranceShares, decompose, fit_joint, interfaces, maximum_likelihood, tolerance_shares,
 };
 use jointscope_averaging::Band;
-use jointscope_fixture::{Fixture, JointLaw, Nature};
+use jointscope_fixture::{Fixture, Joint, JointLaw, Nature};
 use jointscope_frf::noise::{NoiseSource, with_variances};
 use jointscope_linalg::{ComplexMatrix2, Matrix2, RealMatrix2};
 use jointscope_lumped::{Model, Station};
@@ -58,15 +58,13 @@ pub struct JointEnd {
 }
 
 impl JointEnds {
-    fn of(sides: &Sides) -> Self {
-        let fixture = sides.fixture();
+    pub(crate) fn of(fixture: &Fixture, joint: &Joint) -> Self {
         let end = |point: usize| {
             let point = &fixture.points()[point];
             let body = fixture.bodies()[point.body].name.clone();
             JointEnd { point: point.name.clone(), body, x: point.x.value }
         };
-        let joint = sides.joint();
-        JointEnds { length: sides.length(), from: end(joint.from), to: end(joint.to) }
+        JointEnds { length: fixture.joint_length(joint), from: end(joint.from), to: end(joint.to) }
     }
 }
 
@@ -127,12 +125,13 @@ impl Analysis {
         let joint = sides.joint().name.clone();
         let spectrum = decompose(&frfs, &sides, options.relation)?;
         // Fit and weights rest on the exact relation, whichever is shown.
-        let exact = match options.relation {
-            Relation::Exact => spectrum.clone(),
-            Relation::Paper => decompose(&frfs, &sides, Relation::Exact)?,
+        let of_paper = match options.relation {
+            Relation::Exact => None,
+            Relation::Paper => Some(decompose(&frfs, &sides, Relation::Exact)?),
         };
+        let exact = of_paper.as_ref().unwrap_or(&spectrum);
         let nominal_stiffness = jointscope_lumped::nominal_stiffness(&sides.joint().law, sides.length());
-        let likelihood = maximum_likelihood(&frfs, &sides, &exact, options.band, Some(nominal_stiffness));
+        let likelihood = maximum_likelihood(&frfs, &sides, exact, options.band, Some(nominal_stiffness));
         let fit_options = JointFitOptions { band: options.band, exact: options.exact, laws: options.laws };
         let near = likelihood.as_ref().ok();
         let joint_fit = fit_joint(&frfs, &sides, exact.scalar, near, nominal_stiffness, fit_options);
@@ -141,16 +140,11 @@ impl Analysis {
             Err(_) => (nominal_stiffness, RealMatrix2::zero()),
         };
         let averages = Averages::of(&spectrum, options.band, model)?;
-        let ToleranceShares { shares: tolerances, lost: lost_tolerances } = tolerance_shares(
-            fixture,
-            &joint,
-            &frfs,
-            options.relation,
-            averages.band,
-            options.band,
-            likelihood.as_ref().ok(),
-            options.exact,
-        )?;
+        let fitted = likelihood.as_ref().ok().map(|fit| (fit, exact, options.band));
+        let decomposed =
+            Decomposed { frfs: &frfs, sides: &sides, spectrum: &spectrum, band: averages.band, fit: fitted };
+        let ToleranceShares { shares: tolerances, lost: lost_tolerances } =
+            tolerance_shares(&decomposed, options.exact)?;
         let interfaces = match interfaces_rest_on(&joint_fit, &likelihood) {
             Some(InterfaceSource::AllFrfs(fit)) => fitted_interfaces(fit, &sides, options.exact),
             Some(InterfaceSource::Across(fit)) => joint_interfaces(fit, &sides, &tolerances),
@@ -159,7 +153,7 @@ impl Analysis {
         let nominal = predicted(&sides, &plan, &spectrum)?;
         let mut analysis = Analysis {
             joint,
-            ends: JointEnds::of(&sides),
+            ends: JointEnds::of(sides.fixture(), sides.joint()),
             frfs,
             noise,
             plan,

@@ -24,8 +24,9 @@ pub use laws::LawFit;
 pub use likelihood::JointLikelihood;
 
 use crate::{DecompositionError, LikelihoodFit, Sides};
+use admissible::Freed;
 use jointscope_averaging::Band;
-use jointscope_inference::{Parameter, Transform, inflated_weight};
+use jointscope_inference::{LeastSquares, NormalEquations, Parameter, Transform, inflated_weight};
 use jointscope_linalg::{Matrix2, RealMatrix2};
 use jointscope_spectra::FrfSet;
 use law::{Dynamics, Form};
@@ -33,7 +34,7 @@ use num_complex::Complex64;
 use problem::{Columns, Point, Problem, Test};
 use quantities::Uncertain;
 use recorded::Recorded;
-use uncertainty::{strain, total};
+use uncertainty::{length_between, strain, total};
 
 /// What a fit of the joint is asked for.
 #[derive(Debug, Clone, Copy, Default)]
@@ -71,32 +72,31 @@ pub fn fit_joint(
     nominal: RealMatrix2,
     options: JointFitOptions,
 ) -> Result<JointFit, DecompositionError> {
-    let recorded = Recorded::of(frfs, sides, options.band).ok_or(DecompositionError::NoFit(
+    let recorded = Recorded::of(frfs, sides.fixture(), options.band).ok_or(DecompositionError::NoFit(
         "no FRF has both of its channels in the fixture and a value in the band",
     ))?;
     let start = near.map_or(nominal, |fit| fit.stiffness);
-    let root = |i: usize| start.at(i, i).abs().max(f64::MIN_POSITIVE).sqrt();
-    let unit = |i: usize, j: usize| if scalar && i + j > 0 { 1.0 } else { root(i) * root(j) };
-    let unit = Matrix2::new(unit(0, 0), unit(0, 1), unit(1, 0), unit(1, 1));
+    let unit = units_of(start, scalar);
     let middle = recorded.s.iter().map(|s| s.im).sum::<f64>() / recorded.s.len() as f64;
     let law = Dynamics::new(LawKind::Viscous, unit, middle, scalar);
-    let quantities = quantities::uncertain(sides, options.exact);
+    let quantities = quantities::uncertain(sides.fixture(), &[sides.joint_index()], options.exact);
     let starts = [
         near.map(|fit| (fit.stiffness, fit.damping.scale(middle))),
         Some((nominal, nominal.scale(START_LOSS))),
     ];
     let starts: Vec<Vec<f64>> = starts.into_iter().flatten().map(|(k, d)| coordinates(&law, k, d)).collect();
     let fitter = Fitter { recorded: &recorded, sides, scalar };
-    let (quantities, others) = fitter.that_matter(law, &starts, quantities)?;
-    let mut fit = fitter.fit(law, &starts, &quantities, options.laws)?;
-    let unmoved = others.into_iter().map(|uncertain| UnmovedQuantity {
-        body: uncertain.body(sides.fixture()),
-        path: uncertain.quantity.path,
-        stated: uncertain.quantity.value,
-        std: uncertain.quantity.std,
-    });
-    fit.unmoved = unmoved.collect();
+    let (quantities, others, columns) = fitter.that_matter(law, &starts, quantities)?;
+    let mut fit = fitter.fit(law, (&starts, columns), &quantities, options.laws)?;
+    fit.unmoved = others.iter().map(|uncertain| uncertain.unmoved(sides.fixture())).collect();
     Ok(fit)
+}
+
+/// √(k_ii k_jj), in which the elements of a joint near to K are of order one.
+fn units_of(k: RealMatrix2, scalar: bool) -> RealMatrix2 {
+    let root = |i: usize| k.at(i, i).abs().max(f64::MIN_POSITIVE).sqrt();
+    let unit = |i: usize, j: usize| if scalar && i + j > 0 { 1.0 } else { root(i) * root(j) };
+    Matrix2::new(unit(0, 0), unit(0, 1), unit(1, 0), unit(1, 1))
 }
 
 /// Coordinates of K and of an imaginary stiffness D.
@@ -135,6 +135,31 @@ struct Fitted {
     others: Columns,
 }
 
+/// Times that an optimum is gone on from with derivatives taken there.
+const LOOKS: usize = 3;
+
+impl Fitted {
+    /// Takes the derivatives by the quantities at the optimum, which those of the fit were taken near, and goes on where they promise more.
+    fn refresh(&mut self, problem: &Problem) -> Result<(), DecompositionError> {
+        for look in 0.. {
+            self.others = problem.other_columns(&self.point).ok_or(UNDETERMINED)?;
+            let promised = problem.promised(&self.point, &self.equations(problem));
+            if look == LOOKS || promised < problem::needed(problem.test.recorded, self.point.objective) {
+                break;
+            }
+            match problem.fit(self.point.coordinates.clone(), Some(self.others.clone())) {
+                Some((point, _)) if point.objective < self.point.objective => self.point = point,
+                _ => break,
+            }
+        }
+        Ok(())
+    }
+
+    fn equations(&self, problem: &Problem) -> NormalEquations {
+        problem.equations_of(&self.point, &self.others, problem.test.weights)
+    }
+}
+
 const NO_START: DecompositionError = DecompositionError::NoFit("no start gives finite FRFs");
 const UNDETERMINED: DecompositionError =
     DecompositionError::NoFit("the FRFs leave an element of k or c undetermined");
@@ -150,34 +175,37 @@ impl<'a> Fitter<'a> {
         }
     }
 
-    /// The quantities that the FRFs depend on, and the others.
+    /// The quantities that the FRFs depend on, the others, and the derivatives by the first ones at the first start, if they were taken there.
+    #[allow(clippy::type_complexity)]
     fn that_matter(
         &self,
         law: Dynamics,
         starts: &[Vec<f64>],
         quantities: Vec<Uncertain>,
-    ) -> Result<(Vec<Uncertain>, Vec<Uncertain>), DecompositionError> {
+    ) -> Result<(Vec<Uncertain>, Vec<Uncertain>, Option<Columns>), DecompositionError> {
         let weights = &self.recorded.weights;
         let test = self.test(&quantities, weights);
         let problem = Problem::viscous(&test, law, None);
-        let matter = starts.iter().find_map(|start| {
-            let columns = problem.other_columns(&problem.point(problem.whole(start), None)?)?;
-            let size = |column: &Vec<Complex64>| -> f64 {
-                column.iter().zip(weights).map(|(value, weight)| weight * value.norm_sqr()).sum()
-            };
-            Some(columns.iter().map(|column| size(column) > NEGLIGIBLE).collect::<Vec<bool>>())
-        });
-        let matter = matter.ok_or(NO_START)?;
-        let (matter, others): (Vec<_>, Vec<_>) =
-            quantities.into_iter().zip(matter).partition(|(_, matters)| *matters);
-        let bare = |all: Vec<(Uncertain, bool)>| all.into_iter().map(|(quantity, _)| quantity).collect();
-        Ok((bare(matter), bare(others)))
+        let columns = |start: &Vec<f64>| problem.other_columns(&problem.point(problem.whole(start), None)?);
+        let (place, columns) = starts
+            .iter()
+            .enumerate()
+            .find_map(|(place, start)| Some((place, columns(start)?)))
+            .ok_or(NO_START)?;
+        let size = |column: &Vec<Complex64>| -> f64 {
+            column.iter().zip(weights).map(|(value, weight)| weight * value.norm_sqr()).sum()
+        };
+        let all = quantities.into_iter().zip(columns);
+        let (matter, others): (Vec<_>, Vec<_>) = all.partition(|(_, column)| size(column) > NEGLIGIBLE);
+        let (matter, columns): (Vec<_>, Vec<_>) = matter.into_iter().unzip();
+        let others = others.into_iter().map(|(quantity, _)| quantity).collect();
+        Ok((matter, others, (place == 0).then_some(columns)))
     }
 
     fn fit(
         &self,
         law: Dynamics,
-        starts: &[Vec<f64>],
+        (starts, mut nearby): (&[Vec<f64>], Option<Columns>),
         quantities: &[Uncertain],
         with_laws: bool,
     ) -> Result<JointFit, DecompositionError> {
@@ -185,7 +213,7 @@ impl<'a> Fitter<'a> {
         let problem = Problem::viscous(&test, law, None);
         let mut best: Option<Fitted> = None;
         for start in starts {
-            let Some((point, others)) = problem.fit(problem.whole(start), None) else { continue };
+            let Some((point, others)) = problem.fit(problem.whole(start), nearby.take()) else { continue };
             if best.as_ref().is_none_or(|best| point.objective < best.point.objective) {
                 best = Some(Fitted { point, others });
             }
@@ -202,7 +230,7 @@ impl<'a> Fitter<'a> {
                 .reduce(|a, b| if b.point.objective < a.point.objective { b } else { a });
         }
         let first = best.filter(|best| best.point.objective.is_finite()).ok_or(NO_START)?;
-        let (first, free) = admissible::settled(&problem, first);
+        let (first, free) = admissible::settled(self, &problem, first)?;
         let chi2_per_dof = self.per_degree(&problem, &first.point);
         let mass = Some(laws::mass_scale(self));
         let with_mass = Problem::viscous(&test, law, mass);
@@ -229,7 +257,10 @@ impl<'a> Fitter<'a> {
             (false, _) => None,
         };
         let (problem, first, free) = match heavy {
-            Some(heavy) => (with_mass, heavy, None),
+            Some(mut heavy) => {
+                heavy.refresh(&with_mass)?;
+                (with_mass, heavy, Freed::Unknown)
+            }
             None => (problem, first, free),
         };
         let mass = problem.mass;
@@ -240,8 +271,10 @@ impl<'a> Fitter<'a> {
         let inflated = self.test(quantities, &weights);
         let problem = Problem::viscous(&inflated, law, mass);
         let fitted = if inflation > 1.0 {
-            let (point, others) = problem.fit(first.point.coordinates, None).ok_or(NO_START)?;
-            Fitted { point, others }
+            let (point, others) = problem.fit(first.point.coordinates, Some(first.others)).ok_or(NO_START)?;
+            let mut fitted = Fitted { point, others };
+            fitted.refresh(&problem)?;
+            fitted
         } else {
             first
         };
@@ -293,48 +326,52 @@ impl<'a> Fitter<'a> {
         asymmetry: Option<f64>,
     ) -> Result<JointFit, DecompositionError> {
         let law = &problem.law;
-        let covariance = self.covariance_at(problem, &free.point)?;
-        let strain = strain(problem, &free.point, &covariance);
+        let equations = free.equations(problem);
+        let covariance = equations.covariance().ok_or(UNDETERMINED)?;
+        let strain = strain(&problem.parameters, problem.own(), &free.point.coordinates, &covariance);
         let (tests, admissible) = admissible::examined(problem, free, &covariance, (strain, asymmetry));
         let [_, d, _] = law.matrices(&free.point.coordinates[..law.count()]);
         let is_passive = d.at(0, 0) >= 0.0 && (self.scalar || (d.at(1, 1) >= 0.0 && d.determinant() >= 0.0));
         let held = if is_passive { None } else { admissible::on_the_boundary_of_c(problem, free) };
-        let (k, d, at) = match &held {
+        let moved = match &held {
             Some((point, law)) => {
                 let [k, d, _] = law.matrices(&point.coordinates[..law.count()]);
                 let rest = &point.coordinates[law.count()..];
                 let mut at = coordinates(&problem.law, k, d);
                 at.extend_from_slice(rest);
-                (k, d, problem.point(at, None).ok_or(NO_START)?)
+                let mut fitted =
+                    Fitted { point: problem.point(at, None).ok_or(NO_START)?, others: Columns::new() };
+                fitted.refresh(problem)?;
+                Some(fitted)
             }
-            None => {
-                let [k, d, _] = law.matrices(&free.point.coordinates[..law.count()]);
-                (k, d, problem.point(free.point.coordinates.clone(), None).ok_or(NO_START)?)
-            }
+            None => None,
         };
+        let fitted = moved.as_ref().unwrap_or(free);
+        let at = &fitted.point;
+        let [k, d, _] = law.matrices(&at.coordinates[..law.count()]);
         // Deviations are those of free elements, on the boundary too.
-        let covariance = if held.is_some() { self.covariance_at(problem, &at)? } else { covariance };
+        let covariance = match held {
+            Some(_) => fitted.equations(problem).covariance().ok_or(UNDETERMINED)?,
+            None => covariance,
+        };
         let inflated =
             self.recorded.weights.first().zip(problem.test.weights.first()).is_some_and(|(a, b)| a != b);
-        let model = if inflated { self.jackknifed(problem, &at) } else { None };
+        let model = if inflated { self.jackknifed(problem, fitted) } else { None };
         let total = total(&covariance, strain, model.as_ref());
         let model_covariance = model.map_or([[0.0; 6]; 6], |model| self.in_si(law, &model));
         let own = problem.own();
-        let length = self.length(problem, &at, &total);
-        let quantities = quantities.iter().enumerate().map(|(index, uncertain)| {
-            let transform = uncertain.parameter.transform;
-            let coordinate = at.coordinates[own + index];
-            let fitted = transform.value(coordinate).unwrap_or(uncertain.quantity.value);
-            FittedQuantity {
-                path: uncertain.quantity.path.clone(),
-                body: uncertain.body(self.sides.fixture()),
-                stated: uncertain.quantity.value,
-                std: uncertain.quantity.std,
-                fitted,
-                fitted_std: transform.slope(fitted).abs() * total.std(own + index),
-                deviations: coordinate,
-            }
+        let length = length_between(
+            (self.sides.fixture(), self.sides.joint()),
+            (quantities, &at.coordinates),
+            (own, 0, law),
+            &total,
+        );
+        let moved = quantities.iter().enumerate().map(|(index, uncertain)| {
+            uncertain.fitted(self.sides.fixture(), at.coordinates[own + index], total.std(own + index))
         });
+        let kept = (0..law.count()).chain(own..problem.parameters.len()).collect();
+        let likelihood =
+            JointLikelihood::of(law, (&free.point.coordinates, kept), &equations, &problem.parameters);
         Ok(JointFit {
             stiffness: k,
             damping: d.scale(1.0 / law.middle),
@@ -346,7 +383,7 @@ impl<'a> Fitter<'a> {
             inflation: 1.0,
             strain,
             is_on_the_boundary: held.is_some(),
-            quantities: quantities.collect(),
+            quantities: moved.collect(),
             unmoved: Vec::new(),
             tests,
             admissible,
@@ -357,7 +394,7 @@ impl<'a> Fitter<'a> {
                 .mass
                 .map(|scale| (problem.mass_at(&at.coordinates), scale * total.std(problem.law.count()))),
             scalar: self.scalar,
-            likelihood: self.likelihood(problem, &free.point),
+            likelihood,
         })
     }
 }

@@ -74,7 +74,7 @@ impl Relation {
 
     // Inlined by force: as a call, its five matrices would be copied for every line, which costs as much as the formula.
     #[inline(always)]
-    fn decompose_unchecked(
+    pub(crate) fn decompose_unchecked(
         self,
         h41: ComplexMatrix2,
         alpha21: ComplexMatrix2,

@@ -27,7 +27,7 @@ pub enum SidesError {
     NoJoint,
     /// The assembly stays in one piece without the joint.
     #[error(
-        "without joint `{0}` the assembly still holds together through its other joints, so what passes through it cannot be told apart; choose a joint that alone connects its sides"
+        "without joint `{0}` the assembly still holds together through its other joints, so it has no two sides to be taken apart into; only a fit to all FRFs finds it"
     )]
     Loop(String),
     /// An effect of the measuring chain that cannot be taken out of FRFs.
@@ -176,18 +176,22 @@ impl Sides {
         inputs: [Station; 2],
         lines: &SpectralLines,
     ) -> Result<Vec<ComplexMatrix2>, LumpedError> {
-        let mut receptances = model.receptances(&outputs, &inputs);
-        let mut values = [Complex64::ZERO; 4];
-        let on_lines = lines.hz().iter().zip(lines.omegas()).map(|(&frequency, omega)| {
-            if frequency == 0.0 {
-                return Ok(Matrix2::zero());
-            }
-            if !receptances.at(self.s(omega), &mut values) {
-                return Err(LumpedError::Unbounded { frequency });
-            }
-            Ok(Matrix2::new(values[0], values[1], values[2], values[3]))
-        });
-        on_lines.collect()
+        let hz = lines.hz();
+        // Lines ascend: only the first can be at 0 Hz.
+        let skipped = usize::from(hz[0] == 0.0);
+        let s: Vec<Complex64> = lines.omegas().skip(skipped).map(|omega| self.s(omega)).collect();
+        let n = s.len();
+        let mut values = vec![Complex64::ZERO; 4 * n];
+        model
+            .receptances(&outputs, &inputs)
+            .on_lines(&s, &mut values)
+            .map_err(|line| LumpedError::Unbounded { frequency: hz[skipped + line] })?;
+        let at = |line: usize| {
+            Matrix2::new(values[line], values[n + line], values[2 * n + line], values[3 * n + line])
+        };
+        let mut matrices = vec![Matrix2::zero(); skipped];
+        matrices.extend((0..n).map(at));
+        Ok(matrices)
     }
 }
 
@@ -211,7 +215,11 @@ fn connected(fixture: &Fixture, joint: usize) -> Vec<bool> {
 }
 
 fn with_its_effects(fixture: &Fixture, joint: usize, keep: &dyn Fn(usize) -> bool) -> Fixture {
-    let side = fixture.side(keep, joint);
+    with_effects_of(fixture, fixture.side(keep, joint))
+}
+
+/// A part of a fixture with those of the fixture's effects that sit on it.
+pub(crate) fn with_effects_of(fixture: &Fixture, side: Fixture) -> Fixture {
     let own = |effect: &&Effect| match &effect.place {
         Place::Body(name) => side.body(name).is_some(),
         Place::Joint(name) => side.joint(name).is_some(),
@@ -227,7 +235,7 @@ fn with_its_effects(fixture: &Fixture, joint: usize, keep: &dyn Fn(usize) -> boo
     side.clone().with_physics(effects).unwrap_or(side)
 }
 
-fn check_instruments(fixture: &Fixture) -> Result<(), SidesError> {
+pub(crate) fn check_instruments(fixture: &Fixture) -> Result<(), SidesError> {
     let cannot = |e: &Effect| e.kind.is_instrumental() && e.kind.spec().entry != Entry::Window;
     let found = fixture.physics().iter().enumerate().find(|(_, e)| cannot(e));
     found.map_or(Ok(()), |(index, effect)| Err(SidesError::Instrument { index, kind: effect.kind.name() }))

@@ -117,7 +117,7 @@ pub fn decompose(
 }
 
 /// Receptances at s from those that were made of accelerances by −1/ω².
-fn read_at_s(mut h41: BlockFrf, sides: &Sides) -> BlockFrf {
+pub(crate) fn read_at_s(mut h41: BlockFrf, sides: &Sides) -> BlockFrf {
     for (line, omega) in h41.lines.omegas().enumerate() {
         let factor = sides.integrated_at_s(omega);
         h41.values[line] = h41.values[line].map(|e| e * factor);
@@ -181,6 +181,21 @@ pub(crate) fn scalar_stiffness(
     let mut stiffness = Matrix2::zero();
     stiffness.0[0][0] = (through - near.at(0, 0) - sides.beta33[line].at(0, 0)).inv();
     stiffness
+}
+
+/// The dynamic stiffness that a spectrum's relation makes of another H41 and other sides, on one line; not finite where a matrix is singular.
+pub(crate) fn dynamic_stiffness_on(
+    spectrum: &JointSpectrum,
+    h41: ComplexMatrix2,
+    sides: &Compliances,
+    line: usize,
+) -> ComplexMatrix2 {
+    if spectrum.scalar {
+        return scalar_stiffness(spectrum.relation, h41, sides, line);
+    }
+    let (a21, a22, b33, b43) =
+        (sides.alpha21[line], sides.alpha22[line], sides.beta33[line], sides.beta43[line]);
+    spectrum.relation.decompose_unchecked(h41, a21, a22, b33, b43, sides.length)
 }
 
 /// How an error of H41 reaches the joint: δk = P δH Q, with P = k R α21 H⁻¹ and Q = H⁻¹ β43 k.

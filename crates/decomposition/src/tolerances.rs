@@ -1,14 +1,19 @@
-//! What the fixture's own uncertainty does to the joint found.
+//! What the fixture's own uncertainty does to the joint found, to first order.
+//!
+//! A quantity moves by a small share of its standard deviation, the sides and the FRFs across are read anew, and the difference is scaled up to the whole
+//! deviation. Means over lines are taken again; the fit is not repeated, its optimum follows in closed form ([`Optimum`]).
 
 use crate::interfaces::left_over;
-use crate::likelihood::continued;
-use crate::{Averages, DecompositionError, LikelihoodFit, Relation, Sides, decompose};
+use crate::likelihood::Optimum;
+use crate::spectrum::{dynamic_stiffness_on, read_at_s};
+use crate::{Compliances, DecompositionError, JointSpectrum, LikelihoodFit, MeasurementPlan, Sides};
 use jointscope_averaging::Band;
 use jointscope_fixture::{Fixture, JointLaw};
-use jointscope_linalg::RealMatrix2;
+use jointscope_frf::fit_rigid_motion;
+use jointscope_linalg::{ComplexMatrix2, RealMatrix2};
 use jointscope_spectra::FrfSet;
 
-/// By how much the joint found changes when one quantity of the fixture moves by its standard deviation.
+/// By how much the joint found changes when one quantity of the fixture moves by its standard deviation, to first order.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ToleranceShare {
     /// Path of the quantity in the fixture file.
@@ -32,100 +37,124 @@ pub struct ToleranceShares {
     pub lost: Vec<String>,
 }
 
-/// Moves every quantity of the fixture that has a standard deviation up and down by it, and decomposes again;
-/// half of the difference is its share. `band` is the one averaged over, `fit_band` the one fitted (all lines
-/// without); `fit` is the fit at the stated values, from which the others start.
+/// A joint found, the derivatives of which are wanted.
+#[derive(Debug, Clone, Copy)]
+pub struct Decomposed<'a> {
+    /// The FRFs with the variances that were used.
+    pub frfs: &'a FrfSet,
+    /// The fixture taken apart.
+    pub sides: &'a Sides,
+    /// What was found by line.
+    pub spectrum: &'a JointSpectrum,
+    /// The band averaged over.
+    pub band: Band,
+    /// The fit with the spectrum of the exact relation that it began with and the band fitted, all lines without.
+    pub fit: Option<(&'a LikelihoodFit, &'a JointSpectrum, Option<Band>)>,
+}
+
+/// Share of a standard deviation that a quantity is moved by.
+const SMALL: f64 = 1e-3;
+
+/// What every quantity of the fixture that has a standard deviation does to the joint found. `exact` takes bare numbers of the fixture as exact.
 ///
-/// `exact` takes bare numbers of the fixture as exact. A quantity whose change cannot be followed (a fixture that
-/// becomes impossible, a fit that fails) is named among the lost ones.
+/// A quantity whose change cannot be followed (sides without a finite response, a fit that leaves a combination undetermined) is named among the lost ones.
 ///
 /// # Errors
-/// A fixture that cannot be taken apart at `joint`.
-#[allow(clippy::too_many_arguments)]
-pub fn tolerance_shares(
-    fixture: &Fixture,
-    joint: &str,
-    frfs: &FrfSet,
-    relation: Relation,
-    band: Band,
-    fit_band: Option<Band>,
-    fit: Option<&LikelihoodFit>,
-    exact: bool,
-) -> Result<ToleranceShares, DecompositionError> {
-    Sides::of(fixture, Some(joint))?;
+/// A recording that lacks FRFs.
+pub fn tolerance_shares(of: &Decomposed, exact: bool) -> Result<ToleranceShares, DecompositionError> {
+    let fixture = of.sides.fixture();
     let quantities = if exact { fixture.quantities_exact() } else { fixture.quantities() };
+    let plan = MeasurementPlan::of(of.frfs, of.sides)?;
+    let optimum =
+        of.fit.and_then(|(fit, spectrum, band)| Optimum::of(of.frfs, (&plan, of.sides), spectrum, band, fit));
+    let mean = mean(of, of.sides, &of.spectrum.h41.values, &of.spectrum.sides);
+    let here = Stated { of, plan, mean, optimum };
     let mut result = ToleranceShares::default();
     for (index, quantity) in quantities.iter().enumerate() {
         let Some(std) = quantity.std.filter(|s| *s > 0.0) else { continue };
-        let moved = |sign: f64| {
+        let moved = |share: f64| {
             let mut other = fixture.clone();
-            if let Some(entry) = other.quantities_mut().into_iter().nth(index) {
-                entry.quantity.value += sign * std;
-            }
-            Outcome::of(&other, joint, frfs, relation, (band, fit_band), fit)
+            other.set_quantities([(index, quantity.value + share * std)]);
+            other
         };
-        let (Ok(up), Ok(down)) = (moved(1.0), moved(-1.0)) else {
+        let Some((plain, likelihood)) = here.change(&moved(SMALL)) else {
             result.lost.push(quantity.path.clone());
             continue;
         };
-        if fit.is_some() && (up.likelihood.is_none() || down.likelihood.is_none()) {
+        if of.fit.is_some() && likelihood.is_none() {
             result.lost.push(quantity.path.clone());
         }
-        let half = |a: RealMatrix2, b: RealMatrix2| (a - b).scale(0.5);
+        let compliance = likelihood.zip(of.fit).and_then(|((k, _), (fit, ..))| {
+            let at = |sign: f64| of_interfaces(&moved(sign), of.sides, fit.stiffness + k.scale(sign));
+            at(1.0).zip(at(-1.0)).map(|(up, down)| std::array::from_fn(|e| 0.5 * (up[e] - down[e])))
+        });
         result.shares.push(ToleranceShare {
             path: quantity.path.clone(),
             std,
-            plain: (half(up.plain.0, down.plain.0), half(up.plain.1, down.plain.1)),
-            likelihood: up.likelihood.zip(down.likelihood).map(|(u, d)| (half(u.0, d.0), half(u.1, d.1))),
-            compliance: up
-                .compliance
-                .zip(down.compliance)
-                .map(|(u, d)| std::array::from_fn(|e| 0.5 * (u[e] - d[e]))),
+            plain,
+            likelihood,
+            compliance,
         });
     }
     Ok(result)
 }
 
-/// What one fixture makes of the recording.
-struct Outcome {
-    plain: (RealMatrix2, RealMatrix2),
-    likelihood: Option<(RealMatrix2, RealMatrix2)>,
-    compliance: Option<[f64; 5]>,
+type Matrices = (RealMatrix2, RealMatrix2);
+
+/// What the fixture as stated makes of the recording.
+struct Stated<'a> {
+    of: &'a Decomposed<'a>,
+    plan: MeasurementPlan,
+    mean: Matrices,
+    optimum: Option<Optimum<'a>>,
 }
 
-impl Outcome {
-    fn of(
-        fixture: &Fixture,
-        joint: &str,
-        frfs: &FrfSet,
-        relation: Relation,
-        (band, fit_band): (Band, Option<Band>),
-        fit: Option<&LikelihoodFit>,
-    ) -> Result<Self, DecompositionError> {
-        let sides = Sides::of(fixture, Some(joint))?;
-        let spectrum = decompose(frfs, &sides, relation)?;
-        let model = fit
-            .map_or((spectrum.solved[0].stiffness, spectrum.solved[0].damping), |f| (f.stiffness, f.damping));
-        let averages = Averages::of(&spectrum, Some(band), model)?;
-        let exact = match relation {
-            Relation::Exact => None,
-            Relation::Paper => Some(decompose(frfs, &sides, Relation::Exact)?),
+impl Stated<'_> {
+    /// Changes of the plain averages and of the fit by a standard deviation, from a fixture in which a quantity is moved by a small share of it.
+    fn change(&self, fixture: &Fixture) -> Option<(Matrices, Option<Matrices>)> {
+        let of = self.of;
+        let sides = Sides::of(fixture, Some(&of.sides.joint().name)).ok()?;
+        let plan = MeasurementPlan::of(of.frfs, &sides).ok()?;
+        let (loaded, responding) = (&plan.loaded, &plan.responding);
+        let compliances =
+            sides.compliances(of.frfs.lines(), (loaded.0, loaded.1), (responding.0, responding.1)).ok()?;
+        let reads_alike = plan.layout == self.plan.layout && sides.decay() == of.sides.decay();
+        let read = match reads_alike {
+            true => None,
+            false => Some(read_at_s(fit_rigid_motion(of.frfs, &plan.layout).ok()?, &sides)),
         };
-        let exact = exact.as_ref().unwrap_or(&spectrum);
-        let fitted = match fit {
-            Some(fit) => continued(frfs, &sides, exact, fit_band, fit).ok(),
-            None => None,
-        };
-        let compliance = match (&fitted, &sides.joint().law) {
-            (Some(fitted), JointLaw::Beam { youngs_modulus, second_moment }) => {
-                left_over(fitted.stiffness, youngs_modulus.value * second_moment.value, sides.length())
-            }
-            _ => None,
-        };
-        Ok(Outcome {
-            plain: (averages.plain.stiffness, averages.plain.damping),
-            likelihood: fitted.map(|f| (f.stiffness, f.damping)),
-            compliance,
-        })
+        let h41 = read.as_ref().unwrap_or(&of.spectrum.h41);
+        let there = mean(of, &sides, &h41.values, &compliances);
+        let scaled = |a: RealMatrix2, b: RealMatrix2| (a - b).scale(1.0 / SMALL);
+        let plain = (scaled(there.0, self.mean.0), scaled(there.1, self.mean.1));
+        if !(plain.0.is_finite() && plain.1.is_finite()) {
+            return None;
+        }
+        let optimum = self.optimum.as_ref();
+        let fitted = optimum.and_then(|optimum| optimum.moved((&plan, &sides), &compliances));
+        Some((plain, fitted.map(|(k, c)| (k.scale(1.0 / SMALL), c.scale(1.0 / SMALL)))))
     }
+}
+
+/// Plain means of K and C over the lines that the averages were taken over.
+fn mean(of: &Decomposed, sides: &Sides, h41: &[ComplexMatrix2], compliances: &Compliances) -> Matrices {
+    let spectrum = of.spectrum;
+    let lines = spectrum.solved.iter().filter(|line| of.band.contains(line.frequency));
+    let (mut k, mut c, mut count) = (RealMatrix2::zero(), RealMatrix2::zero(), 0.0);
+    for solved in lines {
+        let dynamic = dynamic_stiffness_on(spectrum, h41[solved.line], compliances, solved.line);
+        let omega = spectrum.h41.lines.omega(solved.line);
+        let damping = dynamic.im().scale(1.0 / omega);
+        k = k + (dynamic.re() - damping.scale(sides.decay()));
+        c = c + damping;
+        count += 1.0;
+    }
+    (k.scale(1.0 / count), c.scale(1.0 / count))
+}
+
+/// What the beam of a fixture does not account for in a joint of this stiffness; nothing where the joint is no beam.
+fn of_interfaces(fixture: &Fixture, sides: &Sides, stiffness: RealMatrix2) -> Option<[f64; 5]> {
+    let joint = &fixture.joints()[sides.joint_index()];
+    let JointLaw::Beam { youngs_modulus, second_moment } = &joint.law else { return None };
+    left_over(stiffness, youngs_modulus.value * second_moment.value, fixture.joint_length(joint))
 }

@@ -1,5 +1,5 @@
 use crate::{Covariance, Parameter, weighted_products};
-use jointscope_linalg::solve_positive_definite;
+use jointscope_linalg::{Cholesky, solve_positive_definite};
 use num_complex::Complex64;
 
 /// The normal equations of a fit: the information JᵀWJ with the priors' precisions on its diagonal, and minus half the objective's
@@ -28,7 +28,7 @@ impl NormalEquations {
     /// From complex columns of derivatives (as many as coordinates) and the residual, each value weighted by 2/σ², both parts of a complex
     /// value counting. Coordinates for which `held` is true stay where they are; `priors` are (precision, coordinate).
     pub fn of_columns(
-        columns: &[Vec<Complex64>],
+        columns: &[impl AsRef<[Complex64]>],
         residual: &[Complex64],
         weights: &[f64],
         held: impl Fn(usize) -> bool,
@@ -36,7 +36,7 @@ impl NormalEquations {
     ) -> Self {
         let n = columns.len();
         let free: Vec<usize> = (0..n).filter(|&m| !held(m)).collect();
-        let used: Vec<&[Complex64]> = free.iter().map(|&m| columns[m].as_slice()).chain([residual]).collect();
+        let used: Vec<&[Complex64]> = free.iter().map(|&m| columns[m].as_ref()).chain([residual]).collect();
         let all = weighted_products(&used, weights);
         let width = used.len();
         let mut equations = NormalEquations::zero(n);
@@ -155,17 +155,8 @@ impl NormalEquations {
 
     /// Covariance of the coordinates, the inverse of the information; `None` where a combination is not determined.
     pub fn covariance(&self) -> Option<Covariance> {
-        let n = self.order;
-        let mut covariance = vec![0.0; n * n];
-        for m in 0..n {
-            let (mut copy, mut column) = (self.information.clone(), vec![0.0; n]);
-            column[m] = 1.0;
-            if !solve_positive_definite(&mut copy, &mut column) {
-                return None;
-            }
-            (0..n).for_each(|k| covariance[k * n + m] = column[k]);
-        }
-        Some(Covariance::new(n, covariance))
+        let factor = Cholesky::of(self.order, &self.information)?;
+        Some(Covariance::new(self.order, factor.inverse()))
     }
 }
 

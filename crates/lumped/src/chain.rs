@@ -34,6 +34,14 @@ impl Reading {
     }
 }
 
+impl Reading {
+    /// Whether the signals of another reading pass the same gains, delays and filters, wherever they are taken.
+    pub fn has_signals_of(&self, other: &Reading) -> bool {
+        let (here, there) = (self, other);
+        here.gain == there.gain && here.delay == there.delay && here.filters == there.filters
+    }
+}
+
 /// How all FRFs of a recording are read.
 #[derive(Debug, Clone)]
 pub struct MeasuringChain {

@@ -106,3 +106,65 @@ pub const RANKS: [[&[&str]; 4]; 3] = [
     [&["F1", "F01"], &["F1", "F01"], &["F1", "F01"], &["F1", "F01"]],
     [&["F02", "F2"], &["F2", "F02"], &["F2", "F02"], &["F02", "F2"]],
 ];
+
+/// One of the paper's models, as Table 4 names them.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Model {
+    /// The analytical model, ①.
+    Sim,
+    /// Measured, ②.
+    Exp,
+    /// The finite-element model, ③.
+    Fem,
+}
+
+use Model::{Exp, Fem, Sim};
+
+impl Model {
+    /// The word of the tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            Model::Sim => "SIM",
+            Model::Exp => "EXP",
+            Model::Fem => "FEM",
+        }
+    }
+
+    /// Its cells in a row of Tables 2 and 3.
+    pub fn cells(self, row: &StiffnessRow) -> Option<Elements> {
+        match self {
+            Model::Sim => row.sim,
+            Model::Exp => row.exp,
+            Model::Fem => row.fem,
+        }
+    }
+}
+
+const ALL: &[Model] = &[Sim, Exp, Fem];
+const BOTH: &[Model] = &[Exp, Fem];
+
+/// Table 4, "model used to compare values": for each place of [`RANKS`], the models whose values were compared.
+#[rustfmt::skip]
+pub const MODELS_USED: [[&[&[Model]]; 4]; 3] = [
+    [
+        &[BOTH, BOTH, BOTH, BOTH, ALL, &[Sim, Fem], BOTH],
+        &[BOTH, BOTH, BOTH, BOTH, ALL, BOTH, &[Sim]],
+        &[BOTH, &[Exp], BOTH, BOTH, ALL, &[Fem], &[Sim, Fem]],
+        &[BOTH, BOTH, &[Exp], &[Exp], BOTH, &[Fem], &[Exp]],
+    ],
+    [&[&[Exp], ALL], &[&[Exp], ALL], &[&[Exp], ALL], &[&[Exp], ALL]],
+    [&[ALL, &[Exp]], &[&[Exp], ALL], &[&[Exp], ALL], &[ALL, &[Exp]]],
+];
+
+/// An element of an example in one of the places of Table 4: the smallest and the largest of the values that were compared, in the units of Tables 2 and 3;
+/// `None` where a model that is said to have been used has none.
+pub fn compared(group: usize, element: usize, place: usize) -> Option<[f64; 2]> {
+    let example = RANKS[group][element].get(place)?;
+    let row = STIFFNESS.iter().find(|row| row.example == *example)?;
+    let models = MODELS_USED[group][element].get(place)?;
+    let values = models.iter().map(|model| Some(model.cells(row)?[element]));
+    let values: Vec<f64> = values.collect::<Option<_>>()?;
+    let low = values.iter().copied().fold(f64::INFINITY, f64::min);
+    let high = values.iter().copied().fold(0.0, f64::max);
+    Some([low, high])
+}

@@ -1,6 +1,9 @@
 //! The tables as text, in Markdown, so that they read in a terminal and on a page alike.
 
-use crate::paper::{DAMPING, DAMPING_UNITS, ELEMENTS, Elements, GROUPS, RANKS, STIFFNESS, STIFFNESS_UNITS};
+use crate::paper::{
+    DAMPING, DAMPING_UNITS, ELEMENTS, Elements, GROUPS, MODELS_USED, RANKS, STIFFNESS, STIFFNESS_UNITS,
+    compared,
+};
 use crate::{ProgramRow, Reach, Tables, Witness};
 use std::fmt::Write;
 
@@ -72,6 +75,47 @@ fn beside(found: Option<f64>, paper: Option<f64>) -> String {
     }
 }
 
+/// Table 4's other half: which models' values were compared, and whether these put the examples in the order printed.
+fn models_used(text: &mut String) {
+    text.push_str(
+        "Table 4, model used to compare values, and the span of these values in Tables 2 and 3\n\n",
+    );
+    let mut grid = Grid::new("element | place | example | models | values | unit | above the one before");
+    for (group, elements) in RANKS.iter().enumerate() {
+        for (element, order) in elements.iter().enumerate() {
+            let mut before: Option<[f64; 2]> = None;
+            for (place, example) in order.iter().enumerate() {
+                let models = MODELS_USED[group][element][place].iter().map(|model| model.name());
+                let span = compared(group, element, place);
+                let above = before.zip(span).map(|([low, high], [own_low, own_high])| {
+                    match (own_low >= high, own_high >= high && own_low >= low, own_high < low) {
+                        (true, ..) => "yes",
+                        (_, true, _) => "overlaps",
+                        (.., true) => "no",
+                        _ => "not by all",
+                    }
+                });
+                grid.row([
+                    format!("K{}", ELEMENTS[element]),
+                    (place + 1).to_string(),
+                    (*example).to_owned(),
+                    models.collect::<Vec<_>>().join(", "),
+                    span.map_or("-".to_owned(), |[low, high]| {
+                        if low == high { low.to_string() } else { format!("{low} to {high}") }
+                    }),
+                    STIFFNESS_UNITS[element].0.to_owned(),
+                    above.unwrap_or("-").to_owned(),
+                ]);
+                before = span.or(before);
+            }
+        }
+    }
+    grid.write(text);
+    text.push_str(
+        "yes: every value of the models used is at least as large as all of the example before; overlaps: smallest and largest are, but the spans overlap; not by all: one of both is not; no: every value is smaller.\n\n",
+    );
+}
+
 impl Tables {
     /// All tables, paper beside program, with what they show.
     pub fn to_text(&self) -> String {
@@ -105,6 +149,9 @@ impl Tables {
         }
         grid.write(text);
         text.push_str(&which);
+        text.push_str(
+            "E1, E5, F1, F2: two damping ratios from C_IN(1,1) and C_IN(2,2) on the fixture of E0, F01, F02; the other cells of C_IN and all of SIM C are predictions.\n",
+        );
         text.push_str("\nNot inferred: steel (207 GPa, 0.3, 7850 kg/m^3); points 1 and 4 at 0.8 of their blocks' length, which enters no cell.\n\n");
     }
 
@@ -247,6 +294,7 @@ impl Tables {
         }
         grid.write(text);
         text.push_str("E0 was not measured. Program: your measurements where given, SIM elsewhere; what was not computed is left out of the comparison.\n\n");
+        models_used(text);
     }
 
     fn damping(&self, text: &mut String) {

@@ -6,7 +6,7 @@ use jointscope_fixture::Fixture;
 use jointscope_linalg::Matrix2;
 use jointscope_lumped::{Instrument, synthesize};
 use jointscope_spectra::{FrfPair, SpectralLines};
-use jointscope_tables::paper::{DAMPING, RANKS, STIFFNESS, STIFFNESS_UNITS};
+use jointscope_tables::paper::{DAMPING, MODELS_USED, RANKS, STIFFNESS, STIFFNESS_UNITS, compared};
 use jointscope_tables::{Measured, ProgramRow, Tables, Witness};
 use serde_json::json;
 
@@ -40,12 +40,53 @@ fn inferred_fixtures_give_the_cells_that_they_were_inferred_from() {
         }
     }
     for row in DAMPING.iter() {
-        if let Some(program) = tables.row(row.example) {
+        // Of E1, E5, F1 and F2 the cells of SIM C were not used.
+        let program = tables.row(row.example).filter(|row| row.example.inference.numbers > 2);
+        if let Some(program) = program {
             let found = ProgramRow::magnitudes(&program.sim.paper.damping)[0];
             assert!((found / row.sim[0] - 1.0).abs() < 0.05, "{}: {found} for {}", row.example, row.sim[0]);
             assert!((program.input[0] / row.input[0] - 1.0).abs() < 0.05, "{}", row.example);
         }
     }
+}
+
+#[test]
+fn c_in_of_welded_and_glued_examples_is_that_of_two_damping_ratios_and_their_sim_is_not_met() {
+    let tables = tables();
+    for (example, out) in [("E1", 0.82), ("E5", 1.41), ("F1", 1.31), ("F2", 1.14)] {
+        let printed = DAMPING.iter().find(|row| row.example == example).unwrap();
+        let program = tables.row(example).unwrap();
+        for (element, (found, printed)) in program.input.iter().zip(printed.input).enumerate() {
+            // Of F2 0.01 is printed where its neighbour and its own C_IN(1,1) say 0.1.
+            let printed = if printed == 0.01 { 0.1 } else { printed };
+            let decimals = printed.to_string().split_once('.').map_or(0, |(_, after)| after.len());
+            let half = 0.5 * 10f64.powi(-(decimals as i32));
+            assert!((found - printed).abs() <= 1.001 * half, "{example} {element}: {found} for {printed}");
+        }
+        let found = ProgramRow::magnitudes(&program.sim.paper.damping)[0] / printed.sim[0];
+        assert!((found - out).abs() < 0.01, "{example}: {found}");
+        assert!(!program.example.own_stiffness);
+    }
+}
+
+#[test]
+fn the_models_that_table_4_says_it_used_have_values_and_do_not_always_give_its_order() {
+    let mut contradicted = Vec::new();
+    for (group, elements) in RANKS.iter().enumerate() {
+        for (element, order) in elements.iter().enumerate() {
+            assert_eq!(MODELS_USED[group][element].len(), order.len());
+            let spans: Vec<[f64; 2]> =
+                (0..order.len()).map(|place| compared(group, element, place).unwrap()).collect();
+            for (place, pair) in spans.windows(2).enumerate() {
+                if pair[1][1] < pair[0][0] {
+                    contradicted.push((element, order[place], order[place + 1]));
+                }
+            }
+        }
+    }
+    println!("{contradicted:?}");
+    // The measured 8.5 of E5 above the computed 8.0 of E0, itself below the 12.0 of D0.
+    assert!(contradicted.len() <= 2, "{contradicted:?}");
 }
 
 #[test]
@@ -142,5 +183,7 @@ fn the_json_holds_si_units_and_signs() {
     let value = tables().to_value();
     assert_eq!(value["D0"]["paper"]["stiffness"]["sim"][0], 3.3e6);
     assert!(value["D0"]["program"]["sim"]["eq7"]["stiffness"][1][1].as_f64().unwrap() < 0.0);
-    assert!(value["F1"]["program"].is_null() && value["E2"]["program"]["own_stiffness"] == false);
+    for example in ["E1", "E2", "F1"] {
+        assert_eq!(value[example]["program"]["own_stiffness"], false);
+    }
 }

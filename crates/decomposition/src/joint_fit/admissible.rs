@@ -2,7 +2,8 @@
 
 use super::law::{Dynamics, Form};
 use super::problem::{Point, Problem};
-use super::{Fitted, Fitter, coordinates};
+use super::{EXPLAINED, Fitted, Fitter, coordinates};
+use crate::DecompositionError;
 use jointscope_inference::{Covariance, Parameter, Transform};
 use jointscope_linalg::RealMatrix2;
 use serde::Serialize;
@@ -51,25 +52,7 @@ pub(super) fn examined(
 ) -> (JointTests, Option<Admissible>) {
     let at = &free.point.coordinates;
     let count = problem.law.stiffness.count();
-    let lowest = |first: usize| match problem.law.stiffness {
-        Form::Scalar => below_zero(at[first], (strain * covariance.at(first, first)).sqrt()),
-        _ => {
-            let [a, b, d] = [0, 1, 2].map(|e| at[first + e]);
-            let (half, mean) = (0.5 * (a - d), 0.5 * (a + d));
-            let lambda = mean - half.hypot(b);
-            // v of the smallest eigenvalue; dλ = vᵀ dM v.
-            let angle = 0.5 * b.atan2(half);
-            let (v, w) = (-angle.sin(), angle.cos());
-            let by = [v * v, 2.0 * v * w, w * w];
-            let mut variance = 0.0;
-            for i in 0..3 {
-                for j in 0..3 {
-                    variance += by[i] * by[j] * covariance.at(first + i, first + j);
-                }
-            }
-            below_zero(lambda, (strain * variance).sqrt())
-        }
-    };
+    let lowest = |first: usize| not_negative(problem.law.stiffness, at, first, (covariance, strain));
     let tests = JointTests {
         reciprocity: asymmetry.map(|gain| (-0.5 * gain).exp()),
         definite: lowest(0),
@@ -81,33 +64,118 @@ pub(super) fn examined(
     (tests, admissible)
 }
 
+/// P(a smallest eigenvalue as low as that of the symmetric or scalar matrix whose coordinates begin at `first` | zero). Variances count `strain` times.
+pub(super) fn not_negative(
+    form: Form,
+    at: &[f64],
+    first: usize,
+    (covariance, strain): (&Covariance, f64),
+) -> Option<f64> {
+    if form == Form::Scalar {
+        return below_zero(at[first], (strain * covariance.at(first, first)).sqrt());
+    }
+    let [a, b, d] = [0, 1, 2].map(|e| at[first + e]);
+    let (half, mean) = (0.5 * (a - d), 0.5 * (a + d));
+    let lambda = mean - half.hypot(b);
+    // v of the smallest eigenvalue; dλ = vᵀ dM v.
+    let angle = 0.5 * b.atan2(half);
+    let (v, w) = (-angle.sin(), angle.cos());
+    let by = [v * v, 2.0 * v * w, w * w];
+    let mut variance = 0.0;
+    for i in 0..3 {
+        for j in 0..3 {
+            variance += by[i] * by[j] * covariance.at(first + i, first + j);
+        }
+    }
+    below_zero(lambda, (strain * variance).sqrt())
+}
+
 /// P(an estimate this low | zero).
 fn below_zero(value: f64, std: f64) -> Option<f64> {
     (std > 0.0).then(|| 0.5 * statrs::function::erf::erfc(-value / (std * SQRT_2)))
 }
 
-/// Gain by freedom of symmetry from which it is asked whether the symmetric optimum is one: one time in five by chance.
-const LARGE_GAIN: f64 = 3.2;
+/// Gain by freedom of symmetry from which it is asked whether the symmetric optimum is one: one time in twenty by chance.
+const LARGE_GAIN: f64 = 5.99;
+/// Decrease by which a symmetric optimum is another than the one before.
+const ANOTHER: f64 = 0.1;
 /// Times that it is asked.
 const ROUNDS: usize = 4;
 
-/// The symmetric optimum, sought again from the free one for as long as that leads lower, and the free one: freedom goes round what keeps a symmetric fit on its way.
-pub(super) fn settled(problem: &Problem, mut at: Fitted) -> (Fitted, Option<Point>) {
+/// What is known of a joint whose k and c are free of symmetry.
+pub(super) enum Freed {
+    /// By how much it lowers χ² to first order, in the units of [`asymmetry`]: too little for its optimum to be sought.
+    Promised(f64),
+    /// Its optimum.
+    Fitted(Point),
+    /// Nothing yet.
+    Unknown,
+}
+
+/// The symmetric optimum, sought again from the free one for as long as that leads to another, lower one, and what is known of the free one: freedom goes round what
+/// keeps a symmetric fit on its way.
+pub(super) fn settled(
+    fitter: &Fitter,
+    problem: &Problem,
+    mut at: Fitted,
+) -> Result<(Fitted, Freed), DecompositionError> {
+    at.refresh(problem)?;
     for _ in 0..ROUNDS {
+        if let Some(gain) = promised(fitter, problem, &at) {
+            return Ok((at, Freed::Promised(gain)));
+        }
         let Some(free) = reciprocity(problem, &at) else { break };
         if at.point.objective - free.objective < LARGE_GAIN {
-            return (at, Some(free));
+            return Ok((at, Freed::Fitted(free)));
         }
         let law = problem.law.free();
         let [k, d, _] = law.matrices(&free.coordinates[..law.count()]);
         let mut start = coordinates(&problem.law, k, d);
         start.extend_from_slice(&free.coordinates[law.count()..]);
+        let before = at.point.objective;
         match problem.fit(start, None) {
-            Some((point, others)) if point.objective < at.point.objective => at = Fitted { point, others },
-            _ => return (at, Some(free)),
+            Some((point, others)) if point.objective < before => at = Fitted { point, others },
+            _ => return Ok((at, Freed::Fitted(free))),
+        }
+        at.refresh(problem)?;
+        if at.point.objective > before - ANOTHER {
+            return Ok((at, Freed::Fitted(free)));
         }
     }
-    (at, None)
+    Ok((at, Freed::Unknown))
+}
+
+/// The gain by freedom of symmetry to first order, in the units of [`asymmetry`], where the FRFs are explained and it is too small for the optimum to be sought.
+fn promised(fitter: &Fitter, problem: &Problem, at: &Fitted) -> Option<f64> {
+    if problem.law.stiffness != Form::Symmetric || fitter.per_degree(problem, &at.point) > EXPLAINED {
+        return None;
+    }
+    let law = problem.law.free();
+    let free = Problem { law, parameters: free_parameters(problem, &law), ..*problem };
+    let start = freed(problem, &law, &at.point);
+    let there = at.point.with(start);
+    let equations = free.equations_of(&there, &at.others, free.test.weights);
+    let step = equations.step(0.0)?;
+    let gain: f64 = step.iter().zip(&equations.right).map(|(step, right)| step * right).sum();
+    if gain >= LARGE_GAIN {
+        return None;
+    }
+    let rest = at.point.coordinates.iter().skip(problem.own()).zip(step.iter().skip(free.own()));
+    let mut moved = vec![0.0; free.own()];
+    moved.extend(rest.map(|(at, step)| at + step));
+    Some(
+        gain.max(0.0)
+            / super::uncertainty::strain(&free.parameters, free.own(), &moved, &equations.covariance()?),
+    )
+}
+
+/// The coordinates of a point in a law with other forms of its matrices.
+fn freed(problem: &Problem, law: &Dynamics, at: &Point) -> Vec<f64> {
+    let own = problem.law.count();
+    let [k, d, _] = problem.law.matrices(&at.coordinates[..own]);
+    let mut start = coordinates(law, k, d);
+    start.extend_from_slice(&at.coordinates[own..]);
+    start
 }
 
 /// The optimum with k and c free of symmetry.
@@ -121,19 +189,25 @@ fn reciprocity(problem: &Problem, free: &Fitted) -> Option<Point> {
 
 /// By how much χ² and priors fall where k and c may be unsymmetric, in units of what such a joint leaves of the FRFs and of the tolerances: what asymmetry
 /// explains is not taken for noise.
-pub(super) fn asymmetry(
-    fitter: &Fitter,
-    problem: &Problem,
-    symmetric: &Fitted,
-    known: Option<Point>,
-) -> Option<f64> {
-    let point = known.or_else(|| reciprocity(problem, symmetric))?;
+pub(super) fn asymmetry(fitter: &Fitter, problem: &Problem, symmetric: &Fitted, known: Freed) -> Option<f64> {
+    let known = match known {
+        Freed::Unknown => promised(fitter, problem, symmetric).map_or(Freed::Unknown, Freed::Promised),
+        known => known,
+    };
+    let point = match known {
+        Freed::Promised(gain) => return Some(gain),
+        Freed::Fitted(point) => point,
+        Freed::Unknown => reciprocity(problem, symmetric)?,
+    };
     let law = problem.law.free();
     let free = Problem { law, parameters: free_parameters(problem, &law), ..*problem };
     let inflation = fitter.inflation(&free, &point);
-    let covariance = fitter.covariance_at(&free, &point).ok()?;
-    let scale = inflation * super::uncertainty::strain(&free, &point, &covariance);
-    Some((symmetric.point.objective - point.objective).max(0.0) / scale)
+    let others = free.other_columns(&point)?;
+    let at = Fitted { point, others };
+    let covariance = at.equations(&free).covariance()?;
+    let scale = inflation
+        * super::uncertainty::strain(&free.parameters, free.own(), &at.point.coordinates, &covariance);
+    Some((symmetric.point.objective - at.point.objective).max(0.0) / scale)
 }
 
 /// The parameters of a problem with another form of the law's matrices.
@@ -145,10 +219,7 @@ fn free_parameters(problem: &Problem, law: &Dynamics) -> Vec<Parameter> {
 
 /// The problem with another form of the law's matrices, from the optimum of the first.
 fn refitted(problem: &Problem, free: &Fitted, law: Dynamics) -> Option<(Point, Dynamics)> {
-    let own = problem.law.count();
-    let [k, d, _] = problem.law.matrices(&free.point.coordinates[..own]);
-    let mut start = coordinates(&law, k, d);
-    start.extend_from_slice(&free.point.coordinates[own..]);
+    let start = freed(problem, &law, &free.point);
     let other =
         Problem { test: problem.test, law, parameters: free_parameters(problem, &law), mass: problem.mass };
     let (point, _) = other.fit(start, Some(free.others.clone()))?;

@@ -235,6 +235,11 @@ pub(super) struct Placed<'a> {
 }
 
 impl Placed<'_> {
+    /// Number of coordinates.
+    pub fn count(&self) -> usize {
+        self.law.count()
+    }
+
     /// K + losses·D + K₁·ω at s.
     pub fn stiffness(&self, s: Complex64) -> ComplexMatrix2 {
         let [k, d, l] = &self.matrices;

@@ -33,6 +33,23 @@ pub struct LawFit {
 }
 
 impl LawFit {
+    /// A law at these coordinates of its own.
+    pub(super) fn of(law: &Dynamics, own: &[f64], objective: f64, mass: Option<f64>) -> Self {
+        let [k, d, l] = law.matrices(own);
+        LawFit {
+            kind: law.kind,
+            mass,
+            probability: 0.0,
+            objective,
+            stiffness: k - d.scale(law.stiffening(own)),
+            damping: d.scale(law.own_damping(own)),
+            change: (law.change != Form::Zero).then(|| l.scale(1.0 / law.middle)),
+            shape: law.shape(own),
+            law: *law,
+            coordinates: own.to_vec(),
+        }
+    }
+
     /// Its name in result files.
     pub fn name(&self) -> String {
         let with_mass = if self.mass.is_some() { "_with_mass" } else { "" };
@@ -117,12 +134,12 @@ const WORTHWHILE: f64 = 20.0;
 pub(super) const FIRST_MASS: f64 = 0.05;
 
 /// A law at its optimum.
-struct Candidate {
-    fit: LawFit,
+pub(super) struct Candidate {
+    pub fit: LawFit,
     /// Logarithm of its marginal likelihood.
-    evidence: f64,
+    pub evidence: f64,
     /// What it leaves, as an inflation of the noise.
-    inflation: f64,
+    pub inflation: f64,
 }
 
 /// All laws with and without mass, the most probable first. `viscous` is that law at its optimum, `heavy` the same with mass where that is known.
@@ -132,7 +149,11 @@ pub(super) fn compared(
     heavy: Option<(&Problem, &Fitted)>,
     quantities: &[Uncertain],
 ) -> Vec<LawFit> {
-    let mut all = candidates(fitter, viscous, heavy, quantities);
+    probable(candidates(fitter, viscous, heavy, quantities))
+}
+
+/// Laws by their evidence, the most probable first.
+pub(super) fn probable(mut all: Vec<Candidate>) -> Vec<LawFit> {
     // Noise is inflated by what the best law leaves.
     let best = all.iter().min_by(|a, b| a.fit.objective.total_cmp(&b.fit.objective));
     let inflation = best.map_or(1.0, |best| best.inflation);
@@ -249,6 +270,14 @@ fn lighter_side(fitter: &Fitter) -> f64 {
 }
 
 fn parameters(law: &Dynamics, mass: Option<f64>, quantities: &[Uncertain]) -> Vec<Parameter> {
+    let mut all = own_parameters(law);
+    all.extend(mass.map(|_| mass_parameter()));
+    all.extend(quantities.iter().map(|quantity| quantity.parameter));
+    all
+}
+
+/// A law's own coordinates with what is known of them beforehand.
+pub(super) fn own_parameters(law: &Dynamics) -> Vec<Parameter> {
     let own = |std: f64| {
         Parameter::new(Transform::Linear { centre: 0.0, scale: 1.0 }).with_precision(1.0 / (std * std))
     };
@@ -260,9 +289,14 @@ fn parameters(law: &Dynamics, mass: Option<f64>, quantities: &[Uncertain]) -> Ve
             _ => own(TIME),
         });
     }
-    all.extend(mass.map(|_| mass_parameter()));
-    all.extend(quantities.iter().map(|quantity| quantity.parameter));
     all
+}
+
+/// Prior variances, those of quantities of which nothing is known being large.
+pub(super) fn variances(parameters: &[Parameter]) -> Vec<f64> {
+    let variance =
+        |parameter: &Parameter| if parameter.precision > 0.0 { 1.0 / parameter.precision } else { UNKNOWN };
+    parameters.iter().map(variance).collect()
 }
 
 fn candidate(
@@ -272,24 +306,10 @@ fn candidate(
     others: &[Vec<Complex64>],
 ) -> Option<Candidate> {
     let information = problem.equations_of(point, others, problem.test.weights).information;
-    let variance =
-        |parameter: &Parameter| if parameter.precision > 0.0 { 1.0 / parameter.precision } else { UNKNOWN };
-    let variances: Vec<f64> = problem.parameters.iter().map(variance).collect();
-    let evidence = laplace_evidence(point.objective, &information, &variances)?;
+    let evidence = laplace_evidence(point.objective, &information, &variances(&problem.parameters))?;
     let own = &point.coordinates[..problem.law.count()];
-    let [k, d, l] = problem.law.matrices(own);
-    let fit = LawFit {
-        kind: problem.law.kind,
-        mass: problem.mass.map(|_| problem.mass_at(&point.coordinates)),
-        probability: 0.0,
-        objective: point.objective,
-        stiffness: k - d.scale(problem.law.stiffening(own)),
-        damping: d.scale(problem.law.own_damping(own)),
-        change: (problem.law.change != Form::Zero).then(|| l.scale(1.0 / problem.law.middle)),
-        shape: problem.law.shape(own),
-        law: problem.law,
-        coordinates: own.to_vec(),
-    };
+    let mass = problem.mass.map(|_| problem.mass_at(&point.coordinates));
+    let fit = LawFit::of(&problem.law, own, point.objective, mass);
     Some(Candidate { fit, evidence, inflation: fitter.inflation(problem, point) })
 }
 

@@ -1,13 +1,13 @@
 //! What the FRFs alone tell of the joint and of the fixture's quantities: two joints on the same blocks share these, and only with the likelihood of both, their prior
 //! entering once, is the difference of the joints as well known as it is.
 
-use super::Fitter;
-use super::problem::{Point, Problem};
-use jointscope_inference::QuadraticLikelihood;
+use super::law::{Dynamics, Form};
+use super::uncertainty::units;
+use jointscope_inference::{NormalEquations, Parameter, QuadraticLikelihood};
 use serde::Serialize;
 
 /// Names of the six numbers of a joint.
-const ELEMENTS: [&str; 6] = ["k11", "k12", "k22", "c11", "c12", "c22"];
+pub(super) const ELEMENTS: [&str; 6] = ["k11", "k12", "k22", "c11", "c12", "c22"];
 
 /// The likelihood of a joint's numbers and of the fixture's quantities, Gaussian about a point, without the quantities' priors; the joint's mass, if it has one, is
 /// integrated out. c is free of constraints in it.
@@ -24,20 +24,22 @@ pub struct JointLikelihood {
     pub information: Vec<Vec<f64>>,
 }
 
-impl Fitter<'_> {
-    /// At an optimum with c free; nothing where the FRFs leave the joint's mass undetermined.
-    pub(super) fn likelihood(&self, problem: &Problem, free: &Point) -> Option<JointLikelihood> {
-        let others = problem.other_columns(free)?;
-        let equations = problem.equations_of(free, &others, problem.test.weights);
-        let precision = |m: usize| problem.parameters[m].precision;
-        let mut all = QuadraticLikelihood::without_priors(&equations, &free.coordinates, precision);
+impl JointLikelihood {
+    /// From the normal equations at an optimum with c free: of the joint whose law's coordinates come first among those `kept`, and of the quantities; what is not kept is
+    /// integrated out. Nothing where the FRFs leave that undetermined.
+    pub(super) fn of(
+        law: &Dynamics,
+        (coordinates, kept): (&[f64], Vec<usize>),
+        equations: &NormalEquations,
+        parameters: &[Parameter],
+    ) -> Option<Self> {
+        let precision = |m: usize| parameters[m].precision;
+        let mut all = QuadraticLikelihood::without_priors(equations, coordinates, precision);
         // At the optimum data and priors pull against each other. That derivatives by differences give a little more or less must not move the joint.
-        let pull_of_priors = free.coordinates.iter().enumerate().map(|(m, at)| precision(m) * at);
+        let pull_of_priors = coordinates.iter().enumerate().map(|(m, at)| precision(m) * at);
         all.gradient = pull_of_priors.collect();
-        let (count, own) = (problem.law.count(), problem.own());
-        let kept: Vec<usize> = (0..count).chain(own..problem.parameters.len()).collect();
-        let slots: &[usize] = if self.scalar { &[0, 3] } else { &[0, 1, 2, 3, 4, 5] };
-        let scales = self.units(&problem.law);
+        let slots: &[usize] = if law.stiffness == Form::Scalar { &[0, 3] } else { &[0, 1, 2, 3, 4, 5] };
+        let scales = units(law);
         let si = all
             .marginal(&kept, precision)?
             .scaled(|index| slots.get(index).map_or(1.0, |&slot| scales[slot]));

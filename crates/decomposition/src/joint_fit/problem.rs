@@ -40,6 +40,14 @@ pub(super) struct Point {
     pub objective: f64,
 }
 
+impl Point {
+    /// The same joint and fixture in the coordinates of another law.
+    pub fn with(&self, coordinates: Vec<f64>) -> Self {
+        let (uncoupled, predicted) = (Arc::clone(&self.uncoupled), self.predicted.clone());
+        Point { coordinates, uncoupled, predicted, objective: self.objective }
+    }
+}
+
 /// What the mass and the quantities do to each value, in their order.
 pub(super) type Columns = Vec<Vec<Complex64>>;
 
@@ -48,7 +56,7 @@ const DIFFERENCE: f64 = 1e-3;
 /// Share of a promised decrease below which a step follows a bent valley: resonances tie the joint to the blocks along one.
 const BENT: f64 = 0.5;
 /// Steps of a fit at the most.
-const STEPS: usize = 80;
+pub(super) const STEPS: usize = 80;
 /// Change of χ² below which a fit has converged: a thousandth of what one standard deviation makes.
 const CONVERGED: f64 = 1e-3;
 /// The same as a share of what χ² exceeds noise by: what the model gets wrong is counted as noise anyway.
@@ -114,8 +122,8 @@ impl<'a> Problem<'a> {
 
     /// Normal equations with these weights.
     pub fn equations_of(&self, at: &Point, others: &[Vec<Complex64>], weights: &[f64]) -> NormalEquations {
-        let mut columns = self.own_columns(at);
-        columns.extend(others.iter().cloned());
+        let own = self.own_columns(at);
+        let columns: Vec<&[Complex64]> = own.iter().chain(others).map(Vec::as_slice).collect();
         let priors = |m: usize| (self.parameters[m].precision, at.coordinates[m]);
         NormalEquations::of_columns(&columns, &self.residual(at), weights, |_| false, priors)
     }
@@ -165,18 +173,27 @@ impl<'a> Problem<'a> {
         steps: usize,
     ) -> Option<(Point, Columns)> {
         let start = self.point(start, None)?;
-        let degrees = self.test.recorded.degrees() as f64;
-        let settings = Settings {
-            steps,
-            damping: Damping { initial: 1e-6, decrease: 0.03, least: 1e-15, raised: 0.0, most: 1e8 },
-            convergence: Convergence { gain: CONVERGED, share: NEGLIGIBLE, floor: degrees },
-            reuse: Some(REUSE),
-            trust_old: true,
-            bent: BENT,
-            ..Settings::default()
-        };
+        let settings = Settings { steps, ..settings(self.test.recorded) };
         let end = descend(self, start, nearby, &settings)?;
         Some((end.point, end.derivatives))
+    }
+}
+
+/// Decrease of an objective that is worth another step.
+pub(super) fn needed(recorded: &Recorded, objective: f64) -> f64 {
+    CONVERGED.max(NEGLIGIBLE * (objective - recorded.degrees() as f64))
+}
+
+/// How a fit goes down.
+pub(super) fn settings(recorded: &Recorded) -> Settings {
+    Settings {
+        steps: STEPS,
+        damping: Damping { initial: 1e-6, decrease: 0.03, least: 1e-15, raised: 0.0, most: 1e8 },
+        convergence: Convergence { gain: CONVERGED, share: NEGLIGIBLE, floor: recorded.degrees() as f64 },
+        reuse: Some(REUSE),
+        trust_old: true,
+        bent: BENT,
+        ..Settings::default()
     }
 }
 

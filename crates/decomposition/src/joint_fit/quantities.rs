@@ -1,6 +1,6 @@
 //! What of the fixture a fit of the joint may move, and by how much.
 
-use crate::Sides;
+use super::{FittedQuantity, UnmovedQuantity};
 use jointscope_fixture::{Fixture, NamedQuantity, Nature, QuantityOwner};
 use jointscope_inference::{Parameter, Transform};
 
@@ -25,14 +25,41 @@ impl Uncertain {
     }
 }
 
+impl Uncertain {
+    /// As a fit has it, at a coordinate with this deviation.
+    pub fn fitted(&self, fixture: &Fixture, coordinate: f64, deviation: f64) -> FittedQuantity {
+        let transform = self.parameter.transform;
+        let fitted = transform.value(coordinate).unwrap_or(self.quantity.value);
+        FittedQuantity {
+            path: self.quantity.path.clone(),
+            body: self.body(fixture),
+            stated: self.quantity.value,
+            std: self.quantity.std,
+            fitted,
+            fitted_std: transform.slope(fitted).abs() * deviation,
+            deviations: coordinate,
+        }
+    }
+
+    /// As one that the FRFs tell nothing of.
+    pub fn unmoved(&self, fixture: &Fixture) -> UnmovedQuantity {
+        UnmovedQuantity {
+            path: self.quantity.path.clone(),
+            body: self.body(fixture),
+            stated: self.quantity.value,
+            std: self.quantity.std,
+        }
+    }
+}
+
 /// Relative deviation up to which a positive quantity moves by its logarithm.
 const NARROW: f64 = 0.12;
 
-/// The fixture's uncertain quantities but for those of the joint that is looked for.
-pub(super) fn uncertain(sides: &Sides, exact: bool) -> Vec<Uncertain> {
-    let own = QuantityOwner::Joint(sides.joint_index());
-    let all = sides.fixture().uncertain_quantities(exact).into_iter();
-    all.filter(|(_, quantity)| quantity.owner != own)
+/// The fixture's uncertain quantities but for those of the joints that are looked for.
+pub(super) fn uncertain(fixture: &Fixture, joints: &[usize], exact: bool) -> Vec<Uncertain> {
+    let own = |owner: QuantityOwner| joints.iter().any(|&joint| owner == QuantityOwner::Joint(joint));
+    let all = fixture.uncertain_quantities(exact).into_iter();
+    all.filter(|(_, quantity)| !own(quantity.owner))
         .map(|(index, quantity)| Uncertain { index, parameter: parameter_of(&quantity), quantity })
         .collect()
 }

@@ -1,8 +1,8 @@
 //! The FRFs that a joint is fitted to: every one whose channels the fixture has, as accelerances with weights.
 
-use crate::Sides;
 use jointscope_averaging::Band;
-use jointscope_lumped::{Instrument, MeasuringChain};
+use jointscope_fixture::Fixture;
+use jointscope_lumped::{Instrument, MeasuringChain, window_decay};
 use jointscope_spectra::{Channel, FrfForm, FrfPair, FrfSet};
 use num_complex::Complex64;
 
@@ -28,10 +28,10 @@ const UNKNOWN_NOISE: f64 = 1e-3;
 
 impl Recorded {
     /// `None` where nothing can be used.
-    pub fn of(frfs: &FrfSet, sides: &Sides, band: Option<Band>) -> Option<Self> {
+    pub fn of(frfs: &FrfSet, fixture: &Fixture, band: Option<Band>) -> Option<Self> {
+        let decay = window_decay(fixture);
         let readable = |pair: &FrfPair| {
-            let chain =
-                MeasuringChain::of(sides.fixture(), std::slice::from_ref(pair), Instrument::AsRecorded);
+            let chain = MeasuringChain::of(fixture, std::slice::from_ref(pair), Instrument::AsRecorded);
             chain.is_ok_and(|chain| chain.readings.iter().all(|reading| reading.load.is_none()))
         };
         let used: Vec<usize> = (0..frfs.pairs().len()).filter(|&i| readable(&frfs.pairs()[i])).collect();
@@ -40,7 +40,7 @@ impl Recorded {
         let lines: Vec<usize> = (0..hz.len()).filter(|&line| inside(hz[line])).collect();
         let mut recorded = Recorded {
             pairs: used.iter().map(|&index| frfs.pairs()[index].clone()).collect(),
-            s: lines.iter().map(|&line| sides.s(frfs.lines().omega(line))).collect(),
+            s: lines.iter().map(|&line| Complex64::new(decay, frfs.lines().omega(line))).collect(),
             highest: hz[hz.len() - 1],
             values: Vec::with_capacity(used.len() * lines.len()),
             weights: Vec::with_capacity(used.len() * lines.len()),

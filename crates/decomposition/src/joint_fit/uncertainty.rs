@@ -2,10 +2,10 @@
 
 use super::law::Dynamics;
 use super::problem::{Point, Problem};
-use super::{EXPLAINED, FittedLength, Fitter, UNDETERMINED};
-use crate::DecompositionError;
-use jointscope_fixture::{QuantityKey, QuantityOwner};
-use jointscope_inference::{Covariance, autocorrelation, jackknife, variance_inflation};
+use super::quantities::Uncertain;
+use super::{EXPLAINED, Fitted, FittedLength, Fitter};
+use jointscope_fixture::{Fixture, Joint, QuantityKey, QuantityOwner};
+use jointscope_inference::{Covariance, Parameter, autocorrelation, jackknife, variance_inflation};
 use num_complex::Complex64;
 use statrs::function::gamma::gamma_ur;
 
@@ -31,25 +31,9 @@ impl Fitter<'_> {
         variance_inflation(per_degree, autocorrelation(&normalised, self.recorded.s.len()))
     }
 
-    pub(super) fn covariance_at(
-        &self,
-        problem: &Problem,
-        point: &Point,
-    ) -> Result<Covariance, DecompositionError> {
-        let others = problem.other_columns(point).ok_or(UNDETERMINED)?;
-        problem.equations_of(point, &others, problem.test.weights).covariance().ok_or(UNDETERMINED)
-    }
-
-    /// k11, k12, k22, c11, c12, c22 in SI units for one unit of a viscous law's coordinates.
-    pub(super) fn units(&self, law: &Dynamics) -> [f64; 6] {
-        let u = &law.unit;
-        let elements = [u.at(0, 0), u.at(0, 1), u.at(1, 1)];
-        std::array::from_fn(|slot| elements[slot % 3] * if slot < 3 { 1.0 } else { 1.0 / law.middle })
-    }
-
     /// Covariance of (k11, k12, k22, c11, c12, c22) in SI units from that of a viscous law's coordinates.
     pub(super) fn in_si(&self, law: &Dynamics, covariance: &Covariance) -> [[f64; 6]; 6] {
-        let scales = self.units(law);
+        let scales = units(law);
         let slots: &[usize] = if self.scalar { &[0, 3] } else { &[0, 1, 2, 3, 4, 5] };
         let mut all = [[0.0; 6]; 6];
         for (a, &m) in slots.iter().enumerate() {
@@ -60,65 +44,77 @@ impl Fitter<'_> {
         all
     }
 
-    /// The joint's length, to which K is tied by the ends' places.
-    pub(super) fn length(&self, problem: &Problem, at: &Point, covariance: &Covariance) -> FittedLength {
-        let (joint, own) = (self.sides.joint(), problem.own());
-        let ends: Vec<(usize, f64, f64)> = problem
-            .test
-            .quantities
-            .iter()
-            .enumerate()
-            .filter_map(|(index, uncertain)| {
-                let sign = match (uncertain.quantity.key, uncertain.quantity.owner) {
-                    (QuantityKey::Abscissa, QuantityOwner::Point(point)) if point == joint.to => 1.0,
-                    (QuantityKey::Abscissa, QuantityOwner::Point(point)) if point == joint.from => -1.0,
-                    _ => return None,
-                };
-                let (transform, stated) = (uncertain.parameter.transform, uncertain.quantity.value);
-                let value = transform.value(at.coordinates[own + index]).unwrap_or(stated);
-                Some((own + index, sign * (value - stated), sign * transform.slope(value)))
-            })
-            .collect();
-        let u = &problem.law.unit;
-        let elements: &[(usize, f64)] = match self.scalar {
-            true => &[(0, u.at(0, 0))],
-            false => &[(0, u.at(0, 0)), (1, u.at(0, 1)), (2, u.at(1, 1))],
-        };
-        let mut with_stiffness = [0.0; 3];
-        for &(element, unit) in elements {
-            with_stiffness[element] =
-                ends.iter().map(|(end, _, slope)| unit * slope * covariance.at(element, *end)).sum();
-        }
-        let products =
-            ends.iter().flat_map(|(a, _, s)| ends.iter().map(move |(b, _, t)| s * t * covariance.at(*a, *b)));
-        FittedLength {
-            value: self.sides.length() + ends.iter().map(|(_, moved, _)| moved).sum::<f64>(),
-            variance: products.sum::<f64>().max(0.0),
-            with_stiffness,
-        }
-    }
-
     /// How far the coordinates move when each of eight blocks of lines is left out, to first order.
-    pub(super) fn jackknifed(&self, problem: &Problem, at: &Point) -> Option<Covariance> {
-        let n = self.recorded.s.len();
-        let blocks = BLOCKS.min(n);
-        let others = problem.other_columns(at)?;
-        let without = |block: usize| {
-            let (from, to) = (block * n / blocks, (block + 1) * n / blocks);
-            let outside = |i: usize| i % n < from || i % n >= to;
-            let weights: Vec<f64> = problem
-                .test
-                .weights
-                .iter()
-                .enumerate()
-                .map(|(i, w)| if outside(i) { *w } else { 0.0 })
-                .collect();
-            let step = problem.equations_of(at, &others, &weights).step(0.0)?;
-            Some(at.coordinates.iter().zip(&step).map(|(at, step)| at + step).collect::<Vec<f64>>())
-        };
-        let fits: Option<Vec<Vec<f64>>> = (0..blocks).map(without).collect();
-        Some(jackknife(&fits?))
+    pub(super) fn jackknifed(&self, problem: &Problem, at: &Fitted) -> Option<Covariance> {
+        let coordinates = &at.point.coordinates;
+        jackknifed_by(self.recorded.s.len(), problem.test.weights, coordinates, |weights| {
+            problem.equations_of(&at.point, &at.others, weights).step(0.0)
+        })
     }
+}
+
+/// k11, k12, k22, c11, c12, c22 in SI units for one unit of a viscous law's coordinates.
+pub(super) fn units(law: &Dynamics) -> [f64; 6] {
+    let u = &law.unit;
+    let elements = [u.at(0, 0), u.at(0, 1), u.at(1, 1)];
+    std::array::from_fn(|slot| elements[slot % 3] * if slot < 3 { 1.0 } else { 1.0 / law.middle })
+}
+
+/// A joint's length, to which K is tied by the ends' places: from the quantities and all coordinates, of which the first `own` are not quantities', and K's begin at `first`.
+pub(super) fn length_between(
+    (fixture, joint): (&Fixture, &Joint),
+    (quantities, coordinates): (&[Uncertain], &[f64]),
+    (own, first, law): (usize, usize, &Dynamics),
+    covariance: &Covariance,
+) -> FittedLength {
+    let ends: Vec<(usize, f64, f64)> = quantities
+        .iter()
+        .enumerate()
+        .filter_map(|(index, uncertain)| {
+            let sign = match (uncertain.quantity.key, uncertain.quantity.owner) {
+                (QuantityKey::Abscissa, QuantityOwner::Point(point)) if point == joint.to => 1.0,
+                (QuantityKey::Abscissa, QuantityOwner::Point(point)) if point == joint.from => -1.0,
+                _ => return None,
+            };
+            let (transform, stated) = (uncertain.parameter.transform, uncertain.quantity.value);
+            let value = transform.value(coordinates[own + index]).unwrap_or(stated);
+            Some((own + index, sign * (value - stated), sign * transform.slope(value)))
+        })
+        .collect();
+    let u = &law.unit;
+    let elements = [u.at(0, 0), u.at(0, 1), u.at(1, 1)];
+    let mut with_stiffness = [0.0; 3];
+    for (element, unit) in elements.into_iter().enumerate().take(law.stiffness.count()) {
+        with_stiffness[element] =
+            ends.iter().map(|(end, _, slope)| unit * slope * covariance.at(first + element, *end)).sum();
+    }
+    let products =
+        ends.iter().flat_map(|(a, _, s)| ends.iter().map(move |(b, _, t)| s * t * covariance.at(*a, *b)));
+    FittedLength {
+        value: fixture.joint_length(joint) + ends.iter().map(|(_, moved, _)| moved).sum::<f64>(),
+        variance: products.sum::<f64>().max(0.0),
+        with_stiffness,
+    }
+}
+
+/// How far `coordinates` move when each of eight blocks of lines is left out; `step` is the step that other weights lead to.
+pub(super) fn jackknifed_by(
+    lines: usize,
+    weights: &[f64],
+    coordinates: &[f64],
+    step: impl Fn(&[f64]) -> Option<Vec<f64>>,
+) -> Option<Covariance> {
+    let blocks = BLOCKS.min(lines);
+    let without = |block: usize| {
+        let (from, to) = (block * lines / blocks, (block + 1) * lines / blocks);
+        let outside = |i: usize| i % lines < from || i % lines >= to;
+        let rest: Vec<f64> =
+            weights.iter().enumerate().map(|(i, w)| if outside(i) { *w } else { 0.0 }).collect();
+        let step = step(&rest)?;
+        Some(coordinates.iter().zip(&step).map(|(at, step)| at + step).collect::<Vec<f64>>())
+    };
+    let fits: Option<Vec<Vec<f64>>> = (0..blocks).map(without).collect();
+    Some(jackknife(&fits?))
 }
 
 /// Covariance of all coordinates with what strain and the model's error add.
@@ -131,13 +127,13 @@ pub(super) fn total(posterior: &Covariance, strain: f64, model: Option<&Covarian
 /// Probability below which the quantities' departures are no chance.
 const NO_CHANCE: f64 = 0.01;
 
-/// Squared departures of the quantities from what is stated, per what chance would make of them (Birge's ratio): what of a quantity the FRFs tell may depart, what
+/// Squared departures of the quantities (those after the first `own` parameters) from what is stated, per what chance would make of them (Birge's ratio): what of a quantity the FRFs tell may depart, what
 /// they do not tell stays. 1 where chance explains them.
-pub(super) fn strain(problem: &Problem, at: &Point, covariance: &Covariance) -> f64 {
+pub(super) fn strain(parameters: &[Parameter], own: usize, at: &[f64], covariance: &Covariance) -> f64 {
     let (mut squares, mut expected) = (0.0, 0.0);
-    for (index, parameter) in problem.parameters.iter().enumerate().skip(problem.own()) {
+    for (index, parameter) in parameters.iter().enumerate().skip(own) {
         if parameter.precision > 0.0 {
-            squares += parameter.penalty(at.coordinates[index]);
+            squares += parameter.penalty(at[index]);
             expected += (1.0 - parameter.precision * covariance.at(index, index)).clamp(0.0, 1.0);
         }
     }

@@ -31,8 +31,9 @@ struct SideFrfs {
 pub(super) struct Uncoupled {
     alpha: Arc<SideFrfs>,
     beta: Arc<SideFrfs>,
+    chain: MeasuringChain,
     /// Recorded accelerance per receptance.
-    factors: Vec<Complex64>,
+    factors: Arc<Vec<Complex64>>,
     /// Between channels, by FRF.
     between: Vec<Complex64>,
     /// From a load on d to a response: two entries a response.
@@ -105,14 +106,24 @@ impl Uncoupled {
         let [on_alpha, on_beta] = &on;
         let alpha = side(true, on_alpha, before.map(|b| &b.alpha))?;
         let beta = side(false, on_beta, before.map(|b| &b.beta))?;
-        let factors = (0..recorded.pairs.len())
-            .flat_map(|frf| recorded.s.iter().map(move |s| (frf, s.im)))
-            .map(|(frf, omega)| chain.factor(frf, omega))
-            .collect();
+        let same = before.filter(|before| {
+            let readings = before.chain.readings.iter().zip(&chain.readings);
+            before.chain.decay() == chain.decay() && readings.into_iter().all(|(a, b)| a.has_signals_of(b))
+        });
+        let factors = same.map_or_else(
+            || {
+                let values = (0..recorded.pairs.len())
+                    .flat_map(|frf| recorded.s.iter().map(move |s| (frf, s.im)))
+                    .map(|(frf, omega)| chain.factor(frf, omega));
+                Arc::new(values.collect())
+            },
+            |before| Arc::clone(&before.factors),
+        );
         let n = recorded.s.len();
         let mut all = Uncoupled {
             alpha,
             beta,
+            chain,
             factors,
             between: vec![Complex64::ZERO; recorded.pairs.len() * n],
             from_joint: vec![Complex64::ZERO; 2 * recorded.responses.len() * n],
@@ -283,8 +294,11 @@ impl Uncoupled {
             let joint: ComplexMatrix2 = Matrix2::new(g(0), g(1), g(2), g(3));
             let stiffness = law.stiffness(s);
             let inverse = (ComplexMatrix2::identity() + stiffness * joint).inverse()?;
-            let transmitted = inverse * stiffness;
-            let back = ComplexMatrix2::identity() - joint * transmitted;
+            // Motions of d are for derivatives only.
+            let back = match columns {
+                Some(_) => ComplexMatrix2::identity() - joint * (inverse * stiffness),
+                None => ComplexMatrix2::zero(),
+            };
             for (c, row) in from.iter_mut().enumerate() {
                 let [a, b] = pair(&self.from_joint, c, line);
                 *row = [0, 1].map(|j| a * inverse.at(0, j) + b * inverse.at(1, j));
@@ -292,7 +306,8 @@ impl Uncoupled {
             for (c, column) in to.iter_mut().enumerate() {
                 let [a, b] = pair(&self.to_joint, c, line);
                 let times = |m: &ComplexMatrix2| [0, 1].map(|i| m.at(i, 0) * a + m.at(i, 1) * b);
-                *column = (times(&stiffness), times(&back));
+                let motion = if columns.is_some() { times(&back) } else { [Complex64::ZERO; 2] };
+                *column = (times(&stiffness), motion);
             }
             let factors = columns.as_ref().map_or([Complex64::ZERO; 3], |(law, _)| law.factors(s));
             for (frf, &(response, reference)) in recorded.channels.iter().enumerate() {

@@ -1,5 +1,4 @@
 use jointscope_linalg::{Matrix2, RealMatrix2};
-use num_complex::Complex64;
 
 /// (k11, k12, k22, c11, c12, c22), or with c = v vᵀ on the boundary of what is passive.
 #[derive(Debug, Clone, Copy)]
@@ -29,11 +28,6 @@ impl Parameters {
             (false, None) => &[0, 1, 2, 3, 4, 5],
             (false, Some(_)) => &[0, 1, 2, 3, 4],
         }
-    }
-
-    /// The free ones among values of all slots.
-    pub fn of_active(&self, slots: &[Complex64; 6]) -> Vec<Complex64> {
-        self.active().iter().map(|&m| slots[m]).collect()
     }
 
     /// Values of all slots from those of the free ones; zero of the others.
@@ -78,13 +72,26 @@ impl Parameters {
         Parameters { c: [v[0] * v[0], v[0] * v[1], v[1] * v[1]], boundary: Some(v), ..self }
     }
 
-    /// Derivatives with respect to the slots from those with respect to (k, c).
-    pub fn chain(&self, by_kc: &[Complex64; 6]) -> [Complex64; 6] {
-        let Some([v1, v2]) = self.boundary else { return *by_kc };
-        let mut slots = *by_kc;
-        slots[3] = by_kc[3] * (2.0 * v1) + by_kc[4] * v2;
-        slots[4] = by_kc[4] * v1 + by_kc[5] * (2.0 * v2);
-        slots
+    /// Derivatives of (k11, k12, k22, c11, c12, c22) by the free slots, one row a slot.
+    pub fn derivatives(&self) -> Vec<[f64; 6]> {
+        let row = |&slot: &usize| {
+            let mut row = [0.0; 6];
+            match (slot, self.boundary) {
+                (3, Some([v1, v2])) => (row[3], row[4]) = (2.0 * v1, v2),
+                (4, Some([v1, v2])) => (row[4], row[5]) = (v1, 2.0 * v2),
+                _ => row[slot] = 1.0,
+            }
+            row
+        };
+        self.active().iter().map(row).collect()
+    }
+
+    /// Whether k differs by less than a share of √(k_ii k_jj).
+    pub fn is_near(&self, other: &Parameters, share: f64) -> bool {
+        let root = [self.k[0], self.k[2]].map(|k| k.abs().sqrt());
+        let units = [root[0] * root[0], root[0] * root[1], root[1] * root[1]];
+        let units = if self.scalar { [units[0], f64::INFINITY, f64::INFINITY] } else { units };
+        self.k.iter().zip(&other.k).zip(units).all(|((a, b), unit)| (a - b).abs() <= share * unit)
     }
 
     pub fn stepped(&self, step: &[f64; 6]) -> Self {
