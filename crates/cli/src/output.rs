@@ -151,7 +151,12 @@ fn try_to_write(directory: &Path) -> io::Result<()> {
     static TRIED: AtomicUsize = AtomicUsize::new(0);
     let count = TRIED.fetch_add(1, Ordering::Relaxed);
     let probe = directory.join(format!(".jointscope.{}-{count}.probe", std::process::id()));
-    let written = File::create_new(&probe).and_then(|mut file| file.write_all(b"?"));
+    let mut file = match File::create_new(&probe) {
+        // A job on another machine has the same number and tries just now, so files can be made.
+        Err(error) if error.kind() == io::ErrorKind::AlreadyExists => return Ok(()),
+        file => file?,
+    };
+    let written = file.write_all(b"?");
     let removed = fs::remove_file(&probe);
     written.and(removed)
 }
@@ -206,8 +211,12 @@ impl Undo {
             .take_while(|ancestor| !ancestor.as_os_str().is_empty() && !ancestor.exists())
             .collect();
         for directory in missing.into_iter().rev() {
-            fs::create_dir(directory)?;
-            self.steps.push(Step::Directory(directory.to_owned()));
+            match fs::create_dir(directory) {
+                Ok(()) => self.steps.push(Step::Directory(directory.to_owned())),
+                // Another case, or another job, has made it in between.
+                Err(error) if error.kind() == io::ErrorKind::AlreadyExists && directory.is_dir() => {}
+                Err(error) => return Err(error),
+            }
         }
         Ok(())
     }
@@ -293,6 +302,24 @@ mod tests {
         assert_eq!(fs::read(scratch.0.join("a/b/one.json")).unwrap(), b"1");
         assert_eq!(fs::read(scratch.0.join("a/two.json")).unwrap(), b"2");
         assert_eq!(fs::read_dir(scratch.0.join("a")).unwrap().count(), 2, "nothing else is left");
+    }
+
+    #[test]
+    fn threads_that_write_below_one_new_directory_do_not_trip_over_each_other() {
+        let scratch = Scratch::new("threads");
+        for round in 0..20 {
+            std::thread::scope(|scope| {
+                for thread in 0..4 {
+                    let path = scratch.0.join(format!("{round}/new/{thread}/one.json"));
+                    scope.spawn(move || {
+                        let mut outputs = Outputs::default();
+                        outputs.add(path, "1");
+                        outputs.write().unwrap();
+                    });
+                }
+            });
+            assert_eq!(fs::read_dir(scratch.0.join(format!("{round}/new"))).unwrap().count(), 4);
+        }
     }
 
     #[test]
