@@ -3,12 +3,17 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use jointscope::decomposition::{JointFit, LikelihoodFit};
+use jointscope::decomposition::{
+    JointFit, JointFitOptions, JointsFit, LikelihoodFit, SeveralError, SidesError, fit_joints,
+};
 use jointscope::estimation::ResponseWindow;
 use jointscope::pipeline::MeasuredFrfs;
-use jointscope::report::decomposition_page;
 use jointscope::report::format::quantity;
-use jointscope::{Analysis, AnalysisOptions, Band, DecompositionError, Relation, Remarks, stiffness_file};
+use jointscope::report::{PageContext, decomposition_page, joints_page};
+use jointscope::{
+    Analysis, AnalysisOptions, Band, DecompositionError, Fixture, Relation, Remarks, joints_file,
+    stiffness_file,
+};
 
 use crate::estimation_arguments::EstimationArguments;
 use crate::input::FixtureFile;
@@ -24,7 +29,7 @@ pub struct DecomposeArguments {
     pub fixture: PathBuf,
     #[command(flatten)]
     pub recording: RecordingArguments,
-    /// The joint to find; needed where the fixture has several.
+    /// The joint to find; all at once, by a fit to all FRFs, where the fixture has several and none is named.
     #[arg(long, value_name = "J")]
     pub joint: Option<String>,
     /// Band of the averages and of the fit in Hz [default: the quietest band, and all lines].
@@ -61,25 +66,83 @@ pub fn run(arguments: &DecomposeArguments) -> Result<String, Refusal> {
         exact: arguments.exact,
         laws: true,
     };
-    let analysis = Analysis::of(&as_recorded, &measured.frfs, &options).map_err(|error| match error {
-        DecompositionError::Sides(_) | DecompositionError::Model(_) => fixture.refusal(error),
-        error => arguments.recording.refusal(error),
-    })?;
+    if arguments.joint.is_none() && as_recorded.joints().len() > 1 {
+        return several(arguments, &fixture, &as_recorded, measured);
+    }
+    let analysis = match Analysis::of(&as_recorded, &measured.frfs, &options) {
+        Err(DecompositionError::Sides(SidesError::Loop(_))) => {
+            return several(arguments, &fixture, &as_recorded, measured);
+        }
+        analysis => analysis.map_err(|error| match error {
+            DecompositionError::Sides(_) | DecompositionError::Model(_) => fixture.refusal(error),
+            error => arguments.recording.refusal(error),
+        })?,
+    };
     let files = || std::iter::once(&arguments.fixture).chain(&arguments.recording.files);
     let notes = measured.notes.into_iter().chain(window(&analysis)).chain(lost_tolerances(&analysis));
     let context = origin::context(files(), notes.collect(), measured.hammer_test)?;
     let page = decomposition_page(&analysis, &as_recorded, &context).map_err(Refusal::new)?;
-    let mut outputs = Outputs::new(files());
+    written(arguments, &context, (stiffness_file(&analysis), page), summary(&analysis))
+}
+
+/// Writes both files; answers with what was found and where the page is.
+fn written(
+    arguments: &DecomposeArguments,
+    context: &PageContext,
+    (mut file, page): (serde_json::Value, String),
+    found: Vec<String>,
+) -> Result<String, Refusal> {
+    let mut outputs = Outputs::new(std::iter::once(&arguments.fixture).chain(&arguments.recording.files));
     let page_path = arguments.output.join("report.html");
-    let mut file = stiffness_file(&analysis);
-    origin::add(&mut file, &context);
+    origin::add(&mut file, context);
     outputs.add_json(arguments.output.join("stiffness.json"), &file);
     outputs.add(&page_path, page);
     outputs.write()?;
     let mut lines = context.notes.clone();
-    lines.extend(summary(&analysis));
+    lines.extend(found);
     lines.push(page_path.display().to_string());
     Ok(lines.join("\n"))
+}
+
+/// All joints at once, or the one named, which lies in a loop.
+fn several(
+    arguments: &DecomposeArguments,
+    file: &FixtureFile,
+    fixture: &Fixture,
+    measured: MeasuredFrfs,
+) -> Result<String, Refusal> {
+    let names = arguments.joint.as_ref().map(std::slice::from_ref);
+    let options = JointFitOptions { band: arguments.band, exact: arguments.exact, laws: true };
+    let fit = fit_joints(fixture, &measured.frfs, names, options).map_err(|error| match error {
+        SeveralError::NothingRecorded | SeveralError::Noise(_) | SeveralError::Undetermined { .. } => {
+            arguments.recording.refusal(error)
+        }
+        error => file.refusal(error),
+    })?;
+    let files = std::iter::once(&arguments.fixture).chain(&arguments.recording.files);
+    let mut notes = measured.notes;
+    if arguments.relation == Relation::Paper {
+        notes.push(
+            "--relation paper has no meaning for several joints at once: no line is decomposed, all are fitted"
+                .to_owned(),
+        );
+    }
+    let context = origin::context(files, notes, measured.hammer_test)?;
+    let page = joints_page(&fit, fixture, &context).map_err(Refusal::new)?;
+    written(arguments, &context, (joints_file(&fit), page), summary_of_several(&fit))
+}
+
+/// What was found of every joint, a line each.
+fn summary_of_several(fit: &JointsFit) -> Vec<String> {
+    let mut lines = Vec::new();
+    for joint in &fit.joints {
+        lines.push(format!("joint {}", joint.name));
+        lines.extend(numbers(&joint.fit, elements_of(joint.fit.scalar)));
+        lines.extend(joint.remarks());
+    }
+    lines.extend(fit.joints.first().map(|first| basis(&first.fit)));
+    lines.extend(fit.remarks());
+    lines
 }
 
 /// Where on the complex plane the joint was read, if not on the imaginary axis.
@@ -120,7 +183,7 @@ fn summary(analysis: &Analysis) -> Vec<String> {
             lines.push(format!("{noisy} lines are dominated by noise; their intervals are only indicative"))
         }
     }
-    let elements: &[(usize, usize)] = if spectrum.scalar { &[(0, 0)] } else { &[(0, 0), (0, 1), (1, 1)] };
+    let elements = elements_of(spectrum.scalar);
     match (&analysis.joint_fit, &analysis.likelihood) {
         (Ok(fit), _) => lines.extend(all_frfs(fit, elements)),
         (Err(error), Ok(fit)) => {
@@ -134,8 +197,20 @@ fn summary(analysis: &Analysis) -> Vec<String> {
 
 const UNITS: [[&str; 3]; 2] = [["N/m", "N/rad", "N*m/rad"], ["N*s/m", "N*s/rad", "N*m*s/rad"]];
 
+/// The elements of a symmetric matrix, or the one that means anything where bodies do not rotate.
+fn elements_of(scalar: bool) -> &'static [(usize, usize)] {
+    if scalar { &[(0, 0)] } else { &[(0, 0), (0, 1), (1, 1)] }
+}
+
 /// The joint from all FRFs, an element a line, and what is to be known of it.
 fn all_frfs(fit: &JointFit, elements: &[(usize, usize)]) -> Vec<String> {
+    let mut lines = numbers(fit, elements);
+    lines.push(basis(fit));
+    lines.extend(fit.remarks());
+    lines
+}
+
+fn numbers(fit: &JointFit, elements: &[(usize, usize)]) -> Vec<String> {
     let (k_std, c_std) = fit.std();
     let parts = [("k", &fit.stiffness, k_std), ("c", &fit.damping, c_std)];
     let mut lines = Vec::new();
@@ -145,18 +220,21 @@ fn all_frfs(fit: &JointFit, elements: &[(usize, usize)]) -> Vec<String> {
             lines.push(format!("{symbol}{}{} = {text}", i + 1, j + 1));
         }
     }
+    lines
+}
+
+/// What a fit rests on.
+fn basis(fit: &JointFit) -> String {
     let fixture = match fit.quantities.is_empty() {
         true => "the fixture taken as exact",
         false => "the fixture moving within its tolerances",
     };
-    lines.push(format!(
+    format!(
         "from {} over {}, {fixture}; chi2 per degree of freedom {:.3}",
         counted(fit.frfs.len(), "FRF"),
         counted(fit.lines, "line"),
         fit.chi2_per_dof
-    ));
-    lines.extend(fit.remarks());
-    lines
+    )
 }
 
 /// The joint from the FRFs across it, with the fixture taken as exact.
