@@ -110,10 +110,19 @@ pub struct Decomposed {
     pub nominal: Option<Nominal>,
 }
 
-/// What is missing from a `stiffness.json`: the place in it.
+/// Why a `stiffness.json` cannot be read as one joint's.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("`{0}` is missing or not what it should be; make the file anew with `jointscope decompose`")]
-pub struct DecomposedError(pub String);
+pub enum DecomposedError {
+    /// The place in the file of what is missing.
+    #[error("`{0}` is missing or not what it should be; make the file anew with `jointscope decompose`")]
+    Missing(String),
+    /// The file is of several joints found at once, or of one in a loop.
+    #[error(
+        "the file holds joints found at once by a fit to all FRFs ({}), and one joint taken out of its assembly is read here; where a joint alone connects its sides, `jointscope decompose --joint` makes such a file",
+        .0.join(", ")
+    )]
+    Several(Vec<String>),
+}
 
 impl Decomposed {
     /// From the contents of a `stiffness.json`.
@@ -121,7 +130,12 @@ impl Decomposed {
     /// # Errors
     /// The first entry that is missing.
     pub fn of(name: impl Into<String>, file: &Value) -> Result<Self, DecomposedError> {
-        let missing = |what: &str| DecomposedError(what.to_owned());
+        let missing = |what: &str| DecomposedError::Missing(what.to_owned());
+        if let Some(joints) = file["joints"].as_array() {
+            return Err(DecomposedError::Several(
+                joints.iter().filter_map(|joint| read(&joint["name"])).collect(),
+            ));
+        }
         let lines = file["lines"].as_array().ok_or_else(|| missing("lines"))?;
         let lines = lines.iter().enumerate().map(|(i, entry)| {
             let line: LineEntry = read(entry).ok_or_else(|| missing(&format!("lines/{i}")))?;
@@ -188,7 +202,7 @@ fn read<T: DeserializeOwned>(value: &Value) -> Option<T> {
 fn optional<T: DeserializeOwned>(file: &Value, key: &str) -> Result<Option<T>, DecomposedError> {
     match &file[key] {
         Value::Null => Ok(None),
-        value => read(value).map(Some).ok_or_else(|| DecomposedError(key.to_owned())),
+        value => read(value).map(Some).ok_or_else(|| DecomposedError::Missing(key.to_owned())),
     }
 }
 

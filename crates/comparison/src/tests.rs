@@ -398,3 +398,10 @@ fn a_share_is_said_with_its_significant_digits() {
         ("0 %".into(), "120 %".into())
     );
 }
+
+#[test]
+fn a_file_of_joints_found_at_once_is_refused_by_their_names() {
+    let file = serde_json::json!({ "joints": [{ "name": "J" }, { "name": "K" }], "covariance": {} });
+    let error = crate::Decomposed::of("ring", &file).unwrap_err();
+    assert_eq!(error, crate::DecomposedError::Several(vec!["J".into(), "K".into()]));
+}

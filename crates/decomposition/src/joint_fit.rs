@@ -14,6 +14,7 @@ mod likelihood;
 mod problem;
 mod quantities;
 mod recorded;
+mod several;
 mod uncertainty;
 mod uncoupled;
 
@@ -22,6 +23,7 @@ pub use found::{FittedLength, FittedQuantity, JointFit, UnmovedQuantity};
 pub use law::LawKind;
 pub use laws::LawFit;
 pub use likelihood::JointLikelihood;
+pub use several::{FoundJoint, JointsCovariance, JointsFit, SeveralError, fit_joints};
 
 use crate::{DecompositionError, LikelihoodFit, Sides};
 use admissible::Freed;

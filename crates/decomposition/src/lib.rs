@@ -16,6 +16,7 @@
 //! * [`Averages`]: means over a band, plain (eq 35, 42) and weighted;
 //! * [`maximum_likelihood`]: symmetric, passive k and c straight from the FRFs;
 //! * [`fit_joint`]: the same from every FRF, the fixture's quantities moving within their tolerances; tests of the joint, laws over frequency;
+//! * [`fit_joints`]: several joints at once, in chains and in loops, from every FRF;
 //! * [`interfaces`]: what the joint's ends add to its beam (eq 6, scalar and matrix form).
 //!
 //! ```
@@ -53,8 +54,9 @@ pub use averages::{Averages, MatrixAverage};
 pub use estimate::{Element, Estimate, Figure, Method, Part};
 pub use interfaces::{Compliance, InterfaceStiffness, Interfaces, interfaces};
 pub use joint_fit::{
-    Admissible, FittedLength, FittedQuantity, JointFit, JointFitOptions, JointLikelihood, JointTests, LawFit,
-    LawKind, UnmovedQuantity, fit_joint,
+    Admissible, FittedLength, FittedQuantity, FoundJoint, JointFit, JointFitOptions, JointLikelihood,
+    JointTests, JointsCovariance, JointsFit, LawFit, LawKind, SeveralError, UnmovedQuantity, fit_joint,
+    fit_joints,
 };
 pub use judgement::{Contradiction, Judgement, Use};
 pub use likelihood::{LikelihoodFit, maximum_likelihood};

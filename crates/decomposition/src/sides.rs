@@ -228,6 +228,7 @@ pub(crate) fn with_effects_of(fixture: &Fixture, side: Fixture) -> Fixture {
             let at_a_joint = ends.map(|p| &side.points()[p].name).any(|end| end == name);
             effect.kind.spec().entry == Entry::InSeries && at_a_joint
         }
+        Place::Between(one, other) => side.body(one).is_some() && side.body(other).is_some(),
         _ => false,
     };
     let effects = fixture.physics().iter().filter(own).cloned().collect();

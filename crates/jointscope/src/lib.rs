@@ -130,7 +130,7 @@ pub use modes_file::modes_file;
 pub use nonlinear_file::nonlinear_file;
 pub use plan_file::plan_file;
 pub use stepped_file::stepped_file;
-pub use stiffness_file::stiffness_file;
+pub use stiffness_file::{joints_file, stiffness_file};
 
 /// Why the bytes of a file are no recording of a fixture.
 #[derive(Debug, thiserror::Error)]

@@ -1,6 +1,6 @@
 use jointscope_decomposition::{
-    Analysis, Compliance, Element, InterfaceStiffness, JointFit, JointLine, LawFit, LawKind, MatrixAverage,
-    Method, Part, Relation,
+    Analysis, Compliance, Element, FoundJoint, InterfaceStiffness, JointFit, JointLine, JointsFit, LawFit,
+    LawKind, MatrixAverage, Method, Part, Relation,
 };
 use jointscope_linalg::RealMatrix2;
 use serde_json::{Map, Value, json};
@@ -45,6 +45,22 @@ pub fn stiffness_file(analysis: &Analysis) -> Value {
     root.insert("nominal".into(), nominal(analysis));
     root.insert("recording".into(), recording(analysis));
     Value::Object(root)
+}
+
+/// The contents of `stiffness.json` where several joints were found at once, or one in a loop: every joint as `joint` has it, and the covariance of all.
+pub fn joints_file(joints: &JointsFit) -> Value {
+    let of = |found: &FoundJoint| {
+        let mut entry = fitted(&found.fit);
+        entry["name"] = json!(found.name);
+        entry["ends"] = json!(found.ends);
+        entry["in_a_loop"] = json!(found.is_in_a_loop);
+        entry["nominal_stiffness"] = matrix(&found.nominal);
+        entry
+    };
+    json!({
+        "joints": joints.joints.iter().map(of).collect::<Vec<_>>(),
+        "covariance": joints.covariance_of_all(),
+    })
 }
 
 /// The joint from all FRFs, by the name it has in the fixture.

@@ -6,10 +6,13 @@ mod element;
 mod fixture_view;
 mod frfs;
 mod interface_table;
+mod joints;
 mod omitted;
 mod result;
 mod shares;
 mod verdict;
+
+pub use joints::{joints_page, joints_report};
 
 use jointscope_decomposition::{Analysis, Estimate, Relation};
 use jointscope_fixture::{Fixture, Joint, JointLaw};

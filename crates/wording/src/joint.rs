@@ -2,7 +2,7 @@
 
 use crate::numbers::{listed, percent, plain, significant};
 use crate::{Remarks, Says};
-use jointscope_decomposition::{JointFit, JointTests, LawFit, LawKind};
+use jointscope_decomposition::{FoundJoint, JointFit, JointTests, JointsFit, LawFit, LawKind};
 
 /// Standard deviations from which a quantity of the fixture is worth a word.
 const FAR: f64 = 2.0;
@@ -41,18 +41,60 @@ impl Says for LawFit {
 
 impl Remarks for JointFit {
     fn remarks(&self) -> Vec<String> {
+        let mut all = of_law(self);
+        all.extend(of_misfit(self));
+        all.extend(of_limits(self));
+        all.extend(of_quantities(self));
+        all
+    }
+}
+
+impl Remarks for JointsFit {
+    /// What is true of the fit as a whole.
+    fn remarks(&self) -> Vec<String> {
+        let Some(first) = self.joints.first() else { return Vec::new() };
+        let loops: Vec<String> =
+            self.joints.iter().filter(|joint| joint.is_in_a_loop).map(|joint| joint.name.clone()).collect();
         let mut all = Vec::new();
-        all.extend(self.law().map(|law| {
+        if !loops.is_empty() {
+            let (which, their, them) = match loops.len() {
+                1 => ("joint", "its", "it"),
+                _ => ("joints", "their", "them"),
+            };
+            all.push(format!(
+                "the ends of {which} {} hold together without {them}, in a loop: no two sides meet at {them} alone, so that eq (7) and K and C by line do not apply; k and c \
+                 are those of a fit to all FRFs, in which {their} loop is closed",
+                listed(&loops)
+            ));
+        }
+        all.extend(of_misfit(&first.fit));
+        all.extend(of_quantities(&first.fit));
+        all
+    }
+}
+
+impl Remarks for FoundJoint {
+    /// What is true of this joint alone.
+    fn remarks(&self) -> Vec<String> {
+        let mut all = of_law(&self.fit);
+        all.extend(of_limits(&self.fit));
+        all
+    }
+}
+
+fn of_law(fit: &JointFit) -> Vec<String> {
+    let mut all = Vec::new();
+    all.extend(fit.law().map(|law| {
             let sure = if law.probability >= CERTAIN { "" } else { "most probably " };
             // The mass has a sentence of its own.
-            let what = if self.mass.is_some() { over_frequency(law) } else { law.says() };
+            let what = if fit.mass.is_some() { over_frequency(law) } else { law.says() };
             format!(
                 "of the laws compared, the joint is over frequency {sure}{what} (probability {}); the ± hold by how much the laws differ in the middle of \
                  the band",
                 percent(law.probability)
             )
         }));
-        all.extend(self.mass.map(|(mass, std)| {
+    all.extend(fit.mass.map(|(mass, std)| {
             format!(
                 "the FRFs show a mass of the joint of {} ± {}; k and c are those of a joint with it, and K and C by line, which hold its inertia, are not \
                  compared with them",
@@ -60,42 +102,54 @@ impl Remarks for JointFit {
                 plain(std, "kg")
             )
         }));
-        if self.strain > 1.0 {
-            all.push(format!(
+    all
+}
+
+fn of_misfit(fit: &JointFit) -> Vec<String> {
+    let mut all = Vec::new();
+    if fit.strain > 1.0 {
+        all.push(format!(
                 "the fixture's quantities would be farther from what is stated than chance takes them: the ± are {} times as large as noise and tolerances make \
                  them; something is stated wrongly or left out, which `jointscope diagnose` may name",
-                significant(self.strain.sqrt(), 2)
+                significant(fit.strain.sqrt(), 2)
             ));
-        }
-        if self.inflation > 1.0 {
-            all.push(format!(
+    }
+    if fit.inflation > 1.0 {
+        all.push(format!(
                 "noise and tolerances do not explain the FRFs (χ² per degree of freedom {}): the noise is taken {} times as large, and the ± hold \
                  how far the joint moves when an eighth of the lines is left out",
-                significant(self.chi2_per_dof, 3),
-                significant(self.inflation.sqrt(), 2)
+                significant(fit.chi2_per_dof, 3),
+                significant(fit.inflation.sqrt(), 2)
             ));
-        }
-        if self.is_on_the_boundary {
-            all.push(
-                "a free c would give out energy; it is held at the limit of what a passive joint can do"
-                    .to_owned(),
-            );
-        }
-        all.extend(self.tests.remarks());
-        let far = self
-            .quantities
-            .iter()
-            .filter(|quantity| quantity.std.is_some() && quantity.deviations.abs() >= FAR);
-        let far: Vec<String> = far
-            .map(|quantity| {
-                format!("{} by {} standard deviations", quantity.path, significant(quantity.deviations, 2))
-            })
-            .collect();
-        if !far.is_empty() {
-            all.push(format!("the FRFs move {}", listed(&far)));
-        }
-        all
     }
+    all
+}
+
+fn of_limits(fit: &JointFit) -> Vec<String> {
+    let mut all = Vec::new();
+    if fit.is_on_the_boundary {
+        all.push(
+            "a free c would give out energy; it is held at the limit of what a passive joint can do"
+                .to_owned(),
+        );
+    }
+    all.extend(fit.tests.remarks());
+    all
+}
+
+fn of_quantities(fit: &JointFit) -> Vec<String> {
+    let mut all = Vec::new();
+    let far =
+        fit.quantities.iter().filter(|quantity| quantity.std.is_some() && quantity.deviations.abs() >= FAR);
+    let far: Vec<String> = far
+        .map(|quantity| {
+            format!("{} by {} standard deviations", quantity.path, significant(quantity.deviations, 2))
+        })
+        .collect();
+    if !far.is_empty() {
+        all.push(format!("the FRFs move {}", listed(&far)));
+    }
+    all
 }
 
 impl Remarks for JointTests {

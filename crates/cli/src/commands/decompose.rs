@@ -4,12 +4,17 @@ use std::path::PathBuf;
 
 use clap::Args;
 use jointscope::cases::Command;
-use jointscope::decomposition::{JointFit, LikelihoodFit};
+use jointscope::decomposition::{
+    JointFit, JointFitOptions, JointsFit, LikelihoodFit, SeveralError, SidesError, fit_joints,
+};
 use jointscope::estimation::ResponseWindow;
 use jointscope::pipeline::MeasuredFrfs;
-use jointscope::report::decomposition_report;
 use jointscope::report::format::quantity;
-use jointscope::{Analysis, AnalysisOptions, Band, DecompositionError, Relation, Remarks, stiffness_file};
+use jointscope::report::{PageContext, Report, decomposition_report, joints_report};
+use jointscope::{
+    Analysis, AnalysisOptions, Band, DecompositionError, Fixture, Relation, Remarks, joints_file,
+    stiffness_file,
+};
 
 use super::Said;
 use super::many::{self, ManyArguments, Task};
@@ -28,7 +33,7 @@ pub struct DecomposeArguments {
     pub fixture: PathBuf,
     #[command(flatten)]
     pub recording: RecordingArguments,
-    /// The joint to find; needed where the fixture has several.
+    /// The joint to find; all at once, by a fit to all FRFs, where the fixture has several and none is named.
     #[arg(long, value_name = "J")]
     pub joint: Option<String>,
     /// Band of the averages and of the fit in Hz [default: the quietest band, and all lines].
@@ -93,26 +98,84 @@ fn found(arguments: &DecomposeArguments, command: String) -> Result<Answered, Re
         exact: arguments.exact,
         laws: true,
     };
-    let analysis = Analysis::of(&as_recorded, &measured.frfs, &options).map_err(|error| match error {
-        DecompositionError::Sides(_) | DecompositionError::Model(_) => fixture.refusal(error),
-        error => arguments.recording.refusal(error),
-    })?;
+    if arguments.joint.is_none() && as_recorded.joints().len() > 1 {
+        return several(arguments, command, (&fixture, &as_recorded), measured);
+    }
+    let analysis = match Analysis::of(&as_recorded, &measured.frfs, &options) {
+        Err(DecompositionError::Sides(SidesError::Loop(_))) => {
+            return several(arguments, command, (&fixture, &as_recorded), measured);
+        }
+        analysis => analysis.map_err(|error| match error {
+            DecompositionError::Sides(_) | DecompositionError::Model(_) => fixture.refusal(error),
+            error => arguments.recording.refusal(error),
+        })?,
+    };
     let notes = measured.notes.into_iter().chain(window(&analysis)).chain(lost_tolerances(&analysis));
     let context = origin::context_of(command, inputs(arguments), notes.collect(), measured.hammer_test)?;
-    let mut file = stiffness_file(&analysis);
-    origin::add(&mut file, &context);
-    Ok(Answered {
-        answer: (FILE, pretty(&file)),
-        others: Vec::new(),
-        elsewhere: Vec::new(),
-        report: decomposition_report(&analysis, &as_recorded, &context),
-        frfs: Vec::new(),
-        summary: summary(&analysis),
-        notes: context.notes,
-    })
+    let report = decomposition_report(&analysis, &as_recorded, &context);
+    Ok(answered(context, stiffness_file(&analysis), report, summary(&analysis)))
 }
 
 const FILE: &str = "stiffness.json";
+
+/// The files of what was found.
+fn answered(
+    context: PageContext,
+    mut file: serde_json::Value,
+    report: Report,
+    summary: Vec<String>,
+) -> Answered {
+    origin::add(&mut file, &context);
+    Answered {
+        answer: (FILE, pretty(&file)),
+        others: Vec::new(),
+        elsewhere: Vec::new(),
+        report,
+        frfs: Vec::new(),
+        summary,
+        notes: context.notes,
+    }
+}
+
+/// All joints at once, or the one named, which lies in a loop.
+fn several(
+    arguments: &DecomposeArguments,
+    command: String,
+    (file, fixture): (&FixtureFile, &Fixture),
+    measured: MeasuredFrfs,
+) -> Result<Answered, Refusal> {
+    let names = arguments.joint.as_ref().map(std::slice::from_ref);
+    let options = JointFitOptions { band: arguments.band, exact: arguments.exact, laws: true };
+    let fit = fit_joints(fixture, &measured.frfs, names, options).map_err(|error| match error {
+        SeveralError::NothingRecorded | SeveralError::Noise(_) | SeveralError::Undetermined { .. } => {
+            arguments.recording.refusal(error)
+        }
+        error => file.refusal(error),
+    })?;
+    let mut notes = measured.notes;
+    if arguments.relation == Relation::Paper {
+        notes.push(
+            "--relation paper has no meaning for several joints at once: no line is decomposed, all are fitted"
+                .to_owned(),
+        );
+    }
+    let context = origin::context_of(command, inputs(arguments), notes, measured.hammer_test)?;
+    let report = joints_report(&fit, fixture, &context);
+    Ok(answered(context, joints_file(&fit), report, summary_of_several(&fit)))
+}
+
+/// What was found of every joint, a line each.
+fn summary_of_several(fit: &JointsFit) -> Vec<String> {
+    let mut lines = Vec::new();
+    for joint in &fit.joints {
+        lines.push(format!("joint {}", joint.name));
+        lines.extend(numbers(&joint.fit, elements_of(joint.fit.scalar)));
+        lines.extend(joint.remarks());
+    }
+    lines.extend(fit.joints.first().map(|first| basis(&first.fit)));
+    lines.extend(fit.remarks());
+    lines
+}
 
 /// Where on the complex plane the joint was read, if not on the imaginary axis.
 fn window(analysis: &Analysis) -> Option<String> {
@@ -152,7 +215,7 @@ fn summary(analysis: &Analysis) -> Vec<String> {
             lines.push(format!("{noisy} lines are dominated by noise; their intervals are only indicative"))
         }
     }
-    let elements: &[(usize, usize)] = if spectrum.scalar { &[(0, 0)] } else { &[(0, 0), (0, 1), (1, 1)] };
+    let elements = elements_of(spectrum.scalar);
     match (&analysis.joint_fit, &analysis.likelihood) {
         (Ok(fit), _) => lines.extend(all_frfs(fit, elements)),
         (Err(error), Ok(fit)) => {
@@ -166,8 +229,20 @@ fn summary(analysis: &Analysis) -> Vec<String> {
 
 const UNITS: [[&str; 3]; 2] = [["N/m", "N/rad", "N*m/rad"], ["N*s/m", "N*s/rad", "N*m*s/rad"]];
 
+/// The elements of a symmetric matrix, or the one that means anything where bodies do not rotate.
+fn elements_of(scalar: bool) -> &'static [(usize, usize)] {
+    if scalar { &[(0, 0)] } else { &[(0, 0), (0, 1), (1, 1)] }
+}
+
 /// The joint from all FRFs, an element a line, and what is to be known of it.
 fn all_frfs(fit: &JointFit, elements: &[(usize, usize)]) -> Vec<String> {
+    let mut lines = numbers(fit, elements);
+    lines.push(basis(fit));
+    lines.extend(fit.remarks());
+    lines
+}
+
+fn numbers(fit: &JointFit, elements: &[(usize, usize)]) -> Vec<String> {
     let (k_std, c_std) = fit.std();
     let parts = [("k", &fit.stiffness, k_std), ("c", &fit.damping, c_std)];
     let mut lines = Vec::new();
@@ -177,18 +252,21 @@ fn all_frfs(fit: &JointFit, elements: &[(usize, usize)]) -> Vec<String> {
             lines.push(format!("{symbol}{}{} = {text}", i + 1, j + 1));
         }
     }
+    lines
+}
+
+/// What a fit rests on.
+fn basis(fit: &JointFit) -> String {
     let fixture = match fit.quantities.is_empty() {
         true => "the fixture taken as exact",
         false => "the fixture moving within its tolerances",
     };
-    lines.push(format!(
+    format!(
         "from {} over {}, {fixture}; chi2 per degree of freedom {:.3}",
         counted(fit.frfs.len(), "FRF"),
         counted(fit.lines, "line"),
         fit.chi2_per_dof
-    ));
-    lines.extend(fit.remarks());
-    lines
+    )
 }
 
 /// The joint from the FRFs across it, with the fixture taken as exact.

@@ -10,13 +10,13 @@ use jointscope::plan::{NameNow, Plan, PlanOptions, Remaining, Start, Suggestion,
 use jointscope::report::{PageContext, plan_page};
 use jointscope::{Answer, Band, Fixture, Outcome, SpectralLines, effect_name, plan_file};
 
-use crate::commands::Program;
 use crate::answered::Destination;
+use crate::commands::Program;
 use crate::commands::diagnose::{self, DiagnoseArguments};
+use crate::commands::many::ManyArguments;
 use crate::estimation_arguments::EstimationArguments;
 use crate::input::{self, FixtureFile};
 use crate::origin;
-use crate::commands::many::ManyArguments;
 use crate::output::{Outputs, counted, pretty};
 use crate::progress;
 use crate::recording::{ReadingArguments, RecordingArguments};

@@ -7,6 +7,7 @@ mod comparison;
 mod diagnosis;
 mod drift;
 mod joint_fit;
+mod joints_fit;
 mod layers;
 mod links;
 mod location;

@@ -1,6 +1,7 @@
 //! The joint from all FRFs: laws over frequency, tests, and where the fixture moved.
 
 use jointscope_decomposition::{FittedQuantity, JointFit, JointTests, LawFit};
+use jointscope_fixture::Fixture;
 use jointscope_wording::{Remarks, Says};
 
 use super::Subject;
@@ -34,10 +35,10 @@ pub(super) fn section(subject: &Subject) -> Option<Section> {
         section = section.with(laws(fit));
     }
     section = section.with(tests(&fit.tests));
-    Some(if fit.quantities.is_empty() { section } else { section.with(moved(subject, fit)) })
+    Some(if fit.quantities.is_empty() { section } else { section.with(moved(subject.fixture, fit)) })
 }
 
-fn laws(fit: &JointFit) -> impl Into<Block> {
+pub(super) fn laws(fit: &JointFit) -> impl Into<Block> {
     let shown =
         fit.laws.iter().enumerate().filter(|(place, law)| *place < 2 || law.probability >= NEGLIGIBLE);
     let probability = |law: &LawFit| match law.probability {
@@ -62,7 +63,7 @@ fn laws(fit: &JointFit) -> impl Into<Block> {
     )
 }
 
-fn tests(tests: &JointTests) -> impl Into<Block> {
+pub(super) fn tests(tests: &JointTests) -> impl Into<Block> {
     let rows = [
         ("k₁₂ = k₂₁ and c₁₂ = c₂₁ (reciprocal)", tests.reciprocity),
         ("No negative eigenvalue of k (stays at rest)", tests.definite),
@@ -75,8 +76,8 @@ fn tests(tests: &JointTests) -> impl Into<Block> {
         .caption("p: how often chance speaks as much against it, if it holds")
 }
 
-fn moved(subject: &Subject, fit: &JointFit) -> impl Into<Block> {
-    let stated = subject.fixture.quantities();
+pub(super) fn moved(fixture: &Fixture, fit: &JointFit) -> impl Into<Block> {
+    let stated = fixture.quantities();
     let unit = move |path: &str| stated.iter().find(|own| own.path == path).map_or("", |own| own.key.unit());
     let mut rows: Vec<(&FittedQuantity, &'static str)> =
         fit.quantities.iter().map(|quantity| (quantity, unit(&quantity.path))).collect();

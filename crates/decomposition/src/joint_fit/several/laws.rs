@@ -1,0 +1,129 @@
+//! Laws of several joints over frequency.
+//!
+//! Trying all combinations would take 6ᵐ fits of m joints. All joints begin with K + sC; in each round every joint is fitted with every law, the others keeping theirs, and
+//! the one change that gains most evidence is made. A joint that takes the blame for another's law is so overtaken by the other.
+
+use super::super::law::{Dynamics, LawKind};
+use super::super::laws::{Candidate, LawFit, own_parameters, probable, variances};
+use super::super::problem::Columns;
+use super::super::quantities::Uncertain;
+use super::{Fitted, Fitter, Form, Problem, Test};
+use jointscope_inference::laplace_evidence;
+
+/// Laws of all joints at their optimum.
+struct State {
+    laws: Vec<Dynamics>,
+    coordinates: Vec<f64>,
+    others: Columns,
+}
+
+/// Steps of a law's fit: one that needs more is far from the FRFs.
+const STEPS: usize = 40;
+/// Of the law without damping, whose resonances are infinite: it is near at once or not at all.
+const FEW_STEPS: usize = 8;
+
+/// Every joint's laws, the most probable first, the other joints following their most probable law; without the joints' masses.
+pub(super) fn compared(
+    fitter: &Fitter,
+    (viscous, first): (&Problem, &Fitted),
+    quantities: &[Uncertain],
+) -> Vec<Vec<LawFit>> {
+    let test = fitter.test(quantities, viscous.test.weights);
+    let joints = viscous.laws.len();
+    let mut current = State {
+        laws: viscous.laws.clone(),
+        coordinates: first.point.coordinates.clone(),
+        others: first.others.clone(),
+    };
+    loop {
+        let all: Vec<Vec<(Candidate, State)>> =
+            (0..joints).map(|joint| candidates(fitter, &test, &current, joint)).collect();
+        // Noise is inflated by what the best combination leaves.
+        let lowest = all.iter().flatten().min_by(|a, b| a.0.fit.objective.total_cmp(&b.0.fit.objective));
+        let inflation = lowest.map_or(1.0, |(best, _)| best.inflation);
+        let evidence = |candidate: &Candidate| {
+            candidate.evidence + 0.5 * candidate.fit.objective * (1.0 - 1.0 / inflation)
+        };
+        let stays = |joint: usize, candidate: &Candidate| candidate.fit.kind == current.laws[joint].kind;
+        let gain = |joint: usize, candidate: &Candidate| {
+            let own = all[joint].iter().find(|(own, _)| stays(joint, own));
+            own.map_or(f64::NEG_INFINITY, |(own, _)| evidence(candidate) - evidence(own))
+        };
+        let changes = all.iter().enumerate().flat_map(|(joint, all)| {
+            let others = all.iter().enumerate().filter(move |(_, (candidate, _))| !stays(joint, candidate));
+            others.map(move |(place, (candidate, _))| (joint, place, gain(joint, candidate)))
+        });
+        let best = changes.filter(|(.., gain)| *gain > 0.0).max_by(|a, b| a.2.total_cmp(&b.2));
+        let changed = current.laws.iter().zip(&viscous.laws).filter(|(a, b)| a.kind != b.kind).count();
+        match best {
+            // No more changes than joints: laws that take turns are as good as each other.
+            Some((joint, place, _)) if changed < joints && current.laws[joint].kind == LawKind::Viscous => {
+                if let Some((_, state)) =
+                    all.into_iter().nth(joint).and_then(|all| all.into_iter().nth(place))
+                {
+                    current = state;
+                }
+            }
+            _ => {
+                let bare = |all: Vec<(Candidate, State)>| {
+                    probable(all.into_iter().map(|(candidate, _)| candidate).collect())
+                };
+                return all.into_iter().map(bare).collect();
+            }
+        }
+    }
+}
+
+/// One joint with every law, the others keeping theirs.
+fn candidates(fitter: &Fitter, test: &Test, current: &State, joint: usize) -> Vec<(Candidate, State)> {
+    let of_kind = |kind: LawKind| {
+        let shapes: &[f64] = match kind {
+            _ if kind == current.laws[joint].kind => &[0.0],
+            LawKind::StandardLinearSolid => &[-1.0, 1.0],
+            LawKind::Fractional => &[-0.3, 0.3],
+            _ => &[0.0],
+        };
+        let fits = shapes.iter().filter_map(|shape| candidate(fitter, test, current, joint, (kind, *shape)));
+        fits.reduce(|a, b| if b.0.fit.objective < a.0.fit.objective { b } else { a })
+    };
+    LawKind::ALL.into_iter().filter_map(of_kind).collect()
+}
+
+/// A joint with a law at its optimum next to the current one: in the middle of the band it begins with the stiffness and damping that it has there.
+fn candidate(
+    fitter: &Fitter,
+    test: &Test,
+    current: &State,
+    joint: usize,
+    (kind, shape): (LawKind, f64),
+) -> Option<(Candidate, State)> {
+    let mut laws = current.laws.clone();
+    let own = &current.laws[joint];
+    laws[joint] = Dynamics::new(kind, own.unit, own.middle, own.stiffness == Form::Scalar);
+    let first: usize = current.laws[..joint].iter().map(Dynamics::count).sum();
+    let (before, rest) = current.coordinates.split_at(first);
+    let (here, after) = rest.split_at(own.count());
+    let mut start = before.to_vec();
+    if kind == own.kind {
+        start.extend_from_slice(here);
+    } else {
+        let [k, d, _] = own.matrices(here);
+        let mut matrices = super::coordinates(&laws[joint], k, d);
+        matrices.resize(laws[joint].count() - laws[joint].shapes(), 0.0);
+        matrices.resize(laws[joint].count(), shape);
+        start.extend(matrices);
+    }
+    start.extend_from_slice(after);
+    let own_ones = laws.iter().flat_map(own_parameters);
+    let parameters = own_ones.chain(test.quantities.iter().map(|quantity| quantity.parameter)).collect();
+    let problem = Problem { test, laws, parameters };
+    let steps = if kind == LawKind::Constant { FEW_STEPS } else { STEPS };
+    let (point, others) = problem.fit_within(start, Some(current.others.clone()), steps)?;
+    let information = problem.equations_of(&point, &others, test.weights).information;
+    let evidence = laplace_evidence(point.objective, &information, &variances(&problem.parameters))?;
+    let law = &problem.laws[joint];
+    let fit = LawFit::of(law, &point.coordinates[first..first + law.count()], point.objective, None);
+    let inflation = fitter.inflation(&problem, &point);
+    let state = State { laws: problem.laws, coordinates: point.coordinates, others };
+    Some((Candidate { fit, evidence, inflation }, state))
+}
