@@ -36,7 +36,12 @@ pub(crate) const NUMBERS: [(&str, &str, (usize, usize)); 6] = [
 impl DecomposedCase {
     /// Of the contents of `stiffness.json`; `None` where they are no decomposition.
     pub fn of(file: &Value) -> Option<Self> {
-        let joint = file.get("joint")?;
+        let only = |joints: &'_ Value| match joints.as_array().map(Vec::as_slice) {
+            Some([only]) => Some(only.clone()),
+            _ => None,
+        };
+        // A joint in a loop stands in a list of its own.
+        let joint = &file.get("joint").cloned().or_else(|| only(file.get("joints")?))?;
         let text = |value: Option<&Value>| value.and_then(Value::as_str).map(str::to_owned);
         let at = |of: Option<&Value>, (i, j): (usize, usize)| of?.get(i)?.get(j)?.as_f64();
         let number = |(_, key, place): (&str, &str, (usize, usize))| {

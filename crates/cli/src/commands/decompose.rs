@@ -69,12 +69,14 @@ pub fn run(arguments: &DecomposeArguments) -> Result<Said, Refusal> {
         return many::run(&task, |case| {
             let mut single = arguments.clone();
             (single.fixture, single.recording.files) = (case.fixture.clone(), case.recordings.clone());
-            found(&single, case.command.to_owned())
+            found(&single, case.command.to_owned(), Joints::One)
         });
     }
     arguments.many.unused()?;
     arguments.destination.foresee(inputs(arguments), &[FILE, PAGE])?;
-    found(arguments, origin::command_line())?.end(&arguments.destination, inputs(arguments)).map(Said::from)
+    found(arguments, origin::command_line(), Joints::Any)?
+        .end(&arguments.destination, inputs(arguments))
+        .map(Said::from)
 }
 
 /// What the command reads.
@@ -82,8 +84,17 @@ fn inputs(arguments: &DecomposeArguments) -> impl Iterator<Item = &PathBuf> {
     std::iter::once(&arguments.fixture).chain(&arguments.recording.files)
 }
 
-/// The joint in the recordings; `command` is the line that gives this answer.
-fn found(arguments: &DecomposeArguments, command: String) -> Result<Answered, Refusal> {
+/// How many joints an answer may hold.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Joints {
+    /// One, as a row of a table does.
+    One,
+    /// As many as there are.
+    Any,
+}
+
+/// The joint in the recordings, or all of them; `command` is the line that gives this answer.
+fn found(arguments: &DecomposeArguments, command: String, joints: Joints) -> Result<Answered, Refusal> {
     let fixture = FixtureFile::read(&arguments.fixture)?;
     let measurement = arguments.recording.measurement(&fixture)?;
     let mut measured = MeasuredFrfs::of(&measurement, &arguments.estimation.options(ResponseWindow::Auto))
@@ -98,7 +109,13 @@ fn found(arguments: &DecomposeArguments, command: String) -> Result<Answered, Re
         exact: arguments.exact,
         laws: true,
     };
-    if arguments.joint.is_none() && as_recorded.joints().len() > 1 {
+    let count = as_recorded.joints().len();
+    if arguments.joint.is_none() && count > 1 {
+        if joints == Joints::One {
+            return Err(fixture.refusal(format!(
+                "has {count} joints, and a row of the table holds one: choose it with `--joint`, or decompose this case by itself"
+            )));
+        }
         return several(arguments, command, (&fixture, &as_recorded), measured);
     }
     let analysis = match Analysis::of(&as_recorded, &measured.frfs, &options) {

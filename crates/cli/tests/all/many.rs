@@ -57,6 +57,26 @@ fn a_case_that_fails_has_its_sentence_in_the_table_and_does_not_stop_the_others(
 }
 
 #[test]
+fn a_case_of_several_joints_says_that_a_row_holds_one_and_is_taken_with_its_name() {
+    const CHAIN: &str = r#"{ "bodies": { "A": {"mass": 1.0, "rotates": false}, "B": {"mass": 1.2, "rotates": false}, "C": {"mass": 0.8, "rotates": false} },
+      "points": { "1": {"body": "A", "x": 0}, "2": {"body": "B", "x": 0.1}, "3": {"body": "B", "x": 0.2}, "4": {"body": "C", "x": 0.3} },
+      "joints": { "J1": {"from": "1", "to": "2", "stiffness": [[1e6, 0], [0, 0]], "damping": [[20, 0], [0, 0]]},
+                  "J2": {"from": "3", "to": "4", "stiffness": [[2e6, 0], [0, 0]], "damping": [[20, 0], [0, 0]]} } }"#;
+    let bench = Bench::new("many-several");
+    fs::create_dir_all(bench.0.join("all/chain")).unwrap();
+    bench.write("all/chain/chain.json", CHAIN);
+    let frfs = ["1/1", "2/1", "4/1", "4/4"];
+    let synthesize =
+        ["synthesize", "all/chain/chain.json", "--lines", LINES, "-o", "all/chain/f.uff", "--frf"];
+    bench.done(&[&synthesize[..], &frfs].concat());
+    in_part(&bench, &DECOMPOSE);
+    let why = bench.json("out/chain/refused.json")["refused"].as_str().unwrap().to_owned();
+    assert!(why.contains("has 2 joints") && why.contains("--joint"), "{why}");
+    bench.done(&[&DECOMPOSE[..], &["--joint", "J2"]].concat());
+    assert!(bench.text("out/summary.csv").contains("chain,done,J2,"), "{}", bench.text("out/summary.csv"));
+}
+
+#[test]
 fn what_is_done_is_left_out_until_a_file_or_an_option_changes() {
     let bench = folder("many-again");
     in_part(&bench, &DECOMPOSE);
