@@ -28,11 +28,10 @@ pub use several::{FoundJoint, JointsCovariance, JointsFit, SeveralError, fit_joi
 use crate::{DecompositionError, LikelihoodFit, Sides};
 use admissible::Freed;
 use jointscope_averaging::Band;
-use jointscope_inference::{LeastSquares, NormalEquations, Parameter, Transform, inflated_weight};
+use jointscope_inference::{LeastSquares, NormalEquations, Parameter, Transform};
 use jointscope_linalg::{Matrix2, RealMatrix2};
 use jointscope_spectra::FrfSet;
 use law::{Dynamics, Form};
-use num_complex::Complex64;
 use problem::{Columns, Point, Problem, Test};
 use quantities::Uncertain;
 use recorded::Recorded;
@@ -194,11 +193,9 @@ impl<'a> Fitter<'a> {
             .enumerate()
             .find_map(|(place, start)| Some((place, columns(start)?)))
             .ok_or(NO_START)?;
-        let size = |column: &Vec<Complex64>| -> f64 {
-            column.iter().zip(weights).map(|(value, weight)| weight * value.norm_sqr()).sum()
-        };
         let all = quantities.into_iter().zip(columns);
-        let (matter, others): (Vec<_>, Vec<_>) = all.partition(|(_, column)| size(column) > NEGLIGIBLE);
+        let (matter, others): (Vec<_>, Vec<_>) =
+            all.partition(|(_, column)| self.recorded.size(column) > NEGLIGIBLE);
         let (matter, columns): (Vec<_>, Vec<_>) = matter.into_iter().unzip();
         let others = others.into_iter().map(|(quantity, _)| quantity).collect();
         Ok((matter, others, (place == 0).then_some(columns)))
@@ -296,9 +293,7 @@ impl<'a> Fitter<'a> {
     fn searched(&self, problem: &Problem, start: Vec<f64>) -> Option<Fitted> {
         let mut at = start;
         for share in SHARES_AS_NOISE {
-            let values = self.recorded.values.iter().zip(&self.recorded.weights);
-            let weights: Vec<f64> =
-                values.map(|(value, weight)| inflated_weight(*weight, value.norm_sqr(), share)).collect();
+            let weights = self.recorded.weights_with(share);
             let test = self.test(problem.test.quantities, &weights);
             at = Problem::viscous(&test, problem.law, problem.mass).fit(at, None)?.0.coordinates;
         }

@@ -52,7 +52,7 @@ impl Point {
 pub(super) type Columns = Vec<Vec<Complex64>>;
 
 /// Step of forward differences by a quantity, in standard deviations: resonances bend within a tenth of one.
-const DIFFERENCE: f64 = 1e-3;
+pub(super) const DIFFERENCE: f64 = 1e-3;
 /// Share of a promised decrease below which a step follows a bent valley: resonances tie the joint to the blocks along one.
 const BENT: f64 = 0.5;
 /// Steps of a fit at the most.
@@ -86,11 +86,8 @@ impl<'a> Problem<'a> {
         let uncoupled = Arc::new(self.uncoupled(&coordinates, before)?);
         let law = self.law.placed(&coordinates[..self.law.count()]);
         let predicted = uncoupled.coupled(self.test.recorded, &law, None)?;
-        let terms = self.test.recorded.values.iter().zip(&predicted).zip(self.test.weights);
-        let chi2: f64 = terms.map(|((m, p), weight)| weight * (m - p).norm_sqr()).sum();
-        let penalties =
-            self.parameters.iter().zip(&coordinates).map(|(parameter, at)| parameter.penalty(*at));
-        let objective = chi2 + penalties.sum::<f64>();
+        let known = (self.parameters.as_slice(), coordinates.as_slice());
+        let objective = self.test.recorded.objective(&predicted, self.test.weights, known);
         Some(Point { coordinates, uncoupled, predicted, objective })
     }
 
@@ -116,16 +113,18 @@ impl<'a> Problem<'a> {
         (self.law.count()..at.coordinates.len()).map(column).collect()
     }
 
-    pub fn residual(&self, at: &Point) -> Vec<Complex64> {
-        self.test.recorded.values.iter().zip(&at.predicted).map(|(m, p)| m - p).collect()
-    }
-
     /// Normal equations with these weights.
     pub fn equations_of(&self, at: &Point, others: &[Vec<Complex64>], weights: &[f64]) -> NormalEquations {
         let own = self.own_columns(at);
         let columns: Vec<&[Complex64]> = own.iter().chain(others).map(Vec::as_slice).collect();
         let priors = |m: usize| (self.parameters[m].precision, at.coordinates[m]);
-        NormalEquations::of_columns(&columns, &self.residual(at), weights, |_| false, priors)
+        NormalEquations::of_columns(
+            &columns,
+            &self.test.recorded.residual(&at.predicted),
+            weights,
+            |_| false,
+            priors,
+        )
     }
 
     fn moved_by(&self, at: &Point, step: &[f64]) -> Option<Point> {
@@ -140,7 +139,7 @@ impl<'a> Problem<'a> {
         let own = &at.coordinates[..self.law.count()];
         let here = self.law.placed(own);
         let mut columns = self.own_columns(at);
-        let mut target = self.residual(at);
+        let mut target = self.test.recorded.residual(&at.predicted);
         for (column, coordinate) in columns.iter().zip(own) {
             target.iter_mut().zip(column).for_each(|(value, by)| *value += by * coordinate);
         }

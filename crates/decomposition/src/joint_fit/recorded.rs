@@ -1,7 +1,9 @@
 //! The FRFs that a joint is fitted to: every one whose channels the fixture has, as accelerances with weights.
 
+use super::EXPLAINED;
 use jointscope_averaging::Band;
 use jointscope_fixture::Fixture;
+use jointscope_inference::{Parameter, autocorrelation, inflated_weight, variance_inflation};
 use jointscope_lumped::{Instrument, MeasuringChain, window_decay};
 use jointscope_spectra::{Channel, FrfForm, FrfPair, FrfSet};
 use num_complex::Complex64;
@@ -79,6 +81,53 @@ impl Recorded {
             let reference = place(&mut self.references, &self.pairs, index, |pair| &pair.reference);
             self.channels.push((response, reference));
         }
+    }
+
+    /// What is left of the values.
+    pub fn residual(&self, predicted: &[Complex64]) -> Vec<Complex64> {
+        self.values.iter().zip(predicted).map(|(m, p)| m - p).collect()
+    }
+
+    /// χ² with these weights, and what is known of the coordinates beforehand.
+    pub fn objective(
+        &self,
+        predicted: &[Complex64],
+        weights: &[f64],
+        (parameters, coordinates): (&[Parameter], &[f64]),
+    ) -> f64 {
+        let terms = self.values.iter().zip(predicted).zip(weights);
+        let chi2: f64 = terms.map(|((m, p), weight)| weight * (m - p).norm_sqr()).sum();
+        let penalties = parameters.iter().zip(coordinates).map(|(parameter, at)| parameter.penalty(*at));
+        chi2 + penalties.sum::<f64>()
+    }
+
+    /// Σ w|a|² of a change of the values.
+    pub fn size(&self, change: &[Complex64]) -> f64 {
+        change.iter().zip(&self.weights).map(|(value, weight)| weight * value.norm_sqr()).sum()
+    }
+
+    /// Weights with this share of the signal counted as noise besides.
+    pub fn weights_with(&self, share: f64) -> Vec<f64> {
+        let values = self.values.iter().zip(&self.weights);
+        values.map(|(value, weight)| inflated_weight(*weight, value.norm_sqr(), share)).collect()
+    }
+
+    /// An objective over what is left of the values by parameters, the first `own` of which are not the fixture's.
+    pub fn per_degree(&self, objective: f64, own: usize, parameters: &[Parameter]) -> f64 {
+        // Priors count one degree for each quantity that has one.
+        let quantities = parameters.iter().skip(own);
+        let free = own + quantities.filter(|parameter| parameter.precision == 0.0).count();
+        objective / self.degrees().saturating_sub(free).max(1) as f64
+    }
+
+    /// What the noise is multiplied by so that it explains what is left, correlated from line to line as that is.
+    pub fn inflation(&self, per_degree: f64, predicted: &[Complex64]) -> f64 {
+        if per_degree <= EXPLAINED {
+            return 1.0;
+        }
+        let residual = self.residual(predicted).into_iter().zip(&self.weights);
+        let normalised: Vec<Complex64> = residual.map(|(r, weight)| r * weight.sqrt()).collect();
+        variance_inflation(per_degree, autocorrelation(&normalised, self.s.len()))
     }
 
     /// Number of real values that count.

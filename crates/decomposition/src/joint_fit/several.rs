@@ -19,19 +19,16 @@ use super::problem::{Columns, needed};
 use super::quantities::{Uncertain, uncertain};
 use super::recorded::Recorded;
 use super::{
-    DOUBTFUL, EXPLAINED, JointFitOptions, NEGLIGIBLE, SHARES_AS_NOISE, START_LOSS, coordinates, units_of,
+    DOUBTFUL, JointFitOptions, LOOKS, NEGLIGIBLE, SHARES_AS_NOISE, START_LOSS, coordinates, units_of,
 };
 use crate::sides::check_instruments;
 use free::{MOST_JOINTS, connected};
 use jointscope_fixture::{BodyKind, Fixture, Joint};
 use jointscope_frf::RigidMotionError;
 use jointscope_frf::noise::with_variances;
-use jointscope_inference::{
-    LeastSquares, NormalEquations, Parameter, Transform, autocorrelation, inflated_weight, variance_inflation,
-};
+use jointscope_inference::{LeastSquares, NormalEquations, Parameter, Transform};
 use jointscope_linalg::RealMatrix2;
 use jointscope_spectra::FrfSet;
-use num_complex::Complex64;
 use outcome::Outcome;
 use problem::{Point, Problem, Test};
 
@@ -193,9 +190,6 @@ struct Fitted {
     others: Columns,
 }
 
-/// Times that an optimum is gone on from with derivatives taken there.
-const LOOKS: usize = 3;
-
 impl Fitted {
     /// Takes the derivatives by the quantities at the optimum, and goes on where they promise more.
     fn refresh(&mut self, problem: &Problem) -> Result<(), SeveralError> {
@@ -240,11 +234,11 @@ impl Fitter<'_> {
         let test = self.test(&quantities, weights);
         let problem = Problem::viscous(&test, laws.to_vec());
         let columns = problem.point(problem.whole(start)).and_then(|point| problem.other_columns(&point));
-        let size = |column: &Vec<Complex64>| -> f64 {
-            column.iter().zip(weights).map(|(value, weight)| weight * value.norm_sqr()).sum()
-        };
-        let matter: Vec<bool> =
-            columns.ok_or(SeveralError::NoStart)?.iter().map(|column| size(column) > NEGLIGIBLE).collect();
+        let matter: Vec<bool> = columns
+            .ok_or(SeveralError::NoStart)?
+            .iter()
+            .map(|column| self.recorded.size(column) > NEGLIGIBLE)
+            .collect();
         let (matter, others): (Vec<_>, Vec<_>) =
             quantities.into_iter().zip(matter).partition(|(_, matters)| *matters);
         let bare = |all: Vec<(Uncertain, bool)>| all.into_iter().map(|(quantity, _)| quantity).collect();
@@ -286,9 +280,7 @@ impl Fitter<'_> {
     fn searched(&self, problem: &Problem, start: Vec<f64>) -> Option<(Point, Columns)> {
         let mut at = start;
         for share in SHARES_AS_NOISE {
-            let values = self.recorded.values.iter().zip(&self.recorded.weights);
-            let weights: Vec<f64> =
-                values.map(|(value, weight)| inflated_weight(*weight, value.norm_sqr(), share)).collect();
+            let weights = self.recorded.weights_with(share);
             let test = self.test(problem.test.quantities, &weights);
             at = Problem::viscous(&test, problem.laws.clone()).fit(at, None)?.0.coordinates;
         }
@@ -296,21 +288,12 @@ impl Fitter<'_> {
     }
 
     fn per_degree(&self, problem: &Problem, point: &Point) -> f64 {
-        // Priors count one degree for each quantity that has one.
-        let quantities = problem.parameters.iter().skip(problem.own());
-        let free = problem.own() + quantities.filter(|parameter| parameter.precision == 0.0).count();
-        point.objective / self.recorded.degrees().saturating_sub(free).max(1) as f64
+        self.recorded.per_degree(point.objective, problem.own(), &problem.parameters)
     }
 
     /// What the noise is multiplied by so that it explains what is left, correlated from line to line as that is.
     fn inflation(&self, problem: &Problem, point: &Point) -> f64 {
-        let per_degree = self.per_degree(problem, point);
-        if per_degree <= EXPLAINED {
-            return 1.0;
-        }
-        let residual = problem.residual(point).into_iter().zip(&self.recorded.weights);
-        let normalised: Vec<Complex64> = residual.map(|(r, weight)| r * weight.sqrt()).collect();
-        variance_inflation(per_degree, autocorrelation(&normalised, self.recorded.s.len()))
+        self.recorded.inflation(self.per_degree(problem, point), &point.predicted)
     }
 }
 

@@ -3,10 +3,9 @@
 use super::law::Dynamics;
 use super::problem::{Point, Problem};
 use super::quantities::Uncertain;
-use super::{EXPLAINED, Fitted, FittedLength, Fitter};
+use super::{Fitted, FittedLength, Fitter};
 use jointscope_fixture::{Fixture, Joint, QuantityKey, QuantityOwner};
-use jointscope_inference::{Covariance, Parameter, autocorrelation, jackknife, variance_inflation};
-use num_complex::Complex64;
+use jointscope_inference::{Covariance, Parameter, jackknife};
 use statrs::function::gamma::gamma_ur;
 
 /// Blocks of neighbouring lines that the jackknife leaves out in turn.
@@ -14,21 +13,12 @@ const BLOCKS: usize = 8;
 
 impl Fitter<'_> {
     pub(super) fn per_degree(&self, problem: &Problem, point: &Point) -> f64 {
-        // Priors count one degree for each quantity that has one.
-        let quantities = problem.parameters.iter().skip(problem.own());
-        let free = problem.own() + quantities.filter(|parameter| parameter.precision == 0.0).count();
-        point.objective / self.recorded.degrees().saturating_sub(free).max(1) as f64
+        self.recorded.per_degree(point.objective, problem.own(), &problem.parameters)
     }
 
     /// What the noise is multiplied by so that it explains what is left, correlated from line to line as that is.
     pub(super) fn inflation(&self, problem: &Problem, point: &Point) -> f64 {
-        let per_degree = self.per_degree(problem, point);
-        if per_degree <= EXPLAINED {
-            return 1.0;
-        }
-        let residual = problem.residual(point).into_iter().zip(&self.recorded.weights);
-        let normalised: Vec<Complex64> = residual.map(|(r, weight)| r * weight.sqrt()).collect();
-        variance_inflation(per_degree, autocorrelation(&normalised, self.recorded.s.len()))
+        self.recorded.inflation(self.per_degree(problem, point), &point.predicted)
     }
 
     /// Covariance of (k11, k12, k22, c11, c12, c22) in SI units from that of a viscous law's coordinates.

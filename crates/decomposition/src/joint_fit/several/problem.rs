@@ -1,7 +1,7 @@
 //! The fit itself: the coordinates of every joint's law, then the fixture's uncertain quantities.
 
 use super::super::law::{Dynamics, Placed};
-use super::super::problem::{Columns, STEPS, settings};
+use super::super::problem::{Columns, DIFFERENCE, STEPS, settings};
 use super::super::quantities::{Uncertain, moved};
 use super::super::recorded::Recorded;
 use super::free::Free;
@@ -35,9 +35,6 @@ pub(super) struct Point {
     pub objective: f64,
 }
 
-/// Step of forward differences by a quantity, in standard deviations: resonances bend within a tenth of one.
-const DIFFERENCE: f64 = 1e-3;
-
 impl Problem<'_> {
     /// Number of coordinates before those of the fixture's quantities.
     pub fn own(&self) -> usize {
@@ -66,11 +63,8 @@ impl Problem<'_> {
     pub fn point(&self, coordinates: Vec<f64>) -> Option<Point> {
         let free = Arc::new(self.free(&coordinates)?);
         let predicted = free.coupled(self.test.recorded, &self.placed(&coordinates), None)?;
-        let terms = self.test.recorded.values.iter().zip(&predicted).zip(self.test.weights);
-        let chi2: f64 = terms.map(|((m, p), weight)| weight * (m - p).norm_sqr()).sum();
-        let penalties =
-            self.parameters.iter().zip(&coordinates).map(|(parameter, at)| parameter.penalty(*at));
-        let objective = chi2 + penalties.sum::<f64>();
+        let known = (self.parameters.as_slice(), coordinates.as_slice());
+        let objective = self.test.recorded.objective(&predicted, self.test.weights, known);
         Some(Point { coordinates, free, predicted, objective })
     }
 
@@ -86,10 +80,6 @@ impl Problem<'_> {
         (self.own()..at.coordinates.len()).map(column).collect()
     }
 
-    pub fn residual(&self, at: &Point) -> Vec<Complex64> {
-        self.test.recorded.values.iter().zip(&at.predicted).map(|(m, p)| m - p).collect()
-    }
-
     /// Normal equations with these weights.
     pub fn equations_of(&self, at: &Point, others: &[Vec<Complex64>], weights: &[f64]) -> NormalEquations {
         let mut own = vec![vec![Complex64::ZERO; at.predicted.len()]; self.own()];
@@ -97,7 +87,13 @@ impl Problem<'_> {
         let _ = at.free.coupled(self.test.recorded, &self.placed(&at.coordinates), Some(&mut own));
         let columns: Vec<&[Complex64]> = own.iter().chain(others).map(Vec::as_slice).collect();
         let priors = |m: usize| (self.parameters[m].precision, at.coordinates[m]);
-        NormalEquations::of_columns(&columns, &self.residual(at), weights, |_| false, priors)
+        NormalEquations::of_columns(
+            &columns,
+            &self.test.recorded.residual(&at.predicted),
+            weights,
+            |_| false,
+            priors,
+        )
     }
 
     /// The same joints and fixture in the coordinates of other laws.
