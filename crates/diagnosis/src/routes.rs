@@ -27,6 +27,8 @@ enum Start<'a> {
     Anew,
     /// What was found among the modes.
     Modes(&'a ModalJudgement, Fit),
+    /// What was found among few names.
+    Found(Box<Search>),
     /// It was made already.
     Searched(Box<Search>),
 }
@@ -44,7 +46,9 @@ pub(crate) fn judged(
     // Where the fixture as refitted leaves more than noise, the comparison by modes says whether the model itself is in error: if it is, the noise
     // of the lines decides nothing.
     let modal = match within.lacks_much(fitter, &within.refitted) {
-        true => ModalJudgement::of(fitter, &within.nominal.hypothesis, &within.candidates, None),
+        true => fitter.observation.work().within(fitter.settings.modal.share, || {
+            ModalJudgement::of(fitter, &within.nominal.hypothesis, &within.candidates, None)
+        }),
         false => None,
     };
     // Modes lead to the nearest minimum where lines, peak beside peak, may end in another.
@@ -64,9 +68,10 @@ pub(crate) fn judged(
     if let Some(exact) = modal.exact(fitter) {
         return Ok(by_lines(fitter, within, of, (Start::Modes(modal, exact), known), division));
     }
-    // Where no error of a usual size explains the modes, few quantities that are wrong may explain the lines.
-    if modal.verdict == Verdict::Unexplained && within.is_explained_by_wrong_quantities(fitter) {
-        return Ok(by_lines(fitter, within, of, (Start::Anew, known), division));
+    // Where errors of the usual size do not explain the modes, these may have rested in a false minimum, and the names that they hold most probable, or quantities that
+    // are wrong, explain the lines down to their noise.
+    if let Some(found) = within.explained_among(fitter, modal.in_question(fitter)) {
+        return Ok(by_lines(fitter, within, of, (Start::Found(Box::new(found)), known), division));
     }
     let may = modal.is_dubious(fitter) && fitter.observation.work().allows("what lines would find");
     let searched = may.then(|| Search::searched(fitter, within.clone()));
@@ -173,6 +178,7 @@ fn by_lines(
                 modal.told_from(&search.repaired.hypothesis, &search.candidates, settings.modal.bases.1);
             search
         }
+        (Start::Found(part), _) => Search::continued(fitter, within, &part),
         (Start::Anew, Some(part)) => Search::continued(fitter, within, part),
         (Start::Anew, None) => Search::searched(fitter, within),
     };

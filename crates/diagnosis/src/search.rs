@@ -9,7 +9,7 @@ use crate::penalty::{parameter_penalty, penalty};
 use crate::ranking::Ranking;
 use crate::settings::Settings;
 use crate::{Hypothesis, Observation, Watch};
-use jointscope_fixture::{EffectKind, Fixture};
+use jointscope_fixture::Fixture;
 
 /// The outcome of a search.
 #[derive(Debug, Clone)]
@@ -55,16 +55,17 @@ impl Search {
         Search { candidates, ..self }
     }
 
-    /// Whether quantities that are wrong, and nothing else, explain the lines down to their noise.
-    pub(crate) fn is_explained_by_wrong_quantities(&self, fitter: &Fitter) -> bool {
-        let is_wrong = |candidate: &&Candidate| candidate.kind == EffectKind::QuantityError;
-        let candidates: Vec<Candidate> = self.candidates.iter().filter(is_wrong).cloned().collect();
-        let any = !candidates.is_empty();
-        any && explains(
-            fitter,
-            &Search::searched(fitter, Search { candidates, ..self.clone() }).repaired,
-            false,
-        )
+    /// What explains the lines down to their noise among few names, for a share of all work; `None` where nothing does.
+    pub(crate) fn explained_among(&self, fitter: &Fitter, names: Vec<Candidate>) -> Option<Search> {
+        if names.is_empty() {
+            return None;
+        }
+        let (work, share) = (fitter.observation.work(), fitter.settings.selection.among_few);
+        let few = Search { candidates: names, ..self.clone() };
+        let found = work.aside(share, || Search::searched(fitter, few));
+        let explained =
+            found.repaired.hypothesis.effect_count() > 0 && explains(fitter, &found.repaired, true);
+        explained.then(|| Search { candidates: self.candidates.clone(), ..found })
     }
 
     /// The same, the fixture refitted from elsewhere too.

@@ -116,6 +116,9 @@ pub struct SelectionSettings {
     pub wrong: usize,
     /// Penalties that an effect must be worth, faded by a quarter, to be kept without a further fit.
     pub clear: f64,
+    /// Share of all work that a search among the names may take which modes hold most probable but do not explain: two effects in lumped structures took a tenth,
+    /// one a twentieth.
+    pub among_few: f64,
     /// Rounds of adding and dropping.
     pub rounds: usize,
     /// Effects at the most: three at once imitate almost anything.
@@ -147,6 +150,8 @@ pub struct ModalSettings {
     pub again: f64,
     /// Singles that are tried with a second effect, at the most, and ln p below the best from which they are not, nor as look-alikes on lines.
     pub bases: (usize, f64),
+    /// Share of all work by which the comparison ends: modes may be in a false minimum, and lines must come to their turn.
+    pub share: f64,
     /// Names that are tried on lines, to see whether one of them leaves no more than noise.
     pub tried: usize,
     /// Names that are tried where the recording without what is held out is searched, of the most probable of the whole.
@@ -205,6 +210,7 @@ impl Default for ModalSettings {
             costly: 0.1,
             again: 0.15,
             bases: (3, 20.0),
+            share: 0.6,
             tried: 8,
             blind: 8,
             effects: 3,
@@ -301,6 +307,7 @@ impl Default for Settings {
                 deviated: 8.0,
                 wrong: 3,
                 clear: 2.0,
+                among_few: 0.1,
                 rounds: 5,
                 effects: 3,
                 exchanges: 2,

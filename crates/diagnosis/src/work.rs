@@ -17,7 +17,9 @@ const TOGETHER: usize = 16;
 #[derive(Debug)]
 pub(crate) struct Work {
     done: AtomicU64,
-    most: u64,
+    /// All that may be done, and all that may be done by what is under way.
+    total: u64,
+    most: AtomicU64,
     until: Option<Instant>,
     left_out: Mutex<Vec<&'static str>>,
 }
@@ -32,7 +34,13 @@ impl Work {
     /// So many values at the most, and for so long.
     pub fn of(most: u64, time: Option<Duration>) -> Self {
         let until = time.and_then(|time| Instant::now().checked_add(time));
-        Work { done: AtomicU64::new(0), most, until, left_out: Mutex::default() }
+        Work {
+            done: AtomicU64::new(0),
+            total: most,
+            most: AtomicU64::new(most),
+            until,
+            left_out: Mutex::default(),
+        }
     }
 
     /// Counts a model and the values that it predicts.
@@ -42,12 +50,30 @@ impl Work {
 
     /// Share of the work that is done already.
     pub fn spent(&self) -> f64 {
-        self.done.load(Ordering::Relaxed) as f64 / self.most as f64
+        self.done.load(Ordering::Relaxed) as f64 / self.total as f64
+    }
+
+    /// What `of` comes to where it may do no more than a share of all work.
+    pub fn within<T>(&self, share: f64, of: impl FnOnce() -> T) -> T {
+        let most = self.most.load(Ordering::Relaxed);
+        let own = self.done.load(Ordering::Relaxed).saturating_add((share * self.total as f64) as u64);
+        self.most.store(most.min(own), Ordering::Relaxed);
+        let outcome = of();
+        self.most.store(most, Ordering::Relaxed);
+        outcome
+    }
+
+    /// The same for what is tried beside the way to an answer: that it did not come to all it would have done is not remembered.
+    pub fn aside<T>(&self, share: f64, of: impl FnOnce() -> T) -> T {
+        let before = self.left_out();
+        let outcome = self.within(share, of);
+        *self.left_out.lock().unwrap_or_else(|poisoned| poisoned.into_inner()) = before;
+        outcome
     }
 
     /// Whether `what` may still be done; if not, that is remembered.
     pub fn allows(&self, what: &'static str) -> bool {
-        let spent = self.done.load(Ordering::Relaxed) >= self.most;
+        let spent = self.done.load(Ordering::Relaxed) >= self.most.load(Ordering::Relaxed);
         let late = self.until.is_some_and(|until| Instant::now() >= until);
         if !(spent || late) {
             return true;
@@ -98,6 +124,19 @@ mod tests {
         assert_eq!(done, (0..32).collect::<Vec<_>>());
         assert!(!work.allows("numbers") && !work.allows("letters"));
         assert_eq!(work.left_out(), ["numbers", "letters"]);
+    }
+
+    #[test]
+    fn what_is_tried_aside_leaves_the_rest_of_the_work() {
+        let work = Work::of(20 * MODEL, None);
+        let done = work.aside(0.5, || {
+            work.each((0..100).collect(), "numbers", |n| {
+                work.count(0);
+                Some(n)
+            })
+        });
+        assert_eq!(done.len(), TOGETHER);
+        assert!(work.allows("letters") && work.left_out().is_empty());
     }
 
     #[test]

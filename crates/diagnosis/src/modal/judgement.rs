@@ -17,7 +17,7 @@ use crate::search::Search;
 use crate::settings::ModalSettings;
 use crate::{Hypothesis, ModeChange, Observation};
 use jointscope_findings::Verdict;
-use jointscope_fixture::Effect;
+use jointscope_fixture::{Effect, EffectKind};
 use jointscope_inference::Covariance;
 use jointscope_model_error::{ErrorSizes, KINDS, Pairing, SizePrior};
 
@@ -199,8 +199,8 @@ impl Judge<'_> {
         }
         let squares = |sizes: Vec<f64>| sizes.iter().map(|s| s * s).sum::<f64>();
         // Errors of the model, or these and those of the records' gains: a channel of the wrong sign looks like gains that are off by all they are.
-        let model = |fit: &ModalFit| squares(self.searcher.relative_sizes(fit));
-        let all = |fit: &ModalFit| squares(self.searcher.relative_sizes_with_gains(fit));
+        let model = |fit: &ModalFit| squares(self.searcher.problem.relative_sizes(fit));
+        let all = |fit: &ModalFit| squares(self.searcher.problem.relative_sizes_with_gains(fit));
         let halves = || model(&best.fit) < 0.5 * model(none) || all(&best.fit) < 0.5 * all(none);
         match (best.names.is_empty(), adequate) {
             (true, true) => Verdict::Consistent,
@@ -225,7 +225,7 @@ impl Judge<'_> {
     /// needs, the more.
     fn unlisted(&self, best: &ModalFit) -> f64 {
         let (usual, most) = self.searcher.settings.unlisted;
-        let sizes = self.searcher.relative_sizes(best);
+        let sizes = self.searcher.problem.relative_sizes(best);
         let strain: f64 = sizes.iter().map(|s| 0.5 * (s * s - 1.0).max(0.0)).sum();
         let pull = 0.5 * (best.largest_pull().powi(2) - self.searcher.settings.adequate.1.powi(2)).max(0.0);
         // What no poles explain in the recording itself is nothing that a name could be held against.
@@ -308,6 +308,25 @@ impl ModalJudgement {
             let of_count = all.iter().filter(|named| named.names.len() == count);
             of_count.filter_map(explaining).min_by(|a, b| cost(a).total_cmp(&cost(b)))
         })
+    }
+
+    /// Names that lines may be asked for where errors of the usual size do not explain the modes: the most probable by themselves, and quantities that are wrong.
+    pub fn in_question(&self, fitter: &Fitter) -> Vec<Candidate> {
+        if !self.is_unexplained() {
+            return Vec::new();
+        }
+        let probable: Vec<usize> = self
+            .search
+            .singles
+            .iter()
+            .take(fitter.settings.modal.tried)
+            .flat_map(|single| single.names.clone())
+            .collect();
+        let of = |(index, candidate): (usize, &Candidate)| {
+            let asked = probable.contains(&index) || candidate.kind == EffectKind::QuantityError;
+            asked.then(|| candidate.clone())
+        };
+        self.candidates.iter().enumerate().filter_map(of).collect()
     }
 
     /// What was found, and the most probable effects by themselves.

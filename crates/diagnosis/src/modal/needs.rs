@@ -8,6 +8,7 @@ use crate::Hypothesis;
 use crate::catalogue::Candidate;
 use crate::fitter::Fitter;
 use crate::modal::features::Features;
+use crate::modal::fit::ModalFit;
 use crate::modal::prior::priors;
 use crate::search::Search;
 use jointscope_fixture::Effect;
@@ -47,13 +48,18 @@ fn least_needed(
 ) -> Option<usize> {
     let settings = &fitter.settings.modal;
     let problem = features.problem(fitter.observation.work());
-    let ln = |hypothesis: &Hypothesis| {
+    let fitted = |hypothesis: &Hypothesis| {
         let named = |effect: &Effect| candidates.iter().find(|candidate| candidate.names(effect));
         let company: Option<Vec<&Candidate>> = hypothesis.effects().iter().map(named).collect();
-        Some(problem.fitted(hypothesis, &priors(hypothesis, &company?))?.ln)
+        problem.fitted(hypothesis, &priors(hypothesis, &company?))
     };
-    let with = ln(hypothesis)?;
-    let gain = |index: usize| Some((index, with - ln(&hypothesis.without(index))?));
+    let with = fitted(hypothesis)?.ln;
+    // What only more than usual errors could stand for imitates none.
+    let usual = |fit: &ModalFit| problem.is_adequate(fit, settings.adequate);
+    let gain = |index: usize| {
+        let without = fitted(&hypothesis.without(index)).filter(usual)?;
+        Some((index, with - without.ln))
+    };
     let gains = (0..hypothesis.effect_count()).filter_map(gain);
     let (index, gain) = gains.min_by(|a, b| a.1.total_cmp(&b.1))?;
     (gain < settings.odds.ln()).then_some(index)

@@ -280,7 +280,7 @@ impl Searcher<'_> {
 
     /// Whether what a fit needs of errors and departures is no more than chance makes.
     pub fn is_adequate(&self, fit: &ModalFit) -> bool {
-        self.largest_size(fit) <= self.settings.adequate.0 && fit.largest_pull() <= self.settings.adequate.1
+        self.problem.is_adequate(fit, self.settings.adequate)
     }
 
     /// Whether the evidence is hardly less without any error of the model.
@@ -293,28 +293,6 @@ impl Searcher<'_> {
         let without =
             fit.linear.ln_density(&fit.standing.comparison, &self.problem.sizes.times(ErrorSizes::LEAST));
         without.map_or(f64::INFINITY, |ln| self.problem.seen(fit).ln - ln)
-    }
-
-    /// The largest size of an error, as a multiple of what is usual.
-    fn largest_size(&self, fit: &ModalFit) -> f64 {
-        self.relative_sizes(fit).into_iter().fold(0.0, f64::max)
-    }
-
-    /// Sizes of the errors as multiples of what is usual, or of what is stated: the sizes that the recording asks for.
-    /// Gains are the test's, not the model's.
-    pub fn relative_sizes(&self, fit: &ModalFit) -> Vec<f64> {
-        let without = ErrorSizes { gain: 0.0, ..self.problem.seen(fit).sizes };
-        self.over_usual(&without)
-    }
-
-    /// The same with the gains of records among them.
-    pub fn relative_sizes_with_gains(&self, fit: &ModalFit) -> Vec<f64> {
-        self.over_usual(&self.problem.seen(fit).sizes)
-    }
-
-    fn over_usual(&self, sizes: &ErrorSizes) -> Vec<f64> {
-        let usual = self.problem.sizes.to_array();
-        sizes.to_array().iter().zip(usual).map(|(size, usual)| size / usual).collect()
     }
 
     /// Fits of `base` with one effect more, the most probable first: the `refined` best candidates, each from so many starts; and the candidates all of whose starts

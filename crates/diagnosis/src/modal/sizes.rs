@@ -77,6 +77,33 @@ impl Problem<'_> {
         freed.unwrap_or(fit.evidence)
     }
 
+    /// Whether what a fit needs of errors, as multiples of what is usual, and of departures, in standard deviations, is no more than `adequate`.
+    pub fn is_adequate(&self, fit: &ModalFit, adequate: (f64, f64)) -> bool {
+        self.largest_size(fit) <= adequate.0 && fit.largest_pull() <= adequate.1
+    }
+
+    /// The largest size of an error, as a multiple of what is usual.
+    fn largest_size(&self, fit: &ModalFit) -> f64 {
+        self.relative_sizes(fit).into_iter().fold(0.0, f64::max)
+    }
+
+    /// Sizes of the errors as multiples of what is usual, or of what is stated: the sizes that the recording asks for.
+    /// Gains are the test's, not the model's.
+    pub fn relative_sizes(&self, fit: &ModalFit) -> Vec<f64> {
+        let without = ErrorSizes { gain: 0.0, ..self.seen(fit).sizes };
+        self.over_usual(&without)
+    }
+
+    /// The same with the gains of records among them.
+    pub fn relative_sizes_with_gains(&self, fit: &ModalFit) -> Vec<f64> {
+        self.over_usual(&self.seen(fit).sizes)
+    }
+
+    fn over_usual(&self, sizes: &ErrorSizes) -> Vec<f64> {
+        let usual = self.sizes.to_array();
+        sizes.to_array().iter().zip(usual).map(|(size, usual)| size / usual).collect()
+    }
+
     /// The error of a fitted model. A stated size is told as stated, unless the recording asks for more than `adequate` times as much.
     pub fn error(&self, fit: &ModalFit, adequate: f64) -> ModelError {
         let seen = self.seen(fit);
