@@ -90,14 +90,16 @@ fn solids_and_hits_have_scores_of_their_own_and_pages_that_diagnose_makes_again(
         for file in ["fixture.json", "hammer-test.uff"] {
             std::fs::copy(bench.0.join("proof/cases/001").join(file), bench.0.join(file)).unwrap();
         }
+        assert!(!bench.text("fixture.json").contains("geometry"), "the solid stays under seal");
+        // The laboratory's FRFs come in another order than a file of them is read in: sums over them are rounded otherwise, which shows where no model is right to the
+        // noise, and another one may be held out.
+        if !matches!(key, "solid" | "struck" | "solid_as_is") {
+            continue;
+        }
         bench.done(&["diagnose", "fixture.json", "hammer-test.uff", "-o", "again"]);
         let sections = |page: &str| page.split("<footer>").next().unwrap().to_owned();
         let (again, own) = (bench.text("again/report.html"), bench.text("proof/cases/001/report.html"));
-        // The laboratory's FRFs come in another order than a file of them is read in: sums over them are rounded otherwise, which shows where no model is right to the
-        // noise, and another one may be held out.
-        let ordered = matches!(key, "solid" | "struck" | "solid_as_is");
-        assert!(!ordered || sections(&again) == sections(&own), "{key}");
-        assert!(!bench.text("fixture.json").contains("geometry"), "the solid stays under seal");
+        assert!(sections(&again) == sections(&own), "{key}");
     }
 }
 

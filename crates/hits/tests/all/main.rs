@@ -1,0 +1,5 @@
+//! The tests of this crate's public functions, in one program: linking is what costs time.
+#![allow(clippy::unwrap_used)] // helpers of tests fail as tests do
+
+mod fourier;
+mod signals;
