@@ -11,6 +11,7 @@ use crate::work::Work;
 use crate::{Baseline, Hypothesis, Observation, Watch};
 use jointscope_findings::{Estimate, HeldOut, Verdict};
 use jointscope_fixture::{Effect, Fixture};
+use jointscope_lumped::Assembly;
 use jointscope_spectra::{FrfPair, FrfSet, SpectraError};
 use num_complex::Complex64;
 use serde::Serialize;
@@ -174,7 +175,10 @@ impl Diagnosis {
             options.band.is_none_or(|(from, to)| hz >= from && hz <= to)
                 && !options.exclude.iter().any(|(from, to)| hz >= *from && hz <= *to)
         };
-        let work = Arc::new(Work::of(options.settings.work, options.time_limit));
+        let highest = frfs.lines().hz().last().copied().unwrap_or_default();
+        let coordinates = Assembly::new(fixture, highest).map_or(0, |assembly| assembly.order());
+        let work = Work::of(options.settings.work, options.time_limit).for_models_of(coordinates);
+        let work = Arc::new(work);
         let observation = Observation::new(frfs, asked)?.counted(Arc::clone(&work));
         let nominal = Hypothesis::nominal(fixture, options.exact);
         nominal.predict(&observation)?;

@@ -10,6 +10,8 @@ use std::time::{Duration, Instant};
 
 /// Values that a model costs besides those it predicts: its matrices, modes and participations.
 const MODEL: u64 = 1000;
+/// The cube of a meshed model's coordinates whose modes cost as much as one value more.
+const MODES: u64 = 125;
 /// Fits between which the work done is looked at.
 const TOGETHER: usize = 16;
 
@@ -17,6 +19,8 @@ const TOGETHER: usize = 16;
 #[derive(Debug)]
 pub(crate) struct Work {
     done: AtomicU64,
+    /// What one model costs besides the values it predicts.
+    model: u64,
     /// All that may be done, and all that may be done by what is under way.
     total: u64,
     most: AtomicU64,
@@ -36,6 +40,7 @@ impl Work {
         let until = time.and_then(|time| Instant::now().checked_add(time));
         Work {
             done: AtomicU64::new(0),
+            model: MODEL,
             total: most,
             most: AtomicU64::new(most),
             until,
@@ -43,9 +48,14 @@ impl Work {
         }
     }
 
+    /// The same for models of so many coordinates: modes of a meshed beam cost more than its lines.
+    pub fn for_models_of(self, coordinates: usize) -> Self {
+        Work { model: MODEL + (coordinates as u64).pow(3) / MODES, ..self }
+    }
+
     /// Counts a model and the values that it predicts.
     pub fn count(&self, values: usize) {
-        self.done.fetch_add(MODEL + values as u64, Ordering::Relaxed);
+        self.done.fetch_add(self.model + values as u64, Ordering::Relaxed);
     }
 
     /// Share of the work that is done already.
