@@ -315,13 +315,8 @@ impl ModalJudgement {
         if !self.is_unexplained() {
             return Vec::new();
         }
-        let probable: Vec<usize> = self
-            .search
-            .singles
-            .iter()
-            .take(fitter.settings.modal.tried)
-            .flat_map(|single| single.names.clone())
-            .collect();
+        let tried = self.search.singles.iter().take(fitter.settings.modal.tried);
+        let probable: Vec<usize> = tried.flat_map(|single| single.names.clone()).collect();
         let of = |(index, candidate): (usize, &Candidate)| {
             let asked = probable.contains(&index) || candidate.kind == EffectKind::QuantityError;
             asked.then(|| candidate.clone())
