@@ -132,7 +132,11 @@ pub enum FemError {
         known: String,
     },
     /// A superposition of modes that end below the last line.
-    #[error("modes are known up to {modes} Hz and the last line is {last} Hz: find more modes")]
+    #[error(
+        "modes are known up to {} Hz and the last line is {} Hz: find more modes",
+        jointscope_spectra::in_text(*modes),
+        jointscope_spectra::in_text(*last)
+    )]
     ModesEndBelow {
         /// Frequency up to which modes are known, Hz.
         modes: f64,
@@ -141,7 +145,8 @@ pub enum FemError {
     },
     /// An undamped resonance lies on a line.
     #[error(
-        "the response is unbounded at {frequency} Hz: the model has an undamped resonance on that line; state some damping or move the line"
+        "the response is unbounded at {} Hz: the model has an undamped resonance on that line; state some damping or move the line",
+        jointscope_spectra::in_text(*frequency)
     )]
     Unbounded {
         /// The line, Hz.

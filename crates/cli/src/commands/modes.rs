@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use jointscope::report::format::quantity;
 use jointscope::report::{PageContext, modes_report};
+use jointscope::spectra::in_text;
 use jointscope::{
     Band, MeasuredDamping, ModalAnalysis, ModesOptions, Remarks, measured_damping, modes_file, rebuilt_frfs,
 };
@@ -124,8 +125,8 @@ fn summary(analysis: &ModalAnalysis, damping: Option<&MeasuredDamping>) -> Vec<S
         "{} in {} from {} to {} Hz; chi2 per degree of freedom {:.3}",
         counted(analysis.modes.len(), "mode"),
         counted(analysis.pairs().len(), "FRF"),
-        hz[0],
-        hz[hz.len() - 1],
+        in_text(hz[0]),
+        in_text(hz[hz.len() - 1]),
         analysis.chi2_per_dof
     )];
     for (index, mode) in analysis.modes.iter().enumerate() {
