@@ -112,6 +112,16 @@ pub enum FemError {
         /// Cells of the grid.
         elements: usize,
     },
+    /// A material that is none.
+    #[error(
+        "geometry/materials/{name}: sound would travel at {speed:.1e} m/s in it, and no solid carries it above some 20 km/s: check Young's modulus in Pa and density in kg/m^3"
+    )]
+    Material {
+        /// Its name.
+        name: String,
+        /// √(E/ρ), m/s.
+        speed: f64,
+    },
     /// An element is too distorted.
     #[error("element {element} of the mesh is degenerate: check the dimensions in `geometry`")]
     Degenerate {
