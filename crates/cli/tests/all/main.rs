@@ -9,6 +9,7 @@ mod decompose;
 mod diagnose;
 mod estimate;
 mod export;
+mod faults;
 mod fem;
 mod formats;
 mod guide;
