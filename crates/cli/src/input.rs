@@ -17,6 +17,7 @@ use jointscope::recordings::Source;
 use serde_json::Value;
 use sha2::{Digest, Sha256};
 
+use crate::output;
 use crate::refusal::Refusal;
 
 /// A fixture with the path of its file.
@@ -102,6 +103,12 @@ pub fn answer(path: &Path) -> Result<Value, Refusal> {
 
 /// The bytes of a file as JSON.
 pub fn parsed(path: &Path, bytes: &[u8]) -> Result<Value, Refusal> {
+    if output::is_unfinished(path) {
+        return Err(Refusal::at(
+            path,
+            "may not belong to the files beside it, for the run that wrote them was ended in the middle; run that command again",
+        ));
+    }
     serde_json::from_slice(bytes.strip_prefix(MARK.as_bytes()).unwrap_or(bytes))
         .map_err(|error| Refusal::at(path, error))
 }

@@ -51,8 +51,9 @@ pub fn run(arguments: &ModesArguments) -> Result<String, Refusal> {
     };
     let frfs = recording.frfs().map_err(|error| arguments.recording.refusal(error))?;
     let files = || arguments.fixture.iter().chain(&arguments.recording.files);
-    arguments.destination.foresee(files(), &[FILE, PAGE])?;
-    Outputs::foresee(files(), arguments.update.clone())?;
+    let folder = arguments.destination.output.iter();
+    let answers = folder.flat_map(|folder| [folder.join(FILE), folder.join(PAGE)]);
+    Outputs::foresee(files(), answers.chain(arguments.update.clone()))?;
     let options = ModesOptions {
         band: arguments.band.map(|band| (band.from, band.to)),
         orders: arguments.orders,
