@@ -134,9 +134,9 @@ impl Outputs {
     }
 }
 
-/// JSON for people.
+/// JSON for people, and as a terminal gets it.
 pub fn pretty(value: &Value) -> String {
-    format!("{value:#}\n")
+    progress::visible(&format!("{value:#}\n"))
 }
 
 /// `1 line`, `2 lines`.

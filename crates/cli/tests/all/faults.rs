@@ -161,6 +161,21 @@ fn a_folder_that_may_not_be_written_to_is_told_before_the_work() {
 }
 
 #[test]
+fn names_that_turn_text_around_are_spelled_out_on_the_terminal_and_in_json() {
+    let bench = Bench::synthesized("names", TWO_BLOCKS, LINES);
+    let name = "two\u{202e}\u{1b}[2J.json";
+    bench.write(name, TWO_BLOCKS.replace("\"two blocks and a beam\"", "\"a\\u202eb\\u001bc\""));
+    let said = bench.done(&["decompose", name, "frf.uff", "-o", "out", "--json"]);
+    assert!(said.contains("two\\u202e\\u001b[2J.json") && !said.contains(['\u{202e}', '\u{1b}']), "{said}");
+    let page = bench.text("out/report.html");
+    assert!(!page.contains(['\u{202e}', '\u{1b}']) && page.contains("two\u{fffd}\u{fffd}[2J.json"));
+    bench.refused(
+        &["decompose", "gone\u{1b}.json", "frf.uff", "-o", "o"],
+        &["gone\\u001b.json: there is no such file"],
+    );
+}
+
+#[test]
 fn a_second_run_waits_and_says_so() {
     let bench = Bench::synthesized("waits", TWO_BLOCKS, LINES);
     fs::create_dir(bench.0.join("out")).unwrap();
