@@ -18,6 +18,7 @@ mod init;
 mod levels;
 mod many;
 mod modes;
+mod pages;
 mod plan;
 mod prove;
 mod prove_floors;
