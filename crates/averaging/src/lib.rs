@@ -16,6 +16,8 @@
 
 mod band;
 
+use jointscope_spectra::in_text;
+
 pub use band::{Band, quietest_band};
 
 /// An average with one standard deviation, in the unit of what was averaged.
@@ -32,7 +34,9 @@ pub struct Average {
 pub enum AveragingError {
     /// No line is left in the band.
     #[error(
-        "the band from {from} to {to} Hz holds no usable spectral line; those there are lie from {first} to {last} Hz"
+        "the band from {from} to {to} Hz holds no usable spectral line; those there are lie from {} to {} Hz",
+        in_text(*first),
+        in_text(*last)
     )]
     EmptyBand {
         /// Lower end, Hz.

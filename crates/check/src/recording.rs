@@ -13,7 +13,7 @@ use jointscope_frf::noise::with_variances;
 use jointscope_lumped::{Instrument, accelerances};
 use jointscope_pipeline::{Error, MeasuredFrfs, Measurement};
 use jointscope_screening::{Oddity, screened};
-use jointscope_spectra::FrfSet;
+use jointscope_spectra::{FrfSet, in_text};
 use num_complex::Complex64;
 use serde::Serialize;
 
@@ -103,6 +103,7 @@ impl RecordingCheck {
         let frfs = frfs::of(&measured_frfs, &sources, modelled.as_deref());
         for (index, pair) in measured_frfs.pairs().iter().enumerate() {
             remarks.extend(crate::frfs::absurd(&measured_frfs, index).map(|hz| {
+                let hz = in_text(hz);
                 let says = format!("its value at {hz} Hz is more than a million times its median: no structure has that; export it again, or leave that line out of a diagnosis with --exclude");
                 Remark::wrong(pair.to_string(), says)
             }));
@@ -340,6 +341,7 @@ const AT_START: f64 = 2.5;
 
 /// Of a band; `suspended` where it could be that of a suspension.
 fn of_contradiction(from: f64, to: f64, suspended: bool) -> Remark {
+    let (from, to) = (in_text(from), in_text(to));
     let lines = if from == to {
         format!("the line at {from} Hz")
     } else {

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use jointscope::fixture::Fixture;
 use jointscope::recordings::to_datasets;
-use jointscope::spectra::{FrfPair, FrfSet, SpectralLines};
+use jointscope::spectra::{FrfPair, FrfSet, SpectralLines, in_text};
 use jointscope::uff::Encoding;
 
 use crate::input::FixtureFile;
@@ -59,8 +59,8 @@ impl ComputedFrfs {
             self.output.display(),
             names.join(", "),
             hz.len(),
-            hz[0],
-            hz[hz.len() - 1]
+            in_text(hz[0]),
+            in_text(hz[hz.len() - 1])
         )
     }
 }

@@ -1,18 +1,23 @@
 //! Files in: every fault a sentence that starts with the file's name.
+//!
+//! Whatever is read is noted with the SHA-256 of the bytes that were handed out, so that an answer states what it was made of, be it a pipe that is read
+//! out or a file that has changed since. One run knows one version of a file: where a second reading finds another, it is refused.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 use std::fs;
 use std::io::Read;
 use std::ops::Deref;
 use std::path::{Path, PathBuf};
-use std::sync::OnceLock;
+use std::sync::{Mutex, PoisonError};
 
 use jointscope::fixture::Fixture;
 use jointscope::import::{self, ColumnMap};
 use jointscope::recordings::Source;
 use serde_json::Value;
+use sha2::{Digest, Sha256};
 
+use crate::output;
 use crate::refusal::Refusal;
 
 /// A fixture with the path of its file.
@@ -31,7 +36,8 @@ impl FixtureFile {
             let line = bytes[..error.valid_up_to()].iter().filter(|byte| **byte == b'\n').count() + 1;
             Refusal::at(path, format_args!("line {line} is not UTF-8 text; save the fixture as UTF-8"))
         })?;
-        let fixture = Fixture::from_json(without_mark(text)).map_err(|error| Refusal::at(path, error))?;
+        let fixture =
+            Fixture::from_json(text.trim_start_matches(MARK)).map_err(|error| Refusal::at(path, error))?;
         Ok(FixtureFile { fixture, path: path.to_owned() })
     }
 
@@ -63,17 +69,8 @@ fn is_standard_input(path: &Path) -> bool {
     path.as_os_str() == "-"
 }
 
-/// Refuses standard input that is given twice.
-pub fn once<'a>(files: impl IntoIterator<Item = &'a PathBuf>) -> Result<(), Refusal> {
-    match files.into_iter().filter(|path| is_standard_input(path)).count() {
-        0 | 1 => Ok(()),
-        _ => Err(Refusal::new("standard input (`-`) is given twice; it can be read once")),
-    }
-}
-
 /// Reads the recordings of a test, whatever their formats; with the entries of `columns` that were of no use.
 pub fn sources(files: &[PathBuf], columns: &ColumnMap) -> Result<(Vec<Source>, Vec<String>), Refusal> {
-    once(files)?;
     let mut used = BTreeSet::new();
     let mut sources = Vec::with_capacity(files.len());
     for path in files {
@@ -96,40 +93,85 @@ pub fn source(path: &Path) -> Result<Source, Refusal> {
 
 /// Reads a JSON file.
 pub fn json(path: &Path) -> Result<Value, Refusal> {
-    let text = fs::read_to_string(path).map_err(|error| Refusal::io(path, &error))?;
-    serde_json::from_str(without_mark(&text)).map_err(|error| Refusal::at(path, error))
+    parsed(path, &bytes(path)?)
 }
 
-/// Reads a file, or standard input, which is kept: its hash is told of it, too.
+/// Reads a JSON file that this very run may write: nothing is noted of it.
+pub fn answer(path: &Path) -> Result<Value, Refusal> {
+    parsed(path, &whole(path)?.0)
+}
+
+/// The bytes of a file as JSON.
+pub fn parsed(path: &Path, bytes: &[u8]) -> Result<Value, Refusal> {
+    if output::is_unfinished(path) {
+        return Err(Refusal::at(
+            path,
+            "may not belong to the files beside it, for the run that wrote them was ended in the middle; run that command again",
+        ));
+    }
+    serde_json::from_slice(bytes.strip_prefix(MARK.as_bytes()).unwrap_or(bytes))
+        .map_err(|error| Refusal::at(path, error))
+}
+
+/// What was read.
+struct Taken {
+    sha256: String,
+    /// A pipe, which is empty now.
+    is_pipe: bool,
+}
+
+static TAKEN: Mutex<BTreeMap<PathBuf, Taken>> = Mutex::new(BTreeMap::new());
+
+/// Reads a file or standard input, and notes what was read.
 pub fn bytes(path: &Path) -> Result<Vec<u8>, Refusal> {
-    static STANDARD_INPUT: OnceLock<Vec<u8>> = OnceLock::new();
-    if !is_standard_input(path) {
-        return whole(path);
+    let taken = || TAKEN.lock().unwrap_or_else(PoisonError::into_inner);
+    if taken().get(path).is_some_and(|before| before.is_pipe) {
+        return Err(Refusal::at(path, "is given twice, and what is no file can be read once"));
     }
-    if let Some(bytes) = STANDARD_INPUT.get() {
-        return Ok(bytes.clone());
+    let (bytes, is_pipe) = whole(path)?;
+    let sha256 = digest(&bytes);
+    match taken().entry(path.to_owned()).or_insert_with(|| Taken { sha256: sha256.clone(), is_pipe }) {
+        before if before.sha256 == sha256 => Ok(bytes),
+        _ => Err(Refusal::at(
+            path,
+            "has changed since this run read it first; run the command again when nothing writes to it",
+        )),
     }
-    let mut bytes = Vec::new();
-    std::io::stdin()
-        .lock()
-        .read_to_end(&mut bytes)
-        .map_err(|error| Refusal::about("standard input", error))?;
-    Ok(STANDARD_INPUT.get_or_init(|| bytes).clone())
+}
+
+/// The SHA-256 of what was read of a file, which is read where it has not been.
+pub fn sha256(path: &Path) -> Result<String, Refusal> {
+    let noted =
+        TAKEN.lock().unwrap_or_else(PoisonError::into_inner).get(path).map(|taken| taken.sha256.clone());
+    noted.map_or_else(|| bytes(path).map(|bytes| digest(&bytes)), Ok)
+}
+
+/// The SHA-256 of bytes, in hexadecimal digits.
+pub fn digest(bytes: &[u8]) -> String {
+    Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
 /// What may be read of something that is no file of a known length, such as a pipe or a device, bytes.
 const ENDLESS: u64 = 1 << 30;
 
-/// Reads a file; what has no length of its own is refused where it does not end.
-fn whole(path: &Path) -> Result<Vec<u8>, Refusal> {
+/// Reads a file, and whether it is none but a pipe or device; what has no length of its own is refused where it does not end.
+fn whole(path: &Path) -> Result<(Vec<u8>, bool), Refusal> {
     let failed = |error: std::io::Error| Refusal::io(path, &error);
-    let file = fs::File::open(path).map_err(failed)?;
-    if file.metadata().map_err(failed)?.is_file() {
-        return fs::read(path).map_err(failed);
-    }
-    bounded(file, ENDLESS).map_err(failed)?.ok_or_else(|| {
+    let contents = if is_standard_input(path) {
+        bounded(std::io::stdin().lock(), ENDLESS)
+    } else {
+        let mut file = fs::File::open(path).map_err(failed)?;
+        if file.metadata().map_err(failed)?.is_file() {
+            let mut bytes = Vec::new();
+            file.read_to_end(&mut bytes).map_err(failed)?;
+            return Ok((bytes, false));
+        }
+        bounded(file, ENDLESS)
+    };
+    let contents = contents.map_err(failed)?.ok_or_else(|| {
         Refusal::at(path, "is no file but a device or pipe of more than 1 GiB; save it to a file first")
-    })
+    })?;
+    Ok((contents, true))
 }
 
 /// What `source` holds; `None` where that is more than `most` bytes.
@@ -140,9 +182,7 @@ fn bounded(source: impl Read, most: u64) -> std::io::Result<Option<Vec<u8>>> {
 }
 
 /// A byte order mark is no JSON, but editors leave one.
-fn without_mark(text: &str) -> &str {
-    text.trim_start_matches('\u{feff}')
-}
+const MARK: &str = "\u{feff}";
 
 #[cfg(test)]
 mod tests {

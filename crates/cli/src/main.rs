@@ -19,7 +19,7 @@ use std::io::{ErrorKind, Write};
 use std::process::ExitCode;
 
 use commands::{Program, Said};
-use progress::tell;
+use progress::{tell, visible};
 use refusal::Refusal;
 
 fn main() -> ExitCode {
@@ -48,7 +48,7 @@ fn refuse(refusal: &Refusal) -> ExitCode {
 /// Prints to standard output. A reader that has gone away (`jointscope … | head`) is no error; an answer that is lost is one.
 fn say(text: &str, whole: bool) -> ExitCode {
     let mut output = std::io::stdout().lock();
-    match output.write_all(text.as_bytes()).and_then(|()| output.flush()) {
+    match output.write_all(visible(text).as_bytes()).and_then(|()| output.flush()) {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => {
             tell(&format!(
                 "jointscope: standard output takes no more ({error}), so the answer is lost there; direct it to a place with room"

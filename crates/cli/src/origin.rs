@@ -5,7 +5,6 @@ use std::path::PathBuf;
 use jointscope::pipeline::HammerTest;
 use jointscope::report::{InputFile, PageContext};
 use serde_json::{Value, json};
-use sha2::{Digest, Sha256};
 
 use crate::input;
 use crate::refusal::Refusal;
@@ -44,15 +43,10 @@ pub fn inputs_value(inputs: &[InputFile]) -> Value {
     inputs.iter().map(|input| json!({"file": input.name, "sha256": input.sha256})).collect()
 }
 
-/// Names and hashes of the files.
+/// Names and hashes of the files as they were read.
 pub fn inputs<'a>(files: impl IntoIterator<Item = &'a PathBuf>) -> Result<Vec<InputFile>, Refusal> {
-    files.into_iter().map(|path| Ok(input_file(input::name(path), &input::bytes(path)?))).collect()
-}
-
-/// A file's name and the SHA-256 of its contents.
-pub fn input_file(name: String, contents: &[u8]) -> InputFile {
-    let sha256 = Sha256::digest(contents).iter().map(|byte| format!("{byte:02x}")).collect();
-    InputFile { name, sha256 }
+    let noted = |path| Ok(InputFile { name: input::name(path), sha256: input::sha256(path)? });
+    files.into_iter().map(|path: &PathBuf| noted(path)).collect()
 }
 
 /// The program and its version.

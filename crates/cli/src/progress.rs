@@ -6,6 +6,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
+use jointscope::report::format::hides;
 
 /// Steps of something long: the last one on a terminal, lines elsewhere, of what is done within a stage no more than one every other second.
 #[derive(Debug)]
@@ -68,7 +69,7 @@ impl Steps {
     fn show(&self, told: &mut Told, line: &str) {
         told.last = Instant::now();
         match &self.spinner {
-            Some(spinner) => spinner.set_message(line.to_owned()),
+            Some(spinner) => spinner.set_message(visible(line)),
             None => tell(line),
         }
     }
@@ -174,7 +175,19 @@ fn styled(bar: ProgressBar, template: &str) -> ProgressBar {
 /// A line for whoever watches, apart from the results.
 pub fn tell(line: &str) {
     // With standard error closed nobody watches.
-    let _ = writeln!(std::io::stderr(), "{line}");
+    let _ = writeln!(std::io::stderr(), "{}", visible(line));
+}
+
+/// A text that no name can make look like another: what hides is spelled as JSON does, so that JSON stays the same.
+pub fn visible(text: &str) -> String {
+    let mut shown = String::with_capacity(text.len());
+    for c in text.chars() {
+        match hides(c) {
+            true => shown.extend([format!("\\u{:04x}", u32::from(c))]),
+            false => shown.push(c),
+        }
+    }
+    shown
 }
 
 /// What a reader of the answer should know besides.
@@ -185,6 +198,11 @@ pub fn notice(sentence: &str) {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_name_can_neither_command_a_terminal_nor_turn_its_text_around() {
+        assert_eq!(visible("a\u{1b}[2J\tÄ\n\u{202e}b"), "a\\u001b[2J\tÄ\n\\u202eb");
+    }
 
     #[test]
     fn a_line_of_a_count_says_how_much_of_what_is_done() {

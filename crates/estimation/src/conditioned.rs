@@ -107,6 +107,8 @@ impl<'a> Conditioned<'a> {
             ForceWindow::Auto => (pulse.end - pulse.begin) * 11,
             ForceWindow::Length(seconds) => (seconds / self.hit.interval()).round() as usize,
         };
+        // Beyond the record's end nothing is left to window.
+        let flat = flat.min(self.force.len());
         Some((pulse.begin + flat, (flat / 4).max(1)))
     }
 

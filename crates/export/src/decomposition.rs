@@ -97,7 +97,7 @@ impl Estimate {
             None if decomposed.relation == "paper" => return Err(ExportError::OnlyPaper),
             None => {
                 let (from, to) = decomposed.band;
-                (format!("the plain average over {from} to {to} Hz"), &decomposed.average)
+                (format!("the plain average over {} to {} Hz", short(from), short(to)), &decomposed.average)
             }
         };
         Ok(Estimate {

@@ -112,6 +112,16 @@ pub enum FemError {
         /// Cells of the grid.
         elements: usize,
     },
+    /// A material that is none.
+    #[error(
+        "geometry/materials/{name}: sound would travel at {speed:.1e} m/s in it, and no solid carries it above some 20 km/s: check Young's modulus in Pa and density in kg/m^3"
+    )]
+    Material {
+        /// Its name.
+        name: String,
+        /// √(E/ρ), m/s.
+        speed: f64,
+    },
     /// An element is too distorted.
     #[error("element {element} of the mesh is degenerate: check the dimensions in `geometry`")]
     Degenerate {
@@ -132,7 +142,11 @@ pub enum FemError {
         known: String,
     },
     /// A superposition of modes that end below the last line.
-    #[error("modes are known up to {modes} Hz and the last line is {last} Hz: find more modes")]
+    #[error(
+        "modes are known up to {} Hz and the last line is {} Hz: find more modes",
+        jointscope_spectra::in_text(*modes),
+        jointscope_spectra::in_text(*last)
+    )]
     ModesEndBelow {
         /// Frequency up to which modes are known, Hz.
         modes: f64,
@@ -141,7 +155,8 @@ pub enum FemError {
     },
     /// An undamped resonance lies on a line.
     #[error(
-        "the response is unbounded at {frequency} Hz: the model has an undamped resonance on that line; state some damping or move the line"
+        "the response is unbounded at {} Hz: the model has an undamped resonance on that line; state some damping or move the line",
+        jointscope_spectra::in_text(*frequency)
     )]
     Unbounded {
         /// The line, Hz.

@@ -61,6 +61,12 @@ impl Mesh {
         if cells > MOST_CELLS {
             return Err(FemError::TooFine { elements: cells });
         }
+        for (name, material) in &geometry.materials {
+            let speed = (material.youngs_modulus.value / material.density.value).sqrt();
+            if speed > FASTEST {
+                return Err(FemError::Material { name: name.clone(), speed });
+            }
+        }
         let materials = geometry.materials.iter().map(|(_, m)| Elasticity {
             youngs_modulus: m.youngs_modulus.value,
             poisson_ratio: m.poisson_ratio.value,
@@ -159,6 +165,9 @@ impl Mesh {
         best.map(|(_, index, natural)| (index, natural))
     }
 }
+
+/// Speed of sound in a material at the most, m/s, fifty times that of diamond: above, the modes lose their digits.
+const FASTEST: f64 = 1e6;
 
 /// More elements than any machine here factorises.
 const MOST_CELLS: usize = 200_000;

@@ -35,6 +35,16 @@ pub enum SparseError {
         /// The shift, Hz.
         hz: f64,
     },
+    /// So many modes lie in the band that finding them all would take hours.
+    #[error(
+        "more than {most} modes lie below {hz:.0} Hz: check the moduli and densities, or end the band lower"
+    )]
+    TooMany {
+        /// Modes that are looked for at the most.
+        most: usize,
+        /// Upper end of the band, Hz.
+        hz: f64,
+    },
     /// The count of eigenvalues below a shift cannot be relied on.
     #[error(
         "the modes below {hz:.6} Hz cannot be counted: a mode lies too close to that frequency, or neighbouring elements differ too much in size or stiffness"

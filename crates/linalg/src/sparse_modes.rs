@@ -60,6 +60,9 @@ const BLOCK: usize = 4;
 /// The Krylov space ends at so many vectors for each mode that is wanted, and some.
 const VECTORS_A_MODE: usize = 8;
 
+/// Modes below the wanted frequency that are looked for at the most: a vector of each is held, and every step works on all.
+const MOST_MODES: usize = 400;
+
 /// Residual of a Ritz pair of (K + sM)⁻¹M, relative to its value, at which it counts as found.
 const CONVERGED: f64 = 1e-10;
 
@@ -86,7 +89,7 @@ const STEPS_A_FRESH_BLOCK: usize = 12;
 /// new start vectors beside the old, and ends with an error if they do not turn up.
 ///
 /// # Errors
-/// A K + sM that is not positive definite, no convergence, residuals that are too large, modes that the count says are missing.
+/// A K + sM that is not positive definite, no convergence, more than 400 modes, residuals that are too large, modes that the count says are missing.
 pub fn lowest_modes(
     stiffness: &SparseSymmetric,
     mass: &SparseSymmetric,
@@ -170,6 +173,10 @@ pub fn lowest_modes(
         } else {
             // Ritz values lie above the eigenvalues: there are at least so many modes.
             let known = ritz.iter().filter(|pair| 1.0 / pair.value - shift <= wanted.up_to).count();
+            let most = MOST_MODES.max(2 * at_least);
+            if known > most {
+                return Err(SparseError::TooMany { most, hz: wanted.up_to.max(0.0).sqrt() / TAU });
+            }
             if size >= VECTORS_A_MODE * known.max(converged).max(at_least) + 60 {
                 return Err(EigenError::NoConvergence.into());
             }

@@ -72,7 +72,8 @@ pub enum LumpedError {
     Modes(#[from] jointscope_linalg::EigenError),
     /// A beam body would need a finer mesh than its modes can be computed of.
     #[error(
-        "body `{body}` bends so easily that lines up to {frequency} Hz need {elements:.0} elements of it, more than {most}: check its stiffness, its mass and its length, or take a lower band"
+        "body `{body}` bends so easily that lines up to {} Hz need {elements:.0} elements of it, more than {most}: check its stiffness, its mass and its length, or take a lower band",
+        jointscope_spectra::in_text(*frequency)
     )]
     TooFine {
         /// The body.
@@ -127,7 +128,8 @@ pub enum LumpedError {
     SingularMass,
     /// The dynamic stiffness has no inverse at a line.
     #[error(
-        "the response is unbounded at {frequency} Hz: the model has an undamped resonance on that line; state some damping or move the line"
+        "the response is unbounded at {} Hz: the model has an undamped resonance on that line; state some damping or move the line",
+        jointscope_spectra::in_text(*frequency)
     )]
     Unbounded {
         /// The line, Hz.

@@ -1,9 +1,13 @@
+use jointscope_spectra::in_text;
+
 /// Why no modes can be told.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum ModesError {
     /// The band holds too few lines.
     #[error(
-        "{lines} spectral lines above 0 Hz are in use, from {from} to {to} Hz: at least {needed} are needed; widen the band"
+        "{lines} spectral lines above 0 Hz are in use, from {} to {} Hz: at least {needed} are needed; widen the band",
+        in_text(*from),
+        in_text(*to)
     )]
     TooFewLines {
         /// Lines in use.
@@ -40,7 +44,9 @@ pub enum ModesError {
     },
     /// No pole is the same from order to order, or none stands out of the noise.
     #[error(
-        "no resonance stands out of the noise from {from} to {to} Hz: nothing is stable there over orders {lowest} to {highest}; choose another band, or poles of your own with `--pick`"
+        "no resonance stands out of the noise from {} to {} Hz: nothing is stable there over orders {lowest} to {highest}; choose another band, or poles of your own with `--pick`",
+        in_text(*from),
+        in_text(*to)
     )]
     NothingStable {
         /// First line, Hz.

@@ -46,7 +46,9 @@ pub enum Error {
     NothingExcited,
     /// Band and excluded bands leave no line.
     #[error(
-        "`--band` and `--exclude` leave no spectral line of the recording, which runs from {first} to {last} Hz; choose them anew"
+        "`--band` and `--exclude` leave no spectral line of the recording, which runs from {} to {} Hz; choose them anew",
+        jointscope_spectra::in_text(*first),
+        jointscope_spectra::in_text(*last)
     )]
     NoLineInUse {
         /// First line of the recording, Hz.

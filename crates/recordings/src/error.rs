@@ -51,6 +51,9 @@ pub enum FunctionError {
         "ID line 3 reads `{0}`: a decay in 1/s is needed, zero or above, such as `exponential window 12.5 1/s`"
     )]
     Window(String),
+    /// A largest magnitude, (m/s²)/N or the like of rotations, whose square means nothing any more.
+    #[error("its largest value is {0:.1e} in SI units, which is that of no structure: check unit and scale")]
+    Magnitude(f64),
     /// Its spectral lines.
     #[error("{0}")]
     Lines(SpectraError),

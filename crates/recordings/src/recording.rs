@@ -1,8 +1,9 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use jointscope_fixture::Fixture;
-use jointscope_spectra::{FrfForm, FrfSet, SpectralLines};
+use jointscope_spectra::{FrfForm, FrfSet, SpectralLines, in_text};
 use jointscope_uff::UffFile;
+use num_complex::Complex64;
 
 use crate::coherence::CoherenceNotes;
 use crate::contents::Contents;
@@ -10,7 +11,7 @@ use crate::error::enumeration;
 use crate::function::{LinesCache, append_accelerances, functions};
 use crate::gather::{Entry, Gathered, example, gather, in_order, points};
 use crate::ordinate::{Ordinate, UnitNotes, may_be_force, ordinate};
-use crate::{AssumedUnits, ChannelMap, FileChannel, HeldAmplitude, RecordingError};
+use crate::{AssumedUnits, ChannelMap, FileChannel, FunctionError, HeldAmplitude, RecordingError};
 
 /// A universal file and the name it goes by in messages.
 #[derive(Debug, Clone, PartialEq)]
@@ -274,6 +275,9 @@ fn levels(
         .collect()
 }
 
+/// What the largest value of a set and each of its FRFs must lie between, (m/s²)/N or the like of rotations: ten decades beyond the heaviest and the lightest of structures.
+const MAGNITUDES: [f64; 2] = [1e-30, 1e20];
+
 fn level<'a>(
     frfs: &[Usable<'a>],
     coherences: &[Entry<'a>],
@@ -297,6 +301,14 @@ fn level<'a>(
         }
         let recorded = entry.function.complex().map_err(|problem| entry.refuse(problem))?;
         append_accelerances(&mut values, recorded, ordinate.form, entry.sign * ordinate.si, &lines);
+    }
+    let largest = |values: &[Complex64]| values.iter().map(|value| value.norm()).fold(0.0, f64::max);
+    let silent = largest(&values) < MAGNITUDES[0];
+    for ((entry, _), own) in frfs.iter().zip(values.chunks(lines.len())) {
+        let largest = largest(own).min(f64::MAX);
+        if largest > MAGNITUDES[1] || (silent && largest > 0.0) {
+            return Err(entry.refuse(FunctionError::Magnitude(largest)));
+        }
     }
     let pairs = frfs.iter().map(|(entry, _)| entry.pair.clone()).collect();
     let mut set = FrfSet::new(lines.clone(), FrfForm::Accelerance, pairs, values)?;
@@ -343,5 +355,5 @@ fn same_lines<'a>(
 /// `400 lines from 2.5 to 1000 Hz`.
 fn extent(lines: &SpectralLines) -> String {
     let hz = lines.hz();
-    format!("{} from {} to {} Hz", counted(hz.len(), "line"), hz[0], hz[hz.len() - 1])
+    format!("{} from {} to {} Hz", counted(hz.len(), "line"), in_text(hz[0]), in_text(hz[hz.len() - 1]))
 }

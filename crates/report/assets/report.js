@@ -70,6 +70,12 @@
     return [low - air, high + air];
   }
 
+  // uPlot counts logarithmic ticks up from the low end; where its first step leaps over the next decade it never comes to an end.
+  function startable([low, high], spacing) {
+    const decade = 10 ** Math.floor(Math.log10(low));
+    return [spacing === "logarithmic" && low > 9.4 * decade ? 9 * decade : low, high];
+  }
+
   class Pane {
     constructor(figure, plot) {
       this.figure = figure;
@@ -117,8 +123,8 @@
       return {
         ...this.size(), series, bands, legend: { show: false }, padding: [8, 14, 0, 0],
         scales: {
-          x: { time: false, distr: log(plot.x) ? 3 : 1, range: (u, low, high) => low == null || low <= this.data[0][0] && high >= this.data[0][this.data[0].length - 1] ? this.extent : low < high ? [low, high] : [low - 0.5, low + 0.5] },
-          y: { distr: log(plot.y) ? 3 : 1, range: (u, low, high) => this.ordinates(u, low, high) },
+          x: { time: false, distr: log(plot.x) ? 3 : 1, range: (u, low, high) => startable(low == null || low <= this.data[0][0] && high >= this.data[0][this.data[0].length - 1] ? this.extent : low < high ? [low, high] : [low - 0.5, low + 0.5], plot.x.spacing) },
+          y: { distr: log(plot.y) ? 3 : 1, range: (u, low, high) => startable(this.ordinates(u, low, high), plot.y.spacing) },
         },
         axes: [
           axis(log(plot.x) ? { filter: decades } : {}, { label: title(plot.x), size: 26, values: log(plot.x) ? logTicks : linearTicks, space: 60 }),

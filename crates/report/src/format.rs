@@ -200,6 +200,13 @@ fn minus(number: &str) -> String {
     }
 }
 
+/// Whether a character shows nothing itself but changes how others are shown: control characters other than line ends and tabs, line separators,
+/// and marks that turn the direction of writing. Neither page nor terminal may get one from a name.
+pub fn hides(c: char) -> bool {
+    c.is_control() && !matches!(c, '\n' | '\t')
+        || matches!(c, '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
+}
+
 /// A text with its first letter as a capital.
 pub(crate) fn capitalised(text: &str) -> String {
     let mut letters = text.chars();

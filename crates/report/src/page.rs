@@ -1,9 +1,14 @@
 //! The page around the sections: head with policy and style, verdict, contents, foot, and the data that the script draws.
 
+use std::collections::BTreeSet;
+
+use base64::{Engine, prelude::BASE64_STANDARD};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
+use sha2::{Digest, Sha256};
 
 use crate::context::InputFile;
 use crate::error::PageError;
+use crate::format::hides;
 use crate::json::script_safe;
 use crate::plot::PlotBook;
 use crate::section::{Section, Verdict};
@@ -14,9 +19,23 @@ const UPLOT_LICENSE: &str = include_str!("../assets/uplot.LICENSE.txt");
 const SCRIPT: &str = include_str!("../assets/report.js");
 const STYLE: &str = include_str!("../assets/report.css");
 
-/// No network, no foreign content: style and script come with the page or not at all.
-const POLICY: &str =
-    "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src data:";
+/// No network, no foreign content: nothing is in force but these styles and scripts, told by their hashes. Attributes of style remain, for drawings
+/// are made of them; what they could load is forbidden.
+fn policy<'a>(styles: impl Iterator<Item = &'a str>, scripts: &[&'a str]) -> String {
+    let hash = |text: &str| format!(" 'sha256-{}'", BASE64_STANDARD.encode(Sha256::digest(text)));
+    let scripts: String = scripts.iter().copied().map(hash).collect();
+    let scripts = if scripts.is_empty() { " 'none'" } else { &scripts };
+    let styles: BTreeSet<String> = styles.map(hash).collect();
+    let styles: String = styles.into_iter().collect();
+    format!(
+        "default-src 'none'; base-uri 'none'; form-action 'none'; img-src data:; script-src{scripts}; style-src-elem{styles}; style-src-attr 'unsafe-inline'"
+    )
+}
+
+/// The styles that drawings bring with them, so that they are whole as files of their own. No text from outside holds the mark of one.
+fn styles_of(section: &Markup) -> impl Iterator<Item = &str> {
+    section.0.split("<style>").skip(1).filter_map(|rest| Some(rest.split_once("</style>")?.0))
+}
 
 /// Sections above which a page opens with a list of them.
 const SECTIONS_WITHOUT_CONTENTS: usize = 2;
@@ -85,16 +104,22 @@ impl Page {
         let sections = self.sections.iter().zip(&anchors);
         let bodies: Vec<Markup> =
             sections.map(|(section, anchor)| section.render(anchor, &mut plots)).collect::<Result<_, _>>()?;
+        let library = format!("/*\n{UPLOT_LICENSE}*/\n{UPLOT_SCRIPT}");
+        let (style, scripts) = match plots.is_empty() {
+            true => (STYLE.to_owned(), vec![]),
+            false => (format!("{UPLOT_STYLE}{STYLE}"), vec![library.as_str(), SCRIPT]),
+        };
+        let styles = std::iter::once(style.as_str()).chain(bodies.iter().flat_map(styles_of));
         let page = html! {
             (DOCTYPE)
             html lang="en" {
                 head {
                     meta charset="utf-8";
-                    meta http-equiv="Content-Security-Policy" content=(POLICY);
+                    meta http-equiv="Content-Security-Policy" content=(policy(styles, &scripts));
                     meta name="viewport" content="width=device-width, initial-scale=1";
                     meta name="color-scheme" content="light dark";
                     title { (self.title) }
-                    style { @if !plots.is_empty() { (PreEscaped(UPLOT_STYLE)) } (PreEscaped(STYLE)) }
+                    style { (PreEscaped(&style)) }
                 }
                 body {
                     main {
@@ -113,13 +138,12 @@ impl Page {
                         @for body in &bodies { "\n" (body) }
                         (self.foot)
                     }
-                    @if !plots.is_empty() { (scripts(&plots)) }
+                    @if !plots.is_empty() { (drawn(&plots, &scripts)) }
                 }
             }
         };
-        // Control characters are no HTML text; the replacement character says that something stood there.
-        let is_foreign = |c: char| c.is_control() && !matches!(c, '\n' | '\t');
-        Ok(page.into_string().replace(is_foreign, "\u{fffd}"))
+        // The replacement character says that something stood there.
+        Ok(page.into_string().replace(hides, "\u{fffd}"))
     }
 
     /// The sections with their anchors.
@@ -171,8 +195,8 @@ fn colour(name: &str) -> Option<&'static str> {
     entries.find(|(key, _)| *key == name).map(|(_, value)| value.trim())
 }
 
-/// Data and scripts. The script's text is ours, and the data cannot leave its place.
-fn scripts(plots: &PlotBook) -> Markup {
+/// Data and scripts. The scripts' text is ours, and the data cannot leave its place.
+fn drawn(plots: &PlotBook, scripts: &[&str]) -> Markup {
     html! {
         noscript {
             p.footnote {
@@ -180,7 +204,6 @@ fn scripts(plots: &PlotBook) -> Markup {
             }
         }
         script type="application/json" id="plot-data" { (PreEscaped(script_safe(&plots.to_json()))) }
-        script { "/*\n" (PreEscaped(UPLOT_LICENSE)) "*/\n" (PreEscaped(UPLOT_SCRIPT)) }
-        script { (PreEscaped(SCRIPT)) }
+        @for script in scripts { script { (PreEscaped(script)) } }
     }
 }

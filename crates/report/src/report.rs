@@ -8,6 +8,7 @@ use csv::Writer;
 use maud::Markup;
 
 use crate::error::PageError;
+use crate::format::hides;
 use crate::page::{self, Page};
 use crate::plot::Plot;
 use crate::section::Block;
@@ -142,8 +143,7 @@ fn file_name(title: &str) -> String {
 
 /// A drawing as a file of its own: colours as they are by day, no variables of a page, which few programs for drawings know.
 fn standalone(svg: &Markup) -> String {
-    let is_foreign = |c: char| c.is_control() && !matches!(c, '\n' | '\t');
-    let text = page::in_plain_colours(&svg.0).replace(is_foreign, "\u{fffd}");
+    let text = page::in_plain_colours(&svg.0).replace(hides, "\u{fffd}");
     format!("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n{text}\n")
 }
 

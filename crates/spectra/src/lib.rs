@@ -26,7 +26,7 @@ mod serialization;
 
 pub use form::FrfForm;
 pub use frf_set::{Channel, Dof, FrfPair, FrfSet};
-pub use lines::SpectralLines;
+pub use lines::{SpectralLines, in_text};
 pub use serialization::{complex, complexes};
 
 /// What makes spectral lines or a set of FRFs impossible.
@@ -64,7 +64,7 @@ pub enum SpectraError {
         found: usize,
     },
     /// A value is not a finite number.
-    #[error("FRF {frf} holds a value that is not a finite number at {frequency} Hz")]
+    #[error("FRF {frf} holds a value that is not a finite number at {} Hz", in_text(*frequency))]
     NotFinite {
         /// Name of the FRF, response/reference.
         frf: String,
@@ -77,8 +77,12 @@ pub enum SpectraError {
     /// An accelerance or mobility has no receptance at 0 Hz.
     #[error("the line at 0 Hz has no {0}: leave it out first")]
     NothingAtZero(&'static str),
-    /// A variance is negative or not a number.
-    #[error("FRF {frf} has the variance {variance} at {frequency} Hz: zero or above is needed")]
+    /// A variance is negative or not a finite number.
+    #[error(
+        "the variance of FRF {frf} at {} Hz is {}: a finite one, zero or above, is needed",
+        in_text(*frequency),
+        if *variance < 0.0 { "negative" } else { "beyond all numbers" }
+    )]
     BadVariance {
         /// Name of the FRF.
         frf: String,

@@ -6,6 +6,15 @@ use std::sync::Arc;
 #[derive(Debug, Clone, PartialEq)]
 pub struct SpectralLines(Arc<[f64]>);
 
+/// A frequency for text, Hz: nine significant digits, for the last ones of start + k·step are rounding.
+///
+/// ```
+/// assert_eq!(jointscope_spectra::in_text(356.80000000000007).to_string(), "356.8");
+/// ```
+pub fn in_text(hz: f64) -> f64 {
+    format!("{hz:.8e}").parse().unwrap_or(hz)
+}
+
 impl SpectralLines {
     /// Takes frequencies in Hz.
     ///

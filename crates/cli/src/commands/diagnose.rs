@@ -16,7 +16,7 @@ use super::Said;
 use super::many::{self, ManyArguments, Task};
 use crate::answered::{Also, Answered, Destination, PAGE};
 use crate::estimation_arguments::EstimationArguments;
-use crate::input::{self, FixtureFile};
+use crate::input::FixtureFile;
 use crate::origin;
 use crate::output::pretty;
 use crate::progress::Steps;
@@ -107,7 +107,6 @@ fn found(
 
 /// What the fixture leaves out of the recordings, nothing written.
 pub fn diagnosed(arguments: &DiagnoseArguments, watch: impl Fn(Progress) + Sync) -> Result<Answer, Refusal> {
-    input::once(inputs(arguments))?;
     let fixture = FixtureFile::read(&arguments.fixture)?;
     let measurement = arguments.recording.measurement(&fixture)?;
     let estimate = arguments.estimation.options(ResponseWindow::Auto);

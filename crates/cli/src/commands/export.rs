@@ -155,9 +155,7 @@ impl Answer {
 
 /// The contents of a file that a command wrote; one that is cut off is to be made anew.
 fn whole(path: &Path, command: &str) -> Result<serde_json::Value, Refusal> {
-    // What cannot be read at all has its own remedy.
-    input::bytes(path)?;
-    input::json(path).map_err(|refusal| {
+    input::parsed(path, &input::bytes(path)?).map_err(|refusal| {
         Refusal::new(format_args!("{refusal}; make the file anew with `jointscope {command}`"))
     })
 }

@@ -131,7 +131,6 @@ fn structure(arguments: &InitArguments) -> Result<Structure, Refusal> {
 
 /// The nodes of recordings, as names of points, and what is to be said of their directions.
 fn points(files: &[PathBuf], lines: &mut Vec<String>) -> Result<Vec<String>, Refusal> {
-    input::once(files)?;
     let mut channels: BTreeSet<FileChannel> = BTreeSet::new();
     for path in files {
         for dataset in &input::source(path)?.file.datasets {
@@ -184,7 +183,6 @@ type Points = (Vec<String>, Vec<(String, f64)>);
 /// The nodes of recordings at the places of their geometry, and what is to be said of them. Where there are FRFs or histories, their nodes are the points; else all are.
 fn placed(arguments: &InitArguments, lines: &mut Vec<String>) -> Result<Points, Refusal> {
     let files = &arguments.from_uff;
-    input::once(files)?;
     let sources = files.iter().map(|path| input::source(path)).collect::<Result<Vec<_>, _>>()?;
     let geometry = Geometry::of(&sources, arguments.length_unit.as_deref()).map_err(|error| match error {
         GeometryError::NoNodes(_) => Refusal::new(format_args!(

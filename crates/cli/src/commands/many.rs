@@ -221,7 +221,7 @@ fn is_done(command: Command, folder: &Path, line: &str, inputs: &[PathBuf]) -> b
     if folder.join(REFUSED).exists() || !folder.join(PAGE).exists() {
         return false;
     }
-    let Ok(file) = input::json(&folder.join(command.answer())) else { return false };
+    let Ok(file) = input::answer(&folder.join(command.answer())) else { return false };
     let Ok(inputs) = origin::inputs(inputs) else { return false };
     let made =
         json!({ "program": origin::program(), "command": line, "inputs": origin::inputs_value(&inputs) });

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use jointscope::report::format::quantity;
 use jointscope::report::{PageContext, modes_report};
+use jointscope::spectra::in_text;
 use jointscope::{
     Band, MeasuredDamping, ModalAnalysis, ModesOptions, Remarks, measured_damping, modes_file, rebuilt_frfs,
 };
@@ -50,8 +51,9 @@ pub fn run(arguments: &ModesArguments) -> Result<String, Refusal> {
     };
     let frfs = recording.frfs().map_err(|error| arguments.recording.refusal(error))?;
     let files = || arguments.fixture.iter().chain(&arguments.recording.files);
-    arguments.destination.foresee(files(), &[FILE, PAGE])?;
-    Outputs::foresee(files(), arguments.update.clone())?;
+    let folder = arguments.destination.output.iter();
+    let answers = folder.flat_map(|folder| [folder.join(FILE), folder.join(PAGE)]);
+    Outputs::foresee(files(), answers.chain(arguments.update.clone()))?;
     let options = ModesOptions {
         band: arguments.band.map(|band| (band.from, band.to)),
         orders: arguments.orders,
@@ -124,8 +126,8 @@ fn summary(analysis: &ModalAnalysis, damping: Option<&MeasuredDamping>) -> Vec<S
         "{} in {} from {} to {} Hz; chi2 per degree of freedom {:.3}",
         counted(analysis.modes.len(), "mode"),
         counted(analysis.pairs().len(), "FRF"),
-        hz[0],
-        hz[hz.len() - 1],
+        in_text(hz[0]),
+        in_text(hz[hz.len() - 1]),
         analysis.chi2_per_dof
     )];
     for (index, mode) in analysis.modes.iter().enumerate() {

@@ -85,7 +85,6 @@ struct Planned {
 
 /// Plans; answers with the suggestions, the best first.
 pub fn run(arguments: &PlanArguments) -> Result<String, Refusal> {
-    input::once(std::iter::once(&arguments.fixture).chain(&arguments.files).chain(&arguments.also))?;
     let folder = arguments.output.iter();
     let names = folder.flat_map(|folder| FILES.iter().map(|name| folder.join(name)));
     Outputs::foresee(std::iter::once(&arguments.fixture), names)?;
@@ -182,8 +181,7 @@ fn of_diagnosis(path: &Path, fixture: &Path) -> Result<DiagnoseArguments, Refusa
         let (Some(name), Some(hash)) = (made_of["file"].as_str(), made_of["sha256"].as_str()) else {
             return Err(not_one());
         };
-        let now = origin::input_file(name.to_owned(), &input::bytes(Path::new(name))?);
-        if now.sha256 != hash {
+        if input::sha256(Path::new(name))? != hash {
             let problem = format!("has changed since {} was made; diagnose anew", path.display());
             return Err(Refusal::at(Path::new(name), problem));
         }

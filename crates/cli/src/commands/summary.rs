@@ -68,7 +68,7 @@ fn manifests(directory: &Path) -> Result<Vec<(PathBuf, Manifest)>, Refusal> {
     }
     paths.sort();
     let read = |path: PathBuf| {
-        let list = serde_json::from_value(input::json(&path)?).map_err(|error| {
+        let list = serde_json::from_value(input::answer(&path)?).map_err(|error| {
             Refusal::at(
                 &path,
                 format_args!("is no list of cases ({error}); run the cases again, which writes it anew"),
@@ -139,7 +139,7 @@ pub fn written(directory: &Path, command: Command, cases: &[Case], json: bool) -
 fn rows(directory: &Path, command: Command, cases: &[Case]) -> Vec<Row> {
     let state = |case: &Case| {
         let own = directory.join(&case.name);
-        if let Ok(refused) = input::json(&own.join(REFUSED)) {
+        if let Ok(refused) = input::answer(&own.join(REFUSED)) {
             let why = refused
                 .get("refused")
                 .and_then(Value::as_str)
@@ -149,7 +149,7 @@ fn rows(directory: &Path, command: Command, cases: &[Case]) -> Vec<Row> {
         let answer = own.join(command.answer());
         match answer.exists() {
             false => State::Missing,
-            true => match input::json(&answer) {
+            true => match input::answer(&answer) {
                 Ok(file) => command.state(&file),
                 Err(refusal) => State::Refused(refusal.to_string()),
             },

@@ -30,6 +30,24 @@ fn lumped(text: &str, pairs: &[FrfPair], lines: &SpectralLines) -> FrfSet {
 }
 
 #[test]
+fn moduli_that_no_solid_has_are_refused() {
+    let coarse = MeshOptions { corner: 2, along: 4, across: 1, growth: 4.0, ..COARSE };
+    let refused = |modulus: &str| {
+        let fixture = Fixture::from_json(&D0.replace("207000000000.0", modulus)).unwrap();
+        let range = ModeRange { at_least: 4, up_to: 2000.0 };
+        Twin::of(&fixture, &coarse, range, |_| {}).err().map(|error| error.to_string()).unwrap_or_default()
+    };
+    for modulus in ["1e18", "1e150", "1e300"] {
+        let message = refused(modulus);
+        assert!(message.contains("sound would travel at"), "{modulus} Pa: {message}");
+    }
+    for modulus in ["1e3", "1e-30", "1e-300"] {
+        let message = refused(modulus);
+        assert!(message.contains("more than 400 modes lie below 2000 Hz"), "{modulus} Pa: {message}");
+    }
+}
+
+#[test]
 fn far_below_its_first_mode_the_twin_moves_as_the_rigid_assembly() {
     let text = D0;
     let pairs =

@@ -41,6 +41,25 @@ fn a_coherence_above_one_by_rounding_passes_and_what_is_no_coherence_is_left_out
 }
 
 #[test]
+fn values_that_no_structure_has_are_refused_and_a_dead_channel_is_not() {
+    let times = |factor: f64| {
+        let Data::Complex(values) = frf((4, 2), (1, 2)).data else { panic!("an FRF is complex") };
+        Dataset58 { data: Data::Complex(values.iter().map(|v| v * factor).collect()), ..frf((4, 2), (1, 2)) }
+    };
+    let other = || frf((3, 2), (1, 2));
+    for set in [vec![times(1e25)], vec![times(1e300), other()], vec![times(1e-40)]] {
+        let error = read(set).unwrap_err();
+        let is_named =
+            matches!(&error, RecordingError::Function { problem: FunctionError::Magnitude(_), .. });
+        assert!(is_named, "{error}");
+    }
+    for set in [vec![times(0.0), other()], vec![times(1e-40), other()], vec![times(1e-12)], vec![times(1e9)]]
+    {
+        read(set).unwrap();
+    }
+}
+
+#[test]
 fn averages_may_be_stated_and_coherence_left_aside() {
     let files = || vec![id(frf((4, 2), (1, 2)), 5, "averages 8"), coherence((4, 2), (1, 2), [0.5, 0.6, 0.7])];
     let stated = ReadOptions { averages: Some(12), ..ReadOptions::default() };

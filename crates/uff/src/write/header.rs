@@ -139,7 +139,9 @@ impl Record<'_> {
         self.blanks(1);
         self.text(&node.entity, 10, fields[0])?;
         self.integer(node.number, 10, fields[1])?;
-        self.integer(i64::from(node.direction), 4, fields[2])
+        // A blank before it: numbers that touch are one to a reader.
+        self.blanks(1);
+        self.integer(i64::from(node.direction), 3, fields[2])
     }
 
     /// Record 7.
@@ -169,7 +171,8 @@ impl Record<'_> {
     fn axis(&mut self, axis: &Axis) -> Result<(), WriteProblem> {
         self.integer(i64::from(axis.data_type), 10, "the data type of an axis")?;
         for exponent in axis.exponents {
-            self.integer(i64::from(exponent), 5, "a unit exponent of an axis")?;
+            self.blanks(1);
+            self.integer(i64::from(exponent), 4, "a unit exponent of an axis")?;
         }
         self.blanks(1);
         self.text(&axis.label, 20, "an axis label")?;

@@ -37,6 +37,11 @@ fn node() -> impl Strategy<Value = Node> {
         .prop_map(|(entity, number, direction)| Node { entity, number, direction })
 }
 
+/// Whole numbers of one digit to ten, of either sign.
+fn any_magnitude() -> impl Strategy<Value = i32> {
+    (0..10_u32, any::<i32>()).prop_map(|(digits, number)| number % 10_i32.pow(digits))
+}
+
 fn units() -> impl Strategy<Value = Units> {
     (1..10_i32, text(20), any::<bool>(), 1e-6..1e6_f64, 1e-6..1e6_f64, 0.5..2.0_f64, -500.0..500.0_f64)
         .prop_map(
@@ -204,6 +209,21 @@ proptest! {
         prop_assume!(!too_large(function.z_value));
         let file = read(&write(std::slice::from_ref(&function)).unwrap()).unwrap();
         check(&function, &file.datasets[0]);
+    }
+
+    #[test]
+    fn what_the_writer_takes_the_reader_takes(
+        mut function in function(value()), directions in proptest::array::uniform2(any_magnitude()), exponents in proptest::array::uniform3(any_magnitude()), sequence_number in any_magnitude()
+    ) {
+        [function.response.direction, function.reference.direction] = directions;
+        function.ordinate_axis.exponents = exponents;
+        function.sequence_number = i64::from(sequence_number);
+        // Names that could be numbers of their own to a reader who goes by blanks.
+        function.response.entity = "A 1".to_owned();
+        function.ordinate_axis.label = "5 mm".to_owned();
+        if let Ok(bytes) = write(std::slice::from_ref(&function)) {
+            check(&function, &read(&bytes).unwrap().datasets[0]);
+        }
     }
 
     #[test]

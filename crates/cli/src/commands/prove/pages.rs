@@ -6,9 +6,10 @@ use std::sync::Mutex;
 use jointscope::Answer;
 use jointscope::fixture::Fixture;
 use jointscope::recordings::{ReadOptions, Source, hits_of};
-use jointscope::report::{PageContext, answer_page};
+use jointscope::report::{InputFile, PageContext, answer_page};
 
 use super::cases::Concealed;
+use crate::input;
 use crate::origin;
 use crate::output::Outputs;
 use crate::refusal::Refusal;
@@ -48,7 +49,10 @@ impl<'a> CasePages<'a> {
         let context = PageContext {
             program: origin::program(),
             command: "jointscope diagnose fixture.json hammer-test.uff -o .".to_owned(),
-            inputs: files.iter().map(|(name, bytes)| origin::input_file((*name).to_owned(), bytes)).collect(),
+            inputs: files
+                .iter()
+                .map(|(name, bytes)| InputFile { name: (*name).to_owned(), sha256: input::digest(bytes) })
+                .collect(),
             notes: notes(believed, &files[1].1, answer)?,
             hits: answer.hammer_test.clone(),
         };

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use jointscope::proof::Timing;
 use jointscope::proof::concealed::{ConcealmentKind, ConcealmentPlan, Explained, Reckoning};
 use jointscope::recordings::{HeldAmplitude, Level, Recording};
-use jointscope::spectra::FrfSet;
+use jointscope::spectra::{FrfSet, in_text};
 use serde_json::json;
 
 use super::arguments::{ProveArguments, RealRecordings};
@@ -123,7 +123,7 @@ impl Test {
         let hz = frfs.lines().hz();
         let within = |line: usize| options.band.is_none_or(|band| band.contains(hz[line]));
         let frfs = frfs.on_lines(within).ok_or_else(|| {
-            let (first, last) = (hz[0], hz[hz.len() - 1]);
+            let (first, last) = (in_text(hz[0]), in_text(hz[hz.len() - 1]));
             let problem =
                 format_args!("`--band` leaves no spectral line of the recording, which runs from {first} to {last} Hz; choose it anew");
             Refusal::at(directory, problem)
@@ -139,7 +139,7 @@ impl Test {
 impl fmt::Display for Test {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let hz = self.frfs.lines().hz();
-        let (first, last) = (hz.first().unwrap_or(&0.0), hz.last().unwrap_or(&0.0));
+        let (first, last) = (in_text(hz[0]), in_text(hz[hz.len() - 1]));
         write!(f, "{} FRFs on {} lines, {first} to {last} Hz", self.frfs.pairs().len(), hz.len())?;
         match self.level {
             Some(level) => write!(f, ", {level}"),
