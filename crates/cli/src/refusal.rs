@@ -21,6 +21,12 @@ impl Refusal {
         Refusal::new(format_args!("{name}: {problem}"))
     }
 
+    /// A directory without the file that a command would have written there.
+    pub fn holding_no(directory: &Path, file: &str, command: &str) -> Self {
+        let remedy = format_args!("holds no {file}; give the directory that `jointscope {command}` wrote to");
+        Refusal::at(directory, remedy)
+    }
+
     /// A file that could not be read or written.
     pub fn io(file: &Path, error: &std::io::Error) -> Self {
         use std::io::ErrorKind;
@@ -29,7 +35,9 @@ impl Refusal {
             ErrorKind::PermissionDenied => {
                 Refusal::at(file, "permission denied; check the rights of file and directory")
             }
-            ErrorKind::IsADirectory => Refusal::at(file, "is a directory where a file is needed"),
+            ErrorKind::IsADirectory => {
+                Refusal::at(file, "is a directory where a file is needed; name the file in it")
+            }
             ErrorKind::NotADirectory => Refusal::at(file, "a part of this path is a file, not a directory"),
             _ => Refusal::at(file, error),
         }

@@ -11,7 +11,9 @@ pub enum ReadError {
     #[error("the file is empty; copy or export it again")]
     Empty,
     /// The first line is no dataset delimiter.
-    #[error("does not start with a `    -1` line; is it a UFF file?")]
+    #[error(
+        "does not start with a `    -1` line; export it as a universal file (UFF) whose lines end with LF or CR LF"
+    )]
     NotUff,
     /// Text between two datasets.
     #[error("line {line}: expected the `    -1` line that opens dataset {dataset}, found `{found}`")]

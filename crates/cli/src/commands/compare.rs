@@ -93,6 +93,11 @@ pub fn run(arguments: &CompareArguments) -> Result<String, Refusal> {
     let files: Vec<PathBuf> = directories.iter().map(|directory| directory.join("stiffness.json")).collect();
     arguments.destination.without_frfs("compare")?;
     arguments.destination.foresee(&files, &[FILE, PAGE])?;
+    if let Some(empty) =
+        directories.iter().find(|path| path.is_dir() && !path.join("stiffness.json").exists())
+    {
+        return Err(Refusal::holding_no(empty, "stiffness.json", "decompose"));
+    }
     let names = names(&directories);
     let joint = |(name, path): (&String, &PathBuf)| {
         Decomposed::of(name, &input::json(path)?).map_err(|error| Refusal::at(path, error))

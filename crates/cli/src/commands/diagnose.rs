@@ -43,7 +43,7 @@ pub struct DiagnoseArguments {
     #[arg(long, value_name = "OUT/IN", value_parser = frf_pair, num_args = 1..)]
     pub hold_out: Vec<FrfPair>,
     /// Seconds after which the search ends with what it has found [default: it ends after a fixed amount of work, most of a minute].
-    #[arg(long, value_name = "S", value_parser = seconds)]
+    #[arg(long, value_name = "S", value_parser = seconds, allow_negative_numbers = true)]
     pub time_limit: Option<Duration>,
     /// Take numbers of the fixture without a standard deviation as exact.
     #[arg(long)]

@@ -166,7 +166,11 @@ fn recording(arguments: &PlanArguments) -> RecordingArguments {
 
 /// The arguments of the diagnosis that wrote a file, its inputs as they were then.
 fn of_diagnosis(path: &Path, fixture: &Path) -> Result<DiagnoseArguments, Refusal> {
-    let path = if path.is_dir() { path.join("diagnosis.json") } else { path.to_owned() };
+    let directory = path.is_dir().then_some(path);
+    let path = directory.map_or(path.to_owned(), |directory| directory.join("diagnosis.json"));
+    if let Some(directory) = directory.filter(|_| !path.exists()) {
+        return Err(Refusal::holding_no(directory, "diagnosis.json", "diagnose"));
+    }
     let file = input::json(&path)?;
     let not_one = || {
         Refusal::at(

@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used)] // helpers of tests fail as tests do
 
 mod bad_input;
+mod bad_inputs;
 mod check;
 mod common;
 mod compare;

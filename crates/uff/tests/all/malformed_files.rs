@@ -20,8 +20,14 @@ fn check_data(record7: &str, data: &str, message: &str) {
 fn a_file_that_is_no_universal_file_is_told_so() {
     check(b"", "the file is empty; copy or export it again");
     check(b" \n\n", "the file is empty; copy or export it again");
-    check(b"frequency,re,im\n1,2,3\n", "does not start with a `    -1` line; is it a UFF file?");
-    check(b"\x89PNG\r\n\x1a\n\0\0", "does not start with a `    -1` line; is it a UFF file?");
+    check(
+        b"frequency,re,im\n1,2,3\n",
+        "does not start with a `    -1` line; export it as a universal file (UFF) whose lines end with LF or CR LF",
+    );
+    check(
+        b"\x89PNG\r\n\x1a\n\0\0",
+        "does not start with a `    -1` line; export it as a universal file (UFF) whose lines end with LF or CR LF",
+    );
 }
 
 #[test]

@@ -165,7 +165,7 @@ impl Bench {
     }
 
     /// Every file below the directory with what it holds.
-    fn contents(&self) -> Vec<(PathBuf, Option<Vec<u8>>)> {
+    pub fn contents(&self) -> Vec<(PathBuf, Option<Vec<u8>>)> {
         let mut found = Vec::new();
         let mut folders = vec![self.0.clone()];
         while let Some(folder) = folders.pop() {
