@@ -7,7 +7,7 @@ use maud::{Markup, PreEscaped, html};
 use num_complex::Complex64;
 
 use super::SHOWN;
-use crate::format::significant;
+use crate::format::{fixed, significant};
 use crate::plot::Span;
 use crate::section::{Block, Section};
 use crate::table::Table;
@@ -144,7 +144,7 @@ fn entries(analysis: &ModalAnalysis) -> impl Into<Block> {
     let table = modes.fold(table, |table, (index, mode)| {
         table.numbers(format!("Mode {}", index + 1), "", |(what, row, _)| {
             let value = shape(mode, what)[*row].1;
-            format!("{} ∠ {}°", significant(value.norm(), 3), significant(value.arg().to_degrees(), 2))
+            format!("{} ∠ {}°", significant(value.norm(), 3), fixed(value.arg().to_degrees(), 1))
         })
     });
     table.footnote("Size and phase against the largest.")
