@@ -80,10 +80,12 @@
     constructor(figure, plot) {
       this.figure = figure;
       this.plot = plot;
+      this.section = figure.closest("section");
       this.box = figure.querySelector(".drawing");
       this.at = figure.querySelector(".at");
       this.fullRange = !plot.first;
       this.hiddenMarks = new Set();
+      this.cyclic = plot.y.unit === "°";
       this.collect();
       this.u = new uPlot(this.options(), this.data, this.box);
       this.connect();
@@ -128,7 +130,7 @@
         },
         axes: [
           axis(log(plot.x) ? { filter: decades } : {}, { label: title(plot.x), size: 26, values: log(plot.x) ? logTicks : linearTicks, space: 60 }),
-          axis(log(plot.y) ? { filter: decades } : {}, { label: title(plot.y), values: log(plot.y) ? logTicks : linearTicks, space: 28,
+          axis(log(plot.y) ? { filter: decades } : {}, { label: title(plot.y), ...(this.cyclic ? { incrs: [1, 2, 5, 10, 15, 30, 45, 90, 180] } : {}), values: log(plot.y) ? logTicks : linearTicks, space: 28,
             size: (u, values) => Math.max(GUTTER, 14 + 7 * Math.max(0, ...(values || []).map(v => v.length))) }),
         ],
         cursor: {
@@ -143,11 +145,20 @@
     series(s) {
       const stroke = () => palette[s.colour];
       const common = { colour: s.colour, scale: "y", stroke, width: 1.4, points: { show: true, size: 3, stroke, fill: stroke, filter: (u, index) => this.isolated(index) } };
+      if (this.cyclic) common.gaps = (u, index, from, to, gaps) => this.turns(u, index, from, to, gaps);
       if (s.style === "dashed") return { ...common, dash: [6, 4] };
       if (s.style === "points") return { ...common, paths: () => null, points: { show: true, size: 5, stroke, fill: stroke, width: 0 } };
       if (s.style === "band") return { ...common, width: 0, stroke: "transparent", points: { show: false } };
       return common;
     }
+
+    // A phase that leaves its turn at one end and comes back at the other is not drawn across.
+    turns(u, index, from, to, gaps) {
+      const x = line => Math.round(u.valToPos(this.data[0][line], "x", true)), values = this.data[index];
+      for (let line = from + 1; line <= to; line++) if (this.leaps(values, line)) gaps.push([x(line - 1) - 1, x(line) + 1]);
+      return gaps.sort((a, b) => a[0] - b[0]);
+    }
+    leaps(values, line) { return this.cyclic && values[line] != null && values[line - 1] != null && Math.abs(values[line] - values[line - 1]) > 180; }
 
     // A line between two gaps has no neighbour to be joined to: it is drawn as a point.
     isolated(index) {
@@ -160,10 +171,10 @@
     ordinates(u, low, high) {
       const { plot } = this, [from, to] = [u.scales.x.min ?? this.extent[0], u.scales.x.max ?? this.extent[1]];
       const zoomed = from > this.extent[0] || to < this.extent[1];
-      if (!this.fullRange && (!zoomed || !plot.percentiles)) return plot.first;
+      if (!this.fullRange && !zoomed) return plot.first;
       const log = plot.y.spacing === "logarithmic";
       let extent = low == null ? null : [low, high];
-      if (!this.fullRange) extent = this.robust(from, to, log) || extent;
+      if (!this.fullRange) extent = this.inView(u, from, to, log) || extent;
       for (const mark of plot.marks) if (mark.horizontal && (!log || mark.horizontal.at > 0)) {
         const at = mark.horizontal.at;
         extent = extent ? [Math.min(extent[0], at), Math.max(extent[1], at)] : [at, at];
@@ -171,14 +182,15 @@
       return extent ? padded(extent, plot.y.spacing) : log ? [1, 10] : [-1, 1];
     }
 
-    robust(from, to, log) {
+    // What the curves that are shown reach between two abscissae; bands do not count.
+    inView(u, from, to, log) {
       const x = this.data[0];
       let extent = null;
       this.plot.series.forEach((s, key) => {
-        if (s.style === "band") return;
+        if (s.style === "band" || !u.series[this.indices[key][0]].show) return;
         const values = this.data[this.indices[key][0]].filter((v, line) => v != null && x[line] >= from && x[line] <= to);
         if (!values.length) return;
-        const [a, b] = robustExtent(values, this.plot.percentiles, log);
+        const [a, b] = this.plot.percentiles ? robustExtent(values, this.plot.percentiles, log) : [Math.min(...values), Math.max(...values)];
         extent = extent ? [Math.min(extent[0], a), Math.max(extent[1], b)] : [a, b];
       });
       return extent;
@@ -265,8 +277,17 @@
         this.zoom([min, max]);
         Pane.sharing = false;
       });
+      // A curve is hidden in all panes of the section that have it.
       figure.querySelectorAll(".legend button").forEach(key => key.addEventListener("click", () => {
-        const show = key.getAttribute("aria-pressed") === "false";
+        const show = key.getAttribute("aria-pressed") === "false", alike = pane => pane === this || pane.section === this.section && plot.group != null && pane.plot.group === plot.group;
+        for (const pane of drawn) if (alike(pane)) pane.toggle(key.textContent, show);
+      }));
+      box.addEventListener("keydown", event => this.key(event));
+      new ResizeObserver(() => root.classList.contains("printing") || this.u.setSize(this.size())).observe(box);
+    }
+
+    toggle(label, show) {
+      for (const key of this.figure.querySelectorAll(".legend button")) if (key.textContent === label) {
         key.setAttribute("aria-pressed", show);
         if (key.dataset.series != null) {
           this.indices[key.dataset.series].forEach(index => this.u.setSeries(index, { show }));
@@ -275,9 +296,7 @@
           show ? this.hiddenMarks.delete(mark) : this.hiddenMarks.add(mark);
           this.u.redraw(false);
         }
-      }));
-      box.addEventListener("keydown", event => this.key(event));
-      new ResizeObserver(() => root.classList.contains("printing") || this.u.setSize(this.size())).observe(box);
+      }
     }
 
     // Arrows move the cursor by a line (with shift by ten), + and − zoom about it, Escape shows everything.
@@ -302,7 +321,124 @@
     }
   }
 
+  const escaped = text => String(text).replace(/[&<>"]/g, character => `&#${character.charCodeAt(0)};`);
+
+  // A pane as it is seen, zoomed and without what is hidden, as a drawing of its own.
+  function drawingOf(pane) {
+    const { u, plot, data, figure } = pane, [left, top, wide, high] = ["left", "top", "width", "height"].map(key => u.bbox[key] / devicePixelRatio);
+    const px = value => (left + u.valToPos(value, "x")).toFixed(1), py = value => (top + u.valToPos(value, "y")).toFixed(1);
+    const path = (colour, d, more = "") => `<path fill="none" stroke="${palette[colour]}" stroke-width="1.4" ${more} d="${d}"/>`;
+    const text = (x, y, words, more = "") => `<text x="${x}" y="${y}" ${more}>${escaped(words)}</text>`;
+    const inside = [], width = u.width, dashes = 'stroke-dasharray="4 2"';
+    plot.marks.forEach((mark, key) => {
+      const { shaded, vertical, horizontal } = mark;
+      if (pane.hiddenMarks.has(key)) return;
+      if (shaded) inside.push(`<rect x="${px(shaded.from)}" y="${top}" width="${(px(shaded.to) - px(shaded.from)).toFixed(1)}" height="${high}" fill="${palette.shade}"/>`);
+      if (vertical) inside.push(path(vertical.colour, `M${px(vertical.at)} ${top}v${high}`, dashes));
+      if (horizontal) inside.push(path(horizontal.colour, `M${left} ${py(horizontal.at)}h${wide}`, dashes));
+    });
+    const { min, max } = u.scales.x, first = Math.max(0, u.valToIdx(min) - 1), last = Math.min(data[0].length - 1, u.valToIdx(max) + 1);
+    const order = plot.series.map((s, key) => [s, key]).sort(([a], [b]) => (b.style === "band") - (a.style === "band"));
+    for (const [s, key] of order) {
+      const [low, upper = low] = pane.indices[key], runs = [[]];
+      if (!u.series[low].show) continue;
+      for (let line = first; line <= last; line++) {
+        if (data[low][line] === undefined) continue;
+        if (pane.leaps(data[low], line)) runs.push([]);
+        if (data[low][line] === null || data[upper][line] == null) runs.push([]); else runs[runs.length - 1].push(line);
+      }
+      const at = index => line => `${px(data[0][line])} ${py(data[index][line])}`;
+      for (const run of runs) if (run.length) {
+        if (s.style === "band") inside.push(`<path fill="${palette[s.colour]}" opacity="0.26" d="M${[...run.map(at(low)), ...run.reverse().map(at(upper))].join("L")}Z"/>`);
+        else if (s.style === "points") inside.push(path(s.colour, run.map(line => `M${at(low)(line)}h0`).join(""), 'stroke-linecap="round" style="stroke-width:5"'));
+        else inside.push(path(s.colour, `M${run.map(at(low)).join("L")}${run.length > 1 ? "" : "h1"}`, s.style === "dashed" ? 'stroke-dasharray="6 4"' : ""));
+      }
+    }
+    const outside = [], [abscissae, ordinates] = u.axes, labels = axis => axis._splits.map((split, index) => [split, axis._values[index]]).filter(([split]) => split != null);
+    for (const [split, label] of labels(abscissae)) outside.push(path("grid", `M${px(split)} ${top}v${high}`), text(px(split), top + high + 17, label ?? "", 'text-anchor="middle"'));
+    for (const [split, label] of labels(ordinates)) outside.push(path("grid", `M${left} ${py(split)}h${wide}`), text(left - 6, +py(split) + 4, label ?? "", 'text-anchor="end"'));
+    outside.push(text(left + wide / 2, u.height - 3, abscissae.label, 'text-anchor="middle"'), text(0, 0, ordinates.label, `text-anchor="middle" transform="translate(13 ${top + high / 2}) rotate(-90)"`));
+    let x = left, y = 40;
+    const entries = [...figure.querySelectorAll(".legend button[aria-pressed=true]")].map(key => {
+      const words = key.textContent + (key.dataset.mark ? " " + key.nextElementSibling.textContent : ""), room = 44 + 7 * words.length;
+      if (x > left && x + room > width) { x = left; y += 19; }
+      const entry = `<g transform="translate(${x} ${y - 9})">${coloured(new XMLSerializer().serializeToString(key.querySelector("svg")))}</g>` + text(x + 28, y, words);
+      x += room;
+      return entry;
+    });
+    const total = u.height + y + 8, title = figure.querySelector("h3").textContent;
+    return `<svg xmlns="http://www.w3.org/2000/svg" width="${width}" height="${total}" viewBox="0 0 ${width} ${total}" font-family="system-ui,'DejaVu Sans',sans-serif" font-size="12" fill="${palette.ink}">`
+      + `<title>${escaped(title)}</title><rect width="${width}" height="${total}" fill="${palette.ground}"/>${text(left, 18, title, 'font-size="14" font-weight="600"')}${entries.join("")}`
+      + `<g transform="translate(0 ${y + 8})">${outside.join("")}<clipPath id="area"><rect x="${left}" y="${top}" width="${wide}" height="${high}"/></clipPath><g clip-path="${"url"}(#area)">${inside.join("")}</g>${path("rule", `M${left} ${top}h${wide}v${high}h${-wide}z`)}</g></svg>`;
+  }
+  // Markup with the page's variables replaced by the colours that they have now.
+  const coloured = markup => markup.replace(/var\(--([\w-]+)[^)]*\)/g, (_, name) => palette[name]);
+  function sketched(figure) {
+    const svg = figure.querySelector("svg"), [, , width, height] = svg.getAttribute("viewBox").split(" "), copy = svg.cloneNode(true);
+    copy.setAttribute("width", width); copy.setAttribute("height", height);
+    return coloured(new XMLSerializer().serializeToString(copy)).replace(">", `><rect width="100%" height="100%" fill="${palette.ground}"/>`);
+  }
+
+  function save(name, href) {
+    const link = document.createElement("a");
+    link.download = name.toLowerCase().replace(/[^a-z0-9]+/g, "-").replace(/^-|-$/g, "") + (href.startsWith("data:image/png") ? ".png" : ".svg");
+    link.href = href;
+    link.click();
+  }
+  function addButtons(place, name, draw) {
+    const bar = document.createElement("span");
+    bar.className = "save";
+    for (const kind of ["SVG", "PNG"]) {
+      const button = document.createElement("button");
+      button.type = "button"; button.textContent = kind; button.title = `Save this figure as ${kind}`;
+      button.setAttribute("aria-label", `Save ${name} as ${kind}`);
+      button.addEventListener("click", () => {
+        const svg = "data:image/svg+xml;charset=utf-8," + encodeURIComponent(draw());
+        if (kind === "SVG") return save(name, svg);
+        const image = new Image();
+        image.onload = () => {
+          const canvas = document.createElement("canvas");
+          canvas.width = 2 * image.width; canvas.height = 2 * image.height;
+          canvas.getContext("2d").drawImage(image, 0, 0, canvas.width, canvas.height);
+          save(name, canvas.toDataURL("image/png"));
+        };
+        image.src = svg;
+      });
+      bar.append(button);
+    }
+    place.append(bar);
+  }
+
+  // A mode shape moves while it is asked to, a period in two seconds.
+  function addMotion(svg) {
+    const middle = Number(svg.dataset.middle), parts = [], at = (y, share) => (middle + (y - middle) * share).toFixed(1);
+    const moves = (selector, name, moved) => svg.querySelectorAll(selector).forEach(element => {
+      const own = element.getAttribute(name);
+      parts.push(share => element.setAttribute(name, moved(own, share)));
+    });
+    moves("polyline", "points", (own, share) => own.replace(/,([^ ]+)/g, (_, y) => "," + at(y, share)));
+    moves("circle", "cy", at);
+    moves(".shape-stem", "y2", at);
+    const button = document.createElement("button");
+    button.type = "button"; button.textContent = "move"; button.setAttribute("aria-pressed", "false");
+    let begun = null;
+    const step = now => {
+      if (begun === null) return parts.forEach(part => part(1));
+      parts.forEach(part => part(Math.cos(Math.PI * (now - begun) / 1000)));
+      requestAnimationFrame(step);
+    };
+    button.addEventListener("click", () => {
+      begun = begun === null ? performance.now() : null;
+      button.setAttribute("aria-pressed", begun !== null);
+      requestAnimationFrame(step);
+    });
+    svg.closest("figure").querySelector(".save").prepend(button);
+  }
+
   document.querySelectorAll("figure[data-plot]").forEach(figure => drawn.push(new Pane(figure, page.plots[figure.dataset.plot])));
+  for (const pane of drawn) addButtons(pane.figure.querySelector(".plot-head"), pane.figure.querySelector("h3").textContent, () => drawingOf(pane));
+  document.querySelectorAll("figure.sketch").forEach(figure => addButtons(figure, figure.closest("section").id, () => sketched(figure)));
+  document.querySelectorAll("svg[data-middle]").forEach(addMotion);
 
   const redraw = () => { readPalette(); drawn.forEach(pane => pane.u.redraw(false)); };
   dark.addEventListener("change", redraw);

@@ -18,7 +18,7 @@ pub struct PageContext {
     pub inputs: Vec<InputFile>,
     /// Remarks from reading the recordings, one plain sentence each.
     pub notes: Vec<String>,
-    /// The hammer hits, where the FRFs were estimated from them; shown before anything else.
+    /// The hammer hits, where the FRFs were estimated from them; a section of its own.
     pub hits: Option<HammerTest>,
 }
 

@@ -6,6 +6,7 @@ mod departures;
 mod findings;
 mod fixture_view;
 mod frfs;
+mod glance;
 mod judgement;
 mod law;
 mod misfit;
@@ -16,14 +17,14 @@ mod two_states;
 
 use jointscope_diagnosis::{Diagnosis, Fit};
 use jointscope_fixture::Fixture;
-use jointscope_wording::{Remarks, Says};
+use jointscope_wording::Says;
 
 use crate::context::PageContext;
 use crate::error::PageError;
 use crate::report::Report;
-use crate::section::Tone;
+use crate::section::{Tone, Verdict};
 
-/// FRFs and places that are shown at the most; the page says how many there are.
+/// Places that are shown at the most; the page says how many there are.
 const SHOWN: usize = 12;
 
 /// What the sections of the page are made from.
@@ -45,7 +46,7 @@ impl<'a> Subject<'a> {
     }
 }
 
-/// The page of a diagnosis as one self-contained HTML file: the verdict in a sentence; the fixture with the places marked; findings with
+/// The page of a diagnosis as one self-contained HTML file: the verdict in a sentence; what was found, how sure, how much better, what to do, and the fixture with the places marked; findings with
 /// intervals, probabilities and look-alikes; with a baseline the modes then and now; the error of the model and the departures, where there are any; errors before and after, held-out lines included; δ(ω) with the law that names it; the FRFs of all
 /// models; maps of the misfit; tolerances and where they ended; the noise.
 ///
@@ -75,12 +76,11 @@ pub fn diagnosis_report(diagnosis: &Diagnosis, fixture: &Fixture, context: &Page
         None => frfs::section(&subject),
         Some(baseline) => two_states::section(&subject, baseline),
     };
-    let verdict = context.verdict(tone, diagnosis.says(), said.chain(diagnosis.remarks()));
+    let verdict = Verdict { tone, headline: diagnosis.says(), details: said.collect() };
     Report::of(
         context
             .page(title, context.subtitle(fixture), verdict)
-            .sections(context.hits())
-            .sections([fixture_view::section(&subject), findings::section(&subject)])
+            .sections([glance::section(&subject, &context.notes), findings::section(&subject)])
             .sections(changes::section(&subject))
             .sections(model_error::section(&subject))
             .sections(departures::section(&subject))
@@ -88,6 +88,7 @@ pub fn diagnosis_report(diagnosis: &Diagnosis, fixture: &Fixture, context: &Page
             .sections(delta::section(&subject))
             .sections([frfs, misfit::section(&subject)])
             .sections(tolerances::section(&subject))
-            .sections([noise::section(&subject)]),
+            .sections([noise::section(&subject)])
+            .sections(context.hits()),
     )
 }

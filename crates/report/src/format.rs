@@ -94,6 +94,14 @@ pub(crate) fn interval([low, high]: [f64; 2], scale: &Scale, digits: usize) -> S
     format!("{} to {}{unit}", number(low), number(high))
 }
 
+/// The ends of an interval in one unit, two digits of its width: `8.96 to 9.32 kN·m/rad`.
+pub(crate) fn ends([low, high]: [f64; 2], scale: &Scale) -> String {
+    let (low, high) = (scale.of(low), scale.of(high));
+    let decimals = if high > low { decimals_for(high - low, 2) } else { 4 };
+    let unit = if scale.unit().is_empty() { String::new() } else { format!(" {}", scale.unit()) };
+    format!("{} to {}{unit}", rounded(low, decimals), rounded(high, decimals))
+}
+
 /// A magnitude without its uncertainty: `1.23 MN/m`.
 pub(crate) fn magnitude(value: f64, unit: &str, digits: usize) -> String {
     let scale = Scale::for_magnitude(value, unit);

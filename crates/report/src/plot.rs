@@ -194,6 +194,18 @@ enum Mark {
     },
 }
 
+/// Digits of the ordinates; more than a screen can show at any sensible zoom.
+const DIGITS: usize = 5;
+
+impl Mark {
+    /// Whether the legend has it.
+    fn is_named(&self) -> bool {
+        let (Mark::Horizontal { label, .. } | Mark::Vertical { label, .. } | Mark::Shaded { label, .. }) =
+            self;
+        !label.is_empty()
+    }
+}
+
 /// Spectral lines above which a plot is drawn thinned, so that a page of long recordings stays small.
 const LINE_LIMIT: usize = 2_000;
 
@@ -214,6 +226,8 @@ pub(crate) struct Plot {
     group: Option<String>,
     height: u32,
     line_limit: usize,
+    digits: usize,
+    step: Option<f64>,
     masked: Option<usize>,
 }
 
@@ -232,6 +246,8 @@ impl Plot {
             caption: None,
             height: 240,
             line_limit: LINE_LIMIT,
+            digits: DIGITS,
+            step: None,
             masked: None,
         }
     }
@@ -286,7 +302,8 @@ impl Plot {
         self
     }
 
-    /// A shaded part of the abscissa, such as the band over which averages are taken; left out when an end is not finite.
+    /// A shaded part of the abscissa, such as the band over which averages are taken; left out when an end is not finite. What has no label has no entry in
+    /// the legend.
     pub fn shaded(mut self, label: impl Into<String>, from: f64, to: f64) -> Self {
         let ends = Some((from.min(to), from.max(to))).filter(|_| from.is_finite() && to.is_finite());
         self.marks.extend(ends.map(|(from, to)| Mark::Shaded { label: label.into(), from, to }));
@@ -317,6 +334,16 @@ impl Plot {
     /// is wrong where one curve is split into two series.
     pub fn masked(self, lines: usize) -> Self {
         Self { masked: Some(lines), ..self }
+    }
+
+    /// Digits of the ordinates on the page (5 unless said otherwise).
+    pub fn digits(self, digits: usize) -> Self {
+        Self { digits, ..self }
+    }
+
+    /// Rounds the ordinates on the page to multiples of a step.
+    pub fn rounded_to(self, step: f64) -> Self {
+        Self { step: Some(step), ..self }
     }
 
     /// Its heading.

@@ -161,6 +161,6 @@ fn overlays(recording: &RecordingCheck) -> Section {
             noise: frfs.variance(index).unwrap_or_default().iter().map(half).collect(),
             curves: modelled.map(curve).into_iter().collect(),
         };
-        section.plots(2, [panes.magnitude(), panes.phase()])
+        section.plots(2, [panes.magnitude(), panes.phase()].into_iter().chain(panes.residuals()))
     })
 }

@@ -4,7 +4,8 @@ use jointscope_diagnosis::{Estimate, Finding, Verdict};
 use jointscope_wording::effect_name;
 
 use super::Subject;
-use crate::format::{self, NOT_DETERMINED, percent, quantity, significant};
+use super::glance::chance;
+use crate::format::{self, NOT_DETERMINED, quantity, significant};
 use crate::section::{Block, Section};
 use crate::table::Table;
 use crate::unit::Scale;
@@ -74,7 +75,7 @@ fn parameters(subject: &Subject) -> impl Into<Block> {
         .words("Value ± standard deviation", |(_, e)| quantity(e.value, e.std, e.unit))
         .words("95 % interval", |(_, estimate)| interval(estimate))
         .numbers("Probability", "", |(finding, _)| {
-            finding.map_or(String::new(), |(_, finding)| percent(finding.probability, 1))
+            finding.map_or(String::new(), |(_, finding)| chance(finding.probability))
         })
         .numbers(gained, "", |(finding, _)| {
             finding.map_or(String::new(), |(_, finding)| significant(share * finding.gain, 4))
@@ -89,7 +90,7 @@ fn interval(estimate: &Estimate) -> String {
     match estimate.interval.filter(|[low, high]| low.is_finite() && high.is_finite()) {
         Some([low, high]) => {
             let scale = Scale::for_values([low, high, estimate.value], estimate.unit);
-            format::interval([low, high], &scale, 4)
+            format::ends([low, high], &scale)
         }
         None => NOT_DETERMINED.to_owned(),
     }
@@ -99,7 +100,7 @@ fn names(subject: &Subject) -> impl Into<Block> {
     let others = |finding: &Finding| {
         let listed = finding.alternatives.iter().filter(|(_, probability)| *probability >= LISTED);
         let listed: Vec<_> =
-            listed.map(|(effect, probability)| (effect_name(effect), percent(*probability, 1))).collect();
+            listed.map(|(effect, probability)| (effect_name(effect), chance(*probability))).collect();
         let nothing = || vec![("nothing that was tried".to_owned(), String::new())];
         if listed.is_empty() { nothing() } else { listed }
     };

@@ -1,13 +1,14 @@
 //! The fixture from the side, with the places of the findings marked.
 
 use jointscope_diagnosis::Site;
-use jointscope_fixture::{BodyKind, Effect, Fixture, Place};
+use jointscope_fixture::{BodyKind, Effect, EffectKind, Fixture, Place};
+use maud::Markup;
 
 use super::Subject;
 use crate::drawing::{Highlight, SideView};
-use crate::section::Section;
 
-pub(super) fn section(subject: &Subject) -> Section {
+/// The drawing and its caption.
+pub(super) fn drawing(subject: &Subject) -> (Markup, String) {
     let (fixture, diagnosis) = (subject.fixture, subject.diagnosis);
     let mut view = SideView::new(fixture, diagnosis.observation.pairs());
     for (index, finding) in diagnosis.findings.iter().enumerate() {
@@ -19,6 +20,13 @@ pub(super) fn section(subject: &Subject) -> Section {
             let label = format!("{}. {}", index + 1, effect.kind.name().replace('_', " "));
             Highlight { x, body, label }
         }));
+        // What sits at one place has one label.
+        if let [.., earlier, last] = view.highlights.as_mut_slice()
+            && (earlier.x, earlier.body) == (last.x, last.body)
+        {
+            earlier.label = format!("{}, {}", earlier.label, last.label);
+            view.highlights.pop();
+        }
     }
     let best = diagnosis.best_place();
     view.highlights.extend(best.and_then(|location| at_site(fixture, &location.site)));
@@ -34,7 +42,7 @@ pub(super) fn section(subject: &Subject) -> Section {
     let everywhere =
         diagnosis.findings.iter().any(|finding| matches!(finding.effect.place, Place::All | Place::Force));
     let all = if everywhere { " One finding concerns the whole measurement and has no place." } else { "" };
-    Section::new("Where").drawing(
+    (
         view.draw(),
         format!(
             "Side view with the channels in use, responses (sensors) in blue and references (hammer) in green; {marked}.{all} The outlines of \
@@ -57,7 +65,9 @@ fn place(fixture: &Fixture, effect: &Effect) -> Option<(f64, Option<usize>)> {
         }
         Place::Point(name) | Place::Response(name) | Place::Reference(name) => {
             let point = fixture.point(name)?;
-            Some((point.x.value, Some(point.body)))
+            // Where a sensor or an impact really is, not where the fixture has it.
+            let offset = if effect.kind == EffectKind::PointOffset { effect.value(0) } else { 0.0 };
+            Some((point.x.value + offset, Some(point.body)))
         }
         Place::Joint(name) => middle(fixture, name).map(|x| (x, None)),
         Place::Between(one, _) => {

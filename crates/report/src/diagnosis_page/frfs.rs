@@ -1,9 +1,12 @@
 //! The FRFs: measured with their noise, and what the models make of them.
 
+use std::cmp::Ordering;
+
 use jointscope_spectra::Dof;
 
-use super::{SHOWN, Subject};
-use crate::plot::{Curve, FrfPanes, Role, Style, YRange};
+use super::Subject;
+use crate::format::{significant, trimmed};
+use crate::plot::{Curve, FrfPanes, Plot, Role, Style, YRange};
 use crate::section::Section;
 
 pub(super) fn section(subject: &Subject) -> Section {
@@ -18,17 +21,60 @@ pub(super) fn section(subject: &Subject) -> Section {
         let magnitude = panes
             .magnitude()
             .y_range(YRange::decades(panes.measured.iter().flatten().map(|v| v.norm())))
-            .caption(match subject.diagnosis.model_error {
-                Some(_) => {
-                    "Magnitude; a model leaves the noise band by its error as well as by what it leaves out."
-                }
-                None => "Magnitude; where a model leaves the noise band, it leaves something out.",
-            });
+            .caption(judged(subject, index));
         let phase = panes.phase().caption("Phase, in the turn that the curves cross least.");
-        section = section.plots(2, [magnitude, phase]);
+        section = section
+            .plots(2, with_held_out(subject, index, [magnitude, phase].into_iter().chain(panes.residuals())));
     }
     section
 }
+
+/// What the models leave of an FRF, and where most of it sits.
+pub(super) fn judged(subject: &Subject, index: usize) -> String {
+    let diagnosis = subject.diagnosis;
+    let models = subject.models().into_iter().skip(1).filter_map(|(name, fit)| {
+        let misfit = diagnosis.misfit(fit).swap_remove(index);
+        Some((name, significant(misfit.whole?, 3), misfit))
+    });
+    let models: Vec<_> = models.collect();
+    let chi2: Vec<String> = models.iter().map(|(name, chi2, _)| format!("{name} {chi2}")).collect();
+    let worst = models.last().and_then(|(_, _, misfit)| {
+        let bands = misfit.bands.iter().filter(|band| band.chi2_per_dof.is_some());
+        bands.max_by(|a, b| a.chi2_per_dof.partial_cmp(&b.chi2_per_dof).unwrap_or(Ordering::Equal))
+    });
+    let most = worst.map_or_else(String::new, |band| {
+        format!(
+            ", most from {} to {} Hz",
+            trimmed(&significant(band.from, 4)),
+            trimmed(&significant(band.to, 4))
+        )
+    });
+    let own = if diagnosis.model_error.is_some() { ", the model's own error in it" } else { "" };
+    format!("Magnitude. χ² per value (1 is noise{own}): {}{most}.", chi2.join(", "))
+}
+
+/// The plots of an FRF with what no fit of the held-out judgement saw shaded; the first one's legend tells it.
+pub(super) fn with_held_out(subject: &Subject, index: usize, plots: impl Iterator<Item = Plot>) -> Vec<Plot> {
+    let label = |at: usize| if at == 0 { "held out" } else { "" };
+    plots.enumerate().map(|(at, plot)| held_out(subject, index, plot, label(at))).collect()
+}
+
+fn held_out(subject: &Subject, index: usize, plot: Plot, label: &str) -> Plot {
+    let observation = &subject.diagnosis.observation;
+    let (hz, pair) = (observation.lines().hz(), format!("frf {}", observation.pairs()[index]));
+    let held_out = subject.diagnosis.held_out.iter().flat_map(|held_out| &held_out.what);
+    held_out.fold(plot, |plot, what| {
+        let ends = what.strip_prefix("band ").and_then(|band| band.split_once(':'));
+        match ends.map(|(from, to)| (from.parse(), to.parse())) {
+            Some((Ok(from), Ok(to))) => plot.shaded(label, from, to),
+            _ if *what == pair => plot.shaded(label, hz[0], hz[hz.len() - 1]),
+            _ => plot,
+        }
+    })
+}
+
+/// FRFs that are shown at the most; the page says how many there are.
+const SHOWN: usize = 16;
 
 /// Indices of the FRFs to show: all, or those with the largest misfit, in the order of the recording.
 pub(super) fn shown(subject: &Subject) -> Vec<usize> {
@@ -60,7 +106,7 @@ fn look(model: &str) -> (Role, Style) {
 }
 
 /// What the models make of an FRF.
-fn models(subject: &Subject, index: usize) -> Vec<Curve> {
+pub(super) fn models(subject: &Subject, index: usize) -> Vec<Curve> {
     let n = subject.diagnosis.observation.lines().len();
     let curve = |(label, fit): (&'static str, &jointscope_diagnosis::Fit)| {
         let (role, style) = look(label);

@@ -68,7 +68,7 @@ pub(super) fn section(subject: &Subject) -> Section {
 }
 
 /// `band 180:240` as `180 to 240 Hz`, `frf 4/2` as `FRF 4/2`.
-fn spoken(what: &str) -> String {
+pub(super) fn spoken(what: &str) -> String {
     if let Some(frf) = what.strip_prefix("frf ") {
         return format!("FRF {frf}");
     }
@@ -78,7 +78,7 @@ fn spoken(what: &str) -> String {
     }
 }
 
-fn gain(refitted: f64, repaired: f64) -> String {
+pub(super) fn gain(refitted: f64, repaired: f64) -> String {
     match refitted / repaired {
         ratio if ratio > 1.05 => format!("{} times smaller than refitted", significant(ratio, 2)),
         ratio if ratio.is_finite() => "no smaller than refitted".to_owned(),

@@ -4,7 +4,7 @@ use jointscope_diagnosis::{Baseline, Fit, Observation};
 use num_complex::Complex64;
 
 use super::Subject;
-use super::frfs::{panes, shown, shown_of};
+use super::frfs::{panes, shown, shown_of, with_held_out};
 use crate::plot::{Axis, Curve, FrfPanes, Plot, Role, Style, YRange};
 use crate::section::Section;
 
@@ -22,8 +22,9 @@ pub(super) fn section(subject: &Subject, baseline: &Baseline) -> Section {
     ));
     let states = States { subject, baseline };
     for index in shown(subject) {
-        section = section
-            .plots(2, if states.on_the_same_lines() { states.together(index) } else { states.apart(index) });
+        let plots = if states.on_the_same_lines() { states.together(index) } else { states.apart(index) };
+        let residuals = panes(subject, index, super::frfs::models(subject, index)).residuals();
+        section = section.plots(2, with_held_out(subject, index, plots.into_iter().chain(residuals)));
     }
     section
 }

@@ -99,41 +99,96 @@ impl Label {
         let below = self.below.as_deref().map_or(0.0, text_width);
         text_width(&self.text).max(below)
     }
+
+    /// Abscissa of the line that ties it to its place; beside the arrow that may end where a circle stands.
+    pub fn leader(&self) -> f64 {
+        if self.tie == Tie::Circle { self.anchor + 11.0 } else { self.anchor }
+    }
+
+    /// Where it may stand along x: about its leader, at its side.
+    fn stretches(&self) -> [Stretch; 5] {
+        let half = 0.5 * self.width();
+        let most = (WIDTH - half - 2.0).max(half);
+        let (over, beside) = ((half - 6.0).max(0.0), half + 9.0);
+        let shifts = match self.aside {
+            true => [beside, 0.0, -beside, over, -over],
+            false => [0.0, over, -over, beside, -beside],
+        };
+        shifts.map(|shift| {
+            let centre = (self.leader() + shift).clamp(half.min(most) + 2.0, most.max(half + 2.0));
+            (centre - half, centre + half)
+        })
+    }
 }
 
-/// Gives each label the lane nearest to the body in which it meets no other, from left to right, and keeps it within the drawing. Returns how
-/// many lanes were needed.
+/// Gives each label the lane nearest to the body in which it meets no other label and no other's leader, and its own leader meets no label; keeps it
+/// within the drawing. Returns how many lanes were needed.
 fn assign_lanes(labels: &mut [Label]) -> usize {
     labels.sort_by(|a, b| (a.anchor.total_cmp(&b.anchor)).then_with(|| a.text.cmp(&b.text)));
-    // Leaders of the far lanes must not run through labels of the near ones, so short labels go near.
-    let mut order: Vec<usize> = (0..labels.len()).collect();
+    // How many others' leaders it would cover, at the place where it covers the fewest.
+    let covered = |label: &Label, (from, to): Stretch, others: &[usize]| -> usize {
+        let leaders = others.iter().map(|other| labels[*other].leader());
+        leaders.filter(|x| *x != label.leader() && (from - 3.0..to + 3.0).contains(x)).count()
+    };
+    let all: Vec<usize> = (0..labels.len()).collect();
+    let in_the_way = |index: &usize| {
+        let label = &labels[*index];
+        label.stretches().map(|stretch| covered(label, stretch, &all)).into_iter().min()
+    };
+    // The leaders of far lanes pass the near ones, so labels that are in no leader's way, and short ones, go near.
+    let mut order = all.clone();
     order.sort_by(|a, b| labels[*a].width().total_cmp(&labels[*b].width()));
+    order.sort_by_key(in_the_way);
     let mut lanes = Lanes::default();
-    for index in order {
-        let label = &mut labels[index];
-        let half = 0.5 * label.width();
-        let most = (WIDTH - half - 2.0).max(half);
-        let wanted = label.anchor + if label.aside { half + 9.0 } else { 0.0 };
-        label.centre = wanted.clamp(half.min(most) + 2.0, most.max(half + 2.0));
-        let (from, to) = (label.centre - half, label.centre + half);
-        label.lane = lanes.take(from.min(label.anchor - 3.0), to.max(label.anchor + 3.0));
+    let place = |(at, index): (usize, &usize)| {
+        let label = &labels[*index];
+        let mut stretches = label.stretches();
+        stretches.sort_by_key(|stretch| covered(label, *stretch, &order[at + 1..]));
+        let leader = label.leader();
+        (*index, lanes.take(&stretches, (leader - 3.0, leader + 3.0)))
+    };
+    let placed: Vec<_> = order.iter().enumerate().map(place).collect();
+    for (index, (lane, (from, to))) in placed {
+        labels[index].centre = 0.5 * (from + to);
+        labels[index].lane = lane;
     }
-    lanes.0.len()
+    lanes.taken.len()
 }
 
-/// Stretches taken of each lane, px.
+/// Stretches taken of each lane, px: by labels, and by leaders that pass.
 #[derive(Default)]
-struct Lanes(Vec<Vec<(f64, f64)>>);
+struct Lanes {
+    taken: Vec<Vec<Stretch>>,
+    passed: Vec<Vec<Stretch>>,
+}
+
+type Stretch = (f64, f64);
 
 impl Lanes {
-    /// The first lane in which a stretch meets no other.
-    fn take(&mut self, from: f64, to: f64) -> usize {
-        let meets = |lane: &Vec<(f64, f64)>| lane.iter().any(|(a, b)| from < *b && to > *a);
-        let lane = self.0.iter().position(|lane| !meets(lane)).unwrap_or(self.0.len());
-        self.0.resize(self.0.len().max(lane + 1), Vec::new());
-        self.0[lane].push((from, to));
-        lane
+    /// The first of some stretches, and the nearest lane, in which no label and no leader is met and whose nearer lanes have no label in the leader's way;
+    /// where there is none, the first stretch in a new lane.
+    fn take(&mut self, stretches: &[Stretch], leader: Stretch) -> (usize, Stretch) {
+        let lanes = self.taken.len();
+        let mut all = stretches.iter().flat_map(|stretch| (0..=lanes).map(move |lane| (lane, *stretch)));
+        let fits = |(lane, stretch): &(usize, Stretch)| {
+            is_free(&self.taken, *lane, *stretch)
+                && is_free(&self.passed, *lane, *stretch)
+                && (0..*lane).all(|near| is_free(&self.taken, near, leader))
+        };
+        let (lane, stretch) = all.find(fits).unwrap_or((lanes, stretches[0]));
+        (0..lane).for_each(|near| put(&mut self.passed, near, leader));
+        put(&mut self.taken, lane, stretch);
+        (lane, stretch)
     }
+}
+
+fn is_free(lanes: &[Vec<Stretch>], lane: usize, (from, to): Stretch) -> bool {
+    lanes.get(lane).is_none_or(|lane| !lane.iter().any(|(a, b)| from < *b && to > *a))
+}
+
+fn put(lanes: &mut Vec<Vec<Stretch>>, lane: usize, stretch: Stretch) {
+    lanes.resize(lanes.len().max(lane + 1), Vec::new());
+    lanes[lane].push(stretch);
 }
 
 /// A body as drawn.
@@ -269,7 +324,7 @@ fn millimetres(x: f64) -> String {
 
 fn place_bodies(fixture: &Fixture, outlines: &[(f64, f64)], scale: Scale) -> Vec<Option<Placed>> {
     let narrowest = if scale.per_metre == 0.0 { WITHOUT_EXTENT } else { NARROWEST };
-    let mut rows = Lanes::default();
+    let mut rows: Vec<Vec<Stretch>> = Vec::new();
     let place = |(body, (from, to)): (&Body, &(f64, f64))| {
         let is_beam = matches!(body.kind, BodyKind::Beam(_));
         let (mut left, mut right) = Span::of([*from, *to]).0.map(|(a, b)| (scale.px(a), scale.px(b)))?;
@@ -278,7 +333,9 @@ fn place_bodies(fixture: &Fixture, outlines: &[(f64, f64)], scale: Scale) -> Vec
             (left, right) = (middle - 0.5 * narrowest, middle + 0.5 * narrowest);
         }
         // Bodies that touch stand side by side.
-        let row = rows.take(left + 0.25, right - 0.25);
+        let stretch = (left + 0.25, right - 0.25);
+        let row = (0..rows.len()).find(|row| is_free(&rows, *row, stretch)).unwrap_or(rows.len());
+        put(&mut rows, row, stretch);
         Some(Placed { left, right, row, height: if is_beam { BEAM } else { BLOCK } })
     };
     fixture.bodies().iter().zip(outlines).map(place).collect()

@@ -6,13 +6,13 @@ use maud::{Markup, PreEscaped, html};
 use super::layout::{
     ARROW, LANE, Label, Layout, POINT_LANE, Row, SUPPORT, Tie, WIDTH, body_name, name_fits, text_width,
 };
-use super::{ChannelKind, SideView};
+use super::{ChannelKind, Highlight, SideView};
 use crate::format::significant;
 
 /// Colours come from the page's variables; without a page the drawing is dark on light.
 const STYLE: &str = "<style>\
 .fx{font:13px system-ui,-apple-system,'Segoe UI',Roboto,'Noto Sans','DejaVu Sans',sans-serif;fill:var(--ink,#1b1f24)}\
-.fx text{text-anchor:middle;paint-order:stroke;stroke:var(--ground,#fff);stroke-width:4px;stroke-linejoin:round}.fx text.fx-inside{stroke:none;font-weight:600}.fx path,.fx line{fill:none;stroke-width:1.3}\
+.fx text{text-anchor:middle;paint-order:stroke;stroke:var(--ground,#fff);stroke-width:4px;stroke-linejoin:round}.fx text.fx-inside{stroke:none;font-weight:600}.fx path,.fx line{fill:none;stroke-width:1.3}.fx .fx-thick{stroke-width:1.8}.fx .fx-beam{stroke-width:5}\
 .fx-body{fill:var(--block,#dfe4ea);stroke:var(--block-edge,#77828e);stroke-width:1.2}\
 .fx-name,.fx-point-name{font-weight:600}\
 .fx-soft{fill:var(--soft,#5a636e);font-size:11.5px}\
@@ -34,7 +34,7 @@ pub(super) fn draw(view: &SideView) -> Markup {
     let point = |index: usize| layout.point(fixture, index);
     html! {
         svg.fx xmlns="http://www.w3.org/2000/svg" viewBox={ "0 0 " (WIDTH) " " (format!("{:.0}", layout.height)) }
-            role="img" aria-label=(description(fixture)) {
+            role="img" aria-label=(description(view)) {
             (PreEscaped(STYLE))
             @for (body, x) in fixture.supports().iter().map(|support| fixture.support_place(support)) {
                 @if let Some(body) = layout.bodies[body] {
@@ -63,25 +63,39 @@ fn px(at: f64) -> String {
     format!("{at:.1}")
 }
 
-/// The drawing in one sentence for who cannot see it.
-fn description(fixture: &Fixture) -> String {
-    let bodies: Vec<&str> = fixture.bodies().iter().map(|body| body.name.as_str()).collect();
-    let points: Vec<&str> = fixture.points().iter().map(|point| point.name.as_str()).collect();
-    let joints: Vec<&str> = fixture.joints().iter().map(|joint| joint.name.as_str()).collect();
-    let [bodies, points, joints] = [bodies, points, joints].map(|names| names.join(", "));
-    format!("Side view of the fixture. Bodies: {bodies}. Points: {points}. Joints: {joints}.")
+/// The drawing in one sentence for who cannot see it: what is pointed out, then what there is.
+fn description(view: &SideView) -> String {
+    let fixture = view.fixture;
+    let marked = view.highlights.iter().filter(|highlight| highlight.x.is_finite());
+    let place = |highlight: &Highlight| {
+        let body =
+            highlight.body.map_or_else(String::new, |body| format!(" on {}", fixture.bodies()[body].name));
+        format!("{}{body} at x = {} mm", highlight.label, significant(1e3 * highlight.x, 4))
+    };
+    let bodies = fixture.bodies().iter().map(|body| body.name.clone()).collect();
+    let points = fixture.points().iter().map(|point| point.name.clone()).collect();
+    let joints = fixture.joints().iter().map(|joint| joint.name.clone()).collect();
+    let listed = [
+        ("Marked", marked.map(place).collect::<Vec<_>>()),
+        ("Bodies", bodies),
+        ("Points", points),
+        ("Joints", joints),
+    ];
+    let listed = listed.iter().filter(|(_, names)| !names.is_empty());
+    let listed: String = listed.map(|(what, names)| format!(" {what}: {}.", names.join(", "))).collect();
+    format!("Side view of the fixture.{listed}")
 }
 
 fn text(class: &str, (x, y): Place, text: &str) -> Markup {
     html! { g transform={ "translate(" (px(x)) " " (px(y)) ")" } { text class=(class) { (text) } } }
 }
 
-fn path(class: &str, width: Option<f64>, d: String) -> Markup {
-    html! { path class=(class) style=[width.map(|width| format!("stroke-width:{width}"))] d=(d) {} }
+fn path(class: &str, d: String) -> Markup {
+    html! { path class=(class) d=(d) {} }
 }
 
 fn leader(class: &str, from: Place, to: Place) -> Markup {
-    path(class, None, format!("M{:.1} {:.1}L{:.1} {:.1}", from.0, from.1, to.0, to.1))
+    path(class, format!("M{:.1} {:.1}L{:.1} {:.1}", from.0, from.1, to.0, to.1))
 }
 
 fn bodies(fixture: &Fixture, layout: &Layout) -> Markup {
@@ -131,8 +145,8 @@ fn leader_above(row: &Row, label: &Label) -> Markup {
             (arrow(kind, x, top))
         },
         Tie::Circle => html! {
-            // Beside the arrow that may end at the same place.
-            (leader("fx-highlight", (x + 11.0, start), (x + 11.0, row.middle - 9.0)))
+            // Down to the body or to the circle about a beam: a block's name stands in between.
+            (leader("fx-highlight", (label.leader(), start), (label.leader(), top.min(row.middle - 9.0))))
             circle.fx-highlight cx=(px(x)) cy=(px(row.middle)) r="14" fill="none" stroke-width="2.2" {}
         },
         Tie::Line => leader("fx-leader", (x, start), (x, top)),
@@ -148,12 +162,12 @@ fn arrow(kind: ChannelKind, x: f64, top: f64) -> Markup {
     let shaft = |from: f64, to: f64| format!("M{x:.1} {from:.1}V{to:.1}");
     match kind {
         ChannelKind::Reference => html! {
-            (path("fx-reference-line", Some(1.8), shaft(top - ARROW + 3.0, top - 8.0)))
+            (path("fx-reference-line fx-thick", shaft(top - ARROW + 3.0, top - 8.0)))
             polygon.fx-reference points=(head(top - 1.0, top - 10.0)) {}
         },
         ChannelKind::Response => html! {
             rect.fx-response x=(px(x - 5.0)) y=(px(top - 7.0)) width="10" height="7" rx="1" {}
-            (path("fx-response-line", Some(1.8), shaft(top - 7.0, top - ARROW + 10.0)))
+            (path("fx-response-line fx-thick", shaft(top - 7.0, top - ARROW + 10.0)))
             polygon.fx-response points=(head(top - ARROW + 2.0, top - ARROW + 11.0)) {}
         },
     }
@@ -180,9 +194,9 @@ fn line_of_joint(joint: &Joint, highlight: bool, from: Place, to: Place) -> Mark
     let start = format!("M{:.1} {:.1}", from.0, from.1);
     let is_beam = matches!(joint.law, JointLaw::Beam { .. });
     let line = if is_beam || length < 30.0 {
-        path(class, Some(5.0), format!("{start}L{:.1} {:.1}", to.0, to.1))
+        path(&format!("{class} fx-beam"), format!("{start}L{:.1} {:.1}", to.0, to.1))
     } else {
-        path(class, Some(1.8), start + &zigzag(from, (dx / length, dy / length), length, 7.0))
+        path(&format!("{class} fx-thick"), start + &zigzag(from, (dx / length, dy / length), length, 7.0))
     };
     let (x, y) = (0.5 * (from.0 + to.0), 0.5 * (from.1 + to.1));
     let width = text_width(&joint.name);
@@ -219,7 +233,7 @@ fn ground(x: f64, top: f64) -> Markup {
         (0..5).map(|stroke| format!("M{:.1} {ground:.1}l-5 6", x - 10.0 + 6.0 * f64::from(stroke)));
     let left = x - 14.0;
     let d = format!("M{x:.1} {top:.1}{spring}M{left:.1} {ground:.1}h28{}", hatching.collect::<String>());
-    path("fx-ground", None, d)
+    path("fx-ground", d)
 }
 
 /// A bar of 1, 2 or 5 times a power of ten millimetres, some 80 to 200 pixels long.
@@ -231,7 +245,7 @@ fn scale_bar(per_metre: f64, y: f64) -> Markup {
     let (top, end) = (y - 3.0, 24.0 + length * 1e-3 * per_metre);
     let bar = format!("M24 {top:.1}v6M24 {y:.1}H{end:.1}M{end:.1} {top:.1}v6");
     let label = format!("{} mm", significant(length, 1));
-    html! { (path("fx-line", None, bar)) (text("fx-soft", (0.5 * (24.0 + end), y - 6.0), &label)) }
+    html! { (path("fx-line", bar)) (text("fx-soft", (0.5 * (24.0 + end), y - 6.0), &label)) }
 }
 
 /// The directions of the convention: x along the fixture, y transverse.
@@ -241,7 +255,7 @@ fn axes(y: f64) -> Markup {
         "M{x:.1} {top:.1}V{y:.1}H{right:.1}M{right:.1} {y:.1}l-5 -3m5 3l-5 3M{x:.1} {top:.1}l-3 5m3 -5l3 5"
     );
     html! {
-        (path("fx-line", None, lines))
+        (path("fx-line", lines))
         (text("fx-soft", (x + 38.0, y + 4.0), "x"))
         (text("fx-soft", (x - 9.0, y - 20.0), "y"))
     }

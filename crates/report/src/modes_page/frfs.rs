@@ -22,7 +22,7 @@ pub(super) fn section(analysis: &ModalAnalysis) -> Section {
     ));
     shown.into_iter().fold(section, |section, frf| {
         let panes = panes(analysis, frf);
-        section.plots(2, [panes.magnitude(), panes.phase()])
+        section.plots(2, [panes.magnitude(), panes.phase()].into_iter().chain(panes.residuals()))
     })
 }
 

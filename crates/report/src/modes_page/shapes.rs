@@ -7,7 +7,7 @@ use maud::{Markup, PreEscaped, html};
 use num_complex::Complex64;
 
 use super::SHOWN;
-use crate::format::significant;
+use crate::format::{fixed, significant};
 use crate::plot::Span;
 use crate::section::{Block, Section};
 use crate::table::Table;
@@ -34,7 +34,12 @@ pub(super) fn section(analysis: &ModalAnalysis, fixture: Option<&Fixture>) -> Se
     ));
     for (index, mode) in analysis.modes.iter().enumerate().take(SHOWN) {
         let caption = format!("Mode {} at {} Hz", index + 1, significant(mode.frequency, 5));
-        section = section.drawing(draw(mode, fixture, &caption), caption);
+        let text = format!(
+            "{caption}, damping ratio {} %: {}",
+            significant(100.0 * mode.damping_ratio, 3),
+            told(mode, fixture)
+        );
+        section = section.drawing(draw(mode, fixture, &text), caption);
     }
     section.with(entries(analysis))
 }
@@ -76,6 +81,13 @@ fn translations(mode: &Mode, fixture: Option<&Fixture>) -> Vec<Entry> {
     all
 }
 
+/// The deflections from left to right, for who cannot see them.
+fn told(mode: &Mode, fixture: Option<&Fixture>) -> String {
+    let all = translations(mode, fixture);
+    let each = |entry: &Entry| format!("{} {}", entry.name, significant(entry.value, 2));
+    all.iter().filter(|entry| entry.response).map(each).collect::<Vec<_>>().join(", ")
+}
+
 fn draw(mode: &Mode, fixture: Option<&Fixture>, title: &str) -> Markup {
     let all = translations(mode, fixture);
     let (low, high) = Span::of(all.iter().map(|entry| entry.x)).0.unwrap_or((0.0, 0.0));
@@ -89,7 +101,7 @@ fn draw(mode: &Mode, fixture: Option<&Fixture>, title: &str) -> Markup {
         shape.map(|entry| format!("{:.1},{:.1}", px(entry.x), py(entry.value))).collect()
     };
     html! {
-        svg.fx xmlns="http://www.w3.org/2000/svg" viewBox={ "0 0 " (WIDTH) " " (HEIGHT) } role="img" aria-label=(title) {
+        svg.fx xmlns="http://www.w3.org/2000/svg" viewBox={ "0 0 " (WIDTH) " " (HEIGHT) } data-middle=(middle) role="img" aria-label=(title) {
             (PreEscaped(STYLE))
             line.shape-rest x1=(SIDE) x2=(WIDTH - SIDE) y1=(middle) y2=(middle) {}
             polyline.shape-response points=(points(true).join(" ")) {}
@@ -132,7 +144,7 @@ fn entries(analysis: &ModalAnalysis) -> impl Into<Block> {
     let table = modes.fold(table, |table, (index, mode)| {
         table.numbers(format!("Mode {}", index + 1), "", |(what, row, _)| {
             let value = shape(mode, what)[*row].1;
-            format!("{} ∠ {}°", significant(value.norm(), 3), significant(value.arg().to_degrees(), 2))
+            format!("{} ∠ {}°", significant(value.norm(), 3), fixed(value.arg().to_degrees(), 1))
         })
     });
     table.footnote("Size and phase against the largest.")

@@ -12,10 +12,8 @@ use crate::error::PageError;
 use crate::json::number;
 use crate::unit::{Scale, typeset};
 
-/// Digits of the ordinates; more than a screen can show at any sensible zoom.
-const DIGITS: usize = 6;
 /// Digits of a band's edges, which nobody reads to the last figure.
-const BAND_DIGITS: usize = 5;
+const BAND_DIGITS: usize = 4;
 /// Digits of an abscissa: neighbouring lines must stay apart however fine the resolution is.
 const ABSCISSA_DIGITS: usize = 9;
 
@@ -165,10 +163,11 @@ fn columns(plot: &Plot, book: &mut PlotBook, drawing: &mut Drawing) -> (Vec<Vec<
         kept.retain(|line| plot.x.can_show(abscissa[*line]));
         let mut indices = vec![book.add(abscissa_column(abscissa, &kept))];
         for (index, member) in members() {
-            let digits = if member.style == Style::Band { BAND_DIGITS } else { DIGITS };
+            let digits = if member.style == Style::Band { BAND_DIGITS.min(plot.digits) } else { plot.digits };
             for edge in member.edges() {
                 undrawable += edge.iter().filter(|v| !v.is_nan() && !plot.y.can_show(**v)).count();
-                let shown = |v: f64| if plot.y.can_show(v) { drawing.scale.of(v) } else { f64::NAN };
+                let rounded = |v: f64| plot.step.map_or(v, |step| (v / step).round() * step);
+                let shown = |v: f64| if plot.y.can_show(v) { rounded(drawing.scale.of(v)) } else { f64::NAN };
                 series[index].places.push(indices.len());
                 indices.push(book.add(column(kept.iter().map(|line| shown(edge[*line])), digits)));
             }

@@ -4,7 +4,7 @@ use maud::{Markup, html};
 
 use super::data::Drawing;
 use super::{Mark, Plot, Series, Style};
-use crate::format::{capitalised, significant};
+use crate::format::{capitalised, significant, trimmed};
 use crate::unit::{Scale, typeset};
 
 /// The figure of a plot; the script finds it by its number and draws into it.
@@ -25,7 +25,7 @@ pub(super) fn figure(number: usize, plot: &Plot, drawing: &Drawing) -> Markup {
                         span.value {}
                     }
                 }
-                @for (key, mark) in plot.marks.iter().enumerate() {
+                @for (key, mark) in plot.marks.iter().enumerate().filter(|(_, mark)| mark.is_named()) {
                     @let (label, swatch, value) = mark_key(mark, plot, &drawing.scale);
                     li {
                         button type="button" aria-pressed="true" data-mark=(key) { (swatch) (label) }
@@ -33,7 +33,7 @@ pub(super) fn figure(number: usize, plot: &Plot, drawing: &Drawing) -> Markup {
                     }
                 }
             }
-            div.drawing style={ "height:" (plot.height) "px" } tabindex="0" role="group" aria-roledescription="plot"
+            div.drawing tabindex="0" role="group" aria-roledescription="plot"
                 aria-label={ (plot.title) ". " (caption) } {}
             figcaption { (caption) @if !remarks.is_empty() { " " small { (capitalised(&remarks)) "." } } }
         }
@@ -41,18 +41,17 @@ pub(super) fn figure(number: usize, plot: &Plot, drawing: &Drawing) -> Markup {
 }
 
 fn swatch(content: Markup) -> Markup {
-    html! { svg.swatch width="22" height="10" viewBox="0 0 22 10" aria-hidden="true" { (content) } }
+    html! { svg.swatch width="22" height="10" viewBox="0 0 22 10" fill="none" stroke-width="2" aria-hidden="true" { (content) } }
 }
 
 pub(super) fn series_swatch(series: &Series) -> Markup {
     let colour = format!("var(--{})", series.role.colour());
-    let (stroke, fill) = (format!("stroke:{colour}"), format!("fill:{colour};stroke:none"));
     swatch(html! {
         @match series.style {
-            Style::Line => path d="M1 5H21" style=(stroke) {},
-            Style::Dashed => path d="M1 5H21" style=(stroke) stroke-dasharray="6 3" {},
-            Style::Points => circle cx="11" cy="5" r="2.6" style=(fill) {},
-            Style::Band => rect x="1" y="0.5" width="20" height="9" style=(fill) opacity="0.3" {},
+            Style::Line => path d="M1 5H21" stroke=(colour) {},
+            Style::Dashed => path d="M1 5H21" stroke=(colour) stroke-dasharray="6 3" {},
+            Style::Points => circle cx="11" cy="5" r="2.6" fill=(colour) {},
+            Style::Band => rect x="1" y="0.5" width="20" height="9" fill=(colour) opacity="0.3" {},
         }
     })
 }
@@ -61,20 +60,20 @@ pub(super) fn series_swatch(series: &Series) -> Markup {
 pub(super) fn mark_key<'a>(mark: &'a Mark, plot: &Plot, scale: &Scale) -> (&'a str, Markup, String) {
     let unit = typeset(&plot.x.unit);
     let line = |colour: &str, path: &str| {
-        swatch(html! { path d=(path) stroke-dasharray="4 2" style={ "stroke:var(--" (colour) ")" } {} })
+        swatch(html! { path d=(path) stroke-dasharray="4 2" stroke={ "var(--" (colour) ")" } {} })
     };
     match mark {
         Mark::Horizontal { label, colour, at } => {
-            let value = with_unit(significant(scale.of(*at), 4), scale.unit());
+            let value = with_unit(trimmed(&significant(scale.of(*at), 4)), scale.unit());
             (label, line(colour.colour(), "M1 5H21"), value)
         }
         Mark::Vertical { label, colour, at } => {
-            (label, line(colour.colour(), "M11 0V10"), with_unit(significant(*at, 5), &unit))
+            (label, line(colour.colour(), "M11 0V10"), with_unit(trimmed(&significant(*at, 5)), &unit))
         }
         Mark::Shaded { label, from, to } => {
-            let range = format!("{} to {}", significant(*from, 4), significant(*to, 4));
-            let area =
-                html! { rect x="1" y="0.5" width="20" height="9" style="fill:var(--shade);stroke:none" {} };
+            let [from, to] = [from, to].map(|end| trimmed(&significant(*end, 4)));
+            let range = format!("{from} to {to}");
+            let area = html! { rect x="1" y="0.5" width="20" height="9" fill="var(--shade)" {} };
             (label, swatch(area), with_unit(range, &unit))
         }
     }

@@ -1,8 +1,14 @@
-//! Magnitude and phase of an FRF, measured and as models have it.
+//! Magnitude and phase of an FRF, measured and as models have it, and what the models leave of it.
 
 use num_complex::Complex64;
 
-use super::{Axis, Plot, Role, Style};
+use super::{Axis, Plot, Role, Span, Style, YRange};
+
+/// Half the width of a normal variable's 95 % interval, and the modulus that a complex one of unit variance exceeds in 5 %: √(χ²₂/2).
+const NORMAL_95: f64 = 1.96;
+const RAYLEIGH_95: f64 = 1.7308;
+/// Steps of phases, °, and of residuals: nobody reads more of them, and long recordings make long pages.
+const STEPS: (f64, f64) = (0.1, 0.01);
 
 /// A curve beside the measured one.
 #[derive(Debug, Clone)]
@@ -25,7 +31,7 @@ pub(crate) struct FrfPanes<'a> {
     pub unit: &'a str,
     pub hz: &'a [f64],
     pub measured: Vec<Option<Complex64>>,
-    /// Half the width of the 95 % band of the noise; not drawn where empty.
+    /// Half the width of the 95 % band of one part's noise; not drawn where empty.
     pub noise: Vec<Option<f64>>,
     pub curves: Vec<Curve>,
 }
@@ -58,12 +64,61 @@ impl FrfPanes<'_> {
         let plot = Plot::new(&self.phase_title, Axis::frequency(), axis)
             .over(self.hz)
             .line("measured", Role::Measured, phases.next().unwrap_or_default())
+            .rounded_to(STEPS.0)
             .height(220);
         self.curves
             .iter()
             .zip(phases)
             .fold(plot, |plot, (curve, phases)| plot.series(curve.style, curve.label, curve.role, phases))
     }
+
+    /// What every curve leaves of the measured one over its noise, and both parts of what the last one leaves; nothing without curves or noise.
+    pub fn residuals(&self) -> Vec<Plot> {
+        let Some(last) = self.curves.last().filter(|_| !self.noise.is_empty()) else { return Vec::new() };
+        let left = |curve: &Curve| -> Vec<Option<Complex64>> {
+            let lines = self.measured.iter().zip(&curve.values).zip(&self.noise);
+            lines
+                .map(|((measured, model), half)| {
+                    Some((measured.as_ref()? - model.as_ref()?) * (NORMAL_95 / (*half)?))
+                })
+                .collect()
+        };
+        let part =
+            |of: fn(&Complex64) -> f64| left(last).iter().map(|v| v.as_ref().map(of)).collect::<Vec<_>>();
+        // One part has half the variance of the complex value.
+        let size = |curve: &Curve| part_size(&left(curve));
+        let largest = Span::of(self.curves.iter().flat_map(size).flatten()).magnitude();
+        let pane = |title: String, axis: Axis| {
+            Plot::new(title, Axis::frequency(), axis).over(self.hz).digits(3).height(150)
+        };
+        let sizes = pane(format!("Residuals of {}", self.title), Axis::logarithmic("|residual|/σ", ""));
+        let sizes = sizes
+            .y_range(YRange::Fixed { low: 0.1, high: 10f64.powf(largest.max(1.0).log10().ceil().max(1.0)) })
+            .horizontal("exceeded by 5 % of noise", Role::Measured, RAYLEIGH_95)
+            .caption("|measured − model| over the standard deviation of the noise.");
+        let sizes = self
+            .curves
+            .iter()
+            .fold(sizes, |plot, curve| plot.series(curve.style, curve.label, curve.role, size(curve)));
+        let parts =
+            pane(format!("Residual of {}, {}", self.title, last.label), Axis::linear("residual/σ", ""))
+                .y_range(YRange::Robust)
+                .rounded_to(STEPS.1)
+                .points("real part", Role::Trace(0), part(|v| v.re))
+                .points("imaginary part", Role::Trace(1), part(|v| v.im))
+                .horizontal("± 95 % of noise", Role::Reference, NORMAL_95)
+                .horizontal("", Role::Reference, -NORMAL_95)
+                .caption(format!(
+                    "Measured − {}, each part over its noise: without a course where noise alone is left.",
+                    last.label
+                ));
+        vec![sizes, parts]
+    }
+}
+
+/// |r|/√2 of residuals whose parts have unit variance.
+fn part_size(residuals: &[Option<Complex64>]) -> Vec<Option<f64>> {
+    residuals.iter().map(|v| v.map(|v| v.norm() * std::f64::consts::FRAC_1_SQRT_2)).collect()
 }
 
 /// Phases in degrees; nothing where there is no value or it is zero.

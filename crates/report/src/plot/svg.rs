@@ -169,7 +169,7 @@ impl Plot {
     /// Label, swatch and width of each entry.
     fn legend(&self, scale: &Scale) -> Vec<(String, Markup, f64)> {
         let series = self.series.iter().map(|series| (series.label.clone(), series_swatch(series)));
-        let marks = self.marks.iter().map(|mark| {
+        let marks = self.marks.iter().filter(|mark| mark.is_named()).map(|mark| {
             let (label, swatch, value) = mark_key(mark, self, scale);
             (format!("{label} {value}").trim_end().to_owned(), swatch)
         });
@@ -304,7 +304,7 @@ mod tests {
         assert!(d.starts_with(&format!("M{LEFT:.1} ")) && d.matches('M').count() == 2, "{d}");
         assert!(d.contains(&format!("L{:.1} ", WIDTH - RIGHT)), "{d}");
         for part in
-            ["H &lt;4/1&gt;", ">10⁻⁴<", ">Frequency, Hz<", ">|H|, m/N<", ">300<", "band 100.0 to 200.0 Hz"]
+            ["H &lt;4/1&gt;", ">10⁻⁴<", ">Frequency, Hz<", ">|H|, m/N<", ">300<", "band 100 to 200 Hz"]
         {
             assert!(svg.contains(part), "{part} in {svg}");
         }

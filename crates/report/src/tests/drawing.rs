@@ -119,6 +119,48 @@ fn a_long_highlight_stays_within_the_drawing() {
     assert!(svg.contains(&label));
 }
 
+/// Upright lines that tie labels to their places: abscissa, upper and lower end.
+fn leaders(svg: &str) -> Vec<(f64, f64, f64)> {
+    let of_class = |class: &'static str| svg.split(class).skip(1);
+    let paths =
+        of_class("<path class=\"fx-leader\" d=\"M").chain(of_class("<path class=\"fx-highlight\" d=\"M"));
+    let number = |text: &str| text.parse::<f64>().expect("a number");
+    let ends = |rest: &str| {
+        let d = rest.split_once('"').expect("an end").0.replace('L', " ");
+        let all: Vec<f64> = d.split(' ').map(number).collect();
+        (all[0], all[1].min(all[3]), all[1].max(all[3]))
+    };
+    paths.map(ends).collect()
+}
+
+#[test]
+fn no_leader_crosses_a_label() {
+    let label = "1. interface compliance".to_owned();
+    let at = |x: f64, body: usize| Highlight { x, body: Some(body), label: label.clone() };
+    let chain = chain();
+    let of_chain =
+        SideView { highlights: vec![at(0.07, 0), at(0.27, 2)], ..SideView::new(&chain, &frfs(&chain, 8)) };
+    for svg in [drawn(&two_blocks(), vec![at(0.0, 0), at(0.065, 1)]), of_chain.draw().into_string()] {
+        check_labels_keep_clear(&svg);
+        let leaders = leaders(&svg);
+        assert!(leaders.len() > 5, "{svg}");
+        for (text, x, y) in texts(&svg) {
+            let half = 3.0 * text.chars().count() as f64;
+            let crossed = leaders
+                .iter()
+                .find(|(at, top, low)| (at - x).abs() < half && *top < y - 6.0 && *low > y - 2.0);
+            assert!(crossed.is_none(), "{crossed:?} crosses '{text}' at ({x}, {y}): {svg}");
+        }
+    }
+}
+
+#[test]
+fn who_cannot_see_the_drawing_is_told_what_is_marked() {
+    let svg =
+        drawn(&two_blocks(), vec![Highlight { x: 0.065, body: Some(1), label: "1. added mass".into() }]);
+    assert!(svg.contains("Marked: 1. added mass on B at x = 65.00 mm. Bodies: A, B."), "{svg}");
+}
+
 #[test]
 fn names_are_escaped() {
     let svg = drawn(&two_blocks_named("<script>", "\"><b>"), vec![]);

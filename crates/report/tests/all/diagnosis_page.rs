@@ -100,9 +100,31 @@ fn a_finding_is_marked_measured_and_judged() {
         &["Measured δ(ω)", "law: −ω²m", "Repaired: χ² per value", "departure, repaired", "bodies/low/mass"],
     );
     holds(&html, &["jointscope diagnose storeys.json", "sha256 abab", "one remark"]);
+    // How sure, how much better, what to do; alternative texts say what is marked.
+    holds(
+        &html,
+        &[
+            "How probable",
+            "Error on lines never fitted",
+            "What to do next",
+            "look for what weighs that much there",
+        ],
+    );
+    holds(
+        &html,
+        &[
+            "Marked: 1. added mass on high at x = 180.0 mm",
+            "Residuals of FRF 1/1",
+            "Residual of FRF 2/1, repaired",
+            "held out",
+        ],
+    );
+    holds(&html, &["Magnitude. χ² per value (1 is noise): refitted "]);
     // Verdict first, then where, what, how much better.
     let at = |text: &str| html.find(text).unwrap();
-    assert!(at("class=\"verdict") < at("id=\"where\"") && at("id=\"where\"") < at("id=\"findings\""));
+    assert!(
+        at("class=\"verdict") < at("id=\"at-a-glance\"") && at("id=\"at-a-glance\"") < at("id=\"findings\"")
+    );
 }
 
 #[test]

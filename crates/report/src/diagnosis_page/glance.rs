@@ -1,0 +1,190 @@
+//! What a reader wants first: what is missing and how sure that is, how much better the model is for it, what to do next; and where it sits.
+
+use jointscope_diagnosis::{Departure, Estimate, Finding, Verdict};
+use jointscope_fixture::EffectKind;
+use jointscope_wording::{Remarks, effect_name};
+use maud::{Markup, html};
+
+use super::judgement::{gain, spoken};
+use super::{Subject, fixture_view};
+use crate::format::{NOT_DETERMINED, capitalised, ends, percent, significant};
+use crate::section::{Card, Section, Tone};
+use crate::unit::Scale;
+
+/// Findings that are shown at the most, and names beside each.
+const SHOWN: usize = 3;
+/// Probability from which another name is told.
+const TOLD: f64 = 0.01;
+/// Probability from which another name is worth a measurement.
+const DOUBT: f64 = 0.05;
+
+/// `notes` are remarks from reading the recordings.
+pub(super) fn section(subject: &Subject, notes: &[String]) -> Section {
+    let (drawing, caption) = fixture_view::drawing(subject);
+    let steps = steps(subject);
+    let cards = findings(&subject.diagnosis.findings).into_iter().chain([error(subject)]);
+    let section = Section::new("At a glance").cards(cards);
+    let section = match steps.is_empty() {
+        true => section,
+        false => section.with(html! { div.next { strong { "What to do next" } ul { @for step in &steps { li { (with_commands(step)) } } } } }),
+    };
+    section.drawing(drawing, caption).notes(subject.diagnosis.remarks().iter().chain(notes))
+}
+
+/// What stands between backticks is what one types.
+fn with_commands(text: &str) -> Markup {
+    html! { @for (at, part) in text.split('`').enumerate() { @if at % 2 == 1 { code { (part) } } @else { (part) } } }
+}
+
+/// A probability without digits that nobody can vouch for.
+pub(super) fn chance(probability: f64) -> String {
+    match probability {
+        p if p >= 0.9995 => "above 99.9 %".to_owned(),
+        p if (0.0995..0.9895).contains(&p) => percent(p, 0),
+        p => percent(p, 1),
+    }
+}
+
+/// Each with its size and interval, and its probability with what else it could be: a card of its own where there is one finding.
+fn findings(findings: &[Finding]) -> Vec<Card> {
+    let tone = |finding: &Finding| finding.is_doubtful().then_some(Tone::Problem);
+    match findings {
+        [one] => {
+            let sure = Card::text("How probable", chance(one.probability)).note(others(one)).tone(tone(one));
+            vec![size(0, one).note(known(one)), sure]
+        }
+        several => {
+            let card = |(index, own): (usize, &Finding)| {
+                let sure =
+                    format!("{}; probability {}, {}", known(own), chance(own.probability), others(own));
+                size(index, own).note(sure).tone(tone(own))
+            };
+            several.iter().take(SHOWN).enumerate().map(card).collect()
+        }
+    }
+}
+
+fn main_parameter(finding: &Finding) -> Option<&Estimate> {
+    let spec = finding.effect.kind.spec();
+    finding.estimate(spec.parameters[spec.size.parameter].name)
+}
+
+fn size(index: usize, finding: &Finding) -> Card {
+    let label = format!("{}. {}", index + 1, effect_name(&finding.effect));
+    match main_parameter(finding) {
+        Some(main) => Card::quantity(label, main.value, main.std, main.unit),
+        None => Card::text(label, NOT_DETERMINED),
+    }
+}
+
+fn known(finding: &Finding) -> String {
+    let interval = main_parameter(finding).and_then(|main| Some((main, main.interval?)));
+    match interval.filter(|(_, interval)| interval.iter().all(|end| end.is_finite())) {
+        Some((main, interval)) => {
+            format!("95 %: {}", ends(interval, &Scale::for_magnitude(main.value, main.unit)))
+        }
+        None => format!("95 %: {NOT_DETERMINED}"),
+    }
+}
+
+fn others(finding: &Finding) -> String {
+    let told = finding.alternatives.iter().filter(|(_, p)| *p >= TOLD).take(SHOWN);
+    let told: Vec<String> =
+        told.map(|(effect, p)| format!("{} {}", effect_name(effect), chance(*p))).collect();
+    let listed = finding.probability + finding.alternatives.iter().map(|(_, p)| p).sum::<f64>();
+    let rest = Some(1.0 - listed)
+        .filter(|rest| *rest >= TOLD)
+        .map(|rest| format!("something not listed {}", chance(rest)));
+    match told.into_iter().chain(rest).collect::<Vec<_>>() {
+        none if none.is_empty() => "nothing else above 1 %".to_owned(),
+        others => format!("or {}", others.join(", ")),
+    }
+}
+
+/// How much better the repaired model is, on what no fit saw where anything was held out.
+fn error(subject: &Subject) -> Card {
+    let diagnosis = subject.diagnosis;
+    let [_, refitted, repaired] = diagnosis.nrmse();
+    let held_out = diagnosis.held_out.as_ref();
+    let (label, refitted, repaired) = match held_out {
+        Some(own) => ("Error on lines never fitted", own.nrmse_refitted, own.nrmse_repaired),
+        None => ("Error of what was fitted", refitted, repaired),
+    };
+    let told = |error: f64| format!("{} %", significant(100.0 * error, 2));
+    let what: Vec<String> = held_out.iter().flat_map(|own| &own.what).map(|what| spoken(what)).collect();
+    let what = if what.is_empty() { "nothing could be held out".to_owned() } else { what.join(", ") };
+    match diagnosis.findings.is_empty() {
+        true => Card::text(label, told(refitted)).note(format!("of the refitted fixture; {what}")),
+        false => Card::text(label, format!("{} → {}", told(refitted), told(repaired)))
+            .note(format!("{}; {what}", gain(refitted, repaired))),
+    }
+}
+
+/// What the answer asks for, most urgent first.
+fn steps(subject: &Subject) -> Vec<String> {
+    let diagnosis = subject.diagnosis;
+    let mut steps = Vec::new();
+    let departed = diagnosis.departures.iter().filter(|departure| departure.remains()).take(SHOWN);
+    let departed: Vec<&str> = departed.map(|Departure { path, .. }| path.as_str()).collect();
+    if !departed.is_empty() {
+        steps.push(format!(
+            "Measure again what the model would have to take far from what is stated: {}.",
+            departed.join(", ")
+        ));
+    }
+    let shown = &diagnosis.findings[..diagnosis.findings.len().min(SHOWN)];
+    for alike in shown.chunk_by(|a, b| advice(a.effect.kind) == advice(b.effect.kind)) {
+        let names: Vec<String> = alike.iter().map(|finding| effect_name(&finding.effect)).collect();
+        steps.push(format!("{}: {}.", capitalised(&names.join(", ")), advice(alike[0].effect.kind)));
+    }
+    let is_open =
+        |finding: &Finding| finding.alternatives.iter().any(|(_, p)| *p >= DOUBT) || finding.is_doubtful();
+    if diagnosis.findings.iter().any(is_open) {
+        steps.push("`jointscope plan` with this fixture and this folder ranks the measurements that tell the names apart.".to_owned());
+    }
+    steps.extend(match diagnosis.verdict {
+        Verdict::Consistent => Some("Nothing needs repair: refitted.json has the quantities as the recording moves them within their tolerances."),
+        Verdict::Explained => Some("repaired.json is the fixture with what was found, for predictions and for `jointscope export`."),
+        Verdict::PartlyExplained => Some("repaired.json has what was found; what is left over is mapped under Misfit."),
+        Verdict::Unexplained if diagnosis.is_only_departed() => None,
+        Verdict::Unexplained => Some("Look at the test first (`jointscope check`), then at the FRF and band where the misfit is largest."),
+    }.map(str::to_owned));
+    steps
+}
+
+/// What to look for on the structure, or to measure.
+fn advice(kind: EffectKind) -> &'static str {
+    match kind {
+        EffectKind::AddedMass => "look for what weighs that much there, or weigh the part",
+        EffectKind::SensorMass => "weigh the sensor with its cable, or load the other points alike",
+        EffectKind::Support
+        | EffectKind::AttachedResonator
+        | EffectKind::Bypass
+        | EffectKind::ParallelStiffness => {
+            "look for what touches or hangs there (cable, suspension, cover), and test once without it"
+        }
+        EffectKind::InterfaceCompliance | EffectKind::Footing => {
+            "inspect the interface (weld, glue line, bolts), and keep its compliance in the model"
+        }
+        EffectKind::ShearDeformation | EffectKind::BodyFlexibility | EffectKind::JointMass => {
+            "nothing need be broken: the model simplifies it away, so put it in"
+        }
+        EffectKind::StiffnessChange | EffectKind::JointLength | EffectKind::QuantityError => {
+            "measure dimensions and material again; where they are as stated, look for damage"
+        }
+        EffectKind::LossFactor | EffectKind::Relaxation | EffectKind::Springpot => {
+            "put the damping law into the model; a test at another temperature confirms it"
+        }
+        EffectKind::PointOffset => "measure where sensor and hammer really are",
+        EffectKind::ChannelGain
+        | EffectKind::ChannelDelay
+        | EffectKind::ChannelHighpass
+        | EffectKind::ChannelResonance => {
+            "calibrate that channel, or repeat one FRF with another sensor and cable"
+        }
+        EffectKind::ExponentialWindow => "state the decay of the window that the analyser used",
+        EffectKind::CubicStiffness | EffectKind::Friction | EffectKind::Gap => {
+            "repeat the test at another level of force"
+        }
+    }
+}
