@@ -1,5 +1,6 @@
 //! Magnitude and phase of an FRF, measured and as models have it.
 
+use jointscope_spectra::FrfSet;
 use num_complex::Complex64;
 
 use super::{Axis, Plot, Role, Style};
@@ -30,7 +31,24 @@ pub(crate) struct FrfPanes<'a> {
     pub curves: Vec<Curve>,
 }
 
-impl FrfPanes<'_> {
+impl<'a> FrfPanes<'a> {
+    /// An accelerance of a set with the noise that its variances tell, and other curves beside it.
+    pub fn recorded(frfs: &'a FrfSet, index: usize, curves: Vec<Curve>) -> Self {
+        let pair = &frfs.pairs()[index];
+        // Each part of a value has half its variance, and the modulus takes one part of the noise.
+        let half = |variance: &f64| Some(1.96 * (0.5 * variance).sqrt());
+        FrfPanes {
+            title: format!("FRF {pair}"),
+            phase_title: format!("Phase of FRF {pair}"),
+            symbol: format!("H {pair}"),
+            unit: "(m/s^2)/N",
+            hz: frfs.lines().hz(),
+            measured: frfs.values(index).iter().map(|value| Some(*value)).collect(),
+            noise: frfs.variance(index).unwrap_or_default().iter().map(half).collect(),
+            curves,
+        }
+    }
+
     pub fn magnitude(&self) -> Plot {
         let size =
             |values: &[Option<Complex64>]| values.iter().map(|v| v.map(|v| v.norm())).collect::<Vec<_>>();
@@ -64,6 +82,15 @@ impl FrfPanes<'_> {
             .zip(phases)
             .fold(plot, |plot, (curve, phases)| plot.series(curve.style, curve.label, curve.role, phases))
     }
+}
+
+/// Places of so many of the worst, in their order.
+pub(crate) fn worst(badness: &[f64], count: usize) -> Vec<usize> {
+    let mut places: Vec<usize> = (0..badness.len()).collect();
+    places.sort_by(|a, b| badness[*b].total_cmp(&badness[*a]));
+    places.truncate(count);
+    places.sort_unstable();
+    places
 }
 
 /// Phases in degrees; nothing where there is no value or it is zero.
