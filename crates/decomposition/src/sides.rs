@@ -154,11 +154,6 @@ impl Sides {
         if alpha { &self.alpha } else { &self.beta }
     }
 
-    /// A station of the whole fixture as one of the side that its body belongs to.
-    pub(crate) fn on_its_side(&self, station: Station) -> Station {
-        Station { body: self.index_on_side(station.body), ..station }
-    }
-
     /// Place of the joint among the whole fixture's.
     pub(crate) fn joint_index(&self) -> usize {
         self.joint
@@ -215,7 +210,7 @@ fn connected(fixture: &Fixture, joint: usize) -> Vec<bool> {
 }
 
 fn with_its_effects(fixture: &Fixture, joint: usize, keep: &dyn Fn(usize) -> bool) -> Fixture {
-    with_effects_of(fixture, fixture.side(keep, joint))
+    with_effects_of(fixture, fixture.part(keep, &[joint]))
 }
 
 /// A part of a fixture with those of the fixture's effects that sit on it.

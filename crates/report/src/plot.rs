@@ -9,7 +9,7 @@ mod table;
 mod thin;
 
 pub(crate) use data::PlotBook;
-pub(crate) use frf::{Curve, FrfPanes};
+pub(crate) use frf::{Curve, FrfPanes, worst};
 pub(crate) use range::{Span, YRange};
 
 use serde::{Serialize, Serializer};

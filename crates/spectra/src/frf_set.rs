@@ -1,10 +1,10 @@
 use crate::{FrfForm, SpectraError, SpectralLines};
 use num_complex::Complex64;
-use serde::{Serialize, Serializer};
+use serde::{Deserialize, Serialize, Serializer};
 use std::fmt;
 
 /// A degree of freedom of the planar motion.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Dof {
     /// Transverse displacement y, or a transverse force.

@@ -1,11 +1,10 @@
 //! Whether physics allows the joint found: reciprocal, never giving out energy, at rest without load.
 
+use super::EXPLAINED;
 use super::law::{Dynamics, Form};
-use super::problem::{Point, Problem};
-use super::{EXPLAINED, Fitted, Fitter, coordinates};
-use crate::DecompositionError;
-use jointscope_inference::{Covariance, Parameter, Transform};
-use jointscope_linalg::RealMatrix2;
+use super::problem::{Fitted, Point, Problem};
+use super::uncertainty::strain;
+use jointscope_inference::{Covariance, NormalEquations};
 use serde::Serialize;
 use std::f64::consts::SQRT_2;
 
@@ -40,28 +39,6 @@ pub struct Admissible {
     pub damping: [[f64; 2]; 2],
     /// By how much χ² and priors exceed those of the joint without constraint.
     pub costs: f64,
-}
-
-/// Tests of the free optimum, and the nearest admissible joint where one fails. Variances count `strain` times; `asymmetry` is by how much χ² falls where
-/// k and c are free of symmetry.
-pub(super) fn examined(
-    problem: &Problem,
-    free: &Fitted,
-    covariance: &Covariance,
-    (strain, asymmetry): (f64, Option<f64>),
-) -> (JointTests, Option<Admissible>) {
-    let at = &free.point.coordinates;
-    let count = problem.law.stiffness.count();
-    let lowest = |first: usize| not_negative(problem.law.stiffness, at, first, (covariance, strain));
-    let tests = JointTests {
-        reciprocity: asymmetry.map(|gain| (-0.5 * gain).exp()),
-        definite: lowest(0),
-        passive: lowest(count),
-    };
-    let failed = tests.failed();
-    let admissible =
-        if failed.is_empty() { None } else { nearest(problem, free, &failed, asymmetry.unwrap_or(0.0)) };
-    (tests, admissible)
 }
 
 /// P(a smallest eigenvalue as low as that of the symmetric or scalar matrix whose coordinates begin at `first` | zero). Variances count `strain` times.
@@ -112,86 +89,92 @@ pub(super) enum Freed {
     Unknown,
 }
 
-/// The symmetric optimum, sought again from the free one for as long as that leads to another, lower one, and what is known of the free one: freedom goes round what
-/// keeps a symmetric fit on its way.
-pub(super) fn settled(
-    fitter: &Fitter,
-    problem: &Problem,
-    mut at: Fitted,
-) -> Result<(Fitted, Freed), DecompositionError> {
+/// The symmetric optimum of one joint, sought again from the free one for as long as that leads to another, lower one, and what is known of the free one: freedom goes round
+/// what keeps a symmetric fit on its way.
+///
+/// `None` where an optimum has no derivatives.
+pub(super) fn settled(problem: &Problem, mut at: Fitted) -> Option<(Fitted, Freed)> {
     at.refresh(problem)?;
     for _ in 0..ROUNDS {
-        if let Some(gain) = promised(fitter, problem, &at) {
-            return Ok((at, Freed::Promised(gain)));
+        if let Some(gain) = promised(problem, &at) {
+            return Some((at, Freed::Promised(gain)));
         }
         let Some(free) = reciprocity(problem, &at) else { break };
         if at.point.objective - free.objective < LARGE_GAIN {
-            return Ok((at, Freed::Fitted(free)));
+            return Some((at, Freed::Fitted(free)));
         }
-        let law = problem.law.free();
-        let [k, d, _] = law.matrices(&free.coordinates[..law.count()]);
-        let mut start = coordinates(&problem.law, k, d);
-        start.extend_from_slice(&free.coordinates[law.count()..]);
+        let start = asymmetric(problem, 0).converted(&free.coordinates, &problem.laws);
         let before = at.point.objective;
         match problem.fit(start, None) {
-            Some((point, others)) if point.objective < before => at = Fitted { point, others },
-            _ => return Ok((at, Freed::Fitted(free))),
+            Some(next) if next.point.objective < before => at = next,
+            _ => return Some((at, Freed::Fitted(free))),
         }
         at.refresh(problem)?;
         if at.point.objective > before - ANOTHER {
-            return Ok((at, Freed::Fitted(free)));
+            return Some((at, Freed::Fitted(free)));
         }
     }
-    Ok((at, Freed::Unknown))
+    Some((at, Freed::Unknown))
 }
 
-/// The gain by freedom of symmetry to first order, in the units of [`asymmetry`], where the FRFs are explained and it is too small for the optimum to be sought.
-fn promised(fitter: &Fitter, problem: &Problem, at: &Fitted) -> Option<f64> {
-    if problem.law.stiffness != Form::Symmetric || fitter.per_degree(problem, &at.point) > EXPLAINED {
+/// The problem with k and c of a joint free of symmetry.
+fn asymmetric<'a>(problem: &Problem<'a>, joint: usize) -> Problem<'a> {
+    let mut laws = problem.laws.clone();
+    laws[joint] = laws[joint].free();
+    problem.with_forms(laws)
+}
+
+/// The problem with k and c of a joint free of symmetry, its equations at a symmetric optimum, the step that they ask for, and by how much χ² falls, to first order;
+/// `None` for bodies that do not rotate.
+fn freed<'a>(
+    problem: &Problem<'a>,
+    at: &Fitted,
+    joint: usize,
+) -> Option<(Problem<'a>, NormalEquations, Vec<f64>, f64)> {
+    if problem.laws[joint].stiffness != Form::Symmetric {
         return None;
     }
-    let law = problem.law.free();
-    let free = Problem { law, parameters: free_parameters(problem, &law), ..*problem };
-    let start = freed(problem, &law, &at.point);
-    let there = at.point.with(start);
+    let free = asymmetric(problem, joint);
+    let there = at.point.with(problem.converted(&at.point.coordinates, &free.laws));
     let equations = free.equations_of(&there, &at.others, free.test.weights);
     let step = equations.step(0.0)?;
     let gain: f64 = step.iter().zip(&equations.right).map(|(step, right)| step * right).sum();
+    Some((free, equations, step, gain))
+}
+
+/// By how much χ² falls, to first order, where k and c of a joint may be unsymmetric.
+pub(super) fn first_order_asymmetry(problem: &Problem, at: &Fitted, joint: usize) -> Option<f64> {
+    freed(problem, at, joint).map(|(.., gain)| gain.max(0.0))
+}
+
+/// The gain by freedom of symmetry to first order, in the units of [`asymmetry`], where the FRFs are explained and it is too small for the optimum to be sought.
+fn promised(problem: &Problem, at: &Fitted) -> Option<f64> {
+    if problem.per_degree(&at.point) > EXPLAINED {
+        return None;
+    }
+    let (free, equations, step, gain) = freed(problem, at, 0)?;
     if gain >= LARGE_GAIN {
         return None;
     }
     let rest = at.point.coordinates.iter().skip(problem.own()).zip(step.iter().skip(free.own()));
     let mut moved = vec![0.0; free.own()];
     moved.extend(rest.map(|(at, step)| at + step));
-    Some(
-        gain.max(0.0)
-            / super::uncertainty::strain(&free.parameters, free.own(), &moved, &equations.covariance()?),
-    )
-}
-
-/// The coordinates of a point in a law with other forms of its matrices.
-fn freed(problem: &Problem, law: &Dynamics, at: &Point) -> Vec<f64> {
-    let own = problem.law.count();
-    let [k, d, _] = problem.law.matrices(&at.coordinates[..own]);
-    let mut start = coordinates(law, k, d);
-    start.extend_from_slice(&at.coordinates[own..]);
-    start
+    Some(gain.max(0.0) / strain(&free.parameters, free.own(), &moved, &equations.covariance()?))
 }
 
 /// The optimum with k and c free of symmetry.
-fn reciprocity(problem: &Problem, free: &Fitted) -> Option<Point> {
-    if problem.law.stiffness != Form::Symmetric {
+fn reciprocity(problem: &Problem, symmetric: &Fitted) -> Option<Point> {
+    if problem.laws[0].stiffness != Form::Symmetric {
         return None;
     }
-    let law = problem.law.free();
-    Some(refitted(problem, free, law)?.0)
+    refitted(problem, symmetric, vec![problem.laws[0].free()]).map(|(_, free)| free.point)
 }
 
-/// By how much χ² and priors fall where k and c may be unsymmetric, in units of what such a joint leaves of the FRFs and of the tolerances: what asymmetry
+/// By how much χ² and priors fall where k and c of one joint may be unsymmetric, in units of what such a joint leaves of the FRFs and of the tolerances: what asymmetry
 /// explains is not taken for noise.
-pub(super) fn asymmetry(fitter: &Fitter, problem: &Problem, symmetric: &Fitted, known: Freed) -> Option<f64> {
+pub(super) fn asymmetry(problem: &Problem, symmetric: &Fitted, known: Freed) -> Option<f64> {
     let known = match known {
-        Freed::Unknown => promised(fitter, problem, symmetric).map_or(Freed::Unknown, Freed::Promised),
+        Freed::Unknown => promised(problem, symmetric).map_or(Freed::Unknown, Freed::Promised),
         known => known,
     };
     let point = match known {
@@ -199,59 +182,47 @@ pub(super) fn asymmetry(fitter: &Fitter, problem: &Problem, symmetric: &Fitted, 
         Freed::Fitted(point) => point,
         Freed::Unknown => reciprocity(problem, symmetric)?,
     };
-    let law = problem.law.free();
-    let free = Problem { law, parameters: free_parameters(problem, &law), ..*problem };
-    let inflation = fitter.inflation(&free, &point);
+    let free = asymmetric(problem, 0);
+    let inflation = free.inflation(&point);
     let others = free.other_columns(&point)?;
     let at = Fitted { point, others };
     let covariance = at.equations(&free).covariance()?;
-    let scale = inflation
-        * super::uncertainty::strain(&free.parameters, free.own(), &at.point.coordinates, &covariance);
+    let scale = inflation * strain(&free.parameters, free.own(), &at.point.coordinates, &covariance);
     Some((symmetric.point.objective - at.point.objective).max(0.0) / scale)
 }
 
-/// The parameters of a problem with another form of the law's matrices.
-fn free_parameters(problem: &Problem, law: &Dynamics) -> Vec<Parameter> {
-    let linear = Parameter::new(Transform::Linear { centre: 0.0, scale: 1.0 });
-    let rest = problem.parameters[problem.law.count()..].iter().copied();
-    std::iter::repeat_n(linear, law.count()).chain(rest).collect()
+/// The problem with other forms of the laws' matrices, fitted from the optimum of the first.
+pub(super) fn refitted<'a>(
+    problem: &Problem<'a>,
+    free: &Fitted,
+    laws: Vec<Dynamics>,
+) -> Option<(Problem<'a>, Fitted)> {
+    let start = problem.converted(&free.point.coordinates, &laws);
+    let other = problem.with_forms(laws);
+    let fitted = other.fit(start, Some(free.others.clone()))?;
+    Some((other, fitted))
 }
 
-/// The problem with another form of the law's matrices, from the optimum of the first.
-fn refitted(problem: &Problem, free: &Fitted, law: Dynamics) -> Option<(Point, Dynamics)> {
-    let start = freed(problem, &law, &free.point);
-    let other =
-        Problem { test: problem.test, law, parameters: free_parameters(problem, &law), mass: problem.mass };
-    let (point, _) = other.fit(start, Some(free.others.clone()))?;
-    Some((point, law))
-}
-
-/// The optimum with c = v vᵀ (zero for bodies that do not rotate), and its law.
-pub(super) fn on_the_boundary_of_c(problem: &Problem, free: &Fitted) -> Option<(Point, Dynamics)> {
-    refitted(problem, free, Dynamics { damping: boundary(problem.law.damping), ..problem.law })
-}
-
-fn boundary(form: Form) -> Form {
+/// The limit of what is positive semidefinite: v vᵀ, zero for bodies that do not rotate.
+pub(super) fn boundary(form: Form) -> Form {
     if form == Form::Scalar { Form::Zero } else { Form::RankOne }
 }
 
-fn nearest(problem: &Problem, free: &Fitted, failed: &[&str], gain: f64) -> Option<Admissible> {
-    let mut law = problem.law;
+/// The nearest joint that passes the tests that `failed`; `gain` is by how much χ² falls where k and c are free of symmetry.
+pub(super) fn nearest(problem: &Problem, free: &Fitted, failed: &[&str], gain: f64) -> Option<Admissible> {
+    if failed.is_empty() {
+        return None;
+    }
+    let mut law = problem.laws[0];
     if failed.contains(&"definite") {
         law.stiffness = boundary(law.stiffness);
     }
     if failed.contains(&"passive") {
         law.damping = boundary(law.damping);
     }
-    let matrices = |law: &Dynamics, point: &Point| -> [RealMatrix2; 3] {
-        law.matrices(&point.coordinates[..law.count()])
-    };
-    let ([k, d, _], objective) = if law == problem.law {
-        (matrices(&law, &free.point), free.point.objective)
-    } else {
-        let (point, law) = refitted(problem, free, law)?;
-        (matrices(&law, &point), point.objective)
-    };
-    let costs = objective - free.point.objective + gain;
+    let refitted = if law == problem.laws[0] { None } else { Some(refitted(problem, free, vec![law])?.1) };
+    let point = &refitted.as_ref().unwrap_or(free).point;
+    let [k, d, _] = law.matrices(&point.coordinates[..law.count()]);
+    let costs = point.objective - free.point.objective + gain;
     Some(Admissible { stiffness: k.0, damping: d.scale(1.0 / law.middle).0, costs })
 }

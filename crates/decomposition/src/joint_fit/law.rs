@@ -133,6 +133,11 @@ impl Dynamics {
         }
     }
 
+    /// A law of another kind in the same units.
+    pub fn of_kind(self, kind: LawKind) -> Self {
+        Dynamics::new(kind, self.unit, self.middle, self.stiffness == Form::Scalar)
+    }
+
     /// The same with both matrices free of symmetry.
     pub fn free(self) -> Self {
         Dynamics { stiffness: Form::Free, damping: Form::Free, ..self }
@@ -146,6 +151,11 @@ impl Dynamics {
     /// Whether the law has a time or an exponent besides its matrices.
     pub fn shapes(&self) -> usize {
         usize::from(matches!(self.kind, LawKind::StandardLinearSolid | LawKind::Fractional))
+    }
+
+    /// Which of k11, k12, k22, c11, c12, c22 a viscous law has, in the order of its coordinates.
+    pub fn slots(&self) -> &'static [usize] {
+        if self.stiffness == Form::Scalar { &[0, 3] } else { &[0, 1, 2, 3, 4, 5] }
     }
 
     fn split<'a>(&self, at: &'a [f64]) -> [&'a [f64]; 4] {

@@ -1,9 +1,8 @@
 //! Laws of a joint's stiffness and damping over frequency, compared by their evidence.
 
 use super::law::{Dynamics, Form, LawKind};
-use super::problem::{Point, Problem};
-use super::quantities::Uncertain;
-use super::{Fitted, Fitter};
+use super::problem::{Fitted, Problem};
+use crate::Sides;
 use jointscope_fixture::BodyKind;
 use jointscope_inference::{Parameter, Transform, laplace_evidence};
 use jointscope_linalg::RealMatrix2;
@@ -34,7 +33,7 @@ pub struct LawFit {
 
 impl LawFit {
     /// A law at these coordinates of its own.
-    pub(super) fn of(law: &Dynamics, own: &[f64], objective: f64, mass: Option<f64>) -> Self {
+    fn of(law: &Dynamics, own: &[f64], objective: f64, mass: Option<f64>) -> Self {
         let [k, d, l] = law.matrices(own);
         LawFit {
             kind: law.kind,
@@ -142,14 +141,14 @@ pub(super) struct Candidate {
     pub inflation: f64,
 }
 
-/// All laws with and without mass, the most probable first. `viscous` is that law at its optimum, `heavy` the same with mass where that is known.
+/// All laws of one joint with and without mass (in units of `scale`), the most probable first. `viscous` is that law at its optimum, `heavy` the same with mass where that is
+/// known.
 pub(super) fn compared(
-    fitter: &Fitter,
     viscous: (&Problem, &Fitted),
     heavy: Option<(&Problem, &Fitted)>,
-    quantities: &[Uncertain],
+    scale: f64,
 ) -> Vec<LawFit> {
-    probable(candidates(fitter, viscous, heavy, quantities))
+    probable(candidates(viscous, heavy, scale))
 }
 
 /// Laws by their evidence, the most probable first.
@@ -174,41 +173,35 @@ fn ranked(mut all: Vec<Candidate>) -> Vec<LawFit> {
 }
 
 fn candidates(
-    fitter: &Fitter,
     (viscous, first): (&Problem, &Fitted),
-    heavy: Option<(&Problem, &Fitted)>,
-    quantities: &[Uncertain],
+    known: Option<(&Problem, &Fitted)>,
+    scale: f64,
 ) -> Vec<Candidate> {
-    let test = fitter.test(quantities, viscous.test.weights);
     let mut all: Vec<(Candidate, Vec<f64>)> = Vec::new();
+    let own = viscous.laws[0];
     let starts: Vec<(Dynamics, Vec<f64>, f64)> = LawKind::ALL
         .into_iter()
-        .map(|kind| Dynamics::new(kind, viscous.law.unit, viscous.law.middle, fitter.scalar))
+        .map(|kind| own.of_kind(kind))
         .filter_map(|law| nearest_start(viscous, first, &law).map(|(start, misfit)| (law, start, misfit)))
         .collect();
     let least = starts.iter().map(|(.., misfit)| *misfit).fold(f64::INFINITY, f64::min);
     for (law, mut start, misfit) in starts {
-        let problem =
-            Problem { test: &test, law, parameters: parameters(&law, None, quantities), mass: None };
-        start.extend_from_slice(&first.point.coordinates[viscous.law.count()..]);
+        let problem = Problem::lawful(viscous.test, vec![law], None);
+        start.extend_from_slice(&first.point.coordinates[own.count()..]);
         let hopeless = misfit - least > HOPELESS || law.kind == LawKind::Constant;
         let steps = if hopeless { FEW_STEPS } else { STEPS };
-        let Some((point, others)) = problem.fit_within(start, Some(first.others.clone()), steps) else {
-            continue;
-        };
-        let at = point.coordinates.clone();
-        all.extend(candidate(fitter, &problem, &point, &others).map(|candidate| (candidate, at)));
+        let Some(fitted) = problem.fit_within(start, Some(first.others.clone()), steps) else { continue };
+        let candidate = Candidate::of(&problem, &fitted, 0);
+        all.extend(candidate.map(|candidate| (candidate, fitted.point.coordinates)));
     }
     all.sort_by(|a, b| b.0.evidence.total_cmp(&a.0.evidence));
-    let mass = Some(mass_scale(fitter));
-    let known = heavy;
     let with_mass = |(light, at): &(Candidate, Vec<f64>)| {
         let law = light.fit.law;
-        let problem = Problem { test: &test, law, parameters: parameters(&law, mass, quantities), mass };
+        let problem = Problem::lawful(viscous.test, vec![law], Some(scale));
         let start = match known {
             Some((heavy, optimum)) => {
                 let (mut start, _) = nearest_start(heavy, optimum, &law)?;
-                start.extend_from_slice(&optimum.point.coordinates[heavy.law.count()..]);
+                start.extend_from_slice(&optimum.point.coordinates[heavy.of_laws()..]);
                 start
             }
             None => {
@@ -217,8 +210,9 @@ fn candidates(
                 start
             }
         };
-        let (point, others) = problem.fit_within(start, None, STEPS)?;
-        Some((candidate(fitter, &problem, &point, &others)?, light.fit.objective - point.objective))
+        let fitted = problem.fit_within(start, None, STEPS)?;
+        let gain = light.fit.objective - fitted.point.objective;
+        Some((Candidate::of(&problem, &fitted, 0)?, gain))
     };
     let (mut heavy, mut most): (Vec<Candidate>, f64) = (Vec::new(), 0.0);
     for (place, light) in all.iter().filter(|(light, _)| light.fit.kind != LawKind::Constant).enumerate() {
@@ -245,9 +239,17 @@ fn nearest_start(viscous: &Problem, first: &Fitted, law: &Dynamics) -> Option<(V
     starts.reduce(|a, b| if b.1 < a.1 { b } else { a })
 }
 
-/// Mass for one unit of its coordinate, kg.
-pub(super) fn mass_scale(fitter: &Fitter) -> f64 {
-    MASS * lighter_side(fitter)
+/// Mass of the joint between these sides for one unit of its coordinate, kg.
+pub(super) fn mass_scale(sides: &Sides) -> f64 {
+    let mass = |alpha: bool| -> f64 {
+        let bodies = sides.side(alpha).bodies().iter();
+        let own = bodies.map(|body| match &body.kind {
+            BodyKind::Rigid(rigid) => rigid.mass.value,
+            BodyKind::Beam(beam) => beam.mass_per_length.value * (beam.to.value - beam.from.value),
+        });
+        own.sum()
+    };
+    MASS * mass(true).min(mass(false))
 }
 
 /// How a joint's mass moves in a fit.
@@ -255,25 +257,6 @@ pub(super) fn mass_parameter() -> Parameter {
     Parameter::new(Transform::Linear { centre: 0.0, scale: 1.0 })
         .with_precision(1.0)
         .between(0.0, f64::INFINITY)
-}
-
-fn lighter_side(fitter: &Fitter) -> f64 {
-    let mass = |alpha: bool| -> f64 {
-        let bodies = fitter.sides.side(alpha).bodies().iter();
-        let own = bodies.map(|body| match &body.kind {
-            BodyKind::Rigid(rigid) => rigid.mass.value,
-            BodyKind::Beam(beam) => beam.mass_per_length.value * (beam.to.value - beam.from.value),
-        });
-        own.sum()
-    };
-    mass(true).min(mass(false))
-}
-
-fn parameters(law: &Dynamics, mass: Option<f64>, quantities: &[Uncertain]) -> Vec<Parameter> {
-    let mut all = own_parameters(law);
-    all.extend(mass.map(|_| mass_parameter()));
-    all.extend(quantities.iter().map(|quantity| quantity.parameter));
-    all
 }
 
 /// A law's own coordinates with what is known of them beforehand.
@@ -293,24 +276,23 @@ pub(super) fn own_parameters(law: &Dynamics) -> Vec<Parameter> {
 }
 
 /// Prior variances, those of quantities of which nothing is known being large.
-pub(super) fn variances(parameters: &[Parameter]) -> Vec<f64> {
+fn variances(parameters: &[Parameter]) -> Vec<f64> {
     let variance =
         |parameter: &Parameter| if parameter.precision > 0.0 { 1.0 / parameter.precision } else { UNKNOWN };
     parameters.iter().map(variance).collect()
 }
 
-fn candidate(
-    fitter: &Fitter,
-    problem: &Problem,
-    point: &Point,
-    others: &[Vec<Complex64>],
-) -> Option<Candidate> {
-    let information = problem.equations_of(point, others, problem.test.weights).information;
-    let evidence = laplace_evidence(point.objective, &information, &variances(&problem.parameters))?;
-    let own = &point.coordinates[..problem.law.count()];
-    let mass = problem.mass.map(|_| problem.mass_at(&point.coordinates));
-    let fit = LawFit::of(&problem.law, own, point.objective, mass);
-    Some(Candidate { fit, evidence, inflation: fitter.inflation(problem, point) })
+impl Candidate {
+    /// A joint's law at the optimum of all; `None` where that is not determined.
+    pub fn of(problem: &Problem, at: &Fitted, joint: usize) -> Option<Self> {
+        let information = at.equations(problem).information;
+        let evidence = laplace_evidence(at.point.objective, &information, &variances(&problem.parameters))?;
+        let (first, law) = problem.places().nth(joint)?;
+        let own = &at.point.coordinates[first..first + law.count()];
+        let mass = problem.mass.map(|_| problem.mass_at(&at.point.coordinates));
+        let fit = LawFit::of(law, own, at.point.objective, mass);
+        Some(Candidate { fit, evidence, inflation: problem.inflation(&at.point) })
+    }
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! What the FRFs alone tell of the joint and of the fixture's quantities: two joints on the same blocks share these, and only with the likelihood of both, their prior
 //! entering once, is the difference of the joints as well known as it is.
 
-use super::law::{Dynamics, Form};
+use super::law::Dynamics;
 use super::uncertainty::units;
 use jointscope_inference::{NormalEquations, Parameter, QuadraticLikelihood};
 use serde::Serialize;
@@ -38,7 +38,7 @@ impl JointLikelihood {
         // At the optimum data and priors pull against each other. That derivatives by differences give a little more or less must not move the joint.
         let pull_of_priors = coordinates.iter().enumerate().map(|(m, at)| precision(m) * at);
         all.gradient = pull_of_priors.collect();
-        let slots: &[usize] = if law.stiffness == Form::Scalar { &[0, 3] } else { &[0, 1, 2, 3, 4, 5] };
+        let slots = law.slots();
         let scales = units(law);
         let si = all
             .marginal(&kept, precision)?

@@ -1,32 +1,44 @@
-//! The fit itself: a law's coordinates, perhaps the joint's mass, and the fixture's uncertain quantities.
+//! The fit itself: the coordinates of every joint's law, perhaps the first joint's mass, and the fixture's uncertain quantities.
 
-use super::law::Dynamics;
+use super::law::{Dynamics, Placed};
 use super::quantities::{Uncertain, moved};
 use super::recorded::Recorded;
+use super::uncertainty::jackknifed_by;
 use super::uncoupled::Uncoupled;
-use crate::Sides;
+use super::{coordinates, laws};
 use jointscope_fixture::Fixture;
 use jointscope_inference::{
-    Convergence, Damping, LeastSquares, NormalEquations, Parameter, Precision, Settings, descend,
+    Convergence, Covariance, Damping, LeastSquares, NormalEquations, Parameter, Precision, Settings,
+    Transform, descend,
 };
 use num_complex::Complex64;
 use std::sync::Arc;
 
-/// What a joint is fitted to, whatever its law.
-pub(super) struct Test<'a> {
+/// What all fits of one recording share.
+#[derive(Clone, Copy)]
+pub(super) struct Setup<'a> {
     pub recorded: &'a Recorded,
     pub fixture: &'a Fixture,
-    pub joint: &'a str,
+    /// Places of the joints that are looked for among the fixture's.
+    pub joints: &'a [usize],
+    /// By body, the piece that it is in without these joints; pieces are numbered from 0.
+    pub pieces: &'a [usize],
+}
+
+/// What joints are fitted to, whatever their laws.
+#[derive(Clone, Copy)]
+pub(super) struct Test<'a> {
+    pub setup: Setup<'a>,
     pub quantities: &'a [Uncertain],
     /// 2/σ², divided by what the model's error inflates the noise by.
     pub weights: &'a [f64],
 }
 
-/// A law to be fitted to a test.
+/// Laws to be fitted to a test, one a joint.
 pub(super) struct Problem<'a> {
-    pub test: &'a Test<'a>,
-    pub law: Dynamics,
-    /// Coordinates: those of the law, the joint's mass if it has one, the fixture's quantities.
+    pub test: Test<'a>,
+    pub laws: Vec<Dynamics>,
+    /// Coordinates: those of the laws, the first joint's mass if it has one, the fixture's quantities.
     pub parameters: Vec<Parameter>,
     /// kg for one unit of the mass's coordinate.
     pub mass: Option<f64>,
@@ -41,7 +53,7 @@ pub(super) struct Point {
 }
 
 impl Point {
-    /// The same joint and fixture in the coordinates of another law.
+    /// The same joints and fixture in the coordinates of other laws.
     pub fn with(&self, coordinates: Vec<f64>) -> Self {
         let (uncoupled, predicted) = (Arc::clone(&self.uncoupled), self.predicted.clone());
         Point { coordinates, uncoupled, predicted, objective: self.objective }
@@ -51,66 +63,180 @@ impl Point {
 /// What the mass and the quantities do to each value, in their order.
 pub(super) type Columns = Vec<Vec<Complex64>>;
 
+/// A finished fit.
+pub(super) struct Fitted {
+    pub point: Point,
+    pub others: Columns,
+}
+
 /// Step of forward differences by a quantity, in standard deviations: resonances bend within a tenth of one.
-pub(super) const DIFFERENCE: f64 = 1e-3;
+const DIFFERENCE: f64 = 1e-3;
 /// Share of a promised decrease below which a step follows a bent valley: resonances tie the joint to the blocks along one.
 const BENT: f64 = 0.5;
 /// Steps of a fit at the most.
-pub(super) const STEPS: usize = 80;
+const STEPS: usize = 80;
 /// Change of χ² below which a fit has converged: a thousandth of what one standard deviation makes.
 const CONVERGED: f64 = 1e-3;
 /// The same as a share of what χ² exceeds noise by: what the model gets wrong is counted as noise anyway.
 const NEGLIGIBLE: f64 = 1e-4;
 /// Differences by quantities serve for as long as steps gain this share of the first one's.
 const REUSE: f64 = 0.02;
+/// Shares of the signal that count as noise in the stages of a fit from afar.
+const SHARES_AS_NOISE: [f64; 4] = [1.0, 0.3, 0.06, 0.01];
+/// Times that an optimum is gone on from with derivatives taken there.
+const LOOKS: usize = 3;
 
-impl<'a> Problem<'a> {
-    /// Number of coordinates before those of the fixture's quantities.
-    pub fn own(&self) -> usize {
-        self.law.count() + usize::from(self.mass.is_some())
+impl Fitted {
+    /// Takes the derivatives by the quantities at the optimum, which those of the fit were taken near, and goes on where they promise more.
+    ///
+    /// `None` where there are none.
+    pub fn refresh(&mut self, problem: &Problem) -> Option<()> {
+        for look in 0.. {
+            self.others = problem.other_columns(&self.point)?;
+            let promised = problem.promised(&self.point, &self.equations(problem));
+            if look == LOOKS || promised < problem.needed(self.point.objective) {
+                break;
+            }
+            match problem.fit(self.point.coordinates.clone(), Some(self.others.clone())) {
+                Some(next) if next.point.objective < self.point.objective => self.point = next.point,
+                _ => break,
+            }
+        }
+        Some(())
     }
 
-    /// The joint's mass at these coordinates, kg.
+    pub fn equations(&self, problem: &Problem) -> NormalEquations {
+        problem.equations_of(&self.point, &self.others, problem.test.weights)
+    }
+
+    /// How far the coordinates move when each of eight blocks of lines is left out, to first order.
+    pub fn jackknifed(&self, problem: &Problem) -> Option<Covariance> {
+        let lines = problem.test.setup.recorded.s.len();
+        jackknifed_by(lines, problem.test.weights, &self.point.coordinates, |weights| {
+            problem.equations_of(&self.point, &self.others, weights).step(0.0)
+        })
+    }
+}
+
+/// The fit that came lower.
+pub(super) fn lower(a: Fitted, b: Fitted) -> Fitted {
+    if b.point.objective < a.point.objective { b } else { a }
+}
+
+impl<'a> Problem<'a> {
+    /// Viscous joints of which nothing is known beforehand, with a mass of the first if there is a scale for it (kg).
+    pub fn viscous(test: Test<'a>, laws: Vec<Dynamics>, mass: Option<f64>) -> Self {
+        let own = Parameter::new(Transform::Linear { centre: 0.0, scale: 1.0 });
+        let count = laws.iter().map(Dynamics::count).sum();
+        Problem::of(test, laws, mass, vec![own; count])
+    }
+
+    /// Joints of any laws, with what is known beforehand of their stiffness and losses.
+    pub fn lawful(test: Test<'a>, laws: Vec<Dynamics>, mass: Option<f64>) -> Self {
+        let own = laws.iter().flat_map(laws::own_parameters).collect();
+        Problem::of(test, laws, mass, own)
+    }
+
+    fn of(test: Test<'a>, laws: Vec<Dynamics>, mass: Option<f64>, mut parameters: Vec<Parameter>) -> Self {
+        parameters.extend(mass.map(|_| laws::mass_parameter()));
+        parameters.extend(test.quantities.iter().map(|quantity| quantity.parameter));
+        Problem { test, laws, parameters, mass }
+    }
+
+    /// The same with the joints' matrices in other forms.
+    pub fn with_forms(&self, laws: Vec<Dynamics>) -> Self {
+        Problem::viscous(self.test, laws, self.mass)
+    }
+
+    /// The same for values of these weights.
+    pub fn weighted<'b>(&self, weights: &'b [f64]) -> Problem<'b>
+    where
+        'a: 'b,
+    {
+        let test = Test { weights, ..self.test };
+        Problem { test, laws: self.laws.clone(), parameters: self.parameters.clone(), mass: self.mass }
+    }
+
+    /// Number of coordinates of the laws.
+    pub fn of_laws(&self) -> usize {
+        self.laws.iter().map(Dynamics::count).sum()
+    }
+
+    /// Number of coordinates before those of the fixture's quantities.
+    pub fn own(&self) -> usize {
+        self.of_laws() + usize::from(self.mass.is_some())
+    }
+
+    /// Each joint's law with the place of its first coordinate.
+    pub fn places(&self) -> impl Iterator<Item = (usize, &Dynamics)> {
+        self.laws.iter().scan(0, |next, law| {
+            let first = *next;
+            *next += law.count();
+            Some((first, law))
+        })
+    }
+
+    /// The first joint's mass at these coordinates, kg.
     pub fn mass_at(&self, coordinates: &[f64]) -> f64 {
-        self.mass.map_or(0.0, |scale| scale * coordinates[self.law.count()])
+        self.mass.map_or(0.0, |scale| scale * coordinates[self.of_laws()])
+    }
+
+    /// The laws' coordinates with the fixture as stated.
+    pub fn whole(&self, own: &[f64]) -> Vec<f64> {
+        let mut all = own.to_vec();
+        all.resize(self.parameters.len(), 0.0);
+        all
+    }
+
+    /// Coordinates of the same joints and fixture where the laws' matrices have other forms.
+    pub fn converted(&self, at: &[f64], laws: &[Dynamics]) -> Vec<f64> {
+        let own = self.places().zip(laws).flat_map(|((first, law), other)| {
+            let [k, d, _] = law.matrices(&at[first..first + law.count()]);
+            coordinates(other, k, d)
+        });
+        own.chain(at[self.of_laws()..].iter().copied()).collect()
+    }
+
+    fn placed<'b>(&'b self, coordinates: &'b [f64]) -> Vec<Placed<'b>> {
+        self.places().map(|(first, law)| law.placed(&coordinates[first..first + law.count()])).collect()
     }
 
     fn uncoupled(&self, coordinates: &[f64], before: Option<&Uncoupled>) -> Option<Uncoupled> {
-        let fixture = moved(self.test.fixture, self.test.quantities, &coordinates[self.own()..]);
-        let sides = Sides::of(&fixture, Some(self.test.joint)).ok()?;
-        Uncoupled::of(self.test.recorded, &sides, self.mass_at(coordinates), before)
+        let setup = &self.test.setup;
+        let fixture = moved(setup.fixture, self.test.quantities, &coordinates[self.own()..]);
+        Uncoupled::of(setup, &fixture, self.mass_at(coordinates), before)
     }
 
     /// `None` where nothing finite is predicted.
     pub fn point(&self, coordinates: Vec<f64>, before: Option<&Uncoupled>) -> Option<Point> {
+        let recorded = self.test.setup.recorded;
         let uncoupled = Arc::new(self.uncoupled(&coordinates, before)?);
-        let law = self.law.placed(&coordinates[..self.law.count()]);
-        let predicted = uncoupled.coupled(self.test.recorded, &law, None)?;
+        let predicted = uncoupled.coupled(recorded, &self.placed(&coordinates), None)?;
         let known = (self.parameters.as_slice(), coordinates.as_slice());
-        let objective = self.test.recorded.objective(&predicted, self.test.weights, known);
+        let objective = recorded.objective(&predicted, self.test.weights, known);
         Some(Point { coordinates, uncoupled, predicted, objective })
     }
 
-    /// Derivatives by the law's coordinates.
+    /// Derivatives by the laws' coordinates.
     fn own_columns(&self, at: &Point) -> Columns {
-        let mut columns = vec![vec![Complex64::ZERO; at.predicted.len()]; self.law.count()];
-        let law = self.law.placed(&at.coordinates[..self.law.count()]);
-        // The point was predicted by the same law, so it has finite derivatives.
-        let _ = at.uncoupled.coupled(self.test.recorded, &law, Some((&law, &mut columns)));
+        let mut columns = vec![vec![Complex64::ZERO; at.predicted.len()]; self.of_laws()];
+        let laws = self.placed(&at.coordinates);
+        // The point was predicted by the same laws, so it has finite derivatives.
+        let _ = at.uncoupled.coupled(self.test.setup.recorded, &laws, Some((&laws, &mut columns)));
         columns
     }
 
-    /// Derivatives by the mass and the quantities, by forward differences of the sides alone.
+    /// Derivatives by the mass and the quantities, by forward differences of what is left without the joints.
     pub fn other_columns(&self, at: &Point) -> Option<Columns> {
-        let law = self.law.placed(&at.coordinates[..self.law.count()]);
+        let laws = self.placed(&at.coordinates);
         let column = |index: usize| {
             let mut coordinates = at.coordinates.clone();
             coordinates[index] += DIFFERENCE;
             let moved = self.uncoupled(&coordinates, Some(&at.uncoupled))?;
-            let there = moved.coupled(self.test.recorded, &law, None)?;
+            let there = moved.coupled(self.test.setup.recorded, &laws, None)?;
             Some(there.iter().zip(&at.predicted).map(|(t, h)| (t - h) / DIFFERENCE).collect())
         };
-        (self.law.count()..at.coordinates.len()).map(column).collect()
+        (self.of_laws()..at.coordinates.len()).map(column).collect()
     }
 
     /// Normal equations with these weights.
@@ -118,13 +244,8 @@ impl<'a> Problem<'a> {
         let own = self.own_columns(at);
         let columns: Vec<&[Complex64]> = own.iter().chain(others).map(Vec::as_slice).collect();
         let priors = |m: usize| (self.parameters[m].precision, at.coordinates[m]);
-        NormalEquations::of_columns(
-            &columns,
-            &self.test.recorded.residual(&at.predicted),
-            weights,
-            |_| false,
-            priors,
-        )
+        let residual = self.test.setup.recorded.residual(&at.predicted);
+        NormalEquations::of_columns(&columns, &residual, weights, |_| false, priors)
     }
 
     fn moved_by(&self, at: &Point, step: &[f64]) -> Option<Point> {
@@ -133,14 +254,13 @@ impl<'a> Problem<'a> {
         self.point(coordinates, Some(&at.uncoupled))
     }
 
-    /// Coordinates of `law` by which it comes nearest to what the law here does at a point, with what that leaves of the FRFs: the FRFs are taken
+    /// Coordinates of `law` by which it comes nearest to what the one joint's law here does at a point, with what that leaves of the FRFs: the FRFs are taken
     /// as linear in the dynamic stiffness, so that resonances weigh most. K, damping matrix and K₁ alone; `shape` is the law's time or exponent.
     pub fn imitated(&self, at: &Point, law: &Dynamics, shape: f64) -> Option<(Vec<f64>, f64)> {
-        let own = &at.coordinates[..self.law.count()];
-        let here = self.law.placed(own);
+        let recorded = self.test.setup.recorded;
         let mut columns = self.own_columns(at);
-        let mut target = self.test.recorded.residual(&at.predicted);
-        for (column, coordinate) in columns.iter().zip(own) {
+        let mut target = recorded.residual(&at.predicted);
+        for (column, coordinate) in columns.iter().zip(&at.coordinates) {
             target.iter_mut().zip(column).for_each(|(value, by)| *value += by * coordinate);
         }
         let matrices = law.count() - law.shapes();
@@ -148,8 +268,8 @@ impl<'a> Problem<'a> {
         start[matrices..].fill(shape);
         columns.resize(law.count(), Vec::new());
         columns.iter_mut().for_each(|column| column.resize(target.len(), Complex64::ZERO));
-        let other = law.placed(&start);
-        at.uncoupled.coupled(self.test.recorded, &here, Some((&other, &mut columns)))?;
+        let other = [law.placed(&start)];
+        at.uncoupled.coupled(recorded, &self.placed(&at.coordinates), Some((&other, &mut columns)))?;
         columns.truncate(matrices);
         let equations =
             NormalEquations::of_columns(&columns, &target, self.test.weights, |_| false, |_| (1e-6, 0.0));
@@ -160,39 +280,49 @@ impl<'a> Problem<'a> {
     }
 
     /// The optimum next to `start`, with derivatives by the quantities known from nearby where there are any.
-    pub fn fit(&self, start: Vec<f64>, nearby: Option<Columns>) -> Option<(Point, Columns)> {
+    pub fn fit(&self, start: Vec<f64>, nearby: Option<Columns>) -> Option<Fitted> {
         self.fit_within(start, nearby, STEPS)
     }
 
     /// The same within a number of steps.
-    pub fn fit_within(
-        &self,
-        start: Vec<f64>,
-        nearby: Option<Columns>,
-        steps: usize,
-    ) -> Option<(Point, Columns)> {
-        let start = self.point(start, None)?;
-        let settings = Settings { steps, ..settings(self.test.recorded) };
-        let end = descend(self, start, nearby, &settings)?;
-        Some((end.point, end.derivatives))
+    pub fn fit_within(&self, start: Vec<f64>, nearby: Option<Columns>, steps: usize) -> Option<Fitted> {
+        let floor = self.test.setup.recorded.degrees() as f64;
+        let settings = Settings {
+            steps,
+            damping: Damping { initial: 1e-6, decrease: 0.03, least: 1e-15, raised: 0.0, most: 1e8 },
+            convergence: Convergence { gain: CONVERGED, share: NEGLIGIBLE, floor },
+            reuse: Some(REUSE),
+            trust_old: true,
+            bent: BENT,
+            ..Settings::default()
+        };
+        let end = descend(self, self.point(start, None)?, nearby, &settings)?;
+        Some(Fitted { point: end.point, others: end.derivatives })
     }
-}
 
-/// Decrease of an objective that is worth another step.
-pub(super) fn needed(recorded: &Recorded, objective: f64) -> f64 {
-    CONVERGED.max(NEGLIGIBLE * (objective - recorded.degrees() as f64))
-}
+    /// A fit by stages in which less and less of the signal counts as noise, so that sharp resonances do not decide where it goes.
+    pub fn searched(&self, start: Vec<f64>) -> Option<Fitted> {
+        let mut at = start;
+        for share in SHARES_AS_NOISE {
+            let weights = self.test.setup.recorded.weights_with(share);
+            at = self.weighted(&weights).fit(at, None)?.point.coordinates;
+        }
+        self.fit(at, None)
+    }
 
-/// How a fit goes down.
-pub(super) fn settings(recorded: &Recorded) -> Settings {
-    Settings {
-        steps: STEPS,
-        damping: Damping { initial: 1e-6, decrease: 0.03, least: 1e-15, raised: 0.0, most: 1e8 },
-        convergence: Convergence { gain: CONVERGED, share: NEGLIGIBLE, floor: recorded.degrees() as f64 },
-        reuse: Some(REUSE),
-        trust_old: true,
-        bent: BENT,
-        ..Settings::default()
+    /// Decrease of an objective that is worth another step.
+    fn needed(&self, objective: f64) -> f64 {
+        CONVERGED.max(NEGLIGIBLE * (objective - self.test.setup.recorded.degrees() as f64))
+    }
+
+    /// The objective over what is left of the values by the parameters.
+    pub fn per_degree(&self, point: &Point) -> f64 {
+        self.test.setup.recorded.per_degree(point.objective, self.own(), &self.parameters)
+    }
+
+    /// What the noise is multiplied by so that it explains what is left, correlated from line to line as that is.
+    pub fn inflation(&self, point: &Point) -> f64 {
+        self.test.setup.recorded.inflation(self.per_degree(point), &point.predicted)
     }
 }
 
@@ -218,8 +348,7 @@ impl LeastSquares for Problem<'_> {
     }
 
     fn stepped(&self, at: &Point, equations: &NormalEquations, damping: f64) -> Option<Point> {
-        let step = equations.bounded_step(damping, &at.coordinates, &self.parameters)?;
-        self.moved_by(at, &step)
+        self.moved_by(at, &equations.bounded_step(damping, &at.coordinates, &self.parameters)?)
     }
 
     fn shortened(&self, at: &Point, equations: &NormalEquations, share: f64) -> Option<Point> {

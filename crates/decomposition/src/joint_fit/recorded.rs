@@ -83,6 +83,11 @@ impl Recorded {
         }
     }
 
+    /// Circular frequency in the middle of the lines, rad/s.
+    pub fn middle(&self) -> f64 {
+        self.s.iter().map(|s| s.im).sum::<f64>() / self.s.len() as f64
+    }
+
     /// What is left of the values.
     pub fn residual(&self, predicted: &[Complex64]) -> Vec<Complex64> {
         self.values.iter().zip(predicted).map(|(m, p)| m - p).collect()

@@ -1,36 +1,32 @@
 //! Several joints at once from all FRFs, the fixture's quantities moving within their tolerances.
 //!
 //! The relation between the FRFs across one joint and that joint needs two sides that it alone connects. A fit needs none: every joint acts on its own d, whatever
-//! else connects its ends ([`free`]). So joints of a chain are found together, each without being told of the others, and those of a loop at all. Two joints between the
+//! else connects its ends. So joints of a chain are found together, each without being told of the others, and those of a loop at all. Two joints between the
 //! same two rigid bodies act on one relative motion, of which only the sum of both can be told: they are refused by name.
 //!
 //! k, c and the quantities have one posterior: what is not known of a block moves the joints on both of its sides, and their covariance says so. Losses are the joints'
 //! own, as for one joint; modal ratios of the whole, which mix joints, are read as each joint's own c.
 
-mod free;
+mod found;
 mod laws;
-mod outcome;
-mod problem;
 
-pub use outcome::{FoundJoint, JointsCovariance, JointsFit, SeveralError};
+pub use found::{FoundJoint, JointsCovariance, JointsFit, SeveralError};
 
-use super::law::{Dynamics, Form, LawKind};
-use super::problem::{Columns, needed};
-use super::quantities::{Uncertain, uncertain};
+use super::admissible::first_order_asymmetry;
+use super::law::{Dynamics, LawKind};
+use super::outcome::{Inflated, Outcome};
+use super::problem::{Fitted, Point, Problem, Setup, Test, lower};
+use super::quantities::uncertain;
 use super::recorded::Recorded;
-use super::{
-    DOUBTFUL, JointFitOptions, LOOKS, NEGLIGIBLE, SHARES_AS_NOISE, START_LOSS, coordinates, units_of,
-};
-use crate::sides::check_instruments;
-use free::{MOST_JOINTS, connected};
-use jointscope_fixture::{BodyKind, Fixture, Joint};
+use super::uncoupled::MOST_JOINTS;
+use super::{DOUBTFUL, JointFitOptions, START_LOSS, coordinates, that_matter, units_of};
+use crate::JointEnds;
+use crate::sides::{check_instruments, with_effects_of};
+use jointscope_fixture::{BodyKind, Fixture, Joint, Place};
 use jointscope_frf::RigidMotionError;
 use jointscope_frf::noise::with_variances;
-use jointscope_inference::{LeastSquares, NormalEquations, Parameter, Transform};
 use jointscope_linalg::RealMatrix2;
 use jointscope_spectra::FrfSet;
-use outcome::Outcome;
-use problem::{Point, Problem, Test};
 
 /// Fits the joints named, or all of the fixture's, to every FRF whose channels the fixture has. Joints that are not named move within their tolerances.
 ///
@@ -57,7 +53,7 @@ pub fn fit_joints(
     };
     let recorded = Recorded::of(known.as_ref().unwrap_or(frfs), fixture, options.band)
         .ok_or(SeveralError::NothingRecorded)?;
-    let middle = recorded.s.iter().map(|s| s.im).sum::<f64>() / recorded.s.len() as f64;
+    let middle = recorded.middle();
     let nominal: Vec<RealMatrix2> = joints
         .iter()
         .map(|&joint| {
@@ -74,38 +70,42 @@ pub fn fit_joints(
         let own = laws.iter().zip(&nominal);
         own.flat_map(|(law, k)| coordinates(law, k.scale(share), k.scale(share * START_LOSS))).collect()
     };
-    let fitter = Fitter { recorded: &recorded, fixture, joints: &joints };
-    let (quantities, unmoved) = fitter.that_matter(&laws, &start(1.0), quantities)?;
-    let weights = &recorded.weights;
-    let test = fitter.test(&quantities, weights);
-    let problem = Problem::viscous(&test, laws.clone());
-    let mut first = fitter.first(&problem, &start)?;
-    first.refresh(&problem)?;
-    let chi2_per_dof = fitter.per_degree(&problem, &first.point);
-    let inflation = fitter.inflation(&problem, &first.point);
+    let pieces = connected(&with_effects_of(fixture, without(fixture, &joints)));
+    let setup = Setup { recorded: &recorded, fixture, joints: &joints, pieces: &pieces };
+    let (quantities, unmoved, _) =
+        that_matter(setup, laws.clone(), &[start(1.0)], quantities).ok_or(SeveralError::NoStart)?;
+    let test = Test { setup, quantities: &quantities, weights: &recorded.weights };
+    let problem = Problem::viscous(test, laws.clone(), None);
+    let mut first = lowest(&problem, &start).ok_or(SeveralError::NoStart)?;
+    first.refresh(&problem).ok_or(SeveralError::NoStart)?;
     let laws = match options.laws {
-        true => laws::compared(&fitter, (&problem, &first), &quantities),
+        true => laws::compared(&problem, &first),
         false => vec![Vec::new(); joints.len()],
     };
-    let inflated_weights: Vec<f64> = weights.iter().map(|weight| weight / inflation).collect();
-    let inflated = fitter.test(&quantities, &inflated_weights);
-    let problem = Problem::viscous(&inflated, problem.laws.clone());
-    if inflation > 1.0 {
-        let (point, others) =
-            problem.fit(first.point.coordinates, Some(first.others)).ok_or(SeveralError::NoStart)?;
-        first = Fitted { point, others };
-        first.refresh(&problem)?;
-    }
-    Outcome {
-        fitter: &fitter,
-        problem: &problem,
-        quantities: &quantities,
-        unmoved,
-        chi2_per_dof,
-        inflation,
-        laws,
-    }
-    .of(first)
+    let inflated = Inflated::of(&problem, &first);
+    let problem = problem.weighted(&inflated.weights);
+    let free = inflated.refitted(&problem, first).ok_or(SeveralError::NoStart)?;
+    let outcome = Outcome { problem: &problem, unmoved: &unmoved, inflated: &inflated, laws };
+    let found = outcome.of(&free, &|joint, strain| {
+        first_order_asymmetry(&problem, &free, joint).map(|gain| gain / strain)
+    })?;
+    let named = joints.iter().zip(nominal).zip(found.joints).map(|((&place, nominal), fit)| {
+        let joint = &fixture.joints()[place];
+        FoundJoint {
+            name: joint.name.clone(),
+            ends: JointEnds::of(fixture, joint),
+            is_in_a_loop: is_in_a_loop(fixture, place),
+            nominal,
+            fit,
+        }
+    });
+    let joints: Vec<FoundJoint> = named.collect();
+    let name = |(joint, element): &(usize, &str)| format!("{}/{element}", joints[*joint].name);
+    Ok(JointsFit {
+        elements: found.elements.iter().map(name).collect(),
+        joints,
+        covariance: found.covariance,
+    })
 }
 
 /// The joints that are looked for.
@@ -170,46 +170,36 @@ fn refuse_parallel(fixture: &Fixture, joints: &[usize]) -> Result<(), SeveralErr
     Ok(())
 }
 
+/// The fixture without some of its joints, and without effects.
+fn without(fixture: &Fixture, joints: &[usize]) -> Fixture {
+    fixture.part(|_| true, joints)
+}
+
 /// Whether a joint's ends hold together without it.
 fn is_in_a_loop(fixture: &Fixture, joint: usize) -> bool {
-    let pieces = connected(&fixture.without_joints(&[joint]));
+    let pieces = connected(&without(fixture, &[joint]));
     let [a, b] = bodies(fixture, &fixture.joints()[joint]);
     pieces[a] == pieces[b]
 }
 
-/// What all fits of one recording share.
-struct Fitter<'a> {
-    recorded: &'a Recorded,
-    fixture: &'a Fixture,
-    joints: &'a [usize],
-}
-
-/// A finished fit.
-struct Fitted {
-    point: Point,
-    others: Columns,
-}
-
-impl Fitted {
-    /// Takes the derivatives by the quantities at the optimum, and goes on where they promise more.
-    fn refresh(&mut self, problem: &Problem) -> Result<(), SeveralError> {
-        for look in 0.. {
-            self.others = problem.other_columns(&self.point).ok_or(SeveralError::NoStart)?;
-            let promised = problem.promised(&self.point, &self.equations(problem));
-            if look == LOOKS || promised < needed(problem.test.recorded, self.point.objective) {
-                break;
-            }
-            match problem.fit(self.point.coordinates.clone(), Some(self.others.clone())) {
-                Some((point, _)) if point.objective < self.point.objective => self.point = point,
-                _ => break,
-            }
-        }
-        Ok(())
+/// Which piece of the fixture each body is in, numbered from 0: joints and springs from body to body hold pieces together.
+fn connected(fixture: &Fixture) -> Vec<usize> {
+    let joints =
+        fixture.joints().iter().map(|joint| [joint.from, joint.to].map(|p| fixture.points()[p].body));
+    let place = |name: &str| fixture.bodies().iter().position(|body| body.name == name);
+    let springs = fixture.physics().iter().filter_map(|effect| match &effect.place {
+        Place::Between(one, other) => Some([place(one)?, place(other)?]),
+        _ => None,
+    });
+    let mut pieces: Vec<usize> = (0..fixture.bodies().len()).collect();
+    for [a, b] in joints.chain(springs) {
+        let [a, b] = [pieces[a], pieces[b]];
+        pieces.iter_mut().filter(|piece| **piece == b).for_each(|piece| *piece = a);
     }
-
-    fn equations(&self, problem: &Problem) -> NormalEquations {
-        problem.equations_of(&self.point, &self.others, problem.test.weights)
-    }
+    let mut numbers: Vec<usize> = pieces.clone();
+    numbers.sort_unstable();
+    numbers.dedup();
+    pieces.iter().map(|piece| numbers.partition_point(|number| number < piece)).collect()
 }
 
 /// Mean square departure of the quantities, in standard deviations, above which another start is tried.
@@ -217,114 +207,27 @@ const PLAUSIBLE: f64 = 4.0;
 /// Stiffness of the starts as shares of the fixture's.
 const SHARES: [f64; 3] = [1.0, 0.5, 2.0];
 
-impl Fitter<'_> {
-    fn test<'b>(&'b self, quantities: &'b [Uncertain], weights: &'b [f64]) -> Test<'b> {
-        let Fitter { recorded, fixture, joints } = self;
-        Test { recorded, fixture, joints, quantities, weights }
-    }
-
-    /// The quantities that the FRFs depend on, and the others.
-    fn that_matter(
-        &self,
-        laws: &[Dynamics],
-        start: &[f64],
-        quantities: Vec<Uncertain>,
-    ) -> Result<(Vec<Uncertain>, Vec<Uncertain>), SeveralError> {
-        let weights = &self.recorded.weights;
-        let test = self.test(&quantities, weights);
-        let problem = Problem::viscous(&test, laws.to_vec());
-        let columns = problem.point(problem.whole(start)).and_then(|point| problem.other_columns(&point));
-        let matter: Vec<bool> = columns
-            .ok_or(SeveralError::NoStart)?
-            .iter()
-            .map(|column| self.recorded.size(column) > NEGLIGIBLE)
-            .collect();
-        let (matter, others): (Vec<_>, Vec<_>) =
-            quantities.into_iter().zip(matter).partition(|(_, matters)| *matters);
-        let bare = |all: Vec<(Uncertain, bool)>| all.into_iter().map(|(quantity, _)| quantity).collect();
-        Ok((bare(matter), bare(others)))
-    }
-
-    /// The lowest optimum of viscous joints.
-    fn first(&self, problem: &Problem, start: &dyn Fn(f64) -> Vec<f64>) -> Result<Fitted, SeveralError> {
-        let mut best: Option<Fitted> = None;
-        let attempts = std::iter::once((1.0, false)).chain(SHARES.map(|share| (share, true)));
-        for (share, from_afar) in attempts {
-            let start = problem.whole(&start(share));
-            let found = match from_afar {
-                true => self.searched(problem, start),
-                false => problem.fit(start, None),
-            };
-            let Some((point, others)) = found else { continue };
-            if best.as_ref().is_none_or(|best| point.objective < best.point.objective) {
-                best = Some(Fitted { point, others });
-            }
-            if best.as_ref().is_some_and(|best| self.is_plausible(problem, &best.point)) {
-                break;
-            }
+/// The lowest optimum of viscous joints.
+fn lowest(problem: &Problem, start: &dyn Fn(f64) -> Vec<f64>) -> Option<Fitted> {
+    let mut best: Option<Fitted> = None;
+    let attempts = std::iter::once((1.0, false)).chain(SHARES.map(|share| (share, true)));
+    for (share, from_afar) in attempts {
+        let start = problem.whole(&start(share));
+        let found = if from_afar { problem.searched(start) } else { problem.fit(start, None) };
+        best = best.into_iter().chain(found).reduce(lower);
+        if best.as_ref().is_some_and(|best| is_plausible(problem, &best.point)) {
+            break;
         }
-        best.filter(|best| best.point.objective.is_finite()).ok_or(SeveralError::NoStart)
     }
-
-    /// Whether noise explains the FRFs with a fixture that is about what is stated: where neither noise nor tolerances bind, a fit may end far from both.
-    fn is_plausible(&self, problem: &Problem, point: &Point) -> bool {
-        let own = problem.own();
-        let known = problem.parameters[own..].iter().zip(&point.coordinates[own..]);
-        let known = known.filter(|(parameter, _)| parameter.precision > 0.0);
-        let (squares, count) = known
-            .fold((0.0, 0.0), |(sum, count), (parameter, at)| (sum + parameter.penalty(*at), count + 1.0));
-        self.per_degree(problem, point) < DOUBTFUL && squares <= PLAUSIBLE * f64::max(count, 1.0)
-    }
-
-    /// A fit by stages in which less and less of the signal counts as noise, so that sharp resonances do not decide where it goes.
-    fn searched(&self, problem: &Problem, start: Vec<f64>) -> Option<(Point, Columns)> {
-        let mut at = start;
-        for share in SHARES_AS_NOISE {
-            let weights = self.recorded.weights_with(share);
-            let test = self.test(problem.test.quantities, &weights);
-            at = Problem::viscous(&test, problem.laws.clone()).fit(at, None)?.0.coordinates;
-        }
-        problem.fit(at, None)
-    }
-
-    fn per_degree(&self, problem: &Problem, point: &Point) -> f64 {
-        self.recorded.per_degree(point.objective, problem.own(), &problem.parameters)
-    }
-
-    /// What the noise is multiplied by so that it explains what is left, correlated from line to line as that is.
-    fn inflation(&self, problem: &Problem, point: &Point) -> f64 {
-        self.recorded.inflation(self.per_degree(problem, point), &point.predicted)
-    }
+    best.filter(|best| best.point.objective.is_finite())
 }
 
-impl<'a> Problem<'a> {
-    /// Joints of which nothing is known beforehand.
-    fn viscous(test: &'a Test<'a>, laws: Vec<Dynamics>) -> Self {
-        let own = Parameter::new(Transform::Linear { centre: 0.0, scale: 1.0 });
-        let count = laws.iter().map(Dynamics::count).sum();
-        let quantities = test.quantities.iter().map(|quantity| quantity.parameter);
-        let parameters = std::iter::repeat_n(own, count).chain(quantities).collect();
-        Problem { test, laws, parameters }
-    }
-
-    /// The laws' coordinates with the fixture as stated.
-    fn whole(&self, own: &[f64]) -> Vec<f64> {
-        let mut all = own.to_vec();
-        all.resize(self.parameters.len(), 0.0);
-        all
-    }
-
-    /// The same point in laws whose matrices have other forms.
-    fn converted(&self, at: &Point, laws: &[Dynamics]) -> Vec<f64> {
-        let own = self.places().zip(laws).flat_map(|((first, law), other)| {
-            let [k, d, _] = law.matrices(&at.coordinates[first..first + law.count()]);
-            coordinates(other, k, d)
-        });
-        own.chain(at.coordinates[self.own()..].iter().copied()).collect()
-    }
-}
-
-/// The limit of what is passive.
-fn boundary(law: &Dynamics) -> Dynamics {
-    Dynamics { damping: if law.damping == Form::Scalar { Form::Zero } else { Form::RankOne }, ..*law }
+/// Whether noise explains the FRFs with a fixture that is about what is stated: where neither noise nor tolerances bind, a fit may end far from both.
+fn is_plausible(problem: &Problem, point: &Point) -> bool {
+    let own = problem.own();
+    let known = problem.parameters[own..].iter().zip(&point.coordinates[own..]);
+    let known = known.filter(|(parameter, _)| parameter.precision > 0.0);
+    let (squares, count) =
+        known.fold((0.0, 0.0), |(sum, count), (parameter, at)| (sum + parameter.penalty(*at), count + 1.0));
+    problem.per_degree(point) < DOUBTFUL && squares <= PLAUSIBLE * f64::max(count, 1.0)
 }

@@ -1,47 +1,14 @@
 //! How well the joint is known: by noise and tolerances, by what the model gets wrong, by a fixture stated too surely.
 
+use super::FittedLength;
 use super::law::Dynamics;
-use super::problem::{Point, Problem};
 use super::quantities::Uncertain;
-use super::{Fitted, FittedLength, Fitter};
 use jointscope_fixture::{Fixture, Joint, QuantityKey, QuantityOwner};
 use jointscope_inference::{Covariance, Parameter, jackknife};
 use statrs::function::gamma::gamma_ur;
 
 /// Blocks of neighbouring lines that the jackknife leaves out in turn.
 const BLOCKS: usize = 8;
-
-impl Fitter<'_> {
-    pub(super) fn per_degree(&self, problem: &Problem, point: &Point) -> f64 {
-        self.recorded.per_degree(point.objective, problem.own(), &problem.parameters)
-    }
-
-    /// What the noise is multiplied by so that it explains what is left, correlated from line to line as that is.
-    pub(super) fn inflation(&self, problem: &Problem, point: &Point) -> f64 {
-        self.recorded.inflation(self.per_degree(problem, point), &point.predicted)
-    }
-
-    /// Covariance of (k11, k12, k22, c11, c12, c22) in SI units from that of a viscous law's coordinates.
-    pub(super) fn in_si(&self, law: &Dynamics, covariance: &Covariance) -> [[f64; 6]; 6] {
-        let scales = units(law);
-        let slots: &[usize] = if self.scalar { &[0, 3] } else { &[0, 1, 2, 3, 4, 5] };
-        let mut all = [[0.0; 6]; 6];
-        for (a, &m) in slots.iter().enumerate() {
-            for (b, &n) in slots.iter().enumerate() {
-                all[m][n] = covariance.at(a, b) * scales[m] * scales[n];
-            }
-        }
-        all
-    }
-
-    /// How far the coordinates move when each of eight blocks of lines is left out, to first order.
-    pub(super) fn jackknifed(&self, problem: &Problem, at: &Fitted) -> Option<Covariance> {
-        let coordinates = &at.point.coordinates;
-        jackknifed_by(self.recorded.s.len(), problem.test.weights, coordinates, |weights| {
-            problem.equations_of(&at.point, &at.others, weights).step(0.0)
-        })
-    }
-}
 
 /// k11, k12, k22, c11, c12, c22 in SI units for one unit of a viscous law's coordinates.
 pub(super) fn units(law: &Dynamics) -> [f64; 6] {

@@ -1,111 +1,81 @@
-//! FRFs of the two sides without the joint, and what the joint makes of them.
+//! FRFs of the fixture without the joints that are looked for, and what these make of them.
 //!
-//! The joint acts on d = u_to − R·u_from alone, so with the uncoupled FRFs G
+//! Each joint acts on its own d_j = u_to − R_j·u_from. With all d_j one below the other, G of the fixture without the joints and Z = diag(Z_j),
 //!
 //! H_oi = G_oi − G_od (I + Z G_dd)⁻¹ Z G_di, and δH_oi = −G_od (I + Z G_dd)⁻¹ δZ (I + G_dd Z)⁻¹ G_di:
 //!
-//! whatever the joint, G stays; whatever the FRF, one 2×2 matrix a line is inverted.
+//! whatever the joints, G stays; it does not matter whether they form a chain or loops. Without them the fixture falls into pieces, of which a quantity moves but the one that it belongs to.
 
 use super::law::{MOST, Placed};
+use super::problem::Setup;
 use super::recorded::Recorded;
-use crate::Sides;
+use crate::sides::with_effects_of;
 use jointscope_beam::{Matrix4, consistent_mass};
 use jointscope_fixture::Fixture;
-use jointscope_linalg::{ComplexMatrix2, Matrix2};
+use jointscope_linalg::{ComplexMatrix2, LuWorkspace, Matrix2};
 use jointscope_lumped::{Instrument, MeasuringChain, Model, Station};
 use num_complex::Complex64;
 use std::sync::Arc;
 
-/// Receptances of one side: between the joint's end (y, θ) and the channels on it. FRF after FRF, in the order of [`OnSide::wanted`].
+/// Most joints that are found at once.
+pub(super) const MOST_JOINTS: usize = 8;
+/// Stations of a joint's ends: y and θ of the near one, then of the far one.
+const ENDS: usize = 4;
+
+/// The fixture without its joints on all lines, line after line.
 #[derive(Debug)]
-struct SideFrfs {
+pub(super) struct Uncoupled {
+    pieces: Vec<Arc<Piece>>,
+    chain: MeasuringChain,
+    /// Recorded accelerance per receptance, by FRF.
+    factors: Arc<Vec<Complex64>>,
+    /// Coordinates of all d_j, two a joint; with those of the first joint's mass.
+    order: usize,
+    width: usize,
+    /// Between channels, by FRF.
+    between: Vec<Complex64>,
+    /// From loads on d to the responses, row-major.
+    from: Vec<Complex64>,
+    /// From the references to d, row-major.
+    to: Vec<Complex64>,
+    /// G_dd, row-major.
+    at: Vec<Complex64>,
+}
+
+/// Receptances of bodies that hold together without the joints.
+#[derive(Debug)]
+struct Piece {
     fixture: Fixture,
-    end: [Station; 2],
     outputs: Vec<Station>,
     inputs: Vec<Station>,
+    /// Output and input of each receptance, among those of the whole.
+    pairs: Vec<(usize, usize)>,
+    /// Receptance after receptance.
     values: Vec<Complex64>,
 }
 
-/// The assembly without the joint, on all lines. Every list is entry after entry, each over all lines.
-#[derive(Debug)]
-pub(super) struct Uncoupled {
-    alpha: Arc<SideFrfs>,
-    beta: Arc<SideFrfs>,
-    chain: MeasuringChain,
-    /// Recorded accelerance per receptance.
-    factors: Arc<Vec<Complex64>>,
-    /// Between channels, by FRF.
-    between: Vec<Complex64>,
-    /// From a load on d to a response: two entries a response.
-    from_joint: Vec<Complex64>,
-    /// From a reference to d: two entries a reference.
-    to_joint: Vec<Complex64>,
-    /// Of d to a load on it: 11, 12, 21, 22.
-    at_joint: Vec<Complex64>,
-}
-
-/// Which channels sit on a side, and which FRFs stay on it.
-struct OnSide {
-    outputs: Vec<usize>,
-    inputs: Vec<usize>,
-    frfs: Vec<usize>,
-}
-
-impl OnSide {
-    /// (output, input) of each receptance; stations 0 and 1 are the joint's end.
-    fn wanted(&self, recorded: &Recorded) -> Vec<(usize, usize)> {
-        let ends = (0..2).flat_map(|o| (0..2).map(move |i| (o, i)));
-        let outputs = (0..self.outputs.len()).flat_map(|o| (0..2).map(move |i| (2 + o, i)));
-        let inputs = (0..self.inputs.len()).flat_map(|i| (0..2).map(move |o| (o, 2 + i)));
-        let place = |all: &[usize], channel: usize| all.iter().position(|c| *c == channel).unwrap_or(0);
-        let frfs = self.frfs.iter().map(|&frf| {
-            let (response, reference) = recorded.channels[frf];
-            (2 + place(&self.outputs, response), 2 + place(&self.inputs, reference))
-        });
-        ends.chain(outputs).chain(inputs).chain(frfs).collect()
-    }
-}
-
 impl Uncoupled {
-    /// The fixture of `sides` without its joint but with the joint's mass (kg, uniform). Sides that `before` has already are taken from there.
+    /// A fixture without its joints but with the mass (kg, uniform) of the first of them. Pieces that `before` has already are taken from there.
     ///
-    /// `None` where a side has no finite receptances.
-    pub fn of(recorded: &Recorded, sides: &Sides, mass: f64, before: Option<&Uncoupled>) -> Option<Self> {
-        let chain = MeasuringChain::of(sides.fixture(), &recorded.pairs, Instrument::AsRecorded).ok()?;
-        let output = |channel: usize| chain.readings[recorded.responses[channel]].output;
-        let input = |channel: usize| chain.readings[recorded.references[channel]].input;
-        let is_on = |station: Station, alpha: bool| sides.is_on_alpha(station.body) == alpha;
-        let [near, far] = [sides.joint().from, sides.joint().to].map(|p| &sides.fixture().points()[p]);
-        let on = [true, false].map(|alpha| {
-            let outputs: Vec<usize> =
-                (0..recorded.responses.len()).filter(|&c| is_on(output(c), alpha)).collect();
-            let inputs: Vec<usize> =
-                (0..recorded.references.len()).filter(|&c| is_on(input(c), alpha)).collect();
-            let stays = |frf: &usize| {
-                let (response, reference) = recorded.channels[*frf];
-                outputs.contains(&response) && inputs.contains(&reference)
-            };
-            let frfs = (0..recorded.pairs.len()).filter(stays).collect();
-            OnSide { outputs, inputs, frfs }
+    /// `None` where a piece has no finite receptances.
+    pub fn of(setup: &Setup, fixture: &Fixture, mass: f64, before: Option<&Uncoupled>) -> Option<Self> {
+        let recorded = setup.recorded;
+        let chain = MeasuringChain::of(fixture, &recorded.pairs, Instrument::AsRecorded).ok()?;
+        let joints: Vec<_> = setup.joints.iter().map(|&joint| &fixture.joints()[joint]).collect();
+        let ends = joints.iter().flat_map(|joint| [joint.from, joint.to]).flat_map(|point| {
+            let point = &fixture.points()[point];
+            Station::both(point.body, point.x.value)
         });
-        let side = |alpha: bool, own: &OnSide, before: Option<&Arc<SideFrfs>>| {
-            let point = if alpha { near } else { far };
-            let own_station = |station: Station| sides.on_its_side(station);
-            let end = Station::both(point.body, point.x.value).map(own_station);
-            let outputs: Vec<Station> = own.outputs.iter().map(|&c| own_station(output(c))).collect();
-            let inputs: Vec<Station> = own.inputs.iter().map(|&c| own_station(input(c))).collect();
-            let fixture = sides.side(alpha);
-            let same = before.filter(|b| {
-                b.end == end && b.outputs == outputs && b.inputs == inputs && b.fixture == *fixture
-            });
-            match same {
-                Some(before) => Some(Arc::clone(before)),
-                None => SideFrfs::of(recorded, fixture, end, (outputs, inputs), own).map(Arc::new),
-            }
+        let outputs = recorded.responses.iter().map(|&frf| chain.readings[frf].output);
+        let inputs = recorded.references.iter().map(|&frf| chain.readings[frf].input);
+        let responding: Vec<Station> = ends.clone().chain(outputs).collect();
+        let loaded: Vec<Station> = ends.chain(inputs).collect();
+        let count = setup.pieces.iter().max().map_or(0, |last| last + 1);
+        let piece = |piece: usize| {
+            let known = before.map(|before| &before.pieces[piece]);
+            Piece::of(setup, fixture, (&responding, &loaded), piece, known)
         };
-        let [on_alpha, on_beta] = &on;
-        let alpha = side(true, on_alpha, before.map(|b| &b.alpha))?;
-        let beta = side(false, on_beta, before.map(|b| &b.beta))?;
+        let pieces = (0..count).map(piece).collect::<Option<Vec<_>>>()?;
         let same = before.filter(|before| {
             let readings = before.chain.readings.iter().zip(&chain.readings);
             before.chain.decay() == chain.decay() && readings.into_iter().all(|(a, b)| a.has_signals_of(b))
@@ -119,208 +89,192 @@ impl Uncoupled {
             },
             |before| Arc::clone(&before.factors),
         );
-        let n = recorded.s.len();
+        let lengths: Vec<f64> = joints.iter().map(|joint| fixture.joint_length(joint)).collect();
+        let masses =
+            if mass > 0.0 { square_root(&mass_of_ends(mass, lengths[0])).to_vec() } else { Vec::new() };
+        let order = 2 * joints.len();
+        let width = order + masses.len();
+        let (n, zero) = (recorded.s.len(), Complex64::ZERO);
         let mut all = Uncoupled {
-            alpha,
-            beta,
+            pieces,
             chain,
             factors,
-            between: vec![Complex64::ZERO; recorded.pairs.len() * n],
-            from_joint: vec![Complex64::ZERO; 2 * recorded.responses.len() * n],
-            to_joint: vec![Complex64::ZERO; 2 * recorded.references.len() * n],
-            at_joint: vec![Complex64::ZERO; 4 * n],
+            order,
+            width,
+            between: vec![zero; recorded.pairs.len() * n],
+            from: vec![zero; recorded.responses.len() * width * n],
+            to: vec![zero; width * recorded.references.len() * n],
+            at: vec![zero; width * width * n],
         };
-        all.place(&on, n);
-        match mass {
-            0.0 => all.onto_relative_motion(sides.length(), &on, n),
-            mass => all.add_mass(recorded, mass, sides.length(), &on)?,
+        let on: Vec<_> = (0..ENDS * joints.len()).map(|end| on_relative(end, &lengths, &masses)).collect();
+        for piece in all.pieces.clone() {
+            for (pair, values) in piece.pairs.iter().zip(piece.values.chunks_exact(n)) {
+                all.add(*pair, values, &on, recorded);
+            }
         }
+        all.put_in_the_mass(recorded);
         Some(all)
     }
 
-    /// The entries as the sides have them; those of the joint still on the ends of the side that each channel is on.
-    fn place(&mut self, on: &[OnSide; 2], n: usize) {
-        for (own, side) in on.iter().zip([&self.alpha, &self.beta]) {
-            let mut entries = side.values.chunks_exact(n).skip(4);
-            let mut copy = |to: &mut [Complex64]| {
-                if let Some(from) = entries.next() {
-                    to.copy_from_slice(from);
-                }
-            };
-            for &c in &own.outputs {
-                copy(&mut self.from_joint[2 * c * n..(2 * c + 1) * n]);
-                copy(&mut self.from_joint[(2 * c + 1) * n..(2 * c + 2) * n]);
-            }
-            for &c in &own.inputs {
-                copy(&mut self.to_joint[2 * c * n..(2 * c + 1) * n]);
-                copy(&mut self.to_joint[(2 * c + 1) * n..(2 * c + 2) * n]);
-            }
-            for &frf in &own.frfs {
-                copy(&mut self.between[frf * n..(frf + 1) * n]);
-            }
-        }
-    }
-
-    /// From the motions of the ends to d = u_to − R·u_from.
-    fn onto_relative_motion(&mut self, length: f64, [on_alpha, _]: &[OnSide; 2], n: usize) {
-        let turn = |entries: &mut [Complex64], channel: usize| {
-            let (y, theta) = entries[2 * channel * n..(2 * channel + 2) * n].split_at_mut(n);
-            for (y, theta) in y.iter_mut().zip(theta) {
-                (*y, *theta) = (-(*y + *theta * length), -*theta);
-            }
-        };
-        on_alpha.outputs.iter().for_each(|&c| turn(&mut self.from_joint, c));
-        on_alpha.inputs.iter().for_each(|&c| turn(&mut self.to_joint, c));
-        let across = crate::Relation::Exact.transport(length);
-        for line in 0..n {
-            let at = |side: &SideFrfs| {
-                let v = |e: usize| side.values[e * n + line];
-                Matrix2::new(v(0), v(1), v(2), v(3))
-            };
-            let joint = at(&self.beta) + across * at(&self.alpha) * across.transpose();
-            for (e, (i, j)) in [(0, 0), (0, 1), (1, 0), (1, 1)].into_iter().enumerate() {
-                self.at_joint[e * n + line] = joint.at(i, j);
-            }
-        }
-    }
-
-    /// Adds the joint's mass at its ends, s²M with M consistent, of rank four, and goes on to d: what is left of the joint acts on d alone.
-    fn add_mass(
+    /// Adds the receptances between two stations to all entries that they are a part of; `on` says of each end what it is in which coordinates.
+    fn add(
         &mut self,
+        (o, i): (usize, usize),
+        values: &[Complex64],
+        on: &[Vec<(usize, f64)>],
         recorded: &Recorded,
-        mass: f64,
-        length: f64,
-        [on_alpha, _]: &[OnSide; 2],
-    ) -> Option<()> {
-        let n = recorded.s.len();
-        let mass = if length > 0.0 {
-            consistent_mass(mass / length, length)
-        } else {
-            let mut halves = [[0.0; 4]; 4];
-            (halves[0][0], halves[2][2]) = (0.5 * mass, 0.5 * mass);
-            halves
+    ) {
+        let own = on.len();
+        let (width, references) = (self.width, recorded.references.len());
+        let add = |to: &mut [Complex64], by_line: usize, place: usize, weight: f64| {
+            let entries = to[place..].iter_mut().step_by(by_line);
+            entries.zip(values).for_each(|(entry, value)| *entry += value * weight);
         };
-        let first = |alpha: bool| if alpha { 0 } else { 2 };
-        let outputs: Vec<usize> =
-            (0..recorded.responses.len()).map(|c| first(on_alpha.outputs.contains(&c))).collect();
-        let inputs: Vec<usize> =
-            (0..recorded.references.len()).map(|c| first(on_alpha.inputs.contains(&c))).collect();
-        let factor = square_root(&mass);
-        // Rows: motions of the ends, then responses; columns: loads on the ends, then references.
-        let (height, width) = (4 + outputs.len(), 4 + inputs.len());
-        let mut all = vec![Complex64::ZERO; height * width];
-        let mut row = vec![Complex64::ZERO; width];
-        let mut column = vec![Complex64::ZERO; height];
-        for line in 0..n {
-            let squared = recorded.s[line] * recorded.s[line];
-            all.fill(Complex64::ZERO);
-            for i in 0..2 {
-                for j in 0..2 {
-                    all[i * width + j] = self.alpha.values[(2 * i + j) * n + line];
-                    all[(i + 2) * width + j + 2] = self.beta.values[(2 * i + j) * n + line];
-                }
-                for (c, &at) in inputs.iter().enumerate() {
-                    all[(at + i) * width + 4 + c] = self.to_joint[(2 * c + i) * n + line];
-                }
-                for (c, &at) in outputs.iter().enumerate() {
-                    all[(4 + c) * width + at + i] = self.from_joint[(2 * c + i) * n + line];
+        match (on.get(o), on.get(i)) {
+            (Some(responding), Some(loaded)) => {
+                for (a, left) in responding {
+                    for (b, right) in loaded {
+                        add(&mut self.at, width * width, a * width + b, left * right);
+                    }
                 }
             }
-            for (frf, &(response, reference)) in recorded.channels.iter().enumerate() {
-                all[(4 + response) * width + 4 + reference] = self.between[frf * n + line];
-            }
-            // M = Σ l lᵀ: four changes of rank one.
-            for l in &factor {
-                for (c, value) in row.iter_mut().enumerate() {
-                    *value = (0..4).map(|k| all[k * width + c] * l[k]).sum();
-                }
-                for (r, value) in column.iter_mut().enumerate() {
-                    *value = (0..4).map(|k| all[r * width + k] * l[k]).sum();
-                }
-                let own: Complex64 = (0..4).map(|k| row[k] * l[k]).sum();
-                let share = squared / (squared * own + 1.0);
-                for (r, value) in column.iter().enumerate() {
-                    let scaled = share * value;
-                    let changed = all[r * width..(r + 1) * width].iter_mut();
-                    changed.zip(&row).for_each(|(entry, by)| *entry -= scaled * by);
+            (None, Some(loaded)) => {
+                for (b, weight) in loaded {
+                    add(&mut self.from, recorded.responses.len() * width, (o - own) * width + b, *weight);
                 }
             }
-            // d = [−R, I] on (near, far).
-            let relative = |v: [Complex64; 4]| [v[2] - v[0] - v[1] * length, v[3] - v[1]];
-            let end = |r: usize, c: usize| all[r * width + c];
-            let by_ends: [[Complex64; 2]; 4] =
-                std::array::from_fn(|i| relative(std::array::from_fn(|j| end(i, j))));
-            for j in 0..2 {
-                let [y, theta] = relative(std::array::from_fn(|i| by_ends[i][j]));
-                self.at_joint[j * n + line] = y;
-                self.at_joint[(2 + j) * n + line] = theta;
+            (Some(responding), None) => {
+                for (a, weight) in responding {
+                    add(&mut self.to, width * references, a * references + i - own, *weight);
+                }
             }
-            for (frf, &(response, reference)) in recorded.channels.iter().enumerate() {
-                self.between[frf * n + line] = end(4 + response, 4 + reference);
-            }
-            for c in 0..outputs.len() {
-                let moved = relative(std::array::from_fn(|e| end(4 + c, e)));
-                (0..2).for_each(|i| self.from_joint[(2 * c + i) * n + line] = moved[i]);
-            }
-            for c in 0..inputs.len() {
-                let moved = relative(std::array::from_fn(|e| end(e, 4 + c)));
-                (0..2).for_each(|i| self.to_joint[(2 * c + i) * n + line] = moved[i]);
+            (None, None) => {
+                let frfs = recorded.channels.iter().enumerate();
+                for (frf, _) in frfs.filter(|(_, channel)| **channel == (o - own, i - own)) {
+                    add(&mut self.between, recorded.pairs.len(), frf, 1.0);
+                }
             }
         }
-        all.iter().all(|value| value.is_finite()).then_some(())
     }
 
-    /// What is recorded with a joint of this law, FRF after FRF; its derivatives by the coordinates of a law (this one or another that takes its place)
-    /// over `columns`, if wanted.
+    /// Puts the joint's mass in: each of its coordinates, those from `order` on, is loaded by s², a change of rank one.
+    fn put_in_the_mass(&mut self, recorded: &Recorded) {
+        let width = self.width;
+        let (frfs, outputs, inputs) =
+            (recorded.pairs.len(), recorded.responses.len(), recorded.references.len());
+        for (line, s) in recorded.s.iter().enumerate() {
+            let at = &mut self.at[line * width * width..(line + 1) * width * width];
+            let from = &mut self.from[line * outputs * width..(line + 1) * outputs * width];
+            let to = &mut self.to[line * width * inputs..(line + 1) * width * inputs];
+            let between = &mut self.between[line * frfs..(line + 1) * frfs];
+            for own in (self.order..width).rev() {
+                let (rest, row) = at.split_at_mut(own * width);
+                let (to_rest, to_own) = to.split_at_mut(own * inputs);
+                let share = (s * s) / (s * s * row[own] + 1.0);
+                for (value, &(o, i)) in between.iter_mut().zip(&recorded.channels) {
+                    *value -= share * from[o * width + own] * to_own[i];
+                }
+                for from in from.chunks_exact_mut(width) {
+                    let by = share * from[own];
+                    from[..own].iter_mut().zip(&*row).for_each(|(value, other)| *value -= by * other);
+                }
+                for (at, to) in rest.chunks_exact_mut(width).zip(to_rest.chunks_exact_mut(inputs)) {
+                    let by = share * at[own];
+                    to.iter_mut().zip(&*to_own).for_each(|(value, other)| *value -= by * other);
+                    at[..own].iter_mut().zip(&*row).for_each(|(value, other)| *value -= by * other);
+                }
+            }
+        }
+    }
+
+    /// What is recorded with joints of these laws, FRF after FRF; its derivatives by the coordinates of laws (these or others that take their places), one law's after the
+    /// other's, over `columns`, if wanted.
     ///
     /// `None` where a line has no finite response.
     pub fn coupled(
         &self,
         recorded: &Recorded,
-        law: &Placed,
-        mut columns: Option<(&Placed, &mut [Vec<Complex64>])>,
+        laws: &[Placed],
+        mut columns: Option<(&[Placed], &mut [Vec<Complex64>])>,
     ) -> Option<Vec<Complex64>> {
-        let n = recorded.s.len();
-        let mut values = vec![Complex64::ZERO; recorded.pairs.len() * n];
-        let pair = |entries: &[Complex64], c: usize, line: usize| {
-            [entries[2 * c * n + line], entries[(2 * c + 1) * n + line]]
-        };
-        let (outputs, inputs) = (recorded.responses.len(), recorded.references.len());
-        let mut from = vec![[Complex64::ZERO; 2]; outputs];
-        let mut to = vec![([Complex64::ZERO; 2], [Complex64::ZERO; 2]); inputs];
-        let mut slots = [Complex64::ZERO; MOST];
+        let (n, order, width) = (recorded.s.len(), self.order, self.width);
+        let (frfs, outputs, inputs) =
+            (recorded.pairs.len(), recorded.responses.len(), recorded.references.len());
+        let zero = Complex64::ZERO;
+        let mut values = vec![zero; frfs * n];
+        let (mut lu, mut slots) = (LuWorkspace::new(), [zero; MOST]);
+        let mut inverse = vec![zero; order * order];
+        let (mut rows, mut forces, mut motions) =
+            (vec![zero; outputs * order], vec![zero; inputs * order], vec![zero; inputs * order]);
+        let mut through = vec![zero; order];
+        let mut stiffness = [ComplexMatrix2::zero(); MOST_JOINTS];
+        let mut factors = [[zero; 3]; MOST_JOINTS];
         for (line, &s) in recorded.s.iter().enumerate() {
-            let g = |e: usize| self.at_joint[e * n + line];
-            let joint: ComplexMatrix2 = Matrix2::new(g(0), g(1), g(2), g(3));
-            let stiffness = law.stiffness(s);
-            let inverse = (ComplexMatrix2::identity() + stiffness * joint).inverse()?;
+            let at = &self.at[line * width * width..(line + 1) * width * width];
+            let from = &self.from[line * outputs * width..(line + 1) * outputs * width];
+            let to = &self.to[line * width * inputs..(line + 1) * width * inputs];
+            stiffness.iter_mut().zip(laws).for_each(|(stiffness, law)| *stiffness = law.stiffness(s));
+            if let ([z, ..], 2) = (&stiffness, order) {
+                let own = Matrix2::new(at[0], at[1], at[width], at[width + 1]);
+                let closed = (ComplexMatrix2::identity() + *z * own).inverse()?;
+                inverse.copy_from_slice(closed.0.as_flattened());
+            } else {
+                lu.factorize(order, |matrix| {
+                    for (d, row) in matrix.chunks_exact_mut(order).enumerate() {
+                        for (column, entry) in row.iter_mut().enumerate() {
+                            let one = f64::from(u8::from(d == column));
+                            *entry = loaded(&stiffness, d, |e| at[e * width + column]) + one;
+                        }
+                    }
+                })
+                .ok()?;
+                inverse.fill(zero);
+                (0..order).for_each(|d| inverse[d * order + d] = Complex64::ONE);
+                lu.solve_columns_in_place(&mut inverse, order);
+            }
+            for (row, from) in rows.chunks_exact_mut(order).zip(from.chunks_exact(width)) {
+                for (column, entry) in row.iter_mut().enumerate() {
+                    *entry = (0..order).map(|d| from[d] * inverse[d * order + column]).sum();
+                }
+            }
+            for (i, force) in forces.chunks_exact_mut(order).enumerate() {
+                for (d, entry) in force.iter_mut().enumerate() {
+                    *entry = loaded(&stiffness, d, |e| to[e * inputs + i]);
+                }
+            }
             // Motions of d are for derivatives only.
-            let back = match columns {
-                Some(_) => ComplexMatrix2::identity() - joint * (inverse * stiffness),
-                None => ComplexMatrix2::zero(),
-            };
-            for (c, row) in from.iter_mut().enumerate() {
-                let [a, b] = pair(&self.from_joint, c, line);
-                *row = [0, 1].map(|j| a * inverse.at(0, j) + b * inverse.at(1, j));
+            if let Some((laws, _)) = &columns {
+                factors.iter_mut().zip(*laws).for_each(|(factors, law)| *factors = law.factors(s));
+                let all = motions.chunks_exact_mut(order).zip(forces.chunks_exact(order));
+                for (i, (motion, force)) in all.enumerate() {
+                    for (row, entry) in inverse.chunks_exact(order).zip(&mut through) {
+                        *entry = row.iter().zip(force).map(|(a, f)| a * f).sum();
+                    }
+                    for (d, entry) in motion.iter_mut().enumerate() {
+                        let lost: Complex64 = through.iter().zip(&at[d * width..]).map(|(t, a)| a * t).sum();
+                        *entry = to[d * inputs + i] - lost;
+                    }
+                }
             }
-            for (c, column) in to.iter_mut().enumerate() {
-                let [a, b] = pair(&self.to_joint, c, line);
-                let times = |m: &ComplexMatrix2| [0, 1].map(|i| m.at(i, 0) * a + m.at(i, 1) * b);
-                let motion = if columns.is_some() { times(&back) } else { [Complex64::ZERO; 2] };
-                *column = (times(&stiffness), motion);
-            }
-            let factors = columns.as_ref().map_or([Complex64::ZERO; 3], |(law, _)| law.factors(s));
             for (frf, &(response, reference)) in recorded.channels.iter().enumerate() {
-                let (at, row) = (frf * n + line, &from[response]);
-                let (force, motion) = &to[reference];
-                let factor = self.factors[at];
-                values[at] = factor * (self.between[at] - row[0] * force[0] - row[1] * force[1]);
-                if let Some((law, columns)) = &mut columns {
-                    let [a, b] = row.map(|r| -factor * r);
+                let place = frf * n + line;
+                let row = &rows[response * order..(response + 1) * order];
+                let force = &forces[reference * order..(reference + 1) * order];
+                let factor = self.factors[place];
+                let passed: Complex64 = row.iter().zip(force).map(|(r, f)| r * f).sum();
+                values[place] = factor * (self.between[line * frfs + frf] - passed);
+                let Some((laws, columns)) = &mut columns else { continue };
+                let motion = &motions[reference * order..(reference + 1) * order];
+                let mut rest = &mut **columns;
+                let ends = row.chunks_exact(2).zip(motion.chunks_exact(2));
+                for ((law, factors), (row, motion)) in laws.iter().zip(&factors).zip(ends) {
+                    let [a, b] = [-factor * row[0], -factor * row[1]];
                     let by = [a * motion[0], a * motion[1], b * motion[0], b * motion[1]];
-                    let slots = &mut slots[..columns.len()];
-                    law.chain(by, factors, slots);
-                    columns.iter_mut().zip(&*slots).for_each(|(column, value)| column[at] = *value);
+                    let (own, others) = rest.split_at_mut(law.count());
+                    let slots = &mut slots[..law.count()];
+                    law.chain(by, *factors, slots);
+                    own.iter_mut().zip(&*slots).for_each(|(column, value)| column[place] = *value);
+                    rest = others;
                 }
             }
         }
@@ -328,22 +282,78 @@ impl Uncoupled {
     }
 }
 
-impl SideFrfs {
+impl Piece {
+    /// The piece of this number, or the one `known` where that is the same.
     fn of(
-        recorded: &Recorded,
-        fixture: &Fixture,
-        end: [Station; 2],
-        (outputs, inputs): (Vec<Station>, Vec<Station>),
-        own: &OnSide,
-    ) -> Option<Self> {
-        let model = Model::new(fixture, recorded.highest).ok()?;
-        let all = |channels: &[Station]| end.iter().chain(channels).copied().collect::<Vec<_>>();
-        let wanted = own.wanted(recorded);
-        let mut values = vec![Complex64::ZERO; wanted.len() * recorded.s.len()];
-        let mut receptances = model.receptances_of(&all(&outputs), &all(&inputs), wanted);
-        receptances.on_lines(&recorded.s, &mut values).ok()?;
-        Some(SideFrfs { fixture: fixture.clone(), end, outputs, inputs, values })
+        setup: &Setup,
+        whole: &Fixture,
+        (responding, loaded): (&[Station], &[Station]),
+        number: usize,
+        known: Option<&Arc<Piece>>,
+    ) -> Option<Arc<Self>> {
+        let is_on = |body: usize| setup.pieces[body] == number;
+        let fixture = with_effects_of(whole, whole.part(is_on, setup.joints));
+        // Places among the whole's stations, and the stations by the piece's own bodies.
+        let own = |all: &[Station]| -> (Vec<usize>, Vec<Station>) {
+            let index = |body: usize| (0..body).filter(|&other| is_on(other)).count();
+            let own = all.iter().enumerate().filter(|(_, station)| is_on(station.body));
+            own.map(|(place, station)| (place, Station { body: index(station.body), ..*station })).unzip()
+        };
+        let ((rows, outputs), (columns, inputs)) = (own(responding), own(loaded));
+        if let Some(known) = known
+            && known.outputs == outputs
+            && known.inputs == inputs
+            && known.fixture == fixture
+        {
+            return Some(Arc::clone(known));
+        }
+        let (ends, recorded) = (ENDS * setup.joints.len(), setup.recorded);
+        let is_wanted =
+            |o: usize, i: usize| o < ends || i < ends || recorded.channels.contains(&(o - ends, i - ends));
+        let all = rows.iter().enumerate().flat_map(|o| columns.iter().enumerate().map(move |i| (o, i)));
+        let (wanted, pairs): (Vec<_>, Vec<_>) = all
+            .filter(|((_, o), (_, i))| is_wanted(**o, **i))
+            .map(|((row, o), (column, i))| ((row, column), (*o, *i)))
+            .unzip();
+        let mut values = vec![Complex64::ZERO; pairs.len() * recorded.s.len()];
+        let model = Model::new(&fixture, recorded.highest).ok()?;
+        model.receptances_of(&outputs, &inputs, wanted).on_lines(&recorded.s, &mut values).ok()?;
+        Some(Arc::new(Piece { fixture, outputs, inputs, pairs, values }))
     }
+}
+
+/// An entry of Z times a column, Z being made of these stiffnesses.
+fn loaded(stiffness: &[ComplexMatrix2], d: usize, column: impl Fn(usize) -> Complex64) -> Complex64 {
+    let (z, first) = (&stiffness[d / 2], d - d % 2);
+    z.at(d % 2, 0) * column(first) + z.at(d % 2, 1) * column(first + 1)
+}
+
+/// What the motion of a joint's end is a part of, and with what weight: d_j = u_to − R·u_from, and for the first joint the coordinates of its mass, which are those of all d
+/// followed by lᵀu of `masses`.
+fn on_relative(station: usize, lengths: &[f64], masses: &[[f64; 4]]) -> Vec<(usize, f64)> {
+    let (joint, end) = (station / ENDS, station % ENDS);
+    let (y, theta) = (2 * joint, 2 * joint + 1);
+    let mut on = match end {
+        0 => vec![(y, -1.0)],
+        1 => vec![(y, -lengths[joint]), (theta, -1.0)],
+        2 => vec![(y, 1.0)],
+        _ => vec![(theta, 1.0)],
+    };
+    if joint == 0 {
+        let own = masses.iter().enumerate().map(|(k, l)| (2 * lengths.len() + k, l[end]));
+        on.extend(own.filter(|(_, weight)| *weight != 0.0));
+    }
+    on
+}
+
+/// The consistent mass matrix of a joint's ends; half at each where it has no length.
+fn mass_of_ends(mass: f64, length: f64) -> Matrix4 {
+    if length > 0.0 {
+        return consistent_mass(mass / length, length);
+    }
+    let mut halves = [[0.0; 4]; 4];
+    (halves[0][0], halves[2][2]) = (0.5 * mass, 0.5 * mass);
+    halves
 }
 
 /// Columns l of a lower triangular factor, M = Σ l lᵀ, of a matrix that is positive semidefinite.

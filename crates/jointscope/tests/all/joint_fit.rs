@@ -341,6 +341,24 @@ fn an_frf_that_is_a_tenth_too_large_widens_the_deviations() {
     }
 }
 
+#[test]
+fn damping_that_would_give_out_energy_is_held_where_it_just_gives_out_none() {
+    // A response that runs 50 µs ahead looks as if energy came in.
+    let fixture = fixture(&Case::ordinary(), "");
+    let frfs = recorded(&fixture, &mut Noise::new(3), 0.01, &EIGHT);
+    let (n, omegas) = (frfs.lines().len(), lines().omegas().collect::<Vec<f64>>());
+    let ahead: Vec<bool> = frfs.pairs().iter().map(|pair| pair.response.point == "4").collect();
+    let frfs = frfs.with_values(|index, value| match ahead[index / n] {
+        true => value * Complex64::from_polar(1.0, 5e-5 * omegas[index % n]),
+        false => value,
+    });
+    let fit = fit(&fixture, &frfs, false);
+    assert!(fit.is_on_the_boundary && fit.tests.passive.is_some_and(|p| p < 0.05), "{:?}", fit.tests);
+    let c = fit.damping;
+    let (diagonal, coupled) = (c.at(0, 0) * c.at(1, 1), c.at(0, 1) * c.at(1, 0));
+    assert!(c.at(0, 0) >= 0.0 && (diagonal - coupled).abs() < 1e-6 * diagonal, "{c:?}");
+}
+
 /// What the joint really does, and the law that is to be named.
 fn truths() -> [(LawKind, bool, &'static str); 5] {
     [

@@ -3,7 +3,7 @@
 use jointscope_check::{DrivingPointVerdict, FrfCheck, RecordingCheck};
 
 use crate::format::{percent, quantity, significant, trimmed};
-use crate::plot::{Curve, FrfPanes, Role, Style};
+use crate::plot::{Curve, FrfPanes, Role, Style, worst};
 use crate::section::{Section, Tone};
 use crate::table::Table;
 
@@ -125,11 +125,8 @@ fn mass_line(recording: &RecordingCheck) -> Section {
 fn overlays(recording: &RecordingCheck) -> Section {
     let frfs = &recording.measured;
     let count = frfs.lines().len();
-    let mut shown: Vec<usize> = (0..frfs.pairs().len()).collect();
-    let worst = |index: &usize| recording.frfs[*index].nrmse.unwrap_or(0.0);
-    shown.sort_by(|a, b| worst(b).total_cmp(&worst(a)));
-    shown.truncate(SHOWN);
-    shown.sort_unstable();
+    let distances: Vec<f64> = recording.frfs.iter().map(|frf| frf.nrmse.unwrap_or(0.0)).collect();
+    let shown = worst(&distances, SHOWN);
     let some = if shown.len() < frfs.pairs().len() {
         format!(" Shown are the {} of {} that are farthest from it.", shown.len(), frfs.pairs().len())
     } else {
@@ -139,8 +136,6 @@ fn overlays(recording: &RecordingCheck) -> Section {
         "Accelerances as recorded with the 95 % band of their noise, and the fixture's as it stands, nothing fitted.{some}"
     ));
     shown.into_iter().fold(section, |section, index| {
-        let name = frfs.pairs()[index].to_string();
-        let half = |variance: &f64| Some(1.96 * (0.5 * variance).sqrt());
         let modelled = recording.modelled.as_deref().map(|all| &all[index * count..(index + 1) * count]);
         let curve = |values: &[num_complex::Complex64]| Curve {
             label: "fixture",
@@ -148,19 +143,10 @@ fn overlays(recording: &RecordingCheck) -> Section {
             style: Style::Dashed,
             values: values.iter().map(|value| Some(*value)).collect(),
         };
-        let nrmse = recording.frfs[index]
-            .nrmse
-            .map_or(String::new(), |nrmse| format!(", nrmse {}", percent(nrmse, 1)));
-        let panes = FrfPanes {
-            title: format!("FRF {name}{nrmse}"),
-            phase_title: format!("Phase of FRF {name}"),
-            symbol: format!("H {name}"),
-            unit: "(m/s^2)/N",
-            hz: frfs.lines().hz(),
-            measured: frfs.values(index).iter().map(|value| Some(*value)).collect(),
-            noise: frfs.variance(index).unwrap_or_default().iter().map(half).collect(),
-            curves: modelled.map(curve).into_iter().collect(),
-        };
+        let mut panes = FrfPanes::recorded(frfs, index, modelled.map(curve).into_iter().collect());
+        if let Some(nrmse) = recording.frfs[index].nrmse {
+            panes.title += &format!(", nrmse {}", percent(nrmse, 1));
+        }
         section.plots(2, [panes.magnitude(), panes.phase()].into_iter().chain(panes.residuals()))
     })
 }

@@ -1,5 +1,6 @@
 //! Magnitude and phase of an FRF, measured and as models have it, and what the models leave of it.
 
+use jointscope_spectra::FrfSet;
 use num_complex::Complex64;
 
 use super::{Axis, Plot, Role, Span, Style, YRange};
@@ -36,7 +37,24 @@ pub(crate) struct FrfPanes<'a> {
     pub curves: Vec<Curve>,
 }
 
-impl FrfPanes<'_> {
+impl<'a> FrfPanes<'a> {
+    /// An accelerance of a set with the noise that its variances tell, and other curves beside it.
+    pub fn recorded(frfs: &'a FrfSet, index: usize, curves: Vec<Curve>) -> Self {
+        let pair = &frfs.pairs()[index];
+        // Each part of a value has half its variance, and the modulus takes one part of the noise.
+        let half = |variance: &f64| Some(1.96 * (0.5 * variance).sqrt());
+        FrfPanes {
+            title: format!("FRF {pair}"),
+            phase_title: format!("Phase of FRF {pair}"),
+            symbol: format!("H {pair}"),
+            unit: "(m/s^2)/N",
+            hz: frfs.lines().hz(),
+            measured: frfs.values(index).iter().map(|value| Some(*value)).collect(),
+            noise: frfs.variance(index).unwrap_or_default().iter().map(half).collect(),
+            curves,
+        }
+    }
+
     pub fn magnitude(&self) -> Plot {
         let size =
             |values: &[Option<Complex64>]| values.iter().map(|v| v.map(|v| v.norm())).collect::<Vec<_>>();
@@ -119,6 +137,15 @@ impl FrfPanes<'_> {
 /// |r|/√2 of residuals whose parts have unit variance.
 fn part_size(residuals: &[Option<Complex64>]) -> Vec<Option<f64>> {
     residuals.iter().map(|v| v.map(|v| v.norm() * std::f64::consts::FRAC_1_SQRT_2)).collect()
+}
+
+/// Places of so many of the worst, in their order.
+pub(crate) fn worst(badness: &[f64], count: usize) -> Vec<usize> {
+    let mut places: Vec<usize> = (0..badness.len()).collect();
+    places.sort_by(|a, b| badness[*b].total_cmp(&badness[*a]));
+    places.truncate(count);
+    places.sort_unstable();
+    places
 }
 
 /// Phases in degrees; nothing where there is no value or it is zero.

@@ -3,12 +3,10 @@
 //! Trying all combinations would take 6ᵐ fits of m joints. All joints begin with K + sC; in each round every joint is fitted with every law, the others keeping theirs, and
 //! the one change that gains most evidence is made. A joint that takes the blame for another's law is so overtaken by the other.
 
+use super::super::coordinates;
 use super::super::law::{Dynamics, LawKind};
-use super::super::laws::{Candidate, LawFit, own_parameters, probable, variances};
-use super::super::problem::Columns;
-use super::super::quantities::Uncertain;
-use super::{Fitted, Fitter, Form, Problem, Test};
-use jointscope_inference::laplace_evidence;
+use super::super::laws::{Candidate, LawFit, probable};
+use super::super::problem::{Columns, Fitted, Problem, Test};
 
 /// Laws of all joints at their optimum.
 struct State {
@@ -23,12 +21,7 @@ const STEPS: usize = 40;
 const FEW_STEPS: usize = 8;
 
 /// Every joint's laws, the most probable first, the other joints following their most probable law; without the joints' masses.
-pub(super) fn compared(
-    fitter: &Fitter,
-    (viscous, first): (&Problem, &Fitted),
-    quantities: &[Uncertain],
-) -> Vec<Vec<LawFit>> {
-    let test = fitter.test(quantities, viscous.test.weights);
+pub(super) fn compared(viscous: &Problem, first: &Fitted) -> Vec<Vec<LawFit>> {
     let joints = viscous.laws.len();
     let mut current = State {
         laws: viscous.laws.clone(),
@@ -37,7 +30,7 @@ pub(super) fn compared(
     };
     loop {
         let all: Vec<Vec<(Candidate, State)>> =
-            (0..joints).map(|joint| candidates(fitter, &test, &current, joint)).collect();
+            (0..joints).map(|joint| candidates(viscous.test, &current, joint)).collect();
         // Noise is inflated by what the best combination leaves.
         let lowest = all.iter().flatten().min_by(|a, b| a.0.fit.objective.total_cmp(&b.0.fit.objective));
         let inflation = lowest.map_or(1.0, |(best, _)| best.inflation);
@@ -75,7 +68,7 @@ pub(super) fn compared(
 }
 
 /// One joint with every law, the others keeping theirs.
-fn candidates(fitter: &Fitter, test: &Test, current: &State, joint: usize) -> Vec<(Candidate, State)> {
+fn candidates(test: Test, current: &State, joint: usize) -> Vec<(Candidate, State)> {
     let of_kind = |kind: LawKind| {
         let shapes: &[f64] = match kind {
             _ if kind == current.laws[joint].kind => &[0.0],
@@ -83,7 +76,7 @@ fn candidates(fitter: &Fitter, test: &Test, current: &State, joint: usize) -> Ve
             LawKind::Fractional => &[-0.3, 0.3],
             _ => &[0.0],
         };
-        let fits = shapes.iter().filter_map(|shape| candidate(fitter, test, current, joint, (kind, *shape)));
+        let fits = shapes.iter().filter_map(|shape| candidate(test, current, joint, (kind, *shape)));
         fits.reduce(|a, b| if b.0.fit.objective < a.0.fit.objective { b } else { a })
     };
     LawKind::ALL.into_iter().filter_map(of_kind).collect()
@@ -91,15 +84,14 @@ fn candidates(fitter: &Fitter, test: &Test, current: &State, joint: usize) -> Ve
 
 /// A joint with a law at its optimum next to the current one: in the middle of the band it begins with the stiffness and damping that it has there.
 fn candidate(
-    fitter: &Fitter,
-    test: &Test,
+    test: Test,
     current: &State,
     joint: usize,
     (kind, shape): (LawKind, f64),
 ) -> Option<(Candidate, State)> {
     let mut laws = current.laws.clone();
     let own = &current.laws[joint];
-    laws[joint] = Dynamics::new(kind, own.unit, own.middle, own.stiffness == Form::Scalar);
+    laws[joint] = own.of_kind(kind);
     let first: usize = current.laws[..joint].iter().map(Dynamics::count).sum();
     let (before, rest) = current.coordinates.split_at(first);
     let (here, after) = rest.split_at(own.count());
@@ -108,22 +100,16 @@ fn candidate(
         start.extend_from_slice(here);
     } else {
         let [k, d, _] = own.matrices(here);
-        let mut matrices = super::coordinates(&laws[joint], k, d);
+        let mut matrices = coordinates(&laws[joint], k, d);
         matrices.resize(laws[joint].count() - laws[joint].shapes(), 0.0);
         matrices.resize(laws[joint].count(), shape);
         start.extend(matrices);
     }
     start.extend_from_slice(after);
-    let own_ones = laws.iter().flat_map(own_parameters);
-    let parameters = own_ones.chain(test.quantities.iter().map(|quantity| quantity.parameter)).collect();
-    let problem = Problem { test, laws, parameters };
+    let problem = Problem::lawful(test, laws, None);
     let steps = if kind == LawKind::Constant { FEW_STEPS } else { STEPS };
-    let (point, others) = problem.fit_within(start, Some(current.others.clone()), steps)?;
-    let information = problem.equations_of(&point, &others, test.weights).information;
-    let evidence = laplace_evidence(point.objective, &information, &variances(&problem.parameters))?;
-    let law = &problem.laws[joint];
-    let fit = LawFit::of(law, &point.coordinates[first..first + law.count()], point.objective, None);
-    let inflation = fitter.inflation(&problem, &point);
-    let state = State { laws: problem.laws, coordinates: point.coordinates, others };
-    Some((Candidate { fit, evidence, inflation }, state))
+    let fitted = problem.fit_within(start, Some(current.others.clone()), steps)?;
+    let candidate = Candidate::of(&problem, &fitted, joint)?;
+    let Fitted { point, others } = fitted;
+    Some((candidate, State { laws: problem.laws, coordinates: point.coordinates, others }))
 }

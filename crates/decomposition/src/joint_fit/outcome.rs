@@ -1,0 +1,253 @@
+//! What a fit finds: the joints with their tests and covariance, the fixture's quantities.
+
+use super::admissible::{boundary, not_negative, refitted};
+use super::law::{Dynamics, Form};
+use super::laws::Spread;
+use super::likelihood::ELEMENTS;
+use super::problem::{Fitted, Problem};
+use super::quantities::Uncertain;
+use super::uncertainty::{length_between, strain, total, units};
+use super::{FittedQuantity, JointFit, JointLikelihood, JointTests, LawFit, SeveralError, UnmovedQuantity};
+use jointscope_inference::{Covariance, NormalEquations};
+use jointscope_linalg::Cholesky;
+
+/// What a model that does not explain the FRFs does to their noise.
+pub(super) struct Inflated {
+    /// χ² and priors per degree of freedom.
+    pub chi2_per_dof: f64,
+    /// What the noise's variance is multiplied by.
+    pub by: f64,
+    pub weights: Vec<f64>,
+}
+
+impl Inflated {
+    pub fn of(problem: &Problem, first: &Fitted) -> Self {
+        let by = problem.inflation(&first.point);
+        let weights = problem.test.weights.iter().map(|weight| weight / by).collect();
+        Inflated { chi2_per_dof: problem.per_degree(&first.point), by, weights }
+    }
+
+    /// The optimum under these weights, from that without.
+    pub fn refitted(&self, problem: &Problem, first: Fitted) -> Option<Fitted> {
+        if self.by <= 1.0 {
+            return Some(first);
+        }
+        let mut fitted = problem.fit(first.point.coordinates, Some(first.others))?;
+        fitted.refresh(problem)?;
+        Some(fitted)
+    }
+}
+
+/// A finished fit of viscous joints, and what else is known of it.
+pub(super) struct Outcome<'a> {
+    pub problem: &'a Problem<'a>,
+    pub unmoved: &'a [Uncertain],
+    pub inflated: &'a Inflated,
+    /// By joint.
+    pub laws: Vec<Vec<LawFit>>,
+}
+
+/// The joints of a fit, in the order that they were looked for.
+pub(super) struct Found {
+    pub joints: Vec<JointFit>,
+    /// Place of a joint and of one of its six numbers, for each row of the covariance.
+    pub elements: Vec<(usize, &'static str)>,
+    pub covariance: Vec<Vec<f64>>,
+}
+
+/// A number of a joint.
+#[derive(Clone, Copy)]
+struct Slot {
+    joint: usize,
+    /// Its place among the joint's six.
+    place: usize,
+    coordinate: usize,
+    /// SI units for one unit of the coordinate.
+    unit: f64,
+}
+
+impl Outcome<'_> {
+    /// From the optimum with every c free. `asymmetry` tells by how much χ² falls where k and c of a joint may be unsymmetric, variances counting so many times.
+    pub fn of(
+        self,
+        free: &Fitted,
+        asymmetry: &dyn Fn(usize, f64) -> Option<f64>,
+    ) -> Result<Found, SeveralError> {
+        let problem = self.problem;
+        let setup = problem.test.setup;
+        let equations = free.equations(problem);
+        let covariance = equations.covariance().ok_or_else(|| self.undetermined(&equations))?;
+        let strain = strain(&problem.parameters, problem.own(), &free.point.coordinates, &covariance);
+        let (held, passive) = self.held(free)?;
+        let at = held.as_ref().unwrap_or(free);
+        // Deviations are those of free elements, on the boundary too.
+        let posterior = match &held {
+            Some(held) => {
+                let equations = held.equations(problem);
+                equations.covariance().ok_or_else(|| self.undetermined(&equations))?
+            }
+            None => covariance.clone(),
+        };
+        let model = if self.inflated.by > 1.0 { at.jackknifed(problem) } else { None };
+        let total = total(&posterior, strain, model.as_ref());
+        let mass = problem
+            .mass
+            .map(|scale| (problem.mass_at(&at.point.coordinates), scale * total.std(problem.of_laws())));
+        let spreads: Vec<Spread> = self
+            .laws
+            .iter()
+            .map(|laws| {
+                Spread::of(laws, mass.is_some()).unwrap_or(Spread { covariance: [[0.0; 6]; 6], mass: 0.0 })
+            })
+            .collect();
+        let slots = self.slots();
+        let in_si = |of: &Covariance, a: &Slot, b: &Slot| of.at(a.coordinate, b.coordinate) * a.unit * b.unit;
+        let element = |a: &Slot, b: &Slot| {
+            let of_laws =
+                if a.joint == b.joint { spreads[a.joint].covariance[a.place][b.place] } else { 0.0 };
+            in_si(&total, a, b) + of_laws
+        };
+        let six = |of: &dyn Fn(&Slot, &Slot) -> f64, joint: usize| {
+            let mut six = [[0.0; 6]; 6];
+            let own = || slots.iter().filter(|slot| slot.joint == joint);
+            own().for_each(|a| own().for_each(|b| six[a.place][b.place] = of(a, b)));
+            six
+        };
+        let quantities = self.quantities(&at.point.coordinates, &total);
+        let unmoved: Vec<UnmovedQuantity> =
+            self.unmoved.iter().map(|own| own.unmoved(setup.fixture)).collect();
+        let joints = problem.places().zip(&self.laws).enumerate().map(|(place, ((first, law), laws))| {
+            let [k, d, _] = law.matrices(&at.point.coordinates[first..first + law.count()]);
+            let lowest = |first: usize| {
+                not_negative(law.stiffness, &free.point.coordinates, first, (&covariance, strain))
+            };
+            let mass = mass.filter(|_| place == 0);
+            JointFit {
+                stiffness: k,
+                damping: d.scale(1.0 / law.middle),
+                covariance: six(&element, place),
+                model_covariance: six(&|a, b| model.as_ref().map_or(0.0, |model| in_si(model, a, b)), place),
+                law_covariance: spreads[place].covariance,
+                length: length_between(
+                    (setup.fixture, &setup.fixture.joints()[setup.joints[place]]),
+                    (problem.test.quantities, &at.point.coordinates),
+                    (problem.own(), first, law),
+                    &total,
+                ),
+                chi2_per_dof: self.inflated.chi2_per_dof,
+                inflation: self.inflated.by,
+                strain,
+                is_on_the_boundary: !passive[place],
+                quantities: quantities.clone(),
+                unmoved: unmoved.clone(),
+                tests: JointTests {
+                    reciprocity: asymmetry(place, strain).map(|gain| (-0.5 * gain).exp()),
+                    definite: lowest(first),
+                    passive: lowest(first + law.stiffness.count()),
+                },
+                admissible: None,
+                laws: laws.clone(),
+                frfs: setup.recorded.pairs.clone(),
+                lines: setup.recorded.s.len(),
+                mass: mass.map(|(mass, std)| (mass, std.hypot(spreads[place].mass.sqrt()))),
+                scalar: law.stiffness == Form::Scalar,
+                likelihood: self.likelihood((first, law), &free.point.coordinates, &equations),
+            }
+        });
+        Ok(Found {
+            joints: joints.collect(),
+            elements: slots.iter().map(|slot| (slot.joint, ELEMENTS[slot.place])).collect(),
+            covariance: slots.iter().map(|a| slots.iter().map(|b| element(a, b)).collect()).collect(),
+        })
+    }
+
+    fn slots(&self) -> Vec<Slot> {
+        let of_joint = |(joint, (first, law)): (usize, (usize, &Dynamics))| {
+            let units = units(law);
+            let own = law.slots().iter().enumerate();
+            own.map(move |(index, &place)| Slot {
+                joint,
+                place,
+                coordinate: first + index,
+                unit: units[place],
+            })
+            .collect::<Vec<_>>()
+        };
+        self.problem.places().enumerate().flat_map(of_joint).collect()
+    }
+
+    /// The optimum with every c that would give out energy held to v vᵀ, in free coordinates, if there is such a c, and which joints are passive without.
+    fn held(&self, free: &Fitted) -> Result<(Option<Fitted>, Vec<bool>), SeveralError> {
+        let problem = self.problem;
+        let mut passive = vec![true; problem.laws.len()];
+        let mut at = free.point.coordinates.clone();
+        loop {
+            let mut changed = false;
+            for (joint, (first, law)) in problem.places().enumerate() {
+                let [_, d, _] = law.matrices(&at[first..first + law.count()]);
+                let scalar = law.stiffness == Form::Scalar;
+                let ok = d.at(0, 0) >= 0.0 && (scalar || (d.at(1, 1) >= 0.0 && d.determinant() >= 0.0));
+                // A c that is held is passive up to rounding.
+                if passive[joint] && !ok {
+                    (passive[joint], changed) = (false, true);
+                }
+            }
+            if !changed {
+                break;
+            }
+            let on_the_boundary = |law: &Dynamics| Dynamics { damping: boundary(law.damping), ..*law };
+            let held =
+                |(law, passive): (&Dynamics, &bool)| if *passive { *law } else { on_the_boundary(law) };
+            let laws = problem.laws.iter().zip(&passive).map(held).collect();
+            let (other, fitted) = refitted(problem, free, laws).ok_or(SeveralError::NoStart)?;
+            at = other.converted(&fitted.point.coordinates, &problem.laws);
+        }
+        if passive.iter().all(|passive| *passive) {
+            return Ok((None, passive));
+        }
+        let point = problem.point(at, None).ok_or(SeveralError::NoStart)?;
+        let others = problem.other_columns(&point).ok_or(SeveralError::NoStart)?;
+        Ok((Some(Fitted { point, others }), passive))
+    }
+
+    fn quantities(&self, at: &[f64], total: &Covariance) -> Vec<FittedQuantity> {
+        let (own, test) = (self.problem.own(), &self.problem.test);
+        let of = |(index, uncertain): (usize, &Uncertain)| {
+            uncertain.fitted(test.setup.fixture, at[own + index], total.std(own + index))
+        };
+        test.quantities.iter().enumerate().map(of).collect()
+    }
+
+    /// What the FRFs alone tell of one joint and of the quantities, the other joints and a mass integrated out.
+    fn likelihood(
+        &self,
+        (first, law): (usize, &Dynamics),
+        free: &[f64],
+        equations: &NormalEquations,
+    ) -> Option<JointLikelihood> {
+        let problem = self.problem;
+        let kept = (first..first + law.count()).chain(problem.own()..problem.parameters.len()).collect();
+        JointLikelihood::of(law, (free, kept), equations, &problem.parameters)
+    }
+
+    /// Which joints the FRFs leave undetermined, the others being given; all, if none by itself.
+    fn undetermined(&self, equations: &NormalEquations) -> SeveralError {
+        let (n, setup) = (equations.order, self.problem.test.setup);
+        let places: Vec<(usize, usize)> =
+            self.problem.places().map(|(first, law)| (first, first + law.count())).collect();
+        let name = |joint: usize| setup.fixture.joints()[setup.joints[joint]].name.clone();
+        let is_open = |&joint: &usize| {
+            let mut information = equations.information.clone();
+            for (_, (from, to)) in places.iter().enumerate().filter(|(other, _)| *other != joint) {
+                for m in *from..*to {
+                    let own = information[m * n + m];
+                    information[m * n + m] += 1e9 * if own > 0.0 { own } else { 1.0 };
+                }
+            }
+            Cholesky::of(n, &information).is_none()
+        };
+        let open: Vec<String> = (0..places.len()).filter(is_open).map(name).collect();
+        let joints = if open.is_empty() { (0..places.len()).map(name).collect() } else { open };
+        SeveralError::Undetermined { joints }
+    }
+}
