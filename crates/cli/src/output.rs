@@ -243,12 +243,8 @@ fn rename_all(parts: Vec<(&Path, NamedTempFile<File>)>, mut locks: Vec<Lock>) ->
         match rename(path, part) {
             Ok(was) => before.push((path, was)),
             Err(error) => {
-                let is_restored = before
-                    .into_iter()
-                    .rev()
-                    .map(|(path, was)| was.put_back(path))
-                    .fold(true, |all, one| all && one);
-                if !is_restored {
+                let put_back = |lost, (path, was): (_, Before)| lost + usize::from(!was.put_back(path));
+                if before.into_iter().rev().fold(0, put_back) > 0 {
                     locks.iter_mut().for_each(|lock| lock.doubtful.extend(lock.names.clone()));
                 }
                 return Err(Refusal::io(path, &error));
@@ -499,9 +495,12 @@ mod tests {
         assert_eq!(fs::read(scratch.0.join("one")).unwrap(), b"before");
     }
 
+    /// What ends a run.
+    type End = fn() -> io::Error;
+
     thread_local! {
         /// Steps that are still done, and what comes then.
-        static LEFT: Cell<Option<(usize, fn() -> io::Error)>> = const { Cell::new(None) };
+        static LEFT: Cell<Option<(usize, End)>> = const { Cell::new(None) };
     }
 
     pub fn step() -> io::Result<()> {
@@ -510,7 +509,10 @@ mod tests {
                 LEFT.set(None);
                 Err(end())
             }
-            Some((left, end)) => Ok(LEFT.set(Some((left - 1, end)))),
+            Some((left, end)) => {
+                LEFT.set(Some((left - 1, end)));
+                Ok(())
+            }
             None => Ok(()),
         }
     }

@@ -100,7 +100,9 @@ fn a_clamp_of_what_is_no_beam_and_standard_input_twice_are_refused() {
     ];
     bench.refused(&frame, &["--clamped is of a beam"]);
     let twice = ["init", "--beam", "500x40x6:steel", "--points-from", "-", "-", "-o", "a.json"];
-    bench.refused(&twice, &["given twice"]);
+    let recording = std::fs::read(shipped().join("hammer-test.uff")).unwrap();
+    let refused = bench.run_with_input(&twice, &recording);
+    assert!(String::from_utf8(refused.stderr).unwrap().contains("given twice") && bench.names().is_empty());
 }
 
 #[test]

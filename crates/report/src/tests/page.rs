@@ -81,7 +81,9 @@ fn the_policy_forbids_all_sources_and_nothing_refers_to_one() {
     let policy = html.split("Content-Security-Policy\" content=\"").nth(1).expect("a policy");
     let policy = policy.split('"').next().expect("its end");
     assert!(
-        policy.starts_with("default-src 'none'; base-uri 'none'; form-action 'none'; img-src data:; script-src 'sha256-"),
+        policy.starts_with(
+            "default-src 'none'; base-uri 'none'; form-action 'none'; img-src data:; script-src 'sha256-"
+        ),
         "{policy}"
     );
     assert!(!policy.replace("style-src-attr 'unsafe-inline'", "").contains("unsafe"), "{policy}");
