@@ -547,7 +547,6 @@ const ARGUMENTS: &[(&str, &str)] = &[
     ("decompose two.json frf.uff --map 1:+z=7:+y -o out", "`7`|1, 2, 3, 4"),
     ("decompose two.json frf.uff --assume-units bananas -o out", "`bananas`|g,lbf"),
     ("decompose two.json frf.uff frf.uff -o out", "given already|leave one"),
-    ("decompose two.json - - -o out", "standard input|twice"),
     ("decompose two.json frf.uff -o two.json", "two.json"),
     ("diagnose two.json frf.uff --hold-out 9/9 -o out", "9/9|--hold-out"),
     ("diagnose two.json frf.uff --hold-out 41 -o out", "response over reference"),
