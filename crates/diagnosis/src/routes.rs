@@ -182,8 +182,9 @@ fn by_lines(
         (Start::Anew, Some(part)) => Search::continued(fitter, within, part),
         (Start::Anew, None) => Search::searched(fitter, within),
     };
-    if let Some(fewer) = without_imitations(fitter, &search) {
-        match modal.filter(|modal| modal.explains()) {
+    let explaining = modal.filter(|modal| modal.explains());
+    if let Some(fewer) = without_imitations(fitter, &search, explaining.is_some()) {
+        match explaining {
             Some(modal) => return by_modes(fitter, &search, modal, division.as_ref()),
             None => search = fewer,
         }

@@ -60,9 +60,12 @@ impl Search {
         if names.is_empty() {
             return None;
         }
-        let (work, share) = (fitter.observation.work(), fitter.settings.selection.among_few);
+        let (share, effects) = fitter.settings.selection.among_few;
+        let mut settings = fitter.settings.clone();
+        settings.selection.effects = effects;
         let few = Search { candidates: names, ..self.clone() };
-        let found = work.aside(share, || Search::searched(fitter, few));
+        let fewer = Fitter { settings: &settings, ..*fitter };
+        let found = fitter.observation.work().aside(share, || Search::searched(&fewer, few));
         let explained =
             found.repaired.hypothesis.effect_count() > 0 && explains(fitter, &found.repaired, true);
         explained.then(|| Search { candidates: self.candidates.clone(), ..found })

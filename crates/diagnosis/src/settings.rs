@@ -116,9 +116,9 @@ pub struct SelectionSettings {
     pub wrong: usize,
     /// Penalties that an effect must be worth, faded by a quarter, to be kept without a further fit.
     pub clear: f64,
-    /// Share of all work that a search among the names may take which modes hold most probable but do not explain: two effects in lumped structures took a tenth,
-    /// one a twentieth.
-    pub among_few: f64,
+    /// Share of all work that a search among the names may take which modes hold most probable but do not explain (two effects in lumped structures took a tenth,
+    /// one a twentieth), and effects at the most: three at once imitate almost anything.
+    pub among_few: (f64, usize),
     /// Rounds of adding and dropping.
     pub rounds: usize,
     /// Effects at the most: three at once imitate almost anything.
@@ -307,7 +307,7 @@ impl Default for Settings {
                 deviated: 8.0,
                 wrong: 3,
                 clear: 2.0,
-                among_few: 0.1,
+                among_few: (0.1, 2),
                 rounds: 5,
                 effects: 3,
                 exchanges: 2,

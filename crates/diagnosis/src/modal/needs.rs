@@ -13,8 +13,9 @@ use crate::modal::prior::priors;
 use crate::search::Search;
 use jointscope_fixture::Effect;
 
-/// A search on lines but for the effects that modes do not need and lines hardly miss; `None` where there are none, or modes do not tell.
-pub(crate) fn without_imitations(fitter: &Fitter, search: &Search) -> Option<Search> {
+/// A search on lines but for the effects that modes do not need and lines hardly miss; `None` where there are none, or modes do not tell. Modes that are `explained`
+/// by other names tell in any case, others only where errors of the usual size would do in an effect's stead.
+pub(crate) fn without_imitations(fitter: &Fitter, search: &Search, explained: bool) -> Option<Search> {
     if search.repaired.hypothesis.effect_count() == 0 {
         return None;
     }
@@ -24,7 +25,8 @@ pub(crate) fn without_imitations(fitter: &Fitter, search: &Search) -> Option<Sea
         return None;
     }
     let mut repaired = search.repaired.clone();
-    while let Some(index) = least_needed(fitter, &features, &search.candidates, &repaired.hypothesis) {
+    let least_needed = |h: &Hypothesis| least_needed(fitter, &features, &search.candidates, h, explained);
+    while let Some(index) = least_needed(&repaired.hypothesis) {
         let without = repaired.hypothesis.without(index);
         let without = match without.effect_count() {
             0 => search.refitted.clone(),
@@ -45,6 +47,7 @@ fn least_needed(
     features: &Features,
     candidates: &[Candidate],
     hypothesis: &Hypothesis,
+    explained: bool,
 ) -> Option<usize> {
     let settings = &fitter.settings.modal;
     let problem = features.problem(fitter.observation.work());
@@ -54,10 +57,9 @@ fn least_needed(
         problem.fitted(hypothesis, &priors(hypothesis, &company?))
     };
     let with = fitted(hypothesis)?.ln;
-    // What only more than usual errors could stand for imitates none.
-    let usual = |fit: &ModalFit| problem.is_adequate(fit, settings.adequate);
+    let tells = |fit: &ModalFit| explained || problem.is_adequate(fit, settings.adequate);
     let gain = |index: usize| {
-        let without = fitted(&hypothesis.without(index)).filter(usual)?;
+        let without = fitted(&hypothesis.without(index)).filter(tells)?;
         Some((index, with - without.ln))
     };
     let gains = (0..hypothesis.effect_count()).filter_map(gain);
