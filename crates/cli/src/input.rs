@@ -17,8 +17,8 @@ use jointscope::recordings::Source;
 use serde_json::Value;
 use sha2::{Digest, Sha256};
 
-use crate::output;
 use crate::refusal::Refusal;
+use crate::replacing;
 
 /// A fixture with the path of its file.
 pub struct FixtureFile {
@@ -103,7 +103,7 @@ pub fn answer(path: &Path) -> Result<Value, Refusal> {
 
 /// The bytes of a file as JSON.
 pub fn parsed(path: &Path, bytes: &[u8]) -> Result<Value, Refusal> {
-    if output::is_unfinished(path) {
+    if replacing::is_unfinished(path) {
         return Err(Refusal::at(
             path,
             "may not belong to the files beside it, for the run that wrote them was ended in the middle; run that command again",

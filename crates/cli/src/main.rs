@@ -13,6 +13,7 @@ mod output;
 mod progress;
 mod recording;
 mod refusal;
+mod replacing;
 mod values;
 
 use std::io::{ErrorKind, Write};
