@@ -1,7 +1,6 @@
 //! What a reader wants first: what is missing and how sure that is, how much better the model is for it, what to do next; and where it sits.
 
 use jointscope_diagnosis::{Departure, Estimate, Finding, Verdict};
-use jointscope_fixture::EffectKind;
 use jointscope_wording::{Remarks, effect_name};
 use maud::{Markup, html};
 
@@ -133,9 +132,9 @@ fn steps(subject: &Subject) -> Vec<String> {
         ));
     }
     let shown = &diagnosis.findings[..diagnosis.findings.len().min(SHOWN)];
-    for alike in shown.chunk_by(|a, b| advice(a.effect.kind) == advice(b.effect.kind)) {
+    for alike in shown.chunk_by(|a, b| advice(a) == advice(b)) {
         let names: Vec<String> = alike.iter().map(|finding| effect_name(&finding.effect)).collect();
-        steps.push(format!("{}: {}.", capitalised(&names.join(", ")), advice(alike[0].effect.kind)));
+        steps.push(format!("{}: {}.", capitalised(&names.join(", ")), advice(&alike[0])));
     }
     let is_open =
         |finding: &Finding| finding.alternatives.iter().any(|(_, p)| *p >= DOUBT) || finding.is_doubtful();
@@ -153,38 +152,6 @@ fn steps(subject: &Subject) -> Vec<String> {
 }
 
 /// What to look for on the structure, or to measure.
-fn advice(kind: EffectKind) -> &'static str {
-    match kind {
-        EffectKind::AddedMass => "look for what weighs that much there, or weigh the part",
-        EffectKind::SensorMass => "weigh the sensor with its cable, or load the other points alike",
-        EffectKind::Support
-        | EffectKind::AttachedResonator
-        | EffectKind::Bypass
-        | EffectKind::ParallelStiffness => {
-            "look for what touches or hangs there (cable, suspension, cover), and test once without it"
-        }
-        EffectKind::InterfaceCompliance | EffectKind::Footing => {
-            "inspect the interface (weld, glue line, bolts), and keep its compliance in the model"
-        }
-        EffectKind::ShearDeformation | EffectKind::BodyFlexibility | EffectKind::JointMass => {
-            "nothing need be broken: the model simplifies it away, so put it in"
-        }
-        EffectKind::StiffnessChange | EffectKind::JointLength | EffectKind::QuantityError => {
-            "measure dimensions and material again; where they are as stated, look for damage"
-        }
-        EffectKind::LossFactor | EffectKind::Relaxation | EffectKind::Springpot => {
-            "put the damping law into the model; a test at another temperature confirms it"
-        }
-        EffectKind::PointOffset => "measure where sensor and hammer really are",
-        EffectKind::ChannelGain
-        | EffectKind::ChannelDelay
-        | EffectKind::ChannelHighpass
-        | EffectKind::ChannelResonance => {
-            "calibrate that channel, or repeat one FRF with another sensor and cable"
-        }
-        EffectKind::ExponentialWindow => "state the decay of the window that the analyser used",
-        EffectKind::CubicStiffness | EffectKind::Friction | EffectKind::Gap => {
-            "repeat the test at another level of force"
-        }
-    }
+fn advice(finding: &Finding) -> &'static str {
+    finding.effect.kind.spec().words.advice
 }
