@@ -116,6 +116,16 @@ pub fn consistent_mass(mass_per_length: f64, length: f64) -> Matrix4 {
     .map(|row| row.map(|e| factor * e))
 }
 
+/// Mass of a joint, kg, on (y, θ) of both ends: consistent along its length, m, and half of it at each end where it has none.
+pub fn mass_of_ends(mass: f64, length: f64) -> Matrix4 {
+    if length > 0.0 {
+        return consistent_mass(mass / length, length);
+    }
+    let mut halves = [[0.0; 4]; 4];
+    (halves[0][0], halves[2][2]) = (0.5 * mass, 0.5 * mass);
+    halves
+}
+
 /// Consistent rotary inertia of an Euler–Bernoulli element, ρI in kg·m.
 pub fn consistent_rotary_inertia(rotary_inertia: f64, length: f64) -> Matrix4 {
     let l = length;
@@ -167,6 +177,15 @@ mod tests {
             prop_assert!((kinetic([1.0, 0.0, 1.0, 0.0]) / (rho * l) - 1.0).abs() < 1e-12);
             // Rotation about the near end: ρ L³ / 3.
             prop_assert!((kinetic([0.0, 1.0, l, 1.0]) / (rho * l.powi(3) / 3.0) - 1.0).abs() < 1e-12);
+        }
+
+        #[test]
+        fn a_joint_weighs_what_it_weighs_at_any_length(l in 0.0f64..1.0, mass in 0.01f64..10.0) {
+            for length in [0.0, l] {
+                let rigid = [1.0, 0.0, 1.0, 0.0];
+                let inertial: f64 = times(&mass_of_ends(mass, length), rigid).iter().zip(rigid).map(|(a, b)| a * b).sum();
+                prop_assert!((inertial - mass).abs() < 1e-12 * mass);
+            }
         }
 
         #[test]

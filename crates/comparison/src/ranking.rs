@@ -1,3 +1,4 @@
+use jointscope_linalg::semidefinite_factor;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use std::cmp::Ordering;
@@ -45,7 +46,7 @@ impl Ranking {
         let count = values.len();
         let mut order: Vec<usize> = (0..count).collect();
         order.sort_by(|a, b| values[*a].abs().total_cmp(&values[*b].abs()));
-        let factor = semidefinite_factor(covariance, count);
+        let factor = semidefinite_factor(count, covariance, ROUNDING);
         let mut random = ChaCha8Rng::seed_from_u64(1);
         // What is drawn alike is in either order as often.
         let mut right = 0.0;
@@ -55,7 +56,9 @@ impl Ranking {
         let mut sorted: Vec<usize> = order.clone();
         for _ in 0..DRAWS {
             normals.fill_with(|| normal(&mut random));
-            for (draw, (value, row)) in drawn.iter_mut().zip(values.iter().zip(&factor)) {
+            for (draw, (value, row)) in
+                drawn.iter_mut().zip(values.iter().zip(factor.chunks_exact(count.max(1))))
+            {
                 let error: f64 = row.iter().zip(&normals).map(|(a, b)| a * b).sum();
                 *draw = (value + error).abs();
             }
@@ -92,24 +95,6 @@ impl Ranking {
 
 /// Share of a variance below which what other values leave of it is rounding.
 const ROUNDING: f64 = 1e-13;
-
-/// L of a covariance L Lᵀ, by rows up to the diagonal; what others fix has a zero there.
-fn semidefinite_factor(covariance: &[f64], count: usize) -> Vec<Vec<f64>> {
-    let mut rows: Vec<Vec<f64>> = Vec::with_capacity(count);
-    for i in 0..count {
-        let mut row: Vec<f64> = Vec::with_capacity(i + 1);
-        for (j, above) in rows.iter().enumerate() {
-            let dot: f64 = row.iter().zip(above).map(|(a, b)| a * b).sum();
-            let pivot = above[j];
-            row.push(if pivot > 0.0 { (covariance[i * count + j] - dot) / pivot } else { 0.0 });
-        }
-        let variance = covariance[i * count + i];
-        let rest = variance - row.iter().map(|entry| entry * entry).sum::<f64>();
-        row.push(if rest > ROUNDING * variance { rest.sqrt() } else { 0.0 });
-        rows.push(row);
-    }
-    rows
-}
 
 /// A standard normal number (Box and Muller).
 fn normal(random: &mut ChaCha8Rng) -> f64 {

@@ -4,7 +4,7 @@ use crate::joint::symmetric;
 use crate::numbering::Numbering;
 use crate::numbers::short;
 use crate::{Export, ExportError, ExportOptions, Joint, JointEnd, JointLine};
-use jointscope_beam::{Matrix4, consistent_mass};
+use jointscope_beam::mass_of_ends;
 use jointscope_comparison::{Decomposed, Ends, JointMass, JointTests, Matrix};
 
 /// Probability below which a test of what physics allows fails, as `decompose` has it.
@@ -111,16 +111,6 @@ impl Estimate {
     }
 }
 
-/// Mass on (y, θ) of both ends: consistent, as the fit has it; halves at the ends of a joint without length.
-fn on_both_ends(mass: f64, length: f64) -> Matrix4 {
-    if length > 0.0 {
-        return consistent_mass(mass / length, length);
-    }
-    let mut halves = [[0.0; 4]; 4];
-    (halves[0][0], halves[2][2]) = (0.5 * mass, 0.5 * mass);
-    halves
-}
-
 /// Remarks on what the estimate is worth; refuses one that is of no use.
 fn judged(decomposed: &Decomposed, anyway: bool) -> Result<Vec<String>, ExportError> {
     let Some(judgement) = &decomposed.judgement else { return Ok(Vec::new()) };
@@ -184,7 +174,7 @@ fn placed(
         stiffness: estimate.stiffness,
         damping: estimate.damping,
         structural: [[0.0; 2]; 2],
-        mass: estimate.mass.map(|mass| on_both_ends(mass.value, ends.length)),
+        mass: estimate.mass.map(|mass| mass_of_ends(mass.value, ends.length)),
         std: estimate.std,
         covariance: estimate.covariance,
         lines: Vec::new(),

@@ -128,6 +128,26 @@ pub fn solve_positive_definite(a: &mut [f64], b: &mut [f64]) -> bool {
     Cholesky::of(b.len(), a).map(|factor| factor.solve_in_place(b)).is_some()
 }
 
+/// L of a symmetric positive semidefinite A = L Lᵀ, both row-major: zero in the columns of what others fix, of whose own entry they leave no more than the share `rounding`.
+pub fn semidefinite_factor(order: usize, matrix: &[f64], rounding: f64) -> Vec<f64> {
+    let mut lower = vec![0.0; order * order];
+    for i in 0..order {
+        for j in 0..i {
+            let known: f64 = (0..j).map(|k| lower[i * order + k] * lower[j * order + k]).sum();
+            let pivot: f64 = lower[j * order + j];
+            if pivot > 0.0 {
+                lower[i * order + j] = (matrix[i * order + j] - known) / pivot;
+            }
+        }
+        let own = matrix[i * order + i];
+        let rest = own - lower[i * order..i * order + i].iter().map(|entry| entry * entry).sum::<f64>();
+        if rest > rounding * own {
+            lower[i * order + i] = rest.sqrt();
+        }
+    }
+    lower
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -202,5 +222,18 @@ mod tests {
         assert_eq!(Cholesky::of(1, &[f64::NAN]), None);
         assert_eq!(Cholesky::of(1, &[f64::INFINITY]), None);
         assert_eq!(Cholesky::of(2, &[1.0]), None);
+    }
+
+    #[test]
+    fn what_others_fix_has_no_column_of_its_own_in_a_semidefinite_factor() {
+        // The third is the sum of the first two.
+        let covariance = [4.0, 1.0, 5.0, 1.0, 9.0, 10.0, 5.0, 10.0, 15.0];
+        let lower = semidefinite_factor(3, &covariance, 1e-12);
+        for e in 0..9 {
+            let (i, j) = (e / 3, e % 3);
+            let product: f64 = (0..3).map(|k| lower[i * 3 + k] * lower[j * 3 + k]).sum();
+            assert!((product - covariance[e]).abs() < 1e-12, "entry {i}, {j}: {product}");
+        }
+        assert_eq!([lower[8], lower[1], lower[2], lower[5]], [0.0; 4]);
     }
 }

@@ -46,7 +46,7 @@ mod sparse_modes;
 #[cfg(feature = "sparse")]
 mod sparse_space;
 
-pub use cholesky::{Cholesky, solve_positive_definite};
+pub use cholesky::{Cholesky, semidefinite_factor, solve_positive_definite};
 pub use eigen::generalized_symmetric_eigen;
 pub use exponential::matrix_exponential;
 pub use general_eigen::complex_eigenvalues;

@@ -61,6 +61,13 @@ pub(crate) fn points(
     Ok(chosen.into_iter().map(|i| all[i].clone()).collect())
 }
 
+/// The fixture where FRFs are recorded, or considered between these points: what only other points would show is exact.
+pub(crate) fn with_idle_points_exact(fixture: Fixture, points: &[String], present: &[FrfPair]) -> Fixture {
+    let driving = points.iter().map(|point| FrfPair::transverse(point, point));
+    let channels: Vec<FrfPair> = driving.chain(present.iter().cloned()).collect();
+    jointscope_diagnosis::with_idle_points_exact(fixture, &channels)
+}
+
 /// The FRFs between these points that were not recorded yet.
 pub(crate) fn frfs(points: &[String], present: &[FrfPair]) -> Vec<FrfPair> {
     let all = points.iter().flat_map(|reference| points.iter().map(move |response| (response, reference)));

@@ -12,7 +12,7 @@ use crate::products::Products;
 use crate::scene::Scene;
 use crate::suggestion::{ExpectedInterval, Suggestion};
 use crate::{PlanError, says};
-use jointscope_diagnosis::{Fit, Hypothesis, Observation, with_idle_points_exact};
+use jointscope_diagnosis::{Fit, Hypothesis, Observation};
 use jointscope_fixture::{Fixture, Joint, JointLaw, QuantityKey};
 use jointscope_linalg::Cholesky;
 use jointscope_lumped::nominal_stiffness;
@@ -133,12 +133,7 @@ impl Plan {
         };
         let freed = with_free_joint(fixture, wanted)?;
         let points = candidates::points(fixture, &options.points, present)?;
-        let channels: Vec<FrfPair> = points
-            .iter()
-            .map(|point| FrfPair::transverse(point, point))
-            .chain(present.iter().cloned())
-            .collect();
-        let freed = with_idle_points_exact(freed, &channels);
+        let freed = candidates::with_idle_points_exact(freed, &points, present);
         let nominal = Hypothesis::nominal(&freed, options.exact);
         let (hypothesis, lines, noise, inflation) = match start {
             Start::Recorded(observation) => {

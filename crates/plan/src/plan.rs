@@ -11,7 +11,7 @@ use crate::says;
 use crate::scene::Scene;
 use crate::softening::Softening;
 use crate::suggestion::Suggestion;
-use jointscope_diagnosis::{Hypothesis, Observation, with_idle_points_exact};
+use jointscope_diagnosis::{Hypothesis, Observation};
 use jointscope_fixture::{Effect, Fixture, Place};
 use jointscope_linalg::Cholesky;
 use jointscope_spectra::FrfPair;
@@ -94,12 +94,7 @@ impl Plan {
         let observation = &remaining.observation;
         let present = observation.pairs();
         let points = candidates::points(fixture, &options.points, present)?;
-        let channels: Vec<FrfPair> = points
-            .iter()
-            .map(|point| FrfPair::transverse(point, point))
-            .chain(present.iter().cloned())
-            .collect();
-        let fixture = with_idle_points_exact(fixture.clone(), &channels);
+        let fixture = candidates::with_idle_points_exact(fixture.clone(), &points, present);
         let model = remaining.repaired.in_fixture(&fixture, options.exact);
         let softening = remaining.model_error.map(|error| Softening::of(&error, &model, observation));
         let softened = softening.and_then(|softening| softening.softened(&model, observation));

@@ -13,7 +13,7 @@
 //! of its χ² and priors, as the diagnosis weighs names.
 
 use crate::products::Products;
-use jointscope_linalg::Cholesky;
+use jointscope_linalg::{Cholesky, semidefinite_factor};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
@@ -109,7 +109,7 @@ impl Rivals {
         let mut sure = 0.0;
         let mut told_apart = vec![vec![0.0; count]; count];
         let total: f64 = weights.iter().sum();
-        let noise = semidefinite_factor(self.products.order(), &self.products.entries);
+        let noise = semidefinite_factor(self.products.order(), &self.products.entries, ROUNDING);
         for truth in 0..count {
             let mut random = ChaCha8Rng::seed_from_u64(seed);
             random.set_stream(truth as u64);
@@ -159,26 +159,6 @@ impl Rivals {
         };
         (0..self.capacitances.len()).map(cost).collect()
     }
-}
-
-/// The lower factor of a matrix that may have no full rank: columns without a pivot of their own are left out.
-fn semidefinite_factor(order: usize, matrix: &[f64]) -> Vec<f64> {
-    let mut lower = vec![0.0; order * order];
-    for j in 0..order {
-        let row = |lower: &[f64], i: usize| lower[i * order..i * order + j].to_vec();
-        let of_j = row(&lower, j);
-        let pivot = matrix[j * order + j] - of_j.iter().map(|a| a * a).sum::<f64>();
-        if pivot <= ROUNDING * matrix[j * order + j] {
-            continue;
-        }
-        let root = pivot.sqrt();
-        lower[j * order + j] = root;
-        for i in j + 1..order {
-            let dot: f64 = lower[i * order..i * order + j].iter().zip(&of_j).map(|(a, b)| a * b).sum();
-            lower[i * order + j] = (matrix[i * order + j] - dot) / root;
-        }
-    }
-    lower
 }
 
 /// A standard normal number, by the polar method.

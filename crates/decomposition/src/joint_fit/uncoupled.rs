@@ -10,7 +10,7 @@ use super::law::{MOST, Placed};
 use super::problem::Setup;
 use super::recorded::Recorded;
 use crate::sides::with_effects_of;
-use jointscope_beam::{Matrix4, consistent_mass};
+use jointscope_beam::{Matrix4, mass_of_ends};
 use jointscope_fixture::Fixture;
 use jointscope_linalg::{ComplexMatrix2, LuWorkspace, Matrix2};
 use jointscope_lumped::{Instrument, MeasuringChain, Model, Station};
@@ -344,16 +344,6 @@ fn on_relative(station: usize, lengths: &[f64], masses: &[[f64; 4]]) -> Vec<(usi
         on.extend(own.filter(|(_, weight)| *weight != 0.0));
     }
     on
-}
-
-/// The consistent mass matrix of a joint's ends; half at each where it has no length.
-fn mass_of_ends(mass: f64, length: f64) -> Matrix4 {
-    if length > 0.0 {
-        return consistent_mass(mass / length, length);
-    }
-    let mut halves = [[0.0; 4]; 4];
-    (halves[0][0], halves[2][2]) = (0.5 * mass, 0.5 * mass);
-    halves
 }
 
 /// Columns l of a lower triangular factor, M = Σ l lᵀ, of a matrix that is positive semidefinite.
