@@ -25,8 +25,8 @@ pub(crate) fn without_imitations(fitter: &Fitter, search: &Search, explained: bo
         return None;
     }
     let mut repaired = search.repaired.clone();
-    let least_needed = |h: &Hypothesis| least_needed(fitter, &features, &search.candidates, h, explained);
-    while let Some(index) = least_needed(&repaired.hypothesis) {
+    let of = (&features, explained);
+    while let Some(index) = least_needed(fitter, of, &search.candidates, &repaired.hypothesis) {
         let without = repaired.hypothesis.without(index);
         let without = match without.effect_count() {
             0 => search.refitted.clone(),
@@ -44,10 +44,9 @@ pub(crate) fn without_imitations(fitter: &Fitter, search: &Search, explained: bo
 /// The effect of a hypothesis that modes need least, by its index; `None` where they need all. That it is one name of many has been paid for on lines.
 fn least_needed(
     fitter: &Fitter,
-    features: &Features,
+    (features, explained): (&Features, bool),
     candidates: &[Candidate],
     hypothesis: &Hypothesis,
-    explained: bool,
 ) -> Option<usize> {
     let settings = &fitter.settings.modal;
     let problem = features.problem(fitter.observation.work());
