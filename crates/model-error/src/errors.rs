@@ -28,7 +28,8 @@ pub struct ErrorSizes {
 
 /// Number of kinds.
 pub const KINDS: usize = 7;
-/// Place of the gain among them.
+/// Places of mass lines and gains among them.
+pub(crate) const MASS_LINE: usize = 4;
 pub(crate) const GAIN: usize = 6;
 
 impl Default for ErrorSizes {

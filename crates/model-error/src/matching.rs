@@ -80,6 +80,38 @@ impl Pairing {
         Pairing { pairs, unmodelled, unseen }
     }
 
+    /// This pairing with a mode that has no partner in the place of the next one that has, above or below: where a model is far off, its mode may be taken for another's
+    /// neighbour, and no fit leads from there.
+    pub fn others(&self, recorded: &RecordedModes, modelled: &ModelledModes) -> Vec<Self> {
+        let mut others = Vec::new();
+        let swapped = |at: usize, pair: (usize, usize), unseen: f64| {
+            let mut other = Pairing { unseen, ..self.clone() };
+            other.pairs[at] = pair;
+            other
+        };
+        let unseen = |m: usize| visible(recorded, &modelled.modes[m]).min(UNSEEN);
+        for r in (0..recorded.modes.len()).filter(|&r| recorded.modes[r].resolved) {
+            if self.pairs.iter().all(|(other, _)| *other != r) {
+                let above = self.pairs.partition_point(|(other, _)| *other < r);
+                let next = [above.checked_sub(1), (above < self.pairs.len()).then_some(above)];
+                others.extend(
+                    next.into_iter().flatten().map(|at| swapped(at, (r, self.pairs[at].1), self.unseen)),
+                );
+            }
+        }
+        for m in (0..modelled.modes.len()).filter(|&m| alone(recorded, &modelled.modes[m]) > 0.0) {
+            if self.pairs.iter().all(|(_, other)| *other != m) {
+                let above = self.pairs.partition_point(|(_, other)| *other < m);
+                let next = [above.checked_sub(1), (above < self.pairs.len()).then_some(above)];
+                others.extend(next.into_iter().flatten().map(|at| {
+                    let (r, had) = self.pairs[at];
+                    swapped(at, (r, m), self.unseen + unseen(m) - unseen(had))
+                }));
+            }
+        }
+        others
+    }
+
     /// What modes without a partner add to the logarithm of the evidence, nats: recorded ones as modes of anything, those of the model by half the χ² that the
     /// recording would show of them, 60 nats at most.
     pub fn alone(&self) -> f64 {

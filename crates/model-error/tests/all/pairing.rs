@@ -59,6 +59,32 @@ fn a_spurious_mode_of_the_recording_is_left_alone() {
 }
 
 #[test]
+fn a_mode_without_a_partner_may_take_that_of_either_neighbour() {
+    let (recorded, model) = &*SIX;
+    // Of a recorded mode that has none …
+    let mut with = recorded.clone();
+    let mut spurious = with.modes[2].clone();
+    spurious.pole.omega = 0.5 * (with.modes[2].pole.omega + with.modes[3].pole.omega);
+    spurious.residues = vec![Complex64::new(0.0, 0.3), Complex64::new(0.4, 0.0), Complex64::new(0.0, -0.5)];
+    with.modes.insert(3, spurious);
+    let pairing = Pairing::of(&with, model);
+    let others: Vec<_> = pairing.others(&with, model).into_iter().map(|other| other.pairs).collect();
+    let own = [(0, 0), (1, 1), (2, 2), (4, 3), (5, 4), (6, 5)];
+    let [mut below, mut above] = [own; 2];
+    (below[2], above[3]) = ((3, 2), (3, 3));
+    assert_eq!(others, [below, above]);
+    // … and of a mode of the model that has none, which then costs what its neighbour would if the recording did not show it.
+    let mut fewer = recorded.clone();
+    fewer.modes.remove(5);
+    let pairing = Pairing::of(&fewer, model);
+    let [other] = &pairing.others(&fewer, model)[..] else { panic!("one neighbour alone") };
+    assert_eq!((pairing.pairs[4], other.pairs[4]), ((4, 4), (4, 5)));
+    // Both are as plain as any: the most that one may cost.
+    assert_eq!((pairing.alone(), other.alone()), (-60.0, -60.0));
+    assert!(Pairing::of(recorded, model).others(recorded, model).is_empty());
+}
+
+#[test]
 fn a_mode_of_the_model_that_a_recording_does_not_show_costs_half_its_chi_square() {
     let (recorded, model) = &*SIX;
     // A floor alone, so that every line weighs the same.
