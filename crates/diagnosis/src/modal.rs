@@ -11,6 +11,8 @@
 //! * [`prior`]: what is known of parameters beforehand;
 //! * [`sizes`]: what is known of the sizes of error, and what a fit says of them;
 //! * [`needs`]: which effects modes need that were found on lines;
+//! * [`searcher`]: what all steps of a search share;
+//! * [`starts`]: where fits set out;
 //! * [`search`]: every candidate, alone and beside others;
 //! * [`judgement`]: what it comes to: names with their probabilities and intervals, and errors.
 
@@ -21,7 +23,9 @@ mod judgement;
 mod needs;
 mod prior;
 mod search;
+mod searcher;
 mod sizes;
+mod starts;
 
 pub(crate) use features::recorded;
 pub(crate) use judgement::{ModalJudgement, explains};

@@ -139,6 +139,10 @@ pub struct ModalSettings {
     pub refined: (usize, usize),
     /// Starts of each that is fitted alone, and of the best of them (as many as are `tried`) where none explains the modes so.
     pub starts: (usize, usize),
+    /// Starts that are fitted in any case because they have a partner for a recorded mode that had none.
+    pub partnering: usize,
+    /// Most probable names that are fitted from the quantities of others too, how many of these, and ln p below the best up to which.
+    pub exchanged: (usize, usize, f64),
     /// How often a fit goes on that came to the end of its start's reach.
     pub farther: usize,
     /// Starts that are fitted in any case, and how far in ln p the density of another may lie below the best of these fits, if that needs no more than usual errors, to be
@@ -205,6 +209,8 @@ impl Default for ModalSettings {
             own: 0.2,
             refined: (20, 6),
             starts: (2, 8),
+            partnering: 4,
+            exchanged: (4, 2, 30.0),
             farther: 4,
             foremost: (8, 150.0),
             costly: 0.1,

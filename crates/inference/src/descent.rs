@@ -140,6 +140,8 @@ pub struct Settings {
     pub convergence: Convergence,
     /// Derivatives serve for as long as a step gains this share of their first one's gain; `None` takes them anew for every step.
     pub reuse: Option<f64>,
+    /// Whether derivatives that a descent is given were taken at its start.
+    pub fresh: bool,
     /// Whether a fit may be called converged by derivatives that were taken elsewhere.
     pub trust_old: bool,
     /// Whether the last steps use [`Precision::Exact`] derivatives.
@@ -162,6 +164,7 @@ impl Default for Settings {
             damping: Damping { initial: 1e-6, decrease: 0.1, least: 1e-15, raised: 0.0, most: 1e8 },
             convergence: Convergence { gain: 0.0, share: 1e-9, floor: 0.0 },
             reuse: None,
+            fresh: false,
             trust_old: false,
             exact_at_end: false,
             limit: None,
@@ -203,7 +206,7 @@ pub fn descend<P: LeastSquares>(
             && settings.limit.is_some_and(|limit| objective - limit.objective <= limit.reach)
     };
     let mut precision = if within_reach(objective) { Precision::Exact } else { Precision::Rough };
-    let mut fresh = nearby.is_none();
+    let mut fresh = nearby.is_none() || settings.fresh;
     let mut derivatives = match nearby {
         Some(nearby) => nearby,
         None => problem.derivatives(&point, precision)?,

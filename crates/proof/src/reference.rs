@@ -32,6 +32,7 @@ const SETTINGS: Settings = Settings {
     damping: Damping { initial: 0.0, decrease: 0.0, least: 0.0, raised: 1e-3, most: 10.0 },
     convergence: Convergence { gain: 1e-2, share: 0.0, floor: 0.0 },
     reuse: Some(0.0),
+    fresh: false,
     trust_old: false,
     exact_at_end: false,
     limit: None,

@@ -1,7 +1,7 @@
 //! The modes of two states of a structure side by side.
 
 use crate::modal::fit::ModalFit;
-use crate::modal::search::Named;
+use crate::modal::searcher::Named;
 use crate::{ModeChange, ModeState};
 use jointscope_model_error::{Pairing, Pole, RecordedMode, RecordedModes};
 use std::f64::consts::TAU;

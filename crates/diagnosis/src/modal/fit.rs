@@ -3,6 +3,7 @@
 use crate::Hypothesis;
 use crate::modal::prior::Prior;
 use crate::work::Work;
+use jointscope_fixture::Fixture;
 use jointscope_inference::{
     Convergence, Covariance, Damping, LeastSquares, NormalEquations, Precision, Settings, descend, dot,
 };
@@ -49,12 +50,14 @@ pub(crate) struct ModalFit {
 
 /// The sizes of error that a fit sets out with. One that begins with errors too small follows whatever features are recorded most sharply, and its errors then grow
 /// to suit it; one that begins with large ones may rest content with them.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum SetOut {
     /// The usual ones.
     Usual,
     /// These, and where the fit ends with larger ones also those that the start asks for; the more probable end counts.
     Both,
+    /// Those of a fit nearby besides.
+    Beside(ErrorSizes),
 }
 
 /// Values of an FRF that the search for a model's poles, and following known ones, cost about.
@@ -62,8 +65,10 @@ const SEARCHED: usize = 1000;
 const FOLLOWED: usize = 300;
 /// Step of differences, in prior standard deviations and at most in coordinates.
 const DIFFERENCE: (f64, f64) = (1e-3, 2e-3);
-/// Fits at sizes of the error that are taken anew after each, at most, and the gain in ln p at which that ends.
-const ROUNDS: usize = 8;
+/// Descents at sizes of the error that are taken anew after each, at most, and the gain in ln p at which that ends. Each goes as far as few sets of derivatives lead:
+/// what is fitted closely at sizes that are about to change is fitted again.
+const ROUNDS: usize = 20;
+const DERIVATIVES: usize = 2;
 const CONVERGED: f64 = 0.02;
 /// Factor by which a size may shrink from one round to the next: where errors are next to none, a fit that starts far away hangs on whatever is recorded most sharply.
 const SHRINK: f64 = 0.1;
@@ -126,7 +131,11 @@ impl<'a> Problem<'a> {
         self.work.count(SEARCHED * self.recorded.frfs());
         let modelled = ModelledModes::of(&fixture, self.recorded)?;
         let pairing = Pairing::of(self.recorded, &modelled);
-        let shapes = Shapes::of(&fixture, self.recorded, &modelled.poles())?;
+        self.paired(&fixture, modelled, pairing)
+    }
+
+    fn paired(&self, fixture: &Fixture, modelled: ModelledModes, pairing: Pairing) -> Option<Standing> {
+        let shapes = Shapes::of(fixture, self.recorded, &modelled.poles())?;
         let comparison = Comparison::new(self.recorded, &pairing, &modelled, &shapes);
         Some(Standing { modelled, pairing, comparison })
     }
@@ -170,6 +179,23 @@ impl<'a> Problem<'a> {
         self.fitted_from(start, self.standing(start)?, priors, (None, SetOut::Both))
     }
 
+    /// [`Problem::fitted`], and from pairings beside the most likely one at the start where errors of the usual size do not do.
+    pub fn fitted_however_paired(&self, start: &Hypothesis, priors: &[Prior]) -> Option<ModalFit> {
+        let standing = self.standing(start)?;
+        let others = standing.pairing.others(self.recorded, &standing.modelled);
+        let modelled = standing.modelled.clone();
+        let first = self.fitted_from(start, standing, priors, (None, SetOut::Both));
+        if others.is_empty() || first.as_ref().is_some_and(|fit| self.is_usual(&fit.evidence.sizes)) {
+            return first;
+        }
+        let fixture = start.to_fixture().ok()?;
+        let fitted = |pairing: Pairing| {
+            let standing = self.paired(&fixture, modelled.clone(), pairing)?;
+            self.fitted_from(start, standing, priors, (None, SetOut::Both))
+        };
+        others.into_iter().map(fitted).fold(first, more_probable)
+    }
+
     /// [`Problem::fitted`] from where `start` is known to stand, with derivatives known from nearby where there are any.
     pub fn fitted_from(
         &self,
@@ -187,11 +213,14 @@ impl<'a> Problem<'a> {
         };
         let from =
             |sizes| self.fitted_with((point.clone(), derivatives.clone()), standing.clone(), priors, sizes);
-        let usual = from(Some(*self.sizes));
-        if set_out == SetOut::Usual || usual.as_ref().is_some_and(|fit| self.is_usual(&fit.evidence.sizes)) {
-            return usual;
+        let mut best = from(Some(*self.sizes));
+        if let SetOut::Beside(sizes) = set_out {
+            best = more_probable(best, from(Some(sizes)));
         }
-        more_probable(usual, from(None))
+        if set_out == SetOut::Usual || best.as_ref().is_some_and(|fit| self.is_usual(&fit.evidence.sizes)) {
+            return best;
+        }
+        more_probable(best, from(None))
     }
 
     /// Whether no error is larger than the usual one.
@@ -273,7 +302,7 @@ impl<'a> Problem<'a> {
     ) -> Option<Rest> {
         let factor = Cholesky::of(standing.comparison.count(), &standing.comparison.covariance(sizes))?;
         let descent = Descent { problem: self, standing, factor, priors };
-        let point = descend(&descent, start, Some(derivatives), &settings())?.point;
+        let point = descend(&descent, start, Some(derivatives), &settings(DERIVATIVES))?.point;
         let derivatives = descent.derivatives(&point, Precision::Rough)?;
         let (linear, evidence) =
             self.evidence(&point, priors, &derivatives, (&standing.comparison, Some(sizes)))?;
@@ -326,7 +355,7 @@ impl<'a> Problem<'a> {
             modelled: standing.modelled.clone(),
             residual: fit.residual.clone(),
         };
-        let point = descend(&descent, start, Some(fit.slopes.clone()), &settings())?.point;
+        let point = descend(&descent, start, Some(fit.slopes.clone()), &settings(usize::MAX))?.point;
         let slopes = descent.derivatives(&point, Precision::Rough)?;
         let equations = descent.equations(&point, &slopes, &());
         let order = equations.order;
@@ -351,11 +380,14 @@ fn largest(a: &ErrorSizes, b: &ErrorSizes) -> ErrorSizes {
     ErrorSizes::from_array(std::array::from_fn(|kind| a[kind].max(b[kind])))
 }
 
-fn settings() -> Settings {
+/// How parameters are fitted with at most so many sets of derivatives, the first taken at the start.
+fn settings(derivatives: usize) -> Settings {
     Settings {
         steps: STEPS,
+        derivatives,
+        fresh: true,
         damping: Damping { initial: 1e-6, decrease: 0.1, least: 1e-9, raised: 1e-3, most: 1e5 },
-        convergence: Convergence { gain: CONVERGED, share: 1e-4, floor: 0.0 },
+        convergence: Convergence { gain: 0.2 * STILL, share: 1e-3, floor: 0.0 },
         reuse: Some(REUSE),
         bent: BENT,
         trust_old: true,

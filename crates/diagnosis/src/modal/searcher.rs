@@ -1,0 +1,88 @@
+//! A comparison by modes under way: what all its steps share, and when a fit says enough.
+
+use crate::catalogue::Candidate;
+use crate::modal::fit::{ModalFit, Problem};
+use crate::modal::prior::{Prior, priors};
+use crate::settings::ModalSettings;
+use crate::{Hypothesis, Watch};
+use jointscope_fixture::Effect;
+use jointscope_model_error::ErrorSizes;
+
+/// Standard deviation, in stated ones, that a calibrated quantity keeps.
+const CALIBRATED: f64 = 1e-4;
+
+/// Name of what a search may not come to any more.
+pub(super) const STARTS: &str = "the less promising effects, by modes";
+
+/// Effects by their candidates' indices, and their fit.
+#[derive(Debug, Clone)]
+pub(crate) struct Named {
+    pub names: Vec<usize>,
+    pub fit: ModalFit,
+    /// Whether the evidence is hardly less without any error of the model.
+    pub exact: bool,
+}
+
+/// A search under way.
+#[derive(Clone, Copy)]
+pub(crate) struct Searcher<'a> {
+    pub problem: Problem<'a>,
+    pub candidates: &'a [Candidate],
+    pub nominal: &'a Hypothesis,
+    pub settings: &'a ModalSettings,
+    /// Where to set out from in place of all candidates' starts: the effects found in more than what is searched here.
+    pub known: Option<&'a [Effect]>,
+    /// Whether the fixture's quantities are where another recording of the structure put them, and stay there.
+    pub calibrated: bool,
+    /// Whether a hypothesis leaves no more than noise on lines.
+    pub suffices: &'a (dyn Fn(&Named) -> bool + Sync),
+    pub watch: Watch<'a>,
+}
+
+impl Searcher<'_> {
+    /// Priors of a hypothesis whose effects go by the names of `company`.
+    pub(super) fn priors(&self, hypothesis: &Hypothesis, company: &[&Candidate]) -> Vec<Prior> {
+        let mut all = priors(hypothesis, company);
+        if self.calibrated {
+            let stay = all.iter_mut().zip(&self.nominal.coordinates);
+            stay.for_each(|(prior, at)| *prior = Prior { mean: *at, std: CALIBRATED });
+        }
+        all
+    }
+
+    /// What an effect must gain in ln p.
+    pub(super) fn needed(&self) -> f64 {
+        self.settings.needed(self.candidates.len())
+    }
+
+    /// Whether the size of every effect is told from nothing, the model's errors as large as they may well be: with few modes the most probable errors are
+    /// none, and whatever fits them exactly seems to be needed. What gains very much over nothing is told in any case.
+    pub(super) fn is_told(&self, named: &Named, none: &ModalFit) -> bool {
+        let fit = &named.fit;
+        if fit.ln - none.ln > self.settings.undoubted * named.names.len() as f64 {
+            return true;
+        }
+        let sizes = fit.linear.mean_sizes(&fit.standing.comparison, self.problem.prior(), &fit.evidence);
+        let Some(covariance) = fit.covariance_at(&sizes) else { return false };
+        let least = self.settings.least;
+        (0..fit.hypothesis.effect_count())
+            .all(|index| fit.hypothesis.deviations_of(index, &covariance) >= least)
+    }
+
+    /// Whether what a fit needs of errors and departures is no more than chance makes.
+    pub(super) fn is_adequate(&self, fit: &ModalFit) -> bool {
+        self.problem.is_adequate(fit, self.settings.adequate)
+    }
+
+    /// Whether the evidence is hardly less without any error of the model.
+    pub(super) fn is_exact(&self, fit: &ModalFit) -> bool {
+        fit.standing.pairing.alone() == 0.0 && self.gained_by_errors(fit) < self.settings.exact
+    }
+
+    /// What errors of the model gain in ln p.
+    fn gained_by_errors(&self, fit: &ModalFit) -> f64 {
+        let without =
+            fit.linear.ln_density(&fit.standing.comparison, &self.problem.sizes.times(ErrorSizes::LEAST));
+        without.map_or(f64::INFINITY, |ln| self.problem.seen(fit).ln - ln)
+    }
+}
