@@ -4,35 +4,29 @@ use jointscope_diagnosis::Verdict;
 use jointscope_fixture::{Dof, Effect, EffectKind, Place};
 use jointscope_nonlinear::Verdict as Conclusion;
 use jointscope_proof::{
-    Answer, Answers, Case, Family, Filed, Found, Judgeable, Judged, JudgedRoutes, LumpedTruth,
-    ModalErrorsTruth, NoAnswer, Opened, Plan, Precision, Questions, Replies, Role, RouteScore, RouteScores,
-    Sealable, SolidJudged, SolidTruth, StruckAnswer, StruckAnswers, StruckCase, StruckJudged, StruckRole,
-    StruckTruth,
+    Answer, Answers, Case, Family, Filed, Found, Judgeable, LumpedTruth, ModalErrorsTruth, Opened, Plan,
+    Precision, Questions, Replies, Role, RouteScore, RouteScores, Sealable, SolidTruth, StruckAnswer,
+    StruckAnswers, StruckCase, StruckRole, StruckTruth,
 };
 use jointscope_recordings::{ReadOptions, Source, hits_of};
 use jointscope_rig::{Instrument, Outside, frfs};
 use jointscope_spectra::FrfSet;
 use std::collections::BTreeSet;
 
-fn silent(cases: &[Case]) -> Answers {
-    Answers::by(cases, 1, |_| (), |_| Err(NoAnswer::BrokeDown))
-}
-
-fn silent_to_all(questions: &Questions) -> Replies {
-    Replies {
-        laboratory: silent(&questions.laboratory),
-        solid: silent(&questions.solid),
-        struck: StruckAnswers::by(&questions.struck, 1, |_| (), |_| Err(NoAnswer::BrokeDown)),
-        as_is: silent(&questions.as_is),
-        modal_errors: silent(&questions.modal_errors),
-        lumped: silent(&questions.lumped),
-    }
-}
-
 fn drawn(plan: &Plan) -> (Questions, Opened) {
     let (questions, sealed) = plan.draw_routes().unwrap();
-    let truths = sealed.open(&silent_to_all(&questions)).unwrap();
+    let truths = sealed.open(&Replies::none(&questions)).unwrap();
     (questions, truths.into_iter().collect())
+}
+
+/// The scores of cases that were answered so.
+fn scores(questions: &Questions, truths: Opened, replies: &Replies) -> Vec<RouteScore> {
+    RouteScores::of(questions, truths, replies, 1, |_| ()).0
+}
+
+/// Answers of which those to one route are still to come.
+fn silent() -> Replies {
+    Replies::none(&Questions::default())
 }
 
 fn found(effect: &Effect) -> Found {
@@ -71,8 +65,9 @@ fn solid_score(
             })
         },
     );
-    let judged = SolidJudged::all(cases, truths.to_vec(), &answers, 1, |_| ());
-    RouteScores::of(&JudgedRoutes { solid: judged, ..JudgedRoutes::default() }).0.remove(0)
+    let questions = Questions { solid: cases.to_vec(), ..Questions::default() };
+    let truths = Opened { solid: truths.to_vec(), ..Opened::default() };
+    scores(&questions, truths, &Replies { solid: answers, ..silent() }).remove(0)
 }
 
 fn share(score: &RouteScore, key: &str) -> (usize, usize) {
@@ -87,7 +82,7 @@ fn all_routes_are_under_one_seal_that_opens_against_all_answers_only() {
     assert_eq!(questions.all().len(), 4);
     let (_, without) = Plan { struck: 0, ..plan.clone() }.draw_routes().unwrap();
     assert_ne!(sealed.digest(), without.digest(), "the seal holds every truth");
-    let some = Replies { solid: silent(&[]), ..silent_to_all(&questions) };
+    let some = Replies { solid: Answers::none(0), ..Replies::none(&questions) };
     assert!(sealed.open(&some).is_none(), "an answer is missing");
     let (_, laboratory) = plan.draw().unwrap();
     let (_, alone) = Plan { solid: 0, struck: 0, ..plan }.draw_routes().unwrap();
@@ -189,8 +184,9 @@ fn struck_score(
         })
     };
     let answers = StruckAnswers::by(cases, 1, |_| (), reply);
-    let struck = StruckJudged::all(truths.to_vec(), &answers);
-    RouteScores::of(&JudgedRoutes { struck, ..JudgedRoutes::default() }).0.remove(0)
+    let questions = Questions { struck: cases.to_vec(), ..Questions::default() };
+    let truths = Opened { struck: truths.to_vec(), ..Opened::default() };
+    scores(&questions, truths, &Replies { struck: answers, ..silent() }).remove(0)
 }
 
 #[test]
@@ -285,21 +281,11 @@ fn model_error_scores(
         };
         Answers::by(cases, 1, |_| (), reply)
     };
-    let as_is = answers(&questions.as_is, truths.as_is.iter().map(|truth| truth.effects()).collect());
+    let hidden = truths.solid_as_is.iter().map(|truth| truth.effects()).collect();
+    let solid_as_is = answers(&questions.solid_as_is, hidden);
     let hidden = truths.modal_errors.iter().map(|truth| truth.effects()).collect();
     let modal_errors = answers(&questions.modal_errors, hidden);
-    let routes = RouteScores::of(&JudgedRoutes {
-        as_is: Judged::all(&questions.as_is, truths.as_is.clone(), &as_is, 1, |_| ()),
-        modal_errors: Judged::all(
-            &questions.modal_errors,
-            truths.modal_errors.clone(),
-            &modal_errors,
-            1,
-            |_| (),
-        ),
-        ..JudgedRoutes::default()
-    });
-    routes.0.try_into().unwrap()
+    scores(questions, truths.clone(), &Replies { solid_as_is, modal_errors, ..silent() }).try_into().unwrap()
 }
 
 #[test]
@@ -334,9 +320,9 @@ fn cases_with_a_wrong_model_come_last_and_change_no_other() {
         (before.laboratory, before.solid, before.struck),
         (after.laboratory, after.solid, after.struck)
     );
-    assert_eq!((truths.as_is[0].index, truths.modal_errors[0].index()), (4, 5));
+    assert_eq!((truths.solid_as_is[0].index, truths.modal_errors[0].index()), (4, 5));
     let (one, _) = drawn(&Plan { only: Some(5), ..with });
-    assert_eq!((one.as_is.len(), one.modal_errors), (0, after.modal_errors));
+    assert_eq!((one.solid_as_is.len(), one.modal_errors), (0, after.modal_errors));
 }
 
 #[test]
@@ -365,18 +351,30 @@ fn lumped_scores(
     others: &[Effect],
     probability: f64,
 ) -> Vec<RouteScore> {
+    let lumped = lumped(questions, truths);
     let reply = |case: &Case| {
-        let position = questions.lumped.iter().position(|known| known == case).unwrap();
-        let truth = &truths.lumped[position];
+        let truth = lumped.iter().find_map(|(known, truth)| (*known == case).then_some(truth)).unwrap();
         let answer = naming(case, &[truth.effects(), others].concat(), probability);
         // Where nothing has a name, what is handed back is the fixture at its true quantities.
         let repaired =
             if truth.role() == Role::Outside { truth.truth.fixture.clone() } else { answer.repaired };
         Ok(Answer { repaired, ..answer })
     };
-    let answers = Answers::by(&questions.lumped, 1, |_| (), reply);
-    let lumped = Judged::all(&questions.lumped, truths.lumped.clone(), &answers, 1, |_| ());
-    RouteScores::of(&JudgedRoutes { lumped, ..JudgedRoutes::default() }).0
+    let answers = |cases: &[Case]| Answers::by(cases, 1, |_| (), reply);
+    let replies = Replies {
+        channel_flaws: answers(&questions.channel_flaws),
+        load_paths: answers(&questions.load_paths),
+        unknown_physics: answers(&questions.unknown_physics),
+        ..silent()
+    };
+    scores(questions, truths.clone(), &replies)
+}
+
+/// Cases of the three routes of lumped structures and what is true of them.
+fn lumped<'a>(questions: &'a Questions, truths: &'a Opened) -> Vec<(&'a Case, &'a LumpedTruth)> {
+    let cases = [&questions.channel_flaws, &questions.load_paths, &questions.unknown_physics];
+    let truths = [&truths.channel_flaws, &truths.load_paths, &truths.unknown_physics];
+    cases.into_iter().flatten().zip(truths.into_iter().flatten()).collect()
 }
 
 fn lumped_plan() -> Plan {
@@ -389,7 +387,7 @@ fn lumped_plan() -> Plan {
 fn flaws_and_load_paths_are_right_by_name_and_alone() {
     let cases = drawn(&lumped_plan());
     let kinds: BTreeSet<_> =
-        cases.1.lumped.iter().filter_map(|t| t.truth.outside.as_ref()).map(Outside::kind).collect();
+        cases.1.unknown_physics.iter().filter_map(|t| t.truth.outside.as_ref()).map(Outside::kind).collect();
     assert_eq!(kinds.len(), Outside::UNLISTED.len(), "{kinds:?}");
     let keys = |scores: &[RouteScore]| scores.iter().map(|score| score.key).collect::<Vec<_>>();
     let perfect = lumped_scores(&cases, &[], 1.0);
@@ -433,12 +431,15 @@ fn lumped_cases_of_their_own_routes_come_last_and_read_back_as_they_were_written
     let without = Plan { cases: 2, modal_errors: 1, seed: 4, ..Plan::default() };
     let with = Plan { channel_flaws: 2, load_paths: 2, unknown_physics: 4, ..without.clone() };
     let ((before, _), (after, truths)) = (drawn(&without), drawn(&with));
-    assert_eq!((before.laboratory, before.modal_errors), (after.laboratory, after.modal_errors));
-    let numbers: Vec<usize> = truths.lumped.iter().map(|truth| truth.index()).collect();
+    assert_eq!(
+        (before.laboratory, before.modal_errors),
+        (after.laboratory.clone(), after.modal_errors.clone())
+    );
+    let numbers: Vec<usize> = lumped(&after, &truths).iter().map(|(_, truth)| truth.index()).collect();
     assert_eq!(numbers, (3..11).collect::<Vec<_>>());
     let (one, _) = drawn(&Plan { only: Some(6), ..with });
-    assert_eq!(one.lumped, after.lumped[3..4]);
-    for (case, truth) in after.lumped.iter().zip(&truths.lumped) {
+    assert_eq!((one.load_paths, one.unknown_physics), (after.load_paths[1..].to_vec(), Vec::new()));
+    for (case, truth) in lumped(&after, &truths) {
         let text = truth.to_value().to_string();
         let read = LumpedTruth::from_value(&serde_json::from_str(&text).unwrap()).unwrap();
         assert_eq!(read.to_value().to_string(), text);

@@ -17,7 +17,7 @@ use super::quiet::quiet_hammer;
 use super::solid::transverse;
 use super::solid::twin::read;
 use crate::case::{effect_value, filed_effects};
-use crate::generate::{seed_of, turn};
+use crate::generate::{Draw, turn};
 use crate::judged::error_on;
 use crate::objective::Judge;
 use crate::seal::{Filed, Sealable};
@@ -90,14 +90,10 @@ pub struct AsIsTruth {
     pub hammer: HammerTest,
 }
 
-/// A solid as it is after its truth was opened.
-pub type AsIsJudged = Judged<AsIsTruth>;
-
 impl AsIsTruth {
     /// The case of a number, and apart from it what is true of it.
-    pub(crate) fn draw(index: usize, number: usize, seed: u64) -> Result<(Case, Self), GenerationError> {
-        let source = format!("seed {seed} solid as is");
-        let seed = seed_of(&source, number);
+    pub(crate) fn draw(at: Draw) -> Result<(Case, Self), GenerationError> {
+        let Draw { index, number, source, seed, .. } = at;
         let mut random = generator(seed);
         let (kind, turn) = (KINDS[number % KINDS.len()], turn(&KINDS, number));
         let what = (kind == Kind::Single).then(|| CONCEALED[turn % CONCEALED.len()]);
