@@ -14,8 +14,8 @@ mod tests;
 
 use super::by_name::{Nameable, TrueName};
 use super::quiet::quiet_hammer;
-use super::solid::transverse;
 use super::solid::twin::read;
+use super::solid::{transverse, with_points};
 use crate::case::{effect_value, filed_effects};
 use crate::generate::{Draw, turn};
 use crate::judged::error_on;
@@ -151,16 +151,6 @@ impl AsIsTruth {
             read(&twin, &[], &transverse(UNSEEN), &lines)?,
         ])
     }
-
-    /// A fixture of the same assembly with the points that nobody measured at.
-    fn with_points_apart(&self, fixture: &Fixture) -> Option<Fixture> {
-        let mut value = fixture.to_value();
-        let known = self.solid.to_value();
-        for name in APART {
-            value["points"][name] = known["points"][name].clone();
-        }
-        Fixture::from_value(&value).ok()
-    }
 }
 
 fn lines() -> Result<SpectralLines, SpectraError> {
@@ -251,7 +241,7 @@ impl Judgeable for AsIsTruth {
     fn evidence(&self, case: &Case, answer: &Answer) -> Option<Evidence> {
         let [clean, unseen] = self.frfs().ok()?;
         let judge = Judge::of(case)?;
-        let error = |fixture: &Fixture| error_on(&unseen, &self.with_points_apart(fixture)?);
+        let error = |fixture: &Fixture| error_on(&unseen, &with_points(fixture, &self.solid, APART)?);
         Some(Evidence {
             truth: judge.objective_of_clean(&clean, &self.lumped)?,
             unseen: error(&answer.refitted).zip(error(&answer.repaired)).map(Into::into),

@@ -126,16 +126,6 @@ impl SolidTruth {
             twin::read(&twin, &[], &transverse(UNSEEN), &lines)?,
         ])
     }
-
-    /// A fixture of the same assembly with the points that nobody measured at.
-    fn with_points_apart(&self, fixture: &Fixture) -> Option<Fixture> {
-        let mut value = fixture.to_value();
-        let known = self.solid.to_value();
-        for name in APART {
-            value["points"][name] = known["points"][name].clone();
-        }
-        Fixture::from_value(&value).ok()
-    }
 }
 
 impl Filed for SolidTruth {
@@ -160,6 +150,15 @@ impl Sealable for SolidTruth {
             "hammer": self.hammer,
         })
     }
+}
+
+/// A fixture of the same assembly with the points of a solid at which nobody measured.
+pub(super) fn with_points(fixture: &Fixture, solid: &Fixture, names: [&str; 2]) -> Option<Fixture> {
+    let (mut value, known) = (fixture.to_value(), solid.to_value());
+    for name in names {
+        value["points"][name] = known["points"][name].clone();
+    }
+    Fixture::from_value(&value).ok()
 }
 
 pub(super) fn transverse<const N: usize>(pairs: [(&str, &str); N]) -> [FrfPair; N] {
