@@ -37,7 +37,7 @@ impl ComputedFrfs {
     pub fn pairs(&self, fixture: &FixtureFile) -> Result<Vec<FrfPair>, Refusal> {
         match self.frf.as_slice() {
             [] => default_pairs(fixture).map_err(|error| fixture.refusal(error)),
-            named => Ok(named.to_vec()),
+            named => named.iter().map(|pair| known(pair, fixture)).collect(),
         }
     }
 
@@ -63,6 +63,15 @@ impl ComputedFrfs {
             in_text(hz[hz.len() - 1])
         )
     }
+}
+
+/// An FRF between points of the fixture: a mesh that took its time is no place to find out that it is not.
+fn known(pair: &FrfPair, fixture: &FixtureFile) -> Result<FrfPair, Refusal> {
+    let mut points = [&pair.response, &pair.reference].into_iter().map(|channel| &channel.point);
+    let Some(point) = points.find(|point| fixture.point(point).is_none()) else { return Ok(pair.clone()) };
+    let names: Vec<&str> = fixture.points().iter().map(|point| point.name.as_str()).collect();
+    let names = names.join(", ");
+    Err(fixture.refusal(format_args!("FRF {pair}: the fixture has no point `{point}` (it has {names})")))
 }
 
 /// The encoding that `--ascii` asks for.

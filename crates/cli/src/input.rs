@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
 use jointscope::fixture::Fixture;
-use jointscope::import::{self, ColumnMap};
+use jointscope::import::{self, ColumnMap, Format};
 use jointscope::recordings::Source;
 use serde_json::Value;
 use sha2::{Digest, Sha256};
@@ -32,6 +32,17 @@ impl FixtureFile {
     /// Reads a fixture file.
     pub fn read(path: &Path) -> Result<Self, Refusal> {
         let bytes = bytes(path)?;
+        let recording = match Format::of(&bytes) {
+            Ok(Format::Universal) => Some("universal"),
+            Ok(Format::Mat5 | Format::Mat73) => Some("MATLAB"),
+            _ => None,
+        };
+        if let Some(kind) = recording {
+            let problem = format_args!(
+                "is a {kind} file, a recording and no fixture; give the fixture first and then its recordings"
+            );
+            return Err(Refusal::at(path, problem));
+        }
         let text = std::str::from_utf8(&bytes).map_err(|error| {
             let line = bytes[..error.valid_up_to()].iter().filter(|byte| **byte == b'\n').count() + 1;
             Refusal::at(path, format_args!("line {line} is not UTF-8 text; save the fixture as UTF-8"))

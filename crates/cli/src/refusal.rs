@@ -1,5 +1,9 @@
+use std::error::Error;
 use std::fmt;
+use std::num::{IntErrorKind, ParseFloatError, ParseIntError};
 use std::path::Path;
+
+use clap::error::{ContextKind, ErrorKind};
 
 /// Why a command did nothing: one plain sentence that names the file, the place in it and the remedy.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -54,8 +58,11 @@ impl fmt::Display for Refusal {
 impl From<&clap::Error> for Refusal {
     fn from(error: &clap::Error) -> Self {
         let text = error.render().to_string();
-        if error.kind() == clap::error::ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand {
+        if error.kind() == ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand {
             return Refusal::new("no command was given; `jointscope --help` lists the commands");
+        }
+        if let Some(sentence) = no_number(error) {
+            return Refusal(sentence);
         }
         let mut paragraphs = text.split("\n\n");
         let problem = paragraphs.next().unwrap_or_default().trim().trim_start_matches("error: ");
@@ -67,6 +74,24 @@ impl From<&clap::Error> for Refusal {
         }
         Refusal(format!("{sentence}; see `jointscope --help`"))
     }
+}
+
+/// What is wrong with a value that should be a number: the parsers speak of digits in strings and of ranges.
+fn no_number(error: &clap::Error) -> Option<String> {
+    let source = error.source()?;
+    let needed = match source.downcast_ref::<ParseIntError>().map(ParseIntError::kind) {
+        Some(IntErrorKind::PosOverflow) => "no number as large".to_owned(),
+        Some(_) => "a whole number of zero or more".to_owned(),
+        None if source.is::<ParseFloatError>() => "a number".to_owned(),
+        None => {
+            let range = source.to_string().split_once(" is not in ")?.1.replace("..=", " to ");
+            format!("a whole number from {range}")
+        }
+    };
+    let argument = error.get(ContextKind::InvalidArg)?.to_string();
+    let option = argument.split(' ').next()?;
+    let given = error.get(ContextKind::InvalidValue)?;
+    Some(format!("{option} takes {needed}, not \"{given}\"; see `jointscope --help`"))
 }
 
 /// Line breaks and the blanks around them become one blank.

@@ -28,11 +28,6 @@ impl Ranking {
         self.probability >= SURE
     }
 
-    /// Whether the quantity at `place` of the order is surely larger than the one before it.
-    pub fn is_surely_larger(&self, place: usize) -> bool {
-        place > 0 && self.adjacent.get(place - 1).is_some_and(|probability| *probability >= SURE)
-    }
-
     /// Ranks values with their standard deviations, taken as independent and normal, by magnitude.
     pub fn of(values: &[(f64, f64)]) -> Self {
         let n = values.len();

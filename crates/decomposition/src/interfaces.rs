@@ -2,11 +2,12 @@
 
 use jointscope_beam::{end_compliance, transport};
 use jointscope_linalg::{Matrix2, RealMatrix2};
+use serde::Serialize;
 
 use crate::FittedLength;
 
 /// A compliance with its standard deviation, m/N or rad/(N·m).
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Compliance {
     /// The compliance.
     pub value: f64,

@@ -3,14 +3,16 @@ use jointscope_frf::{BlockFrf, MaskReason, fit_rigid_motion};
 use jointscope_linalg::{ComplexMatrix2, Matrix2, RealMatrix2};
 use jointscope_spectra::FrfSet;
 use num_complex::Complex64;
+use serde::Serialize;
 
 /// H41 beyond this balanced condition number counts as singular: its inverse is rounding.
 const SINGULAR: f64 = 1e12;
 
 /// The joint at one spectral line.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct JointLine {
     /// Index of the line in the recording.
+    #[serde(skip)]
     pub line: usize,
     /// Its frequency, Hz.
     pub frequency: f64,
@@ -19,8 +21,10 @@ pub struct JointLine {
     /// C = Im/ω (eq 38): N·s/m and so on.
     pub damping: RealMatrix2,
     /// Standard deviation of each element of K; absent where the FRFs carry no variances.
+    #[serde(skip)]
     pub stiffness_std: Option<RealMatrix2>,
     /// Standard deviation of each element of C.
+    #[serde(skip)]
     pub damping_std: Option<RealMatrix2>,
     /// By how much relative errors of the FRFs and compliances are multiplied in the worst element of K, at the most.
     pub condition: f64,

@@ -1,50 +1,48 @@
+use crate::file::value;
 use jointscope_decomposition::{
     Analysis, Compliance, Element, FoundJoint, InterfaceStiffness, JointFit, JointLine, JointsFit, LawFit,
     LawKind, MatrixAverage, Method, Part, Relation,
 };
 use jointscope_linalg::RealMatrix2;
-use serde_json::{Map, Value, json};
+use serde_json::{Value, json};
 
 /// The contents of `stiffness.json`: K and C by line, averages, the fitted joint and its interfaces, in SI units.
 ///
 /// `std` is what the FRFs' noise leaves uncertain, `std_fixture` what the fixture's tolerances do, `std_model` what it
 /// costs that a constant joint does not explain the FRFs.
 pub fn stiffness_file(analysis: &Analysis) -> Value {
-    let mut root = Map::new();
     let spectrum = &analysis.spectrum;
-    root.insert("joint".into(), joint(analysis));
-    root.insert("ends".into(), json!(analysis.ends));
-    root.insert("relation".into(), json!(spectrum.relation.name()));
-    root.insert("lines".into(), spectrum.solved.iter().map(|solved| line(analysis, solved)).collect());
     let frequencies = spectrum.h41.lines.hz();
     let masked =
         spectrum.masked.iter().map(|(i, why)| json!({"frequency": frequencies[*i], "why": why.why()}));
-    root.insert("masked".into(), masked.collect());
-    root.insert("average".into(), averages(analysis));
+    let mut file = json!({
+        "joint": joint(analysis),
+        "ends": analysis.ends,
+        "relation": spectrum.relation.name(),
+        "lines": spectrum.solved.iter().map(|solved| line(analysis, solved)).collect::<Value>(),
+        "masked": masked.collect::<Value>(),
+        "average": averages(analysis),
+        "maximum_likelihood": likelihood(analysis),
+        "judgement": analysis.judgement,
+        "nominal_stiffness": analysis.nominal_stiffness,
+        "nominal": nominal(analysis),
+        "recording": recording(analysis),
+    });
     if let Some(weighted) = &analysis.averages.weighted {
-        root.insert("weighted_average".into(), average(weighted));
+        file["weighted_average"] = average(weighted);
     }
-    root.insert("maximum_likelihood".into(), likelihood(analysis));
     if let Some(interfaces) = &analysis.interfaces {
-        root.insert(
-            "interfaces".into(),
-            json!({
-                "rest_on": analysis.interfaces_rest_on().map(|(method, explains)| {
-                    json!({"fit": method_name(method), "explains_the_frfs": explains})
-                }),
-                "translation_both": stiffness(&interfaces.translation, "N/m"),
-                "rotation_from": stiffness(&interfaces.near_rotation, "N*m/rad"),
-                "rotation_to": stiffness(&interfaces.far_rotation, "N*m/rad"),
-                "scalar_11": stiffness(&interfaces.scalar[0], "N/m"),
-                "scalar_22": stiffness(&interfaces.scalar[1], "N*m/rad"),
-            }),
-        );
+        let rest_on = |(method, explains)| json!({"fit": method_name(method), "explains_the_frfs": explains});
+        file["interfaces"] = json!({
+            "rest_on": analysis.interfaces_rest_on().map(rest_on),
+            "translation_both": stiffness(&interfaces.translation, "N/m"),
+            "rotation_from": stiffness(&interfaces.near_rotation, "N*m/rad"),
+            "rotation_to": stiffness(&interfaces.far_rotation, "N*m/rad"),
+            "scalar_11": stiffness(&interfaces.scalar[0], "N/m"),
+            "scalar_22": stiffness(&interfaces.scalar[1], "N*m/rad"),
+        });
     }
-    root.insert("judgement".into(), json!(analysis.judgement));
-    root.insert("nominal_stiffness".into(), matrix(&analysis.nominal_stiffness));
-    root.insert("nominal".into(), nominal(analysis));
-    root.insert("recording".into(), recording(analysis));
-    Value::Object(root)
+    file
 }
 
 /// The contents of `stiffness.json` where several joints were found at once, or one in a loop: every joint as `joint` has it, and the covariance of all.
@@ -54,7 +52,7 @@ pub fn joints_file(joints: &JointsFit) -> Value {
         entry["name"] = json!(found.name);
         entry["ends"] = json!(found.ends);
         entry["in_a_loop"] = json!(found.is_in_a_loop);
-        entry["nominal_stiffness"] = matrix(&found.nominal);
+        entry["nominal_stiffness"] = json!(found.nominal);
         entry
     };
     json!({
@@ -74,33 +72,11 @@ fn joint(analysis: &Analysis) -> Value {
 }
 
 fn fitted(fit: &JointFit) -> Value {
-    let (k, c) = fit.std();
-    let mut entry = json!({
-        "name": null,
-        "stiffness": matrix(&fit.stiffness),
-        "damping": matrix(&fit.damping),
-        "std": pair(&k, &c),
-        "covariance": fit.covariance,
-        "chi2_per_dof": fit.chi2_per_dof,
-        "model_error": {"inflation": fit.inflation, "strain": fit.strain, "covariance": fit.model_covariance},
-        "on_the_boundary_of_passive": fit.is_on_the_boundary,
-        "tests": fit.tests,
-        "quantities": fit.quantities,
-        "unmoved": fit.unmoved,
-        "length": {"value": fit.length.value, "std": fit.length.variance.max(0.0).sqrt()},
-        "law_covariance": fit.law_covariance,
-        "frfs": fit.frfs.iter().map(ToString::to_string).collect::<Vec<_>>(),
-        "lines": fit.lines,
-    });
-    if let Some(likelihood) = &fit.likelihood {
-        entry["likelihood"] = json!(likelihood);
-    }
-    if let Some((mass, std)) = fit.mass {
-        entry["mass"] = json!({"value": mass, "std": std});
-    }
-    if let Some(admissible) = &fit.admissible {
-        entry["admissible"] = json!(admissible);
-    }
+    let mut entry = value(fit);
+    entry["std"] = pair(fit.std());
+    let (inflation, strain) = (fit.inflation, fit.strain);
+    entry["model_error"] =
+        json!({"inflation": inflation, "strain": strain, "covariance": fit.model_covariance});
     if let Some(best) = fit.law() {
         entry["law"] = json!(best.name());
         entry["laws"] = fit.laws.iter().map(law).collect();
@@ -109,7 +85,7 @@ fn fitted(fit: &JointFit) -> Value {
 }
 
 fn law(law: &LawFit) -> Value {
-    let mut parameters = json!({"stiffness": matrix(&law.stiffness)});
+    let mut parameters = json!({"stiffness": law.stiffness});
     let (damping, shape) = match law.kind {
         LawKind::Constant => (None, None),
         LawKind::Viscous | LawKind::LinearStiffness => (Some("damping"), None),
@@ -118,46 +94,36 @@ fn law(law: &LawFit) -> Value {
         LawKind::Fractional => (Some("springpot"), Some("exponent")),
     };
     if let Some(key) = damping {
-        parameters[key] = matrix(&law.damping);
+        parameters[key] = json!(law.damping);
     }
     if let Some((key, value)) = shape.zip(law.shape) {
         parameters[key] = json!(value);
     }
     if let Some(change) = &law.change {
-        parameters["stiffness_per_rad_per_s"] = matrix(change);
+        parameters["stiffness_per_rad_per_s"] = json!(change);
     }
     if let Some(mass) = law.mass {
         parameters["mass"] = json!(mass);
     }
-    let (k, c) = law.in_the_middle();
     json!({
         "law": law.name(),
         "probability": law.probability,
         "parameters": parameters,
-        "in_the_middle": pair(&k, &c),
+        "in_the_middle": pair(law.in_the_middle()),
     })
 }
 
-fn matrix(m: &RealMatrix2) -> Value {
-    json!(m.0)
-}
-
-fn pair(k: &RealMatrix2, c: &RealMatrix2) -> Value {
-    json!({"stiffness": matrix(k), "damping": matrix(c)})
+fn pair((k, c): (RealMatrix2, RealMatrix2)) -> Value {
+    json!({"stiffness": k, "damping": c})
 }
 
 fn line(analysis: &Analysis, line: &JointLine) -> Value {
-    let mut entry = json!({
-        "frequency": line.frequency,
-        "stiffness": matrix(&line.stiffness),
-        "damping": matrix(&line.damping),
-        "condition": line.condition,
-    });
+    let mut entry = value(line);
     if let Some(h41) = analysis.spectrum.h41.values.get(line.line) {
         entry["h41"] = json!(h41.0.map(|row| row.map(|value| [value.re, value.im])));
     }
-    if let (Some(k), Some(c)) = (&line.stiffness_std, &line.damping_std) {
-        entry["std"] = pair(k, c);
+    if let Some(std) = line.stiffness_std.zip(line.damping_std) {
+        entry["std"] = pair(std);
         entry["noisy"] = json!(line.is_noisy());
     }
     entry
@@ -165,18 +131,17 @@ fn line(analysis: &Analysis, line: &JointLine) -> Value {
 
 fn average(average: &MatrixAverage) -> Value {
     json!({
-        "stiffness": matrix(&average.stiffness),
-        "damping": matrix(&average.damping),
-        "std": pair(&average.stiffness_std, &average.damping_std),
+        "stiffness": average.stiffness,
+        "damping": average.damping,
+        "std": pair((average.stiffness_std, average.damping_std)),
     })
 }
 
 fn averages(analysis: &Analysis) -> Value {
     let mut entry = average(&analysis.averages.plain);
-    let (k, c) = analysis.tolerance_of_averages();
     entry["band"] = json!([analysis.averages.band.from, analysis.averages.band.to]);
     entry["lines"] = json!(analysis.averages.lines);
-    entry["std_fixture"] = pair(&k, &c);
+    entry["std_fixture"] = pair(analysis.tolerance_of_averages());
     entry
 }
 
@@ -192,19 +157,15 @@ fn nominal(analysis: &Analysis) -> Value {
 
 fn likelihood(analysis: &Analysis) -> Value {
     match &analysis.likelihood {
-        Ok(fit) => {
-            let (k, c) = analysis.tolerance_of_likelihood();
-            let (k_model, c_model) = fit.model_std();
-            json!({
-                "stiffness": matrix(&fit.stiffness),
-                "damping": matrix(&fit.damping),
-                "std": pair(&fit.stiffness_std, &fit.damping_std),
-                "std_fixture": pair(&k, &c),
-                "std_model": pair(&k_model, &c_model),
-                "chi2_per_dof": fit.chi2_per_dof,
-                "relation": "exact",
-            })
-        }
+        Ok(fit) => json!({
+            "stiffness": fit.stiffness,
+            "damping": fit.damping,
+            "std": pair((fit.stiffness_std, fit.damping_std)),
+            "std_fixture": pair(analysis.tolerance_of_likelihood()),
+            "std_model": pair(fit.model_std()),
+            "chi2_per_dof": fit.chi2_per_dof,
+            "relation": "exact",
+        }),
         Err(error) => json!({"failed": error.to_string()}),
     }
 }
@@ -230,31 +191,18 @@ fn stiffness(compliance: &Compliance, unit: &str) -> Value {
         }
     };
     entry["unit"] = json!(unit);
-    entry["compliance"] = json!({"value": compliance.value, "std": compliance.std});
+    entry["compliance"] = json!(compliance);
     entry
 }
 
 fn recording(analysis: &Analysis) -> Value {
-    let used: Vec<String> = analysis
-        .plan
-        .layout
-        .channels
-        .iter()
-        .map(|(index, ..)| analysis.frfs.pairs()[*index].to_string())
-        .collect();
-    let unused: Vec<String> = analysis.plan.unused.iter().map(ToString::to_string).collect();
-    let noise: Map<String, Value> = analysis
-        .frfs
-        .pairs()
-        .iter()
-        .zip(&analysis.noise)
-        .map(|(pair, source)| (pair.to_string(), json!(source.says())))
-        .collect();
+    let (plan, pairs) = (&analysis.plan, analysis.frfs.pairs());
+    let noise = pairs.iter().zip(&analysis.noise).map(|(pair, source)| (pair.to_string(), json!(source)));
     json!({
-        "used": used,
-        "unused": unused,
-        "noise_from": noise,
-        "reference_points": {"responding": analysis.plan.responding.2, "loaded": analysis.plan.loaded.2},
+        "used": plan.layout.channels.iter().map(|(index, ..)| json!(pairs[*index])).collect::<Value>(),
+        "unused": plan.unused,
+        "noise_from": noise.collect::<Value>(),
+        "reference_points": {"responding": plan.responding.2, "loaded": plan.loaded.2},
         "rigid_motion_chi2_per_dof": analysis.spectrum.h41.rigidity(),
         "noisy_lines": analysis.noisy_lines(),
         "tolerances_not_followed": analysis.lost_tolerances,

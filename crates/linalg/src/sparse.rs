@@ -173,12 +173,11 @@ impl SparseSymmetric {
     pub fn multiply(&self, x: &[f64]) -> Vec<f64> {
         let mut y = vec![0.0; x.len()];
         let SparsePattern { starts, rows } = self.pattern.as_ref();
-        for column in 0..self.order() {
-            let range = starts[column]..starts[column + 1];
-            let mut sum = self.values[range.start] * x[column];
-            for index in range.start + 1..range.end {
-                let (row, value) = (rows[index], self.values[index]);
-                y[row] += value * x[column];
+        for (column, ends) in starts.windows(2).enumerate() {
+            let (below, own) = (ends[0] + 1..ends[1], x[column]);
+            let mut sum = self.values[ends[0]] * own;
+            for (&row, value) in rows[below.clone()].iter().zip(&self.values[below]) {
+                y[row] += value * own;
                 sum += value * x[row];
             }
             y[column] += sum;

@@ -1,6 +1,6 @@
 use crate::sparse::SparseError;
 use crate::sparse_inertia::count_below;
-use crate::sparse_space::{Random, Space};
+use crate::sparse_space::{Random, Space, dot};
 use crate::{EigenError, SparseCholesky, SparseSymmetric, generalized_symmetric_eigen};
 use std::f64::consts::TAU;
 
@@ -127,12 +127,12 @@ pub fn lowest_modes(
         }
         let ritz = ritz_pairs(&columns, size)?;
         let first_new = size - block.len();
+        // One product with M for each of them, and none for each pair.
+        let gram = products_by_mass(space.mass, &outside);
         let residual_of = |pair: &RitzPair| {
-            let mut sum = vec![0.0; order];
-            for (rest, weight) in outside.iter().zip(&pair.vector[first_new..]) {
-                sum.iter_mut().zip(rest).for_each(|(s, r)| *s += weight * r);
-            }
-            space.mass.quadratic(&sum).max(0.0).sqrt() / pair.value
+            let weights = &pair.vector[first_new..];
+            let of_row = |(row, weight): (&Vec<f64>, &f64)| weight * dot(row, weights);
+            gram.iter().zip(weights).map(of_row).sum::<f64>().max(0.0).sqrt() / pair.value
         };
         let converged = ritz.iter().take_while(|pair| residual_of(pair) <= CONVERGED).count();
         let eigenvalues: Vec<f64> = ritz[..converged].iter().map(|pair| 1.0 / pair.value - shift).collect();
@@ -234,6 +234,15 @@ fn complete_set(eigenvalues: &[f64], up_to: f64, at_least: usize) -> Option<(usi
     })
 }
 
+/// Products vᵢᵀ M vⱼ of all vectors, row by row.
+fn products_by_mass(mass: &SparseSymmetric, vectors: &[Vec<f64>]) -> Vec<Vec<f64>> {
+    let row = |vector: &Vec<f64>| {
+        let image = mass.multiply(vector);
+        vectors.iter().map(|other| dot(&image, other)).collect()
+    };
+    vectors.iter().map(row).collect()
+}
+
 struct RitzPair {
     value: f64,
     vector: Vec<f64>,
@@ -297,7 +306,6 @@ fn modes(
 pub(crate) mod tests {
     use super::*;
     use crate::SparsePattern;
-    use crate::sparse_space::dot;
     use std::f64::consts::PI;
 
     /// A free chain of n unit masses on unit springs, stiffness scaled.

@@ -86,14 +86,6 @@ impl MeasuringChain {
     }
 }
 
-/// Gain and delay (s) of a channel's own signal.
-pub fn channel_signal(fixture: &Fixture, place: &Place) -> (f64, f64) {
-    actions(fixture).fold((1.0, 0.0), |(all, late), action| match action {
-        Action::Signal { channel, gain, delay } if channel == place => (all * gain, late + delay),
-        _ => (all, late),
-    })
-}
-
 /// Decay of the responses' exponential window, 1/s; zero where there is none.
 pub fn window_decay(fixture: &Fixture) -> f64 {
     decay(actions(fixture))

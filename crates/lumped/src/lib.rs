@@ -55,7 +55,7 @@ mod terms;
 mod uniform_beam;
 
 pub use assembly::{Assembly, nominal_stiffness};
-pub use chain::{MeasuringChain, Reading, channel_signal, channel_station, window_decay};
+pub use chain::{MeasuringChain, Reading, channel_station, window_decay};
 pub use effects::SignalFilter;
 pub use joint_element::JointElement;
 pub use model::Model;

@@ -2,9 +2,7 @@
 //!
 //!     cargo run --release -p jointscope-proof --example conceal -- DIRECTORY CASES GRADED SOLID STRUCK SEED FAMILY…
 
-use jointscope_proof::{
-    Answers, Case, FAMILIES, NoAnswer, Plan, Precision, Replies, Sealable, StruckAnswers,
-};
+use jointscope_proof::{FAMILIES, Plan, Precision, Replies, Sealable};
 use std::error::Error;
 use std::path::PathBuf;
 
@@ -33,16 +31,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         std::fs::write(folder.join("fixture.json"), asked.believed().to_json())?;
         std::fs::write(folder.join("hammer-test.uff"), asked.recording(Precision::Single)?)?;
     }
-    let silent = |cases: &[Case]| Answers::by(cases, 1, |_| (), |_| Err(NoAnswer::BrokeDown));
-    let replies = Replies {
-        laboratory: silent(&questions.laboratory),
-        solid: silent(&questions.solid),
-        struck: StruckAnswers::by(&questions.struck, 1, |_| (), |_| Err(NoAnswer::BrokeDown)),
-        as_is: silent(&questions.as_is),
-        modal_errors: silent(&questions.modal_errors),
-        lumped: silent(&questions.lumped),
-    };
-    let truths = sealed.open(&replies).ok_or("the seal does not open")?;
+    let truths = sealed.open(&Replies::none(&questions)).ok_or("the seal does not open")?;
     let values = serde_json::Value::Array(truths.iter().map(Sealable::to_value).collect());
     std::fs::write(directory.join("truths.json"), values.to_string())?;
     println!("{digest}");

@@ -67,11 +67,20 @@ impl<A: Reply + Send> Answers<A> {
 
     /// The answers as JSON.
     pub fn to_value(&self) -> Value {
-        let value = |answer: &Result<A, NoAnswer>| match answer {
+        self.values().collect()
+    }
+
+    /// Each answer as JSON.
+    pub(crate) fn values(&self) -> impl Iterator<Item = Value> {
+        self.all.iter().map(|answer| match answer {
             Ok(answer) => answer.to_value(),
             Err(why) => json!({ "no_answer": why.to_string() }),
-        };
-        self.all.iter().map(value).collect()
+        })
+    }
+
+    /// No answer to any of so many cases.
+    pub fn none(cases: usize) -> Self {
+        Self::collected((0..cases).map(|_| None))
     }
 }
 

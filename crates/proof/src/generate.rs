@@ -2,7 +2,7 @@
 
 use crate::answers::on_workers;
 use crate::scene::{Hides, Scene};
-use crate::{Case, GenerationError, LumpedRoute, Role, SealedTruths, Truth};
+use crate::{Case, GenerationError, Role, SealedTruths, Truth};
 use jointscope_fixture::{Effect, EffectKind, Fixture};
 use jointscope_rig::{Family, HammerTest, Outside, generator, random_effect};
 use jointscope_spectra::{FrfPair, SpectraError, SpectralLines};
@@ -135,8 +135,7 @@ impl Plan {
 
     /// Number of cases of all routes.
     pub(crate) fn all(&self) -> usize {
-        let lumped: usize = LumpedRoute::ALL.iter().map(|route| route.count(self)).sum();
-        self.cases + self.graded + self.solid + self.struck + self.solid_as_is + self.modal_errors + lumped
+        self.cases + self.graded + self.by_route().iter().map(|(_, count)| count).sum::<usize>()
     }
 
     /// The numbers of the cases to make.
@@ -186,6 +185,27 @@ impl Plan {
             }
         }
         Err(GenerationError::Unlucky(index))
+    }
+}
+
+/// A case that a route beside the laboratory's has to draw.
+pub(crate) struct Draw<'a> {
+    pub plan: &'a Plan,
+    /// Its number among all cases.
+    pub index: usize,
+    /// Its number within the route.
+    pub number: usize,
+    /// What its random numbers are seeded with, in words.
+    pub source: String,
+    pub seed: u64,
+}
+
+impl<'a> Draw<'a> {
+    /// A case of the route with a key.
+    pub fn of(plan: &'a Plan, key: &str, index: usize, number: usize) -> Self {
+        let source = format!("seed {} {}", plan.seed, key.replace('_', " "));
+        let seed = seed_of(&source, number);
+        Draw { plan, index, number, source, seed }
     }
 }
 

@@ -9,13 +9,13 @@
 //! | theme | items |
 //! |---|---|
 //! | making cases | [`Plan`], [`Case`], [`Truth`], [`Role`], [`SealedTruths`] |
-//! | cases by other routes | [`Plan::draw_routes`], [`Questions`], [`RouteTruth`], [`Replies`], [`Opened`]; [`SolidTruth`], [`SolidJudged`]; [`StruckCase`], [`StruckTruth`], [`StruckJudged`]; [`AsIsTruth`], [`AsIsJudged`]; [`ModalErrorsTruth`], [`ModalErrorsJudged`]; [`LumpedRoute`], [`LumpedTruth`], [`LumpedJudged`] |
+//! | cases by other routes | [`Plan::draw_routes`], [`Questions`], [`RouteTruth`], [`Replies`], [`Opened`]; [`SolidTruth`], [`SolidJudged`]; [`StruckCase`], [`StruckTruth`], [`StruckJudged`]; [`AsIsTruth`]; [`ModalErrorsTruth`]; [`LumpedTruth`] |
 //! | answers | [`Answers`], [`Answer`], [`Reply`], [`Found`], [`Timing`] |
 //! | judging | [`Judged`], [`Evidence`], [`Reference`], [`Name`] |
 //! | what else one could do | [`Baseline`], [`Methods`] |
 //! | limits of a test | [`Limits`] |
 //! | scores | [`Score`], [`Rate`], [`Share`], [`Reliability`], [`Confusion`], [`Detection`], [`Coverage`] |
-//! | scores by route | [`JudgedRoutes`], [`RouteScores`], [`RouteScore`], [`SizeScore`], [`CaseLine`] |
+//! | scores by route | [`RouteScores`], [`RouteScore`], [`SizeScore`], [`CaseLine`] |
 //! | real recordings | [`concealed`]: something concealed relative to a fixture that explains them |
 //!
 //! Nothing is random but by the seed: cases, answers and scores are the same on any number of threads.
@@ -84,10 +84,9 @@ pub use planning::{PlannedCase, Planning, PromiseClass};
 pub use reference::Reference;
 pub use reliability::{Bin, Reliability};
 pub use routes::{
-    AsIsJudged, AsIsTruth, Asked, JudgedRoutes, LumpedJudged, LumpedRoute, LumpedTruth, ModalErrorsJudged,
-    ModalErrorsTruth, Nameable, Opened, Questions, Replies, RouteScore, RouteScores, RouteTruth, Shown,
-    SolidJudged, SolidTruth, StruckAnswer, StruckAnswers, StruckCase, StruckJudged, StruckRole, StruckTruth,
-    TrueName,
+    AsIsTruth, Asked, LumpedRoute, LumpedTruth, ModalErrorsTruth, Nameable, Opened, Questions, Replies,
+    RouteScore, RouteScores, RouteTruth, Shown, SolidJudged, SolidTruth, StruckAnswer, StruckAnswers,
+    StruckCase, StruckJudged, StruckRole, StruckTruth, TrueName,
 };
 pub use score::{CHANCE, Comparison, Score, VerdictCounts};
 pub use seal::{BrokenSeal, Filed, Given, Sealable, SealedTruths};

@@ -6,24 +6,17 @@ use std::fmt::{self, Display, Formatter};
 
 impl Display for Plan {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        let mut counts = vec![
-            (self.cases, ""),
-            (self.graded, "graded "),
-            (self.solid, "solid "),
-            (self.struck, "struck "),
-            (self.solid_as_is, "solid-as-is "),
-            (self.modal_errors, "modal-errors "),
-            (self.channel_flaws, "channel-flaws "),
-            (self.load_paths, "load-paths "),
-            (self.unknown_physics, "unknown-physics "),
-        ];
-        counts.retain(|(count, _)| *count > 0);
-        let ((first, what), others) = counts.split_first().map_or(((0, ""), &[][..]), |(c, o)| (*c, o));
+        let laboratory =
+            [("", self.cases), ("graded ", self.graded)].map(|(what, count)| (what.to_owned(), count));
+        let others =
+            self.by_route().into_iter().map(|(key, count)| (format!("{} ", key.replace('_', "-")), count));
+        let mut counts = laboratory.into_iter().chain(others).filter(|(_, count)| *count > 0);
         match self.only {
             Some(only) => write!(f, "case {only} of {}, seed {}", self.all(), self.seed)?,
             None => {
+                let (what, first) = counts.next().unwrap_or_default();
                 write!(f, "{first} {what}cases, seed {}", self.seed)?;
-                others.iter().try_for_each(|(count, what)| write!(f, ", and {count} {}", what.trim_end()))?;
+                counts.try_for_each(|(what, count)| write!(f, ", and {count} {}", what.trim_end()))?;
             }
         }
         if self.families != Plan::default().families {
@@ -44,12 +37,13 @@ impl Plan {
 
     /// The plan as JSON.
     pub fn to_value(&self) -> Value {
-        json!({
-            "cases": self.cases, "graded": self.graded, "solid": self.solid, "struck": self.struck,
-            "solid_as_is": self.solid_as_is, "modal_errors": self.modal_errors, "channel_flaws": self.channel_flaws,
-            "load_paths": self.load_paths, "unknown_physics": self.unknown_physics,
-            "seed": self.seed, "only": self.only, "families": self.family_names(),
-            "fresh_from": self.fresh_from, "fresh": self.fresh(),
-        })
+        let counts = [("cases", self.cases), ("graded", self.graded)].into_iter().chain(self.by_route());
+        let mut value: Value = counts.collect();
+        value["seed"] = json!(self.seed);
+        value["only"] = json!(self.only);
+        value["families"] = json!(self.family_names());
+        value["fresh_from"] = json!(self.fresh_from);
+        value["fresh"] = json!(self.fresh());
+        value
     }
 }

@@ -27,7 +27,7 @@ mod serialization;
 pub use form::FrfForm;
 pub use frf_set::{Channel, Dof, FrfPair, FrfSet};
 pub use lines::{SpectralLines, in_text};
-pub use serialization::{complex, complexes};
+pub use serialization::complex;
 
 /// What makes spectral lines or a set of FRFs impossible.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

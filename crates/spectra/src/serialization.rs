@@ -10,11 +10,3 @@ use serde::{Serialize, Serializer};
 pub fn complex<S: Serializer>(value: &Complex64, serializer: S) -> Result<S::Ok, S::Error> {
     [value.re, value.im].serialize(serializer)
 }
-
-/// A list of complex numbers.
-///
-/// # Errors
-/// Those of `serializer`.
-pub fn complexes<S: Serializer>(values: &[Complex64], serializer: S) -> Result<S::Ok, S::Error> {
-    serializer.collect_seq(values.iter().map(|value| [value.re, value.im]))
-}

@@ -9,7 +9,7 @@ mod shipped;
 use std::path::Path;
 
 use jointscope::proof::{
-    Baseline, Judged, JudgedRoutes, Limits, Methods, Opened, Planning, Replies, RouteScores, Score, Timing,
+    Baseline, Judged, Limits, Methods, Opened, Planning, Replies, RouteScores, Score, Timing,
 };
 use jointscope::report::{ProofContext, ProofResults, proof_page};
 use serde_json::json;
@@ -64,9 +64,10 @@ pub fn run(arguments: &ProveArguments) -> Result<String, Refusal> {
         Judged::all(&concealed.cases.laboratory, own, &answers.laboratory, threads, told)
     };
     let routes = {
-        let bar = progress::cases(JudgedRoutes::count_of_frfs(&concealed.cases), "judged");
-        let told = |done: usize| bar.set_position(done as u64);
-        RouteScores::of(&JudgedRoutes::all(&concealed.cases, truths, &answers, threads, told))
+        let cases = &concealed.cases;
+        let frfs = concealed.numbers.len() - cases.laboratory.len() - cases.struck.len();
+        let bar = progress::cases(frfs, "judged");
+        RouteScores::of(cases, truths, &answers, threads, |done| bar.set_position(done as u64))
     };
     let timing = Timing::of(&answers.seconds());
     tell(&timing.to_string());

@@ -31,39 +31,6 @@ fn one_case_is_made_diagnosed_and_told_the_same_each_time() {
 }
 
 #[test]
-fn the_shipped_cases_come_with_pages_from_which_anyone_can_diagnose_again() {
-    let bench = Bench::new("prove-shipped");
-    // Two of FRFs, a solid and hits that hide nothing and are quick.
-    for (only, threads) in [("21", "2"), ("25", "1"), ("1", "1"), ("5", "2")] {
-        let output = bench.run(&["prove", "--only", only, "--threads", threads, "-o", "proof"]);
-        assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
-        assert!(String::from_utf8_lossy(&output.stdout).contains("1 of 1"), "case {only} is left alone");
-        assert!(bench.0.join(format!("proof/cases/{only:0>3}/report.html")).exists(), "case {only}");
-    }
-    let page = bench.text("proof/report.html");
-    assert!(page.contains("href=\"./cases/005/report.html\""), "the case leads to its page");
-    let sealed = bench.json("proof/seal.json")["sealed_truths_sha256"].as_str().unwrap().to_owned();
-    assert!(page.contains(&sealed), "the page says what was sealed");
-    // What the diagnosis was given is all there is, and gives the same page again.
-    let given = ["fixture.json", "hammer-test.uff", "report.html"];
-    let folder = std::fs::read_dir(bench.0.join("proof/cases/005")).unwrap();
-    let mut names: Vec<_> = folder.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
-    names.sort();
-    assert_eq!(names, given);
-    let text = bench.text("proof/cases/005/fixture.json");
-    assert!(!text.contains("physics") && !text.contains("seed"), "{text}");
-    for file in &given[..2] {
-        std::fs::copy(bench.0.join("proof/cases/005").join(file), bench.0.join(file)).unwrap();
-    }
-    bench.done(&["diagnose", "fixture.json", "hammer-test.uff", "-o", "again"]);
-    let sections = |page: &str| page.split("<footer>").next().unwrap().to_owned();
-    assert_eq!(
-        sections(&bench.text("again/report.html")),
-        sections(&bench.text("proof/cases/005/report.html"))
-    );
-}
-
-#[test]
 fn solids_and_hits_have_scores_of_their_own_and_pages_that_diagnose_makes_again() {
     let bench = Bench::new("prove-routes");
     // Of each the second hides nothing: the quickest. Where the model is wrong everywhere, what is answered to one case is left to chance.
@@ -101,19 +68,6 @@ fn solids_and_hits_have_scores_of_their_own_and_pages_that_diagnose_makes_again(
         let (again, own) = (bench.text("again/report.html"), bench.text("proof/cases/001/report.html"));
         assert!(sections(&again) == sections(&own), "{key}");
     }
-}
-
-#[test]
-fn solids_are_told_the_same_on_any_number_of_threads() {
-    let bench = Bench::new("prove-solid-threads");
-    let run = |threads: &str| {
-        let options = ["--threads", threads, "-o", threads, "--no-case-pages", "--json"];
-        let output = bench.run(&[&["prove", "--solid", "2"][..], &options].concat());
-        assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
-        String::from_utf8(output.stdout).unwrap()
-    };
-    assert_eq!(run("1"), run("2"));
-    assert_eq!(bench.text("1/answers.json"), bench.text("2/answers.json"));
 }
 
 #[test]
@@ -187,6 +141,27 @@ fn the_limits_of_a_test_are_told_and_a_recording_without_coherence_is_refused() 
     bench.done(&["synthesize", "fixture.json", "--lines", "10:500:5", "-o", "clean.uff"]);
     bench.refused(&["prove", "--limits", "fixture.json", "clean.uff"], &["clean.uff", "coherence"]);
     bench.refused(&["prove", "--limits", "fixture.json", "hammer-test.uff", "--cases", "3"], &["--limits"]);
+}
+
+#[test]
+fn the_shipped_cases_are_looked_for_around_the_current_folder_and_around_the_program() {
+    let bench = Bench::new("prove-found");
+    // What is found there is refused, which tells that it was found without a diagnosis.
+    for folder in ["here/fixtures/concealed", "here/deep/within", "there/fixtures/concealed", "there/target"]
+    {
+        std::fs::create_dir_all(bench.0.join(folder)).unwrap();
+    }
+    for checkout in ["here", "there"] {
+        bench.write(&format!("{checkout}/fixtures/concealed/truths.json"), "[]");
+    }
+    let said = |output: std::process::Output| String::from_utf8(output.stderr).unwrap();
+    let found = said(Bench::run_in(bench.0.join("here/deep/within"), &["prove"]));
+    assert!(found.contains("here/fixtures/concealed/truths.json: the sealed truths"), "{found}");
+    let program = bench.0.join("there/target/jointscope");
+    std::fs::copy(env!("CARGO_BIN_EXE_jointscope"), &program).unwrap();
+    let output = std::process::Command::new(program).arg("prove").current_dir(&bench.0).output().unwrap();
+    let found = said(output);
+    assert!(found.contains("there/fixtures/concealed/truths.json: the sealed truths"), "{found}");
 }
 
 #[test]

@@ -53,11 +53,46 @@ const FLOORS: [Floor; 23] = [
 ];
 
 #[test]
-fn the_shipped_cases_score_no_less_than_they_did() {
-    let bench = Bench::new("prove-floors");
-    let output = bench.run(&["prove", "--json"]);
-    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
-    let proof: Value = serde_json::from_slice(&output.stdout).unwrap();
+fn the_shipped_cases_score_no_less_than_they_did_and_have_pages_from_which_anyone_can_diagnose_again() {
+    let bench = Bench::new("prove-shipped");
+    // From a folder of the sources, around which the cases are.
+    let prove = |to: &str, options: &[&str]| {
+        let to = bench.0.join(to).to_str().unwrap().to_owned();
+        let output = Bench::run_in(env!("CARGO_MANIFEST_DIR"), &[&["prove", "-o", &to], options].concat());
+        assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+        String::from_utf8(output.stdout).unwrap()
+    };
+    keeps_its_floors(&serde_json::from_str(&prove("proof", &["--json", "--threads", "2"])).unwrap());
+    let sections = |page: &str| bench.text(page).split("<footer>").next().unwrap().to_owned();
+    // A solid and hits that hide nothing and are quick: alone, and on another number of threads, they are the same.
+    let answers = bench.json("proof/answers.json");
+    for (only, case) in [("21", 21), ("25", 25)] {
+        let told = prove(only, &["--only", only, "--threads", "1"]);
+        assert!(told.contains("1 of 1"), "case {only} is left alone: {told}");
+        assert_eq!(bench.json(&format!("{only}/answers.json"))[0], answers[case], "case {only}");
+        let page = format!("cases/0{only}/report.html");
+        assert!(sections(&format!("{only}/{page}")) == sections(&format!("proof/{page}")), "case {only}");
+    }
+    let page = bench.text("proof/report.html");
+    assert!(page.contains("href=\"./cases/005/report.html\""), "the case leads to its page");
+    let sealed = bench.json("proof/seal.json")["sealed_truths_sha256"].as_str().unwrap().to_owned();
+    assert!(page.contains(&sealed), "the page says what was sealed");
+    // What the diagnosis was given is all there is, and gives the same page again.
+    let given = ["fixture.json", "hammer-test.uff", "report.html"];
+    let folder = std::fs::read_dir(bench.0.join("proof/cases/005")).unwrap();
+    let mut names: Vec<_> = folder.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+    names.sort();
+    assert_eq!(names, given);
+    let text = bench.text("proof/cases/005/fixture.json");
+    assert!(!text.contains("physics") && !text.contains("seed"), "{text}");
+    for file in &given[..2] {
+        std::fs::copy(bench.0.join("proof/cases/005").join(file), bench.0.join(file)).unwrap();
+    }
+    bench.done(&["diagnose", "fixture.json", "hammer-test.uff", "-o", "again"]);
+    assert!(sections("again/report.html") == sections("proof/cases/005/report.html"));
+}
+
+fn keeps_its_floors(proof: &Value) {
     let missed: Vec<String> = FLOORS
         .iter()
         .filter_map(|floor| {

@@ -3,10 +3,10 @@
 use super::{Admissible, JointLikelihood, JointTests, LawFit};
 use jointscope_linalg::{Matrix2, RealMatrix2};
 use jointscope_spectra::FrfPair;
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 
 /// The joint from all FRFs.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct JointFit {
     /// K, symmetric: N/m, N/rad, N·m/rad.
     pub stiffness: RealMatrix2,
@@ -16,6 +16,7 @@ pub struct JointFit {
     pub covariance: [[f64; 6]; 6],
     /// The part of it that comes from the model's error: how far the joint moves when one of eight blocks of lines is left out. Zero where noise explains
     /// what is left.
+    #[serde(skip)]
     pub model_covariance: [[f64; 6]; 6],
     /// The part of it that comes from the laws compared: by how much they differ from K + sC in the middle of the band, each as often as it is probable.
     pub law_covariance: [[f64; 6]; 6],
@@ -24,10 +25,13 @@ pub struct JointFit {
     /// χ² and priors per degree of freedom: 1 where noise and tolerances explain the FRFs.
     pub chi2_per_dof: f64,
     /// What the noise's variance was multiplied by because the model does not explain the FRFs; 1 where it does.
+    #[serde(skip)]
     pub inflation: f64,
     /// What the posterior covariance was multiplied by because the fixture's quantities are farther from what is stated than chance takes them; 1 where they are not.
+    #[serde(skip)]
     pub strain: f64,
     /// Whether c would give out energy if it were free, and was held to c = v vᵀ.
+    #[serde(rename = "on_the_boundary_of_passive")]
     pub is_on_the_boundary: bool,
     /// The fixture's quantities that the FRFs depend on, where the fit has them.
     pub quantities: Vec<FittedQuantity>,
@@ -36,18 +40,23 @@ pub struct JointFit {
     /// What is wrong with a joint that physics forbids.
     pub tests: JointTests,
     /// The nearest joint that physics allows, where a test fails.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub admissible: Option<Admissible>,
     /// How stiffness and damping depend on frequency, the most probable law first; empty if not asked for.
+    #[serde(skip)]
     pub laws: Vec<LawFit>,
     /// The FRFs fitted.
     pub frfs: Vec<FrfPair>,
     /// Spectral lines fitted.
     pub lines: usize,
     /// The joint's own mass and its standard deviation, kg, where the laws compared show that it has one; k and c are those of a joint with it.
+    #[serde(skip_serializing_if = "Option::is_none", serialize_with = "uncertain")]
     pub mass: Option<(f64, f64)>,
     /// Whether the bodies do not rotate: only the elements (1,1) mean anything then.
+    #[serde(skip)]
     pub scalar: bool,
     /// What the FRFs alone tell of the joint and of the quantities; nothing where they leave the joint's mass open.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub likelihood: Option<JointLikelihood>,
 }
 
@@ -84,14 +93,24 @@ pub struct UnmovedQuantity {
 }
 
 /// The joint's length as a fit has it.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct FittedLength {
     /// L, m.
     pub value: f64,
     /// Its variance after the fit, m²; zero where both ends are exact.
+    #[serde(rename = "std", serialize_with = "root")]
     pub variance: f64,
     /// Its covariance with (k11, k12, k22).
+    #[serde(skip)]
     pub with_stiffness: [f64; 3],
+}
+
+fn root<S: Serializer>(variance: &f64, serializer: S) -> Result<S::Ok, S::Error> {
+    variance.max(0.0).sqrt().serialize(serializer)
+}
+
+fn uncertain<S: Serializer>(mass: &Option<(f64, f64)>, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_map(mass.iter().flat_map(|(value, std)| [("value", value), ("std", std)]))
 }
 
 impl JointFit {

@@ -6,9 +6,11 @@
 //!
 //! A route is a module that draws a case and its truth, judges an answer by that truth, and scores what was judged; here they come together.
 
+//!
+//! Which routes there are is said once, at the end of this file; beside that a route has a count in [`Plan`].
+
 mod as_is;
 mod by_name;
-mod judged;
 mod lumped;
 mod modal_errors;
 mod quiet;
@@ -16,48 +18,26 @@ mod score;
 mod solid;
 mod struck;
 
-pub use as_is::{AsIsJudged, AsIsTruth};
+pub use as_is::AsIsTruth;
 pub use by_name::{Nameable, TrueName};
-pub use judged::JudgedRoutes;
-pub use lumped::{LumpedJudged, LumpedRoute, LumpedTruth};
-pub use modal_errors::{ModalErrorsJudged, ModalErrorsTruth};
+pub use lumped::{LumpedRoute, LumpedTruth};
+pub use modal_errors::ModalErrorsTruth;
 pub use score::{RouteScore, RouteScores};
 pub use solid::{Shown, SolidJudged, SolidTruth};
 pub use struck::{StruckAnswer, StruckAnswers, StruckCase, StruckJudged, StruckRole, StruckTruth};
 
-use crate::answers::on_workers;
+use crate::answers::{Timed, on_workers};
+use crate::generate::Draw;
 use crate::seal::{Filed, Given, Sealable};
-use crate::{Answers, Case, FileError, GenerationError, Plan, Precision, SealedTruths, Truth};
+use crate::size::SizeScore;
+use crate::{
+    Answer, Answers, Case, FileError, GenerationError, Judged, Plan, Precision, SealedTruths, Sheet, Truth,
+};
+use by_name::{ONE_OR_NONE, UNLISTED, WRONG_EVERYWHERE};
 use jointscope_fixture::Fixture;
 use jointscope_pipeline::Answer as Diagnosed;
-use serde::Deserialize;
 use serde_json::Value;
-
-/// What is to be diagnosed, by route.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct Questions {
-    /// The laboratory's FRFs.
-    pub laboratory: Vec<Case>,
-    /// FRFs of solids.
-    pub solid: Vec<Case>,
-    /// Hits over time.
-    pub struck: Vec<StruckCase>,
-    /// FRFs of solids as they are.
-    pub as_is: Vec<Case>,
-    /// FRFs of structures with errors in every mode.
-    pub modal_errors: Vec<Case>,
-    /// FRFs of lumped structures that hide one thing of a route's own.
-    pub lumped: Vec<Case>,
-}
-
-impl Questions {
-    /// Every case, route after route.
-    pub fn all(&self) -> Vec<Asked<'_>> {
-        let first = self.laboratory.iter().chain(&self.solid).map(Asked::Frfs);
-        let last = self.as_is.iter().chain(&self.modal_errors).chain(&self.lumped).map(Asked::Frfs);
-        first.chain(self.struck.iter().map(Asked::Hits)).chain(last).collect()
-    }
-}
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// A case by what its recording holds.
 #[derive(Debug, Clone, Copy)]
@@ -89,154 +69,15 @@ impl Asked<'_> {
     }
 }
 
-/// What was answered, by route.
-#[derive(Debug)]
-pub struct Replies {
-    /// To the laboratory's FRFs.
-    pub laboratory: Answers,
-    /// To those of solids.
-    pub solid: Answers,
-    /// To hits.
-    pub struck: StruckAnswers,
-    /// To FRFs of solids as they are.
-    pub as_is: Answers,
-    /// To those of structures with errors in every mode.
-    pub modal_errors: Answers,
-    /// To those of lumped structures that hide one thing of a route's own.
-    pub lumped: Answers,
+/// An answer by what its case's recording holds.
+enum Replied {
+    Frfs(Timed<Answer>),
+    Hits(Timed<StruckAnswer>),
 }
 
 impl Given for Replies {
     fn count(&self) -> usize {
         self.seconds().len()
-    }
-}
-
-impl Replies {
-    /// Diagnoses all cases on `threads` workers, whatever their route: none waits for the last case of another. `told` hears the number of
-    /// answers given so far; `watch` sees every diagnosis with its case's position among all, on the worker that made it and after its time was
-    /// taken. A case keeps to one core.
-    pub fn to(
-        cases: &Questions,
-        threads: usize,
-        told: impl Fn(usize) + Sync,
-        watch: impl Fn(usize, &Diagnosed) + Sync,
-    ) -> Self {
-        let asked: Vec<_> = cases.all().into_iter().enumerate().collect();
-        let given = on_workers(&asked, threads, told, |(position, asked)| {
-            let watch = |diagnosed: &Diagnosed| watch(*position, diagnosed);
-            match asked {
-                Asked::Frfs(case) => (Some(Answers::one(case, watch)), None),
-                Asked::Hits(case) => (None, Some(Answers::one(case, watch))),
-            }
-        });
-        // A worker that died has left neither.
-        let mut given = given.into_iter().map(Option::unwrap_or_default);
-        let mut of_frfs =
-            |of: &[Case]| Answers::collected(given.by_ref().take(of.len()).map(|(frfs, _)| frfs));
-        let (laboratory, solid) = (of_frfs(&cases.laboratory), of_frfs(&cases.solid));
-        let struck = Answers::collected(given.by_ref().take(cases.struck.len()).map(|(_, hits)| hits));
-        let mut of_frfs =
-            |of: &[Case]| Answers::collected(given.by_ref().take(of.len()).map(|(frfs, _)| frfs));
-        let (as_is, modal_errors) = (of_frfs(&cases.as_is), of_frfs(&cases.modal_errors));
-        let lumped = of_frfs(&cases.lumped);
-        Replies { laboratory, solid, struck, as_is, modal_errors, lumped }
-    }
-
-    /// The answers as JSON, in the order of the cases.
-    pub fn to_value(&self) -> Value {
-        let first = &[&self.laboratory, &self.solid];
-        let last = &[&self.as_is, &self.modal_errors, &self.lumped];
-        let of_frfs = |all: &[&Answers]| all.iter().map(|answers| answers.to_value()).collect::<Vec<_>>();
-        let all = [of_frfs(first), vec![self.struck.to_value()], of_frfs(last)].concat();
-        Value::Array(
-            all.into_iter().flat_map(|value| value.as_array().cloned().unwrap_or_default()).collect(),
-        )
-    }
-
-    /// Seconds that each answer took, on one core, in the order of the cases.
-    pub fn seconds(&self) -> Vec<f64> {
-        let Replies { laboratory, solid, struck, as_is, modal_errors, lumped } = self;
-        let (first, last) = ([laboratory, solid], [as_is, modal_errors, lumped]);
-        let of_frfs = |all: &[&Answers]| all.iter().flat_map(|answers| answers.seconds().to_vec()).collect();
-        [of_frfs(&first), struck.seconds().to_vec(), of_frfs(&last)].concat()
-    }
-}
-
-/// The truth of a case of any route.
-#[derive(Debug, Clone, PartialEq)]
-pub enum RouteTruth {
-    /// Of the laboratory.
-    Laboratory(Box<Truth>),
-    /// Of a solid.
-    Solid(Box<SolidTruth>),
-    /// Of hits.
-    Struck(Box<StruckTruth>),
-    /// Of a solid as it is.
-    AsIs(Box<AsIsTruth>),
-    /// Of a structure with errors in every mode.
-    ModalErrors(Box<ModalErrorsTruth>),
-    /// Of a lumped structure that hides one thing of a route's own.
-    Lumped(Box<LumpedTruth>),
-}
-
-impl Sealable for RouteTruth {
-    fn to_value(&self) -> Value {
-        match self {
-            RouteTruth::Laboratory(truth) => truth.to_value(),
-            RouteTruth::Solid(truth) => truth.to_value(),
-            RouteTruth::Struck(truth) => truth.to_value(),
-            RouteTruth::AsIs(truth) => truth.to_value(),
-            RouteTruth::ModalErrors(truth) => truth.to_value(),
-            RouteTruth::Lumped(truth) => truth.to_value(),
-        }
-    }
-}
-
-impl Filed for RouteTruth {
-    fn from_value(value: &Value) -> Option<Self> {
-        Some(match value["route"].as_str() {
-            None => RouteTruth::Laboratory(Box::new(Truth::from_value(value)?)),
-            Some("solid") => RouteTruth::Solid(Box::new(SolidTruth::from_value(value)?)),
-            Some("struck") => RouteTruth::Struck(Box::new(StruckTruth::deserialize(value).ok()?)),
-            Some("solid_as_is") => RouteTruth::AsIs(Box::new(AsIsTruth::from_value(value)?)),
-            Some("modal_errors") => RouteTruth::ModalErrors(Box::new(ModalErrorsTruth::from_value(value)?)),
-            Some(_) => RouteTruth::Lumped(Box::new(LumpedTruth::from_value(value)?)),
-        })
-    }
-}
-
-/// Truths after the seal was broken, by route.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct Opened {
-    /// Of the laboratory.
-    pub laboratory: Vec<Truth>,
-    /// Of solids.
-    pub solid: Vec<SolidTruth>,
-    /// Of hits.
-    pub struck: Vec<StruckTruth>,
-    /// Of solids as they are.
-    pub as_is: Vec<AsIsTruth>,
-    /// Of structures with errors in every mode.
-    pub modal_errors: Vec<ModalErrorsTruth>,
-    /// Of lumped structures that hide one thing of a route's own.
-    pub lumped: Vec<LumpedTruth>,
-}
-
-impl FromIterator<RouteTruth> for Opened {
-    fn from_iter<I: IntoIterator<Item = RouteTruth>>(truths: I) -> Self {
-        let mut opened = Opened::default();
-        for truth in truths {
-            match truth {
-                RouteTruth::Laboratory(truth) => opened.laboratory.push(*truth),
-                RouteTruth::Solid(truth) => opened.solid.push(*truth),
-                RouteTruth::Struck(truth) => opened.struck.push(*truth),
-                RouteTruth::AsIs(truth) => opened.as_is.push(*truth),
-                RouteTruth::ModalErrors(truth) => opened.modal_errors.push(*truth),
-                RouteTruth::Lumped(truth) => opened.lumped.push(*truth),
-            }
-        }
-        opened
     }
 }
 
@@ -248,48 +89,221 @@ impl Plan {
     pub fn along_with(cases: usize) -> usize {
         if cases < SHARE.1 { 0 } else { cases / SHARE.0 }
     }
+}
 
-    /// Makes the cases of all routes, their truths under one seal. A case depends on the seed (or the text), its route and its number within
-    /// that alone.
-    ///
-    /// # Errors
-    /// See [`GenerationError`].
-    pub fn draw_routes(&self) -> Result<(Questions, SealedTruths<RouteTruth>), GenerationError> {
-        let numbers = self.numbers()?;
-        let mut first = 0;
-        // The numbers of a route of so many cases, and its first.
-        let mut route = |count: usize| -> (Vec<usize>, usize) {
-            let from = first;
-            first += count;
-            (numbers.iter().copied().filter(|number| (from..first).contains(number)).collect(), from)
-        };
-        let mut all = Vec::with_capacity(numbers.len());
-        let (own, _) = route(self.cases + self.graded);
-        let (laboratory, truths) = self.drawn(&own, |index| self.case(index))?;
-        all.extend(truths.into_iter().map(|truth| RouteTruth::Laboratory(Box::new(truth))));
-        let (own, from) = route(self.solid);
-        let (solid, truths) = self.drawn(&own, |index| SolidTruth::draw(index, index - from, self.seed))?;
-        all.extend(truths.into_iter().map(|truth| RouteTruth::Solid(Box::new(truth))));
-        let (own, from) = route(self.struck);
-        let draw = |index| StruckTruth::draw(index, index - from, self.seed, &self.families);
-        let (struck, truths) = self.drawn(&own, draw)?;
-        all.extend(truths.into_iter().map(|truth| RouteTruth::Struck(Box::new(truth))));
-        let (own, from) = route(self.solid_as_is);
-        let (as_is, truths) = self.drawn(&own, |index| AsIsTruth::draw(index, index - from, self.seed))?;
-        all.extend(truths.into_iter().map(|truth| RouteTruth::AsIs(Box::new(truth))));
-        let (own, from) = route(self.modal_errors);
-        let (modal_errors, truths) =
-            self.drawn(&own, |index| ModalErrorsTruth::draw(index, index - from, self))?;
-        all.extend(truths.into_iter().map(|truth| RouteTruth::ModalErrors(Box::new(truth))));
-        let mut lumped = Vec::new();
-        for of in LumpedRoute::ALL {
-            let (own, from) = route(of.count(self));
-            let (cases, truths) =
-                self.drawn(&own, |index| LumpedTruth::draw(of, index, index - from, self))?;
-            lumped.extend(cases);
-            all.extend(truths.into_iter().map(|truth| RouteTruth::Lumped(Box::new(truth))));
+/// Defines whatever holds something of every route, and how routes are drawn, judged and scored.
+///
+/// A line is a route beside the laboratory's, in the order in which cases are numbered: its key in files, which is its field here and its count in [`Plan`], what is
+/// true of a case; what a recording holds, with the types of case and answers; where recordings come from, in words; how a case is drawn, how all are judged, and
+/// how they are scored.
+macro_rules! routes {
+    ($(
+        $key:ident: $Route:ident($Truth:ty), $Recording:ident($Case:ty => $Answers:ty), $what:literal,
+        $draw:expr, $judge:expr, $score:expr;
+    )+) => {
+        /// What is to be diagnosed, by route.
+        #[derive(Debug, Clone, PartialEq, Default)]
+        pub struct Questions {
+            /// The laboratory's FRFs.
+            pub laboratory: Vec<Case>,
+            $(#[doc = $what] pub $key: Vec<$Case>,)+
         }
-        let questions = Questions { laboratory, solid, struck, as_is, modal_errors, lumped };
-        Ok((questions, SealedTruths::new(all)))
-    }
+
+        impl Questions {
+            /// Every case, route after route.
+            pub fn all(&self) -> Vec<Asked<'_>> {
+                let mut all: Vec<_> = self.laboratory.iter().map(Asked::Frfs).collect();
+                $(all.extend(self.$key.iter().map(Asked::$Recording));)+
+                all
+            }
+        }
+
+        /// What was answered, by route.
+        #[derive(Debug)]
+        pub struct Replies {
+            /// The laboratory's FRFs.
+            pub laboratory: Answers,
+            $(#[doc = $what] pub $key: $Answers,)+
+        }
+
+        impl Replies {
+            /// Diagnoses all cases on `threads` workers, whatever their route: none waits for the last case of another. `told` hears the number of
+            /// answers given so far; `watch` sees every diagnosis with its case's position among all, on the worker that made it and after its time was
+            /// taken. A case keeps to one core.
+            pub fn to(
+                cases: &Questions,
+                threads: usize,
+                told: impl Fn(usize) + Sync,
+                watch: impl Fn(usize, &Diagnosed) + Sync,
+            ) -> Self {
+                let asked: Vec<_> = cases.all().into_iter().enumerate().collect();
+                let replied = on_workers(&asked, threads, told, |(position, asked)| {
+                    let watch = |diagnosed: &Diagnosed| watch(*position, diagnosed);
+                    match asked {
+                        Asked::Frfs(case) => Replied::Frfs(Answers::one(case, watch)),
+                        Asked::Hits(case) => Replied::Hits(Answers::one(case, watch)),
+                    }
+                });
+                let mut replied = replied.into_iter();
+                let own = |replied| if let Some(Replied::Frfs(answer)) = replied { Some(answer) } else { None };
+                let laboratory =
+                    Answers::collected(replied.by_ref().take(cases.laboratory.len()).map(own));
+                $(
+                    let own = |replied| match replied {
+                        Some(Replied::$Recording(answer)) => Some(answer),
+                        _ => None,
+                    };
+                    let $key = Answers::collected(replied.by_ref().take(cases.$key.len()).map(own));
+                )+
+                Replies { laboratory, $($key),+ }
+            }
+
+            /// No answer to any case.
+            pub fn none(cases: &Questions) -> Self {
+                Replies {
+                    laboratory: Answers::none(cases.laboratory.len()),
+                    $($key: Answers::none(cases.$key.len()),)+
+                }
+            }
+
+            /// The answers as JSON, in the order of the cases.
+            pub fn to_value(&self) -> Value {
+                self.laboratory.values()$(.chain(self.$key.values()))+.collect()
+            }
+
+            /// Seconds that each answer took, on one core, in the order of the cases.
+            pub fn seconds(&self) -> Vec<f64> {
+                [self.laboratory.seconds(), $(self.$key.seconds()),+].concat()
+            }
+        }
+
+        /// The truth of a case of any route.
+        #[derive(Debug, Clone, PartialEq)]
+        pub enum RouteTruth {
+            /// The laboratory's FRFs.
+            Laboratory(Box<Truth>),
+            $(#[doc = $what] $Route(Box<$Truth>),)+
+        }
+
+        impl Sealable for RouteTruth {
+            fn to_value(&self) -> Value {
+                match self {
+                    RouteTruth::Laboratory(truth) => truth.to_value(),
+                    $(RouteTruth::$Route(truth) => truth.to_value(),)+
+                }
+            }
+        }
+
+        impl Filed for RouteTruth {
+            fn from_value(value: &Value) -> Option<Self> {
+                Some(match value["route"].as_str() {
+                    None => RouteTruth::Laboratory(Box::new(Truth::from_value(value)?)),
+                    $(Some(stringify!($key)) => RouteTruth::$Route(Box::new(<$Truth>::from_value(value)?)),)+
+                    Some(_) => return None,
+                })
+            }
+        }
+
+        /// Truths after the seal was broken, by route.
+        #[derive(Debug, Clone, PartialEq, Default)]
+        pub struct Opened {
+            /// The laboratory's FRFs.
+            pub laboratory: Vec<Truth>,
+            $(#[doc = $what] pub $key: Vec<$Truth>,)+
+        }
+
+        impl FromIterator<RouteTruth> for Opened {
+            fn from_iter<I: IntoIterator<Item = RouteTruth>>(truths: I) -> Self {
+                let mut opened = Opened::default();
+                for truth in truths {
+                    match truth {
+                        RouteTruth::Laboratory(truth) => opened.laboratory.push(*truth),
+                        $(RouteTruth::$Route(truth) => opened.$key.push(*truth),)+
+                    }
+                }
+                opened
+            }
+        }
+
+        impl Plan {
+            /// Number of cases of each route beside the laboratory's, by its key in files.
+            pub(crate) fn by_route(&self) -> Vec<(&'static str, usize)> {
+                vec![$((stringify!($key), self.$key)),+]
+            }
+
+            /// Makes the cases of all routes, their truths under one seal. A case depends on the seed (or the text), its route and its number within
+            /// that alone.
+            ///
+            /// # Errors
+            /// See [`GenerationError`].
+            pub fn draw_routes(&self) -> Result<(Questions, SealedTruths<RouteTruth>), GenerationError> {
+                let numbers = self.numbers()?;
+                let mut first = 0;
+                // The numbers of a route of so many cases, and its first.
+                let mut route = |count: usize| -> (Vec<usize>, usize) {
+                    let from = first;
+                    first += count;
+                    (numbers.iter().copied().filter(|number| (from..first).contains(number)).collect(), from)
+                };
+                let mut all = Vec::with_capacity(numbers.len());
+                let (own, _) = route(self.cases + self.graded);
+                let (laboratory, truths) = self.drawn(&own, |index| self.case(index))?;
+                all.extend(truths.into_iter().map(|truth| RouteTruth::Laboratory(Box::new(truth))));
+                $(
+                    let draw: fn(Draw) -> Result<($Case, $Truth), GenerationError> = $draw;
+                    let (own, from) = route(self.$key);
+                    let ($key, truths) =
+                        self.drawn(&own, |index| draw(Draw::of(self, stringify!($key), index, index - from)))?;
+                    all.extend(truths.into_iter().map(|truth| RouteTruth::$Route(Box::new(truth))));
+                )+
+                Ok((Questions { laboratory, $($key),+ }, SealedTruths::new(all)))
+            }
+        }
+
+        impl RouteScores {
+            /// Judges all cases beside the laboratory's on `threads` workers and scores them by route; `told` hears the number of cases of FRFs judged so far.
+            pub fn of(
+                cases: &Questions,
+                truths: Opened,
+                answers: &Replies,
+                threads: usize,
+                told: impl Fn(usize) + Sync,
+            ) -> Self {
+                let done = AtomicUsize::new(0);
+                let told = |_: usize| told(done.fetch_add(1, Ordering::Relaxed) + 1);
+                let mut scores = Vec::new();
+                $(if !cases.$key.is_empty() {
+                    let score: fn(&[_]) -> (Sheet, Vec<SizeScore>) = $score;
+                    let judge = $judge;
+                    let (sheet, sizes) = score(&judge(&cases.$key, truths.$key, &answers.$key, threads, &told));
+                    scores.push(RouteScore { key: stringify!($key), what: $what, sheet, sizes });
+                })+
+                RouteScores(scores)
+            }
+        }
+    };
+}
+
+routes! {
+    solid: Solid(SolidTruth), Frfs(Case => Answers),
+        "recordings of the finite-element twin of two solid blocks on a strip",
+        SolidTruth::draw, Judged::all, solid::score;
+    struck: Struck(StruckTruth), Hits(StruckCase => StruckAnswers),
+        "hits over time on joints that may depend on amplitude",
+        StruckTruth::draw, |_, truths, answers, _, _| StruckJudged::all(truths, answers), struck::score;
+    solid_as_is: AsIs(AsIsTruth), Frfs(Case => Answers),
+        "recordings of the finite-element twin of two solid blocks on a strip, nothing idealised",
+        AsIsTruth::draw, Judged::all, |judged| by_name::score(WRONG_EVERYWHERE, judged);
+    modal_errors: ModalErrors(ModalErrorsTruth), Frfs(Case => Answers),
+        "recordings of lumped structures with an error in every mode",
+        ModalErrorsTruth::draw, Judged::all, |judged| by_name::score(WRONG_EVERYWHERE, judged);
+    channel_flaws: ChannelFlaws(LumpedTruth), Frfs(Case => Answers),
+        "recordings of lumped structures by a measuring chain with one flaw or none",
+        |at| LumpedTruth::draw(LumpedRoute::ChannelFlaws, at), Judged::all, |judged| by_name::score(ONE_OR_NONE, judged);
+    load_paths: LoadPaths(LumpedTruth), Frfs(Case => Answers),
+        "recordings of lumped structures with one further load path, footings that turn, or neither",
+        |at| LumpedTruth::draw(LumpedRoute::LoadPaths, at), Judged::all, |judged| by_name::score(ONE_OR_NONE, judged);
+    unknown_physics: UnknownPhysics(LumpedTruth), Frfs(Case => Answers),
+        "recordings of lumped structures with physics that no effect is, small and large",
+        |at| LumpedTruth::draw(LumpedRoute::UnknownPhysics, at), Judged::all, |judged| by_name::score(UNLISTED, judged);
 }

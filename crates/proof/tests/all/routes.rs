@@ -4,35 +4,29 @@ use jointscope_diagnosis::Verdict;
 use jointscope_fixture::{Dof, Effect, EffectKind, Place};
 use jointscope_nonlinear::Verdict as Conclusion;
 use jointscope_proof::{
-    Answer, Answers, Case, Family, Filed, Found, Judgeable, Judged, JudgedRoutes, LumpedTruth,
-    ModalErrorsTruth, NoAnswer, Opened, Plan, Precision, Questions, Replies, Role, RouteScore, RouteScores,
-    Sealable, SolidJudged, SolidTruth, StruckAnswer, StruckAnswers, StruckCase, StruckJudged, StruckRole,
-    StruckTruth,
+    Answer, Answers, AsIsTruth, Case, Family, Filed, Found, Judgeable, LumpedTruth, ModalErrorsTruth, Opened,
+    Plan, Precision, Questions, Replies, Role, RouteScore, RouteScores, Sealable, SolidTruth, StruckAnswer,
+    StruckAnswers, StruckCase, StruckRole, StruckTruth,
 };
 use jointscope_recordings::{ReadOptions, Source, hits_of};
 use jointscope_rig::{Instrument, Outside, frfs};
 use jointscope_spectra::FrfSet;
 use std::collections::BTreeSet;
 
-fn silent(cases: &[Case]) -> Answers {
-    Answers::by(cases, 1, |_| (), |_| Err(NoAnswer::BrokeDown))
-}
-
-fn silent_to_all(questions: &Questions) -> Replies {
-    Replies {
-        laboratory: silent(&questions.laboratory),
-        solid: silent(&questions.solid),
-        struck: StruckAnswers::by(&questions.struck, 1, |_| (), |_| Err(NoAnswer::BrokeDown)),
-        as_is: silent(&questions.as_is),
-        modal_errors: silent(&questions.modal_errors),
-        lumped: silent(&questions.lumped),
-    }
-}
-
 fn drawn(plan: &Plan) -> (Questions, Opened) {
     let (questions, sealed) = plan.draw_routes().unwrap();
-    let truths = sealed.open(&silent_to_all(&questions)).unwrap();
+    let truths = sealed.open(&Replies::none(&questions)).unwrap();
     (questions, truths.into_iter().collect())
+}
+
+/// The scores of cases that were answered so.
+fn scores(questions: &Questions, truths: Opened, replies: &Replies) -> Vec<RouteScore> {
+    RouteScores::of(questions, truths, replies, 1, |_| ()).0
+}
+
+/// Answers of which those to one route are still to come.
+fn silent() -> Replies {
+    Replies::none(&Questions::default())
 }
 
 fn found(effect: &Effect) -> Found {
@@ -71,8 +65,9 @@ fn solid_score(
             })
         },
     );
-    let judged = SolidJudged::all(cases, truths.to_vec(), &answers, 1, |_| ());
-    RouteScores::of(&JudgedRoutes { solid: judged, ..JudgedRoutes::default() }).0.remove(0)
+    let questions = Questions { solid: cases.to_vec(), ..Questions::default() };
+    let truths = Opened { solid: truths.to_vec(), ..Opened::default() };
+    scores(&questions, truths, &Replies { solid: answers, ..silent() }).remove(0)
 }
 
 fn share(score: &RouteScore, key: &str) -> (usize, usize) {
@@ -87,7 +82,7 @@ fn all_routes_are_under_one_seal_that_opens_against_all_answers_only() {
     assert_eq!(questions.all().len(), 4);
     let (_, without) = Plan { struck: 0, ..plan.clone() }.draw_routes().unwrap();
     assert_ne!(sealed.digest(), without.digest(), "the seal holds every truth");
-    let some = Replies { solid: silent(&[]), ..silent_to_all(&questions) };
+    let some = Replies { solid: Answers::none(0), ..Replies::none(&questions) };
     assert!(sealed.open(&some).is_none(), "an answer is missing");
     let (_, laboratory) = plan.draw().unwrap();
     let (_, alone) = Plan { solid: 0, struck: 0, ..plan }.draw_routes().unwrap();
@@ -96,9 +91,9 @@ fn all_routes_are_under_one_seal_that_opens_against_all_answers_only() {
 
 #[test]
 fn a_case_is_the_same_however_many_are_drawn_with_it() {
-    let plan = Plan { cases: 0, solid: 3, struck: 2, seed: 9, ..Plan::default() };
+    let plan = Plan { cases: 0, solid: 2, struck: 2, seed: 9, ..Plan::default() };
     let (all, _) = drawn(&plan);
-    for (only, solid) in [(2, Some(2)), (4, None)] {
+    for (only, solid) in [(1, Some(1)), (3, None)] {
         let (one, truths) = drawn(&Plan { only: Some(only), ..plan.clone() });
         match solid {
             Some(position) => {
@@ -116,12 +111,13 @@ fn a_case_is_the_same_however_many_are_drawn_with_it() {
 
 #[test]
 fn solids_are_judged_by_what_is_in_them() {
-    let plan = Plan { cases: 0, solid: 8, seed: 1, ..Plan::default() };
+    // Three singles, a null and a double.
+    let plan = Plan { cases: 0, solid: 5, seed: 1, ..Plan::default() };
     let (questions, truths) = drawn(&plan);
     let (cases, truths) = (&questions.solid, &truths.solid);
     let singles = truths.iter().filter(|truth| truth.role == Role::Single).count();
     let perfect = solid_score(cases, truths, |truth| truth.effects().to_vec());
-    assert_eq!(share(&perfect, "nulls_consistent"), (2, 2));
+    assert_eq!(share(&perfect, "nulls_consistent"), (1, 1));
     let (right, asked) = share(&perfect, "single_place");
     assert!(right == asked && asked + 1 >= singles, "{right} of {asked}, {singles} drawn");
     assert_eq!(share(&perfect, "sizes").0, share(&perfect, "sizes").1);
@@ -132,18 +128,16 @@ fn solids_are_judged_by_what_is_in_them() {
     let always = solid_score(cases, truths, |_| {
         vec![Effect::new(EffectKind::LossFactor, Place::Joint("J".into()), None, &[0.02])]
     });
-    assert_eq!(share(&always, "null_finding"), (2, 2));
-    assert_eq!((share(&always, "single_place").0, share(&always, "wrong_name").0), (0, 8));
+    assert_eq!(share(&always, "null_finding"), (1, 1));
+    assert_eq!((share(&always, "single_place").0, share(&always, "wrong_name").0), (0, 5));
 }
 
 #[test]
 fn a_spring_across_the_strip_is_right_by_any_of_its_names_and_a_soft_rotation_is_not() {
-    let plan = Plan { cases: 0, solid: 8, seed: 1, ..Plan::default() };
+    let plan = Plan { cases: 0, solid: 8, seed: 1, only: Some(7), ..Plan::default() };
     let (questions, truths) = drawn(&plan);
-    let is_sliding =
-        |truth: &SolidTruth| truth.role == Role::Single && truth.effects()[0].dof == Some(Dof::Translation);
-    let position = truths.solid.iter().position(is_sliding).unwrap();
-    let (case, truth) = (&questions.solid[position..=position], &truths.solid[position..=position]);
+    let (case, truth) = (&questions.solid, &truths.solid);
+    assert_eq!((truth[0].role, truth[0].effects()[0].dof), (Role::Single, Some(Dof::Translation)));
     let score = |name: &dyn Fn(&Effect, f64) -> Effect| {
         let name = |truth: &SolidTruth| {
             let length = truth.lumped.joint_length(&truth.lumped.joints()[0]);
@@ -189,8 +183,9 @@ fn struck_score(
         })
     };
     let answers = StruckAnswers::by(cases, 1, |_| (), reply);
-    let struck = StruckJudged::all(truths.to_vec(), &answers);
-    RouteScores::of(&JudgedRoutes { struck, ..JudgedRoutes::default() }).0.remove(0)
+    let questions = Questions { struck: cases.to_vec(), ..Questions::default() };
+    let truths = Opened { struck: truths.to_vec(), ..Opened::default() };
+    scores(&questions, truths, &Replies { struck: answers, ..silent() }).remove(0)
 }
 
 #[test]
@@ -258,9 +253,10 @@ fn a_plan_says_which_routes_it_takes() {
     assert_eq!(lumped.to_string(), "3 channel-flaws cases, seed 1, and 2 load-paths, and 1 unknown-physics");
 }
 
-/// An answer that names effects.
-fn naming(case: &Case, effects: &[Effect], probability: f64) -> Answer {
-    let findings = effects.iter().map(|effect| Found { probability, ..found(effect) });
+/// An answer that names effects, each with its probability.
+fn naming(case: &Case, effects: &[(Effect, f64)]) -> Answer {
+    let findings =
+        effects.iter().map(|(effect, probability)| Found { probability: *probability, ..found(effect) });
     Answer {
         verdict: if effects.is_empty() { Verdict::Consistent } else { Verdict::Explained },
         findings: findings.collect(),
@@ -272,55 +268,47 @@ fn naming(case: &Case, effects: &[Effect], probability: f64) -> Answer {
     }
 }
 
-/// Solids as they are, and structures with errors in every mode, answered by the first hidden effect and by another one.
-fn model_error_scores(
-    (questions, truths): &(Questions, Opened),
-    others: &[Effect],
-    probability: f64,
-) -> [RouteScore; 2] {
-    let answers = |cases: &[Case], hidden: Vec<&[Effect]>| {
-        let reply = |case: &Case| {
-            let position = cases.iter().position(|known| known == case).unwrap();
-            Ok(naming(case, &[hidden[position], others].concat(), probability))
-        };
-        Answers::by(cases, 1, |_| (), reply)
+/// Cases answered by what is hidden in each and by other effects, each with its probability.
+fn answered_with<T: Judgeable + Sync>(
+    cases: &[Case],
+    truths: &[T],
+    others: impl Fn(&T) -> Vec<(Effect, f64)> + Sync,
+) -> Answers {
+    let reply = |case: &Case| {
+        let truth = &truths[cases.iter().position(|known| known == case).unwrap()];
+        let hidden = truth.effects().iter().map(|effect| (effect.clone(), 0.95));
+        Ok(naming(case, &hidden.chain(others(truth)).collect::<Vec<_>>()))
     };
-    let as_is = answers(&questions.as_is, truths.as_is.iter().map(|truth| truth.effects()).collect());
-    let hidden = truths.modal_errors.iter().map(|truth| truth.effects()).collect();
-    let modal_errors = answers(&questions.modal_errors, hidden);
-    let routes = RouteScores::of(&JudgedRoutes {
-        as_is: Judged::all(&questions.as_is, truths.as_is.clone(), &as_is, 1, |_| ()),
-        modal_errors: Judged::all(
-            &questions.modal_errors,
-            truths.modal_errors.clone(),
-            &modal_errors,
-            1,
-            |_| (),
-        ),
-        ..JudgedRoutes::default()
-    });
-    routes.0.try_into().unwrap()
+    Answers::by(cases, 1, |_| (), reply)
 }
 
 #[test]
 fn where_the_model_is_wrong_everywhere_what_is_true_may_stand_beside_what_is_hidden_and_nothing_else() {
-    let cases = drawn(&Plan { cases: 0, solid_as_is: 3, modal_errors: 4, seed: 2, ..Plan::default() });
-    let perfect = model_error_scores(&cases, &[], 1.0);
-    for score in &perfect {
+    let (questions, truths) =
+        drawn(&Plan { cases: 0, solid_as_is: 3, modal_errors: 4, seed: 2, ..Plan::default() });
+    // A strip's ends yield across it, whatever is stated.
+    let end = Place::Point("10".into());
+    let across = Effect::new(EffectKind::InterfaceCompliance, end, Some(Dof::Translation), &[1e8, 0.0]);
+    let beside = |truth: &AsIsTruth| truth.effects().iter().map(|_| (across.clone(), 0.95)).collect();
+    let replies = Replies {
+        solid_as_is: answered_with(&questions.solid_as_is, &truths.solid_as_is, beside),
+        modal_errors: answered_with(&questions.modal_errors, &truths.modal_errors, |_| Vec::new()),
+        ..silent()
+    };
+    let right = scores(&questions, truths.clone(), &replies);
+    for score in &right {
         let (right, asked) = share(score, "single_right");
         assert_eq!((right, share(score, "null_alone")), (asked, (1, 1)), "{}", score.key);
         assert_eq!(share(score, "sizes").0, share(score, "sizes").1);
         assert_eq!((share(score, "untrue_claimed").0, share(score, "null_untrue").0), (0, 0));
     }
-    assert_eq!(share(&perfect[0], "single_right"), (2, 2), "of solids as they are all is asked for");
-    // A strip's ends yield across it, whatever is stated.
-    let end = Place::Point("10".into());
-    let across = Effect::new(EffectKind::InterfaceCompliance, end, Some(Dof::Translation), &[1e8, 0.0]);
-    let [beside, _] = model_error_scores(&cases, &[across], 0.95);
-    assert_eq!((share(&beside, "single_right"), share(&beside, "untrue_claimed").0), ((2, 2), 0));
+    assert_eq!(share(&right[0], "single_right"), (2, 2), "of solids as they are all is asked for");
     let values = [0.0, 1e-3, 500.0, 0.01];
     let untrue = Effect::new(EffectKind::AttachedResonator, Place::Body("A".into()), None, &values);
-    let [wrong, _] = model_error_scores(&cases, &[untrue], 0.6);
+    let both = |_: &AsIsTruth| vec![(across.clone(), 0.95), (untrue.clone(), 0.6)];
+    let solid_as_is = answered_with(&questions.solid_as_is, &truths.solid_as_is, both);
+    let questions = Questions { modal_errors: Vec::new(), ..questions };
+    let wrong = scores(&questions, truths, &Replies { solid_as_is, ..silent() }).remove(0);
     let counted = ["single_right", "single_first", "untrue_claimed", "untrue_likely", "null_untrue"];
     assert_eq!(counted.map(|key| share(&wrong, key).0), [0, 2, 0, 3, 1]);
 }
@@ -334,9 +322,9 @@ fn cases_with_a_wrong_model_come_last_and_change_no_other() {
         (before.laboratory, before.solid, before.struck),
         (after.laboratory, after.solid, after.struck)
     );
-    assert_eq!((truths.as_is[0].index, truths.modal_errors[0].index()), (4, 5));
+    assert_eq!((truths.solid_as_is[0].index, truths.modal_errors[0].index()), (4, 5));
     let (one, _) = drawn(&Plan { only: Some(5), ..with });
-    assert_eq!((one.as_is.len(), one.modal_errors), (0, after.modal_errors));
+    assert_eq!((one.solid_as_is.len(), one.modal_errors), (0, after.modal_errors));
 }
 
 #[test]
@@ -365,18 +353,31 @@ fn lumped_scores(
     others: &[Effect],
     probability: f64,
 ) -> Vec<RouteScore> {
+    let lumped = lumped(questions, truths);
     let reply = |case: &Case| {
-        let position = questions.lumped.iter().position(|known| known == case).unwrap();
-        let truth = &truths.lumped[position];
-        let answer = naming(case, &[truth.effects(), others].concat(), probability);
+        let truth = lumped.iter().find_map(|(known, truth)| (*known == case).then_some(truth)).unwrap();
+        let named = truth.effects().iter().chain(others).map(|effect| (effect.clone(), probability));
+        let answer = naming(case, &named.collect::<Vec<_>>());
         // Where nothing has a name, what is handed back is the fixture at its true quantities.
         let repaired =
             if truth.role() == Role::Outside { truth.truth.fixture.clone() } else { answer.repaired };
         Ok(Answer { repaired, ..answer })
     };
-    let answers = Answers::by(&questions.lumped, 1, |_| (), reply);
-    let lumped = Judged::all(&questions.lumped, truths.lumped.clone(), &answers, 1, |_| ());
-    RouteScores::of(&JudgedRoutes { lumped, ..JudgedRoutes::default() }).0
+    let answers = |cases: &[Case]| Answers::by(cases, 1, |_| (), reply);
+    let replies = Replies {
+        channel_flaws: answers(&questions.channel_flaws),
+        load_paths: answers(&questions.load_paths),
+        unknown_physics: answers(&questions.unknown_physics),
+        ..silent()
+    };
+    scores(questions, truths.clone(), &replies)
+}
+
+/// Cases of the three routes of lumped structures and what is true of them.
+fn lumped<'a>(questions: &'a Questions, truths: &'a Opened) -> Vec<(&'a Case, &'a LumpedTruth)> {
+    let cases = [&questions.channel_flaws, &questions.load_paths, &questions.unknown_physics];
+    let truths = [&truths.channel_flaws, &truths.load_paths, &truths.unknown_physics];
+    cases.into_iter().flatten().zip(truths.into_iter().flatten()).collect()
 }
 
 fn lumped_plan() -> Plan {
@@ -389,7 +390,7 @@ fn lumped_plan() -> Plan {
 fn flaws_and_load_paths_are_right_by_name_and_alone() {
     let cases = drawn(&lumped_plan());
     let kinds: BTreeSet<_> =
-        cases.1.lumped.iter().filter_map(|t| t.truth.outside.as_ref()).map(Outside::kind).collect();
+        cases.1.unknown_physics.iter().filter_map(|t| t.truth.outside.as_ref()).map(Outside::kind).collect();
     assert_eq!(kinds.len(), Outside::UNLISTED.len(), "{kinds:?}");
     let keys = |scores: &[RouteScore]| scores.iter().map(|score| score.key).collect::<Vec<_>>();
     let perfect = lumped_scores(&cases, &[], 1.0);
@@ -433,12 +434,15 @@ fn lumped_cases_of_their_own_routes_come_last_and_read_back_as_they_were_written
     let without = Plan { cases: 2, modal_errors: 1, seed: 4, ..Plan::default() };
     let with = Plan { channel_flaws: 2, load_paths: 2, unknown_physics: 4, ..without.clone() };
     let ((before, _), (after, truths)) = (drawn(&without), drawn(&with));
-    assert_eq!((before.laboratory, before.modal_errors), (after.laboratory, after.modal_errors));
-    let numbers: Vec<usize> = truths.lumped.iter().map(|truth| truth.index()).collect();
+    assert_eq!(
+        (before.laboratory, before.modal_errors),
+        (after.laboratory.clone(), after.modal_errors.clone())
+    );
+    let numbers: Vec<usize> = lumped(&after, &truths).iter().map(|(_, truth)| truth.index()).collect();
     assert_eq!(numbers, (3..11).collect::<Vec<_>>());
     let (one, _) = drawn(&Plan { only: Some(6), ..with });
-    assert_eq!(one.lumped, after.lumped[3..4]);
-    for (case, truth) in after.lumped.iter().zip(&truths.lumped) {
+    assert_eq!((one.load_paths, one.unknown_physics), (after.load_paths[1..].to_vec(), Vec::new()));
+    for (case, truth) in lumped(&after, &truths) {
         let text = truth.to_value().to_string();
         let read = LumpedTruth::from_value(&serde_json::from_str(&text).unwrap()).unwrap();
         assert_eq!(read.to_value().to_string(), text);

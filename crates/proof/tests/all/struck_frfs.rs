@@ -2,9 +2,7 @@
 
 use jointscope_estimation::{Estimate, EstimateOptions, ResponseWindow};
 use jointscope_fixture::{Effect, EffectKind, Place};
-use jointscope_proof::{
-    Answers, Case, NoAnswer, Opened, Plan, Replies, StruckAnswers, StruckCase, StruckTruth,
-};
+use jointscope_proof::{Opened, Plan, Replies, StruckCase, StruckTruth};
 use jointscope_rig::{Instrument, StrikeTest, frfs, generator};
 use jointscope_spectra::{Channel, FrfSet};
 
@@ -12,11 +10,7 @@ use jointscope_spectra::{Channel, FrfSet};
 fn linear(only: usize) -> (StruckCase, StruckTruth) {
     let plan = Plan { cases: 0, solid: 0, struck: 200, seed: 21, only: Some(only), ..Plan::default() };
     let (mut questions, sealed) = plan.draw_routes().unwrap();
-    let silent = || Answers::by(&[] as &[Case], 1, |_| (), |_| Err(NoAnswer::BrokeDown));
-    let struck = StruckAnswers::by(&questions.struck, 1, |_| (), |_| Err(NoAnswer::BrokeDown));
-    let [laboratory, solid, as_is, modal_errors, lumped] = [(); 5].map(|()| silent());
-    let replies = Replies { laboratory, solid, struck, as_is, modal_errors, lumped };
-    let mut opened: Opened = sealed.open(&replies).unwrap().into_iter().collect();
+    let mut opened: Opened = sealed.open(&Replies::none(&questions)).unwrap().into_iter().collect();
     (questions.struck.remove(0), opened.struck.remove(0))
 }
 

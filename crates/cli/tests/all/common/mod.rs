@@ -101,7 +101,12 @@ impl Bench {
     }
 
     pub fn run(&self, arguments: &[&str]) -> Output {
-        Command::new(env!("CARGO_BIN_EXE_jointscope")).args(arguments).current_dir(&self.0).output().unwrap()
+        Self::run_in(&self.0, arguments)
+    }
+
+    /// The program in another folder.
+    pub fn run_in(folder: impl AsRef<Path>, arguments: &[&str]) -> Output {
+        Command::new(env!("CARGO_BIN_EXE_jointscope")).args(arguments).current_dir(folder).output().unwrap()
     }
 
     /// The program with these bytes on its standard input.

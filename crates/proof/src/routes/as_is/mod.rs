@@ -14,10 +14,10 @@ mod tests;
 
 use super::by_name::{Nameable, TrueName};
 use super::quiet::quiet_hammer;
-use super::solid::transverse;
 use super::solid::twin::read;
+use super::solid::{transverse, with_points};
 use crate::case::{effect_value, filed_effects};
-use crate::generate::{seed_of, turn};
+use crate::generate::{Draw, turn};
 use crate::judged::error_on;
 use crate::objective::Judge;
 use crate::seal::{Filed, Sealable};
@@ -90,14 +90,10 @@ pub struct AsIsTruth {
     pub hammer: HammerTest,
 }
 
-/// A solid as it is after its truth was opened.
-pub type AsIsJudged = Judged<AsIsTruth>;
-
 impl AsIsTruth {
     /// The case of a number, and apart from it what is true of it.
-    pub(crate) fn draw(index: usize, number: usize, seed: u64) -> Result<(Case, Self), GenerationError> {
-        let source = format!("seed {seed} solid as is");
-        let seed = seed_of(&source, number);
+    pub(crate) fn draw(at: Draw) -> Result<(Case, Self), GenerationError> {
+        let Draw { index, number, source, seed, .. } = at;
         let mut random = generator(seed);
         let (kind, turn) = (KINDS[number % KINDS.len()], turn(&KINDS, number));
         let what = (kind == Kind::Single).then(|| CONCEALED[turn % CONCEALED.len()]);
@@ -154,16 +150,6 @@ impl AsIsTruth {
             read(&twin, &self.hidden, &transverse(RECORDED), &lines)?,
             read(&twin, &[], &transverse(UNSEEN), &lines)?,
         ])
-    }
-
-    /// A fixture of the same assembly with the points that nobody measured at.
-    fn with_points_apart(&self, fixture: &Fixture) -> Option<Fixture> {
-        let mut value = fixture.to_value();
-        let known = self.solid.to_value();
-        for name in APART {
-            value["points"][name] = known["points"][name].clone();
-        }
-        Fixture::from_value(&value).ok()
     }
 }
 
@@ -255,7 +241,7 @@ impl Judgeable for AsIsTruth {
     fn evidence(&self, case: &Case, answer: &Answer) -> Option<Evidence> {
         let [clean, unseen] = self.frfs().ok()?;
         let judge = Judge::of(case)?;
-        let error = |fixture: &Fixture| error_on(&unseen, &self.with_points_apart(fixture)?);
+        let error = |fixture: &Fixture| error_on(&unseen, &with_points(fixture, &self.solid, APART)?);
         Some(Evidence {
             truth: judge.objective_of_clean(&clean, &self.lumped)?,
             unseen: error(&answer.refitted).zip(error(&answer.repaired)).map(Into::into),

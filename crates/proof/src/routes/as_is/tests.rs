@@ -1,7 +1,13 @@
 //! The solid against a finer mesh, its stated fixture, and a fit with everything stated.
 
 use super::*;
+use crate::Plan;
 use crate::routes::solid::assembly::POISSON;
+
+/// The case of this number.
+fn drawn(seed: u64, number: usize) -> Result<(Case, AsIsTruth), GenerationError> {
+    AsIsTruth::draw(Draw::of(&Plan { seed, ..Plan::default() }, "solid_as_is", number, number))
+}
 
 /// Elements half as long and thick.
 const FINER: MeshOptions = MeshOptions { corner: 8, along: 24, across: 4, growth: 2.0, ..MESH };
@@ -14,7 +20,7 @@ fn transverse_frequencies(solid: &Fixture, mesh: &MeshOptions) -> Vec<f64> {
 
 #[test]
 fn frequencies_are_nearly_those_of_a_finer_mesh() {
-    let (_, truth) = AsIsTruth::draw(1, 1, 1).unwrap();
+    let (_, truth) = drawn(1, 1).unwrap();
     let [coarse, fine] = [&MESH, &FINER].map(|mesh| transverse_frequencies(&truth.solid, mesh));
     for (coarse, fine) in coarse.iter().zip(&fine) {
         assert!((coarse / fine - 1.0).abs() < 1e-2, "{coarse} Hz for {fine} Hz");
@@ -23,7 +29,7 @@ fn frequencies_are_nearly_those_of_a_finer_mesh() {
 
 #[test]
 fn a_null_with_everything_stated_refits_to_a_small_error() {
-    let (case, truth) = AsIsTruth::draw(1, 1, 1).unwrap();
+    let (case, truth) = drawn(1, 1).unwrap();
     let judge = Judge::of(&case).unwrap();
     let values = 2.0 * judge.observation.values().len() as f64;
     let (stated, refitted) = (judge.objective(&truth.lumped).unwrap(), judge.best(&truth.lumped).unwrap());
@@ -35,7 +41,7 @@ fn a_null_with_everything_stated_refits_to_a_small_error() {
 #[test]
 fn a_truth_reads_back_as_it_was_written_and_gives_the_same_frfs() {
     for number in [0, 3] {
-        let (_, truth) = AsIsTruth::draw(number, number, 3).unwrap();
+        let (_, truth) = drawn(3, number).unwrap();
         let text = truth.to_value().to_string();
         let read = AsIsTruth::from_value(&serde_json::from_str(&text).unwrap()).unwrap();
         assert_eq!(read.to_value().to_string(), text, "case {number}");

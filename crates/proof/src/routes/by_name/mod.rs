@@ -8,7 +8,7 @@ mod names;
 mod score;
 
 pub use names::TrueName;
-pub(super) use score::{ONE_OR_NONE, Route, UNLISTED, WRONG_EVERYWHERE, score};
+pub(super) use score::{ONE_OR_NONE, UNLISTED, WRONG_EVERYWHERE, score};
 
 use crate::{Evidence, Judgeable, Judged};
 use jointscope_fixture::Effect;

@@ -3,7 +3,6 @@
 use super::Nameable;
 use super::judged::LIKELY;
 use crate::case_line::{errors, is_worse};
-use crate::routes::RouteScore;
 use crate::sheet::Line;
 use crate::sheet::Target::{AtLeast, AtMost, Within};
 use crate::size::{Size, SizeScore};
@@ -54,18 +53,8 @@ const FIGURES: [Line; 2] = [
     ("unseen_repaired", "the same: median error repaired, %", None),
 ];
 
-/// A route as its scores name it.
-pub(in crate::routes) struct Route {
-    /// Key in `proof.json`.
-    pub key: &'static str,
-    /// Where its recordings come from, in words.
-    pub what: &'static str,
-    /// Shares with their targets.
-    pub rates: &'static [Line],
-}
-
 /// Scores the cases of a route.
-pub(in crate::routes) fn score<T: Nameable>(route: Route, judged: &[&Judged<T>]) -> RouteScore {
+pub(in crate::routes) fn score<T: Nameable>(rates: &[Line], judged: &[Judged<T>]) -> (Sheet, Vec<SizeScore>) {
     let sizes: Vec<Size> = judged.iter().filter_map(|case| case.found_size()).collect();
     let of_role = |role: &'static str| judged.iter().filter(move |case| role_of(case) == role);
     let roles = ["null", "gap", "single", "outside"].map(|role| RoleCount {
@@ -75,23 +64,19 @@ pub(in crate::routes) fn score<T: Nameable>(route: Route, judged: &[&Judged<T>])
         asked: (role == "single").then(|| of_role(role).filter(|case| case.is_asked()).count()),
     });
     let roles = roles.into_iter().filter(|count| matches!(count.role, "null" | "single") || count.cases > 0);
-    RouteScore {
-        key: route.key,
-        what: route.what,
-        sheet: Sheet {
-            roles: roles.collect(),
-            rates: Rate::all(route.rates, |key| share(judged, &sizes, key)),
-            figures: Figure::all(&FIGURES, |key| {
-                let unseen = judged.iter().filter(|case| case.is_right()).filter_map(|c| c.evidence.unseen);
-                match key {
-                    "unseen_ratio" => middle(unseen.map(|[refitted, repaired]| refitted / repaired)),
-                    _ => middle(unseen.map(|[_, repaired]| 100.0 * repaired)),
-                }
-            }),
-            lines: judged.iter().map(|case| line(case)).collect(),
-        },
-        sizes: SizeScore::all(&sizes),
-    }
+    let sheet = Sheet {
+        roles: roles.collect(),
+        rates: Rate::all(rates, |key| share(judged, &sizes, key)),
+        figures: Figure::all(&FIGURES, |key| {
+            let unseen = judged.iter().filter(|case| case.is_right()).filter_map(|c| c.evidence.unseen);
+            match key {
+                "unseen_ratio" => middle(unseen.map(|[refitted, repaired]| refitted / repaired)),
+                _ => middle(unseen.map(|[_, repaired]| 100.0 * repaired)),
+            }
+        }),
+        lines: judged.iter().map(line).collect(),
+    };
+    (sheet, SizeScore::all(&sizes))
 }
 
 /// How much was hidden in a case, as its scores name it.
@@ -105,8 +90,8 @@ fn role_of<T: Nameable>(case: &Judged<T>) -> &'static str {
 }
 
 /// The share of a key among a route's.
-fn share<T: Nameable>(judged: &[&Judged<T>], sizes: &[Size], key: &str) -> Share {
-    let all = || judged.iter().copied();
+fn share<T: Nameable>(judged: &[Judged<T>], sizes: &[Size], key: &str) -> Share {
+    let all = || judged.iter();
     let asked = || all().filter(|case| case.is_asked());
     let of_role = |role: &'static str| all().filter(move |case| role_of(case) == role);
     let shown = || of_role("outside").filter(|case| case.is_visible());

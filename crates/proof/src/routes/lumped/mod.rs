@@ -8,10 +8,10 @@ mod same;
 
 use super::by_name::Nameable;
 use crate::case::filed_pairs;
-use crate::generate::{seed_of, turn};
+use crate::generate::{Draw, turn};
 use crate::scene::Scene;
 use crate::seal::{Filed, Sealable};
-use crate::{AS_GOOD, Answer, Case, Evidence, GenerationError, Judgeable, Judged, Name, Plan, Role, Truth};
+use crate::{AS_GOOD, Answer, Case, Evidence, GenerationError, Judgeable, Name, Role, Truth};
 use hides::OneOf;
 use jointscope_fixture::{Effect, EffectKind};
 use jointscope_rig::{Outside, generator};
@@ -50,15 +50,6 @@ impl LumpedRoute {
             LumpedRoute::UnknownPhysics => "unknown_physics",
         }
     }
-
-    /// Number of its cases in a plan.
-    pub(crate) fn count(self, plan: &Plan) -> usize {
-        match self {
-            LumpedRoute::ChannelFlaws => plan.channel_flaws,
-            LumpedRoute::LoadPaths => plan.load_paths,
-            LumpedRoute::UnknownPhysics => plan.unknown_physics,
-        }
-    }
 }
 
 /// What is true of a lumped case.
@@ -72,19 +63,10 @@ pub struct LumpedTruth {
     pub recorded: Vec<FrfPair>,
 }
 
-/// A lumped case after its truth was opened.
-pub type LumpedJudged = Judged<LumpedTruth>;
-
 impl LumpedTruth {
     /// The case of a number, and apart from it what is true of it.
-    pub(crate) fn draw(
-        route: LumpedRoute,
-        index: usize,
-        number: usize,
-        plan: &Plan,
-    ) -> Result<(Case, LumpedTruth), GenerationError> {
-        let source = format!("seed {} {}", plan.seed, route.key().replace('_', " "));
-        let seed = seed_of(&source, number);
+    pub(crate) fn draw(route: LumpedRoute, at: Draw) -> Result<(Case, Self), GenerationError> {
+        let Draw { plan, index, number, source, seed } = at;
         let mut random = generator(seed);
         let (role, turn) = match route {
             LumpedRoute::UnknownPhysics => (Role::Outside, number),

@@ -5,12 +5,12 @@
 
 use super::by_name::Nameable;
 use super::quiet::quiet_hammer;
-use crate::generate::{HIDDEN_KINDS, log_uniform, recorded_lines, seed_of, turn, unseen_pairs};
+use crate::generate::{Draw, HIDDEN_KINDS, log_uniform, recorded_lines, turn, unseen_pairs};
 use crate::judged::error_on;
 use crate::laboratory::others;
 use crate::objective::Judge;
 use crate::seal::{Filed, Sealable};
-use crate::{AS_GOOD, Answer, Case, Evidence, GenerationError, Judgeable, Judged, Name, Plan, Role, Truth};
+use crate::{AS_GOOD, Answer, Case, Evidence, GenerationError, Judgeable, Judged, Name, Role, Truth};
 use jointscope_fixture::{Effect, Fixture};
 use jointscope_rig::{
     Instrument, ModalErrors, StructureError, UsualErrors, drawn_within_tolerance, generator, random_effect,
@@ -40,18 +40,10 @@ pub struct ModalErrorsTruth {
     pub errors: ModalErrors,
 }
 
-/// A case with errors in its modes after its truth was opened.
-pub type ModalErrorsJudged = Judged<ModalErrorsTruth>;
-
 impl ModalErrorsTruth {
     /// The case of a number, and apart from it what is true of it.
-    pub(crate) fn draw(
-        index: usize,
-        number: usize,
-        plan: &Plan,
-    ) -> Result<(Case, ModalErrorsTruth), GenerationError> {
-        let source = format!("seed {} modal errors", plan.seed);
-        let seed = seed_of(&source, number);
+    pub(crate) fn draw(at: Draw) -> Result<(Case, Self), GenerationError> {
+        let Draw { plan, index, number, source, seed } = at;
         let mut random = generator(seed);
         let role = ROLES[number % ROLES.len()];
         for _ in 0..DRAWS {

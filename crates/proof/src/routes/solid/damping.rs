@@ -94,11 +94,13 @@ fn pole(lumped: &Fixture, hz: f64) -> Result<Option<Complex64>, GenerationError>
 #[allow(clippy::unwrap_used, clippy::panic)]
 mod tests {
     use super::*;
+    use crate::Plan;
+    use crate::generate::Draw;
     use crate::routes::solid::SolidTruth;
 
     #[test]
     fn a_pole_has_the_ratio_that_the_fixture_states_where_nothing_is_left_out() {
-        let (_, truth) = SolidTruth::draw(1, 1, 1).unwrap();
+        let (_, truth) = SolidTruth::draw(Draw::of(&Plan::default(), "solid", 1, 1)).unwrap();
         let jointscope_fixture::Damping::ModalRatios { ratios: stated, .. } = truth.lumped.damping() else {
             panic!("ratios")
         };

@@ -1,6 +1,6 @@
 //! How answers to solid cases are judged.
 
-use super::SolidTruth;
+use super::{APART, SolidTruth, with_points};
 use crate::judged::error_on;
 use crate::objective::Judge;
 use crate::{Answer, Case, Evidence, Judgeable, Judged, Name, Role};
@@ -26,7 +26,7 @@ impl Judgeable for SolidTruth {
     fn evidence(&self, case: &Case, answer: &Answer) -> Option<Evidence> {
         let [clean, unseen] = self.frfs().ok()?;
         let judge = Judge::of(case)?;
-        let error = |fixture: &Fixture| error_on(&unseen, &self.with_points_apart(fixture)?);
+        let error = |fixture: &Fixture| error_on(&unseen, &with_points(fixture, &self.solid, APART)?);
         Some(Evidence {
             truth: judge.objective_of_clean(&clean, &self.lumped)?,
             lumped: Some(judge.best(&self.lumped)?.objective),

@@ -18,8 +18,8 @@ pub use judged::SolidJudged;
 pub use twin::Shown;
 
 use crate::case::{effect_value, filed_effects};
-use crate::generate::{drawn_hammer, recorded_lines, seed_of, turn};
-use crate::seal::Sealable;
+use crate::generate::{Draw, drawn_hammer, recorded_lines, turn};
+use crate::seal::{Filed, Sealable};
 use crate::{Case, GenerationError, Judgeable, Role};
 use assembly::{Assembly, Stoutness};
 use hidden::{CONCEALED, Hidden, IN_THE_SOLID};
@@ -77,9 +77,8 @@ const UNSEEN: [(&str, &str); 6] = [("5", "5"), ("6", "6"), ("6", "5"), ("5", "1"
 
 impl SolidTruth {
     /// The case of a number, and apart from it what is true of it.
-    pub(crate) fn draw(index: usize, number: usize, seed: u64) -> Result<(Case, Self), GenerationError> {
-        let source = format!("seed {seed} solid");
-        let seed = seed_of(&source, number);
+    pub(crate) fn draw(at: Draw) -> Result<(Case, Self), GenerationError> {
+        let Draw { index, number, source, seed, .. } = at;
         let mut random = generator(seed);
         let role = ROLES[number % ROLES.len()];
         let pairs = transverse(RECORDED);
@@ -127,19 +126,10 @@ impl SolidTruth {
             twin::read(&twin, &[], &transverse(UNSEEN), &lines)?,
         ])
     }
+}
 
-    /// A fixture of the same assembly with the points that nobody measured at.
-    fn with_points_apart(&self, fixture: &Fixture) -> Option<Fixture> {
-        let mut value = fixture.to_value();
-        let known = self.solid.to_value();
-        for name in APART {
-            value["points"][name] = known["points"][name].clone();
-        }
-        Fixture::from_value(&value).ok()
-    }
-
-    /// The truth that [`Sealable::to_value`] has written; `None` of anything else.
-    pub(crate) fn from_value(value: &Value) -> Option<Self> {
+impl Filed for SolidTruth {
+    fn from_value(value: &Value) -> Option<Self> {
         let besides = filed_effects(&value["lumped"], &value["besides"])?;
         Some(SolidTruth { besides, ..SolidTruth::deserialize(value).ok()? })
     }
@@ -160,6 +150,15 @@ impl Sealable for SolidTruth {
             "hammer": self.hammer,
         })
     }
+}
+
+/// A fixture of the same assembly with the points of a solid at which nobody measured.
+pub(super) fn with_points(fixture: &Fixture, solid: &Fixture, names: [&str; 2]) -> Option<Fixture> {
+    let (mut value, known) = (fixture.to_value(), solid.to_value());
+    for name in names {
+        value["points"][name] = known["points"][name].clone();
+    }
+    Fixture::from_value(&value).ok()
 }
 
 pub(super) fn transverse<const N: usize>(pairs: [(&str, &str); N]) -> [FrfPair; N] {

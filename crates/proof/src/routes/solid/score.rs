@@ -3,7 +3,6 @@
 use super::SolidJudged;
 use super::judged::are_the_same;
 use crate::case_line::{errors, is_worse};
-use crate::routes::RouteScore;
 use crate::sheet::Line;
 use crate::sheet::Target::{AtLeast, AtMost, Within};
 use crate::size::{Size, SizeScore};
@@ -33,7 +32,7 @@ const FIGURES: [Line; 3] = [
 ];
 
 /// Scores solid cases.
-pub(crate) fn score(judged: &[SolidJudged]) -> RouteScore {
+pub(crate) fn score(judged: &[SolidJudged]) -> (Sheet, Vec<SizeScore>) {
     let shown = || judged.iter().filter(|case| case.is_visible());
     let sizes: Vec<Size> = shown().flat_map(sizes).collect();
     let roles = [Role::Null, Role::Single, Role::Double].map(|role| RoleCount {
@@ -42,26 +41,22 @@ pub(crate) fn score(judged: &[SolidJudged]) -> RouteScore {
         visible: None,
         asked: Some(shown().filter(|case| case.truth.role == role).count()),
     });
-    RouteScore {
-        key: "solid",
-        what: "recordings of the finite-element twin of two solid blocks on a strip",
-        sheet: Sheet {
-            roles: roles.to_vec(),
-            rates: Rate::all(&RATES, |key| share(judged, &sizes, key)),
-            figures: Figure::all(&FIGURES, |key| {
-                let ratio = |[refitted, repaired]: [f64; 2]| refitted / repaired;
-                let unseen = shown().filter_map(|case| case.evidence.unseen);
-                match key {
-                    "held_out_ratio" => middle(shown().filter_map(|case| case.held_out()).map(ratio)),
-                    "unseen_ratio" => middle(unseen.map(ratio)),
-                    "unseen_repaired" => middle(unseen.map(|[_, repaired]| 100.0 * repaired)),
-                    _ => (None, 0),
-                }
-            }),
-            lines: judged.iter().map(line).collect(),
-        },
-        sizes: SizeScore::all(&sizes),
-    }
+    let sheet = Sheet {
+        roles: roles.to_vec(),
+        rates: Rate::all(&RATES, |key| share(judged, &sizes, key)),
+        figures: Figure::all(&FIGURES, |key| {
+            let ratio = |[refitted, repaired]: [f64; 2]| refitted / repaired;
+            let unseen = shown().filter_map(|case| case.evidence.unseen);
+            match key {
+                "held_out_ratio" => middle(shown().filter_map(|case| case.held_out()).map(ratio)),
+                "unseen_ratio" => middle(unseen.map(ratio)),
+                "unseen_repaired" => middle(unseen.map(|[_, repaired]| 100.0 * repaired)),
+                _ => (None, 0),
+            }
+        }),
+        lines: judged.iter().map(line).collect(),
+    };
+    (sheet, SizeScore::all(&sizes))
 }
 
 /// The share of a key of [`RATES`].

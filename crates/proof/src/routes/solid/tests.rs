@@ -1,7 +1,13 @@
 //! The solid against a finer mesh, and against its closed form.
 
 use super::*;
+use crate::Plan;
 use jointscope_fem::MeshOptions;
+
+/// The case of this number.
+fn drawn(seed: u64, number: usize) -> Result<(Case, SolidTruth), GenerationError> {
+    SolidTruth::draw(Draw::of(&Plan { seed, ..Plan::default() }, "solid", number, number))
+}
 
 /// Elements half as long and thick.
 const FINER: MeshOptions = MeshOptions { corner: 8, along: 64, across: 2, growth: 3.0, ..twin::MESH };
@@ -40,7 +46,7 @@ fn closed_form(truth: &SolidTruth, near: [f64; 2]) -> [f64; 2] {
 fn the_mesh_is_fine_enough_and_closed_forms_are_those_of_the_solid() {
     // A null, a layer, the shear of a thick strip: there plane sections that blocks hold flat make the solid stiffer than 5/6 GA.
     for (number, allowed) in [(1, 1e-3), (2, 1e-3), (3, 8e-3)] {
-        let (_, truth) = SolidTruth::draw(number, number, 1).unwrap();
+        let (_, truth) = drawn(1, number).unwrap();
         let [coarse, fine] = [&twin::MESH, &FINER].map(|mesh| transverse(&truth, mesh));
         let closed = closed_form(&truth, fine);
         let off = |a: [f64; 2], b: [f64; 2]| [0, 1].map(|i| a[i] / b[i] - 1.0);
@@ -53,7 +59,7 @@ fn the_mesh_is_fine_enough_and_closed_forms_are_those_of_the_solid() {
 #[test]
 fn a_truth_reads_back_as_it_was_written_and_gives_the_same_frfs() {
     for number in [2, 4, 11] {
-        let (_, truth) = SolidTruth::draw(number, number, 3).unwrap();
+        let (_, truth) = drawn(3, number).unwrap();
         let text = truth.to_value().to_string();
         let read = SolidTruth::from_value(&serde_json::from_str(&text).unwrap()).unwrap();
         assert_eq!(read.to_value().to_string(), text, "case {number}");

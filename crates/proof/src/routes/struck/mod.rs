@@ -10,16 +10,14 @@ pub use answer::{StruckAnswer, StruckAnswers};
 pub use judged::StruckJudged;
 
 use crate::case::{describe, effect_value};
-use crate::generate::{seed_of, turn};
-use crate::seal::Sealable;
-use crate::{Case, GenerationError};
+use crate::generate::{Draw, turn};
+use crate::seal::{Filed, Sealable};
+use crate::{Case, GenerationError, Plan};
 use jointscope_fixture::{Damping, Dof, Effect, EffectKind, Fixture, JointLaw};
 use jointscope_hits::Hit;
 use jointscope_recordings::hits_to_datasets;
 use jointscope_rig::universal_file::{FileError, Precision};
-use jointscope_rig::{
-    Family, StrikeTest, StructureError, drawn_within_tolerance, generator, random_law, reach,
-};
+use jointscope_rig::{StrikeTest, StructureError, drawn_within_tolerance, generator, random_law, reach};
 use jointscope_spectra::Channel;
 use jointscope_uff::Encoding;
 use rand::{Rng, RngExt};
@@ -117,14 +115,9 @@ const DRAWS: usize = 60;
 
 impl StruckTruth {
     /// The case of a number, and apart from it what is true of it.
-    pub(crate) fn draw(
-        index: usize,
-        number: usize,
-        seed: u64,
-        families: &[Family],
-    ) -> Result<(StruckCase, Self), GenerationError> {
-        let source = format!("seed {seed} struck");
-        let mut random = generator(seed_of(&source, number));
+    pub(crate) fn draw(at: Draw) -> Result<(StruckCase, Self), GenerationError> {
+        let Draw { plan: Plan { families, .. }, index, number, source, seed } = at;
+        let mut random = generator(seed);
         let role = ROLES[number % ROLES.len()];
         for _ in 0..DRAWS {
             let family = families[random.random_range(0..families.len())];
@@ -174,6 +167,12 @@ impl StruckTruth {
         let reach = self.reach.unwrap_or(0.0);
         let idle = if self.role == StruckRole::Idle { ", idle" } else { "" };
         format!("{}{idle}, reach {reach:.2e}", describe(law))
+    }
+}
+
+impl Filed for StruckTruth {
+    fn from_value(value: &Value) -> Option<Self> {
+        StruckTruth::deserialize(value).ok()
     }
 }
 

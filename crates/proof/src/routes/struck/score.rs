@@ -3,7 +3,6 @@
 use super::{StruckJudged, StruckRole};
 use crate::case::describe;
 use crate::case_line::{errors, in_full, is_worse, marked, named};
-use crate::routes::RouteScore;
 use crate::seal::Sealable;
 use crate::sheet::Line;
 use crate::sheet::Target::{AtLeast, AtMost, Within};
@@ -36,7 +35,7 @@ const FIGURES: [Line; 2] =
     [("held_out_ratio", HELD_OUT, Some(AtLeast(10.0))), ("held_out_least", "the same: the least", None)];
 
 /// Scores cases of hits.
-pub(crate) fn score(judged: &[StruckJudged]) -> RouteScore {
+pub(crate) fn score(judged: &[StruckJudged]) -> (Sheet, Vec<SizeScore>) {
     let sizes: Vec<Size> = judged.iter().flat_map(StruckJudged::sizes).collect();
     let roles = StruckRole::ALL.map(|role| {
         let cases = judged.iter().filter(|case| case.truth.role == role).count();
@@ -45,21 +44,17 @@ pub(crate) fn score(judged: &[StruckJudged]) -> RouteScore {
     });
     let named = judged.iter().filter(|case| case.is_named());
     let ratios: Vec<f64> = held_out(named).map(|[refitted, repaired]| refitted / repaired).collect();
-    RouteScore {
-        key: "struck",
-        what: "hits over time on joints that may depend on amplitude",
-        sheet: Sheet {
-            roles: roles.to_vec(),
-            rates: Rate::all(&RATES, |key| share(judged, &sizes, key)),
-            figures: Figure::all(&FIGURES, |key| match key {
-                "held_out_ratio" => middle(ratios.iter().copied()),
-                "held_out_least" => (quantile(&ratios, 0.0), ratios.len()),
-                _ => (None, 0),
-            }),
-            lines: judged.iter().map(line).collect(),
-        },
-        sizes: SizeScore::all(&sizes),
-    }
+    let sheet = Sheet {
+        roles: roles.to_vec(),
+        rates: Rate::all(&RATES, |key| share(judged, &sizes, key)),
+        figures: Figure::all(&FIGURES, |key| match key {
+            "held_out_ratio" => middle(ratios.iter().copied()),
+            "held_out_least" => (quantile(&ratios, 0.0), ratios.len()),
+            _ => (None, 0),
+        }),
+        lines: judged.iter().map(line).collect(),
+    };
+    (sheet, SizeScore::all(&sizes))
 }
 
 /// The share of a key of [`RATES`].
