@@ -127,7 +127,8 @@ fn found(arguments: &DecomposeArguments, command: String, joints: Joints) -> Res
             error => arguments.recording.refusal(error),
         })?,
     };
-    let notes = measured.notes.into_iter().chain(window(&analysis)).chain(lost_tolerances(&analysis));
+    let said = analysis.merging().into_iter().chain(window(&analysis)).chain(lost_tolerances(&analysis));
+    let notes = measured.notes.into_iter().chain(said);
     let context = origin::context_of(command, inputs(arguments), notes.collect(), measured.hammer_test)?;
     let report = decomposition_report(&analysis, &as_recorded, &context);
     Ok(answered(context, stiffness_file(&analysis), report, summary(&analysis)))
