@@ -122,7 +122,8 @@ impl Analysis {
         let sides = Sides::of(fixture, options.joint.as_deref())?;
         let plan = MeasurementPlan::of(frfs, &sides)?;
         let KnownNoise { frfs, noise, merged_from } =
-            KnownNoise::of(frfs).map_err(jointscope_frf::RigidMotionError::from)?;
+            KnownNoise::of(frfs, options.band.map(|band| (band.from, band.to)))
+                .map_err(jointscope_frf::RigidMotionError::from)?;
         let joint = sides.joint().name.clone();
         let spectrum = decompose(&frfs, &sides, options.relation)?;
         // Fit and weights rest on the exact relation, whichever is shown.

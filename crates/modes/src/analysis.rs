@@ -87,7 +87,7 @@ impl ModalAnalysis {
     /// # Errors
     /// See [`ModesError`].
     pub fn of(frfs: &FrfSet, options: &ModesOptions) -> Result<Self, ModesError> {
-        let KnownNoise { frfs, noise, merged_from } = KnownNoise::of(frfs)?;
+        let KnownNoise { frfs, noise, merged_from } = KnownNoise::of(frfs, options.band)?;
         let (observed, measured) = in_use(&frfs, options)?;
         let orders = orders(&observed, options)?;
         let spacing =

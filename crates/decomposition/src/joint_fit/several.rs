@@ -46,7 +46,8 @@ pub fn fit_joints(
     let joints = chosen(fixture, names)?;
     let scalar = scalars(fixture, &joints)?;
     refuse_parallel(fixture, &joints)?;
-    let known = KnownNoise::of(frfs).map_err(RigidMotionError::from)?;
+    let known = KnownNoise::of(frfs, options.band.map(|band| (band.from, band.to)))
+        .map_err(RigidMotionError::from)?;
     let recorded = Recorded::of(&known.frfs, fixture, options.band).ok_or(SeveralError::NothingRecorded)?;
     let middle = recorded.middle();
     let nominal: Vec<RealMatrix2> = joints
