@@ -135,6 +135,16 @@ pub fn decomposition(count: usize) -> (Vec<ComplexMatrix2>, Compliances) {
     (h41, compliances)
 }
 
+/// The floor under every decomposition: reads what it reads and writes what it writes, the sum of the five matrices.
+pub fn floor(h41: &[ComplexMatrix2], sides: &Compliances, out: &mut [ComplexMatrix2]) {
+    let n = out.len();
+    let (h41, a21, a22) = (&h41[..n], &sides.alpha21[..n], &sides.alpha22[..n]);
+    let (b33, b43) = (&sides.beta33[..n], &sides.beta43[..n]);
+    for i in 0..n {
+        out[i] = h41[i] + a21[i] + a22[i] + b33[i] + b43[i];
+    }
+}
+
 /// The two blocks' four FRFs on `count` lines with a little noise and its variances, as a test would give them.
 pub fn test_of_two_blocks(count: usize) -> FrfSet {
     noisy(&two_blocks(), &four_pairs(), count)
