@@ -24,7 +24,7 @@ fn decomposition(criterion: &mut Criterion) {
             });
         }
         group.bench_function(BenchmarkId::new("floor", count), |b| {
-            b.iter(|| two_by_two::floor(black_box(&h41), black_box(&sides), black_box(&mut out)));
+            b.iter(|| cases::floor(black_box(&h41), black_box(&sides), black_box(&mut out)));
         });
         group.bench_function(BenchmarkId::new("nalgebra", count), |b| {
             b.iter(|| black_box(&mut nalgebra).decompose_lines());

@@ -71,7 +71,7 @@ fn decompositions(effort: Effort, many: usize) {
             &mut [
                 &mut || Relation::Exact.decompose_lines(black_box(&h41), &sides, black_box(exact)),
                 &mut || Relation::Paper.decompose_lines(black_box(&h41), &sides, black_box(paper)),
-                &mut || two_by_two::floor(black_box(&h41), &sides, black_box(floor)),
+                &mut || cases::floor(black_box(&h41), &sides, black_box(floor)),
                 &mut || black_box(&mut nalgebra).decompose_lines(),
                 &mut || two_by_two::faer_lines(black_box(few), &sides, black_box(&mut faer[..few.len()])),
             ],

@@ -2,13 +2,16 @@
 #![allow(clippy::expect_used)] // constant fixtures, checked by the tests below
 
 use jointscope_decomposition::{Compliances, Sides};
-use jointscope_fixture::Fixture;
+use jointscope_fixture::{Effect, EffectKind, Fixture, Place};
 use jointscope_linalg::{ComplexMatrix2, Matrix2};
 use jointscope_lumped::{Instrument, Model, Station, synthesize};
 use jointscope_recordings::to_datasets;
 use jointscope_spectra::{FrfPair, FrfSet, SpectralLines};
-use jointscope_uff::Encoding;
+use jointscope_uff::{ByteOrder, Encoding};
 use num_complex::Complex64;
+
+/// How recordings are written.
+pub const BINARY: Encoding = Encoding::Binary(ByteOrder::Little);
 
 /// What hangs on a chain besides its joints.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -132,9 +135,24 @@ pub fn decomposition(count: usize) -> (Vec<ComplexMatrix2>, Compliances) {
     (h41, compliances)
 }
 
+/// The floor under every decomposition: reads what it reads and writes what it writes, the sum of the five matrices.
+pub fn floor(h41: &[ComplexMatrix2], sides: &Compliances, out: &mut [ComplexMatrix2]) {
+    let n = out.len();
+    let (h41, a21, a22) = (&h41[..n], &sides.alpha21[..n], &sides.alpha22[..n]);
+    let (b33, b43) = (&sides.beta33[..n], &sides.beta43[..n]);
+    for i in 0..n {
+        out[i] = h41[i] + a21[i] + a22[i] + b33[i] + b43[i];
+    }
+}
+
 /// The two blocks' four FRFs on `count` lines with a little noise and its variances, as a test would give them.
 pub fn test_of_two_blocks(count: usize) -> FrfSet {
-    let clean = synthesize(&two_blocks(), &four_pairs(), &lines(count), Instrument::AsRecorded)
+    noisy(&two_blocks(), &four_pairs(), count)
+}
+
+/// A fixture's FRFs on `count` lines with a little noise and its variances.
+fn noisy(fixture: &Fixture, pairs: &[FrfPair], count: usize) -> FrfSet {
+    let clean = synthesize(fixture, pairs, &lines(count), Instrument::AsRecorded)
         .expect("the fixture can be synthesised");
     let mut random = Random(20_240_229);
     let mut values = clean.all_values().to_vec();
@@ -148,6 +166,21 @@ pub fn test_of_two_blocks(count: usize) -> FrfSet {
     FrfSet::new(clean.lines().clone(), clean.form(), clean.pairs().to_vec(), values)
         .and_then(|set| set.with_variance(variance))
         .expect("finite values and positive variances")
+}
+
+/// A test of a free chain with a mass on the first block that its fixture does not have, as the bytes of a universal file: FRFs between the first so many of its points
+/// and so many of the last.
+pub fn test_of_a_chain(bodies: usize, (responses, references): (usize, usize), count: usize) -> Vec<u8> {
+    let mass = Effect::new(EffectKind::AddedMass, Place::Body("B0".to_owned()), None, &[0.0, ADDED_MASS]);
+    let fixture =
+        chain(bodies, Attachments::None).with_physics(vec![mass]).expect("the mass lies on the block");
+    let points: Vec<String> = (1..=2 * bodies).map(|point| point.to_string()).collect();
+    let pair = |o: &String| {
+        points.iter().rev().take(references).map(|i| FrfPair::transverse(o, i)).collect::<Vec<_>>()
+    };
+    let pairs: Vec<FrfPair> = points.iter().take(responses).flat_map(pair).collect();
+    let datasets = to_datasets(&noisy(&fixture, &pairs, count), "chain", BINARY).expect("numbered points");
+    jointscope_uff::write(&datasets).expect("finite values")
 }
 
 /// The same test as the bytes of a universal file.

@@ -1,20 +1,10 @@
-//! Eq (7) and its exact form by general libraries, and the floor under all versions.
+//! Eq (7) and its exact form by general libraries.
 
 use faer::linalg::solvers::DenseSolveCore;
 use jointscope_decomposition::Compliances;
 use jointscope_linalg::{ComplexMatrix2, Matrix2};
 use nalgebra::Matrix2 as Small;
 use num_complex::Complex64;
-
-/// Reads what a decomposition reads and writes what it writes: the sum of the five matrices.
-pub fn floor(h41: &[ComplexMatrix2], sides: &Compliances, out: &mut [ComplexMatrix2]) {
-    let n = out.len();
-    let (h41, a21, a22) = (&h41[..n], &sides.alpha21[..n], &sides.alpha22[..n]);
-    let (b33, b43) = (&sides.beta33[..n], &sides.beta43[..n]);
-    for i in 0..n {
-        out[i] = h41[i] + a21[i] + a22[i] + b33[i] + b43[i];
-    }
-}
 
 /// The exact relation with nalgebra's fixed-size matrices and `try_inverse`.
 pub struct Nalgebra {

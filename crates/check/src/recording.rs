@@ -69,13 +69,13 @@ impl RecordingCheck {
         remarks: &mut Vec<Remark>,
     ) -> Result<Self, Error> {
         let mut measured = at_one_level(measurement, options)?;
-        let mut screened = self::screened(&measured.frfs, fixture)?;
+        let mut screened = self::screened(measured.frfs.clone(), fixture)?;
         // A receptance that is called an accelerance has the opposite sign as well.
         let of_another_form = screened.oddities.iter().any(|oddity| matches!(oddity, Oddity::Form(_)));
         if !of_another_form && is_turned(&measured.frfs, fixture) {
             // FRFs of the wrong sign are like none of the fixture's, and labels would be looked for that suit them better.
             measured.frfs = measured.frfs.with_values(|_, value| -value);
-            screened = self::screened(&measured.frfs, fixture)?;
+            screened = self::screened(measured.frfs.clone(), fixture)?;
             remarks.push(Remark::wrong(
                 "force",
                 "next to all FRFs have the opposite sign to the fixture's: the force is recorded the other way round; turn it with --map, or in the file (for all that follows here it is turned)",

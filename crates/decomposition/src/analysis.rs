@@ -7,7 +7,8 @@ use crate::{
 };
 use jointscope_averaging::Band;
 use jointscope_fixture::{Fixture, Joint, JointLaw, Nature};
-use jointscope_frf::noise::{NoiseSource, with_variances};
+use jointscope_frf::noise::NoiseSource;
+use jointscope_frf::{KnownNoise, merging};
 use jointscope_linalg::{ComplexMatrix2, Matrix2, RealMatrix2};
 use jointscope_lumped::{Model, Station};
 use jointscope_spectra::FrfSet;
@@ -79,6 +80,8 @@ pub struct Analysis {
     pub frfs: FrfSet,
     /// Where each FRF's variance came from.
     pub noise: Vec<NoiseSource>,
+    /// Number of lines recorded, where they were merged.
+    pub merged_from: Option<usize>,
     /// Which FRFs were used and from where.
     pub plan: MeasurementPlan,
     /// K and C by line.
@@ -107,7 +110,7 @@ impl Analysis {
     /// Decomposes `frfs` for a joint of `fixture`.
     ///
     /// Variances are estimated from coherence and averages where the set has them, from its scatter elsewhere; those
-    /// that the set carries already are kept.
+    /// that the set carries already are kept. Lines of long recordings are merged ([`KnownNoise`]).
     ///
     /// # Errors
     /// See [`DecompositionError`].
@@ -118,10 +121,9 @@ impl Analysis {
     ) -> Result<Self, DecompositionError> {
         let sides = Sides::of(fixture, options.joint.as_deref())?;
         let plan = MeasurementPlan::of(frfs, &sides)?;
-        let (frfs, noise) = match frfs.variance(0) {
-            Some(_) => (frfs.clone(), Vec::new()),
-            None => with_variances(frfs).map_err(jointscope_frf::RigidMotionError::from)?,
-        };
+        let KnownNoise { frfs, noise, merged_from } =
+            KnownNoise::of(frfs, options.band.map(|band| (band.from, band.to)))
+                .map_err(jointscope_frf::RigidMotionError::from)?;
         let joint = sides.joint().name.clone();
         let spectrum = decompose(&frfs, &sides, options.relation)?;
         // Fit and weights rest on the exact relation, whichever is shown.
@@ -156,6 +158,7 @@ impl Analysis {
             ends: JointEnds::of(sides.fixture(), sides.joint()),
             frfs,
             noise,
+            merged_from,
             plan,
             spectrum,
             averages,
@@ -175,6 +178,11 @@ impl Analysis {
     /// Whether K and C by line, which know of no mass of the joint, hold one that the joint from all FRFs has: the two are not to be compared.
     pub fn lines_hold_mass(&self) -> bool {
         self.joint_fit.as_ref().is_ok_and(|fit| fit.mass.is_some())
+    }
+
+    /// That lines were merged, in a sentence.
+    pub fn merging(&self) -> Option<String> {
+        merging(self.merged_from, self.frfs.lines().len())
     }
 
     /// The fit that the interfaces are taken from, and whether it explains the FRFs: the joint from all FRFs, or that from the FRFs across where

@@ -6,6 +6,7 @@
 //!   block and hammer points on the other, with its covariance and the residual that says whether the blocks
 //!   moved rigidly;
 //! * [`noise`]: variances of FRFs from coherence and averages, or from the FRFs alone;
+//! * [`KnownNoise`]: FRFs with these, the lines of long recordings merged where the FRFs are smooth;
 //! * [`Drift`]: resonances that moved between one FRF and the next.
 //!
 //! ```
@@ -22,11 +23,13 @@
 mod breaks;
 mod drift;
 mod local_rational;
+mod merged;
 pub mod noise;
 mod rigid_motion;
 mod two_accelerometers;
 
 pub use breaks::breaks;
 pub use drift::{Drift, resonant_lines};
+pub use merged::{KnownNoise, merging};
 pub use rigid_motion::{BlockChannel, BlockFrf, BlockLayout, MaskReason, RigidMotionError, fit_rigid_motion};
 pub use two_accelerometers::{from_four_frfs, per_moment_from_two, rotation_from_two};

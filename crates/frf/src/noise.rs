@@ -66,7 +66,7 @@ const FEWEST: usize = 8;
 /// Power of the force, relative to the strongest line's, that counts as none.
 const NO_FORCE: f64 = 1e-12;
 /// Smallest relative noise that is believed: quantisation and calibration are never better.
-const FLOOR: f64 = 1e-5;
+pub(crate) const FLOOR: f64 = 1e-5;
 
 /// The set with variances by line, estimated on the accelerance and smoothed over the lines, and where
 /// each FRF's came from.

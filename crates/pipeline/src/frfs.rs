@@ -62,7 +62,7 @@ impl MeasuredFrfs {
     /// # Errors
     /// FRFs without any signal.
     pub fn screened(mut self, fixture: &Fixture) -> Result<Self, Error> {
-        let screened = screened(&self.frfs, fixture)?;
+        let screened = screened(self.frfs, fixture)?;
         self.notes.extend(screened.oddities.iter().map(ToString::to_string));
         self.frfs = screened.frfs;
         Ok(self)

@@ -94,7 +94,7 @@ const DEAD: f64 = 1e-9;
 ///
 /// # Errors
 /// [`ScreeningError::NothingRecorded`].
-pub fn screened(frfs: &FrfSet, fixture: &Fixture) -> Result<Screened, ScreeningError> {
+pub fn screened(frfs: FrfSet, fixture: &Fixture) -> Result<Screened, ScreeningError> {
     let mut oddities = Vec::new();
     let mut frfs = alive(frfs, &mut oddities)?;
     let mut modelled = modelled(&frfs, fixture);
@@ -156,7 +156,7 @@ fn modelled(frfs: &FrfSet, fixture: &Fixture) -> Option<Vec<Complex64>> {
 }
 
 /// The FRFs that have a signal.
-fn alive(frfs: &FrfSet, oddities: &mut Vec<Oddity>) -> Result<FrfSet, ScreeningError> {
+fn alive(frfs: FrfSet, oddities: &mut Vec<Oddity>) -> Result<FrfSet, ScreeningError> {
     let size = |index: usize| frfs.values(index).iter().map(|value| value.norm_sqr()).sum::<f64>().sqrt();
     let sizes: Vec<f64> = (0..frfs.pairs().len()).map(size).collect();
     let recorded: Vec<f64> = sizes.iter().copied().filter(|size| *size > 0.0).collect();
@@ -165,7 +165,7 @@ fn alive(frfs: &FrfSet, oddities: &mut Vec<Oddity>) -> Result<FrfSet, ScreeningE
     let names: Vec<FrfPair> =
         (0..sizes.len()).filter(|i| dead(*i)).map(|i| frfs.pairs()[i].clone()).collect();
     if names.is_empty() {
-        return Ok(frfs.clone());
+        return Ok(frfs);
     }
     oddities.push(Oddity::Dead(names));
     frfs.of_frfs(|index| !dead(index)).ok_or(ScreeningError::NothingRecorded)

@@ -33,7 +33,7 @@ const WELD: &str =
     r#"{ "kind": "interface_compliance", "place": "3", "dof": "rotation", "stiffness": 9000.0 }"#;
 
 fn oddities(frfs: &FrfSet) -> (FrfSet, Vec<Oddity>) {
-    let screened = screened(frfs, &fixture("")).unwrap();
+    let screened = screened(frfs.clone(), &fixture("")).unwrap();
     (screened.frfs, screened.oddities)
 }
 
@@ -45,7 +45,7 @@ fn frfs_without_a_signal_are_left_out() {
     assert_eq!(found, [Oddity::Dead(vec![pairs()[0].clone()])]);
     assert_eq!(left.pairs(), &pairs()[1..]);
     let nothing = frfs.with_values(|_, _| Complex64::ZERO);
-    assert_eq!(screened(&nothing, &fixture("")).unwrap_err(), ScreeningError::NothingRecorded);
+    assert_eq!(screened(nothing, &fixture("")).unwrap_err(), ScreeningError::NothingRecorded);
 }
 
 #[test]
@@ -153,7 +153,7 @@ proptest! {
             _ => format!(r#"{{ "kind": "stiffness_change", "place": "J", "factor": {} }}"#, 1.0 + 0.8 * signed),
         };
         let frfs = recorded(&physics);
-        let screened = screened(&frfs, &fixture("")).unwrap();
+        let screened = screened(frfs.clone(), &fixture("")).unwrap();
         prop_assert!(screened.oddities.is_empty(), "{:?} of {physics}", screened.oddities);
         prop_assert_eq!(screened.frfs, frfs);
     }

@@ -55,7 +55,7 @@ impl Remarks for JointsFit {
         let Some(first) = self.joints.first() else { return Vec::new() };
         let loops: Vec<String> =
             self.joints.iter().filter(|joint| joint.is_in_a_loop).map(|joint| joint.name.clone()).collect();
-        let mut all = Vec::new();
+        let mut all: Vec<String> = self.merging.iter().cloned().collect();
         if !loops.is_empty() {
             let (which, their, them) = match loops.len() {
                 1 => ("joint", "its", "it"),

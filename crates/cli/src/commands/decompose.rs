@@ -97,10 +97,13 @@ enum Joints {
 fn found(arguments: &DecomposeArguments, command: String, joints: Joints) -> Result<Answered, Refusal> {
     let fixture = FixtureFile::read(&arguments.fixture)?;
     let measurement = arguments.recording.measurement(&fixture)?;
-    let mut measured = MeasuredFrfs::of(&measurement, &arguments.estimation.options(ResponseWindow::Auto))
+    let unused = arguments.estimation.unused_with(&measurement);
+    let measured = MeasuredFrfs::of(&measurement, &arguments.estimation.options(ResponseWindow::Auto));
+    drop(measurement); // as much memory as the recording
+    let mut measured = measured
         .and_then(|measured| measured.screened(&fixture))
         .map_err(|error| arguments.recording.unanswered(&error, &fixture))?;
-    measured.notes.extend(arguments.estimation.unused_with(&measurement));
+    measured.notes.extend(unused);
     let as_recorded = measured.as_recorded(&fixture).map_err(|error| fixture.refusal(error))?;
     let options = AnalysisOptions {
         joint: arguments.joint.clone(),
@@ -127,7 +130,8 @@ fn found(arguments: &DecomposeArguments, command: String, joints: Joints) -> Res
             error => arguments.recording.refusal(error),
         })?,
     };
-    let notes = measured.notes.into_iter().chain(window(&analysis)).chain(lost_tolerances(&analysis));
+    let said = analysis.merging().into_iter().chain(window(&analysis)).chain(lost_tolerances(&analysis));
+    let notes = measured.notes.into_iter().chain(said);
     let context = origin::context_of(command, inputs(arguments), notes.collect(), measured.hammer_test)?;
     let report = decomposition_report(&analysis, &as_recorded, &context);
     Ok(answered(context, stiffness_file(&analysis), report, summary(&analysis)))

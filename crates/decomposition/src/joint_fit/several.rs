@@ -23,8 +23,7 @@ use super::{DOUBTFUL, JointFitOptions, START_LOSS, coordinates, that_matter, uni
 use crate::JointEnds;
 use crate::sides::{check_instruments, with_effects_of};
 use jointscope_fixture::{BodyKind, Fixture, Joint, Place};
-use jointscope_frf::RigidMotionError;
-use jointscope_frf::noise::with_variances;
+use jointscope_frf::{KnownNoise, RigidMotionError, merging};
 use jointscope_linalg::RealMatrix2;
 use jointscope_spectra::FrfSet;
 
@@ -47,12 +46,9 @@ pub fn fit_joints(
     let joints = chosen(fixture, names)?;
     let scalar = scalars(fixture, &joints)?;
     refuse_parallel(fixture, &joints)?;
-    let known = match frfs.variance(0) {
-        Some(_) => None,
-        None => Some(with_variances(frfs).map_err(RigidMotionError::from)?.0),
-    };
-    let recorded = Recorded::of(known.as_ref().unwrap_or(frfs), fixture, options.band)
-        .ok_or(SeveralError::NothingRecorded)?;
+    let known = KnownNoise::of(frfs, options.band.map(|band| (band.from, band.to)))
+        .map_err(RigidMotionError::from)?;
+    let recorded = Recorded::of(&known.frfs, fixture, options.band).ok_or(SeveralError::NothingRecorded)?;
     let middle = recorded.middle();
     let nominal: Vec<RealMatrix2> = joints
         .iter()
@@ -102,6 +98,7 @@ pub fn fit_joints(
     let joints: Vec<FoundJoint> = named.collect();
     let name = |(joint, element): &(usize, &str)| format!("{}/{element}", joints[*joint].name);
     Ok(JointsFit {
+        merging: merging(known.merged_from, known.frfs.lines().len()),
         elements: found.elements.iter().map(name).collect(),
         joints,
         covariance: found.covariance,
