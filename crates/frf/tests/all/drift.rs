@@ -23,7 +23,8 @@ fn resonance(hz: f64, natural: f64) -> Complex64 {
 fn drifting(channels: &[(&str, &str)], shift: &[f64], noise: f64, seed: u64) -> FrfSet {
     let mut random = Normals(seed);
     accelerances(&lines(), channels, |frf, hz| {
-        let modes: Complex64 = NATURAL.iter().map(|natural| resonance(hz, natural + shift[frf] * WIDTH)).sum();
+        let modes: Complex64 =
+            NATURAL.iter().map(|natural| resonance(hz, natural + shift[frf] * WIDTH)).sum();
         modes + random.complex(noise)
     })
 }
@@ -60,13 +61,18 @@ fn what_three_references_of_one_response_differ_by_beyond_a_twentieth_of_a_half_
     let moved = [-0.5, 0.0, 0.5];
     assert_eq!(Drift::of(&drifting(&ONE_RESPONSE[..2], &moved[..2], NOISE, 3)), None, "two are too few");
     let three_responses = [("4", "1"), ("3", "1"), ("2", "1")];
-    assert_eq!(Drift::of(&drifting(&three_responses, &moved, NOISE, 4)), None, "an accelerometer that roves brings mass");
+    assert_eq!(
+        Drift::of(&drifting(&three_responses, &moved, NOISE, 4)),
+        None,
+        "an accelerometer that roves brings mass"
+    );
 }
 
 #[test]
 fn noise_as_large_as_what_resonances_differ_by_is_no_drift_and_noise_alone_is_none_at_any_level() {
     let told = |shift: f64, noise: f64| {
-        let differs = |seed| Drift::of(&drifting(&ONE_RESPONSE[..3], &[-shift, 0.0, shift], noise, seed)).is_some();
+        let differs =
+            |seed| Drift::of(&drifting(&ONE_RESPONSE[..3], &[-shift, 0.0, shift], noise, seed)).is_some();
         (100..120).filter(|&seed| differs(seed)).count()
     };
     assert_eq!(told(0.1, 10.0), 20);
@@ -94,6 +100,27 @@ fn a_change_by_one_deviation_is_what_the_frf_itself_does_when_its_resonance_move
 }
 
 #[test]
+fn drift_is_the_same_in_any_unit_and_on_lines_closer_together() {
+    let shift = [-0.2, 0.0, 0.2];
+    let set = drifting(&ONE_RESPONSE[..3], &shift, NOISE, 7);
+    let expected = Drift::of(&set).unwrap().resonances;
+    let scaled = |values: f64, hz: f64| {
+        let lines = SpectralLines::even(hz, hz, 1000).unwrap();
+        let values = set.all_values().iter().map(|value| value * values).collect();
+        Drift::of(&FrfSet::new(lines, FrfForm::Accelerance, set.pairs().to_vec(), values).unwrap())
+    };
+    for (values, hz) in [(1e-6, 1.0), (1.0, 0.0625), (1e4, 8.0)] {
+        let found = scaled(values, hz).unwrap().resonances;
+        assert_eq!(found.len(), 2);
+        for ((place, moved, width), (e_place, e_moved, e_width)) in found.iter().zip(&expected) {
+            for (found, expected) in [(place / hz, e_place), (*moved, e_moved), (*width, e_width)] {
+                assert!((found / expected - 1.0).abs() < 1e-6, "{found} for {expected}");
+            }
+        }
+    }
+}
+
+#[test]
 fn resonances_are_the_peaks_that_stand_out_of_their_neighbourhood() {
     assert_eq!(resonant_lines(&drifting(&ONE_RESPONSE, &[0.0; 4], NOISE, 6)), [309, 704]);
     // Damped to a third of critical, or none at all.
@@ -117,7 +144,7 @@ fn lines_break_off_where_half_of_the_frfs_leave_their_course_and_not_where_one_o
     assert!(broken(3, 0.0).is_empty());
     // χ² of 200 is reached at √100 of E|ε|², of which the local function follows a part.
     assert!(broken(3, 8.0 * NOISE.sqrt()).is_empty());
-    let hum = 20.0 * NOISE.sqrt();
+    let hum = 15.0 * NOISE.sqrt();
     assert_eq!([broken(3, hum), broken(2, hum)], [[149], [149]]);
     assert!(broken(1, hum).is_empty());
 }

@@ -78,10 +78,7 @@ fn a_recording_says_where_its_variances_come_from() {
     let words: Vec<&str> = [NoiseSource::Coherence, NoiseSource::CoherenceAlone, NoiseSource::Scatter]
         .map(NoiseSource::says)
         .to_vec();
-    assert_eq!(
-        words,
-        ["coherence and averages", "coherence, averages by scatter", "scatter over the lines"]
-    );
+    assert_eq!(words, ["coherence and averages", "coherence, averages by scatter", "scatter over the lines"]);
 }
 
 #[test]
