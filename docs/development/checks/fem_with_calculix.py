@@ -15,7 +15,7 @@ import sys
 import tempfile
 import time
 
-ROOT = pathlib.Path(__file__).resolve().parents[2] / "fixtures" / "paper"
+ROOT = pathlib.Path(__file__).resolve().parents[3] / "fixtures" / "paper"
 PROGRAM = pathlib.Path(sys.argv[1]).resolve()
 QUICK = "--quick" in sys.argv
 failures = []

@@ -21,7 +21,7 @@ import warnings
 import numpy as np
 import pyuff
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
+ROOT = pathlib.Path(__file__).resolve().parents[3]
 POINTS = 101
 # The same data as an ordinate type of the format; single precision is half the type of double.
 TYPES = {("real", "single"): 2, ("real", "double"): 4, ("complex", "single"): 5, ("complex", "double"): 6}

@@ -1,7 +1,7 @@
 //! Variances: where they come from, that no form of the FRFs changes them, and what is done about dips of the force.
 
 use crate::common::{Normals, accelerances, mode};
-use jointscope_frf::noise::{NoiseSource, of_lines, smoothed, with_variances};
+use jointscope_frf::noise::{NoiseSource, from_scatter, of_lines, smoothed, with_variances};
 use jointscope_spectra::{FrfForm, FrfSet, SpectralLines};
 use num_complex::Complex64;
 
@@ -142,4 +142,26 @@ fn lines_that_tell_the_same_are_averaged_over_more_of_them() {
     assert!((spread(1.0) * 51.0 - 1.0).abs() < 0.5, "{}", spread(1.0) * 51.0);
     assert!((spread(4.0) * 201.0 - 1.0).abs() < 0.6, "{}", spread(4.0) * 201.0);
     assert_eq!(spread(0.2), spread(1.0));
+}
+
+#[test]
+fn scatter_is_told_from_eleven_lines_on_in_any_unit_and_a_hundredth_of_the_loudest_is_taken_below() {
+    let hz: Vec<f64> = (1..=60).map(f64::from).collect();
+    let mut random = Normals(8);
+    let values: Vec<Complex64> =
+        hz.iter().map(|hz| Complex64::from(0.1 * hz) + random.complex(1e-6)).collect();
+    for lines in [3, 8, 10] {
+        let loudest = values[lines - 1].norm_sqr();
+        let taken = from_scatter(&hz[..lines], &values[..lines]);
+        assert!(taken.iter().all(|v| (v / (1e-4 * loudest) - 1.0).abs() < 1e-12), "{lines} lines: {taken:?}");
+    }
+    let of_eleven = from_scatter(&hz[..11], &values[..11]);
+    assert!(of_eleven.iter().all(|v| (1e-8..1e-4).contains(v)), "{of_eleven:?}");
+    let expected = from_scatter(&hz, &values);
+    for scale in [1e-12, 1e9] {
+        let scaled: Vec<Complex64> = values.iter().map(|value| value * scale).collect();
+        for (found, expected) in from_scatter(&hz, &scaled).iter().zip(&expected) {
+            assert!((found / (scale * scale * expected) - 1.0).abs() < 1e-6, "{scale}: {found}");
+        }
+    }
 }

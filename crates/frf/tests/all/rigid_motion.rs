@@ -198,3 +198,13 @@ fn seats_that_cannot_tell_a_rotation_are_refused_and_those_that_can_are_not() {
     let few = RigidMotionError::TooFew { found: 3, needed: 4 };
     assert_eq!(refused(vec![(near, near), (far, near), (near, far)], [true, true]), Some(few));
 }
+
+#[test]
+fn a_line_whose_variance_is_stated_as_nothing_weighs_its_frfs_alike() {
+    let lines = SpectralLines::new(vec![5.0]).unwrap();
+    let all = layout(&SENSORS, &HITS);
+    let set = measured(FrfForm::Receptance, &lines, &all, |_| 1e-4, &mut Normals(5));
+    let alike = fit_rigid_motion(&set.clone().with_variance(vec![3.0; 9]).unwrap(), &all).unwrap();
+    let none = fit_rigid_motion(&set.with_variance(vec![0.0; 9]).unwrap(), &all).unwrap();
+    assert!(none.masked.is_empty() && (none.values[0] - alike.values[0]).norm_squared().sqrt() < 1e-9);
+}
