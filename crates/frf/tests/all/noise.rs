@@ -94,7 +94,7 @@ fn a_line_states_its_noise_by_coherence_and_averages() {
 #[test]
 fn where_the_force_dips_the_same_noise_of_the_sensor_counts_for_more() {
     // The sensor's noise is 1e-4 of the strongest line's force; on every third line the hammer gives a hundredth of that power.
-    let power = |line: usize| if line % 3 == 0 { 0.02 } else { 2.0 };
+    let power = |line: usize| if line.is_multiple_of(3) { 0.02 } else { 2.0 };
     let mut random = Normals(6);
     let (mut values, mut raw) = (Vec::new(), Vec::new());
     for line in 0..3000 {
