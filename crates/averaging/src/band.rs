@@ -92,6 +92,7 @@ pub fn quietest_band(frequencies: &[f64], deviations: &[Vec<f64>]) -> Result<Ban
 #[cfg(test)]
 mod tests {
     use super::*;
+    use proptest::prelude::*;
 
     #[test]
     fn the_quietest_band_leaves_out_the_noisy_ends_and_takes_all_of_the_middle() {
@@ -100,6 +101,44 @@ mod tests {
         let deviations = vec![frequencies.iter().map(|&f| noisy(f)).collect::<Vec<_>>()];
         let band = quietest_band(&frequencies, &deviations).unwrap();
         assert!((300.0..330.0).contains(&band.from) && (770.0..=800.0).contains(&band.to), "{band:?}");
+    }
+
+    proptest! {
+        /// Every band of whole lines is tried where each line may be an end, and plain means are taken of it.
+        #[test]
+        fn no_band_of_a_fifth_of_the_lines_has_smaller_deviations_than_the_quietest(
+            logs in prop::collection::vec(prop::array::uniform2(-3.0f64..3.0), 1..=48)
+        ) {
+            let frequencies: Vec<f64> = (0..logs.len()).map(|i| 10.0 + 2.5 * i as f64).collect();
+            let deviations: Vec<Vec<f64>> = (0..2).map(|q| logs.iter().map(|l| l[q].exp()).collect()).collect();
+            let size = |lines: std::ops::Range<usize>| -> f64 {
+                deviations.iter().map(|d| crate::mean(&d[lines.clone()], &d[lines.clone()]).unwrap().std.ln()).sum()
+            };
+            let band = quietest_band(&frequencies, &deviations).unwrap();
+            let found = band.lines(&frequencies).unwrap();
+            let smallest = (logs.len() / 5).max(1);
+            prop_assert!(found.len() >= smallest && band.to == frequencies[found.end - 1]);
+            for start in 0..logs.len() {
+                for end in start + smallest..=logs.len() {
+                    prop_assert!(size(found.clone()) <= size(start..end) + 1e-9, "{:?} against {}..{}", found, start, end);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_band_holds_both_of_its_ends_and_is_written_as_two_numbers() {
+        let band = Band { from: 2.0, to: 4.0 };
+        assert_eq!([1.9, 2.0, 3.0, 4.0, 4.1].map(|hz| band.contains(hz)), [false, true, true, true, false]);
+        assert_eq!(<[f64; 2]>::from(band), [2.0, 4.0]);
+        assert_eq!(band.lines(&[]), Err(AveragingError::NoLines));
+    }
+
+    #[test]
+    fn there_is_no_quietest_band_of_nothing() {
+        assert_eq!(quietest_band(&[], &[vec![]]), Err(AveragingError::NoLines));
+        assert_eq!(quietest_band(&[1.0], &[]), Err(AveragingError::NoLines));
+        assert_eq!(quietest_band(&[1.0], &[vec![f64::NAN]]), Err(AveragingError::NoLines));
     }
 
     #[test]

@@ -114,6 +114,8 @@ mod tests {
     fn a_line_of_infinite_or_zero_deviation_cannot_be_weighted() {
         assert_eq!(weighted_mean(&[1.0], &[0.0]), Err(AveragingError::BadDeviation(0.0)));
         assert!(weighted_mean(&[1.0], &[f64::NAN]).is_err());
+        assert_eq!(weighted_mean(&[1.0], &[f64::INFINITY]), Err(AveragingError::BadDeviation(f64::INFINITY)));
         assert_eq!(mean(&[], &[]), Err(AveragingError::NoLines));
+        assert_eq!(weighted_mean(&[], &[]), Err(AveragingError::NoLines));
     }
 }

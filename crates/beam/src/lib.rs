@@ -179,6 +179,28 @@ mod tests {
             prop_assert!((kinetic([0.0, 1.0, l, 1.0]) / (rho * l.powi(3) / 3.0) - 1.0).abs() < 1e-12);
         }
 
+        /// Four Gauss points integrate polynomials of degree seven exactly.
+        #[test]
+        fn masses_are_those_of_the_shape_functions_and_a_joint_without_length_has_half_its_mass_at_each_end(
+            l in 0.01f64..2.0, rho in 0.1f64..10.0
+        ) {
+            let (inner, outer) = ((3.0 / 7.0 - 2.0 / 7.0 * 1.2f64.sqrt()).sqrt(), (3.0 / 7.0 + 2.0 / 7.0 * 1.2f64.sqrt()).sqrt());
+            let weights = [(inner, (18.0 + 30f64.sqrt()) / 72.0), (outer, (18.0 - 30f64.sqrt()) / 72.0)];
+            let points = weights.iter().flat_map(|(x, w)| [(0.5 - 0.5 * x, w), (0.5 + 0.5 * x, w)]);
+            let shapes: Vec<([[f64; 4]; 2], f64)> = points.map(|(x, w)| (shape_functions(x * l, l), w * l * rho)).collect();
+            for (which, matrix) in [consistent_mass(rho, l), consistent_rotary_inertia(rho, l)].iter().enumerate() {
+                for i in 0..4 {
+                    for j in 0..4 {
+                        let expected: f64 = shapes.iter().map(|(shape, w)| w * shape[which][i] * shape[which][j]).sum();
+                        let size = (matrix[i][i] * matrix[j][j]).sqrt();
+                        prop_assert!((matrix[i][j] - expected).abs() < 1e-10 * size, "{} ({}, {}): {} for {}", which, i, j, matrix[i][j], expected);
+                    }
+                }
+            }
+            let point = mass_of_ends(rho, 0.0);
+            prop_assert_eq!(point, [[rho / 2.0, 0.0, 0.0, 0.0], [0.0; 4], [0.0, 0.0, rho / 2.0, 0.0], [0.0; 4]]);
+        }
+
         #[test]
         fn a_joint_weighs_what_it_weighs_at_any_length(l in 0.0f64..1.0, mass in 0.01f64..10.0) {
             for length in [0.0, l] {

@@ -237,14 +237,55 @@ mod tests {
 
     #[test]
     fn modes_beyond_the_list_take_the_last_ratio() {
-        let damping = DampingLaw::ModalRatios(vec![0.01, 0.02]).of_modes(&[0.0, 1.0, 4.0, 9.0, 16.0]);
+        let damping = DampingLaw::ModalRatios(vec![0.01, 0.04, 0.02]).of_modes(&[0.0, 1.0, 4.0, 9.0, 16.0]);
         let viscous: Vec<f64> = damping.iter().map(|d| d.viscous).collect();
-        assert_eq!(viscous, [0.0, 0.02, 0.08, 0.12, 0.16]);
+        assert_eq!(viscous, [0.0, 0.02, 0.16, 0.12, 0.16]);
     }
 
     #[test]
     fn rayleigh_constants_damp_rigid_motions_by_their_mass_term_only() {
-        let damping = DampingLaw::Rayleigh { mass: 2.0, stiffness: 1e-5 }.of_modes(&[0.0, 1e6]);
+        let law = DampingLaw::Rayleigh { mass: 2.0, stiffness: 1e-5 };
+        let damping = law.of_modes(&[0.0, 1e6]);
         assert_eq!((damping[0].viscous, damping[1].viscous), (2.0, 12.0));
+        assert_eq!(law.mass_proportional(), 2.0);
+    }
+
+    #[test]
+    fn a_loss_factor_is_a_share_of_each_modes_stiffness_and_leaves_a_rigid_motion_alone() {
+        let law = DampingLaw::LossFactor(0.02);
+        let damping = |structural| ModeDamping { viscous: 0.0, structural };
+        assert_eq!(law.of_modes(&[0.0, 500.0]), [damping(0.0), damping(10.0)]);
+        assert_eq!(law.mass_proportional(), 0.0);
+        assert_eq!(DampingLaw::Undamped.of_modes(&[0.0, 500.0]), [damping(0.0); 2]);
+    }
+
+    fn held(eigenvalue: f64, in_supports: f64, dashpots: f64) -> HeldMode {
+        HeldMode { eigenvalue, in_supports, dashpots }
+    }
+
+    #[test]
+    fn ratios_are_those_of_modes_that_strain_the_structure_and_of_a_suspension_only_where_nothing_else_moves()
+    {
+        let suspension = [held(0.0, 0.0, 0.0), held(9.0, 0.96, 0.0), held(16.0, 1.0, 0.0)];
+        assert_eq!(elastic_modes(&suspension), [1, 2]);
+        // A share of 0.95 is not above 0.95.
+        let mut all = suspension.to_vec();
+        all.extend([held(100.0, SUSPENDED, 0.0), held(400.0, 0.1, 0.0)]);
+        assert_eq!(elastic_modes(&all), [3, 4]);
+        let viscous = |modes: &[HeldMode]| -> Vec<f64> {
+            let damping = DampingLaw::ModalRatios(vec![0.25, 0.5]).of_held_modes(modes);
+            damping.iter().map(|mode| mode.viscous).collect()
+        };
+        assert_eq!(viscous(&all), [0.0, 0.0, 0.0, 5.0, 20.0]);
+        assert_eq!(viscous(&suspension), [0.0, 1.5, 4.0]);
+    }
+
+    #[test]
+    fn what_the_supports_dashpots_do_is_taken_off_the_measured_ratio_down_to_nothing() {
+        let modes = [held(100.0, 0.3, 1.5), held(100.0, 0.3, 7.0)];
+        let damping = DampingLaw::ModalRatios(vec![0.25]).of_held_modes(&modes);
+        assert_eq!([damping[0].viscous, damping[1].viscous], [3.5, 0.0]);
+        let law = DampingLaw::Rayleigh { mass: 2.0, stiffness: 0.5 };
+        assert_eq!(law.of_held_modes(&modes), law.of_modes(&[100.0, 100.0]));
     }
 }

@@ -163,29 +163,85 @@ mod tests {
         }
     }
 
+    /// All five compliances.
+    fn all(of: &Interfaces) -> [Compliance; 5] {
+        [of.scalar[0], of.scalar[1], of.translation, of.near_rotation, of.far_rotation]
+    }
+
+    const EI: f64 = 76.0;
+    const LENGTH: f64 = 0.065;
+
+    fn joint(moved: [f64; 3]) -> RealMatrix2 {
+        Matrix2::new(3e6 + moved[0], -1e5 + moved[1], -1e5 + moved[1], 5e3 + moved[2])
+    }
+
+    /// By how much each compliance changes to first order when K does so.
+    fn by_stiffness(direction: [f64; 3]) -> [f64; 5] {
+        let at = |step: f64| {
+            let moved = joint(direction.map(|by| step * by));
+            all(&interfaces(moved, [[0.0; 3]; 3], EI, LENGTH, &[]).unwrap())
+        };
+        let (up, down) = (at(1e-3), at(-1e-3));
+        std::array::from_fn(|e| 0.5e3 * (up[e].value - down[e].value))
+    }
+
     #[test]
-    fn deviations_of_compliances_follow_those_of_the_stiffness() {
-        let joint = Matrix2::new(3e6, -1e5, -1e5, 5e3);
-        let covariance = [[1e8, 0.0, 0.0], [0.0, 4e6, 1e3], [0.0, 1e3, 900.0]];
-        let base = interfaces(joint, covariance, 76.0, 0.065, &[]).unwrap();
-        // Against finite differences along the eigen-directions of a diagonalised covariance (Cholesky columns).
-        let columns = [[1e4, 0.0, 0.0], [0.0, 2e3, 0.5], [0.0, 0.0, (900.0f64 - 0.25).sqrt()]];
-        let variance: f64 = columns
-            .iter()
-            .map(|d| {
-                let moved = |s: f64| {
-                    let m = Matrix2::new(3e6 + s * d[0], -1e5 + s * d[1], -1e5 + s * d[1], 5e3 + s * d[2]);
-                    interfaces(m, covariance, 76.0, 0.065, &[]).unwrap().far_rotation.value
-                };
-                (0.5 * (moved(1e-3) - moved(-1e-3)) / 1e-3).powi(2)
-            })
-            .sum();
-        assert!(
-            (base.far_rotation.std / variance.sqrt() - 1.0).abs() < 1e-4,
-            "{} {}",
-            base.far_rotation.std,
-            variance.sqrt()
-        );
+    fn deviations_of_compliances_follow_those_of_the_stiffness_and_add_to_those_of_tolerances_as_squares() {
+        // Columns of the covariance's Cholesky factor.
+        let columns = [[1e4, 30.0, 3.0], [0.0, 2e3, 0.5], [0.0, 0.0, 30.0]];
+        let covariance: [[f64; 3]; 3] = std::array::from_fn(|m| {
+            std::array::from_fn(|n| columns.iter().map(|column| column[m] * column[n]).sum())
+        });
+        // A tolerance that moves what is left over as this change of K does.
+        let (before, after) =
+            (left_over(joint([0.0; 3]), EI, LENGTH), left_over(joint([3e4, 2e3, 90.0]), EI, LENGTH));
+        let shift: [f64; 5] = std::array::from_fn(|e| after.unwrap()[e] - before.unwrap()[e]);
+        let moved = all(&interfaces(joint([3e4, 2e3, 90.0]), covariance, EI, LENGTH, &[]).unwrap());
+        let found = all(&interfaces(joint([0.0; 3]), covariance, EI, LENGTH, &[shift]).unwrap());
+        let changes = columns.map(by_stiffness);
+        for e in 0..5 {
+            let noise: f64 = changes.iter().map(|change| change[e].powi(2)).sum();
+            let tolerance = (moved[e].value - found[e].value).powi(2);
+            let expected = (noise + tolerance).sqrt();
+            assert!((found[e].std / expected - 1.0).abs() < 1e-5, "{e}: {} for {expected}", found[e].std);
+        }
+    }
+
+    #[test]
+    fn a_length_tied_to_the_stiffness_counts_with_it_and_the_beams_bending_stiffness_by_itself() {
+        let (variance, ei_std) = (4e-8, 0.5);
+        let deviation = f64::sqrt(variance);
+        // K moves by `along` with one deviation of the length, and by the columns without it.
+        let along = [-2e4, 700.0, -8.0];
+        let columns = [[5e3, 40.0, 1.0], [0.0, 900.0, 0.2], [0.0, 0.0, 11.0]];
+        let covariance = std::array::from_fn(|m| {
+            std::array::from_fn(|n| along[m] * along[n] + columns.iter().map(|c| c[m] * c[n]).sum::<f64>())
+        });
+        let length = FittedLength { value: LENGTH, variance, with_stiffness: along.map(|by| by * deviation) };
+        let found = all(&interfaces_of_fit(joint([0.0; 3]), covariance, (EI, ei_std), &length).unwrap());
+        let exact = FittedLength { variance: 0.0, with_stiffness: [0.0; 3], ..length };
+        let of_beam = |sign: f64| {
+            all(&interfaces_of_fit(joint([0.0; 3]), [[0.0; 3]; 3], (EI + sign * ei_std, 0.0), &exact)
+                .unwrap())
+        };
+        let mut changes = columns.map(by_stiffness).to_vec();
+        // The length as `left_over` takes it; it does not move the arm at which rotations are told.
+        let of_length =
+            |sign: f64| left_over(joint(along.map(|by| sign * by)), EI, LENGTH + sign * deviation).unwrap();
+        let (up, down) = (of_length(1.0), of_length(-1.0));
+        let left: [f64; 5] = std::array::from_fn(|e| 0.5 * (up[e] - down[e]));
+        changes.push([
+            left[3],
+            left[4],
+            left[0] - LENGTH * left[1],
+            left[1] / LENGTH,
+            left[2] - left[1] / LENGTH,
+        ]);
+        changes.push(std::array::from_fn(|e| 0.5 * (of_beam(1.0)[e].value - of_beam(-1.0)[e].value)));
+        for e in 0..5 {
+            let expected = changes.iter().map(|change| change[e].powi(2)).sum::<f64>().sqrt();
+            assert!((found[e].std / expected - 1.0).abs() < 1e-3, "{e}: {} for {expected}", found[e].std);
+        }
     }
 
     #[test]
@@ -206,15 +262,19 @@ mod tests {
 
     #[test]
     fn a_compliance_that_may_be_zero_gives_a_bound_and_no_number() {
-        let open = Compliance { value: 1e-9, std: 1e-9 };
+        let of = |value: f64, std: f64| Compliance { value, std }.stiffness();
         assert!(
-            matches!(open.stiffness(), InterfaceStiffness::StifferThan { above } if (above * 2.96e-9 - 1.0).abs() < 1e-12)
+            matches!(of(1e-9, 1e-9), InterfaceStiffness::StifferThan { above } if (above * 2.96e-9 - 1.0).abs() < 1e-12)
         );
-        let found = Compliance { value: 1e-8, std: 1e-9 };
-        assert!(
-            matches!(found.stiffness(), InterfaceStiffness::Found { interval: [low, high], .. } if low < 1e8 && 1e8 < high)
-        );
-        let wrong = Compliance { value: -1e-8, std: 1e-9 };
-        assert_eq!(wrong.stiffness(), InterfaceStiffness::StifferThanTheBeam);
+        let InterfaceStiffness::Found { stiffness, interval: [low, high] } = of(1e-8, 1e-9) else {
+            unreachable!()
+        };
+        for (found, expected) in [(stiffness, 1e-8), (low, 1.196e-8), (high, 0.804e-8)] {
+            assert!((found * expected - 1.0).abs() < 1e-12, "{found}");
+        }
+        assert_eq!(of(-1e-8, 1e-9), InterfaceStiffness::StifferThanTheBeam);
+        // Exactly at either end of the interval nothing is found: a compliance of zero is possible.
+        assert_eq!(of(0.0, 0.0), InterfaceStiffness::StifferThanTheBeam);
+        assert_eq!(of(1.96, 1.0), InterfaceStiffness::StifferThan { above: 1.0 / 3.92 });
     }
 }

@@ -41,7 +41,7 @@ pub fn of_decomposition(decomposed: &Decomposed, options: &ExportOptions) -> Res
         }
     }
     let (nodes, first_id) = numbering.finish();
-    Ok(Export {
+    Export {
         title: format!("joint {} of a decomposition", decomposed.joint),
         notes,
         nodes,
@@ -49,7 +49,8 @@ pub fn of_decomposition(decomposed: &Decomposed, options: &ExportOptions) -> Res
         parts: Vec::new(),
         not_exported: Vec::new(),
         first_id,
-    })
+    }
+    .checked()
 }
 
 /// What is exported of several estimates.

@@ -98,7 +98,7 @@ pub fn of_diagnosis(
         return Err(ExportError::Nothing);
     }
     let (nodes, first_id) = exporter.numbering.finish();
-    Ok(Export {
+    Export {
         title: format!("the repaired fixture of a diagnosis, {}", repaired.name()),
         notes: exporter.notes,
         nodes,
@@ -106,7 +106,8 @@ pub fn of_diagnosis(
         parts: exporter.parts,
         not_exported: exporter.omitted,
         first_id,
-    })
+    }
+    .checked()
 }
 
 impl DiagnosisEntry {

@@ -55,6 +55,11 @@ pub enum ExportError {
         "there is nothing to export: the fixture has neither joints nor supports, and nothing was found that has a counterpart in a finite-element model"
     )]
     Nothing,
+    /// A number that no program's field holds.
+    #[error(
+        "{0} has a number beyond 1e90, which no structure has: check the values of the fixture or recording that it was made of"
+    )]
+    TooLarge(String),
     /// A node number outside what programs read.
     #[error("{0} is no node number: 1 to 99000000 are, and those above are kept for what the file adds")]
     NodeNumber(u64),

@@ -1,6 +1,6 @@
 //! What is exported: joints, parts of one or two nodes, and what has no counterpart.
 
-use crate::Joint;
+use crate::{ExportError, Joint};
 use jointscope_fixture::Dof;
 use serde::Serialize;
 
@@ -91,6 +91,45 @@ pub struct Export {
     /// First number of elements, properties, tables and of nodes that a writer adds.
     #[serde(skip)]
     pub first_id: u64,
+}
+
+/// Largest number: what is made of it, K over L² or a sum of products, keeps to a power of two digits.
+const LARGEST: f64 = 1e90;
+
+impl Export {
+    /// The same, where all its numbers are ones that a structure can have.
+    ///
+    /// # Errors
+    /// [`ExportError::TooLarge`].
+    pub(crate) fn checked(self) -> Result<Self, ExportError> {
+        let fits = |value: &f64| value.abs() <= LARGEST;
+        let element = |part: &Part| match part.element {
+            Element::Mass { mass, .. } => fits(&mass),
+            Element::Ground { stiffness, damping, .. } | Element::Spring { stiffness, damping, .. } => {
+                fits(&stiffness) && fits(&damping)
+            }
+        };
+        let joint = |joint: &Joint| {
+            let lines = joint.lines.iter().flat_map(|line| [line.stiffness, line.damping]);
+            let matrices = [joint.stiffness, joint.damping, joint.structural].into_iter().chain(lines);
+            let mut all = matrices.flatten().flatten();
+            all.all(|value| fits(&value))
+                && joint.mass.iter().flatten().flatten().all(fits)
+                && fits(&joint.length)
+        };
+        let joints = self.joints.iter().find(|one| !joint(one)).map(|joint| format!("joint {}", joint.name));
+        let parts = || self.parts.iter().find(|part| !element(part)).map(|part| part.says.clone());
+        let nodes = || {
+            self.nodes
+                .iter()
+                .find(|node| !fits(&node.x))
+                .map(|node| format!("the abscissa of node {}", node.number))
+        };
+        match joints.or_else(parts).or_else(nodes) {
+            Some(what) => Err(ExportError::TooLarge(what)),
+            None => Ok(self),
+        }
+    }
 }
 
 /// The degree of freedom's number: y is 2, θ about z is 6.

@@ -147,3 +147,71 @@ impl LocalRational {
         (place.re, place.im.abs(), 0.5 * self.pole_variance * self.pole.inv().norm_sqr().powi(2))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::noise::tests::Normals;
+
+    /// One mode at 20.3 Hz of half-width 0.9 Hz and a smooth rest, on lines 0.5 Hz apart.
+    fn frf(hz: f64) -> Complex64 {
+        let pole = Complex64::new(hz - 20.3, 0.9);
+        Complex64::new(2.0, 1.0) / pole + Complex64::new(0.3, 0.1) + 0.02 * hz
+    }
+
+    fn lines() -> Vec<f64> {
+        (0..80).map(|line| 0.5 * line as f64).collect()
+    }
+
+    #[test]
+    fn a_mode_and_a_straight_rest_are_met_from_every_line_with_their_pole() {
+        let hz = lines();
+        let values: Vec<Complex64> = hz.iter().map(|&hz| frf(hz)).collect();
+        let mut fit = LocalRationalFit::new();
+        for line in 30..50 {
+            let found = fit.about(&hz, &values, line, 8).unwrap();
+            let (place, width, _) = found.resonance();
+            assert!((hz[line] + place - 20.3).abs() < 1e-6 && (width - 0.9).abs() < 1e-6, "{place} {width}");
+            assert!((found.at(1.3) - frf(hz[line] + 1.3)).norm() < 1e-7);
+            assert!(found.residual.norm() < 1e-9 && found.variance < 1e-15);
+        }
+        // Beside the ends the lines are the nearest ones: the same function.
+        for (line, same) in [(0, 8), (2, 8), (79, 71), (73, 71)] {
+            let (end, inside) =
+                (fit.about(&hz, &values, line, 8).unwrap(), fit.about(&hz, &values, same, 8).unwrap());
+            let off = end.at(0.4) - inside.at(hz[line] - hz[same] + 0.4);
+            assert!(off.norm() < 1e-6, "{line}: {off}");
+        }
+    }
+
+    #[test]
+    fn too_few_lines_or_nothing_on_them_have_no_function() {
+        let hz = lines();
+        let values: Vec<Complex64> = hz.iter().map(|&hz| frf(hz)).collect();
+        let mut fit = LocalRationalFit::new();
+        assert!(fit.about(&hz[..17], &values[..17], 8, 8).is_some());
+        assert!(fit.about(&hz[..16], &values[..16], 8, 8).is_none());
+        assert!(fit.about(&hz, &values, 40, 2).is_some() && fit.about(&hz, &values, 40, 1).is_none());
+        assert!(fit.about(&hz, &[Complex64::ZERO; 80], 40, 8).is_none());
+    }
+
+    #[test]
+    fn noise_is_told_by_what_is_left_and_moves_the_pole_as_far_as_is_said() {
+        let (hz, noise, runs) = (lines(), 1e-3, 400);
+        let mut random = Normals(3);
+        let mut fit = LocalRationalFit::new();
+        let [mut places, mut stated, mut variance, mut left] = [0.0; 4];
+        for _ in 0..runs {
+            let values: Vec<Complex64> = hz.iter().map(|&hz| frf(hz) + random.complex(noise)).collect();
+            let found = fit.about(&hz, &values, 41, 8).unwrap();
+            let (place, _, of_place) = found.resonance();
+            places += (hz[41] + place - 20.3).powi(2) / f64::from(runs);
+            stated += of_place / f64::from(runs);
+            variance += found.variance / f64::from(runs);
+            left += found.residual.norm_sqr() / (1.0 - found.leverage) / f64::from(runs);
+        }
+        assert!((variance / noise - 1.0).abs() < 0.05, "{variance}");
+        assert!((left / noise - 1.0).abs() < 0.2, "{left}");
+        assert!((stated / places - 1.0).abs() < 0.2, "{stated} for {places}");
+    }
+}

@@ -271,11 +271,11 @@ fn fit_window(
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use super::*;
 
     /// A deterministic stream of standard normals (a linear congruential generator and Box–Muller).
-    struct Normals(u64);
+    pub(crate) struct Normals(pub u64);
 
     impl Normals {
         fn uniform(&mut self) -> f64 {
@@ -283,7 +283,7 @@ mod tests {
             ((self.0 >> 11) as f64 + 0.5) / (1u64 << 53) as f64
         }
 
-        fn complex(&mut self, variance: f64) -> Complex64 {
+        pub fn complex(&mut self, variance: f64) -> Complex64 {
             let radius = (-variance * self.uniform().ln()).sqrt();
             Complex64::from_polar(radius, std::f64::consts::TAU * self.uniform())
         }

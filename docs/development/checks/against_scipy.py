@@ -18,7 +18,7 @@ import numpy as np
 import pyuff
 import scipy.linalg
 
-EXAMPLE = pathlib.Path(__file__).resolve().parents[2] / "fixtures" / "glued-joint"
+EXAMPLE = pathlib.Path(__file__).resolve().parents[3] / "fixtures" / "glued-joint"
 PAIRS = [(4, 1), (3, 1), (4, 2), (3, 2)]
 failures = []
 

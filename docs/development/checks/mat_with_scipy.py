@@ -1,13 +1,11 @@
 """MATLAB files of FRFs, written by scipy (v5, v7) and h5py (v7.3, in MATLAB's layout), read by us.
 
-    cargo build --release -p jointscope-cli && cargo build --release -p jointscope-uff --example dump
-    python docs/development/checks/mat_with_scipy.py FOLDER
+    python docs/development/checks/mat_with_scipy.py FOLDER PROGRAM
 
 Needs numpy, scipy and h5py. Writes the files to FOLDER (those that the tests of crates/import read are named so), then has the program make modes of a larger one
 and compares what it reads with what was written.
 """
 import json
-import os
 import subprocess
 import sys
 from pathlib import Path
@@ -16,8 +14,7 @@ import h5py
 import numpy as np
 from scipy.io import savemat
 
-ROOT = Path(__file__).resolve().parents[3]
-PROGRAM = Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target")) / "release/jointscope"
+PROGRAM = Path(sys.argv[2]).resolve()
 G = 9.80665
 
 

@@ -74,7 +74,7 @@ course = [best.x[0] - best.x[1] * logs.mean(), best.x[1]]
 report("course of detection, relative", max(abs(a / b - 1) for a, b in zip(course, proof["detection"]["course"])), 1e-5)
 
 if proof["plan"].get("shipped"):
-    truths = pathlib.Path(__file__).resolve().parents[2] / proof["plan"]["shipped"] / "truths.json"
+    truths = pathlib.Path(__file__).resolve().parents[3] / proof["plan"]["shipped"] / "truths.json"
     same = hashlib.sha256(truths.read_bytes()).hexdigest() == proof["sealed_truths_sha256"]
     report("SHA-256 of the shipped truths differs", float(not same), 0)
 

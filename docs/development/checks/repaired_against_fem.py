@@ -21,7 +21,7 @@ import time
 import numpy as np
 import pyuff
 
-ROOT = pathlib.Path(__file__).resolve().parents[2] / "fixtures" / "paper"
+ROOT = pathlib.Path(__file__).resolve().parents[3] / "fixtures" / "paper"
 AVERAGES = 8
 
 

@@ -17,7 +17,7 @@ import tempfile
 import numpy as np
 import pyuff
 
-ROOT = pathlib.Path(__file__).resolve().parents[2] / "fixtures" / "paper"
+ROOT = pathlib.Path(__file__).resolve().parents[3] / "fixtures" / "paper"
 PROGRAM = str(pathlib.Path(sys.argv[1]).resolve())
 EXAMPLES = sys.argv[2:] or ["D0", "E0", "F01", "F02"]
 THINGS = ["joint-mass", "shear", "plate-action", "block-flexibility"]

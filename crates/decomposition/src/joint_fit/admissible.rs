@@ -226,3 +226,58 @@ pub(super) fn nearest(problem: &Problem, free: &Fitted, failed: &[&str], gain: f
     let costs = point.objective - free.point.objective + gain;
     Some(Admissible { stiffness: k.0, damping: d.scale(1.0 / law.middle).0, costs })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+    use statrs::distribution::{ContinuousCDF, Normal};
+
+    proptest! {
+        /// Against the closed form of the eigenvalue and its numerical derivatives.
+        #[test]
+        fn a_matrix_is_as_likely_not_negative_as_its_smallest_eigenvalue(
+            matrix in prop::array::uniform3(-1.0f64..1.0), columns in prop::array::uniform9(-0.3f64..0.3), strain in 1.0f64..4.0
+        ) {
+            let smallest = |[a, b, d]: [f64; 3]| 0.5 * (a + d) - (0.25 * (a - d).powi(2) + b * b).sqrt();
+            prop_assume!((0.25 * (matrix[0] - matrix[2]).powi(2) + matrix[1].powi(2)).sqrt() > 0.05);
+            let mut covariance = vec![0.0; 16];
+            let mut variance = 0.0;
+            for column in columns.chunks(3) {
+                let at = |step: f64| smallest(std::array::from_fn(|e| matrix[e] + step * column[e]));
+                variance += (0.5e6 * (at(1e-6) - at(-1e-6))).powi(2);
+                for m in 0..3 {
+                    for n in 0..3 {
+                        covariance[4 * (m + 1) + n + 1] += column[m] * column[n];
+                    }
+                }
+            }
+            let coordinates = [7.0, matrix[0], matrix[1], matrix[2]];
+            let found = not_negative(Form::Symmetric, &coordinates, 1, (&Covariance::new(4, covariance), strain)).unwrap();
+            let expected = Normal::new(0.0, 1.0).unwrap().cdf(smallest(matrix) / (strain * variance).sqrt());
+            prop_assert!((found - expected).abs() < 1e-4, "{} for {}", found, expected);
+        }
+    }
+
+    #[test]
+    fn a_single_element_is_as_likely_not_negative_as_its_distance_from_zero_says() {
+        let covariance = Covariance::new(2, vec![9.0, 0.0, 0.0, 4.0]);
+        let p = not_negative(Form::Scalar, &[5.0, -1.96 * 4.0], 1, (&covariance, 4.0)).unwrap();
+        assert!((p - 0.025).abs() < 1e-4, "{p}");
+        let exact = Covariance::new(1, vec![0.0]);
+        assert_eq!(not_negative(Form::Scalar, &[1.0], 0, (&exact, 1.0)), None);
+    }
+
+    #[test]
+    fn a_test_fails_below_five_per_cent_and_not_at_it() {
+        let tests =
+            |p: [Option<f64>; 3]| JointTests { reciprocity: p[0], definite: p[1], passive: p[2] }.failed();
+        assert_eq!(tests([Some(0.049), Some(0.0), Some(0.01)]), ["reciprocity", "definite", "passive"]);
+        assert!(tests([Some(0.05), None, Some(0.9)]).is_empty());
+    }
+
+    #[test]
+    fn what_gives_out_energy_is_sought_on_the_boundary_of_what_does_not() {
+        assert_eq!((boundary(Form::Scalar), boundary(Form::Symmetric)), (Form::Zero, Form::RankOne));
+    }
+}

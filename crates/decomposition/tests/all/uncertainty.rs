@@ -193,3 +193,38 @@ fn the_plain_mean_chooses_a_band_by_itself_that_is_no_worse_than_all_lines() {
     assert!(product(&chosen) < product(&all), "{:e} {:e}", product(&chosen), product(&all));
     assert!(chosen.band.from >= 2.5 && chosen.band.to <= 1000.0 && truth.fixture.joints().len() == 1);
 }
+
+#[test]
+fn where_a_constant_joint_explains_nothing_its_model_covariance_is_the_scatter_of_fits_to_parts_of_the_band()
+{
+    // Structural damping: no viscous C is right over the whole band.
+    let mut truth = truth();
+    let damped = TwoBlocks { damping: r#"{"loss_factor": 0.05}"#.into(), ..TwoBlocks::default() };
+    truth.fixture = damped.fixture();
+    truth.sides = Sides::of(&truth.fixture, None).unwrap();
+    truth.k = end_stiffness(damped.bending_stiffness, damped.length);
+    let coarse = jointscope_spectra::SpectralLines::even(20.0, 20.0, 50).unwrap();
+    let noisy = Noise::new(5).on(&frfs(&truth.fixture, &FOUR, &coarse), 1e-3);
+    let whole = fit(&truth, &noisy);
+    assert!(!whole.explains(), "{}", whole.chi2_per_dof);
+    let parts: Vec<[f64; 6]> = (0..8)
+        .map(|block| {
+            let without = block * 50 / 8..(block + 1) * 50 / 8;
+            let part = fit(&truth, &noisy.on_lines(|line| !without.contains(&line)).unwrap());
+            let (k, c) = (part.stiffness, part.damping);
+            [k.at(0, 0), k.at(0, 1), k.at(1, 1), c.at(0, 0), c.at(0, 1), c.at(1, 1)]
+        })
+        .collect();
+    let mean: [f64; 6] = std::array::from_fn(|m| parts.iter().map(|part| part[m]).sum::<f64>() / 8.0);
+    let (k_std, c_std) = whole.model_std();
+    let stds = [(0, 0), (0, 1), (1, 1)].map(|(i, j)| (k_std.at(i, j), c_std.at(i, j)));
+    for m in 0..6 {
+        let squares: f64 = parts.iter().map(|part| (part[m] - mean[m]).powi(2)).sum();
+        let expected = (7.0 / 8.0 * squares).sqrt();
+        let found = if m < 3 { stds[m].0 } else { stds[m - 3].1 };
+        assert!((found / expected - 1.0).abs() < 1e-3, "{m}: {found} for {expected}");
+    }
+    // Noise that covers the difference gives no reason to look.
+    let covered = fit(&truth, &Noise::new(5).on(&frfs(&truth.fixture, &FOUR, &coarse), 0.3));
+    assert!(covered.explains() && covered.model_covariance == [[0.0; 6]; 6], "{}", covered.chi2_per_dof);
+}
