@@ -28,8 +28,7 @@ pub struct ErrorSizes {
 
 /// Number of kinds.
 pub const KINDS: usize = 7;
-/// Places of mass lines and gains among them.
-pub(crate) const MASS_LINE: usize = 4;
+/// Place of the gain among them.
 pub(crate) const GAIN: usize = 6;
 
 impl Default for ErrorSizes {

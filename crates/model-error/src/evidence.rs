@@ -3,7 +3,7 @@
 //! The parameters of a linear model are integrated out, S + J·Jᵀ; the sizes τ, whose priors are half-normal with scales s, are maximised over:
 //! ln Z = max over τ of [ln N(d; 0, S(τ) + J·Jᵀ) − ½ Σ (τ/s)²]. A size that is stated is taken as it is.
 
-use crate::errors::{Comparison, ErrorSizes, GAIN, KINDS, MASS_LINE, SizePrior};
+use crate::errors::{Comparison, ErrorSizes, GAIN, KINDS, SizePrior};
 use jointscope_linalg::Cholesky;
 use std::f64::consts::TAU;
 
@@ -178,12 +178,11 @@ impl Linear {
     }
 }
 
-/// ln of the sizes' prior but for its normalisation: half-normal, and half-Cauchy for gains, of which a test may have any, and for mass lines: where a suspension's modes lie
-/// close below the band, their errors are in what is taken for those.
+/// ln of the sizes' prior but for its normalisation: half-normal, and half-Cauchy for gains, of which a test may have any.
 fn ln_prior(sizes: &[f64; KINDS], scales: &[f64; KINDS], stated: &[bool; KINDS]) -> f64 {
     let of = |kind: usize| {
         let squared = (sizes[kind] / scales[kind]).powi(2);
-        if matches!(kind, MASS_LINE | GAIN) { -(1.0 + squared).ln() } else { -0.5 * squared }
+        if kind == GAIN { -(1.0 + squared).ln() } else { -0.5 * squared }
     };
     (0..KINDS).filter(|kind| !stated[*kind]).map(of).sum()
 }

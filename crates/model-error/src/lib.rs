@@ -8,7 +8,7 @@
 //!    H(s) = Σ s²A/(s² + 2ζωs + ω²) + residual terms, and gives the *features*: ln ω and ln ζ of each mode, its residue A in each FRF, each FRF's mass line and
 //!    upper residual. Their covariance is the Cramér–Rao bound times χ² per degree of freedom where that is above one.
 //! 2. **Model.** [`ModelledModes::of`] finds a fixture's poles by the peaks of its FRFs and the modes of the recording, follows them by analytic continuation of the FRFs as they would be
-//!    recorded, and takes residues by contour integrals; [`ModelledModes::near`] sets out from poles that are known. [`modes_about`] are the natural frequencies about a band.
+//!    recorded, and takes residues by contour integrals; [`ModelledModes::near`] sets out from poles that are known. [`modes_within`] counts the modes in a band.
 //! 3. **Pairing.** [`Pairing::of`] tells which mode of the model is which of the recording, by frequency and shape, and what modes without a partner cost.
 //! 4. **Error.** [`ErrorSizes`] are relative standard deviations by kind: natural frequency, damping ratio, shape (in phase and in quadrature), mass line, upper residual.
 //!    [`Comparison`] makes the covariance S = noise + Σ size²·kind of them, with the model's [`Shapes`].
@@ -75,6 +75,6 @@ pub use basis::Pole;
 pub use errors::{Comparison, ErrorSizes, KINDS, SizePrior};
 pub use evidence::{Evidence, Linear};
 pub use matching::Pairing;
-pub use modelled::{ModelledMode, ModelledModes, above_unresolved, modes_about};
+pub use modelled::{ModelledMode, ModelledModes, modes_within};
 pub use recorded::{RecordedMode, RecordedModes, Recording};
 pub use shapes::Shapes;

@@ -6,7 +6,7 @@
 use crate::basis::{MASS_LINE, Pole, UPPER};
 use crate::matching::Pairing;
 use crate::outline::grid;
-use crate::recorded::{RecordedModes, resolved_from};
+use crate::recorded::RecordedModes;
 use jointscope_fixture::{Effect, Fixture};
 use jointscope_lumped::{ContinuedFrfs, Instrument, ModelledTest};
 use jointscope_spectra::{FrfSet, SpectralLines};
@@ -76,30 +76,18 @@ const NARROWEST: f64 = 0.003;
 const POINTS: usize = 4;
 /// Its radius as a share of the pole's decay, and at least of the pole: modes that overlap lie well outside of it, rounding well below.
 const RADIUS: (f64, f64) = (0.01, 1e-6);
-/// Multiple of a mode's frequency from which on it is next to a mass line, whichever side of a line it lies on.
-const CLEAR: f64 = 2.0;
 /// Largest relative step of a pole from where it was looked for.
 const REACH: f64 = 0.5;
 
-/// Natural frequencies (Hz, ascending) of a fixture's modes in and about the band of FRFs, from 0.6 times its lowest line to 1.4 times its highest, as far as they make
-/// peaks; `None` where it cannot be modelled.
+/// Number of modes that a fixture has within the lines of FRFs, as far as they make peaks; `None` where it cannot be modelled.
 ///
-/// A mode that is weak in all FRFs and close to a stronger one makes none and is not among them.
-pub fn modes_about(fixture: &Fixture, frfs: &FrfSet) -> Option<Vec<f64>> {
+/// A mode that is weak in all FRFs and close to a stronger one makes none and is not counted.
+pub fn modes_within(fixture: &Fixture, frfs: &FrfSet) -> Option<usize> {
     let hz = frfs.lines().hz();
     let (low, high) = (hz[0], hz[hz.len() - 1]);
     let test = ModelledTest::new(fixture, frfs.pairs(), high, Instrument::AsRecorded).ok()?;
     let found = peaking(&test, &grid(low, high, 0)?, frfs.pairs().len());
-    Some(found.iter().map(|pole| pole.norm() / TAU).collect())
-}
-
-/// Frequency (Hz) from which on FRFs tell of elastic modes, where some of these `modes` (Hz, ascending) are so low that their records do not tell them from a mass line: on
-/// lines about such a mode a model that is a little off makes it jump over one of them, and no fit leads over that. `None` where there are none.
-pub fn above_unresolved(modes: &[f64], frfs: &FrfSet) -> Option<f64> {
-    let resolved = resolved_from(frfs.lines().hz());
-    let (low, others) = modes.split_at(modes.partition_point(|hz| *hz <= resolved));
-    let highest = low.last()?;
-    Some(others.first().map_or(CLEAR * highest, |next| (CLEAR * highest).min((highest * next).sqrt())))
+    Some(found.iter().filter(|pole| (TAU * low..=TAU * high).contains(&pole.norm())).count())
 }
 
 /// The poles in and near the band of a recording (from half its lowest line to 1.6 times its highest), rad/s, ascending: from the peaks of the FRFs

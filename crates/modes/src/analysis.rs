@@ -1,5 +1,4 @@
-use jointscope_frf::noise::NoiseSource;
-use jointscope_frf::{KnownNoise, merging};
+use jointscope_frf::noise::{NoiseSource, with_variances};
 use jointscope_spectra::{FrfForm, FrfPair, FrfSet, SpectralLines};
 use num_complex::Complex64;
 
@@ -50,8 +49,6 @@ pub struct ModalAnalysis {
     pub residual_terms: Vec<ResidualTerms>,
     /// Where each FRF's noise was taken from; empty where the set brought variances.
     pub noise: Vec<NoiseSource>,
-    /// Number of lines recorded, where they were merged.
-    pub merged_from: Option<usize>,
     /// χ² per degree of freedom of the refined model: 1 where it explains the FRFs down to their noise.
     pub chi2_per_dof: f64,
     /// Number of columns of the matrix of FRFs, over which participations were told; 1 where it has gaps.
@@ -87,7 +84,10 @@ impl ModalAnalysis {
     /// # Errors
     /// See [`ModesError`].
     pub fn of(frfs: &FrfSet, options: &ModesOptions) -> Result<Self, ModesError> {
-        let KnownNoise { frfs, noise, merged_from } = KnownNoise::of(frfs, options.band)?;
+        let (frfs, noise) = match frfs.variance(0) {
+            Some(_) => (frfs.clone(), Vec::new()),
+            None => with_variances(frfs)?,
+        };
         let (observed, measured) = in_use(&frfs, options)?;
         let orders = orders(&observed, options)?;
         let spacing =
@@ -107,9 +107,7 @@ impl ModalAnalysis {
         let condensed = observed.condensed(&start.poles);
         let by_hand = !options.pick.is_empty();
         let fit = refine(&condensed, start, by_hand)?;
-        // What merging leaves of the lines tells their noise already, and neighbours that are merged have variances apart.
-        let is_untold = merged_from.is_none() && noise.iter().any(|source| source.is_by_scatter());
-        let (observed, condensed, fit) = if is_untold {
+        let (observed, condensed, fit) = if noise.iter().any(|source| source.is_by_scatter()) {
             with_residual_noise(observed, condensed, fit, &noise)
         } else {
             (observed, condensed, fit)
@@ -128,7 +126,6 @@ impl ModalAnalysis {
             orders,
             residual_terms: residual_terms(&fit, &condensed),
             noise,
-            merged_from,
             chi2_per_dof: fit.chi2_per_dof(&condensed),
             columns: observed.grid.columns,
             complete: !observed.grid.row_channels.is_empty(),
@@ -145,11 +142,6 @@ impl ModalAnalysis {
     /// The lines in use.
     pub fn lines(&self) -> &SpectralLines {
         self.measured.lines()
-    }
-
-    /// That lines were merged, in a sentence.
-    pub fn merging(&self) -> Option<String> {
-        merging(self.merged_from, self.lines().len())
     }
 
     /// The FRFs in use: accelerances with their variances.

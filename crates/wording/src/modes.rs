@@ -6,7 +6,7 @@ use jointscope_modes::ModalAnalysis;
 /// How far to trust the modes.
 impl Remarks for ModalAnalysis {
     fn remarks(&self) -> Vec<String> {
-        let mut all: Vec<String> = self.merging().into_iter().collect();
+        let mut all = Vec::new();
         if self.pairs().len() == 1 {
             all.push(
                 "there is one FRF: no shape is told, modes with a node at either channel do not show, and whether the structure changed between records cannot be seen"
@@ -26,13 +26,8 @@ impl Remarks for ModalAnalysis {
         let scattered = self.noise.iter().filter(|n| n.is_by_scatter()).count();
         if scattered > 0 {
             let of_all = if scattered == self.noise.len() { "the".to_owned() } else { scattered.to_string() };
-            let left_by = if self.merged_from.is_some() {
-                "smooth curves over neighbouring lines"
-            } else {
-                "the modes"
-            };
             all.push(format!(
-                "no coherence and averages for {of_all} FRFs: their noise is what {left_by} leave of each"
+                "no coherence and averages for {of_all} FRFs: their noise is what the modes leave of each"
             ));
         }
         let drifting: Vec<String> = self

@@ -5,7 +5,7 @@ use crate::modal::sizes::known;
 use crate::settings::ModalSettings;
 use crate::work::Work;
 use crate::{Hypothesis, Observation};
-use jointscope_model_error::{RecordedModes, Recording, SizePrior, above_unresolved};
+use jointscope_model_error::{RecordedModes, Recording, SizePrior};
 use jointscope_modes::ModesOptions;
 
 /// Features of a recording's modes, and sizes of error.
@@ -51,15 +51,9 @@ pub(crate) fn recorded(
     nominal: &Hypothesis,
     settings: &ModalSettings,
 ) -> Option<RecordedModes> {
-    let modes = jointscope_model_error::modes_about(&nominal.to_fixture().ok()?, observation.frfs());
-    let from = modes.as_ref().and_then(|modes| above_unresolved(modes, observation.frfs()));
-    let part = from.and_then(|from| observation.reduced(|hz| hz >= from, |_| true));
-    let observation = part.as_ref().unwrap_or(observation);
     let recording = Recording { frfs: observation.frfs(), weights: observation.weights() };
     // Where nothing but the FRFs tells their noise, every ripple looks like a mode: no more are asked for than a model may have.
-    let band = observation.lines().hz();
-    let within = |hz: &&f64| (band[0]..=band[band.len() - 1]).contains(*hz);
-    let expected = || Some(modes.as_ref()?.iter().filter(within).count());
+    let expected = || jointscope_model_error::modes_within(&nominal.to_fixture().ok()?, observation.frfs());
     let orders = observation.has_scatter_for_noise().then(expected).flatten().map(|modes| (2, 2 * modes + 8));
     let options = ModesOptions { orders, ..ModesOptions::default() };
     let alone = RecordedModes::of(recording, &options, &[])?;

@@ -88,13 +88,13 @@ impl Problem<'_> {
     }
 
     /// Sizes of the errors as multiples of what is usual, or of what is stated: the sizes that the recording asks for.
-    /// Gains are the test's, not the model's, and so is what a suspension makes of mass lines.
+    /// Gains are the test's, not the model's.
     pub fn relative_sizes(&self, fit: &ModalFit) -> Vec<f64> {
-        let without = ErrorSizes { gain: 0.0, mass_line: 0.0, ..self.seen(fit).sizes };
+        let without = ErrorSizes { gain: 0.0, ..self.seen(fit).sizes };
         self.over_usual(&without)
     }
 
-    /// The same with gains of records and mass lines among them.
+    /// The same with the gains of records among them.
     pub fn relative_sizes_with_gains(&self, fit: &ModalFit) -> Vec<f64> {
         self.over_usual(&self.seen(fit).sizes)
     }

@@ -89,10 +89,8 @@ fn the_sizes_found_are_the_most_probable_ones() {
     let best = linear.evidence(&NINE.comparison, &prior, None).unwrap();
     let value = |sizes: &ErrorSizes| {
         let squares = sizes.to_array().into_iter().zip(prior.to_array()).map(|(s, p)| (s / p).powi(2));
-        // Half-normal, and half-Cauchy for mass lines and the gain, the last.
-        let prior = squares
-            .enumerate()
-            .map(|(kind, s)| if matches!(kind, 4 | 6) { -(1.0 + s).ln() } else { -0.5 * s });
+        // Half-normal, and half-Cauchy for the gain, the last.
+        let prior = squares.enumerate().map(|(kind, s)| if kind == 6 { -(1.0 + s).ln() } else { -0.5 * s });
         linear.ln_density(&NINE.comparison, sizes).unwrap() + prior.sum::<f64>()
     };
     assert!((value(&best.sizes) - best.ln).abs() < 1e-9, "{} against {}", value(&best.sizes), best.ln);
