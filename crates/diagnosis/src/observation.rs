@@ -1,7 +1,7 @@
 use crate::recorded_lines::{drift_variance, lines_in_use};
 use crate::work::Work;
 use jointscope_frf::Drift;
-use jointscope_frf::noise::{NoiseSource, with_variances};
+use jointscope_frf::noise::{NoiseSource, known};
 use jointscope_inference::{autocorrelation, inflated_weight};
 use jointscope_spectra::{FrfForm, FrfPair, FrfSet, SpectraError, SpectralLines};
 use num_complex::Complex64;
@@ -40,10 +40,7 @@ impl Observation {
     /// # Errors
     /// No line left.
     pub fn new(frfs: &FrfSet, in_use: impl Fn(f64) -> bool + Copy) -> Result<Self, SpectraError> {
-        let (with_noise, noise) = match frfs.variance(0) {
-            Some(_) => (frfs.clone(), Vec::new()),
-            None => with_variances(frfs)?,
-        };
+        let (with_noise, noise) = known(frfs)?;
         let hz = frfs.lines().hz().to_vec();
         let kept = with_noise.on_lines(|i| hz[i] > 0.0 && in_use(hz[i])).ok_or(SpectraError::NoLines)?;
         let frfs = kept.to_form(FrfForm::Accelerance)?;

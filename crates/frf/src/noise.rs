@@ -68,6 +68,17 @@ const NO_FORCE: f64 = 1e-12;
 /// Smallest relative noise that is believed: quantisation and calibration are never better.
 pub(crate) const FLOOR: f64 = 1e-5;
 
+/// The set with its own variances, or where it has none with those of [`with_variances`]; and where these came from, nothing for its own.
+///
+/// # Errors
+/// Those of [`with_variances`].
+pub fn known(frfs: &FrfSet) -> Result<(FrfSet, Vec<NoiseSource>), SpectraError> {
+    match frfs.variance(0) {
+        Some(_) => Ok((frfs.clone(), Vec::new())),
+        None => with_variances(frfs),
+    }
+}
+
 /// The set with variances by line, estimated on the accelerance and smoothed over the lines, and where
 /// each FRF's came from.
 ///

@@ -1,4 +1,4 @@
-use jointscope_frf::noise::{NoiseSource, with_variances};
+use jointscope_frf::noise::{NoiseSource, known};
 use jointscope_spectra::{FrfForm, FrfPair, FrfSet, SpectralLines};
 use num_complex::Complex64;
 
@@ -84,10 +84,7 @@ impl ModalAnalysis {
     /// # Errors
     /// See [`ModesError`].
     pub fn of(frfs: &FrfSet, options: &ModesOptions) -> Result<Self, ModesError> {
-        let (frfs, noise) = match frfs.variance(0) {
-            Some(_) => (frfs.clone(), Vec::new()),
-            None => with_variances(frfs)?,
-        };
+        let (frfs, noise) = known(frfs)?;
         let (observed, measured) = in_use(&frfs, options)?;
         let orders = orders(&observed, options)?;
         let spacing =

@@ -1,7 +1,7 @@
 //! One set of FRFs of levels that are alike.
 
 use super::level::SteppedLevel;
-use jointscope_frf::noise::with_variances;
+use jointscope_frf::noise::known;
 use jointscope_spectra::{FrfPair, FrfSet, SpectralLines};
 use num_complex::Complex64;
 
@@ -58,10 +58,7 @@ pub fn pooled(levels: &[SteppedLevel]) -> Option<FrfSet> {
 
 /// A set with variances, its own where it carries them.
 pub(crate) fn noisy(frfs: &FrfSet) -> FrfSet {
-    match frfs.variance(0) {
-        Some(_) => frfs.clone(),
-        None => with_variances(frfs).map_or_else(|_| frfs.clone(), |(with, _)| with),
-    }
+    known(frfs).map_or_else(|_| frfs.clone(), |(with, _)| with)
 }
 
 #[cfg(test)]
