@@ -83,33 +83,28 @@ impl Pairing {
     /// This pairing with a mode that has no partner in the place of the next one that has, above or below: where a model is far off, its mode may be taken for another's
     /// neighbour, and no fit leads from there.
     pub fn others(&self, recorded: &RecordedModes, modelled: &ModelledModes) -> Vec<Self> {
-        let mut others = Vec::new();
-        let swapped = |at: usize, pair: (usize, usize), unseen: f64| {
-            let mut other = Pairing { unseen, ..self.clone() };
-            other.pairs[at] = pair;
+        let unseen = |m: usize| visible(recorded, &modelled.modes[m]).min(UNSEEN);
+        // The pairs on either side of a mode that has none of its own.
+        let beside = |mode: usize, own: fn(&(usize, usize)) -> usize| {
+            let above = self.pairs.partition_point(|pair| own(pair) < mode);
+            let is_paired = self.pairs.get(above).is_some_and(|pair| own(pair) == mode);
+            let places = above.saturating_sub(1)..(above + 1).min(self.pairs.len());
+            places.filter(move |_| !is_paired)
+        };
+        let swapped = |at: usize, pair: (usize, usize)| {
+            let mut other = self.clone();
+            let had = std::mem::replace(&mut other.pairs[at], pair);
+            if had.1 != pair.1 {
+                other.unseen = self.unseen + unseen(pair.1) - unseen(had.1);
+            }
             other
         };
-        let unseen = |m: usize| visible(recorded, &modelled.modes[m]).min(UNSEEN);
-        for r in (0..recorded.modes.len()).filter(|&r| recorded.modes[r].resolved) {
-            if self.pairs.iter().all(|(other, _)| *other != r) {
-                let above = self.pairs.partition_point(|(other, _)| *other < r);
-                let next = [above.checked_sub(1), (above < self.pairs.len()).then_some(above)];
-                others.extend(
-                    next.into_iter().flatten().map(|at| swapped(at, (r, self.pairs[at].1), self.unseen)),
-                );
-            }
-        }
-        for m in (0..modelled.modes.len()).filter(|&m| alone(recorded, &modelled.modes[m]) > 0.0) {
-            if self.pairs.iter().all(|(_, other)| *other != m) {
-                let above = self.pairs.partition_point(|(_, other)| *other < m);
-                let next = [above.checked_sub(1), (above < self.pairs.len()).then_some(above)];
-                others.extend(next.into_iter().flatten().map(|at| {
-                    let (r, had) = self.pairs[at];
-                    swapped(at, (r, m), self.unseen + unseen(m) - unseen(had))
-                }));
-            }
-        }
-        others
+        let resolved = (0..recorded.modes.len()).filter(|&r| recorded.modes[r].resolved);
+        let seen = (0..modelled.modes.len()).filter(|&m| alone(recorded, &modelled.modes[m]) > 0.0);
+        let of_recorded = resolved.flat_map(|r| beside(r, |pair| pair.0).map(move |at| (at, r)));
+        let of_modelled = seen.flat_map(|m| beside(m, |pair| pair.1).map(move |at| (at, m)));
+        let of_recorded = of_recorded.map(|(at, r)| swapped(at, (r, self.pairs[at].1)));
+        of_recorded.chain(of_modelled.map(|(at, m)| swapped(at, (self.pairs[at].0, m)))).collect()
     }
 
     /// What modes without a partner add to the logarithm of the evidence, nats: recorded ones as modes of anything, those of the model by half the χ² that the

@@ -21,6 +21,16 @@ fn each_with_its_own() -> Vec<(usize, usize)> {
     (0..6).map(|k| (k, k)).collect()
 }
 
+/// A mode more between the third and the fourth, of a shape of its own.
+fn with_a_spurious_mode(recorded: &RecordedModes) -> RecordedModes {
+    let mut with = recorded.clone();
+    let mut spurious = with.modes[2].clone();
+    spurious.pole.omega = 0.5 * (with.modes[2].pole.omega + with.modes[3].pole.omega);
+    spurious.residues = vec![Complex64::new(0.0, 0.3), Complex64::new(0.4, 0.0), Complex64::new(0.0, -0.5)];
+    with.modes.insert(3, spurious);
+    with
+}
+
 #[test]
 fn modes_of_the_model_that_was_recorded_pair_one_by_one() {
     let pairing = Pairing::of(&SIX.0, &SIX.1);
@@ -45,11 +55,7 @@ fn a_mode_that_is_off_in_frequency_pairs_by_its_shape() {
 #[test]
 fn a_spurious_mode_of_the_recording_is_left_alone() {
     let (recorded, model) = &*SIX;
-    let mut with = recorded.clone();
-    let mut spurious = with.modes[2].clone();
-    spurious.pole.omega = 0.5 * (with.modes[2].pole.omega + with.modes[3].pole.omega);
-    spurious.residues = vec![Complex64::new(0.0, 0.3), Complex64::new(0.4, 0.0), Complex64::new(0.0, -0.5)];
-    with.modes.insert(3, spurious);
+    let with = with_a_spurious_mode(recorded);
     let pairing = Pairing::of(&with, model);
     assert_eq!(pairing.pairs, [(0, 0), (1, 1), (2, 2), (4, 3), (5, 4), (6, 5)]);
     // ln of: any frequency in the band, any damping ratio of four decades, three complex residues of their own size.
@@ -62,11 +68,7 @@ fn a_spurious_mode_of_the_recording_is_left_alone() {
 fn a_mode_without_a_partner_may_take_that_of_either_neighbour() {
     let (recorded, model) = &*SIX;
     // Of a recorded mode that has none …
-    let mut with = recorded.clone();
-    let mut spurious = with.modes[2].clone();
-    spurious.pole.omega = 0.5 * (with.modes[2].pole.omega + with.modes[3].pole.omega);
-    spurious.residues = vec![Complex64::new(0.0, 0.3), Complex64::new(0.4, 0.0), Complex64::new(0.0, -0.5)];
-    with.modes.insert(3, spurious);
+    let with = with_a_spurious_mode(recorded);
     let pairing = Pairing::of(&with, model);
     let others: Vec<_> = pairing.others(&with, model).into_iter().map(|other| other.pairs).collect();
     let own = [(0, 0), (1, 1), (2, 2), (4, 3), (5, 4), (6, 5)];
