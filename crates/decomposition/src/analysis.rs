@@ -7,8 +7,8 @@ use crate::{
 };
 use jointscope_averaging::Band;
 use jointscope_fixture::{Fixture, Joint, JointLaw, Nature};
+use jointscope_frf::KnownNoise;
 use jointscope_frf::noise::NoiseSource;
-use jointscope_frf::{KnownNoise, merging};
 use jointscope_linalg::{ComplexMatrix2, Matrix2, RealMatrix2};
 use jointscope_lumped::{Model, Station};
 use jointscope_spectra::FrfSet;
@@ -178,11 +178,6 @@ impl Analysis {
     /// Whether K and C by line, which know of no mass of the joint, hold one that the joint from all FRFs has: the two are not to be compared.
     pub fn lines_hold_mass(&self) -> bool {
         self.joint_fit.as_ref().is_ok_and(|fit| fit.mass.is_some())
-    }
-
-    /// That lines were merged, in a sentence.
-    pub fn merging(&self) -> Option<String> {
-        merging(self.merged_from, self.frfs.lines().len())
     }
 
     /// The fit that the interfaces are taken from, and whether it explains the FRFs: the joint from all FRFs, or that from the FRFs across where

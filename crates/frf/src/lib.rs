@@ -30,6 +30,6 @@ mod two_accelerometers;
 
 pub use breaks::breaks;
 pub use drift::{Drift, resonant_lines};
-pub use merged::{KnownNoise, merging};
+pub use merged::KnownNoise;
 pub use rigid_motion::{BlockChannel, BlockFrf, BlockLayout, MaskReason, RigidMotionError, fit_rigid_motion};
 pub use two_accelerometers::{from_four_frfs, per_moment_from_two, rotation_from_two};

@@ -12,7 +12,7 @@
 //! Blocks are halved until the last three coefficients of every FRF are noise: the coefficients of a function with poles fall geometrically, so what the first
 //! one left out holds is below noise too. Blocks too short for that, at resonances, keep their lines.
 
-use crate::noise::{FLOOR, NoiseSource, from_coherence, from_scatter, of_lines, with_variances};
+use crate::noise::{self, FLOOR, NoiseSource, from_coherence, from_scatter, of_lines};
 use jointscope_linalg::generalized_symmetric_eigen;
 use jointscope_spectra::{FrfSet, SpectraError, SpectralLines};
 use num_complex::Complex64;
@@ -48,7 +48,7 @@ pub struct KnownNoise {
 }
 
 impl KnownNoise {
-    /// The set with its own variances or those of [`with_variances`]; of more than 6,400 lines, neighbours over which all FRFs are smooth are merged, none within the
+    /// The set with its noise [`known`](noise::known); of more than 6,400 lines, neighbours over which all FRFs are smooth are merged, none within the
     /// `band` (Hz) of interest with one outside.
     ///
     /// # Errors
@@ -59,21 +59,9 @@ impl KnownNoise {
             let (frfs, noise) = merged(frfs, band)?;
             return Ok(KnownNoise { frfs, noise, merged_from: Some(recorded) });
         }
-        let (frfs, noise) = match frfs.variance(0) {
-            Some(_) => (frfs.clone(), Vec::new()),
-            None => with_variances(frfs)?,
-        };
+        let (frfs, noise) = noise::known(frfs)?;
         Ok(KnownNoise { frfs, noise, merged_from: None })
     }
-}
-
-/// That `recorded` lines were merged into `left`, in a sentence; nothing where none was.
-pub fn merging(recorded: Option<usize>, left: usize) -> Option<String> {
-    recorded.filter(|recorded| left < *recorded).map(|recorded| {
-        format!(
-            "of {recorded} lines, neighbours over which every FRF is smooth to its noise are merged: {left} are left, which tell the same; results by line are theirs"
-        )
-    })
 }
 
 /// What is known of an FRF's noise.
@@ -333,6 +321,7 @@ impl Basis {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::noise::tests::Normals;
     use jointscope_spectra::{FrfForm, FrfPair};
 
     const COUNT: usize = 20_000;
@@ -347,20 +336,11 @@ mod tests {
         0.3 + mode(hz, POLES[0]) - 0.7 * mode(hz, POLES[1])
     }
 
-    fn normal(state: &mut u64) -> Complex64 {
-        let mut uniform = || {
-            *state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-            ((*state >> 11) as f64 + 0.5) / (1u64 << 53) as f64
-        };
-        let radius = (-uniform().ln()).sqrt();
-        Complex64::from_polar(radius, std::f64::consts::TAU * uniform())
-    }
-
     /// One FRF of `frf` with noise of this standard deviation, 50 to 1050 Hz.
     fn recorded(frf: impl Fn(f64) -> Complex64, noise: f64, seed: u64) -> FrfSet {
         let lines = SpectralLines::even(50.0, 1000.0 / COUNT as f64, COUNT).unwrap();
-        let mut state = seed;
-        let values = lines.hz().iter().map(|hz| frf(*hz) + noise * normal(&mut state)).collect();
+        let mut normals = Normals(seed);
+        let values = lines.hz().iter().map(|hz| frf(*hz) + noise * normals.complex(1.0)).collect();
         FrfSet::new(lines, FrfForm::Accelerance, vec![FrfPair::transverse("2", "1")], values).unwrap()
     }
 

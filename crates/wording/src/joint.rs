@@ -9,6 +9,15 @@ const FAR: f64 = 2.0;
 /// Probability from which a law is said to hold, rather than to be the most probable one.
 const CERTAIN: f64 = 0.95;
 
+/// That `recorded` lines were merged into `left`; nothing where none was.
+pub fn merging(recorded: usize, left: usize) -> Option<String> {
+    (left < recorded).then(|| {
+        format!(
+            "of {recorded} lines, neighbours over which every FRF is smooth to its noise are merged: {left} are left, which tell the same; results by line are theirs"
+        )
+    })
+}
+
 /// A law without its mass.
 fn over_frequency(law: &LawFit) -> String {
     match (law.kind, law.shape) {
@@ -55,7 +64,8 @@ impl Remarks for JointsFit {
         let Some(first) = self.joints.first() else { return Vec::new() };
         let loops: Vec<String> =
             self.joints.iter().filter(|joint| joint.is_in_a_loop).map(|joint| joint.name.clone()).collect();
-        let mut all: Vec<String> = self.merging.iter().cloned().collect();
+        let mut all: Vec<String> =
+            self.merged.and_then(|(recorded, left)| merging(recorded, left)).into_iter().collect();
         if !loops.is_empty() {
             let (which, their, them) = match loops.len() {
                 1 => ("joint", "its", "it"),

@@ -34,6 +34,7 @@ mod places;
 mod summary;
 
 pub use effects::effect_name;
+pub use joint::merging;
 pub use model_error::{ErrorInWords, error_in_words};
 
 /// Something that can be said in one plain sentence, or in a few words.

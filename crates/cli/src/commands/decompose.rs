@@ -11,6 +11,7 @@ use jointscope::estimation::ResponseWindow;
 use jointscope::pipeline::MeasuredFrfs;
 use jointscope::report::format::quantity;
 use jointscope::report::{PageContext, Report, decomposition_report, joints_report};
+use jointscope::wording::merging;
 use jointscope::{
     Analysis, AnalysisOptions, Band, DecompositionError, Fixture, Relation, Remarks, joints_file,
     stiffness_file,
@@ -130,7 +131,8 @@ fn found(arguments: &DecomposeArguments, command: String, joints: Joints) -> Res
             error => arguments.recording.refusal(error),
         })?,
     };
-    let said = analysis.merging().into_iter().chain(window(&analysis)).chain(lost_tolerances(&analysis));
+    let merged = analysis.merged_from.and_then(|recorded| merging(recorded, analysis.frfs.lines().len()));
+    let said = merged.into_iter().chain(window(&analysis)).chain(lost_tolerances(&analysis));
     let notes = measured.notes.into_iter().chain(said);
     let context = origin::context_of(command, inputs(arguments), notes.collect(), measured.hammer_test)?;
     let report = decomposition_report(&analysis, &as_recorded, &context);

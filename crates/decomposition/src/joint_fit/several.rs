@@ -23,7 +23,7 @@ use super::{DOUBTFUL, JointFitOptions, START_LOSS, coordinates, that_matter, uni
 use crate::JointEnds;
 use crate::sides::{check_instruments, with_effects_of};
 use jointscope_fixture::{BodyKind, Fixture, Joint, Place};
-use jointscope_frf::{KnownNoise, RigidMotionError, merging};
+use jointscope_frf::{KnownNoise, RigidMotionError};
 use jointscope_linalg::RealMatrix2;
 use jointscope_spectra::FrfSet;
 
@@ -98,7 +98,7 @@ pub fn fit_joints(
     let joints: Vec<FoundJoint> = named.collect();
     let name = |(joint, element): &(usize, &str)| format!("{}/{element}", joints[*joint].name);
     Ok(JointsFit {
-        merging: merging(known.merged_from, known.frfs.lines().len()),
+        merged: known.merged_from.map(|recorded| (recorded, known.frfs.lines().len())),
         elements: found.elements.iter().map(name).collect(),
         joints,
         covariance: found.covariance,

@@ -15,8 +15,8 @@ pub struct JointsFit {
     pub elements: Vec<String>,
     /// Posterior covariance of the numbers of all joints, SI, the fixture's quantities integrated out; with what the model's error and the laws compared add.
     pub covariance: Vec<Vec<f64>>,
-    /// That lines of the recording were merged, in a sentence.
-    pub merging: Option<String>,
+    /// Numbers of lines recorded and left, where they were merged.
+    pub merged: Option<(usize, usize)>,
 }
 
 /// One of several joints.
