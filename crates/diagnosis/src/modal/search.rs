@@ -43,6 +43,11 @@ fn farther(hypothesis: &Hypothesis, candidate: &Candidate) -> Option<Hypothesis>
     (spanned && released).then_some(moved)
 }
 
+/// The most probable of several fits.
+fn highest(fits: impl Iterator<Item = Named>) -> Option<Named> {
+    fits.max_by(|a, b| a.fit.ln.total_cmp(&b.fit.ln))
+}
+
 /// The best fit of each name that was added last, the most probable first.
 fn best_of_each(mut fits: Vec<Named>) -> Vec<Named> {
     fits.sort_by(|a, b| b.fit.ln.total_cmp(&a.fit.ln));
@@ -125,14 +130,16 @@ impl Searcher<'_> {
                 let added = (more.names.len() - fewer.names.len()) as f64;
                 more.fit.ln - fewer.fit.ln > added * self.needed()
             };
-            let parts = (0..first.names.len()).filter(|_| count > 1 && gains(first, &best));
-            let parts = parts.filter_map(|index| self.without(first, index));
-            let fewer = parts.max_by(|a, b| a.fit.ln.total_cmp(&b.fit.ln));
-            let fewer = fewer.filter(|fewer| {
-                fewer.fit.ln > best.fit.ln && gains(fewer, &best) && self.is_told(fewer, &none)
-            });
-            let led_out = fewer.is_some();
-            best = fewer.unwrap_or(best);
+            let mut led_out = false;
+            if count > 1 && gains(first, &best) {
+                let parts = (0..first.names.len()).filter_map(|index| self.without(first, index));
+                let is_better = |fewer: &Named| {
+                    fewer.fit.ln > best.fit.ln && gains(fewer, &best) && self.is_told(fewer, &none)
+                };
+                if let Some(fewer) = highest(parts).filter(is_better) {
+                    (best, led_out) = (fewer, true);
+                }
+            }
             if gains(first, &best) {
                 best = first.clone();
             } else if count > 1 && !led_out {
@@ -167,10 +174,7 @@ impl Searcher<'_> {
     /// The fixture by itself from where the best effects left its quantities too.
     fn at_its_best(&self, none: Named, singles: &[Named]) -> Named {
         let alone = singles.iter().take(self.settings.bases.0).filter_map(|single| self.without(single, 0));
-        alone
-            .chain([none.clone()])
-            .reduce(|best, named| if named.fit.ln > best.fit.ln { named } else { best })
-            .unwrap_or(none)
+        highest(alone).filter(|alone| alone.fit.ln > none.fit.ln).unwrap_or(none)
     }
 
     /// The same without its effect `index`, from where it stands and with errors as large: what gains much at a size of nothing has only led out of a false minimum.
