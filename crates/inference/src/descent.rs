@@ -140,7 +140,7 @@ pub struct Settings {
     pub convergence: Convergence,
     /// Derivatives serve for as long as a step gains this share of their first one's gain; `None` takes them anew for every step.
     pub reuse: Option<f64>,
-    /// Whether derivatives that a descent is given were taken at its start.
+    /// Whether derivatives that a descent is given pass for those of its start: taken there, or so near that a step by them is as good.
     pub fresh: bool,
     /// Whether a fit may be called converged by derivatives that were taken elsewhere.
     pub trust_old: bool,
