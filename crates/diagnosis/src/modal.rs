@@ -26,6 +26,9 @@ mod search;
 mod searcher;
 mod sizes;
 mod starts;
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests;
 
 pub(crate) use features::recorded;
 pub(crate) use judgement::{ModalJudgement, explains};

@@ -306,7 +306,11 @@ impl<'a> Problem<'a> {
         let derivatives = descent.derivatives(&point, Precision::Rough)?;
         let (linear, evidence) =
             self.evidence(&point, priors, &derivatives, (&standing.comparison, Some(sizes)))?;
-        let promised = descent.promised(&point, &descent.equations(&point, &derivatives, &()));
+        // Of a fit at errors of nothing that finds they are not, the parameters are still to move, however still they stand there.
+        let factor =
+            Cholesky::of(standing.comparison.count(), &standing.comparison.covariance(&evidence.sizes))?;
+        let there = Descent { factor, ..descent };
+        let promised = there.promised(&point, &there.equations(&point, &derivatives, &()));
         Some(Rest { point, derivatives, linear, evidence, promised })
     }
 
