@@ -1,9 +1,10 @@
 //! Measured damping ratios into a fixture: measured modes matched with the modes of the assembly as it stands.
 
-use jointscope_fixture::{Damping, Fixture, FixtureError, Quantity, RatiosOf, Spread};
+use jointscope_fixture::{Damping, EffectKind, Fixture, FixtureError, Quantity, RatiosOf, Spread};
 use jointscope_lumped::{Assembly, LumpedError, Station};
 use jointscope_modes::{ExpectedMode, Matches, ModalAnalysis, match_modes};
 use jointscope_spectra::Channel;
+use std::collections::BTreeSet;
 
 /// A fixture with measured damping ratios.
 #[derive(Debug, Clone)]
@@ -113,7 +114,8 @@ pub fn measured_damping(
             None => believed(e),
         })
         .collect();
-    let remarks = remarks(analysis, &matches, &elastic_hz, last);
+    let mut remarks = remarks(analysis, &matches, &elastic_hz, last);
+    remarks.extend(without_effects(fixture));
     let fixture = fixture.clone().with_damping(as_it_stands(ratios))?;
     Ok(MeasuredDamping { fixture, matches, elastic: elastic_hz, remarks })
 }
@@ -150,6 +152,18 @@ fn remarks(analysis: &ModalAnalysis, matches: &Matches, elastic: &[f64], last: u
         all.push("with so few FRFs the shapes say little: modes are matched by frequency".to_owned());
     }
     all
+}
+
+/// That the ratios are of the modes of bodies, joints and supports, and so are the frequencies they are matched by.
+fn without_effects(fixture: &Fixture) -> Option<String> {
+    let structural = fixture.effects().map(|effect| effect.kind).filter(|kind| !kind.is_instrumental());
+    let names: BTreeSet<&str> = structural.map(EffectKind::name).collect();
+    (!names.is_empty()).then(|| {
+        format!(
+            "the fixture's frequencies here are of its bodies, joints and supports, without the effects it states ({}): part of the differences is theirs",
+            names.into_iter().collect::<Vec<_>>().join(", ")
+        )
+    })
 }
 
 fn listed(hz: &[f64]) -> String {

@@ -61,6 +61,24 @@ fn a_band_that_holds_the_second_mode_alone_leaves_the_first_ratio_as_it_was() {
 }
 
 #[test]
+fn frequencies_that_leave_out_a_fixtures_effects_say_so() {
+    let soft = r#""damping": { "modal_ratios": [0.003, 0.0045] },
+        "physics": [ { "kind": "interface_compliance", "place": "2", "dof": "rotation", "stiffness": 20000 } ] }"#;
+    let plain = Fixture::from_json(BLOCKS).unwrap();
+    let yielding = BLOCKS.replace(r#""damping": { "modal_ratios": [0.003, 0.0045] } }"#, soft);
+    let yielding = Fixture::from_json(&yielding).unwrap();
+    let pairs = [("4", "1"), ("3", "1"), ("4", "2"), ("3", "2")].map(|(o, i)| FrfPair::transverse(o, i));
+    let lines = SpectralLines::even(2.5, 2.5, 600).unwrap();
+    let frfs = synthesize(&yielding, &pairs, &lines, Instrument::Perfect).unwrap();
+    let analysis = ModalAnalysis::of(&frfs, &ModesOptions::default()).unwrap();
+    let says = |fixture: &Fixture| {
+        let remarks = measured_damping(fixture, &analysis).unwrap().remarks;
+        remarks.iter().any(|remark| remark.contains("effects it states (interface_compliance)"))
+    };
+    assert!(says(&yielding) && !says(&plain));
+}
+
+#[test]
 fn modes_of_the_cases_that_hide_nothing_have_their_true_ratios() {
     let Ok(cases) = std::fs::read_dir(shared("concealed/open")) else {
         eprintln!("skipped: the simulated cases are not here");
