@@ -233,8 +233,12 @@ impl<'a> Problem<'a> {
             let mut coordinates = at.coordinates.clone();
             coordinates[index] += DIFFERENCE;
             let moved = self.uncoupled(&coordinates, Some(&at.uncoupled))?;
-            let there = moved.coupled(self.test.setup.recorded, &laws, None)?;
-            Some(there.iter().zip(&at.predicted).map(|(t, h)| (t - h) / DIFFERENCE).collect())
+            let mut column = moved.coupled(self.test.setup.recorded, &laws, None)?;
+            column
+                .iter_mut()
+                .zip(&at.predicted)
+                .for_each(|(there, here)| *there = (*there - here) / DIFFERENCE);
+            Some(column)
         };
         (self.of_laws()..at.coordinates.len()).map(column).collect()
     }
