@@ -78,7 +78,7 @@ impl Lines for Complex64 {
     }
 }
 
-/// A complex number on each of [`WIDTH`] lines.
+/// A complex number on each of four lines.
 #[derive(Debug, Clone, Copy)]
 pub struct Lanes {
     re: [f64; WIDTH],
