@@ -107,7 +107,7 @@ impl<T: Field> Matrix2<T> {
     }
 
     /// The inverse without a check: of a singular matrix, non-finite numbers.
-    #[inline]
+    #[inline(always)] // of several lines, with the instructions that its caller is compiled for
     pub fn inverse_unchecked(self) -> Self {
         let [[a, b], [c, d]] = self.0;
         let factor = (a * d - b * c).reciprocal();

@@ -7,14 +7,18 @@ use num_complex::Complex64;
 use std::ops::{Add, Mul, Neg, Sub};
 
 /// Lines that are computed together.
-pub(crate) const WIDTH: usize = 4;
+pub const WIDTH: usize = 4;
 
 /// A complex number on one spectral line, or one on each of several.
-pub(crate) trait Lines: Field + Mul<f64, Output = Self> {
+pub trait Lines: Field + Mul<f64, Output = Self> {
     /// How many lines.
     const COUNT: usize;
     /// A real number on each line.
     type Sizes: Copy;
+    /// These values, the last of which stands on the lines that are left over. There must be one at least.
+    fn of(values: &[Complex64]) -> Self;
+    /// Writes the first lines over `to`.
+    fn write(&self, to: &mut [Complex64]);
     /// The same number on all lines.
     fn constant(value: Complex64) -> Self;
     /// The number on line `index`.
@@ -32,6 +36,16 @@ pub(crate) trait Lines: Field + Mul<f64, Output = Self> {
 impl Lines for Complex64 {
     const COUNT: usize = 1;
     type Sizes = f64;
+
+    #[inline(always)]
+    fn of(values: &[Complex64]) -> Self {
+        values[0]
+    }
+
+    #[inline(always)]
+    fn write(&self, to: &mut [Complex64]) {
+        to[0] = *self;
+    }
 
     #[inline(always)]
     fn constant(value: Complex64) -> Self {
@@ -64,24 +78,14 @@ impl Lines for Complex64 {
     }
 }
 
-/// A complex number on each of [`WIDTH`] lines.
+/// A complex number on each of four lines.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Lanes {
+pub struct Lanes {
     re: [f64; WIDTH],
     im: [f64; WIDTH],
 }
 
 impl Lanes {
-    /// These values, the last of which stands on the lines that are left over. There must be one at least.
-    #[inline(always)]
-    pub fn of(values: &[Complex64]) -> Self {
-        let value = |lane: usize| values[lane.min(values.len() - 1)];
-        Lanes {
-            re: std::array::from_fn(|lane| value(lane).re),
-            im: std::array::from_fn(|lane| value(lane).im),
-        }
-    }
-
     /// Whether all numbers on all lines are finite.
     #[inline(always)]
     pub fn all_finite(values: &[Lanes]) -> bool {
@@ -95,14 +99,6 @@ impl Lanes {
         nothing.iter().sum::<f64>() == 0.0
     }
 
-    /// Writes the first lines over `to`.
-    #[inline(always)]
-    pub fn write(&self, to: &mut [Complex64]) {
-        for ((to, re), im) in to.iter_mut().zip(self.re).zip(self.im) {
-            *to = Complex64::new(re, im);
-        }
-    }
-
     /// Writes all lines over the first of `re` and `im`.
     #[inline(always)]
     pub fn write_parts(&self, re: &mut [f64], im: &mut [f64]) {
@@ -114,6 +110,22 @@ impl Lanes {
 impl Lines for Lanes {
     const COUNT: usize = WIDTH;
     type Sizes = [f64; WIDTH];
+
+    #[inline(always)]
+    fn of(values: &[Complex64]) -> Self {
+        let all: [Complex64; WIDTH] = match values.first_chunk() {
+            Some(all) => *all,
+            None => std::array::from_fn(|lane| values[lane.min(values.len() - 1)]),
+        };
+        Lanes { re: all.map(|value| value.re), im: all.map(|value| value.im) }
+    }
+
+    #[inline(always)]
+    fn write(&self, to: &mut [Complex64]) {
+        for ((to, re), im) in to.iter_mut().zip(self.re).zip(self.im) {
+            *to = Complex64::new(re, im);
+        }
+    }
 
     #[inline(always)]
     fn constant(value: Complex64) -> Self {

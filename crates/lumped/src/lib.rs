@@ -58,6 +58,7 @@ pub use assembly::{Assembly, nominal_stiffness};
 pub use chain::{MeasuringChain, Reading, channel_station, window_decay};
 pub use effects::SignalFilter;
 pub use joint_element::JointElement;
+pub use lanes::{Lanes, Lines};
 pub use model::Model;
 pub use receptances::Receptances;
 pub use state_space::StateSpace;

@@ -28,7 +28,7 @@ pub struct ProgramRow {
     pub input: Elements,
     /// The lumped model.
     pub sim: Extracted,
-    /// The finite-element twin with two modes, as in the paper.
+    /// The twin of [`Example::solid`] with two modes, as in the paper.
     pub fem_two: Option<Extracted>,
     /// The finite-element twin with all modes and what lies beyond.
     pub fem_all: Option<Extracted>,
@@ -45,7 +45,7 @@ fn paper_pairs() -> [FrfPair; 4] {
 }
 
 impl ProgramRow {
-    /// Synthesises, decomposes and averages; with the finite-element twin where the stiffness is the example's own and `mesh` is given.
+    /// Synthesises, decomposes and averages; with the finite-element twin where `mesh` is given.
     ///
     /// # Errors
     /// See [`TablesError`].
@@ -63,7 +63,7 @@ impl ProgramRow {
         };
         let sim = of(&synthesize(&example.fixture, &pairs, &lines, Instrument::Perfect)?)?;
         let (mut fem_two, mut fem_all) = (None, None);
-        if let Some(mesh) = mesh.filter(|_| example.own_stiffness) {
+        if let Some(mesh) = mesh {
             let twin = Twin::of(&example.fixture, mesh, ModeRange { at_least: 4, up_to: 2000.0 }, |_| {})?;
             fem_two = Some(of(&twin.frfs(&pairs, &lines, Superposition::First(2))?)?);
             fem_all = Some(of(&twin.frfs(&pairs, &lines, Superposition::Complete)?)?);

@@ -1,7 +1,6 @@
 use crate::TablesError;
 use jointscope_averaging::Band;
 use jointscope_fixture::Fixture;
-use serde_json::{Value, json};
 
 /// An example of the paper as a fixture whose dimensions were inferred from the paper's own cells.
 #[derive(Debug, Clone)]
@@ -14,9 +13,28 @@ pub struct Example {
     pub band: Band,
     /// What was inferred, and from what.
     pub inference: Inference,
-    /// Whether the stiffness of the fixture is the example's own. That of a welded or glued example is its integral neighbour's: the paper's SIM
+    /// Of a welded or glued example, where the layers come from that its solid has at the ends of its strip.
+    pub layer: Option<&'static str>,
+}
+
+impl Example {
+    /// Whether the fixture's joint has the example's own stiffness. That of a welded or glued example is its integral neighbour's: the paper's SIM
     /// puts the measured damping ratios on it.
-    pub own_stiffness: bool,
+    pub fn own_stiffness(&self) -> bool {
+        self.layer.is_none()
+    }
+
+    /// The solid that the finite-element cells are of.
+    pub fn solid(&self) -> String {
+        let geometry = self.fixture.geometry();
+        let layer = geometry.and_then(|g| g.joints[0].interfaces[0].as_ref().map(|layer| (g, layer)));
+        let (Some((geometry, layer)), Some(from)) = (layer, self.layer) else {
+            return self.layer.unwrap_or("its own").to_owned();
+        };
+        let (name, material) = &geometry.materials[layer.material];
+        let (thickness, modulus) = (1e3 * layer.thickness.value, 1e-9 * material.youngs_modulus.value);
+        format!("{from}: {thickness} mm of {name} at either end of the strip, {modulus:.3} GPa")
+    }
 }
 
 /// How much of a fixture was inferred, and from how many printed cells: the more of the first, the less the second are a test.
@@ -59,45 +77,35 @@ const SYMMETRIC: Inference = Inference {
 /// # Errors
 /// A shipped fixture that is none: the crate's own tests exclude it.
 pub fn examples() -> Result<Vec<Example>, TablesError> {
-    let d0 = (include_str!("../../../fixtures/paper/D0.json"), Band { from: 474.0, to: 843.0 }, D0);
-    let e0 = (include_str!("../../../fixtures/paper/E0.json"), Band { from: 718.7, to: 1000.0 }, E0);
-    let f01 = (include_str!("../../../fixtures/paper/F01.json"), Band { from: 757.3, to: 1000.0 }, SYMMETRIC);
-    let f02 = (include_str!("../../../fixtures/paper/F02.json"), Band { from: 263.5, to: 518.7 }, SYMMETRIC);
+    macro_rules! file {
+        ($name:literal) => {
+            ($name, include_str!(concat!("../../../fixtures/paper/", $name, ".json")))
+        };
+    }
+    let d0 = Band { from: 474.0, to: 843.0 };
+    let e0 = Band { from: 718.7, to: 1000.0 };
+    let f01 = Band { from: 757.3, to: 1000.0 };
+    let f02 = Band { from: 263.5, to: 518.7 };
     // As the paper has it, the SIM of a welded or glued example is its integral neighbour's stiffness with the damping ratios measured on it.
-    let on = |(text, band, _): (&'static str, Band, Inference)| (text, band, RATIOS);
+    let weld = Some("E0's, K11 in the ratio of their FEM cells");
+    let glue = Some("F01's, K11 in the ratio of their EXP cells");
+    let none = Some("F02's, without a layer: by the EXP cells K11 is the same");
     let all = [
-        ("D0", d0, None),
-        ("E0", e0, None),
-        ("E1", on(e0), Some([0.00369516, 0.0017339])),
-        ("E2", e0, Some([0.007676214, 0.0009004064])),
-        ("E3", e0, Some([0.001043338, 0.00068259])),
-        ("E4", e0, Some([0.005994163, 0.001198452])),
-        ("E5", on(e0), Some([0.00653603, 0.00048766])),
-        ("F01", f01, None),
-        ("F1", on(f01), Some([0.02843571, 0.02879258])),
-        ("F02", f02, None),
-        ("F2", on(f02), Some([0.00133698, 0.01764739])),
+        (file!("D0"), d0, D0, None),
+        (file!("E0"), e0, E0, None),
+        (file!("E1"), e0, RATIOS, weld),
+        (file!("E2"), e0, E0, weld),
+        (file!("E3"), e0, E0, weld),
+        (file!("E4"), e0, E0, weld),
+        (file!("E5"), e0, RATIOS, weld),
+        (file!("F01"), f01, SYMMETRIC, None),
+        (file!("F1"), f01, RATIOS, glue),
+        (file!("F02"), f02, SYMMETRIC, None),
+        (file!("F2"), f02, RATIOS, none),
     ];
-    let example = |(name, (text, band, inference), ratios): (
-        &'static str,
-        (&str, Band, Inference),
-        Option<[f64; 2]>,
-    )| {
-        Ok(Example {
-            name,
-            fixture: fixture(text, ratios)?,
-            band,
-            inference,
-            own_stiffness: ratios.is_none(),
-        })
+    let example = |((name, text), band, inference, layer): ((&'static str, &str), _, _, Option<_>)| {
+        let fixture = Fixture::from_json(text)?;
+        Ok(Example { name, fixture, band, inference, layer })
     };
     all.into_iter().map(example).collect()
-}
-
-fn fixture(text: &str, ratios: Option<[f64; 2]>) -> Result<Fixture, TablesError> {
-    let fixture = Fixture::from_json(text)?;
-    let Some(ratios) = ratios else { return Ok(fixture) };
-    let mut value: Value = fixture.to_value();
-    value["damping"] = json!({ "modal_ratios": ratios });
-    Ok(Fixture::from_value(&value)?)
 }

@@ -40,7 +40,7 @@ impl Tables {
     }
 
     pub(crate) fn own(&self, example: &str) -> Option<&ProgramRow> {
-        self.row(example).filter(|row| row.example.own_stiffness)
+        self.row(example).filter(|row| row.example.own_stiffness())
     }
 
     pub(crate) fn measured(&self, example: &str) -> Option<&Measured> {
@@ -88,7 +88,8 @@ impl Tables {
                 entry["program"] = json!({
                     "band": [program.example.band.from, program.example.band.to],
                     "inferred": { "numbers": inference.numbers, "from_cells": inference.cells, "says": inference.says },
-                    "own_stiffness": program.example.own_stiffness,
+                    "own_stiffness": program.example.own_stiffness(),
+                    "solid": program.example.solid(),
                     "stated_stiffness": matrix(&program.stiffness),
                     "damping_in": program.input,
                     "sim": extracted(&program.sim),

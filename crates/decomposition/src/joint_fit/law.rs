@@ -1,6 +1,7 @@
 //! How a joint's dynamic stiffness depends on frequency, in coordinates that a fit can move.
 
-use jointscope_linalg::{ComplexMatrix2, Matrix2, RealMatrix2};
+use jointscope_linalg::{Matrix2, RealMatrix2};
+use jointscope_lumped::Lines;
 use num_complex::Complex64;
 use serde::Serialize;
 use std::f64::consts::FRAC_PI_2;
@@ -86,7 +87,8 @@ impl Form {
     }
 
     /// Adds derivatives by the coordinates to `slots`, from those by the elements (11, 12, 21, 22).
-    fn chain(self, at: &[f64], by: [Complex64; 4], slots: &mut [Complex64]) {
+    #[inline(always)]
+    fn chain<T: Lines>(self, at: &[f64], by: [T; 4], slots: &mut [T]) {
         let [p11, p12, p21, p22] = by;
         match (self, at, slots) {
             (Form::Scalar, _, [a]) => *a = p11,
@@ -250,33 +252,36 @@ impl Placed<'_> {
         self.law.count()
     }
 
-    /// K + losses·D + K₁·ω at s.
-    pub fn stiffness(&self, s: Complex64) -> ComplexMatrix2 {
+    /// K + losses·D + K₁·ω at s, on all of these lines.
+    #[inline(always)]
+    pub fn stiffness<T: Lines>(&self, s: &[Complex64]) -> Matrix2<T> {
         let [k, d, l] = &self.matrices;
-        let losses = self.law.losses(s, self.shape);
-        let relative = s.im / self.law.middle;
-        let at = |i: usize, j: usize| losses * d.at(i, j) + (k.at(i, j) + relative * l.at(i, j));
+        let losses: T = on_lines(s, |s| self.law.losses(s, self.shape));
+        let relative: T = on_lines(s, |s| Complex64::from(s.im / self.law.middle));
+        let at = |i: usize, j: usize| {
+            losses * d.at(i, j) + (T::constant(k.at(i, j).into()) + relative * l.at(i, j))
+        };
         Matrix2::new(at(0, 0), at(0, 1), at(1, 0), at(1, 1))
     }
 
-    /// Losses at s and their derivative by the law's time or exponent: what derivatives need of a line.
-    pub fn factors(&self, s: Complex64) -> [Complex64; 3] {
+    /// Losses at s, their derivative by the law's time or exponent, and the frequency: what derivatives need of lines.
+    #[inline(always)]
+    pub fn factors<T: Lines>(&self, s: &[Complex64]) -> [T; 3] {
         const STEP: f64 = 1e-5;
-        let losses = |shape: f64| self.law.losses(s, shape);
         let by_shape = match self.law.shapes() {
-            0 => Complex64::ZERO,
-            _ => (losses(self.shape + STEP) - losses(self.shape - STEP)) / (2.0 * STEP),
+            0 => T::ZERO,
+            _ => on_lines(s, |s| {
+                let losses = |shape: f64| self.law.losses(s, shape);
+                (losses(self.shape + STEP) - losses(self.shape - STEP)) / (2.0 * STEP)
+            }),
         };
-        [losses(self.shape), by_shape, Complex64::new(s.im / self.law.middle, 0.0)]
+        let losses = on_lines(s, |s| self.law.losses(s, self.shape));
+        [losses, by_shape, on_lines(s, |s| Complex64::from(s.im / self.law.middle))]
     }
 
     /// Writes derivatives by the coordinates over `slots`, from those by the elements (11, 12, 21, 22) of the dynamic stiffness.
-    pub fn chain(
-        &self,
-        by: [Complex64; 4],
-        [losses, by_shape, relative]: [Complex64; 3],
-        slots: &mut [Complex64],
-    ) {
+    #[inline(always)]
+    pub fn chain<T: Lines>(&self, by: [T; 4], [losses, by_shape, relative]: [T; 3], slots: &mut [T]) {
         let u = &self.law.unit;
         let scaled = [by[0] * u.at(0, 0), by[1] * u.at(0, 1), by[2] * u.at(1, 0), by[3] * u.at(1, 1)];
         let [k, d, l, _] = self.law.split(self.at);
@@ -289,7 +294,15 @@ impl Placed<'_> {
         if let Some(own) = rest.first_mut() {
             let d = &self.matrices[1];
             let elements = [d.at(0, 0), d.at(0, 1), d.at(1, 0), d.at(1, 1)];
-            *own = by_shape * by.iter().zip(elements).map(|(p, e)| p * e).sum::<Complex64>();
+            *own = by_shape * by.into_iter().zip(elements).fold(T::ZERO, |sum, (p, e)| sum + p * e);
         }
     }
+}
+
+/// A number on each of these lines.
+#[inline(always)]
+fn on_lines<T: Lines>(s: &[Complex64], value: impl Fn(Complex64) -> Complex64) -> T {
+    let mut all = T::ZERO;
+    s.iter().enumerate().for_each(|(line, s)| all.set_line(line, value(*s)));
+    all
 }

@@ -5,7 +5,7 @@ use super::problem::{Fitted, Problem};
 use crate::Sides;
 use jointscope_fixture::BodyKind;
 use jointscope_inference::{Parameter, Transform, laplace_evidence};
-use jointscope_linalg::RealMatrix2;
+use jointscope_linalg::{ComplexMatrix2, RealMatrix2};
 use num_complex::Complex64;
 
 /// A law as fitted.
@@ -62,7 +62,7 @@ impl LawFit {
 
     /// K(ω) and C(ω) of the dynamic stiffness K + sC on d at s = δ + iω, without the mass.
     pub fn stiffness_and_damping(&self, s: Complex64) -> (RealMatrix2, RealMatrix2) {
-        let dynamic = self.law.placed(&self.coordinates).stiffness(s);
+        let dynamic: ComplexMatrix2 = self.law.placed(&self.coordinates).stiffness(&[s]);
         let damping = dynamic.im().scale(1.0 / s.im);
         (dynamic.re() - damping.scale(s.re), damping)
     }

@@ -97,7 +97,8 @@ impl Fitted {
             if look == LOOKS || promised < problem.needed(self.point.objective) {
                 break;
             }
-            match problem.fit(self.point.coordinates.clone(), Some(self.others.clone())) {
+            let here = self.point.with(self.point.coordinates.clone());
+            match problem.fit_from(here, Some(self.others.clone()), STEPS) {
                 Some(next) if next.point.objective < self.point.objective => self.point = next.point,
                 _ => break,
             }
@@ -233,8 +234,12 @@ impl<'a> Problem<'a> {
             let mut coordinates = at.coordinates.clone();
             coordinates[index] += DIFFERENCE;
             let moved = self.uncoupled(&coordinates, Some(&at.uncoupled))?;
-            let there = moved.coupled(self.test.setup.recorded, &laws, None)?;
-            Some(there.iter().zip(&at.predicted).map(|(t, h)| (t - h) / DIFFERENCE).collect())
+            let mut column = moved.coupled(self.test.setup.recorded, &laws, None)?;
+            column
+                .iter_mut()
+                .zip(&at.predicted)
+                .for_each(|(there, here)| *there = (*there - here) / DIFFERENCE);
+            Some(column)
         };
         (self.of_laws()..at.coordinates.len()).map(column).collect()
     }
@@ -286,6 +291,10 @@ impl<'a> Problem<'a> {
 
     /// The same within a number of steps.
     pub fn fit_within(&self, start: Vec<f64>, nearby: Option<Columns>, steps: usize) -> Option<Fitted> {
+        self.fit_from(self.point(start, None)?, nearby, steps)
+    }
+
+    fn fit_from(&self, start: Point, nearby: Option<Columns>, steps: usize) -> Option<Fitted> {
         let floor = self.test.setup.recorded.degrees() as f64;
         let settings = Settings {
             steps,
@@ -296,7 +305,7 @@ impl<'a> Problem<'a> {
             bent: BENT,
             ..Settings::default()
         };
-        let end = descend(self, self.point(start, None)?, nearby, &settings)?;
+        let end = descend(self, start, nearby, &settings)?;
         Some(Fitted { point: end.point, others: end.derivatives })
     }
 

@@ -12,9 +12,10 @@ use super::recorded::Recorded;
 use crate::sides::with_effects_of;
 use jointscope_beam::{Matrix4, mass_of_ends};
 use jointscope_fixture::Fixture;
-use jointscope_linalg::{ComplexMatrix2, LuWorkspace, Matrix2};
-use jointscope_lumped::{Instrument, MeasuringChain, Model, Station};
+use jointscope_linalg::{LuWorkspace, Matrix2};
+use jointscope_lumped::{Instrument, Lanes, Lines, MeasuringChain, Model, Station};
 use num_complex::Complex64;
+use std::array::from_fn;
 use std::sync::Arc;
 
 /// Most joints that are found at once.
@@ -22,7 +23,7 @@ pub(super) const MOST_JOINTS: usize = 8;
 /// Stations of a joint's ends: y and θ of the near one, then of the far one.
 const ENDS: usize = 4;
 
-/// The fixture without its joints on all lines, line after line.
+/// The fixture without its joints: each entry on all lines, entry after entry.
 #[derive(Debug)]
 pub(super) struct Uncoupled {
     pieces: Vec<Arc<Piece>>,
@@ -126,63 +127,60 @@ impl Uncoupled {
     ) {
         let own = on.len();
         let (width, references) = (self.width, recorded.references.len());
-        let add = |to: &mut [Complex64], by_line: usize, place: usize, weight: f64| {
-            let entries = to[place..].iter_mut().step_by(by_line);
-            entries.zip(values).for_each(|(entry, value)| *entry += value * weight);
+        let add = |to: &mut [Complex64], place: usize, weight: f64| {
+            let entry = to[place * values.len()..].iter_mut();
+            entry.zip(values).for_each(|(entry, value)| *entry += value * weight);
         };
         match (on.get(o), on.get(i)) {
             (Some(responding), Some(loaded)) => {
                 for (a, left) in responding {
-                    for (b, right) in loaded {
-                        add(&mut self.at, width * width, a * width + b, left * right);
-                    }
+                    loaded.iter().for_each(|(b, right)| add(&mut self.at, a * width + b, left * right));
                 }
             }
             (None, Some(loaded)) => {
-                for (b, weight) in loaded {
-                    add(&mut self.from, recorded.responses.len() * width, (o - own) * width + b, *weight);
-                }
+                loaded.iter().for_each(|(b, weight)| add(&mut self.from, (o - own) * width + b, *weight));
             }
             (Some(responding), None) => {
-                for (a, weight) in responding {
-                    add(&mut self.to, width * references, a * references + i - own, *weight);
-                }
+                responding
+                    .iter()
+                    .for_each(|(a, weight)| add(&mut self.to, a * references + i - own, *weight));
             }
             (None, None) => {
                 let frfs = recorded.channels.iter().enumerate();
-                for (frf, _) in frfs.filter(|(_, channel)| **channel == (o - own, i - own)) {
-                    add(&mut self.between, recorded.pairs.len(), frf, 1.0);
-                }
+                frfs.filter(|(_, channel)| **channel == (o - own, i - own))
+                    .for_each(|(frf, _)| add(&mut self.between, frf, 1.0));
             }
         }
     }
 
     /// Puts the joint's mass in: each of its coordinates, those from `order` on, is loaded by s², a change of rank one.
     fn put_in_the_mass(&mut self, recorded: &Recorded) {
-        let width = self.width;
-        let (frfs, outputs, inputs) =
-            (recorded.pairs.len(), recorded.responses.len(), recorded.references.len());
-        for (line, s) in recorded.s.iter().enumerate() {
-            let at = &mut self.at[line * width * width..(line + 1) * width * width];
-            let from = &mut self.from[line * outputs * width..(line + 1) * outputs * width];
-            let to = &mut self.to[line * width * inputs..(line + 1) * width * inputs];
-            let between = &mut self.between[line * frfs..(line + 1) * frfs];
-            for own in (self.order..width).rev() {
-                let (rest, row) = at.split_at_mut(own * width);
-                let (to_rest, to_own) = to.split_at_mut(own * inputs);
-                let share = (s * s) / (s * s * row[own] + 1.0);
-                for (value, &(o, i)) in between.iter_mut().zip(&recorded.channels) {
-                    *value -= share * from[o * width + own] * to_own[i];
-                }
-                for from in from.chunks_exact_mut(width) {
-                    let by = share * from[own];
-                    from[..own].iter_mut().zip(&*row).for_each(|(value, other)| *value -= by * other);
-                }
-                for (at, to) in rest.chunks_exact_mut(width).zip(to_rest.chunks_exact_mut(inputs)) {
-                    let by = share * at[own];
-                    to.iter_mut().zip(&*to_own).for_each(|(value, other)| *value -= by * other);
-                    at[..own].iter_mut().zip(&*row).for_each(|(value, other)| *value -= by * other);
-                }
+        let (width, n) = (self.width, recorded.s.len());
+        let (outputs, inputs) = (recorded.responses.len(), recorded.references.len());
+        let entry = |of: &[Complex64], place: usize| of[place * n..(place + 1) * n].to_vec();
+        for own in (self.order..width).rev() {
+            let at: Vec<_> = (0..=own).map(|b| entry(&self.at, own * width + b)).collect();
+            let to: Vec<_> = (0..inputs).map(|i| entry(&self.to, own * inputs + i)).collect();
+            let load = |(s, at): (&Complex64, &Complex64)| (s * s) / (s * s * at + 1.0);
+            let share: Vec<Complex64> = recorded.s.iter().zip(&at[own]).map(load).collect();
+            let loaded = |left: Vec<Complex64>| -> Vec<Complex64> {
+                left.iter().zip(&share).map(|(left, share)| share * left).collect()
+            };
+            let subtract = |of: &mut [Complex64], place: usize, left: &[Complex64], right: &[Complex64]| {
+                let products = left.iter().zip(right).map(|(left, right)| left * right);
+                of[place * n..].iter_mut().zip(products).for_each(|(value, product)| *value -= product);
+            };
+            let from: Vec<_> = (0..outputs).map(|o| loaded(entry(&self.from, o * width + own))).collect();
+            for (frf, &(o, i)) in recorded.channels.iter().enumerate() {
+                subtract(&mut self.between, frf, &from[o], &to[i]);
+            }
+            for (o, from) in from.iter().enumerate() {
+                (0..own).for_each(|b| subtract(&mut self.from, o * width + b, from, &at[b]));
+            }
+            for a in 0..own {
+                let column = loaded(entry(&self.at, a * width + own));
+                (0..inputs).for_each(|i| subtract(&mut self.to, a * inputs + i, &column, &to[i]));
+                (0..own).for_each(|b| subtract(&mut self.at, a * width + b, &column, &at[b]));
             }
         }
     }
@@ -195,91 +193,137 @@ impl Uncoupled {
         &self,
         recorded: &Recorded,
         laws: &[Placed],
-        mut columns: Option<(&[Placed], &mut [Vec<Complex64>])>,
+        columns: Option<Columns>,
     ) -> Option<Vec<Complex64>> {
-        let (n, order, width) = (recorded.s.len(), self.order, self.width);
-        let (frfs, outputs, inputs) =
-            (recorded.pairs.len(), recorded.responses.len(), recorded.references.len());
-        let zero = Complex64::ZERO;
-        let mut values = vec![zero; frfs * n];
-        let (mut lu, mut slots) = (LuWorkspace::new(), [zero; MOST]);
-        let mut inverse = vec![zero; order * order];
-        let (mut rows, mut forces, mut motions) =
-            (vec![zero; outputs * order], vec![zero; inputs * order], vec![zero; inputs * order]);
-        let mut through = vec![zero; order];
-        let mut stiffness = [ComplexMatrix2::zero(); MOST_JOINTS];
-        let mut factors = [[zero; 3]; MOST_JOINTS];
-        for (line, &s) in recorded.s.iter().enumerate() {
-            let at = &self.at[line * width * width..(line + 1) * width * width];
-            let from = &self.from[line * outputs * width..(line + 1) * outputs * width];
-            let to = &self.to[line * width * inputs..(line + 1) * width * inputs];
+        let mut values = vec![Complex64::ZERO; self.factors.len()];
+        let lines = Coupled { uncoupled: self, recorded, laws, columns, values: &mut values };
+        match self.order {
+            2 => pulp::Arch::new().dispatch(lines),
+            4 => lines.solved::<4>()?,
+            6 => lines.solved::<6>()?,
+            8 => lines.solved::<8>()?,
+            10 => lines.solved::<10>()?,
+            12 => lines.solved::<12>()?,
+            14 => lines.solved::<14>()?,
+            _ => lines.solved::<{ 2 * MOST_JOINTS }>()?,
+        }
+        values.iter().all(|value| value.is_finite()).then_some(values)
+    }
+}
+
+/// Laws whose coordinates derivatives are wanted by, and the columns to write them to.
+pub(super) type Columns<'a> = (&'a [Placed<'a>], &'a mut [Vec<Complex64>]);
+
+/// Joints on the fixture without them.
+struct Coupled<'a> {
+    uncoupled: &'a Uncoupled,
+    recorded: &'a Recorded,
+    laws: &'a [Placed<'a>],
+    columns: Option<Columns<'a>>,
+    values: &'a mut [Complex64],
+}
+
+/// One joint: several lines at once.
+impl pulp::WithSimd for Coupled<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, _: S) {
+        // Where the matrix is singular, values are not finite.
+        self.on_lines::<Lanes, 2>(|[[a, b], [c, d]]| Some(Matrix2::new(a, b, c, d).inverse_unchecked().0));
+    }
+}
+
+impl Coupled<'_> {
+    /// Several joints: line by line.
+    fn solved<const ORDER: usize>(self) -> Option<()> {
+        let mut lu = LuWorkspace::new();
+        self.on_lines::<Complex64, ORDER>(|matrix| {
+            lu.factorize(ORDER, |to| to.copy_from_slice(matrix.as_flattened())).ok()?;
+            let mut inverse = identity();
+            lu.solve_columns_in_place(inverse.as_flattened_mut(), ORDER);
+            Some(inverse)
+        })
+    }
+
+    /// `ORDER`, the number of coordinates, is one of the compiler's: loops over so few cost three times as much where it is not.
+    #[inline(always)]
+    fn on_lines<T: Lines, const ORDER: usize>(
+        self,
+        mut inverse: impl FnMut([[T; ORDER]; ORDER]) -> Option<[[T; ORDER]; ORDER]>,
+    ) -> Option<()> {
+        let Coupled { uncoupled, recorded, laws, mut columns, values } = self;
+        let (n, width, inputs) = (recorded.s.len(), uncoupled.width, recorded.references.len());
+        let mut slots = [T::ZERO; MOST];
+        let none = [T::ZERO; ORDER];
+        let (mut rows, mut forces) = (vec![none; recorded.responses.len()], vec![none; inputs]);
+        let mut motions = forces.clone();
+        let mut stiffness = [Matrix2::<T>::zero(); MOST_JOINTS];
+        let mut factors = [[T::ZERO; 3]; MOST_JOINTS];
+        for first in (0..n).step_by(T::COUNT) {
+            let lines = first..(first + T::COUNT).min(n);
+            let entry = |of: &[Complex64], place: usize| T::of(&of[place * n + first..place * n + lines.end]);
+            let s = &recorded.s[lines.clone()];
             stiffness.iter_mut().zip(laws).for_each(|(stiffness, law)| *stiffness = law.stiffness(s));
-            if let ([z, ..], 2) = (&stiffness, order) {
-                let own = Matrix2::new(at[0], at[1], at[width], at[width + 1]);
-                let closed = (ComplexMatrix2::identity() + *z * own).inverse()?;
-                inverse.copy_from_slice(closed.0.as_flattened());
-            } else {
-                lu.factorize(order, |matrix| {
-                    for (d, row) in matrix.chunks_exact_mut(order).enumerate() {
-                        for (column, entry) in row.iter_mut().enumerate() {
-                            let one = f64::from(u8::from(d == column));
-                            *entry = loaded(&stiffness, d, |e| at[e * width + column]) + one;
-                        }
-                    }
-                })
-                .ok()?;
-                inverse.fill(zero);
-                (0..order).for_each(|d| inverse[d * order + d] = Complex64::ONE);
-                lu.solve_columns_in_place(&mut inverse, order);
+            // An entry of Z times a column.
+            let loaded = |d: usize, column: &dyn Fn(usize) -> T| {
+                let (z, first) = (&stiffness[d / 2], d - d % 2);
+                z.at(d % 2, 0) * column(first) + z.at(d % 2, 1) * column(first + 1)
+            };
+            let at: [[T; ORDER]; ORDER] = from_fn(|d| from_fn(|e| entry(&uncoupled.at, d * width + e)));
+            let mut matrix: [[T; ORDER]; ORDER] = from_fn(|d| from_fn(|e| loaded(d, &|d| at[d][e])));
+            (0..ORDER).for_each(|d| matrix[d][d] = matrix[d][d] + T::ONE);
+            let inverse = inverse(matrix)?;
+            for (o, row) in rows.iter_mut().enumerate() {
+                let from: [T; ORDER] = from_fn(|d| entry(&uncoupled.from, o * width + d));
+                *row = from_fn(|e| sum::<T, ORDER>(|d| from[d] * inverse[d][e]));
             }
-            for (row, from) in rows.chunks_exact_mut(order).zip(from.chunks_exact(width)) {
-                for (column, entry) in row.iter_mut().enumerate() {
-                    *entry = (0..order).map(|d| from[d] * inverse[d * order + column]).sum();
+            for (i, (force, motion)) in forces.iter_mut().zip(&mut motions).enumerate() {
+                let to: [T; ORDER] = from_fn(|d| entry(&uncoupled.to, d * inputs + i));
+                *force = from_fn(|d| loaded(d, &|e| to[e]));
+                // Motions of d are for derivatives only.
+                if columns.is_some() {
+                    let through: [T; ORDER] = from_fn(|d| sum::<T, ORDER>(|e| inverse[d][e] * force[e]));
+                    *motion = from_fn(|d| to[d] - sum::<T, ORDER>(|e| through[e] * at[d][e]));
                 }
             }
-            for (i, force) in forces.chunks_exact_mut(order).enumerate() {
-                for (d, entry) in force.iter_mut().enumerate() {
-                    *entry = loaded(&stiffness, d, |e| to[e * inputs + i]);
-                }
-            }
-            // Motions of d are for derivatives only.
             if let Some((laws, _)) = &columns {
                 factors.iter_mut().zip(*laws).for_each(|(factors, law)| *factors = law.factors(s));
-                let all = motions.chunks_exact_mut(order).zip(forces.chunks_exact(order));
-                for (i, (motion, force)) in all.enumerate() {
-                    for (row, entry) in inverse.chunks_exact(order).zip(&mut through) {
-                        *entry = row.iter().zip(force).map(|(a, f)| a * f).sum();
-                    }
-                    for (d, entry) in motion.iter_mut().enumerate() {
-                        let lost: Complex64 = through.iter().zip(&at[d * width..]).map(|(t, a)| a * t).sum();
-                        *entry = to[d * inputs + i] - lost;
-                    }
-                }
             }
             for (frf, &(response, reference)) in recorded.channels.iter().enumerate() {
-                let place = frf * n + line;
-                let row = &rows[response * order..(response + 1) * order];
-                let force = &forces[reference * order..(reference + 1) * order];
-                let factor = self.factors[place];
-                let passed: Complex64 = row.iter().zip(force).map(|(r, f)| r * f).sum();
-                values[place] = factor * (self.between[line * frfs + frf] - passed);
+                let place = frf * n + lines.start..frf * n + lines.end;
+                let (row, force) = (&rows[response], &forces[reference]);
+                let factor = entry(&uncoupled.factors, frf);
+                let value =
+                    factor * (entry(&uncoupled.between, frf) - sum::<T, ORDER>(|d| row[d] * force[d]));
+                value.write(&mut values[place.clone()]);
                 let Some((laws, columns)) = &mut columns else { continue };
-                let motion = &motions[reference * order..(reference + 1) * order];
                 let mut rest = &mut **columns;
-                let ends = row.chunks_exact(2).zip(motion.chunks_exact(2));
+                let ends = row.chunks_exact(2).zip(motions[reference].chunks_exact(2));
                 for ((law, factors), (row, motion)) in laws.iter().zip(&factors).zip(ends) {
-                    let [a, b] = [-factor * row[0], -factor * row[1]];
+                    let [a, b] = [-(factor * row[0]), -(factor * row[1])];
                     let by = [a * motion[0], a * motion[1], b * motion[0], b * motion[1]];
                     let (own, others) = rest.split_at_mut(law.count());
                     let slots = &mut slots[..law.count()];
                     law.chain(by, *factors, slots);
-                    own.iter_mut().zip(&*slots).for_each(|(column, value)| column[place] = *value);
+                    own.iter_mut()
+                        .zip(&*slots)
+                        .for_each(|(column, slot)| slot.write(&mut column[place.clone()]));
                     rest = others;
                 }
             }
         }
-        values.iter().all(|value| value.is_finite()).then_some(values)
+        Some(())
     }
+}
+
+#[inline(always)]
+fn sum<T: Lines, const N: usize>(term: impl Fn(usize) -> T) -> T {
+    (1..N).fold(term(0), |sum, n| sum + term(n))
+}
+
+fn identity<const N: usize>() -> [[Complex64; N]; N] {
+    from_fn(|d| from_fn(|e| if d == e { Complex64::ONE } else { Complex64::ZERO }))
 }
 
 impl Piece {
@@ -322,12 +366,6 @@ impl Piece {
     }
 }
 
-/// An entry of Z times a column, Z being made of these stiffnesses.
-fn loaded(stiffness: &[ComplexMatrix2], d: usize, column: impl Fn(usize) -> Complex64) -> Complex64 {
-    let (z, first) = (&stiffness[d / 2], d - d % 2);
-    z.at(d % 2, 0) * column(first) + z.at(d % 2, 1) * column(first + 1)
-}
-
 /// What the motion of a joint's end is a part of, and with what weight: d_j = u_to − R·u_from, and for the first joint the coordinates of its mass, which are those of all d
 /// followed by lᵀu of `masses`.
 fn on_relative(station: usize, lengths: &[f64], masses: &[[f64; 4]]) -> Vec<(usize, f64)> {
@@ -349,7 +387,7 @@ fn on_relative(station: usize, lengths: &[f64], masses: &[[f64; 4]]) -> Vec<(usi
 /// Columns l of a lower triangular factor, M = Σ l lᵀ, of a matrix that is positive semidefinite.
 fn square_root(matrix: &Matrix4) -> [[f64; 4]; 4] {
     let mut rest = *matrix;
-    std::array::from_fn(|k| {
+    from_fn(|k| {
         let pivot = rest[k][k];
         let mut column = [0.0; 4];
         if pivot > 0.0 {

@@ -228,6 +228,20 @@ impl Part<'_> {
         finite.then_some(sums)
     }
 
+    /// Minus half of the gradient by the free parameters; `None` where a line has no finite response.
+    pub fn right(&self, parameters: &Parameters) -> Option<Vec<f64>> {
+        let mut sums = Sums::default();
+        let finite = self.visit(parameters, |s, own| {
+            let mut line = OfLine::default();
+            for (row, weight, residual) in own.residuals() {
+                let (a, b) = (row_times(&row.0, &own.left), times_column(&own.right, &row.1));
+                line.add_right(weight, residual, a, b);
+            }
+            sums.add_right(s, &line);
+        });
+        finite.then(|| sums.right(parameters))
+    }
+
     /// Shows each line's model to `each`; false where one is not finite.
     fn visit(&self, parameters: &Parameters, mut each: impl FnMut(Complex64, &Modelled)) -> bool {
         let data = self.data;

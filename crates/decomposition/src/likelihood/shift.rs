@@ -52,7 +52,7 @@ impl<'a> Optimum<'a> {
     ) -> Option<(RealMatrix2, RealMatrix2)> {
         let scalar = self.at.scalar;
         let data = Data::on(self.frfs, (&plan.layout, sides), compliances, &self.lines, scalar).ok()?;
-        let mut step = data.whole().sums(&self.at)?.right(&self.at);
+        let mut step = data.whole().right(&self.at)?;
         step.iter_mut().zip(&self.right).for_each(|(there, here)| *there -= here);
         self.curvature.solve_in_place(&mut step);
         let mut moved = [0.0; 6];
@@ -74,7 +74,7 @@ fn curvature(data: &Data, (at, here): (&Parameters, &[f64]), gauss_newton: &Chol
         let mut active = vec![0.0; n];
         active[m] = STEP * covariance[m * n + m].sqrt();
         let moved = at.stepped(&at.slots(&active));
-        let there = data.whole().sums(&moved)?.right(&moved);
+        let there = data.whole().right(&moved)?;
         for k in 0..n {
             let by = (here[k] - there[k]) / active[m];
             all[m * n + k] += 0.5 * by;

@@ -25,12 +25,25 @@ const PAIRS: [(usize, usize); 6] = [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 
 impl OfLine {
     /// Adds a residual of the model aᵀ (k + sc) b, both matrices symmetric.
     pub fn add(&mut self, weight: f64, residual: Complex64, a: [Complex64; 2], b: [Complex64; 2]) {
-        let by = [a[0] * b[0], a[0] * b[1] + a[1] * b[0], a[1] * b[1]];
-        let weighted = by.map(|d| d.conj() * weight);
+        let (by, weighted) = self.add_right(weight, residual, a, b);
         for (sum, (m, n)) in self.products.iter_mut().zip(PAIRS) {
             *sum += weighted[m] * by[n];
         }
+    }
+
+    /// Adds it to the gradient alone; answers with its derivatives by k11, k12, k22, and these conjugate and weighted.
+    #[inline]
+    pub fn add_right(
+        &mut self,
+        weight: f64,
+        residual: Complex64,
+        a: [Complex64; 2],
+        b: [Complex64; 2],
+    ) -> ([Complex64; 3], [Complex64; 3]) {
+        let by = [a[0] * b[0], a[0] * b[1] + a[1] * b[0], a[1] * b[1]];
+        let weighted = by.map(|d| d.conj() * weight);
         self.right.iter_mut().zip(weighted).for_each(|(sum, d)| *sum += d * residual);
+        (by, weighted)
     }
 }
 
@@ -53,6 +66,11 @@ impl Sums {
                 self.information[3 + m][n] += across[1];
             }
         }
+        self.add_right(s, line);
+    }
+
+    /// Adds a line's gradient alone.
+    pub fn add_right(&mut self, s: Complex64, line: &OfLine) {
         for (m, right) in line.right.into_iter().enumerate() {
             self.right[m] += right.re;
             self.right[3 + m] += (s.conj() * right).re;
