@@ -48,7 +48,7 @@ pub(crate) fn contradictory(
     let without = |wrong: &[bool]| {
         let seen = |line: f64| at(line).is_some_and(|at| !wrong[at]);
         let part = observation.reduced(seen, |_| true)?;
-        let modes = recorded(&part, nominal, settings)?;
+        let modes = recorded(&part, nominal)?;
         Some((part, modes))
     };
     let many = |wrong: &[bool]| wrong.iter().filter(|wrong| **wrong).count() as f64 > MOST * hz.len() as f64;

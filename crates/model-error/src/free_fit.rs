@@ -67,25 +67,35 @@ impl FreeFit {
         self.chi2 - more.chi2 > 2.0 * coefficients * more.chi2_per_dof(recording).max(1.0)
     }
 
-    /// With one pole more, where the fit is poor without it and better for it.
-    pub fn with(self, recording: Recording, pole: Pole, inside: bool) -> Self {
+    /// With one pole more outside the band, where the fit is poor without it and better for it.
+    pub fn with(self, recording: Recording, pole: Pole) -> Self {
         if !self.is_poor(recording) {
             return self;
         }
-        let (mut own, mut outside) = (self.poles[..self.inside].to_vec(), self.poles[self.inside..].to_vec());
-        if inside {
-            own.push(pole)
-        } else {
-            outside.push(pole)
-        }
-        let more = FreeFit::converged(recording, own, &outside, self.terms);
+        let (inside, outside) = self.poles.split_at(self.inside);
+        let outside: Vec<Pole> = outside.iter().copied().chain([pole]).collect();
+        let more = FreeFit::converged(recording, inside.to_vec(), &outside, self.terms);
         more.filter(|more| more.chi2 < WORTH * self.chi2).unwrap_or(self)
+    }
+
+    /// With a pole in the band that a model has, where that is worth its number of unknowns by Akaike's criterion: a suspension's modes on the lowest lines take little
+    /// from χ² as a whole, and without them mass lines are off by ten of their deviations.
+    pub fn with_expected(self, recording: Recording, pole: Pole) -> Self {
+        let (inside, outside) = self.poles.split_at(self.inside);
+        let inside = inside.iter().copied().chain([pole]).collect();
+        let Some(more) = FreeFit::converged(recording, inside, outside, self.terms) else { return self };
+        let unknowns = (more.unknowns() - self.unknowns()) as f64;
+        let worth = 2.0 * unknowns * more.chi2_per_dof(recording).max(1.0);
+        if self.chi2 - more.chi2 > worth { more } else { self }
+    }
+
+    fn unknowns(&self) -> usize {
+        2 * self.poles.len() + self.fits.len() * 2 * (self.poles.len() + self.terms)
     }
 
     fn chi2_per_dof(&self, recording: Recording) -> f64 {
         let degrees = 2.0 * recording.weights.iter().filter(|w| **w > 0.0).count() as f64;
-        let unknowns = 2 * self.poles.len() + self.fits.len() * 2 * (self.poles.len() + self.terms);
-        self.chi2 / (degrees - unknowns as f64).max(1.0)
+        self.chi2 / (degrees - self.unknowns() as f64).max(1.0)
     }
 
     /// With the poles that Gauss–Newton steps lead to.

@@ -81,7 +81,7 @@ impl RecordedModes {
         let beyond = |by: f64| Pole { omega: high * by, damping_ratio: 0.01 };
         let outside = BEYOND.into_iter().map(beyond).chain([Pole { omega: 0.7 * low, damping_ratio: 0.02 }]);
         for pole in outside {
-            fit = fit.with(recording, pole, false);
+            fit = fit.with(recording, pole);
         }
         while fit.terms < TERMS.1 {
             let (inside, outside) = fit.poles.split_at(fit.inside);
@@ -91,7 +91,7 @@ impl RecordedModes {
             }
         }
         for pole in expected {
-            fit = fit.with(recording, *pole, true);
+            fit = fit.with_expected(recording, *pole);
         }
         fit.told(recording)
     }

@@ -52,7 +52,7 @@ pub(super) fn seen(
     let of = |reference: &Channel| {
         let part = observation.reduced(|_| true, |pair| pair.reference == *reference)?;
         // Where modes do not tell all there is in the FRFs, what they leave moves them too.
-        let modes = recorded(&part, nominal, settings).filter(|m| m.chi2_per_dof < settings.free_fit)?;
+        let modes = recorded(&part, nominal).filter(|m| m.chi2_per_dof < settings.free_fit)?;
         Some(Struck { part, modes })
     };
     let struck: Vec<Option<Struck>> = references.par_iter().map(of).collect();

@@ -20,7 +20,7 @@ impl Features {
     /// Those of a recording; `None` where it has no modes that could be compared.
     pub fn of(observation: &Observation, nominal: &Hypothesis, settings: &ModalSettings) -> Option<Self> {
         let known = known(settings, &nominal.to_fixture().ok()?);
-        Some(Features::new(recorded(observation, nominal, settings)?, known))
+        Some(Features::new(recorded(observation, nominal)?, known))
     }
 
     /// Those of modes, with what is known of the sizes of error.
@@ -46,20 +46,13 @@ impl Features {
 }
 
 /// The recording's modes, with the help of the model's where they are not resolved.
-pub(crate) fn recorded(
-    observation: &Observation,
-    nominal: &Hypothesis,
-    settings: &ModalSettings,
-) -> Option<RecordedModes> {
+pub(crate) fn recorded(observation: &Observation, nominal: &Hypothesis) -> Option<RecordedModes> {
     let recording = Recording { frfs: observation.frfs(), weights: observation.weights() };
     // Where nothing but the FRFs tells their noise, every ripple looks like a mode: no more are asked for than a model may have.
     let expected = || jointscope_model_error::modes_within(&nominal.to_fixture().ok()?, observation.frfs());
     let orders = observation.has_scatter_for_noise().then(expected).flatten().map(|modes| (2, 2 * modes + 8));
     let options = ModesOptions { orders, ..ModesOptions::default() };
     let alone = RecordedModes::of(recording, &options, &[])?;
-    if alone.chi2_per_dof < settings.free_fit {
-        return Some(alone);
-    }
     let expected = alone.unpaired(&nominal.to_fixture().ok()?);
     match expected.is_empty() {
         true => Some(alone),

@@ -78,6 +78,8 @@ const ALIKE: f64 = 0.1;
 const STRAYS: usize = 2;
 /// Decrease of χ² that a step promises below which a fit stands where it belongs.
 const STILL: f64 = 1.0;
+/// Standard deviations by which χ² of the features may be larger than their number.
+const BY_CHANCE: f64 = 6.0;
 /// Gauss–Newton steps, at most.
 const STEPS: usize = 40;
 /// Share of what an undamped step promises below which a fit follows a bent valley.
@@ -95,6 +97,19 @@ impl ModalFit {
 }
 
 impl ModalFit {
+    /// Whether the features' misfit, errors of the model at their sizes and departures counted, is no larger than chance makes it.
+    pub fn leaves_chance(&self) -> bool {
+        let comparison = &self.standing.comparison;
+        let Some(factor) = Cholesky::of(comparison.count(), &comparison.covariance(&self.evidence.sizes))
+        else {
+            return false;
+        };
+        let mut white = self.residual.clone();
+        factor.solve_lower_in_place(&mut white);
+        let degrees = comparison.count() as f64;
+        dot(&white, &white) < degrees + BY_CHANCE * (2.0 * degrees).sqrt()
+    }
+
     /// Covariance of the coordinates of the linear model where an error has these sizes.
     pub fn covariance_at(&self, sizes: &ErrorSizes) -> Option<Covariance> {
         let comparison = &self.standing.comparison;

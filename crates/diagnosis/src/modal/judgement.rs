@@ -102,7 +102,7 @@ impl ModalJudgement {
         let calibrated = problem.fitted(nominal, &priors(nominal, &[]))?;
         let before_error = problem.error(&calibrated, settings.modal.adequate.0);
         watch.stage("fitting the modes of the recording");
-        let now = recorded(observation, &calibrated.hypothesis, &settings.modal)?;
+        let now = recorded(observation, &calibrated.hypothesis)?;
         let model = &calibrated.standing.modelled;
         let own = Pairing::of(&now, model);
         let change = now.relative_to(&before.recorded, model, [&own, &calibrated.standing.pairing])?;
