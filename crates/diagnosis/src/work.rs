@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 /// Values that a model costs besides those it predicts: its matrices, modes and participations.
 const MODEL: u64 = 1000;
 /// The cube of a meshed model's coordinates whose modes cost as much as one value more.
-const MODES: u64 = 125;
+const MODES: u64 = 250;
 /// Fits between which the work done is looked at.
 const TOGETHER: usize = 16;
 

@@ -1,3 +1,4 @@
+use crate::condensed::Stretch;
 use crate::effects::{Action, Change, actions};
 use crate::held::{held_by_modes, in_the_modes};
 use crate::mesh::{Attachment, Mesh};
@@ -48,6 +49,21 @@ impl Assembly {
     /// # Errors
     /// [`LumpedError::Modes`] where the eigenproblem fails, as it does for impossible masses; [`LumpedError::TooFine`].
     pub fn new(fixture: &Fixture, highest_hz: f64) -> Result<Self, LumpedError> {
+        Assembly::by(fixture, highest_hz, |_| Vec::new())
+    }
+
+    /// As [`Assembly::new`] for responses within the band, at a fraction of the cost: modes of meshed beams by [`condensed_modes`](crate::condensed::condensed_modes).
+    pub(crate) fn condensed(fixture: &Fixture, highest_hz: f64) -> Result<Self, LumpedError> {
+        // The viscous matrix of a beam that is rebuilt is Σ v (Mξ)(Mξ)ᵀ: where v grows with λ, the least that modes are not orthogonal by counts.
+        let by_stiffness = matches!(damping_law(fixture.damping()), DampingLaw::Rayleigh { .. });
+        Assembly::by(fixture, highest_hz, |places| if by_stiffness { Vec::new() } else { stretches(places) })
+    }
+
+    fn by(
+        fixture: &Fixture,
+        highest_hz: f64,
+        stretches: impl Fn(&[Coordinates]) -> Vec<Stretch>,
+    ) -> Result<Self, LumpedError> {
         let places = coordinates(fixture, highest_hz)?;
         let order = places.iter().map(Coordinates::count).sum();
         let free_beam = if in_the_modes(fixture) { None } else { free_beam(fixture, &places) };
@@ -55,7 +71,8 @@ impl Assembly {
             return Assembly::of_free_beam(fixture, places, order, beam, &first);
         }
         let plain = Matrices::of(fixture, &places, order, false);
-        let basis = modes(order, &plain.mass, &plain.stiffness)?;
+        let stretches = stretches(&places);
+        let basis = modes(order, &plain.mass, &plain.stiffness, &stretches)?;
         let law = damping_law(fixture.damping());
         let mut assembly = Assembly {
             order,
@@ -70,7 +87,7 @@ impl Assembly {
         let held = assembly.held_modes(fixture);
         (assembly.damping, assembly.elastic) = (assembly.law.of_held_modes(&held), elastic_modes(&held));
         if actions(fixture).any(|action| matches!(action, Action::OnBeam { .. })) {
-            assembly.rebuilt(fixture)
+            assembly.rebuilt(fixture, &stretches)
         } else {
             Ok(assembly)
         }
@@ -135,9 +152,9 @@ impl Assembly {
     /// The assembly with the effects that rebuild a beam body. Its viscous matrix stays that of the
     /// assembly without them; in the new modes only its diagonal is kept, an error of the order of the
     /// damping ratio times the change of shape.
-    fn rebuilt(self, fixture: &Fixture) -> Result<Self, LumpedError> {
+    fn rebuilt(self, fixture: &Fixture, stretches: &[Stretch]) -> Result<Self, LumpedError> {
         let with = Matrices::of(fixture, &self.places, self.order, true);
-        let basis = modes(self.order, &with.mass, &with.stiffness)?;
+        let basis = modes(self.order, &with.mass, &with.stiffness, stretches)?;
         let structural = match self.law {
             DampingLaw::LossFactor(factor) => factor,
             _ => 0.0,
@@ -337,6 +354,15 @@ fn coordinates(fixture: &Fixture, highest_hz: f64) -> Result<Vec<Coordinates>, L
     Ok(places)
 }
 
+/// The stretches of all beams.
+fn stretches(places: &[Coordinates]) -> Vec<Stretch> {
+    let of = |place| match place {
+        &Coordinates::Beam { first, ref mesh } => mesh.stretches(first).collect(),
+        _ => Vec::new(),
+    };
+    places.iter().flat_map(of).collect()
+}
+
 /// Where something holds the body, the most important first: joints bend it there. A bare beam is meshed evenly.
 fn attachments(fixture: &Fixture, body: usize) -> Vec<Attachment> {
     if is_bare(fixture) {
@@ -396,11 +422,7 @@ impl Matrices {
         for held in held_by_modes(fixture) {
             let mut row = vec![0.0; order];
             places[held.station.body].read(held.station.x, held.station.dof, &mut row);
-            for i in (0..order).filter(|&i| row[i] != 0.0) {
-                for j in 0..order {
-                    all.stiffness[i * order + j] += row[i] * held.stiffness * row[j];
-                }
-            }
+            add_product(&mut all.stiffness, &row, held.stiffness);
         }
         all
     }
@@ -425,11 +447,7 @@ impl Matrices {
         for point in &body.masses {
             let mut row = vec![0.0; self.order];
             place.read(point.x.value, Dof::Translation, &mut row);
-            for i in 0..self.order {
-                for j in 0..self.order {
-                    self.mass[i * self.order + j] += point.mass.value * row[i] * row[j];
-                }
-            }
+            add_product(&mut self.mass, &row, point.mass.value);
         }
     }
 
@@ -471,6 +489,14 @@ impl Matrices {
                 }
             }
         }
+    }
+}
+
+/// Adds `factor` times the product of a row, of which few entries are not zero, with itself.
+fn add_product(matrix: &mut [f64], row: &[f64], factor: f64) {
+    let read: Vec<(usize, f64)> = row.iter().copied().enumerate().filter(|(_, t)| *t != 0.0).collect();
+    for (i, a) in &read {
+        read.iter().for_each(|(j, b)| matrix[i * row.len() + j] += factor * a * b);
     }
 }
 

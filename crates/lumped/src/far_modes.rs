@@ -39,7 +39,7 @@ impl FarModes {
 
     /// Whether mode `index` is one of them.
     pub fn contain(&self, index: usize) -> bool {
-        self.series.iter().any(|(mode, _)| *mode == index)
+        self.series.binary_search_by_key(&index, |(mode, _)| *mode).is_ok()
     }
 
     /// Sums of `products` of participations (a row over `count` entries for each mode) with the series' coefficients: a real row for

@@ -37,6 +37,7 @@
 mod assembly;
 mod bar;
 mod chain;
+mod condensed;
 mod effects;
 mod far_modes;
 mod held;

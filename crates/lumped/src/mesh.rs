@@ -1,5 +1,6 @@
 //! Finite-element mesh of a deformable body.
 
+use crate::condensed::{LONGEST, Stretch};
 use jointscope_beam::shape_functions;
 use jointscope_spectra::Dof;
 use std::f64::consts::TAU;
@@ -23,6 +24,8 @@ pub(crate) struct Mesh {
     pub nodes: Vec<f64>,
     /// Nodes as shares of the length.
     pub unit: Vec<f64>,
+    /// Which nodes stretches end at: where something is attached, and in between.
+    ends: Vec<usize>,
     /// EI/κGA, m², by which sections turn less than the beam slopes; zero without shear.
     pub shear: f64,
 }
@@ -71,13 +74,26 @@ impl Mesh {
             }
         }
         nodes.sort_by(f64::total_cmp);
-        let mut mesh = vec![0.0];
+        let (mut mesh, mut ends) = (vec![0.0], vec![0]);
         for pair in nodes.windows(2) {
             let count = ((pair[1] - pair[0]) / PARTS).ceil();
-            mesh.extend((1..=count as usize).map(|i| pair[0] + (pair[1] - pair[0]) * i as f64 / count));
+            let (before, elements) = (mesh.len() - 1, count as usize);
+            mesh.extend((1..=elements).map(|i| pair[0] + (pair[1] - pair[0]) * i as f64 / count));
+            let stretches = elements.div_ceil(LONGEST);
+            ends.extend((1..=stretches).map(|i| before + i * elements / stretches));
         }
         let unit: Vec<f64> = mesh.iter().map(|node| node / parts).collect();
-        Ok(Mesh { nodes: unit.iter().map(|share| from + (to - from) * share).collect(), unit, shear: 0.0 })
+        let nodes = unit.iter().map(|share| from + (to - from) * share).collect();
+        Ok(Mesh { nodes, unit, ends, shear: 0.0 })
+    }
+
+    /// All elements in stretches, of a beam whose coordinates begin with `first`.
+    pub fn stretches(&self, first: usize) -> impl Iterator<Item = Stretch> {
+        let stretch = move |pair: &[usize]| Stretch {
+            first: first + 2 * pair[0],
+            nodes: self.nodes[pair[0]..=pair[1]].to_vec(),
+        };
+        self.ends.windows(2).map(stretch)
     }
 
     /// Number of coordinates: y and θ of each node.

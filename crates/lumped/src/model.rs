@@ -54,16 +54,11 @@ impl Model {
         let flexible: Vec<bool> =
             (0..fixture.bodies().len()).map(|body| bending.iter().any(|b| b.body == body)).collect();
         Ok(Model {
-            assembly: Assembly::new(fixture, highest_hz)?,
+            assembly: Assembly::condensed(fixture, highest_hz)?,
             bending,
             terms: Terms::of(fixture, &flexible),
             highest_hz,
         })
-    }
-
-    /// The free assembly inside.
-    pub fn assembly(&self) -> &Assembly {
-        &self.assembly
     }
 
     /// Prepares the receptances from every one of `inputs` to every one of `outputs`.

@@ -3,15 +3,20 @@
 //! A fit moves many quantities that leave the matrices alone (damping, where sensors sit, everything of the measuring
 //! chain), and the eigenproblem costs as much as hundreds of lines, that of a meshed beam more than all of them.
 
-use jointscope_linalg::{EigenError, ModalBasis, generalized_symmetric_eigen};
+use crate::condensed::{Stretch, condensed_modes};
+use jointscope_linalg::{EigenError, ModalBasis};
 use std::cell::RefCell;
 use std::collections::VecDeque;
 use std::rc::Rc;
 
-/// Problems remembered by a thread, the latest first.
+/// Problems remembered by a thread, the latest first; of meshed beams so many more, as far as their matrices have no more entries together than these: a fit of theirs comes back to
+/// where its last two sets of derivatives were taken.
 const KEPT: usize = 6;
+const KEPT_OF_BEAMS: usize = 32;
+const ENTRIES: usize = 1 << 18;
 
 struct Solved {
+    condensed: bool,
     mass: Vec<f64>,
     stiffness: Vec<f64>,
     basis: Rc<ModalBasis>,
@@ -24,10 +29,23 @@ thread_local! {
 /// The modes of exactly these matrices, from memory where they were solved recently by this thread.
 ///
 /// # Errors
-/// Those of [`generalized_symmetric_eigen`].
-pub(crate) fn modes(order: usize, mass: &[f64], stiffness: &[f64]) -> Result<ModalBasis, EigenError> {
+/// Those of [`condensed_modes`].
+pub(crate) fn modes(
+    order: usize,
+    mass: &[f64],
+    stiffness: &[f64],
+    stretches: &[Stretch],
+) -> Result<ModalBasis, EigenError> {
     let known = SOLVED.with_borrow_mut(|solved| {
-        let found = solved.iter().position(|s| s.stiffness == stiffness && s.mass == mass)?;
+        let diagonal = |a: &[f64], b: &[f64]| a.iter().step_by(order + 1).eq(b.iter().step_by(order + 1));
+        // Most problems differ in one of the two only, and show it there at once.
+        let alike = |s: &Solved| {
+            s.condensed != stretches.is_empty()
+                && diagonal(&s.mass, mass)
+                && diagonal(&s.stiffness, stiffness)
+        };
+        let same = |s: &Solved| alike(s) && s.stiffness == stiffness && s.mass == mass;
+        let found = solved.iter().position(same)?;
         let latest = solved.remove(found)?;
         let basis = Rc::clone(&latest.basis);
         solved.push_front(latest);
@@ -36,11 +54,20 @@ pub(crate) fn modes(order: usize, mass: &[f64], stiffness: &[f64]) -> Result<Mod
     if let Some(basis) = known {
         return Ok((*basis).clone());
     }
-    let basis = generalized_symmetric_eigen(order, mass, stiffness)?;
+    let kept = match stretches {
+        [] => KEPT,
+        _ => (ENTRIES / mass.len()).clamp(KEPT, KEPT_OF_BEAMS),
+    };
+    let basis = condensed_modes(order, mass, stiffness, stretches)?;
     SOLVED.with_borrow_mut(|solved| {
-        solved.truncate(KEPT - 1);
+        solved.truncate(kept - 1);
         let (mass, stiffness) = (mass.to_vec(), stiffness.to_vec());
-        solved.push_front(Solved { mass, stiffness, basis: Rc::new(basis.clone()) });
+        solved.push_front(Solved {
+            condensed: !stretches.is_empty(),
+            mass,
+            stiffness,
+            basis: Rc::new(basis.clone()),
+        });
     });
     Ok(basis)
 }

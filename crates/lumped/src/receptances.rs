@@ -344,7 +344,7 @@ fn divide_small<T: Lines>(delta: &[T], g: &[T], right: &mut [T]) {
     }
 }
 
-/// Modes with one denominator (all rigid motions, above all) share one term of the sum: the distinct denominators, those of far modes
+/// Neighbours with one denominator (all rigid motions, above all) share one term of the sum: the distinct denominators, those of far modes
 /// last, each mode's place among them, and the number of those before the far ones.
 fn merge(all: &[Denominator], is_far: impl Fn(usize) -> bool) -> (Vec<Denominator>, Vec<usize>, usize) {
     let mut distinct: Vec<Denominator> = Vec::new();
@@ -352,10 +352,10 @@ fn merge(all: &[Denominator], is_far: impl Fn(usize) -> bool) -> (Vec<Denominato
     let mut near = 0;
     for far in [false, true] {
         for (mode, d) in all.iter().enumerate().filter(|(mode, _)| is_far(*mode) == far) {
-            group[mode] = distinct.iter().position(|e| e == d).unwrap_or_else(|| {
+            if distinct.last() != Some(d) {
                 distinct.push(*d);
-                distinct.len() - 1
-            });
+            }
+            group[mode] = distinct.len() - 1;
         }
         if !far {
             near = distinct.len();
