@@ -4,8 +4,7 @@
 //! FRFs at large, it is these lines that are wrong, and no model has to explain them.
 
 use crate::modal::recorded;
-use crate::settings::ModalSettings;
-use crate::{DiagnosisError, Hypothesis, Observation, Settings};
+use crate::{DiagnosisError, Hypothesis, Observation};
 use jointscope_fixture::Fixture;
 use jointscope_frf::breaks;
 use jointscope_spectra::FrfSet;
@@ -30,15 +29,11 @@ pub fn contradictory_lines(fixture: &Fixture, frfs: &FrfSet) -> Result<Vec<(f64,
     let observation = Observation::new(frfs, |_| true)?;
     let nominal = Hypothesis::nominal(fixture, false);
     nominal.predict(&observation)?;
-    Ok(contradictory(&observation, &nominal, &Settings::default().modal))
+    Ok(contradictory(&observation, &nominal))
 }
 
 /// Bands (Hz) of lines that contradict all others; none where there is nothing of the kind.
-pub(crate) fn contradictory(
-    observation: &Observation,
-    nominal: &Hypothesis,
-    settings: &ModalSettings,
-) -> Vec<(f64, f64)> {
+pub(crate) fn contradictory(observation: &Observation, nominal: &Hypothesis) -> Vec<(f64, f64)> {
     let breaks = breaks(observation.frfs(), observation.weights());
     if breaks.is_empty() {
         return Vec::new();

@@ -182,7 +182,7 @@ impl Diagnosis {
         let observation = Observation::new(frfs, asked)?.counted(Arc::clone(&work));
         let nominal = Hypothesis::nominal(fixture, options.exact);
         nominal.predict(&observation)?;
-        let contradictory = contradictory(&observation, &nominal, &options.settings.modal);
+        let contradictory = contradictory(&observation, &nominal);
         let in_use = |hz: f64| asked(hz) && !contradictory.iter().any(|(from, to)| hz >= *from && hz <= *to);
         let observation = match contradictory.is_empty() {
             true => observation,

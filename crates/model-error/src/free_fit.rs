@@ -301,3 +301,32 @@ impl FreeFit {
         Some(covariance)
     }
 }
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+    use jointscope_spectra::{FrfForm, FrfPair, FrfSet, SpectralLines};
+
+    #[test]
+    fn a_pole_that_a_model_expects_is_taken_where_the_frfs_have_it_and_left_where_not() {
+        let pole = |hz: f64| Pole { omega: TAU * hz, damping_ratio: 0.01 };
+        let (strong, weak) = (pole(60.0), pole(6.0));
+        let lines = SpectralLines::even(2.5, 2.5, 60).unwrap();
+        let of = |omega: f64| {
+            let s = Complex64::new(0.0, omega);
+            strong.accelerance(s) + 0.02 * weak.accelerance(s)
+        };
+        let values: Vec<Complex64> = lines.omegas().map(of).collect();
+        let deviation = 0.01 * values.iter().map(|value| value.norm()).fold(f64::INFINITY, f64::min);
+        let weights = vec![2.0 / deviation.powi(2); values.len()];
+        let pairs = vec![FrfPair::transverse("2", "1")];
+        let frfs = FrfSet::new(lines, FrfForm::Accelerance, pairs, values).unwrap();
+        let recording = Recording { frfs: &frfs, weights: &weights };
+        let alone = || FreeFit::converged(recording, vec![strong], &[], 2).unwrap();
+        let found = alone().with_expected(recording, pole(6.3));
+        assert_eq!(found.inside, 2);
+        assert!((found.poles[0].omega / weak.omega - 1.0).abs() < 1e-3, "{:?}", found.poles);
+        assert_eq!(found.with_expected(recording, pole(110.0)).inside, 2);
+    }
+}

@@ -62,6 +62,7 @@ check "MATLAB files of SciPy and h5py" "numpy scipy h5py cargo" "$python" "$here
 check "export with CalculiX" "ccx" "$python" "$here/export_with_calculix.py" "$program"
 check "the finite-element twin with CalculiX" "ccx" "$python" "$here/fem_with_calculix.py" "$program" ${quick:+"$quick"}
 if [ "$long" ]; then
+    check "the diagnosis of solids by CalculiX" "numpy pyuff ccx" "$python" "$here/solids_with_calculix.py" "$program"
     check "the lumped model with the twin" "numpy pyuff" "$python" "$here/sim_against_fem.py" "$program"
     check "repaired models with the twin" "numpy pyuff" "$python" "$here/repaired_against_fem.py" "$program"
     check "concealed cases for the statistics of a proof" "" "$program" prove --cases 32 --graded 32 --seed 11 --no-case-pages -o "$folder/proof"

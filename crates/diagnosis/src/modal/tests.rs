@@ -61,27 +61,3 @@ fn a_fit_stands_where_it_would_come_to_rest_at_the_errors_that_it_asks_for() {
         assert!(moved < 1.5, "{factor}: {moved:.2} deviations from {:?}", fit.evidence.sizes);
     }
 }
-
-#[test]
-fn the_features_of_a_soft_suspension_on_the_lowest_lines_are_those_of_its_own_model() {
-    // Bounce and rocking at 2.7 and 3.4 Hz, lines from 2.5 Hz on, 2.5 Hz apart.
-    let fixture = Fixture::from_json(
-        r#"{ "bodies": { "A": { "mass": 2.139, "inertia": 2.45e-3, "x_cg": -0.0514 }, "B": { "mass": 2.1205, "inertia": 1.906e-3, "x_cg": 0.0944 } },
-             "points": { "1": { "body": "A", "x": -0.0905 }, "2": { "body": "A", "x": 0.0 }, "3": { "body": "B", "x": 0.0529 }, "4": { "body": "B", "x": 0.1057 } },
-             "joints": { "J": { "from": "2", "to": "3", "beam": { "youngs_modulus": 2.07e11, "second_moment": 2.918e-10 } } },
-             "damping": { "modal_ratios": [0.0043, 0.0033] },
-             "supports": { "S1": { "point": "1", "stiffness": 605.6, "damping": 0.34 }, "S4": { "point": "4", "stiffness": 626.0, "damping": 0.61 } } }"#,
-    )
-    .unwrap();
-    let pairs = [("4", "1"), ("3", "1"), ("4", "2"), ("3", "2")].map(|(o, i)| FrfPair::transverse(o, i));
-    let lines = SpectralLines::even(2.5, 2.5, 400).unwrap();
-    let frfs = synthesize(&fixture, &pairs, &lines, Instrument::AsRecorded).unwrap();
-    let variance = frfs.all_values().iter().map(|value| 4e-6 * value.norm_sqr()).collect();
-    let observation = Observation::new(&frfs.with_variance(variance).unwrap(), |_| true).unwrap();
-    let exact = Hypothesis::nominal(&fixture, false);
-    let features = Features::of(&observation, &exact, &Settings::default().modal).unwrap();
-    let problem = features.problem(observation.work());
-    let fit = problem.fitted(&exact, &priors(&exact, &[])).unwrap();
-    let pulls: f64 = fit.hypothesis.coordinates.iter().map(|at| at * at).sum();
-    assert!(fit.leaves_chance() && pulls < 0.5, "moved by {pulls:.2}");
-}
