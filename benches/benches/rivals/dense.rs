@@ -2,7 +2,7 @@
 
 use faer::linalg::solvers::Solve;
 use jointscope_benches::cases::{ADDED_MASS, Attachments, RESONATOR, SOFTENED, SUPPORT, chain, ends};
-use jointscope_lumped::{Model, Station};
+use jointscope_lumped::{Assembly, Station};
 use nalgebra::DMatrix;
 use num_complex::Complex64;
 use std::f64::consts::TAU;
@@ -23,8 +23,8 @@ pub struct Dense {
 impl Dense {
     /// The same model as [`chain`] describes, four FRFs between its ends.
     pub fn new(bodies: usize, attachments: Attachments) -> Self {
-        let free = Model::new(&chain(bodies, Attachments::None), 1000.0).expect("the modes of a chain");
-        let assembly = free.assembly();
+        let assembly =
+            Assembly::new(&chain(bodies, Attachments::None), 1000.0).expect("the modes of a chain");
         let rows = |stations: &[Station]| -> Vec<Vec<f64>> {
             stations.iter().map(|s| assembly.station_row(s)).collect()
         };
@@ -114,10 +114,10 @@ impl Dense {
 /// The stiffness of joint J0 alone is what is left of a chain of two.
 fn soften_first_joint(stiffness: &mut [f64], bodies: usize) {
     let order = 2 * bodies;
-    let pair = Model::new(&chain(2, Attachments::None), 1000.0).expect("the modes of two blocks");
+    let pair = Assembly::new(&chain(2, Attachments::None), 1000.0).expect("the modes of two blocks");
     for i in 0..4 {
         for j in 0..4 {
-            stiffness[i * order + j] += (SOFTENED - 1.0) * pair.assembly().stiffness()[i * 4 + j];
+            stiffness[i * order + j] += (SOFTENED - 1.0) * pair.stiffness()[i * 4 + j];
         }
     }
 }

@@ -43,7 +43,7 @@ fn a_fit_stands_where_it_would_come_to_rest_at_the_errors_that_it_asks_for() {
         let own = truth.physics().to_vec();
         let truth = truth.with_physics(own.into_iter().chain([lump]).collect()).unwrap();
         let pairs =
-            ["1", "2"].iter().flat_map(|i| ["1", "2", "3", "4", "5"].map(|o| FrfPair::transverse(o, *i)));
+            ["1", "2"].iter().flat_map(|i| ["1", "2", "3", "4", "5"].map(|o| FrfPair::transverse(o, i)));
         let lines = SpectralLines::even(20.0, 2.5, 430).unwrap();
         let frfs = synthesize(&truth, &pairs.collect::<Vec<_>>(), &lines, Instrument::AsRecorded).unwrap();
         let variance = frfs.all_values().iter().map(|value| 6e-6 * value.norm_sqr()).collect();
