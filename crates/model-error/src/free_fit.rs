@@ -41,9 +41,9 @@ pub(crate) struct FreeFit {
 
 /// The columns whose coefficients make up mass line and upper residual. Modes too low to be told from a mass line, a suspension's, are a part of it: what they and
 /// the residual term by itself are no recording tells apart, what they are together it tells well.
-fn residual_columns(modes: &[RecordedMode], poles: usize) -> [Vec<usize>; 2] {
-    let low = modes.iter().enumerate().filter(|(_, mode)| !mode.resolved).map(|(r, _)| r);
-    [low.chain([poles + MASS_LINE]).collect(), vec![poles + UPPER]]
+fn residual_columns(poles: &[Pole], hz: &[f64]) -> [Vec<usize>; 2] {
+    let low = (0..poles.len()).filter(|&p| poles[p].omega <= TAU * resolved_from(hz));
+    [low.chain([poles.len() + MASS_LINE]).collect(), vec![poles.len() + UPPER]]
 }
 
 /// One FRF at given poles.
@@ -78,15 +78,22 @@ impl FreeFit {
         more.filter(|more| more.chi2 < WORTH * self.chi2).unwrap_or(self)
     }
 
-    /// With a pole in the band that a model has, where that is worth its number of unknowns by Akaike's criterion: a suspension's modes on the lowest lines take little
-    /// from χ² as a whole, and without them mass lines are off by ten of their deviations.
+    /// With a pole that a model has, in the band or below it, where that is worth its number of unknowns by Akaike's criterion: what it takes from χ² as a whole may
+    /// be little, and without it mass lines are off by ten of their deviations.
     pub fn with_expected(self, recording: Recording, pole: Pole) -> Self {
         let (inside, outside) = self.poles.split_at(self.inside);
-        let inside = inside.iter().copied().chain([pole]).collect();
-        let Some(more) = FreeFit::converged(recording, inside, outside, self.terms) else { return self };
-        let unknowns = (more.unknowns() - self.unknowns()) as f64;
-        let worth = 2.0 * unknowns * more.chi2_per_dof(recording).max(1.0);
-        if self.chi2 - more.chi2 > worth { more } else { self }
+        let (mut inside, mut outside) = (inside.to_vec(), outside.to_vec());
+        let is_below = pole.omega < TAU * recording.frfs.lines().hz()[0];
+        if is_below { &mut outside } else { &mut inside }.push(pole);
+        let more = FreeFit::converged(recording, inside, &outside, self.terms);
+        more.filter(|more| self.is_worse(more, recording)).unwrap_or(self)
+    }
+
+    /// Whether another fit of the same recording is better by Akaike's criterion.
+    fn is_worse(&self, other: &FreeFit, recording: Recording) -> bool {
+        let unknowns = self.unknowns() as f64 - other.unknowns() as f64;
+        let richer = if unknowns > 0.0 { self } else { other };
+        self.chi2 - other.chi2 + 2.0 * unknowns * richer.chi2_per_dof(recording).max(1.0) > 0.0
     }
 
     fn unknowns(&self) -> usize {
@@ -197,10 +204,10 @@ impl FreeFit {
     }
 
     /// What it says of the modes in the band.
-    pub fn told(self, recording: Recording) -> Option<RecordedModes> {
+    pub fn told(&self, recording: Recording) -> Option<RecordedModes> {
         let lines = recording.frfs.lines();
         let frfs = self.fits.len();
-        let (modes, all) = (self.inside, self.poles.len());
+        let modes = self.inside;
         let residues = |r: usize| -> Vec<Complex64> { self.fits.iter().map(|f| f.coefficients[r]).collect() };
         let scale = |values: &[f64]| (values.iter().map(|v| v * v).sum::<f64>() / values.len() as f64).sqrt();
         let recorded: Vec<RecordedMode> = (0..modes)
@@ -216,34 +223,41 @@ impl FreeFit {
             let of_frf = |f: &FrfFit| columns.iter().map(|&c| f.coefficients[c].re).sum();
             self.fits.iter().map(of_frf).collect()
         };
-        let terms = residual_columns(&recorded, all).map(sum);
+        let columns = residual_columns(&self.poles, lines.hz());
+        let terms = columns.clone().map(sum);
         let residual_scales = [0, 1].map(|k| scale(&terms[k]).max(f64::MIN_POSITIVE));
         let chi2_per_dof = self.chi2_per_dof(recording);
-        let covariance = self.covariance(&recorded, &residual_scales, chi2_per_dof.max(1.0))?;
+        let [mass_line, _] = columns.clone();
+        let covariance = self.covariance(&recorded, (&residual_scales, columns), chi2_per_dof.max(1.0))?;
         Some(RecordedModes {
             pairs: recording.frfs.pairs().to_vec(),
             band: (lines.hz()[0], lines.hz()[lines.len() - 1]),
+            lowest: lines.hz()[0],
             resolved_from: resolved_from(lines.hz()),
             chi2_per_dof,
             misfit: self.misfit.iter().map(|sum| sum / (2 * frfs) as f64).collect(),
             residual_terms: (0..frfs).map(|j| [terms[0][j], terms[1][j]]).collect(),
             residual_scales,
             covariance,
-            outline: Outline::of(recording, &self.poles, self.inside, self.terms)?,
+            outline: Outline::of(recording, (&self.poles, self.inside), self.terms, mass_line)?,
             surroundings: (self.poles[modes..].to_vec(), self.terms),
             modes: recorded,
         })
     }
 
     /// Covariance of the features: each FRF's own at given poles, and what the poles' covariance makes of all of them.
-    fn covariance(&self, modes: &[RecordedMode], scales: &[f64; 2], inflation: f64) -> Option<Vec<f64>> {
+    fn covariance(
+        &self,
+        modes: &[RecordedMode],
+        (scales, [mass_line, upper]): (&[f64; 2], [Vec<usize>; 2]),
+        inflation: f64,
+    ) -> Option<Vec<f64>> {
         let (m, all, frfs) = (modes.len(), self.poles.len(), self.fits.len());
         let count = 2 * m + 2 * m * frfs + 2 * frfs;
         let order = 2 * all;
         let of_poles = Cholesky::of(order, &self.information)?.inverse();
         // Each feature as (FRF, coefficients of which it is the sum, imaginary part or not, scale); poles stand for themselves.
         let residue = |r: usize, frf: usize, im: bool| (frf, vec![r], im, modes[r].scale);
-        let [mass_line, upper] = residual_columns(modes, all);
         let mut told = Vec::new();
         for r in 0..m {
             told.extend((0..frfs).flat_map(|frf| [residue(r, frf, false), residue(r, frf, true)]));

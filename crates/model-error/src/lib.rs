@@ -41,7 +41,7 @@
 //! let frfs = frfs.with_variance(variance)?;
 //!
 //! let recording = Recording { frfs: &frfs, weights: &weights };
-//! let recorded = RecordedModes::of(recording, &ModesOptions::default(), &[]).ok_or("no modes")?;
+//! let recorded = RecordedModes::of(recording, &ModesOptions::default(), |_| Vec::new()).ok_or("no modes")?;
 //! let natural = (5e6_f64 / 1.2).sqrt();
 //! assert!((recorded.modes[0].pole.omega / natural - 1.0).abs() < 1e-6);
 //!

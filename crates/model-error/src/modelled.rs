@@ -3,7 +3,7 @@
 //!
 //! The FRFs are analytic functions of the complex frequency, effects and measuring chain included, so nothing here knows what an effect does.
 
-use crate::basis::{MASS_LINE, Pole, UPPER};
+use crate::basis::{Pole, UPPER};
 use crate::matching::Pairing;
 use crate::outline::grid;
 use crate::recorded::RecordedModes;
@@ -94,7 +94,7 @@ pub fn modes_within(fixture: &Fixture, frfs: &FrfSet) -> Option<usize> {
 /// over a grid of frequencies, close by where effects resonate by themselves, and from the recording's own modes.
 fn poles(test: &ModelledTest, fixture: &Fixture, recorded: &RecordedModes) -> Vec<Complex64> {
     let mut all = peaking(test, &recorded.outline.grid, recorded.frfs());
-    let (low, high) = (BEYOND.0 * recorded.band.0, BEYOND.1 * recorded.band.1);
+    let (low, high) = (BEYOND.0 * recorded.lowest, BEYOND.1 * recorded.band.1);
     let near = |about: &SpectralLines| about.hz()[0] < high && about.hz().iter().any(|hz| *hz > low);
     for about in fixture.effects().filter_map(about_own_resonance).filter(near) {
         peaking(test, &about, recorded.frfs()).into_iter().for_each(|pole| add(&mut all, pole));
@@ -196,13 +196,12 @@ impl RecordedModes {
         ModelledTest::new(fixture, &self.pairs, self.band.1, Instrument::AsRecorded).ok()
     }
 
-    /// The modes in the band that a fixture has and this recording, as far as it is told, has not.
+    /// The modes that a fixture has in the band or a little below it, and this recording, as far as it is told, has not.
     pub fn unpaired(&self, fixture: &Fixture) -> Vec<Pole> {
         let Some(modelled) = ModelledModes::of(fixture, self) else { return Vec::new() };
         let pairing = Pairing::of(self, &modelled);
-        let band = TAU * self.band.0..TAU * self.band.1;
         let alone = |(index, mode): &(usize, &ModelledMode)| {
-            band.contains(&mode.pole.omega) && pairing.pairs.iter().all(|(_, m)| m != index)
+            mode.pole.omega < TAU * self.band.1 && pairing.pairs.iter().all(|(_, m)| m != index)
         };
         modelled.modes.iter().enumerate().filter(alone).map(|(_, mode)| mode.pole).collect()
     }
@@ -249,14 +248,18 @@ impl ModelledModes {
                 *value -= modal.map(|mode| mode.pole.accelerance(s) * mode.residues[frf]).sum::<Complex64>();
             }
             let coefficients = recorded.outline.projections[frf].coefficients(values);
-            let term = |k: usize| coefficients[recorded_poles + k].re;
             let low: f64 = of(|part| part == Part::Unresolved).map(|mode| mode.residues[frf].re).sum();
-            let unresolved = recorded.modes.iter().zip(&coefficients).filter(|(mode, _)| !mode.resolved);
-            let leaked: f64 = unresolved.map(|(_, leak)| leak.re).sum();
-            residual_terms.push([term(MASS_LINE) + low + leaked, term(UPPER)]);
+            let mass_line: f64 = recorded.outline.mass_line.iter().map(|&c| coefficients[c].re).sum();
+            residual_terms.push([mass_line + low, coefficients[recorded_poles + UPPER].re]);
             leaks.push(coefficients[..recorded.outline.inside].to_vec());
         }
         Some(ModelledModes { modes, parts, residual_terms, leaks })
+    }
+
+    /// Whether a mode is a part of the mass line.
+    pub(crate) fn is_low(&self, index: usize, recorded: &RecordedModes) -> bool {
+        let below = self.modes[index].pole.omega < TAU * recorded.band.0;
+        self.parts[index] == Part::Unresolved || self.parts[index] == Part::Beyond && below
     }
 
     /// Whether both count their modes as the same.

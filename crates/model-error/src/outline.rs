@@ -24,6 +24,8 @@ pub(crate) struct Outline {
     pub poles: usize,
     /// How many of them are modes in the band; they come first.
     pub inside: usize,
+    /// The columns that make up the mass line.
+    pub mass_line: Vec<usize>,
 }
 
 /// Lines of an outline, at least, and for each pole and residual term.
@@ -35,7 +37,12 @@ const GRID_PER_MODE: usize = 24;
 
 impl Outline {
     /// Of a recording that was fitted with `poles`, the first `inside` of them in the band, and so many residual terms.
-    pub fn of(recording: Recording, poles: &[Pole], inside: usize, terms: usize) -> Option<Self> {
+    pub fn of(
+        recording: Recording,
+        (poles, inside): (&[Pole], usize),
+        terms: usize,
+        mass_line: Vec<usize>,
+    ) -> Option<Self> {
         let hz = recording.frfs.lines().hz();
         let n = hz.len();
         let count = OUTLINE.max(OUTLINE_PER_COLUMN * (poles.len() + terms)).min(n);
@@ -60,6 +67,7 @@ impl Outline {
             recorded: n,
             poles: poles.len(),
             inside,
+            mass_line,
         })
     }
 }

@@ -28,7 +28,7 @@ pub struct RecordedMode {
     pub residues: Vec<Complex64>,
     /// Root mean square of the residues over the FRFs.
     pub scale: f64,
-    /// Whether it lies far enough above the lowest line to be told from a residual term.
+    /// Whether it lies far enough above the lowest line that counts to be told from a residual term.
     pub resolved: bool,
 }
 
@@ -38,8 +38,10 @@ pub struct RecordedModes {
     pub(crate) pairs: Vec<FrfPair>,
     /// The modes in the band, ascending.
     pub modes: Vec<RecordedMode>,
-    /// Lowest and highest line, Hz.
+    /// Lowest and highest line that counts, Hz.
     pub band: (f64, f64),
+    /// Lowest line, counted or not, Hz.
+    pub(crate) lowest: f64,
     /// Frequency, Hz, from which on modes can be told from residual terms.
     pub(crate) resolved_from: f64,
     /// χ² per degree of freedom of the free fit.
@@ -60,11 +62,70 @@ pub struct RecordedModes {
 /// Where modes above the band are looked for, as multiples of its upper end.
 const BEYOND: [f64; 2] = [1.06, 1.3];
 
+/// The free fit that is begun with poles in and out of the band, with what else the recording asks for: modes just outside the band, then more residual terms.
+fn free_fit(recording: Recording, inside: Vec<Pole>, outside: &[Pole]) -> Option<FreeFit> {
+    let mut fit = FreeFit::converged(recording, inside, outside, TERMS.0)?;
+    let lines = recording.frfs.lines().hz();
+    let (low, high) = (TAU * lines[0], TAU * lines[lines.len() - 1]);
+    let beyond = |by: f64| Pole { omega: high * by, damping_ratio: 0.01 };
+    let outside = BEYOND.into_iter().map(beyond).chain([Pole { omega: 0.7 * low, damping_ratio: 0.02 }]);
+    for pole in outside {
+        fit = fit.with(recording, pole);
+    }
+    while fit.terms < TERMS.1 {
+        let (inside, outside) = fit.poles.split_at(fit.inside);
+        match FreeFit::converged(recording, inside.to_vec(), outside, fit.terms + 1) {
+            Some(more) if fit.is_poor(recording) || fit.lacks(&more, recording) => fit = more,
+            _ => break,
+        }
+    }
+    Some(fit)
+}
+
+/// A recording without its lowest lines.
+struct Above {
+    frfs: FrfSet,
+    weights: Vec<f64>,
+}
+
+impl Above {
+    /// The lines above modes too low to be told from a mass line, as far as the others stay told from one; `None` where there are no such modes, and where lines are so
+    /// uneven that more than the lowest few would have to go.
+    fn of(recording: Recording, poles: &[Pole]) -> Option<Self> {
+        let hz = recording.frfs.lines().hz();
+        let (from, reach) = (resolved_from(hz), resolved_from(hz) - hz[0]);
+        let is_low = |pole: &&Pole| pole.omega <= TAU * from;
+        poles.iter().find(is_low)?;
+        let lowest = poles.iter().filter(|pole| !is_low(pole)).map(|pole| pole.omega / TAU);
+        let cut = lowest.fold(from, |cut, resolved| cut.min(resolved - reach));
+        let first = hz.partition_point(|hz| *hz < cut * (1.0 - 1e-9));
+        if first == 0 || first > 2 * RESOLVED as usize {
+            return None;
+        }
+        Above::line(recording, first)
+    }
+
+    fn line(recording: Recording, first: usize) -> Option<Self> {
+        let of_frf = recording.weights.chunks_exact(recording.frfs.lines().len());
+        let weights = of_frf.flat_map(|weights| &weights[first..]).copied().collect();
+        Some(Above { frfs: recording.frfs.on_lines(|line| line >= first)?, weights })
+    }
+
+    fn recording(&self) -> Recording<'_> {
+        Recording { frfs: &self.frfs, weights: &self.weights }
+    }
+}
+
 impl RecordedModes {
     /// The modes of a recording; `None` where it has none that can be told.
     ///
-    /// Where they leave more than noise, poles that a model `expected` are tried besides: two modes on a few lines look like one.
-    pub fn of(recording: Recording, options: &ModesOptions, expected: &[Pole]) -> Option<Self> {
+    /// Poles that a model `expected` besides what they show by themselves are tried too: two modes on a few lines look like one. Where there are modes too low to be
+    /// told from a mass line, the band begins above them: where they are on a few lines many poles fit as well, and mass lines differ with them by many deviations.
+    pub fn of(
+        recording: Recording,
+        options: &ModesOptions,
+        expected: impl FnOnce(&RecordedModes) -> Vec<Pole>,
+    ) -> Option<Self> {
         let analysis = ModalAnalysis::of(recording.frfs, options).ok()?;
         let poles = |modes: &[jointscope_modes::Mode]| -> Vec<Pole> {
             let pole = |m: &jointscope_modes::Mode| Pole {
@@ -73,27 +134,27 @@ impl RecordedModes {
             };
             modes.iter().map(pole).filter(|p| p.damping_ratio > 0.0 && p.damping_ratio < 1.0).collect()
         };
-        let (inside, outside) = (poles(&analysis.modes), poles(&analysis.outside));
-        let mut fit = FreeFit::converged(recording, inside, &outside, TERMS.0)?;
-        let lines = recording.frfs.lines().hz();
-        let (low, high) = (TAU * lines[0], TAU * lines[lines.len() - 1]);
-        // Modes just outside the band, then more residual terms, then modes that the model expects in it.
-        let beyond = |by: f64| Pole { omega: high * by, damping_ratio: 0.01 };
-        let outside = BEYOND.into_iter().map(beyond).chain([Pole { omega: 0.7 * low, damping_ratio: 0.02 }]);
-        for pole in outside {
-            fit = fit.with(recording, pole);
-        }
-        while fit.terms < TERMS.1 {
-            let (inside, outside) = fit.poles.split_at(fit.inside);
-            match FreeFit::converged(recording, inside.to_vec(), outside, fit.terms + 1) {
-                Some(more) if fit.is_poor(recording) || fit.lacks(&more, recording) => fit = more,
-                _ => break,
-            }
-        }
-        for pole in expected {
-            fit = fit.with_expected(recording, *pole);
-        }
-        fit.told(recording)
+        let fit = free_fit(recording, poles(&analysis.modes), &poles(&analysis.outside))?;
+        let alone = fit.told(recording)?;
+        let expected = expected(&alone);
+        let all: Vec<Pole> = fit.poles[..fit.inside].iter().chain(&expected).copied().collect();
+        let Some(above) = Above::of(recording, &all) else {
+            let with = |fit: FreeFit, pole: &Pole| fit.with_expected(recording, *pole);
+            return match expected.is_empty() {
+                true => Some(alone),
+                false => expected.iter().fold(fit, with).told(recording),
+            };
+        };
+        let (recording, from) = (above.recording(), TAU * above.frfs.lines().hz()[0]);
+        let (low, within): (Vec<Pole>, Vec<Pole>) =
+            fit.poles[..fit.inside].iter().partition(|p| p.omega < from);
+        let fit = free_fit(recording, within, &fit.poles[fit.inside..])?;
+        let fit = low.into_iter().chain(expected).fold(fit, |fit, pole| fit.with_expected(recording, pole));
+        let mut told = fit.told(recording)?;
+        let below = alone.misfit.len() - told.misfit.len();
+        (told.lowest, told.outline.grid) = (alone.lowest, alone.outline.grid);
+        told.misfit.splice(..0, alone.misfit[..below].iter().copied());
+        Some(told)
     }
 
     /// These modes as a model that is calibrated on a `baseline` should have them: what the baseline's modes differ by from those of the model
@@ -165,12 +226,14 @@ impl RecordedModes {
     ///
     /// Where a structure stays the same they differ by their noise.
     pub fn one_by_one(&self, recording: Recording) -> Vec<Option<RecordedModes>> {
-        let n = recording.frfs.lines().len();
+        let below = recording.frfs.lines().hz().partition_point(|hz| *hz < self.band.0);
+        let Some(above) = Above::line(recording, below) else { return Vec::new() };
+        let n = above.frfs.lines().len();
         let poles: Vec<Pole> = self.modes.iter().map(|mode| mode.pole).collect();
         let (outside, terms) = &self.surroundings;
         let of = |index: usize| {
-            let frfs = recording.frfs.of_frfs(|frf| frf == index)?;
-            let weights = recording.weights.get(index * n..(index + 1) * n)?;
+            let frfs = above.frfs.of_frfs(|frf| frf == index)?;
+            let weights = above.weights.get(index * n..(index + 1) * n)?;
             let alone = Recording { frfs: &frfs, weights };
             FreeFit::converged(alone, poles.clone(), outside, *terms)?.told(alone)
         };

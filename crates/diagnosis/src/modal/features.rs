@@ -52,10 +52,6 @@ pub(crate) fn recorded(observation: &Observation, nominal: &Hypothesis) -> Optio
     let expected = || jointscope_model_error::modes_within(&nominal.to_fixture().ok()?, observation.frfs());
     let orders = observation.has_scatter_for_noise().then(expected).flatten().map(|modes| (2, 2 * modes + 8));
     let options = ModesOptions { orders, ..ModesOptions::default() };
-    let alone = RecordedModes::of(recording, &options, &[])?;
-    let expected = alone.unpaired(&nominal.to_fixture().ok()?);
-    match expected.is_empty() {
-        true => Some(alone),
-        false => RecordedModes::of(recording, &options, &expected),
-    }
+    let fixture = nominal.to_fixture().ok()?;
+    RecordedModes::of(recording, &options, |alone| alone.unpaired(&fixture))
 }

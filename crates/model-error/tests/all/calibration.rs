@@ -118,7 +118,7 @@ fn a_band_from_0_hz_has_no_modes() {
     let from_zero = SpectralLines::even(0.0, 2.5, 400).unwrap();
     let set = Recorded::of(&blocks(""), &four(), &from_zero, noise(Some(1)));
     let recording = Recording { frfs: &set.set, weights: &set.weights };
-    assert!(RecordedModes::of(recording, &ModesOptions::default(), &[]).is_none());
+    assert!(RecordedModes::of(recording, &ModesOptions::default(), |_| Vec::new()).is_none());
 }
 
 #[test]
@@ -130,4 +130,26 @@ fn close_modes_are_told_in_the_order_of_frequency() {
         let hz: Vec<f64> = modes.iter().map(|mode| mode.pole.omega / TAU).collect();
         assert!(hz.is_sorted() && hz.len() == 4, "seed {seed}: modes at {hz:.2?} Hz");
     }
+}
+
+#[test]
+fn mass_lines_beside_a_suspension_differ_by_the_deviations_that_are_stated() {
+    const SEEDS: u64 = 20;
+    let fixture = suspended();
+    let lines = SpectralLines::even(2.5, 2.5, 400).unwrap();
+    let (mut chi2, mut count) = (0.0, 0);
+    for seed in 0..SEEDS {
+        let set = Recorded::of(&fixture, &four(), &lines, noise(Some(seed)));
+        let recording = Recording { frfs: &set.set, weights: &set.weights };
+        let expected = |alone: &RecordedModes| alone.unpaired(&fixture);
+        let recorded = RecordedModes::of(recording, &ModesOptions::default(), expected).unwrap();
+        assert_eq!(recorded.misfit.len(), lines.len());
+        let compared = Compared::of(&fixture, recorded);
+        let own = chi2_and_ln_determinant(&compared.noise(), &compared.difference()).0;
+        println!("seed {seed}: χ² {own:.1} of {} features", compared.comparison.count());
+        chi2 += own;
+        count += compared.comparison.count();
+    }
+    let mean = chi2 / count as f64;
+    assert!((mean - 1.0).abs() < 0.15, "χ² of all features per feature {mean:.3}");
 }

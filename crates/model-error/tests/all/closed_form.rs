@@ -167,6 +167,32 @@ fn an_error_of_the_shape_moves_residues_by_both_channels() {
 }
 
 #[test]
+fn an_error_of_the_shape_of_a_suspension_mode_is_one_of_mass_lines() {
+    // Both masses at 14 Hz on one spring, below the lowest line: φ² = 1/(5 kg), and so are mass lines.
+    let stiffness = 5.0 * (TAU * 14.0).powi(2);
+    let support =
+        format!(r#"{{"kind": "support", "place": "A", "x": 0, "stiffness": {stiffness}, "damping": 20}}"#);
+    let fixture = two_masses(0.01, &support);
+    let pairs = pairs(&[("1", "1"), ("2", "1")]);
+    let compared = Compared::of(&fixture, Recorded::of(&fixture, &pairs, &lines(600.0), noise(None)).modes());
+    assert_eq!((compared.modelled.modes.len(), compared.recorded.modes.len()), (2, 1));
+    let sizes = ErrorSizes { shape: 1.0, ..ErrorSizes::from_array([0.0; 7]) };
+    let (with, without, n) =
+        (compared.comparison.covariance(&sizes), compared.noise(), compared.comparison.count());
+    let first = n - 4;
+    for (i, row) in [[4.0, 2.0], [2.0, 2.0]].iter().enumerate() {
+        for (j, expected) in row.iter().enumerate() {
+            let at = (first + 2 * i) * n + first + 2 * j;
+            let entry = with[at] - without[at];
+            assert!(
+                (entry / expected - 1.0).abs() < 0.02,
+                "mass lines {i} and {j}: {entry}, expected {expected}"
+            );
+        }
+    }
+}
+
+#[test]
 fn modes_left_alone_are_not_compared() {
     let fixture = two_masses(0.01, "");
     let recorded = Recorded::of(&fixture, &pairs(&[("2", "1")]), &lines(600.0), noise(None)).modes();
