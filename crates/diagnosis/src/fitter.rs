@@ -242,15 +242,18 @@ impl<'a> Fitter<'a> {
         self.end(at, f64::INFINITY)
     }
 
-    /// The best of a local and a global fit and, where those leave much, of global fits from about the start: one deviation up and down each
-    /// quantity that is widely known.
-    pub fn searched(&self, start: &Hypothesis) -> Option<Fit> {
-        let first = [self.global(start), self.local(start, None, f64::INFINITY)];
-        let best = |a: Fit, b: Fit| if b.objective < a.objective { b } else { a };
-        let first = first.into_iter().flatten().reduce(best)?;
+    /// The best of a local and a global fit.
+    pub fn refitted(&self, start: &Hypothesis) -> Option<Fit> {
+        let both = [self.global(start), self.local(start, None, f64::INFINITY)];
+        both.into_iter().flatten().reduce(better)
+    }
+
+    /// The `first` fit or, where that leaves much, the best of it and of global fits from about the start: one deviation up and down each quantity that is widely
+    /// known.
+    pub fn refitted_widely(&self, start: &Hypothesis, first: Fit) -> Fit {
         let (much, followed) = self.settings.fit.other_starts;
         if first.chi2_per_dof(self.observation) < much {
-            return Some(first);
+            return first;
         }
         let observation = self.thinned();
         let thinned = self.on(&observation);
@@ -263,7 +266,7 @@ impl<'a> Fitter<'a> {
         fits.sort_by(|a, b| a.objective.total_cmp(&b.objective));
         fits.truncate(followed);
         let fits: Vec<Option<Fit>> = fits.par_iter().map(|f| self.after_thinned(&f.hypothesis)).collect();
-        fits.into_iter().flatten().chain([first]).reduce(best)
+        fits.into_iter().flatten().fold(first, |best, fit| better(fit, best))
     }
 
     /// The fit without effect `index` that is reached by making the effect smaller step by step, so that the quantities can take over
@@ -285,6 +288,11 @@ impl<'a> Fitter<'a> {
         }
         self.local(&without.with_coordinates_of(&at), None, f64::INFINITY)
     }
+}
+
+/// The one of lower objective, the first where both are alike.
+fn better(a: Fit, b: Fit) -> Fit {
+    if b.objective < a.objective { b } else { a }
 }
 
 #[cfg(test)]
@@ -347,7 +355,8 @@ mod tests {
             let settings = Settings::default();
             let fitter = Fitter { observation: &observation, settings: &settings, watch: Watch::default() };
             let objective = |known: [f64; 4]| {
-                fitter.searched(&Hypothesis::nominal(&blocks(known), true)).unwrap().objective
+                let nominal = Hypothesis::nominal(&blocks(known), true);
+                fitter.refitted_widely(&nominal, fitter.refitted(&nominal).unwrap()).objective
             };
             let mut looser = [1.0; 4];
             looser[group] = times;

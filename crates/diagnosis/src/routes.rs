@@ -40,9 +40,9 @@ pub(crate) fn judged(
     options: &DiagnosisOptions,
 ) -> Result<Parts, DiagnosisError> {
     let division = Division::of(fitter.observation, options)?;
-    let within = Search::without_effects(fitter, fixture, options.exact)
-        .ok_or(DiagnosisError::Lines(SpectraError::NoLines))?
-        .with_wrong_quantities(fitter);
+    let refitted = Search::without_effects(fitter, fixture, options.exact)
+        .ok_or(DiagnosisError::Lines(SpectraError::NoLines))?;
+    let within = refitted.clone().with_wrong_quantities(fitter);
     // Where the fixture as refitted leaves more than noise, the comparison by modes says whether the model itself is in error: if it is, the noise
     // of the lines decides nothing.
     let modal = match within.lacks_much(fitter, &within.refitted) {
@@ -56,7 +56,7 @@ pub(crate) fn judged(
         Some(modal) => {
             Search { candidates: modal.candidates.clone(), ..within }.refitted_from(fitter, &modal.refitted)
         }
-        None => within,
+        None => refitted.refitted_widely(fitter).with_wrong_quantities(fitter),
     };
     let of = (fixture, options.exact);
     let known = modal.as_ref();
@@ -231,7 +231,9 @@ fn blind(
     known: Option<&ModalJudgement>,
 ) -> Option<Search> {
     fitter.watch.stage("searching without the lines that are held out");
-    let alone = Search::without_effects(fitter, fixture, exact)?.with_wrong_quantities(fitter);
+    let alone = Search::without_effects(fitter, fixture, exact)?;
+    let alone =
+        if known.is_none() { alone.refitted_widely(fitter) } else { alone }.with_wrong_quantities(fitter);
     let modal = known.and_then(|modal| {
         let known = modal.known(fitter.settings.modal.blind);
         ModalJudgement::of(fitter, &alone.nominal.hypothesis, &alone.candidates, Some(&known))

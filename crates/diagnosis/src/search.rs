@@ -44,8 +44,14 @@ impl Search {
     pub(crate) fn without_effects(fitter: &Fitter, fixture: &Fixture, exact: bool) -> Option<Self> {
         let start = Search::as_stated(fitter, fixture, exact)?;
         fitter.watch.stage("refitting the fixture within its tolerances");
-        let refitted = fitter.searched(&start.nominal.hypothesis)?;
+        let refitted = fitter.refitted(&start.nominal.hypothesis)?;
         Some(Search { repaired: refitted.clone(), refitted, ..start })
+    }
+
+    /// The same, the fixture refitted from more starts: where no modes lead out of a false minimum.
+    pub(crate) fn refitted_widely(self, fitter: &Fitter) -> Self {
+        let refitted = fitter.refitted_widely(&self.nominal.hypothesis, self.refitted);
+        Search { repaired: refitted.clone(), refitted, ..self }
     }
 
     /// The same with quantities that had to depart among the candidates.
@@ -83,7 +89,8 @@ impl Search {
     /// Searches for effects with the default settings. `None` where the fixture predicts no finite FRFs.
     pub fn of(fixture: &Fixture, observation: &Observation, exact: bool) -> Option<Self> {
         let fitter = Fitter { observation, settings: &Settings::default(), watch: Watch::default() };
-        Some(Search::searched(&fitter, Search::without_effects(&fitter, fixture, exact)?))
+        let start = Search::without_effects(&fitter, fixture, exact)?.refitted_widely(&fitter);
+        Some(Search::searched(&fitter, start))
     }
 
     /// Searches for effects from the fixture as it stands and refitted.
