@@ -5,6 +5,7 @@ mod baselines;
 mod cases;
 mod common;
 mod concealed;
+mod features;
 mod one_route;
 mod routes;
 mod scoring;
