@@ -32,7 +32,7 @@ fn a_diagnosis_comes_with_its_tables_curves_figures_and_the_frfs_of_its_models()
     bench.done(&["diagnose", "fixture.json", "hammer-test.uff", "--also", "csv,svg,uff", "-o", "out"]);
     let page = bench.text("out/report.html");
     assert_eq!(files(&bench, "out/tables").len(), page.matches("<table").count());
-    let plots = page.matches("<figure class=\"plot\"").count();
+    let plots = page.matches("data-plot=").count();
     assert_eq!(files(&bench, "out/curves").len(), plots);
     assert_eq!(files(&bench, "out/figures").len(), plots + page.matches("<figure class=\"sketch\"").count());
     for name in files(&bench, "out/figures") {
