@@ -54,7 +54,7 @@ pub use averages::{Averages, MatrixAverage};
 pub use estimate::{Element, Estimate, Figure, Method, Part};
 pub use interfaces::{Compliance, InterfaceStiffness, Interfaces, interfaces};
 pub use joint_fit::{
-    Admissible, FittedLength, FittedQuantity, FoundJoint, JointFit, JointFitOptions, JointLikelihood,
+    Admissible, FittedFrfs, FittedLength, FittedQuantity, FoundJoint, JointFit, JointFitOptions, JointLikelihood,
     JointTests, JointsCovariance, JointsFit, LawFit, LawKind, SeveralError, UnmovedQuantity, fit_joint,
     fit_joints,
 };
