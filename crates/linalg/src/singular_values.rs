@@ -79,7 +79,9 @@ mod tests {
         assert_eq!(singular_values(3, &row).unwrap().len(), 1);
         assert!((singular_values(1, &row).unwrap()[0] - 5.0).abs() < 1e-15);
         assert_eq!(singular_values(3, &[Complex64::ZERO; 6]), Ok(vec![0.0, 0.0]));
-        for (columns, matrix) in [(2, &row[..]), (0, &row[..]), (1, &[]), (1, &[Complex64::new(f64::NAN, 0.0)])] {
+        for (columns, matrix) in
+            [(2, &row[..]), (0, &row[..]), (1, &[]), (1, &[Complex64::new(f64::NAN, 0.0)])]
+        {
             assert_eq!(singular_values(columns, matrix), Err(EigenError::Shape { order: columns }));
         }
     }

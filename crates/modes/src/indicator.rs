@@ -35,10 +35,11 @@ impl ModeIndicator {
             let same = |pair: &FrfPair| pair.response == *response && pair.reference == *reference;
             all.iter().position(same)
         };
-        let matrix = responses.iter().flat_map(|response| {
-            references.iter().map(move |reference| place(response, reference))
-        });
-        let matrix: Vec<&[Complex64]> = matrix.map(|index| Some(frfs.values(index?))).collect::<Option<_>>()?;
+        let matrix = responses
+            .iter()
+            .flat_map(|response| references.iter().map(move |reference| place(response, reference)));
+        let matrix: Vec<&[Complex64]> =
+            matrix.map(|index| Some(frfs.values(index?))).collect::<Option<_>>()?;
         let count = responses.len().min(references.len());
         let mut curves = vec![Vec::with_capacity(frfs.lines().len()); count];
         let mut at_line = Vec::with_capacity(matrix.len());

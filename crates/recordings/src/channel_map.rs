@@ -254,14 +254,14 @@ impl MapEntry {
         let entry = || text.to_owned();
         let form = || ChannelMapError::Form { entry: entry() };
         let (file, fixture) = text.split_once('=').ok_or_else(form)?;
-        let (node, file_direction, point, direction) =
-            match (file.rsplit_once(':'), fixture.rsplit_once(':')) {
-                (Some((node, file_direction)), Some((point, direction))) => {
-                    (node.trim(), file_direction, point.trim(), direction)
-                }
-                (None, None) if AXES.contains(&signed(file).1.as_str()) => ("*", file, "*", fixture),
-                _ => return Err(form()),
-            };
+        let (node, file_direction, point, direction) = match (file.rsplit_once(':'), fixture.rsplit_once(':'))
+        {
+            (Some((node, file_direction)), Some((point, direction))) => {
+                (node.trim(), file_direction, point.trim(), direction)
+            }
+            (None, None) if AXES.contains(&signed(file).1.as_str()) => ("*", file, "*", fixture),
+            _ => return Err(form()),
+        };
         let nodes = nodes(node, point).map_err(|problem| match problem {
             None => ChannelMapError::Star { entry: entry() },
             Some(found) => ChannelMapError::Node { entry: entry(), found },

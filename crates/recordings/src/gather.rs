@@ -102,10 +102,7 @@ pub(crate) fn check_entries_apply(
 ) -> Result<(), RecordingError> {
     let applies = |entry: &&MapEntry| channels.iter().any(|channel| entry.applies_to(*channel));
     if let Some(entry) = map.entries().iter().find(|entry| !applies(entry) && !channels.is_empty()) {
-        return Err(RecordingError::MapUnused {
-            entry: entry.text.clone(),
-            channels: enumeration(channels),
-        });
+        return Err(RecordingError::MapUnused { entry: entry.text.clone(), channels: enumeration(channels) });
     }
     for &channel in channels {
         let mut entries = map.entries_of(channel);

@@ -21,12 +21,14 @@ pub(crate) fn plot(measured: &FrfSet, fixture: Option<&FrfSet>) -> Option<Plot> 
         (Some(indicator.clone()), "measured", Style::Line),
         (fixture.and_then(ModeIndicator::of), "fixture", Style::Dashed),
     ];
-    let curves = sources.iter().filter_map(|(indicator, what, style)| Some((indicator.as_ref()?, what, style)));
+    let curves =
+        sources.iter().filter_map(|(indicator, what, style)| Some((indicator.as_ref()?, what, style)));
     let plot = curves.fold(plot, |plot, (indicator, what, style)| {
         let first = &indicator.curves[0];
         let named = indicator.curves.iter().zip(NAMES).enumerate();
         named.fold(plot, |plot, (place, (curve, name))| {
-            let drawn = curve.iter().zip(first).map(|(value, first)| (*value > ROUNDING * first).then_some(*value));
+            let drawn =
+                curve.iter().zip(first).map(|(value, first)| (*value > ROUNDING * first).then_some(*value));
             plot.series(*style, format!("{name} {what}"), Role::Trace(place), drawn)
         })
     });
@@ -46,8 +48,12 @@ fn caption(indicator: &ModeIndicator, measured: &FrfSet) -> String {
         false => String::new(),
     };
     let reading = match indicator.curves.len() {
-        1 => "Of one reference or response it is the root of the FRFs' summed squares: each peak is one mode or several.",
-        _ => "Each peak of the first is a mode; where two modes are close to each other, the second peaks as well.",
+        1 => {
+            "Of one reference or response it is the root of the FRFs' summed squares: each peak is one mode or several."
+        }
+        _ => {
+            "Each peak of the first is a mode; where two modes are close to each other, the second peaks as well."
+        }
     };
     let some = if indicator.curves.len() > DRAWN { " The largest four are drawn." } else { "" };
     format!("Singular values of the matrix of FRFs, responses {of}{part}. {reading}{some}")

@@ -4,10 +4,10 @@ use std::path::PathBuf;
 
 use clap::Args;
 use jointscope::check::{Check, CheckOptions, Figure, Weight};
-use jointscope::{check_file, checked_frfs};
 use jointscope::estimation::ResponseWindow;
 use jointscope::report::check_report;
 use jointscope::report::format::quantity;
+use jointscope::{check_file, checked_frfs};
 use serde_json::Value;
 
 use crate::answered::{Also, Answered, Destination, PAGE};

@@ -148,9 +148,10 @@ fn with_frfs(
 ) -> Result<Answered, Refusal> {
     match fit.filter(|_| destination.also.contains(&Also::Uff)) {
         Some(fit) => answered.frfs = fitted_frfs(fit, fixture).map_err(Refusal::new)?,
-        None if destination.also.contains(&Also::Uff) => answered
-            .notes
-            .push("no FRFs are written: there is no joint from all FRFs, and K and C by line are no FRFs".to_owned()),
+        None if destination.also.contains(&Also::Uff) => answered.notes.push(
+            "no FRFs are written: there is no joint from all FRFs, and K and C by line are no FRFs"
+                .to_owned(),
+        ),
         None => {}
     }
     Ok(answered)

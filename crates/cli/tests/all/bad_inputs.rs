@@ -546,6 +546,8 @@ const ARGUMENTS: &[(&str, &str)] = &[
     ("decompose two.json frf.uff --map 1=2 -o out", "--map|101:+z=1:+y"),
     ("decompose two.json frf.uff --map 1:+z=7:+y -o out", "`7`|1, 2, 3, 4"),
     ("decompose two.json frf.uff --map +z=+y -o out", "`+z=+y` applies to no channel|1:+y"),
+    ("decompose two.json frf.uff --map -z=+y -o out", "minus on the right|`--map z=-y`"),
+    ("decompose two.json frf.uff --map -rz=+theta -o out", "minus on the right|`--map rz=-theta`"),
     ("decompose two.json frf.uff --map z=x -o out", "--map|`x`|y, theta of a fixture"),
     ("decompose two.json frf.uff --map *:+y=1:+y -o out", "`*:+y=1:+y`|once on both sides"),
     ("decompose two.json frf.uff --map y=y +y=-y -o out", "`y=y` and `+y=-y`|leave one out"),

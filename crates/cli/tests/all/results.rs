@@ -85,7 +85,10 @@ fn a_decomposition_and_a_check_come_with_the_frfs_of_the_fixture_and_of_the_join
     assert!(apart(&nominal, &measured) > 0.5, "{}", apart(&nominal, &measured));
     bench.done(&["check", "fixture.json", "hammer-test.uff", "--also", "uff", "-o", "checked"]);
     assert_eq!(files(&bench, "checked/frfs"), ["measured.uff", "nominal.uff", "residual-nominal.uff"]);
-    assert_eq!(frfs(&bench, "checked/frfs/nominal.uff").len(), frfs(&bench, "checked/frfs/measured.uff").len());
+    assert_eq!(
+        frfs(&bench, "checked/frfs/nominal.uff").len(),
+        frfs(&bench, "checked/frfs/measured.uff").len()
+    );
     // What is measured comes back with the coherence that it had.
     let coherences = |name: &str| {
         let all = bench.datasets(name).into_iter();
@@ -102,7 +105,10 @@ fn what_a_command_does_not_have_is_refused_before_the_work() {
         &["compare", "joint", "--also", "uff", "-o", "out"],
         &["--also uff", "`compare` has none", "`diagnose`, `decompose`, `modes` and `check`"],
     );
-    bench.refused(&["check", "two.json", "--also", "uff", "-o", "out"], &["no recording is given", "`synthesize`"]);
+    bench.refused(
+        &["check", "two.json", "--also", "uff", "-o", "out"],
+        &["no recording is given", "`synthesize`"],
+    );
     bench.refused(&["decompose", "two.json", "frf.uff", "--also", "csv", "--json"], &["--output <DIR>"]);
     bench.refused(
         &["diagnose", "two.json", "frf.uff", "--also", "png", "-o", "out"],

@@ -7,7 +7,9 @@ use super::likelihood::ELEMENTS;
 use super::problem::{Fitted, Problem};
 use super::quantities::Uncertain;
 use super::uncertainty::{length_between, strain, total, units};
-use super::{FittedFrfs, FittedQuantity, JointFit, JointLikelihood, JointTests, LawFit, SeveralError, UnmovedQuantity};
+use super::{
+    FittedFrfs, FittedQuantity, JointFit, JointLikelihood, JointTests, LawFit, SeveralError, UnmovedQuantity,
+};
 use jointscope_inference::{Covariance, NormalEquations};
 use jointscope_linalg::Cholesky;
 use std::sync::Arc;

@@ -29,8 +29,9 @@ fn accelerance(pair: &FrfPair, omega: f64) -> Complex64 {
 
 fn set(pairs: Vec<FrfPair>) -> FrfSet {
     let lines = lines();
-    let values =
-        pairs.iter().flat_map(|pair| lines.omegas().map(|omega| accelerance(pair, omega)).collect::<Vec<_>>());
+    let values = pairs
+        .iter()
+        .flat_map(|pair| lines.omegas().map(|omega| accelerance(pair, omega)).collect::<Vec<_>>());
     let values = values.collect();
     FrfSet::new(lines, FrfForm::Accelerance, pairs, values).unwrap()
 }
@@ -79,7 +80,10 @@ fn channels_of_which_frfs_are_missing_and_rotations_beside_translations_are_left
     let found = ModeIndicator::of(&set(pairs)).unwrap();
     assert_eq!(found.curves, whole.curves);
     let names = |channels: &[Channel]| channels.iter().map(Channel::to_string).collect::<Vec<_>>();
-    assert_eq!((names(&found.responses), names(&found.references)), (names(&whole.responses), names(&whole.references)));
+    assert_eq!(
+        (names(&found.responses), names(&found.references)),
+        (names(&whole.responses), names(&whole.references))
+    );
     // FRFs that have no channel in common are no matrix of more than one.
     let apart = ModeIndicator::of(&set(transverse(&[("1", "1"), ("2", "2")]))).unwrap();
     assert_eq!((apart.curves.len(), apart.frfs()), (1, 1));

@@ -35,7 +35,8 @@ fn a_mapped_node_of_a_triaxial_sensor_is_known_by_its_entries_alone() {
 
 #[test]
 fn one_entry_maps_a_direction_of_all_nodes() {
-    let datasets = || vec![frf((4, -3), (1, 3)), frf((3, 3), (1, 3)), frf((4, 1), (1, 3)), frf((9, 3), (1, 3))];
+    let datasets =
+        || vec![frf((4, -3), (1, 3)), frf((3, 3), (1, 3)), frf((4, 1), (1, 3)), frf((9, 3), (1, 3))];
     let recording = read_with(datasets(), &options(&["+z=+y"], None)).unwrap();
     assert_eq!(names(&recording), ["3/1", "4/1"]);
     assert_eq!(recording.frfs().unwrap().values(1)[0], -VALUES[0]);
@@ -48,7 +49,11 @@ fn one_entry_maps_a_direction_of_all_nodes() {
     );
     // What is y in the files is then another axis than the fixture's, unless the map says so too.
     let mixed = vec![frf((4, 3), (1, 2))];
-    refused(mixed.clone(), &options(&["+z=+y"], None), &["no FRF belongs to the fixture", "`--map 1:+y=1:+y`"]);
+    refused(
+        mixed.clone(),
+        &options(&["+z=+y"], None),
+        &["no FRF belongs to the fixture", "`--map 1:+y=1:+y`"],
+    );
     assert_eq!(names(&read_with(mixed, &options(&["+z=+y", "+y=+y"], None)).unwrap()), ["4/1"]);
     refused(datasets(), &options(&["+y=+y"], None), &["`+y=+y` applies to no channel", "4:-z"]);
 }
@@ -67,7 +72,11 @@ fn one_entry_maps_nodes_whose_numbers_fit_it() {
 #[test]
 fn entries_of_many_nodes_that_contradict_each_other_ask_for_one_of_the_node() {
     let map = &["10*:+z=*:+y", "1*:+z=*:+y"];
-    refused(vec![frf((104, 3), (1, 2))], &options(map, None), &["`10*:+z=*:+y` and `1*:+z=*:+y`", "104:+z", "node 104"]);
+    refused(
+        vec![frf((104, 3), (1, 2))],
+        &options(map, None),
+        &["`10*:+z=*:+y` and `1*:+z=*:+y`", "104:+z", "node 104"],
+    );
     let triaxial = || vec![frf((3, 2), (1, 3)), frf((3, 3), (1, 3))];
     let both = &["+z=+y", "+y=+y"];
     refused(triaxial(), &options(both, None), &["`+y=+y`", "3:+y and 3:+z", "channel 3: give node 3"]);

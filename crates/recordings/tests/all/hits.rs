@@ -57,9 +57,7 @@ fn one_map_entry_turns_the_directions_of_all_nodes() {
         channel
     };
     let datasets = || vec![along_z(force(1, 1)), along_z(sensor(1, 4)), sensor(1, 3)];
-    let read = |map: &[&str]| {
-        hits_of(&[source("a.uff", datasets())], Some(&fixture()), &options(map, None))
-    };
+    let read = |map: &[&str]| hits_of(&[source("a.uff", datasets())], Some(&fixture()), &options(map, None));
     let hits = read(&["+z=+y"]).unwrap();
     assert_eq!((hits.hits[0].struck().to_string(), hits.hits[0].responses().len()), ("1".to_owned(), 1));
     assert_eq!(hits.hits[0].force(), [0.0, -8.0, -2.0, 0.0]);

@@ -43,6 +43,8 @@ pub(crate) struct FrfPanes<'a> {
 const STRIP: (u32, f64) = (104, 1e-3);
 /// Lines above which a strip is drawn thinned: it is to be looked along, not read.
 const STRIP_LINES: usize = 800;
+/// Lines above which the other panes of an FRF are: a page holds five of each.
+const PANE_LINES: usize = 1_400;
 /// What lines without coherence are called.
 const UNUSED: &str = "no coherence, not used";
 
@@ -77,7 +79,7 @@ impl<'a> FrfPanes<'a> {
         let size =
             |values: &[Option<Complex64>]| values.iter().map(|v| v.map(|v| v.norm())).collect::<Vec<_>>();
         let axis = Axis::logarithmic(format!("|{}|", self.symbol), self.unit);
-        let mut plot = Plot::new(&self.title, Axis::frequency(), axis).over(self.hz);
+        let mut plot = Plot::new(&self.title, Axis::frequency(), axis).over(self.hz).line_limit(PANE_LINES);
         let measured = size(&self.measured);
         if !self.noise.is_empty() {
             let with_noise = || measured.iter().zip(&self.noise).map(|(size, half)| size.zip(*half));
@@ -138,6 +140,7 @@ impl<'a> FrfPanes<'a> {
             .over(self.hz)
             .line("measured", Role::Measured, phases.next().unwrap_or_default())
             .rounded_to(STEPS.0)
+            .line_limit(PANE_LINES)
             .height(220);
         self.curves
             .iter()
@@ -172,7 +175,11 @@ impl<'a> FrfPanes<'a> {
         let size = |curve: &Curve| part_size(&left(curve));
         let largest = Span::of(self.curves.iter().flat_map(size).flatten()).magnitude();
         let pane = |title: String, axis: Axis| {
-            Plot::new(title, Axis::frequency(), axis).over(self.hz).digits(3).height(150)
+            Plot::new(title, Axis::frequency(), axis)
+                .over(self.hz)
+                .digits(3)
+                .line_limit(PANE_LINES)
+                .height(150)
         };
         let sizes = pane(format!("Residuals of {}", self.title), Axis::logarithmic("|residual|/σ", ""));
         let sizes = sizes

@@ -88,7 +88,10 @@ fn a_recorded_coherence_stands_below_its_frf_and_lines_without_any_are_marked() 
     frfs.set_coherence(0, coherence).unwrap();
     let html = rendered(&Diagnosis::of(&storeys(""), &frfs, &DiagnosisOptions::default()).unwrap());
     let held = "\"held\":[-0.04,1.04]";
-    holds(&html, &["figure class=\"plot strip\"", "Coherence of H 1/1", held, "2 lines are without any and not used"]);
+    holds(
+        &html,
+        &["figure class=\"plot strip\"", "Coherence of H 1/1", held, "2 lines are without any and not used"],
+    );
     // Above in the magnitudes and in the strip itself.
     assert_eq!(html.matches("no coherence, not used").count(), 2);
     assert_eq!((html.matches(held).count(), html.matches("Coherence of H 2/1").count()), (1, 0));
