@@ -48,7 +48,7 @@ pub use model_modes::{ModelMode, ModelModes};
 pub use numbers::{Known, Number};
 pub use reciprocity::Reciprocity;
 pub use recorded_modes::{ModePair, RecordedModes};
-pub use recording::RecordingCheck;
+pub use recording::{RecordingCheck, fixture_frfs};
 pub use remark::{Remark, Weight};
 pub use totals::{Part, Totals};
 

@@ -13,7 +13,7 @@ use jointscope_frf::noise::with_variances;
 use jointscope_lumped::{Instrument, accelerances};
 use jointscope_pipeline::{Error, MeasuredFrfs, Measurement};
 use jointscope_screening::{Oddity, screened};
-use jointscope_spectra::{FrfSet, in_text};
+use jointscope_spectra::{FrfForm, FrfSet, in_text};
 use num_complex::Complex64;
 use serde::Serialize;
 
@@ -156,6 +156,11 @@ impl RecordingCheck {
         })
     }
 
+    /// The fixture's FRFs on the lines of the recording, where it has any.
+    pub fn fixture_frfs(&self) -> Option<FrfSet> {
+        set_like(&self.measured, self.modelled.clone()?)
+    }
+
     /// The last line, Hz.
     pub(crate) fn highest(&self) -> f64 {
         self.lines.1
@@ -231,6 +236,17 @@ impl RecordingCheck {
             ));
         }
     }
+}
+
+/// The fixture's FRFs beside measured accelerances, on their channels and lines, as a check draws them: without effects that have none, and with some
+/// damping where it has none at all. `None` where the fixture has no FRFs.
+pub fn fixture_frfs(fixture: &Fixture, measured: &FrfSet) -> Option<FrfSet> {
+    let drawn = drawn(fixture.clone());
+    set_like(measured, accelerances(&drawn, measured.pairs(), measured.lines(), Instrument::AsRecorded).ok()?)
+}
+
+fn set_like(measured: &FrfSet, values: Vec<Complex64>) -> Option<FrfSet> {
+    FrfSet::new(measured.lines().clone(), FrfForm::Accelerance, measured.pairs().to_vec(), values).ok()
 }
 
 /// Whether next to all FRFs have the opposite sign to the fixture's.

@@ -53,7 +53,7 @@ impl Destination {
         match self.also.contains(&Also::Uff) {
             false => Ok(()),
             true => Err(Refusal::new(format_args!(
-                "`--also uff` writes FRFs of models beside the measured ones, and `{command}` has none; `diagnose` and `modes` have"
+                "`--also uff` writes FRFs of models beside the measured ones, and `{command}` has none; `diagnose`, `decompose`, `modes` and `check` have"
             ))),
         }
     }

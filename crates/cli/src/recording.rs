@@ -26,8 +26,9 @@ pub struct RecordingArguments {
 /// What the analyst says of recordings where the files do not.
 #[derive(Debug, Clone, Default, Args)]
 pub struct ReadingArguments {
-    /// Which channel of the files is which of the fixture, such as 101:+z=1:+y.
-    #[arg(long, value_name = "NODE:DIR=POINT:DIR", value_parser = map_entry, num_args = 1..)]
+    /// Which channel of the files is which of the fixture: +z=+y for all nodes, 101:+z=1:+y for one, which beats it, "10*:+z=*:+y" for nodes by
+    /// their digits.
+    #[arg(long, value_name = "[NODE:]DIR=[POINT:]DIR", value_parser = map_entry, num_args = 1..)]
     pub map: Vec<String>,
     /// Units of response and force where a file states none, such as g,lbf.
     #[arg(long, value_name = "RESPONSE,FORCE", value_parser = AssumedUnits::parse)]

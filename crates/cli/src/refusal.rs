@@ -61,7 +61,7 @@ impl From<&clap::Error> for Refusal {
         if error.kind() == ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand {
             return Refusal::new("no command was given; `jointscope --help` lists the commands");
         }
-        if let Some(sentence) = no_number(error) {
+        if let Some(sentence) = no_number(error).or_else(|| map_entry_as_option(error)) {
             return Refusal(sentence);
         }
         let mut paragraphs = text.split("\n\n");
@@ -92,6 +92,19 @@ fn no_number(error: &clap::Error) -> Option<String> {
     let option = argument.split(' ').next()?;
     let given = error.get(ContextKind::InvalidValue)?;
     Some(format!("{option} takes {needed}, not \"{given}\"; see `jointscope --help`"))
+}
+
+/// A map entry that begins with a minus is taken for options, none of which is called as an axis is.
+fn map_entry_as_option(error: &clap::Error) -> Option<String> {
+    let taken = error
+        .get(ContextKind::InvalidArg)
+        .filter(|_| error.kind() == ErrorKind::UnknownArgument)?
+        .to_string();
+    let axis = taken.strip_prefix('-').filter(|axis| ["x", "y", "z", "r"].contains(axis))?;
+    let rest = if axis == "r" { "rz=-theta" } else { &format!("{axis}=-y") };
+    Some(format!(
+        "`{taken}` is no option; a map entry has its minus on the right, `--map {rest}`; see `jointscope --help`"
+    ))
 }
 
 /// Line breaks and the blanks around them become one blank.

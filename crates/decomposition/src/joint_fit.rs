@@ -20,7 +20,7 @@ mod uncertainty;
 mod uncoupled;
 
 pub use admissible::{Admissible, JointTests};
-pub use found::{FittedLength, FittedQuantity, JointFit, UnmovedQuantity};
+pub use found::{FittedFrfs, FittedLength, FittedQuantity, JointFit, UnmovedQuantity};
 pub use law::LawKind;
 pub use laws::LawFit;
 pub use likelihood::JointLikelihood;

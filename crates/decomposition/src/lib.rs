@@ -54,9 +54,9 @@ pub use averages::{Averages, MatrixAverage};
 pub use estimate::{Element, Estimate, Figure, Method, Part};
 pub use interfaces::{Compliance, InterfaceStiffness, Interfaces, interfaces};
 pub use joint_fit::{
-    Admissible, FittedLength, FittedQuantity, FoundJoint, JointFit, JointFitOptions, JointLikelihood,
-    JointTests, JointsCovariance, JointsFit, LawFit, LawKind, SeveralError, UnmovedQuantity, fit_joint,
-    fit_joints,
+    Admissible, FittedFrfs, FittedLength, FittedQuantity, FoundJoint, JointFit, JointFitOptions,
+    JointLikelihood, JointTests, JointsCovariance, JointsFit, LawFit, LawKind, SeveralError, UnmovedQuantity,
+    fit_joint, fit_joints,
 };
 pub use judgement::{Contradiction, Judgement, Use};
 pub use likelihood::{LikelihoodFit, maximum_likelihood};

@@ -17,6 +17,8 @@ pub struct Observation {
     /// Mean |H|² around each line, by value: the floor of what a softened fit tolerates.
     level: Vec<f64>,
     noise: Vec<NoiseSource>,
+    /// γ² as recorded, by FRF.
+    coherence: Vec<Option<Vec<f64>>>,
     recorded_lines: usize,
     drift: Option<Drift>,
     work: Arc<Work>,
@@ -61,8 +63,10 @@ impl Observation {
         }
         let from_scatter = !noise.is_empty() && noise.iter().all(|source| source.is_by_scatter());
         let drift = if from_scatter { Drift::of(&frfs) } else { None };
-        let whole =
-            Observation { frfs, weight, level, noise, recorded_lines: n, drift, work: Arc::default() };
+        let coherence = (0..frfs.pairs().len()).map(|index| frfs.coherence(index).map(<[f64]>::to_vec));
+        let coherence = coherence.collect();
+        let work = Arc::default();
+        let whole = Observation { frfs, weight, level, noise, coherence, recorded_lines: n, drift, work };
         let kept = lines_in_use(&whole.frfs, crate::searched_frfs::count(whole.pairs().len()));
         let mut used = whole.on(&kept, &vec![true; whole.pairs().len()]).ok_or(SpectraError::NoLines)?;
         used.allow_for_drift(&whole.frfs, &kept);
@@ -118,6 +122,10 @@ impl Observation {
             weight: places().map(|at| self.weight[at]).collect(),
             level: places().map(|at| self.level[at]).collect(),
             noise: kept_frfs.iter().filter_map(|&i| self.noise.get(i).copied()).collect(),
+            coherence: kept_frfs
+                .iter()
+                .map(|&i| self.coherence[i].as_ref().map(|all| kept_lines.iter().map(|&l| all[l]).collect()))
+                .collect(),
             recorded_lines: self.recorded_lines,
             drift: self.drift.clone(),
             work: Arc::clone(&self.work),
@@ -151,6 +159,11 @@ impl Observation {
     /// Where each FRF's noise came from; empty where the set carried its variances.
     pub fn noise(&self) -> &[NoiseSource] {
         &self.noise
+    }
+
+    /// γ² of FRF `index` on the lines in use, where it was recorded.
+    pub fn coherence(&self, index: usize) -> Option<&[f64]> {
+        self.coherence[index].as_deref()
     }
 
     /// The same, its predictions counted as `work`.

@@ -1,3 +1,6 @@
+use jointscope_check::{RecordingCheck, fixture_frfs};
+use jointscope_decomposition::{FittedFrfs, JointFit};
+use jointscope_fixture::Fixture;
 use jointscope_modes::ModalAnalysis;
 use jointscope_pipeline::{Answer, Outcome};
 use jointscope_spectra::{FrfSet, SpectraError};
@@ -27,6 +30,25 @@ pub fn model_frfs(answer: &Answer) -> Result<Vec<(String, FrfSet)>, SpectraError
 pub fn rebuilt_frfs(analysis: &ModalAnalysis) -> Result<Vec<(String, FrfSet)>, SpectraError> {
     let rebuilt = (0..analysis.pairs().len()).flat_map(|frf| analysis.rebuilt(frf).iter().copied());
     beside(analysis.measured(), [("rebuilt", rebuilt.collect())])
+}
+
+/// The FRFs behind a check: `measured`, those of the fixture as it stands (`nominal`), and `residual-nominal`; `measured` alone where the fixture has none.
+///
+/// # Errors
+/// A fixture whose FRFs are not finite.
+pub fn checked_frfs(recording: &RecordingCheck) -> Result<Vec<(String, FrfSet)>, SpectraError> {
+    beside(&recording.measured, recording.modelled.iter().map(|values| ("nominal", values.clone())))
+}
+
+/// The FRFs behind a joint from all FRFs, or behind several: `measured`, on the FRFs and lines that were fitted, those of the fixture with its own joints (`nominal`), those of
+/// the fixture with the joints found and its quantities where the fit has them (`fitted`), and `residual-…` of each.
+///
+/// # Errors
+/// A model whose FRFs are not finite.
+pub fn fitted_frfs(fit: &JointFit, fixture: &Fixture) -> Result<Vec<(String, FrfSet)>, SpectraError> {
+    let FittedFrfs { measured, modelled } = &*fit.fitted;
+    let nominal = fixture_frfs(fixture, measured).map(|frfs| ("nominal", frfs.all_values().to_vec()));
+    beside(measured, nominal.into_iter().chain([("fitted", modelled.clone())]))
 }
 
 /// Measured FRFs, those of models, and what is left.

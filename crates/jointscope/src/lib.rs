@@ -125,7 +125,7 @@ mod stiffness_file;
 pub use answer_file::answer_file;
 pub use check_file::check_file;
 pub use diagnosis_file::diagnosis_file;
-pub use frf_files::{model_frfs, rebuilt_frfs};
+pub use frf_files::{checked_frfs, fitted_frfs, model_frfs, rebuilt_frfs};
 pub use modes_file::modes_file;
 pub use nonlinear_file::nonlinear_file;
 pub use plan_file::plan_file;

@@ -8,7 +8,7 @@
 //! * [`products`] of the rows of two square matrices;
 //! * [`matrix_exponential`]: real matrices of a few rows, such as those of a state space;
 //! * [`generalized_symmetric_eigen`]: `K φ = λ M φ`, scaled and with its residuals checked;
-//! * [`complex_eigenvalues`]: eigenvalues of a general complex matrix;
+//! * [`complex_eigenvalues`]: eigenvalues of a general complex matrix; [`singular_values`] of a complex matrix;
 //! * with the feature `sparse`: [`SparsePattern`] and [`SparseSymmetric`] assembled from element matrices, [`SparseCholesky`], and
 //!   [`lowest_modes`] of a sparse pencil by shift-invert block Lanczos, residuals checked and the modes counted ([`eigenvalues_below`]).
 //!
@@ -35,6 +35,7 @@ mod lu;
 mod matrix2;
 mod modal_basis;
 mod products;
+mod singular_values;
 #[cfg(feature = "sparse")]
 mod sparse;
 #[cfg(feature = "sparse")]
@@ -55,6 +56,7 @@ pub use lu::{LuWorkspace, Singular};
 pub use matrix2::{ComplexMatrix2, Field, Matrix2, RealMatrix2, Scalar};
 pub use modal_basis::{EigenError, ModalBasis};
 pub use products::products;
+pub use singular_values::singular_values;
 #[cfg(feature = "sparse")]
 pub use sparse::{SparseError, SparsePattern, SparseSymmetric};
 #[cfg(feature = "sparse")]

@@ -38,11 +38,12 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! [`match_modes`] pairs measured modes with those of a model by frequency and shape ([`mac`]).
+//! [`ModeIndicator`] shows how many modes there are before any is looked for: the singular values of the matrix of FRFs, line by line. [`match_modes`] pairs measured modes with those of a model by frequency and shape ([`mac`]).
 
 mod analysis;
 mod error;
 mod gram;
+mod indicator;
 mod likelihood;
 mod matching;
 mod mode;
@@ -56,6 +57,7 @@ mod stabilization;
 
 pub use analysis::{ModalAnalysis, ModesOptions, ResidualTerms};
 pub use error::ModesError;
+pub use indicator::ModeIndicator;
 pub use matching::{ExpectedMode, Match, Matches, match_modes};
 pub use mode::{Mode, mac};
 pub use scatter::Drift;

@@ -25,6 +25,19 @@ impl FileChannel {
     pub(crate) fn is_rotational(self) -> bool {
         matches!(self.axis(), 4..=6)
     }
+
+    /// Its direction as map entries write it, such as `+z`.
+    pub fn direction_name(self) -> String {
+        let sign = match self.direction {
+            0 => "",
+            ..0 => "-",
+            _ => "+",
+        };
+        match AXES.get(self.axis() as usize) {
+            Some(axis) => format!("{sign}{axis}"),
+            None => format!("direction {}", self.direction),
+        }
+    }
 }
 
 impl From<&jointscope_uff::Node> for FileChannel {
@@ -38,26 +51,19 @@ pub(crate) const AXES: [&str; 7] = ["0", "x", "y", "z", "rx", "ry", "rz"];
 
 impl fmt::Display for FileChannel {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let sign = match self.direction {
-            0 => "",
-            ..0 => "-",
-            _ => "+",
-        };
-        match AXES.get(self.axis() as usize) {
-            Some(axis) => write!(f, "{}:{sign}{axis}", self.node),
-            None => write!(f, "{}:direction {}", self.node, self.direction),
-        }
+        write!(f, "{}:{}", self.node, self.direction_name())
     }
 }
 
 /// Which channel of the files is which of the fixture, where node numbers and directions do not say so themselves.
 ///
-/// Without an entry, a node number is a point's name, direction ±2 is ±y and ±6 is ±θ. A node that has an entry is known by its
-/// entries alone: of a triaxial sensor at node 101, `101:+z=1:+y` takes z and leaves x and y.
+/// Without an entry, a node number is a point's name, direction ±2 is ±y and ±6 is ±θ. An entry speaks of one node, `101:+z=1:+y`; of every node,
+/// `+z=+y`; or of the nodes whose number fits a pattern, `10*:+z=*:+y` (node 101 is point 1). An entry of one node beats a pattern, and a pattern beats
+/// an entry of all. A node that has an entry is known by its entries alone: of a triaxial sensor at node 101, `101:+z=1:+y` takes z and leaves x and y.
 ///
 /// ```
 /// use jointscope_recordings::ChannelMap;
-/// let map = ChannelMap::parse(["101:+z=1:+y", "102:-z=4:+y", "7:+rx=4:+theta"])?;
+/// let map = ChannelMap::parse(["+z=+y", "102:-z=4:+y", "7:+rx=4:+theta"])?;
 /// assert_eq!(map.entries().len(), 3);
 /// let error = ChannelMap::parse(["101:z=1:+x"]).unwrap_err();
 /// assert!(error.to_string().contains("`101:z=1:+x`"));
@@ -71,21 +77,34 @@ pub struct ChannelMap {
 /// One line of a [`ChannelMap`].
 #[derive(Debug, Clone, PartialEq)]
 pub struct MapEntry {
-    /// The file's channel, along its positive direction.
-    pub file: FileChannel,
-    /// The fixture's channel.
-    pub channel: Channel,
+    nodes: Nodes,
+    /// The file's direction without its sign.
+    axis: u32,
+    /// The fixture's point; `*` in it stands for what it stands for in the node's number.
+    point: String,
+    dof: Dof,
     /// +1 where both point the same way, else −1.
-    pub sign: f64,
+    sign: f64,
     /// The entry as it was written.
     pub text: String,
+}
+
+/// The nodes that an entry speaks of.
+#[derive(Debug, Clone, PartialEq, Eq)]
+enum Nodes {
+    /// Those whose number has these digits before and after the `*`, and at least one for it: every one where it has none.
+    Like { before: String, after: String },
+    /// The one of this number.
+    One(i64),
 }
 
 /// Why a channel map makes no sense.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum ChannelMapError {
-    /// No `node:direction=point:direction`.
-    #[error("the map entry `{entry}` is not `node:direction=point:direction`, such as `101:+z=1:+y`")]
+    /// Neither `node:direction=point:direction` nor `direction=direction`.
+    #[error(
+        "the map entry `{entry}` is not `node:direction=point:direction`, such as `101:+z=1:+y`, or `direction=direction`, such as `+z=+y` for all nodes"
+    )]
     Form {
         /// The entry.
         entry: String,
@@ -99,6 +118,14 @@ pub enum ChannelMapError {
         entry: String,
         /// What stands there.
         found: String,
+    },
+    /// A `*` on one side alone, or more than one on a side.
+    #[error(
+        "in the map entry `{entry}`, `*` must stand once on both sides: it is the same digits in node and point, as in `10*:+z=*:+y`"
+    )]
+    Star {
+        /// The entry.
+        entry: String,
     },
     /// A direction that does not exist.
     #[error("in the map entry `{entry}`, `{found}` is none of the directions {possible}")]
@@ -129,8 +156,8 @@ pub enum ChannelMapError {
 }
 
 impl ChannelMap {
-    /// Reads entries `node:direction=point:direction`: the file's directions are `x`, `y`, `z`, `rx`, `ry`, `rz` or `0` (none
-    /// stated), the fixture's `y` and `theta`, each with a sign or without (`+`).
+    /// Reads entries `node:direction=point:direction`, or `direction=direction` for all nodes: the file's directions are `x`, `y`, `z`, `rx`, `ry`, `rz`
+    /// or `0` (none stated), the fixture's `y` and `theta`, each with a sign or without (`+`).
     ///
     /// # Errors
     /// An entry of another form, a translation for a rotation, two entries for one channel.
@@ -138,7 +165,8 @@ impl ChannelMap {
         let mut map = ChannelMap::default();
         for entry in entries {
             let entry = MapEntry::parse(entry.as_ref())?;
-            if let Some(first) = map.entries.iter().find(|other| other.file == entry.file) {
+            let same = |other: &&MapEntry| other.nodes == entry.nodes && other.axis == entry.axis;
+            if let Some(first) = map.entries.iter().find(same) {
                 return Err(ChannelMapError::Twice { first: first.text.clone(), second: entry.text });
             }
             map.entries.push(entry);
@@ -157,27 +185,87 @@ impl ChannelMap {
 
     /// Whether any entry speaks of this node.
     pub fn names_node(&self, node: i64) -> bool {
-        self.entries.iter().any(|entry| entry.file.node == node)
+        self.entries.iter().any(|entry| entry.point(node).is_some())
     }
 
     /// The fixture's channel that a channel of the file is by an entry, and the sign between them.
-    pub fn find(&self, file: FileChannel) -> Option<(&Channel, f64)> {
-        let same = |entry: &&MapEntry| entry.file.node == file.node && entry.file.axis() == file.axis();
-        self.entries.iter().find(same).map(|entry| (&entry.channel, entry.sign * file.sign()))
+    pub fn find(&self, file: FileChannel) -> Option<(Channel, f64)> {
+        let entry = self.entries_of(file).next()?;
+        let channel = Channel { point: entry.point(file.node)?, dof: entry.dof };
+        Some((channel, entry.sign * file.sign()))
+    }
+
+    /// The entries that decide on a channel of the file: of those that speak of its node, the ones that speak of the fewest nodes. More than one
+    /// contradict each other.
+    pub(crate) fn entries_of(&self, file: FileChannel) -> impl Iterator<Item = &MapEntry> {
+        let of_node = move || self.entries.iter().filter(move |entry| entry.point(file.node).is_some());
+        let rank = of_node().map(|entry| entry.nodes.rank()).max();
+        of_node().filter(move |entry| Some(entry.nodes.rank()) == rank && entry.axis == file.axis())
+    }
+}
+
+impl Nodes {
+    /// Higher for fewer nodes.
+    fn rank(&self) -> u8 {
+        match self {
+            Nodes::Like { before, after } if before.is_empty() && after.is_empty() => 0,
+            Nodes::Like { .. } => 1,
+            Nodes::One(_) => 2,
+        }
     }
 }
 
 impl MapEntry {
+    /// An entry for one channel of the files.
+    pub(crate) fn of_one(file: FileChannel, channel: Channel) -> Self {
+        MapEntry {
+            nodes: Nodes::One(file.node),
+            axis: file.axis(),
+            text: format!("{file}={channel}"),
+            point: channel.point,
+            dof: channel.dof,
+            sign: file.sign(),
+        }
+    }
+
+    /// The name of the point that a node is, if the entry speaks of it.
+    pub(crate) fn point(&self, node: i64) -> Option<String> {
+        match &self.nodes {
+            Nodes::One(own) => (*own == node).then(|| self.point.clone()),
+            Nodes::Like { before, after } => {
+                let number = node.to_string();
+                let digits = number.strip_prefix(before.as_str())?.strip_suffix(after.as_str())?;
+                (!digits.is_empty()).then(|| self.point.replacen('*', digits, 1))
+            }
+        }
+    }
+
+    /// The point that the entry names, where it speaks of one node.
+    pub(crate) fn named_point(&self) -> Option<&str> {
+        matches!(self.nodes, Nodes::One(_)).then_some(self.point.as_str())
+    }
+
+    /// Whether it applies to a channel of the files, be there an entry of fewer nodes or not.
+    pub(crate) fn applies_to(&self, file: FileChannel) -> bool {
+        self.axis == file.axis() && self.point(file.node).is_some()
+    }
+
     fn parse(text: &str) -> Result<Self, ChannelMapError> {
         let entry = || text.to_owned();
         let form = || ChannelMapError::Form { entry: entry() };
         let (file, fixture) = text.split_once('=').ok_or_else(form)?;
-        let (node, file_direction) = file.rsplit_once(':').ok_or_else(form)?;
-        let (point, direction) = fixture.rsplit_once(':').ok_or_else(form)?;
-        let node = node
-            .trim()
-            .parse()
-            .map_err(|_| ChannelMapError::Node { entry: entry(), found: node.to_owned() })?;
+        let (node, file_direction, point, direction) = match (file.rsplit_once(':'), fixture.rsplit_once(':'))
+        {
+            (Some((node, file_direction)), Some((point, direction))) => {
+                (node.trim(), file_direction, point.trim(), direction)
+            }
+            (None, None) if AXES.contains(&signed(file).1.as_str()) => ("*", file, "*", fixture),
+            _ => return Err(form()),
+        };
+        let nodes = nodes(node, point).map_err(|problem| match problem {
+            None => ChannelMapError::Star { entry: entry() },
+            Some(found) => ChannelMapError::Node { entry: entry(), found },
+        })?;
         let (file_sign, file_axis) = signed(file_direction);
         let axis =
             AXES.iter().position(|axis| *axis == file_axis).ok_or_else(|| ChannelMapError::Direction {
@@ -197,16 +285,37 @@ impl MapEntry {
                 });
             }
         };
-        let file = FileChannel { node, direction: axis as i32 };
-        if axis != 0 && file.is_rotational() != (dof == Dof::Rotation) {
+        if axis != 0 && (axis > 3) != (dof == Dof::Rotation) {
             return Err(ChannelMapError::Kind { entry: entry() });
         }
-        if point.trim().is_empty() {
+        if point.is_empty() {
             return Err(form());
         }
-        let channel = Channel { point: point.trim().to_owned(), dof };
-        Ok(MapEntry { file, channel, sign: file_sign * sign, text: entry() })
+        Ok(MapEntry {
+            nodes,
+            axis: axis as u32,
+            point: point.to_owned(),
+            dof,
+            sign: file_sign * sign,
+            text: entry(),
+        })
     }
+}
+
+/// The nodes of an entry; what stands there where it is no number, or nothing where a `*` is amiss.
+fn nodes(node: &str, point: &str) -> Result<Nodes, Option<String>> {
+    let unknown = || Some(node.to_owned());
+    let Some((before, after)) = node.split_once('*') else {
+        let one = node.parse().map(Nodes::One).map_err(|_| unknown())?;
+        return if point.contains('*') { Err(None) } else { Ok(one) };
+    };
+    if after.contains('*') || point.matches('*').count() != 1 {
+        return Err(None);
+    }
+    if node.chars().any(|c| c != '*' && !c.is_ascii_digit()) {
+        return Err(unknown());
+    }
+    Ok(Nodes::Like { before: before.to_owned(), after: after.to_owned() })
 }
 
 /// Sign and name of a direction.
@@ -227,10 +336,27 @@ mod tests {
     fn signs_of_both_sides_and_of_the_channel_multiply() {
         let map = ChannelMap::parse(["101:-z=1:+y"]).unwrap();
         let find = |direction| map.find(FileChannel { node: 101, direction });
-        assert_eq!(find(3), Some((&Channel::transverse("1"), -1.0)));
-        assert_eq!(find(-3), Some((&Channel::transverse("1"), 1.0)));
+        assert_eq!(find(3), Some((Channel::transverse("1"), -1.0)));
+        assert_eq!(find(-3), Some((Channel::transverse("1"), 1.0)));
         assert_eq!(find(2), None);
         assert!(map.names_node(101) && !map.names_node(1));
+    }
+
+    #[test]
+    fn one_entry_speaks_of_all_nodes_and_whatever_speaks_of_fewer_beats_it() {
+        let map = ChannelMap::parse(["+z=-y", "10*:+x=*:+y", "104:+y=tip:+y", "ry=theta"]).unwrap();
+        let find = |node, direction| map.find(FileChannel { node, direction });
+        assert_eq!(find(7, 3), Some((Channel::transverse("7"), -1.0)));
+        assert_eq!(find(7, -3), Some((Channel::transverse("7"), 1.0)));
+        assert_eq!(find(7, 5), Some((Channel::rotational("7"), 1.0)));
+        assert_eq!(find(103, 1), Some((Channel::transverse("3"), 1.0)));
+        assert_eq!(find(104, 2), Some((Channel::transverse("tip"), 1.0)));
+        // Each node is known by the entries of the fewest nodes alone.
+        assert_eq!((find(7, 2), find(103, 3), find(104, 1), find(104, 3)), (None, None, None, None));
+        // The star stands for one digit or more.
+        assert_eq!(find(10, 3), Some((Channel::transverse("10"), -1.0)));
+        let all = ChannelMap::parse(["*:z=*:-y"]).unwrap();
+        assert_eq!(all.find(FileChannel { node: 7, direction: 3 }), find(7, 3));
     }
 
     #[test]
@@ -238,7 +364,8 @@ mod tests {
         let map = ChannelMap::parse(["3:y=left:tip:theta", "3:rz=left:tip:-theta"]);
         assert!(matches!(map, Err(ChannelMapError::Kind { .. })));
         let map = ChannelMap::parse(["3:rz=left:tip:-theta"]).unwrap();
-        assert_eq!(map.entries()[0].channel, Channel::rotational("left:tip"));
+        let turned = FileChannel { node: 3, direction: 6 };
+        assert_eq!(map.find(turned), Some((Channel::rotational("left:tip"), -1.0)));
         assert!(matches!(ChannelMap::parse(["3:y=:y"]), Err(ChannelMapError::Form { .. })));
     }
 
@@ -254,6 +381,17 @@ mod tests {
         check("101:+w=1:+y", "x, y, z, rx, ry, rz");
         check("101:+z=1:+z", "y, theta of a fixture");
         check("101:+z=1:+theta", "translation for a rotation");
+        check("+z=1:+y", "such as `+z=+y` for all nodes");
+        check("1=2", "such as `101:+z=1:+y`");
+        check("+z=+z", "y, theta of a fixture");
+        check("+z=+theta", "translation for a rotation");
+        check("*:+z=1:+y", "once on both sides");
+        check("10*:+z=1:+y", "once on both sides");
+        check("101:+z=*:+y", "once on both sides");
+        check("1*0*:+z=*:+y", "once on both sides");
+        check("t*:+z=*:+y", "`t*` is no node number");
+        let twice = ChannelMap::parse(["+z=+y", "*:-z=*:+y"]).unwrap_err();
+        assert!(twice.to_string().contains("`+z=+y` and `*:-z=*:+y`"), "{twice}");
         let twice = ChannelMap::parse(["101:+z=1:+y", "101:-z=2:+y"]).unwrap_err();
         assert!(twice.to_string().contains("`101:+z=1:+y` and `101:-z=2:+y`"), "{twice}");
     }

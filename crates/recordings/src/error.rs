@@ -1,6 +1,6 @@
 use std::fmt;
 
-use jointscope_spectra::SpectraError;
+use jointscope_spectra::{Channel, SpectraError};
 
 use crate::{FileChannel, UnitsError};
 
@@ -59,7 +59,7 @@ pub enum FunctionError {
     Lines(SpectraError),
     /// A direction along or about which nothing says that it is the fixture's.
     #[error(
-        "direction {direction} of node {node} is neither y nor theta; if it is the fixture's {becomes}, say so with `--map {node}:{direction}={node}:+{becomes}` (or `-{becomes}`)"
+        "direction {direction} of node {node} is neither y nor theta; if it is the fixture's {becomes}, say so with `--map {node}:{direction}={node}:+{becomes}` (or `-{becomes}`), for all nodes at once with `--map {direction}=+{becomes}`"
     )]
     Direction {
         /// Node.
@@ -117,6 +117,32 @@ pub enum RecordingError {
         entry: String,
         /// The files' channels.
         channels: String,
+    },
+    /// Two map entries of many nodes for one channel of the files.
+    #[error(
+        "the map entries `{first}` and `{second}` both speak of {channel}: give node {} an entry of its own", channel.node
+    )]
+    MapAmbiguous {
+        /// The channel.
+        channel: FileChannel,
+        /// The first entry.
+        first: String,
+        /// The second entry.
+        second: String,
+    },
+    /// Two channels of the files that become one of the fixture by a map entry of many nodes.
+    #[error(
+        "by the map entry `{entry}` both {first} and {second} of the files are the fixture's channel {channel}: give node {} an entry of its own, which takes the place of `{entry}` there", second.node
+    )]
+    MapMerges {
+        /// The entry.
+        entry: String,
+        /// The fixture's channel.
+        channel: Channel,
+        /// The first channel.
+        first: FileChannel,
+        /// The second channel.
+        second: FileChannel,
     },
     /// The same function twice.
     #[error("{second}: {what} {frf} was given already by {first}; leave one of them out")]

@@ -75,38 +75,63 @@ pub(crate) fn gather<'a>(
             .sort(function, &mut gathered)
             .map_err(|problem| RecordingError::function(function.place(), problem))?;
     }
+    let frfs = || gathered.frfs.iter();
+    check_distinct(map, frfs().map(|frf| (frf.function.response(), &frf.pair.response)))?;
+    check_distinct(map, frfs().map(|frf| (frf.function.reference(), &frf.pair.reference)))?;
     Ok(gathered)
 }
 
 /// Refuses a map that names points which the fixture does not have; without a fixture any name is a point.
 pub(crate) fn check_points(fixture: Option<&Fixture>, map: &ChannelMap) -> Result<(), RecordingError> {
     let Some(fixture) = fixture else { return Ok(()) };
-    match map.entries().iter().find(|entry| fixture.point(&entry.channel.point).is_none()) {
+    let named = map.entries().iter().filter_map(|entry| Some((entry, entry.named_point()?)));
+    match named.into_iter().find(|(_, point)| fixture.point(point).is_none()) {
         None => Ok(()),
-        Some(MapEntry { text, channel, .. }) => Err(RecordingError::MapPoint {
-            entry: text.clone(),
-            point: channel.point.clone(),
+        Some((entry, point)) => Err(RecordingError::MapPoint {
+            entry: entry.text.clone(),
+            point: point.to_owned(),
             points: points(Some(fixture)),
         }),
     }
 }
 
-/// An entry that applies to nothing is a slip; files without any channel are refused for that instead.
+/// An entry that applies to nothing is a slip, and so are two patterns for one channel; files without any channel are refused for that instead.
 pub(crate) fn check_entries_apply(
     map: &ChannelMap,
     channels: &BTreeSet<FileChannel>,
 ) -> Result<(), RecordingError> {
-    let applies = |entry: &&MapEntry| {
-        let same =
-            |channel: &FileChannel| channel.node == entry.file.node && channel.axis() == entry.file.axis();
-        channels.iter().any(same)
-    };
-    match map.entries().iter().find(|entry| !applies(entry)) {
-        Some(entry) if !channels.is_empty() => {
-            Err(RecordingError::MapUnused { entry: entry.text.clone(), channels: enumeration(channels) })
-        }
-        _ => Ok(()),
+    let applies = |entry: &&MapEntry| channels.iter().any(|channel| entry.applies_to(*channel));
+    if let Some(entry) = map.entries().iter().find(|entry| !applies(entry) && !channels.is_empty()) {
+        return Err(RecordingError::MapUnused { entry: entry.text.clone(), channels: enumeration(channels) });
     }
+    for &channel in channels {
+        let mut entries = map.entries_of(channel);
+        if let (Some(first), Some(second)) = (entries.next(), entries.next()) {
+            let (first, second) = (first.text.clone(), second.text.clone());
+            return Err(RecordingError::MapAmbiguous { channel, first, second });
+        }
+    }
+    Ok(())
+}
+
+/// Refuses two channels of the files that an entry of many nodes makes one channel of the fixture; entries of one node each may.
+pub(crate) fn check_distinct<'c>(
+    map: &ChannelMap,
+    located: impl Iterator<Item = (FileChannel, &'c Channel)>,
+) -> Result<(), RecordingError> {
+    let mut seen: BTreeMap<&Channel, FileChannel> = BTreeMap::new();
+    for (second, channel) in located {
+        let first = *seen.entry(channel).or_insert(second);
+        if (first.node, first.axis()) == (second.node, second.axis()) {
+            continue;
+        }
+        let entries = [first, second].into_iter().flat_map(|file| map.entries_of(file));
+        if let Some(entry) = entries.into_iter().find(|entry| entry.named_point().is_none()) {
+            let (entry, channel) = (entry.text.clone(), channel.clone());
+            return Err(RecordingError::MapMerges { entry, channel, first, second });
+        }
+    }
+    Ok(())
 }
 
 /// Where a channel of the files is in the fixture.
@@ -191,7 +216,7 @@ impl<'f> Locator<'f> {
     ) -> Result<Located, FunctionError> {
         if self.map.names_node(file.node) {
             return match self.map.find(file) {
-                Some((channel, sign)) => self.at(channel.clone(), sign),
+                Some((channel, sign)) => self.at(channel, sign),
                 None => Ok(Located::OtherDirection),
             };
         }
@@ -205,8 +230,7 @@ impl<'f> Locator<'f> {
             1..=5 if planar_nodes.contains(&file.node) => Ok(Located::OtherDirection),
             axis @ 1..=5 => {
                 // The map speaks of positive directions.
-                let along = FileChannel { direction: axis as i32, ..file }.to_string();
-                let direction = along.rsplit(':').next().unwrap_or_default().to_owned();
+                let direction = FileChannel { direction: axis as i32, ..file }.direction_name();
                 let becomes = if axis < 4 { "y" } else { "theta" };
                 Err(FunctionError::Direction { node: file.node, direction, becomes })
             }

@@ -10,7 +10,7 @@ use jointscope_uff::{Abscissa, Data, FunctionType};
 use crate::contents::Contents;
 use crate::error::enumeration;
 use crate::function::{Function, functions};
-use crate::gather::{Located, Locator, check_entries_apply, check_points, example, points};
+use crate::gather::{Located, Locator, check_distinct, check_entries_apply, check_points, example, points};
 use crate::ordinate::{Signal, UnitNotes, seconds, signal};
 use crate::{FileChannel, FunctionError, HitsError, ReadOptions, Source};
 
@@ -69,6 +69,11 @@ pub fn hits_of(
             files: enumeration(sources.iter().map(|source| &source.name)),
             found: Contents::of(sources).phrase(),
         });
+    }
+    for is_force in [true, false] {
+        let alike = located.iter().filter(|channel| channel.is_force() == is_force);
+        let placed = alike.filter_map(|channel| Some((channel.history.response(), &channel.at.as_ref()?.0)));
+        check_distinct(&options.map, placed).map_err(HitsError::Map)?;
     }
     let (groups, renumbered) = groups(&located);
     let files = || enumeration(sources.iter().map(|source| &source.name));

@@ -27,9 +27,11 @@ impl Recording {
             .collect();
         let mut entries = options.map.entries().to_vec();
         entries.extend(entries_of_nodes(&channels, &options.map));
-        let mut points: Vec<String> = entries.iter().map(|entry| entry.channel.point.clone()).collect();
-        points.extend(channels.iter().map(|channel| channel.node.to_string()));
         let map = ChannelMap::of_entries(entries);
+        let named = map.entries().iter().filter_map(MapEntry::named_point).map(str::to_owned);
+        let found = channels.iter().filter_map(|channel| Some(map.find(*channel)?.0.point));
+        let mut points: Vec<String> = named.chain(found).collect();
+        points.extend(channels.iter().map(|channel| channel.node.to_string()));
         Recording::of(sources, &structure(&points)?, &ReadOptions { map, ..options.clone() })
     }
 }
@@ -56,8 +58,7 @@ fn entries_of_nodes(channels: &BTreeSet<FileChannel>, given: &ChannelMap) -> Vec
                 continue;
             }
             let file = FileChannel { node, direction: axis as i32 };
-            let text = format!("{file}={point}");
-            entries.push(MapEntry { file, channel: Channel { point, dof }, sign: 1.0, text });
+            entries.push(MapEntry::of_one(file, Channel { point, dof }));
         }
     }
     entries
@@ -119,6 +120,7 @@ mod tests {
             dataset.response.direction = direction;
         }
         assert_eq!(pairs(all.clone(), &[]), ["12:x/3", "12:y/3", "12:z/3"]);
-        assert_eq!(pairs(all, &["12:z=tip:y"]), ["tip/3"]);
+        assert_eq!(pairs(all.clone(), &["12:z=tip:y"]), ["tip/3"]);
+        assert_eq!(pairs(all, &["z=y", "3:y=3:y"]), ["12/3"]);
     }
 }

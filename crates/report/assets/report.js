@@ -123,7 +123,7 @@
       const title = a => a.unit ? `${a.label} (${a.unit})` : a.label;
       const log = a => a.spacing === "logarithmic";
       return {
-        ...this.size(), series, bands, legend: { show: false }, padding: [8, 14, 0, 0],
+        ...this.size(), series, bands, legend: { show: false }, padding: [8, 18, 0, 0],
         scales: {
           x: { time: false, distr: log(plot.x) ? 3 : 1, range: (u, low, high) => startable(low == null || low <= this.data[0][0] && high >= this.data[0][this.data[0].length - 1] ? this.extent : low < high ? [low, high] : [low - 0.5, low + 0.5], plot.x.spacing) },
           y: { distr: log(plot.y) ? 3 : 1, range: (u, low, high) => startable(this.ordinates(u, low, high), plot.y.spacing) },
@@ -169,7 +169,9 @@
     }
 
     ordinates(u, low, high) {
-      const { plot } = this, [from, to] = [u.scales.x.min ?? this.extent[0], u.scales.x.max ?? this.extent[1]];
+      const { plot } = this;
+      if (plot.held) return plot.held;
+      const [from, to] = [u.scales.x.min ?? this.extent[0], u.scales.x.max ?? this.extent[1]];
       const zoomed = from > this.extent[0] || to < this.extent[1];
       if (!this.fullRange && !zoomed) return plot.first;
       const log = plot.y.spacing === "logarithmic";

@@ -38,7 +38,8 @@ pub fn check_report(check: &Check, fixture: &Fixture, context: &PageContext) -> 
         .page("Check: fixture and recording", context.subtitle(fixture), verdict)
         .sections((!check.remarks.is_empty()).then(|| remarks(&check.remarks)))
         .sections([assembly(check, fixture)])
-        .sections(check.modes.as_ref().map(|modes| rigid::modes(modes, recording)));
+        .sections(check.modes.as_ref().map(|modes| rigid::modes(modes, recording)))
+        .sections(recording.and_then(rigid::indicator));
     let page = match recording {
         Some(recording) => page.sections(frfs::sections(recording)),
         None => page,

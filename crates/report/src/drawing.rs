@@ -28,6 +28,19 @@ pub(crate) struct Highlight {
     pub label: String,
 }
 
+/// An SVG image, and another of the same for narrow windows if there is one.
+#[derive(Debug, Clone)]
+pub(crate) struct Drawing {
+    pub wide: Markup,
+    pub narrow: Option<Markup>,
+}
+
+impl From<Markup> for Drawing {
+    fn from(wide: Markup) -> Self {
+        Drawing { wide, narrow: None }
+    }
+}
+
 /// What is drawn of a fixture. Bodies that overlap in x are drawn one above the other.
 #[derive(Debug, Clone)]
 pub(crate) struct SideView<'a> {
@@ -55,7 +68,8 @@ impl<'a> SideView<'a> {
     }
 
     /// The drawing, in the colours of the page it stands in. It scales with its width; labels that would meet are put in rows of their own.
-    pub fn draw(&self) -> Markup {
-        svg::draw(self)
+    pub fn draw(&self) -> Drawing {
+        let of = |width, class| svg::draw(self, width, class);
+        Drawing { wide: of(layout::WIDTH, "wide"), narrow: Some(of(layout::NARROW, "narrow")) }
     }
 }

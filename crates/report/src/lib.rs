@@ -43,6 +43,7 @@ pub mod format;
 mod hammer_test;
 mod hits_page;
 mod json;
+mod mode_indicator;
 mod modes_page;
 mod page;
 mod plan_page;

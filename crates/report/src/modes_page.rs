@@ -7,6 +7,7 @@ mod table;
 
 use jointscope_fixture::Fixture;
 use jointscope_modes::ModalAnalysis;
+use jointscope_spectra::FrfSet;
 use jointscope_wording::Remarks;
 
 use crate::context::PageContext;
@@ -20,25 +21,25 @@ const SHOWN: usize = 12;
 /// The page of a modal analysis as one self-contained HTML file: stabilisation chart, table of modes, shapes, auto-MAC, residual terms, and rebuilt FRFs over measured
 /// ones.
 ///
-/// `fixture` tells where the channels are, if there is one, and `matches` what was found of its elastic modes, one sentence each. The same input gives the same
-/// bytes.
+/// `fixture` tells where the channels are, if there is one, `matches` what was found of its elastic modes, one sentence each, and `modelled` are its FRFs on the channels and
+/// lines in use. The same input gives the same bytes.
 ///
 /// # Errors
 /// An analysis whose lists do not fit its spectral lines.
 pub fn modes_page(
     analysis: &ModalAnalysis,
     fixture: Option<&Fixture>,
-    matches: &[String],
+    (matches, modelled): (&[String], Option<&FrfSet>),
     context: &PageContext,
 ) -> Result<String, PageError> {
-    modes_report(analysis, fixture, matches, context).html()
+    modes_report(analysis, fixture, (matches, modelled), context).html()
 }
 
 /// The same with its tables, curves and figures to be had apart.
 pub fn modes_report(
     analysis: &ModalAnalysis,
     fixture: Option<&Fixture>,
-    matches: &[String],
+    (matches, modelled): (&[String], Option<&FrfSet>),
     context: &PageContext,
 ) -> Report {
     let count = analysis.modes.len();
@@ -65,7 +66,7 @@ pub fn modes_report(
             .sections([table::modes(analysis)])
             .sections((!matches.is_empty()).then_some(matched))
             .sections([
-                chart::section(analysis),
+                chart::section(analysis, modelled),
                 shapes::section(analysis, fixture),
                 table::auto_mac(analysis),
                 frfs::section(analysis),

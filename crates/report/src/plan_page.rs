@@ -7,7 +7,7 @@ use jointscope_wording::effect_name;
 use maud::{Markup, PreEscaped, html};
 
 use crate::context::PageContext;
-use crate::drawing::{Highlight, SideView};
+use crate::drawing::{Drawing, Highlight, SideView};
 use crate::error::PageError;
 use crate::format::{percent, quantity, significant};
 use crate::section::{Section, Tone};
@@ -83,7 +83,7 @@ fn nats(value: f64) -> String {
 }
 
 /// The fixture with the first suggestions where they are carried out.
-fn view(plan: &Plan, fixture: &Fixture) -> Markup {
+fn view(plan: &Plan, fixture: &Fixture) -> Drawing {
     let mut view = SideView::new(fixture, &plan.recorded);
     for (number, suggestion) in plan.suggestions.iter().take(SHOWN).enumerate() {
         view.highlights.extend(places(fixture, suggestion).into_iter().map(|(x, body, what)| Highlight {

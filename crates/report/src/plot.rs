@@ -9,7 +9,7 @@ mod table;
 mod thin;
 
 pub(crate) use data::PlotBook;
-pub(crate) use frf::{Curve, FrfPanes, worst};
+pub(crate) use frf::{Curve, FrfPanes, over_unity, worst};
 pub(crate) use range::{Span, YRange};
 
 use serde::{Serialize, Serializer};
@@ -229,6 +229,7 @@ pub(crate) struct Plot {
     digits: usize,
     step: Option<f64>,
     masked: Option<usize>,
+    is_strip: bool,
 }
 
 impl Plot {
@@ -249,6 +250,7 @@ impl Plot {
             digits: DIGITS,
             step: None,
             masked: None,
+            is_strip: false,
         }
     }
 
@@ -328,6 +330,11 @@ impl Plot {
     /// Height of the drawing in CSS pixels (240 unless said otherwise).
     pub fn height(self, height: u32) -> Self {
         Self { height, ..self }
+    }
+
+    /// A strip below the first of the plots before it: in rows of several, nothing stands beside it.
+    pub fn strip(self) -> Self {
+        Self { is_strip: true, ..self }
     }
 
     /// How many lines are said to be masked. Unless stated, that is the number of gaps of the series with most of them, which

@@ -75,7 +75,7 @@ impl Report {
         let mut files = Files::new("figures", "svg");
         for (anchor, block) in self.blocks() {
             match block {
-                Block::Drawing(svg, _) => files.add(&anchor, standalone(svg)),
+                Block::Drawing(drawing, _) => files.add(&anchor, standalone(&drawing.wide)),
                 Block::Plots(_, plots) => {
                     for plot in plots {
                         files.add(&format!("{anchor} {}", plot.title()), standalone(&plot.svg()?));

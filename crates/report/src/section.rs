@@ -3,6 +3,7 @@
 use jointscope_diagnosis::Verdict as Conclusion;
 use maud::{Markup, Render, html};
 
+use crate::drawing::Drawing;
 use crate::error::PageError;
 use crate::format::QuantityText;
 use crate::plot::{Plot, PlotBook};
@@ -126,7 +127,7 @@ pub(crate) enum Block {
     Markup(Markup),
     Table(TableText),
     /// An SVG image with its caption.
-    Drawing(Markup, String),
+    Drawing(Drawing, String),
     /// In rows of so many; numbered and checked when the page is rendered.
     Plots(usize, Vec<Plot>),
 }
@@ -201,8 +202,8 @@ impl Section {
     }
 
     /// An SVG image with its caption.
-    pub fn drawing(mut self, svg: Markup, caption: impl Into<String>) -> Self {
-        self.blocks.push(Block::Drawing(svg, caption.into()));
+    pub fn drawing(mut self, svg: impl Into<Drawing>, caption: impl Into<String>) -> Self {
+        self.blocks.push(Block::Drawing(svg.into(), caption.into()));
         self
     }
 
@@ -211,9 +212,12 @@ impl Section {
         self.plots(1, [plot])
     }
 
-    /// Plots in rows of so many `columns`, 1 to 4; a narrow window shows fewer side by side.
+    /// Plots in rows of so many `columns`, 1 to 4, where there are any; a narrow window shows fewer side by side.
     pub fn plots(mut self, columns: usize, plots: impl IntoIterator<Item = Plot>) -> Self {
-        self.blocks.push(Block::Plots(columns.clamp(1, 4), plots.into_iter().collect()));
+        let plots: Vec<Plot> = plots.into_iter().collect();
+        if !plots.is_empty() {
+            self.blocks.push(Block::Plots(columns.clamp(1, 4), plots));
+        }
         self
     }
 
@@ -223,7 +227,9 @@ impl Section {
             blocks.push(match block {
                 Block::Markup(markup) => markup.clone(),
                 Block::Table(table) => table.render(),
-                Block::Drawing(svg, caption) => html! { figure.sketch { (svg) figcaption { (caption) } } },
+                Block::Drawing(Drawing { wide, narrow }, caption) => html! {
+                    figure.sketch { (wide) @if let Some(narrow) = narrow { (narrow) } figcaption { (caption) } }
+                },
                 Block::Plots(columns, plots) => {
                     let figures = plots.iter().map(|plot| book.figure(plot)).collect::<Result<Vec<_>, _>>()?;
                     html! { div class={ "plots columns-" (columns) } { @for figure in &figures { (figure) } } }

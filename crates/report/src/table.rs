@@ -200,7 +200,7 @@ impl Render for TableText {
         html! {
             div.table {
                 table class=[heat] {
-                    @if !self.caption.is_empty() { caption { (self.caption) } }
+                    @if !self.caption.is_empty() { caption { span { (self.caption) } } }
                     thead {
                         tr {
                             @for (kind, heading, unit) in &self.columns {

@@ -15,6 +15,11 @@ pub enum ReadError {
         "does not start with a `    -1` line; export it as a universal file (UFF) whose lines end with LF or CR LF"
     )]
     NotUff,
+    /// A line that closes a dataset, and nothing of the dataset before it.
+    #[error(
+        "starts with the `    -1` line that closes a dataset, and the dataset itself is missing, as where pyuff writes binary data in its `overwrite` mode: write all datasets anew in `add` mode, to a file that does not exist yet"
+    )]
+    FirstLost,
     /// Text between two datasets.
     #[error("line {line}: expected the `    -1` line that opens dataset {dataset}, found `{found}`")]
     BetweenDatasets {

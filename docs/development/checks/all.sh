@@ -54,6 +54,7 @@ check "simulate with an integration by SciPy" "numpy scipy pyuff" "$python" "$he
 check "estimate with SciPy and pyFRF" "numpy scipy pyuff pyFRF ${recordings:--recordings}" \
     "$python" "$here/hits_with_scipy.py" "$program" "$recordings" ${cases:+"$cases"}
 check "modes with pyEMA" "numpy pyuff pyEMA" "$python" "$here/modes_with_pyema.py" "$program" ${recordings:+"$recordings"}
+check "the mode indicator with NumPy" "numpy" "$python" "$here/indicator_with_numpy.py" "$program"
 check "modes with the truths of simulated cases" "${cases:--cases}" "$python" "$here/modes_of_cases.py" "$program" "$cases"
 check "masses and remarks of check with the truths of the shipped cases" "" "$python" "$here/check.py" "$program" "$root/fixtures/concealed"
 check "universal files with pyuff" "numpy pyuff cargo" "$python" "$here/uff_with_pyuff.py" ${recordings:+"$recordings"}

@@ -4,10 +4,10 @@ use std::path::PathBuf;
 
 use clap::Args;
 use jointscope::check::{Check, CheckOptions, Figure, Weight};
-use jointscope::check_file;
 use jointscope::estimation::ResponseWindow;
 use jointscope::report::check_report;
 use jointscope::report::format::quantity;
+use jointscope::{check_file, checked_frfs};
 use serde_json::Value;
 
 use crate::answered::{Also, Answered, Destination, PAGE};
@@ -30,7 +30,7 @@ pub struct CheckArguments {
     /// Print check.json to standard output, for scripts.
     #[arg(long)]
     pub json: bool,
-    /// Also write tables and curves of the page (csv) or its figures (svg).
+    /// Also write tables and curves of the page (csv), its figures (svg), or FRFs as recorded and as the fixture has them (uff).
     #[arg(long, value_name = "KIND", value_enum, value_delimiter = ',', requires = "output")]
     pub also: Vec<Also>,
     /// The directory to write check.json and report.html to [default: nothing is written].
@@ -51,7 +51,11 @@ pub fn run(arguments: &CheckArguments) -> Result<String, Refusal> {
     let files = || std::iter::once(&arguments.fixture).chain(&arguments.files);
     let destination =
         Destination { json: arguments.json, also: arguments.also.clone(), output: arguments.output.clone() };
-    destination.without_frfs("check")?;
+    if arguments.files.is_empty() && arguments.also.contains(&Also::Uff) {
+        return Err(Refusal::new(
+            "`--also uff` writes the FRFs of a recording and the fixture's beside them, and no recording is given; `synthesize` writes the fixture's",
+        ));
+    }
     destination.foresee(files(), &[FILE, PAGE])?;
     let options = CheckOptions { estimate: arguments.estimation.options(ResponseWindow::Auto) };
     let check = Check::of(&fixture, measurement.as_ref(), &options)
@@ -63,13 +67,17 @@ pub fn run(arguments: &CheckArguments) -> Result<String, Refusal> {
     if check.recording.is_some() {
         file["notes"] = notes.clone().into();
     }
+    let frfs = match check.recording.as_ref().filter(|_| arguments.also.contains(&Also::Uff)) {
+        Some(recording) => checked_frfs(recording).map_err(Refusal::new)?,
+        None => Vec::new(),
+    };
     let answered = Answered {
         notes,
         answer: (FILE, pretty(&file)),
         others: Vec::new(),
         elsewhere: Vec::new(),
         report: check_report(&check, &fixture, &context),
-        frfs: Vec::new(),
+        frfs,
         summary: summary(&check),
     };
     answered.end(&destination, files())

@@ -13,13 +13,13 @@ use jointscope::report::format::quantity;
 use jointscope::report::{PageContext, Report, decomposition_report, joints_report};
 use jointscope::wording::merging;
 use jointscope::{
-    Analysis, AnalysisOptions, Band, DecompositionError, Fixture, Relation, Remarks, joints_file,
-    stiffness_file,
+    Analysis, AnalysisOptions, Band, DecompositionError, Fixture, Relation, Remarks, fitted_frfs,
+    joints_file, stiffness_file,
 };
 
 use super::Said;
 use super::many::{self, ManyArguments, Task};
-use crate::answered::{Answered, Destination, PAGE};
+use crate::answered::{Also, Answered, Destination, PAGE};
 use crate::estimation_arguments::EstimationArguments;
 use crate::input::FixtureFile;
 use crate::origin;
@@ -59,7 +59,6 @@ const RELATIONS: [(&str, Relation); 2] = [("exact", Relation::Exact), ("paper", 
 /// Decomposes and writes `stiffness.json` and `report.html`; answers with what was found and where the page is, or with `stiffness.json` itself.
 /// Many cases each get a directory.
 pub fn run(arguments: &DecomposeArguments) -> Result<Said, Refusal> {
-    arguments.destination.without_frfs("decompose")?;
     if arguments.recording.files.is_empty() {
         let task = Task {
             command: Command::Decompose,
@@ -136,7 +135,26 @@ fn found(arguments: &DecomposeArguments, command: String, joints: Joints) -> Res
     let notes = measured.notes.into_iter().chain(said);
     let context = origin::context_of(command, inputs(arguments), notes.collect(), measured.hammer_test)?;
     let report = decomposition_report(&analysis, &as_recorded, &context);
-    Ok(answered(context, stiffness_file(&analysis), report, summary(&analysis)))
+    let answered = answered(context, stiffness_file(&analysis), report, summary(&analysis));
+    with_frfs(answered, &arguments.destination, analysis.joint_fit.as_ref().ok(), &as_recorded)
+}
+
+/// The same with the FRFs that were fitted and those of the fit, where they are asked for.
+fn with_frfs(
+    mut answered: Answered,
+    destination: &Destination,
+    fit: Option<&JointFit>,
+    fixture: &Fixture,
+) -> Result<Answered, Refusal> {
+    match fit.filter(|_| destination.also.contains(&Also::Uff)) {
+        Some(fit) => answered.frfs = fitted_frfs(fit, fixture).map_err(Refusal::new)?,
+        None if destination.also.contains(&Also::Uff) => answered.notes.push(
+            "no FRFs are written: there is no joint from all FRFs, and K and C by line are no FRFs"
+                .to_owned(),
+        ),
+        None => {}
+    }
+    Ok(answered)
 }
 
 const FILE: &str = "stiffness.json";
@@ -184,7 +202,8 @@ fn several(
     }
     let context = origin::context_of(command, inputs(arguments), notes, measured.hammer_test)?;
     let report = joints_report(&fit, fixture, &context);
-    Ok(answered(context, joints_file(&fit), report, summary_of_several(&fit)))
+    let answered = answered(context, joints_file(&fit), report, summary_of_several(&fit));
+    with_frfs(answered, &arguments.destination, fit.joints.first().map(|joint| &joint.fit), fixture)
 }
 
 /// What was found of every joint, a line each.

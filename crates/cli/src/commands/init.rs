@@ -160,15 +160,20 @@ fn points(files: &[PathBuf], lines: &mut Vec<String>) -> Result<Vec<String>, Ref
         .map(|channel| channel.node)
         .collect();
     // One direction a node is the fixture's: of a triaxial sensor the first that there is, and none where ±y is among them.
-    let mut elsewhere: BTreeMap<i64, &FileChannel> = BTreeMap::new();
+    let mut elsewhere: BTreeMap<i64, FileChannel> = BTreeMap::new();
     for channel in channels.iter().filter(|channel| nodes.contains(&channel.node)) {
-        if !matches!(channel.direction.abs(), 0 | 2 | 6) && !upright.contains(&channel.node) {
-            elsewhere.entry(channel.node).or_insert(channel);
+        let direction = channel.direction.abs();
+        if matches!(direction, 1 | 3) && !upright.contains(&channel.node) {
+            elsewhere.entry(channel.node).or_insert(FileChannel { direction, ..*channel });
         }
     }
     if !elsewhere.is_empty() {
-        let entries: Vec<String> =
-            elsewhere.into_iter().map(|(node, channel)| format!("{channel}={node}:+y")).collect();
+        // One entry for all nodes where it leaves none out; signs are the files' own.
+        let axes: BTreeSet<String> = elsewhere.values().map(|channel| channel.direction_name()).collect();
+        let entries: Vec<String> = match (axes.first(), axes.len()) {
+            (Some(axis), 1) if elsewhere.len() == nodes.len() => vec![format!("{axis}=+y")],
+            _ => elsewhere.into_iter().map(|(node, channel)| format!("{channel}={node}:+y")).collect(),
+        };
         lines.push(format!(
             "the recording's directions are not ±y throughout: say with every command which of them are the fixture's, `--map {}`",
             entries.join(" ")

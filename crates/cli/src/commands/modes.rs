@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use jointscope::check::fixture_frfs;
 use jointscope::report::format::quantity;
 use jointscope::report::{PageContext, modes_report};
 use jointscope::spectra::in_text;
@@ -80,7 +81,8 @@ pub fn run(arguments: &ModesArguments) -> Result<String, Refusal> {
         .map(|(path, damping)| (path.clone(), damping.fixture.to_json()));
     let elsewhere = updated.collect();
     let remarks = damping.as_ref().map_or(&[][..], |damping| &damping.remarks);
-    let report = modes_report(&analysis, fixture.as_deref(), remarks, &context);
+    let modelled = fixture.as_deref().and_then(|fixture| fixture_frfs(fixture, analysis.measured()));
+    let report = modes_report(&analysis, fixture.as_deref(), (remarks, modelled.as_ref()), &context);
     let mut summary = summary(&analysis, damping.as_ref());
     summary.extend(arguments.update.iter().map(|path| path.display().to_string()));
     let frfs = match arguments.destination.also.contains(&Also::Uff) {

@@ -201,7 +201,11 @@ fn nodes_that_the_fixture_does_not_have_ask_for_a_map() {
     let sideways = |datasets: &mut Vec<Dataset58>| {
         datasets.iter_mut().for_each(|dataset| dataset.response.direction = 3);
     };
-    recording("bad-direction", sideways, &["bad.uff, function 1", "+z", "`--map 4:+z=4:+y`"]);
+    recording(
+        "bad-direction",
+        sideways,
+        &["bad.uff, function 1", "+z", "`--map 4:+z=4:+y`", "`--map +z=+y`"],
+    );
 }
 
 #[test]

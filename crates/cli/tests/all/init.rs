@@ -117,6 +117,16 @@ fn a_map_for_triaxial_nodes_names_one_direction_of_each() {
     assert_eq!(map.split_whitespace().count(), 1, "{said}");
 }
 
+#[test]
+fn nodes_that_all_lie_along_one_other_axis_are_told_the_one_map_entry_for_all() {
+    let bench = Bench::new("init-along-z");
+    bench.write("t.csv", "f,2:-z/1:+z real,2:-z/1:+z imag\n10,1,0\n20,1,0\n");
+    let init = ["init", "--beam", "500x40x6:steel", "--points-from", "t.csv", "-o", "a.json"];
+    assert!(bench.done(&init).contains("`--map +z=+y`"));
+    bench.write("t.csv", "f,2:-z/1:+y real,2:-z/1:+y imag\n10,1,0\n20,1,0\n");
+    assert!(bench.done(&[&init[..], &["--force"]].concat()).contains("`--map 2:+z=2:+y`"));
+}
+
 /// FRFs of two blocks with their geometry: nodes 1 to 4 along z, in mm, 1000 mm from where the fixture begins.
 fn with_geometry(name: &str) -> Bench {
     let bench = Bench::new(name);

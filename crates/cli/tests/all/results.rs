@@ -32,7 +32,7 @@ fn a_diagnosis_comes_with_its_tables_curves_figures_and_the_frfs_of_its_models()
     bench.done(&["diagnose", "fixture.json", "hammer-test.uff", "--also", "csv,svg,uff", "-o", "out"]);
     let page = bench.text("out/report.html");
     assert_eq!(files(&bench, "out/tables").len(), page.matches("<table").count());
-    let plots = page.matches("<figure class=\"plot\"").count();
+    let plots = page.matches("data-plot=").count();
     assert_eq!(files(&bench, "out/curves").len(), plots);
     assert_eq!(files(&bench, "out/figures").len(), plots + page.matches("<figure class=\"sketch\"").count());
     for name in files(&bench, "out/figures") {
@@ -69,11 +69,45 @@ fn modes_come_with_the_frfs_rebuilt_from_them() {
 }
 
 #[test]
+fn a_decomposition_and_a_check_come_with_the_frfs_of_the_fixture_and_of_the_joint_found() {
+    let bench = Bench::shipped("results-joint");
+    bench.done(&["decompose", "fixture.json", "hammer-test.uff", "--also", "uff", "-o", "out"]);
+    let names = ["fitted.uff", "measured.uff", "nominal.uff", "residual-fitted.uff", "residual-nominal.uff"];
+    assert_eq!(files(&bench, "out/frfs"), names);
+    let [fitted, measured, nominal, left, _] = names.map(|name| frfs(&bench, &format!("out/frfs/{name}")));
+    let size = |values: &[Complex64]| values.iter().map(Complex64::norm_sqr).sum::<f64>().sqrt();
+    let apart = |a: &[Complex64], b: &[Complex64]| {
+        size(&a.iter().zip(b).map(|(a, b)| a - b).collect::<Vec<_>>()) / size(b)
+    };
+    assert!((apart(&fitted, &measured) - size(&left) / size(&measured)).abs() < 1e-12);
+    // The glue is soft: the joint found meets what was measured, the nominal one does not.
+    assert!(apart(&fitted, &measured) < 0.05, "{}", apart(&fitted, &measured));
+    assert!(apart(&nominal, &measured) > 0.5, "{}", apart(&nominal, &measured));
+    bench.done(&["check", "fixture.json", "hammer-test.uff", "--also", "uff", "-o", "checked"]);
+    assert_eq!(files(&bench, "checked/frfs"), ["measured.uff", "nominal.uff", "residual-nominal.uff"]);
+    assert_eq!(
+        frfs(&bench, "checked/frfs/nominal.uff").len(),
+        frfs(&bench, "checked/frfs/measured.uff").len()
+    );
+    // What is measured comes back with the coherence that it had.
+    let coherences = |name: &str| {
+        let all = bench.datasets(name).into_iter();
+        all.filter(|dataset| dataset.function == FunctionType::Coherence).count()
+    };
+    assert_eq!(coherences("checked/frfs/measured.uff"), coherences("hammer-test.uff"));
+}
+
+#[test]
 fn what_a_command_does_not_have_is_refused_before_the_work() {
     let bench = Bench::synthesized("results-refused", TWO_BLOCKS, "50:1000:5");
+    bench.done(&["decompose", "two.json", "frf.uff", "-o", "joint"]);
     bench.refused(
-        &["decompose", "two.json", "frf.uff", "--also", "uff", "-o", "out"],
-        &["--also uff", "`decompose` has none", "`diagnose` and `modes`"],
+        &["compare", "joint", "--also", "uff", "-o", "out"],
+        &["--also uff", "`compare` has none", "`diagnose`, `decompose`, `modes` and `check`"],
+    );
+    bench.refused(
+        &["check", "two.json", "--also", "uff", "-o", "out"],
+        &["no recording is given", "`synthesize`"],
     );
     bench.refused(&["decompose", "two.json", "frf.uff", "--also", "csv", "--json"], &["--output <DIR>"]);
     bench.refused(

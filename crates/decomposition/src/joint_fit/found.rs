@@ -2,8 +2,10 @@
 
 use super::{Admissible, JointLikelihood, JointTests, LawFit};
 use jointscope_linalg::{Matrix2, RealMatrix2};
-use jointscope_spectra::FrfPair;
+use jointscope_spectra::{FrfPair, FrfSet};
+use num_complex::Complex64;
 use serde::{Serialize, Serializer};
+use std::sync::Arc;
 
 /// The joint from all FRFs.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -49,6 +51,9 @@ pub struct JointFit {
     pub frfs: Vec<FrfPair>,
     /// Spectral lines fitted.
     pub lines: usize,
+    /// The same FRFs as measured and as fitted.
+    #[serde(skip)]
+    pub fitted: Arc<FittedFrfs>,
     /// The joint's own mass and its standard deviation, kg, where the laws compared show that it has one; k and c are those of a joint with it.
     #[serde(skip_serializing_if = "Option::is_none", serialize_with = "uncertain")]
     pub mass: Option<(f64, f64)>,
@@ -58,6 +63,15 @@ pub struct JointFit {
     /// What the FRFs alone tell of the joint and of the quantities; nothing where they leave the joint's mass open.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub likelihood: Option<JointLikelihood>,
+}
+
+/// What a fit was made to, and what it makes of it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FittedFrfs {
+    /// The FRFs as measured: accelerances on the lines fitted.
+    pub measured: FrfSet,
+    /// The same of the fixture with the joints found, its quantities where the fit has them; FRF after FRF.
+    pub modelled: Vec<Complex64>,
 }
 
 /// A quantity of the fixture as the fit has it.

@@ -7,9 +7,12 @@ use super::likelihood::ELEMENTS;
 use super::problem::{Fitted, Problem};
 use super::quantities::Uncertain;
 use super::uncertainty::{length_between, strain, total, units};
-use super::{FittedQuantity, JointFit, JointLikelihood, JointTests, LawFit, SeveralError, UnmovedQuantity};
+use super::{
+    FittedFrfs, FittedQuantity, JointFit, JointLikelihood, JointTests, LawFit, SeveralError, UnmovedQuantity,
+};
 use jointscope_inference::{Covariance, NormalEquations};
 use jointscope_linalg::Cholesky;
+use std::sync::Arc;
 
 /// What a model that does not explain the FRFs does to their noise.
 pub(super) struct Inflated {
@@ -116,6 +119,8 @@ impl Outcome<'_> {
         let quantities = self.quantities(&at.point.coordinates, &total);
         let unmoved: Vec<UnmovedQuantity> =
             self.unmoved.iter().map(|own| own.unmoved(setup.fixture)).collect();
+        let (measured, modelled) = (setup.recorded.frfs.clone(), at.point.predicted.clone());
+        let fitted = Arc::new(FittedFrfs { measured, modelled });
         let joints = problem.places().zip(&self.laws).enumerate().map(|(place, ((first, law), laws))| {
             let [k, d, _] = law.matrices(&at.point.coordinates[first..first + law.count()]);
             let lowest = |first: usize| {
@@ -149,6 +154,7 @@ impl Outcome<'_> {
                 laws: laws.clone(),
                 frfs: setup.recorded.pairs.clone(),
                 lines: setup.recorded.s.len(),
+                fitted: Arc::clone(&fitted),
                 mass: mass.map(|(mass, std)| (mass, std.hypot(spreads[place].mass.sqrt()))),
                 scalar: law.stiffness == Form::Scalar,
                 likelihood: self.likelihood((first, law), &free.point.coordinates, &equations),

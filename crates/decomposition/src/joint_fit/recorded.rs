@@ -11,6 +11,8 @@ use num_complex::Complex64;
 /// Values and weights, FRF after FRF.
 #[derive(Debug, Clone)]
 pub(super) struct Recorded {
+    /// The FRFs in use on the lines in use, accelerances.
+    pub frfs: FrfSet,
     pub pairs: Vec<FrfPair>,
     /// s = δ + iω of the lines in use.
     pub s: Vec<Complex64>,
@@ -40,7 +42,9 @@ impl Recorded {
         let hz = frfs.lines().hz();
         let inside = |hz: f64| hz > 0.0 && band.is_none_or(|band| band.contains(hz));
         let lines: Vec<usize> = (0..hz.len()).filter(|&line| inside(hz[line])).collect();
+        let on_lines = frfs.on_lines(|line| inside(hz[line]))?.of_frfs(|index| used.contains(&index))?;
         let mut recorded = Recorded {
+            frfs: on_lines.to_form(FrfForm::Accelerance).ok()?,
             pairs: used.iter().map(|&index| frfs.pairs()[index].clone()).collect(),
             s: lines.iter().map(|&line| Complex64::new(decay, frfs.lines().omega(line))).collect(),
             highest: hz[hz.len() - 1],

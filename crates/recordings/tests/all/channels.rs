@@ -34,6 +34,59 @@ fn a_mapped_node_of_a_triaxial_sensor_is_known_by_its_entries_alone() {
 }
 
 #[test]
+fn one_entry_maps_a_direction_of_all_nodes() {
+    let datasets =
+        || vec![frf((4, -3), (1, 3)), frf((3, 3), (1, 3)), frf((4, 1), (1, 3)), frf((9, 3), (1, 3))];
+    let recording = read_with(datasets(), &options(&["+z=+y"], None)).unwrap();
+    assert_eq!(names(&recording), ["3/1", "4/1"]);
+    assert_eq!(recording.frfs().unwrap().values(1)[0], -VALUES[0]);
+    assert_eq!(
+        recording.notes,
+        [
+            "1 FRF at nodes that the fixture does not have left out: 9:+z/1:+z",
+            "1 FRF in directions other than y and theta left out: 4:+x/1:+z"
+        ]
+    );
+    // What is y in the files is then another axis than the fixture's, unless the map says so too.
+    let mixed = vec![frf((4, 3), (1, 2))];
+    refused(
+        mixed.clone(),
+        &options(&["+z=+y"], None),
+        &["no FRF belongs to the fixture", "`--map 1:+y=1:+y`"],
+    );
+    assert_eq!(names(&read_with(mixed, &options(&["+z=+y", "+y=+y"], None)).unwrap()), ["4/1"]);
+    refused(datasets(), &options(&["+y=+y"], None), &["`+y=+y` applies to no channel", "4:-z"]);
+}
+
+#[test]
+fn one_entry_maps_nodes_whose_numbers_fit_it() {
+    let datasets = vec![frf((104, 3), (1, 2)), frf((103, 3), (1, 2)), frf((110, 3), (1, 2))];
+    let recording = read_with(datasets, &options(&["10*:+z=*:+y"], None)).unwrap();
+    assert_eq!(names(&recording), ["3/1", "4/1"]);
+    assert_eq!(recording.notes, ["1 FRF at nodes that the fixture does not have left out: 110:+z/1:+y"]);
+    // A sensor and a hammer of one point have node numbers of their own.
+    let driving = vec![frf((101, 3), (1, 3))];
+    assert_eq!(names(&read_with(driving, &options(&["+z=+y", "10*:+z=*:+y"], None)).unwrap()), ["1/1"]);
+}
+
+#[test]
+fn entries_of_many_nodes_that_contradict_each_other_ask_for_one_of_the_node() {
+    let map = &["10*:+z=*:+y", "1*:+z=*:+y"];
+    refused(
+        vec![frf((104, 3), (1, 2))],
+        &options(map, None),
+        &["`10*:+z=*:+y` and `1*:+z=*:+y`", "104:+z", "node 104"],
+    );
+    let triaxial = || vec![frf((3, 2), (1, 3)), frf((3, 3), (1, 3))];
+    let both = &["+z=+y", "+y=+y"];
+    refused(triaxial(), &options(both, None), &["`+y=+y`", "3:+y and 3:+z", "channel 3: give node 3"]);
+    let mended = &["+z=+y", "+y=+y", "3:+z=3:+y"];
+    assert_eq!(names(&read_with(triaxial(), &options(mended, None)).unwrap()), ["3/1"]);
+    let two_nodes = vec![frf((103, 3), (1, 3)), frf((3, 3), (1, 3))];
+    refused(two_nodes, &options(&["+z=+y", "10*:+z=*:+y"], None), &["103:+z and 3:+z", "channel 3"]);
+}
+
+#[test]
 fn the_other_axes_of_a_triaxial_sensor_are_left_out_and_named() {
     let datasets = vec![frf((3, 1), (1, 2)), frf((3, -2), (1, 2)), frf((3, 3), (1, 2))];
     let recording = read(datasets).unwrap();
@@ -47,7 +100,7 @@ fn a_direction_that_is_not_transverse_asks_for_the_map_entry_to_write() {
     refused(
         vec![frf((4, 2), (1, 2)), frf((3, -3), (1, 2))],
         &default,
-        &["test.uff, function 2 (FRF 3:-z/1:+y)", "`--map 3:+z=3:+y`"],
+        &["test.uff, function 2 (FRF 3:-z/1:+y)", "`--map 3:+z=3:+y`", "`--map +z=+y`"],
     );
     refused(vec![frf((3, 4), (1, 2))], &default, &["`--map 3:+rx=3:+theta`"]);
     refused(vec![frf((3, 7), (1, 2))], &default, &["direction 7 of node 3 does not exist"]);

@@ -51,6 +51,26 @@ fn channels_of_one_sequence_number_are_one_hit_in_whatever_order_they_come() {
 }
 
 #[test]
+fn one_map_entry_turns_the_directions_of_all_nodes() {
+    let along_z = |mut channel: Dataset58| {
+        channel.response.direction = -3;
+        channel
+    };
+    let datasets = || vec![along_z(force(1, 1)), along_z(sensor(1, 4)), sensor(1, 3)];
+    let read = |map: &[&str]| hits_of(&[source("a.uff", datasets())], Some(&fixture()), &options(map, None));
+    let hits = read(&["+z=+y"]).unwrap();
+    assert_eq!((hits.hits[0].struck().to_string(), hits.hits[0].responses().len()), ("1".to_owned(), 1));
+    assert_eq!(hits.hits[0].force(), [0.0, -8.0, -2.0, 0.0]);
+    assert_eq!(hits.hits[0].responses()[0].values, [0.0, -1.0, 2.0, -0.5]);
+    assert_eq!(hits.notes, ["channels in directions other than y and theta left out: 3:+y"]);
+    // Hits along two axes of one node are not hits of one FRF.
+    let two = vec![along_z(force(1, 1)), sensor(1, 4), force(2, 1), sensor(2, 4)];
+    let both = hits_of(&[source("a.uff", two)], Some(&fixture()), &options(&["+z=+y", "+y=+y"], None));
+    let message = both.unwrap_err().to_string();
+    assert!(message.contains("1:-z and 1:+y") && message.contains("give node 1"), "{message}");
+}
+
+#[test]
 fn directions_turn_signs_and_units_become_si() {
     let mut push = force(1, 1);
     push.response.direction = -2;

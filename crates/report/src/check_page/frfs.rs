@@ -147,6 +147,6 @@ fn overlays(recording: &RecordingCheck) -> Section {
         if let Some(nrmse) = recording.frfs[index].nrmse {
             panes.title += &format!(", nrmse {}", percent(nrmse, 1));
         }
-        section.plots(2, [panes.magnitude(), panes.phase()].into_iter().chain(panes.residuals()))
+        section.plots(2, panes.all())
     })
 }

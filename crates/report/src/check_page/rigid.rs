@@ -3,6 +3,7 @@
 use jointscope_check::{ModelModes, RecordingCheck};
 
 use crate::format::{percent, significant};
+use crate::mode_indicator;
 use crate::section::Section;
 use crate::table::Table;
 
@@ -46,4 +47,10 @@ pub(super) fn modes(modes: &ModelModes, recording: Option<&RecordingCheck>) -> S
         if missing.len() == 1 { "" } else { "s" },
         missing.join(", ")
     ))
+}
+
+/// How many modes the recording shows, and the fixture.
+pub(super) fn indicator(recording: &RecordingCheck) -> Option<Section> {
+    let plot = mode_indicator::plot(&recording.measured, recording.fixture_frfs().as_ref())?;
+    Some(Section::new("How many modes there are").plot(plot))
 }

@@ -7,7 +7,7 @@ use num_complex::Complex64;
 
 use super::Subject;
 use super::element::index;
-use crate::plot::{Axis, Curve, FrfPanes, Plot, Role, Style, Values, YRange};
+use crate::plot::{Axis, Curve, FrfPanes, Plot, Role, Style, Values, YRange, over_unity};
 use crate::section::Section;
 
 const UNITS: [&str; 4] = ["m/N", "m/(N*m)", "rad/N", "rad/(N*m)"];
@@ -67,6 +67,7 @@ fn panes<'a>(subject: &Subject<'a>, element: Element) -> FrfPanes<'a> {
         hz: h41.lines.hz(),
         measured,
         noise: Vec::new(),
+        coherence: None,
         curves: vec![Curve { label: "nominal", role: Role::Nominal, style: Style::Dashed, values }],
     }
 }
@@ -87,8 +88,8 @@ fn of_each<T: Values>(subject: &Subject, plot: Plot, curve: impl Fn(usize) -> Op
 }
 
 fn coherence(subject: &Subject) -> Option<Plot> {
-    let plot = Plot::new("Coherence", Axis::frequency(), Axis::linear("γ²", ""))
-        .caption("Coherence of each FRF in use, as recorded; it falls where the response is small or noisy.");
+    let plot = over_unity("Coherence", "γ²")
+        .caption("Coherence of each FRF in use, as recorded; it falls where the response is small or noisy. A line where it is 0 is not used.");
     of_each(subject, plot, |index| subject.analysis.frfs.coherence(index))
 }
 

@@ -2,13 +2,12 @@
 
 use jointscope_diagnosis::Site;
 use jointscope_fixture::{BodyKind, Effect, EffectKind, Fixture, Place};
-use maud::Markup;
 
 use super::Subject;
-use crate::drawing::{Highlight, SideView};
+use crate::drawing::{Drawing, Highlight, SideView};
 
 /// The drawing and its caption.
-pub(super) fn drawing(subject: &Subject) -> (Markup, String) {
+pub(super) fn drawing(subject: &Subject) -> (Drawing, String) {
     let (fixture, diagnosis) = (subject.fixture, subject.diagnosis);
     let mut view = SideView::new(fixture, diagnosis.observation.pairs());
     for (index, finding) in diagnosis.findings.iter().enumerate() {

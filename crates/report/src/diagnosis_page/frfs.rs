@@ -6,7 +6,7 @@ use jointscope_spectra::Dof;
 
 use super::Subject;
 use crate::format::{significant, trimmed};
-use crate::plot::{Curve, FrfPanes, Plot, Role, Style, YRange};
+use crate::plot::{Curve, FrfPanes, Plot, Role, Style};
 use crate::section::Section;
 
 pub(super) fn section(subject: &Subject) -> Section {
@@ -18,13 +18,10 @@ pub(super) fn section(subject: &Subject) -> Section {
     ));
     for index in shown {
         let panes = panes(subject, index, models(subject, index));
-        let magnitude = panes
-            .magnitude()
-            .y_range(YRange::decades(panes.measured.iter().flatten().map(|v| v.norm())))
-            .caption(judged(subject, index));
+        let magnitude = panes.magnitude().caption(judged(subject, index));
         let phase = panes.phase().caption("Phase, in the turn that the curves cross least.");
         section = section
-            .plots(2, with_held_out(subject, index, [magnitude, phase].into_iter().chain(panes.residuals())));
+            .plots(2, with_held_out(subject, index, [magnitude, phase].into_iter().chain(panes.below())));
     }
     section
 }
@@ -136,6 +133,7 @@ pub(super) fn panes<'a>(subject: &Subject<'a>, index: usize, curves: Vec<Curve>)
         hz: observation.lines().hz(),
         measured: observation.values()[lines.clone()].iter().map(|v| Some(*v)).collect(),
         noise: observation.weights()[lines.clone()].iter().map(half).collect(),
+        coherence: observation.coherence(index),
         curves,
     }
 }

@@ -23,8 +23,8 @@ pub(super) fn section(subject: &Subject, baseline: &Baseline) -> Section {
     let states = States { subject, baseline };
     for index in shown(subject) {
         let plots = if states.on_the_same_lines() { states.together(index) } else { states.apart(index) };
-        let residuals = panes(subject, index, super::frfs::models(subject, index)).residuals();
-        section = section.plots(2, with_held_out(subject, index, plots.into_iter().chain(residuals)));
+        let panes = panes(subject, index, super::frfs::models(subject, index));
+        section = section.plots(2, with_held_out(subject, index, plots.into_iter().chain(panes.below())));
     }
     section
 }
@@ -57,7 +57,7 @@ impl<'a> States<'_, 'a> {
             true => panes.phase().caption("Phase; the recording is that of the baseline."),
             false => self.difference(&panes, index),
         };
-        [magnitude(&panes).caption(caption), second]
+        [panes.magnitude().caption(caption), second]
     }
 
     /// The change of an FRF, recorded and predicted.
@@ -98,11 +98,12 @@ impl<'a> States<'_, 'a> {
             hz: self.baseline.observation.lines().hz(),
             measured: self.recorded_before(index).values,
             noise: Vec::new(),
+            coherence: self.baseline.observation.coherence(index),
             curves: vec![self.calibrated(index)],
             ..now.clone()
         };
         let caption = "Magnitude; the lines of the two recordings are not the same.";
-        [magnitude(&before).caption(caption), magnitude(&now).caption(caption)]
+        [before.magnitude().caption(caption), now.magnitude().caption(caption)]
     }
 
     fn recorded_before(&self, index: usize) -> Curve {
@@ -127,10 +128,6 @@ impl<'a> States<'_, 'a> {
             values: of(&diagnosis.search.repaired),
         })
     }
-}
-
-fn magnitude(panes: &FrfPanes) -> Plot {
-    panes.magnitude().y_range(YRange::decades(panes.measured.iter().flatten().map(|v| v.norm())))
 }
 
 /// The values of FRF `index` of those of an observation.

@@ -7,8 +7,9 @@ use super::{ChannelKind, SideView};
 use crate::format::{fixed, trimmed};
 use crate::plot::Span;
 
-/// Width of the drawing in its own pixels.
+/// Width of the drawing in its own pixels, and of the one for narrow windows, which shows letters as large in less than half of the room.
 pub(super) const WIDTH: f64 = 860.0;
+pub(super) const NARROW: f64 = 400.0;
 const MARGIN: f64 = 46.0;
 /// Height of a block, and of a slender beam.
 const BLOCK: f64 = 64.0;
@@ -36,10 +37,12 @@ pub(super) struct Scale {
     start: f64,
     /// Pixels per metre; zero when everything lies at one abscissa.
     pub per_metre: f64,
+    /// Width of the drawing, px.
+    pub width: f64,
 }
 
 impl Scale {
-    fn new(view: &SideView, outlines: &[(f64, f64)]) -> Self {
+    fn new(view: &SideView, outlines: &[(f64, f64)], width: f64) -> Self {
         let fixture = view.fixture;
         let abscissae = (outlines.iter().flat_map(|(from, to)| [*from, *to]))
             .chain(fixture.points().iter().map(|point| point.x.value))
@@ -47,14 +50,14 @@ impl Scale {
             .chain(view.highlights.iter().map(|highlight| highlight.x));
         match Span::of(abscissae).0 {
             Some((start, end)) if end - start > 1e-9 && end - start < 1e9 => {
-                Self { start, per_metre: (WIDTH - 2.0 * MARGIN) / (end - start) }
+                Self { start, per_metre: (width - 2.0 * MARGIN) / (end - start), width }
             }
-            _ => Self { start: 0.0, per_metre: 0.0 },
+            _ => Self { start: 0.0, per_metre: 0.0, width },
         }
     }
 
     pub fn px(&self, x: f64) -> f64 {
-        if self.per_metre == 0.0 { WIDTH / 2.0 } else { MARGIN + (x - self.start) * self.per_metre }
+        if self.per_metre == 0.0 { self.width / 2.0 } else { MARGIN + (x - self.start) * self.per_metre }
     }
 }
 
@@ -106,9 +109,9 @@ impl Label {
     }
 
     /// Where it may stand along x: about its leader, at its side.
-    fn stretches(&self) -> [Stretch; 5] {
+    fn stretches(&self, width: f64) -> [Stretch; 5] {
         let half = 0.5 * self.width();
-        let most = (WIDTH - half - 2.0).max(half);
+        let most = (width - half - 2.0).max(half);
         let (over, beside) = ((half - 6.0).max(0.0), half + 9.0);
         let shifts = match self.aside {
             true => [beside, 0.0, -beside, over, -over],
@@ -122,8 +125,8 @@ impl Label {
 }
 
 /// Gives each label the lane nearest to the body in which it meets no other label and no other's leader, and its own leader meets no label; keeps it
-/// within the drawing. Returns how many lanes were needed.
-fn assign_lanes(labels: &mut [Label]) -> usize {
+/// within a drawing of this width. Returns how many lanes were needed.
+fn assign_lanes(labels: &mut [Label], width: f64) -> usize {
     labels.sort_by(|a, b| (a.anchor.total_cmp(&b.anchor)).then_with(|| a.text.cmp(&b.text)));
     // How many others' leaders it would cover, at the place where it covers the fewest.
     let covered = |label: &Label, (from, to): Stretch, others: &[usize]| -> usize {
@@ -133,7 +136,7 @@ fn assign_lanes(labels: &mut [Label]) -> usize {
     let all: Vec<usize> = (0..labels.len()).collect();
     let in_the_way = |index: &usize| {
         let label = &labels[*index];
-        label.stretches().map(|stretch| covered(label, stretch, &all)).into_iter().min()
+        label.stretches(width).map(|stretch| covered(label, stretch, &all)).into_iter().min()
     };
     // The leaders of far lanes pass the near ones, so labels that are in no leader's way, and short ones, go near.
     let mut order = all.clone();
@@ -142,7 +145,7 @@ fn assign_lanes(labels: &mut [Label]) -> usize {
     let mut lanes = Lanes::default();
     let place = |(at, index): (usize, &usize)| {
         let label = &labels[*index];
-        let mut stretches = label.stretches();
+        let mut stretches = label.stretches(width);
         stretches.sort_by_key(|stretch| covered(label, *stretch, &order[at + 1..]));
         let leader = label.leader();
         (*index, lanes.take(&stretches, (leader - 3.0, leader + 3.0)))
@@ -223,9 +226,9 @@ pub(super) struct Layout {
 }
 
 impl Layout {
-    pub fn new(view: &SideView) -> Self {
+    pub fn new(view: &SideView, width: f64) -> Self {
         let outlines = outlines(view.fixture);
-        let scale = Scale::new(view, &outlines);
+        let scale = Scale::new(view, &outlines, width);
         let bodies = place_bodies(view.fixture, &outlines, scale);
         let count = bodies.iter().flatten().map(|b| b.row + 1).max().unwrap_or(1);
         let mut layout = Self { scale, bodies, rows: vec![Row::default(); count], height: 0.0 };
@@ -292,8 +295,8 @@ impl Layout {
     fn stack(&mut self) {
         let mut top = 6.0;
         for row in &mut self.rows {
-            let above = assign_lanes(&mut row.above);
-            let below = assign_lanes(&mut row.below);
+            let above = assign_lanes(&mut row.above, self.scale.width);
+            let below = assign_lanes(&mut row.below, self.scale.width);
             let arrows = if above > 0 { ARROW } else { 8.0 };
             row.middle = top + above as f64 * LANE + arrows + row.half;
             let support = if row.supported { SUPPORT } else { 6.0 };
@@ -323,13 +326,13 @@ fn millimetres(x: f64) -> String {
 }
 
 fn place_bodies(fixture: &Fixture, outlines: &[(f64, f64)], scale: Scale) -> Vec<Option<Placed>> {
-    let narrowest = if scale.per_metre == 0.0 { WITHOUT_EXTENT } else { NARROWEST };
+    let narrowest = if scale.per_metre == 0.0 { WITHOUT_EXTENT.min(scale.width) } else { NARROWEST };
     let mut rows: Vec<Vec<Stretch>> = Vec::new();
     let place = |(body, (from, to)): (&Body, &(f64, f64))| {
         let is_beam = matches!(body.kind, BodyKind::Beam(_));
         let (mut left, mut right) = Span::of([*from, *to]).0.map(|(a, b)| (scale.px(a), scale.px(b)))?;
         if right - left < narrowest && !is_beam {
-            let middle = (0.5 * (left + right)).clamp(0.5 * narrowest, WIDTH - 0.5 * narrowest);
+            let middle = (0.5 * (left + right)).clamp(0.5 * narrowest, scale.width - 0.5 * narrowest);
             (left, right) = (middle - 0.5 * narrowest, middle + 0.5 * narrowest);
         }
         // Bodies that touch stand side by side.

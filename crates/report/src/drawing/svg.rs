@@ -4,7 +4,7 @@ use jointscope_fixture::{Fixture, Joint, JointLaw};
 use maud::{Markup, PreEscaped, html};
 
 use super::layout::{
-    ARROW, LANE, Label, Layout, POINT_LANE, Row, SUPPORT, Tie, WIDTH, body_name, name_fits, text_width,
+    ARROW, LANE, Label, Layout, POINT_LANE, Row, SUPPORT, Tie, body_name, name_fits, text_width,
 };
 use super::{ChannelKind, Highlight, SideView};
 use crate::format::significant;
@@ -28,12 +28,13 @@ const STYLE: &str = "<style>\
 
 type Place = (f64, f64);
 
-pub(super) fn draw(view: &SideView) -> Markup {
-    let (layout, fixture) = (Layout::new(view), view.fixture);
+/// A drawing of this width, of a class of its own.
+pub(super) fn draw(view: &SideView, width: f64, class: &str) -> Markup {
+    let (layout, fixture) = (Layout::new(view, width), view.fixture);
     let base = layout.height - 14.0;
     let point = |index: usize| layout.point(fixture, index);
     html! {
-        svg.fx xmlns="http://www.w3.org/2000/svg" viewBox={ "0 0 " (WIDTH) " " (format!("{:.0}", layout.height)) }
+        svg class={ "fx " (class) } xmlns="http://www.w3.org/2000/svg" viewBox={ "0 0 " (width) " " (format!("{:.0}", layout.height)) }
             role="img" aria-label=(description(view)) {
             (PreEscaped(STYLE))
             @for (body, x) in fixture.supports().iter().map(|support| fixture.support_place(support)) {
@@ -53,7 +54,7 @@ pub(super) fn draw(view: &SideView) -> Markup {
             }
             @for row in &layout.rows { (labels(row)) }
             @if layout.scale.per_metre > 0.0 { (scale_bar(layout.scale.per_metre, base)) }
-            (axes(base))
+            (axes(width, base))
         }
     }
 }
@@ -249,8 +250,8 @@ fn scale_bar(per_metre: f64, y: f64) -> Markup {
 }
 
 /// The directions of the convention: x along the fixture, y transverse.
-fn axes(y: f64) -> Markup {
-    let (x, top, right) = (WIDTH - 62.0, y - 26.0, WIDTH - 34.0);
+fn axes(width: f64, y: f64) -> Markup {
+    let (x, top, right) = (width - 62.0, y - 26.0, width - 34.0);
     let lines = format!(
         "M{x:.1} {top:.1}V{y:.1}H{right:.1}M{right:.1} {y:.1}l-5 -3m5 3l-5 3M{x:.1} {top:.1}l-3 5m3 -5l3 5"
     );

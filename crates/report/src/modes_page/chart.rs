@@ -1,14 +1,16 @@
 //! The stabilisation chart under the FRFs' sum.
 
 use jointscope_modes::{ChartPole, ModalAnalysis, Stability};
+use jointscope_spectra::FrfSet;
 
+use crate::mode_indicator;
 use crate::plot::{Axis, Plot, Role, YRange};
 use crate::section::Section;
 
 /// Poles above which the chart is drawn thinned.
 const POLES: usize = 8_000;
 
-pub(super) fn section(analysis: &ModalAnalysis) -> Section {
+pub(super) fn section(analysis: &ModalAnalysis, modelled: Option<&FrfSet>) -> Section {
     let (lowest, highest) = analysis.orders;
     let seen = match analysis.columns {
         1 => String::new(),
@@ -16,12 +18,17 @@ pub(super) fn section(analysis: &ModalAnalysis) -> Section {
             format!(" Each order has as many poles as {columns} columns of the matrix of FRFs times it.")
         }
     };
+    // Of one column it is the sum itself.
+    let is_sum = analysis.complete && analysis.columns == 1 && modelled.is_none();
+    let indicator = (!is_sum).then(|| mode_indicator::plot(analysis.measured(), modelled)).flatten();
+    let indicator = indicator.map(|plot| modes_marked(analysis, plot));
     Section::new("Stabilisation chart")
         .paragraph(format!(
             "Damped poles of denominators of order {lowest} to {highest}. A mode stays where it is from order to order; poles of mere arithmetic wander.{seen} Vertical lines are the \
              modes taken; `--pick` takes others, `--orders` draws another chart."
         ))
         .plot(sum(analysis))
+        .plots(1, indicator)
         .plot(poles(analysis))
 }
 

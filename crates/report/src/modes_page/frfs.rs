@@ -21,6 +21,6 @@ pub(super) fn section(analysis: &ModalAnalysis) -> Section {
         let values = analysis.rebuilt(frf).iter().map(|value| Some(*value)).collect();
         let rebuilt = Curve { label: "rebuilt", role: Role::Highlight, style: Style::Dashed, values };
         let panes = FrfPanes::recorded(analysis.measured(), frf, vec![rebuilt]);
-        section.plots(2, [panes.magnitude(), panes.phase()].into_iter().chain(panes.residuals()))
+        section.plots(2, panes.all())
     })
 }

@@ -75,6 +75,8 @@ struct PlotData {
     first: Option<(f64, f64)>,
     /// Whether `first` is to be found again among the lines in view when the reader zooms in: the percentiles.
     percentiles: Option<(f64, f64)>,
+    /// Ordinate range at any zoom.
+    held: Option<(f64, f64)>,
     /// Columns by table, abscissa first.
     tables: Vec<Vec<usize>>,
     series: Vec<SeriesData>,
@@ -107,6 +109,10 @@ impl PlotData {
             y: Axis { unit: scale.unit().to_owned(), ..plot.y.clone() },
             first: is_cut.then(|| (scale.of(first.0), scale.of(first.1))),
             percentiles: (plot.y_range == YRange::Robust).then_some(YRange::ROBUST),
+            held: match plot.y_range {
+                YRange::Held { low, high } => Some((scale.of(low), scale.of(high))),
+                _ => None,
+            },
             tables,
             series,
             marks: plot.marks.iter().map(|mark| mark.scaled(scale)).collect(),

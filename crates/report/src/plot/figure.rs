@@ -12,7 +12,7 @@ pub(super) fn figure(number: usize, plot: &Plot, drawing: &Drawing) -> Markup {
     let caption = caption(plot);
     let remarks = drawing.remarks.join("; ");
     html! {
-        figure.plot data-plot=(number) {
+        figure.plot.strip[plot.is_strip] data-plot=(number) {
             div.plot-head {
                 h3 { (plot.title) }
                 output.at {}

@@ -34,7 +34,26 @@ pub(crate) struct FrfPanes<'a> {
     pub measured: Vec<Option<Complex64>>,
     /// Half the width of the 95 % band of one part's noise; not drawn where empty.
     pub noise: Vec<Option<f64>>,
+    /// γ² by line, where it was recorded.
+    pub coherence: Option<&'a [f64]>,
     pub curves: Vec<Curve>,
+}
+
+/// Height of a strip and how finely its ordinates are told.
+const STRIP: (u32, f64) = (104, 1e-3);
+/// Lines above which a strip is drawn thinned: it is to be looked along, not read.
+const STRIP_LINES: usize = 800;
+/// Lines above which the other panes of an FRF are: a page holds five of each.
+const PANE_LINES: usize = 1_400;
+/// What lines without coherence are called.
+const UNUSED: &str = "no coherence, not used";
+
+/// An empty plot of what lies between 0 and 1, such as a coherence.
+pub(crate) fn over_unity(title: impl Into<String>, label: &str) -> Plot {
+    Plot::new(title, Axis::frequency(), Axis::linear(label, ""))
+        .y_range(YRange::Held { low: -0.04, high: 1.04 })
+        .height(STRIP.0)
+        .rounded_to(STRIP.1)
 }
 
 impl<'a> FrfPanes<'a> {
@@ -51,6 +70,7 @@ impl<'a> FrfPanes<'a> {
             hz: frfs.lines().hz(),
             measured: frfs.values(index).iter().map(|value| Some(*value)).collect(),
             noise: frfs.variance(index).unwrap_or_default().iter().map(half).collect(),
+            coherence: frfs.coherence(index),
             curves,
         }
     }
@@ -59,7 +79,7 @@ impl<'a> FrfPanes<'a> {
         let size =
             |values: &[Option<Complex64>]| values.iter().map(|v| v.map(|v| v.norm())).collect::<Vec<_>>();
         let axis = Axis::logarithmic(format!("|{}|", self.symbol), self.unit);
-        let mut plot = Plot::new(&self.title, Axis::frequency(), axis).over(self.hz);
+        let mut plot = Plot::new(&self.title, Axis::frequency(), axis).over(self.hz).line_limit(PANE_LINES);
         let measured = size(&self.measured);
         if !self.noise.is_empty() {
             let with_noise = || measured.iter().zip(&self.noise).map(|(size, half)| size.zip(*half));
@@ -67,10 +87,47 @@ impl<'a> FrfPanes<'a> {
             let high = with_noise().map(|line| line.map(|(size, half)| size + half));
             plot = plot.band("noise, 95 %", Role::Uncertainty, low, high);
         }
-        let plot = plot.line("measured", Role::Measured, measured).height(220);
-        self.curves
+        let unused = self.unused().map(|unused| {
+            let values = measured.iter().zip(&unused);
+            values.map(|(size, unused)| size.filter(|_| *unused)).collect::<Vec<_>>()
+        });
+        let gaps = measured.iter().filter(|value| value.is_none()).count();
+        let range = YRange::decades(measured.iter().flatten().copied().filter(|size| *size > 0.0));
+        let plot = plot.line("measured", Role::Measured, measured).height(220).y_range(range);
+        let plot = self
+            .curves
             .iter()
-            .fold(plot, |plot, curve| plot.series(curve.style, curve.label, curve.role, size(&curve.values)))
+            .fold(plot, |plot, curve| plot.series(curve.style, curve.label, curve.role, size(&curve.values)));
+        match unused {
+            Some(values) => plot.points(UNUSED, Role::Reference, values).masked(gaps),
+            None => plot,
+        }
+    }
+
+    /// Lines that are not used because the FRF has no coherence there; nothing where it has some on all.
+    fn unused(&self) -> Option<Vec<bool>> {
+        let unused: Vec<bool> = self.coherence?.iter().map(|gamma2| *gamma2 <= 0.0).collect();
+        unused.contains(&true).then_some(unused)
+    }
+
+    /// The coherence from 0 to 1 as a strip below magnitude and phase, where it was recorded.
+    pub fn coherence(&self) -> Option<Plot> {
+        let coherence = self.coherence?;
+        let plot = over_unity(format!("Coherence of {}", self.symbol), "γ²")
+            .strip()
+            .line_limit(STRIP_LINES)
+            .over(self.hz)
+            .line("coherence", Role::Measured, coherence);
+        Some(match self.unused() {
+            None => plot.caption("Coherence as recorded."),
+            Some(unused) => {
+                let count = unused.iter().filter(|unused| **unused).count();
+                let lines = if count == 1 { "1 line is" } else { &format!("{count} lines are") };
+                plot.points(UNUSED, Role::Reference, unused.iter().map(|unused| unused.then_some(0.0)))
+                    .masked(0)
+                    .caption(format!("Coherence as recorded; {lines} without any and not used."))
+            }
+        })
     }
 
     pub fn phase(&self) -> Plot {
@@ -83,6 +140,7 @@ impl<'a> FrfPanes<'a> {
             .over(self.hz)
             .line("measured", Role::Measured, phases.next().unwrap_or_default())
             .rounded_to(STEPS.0)
+            .line_limit(PANE_LINES)
             .height(220);
         self.curves
             .iter()
@@ -90,8 +148,18 @@ impl<'a> FrfPanes<'a> {
             .fold(plot, |plot, (curve, phases)| plot.series(curve.style, curve.label, curve.role, phases))
     }
 
+    /// Everything that there is to draw, in rows of two.
+    pub fn all(&self) -> impl Iterator<Item = Plot> {
+        [self.magnitude(), self.phase()].into_iter().chain(self.below())
+    }
+
+    /// What stands below magnitude and phase: coherence and residuals.
+    pub fn below(&self) -> impl Iterator<Item = Plot> {
+        self.coherence().into_iter().chain(self.residuals())
+    }
+
     /// What every curve leaves of the measured one over its noise, and both parts of what the last one leaves; nothing without curves or noise.
-    pub fn residuals(&self) -> Vec<Plot> {
+    fn residuals(&self) -> Vec<Plot> {
         let Some(last) = self.curves.last().filter(|_| !self.noise.is_empty()) else { return Vec::new() };
         let left = |curve: &Curve| -> Vec<Option<Complex64>> {
             let lines = self.measured.iter().zip(&curve.values).zip(&self.noise);
@@ -107,7 +175,11 @@ impl<'a> FrfPanes<'a> {
         let size = |curve: &Curve| part_size(&left(curve));
         let largest = Span::of(self.curves.iter().flat_map(size).flatten()).magnitude();
         let pane = |title: String, axis: Axis| {
-            Plot::new(title, Axis::frequency(), axis).over(self.hz).digits(3).height(150)
+            Plot::new(title, Axis::frequency(), axis)
+                .over(self.hz)
+                .digits(3)
+                .line_limit(PANE_LINES)
+                .height(150)
         };
         let sizes = pane(format!("Residuals of {}", self.title), Axis::logarithmic("|residual|/σ", ""));
         let sizes = sizes

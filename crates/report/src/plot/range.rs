@@ -13,6 +13,8 @@ pub(crate) enum YRange {
     Robust,
     /// Between two ordinates, SI.
     Fixed { low: f64, high: f64 },
+    /// Between two ordinates, SI, however far the reader zooms in.
+    Held { low: f64, high: f64 },
 }
 
 impl YRange {
@@ -99,9 +101,12 @@ pub(super) fn limits(plot: &Plot) -> Limits {
     }));
     let full = finish(Span::of(all.copied().filter(drawable)).and(references), &plot.y);
     let curves = || plot.series.iter().filter(|series| series.style != Style::Band).map(|s| &s.values);
+    if let YRange::Held { low, high } = plot.y_range {
+        return Limits { first: (low, high), full: (low, high), outside: 0 };
+    }
     let first = match plot.y_range {
         YRange::Fixed { low, high } if low < high && drawable(&low) && high.is_finite() => (low, high),
-        YRange::Full | YRange::Fixed { .. } => full,
+        YRange::Full | YRange::Fixed { .. } | YRange::Held { .. } => full,
         YRange::Robust => {
             let robust = curves().map(|values| robust_span(values.iter().copied().filter(drawable), &plot.y));
             let robust = finish(robust.fold(references, Span::and), &plot.y);

@@ -39,7 +39,23 @@ pub(super) fn two_blocks() -> Fixture {
 
 fn drawn(fixture: &Fixture, highlights: Vec<Highlight>) -> String {
     let frfs = frfs(fixture, usize::MAX);
-    SideView { highlights, ..SideView::new(fixture, &frfs) }.draw().into_string()
+    SideView { highlights, ..SideView::new(fixture, &frfs) }.draw().wide.into_string()
+}
+
+#[test]
+fn the_drawing_for_narrow_windows_has_everything_within_its_width() {
+    for fixture in [two_blocks(), chain(), frame()] {
+        let frfs = frfs(&fixture, usize::MAX);
+        let narrow = SideView::new(&fixture, &frfs).draw().narrow.unwrap().into_string();
+        assert!(narrow.contains("class=\"fx narrow\"") && narrow.contains("viewBox=\"0 0 400 "));
+        for point in fixture.points() {
+            assert!(narrow.contains(&format!(">{}<", point.name)), "point {}", point.name);
+        }
+        let places = narrow.split("translate(").skip(1).map(|rest| rest.split(' ').next().unwrap());
+        for x in places {
+            assert!((0.0..=400.0).contains(&x.parse::<f64>().unwrap()), "{x}");
+        }
+    }
 }
 
 /// Four bodies in a row, eight points, three joints, a support under each body.
@@ -106,7 +122,7 @@ fn the_labels_of_two_blocks_with_four_points_keep_clear_of_each_other() {
 #[test]
 fn the_labels_of_a_chain_of_four_bodies_keep_clear_of_each_other() {
     let chain = chain();
-    let svg = SideView::new(&chain, &frfs(&chain, 1)).draw().into_string();
+    let svg = SideView::new(&chain, &frfs(&chain, 1)).draw().wide.into_string();
     assert_eq!(svg.matches("fx-ground").count(), 5, "four supports and their style");
     check_labels_keep_clear(&svg);
 }
@@ -140,7 +156,7 @@ fn no_leader_crosses_a_label() {
     let chain = chain();
     let of_chain =
         SideView { highlights: vec![at(0.07, 0), at(0.27, 2)], ..SideView::new(&chain, &frfs(&chain, 8)) };
-    for svg in [drawn(&two_blocks(), vec![at(0.0, 0), at(0.065, 1)]), of_chain.draw().into_string()] {
+    for svg in [drawn(&two_blocks(), vec![at(0.0, 0), at(0.065, 1)]), of_chain.draw().wide.into_string()] {
         check_labels_keep_clear(&svg);
         let leaders = leaders(&svg);
         assert!(leaders.len() > 5, "{svg}");
@@ -171,7 +187,7 @@ fn names_are_escaped() {
 #[test]
 fn storeys_at_one_abscissa_are_drawn_above_each_other() {
     let frame = frame();
-    let svg = SideView::new(&frame, []).draw().into_string();
+    let svg = SideView::new(&frame, []).draw().wide.into_string();
     check_labels_keep_clear(&svg);
     let texts = texts(&svg);
     let height = |name: &str| texts.iter().find(|text| text.0.starts_with(name)).expect(name).2;
@@ -190,7 +206,7 @@ fn bodies_without_a_place_and_highlights_at_no_abscissa_are_left_out() {
     let elsewhere = FrfPair::transverse("lost", "1");
     let fixture = fixture(&json);
     let view = SideView { highlights: vec![ghost], ..SideView::new(&fixture, [&elsewhere]) };
-    let svg = view.draw().into_string();
+    let svg = view.draw().wide.into_string();
     assert!(!svg.contains("NaN") && !svg.contains("inf"), "{svg}");
     let drawn = texts(&svg);
     assert!(

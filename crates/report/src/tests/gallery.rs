@@ -6,11 +6,10 @@ use std::f64::consts::PI;
 
 use jointscope_fixture::Fixture;
 use jointscope_spectra::FrfPair;
-use maud::Markup;
 
 use super::drawing::{chain, frame, two_blocks};
 use crate::context::InputFile;
-use crate::drawing::{Highlight, SideView};
+use crate::drawing::{Drawing, Highlight, SideView};
 use crate::format::{fixed, in_column};
 use crate::page::Page;
 use crate::plot::{Axis, Plot, Role, YRange};
@@ -59,7 +58,7 @@ fn fixture() -> Section {
     )
 }
 
-fn side_view(fixture: &Fixture, highlights: Vec<Highlight>) -> Markup {
+fn side_view(fixture: &Fixture, highlights: Vec<Highlight>) -> Drawing {
     let joints = fixture.joints().iter().skip(1).take(1).map(|joint| joint.name.as_str()).collect();
     let frfs = ["3", "4"].map(|response| FrfPair::transverse(response, "1"));
     SideView { highlights, joints, ..SideView::new(fixture, &frfs) }.draw()

@@ -81,6 +81,24 @@ fn holds(html: &str, parts: &[&str]) {
 }
 
 #[test]
+fn a_recorded_coherence_stands_below_its_frf_and_lines_without_any_are_marked() {
+    let mut frfs = recorded(&storeys(""), unchanged);
+    let mut coherence = vec![0.9; 77];
+    (coherence[3], coherence[7]) = (0.0, 0.0);
+    frfs.set_coherence(0, coherence).unwrap();
+    let html = rendered(&Diagnosis::of(&storeys(""), &frfs, &DiagnosisOptions::default()).unwrap());
+    let held = "\"held\":[-0.04,1.04]";
+    holds(
+        &html,
+        &["figure class=\"plot strip\"", "Coherence of H 1/1", held, "2 lines are without any and not used"],
+    );
+    // Above in the magnitudes and in the strip itself.
+    assert_eq!(html.matches("no coherence, not used").count(), 2);
+    assert_eq!((html.matches(held).count(), html.matches("Coherence of H 2/1").count()), (1, 0));
+    assert!(html.contains("[0.9,0.9,0.9,0,0.9"), "the strip shows what was recorded, masked lines too");
+}
+
+#[test]
 fn a_finding_is_marked_measured_and_judged() {
     let (diagnosis, html) =
         page(r#"{ "kind": "added_mass", "place": "high", "x": 0.18, "mass": 0.6 }"#, unchanged);

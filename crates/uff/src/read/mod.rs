@@ -82,13 +82,23 @@ fn open_dataset(cursor: &mut Cursor) -> Result<bool, ReadError> {
     match cursor.next_filled_line() {
         None if dataset == 1 => Err(ReadError::Empty),
         None => Ok(false),
-        Some(line) if is_delimiter(line.bytes) => Ok(true),
+        Some(line) if is_delimiter(line.bytes) => match dataset == 1 && closes(cursor) {
+            true => Err(ReadError::FirstLost),
+            false => Ok(true),
+        },
         Some(_) if dataset == 1 => Err(ReadError::NotUff),
         Some(line) => {
             let (line, found) = (cursor.line_number(line.start), excerpt(line.bytes));
             Err(ReadError::BetweenDatasets { dataset, line, found })
         }
     }
+}
+
+/// Whether the delimiter just passed opens nothing: another one opens a dataset right behind it.
+fn closes(cursor: &Cursor) -> bool {
+    let mut ahead = cursor.clone();
+    let next = ahead.next_filled_line();
+    next.is_some_and(|line| is_delimiter(line.bytes)) && Identification::read(&mut ahead).is_ok()
 }
 
 /// The line after the delimiter: dataset number, and for binary datasets how they are stored.

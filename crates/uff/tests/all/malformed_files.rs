@@ -52,6 +52,20 @@ fn a_dataset_without_a_number_is_named() {
 }
 
 #[test]
+fn a_file_that_begins_with_the_end_of_a_dataset_is_told_what_leaves_it_so() {
+    let whole = dataset("    58", &even(2, 2), b"  1.00000e+00  2.00000e+00\n");
+    for lost in [&b"    -1\n"[..], b"    -1\r\n", b"\n    -1\n\n"] {
+        let message = read(&[lost, &whole].concat()).unwrap_err().to_string();
+        for part in ["the dataset itself is missing", "pyuff", "`overwrite`", "`add` mode"] {
+            assert!(message.contains(part), "`{part}` is missing from: {message}");
+        }
+    }
+    // An empty dataset before the first is something else.
+    let empty = [b"    -1\n    -1\n", &whole[..]].concat();
+    assert!(read(&empty).unwrap_err().to_string().contains("line 2: expected a dataset number"));
+}
+
+#[test]
 fn a_truncated_file_names_the_dataset_that_ends_early() {
     let whole = dataset("    58", &even(2, 2), b"  1.00000e+00  2.00000e+00\n");
     let two = [&whole[..], &whole[..]].concat();

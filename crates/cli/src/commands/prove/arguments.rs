@@ -118,8 +118,8 @@ pub struct RealRecordings {
     /// The band to use, in Hz [default: all lines].
     #[arg(long, value_name = "F1:F2", value_parser = band, requires = "recordings")]
     pub band: Option<Band>,
-    /// Which channel of the files is which of the fixture, such as 101:+z=1:+y.
-    #[arg(long, value_name = "NODE:DIR=POINT:DIR", value_parser = map_entry, num_args = 1.., requires = "recordings")]
+    /// Which channel of the files is which of the fixture: +z=+y for all nodes, 101:+z=1:+y for one.
+    #[arg(long, value_name = "[NODE:]DIR=[POINT:]DIR", value_parser = map_entry, num_args = 1.., requires = "recordings")]
     pub map: Vec<String>,
     /// Units of response and force where a file states none, such as g,lbf.
     #[arg(long, value_name = "RESPONSE,FORCE", value_parser = AssumedUnits::parse, requires = "recordings")]
