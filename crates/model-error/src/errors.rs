@@ -126,46 +126,26 @@ impl Comparison {
             kinds[0][2 * k * (n + 1)] = 1.0;
             kinds[1][(2 * k + 1) * (n + 1)] = 1.0;
         }
-        // An error ε_c of a mode's shape at channel c, against its root mean square, changes the residue φ_o·φ_i by ε_o·φ_i + ε_i·φ_o.
-        let rms_of = |m: usize| {
-            let shape = &shapes.amplitudes[m];
-            (shape.iter().map(|a| a * a).sum::<f64>() / shape.len() as f64).sqrt()
-        };
-        let by_channel = |m: usize, frf: usize, channel: usize| {
-            let (o, i) = shapes.frfs[frf];
-            let at =
-                |own: usize, other: usize| if own == channel { shapes.amplitudes[m][other] } else { 0.0 };
-            rms_of(m) * (at(o, i) + at(i, o))
-        };
-        let shared = |m: usize, a: usize, b: usize| {
-            let (o, i) = shapes.frfs[a];
-            let at = |channel: usize| by_channel(m, a, channel) * by_channel(m, b, channel);
-            if i == o { at(o) } else { at(o) + at(i) }
-        };
         for (k, &(r, m)) in pairing.pairs.iter().enumerate() {
             let scale = recorded.modes[r].scale;
             let first = 2 * matched + 2 * k * frfs;
             for a in 0..frfs {
                 // Near a node of a channel the product of both errors is all there is.
-                let product = (rms_of(m).powi(2) / scale).powi(2);
+                let product = (shapes.mean_square(m) / scale).powi(2);
                 for (part, both) in both.iter_mut().enumerate() {
                     both.push(((first + 2 * a + part) * (n + 1), product));
                 }
                 for b in 0..frfs {
-                    let shared = shared(m, a, b) / scale.powi(2);
+                    let shared = shapes.shared(m, a, b) / scale.powi(2);
                     kinds[2][(first + 2 * a) * n + first + 2 * b] = shared;
                     kinds[3][(first + 2 * a + 1) * n + first + 2 * b + 1] = shared;
                 }
             }
         }
         let first = 2 * matched + 2 * matched * frfs;
-        // Modes too low to be told from a mass line are a part of it, with the errors of their shapes.
-        let low = (0..modelled.modes.len()).filter(|&m| modelled.is_low(m, recorded));
-        for m in low {
-            for (a, b) in (0..frfs).flat_map(|a| (0..frfs).map(move |b| (a, b))) {
-                kinds[2][(first + 2 * a) * n + first + 2 * b] +=
-                    shared(m, a, b) / recorded.residual_scales[0].powi(2);
-            }
+        for (e, shared) in recorded.low.iter().enumerate() {
+            let (a, b) = (e / frfs, e % frfs);
+            kinds[2][(first + 2 * a) * n + first + 2 * b] = shared / recorded.residual_scales[0].powi(2);
         }
         for frf in 0..frfs {
             for (term, kind) in [(0, 4), (1, 5)] {

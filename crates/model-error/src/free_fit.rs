@@ -238,6 +238,7 @@ impl FreeFit {
             misfit: self.misfit.iter().map(|sum| sum / (2 * frfs) as f64).collect(),
             residual_terms: (0..frfs).map(|j| [terms[0][j], terms[1][j]]).collect(),
             residual_scales,
+            low: Vec::new(),
             covariance,
             outline: Outline::of(recording, (&self.poles, self.inside), self.terms, mass_line)?,
             surroundings: (self.poles[modes..].to_vec(), self.terms),

@@ -7,6 +7,7 @@ use crate::basis::{Pole, UPPER};
 use crate::matching::Pairing;
 use crate::outline::grid;
 use crate::recorded::RecordedModes;
+use crate::shapes::Shapes;
 use jointscope_fixture::{Effect, Fixture};
 use jointscope_lumped::{ContinuedFrfs, Instrument, ModelledTest};
 use jointscope_spectra::{FrfSet, SpectralLines};
@@ -205,6 +206,26 @@ impl RecordedModes {
         };
         modelled.modes.iter().enumerate().filter(alone).map(|(_, mode)| mode.pole).collect()
     }
+
+    /// With the modes of the fixture that are too low to be told from a mass line: they are a part of it, with the errors of their shapes. Those of the fixture by itself
+    /// count for all hypotheses: one with a mode just below the band must not gain by it.
+    pub fn with_low_modes_of(mut self, fixture: &Fixture) -> Self {
+        let low = |modelled: &ModelledModes| -> Vec<usize> {
+            (0..modelled.modes.len())
+                .filter(|&m| modelled.modes[m].pole.omega <= TAU * self.resolved_from)
+                .collect()
+        };
+        let found = ModelledModes::of(fixture, &self).and_then(|modelled| {
+            let shapes = Shapes::of(fixture, &self, &modelled.poles())?;
+            Some((low(&modelled), shapes))
+        });
+        if let Some((low, shapes)) = found.filter(|(low, _)| !low.is_empty()) {
+            let frfs = self.frfs();
+            let shared = |e: usize| low.iter().map(|&m| shapes.shared(m, e / frfs, e % frfs)).sum();
+            self.low = (0..frfs * frfs).map(shared).collect();
+        }
+        self
+    }
 }
 
 impl ModelledModes {
@@ -254,12 +275,6 @@ impl ModelledModes {
             leaks.push(coefficients[..recorded.outline.inside].to_vec());
         }
         Some(ModelledModes { modes, parts, residual_terms, leaks })
-    }
-
-    /// Whether a mode is a part of the mass line.
-    pub(crate) fn is_low(&self, index: usize, recorded: &RecordedModes) -> bool {
-        let below = self.modes[index].pole.omega < TAU * recorded.band.0;
-        self.parts[index] == Part::Unresolved || self.parts[index] == Part::Beyond && below
     }
 
     /// Whether both count their modes as the same.

@@ -52,6 +52,8 @@ pub struct RecordedModes {
     pub(crate) residual_terms: Vec<[f64; 2]>,
     /// Root mean squares of those over the FRFs.
     pub(crate) residual_scales: [f64; 2],
+    /// Covariance of mass lines, 1/kg², where the shapes of modes that are a part of them err at each channel by their root mean square; empty where there are none.
+    pub(crate) low: Vec<f64>,
     /// Covariance of the [features](RecordedModes::features), row-major.
     pub(crate) covariance: Vec<f64>,
     pub(crate) outline: Outline,

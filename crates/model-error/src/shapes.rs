@@ -73,6 +73,26 @@ impl Shapes {
         let amplitudes = poles.iter().map(shape).collect::<Option<_>>()?;
         Some(Shapes { frfs, amplitudes })
     }
+
+    /// Mean square of a mode's amplitudes.
+    pub(crate) fn mean_square(&self, mode: usize) -> f64 {
+        let shape = &self.amplitudes[mode];
+        shape.iter().map(|a| a * a).sum::<f64>() / shape.len() as f64
+    }
+
+    /// Covariance of the residues of FRFs `a` and `b` where a mode's shape errs at each channel by its root mean square: an error ε_c at channel c changes the residue
+    /// φ_o·φ_i by ε_o·φ_i + ε_i·φ_o.
+    pub(crate) fn shared(&self, mode: usize, a: usize, b: usize) -> f64 {
+        let by_channel = |frf: usize, channel: usize| {
+            let (o, i) = self.frfs[frf];
+            let at =
+                |own: usize, other: usize| if own == channel { self.amplitudes[mode][other] } else { 0.0 };
+            at(o, i) + at(i, o)
+        };
+        let (o, i) = self.frfs[a];
+        let at = |channel: usize| by_channel(a, channel) * by_channel(b, channel);
+        self.mean_square(mode) * if i == o { at(o) } else { at(o) + at(i) }
+    }
 }
 
 /// By channel the root of the largest residue among its FRFs.

@@ -53,5 +53,6 @@ pub(crate) fn recorded(observation: &Observation, nominal: &Hypothesis) -> Optio
     let orders = observation.has_scatter_for_noise().then(expected).flatten().map(|modes| (2, 2 * modes + 8));
     let options = ModesOptions { orders, ..ModesOptions::default() };
     let fixture = nominal.to_fixture().ok()?;
-    RecordedModes::of(recording, &options, |alone| alone.unpaired(&fixture))
+    let recorded = RecordedModes::of(recording, &options, |alone| alone.unpaired(&fixture))?;
+    Some(recorded.with_low_modes_of(&fixture))
 }

@@ -174,7 +174,8 @@ fn an_error_of_the_shape_of_a_suspension_mode_is_one_of_mass_lines() {
         format!(r#"{{"kind": "support", "place": "A", "x": 0, "stiffness": {stiffness}, "damping": 20}}"#);
     let fixture = two_masses(0.01, &support);
     let pairs = pairs(&[("1", "1"), ("2", "1")]);
-    let compared = Compared::of(&fixture, Recorded::of(&fixture, &pairs, &lines(600.0), noise(None)).modes());
+    let recorded = Recorded::of(&fixture, &pairs, &lines(600.0), noise(None)).modes();
+    let compared = Compared::of(&fixture, recorded.with_low_modes_of(&fixture));
     assert_eq!((compared.modelled.modes.len(), compared.recorded.modes.len()), (2, 1));
     let sizes = ErrorSizes { shape: 1.0, ..ErrorSizes::from_array([0.0; 7]) };
     let (with, without, n) =

@@ -25,7 +25,7 @@ pub(super) fn section(analysis: &ModalAnalysis, modelled: Option<&FrfSet>) -> Se
     Section::new("Stabilisation chart")
         .paragraph(format!(
             "Damped poles of denominators of order {lowest} to {highest}. A mode stays where it is from order to order; poles of mere arithmetic wander.{seen} Vertical lines are the \
-             modes taken; `--pick` takes others, `--orders` draws another chart."
+             modes taken; the option --pick takes others, --orders draws another chart."
         ))
         .plot(sum(analysis))
         .plots(1, indicator)
