@@ -219,16 +219,16 @@ impl FreeFit {
                 RecordedMode { pole: self.poles[r], scale, residues, resolved }
             })
             .collect();
-        let sum = |columns: Vec<usize>| -> Vec<f64> {
+        let sum = |columns: &Vec<usize>| -> Vec<f64> {
             let of_frf = |f: &FrfFit| columns.iter().map(|&c| f.coefficients[c].re).sum();
             self.fits.iter().map(of_frf).collect()
         };
         let columns = residual_columns(&self.poles, lines.hz());
-        let terms = columns.clone().map(sum);
+        let terms = columns.each_ref().map(sum);
         let residual_scales = [0, 1].map(|k| scale(&terms[k]).max(f64::MIN_POSITIVE));
         let chi2_per_dof = self.chi2_per_dof(recording);
-        let [mass_line, _] = columns.clone();
-        let covariance = self.covariance(&recorded, (&residual_scales, columns), chi2_per_dof.max(1.0))?;
+        let covariance = self.covariance(&recorded, (&residual_scales, &columns), chi2_per_dof.max(1.0))?;
+        let [mass_line, _] = columns;
         Some(RecordedModes {
             pairs: recording.frfs.pairs().to_vec(),
             band: (lines.hz()[0], lines.hz()[lines.len() - 1]),
@@ -250,7 +250,7 @@ impl FreeFit {
     fn covariance(
         &self,
         modes: &[RecordedMode],
-        (scales, [mass_line, upper]): (&[f64; 2], [Vec<usize>; 2]),
+        (scales, [mass_line, upper]): (&[f64; 2], &[Vec<usize>; 2]),
         inflation: f64,
     ) -> Option<Vec<f64>> {
         let (m, all, frfs) = (modes.len(), self.poles.len(), self.fits.len());

@@ -210,21 +210,22 @@ impl RecordedModes {
     /// With the modes of the fixture that are too low to be told from a mass line: they are a part of it, with the errors of their shapes. Those of the fixture by itself
     /// count for all hypotheses: one with a mode just below the band must not gain by it.
     pub fn with_low_modes_of(mut self, fixture: &Fixture) -> Self {
-        let low = |modelled: &ModelledModes| -> Vec<usize> {
-            (0..modelled.modes.len())
-                .filter(|&m| modelled.modes[m].pole.omega <= TAU * self.resolved_from)
-                .collect()
-        };
-        let found = ModelledModes::of(fixture, &self).and_then(|modelled| {
-            let shapes = Shapes::of(fixture, &self, &modelled.poles())?;
-            Some((low(&modelled), shapes))
-        });
-        if let Some((low, shapes)) = found.filter(|(low, _)| !low.is_empty()) {
-            let frfs = self.frfs();
-            let shared = |e: usize| low.iter().map(|&m| shapes.shared(m, e / frfs, e % frfs)).sum();
-            self.low = (0..frfs * frfs).map(shared).collect();
-        }
+        self.low = self.shared_by_low_modes_of(fixture).unwrap_or_default();
         self
+    }
+
+    /// Covariance of mass lines by the errors of the shapes of a fixture's low modes; `None` where it has no such modes, or they have no shapes.
+    fn shared_by_low_modes_of(&self, fixture: &Fixture) -> Option<Vec<f64>> {
+        let modes = ModelledModes::of(fixture, self)?.modes;
+        let is_low = |mode: &&ModelledMode| mode.pole.omega <= TAU * self.resolved_from;
+        let low: Vec<Complex64> = modes.iter().filter(is_low).map(|mode| mode.pole.lambda()).collect();
+        if low.is_empty() {
+            return None;
+        }
+        let shapes = Shapes::of(fixture, self, &low)?;
+        let frfs = self.frfs();
+        let shared = |e: usize| (0..low.len()).map(|m| shapes.shared(m, e / frfs, e % frfs)).sum();
+        Some((0..frfs * frfs).map(shared).collect())
     }
 }
 

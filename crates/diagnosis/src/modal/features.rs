@@ -47,12 +47,12 @@ impl Features {
 
 /// The recording's modes, with the help of the model's where they are not resolved.
 pub(crate) fn recorded(observation: &Observation, nominal: &Hypothesis) -> Option<RecordedModes> {
+    let fixture = nominal.to_fixture().ok()?;
     let recording = Recording { frfs: observation.frfs(), weights: observation.weights() };
     // Where nothing but the FRFs tells their noise, every ripple looks like a mode: no more are asked for than a model may have.
-    let expected = || jointscope_model_error::modes_within(&nominal.to_fixture().ok()?, observation.frfs());
+    let expected = || jointscope_model_error::modes_within(&fixture, observation.frfs());
     let orders = observation.has_scatter_for_noise().then(expected).flatten().map(|modes| (2, 2 * modes + 8));
     let options = ModesOptions { orders, ..ModesOptions::default() };
-    let fixture = nominal.to_fixture().ok()?;
     let recorded = RecordedModes::of(recording, &options, |alone| alone.unpaired(&fixture))?;
     Some(recorded.with_low_modes_of(&fixture))
 }

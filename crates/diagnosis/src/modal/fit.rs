@@ -94,9 +94,7 @@ impl ModalFit {
         let pulls = pulls.take(self.hypothesis.tolerances().len());
         pulls.map(|(at, prior)| ((at - prior.mean) / prior.std).abs()).fold(0.0, f64::max)
     }
-}
 
-impl ModalFit {
     /// Whether the features' misfit, errors of the model at their sizes and departures counted, is no larger than chance makes it.
     pub fn leaves_chance(&self) -> bool {
         let comparison = &self.standing.comparison;
