@@ -51,6 +51,8 @@ struct Memory<T> {
     lu: LuWorkspace,
 }
 
+/// Blocks that are evaluated before any of them is read: few enough to stay in the processor's nearest memory.
+const BLOCKS: usize = 8;
 /// Rank from which a change is solved for in the coordinates of few modes.
 const HIGH_RANK: usize = 3;
 /// How far beyond the highest line s may lie, the decay of a response window included.
@@ -86,16 +88,29 @@ impl<'a> Receptances<'a> {
     pub(crate) fn in_blocks(
         &mut self,
         s: &[Complex64],
-        read: impl FnMut(usize, Lanes, &mut [Lanes]),
+        mut read: impl FnMut(usize, Lanes, &mut [Lanes]),
     ) -> Result<(), usize> {
-        pulp::Arch::new().dispatch(Blocks { receptances: self, s, read })
+        let count = self.count();
+        let mut values = vec![Lanes::ZERO; count * BLOCKS];
+        for (batch, s) in s.chunks(WIDTH * BLOCKS).enumerate() {
+            let first = batch * WIDTH * BLOCKS;
+            self.evaluate_blocks(s, &mut values).map_err(|line| first + line)?;
+            pulp::Arch::new().dispatch(Read { first, s, values: &mut values, count, read: &mut read });
+        }
+        Ok(())
+    }
+
+    /// Writes the receptances at up to [`BLOCKS`] times [`WIDTH`] of s over `values`, those of a block side by side. Compiled once: it holds every size of system for
+    /// every instruction set that the processor may have.
+    #[inline(never)]
+    fn evaluate_blocks(&mut self, s: &[Complex64], values: &mut [Lanes]) -> Result<(), usize> {
+        pulp::Arch::new().dispatch(Blocks { receptances: self, s, values })
     }
 
     /// Writes the receptances at all of `s` over `values`: those of the first pair on all lines, then of the second, …
     ///
     /// # Errors
     /// The number of the first line on which they are not finite.
-    #[inline] // compiled where it is called: all sizes of systems and all instruction sets, which `synthesize` has already
     pub fn on_lines(&mut self, s: &[Complex64], values: &mut [Complex64]) -> Result<(), usize> {
         self.in_blocks(s, |first, _, block| {
             let last = (first + WIDTH).min(s.len());
@@ -118,29 +133,49 @@ impl<'a> Receptances<'a> {
     }
 }
 
-/// All lines in blocks, compiled once for each instruction set that the processor may have.
-struct Blocks<'r, 'a, 's, F> {
+/// Some blocks of lines, compiled once for each instruction set that the processor may have.
+struct Blocks<'r, 'a, 's> {
     receptances: &'r mut Receptances<'a>,
     s: &'s [Complex64],
-    read: F,
+    values: &'s mut [Lanes],
 }
 
-impl<F: FnMut(usize, Lanes, &mut [Lanes])> pulp::WithSimd for Blocks<'_, '_, '_, F> {
+impl pulp::WithSimd for Blocks<'_, '_, '_> {
     type Output = Result<(), usize>;
 
     #[inline(always)]
     fn with_simd<S: pulp::Simd>(self, _: S) -> Self::Output {
-        let Blocks { receptances, s, mut read } = self;
-        let mut values = vec![Lanes::ZERO; receptances.count()];
+        let Blocks { receptances, s, values } = self;
+        let count = receptances.count();
         for (block, s) in s.chunks(WIDTH).enumerate() {
-            let lanes = Lanes::of(s);
-            let solved = receptances.prepared.evaluate(lanes, &mut receptances.several, &mut values);
-            if !(solved && Lanes::all_finite(&values)) {
-                receptances.line_by_line(s, &mut values).map_err(|line| block * WIDTH + line)?;
+            let values = &mut values[block * count..(block + 1) * count];
+            let solved = receptances.prepared.evaluate(Lanes::of(s), &mut receptances.several, values);
+            if !(solved && Lanes::all_finite(values)) {
+                receptances.line_by_line(s, values).map_err(|line| block * WIDTH + line)?;
             }
-            read(block * WIDTH, lanes, &mut values);
         }
         Ok(())
+    }
+}
+
+/// Hands blocks on, with the same instructions.
+struct Read<'s, F> {
+    first: usize,
+    s: &'s [Complex64],
+    values: &'s mut [Lanes],
+    count: usize,
+    read: &'s mut F,
+}
+
+impl<F: FnMut(usize, Lanes, &mut [Lanes])> pulp::WithSimd for Read<'_, F> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: pulp::Simd>(self, _: S) {
+        for (block, s) in self.s.chunks(WIDTH).enumerate() {
+            let values = &mut self.values[block * self.count..(block + 1) * self.count];
+            (self.read)(self.first + block * WIDTH, Lanes::of(s), values);
+        }
     }
 }
 
