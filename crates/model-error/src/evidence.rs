@@ -142,8 +142,12 @@ impl Linear {
             std::array::from_fn(|kind| if stated[kind] { prior[kind] } else { start_at[kind] });
         let mut ln = value(&best);
         let mut try_size = |best: &mut [f64; KINDS], ln: &mut f64, kind: usize, size: f64| {
+            let size = size.max(ErrorSizes::LEAST * prior[kind]);
+            if size == best[kind] {
+                return false;
+            }
             let mut other = *best;
-            other[kind] = size.max(ErrorSizes::LEAST * prior[kind]);
+            other[kind] = size;
             let found = value(&other);
             let better = found > *ln;
             if better {
