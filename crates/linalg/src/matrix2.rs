@@ -67,9 +67,10 @@ pub type ComplexMatrix2 = Matrix2<Complex64>;
 /// A static stiffness, a damping matrix or a transport.
 pub type RealMatrix2 = Matrix2<f64>;
 
+// Always inlined: of several lines these are compiled with the instructions that their caller is compiled for.
 impl<T: Field> Matrix2<T> {
     /// The matrix `[[a, b], [c, d]]`.
-    #[inline]
+    #[inline(always)]
     pub const fn new(a: T, b: T, c: T, d: T) -> Self {
         Matrix2([[a, b], [c, d]])
     }
@@ -87,27 +88,27 @@ impl<T: Field> Matrix2<T> {
     }
 
     /// The element in row `i`, column `j` (0 transverse, 1 rotation).
-    #[inline]
+    #[inline(always)]
     pub fn at(&self, i: usize, j: usize) -> T {
         self.0[i][j]
     }
 
     /// The transpose (no conjugation: structural matrices are complex symmetric, not Hermitian).
-    #[inline]
+    #[inline(always)]
     pub fn transpose(self) -> Self {
         let [[a, b], [c, d]] = self.0;
         Matrix2([[a, c], [b, d]])
     }
 
     /// The determinant.
-    #[inline]
+    #[inline(always)]
     pub fn determinant(self) -> T {
         let [[a, b], [c, d]] = self.0;
         a * d - b * c
     }
 
     /// The inverse without a check: of a singular matrix, non-finite numbers.
-    #[inline(always)] // of several lines, with the instructions that its caller is compiled for
+    #[inline(always)]
     pub fn inverse_unchecked(self) -> Self {
         let [[a, b], [c, d]] = self.0;
         let factor = (a * d - b * c).reciprocal();
@@ -121,7 +122,7 @@ impl<T: Field> Matrix2<T> {
     }
 
     /// The matrix with `f` applied to every element.
-    #[inline]
+    #[inline(always)]
     pub fn map<U>(self, f: impl Fn(T) -> U) -> Matrix2<U> {
         let [[a, b], [c, d]] = self.0;
         Matrix2([[f(a), f(b)], [f(c), f(d)]])
@@ -192,7 +193,7 @@ impl ComplexMatrix2 {
 
 impl<T: Field> Mul for Matrix2<T> {
     type Output = Self;
-    #[inline]
+    #[inline(always)]
     fn mul(self, other: Self) -> Self {
         let [[a, b], [c, d]] = self.0;
         let [[e, f], [g, h]] = other.0;
@@ -202,7 +203,7 @@ impl<T: Field> Mul for Matrix2<T> {
 
 impl<T: Field> Add for Matrix2<T> {
     type Output = Self;
-    #[inline]
+    #[inline(always)]
     fn add(self, other: Self) -> Self {
         let ([[a, b], [c, d]], [[e, f], [g, h]]) = (self.0, other.0);
         Matrix2([[a + e, b + f], [c + g, d + h]])
@@ -211,7 +212,7 @@ impl<T: Field> Add for Matrix2<T> {
 
 impl<T: Field> Sub for Matrix2<T> {
     type Output = Self;
-    #[inline]
+    #[inline(always)]
     fn sub(self, other: Self) -> Self {
         let ([[a, b], [c, d]], [[e, f], [g, h]]) = (self.0, other.0);
         Matrix2([[a - e, b - f], [c - g, d - h]])

@@ -181,11 +181,12 @@ impl JointDynamics {
             compliance.0[0][0] += short / shear;
         }
         let stiffness = compliance.inverse_unchecked().map(|element| modulus * element);
-        let mut beam = TwoEnds::from_end(stiffness, short);
-        beam.add_real(&consistent_mass(self.mass / length, short), s * s);
+        let mut beam = MirrorBeam::from_end(stiffness, short);
+        beam.add_mass(&consistent_mass(self.mass / length, short), s * s);
         for _ in 0..DOUBLINGS {
-            beam = beam.followed_by(beam);
+            beam = beam.doubled();
         }
+        let mut beam = beam.between_both_ends();
         for interface in &self.interfaces {
             beam = beam.softened(interface, T::ONE * interface.stiffness + s * interface.damping);
         }
@@ -229,45 +230,91 @@ impl<T: Lines> TwoEnds<T> {
     }
 
     #[inline(always)]
-    fn add_real(&mut self, matrix: &jointscope_beam::Matrix4, factor: T) {
-        for i in 0..2 {
-            for j in 0..2 {
-                self.near.0[i][j] = self.near.0[i][j] + factor * matrix[i][j];
-                self.cross.0[i][j] = self.cross.0[i][j] + factor * matrix[i][j + 2];
-                self.far.0[i][j] = self.far.0[i][j] + factor * matrix[i + 2][j + 2];
-            }
-        }
-    }
-
-    #[inline(always)]
     fn add_half_masses(&mut self, inertia: T) {
         self.near.0[0][0] = self.near.0[0][0] + inertia;
         self.far.0[0][0] = self.far.0[0][0] + inertia;
-    }
-
-    /// This element and the next one behind it, the motion between them eliminated.
-    #[inline(always)]
-    fn followed_by(self, next: Self) -> Self {
-        let middle = (self.far + next.near).inverse_unchecked();
-        let left = self.cross * middle;
-        let right = next.cross.transpose() * middle;
-        TwoEnds {
-            near: self.near - left * self.cross.transpose(),
-            cross: Matrix2::zero() - left * next.cross,
-            far: next.far - right * next.cross,
-        }
     }
 
     /// With a spring in series with one of its four end motions.
     #[inline(always)]
     fn softened(self, interface: &Interface, spring: T) -> Self {
         let e = 2 * usize::from(interface.at_far_end) + usize::from(interface.dof == Dof::Rotation);
-        let factor = (spring + self.at(e, e)).reciprocal();
-        let changed = |i: usize, j: usize| self.at(i, j) - self.at(i, e) * self.at(e, j) * factor;
-        let block = |i: usize, j: usize| {
-            Matrix2::new(changed(i, j), changed(i, j + 1), changed(i + 1, j), changed(i + 1, j + 1))
-        };
-        TwoEnds { near: block(0, 0), cross: block(0, 2), far: block(2, 2) }
+        let column = [self.at(0, e), self.at(1, e), self.at(2, e), self.at(3, e)];
+        let factor = (spring + column[e]).reciprocal();
+        let [a, b, c, d] = column;
+        let [fa, fb, fc, fd] = [a * factor, b * factor, c * factor, d * factor];
+        let [[n00, n01], [_, n11]] = self.near.0;
+        let [[c00, c01], [c10, c11]] = self.cross.0;
+        let [[f00, f01], [_, f11]] = self.far.0;
+        let (n01, f01) = (n01 - a * fb, f01 - c * fd);
+        TwoEnds {
+            near: Matrix2::new(n00 - a * fa, n01, n01, n11 - b * fb),
+            cross: Matrix2::new(c00 - a * fc, c01 - a * fd, c10 - b * fc, c11 - b * fd),
+            far: Matrix2::new(f00 - c * fc, f01, f01, f11 - d * fd),
+        }
+    }
+}
+
+/// The dynamic stiffness of a beam that is the same seen from either end, where a rotation of the one is the opposite of the other's: near [[a, b], [b, d]],
+/// far [[a, −b], [−b, d]], cross [[p, q], [−q, t]].
+#[derive(Debug, Clone, Copy)]
+struct MirrorBeam<T> {
+    a: T,
+    b: T,
+    d: T,
+    p: T,
+    q: T,
+    t: T,
+}
+
+impl<T: Lines> MirrorBeam<T> {
+    /// `[−R, I]ᵀ k [−R, I]` of a uniform beam's end stiffness k.
+    #[inline(always)]
+    fn from_end(stiffness: Matrix2<T>, length: f64) -> Self {
+        let [[k00, k01], [_, k11]] = stiffness.0;
+        MirrorBeam { a: k00, b: -k01, d: k11, p: -k00, q: -k01, t: -(k01 * length + k11) }
+    }
+
+    /// Adds a uniform beam's mass matrix times `factor`.
+    #[inline(always)]
+    fn add_mass(&mut self, matrix: &jointscope_beam::Matrix4, factor: T) {
+        self.a = self.a + factor * matrix[0][0];
+        self.b = self.b + factor * matrix[0][1];
+        self.d = self.d + factor * matrix[1][1];
+        self.p = self.p + factor * matrix[0][2];
+        self.q = self.q + factor * matrix[0][3];
+        self.t = self.t + factor * matrix[1][3];
+    }
+
+    /// Two of them end to end, the motion between them eliminated: far + near, which is to be inverted, is diagonal.
+    #[inline(always)]
+    fn doubled(self) -> Self {
+        let MirrorBeam { a, b, d, p, q, t } = self;
+        let (twice_a, twice_d) = (a + a, d + d);
+        let inverse = (twice_a * twice_d).reciprocal();
+        let (of_motion, of_rotation) = (twice_d * inverse, twice_a * inverse);
+        let (p_m, q_m) = (p * of_motion, q * of_motion);
+        let (q_r, t_r) = (q * of_rotation, t * of_rotation);
+        let (pp, qq_m, pq) = (p * p_m, q * q_m, q * p_m);
+        let (qq_r, tt, qt) = (q * q_r, t * t_r, q * t_r);
+        MirrorBeam {
+            a: a - pp - qq_r,
+            b: b + pq - qt,
+            d: d - qq_m - tt,
+            p: qq_r - pp,
+            q: -(pq + qt),
+            t: qq_m - tt,
+        }
+    }
+
+    #[inline(always)]
+    fn between_both_ends(self) -> TwoEnds<T> {
+        let MirrorBeam { a, b, d, p, q, t } = self;
+        TwoEnds {
+            near: Matrix2::new(a, b, b, d),
+            cross: Matrix2::new(p, q, -q, t),
+            far: Matrix2::new(a, -b, -b, d),
+        }
     }
 }
 
