@@ -2,7 +2,7 @@
 
 use crate::common::{Bench, TWO_BLOCKS};
 
-const LINES: &str = "50:1000:5";
+const LINES: &str = "50:1000:10";
 const PROGRAMS: [(&str, &str); 6] = [
     ("nastran", "joint.bdf"),
     ("ansys", "joint.mac"),

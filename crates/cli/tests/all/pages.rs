@@ -36,7 +36,7 @@ fn a_browser_draws_every_plot_without_a_complaint_and_takes_no_name_for_markup()
         .replace("\"J\"", &quoted)
         .replace("\"A\"", &quoted);
     bench.write("two.json", fixture);
-    bench.done(&["synthesize", "two.json", "--lines", "50:1000:5", "-o", "frf.uff"]);
+    bench.done(&["synthesize", "two.json", "--lines", "50:1000:10", "-o", "frf.uff"]);
     for command in [
         &["decompose", "two.json", "frf.uff", "-o", "a"][..],
         &["check", "two.json", "frf.uff", "-o", "a"],

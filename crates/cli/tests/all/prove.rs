@@ -33,17 +33,24 @@ fn one_case_is_made_diagnosed_and_told_the_same_each_time() {
 #[test]
 fn solids_and_hits_have_scores_of_their_own_and_pages_that_diagnose_makes_again() {
     let bench = Bench::new("prove-routes");
-    // Of each the second hides nothing: the quickest. Where the model is wrong everywhere, what is answered to one case is left to chance.
-    for (route, key, section, right) in [
-        ("--solid", "solid", "Recordings of solids", true),
-        ("--struck", "struck", "Hits over time", true),
-        ("--solid-as-is", "solid_as_is", "Recordings of solids as they are", false),
-        ("--modal-errors", "modal_errors", "Recordings of structures with an error in every mode", false),
-        ("--channel-flaws", "channel_flaws", "Flaws of the measuring chain", true),
-        ("--load-paths", "load_paths", "Load paths and footings", true),
-        ("--unknown-physics", "unknown_physics", "Physics without a name, small and large", false),
+    // Of each the second hides nothing: the quickest. Where the model is wrong everywhere, what is answered to one case is left to chance; of such, seeds of quick cases.
+    for (route, key, section, right, seed) in [
+        ("--solid", "solid", "Recordings of solids", true, "1"),
+        ("--struck", "struck", "Hits over time", true, "1"),
+        ("--solid-as-is", "solid_as_is", "Recordings of solids as they are", false, "6"),
+        (
+            "--modal-errors",
+            "modal_errors",
+            "Recordings of structures with an error in every mode",
+            false,
+            "1",
+        ),
+        ("--channel-flaws", "channel_flaws", "Flaws of the measuring chain", true, "1"),
+        ("--load-paths", "load_paths", "Load paths and footings", true, "1"),
+        ("--unknown-physics", "unknown_physics", "Physics without a name, small and large", false, "5"),
     ] {
-        let output = bench.run(&["prove", route, "2", "--only", "1", "--threads", "1", "-o", "proof"]);
+        let arguments = ["prove", route, "2", "--only", "1", "--seed", seed, "--threads", "1", "-o", "proof"];
+        let output = bench.run(&arguments);
         assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
         let table = String::from_utf8(output.stdout).unwrap();
         assert!(table.contains(&format!("\n{key}: ")), "{table}");

@@ -99,7 +99,7 @@ fn a_decomposition_and_a_check_come_with_the_frfs_of_the_fixture_and_of_the_join
 
 #[test]
 fn what_a_command_does_not_have_is_refused_before_the_work() {
-    let bench = Bench::synthesized("results-refused", TWO_BLOCKS, "50:1000:5");
+    let bench = Bench::synthesized("results-refused", TWO_BLOCKS, "50:1000:10");
     bench.done(&["decompose", "two.json", "frf.uff", "-o", "joint"]);
     bench.refused(
         &["compare", "joint", "--also", "uff", "-o", "out"],

@@ -5,7 +5,7 @@ use std::process::{Command, Stdio};
 
 use crate::common::{Bench, TWO_BLOCKS};
 
-const LINES: &str = "50:1000:5";
+const LINES: &str = "50:1000:10";
 
 #[test]
 fn an_answer_that_standard_output_does_not_take_is_told_and_is_no_success() {
