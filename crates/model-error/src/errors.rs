@@ -1,6 +1,7 @@
 //! How wrong a model may be: kinds of error with their scales, and the covariance that they make of the features.
 //!
-//! Errors of different kinds are independent, and so are those of different modes. An error of a shape at a channel is common to all FRFs of that channel.
+//! Errors of different kinds are independent, and so are those of different modes. An error of a shape at a channel is common to all FRFs of that channel. An error of a
+//! damping ratio is one of the damping by which the shape's phases are turned too: what of the residues is in quadrature for that reason errs by the same share.
 
 use crate::matching::Pairing;
 use crate::modelled::ModelledModes;
@@ -92,6 +93,10 @@ pub struct Comparison {
     pub(crate) places: Vec<usize>,
     /// Covariance of the recorded features.
     pub(crate) noise: Vec<f64>,
+    /// What of the paired modes' residues is in quadrature because of the structure's damping, FRF by FRF.
+    turned: Vec<f64>,
+    /// Place of the first residue among the compared features.
+    first_residue: usize,
     /// By kind, the covariance for a size of one: the entries that are not zero, by their place in the matrix.
     pub(crate) kinds: Vec<Vec<(usize, f64)>>,
     /// What errors of a shape at both channels of an FRF make together, for a size of one each: of residues' real parts, and of their imaginary parts.
@@ -121,14 +126,21 @@ impl Comparison {
         let noise = (0..n * n).map(entry).collect();
         let mut kinds = vec![vec![0.0; n * n]; KINDS];
         let matched = pairing.pairs.len();
+        let mut turned = Vec::with_capacity(matched * frfs);
         let mut both = [Vec::new(), Vec::new()];
         for k in 0..matched {
             kinds[0][2 * k * (n + 1)] = 1.0;
-            kinds[1][(2 * k + 1) * (n + 1)] = 1.0;
         }
         for (k, &(r, m)) in pairing.pairs.iter().enumerate() {
             let scale = recorded.modes[r].scale;
             let first = 2 * matched + 2 * k * frfs;
+            // The damping that turns a shape's phases is as wrong as that which makes the mode die away.
+            turned.extend(shapes.quadrature[m].iter().map(|quadrature| quadrature / scale));
+            let parts = turned[k * frfs..].iter().enumerate().map(|(frf, part)| (first + 2 * frf + 1, *part));
+            let of_damping: Vec<(usize, f64)> = std::iter::once((2 * k + 1, 1.0)).chain(parts).collect();
+            for &(i, a) in &of_damping {
+                of_damping.iter().for_each(|&(j, b)| kinds[1][i * n + j] = a * b);
+            }
             for a in 0..frfs {
                 // Near a node of a channel the product of both errors is all there is.
                 let product = (shapes.mean_square(m) / scale).powi(2);
@@ -173,7 +185,26 @@ impl Comparison {
         }
         let entries =
             |kind: Vec<f64>| kind.into_iter().enumerate().filter(|(_, value)| *value != 0.0).collect();
-        Comparison { places, noise, kinds: kinds.into_iter().map(entries).collect(), both }
+        let kinds = kinds.into_iter().map(entries).collect();
+        Comparison { places, noise, turned, first_residue: 2 * matched, kinds, both }
+    }
+
+    /// The same with errors of the damping that change the modes' damping ratios alone, and no phases: for a fit that sets out from where damping may be far more or
+    /// less than where it ends.
+    pub fn with_ratios_alone(mut self) -> Self {
+        let (n, ratios) = (self.count(), self.first_residue);
+        self.kinds[1].retain(|(place, _)| place % (n + 1) == 0 && place / n < ratios);
+        self.turned.fill(0.0);
+        self
+    }
+
+    /// Whether errors of the damping, of the size `damping`, make as much of the quadrature of the same modes here as there, but for less than noise does.
+    pub fn damps_like(&self, other: &Comparison, damping: f64) -> bool {
+        let (n, first) = (self.count(), self.first_residue);
+        let noise = |k: usize| self.noise[(first + 2 * k + 1) * (n + 1)].sqrt();
+        let apart = |(k, (a, b)): (usize, (&f64, &f64))| damping * (a - b).abs() > noise(k);
+        self.turned.len() == other.turned.len()
+            && !self.turned.iter().zip(&other.turned).enumerate().any(apart)
     }
 
     /// Recorded features less those of the model: ln ω and ln ζ of the paired modes, their residues FRF by FRF, then all residual terms. Residues and

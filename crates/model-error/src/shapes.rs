@@ -17,12 +17,16 @@ pub struct Shapes {
     pub(crate) frfs: Vec<(usize, usize)>,
     /// By mode, mass-normalised amplitude at each channel.
     pub(crate) amplitudes: Vec<Vec<f64>>,
+    /// By mode, what damping that is not distributed as mass and stiffness are adds to the residue of each FRF: its imaginary part, the measuring chain apart.
+    pub(crate) quadrature: Vec<Vec<f64>>,
 }
 
 /// Relative distance of natural frequencies below which a pole of the test is one of the structure: an exponential window adds damping alone.
 const SAME: f64 = 1e-3;
 /// References to which the signs of shapes are told, at most.
 const REFERENCES: usize = 4;
+/// Share of a mode's mean square below which a reference does not move in it, and tells no phases.
+const NODE: f64 = 1e-9;
 
 impl Shapes {
     /// The shapes of the modes at `poles`.
@@ -51,7 +55,7 @@ impl Shapes {
         let test = ModelledTest::new(fixture, &pairs, recorded.band.1, Instrument::Perfect).ok()?;
         let mut continued = test.continued();
         let n = channels.len();
-        let mut of_structure = |pole: &Complex64| -> Option<Vec<f64>> {
+        let mut of_structure = |pole: &Complex64| -> Option<(Vec<f64>, Vec<f64>)> {
             let mode = mode(&mut continued, *pole, pairs.len())?;
             if (mode.pole.lambda().im - pole.im).abs() > SAME * pole.norm() {
                 return None;
@@ -60,18 +64,25 @@ impl Shapes {
             let squares: Vec<f64> = residues[..n].iter().map(|a| a.norm()).collect();
             let largest = (0..references.len())
                 .max_by(|a, b| squares[references[*a]].total_cmp(&squares[references[*b]]))?;
-            let sign = |channel: usize| residues[n + largest * n + channel].re.signum();
-            Some((0..n).map(|channel| squares[channel].sqrt() * sign(channel)).collect())
+            let to_largest = &residues[n + largest * n..][..n];
+            let amplitude = |channel: usize| squares[channel].sqrt() * to_largest[channel].re.signum();
+            let own = residues[references[largest]];
+            let moves = own.norm() > NODE * squares.iter().sum::<f64>() / n as f64;
+            // ψ_o·ψ_i = (ψ_o·ψ_r)(ψ_i·ψ_r)/ψ_r²
+            let product = |&(o, i): &(usize, usize)| (to_largest[o] * to_largest[i] / own).im;
+            let quadrature = frfs.iter().map(|frf| if moves { product(frf) } else { 0.0 });
+            Some(((0..n).map(amplitude).collect(), quadrature.collect()))
         };
-        let of_chain = |pole: &Complex64| {
+        let of_chain = |pole: &Complex64| -> Option<(Vec<f64>, Vec<f64>)> {
             let test =
                 ModelledTest::new(fixture, &recorded.pairs, recorded.band.1, Instrument::AsRecorded).ok()?;
             let residues = mode(&mut test.continued(), *pole, recorded.frfs())?.residues;
-            Some(amplitudes_of(&residues, &frfs, n))
+            Some((amplitudes_of(&residues, &frfs, n), vec![0.0; frfs.len()]))
         };
         let shape = |pole: &Complex64| of_structure(pole).or_else(|| of_chain(pole));
-        let amplitudes = poles.iter().map(shape).collect::<Option<_>>()?;
-        Some(Shapes { frfs, amplitudes })
+        let of_modes: Vec<(Vec<f64>, Vec<f64>)> = poles.iter().map(shape).collect::<Option<_>>()?;
+        let (amplitudes, quadrature) = of_modes.into_iter().unzip();
+        Some(Shapes { frfs, amplitudes, quadrature })
     }
 
     /// Mean square of a mode's amplitudes.

@@ -213,10 +213,11 @@ impl<'a> Problem<'a> {
     pub fn fitted_from(
         &self,
         start: &Hypothesis,
-        standing: Standing,
+        mut standing: Standing,
         priors: &[Prior],
         (nearby, set_out): (Option<Vec<Vec<f64>>>, SetOut),
     ) -> Option<ModalFit> {
+        standing.comparison = standing.comparison.with_ratios_alone();
         let residual = self.residual(&standing, &standing.modelled);
         let nearby = nearby.filter(|slopes| slopes.iter().all(|slope| slope.len() == residual.len()));
         let point = Iterate { hypothesis: start.clone(), modelled: standing.modelled.clone(), residual };
@@ -254,7 +255,8 @@ impl<'a> Problem<'a> {
             Some(sizes) => sizes,
             None => self.evidence(&point, priors, &derivatives, (&standing.comparison, None))?.1.sizes,
         };
-        let (mut best, mut otherwise): (Option<ModalFit>, Option<ModalFit>) = (None, None);
+        let (mut best, mut otherwise, mut stale): (Option<ModalFit>, Option<ModalFit>, Option<ModalFit>) =
+            (None, None, None);
         let mut strayed = 0;
         for round in 0..ROUNDS {
             // What fails on the way takes nothing from what was found before.
@@ -290,19 +292,25 @@ impl<'a> Problem<'a> {
             }
             let Some(anew) = self.standing(&point.hypothesis) else { break };
             let alike = anew.pairing.pairs == standing.pairing.pairs;
-            if ends && alike && anew.modelled.counts_like(&standing.modelled) {
+            // Where the fit set out, damping may have turned the shapes' phases by far more or less than it does here.
+            let damped_like = anew.comparison.damps_like(&standing.comparison, self.sizes.damping);
+            let turned = alike && strayed < STRAYS && !damped_like;
+            if ends && alike && anew.modelled.counts_like(&standing.modelled) && !turned {
                 break;
             }
             point.residual = self.residual(&anew, &anew.modelled);
             point.modelled = anew.modelled.clone();
             let Some(there) = self.slopes_at(&point, &anew, priors) else { break };
             derivatives = there;
-            // What counted a mode as what it is not says nothing.
-            otherwise = more_probable(otherwise, best.take().filter(|_| !strays));
-            strayed += usize::from(strays);
+            // What counted a mode as what it is not, or another's damping as its own, says nothing.
+            if strays || turned {
+                stale = best.take();
+                strayed += 1;
+            }
+            otherwise = more_probable(otherwise, best.take());
             standing = anew;
         }
-        more_probable(otherwise, best)
+        more_probable(otherwise, best).or(stale)
     }
 
     /// Where parameters come to rest at these sizes of the error, with derivatives taken there, and the evidence by these.

@@ -1,10 +1,11 @@
 use crate::modal::features::Features;
-use crate::modal::fit::SetOut;
-use crate::modal::prior::priors;
+use crate::modal::fit::{ModalFit, SetOut};
+use crate::modal::prior::{Prior, priors};
 use crate::settings::Settings;
 use crate::{Hypothesis, Observation};
 use jointscope_fixture::{Effect, EffectKind, Fixture, Place};
 use jointscope_lumped::{Instrument, synthesize};
+use jointscope_model_error::ErrorSizes;
 use jointscope_spectra::{FrfPair, SpectralLines};
 
 const SHEAR: f64 = 1.88e7;
@@ -60,4 +61,44 @@ fn a_fit_stands_where_it_would_come_to_rest_at_the_errors_that_it_asks_for() {
         let moved = moved.fold(0.0, f64::max);
         assert!(moved < 1.5, "{factor}: {moved:.2} deviations from {:?}", fit.evidence.sizes);
     }
+}
+
+/// Two free blocks on a strip, their damping ratios known to 15 %.
+const BLOCKS: &str = r#"{
+  "bodies": { "A": { "mass": 1.1, "inertia": 9.5e-4, "x_cg": -0.03 }, "B": { "mass": 1.2, "inertia": 9.9e-4, "x_cg": 0.095 } },
+  "points": { "1": { "body": "A", "x": -0.06 }, "2": { "body": "A", "x": 0 }, "3": { "body": "B", "x": 0.065 }, "4": { "body": "B", "x": 0.125 } },
+  "joints": { "J": { "from": "2", "to": "3", "beam": { "youngs_modulus": 2.07e11, "second_moment": 3.67e-10 } } },
+  "damping": { "modal_ratios": [{ "value": 0.004, "std": 6e-4 }, { "value": 0.006, "std": 9e-4 }] } }"#;
+
+#[test]
+fn a_dashpot_is_known_no_better_than_the_damping_of_the_modes_that_it_damps() {
+    // It turns the phases of their shapes too, which are recorded far more sharply than any model has their damping.
+    let values = [0.1, 0.06, 200.0, 0.01];
+    let resonator = Effect::new(EffectKind::AttachedResonator, Place::Body("B".into()), None, &values);
+    let fixture = Fixture::from_json(BLOCKS).unwrap();
+    let nominal = Hypothesis::nominal(&fixture, false);
+    let truth = nominal.with(resonator);
+    let pairs = ["1", "2"].iter().flat_map(|i| ["3", "4"].map(|o| FrfPair::transverse(o, i)));
+    let lines = SpectralLines::even(20.0, 2.5, 430).unwrap();
+    let of_truth = truth.to_fixture().unwrap();
+    let frfs = synthesize(&of_truth, &pairs.collect::<Vec<_>>(), &lines, Instrument::AsRecorded).unwrap();
+    let variance = frfs.all_values().iter().map(|value| 1e-6 * value.norm_sqr()).collect();
+    let observation = Observation::new(&frfs.with_variance(variance).unwrap(), |_| true).unwrap();
+    let features = Features::of(&observation, &nominal, &Settings::default().modal).unwrap();
+    let problem = features.problem(observation.work());
+    let own = truth.coordinates[nominal.coordinates.len()..].iter().map(|at| Prior { mean: *at, std: 1.4 });
+    let priors: Vec<Prior> = priors(&nominal, &[]).into_iter().chain(own).collect();
+    let standing = problem.standing(&truth).unwrap();
+    let fit = problem.fitted_from(&truth, standing, &priors, (None, SetOut::Usual)).unwrap();
+    let mut of_ratios = fit.clone();
+    of_ratios.standing.comparison = of_ratios.standing.comparison.with_ratios_alone();
+    const ERROR: f64 = 0.05;
+    let sizes = ErrorSizes { damping: ERROR, ..fit.evidence.sizes };
+    // The logarithm of a ratio is its coordinate.
+    let known = |fit: &ModalFit| fit.covariance_at(&sizes).unwrap().std(truth.coordinates.len() - 1);
+    let (with, without) = (known(&fit), known(&of_ratios));
+    // Three modes have its damping, each with an error of its own.
+    let share = with * 3f64.sqrt() / ERROR;
+    assert!((0.85..1.3).contains(&share), "known to {with}, the modes' damping to {ERROR}");
+    assert!(with > 2.0 * without, "known to {with}, by phases that err in nothing to {without}");
 }

@@ -167,6 +167,42 @@ fn an_error_of_the_shape_moves_residues_by_both_channels() {
 }
 
 #[test]
+fn an_error_of_the_damping_is_one_of_ratios_and_of_what_is_in_quadrature() {
+    // A dashpot at one of two masses is all the damping there is. It couples the modes, and to first order ratios and quadrature are in proportion to it.
+    let damped = |damping: f64| {
+        let support =
+            format!(r#"{{"kind": "support", "place": "A", "x": 0, "stiffness": 2e6, "damping": {damping}}}"#);
+        two_masses(1e-9, &support)
+    };
+    let fixture = damped(100.0);
+    let pairs = pairs(&[("1", "1"), ("2", "1")]);
+    let compared = Compared::of(&fixture, Recorded::of(&fixture, &pairs, &lines(600.0), noise(None)).modes());
+    assert_eq!(compared.pairing.pairs.len(), 2);
+    let n = compared.comparison.count();
+    let sizes = ErrorSizes { damping: 1.0, ..ErrorSizes::from_array([0.0; 7]) };
+    let (with, without) = (compared.comparison.covariance(&sizes), compared.noise());
+    // What a common error of both modes' damping makes of each feature.
+    let of_all = |feature: usize| -> f64 {
+        [1, 3].iter().map(|ratio| with[ratio * n + feature] - without[ratio * n + feature]).sum()
+    };
+    const SHARE: f64 = 1e-3;
+    let more = modelled(&damped(100.0 * (1.0 + SHARE)), &compared.recorded);
+    let features = compared.recorded.features();
+    let residual =
+        |modes| compared.comparison.residual(&compared.recorded, &features, modes, &compared.pairing);
+    let change: Vec<f64> =
+        residual(&compared.modelled).iter().zip(residual(&more)).map(|(a, b)| a - b).collect();
+    // Poles and residues; of what is held to ground residual terms are next to nothing.
+    for (feature, change) in change.iter().enumerate().take(12) {
+        let expected = SHARE * of_all(feature);
+        // Frequencies and real parts change by its square.
+        assert!((change - expected).abs() < 1e-6, "feature {feature}: {change:e}, expected {expected:e}");
+    }
+    let quadrature = change[4..12].iter().skip(1).step_by(2).fold(0.0_f64, |most, c| most.max(c.abs()));
+    assert!(quadrature > 1e-5, "the dashpot turns phases by {quadrature:e} for that share");
+}
+
+#[test]
 fn an_error_of_the_shape_of_a_suspension_mode_is_one_of_mass_lines() {
     // Both masses at 14 Hz on one spring, below the lowest line: φ² = 1/(5 kg), and so are mass lines.
     let stiffness = 5.0 * (TAU * 14.0).powi(2);
