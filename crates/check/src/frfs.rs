@@ -78,14 +78,21 @@ pub(crate) fn nrmse(measured: &[Complex64], modelled: &[Complex64]) -> Option<f6
     (size > 0.0 && apart.is_finite()).then(|| (apart / size).sqrt())
 }
 
-/// Times the median of an FRF's values from which one of them is none of a structure's: the highest peak of a damping ratio of 1e-5 is less.
+/// Times the median of the values about it from which a value is none of a structure's: the highest peak of a damping ratio of 1e-5 is less.
 const ABSURD: f64 = 1e6;
+/// Lines on either side that are about one: over a whole band the FRFs of a row of masses may well fall by more than that.
+const ABOUT: usize = 20;
 
-/// The frequency (Hz) of a value that no structure has beside the others of its FRF.
+/// The frequency (Hz) of a value that no structure has beside the others about it.
 pub(crate) fn absurd(frfs: &FrfSet, index: usize) -> Option<f64> {
     let sizes: Vec<f64> = frfs.values(index).iter().map(|value| value.norm()).collect();
-    let usual = median(sizes.clone())?;
-    let line = sizes.iter().position(|size| usual > 0.0 && *size > ABSURD * usual)?;
+    let all = median(sizes.clone())?;
+    let is_absurd = |&line: &usize| {
+        let about = line.saturating_sub(ABOUT)..(line + ABOUT + 1).min(sizes.len());
+        let beyond = |usual: f64| usual > 0.0 && sizes[line] > ABSURD * usual;
+        beyond(all) && median(sizes[about].to_vec()).is_some_and(beyond)
+    };
+    let line = (0..sizes.len()).find(is_absurd)?;
     Some(frfs.lines().hz()[line])
 }
 

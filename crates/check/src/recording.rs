@@ -104,7 +104,7 @@ impl RecordingCheck {
         for (index, pair) in measured_frfs.pairs().iter().enumerate() {
             remarks.extend(crate::frfs::absurd(&measured_frfs, index).map(|hz| {
                 let hz = in_text(hz);
-                let says = format!("its value at {hz} Hz is more than a million times its median: no structure has that; export it again, or leave that line out of a diagnosis with --exclude");
+                let says = format!("its value at {hz} Hz is more than a million times what the lines about it have: no structure has that; export it again, or leave that line out of a diagnosis with --exclude");
                 Remark::wrong(pair.to_string(), says)
             }));
         }
