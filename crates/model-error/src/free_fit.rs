@@ -90,7 +90,7 @@ impl FreeFit {
     }
 
     /// Whether another fit of the same recording is better by Akaike's criterion.
-    fn is_worse(&self, other: &FreeFit, recording: Recording) -> bool {
+    pub fn is_worse(&self, other: &FreeFit, recording: Recording) -> bool {
         let unknowns = self.unknowns() as f64 - other.unknowns() as f64;
         let richer = if unknowns > 0.0 { self } else { other };
         self.chi2 - other.chi2 + 2.0 * unknowns * richer.chi2_per_dof(recording).max(1.0) > 0.0

@@ -22,7 +22,7 @@
 //! ```
 //! use jointscope_fixture::Fixture;
 //! use jointscope_lumped::{Instrument, synthesize};
-//! use jointscope_model_error::{Comparison, ErrorSizes, Linear, ModelledModes, Pairing, RecordedModes, Recording, Shapes};
+//! use jointscope_model_error::{Comparison, ErrorSizes, Expected, Linear, ModelledModes, Pairing, RecordedModes, Recording, Shapes};
 //! use jointscope_modes::ModesOptions;
 //! use jointscope_spectra::{FrfPair, SpectralLines};
 //!
@@ -42,7 +42,7 @@
 //! let frfs = frfs.with_variance(variance)?;
 //!
 //! let recording = Recording { frfs: &frfs, weights: &weights };
-//! let recorded = RecordedModes::of(recording, &ModesOptions::default(), |_| Vec::new()).ok_or("no modes")?;
+//! let recorded = RecordedModes::of(recording, &ModesOptions::default(), |_| Expected::default()).ok_or("no modes")?;
 //! let natural = (5e6_f64 / 1.2).sqrt();
 //! assert!((recorded.modes[0].pole.omega / natural - 1.0).abs() < 1e-6);
 //!
@@ -77,5 +77,5 @@ pub use errors::{Comparison, ErrorSizes, KINDS, SizePrior};
 pub use evidence::{Evidence, Linear};
 pub use matching::Pairing;
 pub use modelled::{ModelledMode, ModelledModes, modes_within};
-pub use recorded::{RecordedMode, RecordedModes, Recording};
+pub use recorded::{Expected, RecordedMode, RecordedModes, Recording};
 pub use shapes::Shapes;

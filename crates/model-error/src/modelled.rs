@@ -6,7 +6,7 @@
 use crate::basis::{Pole, UPPER};
 use crate::matching::Pairing;
 use crate::outline::grid;
-use crate::recorded::RecordedModes;
+use crate::recorded::{Expected, RecordedModes};
 use crate::shapes::Shapes;
 use jointscope_fixture::{Effect, Fixture};
 use jointscope_lumped::{ContinuedFrfs, Instrument, ModelledTest};
@@ -197,14 +197,16 @@ impl RecordedModes {
         ModelledTest::new(fixture, &self.pairs, self.band.1, Instrument::AsRecorded).ok()
     }
 
-    /// The modes that a fixture has in the band or a little below it, and this recording, as far as it is told, has not.
-    pub fn unpaired(&self, fixture: &Fixture) -> Vec<Pole> {
-        let Some(modelled) = ModelledModes::of(fixture, self) else { return Vec::new() };
+    /// The modes that a fixture has in the band or a little below it; none where it cannot be modelled.
+    pub fn expected_by(&self, fixture: &Fixture) -> Expected {
+        let Some(modelled) = ModelledModes::of(fixture, self) else { return Expected::default() };
         let pairing = Pairing::of(self, &modelled);
-        let alone = |(index, mode): &(usize, &ModelledMode)| {
-            mode.pole.omega < TAU * self.band.1 && pairing.pairs.iter().all(|(_, m)| m != index)
-        };
-        modelled.modes.iter().enumerate().filter(alone).map(|(_, mode)| mode.pole).collect()
+        let of_band = || modelled.modes.iter().enumerate().filter(|(_, m)| m.pole.omega < TAU * self.band.1);
+        let alone = of_band().filter(|(index, _)| pairing.pairs.iter().all(|(_, m)| m != index));
+        Expected {
+            all: of_band().map(|(_, mode)| mode.pole).collect(),
+            unpaired: alone.map(|(_, mode)| mode.pole).collect(),
+        }
     }
 
     /// With the modes of the fixture that are too low to be told from a mass line: they are a part of it, with the errors of their shapes. Those of the fixture by itself

@@ -84,6 +84,28 @@ fn free_fit(recording: Recording, inside: Vec<Pole>, outside: &[Pole]) -> Option
     Some(fit)
 }
 
+/// A free fit with poles that a model expects besides, one after the other. Where that leaves more than noise, the model's modes by themselves are another place to begin
+/// from: what the recording showed by itself, on few lines or with next to no noise, may be none of its modes.
+fn with_expected(recording: Recording, fit: FreeFit, besides: &[Pole], all: &[Pole]) -> FreeFit {
+    let fit = besides.iter().fold(fit, |fit, pole| fit.with_expected(recording, *pole));
+    if !fit.is_poor(recording) {
+        return fit;
+    }
+    let lowest = TAU * recording.frfs.lines().hz()[0];
+    let (below, inside): (Vec<Pole>, Vec<Pole>) = all.iter().partition(|pole| pole.omega < lowest);
+    let other = free_fit(recording, inside, &below);
+    other.filter(|other| fit.is_worse(other, recording)).unwrap_or(fit)
+}
+
+/// Modes of a model, in the band of a recording or a little below it.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Expected {
+    /// All of them.
+    pub all: Vec<Pole>,
+    /// Those that the recording, as far as it is told, has not.
+    pub unpaired: Vec<Pole>,
+}
+
 /// A recording without its lowest lines.
 struct Above {
     frfs: FrfSet,
@@ -121,12 +143,13 @@ impl Above {
 impl RecordedModes {
     /// The modes of a recording; `None` where it has none that can be told.
     ///
-    /// Poles that a model `expected` besides what they show by themselves are tried too: two modes on a few lines look like one. Where there are modes too low to be
+    /// Poles that a model `expected` besides what they show by themselves are tried too: two modes on a few lines look like one. So are the model's alone, where more than
+    /// noise is left. Where there are modes too low to be
     /// told from a mass line, the band begins above them: where they are on a few lines many poles fit as well, and mass lines differ with them by many deviations.
     pub fn of(
         recording: Recording,
         options: &ModesOptions,
-        expected: impl FnOnce(&RecordedModes) -> Vec<Pole>,
+        expected: impl FnOnce(&RecordedModes) -> Expected,
     ) -> Option<Self> {
         let analysis = ModalAnalysis::of(recording.frfs, options).ok()?;
         let poles = |modes: &[jointscope_modes::Mode]| -> Vec<Pole> {
@@ -139,19 +162,20 @@ impl RecordedModes {
         let fit = free_fit(recording, poles(&analysis.modes), &poles(&analysis.outside))?;
         let alone = fit.told(recording)?;
         let expected = expected(&alone);
-        let all: Vec<Pole> = fit.poles[..fit.inside].iter().chain(&expected).copied().collect();
-        let Some(above) = Above::of(recording, &all) else {
-            let with = |fit: FreeFit, pole: &Pole| fit.with_expected(recording, *pole);
-            return match expected.is_empty() {
+        let Expected { all, unpaired } = expected;
+        let told_or_expected: Vec<Pole> = fit.poles[..fit.inside].iter().chain(&unpaired).copied().collect();
+        let Some(above) = Above::of(recording, &told_or_expected) else {
+            return match all.is_empty() {
                 true => Some(alone),
-                false => expected.iter().fold(fit, with).told(recording),
+                false => with_expected(recording, fit, &unpaired, &all).told(recording),
             };
         };
         let (recording, from) = (above.recording(), TAU * above.frfs.lines().hz()[0]);
         let (low, within): (Vec<Pole>, Vec<Pole>) =
             fit.poles[..fit.inside].iter().partition(|p| p.omega < from);
         let fit = free_fit(recording, within, &fit.poles[fit.inside..])?;
-        let fit = low.into_iter().chain(expected).fold(fit, |fit, pole| fit.with_expected(recording, pole));
+        let besides: Vec<Pole> = low.into_iter().chain(unpaired).collect();
+        let fit = with_expected(recording, fit, &besides, &all);
         let mut told = fit.told(recording)?;
         let below = alone.misfit.len() - told.misfit.len();
         (told.lowest, told.outline.grid) = (alone.lowest, alone.outline.grid);

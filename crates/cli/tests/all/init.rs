@@ -28,6 +28,35 @@ fn every_draft_reads_checks_and_synthesizes() {
 }
 
 #[test]
+fn nothing_is_odd_in_what_a_frame_with_few_lines_between_its_modes_would_record() {
+    let bench = Bench::new("init-frames");
+    // Modes from 2 Hz on, most of them narrower than lines are apart; FRFs that fall by eleven decades over the band.
+    for (storeys, mass, columns) in
+        [("3", "3.5", "200x25x5"), ("4", "2", "400x20x6"), ("5", "3.5", "400x20x6"), ("5", "8", "400x20x6")]
+    {
+        let columns = format!("{columns}:aluminium");
+        let draft = ["init", "--frame", storeys, "--storey-mass", mass, "--columns", &columns];
+        bench.done(&[&draft[..], &["--force", "-o", "frame.json"]].concat());
+        let frf = format!("{storeys}/1");
+        bench.done(&[
+            "synthesize",
+            "frame.json",
+            "--frf",
+            &frf,
+            "--lines",
+            "1:1000:1",
+            "-o",
+            &format!("{storeys}-{mass}.uff"),
+        ]);
+        let checked = bench.done(&["check", "frame.json", &format!("{storeys}-{mass}.uff")]);
+        assert!(
+            checked.starts_with("Nothing odd in fixture and recording.\n"),
+            "{storeys} storeys: {checked}"
+        );
+    }
+}
+
+#[test]
 fn the_help_says_how_bars_are_written() {
     let help = Bench::new("init-help").done(&["init", "--help"]);
     assert!(help.contains("LENGTHxWIDTHxHEIGHT:MATERIAL in mm") && help.contains("pmma"), "{help}");

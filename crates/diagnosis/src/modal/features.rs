@@ -53,6 +53,6 @@ pub(crate) fn recorded(observation: &Observation, nominal: &Hypothesis) -> Optio
     let expected = || jointscope_model_error::modes_within(&fixture, observation.frfs());
     let orders = observation.has_scatter_for_noise().then(expected).flatten().map(|modes| (2, 2 * modes + 8));
     let options = ModesOptions { orders, ..ModesOptions::default() };
-    let recorded = RecordedModes::of(recording, &options, |alone| alone.unpaired(&fixture))?;
+    let recorded = RecordedModes::of(recording, &options, |alone| alone.expected_by(&fixture))?;
     Some(recorded.with_low_modes_of(&fixture))
 }

@@ -3,7 +3,7 @@
 use jointscope_fixture::Fixture;
 use jointscope_lumped::{Instrument, synthesize};
 use jointscope_model_error::{
-    Comparison, ErrorSizes, ModelledModes, Pairing, RecordedModes, Recording, Shapes,
+    Comparison, ErrorSizes, Expected, ModelledModes, Pairing, RecordedModes, Recording, Shapes,
 };
 use jointscope_modes::ModesOptions;
 use jointscope_spectra::{FrfPair, FrfSet, SpectralLines};
@@ -135,7 +135,7 @@ impl Recorded {
 
     pub fn modes(&self) -> RecordedModes {
         let recording = Recording { frfs: &self.set, weights: &self.weights };
-        RecordedModes::of(recording, &ModesOptions::default(), |_| Vec::new()).unwrap()
+        RecordedModes::of(recording, &ModesOptions::default(), |_| Expected::default()).unwrap()
     }
 }
 

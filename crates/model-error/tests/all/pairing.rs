@@ -1,7 +1,7 @@
 //! Which mode of a model is which of a recording.
 
 use crate::common::*;
-use jointscope_model_error::{ModelledModes, Pairing, RecordedModes, Recording};
+use jointscope_model_error::{Expected, ModelledModes, Pairing, RecordedModes, Recording};
 use jointscope_modes::ModesOptions;
 use num_complex::Complex64;
 use proptest::prelude::*;
@@ -123,14 +123,14 @@ fn a_mode_that_the_analysis_left_out_is_found_by_the_model_that_expects_it() {
     let recording = Recording { frfs: &set.set, weights: &set.weights };
     // The analyst picked the first mode only.
     let options = ModesOptions { pick: vec![247.0], ..ModesOptions::default() };
-    let without = RecordedModes::of(recording, &options, |_| Vec::new()).unwrap();
-    let expected = without.unpaired(&fixture);
-    let hz: Vec<f64> = expected.iter().map(|pole| pole.omega / TAU).collect();
+    let without = RecordedModes::of(recording, &options, |_| Expected::default()).unwrap();
+    let expected = without.expected_by(&fixture);
+    let hz: Vec<f64> = expected.unpaired.iter().map(|pole| pole.omega / TAU).collect();
     assert!(hz.len() == 1 && (hz[0] - 907.8).abs() < 0.1, "expected besides: {hz:.1?} Hz");
     let with = RecordedModes::of(recording, &options, |_| expected).unwrap();
     assert_eq!(with.modes.len(), 2, "modes with the expected one");
     assert!((0.9..1.1).contains(&with.chi2_per_dof), "χ² per degree of freedom {:.3}", with.chi2_per_dof);
-    assert!(with.unpaired(&fixture).is_empty());
+    assert!(with.expected_by(&fixture).unpaired.is_empty());
 }
 
 proptest! {

@@ -13,7 +13,7 @@ use jointscope_proof::{Case, Plan, Role, Truth};
 fn chi2_at_the_truth(case: &Case, truth: &Truth) -> (f64, usize) {
     let observation = Observation::new(&case.recorded, |_| true).unwrap();
     let recording = Recording { frfs: observation.frfs(), weights: observation.weights() };
-    let expected = |alone: &RecordedModes| alone.unpaired(&case.believed);
+    let expected = |alone: &RecordedModes| alone.expected_by(&case.believed);
     let recorded = RecordedModes::of(recording, &ModesOptions::default(), expected).unwrap();
     let modelled = ModelledModes::of(&truth.fixture, &recorded).unwrap();
     let pairing = Pairing::of(&recorded, &modelled);
