@@ -116,7 +116,8 @@ impl Observation {
         let lines = SpectralLines::new(kept_lines.iter().map(|&l| hz[l]).collect()).ok()?;
         let pairs: Vec<FrfPair> = kept_frfs.iter().map(|&i| self.pairs()[i].clone()).collect();
         let values = places().map(|at| self.values()[at]).collect();
-        let frfs = FrfSet::new(lines, FrfForm::Accelerance, pairs, values).ok()?;
+        let mut frfs = FrfSet::new(lines, FrfForm::Accelerance, pairs, values).ok()?;
+        kept_frfs.iter().enumerate().for_each(|(own, &i)| frfs.set_averages(own, self.frfs.averages(i)));
         (!kept_frfs.is_empty()).then(|| Observation {
             frfs,
             weight: places().map(|at| self.weight[at]).collect(),

@@ -6,7 +6,7 @@ use jointscope_pipeline::{Answer, Outcome};
 use jointscope_spectra::{FrfSet, SpectraError};
 use num_complex::Complex64;
 
-/// The FRFs behind an answer by what they are: `measured`, as the search used them; of each model (`nominal`, `refitted`, and `repaired` where it is
+/// The FRFs behind an answer by what they are: `measured`, as the search used them, with their coherence; of each model (`nominal`, `refitted`, and `repaired` where it is
 /// another) the FRFs and `residual-…`, measured less modelled. All are accelerances in SI units. Empty where the answer comes from motion over time
 /// or from levels.
 ///
@@ -20,7 +20,14 @@ pub fn model_frfs(answer: &Answer) -> Result<Vec<(String, FrfSet)>, SpectraError
         models.push(("repaired", &search.repaired));
     }
     let modelled = models.into_iter().map(|(name, fit)| (name, fit.predicted.clone()));
-    beside(diagnosis.observation.frfs(), modelled)
+    let observation = &diagnosis.observation;
+    let mut measured = observation.frfs().clone();
+    for index in 0..measured.pairs().len() {
+        if let Some(coherence) = observation.coherence(index) {
+            measured.set_coherence(index, coherence.to_vec())?;
+        }
+    }
+    beside(&measured, modelled)
 }
 
 /// The FRFs behind a modal analysis: `measured`, `rebuilt` from the modes, and `residual-rebuilt`.
