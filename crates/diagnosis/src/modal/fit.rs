@@ -74,7 +74,8 @@ const CONVERGED: f64 = 0.02;
 const SHRINK: f64 = 0.1;
 /// Relative difference of sizes that are as good as the same: they are searched no closer.
 const ALIKE: f64 = 0.1;
-/// How often a mode that has strayed into the band or out of it is counted anew: one at the very end of it may do so for ever.
+/// How often a mode that has strayed into the band or out of it is counted anew, and damping that turns phases by far more or less than before: a mode at the very end of the
+/// band may stray for ever.
 const STRAYS: usize = 2;
 /// Decrease of χ² that a step promises below which a fit stands where it belongs.
 const STILL: f64 = 1.0;
