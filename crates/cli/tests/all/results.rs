@@ -47,8 +47,9 @@ fn a_diagnosis_comes_with_its_tables_curves_figures_and_the_frfs_of_its_models()
     let names = ["measured", "nominal", "refitted", "repaired"]
         .map(|name| frfs(&bench, &format!("out/frfs/{name}.uff")));
     // What was measured comes with how sure it is.
-    let measured = bench.text("out/frfs/measured.uff");
-    assert_eq!((measured.matches("Coherence").count(), measured.matches("averages 8").count()), (4, 8));
+    let measured = std::fs::read(bench.0.join("out/frfs/measured.uff")).unwrap();
+    let says = |words: &str| measured.windows(words.len()).filter(|part| *part == words.as_bytes()).count();
+    assert_eq!((says("Coherence"), says("averages 8")), (4, 8));
     // The repaired model is the last column.
     let first = curves.lines().nth(1).unwrap().rsplit(',').next().unwrap();
     assert!((first.parse::<f64>().unwrap() / names[3][0].norm() - 1.0).abs() < 1e-12);
