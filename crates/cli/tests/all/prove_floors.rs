@@ -32,7 +32,7 @@ const FLOORS: [Floor; 23] = [
     all("/rates/single_kind", 7),
     all("/rates/single_place", 7),
     none("/rates/single_extra", 7),
-    // A stiffer joint, 0.94, with a relaxing one as its limit: no more than another name for it.
+    // The fifth, a joint that is stiffer by 13 %, is named with 0.94.
     Floor { path: "/rates/single_certain", least: 4, most: 5, of: 5 },
     all("/rates/double_both", 2),
     Floor { path: "/rates/coverage", least: 16, most: 17, of: 17 },
