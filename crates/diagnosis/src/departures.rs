@@ -1,6 +1,5 @@
 //! Quantities that had to leave their stated values.
 
-use crate::search::Search;
 use crate::{Hypothesis, Tolerance};
 use serde::Serialize;
 
@@ -16,11 +15,11 @@ pub struct Departure {
     pub stated: f64,
     /// Stated standard deviation.
     pub std: f64,
-    /// Value of the refitted fixture.
+    /// Value that the fixture by itself asks for.
     pub refitted: f64,
-    /// Value of the repaired one.
+    /// Value that it asks for beside what was found.
     pub repaired: f64,
-    /// Departure of the repaired value, in standard deviations.
+    /// Departure of that value, in standard deviations.
     pub deviations: f64,
 }
 
@@ -42,8 +41,7 @@ pub(crate) fn departed(hypothesis: &Hypothesis, index: usize) -> bool {
 }
 
 /// Quantities that the refitted or the repaired model took farther from what is stated than chance does, the farthest first.
-pub(crate) fn departures(search: &Search) -> Vec<Departure> {
-    let [refitted, repaired] = [&search.refitted, &search.repaired].map(|fit| &fit.hypothesis);
+pub(crate) fn departures([refitted, repaired]: &[Hypothesis; 2]) -> Vec<Departure> {
     let of = |(index, tolerance): (usize, &Tolerance)| {
         let deviations = repaired.deviations(index);
         let largest = refitted.departure(index).abs().max(deviations.abs());

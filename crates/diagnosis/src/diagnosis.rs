@@ -111,6 +111,9 @@ pub struct Diagnosis {
     pub observation: Observation,
     /// The three models: the file's, refitted within tolerances, with the effects found.
     pub search: Search,
+    /// The refitted and the repaired model where quantities are as probable as can be: what is said of them. By modes the models of [`Diagnosis::search`], which are to predict, follow the
+    /// recording more closely than that.
+    pub stated: [Hypothesis; 2],
     /// χ² per degree of freedom of the refitted fixture, and the probability of one as large by chance.
     pub refitted: (f64, f64),
     /// Mismatch of the refitted fixture by FRF and band.
@@ -218,7 +221,7 @@ impl Diagnosis {
         let diagnosis = Diagnosis { contradictory, ..parts.with(observation, &options.settings) };
         let within_estimates = options.estimated
             && diagnosis.refitted.0 < options.settings.evidence.explained.0
-            && !has_departed(&diagnosis.search.refitted.hypothesis);
+            && !has_departed(&diagnosis.stated[0]);
         let diagnosis = if within_estimates { diagnosis.without_findings() } else { diagnosis };
         Ok(Diagnosis { drift: drifted.and_then(|drifted| diagnosis.told_drift(&drifted)), ..diagnosis })
     }
@@ -236,7 +239,8 @@ impl Diagnosis {
         self.search.repaired = self.search.refitted.clone();
         self.verdict = Verdict::Consistent;
         self.residual_correlation = self.observation.residual_correlation(&self.search.repaired.predicted);
-        self.departures = departures(&self.search);
+        self.stated[1] = self.stated[0].clone();
+        self.departures = departures(&self.stated);
         (self.findings, self.locations, self.tried) = (Vec::new(), Vec::new(), Vec::new());
         (self.held_out, self.model_error) = (None, None);
         self

@@ -130,7 +130,7 @@ impl Diagnosis {
     /// The quantity that the refit without effects took farthest from what is stated, and by how many standard deviations, where that is
     /// beyond belief.
     pub fn bent(&self) -> Option<(&str, f64)> {
-        let refitted = &self.search.refitted.hypothesis;
+        let [refitted, _] = &self.stated;
         let stated = refitted
             .tolerances()
             .iter()

@@ -191,6 +191,12 @@ impl Hypothesis {
         Some(Hypothesis { fixture: Arc::new(fixture), ..self.clone() })
     }
 
+    /// The same with its effects in the fixture itself, where nothing moves them; `None` where the fixture cannot have them.
+    pub(crate) fn with_effects_in_place(&self) -> Option<Self> {
+        let alone = (0..self.effect_count()).rev().fold(self.clone(), |rest, index| rest.without(index));
+        self.effects().into_iter().try_fold(alone, |rest, effect| rest.beside(effect))
+    }
+
     /// The same where `other`, of the same quantities and effects, stands.
     pub(crate) fn with_coordinates_of(&self, other: &Hypothesis) -> Self {
         Hypothesis { coordinates: other.coordinates.clone(), ..self.clone() }

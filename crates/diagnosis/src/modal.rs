@@ -5,6 +5,7 @@
 //! than no name. So the error is a part of the likelihood, common to all hypotheses, its sizes estimated for each
 //! ([`jointscope_model_error`]): a name wins by making it smaller.
 //!
+//! * [`at_sizes`]: a fitted hypothesis where the sizes of error are given, to state and to predict;
 //! * [`changes`]: the modes of two states side by side;
 //! * [`features`]: a recording as its modes tell it;
 //! * [`fit`]: one hypothesis at its most probable parameters and sizes of error;
@@ -16,6 +17,7 @@
 //! * [`search`]: every candidate, alone and beside others;
 //! * [`judgement`]: what it comes to: names with their probabilities and intervals, and errors.
 
+mod at_sizes;
 mod changes;
 mod features;
 mod fit;

@@ -12,7 +12,7 @@ use crate::modal::{ModalJudgement, ModelError, explains, without_imitations};
 use crate::named::{findings, re_estimated, verdict};
 use crate::search::Search;
 use crate::settings::Settings;
-use crate::{Baseline, Observation};
+use crate::{Baseline, Hypothesis, Observation};
 use jointscope_findings::{HeldOut, Verdict};
 use jointscope_fixture::Fixture;
 use jointscope_spectra::SpectraError;
@@ -54,7 +54,7 @@ pub(crate) fn judged(
     // Modes lead to the nearest minimum where lines, peak beside peak, may end in another.
     let within = match &modal {
         Some(modal) => {
-            Search { candidates: modal.candidates.clone(), ..within }.refitted_from(fitter, &modal.refitted)
+            Search { candidates: modal.candidates.clone(), ..within }.refitted_from(fitter, &modal.stated[0])
         }
         None => refitted.refitted_widely(fitter).with_wrong_quantities(fitter),
     };
@@ -91,6 +91,8 @@ pub(crate) fn judged(
 pub(crate) struct Parts {
     verdict: Verdict,
     search: Search,
+    /// What is said of the quantities of the refitted and the repaired model, where these are to predict.
+    stated: Option<[Hypothesis; 2]>,
     findings: Vec<Finding>,
     locations: Vec<Location>,
     held_out: Option<HeldOut>,
@@ -103,12 +105,15 @@ pub(crate) struct Parts {
 impl Parts {
     pub fn with(self, observation: Observation, settings: &Settings) -> Diagnosis {
         let search = self.search;
+        let models = || [&search.refitted, &search.repaired].map(|fit| fit.hypothesis.clone());
+        let stated = self.stated.unwrap_or_else(models);
         Diagnosis {
             verdict: self.verdict,
             refitted: chance(&observation, &search.refitted),
             mismatch: mismatch(&observation, &search.refitted.predicted, settings.evidence.bands),
             residual_correlation: observation.residual_correlation(&search.repaired.predicted),
-            departures: departures(&search),
+            departures: departures(&stated),
+            stated,
             contradictory: Vec::new(),
             drift: None,
             stopped: observation.work().left_out(),
@@ -172,7 +177,7 @@ fn by_lines(
     let mut search = match (start, &first) {
         (Start::Searched(search), _) => *search,
         (Start::Modes(modal, exact), _) => {
-            let part = Search { repaired: exact, ..modal.search_on(observation, &within) };
+            let part = Search { repaired: exact, ..modal.search_on(observation, &within, &modal.stated) };
             let mut search = Search::continued(fitter, within, &part);
             search.told_apart =
                 modal.told_from(&search.repaired.hypothesis, &search.candidates, settings.modal.bases.1);
@@ -216,6 +221,7 @@ fn by_lines(
         locations,
         held_out,
         search,
+        stated: None,
         model_error: None,
         baseline_error: None,
         baseline: None,
@@ -240,7 +246,7 @@ fn blind(
     });
     let found = modal.and_then(|modal| {
         let exact = modal.exact(fitter)?;
-        Some(Search { repaired: exact, ..modal.search_on(fitter.observation, &alone) })
+        Some(Search { repaired: exact, ..modal.search_on(fitter.observation, &alone, &modal.stated) })
     });
     Some(match found {
         Some(part) => Search::continued(fitter, alone, &part),
@@ -251,7 +257,7 @@ fn blind(
 /// The diagnosis where the model's own error decides.
 fn by_modes(fitter: &Fitter, within: &Search, modal: &ModalJudgement, division: Option<&Division>) -> Parts {
     let Fitter { observation, settings, .. } = *fitter;
-    let search = modal.search_on(observation, within);
+    let search = modal.search_on(observation, within, &modal.predicting);
     let work = observation.work();
     let held_out = division.filter(|_| work.allows(UNSEEN)).and_then(|division| {
         fitter.watch.stage("comparing by modes without what is held out");
@@ -259,11 +265,13 @@ fn by_modes(fitter: &Fitter, within: &Search, modal: &ModalJudgement, division: 
         let known = modal.known(settings.modal.blind);
         let judged =
             ModalJudgement::of(&blind, &within.nominal.hypothesis, &within.candidates, Some(&known))?;
-        division.judge(&judged.search_on(&division.seen, within), &search, observation)
+        let blind = judged.search_on(&division.seen, within, &judged.predicting);
+        division.judge(&blind, &search, observation)
     });
     let locations = match modal.verdict {
         Verdict::Unexplained if work.allows(PLACES) => {
-            located(*fitter, &search.nominal.hypothesis, &search.refitted)
+            let refitted = Fit::at(modal.stated[0].clone(), observation);
+            located(*fitter, &search.nominal.hypothesis, refitted.as_ref().unwrap_or(&search.refitted))
         }
         _ => Vec::new(),
     };
@@ -273,6 +281,7 @@ fn by_modes(fitter: &Fitter, within: &Search, modal: &ModalJudgement, division: 
         locations,
         held_out,
         search,
+        stated: Some(modal.stated.clone()),
         model_error: Some(modal.errors),
         baseline_error: None,
         baseline: None,

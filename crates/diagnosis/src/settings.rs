@@ -193,6 +193,9 @@ pub struct ModalSettings {
     pub wide: f64,
     /// Standard deviation, in coordinates, within which a start's own parameters count as linear when it is scored.
     pub near: f64,
+    /// Share of the most probable errors of natural frequency and damping that models which are to predict may have: beside a resonance an error of frequency counts many
+    /// times over, and a model that is off by what is probable is no help there. Less gains little more, and lets quantities imitate.
+    pub followed: f64,
 }
 
 impl ModalSettings {
@@ -235,6 +238,7 @@ impl Default for ModalSettings {
             apart: 24,
             wide: 5.0,
             near: 0.7,
+            followed: 0.1,
         }
     }
 }

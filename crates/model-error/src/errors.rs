@@ -63,6 +63,26 @@ impl ErrorSizes {
         ErrorSizes::from_array(self.to_array().map(|size| factor * size))
     }
 
+    /// The same with `share` of the errors of natural frequency and damping.
+    pub fn following(self, share: f64) -> Self {
+        ErrorSizes { frequency: share * self.frequency, damping: share * self.damping, ..self }
+    }
+
+    /// Size by size the larger one.
+    pub fn larger(self, other: Self) -> Self {
+        self.with(other, f64::max)
+    }
+
+    /// Size by size the smaller one.
+    pub fn smaller(self, other: Self) -> Self {
+        self.with(other, f64::min)
+    }
+
+    fn with(self, other: Self, of: fn(f64, f64) -> f64) -> Self {
+        let (own, other) = (self.to_array(), other.to_array());
+        ErrorSizes::from_array(std::array::from_fn(|kind| of(own[kind], other[kind])))
+    }
+
     /// From the order of the fields.
     pub fn from_array(sizes: [f64; KINDS]) -> Self {
         let [frequency, damping, shape, quadrature, mass_line, upper_residual, gain] = sizes;

@@ -15,7 +15,7 @@ mod noise;
 mod tolerances;
 mod two_states;
 
-use jointscope_diagnosis::{Diagnosis, Fit};
+use jointscope_diagnosis::{Diagnosis, Fit, Hypothesis};
 use jointscope_fixture::Fixture;
 use jointscope_wording::Says;
 
@@ -43,6 +43,13 @@ impl<'a> Subject<'a> {
             models.push(("repaired", &search.repaired));
         }
         models
+    }
+
+    /// The refitted and, where it is another, the repaired model, as quantities are stated of them.
+    fn stated(&self) -> Vec<(&'static str, &'a Hypothesis)> {
+        let [refitted, repaired] = &self.diagnosis.stated;
+        let found = (!self.diagnosis.findings.is_empty()).then_some(("repaired", repaired));
+        [("refitted", refitted)].into_iter().chain(found).collect()
     }
 }
 

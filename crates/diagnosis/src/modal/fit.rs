@@ -155,7 +155,7 @@ impl<'a> Problem<'a> {
     }
 
     /// The modes of a hypothesis, followed from those of another one near it.
-    fn modelled(&self, hypothesis: &Hypothesis, near: &ModelledModes) -> Option<ModelledModes> {
+    pub(super) fn modelled(&self, hypothesis: &Hypothesis, near: &ModelledModes) -> Option<ModelledModes> {
         let fixture = hypothesis.to_fixture().ok()?;
         self.work.count(FOLLOWED * self.recorded.frfs());
         ModelledModes::near(&fixture, self.recorded, near)
@@ -265,7 +265,7 @@ impl<'a> Problem<'a> {
             (point, derivatives) = (end.point, end.derivatives);
             let ln = end.evidence.ln + standing.pairing.alone() - rarity;
             let before = best.as_ref().map(|fit| fit.ln);
-            let next = largest(&end.evidence.sizes, &sizes.times(SHRINK));
+            let next = end.evidence.sizes.larger(sizes.times(SHRINK));
             // The evidence says nothing of a point from where the parameters are still to move, or the sizes to shrink.
             let settled = next == end.evidence.sizes;
             let same = settled && are_alike(&next, &sizes);
@@ -370,24 +370,6 @@ impl<'a> Problem<'a> {
         held.1.ln -= stopped.iter().map(pull).sum::<f64>();
         Some(if held.1.ln < free.1.ln { held } else { free })
     }
-
-    /// The most probable parameters at given sizes of the error, with the covariance of their coordinates.
-    pub fn at_sizes(&self, fit: &ModalFit, sizes: &ErrorSizes) -> Option<(Hypothesis, Option<Covariance>)> {
-        let standing = &fit.standing;
-        let factor = Cholesky::of(standing.comparison.count(), &standing.comparison.covariance(sizes))?;
-        let descent = Descent { problem: self, standing, factor, priors: &fit.priors };
-        let start = Iterate {
-            hypothesis: fit.hypothesis.clone(),
-            modelled: standing.modelled.clone(),
-            residual: fit.residual.clone(),
-        };
-        let point = descend(&descent, start, Some(fit.slopes.clone()), &settings(usize::MAX))?.point;
-        let slopes = descent.derivatives(&point, Precision::Rough)?;
-        let equations = descent.equations(&point, &slopes, &());
-        let order = equations.order;
-        let inverse = Cholesky::of(order, &equations.information).map(|factor| factor.inverse());
-        Some((point.hypothesis, inverse.map(|entries| Covariance::new(order, entries))))
-    }
 }
 
 /// The more probable of two fits, as far as there are any.
@@ -400,14 +382,8 @@ fn are_alike(a: &ErrorSizes, b: &ErrorSizes) -> bool {
     a.to_array().iter().zip(b.to_array()).all(|(a, b)| (a / b).ln().abs() < ALIKE)
 }
 
-/// Size by size the larger one.
-fn largest(a: &ErrorSizes, b: &ErrorSizes) -> ErrorSizes {
-    let (a, b) = (a.to_array(), b.to_array());
-    ErrorSizes::from_array(std::array::from_fn(|kind| a[kind].max(b[kind])))
-}
-
 /// How parameters are fitted with at most so many sets of derivatives, the first taken at the start.
-fn settings(derivatives: usize) -> Settings {
+pub(super) fn settings(derivatives: usize) -> Settings {
     Settings {
         steps: STEPS,
         derivatives,
@@ -433,19 +409,19 @@ struct Rest {
 
 /// Where a fit stands on its way.
 #[derive(Clone)]
-struct Iterate {
-    hypothesis: Hypothesis,
-    modelled: ModelledModes,
-    residual: Vec<f64>,
+pub(super) struct Iterate {
+    pub hypothesis: Hypothesis,
+    pub modelled: ModelledModes,
+    pub residual: Vec<f64>,
 }
 
 /// Parameters to be fitted at given sizes of the error.
-struct Descent<'a> {
-    problem: &'a Problem<'a>,
-    standing: &'a Standing,
+pub(super) struct Descent<'a> {
+    pub problem: &'a Problem<'a>,
+    pub standing: &'a Standing,
     /// Of the covariance of noise and error.
-    factor: Cholesky,
-    priors: &'a [Prior],
+    pub factor: Cholesky,
+    pub priors: &'a [Prior],
 }
 
 /// The step that the equations at a point ask for, within its bounds.

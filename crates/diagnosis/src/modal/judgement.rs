@@ -39,10 +39,12 @@ pub(crate) struct ModalJudgement {
     pub errors: [ModelError; 2],
     /// Whether the fixture states how well the gains of its records are known.
     pub states_gain: bool,
-    /// The fixture by itself at the most probable sizes of error.
-    pub refitted: Hypothesis,
-    /// The best hypothesis at the most probable sizes of error, and the covariance of its coordinates with sizes that may be larger.
-    pub last: (Hypothesis, Option<Covariance>),
+    /// The fixture by itself and the best hypothesis, at the most probable sizes of error: what is said of quantities and effects.
+    pub stated: [Hypothesis; 2],
+    /// Covariance of the best one's coordinates with sizes that may be larger.
+    pub covariance: Option<Covariance>,
+    /// Both as they are to predict: the same effects, quantities that follow the recording more closely.
+    pub predicting: [Hypothesis; 2],
 }
 
 /// What a baseline says of the fixture.
@@ -173,8 +175,16 @@ impl Judge<'_> {
             fitted.map_or_else(|| fit.hypothesis.clone(), |(hypothesis, _)| hypothesis)
         };
         let covariance = problem.at_sizes(best, &widened).and_then(|(_, covariance)| covariance);
-        let last = (nearest(best), covariance);
-        let refitted = nearest(&self.search.none);
+        let none = &self.search.none;
+        let stated = [none, best].map(nearest);
+        // The refit's errors may be larger where what is missing shows, and smaller elsewhere.
+        let sizes = [none.evidence.sizes, best.evidence.sizes.smaller(none.evidence.sizes)];
+        let following = |index: usize| {
+            let sizes = sizes[index].following(self.searcher.settings.followed);
+            let followed = problem.quantities_at([none, best][index], &stated[index], &sizes);
+            followed.unwrap_or_else(|| stated[index].clone())
+        };
+        let predicting = [following(0), following(1)];
         let names = self.search.alternatives.iter().map(|all| self.probabilities(all)).collect();
         ModalJudgement {
             verdict,
@@ -184,8 +194,9 @@ impl Judge<'_> {
             strained: self.searcher.problem.recorded.is_strained(),
             errors: [&self.search.none, &self.search.best.fit].map(error),
             states_gain: false,
-            last,
-            refitted,
+            stated,
+            covariance,
+            predicting,
             search: self.search,
         }
     }
@@ -340,12 +351,12 @@ impl ModalJudgement {
         self.search.singles.iter().take(count).filter_map(of).collect()
     }
 
-    /// The models that the comparison ended with, on lines; `within` is the fixture refitted on lines.
-    pub fn search_on(&self, observation: &Observation, within: &Search) -> Search {
+    /// The models that the comparison ended with, as stated or as they predict, on lines; `within` is the fixture refitted on lines.
+    pub fn search_on(&self, observation: &Observation, within: &Search, models: &[Hypothesis; 2]) -> Search {
         let on_lines = |hypothesis: &Hypothesis| Fit::at(hypothesis.clone(), observation);
         let nominal = on_lines(&within.nominal.hypothesis).unwrap_or_else(|| within.nominal.clone());
-        let refitted = on_lines(&self.refitted).unwrap_or_else(|| nominal.clone());
-        let repaired = on_lines(&self.last.0).unwrap_or_else(|| refitted.clone());
+        let refitted = on_lines(&models[0]).unwrap_or_else(|| nominal.clone());
+        let repaired = on_lines(&models[1]).unwrap_or_else(|| refitted.clone());
         Search { nominal, refitted, repaired, ..within.clone() }
     }
 
@@ -365,7 +376,7 @@ impl ModalJudgement {
 
     /// The findings, the strongest first.
     pub fn findings(&self, candidates: &[Candidate]) -> Vec<Finding> {
-        let (hypothesis, covariance) = &self.last;
+        let ([_, hypothesis], covariance) = (&self.stated, &self.covariance);
         let finding = |(index, effect): (usize, Effect)| {
             let names = self.names.get(index)?;
             let own = |candidate: usize| candidates[candidate].names(&effect);

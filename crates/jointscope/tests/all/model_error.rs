@@ -1,9 +1,9 @@
 //! Models that are a little wrong in every mode: what is left out is told from the model's own error.
 
 use crate::common;
-use jointscope::diagnosis::{Diagnosis, DiagnosisOptions, Verdict};
+use jointscope::diagnosis::{Diagnosis, DiagnosisOptions, Hypothesis, Verdict};
 use jointscope::fixture::{Effect, EffectKind, Place};
-use jointscope::{Fixture, FrfSet};
+use jointscope::{Fixture, FrfPair, FrfSet};
 use jointscope_rig::{Instrument, drawn_within_tolerance, frfs, generator};
 use std::path::Path;
 
@@ -130,4 +130,34 @@ fn everywhere_a_little_softer() -> Vec<Effect> {
         Effect::new(EffectKind::BodyFlexibility, Place::Body(body.into()), None, &[hz, 0.003])
     };
     vec![bending("A", 9_000.0), bending("B", 11_000.0)]
+}
+
+/// A model that is as far off in natural frequency as it probably is predicts badly beside every resonance, whatever was found.
+#[test]
+fn where_nobody_measured_a_repaired_model_predicts_closely_though_every_mode_is_a_little_off() {
+    let believed = common::believed(common::RATIOS);
+    let of = |fixture: &Fixture, pairs: &[FrfPair]| {
+        frfs(fixture, pairs, &common::lines(), Instrument::AsDescribed).unwrap()
+    };
+    let elsewhere = [("1", "1"), ("2", "2"), ("2", "1")].map(|(o, i)| FrfPair::transverse(o, i));
+    for seed in [0, 2, 3] {
+        let truth = drawn_within_tolerance(&believed, &mut generator(seed)).unwrap();
+        let truth = truth.with_physics(everywhere_a_little_softer()).unwrap();
+        let delay = Effect::new(EffectKind::ChannelDelay, Place::Response("4".into()), None, &[-3.8e-5]);
+        let late = [everywhere_a_little_softer(), vec![delay]].concat();
+        let late = of(&truth.clone().with_physics(late).unwrap(), &common::four_pairs());
+        let diagnosis = diagnosed(&believed, &common::hammer(seed).measure(&late).unwrap(), None);
+        let exact = of(&truth, &elsewhere);
+        let error = |model: &Hypothesis| {
+            let predicted = of(&model.to_fixture().unwrap(), &elsewhere);
+            let both = predicted.all_values().iter().zip(exact.all_values());
+            let error: f64 = both.map(|(predicted, exact)| (predicted - exact).norm_sqr()).sum();
+            (error / exact.all_values().iter().map(|value| value.norm_sqr()).sum::<f64>()).sqrt()
+        };
+        let [_, stated] = &diagnosis.stated;
+        let repaired = &diagnosis.search.repaired.hypothesis;
+        assert_eq!(stated.effects(), repaired.effects(), "{}", told(&diagnosis));
+        let [stated, repaired] = [stated, repaired].map(error);
+        assert!(stated > 0.1 && repaired < 0.05, "as stated {stated}, to predict {repaired}");
+    }
 }

@@ -10,7 +10,7 @@ pub(super) fn section(subject: &Subject) -> Option<Section> {
     if diagnosis.departures.is_empty() {
         return None;
     }
-    let refitted = &diagnosis.search.refitted.hypothesis;
+    let [refitted, _] = &diagnosis.stated;
     let tolerances = refitted.tolerances();
     let unit = |path: &str| {
         let own = tolerances.iter().find(|tolerance| tolerance.quantity.path == path);

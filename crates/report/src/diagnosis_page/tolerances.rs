@@ -9,8 +9,8 @@ use crate::table::Table;
 const BENT: f64 = 2.0;
 
 pub(super) fn section(subject: &Subject) -> Option<Section> {
-    let models: Vec<_> = subject.models().into_iter().skip(1).collect();
-    let tolerances = models.first()?.1.hypothesis.tolerances();
+    let models = subject.stated();
+    let tolerances = models.first()?.1.tolerances();
     if tolerances.is_empty() {
         return Some(
             Section::new("Tolerances")
@@ -18,7 +18,7 @@ pub(super) fn section(subject: &Subject) -> Option<Section> {
         );
     }
     let farthest = |index: usize| {
-        let departures = models.iter().map(|(_, fit)| fit.hypothesis.departure(index).abs());
+        let departures = models.iter().map(|(_, model)| model.departure(index).abs());
         tolerances[index].quantity.std.map_or(0.0, |_| departures.fold(0.0, f64::max))
     };
     let bent = (0..tolerances.len()).filter(|index| farthest(*index) > BENT).count();
@@ -28,11 +28,11 @@ pub(super) fn section(subject: &Subject) -> Option<Section> {
             let stated = quantity(own.value, own.std, own.key.unit());
             if own.std.is_some() { stated } else { format!("{stated} (unknown, left free)") }
         });
-    for (name, fit) in &models {
+    for (name, model) in &models {
         table = table
-            .words(*name, |(index, own)| quantity(fit.hypothesis.ended_at(*index), None, own.key.unit()))
+            .words(*name, |(index, own)| quantity(model.ended_at(*index), None, own.key.unit()))
             .numbers(format!("departure, {name}"), "std", |(index, own)| match own.std {
-                Some(_) => significant(fit.hypothesis.departure(*index), 2),
+                Some(_) => significant(model.departure(*index), 2),
                 None => "free".to_owned(),
             });
     }
@@ -49,7 +49,13 @@ pub(super) fn section(subject: &Subject) -> Option<Section> {
              imitate what is missing."
         ),
     };
-    Some(Section::new("Tolerances").paragraph(words).with(table.footnote(
-        "Young's modulus and second moment of a joint act as a product only: one of them carries the deviation of both.",
-    )))
+    let product = "Young's modulus and second moment of a joint act as a product only: one of them carries the deviation of both.";
+    let footnote = match subject.diagnosis.model_error {
+        Some(_) => format!(
+            "{product} The models drawn, refitted.json and repaired.json are to predict: their quantities follow the recorded natural frequencies \
+             more closely, and may be farther from what is stated."
+        ),
+        None => product.to_owned(),
+    };
+    Some(Section::new("Tolerances").paragraph(words).with(table.footnote(footnote)))
 }
