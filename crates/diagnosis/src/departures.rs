@@ -30,9 +30,15 @@ impl Departure {
     }
 }
 
+/// How far a hypothesis takes a stated quantity at the most, in standard deviations.
+pub(crate) fn farthest(hypothesis: &Hypothesis) -> f64 {
+    let stated = hypothesis.tolerances().iter().enumerate().filter(|(_, t)| t.quantity.std.is_some());
+    stated.map(|(index, _)| hypothesis.departure(index).abs()).fold(0.0, f64::max)
+}
+
 /// Whether a hypothesis takes some stated quantity farther than chance does.
 pub(crate) fn has_departed(hypothesis: &Hypothesis) -> bool {
-    (0..hypothesis.tolerances().len()).any(|index| departed(hypothesis, index))
+    farthest(hypothesis) > DEPARTED
 }
 
 /// Whether it does so with one of them.

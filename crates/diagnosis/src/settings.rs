@@ -193,9 +193,9 @@ pub struct ModalSettings {
     pub wide: f64,
     /// Standard deviation, in coordinates, within which a start's own parameters count as linear when it is scored.
     pub near: f64,
-    /// Share of the most probable errors of natural frequency and damping that models which are to predict may have: beside a resonance an error of frequency counts many
-    /// times over, and a model that is off by what is probable is no help there. Less gains little more, and lets quantities imitate.
-    pub followed: f64,
+    /// Shares of the most probable errors of natural frequency and damping that models which are to predict may have: the first that leaves quantities within chance, or the last. An error of a
+    /// natural frequency, divided by the damping ratio, is the error of an FRF beside the resonance: to count no more than those of shapes it has to be about a hundred times smaller.
+    pub followed: [f64; 3],
 }
 
 impl ModalSettings {
@@ -238,7 +238,7 @@ impl Default for ModalSettings {
             apart: 24,
             wide: 5.0,
             near: 0.7,
-            followed: 0.1,
+            followed: [0.01, 0.03, 0.1],
         }
     }
 }

@@ -2,7 +2,7 @@
 //!
 //! What is said of effects and quantities is said at the sizes that are most probable: a natural frequency that is off by its error is as probable as quantities that are off by theirs.
 //! Such a model predicts badly all the same, for beside a resonance a small error of frequency is a large one of an FRF. One that is to predict has the effects that are stated, and quantities that follow
-//! recorded natural frequencies and damping more closely.
+//! recorded natural frequencies and damping more closely, the more so where that takes them no farther from what is stated than chance.
 
 use crate::Hypothesis;
 use crate::modal::fit::{Descent, Iterate, ModalFit, Problem, settings};

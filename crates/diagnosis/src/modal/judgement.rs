@@ -1,6 +1,7 @@
 //! What a comparison by modes comes to.
 
 use crate::catalogue::{Candidate, with_wrong_quantities};
+use crate::departures::{DEPARTED, farthest};
 use crate::diagnosis::{Finding, Tried};
 use crate::estimates::estimates;
 use crate::evidence::{deviates_by_chance, excess, explained};
@@ -180,9 +181,19 @@ impl Judge<'_> {
         // The refit's errors may be larger where what is missing shows, and smaller elsewhere.
         let sizes = [none.evidence.sizes, best.evidence.sizes.smaller(none.evidence.sizes)];
         let following = |index: usize| {
-            let sizes = sizes[index].following(self.searcher.settings.followed);
-            let followed = problem.quantities_at([none, best][index], &stated[index], &sizes);
-            followed.unwrap_or_else(|| stated[index].clone())
+            let reach = farthest(&stated[index]).max(DEPARTED);
+            let with = |share: f64| {
+                let sizes = sizes[index].following(share);
+                problem.quantities_at([none, best][index], &stated[index], &sizes)
+            };
+            let mut model = None;
+            for share in self.searcher.settings.followed {
+                model = with(share).or(model);
+                if model.as_ref().is_some_and(|model| farthest(model) <= reach) {
+                    break;
+                }
+            }
+            model.unwrap_or_else(|| stated[index].clone())
         };
         let predicting = [following(0), following(1)];
         let names = self.search.alternatives.iter().map(|all| self.probabilities(all)).collect();

@@ -52,8 +52,8 @@ pub(super) fn section(subject: &Subject) -> Option<Section> {
     let product = "Young's modulus and second moment of a joint act as a product only: one of them carries the deviation of both.";
     let footnote = match subject.diagnosis.model_error {
         Some(_) => format!(
-            "{product} The models drawn, refitted.json and repaired.json are to predict: their quantities follow the recorded natural frequencies \
-             more closely, and may be farther from what is stated."
+            "{product} The models drawn, and the fixtures written, are to predict: their quantities follow the recorded natural \
+             frequencies more closely than these, and may be farther from what is stated."
         ),
         None => product.to_owned(),
     };
