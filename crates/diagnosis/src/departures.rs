@@ -30,15 +30,16 @@ impl Departure {
     }
 }
 
-/// How far a hypothesis takes a stated quantity at the most, in standard deviations.
-pub(crate) fn farthest(hypothesis: &Hypothesis) -> f64 {
+/// The stated quantity that a hypothesis takes farthest, and by how many standard deviations; `None` where none is stated with one.
+pub(crate) fn farthest(hypothesis: &Hypothesis) -> Option<(&str, f64)> {
     let stated = hypothesis.tolerances().iter().enumerate().filter(|(_, t)| t.quantity.std.is_some());
-    stated.map(|(index, _)| hypothesis.departure(index).abs()).fold(0.0, f64::max)
+    let all = stated.map(|(index, t)| (t.quantity.path.as_str(), hypothesis.departure(index).abs()));
+    all.max_by(|a, b| a.1.total_cmp(&b.1))
 }
 
 /// Whether a hypothesis takes some stated quantity farther than chance does.
 pub(crate) fn has_departed(hypothesis: &Hypothesis) -> bool {
-    farthest(hypothesis) > DEPARTED
+    farthest(hypothesis).is_some_and(|(_, deviations)| deviations > DEPARTED)
 }
 
 /// Whether it does so with one of them.

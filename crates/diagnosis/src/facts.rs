@@ -1,6 +1,6 @@
 //! What a diagnosis shows besides its findings: where the mismatch sits, how it goes with frequency, what else the reader must know.
 
-use crate::departures::{DEPARTED, Departure};
+use crate::departures::{DEPARTED, Departure, farthest};
 use crate::diagnosis::{BandShare, Diagnosis, Finding};
 use crate::evidence::explained;
 use crate::fit::Fit;
@@ -130,15 +130,7 @@ impl Diagnosis {
     /// The quantity that the refit without effects took farthest from what is stated, and by how many standard deviations, where that is
     /// beyond belief.
     pub fn bent(&self) -> Option<(&str, f64)> {
-        let [refitted, _] = &self.stated;
-        let stated = refitted
-            .tolerances()
-            .iter()
-            .enumerate()
-            .filter(|(_, tolerance)| tolerance.quantity.std.is_some());
-        let all = stated
-            .map(|(index, tolerance)| (tolerance.quantity.path.as_str(), refitted.departure(index).abs()));
-        all.max_by(|a, b| a.1.total_cmp(&b.1)).filter(|(_, departure)| *departure > DEPARTED)
+        farthest(&self.stated[0]).filter(|(_, deviations)| *deviations > DEPARTED)
     }
 
     /// χ² per real value that `fit` leaves, by FRF and band (the bands of [`Diagnosis::mismatch`]).

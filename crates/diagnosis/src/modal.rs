@@ -5,7 +5,7 @@
 //! than no name. So the error is a part of the likelihood, common to all hypotheses, its sizes estimated for each
 //! ([`jointscope_model_error`]): a name wins by making it smaller.
 //!
-//! * [`at_sizes`]: a fitted hypothesis where the sizes of error are given, to state and to predict;
+//! * [`at_sizes`]: a fitted hypothesis where the sizes of error are given;
 //! * [`changes`]: the modes of two states side by side;
 //! * [`features`]: a recording as its modes tell it;
 //! * [`fit`]: one hypothesis at its most probable parameters and sizes of error;
@@ -15,7 +15,8 @@
 //! * [`searcher`]: what all steps of a search share;
 //! * [`starts`]: where fits set out;
 //! * [`search`]: every candidate, alone and beside others;
-//! * [`judgement`]: what it comes to: names with their probabilities and intervals, and errors.
+//! * [`judgement`]: what it comes to: names with their probabilities and intervals, and errors;
+//! * [`predicting`]: models that are to predict where nobody measured.
 
 mod at_sizes;
 mod changes;
@@ -23,6 +24,7 @@ mod features;
 mod fit;
 mod judgement;
 mod needs;
+mod predicting;
 mod prior;
 mod search;
 mod searcher;

@@ -1,7 +1,6 @@
 //! What a comparison by modes comes to.
 
 use crate::catalogue::{Candidate, with_wrong_quantities};
-use crate::departures::{DEPARTED, farthest};
 use crate::diagnosis::{Finding, Tried};
 use crate::estimates::estimates;
 use crate::evidence::{deviates_by_chance, excess, explained};
@@ -44,8 +43,8 @@ pub(crate) struct ModalJudgement {
     pub stated: [Hypothesis; 2],
     /// Covariance of the best one's coordinates with sizes that may be larger.
     pub covariance: Option<Covariance>,
-    /// Both as they are to predict: the same effects, quantities that follow the recording more closely.
-    pub predicting: [Hypothesis; 2],
+    /// What hypotheses were held against.
+    pub features: Features,
 }
 
 /// What a baseline says of the fixture.
@@ -86,7 +85,7 @@ impl ModalJudgement {
         let searcher = Searcher { candidates: &candidates, ..searcher };
         let search = searcher.search(alone);
         let states_gain = nominal.to_fixture().is_ok_and(|fixture| fixture.record_gain().is_some());
-        Some(ModalJudgement { states_gain, ..Judge { searcher, search }.judged() })
+        Some(ModalJudgement { states_gain, ..Judge { searcher, search }.judged(features.clone()) })
     }
 
     /// What has changed since a `baseline` of the same structure: the fixture is calibrated on it, its error there is taken off, and what differs beyond
@@ -125,7 +124,7 @@ impl ModalJudgement {
             watch: fitter.watch,
         };
         let search = searcher.search(searcher.fixture_alone()?);
-        let judged = Judge { searcher, search }.judged();
+        let judged = Judge { searcher, search }.judged(features.clone());
         let states = States { before: &before.recorded, now: &now, own: &own, calibrated: &calibrated };
         let modes = states.modes(&judged.search.best);
         Some((judged, Before { calibrated: calibrated.hypothesis.clone(), error: before_error, modes }))
@@ -157,7 +156,7 @@ struct Judge<'a> {
 }
 
 impl Judge<'_> {
-    fn judged(mut self) -> ModalJudgement {
+    fn judged(mut self, features: Features) -> ModalJudgement {
         let verdict = self.verdict();
         if matches!(verdict, Verdict::Consistent | Verdict::Unexplained) {
             let exact = self.searcher.is_exact(&self.search.none);
@@ -178,24 +177,6 @@ impl Judge<'_> {
         let covariance = problem.at_sizes(best, &widened).and_then(|(_, covariance)| covariance);
         let none = &self.search.none;
         let stated = [none, best].map(nearest);
-        // The refit's errors may be larger where what is missing shows, and smaller elsewhere.
-        let sizes = [none.evidence.sizes, best.evidence.sizes.smaller(none.evidence.sizes)];
-        let following = |index: usize| {
-            let reach = farthest(&stated[index]).max(DEPARTED);
-            let with = |share: f64| {
-                let sizes = sizes[index].following(share);
-                problem.quantities_at([none, best][index], &stated[index], &sizes)
-            };
-            let mut model = None;
-            for share in self.searcher.settings.followed {
-                model = with(share).or(model);
-                if model.as_ref().is_some_and(|model| farthest(model) <= reach) {
-                    break;
-                }
-            }
-            model.unwrap_or_else(|| stated[index].clone())
-        };
-        let predicting = [following(0), following(1)];
         let names = self.search.alternatives.iter().map(|all| self.probabilities(all)).collect();
         ModalJudgement {
             verdict,
@@ -207,7 +188,7 @@ impl Judge<'_> {
             states_gain: false,
             stated,
             covariance,
-            predicting,
+            features,
             search: self.search,
         }
     }

@@ -1,0 +1,73 @@
+//! Models that are to predict where nobody measured.
+//!
+//! What is said of effects and quantities is said at the sizes of error that are most probable: a natural frequency that is off by its error is as probable as quantities that are
+//! off by theirs. Such a model predicts badly all the same, for beside a resonance a small error of frequency is a large one of an FRF. One that is to predict has the effects
+//! that are stated, and quantities that follow recorded natural frequencies and damping more closely: as closely as takes none of them farther from what is stated than
+//! chance, or than it already is.
+
+use crate::Hypothesis;
+use crate::departures::{DEPARTED, farthest};
+use crate::modal::fit::{Iterate, ModalFit, Problem, settings};
+use crate::modal::judgement::ModalJudgement;
+use crate::settings::ModalSettings;
+use crate::work::Work;
+use jointscope_inference::descend;
+use jointscope_model_error::ErrorSizes;
+
+impl ModalJudgement {
+    /// The fixture by itself and the best hypothesis as they are to predict; what that takes is counted in `work`.
+    pub fn predicting(&self, work: &Work, settings: &ModalSettings) -> [Hypothesis; 2] {
+        let problem = self.features.problem(work);
+        let [none, best] = [&self.search.none, &self.search.best.fit];
+        // The refit's errors may be larger where what is missing shows, and smaller elsewhere.
+        let sizes = [none.evidence.sizes, best.evidence.sizes.smaller(none.evidence.sizes)];
+        let model = |index: usize| {
+            let found = &self.stated[index];
+            let quantities = Quantities::of(&problem, [none, best][index], found);
+            let followed = quantities.and_then(|all| all.following(&sizes[index], &settings.followed));
+            followed.unwrap_or_else(|| found.clone())
+        };
+        [model(0), model(1)]
+    }
+}
+
+/// The quantities of a hypothesis, its effects staying as they were found.
+struct Quantities<'a> {
+    problem: &'a Problem<'a>,
+    /// A fit of the same names.
+    fit: &'a ModalFit,
+    found: &'a Hypothesis,
+    start: Iterate,
+}
+
+impl<'a> Quantities<'a> {
+    fn of(problem: &'a Problem<'a>, fit: &'a ModalFit, found: &'a Hypothesis) -> Option<Self> {
+        let hypothesis = found.with_effects_in_place()?;
+        let modelled = problem.modelled(&hypothesis, &fit.standing.modelled)?;
+        let residual = problem.residual(&fit.standing, &modelled);
+        Some(Quantities { problem, fit, found, start: Iterate { hypothesis, modelled, residual } })
+    }
+
+    /// The hypothesis whose errors are the first of these `shares` of the most probable `sizes` that chance allows; the last one that can be fitted where it allows none.
+    fn following(&self, sizes: &ErrorSizes, shares: &[f64]) -> Option<Hypothesis> {
+        let reach = farthest(self.found).map_or(DEPARTED, |(_, deviations)| deviations.max(DEPARTED));
+        let within = |model: &Hypothesis| farthest(model).is_none_or(|(_, deviations)| deviations <= reach);
+        let mut last = None;
+        for share in shares {
+            last = self.most_probable(&sizes.following(*share)).or(last);
+            if last.as_ref().is_some_and(within) {
+                break;
+            }
+        }
+        last
+    }
+
+    /// The most probable quantities at given sizes of the error.
+    fn most_probable(&self, sizes: &ErrorSizes) -> Option<Hypothesis> {
+        let count = self.found.tolerances().len();
+        let descent = self.problem.descent_at(self.fit, &self.fit.priors[..count], sizes)?;
+        let slopes = self.fit.slopes[..count].to_vec();
+        let point = descend(&descent, self.start.clone(), Some(slopes), &settings(usize::MAX))?.point;
+        Some(self.found.with_tolerances_of(&point.hypothesis))
+    }
+}
