@@ -65,6 +65,9 @@ const MISSING: f64 = 0.95;
 /// Masses of the whole structure that may be added.
 const ADDED: f64 = 2.0;
 
+/// Share of a bar's length by which a body of the bar's mass and inertia is longer at either end if half of its mass is in its middle.
+const LONGER: f64 = 0.5 * (std::f64::consts::SQRT_2 - 1.0);
+
 /// Between which values a parameter of either sign is possible at a place.
 fn possible(possible: Possible, fixture: &Fixture, place: &Place) -> (f64, f64) {
     let any = (f64::NEG_INFINITY, f64::INFINITY);
@@ -77,7 +80,11 @@ fn possible(possible: Possible, fixture: &Fixture, place: &Place) -> (f64, f64) 
         }
         (Possible::OnBody, Place::Point(name)) => fixture.point(name).map_or(any, |point| {
             let (low, high) = extent(fixture, point.body);
-            (low - point.x.value, high - point.x.value)
+            let beyond = match &fixture.bodies()[point.body].kind {
+                BodyKind::Rigid(_) => LONGER * (high - low),
+                BodyKind::Beam(_) => 0.0,
+            };
+            (low - beyond - point.x.value, high + beyond - point.x.value)
         }),
         (Possible::LengthOfJoint, Place::Joint(name)) => {
             let joint = fixture.joints().iter().find(|joint| joint.name == *name);

@@ -140,7 +140,7 @@ impl Hypothesis {
         other
     }
 
-    /// The same with one more effect, at the parameters it is given with.
+    /// The same with one more effect, at the parameters it is given with, or as near to them as is possible at its place.
     pub fn with(&self, effect: Effect) -> Self {
         let mut more = self.clone();
         let wrong = match &effect.place {
@@ -152,7 +152,8 @@ impl Hypothesis {
         let expected = sets_out.map_or(WRONG, |at| WRONG.max(at.abs()));
         let parameters = parameters_of(&self.fixture, &effect, wrong.with_precision(expected.powi(-2)));
         for (parameter, quantity) in parameters.iter().zip(&effect.parameters) {
-            more.coordinates.extend(parameter.transform.coordinate(quantity.value));
+            let stated = parameter.transform.coordinate(quantity.value);
+            more.coordinates.extend(stated.map(|at| parameter.clamp(at)));
         }
         Arc::make_mut(&mut more.effects).push((effect, parameters));
         more.listed()
