@@ -258,14 +258,14 @@ fn blind(
 fn by_modes(fitter: &Fitter, within: &Search, modal: &ModalJudgement, division: Option<&Division>) -> Parts {
     let Fitter { observation, settings, .. } = *fitter;
     let work = observation.work();
-    let search = modal.search_on(observation, within, &modal.predicting(work, &settings.modal));
+    let (modal, search) = modal.predicted(fitter, within);
     let held_out = division.filter(|_| work.allows(UNSEEN)).and_then(|division| {
         fitter.watch.stage("comparing by modes without what is held out");
         let blind = fitter.on(&division.seen);
         let known = modal.known(settings.modal.blind);
         let judged =
             ModalJudgement::of(&blind, &within.nominal.hypothesis, &within.candidates, Some(&known))?;
-        let blind = judged.search_on(&division.seen, within, &judged.predicting(work, &settings.modal));
+        let (_, blind) = judged.predicted(&blind, within);
         division.judge(&blind, &search, observation)
     });
     let locations = match modal.verdict {

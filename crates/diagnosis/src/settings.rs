@@ -174,6 +174,9 @@ pub struct ModalSettings {
     pub listed: f64,
     /// Sizes of errors as multiples of what is usual, and departures of quantities in standard deviations, up to which a fit is adequate.
     pub adequate: (f64, f64),
+    /// Share of the squared errors that the fixture by itself needs, and of what it leaves of the lines as it predicts them, that is left at the most where something explains them in
+    /// part.
+    pub part: f64,
     /// Gain in ln p by errors of the model up to which a recording shows none. Measured: 0 to 1 for what is hidden in lumped structures, 10 and more in
     /// solids.
     pub exact: f64,
@@ -229,6 +232,7 @@ impl Default for ModalSettings {
             undoubted: 200.0,
             listed: 8.0,
             adequate: (2.0, 4.0),
+            part: 0.5,
             exact: 5.0,
             free_fit: 1.3,
             hopeless: 100.0,

@@ -129,6 +129,20 @@ fn a_dashpot_of_zero_leaves_the_spring_beside_it_a_deviation() {
 }
 
 #[test]
+fn an_offset_is_found_beyond_the_ends_of_a_bar_of_the_bodys_inertia_and_a_start_farther_away_is_led_back() {
+    // The bar of A's mass and inertia ends 21 mm beyond point 1.
+    let offset = |dx: f64| Effect::new(EffectKind::PointOffset, Place::Point("1".into()), None, &[dx]);
+    let observation = observation(&fixture().with_physics(vec![offset(-0.025)]).unwrap());
+    for start in [-0.015, -0.15] {
+        let start = Hypothesis::nominal(&fixture(), false).with(offset(start));
+        assert!(start.effects()[0].value(0) > -0.05, "{}", start.effects()[0].value(0));
+        let fit = Fit::of(&start, &observation, false).unwrap();
+        let dx = fit.hypothesis.effects()[0].value(0);
+        assert!((dx + 0.025).abs() < 1e-5 && fit.chi2 < 1e-2, "{dx} m, chi2 {}", fit.chi2);
+    }
+}
+
+#[test]
 fn the_catalogue_has_every_linear_effect_that_the_fixture_can_have() {
     let observation = observation(&fixture());
     let candidates = catalogue(&fixture(), &observation);

@@ -205,12 +205,13 @@ impl Judge<'_> {
         // Errors of the model, or these and those of the records' gains: a channel of the wrong sign looks like gains that are off by all they are.
         let model = |fit: &ModalFit| squares(self.searcher.problem.relative_sizes(fit));
         let all = |fit: &ModalFit| squares(self.searcher.problem.relative_sizes_with_gains(fit));
-        let halves = || model(&best.fit) < 0.5 * model(none) || all(&best.fit) < 0.5 * all(none);
+        let part = self.searcher.settings.part;
+        let in_part = || model(&best.fit) < part * model(none) || all(&best.fit) < part * all(none);
         match (best.names.is_empty(), adequate) {
             (true, true) => Verdict::Consistent,
             (true, false) => Verdict::Unexplained,
             (false, true) => Verdict::Explained,
-            (false, false) if halves() => Verdict::PartlyExplained,
+            (false, false) if in_part() => Verdict::PartlyExplained,
             (false, false) => Verdict::Unexplained,
         }
     }
@@ -242,6 +243,22 @@ impl Judge<'_> {
 }
 
 impl ModalJudgement {
+    /// The same with nothing stated beyond the fixture by itself.
+    pub(super) fn withdrawn(&self) -> Self {
+        let best = Named { names: Vec::new(), fit: self.search.none.clone(), exact: false };
+        let nothing =
+            ModalSearch { best, alternatives: Vec::new(), without: Vec::new(), ..self.search.clone() };
+        ModalJudgement {
+            verdict: Verdict::Unexplained,
+            names: Vec::new(),
+            errors: [self.errors[0]; 2],
+            stated: [self.stated[0].clone(), self.stated[0].clone()],
+            covariance: None,
+            search: nothing,
+            ..self.clone()
+        }
+    }
+
     /// Whether the modes need nothing, neither an effect nor an error of the model: what is left, if anything, only lines can show.
     pub fn needs_nothing(&self) -> bool {
         self.verdict == Verdict::Consistent && self.search.best.exact

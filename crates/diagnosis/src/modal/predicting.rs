@@ -7,16 +7,32 @@
 
 use crate::Hypothesis;
 use crate::departures::{DEPARTED, farthest};
+use crate::fitter::Fitter;
 use crate::modal::fit::{Iterate, ModalFit, Problem, settings};
 use crate::modal::judgement::ModalJudgement;
+use crate::search::Search;
 use crate::settings::ModalSettings;
 use crate::work::Work;
+use jointscope_findings::Verdict;
 use jointscope_inference::descend;
 use jointscope_model_error::ErrorSizes;
 
 impl ModalJudgement {
+    /// The comparison with its models as they predict lines; `within` is the fixture refitted on them. What explains the modes in part only, and leaves more than a part of what lines
+    /// miss without it, is not stated.
+    pub fn predicted(&self, fitter: &Fitter, within: &Search) -> (Self, Search) {
+        let settings = &fitter.settings.modal;
+        let models = self.predicting(fitter.observation.work(), settings);
+        let search = self.search_on(fitter.observation, within, &models);
+        let misses = search.repaired.chi2 >= settings.part * search.refitted.chi2;
+        if self.verdict == Verdict::PartlyExplained && misses {
+            return (self.withdrawn(), Search { repaired: search.refitted.clone(), ..search });
+        }
+        (self.clone(), search)
+    }
+
     /// The fixture by itself and the best hypothesis as they are to predict; what that takes is counted in `work`.
-    pub fn predicting(&self, work: &Work, settings: &ModalSettings) -> [Hypothesis; 2] {
+    fn predicting(&self, work: &Work, settings: &ModalSettings) -> [Hypothesis; 2] {
         let problem = self.features.problem(work);
         let [none, best] = [&self.search.none, &self.search.best.fit];
         // The refit's errors may be larger where what is missing shows, and smaller elsewhere.

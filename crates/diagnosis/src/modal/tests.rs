@@ -1,8 +1,12 @@
+use crate::fitter::Fitter;
 use crate::modal::features::Features;
 use crate::modal::fit::{ModalFit, SetOut};
+use crate::modal::judgement::ModalJudgement;
 use crate::modal::prior::{Prior, priors};
+use crate::search::Search;
 use crate::settings::Settings;
-use crate::{Hypothesis, Observation};
+use crate::{Hypothesis, Observation, Watch};
+use jointscope_findings::Verdict;
 use jointscope_fixture::{Effect, EffectKind, Fixture, Place};
 use jointscope_lumped::{Instrument, synthesize};
 use jointscope_model_error::ErrorSizes;
@@ -70,6 +74,40 @@ const BLOCKS: &str = r#"{
   "joints": { "J": { "from": "2", "to": "3", "beam": { "youngs_modulus": 2.07e11, "second_moment": 3.67e-10 } } },
   "damping": { "modal_ratios": [{ "value": 0.004, "std": 6e-4 }, { "value": 0.006, "std": 9e-4 }] } }"#;
 
+/// What is recorded of two points by hits on two others, with the noise of a thousandth.
+fn recorded(truth: &Hypothesis) -> Observation {
+    let pairs = ["1", "2"].iter().flat_map(|i| ["3", "4"].map(|o| FrfPair::transverse(o, i)));
+    let lines = SpectralLines::even(20.0, 2.5, 430).unwrap();
+    let of_truth = truth.to_fixture().unwrap();
+    let frfs = synthesize(&of_truth, &pairs.collect::<Vec<_>>(), &lines, Instrument::AsRecorded).unwrap();
+    let variance = frfs.all_values().iter().map(|value| 1e-6 * value.norm_sqr()).collect();
+    Observation::new(&frfs.with_variance(variance).unwrap(), |_| true).unwrap()
+}
+
+#[test]
+fn what_explains_modes_in_part_is_stated_only_where_lines_too_miss_less_with_it() {
+    let fixture = Fixture::from_json(BLOCKS).unwrap();
+    let nominal = Hypothesis::nominal(&fixture, false);
+    let lump =
+        |mass| nominal.with(Effect::new(EffectKind::AddedMass, Place::Body("B".into()), None, &[0.1, mass]));
+    let observation = recorded(&lump(0.2));
+    let settings = Settings::default();
+    let fitter = Fitter { observation: &observation, settings: &settings, watch: Watch::default() };
+    let within = Search::without_effects(&fitter, &fixture, false).unwrap();
+    let mut judged = ModalJudgement::of(&fitter, &nominal, &[], None).unwrap();
+    for (mass, verdict) in
+        [(0.15, Verdict::PartlyExplained), (0.01, Verdict::Unexplained), (-0.2, Verdict::Unexplained)]
+    {
+        judged.verdict = Verdict::PartlyExplained;
+        judged.stated[1] = lump(mass);
+        let (predicted, search) = judged.predicted(&fitter, &within);
+        assert_eq!(predicted.verdict, verdict, "{mass} kg of 0.2 kg");
+        let stated = usize::from(verdict == Verdict::PartlyExplained);
+        let effects = [&predicted.stated[1], &search.repaired.hypothesis].map(Hypothesis::effect_count);
+        assert_eq!(effects, [stated; 2], "{mass} kg of 0.2 kg");
+    }
+}
+
 #[test]
 fn a_dashpot_is_known_no_better_than_the_damping_of_the_modes_that_it_damps() {
     // It turns the phases of their shapes too, which are recorded far more sharply than any model has their damping.
@@ -78,12 +116,7 @@ fn a_dashpot_is_known_no_better_than_the_damping_of_the_modes_that_it_damps() {
     let fixture = Fixture::from_json(BLOCKS).unwrap();
     let nominal = Hypothesis::nominal(&fixture, false);
     let truth = nominal.with(resonator);
-    let pairs = ["1", "2"].iter().flat_map(|i| ["3", "4"].map(|o| FrfPair::transverse(o, i)));
-    let lines = SpectralLines::even(20.0, 2.5, 430).unwrap();
-    let of_truth = truth.to_fixture().unwrap();
-    let frfs = synthesize(&of_truth, &pairs.collect::<Vec<_>>(), &lines, Instrument::AsRecorded).unwrap();
-    let variance = frfs.all_values().iter().map(|value| 1e-6 * value.norm_sqr()).collect();
-    let observation = Observation::new(&frfs.with_variance(variance).unwrap(), |_| true).unwrap();
+    let observation = recorded(&truth);
     let features = Features::of(&observation, &nominal, &Settings::default().modal).unwrap();
     let problem = features.problem(observation.work());
     let own = truth.coordinates[nominal.coordinates.len()..].iter().map(|at| Prior { mean: *at, std: 1.4 });
