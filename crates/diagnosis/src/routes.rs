@@ -73,7 +73,10 @@ pub(crate) fn judged(
     if let Some(found) = within.explained_among(fitter, modal.in_question(fitter)) {
         return Ok(by_lines(fitter, within, of, (Start::Found(Box::new(found)), known), division));
     }
-    let may = modal.is_dubious(fitter) && fitter.observation.work().allows("what lines would find");
+    // Where a free fit that needed all it may leaves no doubt of the names, lines find nothing better.
+    let may = modal.is_dubious(fitter)
+        && !modal.stands_out(fitter)
+        && fitter.observation.work().allows("what lines would find");
     let searched = may.then(|| Search::searched(fitter, within.clone()));
     let explained = searched.as_ref().is_some_and(|search| explains(fitter, &search.repaired, true));
     // Modes that need no error of the model, or that do not tell all there is, beside lines that are not explained: it is not the modes of the model that

@@ -15,6 +15,10 @@ use std::f64::consts::TAU;
 /// χ² per degree of freedom of a free fit from which it may lack a pole, and the share of χ² that is left where one is worth it.
 const POOR: f64 = 1.3;
 const WORTH: f64 = 0.8;
+/// Damping ratio that a pole is tried with where a fit misses most, and the share of χ² that is left where it is a mode; lines between it and where it was tried, at most.
+const MISSED: f64 = 0.01;
+const LEFT: f64 = 0.1;
+const NEAR: f64 = 3.0;
 /// Prior deviations of ln ω and ln ζ about where a free fit starts: they matter only to modes that the lines do not resolve.
 const VAGUE: [f64; 2] = [0.2, 1.0];
 /// Steps of the free fit, at most, and the change of ln ω and ln ζ, in standard deviations, at which it ends.
@@ -87,6 +91,29 @@ impl FreeFit {
         if is_below { &mut outside } else { &mut inside }.push(pole);
         let more = FreeFit::converged(recording, inside, &outside, self.terms);
         more.filter(|more| self.is_worse(more, recording)).unwrap_or(self)
+    }
+
+    /// With a pole more in the band, where the fit misses most: two modes close to each other, seen on few lines, pass for one. It is kept where little is left with it of what was missed, and if
+    /// the lines resolve it: a tone on one line is no mode.
+    pub fn with_missed(self, recording: Recording) -> Self {
+        if !self.is_poor(recording) {
+            return self;
+        }
+        let lines = recording.frfs.lines().hz();
+        let most = self.misfit.iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1));
+        let Some((line, _)) = most.filter(|_| lines.len() > 1) else { return self };
+        let spacing = (lines[(line + 1).min(lines.len() - 1)] - lines[line.saturating_sub(1)]) / 2.0;
+        let (inside, outside) = self.poles.split_at(self.inside);
+        let missed = Pole { omega: TAU * lines[line], damping_ratio: MISSED };
+        let inside: Vec<Pole> = inside.iter().copied().chain([missed]).collect();
+        let more = FreeFit::converged(recording, inside, outside, self.terms);
+        let is_seen = |more: &FreeFit| {
+            let near = |pole: &&Pole| (pole.omega / TAU - lines[line]).abs() < NEAR * spacing;
+            let mut near = more.poles[..more.inside].iter().filter(near);
+            near.any(|pole| 2.0 * pole.damping_ratio * pole.omega > TAU * spacing)
+        };
+        more.filter(|more| more.chi2 < LEFT * self.chi2 && is_seen(more))
+            .map_or(self, |more| more.with_missed(recording))
     }
 
     /// Whether another fit of the same recording is better by Akaike's criterion.
@@ -343,5 +370,52 @@ mod tests {
         assert_eq!(found.inside, 2);
         assert!((found.poles[0].omega / weak.omega - 1.0).abs() < 1e-3, "{:?}", found.poles);
         assert_eq!(found.with_expected(recording, pole(110.0)).inside, 2);
+    }
+
+    /// An FRF set of eight pairs: modes with these poles, residues of either sign, and a `tone` on one line of all of them, with noise of a ten-thousandth of the largest value.
+    fn eight(poles: &[Pole], tone: Option<usize>) -> (FrfSet, Vec<f64>) {
+        let lines = SpectralLines::even(2.5, 2.5, 120).unwrap();
+        let pairs: Vec<FrfPair> = (0..8).map(|o| FrfPair::transverse(&format!("{o}"), "a")).collect();
+        let omegas: Vec<f64> = lines.omegas().collect();
+        let mut values: Vec<Complex64> = Vec::new();
+        for frf in 0..8 {
+            let residue = |mode: usize| ((1.0 + 1.7 * mode as f64) * (frf as f64 + 0.4)).sin();
+            let at = |(line, omega): (usize, &f64)| {
+                let s = Complex64::new(0.0, *omega);
+                let modes = poles.iter().enumerate().map(|(mode, pole)| residue(mode) * pole.accelerance(s));
+                let tone =
+                    if tone == Some(line) { Complex64::new(0.0, 40.0 * residue(7)) } else { Complex64::ZERO };
+                modes.sum::<Complex64>() + tone
+            };
+            values.extend(omegas.iter().enumerate().map(at));
+        }
+        let largest = values.iter().map(|value| value.norm()).fold(0.0, f64::max);
+        let weights = vec![2.0 / (1e-4 * largest).powi(2); values.len()];
+        (FrfSet::new(lines, FrfForm::Accelerance, pairs, values).unwrap(), weights)
+    }
+
+    #[test]
+    fn a_mode_that_was_missed_beside_another_is_found_and_a_tone_on_one_line_is_none() {
+        let pole = |hz: f64, damping_ratio: f64| Pole { omega: TAU * hz, damping_ratio };
+        let [low, missed, near] = [pole(51.4, 0.007), pole(139.4, 0.0134), pole(148.2, 0.006)];
+        let (frfs, weights) = eight(&[low, missed, near], None);
+        let recording = Recording { frfs: &frfs, weights: &weights };
+        let alone = FreeFit::converged(recording, vec![low, near], &[], 5).unwrap();
+        assert!(alone.chi2_per_dof(recording) > 100.0);
+        let found = alone.with_missed(recording);
+        assert_eq!(found.inside, 3);
+        assert!((found.poles[1].omega / missed.omega - 1.0).abs() < 1e-4, "{:?}", found.poles);
+        assert!(
+            (found.poles[1].damping_ratio / missed.damping_ratio - 1.0).abs() < 1e-2,
+            "{:?}",
+            found.poles
+        );
+        for line in [20, 55, 100] {
+            let (frfs, weights) = eight(&[low, near], Some(line));
+            let recording = Recording { frfs: &frfs, weights: &weights };
+            let alone = FreeFit::converged(recording, vec![low, near], &[], 5).unwrap();
+            assert!(alone.is_poor(recording));
+            assert_eq!(alone.with_missed(recording).inside, 2, "a tone at {} Hz", frfs.lines().hz()[line]);
+        }
     }
 }

@@ -64,7 +64,8 @@ pub struct RecordedModes {
 /// Where modes above the band are looked for, as multiples of its upper end.
 const BEYOND: [f64; 2] = [1.06, 1.3];
 
-/// The free fit that is begun with poles in and out of the band, with what else the recording asks for: modes just outside the band, then more residual terms.
+/// The free fit that is begun with poles in and out of the band, with what else the recording asks for: modes just outside the band, then more residual terms, then modes
+/// in the band that were missed.
 fn free_fit(recording: Recording, inside: Vec<Pole>, outside: &[Pole]) -> Option<FreeFit> {
     let mut fit = FreeFit::converged(recording, inside, outside, TERMS.0)?;
     let lines = recording.frfs.lines().hz();
@@ -81,7 +82,7 @@ fn free_fit(recording: Recording, inside: Vec<Pole>, outside: &[Pole]) -> Option
             _ => break,
         }
     }
-    Some(fit)
+    Some(fit.with_missed(recording))
 }
 
 /// A free fit with poles that a model expects besides, one after the other. Where that leaves more than noise, the model's modes by themselves are another place to begin
