@@ -1,4 +1,4 @@
-//! Every constant of the search, with the reason or the measurement behind it.
+//! What a search weighs by, with the reason or the measurement behind each number.
 //!
 //! "Measured" means: by `jointscope prove` on 200 to 500 concealed cases (`docs/records`), where a value was varied by about a factor of two
 //! each way and the one kept that lost no score; times are processor time.
