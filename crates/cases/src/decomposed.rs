@@ -17,6 +17,10 @@ pub struct DecomposedCase {
     pub mass: Option<(f64, f64)>,
     /// The most probable law over frequency, and its probability.
     pub law: Option<(String, Option<f64>)>,
+    /// The law that the numbers are of, and the frequency at which they are stated, Hz; where the file says it.
+    pub follows: Option<(String, f64)>,
+    /// The loss factor of k11 of a structural joint, and its deviation.
+    pub loss_factor: Option<(f64, f64)>,
     /// χ² per degree of freedom of the joint from all FRFs.
     pub chi2_per_dof: Option<f64>,
     /// Why there is no joint from all FRFs.
@@ -59,7 +63,13 @@ impl DecomposedCase {
         let mass = joint
             .get("mass")
             .and_then(|mass| Some((mass.get("value")?.as_f64()?, mass.get("std")?.as_f64()?)));
+        let follows = joint.get("follows");
+        let of_k11 = |key: &str| at(follows?.get("loss_factor")?.get(key), (0, 0));
         Some(DecomposedCase {
+            follows: follows.and_then(|own| {
+                Some((own.get("law")?.as_str()?.to_owned(), own.get("frequency")?.as_f64()?))
+            }),
+            loss_factor: of_k11("value").zip(of_k11("std")),
             joint: text(joint.get("name"))?,
             verdict: text(file.get("judgement").and_then(|judgement| judgement.get("verdict")))
                 .unwrap_or_default(),
@@ -77,7 +87,19 @@ impl DecomposedCase {
             head.extend([name.to_owned(), format!("{name}_std")]);
         }
         head.extend(
-            ["mass", "mass_std", "law", "law_probability", "chi2_per_dof", "says"].map(str::to_owned),
+            [
+                "mass",
+                "mass_std",
+                "law",
+                "law_probability",
+                "law_of_numbers",
+                "stated_at_hz",
+                "loss_factor_11",
+                "loss_factor_11_std",
+                "chi2_per_dof",
+                "says",
+            ]
+            .map(str::to_owned),
         );
         head
     }
@@ -90,6 +112,10 @@ impl DecomposedCase {
         }
         cells.push(self.law.as_ref().map(|(law, _)| law.clone()).unwrap_or_default());
         cells.push(number(self.law.as_ref().and_then(|(_, probability)| *probability)));
+        cells.push(self.follows.as_ref().map(|(law, _)| law.clone()).unwrap_or_default());
+        cells.push(number(self.follows.as_ref().map(|(_, frequency)| *frequency)));
+        cells.push(number(self.loss_factor.map(|(loss, _)| loss)));
+        cells.push(number(self.loss_factor.map(|(_, std)| std)));
         cells.push(number(self.chi2_per_dof));
         cells.push(self.failed.clone().unwrap_or_default());
         cells

@@ -80,6 +80,9 @@ pub struct Answered {
 /// The page's name in every folder.
 pub const PAGE: &str = "report.html";
 
+/// A refusal in the place of an answer, where many tests are diagnosed.
+pub const REFUSED: &str = "refused.json";
+
 impl Answered {
     /// Writes what the destination asks for, tells the notices, and answers with what came out and where the page is.
     pub fn end<'a>(

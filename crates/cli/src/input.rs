@@ -17,6 +17,7 @@ use jointscope::recordings::Source;
 use serde_json::Value;
 use sha2::{Digest, Sha256};
 
+use crate::names::{is_standard_input, name};
 use crate::refusal::Refusal;
 use crate::replacing;
 
@@ -64,20 +65,6 @@ impl Deref for FixtureFile {
     fn deref(&self) -> &Fixture {
         &self.fixture
     }
-}
-
-/// The files' names for a message about all of them.
-pub fn names(files: &[PathBuf]) -> String {
-    files.iter().map(|path| name(path)).collect::<Vec<_>>().join(", ")
-}
-
-/// A file's name in messages; `-` is standard input.
-pub fn name(path: &Path) -> String {
-    if is_standard_input(path) { "standard input".to_owned() } else { path.display().to_string() }
-}
-
-fn is_standard_input(path: &Path) -> bool {
-    path.as_os_str() == "-"
 }
 
 /// Reads the recordings of a test, whatever their formats; with the entries of `columns` that were of no use.

@@ -8,6 +8,7 @@ mod commands;
 mod computed_frfs;
 mod estimation_arguments;
 mod input;
+mod names;
 mod origin;
 mod output;
 mod progress;

@@ -7,6 +7,7 @@ use jointscope::report::{InputFile, PageContext};
 use serde_json::{Value, json};
 
 use crate::input;
+use crate::names::name;
 use crate::refusal::Refusal;
 
 /// The origin of a page, with notes and hits.
@@ -45,7 +46,7 @@ pub fn inputs_value(inputs: &[InputFile]) -> Value {
 
 /// Names and hashes of the files as they were read.
 pub fn inputs<'a>(files: impl IntoIterator<Item = &'a PathBuf>) -> Result<Vec<InputFile>, Refusal> {
-    let noted = |path| Ok(InputFile { name: input::name(path), sha256: input::sha256(path)? });
+    let noted = |path| Ok(InputFile { name: name(path), sha256: input::sha256(path)? });
     files.into_iter().map(|path: &PathBuf| noted(path)).collect()
 }
 

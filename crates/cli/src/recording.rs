@@ -11,6 +11,7 @@ use jointscope::recordings::{
 };
 
 use crate::input::{self, FixtureFile};
+use crate::names::names;
 use crate::refusal::Refusal;
 
 /// Recordings and what the analyst says of them, for every command that reads FRFs or time histories.
@@ -135,7 +136,7 @@ impl RecordingArguments {
 
     /// A sentence about all the files.
     pub fn refusal(&self, problem: impl std::fmt::Display) -> Refusal {
-        Refusal::new(format_args!("{}: {problem}", input::names(&self.files)))
+        Refusal::new(format_args!("{}: {problem}", names(&self.files)))
     }
 }
 

@@ -5,6 +5,8 @@ use std::path::Path;
 
 use clap::error::{ContextKind, ErrorKind};
 
+use crate::names::name;
+
 /// Why a command did nothing: one plain sentence that names the file, the place in it and the remedy.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Refusal(String);
@@ -17,7 +19,7 @@ impl Refusal {
 
     /// A sentence about a file.
     pub fn at(file: &Path, problem: impl fmt::Display) -> Self {
-        Refusal::about(&crate::input::name(file), problem)
+        Refusal::about(&name(file), problem)
     }
 
     /// A sentence about what goes by this name.

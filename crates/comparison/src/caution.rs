@@ -46,6 +46,13 @@ pub enum Caution {
         /// Those without.
         without: Vec<String>,
     },
+    /// Their numbers are those of laws by which C, or K, depends on frequency, each in the middle of its own band.
+    Frequencies {
+        /// The joints that follow such laws.
+        joints: Vec<String>,
+        /// Where the numbers of each are stated, Hz.
+        frequencies: Vec<f64>,
+    },
     /// It has no fit to all FRFs, so that all joints are compared by less.
     NoFit {
         /// Which joint.
@@ -83,6 +90,8 @@ pub enum Caution {
 
 /// Share of a length below which two are the same number.
 const SAME_LENGTH: f64 = 1e-9;
+/// Share of a frequency below which two are the same number.
+const SAME_FREQUENCY: f64 = 1e-6;
 /// Probability below which a test of a joint fails, as in the decomposition.
 const FAILED: f64 = 0.05;
 
@@ -111,6 +120,7 @@ impl Caution {
         if !with.is_empty() && !without.is_empty() {
             all.push(Caution::Masses { with: names(with), without: names(without) });
         }
+        all.extend(of_other_frequencies(joints));
         let disagreeing = together.apart.iter().filter(|apart| apart.why == WhyApart::Disagrees);
         all.extend(disagreeing.map(|apart| Caution::BodiesDisagree { joint: apart.joint.clone() }));
         all
@@ -183,6 +193,18 @@ impl Caution {
                     "{joint}: its decomposition is judged unusable; its page says why, and nothing here rests on it"
                 )
             }
+            Caution::Frequencies { joints, frequencies } => {
+                let each: Vec<String> = joints
+                    .iter()
+                    .zip(frequencies)
+                    .map(|(joint, frequency)| format!("{joint} at {frequency:.1} Hz"))
+                    .collect();
+                format!(
+                    "numbers of joints whose stiffness or damping depends on frequency are those in the middle of their bands, and these differ ({}): C, of a structural joint ηK/ω, is \
+                     not of one frequency; compare loss factors, or decompose with the same --band",
+                    each.join(", ")
+                )
+            }
             Caution::Masses { with, without } => format!(
                 "{} {} a mass of the joint's own and {} none: stiffnesses of joints with and without a mass are not of the same thing",
                 with.join(", "),
@@ -227,6 +249,18 @@ fn without_fit(joints: &[Decomposed]) -> Vec<Caution> {
     entitled
         .filter_map(|joint| Some(Caution::NoFit { joint: joint.name.clone(), why: why(joint)? }))
         .collect()
+}
+
+/// Joints whose numbers are stated at several frequencies on which they depend.
+fn of_other_frequencies(joints: &[Decomposed]) -> Option<Caution> {
+    let depends = |joint: &Decomposed| {
+        let follows = joint.fitted.as_ref()?.follows.as_ref().filter(|follows| !follows.is_viscous())?;
+        Some((joint.name.clone(), follows.frequency))
+    };
+    let (joints, frequencies): (Vec<String>, Vec<f64>) = joints.iter().filter_map(depends).unzip();
+    let (first, others) = frequencies.split_first()?;
+    let differs = others.iter().any(|other| (other - first).abs() > SAME_FREQUENCY * first.abs());
+    differs.then_some(Caution::Frequencies { joints, frequencies })
 }
 
 /// Pairs of joints of one recording: their files say that they were made from it, or what the FRFs tell is the same to the last digit.

@@ -1,6 +1,6 @@
 //! What the choice of a law over frequency does to several joints alike.
 //!
-//! The headline's K and C are those of a viscous joint; other laws that explain the FRFs have other K and C in the middle of the band, and by how much they differ is a part of the
+//! A joint's K and C are those of one law, in the middle of the band; other laws that explain the FRFs have other K and C there, and by how much they differ is a part of the
 //! uncertainty. Joints of which the same law is the most probable are taken to follow one law, whichever it is: its probability is then the product of those that each joint gives
 //! it, and what it changes in one joint goes with what it changes in the others: Σ pᵢ δᵢδᵢᵀ over the numbers of all of them. It cancels in their ratio but for what the joints differ in.
 

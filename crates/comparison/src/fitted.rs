@@ -37,6 +37,9 @@ pub struct FittedJoint {
     /// How it is damped, as far as the file says.
     #[serde(default)]
     pub law: Option<String>,
+    /// The law that its numbers are of; files of earlier versions do not say, theirs are of a viscous one.
+    #[serde(default)]
+    pub follows: Option<FollowedLaw>,
     /// The laws compared, the most probable first.
     #[serde(default)]
     pub laws: Vec<ComparedLaw>,
@@ -72,6 +75,34 @@ pub struct JointMass {
     pub value: f64,
     /// Standard deviation, kg.
     pub std: f64,
+}
+
+/// The law over frequency that a joint's numbers are of.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+pub struct FollowedLaw {
+    /// Its name; with a mass of the joint another one.
+    pub law: String,
+    /// Where K and C are stated, Hz.
+    pub frequency: f64,
+    /// Loss factors ωC/K of a structural one, which do not depend on frequency.
+    #[serde(default)]
+    pub loss_factor: Option<LossFactor>,
+}
+
+impl FollowedLaw {
+    /// Whether K and C are the same at every frequency.
+    pub fn is_viscous(&self) -> bool {
+        self.law.starts_with("viscous")
+    }
+}
+
+/// Loss factors of the elements of K; nothing for those that are zero.
+#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
+pub struct LossFactor {
+    /// η.
+    pub value: [[Option<f64>; 2]; 2],
+    /// Standard deviations.
+    pub std: [[Option<f64>; 2]; 2],
 }
 
 /// A law over frequency, as one joint's FRFs have it.
@@ -194,7 +225,8 @@ impl FittedJoint {
             let law = self.laws.iter().find(|other| other.law == name)?.in_the_middle?;
             Some(six(&law.stiffness, &law.damping))
         };
-        let stated = of(if self.mass.is_some() { "viscous_with_mass" } else { "viscous" })?;
+        let earlier = if self.mass.is_some() { "viscous_with_mass" } else { "viscous" };
+        let stated = of(self.follows.as_ref().map_or(earlier, |follows| &follows.law))?;
         let own = of(law)?;
         Some(std::array::from_fn(|e| own[e] - stated[e]))
     }

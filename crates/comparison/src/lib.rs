@@ -46,8 +46,8 @@ pub use comparison::{
 pub use decomposed::{Decomposed, DecomposedError, End, Ends, Estimate, Judged, Line, Matrix, Nominal};
 pub use file::comparison_file;
 pub use fitted::{
-    ComparedLaw, FittedJoint, FittedLength, InTheMiddle, JointLikelihood, JointMass, JointTests, ModelError,
-    StatedQuantity,
+    ComparedLaw, FittedJoint, FittedLength, FollowedLaw, InTheMiddle, JointLikelihood, JointMass, JointTests,
+    LossFactor, ModelError, StatedQuantity,
 };
 pub use pair::{Equality, Figure, Pair, PairedNumber, Ratio};
 pub use ranking::Ranking;

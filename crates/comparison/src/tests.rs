@@ -216,6 +216,37 @@ fn what_one_law_changes_in_two_joints_alike_cancels_in_their_difference() {
 }
 
 #[test]
+fn joints_stated_by_a_law_that_they_follow_differ_from_the_other_laws_by_what_these_change() {
+    // As above, but the numbers are the structural law's: the viscous one is off by 30 and 32 with 1/17.
+    let by_its_law = |k11: f64, off: f64| {
+        let mut file = with_laws(k11 - off, off, 0.8, "structural");
+        file["joint"]["stiffness"][0][0] = json!(k11);
+        file["joint"]["follows"] = json!({"law": "structural", "frequency": 100.0});
+        let mut of_laws = [[0.0; 6]; 6];
+        of_laws[0][0] = 0.2 * off * off;
+        file["joint"]["law_covariance"] = json!(of_laws);
+        file["joint"]["covariance"][0][0] = json!(1.0 + 0.2 * off * off);
+        file
+    };
+    let mut files = [by_its_law(1000.0, 30.0), by_its_law(1050.0, 32.0)];
+    let found = compared(&files, &ComparisonOptions::default());
+    assert!((apart(&found) - (2.0 + 4.0 / 17.0f64).sqrt()).abs() < 1e-9, "{}", apart(&found));
+    let frequencies = |found: &Comparison| {
+        found.cautions.iter().any(|caution| matches!(caution, Caution::Frequencies { .. }))
+    };
+    assert!(!frequencies(&found));
+    files[1]["joint"]["follows"]["frequency"] = json!(200.0);
+    assert!(frequencies(&compared(&files, &ComparisonOptions::default())));
+    for file in &mut files {
+        file["joint"]["follows"]["law"] = json!("viscous");
+    }
+    assert!(
+        !frequencies(&compared(&files, &ComparisonOptions::default())),
+        "C of viscous joints is of all frequencies"
+    );
+}
+
+#[test]
 fn joints_of_other_laws_keep_what_laws_change_in_each() {
     let files = [with_laws(1000.0, 30.0, 0.8, "structural"), with_laws(1050.0, 32.0, 0.3, "viscous")];
     let found = compared(&files, &ComparisonOptions::default());

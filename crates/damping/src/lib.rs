@@ -116,15 +116,6 @@ impl DampingLaw {
         }
         all
     }
-
-    /// The part of the damping that acts on a rigid side of the assembly by itself, 1/s: only a
-    /// mass-proportional term does.
-    pub fn mass_proportional(&self) -> f64 {
-        match self {
-            DampingLaw::Rayleigh { mass, .. } => *mass,
-            _ => 0.0,
-        }
-    }
 }
 
 /// The viscous matrix C = (MΞ) diag(C_r) (MΞ)ᵀ on the coordinates, row-major, N·s/m and so on.
@@ -247,7 +238,6 @@ mod tests {
         let law = DampingLaw::Rayleigh { mass: 2.0, stiffness: 1e-5 };
         let damping = law.of_modes(&[0.0, 1e6]);
         assert_eq!((damping[0].viscous, damping[1].viscous), (2.0, 12.0));
-        assert_eq!(law.mass_proportional(), 2.0);
     }
 
     #[test]
@@ -255,7 +245,6 @@ mod tests {
         let law = DampingLaw::LossFactor(0.02);
         let damping = |structural| ModeDamping { viscous: 0.0, structural };
         assert_eq!(law.of_modes(&[0.0, 500.0]), [damping(0.0), damping(10.0)]);
-        assert_eq!(law.mass_proportional(), 0.0);
         assert_eq!(DampingLaw::Undamped.of_modes(&[0.0, 500.0]), [damping(0.0); 2]);
     }
 

@@ -20,14 +20,13 @@ mod uncertainty;
 mod uncoupled;
 
 pub use admissible::{Admissible, JointTests};
-pub use found::{FittedFrfs, FittedLength, FittedQuantity, JointFit, UnmovedQuantity};
+pub use found::{FittedFrfs, FittedLength, FittedQuantity, Followed, JointFit, UnmovedQuantity};
 pub use law::LawKind;
 pub use laws::LawFit;
 pub use likelihood::JointLikelihood;
 pub use several::{FoundJoint, JointsCovariance, JointsFit, SeveralError, fit_joints};
 
 use crate::{DecompositionError, LikelihoodFit, Sides};
-use admissible::Freed;
 use jointscope_averaging::Band;
 use jointscope_linalg::{Matrix2, RealMatrix2};
 use jointscope_spectra::FrfSet;
@@ -52,8 +51,6 @@ pub struct JointFitOptions {
 const EXPLAINED: f64 = 1.2;
 /// χ² per degree of freedom above which another start is tried.
 const DOUBTFUL: f64 = 1.3;
-/// Probability of the laws with mass from which the joint is said to have one.
-const HEAVY: f64 = 0.95;
 /// Damping of a start without any, as a loss factor.
 const START_LOSS: f64 = 3e-3;
 
@@ -90,35 +87,31 @@ pub fn fit_joint(
     let quantities = quantities::uncertain(sides.fixture(), &joints, options.exact);
     let (quantities, unmoved, nearby) = that_matter(setup, vec![law], &starts, quantities).ok_or(NO_START)?;
     let test = Test { setup, quantities: &quantities, weights: &recorded.weights };
-    let problem = Problem::viscous(test, vec![law], None);
+    let problem = Problem::open(test, vec![law], None);
     let first = lowest(&problem, &starts, nearby).ok_or(NO_START)?;
     let (first, free) = admissible::settled(&problem, first).ok_or(UNDETERMINED)?;
     let mass = laws::mass_scale(sides);
-    let with_mass = Problem::viscous(test, vec![law], Some(mass));
+    let with_mass = Problem::open(test, vec![law], Some(mass));
     // Where a joint without mass explains the FRFs, one with mass is next to it.
     let heavy = match options.laws && problem.per_degree(&first.point) > EXPLAINED {
         true => heavy(&with_mass, &first, starts.last()),
         false => None,
     };
-    let laws = match options.laws {
+    let (laws, at) = match options.laws {
         true => laws::compared((&problem, &first), heavy.as_ref().map(|heavy| (&with_mass, heavy)), mass),
-        false => Vec::new(),
+        false => (Vec::new(), Vec::new()),
     };
-    // A joint whose mass the FRFs show is not taken for a softer one.
-    let is_heavy =
-        laws.iter().filter(|fit| fit.mass.is_some()).map(|fit| fit.probability).sum::<f64>() > HEAVY;
-    let heavy = match (is_heavy, heavy) {
-        (true, None) => self::heavy(&with_mass, &first, None),
-        (true, found) => found,
-        (false, _) => None,
-    };
-    let (problem, first, free) = match heavy {
-        Some(mut heavy) => {
-            heavy.refresh(&with_mass).ok_or(UNDETERMINED)?;
-            (with_mass, heavy, Freed::Unknown)
-        }
-        None => (problem, first, free),
-    };
+    // Under a law that the FRFs refute, what it leaves would be taken for what physics forbids.
+    let followed = laws.first().filter(|best| best.kind != LawKind::Viscous || best.mass.is_some());
+    let followed = followed.and_then(|best| {
+        let problem = Problem::open(test, vec![law.of_kind(best.kind)], best.mass.map(|_| mass));
+        let known = heavy.filter(|_| best.kind == LawKind::Viscous);
+        let fitted = problem.fit(at, None).into_iter().chain(known).reduce(lower)?;
+        let (fitted, free) = admissible::settled(&problem, fitted)?;
+        fitted.equations(&problem).covariance()?;
+        Some((problem, fitted, free))
+    });
+    let (problem, first, free) = followed.unwrap_or((problem, first, free));
     let asymmetry = admissible::asymmetry(&problem, &first, free);
     let inflated = Inflated::of(&problem, &first);
     let problem = problem.weighted(&inflated.weights);
@@ -181,7 +174,7 @@ fn that_matter(
 ) -> Option<(Vec<Uncertain>, Vec<Uncertain>, Option<Columns>)> {
     let recorded = setup.recorded;
     let test = Test { setup, quantities: &quantities, weights: &recorded.weights };
-    let problem = Problem::viscous(test, laws, None);
+    let problem = Problem::open(test, laws, None);
     let columns = |start: &Vec<f64>| problem.other_columns(&problem.point(problem.whole(start), None)?);
     let (place, columns) =
         starts.iter().enumerate().find_map(|(place, start)| Some((place, columns(start)?)))?;

@@ -38,6 +38,7 @@
 
 mod analysis;
 mod averages;
+mod by_law;
 mod estimate;
 mod interfaces;
 mod joint_fit;
@@ -54,7 +55,7 @@ pub use averages::{Averages, MatrixAverage};
 pub use estimate::{Element, Estimate, Figure, Method, Part};
 pub use interfaces::{Compliance, InterfaceStiffness, Interfaces, interfaces};
 pub use joint_fit::{
-    Admissible, FittedFrfs, FittedLength, FittedQuantity, FoundJoint, JointFit, JointFitOptions,
+    Admissible, FittedFrfs, FittedLength, FittedQuantity, Followed, FoundJoint, JointFit, JointFitOptions,
     JointLikelihood, JointTests, JointsCovariance, JointsFit, LawFit, LawKind, SeveralError, UnmovedQuantity,
     fit_joint, fit_joints,
 };

@@ -1,106 +1,22 @@
 use crate::contradiction::contradictory;
 use crate::departures::{Departure, departures, has_departed};
 use crate::drift::{Drifted, TestDrift};
+use crate::finding::{Finding, Tried};
 use crate::fitter::Fitter;
 use crate::location::Location;
+use crate::mismatch::{FrfMismatch, mismatch};
 use crate::modal::ModelError;
-use crate::routes;
+use crate::options::{DiagnosisError, DiagnosisOptions};
+use crate::routes::{self, Parts, chance};
 use crate::search::Search;
 use crate::settings::Settings;
 use crate::work::Work;
 use crate::{Baseline, Hypothesis, Observation, Watch};
-use jointscope_findings::{Estimate, HeldOut, Verdict};
-use jointscope_fixture::{Effect, Fixture};
+use jointscope_findings::{HeldOut, Verdict};
+use jointscope_fixture::Fixture;
 use jointscope_lumped::Assembly;
-use jointscope_spectra::{FrfPair, FrfSet, SpectraError};
-use num_complex::Complex64;
-use serde::Serialize;
-use statrs::distribution::{ContinuousCDF, Normal};
+use jointscope_spectra::{FrfPair, FrfSet};
 use std::sync::Arc;
-use std::time::Duration;
-
-/// A piece of physics that the recordings need.
-#[derive(Debug, Clone, Serialize)]
-pub struct Finding {
-    /// Kind, place, dof and parameters.
-    #[serde(flatten, serialize_with = "jointscope_findings::effect_name")]
-    pub effect: Effect,
-    /// Parameters with their uncertainty.
-    #[serde(rename = "parameters", serialize_with = "jointscope_findings::parameters")]
-    pub estimates: Vec<Estimate>,
-    /// Probability of kind, place and dof together.
-    pub probability: f64,
-    /// Other names for it, the most probable first.
-    #[serde(serialize_with = "jointscope_findings::alternatives")]
-    pub alternatives: Vec<(Effect, f64)>,
-    /// What χ² and priors lose without it.
-    #[serde(rename = "gain_chi2")]
-    pub gain: f64,
-    /// Its place with one free scalar a line in its stead, beside the other findings: the measured δ(ω) that its law has to follow. `None`
-    /// where its place is not of rank one.
-    #[serde(skip)]
-    pub measured: Option<Location>,
-}
-
-/// How one FRF disagrees with the refitted fixture.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct FrfMismatch {
-    /// The FRF.
-    pub frf: FrfPair,
-    /// √(Σ|H_model − H_measured|²/Σ|H_measured|²) of this FRF.
-    pub nrmse: f64,
-    /// Shares of this FRF's χ², ascending.
-    pub bands: Vec<BandShare>,
-}
-
-/// What one band holds of an FRF's χ².
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct BandShare {
-    /// Lower end, Hz.
-    pub from: f64,
-    /// Upper end, Hz.
-    pub to: f64,
-    /// Share, 0 to 1.
-    pub share: f64,
-}
-
-/// What to leave out of a diagnosis, and what to hold out of its fits.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct DiagnosisOptions {
-    /// The band to use, Hz; everything without.
-    pub band: Option<(f64, f64)>,
-    /// Bands to leave out, Hz.
-    pub exclude: Vec<(f64, f64)>,
-    /// FRFs to hold out; one is chosen where there are four or more and none is named.
-    pub hold_out: Vec<FrfPair>,
-    /// FRFs of the same structure as it was known to be right: what is diagnosed is what has changed since.
-    pub baseline: Option<FrfSet>,
-    /// How long a search may take; what it has then is the answer. Without, its limit of work is all that ends it ([`Settings::work`]).
-    pub time_limit: Option<Duration>,
-    /// Take the fixture's bare numbers as exact.
-    pub exact: bool,
-    /// Whether the FRFs were estimated from hits: they carry leakage and errors that neighbouring lines share, and no name may live on those.
-    pub estimated: bool,
-    /// How the search goes.
-    pub settings: Settings,
-}
-
-/// Why a recording cannot be diagnosed.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum DiagnosisError {
-    /// The set cannot be used.
-    #[error("no usable spectral line is left: {0}")]
-    Lines(#[from] SpectraError),
-    /// The fixture predicts nothing finite.
-    #[error("the fixture's model predicts no finite FRFs: {0}")]
-    Model(#[from] crate::PredictionError),
-    /// The baseline and the recording have no modes in common.
-    #[error("baseline and recording have no FRFs or no modes in common")]
-    Baseline,
-    /// An FRF to be held out is not there, or nothing would be left.
-    #[error("FRF {0} cannot be held out: the recording does not have it, or has nothing else")]
-    HoldOut(String),
-}
 
 /// The whole answer.
 #[derive(Debug, Clone)]
@@ -143,16 +59,6 @@ pub struct Diagnosis {
     pub drift: Option<TestDrift>,
     /// Effects that were tried by themselves where the model's error decides, the most probable first.
     pub tried: Vec<Tried>,
-}
-
-/// An effect that was tried by itself.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Tried {
-    /// Kind, place, dof and parameters.
-    #[serde(flatten, serialize_with = "jointscope_findings::effect_name")]
-    pub effect: Effect,
-    /// What it gains in ln p over the fixture without it.
-    pub ln_gain: f64,
 }
 
 impl Diagnosis {
@@ -218,12 +124,39 @@ impl Diagnosis {
         if few.is_some() {
             parts = parts.on_all(&fitter.on(&observation));
         }
-        let diagnosis = Diagnosis { contradictory, ..parts.with(observation, &options.settings) };
+        let diagnosis = Diagnosis { contradictory, ..Self::of_parts(parts, observation, &options.settings) };
         let within_estimates = options.estimated
             && diagnosis.refitted.0 < options.settings.evidence.explained.0
             && !has_departed(&diagnosis.stated[0]);
         let diagnosis = if within_estimates { diagnosis.without_findings() } else { diagnosis };
         Ok(Diagnosis { drift: drifted.and_then(|drifted| diagnosis.told_drift(&drifted)), ..diagnosis })
+    }
+
+    /// The answer that the parts of a route make.
+    fn of_parts(parts: Parts, observation: Observation, settings: &Settings) -> Self {
+        let search = parts.search;
+        let models = || [&search.refitted, &search.repaired].map(|fit| fit.hypothesis.clone());
+        let stated = parts.stated.unwrap_or_else(models);
+        Self {
+            verdict: parts.verdict,
+            refitted: chance(&observation, &search.refitted),
+            mismatch: mismatch(&observation, &search.refitted.predicted, settings.evidence.bands),
+            residual_correlation: observation.residual_correlation(&search.repaired.predicted),
+            departures: departures(&stated),
+            stated,
+            contradictory: Vec::new(),
+            drift: None,
+            stopped: observation.work().left_out(),
+            observation,
+            search,
+            findings: parts.findings,
+            locations: parts.locations,
+            held_out: parts.held_out,
+            model_error: parts.model_error,
+            baseline_error: parts.baseline_error,
+            baseline: parts.baseline,
+            tried: parts.tried,
+        }
     }
 
     /// What drifted, by the model that the diagnosis ends with.
@@ -257,34 +190,4 @@ impl Diagnosis {
         [&self.search.nominal, &self.search.refitted, &self.search.repaired]
             .map(|fit| fit.chi2_per_dof(&self.observation))
     }
-}
-
-/// Mismatch of a prediction by FRF and band.
-pub(crate) fn mismatch(observation: &Observation, predicted: &[Complex64], bands: usize) -> Vec<FrfMismatch> {
-    let n = observation.lines().len();
-    let hz = observation.lines().hz();
-    let bands = bands.min(n);
-    let edge = |band: usize| band * n / bands;
-    let of = |(index, pair): (usize, &FrfPair)| {
-        let at = |line: usize| index * n + line;
-        let residual = |line: usize| (observation.values()[at(line)] - predicted[at(line)]).norm_sqr();
-        let error: f64 = (0..n).map(residual).sum();
-        let size: f64 = (0..n).map(|line| observation.values()[at(line)].norm_sqr()).sum();
-        let chi2 = |range: std::ops::Range<usize>| {
-            range.map(|l| observation.weights()[at(l)] * residual(l)).sum::<f64>()
-        };
-        let whole = chi2(0..n).max(f64::MIN_POSITIVE);
-        let band = |b: usize| BandShare {
-            from: hz[edge(b)],
-            to: hz[edge(b + 1) - 1],
-            share: chi2(edge(b)..edge(b + 1)) / whole,
-        };
-        FrfMismatch { frf: pair.clone(), nrmse: (error / size).sqrt(), bands: (0..bands).map(band).collect() }
-    };
-    observation.pairs().iter().enumerate().map(of).collect()
-}
-
-/// Probability of a standard normal above `z`.
-pub(crate) fn upper_tail(z: f64) -> f64 {
-    Normal::standard().sf(z)
 }

@@ -5,6 +5,7 @@ use crate::fitter::Fitter;
 use crate::penalty::parameter_penalty;
 use crate::settings::Settings;
 use crate::{Hypothesis, Observation};
+use statrs::distribution::{ContinuousCDF, Normal};
 
 /// Standard deviations by which χ² per degree of freedom exceeds one, the relative uncertainty of the noise's variances included.
 pub(crate) fn excess(chi2_per_dof: f64, degrees: usize, noise_uncertainty: f64) -> f64 {
@@ -53,4 +54,9 @@ pub(crate) fn probabilities(fitter: &Fitter, best: &Fit, costs: &[f64]) -> Vec<f
 pub(crate) fn nothing_can_be_stated(fitter: &Fitter, best: &Fit, candidates: usize) -> bool {
     let hypotheses = candidates as f64 + 1.0;
     hypotheses / (hypotheses + unlisted(fitter, best)) < fitter.settings.evidence.stated
+}
+
+/// Probability of a standard normal above `z`.
+pub(crate) fn upper_tail(z: f64) -> f64 {
+    Normal::standard().sf(z)
 }

@@ -1,10 +1,12 @@
 //! What a diagnosis shows besides its findings: where the mismatch sits, how it goes with frequency, what else the reader must know.
 
 use crate::departures::{DEPARTED, Departure, farthest};
-use crate::diagnosis::{BandShare, Diagnosis, Finding};
+use crate::diagnosis::Diagnosis;
 use crate::evidence::explained;
+use crate::finding::Finding;
 use crate::fit::Fit;
 use crate::location::{BandMisfit, Location};
+use crate::mismatch::{BandShare, FrfMismatch};
 use crate::settings::Settings;
 use jointscope_findings::{Estimate, Verdict};
 use jointscope_fixture::{EffectKind, Place};
@@ -102,6 +104,18 @@ impl Finding {
 }
 
 impl Diagnosis {
+    /// χ² per degree of freedom that the refitted and the repaired model leave where it is more than noise and their modes have no error all the same: what is left
+    /// is then in what modes do not tell, gains of single records, mass lines, upper residuals. `None` where there is no such thing, or lines decided.
+    pub fn missed_beside_modes(&self) -> [Option<f64>; 2] {
+        let Some(errors) = &self.model_error else { return [None; 2] };
+        let [_, refitted, repaired] = self.chi2_per_dof();
+        let most = explained(&self.observation, &Settings::default());
+        [0, 1].map(|model| {
+            let left = [refitted, repaired][model];
+            (errors[model].is_none() && left > most).then_some(left)
+        })
+    }
+
     /// Whether no finding names the mismatch: there is none, or something that is not listed is likelier than any. Then the places, which assume
     /// no law, are what there is to see.
     pub fn is_unnamed(&self) -> bool {
@@ -147,7 +161,7 @@ impl Diagnosis {
             }
             (count > 0).then(|| sum / count as f64)
         };
-        let of = |(index, mismatch): (usize, &crate::diagnosis::FrfMismatch)| {
+        let of = |(index, mismatch): (usize, &FrfMismatch)| {
             let bands = mismatch.bands.iter().map(|&BandShare { from, to, .. }| {
                 let lines = hz.partition_point(|f| *f < from)..hz.partition_point(|f| *f <= to);
                 BandMisfit { from, to, chi2_per_dof: mean(index, lines) }

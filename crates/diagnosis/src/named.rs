@@ -2,9 +2,9 @@
 
 use crate::alternatives::{Alternative, alternatives};
 use crate::departures::has_departed;
-use crate::diagnosis::Finding;
 use crate::estimates::estimates;
 use crate::evidence::explained;
+use crate::finding::Finding;
 use crate::fitter::Fitter;
 use crate::location::measured;
 use crate::search::Search;

@@ -1,17 +1,16 @@
 //! The ways to a diagnosis: by the noise of the lines, by the error of the model, by what has changed since a baseline; and which of them a recording
 //! asks for.
 
-use crate::departures::departures;
-use crate::diagnosis::{Diagnosis, DiagnosisError, DiagnosisOptions, Finding, Tried, mismatch, upper_tail};
-use crate::evidence::{excess, nothing_can_be_stated};
+use crate::evidence::{excess, nothing_can_be_stated, upper_tail};
+use crate::finding::{Finding, Tried};
 use crate::fit::Fit;
 use crate::fitter::Fitter;
 use crate::held_out::Division;
 use crate::location::{Location, located};
 use crate::modal::{ModalJudgement, ModelError, explains, without_imitations};
 use crate::named::{findings, re_estimated, verdict};
+use crate::options::{DiagnosisError, DiagnosisOptions};
 use crate::search::Search;
-use crate::settings::Settings;
 use crate::{Baseline, Hypothesis, Observation};
 use jointscope_findings::{HeldOut, Verdict};
 use jointscope_fixture::Fixture;
@@ -92,46 +91,20 @@ pub(crate) fn judged(
 
 /// A diagnosis but for what follows from its models and the observation.
 pub(crate) struct Parts {
-    verdict: Verdict,
-    search: Search,
+    pub verdict: Verdict,
+    pub search: Search,
     /// What is said of the quantities of the refitted and the repaired model, where these are to predict.
-    stated: Option<[Hypothesis; 2]>,
-    findings: Vec<Finding>,
-    locations: Vec<Location>,
-    held_out: Option<HeldOut>,
-    model_error: Option<[ModelError; 2]>,
-    baseline_error: Option<ModelError>,
-    baseline: Option<Baseline>,
-    tried: Vec<Tried>,
+    pub stated: Option<[Hypothesis; 2]>,
+    pub findings: Vec<Finding>,
+    pub locations: Vec<Location>,
+    pub held_out: Option<HeldOut>,
+    pub model_error: Option<[ModelError; 2]>,
+    pub baseline_error: Option<ModelError>,
+    pub baseline: Option<Baseline>,
+    pub tried: Vec<Tried>,
 }
 
 impl Parts {
-    pub fn with(self, observation: Observation, settings: &Settings) -> Diagnosis {
-        let search = self.search;
-        let models = || [&search.refitted, &search.repaired].map(|fit| fit.hypothesis.clone());
-        let stated = self.stated.unwrap_or_else(models);
-        Diagnosis {
-            verdict: self.verdict,
-            refitted: chance(&observation, &search.refitted),
-            mismatch: mismatch(&observation, &search.refitted.predicted, settings.evidence.bands),
-            residual_correlation: observation.residual_correlation(&search.repaired.predicted),
-            departures: departures(&stated),
-            stated,
-            contradictory: Vec::new(),
-            drift: None,
-            stopped: observation.work().left_out(),
-            observation,
-            search,
-            findings: self.findings,
-            locations: self.locations,
-            held_out: self.held_out,
-            model_error: self.model_error,
-            baseline_error: self.baseline_error,
-            baseline: self.baseline,
-            tried: self.tried,
-        }
-    }
-
     /// The same on all FRFs of a recording of which a part was searched: models that were fitted to lines are fitted to all of them.
     pub fn on_all(mut self, fitter: &Fitter) -> Self {
         let by_lines = self.model_error.is_none();
@@ -153,7 +126,7 @@ impl Parts {
 }
 
 /// χ² per degree of freedom that a fit leaves, and the probability of one as large by chance.
-fn chance(observation: &Observation, fit: &Fit) -> (f64, f64) {
+pub(crate) fn chance(observation: &Observation, fit: &Fit) -> (f64, f64) {
     let chi2_per_dof = fit.chi2_per_dof(observation);
     let excess = excess(chi2_per_dof, observation.degrees(), observation.noise_uncertainty());
     (chi2_per_dof, upper_tail(excess))

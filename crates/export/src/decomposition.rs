@@ -5,7 +5,7 @@ use crate::numbering::Numbering;
 use crate::numbers::short;
 use crate::{Export, ExportError, ExportOptions, Joint, JointEnd, JointLine};
 use jointscope_beam::mass_of_ends;
-use jointscope_comparison::{Decomposed, Ends, JointMass, JointTests, Matrix};
+use jointscope_comparison::{Decomposed, Ends, FittedJoint, JointMass, JointTests, Matrix};
 
 /// Probability below which a test of what physics allows fails, as `decompose` has it.
 const FAILED: f64 = 0.05;
@@ -58,6 +58,8 @@ struct Estimate {
     says: String,
     stiffness: Matrix,
     damping: Matrix,
+    /// H, for damping that does not depend on frequency.
+    structural: Matrix,
     std: Option<(Matrix, Matrix)>,
     covariance: Option<crate::Covariance>,
     mass: Option<JointMass>,
@@ -68,13 +70,6 @@ impl Estimate {
         if let Some(fitted) = &decomposed.fitted {
             let std = |i: usize| fitted.covariance[i][i].max(0.0).sqrt();
             let matrix = |first: usize| [[std(first), std(first + 1)], [std(first + 1), std(first + 2)]];
-            let law = fitted.law.as_deref().map_or(String::new(), |law| match law.strip_prefix("viscous") {
-                Some(_) => "; viscous, the most probable law over frequency".to_owned(),
-                None => format!(
-                    "; K and C are those of a viscous joint, over frequency the most probable law is {}",
-                    law.replace('_', " ")
-                ),
-            });
             let mass = fitted.mass.map_or(String::new(), |mass| {
                 format!(
                     ", with a mass of its own of {} ± {} kg, uniform over its length, which K and C belong to",
@@ -82,16 +77,22 @@ impl Estimate {
                     short(mass.std)
                 )
             });
-            return Ok(Estimate {
+            let mut estimate = Estimate {
                 says: format!(
-                    "the joint from all FRFs, the fixture's quantities moving within their deviations{mass}{law}"
+                    "the joint from all FRFs, the fixture's quantities moving within their deviations{mass}{}",
+                    law_of(fitted)
                 ),
                 stiffness: symmetric(&fitted.stiffness),
                 damping: symmetric(&fitted.damping),
+                structural: [[0.0; 2]; 2],
                 std: Some((matrix(0), matrix(3))),
                 covariance: Some(fitted.covariance),
                 mass: fitted.mass,
-            });
+            };
+            if let Some(frequency) = structural_at(fitted) {
+                estimate.read_as_structural(std::f64::consts::TAU * frequency);
+            }
+            return Ok(estimate);
         }
         let (says, estimate) = match &decomposed.likelihood {
             Some(estimate) => ("the maximum-likelihood joint".to_owned(), estimate),
@@ -105,10 +106,71 @@ impl Estimate {
             says,
             stiffness: symmetric(&estimate.stiffness),
             damping: symmetric(&estimate.damping),
+            structural: [[0.0; 2]; 2],
             std: Some((estimate.stiffness_std, estimate.damping_std)),
             covariance: None,
             mass: None,
         })
+    }
+}
+
+impl Estimate {
+    /// H = ωC in place of the C that loses as much at ω: no C is written beside it, and no deviation of one.
+    fn read_as_structural(&mut self, omega: f64) {
+        self.structural = self.damping.map(|row| row.map(|c| omega * c));
+        self.damping = [[0.0; 2]; 2];
+        self.std = self.std.map(|(stiffness, _)| (stiffness, [[0.0; 2]; 2]));
+        if let Some(covariance) = &mut self.covariance {
+            for (m, row) in covariance.iter_mut().enumerate() {
+                for (n, entry) in row.iter_mut().enumerate() {
+                    if m >= OF_STIFFNESS || n >= OF_STIFFNESS {
+                        *entry = 0.0;
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Numbers of a joint that are of K; those of C come after them.
+const OF_STIFFNESS: usize = 3;
+
+/// The frequency at which the numbers of a structural joint are stated, Hz.
+fn structural_at(fitted: &FittedJoint) -> Option<f64> {
+    let follows = fitted.follows.as_ref().filter(|follows| follows.law.starts_with("structural"))?;
+    Some(follows.frequency)
+}
+
+/// What law the numbers are of.
+fn law_of(fitted: &FittedJoint) -> String {
+    let words = |law: &str| law.replace('_', " ");
+    match (&fitted.follows, fitted.law.as_deref()) {
+        (Some(follows), Some(law)) if law == follows.law && follows.is_viscous() => {
+            "; viscous, the most probable law over frequency".to_owned()
+        }
+        (Some(follows), Some(_)) if structural_at(fitted).is_some() => {
+            let loss = follows.loss_factor.and_then(|loss| loss.value[0][0].zip(loss.std[0][0]));
+            let loss = loss.map_or(String::new(), |(loss, std)| {
+                format!(", the loss factor of k11 being {} +- {}", short(loss), short(std))
+            });
+            format!(
+                "; its law over frequency is {}{loss}, written as structural damping",
+                words(&follows.law)
+            )
+        }
+        (Some(follows), Some(_)) if !follows.is_viscous() => format!(
+            "; its law over frequency is {}, and K and C are what it has at {} Hz alone",
+            words(&follows.law),
+            short(follows.frequency)
+        ),
+        (_, Some(law)) => match law.strip_prefix("viscous") {
+            Some(_) => "; viscous, the most probable law over frequency".to_owned(),
+            None => format!(
+                "; K and C are those of a viscous joint, over frequency the most probable law is {}",
+                words(law)
+            ),
+        },
+        (_, None) => String::new(),
     }
 }
 
@@ -174,7 +236,7 @@ fn placed(
         scalar: [k12, k22, c12, c22].iter().all(|element| *element == 0.0),
         stiffness: estimate.stiffness,
         damping: estimate.damping,
-        structural: [[0.0; 2]; 2],
+        structural: estimate.structural,
         mass: estimate.mass.map(|mass| mass_of_ends(mass.value, ends.length)),
         std: estimate.std,
         covariance: estimate.covariance,

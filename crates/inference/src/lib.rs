@@ -13,9 +13,7 @@
 //!   where a fit from afar goes;
 //! * [`Covariance`], [`jackknife`], [`autocorrelation`], [`variance_inflation`]: uncertainty;
 //! * [`QuadraticLikelihood`]: what one recording tells of parameters that others tell of as well, put together in closed form;
-//! * [`laplace_evidence`]: marginal likelihood of a hypothesis at its optimum;
-//! * [`LowRankCovariance`]: residuals whose covariance is diagonal noise and a few nuisance directions of estimated
-//!   size, such as an error of each natural frequency.
+//! * [`laplace_evidence`]: marginal likelihood of a hypothesis at its optimum.
 //!
 //! ```
 //! use jointscope_inference::{LeastSquares, NormalEquations, Precision, Settings, descend};
@@ -53,7 +51,6 @@
 mod descent;
 mod evidence;
 mod likelihood;
-mod low_rank;
 mod noise;
 mod normal;
 mod parameter;
@@ -63,7 +60,6 @@ mod uncertainty;
 pub use descent::{Convergence, Damping, Descent, LeastSquares, Limit, Precision, Settings, descend};
 pub use evidence::laplace_evidence;
 pub use likelihood::QuadraticLikelihood;
-pub use low_rank::LowRankCovariance;
 pub use noise::inflated_weight;
 pub use normal::NormalEquations;
 pub use parameter::{Parameter, Transform};

@@ -77,9 +77,36 @@ fn fitted(fit: &JointFit) -> Value {
     let (inflation, strain) = (fit.inflation, fit.strain);
     entry["model_error"] =
         json!({"inflation": inflation, "strain": strain, "covariance": fit.model_covariance});
+    entry["follows"] = follows(fit);
     if let Some(best) = fit.law() {
         entry["law"] = json!(best.name());
         entry["laws"] = fit.laws.iter().map(law).collect();
+    }
+    entry
+}
+
+/// The law that the joint's numbers are of, the frequency at which they are stated, and its losses in its own terms.
+fn follows(fit: &JointFit) -> Value {
+    let follows = &fit.follows;
+    let frequency = follows.omega / std::f64::consts::TAU;
+    let mut entry = json!({
+        "law": follows.fit.name(),
+        "probability": follows.fit.probability,
+        "frequency": frequency,
+    });
+    if let Some((shape, std)) = follows.shape {
+        let key = if follows.law == LawKind::Fractional { "exponent" } else { "time" };
+        entry[key] = json!({"value": shape, "std": std});
+    }
+    if follows.law == LawKind::Structural {
+        let element = |of: &dyn Fn((f64, f64)) -> Value| {
+            [0, 1].map(|row| [0, 1].map(|column| fit.loss_factor(row, column).map(of)))
+        };
+        entry["loss_factor"] = json!({
+            "value": element(&|(loss, _)| json!(loss)),
+            "std": element(&|(_, std)| json!(std)),
+            "ci95": element(&|(loss, std)| json!([loss - 1.96 * std, loss + 1.96 * std])),
+        });
     }
     entry
 }

@@ -12,7 +12,7 @@ mod result;
 mod shares;
 mod verdict;
 
-pub use joints::{joints_page, joints_report};
+pub use joints::joints_report;
 
 use jointscope_decomposition::{Analysis, Estimate, Relation};
 use jointscope_fixture::{Fixture, Joint, JointLaw};

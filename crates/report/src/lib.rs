@@ -7,7 +7,7 @@
 //! | page | of |
 //! |---|---|
 //! | [`decomposition_page`] | a joint's stiffness and damping by line and as an estimate |
-//! | [`joints_page`] | several joints found at once |
+//! | [`joints_report`] | several joints found at once |
 //! | [`diagnosis_page`] | what a fixture leaves out |
 //! | [`answer_page`] | the same, or what changes with amplitude: whichever the test answers |
 //! | [`modes_page`] | natural frequencies, damping ratios, shapes |
@@ -63,7 +63,7 @@ pub use answer_page::{answer_page, answer_report};
 pub use check_page::{check_page, check_report};
 pub use comparison_page::{comparison_page, comparison_report};
 pub use context::{InputFile, PageContext};
-pub use decomposition_page::{decomposition_page, decomposition_report, joints_page, joints_report};
+pub use decomposition_page::{decomposition_page, decomposition_report, joints_report};
 pub use diagnosis_page::{diagnosis_page, diagnosis_report};
 pub use error::PageError;
 pub use modes_page::{modes_page, modes_report};

@@ -104,15 +104,69 @@ fn of_law(fit: &JointFit) -> Vec<String> {
                 percent(law.probability)
             )
         }));
+    all.extend(in_its_terms(fit));
     all.extend(fit.mass.map(|(mass, std)| {
+            let with_mass = fit.laws.iter().filter(|law| law.mass.is_some());
+            let sure = with_mass.map(|law| law.probability).sum::<f64>() >= CERTAIN;
             format!(
-                "the FRFs show a mass of the joint of {} ± {}; k and c are those of a joint with it, and K and C by line, which hold its inertia, are not \
+                "the FRFs {} a mass of the joint of {} ± {}; k and c are those of a joint with it, and K and C by line, which hold its inertia, are not \
                  compared with them",
+                if sure { "show" } else { "most probably show" },
                 plain(mass, "kg"),
                 plain(std, "kg")
             )
         }));
     all
+}
+
+/// What k, c and tests are of where that is no viscous joint, and its losses in its own terms.
+fn in_its_terms(fit: &JointFit) -> Option<String> {
+    let at = plain(fit.follows.omega / std::f64::consts::TAU, "Hz");
+    let shape = |what: &str, unit: &str| {
+        fit.follows.shape.map_or(String::new(), |(value, std)| {
+            let interval = match unit {
+                "" => format!("{} ± {}", significant(value, 3), significant(std, 2)),
+                unit => format!("{} ± {}", plain(value, unit), plain(std, unit)),
+            };
+            format!("; {what} {interval}")
+        })
+    };
+    Some(match fit.follows.law {
+        LawKind::Viscous => return None,
+        LawKind::Constant => {
+            "k and the tests are those of a joint without damping, and c is zero by this law".to_owned()
+        }
+        LawKind::Structural => {
+            let elements = [(0, 0, "k11"), (0, 1, "k12"), (1, 1, "k22")];
+            let each: Vec<String> = elements
+                .iter()
+                .filter_map(|(row, column, name)| {
+                    let (loss, std) = fit.loss_factor(*row, *column)?;
+                    Some(format!(
+                        "of {name} {} (95 %: {} to {})",
+                        significant(loss, 3),
+                        significant(loss - 1.96 * std, 3),
+                        significant(loss + 1.96 * std, 3)
+                    ))
+                })
+                .collect();
+            format!(
+                "k, c and the tests are those of a structural joint: the loss factor is {}; c is ηk/ω at {at}, the middle of the band, and falls with frequency",
+                listed(&each)
+            )
+        }
+        LawKind::StandardLinearSolid => format!(
+            "k, c and the tests are those of a standard linear solid, k and c at {at}, the middle of the band{}",
+            shape("relaxation time", "s")
+        ),
+        LawKind::Fractional => format!(
+            "k, c and the tests are those of a springpot beside a spring, k and c at {at}, the middle of the band{}",
+            shape("exponent", "")
+        ),
+        LawKind::LinearStiffness => format!(
+            "k, c and the tests are those of a stiffness linear in frequency, k at {at}, the middle of the band"
+        ),
+    })
 }
 
 fn of_misfit(fit: &JointFit) -> Vec<String> {

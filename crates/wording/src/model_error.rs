@@ -2,7 +2,7 @@
 
 use crate::departures::remaining;
 use crate::diagnosis::{found, it, shows, varies};
-use crate::numbers::{listed, percent, significant};
+use crate::numbers::{figures, listed, percent, significant};
 use jointscope_diagnosis::{Diagnosis, ModalSettings, ModelError};
 use jointscope_findings::Verdict;
 
@@ -11,25 +11,27 @@ pub(crate) fn verdict(diagnosis: &Diagnosis, [refitted, repaired]: &[ModelError;
     if let Some(baseline) = &diagnosis.baseline_error {
         return since(diagnosis, baseline, [refitted, repaired]);
     }
+    let [missed_without, missed_with] = diagnosis.missed_beside_modes();
+    let (without, with) = (off_by(refitted, missed_without), off_by(repaired, missed_with));
     match diagnosis.verdict {
         Verdict::Consistent => format!(
             "Nothing is left out that a name would explain: the model is off by {}, as such models are.",
-            sizes(refitted)
+            without
         ),
         Verdict::Explained => format!(
             "The fixture leaves out {}: check {it}. Without {it} the model would be off by {}{}, with {it} by {}.",
             found(diagnosis),
-            sizes(refitted),
+            without,
             bent(diagnosis),
-            sizes(repaired),
+            with,
             it = it(diagnosis)
         ),
         Verdict::PartlyExplained if diagnosis.is_unnamed() => format!(
             "Something is left out that none of the effects known here accounts for: with the closest, {}, the model is off by {}, without it \
              by {}. What remains shows {}{}.",
             found(diagnosis),
-            sizes(repaired),
-            sizes(refitted),
+            with,
+            without,
             shows(diagnosis, &diagnosis.search.repaired),
             varies(diagnosis, &diagnosis.search.repaired)
         ),
@@ -37,9 +39,9 @@ pub(crate) fn verdict(diagnosis: &Diagnosis, [refitted, repaired]: &[ModelError;
             "The fixture leaves out {}, but that is not all: without {it} the model would be off by {}{}, with {it} by {}. What remains is {}; it \
              shows {}{}.",
             found(diagnosis),
-            sizes(refitted),
+            without,
             bent(diagnosis),
-            sizes(repaired),
+            with,
             excess(diagnosis, repaired),
             shows(diagnosis, &diagnosis.search.repaired),
             varies(diagnosis, &diagnosis.search.repaired),
@@ -48,11 +50,23 @@ pub(crate) fn verdict(diagnosis: &Diagnosis, [refitted, repaired]: &[ModelError;
         Verdict::Unexplained => format!(
             "Something is left out that none of the effects known here accounts for: the model is off by {}, and no effect makes that much \
              smaller. That is {}; it shows {}{}.",
-            sizes(refitted),
+            without,
             excess(diagnosis, refitted),
             shows(diagnosis, &diagnosis.search.refitted),
             varies(diagnosis, &diagnosis.search.refitted)
         ),
+    }
+}
+
+/// What a model is off by; `missed` is what it leaves of the FRFs' χ² though its modes have no error.
+fn off_by(error: &ModelError, missed: Option<f64>) -> String {
+    match missed {
+        Some(chi2_per_dof) => format!(
+            "nothing in its modes, and what the FRFs show besides (χ² per degree of freedom {}) lies in gains of records, mass lines or upper \
+             residuals",
+            figures(chi2_per_dof)
+        ),
+        None => sizes(error),
     }
 }
 
@@ -280,6 +294,17 @@ mod tests {
         let mut diagnosis = judged(Verdict::Explained, error(0.014, 0.0, 0.0), ModelError::default());
         diagnosis.findings = vec![mass(0.9), mass(0.9)];
         says(&diagnosis, &["check them. Without them", "with them by no more than the noise."], &["0 %"]);
+    }
+
+    #[test]
+    fn what_the_frfs_show_besides_modes_without_error_is_never_called_noise() {
+        let mut diagnosis = judged(Verdict::Consistent, ModelError::default(), ModelError::default());
+        diagnosis.search.refitted.chi2 = 900.0 * diagnosis.observation.degrees() as f64;
+        says(
+            &diagnosis,
+            &["off by nothing in its modes", "(χ² per degree of freedom 900) lies in gains of records"],
+            &["noise"],
+        );
     }
 
     #[test]

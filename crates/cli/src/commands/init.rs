@@ -9,6 +9,7 @@ use jointscope::recordings::{FileChannel, Geometry, GeometryError, SpatialAxis};
 use jointscope::uff::FunctionType;
 
 use crate::input;
+use crate::names::names;
 use crate::output::Outputs;
 use crate::refusal::Refusal;
 use crate::values::positive;
@@ -151,7 +152,7 @@ fn points(files: &[PathBuf], lines: &mut Vec<String>) -> Result<Vec<String>, Ref
     if nodes.is_empty() && !files.is_empty() {
         return Err(Refusal::new(format_args!(
             "{}: no FRF or time history in it names a node, so there are no points to take; number the channels in the analyser, or leave out --points-from",
-            input::names(files)
+            names(files)
         )));
     }
     let upright: BTreeSet<i64> = channels
@@ -209,7 +210,7 @@ fn placed(arguments: &InitArguments, lines: &mut Vec<String>) -> Result<Points, 
     if known.is_empty() {
         return Err(Refusal::new(format_args!(
             "{}: the geometry has none of the nodes that were measured ({}); export both from one project, or take the nodes' names alone with `--points-from`",
-            input::names(files),
+            names(files),
             unknown.join(", ")
         )));
     }

@@ -13,7 +13,7 @@ use jointscope::cases::{Case, Command, FolderOfFiles, Shard, State, listed, of_f
 use serde_json::{Value, json};
 
 use super::{Said, summary};
-use crate::answered::{Answered, Destination, PAGE};
+use crate::answered::{Answered, Destination, PAGE, REFUSED};
 use crate::input;
 use crate::origin;
 use crate::output::{Outputs, counted, pretty};
@@ -60,9 +60,6 @@ pub struct Task<'a> {
     pub many: &'a ManyArguments,
     pub destination: &'a Destination,
 }
-
-/// A refusal in the place of an answer.
-pub const REFUSED: &str = "refused.json";
 
 /// Tries the cases that have no answer yet; answers with what came of all, or of the share.
 pub fn run(

@@ -10,7 +10,7 @@ use serde::Deserialize;
 use serde_json::{Value, json};
 
 use super::Said;
-use super::many::REFUSED;
+use crate::answered::REFUSED;
 use crate::input;
 use crate::origin;
 use crate::output::{Outputs, pretty};

@@ -11,11 +11,12 @@ use std::f64::consts::SQRT_2;
 /// Probabilities of FRFs that speak at least as much against a property, if the joint has it. Nothing where it cannot be tested.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct JointTests {
-    /// k12 = k21 and c12 = c21: by how much χ² falls where they may differ, against χ² of two degrees of freedom.
+    /// k12 = k21, and the same of the damping matrix of the law that the joint follows: by how much χ² falls where they may differ, against χ² of two degrees of freedom (of
+    /// one for a law without damping).
     pub reciprocity: Option<f64>,
-    /// The smallest eigenvalue of k is not negative (one-sided); of k in units of its diagonal, since N/m and N·m/rad do not compare.
+    /// The smallest eigenvalue of k in the middle of the band is not negative (one-sided); of k in units of its diagonal, since N/m and N·m/rad do not compare.
     pub definite: Option<f64>,
-    /// The smallest eigenvalue of c is not negative (one-sided), in the same units.
+    /// The smallest eigenvalue of the law's damping matrix is not negative (one-sided), in the same units; nothing for a law without damping.
     pub passive: Option<f64>,
 }
 
@@ -35,7 +36,7 @@ impl JointTests {
 pub struct Admissible {
     /// K, symmetric and positive semidefinite.
     pub stiffness: [[f64; 2]; 2],
-    /// C, symmetric and positive semidefinite.
+    /// C in the middle of the band, symmetric and positive semidefinite.
     pub damping: [[f64; 2]; 2],
     /// By how much χ² and priors exceed those of the joint without constraint.
     pub costs: f64,
@@ -48,6 +49,9 @@ pub(super) fn not_negative(
     first: usize,
     (covariance, strain): (&Covariance, f64),
 ) -> Option<f64> {
+    if form == Form::Zero {
+        return None;
+    }
     if form == Form::Scalar {
         return below_zero(at[first], (strain * covariance.at(first, first)).sqrt());
     }
@@ -65,6 +69,15 @@ pub(super) fn not_negative(
         }
     }
     below_zero(lambda, (strain * variance).sqrt())
+}
+
+/// P(at least this gain in χ² | a joint of this law that is reciprocal).
+pub(super) fn by_chance(law: &Dynamics, gain: f64) -> f64 {
+    let half = 0.5 * gain.max(0.0);
+    match law.asymmetries() {
+        1 => statrs::function::erf::erfc(half.sqrt()),
+        _ => (-half).exp(),
+    }
 }
 
 /// P(an estimate this low | zero).
@@ -117,7 +130,7 @@ pub(super) fn settled(problem: &Problem, mut at: Fitted) -> Option<(Fitted, Free
     Some((at, Freed::Unknown))
 }
 
-/// The problem with k and c of a joint free of symmetry.
+/// The problem with k and the damping matrix of a joint free of symmetry, the rest of its law as it is.
 fn asymmetric<'a>(problem: &Problem<'a>, joint: usize) -> Problem<'a> {
     let mut laws = problem.laws.clone();
     laws[joint] = laws[joint].free();

@@ -1,6 +1,6 @@
 //! What a fit of the joint finds.
 
-use super::{Admissible, JointLikelihood, JointTests, LawFit};
+use super::{Admissible, JointLikelihood, JointTests, LawFit, LawKind};
 use jointscope_linalg::{Matrix2, RealMatrix2};
 use jointscope_spectra::{FrfPair, FrfSet};
 use num_complex::Complex64;
@@ -10,9 +10,9 @@ use std::sync::Arc;
 /// The joint from all FRFs.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct JointFit {
-    /// K, symmetric: N/m, N/rad, N·m/rad.
+    /// K of the law followed, in the middle of the band, symmetric: N/m, N/rad, N·m/rad.
     pub stiffness: RealMatrix2,
-    /// C, symmetric and passive: N·s/m, N·s/rad, N·m·s/rad.
+    /// C of the law followed, there: Im(dynamic stiffness)/ω, ηK/ω of a structural one; symmetric and passive: N·s/m, N·s/rad, N·m·s/rad.
     pub damping: RealMatrix2,
     /// Posterior covariance of (k11, k12, k22, c11, c12, c22), the fixture's quantities integrated out; with what the model's error and the laws compared add.
     pub covariance: [[f64; 6]; 6],
@@ -20,7 +20,7 @@ pub struct JointFit {
     /// what is left.
     #[serde(skip)]
     pub model_covariance: [[f64; 6]; 6],
-    /// The part of it that comes from the laws compared: by how much they differ from K + sC in the middle of the band, each as often as it is probable.
+    /// The part of it that comes from the laws compared: by how much they differ from the one followed in the middle of the band, each as often as it is probable.
     pub law_covariance: [[f64; 6]; 6],
     /// The joint's length between its ends where the fit has them.
     pub length: FittedLength,
@@ -47,6 +47,9 @@ pub struct JointFit {
     /// How stiffness and damping depend on frequency, the most probable law first; empty if not asked for.
     #[serde(skip)]
     pub laws: Vec<LawFit>,
+    /// The law that K, C, their covariance, mass and tests are of.
+    #[serde(skip)]
+    pub follows: Followed,
     /// The FRFs fitted.
     pub frfs: Vec<FrfPair>,
     /// Spectral lines fitted.
@@ -54,7 +57,7 @@ pub struct JointFit {
     /// The same FRFs as measured and as fitted.
     #[serde(skip)]
     pub fitted: Arc<FittedFrfs>,
-    /// The joint's own mass and its standard deviation, kg, where the laws compared show that it has one; k and c are those of a joint with it.
+    /// The joint's own mass and its standard deviation, kg, where the law followed has one; k and c are those of a joint with it.
     #[serde(skip_serializing_if = "Option::is_none", serialize_with = "uncertain")]
     pub mass: Option<(f64, f64)>,
     /// Whether the bodies do not rotate: only the elements (1,1) mean anything then.
@@ -63,6 +66,19 @@ pub struct JointFit {
     /// What the FRFs alone tell of the joint and of the quantities; nothing where they leave the joint's mass open.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub likelihood: Option<JointLikelihood>,
+}
+
+/// The law that a joint's numbers are of: the most probable one, or a viscous one where laws were not compared.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Followed {
+    /// Which.
+    pub law: LawKind,
+    /// The law itself where the joint's numbers are; its probability is that among the laws compared, 1 where they were not.
+    pub fit: LawFit,
+    /// Circular frequency in the middle of the band, at which K and C are stated, rad/s.
+    pub omega: f64,
+    /// Time τ (s) of a standard linear solid or exponent α of a springpot, and its standard deviation.
+    pub shape: Option<(f64, f64)>,
 }
 
 /// What a fit was made to, and what it makes of it.
@@ -141,6 +157,23 @@ impl JointFit {
     /// Whether noise and tolerances explain the FRFs.
     pub fn explains(&self) -> bool {
         self.inflation == 1.0 && self.strain == 1.0
+    }
+
+    /// The loss factor ωC/K of an element in the middle of the band and its standard deviation, with that of all that [`covariance`](Self::covariance) holds; nothing for an
+    /// element of K that is zero, and of a law without damping.
+    pub fn loss_factor(&self, row: usize, column: usize) -> Option<(f64, f64)> {
+        let (k, c) = (self.stiffness.at(row, column), self.damping.at(row, column));
+        if k == 0.0 || self.follows.law == LawKind::Constant || (self.scalar && row + column > 0) {
+            return None;
+        }
+        let (of_k, of_c) = (row + column, 3 + row + column);
+        let loss = self.follows.omega * c / k;
+        let by = [-loss / k, self.follows.omega / k];
+        let covariance = |m: usize, n: usize| self.covariance[m][n];
+        let variance = by[0] * by[0] * covariance(of_k, of_k)
+            + 2.0 * by[0] * by[1] * covariance(of_k, of_c)
+            + by[1] * by[1] * covariance(of_c, of_c);
+        Some((loss, variance.max(0.0).sqrt()))
     }
 
     /// The most probable law, if laws were compared.

@@ -140,9 +140,15 @@ impl Dynamics {
         Dynamics::new(kind, self.unit, self.middle, self.stiffness == Form::Scalar)
     }
 
-    /// The same with both matrices free of symmetry.
+    /// The same with K and the damping matrix free of symmetry; a law without damping stays without.
     pub fn free(self) -> Self {
-        Dynamics { stiffness: Form::Free, damping: Form::Free, ..self }
+        let damping = if self.damping == Form::Zero { Form::Zero } else { Form::Free };
+        Dynamics { stiffness: Form::Free, damping, ..self }
+    }
+
+    /// Number of elements by which [`free`](Self::free) has more.
+    pub fn asymmetries(&self) -> usize {
+        1 + usize::from(self.damping != Form::Zero)
     }
 
     /// Number of coordinates: K, damping, K₁, then ln(ωτ) in the middle of the band, or α − ½.
@@ -155,9 +161,14 @@ impl Dynamics {
         usize::from(matches!(self.kind, LawKind::StandardLinearSolid | LawKind::Fractional))
     }
 
-    /// Which of k11, k12, k22, c11, c12, c22 a viscous law has, in the order of its coordinates.
+    /// Which of k11, k12, k22, c11, c12, c22 in the middle of the band its first coordinates are, in their order.
     pub fn slots(&self) -> &'static [usize] {
-        if self.stiffness == Form::Scalar { &[0, 3] } else { &[0, 1, 2, 3, 4, 5] }
+        match (self.stiffness == Form::Scalar, self.damping == Form::Zero) {
+            (true, true) => &[0],
+            (true, false) => &[0, 3],
+            (false, true) => &[0, 1, 2],
+            (false, false) => &[0, 1, 2, 3, 4, 5],
+        }
     }
 
     fn split<'a>(&self, at: &'a [f64]) -> [&'a [f64]; 4] {
@@ -177,7 +188,7 @@ impl Dynamics {
         )
     }
 
-    /// K; the damping matrix as an imaginary stiffness in the middle of the band; K₁ there. N/m and so on.
+    /// K and the damping matrix as an imaginary stiffness, both in the middle of the band; K₁·ω there. N/m and so on.
     pub fn matrices(&self, at: &[f64]) -> [RealMatrix2; 3] {
         let [k, d, l, _] = self.split(at);
         [self.stiffness.matrix(k), self.damping.matrix(d), self.change.matrix(l)].map(|m| self.in_units(m))
@@ -188,6 +199,17 @@ impl Dynamics {
         let [.., shape] = self.split(at);
         let shape = shape.first()?;
         Some(if self.kind == LawKind::Fractional { 0.5 + shape } else { shape.exp() / self.middle })
+    }
+
+    /// The same with its standard deviation, from that of its coordinate.
+    pub fn shape_with_std(&self, at: &[f64], std: impl Fn(usize) -> f64) -> Option<(f64, f64)> {
+        let (shape, own) = (self.shape(at)?, std(self.count() - 1));
+        Some((shape, if self.kind == LawKind::Fractional { own } else { shape * own }))
+    }
+
+    /// What K₁ is multiplied by: none of it in the middle of the band, so that K is the stiffness there.
+    fn change(&self, s: Complex64) -> Complex64 {
+        Complex64::from(s.im / self.middle - 1.0)
     }
 
     /// What the damping matrix is multiplied by: i in the middle of the band, so that K is the stiffness there and a change of time or exponent leaves it.
@@ -252,19 +274,19 @@ impl Placed<'_> {
         self.law.count()
     }
 
-    /// K + losses·D + K₁·ω at s, on all of these lines.
+    /// K + losses·D + K₁·(ω − ω₀) at s, ω₀ being the middle of the band, on all of these lines.
     #[inline(always)]
     pub fn stiffness<T: Lines>(&self, s: &[Complex64]) -> Matrix2<T> {
         let [k, d, l] = &self.matrices;
         let losses: T = on_lines(s, |s| self.law.losses(s, self.shape));
-        let relative: T = on_lines(s, |s| Complex64::from(s.im / self.law.middle));
+        let relative: T = on_lines(s, |s| self.law.change(s));
         let at = |i: usize, j: usize| {
             losses * d.at(i, j) + (T::constant(k.at(i, j).into()) + relative * l.at(i, j))
         };
         Matrix2::new(at(0, 0), at(0, 1), at(1, 0), at(1, 1))
     }
 
-    /// Losses at s, their derivative by the law's time or exponent, and the frequency: what derivatives need of lines.
+    /// Losses at s, their derivative by the law's time or exponent, and what K₁ is multiplied by: what derivatives need of lines.
     #[inline(always)]
     pub fn factors<T: Lines>(&self, s: &[Complex64]) -> [T; 3] {
         const STEP: f64 = 1e-5;
@@ -276,7 +298,7 @@ impl Placed<'_> {
             }),
         };
         let losses = on_lines(s, |s| self.law.losses(s, self.shape));
-        [losses, by_shape, on_lines(s, |s| Complex64::from(s.im / self.law.middle))]
+        [losses, by_shape, on_lines(s, |s| self.law.change(s))]
     }
 
     /// Writes derivatives by the coordinates over `slots`, from those by the elements (11, 12, 21, 22) of the dynamic stiffness.

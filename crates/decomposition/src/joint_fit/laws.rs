@@ -33,14 +33,14 @@ pub struct LawFit {
 
 impl LawFit {
     /// A law at these coordinates of its own.
-    fn of(law: &Dynamics, own: &[f64], objective: f64, mass: Option<f64>) -> Self {
+    pub(super) fn of(law: &Dynamics, own: &[f64], objective: f64, mass: Option<f64>) -> Self {
         let [k, d, l] = law.matrices(own);
         LawFit {
             kind: law.kind,
             mass,
             probability: 0.0,
             objective,
-            stiffness: k - d.scale(law.stiffening(own)),
+            stiffness: k - d.scale(law.stiffening(own)) - l,
             damping: d.scale(law.own_damping(own)),
             change: (law.change != Form::Zero).then(|| l.scale(1.0 / law.middle)),
             shape: law.shape(own),
@@ -60,46 +60,44 @@ impl LawFit {
         self.stiffness_and_damping(Complex64::new(0.0, self.law.middle))
     }
 
+    /// The dynamic stiffness on d at s = δ + iω, without the mass.
+    pub fn dynamic_stiffness(&self, s: Complex64) -> ComplexMatrix2 {
+        self.law.placed(&self.coordinates).stiffness(&[s])
+    }
+
     /// K(ω) and C(ω) of the dynamic stiffness K + sC on d at s = δ + iω, without the mass.
     pub fn stiffness_and_damping(&self, s: Complex64) -> (RealMatrix2, RealMatrix2) {
-        let dynamic: ComplexMatrix2 = self.law.placed(&self.coordinates).stiffness(&[s]);
+        let dynamic = self.dynamic_stiffness(s);
         let damping = dynamic.im().scale(1.0 / s.im);
         (dynamic.re() - damping.scale(s.re), damping)
     }
 }
 
-/// By how much the laws compared, each as often as it is probable, are off the viscous one in the middle of the band.
+/// By how much the laws compared, each as often as it is probable, are off the one that the headline follows in the middle of the band.
 pub(super) struct Spread {
     /// Mean products of the differences in (k11, k12, k22, c11, c12, c22).
     pub covariance: [[f64; 6]; 6],
-    /// Mean square of the difference in mass among the laws with one, kg².
+    /// Mean square of the difference in mass, that of a law without one being zero, kg².
     pub mass: f64,
 }
 
 impl Spread {
-    /// `heavy`: whether the viscous joint stated is the one with mass. Nothing where it is not among the laws.
-    pub fn of(laws: &[LawFit], heavy: bool) -> Option<Self> {
-        let stated = laws.iter().find(|fit| fit.kind == LawKind::Viscous && fit.mass.is_some() == heavy)?;
+    /// `kind`, `heavy`: the law that the headline follows and whether with mass. Nothing where it is not among the laws.
+    pub fn of(laws: &[LawFit], kind: LawKind, heavy: bool) -> Option<Self> {
+        let stated = laws.iter().find(|fit| fit.kind == kind && fit.mass.is_some() == heavy)?;
         let six = |fit: &LawFit| {
             let (k, c) = fit.in_the_middle();
             [k.at(0, 0), k.at(0, 1), k.at(1, 1), c.at(0, 0), c.at(0, 1), c.at(1, 1)]
         };
         let reference = six(stated);
         let mut spread = Spread { covariance: [[0.0; 6]; 6], mass: 0.0 };
-        let mut heavy_ones = 0.0;
         for fit in laws {
             let own = six(fit);
             let by: [f64; 6] = std::array::from_fn(|e| own[e] - reference[e]);
             for (row, a) in spread.covariance.iter_mut().zip(by) {
                 row.iter_mut().zip(by).for_each(|(entry, b)| *entry += fit.probability * a * b);
             }
-            if let Some((mass, stated)) = fit.mass.zip(stated.mass) {
-                heavy_ones += fit.probability;
-                spread.mass += fit.probability * (mass - stated).powi(2);
-            }
-        }
-        if heavy_ones > 0.0 {
-            spread.mass /= heavy_ones;
+            spread.mass += fit.probability * (fit.mass.unwrap_or(0.0) - stated.mass.unwrap_or(0.0)).powi(2);
         }
         Some(spread)
     }
@@ -139,20 +137,22 @@ pub(super) struct Candidate {
     pub evidence: f64,
     /// What it leaves, as an inflation of the noise.
     pub inflation: f64,
+    /// Coordinates of the whole fit there.
+    pub at: Vec<f64>,
 }
 
 /// All laws of one joint with and without mass (in units of `scale`), the most probable first. `viscous` is that law at its optimum, `heavy` the same with mass where that is
-/// known.
+/// known. After them the coordinates of the first.
 pub(super) fn compared(
     viscous: (&Problem, &Fitted),
     heavy: Option<(&Problem, &Fitted)>,
     scale: f64,
-) -> Vec<LawFit> {
+) -> (Vec<LawFit>, Vec<f64>) {
     probable(candidates(viscous, heavy, scale))
 }
 
-/// Laws by their evidence, the most probable first.
-pub(super) fn probable(mut all: Vec<Candidate>) -> Vec<LawFit> {
+/// Laws by their evidence, the most probable first, and the coordinates of that one.
+pub(super) fn probable(mut all: Vec<Candidate>) -> (Vec<LawFit>, Vec<f64>) {
     // Noise is inflated by what the best law leaves.
     let best = all.iter().min_by(|a, b| a.fit.objective.total_cmp(&b.fit.objective));
     let inflation = best.map_or(1.0, |best| best.inflation);
@@ -162,14 +162,15 @@ pub(super) fn probable(mut all: Vec<Candidate>) -> Vec<LawFit> {
     ranked(all)
 }
 
-fn ranked(mut all: Vec<Candidate>) -> Vec<LawFit> {
+fn ranked(mut all: Vec<Candidate>) -> (Vec<LawFit>, Vec<f64>) {
     let most = all.iter().map(|candidate| candidate.evidence).fold(f64::NEG_INFINITY, f64::max);
     let total: f64 = all.iter().map(|candidate| (candidate.evidence - most).exp()).sum();
     for candidate in &mut all {
         candidate.fit.probability = (candidate.evidence - most).exp() / total;
     }
     all.sort_by(|a, b| b.evidence.total_cmp(&a.evidence));
-    all.into_iter().map(|candidate| candidate.fit).collect()
+    let first = all.first().map_or_else(Vec::new, |first| first.at.clone());
+    (all.into_iter().map(|candidate| candidate.fit).collect(), first)
 }
 
 fn candidates(
@@ -266,13 +267,27 @@ pub(super) fn own_parameters(law: &Dynamics) -> Vec<Parameter> {
     };
     let mut all = vec![own(STIFFNESS); law.stiffness.count()];
     all.extend(std::iter::repeat_n(own(LOSS), law.damping.count() + law.change.count()));
-    if law.shapes() > 0 {
-        all.push(match law.kind {
-            LawKind::Fractional => own(EXPONENT).between(FROM_LIMITS - 0.5, 0.5 - FROM_LIMITS),
-            _ => own(TIME),
-        });
-    }
+    all.extend(shape_parameter(law));
     all
+}
+
+/// The same with nothing known of the matrices beforehand: a time or an exponent that no loss shows would else be anywhere.
+pub(super) fn open_parameters(law: &Dynamics) -> Vec<Parameter> {
+    let open = Parameter::new(Transform::Linear { centre: 0.0, scale: 1.0 });
+    let mut all = vec![open; law.count() - law.shapes()];
+    all.extend(shape_parameter(law));
+    all
+}
+
+fn shape_parameter(law: &Dynamics) -> Option<Parameter> {
+    let own = |std: f64| {
+        Parameter::new(Transform::Linear { centre: 0.0, scale: 1.0 }).with_precision(1.0 / (std * std))
+    };
+    match law.kind {
+        LawKind::Fractional => Some(own(EXPONENT).between(FROM_LIMITS - 0.5, 0.5 - FROM_LIMITS)),
+        LawKind::StandardLinearSolid => Some(own(TIME)),
+        _ => None,
+    }
 }
 
 /// Prior variances, those of quantities of which nothing is known being large.
@@ -291,7 +306,8 @@ impl Candidate {
         let own = &at.point.coordinates[first..first + law.count()];
         let mass = problem.mass.map(|_| problem.mass_at(&at.point.coordinates));
         let fit = LawFit::of(law, own, at.point.objective, mass);
-        Some(Candidate { fit, evidence, inflation: problem.inflation(&at.point) })
+        let whole = at.point.coordinates.clone();
+        Some(Candidate { fit, evidence, inflation: problem.inflation(&at.point), at: whole })
     }
 }
 
@@ -323,10 +339,12 @@ mod tests {
             }
         };
         let laws = [fit(LawKind::Structural, 0.75, 1.2, 0.08), fit(LawKind::Viscous, 0.25, 1.0, 0.07)];
-        let spread = Spread::of(&laws, true).unwrap();
+        let spread = Spread::of(&laws, LawKind::Viscous, true).unwrap();
         assert!((spread.covariance[0][0] - 0.75 * 0.04).abs() < 1e-12);
         assert_eq!(spread.covariance[2][2], 0.0);
         assert!((spread.mass - 0.75 * 1e-4).abs() < 1e-12);
-        assert!(Spread::of(&laws, false).is_none());
+        let about_the_first = Spread::of(&laws, LawKind::Structural, true).unwrap();
+        assert!((about_the_first.covariance[0][0] - 0.25 * 0.04).abs() < 1e-12);
+        assert!(Spread::of(&laws, LawKind::Viscous, false).is_none());
     }
 }

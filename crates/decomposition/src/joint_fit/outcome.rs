@@ -1,6 +1,6 @@
 //! What a fit finds: the joints with their tests and covariance, the fixture's quantities.
 
-use super::admissible::{boundary, not_negative, refitted};
+use super::admissible::{boundary, by_chance, not_negative, refitted};
 use super::law::{Dynamics, Form};
 use super::laws::Spread;
 use super::likelihood::ELEMENTS;
@@ -8,7 +8,8 @@ use super::problem::{Fitted, Problem};
 use super::quantities::Uncertain;
 use super::uncertainty::{length_between, strain, total, units};
 use super::{
-    FittedFrfs, FittedQuantity, JointFit, JointLikelihood, JointTests, LawFit, SeveralError, UnmovedQuantity,
+    FittedFrfs, FittedQuantity, Followed, JointFit, JointLikelihood, JointTests, LawFit, SeveralError,
+    UnmovedQuantity,
 };
 use jointscope_inference::{Covariance, NormalEquations};
 use jointscope_linalg::Cholesky;
@@ -41,7 +42,7 @@ impl Inflated {
     }
 }
 
-/// A finished fit of viscous joints, and what else is known of it.
+/// A finished fit of joints by the laws that they follow, and what else is known of it.
 pub(super) struct Outcome<'a> {
     pub problem: &'a Problem<'a>,
     pub unmoved: &'a [Uncertain],
@@ -70,7 +71,7 @@ struct Slot {
 }
 
 impl Outcome<'_> {
-    /// From the optimum with every c free. `asymmetry` tells by how much χ² falls where k and c of a joint may be unsymmetric, variances counting so many times.
+    /// From the optimum with every c free. `asymmetry` tells by how much χ² falls where k and the damping matrix of a joint may be unsymmetric, variances counting so many times.
     pub fn of(
         self,
         free: &Fitted,
@@ -99,8 +100,10 @@ impl Outcome<'_> {
         let spreads: Vec<Spread> = self
             .laws
             .iter()
-            .map(|laws| {
-                Spread::of(laws, mass.is_some()).unwrap_or(Spread { covariance: [[0.0; 6]; 6], mass: 0.0 })
+            .zip(&problem.laws)
+            .map(|(laws, law)| {
+                let none = Spread { covariance: [[0.0; 6]; 6], mass: 0.0 };
+                Spread::of(laws, law.kind, mass.is_some()).unwrap_or(none)
             })
             .collect();
         let slots = self.slots();
@@ -123,10 +126,20 @@ impl Outcome<'_> {
         let fitted = Arc::new(FittedFrfs { measured, modelled });
         let joints = problem.places().zip(&self.laws).enumerate().map(|(place, ((first, law), laws))| {
             let [k, d, _] = law.matrices(&at.point.coordinates[first..first + law.count()]);
-            let lowest = |first: usize| {
-                not_negative(law.stiffness, &free.point.coordinates, first, (&covariance, strain))
+            let lowest = |form: Form, first: usize| {
+                not_negative(form, &free.point.coordinates, first, (&covariance, strain))
             };
+            let shape = law.shape_with_std(&at.point.coordinates[first..first + law.count()], |own| {
+                total.std(first + own)
+            });
             let mass = mass.filter(|_| place == 0);
+            let own = &at.point.coordinates[first..first + law.count()];
+            let mut stated = LawFit::of(law, own, at.point.objective, mass.map(|(mass, _)| mass));
+            let same = |fit: &&LawFit| fit.kind == law.kind && fit.mass.is_some() == stated.mass.is_some();
+            stated.probability = match laws.is_empty() {
+                true => 1.0,
+                false => laws.iter().find(same).map_or(0.0, |fit| fit.probability),
+            };
             JointFit {
                 stiffness: k,
                 damping: d.scale(1.0 / law.middle),
@@ -146,12 +159,13 @@ impl Outcome<'_> {
                 quantities: quantities.clone(),
                 unmoved: unmoved.clone(),
                 tests: JointTests {
-                    reciprocity: asymmetry(place, strain).map(|gain| (-0.5 * gain).exp()),
-                    definite: lowest(first),
-                    passive: lowest(first + law.stiffness.count()),
+                    reciprocity: asymmetry(place, strain).map(|gain| by_chance(law, gain)),
+                    definite: lowest(law.stiffness, first),
+                    passive: lowest(law.damping, first + law.stiffness.count()),
                 },
                 admissible: None,
                 laws: laws.clone(),
+                follows: Followed { law: law.kind, fit: stated, omega: law.middle, shape },
                 frfs: setup.recorded.pairs.clone(),
                 lines: setup.recorded.s.len(),
                 fitted: Arc::clone(&fitted),
@@ -224,7 +238,7 @@ impl Outcome<'_> {
         test.quantities.iter().enumerate().map(of).collect()
     }
 
-    /// What the FRFs alone tell of one joint and of the quantities, the other joints and a mass integrated out.
+    /// What the FRFs alone tell of one joint's numbers and of the quantities, the other joints, a mass and the rest of the law integrated out.
     fn likelihood(
         &self,
         (first, law): (usize, &Dynamics),
@@ -232,7 +246,8 @@ impl Outcome<'_> {
         equations: &NormalEquations,
     ) -> Option<JointLikelihood> {
         let problem = self.problem;
-        let kept = (first..first + law.count()).chain(problem.own()..problem.parameters.len()).collect();
+        let kept =
+            (first..first + law.slots().len()).chain(problem.own()..problem.parameters.len()).collect();
         JointLikelihood::of(law, (free, kept), equations, &problem.parameters)
     }
 

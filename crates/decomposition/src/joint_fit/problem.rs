@@ -8,8 +8,7 @@ use super::uncoupled::Uncoupled;
 use super::{coordinates, laws};
 use jointscope_fixture::Fixture;
 use jointscope_inference::{
-    Convergence, Covariance, Damping, LeastSquares, NormalEquations, Parameter, Precision, Settings,
-    Transform, descend,
+    Convergence, Covariance, Damping, LeastSquares, NormalEquations, Parameter, Precision, Settings, descend,
 };
 use num_complex::Complex64;
 use std::sync::Arc;
@@ -125,11 +124,10 @@ pub(super) fn lower(a: Fitted, b: Fitted) -> Fitted {
 }
 
 impl<'a> Problem<'a> {
-    /// Viscous joints of which nothing is known beforehand, with a mass of the first if there is a scale for it (kg).
-    pub fn viscous(test: Test<'a>, laws: Vec<Dynamics>, mass: Option<f64>) -> Self {
-        let own = Parameter::new(Transform::Linear { centre: 0.0, scale: 1.0 });
-        let count = laws.iter().map(Dynamics::count).sum();
-        Problem::of(test, laws, mass, vec![own; count])
+    /// Joints of whose stiffness and losses nothing is known beforehand, with a mass of the first if there is a scale for it (kg).
+    pub fn open(test: Test<'a>, laws: Vec<Dynamics>, mass: Option<f64>) -> Self {
+        let own = laws.iter().flat_map(laws::open_parameters).collect();
+        Problem::of(test, laws, mass, own)
     }
 
     /// Joints of any laws, with what is known beforehand of their stiffness and losses.
@@ -146,7 +144,7 @@ impl<'a> Problem<'a> {
 
     /// The same with the joints' matrices in other forms.
     pub fn with_forms(&self, laws: Vec<Dynamics>) -> Self {
-        Problem::viscous(self.test, laws, self.mass)
+        Problem::open(self.test, laws, self.mass)
     }
 
     /// The same for values of these weights.
@@ -189,11 +187,14 @@ impl<'a> Problem<'a> {
         all
     }
 
-    /// Coordinates of the same joints and fixture where the laws' matrices have other forms.
+    /// Coordinates of the same joints and fixture where K and the damping matrix of the same laws have other forms.
     pub fn converted(&self, at: &[f64], laws: &[Dynamics]) -> Vec<f64> {
         let own = self.places().zip(laws).flat_map(|((first, law), other)| {
-            let [k, d, _] = law.matrices(&at[first..first + law.count()]);
-            coordinates(other, k, d)
+            let own = &at[first..first + law.count()];
+            let [k, d, _] = law.matrices(own);
+            // K₁ and a time or an exponent stay as they are.
+            let rest = &own[law.stiffness.count() + law.damping.count()..];
+            [coordinates(other, k, d), rest.to_vec()].concat()
         });
         own.chain(at[self.of_laws()..].iter().copied()).collect()
     }

@@ -71,13 +71,17 @@ pub fn fit_joints(
     let (quantities, unmoved, _) =
         that_matter(setup, laws.clone(), &[start(1.0)], quantities).ok_or(SeveralError::NoStart)?;
     let test = Test { setup, quantities: &quantities, weights: &recorded.weights };
-    let problem = Problem::viscous(test, laws.clone(), None);
-    let mut first = lowest(&problem, &start).ok_or(SeveralError::NoStart)?;
-    first.refresh(&problem).ok_or(SeveralError::NoStart)?;
-    let laws = match options.laws {
-        true => laws::compared(&problem, &first),
-        false => vec![Vec::new(); joints.len()],
+    let viscous = Problem::open(test, laws.clone(), None);
+    let mut first = lowest(&viscous, &start).ok_or(SeveralError::NoStart)?;
+    first.refresh(&viscous).ok_or(SeveralError::NoStart)?;
+    let (laws, followed) = match options.laws {
+        true => {
+            let (laws, followed) = laws::compared(&viscous, &first);
+            (laws, followed.fitted(test))
+        }
+        false => (vec![Vec::new(); joints.len()], None),
     };
+    let (problem, first) = followed.unwrap_or((viscous, first));
     let inflated = Inflated::of(&problem, &first);
     let problem = problem.weighted(&inflated.weights);
     let free = inflated.refitted(&problem, first).ok_or(SeveralError::NoStart)?;

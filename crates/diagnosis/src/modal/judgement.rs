@@ -1,9 +1,9 @@
 //! What a comparison by modes comes to.
 
 use crate::catalogue::{Candidate, with_wrong_quantities};
-use crate::diagnosis::{Finding, Tried};
 use crate::estimates::estimates;
 use crate::evidence::{deviates_by_chance, excess, explained};
+use crate::finding::{Finding, Tried};
 use crate::fit::Fit;
 use crate::fitter::Fitter;
 use crate::modal::changes::States;

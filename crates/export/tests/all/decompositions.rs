@@ -178,6 +178,28 @@ fn another_law_than_the_one_written_is_not_claimed_for_what_is_written() {
 }
 
 #[test]
+fn a_structural_joint_is_written_with_structural_damping_and_no_dashpot() {
+    let mut file = fitted();
+    let stated = exported(&file, &ExportOptions::default()).unwrap().joints[0].damping;
+    file["joint"]["law"] = json!("structural");
+    file["joint"]["follows"] = json!({"law": "structural", "frequency": 100.0,
+        "loss_factor": {"value": [[0.004, 0.005], [0.005, 0.006]], "std": [[1e-4, 1e-4], [1e-4, 1e-4]]}});
+    let joint = exported(&file, &ExportOptions::default()).unwrap().joints[0].clone();
+    assert!(joint.says.contains("loss factor of k11 being 0.004"), "{}", joint.says);
+    assert_eq!(joint.damping, [[0.0; 2]; 2]);
+    let omega = std::f64::consts::TAU * 100.0;
+    for (h, c) in joint.structural.iter().flatten().zip(stated.iter().flatten()) {
+        assert!((h - omega * c).abs() <= 1e-12 * h.abs(), "{h} for {c}");
+    }
+    // Of another law K and C hold at one frequency, which is said.
+    file["joint"]["law"] = json!("fractional");
+    file["joint"]["follows"] = json!({"law": "fractional", "frequency": 100.0});
+    let joint = exported(&file, &ExportOptions::default()).unwrap().joints[0].clone();
+    assert!(joint.says.contains("fractional, and K and C are what it has at 100 Hz alone"), "{}", joint.says);
+    assert_eq!(joint.damping, stated);
+}
+
+#[test]
 fn a_stiffness_that_is_not_positive_definite_is_told() {
     let noted = |k: [[f64; 2]; 2]| {
         let export = exported(&file(k, [[0.0; 2]; 2]), &ExportOptions::default()).unwrap();

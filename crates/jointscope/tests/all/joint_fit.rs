@@ -296,11 +296,11 @@ fn a_joint_whose_k21_is_a_tenth_off_its_k12_fails_reciprocity_and_a_symmetric_on
     let sides = Sides::of(&fixture, None).unwrap();
     let dummy = recorded(&fixture, &mut Noise::new(1), 1e-6, &EIGHT[..4]);
     let compliances = decompose(&dummy, &sides, Relation::Exact).unwrap().sides;
-    let p = |k21: f64| {
+    let p = |k21: f64, structural: bool| {
         let mut values = vec![Complex64::ZERO; dummy.all_values().len()];
         let n = lines().len();
         for (line, omega) in lines().omegas().enumerate() {
-            let c = |k: f64, c: f64| Complex64::new(k, omega * c);
+            let c = |k: f64, c: f64| Complex64::new(k, if structural { 0.012 * k } else { omega * c });
             let joint = Matrix2::new(c(2.4e6, 12.0), c(-8.4e4, -0.35), c(k21, -0.35), c(4.1e3, 0.02));
             let s = &compliances;
             let [a21, a22, b33, b43] = [&s.alpha21, &s.alpha22, &s.beta33, &s.beta43].map(|all| all[line]);
@@ -314,14 +314,157 @@ fn a_joint_whose_k21_is_a_tenth_off_its_k12_fails_reciprocity_and_a_symmetric_on
             }
         }
         let frfs = FrfSet::new(lines(), FrfForm::Accelerance, dummy.pairs().to_vec(), values).unwrap();
-        let fit = fit(&fixture, &Noise::new(4).on(&frfs, 0.01), false);
+        let fit = fit(&fixture, &Noise::new(4).on(&frfs, 0.01), structural);
         assert!(k21 != -8.4e4 || (fit.stiffness.at(0, 0) / 2.4e6 - 1.0).abs() < 0.01, "{:?}", fit.stiffness);
         assert_eq!(fit.admissible.is_some(), k21 != -8.4e4);
         fit.tests.reciprocity.unwrap()
     };
-    let (symmetric, not) = (p(-8.4e4), p(-8.4e4 * 1.1));
-    println!("symmetric {symmetric}, not {not}");
-    assert!(symmetric > 0.05 && not < 1e-3, "{symmetric} {not}");
+    for structural in [false, true] {
+        let (symmetric, not) = (p(-8.4e4, structural), p(-8.4e4 * 1.1, structural));
+        println!("structural {structural}: symmetric {symmetric}, not {not}");
+        assert!(symmetric > 0.05 && not < 1e-3, "{structural}: {symmetric} {not}");
+    }
+}
+
+/// A joint of each law, with losses of rank one and k of rank one: on the edge of what physics allows, where p-values are those of the null.
+fn edges() -> [(LawKind, &'static str); 3] {
+    [
+        (LawKind::Viscous, ""),
+        (LawKind::Structural, r#"{"kind": "loss_factor", "place": "J", "loss_factor": 0.012}"#),
+        (
+            LawKind::StandardLinearSolid,
+            r#"{"kind": "relaxation", "place": "J", "ratio": 0.06, "time": 4e-4}"#,
+        ),
+    ]
+}
+
+/// p-values of the three tests with laws compared, of a joint on the edge, by law; how often the law was followed; χ² per degree of freedom and scores of k11, k12, k22.
+#[derive(Default)]
+struct ByLaw {
+    p: [Vec<f64>; 3],
+    followed: usize,
+    scores: Vec<[f64; 3]>,
+    refused: usize,
+    held: usize,
+}
+
+fn run_by_law((kind, physics): (LawKind, &str), count: u64, seed: u64) -> ByLaw {
+    let damping = if kind == LawKind::Viscous { Case::edge().damping } else { [0.0; 3] };
+    let case = Case { damping, ..Case::edge() };
+    let (analyst, real) = (fixture(&case, ""), fixture(&case, physics));
+    let (mut rng, mut noise) = (generator(seed), Noise::new(seed));
+    let mut runs = ByLaw::default();
+    for _ in 0..count {
+        let truth = drawn_within_tolerance(&real, &mut rng).unwrap();
+        let fit = fit(&analyst, &recorded(&truth, &mut noise, 0.01, &EIGHT), true);
+        for (all, p) in runs.p.iter_mut().zip([fit.tests.reciprocity, fit.tests.definite, fit.tests.passive])
+        {
+            all.extend(p);
+        }
+        runs.followed += usize::from(fit.follows.law == kind && fit.mass.is_none());
+        runs.refused += usize::from(!fit.tests.failed().is_empty());
+        runs.held += usize::from(fit.is_on_the_boundary);
+        // The solid's k in the middle of the band is not what its fixture states.
+        if kind != LawKind::StandardLinearSolid {
+            let k = found(&fit);
+            runs.scores
+                .push(std::array::from_fn(|e| (k[e] - case.stiffness[e]) / fit.covariance[e][e].sqrt()));
+        }
+    }
+    let [reciprocity, definite, passive] = runs.p.each_ref().map(|p| from_uniform(p));
+    println!(
+        "{kind:?}: {count} runs, followed {}, refused {}, C held {}, farthest from uniform: reciprocity {reciprocity:.3}, definite {definite:.3}, passive {passive:.3}, \
+         chance exceeds {:.3} once in twenty times",
+        runs.followed,
+        runs.refused,
+        runs.held,
+        1.36 / (count as f64).sqrt()
+    );
+    for (e, name) in NAMES.iter().enumerate().take(if runs.scores.is_empty() { 0 } else { 3 }) {
+        println!("{name}: rms of error/std {:.3}", rms(runs.scores.iter().map(|s| s[e])));
+    }
+    for (name, p) in ["reciprocity", "definite", "passive"].iter().zip(&runs.p) {
+        let below = |q: f64| p.iter().filter(|p| **p < q).count();
+        println!(
+            "{name}: p below 0.01, 0.05, 0.2, 0.5, 0.8 of {}: {} {} {} {} {}",
+            p.len(),
+            below(0.01),
+            below(0.05),
+            below(0.2),
+            below(0.5),
+            below(0.8)
+        );
+    }
+    runs
+}
+
+#[test]
+fn a_structural_joint_is_stated_and_tested_as_one_and_keeps_its_loss_factor() {
+    let case = Case { damping: [0.0; 3], ..Case::ordinary() };
+    let physics = r#"{"kind": "loss_factor", "place": "J", "loss_factor": 0.012}"#;
+    let (analyst, real) = (fixture(&case, ""), fixture(&case, physics));
+    let (mut rng, mut noise) = (generator(31), Noise::new(31));
+    for _ in 0..4 {
+        let truth = drawn_within_tolerance(&real, &mut rng).unwrap();
+        let frfs = recorded(&truth, &mut noise, 0.01, &EIGHT);
+        let fit = fit(&analyst, &frfs, true);
+        assert_eq!(fit.follows.law, LawKind::Structural);
+        assert!(!fit.is_on_the_boundary, "{:?}", fit.damping);
+        for p in [fit.tests.reciprocity, fit.tests.definite, fit.tests.passive] {
+            assert!(p.is_some_and(|p| p > 1e-3), "{:?}", fit.tests);
+        }
+        for (row, column) in [(0, 0), (0, 1), (1, 1)] {
+            let (loss, std) = fit.loss_factor(row, column).unwrap();
+            assert!((loss - 0.012).abs() < 4.0 * std && std < 0.004, "{row}{column}: {loss} ± {std}");
+        }
+        // C = ηK/ω in the middle of the band.
+        let equivalent = 0.012 * fit.stiffness.at(0, 0) / fit.follows.omega;
+        assert!((fit.damping.at(0, 0) / equivalent - 1.0).abs() < 0.05);
+    }
+}
+
+#[test]
+fn a_structural_joint_of_which_one_reference_reads_too_little_fails_a_test_or_is_not_explained() {
+    let case = Case { damping: [0.0; 3], ..Case::ordinary() };
+    let physics = r#"{"kind": "loss_factor", "place": "J", "loss_factor": 0.012}"#;
+    let (analyst, real) = (fixture(&case, ""), fixture(&case, physics));
+    let truth = drawn_within_tolerance(&real, &mut generator(33)).unwrap();
+    let frfs = recorded(&truth, &mut Noise::new(33), 0.01, &EIGHT[..4]);
+    let n = frfs.lines().len();
+    // The reference at 2 reads a tenth too little: both of its FRFs are a tenth too large.
+    let wrong = frfs.with_values(|index, value| if index / n >= 2 { value * 1.1 } else { value });
+    let fit = fit(&analyst, &wrong, true);
+    println!("{:?}, follows {:?}, chi2 {}", fit.tests, fit.follows, fit.chi2_per_dof);
+    assert!(!fit.tests.failed().is_empty() || !fit.explains(), "{:?}", fit.tests);
+}
+
+#[test]
+fn a_joint_whose_k22_is_negative_fails_definiteness_and_the_nearest_one_allowed_is_given() {
+    let sound = fixture(&Case::ordinary(), "");
+    let mut unstable = sound.clone();
+    let k22 = unstable.quantities().iter().position(|own| own.path == "joints/J/stiffness/1/1").unwrap();
+    unstable.set_quantities(vec![(k22, -900.0)]);
+    let fit = fit(&sound, &recorded(&unstable, &mut Noise::new(6), 0.01, &EIGHT), true);
+    println!("{:?} {:?}", fit.stiffness, fit.tests);
+    assert!(fit.stiffness.at(1, 1) < 0.0, "{:?}", fit.stiffness);
+    assert!(fit.tests.definite.is_some_and(|p| p < 1e-3), "{:?}", fit.tests);
+    let nearest = fit.admissible.unwrap().stiffness;
+    assert!(nearest[0][0] >= 0.0 && nearest[1][1] >= 0.0, "{nearest:?}");
+}
+
+#[test]
+#[ignore = "minutes; the record of the joint by its law has its figures"]
+fn p_values_are_uniform_under_each_law() {
+    let all = edges().map(|law| (law.0, run_by_law(law, 60, 41)));
+    for (law, runs) in &all {
+        for p in &runs.p[..2] {
+            assert!(from_uniform(p) < 1.63 / (p.len() as f64).sqrt(), "{law:?}: {}", from_uniform(p));
+        }
+        // A noisy matrix of rank one has an eigenvalue below zero in more than half of all cases where the other elements scatter more than that eigenvalue: middle p are then
+        // too small, those that fail must not be.
+        let failing = runs.p[2].iter().filter(|p| **p < 0.05).count() as f64;
+        assert!(failing <= 0.05 * 60.0 + 2.6 * (60.0 * 0.05 * 0.95f64).sqrt(), "{law:?}: {failing}");
+    }
 }
 
 #[test]

@@ -58,7 +58,7 @@ pub(super) fn laws(fit: &JointFit) -> impl Into<Block> {
         );
     }
     table.caption("How stiffness and damping depend on frequency, by the evidence of the FRFs").footnote(
-        "k: of the law's own spring, at rest for laws whose stiffness changes. The damping matrix of every law has three free elements; a law pays for \
+        "k: of the law's own spring, at rest for laws whose stiffness changes; the figures above are those in the middle of the band. The damping matrix of every law has three free elements; a law pays for \
          what it adjusts.",
     )
 }
@@ -73,7 +73,7 @@ pub(super) fn tests(tests: &JointTests) -> impl Into<Block> {
         .words("What physics asks of a joint", |(what, _)| (*what).to_owned())
         .numbers("p", "", |(_, p)| significant(*p, 2))
         .marked(|(_, p)| (*p < JointTests::FAILED).then_some(Tone::Problem))
-        .caption("p: how often chance speaks as much against it, if it holds")
+        .caption("p: how often chance speaks as much against it, if it holds and the joint follows the law that k and c are of")
 }
 
 pub(super) fn moved(fixture: &Fixture, fit: &JointFit) -> impl Into<Block> {

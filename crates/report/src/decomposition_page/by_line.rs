@@ -1,7 +1,6 @@
 //! K and C over the spectral lines.
 
-use jointscope_decomposition::{Analysis, Element, Estimate, LawKind, Method, Part};
-use num_complex::Complex64;
+use jointscope_decomposition::{Analysis, Element, Estimate, Method, Part};
 
 use super::Subject;
 use super::element::{meaning, symbol, unit};
@@ -44,8 +43,8 @@ fn introduction(subject: &Subject, part: Part, symbol: &str) -> String {
         ),
     };
     let mass = if analysis.lines_hold_mass() {
-        " The joint has a mass of its own, of which these lines know nothing: they hold its inertia and are no stiffness of the joint alone, so \
-         neither the fitted joint nor a law is drawn over them, and the two are not held against each other."
+        " The joint has a mass of its own, of which these lines know nothing: they hold its inertia, about −ω²M, and are no stiffness of the joint alone. \
+         The law drawn over them has that inertia in it; k and c above have not, and are not held against these lines."
     } else {
         ""
     };
@@ -92,19 +91,16 @@ fn plot(subject: &Subject, part: Part, element: Element) -> Plot {
         .caption(caption(subject, part, element))
 }
 
-/// The most probable law over the lines, of spectra by the exact relation, where it is not level.
+/// The law that the joint's numbers are of over the lines, its mass included as the lines hold it; of spectra by the exact relation, where laws were compared.
 fn law(subject: &Subject, part: Part, element: Element) -> Option<Vec<Option<f64>>> {
-    let law = subject.analysis.joint_fit.as_ref().ok()?.law().filter(|_| !subject.is_paper())?;
-    // K by line would hold the mass, the law does not.
-    if law.kind == LawKind::Viscous || law.mass.is_some() || subject.analysis.lines_hold_mass() {
+    let analysis = subject.analysis;
+    let fit = analysis.joint_fit.as_ref().ok().filter(|_| !subject.is_paper())?;
+    // Without laws and mass it is level, which is drawn as such.
+    if fit.law().is_none() && fit.mass.is_none() {
         return None;
     }
-    let spectrum = &subject.analysis.spectrum;
-    let at = |omega: f64| {
-        let s = Complex64::new(spectrum.decay, omega);
-        (omega > 0.0).then(|| element.of(&part.of(law.stiffness_and_damping(s))))
-    };
-    Some(spectrum.h41.lines.omegas().map(at).collect())
+    let at = |line: usize| analysis.fitted_at(line).map(|both| element.of(&part.of(both)));
+    Some((0..analysis.spectrum.h41.lines.len()).map(at).collect())
 }
 
 /// The horizontal line: the best figure of the same relation as the spectrum.
@@ -131,7 +127,7 @@ fn caption(subject: &Subject, part: Part, element: Element) -> String {
     let what = if subject.is_paper() {
         "eq (7) varies over the lines even for a constant joint; the dashed curve is what it makes of the fixture's".to_owned()
     } else if subject.analysis.lines_hold_mass() {
-        "with the inertia of the joint's mass; without one a constant joint would be level".to_owned()
+        "with the inertia of the joint's mass, as the law drawn has it; without one a constant joint would be level".to_owned()
     } else {
         "a constant joint would be level".to_owned()
     };

@@ -8,7 +8,6 @@ use super::all_frfs::{laws, moved, tests};
 use super::element::{symbol, unit};
 use crate::context::PageContext;
 use crate::drawing::SideView;
-use crate::error::PageError;
 use crate::format::{capitalised, quantity, significant};
 use crate::report::Report;
 use crate::section::{Section, Tone, Verdict};
@@ -19,18 +18,10 @@ const CORRELATED: f64 = 0.5;
 /// Correlations listed at the most.
 const LISTED: usize = 12;
 
-/// The page of several joints as one self-contained HTML file: the fixture, k and c of every joint with the fixture's own beside them, laws and tests of each, numbers of
+/// The page of several joints: the fixture, k and c of every joint with the fixture's own beside them, laws and tests of each, numbers of
 /// different joints that are known together, and where the fixture moved.
 ///
 /// `fixture` is the one that the joints were found with. The same input gives the same bytes.
-///
-/// # Errors
-/// As every page.
-pub fn joints_page(fit: &JointsFit, fixture: &Fixture, context: &PageContext) -> Result<String, PageError> {
-    joints_report(fit, fixture, context).html()
-}
-
-/// The same with its tables, curves and figures to be had apart.
 pub fn joints_report(fit: &JointsFit, fixture: &Fixture, context: &PageContext) -> Report {
     let names: Vec<&str> = fit.joints.iter().map(|joint| joint.name.as_str()).collect();
     let sections = fit.joints.iter().map(joint_section);

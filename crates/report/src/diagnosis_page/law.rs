@@ -18,20 +18,7 @@ pub(super) struct Law {
 impl Law {
     pub fn of(finding: &Finding, site: &Site, fixture: &Fixture) -> Option<Self> {
         let kind = finding.effect.kind;
-        let formula = match kind {
-            EffectKind::AddedMass => "−ω²m",
-            EffectKind::Support => "k + iωc",
-            EffectKind::AttachedResonator => "−ω²m(ω₀² + 2iζω₀ω)/(ω₀² − ω² + 2iζω₀ω)",
-            EffectKind::InterfaceCompliance => "k + iωc in series",
-            EffectKind::ShearDeformation => "κGA/L in series",
-            EffectKind::ChannelGain => "gain − 1",
-            EffectKind::ChannelDelay => "e^(−iωτ) − 1",
-            EffectKind::PointOffset => "dx",
-            EffectKind::StiffnessChange => "factor − 1",
-            EffectKind::LossFactor => "iη",
-            EffectKind::Relaxation => "ratio·iωτ/(1 + iωτ)",
-            _ => return None,
-        };
+        let formula = kind.spec().words.law?;
         let length = match site {
             Site::Series { joint, .. } => fixture.joint(joint).map_or(f64::NAN, |j| fixture.joint_length(j)),
             _ => f64::NAN,
@@ -48,6 +35,7 @@ impl Law {
         match self.kind {
             EffectKind::AddedMass => Complex64::from(-omega * omega * value(1)),
             EffectKind::Support => value(1) + i * omega * value(2),
+            EffectKind::Bypass => value(2) + i * omega * value(3),
             EffectKind::AttachedResonator => {
                 let own = TAU * value(2);
                 let spring = own * own + 2.0 * i * value(3) * own * omega;
@@ -57,8 +45,14 @@ impl Law {
             EffectKind::ShearDeformation => Complex64::from(value(0) / self.length),
             EffectKind::ChannelGain | EffectKind::StiffnessChange => Complex64::from(value(0) - 1.0),
             EffectKind::ChannelDelay => (-i * omega * value(0)).exp() - 1.0,
+            EffectKind::ChannelHighpass => i * hz / (i * hz + value(0)) - 1.0,
+            EffectKind::ChannelResonance => {
+                let own = value(0) * value(0);
+                own / (own - hz * hz + 2.0 * i * value(1) * value(0) * hz) - 1.0
+            }
             EffectKind::PointOffset => Complex64::from(value(0)),
             EffectKind::LossFactor => i * value(0),
+            EffectKind::Springpot => value(0) * (i * omega).powf(value(1)),
             EffectKind::Relaxation => value(0) * i * omega * value(1) / (1.0 + i * omega * value(1)),
             _ => Complex64::new(f64::NAN, f64::NAN),
         }
@@ -93,6 +87,24 @@ mod tests {
         assert!((resonator.at(3.0) / mass.at(3.0) - 1.0).norm() < 1e-3);
         let spring = 0.02 * (TAU * 300.0).powi(2);
         assert!((resonator.at(3e4) / spring - 1.0).norm() < 1e-3);
+    }
+
+    #[test]
+    fn every_law_of_the_table_of_effects_can_be_drawn() {
+        for kind in EffectKind::ALL.into_iter().filter(|kind| kind.spec().words.law.is_some()) {
+            let values = vec![0.5; kind.spec().parameters.len()];
+            let mut law = law(kind, &values);
+            law.length = 0.1;
+            assert!(law.at(50.0).is_finite(), "{}", kind.name());
+        }
+    }
+
+    #[test]
+    fn a_high_pass_takes_away_what_lies_below_it_and_a_resonance_what_lies_above() {
+        let highpass = law(EffectKind::ChannelHighpass, &[1.0]);
+        assert!((highpass.at(1e-4) + 1.0).norm() < 1e-3 && highpass.at(1e4).norm() < 1e-3);
+        let resonance = law(EffectKind::ChannelResonance, &[1000.0, 0.01]);
+        assert!(resonance.at(1.0).norm() < 1e-4 && (resonance.at(1e6) + 1.0).norm() < 1e-5);
     }
 
     #[test]

@@ -316,7 +316,8 @@ fn surplus_frfs_that_contradict_each_other_are_reported_as_blocks_that_bend() {
 }
 
 #[test]
-fn neither_law_nor_level_nor_contradiction_is_taken_from_lines_that_hold_the_joints_mass() {
+fn over_lines_that_hold_the_joints_mass_the_law_is_drawn_with_it_and_no_level_or_contradiction_is_taken_from_them()
+ {
     let fixture = blocks("");
     let frfs = recorded(&fixture, &PAIRS);
     let mut analysis = analysis(&fixture, &frfs, Relation::Exact);
@@ -332,7 +333,15 @@ fn neither_law_nor_level_nor_contradiction_is_taken_from_lines_that_hold_the_joi
     assert!(analysis.judgement.contradiction.is_none());
     let html = page(&fixture, &analysis);
     assert!(html.contains("they hold its inertia and are no stiffness of the joint alone"));
-    assert!(!html.contains(level) && !html.contains("law from all FRFs"));
+    assert!(!html.contains(level) && html.contains("law from all FRFs"));
+    // Without a mass the law is the fitted k on every line, with one it falls by about ω²M.
+    let k11 = |analysis: &Analysis, line: usize| analysis.fitted_at(line).unwrap().0.at(0, 0);
+    let (low, high) = (10, analysis.spectrum.h41.lines.len() - 1);
+    let heavy = [low, high].map(|line| k11(&analysis, line));
+    analysis.joint_fit.as_mut().unwrap().mass = None;
+    let light = [low, high].map(|line| k11(&analysis, line));
+    assert!((light[0] / light[1] - 1.0).abs() < 1e-6, "{light:?}");
+    assert!(heavy[0] - heavy[1] > 10.0 * (light[0] - heavy[0]).abs(), "{heavy:?} {light:?}");
 }
 
 #[test]

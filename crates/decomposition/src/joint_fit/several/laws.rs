@@ -9,10 +9,24 @@ use super::super::laws::{Candidate, LawFit, probable};
 use super::super::problem::{Columns, Fitted, Problem, Test};
 
 /// Laws of all joints at their optimum.
-struct State {
+pub(super) struct State {
     laws: Vec<Dynamics>,
     coordinates: Vec<f64>,
     others: Columns,
+}
+
+impl State {
+    /// The joints by these laws, of whose matrices nothing is known beforehand, at their optimum; nothing where all are viscous or the FRFs leave them undetermined.
+    pub fn fitted(self, test: Test<'_>) -> Option<(Problem<'_>, Fitted)> {
+        if self.laws.iter().all(|law| law.kind == LawKind::Viscous) {
+            return None;
+        }
+        let problem = Problem::open(test, self.laws, None);
+        let mut fitted = problem.fit(self.coordinates, Some(self.others))?;
+        fitted.refresh(&problem)?;
+        fitted.equations(&problem).covariance()?;
+        Some((problem, fitted))
+    }
 }
 
 /// Steps of a law's fit: one that needs more is far from the FRFs.
@@ -20,8 +34,8 @@ const STEPS: usize = 40;
 /// Of the law without damping, whose resonances are infinite: it is near at once or not at all.
 const FEW_STEPS: usize = 8;
 
-/// Every joint's laws, the most probable first, the other joints following their most probable law; without the joints' masses.
-pub(super) fn compared(viscous: &Problem, first: &Fitted) -> Vec<Vec<LawFit>> {
+/// Every joint's laws, the most probable first, the other joints following their most probable law, and the laws that all follow; without the joints' masses.
+pub(super) fn compared(viscous: &Problem, first: &Fitted) -> (Vec<Vec<LawFit>>, State) {
     let joints = viscous.laws.len();
     let mut current = State {
         laws: viscous.laws.clone(),
@@ -59,9 +73,9 @@ pub(super) fn compared(viscous: &Problem, first: &Fitted) -> Vec<Vec<LawFit>> {
             }
             _ => {
                 let bare = |all: Vec<(Candidate, State)>| {
-                    probable(all.into_iter().map(|(candidate, _)| candidate).collect())
+                    probable(all.into_iter().map(|(candidate, _)| candidate).collect()).0
                 };
-                return all.into_iter().map(bare).collect();
+                return (all.into_iter().map(bare).collect(), current);
             }
         }
     }

@@ -1,0 +1,39 @@
+//! What a diagnosis names, and what it tried.
+
+use crate::location::Location;
+use jointscope_findings::Estimate;
+use jointscope_fixture::Effect;
+use serde::Serialize;
+
+/// A piece of physics that the recordings need.
+#[derive(Debug, Clone, Serialize)]
+pub struct Finding {
+    /// Kind, place, dof and parameters.
+    #[serde(flatten, serialize_with = "jointscope_findings::effect_name")]
+    pub effect: Effect,
+    /// Parameters with their uncertainty.
+    #[serde(rename = "parameters", serialize_with = "jointscope_findings::parameters")]
+    pub estimates: Vec<Estimate>,
+    /// Probability of kind, place and dof together.
+    pub probability: f64,
+    /// Other names for it, the most probable first.
+    #[serde(serialize_with = "jointscope_findings::alternatives")]
+    pub alternatives: Vec<(Effect, f64)>,
+    /// What χ² and priors lose without it.
+    #[serde(rename = "gain_chi2")]
+    pub gain: f64,
+    /// Its place with one free scalar a line in its stead, beside the other findings: the measured δ(ω) that its law has to follow. `None`
+    /// where its place is not of rank one.
+    #[serde(skip)]
+    pub measured: Option<Location>,
+}
+
+/// An effect that was tried by itself.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Tried {
+    /// Kind, place, dof and parameters.
+    #[serde(flatten, serialize_with = "jointscope_findings::effect_name")]
+    pub effect: Effect,
+    /// What it gains in ln p over the fixture without it.
+    pub ln_gain: f64,
+}
