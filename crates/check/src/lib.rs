@@ -33,6 +33,7 @@ mod mass_line;
 mod meaning;
 mod model_modes;
 mod numbers;
+mod parts;
 mod reciprocity;
 mod recorded_modes;
 mod recording;
@@ -115,6 +116,7 @@ impl Check {
                 Remark::wrong(slip.place, says)
             })
             .collect();
+        remarks.extend(parts::apart(fixture));
         let numbers = numbers::of(fixture, &mut remarks);
         // What is wrong in itself need not be called odd besides, number by number; of a channel or an FRF both may be true.
         let wrong: Vec<String> = remarks

@@ -11,6 +11,7 @@ use jointscope_linalg::LeastSquares;
 use jointscope_spectra::{Dof, FrfPair, FrfSet};
 use num_complex::Complex64;
 use serde::Serialize;
+use std::collections::BTreeSet;
 
 /// The mass line of one FRF.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -117,10 +118,12 @@ pub(crate) fn of(
     let recorded =
         |line: &MassLineFrf| (line.recorded.value, line.recorded.std.unwrap_or(0.0).max(AT_BEST * largest));
     let fixtures = |line: &MassLineFrf| (line.fixture, AT_BEST * largest);
+    let ends = all.iter().flat_map(|line| [&line.frf.response.point, &line.frf.reference.point]);
+    let channels: BTreeSet<&str> = ends.map(String::as_str).collect();
     // Places that are not quite where they are said to be weigh more than noise.
     let places = |mass: f64| {
         let moved = |moved: &Fixture| Some(vec![weighed(moved, &all, recorded, rotating)?.0]);
-        deviations(fixture, &[mass], moved)[0].unwrap_or(f64::INFINITY)
+        deviations(fixture, &[mass], &channels, moved)[0].unwrap_or(f64::INFINITY)
     };
     let mass = weighed(fixture, &all, recorded, rotating);
     let mass =

@@ -8,7 +8,7 @@ use jointscope_linalg::complex_eigenvalues;
 use jointscope_lumped::{Assembly, LumpedError, StateSpace};
 use num_complex::Complex64;
 use serde::Serialize;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::TAU;
 
 /// One vibration mode of the model.
@@ -61,7 +61,7 @@ impl ModelModes {
         let (rigid, mut found) = (poles.rigid, poles.up_to(to));
         found.truncate(LISTED);
         let nominal: Vec<f64> = found.iter().map(|pole| pole.norm() / TAU).collect();
-        let std = deviations(fixture, &nominal, |moved| {
+        let std = deviations(fixture, &nominal, &BTreeSet::new(), |moved| {
             let moved =
                 Poles::of(moved, stands.as_ref().map(|stands| moved_alike(stands, moved)).as_ref(), to)
                     .ok()?;

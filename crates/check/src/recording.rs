@@ -317,6 +317,13 @@ fn of_oddity(oddity: &Oddity) -> Remark {
             let kind = if *is_reference { "reference" } else { "response" };
             Remark::odd(format!("{kind} {point}"), oddity.to_string())
         }
+        Oddity::Masses(slip) => {
+            let says = format!(
+                "{}{}; correct it, or insist on it with `diagnose --as-stated`",
+                slip.problem, slip.advice
+            );
+            Remark::wrong(slip.place.clone(), says)
+        }
         oddity => Remark::wrong("recording", format!("{oddity} (here and in a diagnosis)")),
     }
 }

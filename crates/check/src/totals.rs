@@ -4,6 +4,7 @@ use crate::Figure;
 use crate::figure::deviations;
 use jointscope_fixture::{BodyKind, EffectKind, Fixture, Place};
 use serde::Serialize;
+use std::collections::BTreeSet;
 
 /// Something that has a mass.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -35,7 +36,7 @@ impl Totals {
     pub(crate) fn of(fixture: &Fixture) -> Self {
         let parts = parts(fixture);
         let nominal = sums(&parts);
-        let std = deviations(fixture, &nominal, |moved| Some(sums(&self::parts(moved))));
+        let std = deviations(fixture, &nominal, &BTreeSet::new(), |moved| Some(sums(&self::parts(moved))));
         let figure =
             |k: usize, unit| nominal[k].is_finite().then(|| Figure { value: nominal[k], std: std[k], unit });
         Totals {

@@ -4,7 +4,7 @@ use crate::{Error, HammerTest, Measurement};
 use jointscope_estimation::EstimateOptions;
 use jointscope_fixture::{Effect, EffectKind, Fixture, FixtureError, Place};
 use jointscope_recordings::{Hits, Recording};
-use jointscope_screening::screened;
+use jointscope_screening::{Oddity, Screened, screened};
 use jointscope_spectra::FrfSet;
 
 /// The FRFs of a test at one level, recorded as such or estimated from its hits.
@@ -60,12 +60,27 @@ impl MeasuredFrfs {
     /// The same as the FRFs are meant: what slips of the test or its files made of them is put right or left out, and said in the notes.
     ///
     /// # Errors
-    /// FRFs without any signal.
-    pub fn screened(mut self, fixture: &Fixture) -> Result<Self, Error> {
-        let screened = screened(self.frfs, fixture)?;
+    /// FRFs without any signal, or of which a part was changed.
+    pub fn screened(self, fixture: &Fixture) -> Result<Self, Error> {
+        let screened = screened(self.frfs.clone(), fixture)?;
+        Ok(self.put_right(screened))
+    }
+
+    /// As [`MeasuredFrfs::screened`], and masses of the fixture that the recording tells to be in another unit are refused.
+    pub(crate) fn plausible(self, fixture: &Fixture) -> Result<Self, Error> {
+        let screened = screened(self.frfs.clone(), fixture)?;
+        for oddity in &screened.oddities {
+            if let Oddity::Masses(slip) = oddity {
+                return Err(slip.clone().into());
+            }
+        }
+        Ok(self.put_right(screened))
+    }
+
+    fn put_right(mut self, screened: Screened) -> Self {
         self.notes.extend(screened.oddities.iter().map(ToString::to_string));
         self.frfs = screened.frfs;
-        Ok(self)
+        self
     }
 
     /// `fixture` as these FRFs show it: under their exponential window, if there is one. The fixture's own effects stay.

@@ -130,7 +130,8 @@ pub fn diagnose(
         Homogeneity::Changes(answer) => return Ok(*answer),
         Homogeneity::Linear(measured, p_value) => (*measured, p_value),
     };
-    let mut measured = measured.screened(fixture)?;
+    let mut measured =
+        if options.as_stated { measured.screened(fixture)? } else { measured.plausible(fixture)? };
     let fixture = measured.as_recorded(fixture)?;
     let fixture = damped(fixture, &mut measured)?;
     let frfs = &measured.frfs;

@@ -4,6 +4,8 @@ mod layout;
 mod outline;
 mod svg;
 
+use std::collections::HashMap;
+
 use jointscope_fixture::Fixture;
 use jointscope_spectra::FrfPair;
 use maud::Markup;
@@ -56,7 +58,9 @@ pub(crate) struct SideView<'a> {
 impl<'a> SideView<'a> {
     /// A fixture with the sensors and hammer points of some FRFs.
     pub fn new<'f>(fixture: &'a Fixture, frfs: impl IntoIterator<Item = &'f FrfPair>) -> Self {
-        let at = |name: &str| fixture.points().iter().position(|point| point.name == name);
+        let places: HashMap<&str, usize> =
+            fixture.points().iter().enumerate().map(|(index, point)| (point.name.as_str(), index)).collect();
+        let at = |name: &str| places.get(name).copied();
         let ends = frfs.into_iter().flat_map(|pair| {
             [(&pair.response, ChannelKind::Response), (&pair.reference, ChannelKind::Reference)]
         });

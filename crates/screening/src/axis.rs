@@ -1,6 +1,6 @@
 //! A frequency axis in another unit than its file says.
 
-use crate::levels::median;
+use crate::levels::{LIKE, median, ratios_apart};
 use jointscope_fixture::Fixture;
 use jointscope_lumped::{Instrument, accelerances};
 use jointscope_spectra::{FrfSet, SpectralLines};
@@ -9,17 +9,13 @@ use std::f64::consts::TAU;
 
 /// What lies between units of frequency that are taken for each other: kHz, rad/s, and cycles a minute.
 const BETWEEN: [f64; 3] = [1000.0, TAU, 60.0];
-/// Median |ln(|H|/|Ĥ|)| from which FRFs are unlike the fixture's, and up to which they are like them.
+/// Median |ln(|H|/|Ĥ|)| from which FRFs are unlike the fixture's.
 const UNLIKE: f64 = 0.7;
-const LIKE: f64 = 0.2;
 
 /// The factor by which the frequencies of all lines are too large: FRFs are nothing like the fixture's at these frequencies, `modelled`, and like them at those over the
 /// factor.
 pub(crate) fn off_axis(frfs: &FrfSet, modelled: &[Complex64], fixture: &Fixture) -> Option<f64> {
-    let apart = |modelled: &[Complex64]| {
-        let pairs = frfs.all_values().iter().zip(modelled);
-        median(pairs.map(|(a, b)| (a / b).norm().ln().abs()).filter(|apart| apart.is_finite()).collect())
-    };
+    let apart = |modelled: &[Complex64]| median(ratios_apart(frfs.all_values(), modelled));
     if apart(modelled)? < UNLIKE {
         return None;
     }

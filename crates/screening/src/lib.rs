@@ -10,7 +10,9 @@
 //! 4. [another unit](Oddity::Unit): all levels are off by what lies between two units. Taken in the other one.
 //! 5. [conjugated](Oddity::Conjugated): the phase rises through resonances, so the file's time dependence is e^{−iωt}. Conjugated.
 //! 6. [exchanged](Oddity::Exchanged): two FRFs are each like the fixture's other one, and neither like its own. Exchanged.
-//! 7. [unexcited](Oddity::Unexcited): no coherence over the upper part of the band. Only said: the noise says the rest.
+//! 7. [unexcited](Oddity::Unexcited): no coherence over the upper part of the band. In all FRFs of a reference, left out there; in those of a sensor only said.
+//!
+//! Two things are told of what cannot be put right: [masses and inertias](Oddity::Masses) of the fixture in another unit, and FRFs of which [a part](Steps) was changed.
 //!
 //! The fixture is compared as it stands. What it leaves out moves resonances; levels and phases between them hardly change, so all of it goes by medians over the lines.
 
@@ -19,12 +21,15 @@ mod conjugated;
 mod exchanged;
 mod form;
 mod levels;
+mod masses;
 mod plausibility;
+mod steps;
 mod unexcited;
 mod unit;
 
 pub use levels::median;
 pub use plausibility::{Implausible, implausible, plausible};
+pub use steps::Steps;
 
 use jointscope_fixture::Fixture;
 use jointscope_lumped::{Instrument, accelerances};
@@ -50,6 +55,8 @@ pub enum Oddity {
         /// The units that were taken for each other.
         between: &'static str,
     },
+    /// Masses or inertias of the fixture are in another unit, or a decimal place off: nothing was changed for it.
+    Masses(Implausible),
     /// Two FRFs that stand under each other's labels: exchanged.
     Exchanged(FrfPair, FrfPair),
     /// Two points whose channels, responses or references, have each other's place in all FRFs: exchanged.
@@ -62,6 +69,8 @@ pub enum Oddity {
         is_reference: bool,
         /// Hz.
         from: f64,
+        /// Lines from there on.
+        lines: usize,
     },
 }
 
@@ -82,6 +91,15 @@ pub enum ScreeningError {
         "all FRFs are zero on all lines: nothing was recorded, or not exported; check the channels and export again"
     )]
     NothingRecorded,
+    /// A part of the numbers was changed.
+    #[error(
+        "FRF {} steps by a factor of {} at {} Hz, and there are {} such steps in all, which no structure makes: a part of the numbers was changed, as where exponents are replaced in an editor; export the file again",
+        .0.frf,
+        .0.factor,
+        jointscope_spectra::in_text(.0.hz),
+        .0.count
+    )]
+    Changed(Box<Steps>),
     /// FRFs that make no set.
     #[error(transparent)]
     Spectra(#[from] SpectraError),
@@ -93,10 +111,13 @@ const DEAD: f64 = 1e-9;
 /// The FRFs of a test of `fixture` as they are meant.
 ///
 /// # Errors
-/// [`ScreeningError::NothingRecorded`].
+/// [`ScreeningError::NothingRecorded`], [`ScreeningError::Changed`].
 pub fn screened(frfs: FrfSet, fixture: &Fixture) -> Result<Screened, ScreeningError> {
     let mut oddities = Vec::new();
     let mut frfs = alive(frfs, &mut oddities)?;
+    if let Some(steps) = steps::steps(&frfs) {
+        return Err(ScreeningError::Changed(Box::new(steps)));
+    }
     let mut modelled = modelled(&frfs, fixture);
     if let Some(at_these) = &modelled
         && let Some(factor) = axis::off_axis(&frfs, at_these, fixture)
@@ -106,23 +127,8 @@ pub fn screened(frfs: FrfSet, fixture: &Fixture) -> Result<Screened, ScreeningEr
         modelled = self::modelled(&frfs, fixture);
         oddities.push(Oddity::Axis(factor));
     }
-    if let Some(modelled) = &modelled
-        && let Some(form) = form::other_form(&frfs, modelled)
-    {
-        let omegas: Vec<f64> = frfs.lines().omegas().collect();
-        let factor = |at: usize| {
-            let omega = omegas[at % omegas.len()];
-            let factor = if omega > 0.0 { form.factor_to(FrfForm::Accelerance, omega) } else { None };
-            factor.unwrap_or(Complex64::ONE)
-        };
-        frfs = frfs.with_values(|at, value| value * factor(at));
-        oddities.push(Oddity::Form(form));
-    }
-    if let Some(modelled) = &modelled
-        && let Some((factor, between)) = unit::off_by_units(&frfs, modelled)
-    {
-        frfs = frfs.with_values(|_, value| value / factor);
-        oddities.push(Oddity::Unit { factor, between });
+    if let Some(modelled) = &modelled {
+        frfs = in_its_units(frfs, modelled, fixture, &mut oddities);
     }
     let conjugates = conjugated::conjugated(&frfs);
     if !conjugates.is_empty() {
@@ -143,8 +149,40 @@ pub fn screened(frfs: FrfSet, fixture: &Fixture) -> Result<Screened, ScreeningEr
         found.into_iter().for_each(|(a, b)| pairs.swap(a, b));
         frfs = frfs.with_pairs(pairs);
     }
-    oddities.extend(unexcited::unexcited(&frfs));
+    let unexcited = unexcited::unexcited(&frfs);
+    frfs = unexcited::masked(frfs, &unexcited);
+    oddities.extend(unexcited);
     Ok(Screened { frfs, oddities })
+}
+
+/// The FRFs in the form and unit that they are meant in, where it is not the fixture's masses that are off.
+fn in_its_units(
+    mut frfs: FrfSet,
+    modelled: &[Complex64],
+    fixture: &Fixture,
+    oddities: &mut Vec<Oddity>,
+) -> FrfSet {
+    let unit = unit::off_by_units(&frfs, modelled);
+    let left = unit.and_then(|(factor, between)| Some((unit::left(&frfs, modelled, factor)?, between)));
+    if let Some(slip) = masses::slip(&frfs, modelled, fixture, left) {
+        oddities.push(Oddity::Masses(slip));
+    } else if let Some(form) = form::other_form(&frfs, modelled) {
+        let omegas: Vec<f64> = frfs.lines().omegas().collect();
+        let factor = |at: usize| {
+            let omega = omegas[at % omegas.len()];
+            let factor = if omega > 0.0 { form.factor_to(FrfForm::Accelerance, omega) } else { None };
+            factor.unwrap_or(Complex64::ONE)
+        };
+        frfs = frfs.with_values(|at, value| value * factor(at));
+        oddities.push(Oddity::Form(form));
+    }
+    if let Some((factor, between)) = unit::off_by_units(&frfs, modelled)
+        && !oddities.iter().any(|oddity| matches!(oddity, Oddity::Masses(_)))
+    {
+        frfs = frfs.with_values(|_, value| value / factor);
+        oddities.push(Oddity::Unit { factor, between });
+    }
+    frfs
 }
 
 /// What the fixture makes of the same FRFs, as accelerances; `None` where it has no model, or the FRFs are of another form.
@@ -199,6 +237,7 @@ impl fmt::Display for Oddity {
                 f,
                 "all FRFs are {factor:.4} times what the fixture makes of them, as where {between} are taken for each other: divided by it; correct the units in the file, or with --assume-units"
             ),
+            Oddity::Masses(slip) => write!(f, "{slip}"),
             Oddity::Exchanged(a, b) => write!(
                 f,
                 "FRFs {a} and {b} stand under each other's labels: exchanged; correct the node numbers in the file"
@@ -207,11 +246,11 @@ impl fmt::Display for Oddity {
                 f,
                 "points {a} and {b} have each other's place: their channels are swapped, in the cables or in the node numbers of the file: exchanged"
             ),
-            Oddity::Unexcited { point, is_reference: true, from } => write!(
+            Oddity::Unexcited { point, is_reference: true, from, lines } => write!(
                 f,
-                "above {from:.4} Hz the blows at {point} leave no coherence: they do not excite that band; a harder tip does, or use --band"
+                "from {from:.4} Hz on the blows at {point} leave no coherence, so they do not excite that band: its {lines} lines are left out of their FRFs; a harder tip excites them, or end the band below with --band"
             ),
-            Oddity::Unexcited { point, is_reference: false, from } => write!(
+            Oddity::Unexcited { point, is_reference: false, from, .. } => write!(
                 f,
                 "above {from:.4} Hz response {point} has no coherence: its sensor or filter ends there; replace it, or use --band"
             ),

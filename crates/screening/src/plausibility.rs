@@ -14,7 +14,7 @@ pub struct Implausible {
     /// What is wrong with it.
     pub problem: String,
     /// What it may have been meant as, `: it looks like grams`; empty where nothing fits.
-    pub advice: &'static str,
+    pub advice: String,
 }
 
 /// Distances from the centre of gravity to a body's points, over its radius of gyration, that bodies have: a bar with points at its ends has √3, one with points near its
@@ -28,6 +28,11 @@ const USUAL_DENSITY: (f64, f64) = (1.0, 1e5);
 const SOFT: f64 = 5e5;
 /// Depth of a section, (12 I)^¼, over the length of its beam above which that is none.
 const DEEP: f64 = 10.0;
+
+/// Densities that no beam has, kg/m³: lighter than foam, heavier than any metal.
+const DENSITY: (f64, f64) = (20.0, 25e3);
+/// A section's area over the square root of its second moment: 3.5 of a square, down to a quarter of that of a tall one or a thin tube, up to ten times that of a strip.
+const AREA: (f64, f64) = (0.8, 35.0);
 
 /// The first number of a fixture that cannot belong to the same structure as the others.
 ///
@@ -55,6 +60,7 @@ fn judged(fixture: &Fixture) -> impl Iterator<Item = Result<(), Implausible>> {
             let place = format!("bodies/{}/beam", body.name);
             let length = beam.to.value - beam.from.value;
             section(&place, length, beam.youngs_modulus.value, beam.second_moment.value)
+                .and_then(|()| density(&place, beam.mass_per_length.value, beam.second_moment.value))
         }
         BodyKind::Rigid(_) => Ok(()),
     });
@@ -86,13 +92,13 @@ fn span(body: &str, (farthest, point): (f64, &str), mass: f64, inertia: f64) -> 
             && density <= USUAL_DENSITY.1
     };
     let (place, advice) = if usual(farthest, mass, 1e-6 * inertia) {
-        (format!("bodies/{body}/inertia"), ": the inertia looks like kg·mm²")
+        (format!("bodies/{body}/inertia"), ": the inertia looks like kg·mm²".to_owned())
     } else if usual(farthest, 1e-3 * mass, inertia) {
-        (format!("bodies/{body}/mass"), ": the mass looks like grams")
+        (format!("bodies/{body}/mass"), ": the mass looks like grams".to_owned())
     } else if usual(1e-3 * farthest, mass, inertia) {
-        (format!("points/{point}/x"), ": abscissae look like millimetres")
+        (format!("points/{point}/x"), ": abscissae look like millimetres".to_owned())
     } else {
-        (format!("bodies/{body}"), ", be it the point's abscissa, `x_cg`, `inertia` or `mass`")
+        (format!("bodies/{body}"), ", be it the point's abscissa, `x_cg`, `inertia` or `mass`".to_owned())
     };
     Err(Implausible {
         place,
@@ -121,7 +127,7 @@ fn section(place: &str, length: f64, modulus: f64, second_moment: f64) -> Result
         return Err(Implausible {
             place: format!("{place}/youngs_modulus"),
             problem: format!("a Young's modulus of {modulus} Pa is that of no strip or beam"),
-            advice,
+            advice: advice.to_owned(),
         });
     }
     let depth = |second_moment: f64| (12.0 * second_moment).sqrt().sqrt();
@@ -133,10 +139,37 @@ fn section(place: &str, length: f64, modulus: f64, second_moment: f64) -> Result
                 "a second moment of {second_moment} m⁴ is that of a section {:.3} m deep, of a beam {length:.3} m long",
                 depth(second_moment)
             ),
-            advice,
+            advice: advice.to_owned(),
         });
     }
     Ok(())
+}
+
+/// Refuses a mass per length that is of no material in any section of this second moment.
+fn density(place: &str, mass_per_length: f64, second_moment: f64) -> Result<(), Implausible> {
+    if mass_per_length <= 0.0 || second_moment <= 0.0 {
+        return Ok(());
+    }
+    // Of the largest area the section can have, and of the least.
+    let at_least = |mass_per_length: f64| mass_per_length / (AREA.1 * second_moment.sqrt());
+    let at_most = |mass_per_length: f64| mass_per_length / (AREA.0 * second_moment.sqrt());
+    let possible = |mass: f64| at_least(mass) <= DENSITY.1 && at_most(mass) >= DENSITY.0;
+    if possible(mass_per_length) {
+        return Ok(());
+    }
+    let (bound, density) = match at_least(mass_per_length) > DENSITY.1 {
+        true => ("at least", at_least(mass_per_length)),
+        false => ("at most", at_most(mass_per_length)),
+    };
+    let advice =
+        if bound == "at least" && possible(1e-3 * mass_per_length) { ": it looks like g/m" } else { "" };
+    Err(Implausible {
+        place: format!("{place}/mass_per_length"),
+        problem: format!(
+            "{mass_per_length} kg/m in a section of a second moment of {second_moment} m⁴ is a density of {bound} {density:.3e} kg/m³, which no material has"
+        ),
+        advice: advice.to_owned(),
+    })
 }
 
 #[cfg(test)]
@@ -147,7 +180,8 @@ mod tests {
 
     fn changed(path: &str, value: Value) -> Result<(), Implausible> {
         let mut file = json!({
-            "bodies": { "A": { "mass": 1.102, "inertia": 5.9e-4, "x_cg": -0.031 }, "B": { "mass": 1.485, "inertia": 1.02e-3, "x_cg": 0.104 } },
+            "bodies": { "A": { "mass": 1.102, "inertia": 5.9e-4, "x_cg": -0.031 }, "B": { "mass": 1.485, "inertia": 1.02e-3, "x_cg": 0.104 },
+                "S": { "beam": { "from": 0.2, "to": 0.5, "youngs_modulus": 2.07e11, "second_moment": 3.4e-10, "mass_per_length": 0.9 } } },
             "points": { "1": { "body": "A", "x": -0.056 }, "2": { "body": "A", "x": 0.0 }, "3": { "body": "B", "x": 0.07 }, "4": { "body": "B", "x": 0.131 } },
             "joints": { "J": { "from": "2", "to": "3", "beam": { "youngs_modulus": 2.07e11, "second_moment": 3.4e-10 } } } });
         *file.pointer_mut(path).unwrap() = value;
@@ -180,6 +214,8 @@ mod tests {
             ("/joints/J/beam/youngs_modulus", 207.0, "joints/J/beam/youngs_modulus", "GPa"),
             ("/joints/J/beam/youngs_modulus", 207e3, "joints/J/beam/youngs_modulus", "MPa"),
             ("/joints/J/beam/second_moment", 340.0, "joints/J/beam/second_moment", "mm⁴"),
+            ("/bodies/S/beam/mass_per_length", 900.0, "bodies/S/beam/mass_per_length", "g/m"),
+            ("/bodies/S/beam/mass_per_length", 1e-6, "bodies/S/beam/mass_per_length", "at most"),
             ("/bodies/B/x_cg", 5.0, "bodies/B", "radius of gyration"),
             ("/points/4/x", -0.5, "bodies/B", "point 4 lies 604"),
             ("/bodies/B/inertia", 1e-12, "bodies/B", "radius of gyration"),

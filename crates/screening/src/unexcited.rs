@@ -30,7 +30,13 @@ pub(crate) fn unexcited(frfs: &FrfSet) -> Vec<Oddity> {
                 && own.iter().any(|&i| !said[i])
             {
                 own.iter().for_each(|&i| said[i] = true);
-                found.push(Oddity::Unexcited { point: name, is_reference, from: frfs.lines().hz()[line] });
+                let hz = frfs.lines().hz();
+                found.push(Oddity::Unexcited {
+                    point: name,
+                    is_reference,
+                    from: hz[line],
+                    lines: hz.len() - line,
+                });
             }
         }
     }
@@ -42,7 +48,39 @@ fn start(coherence: &[f64]) -> Option<usize> {
     let windows = coherence.chunks(WINDOW).map(|window| median(window.to_vec()).unwrap_or(1.0));
     let windows: Vec<f64> = windows.collect();
     let none = windows.iter().rev().take_while(|value| **value < NONE).count();
-    let first = (windows.len() - none) * WINDOW;
+    let mut first = ((windows.len() - none) * WINDOW).min(coherence.len());
+    // The first window without may begin with lines that have some, the last one with may end with lines that have none.
+    first += coherence[first..].iter().take_while(|gamma| **gamma >= NONE).count();
+    first -= coherence[..first].iter().rev().take_while(|gamma| **gamma < NONE).count();
     let share = (coherence.len().saturating_sub(first)) as f64 / coherence.len().max(1) as f64;
     (share > SHARE && first > 0).then_some(first)
+}
+
+/// The FRFs without the lines on which references are [unexcited](Oddity::Unexcited): left out where none is excited, without weight otherwise. A coherence of zero is one of a
+/// value that tells nothing.
+pub(crate) fn masked(mut frfs: FrfSet, found: &[Oddity]) -> FrfSet {
+    let hz = frfs.lines().hz().to_vec();
+    let starts: Vec<Option<f64>> = frfs
+        .pairs()
+        .iter()
+        .map(|pair| {
+            let own = found.iter().filter_map(|oddity| match oddity {
+                Oddity::Unexcited { point, is_reference: true, from, .. } => Some((point, *from)),
+                _ => None,
+            });
+            own.into_iter().find(|(point, _)| **point == pair.reference.to_string()).map(|(_, from)| from)
+        })
+        .collect();
+    for (index, from) in starts.iter().enumerate() {
+        let Some((from, coherence)) = from.zip(frfs.coherence(index)) else { continue };
+        let none = |(gamma, hz): (&f64, &f64)| if *hz >= from { 0.0 } else { *gamma };
+        let masked = coherence.iter().zip(&hz).map(none).collect();
+        // Of as many values as before, each within its range.
+        if frfs.set_coherence(index, masked).is_err() {
+            return frfs;
+        }
+    }
+    let all: Option<Vec<f64>> = starts.into_iter().collect();
+    let end = all.and_then(|all| all.into_iter().reduce(f64::max));
+    end.and_then(|end| frfs.on_lines(|line| hz[line] < end)).unwrap_or(frfs)
 }

@@ -1,6 +1,6 @@
 //! FRFs in another unit than their file says: all of them larger than the fixture's by what lies between two units.
 
-use crate::levels::median;
+use crate::levels::{median, ratios_apart};
 use jointscope_spectra::FrfSet;
 use num_complex::Complex64;
 
@@ -15,6 +15,12 @@ const BETWEEN: [(f64, &str); 5] = [
 /// How near to one of them, relative, the levels must be, and how far FRFs may be from each other, as ln.
 const NEAR: f64 = 0.06;
 const ALIKE: f64 = 0.25;
+
+/// Median |ln(|H|/|Ĥ|)| that is left of FRFs over a factor.
+pub(crate) fn left(frfs: &FrfSet, modelled: &[Complex64], factor: f64) -> Option<f64> {
+    let over: Vec<Complex64> = frfs.all_values().iter().map(|value| value / factor).collect();
+    median(ratios_apart(&over, modelled))
+}
 
 /// The factor by which all FRFs are off, and the units between which it lies; `modelled` are the fixture's accelerances.
 pub(crate) fn off_by_units(frfs: &FrfSet, modelled: &[Complex64]) -> Option<(f64, &'static str)> {

@@ -126,7 +126,7 @@ fn a_band_without_coherence_is_laid_to_the_hammer_where_all_its_frfs_lack_it_and
         oddities(&frfs).1
     };
     let told = |found: &[Oddity]| match found {
-        [Oddity::Unexcited { point, is_reference, from }] => (point.clone(), *is_reference, *from),
+        [Oddity::Unexcited { point, is_reference, from, .. }] => (point.clone(), *is_reference, *from),
         other => panic!("{other:?}"),
     };
     let (point, is_reference, from) = told(&without(|pair| pair.reference.point == "1"));
@@ -134,6 +134,98 @@ fn a_band_without_coherence_is_laid_to_the_hammer_where_all_its_frfs_lack_it_and
     let (point, is_reference, _) = told(&without(|pair| pair.response.point == "4"));
     assert!(point == "4" && !is_reference);
     assert!(without(|_| false).is_empty());
+}
+
+/// The fixture with masses and inertias multiplied.
+fn read_as(mass: f64, inertia: f64, of: impl Fn(usize) -> bool) -> Fixture {
+    let mut other = fixture("");
+    for quantity in fixture("").quantities() {
+        let jointscope_fixture::QuantityOwner::Body(body) = quantity.owner else { continue };
+        let factor = match quantity.nature {
+            jointscope_fixture::Nature::Mass => mass,
+            jointscope_fixture::Nature::Inertia => inertia,
+            _ => 1.0,
+        };
+        if of(body) {
+            other.set_quantity(quantity.owner, quantity.key, factor * quantity.value);
+        }
+    }
+    other
+}
+
+#[test]
+fn masses_or_inertias_in_another_unit_are_told_by_what_was_recorded_and_frfs_are_left_as_they_are() {
+    let pound = 1.0 / 0.453_592_37;
+    // A weld that turns moves levels themselves: beside it only slips that are larger are told.
+    for (physics, count) in [("", 5), (WELD, 3)] {
+        let frfs = recorded(physics);
+        for (mass, inertia, body, place, looks) in [
+            (1e3, 1e3, None, "bodies", "masses look like grams, and the inertias"),
+            (pound, pound, None, "bodies", "masses look like pounds, and the inertias"),
+            (1e-3, 1e-3, None, "bodies", "tonnes"),
+            (pound, 1.0, None, "bodies", "masses look like pounds"),
+            (1.0, 10.0, Some(0), "bodies/A/inertia", "10 times too large"),
+        ]
+        .into_iter()
+        .take(count)
+        {
+            let fixture = read_as(mass, inertia, |index| body.is_none_or(|body| body == index));
+            let found = screened(frfs.clone(), &fixture).unwrap();
+            let [Oddity::Masses(slip)] = &found.oddities[..] else {
+                panic!("{mass} {inertia} {physics}: {:?}", found.oddities)
+            };
+            assert!(slip.place == place && slip.advice.contains(looks), "{mass} {inertia}: {slip}");
+            assert!(!slip.advice.contains("or the recording"), "stiffness tells: {slip}");
+            assert_eq!(found.frfs, frfs);
+        }
+    }
+}
+
+#[test]
+fn without_stiffness_in_the_band_grams_and_millimetres_are_both_said() {
+    let body = |mass: f64| {
+        Fixture::from_json(&format!(
+            r#"{{ "bodies": {{ "A": {{ "mass": {mass}, "rotates": false }} }}, "points": {{ "1": {{ "body": "A", "x": 0 }} }} }}"#
+        ))
+        .unwrap()
+    };
+    let lines = SpectralLines::even(2.5, 2.5, 400).unwrap();
+    let frfs =
+        synthesize(&body(1.1), &[FrfPair::transverse("1", "1")], &lines, Instrument::AsRecorded).unwrap();
+    let found = screened(frfs, &body(1100.0)).unwrap().oddities;
+    let [Oddity::Masses(slip)] = &found[..] else { panic!("{found:?}") };
+    assert!(slip.advice.contains("grams") && slip.advice.contains("mm and m"), "{slip}");
+}
+
+#[test]
+fn lines_that_the_hammer_does_not_excite_are_left_out_of_its_frfs() {
+    let with = |of: fn(&FrfPair) -> bool| {
+        let mut frfs = recorded("");
+        for (index, pair) in pairs().iter().enumerate() {
+            let gamma = |line: usize| if line >= 280 && of(pair) { 0.1 } else { 0.98 };
+            frfs.set_coherence(index, (0..400).map(gamma).collect()).unwrap();
+        }
+        oddities(&frfs)
+    };
+    let (left, found) = with(|_| true);
+    assert_eq!((left.lines().len(), found.len()), (280, 2));
+    assert!(found[0].to_string().contains("120 lines are left out"), "{}", found[0]);
+    let (left, _) = with(|pair| pair.reference.point == "1");
+    assert_eq!(left.lines().len(), 400);
+    for (index, pair) in left.pairs().iter().enumerate() {
+        let silent = left.coherence(index).unwrap().iter().filter(|gamma| **gamma == 0.0).count();
+        assert_eq!(silent, if pair.reference.point == "1" { 120 } else { 0 }, "{pair}");
+    }
+    let (left, _) = with(|pair| pair.response.point == "4");
+    assert!(left.coherence(0).unwrap().iter().all(|gamma| *gamma > 0.0), "a sensor's lines stay");
+}
+
+#[test]
+fn frfs_of_which_a_part_of_the_numbers_was_multiplied_are_refused() {
+    let frfs = recorded(WELD).with_values(|_, value| if value.norm() >= 1.0 { 1e3 * value } else { value });
+    let error = screened(frfs, &fixture("")).unwrap_err();
+    let says = error.to_string();
+    assert!(matches!(error, ScreeningError::Changed(_)) && says.contains("factor of 1000"), "{says}");
 }
 
 proptest! {

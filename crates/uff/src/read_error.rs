@@ -21,7 +21,9 @@ pub enum ReadError {
     )]
     FirstLost,
     /// Text between two datasets.
-    #[error("line {line}: expected the `    -1` line that opens dataset {dataset}, found `{found}`")]
+    #[error(
+        "line {line}: expected the `    -1` line that opens dataset {dataset}, found `{found}`; a dataset stands between two such lines: put back the missing one, or export the file again"
+    )]
     BetweenDatasets {
         /// The dataset expected next.
         dataset: usize,
@@ -43,7 +45,7 @@ pub enum ReadError {
     /// NaN or infinity among the values.
     #[error(
         "dataset {dataset}: the value at spectral line (point) {point}, counted from 0, is not finite; \
-         mask or remove it before export"
+         mask it before export, or, where a binary dataset (58b) states the wrong byte order, export it again or as ASCII"
     )]
     NotFinite {
         /// Which dataset.
@@ -68,7 +70,7 @@ pub enum ReadError {
 #[non_exhaustive]
 pub enum TextProblem {
     /// A field that cannot be what it must be.
-    #[error("expected {expected}, found `{found}`")]
+    #[error("expected {expected}, found `{found}`; {remedy}", remedy = remedy_of_field(.found))]
     Field {
         /// The field and what it must be.
         expected: &'static str,
@@ -129,4 +131,12 @@ pub enum BinaryProblem {
          it also states are not that many; export the file again"
     )]
     PointsAgainstBytes { points: usize, stated: u64 },
+}
+
+/// What to do about a field that cannot be what it must be.
+fn remedy_of_field(found: &str) -> &'static str {
+    match found.contains(',') {
+        true => "universal files have decimal points: export it again with them, or replace the commas",
+        false => "correct it, or export the file again",
+    }
 }

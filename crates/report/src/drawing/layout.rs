@@ -1,5 +1,7 @@
 //! Where things go: abscissae to pixels, overlapping bodies to rows, labels to lanes.
 
+use std::collections::BTreeSet;
+
 use jointscope_fixture::{Body, BodyKind, Fixture};
 
 use super::outline::outlines;
@@ -25,6 +27,9 @@ pub(super) const POINT_LANE: f64 = 31.0;
 /// Narrowest block that is drawn, and the width of blocks that all lie at one abscissa.
 const NARROWEST: f64 = 46.0;
 const WITHOUT_EXTENT: f64 = 340.0;
+
+/// Labels of one kind beside a row at the most: what a page has room for. More would stand in dozens of lanes that nobody reads, and labels are placed pair by pair.
+pub(super) const MOST_LABELS: usize = 60;
 
 /// Room a text takes, in pixels at 13 px type. Digits and capitals are wider than the average letter; labels may stand apart but not overlap.
 pub(super) fn text_width(text: &str) -> f64 {
@@ -223,6 +228,8 @@ pub(super) struct Layout {
     pub bodies: Vec<Option<Placed>>,
     pub rows: Vec<Row>,
     pub height: f64,
+    /// Number of points and channels that have no label.
+    pub unlabelled: usize,
 }
 
 impl Layout {
@@ -231,7 +238,8 @@ impl Layout {
         let scale = Scale::new(view, &outlines, width);
         let bodies = place_bodies(view.fixture, &outlines, scale);
         let count = bodies.iter().flatten().map(|b| b.row + 1).max().unwrap_or(1);
-        let mut layout = Self { scale, bodies, rows: vec![Row::default(); count], height: 0.0 };
+        let mut layout =
+            Self { scale, bodies, rows: vec![Row::default(); count], height: 0.0, unlabelled: 0 };
         layout.label_bodies(view.fixture);
         layout.label_points(view);
         for highlight in view.highlights.iter().filter(|highlight| highlight.x.is_finite()) {
@@ -271,24 +279,48 @@ impl Layout {
     fn label_points(&mut self, view: &SideView) {
         // Between stacked rows joints run along y, where point names would stand.
         let aside = self.rows.len() > 1;
-        for point in view.fixture.points() {
-            let Some(body) = &self.bodies[point.body] else { continue };
-            let label = Label::new(&point.name, "fx-point-name", Tie::Line, self.scale.px(point.x.value));
-            let below = Some(format!("{} mm", millimetres(point.x.value)));
-            self.rows[body.row].below.push(Label { below, aside, ..label });
+        let points = view.fixture.points();
+        let mut in_use: BTreeSet<usize> = view.fixture.held_points().collect();
+        in_use.extend(view.channels.iter().map(|(index, _)| *index));
+        let rows: Vec<Option<usize>> =
+            points.iter().map(|point| self.bodies[point.body].as_ref().map(|body| body.row)).collect();
+        for row in 0..self.rows.len() {
+            let (first, others): (Vec<usize>, Vec<usize>) = (0..points.len())
+                .filter(|index| rows[*index] == Some(row))
+                .partition(|at| in_use.contains(at));
+            let all = first.len() + others.len();
+            let mut named = thinned(first, MOST_LABELS);
+            named.extend(thinned(others, MOST_LABELS - named.len()));
+            self.unlabelled += all - named.len();
+            for index in named {
+                let point = &points[index];
+                let label = Label::new(&point.name, "fx-point-name", Tie::Line, self.scale.px(point.x.value));
+                let below = Some(format!("{} mm", millimetres(point.x.value)));
+                self.rows[row].below.push(Label { below, aside, ..label });
+            }
+            let channels = (0..view.channels.len()).filter(|at| rows[view.channels[*at].0] == Some(row));
+            let channels: Vec<usize> = channels.collect();
+            let all = channels.len();
+            let named = thinned(channels, MOST_LABELS);
+            self.unlabelled += all - named.len();
+            named.into_iter().for_each(|at| self.label_channel(view, at));
         }
-        for &(index, kind) in &view.channels {
-            let point = &view.fixture.points()[index];
-            let Some(body) = &self.bodies[point.body] else { continue };
-            let (word, class, side) = match kind {
-                ChannelKind::Response => ("response", "fx-response", 7.0),
-                ChannelKind::Reference => ("reference", "fx-reference", -7.0),
-            };
-            let both = view.channels.iter().filter(|(other, _)| *other == index).count() > 1;
-            let anchor = self.scale.px(point.x.value) + if both { side } else { 0.0 };
-            let label = Label::new(format!("{word} {}", point.name), class, Tie::Arrow(kind), anchor);
-            self.rows[body.row].above.push(Label { half: 0.5 * body.height, ..label });
-        }
+    }
+
+    fn label_channel(&mut self, view: &SideView, at: usize) {
+        let (index, kind) = view.channels[at];
+        let point = &view.fixture.points()[index];
+        let Some(body) = &self.bodies[point.body] else { return };
+        let (word, class, side) = match kind {
+            ChannelKind::Response => ("response", "fx-response", 7.0),
+            ChannelKind::Reference => ("reference", "fx-reference", -7.0),
+        };
+        // Both kinds of one point stand side by side in the sorted list.
+        let beside = [at.checked_sub(1), Some(at + 1)].into_iter().flatten();
+        let both = beside.filter_map(|at| view.channels.get(at)).any(|(other, _)| *other == index);
+        let anchor = self.scale.px(point.x.value) + if both { side } else { 0.0 };
+        let label = Label::new(format!("{word} {}", point.name), class, Tie::Arrow(kind), anchor);
+        self.rows[body.row].above.push(Label { half: 0.5 * body.height, ..label });
     }
 
     /// Rows from top to bottom, each as high as its labels need.
@@ -302,9 +334,18 @@ impl Layout {
             let support = if row.supported { SUPPORT } else { 6.0 };
             top = row.middle + row.half + support + below as f64 * POINT_LANE + 12.0;
         }
-        // The scale bar and the axes.
-        self.height = top + 40.0;
+        // The scale bar and the axes, and a line on what has no label.
+        self.height = top + 40.0 + if self.unlabelled > 0 { LANE } else { 0.0 };
     }
+}
+
+/// As many of some things as there is room for, evenly from the first to the last.
+fn thinned(all: Vec<usize>, room: usize) -> Vec<usize> {
+    let count = all.len();
+    if count <= room {
+        return all;
+    }
+    (0..room).map(|at| all[at * (count - 1) / (room - 1).max(1)]).collect()
 }
 
 /// The name as drawn; what cannot rotate says so.

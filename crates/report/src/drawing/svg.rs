@@ -4,7 +4,7 @@ use jointscope_fixture::{Fixture, Joint, JointLaw};
 use maud::{Markup, PreEscaped, html};
 
 use super::layout::{
-    ARROW, LANE, Label, Layout, POINT_LANE, Row, SUPPORT, Tie, body_name, name_fits, text_width,
+    ARROW, LANE, Label, Layout, MOST_LABELS, POINT_LANE, Row, SUPPORT, Tie, body_name, name_fits, text_width,
 };
 use super::{ChannelKind, Highlight, SideView};
 use crate::format::significant;
@@ -53,6 +53,10 @@ pub(super) fn draw(view: &SideView, width: f64, class: &str) -> Markup {
                 circle.fx-dot cx=(px(x)) cy=(px(y)) r="4" {}
             }
             @for row in &layout.rows { (labels(row)) }
+            @if layout.unlabelled > 0 {
+                @let says = format!("{} more points or channels without a label", layout.unlabelled);
+                (text("fx-soft", (0.5 * width, base - 26.0), &says))
+            }
             @if layout.scale.per_metre > 0.0 { (scale_bar(layout.scale.per_metre, base)) }
             (axes(width, base))
         }
@@ -74,7 +78,10 @@ fn description(view: &SideView) -> String {
         format!("{}{body} at x = {} mm", highlight.label, significant(1e3 * highlight.x, 4))
     };
     let bodies = fixture.bodies().iter().map(|body| body.name.clone()).collect();
-    let points = fixture.points().iter().map(|point| point.name.clone()).collect();
+    let points = match fixture.points().len() {
+        count if count > MOST_LABELS => vec![format!("{count} of them")],
+        _ => fixture.points().iter().map(|point| point.name.clone()).collect(),
+    };
     let joints = fixture.joints().iter().map(|joint| joint.name.clone()).collect();
     let listed = [
         ("Marked", marked.map(place).collect::<Vec<_>>()),

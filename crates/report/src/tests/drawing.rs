@@ -213,3 +213,26 @@ fn bodies_without_a_place_and_highlights_at_no_abscissa_are_left_out() {
         !drawn.iter().any(|text| ["response lost", "nowhere (y only)", "ghost"].contains(&text.0.as_str()))
     );
 }
+
+#[test]
+fn of_thousands_of_points_those_in_use_are_named_and_the_rest_is_counted() {
+    let mut file = json!({
+        "bodies": { "A": block(-0.030), "B": block(0.095) },
+        "points": { "2": point("A", 0.0), "3": point("B", 0.065) },
+        "joints": { "J": { "from": "2", "to": "3", "beam": { "youngs_modulus": 2.07e11, "second_moment": 3.67e-10 } } }
+    });
+    for index in 10..3010 {
+        file["points"][index.to_string()] = point("B", 0.065 + 1e-5 * f64::from(index));
+    }
+    let fixture = fixture(&file);
+    let frfs = [FrfPair::transverse("2000", "2001")];
+    let svg = SideView::new(&fixture, &frfs).draw().wide.into_string();
+    for name in ["2", "3", "2000", "2001", "response 2000", "reference 2001"] {
+        assert!(svg.contains(&format!(">{name}<")), "{name}");
+    }
+    check_labels_keep_clear(&svg);
+    // Both bodies stand in one row: its four points in use and 56 more.
+    let unlabelled = 3002 - 60;
+    assert!(svg.contains(&format!("{unlabelled} more points")));
+    assert!(svg.contains("Points: 3002 of them."));
+}
