@@ -262,8 +262,9 @@ fn fitted_interfaces(fit: &JointFit, sides: &Sides, exact: bool) -> Option<Inter
     let bending_stiffness = youngs_modulus.value * second_moment.value;
     let known = [(youngs_modulus, Nature::YoungsModulus), (second_moment, Nature::SecondMoment)]
         .map(|(quantity, nature)| quantity.std(nature, exact).unwrap_or(0.0) / quantity.value);
+    // What a beam and the springs at its ends are together is known at rest; what a law adds over frequency is inertia along the beam, or relaxation.
     interfaces_of_fit(
-        fit.stiffness,
+        fit.follows.fit.stiffness,
         covariance,
         (bending_stiffness, bending_stiffness * known[0].hypot(known[1])),
         &fit.length,

@@ -332,7 +332,7 @@ fn over_lines_that_hold_the_joints_mass_the_law_is_drawn_with_it_and_no_level_or
     analysis.judgement = Judgement::of(&analysis, &fixture);
     assert!(analysis.judgement.contradiction.is_none());
     let html = page(&fixture, &analysis);
-    assert!(html.contains("they hold its inertia and are no stiffness of the joint alone"));
+    assert!(html.contains("they hold its inertia, about −ω²M, and are no stiffness of the joint alone"));
     assert!(!html.contains(level) && html.contains("law from all FRFs"));
     // Without a mass the law is the fitted k on every line, with one it falls by about ω²M.
     let k11 = |analysis: &Analysis, line: usize| analysis.fitted_at(line).unwrap().0.at(0, 0);
