@@ -8,7 +8,7 @@ use num_complex::Complex64;
 
 impl Analysis {
     /// K and C that the spectrum's relation makes of the joint from all FRFs on a line of the recording, its mass included: lines are solved as if the joint had none, so that they
-    /// hold its inertia, about −ω²M. The fixture is taken as stated, as it is for the lines themselves.
+    /// hold its inertia. The fixture is taken as stated, as it is for the lines themselves.
     ///
     /// `None` without such a fit, at 0 Hz, and where a matrix is singular.
     pub fn fitted_at(&self, line: usize) -> Option<(RealMatrix2, RealMatrix2)> {

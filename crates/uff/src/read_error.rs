@@ -45,7 +45,7 @@ pub enum ReadError {
     /// NaN or infinity among the values.
     #[error(
         "dataset {dataset}: the value at spectral line (point) {point}, counted from 0, is not finite; \
-         mask it before export, or, where a binary dataset (58b) states the wrong byte order, export it again or as ASCII"
+         mask or remove it before export, or, where a binary dataset (58b) states the wrong byte order, export it again or as ASCII"
     )]
     NotFinite {
         /// Which dataset.

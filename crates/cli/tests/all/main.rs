@@ -25,6 +25,7 @@ mod prove;
 mod prove_floors;
 mod prove_recordings;
 mod results;
+mod shared_inputs;
 mod streams;
 mod synthesize;
 mod tables;

@@ -43,7 +43,7 @@ fn introduction(subject: &Subject, part: Part, symbol: &str) -> String {
         ),
     };
     let mass = if analysis.lines_hold_mass() {
-        " The joint has a mass of its own, of which these lines know nothing: they hold its inertia, about −ω²M, and are no stiffness of the joint alone. \
+        " The joint has a mass of its own, of which these lines know nothing: they hold its inertia and are no stiffness of the joint alone. \
          The law drawn over them has that inertia in it; k and c above have not, and are not held against these lines."
     } else {
         ""

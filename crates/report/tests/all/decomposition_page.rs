@@ -332,16 +332,17 @@ fn over_lines_that_hold_the_joints_mass_the_law_is_drawn_with_it_and_no_level_or
     analysis.judgement = Judgement::of(&analysis, &fixture);
     assert!(analysis.judgement.contradiction.is_none());
     let html = page(&fixture, &analysis);
-    assert!(html.contains("they hold its inertia, about −ω²M, and are no stiffness of the joint alone"));
+    assert!(html.contains("they hold its inertia and are no stiffness of the joint alone"));
     assert!(!html.contains(level) && html.contains("law from all FRFs"));
-    // Without a mass the law is the fitted k on every line, with one it falls by about ω²M.
+    // Without a mass the law is the fitted k on every line; with one it is far from it on low lines, where both blocks move as one and a joint's mass counts with theirs.
     let k11 = |analysis: &Analysis, line: usize| analysis.fitted_at(line).unwrap().0.at(0, 0);
     let (low, high) = (10, analysis.spectrum.h41.lines.len() - 1);
     let heavy = [low, high].map(|line| k11(&analysis, line));
     analysis.joint_fit.as_mut().unwrap().mass = None;
     let light = [low, high].map(|line| k11(&analysis, line));
     assert!((light[0] / light[1] - 1.0).abs() < 1e-6, "{light:?}");
-    assert!(heavy[0] - heavy[1] > 10.0 * (light[0] - heavy[0]).abs(), "{heavy:?} {light:?}");
+    let off = [0, 1].map(|line| (heavy[line] / light[line] - 1.0).abs());
+    assert!(off[0] > 0.5 && off[1] < 0.05, "{heavy:?} {light:?}");
 }
 
 #[test]

@@ -139,7 +139,7 @@ fn a_value_that_is_no_number_is_named_with_its_line() {
 
 #[test]
 fn nan_and_infinity_are_named_with_their_spectral_line() {
-    let message = "dataset 1: the value at spectral line (point) 1, counted from 0, is not finite; mask it before export, or, where a binary dataset (58b) states the wrong byte order, export it again or as ASCII";
+    let message = "dataset 1: the value at spectral line (point) 1, counted from 0, is not finite; mask or remove it before export, or, where a binary dataset (58b) states the wrong byte order, export it again or as ASCII";
     check_data(&even(2, 3), "  1.00000e+00          NaN  3.00000e+00\n", message);
     check_data(
         &even(5, 3),
