@@ -112,9 +112,7 @@ impl Estimate {
             mass: None,
         })
     }
-}
 
-impl Estimate {
     /// H = ωC in place of the C that loses as much at ω: no C is written beside it, and no deviation of one.
     fn read_as_structural(&mut self, omega: f64) {
         self.structural = self.damping.map(|row| row.map(|c| omega * c));

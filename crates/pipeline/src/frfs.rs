@@ -4,7 +4,7 @@ use crate::{Error, HammerTest, Measurement};
 use jointscope_estimation::EstimateOptions;
 use jointscope_fixture::{Effect, EffectKind, Fixture, FixtureError, Place};
 use jointscope_recordings::{Hits, Recording};
-use jointscope_screening::{Oddity, Screened, screened};
+use jointscope_screening::{Oddity, screened};
 use jointscope_spectra::FrfSet;
 
 /// The FRFs of a test at one level, recorded as such or estimated from its hits.
@@ -62,25 +62,30 @@ impl MeasuredFrfs {
     /// # Errors
     /// FRFs without any signal, or of which a part was changed.
     pub fn screened(self, fixture: &Fixture) -> Result<Self, Error> {
-        let screened = screened(self.frfs.clone(), fixture)?;
-        Ok(self.put_right(screened))
+        self.put_right(fixture, |_| Ok(()))
     }
 
     /// As [`MeasuredFrfs::screened`], and masses of the fixture that the recording tells to be in another unit are refused.
     pub(crate) fn plausible(self, fixture: &Fixture) -> Result<Self, Error> {
-        let screened = screened(self.frfs.clone(), fixture)?;
-        for oddity in &screened.oddities {
-            if let Oddity::Masses(slip) = oddity {
-                return Err(slip.clone().into());
-            }
-        }
-        Ok(self.put_right(screened))
+        self.put_right(fixture, |oddities| {
+            let slip = oddities.iter().find_map(|oddity| match oddity {
+                Oddity::Masses(slip) => Some(slip.clone()),
+                _ => None,
+            });
+            slip.map_or(Ok(()), |slip| Err(slip.into()))
+        })
     }
 
-    fn put_right(mut self, screened: Screened) -> Self {
+    fn put_right(
+        mut self,
+        fixture: &Fixture,
+        judged: impl FnOnce(&[Oddity]) -> Result<(), Error>,
+    ) -> Result<Self, Error> {
+        let screened = screened(self.frfs, fixture)?;
+        judged(&screened.oddities)?;
         self.notes.extend(screened.oddities.iter().map(ToString::to_string));
         self.frfs = screened.frfs;
-        self
+        Ok(self)
     }
 
     /// `fixture` as these FRFs show it: under their exponential window, if there is one. The fixture's own effects stay.
