@@ -1,5 +1,6 @@
 //! The dynamic stiffness of one joint with everything that the fixture says of it.
 
+mod heavy_beam;
 mod in_time;
 
 pub(crate) use in_time::JointInTime;
@@ -7,7 +8,8 @@ pub(crate) use in_time::JointInTime;
 use crate::assembly::nominal_stiffness;
 use crate::effects::{Action, Change, Interface, actions};
 use crate::lanes::Lines;
-use jointscope_beam::{consistent_mass, end_compliance, transport};
+use heavy_beam::HeavyBeam;
+use jointscope_beam::transport;
 use jointscope_fixture::{Damping, Dof, Fixture, Joint, JointLaw};
 use jointscope_linalg::{ComplexMatrix2, Matrix2, RealMatrix2};
 use num_complex::Complex64;
@@ -36,6 +38,8 @@ pub(crate) struct JointDynamics {
     interfaces: Vec<Interface>,
     shear_stiffness: Option<f64>,
     mass: f64,
+    /// A beam with mass.
+    heavy_beam: Option<HeavyBeam>,
     altered: bool,
 }
 
@@ -68,6 +72,7 @@ impl JointDynamics {
             interfaces: Vec::new(),
             shear_stiffness: None,
             mass: 0.0,
+            heavy_beam: None,
         };
         for action in actions(fixture) {
             match action {
@@ -77,6 +82,9 @@ impl JointDynamics {
                 _ => {}
             }
         }
+        let length = all.length + all.extra_length;
+        let beam = all.bending_stiffness.filter(|_| all.mass != 0.0 && length > 0.0);
+        all.heavy_beam = beam.map(|bending| HeavyBeam::new(bending, all.shear_stiffness, all.mass, length));
         all
     }
 
@@ -147,10 +155,13 @@ impl JointDynamics {
     /// The dynamic stiffness at s = iω (or decay + iω) on the motions of both ends, effects and mass included.
     #[inline(always)]
     pub fn on_both_ends<T: Lines>(&self, s: T) -> TwoEnds<T> {
-        let length = self.length + self.extra_length;
-        if self.mass != 0.0 && self.bending_stiffness.is_some() && length > 0.0 {
-            return self.heavy_beam(s, length, self.modulus(s));
+        // Interfaces are springs in series with a beam's ends.
+        if let Some(beam) = &self.heavy_beam {
+            return self.interfaces.iter().fold(beam.at(s, self.modulus(s)), |ends, interface| {
+                ends.softened(interface, T::ONE * interface.stiffness + s * interface.damping)
+            });
         }
+        let length = self.length + self.extra_length;
         let mut ends = TwoEnds::from_end(self.on_relative_motion(s), length);
         if self.mass != 0.0 {
             ends.add_half_masses(s * s * (0.5 * self.mass));
@@ -167,30 +178,6 @@ impl JointDynamics {
             factor = factor + turned * (T::ONE + turned).reciprocal() * ratio;
         }
         factor * self.factor
-    }
-
-    /// A beam with uniformly distributed mass, by doubling a short element four times; its interfaces are
-    /// springs in series with its ends.
-    #[inline(always)]
-    fn heavy_beam<T: Lines>(&self, s: T, length: f64, modulus: T) -> TwoEnds<T> {
-        const DOUBLINGS: u32 = 4;
-        let short = length / f64::from(1u32 << DOUBLINGS);
-        let bending = self.bending_stiffness.unwrap_or_default();
-        let mut compliance = end_compliance(bending, short);
-        if let Some(shear) = self.shear_stiffness {
-            compliance.0[0][0] += short / shear;
-        }
-        let stiffness = compliance.inverse_unchecked().map(|element| modulus * element);
-        let mut beam = MirrorBeam::from_end(stiffness, short);
-        beam.add_mass(&consistent_mass(self.mass / length, short), s * s);
-        for _ in 0..DOUBLINGS {
-            beam = beam.doubled();
-        }
-        let mut beam = beam.between_both_ends();
-        for interface in &self.interfaces {
-            beam = beam.softened(interface, T::ONE * interface.stiffness + s * interface.damping);
-        }
-        beam
     }
 }
 
@@ -251,69 +238,6 @@ impl<T: Lines> TwoEnds<T> {
             near: Matrix2::new(n00 - a * fa, n01, n01, n11 - b * fb),
             cross: Matrix2::new(c00 - a * fc, c01 - a * fd, c10 - b * fc, c11 - b * fd),
             far: Matrix2::new(f00 - c * fc, f01, f01, f11 - d * fd),
-        }
-    }
-}
-
-/// The dynamic stiffness of a beam that is the same seen from either end, where a rotation of the one is the opposite of the other's: near [[a, b], [b, d]],
-/// far [[a, −b], [−b, d]], cross [[p, q], [−q, t]].
-#[derive(Debug, Clone, Copy)]
-struct MirrorBeam<T> {
-    a: T,
-    b: T,
-    d: T,
-    p: T,
-    q: T,
-    t: T,
-}
-
-impl<T: Lines> MirrorBeam<T> {
-    /// `[−R, I]ᵀ k [−R, I]` of a uniform beam's end stiffness k.
-    #[inline(always)]
-    fn from_end(stiffness: Matrix2<T>, length: f64) -> Self {
-        let [[k00, k01], [_, k11]] = stiffness.0;
-        MirrorBeam { a: k00, b: -k01, d: k11, p: -k00, q: -k01, t: -(k01 * length + k11) }
-    }
-
-    /// Adds a uniform beam's mass matrix times `factor`.
-    #[inline(always)]
-    fn add_mass(&mut self, matrix: &jointscope_beam::Matrix4, factor: T) {
-        self.a = self.a + factor * matrix[0][0];
-        self.b = self.b + factor * matrix[0][1];
-        self.d = self.d + factor * matrix[1][1];
-        self.p = self.p + factor * matrix[0][2];
-        self.q = self.q + factor * matrix[0][3];
-        self.t = self.t + factor * matrix[1][3];
-    }
-
-    /// Two of them end to end, the motion between them eliminated: far + near, which is to be inverted, is diagonal.
-    #[inline(always)]
-    fn doubled(self) -> Self {
-        let MirrorBeam { a, b, d, p, q, t } = self;
-        let (twice_a, twice_d) = (a + a, d + d);
-        let inverse = (twice_a * twice_d).reciprocal();
-        let (of_motion, of_rotation) = (twice_d * inverse, twice_a * inverse);
-        let (p_m, q_m) = (p * of_motion, q * of_motion);
-        let (q_r, t_r) = (q * of_rotation, t * of_rotation);
-        let (pp, qq_m, pq) = (p * p_m, q * q_m, q * p_m);
-        let (qq_r, tt, qt) = (q * q_r, t * t_r, q * t_r);
-        MirrorBeam {
-            a: a - pp - qq_r,
-            b: b + pq - qt,
-            d: d - qq_m - tt,
-            p: qq_r - pp,
-            q: -(pq + qt),
-            t: qq_m - tt,
-        }
-    }
-
-    #[inline(always)]
-    fn between_both_ends(self) -> TwoEnds<T> {
-        let MirrorBeam { a, b, d, p, q, t } = self;
-        TwoEnds {
-            near: Matrix2::new(a, b, b, d),
-            cross: Matrix2::new(p, q, -q, t),
-            far: Matrix2::new(a, -b, -b, d),
         }
     }
 }
