@@ -8,8 +8,9 @@ use num_complex::Complex64;
 pub(crate) const FEW_MODES: usize = 12;
 /// A pivot smaller than this share of the largest element is a zero.
 const ZERO: f64 = 1e-15;
-/// A pivot smaller than this share of the largest element, both squared, asks for rows to be exchanged.
-const WEAK: f64 = 1e-10;
+/// A pivot smaller than this share of the largest element, both squared, asks for rows to be exchanged: what is eliminated by it loses as many digits. The last one eliminates
+/// nothing, and near a pole it is small whatever the order.
+const WEAK: f64 = 1e-6;
 
 /// (D(s) + V Δ(s) Vᵀ) q = Φ_i with D diagonal. The modes are mass-normalised, so that all elements have one unit and none needs scaling.
 #[derive(Debug, Clone)]
@@ -138,7 +139,8 @@ fn factorize_symmetric<const N: usize, T: Lines>(matrix: &mut [[T; N]; N]) -> bo
         }
     }
     for k in 0..N {
-        if !T::all_exceed(matrix[k][k].sizes(), WEAK, largest) {
+        let least = if k + 1 < N { WEAK } else { ZERO * ZERO };
+        if !T::all_exceed(matrix[k][k].sizes(), least, largest) {
             return false;
         }
         let inverse = matrix[k][k].reciprocal();
