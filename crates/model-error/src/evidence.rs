@@ -24,6 +24,8 @@ pub struct Evidence {
     pub ln: f64,
     /// The most probable sizes, [`ErrorSizes::LEAST`] of the prior's at least.
     pub sizes: ErrorSizes,
+    /// The same logarithm at the sizes that the search for these set out from.
+    pub ln_at_start: f64,
 }
 
 /// Sizes that are tried first, as multiples of the prior's.
@@ -141,6 +143,7 @@ impl Linear {
         let mut best: [f64; KINDS] =
             std::array::from_fn(|kind| if stated[kind] { prior[kind] } else { start_at[kind] });
         let mut ln = value(&best);
+        let ln_at_start = ln;
         let mut try_size = |best: &mut [f64; KINDS], ln: &mut f64, kind: usize, size: f64| {
             let size = size.max(ErrorSizes::LEAST * prior[kind]);
             if size == best[kind] {
@@ -178,7 +181,7 @@ impl Linear {
                 }
             }
         }
-        ln.is_finite().then(|| Evidence { ln, sizes: ErrorSizes::from_array(best) })
+        ln.is_finite().then(|| Evidence { ln, sizes: ErrorSizes::from_array(best), ln_at_start })
     }
 }
 

@@ -70,8 +70,13 @@ const DIFFERENCE: (f64, f64) = (1e-3, 2e-3);
 const ROUNDS: usize = 20;
 const DERIVATIVES: usize = 2;
 const CONVERGED: f64 = 0.02;
+/// Rounds at whose ends a fit stands still and has gained less, after which it ends.
+const IDLE: usize = 2;
 /// Factor by which a size may shrink from one round to the next: where errors are next to none, a fit that starts far away hangs on whatever is recorded most sharply.
 const SHRINK: f64 = 0.1;
+/// Factors of the share that a size goes of the way to what is asked for, where it turns back and where it does not.
+const TURNED: f64 = 0.4;
+const ONWARD: f64 = 1.25;
 /// Relative difference of sizes that are as good as the same: they are searched no closer.
 const ALIKE: f64 = 0.1;
 /// How often a mode that has strayed into the band or out of it is counted anew, and damping that turns phases by far more or less than before: a mode at the very end of the
@@ -259,33 +264,47 @@ impl<'a> Problem<'a> {
         let (mut best, mut otherwise, mut stale): (Option<ModalFit>, Option<ModalFit>, Option<ModalFit>) =
             (None, None, None);
         let mut strayed = 0;
+        let mut idle = 0;
+        let mut turns = Turns::none();
         for round in 0..ROUNDS {
             // What fails on the way takes nothing from what was found before.
             let Some(end) = self.settled(&standing, point, derivatives, (priors, &sizes)) else { break };
             (point, derivatives) = (end.point, end.derivatives);
-            let ln = end.evidence.ln + standing.pairing.alone() - rarity;
             let before = best.as_ref().map(|fit| fit.ln);
-            let next = end.evidence.sizes.larger(sizes.times(SHRINK));
-            // The evidence says nothing of a point from where the parameters are still to move, or the sizes to shrink.
-            let settled = next == end.evidence.sizes;
+            let asked = end.evidence.sizes;
+            let next = asked.larger(sizes.times(SHRINK));
+            // The evidence at sizes that are asked for says nothing of a point from where the parameters are still to move, or the sizes to shrink. At its own a fit may stand still all the
+            // same.
+            let settled = next == asked;
             let same = settled && are_alike(&next, &sizes);
-            sizes = next;
             let last = round + 1 == ROUNDS;
-            if settled && end.promised < STILL || last && best.is_none() && otherwise.is_none() {
+            let evidence = match settled && end.promised < STILL {
+                true => Some(end.evidence),
+                false => (end.promised_there < STILL).then_some(Evidence {
+                    ln: end.evidence.ln_at_start,
+                    sizes,
+                    ..end.evidence
+                }),
+            };
+            let stands = evidence.is_some();
+            sizes = turns.toward(&next, &sizes);
+            let none = last && best.is_none() && otherwise.is_none();
+            if let Some(evidence) = evidence.or(none.then_some(end.evidence)) {
                 let fit = ModalFit {
                     hypothesis: point.hypothesis.clone(),
                     priors: priors.to_vec(),
                     standing: Standing { modelled: point.modelled.clone(), ..standing.clone() },
                     linear: end.linear,
-                    evidence: end.evidence,
+                    evidence,
                     slopes: derivatives.clone(),
                     residual: point.residual.clone(),
-                    ln,
+                    ln: evidence.ln + standing.pairing.alone() - rarity,
                 };
                 best = more_probable(best, Some(fit));
             }
-            let ends =
-                best.is_some() && (same || settled && before.is_some_and(|before| ln - before < CONVERGED));
+            let gained = best.as_ref().zip(before).is_none_or(|(best, before)| best.ln - before >= CONVERGED);
+            idle = if gained { 0 } else { idle + usize::from(stands) };
+            let ends = best.is_some() && (same || idle == IDLE);
             // Modes may have moved past others on the way, and shapes with them, or into the band or out of it.
             let strays = strayed < STRAYS && point.modelled.strays(self.recorded);
             if last || !(ends || strays) {
@@ -308,6 +327,7 @@ impl<'a> Problem<'a> {
                 stale = best.take();
                 strayed += 1;
             }
+            idle = 0;
             otherwise = more_probable(otherwise, best.take());
             standing = anew;
         }
@@ -326,6 +346,7 @@ impl<'a> Problem<'a> {
         let descent = Descent { problem: self, standing, factor, priors };
         let point = descend(&descent, start, Some(derivatives), &settings(DERIVATIVES))?.point;
         let derivatives = descent.derivatives(&point, Precision::Rough)?;
+        let promised_there = descent.promised(&point, &descent.equations(&point, &derivatives, &()));
         let (linear, evidence) =
             self.evidence(&point, priors, &derivatives, (&standing.comparison, Some(sizes)))?;
         // Of a fit at errors of nothing that finds they are not, the parameters are still to move, however still they stand there.
@@ -333,7 +354,7 @@ impl<'a> Problem<'a> {
             Cholesky::of(standing.comparison.count(), &standing.comparison.covariance(&evidence.sizes))?;
         let there = Descent { factor, ..descent };
         let promised = there.promised(&point, &there.equations(&point, &derivatives, &()));
-        Some(Rest { point, derivatives, linear, evidence, promised })
+        Some(Rest { point, derivatives, linear, evidence, promised_there, promised })
     }
 
     /// [`Problem::slopes`] by all coordinates.
@@ -367,7 +388,9 @@ impl<'a> Problem<'a> {
             let prior = priors[index];
             0.5 * ((point.hypothesis.coordinates[index] - prior.mean) / prior.std).powi(2)
         };
-        held.1.ln -= stopped.iter().map(pull).sum::<f64>();
+        let pulls: f64 = stopped.iter().map(pull).sum();
+        held.1.ln -= pulls;
+        held.1.ln_at_start -= pulls;
         Some(if held.1.ln < free.1.ln { held } else { free })
     }
 }
@@ -380,6 +403,35 @@ fn more_probable(a: Option<ModalFit>, b: Option<ModalFit>) -> Option<ModalFit> {
 /// Whether parameters fitted at one of these sizes are as good as fitted at the other.
 fn are_alike(a: &ErrorSizes, b: &ErrorSizes) -> bool {
     a.to_array().iter().zip(b.to_array()).all(|(a, b)| (a / b).ln().abs() < ALIKE)
+}
+
+/// How a fit goes from sizes to those that it asks for.
+struct Turns {
+    /// The change of each size's logarithm that was made last.
+    last: [f64; KINDS],
+    /// Share of what is asked for that is gone.
+    shares: [f64; KINDS],
+}
+
+impl Turns {
+    /// The whole way, for a start.
+    fn none() -> Self {
+        Turns { last: [0.0; KINDS], shares: [1.0; KINDS] }
+    }
+
+    /// The sizes to go on with. Where one turns back it goes half as far, and a little farther again where it does not: parameters and sizes that ask for each other in turn come to no
+    /// rest otherwise.
+    fn toward(&mut self, asked: &ErrorSizes, from: &ErrorSizes) -> ErrorSizes {
+        let (from, asked) = (from.to_array(), asked.to_array());
+        ErrorSizes::from_array(std::array::from_fn(|kind| {
+            let change = (asked[kind] / from[kind]).ln();
+            let share = &mut self.shares[kind];
+            *share =
+                if change * self.last[kind] < 0.0 { TURNED * *share } else { (ONWARD * *share).min(1.0) };
+            self.last[kind] = *share * change;
+            if *share == 1.0 { asked[kind] } else { from[kind] * self.last[kind].exp() }
+        }))
+    }
 }
 
 /// How parameters are fitted with at most so many sets of derivatives, the first taken at the start.
@@ -403,7 +455,8 @@ struct Rest {
     derivatives: Vec<Vec<f64>>,
     linear: Linear,
     evidence: Evidence,
-    /// Decrease of χ² that one more step promises.
+    /// Decrease of χ² that one more step promises at the sizes that were fitted with, and at those asked for.
+    promised_there: f64,
     promised: f64,
 }
 
