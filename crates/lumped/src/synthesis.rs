@@ -99,7 +99,7 @@ impl ModelledTest {
     pub fn continued(&self) -> ContinuedFrfs<'_> {
         let receptances = self.receptances();
         let values = vec![Complex64::ZERO; receptances.count()];
-        ContinuedFrfs { test: self, receptances, values }
+        ContinuedFrfs { test: self, receptances, values, courses: Vec::new() }
     }
 }
 
@@ -110,15 +110,36 @@ pub struct ContinuedFrfs<'a> {
     test: &'a ModelledTest,
     receptances: Receptances<'a>,
     values: Vec<Complex64>,
+    /// Receptances at several frequencies, one after another of each.
+    courses: Vec<Complex64>,
 }
 
 impl ContinuedFrfs<'_> {
     /// Writes all FRFs at complex frequency `s`, rad/s, over `frfs`; `false` where they are not finite, as at a pole.
     pub fn at(&mut self, s: Complex64, frfs: &mut [Complex64]) -> bool {
-        let read = s + self.test.chain.decay();
-        if !self.receptances.at(read, &mut self.values) {
+        self.receptances.at(s + self.test.chain.decay(), &mut self.values) && self.recorded(s, frfs)
+    }
+
+    /// As [`ContinuedFrfs::at`] at several frequencies side by side: all FRFs at the first, then at the second, …
+    pub fn at_each(&mut self, frequencies: &[Complex64], frfs: &mut [Complex64]) -> bool {
+        let (count, decay) = (frequencies.len(), self.test.chain.decay());
+        let read: Vec<Complex64> = frequencies.iter().map(|s| s + decay).collect();
+        self.courses.resize(self.receptances.count() * count, Complex64::ZERO);
+        if self.receptances.on_lines(&read, &mut self.courses).is_err() {
             return false;
         }
+        frequencies.iter().zip(frfs.chunks_exact_mut(self.test.loads.len())).enumerate().all(
+            |(place, (s, frfs))| {
+                let courses = self.courses.chunks_exact(count);
+                self.values.iter_mut().zip(courses).for_each(|(value, course)| *value = course[place]);
+                self.recorded(*s, frfs)
+            },
+        )
+    }
+
+    /// What the measuring chain makes of the receptances at `s`.
+    fn recorded(&self, s: Complex64, frfs: &mut [Complex64]) -> bool {
+        let read = s + self.test.chain.decay();
         let squared = read * read;
         for (index, (frf, reading)) in frfs.iter_mut().zip(&self.test.chain.readings).enumerate() {
             let receptance = match &self.test.loads[index] {

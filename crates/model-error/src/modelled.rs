@@ -360,14 +360,17 @@ fn radius(pole: Complex64) -> f64 {
 pub(crate) fn mode(frfs: &mut ContinuedFrfs, guess: Complex64, count: usize) -> Option<ModelledMode> {
     let (near, mut values) = followed(frfs, guess + apart(guess), guess, count)?;
     let radius = radius(near);
+    let steps: [Complex64; POINTS] = std::array::from_fn(|point| {
+        Complex64::from_polar(radius, TAU * (point as f64 + 0.5) / POINTS as f64)
+    });
+    values.resize(count * POINTS, Complex64::ZERO);
+    if !frfs.at_each(&steps.map(|step| near + step), &mut values) {
+        return None;
+    }
     let mut residues = vec![Complex64::ZERO; count];
     let mut moments = vec![Complex64::ZERO; count];
-    for point in 0..POINTS {
-        let step = Complex64::from_polar(radius, TAU * (point as f64 + 0.5) / POINTS as f64);
-        if !frfs.at(near + step, &mut values) {
-            return None;
-        }
-        for ((residue, moment), value) in residues.iter_mut().zip(&mut moments).zip(&values) {
+    for (step, values) in steps.iter().zip(values.chunks_exact(count)) {
+        for ((residue, moment), value) in residues.iter_mut().zip(&mut moments).zip(values) {
             let share = value * step / POINTS as f64;
             *residue += share;
             *moment += share * step;
@@ -415,7 +418,10 @@ mod tests {
                 let guess = pole * (1.0 + 1.3e-5 * f64::from(k));
                 let other = mode(&mut frfs, guess, pairs.len()).unwrap();
                 assert!((other.pole.omega / first.pole.omega - 1.0).abs() < 1e-13, "guess {k}");
-                assert!((other.pole.damping_ratio / first.pole.damping_ratio - 1.0).abs() < 1e-10, "guess {k}");
+                assert!(
+                    (other.pole.damping_ratio / first.pole.damping_ratio - 1.0).abs() < 1e-10,
+                    "guess {k}"
+                );
                 for (a, b) in other.residues.iter().zip(&first.residues) {
                     assert!((a / b - 1.0).norm() < 1e-9, "guess {k}: {a} against {b}");
                 }

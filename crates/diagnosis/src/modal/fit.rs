@@ -72,6 +72,11 @@ const DERIVATIVES: usize = 2;
 const CONVERGED: f64 = 0.02;
 /// Rounds at whose ends a fit stands still and has gained less, after which it ends.
 const IDLE: usize = 2;
+/// Of a fit whose ln p matters wherever it ends.
+pub(super) const ANY: f64 = f64::NEG_INFINITY;
+/// Rounds after which a fit is given up that is still below what matters, and gains less than this share of what it lacks.
+const PATIENCE: usize = 2;
+const GAINING: f64 = 0.25;
 /// Factor by which a size may shrink from one round to the next: where errors are next to none, a fit that starts far away hangs on whatever is recorded most sharply.
 const SHRINK: f64 = 0.1;
 /// Factors of the share that a size goes of the way to what is asked for, where it turns back and where it does not.
@@ -195,7 +200,7 @@ impl<'a> Problem<'a> {
 
     /// The most probable parameters from where `start` stands, and the sizes of the error there.
     pub fn fitted(&self, start: &Hypothesis, priors: &[Prior]) -> Option<ModalFit> {
-        self.fitted_from(start, self.standing(start)?, priors, (None, SetOut::Both))
+        self.fitted_from(start, self.standing(start)?, priors, (None, SetOut::Both, ANY))
     }
 
     /// [`Problem::fitted`], and from pairings beside the most likely one at the start where errors of the usual size do not do.
@@ -203,25 +208,26 @@ impl<'a> Problem<'a> {
         let standing = self.standing(start)?;
         let others = standing.pairing.others(self.recorded, &standing.modelled);
         let modelled = standing.modelled.clone();
-        let first = self.fitted_from(start, standing, priors, (None, SetOut::Both));
+        let first = self.fitted_from(start, standing, priors, (None, SetOut::Both, ANY));
         if others.is_empty() || first.as_ref().is_some_and(|fit| self.is_usual(&fit.evidence.sizes)) {
             return first;
         }
         let fixture = start.to_fixture().ok()?;
         let fitted = |pairing: Pairing| {
             let standing = self.paired(&fixture, modelled.clone(), pairing)?;
-            self.fitted_from(start, standing, priors, (None, SetOut::Both))
+            self.fitted_from(start, standing, priors, (None, SetOut::Both, ANY))
         };
         others.into_iter().map(fitted).fold(first, more_probable)
     }
 
-    /// [`Problem::fitted`] from where `start` is known to stand, with derivatives known from nearby where there are any.
+    /// [`Problem::fitted`] from where `start` is known to stand, with derivatives known from nearby where there are any. What stays below `least` in ln p is not followed to
+    /// its rest, nor from other sizes of error.
     pub fn fitted_from(
         &self,
         start: &Hypothesis,
         mut standing: Standing,
         priors: &[Prior],
-        (nearby, set_out): (Option<Vec<Vec<f64>>>, SetOut),
+        (nearby, set_out, least): (Option<Vec<Vec<f64>>>, SetOut, f64),
     ) -> Option<ModalFit> {
         standing.comparison = standing.comparison.with_ratios_alone();
         let residual = self.residual(&standing, &standing.modelled);
@@ -231,13 +237,18 @@ impl<'a> Problem<'a> {
             Some(nearby) => nearby,
             None => self.slopes_at(&point, &standing, priors)?,
         };
-        let from =
-            |sizes| self.fitted_with((point.clone(), derivatives.clone()), standing.clone(), priors, sizes);
+        let from = |sizes| {
+            self.fitted_with((point.clone(), derivatives.clone()), standing.clone(), priors, (sizes, least))
+        };
         let mut best = from(Some(*self.sizes));
         if let SetOut::Beside(sizes) = set_out {
             best = more_probable(best, from(Some(sizes)));
         }
-        if set_out == SetOut::Usual || best.as_ref().is_some_and(|fit| self.is_usual(&fit.evidence.sizes)) {
+        let is_far = best.as_ref().is_some_and(|fit| fit.ln < least);
+        if is_far
+            || set_out == SetOut::Usual
+            || best.as_ref().is_some_and(|fit| self.is_usual(&fit.evidence.sizes))
+        {
             return best;
         }
         more_probable(best, from(None))
@@ -254,7 +265,7 @@ impl<'a> Problem<'a> {
         (mut point, mut derivatives): (Iterate, Vec<Vec<f64>>),
         mut standing: Standing,
         priors: &[Prior],
-        sizes: Option<ErrorSizes>,
+        (sizes, least): (Option<ErrorSizes>, f64),
     ) -> Option<ModalFit> {
         let rarity = point.hypothesis.rarity();
         let mut sizes = match sizes {
@@ -264,7 +275,7 @@ impl<'a> Problem<'a> {
         let (mut best, mut otherwise, mut stale): (Option<ModalFit>, Option<ModalFit>, Option<ModalFit>) =
             (None, None, None);
         let mut strayed = 0;
-        let mut idle = 0;
+        let (mut idle, mut ahead) = (0, f64::NEG_INFINITY);
         let mut turns = Turns::none();
         for round in 0..ROUNDS {
             // What fails on the way takes nothing from what was found before.
@@ -288,7 +299,10 @@ impl<'a> Problem<'a> {
             };
             let stands = evidence.is_some();
             sizes = turns.toward(&next, &sizes);
-            let none = last && best.is_none() && otherwise.is_none();
+            let ln = end.evidence.ln + standing.pairing.alone() - rarity;
+            let given_up = round >= PATIENCE && ln < least && ln - ahead < GAINING * (least - ln);
+            ahead = ln;
+            let none = (last || given_up) && best.is_none() && otherwise.is_none();
             if let Some(evidence) = evidence.or(none.then_some(end.evidence)) {
                 let fit = ModalFit {
                     hypothesis: point.hypothesis.clone(),
@@ -307,6 +321,9 @@ impl<'a> Problem<'a> {
             let ends = best.is_some() && (same || idle == IDLE);
             // Modes may have moved past others on the way, and shapes with them, or into the band or out of it.
             let strays = strayed < STRAYS && point.modelled.strays(self.recorded);
+            if given_up {
+                break;
+            }
             if last || !(ends || strays) {
                 continue;
             }

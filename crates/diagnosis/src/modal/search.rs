@@ -2,7 +2,7 @@
 
 use crate::Hypothesis;
 use crate::catalogue::Candidate;
-use crate::modal::fit::{ModalFit, SetOut};
+use crate::modal::fit::{ANY, ModalFit, SetOut};
 use crate::modal::searcher::{Named, STARTS, Searcher};
 use crate::modal::starts::{Start, own_frequency};
 use std::collections::{BTreeMap, BTreeSet};
@@ -163,7 +163,7 @@ impl Searcher<'_> {
         let fit = |(to, from): (&Named, &Named)| {
             let start = to.fit.hypothesis.with_tolerances_of(&from.fit.hypothesis);
             let standing = self.problem.standing(&start)?;
-            let set_out = (None, SetOut::Beside(from.fit.evidence.sizes));
+            let set_out = (None, SetOut::Beside(from.fit.evidence.sizes), ANY);
             let fit = self.problem.fitted_from(&start, standing, &to.fit.priors, set_out)?;
             Some(Named { names: to.names.clone(), exact: self.is_exact(&fit), fit })
         };
@@ -183,7 +183,7 @@ impl Searcher<'_> {
         names.remove(index);
         let company: Vec<&Candidate> = names.iter().map(|&c| &self.candidates[c]).collect();
         let start = named.fit.hypothesis.without(index);
-        let set_out = (None, SetOut::Beside(named.fit.evidence.sizes));
+        let set_out = (None, SetOut::Beside(named.fit.evidence.sizes), ANY);
         let standing = self.problem.standing(&start)?;
         let fit = self.problem.fitted_from(&start, standing, &self.priors(&start, &company), set_out)?;
         Some(Named { names, exact: self.is_exact(&fit), fit })
@@ -259,28 +259,34 @@ impl Searcher<'_> {
         (fits, far)
     }
 
-    /// Fits from starts with one effect more than `base`, the best of each candidate, the most probable first.
+    /// Fits from starts with one effect more than `base`, the best of each candidate, the most probable first. What lies far below the first of them is not fitted closely.
     fn fitted(&self, base: &Named, starts: Vec<Start>, set_out: SetOut) -> Vec<Named> {
         let tried = self.watch.count(starts.len());
-        let fit = |Start { candidate: c, hypothesis, .. }: Start| {
+        let fit = |Start { candidate: c, hypothesis, .. }: Start, least: f64| {
             tried.trying(&self.candidates[c]);
             let names: Vec<usize> = base.names.iter().copied().chain([c]).collect();
             let company: Vec<&Candidate> = names.iter().map(|&c| &self.candidates[c]).collect();
             let standing = self.problem.standing(&hypothesis)?;
             let nearby = self.nearby(&hypothesis, &standing, &base.fit);
             let priors = self.priors(&hypothesis, &company);
-            let mut fit = self.problem.fitted_from(&hypothesis, standing, &priors, (nearby, set_out))?;
+            let mut fit =
+                self.problem.fitted_from(&hypothesis, standing, &priors, (nearby, set_out, least))?;
             // The end of a reach is no place to rest, whatever the evidence says that has a parameter less there.
             for _ in 0..self.settings.farther {
                 let next = farther(&fit.hypothesis, &self.candidates[c]).and_then(|start| {
                     let standing = self.problem.standing(&start)?;
-                    self.problem.fitted_from(&start, standing, &priors, (None, set_out))
+                    self.problem.fitted_from(&start, standing, &priors, (None, set_out, least))
                 });
                 let Some(next) = next else { break };
                 fit = next;
             }
             Some(Named { names, exact: self.is_exact(&fit), fit })
         };
-        best_of_each(self.problem.work.each(starts, STARTS, fit))
+        let mut starts = starts.into_iter();
+        let first: Vec<Start> = starts.by_ref().take(1).collect();
+        let mut fits = self.problem.work.each(first, STARTS, |start| fit(start, ANY));
+        let least = fits.first().map_or(ANY, |first| first.fit.ln - self.settings.foremost.1);
+        fits.extend(self.problem.work.each(starts.collect(), STARTS, |start| fit(start, least)));
+        best_of_each(fits)
     }
 }

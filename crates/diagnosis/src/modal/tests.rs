@@ -1,6 +1,6 @@
 use crate::fitter::Fitter;
 use crate::modal::features::Features;
-use crate::modal::fit::{ModalFit, SetOut};
+use crate::modal::fit::{ANY, ModalFit, SetOut};
 use crate::modal::judgement::ModalJudgement;
 use crate::modal::prior::{Prior, priors};
 use crate::search::Search;
@@ -58,7 +58,8 @@ fn a_fit_stands_where_it_would_come_to_rest_at_the_errors_that_it_asks_for() {
         let problem = features.problem(observation.work());
         let sharply = SetOut::Beside(features.known.scales.times(1e-3));
         let standing = problem.standing(&nominal).unwrap();
-        let fit = problem.fitted_from(&nominal, standing, &priors(&nominal, &[]), (None, sharply)).unwrap();
+        let fit =
+            problem.fitted_from(&nominal, standing, &priors(&nominal, &[]), (None, sharply, ANY)).unwrap();
         let (rest, _) = problem.at_sizes(&fit, &fit.evidence.sizes).unwrap();
         let moved =
             rest.coordinates.iter().zip(&fit.hypothesis.coordinates).map(|(rest, at)| (rest - at).abs());
@@ -122,7 +123,7 @@ fn a_dashpot_is_known_no_better_than_the_damping_of_the_modes_that_it_damps() {
     let own = truth.coordinates[nominal.coordinates.len()..].iter().map(|at| Prior { mean: *at, std: 1.4 });
     let priors: Vec<Prior> = priors(&nominal, &[]).into_iter().chain(own).collect();
     let standing = problem.standing(&truth).unwrap();
-    let fit = problem.fitted_from(&truth, standing, &priors, (None, SetOut::Usual)).unwrap();
+    let fit = problem.fitted_from(&truth, standing, &priors, (None, SetOut::Usual, ANY)).unwrap();
     let mut of_ratios = fit.clone();
     of_ratios.standing.comparison = of_ratios.standing.comparison.with_ratios_alone();
     const ERROR: f64 = 0.05;
