@@ -74,7 +74,7 @@ pub use departures::Departure;
 pub use diagnosis::Diagnosis;
 pub use drift::{ModeDrift, ReferenceChange, TestDrift};
 pub use facts::{EndErrors, FrfMisfit, Phase, Trend, Variation};
-pub use finding::{Finding, Tried};
+pub use finding::{Evidence, Finding, Tried};
 pub use fit::Fit;
 pub use hypothesis::{Hypothesis, PredictionError, Tolerance};
 pub use idle::{as_known, with_idle_points_exact};

@@ -135,7 +135,7 @@ struct Errors<'a> {
 fn finding(finding: &Finding) -> Value {
     let mut entry = told(finding, finding.says());
     entry["doubtful"] = Value::Bool(finding.is_doubtful());
-    if let Some(measured) = &finding.measured {
+    if let Some(measured) = &finding.evidence.measured {
         entry["measured"] = value(MeasuredPlace::of(measured));
     }
     entry

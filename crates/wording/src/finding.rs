@@ -5,7 +5,7 @@ use crate::numbers::{Short, listed};
 use crate::{Says, amplitude};
 use jointscope_diagnosis::Finding;
 use jointscope_fixture::{Dof, Effect};
-use jointscope_nonlinear::{Finding as HitFinding, LevelFinding};
+use jointscope_nonlinear::{HitFinding, LevelFinding};
 
 /// Probability from which another name for a finding is told in its sentence.
 const NOTABLE: f64 = 0.05;
@@ -51,7 +51,7 @@ impl Says for HitFinding {
         format!(
             "{}; the hits move it by up to {} {motion}{}.",
             meaning(&self.effect, &self.estimates, "hits"),
-            Short(self.reach),
+            Short(self.evidence.reach),
             look_alikes(&self.alternatives, "hits")
         )
     }
@@ -63,8 +63,8 @@ impl Says for LevelFinding {
         format!(
             "{}; seen at relative motions of {:.3e} to {:.3e} {motion}{}.",
             meaning(&self.effect, &self.estimates, "levels"),
-            self.motions.0,
-            self.motions.1,
+            self.evidence.motions.0,
+            self.evidence.motions.1,
             look_alikes(&self.alternatives, "levels")
         )
     }
@@ -74,6 +74,7 @@ impl Says for LevelFinding {
 #[allow(clippy::unwrap_used)]
 mod tests {
     use super::*;
+    use jointscope_diagnosis::Evidence;
     use jointscope_findings::Estimate;
     use jointscope_fixture::{EffectKind, Place};
 
@@ -90,8 +91,7 @@ mod tests {
             effect,
             probability: 0.9,
             alternatives: Vec::new(),
-            gain: 100.0,
-            measured: None,
+            evidence: Evidence { gain: 100.0, measured: None },
         }
     }
 

@@ -25,7 +25,7 @@ impl Says for SteppedDiagnosis {
             (verdict, findings) => {
                 let names: Vec<String> = findings.iter().map(|f| kind(f).to_owned()).collect();
                 let names = names.join(" with ");
-                let share = 100.0 * findings[0].share;
+                let share = 100.0 * findings[0].evidence.share;
                 let left = if verdict == Verdict::Explained { "" } else { ", and something is left" };
                 if self.holds == self.levels.len() {
                     return format!(

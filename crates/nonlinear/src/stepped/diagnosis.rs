@@ -9,8 +9,8 @@ use super::problem::{Change, Level, Problem};
 use super::resonance::{Resonance, resonance};
 use crate::distribution::f_tail;
 use crate::{CHANGED, NonlinearOptions, SteppedError};
-use jointscope_findings::{Estimate, HeldOut, Verdict};
-use jointscope_fixture::{Effect, Fixture, QuantityKey, QuantityOwner};
+use jointscope_findings::{Finding, HeldOut, Verdict};
+use jointscope_fixture::{Fixture, QuantityKey, QuantityOwner};
 use jointscope_spectra::Dof;
 use rayon::prelude::*;
 use serde::{Serialize, Serializer};
@@ -64,19 +64,11 @@ pub struct Tried {
 }
 
 /// A law that the levels need.
+pub type LevelFinding = Finding<LevelEvidence>;
+
+/// What levels tell of a law beyond its name, size and probability.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct LevelFinding {
-    /// Kind, joint, dof and parameters.
-    #[serde(flatten, serialize_with = "jointscope_findings::effect_name")]
-    pub effect: Effect,
-    /// Parameters with their uncertainty.
-    #[serde(rename = "parameters", serialize_with = "jointscope_findings::parameters")]
-    pub estimates: Vec<Estimate>,
-    /// Probability of kind, joint and dof together.
-    pub probability: f64,
-    /// Other names for it, the most probable first.
-    #[serde(serialize_with = "jointscope_findings::alternatives")]
-    pub alternatives: Vec<(Effect, f64)>,
+pub struct LevelEvidence {
     /// Share of the change with level that the laws found explain over the range.
     #[serde(rename = "share_explained")]
     pub share: f64,

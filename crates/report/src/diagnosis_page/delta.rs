@@ -23,7 +23,7 @@ pub(super) fn section(subject: &Subject) -> Option<Section> {
         .findings
         .iter()
         .enumerate()
-        .filter_map(|(index, finding)| Some((index, finding, finding.measured.as_ref()?)))
+        .filter_map(|(index, finding)| Some((index, finding, finding.evidence.measured.as_ref()?)))
         .filter(|(_, _, location)| !location.delta.is_empty())
         .collect();
     // Only what has no name is drawn without a law.
