@@ -30,10 +30,10 @@ use crate::{DecompositionError, LikelihoodFit, Sides};
 use jointscope_averaging::Band;
 use jointscope_linalg::{Matrix2, RealMatrix2};
 use jointscope_spectra::FrfSet;
+use jointscope_tolerances::Tolerance;
 use law::{Dynamics, Form};
 use outcome::{Inflated, Outcome};
 use problem::{Columns, Fitted, Problem, Setup, Test, lower};
-use quantities::Uncertain;
 use recorded::Recorded;
 
 /// What a fit of the joint is asked for.
@@ -170,8 +170,8 @@ fn that_matter(
     setup: Setup,
     laws: Vec<Dynamics>,
     starts: &[Vec<f64>],
-    quantities: Vec<Uncertain>,
-) -> Option<(Vec<Uncertain>, Vec<Uncertain>, Option<Columns>)> {
+    quantities: Vec<Tolerance>,
+) -> Option<(Vec<Tolerance>, Vec<Tolerance>, Option<Columns>)> {
     let recorded = setup.recorded;
     let test = Test { setup, quantities: &quantities, weights: &recorded.weights };
     let problem = Problem::open(test, laws, None);

@@ -66,7 +66,7 @@ impl Judgement<'_> {
             false => self.of_all(&[focus, fine], [&everything, &slopes], best)?,
         };
         let model = |hypothesis: &Hypothesis, chi2: f64| {
-            let quantities = hypothesis.quantities.iter().map(|(_, quantity)| quantity.clone());
+            let quantities = hypothesis.quantities.iter().map(|tolerance| tolerance.quantity.clone());
             Some(ModelFit {
                 fixture: hypothesis.to_fixture().ok()?,
                 nrmse: everything.nrmse(hypothesis)?,
