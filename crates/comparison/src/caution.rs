@@ -92,8 +92,6 @@ pub enum Caution {
 const SAME_LENGTH: f64 = 1e-9;
 /// Share of a frequency below which two are the same number.
 const SAME_FREQUENCY: f64 = 1e-6;
-/// Probability below which a test of a joint fails, as in the decomposition.
-const FAILED: f64 = 0.05;
 
 impl Caution {
     /// What is to be known of the joints as their files tell it.
@@ -147,13 +145,7 @@ impl Caution {
             all.push(Caution::OnTheBoundary { joint: joint() });
         }
         if let Some(tests) = fit.map(|fit| fit.tests) {
-            let named = [
-                ("reciprocity", tests.reciprocity),
-                ("definite", tests.definite),
-                ("passive", tests.passive),
-            ];
-            let failed = named.into_iter().filter(|(_, p)| p.is_some_and(|p| p < FAILED));
-            let tests: Vec<&'static str> = failed.map(|(name, _)| name).collect();
+            let tests: Vec<&'static str> = tests.failed().map(|(name, _)| name).collect();
             if !tests.is_empty() {
                 all.push(Caution::Refused { joint: joint(), tests });
             }

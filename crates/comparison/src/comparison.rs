@@ -107,6 +107,11 @@ impl ElementRanking {
     pub fn is_settled(&self) -> bool {
         self.has_deviations && self.ranking.is_settled()
     }
+
+    /// Of each joint in the order but the first: whether it is as good as sure that it is larger than the one before it.
+    pub fn settled_neighbours(&self) -> impl Iterator<Item = bool> {
+        self.ranking.settled_neighbours().map(|settled| self.has_deviations && settled)
+    }
 }
 
 /// Which of its estimates stands for each joint: the first one that all of them have.
@@ -314,6 +319,19 @@ impl Comparison {
     /// Whether nothing speaks against taking it as it stands.
     pub fn is_sound(&self) -> bool {
         self.cautions.is_empty()
+    }
+
+    /// Whether the decomposition of one of the joints is judged unusable.
+    pub fn is_unusable(&self) -> bool {
+        self.cautions.iter().any(|caution| matches!(caution, Caution::Unusable { .. }))
+    }
+
+    /// Whether every element of K orders all joints, by fits to all FRFs that nothing speaks against: what does not explain its recording earns no approval, however sure the
+    /// order.
+    pub fn is_conclusive(&self) -> bool {
+        let mut stiffness = self.rankings.iter().filter(|entry| entry.kind == Kind::Stiffness).peekable();
+        let settled = stiffness.peek().is_some() && stiffness.all(ElementRanking::is_settled);
+        settled && self.is_sound() && self.compared == Compared::AllFrfs
     }
 
     /// What is compared, in words.

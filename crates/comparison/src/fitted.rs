@@ -1,7 +1,7 @@
 //! What `stiffness.json` says of the joint from all FRFs.
 
 use crate::Matrix;
-use jointscope_inference::QuadraticLikelihood;
+use jointscope_inference::{QuadraticLikelihood, SIGNIFICANT};
 use serde::Deserialize;
 
 /// The joint from all FRFs, the fixture's quantities moving within their deviations.
@@ -66,6 +66,14 @@ pub struct JointTests {
     /// No eigenvalue of C is negative.
     #[serde(default)]
     pub passive: Option<f64>,
+}
+
+impl JointTests {
+    /// Names and probabilities of the tests that fail.
+    pub fn failed(&self) -> impl Iterator<Item = (&'static str, f64)> {
+        let all = [("reciprocity", self.reciprocity), ("definite", self.definite), ("passive", self.passive)];
+        all.into_iter().filter_map(|(name, p)| Some((name, p.filter(|p| *p < SIGNIFICANT)?)))
+    }
 }
 
 /// A joint's own mass, uniform over its length.

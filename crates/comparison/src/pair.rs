@@ -2,6 +2,7 @@
 
 use crate::normal::{Z95, chi2_above, larger_magnitude, mahalanobis, ratio_interval};
 use crate::{Kind, Number, Together};
+use jointscope_inference::SIGNIFICANT;
 use serde::Serialize;
 
 /// A value with its standard deviation and 95 % interval, SI.
@@ -50,6 +51,14 @@ pub struct PairedNumber {
     pub second_is_larger: f64,
 }
 
+impl PairedNumber {
+    /// Whether the 95 % interval of the difference leaves out zero.
+    pub fn differs(&self) -> bool {
+        let [low, high] = self.difference.ci95;
+        low > 0.0 || high < 0.0
+    }
+}
+
 /// A test of equal numbers.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Equality {
@@ -62,8 +71,10 @@ pub struct Equality {
 }
 
 impl Equality {
-    /// Probability below which joints count as different.
-    pub const DIFFERENT: f64 = 0.05;
+    /// Whether the joints count as different.
+    pub fn is_refuted(&self) -> bool {
+        self.p_value < SIGNIFICANT
+    }
 
     fn of(differences: &[f64], covariance: &[f64]) -> Option<Self> {
         let (chi2, degrees) = mahalanobis(differences, covariance)?;

@@ -28,6 +28,11 @@ impl Ranking {
         self.probability >= SURE
     }
 
+    /// Of each but the first: whether it is settled that it is larger than the one before it.
+    pub fn settled_neighbours(&self) -> impl Iterator<Item = bool> {
+        self.adjacent.iter().map(|p| *p >= SURE)
+    }
+
     /// Ranks values with their standard deviations, taken as independent and normal, by magnitude.
     pub fn of(values: &[(f64, f64)]) -> Self {
         let n = values.len();

@@ -41,7 +41,7 @@ pub fn equality(equality: &Equality, names: [&str; 2]) -> String {
     let [first, second] = names;
     let p = p_value(equality.p_value);
     let degrees = equality.degrees;
-    match equality.p_value < Equality::DIFFERENT {
+    match equality.is_refuted() {
         true => format!("{first} and {second} are not the same joint: all {degrees} numbers equal has {p}"),
         false => format!("nothing tells {first} and {second} apart: all {degrees} numbers equal has {p}"),
     }

@@ -6,6 +6,7 @@
 
 use crate::normal::{Z95, chi2_above, chi2_quantile};
 use crate::{Figure, Number, Together};
+use jointscope_inference::SIGNIFICANT;
 use jointscope_linalg::Cholesky;
 use serde::Serialize;
 use statrs::distribution::{ContinuousCDF, StudentsT};
@@ -39,6 +40,13 @@ pub struct Scatter {
     pub measurement: f64,
     /// Probability of a scatter as large or larger, if the specimens are the same.
     pub p_value: f64,
+}
+
+impl Scatter {
+    /// Whether specimens differ by more than their measurement explains.
+    pub fn is_significant(&self) -> bool {
+        self.p_value < SIGNIFICANT
+    }
 }
 
 impl Specimens {

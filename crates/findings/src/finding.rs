@@ -21,7 +21,20 @@ pub struct Finding<E> {
     pub evidence: E,
 }
 
+/// Probability from which another name for a finding is to be reckoned with: worth a word, and a measurement that tells it apart.
+const LIKELY: f64 = 0.05;
+
 impl<E> Finding<E> {
+    /// The other names that are likely enough to be reckoned with.
+    pub fn look_alikes(&self) -> impl Iterator<Item = &(Effect, f64)> {
+        self.alternatives.iter().filter(|(_, probability)| *probability >= LIKELY)
+    }
+
+    /// Whether a further measurement should tell it from other names, or from something that is not listed.
+    pub fn is_open(&self) -> bool {
+        self.look_alikes().next().is_some() || self.is_doubtful()
+    }
+
     /// Whether neither it nor any of its look-alikes is likelier than something that is not listed.
     pub fn is_doubtful(&self) -> bool {
         self.probability + self.alternatives.iter().map(|(_, probability)| probability).sum::<f64>() < 0.5

@@ -64,4 +64,4 @@ pub use noise::inflated_weight;
 pub use normal::NormalEquations;
 pub use parameter::{Parameter, Transform};
 pub use products::{dot, weighted_products, whitened};
-pub use uncertainty::{Covariance, autocorrelation, jackknife, variance_inflation};
+pub use uncertainty::{Covariance, SIGNIFICANT, autocorrelation, jackknife, variance_inflation};

@@ -52,6 +52,7 @@ pub use identification::diagnosis::{
 };
 pub use identification::homogeneity::{CHANGED, HitLevel, Homogeneity};
 pub use jointscope_findings::{Estimate, HeldOut, Verdict};
+pub use stepped::course::{DampingCourse, FrequencyCourse};
 pub use stepped::diagnosis::{LevelEvidence, LevelFinding, LevelResult, SteppedDiagnosis, Tried};
 pub use stepped::level::{Held, SteppedLevel};
 pub use stepped::pooled::pooled;

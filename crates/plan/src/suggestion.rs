@@ -1,4 +1,5 @@
 use crate::measure::Measure;
+use crate::rivals::SURE;
 use serde::Serialize;
 
 /// One measurement and what it would bring.
@@ -28,6 +29,14 @@ pub struct Suggestion {
     pub effort: f64,
     /// All of it in a sentence.
     pub says: String,
+}
+
+impl Suggestion {
+    /// Whether it promises what the plan is for: one name sure thereafter, or an interval as narrow as wanted.
+    pub fn is_promising(&self) -> bool {
+        let reaches = self.interval.as_ref().is_some_and(|interval| interval.reaches);
+        reaches || self.sure.is_some_and(|sure| sure >= SURE)
+    }
 }
 
 /// An interval of a joint's element that a measurement would leave.

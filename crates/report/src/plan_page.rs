@@ -25,9 +25,7 @@ const BEYOND_DOUBT: f64 = 100.0;
 /// # Errors
 /// None that a plan can cause.
 pub fn plan_page(plan: &Plan, fixture: &Fixture, context: &PageContext) -> Result<String, PageError> {
-    let promised = plan.suggestions.first().is_some_and(|first| {
-        first.sure.is_some_and(|sure| sure >= 0.9) || first.interval.as_ref().is_some_and(|i| i.reaches)
-    });
+    let promised = plan.suggestions.first().is_some_and(Suggestion::is_promising);
     let tone = if promised { Tone::Ok } else { Tone::Attention };
     let details = std::iter::once(plan.question.clone()).chain(plan.remarks.iter().cloned());
     let page = context.page(

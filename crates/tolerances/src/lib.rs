@@ -57,6 +57,14 @@ pub fn moved(fixture: &Fixture, tolerances: &[Tolerance], coordinates: &[f64]) -
     moved
 }
 
+/// Whether a quantity ended so many standard deviations from what is stated that more than one in twenty such are no chance.
+pub fn is_far(deviations: f64) -> bool {
+    deviations.abs() > FAR
+}
+
+/// Standard deviations beyond which a quantity is far: one in twenty is by chance.
+const FAR: f64 = 2.0;
+
 /// Relative deviation up to which a positive quantity moves by its logarithm. One that is stated to a wider deviation has the normal distribution
 /// that is stated: a logarithm of that width would make multiples of the value as probable as small parts of it.
 const NARROW: f64 = 0.12;

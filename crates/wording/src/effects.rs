@@ -27,7 +27,7 @@ pub(crate) fn named_with_size(finding: &Finding) -> String {
         };
         format!(" ({what}{})", rounded_value(estimate))
     });
-    format!("{}{size}{}", effect_name(&finding.effect), or_look_alike(&finding.alternatives))
+    format!("{}{size}{}", effect_name(&finding.effect), or_look_alike(finding))
 }
 
 /// The sentence of an effect without its look-alikes and full stop, its parameters as the `data` know them.

@@ -4,11 +4,6 @@ use crate::numbers::{listed, percent, plain, significant};
 use crate::{Remarks, Says};
 use jointscope_decomposition::{FoundJoint, JointFit, JointTests, JointsFit, LawFit, LawKind};
 
-/// Standard deviations from which a quantity of the fixture is worth a word.
-const FAR: f64 = 2.0;
-/// Probability from which a law is said to hold, rather than to be the most probable one.
-const CERTAIN: f64 = 0.95;
-
 /// That `recorded` lines were merged into `left`; nothing where none was.
 pub fn merging(recorded: usize, left: usize) -> Option<String> {
     (left < recorded).then(|| {
@@ -95,7 +90,7 @@ impl Remarks for FoundJoint {
 fn of_law(fit: &JointFit) -> Vec<String> {
     let mut all = Vec::new();
     all.extend(fit.law().map(|law| {
-            let sure = if law.probability >= CERTAIN { "" } else { "most probably " };
+            let sure = if law.is_certain() { "" } else { "most probably " };
             // The mass has a sentence of its own.
             let what = if fit.mass.is_some() { over_frequency(law) } else { law.says() };
             format!(
@@ -106,12 +101,10 @@ fn of_law(fit: &JointFit) -> Vec<String> {
         }));
     all.extend(in_its_terms(fit));
     all.extend(fit.mass.map(|(mass, std)| {
-            let with_mass = fit.laws.iter().filter(|law| law.mass.is_some());
-            let sure = with_mass.map(|law| law.probability).sum::<f64>() >= CERTAIN;
             format!(
                 "the FRFs {} a mass of the joint of {} ± {}; k and c are those of a joint with it, and K and C by line, which hold its inertia, are not \
                  compared with them",
-                if sure { "show" } else { "most probably show" },
+                if fit.has_certain_mass() { "show" } else { "most probably show" },
                 plain(mass, "kg"),
                 plain(std, "kg")
             )
@@ -203,9 +196,10 @@ fn of_limits(fit: &JointFit) -> Vec<String> {
 
 fn of_quantities(fit: &JointFit) -> Vec<String> {
     let mut all = Vec::new();
-    let far =
-        fit.quantities.iter().filter(|quantity| quantity.std.is_some() && quantity.deviations.abs() >= FAR);
-    let far: Vec<String> = far
+    let far: Vec<String> = fit
+        .quantities
+        .iter()
+        .filter(|quantity| quantity.is_far())
         .map(|quantity| {
             format!("{} by {} standard deviations", quantity.path, significant(quantity.deviations, 2))
         })

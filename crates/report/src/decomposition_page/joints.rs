@@ -41,8 +41,6 @@ pub fn joints_report(fit: &JointsFit, fixture: &Fixture, context: &PageContext) 
 }
 
 fn verdict(fit: &JointsFit) -> Verdict {
-    let explained = fit.joints.iter().all(|joint| joint.fit.explains());
-    let failed = fit.joints.iter().any(|joint| !joint.fit.tests.failed().is_empty());
     let stiffness = |joint: &FoundJoint| {
         let std = joint.fit.std().0.at(0, 0);
         format!("{}: k₁₁ = {}", joint.name, quantity(joint.fit.stiffness.at(0, 0), std, "N/m"))
@@ -58,7 +56,7 @@ fn verdict(fit: &JointsFit) -> Verdict {
         ));
     }
     Verdict {
-        tone: if explained && !failed { Tone::Ok } else { Tone::Attention },
+        tone: if fit.is_sound() { Tone::Ok } else { Tone::Attention },
         headline: format!("{}.", all.join("; ")),
         details,
     }

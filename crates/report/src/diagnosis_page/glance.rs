@@ -14,8 +14,6 @@ use crate::unit::Scale;
 const SHOWN: usize = 3;
 /// Probability from which another name is told.
 const TOLD: f64 = 0.01;
-/// Probability from which another name is worth a measurement.
-const DOUBT: f64 = 0.05;
 
 /// `notes` are remarks from reading the recordings.
 pub(super) fn section(subject: &Subject, notes: &[String]) -> Section {
@@ -136,9 +134,7 @@ fn steps(subject: &Subject) -> Vec<String> {
         let names: Vec<String> = alike.iter().map(|finding| effect_name(&finding.effect)).collect();
         steps.push(format!("{}: {}.", capitalised(&names.join(", ")), advice(&alike[0])));
     }
-    let is_open =
-        |finding: &Finding| finding.alternatives.iter().any(|(_, p)| *p >= DOUBT) || finding.is_doubtful();
-    if diagnosis.findings.iter().any(is_open) {
+    if diagnosis.findings.iter().any(Finding::is_open) {
         steps.push("`jointscope plan` with this fixture and this folder ranks the measurements that tell the names apart.".to_owned());
     }
     steps.extend(match diagnosis.verdict {
