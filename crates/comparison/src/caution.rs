@@ -1,7 +1,7 @@
 //! What keeps a comparison from being taken as it stands.
 
-use crate::normal::Z95;
 use crate::{Compared, Decomposed, Estimate, Number, Together, WhyApart};
+use jointscope_inference::Z95;
 use serde::Serialize;
 
 /// One thing to be known before anything else.

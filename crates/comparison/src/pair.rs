@@ -1,8 +1,8 @@
 //! Two joints: by how much they differ, in what ratio, and whether they are the same.
 
-use crate::normal::{Z95, chi2_above, larger_magnitude, mahalanobis, ratio_interval};
+use crate::normal::{chi2_above, larger_magnitude, mahalanobis, ratio_interval};
 use crate::{Kind, Number, Together};
-use jointscope_inference::SIGNIFICANT;
+use jointscope_inference::{SIGNIFICANT, interval95};
 use serde::Serialize;
 
 /// A value with its standard deviation and 95 % interval, SI.
@@ -19,7 +19,7 @@ pub struct Figure {
 impl Figure {
     pub(crate) fn normal(value: f64, variance: f64) -> Self {
         let std = variance.max(0.0).sqrt();
-        Figure { value, std, ci95: [value - Z95 * std, value + Z95 * std] }
+        Figure { value, std, ci95: interval95(value, std) }
     }
 }
 

@@ -4,9 +4,9 @@
 //! errors included. With n − 1 orthonormal contrasts A, y = A x is free of μ and has the covariance A V Aᵀ + τ², so that Q(τ²) = yᵀ (A V Aᵀ + τ²)⁻¹ y is χ² with n − 1
 //! degrees of freedom for the true τ: its quantiles give an exact interval, Q = n − 1 the estimate (Mandel and Paule), Q(0) the test of equal specimens.
 
-use crate::normal::{Z95, chi2_above, chi2_quantile};
+use crate::normal::{chi2_above, chi2_quantile};
 use crate::{Figure, Number, Together};
-use jointscope_inference::SIGNIFICANT;
+use jointscope_inference::{SIGNIFICANT, Z95};
 use jointscope_linalg::Cholesky;
 use serde::Serialize;
 use statrs::distribution::{ContinuousCDF, StudentsT};

@@ -26,6 +26,7 @@ pub use laws::LawFit;
 pub use likelihood::JointLikelihood;
 pub use several::{FoundJoint, JointsCovariance, JointsFit, SeveralError, fit_joints};
 
+use crate::likelihood::EXPLAINED;
 use crate::{DecompositionError, LikelihoodFit, Sides};
 use jointscope_averaging::Band;
 use jointscope_linalg::{Matrix2, RealMatrix2};
@@ -47,8 +48,6 @@ pub struct JointFitOptions {
     pub laws: bool,
 }
 
-/// χ² per degree of freedom up to which noise and tolerances count as explaining the FRFs: variances from few averages are themselves known to a few per cent.
-const EXPLAINED: f64 = 1.2;
 /// χ² per degree of freedom above which another start is tried.
 const DOUBTFUL: f64 = 1.3;
 /// Damping of a start without any, as a loss factor.

@@ -2,11 +2,10 @@
 
 use jointscope_beam::{Matrix4, from_end_stiffness};
 use jointscope_comparison::Matrix;
+use jointscope_inference::Z95;
 use jointscope_linalg::Matrix2;
 use serde::{Serialize, Serializer};
 
-/// Standard deviations beyond which two centres contradict each other, at 95 %.
-const QUANTILE: f64 = 1.96;
 /// Share of √(c11·c22) to which centres agree where nothing is known of their uncertainty.
 const ROUNDING: f64 = 1e-9;
 
@@ -175,7 +174,7 @@ impl Joint {
         let gradient = [k12 / (k11 * k11) * c11, -c11 / k11, 0.0, -centre.offset, 1.0, 0.0];
         let std = self.propagated(&gradient);
         let rounding = ROUNDING * (c11.abs() * c22.abs()).sqrt().max(c12.abs());
-        let limit = std.map_or(0.0, |std| QUANTILE * std).max(rounding);
+        let limit = std.map_or(0.0, |std| Z95 * std).max(rounding);
         Some(CentreAgreement { coupling, std, agrees: coupling.abs() <= limit })
     }
 

@@ -1,8 +1,7 @@
 use jointscope_fixture::{Dof, ParameterSpec};
+use jointscope_inference::{Z95, interval95};
 use serde::Serialize;
 
-/// Quantile of the standard normal distribution of a 95 % interval.
-const QUANTILE: f64 = 1.96;
 /// Largest exponent of an interval's ratio: its ends stay finite.
 const MOST_EXPONENT: f64 = 50.0;
 
@@ -31,13 +30,12 @@ impl Estimate {
 
     /// The same known to ± `std`, its errors normal.
     pub fn within(self, std: f64) -> Self {
-        let interval = [self.value - QUANTILE * std, self.value + QUANTILE * std];
-        Estimate { std: Some(std), interval: Some(interval), ..self }
+        Estimate { std: Some(std), interval: Some(interval95(self.value, std)), ..self }
     }
 
     /// The same known to ± `deviation` in its logarithm: an interval of ratios, lopsided where it is wide.
     pub fn within_ratio(self, deviation: f64) -> Self {
-        let factor = (QUANTILE * deviation).min(MOST_EXPONENT).exp();
+        let factor = (Z95 * deviation).min(MOST_EXPONENT).exp();
         let interval = [self.value / factor, self.value * factor];
         Estimate { std: Some(deviation * self.value.abs()), interval: Some(interval), ..self }
     }

@@ -1,8 +1,5 @@
 use num_complex::Complex64;
 
-/// Probability below which a test refutes what it tests.
-pub const SIGNIFICANT: f64 = 0.05;
-
 /// Covariance of the coordinates of a fit.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Covariance {

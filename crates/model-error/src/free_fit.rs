@@ -13,7 +13,7 @@ use num_complex::Complex64;
 use std::f64::consts::TAU;
 
 /// χ² per degree of freedom of a free fit from which it may lack a pole, and the share of χ² that is left where one is worth it.
-const POOR: f64 = 1.3;
+const LACKS_A_POLE: f64 = 1.3;
 const WORTH: f64 = 0.8;
 /// Damping ratio that a pole is tried with where a fit misses most, and the share of χ² that is left where it is a mode; lines between it and where it was tried, at most.
 const MISSED: f64 = 0.01;
@@ -61,7 +61,7 @@ struct FrfFit {
 impl FreeFit {
     /// Whether more than noise is left.
     pub fn is_poor(&self, recording: Recording) -> bool {
-        self.chi2_per_dof(recording) > POOR
+        self.chi2_per_dof(recording) > LACKS_A_POLE
     }
 
     /// Whether the residual terms that `more` has are worth their number by Akaike's criterion. What too few of them leave biases the poles

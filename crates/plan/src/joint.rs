@@ -14,6 +14,7 @@ use crate::suggestion::{ExpectedInterval, Suggestion};
 use crate::{PlanError, says};
 use jointscope_diagnosis::{Fit, Hypothesis, Observation};
 use jointscope_fixture::{Fixture, Joint, JointLaw, QuantityKey};
+use jointscope_inference::Z95;
 use jointscope_linalg::Cholesky;
 use jointscope_lumped::nominal_stiffness;
 use jointscope_spectra::{FrfPair, SpectralLines};
@@ -21,8 +22,6 @@ use rayon::prelude::*;
 use serde_json::{Value, json};
 use std::str::FromStr;
 
-/// Half of a 95 % interval in standard deviations.
-const QUANTILE: f64 = 1.96;
 /// Noise of a test that nobody has made: shares of |H| and of its root mean square, as standard deviations of the average.
 const ASSUMED: (f64, f64) = (3e-3, 3e-3);
 /// Share of the present interval that a measurement must leave out to be worth being told.
@@ -323,7 +322,7 @@ impl Joints<'_> {
         factor.solve_lower_in_place(&mut unit);
         let std = unit.iter().map(|u| u * u).sum::<f64>().sqrt();
         let slope = hypothesis.parameters()[index].transform.slope(hypothesis.ended_at(index));
-        Some(QUANTILE * std * slope.abs()).filter(|interval| interval.is_finite())
+        Some(Z95 * std * slope.abs()).filter(|interval| interval.is_finite())
     }
 
     fn suggestion(&self, measure: &Measure, now: Option<f64>, then: f64, effort: f64) -> Suggestion {

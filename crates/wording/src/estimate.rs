@@ -3,6 +3,7 @@
 use crate::numbers::{decimals, plain, prefixed, rounded};
 use jointscope_findings::Estimate;
 use jointscope_fixture::ParameterRange;
+use jointscope_inference::Z95;
 
 /// Ratio of the interval's ends beyond which only the order of magnitude is known.
 const VAGUE: f64 = 30.0;
@@ -32,7 +33,7 @@ pub(crate) fn rounded_value(estimate: &Estimate) -> String {
     match estimate.std.filter(|std| *std > 0.0 && *std < estimate.value.abs()) {
         Some(std) => {
             let (factor, unit) = prefixed(estimate.value, estimate.unit);
-            let number = rounded(estimate.value * factor, decimals(1.96 * std * factor));
+            let number = rounded(estimate.value * factor, decimals(Z95 * std * factor));
             if unit.is_empty() { number } else { format!("{number} {unit}") }
         }
         None => plain(estimate.value, estimate.unit),

@@ -3,6 +3,7 @@
 use crate::numbers::{listed, percent, plain, significant};
 use crate::{Remarks, Says};
 use jointscope_decomposition::{FoundJoint, JointFit, JointTests, JointsFit, LawFit, LawKind};
+use jointscope_inference::interval95;
 
 /// That `recorded` lines were merged into `left`; nothing where none was.
 pub fn merging(recorded: usize, left: usize) -> Option<String> {
@@ -135,12 +136,8 @@ fn in_its_terms(fit: &JointFit) -> Option<String> {
                 .iter()
                 .filter_map(|(row, column, name)| {
                     let (loss, std) = fit.loss_factor(*row, *column)?;
-                    Some(format!(
-                        "of {name} {} (95 %: {} to {})",
-                        significant(loss, 3),
-                        significant(loss - 1.96 * std, 3),
-                        significant(loss + 1.96 * std, 3)
-                    ))
+                    let [low, high] = interval95(loss, std).map(|end| significant(end, 3));
+                    Some(format!("of {name} {} (95 %: {low} to {high})", significant(loss, 3)))
                 })
                 .collect();
             format!(

@@ -1,9 +1,9 @@
 //! Whether physics allows the joint found: reciprocal, never giving out energy, at rest without load.
 
-use super::EXPLAINED;
 use super::law::{Dynamics, Form};
 use super::problem::{Fitted, Point, Problem};
 use super::uncertainty::strain;
+use crate::likelihood::EXPLAINED;
 use jointscope_inference::{Covariance, NormalEquations, SIGNIFICANT};
 use serde::Serialize;
 use std::f64::consts::SQRT_2;
