@@ -97,7 +97,7 @@ impl Ranking {
 const ROUNDING: f64 = 1e-13;
 
 /// A standard normal number (Box and Muller).
-fn normal(random: &mut ChaCha8Rng) -> f64 {
+pub(crate) fn normal(random: &mut ChaCha8Rng) -> f64 {
     let (radius, angle): (f64, f64) = (random.random(), random.random());
     (-2.0 * (1.0 - radius).ln()).sqrt() * (std::f64::consts::TAU * angle).cos()
 }

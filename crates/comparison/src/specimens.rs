@@ -159,7 +159,7 @@ impl Contrasts {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use rand::{RngExt, SeedableRng};
+    use rand::SeedableRng;
     use rand_chacha::ChaCha8Rng;
 
     fn of(values: &[f64], covariance: &[f64]) -> Scatter {
@@ -208,10 +208,7 @@ mod tests {
     #[test]
     fn the_interval_of_the_scatter_holds_it_95_times_in_100_and_equal_specimens_are_told_apart_5_times() {
         let mut random = ChaCha8Rng::seed_from_u64(3);
-        let mut normal = || {
-            let (radius, angle): (f64, f64) = (random.random(), random.random());
-            (-2.0 * (1.0 - radius).ln()).sqrt() * (std::f64::consts::TAU * angle).cos()
-        };
+        let mut normal = || crate::ranking::normal(&mut random);
         let runs = 2000;
         let (mut holds, mut mean_holds, mut told) = (0, 0, 0);
         for _ in 0..runs {

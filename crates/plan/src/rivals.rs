@@ -13,7 +13,7 @@
 //! of its χ² and priors, as the diagnosis weighs names.
 
 use crate::products::Products;
-use jointscope_linalg::{Cholesky, semidefinite_factor};
+use jointscope_linalg::{Cholesky, normal_pair, semidefinite_factor};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
@@ -161,16 +161,9 @@ impl Rivals {
     }
 }
 
-/// A standard normal number, by the polar method.
+/// A standard normal number.
 fn normal(random: &mut ChaCha8Rng) -> f64 {
-    let unit = |random: &mut ChaCha8Rng| (random.next_u64() >> 11) as f64 / (1u64 << 53) as f64;
-    loop {
-        let (u, v) = (2.0 * unit(random) - 1.0, 2.0 * unit(random) - 1.0);
-        let square = u * u + v * v;
-        if square > 0.0 && square < 1.0 {
-            return u * (-2.0 * square.ln() / square).sqrt();
-        }
-    }
+    normal_pair(|| (random.next_u64() >> 11) as f64 / (1u64 << 53) as f64).0
 }
 
 #[cfg(test)]

@@ -5,16 +5,7 @@ use crate::plan::NameNow;
 use crate::rivals::SURE;
 use crate::suggestion::{ExpectedInterval, Suggestion};
 use jointscope_spectra::FrfPair;
-use jointscope_wording::effect_name;
-
-/// `a`, `a and b`, `a, b and c`.
-fn listed(items: &[String]) -> String {
-    match items {
-        [] => String::new(),
-        [only] => only.clone(),
-        [most @ .., last] => format!("{} and {last}", most.join(", ")),
-    }
-}
+use jointscope_wording::{effect_name, listed};
 
 pub(crate) fn percent(share: f64) -> String {
     format!("{:.0} %", 100.0 * share)

@@ -5,10 +5,11 @@ mod spectra;
 use jointscope_comparison::{
     Comparison, ELEMENTS, ElementRanking, Kind, Pair, PairedNumber, Scatter, Specimens, says,
 };
+use jointscope_wording::capitalised;
 
 use crate::context::PageContext;
 use crate::error::PageError;
-use crate::format::{capitalised, in_column, interval, percent, quantity};
+use crate::format::{in_column, interval, percent, quantity};
 use crate::report::Report;
 use crate::section::{Section, Tone, Verdict};
 use crate::table::Table;

@@ -36,6 +36,7 @@ mod summary;
 pub use effects::effect_name;
 pub use joint::merging;
 pub use model_error::{ErrorInWords, error_in_words};
+pub use numbers::{capitalised, listed};
 
 /// Something that can be said in one plain sentence, or in a few words.
 pub trait Says {

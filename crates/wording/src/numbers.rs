@@ -3,7 +3,7 @@
 use std::fmt;
 
 /// `a`, `a and b`, `a, b and c`.
-pub(crate) fn listed(items: &[String]) -> String {
+pub fn listed(items: &[String]) -> String {
     match items {
         [] => String::new(),
         [only] => only.clone(),
@@ -95,7 +95,8 @@ impl fmt::Display for Short {
     }
 }
 
-pub(crate) fn capitalised(text: &str) -> String {
+/// A text with its first letter as a capital.
+pub fn capitalised(text: &str) -> String {
     let mut letters = text.chars();
     letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
 }

@@ -2,10 +2,10 @@
 
 use jointscope_decomposition::{FittedQuantity, JointFit, JointTests, LawFit};
 use jointscope_fixture::Fixture;
-use jointscope_wording::{Remarks, Says};
+use jointscope_wording::{Remarks, Says, capitalised};
 
 use super::Subject;
-use crate::format::{capitalised, quantity, significant};
+use crate::format::{quantity, significant};
 use crate::section::{Block, Section, Tone};
 use crate::table::Table;
 

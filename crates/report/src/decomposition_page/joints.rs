@@ -2,13 +2,13 @@
 
 use jointscope_decomposition::{Element, FoundJoint, JointsFit, Part};
 use jointscope_fixture::Fixture;
-use jointscope_wording::Remarks;
+use jointscope_wording::{Remarks, capitalised};
 
 use super::all_frfs::{laws, moved, tests};
 use super::element::{symbol, unit};
 use crate::context::PageContext;
 use crate::drawing::SideView;
-use crate::format::{capitalised, quantity, significant};
+use crate::format::{quantity, significant};
 use crate::report::Report;
 use crate::section::{Section, Tone, Verdict};
 use crate::table::Table;

@@ -4,11 +4,11 @@ use jointscope_decomposition::{
     Contradiction, Element, Estimate, Figure, JointFit, LikelihoodFit, Method, Part, Use,
 };
 use jointscope_frf::noise::NoiseSource;
-use jointscope_wording::Remarks;
+use jointscope_wording::{Remarks, capitalised};
 
 use super::Subject;
 use super::element::{symbol, unit};
-use crate::format::{capitalised, fixed, quantity, significant, trimmed};
+use crate::format::{fixed, quantity, significant, trimmed};
 use crate::section::Tone;
 
 pub(super) fn tone(subject: &Subject) -> Tone {

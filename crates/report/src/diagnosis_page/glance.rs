@@ -1,12 +1,12 @@
 //! What a reader wants first: what is missing and how sure that is, how much better the model is for it, what to do next; and where it sits.
 
 use jointscope_diagnosis::{Departure, Estimate, Finding, Verdict};
-use jointscope_wording::{Remarks, effect_name};
+use jointscope_wording::{Remarks, capitalised, effect_name};
 use maud::{Markup, html};
 
 use super::judgement::{gain, spoken};
 use super::{Subject, fixture_view};
-use crate::format::{NOT_DETERMINED, capitalised, ends, percent, significant};
+use crate::format::{NOT_DETERMINED, ends, percent, significant};
 use crate::section::{Card, Section, Tone};
 use crate::unit::Scale;
 
