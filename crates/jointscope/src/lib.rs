@@ -105,7 +105,8 @@ pub use jointscope_fixture::{Fixture, FixtureError};
 pub use jointscope_lumped::{Instrument, LumpedError, synthesize};
 pub use jointscope_modes::{ModalAnalysis, ModesError, ModesOptions};
 pub use jointscope_pipeline::{
-    Answer, MeasuredDamping, MeasuredDampingError, Measurement, Outcome, diagnose, measured_damping,
+    Answer, Decomposition, MeasuredDamping, MeasuredDampingError, Measurement, Outcome, decompose, diagnose,
+    measured_damping,
 };
 pub use jointscope_recordings::{ReadOptions, Recording, RecordingError};
 pub use jointscope_spectra::{FrfForm, FrfPair, FrfSet, SpectralLines};
@@ -130,7 +131,7 @@ pub use modes_file::modes_file;
 pub use nonlinear_file::nonlinear_file;
 pub use plan_file::plan_file;
 pub use stepped_file::stepped_file;
-pub use stiffness_file::{joints_file, stiffness_file};
+pub use stiffness_file::{joint_file, joints_file, stiffness_file};
 
 /// Why the bytes of a file are no recording of a fixture.
 #[derive(Debug, thiserror::Error)]

@@ -4,7 +4,16 @@ use jointscope_decomposition::{
     LawKind, MatrixAverage, Method, Part, Relation,
 };
 use jointscope_linalg::RealMatrix2;
+use jointscope_pipeline::{Decomposition, Joints};
 use serde_json::{Value, json};
+
+/// The contents of `stiffness.json`, of one joint or of several.
+pub fn joint_file(decomposition: &Decomposition) -> Value {
+    match &decomposition.found {
+        Joints::One(analysis) => stiffness_file(analysis),
+        Joints::AtOnce(joints) => joints_file(joints),
+    }
+}
 
 /// The contents of `stiffness.json`: K and C by line, averages, the fitted joint and its interfaces, in SI units.
 ///

@@ -16,11 +16,20 @@ pub use joints::joints_report;
 
 use jointscope_decomposition::{Analysis, Estimate, Relation};
 use jointscope_fixture::{Fixture, Joint, JointLaw};
+use jointscope_pipeline::{Decomposition, Joints};
 
 use crate::context::PageContext;
 use crate::error::PageError;
 use crate::report::Report;
 use crate::section::Verdict;
+
+/// The page of the joint in a measurement, or of all joints.
+pub fn joint_report(decomposition: &Decomposition, context: &PageContext) -> Report {
+    match &decomposition.found {
+        Joints::One(analysis) => decomposition_report(analysis, &decomposition.fixture, context),
+        Joints::AtOnce(joints) => joints_report(joints, &decomposition.fixture, context),
+    }
+}
 
 /// What the sections of the page are made from.
 #[derive(Clone, Copy)]

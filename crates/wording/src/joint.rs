@@ -2,11 +2,41 @@
 
 use crate::numbers::{listed, percent, plain, significant};
 use crate::{Remarks, Says};
-use jointscope_decomposition::{FoundJoint, JointFit, JointTests, JointsFit, LawFit, LawKind};
+use jointscope_decomposition::{Analysis, FoundJoint, JointFit, JointTests, JointsFit, LawFit, LawKind};
 use jointscope_inference::interval95;
 
+/// What is true of the analysis whichever of its estimates is taken.
+impl Remarks for Analysis {
+    fn remarks(&self) -> Vec<String> {
+        let merged = self.merged_from.and_then(|recorded| merging(recorded, self.frfs.lines().len()));
+        merged.into_iter().chain(window(self)).chain(lost_tolerances(self)).collect()
+    }
+}
+
+/// Where on the complex plane the joint was read, if not on the imaginary axis.
+fn window(analysis: &Analysis) -> Option<String> {
+    let decay = analysis.spectrum.decay;
+    (decay > 0.0).then(|| {
+        format!(
+            "the FRFs lie under an exponential window of decay {decay:.4} 1/s: sides and joint are read at s = {decay:.4} 1/s + iω, where they \
+             hold exactly, so that K and C are those of the joint and no damping of the window is left in them"
+        )
+    })
+}
+
+/// What the deviations leave out, if anything.
+fn lost_tolerances(analysis: &Analysis) -> Option<String> {
+    let lost = &analysis.lost_tolerances;
+    (!lost.is_empty()).then(|| {
+        format!(
+            "the ± of the fit leave out the tolerances of {}: the fit could not follow them",
+            lost.join(", ")
+        )
+    })
+}
+
 /// That `recorded` lines were merged into `left`; nothing where none was.
-pub fn merging(recorded: usize, left: usize) -> Option<String> {
+fn merging(recorded: usize, left: usize) -> Option<String> {
     (left < recorded).then(|| {
         format!(
             "of {recorded} lines, neighbours over which every FRF is smooth to its noise are merged: {left} are left, which tell the same; results by line are theirs"

@@ -34,7 +34,6 @@ mod places;
 mod summary;
 
 pub use effects::effect_name;
-pub use joint::merging;
 pub use model_error::{ErrorInWords, error_in_words};
 pub use numbers::{capitalised, listed};
 

@@ -4,18 +4,12 @@ use std::path::PathBuf;
 
 use clap::Args;
 use jointscope::cases::Command;
-use jointscope::decomposition::{
-    JointFit, JointFitOptions, JointsFit, LikelihoodFit, SeveralError, SidesError, fit_joints,
-};
+use jointscope::decomposition::{JointFit, JointsFit, LikelihoodFit};
 use jointscope::estimation::ResponseWindow;
-use jointscope::pipeline::MeasuredFrfs;
+use jointscope::pipeline::{DecomposeOptions, Joints, decompose};
 use jointscope::report::format::quantity;
-use jointscope::report::{PageContext, Report, decomposition_report, joints_report};
-use jointscope::wording::merging;
-use jointscope::{
-    Analysis, AnalysisOptions, Band, DecompositionError, Fixture, Relation, Remarks, fitted_frfs,
-    joints_file, stiffness_file,
-};
+use jointscope::report::joint_report;
+use jointscope::{Analysis, AnalysisOptions, Band, Relation, Remarks, fitted_frfs, joint_file};
 
 use super::Said;
 use super::many::{self, ManyArguments, Task};
@@ -69,12 +63,12 @@ pub fn run(arguments: &DecomposeArguments) -> Result<Said, Refusal> {
         return many::run(&task, |case| {
             let mut single = arguments.clone();
             (single.fixture, single.recording.files) = (case.fixture.clone(), case.recordings.clone());
-            found(&single, case.command.to_owned(), Joints::One)
+            found(&single, case.command.to_owned(), true)
         });
     }
     arguments.many.unused()?;
     arguments.destination.foresee(inputs(arguments), &[FILE, PAGE])?;
-    found(arguments, origin::command_line(), Joints::Any)?
+    found(arguments, origin::command_line(), false)?
         .end(&arguments.destination, inputs(arguments))
         .map(Said::from)
 }
@@ -84,127 +78,57 @@ fn inputs(arguments: &DecomposeArguments) -> impl Iterator<Item = &PathBuf> {
     std::iter::once(&arguments.fixture).chain(&arguments.recording.files)
 }
 
-/// How many joints an answer may hold.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Joints {
-    /// One, as a row of a table does.
-    One,
-    /// As many as there are.
-    Any,
-}
-
-/// The joint in the recordings, or all of them; `command` is the line that gives this answer.
-fn found(arguments: &DecomposeArguments, command: String, joints: Joints) -> Result<Answered, Refusal> {
+/// The joint in the recordings, or all of them, where one alone is not asked for; `command` is the line that gives this answer.
+fn found(arguments: &DecomposeArguments, command: String, one_joint: bool) -> Result<Answered, Refusal> {
     let fixture = FixtureFile::read(&arguments.fixture)?;
     let measurement = arguments.recording.measurement(&fixture)?;
     let unused = arguments.estimation.unused_with(&measurement);
-    let measured = MeasuredFrfs::of(&measurement, &arguments.estimation.options(ResponseWindow::Auto));
-    drop(measurement); // as much memory as the recording
-    let mut measured = measured
-        .and_then(|measured| measured.screened(&fixture))
+    let options = DecomposeOptions {
+        analysis: AnalysisOptions {
+            joint: arguments.joint.clone(),
+            relation: arguments.relation,
+            band: arguments.band,
+            exact: arguments.exact,
+            laws: true,
+        },
+        estimate: arguments.estimation.options(ResponseWindow::Auto),
+        one_joint,
+    };
+    let mut decomposition = decompose(&fixture, measurement, &options)
         .map_err(|error| arguments.recording.unanswered(&error, &fixture))?;
-    measured.notes.extend(unused);
-    let as_recorded = measured.as_recorded(&fixture).map_err(|error| fixture.refusal(error))?;
-    let options = AnalysisOptions {
-        joint: arguments.joint.clone(),
-        relation: arguments.relation,
-        band: arguments.band,
-        exact: arguments.exact,
-        laws: true,
+    let notes = decomposition.notes.iter().cloned().chain(unused).chain(decomposition.remarks());
+    let notes: Vec<String> = notes.collect();
+    let hammer_test = decomposition.hammer_test.take();
+    let context = origin::context_of(command, inputs(arguments), notes, hammer_test)?;
+    let mut file = joint_file(&decomposition);
+    origin::add(&mut file, &context);
+    let mut answered = Answered {
+        answer: (FILE, pretty(&file)),
+        others: Vec::new(),
+        elsewhere: Vec::new(),
+        report: joint_report(&decomposition, &context),
+        frfs: Vec::new(),
+        summary: match &decomposition.found {
+            Joints::One(analysis) => summary(analysis),
+            Joints::AtOnce(joints) => summary_of_several(joints),
+        },
+        notes: context.notes,
     };
-    let count = as_recorded.joints().len();
-    if arguments.joint.is_none() && count > 1 {
-        if joints == Joints::One {
-            return Err(fixture.refusal(format!(
-                "has {count} joints, and a row of the table holds one: choose it with `--joint`, or decompose this case by itself"
-            )));
+    if arguments.destination.also.contains(&Also::Uff) {
+        match decomposition.fit() {
+            Some(fit) => {
+                answered.frfs = fitted_frfs(fit, &decomposition.fixture).map_err(Refusal::new)?;
+            }
+            None => answered.notes.push(
+                "no FRFs are written: there is no joint from all FRFs, and K and C by line are no FRFs"
+                    .to_owned(),
+            ),
         }
-        return several(arguments, command, (&fixture, &as_recorded), measured);
-    }
-    let analysis = match Analysis::of(&as_recorded, &measured.frfs, &options) {
-        Err(DecompositionError::Sides(SidesError::Loop(_))) => {
-            return several(arguments, command, (&fixture, &as_recorded), measured);
-        }
-        analysis => analysis.map_err(|error| match error {
-            DecompositionError::Sides(_) | DecompositionError::Model(_) => fixture.refusal(error),
-            error => arguments.recording.refusal(error),
-        })?,
-    };
-    let merged = analysis.merged_from.and_then(|recorded| merging(recorded, analysis.frfs.lines().len()));
-    let said = merged.into_iter().chain(window(&analysis)).chain(lost_tolerances(&analysis));
-    let notes = measured.notes.into_iter().chain(said);
-    let context = origin::context_of(command, inputs(arguments), notes.collect(), measured.hammer_test)?;
-    let report = decomposition_report(&analysis, &as_recorded, &context);
-    let answered = answered(context, stiffness_file(&analysis), report, summary(&analysis));
-    with_frfs(answered, &arguments.destination, analysis.joint_fit.as_ref().ok(), &as_recorded)
-}
-
-/// The same with the FRFs that were fitted and those of the fit, where they are asked for.
-fn with_frfs(
-    mut answered: Answered,
-    destination: &Destination,
-    fit: Option<&JointFit>,
-    fixture: &Fixture,
-) -> Result<Answered, Refusal> {
-    match fit.filter(|_| destination.also.contains(&Also::Uff)) {
-        Some(fit) => answered.frfs = fitted_frfs(fit, fixture).map_err(Refusal::new)?,
-        None if destination.also.contains(&Also::Uff) => answered.notes.push(
-            "no FRFs are written: there is no joint from all FRFs, and K and C by line are no FRFs"
-                .to_owned(),
-        ),
-        None => {}
     }
     Ok(answered)
 }
 
 const FILE: &str = "stiffness.json";
-
-/// The files of what was found.
-fn answered(
-    context: PageContext,
-    mut file: serde_json::Value,
-    report: Report,
-    summary: Vec<String>,
-) -> Answered {
-    origin::add(&mut file, &context);
-    Answered {
-        answer: (FILE, pretty(&file)),
-        others: Vec::new(),
-        elsewhere: Vec::new(),
-        report,
-        frfs: Vec::new(),
-        summary,
-        notes: context.notes,
-    }
-}
-
-/// All joints at once, or the one named, which lies in a loop.
-fn several(
-    arguments: &DecomposeArguments,
-    command: String,
-    (file, fixture): (&FixtureFile, &Fixture),
-    measured: MeasuredFrfs,
-) -> Result<Answered, Refusal> {
-    let names = arguments.joint.as_ref().map(std::slice::from_ref);
-    let options = JointFitOptions { band: arguments.band, exact: arguments.exact, laws: true };
-    let fit = fit_joints(fixture, &measured.frfs, names, options).map_err(|error| match error {
-        SeveralError::NothingRecorded | SeveralError::Noise(_) | SeveralError::Undetermined { .. } => {
-            arguments.recording.refusal(error)
-        }
-        error => file.refusal(error),
-    })?;
-    let mut notes = measured.notes;
-    if arguments.relation == Relation::Paper {
-        notes.push(
-            "--relation paper has no meaning for several joints at once: no line is decomposed, all are fitted"
-                .to_owned(),
-        );
-    }
-    let context = origin::context_of(command, inputs(arguments), notes, measured.hammer_test)?;
-    let report = joints_report(&fit, fixture, &context);
-    let answered = answered(context, joints_file(&fit), report, summary_of_several(&fit));
-    with_frfs(answered, &arguments.destination, fit.joints.first().map(|joint| &joint.fit), fixture)
-}
 
 /// What was found of every joint, a line each.
 fn summary_of_several(fit: &JointsFit) -> Vec<String> {
@@ -217,28 +141,6 @@ fn summary_of_several(fit: &JointsFit) -> Vec<String> {
     lines.extend(fit.joints.first().map(|first| basis(&first.fit)));
     lines.extend(fit.remarks());
     lines
-}
-
-/// Where on the complex plane the joint was read, if not on the imaginary axis.
-fn window(analysis: &Analysis) -> Option<String> {
-    let decay = analysis.spectrum.decay;
-    (decay > 0.0).then(|| {
-        format!(
-            "the FRFs lie under an exponential window of decay {decay:.4} 1/s: sides and joint are read at s = {decay:.4} 1/s + iω, where they \
-             hold exactly, so that K and C are those of the joint and no damping of the window is left in them"
-        )
-    })
-}
-
-/// What the deviations leave out, if anything.
-fn lost_tolerances(analysis: &Analysis) -> Option<String> {
-    let lost = &analysis.lost_tolerances;
-    (!lost.is_empty()).then(|| {
-        format!(
-            "the ± of the fit leave out the tolerances of {}: the fit could not follow them",
-            lost.join(", ")
-        )
-    })
 }
 
 /// What was found, a line each.
