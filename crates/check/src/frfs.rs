@@ -17,6 +17,7 @@ pub struct Coherence {
 
 /// An FRF.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct FrfCheck {
     /// Response and reference.
     pub frf: FrfPair,

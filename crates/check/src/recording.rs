@@ -19,6 +19,7 @@ use serde::Serialize;
 
 /// A recording, as it is beside its fixture.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct RecordingCheck {
     /// What the files themselves say, one sentence each.
     pub notes: Vec<String>,

@@ -7,6 +7,7 @@ use serde::Serialize;
 /// One thing to be known before anything else.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(tag = "what", rename_all = "snake_case")]
+#[non_exhaustive]
 pub enum Caution {
     /// The fit does not explain the recording.
     PoorFit {

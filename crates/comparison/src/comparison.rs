@@ -116,6 +116,7 @@ impl ElementRanking {
 
 /// Which of its estimates stands for each joint: the first one that all of them have.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Compared {
     /// The joint from all FRFs, the fixture's quantities moving within their tolerances.
     AllFrfs,
@@ -175,6 +176,7 @@ pub struct ComparisonOptions {
 
 /// Several joints side by side.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Comparison {
     /// The joints, as given.
     pub joints: Vec<Decomposed>,
@@ -200,6 +202,7 @@ pub struct Comparison {
 
 /// Why joints cannot be compared.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum ComparisonError {
     /// Fewer than two.
     #[error("a comparison needs two decompositions or more")]

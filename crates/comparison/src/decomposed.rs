@@ -112,6 +112,7 @@ pub struct Decomposed {
 
 /// Why a `stiffness.json` cannot be read as one joint's.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum DecomposedError {
     /// The place in the file of what is missing.
     #[error("`{0}` is missing or not what it should be; make the file anew with `jointscope decompose`")]

@@ -109,6 +109,7 @@ const ROUNDING: f64 = 1e-13;
 
 /// Two joints, number by number.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct Pair {
     /// The joint that the other is set against.
     pub first: String,

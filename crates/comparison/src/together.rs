@@ -23,6 +23,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 /// The numbers of all joints with their covariance.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Together {
     count: usize,
     mean: Vec<f64>,
@@ -62,6 +63,7 @@ pub struct Apart {
 /// Why a joint shares no quantity with the others.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
+#[non_exhaustive]
 pub enum WhyApart {
     /// It was asked for.
     Asked,

@@ -36,6 +36,7 @@ pub struct ResidualTerms {
 
 /// Modes of a set of FRFs.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct ModalAnalysis {
     /// The modes in the band, by ascending frequency.
     pub modes: Vec<Mode>,

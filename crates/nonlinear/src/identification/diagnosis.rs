@@ -19,6 +19,7 @@ pub type HitFinding = Finding<HitEvidence>;
 
 /// What hits tell of a law beyond its name, size and probability.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct HitEvidence {
     /// What χ² and priors lose without it.
     #[serde(rename = "gain_chi2")]
@@ -30,6 +31,7 @@ pub struct HitEvidence {
 
 /// A fixture and how well it follows the recorded responses.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct ModelFit {
     /// The fixture at its fitted quantities.
     pub fixture: Fixture,
@@ -67,6 +69,7 @@ pub struct NonlinearOptions {
 
 /// The diagnosis of a joint from hits of several strengths.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct NonlinearDiagnosis {
     /// What it comes to.
     pub verdict: Verdict,

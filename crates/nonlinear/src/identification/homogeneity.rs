@@ -13,6 +13,7 @@ use std::collections::BTreeSet;
 
 /// What the comparison of levels came to.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct Homogeneity {
     /// Probability of a difference as large by chance, of a linear structure.
     pub p_value: f64,

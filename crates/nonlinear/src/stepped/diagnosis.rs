@@ -18,6 +18,7 @@ use std::f64::consts::TAU;
 
 /// What one level shows.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct LevelResult {
     /// What was held.
     pub held: Held,
@@ -68,6 +69,7 @@ pub type LevelFinding = Finding<LevelEvidence>;
 
 /// What levels tell of a law beyond its name, size and probability.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct LevelEvidence {
     /// Share of the change with level that the laws found explain over the range.
     #[serde(rename = "share_explained")]
@@ -79,6 +81,7 @@ pub struct LevelEvidence {
 
 /// The diagnosis of stepped-sine FRFs at several levels.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct SteppedDiagnosis {
     /// What it comes to.
     pub verdict: Verdict,

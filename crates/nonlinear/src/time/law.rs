@@ -4,6 +4,7 @@ use jointscope_fixture::{Dof, Effect, EffectKind, Place};
 
 /// Force g (N, N·m) of a joint's amplitude-dependent part against its relative motion d (m, rad).
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub enum RestoringLaw {
     /// g = k₃·d³.
     Cubic {

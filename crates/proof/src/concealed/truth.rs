@@ -7,6 +7,7 @@ use serde_json::{Value, json};
 
 /// How something is concealed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[non_exhaustive]
 pub enum ConcealmentKind {
     /// An entry of the fixture is deleted: an effect of its `physics`, a known point mass, a support.
     Entry,
