@@ -154,7 +154,7 @@ impl Joint {
     }
 
     /// Abscissa of the elastic centre, m.
-    pub fn centre_x(&self) -> Option<f64> {
+    pub(crate) fn centre_x(&self) -> Option<f64> {
         self.centre().map(|centre| self.to.x + centre.offset)
     }
 
@@ -166,7 +166,7 @@ impl Joint {
     }
 
     /// Whether C acts about the centre of K, within its uncertainty.
-    pub fn damping_centre(&self) -> Option<CentreAgreement> {
+    pub(crate) fn damping_centre(&self) -> Option<CentreAgreement> {
         let centre = self.centre()?;
         let [[k11, k12], _] = self.stiffness;
         let [[c11, c12], [_, c22]] = self.damping;
@@ -179,7 +179,7 @@ impl Joint {
     }
 
     /// Whether the structural damping acts about the centre of K.
-    pub fn structural_shares_centre(&self) -> bool {
+    pub(crate) fn structural_shares_centre(&self) -> bool {
         let Some(centre) = self.centre() else { return false };
         let [[s11, s12], [_, s22]] = self.structural;
         let scale = (s11.abs() * s22.abs()).sqrt().max(s12.abs());

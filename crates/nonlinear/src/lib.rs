@@ -50,7 +50,8 @@ pub use force_state::{ForceState, ForceStateMap, MotionSource};
 pub use identification::diagnosis::{
     HitEvidence, HitFinding, ModelFit, NonlinearDiagnosis, NonlinearOptions, Reach,
 };
-pub use identification::homogeneity::{CHANGED, HitLevel, Homogeneity};
+pub(crate) use identification::homogeneity::CHANGED;
+pub use identification::homogeneity::{HitLevel, Homogeneity};
 pub use jointscope_findings::{Estimate, HeldOut, Verdict};
 pub use stepped::course::{DampingCourse, FrequencyCourse};
 pub use stepped::diagnosis::{LevelEvidence, LevelFinding, LevelResult, SteppedDiagnosis, Tried};

@@ -155,12 +155,12 @@ impl<T: Judgeable> Judged<T> {
     }
 
     /// Whether the answer says that nothing is amiss.
-    pub fn is_consistent(&self) -> bool {
+    pub(crate) fn is_consistent(&self) -> bool {
         self.answer.as_ref().is_ok_and(|answer| answer.verdict == Verdict::Consistent)
     }
 
     /// Whether the answer says that something is amiss.
-    pub fn is_noticed(&self) -> bool {
+    pub(crate) fn is_noticed(&self) -> bool {
         self.answer.is_ok() && !self.is_consistent()
     }
 

@@ -64,7 +64,7 @@ pub use check_page::{check_page, check_report};
 pub use comparison_page::{comparison_page, comparison_report};
 pub use context::{InputFile, PageContext};
 pub use decomposition_page::{decomposition_page, decomposition_report, joint_report, joints_report};
-pub use diagnosis_page::{diagnosis_page, diagnosis_report};
+pub use diagnosis_page::diagnosis_page;
 pub use error::PageError;
 pub use modes_page::{modes_page, modes_report};
 pub use plan_page::plan_page;

@@ -40,7 +40,7 @@ pub struct HitLevel {
 }
 
 /// p-value below which FRFs are said to change with level.
-pub const CHANGED: f64 = 2e-3;
+pub(crate) const CHANGED: f64 = 2e-3;
 
 /// e^{−aT} of the window over the record.
 const WINDOW: f64 = 10.0;

@@ -92,7 +92,7 @@ impl RestoringLaw {
     }
 
     /// The effect of this law at a joint.
-    pub fn to_effect(self, joint: &str, dof: Dof) -> Effect {
+    pub(crate) fn to_effect(self, joint: &str, dof: Dof) -> Effect {
         Effect::new(self.kind(), Place::Joint(joint.to_owned()), Some(dof), &self.values())
     }
 

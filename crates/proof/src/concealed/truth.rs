@@ -55,7 +55,7 @@ impl ConcealmentKind {
     }
 
     /// Whether the size of what is concealed is known apart from the recording: that of a deleted entry may itself have been found in it.
-    pub fn is_planted(self) -> bool {
+    pub(crate) fn is_planted(self) -> bool {
         self != ConcealmentKind::Entry
     }
 }

@@ -98,7 +98,7 @@ impl Structure {
     ///
     /// # Errors
     /// [`StructureError::UnknownPoint`].
-    pub fn motion_as_mounted(&self, channel: &Channel) -> Result<&Row, StructureError> {
+    pub(crate) fn motion_as_mounted(&self, channel: &Channel) -> Result<&Row, StructureError> {
         match motion(&self.displaced, channel) {
             Some(row) => Ok(row),
             None => self.motion(channel),
