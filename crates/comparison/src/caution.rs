@@ -258,9 +258,10 @@ fn of_other_frequencies(joints: &[Decomposed]) -> Option<Caution> {
 
 /// Pairs of joints of one recording: their files say that they were made from it, or what the FRFs tell is the same to the last digit.
 fn of_one_recording(joints: &[Decomposed]) -> Vec<Caution> {
-    let told = |joint: &Decomposed| joint.fitted.as_ref().and_then(|fit| fit.likelihood.clone());
+    let likelihood = |joint: &Decomposed| joint.fitted.as_ref().and_then(|fit| fit.likelihood.clone());
     let is_one = |a: &Decomposed, b: &Decomposed| {
-        a.recording.iter().any(|file| b.recording.contains(file)) || (told(a).is_some() && told(a) == told(b))
+        a.recording.iter().any(|file| b.recording.contains(file))
+            || (likelihood(a).is_some() && likelihood(a) == likelihood(b))
     };
     let pairs = joints.iter().enumerate().flat_map(|(i, a)| joints[i + 1..].iter().map(move |b| (a, b)));
     pairs

@@ -47,9 +47,9 @@ const AVERAGES: (f64, f64) = (1.5, 1000.0);
 fn averages_by_scatter(values: &[Complex64], coherence: &[f64], scatter: &[f64]) -> Option<u32> {
     // One less than the averages, line by line: (1 − γ²)/γ²·|H|² over the variance.
     let stated = of_lines(values, coherence, 2);
-    let told =
+    let usable =
         stated.iter().zip(scatter).zip(coherence).filter(|(_, gamma2)| **gamma2 > 0.0 && **gamma2 < 1.0);
-    let mut ratios: Vec<f64> = told.map(|((stated, scatter), _)| stated / scatter).collect();
+    let mut ratios: Vec<f64> = usable.map(|((stated, scatter), _)| stated / scatter).collect();
     if ratios.len() < FEWEST.max(coherence.len() / 2) {
         return None;
     }

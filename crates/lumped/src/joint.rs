@@ -188,7 +188,7 @@ impl JointDynamics {
         }
         let mut beam = beam.between_both_ends();
         for interface in &self.interfaces {
-            beam = beam.softened(interface, T::ONE * interface.stiffness + s * interface.damping);
+            beam = beam.in_series_with(interface, T::ONE * interface.stiffness + s * interface.damping);
         }
         beam
     }
@@ -237,7 +237,7 @@ impl<T: Lines> TwoEnds<T> {
 
     /// With a spring in series with one of its four end motions.
     #[inline(always)]
-    fn softened(self, interface: &Interface, spring: T) -> Self {
+    fn in_series_with(self, interface: &Interface, spring: T) -> Self {
         let e = 2 * usize::from(interface.at_far_end) + usize::from(interface.dof == Dof::Rotation);
         let column = [self.at(0, e), self.at(1, e), self.at(2, e), self.at(3, e)];
         let factor = (spring + column[e]).reciprocal();

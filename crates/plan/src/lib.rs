@@ -33,13 +33,13 @@ mod expected_noise;
 mod further;
 mod joint;
 mod measure;
+mod model_error;
 mod names;
 mod plan;
 mod products;
 mod rivals;
 mod says;
 mod scene;
-mod softening;
 mod suggestion;
 
 pub use error::PlanError;

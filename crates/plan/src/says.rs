@@ -89,7 +89,7 @@ pub(crate) fn of_names(
     names: usize,
 ) -> String {
     let pairs = names * (names - 1) / 2;
-    let told = match separates.len() {
+    let separated = match separates.len() {
         0 => String::new(),
         _ if names == 2 => String::new(),
         all if all == pairs => "; it tells every two of the names apart".to_owned(),
@@ -99,7 +99,7 @@ pub(crate) fn of_names(
         }
     };
     format!(
-        "{}. With a probability of {} one name then has 90 % or more; ln of the odds against its nearest rival grows by {} on average{told}.",
+        "{}. With a probability of {} one name then has 90 % or more; ln of the odds against its nearest rival grows by {} on average{separated}.",
         to_do(measure),
         probability(sure),
         nats(expected)
@@ -151,9 +151,9 @@ pub(crate) fn sure_already(names: &[NameNow]) -> Option<String> {
     ))
 }
 
-pub(crate) fn remarks(suggestions: &[Suggestion], inflation: f64, softened: bool) -> Vec<String> {
+pub(crate) fn remarks(suggestions: &[Suggestion], inflation: f64, with_model_error: bool) -> Vec<String> {
     let mut all = Vec::new();
-    if softened {
+    if with_model_error {
         all.push(
             "The names were weighed by modes, with an error of the model: that counts as noise of every measurement to come. Promises are rough then, and unproved"
                 .to_owned(),

@@ -87,7 +87,7 @@ impl Planning {
         wanted: usize,
         seed: u64,
         threads: usize,
-        told: impl Fn(usize),
+        progress: impl Fn(usize),
     ) -> Result<Self, GenerationError> {
         let mut cases = Vec::new();
         let mut drawn = 0;
@@ -103,7 +103,7 @@ impl Planning {
                 // A worker that died over a case has left nothing of it.
                 cases.extend(case.unwrap_or(Ok(None))?);
             }
-            told(cases.len());
+            progress(cases.len());
         }
         Ok(Planning::scored(drawn, cases))
     }

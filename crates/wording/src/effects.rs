@@ -32,21 +32,21 @@ pub(crate) fn named_with_size(finding: &Finding) -> String {
 
 /// The sentence of an effect without its look-alikes and full stop, its parameters as the `data` know them.
 pub(crate) fn meaning(effect: &Effect, estimates: &[Estimate], data: &str) -> String {
-    let told = Told { effect, estimates, data };
+    let words_of = Sized { effect, estimates, data };
     let words = effect.kind.spec().words;
-    let case = words.cases.iter().find(|(case, _)| told.is_case(*case));
+    let case = words.cases.iter().find(|(case, _)| words_of.is_case(*case));
     let sentence = case.map_or(words.otherwise, |(_, sentence)| sentence);
-    filled(sentence, |key| told.stands_for(key), |parameter| told.is_sure(parameter))
+    filled(sentence, |key| words_of.stands_for(key), |parameter| words_of.is_sure(parameter))
 }
 
 /// What is told of an effect.
-struct Told<'a> {
+struct Sized<'a> {
     effect: &'a Effect,
     estimates: &'a [Estimate],
     data: &'a str,
 }
 
-impl Told<'_> {
+impl Sized<'_> {
     fn estimate(&self, parameter: &str) -> Option<&Estimate> {
         self.estimates.iter().find(|estimate| estimate.parameter.name == parameter)
     }

@@ -18,13 +18,13 @@ pub(super) fn section(subject: &Subject) -> Option<Section> {
     let numbered = baseline.modes.iter().enumerate();
     let mut table = Table::of(numbered)
         .words("Mode", |(index, _)| (index + 1).to_string())
-        .numbers("f, baseline", "Hz", |(_, mode)| told(mode.baseline.map(|s| frequency(&s)), 5))
-        .numbers("f, now", "Hz", |(_, mode)| told(mode.now.map(|s| frequency(&s)), 5))
+        .numbers("f, baseline", "Hz", |(_, mode)| or_dash(mode.baseline.map(|s| frequency(&s)), 5))
+        .numbers("f, now", "Hz", |(_, mode)| or_dash(mode.now.map(|s| frequency(&s)), 5))
         .numbers("Δf", "%", |(_, mode)| change(mode, frequency));
     if found {
         table = table.numbers("Δf, predicted", "%", |(_, mode)| predicted(mode, frequency));
     }
-    let in_percent = |state: Option<ModeState>| told(state.map(|s| 100.0 * damping(&s)), 3);
+    let in_percent = |state: Option<ModeState>| or_dash(state.map(|s| 100.0 * damping(&s)), 3);
     table = table
         .numbers("ζ, baseline", "%", |(_, mode)| in_percent(mode.baseline))
         .numbers("ζ, now", "%", |(_, mode)| in_percent(mode.now))
@@ -45,7 +45,7 @@ pub(super) fn section(subject: &Subject) -> Option<Section> {
     Some(Section::new("Modes, baseline and now").paragraph(words).with(table))
 }
 
-fn told(value: Option<f64>, digits: usize) -> String {
+fn or_dash(value: Option<f64>, digits: usize) -> String {
     value.map_or_else(|| "–".to_owned(), |value| significant(value, digits))
 }
 
