@@ -116,7 +116,6 @@ impl ElementRanking {
 
 /// Which of its estimates stands for each joint: the first one that all of them have.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[non_exhaustive]
 pub enum Compared {
     /// The joint from all FRFs, the fixture's quantities moving within their tolerances.
     AllFrfs,
@@ -336,15 +335,6 @@ impl Comparison {
         let settled = stiffness.peek().is_some() && stiffness.all(ElementRanking::is_settled);
         settled && self.is_sound() && self.compared == Compared::AllFrfs
     }
-
-    /// What is compared, in words.
-    pub fn estimate_words(&self) -> &'static str {
-        match self.compared {
-            Compared::AllFrfs => "the joints from all FRFs",
-            Compared::Likelihood => "maximum-likelihood estimates from the FRFs across each joint",
-            Compared::Average => "averages over each joint's band",
-        }
-    }
 }
 
 /// The estimate that stands for a joint, as its file states it.
@@ -422,7 +412,6 @@ mod tests {
         let roots = [1.0, 2.0, 3.0, 4.0, 5.0, 6.0].map(f64::sqrt);
         assert_eq!(estimate.stiffness_std, [[roots[0], roots[1]], [roots[1], roots[2]]]);
         assert_eq!(estimate.damping_std, [[roots[3], roots[4]], [roots[4], roots[5]]]);
-        assert!(found.estimate_words().contains("all FRFs"));
     }
 
     #[test]

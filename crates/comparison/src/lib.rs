@@ -10,8 +10,7 @@
 //! * [`Pair`]: difference and ratio of two with intervals, who is the larger, whether they are the same ([`Equality`]);
 //! * [`Ranking`]: the order by each number with its probability;
 //! * [`Specimens`]: the scatter between specimens of one kind, apart from that of measurement;
-//! * [`Caution`]: why a comparison may not be taken as it stands;
-//! * [`comparison_file`]: the contents of `comparison.json`.
+//! * [`Caution`]: why a comparison may not be taken as it stands.
 //!
 //! ```
 //! use jointscope_comparison::Ranking;
@@ -28,15 +27,11 @@ mod caution;
 mod common_law;
 mod comparison;
 mod decomposed;
-mod file;
 mod fitted;
 mod normal;
 mod pair;
 mod ranking;
-pub mod says;
 mod specimens;
-#[cfg(test)]
-mod tests;
 mod together;
 
 pub use caution::Caution;
@@ -44,7 +39,6 @@ pub use comparison::{
     Compared, Comparison, ComparisonError, ComparisonOptions, ELEMENTS, ElementRanking, Kind, Number,
 };
 pub use decomposed::{Decomposed, DecomposedError, End, Ends, Estimate, Judged, Line, Matrix, Nominal};
-pub use file::comparison_file;
 pub use fitted::{
     ComparedLaw, FittedJoint, FittedLength, FollowedLaw, InTheMiddle, JointLikelihood, JointMass, JointTests,
     LossFactor, ModelError, StatedQuantity,

@@ -72,7 +72,7 @@ pub struct Equality {
 
 impl Equality {
     /// Whether the joints count as different.
-    pub(crate) fn is_refuted(&self) -> bool {
+    pub fn is_refuted(&self) -> bool {
         self.p_value < SIGNIFICANT
     }
 

@@ -63,7 +63,6 @@ pub struct Apart {
 /// Why a joint shares no quantity with the others.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
-#[non_exhaustive]
 pub enum WhyApart {
     /// It was asked for.
     Asked,

@@ -114,6 +114,7 @@ pub use jointscope_wording::{Remarks, Says, effect_name};
 
 mod answer_file;
 mod check_file;
+mod comparison_file;
 mod diagnosis_file;
 mod file;
 mod frf_files;
@@ -125,6 +126,7 @@ mod stiffness_file;
 
 pub use answer_file::answer_file;
 pub use check_file::check_file;
+pub use comparison_file::comparison_file;
 pub use diagnosis_file::diagnosis_file;
 pub use frf_files::{checked_frfs, fitted_frfs, model_frfs, rebuilt_frfs};
 pub use modes_file::modes_file;

@@ -3,9 +3,9 @@
 mod spectra;
 
 use jointscope_comparison::{
-    Comparison, ELEMENTS, ElementRanking, Kind, Pair, PairedNumber, Scatter, Specimens, says,
+    Comparison, ELEMENTS, ElementRanking, Kind, Pair, PairedNumber, Scatter, Specimens,
 };
-use jointscope_wording::capitalised;
+use jointscope_wording::{Says, capitalised, comparison as says};
 
 use crate::context::PageContext;
 use crate::error::PageError;
@@ -126,7 +126,7 @@ fn ratio_section(comparison: &Comparison) -> Section {
     let mut section = Section::new("Ratios and differences").paragraph(format!(
         "By {}. Errors that two joints have in common, such as those of the same blocks, cancel in both as far as they are correlated. Intervals are of 95 %; that of a \
          ratio is Fieller's.",
-        comparison.estimate_words()
+        says::estimate_words(comparison)
     ));
     for pair in says::main_pairs(comparison) {
         section = section.with(pair_table(comparison, pair));

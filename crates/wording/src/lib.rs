@@ -1,11 +1,12 @@
 //! Sentences: results as the user is told them.
 //!
 //! Results are typed facts; this crate alone turns them into words, for files, pages and the terminal alike. It decides nothing: what is
-//! doubtful, white, bent or not determined stands in the results.
+//! doubtful, white, settled or not determined stands in the results.
 //!
 //! * [`Says`]: a result, a finding or a place in one plain sentence or a few words;
 //! * [`Remarks`]: what a reader should know besides;
 //! * [`Summary`]: what was found, a line each, for a terminal;
+//! * [`comparison`]: joints side by side, a sentence a number;
 //! * [`effect_name`]: an effect's kind and place in a few words;
 //! * [`error_in_words`]: how wrong a model is, beside what is usual.
 //!
@@ -18,6 +19,7 @@
 //! ```
 
 mod amplitude;
+pub mod comparison;
 mod departures;
 mod diagnosis;
 mod drift;
