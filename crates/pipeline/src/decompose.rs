@@ -7,7 +7,7 @@ use jointscope_decomposition::{
 };
 use jointscope_estimation::EstimateOptions;
 use jointscope_fixture::Fixture;
-use jointscope_wording::Remarks;
+use jointscope_wording::{Remarks, Summary};
 
 /// What to find of the joints in a measurement.
 #[derive(Debug, Clone)]
@@ -51,6 +51,15 @@ impl Decomposition {
         match &self.found {
             Joints::One(analysis) => analysis.joint_fit.as_ref().ok(),
             Joints::AtOnce(joints) => joints.joints.first().map(|joint| &joint.fit),
+        }
+    }
+}
+
+impl Summary for Decomposition {
+    fn summary(&self) -> Vec<String> {
+        match &self.found {
+            Joints::One(analysis) => analysis.summary(),
+            Joints::AtOnce(joints) => joints.summary(),
         }
     }
 }

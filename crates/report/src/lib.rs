@@ -39,7 +39,6 @@ mod diagnosis_page;
 mod drawing;
 mod error;
 mod force_state;
-pub mod format;
 mod hammer_test;
 mod hits_page;
 mod json;
@@ -57,7 +56,9 @@ mod summary_page;
 mod table;
 #[cfg(test)]
 mod tests;
-mod unit;
+
+pub use jointscope_wording::format;
+use jointscope_wording::unit;
 
 pub use answer_page::{answer_page, answer_report};
 pub use check_page::{check_page, check_report};

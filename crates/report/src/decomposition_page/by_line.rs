@@ -4,9 +4,9 @@ use jointscope_decomposition::{Analysis, Element, Estimate, Method, Part};
 use jointscope_inference::interval95;
 
 use super::Subject;
-use super::element::{meaning, symbol, unit};
 use crate::plot::{Axis, Plot, Role, Span, YRange};
 use crate::section::Section;
+use jointscope_wording::element::{meaning, symbol, unit};
 
 pub(super) fn sections(subject: &Subject) -> [Section; 2] {
     let columns = if subject.is_scalar() { 1 } else { 2 };

@@ -5,13 +5,13 @@ use jointscope_fixture::Fixture;
 use jointscope_wording::{Remarks, capitalised};
 
 use super::all_frfs::{laws, moved, tests};
-use super::element::{symbol, unit};
 use crate::context::PageContext;
 use crate::drawing::SideView;
 use crate::format::{quantity, significant};
 use crate::report::Report;
 use crate::section::{Section, Tone, Verdict};
 use crate::table::Table;
+use jointscope_wording::element::{symbol, unit};
 
 /// Correlation of two numbers from which it is listed.
 const CORRELATED: f64 = 0.5;
