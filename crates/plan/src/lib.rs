@@ -48,4 +48,5 @@ pub use joint::{HalfWidth, Start, Wanted};
 pub use measure::Measure;
 pub use names::Remaining;
 pub use plan::{FrfGain, NameNow, Plan, PlanOptions};
-pub use suggestion::{ExpectedInterval, Suggestion};
+pub use rivals::SURE;
+pub use suggestion::{BEYOND_DOUBT, ExpectedInterval, Suggestion};

@@ -19,8 +19,8 @@ use rand_chacha::ChaCha8Rng;
 
 /// Draws of a measurement by each name.
 const DRAWS: usize = 400;
-/// Probability from which a name is sure.
-pub(crate) const SURE: f64 = 0.9;
+/// Probability from which a name is sure, and a promise counts as one.
+pub const SURE: f64 = 0.9;
 /// Share of the largest pivot below which a column adds nothing but rounding.
 const ROUNDING: f64 = 1e-12;
 

@@ -3,7 +3,7 @@
 use crate::measure::Measure;
 use crate::plan::NameNow;
 use crate::rivals::SURE;
-use crate::suggestion::{ExpectedInterval, Suggestion};
+use crate::suggestion::{BEYOND_DOUBT, ExpectedInterval, Suggestion};
 use jointscope_spectra::FrfPair;
 use jointscope_wording::{effect_name, listed};
 
@@ -28,9 +28,6 @@ pub(crate) fn three(value: f64) -> String {
         _ => format!("{value:.2e}"),
     }
 }
-
-/// Odds beyond which no figure means anything: linear predictions do not reach so far.
-const BEYOND_DOUBT: f64 = 100.0;
 
 /// ln of odds, nats.
 pub(crate) fn nats(value: f64) -> String {

@@ -1,7 +1,7 @@
 //! The page of a plan: the first thing to do, what every other would bring, and every FRF that could be recorded.
 
 use jointscope_fixture::Fixture;
-use jointscope_plan::{FrfGain, Measure, Plan, Suggestion};
+use jointscope_plan::{BEYOND_DOUBT, FrfGain, Measure, Plan, Suggestion};
 use jointscope_spectra::FrfPair;
 use jointscope_wording::effect_name;
 use maud::{Markup, PreEscaped, html};
@@ -17,8 +17,6 @@ use crate::table::{Cell, Table};
 const LISTED: usize = 12;
 /// Suggestions that are shown in the side view.
 const SHOWN: usize = 3;
-/// ln of odds beyond which no figure means anything.
-const BEYOND_DOUBT: f64 = 100.0;
 
 /// The page of a plan as one self-contained HTML file.
 ///
