@@ -1,7 +1,9 @@
-use jointscope_fixture::{Dof, ParameterSpec};
+use jointscope_fixture::{Dof, ParameterRange, ParameterSpec};
 use jointscope_inference::{Z95, interval95};
 use serde::Serialize;
 
+/// Ratio of the interval's ends beyond which only the order of magnitude is known.
+const VAGUE: f64 = 30.0;
 /// Largest exponent of an interval's ratio: its ends stay finite.
 const MOST_EXPONENT: f64 = 50.0;
 
@@ -38,6 +40,21 @@ impl Estimate {
         let factor = (Z95 * deviation).min(MOST_EXPONENT).exp();
         let interval = [self.value / factor, self.value * factor];
         Estimate { std: Some(deviation * self.value.abs()), interval: Some(interval), ..self }
+    }
+
+    /// The interval as far as the parameter's range goes.
+    pub fn possible_interval(&self) -> Option<[f64; 2]> {
+        let range = self.parameter.range;
+        let not_negative = matches!(range, ParameterRange::NonNegative | ParameterRange::Positive);
+        let low_end = if not_negative { 0.0 } else { f64::NEG_INFINITY };
+        self.interval.map(|[low, high]| [low.max(low_end), high])
+    }
+
+    /// Whether the data tell no more of the value than its order of magnitude.
+    pub fn is_vague(&self) -> bool {
+        self.possible_interval().is_some_and(|[low, high]| {
+            !(low.is_finite() && high.is_finite()) || low > 0.0 && high / low > VAGUE
+        })
     }
 
     /// Whether the data leave the value open.
