@@ -4,7 +4,7 @@
 //! number has a standard deviation, and errors that joints have in common are known as such: two joints on the same blocks share what is not known of
 //! the blocks, which cancels in their ratio.
 //!
-//! * [`Decomposed`]: what `stiffness.json` says of one joint;
+//! * [`Decomposed`]: what `stiffness.json` says of one joint, by entries ([`LineEntry`], [`EstimateEntry`] …) that its writer shares;
 //! * [`Comparison`]: several of them, by one relation and one estimate;
 //! * [`Together`]: their numbers in one Gaussian, the quantities of shared bodies in it once;
 //! * [`Pair`]: difference and ratio of two with intervals, who is the larger, whether they are the same ([`Equality`]);
@@ -32,18 +32,20 @@ mod normal;
 mod pair;
 mod ranking;
 mod specimens;
+mod stiffness_file;
 mod together;
 
 pub use caution::Caution;
 pub use comparison::{
     Compared, Comparison, ComparisonError, ComparisonOptions, ELEMENTS, ElementRanking, Kind, Number,
 };
-pub use decomposed::{Decomposed, DecomposedError, End, Ends, Estimate, Judged, Line, Matrix, Nominal};
-pub use fitted::{
-    ComparedLaw, FittedJoint, FittedLength, FollowedLaw, InTheMiddle, JointLikelihood, JointMass, JointTests,
-    LossFactor, ModelError, StatedQuantity,
-};
+pub use decomposed::{Decomposed, DecomposedError, End, Ends, Estimate, Judged, Line};
+pub use fitted::{FittedJoint, JointLikelihood, JointTests, StatedQuantity};
 pub use pair::{Equality, Figure, Pair, PairedNumber, Ratio};
 pub use ranking::Ranking;
 pub use specimens::{Scatter, Specimens};
+pub use stiffness_file::{
+    ComparedLaw, EstimateEntry, FollowedLaw, LineEntry, LossFactor, Matrix, MatrixPair, ModelError, Nominal,
+    Uncertain,
+};
 pub use together::{Apart, SharedBody, Together, WhyApart};

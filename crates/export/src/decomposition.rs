@@ -5,7 +5,7 @@ use crate::numbering::Numbering;
 use crate::numbers::short;
 use crate::{Export, ExportError, ExportOptions, Joint, JointEnd, JointLine};
 use jointscope_beam::mass_of_ends;
-use jointscope_comparison::{Decomposed, Ends, FittedJoint, JointMass, JointTests, Matrix};
+use jointscope_comparison::{Decomposed, Ends, FittedJoint, JointTests, Matrix, Uncertain};
 
 /// A joint of a decomposition as an export: the joint with the fixture's quantities moving where the file has it, otherwise the maximum-likelihood one.
 ///
@@ -59,7 +59,7 @@ struct Estimate {
     structural: Matrix,
     std: Option<(Matrix, Matrix)>,
     covariance: Option<crate::Covariance>,
-    mass: Option<JointMass>,
+    mass: Option<Uncertain>,
 }
 
 impl Estimate {
