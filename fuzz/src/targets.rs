@@ -1,7 +1,7 @@
 //! What must hold for any input: nothing panics, what is refused is refused by an error, and what is answered is finite and means what was read. The tests of
 //! the crate `jointscope` ask it of the corpus beside this file.
 
-use jointscope_comparison::{Comparison, ComparisonOptions, Decomposed, comparison_file};
+use jointscope_comparison::{Comparison, ComparisonOptions, Decomposed};
 use jointscope_estimation::{
     Baseline, Estimate, EstimateOptions, Estimator, ForceWindow, ResponseWindow, Weighting,
 };
@@ -15,6 +15,7 @@ use jointscope_recordings::{
 };
 use jointscope_spectra::{Channel, FrfPair, FrfSet, SpectralLines};
 use jointscope_uff as universal;
+use jointscope_wording::Summary;
 use serde_json::Value;
 
 const GLUED_JOINT: &str = include_str!("../../fixtures/glued-joint/fixture.json");
@@ -172,7 +173,7 @@ pub fn answers(bytes: &[u8]) {
     for independent in [false, true] {
         let options = ComparisonOptions { independent, specimens: vec![("ab".to_owned(), vec![0, 1])] };
         if let Ok(comparison) = Comparison::with(vec![joint.clone(), other.clone()], &options) {
-            comparison_file(&comparison);
+            comparison.summary();
         }
     }
 }

@@ -17,6 +17,7 @@ pub struct Coherence {
 
 /// An FRF.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct FrfCheck {
     /// Response and reference.
     pub frf: FrfPair,
@@ -37,7 +38,7 @@ pub struct FrfCheck {
 }
 
 /// Coherence below which a line is poor.
-const POOR: f64 = 0.8;
+const POOR_COHERENCE: f64 = 0.8;
 
 /// The FRFs of a set of accelerances with variances, beside the fixture's, FRF after FRF.
 pub(crate) fn of(frfs: &FrfSet, sources: &[NoiseSource], modelled: Option<&[Complex64]>) -> Vec<FrfCheck> {
@@ -49,7 +50,7 @@ pub(crate) fn of(frfs: &FrfSet, sources: &[NoiseSource], modelled: Option<&[Comp
             let noise = values.iter().zip(variance).map(|(v, variance)| variance.sqrt() / v.norm());
             let own = modelled.map(|all| &all[index * count..(index + 1) * count]);
             let coherence = frfs.coherence(index).and_then(|coherence| {
-                let low = coherence.iter().filter(|gamma2| **gamma2 < POOR).count();
+                let low = coherence.iter().filter(|gamma2| **gamma2 < POOR_COHERENCE).count();
                 let median = median(coherence.to_vec())?;
                 Some(Coherence { median, low: low as f64 / coherence.len() as f64 })
             });

@@ -81,6 +81,7 @@ impl Default for CheckOptions {
 
 /// What there is to say of a fixture, and of its recording if there is one.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct Check {
     /// The fixture's name.
     pub name: String,

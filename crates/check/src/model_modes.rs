@@ -80,12 +80,12 @@ impl ModelModes {
     }
 
     /// The first natural frequency in which the assembly bends, Hz.
-    pub fn first_elastic(&self) -> Option<f64> {
+    pub(crate) fn first_elastic(&self) -> Option<f64> {
         self.modes.iter().find(|mode| !mode.on_supports).map(|mode| mode.frequency.value)
     }
 
     /// The highest natural frequency at which the assembly moves as rigid on its supports, Hz; zero where it is free.
-    pub fn highest_on_supports(&self) -> f64 {
+    pub(crate) fn highest_on_supports(&self) -> f64 {
         self.modes.iter().filter(|mode| mode.on_supports).map(|mode| mode.frequency.value).fold(0.0, f64::max)
     }
 }

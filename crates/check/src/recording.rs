@@ -19,6 +19,7 @@ use serde::Serialize;
 
 /// A recording, as it is beside its fixture.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct RecordingCheck {
     /// What the files themselves say, one sentence each.
     pub notes: Vec<String>,
@@ -387,10 +388,10 @@ fn of_contradiction(from: f64, to: f64, suspended: bool) -> Remark {
 }
 
 /// Share of poor lines from which an FRF's coherence is worth a word.
-const POOR: f64 = 0.3;
+const MANY_POOR_LINES: f64 = 0.3;
 
 fn of_coherence(frf: &FrfCheck) -> Option<Remark> {
-    let coherence = frf.coherence.filter(|coherence| coherence.low > POOR)?;
+    let coherence = frf.coherence.filter(|coherence| coherence.low > MANY_POOR_LINES)?;
     Some(Remark::odd(
         frf.frf.to_string(),
         format!(

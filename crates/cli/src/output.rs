@@ -133,10 +133,7 @@ pub fn pretty(value: &Value) -> String {
     progress::visible(&format!("{value:#}\n"))
 }
 
-/// `1 line`, `2 lines`.
-pub fn counted(count: usize, what: &str) -> String {
-    format!("{count} {what}{}", if count == 1 { "" } else { "s" })
-}
+pub use jointscope::wording::counted;
 
 /// The nearest directory that is there.
 fn existing(directory: &Path) -> &Path {

@@ -13,12 +13,12 @@ use jointscope::report::format::hides;
 pub struct Steps {
     /// On a terminal alone.
     spinner: Option<ProgressBar>,
-    told: Mutex<Told>,
+    last_shown: Mutex<LastShown>,
 }
 
 /// What was told last.
 #[derive(Debug)]
-struct Told {
+struct LastShown {
     stage: String,
     /// What the stages are about, until it is told.
     over: Option<String>,
@@ -32,30 +32,30 @@ impl Steps {
     /// Nothing told yet.
     pub fn new() -> Self {
         let spinner = || styled(ProgressBar::new_spinner(), "{msg}");
-        let told = Told { stage: String::new(), over: None, last: Instant::now() };
-        Steps { spinner: std::io::stderr().is_terminal().then(spinner), told: Mutex::new(told) }
+        let last_shown = LastShown { stage: String::new(), over: None, last: Instant::now() };
+        Steps { spinner: std::io::stderr().is_terminal().then(spinner), last_shown: Mutex::new(last_shown) }
     }
 
     /// What the stages that follow are about; told with the first.
     pub fn over(&self, what: &str) {
-        self.told().over = Some(what.to_owned());
+        self.last_shown().over = Some(what.to_owned());
     }
 
     /// A stage begins.
     pub fn stage(&self, what: &str) {
-        let mut told = self.told();
-        let over = told.over.take().map_or_else(String::new, |over| format!(" ({over})"));
-        told.stage = format!("{what}{over}");
-        self.show(&mut told, &format!("{what}{over} …"));
+        let mut last_shown = self.last_shown();
+        let over = last_shown.over.take().map_or_else(String::new, |over| format!(" ({over})"));
+        last_shown.stage = format!("{what}{over}");
+        self.show(&mut last_shown, &format!("{what}{over} …"));
     }
 
     /// Something is done within a stage.
     pub fn within(&self, what: impl FnOnce() -> String) {
-        let mut told = self.told();
+        let mut last_shown = self.last_shown();
         let due = if self.spinner.is_some() { SHOWN } else { PAUSE };
-        if told.last.elapsed() >= due {
-            let line = format!("{}: {}", told.stage, what());
-            self.show(&mut told, &line);
+        if last_shown.last.elapsed() >= due {
+            let line = format!("{}: {}", last_shown.stage, what());
+            self.show(&mut last_shown, &line);
         }
     }
 
@@ -66,17 +66,17 @@ impl Steps {
         }
     }
 
-    fn show(&self, told: &mut Told, line: &str) {
-        told.last = Instant::now();
+    fn show(&self, last_shown: &mut LastShown, line: &str) {
+        last_shown.last = Instant::now();
         match &self.spinner {
             Some(spinner) => spinner.set_message(visible(line)),
             None => tell(line),
         }
     }
 
-    fn told(&self) -> MutexGuard<'_, Told> {
+    fn last_shown(&self) -> MutexGuard<'_, LastShown> {
         // What was told stays true whatever happened to whoever told it.
-        self.told.lock().unwrap_or_else(PoisonError::into_inner)
+        self.last_shown.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 

@@ -195,8 +195,8 @@ impl Lock {
 impl Drop for Lock {
     fn drop(&mut self) {
         // What cannot be told here stays doubtful.
-        let told = self.state(self.doubtful.iter());
-        if told.is_ok() && self.doubtful.is_empty() {
+        let stated = self.state(self.doubtful.iter());
+        if stated.is_ok() && self.doubtful.is_empty() {
             let _ = step().and_then(|()| fs::remove_file(&self.path));
         }
     }
@@ -276,8 +276,8 @@ mod tests {
     /// Not a test of its own: the run that the next one kills.
     #[test]
     fn a_run_that_is_killed() {
-        let told = |name| std::env::var(name).ok();
-        let (Some(folder), Some(at)) = (told("KILLED_FOLDER"), told("KILLED_AT")) else { return };
+        let stated = |name| std::env::var(name).ok();
+        let (Some(folder), Some(at)) = (stated("KILLED_FOLDER"), stated("KILLED_AT")) else { return };
         LEFT.set(Some((at.parse().unwrap(), || std::process::abort())));
         write_set(Path::new(&folder), "new").unwrap();
     }

@@ -44,7 +44,7 @@ impl Together {
         };
         let paths: Vec<&str> = paths.into_iter().filter(known).collect();
         let n = paths.len();
-        let (first, second) = (told(a, &paths)?, told(b, &paths)?);
+        let (first, second) = (posterior(a, &paths)?, posterior(b, &paths)?);
         let dot = |x: &[f64], y: &[f64], i: usize, j: usize| -> f64 {
             (0..n).map(|k| x[i * n + k] * y[k * n + j]).sum()
         };
@@ -68,7 +68,7 @@ impl Together {
 }
 
 /// The posterior mean of these quantities by one test, and 1 − S.
-fn told(joint: &Decomposed, paths: &[&str]) -> Option<(Vec<f64>, Vec<f64>)> {
+fn posterior(joint: &Decomposed, paths: &[&str]) -> Option<(Vec<f64>, Vec<f64>)> {
     let fit = joint.fitted.as_ref()?;
     let (slots, likelihood) = fit.likelihood()?;
     let place = |path: &&str| fit.quantities.iter().position(|quantity| quantity.path == **path);
@@ -83,8 +83,8 @@ fn told(joint: &Decomposed, paths: &[&str]) -> Option<(Vec<f64>, Vec<f64>)> {
     let mut step: Vec<f64> = own.gradient.iter().zip(&own.at).map(|(g, at)| g - at).collect();
     factor.solve_in_place(&mut step);
     let mean = own.at.iter().zip(&step).map(|(at, step)| at + step).collect();
-    let mut told = factor.inverse();
-    told.iter_mut().for_each(|entry| *entry = -*entry);
-    (0..n).for_each(|i| told[i * n + i] += 1.0);
-    Some((mean, told))
+    let mut posterior = factor.inverse();
+    posterior.iter_mut().for_each(|entry| *entry = -*entry);
+    (0..n).for_each(|i| posterior[i * n + i] += 1.0);
+    Some((mean, posterior))
 }

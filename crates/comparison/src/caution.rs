@@ -1,7 +1,7 @@
 //! What keeps a comparison from being taken as it stands.
 
-use crate::normal::Z95;
 use crate::{Compared, Decomposed, Estimate, Number, Together, WhyApart};
+use jointscope_inference::Z95;
 use serde::Serialize;
 
 /// One thing to be known before anything else.
@@ -92,8 +92,6 @@ pub enum Caution {
 const SAME_LENGTH: f64 = 1e-9;
 /// Share of a frequency below which two are the same number.
 const SAME_FREQUENCY: f64 = 1e-6;
-/// Probability below which a test of a joint fails, as in the decomposition.
-const FAILED: f64 = 0.05;
 
 impl Caution {
     /// What is to be known of the joints as their files tell it.
@@ -147,95 +145,12 @@ impl Caution {
             all.push(Caution::OnTheBoundary { joint: joint() });
         }
         if let Some(tests) = fit.map(|fit| fit.tests) {
-            let named = [
-                ("reciprocity", tests.reciprocity),
-                ("definite", tests.definite),
-                ("passive", tests.passive),
-            ];
-            let failed = named.into_iter().filter(|(_, p)| p.is_some_and(|p| p < FAILED));
-            let tests: Vec<&'static str> = failed.map(|(name, _)| name).collect();
+            let tests: Vec<&'static str> = tests.failed().map(|(name, _)| name).collect();
             if !tests.is_empty() {
                 all.push(Caution::Refused { joint: joint(), tests });
             }
         }
         all
-    }
-
-    /// It in a sentence.
-    pub fn says(&self) -> String {
-        match self {
-            Caution::PoorFit { joint, chi2_per_dof } => format!(
-                "{joint}: its fit leaves a chi2 of {} per degree of freedom, so this joint on this fixture does not explain its FRFs; its numbers \
-                 may be off by more than their ±",
-                short(*chi2_per_dof)
-            ),
-            Caution::StrainedFixture { joint, strain } => format!(
-                "{joint}: its fit moves the fixture's quantities {} times as far as chance does, so something that the fixture leaves out is in its numbers",
-                short(strain.sqrt())
-            ),
-            Caution::Refused { joint, tests } => {
-                let tests: Vec<&str> = tests
-                    .iter()
-                    .map(|test| match *test {
-                        "reciprocity" => "k12 and k21 differ",
-                        "definite" => "its stiffness would push by itself",
-                        _ => "its damping would give out energy",
-                    })
-                    .collect();
-                format!("{joint}: physics forbids what its FRFs ask for: {}", tests.join(", "))
-            }
-            Caution::OnTheBoundary { joint } => format!(
-                "{joint}: its C is held where it just gives out no energy, since its FRFs ask for one that would; it is compared as if on blocks of its own, and the intervals \
-                 of its C are those without this limit"
-            ),
-            Caution::Unusable { joint } => {
-                format!(
-                    "{joint}: its decomposition is judged unusable; its page says why, and nothing here rests on it"
-                )
-            }
-            Caution::Frequencies { joints, frequencies } => {
-                let each: Vec<String> = joints
-                    .iter()
-                    .zip(frequencies)
-                    .map(|(joint, frequency)| format!("{joint} at {frequency:.1} Hz"))
-                    .collect();
-                format!(
-                    "numbers of joints whose stiffness or damping depends on frequency are those in the middle of their bands, and these differ ({}): C, of a structural joint ηK/ω, is \
-                     not of one frequency; compare loss factors, or decompose with the same --band",
-                    each.join(", ")
-                )
-            }
-            Caution::Masses { with, without } => format!(
-                "{} {} a mass of the joint's own and {} none: stiffnesses of joints with and without a mass are not of the same thing",
-                with.join(", "),
-                if with.len() == 1 { "has" } else { "have" },
-                without.join(", ")
-            ),
-            Caution::NoFit { joint, why } => format!(
-                "{joint}: there is no fit to all its FRFs ({why}), so all joints are compared by estimates that know less"
-            ),
-            Caution::NoDeviations { joint, numbers } => format!(
-                "{joint}: {} {} no standard deviation, so nothing tells how sure what follows from {} is",
-                numbers.join(", "),
-                if numbers.len() == 1 { "has" } else { "have" },
-                if numbers.len() == 1 { "it" } else { "them" },
-            ),
-            Caution::SameRecording { first, second } => format!(
-                "{first} and {second}: both are of the same recording, so that its noise is in both, and that they agree is no second test"
-            ),
-            Caution::Lengths { joints, lengths } => {
-                let each = joints.iter().zip(lengths).map(|(joint, l)| format!("{joint} {:.2} mm", 1e3 * l));
-                let each: Vec<String> = each.collect();
-                format!(
-                    "K and C act over lengths that differ, and are so not of the same thing: {}",
-                    each.join(", ")
-                )
-            }
-            Caution::BodiesDisagree { joint } => format!(
-                "{joint}: its FRFs contradict those of another test on the blocks that both fixtures state alike, so it is compared as if on blocks of its own: \
-                 they may be others, or the fixture leaves something out"
-            ),
-        }
     }
 }
 
@@ -265,9 +180,10 @@ fn of_other_frequencies(joints: &[Decomposed]) -> Option<Caution> {
 
 /// Pairs of joints of one recording: their files say that they were made from it, or what the FRFs tell is the same to the last digit.
 fn of_one_recording(joints: &[Decomposed]) -> Vec<Caution> {
-    let told = |joint: &Decomposed| joint.fitted.as_ref().and_then(|fit| fit.likelihood.clone());
+    let likelihood = |joint: &Decomposed| joint.fitted.as_ref().and_then(|fit| fit.likelihood.clone());
     let is_one = |a: &Decomposed, b: &Decomposed| {
-        a.recording.iter().any(|file| b.recording.contains(file)) || (told(a).is_some() && told(a) == told(b))
+        a.recording.iter().any(|file| b.recording.contains(file))
+            || (likelihood(a).is_some() && likelihood(a) == likelihood(b))
     };
     let pairs = joints.iter().enumerate().flat_map(|(i, a)| joints[i + 1..].iter().map(move |b| (a, b)));
     pairs
@@ -293,13 +209,4 @@ fn of_other_lengths(joints: &[Decomposed]) -> Option<Caution> {
         joints: known.iter().map(|(joint, _)| joint.name.clone()).collect(),
         lengths: known.iter().map(|(_, length)| *length).collect(),
     })
-}
-
-fn short(value: f64) -> String {
-    match value.abs() {
-        v if v >= 1000.0 => format!("{value:.0}"),
-        v if v >= 10.0 => format!("{value:.1}"),
-        v if v >= 0.01 => format!("{value:.2}"),
-        _ => format!("{value:.1e}"),
-    }
 }

@@ -107,6 +107,11 @@ impl ElementRanking {
     pub fn is_settled(&self) -> bool {
         self.has_deviations && self.ranking.is_settled()
     }
+
+    /// Of each joint in the order but the first: whether it is as good as sure that it is larger than the one before it.
+    pub fn settled_neighbours(&self) -> impl Iterator<Item = bool> {
+        self.ranking.settled_neighbours().map(|settled| self.has_deviations && settled)
+    }
 }
 
 /// Which of its estimates stands for each joint: the first one that all of them have.
@@ -170,6 +175,7 @@ pub struct ComparisonOptions {
 
 /// Several joints side by side.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Comparison {
     /// The joints, as given.
     pub joints: Vec<Decomposed>,
@@ -195,6 +201,7 @@ pub struct Comparison {
 
 /// Why joints cannot be compared.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum ComparisonError {
     /// Fewer than two.
     #[error("a comparison needs two decompositions or more")]
@@ -316,13 +323,17 @@ impl Comparison {
         self.cautions.is_empty()
     }
 
-    /// What is compared, in words.
-    pub fn estimate_words(&self) -> &'static str {
-        match self.compared {
-            Compared::AllFrfs => "the joints from all FRFs",
-            Compared::Likelihood => "maximum-likelihood estimates from the FRFs across each joint",
-            Compared::Average => "averages over each joint's band",
-        }
+    /// Whether the decomposition of one of the joints is judged unusable.
+    pub fn is_unusable(&self) -> bool {
+        self.cautions.iter().any(|caution| matches!(caution, Caution::Unusable { .. }))
+    }
+
+    /// Whether every element of K orders all joints, by fits to all FRFs that nothing speaks against: what does not explain its recording earns no approval, however sure the
+    /// order.
+    pub fn is_conclusive(&self) -> bool {
+        let mut stiffness = self.rankings.iter().filter(|entry| entry.kind == Kind::Stiffness).peekable();
+        let settled = stiffness.peek().is_some() && stiffness.all(ElementRanking::is_settled);
+        settled && self.is_sound() && self.compared == Compared::AllFrfs
     }
 }
 
@@ -401,7 +412,6 @@ mod tests {
         let roots = [1.0, 2.0, 3.0, 4.0, 5.0, 6.0].map(f64::sqrt);
         assert_eq!(estimate.stiffness_std, [[roots[0], roots[1]], [roots[1], roots[2]]]);
         assert_eq!(estimate.damping_std, [[roots[3], roots[4]], [roots[4], roots[5]]]);
-        assert!(found.estimate_words().contains("all FRFs"));
     }
 
     #[test]

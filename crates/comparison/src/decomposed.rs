@@ -1,10 +1,8 @@
 use crate::FittedJoint;
+use crate::stiffness_file::{EstimateEntry, LineEntry, Matrix, MatrixPair, Nominal, read};
+use serde::Deserialize;
 use serde::de::DeserializeOwned;
-use serde::{Deserialize, Deserializer};
 use serde_json::Value;
-
-/// A 2×2 matrix, rows (force, moment), columns (displacement, rotation).
-pub type Matrix = [[f64; 2]; 2];
 
 /// K and C with standard deviations, SI.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -34,15 +32,6 @@ pub struct Line {
     pub noisy: bool,
     /// H41, real and imaginary parts: m/N, m/(N·m), rad/N, rad/(N·m); files of earlier versions do not have it.
     pub h41: Option<[[[f64; 2]; 2]; 2]>,
-}
-
-/// What the fixture as it stands gives, element by element, where it does.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Deserialize)]
-pub struct Nominal {
-    /// K.
-    pub stiffness: [[Option<f64>; 2]; 2],
-    /// C, averaged over the band.
-    pub damping: [[Option<f64>; 2]; 2],
 }
 
 /// Where a joint's K and C act: on d = u_to − R·u_from over `length`.
@@ -112,6 +101,7 @@ pub struct Decomposed {
 
 /// Why a `stiffness.json` cannot be read as one joint's.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum DecomposedError {
     /// The place in the file of what is missing.
     #[error("`{0}` is missing or not what it should be; make the file anew with `jointscope decompose`")]
@@ -145,7 +135,7 @@ impl Decomposed {
         if lines.windows(2).any(|pair| pair[0].frequency >= pair[1].frequency) {
             return Err(missing("lines: ascending frequencies"));
         }
-        let band: BandEntry = read(&file["average"]).ok_or_else(|| missing("average/band"))?;
+        let band = read(&file["average"]["band"]).ok_or_else(|| missing("average/band"))?;
         let average: EstimateEntry = read(&file["average"]).ok_or_else(|| missing("average"))?;
         let (joint, fitted) = joint(file).ok_or_else(|| missing("joint"))?;
         Ok(Decomposed {
@@ -154,7 +144,7 @@ impl Decomposed {
             ends: optional(file, "ends")?,
             relation: read(&file["relation"]).ok_or_else(|| missing("relation"))?,
             lines,
-            band: band.band,
+            band,
             average: average.into(),
             likelihood: likelihood(file)?,
             failed: read(&file["maximum_likelihood"]["failed"]),
@@ -194,10 +184,6 @@ fn likelihood(file: &Value) -> Result<Option<Estimate>, DecomposedError> {
     Ok(optional(file, "maximum_likelihood")?.map(EstimateEntry::into))
 }
 
-fn read<T: DeserializeOwned>(value: &Value) -> Option<T> {
-    T::deserialize(value).ok()
-}
-
 /// An entry that may be left out, but not be wrong.
 fn optional<T: DeserializeOwned>(file: &Value, key: &str) -> Result<Option<T>, DecomposedError> {
     match &file[key] {
@@ -206,73 +192,32 @@ fn optional<T: DeserializeOwned>(file: &Value, key: &str) -> Result<Option<T>, D
     }
 }
 
-/// Deviations, left out where an element has none: what is not determined is `null`.
-fn where_determined<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Pair>, D::Error> {
-    Ok(read(&Value::deserialize(deserializer)?))
-}
-
-#[derive(Deserialize)]
-struct BandEntry {
-    band: (f64, f64),
-}
-
-#[derive(Clone, Copy, Deserialize)]
-struct Pair {
-    stiffness: Matrix,
-    damping: Matrix,
-}
-
-#[derive(Deserialize)]
-struct LineEntry {
-    frequency: f64,
-    #[serde(flatten)]
-    value: Pair,
-    #[serde(default, deserialize_with = "where_determined")]
-    std: Option<Pair>,
-    #[serde(default)]
-    noisy: bool,
-    #[serde(default)]
-    h41: Option<[[[f64; 2]; 2]; 2]>,
-}
-
 impl From<LineEntry> for Line {
     fn from(line: LineEntry) -> Self {
         Line {
             frequency: line.frequency,
-            stiffness: line.value.stiffness,
-            damping: line.value.damping,
+            stiffness: line.stiffness,
+            damping: line.damping,
             std: line.std.map(|std| (std.stiffness, std.damping)),
-            noisy: line.noisy,
+            noisy: line.noisy.unwrap_or(false),
             h41: line.h41,
         }
     }
-}
-
-#[derive(Deserialize)]
-struct EstimateEntry {
-    #[serde(flatten)]
-    value: Pair,
-    #[serde(default, deserialize_with = "where_determined")]
-    std: Option<Pair>,
-    #[serde(default, deserialize_with = "where_determined")]
-    std_fixture: Option<Pair>,
-    #[serde(default, deserialize_with = "where_determined")]
-    std_model: Option<Pair>,
 }
 
 impl From<EstimateEntry> for Estimate {
     /// K and C with all their deviations in one: `std`, `std_fixture` and `std_model` are of independent causes.
     fn from(entry: EstimateEntry) -> Self {
         let parts = [entry.std, entry.std_fixture, entry.std_model];
-        let together = |of: &dyn Fn(&Pair) -> Matrix| -> Matrix {
+        let together = |of: &dyn Fn(&MatrixPair) -> Matrix| -> Matrix {
             let element = |i: usize, j: usize| {
                 parts.iter().flatten().map(|part| of(part)[i][j].powi(2)).sum::<f64>().sqrt()
             };
             [[element(0, 0), element(0, 1)], [element(1, 0), element(1, 1)]]
         };
         Estimate {
-            stiffness: entry.value.stiffness,
-            damping: entry.value.damping,
+            stiffness: entry.stiffness,
+            damping: entry.damping,
             stiffness_std: together(&|part| part.stiffness),
             damping_std: together(&|part| part.damping),
         }

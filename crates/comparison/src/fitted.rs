@@ -1,7 +1,7 @@
 //! What `stiffness.json` says of the joint from all FRFs.
 
-use crate::Matrix;
-use jointscope_inference::QuadraticLikelihood;
+use crate::stiffness_file::{ComparedLaw, FollowedLaw, Matrix, ModelError, Uncertain};
+use jointscope_inference::{QuadraticLikelihood, SIGNIFICANT};
 use serde::Deserialize;
 
 /// The joint from all FRFs, the fixture's quantities moving within their deviations.
@@ -28,9 +28,9 @@ pub struct FittedJoint {
     /// The fixture's other uncertain quantities, on which its FRFs do not depend; files of earlier versions do not say.
     #[serde(default)]
     pub unmoved: Vec<StatedQuantity>,
-    /// Its length where the fit has its ends; files of earlier versions do not say.
+    /// Its length where the fit has its ends, zero deviation where both are exact; files of earlier versions do not say.
     #[serde(default)]
-    pub length: Option<FittedLength>,
+    pub length: Option<Uncertain>,
     /// What the FRFs alone tell of it and of the quantities; files of earlier versions do not say.
     #[serde(default)]
     pub likelihood: Option<JointLikelihood>,
@@ -45,7 +45,7 @@ pub struct FittedJoint {
     pub laws: Vec<ComparedLaw>,
     /// The joint's own mass, where the FRFs show one: K and C are then those of a joint with it.
     #[serde(default)]
-    pub mass: Option<JointMass>,
+    pub mass: Option<Uncertain>,
     /// Whether physics allows it.
     #[serde(default)]
     pub tests: JointTests,
@@ -68,78 +68,11 @@ pub struct JointTests {
     pub passive: Option<f64>,
 }
 
-/// A joint's own mass, uniform over its length.
-#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
-pub struct JointMass {
-    /// kg.
-    pub value: f64,
-    /// Standard deviation, kg.
-    pub std: f64,
-}
-
-/// The law over frequency that a joint's numbers are of.
-#[derive(Debug, Clone, PartialEq, Deserialize)]
-pub struct FollowedLaw {
-    /// Its name; with a mass of the joint another one.
-    pub law: String,
-    /// Where K and C are stated, Hz.
-    pub frequency: f64,
-    /// Loss factors ωC/K of a structural one, which do not depend on frequency.
-    #[serde(default)]
-    pub loss_factor: Option<LossFactor>,
-}
-
-impl FollowedLaw {
-    /// Whether K and C are the same at every frequency.
-    pub fn is_viscous(&self) -> bool {
-        self.law.starts_with("viscous")
-    }
-}
-
-/// Loss factors of the elements of K; nothing for those that are zero.
-#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
-pub struct LossFactor {
-    /// η.
-    pub value: [[Option<f64>; 2]; 2],
-    /// Standard deviations.
-    pub std: [[Option<f64>; 2]; 2],
-}
-
-/// A law over frequency, as one joint's FRFs have it.
-#[derive(Debug, Clone, PartialEq, Deserialize)]
-pub struct ComparedLaw {
-    /// Its name; with a mass of the joint another one.
-    pub law: String,
-    /// Probability among those compared.
-    pub probability: f64,
-    /// K and C in the middle of the band; files of earlier versions do not say.
-    #[serde(default)]
-    pub in_the_middle: Option<InTheMiddle>,
-}
-
-/// K and C of a law.
-#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
-pub struct InTheMiddle {
-    /// K.
-    pub stiffness: Matrix,
-    /// C.
-    pub damping: Matrix,
-}
-
-/// By how much the deviations were widened for what the model gets wrong.
-#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
-pub struct ModelError {
-    /// Of the noise's variance; 1 where noise and tolerances explain the FRFs.
-    pub inflation: f64,
-    /// Of the posterior's, where quantities are farther from what is stated than chance takes them; 1 where they are not.
-    pub strain: f64,
-    /// What of the covariance comes from it besides.
-    pub covariance: [[f64; 6]; 6],
-}
-
-impl Default for ModelError {
-    fn default() -> Self {
-        ModelError { inflation: 1.0, strain: 1.0, covariance: [[0.0; 6]; 6] }
+impl JointTests {
+    /// Names and probabilities of the tests that fail.
+    pub fn failed(&self) -> impl Iterator<Item = (&'static str, f64)> {
+        let all = [("reciprocity", self.reciprocity), ("definite", self.definite), ("passive", self.passive)];
+        all.into_iter().filter_map(|(name, p)| Some((name, p.filter(|p| *p < SIGNIFICANT)?)))
     }
 }
 
@@ -155,15 +88,6 @@ pub struct StatedQuantity {
     pub stated: f64,
     /// Its standard deviation; nothing where it is unknown.
     pub std: Option<f64>,
-}
-
-/// A joint's length after its fit.
-#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
-pub struct FittedLength {
-    /// m.
-    pub value: f64,
-    /// Standard deviation, m; zero where both ends are exact.
-    pub std: f64,
 }
 
 /// The likelihood of the joint's numbers and of the quantities, Gaussian about a point, without the quantities' priors.

@@ -4,14 +4,13 @@
 //! number has a standard deviation, and errors that joints have in common are known as such: two joints on the same blocks share what is not known of
 //! the blocks, which cancels in their ratio.
 //!
-//! * [`Decomposed`]: what `stiffness.json` says of one joint;
+//! * [`Decomposed`]: what `stiffness.json` says of one joint, by entries ([`LineEntry`], [`EstimateEntry`] …) that its writer shares;
 //! * [`Comparison`]: several of them, by one relation and one estimate;
 //! * [`Together`]: their numbers in one Gaussian, the quantities of shared bodies in it once;
 //! * [`Pair`]: difference and ratio of two with intervals, who is the larger, whether they are the same ([`Equality`]);
 //! * [`Ranking`]: the order by each number with its probability;
 //! * [`Specimens`]: the scatter between specimens of one kind, apart from that of measurement;
-//! * [`Caution`]: why a comparison may not be taken as it stands;
-//! * [`comparison_file`]: the contents of `comparison.json`.
+//! * [`Caution`]: why a comparison may not be taken as it stands.
 //!
 //! ```
 //! use jointscope_comparison::Ranking;
@@ -28,28 +27,25 @@ mod caution;
 mod common_law;
 mod comparison;
 mod decomposed;
-mod file;
 mod fitted;
 mod normal;
 mod pair;
 mod ranking;
-pub mod says;
 mod specimens;
-#[cfg(test)]
-mod tests;
+mod stiffness_file;
 mod together;
 
 pub use caution::Caution;
 pub use comparison::{
     Compared, Comparison, ComparisonError, ComparisonOptions, ELEMENTS, ElementRanking, Kind, Number,
 };
-pub use decomposed::{Decomposed, DecomposedError, End, Ends, Estimate, Judged, Line, Matrix, Nominal};
-pub use file::comparison_file;
-pub use fitted::{
-    ComparedLaw, FittedJoint, FittedLength, FollowedLaw, InTheMiddle, JointLikelihood, JointMass, JointTests,
-    LossFactor, ModelError, StatedQuantity,
-};
+pub use decomposed::{Decomposed, DecomposedError, End, Ends, Estimate, Judged, Line};
+pub use fitted::{FittedJoint, JointLikelihood, JointTests, StatedQuantity};
 pub use pair::{Equality, Figure, Pair, PairedNumber, Ratio};
 pub use ranking::Ranking;
 pub use specimens::{Scatter, Specimens};
+pub use stiffness_file::{
+    ComparedLaw, EstimateEntry, FollowedLaw, LineEntry, LossFactor, Matrix, MatrixPair, ModelError, Nominal,
+    Uncertain,
+};
 pub use together::{Apart, SharedBody, Together, WhyApart};

@@ -1,11 +1,9 @@
 //! What normal distributions say: intervals, tests, who is larger.
 
+use jointscope_inference::Z95;
 use statrs::function::erf::erfc;
 use statrs::function::gamma::gamma_ur;
 use std::f64::consts::{SQRT_2, TAU};
-
-/// Standard deviations of a 95 % interval to either side.
-pub(crate) const Z95: f64 = 1.959_963_984_540_054;
 
 /// Φ.
 pub(crate) fn cumulative(z: f64) -> f64 {

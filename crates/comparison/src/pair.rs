@@ -1,7 +1,8 @@
 //! Two joints: by how much they differ, in what ratio, and whether they are the same.
 
-use crate::normal::{Z95, chi2_above, larger_magnitude, mahalanobis, ratio_interval};
+use crate::normal::{chi2_above, larger_magnitude, mahalanobis, ratio_interval};
 use crate::{Kind, Number, Together};
+use jointscope_inference::{SIGNIFICANT, interval95};
 use serde::Serialize;
 
 /// A value with its standard deviation and 95 % interval, SI.
@@ -18,7 +19,7 @@ pub struct Figure {
 impl Figure {
     pub(crate) fn normal(value: f64, variance: f64) -> Self {
         let std = variance.max(0.0).sqrt();
-        Figure { value, std, ci95: [value - Z95 * std, value + Z95 * std] }
+        Figure { value, std, ci95: interval95(value, std) }
     }
 }
 
@@ -50,6 +51,14 @@ pub struct PairedNumber {
     pub second_is_larger: f64,
 }
 
+impl PairedNumber {
+    /// Whether the 95 % interval of the difference leaves out zero.
+    pub fn differs(&self) -> bool {
+        let [low, high] = self.difference.ci95;
+        low > 0.0 || high < 0.0
+    }
+}
+
 /// A test of equal numbers.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Equality {
@@ -62,8 +71,10 @@ pub struct Equality {
 }
 
 impl Equality {
-    /// Probability below which joints count as different.
-    pub const DIFFERENT: f64 = 0.05;
+    /// Whether the joints count as different.
+    pub fn is_refuted(&self) -> bool {
+        self.p_value < SIGNIFICANT
+    }
 
     fn of(differences: &[f64], covariance: &[f64]) -> Option<Self> {
         let (chi2, degrees) = mahalanobis(differences, covariance)?;
@@ -98,6 +109,7 @@ const ROUNDING: f64 = 1e-13;
 
 /// Two joints, number by number.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct Pair {
     /// The joint that the other is set against.
     pub first: String,

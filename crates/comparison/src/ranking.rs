@@ -28,6 +28,11 @@ impl Ranking {
         self.probability >= SURE
     }
 
+    /// Of each but the first: whether it is settled that it is larger than the one before it.
+    pub fn settled_neighbours(&self) -> impl Iterator<Item = bool> {
+        self.adjacent.iter().map(|p| *p >= SURE)
+    }
+
     /// Ranks values with their standard deviations, taken as independent and normal, by magnitude.
     pub fn of(values: &[(f64, f64)]) -> Self {
         let n = values.len();
@@ -92,7 +97,7 @@ impl Ranking {
 const ROUNDING: f64 = 1e-13;
 
 /// A standard normal number (Box and Muller).
-fn normal(random: &mut ChaCha8Rng) -> f64 {
+pub(crate) fn normal(random: &mut ChaCha8Rng) -> f64 {
     let (radius, angle): (f64, f64) = (random.random(), random.random());
     (-2.0 * (1.0 - radius).ln()).sqrt() * (std::f64::consts::TAU * angle).cos()
 }

@@ -4,14 +4,16 @@
 //! errors included. With n − 1 orthonormal contrasts A, y = A x is free of μ and has the covariance A V Aᵀ + τ², so that Q(τ²) = yᵀ (A V Aᵀ + τ²)⁻¹ y is χ² with n − 1
 //! degrees of freedom for the true τ: its quantiles give an exact interval, Q = n − 1 the estimate (Mandel and Paule), Q(0) the test of equal specimens.
 
-use crate::normal::{Z95, chi2_above, chi2_quantile};
+use crate::normal::{chi2_above, chi2_quantile};
 use crate::{Figure, Number, Together};
+use jointscope_inference::{SIGNIFICANT, Z95};
 use jointscope_linalg::Cholesky;
 use serde::Serialize;
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
 /// Specimens of one kind.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct Specimens {
     /// What they are called.
     pub name: String,
@@ -39,6 +41,13 @@ pub struct Scatter {
     pub measurement: f64,
     /// Probability of a scatter as large or larger, if the specimens are the same.
     pub p_value: f64,
+}
+
+impl Scatter {
+    /// Whether specimens differ by more than their measurement explains.
+    pub fn is_significant(&self) -> bool {
+        self.p_value < SIGNIFICANT
+    }
 }
 
 impl Specimens {
@@ -151,7 +160,7 @@ impl Contrasts {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use rand::{RngExt, SeedableRng};
+    use rand::SeedableRng;
     use rand_chacha::ChaCha8Rng;
 
     fn of(values: &[f64], covariance: &[f64]) -> Scatter {
@@ -200,10 +209,7 @@ mod tests {
     #[test]
     fn the_interval_of_the_scatter_holds_it_95_times_in_100_and_equal_specimens_are_told_apart_5_times() {
         let mut random = ChaCha8Rng::seed_from_u64(3);
-        let mut normal = || {
-            let (radius, angle): (f64, f64) = (random.random(), random.random());
-            (-2.0 * (1.0 - radius).ln()).sqrt() * (std::f64::consts::TAU * angle).cos()
-        };
+        let mut normal = || crate::ranking::normal(&mut random);
         let runs = 2000;
         let (mut holds, mut mean_holds, mut told) = (0, 0, 0);
         for _ in 0..runs {

@@ -23,6 +23,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 /// The numbers of all joints with their covariance.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Together {
     count: usize,
     mean: Vec<f64>,

@@ -1,3 +1,4 @@
+use jointscope_inference::Z95;
 use jointscope_linalg::RealMatrix2;
 use serde::Serialize;
 
@@ -106,7 +107,7 @@ impl Figure {
 
     /// Whether the figure could as well be zero, at 95 %.
     pub fn may_be_zero(&self) -> bool {
-        self.value.abs() < 1.96 * self.total()
+        self.value.abs() < Z95 * self.total()
     }
 
     /// Whether it is known to half of its magnitude or better.

@@ -1,6 +1,7 @@
 //! What the joint's ends add to its beam (eq 6): the compliance left when the beam's is taken out.
 
 use jointscope_beam::{end_compliance, transport};
+use jointscope_inference::interval95;
 use jointscope_linalg::{Matrix2, RealMatrix2};
 use serde::Serialize;
 
@@ -37,7 +38,7 @@ pub enum InterfaceStiffness {
 impl Compliance {
     /// The stiffness behind the compliance, with 95 % intervals.
     pub fn stiffness(&self) -> InterfaceStiffness {
-        let (low, high) = (self.value - 1.96 * self.std, self.value + 1.96 * self.std);
+        let [low, high] = interval95(self.value, self.std);
         if high <= 0.0 {
             InterfaceStiffness::StifferThanTheBeam
         } else if low <= 0.0 {

@@ -26,14 +26,15 @@ pub use laws::LawFit;
 pub use likelihood::JointLikelihood;
 pub use several::{FoundJoint, JointsCovariance, JointsFit, SeveralError, fit_joints};
 
+use crate::likelihood::EXPLAINED;
 use crate::{DecompositionError, LikelihoodFit, Sides};
 use jointscope_averaging::Band;
 use jointscope_linalg::{Matrix2, RealMatrix2};
 use jointscope_spectra::FrfSet;
+use jointscope_tolerances::Tolerance;
 use law::{Dynamics, Form};
 use outcome::{Inflated, Outcome};
 use problem::{Columns, Fitted, Problem, Setup, Test, lower};
-use quantities::Uncertain;
 use recorded::Recorded;
 
 /// What a fit of the joint is asked for.
@@ -47,8 +48,6 @@ pub struct JointFitOptions {
     pub laws: bool,
 }
 
-/// χ² per degree of freedom up to which noise and tolerances count as explaining the FRFs: variances from few averages are themselves known to a few per cent.
-const EXPLAINED: f64 = 1.2;
 /// χ² per degree of freedom above which another start is tried.
 const DOUBTFUL: f64 = 1.3;
 /// Damping of a start without any, as a loss factor.
@@ -170,8 +169,8 @@ fn that_matter(
     setup: Setup,
     laws: Vec<Dynamics>,
     starts: &[Vec<f64>],
-    quantities: Vec<Uncertain>,
-) -> Option<(Vec<Uncertain>, Vec<Uncertain>, Option<Columns>)> {
+    quantities: Vec<Tolerance>,
+) -> Option<(Vec<Tolerance>, Vec<Tolerance>, Option<Columns>)> {
     let recorded = setup.recorded;
     let test = Test { setup, quantities: &quantities, weights: &recorded.weights };
     let problem = Problem::open(test, laws, None);

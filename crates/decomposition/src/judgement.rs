@@ -1,4 +1,5 @@
 use jointscope_fixture::{Fixture, JointLaw, Nature, Quantity};
+use jointscope_inference::Z95;
 use serde::Serialize;
 
 use crate::{Analysis, Element, Estimate, Method, Part, Relation};
@@ -132,7 +133,7 @@ fn agrees(analysis: &Analysis, fixture: &Fixture, best: &Estimate, element: Elem
     let figure = best.figure(Part::Stiffness, element);
     let known = nominal_std(analysis, fixture, element).unwrap_or(0.0);
     let nominal = analysis.nominal_average(Part::Stiffness, element, best.paper);
-    nominal.is_some_and(|nominal| (figure.value - nominal).abs() <= 1.96 * figure.total().hypot(known))
+    nominal.is_some_and(|nominal| (figure.value - nominal).abs() <= Z95 * figure.total().hypot(known))
 }
 
 /// How well the fixture knows an element of its joint's stiffness.

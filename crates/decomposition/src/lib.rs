@@ -65,7 +65,8 @@ pub use plan::{MeasurementPlan, PlanError};
 pub use relation::{Compliances, Relation};
 pub use sides::{Sides, SidesError};
 pub use spectrum::{JointLine, JointSpectrum, decompose};
-pub use tolerances::{Decomposed, ToleranceShare, ToleranceShares, tolerance_shares};
+pub(crate) use tolerances::tolerance_shares;
+pub use tolerances::{Decomposed, ToleranceShare, ToleranceShares};
 
 /// Why a joint cannot be decomposed.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

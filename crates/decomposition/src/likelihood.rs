@@ -112,9 +112,9 @@ impl LikelihoodFit {
     }
 }
 
-/// χ² per degree of freedom up to which a constant joint counts as explaining the FRFs: variances from few averages
+/// χ² per degree of freedom up to which a joint counts as explaining the FRFs, so that noise is taken as it is stated: variances from few averages
 /// are themselves known to a few per cent.
-const EXPLAINED: f64 = 1.2;
+pub(crate) const EXPLAINED: f64 = 1.2;
 /// Blocks of neighbouring lines that the jackknife leaves out in turn.
 const BLOCKS: usize = 8;
 

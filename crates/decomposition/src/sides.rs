@@ -95,7 +95,7 @@ impl Sides {
     }
 
     /// Whether a body (its index in the whole fixture) belongs to side α.
-    pub fn is_on_alpha(&self, body: usize) -> bool {
+    pub(crate) fn is_on_alpha(&self, body: usize) -> bool {
         self.on_alpha[body]
     }
 

@@ -37,3 +37,16 @@ pub struct ModeChange {
     /// The same ratios by the model with the findings; absent without any.
     pub predicted: Option<ModeState>,
 }
+
+/// Standard deviations beyond which a change of a mode is more than noise.
+const MORE_THAN_NOISE: f64 = 3.0;
+
+impl ModeChange {
+    /// Whether its frequency or damping ratio has changed by more than noise explains.
+    pub fn has_changed(&self) -> bool {
+        let beyond = |change: f64, std: f64| change.abs() > MORE_THAN_NOISE * std;
+        self.change.zip(self.change_std).is_some_and(|(change, std)| {
+            beyond(change.frequency, std.frequency) || beyond(change.damping_ratio, std.damping_ratio)
+        })
+    }
+}

@@ -14,7 +14,7 @@ const CONTRADICTS: f64 = 25.0;
 /// Share of the lines that may.
 const MOST: f64 = 0.08;
 /// χ² per degree of freedom of a free fit from which lines are looked for, and what their absence must leave of it.
-const POOR: f64 = 2.0;
+const MISFIT: f64 = 2.0;
 const LEFT: f64 = 0.3;
 /// Lines from one break to the next of what was clipped, at most.
 const APART: usize = 12;
@@ -50,10 +50,10 @@ pub(crate) fn contradictory(observation: &Observation, nominal: &Hypothesis) -> 
     let mut wrong = vec![false; hz.len()];
     let Some((mut part, mut modes)) = without(&wrong) else { return Vec::new() };
     let before = modes.chi2_per_dof;
-    if before < POOR {
+    if before < MISFIT {
         return Vec::new();
     }
-    let better = |chi2_per_dof: f64| chi2_per_dof < POOR && chi2_per_dof < LEFT * before;
+    let better = |chi2_per_dof: f64| chi2_per_dof < MISFIT && chi2_per_dof < LEFT * before;
     for _ in 0..ROUNDS {
         let mut sorted = modes.misfit.clone();
         sorted.sort_by(f64::total_cmp);

@@ -25,7 +25,7 @@ use serde::Serialize;
 use table::Table;
 
 /// Probability by chance below which poles that differ between references are called drift.
-const CERTAIN: f64 = 1e-3;
+const CALLED_DRIFT: f64 = 1e-3;
 /// Differences of natural frequencies, as a share of the half-width, below which nothing is called drift: a free fit's residual terms leave as much wrong.
 const LEAST: f64 = 0.005;
 
@@ -89,7 +89,7 @@ impl TestDrift {
         let references = seen::references(&observation);
         let nominal = Hypothesis::nominal(fixture, false);
         let settings = Settings::default().modal;
-        seen::seen(&observation, &nominal, &settings, (&references, 1.0 + CERTAIN))?.table.chance()
+        seen::seen(&observation, &nominal, &settings, (&references, 1.0 + CALLED_DRIFT))?.table.chance()
     }
 }
 
@@ -100,10 +100,11 @@ impl Drifted {
         if references.len() < 2 {
             return None;
         }
-        let seen::Seen { modes, table } = seen::seen(observation, nominal, settings, (&references, CERTAIN))?;
+        let seen::Seen { modes, table } =
+            seen::seen(observation, nominal, settings, (&references, CALLED_DRIFT))?;
         let p_value = table.chance()?;
         let all: Vec<usize> = (0..references.len()).collect();
-        if p_value >= CERTAIN || table.farthest(&all) < LEAST {
+        if p_value >= CALLED_DRIFT || table.farthest(&all) < LEAST {
             return None;
         }
         let frfs = |reference: &Channel| {

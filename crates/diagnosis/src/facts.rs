@@ -8,7 +8,7 @@ use crate::fit::Fit;
 use crate::location::{BandMisfit, Location};
 use crate::mismatch::{BandShare, FrfMismatch};
 use crate::settings::Settings;
-use jointscope_findings::{Estimate, Verdict};
+use jointscope_findings::Verdict;
 use jointscope_fixture::{EffectKind, Place};
 use jointscope_spectra::FrfPair;
 use serde::Serialize;
@@ -88,18 +88,6 @@ impl EndErrors {
             ratio if ratio < 1.0 / UNEVEN => Trend::Falls,
             _ => Trend::Level,
         }
-    }
-}
-
-impl Finding {
-    /// Whether neither it nor any of its look-alikes is likelier than something that is not listed.
-    pub fn is_doubtful(&self) -> bool {
-        self.probability + self.alternatives.iter().map(|(_, probability)| probability).sum::<f64>() < 0.5
-    }
-
-    /// A parameter, by its name in files.
-    pub fn estimate(&self, parameter: &str) -> Option<&Estimate> {
-        self.estimates.iter().find(|estimate| estimate.parameter.name == parameter)
     }
 }
 

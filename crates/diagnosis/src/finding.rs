@@ -1,24 +1,15 @@
 //! What a diagnosis names, and what it tried.
 
 use crate::location::Location;
-use jointscope_findings::Estimate;
 use jointscope_fixture::Effect;
 use serde::Serialize;
 
-/// A piece of physics that the recordings need.
+/// A piece of physics that the FRFs need.
+pub type Finding = jointscope_findings::Finding<Evidence>;
+
+/// What FRFs tell of a finding beyond its name, size and probability.
 #[derive(Debug, Clone, Serialize)]
-pub struct Finding {
-    /// Kind, place, dof and parameters.
-    #[serde(flatten, serialize_with = "jointscope_findings::effect_name")]
-    pub effect: Effect,
-    /// Parameters with their uncertainty.
-    #[serde(rename = "parameters", serialize_with = "jointscope_findings::parameters")]
-    pub estimates: Vec<Estimate>,
-    /// Probability of kind, place and dof together.
-    pub probability: f64,
-    /// Other names for it, the most probable first.
-    #[serde(serialize_with = "jointscope_findings::alternatives")]
-    pub alternatives: Vec<(Effect, f64)>,
+pub struct Evidence {
     /// What χ² and priors lose without it.
     #[serde(rename = "gain_chi2")]
     pub gain: f64,

@@ -1,12 +1,12 @@
 use crate::Observation;
 use crate::freedom::parameters_of;
 use jointscope_fixture::{
-    Effect, EffectKind, Fixture, FixtureError, Motion, NamedQuantity, Nature, ParameterSpec, Place,
-    QuantityKey, QuantityOwner, SizeLaw,
+    Effect, EffectKind, Fixture, FixtureError, NamedQuantity, Place, QuantityOwner, SizeLaw,
 };
 use jointscope_inference::{Covariance, Parameter, Transform};
 use jointscope_lumped::{Instrument, LumpedError, accelerances};
 use jointscope_spectra::FrfPair;
+use jointscope_tolerances::{Tolerance, moved};
 use num_complex::Complex64;
 use std::sync::Arc;
 
@@ -21,66 +21,9 @@ pub enum PredictionError {
     Model(#[from] LumpedError),
 }
 
-/// A quantity of the fixture that a fit may move.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Tolerance {
-    /// Position among the fixture's quantities.
-    index: usize,
-    /// The quantity as stated; of a beam, Young's modulus stands for its product with the second moment.
-    pub quantity: NamedQuantity,
-    /// Coordinate: deviations from the stated value, or tenths of it where it is free.
-    parameter: Parameter,
-}
-
-/// Relative deviation up to which a quantity moves by its logarithm.
-const NARROW: f64 = 0.12;
-
 /// Least standard deviation of a quantity that is wrong, in stated ones: a slip of the calliper or the scales is many of them. One that sets out farther, as a wrong sign
 /// or decimal point asks for, may lie anywhere that far: a narrower expectation would bend the rest of the fixture to bring it back.
 const WRONG: f64 = 10.0;
-
-impl Tolerance {
-    fn new(index: usize, quantity: NamedQuantity) -> Self {
-        let nominal = quantity.value;
-        let effects = parameter_spec(quantity.key);
-        let free = || match effects.map(|spec| spec.motion) {
-            Some(Motion::Signed(scale) | Motion::NonNegative(scale)) => scale.of(nominal),
-            _ if nominal != 0.0 => 0.1 * nominal.abs(),
-            _ => 1.0,
-        };
-        let scale = quantity.std.unwrap_or_else(free);
-        // Masses and stiffnesses trade against factors of each other: by their logarithms such a trade is a straight line.
-        let relative = !matches!(quantity.nature, Nature::Abscissa | Nature::Damping)
-            && nominal > 0.0
-            && scale <= NARROW * nominal;
-        let transform = match relative {
-            true => Transform::Logarithmic { centre: nominal, scale: scale / nominal },
-            false => Transform::Linear { centre: nominal, scale },
-        };
-        let known = f64::from(u8::from(quantity.std.is_some()));
-        let parameter = Parameter::new(transform).with_precision(known);
-        // A dashpot stops at zero.
-        let stops = match effects {
-            Some(spec) => !spec.range.contains(-1.0),
-            None => quantity.nature == Nature::Damping && nominal > 0.0,
-        };
-        let parameter = if stops { parameter.between(-nominal / scale, f64::INFINITY) } else { parameter };
-        Tolerance { index, quantity, parameter }
-    }
-
-    /// The value at `coordinate` deviations from the stated one.
-    pub fn value(&self, coordinate: f64) -> f64 {
-        self.parameter.transform.value(coordinate).unwrap_or(self.quantity.value)
-    }
-
-    /// Whether it is known to no better than the share `wide`; damping and where something is attached apart.
-    pub(crate) fn is_wide(&self, wide: f64) -> bool {
-        let NamedQuantity { key, nature, value, std, .. } = self.quantity;
-        let deviation = std.map_or(0.5, |std| std / value.abs().max(f64::MIN_POSITIVE));
-        let place = matches!(key, QuantityKey::Abscissa | QuantityKey::PointMassAbscissa(_));
-        deviation >= wide && value != 0.0 && nature != Nature::Damping && !place
-    }
-}
 
 /// The fixture with quantities and effects to be fitted: coordinates in units of which one is a typical step.
 #[derive(Debug, Clone)]
@@ -98,14 +41,6 @@ pub struct Hypothesis {
     pub(crate) coordinates: Vec<f64>,
 }
 
-/// What is known of a quantity that is a parameter of an effect.
-fn parameter_spec(key: QuantityKey) -> Option<&'static ParameterSpec> {
-    match key {
-        QuantityKey::Parameter { kind, index, .. } => kind.spec().parameters.get(index),
-        _ => None,
-    }
-}
-
 impl Hypothesis {
     /// The fixture by itself, its own effects kept as they stand but for parameters with a deviation. `exact` takes bare numbers as exact.
     ///
@@ -117,12 +52,8 @@ impl Hypothesis {
                 |effect: &Effect| matches!(&effect.place, Place::Quantity(path, _) if *path == quantity.path);
             fixture.physics().iter().any(of_it)
         };
-        let tolerances: Vec<Tolerance> = fixture
-            .uncertain_quantities(exact)
-            .into_iter()
-            .filter(|(_, quantity)| !called_wrong(quantity))
-            .map(|(index, quantity)| Tolerance::new(index, quantity))
-            .collect();
+        let mut tolerances = Tolerance::all(fixture, exact);
+        tolerances.retain(|tolerance| !called_wrong(&tolerance.quantity));
         Hypothesis {
             fixture: Arc::new(fixture.clone()),
             parameters: tolerances.iter().map(|tolerance| tolerance.parameter).collect(),
@@ -373,11 +304,7 @@ impl Hypothesis {
     /// # Errors
     /// Quantities or parameters that are impossible.
     pub fn to_fixture(&self) -> Result<Fixture, FixtureError> {
-        let mut fixture = Fixture::clone(&self.fixture);
-        let moved = self.tolerances.iter().zip(&self.coordinates);
-        fixture.set_quantities(
-            moved.map(|(tolerance, coordinate)| (tolerance.index, tolerance.value(*coordinate))),
-        );
+        let fixture = moved(&self.fixture, &self.tolerances, &self.coordinates);
         let mut physics = fixture.physics().to_vec();
         physics.extend(self.effects());
         fixture.with_physics(physics)

@@ -4,7 +4,7 @@ use crate::alternatives::{Alternative, alternatives};
 use crate::departures::has_departed;
 use crate::estimates::estimates;
 use crate::evidence::explained;
-use crate::finding::Finding;
+use crate::finding::{Evidence, Finding};
 use crate::fitter::Fitter;
 use crate::location::measured;
 use crate::search::Search;
@@ -74,13 +74,15 @@ pub(crate) fn findings(fitter: &Fitter, search: &mut Search) -> Vec<Finding> {
             estimates: estimates(&repaired.hypothesis, index, &effect, covariance.as_ref(), widening),
             probability: all_names[index].iter().find(|a| own(a)).map_or(0.0, |a| a.probability),
             alternatives: all_names[index].iter().filter(|a| !own(a)).filter_map(alternative).collect(),
-            gain: without.map_or(0.0, |fit| fit.objective - repaired.objective),
-            measured: measured(*fitter, repaired, index),
+            evidence: Evidence {
+                gain: without.map_or(0.0, |fit| fit.objective - repaired.objective),
+                measured: measured(*fitter, repaired, index),
+            },
             effect,
         }
     };
     let mut all: Vec<Finding> = repaired.hypothesis.effects().into_iter().enumerate().map(finding).collect();
-    all.sort_by(|a, b| b.gain.total_cmp(&a.gain));
+    all.sort_by(|a, b| b.evidence.gain.total_cmp(&a.evidence.gain));
     all
 }
 

@@ -9,6 +9,12 @@ impl Hypothesis {
         self.restated(index).unwrap_or_else(|| self.departure(index))
     }
 
+    /// Whether quantity `index` had to move farther from what is stated than chance takes one of a few.
+    pub fn is_far(&self, index: usize) -> bool {
+        let stated = self.tolerances().get(index).is_some_and(|tolerance| tolerance.quantity.std.is_some());
+        stated && jointscope_tolerances::is_far(self.departure(index))
+    }
+
     /// Where an effect that calls quantity `index` wrong takes it, in standard deviations from what is stated.
     fn restated(&self, index: usize) -> Option<f64> {
         let path = &self.tolerances().get(index)?.quantity.path;

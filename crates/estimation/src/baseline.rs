@@ -2,6 +2,7 @@
 
 use crate::Baseline;
 use crate::pulse::spread;
+use jointscope_spectra::median;
 
 /// Samples beyond so many deviations from the middle belong to the hit or its ringing.
 const FAR: f64 = 3.0;
@@ -56,11 +57,8 @@ const PASSES: usize = 3;
 impl Line {
     fn through(values: &[f64]) -> Self {
         let mut sorted = values.to_vec();
-        let median = match values.len() {
-            0 => 0.0,
-            count => *sorted.select_nth_unstable_by(count / 2, f64::total_cmp).1,
-        };
-        let mut line = Line { middle: median, slope: 0.0, significance: 0.0 };
+        let middle = median(&mut sorted).unwrap_or(0.0);
+        let mut line = Line { middle, slope: 0.0, significance: 0.0 };
         let mut magnitudes = sorted;
         for _ in 0..PASSES {
             magnitudes.clear();

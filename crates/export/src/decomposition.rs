@@ -5,10 +5,7 @@ use crate::numbering::Numbering;
 use crate::numbers::short;
 use crate::{Export, ExportError, ExportOptions, Joint, JointEnd, JointLine};
 use jointscope_beam::mass_of_ends;
-use jointscope_comparison::{Decomposed, Ends, FittedJoint, JointMass, JointTests, Matrix};
-
-/// Probability below which a test of what physics allows fails, as `decompose` has it.
-const FAILED: f64 = 0.05;
+use jointscope_comparison::{Decomposed, Ends, FittedJoint, JointTests, Matrix, Uncertain};
 
 /// A joint of a decomposition as an export: the joint with the fixture's quantities moving where the file has it, otherwise the maximum-likelihood one.
 ///
@@ -62,7 +59,7 @@ struct Estimate {
     structural: Matrix,
     std: Option<(Matrix, Matrix)>,
     covariance: Option<crate::Covariance>,
-    mass: Option<JointMass>,
+    mass: Option<Uncertain>,
 }
 
 impl Estimate {
@@ -196,16 +193,15 @@ fn judged(decomposed: &Decomposed, anyway: bool) -> Result<Vec<String>, ExportEr
 
 /// Remarks on what physics forbids of the joint that the FRFs speak for.
 fn failed_tests(tests: &JointTests) -> Vec<String> {
-    let all = [
-        (tests.reciprocity, "a joint that is not reciprocal", "K and C are written symmetric all the same"),
-        (tests.definite, "a K with a negative eigenvalue", "look for what the fixture leaves out"),
-        (tests.passive, "a C that gives out energy", "C is held to the nearest that does not"),
-    ];
-    let failed = all.into_iter().filter_map(|(p, what, but)| {
-        let p = p.filter(|p| *p < FAILED)?;
-        Some(format!("the FRFs speak for {what} (p = {}), which physics forbids: {but}", short(p)))
-    });
-    failed.collect()
+    let said = |(name, p): (&str, f64)| {
+        let (what, but) = match name {
+            "reciprocity" => ("a joint that is not reciprocal", "K and C are written symmetric all the same"),
+            "definite" => ("a K with a negative eigenvalue", "look for what the fixture leaves out"),
+            _ => ("a C that gives out energy", "C is held to the nearest that does not"),
+        };
+        format!("the FRFs speak for {what} (p = {}), which physics forbids: {but}", short(p))
+    };
+    tests.failed().map(said).collect()
 }
 
 fn placed(

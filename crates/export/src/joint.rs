@@ -2,11 +2,10 @@
 
 use jointscope_beam::{Matrix4, from_end_stiffness};
 use jointscope_comparison::Matrix;
+use jointscope_inference::Z95;
 use jointscope_linalg::Matrix2;
 use serde::{Serialize, Serializer};
 
-/// Standard deviations beyond which two centres contradict each other, at 95 %.
-const QUANTILE: f64 = 1.96;
 /// Share of √(c11·c22) to which centres agree where nothing is known of their uncertainty.
 const ROUNDING: f64 = 1e-9;
 
@@ -155,7 +154,7 @@ impl Joint {
     }
 
     /// Abscissa of the elastic centre, m.
-    pub fn centre_x(&self) -> Option<f64> {
+    pub(crate) fn centre_x(&self) -> Option<f64> {
         self.centre().map(|centre| self.to.x + centre.offset)
     }
 
@@ -167,7 +166,7 @@ impl Joint {
     }
 
     /// Whether C acts about the centre of K, within its uncertainty.
-    pub fn damping_centre(&self) -> Option<CentreAgreement> {
+    pub(crate) fn damping_centre(&self) -> Option<CentreAgreement> {
         let centre = self.centre()?;
         let [[k11, k12], _] = self.stiffness;
         let [[c11, c12], [_, c22]] = self.damping;
@@ -175,12 +174,12 @@ impl Joint {
         let gradient = [k12 / (k11 * k11) * c11, -c11 / k11, 0.0, -centre.offset, 1.0, 0.0];
         let std = self.propagated(&gradient);
         let rounding = ROUNDING * (c11.abs() * c22.abs()).sqrt().max(c12.abs());
-        let limit = std.map_or(0.0, |std| QUANTILE * std).max(rounding);
+        let limit = std.map_or(0.0, |std| Z95 * std).max(rounding);
         Some(CentreAgreement { coupling, std, agrees: coupling.abs() <= limit })
     }
 
     /// Whether the structural damping acts about the centre of K.
-    pub fn structural_shares_centre(&self) -> bool {
+    pub(crate) fn structural_shares_centre(&self) -> bool {
         let Some(centre) = self.centre() else { return false };
         let [[s11, s12], [_, s22]] = self.structural;
         let scale = (s11.abs() * s22.abs()).sqrt().max(s12.abs());

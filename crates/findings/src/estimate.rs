@@ -1,8 +1,9 @@
-use jointscope_fixture::{Dof, ParameterSpec};
+use jointscope_fixture::{Dof, ParameterRange, ParameterSpec};
+use jointscope_inference::{Z95, interval95};
 use serde::Serialize;
 
-/// Quantile of the standard normal distribution of a 95 % interval.
-const QUANTILE: f64 = 1.96;
+/// Ratio of the interval's ends beyond which only the order of magnitude is known.
+const VAGUE: f64 = 30.0;
 /// Largest exponent of an interval's ratio: its ends stay finite.
 const MOST_EXPONENT: f64 = 50.0;
 
@@ -31,15 +32,29 @@ impl Estimate {
 
     /// The same known to ± `std`, its errors normal.
     pub fn within(self, std: f64) -> Self {
-        let interval = [self.value - QUANTILE * std, self.value + QUANTILE * std];
-        Estimate { std: Some(std), interval: Some(interval), ..self }
+        Estimate { std: Some(std), interval: Some(interval95(self.value, std)), ..self }
     }
 
     /// The same known to ± `deviation` in its logarithm: an interval of ratios, lopsided where it is wide.
     pub fn within_ratio(self, deviation: f64) -> Self {
-        let factor = (QUANTILE * deviation).min(MOST_EXPONENT).exp();
+        let factor = (Z95 * deviation).min(MOST_EXPONENT).exp();
         let interval = [self.value / factor, self.value * factor];
         Estimate { std: Some(deviation * self.value.abs()), interval: Some(interval), ..self }
+    }
+
+    /// The interval as far as the parameter's range goes.
+    pub fn possible_interval(&self) -> Option<[f64; 2]> {
+        let range = self.parameter.range;
+        let not_negative = matches!(range, ParameterRange::NonNegative | ParameterRange::Positive);
+        let low_end = if not_negative { 0.0 } else { f64::NEG_INFINITY };
+        self.interval.map(|[low, high]| [low.max(low_end), high])
+    }
+
+    /// Whether the data tell no more of the value than its order of magnitude.
+    pub fn is_vague(&self) -> bool {
+        self.possible_interval().is_some_and(|[low, high]| {
+            !(low.is_finite() && high.is_finite()) || low > 0.0 && high / low > VAGUE
+        })
     }
 
     /// Whether the data leave the value open.

@@ -1,4 +1,4 @@
-//! What every diagnosis answers with, linear or not: a [`Verdict`], an [`Estimate`] of each parameter found, the judgement on [`HeldOut`] data.
+//! What every diagnosis answers with, linear or not: a [`Verdict`], [`Finding`]s with an [`Estimate`] of each parameter, the judgement on [`HeldOut`] data.
 //!
 //! All of it serialises as `diagnosis.json` has it.
 //!
@@ -13,9 +13,11 @@
 //! ```
 
 mod estimate;
+mod finding;
 mod serialization;
 mod verdict;
 
 pub use estimate::Estimate;
+pub use finding::Finding;
 pub use serialization::{alternatives, by_model, effect_name, parameters, with_std};
 pub use verdict::{HeldOut, Verdict};

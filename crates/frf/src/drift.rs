@@ -24,7 +24,7 @@ const KNOWN: f64 = 0.3;
 const RESOLVED: f64 = 0.5;
 const MOVED: f64 = 0.05;
 /// Standard deviations by which the differences must exceed their noise.
-const CERTAIN: f64 = 5.0;
+const BEYOND_NOISE: f64 = 5.0;
 
 /// How far resonances differ among FRFs of one response.
 #[derive(Debug, Clone, PartialEq)]
@@ -145,6 +145,6 @@ fn differences(frfs: &FrfSet, group: &[usize], line: usize) -> Option<((f64, f64
     let deviation = (scatter - noise).max(0.0).sqrt() / mean;
     let half_width = widths[widths.len() / 2] / mean;
     let certain =
-        deviation > MOVED * half_width && chi2 > count - 1.0 + CERTAIN * (2.0 * (count - 1.0)).sqrt();
+        deviation > MOVED * half_width && chi2 > count - 1.0 + BEYOND_NOISE * (2.0 * (count - 1.0)).sqrt();
     Some(((mean, deviation, half_width), certain))
 }

@@ -6,7 +6,7 @@
 //! fits var = S + N·|H|² with S and N slowly varying over the lines.
 
 use crate::local_rational::LocalRationalFit;
-use jointscope_spectra::{FrfForm, FrfSet, SpectraError};
+use jointscope_spectra::{FrfForm, FrfSet, SpectraError, median};
 use num_complex::Complex64;
 use serde::Serialize;
 
@@ -47,15 +47,13 @@ const AVERAGES: (f64, f64) = (1.5, 1000.0);
 fn averages_by_scatter(values: &[Complex64], coherence: &[f64], scatter: &[f64]) -> Option<u32> {
     // One less than the averages, line by line: (1 − γ²)/γ²·|H|² over the variance.
     let stated = of_lines(values, coherence, 2);
-    let told =
+    let usable =
         stated.iter().zip(scatter).zip(coherence).filter(|(_, gamma2)| **gamma2 > 0.0 && **gamma2 < 1.0);
-    let mut ratios: Vec<f64> = told.map(|((stated, scatter), _)| stated / scatter).collect();
+    let mut ratios: Vec<f64> = usable.map(|((stated, scatter), _)| stated / scatter).collect();
     if ratios.len() < FEWEST.max(coherence.len() / 2) {
         return None;
     }
-    let middle = ratios.len() / 2;
-    let median = *ratios.select_nth_unstable_by(middle, f64::total_cmp).1;
-    let averages = 1.0 + median;
+    let averages = 1.0 + median(&mut ratios)?;
     (AVERAGES.0..AVERAGES.1).contains(&averages).then(|| averages.round() as u32)
 }
 
@@ -202,18 +200,16 @@ pub fn from_scatter(hz: &[f64], values: &[Complex64]) -> Vec<f64> {
     let raw: Vec<f64> = raw.into_iter().map(Option::unwrap_or_default).collect();
     // The square of a complex normal is exponential: its median is ln 2 of its mean.
     let mut window = Vec::with_capacity(2 * WINDOW + 1);
-    let mut median = |line: usize, value: &dyn Fn(usize) -> f64| {
+    let mut mean_by_median = |line: usize, value: &dyn Fn(usize) -> f64| {
         window.clear();
         window.extend(around(line, WINDOW, n).filter(|&i| usable[i]).map(value));
-        let middle = window.len() / 2;
-        if window.is_empty() {
-            return 0.0;
-        }
-        *window.select_nth_unstable_by(middle, f64::total_cmp).1 / std::f64::consts::LN_2
+        median(&mut window).map_or(0.0, |median| median / std::f64::consts::LN_2)
     };
     let share = |i: usize| raw[i] / size[i].max(NOTHING * largest).max(f64::MIN_POSITIVE);
     // An upper bound to begin with: the floor that the median shows, and the share that it shows.
-    let begun = (0..n).map(|line| median(line, &|i| raw[i]) + median(line, &share) * size[line]).collect();
+    let begun = (0..n)
+        .map(|line| mean_by_median(line, &|i| raw[i]) + mean_by_median(line, &share) * size[line])
+        .collect();
     smooth(&size, &raw, &usable, begun, 5, CLIPPED, WINDOW)
 }
 

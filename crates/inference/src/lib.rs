@@ -12,6 +12,7 @@
 //! * [`inflated_weight`]: weights that count a share of the signal as noise, so that sharp resonances do not decide
 //!   where a fit from afar goes;
 //! * [`Covariance`], [`jackknife`], [`autocorrelation`], [`variance_inflation`]: uncertainty;
+//! * [`interval95`], [`Z95`], [`SIGNIFICANT`]: the one convention of intervals and tests;
 //! * [`QuadraticLikelihood`]: what one recording tells of parameters that others tell of as well, put together in closed form;
 //! * [`laplace_evidence`]: marginal likelihood of a hypothesis at its optimum.
 //!
@@ -50,6 +51,7 @@
 
 mod descent;
 mod evidence;
+mod interval;
 mod likelihood;
 mod noise;
 mod normal;
@@ -59,6 +61,7 @@ mod uncertainty;
 
 pub use descent::{Convergence, Damping, Descent, LeastSquares, Limit, Precision, Settings, descend};
 pub use evidence::laplace_evidence;
+pub use interval::{SIGNIFICANT, Z95, interval95};
 pub use likelihood::QuadraticLikelihood;
 pub use noise::inflated_weight;
 pub use normal::NormalEquations;

@@ -1,4 +1,4 @@
-use crate::file::{told, value};
+use crate::file::{value, with_sentence};
 use jointscope_diagnosis::{
     Departure, Diagnosis, EndErrors, Finding, FrfMismatch, HeldOut, Hypothesis, LawFit, LineEstimate,
     Location, ModeChange, ModelError, Tried, Variation, Verdict,
@@ -43,7 +43,7 @@ pub fn diagnosis_file(diagnosis: &Diagnosis) -> Value {
         tried: &diagnosis.tried,
         stopped: &diagnosis.stopped,
         contradictory: &diagnosis.contradictory,
-        drift: diagnosis.drift.as_ref().map(|drift| told(drift, drift.says())),
+        drift: diagnosis.drift.as_ref().map(|drift| with_sentence(drift, drift.says())),
         modes: diagnosis.baseline.as_ref().map(|baseline| baseline.modes.as_slice()),
     })
 }
@@ -133,9 +133,9 @@ struct Errors<'a> {
 }
 
 fn finding(finding: &Finding) -> Value {
-    let mut entry = told(finding, finding.says());
+    let mut entry = with_sentence(finding, finding.says());
     entry["doubtful"] = Value::Bool(finding.is_doubtful());
-    if let Some(measured) = &finding.measured {
+    if let Some(measured) = &finding.evidence.measured {
         entry["measured"] = value(MeasuredPlace::of(measured));
     }
     entry

@@ -9,7 +9,7 @@ pub(crate) fn value(contents: impl Serialize) -> Value {
 }
 
 /// A finding with its sentence, which stands before its alternatives.
-pub(crate) fn told(finding: impl Serialize, says: String) -> Value {
+pub(crate) fn with_sentence(finding: impl Serialize, says: String) -> Value {
     let mut entry = value(finding);
     if let Value::Object(entry) = &mut entry {
         let place = entry.keys().position(|key| key == "alternatives").unwrap_or(entry.len());

@@ -105,7 +105,8 @@ pub use jointscope_fixture::{Fixture, FixtureError};
 pub use jointscope_lumped::{Instrument, LumpedError, synthesize};
 pub use jointscope_modes::{ModalAnalysis, ModesError, ModesOptions};
 pub use jointscope_pipeline::{
-    Answer, MeasuredDamping, MeasuredDampingError, Measurement, Outcome, diagnose, measured_damping,
+    Answer, Decomposition, MeasuredDamping, MeasuredDampingError, Measurement, Outcome, decompose, diagnose,
+    measured_damping,
 };
 pub use jointscope_recordings::{ReadOptions, Recording, RecordingError};
 pub use jointscope_spectra::{FrfForm, FrfPair, FrfSet, SpectralLines};
@@ -113,6 +114,7 @@ pub use jointscope_wording::{Remarks, Says, effect_name};
 
 mod answer_file;
 mod check_file;
+mod comparison_file;
 mod diagnosis_file;
 mod file;
 mod frf_files;
@@ -124,13 +126,14 @@ mod stiffness_file;
 
 pub use answer_file::answer_file;
 pub use check_file::check_file;
+pub use comparison_file::comparison_file;
 pub use diagnosis_file::diagnosis_file;
 pub use frf_files::{checked_frfs, fitted_frfs, model_frfs, rebuilt_frfs};
 pub use modes_file::modes_file;
 pub use nonlinear_file::nonlinear_file;
 pub use plan_file::plan_file;
 pub use stepped_file::stepped_file;
-pub use stiffness_file::{joints_file, stiffness_file};
+pub use stiffness_file::{joint_file, joints_file, stiffness_file};
 
 /// Why the bytes of a file are no recording of a fixture.
 #[derive(Debug, thiserror::Error)]

@@ -1,4 +1,4 @@
-use crate::file::{told, value};
+use crate::file::{value, with_sentence};
 use jointscope_findings::{HeldOut, Verdict, by_model};
 use jointscope_nonlinear::{
     ForceStateError, ForceStateMap, Homogeneity, ModelFit, NonlinearDiagnosis, Reach,
@@ -20,7 +20,7 @@ pub fn nonlinear_file(diagnosis: &NonlinearDiagnosis) -> Value {
             p_value: diagnosis.homogeneity.p_value,
             frfs: [],
         },
-        findings: diagnosis.findings.iter().map(|finding| told(finding, finding.says())).collect(),
+        findings: diagnosis.findings.iter().map(|finding| with_sentence(finding, finding.says())).collect(),
         fit: models.map(|models| Errors {
             nrmse: models.each_ref().map(|model| model.nrmse),
             held_out: diagnosis.held_out.as_ref(),

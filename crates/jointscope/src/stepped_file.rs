@@ -1,4 +1,4 @@
-use crate::file::{told, value};
+use crate::file::{value, with_sentence};
 use jointscope_findings::{HeldOut, Verdict, by_model};
 use jointscope_nonlinear::{LevelFinding, LevelResult, SteppedDiagnosis, Tried};
 use jointscope_spectra::Dof;
@@ -13,7 +13,7 @@ pub fn stepped_file(diagnosis: &SteppedDiagnosis) -> Value {
     let holds: Vec<String> =
         diagnosis.levels.iter().filter(|level| level.explained).map(|level| level.held.to_string()).collect();
     let finding = |finding: &LevelFinding| {
-        let mut entry = told(finding, finding.says());
+        let mut entry = with_sentence(finding, finding.says());
         entry["holds_at"] = value(&holds);
         entry
     };

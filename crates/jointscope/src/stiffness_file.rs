@@ -1,10 +1,24 @@
 use crate::file::value;
+use jointscope_comparison::{
+    ComparedLaw, EstimateEntry, FollowedLaw, LineEntry, LossFactor, MatrixPair, ModelError, Nominal,
+    Uncertain,
+};
 use jointscope_decomposition::{
     Analysis, Compliance, Element, FoundJoint, InterfaceStiffness, JointFit, JointLine, JointsFit, LawFit,
     LawKind, MatrixAverage, Method, Part, Relation,
 };
+use jointscope_inference::interval95;
 use jointscope_linalg::RealMatrix2;
+use jointscope_pipeline::{Decomposition, Joints};
 use serde_json::{Value, json};
+
+/// The contents of `stiffness.json`, of one joint or of several.
+pub fn joint_file(decomposition: &Decomposition) -> Value {
+    match &decomposition.found {
+        Joints::One(analysis) => stiffness_file(analysis),
+        Joints::AtOnce(joints) => joints_file(joints),
+    }
+}
 
 /// The contents of `stiffness.json`: K and C by line, averages, the fitted joint and its interfaces, in SI units.
 ///
@@ -19,7 +33,7 @@ pub fn stiffness_file(analysis: &Analysis) -> Value {
         "joint": joint(analysis),
         "ends": analysis.ends,
         "relation": spectrum.relation.name(),
-        "lines": spectrum.solved.iter().map(|solved| line(analysis, solved)).collect::<Value>(),
+        "lines": spectrum.solved.iter().map(|solved| line(analysis, solved)).collect::<Vec<_>>(),
         "masked": masked.collect::<Value>(),
         "average": averages(analysis),
         "maximum_likelihood": likelihood(analysis),
@@ -29,7 +43,7 @@ pub fn stiffness_file(analysis: &Analysis) -> Value {
         "recording": recording(analysis),
     });
     if let Some(weighted) = &analysis.averages.weighted {
-        file["weighted_average"] = average(weighted);
+        file["weighted_average"] = value(average(weighted));
     }
     if let Some(interfaces) = &analysis.interfaces {
         let rest_on = |(method, explains)| json!({"fit": method_name(method), "explains_the_frfs": explains});
@@ -73,45 +87,43 @@ fn joint(analysis: &Analysis) -> Value {
 
 fn fitted(fit: &JointFit) -> Value {
     let mut entry = value(fit);
-    entry["std"] = pair(fit.std());
+    entry["std"] = value(pair(fit.std()));
     let (inflation, strain) = (fit.inflation, fit.strain);
-    entry["model_error"] =
-        json!({"inflation": inflation, "strain": strain, "covariance": fit.model_covariance});
-    entry["follows"] = follows(fit);
+    entry["model_error"] = value(ModelError { inflation, strain, covariance: fit.model_covariance });
+    entry["follows"] = value(follows(fit));
     if let Some(best) = fit.law() {
         entry["law"] = json!(best.name());
-        entry["laws"] = fit.laws.iter().map(law).collect();
+        entry["laws"] = value(fit.laws.iter().map(law).collect::<Vec<_>>());
     }
     entry
 }
 
 /// The law that the joint's numbers are of, the frequency at which they are stated, and its losses in its own terms.
-fn follows(fit: &JointFit) -> Value {
+fn follows(fit: &JointFit) -> FollowedLaw {
     let follows = &fit.follows;
-    let frequency = follows.omega / std::f64::consts::TAU;
-    let mut entry = json!({
-        "law": follows.fit.name(),
-        "probability": follows.fit.probability,
-        "frequency": frequency,
+    let shape = |law: LawKind| {
+        let shape = follows.shape.filter(|_| follows.law == law);
+        shape.map(|(value, std)| Uncertain { value, std })
+    };
+    let loss_factor = (follows.law == LawKind::Structural).then(|| {
+        let elements = [0, 1].map(|row| [0, 1].map(|column| fit.loss_factor(row, column)));
+        LossFactor {
+            value: elements.map(|row| row.map(|of| of.map(|(loss, _)| loss))),
+            std: elements.map(|row| row.map(|of| of.map(|(_, std)| std))),
+            ci95: elements.map(|row| row.map(|of| of.map(|(loss, std)| interval95(loss, std)))),
+        }
     });
-    if let Some((shape, std)) = follows.shape {
-        let key = if follows.law == LawKind::Fractional { "exponent" } else { "time" };
-        entry[key] = json!({"value": shape, "std": std});
+    FollowedLaw {
+        law: follows.fit.name(),
+        probability: Some(follows.fit.probability),
+        frequency: follows.omega / std::f64::consts::TAU,
+        exponent: shape(LawKind::Fractional),
+        time: shape(LawKind::StandardLinearSolid),
+        loss_factor,
     }
-    if follows.law == LawKind::Structural {
-        let element = |of: &dyn Fn((f64, f64)) -> Value| {
-            [0, 1].map(|row| [0, 1].map(|column| fit.loss_factor(row, column).map(of)))
-        };
-        entry["loss_factor"] = json!({
-            "value": element(&|(loss, _)| json!(loss)),
-            "std": element(&|(_, std)| json!(std)),
-            "ci95": element(&|(loss, std)| json!([loss - 1.96 * std, loss + 1.96 * std])),
-        });
-    }
-    entry
 }
 
-fn law(law: &LawFit) -> Value {
+fn law(law: &LawFit) -> ComparedLaw {
     let mut parameters = json!({"stiffness": law.stiffness});
     let (damping, shape) = match law.kind {
         LawKind::Constant => (None, None),
@@ -132,69 +144,84 @@ fn law(law: &LawFit) -> Value {
     if let Some(mass) = law.mass {
         parameters["mass"] = json!(mass);
     }
-    json!({
-        "law": law.name(),
-        "probability": law.probability,
-        "parameters": parameters,
-        "in_the_middle": pair(law.in_the_middle()),
-    })
-}
-
-fn pair((k, c): (RealMatrix2, RealMatrix2)) -> Value {
-    json!({"stiffness": k, "damping": c})
-}
-
-fn line(analysis: &Analysis, line: &JointLine) -> Value {
-    let mut entry = value(line);
-    if let Some(h41) = analysis.spectrum.h41.values.get(line.line) {
-        entry["h41"] = json!(h41.0.map(|row| row.map(|value| [value.re, value.im])));
+    ComparedLaw {
+        law: law.name(),
+        probability: law.probability,
+        parameters,
+        in_the_middle: Some(pair(law.in_the_middle())),
     }
-    if let Some(std) = line.stiffness_std.zip(line.damping_std) {
-        entry["std"] = pair(std);
-        entry["noisy"] = json!(line.is_noisy());
+}
+
+fn pair((k, c): (RealMatrix2, RealMatrix2)) -> MatrixPair {
+    MatrixPair { stiffness: k.0, damping: c.0 }
+}
+
+fn line(analysis: &Analysis, line: &JointLine) -> LineEntry {
+    let h41 = analysis.spectrum.h41.values.get(line.line);
+    let std = line.stiffness_std.zip(line.damping_std).map(pair);
+    LineEntry {
+        frequency: line.frequency,
+        stiffness: line.stiffness.0,
+        damping: line.damping.0,
+        condition: Some(line.condition),
+        h41: h41.map(|h41| h41.0.map(|row| row.map(|value| [value.re, value.im]))),
+        noisy: std.map(|_| line.is_noisy()),
+        std,
     }
-    entry
 }
 
-fn average(average: &MatrixAverage) -> Value {
-    json!({
-        "stiffness": average.stiffness,
-        "damping": average.damping,
-        "std": pair((average.stiffness_std, average.damping_std)),
-    })
+/// An estimate with what noise leaves uncertain.
+fn estimate(value: (RealMatrix2, RealMatrix2), std: (RealMatrix2, RealMatrix2)) -> EstimateEntry {
+    let MatrixPair { stiffness, damping } = pair(value);
+    EstimateEntry {
+        stiffness,
+        damping,
+        std: Some(pair(std)),
+        band: None,
+        lines: None,
+        std_fixture: None,
+        std_model: None,
+        chi2_per_dof: None,
+    }
 }
 
-fn averages(analysis: &Analysis) -> Value {
-    let mut entry = average(&analysis.averages.plain);
-    entry["band"] = json!([analysis.averages.band.from, analysis.averages.band.to]);
-    entry["lines"] = json!(analysis.averages.lines);
-    entry["std_fixture"] = pair(analysis.tolerance_of_averages());
-    entry
+fn average(average: &MatrixAverage) -> EstimateEntry {
+    estimate((average.stiffness, average.damping), (average.stiffness_std, average.damping_std))
+}
+
+fn averages(analysis: &Analysis) -> EstimateEntry {
+    let band = analysis.averages.band;
+    EstimateEntry {
+        band: Some((band.from, band.to)),
+        lines: Some(analysis.averages.lines),
+        std_fixture: Some(pair(analysis.tolerance_of_averages())),
+        ..average(&analysis.averages.plain)
+    }
 }
 
 /// K and C of the fixture as it stands, read as the lines are; `null` where no line of the band has them.
-fn nominal(analysis: &Analysis) -> Value {
+fn nominal(analysis: &Analysis) -> Nominal {
     let paper = analysis.spectrum.relation == Relation::Paper;
     let element = |part: Part, row: usize, column: usize| {
         analysis.nominal_average(part, Element { row, column }, paper)
     };
     let of = |part: Part| [0, 1].map(|row| [0, 1].map(|column| element(part, row, column)));
-    json!({"stiffness": of(Part::Stiffness), "damping": of(Part::Damping)})
+    Nominal { stiffness: of(Part::Stiffness), damping: of(Part::Damping) }
 }
 
 fn likelihood(analysis: &Analysis) -> Value {
-    match &analysis.likelihood {
-        Ok(fit) => json!({
-            "stiffness": fit.stiffness,
-            "damping": fit.damping,
-            "std": pair((fit.stiffness_std, fit.damping_std)),
-            "std_fixture": pair(analysis.tolerance_of_likelihood()),
-            "std_model": pair(fit.model_std()),
-            "chi2_per_dof": fit.chi2_per_dof,
-            "relation": "exact",
-        }),
-        Err(error) => json!({"failed": error.to_string()}),
-    }
+    let fit = match &analysis.likelihood {
+        Ok(fit) => fit,
+        Err(error) => return json!({"failed": error.to_string()}),
+    };
+    let mut entry = value(EstimateEntry {
+        std_fixture: Some(pair(analysis.tolerance_of_likelihood())),
+        std_model: Some(pair(fit.model_std())),
+        chi2_per_dof: Some(fit.chi2_per_dof),
+        ..estimate((fit.stiffness, fit.damping), (fit.stiffness_std, fit.damping_std))
+    });
+    entry["relation"] = json!(Relation::Exact.name());
+    entry
 }
 
 /// The entry of the file that an estimate stands in.

@@ -46,6 +46,7 @@ mod sparse_inertia;
 mod sparse_modes;
 #[cfg(feature = "sparse")]
 mod sparse_space;
+mod vectors;
 
 pub use cholesky::{Cholesky, semidefinite_factor, solve_positive_definite};
 pub use eigen::generalized_symmetric_eigen;
@@ -65,3 +66,4 @@ pub use sparse_cholesky::SparseCholesky;
 pub use sparse_inertia::eigenvalues_below;
 #[cfg(feature = "sparse")]
 pub use sparse_modes::{ModesWanted, SparseModes, lowest_modes};
+pub use vectors::{dot, normal_pair};

@@ -1,7 +1,7 @@
 use crate::sparse::SparseError;
 use crate::sparse_inertia::count_below;
-use crate::sparse_space::{Random, Space, dot};
-use crate::{EigenError, SparseCholesky, SparseSymmetric, generalized_symmetric_eigen};
+use crate::sparse_space::{Random, Space};
+use crate::{EigenError, SparseCholesky, SparseSymmetric, dot, generalized_symmetric_eigen};
 use std::f64::consts::TAU;
 
 /// How many modes are to be found.

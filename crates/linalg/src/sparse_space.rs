@@ -1,4 +1,4 @@
-use crate::{SparseCholesky, SparseSymmetric};
+use crate::{SparseCholesky, SparseSymmetric, dot};
 
 /// M-orthonormal vectors with their images under M: the known motions, and those of the search.
 pub(crate) struct Space<'a> {
@@ -53,10 +53,6 @@ impl Space<'_> {
             block.push(next);
         }
     }
-}
-
-pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 /// SplitMix64: start vectors that are the same on every machine.

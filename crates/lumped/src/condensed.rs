@@ -10,7 +10,7 @@
 //! Of random beams with masses, supports and shear, natural frequencies up to twice the band are within 1e-6 of the whole mesh's, mostly within 1e-9, and residues in
 //! the band within 3e-5 of that of a rigid motion, mostly 1e-8.
 
-use jointscope_linalg::{Cholesky, EigenError, ModalBasis, generalized_symmetric_eigen};
+use jointscope_linalg::{Cholesky, EigenError, ModalBasis, dot, generalized_symmetric_eigen};
 
 /// Elements of a stretch at most: together with [`KEPT`], what is set aside stays as few coordinates as the eigenproblem has a fast way for.
 pub(crate) const LONGEST: usize = 7;
@@ -258,10 +258,6 @@ fn combined(count: usize, motions: &[Vec<f64>], shares: &[f64]) -> Vec<f64> {
         sum.iter_mut().zip(motion).for_each(|(to, value)| *to += share * value);
     }
     sum
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 #[cfg(test)]

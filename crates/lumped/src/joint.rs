@@ -158,7 +158,7 @@ impl JointDynamics {
         // Interfaces are springs in series with a beam's ends.
         if let Some(beam) = &self.heavy_beam {
             return self.interfaces.iter().fold(beam.at(s, self.modulus(s)), |ends, interface| {
-                ends.softened(interface, T::ONE * interface.stiffness + s * interface.damping)
+                ends.in_series_with(interface, T::ONE * interface.stiffness + s * interface.damping)
             });
         }
         let length = self.length + self.extra_length;
@@ -224,7 +224,7 @@ impl<T: Lines> TwoEnds<T> {
 
     /// With a spring in series with one of its four end motions.
     #[inline(always)]
-    fn softened(self, interface: &Interface, spring: T) -> Self {
+    fn in_series_with(self, interface: &Interface, spring: T) -> Self {
         let e = 2 * usize::from(interface.at_far_end) + usize::from(interface.dof == Dof::Rotation);
         let column = [self.at(0, e), self.at(1, e), self.at(2, e), self.at(3, e)];
         let factor = (spring + column[e]).reciprocal();

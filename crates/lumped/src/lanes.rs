@@ -88,7 +88,7 @@ pub struct Lanes {
 impl Lanes {
     /// Whether all numbers on all lines are finite.
     #[inline(always)]
-    pub fn all_finite(values: &[Lanes]) -> bool {
+    pub(crate) fn all_finite(values: &[Lanes]) -> bool {
         // Zero times what is not finite is not zero; a sum for each line, so that none waits for the others.
         let mut nothing = [0.0; WIDTH];
         for value in values {
@@ -101,7 +101,7 @@ impl Lanes {
 
     /// Writes all lines over the first of `re` and `im`.
     #[inline(always)]
-    pub fn write_parts(&self, re: &mut [f64], im: &mut [f64]) {
+    pub(crate) fn write_parts(&self, re: &mut [f64], im: &mut [f64]) {
         re[..WIDTH].copy_from_slice(&self.re);
         im[..WIDTH].copy_from_slice(&self.im);
     }

@@ -13,7 +13,7 @@ use num_complex::Complex64;
 use std::f64::consts::TAU;
 
 /// χ² per degree of freedom of a free fit from which it may lack a pole, and the share of χ² that is left where one is worth it.
-const POOR: f64 = 1.3;
+const LACKS_A_POLE: f64 = 1.3;
 const WORTH: f64 = 0.8;
 /// Damping ratio that a pole is tried with where a fit misses most, and the share of χ² that is left where it is a mode; lines between it and where it was tried, at most.
 const MISSED: f64 = 0.01;
@@ -61,7 +61,7 @@ struct FrfFit {
 impl FreeFit {
     /// Whether more than noise is left.
     pub fn is_poor(&self, recording: Recording) -> bool {
-        self.chi2_per_dof(recording) > POOR
+        self.chi2_per_dof(recording) > LACKS_A_POLE
     }
 
     /// Whether the residual terms that `more` has are worth their number by Akaike's criterion. What too few of them leave biases the poles
@@ -231,7 +231,7 @@ impl FreeFit {
     }
 
     /// What it says of the modes in the band.
-    pub fn told(&self, recording: Recording) -> Option<RecordedModes> {
+    pub fn recorded_modes(&self, recording: Recording) -> Option<RecordedModes> {
         let lines = recording.frfs.lines();
         let frfs = self.fits.len();
         let modes = self.inside;
@@ -286,20 +286,20 @@ impl FreeFit {
         let of_poles = Cholesky::of(order, &self.information)?.inverse();
         // Each feature as (FRF, coefficients of which it is the sum, imaginary part or not, scale); poles stand for themselves.
         let residue = |r: usize, frf: usize, im: bool| (frf, vec![r], im, modes[r].scale);
-        let mut told = Vec::new();
+        let mut parts = Vec::new();
         for r in 0..m {
-            told.extend((0..frfs).flat_map(|frf| [residue(r, frf, false), residue(r, frf, true)]));
+            parts.extend((0..frfs).flat_map(|frf| [residue(r, frf, false), residue(r, frf, true)]));
         }
         for frf in 0..frfs {
-            told.push((frf, mass_line.clone(), false, scales[0]));
-            told.push((frf, upper.clone(), false, scales[1]));
+            parts.push((frf, mass_line.clone(), false, scales[0]));
+            parts.push((frf, upper.clone(), false, scales[1]));
         }
         // How each feature moves with the poles.
         let mut with_poles = vec![0.0; count * order];
         for k in 0..2 * m {
             with_poles[k * order + k] = 1.0;
         }
-        for (k, (frf, columns, im, scale)) in told.iter().enumerate() {
+        for (k, (frf, columns, im, scale)) in parts.iter().enumerate() {
             for (p, change) in self.fits[*frf].sensitivity.iter().enumerate() {
                 let change: Complex64 = columns.iter().map(|&c| change[c]).sum();
                 with_poles[(2 * m + k) * order + p] = if *im { change.im } else { change.re } / scale;
@@ -324,8 +324,8 @@ impl FreeFit {
             }
         }
         let own: Vec<Vec<Complex64>> = self.fits.iter().map(|f| f.projection.covariance()).collect();
-        for (i, (frf, of_a, im_a, scale_a)) in told.iter().enumerate() {
-            for (j, (other, of_b, im_b, scale_b)) in told.iter().enumerate() {
+        for (i, (frf, of_a, im_a, scale_a)) in parts.iter().enumerate() {
+            for (j, (other, of_b, im_b, scale_b)) in parts.iter().enumerate() {
                 if frf == other {
                     let columns = self.fits[*frf].projection.columns();
                     let pairs = of_a.iter().flat_map(|a| of_b.iter().map(move |b| a * columns + b));

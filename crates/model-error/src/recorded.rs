@@ -161,14 +161,14 @@ impl RecordedModes {
             modes.iter().map(pole).filter(|p| p.damping_ratio > 0.0 && p.damping_ratio < 1.0).collect()
         };
         let fit = free_fit(recording, poles(&analysis.modes), &poles(&analysis.outside))?;
-        let alone = fit.told(recording)?;
+        let alone = fit.recorded_modes(recording)?;
         let expected = expected(&alone);
         let Expected { all, unpaired } = expected;
         let told_or_expected: Vec<Pole> = fit.poles[..fit.inside].iter().chain(&unpaired).copied().collect();
         let Some(above) = Above::of(recording, &told_or_expected) else {
             return match all.is_empty() {
                 true => Some(alone),
-                false => with_expected(recording, fit, &unpaired, &all).told(recording),
+                false => with_expected(recording, fit, &unpaired, &all).recorded_modes(recording),
             };
         };
         let (recording, from) = (above.recording(), TAU * above.frfs.lines().hz()[0]);
@@ -177,11 +177,11 @@ impl RecordedModes {
         let fit = free_fit(recording, within, &fit.poles[fit.inside..])?;
         let besides: Vec<Pole> = low.into_iter().chain(unpaired).collect();
         let fit = with_expected(recording, fit, &besides, &all);
-        let mut told = fit.told(recording)?;
-        let below = alone.misfit.len() - told.misfit.len();
-        (told.lowest, told.outline.grid) = (alone.lowest, alone.outline.grid);
-        told.misfit.splice(..0, alone.misfit[..below].iter().copied());
-        Some(told)
+        let mut modes = fit.recorded_modes(recording)?;
+        let below = alone.misfit.len() - modes.misfit.len();
+        (modes.lowest, modes.outline.grid) = (alone.lowest, alone.outline.grid);
+        modes.misfit.splice(..0, alone.misfit[..below].iter().copied());
+        Some(modes)
     }
 
     /// These modes as a model that is calibrated on a `baseline` should have them: what the baseline's modes differ by from those of the model
@@ -262,7 +262,7 @@ impl RecordedModes {
             let frfs = above.frfs.of_frfs(|frf| frf == index)?;
             let weights = above.weights.get(index * n..(index + 1) * n)?;
             let alone = Recording { frfs: &frfs, weights };
-            FreeFit::converged(alone, poles.clone(), outside, *terms)?.told(alone)
+            FreeFit::converged(alone, poles.clone(), outside, *terms)?.recorded_modes(alone)
         };
         (0..recording.frfs.pairs().len()).map(of).collect()
     }

@@ -36,6 +36,7 @@ pub struct ResidualTerms {
 
 /// Modes of a set of FRFs.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct ModalAnalysis {
     /// The modes in the band, by ascending frequency.
     pub modes: Vec<Mode>,
@@ -194,12 +195,12 @@ fn in_use(frfs: &FrfSet, options: &ModesOptions) -> Result<(Observed, FrfSet), M
 fn orders(observed: &Observed, options: &ModesOptions) -> Result<(usize, usize), ModesError> {
     let p = observed.grid.columns;
     // As many equations as unknowns of a row's denominator and numerator.
-    let told = (observed.lines() * observed.grid.rows.len() * p)
+    let determined = (observed.lines() * observed.grid.rows.len() * p)
         .saturating_sub(1)
         .div_euclid(p * p + observed.grid.rows.len() * p)
         .max(1)
         .min(observed.lines().saturating_sub(2).max(1));
-    let most = told.min((MOST_POLES / p).max(1));
+    let most = determined.min((MOST_POLES / p).max(1));
     match options.orders {
         Some((from, to)) if to < from + FEWEST_ORDERS - 1 && options.pick.is_empty() => {
             Err(ModesError::FewOrders { from, to, needed: FEWEST_ORDERS })

@@ -2,6 +2,7 @@ use jointscope_spectra::in_text;
 
 /// Why no modes can be told.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum ModesError {
     /// The band holds too few lines.
     #[error(

@@ -9,6 +9,7 @@ use crate::selection::{is_inside, worth};
 
 /// A mode, with the standard deviations of its numbers.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Mode {
     /// Natural frequency |λ|/2π, Hz.
     pub frequency: f64,

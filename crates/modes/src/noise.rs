@@ -4,6 +4,7 @@
 //! decide on the damping ratio. Once the modes are known, their residuals tell the noise better: a floor S that varies slowly, and a share N of |H|² (noise of the force, and of
 //! everything that moves with it) that is told by all resonances within a wide window together.
 
+use jointscope_spectra::median;
 use num_complex::Complex64;
 
 use crate::likelihood::{Likelihood, Poles, Prior};
@@ -137,10 +138,10 @@ impl Fit {
     fn begun(left: &Left) -> Self {
         let n = left.squares.len();
         let largest = left.size.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
-        let share = median((0..n).map(|i| left.squares[i] / left.size[i].max(1e-30 * largest)));
+        let share = mean_by_median((0..n).map(|i| left.squares[i] / left.size[i].max(1e-30 * largest)));
         let floors: Vec<f64> = (0..n)
             .step_by(FLOOR_WINDOW)
-            .map(|i| median(window(i, FLOOR_WINDOW, n).map(|k| left.squares[k])))
+            .map(|i| mean_by_median(window(i, FLOOR_WINDOW, n).map(|k| left.squares[k])))
             .collect();
         let variance = (0..n).map(|i| floors[i / FLOOR_WINDOW] + share * left.size[i]).collect();
         Fit { floor: vec![0.0; n], variance, largest }
@@ -182,13 +183,9 @@ impl Fit {
     }
 }
 
-fn median(values: impl Iterator<Item = f64>) -> f64 {
-    let mut all: Vec<f64> = values.collect();
-    let middle = all.len() / 2;
-    if all.is_empty() {
-        return 0.0;
-    }
-    *all.select_nth_unstable_by(middle, f64::total_cmp).1 / std::f64::consts::LN_2
+/// The mean of exponential numbers, such as squares of a complex normal, by their median, which is ln 2 of it; zero of none.
+fn mean_by_median(values: impl Iterator<Item = f64>) -> f64 {
+    median(&mut values.collect::<Vec<f64>>()).map_or(0.0, |median| median / std::f64::consts::LN_2)
 }
 
 /// Sums over ranges by one subtraction.

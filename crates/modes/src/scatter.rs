@@ -39,7 +39,7 @@ pub(crate) const HELD: (f64, f64) = (3.0, 1.5);
 /// An FRF counts where it knows its pole to this share of a half-width and this one of σ.
 const KNOWN: (f64, f64) = (0.3, 0.25);
 /// Standard deviations by which the FRFs' differences must exceed their noise.
-const CERTAIN: f64 = 5.0;
+const BEYOND_NOISE: f64 = 5.0;
 /// A drift of less than this share of the half-width is left to the noise.
 const MOVED: f64 = 0.02;
 /// Steps of each FRF's own search.
@@ -158,7 +158,7 @@ impl Heterogeneity {
             mean,
             mean_variance: 1.0 / weights,
             between,
-            certain: q > degrees + CERTAIN * (2.0 * degrees).sqrt(),
+            certain: q > degrees + BEYOND_NOISE * (2.0 * degrees).sqrt(),
         }
     }
 

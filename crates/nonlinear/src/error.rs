@@ -3,6 +3,7 @@ use jointscope_lumped::LumpedError;
 
 /// Why a channel cannot be read or struck.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum ChannelError {
     /// It names a point that the fixture does not have.
     #[error("the fixture has no point `{point}` (it has {known})")]
@@ -19,6 +20,7 @@ pub enum ChannelError {
 
 /// Why motion over time cannot be computed.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum SimulationError {
     /// The assembly cannot be modelled over time.
     #[error(transparent)]
@@ -61,6 +63,7 @@ pub enum SimulationError {
 
 /// Why hits cannot be diagnosed.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum DiagnoseError {
     /// No hits.
     #[error("there are no hits: time histories of force and response are needed")]
@@ -115,6 +118,7 @@ pub enum DiagnoseError {
 
 /// Why FRFs at several levels cannot be diagnosed.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum SteppedError {
     /// Fewer than two levels.
     #[error("there is one level only: give FRFs at two or more amplitudes")]
@@ -160,6 +164,7 @@ pub enum SteppedError {
 
 /// Why the force–state map of a joint, named first, cannot be drawn.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum ForceStateError {
     /// The fixture does not have the joint.
     #[error("the fixture has no joint `{0}`")]

@@ -1,3 +1,4 @@
+use jointscope_decomposition::{DecompositionError, SeveralError};
 use jointscope_diagnosis::DiagnosisError;
 use jointscope_estimation::EstimateError;
 use jointscope_fixture::FixtureError;
@@ -65,6 +66,20 @@ pub enum Error {
     /// The FRFs cannot be diagnosed.
     #[error("{0}{remedy}", remedy = remedy_of_diagnosis(.0))]
     Linear(#[from] DiagnosisError),
+    /// The joint cannot be found.
+    #[error(transparent)]
+    Decomposition(#[from] DecompositionError),
+    /// The joints cannot be found at once.
+    #[error(transparent)]
+    Joints(#[from] SeveralError),
+    /// Several joints, where an answer holds one.
+    #[error(
+        "has {count} joints, and a row of the table holds one: choose it with `--joint`, or decompose this case by itself"
+    )]
+    SeveralJoints {
+        /// Joints of the fixture.
+        count: usize,
+    },
     /// The fixture cannot have the window or the effects found beside its own.
     #[error(transparent)]
     Fixture(#[from] FixtureError),
@@ -87,8 +102,14 @@ impl Error {
         match self {
             Error::Fixture(_)
             | Error::Implausible(_)
+            | Error::SeveralJoints { .. }
+            | Error::Decomposition(DecompositionError::Sides(_) | DecompositionError::Model(_))
             | Error::Stepped(SteppedError::Model(_))
             | Error::Linear(DiagnosisError::Model(_)) => Concern::Fixture,
+            Error::Joints(
+                SeveralError::NothingRecorded | SeveralError::Noise(_) | SeveralError::Undetermined { .. },
+            ) => Concern::Recording,
+            Error::Joints(_) => Concern::Fixture,
             Error::Estimate(EstimateError::Window { .. }) => Concern::Options,
             _ => Concern::Recording,
         }

@@ -93,11 +93,16 @@ impl MeasuredFrfs {
     /// # Errors
     /// A window that the fixture cannot have beside its own effects.
     pub fn as_recorded(&self, fixture: &Fixture) -> Result<Fixture, FixtureError> {
-        if self.window_decay == 0.0 {
+        Self::under_window(fixture, self.window_decay)
+    }
+
+    /// `fixture` under an exponential window of this decay, 1/s; 0 without one.
+    pub(crate) fn under_window(fixture: &Fixture, decay: f64) -> Result<Fixture, FixtureError> {
+        if decay == 0.0 {
             return Ok(fixture.clone());
         }
         let mut physics = fixture.physics().to_vec();
-        physics.push(Effect::new(EffectKind::ExponentialWindow, Place::All, None, &[self.window_decay]));
+        physics.push(Effect::new(EffectKind::ExponentialWindow, Place::All, None, &[decay]));
         fixture.clone().with_physics(physics)
     }
 }

@@ -1,4 +1,4 @@
-//! One route from a test to what the fixture leaves out. The program, the facade and `prove` all take it, so that what is scored is what is used.
+//! One route from a test to what the fixture leaves out, and one to its joints. The program, the facade and `prove` all take them, so that what is scored is what is used.
 //!
 //! ```text
 //! recording              homogeneity                         answer
@@ -17,6 +17,7 @@
 //! * [`Measurement`]: what a test recorded, read from universal files;
 //! * [`MeasuredFrfs`]: its FRFs at one level, recorded as such or estimated from its hits ([`HammerTest`]), for analyses of their own;
 //! * [`diagnose`] with [`Options`]: the route above;
+//! * [`decompose`]: the way to the joint in a measurement, or to all joints ([`Decomposition`]);
 //! * [`Answer`]: which way it went ([`Outcome`]), the refitted and the repaired fixture, notes for the reader;
 //! * [`measured_damping`]: a fixture with the damping ratios of measured modes.
 //!
@@ -45,6 +46,7 @@
 //! ```
 
 mod answer;
+mod decompose;
 mod error;
 mod frfs;
 mod hammer_test;
@@ -55,6 +57,7 @@ mod modal_damping;
 mod route;
 
 pub use answer::{Answer, Outcome};
+pub use decompose::{DecomposeOptions, Decomposition, Joints, decompose};
 pub use error::{Concern, Error, MeasurementError};
 pub use frfs::MeasuredFrfs;
 pub use hammer_test::HammerTest;

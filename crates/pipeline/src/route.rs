@@ -137,9 +137,9 @@ pub fn diagnose(
     let frfs = &measured.frfs;
     options.check(frfs)?;
     progress(Progress::Searching { frfs: frfs.pairs().len(), lines: frfs.lines().len() });
-    let told = |step: Step| progress(Progress::Searched(step));
+    let step_taken = |step: Step| progress(Progress::Searched(step));
     let searched = with_idle_points_exact(fixture.clone(), frfs.pairs());
     let asked = DiagnosisOptions { estimated: measured.hammer_test.is_some(), ..options.diagnosis.clone() };
-    let diagnosis = Diagnosis::watched(&searched, frfs, &asked, Watch::by(&told))?;
+    let diagnosis = Diagnosis::watched(&searched, frfs, &asked, Watch::by(&step_taken))?;
     Answer::linear(fixture, diagnosis, homogeneity, measured)
 }

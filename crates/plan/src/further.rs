@@ -42,7 +42,7 @@ pub fn weighed_by(
         lines: observation.lines().clone(),
         noise: ExpectedNoise::of(observation),
         inflation: names.inflation,
-        softening: None,
+        model_error: None,
     };
     let names = names.informed(&scene, observation)?;
     let (state, observation) = (known(further.0), further.1);

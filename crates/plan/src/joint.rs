@@ -14,6 +14,7 @@ use crate::suggestion::{ExpectedInterval, Suggestion};
 use crate::{PlanError, says};
 use jointscope_diagnosis::{Fit, Hypothesis, Observation};
 use jointscope_fixture::{Fixture, Joint, JointLaw, QuantityKey};
+use jointscope_inference::Z95;
 use jointscope_linalg::Cholesky;
 use jointscope_lumped::nominal_stiffness;
 use jointscope_spectra::{FrfPair, SpectralLines};
@@ -21,8 +22,6 @@ use rayon::prelude::*;
 use serde_json::{Value, json};
 use std::str::FromStr;
 
-/// Half of a 95 % interval in standard deviations.
-const QUANTILE: f64 = 1.96;
 /// Noise of a test that nobody has made: shares of |H| and of its root mean square, as standard deviations of the average.
 const ASSUMED: (f64, f64) = (3e-3, 3e-3);
 /// Share of the present interval that a measurement must leave out to be worth being told.
@@ -146,7 +145,8 @@ impl Plan {
                 (nominal, (*lines).clone(), ExpectedNoise::assumed(lines.len(), ASSUMED.0, ASSUMED.1), 1.0)
             }
         };
-        let scene = Scene { fixture: freed, exact: options.exact, lines, noise, inflation, softening: None };
+        let scene =
+            Scene { fixture: freed, exact: options.exact, lines, noise, inflation, model_error: None };
         Joints { scene: &scene, hypothesis: &hypothesis, start, wanted }.plan(&points)
     }
 }
@@ -161,7 +161,7 @@ struct Joints<'a> {
 /// A candidate, what it tells of the coordinates of its hypothesis, and what is known of them beforehand.
 struct Candidate {
     measure: Measure,
-    told: Vec<f64>,
+    information: Vec<f64>,
     known: Option<(Hypothesis, Vec<f64>)>,
 }
 
@@ -190,11 +190,11 @@ impl Joints<'_> {
             for frf in measure.frfs() {
                 frfs.iter().position(|own| *own == frf).into_iter().for_each(|at| sum.add(&by_frf[at]));
             }
-            all.push(Candidate { measure, told: sum.information(0), known: None });
+            all.push(Candidate { measure, information: sum.information(0), known: None });
         }
         if let (Some(again), averages @ Measure::Averages { times }) = (&again, candidates::averages()) {
-            let told = again.iter().map(|entry| f64::from(times - 1) * entry).collect();
-            all.push(Candidate { measure: averages, told, known: None });
+            let information = again.iter().map(|entry| f64::from(times - 1) * entry).collect();
+            all.push(Candidate { measure: averages, information, known: None });
         }
         all.extend(candidates::quantities(self.hypothesis).into_iter().filter_map(|m| self.of_quantity(m)));
         if !present.is_empty() {
@@ -210,7 +210,7 @@ impl Joints<'_> {
             .filter_map(|candidate| {
                 let (hypothesis, known) =
                     candidate.known.as_ref().map_or((self.hypothesis, &known), |(h, known)| (h, known));
-                Some((self.interval(hypothesis, &added(known, &candidate.told))?, candidate))
+                Some((self.interval(hypothesis, &added(known, &candidate.information))?, candidate))
             })
             .collect();
         ranked.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -226,7 +226,7 @@ impl Joints<'_> {
         let suggestions: Vec<Suggestion> = match reached_now {
             true => Vec::new(),
             false => {
-                let mut told: Vec<(f64, &Candidate)> =
+                let mut ranked: Vec<(f64, &Candidate)> =
                     ranked.iter().filter(|(interval, _)| at_most(*interval)).copied().collect();
                 // Of what reaches the interval the least effort; of the rest the narrowest.
                 let effort = |candidate: &Candidate| candidate.measure.effort(present.len());
@@ -235,8 +235,9 @@ impl Joints<'_> {
                         true => (0.0, effort(candidate), *interval),
                         false => (1.0, *interval, 0.0),
                     };
-                told.sort_by(|a, b| key(a).partial_cmp(&key(b)).unwrap_or(std::cmp::Ordering::Equal));
-                told.into_iter()
+                ranked.sort_by(|a, b| key(a).partial_cmp(&key(b)).unwrap_or(std::cmp::Ordering::Equal));
+                ranked
+                    .into_iter()
                     .map(|(then, candidate)| {
                         self.suggestion(&candidate.measure, now, then, effort(candidate))
                     })
@@ -323,7 +324,7 @@ impl Joints<'_> {
         factor.solve_lower_in_place(&mut unit);
         let std = unit.iter().map(|u| u * u).sum::<f64>().sqrt();
         let slope = hypothesis.parameters()[index].transform.slope(hypothesis.ended_at(index));
-        Some(QUANTILE * std * slope.abs()).filter(|interval| interval.is_finite())
+        Some(Z95 * std * slope.abs()).filter(|interval| interval.is_finite())
     }
 
     fn suggestion(&self, measure: &Measure, now: Option<f64>, then: f64, effort: f64) -> Suggestion {
@@ -357,9 +358,9 @@ impl Joints<'_> {
         let at = self.hypothesis.tolerances().iter().position(|t| t.quantity.path == *path)?;
         let slope = self.hypothesis.parameters()[at].transform.slope(self.hypothesis.ended_at(at));
         let count = self.hypothesis.parameters().len();
-        let mut told = vec![0.0; count * count];
-        told[at * count + at] = (slope / std).powi(2);
-        Some(Candidate { measure, told, known: None })
+        let mut information = vec![0.0; count * count];
+        information[at * count + at] = (slope / std).powi(2);
+        Some(Candidate { measure, information, known: None })
     }
 
     fn of_change(&self, measure: Measure, present: &[FrfPair], known: &[f64]) -> Option<Candidate> {
@@ -369,7 +370,7 @@ impl Joints<'_> {
         let mut sum = Products::none(&by_frf.first()?.widths);
         by_frf.iter().for_each(|own| sum.add(own));
         let carried = carried(known, self.hypothesis, &hypothesis);
-        Some(Candidate { measure, told: sum.information(0), known: Some((hypothesis, carried)) })
+        Some(Candidate { measure, information: sum.information(0), known: Some((hypothesis, carried)) })
     }
 
     /// The best first, then the best beside that, until the interval is as narrow as wanted: of single FRFs and quantities.
@@ -382,12 +383,12 @@ impl Joints<'_> {
         let mut interval = f64::INFINITY;
         while chosen.len() < TOGETHER && !self.wanted.reached(interval, self.value()) {
             let with = |(place, candidate): (usize, &&Candidate)| {
-                Some((self.interval(self.hypothesis, &added(&known, &candidate.told))?, place))
+                Some((self.interval(self.hypothesis, &added(&known, &candidate.information))?, place))
             };
             let best = left.iter().enumerate().filter_map(with).min_by(|a, b| a.0.total_cmp(&b.0));
             let (narrowest, place) = best.filter(|(narrowest, _)| *narrowest < (1.0 - WORTH) * interval)?;
             let candidate = left.swap_remove(place);
-            known = added(&known, &candidate.told);
+            known = added(&known, &candidate.information);
             chosen.push(candidate.measure.to_string());
             interval = narrowest;
         }
@@ -395,8 +396,8 @@ impl Joints<'_> {
     }
 }
 
-fn added(known: &[f64], told: &[f64]) -> Vec<f64> {
-    known.iter().zip(told).map(|(known, told)| known + told).collect()
+fn added(known: &[f64], information: &[f64]) -> Vec<f64> {
+    known.iter().zip(information).map(|(known, information)| known + information).collect()
 }
 
 /// The fixture with the elements of a joint free, those that are zero apart.

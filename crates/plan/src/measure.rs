@@ -86,7 +86,7 @@ impl Measure {
     }
 
     /// Whether another structure is measured.
-    pub fn changes_the_structure(&self) -> bool {
+    pub(crate) fn changes_the_structure(&self) -> bool {
         matches!(self, Measure::AddedMass { .. } | Measure::HungFreely)
     }
 

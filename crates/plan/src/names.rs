@@ -171,13 +171,13 @@ impl Names {
 
     /// Takes what the present measurement tells of every name's coordinates.
     pub fn informed(mut self, scene: &Scene, observation: &Observation) -> Result<Self, PlanError> {
-        let told = |name: &mut Name| {
+        let predict = |name: &mut Name| {
             let products = scene.products_of(std::slice::from_ref(&name.hypothesis), observation)?;
             name.information = with_priors(&name.hypothesis, products.information(0));
             Some(())
         };
         for name in &mut self.names {
-            told(name).ok_or_else(|| PlanError::NotComparable(effect_name(&name.effect)))?;
+            predict(name).ok_or_else(|| PlanError::NotComparable(effect_name(&name.effect)))?;
         }
         Ok(self)
     }

@@ -4,12 +4,12 @@ use crate::candidates;
 use crate::error::PlanError;
 use crate::expected_noise::ExpectedNoise;
 use crate::measure::Measure;
+use crate::model_error::ModelErrorNoise;
 use crate::names::{Names, Remaining};
 use crate::products::Products;
 use crate::rivals::{Outlook, Rivals, SURE};
 use crate::says;
 use crate::scene::Scene;
-use crate::softening::Softening;
 use crate::suggestion::Suggestion;
 use jointscope_diagnosis::{Hypothesis, Observation};
 use jointscope_fixture::{Effect, Fixture, Place};
@@ -96,9 +96,10 @@ impl Plan {
         let points = candidates::points(fixture, &options.points, present)?;
         let fixture = candidates::with_idle_points_exact(fixture.clone(), &points, present);
         let model = remaining.repaired.in_fixture(&fixture, options.exact);
-        let softening = remaining.model_error.map(|error| Softening::of(&error, &model, observation));
-        let softened = softening.and_then(|softening| softening.softened(&model, observation));
-        let observation = softened.as_ref().unwrap_or(observation);
+        let model_error = remaining.model_error.map(|error| ModelErrorNoise::of(&error, &model, observation));
+        let with_model_error =
+            model_error.and_then(|model_error| model_error.with_model_error(&model, observation));
+        let observation = with_model_error.as_ref().unwrap_or(observation);
         let names = Names::fitted(remaining, observation, &fixture, options.exact)?;
         let scene = Scene {
             fixture,
@@ -106,7 +107,7 @@ impl Plan {
             lines: observation.lines().clone(),
             noise: ExpectedNoise::of(&remaining.observation),
             inflation: names.inflation,
-            softening,
+            model_error,
         };
         let names = names.informed(&scene, observation)?;
         let judge = Judge { scene: &scene, names: &names, observation, hypotheses: names.hypotheses() };
@@ -195,7 +196,7 @@ impl Judge<'_> {
             remarks: says::sure_already(&names)
                 .into_iter()
                 .chain(self.names.added.then(says::added_names))
-                .chain(says::remarks(&suggestions, self.names.inflation, self.scene.softening.is_some()))
+                .chain(says::remarks(&suggestions, self.names.inflation, self.scene.model_error.is_some()))
                 .collect(),
             recorded: present.to_vec(),
             suggestions,
@@ -250,8 +251,8 @@ impl Judge<'_> {
             .collect();
         let mut best: Vec<usize> = Vec::new();
         for (i, j) in (0..count).flat_map(|i| (0..count).map(move |j| (i, j))).filter(|(i, j)| i != j) {
-            let told = |at: &usize| single[*at].2.divergence(i, j);
-            let most = (0..single.len()).max_by(|a, b| told(a).total_cmp(&told(b)));
+            let divergence = |at: &usize| single[*at].2.divergence(i, j);
+            let most = (0..single.len()).max_by(|a, b| divergence(a).total_cmp(&divergence(b)));
             best.extend(most.filter(|at| !best.contains(at)));
         }
         best.truncate(COMBINED);
@@ -343,7 +344,7 @@ impl Judge<'_> {
         let label = |i: usize| effect_name(&self.names.names[i].effect);
         let count = self.names.names.len();
         let all = (0..count).flat_map(|i| (i + 1..count).map(move |j| (i, j)));
-        all.filter(|&(i, j)| holds(outlook.told_apart[i][j])).map(|(i, j)| [label(i), label(j)]).collect()
+        all.filter(|&(i, j)| holds(outlook.separated[i][j])).map(|(i, j)| [label(i), label(j)]).collect()
     }
 }
 

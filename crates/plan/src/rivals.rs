@@ -13,14 +13,14 @@
 //! of its χ² and priors, as the diagnosis weighs names.
 
 use crate::products::Products;
-use jointscope_linalg::{Cholesky, semidefinite_factor};
+use jointscope_linalg::{Cholesky, normal_pair, semidefinite_factor};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
 /// Draws of a measurement by each name.
 const DRAWS: usize = 400;
-/// Probability from which a name is sure.
-pub(crate) const SURE: f64 = 0.9;
+/// Probability from which a name is sure, and a promise counts as one.
+pub const SURE: f64 = 0.9;
 /// Share of the largest pivot below which a column adds nothing but rounding.
 const ROUNDING: f64 = 1e-12;
 
@@ -39,7 +39,7 @@ pub(crate) struct Outlook {
     /// Probability that the true name is sure thereafter.
     pub sure: f64,
     /// Probability by pair that the true one of the two is at least so many times as probable as the other as sure is to unsure.
-    pub told_apart: Vec<Vec<f64>>,
+    pub separated: Vec<Vec<f64>>,
 }
 
 impl Rivals {
@@ -107,7 +107,7 @@ impl Rivals {
             .map(|i| (0..count).map(|j| if i == j { 0.0 } else { self.divergence(i, j) }).collect())
             .collect();
         let mut sure = 0.0;
-        let mut told_apart = vec![vec![0.0; count]; count];
+        let mut separated = vec![vec![0.0; count]; count];
         let total: f64 = weights.iter().sum();
         let noise = semidefinite_factor(self.products.order(), &self.products.entries, ROUNDING);
         for truth in 0..count {
@@ -123,14 +123,13 @@ impl Rivals {
                 sure += if 1.0 / all >= SURE { share } else { 0.0 };
                 for j in (0..count).filter(|j| *j != truth) {
                     let apart = after[j] <= (1.0 - SURE) / SURE;
-                    told_apart[truth][j] += if apart { 1.0 / DRAWS as f64 } else { 0.0 };
+                    separated[truth][j] += if apart { 1.0 / DRAWS as f64 } else { 0.0 };
                 }
             }
         }
-        let both =
-            |i: usize, j: usize| if i == j { 0.0 } else { f64::min(told_apart[i][j], told_apart[j][i]) };
-        let told_apart = (0..count).map(|i| (0..count).map(|j| both(i, j)).collect()).collect();
-        Outlook { divergence, sure, told_apart }
+        let both = |i: usize, j: usize| if i == j { 0.0 } else { f64::min(separated[i][j], separated[j][i]) };
+        let separated = (0..count).map(|i| (0..count).map(|j| both(i, j)).collect()).collect();
+        Outlook { divergence, sure, separated }
     }
 
     /// (y − m_j)ᵀS_j⁻¹(y − m_j) of every name, less yᵀy, for a measurement y drawn by the name `truth`.
@@ -161,16 +160,9 @@ impl Rivals {
     }
 }
 
-/// A standard normal number, by the polar method.
+/// A standard normal number.
 fn normal(random: &mut ChaCha8Rng) -> f64 {
-    let unit = |random: &mut ChaCha8Rng| (random.next_u64() >> 11) as f64 / (1u64 << 53) as f64;
-    loop {
-        let (u, v) = (2.0 * unit(random) - 1.0, 2.0 * unit(random) - 1.0);
-        let square = u * u + v * v;
-        if square > 0.0 && square < 1.0 {
-            return u * (-2.0 * square.ln() / square).sqrt();
-        }
-    }
+    normal_pair(|| (random.next_u64() >> 11) as f64 / (1u64 << 53) as f64).0
 }
 
 #[cfg(test)]
@@ -202,7 +194,7 @@ mod tests {
             assert!((outlook.divergence[0][1] - d * d / 2.0).abs() < 1e-12);
             let expected = normal_cdf((d * d / 2.0 - 9f64.ln()) / d);
             assert!((outlook.sure - expected).abs() < 0.05, "d = {d}: {} for {expected}", outlook.sure);
-            assert!((outlook.told_apart[0][1] - expected).abs() < 0.08);
+            assert!((outlook.separated[0][1] - expected).abs() < 0.08);
         }
     }
 

@@ -3,18 +3,9 @@
 use crate::measure::Measure;
 use crate::plan::NameNow;
 use crate::rivals::SURE;
-use crate::suggestion::{ExpectedInterval, Suggestion};
+use crate::suggestion::{BEYOND_DOUBT, ExpectedInterval, Suggestion};
 use jointscope_spectra::FrfPair;
-use jointscope_wording::effect_name;
-
-/// `a`, `a and b`, `a, b and c`.
-fn listed(items: &[String]) -> String {
-    match items {
-        [] => String::new(),
-        [only] => only.clone(),
-        [most @ .., last] => format!("{} and {last}", most.join(", ")),
-    }
-}
+use jointscope_wording::{effect_name, listed};
 
 pub(crate) fn percent(share: f64) -> String {
     format!("{:.0} %", 100.0 * share)
@@ -37,9 +28,6 @@ pub(crate) fn three(value: f64) -> String {
         _ => format!("{value:.2e}"),
     }
 }
-
-/// Odds beyond which no figure means anything: linear predictions do not reach so far.
-const BEYOND_DOUBT: f64 = 100.0;
 
 /// ln of odds, nats.
 pub(crate) fn nats(value: f64) -> String {
@@ -98,7 +86,7 @@ pub(crate) fn of_names(
     names: usize,
 ) -> String {
     let pairs = names * (names - 1) / 2;
-    let told = match separates.len() {
+    let separated = match separates.len() {
         0 => String::new(),
         _ if names == 2 => String::new(),
         all if all == pairs => "; it tells every two of the names apart".to_owned(),
@@ -108,7 +96,7 @@ pub(crate) fn of_names(
         }
     };
     format!(
-        "{}. With a probability of {} one name then has 90 % or more; ln of the odds against its nearest rival grows by {} on average{told}.",
+        "{}. With a probability of {} one name then has 90 % or more; ln of the odds against its nearest rival grows by {} on average{separated}.",
         to_do(measure),
         probability(sure),
         nats(expected)
@@ -160,9 +148,9 @@ pub(crate) fn sure_already(names: &[NameNow]) -> Option<String> {
     ))
 }
 
-pub(crate) fn remarks(suggestions: &[Suggestion], inflation: f64, softened: bool) -> Vec<String> {
+pub(crate) fn remarks(suggestions: &[Suggestion], inflation: f64, with_model_error: bool) -> Vec<String> {
     let mut all = Vec::new();
-    if softened {
+    if with_model_error {
         all.push(
             "The names were weighed by modes, with an error of the model: that counts as noise of every measurement to come. Promises are rough then, and unproved"
                 .to_owned(),

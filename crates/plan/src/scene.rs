@@ -1,8 +1,8 @@
 //! What a test of the structure would record: predictions of names on the lines and with the noise of a measurement to come.
 
 use crate::expected_noise::ExpectedNoise;
+use crate::model_error::ModelErrorNoise;
 use crate::products::{Predicted, Products};
-use crate::softening::Softening;
 use jointscope_diagnosis::{Hypothesis, Linearisation, Observation};
 use jointscope_fixture::Fixture;
 use jointscope_spectra::{FrfForm, FrfPair, FrfSet, SpectralLines};
@@ -24,7 +24,7 @@ pub(crate) struct Scene {
     /// Variance inflation: what the residuals of the present measurement show beyond their noise, those to come will show too.
     pub inflation: f64,
     /// What an error of the model adds, where names were weighed with one.
-    pub softening: Option<Softening>,
+    pub model_error: Option<ModelErrorNoise>,
 }
 
 impl Scene {
@@ -44,10 +44,10 @@ impl Scene {
         let frfs = frfs.with_variance(vec![1.0; pairs.len() * count]).ok()?;
         let observation = Observation::new(&frfs, |_| true).ok()?;
         let predicted = predicted(names, &observation)?;
-        let more = match &self.softening {
-            Some(softening) => {
+        let more = match &self.model_error {
+            Some(model_error) => {
                 let (first, values) = (names.first()?, &predicted.first()?.values);
-                softening.variance(first, pairs, observation.lines(), values)?
+                model_error.variance(first, pairs, observation.lines(), values)?
             }
             None => vec![0.0; pairs.len() * count],
         };

@@ -1,5 +1,9 @@
 use crate::measure::Measure;
+use crate::rivals::SURE;
 use serde::Serialize;
+
+/// ln of odds, nats, beyond which no figure means anything: linear predictions do not reach so far.
+pub const BEYOND_DOUBT: f64 = 100.0;
 
 /// One measurement and what it would bring.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -28,6 +32,14 @@ pub struct Suggestion {
     pub effort: f64,
     /// All of it in a sentence.
     pub says: String,
+}
+
+impl Suggestion {
+    /// Whether it promises what the plan is for: one name sure thereafter, or an interval as narrow as wanted.
+    pub fn is_promising(&self) -> bool {
+        let reaches = self.interval.as_ref().is_some_and(|interval| interval.reaches);
+        reaches || self.sure.is_some_and(|sure| sure >= SURE)
+    }
 }
 
 /// An interval of a joint's element that a measurement would leave.

@@ -58,6 +58,7 @@ pub struct Answer {
 
 /// Why there is no answer.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum NoAnswer {
     /// The diagnosis refused.
     #[error(transparent)]

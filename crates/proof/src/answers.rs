@@ -39,10 +39,10 @@ impl<A: Reply + Send> Answers<A> {
     pub fn by<R: Sync>(
         cases: &[Case<R>],
         threads: usize,
-        told: impl Fn(usize) + Sync,
+        progress: impl Fn(usize) + Sync,
         answer: impl Fn(&Case<R>) -> Result<A, NoAnswer> + Sync,
     ) -> Self {
-        Self::collected(on_workers(cases, threads, told, |case| {
+        Self::collected(on_workers(cases, threads, progress, |case| {
             let start = Instant::now();
             let answer = catch_unwind(AssertUnwindSafe(|| answer(case))).unwrap_or(Err(NoAnswer::BrokeDown));
             (answer, start.elapsed().as_secs_f64())
@@ -89,7 +89,7 @@ impl<A: Reply + Send> Answers<A> {
 pub(crate) fn on_workers<T: Sync, U: Send>(
     items: &[T],
     threads: usize,
-    told: impl Fn(usize) + Sync,
+    progress: impl Fn(usize) + Sync,
     work: impl Fn(&T) -> U + Sync,
 ) -> Vec<Option<U>> {
     let results: Vec<Mutex<Option<U>>> = items.iter().map(|_| Mutex::new(None)).collect();
@@ -105,7 +105,7 @@ pub(crate) fn on_workers<T: Sync, U: Send>(
             if let Ok(mut slot) = results[index].lock() {
                 *slot = Some(result);
             }
-            told(done.fetch_add(1, Ordering::Relaxed) + 1);
+            progress(done.fetch_add(1, Ordering::Relaxed) + 1);
         }
     };
     std::thread::scope(|scope| {

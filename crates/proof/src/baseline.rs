@@ -46,7 +46,7 @@ impl Baseline {
     }
 
     /// Of all cases, on `threads` workers.
-    pub fn all(cases: &[Case], threads: usize, told: impl Fn(usize) + Sync) -> Vec<Option<Self>> {
-        on_workers(cases, threads, told, Baseline::of).into_iter().map(Option::flatten).collect()
+    pub fn all(cases: &[Case], threads: usize, progress: impl Fn(usize) + Sync) -> Vec<Option<Self>> {
+        on_workers(cases, threads, progress, Baseline::of).into_iter().map(Option::flatten).collect()
     }
 }

@@ -54,11 +54,11 @@ impl Serialize for CaseLine {
 
 /// Findings with their probabilities, each with a mark before its name.
 pub(crate) fn marked(findings: &[Found], mark: impl Fn(&Found) -> &'static str) -> String {
-    let told = findings
+    let listed = findings
         .iter()
         .map(|found| format!("{}{} ({:.2})", mark(found), Name::of(&found.effect), found.probability));
-    let told: Vec<String> = told.collect();
-    if told.is_empty() { "nothing".to_owned() } else { told.join(", ") }
+    let listed: Vec<String> = listed.collect();
+    if listed.is_empty() { "nothing".to_owned() } else { listed.join(", ") }
 }
 
 /// Findings with their parameters and alternatives, a line each.

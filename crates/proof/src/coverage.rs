@@ -1,11 +1,10 @@
 //! How often stated intervals hold the true parameter, at every level, and how wide they are.
 
 use crate::{Judged, Name, Share};
+use jointscope_inference::Z95;
 use serde::{Serialize, Serializer};
 use serde_json::json;
 
-/// Half of a 95 % interval in standard deviations.
-const HALF: f64 = 1.96;
 /// Levels with the half widths, in standard deviations, of their intervals.
 const LEVELS: [(f64, f64); 9] = [
     (0.2, 0.2533),
@@ -15,7 +14,7 @@ const LEVELS: [(f64, f64); 9] = [
     (0.7, 1.0364),
     (0.8, 1.2816),
     (0.9, 1.6449),
-    (0.95, 1.96),
+    (0.95, Z95),
     (0.99, 2.5758),
 ];
 
@@ -49,7 +48,7 @@ impl Coverage {
                     let stated = found.intervals.get(parameter).copied().flatten();
                     intervals.push(Interval {
                         holds: stated.is_some_and(|[low, high]| (low..=high).contains(&truth)),
-                        width: stated.map(|[low, high]| (high - low) / (2.0 * HALF * bound)),
+                        width: stated.map(|[low, high]| (high - low) / (2.0 * Z95 * bound)),
                         deviation: stated.map(|interval| deviation(truth, estimate, interval)),
                     });
                 }
@@ -89,9 +88,9 @@ fn deviation(truth: f64, estimate: f64, [low, high]: [f64; 2]) -> f64 {
     let about_the_middle = 0.5 * (low + high);
     let even = (estimate - about_the_middle).abs() <= 1e-6 * (high - low);
     if even || low <= 0.0 || truth <= 0.0 {
-        return (truth - estimate) / ((high - low) / (2.0 * HALF));
+        return (truth - estimate) / ((high - low) / (2.0 * Z95));
     }
-    (truth / estimate).ln() / ((high / low).ln() / (2.0 * HALF))
+    (truth / estimate).ln() / ((high / low).ln() / (2.0 * Z95))
 }
 
 #[cfg(test)]
@@ -100,8 +99,8 @@ mod tests {
 
     #[test]
     fn a_truth_at_the_end_of_an_interval_is_1_96_deviations_off() {
-        assert!((deviation(12.0, 10.0, [8.0, 12.0]) - HALF).abs() < 1e-12);
-        assert!((deviation(5.0, 10.0, [5.0, 20.0]) + HALF).abs() < 1e-12);
-        assert!((deviation(-12.0, -10.0, [-12.0, -8.0]) + HALF).abs() < 1e-12);
+        assert!((deviation(12.0, 10.0, [8.0, 12.0]) - Z95).abs() < 1e-12);
+        assert!((deviation(5.0, 10.0, [5.0, 20.0]) + Z95).abs() < 1e-12);
+        assert!((deviation(-12.0, -10.0, [-12.0, -8.0]) + Z95).abs() < 1e-12);
     }
 }

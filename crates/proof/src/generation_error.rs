@@ -4,6 +4,7 @@ use jointscope_spectra::SpectraError;
 
 /// Why cases cannot be made.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum GenerationError {
     /// There would be none.
     #[error("there is no case to make: ask for at least one case of at least one family")]

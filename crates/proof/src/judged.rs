@@ -109,10 +109,10 @@ impl<T: Judgeable + Sync> Judged<T> {
         truths: Vec<T>,
         answers: &Answers,
         threads: usize,
-        told: impl Fn(usize) + Sync,
+        progress: impl Fn(usize) + Sync,
     ) -> Vec<Self> {
         let work: Vec<_> = cases.iter().zip(&truths).zip(answers.all()).collect();
-        let evidence = on_workers(&work, threads, told, |((case, truth), answer)| {
+        let evidence = on_workers(&work, threads, progress, |((case, truth), answer)| {
             answer.as_ref().ok().and_then(|answer| truth.evidence(case, answer))
         });
         let judged = truths.into_iter().zip(answers.all()).zip(evidence);
@@ -155,12 +155,12 @@ impl<T: Judgeable> Judged<T> {
     }
 
     /// Whether the answer says that nothing is amiss.
-    pub fn is_consistent(&self) -> bool {
+    pub(crate) fn is_consistent(&self) -> bool {
         self.answer.as_ref().is_ok_and(|answer| answer.verdict == Verdict::Consistent)
     }
 
     /// Whether the answer says that something is amiss.
-    pub fn is_noticed(&self) -> bool {
+    pub(crate) fn is_noticed(&self) -> bool {
         self.answer.is_ok() && !self.is_consistent()
     }
 

@@ -91,14 +91,14 @@ impl Judged {
     }
 
     /// Whether all that was hidden was found, under its names or by a fit that is as good with as many effects.
-    pub fn all_found(&self) -> bool {
+    pub(crate) fn all_found(&self) -> bool {
         let (hidden, found) = (self.hidden(), self.found());
         let by_name = hidden.iter().all(|name| found.contains(name));
         by_name || (found.len() == hidden.len() && self.cannot_be_told())
     }
 
     /// Whether a finding is of a hidden kind, or counts as right.
-    pub fn has_kind(&self) -> bool {
+    pub(crate) fn has_kind(&self) -> bool {
         let hidden = self.hidden();
         let right = |name: &Name| hidden.iter().any(|h| h.kind == name.kind) || self.accepts(name);
         self.found().iter().any(right)
@@ -116,7 +116,7 @@ impl Judged {
     }
 
     /// Whether the repaired fixture fits as well as the truth although its names are not what was hidden.
-    pub fn cannot_be_told(&self) -> bool {
+    pub(crate) fn cannot_be_told(&self) -> bool {
         self.evidence.repaired <= self.evidence.truth + AS_GOOD
     }
 
@@ -134,7 +134,7 @@ impl Judged {
     }
 
     /// Whether the fit with all the right names, or of a null, ended higher than the fit about the truth: a false minimum.
-    pub fn stopped_short(&self) -> bool {
+    pub(crate) fn stopped_short(&self) -> bool {
         self.names_all_and_nothing_else() && self.evidence.repaired > self.evidence.truth + SHORT
     }
 

@@ -90,7 +90,7 @@ pub use routes::{
 };
 pub use score::{CHANCE, Comparison, Score, VerdictCounts};
 pub use seal::{BrokenSeal, Filed, Given, Sealable, SealedTruths};
-pub use sheet::{Figure, Rate, RoleCount, Sheet, Standing, Target};
+pub use sheet::{Figure, Rate, RoleCount, Sheet, Target, TargetStatus};
 pub use size::{Size, SizeScore};
 pub use statistics::Share;
 pub use timing::Timing;

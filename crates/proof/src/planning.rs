@@ -10,7 +10,7 @@ use crate::{FAMILIES, GenerationError, HIDDEN_KINDS, Name, Share};
 use jointscope_diagnosis::{Diagnosis, Observation};
 use jointscope_fixture::{Fixture, Quantity, Spread};
 use jointscope_pipeline::{Measurement, Options, Outcome, diagnose};
-use jointscope_plan::{Measure, Plan as TestPlan, PlanOptions, Remaining, weighed_by};
+use jointscope_plan::{Measure, Plan as TestPlan, PlanOptions, Remaining, SURE, weighed_by};
 use jointscope_rig::{
     Family, HammerTest, Instrument, StructureError, drawn_within_tolerance, frfs, generator, random_effect,
 };
@@ -20,8 +20,6 @@ use rand::{Rng, RngExt};
 use serde::Serialize;
 use std::fmt;
 
-/// Probability from which a name is sure, and a promise counts as one.
-const SURE: f64 = 0.9;
 /// Cases drawn for each that is wanted, at the most: most names are not in doubt.
 const DRAWS: usize = 12;
 /// Cases drawn together, for each that is wanted and at the most.
@@ -87,7 +85,7 @@ impl Planning {
         wanted: usize,
         seed: u64,
         threads: usize,
-        told: impl Fn(usize),
+        progress: impl Fn(usize),
     ) -> Result<Self, GenerationError> {
         let mut cases = Vec::new();
         let mut drawn = 0;
@@ -103,7 +101,7 @@ impl Planning {
                 // A worker that died over a case has left nothing of it.
                 cases.extend(case.unwrap_or(Ok(None))?);
             }
-            told(cases.len());
+            progress(cases.len());
         }
         Ok(Planning::scored(drawn, cases))
     }

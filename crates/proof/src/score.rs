@@ -45,6 +45,7 @@ pub type VerdictCounts = Vec<(&'static str, usize)>;
 
 /// All scores of a set of judged cases.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct Score {
     /// Shares, figures and every case.
     #[serde(flatten)]

@@ -68,9 +68,9 @@ pub struct Rate {
     pub met: Option<bool>,
 }
 
-/// How a share stands to its target.
+/// Whether a share is what it should be.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Standing {
+pub enum TargetStatus {
     /// It is what it should be.
     Met,
     /// It is not, but its interval holds the target.
@@ -79,13 +79,13 @@ pub enum Standing {
     Missed,
 }
 
-impl Standing {
-    /// The standing in words.
+impl TargetStatus {
+    /// The status in words.
     pub fn says(self) -> &'static str {
         match self {
-            Standing::Met => "met",
-            Standing::WithinChance => "missed, within chance",
-            Standing::Missed => "missed",
+            TargetStatus::Met => "met",
+            TargetStatus::WithinChance => "missed, within chance",
+            TargetStatus::Missed => "missed",
         }
     }
 }
@@ -101,12 +101,12 @@ impl Rate {
         lines.iter().map(rate).collect()
     }
 
-    /// How it stands to its target; `None` where it has none or nothing was counted.
-    pub fn standing(&self) -> Option<Standing> {
+    /// Whether it is what it should be; `None` where it has none or nothing was counted.
+    pub fn status(&self) -> Option<TargetStatus> {
         Some(match (self.met?, self.target?.overlaps(self.share.interval())) {
-            (true, _) => Standing::Met,
-            (false, true) => Standing::WithinChance,
-            (false, false) => Standing::Missed,
+            (true, _) => TargetStatus::Met,
+            (false, true) => TargetStatus::WithinChance,
+            (false, false) => TargetStatus::Missed,
         })
     }
 }
@@ -198,14 +198,14 @@ impl Display for Sheet {
         }
         writeln!(f, "\nshares (95 % binomial interval), target:")?;
         for rate in &self.rates {
-            let standing = rate.standing().map_or("", Standing::says);
-            write_line(f, rate.what, &counted(rate.share), rate.target, standing)?;
+            let status = rate.status().map_or("", TargetStatus::says);
+            write_line(f, rate.what, &counted(rate.share), rate.target, status)?;
         }
         writeln!(f, "\nfigures, target:")?;
         for Figure { what, value, from, target, met, .. } in &self.figures {
             let shown = value.map_or_else(|| "no case".to_owned(), |value| format!("{value:.3} of {from}"));
-            let standing = met.map_or("", |met| if met { "met" } else { "missed" });
-            write_line(f, what, &shown, *target, standing)?;
+            let status = met.map_or("", |met| if met { "met" } else { "missed" });
+            write_line(f, what, &shown, *target, status)?;
         }
         Ok(())
     }
@@ -216,10 +216,10 @@ fn write_line(
     what: &str,
     shown: &str,
     target: Option<Target>,
-    standing: &str,
+    status: &str,
 ) -> fmt::Result {
     let target = target.map_or_else(String::new, String::from);
-    let line = format!("  {what:<60} {shown:<36} {target:<14} {standing}");
+    let line = format!("  {what:<60} {shown:<36} {target:<14} {status}");
     writeln!(f, "{}", line.trim_end())
 }
 

@@ -45,7 +45,7 @@ impl Size {
     }
 
     /// Whether the size is right within 10 %.
-    pub fn is_right(&self) -> bool {
+    pub(crate) fn is_right(&self) -> bool {
         self.error().abs() <= RIGHT
     }
 

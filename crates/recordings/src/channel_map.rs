@@ -184,7 +184,7 @@ impl ChannelMap {
     }
 
     /// Whether any entry speaks of this node.
-    pub fn names_node(&self, node: i64) -> bool {
+    pub(crate) fn names_node(&self, node: i64) -> bool {
         self.entries.iter().any(|entry| entry.point(node).is_some())
     }
 

@@ -3,21 +3,18 @@
 mod spectra;
 
 use jointscope_comparison::{
-    Caution, Compared, Comparison, ELEMENTS, ElementRanking, Equality, Kind, Pair, PairedNumber, Scatter,
-    Specimens, says,
+    Comparison, ELEMENTS, ElementRanking, Kind, Pair, PairedNumber, Scatter, Specimens,
 };
+use jointscope_wording::{Says, capitalised, comparison as says};
 
 use crate::context::PageContext;
 use crate::error::PageError;
-use crate::format::{capitalised, in_column, interval, percent, quantity};
+use crate::format::{in_column, interval, percent, quantity};
 use crate::report::Report;
 use crate::section::{Section, Tone, Verdict};
 use crate::table::Table;
 use crate::unit::Scale;
 use spectra::{compliance_section, spectra_section};
-
-/// An order less probable than this is called open.
-const SURE: f64 = 0.95;
 
 /// The page of a comparison as one self-contained HTML file: ratios, orders with probabilities, the scatter of specimens, values, and the spectra of H41, K and C
 /// (Figures 4–9).
@@ -63,8 +60,7 @@ fn typeset(element: &str) -> String {
 }
 
 fn order_words(comparison: &Comparison, entry: &ElementRanking) -> String {
-    let is_sure = |p: &f64| entry.has_deviations && *p >= SURE;
-    let signs = entry.ranking.adjacent.iter().map(|p| if is_sure(p) { " < " } else { " ≲ " });
+    let signs = entry.settled_neighbours().map(|settled| if settled { " < " } else { " ≲ " });
     let names = entry.ranking.order.iter().map(|index| comparison.joints[*index].name.as_str());
     std::iter::once("").chain(signs).zip(names).flat_map(|(sign, name)| [sign, name]).collect()
 }
@@ -100,11 +96,7 @@ fn verdict(comparison: &Comparison) -> Verdict {
     };
     details.extend(comparison.cautions.iter().map(|caution| sentence(&caution.says())));
     details.extend(says::shared(comparison).iter().map(|text| capitalised(&sentence(text))));
-    // What does not explain its recording earns no approval, however sure the order.
-    let is_settled = !settled.is_empty() && settled.len() == stiffness().count();
-    let unusable = comparison.cautions.iter().any(|caution| matches!(caution, Caution::Unusable { .. }));
-    let is_whole = comparison.is_sound() && comparison.compared == Compared::AllFrfs;
-    let tone = match (unusable, is_settled && is_whole) {
+    let tone = match (comparison.is_unusable(), comparison.is_conclusive()) {
         (true, _) => Tone::Problem,
         (false, true) => Tone::Ok,
         (false, false) => Tone::Attention,
@@ -134,7 +126,7 @@ fn ratio_section(comparison: &Comparison) -> Section {
     let mut section = Section::new("Ratios and differences").paragraph(format!(
         "By {}. Errors that two joints have in common, such as those of the same blocks, cancel in both as far as they are correlated. Intervals are of 95 %; that of a \
          ratio is Fieller's.",
-        comparison.estimate_words()
+        says::estimate_words(comparison)
     ));
     for pair in says::main_pairs(comparison) {
         section = section.with(pair_table(comparison, pair));
@@ -189,10 +181,7 @@ fn pair_table<'a>(comparison: &Comparison, pair: &'a Pair) -> Table<&'a PairedNu
         None => "The files do not say how the errors of these estimates go together: equality is not tested."
             .to_owned(),
     };
-    let differs = |number: &&PairedNumber| {
-        let [low, high] = number.difference.ci95;
-        (low > 0.0 || high < 0.0).then_some(Tone::Attention)
-    };
+    let differs = |number: &&PairedNumber| number.differs().then_some(Tone::Attention);
     let table = Table::of(&pair.numbers)
         .words("number", |number| typeset(&number.element))
         .words(format!("{} in % of {} (95 %)", pair.second, pair.first), ratio)
@@ -248,7 +237,7 @@ fn specimen_section(specimens: &Specimens) -> Section {
         })
         .words("of measurement", |scatter| relative(scatter, scatter.measurement))
         .words("the same specimen", |scatter| says::p_value(scatter.p_value))
-        .marked(|scatter| (scatter.p_value < Equality::DIFFERENT).then_some(Tone::Attention))
+        .marked(|scatter| scatter.is_significant().then_some(Tone::Attention))
         .footnote("Standard deviations as shares of the mean. Errors that all specimens share, such as those of the same blocks, are no scatter between them.");
     Section::new(format!("Specimens: {}", specimens.name))
         .paragraph(format!(

@@ -2,7 +2,6 @@
 
 mod all_frfs;
 mod by_line;
-mod element;
 mod fixture_view;
 mod frfs;
 mod interface_table;
@@ -10,17 +9,26 @@ mod joints;
 mod omitted;
 mod result;
 mod shares;
-mod verdict;
 
 pub use joints::joints_report;
 
-use jointscope_decomposition::{Analysis, Estimate, Relation};
-use jointscope_fixture::{Fixture, Joint, JointLaw};
+use jointscope_decomposition::{Analysis, Estimate, Relation, Use};
+use jointscope_fixture::{Fixture, Joint};
+use jointscope_pipeline::{Decomposition, Joints};
+use jointscope_wording::decomposition;
 
 use crate::context::PageContext;
 use crate::error::PageError;
 use crate::report::Report;
-use crate::section::Verdict;
+use crate::section::{Tone, Verdict};
+
+/// The page of the joint in a measurement, or of all joints.
+pub fn joint_report(decomposition: &Decomposition, context: &PageContext) -> Report {
+    match &decomposition.found {
+        Joints::One(analysis) => decomposition_report(analysis, &decomposition.fixture, context),
+        Joints::AtOnce(joints) => joints_report(joints, &decomposition.fixture, context),
+    }
+}
 
 /// What the sections of the page are made from.
 #[derive(Clone, Copy)]
@@ -48,17 +56,17 @@ impl<'a> Subject<'a> {
         self.analysis.joint_fit.as_ref().is_ok_and(|fit| fit.quantities.is_empty())
     }
 
-    /// Whose the nominal stiffness is.
-    fn nominal_owner(&self) -> &'static str {
-        match self.joint().map(|joint| &joint.law) {
-            Some(JointLaw::Beam { .. }) => "the nominal beam's",
-            _ => "the fixture's",
-        }
-    }
-
     /// What K by line is called in captions.
     fn relation_words(&self) -> &'static str {
         if self.is_paper() { "eq (7)" } else { "the exact relation" }
+    }
+}
+
+fn tone(analysis: &Analysis) -> Tone {
+    match analysis.judgement.verdict {
+        Use::Sound => Tone::Ok,
+        Use::WithCare => Tone::Attention,
+        _ => Tone::Problem,
     }
 }
 
@@ -82,11 +90,8 @@ pub fn decomposition_report(analysis: &Analysis, fixture: &Fixture, context: &Pa
     let best = Estimate::best(analysis);
     let subject = Subject { analysis, fixture, best: &best };
     let title = format!("Joint {}: stiffness and damping", analysis.joint);
-    let verdict = Verdict {
-        tone: verdict::tone(&subject),
-        headline: verdict::headline(&subject),
-        details: verdict::details(&subject),
-    };
+    let said = decomposition::Verdict::of(analysis, fixture, &best);
+    let verdict = Verdict { tone: tone(analysis), headline: said.headline, details: said.details };
     Report::of(
         context
             .page(title, context.subtitle(fixture), verdict)

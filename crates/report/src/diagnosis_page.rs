@@ -70,7 +70,7 @@ pub fn diagnosis_page(
 }
 
 /// The same with its tables, curves and figures to be had apart.
-pub fn diagnosis_report(diagnosis: &Diagnosis, fixture: &Fixture, context: &PageContext) -> Report {
+pub(crate) fn diagnosis_report(diagnosis: &Diagnosis, fixture: &Fixture, context: &PageContext) -> Report {
     let subject = Subject { diagnosis, fixture };
     let said = diagnosis.findings.iter().map(|finding| finding.says());
     // A quantity far from what is stated is to be looked at even where nothing else is missing.

@@ -2,6 +2,7 @@
 
 /// A page that cannot be rendered: the pieces it was given do not fit together.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
 pub enum PageError {
     /// A series has more or fewer values than its abscissa.
     #[error(

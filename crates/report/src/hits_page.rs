@@ -42,7 +42,7 @@ fn levels(diagnosis: &NonlinearDiagnosis) -> Section {
 
 fn laws(diagnosis: &NonlinearDiagnosis) -> Section {
     let of_finding = |finding| {
-        let finding: &jointscope_nonlinear::Finding = finding;
+        let finding: &jointscope_nonlinear::HitFinding = finding;
         finding.estimates.iter().map(move |estimate| (finding, estimate))
     };
     let end = |interval: Option<[f64; 2]>, i: usize| {

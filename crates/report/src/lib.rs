@@ -39,7 +39,6 @@ mod diagnosis_page;
 mod drawing;
 mod error;
 mod force_state;
-pub mod format;
 mod hammer_test;
 mod hits_page;
 mod json;
@@ -57,14 +56,16 @@ mod summary_page;
 mod table;
 #[cfg(test)]
 mod tests;
-mod unit;
+
+pub use jointscope_wording::format;
+use jointscope_wording::unit;
 
 pub use answer_page::{answer_page, answer_report};
 pub use check_page::{check_page, check_report};
 pub use comparison_page::{comparison_page, comparison_report};
 pub use context::{InputFile, PageContext};
-pub use decomposition_page::{decomposition_page, decomposition_report, joints_report};
-pub use diagnosis_page::{diagnosis_page, diagnosis_report};
+pub use decomposition_page::{decomposition_page, decomposition_report, joint_report, joints_report};
+pub use diagnosis_page::diagnosis_page;
 pub use error::PageError;
 pub use modes_page::{modes_page, modes_report};
 pub use plan_page::plan_page;

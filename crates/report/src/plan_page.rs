@@ -1,7 +1,7 @@
 //! The page of a plan: the first thing to do, what every other would bring, and every FRF that could be recorded.
 
 use jointscope_fixture::Fixture;
-use jointscope_plan::{FrfGain, Measure, Plan, Suggestion};
+use jointscope_plan::{BEYOND_DOUBT, FrfGain, Measure, Plan, Suggestion};
 use jointscope_spectra::FrfPair;
 use jointscope_wording::effect_name;
 use maud::{Markup, PreEscaped, html};
@@ -17,17 +17,13 @@ use crate::table::{Cell, Table};
 const LISTED: usize = 12;
 /// Suggestions that are shown in the side view.
 const SHOWN: usize = 3;
-/// ln of odds beyond which no figure means anything.
-const BEYOND_DOUBT: f64 = 100.0;
 
 /// The page of a plan as one self-contained HTML file.
 ///
 /// # Errors
 /// None that a plan can cause.
 pub fn plan_page(plan: &Plan, fixture: &Fixture, context: &PageContext) -> Result<String, PageError> {
-    let promised = plan.suggestions.first().is_some_and(|first| {
-        first.sure.is_some_and(|sure| sure >= 0.9) || first.interval.as_ref().is_some_and(|i| i.reaches)
-    });
+    let promised = plan.suggestions.first().is_some_and(Suggestion::is_promising);
     let tone = if promised { Tone::Ok } else { Tone::Attention };
     let details = std::iter::once(plan.question.clone()).chain(plan.remarks.iter().cloned());
     let page = context.page(

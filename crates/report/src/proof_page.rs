@@ -86,7 +86,7 @@ fn verdict(results: &ProofResults) -> Verdict {
     let share = |key: &str| score.rate(key).map(|rate| rate.share).unwrap_or_default();
     let (named, alarms) = (share("single_place"), share("null_finding"));
     let wrong = share("outside_wrong_name");
-    let is_missed = |rate: &&Rate| rate.standing() == Some(jointscope_proof::Standing::Missed);
+    let is_missed = |rate: &&Rate| rate.status() == Some(jointscope_proof::TargetStatus::Missed);
     let rates = score.rates.iter().chain(results.routes.0.iter().flat_map(|route| &route.rates));
     let missed: Vec<&str> = rates.filter(is_missed).map(|rate| rate.what).collect();
     let tone = if missed.is_empty() { Tone::Ok } else { Tone::Attention };

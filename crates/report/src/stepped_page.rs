@@ -1,6 +1,7 @@
 //! The page of a diagnosis from stepped sines at several levels.
 
 use jointscope_fixture::Fixture;
+use jointscope_inference::Z95;
 use jointscope_nonlinear::{LevelResult, SteppedDiagnosis};
 use jointscope_wording::{Remarks, Says};
 
@@ -34,7 +35,7 @@ fn against_amplitude(diagnosis: &SteppedDiagnosis) -> Section {
         let motion = Axis::linear(format!("Relative motion of joint {joint} in {dof}"), unit);
         let plot = Plot::new(title, motion, Axis::linear(title, unit_y))
             .over(levels.iter().map(|level| level.motion))
-            .band("95 % interval", Role::Uncertainty, of(-1.96), of(1.96))
+            .band("95 % interval", Role::Uncertainty, of(-Z95), of(Z95))
             .line("measured", Role::Measured, of(0.0));
         match levels.get(diagnosis.holds.wrapping_sub(1)) {
             Some(last) if diagnosis.holds < levels.len() => {

@@ -74,7 +74,7 @@ pub struct Layer {
 
 impl Layer {
     /// A layer of `thickness` (m) over the strip's cross-section.
-    pub fn of_epoxy(thickness: f64) -> Self {
+    pub(crate) fn of_epoxy(thickness: f64) -> Self {
         let area = WIDTH * THICKNESS;
         let second_moment = WIDTH * THICKNESS.powi(3) / 12.0;
         Layer {

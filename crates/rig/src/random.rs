@@ -40,14 +40,7 @@ pub(crate) fn normal(rng: &mut impl Rng) -> f64 {
 
 /// Two independent normal numbers.
 pub(crate) fn normal_pair(rng: &mut impl Rng) -> (f64, f64) {
-    loop {
-        let (u, v) = (2.0 * unit(rng) - 1.0, 2.0 * unit(rng) - 1.0);
-        let square = u * u + v * v;
-        if square > 0.0 && square < 1.0 {
-            let factor = (-2.0 * square.ln() / square).sqrt();
-            return (u * factor, v * factor);
-        }
-    }
+    jointscope_linalg::normal_pair(|| unit(rng))
 }
 
 #[cfg(test)]

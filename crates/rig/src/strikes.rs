@@ -5,7 +5,7 @@ use crate::random::{log_uniform, normal, uniform};
 use crate::{Assembly, Row, Station, Structure, StructureError};
 use jointscope_fixture::{Dof, Effect, EffectKind, Fixture, Place};
 use jointscope_hits::{Hit, Motion, Response};
-use jointscope_linalg::Cholesky;
+use jointscope_linalg::{Cholesky, dot};
 use jointscope_spectra::Channel;
 use rand::Rng;
 use serde::{Deserialize, Serialize};
@@ -311,10 +311,6 @@ fn dense(row: &Row, n: usize) -> Vec<f64> {
     let mut all = vec![0.0; n];
     row.terms().iter().for_each(|&(i, value)| all[i] += value);
     all
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 fn add_noise(values: &mut [f64], relative: f64, rng: &mut impl Rng) {

@@ -30,18 +30,20 @@ pub(crate) fn other_form(frfs: &FrfSet, modelled: &[Complex64]) -> Option<FrfFor
         }
     }
     let least = FEWEST * frfs.pairs().len();
-    let told: Vec<(f64, f64)> = parts
+    let by_part: Vec<(f64, f64)> = parts
         .into_iter()
         .enumerate()
         .filter(|(_, ratios)| ratios.len() >= least)
         .filter_map(|(part, ratios)| Some((first + width * (part as f64 + 0.5), median(ratios)?)))
         .collect();
-    let slopes =
-        told.iter().enumerate().flat_map(|(i, a)| told[..i].iter().map(move |b| (a.1 - b.1) / (a.0 - b.0)));
+    let slopes = by_part
+        .iter()
+        .enumerate()
+        .flat_map(|(i, a)| by_part[..i].iter().map(move |b| (a.1 - b.1) / (a.0 - b.0)));
     let slope = median(slopes.collect())?;
     [FrfForm::Mobility, FrfForm::Receptance].into_iter().find(|form| {
         let powers = f64::from(form.order() - FrfForm::Accelerance.order());
-        let levels = told.iter().map(|(ln_omega, ratio)| ratio - powers * ln_omega);
+        let levels = by_part.iter().map(|(ln_omega, ratio)| ratio - powers * ln_omega);
         (slope - powers).abs() < SLOPE && median(levels.collect()).is_some_and(|level| level.abs() < LEVEL)
     })
 }

@@ -4,8 +4,7 @@ use num_complex::Complex64;
 
 /// The median; `None` of nothing.
 pub fn median(mut values: Vec<f64>) -> Option<f64> {
-    let middle = values.len() / 2;
-    (!values.is_empty()).then(|| *values.select_nth_unstable_by(middle, f64::total_cmp).1)
+    jointscope_spectra::median(&mut values)
 }
 
 /// |ln(|H|/|Ĥ|)| value by value, where it is a number.

@@ -22,11 +22,13 @@
 mod form;
 mod frf_set;
 mod lines;
+mod median;
 mod serialization;
 
 pub use form::FrfForm;
 pub use frf_set::{Channel, Dof, FrfPair, FrfSet};
 pub use lines::{SpectralLines, in_text};
+pub use median::median;
 pub use serialization::complex;
 
 /// What makes spectral lines or a set of FRFs impossible.

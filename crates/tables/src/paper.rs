@@ -96,7 +96,7 @@ pub const DAMPING: [DampingRow; 10] = [
 ];
 
 /// Groups of Table 4: examples of equal blocks and strips.
-pub const GROUPS: [&[&str]; 3] =
+pub(crate) const GROUPS: [&[&str]; 3] =
     [&["D0", "E0", "E1", "E2", "E3", "E4", "E5"], &["F01", "F1"], &["F02", "F2"]];
 
 /// Table 4: for each group and element, the examples from the most compliant to the stiffest.

@@ -61,7 +61,7 @@ const HALF_DIGIT: f64 = 0.05;
 
 impl Reach {
     /// The ratio of a row's SIM cells.
-    pub fn of_sim(row: &StiffnessRow) -> Option<Self> {
+    pub(crate) fn of_sim(row: &StiffnessRow) -> Option<Self> {
         row.sim.map(|cells| Reach::of(&cells))
     }
 

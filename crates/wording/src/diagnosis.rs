@@ -170,7 +170,7 @@ fn of_observation(observation: &Observation) -> Vec<String> {
         ));
     }
     if let Some(drift) = observation.drift() {
-        let told: Vec<String> = drift
+        let changes: Vec<String> = drift
             .resonances
             .iter()
             .map(|(hz, deviation, ratio)| {
@@ -185,7 +185,7 @@ fn of_observation(observation: &Observation) -> Vec<String> {
             "The resonances moved between the FRFs, by more than their noise and more than any structure that stays the same could \
              make them: {} (standard deviations among FRFs of one response). That much is taken as noise about each resonance; no \
              model is asked to follow it.",
-            told.join(", ")
+            changes.join(", ")
         ));
     }
     remarks

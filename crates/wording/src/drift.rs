@@ -44,14 +44,14 @@ impl Says for TestDrift {
 /// `the natural frequencies were 0.8 % lower (51.2 Hz) to 0.1 % higher (80.1 Hz) while reference 2 was struck`.
 fn frequencies(drift: &TestDrift, own: &ReferenceChange) -> Option<String> {
     let at = drift.references.iter().position(|other| other == own)?;
-    let told = drift.modes.iter().filter_map(|mode| Some((mode.frequency, mode.changes[at]?)));
-    let mut told: Vec<(f64, f64)> = told.collect();
-    told.sort_by(|a, b| a.1.total_cmp(&b.1));
+    let changes = drift.modes.iter().filter_map(|mode| Some((mode.frequency, mode.changes[at]?)));
+    let mut changes: Vec<(f64, f64)> = changes.collect();
+    changes.sort_by(|a, b| a.1.total_cmp(&b.1));
     let of = |(hz, change): &(f64, f64)| {
         let direction = if *change < 0.0 { "lower" } else { "higher" };
         format!("{} % {direction} ({} Hz)", significant(100.0 * change.abs(), 2), significant(*hz, 4))
     };
-    let range = match &told[..] {
+    let range = match &changes[..] {
         [] => return None,
         [only] => format!("a natural frequency was {}", of(only)),
         [lowest, .., highest] => format!("natural frequencies were {} to {}", of(lowest), of(highest)),

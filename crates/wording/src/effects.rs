@@ -27,26 +27,26 @@ pub(crate) fn named_with_size(finding: &Finding) -> String {
         };
         format!(" ({what}{})", rounded_value(estimate))
     });
-    format!("{}{size}{}", effect_name(&finding.effect), or_look_alike(&finding.alternatives))
+    format!("{}{size}{}", effect_name(&finding.effect), or_look_alike(finding))
 }
 
 /// The sentence of an effect without its look-alikes and full stop, its parameters as the `data` know them.
 pub(crate) fn meaning(effect: &Effect, estimates: &[Estimate], data: &str) -> String {
-    let told = Told { effect, estimates, data };
+    let words_of = Sized { effect, estimates, data };
     let words = effect.kind.spec().words;
-    let case = words.cases.iter().find(|(case, _)| told.is_case(*case));
+    let case = words.cases.iter().find(|(case, _)| words_of.is_case(*case));
     let sentence = case.map_or(words.otherwise, |(_, sentence)| sentence);
-    filled(sentence, |key| told.stands_for(key), |parameter| told.is_sure(parameter))
+    filled(sentence, |key| words_of.stands_for(key), |parameter| words_of.is_sure(parameter))
 }
 
 /// What is told of an effect.
-struct Told<'a> {
+struct Sized<'a> {
     effect: &'a Effect,
     estimates: &'a [Estimate],
     data: &'a str,
 }
 
-impl Told<'_> {
+impl Sized<'_> {
     fn estimate(&self, parameter: &str) -> Option<&Estimate> {
         self.estimates.iter().find(|estimate| estimate.parameter.name == parameter)
     }

@@ -2,22 +2,18 @@
 
 use crate::numbers::{decimals, plain, prefixed, rounded};
 use jointscope_findings::Estimate;
-use jointscope_fixture::ParameterRange;
+use jointscope_inference::Z95;
 
-/// Ratio of the interval's ends beyond which only the order of magnitude is known.
-const VAGUE: f64 = 30.0;
 /// Size from which a number is written with a power of ten.
 const LARGE: f64 = 1e7;
 
 /// Value and 95 % interval with unit, rounded to what is known by the `data`: `49.8 g (95 %: 49.1 to 50.5 g)`.
 pub(crate) fn size_of(estimate: &Estimate, data: &str) -> String {
-    let Estimate { parameter, value, interval, unit, .. } = *estimate;
-    let not_negative = matches!(parameter.range, ParameterRange::NonNegative | ParameterRange::Positive);
-    let low_end = if not_negative { 0.0 } else { f64::NEG_INFINITY };
-    let Some([low, high]) = interval.map(|[low, high]| [low.max(low_end), high]) else {
+    let Estimate { value, unit, .. } = *estimate;
+    let Some([low, high]) = estimate.possible_interval() else {
         return format!("{} (not determined by these {data})", plain(value, unit));
     };
-    if !(low.is_finite() && high.is_finite()) || low > 0.0 && high / low > VAGUE {
+    if estimate.is_vague() {
         return format!("{} (order of magnitude only)", plain(value, unit));
     }
     let (factor, unit) = prefixed(value, unit);
@@ -32,7 +28,7 @@ pub(crate) fn rounded_value(estimate: &Estimate) -> String {
     match estimate.std.filter(|std| *std > 0.0 && *std < estimate.value.abs()) {
         Some(std) => {
             let (factor, unit) = prefixed(estimate.value, estimate.unit);
-            let number = rounded(estimate.value * factor, decimals(1.96 * std * factor));
+            let number = rounded(estimate.value * factor, decimals(Z95 * std * factor));
             if unit.is_empty() { number } else { format!("{number} {unit}") }
         }
         None => plain(estimate.value, estimate.unit),

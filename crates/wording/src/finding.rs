@@ -3,20 +3,20 @@
 use crate::effects::{effect_name, meaning};
 use crate::numbers::{Short, listed};
 use crate::{Says, amplitude};
-use jointscope_diagnosis::Finding;
-use jointscope_fixture::{Dof, Effect};
-use jointscope_nonlinear::{Finding as HitFinding, LevelFinding};
+use jointscope_diagnosis::Finding as FrfFinding;
+use jointscope_findings::Finding;
+use jointscope_fixture::Dof;
+use jointscope_nonlinear::{HitFinding, LevelFinding};
 
-/// Probability from which another name for a finding is told in its sentence.
-const NOTABLE: f64 = 0.05;
 /// Names of alternatives that a sentence holds at the most.
 const NAMES: usize = 3;
 
 /// `; these FRFs cannot tell it from gain of response 3 (12 %)`, or nothing where no other name is likely.
-fn look_alikes(alternatives: &[(Effect, f64)], data: &str) -> String {
-    let notable = alternatives.iter().filter(|(_, probability)| *probability >= NOTABLE);
-    let named: Vec<String> =
-        notable.map(|(effect, p)| format!("{} ({:.0} %)", effect_name(effect), 100.0 * p)).collect();
+fn look_alikes<E>(finding: &Finding<E>, data: &str) -> String {
+    let named: Vec<String> = finding
+        .look_alikes()
+        .map(|(effect, p)| format!("{} ({:.0} %)", effect_name(effect), 100.0 * p))
+        .collect();
     let more = named.len().saturating_sub(NAMES);
     let listed = listed(&named[..named.len() - more]);
     match (named.is_empty(), more) {
@@ -27,8 +27,8 @@ fn look_alikes(alternatives: &[(Effect, f64)], data: &str) -> String {
 }
 
 /// ` or its look-alike`, where other names are likely.
-pub(crate) fn or_look_alike(alternatives: &[(Effect, f64)]) -> &'static str {
-    match alternatives.iter().filter(|(_, probability)| *probability >= NOTABLE).count() {
+pub(crate) fn or_look_alike<E>(finding: &Finding<E>) -> &'static str {
+    match finding.look_alikes().count() {
         0 => "",
         1 => " or its look-alike",
         _ => " or one of its look-alikes",
@@ -36,11 +36,11 @@ pub(crate) fn or_look_alike(alternatives: &[(Effect, f64)]) -> &'static str {
 }
 
 /// What, where, how much with its 95 % interval, what that means, and what the data cannot tell from it.
-impl Says for Finding {
+impl Says for FrfFinding {
     fn says(&self) -> String {
         let doubt = if self.is_doubtful() { "Doubtful, for something not listed is likelier: " } else { "" };
         let meaning = meaning(&self.effect, &self.estimates, "FRFs");
-        format!("{doubt}{meaning}{}.", look_alikes(&self.alternatives, "FRFs"))
+        format!("{doubt}{meaning}{}.", look_alikes(self, "FRFs"))
     }
 }
 
@@ -51,8 +51,8 @@ impl Says for HitFinding {
         format!(
             "{}; the hits move it by up to {} {motion}{}.",
             meaning(&self.effect, &self.estimates, "hits"),
-            Short(self.reach),
-            look_alikes(&self.alternatives, "hits")
+            Short(self.evidence.reach),
+            look_alikes(self, "hits")
         )
     }
 }
@@ -63,9 +63,9 @@ impl Says for LevelFinding {
         format!(
             "{}; seen at relative motions of {:.3e} to {:.3e} {motion}{}.",
             meaning(&self.effect, &self.estimates, "levels"),
-            self.motions.0,
-            self.motions.1,
-            look_alikes(&self.alternatives, "levels")
+            self.evidence.motions.0,
+            self.evidence.motions.1,
+            look_alikes(self, "levels")
         )
     }
 }
@@ -74,10 +74,11 @@ impl Says for LevelFinding {
 #[allow(clippy::unwrap_used)]
 mod tests {
     use super::*;
+    use jointscope_diagnosis::Evidence;
     use jointscope_findings::Estimate;
-    use jointscope_fixture::{EffectKind, Place};
+    use jointscope_fixture::{Effect, EffectKind, Place};
 
-    fn finding(kind: EffectKind, place: Place, dof: Option<Dof>, values: &[f64], share: f64) -> Finding {
+    fn finding(kind: EffectKind, place: Place, dof: Option<Dof>, values: &[f64], share: f64) -> FrfFinding {
         let effect = Effect::new(kind, place, dof, values);
         let estimates = kind
             .spec()
@@ -85,18 +86,17 @@ mod tests {
             .iter()
             .zip(values)
             .map(|(parameter, &value)| Estimate::of(*parameter, dof, value).within(share * value.abs()));
-        Finding {
+        FrfFinding {
             estimates: estimates.collect(),
             effect,
             probability: 0.9,
             alternatives: Vec::new(),
-            gain: 100.0,
-            measured: None,
+            evidence: Evidence { gain: 100.0, measured: None },
         }
     }
 
     #[track_caller]
-    fn says(finding: &Finding, parts: &[&str]) {
+    fn says(finding: &FrfFinding, parts: &[&str]) {
         let sentence = finding.says();
         assert!(sentence.ends_with('.') && !sentence.contains("NaN"), "{sentence}");
         parts

@@ -2,15 +2,41 @@
 
 use crate::numbers::{listed, percent, plain, significant};
 use crate::{Remarks, Says};
-use jointscope_decomposition::{FoundJoint, JointFit, JointTests, JointsFit, LawFit, LawKind};
+use jointscope_decomposition::{Analysis, FoundJoint, JointFit, JointTests, JointsFit, LawFit, LawKind};
+use jointscope_inference::interval95;
 
-/// Standard deviations from which a quantity of the fixture is worth a word.
-const FAR: f64 = 2.0;
-/// Probability from which a law is said to hold, rather than to be the most probable one.
-const CERTAIN: f64 = 0.95;
+/// What is true of the analysis whichever of its estimates is taken.
+impl Remarks for Analysis {
+    fn remarks(&self) -> Vec<String> {
+        let merged = self.merged_from.and_then(|recorded| merging(recorded, self.frfs.lines().len()));
+        merged.into_iter().chain(window(self)).chain(lost_tolerances(self)).collect()
+    }
+}
+
+/// Where on the complex plane the joint was read, if not on the imaginary axis.
+fn window(analysis: &Analysis) -> Option<String> {
+    let decay = analysis.spectrum.decay;
+    (decay > 0.0).then(|| {
+        format!(
+            "the FRFs lie under an exponential window of decay {decay:.4} 1/s: sides and joint are read at s = {decay:.4} 1/s + iω, where they \
+             hold exactly, so that K and C are those of the joint and no damping of the window is left in them"
+        )
+    })
+}
+
+/// What the deviations leave out, if anything.
+fn lost_tolerances(analysis: &Analysis) -> Option<String> {
+    let lost = &analysis.lost_tolerances;
+    (!lost.is_empty()).then(|| {
+        format!(
+            "the ± of the fit leave out the tolerances of {}: the fit could not follow them",
+            lost.join(", ")
+        )
+    })
+}
 
 /// That `recorded` lines were merged into `left`; nothing where none was.
-pub fn merging(recorded: usize, left: usize) -> Option<String> {
+fn merging(recorded: usize, left: usize) -> Option<String> {
     (left < recorded).then(|| {
         format!(
             "of {recorded} lines, neighbours over which every FRF is smooth to its noise are merged: {left} are left, which tell the same; results by line are theirs"
@@ -95,7 +121,7 @@ impl Remarks for FoundJoint {
 fn of_law(fit: &JointFit) -> Vec<String> {
     let mut all = Vec::new();
     all.extend(fit.law().map(|law| {
-            let sure = if law.probability >= CERTAIN { "" } else { "most probably " };
+            let sure = if law.is_certain() { "" } else { "most probably " };
             // The mass has a sentence of its own.
             let what = if fit.mass.is_some() { over_frequency(law) } else { law.says() };
             format!(
@@ -106,12 +132,10 @@ fn of_law(fit: &JointFit) -> Vec<String> {
         }));
     all.extend(in_its_terms(fit));
     all.extend(fit.mass.map(|(mass, std)| {
-            let with_mass = fit.laws.iter().filter(|law| law.mass.is_some());
-            let sure = with_mass.map(|law| law.probability).sum::<f64>() >= CERTAIN;
             format!(
                 "the FRFs {} a mass of the joint of {} ± {}; k and c are those of a joint with it, and K and C by line, which hold its inertia, are not \
                  compared with them",
-                if sure { "show" } else { "most probably show" },
+                if fit.has_certain_mass() { "show" } else { "most probably show" },
                 plain(mass, "kg"),
                 plain(std, "kg")
             )
@@ -142,12 +166,8 @@ fn in_its_terms(fit: &JointFit) -> Option<String> {
                 .iter()
                 .filter_map(|(row, column, name)| {
                     let (loss, std) = fit.loss_factor(*row, *column)?;
-                    Some(format!(
-                        "of {name} {} (95 %: {} to {})",
-                        significant(loss, 3),
-                        significant(loss - 1.96 * std, 3),
-                        significant(loss + 1.96 * std, 3)
-                    ))
+                    let [low, high] = interval95(loss, std).map(|end| significant(end, 3));
+                    Some(format!("of {name} {} (95 %: {low} to {high})", significant(loss, 3)))
                 })
                 .collect();
             format!(
@@ -203,9 +223,10 @@ fn of_limits(fit: &JointFit) -> Vec<String> {
 
 fn of_quantities(fit: &JointFit) -> Vec<String> {
     let mut all = Vec::new();
-    let far =
-        fit.quantities.iter().filter(|quantity| quantity.std.is_some() && quantity.deviations.abs() >= FAR);
-    let far: Vec<String> = far
+    let far: Vec<String> = fit
+        .quantities
+        .iter()
+        .filter(|quantity| quantity.is_far())
         .map(|quantity| {
             format!("{} by {} standard deviations", quantity.path, significant(quantity.deviations, 2))
         })

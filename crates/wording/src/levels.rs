@@ -4,7 +4,9 @@ use crate::numbers::capitalised;
 use crate::{Remarks, Says, amplitude};
 use jointscope_findings::Verdict;
 use jointscope_fixture::EffectKind;
-use jointscope_nonlinear::{Held, LevelFinding, LevelResult, SteppedDiagnosis};
+use jointscope_nonlinear::{
+    DampingCourse, FrequencyCourse, Held, LevelFinding, LevelResult, SteppedDiagnosis,
+};
 
 /// The conclusion in a sentence or two.
 impl Says for SteppedDiagnosis {
@@ -25,7 +27,7 @@ impl Says for SteppedDiagnosis {
             (verdict, findings) => {
                 let names: Vec<String> = findings.iter().map(|f| kind(f).to_owned()).collect();
                 let names = names.join(" with ");
-                let share = 100.0 * findings[0].share;
+                let share = 100.0 * findings[0].evidence.share;
                 let left = if verdict == Verdict::Explained { "" } else { ", and something is left" };
                 if self.holds == self.levels.len() {
                     return format!(
@@ -50,48 +52,29 @@ fn course(diagnosis: &SteppedDiagnosis) -> String {
     };
     let hz = |l: &LevelResult| l.resonance.frequency.0;
     let percent = |l: &LevelResult| 100.0 * l.resonance.damping_ratio.0;
-    let least = diagnosis.levels.iter().min_by(|a, b| hz(a).total_cmp(&hz(b))).unwrap_or(first);
-    let most = diagnosis.levels.iter().max_by(|a, b| hz(a).total_cmp(&hz(b))).unwrap_or(last);
-    // A turn counts where it is well beyond the scatter of the fits.
-    let beyond = |from: &LevelResult, to: &LevelResult| {
-        (hz(from) - hz(to)).abs() > 5.0 * from.resonance.frequency.1.hypot(to.resonance.frequency.1)
-    };
-    let turns = |at: &LevelResult| {
-        at.held != first.held && at.held != last.held && beyond(at, first) && beyond(at, last)
-    };
-    let frequency = if turns(least) {
-        format!(
+    let frequency = match diagnosis.frequency_course() {
+        FrequencyCourse::Dips(least) => format!(
             "the frequency falls from {:.3} Hz to {:.3} Hz at {} and rises again to {:.3} Hz",
             hz(first),
             hz(least),
             least.held,
             hz(last)
-        )
-    } else if turns(most) {
-        format!(
+        ),
+        FrequencyCourse::Peaks(most) => format!(
             "the frequency rises from {:.3} Hz to {:.3} Hz at {} and falls again to {:.3} Hz",
             hz(first),
             hz(most),
             most.held,
             hz(last)
-        )
-    } else {
-        let verb = if !beyond(first, last) {
-            "stays"
-        } else if hz(last) < hz(first) {
-            "falls"
-        } else {
-            "rises"
-        };
-        format!("the frequency {verb} from {:.3} to {:.3} Hz", hz(first), hz(last))
-            .replace("stays from", "stays:")
+        ),
+        FrequencyCourse::Falls => format!("the frequency falls from {:.3} to {:.3} Hz", hz(first), hz(last)),
+        FrequencyCourse::Rises => format!("the frequency rises from {:.3} to {:.3} Hz", hz(first), hz(last)),
+        _ => format!("the frequency stays: {:.3} to {:.3} Hz", hz(first), hz(last)),
     };
-    let spread = first.resonance.damping_ratio.1.hypot(last.resonance.damping_ratio.1);
-    let moved = last.resonance.damping_ratio.0 - first.resonance.damping_ratio.0;
-    let damping = match moved {
-        m if m.abs() < 3.0 * spread => "damping stays at",
-        m if m > 0.0 => "damping grows from",
-        _ => "damping falls from",
+    let damping = match diagnosis.damping_course() {
+        DampingCourse::Stays => "damping stays at",
+        DampingCourse::Grows => "damping grows from",
+        DampingCourse::Falls => "damping falls from",
     };
     format!(
         "From {} to {} {frequency}, and {damping} {:.3} to {:.3} %.",
@@ -126,8 +109,7 @@ impl Remarks for SteppedDiagnosis {
         if self.levels.iter().any(|l| matches!(l.held, Held::Force(_))) {
             remarks.push("Where the force was held the response changes along the lines, so frequency and damping of such a level are averages over its amplitudes; laws are fitted at each line's own amplitude.".to_owned());
         }
-        let two = self.tried.iter().find(|t| t.form.contains('+') && t.share >= 0.9);
-        if let (Some(two), [] | [_]) = (two, self.findings.as_slice()) {
+        if let Some(two) = self.unproved_pair() {
             remarks.push(format!(
                 "Friction and a cubic spring together at {} in {} would leave a relative error of {:.3}, but two laws follow {} levels by their freedom: that is no evidence for either.",
                 two.joint, two.dof.name(), two.nrmse, self.levels.len()

@@ -1,11 +1,13 @@
 //! Sentences: results as the user is told them.
 //!
 //! Results are typed facts; this crate alone turns them into words, for files, pages and the terminal alike. It decides nothing: what is
-//! doubtful, white, bent or not determined stands in the results.
+//! doubtful, white, settled or not determined stands in the results.
 //!
 //! * [`Says`]: a result, a finding or a place in one plain sentence or a few words;
 //! * [`Remarks`]: what a reader should know besides;
 //! * [`Summary`]: what was found, a line each, for a terminal;
+//! * [`comparison`], [`decomposition`]: joints side by side, and one by itself;
+//! * [`format`](mod@format), [`unit`](mod@unit): numbers with their deviations and units;
 //! * [`effect_name`]: an effect's kind and place in a few words;
 //! * [`error_in_words`]: how wrong a model is, beside what is usual.
 //!
@@ -18,12 +20,16 @@
 //! ```
 
 mod amplitude;
+pub mod comparison;
+pub mod decomposition;
 mod departures;
 mod diagnosis;
 mod drift;
 mod effects;
+pub mod element;
 mod estimate;
 mod finding;
+pub mod format;
 mod hits;
 mod joint;
 mod levels;
@@ -32,10 +38,11 @@ mod modes;
 mod numbers;
 mod places;
 mod summary;
+pub mod unit;
 
 pub use effects::effect_name;
-pub use joint::merging;
 pub use model_error::{ErrorInWords, error_in_words};
+pub use numbers::{capitalised, counted, listed};
 
 /// Something that can be said in one plain sentence, or in a few words.
 pub trait Says {

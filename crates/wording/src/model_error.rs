@@ -203,7 +203,7 @@ fn short(share: f64) -> String {
 mod tests {
     use super::*;
     use crate::Says;
-    use jointscope_diagnosis::{Departure, DiagnosisOptions, ErrorIntervals, Finding};
+    use jointscope_diagnosis::{Departure, DiagnosisOptions, ErrorIntervals, Evidence, Finding};
     use jointscope_findings::Estimate;
     use jointscope_fixture::{Effect, EffectKind, Fixture, Place, StatedError};
     use jointscope_lumped::{Instrument, synthesize};
@@ -245,8 +245,7 @@ mod tests {
                 .collect(),
             probability,
             alternatives: Vec::new(),
-            gain: 70.0,
-            measured: None,
+            evidence: Evidence { gain: 70.0, measured: None },
         }
     }
 

@@ -1,14 +1,20 @@
 //! Numbers and lists as they are spoken.
 
+use crate::format::minus;
 use std::fmt;
 
 /// `a`, `a and b`, `a, b and c`.
-pub(crate) fn listed(items: &[String]) -> String {
+pub fn listed(items: &[String]) -> String {
     match items {
         [] => String::new(),
         [only] => only.clone(),
         [most @ .., last] => format!("{} and {last}", most.join(", ")),
     }
+}
+
+/// `1 line`, `2 lines`.
+pub fn counted(count: usize, what: &str) -> String {
+    format!("{count} {what}{}", if count == 1 { "" } else { "s" })
 }
 
 /// Factor from SI to the prefixed unit in which a magnitude is spoken of, and that unit.
@@ -61,12 +67,7 @@ pub(crate) fn rounded(value: f64, decimals: i32) -> String {
     // Negative decimals round to tens and hundreds.
     let step = 10f64.powi(-decimals.min(0));
     let value = if step > 1.0 { (value / step).round() * step } else { value };
-    let text = format!("{value:.*}", decimals.clamp(0, 9) as usize);
-    match text.strip_prefix('-') {
-        Some(digits) if digits.chars().all(|c| matches!(c, '0' | '.')) => digits.to_owned(),
-        Some(digits) => format!("−{digits}"),
-        None => text,
-    }
+    minus(&format!("{value:.*}", decimals.clamp(0, 9) as usize))
 }
 
 /// χ² per degree of freedom: three digits, no decimals once they mean nothing.
@@ -95,7 +96,8 @@ impl fmt::Display for Short {
     }
 }
 
-pub(crate) fn capitalised(text: &str) -> String {
+/// A text with its first letter as a capital.
+pub fn capitalised(text: &str) -> String {
     let mut letters = text.chars();
     letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
 }

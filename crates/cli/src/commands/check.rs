@@ -168,10 +168,10 @@ fn of_recording(recording: &jointscope::check::RecordingCheck) -> Vec<String> {
     }
     match (&recording.mass_line, &recording.no_mass_line) {
         (Some(line), _) => {
-            let told = line.mass.map_or("does not tell the total mass".to_owned(), |mass| {
+            let total = line.mass.map_or("does not tell the total mass".to_owned(), |mass| {
                 format!("weighs {}", quantity(mass.value, mass.std, mass.unit))
             });
-            lines.push(format!("from {:.1} to {:.1} Hz the recording {told}", line.band.0, line.band.1));
+            lines.push(format!("from {:.1} to {:.1} Hz the recording {total}", line.band.0, line.band.1));
         }
         (None, Some(why)) => lines.push(format!("mass line not judged: {why}")),
         (None, None) => {}

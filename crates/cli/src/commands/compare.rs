@@ -3,10 +3,10 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use jointscope::comparison::{
-    Comparison, ComparisonOptions, Decomposed, Pair, Specimens, comparison_file, says,
-};
+use jointscope::comparison::{Comparison, ComparisonOptions, Decomposed};
+use jointscope::comparison_file;
 use jointscope::report::comparison_report;
+use jointscope::wording::Summary;
 
 use crate::answered::{Answered, Destination, PAGE};
 use crate::input;
@@ -114,53 +114,13 @@ pub fn run(arguments: &CompareArguments) -> Result<String, Refusal> {
         elsewhere: Vec::new(),
         report: comparison_report(&comparison, &context),
         frfs: Vec::new(),
-        summary: summary(&comparison),
+        summary: comparison.summary(),
         notes: context.notes,
     };
     answered.end(&arguments.destination, &files)
 }
 
 const FILE: &str = "comparison.json";
-
-/// What was found, a line each: what to mind first.
-fn summary(comparison: &Comparison) -> Vec<String> {
-    let mut lines: Vec<String> =
-        comparison.cautions.iter().map(|c| format!("caution: {}", c.says())).collect();
-    lines.push(format!("by {}", comparison.estimate_words()));
-    lines.extend(says::shared(comparison));
-    for pair in says::main_pairs(comparison) {
-        lines.extend(paired(pair));
-    }
-    lines.push("from the smallest magnitude to the largest:".to_owned());
-    lines.extend(comparison.rankings.iter().map(|entry| {
-        let order: Vec<&str> =
-            entry.ranking.order.iter().map(|i| comparison.joints[*i].name.as_str()).collect();
-        // No order is certain.
-        let right = match entry.ranking.probability {
-            _ if !entry.has_deviations => "nothing tells how sure that is".to_owned(),
-            p if p > 0.999 => "right with a probability of more than 0.999".to_owned(),
-            p => format!("right with a probability of {p:.3}"),
-        };
-        format!("{}: {} ({right})", entry.number().name(), order.join(" < "))
-    }));
-    lines.extend(comparison.specimens.iter().flat_map(scatter));
-    lines
-}
-
-fn paired(pair: &Pair) -> Vec<String> {
-    let ratios = pair.numbers.iter().filter_map(|number| {
-        let ratio = number.ratio?;
-        Some(format!("{}: {} is {} of {}", number.element, pair.second, says::percents(&ratio), pair.first))
-    });
-    let equality = pair.equality.map(|equality| says::equality(&equality, [&pair.first, &pair.second]));
-    ratios.chain(equality).collect()
-}
-
-fn scatter(specimens: &Specimens) -> Vec<String> {
-    let head = format!("{}: {} specimens", specimens.name, specimens.joints.len());
-    let lines = specimens.numbers.iter().map(says::scatter);
-    std::iter::once(head).chain(lines.map(|line| format!("  {line}"))).collect()
-}
 
 /// The directories' last names; the whole paths of those that share one.
 fn names(directories: &[PathBuf]) -> Vec<String> {

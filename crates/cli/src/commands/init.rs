@@ -96,11 +96,11 @@ pub fn run(arguments: &InitArguments) -> Result<String, Refusal> {
     outputs.add(&arguments.output, fixture.to_json());
     outputs.write()?;
     let path = arguments.output.display();
-    let mut told = vec![format!("{path}: {}, {} points", fixture.name(), fixture.points().len())];
-    told.extend(fixture.notes().iter().map(|note| format!("  {note}")));
-    told.extend(lines);
-    told.push(format!("next: jointscope check {path}"));
-    Ok(told.join("\n"))
+    let mut answer = vec![format!("{path}: {}, {} points", fixture.name(), fixture.points().len())];
+    answer.extend(fixture.notes().iter().map(|note| format!("  {note}")));
+    answer.extend(lines);
+    answer.push(format!("next: jointscope check {path}"));
+    Ok(answer.join("\n"))
 }
 
 fn structure(arguments: &InitArguments) -> Result<Structure, Refusal> {

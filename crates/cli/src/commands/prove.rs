@@ -59,9 +59,9 @@ pub fn run(arguments: &ProveArguments) -> Result<String, Refusal> {
     let mut truths: Opened = truths.into_iter().collect();
     let judged = {
         let bar = progress::cases(concealed.cases.laboratory.len(), "judged");
-        let told = |done: usize| bar.set_position(done as u64);
+        let progress = |done: usize| bar.set_position(done as u64);
         let own = std::mem::take(&mut truths.laboratory);
-        Judged::all(&concealed.cases.laboratory, own, &answers.laboratory, threads, told)
+        Judged::all(&concealed.cases.laboratory, own, &answers.laboratory, threads, progress)
     };
     let routes = {
         let cases = &concealed.cases;
@@ -145,9 +145,9 @@ fn plans(arguments: &ProveArguments, wanted: usize) -> Result<String, Refusal> {
         outputs.check()?;
     }
     let bar = progress::cases(wanted, "planned");
-    let told = |done: usize| bar.set_position(done as u64);
-    let planning =
-        Planning::of(wanted, arguments.seed.unwrap_or(1), arguments.workers(), told).map_err(Refusal::new)?;
+    let progress = |done: usize| bar.set_position(done as u64);
+    let planning = Planning::of(wanted, arguments.seed.unwrap_or(1), arguments.workers(), progress)
+        .map_err(Refusal::new)?;
     drop(bar);
     let value = json!(planning);
     if let Some(path) = path {

@@ -1,10 +1,10 @@
 //! Whether physics allows the joint found: reciprocal, never giving out energy, at rest without load.
 
-use super::EXPLAINED;
 use super::law::{Dynamics, Form};
 use super::problem::{Fitted, Point, Problem};
 use super::uncertainty::strain;
-use jointscope_inference::{Covariance, NormalEquations};
+use crate::likelihood::EXPLAINED;
+use jointscope_inference::{Covariance, NormalEquations, SIGNIFICANT};
 use serde::Serialize;
 use std::f64::consts::SQRT_2;
 
@@ -21,13 +21,15 @@ pub struct JointTests {
 }
 
 impl JointTests {
-    /// Probability below which a test fails.
-    pub const FAILED: f64 = 0.05;
+    /// Whether a test of this probability fails.
+    pub fn fails(p: f64) -> bool {
+        p < SIGNIFICANT
+    }
 
     /// Names of the tests that fail.
     pub fn failed(&self) -> Vec<&'static str> {
         let all = [("reciprocity", self.reciprocity), ("definite", self.definite), ("passive", self.passive)];
-        all.into_iter().filter(|(_, p)| p.is_some_and(|p| p < Self::FAILED)).map(|(name, _)| name).collect()
+        all.into_iter().filter(|(_, p)| p.is_some_and(Self::fails)).map(|(name, _)| name).collect()
     }
 }
 

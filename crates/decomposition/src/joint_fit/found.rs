@@ -1,5 +1,6 @@
 //! What a fit of the joint finds.
 
+use super::laws::CERTAIN;
 use super::{Admissible, JointLikelihood, JointTests, LawFit, LawKind};
 use jointscope_linalg::{Matrix2, RealMatrix2};
 use jointscope_spectra::{FrfPair, FrfSet};
@@ -109,6 +110,13 @@ pub struct FittedQuantity {
     pub deviations: f64,
 }
 
+impl FittedQuantity {
+    /// Whether the FRFs move it farther than chance takes one of a few quantities.
+    pub fn is_far(&self) -> bool {
+        self.std.is_some() && jointscope_tolerances::is_far(self.deviations)
+    }
+}
+
 /// An uncertain quantity of the fixture that the FRFs tell nothing of.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct UnmovedQuantity {
@@ -174,6 +182,12 @@ impl JointFit {
             + 2.0 * by[0] * by[1] * covariance(of_k, of_c)
             + by[1] * by[1] * covariance(of_c, of_c);
         Some((loss, variance.max(0.0).sqrt()))
+    }
+
+    /// Whether the laws compared leave no doubt of the joint's mass, or of its having none.
+    pub fn has_certain_mass(&self) -> bool {
+        let with_mass = self.laws.iter().filter(|law| law.mass.is_some());
+        with_mass.map(|law| law.probability).sum::<f64>() >= CERTAIN
     }
 
     /// The most probable law, if laws were compared.

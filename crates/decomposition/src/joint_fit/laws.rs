@@ -31,7 +31,15 @@ pub struct LawFit {
     coordinates: Vec<f64>,
 }
 
+/// Probability from which a law, or the mass of a joint, is said to hold, rather than to be the most probable one.
+pub(super) const CERTAIN: f64 = 0.95;
+
 impl LawFit {
+    /// Whether it is said to hold, rather than to be the most probable of the laws compared.
+    pub fn is_certain(&self) -> bool {
+        self.probability >= CERTAIN
+    }
+
     /// A law at these coordinates of its own.
     pub(super) fn of(law: &Dynamics, own: &[f64], objective: f64, mass: Option<f64>) -> Self {
         let [k, d, l] = law.matrices(own);

@@ -5,7 +5,6 @@ use super::law::{Dynamics, Form};
 use super::laws::Spread;
 use super::likelihood::ELEMENTS;
 use super::problem::{Fitted, Problem};
-use super::quantities::Uncertain;
 use super::uncertainty::{length_between, strain, total, units};
 use super::{
     FittedFrfs, FittedQuantity, Followed, JointFit, JointLikelihood, JointTests, LawFit, SeveralError,
@@ -13,6 +12,7 @@ use super::{
 };
 use jointscope_inference::{Covariance, NormalEquations};
 use jointscope_linalg::Cholesky;
+use jointscope_tolerances::Tolerance;
 use std::sync::Arc;
 
 /// What a model that does not explain the FRFs does to their noise.
@@ -45,7 +45,7 @@ impl Inflated {
 /// A finished fit of joints by the laws that they follow, and what else is known of it.
 pub(super) struct Outcome<'a> {
     pub problem: &'a Problem<'a>,
-    pub unmoved: &'a [Uncertain],
+    pub unmoved: &'a [Tolerance],
     pub inflated: &'a Inflated,
     /// By joint.
     pub laws: Vec<Vec<LawFit>>,
@@ -121,7 +121,7 @@ impl Outcome<'_> {
         };
         let quantities = self.quantities(&at.point.coordinates, &total);
         let unmoved: Vec<UnmovedQuantity> =
-            self.unmoved.iter().map(|own| own.unmoved(setup.fixture)).collect();
+            self.unmoved.iter().map(|own| UnmovedQuantity::of(own, setup.fixture)).collect();
         let (measured, modelled) = (setup.recorded.frfs.clone(), at.point.predicted.clone());
         let fitted = Arc::new(FittedFrfs { measured, modelled });
         let joints = problem.places().zip(&self.laws).enumerate().map(|(place, ((first, law), laws))| {
@@ -232,8 +232,8 @@ impl Outcome<'_> {
 
     fn quantities(&self, at: &[f64], total: &Covariance) -> Vec<FittedQuantity> {
         let (own, test) = (self.problem.own(), &self.problem.test);
-        let of = |(index, uncertain): (usize, &Uncertain)| {
-            uncertain.fitted(test.setup.fixture, at[own + index], total.std(own + index))
+        let of = |(index, tolerance): (usize, &Tolerance)| {
+            FittedQuantity::of(tolerance, test.setup.fixture, at[own + index], total.std(own + index))
         };
         test.quantities.iter().enumerate().map(of).collect()
     }

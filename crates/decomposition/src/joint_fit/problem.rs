@@ -1,7 +1,6 @@
 //! The fit itself: the coordinates of every joint's law, perhaps the first joint's mass, and the fixture's uncertain quantities.
 
 use super::law::{Dynamics, Placed};
-use super::quantities::{Uncertain, moved};
 use super::recorded::Recorded;
 use super::uncertainty::jackknifed_by;
 use super::uncoupled::Uncoupled;
@@ -10,6 +9,7 @@ use jointscope_fixture::Fixture;
 use jointscope_inference::{
     Convergence, Covariance, Damping, LeastSquares, NormalEquations, Parameter, Precision, Settings, descend,
 };
+use jointscope_tolerances::{Tolerance, moved};
 use num_complex::Complex64;
 use std::sync::Arc;
 
@@ -28,7 +28,7 @@ pub(super) struct Setup<'a> {
 #[derive(Clone, Copy)]
 pub(super) struct Test<'a> {
     pub setup: Setup<'a>,
-    pub quantities: &'a [Uncertain],
+    pub quantities: &'a [Tolerance],
     /// 2/σ², divided by what the model's error inflates the noise by.
     pub weights: &'a [f64],
 }

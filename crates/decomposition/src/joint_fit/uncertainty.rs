@@ -2,9 +2,9 @@
 
 use super::FittedLength;
 use super::law::Dynamics;
-use super::quantities::Uncertain;
 use jointscope_fixture::{Fixture, Joint, QuantityKey, QuantityOwner};
 use jointscope_inference::{Covariance, Parameter, jackknife};
+use jointscope_tolerances::Tolerance;
 use statrs::function::gamma::gamma_ur;
 
 /// Blocks of neighbouring lines that the jackknife leaves out in turn.
@@ -20,7 +20,7 @@ pub(super) fn units(law: &Dynamics) -> [f64; 6] {
 /// A joint's length, to which K is tied by the ends' places: from the quantities and all coordinates, of which the first `own` are not quantities', and K's begin at `first`.
 pub(super) fn length_between(
     (fixture, joint): (&Fixture, &Joint),
-    (quantities, coordinates): (&[Uncertain], &[f64]),
+    (quantities, coordinates): (&[Tolerance], &[f64]),
     (own, first, law): (usize, usize, &Dynamics),
     covariance: &Covariance,
 ) -> FittedLength {

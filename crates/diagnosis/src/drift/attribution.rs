@@ -3,6 +3,7 @@
 use super::table::{Cell, Fit, Table, chance};
 use super::{Drifted, ModeDrift, ReferenceChange, TestDrift};
 use jointscope_fixture::{BodyKind, Effect, EffectKind, Fixture, Place};
+use jointscope_inference::interval95;
 use jointscope_model_error::{ModelledModes, Pairing, RecordedModes};
 use std::f64::consts::TAU;
 
@@ -17,8 +18,6 @@ const EXPLAINS: f64 = 0.01;
 const NAMED: f64 = 0.9;
 /// Fits of one stiffness: the deviation of shares counts in proportion to the change.
 const ROUNDS: usize = 4;
-/// Normal quantile of an interval of 95 %.
-const QUANTILE: f64 = 1.959_964;
 const ALL: &str = "all stiffnesses";
 
 /// A stiffness with its share in each mode of the table: 2·d ln ω/d ln k.
@@ -66,7 +65,7 @@ pub(super) fn attributed(drifted: &Drifted, model: &Fixture, explains: bool) -> 
             reference: reference.clone(),
             change: ln.exp_m1(),
             std: ln.exp() * deviation,
-            ci95: [(ln - QUANTILE * deviation).exp_m1(), (ln + QUANTILE * deviation).exp_m1()],
+            ci95: interval95(ln, deviation).map(f64::exp_m1),
             kept: kept[index],
         }
     };

@@ -3,7 +3,7 @@
 use crate::catalogue::{Candidate, with_wrong_quantities};
 use crate::estimates::estimates;
 use crate::evidence::{deviates_by_chance, excess, explained};
-use crate::finding::{Finding, Tried};
+use crate::finding::{Evidence, Finding, Tried};
 use crate::fit::Fit;
 use crate::fitter::Fitter;
 use crate::modal::changes::States;
@@ -396,14 +396,16 @@ impl ModalJudgement {
                 estimates: estimates(hypothesis, index, &effect, covariance.as_ref(), 1.0),
                 probability: names.iter().find(|(c, _, _)| own(*c)).map_or(0.0, |(_, p, _)| *p),
                 alternatives: names.iter().filter_map(other).collect(),
-                gain: 2.0 * (self.search.best.fit.ln - self.search.without[index]),
-                measured: None,
+                evidence: Evidence {
+                    gain: 2.0 * (self.search.best.fit.ln - self.search.without[index]),
+                    measured: None,
+                },
                 effect,
             })
         };
         let mut all: Vec<Finding> =
             hypothesis.effects().into_iter().enumerate().filter_map(finding).collect();
-        all.sort_by(|a, b| b.gain.total_cmp(&a.gain));
+        all.sort_by(|a, b| b.evidence.gain.total_cmp(&a.evidence.gain));
         all
     }
 }

@@ -22,6 +22,7 @@ const FLOORS: [&[&str]; 12] = [
         "jointscope-recordings",
         "jointscope-schema",
         "jointscope-draft",
+        "jointscope-tolerances",
     ],
     &["jointscope-fem", "jointscope-lumped", "jointscope-modes", "jointscope-rig"],
     &[

@@ -12,6 +12,7 @@ use serde::Serialize;
 /// Where a body's motion is known from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
+#[non_exhaustive]
 pub enum MotionSource {
     /// Its own sensors.
     Sensors,

@@ -20,6 +20,7 @@ use std::ops::{Mul, Sub};
 /// it. The relative motion d = u_to − R·u_from is integrated from accelerations by 1/(iω)²; below `band.0`, where that drifts, it is
 /// the simulated fixture's.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct ForceStateMap {
     /// The joint.
     pub joint: String,

@@ -8,26 +8,19 @@ use super::locations::{JointLocation, locations};
 use super::records::{Record, held_out, records};
 use super::search::{Search, Span};
 use crate::{DiagnoseError, ForceStateError, ForceStateMap, SimulationError};
-use jointscope_findings::{Estimate, HeldOut, Verdict};
-use jointscope_fixture::{BodyKind, Dof, Effect, Fixture, NamedQuantity};
+use jointscope_findings::{Finding, HeldOut, Verdict};
+use jointscope_fixture::{BodyKind, Dof, Fixture, NamedQuantity};
 use jointscope_hits::{Fourier, Hit};
 use jointscope_lumped::{Assembly, StateSpace};
 use serde::Serialize;
 
 /// A law that the hits need.
+pub type HitFinding = Finding<HitEvidence>;
+
+/// What hits tell of a law beyond its name, size and probability.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Finding {
-    /// Kind, joint, dof and parameters.
-    #[serde(flatten, serialize_with = "jointscope_findings::effect_name")]
-    pub effect: Effect,
-    /// Parameters with their uncertainty.
-    #[serde(rename = "parameters", serialize_with = "jointscope_findings::parameters")]
-    pub estimates: Vec<Estimate>,
-    /// Probability of kind, joint and dof together.
-    pub probability: f64,
-    /// Other names for it, the most probable first.
-    #[serde(serialize_with = "jointscope_findings::alternatives")]
-    pub alternatives: Vec<(Effect, f64)>,
+#[non_exhaustive]
+pub struct HitEvidence {
     /// What χ² and priors lose without it.
     #[serde(rename = "gain_chi2")]
     pub gain: f64,
@@ -38,6 +31,7 @@ pub struct Finding {
 
 /// A fixture and how well it follows the recorded responses.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct ModelFit {
     /// The fixture at its fitted quantities.
     pub fixture: Fixture,
@@ -75,13 +69,14 @@ pub struct NonlinearOptions {
 
 /// The diagnosis of a joint from hits of several strengths.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct NonlinearDiagnosis {
     /// What it comes to.
     pub verdict: Verdict,
     /// Whether FRFs change with the strength of the hits.
     pub homogeneity: Homogeneity,
     /// The laws found, the strongest first.
-    pub findings: Vec<Finding>,
+    pub findings: Vec<HitFinding>,
     /// The file's fixture, the refitted one without laws, the repaired one; `None` where nothing changes with amplitude.
     pub models: Option<[ModelFit; 3]>,
     /// The judgement on hits that no fit saw.

@@ -13,6 +13,7 @@ use std::collections::BTreeSet;
 
 /// What the comparison of levels came to.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct Homogeneity {
     /// Probability of a difference as large by chance, of a linear structure.
     pub p_value: f64,
@@ -39,7 +40,7 @@ pub struct HitLevel {
 }
 
 /// p-value below which FRFs are said to change with level.
-pub const CHANGED: f64 = 2e-3;
+pub(crate) const CHANGED: f64 = 2e-3;
 
 /// e^{−aT} of the window over the record.
 const WINDOW: f64 = 10.0;

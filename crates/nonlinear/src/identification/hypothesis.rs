@@ -5,14 +5,15 @@ use jointscope_fixture::{
     Effect, Fixture, FixtureError, NamedQuantity, Nature, Quantity, QuantityOwner, SupportPlace,
 };
 use jointscope_inference::{Parameter, Transform};
+use jointscope_tolerances::{Tolerance, moved};
 use std::sync::Arc;
 
 /// A fixture with quantities and effects to be fitted, at coordinates in units of which one is a typical step.
 #[derive(Debug, Clone)]
 pub(crate) struct Hypothesis {
     fixture: Arc<Fixture>,
-    /// The quantities that may move, each with its position among the fixture's.
-    pub quantities: Arc<[(usize, NamedQuantity)]>,
+    /// The quantities that may move.
+    pub quantities: Arc<[Tolerance]>,
     /// Amplitude-dependent effects beyond the fixture's, as they were added.
     effects: Vec<Effect>,
     /// Of the quantities, then of the effects.
@@ -28,12 +29,12 @@ const LONGEST_OF_EFFECT: f64 = 0.4;
 impl Hypothesis {
     /// The fixture as stated. Points that no joint, support or channel uses stay where they are.
     pub fn nominal(fixture: &Fixture, exact: bool, channels: &[String]) -> Self {
-        let mut quantities = fixture.uncertain_quantities(exact);
-        quantities.retain(|(_, quantity)| is_used(fixture, quantity, channels));
+        let mut quantities = Tolerance::all(fixture, exact);
+        quantities.retain(|tolerance| is_used(fixture, &tolerance.quantity, channels));
         Hypothesis {
             fixture: Arc::new(fixture.clone()),
             effects: Vec::new(),
-            parameters: quantities.iter().map(|(_, quantity)| parameter(quantity)).collect(),
+            parameters: quantities.iter().map(|tolerance| tolerance.parameter).collect(),
             coordinates: vec![0.0; quantities.len()],
             quantities: quantities.into(),
         }
@@ -89,12 +90,13 @@ impl Hypothesis {
 
     /// Step of coordinate `index` for a difference quotient.
     pub fn difference(&self, index: usize) -> f64 {
-        let Some((_, quantity)) = self.quantities.get(index) else { return 1e-3 };
+        let Some(Tolerance { quantity, parameter, .. }) = self.quantities.get(index) else { return 1e-3 };
+        let unit = parameter.transform.slope(quantity.value);
         match quantity.nature {
             Nature::Damping => 0.02,
-            Nature::Abscissa => 2e-6 / scale(quantity),
+            Nature::Abscissa => 2e-6 / unit,
             // A step of 2e-5 of a size is felt by no phase, and is far above rounding.
-            _ => (2e-5 * quantity.value.abs() / scale(quantity)).clamp(1e-6, 0.1),
+            _ => (2e-5 * quantity.value.abs() / unit).clamp(1e-6, 0.1),
         }
     }
 
@@ -116,11 +118,7 @@ impl Hypothesis {
 
     /// The fixture at these coordinates, the effects in its physics.
     pub fn to_fixture(&self) -> Result<Fixture, FixtureError> {
-        let mut fixture = Fixture::clone(&self.fixture);
-        let values = self.quantities.iter().zip(&self.parameters).zip(&self.coordinates);
-        fixture.set_quantities(
-            values.filter_map(|(((index, _), p), at)| Some((*index, p.transform.value(*at)?))),
-        );
+        let fixture = moved(&self.fixture, &self.quantities, &self.coordinates);
         let physics = [fixture.physics(), &self.effects()].concat();
         fixture.with_physics(physics)
     }
@@ -139,22 +137,6 @@ fn transforms(effect: &Effect) -> Vec<Transform> {
         false => Transform::Linear { centre: 0.0, scale: quantity.value.abs().max(f64::MIN_POSITIVE) },
     };
     effect.parameters.iter().map(transform).collect()
-}
-
-/// A typical change of a quantity: its standard deviation, a tenth of the value where it is free.
-fn scale(quantity: &NamedQuantity) -> f64 {
-    quantity.std.unwrap_or(if quantity.value != 0.0 { 0.1 * quantity.value.abs() } else { 1.0 })
-}
-
-/// How a quantity moves: in standard deviations (tenths of the value where it is free), damping not below zero.
-fn parameter(quantity: &NamedQuantity) -> Parameter {
-    let (centre, scale) = (quantity.value, scale(quantity));
-    let parameter = Parameter::new(Transform::Linear { centre, scale })
-        .with_precision(if quantity.std.is_some() { 1.0 } else { 0.0 });
-    match quantity.nature == Nature::Damping && centre > 0.0 {
-        true => parameter.between(-centre / scale, f64::INFINITY),
-        false => parameter,
-    }
 }
 
 /// Whether a quantity enters the model: of the points, those at which something is joined, held, struck or read.

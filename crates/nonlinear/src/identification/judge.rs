@@ -1,6 +1,6 @@
 //! What the laws found come to: quantities from all hits, what each law is known to, and how hits fare that no fit saw.
 
-use super::diagnosis::{Finding, ModelFit};
+use super::diagnosis::{HitEvidence, HitFinding, ModelFit};
 use super::fit::Fit;
 use super::horizon::horizons;
 use super::hypothesis::Hypothesis;
@@ -38,7 +38,7 @@ pub(super) struct Judgement<'a> {
 /// What it comes to.
 pub(super) struct Judged {
     pub verdict: Verdict,
-    pub findings: Vec<Finding>,
+    pub findings: Vec<HitFinding>,
     /// As stated, refitted without laws, repaired.
     pub models: [ModelFit; 3],
     pub held_out: Option<HeldOut>,
@@ -66,7 +66,7 @@ impl Judgement<'_> {
             false => self.of_all(&[focus, fine], [&everything, &slopes], best)?,
         };
         let model = |hypothesis: &Hypothesis, chi2: f64| {
-            let quantities = hypothesis.quantities.iter().map(|(_, quantity)| quantity.clone());
+            let quantities = hypothesis.quantities.iter().map(|tolerance| tolerance.quantity.clone());
             Some(ModelFit {
                 fixture: hypothesis.to_fixture().ok()?,
                 nrmse: everything.nrmse(hypothesis)?,
@@ -131,7 +131,7 @@ impl Judgement<'_> {
         ended.chain(self.span.periods.map(|periods| self.search.time_s(periods))).reduce(f64::min)
     }
 
-    fn findings(&self, repaired: &Fit, steps: &[Step], chi2_per_dof: f64) -> Vec<Finding> {
+    fn findings(&self, repaired: &Fit, steps: &[Step], chi2_per_dof: f64) -> Vec<HitFinding> {
         let hypothesis = &repaired.hypothesis;
         let covariance = repaired.covariance(chi2_per_dof.max(1.0));
         let records: Vec<&Record> = self.all.iter().collect();
@@ -151,12 +151,14 @@ impl Judgement<'_> {
             let mut reaches = reached
                 .iter()
                 .filter(|l| effect.dof == Some(l.dof) && effect.place == Place::Joint(l.joint.clone()));
-            Finding {
+            HitFinding {
                 estimates: estimates(&effect, &deviations, INEXACT),
                 probability,
                 alternatives,
-                gain: step.gain.max(0.0),
-                reach: reaches.next().map_or(0.0, |location| location.reach),
+                evidence: HitEvidence {
+                    gain: step.gain.max(0.0),
+                    reach: reaches.next().map_or(0.0, |location| location.reach),
+                },
                 effect,
             }
         };

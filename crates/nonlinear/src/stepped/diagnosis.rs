@@ -9,8 +9,8 @@ use super::problem::{Change, Level, Problem};
 use super::resonance::{Resonance, resonance};
 use crate::distribution::f_tail;
 use crate::{CHANGED, NonlinearOptions, SteppedError};
-use jointscope_findings::{Estimate, HeldOut, Verdict};
-use jointscope_fixture::{Effect, Fixture, QuantityKey, QuantityOwner};
+use jointscope_findings::{Finding, HeldOut, Verdict};
+use jointscope_fixture::{Fixture, QuantityKey, QuantityOwner};
 use jointscope_spectra::Dof;
 use rayon::prelude::*;
 use serde::{Serialize, Serializer};
@@ -18,6 +18,7 @@ use std::f64::consts::TAU;
 
 /// What one level shows.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct LevelResult {
     /// What was held.
     pub held: Held,
@@ -64,19 +65,12 @@ pub struct Tried {
 }
 
 /// A law that the levels need.
+pub type LevelFinding = Finding<LevelEvidence>;
+
+/// What levels tell of a law beyond its name, size and probability.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct LevelFinding {
-    /// Kind, joint, dof and parameters.
-    #[serde(flatten, serialize_with = "jointscope_findings::effect_name")]
-    pub effect: Effect,
-    /// Parameters with their uncertainty.
-    #[serde(rename = "parameters", serialize_with = "jointscope_findings::parameters")]
-    pub estimates: Vec<Estimate>,
-    /// Probability of kind, joint and dof together.
-    pub probability: f64,
-    /// Other names for it, the most probable first.
-    #[serde(serialize_with = "jointscope_findings::alternatives")]
-    pub alternatives: Vec<(Effect, f64)>,
+#[non_exhaustive]
+pub struct LevelEvidence {
     /// Share of the change with level that the laws found explain over the range.
     #[serde(rename = "share_explained")]
     pub share: f64,
@@ -87,6 +81,7 @@ pub struct LevelFinding {
 
 /// The diagnosis of stepped-sine FRFs at several levels.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct SteppedDiagnosis {
     /// What it comes to.
     pub verdict: Verdict,

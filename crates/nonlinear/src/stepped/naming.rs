@@ -1,6 +1,6 @@
 //! Laws as they are named: over which levels one holds, how sure, and with which parameters.
 
-use super::diagnosis::{LevelFinding, Tried};
+use super::diagnosis::{LevelEvidence, LevelFinding, Tried};
 use super::forms::{FORMS, Fitted, fitted, share};
 use super::problem::{BASE, Change, Problem};
 use super::tolerances::tolerance_variances;
@@ -154,8 +154,7 @@ impl Named {
                 estimates: estimates(&effect, &own, INEXACT),
                 effect,
                 alternatives,
-                share: self.share,
-                motions,
+                evidence: LevelEvidence { share: self.share, motions },
             }
         };
         self.fit.change.laws.iter().enumerate().map(finding).collect()

@@ -4,6 +4,7 @@ use jointscope_fixture::{Dof, Effect, EffectKind, Place};
 
 /// Force g (N, N·m) of a joint's amplitude-dependent part against its relative motion d (m, rad).
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub enum RestoringLaw {
     /// g = k₃·d³.
     Cubic {
@@ -91,7 +92,7 @@ impl RestoringLaw {
     }
 
     /// The effect of this law at a joint.
-    pub fn to_effect(self, joint: &str, dof: Dof) -> Effect {
+    pub(crate) fn to_effect(self, joint: &str, dof: Dof) -> Effect {
         Effect::new(self.kind(), Place::Joint(joint.to_owned()), Some(dof), &self.values())
     }
 

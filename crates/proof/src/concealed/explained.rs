@@ -47,9 +47,9 @@ impl Explained {
     }
 
     /// Diagnoses all cases of this recording, as [`Answers::by`]; the first control not again, where it is what has been diagnosed already.
-    pub fn answers(&self, cases: &[Case], threads: usize, told: impl Fn(usize) + Sync) -> Answers {
+    pub fn answers(&self, cases: &[Case], threads: usize, progress: impl Fn(usize) + Sync) -> Answers {
         let known = cases.first().zip(self.rounds.last().filter(|_| self.is_settled()));
-        Answers::by(cases, threads, told, |case| match known {
+        Answers::by(cases, threads, progress, |case| match known {
             Some((control, answer)) if control == case => Ok(answer.clone()),
             _ => Answer::of(case),
         })

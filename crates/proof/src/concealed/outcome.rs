@@ -5,7 +5,7 @@ use crate::{AS_GOOD, Answer, Found, Name, Size, VISIBLE};
 use jointscope_diagnosis::Verdict;
 
 /// Probability from which a name counts as stated with certainty.
-const CERTAIN: f64 = 0.9;
+const STATED_AS_CERTAIN: f64 = 0.9;
 
 /// What became of a case.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -89,7 +89,7 @@ pub(super) fn outcome(truth: &Concealed, answer: &Answer, own: &[Name], excess: 
         return Outcome::AsGood;
     }
     if truth.expected.is_empty() {
-        let certain = new.iter().any(|found| found.probability >= CERTAIN);
+        let certain = new.iter().any(|found| found.probability >= STATED_AS_CERTAIN);
         let says_so = matches!(answer.verdict, Verdict::PartlyExplained | Verdict::Unexplained);
         return match (certain, says_so || !new.is_empty()) {
             (true, _) => Outcome::Confused,

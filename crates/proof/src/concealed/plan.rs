@@ -30,6 +30,7 @@ impl Default for ConcealmentPlan {
 
 /// Why nothing can be concealed.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum ConcealmentError {
     /// There would be no concealment.
     #[error(

@@ -90,7 +90,7 @@ impl Display for Reckoned {
             writeln!(f, "{before}{}, probability {:.2}{own}", describe(&found.effect), found.probability)?;
         }
         for size in &self.sizes {
-            writeln!(f, "  {}", told(size))?;
+            writeln!(f, "  {}", size_line(size))?;
         }
         match (self.shows, self.left) {
             (Some(shows), Some(left)) => {
@@ -102,7 +102,7 @@ impl Display for Reckoned {
 }
 
 /// A size true and found, with what its interval says.
-fn told(size: &Size) -> String {
+fn size_line(size: &Size) -> String {
     let interval = match size.interval {
         Some([low, high]) => {
             let holds = if size.is_held() { "holds it" } else { "misses it" };

@@ -7,6 +7,7 @@ use serde_json::{Value, json};
 
 /// How something is concealed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[non_exhaustive]
 pub enum ConcealmentKind {
     /// An entry of the fixture is deleted: an effect of its `physics`, a known point mass, a support.
     Entry,
@@ -54,7 +55,7 @@ impl ConcealmentKind {
     }
 
     /// Whether the size of what is concealed is known apart from the recording: that of a deleted entry may itself have been found in it.
-    pub fn is_planted(self) -> bool {
+    pub(crate) fn is_planted(self) -> bool {
         self != ConcealmentKind::Entry
     }
 }

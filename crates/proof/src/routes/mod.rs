@@ -133,11 +133,11 @@ macro_rules! routes {
             pub fn to(
                 cases: &Questions,
                 threads: usize,
-                told: impl Fn(usize) + Sync,
+                progress: impl Fn(usize) + Sync,
                 watch: impl Fn(usize, &Diagnosed) + Sync,
             ) -> Self {
                 let asked: Vec<_> = cases.all().into_iter().enumerate().collect();
-                let replied = on_workers(&asked, threads, told, |(position, asked)| {
+                let replied = on_workers(&asked, threads, progress, |(position, asked)| {
                     let watch = |diagnosed: &Diagnosed| watch(*position, diagnosed);
                     match asked {
                         Asked::Frfs(case) => Replied::Frfs(Answers::one(case, watch)),
@@ -267,15 +267,15 @@ macro_rules! routes {
                 truths: Opened,
                 answers: &Replies,
                 threads: usize,
-                told: impl Fn(usize) + Sync,
+                progress: impl Fn(usize) + Sync,
             ) -> Self {
                 let done = AtomicUsize::new(0);
-                let told = |_: usize| told(done.fetch_add(1, Ordering::Relaxed) + 1);
+                let progress = |_: usize| progress(done.fetch_add(1, Ordering::Relaxed) + 1);
                 let mut scores = Vec::new();
                 $(if !cases.$key.is_empty() {
                     let score: fn(&[_]) -> (Sheet, Vec<SizeScore>) = $score;
                     let judge = $judge;
-                    let (sheet, sizes) = score(&judge(&cases.$key, truths.$key, &answers.$key, threads, &told));
+                    let (sheet, sizes) = score(&judge(&cases.$key, truths.$key, &answers.$key, threads, &progress));
                     scores.push(RouteScore { key: stringify!($key), what: $what, sheet, sizes });
                 })+
                 RouteScores(scores)

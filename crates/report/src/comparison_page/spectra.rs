@@ -1,6 +1,7 @@
 //! The spectra of all joints in common plots: K and C (Figures 5–9), and the assemblies' H41 (Figure 4).
 
 use jointscope_comparison::{Comparison, Decomposed, Kind, Line, Matrix};
+use jointscope_inference::Z95;
 
 use super::{elements, name_of};
 use crate::plot::{Axis, Plot, Role, Span, YRange};
@@ -73,7 +74,7 @@ fn plot(comparison: &Comparison, kind: Kind, element: (usize, usize)) -> Plot {
         let edge = |sign: f64| {
             joint.lines.iter().map(move |line| {
                 let (k, c) = line.std?;
-                Some(of(&line.stiffness, &line.damping) + sign * 1.96 * of(&k, &c))
+                Some(of(&line.stiffness, &line.damping) + sign * Z95 * of(&k, &c))
             })
         };
         if joint.lines.iter().any(|line| line.std.is_some()) {

@@ -2,17 +2,15 @@
 
 use jointscope_decomposition::{FittedQuantity, JointFit, JointTests, LawFit};
 use jointscope_fixture::Fixture;
-use jointscope_wording::{Remarks, Says};
+use jointscope_wording::{Remarks, Says, capitalised};
 
 use super::Subject;
-use crate::format::{capitalised, quantity, significant};
+use crate::format::{quantity, significant};
 use crate::section::{Block, Section, Tone};
 use crate::table::Table;
 
 /// Probability below which a law is left out of the table.
 const NEGLIGIBLE: f64 = 1e-3;
-/// Standard deviations beyond which a quantity is marked.
-const FAR: f64 = 2.0;
 
 pub(super) fn section(subject: &Subject) -> Option<Section> {
     let fit = subject.analysis.joint_fit.as_ref().ok()?;
@@ -72,7 +70,7 @@ pub(super) fn tests(tests: &JointTests) -> impl Into<Block> {
     Table::of(rows.into_iter().filter_map(|(what, p)| Some((what, p?))))
         .words("What physics asks of a joint", |(what, _)| (*what).to_owned())
         .numbers("p", "", |(_, p)| significant(*p, 2))
-        .marked(|(_, p)| (*p < JointTests::FAILED).then_some(Tone::Problem))
+        .marked(|(_, p)| JointTests::fails(*p).then_some(Tone::Problem))
         .caption("p: how often chance speaks as much against it, if it holds and the joint follows the law that k and c are of")
 }
 
@@ -90,6 +88,6 @@ pub(super) fn moved(fixture: &Fixture, fit: &JointFit) -> impl Into<Block> {
             Some(_) => significant(own.deviations, 2),
             None => "free".to_owned(),
         })
-        .marked(|(own, _)| (own.std.is_some() && own.deviations.abs() > FAR).then_some(Tone::Attention))
+        .marked(|(own, _)| own.is_far().then_some(Tone::Attention))
         .caption("What of the fixture the FRFs depend on, and where they take it")
 }

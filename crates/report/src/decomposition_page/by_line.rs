@@ -1,11 +1,12 @@
 //! K and C over the spectral lines.
 
 use jointscope_decomposition::{Analysis, Element, Estimate, Method, Part};
+use jointscope_inference::interval95;
 
 use super::Subject;
-use super::element::{meaning, symbol, unit};
 use crate::plot::{Axis, Plot, Role, Span, YRange};
 use crate::section::Section;
+use jointscope_wording::element::{meaning, symbol, unit};
 
 pub(super) fn sections(subject: &Subject) -> [Section; 2] {
     let columns = if subject.is_scalar() { 1 } else { 2 };
@@ -155,8 +156,9 @@ impl Columns {
             let column = if line.is_noisy() { &mut columns.noisy } else { &mut columns.quiet };
             column[line.line] = Some(value);
             if let Some(std) = std {
-                columns.low[line.line] = Some(value - 1.96 * std);
-                columns.high[line.line] = Some(value + 1.96 * std);
+                let [low, high] = interval95(value, std);
+                columns.low[line.line] = Some(low);
+                columns.high[line.line] = Some(high);
             }
         }
         for (line, nominal) in columns.nominal.iter_mut().enumerate() {

@@ -6,9 +6,9 @@ use jointscope_spectra::FrfSet;
 use num_complex::Complex64;
 
 use super::Subject;
-use super::element::index;
 use crate::plot::{Axis, Curve, FrfPanes, Plot, Role, Style, Values, YRange, over_unity};
 use crate::section::Section;
+use jointscope_wording::element::index;
 
 const UNITS: [&str; 4] = ["m/N", "m/(N*m)", "rad/N", "rad/(N*m)"];
 

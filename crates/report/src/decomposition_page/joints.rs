@@ -2,16 +2,16 @@
 
 use jointscope_decomposition::{Element, FoundJoint, JointsFit, Part};
 use jointscope_fixture::Fixture;
-use jointscope_wording::Remarks;
+use jointscope_wording::{Remarks, capitalised};
 
 use super::all_frfs::{laws, moved, tests};
-use super::element::{symbol, unit};
 use crate::context::PageContext;
 use crate::drawing::SideView;
-use crate::format::{capitalised, quantity, significant};
+use crate::format::{quantity, significant};
 use crate::report::Report;
 use crate::section::{Section, Tone, Verdict};
 use crate::table::Table;
+use jointscope_wording::element::{symbol, unit};
 
 /// Correlation of two numbers from which it is listed.
 const CORRELATED: f64 = 0.5;
@@ -41,8 +41,6 @@ pub fn joints_report(fit: &JointsFit, fixture: &Fixture, context: &PageContext) 
 }
 
 fn verdict(fit: &JointsFit) -> Verdict {
-    let explained = fit.joints.iter().all(|joint| joint.fit.explains());
-    let failed = fit.joints.iter().any(|joint| !joint.fit.tests.failed().is_empty());
     let stiffness = |joint: &FoundJoint| {
         let std = joint.fit.std().0.at(0, 0);
         format!("{}: k₁₁ = {}", joint.name, quantity(joint.fit.stiffness.at(0, 0), std, "N/m"))
@@ -58,7 +56,7 @@ fn verdict(fit: &JointsFit) -> Verdict {
         ));
     }
     Verdict {
-        tone: if explained && !failed { Tone::Ok } else { Tone::Attention },
+        tone: if fit.is_sound() { Tone::Ok } else { Tone::Attention },
         headline: format!("{}.", all.join("; ")),
         details,
     }

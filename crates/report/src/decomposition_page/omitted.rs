@@ -1,11 +1,11 @@
 //! What was left out, what was remarked, and how hard the lines are to decompose.
 
 use super::Subject;
-use super::verdict::plain;
 use crate::context::PageContext;
 use crate::plot::{Axis, Plot, Role, YRange};
 use crate::section::{Block, Section};
 use crate::table::Table;
+use jointscope_wording::decomposition::plain;
 
 pub(super) fn section(subject: &Subject, context: &PageContext) -> Section {
     let analysis = subject.analysis;

@@ -3,12 +3,12 @@
 use jointscope_decomposition::{Element, Estimate, Figure, Part};
 
 use super::Subject;
-use super::element::{meaning, method, symbol, unit};
-use super::verdict::{band, share};
 use crate::format::{in_parts, quantity, significant};
 use crate::section::{Card, Section, Tone};
 use crate::table::Table;
 use crate::unit::Scale;
+use jointscope_wording::decomposition::{band, share};
+use jointscope_wording::element::{meaning, method, symbol, unit};
 
 pub(super) fn section(subject: &Subject) -> Section {
     let likelihood = Estimate::maximum_likelihood(subject.analysis);
@@ -134,7 +134,7 @@ fn means_table(subject: &Subject, likelihood: Option<&Estimate>, all: Option<&Es
             "{} by {}: value ± noise (of the fit: and misfit) ± tolerances; means over {}, {} lines",
             if paper { "K and C" } else { "k and c" },
             subject.relation_words(),
-            band(subject),
+            band(subject.analysis),
             analysis.averages.lines
         ));
     if let Some(fit) = likelihood {

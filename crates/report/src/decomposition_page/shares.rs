@@ -5,10 +5,10 @@ use jointscope_fixture::{Dof, Fixture, NamedQuantity, Nature, QuantityKey as Key
 use jointscope_linalg::RealMatrix2;
 
 use super::Subject;
-use super::element::symbol;
 use crate::format::{NOT_DETERMINED, magnitude, significant};
 use crate::section::Section;
 use crate::table::Table;
+use jointscope_wording::element::symbol;
 
 /// Rows of the table.
 const SHOWN: usize = 8;

@@ -7,9 +7,6 @@ use crate::format::significant;
 use crate::section::{Section, Tone};
 use crate::table::Table;
 
-/// Standard deviations beyond which a change is more than noise.
-const CHANGED: f64 = 3.0;
-
 /// Standard deviation, %, below which none is told.
 const SMALLEST: f64 = 1e-3;
 
@@ -21,13 +18,13 @@ pub(super) fn section(subject: &Subject) -> Option<Section> {
     let numbered = baseline.modes.iter().enumerate();
     let mut table = Table::of(numbered)
         .words("Mode", |(index, _)| (index + 1).to_string())
-        .numbers("f, baseline", "Hz", |(_, mode)| told(mode.baseline.map(|s| frequency(&s)), 5))
-        .numbers("f, now", "Hz", |(_, mode)| told(mode.now.map(|s| frequency(&s)), 5))
+        .numbers("f, baseline", "Hz", |(_, mode)| or_dash(mode.baseline.map(|s| frequency(&s)), 5))
+        .numbers("f, now", "Hz", |(_, mode)| or_dash(mode.now.map(|s| frequency(&s)), 5))
         .numbers("Δf", "%", |(_, mode)| change(mode, frequency));
     if found {
         table = table.numbers("Δf, predicted", "%", |(_, mode)| predicted(mode, frequency));
     }
-    let in_percent = |state: Option<ModeState>| told(state.map(|s| 100.0 * damping(&s)), 3);
+    let in_percent = |state: Option<ModeState>| or_dash(state.map(|s| 100.0 * damping(&s)), 3);
     table = table
         .numbers("ζ, baseline", "%", |(_, mode)| in_percent(mode.baseline))
         .numbers("ζ, now", "%", |(_, mode)| in_percent(mode.now))
@@ -35,7 +32,7 @@ pub(super) fn section(subject: &Subject) -> Option<Section> {
     if found {
         table = table.numbers("Δζ, predicted", "%", |(_, mode)| predicted(mode, damping));
     }
-    let table = table.marked(|(_, mode)| has_changed(mode).then_some(Tone::Attention)).footnote(
+    let table = table.marked(|(_, mode)| mode.has_changed().then_some(Tone::Attention)).footnote(
         "f: natural frequency; ζ: damping ratio. Changes Δ are relative, with the standard deviation that the noise of both recordings gives them. Marked: a frequency or damping ratio \
          that has changed by more than three of them, which a repetition of the test may do as well. A mode that the \
          model does not have is taken for the same where its frequency is nearest.",
@@ -48,14 +45,7 @@ pub(super) fn section(subject: &Subject) -> Option<Section> {
     Some(Section::new("Modes, baseline and now").paragraph(words).with(table))
 }
 
-fn has_changed(mode: &ModeChange) -> bool {
-    let beyond = |change: f64, std: f64| change.abs() > CHANGED * std;
-    mode.change.zip(mode.change_std).is_some_and(|(change, std)| {
-        beyond(change.frequency, std.frequency) || beyond(change.damping_ratio, std.damping_ratio)
-    })
-}
-
-fn told(value: Option<f64>, digits: usize) -> String {
+fn or_dash(value: Option<f64>, digits: usize) -> String {
     value.map_or_else(|| "–".to_owned(), |value| significant(value, digits))
 }
 

@@ -2,6 +2,7 @@
 
 use jointscope_diagnosis::{Finding, LawFit, LawParameter, LineEstimate, Location, Site};
 use jointscope_fixture::EffectKind;
+use jointscope_inference::Z95;
 use jointscope_wording::{Says, effect_name};
 use num_complex::Complex64;
 
@@ -23,7 +24,7 @@ pub(super) fn section(subject: &Subject) -> Option<Section> {
         .findings
         .iter()
         .enumerate()
-        .filter_map(|(index, finding)| Some((index, finding, finding.measured.as_ref()?)))
+        .filter_map(|(index, finding)| Some((index, finding, finding.evidence.measured.as_ref()?)))
         .filter(|(_, _, location)| !location.delta.is_empty())
         .collect();
     // Only what has no name is drawn without a law.
@@ -103,7 +104,7 @@ fn panes(title: &str, location: &Location, law: Option<Curve>) -> [Plot; 2] {
 
 fn pane(title: &str, part: &str, of: Part, location: &Location, law: Option<&Curve>) -> Plot {
     let known: Vec<&LineEstimate> = known(location).collect();
-    let edge = |times: f64| known.iter().map(move |d| of(d.value) + times * 1.96 * d.std);
+    let edge = |times: f64| known.iter().map(move |d| of(d.value) + times * Z95 * d.std);
     let curve = law.map(|(formula, values)| (formula, values.iter().map(|v| of(*v)).collect::<Vec<f64>>()));
     let delta = Axis::linear(format!("{part} δ"), location.site.unit());
     let mut plot = Plot::new(title, Axis::frequency(), delta)

@@ -78,7 +78,7 @@ fn parameters(subject: &Subject) -> impl Into<Block> {
             finding.map_or(String::new(), |(_, finding)| chance(finding.probability))
         })
         .numbers(gained, "", |(finding, _)| {
-            finding.map_or(String::new(), |(_, finding)| significant(share * finding.gain, 4))
+            finding.map_or(String::new(), |(_, finding)| significant(share * finding.evidence.gain, 4))
         })
         .footnote(footnote)
 }

@@ -1,5 +1,6 @@
 //! The FRFs: measured with their noise, and what the models make of them.
 
+use jointscope_inference::Z95;
 use std::cmp::Ordering;
 
 use jointscope_spectra::Dof;
@@ -119,7 +120,7 @@ pub(super) fn panes<'a>(subject: &Subject<'a>, index: usize, curves: Vec<Curve>)
     let (pair, n) = (&observation.pairs()[index], observation.lines().len());
     let lines = index * n..(index + 1) * n;
     // Each part of a value has half its variance, and the modulus takes one part of the noise.
-    let half = |weight: &f64| (*weight > 0.0).then(|| 1.96 / weight.sqrt());
+    let half = |weight: &f64| (*weight > 0.0).then(|| Z95 / weight.sqrt());
     FrfPanes {
         title: format!("FRF {pair}"),
         phase_title: format!("Phase of FRF {pair}"),

@@ -1,12 +1,12 @@
 //! What a reader wants first: what is missing and how sure that is, how much better the model is for it, what to do next; and where it sits.
 
 use jointscope_diagnosis::{Departure, Estimate, Finding, Verdict};
-use jointscope_wording::{Remarks, effect_name};
+use jointscope_wording::{Remarks, capitalised, effect_name};
 use maud::{Markup, html};
 
 use super::judgement::{gain, spoken};
 use super::{Subject, fixture_view};
-use crate::format::{NOT_DETERMINED, capitalised, ends, percent, significant};
+use crate::format::{NOT_DETERMINED, ends, percent, significant};
 use crate::section::{Card, Section, Tone};
 use crate::unit::Scale;
 
@@ -14,8 +14,6 @@ use crate::unit::Scale;
 const SHOWN: usize = 3;
 /// Probability from which another name is told.
 const TOLD: f64 = 0.01;
-/// Probability from which another name is worth a measurement.
-const DOUBT: f64 = 0.05;
 
 /// `notes` are remarks from reading the recordings.
 pub(super) fn section(subject: &Subject, notes: &[String]) -> Section {
@@ -136,9 +134,7 @@ fn steps(subject: &Subject) -> Vec<String> {
         let names: Vec<String> = alike.iter().map(|finding| effect_name(&finding.effect)).collect();
         steps.push(format!("{}: {}.", capitalised(&names.join(", ")), advice(&alike[0])));
     }
-    let is_open =
-        |finding: &Finding| finding.alternatives.iter().any(|(_, p)| *p >= DOUBT) || finding.is_doubtful();
-    if diagnosis.findings.iter().any(is_open) {
+    if diagnosis.findings.iter().any(Finding::is_open) {
         steps.push("`jointscope plan` with this fixture and this folder ranks the measurements that tell the names apart.".to_owned());
     }
     steps.extend(match diagnosis.verdict {

@@ -63,6 +63,7 @@ impl Law {
 #[allow(clippy::unwrap_used)]
 mod tests {
     use super::*;
+    use jointscope_diagnosis::Evidence;
     use jointscope_fixture::{Effect, Place};
 
     fn law(kind: EffectKind, values: &[f64]) -> Law {
@@ -74,8 +75,7 @@ mod tests {
             estimates: Vec::new(),
             probability: 1.0,
             alternatives: Vec::new(),
-            gain: 0.0,
-            measured: None,
+            evidence: Evidence { gain: 0.0, measured: None },
         };
         Law::of(&finding, &Site::Body { body: "A".into(), x: 0.0 }, &fixture).unwrap()
     }

@@ -5,9 +5,6 @@ use crate::format::{quantity, significant};
 use crate::section::{Section, Tone};
 use crate::table::Table;
 
-/// Standard deviations beyond which a quantity has been bent rather than adjusted.
-const BENT: f64 = 2.0;
-
 pub(super) fn section(subject: &Subject) -> Option<Section> {
     let models = subject.stated();
     let tolerances = models.first()?.1.tolerances();
@@ -17,11 +14,8 @@ pub(super) fn section(subject: &Subject) -> Option<Section> {
                 .paragraph("The fixture states every quantity as exact: there was nothing to refit."),
         );
     }
-    let farthest = |index: usize| {
-        let departures = models.iter().map(|(_, model)| model.departure(index).abs());
-        tolerances[index].quantity.std.map_or(0.0, |_| departures.fold(0.0, f64::max))
-    };
-    let bent = (0..tolerances.len()).filter(|index| farthest(*index) > BENT).count();
+    let is_far = |index: usize| models.iter().any(|(_, model)| model.is_far(index));
+    let far = (0..tolerances.len()).filter(|index| is_far(*index)).count();
     let mut table = Table::of(tolerances.iter().map(|tolerance| &tolerance.quantity).enumerate())
         .words("Quantity", |(_, own)| own.path.clone())
         .words("Stated", |(_, own)| {
@@ -36,8 +30,8 @@ pub(super) fn section(subject: &Subject) -> Option<Section> {
                 None => "free".to_owned(),
             });
     }
-    let table = table.marked(|(index, _)| (farthest(*index) > BENT).then_some(Tone::Attention));
-    let words = match (bent, subject.diagnosis.findings.is_empty()) {
+    let table = table.marked(|(index, _)| is_far(*index).then_some(Tone::Attention));
+    let words = match (far, subject.diagnosis.findings.is_empty()) {
         (0, _) => "No quantity had to move by more than two of its standard deviations.".to_owned(),
         (n, true) => format!(
             "{n} of {} moved by more than two standard deviations (marked); one in twenty does so by chance, more than that calls the stated \

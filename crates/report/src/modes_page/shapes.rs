@@ -37,7 +37,7 @@ pub(super) fn section(analysis: &ModalAnalysis, fixture: Option<&Fixture>) -> Se
         let text = format!(
             "{caption}, damping ratio {} %: {}",
             significant(100.0 * mode.damping_ratio, 3),
-            told(mode, fixture)
+            drawn_entries(mode, fixture)
         );
         section = section.drawing(draw(mode, fixture, &text), caption);
     }
@@ -82,7 +82,7 @@ fn translations(mode: &Mode, fixture: Option<&Fixture>) -> Vec<Entry> {
 }
 
 /// The deflections from left to right, for who cannot see them.
-fn told(mode: &Mode, fixture: Option<&Fixture>) -> String {
+fn drawn_entries(mode: &Mode, fixture: Option<&Fixture>) -> String {
     let all = translations(mode, fixture);
     let each = |entry: &Entry| format!("{} {}", entry.name, significant(entry.value, 2));
     all.iter().filter(|entry| entry.response).map(each).collect::<Vec<_>>().join(", ")

@@ -1,10 +1,11 @@
 //! The figure around a plot: title, legend with the place of each read-out, caption.
 
+use jointscope_wording::capitalised;
 use maud::{Markup, html};
 
 use super::data::Drawing;
 use super::{Mark, Plot, Series, Style};
-use crate::format::{capitalised, significant, trimmed};
+use crate::format::{significant, trimmed};
 use crate::unit::{Scale, typeset};
 
 /// The figure of a plot; the script finds it by its number and draws into it.

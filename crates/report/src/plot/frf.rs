@@ -1,12 +1,12 @@
 //! Magnitude and phase of an FRF, measured and as models have it, and what the models leave of it.
 
+use jointscope_inference::Z95;
 use jointscope_spectra::FrfSet;
 use num_complex::Complex64;
 
 use super::{Axis, Plot, Role, Span, Style, YRange};
 
-/// Half the width of a normal variable's 95 % interval, and the modulus that a complex one of unit variance exceeds in 5 %: √(χ²₂/2).
-const NORMAL_95: f64 = 1.96;
+/// Modulus that a complex normal variable of unit variance exceeds in 5 %: √(χ²₂/2).
 const RAYLEIGH_95: f64 = 1.7308;
 /// Steps of phases, °, and of residuals: nobody reads more of them, and long recordings make long pages.
 const STEPS: (f64, f64) = (0.1, 0.01);
@@ -61,7 +61,7 @@ impl<'a> FrfPanes<'a> {
     pub fn recorded(frfs: &'a FrfSet, index: usize, curves: Vec<Curve>) -> Self {
         let pair = &frfs.pairs()[index];
         // Each part of a value has half its variance, and the modulus takes one part of the noise.
-        let half = |variance: &f64| Some(1.96 * (0.5 * variance).sqrt());
+        let half = |variance: &f64| Some(Z95 * (0.5 * variance).sqrt());
         FrfPanes {
             title: format!("FRF {pair}"),
             phase_title: format!("Phase of FRF {pair}"),
@@ -165,7 +165,7 @@ impl<'a> FrfPanes<'a> {
             let lines = self.measured.iter().zip(&curve.values).zip(&self.noise);
             lines
                 .map(|((measured, model), half)| {
-                    Some((measured.as_ref()? - model.as_ref()?) * (NORMAL_95 / (*half)?))
+                    Some((measured.as_ref()? - model.as_ref()?) * (Z95 / (*half)?))
                 })
                 .collect()
         };
@@ -196,8 +196,8 @@ impl<'a> FrfPanes<'a> {
                 .rounded_to(STEPS.1)
                 .points("real part", Role::Trace(0), part(|v| v.re))
                 .points("imaginary part", Role::Trace(1), part(|v| v.im))
-                .horizontal("± 95 % of noise", Role::Reference, NORMAL_95)
-                .horizontal("", Role::Reference, -NORMAL_95)
+                .horizontal("± 95 % of noise", Role::Reference, Z95)
+                .horizontal("", Role::Reference, -Z95)
                 .caption(format!(
                     "Measured − {}, each part over its noise: without a course where noise alone is left.",
                     last.label

@@ -50,7 +50,7 @@ pub(super) fn section(judged: &[Judged], context: &ProofContext) -> Section {
 fn found(judged: &Judged) -> String {
     let hidden = judged.hidden();
     let findings = judged.answer.iter().flat_map(|answer| &answer.findings);
-    let told = findings.map(|finding| {
+    let listed = findings.map(|finding| {
         let name = jointscope_proof::Name::of(&finding.effect);
         let mark = match (hidden.contains(&name), judged.accepts(&name)) {
             (true, _) => "= ",
@@ -59,6 +59,6 @@ fn found(judged: &Judged) -> String {
         };
         format!("{mark}{name} ({:.2})", finding.probability)
     });
-    let told: Vec<String> = told.collect();
-    if told.is_empty() { "nothing".to_owned() } else { told.join(", ") }
+    let listed: Vec<String> = listed.collect();
+    if listed.is_empty() { "nothing".to_owned() } else { listed.join(", ") }
 }

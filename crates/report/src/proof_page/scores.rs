@@ -1,16 +1,16 @@
 //! The scores beside their targets.
 
-use jointscope_proof::{Figure, Rate, Score, Share, Standing};
+use jointscope_proof::{Figure, Rate, Score, Share, TargetStatus};
 
 use super::or_dash;
 use crate::section::{Block, Card, Section, Tone};
 use crate::table::Table;
 
-fn tone(standing: Option<Standing>) -> Option<Tone> {
-    Some(match standing? {
-        Standing::Met => Tone::Ok,
-        Standing::WithinChance => Tone::Attention,
-        Standing::Missed => Tone::Problem,
+fn tone(status: Option<TargetStatus>) -> Option<Tone> {
+    Some(match status? {
+        TargetStatus::Met => Tone::Ok,
+        TargetStatus::WithinChance => Tone::Attention,
+        TargetStatus::Missed => Tone::Problem,
     })
 }
 
@@ -40,8 +40,8 @@ pub(super) fn rates(rates: &[Rate]) -> impl Into<Block> {
         .numbers("share", "", |rate| or_dash(rate.share.value().map(|value| format!("{value:.3}"))))
         .numbers("95 % interval", "", |rate| or_dash(interval(rate.share)))
         .words("target", |rate| rate.target.map_or_else(String::new, |target| target.to_string()))
-        .words("", |rate| rate.standing().map_or("", Standing::says))
-        .marked(|rate| tone(rate.standing()))
+        .words("", |rate| rate.status().map_or("", TargetStatus::says))
+        .marked(|rate| tone(rate.status()))
         .footnote("Intervals by Clopper and Pearson. Missed within chance: the target lies in the interval.")
 }
 

@@ -107,17 +107,17 @@ impl Assembly {
     }
 
     /// The dense mass matrix, row by row.
-    pub fn mass_matrix(&self) -> Vec<f64> {
+    pub(crate) fn mass_matrix(&self) -> Vec<f64> {
         dense(self.order, &self.mass)
     }
 
     /// The dense viscous damping matrix, row by row.
-    pub fn damping_matrix(&self) -> Vec<f64> {
+    pub(crate) fn damping_matrix(&self) -> Vec<f64> {
         dense(self.order, &self.damping)
     }
 
     /// The dense static stiffness matrix, row by row.
-    pub fn stiffness_matrix(&self) -> Vec<f64> {
+    pub(crate) fn stiffness_matrix(&self) -> Vec<f64> {
         dense(self.order, &self.stiffness)
     }
 

@@ -123,7 +123,12 @@ impl BeamElement {
     ///
     /// # Errors
     /// As [`BeamElement::end_stiffness`].
-    pub fn station_at(&self, x: f64, left: &Station, right: &Station) -> Result<Station, StructureError> {
+    pub(crate) fn station_at(
+        &self,
+        x: f64,
+        left: &Station,
+        right: &Station,
+    ) -> Result<Station, StructureError> {
         let combine = |factors: [f64; 4]| {
             Row::zero()
                 .plus(factors[0], &left.y)

@@ -16,12 +16,12 @@ pub(crate) fn loss_factor(damping: &Damping) -> f64 {
     }
 }
 
-/// Adds the viscous damping of the fixture to `assembly`: that of `free`, the assembly without effects and supports, or of `standing`, the same on its supports,
+/// Adds the viscous damping of the fixture to `assembly`: that of `free`, the assembly without effects and supports, or of `supported`, the same on its supports,
 /// on the coordinates that all share, which come first in each.
 pub(crate) fn add_viscous(
     assembly: &mut Assembly,
     free: &Assembly,
-    standing: &Assembly,
+    supported: &Assembly,
     damping: &Damping,
 ) -> Result<(), StructureError> {
     let matrix = match damping {
@@ -31,27 +31,27 @@ pub(crate) fn add_viscous(
             m.iter().zip(&k).map(|(m, k)| mass.value * m + stiffness.value * k).collect()
         }
         Damping::ModalRatios { ratios, of: RatiosOf::Free } => modal_matrix(free, free, ratios)?,
-        Damping::ModalRatios { ratios, of: RatiosOf::AsItStands } => modal_matrix(standing, free, ratios)?,
+        Damping::ModalRatios { ratios, of: RatiosOf::AsItStands } => modal_matrix(supported, free, ratios)?,
     };
     let motions: Vec<Row> = (0..free.order()).map(Row::coordinate).collect();
     assembly.dashpots(&motions, &matrix);
     Ok(())
 }
 
-/// C = Σ (2ζ_r ω_r − φᵀC_sφ)(Mφ_r)(Mφ_r)ᵀ over the elastic modes of `standing`, whose supports' dashpots C_s are in the structure already and count among what a
+/// C = Σ (2ζ_r ω_r − φᵀC_sφ)(Mφ_r)(Mφ_r)ᵀ over the elastic modes of `supported`, whose supports' dashpots C_s are in the structure already and count among what a
 /// test reads; rigid modes are undamped, and so are those that strain next to nothing of the `free` assembly, unless all do.
 fn modal_matrix(
-    standing: &Assembly,
+    supported: &Assembly,
     free: &Assembly,
     ratios: &[Quantity],
 ) -> Result<Vec<f64>, StructureError> {
-    let n = standing.order();
-    let mass = standing.mass_matrix();
+    let n = supported.order();
+    let mass = supported.mass_matrix();
     let mut damping = vec![0.0; n * n];
     let Some(last) = ratios.last() else { return Ok(damping) };
-    let basis = generalized_symmetric_eigen(n, &mass, &standing.stiffness_matrix())?;
+    let basis = generalized_symmetric_eigen(n, &mass, &supported.stiffness_matrix())?;
     let (own_springs, own_dashpots) = (free.stiffness_matrix(), free.damping_matrix());
-    let all_dashpots = standing.damping_matrix();
+    let all_dashpots = supported.damping_matrix();
     let quadratic = |matrix: &[f64], shape: &[f64]| -> f64 {
         (0..n * n).map(|e| shape[e / n] * matrix[e] * shape[e % n]).sum()
     };

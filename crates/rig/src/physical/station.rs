@@ -53,7 +53,7 @@ impl Station {
     }
 
     /// The place at `distance` (m, along x) on what is rigidly connected to this one.
-    pub fn rigidly_at(&self, distance: f64) -> Self {
+    pub(crate) fn rigidly_at(&self, distance: f64) -> Self {
         Station { y: self.y.plus(distance, &self.theta), theta: self.theta.clone() }
     }
 

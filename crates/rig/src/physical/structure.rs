@@ -48,10 +48,10 @@ impl Structure {
         }
         let meshes = meshes(fixture);
         let (free, plain) = free_assembly(fixture, &meshes, &[], &[])?;
-        let mut standing = free.clone();
-        add_supports(&mut standing, fixture, &plain)?;
+        let mut supported = free.clone();
+        add_supports(&mut supported, fixture, &plain)?;
         let (mut assembly, bodies) = free_assembly(fixture, &meshes, effects, modes)?;
-        add_viscous(&mut assembly, &free, &standing, fixture.damping())?;
+        add_viscous(&mut assembly, &free, &supported, fixture.damping())?;
         add_supports(&mut assembly, fixture, &bodies)?;
         for effect in effects {
             attach(&mut assembly, fixture, &bodies, effect)?;
@@ -98,7 +98,7 @@ impl Structure {
     ///
     /// # Errors
     /// [`StructureError::UnknownPoint`].
-    pub fn motion_as_mounted(&self, channel: &Channel) -> Result<&Row, StructureError> {
+    pub(crate) fn motion_as_mounted(&self, channel: &Channel) -> Result<&Row, StructureError> {
         match motion(&self.displaced, channel) {
             Some(row) => Ok(row),
             None => self.motion(channel),

@@ -108,6 +108,11 @@ pub struct JointsCovariance<'a> {
 }
 
 impl JointsFit {
+    /// Whether noise and tolerances explain the FRFs, and physics allows every joint found.
+    pub fn is_sound(&self) -> bool {
+        self.joints.iter().all(|joint| joint.fit.explains() && joint.fit.tests.failed().is_empty())
+    }
+
     /// The covariance of all joints with the names of its rows.
     pub fn covariance_of_all(&self) -> JointsCovariance<'_> {
         JointsCovariance { elements: &self.elements, matrix: &self.covariance }

@@ -29,7 +29,7 @@ impl TrueName {
     }
 
     /// In one degree of freedom only.
-    pub fn in_dof(self, dof: Dof) -> Self {
+    pub(crate) fn in_dof(self, dof: Dof) -> Self {
         TrueName { dof: Some(dof.name().to_owned()), ..self }
     }
 

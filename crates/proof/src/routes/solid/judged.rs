@@ -39,7 +39,7 @@ impl Judgeable for SolidTruth {
 
 impl SolidJudged {
     /// Whether something found is in the solid, asked for or not.
-    pub fn is_true(&self, found: &Effect) -> bool {
+    pub(crate) fn is_true(&self, found: &Effect) -> bool {
         let mut in_the_solid = self.truth.effects().iter().chain(&self.truth.besides);
         in_the_solid.any(|there| are_the_same(there, found))
     }
@@ -50,7 +50,7 @@ impl SolidJudged {
     }
 
     /// Whether the kinds of all that was hidden were found.
-    pub fn has_kind(&self) -> bool {
+    pub(crate) fn has_kind(&self) -> bool {
         self.finds_all(|hidden, found| found.kind == hidden.kind || are_the_same(hidden, found))
     }
 
@@ -60,7 +60,7 @@ impl SolidJudged {
     }
 
     /// Whether something was found that is not in the solid.
-    pub fn has_extra(&self) -> bool {
+    pub(crate) fn has_extra(&self) -> bool {
         self.findings().iter().any(|found| !self.is_true(&found.effect))
     }
 

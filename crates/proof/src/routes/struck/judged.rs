@@ -29,12 +29,12 @@ impl StruckJudged {
     }
 
     /// Whether FRFs were said to change with the strength of the hits.
-    pub fn is_noticed(&self) -> bool {
+    pub(crate) fn is_noticed(&self) -> bool {
         self.answer.as_ref().is_ok_and(|answer| answer.verdict != Verdict::Consistent)
     }
 
     /// Whether a law that was found is the hidden one: kind, joint and degree of freedom.
-    pub fn is_hidden(&self, found: &Found) -> bool {
+    pub(crate) fn is_hidden(&self, found: &Found) -> bool {
         self.truth.law().is_some_and(|law| Name::of(law) == Name::of(&found.effect))
     }
 
@@ -44,12 +44,12 @@ impl StruckJudged {
     }
 
     /// Whether a law was found that is not there.
-    pub fn has_extra(&self) -> bool {
+    pub(crate) fn has_extra(&self) -> bool {
         self.findings().iter().any(|found| !self.is_hidden(found))
     }
 
     /// Of hits in which nothing was seen to depend on amplitude: whether the fixture was called consistent with their FRFs.
-    pub fn is_linearly_consistent(&self) -> Option<bool> {
+    pub(crate) fn is_linearly_consistent(&self) -> Option<bool> {
         let linear = self.answer.as_ref().ok()?.linear.as_ref()?;
         Some(linear.verdict == LinearVerdict::Consistent)
     }

@@ -13,14 +13,14 @@ const VALUES: f64 = 3.0;
 
 /// Relative errors of a model, and how many times the lines of an FRF are more than the values that these move.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Softening {
+pub(crate) struct ModelErrorNoise {
     frequency: f64,
     /// Of damping ratios and residues together.
     size: f64,
     times: f64,
 }
 
-impl Softening {
+impl ModelErrorNoise {
     /// That of a model which an observation was compared with by modes.
     pub fn of(error: &ModelError, model: &Hypothesis, observation: &Observation) -> Self {
         let hz = observation.lines().hz();
@@ -31,7 +31,7 @@ impl Softening {
         let assembly = model.to_fixture().ok().and_then(|fixture| Assembly::new(&fixture, last).ok());
         let modes = assembly.map_or(1, |assembly| within(&assembly).max(1));
         let times = 2.0 * hz.len() as f64 / (VALUES * modes as f64);
-        Softening {
+        ModelErrorNoise {
             frequency: error.frequency,
             size: error.damping.hypot(error.residue),
             times: times.max(1.0),
@@ -57,7 +57,7 @@ impl Softening {
     }
 
     /// An observation with that in its noise.
-    pub fn softened(&self, model: &Hypothesis, observation: &Observation) -> Option<Observation> {
+    pub fn with_model_error(&self, model: &Hypothesis, observation: &Observation) -> Option<Observation> {
         let predicted = model.predict(observation).ok()?;
         let more = self.variance(model, observation.pairs(), observation.lines(), &predicted)?;
         // What has no weight has no coherence, and is no value.

@@ -1,4 +1,7 @@
-use crate::{Apart, Caution, Comparison, ElementRanking, Equality, Matrix, Pair, SharedBody, Specimens};
+use jointscope_comparison::{
+    Apart, Caution, Comparison, ElementRanking, Equality, Matrix, Pair, SharedBody, Specimens,
+};
+use jointscope_wording::Says;
 use serde::Serialize;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
@@ -84,7 +87,7 @@ pub fn comparison_file(comparison: &Comparison) -> Value {
             .collect(),
         settled: entry.is_settled(),
     });
-    let said = |caution| Said { caution, says: Caution::says(caution) };
+    let said = |caution| Said { caution, says: Says::says(caution) };
     json!(File {
         relation: &comparison.relation,
         estimate: comparison.compared.name(),

@@ -1,4 +1,4 @@
-//! The elements of K and C as the page writes them.
+//! The elements of K and C as they are written.
 
 use jointscope_decomposition::{Element, Method, Part};
 
@@ -7,29 +7,30 @@ const STIFFNESS_UNITS: [[&str; 2]; 2] = [["N/m", "N/rad"], ["N*m/m", "N*m/rad"]]
 const DAMPING_UNITS: [[&str; 2]; 2] = [["N*s/m", "N*s/rad"], ["N*s", "N*m*s/rad"]];
 
 /// Its indices in small figures.
-pub(super) fn index(element: Element) -> &'static str {
+pub fn index(element: Element) -> &'static str {
     INDICES[element.row][element.column]
 }
 
 /// `k₁₁`, or `K₁₁` for what eq (7) gives.
-pub(super) fn symbol(part: Part, element: Element, paper: bool) -> String {
+pub fn symbol(part: Part, element: Element, paper: bool) -> String {
     let letter = if paper { part.of(("K", "C")) } else { part.of(("k", "c")) };
     format!("{letter}{}", index(element))
 }
 
-pub(super) fn unit(part: Part, element: Element) -> &'static str {
+/// Its unit, SI.
+pub fn unit(part: Part, element: Element) -> &'static str {
     part.of((STIFFNESS_UNITS, DAMPING_UNITS))[element.row][element.column]
 }
 
 /// What the element connects, in words.
-pub(super) fn meaning(part: Part, element: Element) -> String {
+pub fn meaning(part: Part, element: Element) -> String {
     let load = ["force", "moment"][element.row];
     let motion = part.of((["displacement", "rotation"], ["velocity", "angular velocity"]))[element.column];
     format!("{load} per {motion}")
 }
 
 /// Where an estimate comes from, in words; `exact`: the fit moved nothing of the fixture.
-pub(super) fn method(method: Method, exact: bool) -> &'static str {
+pub fn method(method: Method, exact: bool) -> &'static str {
     match method {
         Method::PlainMean => "plain mean over the band",
         Method::WeightedMean => "weighted mean over the band",

@@ -3,7 +3,7 @@
 use crate::unit::{Scale, superscript};
 
 /// What is printed in place of a value that is not finite.
-pub(crate) const NOT_DETERMINED: &str = "not determined";
+pub const NOT_DETERMINED: &str = "not determined";
 
 /// Significant digits of a value whose uncertainty is not known.
 const DIGITS_WITHOUT_STD: usize = 4;
@@ -14,7 +14,7 @@ const DIGITS_WITHOUT_STD: usize = 4;
 /// `None` means not known (four significant digits, no ±), zero means exact, a standard deviation that is not finite is said in words.
 ///
 /// ```
-/// use jointscope_report::format::quantity;
+/// use jointscope_wording::format::quantity;
 /// assert_eq!(quantity(3.3204e6, 2.04e4, "N/m"), "3.320 ± 0.020 MN/m");
 /// assert_eq!(quantity(-1.1e5, None, "N/rad"), "−110.0 kN/rad");
 /// assert_eq!(quantity(3.67e-10, 3.7e-12, "m^4"), "(3.670 ± 0.037)×10⁻¹⁰ m⁴");
@@ -30,7 +30,7 @@ pub fn quantity(value: f64, std: impl Into<Option<f64>>, unit: &str) -> String {
 
 /// A quantity in the parts a page typesets apart from each other.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(crate) struct QuantityText {
+pub struct QuantityText {
     /// The number with its ± and power of ten, or [`NOT_DETERMINED`].
     pub number: String,
     /// The typeset unit with its prefix; empty for a pure number or an undetermined one.
@@ -88,14 +88,14 @@ fn plus_minus(value: f64, std: f64) -> String {
 }
 
 /// The ends of an interval in one unit: `1.20 to 3.40 MN/m`.
-pub(crate) fn interval([low, high]: [f64; 2], scale: &Scale, digits: usize) -> String {
+pub fn interval([low, high]: [f64; 2], scale: &Scale, digits: usize) -> String {
     let number = |value: f64| significant(scale.of(value), digits);
     let unit = if scale.unit().is_empty() { String::new() } else { format!(" {}", scale.unit()) };
     format!("{} to {}{unit}", number(low), number(high))
 }
 
 /// The ends of an interval in one unit, two digits of its width: `8.96 to 9.32 kN·m/rad`.
-pub(crate) fn ends([low, high]: [f64; 2], scale: &Scale) -> String {
+pub fn ends([low, high]: [f64; 2], scale: &Scale) -> String {
     let (low, high) = (scale.of(low), scale.of(high));
     let decimals = if high > low { decimals_for(high - low, 2) } else { 4 };
     let unit = if scale.unit().is_empty() { String::new() } else { format!(" {}", scale.unit()) };
@@ -103,13 +103,13 @@ pub(crate) fn ends([low, high]: [f64; 2], scale: &Scale) -> String {
 }
 
 /// A magnitude without its uncertainty: `1.23 MN/m`.
-pub(crate) fn magnitude(value: f64, unit: &str, digits: usize) -> String {
+pub fn magnitude(value: f64, unit: &str, digits: usize) -> String {
     let scale = Scale::for_magnitude(value, unit);
     format!("{} {}", significant(scale.of(value), digits), scale.unit()).trim_end().to_owned()
 }
 
 /// `1.432 ± 0.012 ± 0.031` for a column: the largest of the standard deviations and `coarsest` (SI) sets the digits, each keeps one of its own at least.
-pub(crate) fn in_parts(value: f64, stds: &[f64], coarsest: f64, scale: &Scale) -> String {
+pub fn in_parts(value: f64, stds: &[f64], coarsest: f64, scale: &Scale) -> String {
     if !value.is_finite() {
         return NOT_DETERMINED.to_owned();
     }
@@ -125,7 +125,7 @@ pub(crate) fn in_parts(value: f64, stds: &[f64], coarsest: f64, scale: &Scale) -
 }
 
 /// A value and its standard deviation as numbers of a table column that states the unit: `3.320 ± 0.020`, or [`NOT_DETERMINED`].
-pub(crate) fn in_column(value: f64, std: impl Into<Option<f64>>, scale: &Scale) -> String {
+pub fn in_column(value: f64, std: impl Into<Option<f64>>, scale: &Scale) -> String {
     if !value.is_finite() {
         return NOT_DETERMINED.to_owned();
     }
@@ -137,7 +137,7 @@ pub(crate) fn in_column(value: f64, std: impl Into<Option<f64>>, scale: &Scale) 
 }
 
 /// A number of so many significant digits, a power of ten where it would be a row of zeros: `0.01234`, `1.234×10⁻⁷`.
-pub(crate) fn significant(value: f64, digits: usize) -> String {
+pub fn significant(value: f64, digits: usize) -> String {
     if !value.is_finite() {
         return NOT_DETERMINED.to_owned();
     }
@@ -158,12 +158,12 @@ pub(crate) fn significant(value: f64, digits: usize) -> String {
 }
 
 /// A number with a fixed count of decimals; never a negative zero.
-pub(crate) fn fixed(value: f64, decimals: usize) -> String {
+pub fn fixed(value: f64, decimals: usize) -> String {
     if value.is_finite() { rounded(value, decimals as i32) } else { NOT_DETERMINED.to_owned() }
 }
 
 /// A share such as a coherence or a probability as a percentage: `0.972` reads `97.2 %`.
-pub(crate) fn percent(share: f64, decimals: usize) -> String {
+pub fn percent(share: f64, decimals: usize) -> String {
     if share.is_finite() {
         format!("{} %", fixed(100.0 * share, decimals))
     } else {
@@ -200,7 +200,7 @@ fn power_of_ten(exponent: i32) -> String {
 }
 
 /// The typographic minus sign, and no sign on a number that rounded to zero.
-fn minus(number: &str) -> String {
+pub(crate) fn minus(number: &str) -> String {
     match number.strip_prefix('-') {
         Some(digits) if digits.chars().all(|c| matches!(c, '0' | '.')) => digits.to_owned(),
         Some(digits) => format!("−{digits}"),
@@ -215,14 +215,8 @@ pub fn hides(c: char) -> bool {
         || matches!(c, '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
 }
 
-/// A text with its first letter as a capital.
-pub(crate) fn capitalised(text: &str) -> String {
-    let mut letters = text.chars();
-    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
-}
-
 /// A number without the zeros that only rounding put there.
-pub(crate) fn trimmed(number: &str) -> String {
+pub fn trimmed(number: &str) -> String {
     let (mantissa, power) = match number.find('×') {
         Some(at) => number.split_at(at),
         None => (number, ""),

@@ -1,21 +1,56 @@
-//! The headline and what it rests on, in sentences: what is decided is decided by [`Judgement`](jointscope_decomposition::Judgement).
+//! A decomposition in words: its headline and what that rests on, and what was found, a line each. What is decided is decided by
+//! [`Judgement`](jointscope_decomposition::Judgement).
 
+use crate::element::{symbol, unit};
+use crate::format::{fixed, quantity, significant, trimmed};
+use crate::numbers::counted;
+use crate::{Remarks, Summary, capitalised};
 use jointscope_decomposition::{
-    Contradiction, Element, Estimate, Figure, JointFit, LikelihoodFit, Method, Part, Use,
+    Analysis, Contradiction, Element, Estimate, Figure, JointFit, JointsFit, LikelihoodFit, Method, Part,
+    Relation,
 };
+use jointscope_fixture::{Fixture, JointLaw};
 use jointscope_frf::noise::NoiseSource;
-use jointscope_wording::Remarks;
 
-use super::Subject;
-use super::element::{symbol, unit};
-use crate::format::{capitalised, fixed, quantity, significant, trimmed};
-use crate::section::Tone;
+/// What a page says first of a joint.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Verdict {
+    /// What the joint is, beside the fixture's.
+    pub headline: String,
+    /// What that rests on, and what speaks against it.
+    pub details: Vec<String>,
+}
 
-pub(super) fn tone(subject: &Subject) -> Tone {
-    match subject.analysis.judgement.verdict {
-        Use::Sound => Tone::Ok,
-        Use::WithCare => Tone::Attention,
-        _ => Tone::Problem,
+impl Verdict {
+    /// Of `best`, an estimate of `analysis`, which was made with `fixture`.
+    pub fn of(analysis: &Analysis, fixture: &Fixture, best: &Estimate) -> Self {
+        let subject = Subject { analysis, fixture, best };
+        Verdict { headline: headline(&subject), details: details(&subject) }
+    }
+}
+
+/// What the sentences are made from.
+struct Subject<'a> {
+    analysis: &'a Analysis,
+    fixture: &'a Fixture,
+    best: &'a Estimate,
+}
+
+impl Subject<'_> {
+    fn is_paper(&self) -> bool {
+        self.analysis.spectrum.relation == Relation::Paper
+    }
+
+    fn is_scalar(&self) -> bool {
+        self.analysis.spectrum.scalar
+    }
+
+    /// Whose the nominal stiffness is.
+    fn nominal_owner(&self) -> &'static str {
+        match self.fixture.joint(&self.analysis.joint).map(|joint| &joint.law) {
+            Some(JointLaw::Beam { .. }) => "the nominal beam's",
+            _ => "the fixture's",
+        }
     }
 }
 
@@ -29,7 +64,7 @@ fn value(estimate: &Estimate, element: Element) -> (Figure, String) {
     (figure, quantity(figure.value, figure.total(), unit(Part::Stiffness, element)))
 }
 
-pub(super) fn headline(subject: &Subject) -> String {
+fn headline(subject: &Subject) -> String {
     let (element, best, judgement) = (first(subject), subject.best, &subject.analysis.judgement);
     let (joint, owner) = (&subject.analysis.joint, subject.nominal_owner());
     let symbol = symbol(Part::Stiffness, element, best.paper);
@@ -62,13 +97,13 @@ pub(super) fn headline(subject: &Subject) -> String {
 }
 
 /// A ratio as a percentage without needless digits.
-pub(super) fn share(ratio: f64) -> String {
+pub fn share(ratio: f64) -> String {
     let percent = 100.0 * ratio;
     let is_plain = (10.0..1000.0).contains(&percent.abs());
     format!("{} %", if is_plain { fixed(percent, 0) } else { significant(percent, 2) })
 }
 
-pub(super) fn details(subject: &Subject) -> Vec<String> {
+fn details(subject: &Subject) -> Vec<String> {
     let judgement = &subject.analysis.judgement;
     let whole = subject.analysis.joint_fit.as_ref().ok();
     let rests_on = match (whole, &subject.analysis.likelihood) {
@@ -77,7 +112,7 @@ pub(super) fn details(subject: &Subject) -> Vec<String> {
         (None, Err(error)) => format!(
             "{}. The figures below are means over {} ({} lines, {}).",
             capitalised(&error.to_string()),
-            band(subject),
+            band(subject.analysis),
             subject.analysis.averages.lines,
             noise(subject)
         ),
@@ -111,7 +146,7 @@ fn contradicted(subject: &Subject, Contradiction { element, fit, mean, .. }: Con
     format!(
         "The mean over {} contradicts the fit beyond both ±, most in {}: {} against {}. The model, not the noise, limits what is \
          known of this joint; take the difference for the uncertainty.",
-        band(subject),
+        band(subject.analysis),
         symbol(Part::Stiffness, element, false),
         text(mean),
         text(fit)
@@ -128,7 +163,7 @@ fn paper_means(subject: &Subject) -> Option<String> {
              varies with frequency even for a constant joint, and its mean depends on the band. The maximum-likelihood figures are the \
              exact joint's.",
             symbol(Part::Stiffness, element, true),
-            band(subject)
+            band(subject.analysis)
         )
     })
 }
@@ -182,7 +217,7 @@ fn rests_on(subject: &Subject, fit: &LikelihoodFit) -> String {
     let (solved, all) = (&analysis.spectrum.solved, analysis.spectrum.h41.lines.len());
     let range = match (solved.first(), solved.last()) {
         (Some(first), Some(last)) if lines == solved.len() => hertz(first.frequency, last.frequency),
-        _ => band(subject),
+        _ => band(subject.analysis),
     };
     let explained = match analysis.judgement.poor_fit {
         Some(_) => String::new(),
@@ -199,8 +234,9 @@ fn rests_on(subject: &Subject, fit: &LikelihoodFit) -> String {
     )
 }
 
-pub(super) fn band(subject: &Subject) -> String {
-    let band = subject.analysis.averages.band;
+/// The band of the averages: `474 to 843.5 Hz`.
+pub fn band(analysis: &Analysis) -> String {
+    let band = analysis.averages.band;
     hertz(band.from, band.to)
 }
 
@@ -210,7 +246,7 @@ fn hertz(from: f64, to: f64) -> String {
 }
 
 /// A frequency without zeros at its end.
-pub(super) fn plain(hz: f64) -> String {
+pub fn plain(hz: f64) -> String {
     trimmed(&fixed(hz, 2))
 }
 
@@ -225,4 +261,115 @@ fn noise(subject: &Subject) -> String {
         (all, some) if some == all => "noise estimated from the FRFs' scatter from line to line".into(),
         (all, some) => format!("noise from coherence, for {some} of {all} FRFs from their scatter"),
     }
+}
+
+impl Summary for JointsFit {
+    fn summary(&self) -> Vec<String> {
+        let mut lines = Vec::new();
+        for joint in &self.joints {
+            lines.push(format!("joint {}", joint.name));
+            lines.extend(numbers(&joint.fit, elements_of(joint.fit.scalar)));
+            lines.extend(joint.remarks());
+        }
+        lines.extend(self.joints.first().map(|first| basis(&first.fit)));
+        lines.extend(self.remarks());
+        lines
+    }
+}
+
+impl Summary for Analysis {
+    fn summary(&self) -> Vec<String> {
+        let spectrum = &self.spectrum;
+        let all = spectrum.solved.len() + spectrum.masked.len();
+        let mut lines =
+            vec![format!("joint {}: {} of {all} lines solved", self.joint, spectrum.solved.len())];
+        for (reason, count) in spectrum.masked_summary() {
+            lines.push(format!("{} masked: {}", counted(count, "line"), reason.why()));
+        }
+        match self.noisy_lines() {
+            0 => {}
+            1 => lines.push("1 line is dominated by noise; its interval is only indicative".to_owned()),
+            noisy => lines
+                .push(format!("{noisy} lines are dominated by noise; their intervals are only indicative")),
+        }
+        let elements = elements_of(spectrum.scalar);
+        match (&self.joint_fit, &self.likelihood) {
+            (Ok(fit), _) => lines.extend(all_frfs(fit, elements)),
+            (Err(error), Ok(fit)) => {
+                lines.push(format!("{error}; from the FRFs across the joint alone:"));
+                lines.extend(across(self, fit, elements));
+            }
+            (Err(error), Err(_)) => lines.push(error.to_string()),
+        }
+        lines
+    }
+}
+
+const UNITS: [[&str; 3]; 2] = [["N/m", "N/rad", "N*m/rad"], ["N*s/m", "N*s/rad", "N*m*s/rad"]];
+
+/// The elements of a symmetric matrix, or the one that means anything where bodies do not rotate.
+fn elements_of(scalar: bool) -> &'static [(usize, usize)] {
+    if scalar { &[(0, 0)] } else { &[(0, 0), (0, 1), (1, 1)] }
+}
+
+/// The joint from all FRFs, an element a line, and what is to be known of it.
+fn all_frfs(fit: &JointFit, elements: &[(usize, usize)]) -> Vec<String> {
+    let mut lines = numbers(fit, elements);
+    lines.push(basis(fit));
+    lines.extend(fit.remarks());
+    lines
+}
+
+fn numbers(fit: &JointFit, elements: &[(usize, usize)]) -> Vec<String> {
+    let (k_std, c_std) = fit.std();
+    let parts = [("k", &fit.stiffness, k_std), ("c", &fit.damping, c_std)];
+    let mut lines = Vec::new();
+    for ((symbol, value, std), units) in parts.into_iter().zip(UNITS) {
+        for &(i, j) in elements {
+            let text = quantity(value.at(i, j), std.at(i, j), units[i + j]);
+            lines.push(format!("{symbol}{}{} = {text}", i + 1, j + 1));
+        }
+    }
+    lines
+}
+
+/// What a fit rests on.
+fn basis(fit: &JointFit) -> String {
+    let fixture = match fit.quantities.is_empty() {
+        true => "the fixture taken as exact",
+        false => "the fixture moving within its tolerances",
+    };
+    format!(
+        "from {} over {}, {fixture}; chi2 per degree of freedom {:.3}",
+        counted(fit.frfs.len(), "FRF"),
+        counted(fit.lines, "line"),
+        fit.chi2_per_dof
+    )
+}
+
+/// The joint from the FRFs across it, with the fixture taken as exact.
+fn across(analysis: &Analysis, fit: &LikelihoodFit, elements: &[(usize, usize)]) -> Vec<String> {
+    let (k_fixture, c_fixture) = analysis.tolerance_of_likelihood();
+    let (k_model, c_model) = fit.model_std();
+    let parts = [
+        ("k", &fit.stiffness, [fit.stiffness_std, k_fixture, k_model]),
+        ("c", &fit.damping, [fit.damping_std, c_fixture, c_model]),
+    ];
+    let mut lines = Vec::new();
+    for ((symbol, value, shares), units) in parts.into_iter().zip(UNITS) {
+        for &(i, j) in elements {
+            let std = shares.iter().map(|share| share.at(i, j).powi(2)).sum::<f64>().sqrt();
+            let text = quantity(value.at(i, j), std, units[i + j]);
+            lines.push(format!("{symbol}{}{} = {text}", i + 1, j + 1));
+        }
+    }
+    lines.push(format!("chi2 per degree of freedom of this constant joint: {:.3}", fit.chi2_per_dof));
+    if !fit.explains() {
+        lines.push(
+            "with the fixture as stated, a constant joint does not explain the FRFs within their noise; the ± allow for \
+             it as far as the band shows, and the page says what may be behind it"
+                .to_owned(),
+        );
+    }
+    lines
 }

@@ -6,7 +6,7 @@ const PREFIXES: [(f64, &str); 7] =
 
 /// A unit together with the factor by which SI values are divided before they are printed in it.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Scale {
+pub struct Scale {
     factor: f64,
     unit: String,
 }
@@ -91,7 +91,7 @@ fn leading_symbol(unit: &str) -> &str {
 }
 
 /// Writes a unit of a file (`N*m/rad`, `m/s^2`) the way it is printed (`N·m/rad`, `m/s²`). A pure number (`1`) has no unit.
-pub(crate) fn typeset(unit: &str) -> String {
+pub fn typeset(unit: &str) -> String {
     if unit == "1" {
         return String::new();
     }
@@ -115,7 +115,7 @@ pub(crate) fn typeset(unit: &str) -> String {
 }
 
 /// The raised form of a digit or minus sign; anything else stays.
-pub(crate) fn superscript(c: char) -> char {
+pub fn superscript(c: char) -> char {
     const RAISED: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
     match c {
         '-' => '⁻',

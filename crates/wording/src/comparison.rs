@@ -1,0 +1,292 @@
+//! Joints side by side, in words.
+
+use crate::{Says, Summary};
+use jointscope_comparison::{
+    Caution, Compared, Comparison, Equality, Pair, Ratio, Scatter, Specimens, WhyApart,
+};
+
+/// Pairs beyond which only those with the first joint are listed.
+const MANY: usize = 6;
+
+/// Paths listed at the most.
+const LISTED: usize = 4;
+
+/// The pairs that are worth listing: all of a few, those with the first joint of many.
+pub fn main_pairs(comparison: &Comparison) -> impl Iterator<Item = &Pair> {
+    let few = comparison.pairs.len() <= MANY;
+    let first = &comparison.joints[0].name;
+    comparison.pairs.iter().filter(move |pair| few || pair.first == *first)
+}
+
+/// `93.02 % (92.98 to 93.06 %)`.
+pub fn percents(ratio: &Ratio) -> String {
+    let decimals = decimals(ratio.std * 100.0);
+    let [low, high] = ratio.ci95.map(|end| 100.0 * end);
+    format!("{:.decimals$} % ({low:.decimals$} to {high:.decimals$} %)", 100.0 * ratio.value)
+}
+
+/// Digits after the point that show two of a standard deviation.
+fn decimals(std: f64) -> usize {
+    if std > 0.0 && std.is_finite() { (1 - std.log10().floor() as i32).clamp(0, 6) as usize } else { 2 }
+}
+
+/// A p-value, or what it is below.
+pub fn p_value(p: f64) -> String {
+    match p {
+        p if p < 1e-15 => "p < 1e-15".to_owned(),
+        p if p < 1e-3 => format!("p = {p:.0e}"),
+        p => format!("p = {p:.3}"),
+    }
+}
+
+/// Whether joints are the same.
+pub fn equality(equality: &Equality, names: [&str; 2]) -> String {
+    let [first, second] = names;
+    let p = p_value(equality.p_value);
+    let degrees = equality.degrees;
+    match equality.is_refuted() {
+        true => format!("{first} and {second} are not the same joint: all {degrees} numbers equal has {p}"),
+        false => format!("nothing tells {first} and {second} apart: all {degrees} numbers equal has {p}"),
+    }
+}
+
+/// What the tests share, and which share nothing.
+pub fn shared(comparison: &Comparison) -> Vec<String> {
+    let together = &comparison.together;
+    let bodies =
+        together.shared.iter().map(|shared| format!("{} ({})", shared.body, shared.joints.join(", ")));
+    let bodies: Vec<String> = bodies.collect();
+    let mut all = Vec::new();
+    if !together.has_covariances {
+        all.push(
+            "taken as independent: these estimates do not say what the tests have in common, so that ratios and orders look less sure than they are on the same blocks".to_owned(),
+        );
+    }
+    if !bodies.is_empty() {
+        all.push(format!(
+            "taken as the same blocks, which the fixtures state alike: {}; what is not known of them cancels in differences and ratios, and numbers are those that all these \
+             tests together give. `--independent` takes them as different specimens",
+            bodies.join(", ")
+        ));
+    }
+    for why in [
+        WhyApart::NotStated,
+        WhyApart::OnTheBoundary,
+        WhyApart::LeftAlone,
+        WhyApart::OtherBodies,
+        WhyApart::Singular,
+        WhyApart::Asked,
+    ] {
+        let apart = together.apart.iter().filter(|apart| apart.why == why);
+        let names: Vec<&str> = apart.map(|apart| apart.joint.as_str()).collect();
+        if names.is_empty() {
+            continue;
+        }
+        let reason = match why {
+            WhyApart::Asked => "as asked for",
+            WhyApart::NotStated => {
+                "since their files do not say how the fixture acts on them; make them anew with `jointscope decompose`"
+            }
+            WhyApart::OnTheBoundary => {
+                "since C is held where it just gives out no energy, which what the FRFs alone tell knows nothing of"
+            }
+            WhyApart::LeftAlone => "since the other tests on the same bodies are taken apart",
+            WhyApart::OtherBodies => "since no other fixture states a body as theirs do",
+            WhyApart::Singular => {
+                "since their numbers and the fixture's cannot be told apart to working precision"
+            }
+            WhyApart::Disagrees => "since their FRFs contradict those of another test",
+        };
+        all.push(format!("taken as on blocks of their own: {}, {reason}", names.join(", ")));
+    }
+    for joints in &together.one_law {
+        all.push(format!(
+            "taken to follow one law over frequency, the same being the most probable of each: {}",
+            joints.join(", ")
+        ));
+    }
+    let differing = &together.differing;
+    if !differing.is_empty() {
+        let listed = differing.iter().take(LISTED).map(String::as_str).collect::<Vec<_>>().join(", ");
+        let more = match differing.len() {
+            n if n > LISTED => format!(" and {} more", n - LISTED),
+            _ => String::new(),
+        };
+        all.push(format!(
+            "the fixtures differ in {listed}{more}: bodies with these are not taken as the same"
+        ));
+    }
+    all
+}
+
+/// `0.53 % to 2.1 %` of the mean: the interval of what specimens differ by.
+pub fn between(scatter: &Scatter) -> String {
+    let (low, high) = scatter.between_ci95;
+    let relative = |value: f64| share(value, scatter.mean.value);
+    match high {
+        Some(high) => format!("{} to {}", relative(low), relative(high)),
+        None => "open: they are closer to each other than they are measured".to_owned(),
+    }
+}
+
+/// A share of a mean in percent, to three significant digits.
+pub fn share(value: f64, mean: f64) -> String {
+    let percent = 100.0 * (value / mean).abs();
+    match percent {
+        p if p == 0.0 || !p.is_finite() => "0 %".to_owned(),
+        p if p < 1e-4 => format!("{p:.1e} %"),
+        p => format!("{p:.*} %", (2 - p.log10().floor() as i32).clamp(0, 6) as usize),
+    }
+}
+
+/// How a number scatters between specimens.
+pub fn scatter(scatter: &Scatter) -> String {
+    let relative = |value: f64| share(value, scatter.mean.value);
+    format!(
+        "{}: mean {:.4e} {}, specimens differ by {} (95 %: {}), measured to {}; the same specimen has {}",
+        scatter.element,
+        scatter.mean.value,
+        scatter.unit,
+        relative(scatter.between),
+        between(scatter),
+        relative(scatter.measurement),
+        p_value(scatter.p_value)
+    )
+}
+
+/// What is compared, in words.
+pub fn estimate_words(comparison: &Comparison) -> &'static str {
+    match comparison.compared {
+        Compared::AllFrfs => "the joints from all FRFs",
+        Compared::Likelihood => "maximum-likelihood estimates from the FRFs across each joint",
+        Compared::Average => "averages over each joint's band",
+    }
+}
+
+impl Says for Caution {
+    fn says(&self) -> String {
+        match self {
+            Caution::PoorFit { joint, chi2_per_dof } => format!(
+                "{joint}: its fit leaves a chi2 of {} per degree of freedom, so this joint on this fixture does not explain its FRFs; its numbers \
+                 may be off by more than their ±",
+                short(*chi2_per_dof)
+            ),
+            Caution::StrainedFixture { joint, strain } => format!(
+                "{joint}: its fit moves the fixture's quantities {} times as far as chance does, so something that the fixture leaves out is in its numbers",
+                short(strain.sqrt())
+            ),
+            Caution::Refused { joint, tests } => {
+                let tests: Vec<&str> = tests
+                    .iter()
+                    .map(|test| match *test {
+                        "reciprocity" => "k12 and k21 differ",
+                        "definite" => "its stiffness would push by itself",
+                        _ => "its damping would give out energy",
+                    })
+                    .collect();
+                format!("{joint}: physics forbids what its FRFs ask for: {}", tests.join(", "))
+            }
+            Caution::OnTheBoundary { joint } => format!(
+                "{joint}: its C is held where it just gives out no energy, since its FRFs ask for one that would; it is compared as if on blocks of its own, and the intervals \
+                 of its C are those without this limit"
+            ),
+            Caution::Unusable { joint } => {
+                format!(
+                    "{joint}: its decomposition is judged unusable; its page says why, and nothing here rests on it"
+                )
+            }
+            Caution::Frequencies { joints, frequencies } => {
+                let each: Vec<String> = joints
+                    .iter()
+                    .zip(frequencies)
+                    .map(|(joint, frequency)| format!("{joint} at {frequency:.1} Hz"))
+                    .collect();
+                format!(
+                    "numbers of joints whose stiffness or damping depends on frequency are those in the middle of their bands, and these differ ({}): C, of a structural joint ηK/ω, is \
+                     not of one frequency; compare loss factors, or decompose with the same --band",
+                    each.join(", ")
+                )
+            }
+            Caution::Masses { with, without } => format!(
+                "{} {} a mass of the joint's own and {} none: stiffnesses of joints with and without a mass are not of the same thing",
+                with.join(", "),
+                if with.len() == 1 { "has" } else { "have" },
+                without.join(", ")
+            ),
+            Caution::NoFit { joint, why } => format!(
+                "{joint}: there is no fit to all its FRFs ({why}), so all joints are compared by estimates that know less"
+            ),
+            Caution::NoDeviations { joint, numbers } => format!(
+                "{joint}: {} {} no standard deviation, so nothing tells how sure what follows from {} is",
+                numbers.join(", "),
+                if numbers.len() == 1 { "has" } else { "have" },
+                if numbers.len() == 1 { "it" } else { "them" },
+            ),
+            Caution::SameRecording { first, second } => format!(
+                "{first} and {second}: both are of the same recording, so that its noise is in both, and that they agree is no second test"
+            ),
+            Caution::Lengths { joints, lengths } => {
+                let each = joints.iter().zip(lengths).map(|(joint, l)| format!("{joint} {:.2} mm", 1e3 * l));
+                let each: Vec<String> = each.collect();
+                format!(
+                    "K and C act over lengths that differ, and are so not of the same thing: {}",
+                    each.join(", ")
+                )
+            }
+            Caution::BodiesDisagree { joint } => format!(
+                "{joint}: its FRFs contradict those of another test on the blocks that both fixtures state alike, so it is compared as if on blocks of its own: \
+                 they may be others, or the fixture leaves something out"
+            ),
+        }
+    }
+}
+
+fn short(value: f64) -> String {
+    match value.abs() {
+        v if v >= 1000.0 => format!("{value:.0}"),
+        v if v >= 10.0 => format!("{value:.1}"),
+        v if v >= 0.01 => format!("{value:.2}"),
+        _ => format!("{value:.1e}"),
+    }
+}
+
+/// What to mind first, ratios, orders, specimens.
+impl Summary for Comparison {
+    fn summary(&self) -> Vec<String> {
+        let mut lines: Vec<String> = self.cautions.iter().map(|c| format!("caution: {}", c.says())).collect();
+        lines.push(format!("by {}", estimate_words(self)));
+        lines.extend(shared(self));
+        for pair in main_pairs(self) {
+            lines.extend(paired(pair));
+        }
+        lines.push("from the smallest magnitude to the largest:".to_owned());
+        lines.extend(self.rankings.iter().map(|entry| {
+            let order: Vec<&str> =
+                entry.ranking.order.iter().map(|i| self.joints[*i].name.as_str()).collect();
+            // No order is certain.
+            let right = match entry.ranking.probability {
+                _ if !entry.has_deviations => "nothing tells how sure that is".to_owned(),
+                p if p > 0.999 => "right with a probability of more than 0.999".to_owned(),
+                p => format!("right with a probability of {p:.3}"),
+            };
+            format!("{}: {} ({right})", entry.number().name(), order.join(" < "))
+        }));
+        lines.extend(self.specimens.iter().flat_map(scatters));
+        lines
+    }
+}
+
+fn paired(pair: &Pair) -> Vec<String> {
+    let ratios = pair.numbers.iter().filter_map(|number| {
+        let ratio = number.ratio?;
+        Some(format!("{}: {} is {} of {}", number.element, pair.second, percents(&ratio), pair.first))
+    });
+    let equality = pair.equality.map(|tested| equality(&tested, [&pair.first, &pair.second]));
+    ratios.chain(equality).collect()
+}
+
+fn scatters(specimens: &Specimens) -> Vec<String> {
+    let head = format!("{}: {} specimens", specimens.name, specimens.joints.len());
+    let lines = specimens.numbers.iter().map(scatter);
+    std::iter::once(head).chain(lines.map(|line| format!("  {line}"))).collect()
+}
