@@ -63,6 +63,7 @@ mod scan;
 mod search;
 mod searched_frfs;
 mod settings;
+mod together;
 mod watch;
 mod work;
 

@@ -155,3 +155,23 @@ fn a_peak_that_an_overload_flattened_is_left_out() {
         diagnosis.contradictory
     );
 }
+
+#[test]
+fn ac_coupling_of_all_responses_alike_is_one_filter_and_not_one_of_each() {
+    for (corner, seed) in [(2.0, 26), (1.0, 27)] {
+        let each = ["3", "4"].map(|n| on(EffectKind::ChannelHighpass, Place::Response(n.into()), &[corner]));
+        let fixture = believed([0.004, 0.004]);
+        let lines = SpectralLines::even(2.5, 2.5, 400).unwrap();
+        let frfs = measured(&fixture, each.to_vec(), (&four_pairs(), &lines), &hammer(seed));
+        let diagnosis = Diagnosis::of(&fixture, &frfs, &DiagnosisOptions::default()).unwrap();
+        let [found] = &diagnosis.findings[..] else { panic!("{}", told(&diagnosis)) };
+        assert!(found.effect.kind == EffectKind::ChannelHighpass && found.effect.place == Place::Responses);
+        assert!((found.effect.value(0) / corner - 1.0).abs() < 0.1, "{}", told(&diagnosis));
+    }
+}
+
+#[test]
+fn ac_coupling_of_the_one_hammer_is_that_of_the_force() {
+    named(&on(EffectKind::ChannelHighpass, Place::Force, &[2.0]), &four_pairs(), 28, 0.1);
+    named(&on(EffectKind::ChannelHighpass, Place::Force, &[1.0]), &four_pairs(), 29, 0.1);
+}
