@@ -165,6 +165,12 @@ pub fn catalogue(fixture: &Fixture, observation: &Observation) -> Vec<Candidate>
         let filters = kinds(|spec| spec.place == Channel).filter(|kind| !inverts(*kind));
         filters.for_each(|kind| add(kind, Place::Responses, None));
     }
+    // Records that are taken one by one may each have a gain of its own, where the fixture says so.
+    for effect in fixture.channels() {
+        if matches!(effect.place, Place::Record(_)) {
+            add(effect.kind, effect.place.clone(), None);
+        }
+    }
     let points = pairs.iter().flat_map(|pair| [pair.response.point.clone(), pair.reference.point.clone()]);
     for point in sorted(points) {
         kinds(|spec| spec.entry == Entry::Offset)

@@ -89,6 +89,12 @@ impl Diagnosis {
         let work = Work::of(options.settings.work, options.time_limit).for_models_of(coordinates);
         let work = Arc::new(work);
         let observation = Observation::new(frfs, asked)?.counted(Arc::clone(&work));
+        // Each record's gain moves within what is stated of all of them, on lines and by modes; of a baseline and what follows it they are not the same.
+        let names: Vec<String> = frfs.pairs().iter().map(ToString::to_string).collect();
+        let fixture = &match options.baseline {
+            None => fixture.clone().with_records(names.iter().map(String::as_str)),
+            Some(_) => fixture.clone(),
+        };
         let nominal = Hypothesis::nominal(fixture, options.exact);
         nominal.predict(&observation)?;
         let contradictory = contradictory(&observation, &nominal);

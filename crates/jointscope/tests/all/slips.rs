@@ -175,3 +175,44 @@ fn ac_coupling_of_the_one_hammer_is_that_of_the_force() {
     named(&on(EffectKind::ChannelHighpass, Place::Force, &[2.0]), &four_pairs(), 28, 0.1);
     named(&on(EffectKind::ChannelHighpass, Place::Force, &[1.0]), &four_pairs(), 29, 0.1);
 }
+
+/// `believed` with gains of records that scatter by a tenth, and what is recorded of it through these gains.
+fn struck_unevenly(effects: &[Effect], gains: [f64; 4], seed: u64) -> Diagnosis {
+    let mut file: serde_json::Value = serde_json::from_str(&believed([0.004, 0.004]).to_json()).unwrap();
+    let scatter = serde_json::json!({ "*": { "gain": { "value": 1.0, "std": 0.1 } } });
+    file.as_object_mut().unwrap().insert("channels".into(), scatter);
+    let fixture = Fixture::from_json(&file.to_string()).unwrap();
+    let lines = SpectralLines::even(2.5, 2.5, 400).unwrap();
+    let frfs = measured(&fixture, effects.to_vec(), (&four_pairs(), &lines), &hammer(seed));
+    let frfs = frfs.with_values(|at, value| gains[at / 400] * value);
+    Diagnosis::of(&fixture, &frfs, &DiagnosisOptions::default()).unwrap()
+}
+
+#[test]
+fn gains_of_records_that_scatter_as_stated_hide_nothing_and_are_no_physics() {
+    let gains = [1.07, 0.93, 0.94, 1.11];
+    let nothing = struck_unevenly(&[], gains, 30);
+    assert_eq!(nothing.verdict, Verdict::Consistent, "{}", told(&nothing));
+    assert!(nothing.chi2_per_dof()[1] < 1.1, "{:?}", nothing.chi2_per_dof());
+    let kind = EffectKind::InterfaceCompliance;
+    let turning = Effect::new(kind, Place::Point("3".into()), Some(Dof::Rotation), &[15_000.0, 1e-3]);
+    let diagnosis = struck_unevenly(&[turning], gains, 31);
+    let [found] = &diagnosis.findings[..] else { panic!("{}", told(&diagnosis)) };
+    assert!(found.effect.kind == kind && found.effect.place == Place::Point("3".into()));
+    assert!((found.effect.value(0) / 15_000.0 - 1.0).abs() < 0.1, "{}", told(&diagnosis));
+    let [low, _] = found.estimate("damping").unwrap().interval.unwrap();
+    assert!(low >= 0.0, "a dashpot of {low} N*m*s/rad");
+}
+
+#[test]
+fn a_record_far_outside_of_the_scatter_of_gains_is_named_as_such_and_no_mass_for_it() {
+    for (gains, frf, seed) in [([1.07, 0.585, 0.94, 1.11], "3/1", 32), ([0.9, 1.1, 0.585, 1.0], "4/2", 33)] {
+        let diagnosis = struck_unevenly(&[], gains, seed);
+        let [found] = &diagnosis.findings[..] else { panic!("{}", told(&diagnosis)) };
+        let same =
+            found.effect.kind == EffectKind::ChannelGain && found.effect.place == Place::Record(frf.into());
+        assert!(same && diagnosis.verdict == Verdict::Explained, "{}", told(&diagnosis));
+        let [low, high] = found.estimate("factor").unwrap().interval.unwrap();
+        assert!(low < 0.585 && 0.585 < high && found.probability > 0.9, "{}", told(&diagnosis));
+    }
+}
