@@ -5,6 +5,7 @@ use crate::model_error::told;
 use jointscope::diagnosis::{Diagnosis, DiagnosisOptions, Verdict};
 use jointscope::fixture::{Dof, Effect, EffectKind, Place};
 use jointscope::{Fixture, FrfPair, FrfSet, SpectralLines};
+use jointscope_rig::HammerTest;
 use num_complex::Complex64;
 
 /// The four FRFs across the joint, and those on block A.
@@ -202,6 +203,24 @@ fn gains_of_records_that_scatter_as_stated_hide_nothing_and_are_no_physics() {
     assert!((found.effect.value(0) / 15_000.0 - 1.0).abs() < 0.1, "{}", told(&diagnosis));
     let [low, _] = found.estimate("damping").unwrap().interval.unwrap();
     assert!(low >= 0.0, "a dashpot of {low} N*m*s/rad");
+}
+
+#[test]
+fn a_soft_tip_whose_blow_dies_away_within_the_band_is_no_misfit() {
+    let fixture = believed([0.004, 0.004]);
+    let lines = SpectralLines::even(2.5, 2.5, 400).unwrap();
+    for (corner, averages, seed) in [(150.0, 5, 34), (250.0, 5, 35), (250.0, 10, 36)] {
+        let soft = HammerTest { corner, averages, noise_force: 0.002, ..hammer(seed) };
+        let frfs = measured(&fixture, Vec::new(), (&four_pairs(), &lines), &soft);
+        let diagnosis = Diagnosis::of(&fixture, &frfs, &DiagnosisOptions::default()).unwrap();
+        assert_eq!(
+            diagnosis.verdict,
+            Verdict::Consistent,
+            "{corner} Hz, {averages} hits: {}",
+            told(&diagnosis)
+        );
+        assert!(diagnosis.chi2_per_dof()[1] < 1.1, "{corner} Hz: {:?}", diagnosis.chi2_per_dof());
+    }
 }
 
 #[test]
