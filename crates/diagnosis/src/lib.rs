@@ -43,6 +43,7 @@ mod facts;
 mod finding;
 mod fit;
 mod fitter;
+mod force_noise;
 mod freedom;
 mod held_out;
 mod hypothesis;

@@ -223,6 +223,38 @@ fn a_soft_tip_whose_blow_dies_away_within_the_band_is_no_misfit() {
     }
 }
 
+/// A soft tip, and a force channel whose noise is a fiftieth of its signal: where the blow dies away H1 is too small by some per cent.
+fn noisy_force(seed: u64) -> HammerTest {
+    HammerTest { corner: 150.0, averages: 8, noise_force: 0.02, ..hammer(seed) }
+}
+
+#[test]
+fn what_noise_of_the_force_makes_of_h1_is_no_resonance_of_a_channel() {
+    let fixture = believed([0.004, 0.004]);
+    let lines = SpectralLines::even(2.5, 2.5, 400).unwrap();
+    for seed in [1, 2, 3] {
+        let frfs = measured(&fixture, Vec::new(), (&four_pairs(), &lines), &noisy_force(seed));
+        let diagnosis = Diagnosis::of(&fixture, &frfs, &DiagnosisOptions::default()).unwrap();
+        assert_eq!(diagnosis.verdict, Verdict::Consistent, "{}", told(&diagnosis));
+        assert!(diagnosis.falls_short.is_some_and(|share| share > 0.01), "{:?}", diagnosis.falls_short);
+    }
+}
+
+#[test]
+fn what_is_there_is_named_beside_noise_of_the_force() {
+    let fixture = believed([0.004, 0.004]);
+    let lines = SpectralLines::even(2.5, 2.5, 400).unwrap();
+    let gain = on(EffectKind::ChannelGain, Place::Response("4".into()), &[1.03]);
+    let hammer = HammerTest { corner: 250.0, ..noisy_force(1) };
+    let frfs = measured(&fixture, vec![gain], (&four_pairs(), &lines), &hammer);
+    let diagnosis = Diagnosis::of(&fixture, &frfs, &DiagnosisOptions::default()).unwrap();
+    let [found] = &diagnosis.findings[..] else { panic!("{}", told(&diagnosis)) };
+    assert!(
+        found.effect.kind == EffectKind::ChannelGain && found.effect.place == Place::Response("4".into())
+    );
+    assert!((found.effect.value(0) - 1.03).abs() < 0.005, "{}", told(&diagnosis));
+}
+
 #[test]
 fn a_record_far_outside_of_the_scatter_of_gains_is_named_as_such_and_no_mass_for_it() {
     for (gains, frf, seed) in [([1.07, 0.585, 0.94, 1.11], "3/1", 32), ([0.9, 1.1, 0.585, 1.0], "4/2", 33)] {
