@@ -2,6 +2,7 @@
 
 use crate::departures::departed;
 use crate::freedom::{extent, inertia_of, mass_of, turns};
+use crate::together::inverts;
 use crate::{Hypothesis, Observation};
 use jointscope_fixture::{
     BodyKind, Dof, Effect, EffectKind, EffectSpec, Entry, Fixture, Joint, JointLaw, Measure, Motion,
@@ -158,6 +159,17 @@ pub fn catalogue(fixture: &Fixture, observation: &Observation) -> Vec<Candidate>
     let channels = responses.iter().cloned().map(Place::Response);
     for channel in channels.chain(references.into_iter().map(Place::Reference)).chain(force) {
         kinds(|spec| spec.place == Channel).for_each(|kind| add(kind, channel.clone(), None));
+    }
+    // A filter of all responses alike, the one sensor's or the analyser's; a gain or a delay of all of them is one of the force.
+    if responses.len() > 1 {
+        let filters = kinds(|spec| spec.place == Channel).filter(|kind| !inverts(*kind));
+        filters.for_each(|kind| add(kind, Place::Responses, None));
+    }
+    // Records that are taken one by one may each have a gain of its own, where the fixture says so.
+    for effect in fixture.channels() {
+        if matches!(effect.place, Place::Record(_)) {
+            add(effect.kind, effect.place.clone(), None);
+        }
     }
     let points = pairs.iter().flat_map(|pair| [pair.response.point.clone(), pair.reference.point.clone()]);
     for point in sorted(points) {

@@ -3,10 +3,12 @@ use crate::departures::{Departure, departures, has_departed};
 use crate::drift::{Drifted, TestDrift};
 use crate::finding::{Finding, Tried};
 use crate::fitter::Fitter;
+use crate::force_noise::Shortfall;
 use crate::location::Location;
 use crate::mismatch::{FrfMismatch, mismatch};
 use crate::modal::ModelError;
 use crate::options::{DiagnosisError, DiagnosisOptions};
+use crate::penalty::parameter_penalty;
 use crate::routes::{self, Parts, chance};
 use crate::search::Search;
 use crate::settings::Settings;
@@ -55,6 +57,8 @@ pub struct Diagnosis {
     pub stopped: Vec<&'static str>,
     /// Bands, Hz, of lines that contradict all others whatever the structure, and were left out.
     pub contradictory: Vec<(f64, f64)>,
+    /// The largest share by which FRFs fell short because of noise of the force, where that explains the recording better: the observation is without it.
+    pub falls_short: Option<f64>,
     /// How the structure changed from reference to reference, where it did: the diagnosis is of the references that agree.
     pub drift: Option<TestDrift>,
     /// Effects that were tried by themselves where the model's error decides, the most probable first.
@@ -89,6 +93,12 @@ impl Diagnosis {
         let work = Work::of(options.settings.work, options.time_limit).for_models_of(coordinates);
         let work = Arc::new(work);
         let observation = Observation::new(frfs, asked)?.counted(Arc::clone(&work));
+        // Each record's gain moves within what is stated of all of them, on lines and by modes; of a baseline and what follows it they are not the same.
+        let names: Vec<String> = frfs.pairs().iter().map(ToString::to_string).collect();
+        let fixture = &match options.baseline {
+            None => fixture.clone().with_records(names.iter().map(String::as_str)),
+            Some(_) => fixture.clone(),
+        };
         let nominal = Hypothesis::nominal(fixture, options.exact);
         nominal.predict(&observation)?;
         let contradictory = contradictory(&observation, &nominal);
@@ -105,26 +115,34 @@ impl Diagnosis {
         };
         let hold_out: Vec<FrfPair> = options.hold_out.iter().filter(|pair| agreeing(pair)).cloned().collect();
         let options = &DiagnosisOptions { hold_out, ..options.clone() };
-        let few = observation.searched(&options.hold_out);
-        let searched = few.as_ref().unwrap_or(&observation);
-        let fitter = Fitter { observation: searched, settings: &options.settings, watch };
-        let mut parts = match &options.baseline {
-            Some(baseline) => {
-                let baseline = Observation::new(baseline, in_use)?;
-                let baseline = baseline.reduced(|_| true, agreeing).unwrap_or(baseline);
-                if baseline.pairs() != observation.pairs() {
-                    return Err(DiagnosisError::Baseline);
+        let diagnosed = |observation: Observation| {
+            let few = observation.searched(&options.hold_out);
+            let searched = few.as_ref().unwrap_or(&observation);
+            let fitter = Fitter { observation: searched, settings: &options.settings, watch };
+            let mut parts = match &options.baseline {
+                Some(baseline) => {
+                    let baseline = Observation::new(baseline, in_use)?;
+                    let baseline = baseline.reduced(|_| true, agreeing).unwrap_or(baseline);
+                    if baseline.pairs() != observation.pairs() {
+                        return Err(DiagnosisError::Baseline);
+                    }
+                    let pairs = searched.pairs();
+                    let part = baseline.reduced(|_| true, |pair| pairs.contains(pair));
+                    routes::since(&fitter, part.unwrap_or(baseline), fixture, options.exact)?
                 }
-                let pairs = searched.pairs();
-                let part = baseline.reduced(|_| true, |pair| pairs.contains(pair));
-                routes::since(&fitter, part.unwrap_or(baseline), fixture, options.exact)?
+                None => routes::judged(&fitter, fixture, options)?,
+            };
+            if few.is_some() {
+                parts = parts.on_all(&fitter.on(&observation));
             }
-            None => routes::judged(&fitter, fixture, options)?,
+            Ok(Self::of_parts(parts, observation, &options.settings))
         };
-        if few.is_some() {
-            parts = parts.on_all(&fitter.on(&observation));
-        }
-        let diagnosis = Diagnosis { contradictory, ..Self::of_parts(parts, observation, &options.settings) };
+        let diagnosis = diagnosed(observation)?;
+        let diagnosis = match options.baseline {
+            None => diagnosis.without_shortfall(&options.settings, diagnosed)?,
+            Some(_) => diagnosis,
+        };
+        let diagnosis = Diagnosis { contradictory, ..diagnosis };
         let within_estimates = options.estimated
             && diagnosis.refitted.0 < options.settings.evidence.explained.0
             && !has_departed(&diagnosis.stated[0]);
@@ -145,6 +163,7 @@ impl Diagnosis {
             departures: departures(&stated),
             stated,
             contradictory: Vec::new(),
+            falls_short: None,
             drift: None,
             stopped: observation.work().left_out(),
             observation,
@@ -165,6 +184,36 @@ impl Diagnosis {
         let explains =
             self.model_error.is_none() && matches!(self.verdict, Verdict::Consistent | Verdict::Explained);
         Some(drifted.attributed(&model.ok()?, explains))
+    }
+
+    /// The same, or, where something was found or left and FRFs that fall short by noise of the force explain the recording better, what is `diagnosed` of the FRFs without
+    /// that.
+    fn without_shortfall(
+        self,
+        settings: &Settings,
+        diagnosed: impl Fn(Observation) -> Result<Self, DiagnosisError>,
+    ) -> Result<Self, DiagnosisError> {
+        if self.verdict == Verdict::Consistent && self.model_error.is_none() {
+            return Ok(self);
+        }
+        let fitter = Fitter { observation: &self.observation, settings, watch: Watch::default() };
+        let Search { refitted, repaired, .. } = &self.search;
+        let found = (repaired.hypothesis.effect_count() > 0).then_some(repaired);
+        let cost = |of: &Self| {
+            let fit = &of.search.repaired;
+            fit.objective + parameter_penalty(&settings.selection, &fit.hypothesis)
+        };
+        // Beside what was found second: a filter or a mass takes up what falls short, and leaves too little of it.
+        for fit in [Some(refitted), found].into_iter().flatten() {
+            let short = Shortfall::beside(&fitter, &fit.hypothesis).filter(|short| short.explains(&fitter));
+            let Some(short) = short else { continue };
+            let Some(corrected) = short.corrected(&self.observation) else { continue };
+            let other = diagnosed(corrected)?;
+            if cost(&other) + settings.selection.parameter_penalty < cost(&self) {
+                return Ok(Diagnosis { falls_short: Some(short.largest), ..other });
+            }
+        }
+        Ok(self)
     }
 
     /// The same where the fixture as refitted explains all that there is to explain.

@@ -349,7 +349,11 @@ impl Hypothesis {
     /// The FRFs that coordinate `index` acts on, where that is told by its name: where a channel's point sits, if nothing but channels
     /// is there, matters to that channel's FRFs alone.
     fn depending(&self, index: usize, observation: &Observation) -> Option<Vec<usize>> {
-        let QuantityOwner::Point(place) = self.tolerances.get(index)?.quantity.owner else { return None };
+        let place = match self.tolerances.get(index)?.quantity.owner {
+            QuantityOwner::Point(place) => place,
+            QuantityOwner::Channel(channel) => return self.recorded_by(channel, observation),
+            _ => return None,
+        };
         let name = self.fixture.points()[place].name.as_str();
         let holds = self.fixture.joints().iter().any(|joint| joint.from == place || joint.to == place);
         if holds || !self.fixture.supports().is_empty() {
@@ -358,6 +362,13 @@ impl Hypothesis {
         let pairs = observation.pairs().iter().enumerate();
         let reads = |pair: &FrfPair| pair.response.point == name || pair.reference.point == name;
         Some(pairs.filter(|(_, pair)| reads(pair)).map(|(i, _)| i).collect())
+    }
+
+    /// The one FRF that a channel of the fixture is the record of.
+    fn recorded_by(&self, channel: usize, observation: &Observation) -> Option<Vec<usize>> {
+        let Place::Record(name) = &self.fixture.channels().get(channel)?.place else { return None };
+        let is_own = |pair: &FrfPair| pair.to_string() == *name;
+        Some(observation.pairs().iter().position(is_own).into_iter().collect())
     }
 
     /// A step of size `size` of coordinate `index` that stays within its bounds.

@@ -43,6 +43,7 @@ mod facts;
 mod finding;
 mod fit;
 mod fitter;
+mod force_noise;
 mod freedom;
 mod held_out;
 mod hypothesis;
@@ -63,6 +64,7 @@ mod scan;
 mod search;
 mod searched_frfs;
 mod settings;
+mod together;
 mod watch;
 mod work;
 

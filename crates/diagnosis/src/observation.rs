@@ -142,6 +142,22 @@ impl Observation {
         self.on(&keep, &vec![true; self.pairs().len()]).unwrap_or_else(|| self.clone())
     }
 
+    /// The observation of FRFs that are this one's values divided by `kept`, each known as well as before.
+    pub(crate) fn divided_by(&self, kept: &[f64]) -> Option<Self> {
+        let n = self.lines().len();
+        let places = |index: usize| index * n..(index + 1) * n;
+        let values = self.values().iter().zip(kept).map(|(value, kept)| value / kept).collect();
+        let mut frfs =
+            FrfSet::new(self.lines().clone(), FrfForm::Accelerance, self.pairs().to_vec(), values).ok()?;
+        (0..self.pairs().len()).for_each(|index| frfs.set_averages(index, self.frfs.averages(index)));
+        let scaled = |all: &[f64], power: i32| {
+            let of = |index: usize| all[places(index)].iter().zip(&kept[places(index)]);
+            (0..self.pairs().len()).flat_map(of).map(|(value, kept)| value * kept.powi(power)).collect()
+        };
+        let (weight, level) = (scaled(&self.weight, 2), scaled(&self.level, -2));
+        Some(Observation { frfs, weight, level, ..self.clone() })
+    }
+
     /// The FRFs in use, accelerances.
     pub fn frfs(&self) -> &FrfSet {
         &self.frfs

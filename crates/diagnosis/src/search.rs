@@ -8,6 +8,7 @@ use crate::modal::explains;
 use crate::penalty::{parameter_penalty, penalty};
 use crate::ranking::Ranking;
 use crate::settings::Settings;
+use crate::together::as_one;
 use crate::{Hypothesis, Observation, Watch};
 use jointscope_fixture::Fixture;
 
@@ -150,6 +151,25 @@ impl Search {
         self.polish(fitter);
         self.exchange(fitter);
         self.prune(fitter);
+        self.merge(fitter);
+    }
+
+    /// Puts one effect in the stead of several on channels that are together exactly that one, where it does as well: no exchange of one for another leads there.
+    fn merge(&mut self, fitter: &Fitter) {
+        let several =
+            as_one(&self.repaired.hypothesis.effects(), &self.candidates, fitter.observation.pairs());
+        let fits = several.into_iter().filter_map(|(indices, one)| {
+            let rest = indices
+                .iter()
+                .rev()
+                .fold(self.repaired.hypothesis.clone(), |rest, index| rest.without(*index));
+            fitter.local(&rest.with(one), None, f64::INFINITY)
+        });
+        let cost = |fit: &Fit| fit.objective + parameter_penalty(&fitter.settings.selection, &fit.hypothesis);
+        let best = fits.min_by(|a, b| cost(a).total_cmp(&cost(b)));
+        if let Some(fewer) = best.filter(|fewer| !self.is_worth(fitter, &self.repaired, fewer)) {
+            self.repaired = fewer;
+        }
     }
 
     /// Fits the effects that were found again from the nominal quantities: along a flat valley the way that led here may have

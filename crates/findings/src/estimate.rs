@@ -30,9 +30,14 @@ impl Estimate {
         Estimate { parameter, value, std: None, interval: None, unit: parameter.unit_in(dof) }
     }
 
-    /// The same known to ± `std`, its errors normal.
+    /// The same known to ± `std`, its errors normal; the interval holds none but possible values: of a dashpot that may be none it begins at zero.
     pub fn within(self, std: f64) -> Self {
-        Estimate { std: Some(std), interval: Some(interval95(self.value, std)), ..self }
+        let [low, high] = interval95(self.value, std);
+        let least = match self.parameter.range {
+            ParameterRange::Positive | ParameterRange::NonNegative => 0.0,
+            ParameterRange::Any | ParameterRange::NonZero => f64::NEG_INFINITY,
+        };
+        Estimate { std: Some(std), interval: Some([low.max(least), high]), ..self }
     }
 
     /// The same known to ± `deviation` in its logarithm: an interval of ratios, lopsided where it is wide.
@@ -65,5 +70,23 @@ impl Estimate {
     /// Whether the whole interval lies above zero.
     pub fn is_positive(&self) -> bool {
         self.interval.is_some_and(|[low, _]| low > 0.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use jointscope_fixture::EffectKind;
+
+    #[test]
+    fn an_interval_of_what_cannot_be_negative_begins_at_zero() {
+        let of = |kind: EffectKind, name: &str| {
+            let parameter = kind.spec().parameters.iter().find(|p| p.name == name).copied();
+            Estimate::of(parameter.expect("it has one"), None, 0.002).within(0.01).interval
+        };
+        let upper = 0.002 + Z95 * 0.01;
+        assert_eq!(of(EffectKind::InterfaceCompliance, "damping"), Some([0.0, upper]));
+        assert_eq!(of(EffectKind::AttachedResonator, "damping_ratio"), Some([0.0, upper]));
+        assert_eq!(of(EffectKind::PointOffset, "dx"), Some([0.002 - Z95 * 0.01, upper]));
     }
 }

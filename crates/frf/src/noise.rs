@@ -59,6 +59,8 @@ fn averages_by_scatter(values: &[Complex64], coherence: &[f64], scatter: &[f64])
 
 /// Half-width of the window, in lines, within which the noise is taken as constant.
 const WINDOW: usize = 25;
+/// The least of it where levels are followed from line to line.
+const SHORTEST: usize = 4;
 /// Fewest usable lines from which a scatter can be estimated.
 const FEWEST: usize = 8;
 /// Power of the force, relative to the strongest line's, that counts as none.
@@ -120,9 +122,58 @@ fn variances(frfs: &FrfSet, index: usize, values: &[Complex64]) -> (Vec<f64>, No
     (scatter, NoiseSource::Scatter)
 }
 
+/// Degrees of freedom from which a local level of variances is told: to an eighth.
+const TOLD: f64 = 150.0;
+/// Steps in which such a level is found.
+const STEPS: usize = 6;
+
 /// Variances E|ε|² of one FRF from its coherence and number of averages, smoothed over the lines.
+///
+/// A file says nothing of the force, whose power falls by decades within few lines before a soft tip's first zero, and the variances rise by as much. So what the lines
+/// show against a noise that varies slowly is followed over no more of them than tell a level: with n averages each has 2(n − 1) degrees of freedom.
 pub fn from_coherence(values: &[Complex64], coherence: &[f64], averages: u32) -> Vec<f64> {
-    smoothed(values, &of_lines(values, coherence, averages), coherence, &[], 1.0)
+    let raw = of_lines(values, coherence, averages);
+    let slow = smoothed(values, &raw, coherence, &[], 1.0);
+    let ratios: Vec<f64> = raw.iter().zip(&slow).map(|(raw, slow)| raw / slow).collect();
+    let degrees = 2.0 * f64::from(averages.max(2) - 1);
+    let reach = ((TOLD / degrees / 2.0).ceil() as usize).clamp(SHORTEST, WINDOW);
+    let level = |line: usize| {
+        let usable = around(line, reach, raw.len()).filter(|&i| coherence[i] > 0.0);
+        let near: Vec<(f64, f64)> = usable.map(|i| (i as f64 - line as f64, ratios[i])).collect();
+        // What a level from ν degrees of freedom divides is too large in the mean by ν/(ν − 2).
+        let all = degrees * near.len() as f64;
+        local_level(&near).map_or(1.0, |level| level * all / (all - 2.0).max(1.0))
+    };
+    let floor = |value: &Complex64| (FLOOR * FLOOR * value.norm_sqr()).max(f64::MIN_POSITIVE);
+    let lines = values.iter().zip(&slow).enumerate();
+    lines.map(|(line, (value, slow))| (slow * level(line)).max(floor(value))).collect()
+}
+
+/// The level at zero of variances at distances from there, their logarithm along a straight line: the most likely one for spreads in proportion to the level. `None` of too
+/// few, or where they are all nothing.
+fn local_level(near: &[(f64, f64)]) -> Option<f64> {
+    let count = near.len() as f64;
+    let mean = near.iter().map(|(_, ratio)| ratio).sum::<f64>() / count;
+    if near.len() < FEWEST || mean <= 0.0 {
+        return None;
+    }
+    let (first, second) =
+        near.iter().fold((0.0, 0.0), |(first, second), (at, _)| (first + at, second + at * at));
+    let determinant = count * second - first * first;
+    let (mut level, mut slope) = (mean.ln(), 0.0);
+    for _ in 0..STEPS {
+        let (mut b0, mut b1) = (0.0, 0.0);
+        for (at, ratio) in near {
+            let excess = ratio / (level + slope * at).exp() - 1.0;
+            (b0, b1) = (b0 + excess, b1 + excess * at);
+        }
+        // A step no farther than by half: single lines far above the rest would throw it off.
+        let step = ((b0 * second - b1 * first) / determinant, (b1 * count - b0 * first) / determinant);
+        let reach = near.iter().map(|(at, _)| (step.0 + step.1 * at).abs()).fold(0.0, f64::max);
+        let share = (0.5 / reach.max(f64::MIN_POSITIVE)).min(1.0);
+        (level, slope) = (level + share * step.0, slope + share * step.1);
+    }
+    Some(level.exp())
 }
 
 /// Variance E|ε|² of one value by line as coherence and averages state it, (1 − γ²)/((n − 1)γ²)·|H|²: right in the mean over many lines,
@@ -385,5 +436,40 @@ pub(crate) mod tests {
         assert!(from_coherence(&values, &vec![1.0; 99], 5).iter().all(|v| *v > 0.0 && v.is_finite()));
         assert!(from_scatter(&hz(values.len()), &values).iter().all(|v| *v > 0.0 && v.is_finite()));
         assert!(from_scatter(&hz(3), &values[..3]).iter().all(|v| *v > 0.0));
+    }
+
+    /// A soft tip's blow, a half sine whose spectrum has its first zero within the band, as share of its force at 0 Hz.
+    fn soft(line: usize) -> f64 {
+        let a = 1.5 * line as f64 / 250.0;
+        ((std::f64::consts::PI * a).cos() / (1.0 - 4.0 * a * a)).abs().max(0.03)
+    }
+
+    #[test]
+    fn where_the_force_dies_away_within_the_band_errors_are_normalised_to_one_all_the_same() {
+        for averages in [5, 10] {
+            let mut random = Normals(40 + u64::from(averages));
+            // χ² and number of lines, where the blow is strong and where it is weak.
+            let mut sums = [(0.0, 0.0); 2];
+            for _ in 0..40 {
+                let blow = |l: usize, random: &mut Normals| {
+                    let share = soft(l);
+                    measure(random, resonance(l), averages, 1e-4 / (share * share), 1e-9)
+                };
+                let lines: Vec<(Complex64, f64)> = (1..401).map(|l| blow(l, &mut random)).collect();
+                let (values, coherence): (Vec<Complex64>, Vec<f64>) = lines.into_iter().unzip();
+                for (i, v) in from_coherence(&values, &coherence, averages).iter().enumerate() {
+                    let sum = &mut sums[usize::from(soft(i + 1) < 0.1)];
+                    sum.0 += (values[i] - resonance(i + 1)).norm_sqr() / v;
+                    sum.1 += 1.0;
+                }
+            }
+            for (chi2, count) in sums {
+                let ratio: f64 = chi2 / count;
+                assert!(
+                    (0.93..1.07).contains(&ratio),
+                    "{averages} averages: chi2 per degree of freedom {ratio}"
+                );
+            }
+        }
     }
 }

@@ -121,9 +121,7 @@ fn reading(fixture: &Fixture, effects: &[Action], pair: &FrfPair) -> Result<Read
     let mut filters = Vec::new();
     for effect in effects {
         match *effect {
-            Action::Signal { channel: Place::Response(name), gain: g, delay: t }
-                if pair.response.is_named(name) =>
-            {
+            Action::Signal { channel, gain: g, delay: t } if multiplies(channel, pair) => {
                 gain *= g;
                 delay += t;
             }
@@ -131,8 +129,8 @@ fn reading(fixture: &Fixture, effects: &[Action], pair: &FrfPair) -> Result<Read
                 gain *= 1.0 / g;
                 delay -= t;
             }
-            Action::Filtered { channel: Place::Response(name), filter } if pair.response.is_named(name) => {
-                filters.push((filter, false));
+            Action::Filtered { channel, filter } if multiplies(channel, pair) => {
+                filters.push((filter, false))
             }
             Action::Filtered { channel, filter } if divides(channel, pair) => filters.push((filter, true)),
             Action::SensorLoad { response, mass } if pair.response.is_named(response) => load += mass,
@@ -144,6 +142,18 @@ fn reading(fixture: &Fixture, effects: &[Action], pair: &FrfPair) -> Result<Read
         mass => Some((at(&Channel::transverse(pair.response.point.clone()))?, mass)),
     };
     Ok(Reading { output: at(&pair.response)?, input: at(&pair.reference)?, load, gain, delay, filters })
+}
+
+/// Whether an FRF is multiplied by what a channel does to its signal: by its own response, by what all responses have in common, or in its own record.
+fn multiplies(channel: &Place, pair: &FrfPair) -> bool {
+    match channel {
+        Place::Response(name) => pair.response.is_named(name),
+        Place::Responses => true,
+        Place::Record(name) => name
+            .match_indices('/')
+            .any(|(at, _)| pair.response.is_named(&name[..at]) && pair.reference.is_named(&name[at + 1..])),
+        _ => false,
+    }
 }
 
 /// Whether an FRF is divided by a channel's signal: its own reference, or the force of all references.

@@ -132,12 +132,18 @@ impl Circuit {
             all(effects, kind).filter_map(move |effect| match &effect.place {
                 Place::Response(name) if *name == response => Some((effect.value(0), 1)),
                 Place::Reference(name) if *name == reference => Some((effect.value(0), -1)),
+                Place::Record(name) if *name == format!("{response}/{reference}") => {
+                    Some((effect.value(0), 1))
+                }
+                Place::Responses => Some((effect.value(0), 1)),
                 Place::Force => Some((effect.value(0), -1)),
                 _ => None,
             })
         };
         let power = |place: &Place| match place {
             Place::Response(name) if *name == pair.response.to_string() => Some(1),
+            Place::Record(name) if *name == pair.to_string() => Some(1),
+            Place::Responses => Some(1),
             Place::Reference(name) if *name == pair.reference.to_string() => Some(-1),
             Place::Force => Some(-1),
             _ => None,

@@ -98,7 +98,7 @@ fn place(kind: PlaceKind) -> Value {
             json!({ "type": "string", "pattern": "^.+/.+$", "description": "Two bodies, such as A/B." })
         }
         PlaceKind::Channel => json!({
-            "type": "string", "pattern": "^(response .+|reference .+|force)$", "description": "`response N`, `reference N` (N a point, `N:theta` for a rotation), or `force`."
+            "type": "string", "pattern": "^(response .+|reference .+|record .+/.+|force|responses)$", "description": "`response N`, `reference N` (N a point, `N:theta` for a rotation), `record N/M` (the record of one FRF), `force`, or `responses` (all of them alike)."
         }),
         PlaceKind::ResponseChannel => {
             json!({ "type": "string", "pattern": "^response .+$", "description": "`response N`, N a point." })

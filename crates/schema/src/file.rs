@@ -33,7 +33,7 @@ pub(crate) struct FixtureFile {
     /// Effects beyond the plain model.
     #[schemars(default)]
     physics: Vec<Effect>,
-    /// How well the measuring chain is known, by channel: `response N`, `reference N`, `force`, or `*` for every FRF's record by itself. What is not stated is exact.
+    /// How well the measuring chain is known, by channel: `response N`, `reference N`, `force`, `record N/M` for the record of one FRF, or `*` for every FRF's record by itself. What is not stated is exact.
     channels: Option<Channels>,
     /// Relative standard deviations of what such a model gets wrong in every mode, where they are known.
     model_error: Option<ModelError>,
@@ -284,7 +284,7 @@ struct SupportOnBody {
 
 /// How well the measuring chain is known.
 #[derive(JsonSchema)]
-#[schemars(extend("propertyNames" = { "pattern": "^(response .+|reference .+|force|[*])$" }))]
+#[schemars(extend("propertyNames" = { "pattern": "^(response .+|reference .+|record .+/.+|force|[*])$" }))]
 struct Channels {
     /// Every FRF's record by itself.
     #[schemars(rename = "*")]

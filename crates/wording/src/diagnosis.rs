@@ -132,6 +132,13 @@ impl Remarks for Diagnosis {
                 listed(&bands)
             ));
         }
+        if let Some(share) = self.falls_short {
+            remarks.push(format!(
+                "Noise of the force made the FRFs too small where the blow is weak, as it does to H1, by up to {} %: they were corrected by what explains them best. A harder \
+                 tip, or FRFs estimated as Hv, tell more there.",
+                significant(100.0 * share, 2)
+            ));
+        }
         remarks.extend(self.swapped_points().iter().map(|[a, b]| {
             format!(
                 "Points {a} and {b} have each other's place: their channels are swapped, in the cables or in the node numbers of the file."

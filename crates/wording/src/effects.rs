@@ -63,6 +63,7 @@ impl Sized<'_> {
             Case::Below(limit) => leading < limit,
             Case::Within(low, high) => low < leading && leading < high,
             Case::Rotation => self.effect.dof == Some(Dof::Rotation),
+            Case::Record => matches!(self.effect.place, Place::Record(_)),
             Case::OnlySure(parameter) => {
                 let mut may_be_zero =
                     spec.parameters.iter().filter(|p| p.range == ParameterRange::NonNegative);
@@ -123,6 +124,7 @@ fn word(effect: &Effect, key: &str) -> String {
     };
     match key {
         "place" if *place == Place::Force => "the force of all references".to_owned(),
+        "place" if *place == Place::Responses => "all responses".to_owned(),
         "place" => place.to_string(),
         "against rotation" if effect.dof == Some(Dof::Rotation) => " against rotation".to_owned(),
         "owner" => format!("{owner} {place}"),

@@ -2,7 +2,7 @@
 
 use crate::modal::fit::{ModalFit, Problem};
 use crate::settings::ModalSettings;
-use jointscope_fixture::{Fixture, StatedError};
+use jointscope_fixture::{Fixture, Place, StatedError};
 use jointscope_model_error::{ErrorSizes, Evidence, KINDS, SizePrior};
 use serde::Serialize;
 
@@ -45,6 +45,7 @@ impl ModelError {
 const FREQUENCY: usize = 0;
 const DAMPING: usize = 1;
 const SHAPE: usize = 2;
+const GAIN: usize = KINDS - 1;
 
 /// Share of the usual size below which an error is none: ten times the least that is tried.
 const NEGLIGIBLE: f64 = 10.0 * ErrorSizes::LEAST;
@@ -53,17 +54,21 @@ const NEGLIGIBLE: f64 = 10.0 * ErrorSizes::LEAST;
 pub(super) fn known(settings: &ModalSettings, fixture: &Fixture) -> SizePrior {
     let StatedError { frequency, damping, residue } = fixture.model_error();
     let usual = settings.usual;
+    // Where each record's gain is a quantity of its own, what is stated of it is all that is known: a further error of all gains would hide the one that is off.
+    let by_record = fixture.channels().iter().any(|effect| matches!(effect.place, Place::Record(_)));
+    let gain = if by_record { ErrorSizes::LEAST * usual.gain } else { usual.gain };
     let scales = ErrorSizes {
         frequency: frequency.unwrap_or(usual.frequency),
         damping: damping.unwrap_or(usual.damping),
         shape: residue.unwrap_or(usual.shape),
-        gain: fixture.record_gain().unwrap_or(usual.gain),
+        gain: fixture.record_gain().unwrap_or(gain),
         ..usual
     };
     let mut stated = [false; KINDS];
     stated[FREQUENCY] = frequency.is_some();
     stated[DAMPING] = damping.is_some();
     stated[SHAPE] = residue.is_some();
+    stated[GAIN] = by_record;
     SizePrior { scales, stated }
 }
 

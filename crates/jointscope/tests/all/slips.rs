@@ -5,6 +5,7 @@ use crate::model_error::told;
 use jointscope::diagnosis::{Diagnosis, DiagnosisOptions, Verdict};
 use jointscope::fixture::{Dof, Effect, EffectKind, Place};
 use jointscope::{Fixture, FrfPair, FrfSet, SpectralLines};
+use jointscope_rig::HammerTest;
 use num_complex::Complex64;
 
 /// The four FRFs across the joint, and those on block A.
@@ -154,4 +155,115 @@ fn a_peak_that_an_overload_flattened_is_left_out() {
         "{:?}",
         diagnosis.contradictory
     );
+}
+
+#[test]
+fn ac_coupling_of_all_responses_alike_is_one_filter_and_not_one_of_each() {
+    for (corner, seed) in [(2.0, 26), (1.0, 27)] {
+        let each = ["3", "4"].map(|n| on(EffectKind::ChannelHighpass, Place::Response(n.into()), &[corner]));
+        let fixture = believed([0.004, 0.004]);
+        let lines = SpectralLines::even(2.5, 2.5, 400).unwrap();
+        let frfs = measured(&fixture, each.to_vec(), (&four_pairs(), &lines), &hammer(seed));
+        let diagnosis = Diagnosis::of(&fixture, &frfs, &DiagnosisOptions::default()).unwrap();
+        let [found] = &diagnosis.findings[..] else { panic!("{}", told(&diagnosis)) };
+        assert!(found.effect.kind == EffectKind::ChannelHighpass && found.effect.place == Place::Responses);
+        assert!((found.effect.value(0) / corner - 1.0).abs() < 0.1, "{}", told(&diagnosis));
+    }
+}
+
+#[test]
+fn ac_coupling_of_the_one_hammer_is_that_of_the_force() {
+    named(&on(EffectKind::ChannelHighpass, Place::Force, &[2.0]), &four_pairs(), 28, 0.1);
+    named(&on(EffectKind::ChannelHighpass, Place::Force, &[1.0]), &four_pairs(), 29, 0.1);
+}
+
+/// `believed` with gains of records that scatter by a tenth, and what is recorded of it through these gains.
+fn struck_unevenly(effects: &[Effect], gains: [f64; 4], seed: u64) -> Diagnosis {
+    let mut file: serde_json::Value = serde_json::from_str(&believed([0.004, 0.004]).to_json()).unwrap();
+    let scatter = serde_json::json!({ "*": { "gain": { "value": 1.0, "std": 0.1 } } });
+    file.as_object_mut().unwrap().insert("channels".into(), scatter);
+    let fixture = Fixture::from_json(&file.to_string()).unwrap();
+    let lines = SpectralLines::even(2.5, 2.5, 400).unwrap();
+    let frfs = measured(&fixture, effects.to_vec(), (&four_pairs(), &lines), &hammer(seed));
+    let frfs = frfs.with_values(|at, value| gains[at / 400] * value);
+    Diagnosis::of(&fixture, &frfs, &DiagnosisOptions::default()).unwrap()
+}
+
+#[test]
+fn gains_of_records_that_scatter_as_stated_hide_nothing_and_are_no_physics() {
+    let gains = [1.07, 0.93, 0.94, 1.11];
+    let nothing = struck_unevenly(&[], gains, 30);
+    assert_eq!(nothing.verdict, Verdict::Consistent, "{}", told(&nothing));
+    assert!(nothing.chi2_per_dof()[1] < 1.1, "{:?}", nothing.chi2_per_dof());
+    let kind = EffectKind::InterfaceCompliance;
+    let turning = Effect::new(kind, Place::Point("3".into()), Some(Dof::Rotation), &[15_000.0, 1e-3]);
+    let diagnosis = struck_unevenly(&[turning], gains, 31);
+    let [found] = &diagnosis.findings[..] else { panic!("{}", told(&diagnosis)) };
+    assert!(found.effect.kind == kind && found.effect.place == Place::Point("3".into()));
+    assert!((found.effect.value(0) / 15_000.0 - 1.0).abs() < 0.1, "{}", told(&diagnosis));
+    let [low, _] = found.estimate("damping").unwrap().interval.unwrap();
+    assert!(low >= 0.0, "a dashpot of {low} N*m*s/rad");
+}
+
+#[test]
+fn a_soft_tip_whose_blow_dies_away_within_the_band_is_no_misfit() {
+    let fixture = believed([0.004, 0.004]);
+    let lines = SpectralLines::even(2.5, 2.5, 400).unwrap();
+    for (corner, averages, seed) in [(150.0, 5, 34), (250.0, 5, 35), (250.0, 10, 36)] {
+        let soft = HammerTest { corner, averages, noise_force: 0.002, ..hammer(seed) };
+        let frfs = measured(&fixture, Vec::new(), (&four_pairs(), &lines), &soft);
+        let diagnosis = Diagnosis::of(&fixture, &frfs, &DiagnosisOptions::default()).unwrap();
+        assert_eq!(
+            diagnosis.verdict,
+            Verdict::Consistent,
+            "{corner} Hz, {averages} hits: {}",
+            told(&diagnosis)
+        );
+        assert!(diagnosis.chi2_per_dof()[1] < 1.1, "{corner} Hz: {:?}", diagnosis.chi2_per_dof());
+    }
+}
+
+/// A soft tip, and a force channel whose noise is a fiftieth of its signal: where the blow dies away H1 is too small by some per cent.
+fn noisy_force(seed: u64) -> HammerTest {
+    HammerTest { corner: 150.0, averages: 8, noise_force: 0.02, ..hammer(seed) }
+}
+
+#[test]
+fn what_noise_of_the_force_makes_of_h1_is_no_resonance_of_a_channel() {
+    let fixture = believed([0.004, 0.004]);
+    let lines = SpectralLines::even(2.5, 2.5, 400).unwrap();
+    for seed in [1, 2] {
+        let frfs = measured(&fixture, Vec::new(), (&four_pairs(), &lines), &noisy_force(seed));
+        let diagnosis = Diagnosis::of(&fixture, &frfs, &DiagnosisOptions::default()).unwrap();
+        assert_eq!(diagnosis.verdict, Verdict::Consistent, "{}", told(&diagnosis));
+        assert!(diagnosis.falls_short.is_some_and(|share| share > 0.01), "{:?}", diagnosis.falls_short);
+    }
+}
+
+#[test]
+fn what_is_there_is_named_beside_noise_of_the_force() {
+    let fixture = believed([0.004, 0.004]);
+    let lines = SpectralLines::even(2.5, 2.5, 400).unwrap();
+    let gain = on(EffectKind::ChannelGain, Place::Response("4".into()), &[1.03]);
+    let hammer = HammerTest { corner: 250.0, ..noisy_force(1) };
+    let frfs = measured(&fixture, vec![gain], (&four_pairs(), &lines), &hammer);
+    let diagnosis = Diagnosis::of(&fixture, &frfs, &DiagnosisOptions::default()).unwrap();
+    let [found] = &diagnosis.findings[..] else { panic!("{}", told(&diagnosis)) };
+    assert!(
+        found.effect.kind == EffectKind::ChannelGain && found.effect.place == Place::Response("4".into())
+    );
+    assert!((found.effect.value(0) - 1.03).abs() < 0.005, "{}", told(&diagnosis));
+}
+
+#[test]
+fn a_record_far_outside_of_the_scatter_of_gains_is_named_as_such_and_no_mass_for_it() {
+    for (gains, frf, seed) in [([1.07, 0.585, 0.94, 1.11], "3/1", 32), ([0.9, 1.1, 0.585, 1.0], "4/2", 33)] {
+        let diagnosis = struck_unevenly(&[], gains, seed);
+        let [found] = &diagnosis.findings[..] else { panic!("{}", told(&diagnosis)) };
+        let same =
+            found.effect.kind == EffectKind::ChannelGain && found.effect.place == Place::Record(frf.into());
+        assert!(same && diagnosis.verdict == Verdict::Explained, "{}", told(&diagnosis));
+        let [low, high] = found.estimate("factor").unwrap().interval.unwrap();
+        assert!(low < 0.585 && 0.585 < high && found.probability > 0.9, "{}", told(&diagnosis));
+    }
 }

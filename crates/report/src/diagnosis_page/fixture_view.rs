@@ -38,8 +38,10 @@ pub(super) fn drawing(subject: &Subject) -> (Drawing, String) {
         (1, _) => "marked is where the finding sits",
         _ => "marked is where the findings sit, by their numbers",
     };
-    let everywhere =
-        diagnosis.findings.iter().any(|finding| matches!(finding.effect.place, Place::All | Place::Force));
+    let everywhere = diagnosis
+        .findings
+        .iter()
+        .any(|finding| matches!(finding.effect.place, Place::All | Place::Force | Place::Responses));
     let all = if everywhere { " One finding concerns the whole measurement and has no place." } else { "" };
     (
         view.draw(),
@@ -68,12 +70,16 @@ fn place(fixture: &Fixture, effect: &Effect) -> Option<(f64, Option<usize>)> {
             let offset = if effect.kind == EffectKind::PointOffset { effect.value(0) } else { 0.0 };
             Some((point.x.value + offset, Some(point.body)))
         }
+        Place::Record(name) => {
+            let point = name.split_once('/').and_then(|(response, _)| fixture.point(response))?;
+            Some((point.x.value, Some(point.body)))
+        }
         Place::Joint(name) => middle(fixture, name).map(|x| (x, None)),
         Place::Between(one, _) => {
             let body = fixture.bodies().iter().position(|body| body.name == *one)?;
             Some((effect.value(0), Some(body)))
         }
-        Place::Force | Place::All | Place::Quantity(..) => None,
+        Place::Force | Place::Responses | Place::All | Place::Quantity(..) => None,
     }
 }
 
