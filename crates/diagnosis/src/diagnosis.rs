@@ -205,7 +205,7 @@ impl Diagnosis {
         };
         // Beside what was found second: a filter or a mass takes up what falls short, and leaves too little of it.
         for fit in [Some(refitted), found].into_iter().flatten() {
-            let short = Shortfall::beside(&fitter, &fit.hypothesis).filter(|short| short.explains(&fitter));
+            let short = Shortfall::beside(&fitter, fit).filter(|short| short.explains(&fitter));
             let Some(short) = short else { continue };
             let Some(corrected) = short.corrected(&self.observation) else { continue };
             let other = diagnosed(corrected)?;

@@ -5,11 +5,11 @@
 //! much of that it is, one share for the whole test, the FRFs have to tell. Where a soft tip's blow dies away b grows smoothly over many lines, as a filter's or a mass' effect
 //! does, and the variances know nothing of it.
 
+use crate::Observation;
 use crate::evidence::explained;
 use crate::fit::Fit;
 use crate::fitter::Fitter;
 use crate::penalty::penalty;
-use crate::{Hypothesis, Observation};
 
 /// Shares of the possible shortfall at which the fixture is refitted; the best lies where the parabola through them has its least.
 const SHARES: [f64; 3] = [0.0, 0.5, 1.0];
@@ -56,13 +56,15 @@ fn possible(observation: &Observation) -> Option<Vec<f64>> {
 }
 
 impl Shortfall {
-    /// The most likely one beside a hypothesis; `None` where coherence rules out that this matters.
-    pub fn beside(fitter: &Fitter, hypothesis: &Hypothesis) -> Option<Self> {
-        let observation = fitter.observation;
+    /// The most likely one beside what was fitted; `None` where coherence rules out that this matters, or that it leaves no more than noise: residuals become no smaller than by
+    /// what the FRFs are changed by.
+    pub fn beside(fitter: &Fitter, fit: &Fit) -> Option<Self> {
+        let (observation, hypothesis) = (fitter.observation, &fit.hypothesis);
         let possible = possible(observation)?;
         let squares = observation.values().iter().zip(&possible).zip(observation.weights());
         let most: f64 = squares.map(|((value, short), weight)| weight * (short * value).norm_sqr()).sum();
-        if most < fitter.settings.selection.penalty {
+        let noise = explained(observation, fitter.settings) * observation.degrees() as f64;
+        if most < fitter.settings.selection.penalty || fit.objective.sqrt() - most.sqrt() > noise.sqrt() {
             return None;
         }
         let kept = |share: f64| -> Vec<f64> { possible.iter().map(|short| 1.0 - share * short).collect() };
