@@ -39,7 +39,7 @@ pub(crate) struct JointDynamics {
     shear_stiffness: Option<f64>,
     mass: f64,
     /// A beam with mass.
-    heavy_beam: Option<HeavyBeam>,
+    heavy_beam: Option<Box<HeavyBeam>>,
     altered: bool,
 }
 
@@ -84,7 +84,8 @@ impl JointDynamics {
         }
         let length = all.length + all.extra_length;
         let beam = all.bending_stiffness.filter(|_| all.mass != 0.0 && length > 0.0);
-        all.heavy_beam = beam.map(|bending| HeavyBeam::new(bending, all.shear_stiffness, all.mass, length));
+        all.heavy_beam =
+            beam.map(|bending| Box::new(HeavyBeam::new(bending, all.shear_stiffness, all.mass, length)));
         all
     }
 
