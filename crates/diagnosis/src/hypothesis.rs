@@ -367,7 +367,7 @@ impl Hypothesis {
     /// The one FRF that a channel of the fixture is the record of.
     fn recorded_by(&self, channel: usize, observation: &Observation) -> Option<Vec<usize>> {
         let Place::Record(name) = &self.fixture.channels().get(channel)?.place else { return None };
-        let is_own = |pair: &FrfPair| pair.to_string() == *name;
+        let is_own = |pair: &FrfPair| pair.is_named(name);
         Some(observation.pairs().iter().position(is_own).into_iter().collect())
     }
 

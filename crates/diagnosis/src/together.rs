@@ -5,6 +5,7 @@
 
 use crate::catalogue::Candidate;
 use jointscope_fixture::{Effect, EffectKind, Entry, Place};
+use jointscope_lumped::signal_power;
 use jointscope_spectra::FrfPair;
 
 /// Whether the inverse of what a kind does to a signal is of that kind too: of a gain and a delay it is, of no filter.
@@ -12,17 +13,9 @@ pub(crate) fn inverts(kind: EffectKind) -> bool {
     matches!(kind, EffectKind::ChannelGain | EffectKind::ChannelDelay)
 }
 
-/// The powers by which a factor at a place enters each FRF: 1 of what multiplies it, −1 of what divides it.
+/// The powers with which a factor at a place enters each FRF.
 fn powers(place: &Place, pairs: &[FrfPair]) -> Vec<i32> {
-    let power = |pair: &FrfPair| match place {
-        Place::Response(name) => i32::from(pair.response.is_named(name)),
-        Place::Responses => 1,
-        Place::Record(name) => i32::from(pair.to_string() == *name),
-        Place::Reference(name) => -i32::from(pair.reference.is_named(name)),
-        Place::Force => -1,
-        _ => 0,
-    };
-    pairs.iter().map(power).collect()
+    pairs.iter().map(|pair| signal_power(place, pair)).collect()
 }
 
 /// The effect that does the inverse.

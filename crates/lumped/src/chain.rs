@@ -121,18 +121,22 @@ fn reading(fixture: &Fixture, effects: &[Action], pair: &FrfPair) -> Result<Read
     let mut filters = Vec::new();
     for effect in effects {
         match *effect {
-            Action::Signal { channel, gain: g, delay: t } if multiplies(channel, pair) => {
-                gain *= g;
-                delay += t;
-            }
-            Action::Signal { channel, gain: g, delay: t } if divides(channel, pair) => {
-                gain *= 1.0 / g;
-                delay -= t;
-            }
-            Action::Filtered { channel, filter } if multiplies(channel, pair) => {
-                filters.push((filter, false))
-            }
-            Action::Filtered { channel, filter } if divides(channel, pair) => filters.push((filter, true)),
+            Action::Signal { channel, gain: g, delay: t } => match signal_power(channel, pair) {
+                1 => {
+                    gain *= g;
+                    delay += t;
+                }
+                -1 => {
+                    gain *= 1.0 / g;
+                    delay -= t;
+                }
+                _ => {}
+            },
+            Action::Filtered { channel, filter } => match signal_power(channel, pair) {
+                1 => filters.push((filter, false)),
+                -1 => filters.push((filter, true)),
+                _ => {}
+            },
             Action::SensorLoad { response, mass } if pair.response.is_named(response) => load += mass,
             _ => {}
         }
@@ -144,24 +148,16 @@ fn reading(fixture: &Fixture, effects: &[Action], pair: &FrfPair) -> Result<Read
     Ok(Reading { output: at(&pair.response)?, input: at(&pair.reference)?, load, gain, delay, filters })
 }
 
-/// Whether an FRF is multiplied by what a channel does to its signal: by its own response, by what all responses have in common, or in its own record.
-fn multiplies(channel: &Place, pair: &FrfPair) -> bool {
+/// The power with which what a channel does to its signal enters an FRF: 1 of its own response, of what all responses have in common and of its own record, which multiply it, −1 of its
+/// own reference and of the force of all references, which divide it, 0 of what it does not pass.
+pub fn signal_power(channel: &Place, pair: &FrfPair) -> i32 {
     match channel {
-        Place::Response(name) => pair.response.is_named(name),
-        Place::Responses => true,
-        Place::Record(name) => name
-            .match_indices('/')
-            .any(|(at, _)| pair.response.is_named(&name[..at]) && pair.reference.is_named(&name[at + 1..])),
-        _ => false,
-    }
-}
-
-/// Whether an FRF is divided by a channel's signal: its own reference, or the force of all references.
-fn divides(channel: &Place, pair: &FrfPair) -> bool {
-    match channel {
-        Place::Reference(name) => pair.reference.is_named(name),
-        Place::Force => true,
-        _ => false,
+        Place::Response(name) => i32::from(pair.response.is_named(name)),
+        Place::Responses => 1,
+        Place::Record(name) => i32::from(pair.is_named(name)),
+        Place::Reference(name) => -i32::from(pair.reference.is_named(name)),
+        Place::Force => -1,
+        _ => 0,
     }
 }
 

@@ -56,7 +56,7 @@ mod terms;
 mod uniform_beam;
 
 pub use assembly::{Assembly, nominal_stiffness};
-pub use chain::{MeasuringChain, Reading, channel_station, window_decay};
+pub use chain::{MeasuringChain, Reading, channel_station, signal_power, window_decay};
 pub use effects::SignalFilter;
 pub use joint_element::JointElement;
 pub use lanes::{Lanes, Lines};

@@ -86,6 +86,13 @@ impl FrfPair {
     pub fn transverse(response: &str, reference: &str) -> Self {
         FrfPair::new(Channel::transverse(response), Channel::transverse(reference))
     }
+
+    /// Whether the FRF shows as `name`, as `4/1` does.
+    pub fn is_named(&self, name: &str) -> bool {
+        // A point's name may hold a stroke itself.
+        name.match_indices('/')
+            .any(|(at, _)| self.response.is_named(&name[..at]) && self.reference.is_named(&name[at + 1..]))
+    }
 }
 
 impl fmt::Display for FrfPair {
