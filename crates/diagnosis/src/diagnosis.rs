@@ -1,6 +1,7 @@
 use crate::contradiction::contradictory;
 use crate::departures::{Departure, departures, has_departed};
 use crate::drift::{Drifted, TestDrift};
+use crate::evidence::cost;
 use crate::finding::{Finding, Tried};
 use crate::fitter::Fitter;
 use crate::force_noise::Shortfall;
@@ -8,7 +9,6 @@ use crate::location::Location;
 use crate::mismatch::{FrfMismatch, mismatch};
 use crate::modal::ModelError;
 use crate::options::{DiagnosisError, DiagnosisOptions};
-use crate::penalty::parameter_penalty;
 use crate::routes::{self, Parts, chance};
 use crate::search::Search;
 use crate::settings::Settings;
@@ -199,10 +199,7 @@ impl Diagnosis {
         let fitter = Fitter { observation: &self.observation, settings, watch: Watch::default() };
         let Search { refitted, repaired, .. } = &self.search;
         let found = (repaired.hypothesis.effect_count() > 0).then_some(repaired);
-        let cost = |of: &Self| {
-            let fit = &of.search.repaired;
-            fit.objective + parameter_penalty(&settings.selection, &fit.hypothesis)
-        };
+        let cost = |of: &Self| cost(&fitter, &of.search.repaired, 1.0);
         // Beside what was found second: a filter or a mass takes up what falls short, and leaves too little of it.
         for fit in [Some(refitted), found].into_iter().flatten() {
             let short = Shortfall::beside(&fitter, fit).filter(|short| short.explains(&fitter));

@@ -1,7 +1,7 @@
 //! Which effects a recording needs: forward selection with exchange, every candidate fitted with the tolerances.
 
 use crate::catalogue::{Candidate, catalogue, with_wrong_quantities};
-use crate::evidence::{deviates_by_chance, nothing_can_be_stated};
+use crate::evidence::{cost, deviates_by_chance, nothing_can_be_stated};
 use crate::fit::Fit;
 use crate::fitter::Fitter;
 use crate::modal::explains;
@@ -165,7 +165,7 @@ impl Search {
                 .fold(self.repaired.hypothesis.clone(), |rest, index| rest.without(*index));
             fitter.local(&rest.with(one), None, f64::INFINITY)
         });
-        let cost = |fit: &Fit| fit.objective + parameter_penalty(&fitter.settings.selection, &fit.hypothesis);
+        let cost = |fit: &Fit| cost(fitter, fit, 1.0);
         let best = fits.min_by(|a, b| cost(a).total_cmp(&cost(b)));
         if let Some(fewer) = best.filter(|fewer| !self.is_worth(fitter, &self.repaired, fewer)) {
             self.repaired = fewer;
@@ -235,7 +235,7 @@ impl Search {
         if self.repaired.hypothesis.effect_count() < 2 {
             return;
         }
-        let cost = |fit: &Fit| fit.objective + parameter_penalty(&fitter.settings.selection, &fit.hypothesis);
+        let cost = |fit: &Fit| cost(fitter, fit, 1.0);
         for _ in 0..fitter.settings.selection.exchanges {
             let mut changed = false;
             for index in 0..self.repaired.hypothesis.effect_count() {

@@ -33,11 +33,7 @@ impl Estimate {
     /// The same known to ± `std`, its errors normal; the interval holds none but possible values: of a dashpot that may be none it begins at zero.
     pub fn within(self, std: f64) -> Self {
         let [low, high] = interval95(self.value, std);
-        let least = match self.parameter.range {
-            ParameterRange::Positive | ParameterRange::NonNegative => 0.0,
-            ParameterRange::Any | ParameterRange::NonZero => f64::NEG_INFINITY,
-        };
-        Estimate { std: Some(std), interval: Some([low.max(least), high]), ..self }
+        Estimate { std: Some(std), interval: Some([low.max(self.least()), high]), ..self }
     }
 
     /// The same known to ± `deviation` in its logarithm: an interval of ratios, lopsided where it is wide.
@@ -49,10 +45,15 @@ impl Estimate {
 
     /// The interval as far as the parameter's range goes.
     pub fn possible_interval(&self) -> Option<[f64; 2]> {
-        let range = self.parameter.range;
-        let not_negative = matches!(range, ParameterRange::NonNegative | ParameterRange::Positive);
-        let low_end = if not_negative { 0.0 } else { f64::NEG_INFINITY };
-        self.interval.map(|[low, high]| [low.max(low_end), high])
+        self.interval.map(|[low, high]| [low.max(self.least()), high])
+    }
+
+    /// The least value of the parameter's range.
+    fn least(&self) -> f64 {
+        match self.parameter.range {
+            ParameterRange::Positive | ParameterRange::NonNegative => 0.0,
+            ParameterRange::Any | ParameterRange::NonZero => f64::NEG_INFINITY,
+        }
     }
 
     /// Whether the data tell no more of the value than its order of magnitude.

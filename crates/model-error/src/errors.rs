@@ -30,7 +30,7 @@ pub struct ErrorSizes {
 /// Number of kinds.
 pub const KINDS: usize = 7;
 /// Place of the gain among them.
-pub(crate) const GAIN: usize = 6;
+pub const GAIN: usize = 6;
 
 impl Default for ErrorSizes {
     /// What lumped models of machined parts are wrong by: 0.3 % in natural frequencies, 10 % in damping ratios, 0.5 % in shapes, 0.05 % in quadrature, 0.1 % in

@@ -73,7 +73,7 @@ mod recorded;
 mod shapes;
 
 pub use basis::Pole;
-pub use errors::{Comparison, ErrorSizes, KINDS, SizePrior};
+pub use errors::{Comparison, ErrorSizes, GAIN, KINDS, SizePrior};
 pub use evidence::{Evidence, Linear};
 pub use matching::Pairing;
 pub use modelled::{ModelledMode, ModelledModes, modes_within};

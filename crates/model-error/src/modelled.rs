@@ -61,9 +61,10 @@ pub struct ModelledModes {
 
 /// How far beyond the band's ends a model's mode may lie to be one of the recording's.
 const BEYOND: (f64, f64) = (0.5, 1.6);
-/// Steps of the secant method, at most, and the relative change at which it ends.
+/// Steps of the secant method, at most.
 const STEPS: usize = 14;
-const CONVERGED: f64 = 1e-9;
+/// Growth, as a share of the pole, that rounding makes of no damping at all.
+const ROUNDING: f64 = 1e-9;
 /// Damping ratio of what has none: its logarithm is finite, and beyond that of anything recorded.
 const UNDAMPED: f64 = 1e-9;
 /// Relative distance below which two poles are one.
@@ -77,7 +78,7 @@ const NARROWEST: f64 = 0.003;
 const POINTS: usize = 4;
 /// Its radius as a share of the pole's decay, and at least of the pole: modes that overlap lie well outside of it, rounding well below.
 const RADIUS: (f64, f64) = (0.01, 1e-6);
-/// Last step of the secant method, as a share of the contour's radius: the contour then tells the pole.
+/// Last step of the secant method, as a share of the contour's radius: the contour then tells the pole. Of much damping it is no longer than [`SAME`].
 const CLOSE: f64 = 1e-3;
 /// Largest relative step of a pole from where it was looked for.
 const REACH: f64 = 0.5;
@@ -306,7 +307,7 @@ impl ModelledModes {
 
 /// Whether a mode at this pole dies away, or at least does not grow beyond rounding: a suspension may have no damping at all.
 fn is_damped(pole: Complex64) -> bool {
-    pole.im > 0.0 && pole.re <= CONVERGED * pole.norm()
+    pole.im > 0.0 && pole.re <= ROUNDING * pole.norm()
 }
 
 /// The pole that the secant method leads to from two points, and the FRFs' values on the way there.
@@ -344,7 +345,7 @@ fn followed(
         }
         (before, earlier) = (at, now);
         at = next;
-        if (at - before).norm() <= CLOSE * radius(at) {
+        if (at - before).norm() <= (CLOSE * radius(at)).min(SAME * at.norm()) {
             return is_damped(at).then_some((at, values));
         }
     }

@@ -316,14 +316,14 @@ impl<'a> Problem<'a> {
                 };
                 best = more_probable(best, Some(fit));
             }
+            if given_up {
+                break;
+            }
             let gained = best.as_ref().zip(before).is_none_or(|(best, before)| best.ln - before >= CONVERGED);
             idle = if gained { 0 } else { idle + usize::from(stands) };
             let ends = best.is_some() && (same || idle == IDLE);
             // Modes may have moved past others on the way, and shapes with them, or into the band or out of it.
             let strays = strayed < STRAYS && point.modelled.strays(self.recorded);
-            if given_up {
-                break;
-            }
             if last || !(ends || strays) {
                 continue;
             }
@@ -436,7 +436,7 @@ impl Turns {
         Turns { last: [0.0; KINDS], shares: [1.0; KINDS] }
     }
 
-    /// The sizes to go on with. Where one turns back it goes half as far, and a little farther again where it does not: parameters and sizes that ask for each other in turn come to no
+    /// The sizes to go on with. Where one turns back it goes less far, and a little farther again where it does not: parameters and sizes that ask for each other in turn come to no
     /// rest otherwise.
     fn toward(&mut self, asked: &ErrorSizes, from: &ErrorSizes) -> ErrorSizes {
         let (from, asked) = (from.to_array(), asked.to_array());

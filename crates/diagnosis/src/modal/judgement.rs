@@ -2,7 +2,7 @@
 
 use crate::catalogue::{Candidate, with_wrong_quantities};
 use crate::estimates::estimates;
-use crate::evidence::{deviates_by_chance, excess, explained};
+use crate::evidence::{cost, deviates_by_chance, excess, explained};
 use crate::finding::{Evidence, Finding, Tried};
 use crate::fit::Fit;
 use crate::fitter::Fitter;
@@ -13,7 +13,6 @@ use crate::modal::prior::priors;
 use crate::modal::search::ModalSearch;
 use crate::modal::searcher::{Named, Searcher};
 use crate::modal::sizes::ModelError;
-use crate::penalty::parameter_penalty;
 use crate::search::Search;
 use crate::settings::ModalSettings;
 use crate::{Hypothesis, ModeChange, Observation};
@@ -323,7 +322,7 @@ impl ModalJudgement {
             .filter(|named| by_lines || named.exact && self.search.needs_all_of(named, odds.ln()))
             .collect();
         let explaining = |named: &&Named| fitted_to_lines(fitter, named);
-        let cost = |fit: &Fit| fit.objective + parameter_penalty(&fitter.settings.selection, &fit.hypothesis);
+        let cost = |fit: &Fit| cost(fitter, fit, 1.0);
         // More effects than explain the lines are for the lines to ask for.
         (0..=fitter.settings.modal.effects).find_map(|count| {
             let of_count = all.iter().filter(|named| named.names.len() == count);

@@ -3,7 +3,7 @@
 use crate::modal::fit::{ModalFit, Problem};
 use crate::settings::ModalSettings;
 use jointscope_fixture::{Fixture, Place, StatedError};
-use jointscope_model_error::{ErrorSizes, Evidence, KINDS, SizePrior};
+use jointscope_model_error::{ErrorSizes, Evidence, GAIN, KINDS, SizePrior};
 use serde::Serialize;
 
 /// How wrong a model is, as relative standard deviations over its modes; zero where the noise explains what is left.
@@ -45,7 +45,6 @@ impl ModelError {
 const FREQUENCY: usize = 0;
 const DAMPING: usize = 1;
 const SHAPE: usize = 2;
-const GAIN: usize = KINDS - 1;
 
 /// Share of the usual size below which an error is none: ten times the least that is tried.
 const NEGLIGIBLE: f64 = 10.0 * ErrorSizes::LEAST;
