@@ -8,7 +8,7 @@ use num_complex::Complex64;
 use std::f64::consts::TAU;
 
 /// Matrices of a chain with everything on it, and the rows that read and load it.
-pub struct Dense {
+pub(crate) struct Dense {
     order: usize,
     mass: Vec<f64>,
     viscous: Vec<f64>,
@@ -22,7 +22,7 @@ pub struct Dense {
 
 impl Dense {
     /// The same model as [`chain`] describes, four FRFs between its ends.
-    pub fn new(bodies: usize, attachments: Attachments) -> Self {
+    pub(crate) fn new(bodies: usize, attachments: Attachments) -> Self {
         let assembly =
             Assembly::new(&chain(bodies, Attachments::None), 1000.0).expect("the modes of a chain");
         let rows = |stations: &[Station]| -> Vec<Vec<f64>> {
@@ -82,7 +82,7 @@ impl Dense {
     }
 
     /// The four receptances at one line by nalgebra's LU.
-    pub fn nalgebra(&self, s: Complex64, values: &mut [Complex64]) {
+    pub(crate) fn nalgebra(&self, s: Complex64, values: &mut [Complex64]) {
         let n = self.order;
         let mut z = DMatrix::zeros(n, n);
         self.assemble(s, |i, j, value| z[(i, j)] += value);
@@ -92,7 +92,7 @@ impl Dense {
     }
 
     /// The four receptances at one line by faer's LU.
-    pub fn faer(&self, s: Complex64, values: &mut [Complex64]) {
+    pub(crate) fn faer(&self, s: Complex64, values: &mut [Complex64]) {
         let n = self.order;
         let mut z = faer::Mat::<Complex64>::zeros(n, n);
         self.assemble(s, |i, j, value| z[(i, j)] += value);

@@ -7,7 +7,7 @@ use nalgebra::Matrix2 as Small;
 use num_complex::Complex64;
 
 /// The exact relation with nalgebra's fixed-size matrices and `try_inverse`.
-pub struct Nalgebra {
+pub(crate) struct Nalgebra {
     h41: Vec<Small<Complex64>>,
     sides: [Vec<Small<Complex64>>; 4],
     across: Small<Complex64>,
@@ -16,7 +16,7 @@ pub struct Nalgebra {
 
 impl Nalgebra {
     /// The same input in the library's own type.
-    pub fn new(h41: &[ComplexMatrix2], sides: &Compliances) -> Self {
+    pub(crate) fn new(h41: &[ComplexMatrix2], sides: &Compliances) -> Self {
         let own = |matrices: &[ComplexMatrix2]| -> Vec<Small<Complex64>> {
             matrices.iter().map(|m| Small::new(m.at(0, 0), m.at(0, 1), m.at(1, 0), m.at(1, 1))).collect()
         };
@@ -30,7 +30,7 @@ impl Nalgebra {
     }
 
     /// All lines, into memory that is kept.
-    pub fn decompose_lines(&mut self) {
+    pub(crate) fn decompose_lines(&mut self) {
         let nan = Small::repeat(Complex64::new(f64::NAN, f64::NAN));
         let (r, [alpha21, alpha22, beta33, beta43]) = (self.across, &self.sides);
         for (line, out) in self.out.iter_mut().enumerate() {
@@ -42,14 +42,14 @@ impl Nalgebra {
     }
 
     /// The result at one line.
-    pub fn at(&self, line: usize) -> ComplexMatrix2 {
+    pub(crate) fn at(&self, line: usize) -> ComplexMatrix2 {
         let m = &self.out[line];
         Matrix2::new(m[(0, 0)], m[(0, 1)], m[(1, 0)], m[(1, 1)])
     }
 }
 
 /// The exact relation with faer's matrices and partially pivoted LU.
-pub fn faer_line(
+pub(crate) fn faer_line(
     h41: ComplexMatrix2,
     alpha21: ComplexMatrix2,
     alpha22: ComplexMatrix2,
@@ -68,7 +68,7 @@ pub fn faer_line(
 }
 
 /// The exact relation on all lines with faer.
-pub fn faer_lines(h41: &[ComplexMatrix2], sides: &Compliances, out: &mut [ComplexMatrix2]) {
+pub(crate) fn faer_lines(h41: &[ComplexMatrix2], sides: &Compliances, out: &mut [ComplexMatrix2]) {
     for (line, out) in out.iter_mut().enumerate() {
         let s = sides;
         let (alpha21, alpha22) = (s.alpha21[line], s.alpha22[line]);

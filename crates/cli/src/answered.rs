@@ -14,7 +14,7 @@ use crate::refusal::Refusal;
 
 /// What is written beside answer and page.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum Also {
+pub(crate) enum Also {
     /// Every table and curve of the page, below tables and curves.
     Csv,
     /// Every figure of the page, below figures.
@@ -25,7 +25,7 @@ pub enum Also {
 
 /// Where the answer goes.
 #[derive(Debug, Clone, Default, Args)]
-pub struct Destination {
+pub(crate) struct Destination {
     /// Print the answer as the JSON file holds it, for scripts.
     #[arg(long)]
     pub json: bool,
@@ -39,7 +39,7 @@ pub struct Destination {
 
 impl Destination {
     /// Whether files of these names could be written, to be asked before anything that takes long.
-    pub fn foresee<'a>(
+    pub(crate) fn foresee<'a>(
         &self,
         inputs: impl IntoIterator<Item = &'a PathBuf>,
         names: &[&str],
@@ -49,7 +49,7 @@ impl Destination {
     }
 
     /// Refuses FRFs of models where the command has none.
-    pub fn without_frfs(&self, command: &str) -> Result<(), Refusal> {
+    pub(crate) fn without_frfs(&self, command: &str) -> Result<(), Refusal> {
         match self.also.contains(&Also::Uff) {
             false => Ok(()),
             true => Err(Refusal::new(format_args!(
@@ -60,7 +60,7 @@ impl Destination {
 }
 
 /// What a command found, before anything of it is written.
-pub struct Answered {
+pub(crate) struct Answered {
     /// What a reader should know besides.
     pub notes: Vec<String>,
     /// The answer's file: its name, and its contents, which `--json` prints.
@@ -78,14 +78,14 @@ pub struct Answered {
 }
 
 /// The page's name in every folder.
-pub const PAGE: &str = "report.html";
+pub(crate) const PAGE: &str = "report.html";
 
 /// A refusal in the place of an answer, where many tests are diagnosed.
-pub const REFUSED: &str = "refused.json";
+pub(crate) const REFUSED: &str = "refused.json";
 
 impl Answered {
     /// Writes what the destination asks for, tells the notices, and answers with what came out and where the page is.
-    pub fn end<'a>(
+    pub(crate) fn end<'a>(
         self,
         destination: &Destination,
         inputs: impl IntoIterator<Item = &'a PathBuf>,
@@ -108,7 +108,7 @@ impl Answered {
     }
 
     /// Adds the files that go to `folder` to those to be written.
-    pub fn add(&self, folder: &Path, also: &[Also], outputs: &mut Outputs) -> Result<(), Refusal> {
+    pub(crate) fn add(&self, folder: &Path, also: &[Also], outputs: &mut Outputs) -> Result<(), Refusal> {
         outputs.add(folder.join(self.answer.0), self.answer.1.clone());
         for (name, contents) in &self.others {
             outputs.add(folder.join(name), contents.clone());

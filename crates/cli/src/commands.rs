@@ -28,7 +28,7 @@ use crate::refusal::Refusal;
 /// Stiffness and damping of a joint from hammer tests on the blocks it connects.
 #[derive(Debug, Parser)]
 #[command(name = "jointscope", version, max_term_width = 110, after_help = STATUS)]
-pub struct Program {
+pub(crate) struct Program {
     #[command(subcommand)]
     command: Command,
 }
@@ -38,7 +38,7 @@ const STATUS: &str = "Answers go to standard output, notices and progress to sta
 Exit status: 0 done; 1 done in part (of many cases some have no answer, or standard output took no more); 2 bad usage or bad input: one sentence on standard error, nothing written.";
 
 /// What a command has to say when it is done.
-pub struct Said {
+pub(crate) struct Said {
     /// For standard output, without the last line end.
     pub text: String,
     /// Whether all is done that was asked.
@@ -95,18 +95,18 @@ enum Command {
 
 impl Program {
     /// The arguments that were typed.
-    pub fn read() -> Result<Self, clap::Error> {
+    pub(crate) fn read() -> Result<Self, clap::Error> {
         Program::from_arg_matches(&Program::arguments().try_get_matches()?)
     }
 
     /// What can be typed. Where a folder or a list of cases stands for the fixture, there are no recordings.
-    pub fn arguments() -> clap::Command {
+    pub(crate) fn arguments() -> clap::Command {
         let of_cases = |command: clap::Command| command.mut_arg("files", |files| files.required(false));
         Program::command().mut_subcommand("diagnose", of_cases).mut_subcommand("decompose", of_cases)
     }
 
     /// The arguments of a command line that diagnoses; `None` of any other.
-    pub fn diagnose_arguments(words: &[String]) -> Option<diagnose::DiagnoseArguments> {
+    pub(crate) fn diagnose_arguments(words: &[String]) -> Option<diagnose::DiagnoseArguments> {
         let typed = Program::arguments().try_get_matches_from(words).ok()?;
         match Program::from_arg_matches(&typed).ok()?.command {
             Command::Diagnose(arguments) => Some(arguments),
@@ -115,7 +115,7 @@ impl Program {
     }
 
     /// Runs the command; what it has done is told on standard output.
-    pub fn run(&self) -> Result<Said, Refusal> {
+    pub(crate) fn run(&self) -> Result<Said, Refusal> {
         let said = match &self.command {
             Command::Init(arguments) => init::run(arguments),
             Command::Schema(arguments) => schema::run(arguments),

@@ -15,7 +15,7 @@ use crate::values::{frf_pair, spectral_lines};
 
 /// Options of every command that computes FRFs.
 #[derive(Debug, Args)]
-pub struct ComputedFrfs {
+pub(crate) struct ComputedFrfs {
     /// The fixture file (JSON).
     pub fixture: PathBuf,
     /// FRFs to compute, response over reference, such as 4/1 or 4:theta/1 [default: 4/1 3/1 4/2 3/2].
@@ -34,7 +34,7 @@ pub struct ComputedFrfs {
 
 impl ComputedFrfs {
     /// The FRFs to compute.
-    pub fn pairs(&self, fixture: &FixtureFile) -> Result<Vec<FrfPair>, Refusal> {
+    pub(crate) fn pairs(&self, fixture: &FixtureFile) -> Result<Vec<FrfPair>, Refusal> {
         match self.frf.as_slice() {
             [] => default_pairs(fixture).map_err(|error| fixture.refusal(error)),
             named => named.iter().map(|pair| known(pair, fixture)).collect(),
@@ -42,7 +42,7 @@ impl ComputedFrfs {
     }
 
     /// The universal file, to be written.
-    pub fn outputs(&self, fixture: &FixtureFile, frfs: &FrfSet) -> Result<Outputs, Refusal> {
+    pub(crate) fn outputs(&self, fixture: &FixtureFile, frfs: &FrfSet) -> Result<Outputs, Refusal> {
         let datasets = to_datasets(frfs, fixture.name(), encoding(self.ascii))
             .map_err(|error| fixture.refusal(error))?;
         let mut outputs = Outputs::new([&self.fixture]);
@@ -51,7 +51,7 @@ impl ComputedFrfs {
     }
 
     /// What was written: file, names, lines.
-    pub fn written(&self, frfs: &FrfSet) -> String {
+    pub(crate) fn written(&self, frfs: &FrfSet) -> String {
         let names: Vec<String> = frfs.pairs().iter().map(FrfPair::to_string).collect();
         let hz = frfs.lines().hz();
         format!(
@@ -75,7 +75,7 @@ fn known(pair: &FrfPair, fixture: &FixtureFile) -> Result<FrfPair, Refusal> {
 }
 
 /// The encoding that `--ascii` asks for.
-pub fn encoding(ascii: bool) -> Encoding {
+pub(crate) fn encoding(ascii: bool) -> Encoding {
     if ascii { Encoding::Ascii } else { Encoding::default() }
 }
 

@@ -9,7 +9,7 @@ use crate::values::{one_of, positive};
 /// Options of every command that reads time histories.
 #[derive(Debug, Clone, Args)]
 #[command(next_help_heading = "Hammer hits (time histories)")]
-pub struct EstimationArguments {
+pub(crate) struct EstimationArguments {
     /// How FRFs follow from the spectra: H1 (noise on the responses), H2 (noise on the force), Hv (between them).
     #[arg(long, value_parser = one_of(&ESTIMATORS), default_value = "H1", ignore_case = true)]
     pub estimator: Estimator,
@@ -44,7 +44,7 @@ const BASELINES: [(&str, Baseline); 3] =
 
 impl EstimationArguments {
     /// The arguments as options of the estimate, `response_window` where they state none.
-    pub fn options(&self, response_window: ResponseWindow) -> EstimateOptions {
+    pub(crate) fn options(&self, response_window: ResponseWindow) -> EstimateOptions {
         EstimateOptions {
             estimator: self.estimator,
             weighting: self.weights,
@@ -58,7 +58,7 @@ impl EstimationArguments {
     }
 
     /// The note that they were given with FRFs, which need no estimate.
-    pub fn unused_with(&self, measurement: &Measurement) -> Option<String> {
+    pub(crate) fn unused_with(&self, measurement: &Measurement) -> Option<String> {
         let default = EstimateOptions { zero_padding: 1, ..EstimateOptions::default() };
         let given = self.response_window.is_some() || self.options(ResponseWindow::None) != default;
         (given && matches!(measurement, Measurement::Frfs(_)))

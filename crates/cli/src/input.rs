@@ -22,7 +22,7 @@ use crate::refusal::Refusal;
 use crate::replacing;
 
 /// A fixture with the path of its file.
-pub struct FixtureFile {
+pub(crate) struct FixtureFile {
     /// What the file says.
     pub fixture: Fixture,
     /// Where it was read from.
@@ -31,7 +31,7 @@ pub struct FixtureFile {
 
 impl FixtureFile {
     /// Reads a fixture file.
-    pub fn read(path: &Path) -> Result<Self, Refusal> {
+    pub(crate) fn read(path: &Path) -> Result<Self, Refusal> {
         let bytes = bytes(path)?;
         let recording = match Format::of(&bytes) {
             Ok(Format::Universal) => Some("universal"),
@@ -54,7 +54,7 @@ impl FixtureFile {
     }
 
     /// A sentence about the fixture.
-    pub fn refusal(&self, problem: impl fmt::Display) -> Refusal {
+    pub(crate) fn refusal(&self, problem: impl fmt::Display) -> Refusal {
         Refusal::at(&self.path, problem)
     }
 }
@@ -68,7 +68,7 @@ impl Deref for FixtureFile {
 }
 
 /// Reads the recordings of a test, whatever their formats; with the entries of `columns` that were of no use.
-pub fn sources(files: &[PathBuf], columns: &ColumnMap) -> Result<(Vec<Source>, Vec<String>), Refusal> {
+pub(crate) fn sources(files: &[PathBuf], columns: &ColumnMap) -> Result<(Vec<Source>, Vec<String>), Refusal> {
     let mut used = BTreeSet::new();
     let mut sources = Vec::with_capacity(files.len());
     for path in files {
@@ -84,23 +84,23 @@ pub fn sources(files: &[PathBuf], columns: &ColumnMap) -> Result<(Vec<Source>, V
 }
 
 /// Reads a recording that says all that there is to know of it.
-pub fn source(path: &Path) -> Result<Source, Refusal> {
+pub(crate) fn source(path: &Path) -> Result<Source, Refusal> {
     let (mut sources, _) = sources(std::slice::from_ref(&path.to_owned()), &ColumnMap::default())?;
     sources.pop().ok_or_else(|| Refusal::at(path, "holds nothing"))
 }
 
 /// Reads a JSON file.
-pub fn json(path: &Path) -> Result<Value, Refusal> {
+pub(crate) fn json(path: &Path) -> Result<Value, Refusal> {
     parsed(path, &bytes(path)?)
 }
 
 /// Reads a JSON file that this very run may write: nothing is noted of it.
-pub fn answer(path: &Path) -> Result<Value, Refusal> {
+pub(crate) fn answer(path: &Path) -> Result<Value, Refusal> {
     parsed(path, &whole(path)?.0)
 }
 
 /// The bytes of a file as JSON.
-pub fn parsed(path: &Path, bytes: &[u8]) -> Result<Value, Refusal> {
+pub(crate) fn parsed(path: &Path, bytes: &[u8]) -> Result<Value, Refusal> {
     if replacing::is_unfinished(path) {
         return Err(Refusal::at(
             path,
@@ -121,7 +121,7 @@ struct Taken {
 static TAKEN: Mutex<BTreeMap<PathBuf, Taken>> = Mutex::new(BTreeMap::new());
 
 /// Reads a file or standard input, and notes what was read.
-pub fn bytes(path: &Path) -> Result<Vec<u8>, Refusal> {
+pub(crate) fn bytes(path: &Path) -> Result<Vec<u8>, Refusal> {
     let taken = || TAKEN.lock().unwrap_or_else(PoisonError::into_inner);
     if taken().get(path).is_some_and(|before| before.is_pipe) {
         return Err(Refusal::at(path, "is given twice, and what is no file can be read once"));
@@ -138,14 +138,14 @@ pub fn bytes(path: &Path) -> Result<Vec<u8>, Refusal> {
 }
 
 /// The SHA-256 of what was read of a file, which is read where it has not been.
-pub fn sha256(path: &Path) -> Result<String, Refusal> {
+pub(crate) fn sha256(path: &Path) -> Result<String, Refusal> {
     let noted =
         TAKEN.lock().unwrap_or_else(PoisonError::into_inner).get(path).map(|taken| taken.sha256.clone());
     noted.map_or_else(|| bytes(path).map(|bytes| digest(&bytes)), Ok)
 }
 
 /// The SHA-256 of bytes, in hexadecimal digits.
-pub fn digest(bytes: &[u8]) -> String {
+pub(crate) fn digest(bytes: &[u8]) -> String {
     Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
 }
 

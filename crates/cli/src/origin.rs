@@ -11,7 +11,7 @@ use crate::names::name;
 use crate::refusal::Refusal;
 
 /// The origin of a page, with notes and hits.
-pub fn context<'a>(
+pub(crate) fn context<'a>(
     files: impl IntoIterator<Item = &'a PathBuf>,
     notes: Vec<String>,
     hits: Option<HammerTest>,
@@ -20,7 +20,7 @@ pub fn context<'a>(
 }
 
 /// The same of another command line than the one that was typed.
-pub fn context_of<'a>(
+pub(crate) fn context_of<'a>(
     command: String,
     files: impl IntoIterator<Item = &'a PathBuf>,
     notes: Vec<String>,
@@ -30,7 +30,7 @@ pub fn context_of<'a>(
 }
 
 /// Adds to a file's contents what they were made from.
-pub fn add(answer: &mut Value, context: &PageContext) {
+pub(crate) fn add(answer: &mut Value, context: &PageContext) {
     answer["notes"] = json!(context.notes);
     answer["made"] = json!({
         "program": context.program,
@@ -40,23 +40,23 @@ pub fn add(answer: &mut Value, context: &PageContext) {
 }
 
 /// Inputs as files state them.
-pub fn inputs_value(inputs: &[InputFile]) -> Value {
+pub(crate) fn inputs_value(inputs: &[InputFile]) -> Value {
     inputs.iter().map(|input| json!({"file": input.name, "sha256": input.sha256})).collect()
 }
 
 /// Names and hashes of the files as they were read.
-pub fn inputs<'a>(files: impl IntoIterator<Item = &'a PathBuf>) -> Result<Vec<InputFile>, Refusal> {
+pub(crate) fn inputs<'a>(files: impl IntoIterator<Item = &'a PathBuf>) -> Result<Vec<InputFile>, Refusal> {
     let noted = |path| Ok(InputFile { name: name(path), sha256: input::sha256(path)? });
     files.into_iter().map(|path: &PathBuf| noted(path)).collect()
 }
 
 /// The program and its version.
-pub fn program() -> String {
+pub(crate) fn program() -> String {
     format!("jointscope {}", env!("CARGO_PKG_VERSION"))
 }
 
 /// The words of a command line that [`command_line`] has written.
-pub fn words(command: &str) -> Vec<String> {
+pub(crate) fn words(command: &str) -> Vec<String> {
     let mut words = Vec::new();
     let mut rest = command.trim_start();
     while !rest.is_empty() {
@@ -81,12 +81,12 @@ pub fn words(command: &str) -> Vec<String> {
 }
 
 /// The command as it was typed; the program by its name alone, wherever it lies.
-pub fn command_line() -> String {
+pub(crate) fn command_line() -> String {
     command_of(std::env::args_os().skip(1).map(|word| word.to_string_lossy().into_owned()))
 }
 
 /// A command line of these words.
-pub fn command_of(words: impl IntoIterator<Item = String>) -> String {
+pub(crate) fn command_of(words: impl IntoIterator<Item = String>) -> String {
     let quoted = |word: String| if word.contains([' ', '"', '\'']) { format!("{word:?}") } else { word };
     let words = words.into_iter().map(quoted);
     std::iter::once("jointscope".to_owned()).chain(words).collect::<Vec<_>>().join(" ")

@@ -14,43 +14,43 @@ use crate::replacing::{Lock, parent, part, rename_all};
 
 /// The files of a command, written together. Whatever goes wrong, files that were there before are left or put back as they were.
 #[derive(Debug, Default)]
-pub struct Outputs {
+pub(crate) struct Outputs {
     files: Vec<(PathBuf, Vec<u8>)>,
     inputs: Vec<PathBuf>,
 }
 
 impl Outputs {
     /// Nothing yet; `inputs` are the files that the command has read and must not overwrite.
-    pub fn new<'a>(inputs: impl IntoIterator<Item = &'a PathBuf>) -> Self {
+    pub(crate) fn new<'a>(inputs: impl IntoIterator<Item = &'a PathBuf>) -> Self {
         Outputs { files: Vec::new(), inputs: inputs.into_iter().cloned().collect() }
     }
 
     /// Adds a file.
-    pub fn add(&mut self, path: impl Into<PathBuf>, contents: impl Into<Vec<u8>>) {
+    pub(crate) fn add(&mut self, path: impl Into<PathBuf>, contents: impl Into<Vec<u8>>) {
         self.files.push((path.into(), contents.into()));
     }
 
     /// Adds a universal file.
-    pub fn add_datasets(&mut self, path: &Path, datasets: &[Dataset58]) -> Result<(), Refusal> {
+    pub(crate) fn add_datasets(&mut self, path: &Path, datasets: &[Dataset58]) -> Result<(), Refusal> {
         let bytes = jointscope::uff::write(datasets).map_err(|error| Refusal::at(path, error))?;
         self.add(path, bytes);
         Ok(())
     }
 
     /// Adds a JSON file.
-    pub fn add_json(&mut self, path: impl Into<PathBuf>, value: &Value) {
+    pub(crate) fn add_json(&mut self, path: impl Into<PathBuf>, value: &Value) {
         self.add(path, pretty(value));
     }
 
     /// Writes one JSON file.
-    pub fn one(path: PathBuf, value: &Value) -> Result<(), Refusal> {
+    pub(crate) fn one(path: PathBuf, value: &Value) -> Result<(), Refusal> {
         let mut outputs = Outputs::default();
         outputs.add_json(path, value);
         outputs.write()
     }
 
     /// Whether these files could be written, to be asked before anything that takes long.
-    pub fn foresee<'a>(
+    pub(crate) fn foresee<'a>(
         inputs: impl IntoIterator<Item = &'a PathBuf>,
         paths: impl IntoIterator<Item = PathBuf>,
     ) -> Result<(), Refusal> {
@@ -60,7 +60,7 @@ impl Outputs {
     }
 
     /// Writes the files, creating their directories; a page of another command that is replaced is told of.
-    pub fn write(self) -> Result<(), Refusal> {
+    pub(crate) fn write(self) -> Result<(), Refusal> {
         self.check()?;
         let replaced: Vec<String> = self.files.iter().filter_map(|(path, new)| replaced(path, new)).collect();
         let mut folders = NewFolders::default();
@@ -80,7 +80,7 @@ impl Outputs {
     }
 
     /// Whether the files have places where they may be written: to be asked before anything that takes long.
-    pub fn check(&self) -> Result<(), Refusal> {
+    pub(crate) fn check(&self) -> Result<(), Refusal> {
         let (mut tried, mut places) = (BTreeSet::new(), BTreeSet::new());
         for (path, _) in &self.files {
             if let Some(above) = parent(path).ancestors().find(|above| above.exists() && !above.is_dir()) {
@@ -129,11 +129,11 @@ impl Outputs {
 }
 
 /// JSON for people, and as a terminal gets it.
-pub fn pretty(value: &Value) -> String {
+pub(crate) fn pretty(value: &Value) -> String {
     progress::visible(&format!("{value:#}\n"))
 }
 
-pub use jointscope::wording::counted;
+pub(crate) use jointscope::wording::counted;
 
 /// The nearest directory that is there.
 fn existing(directory: &Path) -> &Path {
@@ -205,21 +205,21 @@ impl Drop for NewFolders {
 }
 
 #[cfg(test)]
-pub mod tests {
+pub(crate) mod tests {
     use super::*;
 
     /// An empty directory that is removed with everything in it.
-    pub struct Scratch(pub PathBuf);
+    pub(crate) struct Scratch(pub PathBuf);
 
     impl Scratch {
-        pub fn new(name: &str) -> Self {
+        pub(crate) fn new(name: &str) -> Self {
             let path = std::env::temp_dir().join(format!("jointscope-output-{name}-{}", std::process::id()));
             let _ = fs::remove_dir_all(&path);
             fs::create_dir_all(&path).unwrap();
             Scratch(path)
         }
 
-        pub fn names(&self) -> Vec<String> {
+        pub(crate) fn names(&self) -> Vec<String> {
             let mut names: Vec<String> = fs::read_dir(&self.0)
                 .unwrap()
                 .map(|entry| entry.unwrap().file_name().to_string_lossy().into_owned())

@@ -10,7 +10,7 @@ use jointscope::report::format::hides;
 
 /// Steps of something long: the last one on a terminal, lines elsewhere, of what is done within a stage no more than one every other second.
 #[derive(Debug)]
-pub struct Steps {
+pub(crate) struct Steps {
     /// On a terminal alone.
     spinner: Option<ProgressBar>,
     last_shown: Mutex<LastShown>,
@@ -30,19 +30,19 @@ const PAUSE: Duration = Duration::from_secs(2);
 
 impl Steps {
     /// Nothing told yet.
-    pub fn new() -> Self {
+    pub(crate) fn new() -> Self {
         let spinner = || styled(ProgressBar::new_spinner(), "{msg}");
         let last_shown = LastShown { stage: String::new(), over: None, last: Instant::now() };
         Steps { spinner: std::io::stderr().is_terminal().then(spinner), last_shown: Mutex::new(last_shown) }
     }
 
     /// What the stages that follow are about; told with the first.
-    pub fn over(&self, what: &str) {
+    pub(crate) fn over(&self, what: &str) {
         self.last_shown().over = Some(what.to_owned());
     }
 
     /// A stage begins.
-    pub fn stage(&self, what: &str) {
+    pub(crate) fn stage(&self, what: &str) {
         let mut last_shown = self.last_shown();
         let over = last_shown.over.take().map_or_else(String::new, |over| format!(" ({over})"));
         last_shown.stage = format!("{what}{over}");
@@ -50,7 +50,7 @@ impl Steps {
     }
 
     /// Something is done within a stage.
-    pub fn within(&self, what: impl FnOnce() -> String) {
+    pub(crate) fn within(&self, what: impl FnOnce() -> String) {
         let mut last_shown = self.last_shown();
         let due = if self.spinner.is_some() { SHOWN } else { PAUSE };
         if last_shown.last.elapsed() >= due {
@@ -60,7 +60,7 @@ impl Steps {
     }
 
     /// It is done.
-    pub fn finish(&self) {
+    pub(crate) fn finish(&self) {
         if let Some(spinner) = &self.spinner {
             spinner.finish_and_clear();
         }
@@ -84,7 +84,7 @@ impl Steps {
 const SHOWN: Duration = Duration::from_millis(100);
 
 /// A count of steps: a bar on a terminal, lines elsewhere, no more than one every so often and none for what is done at once.
-pub struct Bar {
+pub(crate) struct Bar {
     /// On a terminal alone.
     bar: Option<ProgressBar>,
     state: Mutex<BarState>,
@@ -109,7 +109,7 @@ impl Bar {
     }
 
     /// How many steps there are.
-    pub fn set_length(&self, steps: u64) {
+    pub(crate) fn set_length(&self, steps: u64) {
         self.state().steps = steps;
         if let Some(bar) = &self.bar {
             bar.set_length(steps);
@@ -117,7 +117,7 @@ impl Bar {
     }
 
     /// What is done at present.
-    pub fn set_message(&self, what: String) {
+    pub(crate) fn set_message(&self, what: String) {
         if let Some(bar) = &self.bar {
             bar.set_message(what.clone());
         }
@@ -125,7 +125,7 @@ impl Bar {
     }
 
     /// So many steps are done.
-    pub fn set_position(&self, done: u64) {
+    pub(crate) fn set_position(&self, done: u64) {
         let mut state = self.state();
         state.done = done;
         match &self.bar {
@@ -158,12 +158,12 @@ impl Drop for Bar {
 }
 
 /// A bar of `steps`; `template` says what stands beside it.
-pub fn bar(steps: u64, template: &str, what: &str) -> Bar {
+pub(crate) fn bar(steps: u64, template: &str, what: &str) -> Bar {
     Bar::new(steps, template, what)
 }
 
 /// A bar of cases: how many are done, and how long the rest takes.
-pub fn cases(count: usize, what: &str) -> Bar {
+pub(crate) fn cases(count: usize, what: &str) -> Bar {
     let template = "{bar:30} {pos} of {len} {msg}, {elapsed} gone, {eta} to go";
     Bar::new(count as u64, template, &format!("cases {what}"))
 }
@@ -173,13 +173,13 @@ fn styled(bar: ProgressBar, template: &str) -> ProgressBar {
 }
 
 /// A line for whoever watches, apart from the results.
-pub fn tell(line: &str) {
+pub(crate) fn tell(line: &str) {
     // With standard error closed nobody watches.
     let _ = writeln!(std::io::stderr(), "{}", visible(line));
 }
 
 /// A text that no name can make look like another: what hides is spelled as JSON does, so that JSON stays the same.
-pub fn visible(text: &str) -> String {
+pub(crate) fn visible(text: &str) -> String {
     let mut shown = String::with_capacity(text.len());
     for c in text.chars() {
         match hides(c) {
@@ -191,7 +191,7 @@ pub fn visible(text: &str) -> String {
 }
 
 /// What a reader of the answer should know besides.
-pub fn notice(sentence: &str) {
+pub(crate) fn notice(sentence: &str) {
     tell(&format!("note: {sentence}"));
 }
 

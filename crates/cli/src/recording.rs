@@ -16,7 +16,7 @@ use crate::refusal::Refusal;
 
 /// Recordings and what the analyst says of them, for every command that reads FRFs or time histories.
 #[derive(Debug, Clone, Args)]
-pub struct RecordingArguments {
+pub(crate) struct RecordingArguments {
     /// The recordings (UFF, UNV, CSV, MAT): all files of one test, in any order; `-` is standard input.
     #[arg(required = true, value_name = "F.uff")]
     pub files: Vec<PathBuf>,
@@ -26,7 +26,7 @@ pub struct RecordingArguments {
 
 /// What the analyst says of recordings where the files do not.
 #[derive(Debug, Clone, Default, Args)]
-pub struct ReadingArguments {
+pub(crate) struct ReadingArguments {
     /// Which channel of the files is which of the fixture: +z=+y for all nodes, 101:+z=1:+y for one, which beats it, "10*:+z=*:+y" for nodes by
     /// their digits.
     #[arg(long, value_name = "[NODE:]DIR=[POINT:]DIR", value_parser = map_entry, num_args = 1..)]
@@ -50,25 +50,25 @@ pub struct ReadingArguments {
 
 impl RecordingArguments {
     /// Files that say all that there is to know of them.
-    pub fn plain(files: Vec<PathBuf>) -> Self {
+    pub(crate) fn plain(files: Vec<PathBuf>) -> Self {
         RecordingArguments { files, reading: ReadingArguments::default() }
     }
 
     /// The arguments as options of the reading.
-    pub fn options(&self) -> Result<ReadOptions, Refusal> {
+    pub(crate) fn options(&self) -> Result<ReadOptions, Refusal> {
         let ReadingArguments { map, assume_units, averages, ignore_coherence, .. } = self.reading.clone();
         let map = ChannelMap::parse(&map).map_err(Refusal::new)?;
         Ok(ReadOptions { map, assume_units, averages, ignore_coherence })
     }
 
     /// Other files, read alike.
-    pub fn of_files(&self, files: &[PathBuf]) -> Self {
+    pub(crate) fn of_files(&self, files: &[PathBuf]) -> Self {
         let reading = ReadingArguments { beside_others: true, ..self.reading.clone() };
         RecordingArguments { files: files.to_vec(), reading }
     }
 
     /// The files as they are.
-    pub fn sources(&self) -> Result<Vec<Source>, Refusal> {
+    pub(crate) fn sources(&self) -> Result<Vec<Source>, Refusal> {
         let columns = ColumnMap::parse(&self.reading.columns).map_err(Refusal::new)?;
         let (sources, unused) = input::sources(&self.files, &columns)?;
         // An entry that applies to nothing is a slip.
@@ -81,27 +81,27 @@ impl RecordingArguments {
     }
 
     /// The FRFs of a test of the fixture.
-    pub fn recording(&self, fixture: &FixtureFile) -> Result<Recording, Refusal> {
+    pub(crate) fn recording(&self, fixture: &FixtureFile) -> Result<Recording, Refusal> {
         let options = self.options()?;
         Recording::of(&self.sources()?, fixture, &options)
             .map_err(|error| self.unreadable(error.into(), Some(fixture)))
     }
 
     /// The FRFs of a test of a structure that no fixture describes.
-    pub fn recording_of_nodes(&self) -> Result<Recording, Refusal> {
+    pub(crate) fn recording_of_nodes(&self) -> Result<Recording, Refusal> {
         let options = self.options()?;
         Recording::of_nodes(&self.sources()?, &options).map_err(|error| self.unreadable(error.into(), None))
     }
 
     /// What a test of the fixture recorded, FRFs or hits.
-    pub fn measurement(&self, fixture: &FixtureFile) -> Result<Measurement, Refusal> {
+    pub(crate) fn measurement(&self, fixture: &FixtureFile) -> Result<Measurement, Refusal> {
         let sources = self.sources()?;
         Measurement::of(&sources, fixture, &self.options()?)
             .map_err(|error| self.unreadable(error, Some(fixture)))
     }
 
     /// Why the files are no recording (of the fixture, if there is one).
-    pub fn unreadable(&self, error: MeasurementError, fixture: Option<&FixtureFile>) -> Refusal {
+    pub(crate) fn unreadable(&self, error: MeasurementError, fixture: Option<&FixtureFile>) -> Refusal {
         use RecordingError as E;
         match (error, fixture) {
             (MeasurementError::Recording(error @ E::MapPoint { .. }), Some(fixture)) => {
@@ -126,7 +126,7 @@ impl RecordingArguments {
     }
 
     /// Why there is no answer, behind the name of the file that this is about.
-    pub fn unanswered(&self, error: &Error, fixture: &FixtureFile) -> Refusal {
+    pub(crate) fn unanswered(&self, error: &Error, fixture: &FixtureFile) -> Refusal {
         match error.concern() {
             Concern::Fixture => fixture.refusal(error),
             Concern::Recording => self.refusal(error),
@@ -135,18 +135,18 @@ impl RecordingArguments {
     }
 
     /// A sentence about all the files.
-    pub fn refusal(&self, problem: impl std::fmt::Display) -> Refusal {
+    pub(crate) fn refusal(&self, problem: impl std::fmt::Display) -> Refusal {
         Refusal::new(format_args!("{}: {problem}", names(&self.files)))
     }
 }
 
 /// One entry of `--columns`, checked by itself.
-pub fn column_entry(text: &str) -> Result<String, ColumnMapError> {
+pub(crate) fn column_entry(text: &str) -> Result<String, ColumnMapError> {
     ColumnMap::parse([text]).map(|_| text.to_owned())
 }
 
 /// One map entry, checked by itself; entries are checked against each other in [`RecordingArguments::options`].
-pub fn map_entry(text: &str) -> Result<String, ChannelMapError> {
+pub(crate) fn map_entry(text: &str) -> Result<String, ChannelMapError> {
     ChannelMap::parse([text]).map(|_| text.to_owned())
 }
 

@@ -9,32 +9,32 @@ use crate::names::name;
 
 /// Why a command did nothing: one plain sentence that names the file, the place in it and the remedy.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Refusal(String);
+pub(crate) struct Refusal(String);
 
 impl Refusal {
     /// A sentence about the command line.
-    pub fn new(sentence: impl fmt::Display) -> Self {
+    pub(crate) fn new(sentence: impl fmt::Display) -> Self {
         Refusal(one_line(&sentence.to_string()))
     }
 
     /// A sentence about a file.
-    pub fn at(file: &Path, problem: impl fmt::Display) -> Self {
+    pub(crate) fn at(file: &Path, problem: impl fmt::Display) -> Self {
         Refusal::about(&name(file), problem)
     }
 
     /// A sentence about what goes by this name.
-    pub fn about(name: &str, problem: impl fmt::Display) -> Self {
+    pub(crate) fn about(name: &str, problem: impl fmt::Display) -> Self {
         Refusal::new(format_args!("{name}: {problem}"))
     }
 
     /// A directory without the file that a command would have written there.
-    pub fn holding_no(directory: &Path, file: &str, command: &str) -> Self {
+    pub(crate) fn holding_no(directory: &Path, file: &str, command: &str) -> Self {
         let remedy = format_args!("holds no {file}; give the directory that `jointscope {command}` wrote to");
         Refusal::at(directory, remedy)
     }
 
     /// A file that could not be read or written.
-    pub fn io(file: &Path, error: &std::io::Error) -> Self {
+    pub(crate) fn io(file: &Path, error: &std::io::Error) -> Self {
         use std::io::ErrorKind;
         match error.kind() {
             ErrorKind::NotFound => Refusal::at(file, "there is no such file; check the path"),

@@ -17,7 +17,7 @@ use crate::progress;
 use crate::refusal::Refusal;
 
 /// The folder that a file is in.
-pub fn parent(path: &Path) -> &Path {
+pub(crate) fn parent(path: &Path) -> &Path {
     path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 
@@ -25,7 +25,7 @@ pub fn parent(path: &Path) -> &Path {
 const PART: &str = ".jointscope-part";
 
 /// A hidden file with these contents, on disk.
-pub fn part(folder: &Path, contents: &[u8]) -> io::Result<NamedTempFile<File>> {
+pub(crate) fn part(folder: &Path, contents: &[u8]) -> io::Result<NamedTempFile<File>> {
     let mut part =
         Builder::new().suffix(PART).make_in(folder, |path| step().and_then(|()| File::create_new(path)))?;
     step()?;
@@ -36,7 +36,10 @@ pub fn part(folder: &Path, contents: &[u8]) -> io::Result<NamedTempFile<File>> {
 }
 
 /// Renames the parts over their places; where one cannot be, all are put back.
-pub fn rename_all(parts: Vec<(&Path, NamedTempFile<File>)>, mut locks: Vec<Lock>) -> Result<(), Refusal> {
+pub(crate) fn rename_all(
+    parts: Vec<(&Path, NamedTempFile<File>)>,
+    mut locks: Vec<Lock>,
+) -> Result<(), Refusal> {
     if parts.len() > 1 {
         for lock in &mut locks {
             lock.begin().map_err(|error| Refusal::io(&lock.path, &error))?;
@@ -104,7 +107,7 @@ fn rename(path: &Path, part: NamedTempFile<File>) -> io::Result<Before> {
 const LOCK: &str = ".jointscope-lock";
 
 /// Whether a file is one of several that a run was ended in the middle of renaming; one that is renaming just now is waited for.
-pub fn is_unfinished(path: &Path) -> bool {
+pub(crate) fn is_unfinished(path: &Path) -> bool {
     let is_named = |mut lock: &File| {
         let mut names = String::new();
         let read = lock.rewind().and_then(|()| lock.read_to_string(&mut names));
@@ -117,7 +120,7 @@ pub fn is_unfinished(path: &Path) -> bool {
 
 /// The right to change a folder's files; given back when dropped.
 #[derive(Debug)]
-pub struct Lock {
+pub(crate) struct Lock {
     path: PathBuf,
     file: File,
     /// Files that may not belong together.
@@ -128,7 +131,7 @@ pub struct Lock {
 
 impl Lock {
     /// Locks of the folders of these files, taken in one order by whoever takes several.
-    pub fn all<'a>(paths: impl Iterator<Item = &'a Path>) -> Result<Vec<Self>, Refusal> {
+    pub(crate) fn all<'a>(paths: impl Iterator<Item = &'a Path>) -> Result<Vec<Self>, Refusal> {
         let mut folders: BTreeMap<PathBuf, BTreeSet<String>> = BTreeMap::new();
         for path in paths {
             let folder = parent(path).canonicalize().map_err(|error| Refusal::io(path, &error))?;
@@ -227,7 +230,7 @@ mod tests {
         static LEFT: Cell<Option<(usize, End)>> = const { Cell::new(None) };
     }
 
-    pub fn step() -> io::Result<()> {
+    pub(super) fn step() -> io::Result<()> {
         match LEFT.get() {
             Some((0, end)) => {
                 LEFT.set(None);

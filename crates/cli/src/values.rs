@@ -7,7 +7,7 @@ use jointscope::Band;
 use jointscope::spectra::{Channel, Dof, FrfPair, SpectralLines};
 
 /// Reads one of these names.
-pub fn one_of<T: Copy + Send + Sync + 'static>(
+pub(crate) fn one_of<T: Copy + Send + Sync + 'static>(
     all: &'static [(&'static str, T)],
 ) -> impl TypedValueParser<Value = T> {
     let named = |text: &String| all.iter().find(|(name, _)| name.eq_ignore_ascii_case(text));
@@ -16,7 +16,7 @@ pub fn one_of<T: Copy + Send + Sync + 'static>(
 }
 
 /// Reads `F1:F2` in Hz.
-pub fn band(text: &str) -> Result<Band, String> {
+pub(crate) fn band(text: &str) -> Result<Band, String> {
     let form = "two frequencies in Hz are needed, the lower first, such as 200:800";
     let (from, to) = text.split_once(':').ok_or(form)?;
     match (frequency(from), frequency(to)) {
@@ -29,7 +29,7 @@ pub fn band(text: &str) -> Result<Band, String> {
 const MOST_LINES: f64 = 1e7;
 
 /// Reads `FROM:TO:STEP` in Hz; the last line is the last step not beyond TO.
-pub fn spectral_lines(text: &str) -> Result<SpectralLines, String> {
+pub(crate) fn spectral_lines(text: &str) -> Result<SpectralLines, String> {
     let form = "first line, last line and step in Hz are needed, such as 2.5:1000:2.5";
     let mut fields = text.split(':');
     let (Some(from), Some(to), Some(step), None) =
@@ -55,19 +55,19 @@ pub fn spectral_lines(text: &str) -> Result<SpectralLines, String> {
 }
 
 /// Reads seconds, above zero.
-pub fn seconds(text: &str) -> Result<Duration, String> {
+pub(crate) fn seconds(text: &str) -> Result<Duration, String> {
     let seconds = text.trim().parse().ok().filter(|seconds: &f64| *seconds > 0.0);
     let duration = seconds.and_then(|seconds| Duration::try_from_secs_f64(seconds).ok());
     duration.ok_or_else(|| "a number of seconds above zero is needed, such as 30".to_owned())
 }
 
 /// A finite number of Hz, zero or above.
-pub fn frequency(text: &str) -> Option<f64> {
+pub(crate) fn frequency(text: &str) -> Option<f64> {
     text.trim().parse().ok().filter(|hz: &f64| hz.is_finite() && *hz >= 0.0)
 }
 
 /// Reads `OUT/IN`: channels `4`, `4:y` or `4:theta`.
-pub fn frf_pair(text: &str) -> Result<FrfPair, String> {
+pub(crate) fn frf_pair(text: &str) -> Result<FrfPair, String> {
     let form = || "response over reference is needed, such as 4/1 or 4:theta/1".to_owned();
     let (response, reference) = text.split_once('/').ok_or_else(form)?;
     match (channel(response)?, channel(reference)?) {
@@ -77,7 +77,7 @@ pub fn frf_pair(text: &str) -> Result<FrfPair, String> {
 }
 
 /// Reads a channel: `4`, `4:y` or `4:theta`.
-pub fn one_channel(text: &str) -> Result<Channel, String> {
+pub(crate) fn one_channel(text: &str) -> Result<Channel, String> {
     channel(text)?.ok_or_else(|| "a point is needed, such as 4 or 4:theta".to_owned())
 }
 
@@ -94,7 +94,7 @@ fn channel(text: &str) -> Result<Option<Channel>, String> {
 }
 
 /// A finite number above zero.
-pub fn positive(text: &str) -> Option<f64> {
+pub(crate) fn positive(text: &str) -> Option<f64> {
     text.trim().parse().ok().filter(|value: &f64| value.is_finite() && *value > 0.0)
 }
 

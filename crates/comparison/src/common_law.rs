@@ -17,7 +17,7 @@ pub(crate) struct CommonLaw {
 
 impl CommonLaw {
     /// The groups of two joints or more with the same most probable law.
-    pub fn of(joints: &[Decomposed]) -> Vec<Self> {
+    pub(crate) fn of(joints: &[Decomposed]) -> Vec<Self> {
         let best = |joint: usize| joints[joint].fitted.as_ref()?.law.as_deref();
         let first = |joint: usize| (0..joint).all(|other| best(other) != best(joint));
         let firsts = (0..joints.len()).filter(|&joint| best(joint).is_some() && first(joint));
@@ -53,7 +53,7 @@ impl CommonLaw {
     }
 
     /// Covariance of two joints' numbers from the law, joints by their places in the group.
-    pub fn covariance(&self, (joint, slot): (usize, usize), (other, with): (usize, usize)) -> f64 {
+    pub(crate) fn covariance(&self, (joint, slot): (usize, usize), (other, with): (usize, usize)) -> f64 {
         self.laws.iter().map(|(probability, by)| probability * by[joint][slot] * by[other][with]).sum()
     }
 }

@@ -95,7 +95,11 @@ impl TestDrift {
 
 impl Drifted {
     /// Drift between the references of a recording; `None` where their poles agree, or there is nothing to compare.
-    pub fn of(observation: &Observation, nominal: &Hypothesis, settings: &ModalSettings) -> Option<Self> {
+    pub(crate) fn of(
+        observation: &Observation,
+        nominal: &Hypothesis,
+        settings: &ModalSettings,
+    ) -> Option<Self> {
         let references = seen::references(observation);
         if references.len() < 2 {
             return None;
@@ -120,14 +124,14 @@ impl Drifted {
     }
 
     /// Whether the diagnosis goes on with FRFs of this reference.
-    pub fn keeps(&self, reference: &Channel) -> bool {
+    pub(crate) fn keeps(&self, reference: &Channel) -> bool {
         let at = self.references.iter().position(|own| own == reference);
         at.is_none_or(|at| self.kept[at])
     }
 
     /// What drifted, told by the shares of strain energy in a model of the structure.
     /// `explains`: whether that model explains the recording down to its noise.
-    pub fn attributed(&self, model: &Fixture, explains: bool) -> TestDrift {
+    pub(crate) fn attributed(&self, model: &Fixture, explains: bool) -> TestDrift {
         attribution::attributed(self, model, explains)
     }
 }

@@ -98,7 +98,7 @@ impl<'a, const FIXED: bool> LeastSquares for Problem<'a, FIXED> {
 
 impl<'a> Fitter<'a> {
     /// The same settings on another observation.
-    pub fn on<'b>(self, observation: &'b Observation) -> Fitter<'b>
+    pub(crate) fn on<'b>(self, observation: &'b Observation) -> Fitter<'b>
     where
         'a: 'b,
     {
@@ -106,23 +106,23 @@ impl<'a> Fitter<'a> {
     }
 
     /// The observation on the few lines of a thinned fit.
-    pub fn thinned(&self) -> Observation {
+    pub(crate) fn thinned(&self) -> Observation {
         self.observation.thinned(self.settings.fit.thinned_lines)
     }
 
     /// A fit's first iterate; `None` where the hypothesis predicts no finite FRFs.
-    pub fn iterate(&self, hypothesis: Hypothesis) -> Option<Iterate> {
+    pub(crate) fn iterate(&self, hypothesis: Hypothesis) -> Option<Iterate> {
         let predicted = hypothesis.predict(self.observation).ok()?;
         Some(Iterate { hypothesis, predicted, linear: None })
     }
 
     /// Central differences about a hypothesis.
-    pub fn linearised(&self, at: &Hypothesis) -> Linearisation {
+    pub(crate) fn linearised(&self, at: &Hypothesis) -> Linearisation {
         Linearisation::default().extended(at, self.observation, |_| self.settings.fit.difference)
     }
 
     /// Central differences by steps so small that every digit counts which rounding leaves: for uncertainties.
-    pub fn linearised_exactly(&self, at: &Hypothesis) -> Linearisation {
+    pub(crate) fn linearised_exactly(&self, at: &Hypothesis) -> Linearisation {
         let difference = self.settings.fit.difference;
         let (change, least) = self.settings.fit.small_difference;
         let small = |m: usize| {
@@ -136,7 +136,7 @@ impl<'a> Fitter<'a> {
     }
 
     /// The normal equations of a hypothesis at its optimum, for uncertainties.
-    pub fn information(&self, at: &Hypothesis) -> NormalEquations {
+    pub(crate) fn information(&self, at: &Hypothesis) -> NormalEquations {
         let residual = vec![Complex64::ZERO; self.observation.values().len()];
         self.linearised_exactly(at).equations(at, self.observation.weights(), &residual)
     }
@@ -184,7 +184,7 @@ impl<'a> Fitter<'a> {
     }
 
     /// A stage with inflated noise of a fit that many others are compared with.
-    pub fn improve_among_many(&self, at: Iterate, inflation: f64) -> Option<(Iterate, f64)> {
+    pub(crate) fn improve_among_many(&self, at: Iterate, inflation: f64) -> Option<(Iterate, f64)> {
         let share = self.settings.fit.inflated_among_many;
         self.improve(at, &Stage { inflation, share, limit: f64::INFINITY })
     }
@@ -205,12 +205,12 @@ impl<'a> Fitter<'a> {
 
     /// The stages of a fit from afar on a thinned observation, which this is: good enough to compare hypotheses by. Its objective is that of
     /// the last stage.
-    pub fn on_thinned_lines(&self, start: &Hypothesis) -> Option<Fit> {
+    pub(crate) fn on_thinned_lines(&self, start: &Hypothesis) -> Option<Fit> {
         self.inflated(start, &self.settings.fit.inflation.0)
     }
 
     /// The last stage with inflated noise, on all lines; its objective is that stage's.
-    pub fn on_whole_lines(&self, start: &Hypothesis) -> Option<Fit> {
+    pub(crate) fn on_whole_lines(&self, start: &Hypothesis) -> Option<Fit> {
         self.inflated(start, &[self.settings.fit.inflation.1])
     }
 
@@ -223,7 +223,12 @@ impl<'a> Fitter<'a> {
     /// A fit from nearby, given up where it will hardly come below `limit`, with derivatives of the first coordinates where these are known.
     ///
     /// `None` where the start predicts no finite FRFs.
-    pub fn local(&self, start: &Hypothesis, nearby: Option<&Linearisation>, limit: f64) -> Option<Fit> {
+    pub(crate) fn local(
+        &self,
+        start: &Hypothesis,
+        nearby: Option<&Linearisation>,
+        limit: f64,
+    ) -> Option<Fit> {
         let difference = self.settings.fit.difference;
         let extended =
             |linear: &Linearisation| linear.clone().extended(start, self.observation, |_| difference);
@@ -232,7 +237,7 @@ impl<'a> Fitter<'a> {
     }
 
     /// A fit from afar: stages on thinned lines first, then on all.
-    pub fn global(&self, start: &Hypothesis) -> Option<Fit> {
+    pub(crate) fn global(&self, start: &Hypothesis) -> Option<Fit> {
         let thinned = self.on(&self.thinned()).on_thinned_lines(start)?;
         self.after_thinned(&thinned.hypothesis)
     }
@@ -243,14 +248,14 @@ impl<'a> Fitter<'a> {
     }
 
     /// The best of a local and a global fit.
-    pub fn refitted(&self, start: &Hypothesis) -> Option<Fit> {
+    pub(crate) fn refitted(&self, start: &Hypothesis) -> Option<Fit> {
         let both = [self.global(start), self.local(start, None, f64::INFINITY)];
         both.into_iter().flatten().reduce(better)
     }
 
     /// The `first` fit or, where that leaves much, the best of it and of global fits from about the start: one deviation up and down each quantity that is widely
     /// known.
-    pub fn refitted_widely(&self, start: &Hypothesis, first: Fit) -> Fit {
+    pub(crate) fn refitted_widely(&self, start: &Hypothesis, first: Fit) -> Fit {
         let (much, followed) = self.settings.fit.other_starts;
         if first.chi2_per_dof(self.observation) < much {
             return first;
@@ -273,7 +278,7 @@ impl<'a> Fitter<'a> {
     /// what they are able to imitate.
     ///
     /// `None` as well where a part of the effect is already missed by more than `limit`.
-    pub fn faded(&self, full: &Hypothesis, index: usize, limit: f64) -> Option<Fit> {
+    pub(crate) fn faded(&self, full: &Hypothesis, index: usize, limit: f64) -> Option<Fit> {
         let effect = &full.effects()[index];
         let without = full.without(index);
         let mut at = without.clone();

@@ -58,7 +58,7 @@ fn possible(observation: &Observation) -> Option<Vec<f64>> {
 impl Shortfall {
     /// The most likely one beside what was fitted; `None` where coherence rules out that this matters, or that it leaves no more than noise: residuals become no smaller than by
     /// what the FRFs are changed by.
-    pub fn beside(fitter: &Fitter, fit: &Fit) -> Option<Self> {
+    pub(crate) fn beside(fitter: &Fitter, fit: &Fit) -> Option<Self> {
         let (observation, hypothesis) = (fitter.observation, &fit.hypothesis);
         let possible = possible(observation)?;
         let squares = observation.values().iter().zip(&possible).zip(observation.weights());
@@ -81,7 +81,7 @@ impl Shortfall {
     }
 
     /// Whether it earns its parameter and leaves no more than noise.
-    pub fn explains(&self, fitter: &Fitter) -> bool {
+    pub(crate) fn explains(&self, fitter: &Fitter) -> bool {
         let settings = &fitter.settings.selection;
         let needed = penalty(settings, settings.parameter_penalty, 1);
         let left = self.fit.chi2_per_dof(fitter.observation);
@@ -89,7 +89,7 @@ impl Shortfall {
     }
 
     /// The FRFs as they would be without it.
-    pub fn corrected(&self, observation: &Observation) -> Option<Observation> {
+    pub(crate) fn corrected(&self, observation: &Observation) -> Option<Observation> {
         observation.divided_by(&self.kept)
     }
 }

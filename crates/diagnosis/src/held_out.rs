@@ -17,7 +17,10 @@ pub(crate) struct Division {
 
 impl Division {
     /// Holds out two bands and the FRFs that are asked for. `None` where there are too few lines for that.
-    pub fn of(observation: &Observation, options: &DiagnosisOptions) -> Result<Option<Self>, DiagnosisError> {
+    pub(crate) fn of(
+        observation: &Observation,
+        options: &DiagnosisOptions,
+    ) -> Result<Option<Self>, DiagnosisError> {
         let frfs = held_out_frfs(observation, options)?;
         let hz = observation.lines().hz();
         let n = hz.len();
@@ -44,7 +47,7 @@ impl Division {
 
     /// How well the outcome of a search that was given [`Division::seen`] alone predicts the rest. Where nothing is named of `found` in the whole
     /// recording, nothing is repaired.
-    pub fn judge(&self, blind: &Search, found: &Search, observation: &Observation) -> Option<HeldOut> {
+    pub(crate) fn judge(&self, blind: &Search, found: &Search, observation: &Observation) -> Option<HeldOut> {
         let error = |fit: &Fit| -> Option<f64> {
             let predicted = fit.hypothesis.predict(observation).ok()?;
             let values = observation.values().iter().zip(&predicted).zip(&self.unseen);

@@ -40,7 +40,7 @@ pub(crate) struct Ranking<'a> {
 impl Ranking<'_> {
     /// Fits of `base` with one more effect, best first by objective and penalty of parameters, with the candidate's index. `global` searches
     /// from the nominal quantities too. Candidates that will not come below `limit` are left unfinished or out.
-    pub fn of(&self, base: &Hypothesis, global: bool, limit: f64) -> Vec<(usize, Fit)> {
+    pub(crate) fn of(&self, base: &Hypothesis, global: bool, limit: f64) -> Vec<(usize, Fit)> {
         let settings = &self.fitter.settings.ranking;
         let starts = self.starts(base);
         let mut fits = Vec::new();
@@ -64,7 +64,7 @@ impl Ranking<'_> {
 
     /// Every candidate fitted from where `base` stands, which is where an effect that is looked for would leave the quantities; fits that
     /// will not come near `limit` are left unfinished.
-    pub fn look_alikes(&self, base: &Hypothesis, limit: f64) -> Vec<(usize, Fit)> {
+    pub(crate) fn look_alikes(&self, base: &Hypothesis, limit: f64) -> Vec<(usize, Fit)> {
         let starts = self.starts(base);
         // The quantities stand right already, but no line leads from nothing to an effect that moves peaks by many widths.
         let mut fits = self.fitted(self.global(base, &starts, 1), None, limit);
@@ -74,7 +74,7 @@ impl Ranking<'_> {
 
     /// What serves better than `limit` in the stead of an effect that `base` has lost: from where it left the quantities, and with `global`
     /// from the nominal ones too.
-    pub fn in_stead(&self, base: &Hypothesis, global: bool, limit: f64) -> Vec<(usize, Fit)> {
+    pub(crate) fn in_stead(&self, base: &Hypothesis, global: bool, limit: f64) -> Vec<(usize, Fit)> {
         let starts = self.starts(base);
         let mut fits = self.local(base, &starts, self.fitter.settings.ranking.local.0, 1, limit);
         if global {

@@ -106,7 +106,7 @@ pub(crate) struct Parts {
 
 impl Parts {
     /// The same on all FRFs of a recording of which a part was searched: models that were fitted to lines are fitted to all of them.
-    pub fn on_all(mut self, fitter: &Fitter) -> Self {
+    pub(crate) fn on_all(mut self, fitter: &Fitter) -> Self {
         let by_lines = self.model_error.is_none();
         let again = |fit: &Fit| match by_lines {
             true => fitter.local(&fit.hypothesis, None, f64::INFINITY),

@@ -27,7 +27,12 @@ pub(crate) struct Scan<'a> {
 
 impl<'a> Scan<'a> {
     /// About `base` with noise `inflation`, its quantities `yielding` or held.
-    pub fn about(fitter: Fitter<'a>, base: Hypothesis, inflation: f64, yielding: bool) -> Option<Self> {
+    pub(crate) fn about(
+        fitter: Fitter<'a>,
+        base: Hypothesis,
+        inflation: f64,
+        yielding: bool,
+    ) -> Option<Self> {
         let observation = fitter.observation;
         let predicted = base.predict(observation).ok()?;
         let weights = observation.inflated_weights(&predicted, inflation);
@@ -51,20 +56,20 @@ impl<'a> Scan<'a> {
     }
 
     /// Quantities whose deviation changes the FRFs by less than inflated noise can tell.
-    pub fn insensitive(&self) -> Vec<usize> {
+    pub(crate) fn insensitive(&self) -> Vec<usize> {
         let least = self.fitter.settings.ranking.insensitive;
         let is_below = |m: &usize| dot(&self.columns[*m], &self.columns[*m]) < least * self.base.prior(*m);
         (0..self.base.tolerances().len()).filter(is_below).collect()
     }
 
     /// What the base leaves.
-    pub fn objective(&self) -> f64 {
+    pub(crate) fn objective(&self) -> f64 {
         dot(&self.residual, &self.residual) + self.base.penalty()
     }
 
     /// What direction `index` of a candidate gains at its best size, to first order with the tolerances yielding, and the effect
     /// of that size.
-    pub fn first_order(&self, candidate: &Candidate, index: usize) -> (f64, Option<Effect>) {
+    pub(crate) fn first_order(&self, candidate: &Candidate, index: usize) -> (f64, Option<Effect>) {
         let nothing = (0.0, None);
         let Some(small) = candidate.scaled(index, 1.0) else { return nothing };
         let Ok(moved) = self.base.with(small).predict(self.fitter.observation) else { return nothing };
@@ -86,7 +91,7 @@ impl<'a> Scan<'a> {
     }
 
     /// The score of each (candidate, start).
-    pub fn scores(&self, starts: &[(usize, usize)], candidates: &[Candidate]) -> Vec<f64> {
+    pub(crate) fn scores(&self, starts: &[(usize, usize)], candidates: &[Candidate]) -> Vec<f64> {
         starts.par_iter().map(|&(c, s)| self.score(candidates[c].effect(s))).collect()
     }
 

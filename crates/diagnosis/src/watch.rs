@@ -71,7 +71,7 @@ pub(crate) struct Count<'a> {
 
 impl Count<'_> {
     /// One more is tried.
-    pub fn trying(&self, candidate: &Candidate) {
+    pub(crate) fn trying(&self, candidate: &Candidate) {
         if let Some(watcher) = self.watch.0 {
             let number = self.begun.fetch_add(1, Ordering::Relaxed) + 1;
             watcher(Step::Trying { kind: candidate.kind, place: &candidate.place, number, of: self.of });

@@ -36,7 +36,7 @@ impl Default for Work {
 
 impl Work {
     /// So many values at the most, and for so long.
-    pub fn of(most: u64, time: Option<Duration>) -> Self {
+    pub(crate) fn of(most: u64, time: Option<Duration>) -> Self {
         let until = time.and_then(|time| Instant::now().checked_add(time));
         Work {
             done: AtomicU64::new(0),
@@ -49,22 +49,22 @@ impl Work {
     }
 
     /// The same for models of so many coordinates: modes of a meshed beam cost more than its lines.
-    pub fn for_models_of(self, coordinates: usize) -> Self {
+    pub(crate) fn for_models_of(self, coordinates: usize) -> Self {
         Work { model: MODEL + (coordinates as u64).pow(3) / MODES, ..self }
     }
 
     /// Counts a model and the values that it predicts.
-    pub fn count(&self, values: usize) {
+    pub(crate) fn count(&self, values: usize) {
         self.done.fetch_add(self.model + values as u64, Ordering::Relaxed);
     }
 
     /// Share of the work that is done already.
-    pub fn spent(&self) -> f64 {
+    pub(crate) fn spent(&self) -> f64 {
         self.done.load(Ordering::Relaxed) as f64 / self.total as f64
     }
 
     /// What `of` comes to where it may do no more than a share of all work.
-    pub fn within<T>(&self, share: f64, of: impl FnOnce() -> T) -> T {
+    pub(crate) fn within<T>(&self, share: f64, of: impl FnOnce() -> T) -> T {
         let most = self.most.load(Ordering::Relaxed);
         let own = self.done.load(Ordering::Relaxed).saturating_add((share * self.total as f64) as u64);
         self.most.store(most.min(own), Ordering::Relaxed);
@@ -74,7 +74,7 @@ impl Work {
     }
 
     /// The same for what is tried beside the way to an answer: that it did not come to all it would have done is not remembered.
-    pub fn aside<T>(&self, share: f64, of: impl FnOnce() -> T) -> T {
+    pub(crate) fn aside<T>(&self, share: f64, of: impl FnOnce() -> T) -> T {
         let before = self.left_out();
         let outcome = self.within(share, of);
         *self.left_out.lock().unwrap_or_else(|poisoned| poisoned.into_inner()) = before;
@@ -82,7 +82,7 @@ impl Work {
     }
 
     /// Whether `what` may still be done; if not, that is remembered.
-    pub fn allows(&self, what: &'static str) -> bool {
+    pub(crate) fn allows(&self, what: &'static str) -> bool {
         let spent = self.done.load(Ordering::Relaxed) >= self.most.load(Ordering::Relaxed);
         let late = self.until.is_some_and(|until| Instant::now() >= until);
         if !(spent || late) {
@@ -97,12 +97,12 @@ impl Work {
     }
 
     /// What was not done any more, in the order in which it was asked for.
-    pub fn left_out(&self) -> Vec<&'static str> {
+    pub(crate) fn left_out(&self) -> Vec<&'static str> {
         self.left_out.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).clone()
     }
 
     /// What becomes of each of several items, as far as there is work left for `what`, some at a time on all threads.
-    pub fn each<T: Send, R: Send>(
+    pub(crate) fn each<T: Send, R: Send>(
         &self,
         items: Vec<T>,
         what: &'static str,

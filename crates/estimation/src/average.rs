@@ -30,7 +30,7 @@ pub(crate) fn averaged(hits: &[Pair], weights: &[f64], line: usize) -> Averaged 
 
 impl Averaged {
     /// The FRF, or nothing where the force, or for H2 the cross spectrum, vanishes.
-    pub fn frf(&self, estimator: Estimator) -> Option<Complex64> {
+    pub(crate) fn frf(&self, estimator: Estimator) -> Option<Complex64> {
         let h1 = self.cross / self.force;
         let cross = self.cross.norm_sqr();
         let value = match estimator {
@@ -42,7 +42,7 @@ impl Averaged {
     }
 
     /// Ordinary coherence γ².
-    pub fn coherence(&self) -> f64 {
+    pub(crate) fn coherence(&self) -> f64 {
         let product = self.force * self.response;
         if product > 0.0 { (self.cross.norm_sqr() / product).min(1.0) } else { 0.0 }
     }

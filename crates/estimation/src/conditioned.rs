@@ -34,7 +34,7 @@ pub(crate) struct Signal<'a> {
 }
 
 impl<'a> Conditioned<'a> {
-    pub fn of(hit: &'a Hit, kind: Baseline) -> Self {
+    pub(crate) fn of(hit: &'a Hit, kind: Baseline) -> Self {
         let mut force = hit.force().to_vec();
         let force_drift = baseline::remove(&mut force, kind, 0);
         let pulse = Pulse::of(&force);
@@ -68,7 +68,12 @@ impl<'a> Conditioned<'a> {
     ///
     /// The exponential window lies on force and responses alike: e^(−δt) on both turns Y = H·X at s = iω into the same relation at
     /// s = δ + iω, whatever the pulse's length. There an acceleration is s or s² times the velocity or displacement.
-    pub fn spectra(&self, transform: &mut Transform, force_window: ForceWindow, decay: f64) -> Spectra {
+    pub(crate) fn spectra(
+        &self,
+        transform: &mut Transform,
+        force_window: ForceWindow,
+        decay: f64,
+    ) -> Spectra {
         let interval = self.hit.interval();
         let begin = self.window_begin();
         let exponential = |i: usize| match i.checked_sub(begin) {
@@ -113,7 +118,7 @@ impl<'a> Conditioned<'a> {
     }
 
     /// Share of the record that the force window lets pass.
-    pub fn force_window_share(&self, window: ForceWindow) -> f64 {
+    pub(crate) fn force_window_share(&self, window: ForceWindow) -> f64 {
         match self.force_window(window) {
             None => 1.0,
             // The mean square of half a cosine's flank is 3/8.
@@ -146,12 +151,12 @@ pub(crate) struct Transform {
 
 impl Transform {
     /// Transforms of records filled with zeros to `length` samples.
-    pub fn new(length: usize) -> Self {
+    pub(crate) fn new(length: usize) -> Self {
         let fourier = Fourier::new(length);
         Transform { input: vec![0.0; fourier.length()], fourier }
     }
 
-    pub fn length(&self) -> usize {
+    pub(crate) fn length(&self) -> usize {
         self.input.len()
     }
 

@@ -34,7 +34,7 @@ const DISAGREE: f64 = 4.0;
 const BIASED: f64 = 1e-3;
 
 impl Remarks {
-    pub fn of_hits(
+    pub(crate) fn of_hits(
         all: &[Conditioned],
         reports: &[HitReport],
         options: &EstimateOptions,
@@ -172,7 +172,7 @@ impl Remarks {
     }
 
     /// How differently the hits of an FRF count.
-    pub fn of_weights(&mut self, weights: &[f64], is_plain: bool) {
+    pub(crate) fn of_weights(&mut self, weights: &[f64], is_plain: bool) {
         self.is_plain = is_plain;
         let (low, high) =
             weights.iter().fold((f64::INFINITY, 0.0f64), |(low, high), w| (low.min(*w), high.max(*w)));
@@ -180,7 +180,7 @@ impl Remarks {
     }
 
     /// By how much the hits of an FRF scatter beyond the noise before them.
-    pub fn of_scatter(&mut self, response: &Channel, struck: &Channel, ratio: Option<f64>) {
+    pub(crate) fn of_scatter(&mut self, response: &Channel, struck: &Channel, ratio: Option<f64>) {
         if let Some(ratio) = ratio.filter(|ratio| *ratio > DISAGREE) {
             self.scatter.push(format!("{response}/{struck}"));
             self.worst_scatter = self.worst_scatter.max(ratio.sqrt());
@@ -188,7 +188,7 @@ impl Remarks {
     }
 
     /// What only the finished FRFs tell.
-    pub fn of_frfs(&mut self, frfs: &FrfSet, excitations: &[Excitation], estimator: Estimator) {
+    pub(crate) fn of_frfs(&mut self, frfs: &FrfSet, excitations: &[Excitation], estimator: Estimator) {
         if self.noise_ratio > 1.0 {
             let ratio = two_digits(self.noise_ratio);
             self.texts.push(match self.is_plain {

@@ -111,12 +111,12 @@ pub fn both_ends(matrix: &Matrix, length: f64) -> Matrix4 {
 }
 
 /// Whether every element is zero.
-pub fn is_zero(matrix: &Matrix) -> bool {
+pub(crate) fn is_zero(matrix: &Matrix) -> bool {
     matrix.iter().flatten().all(|element| *element == 0.0)
 }
 
 /// Equal elements off the diagonal: their mean.
-pub fn symmetric(matrix: &Matrix) -> Matrix {
+pub(crate) fn symmetric(matrix: &Matrix) -> Matrix {
     let [[a, b], [c, d]] = *matrix;
     let mean = 0.5 * (b + c);
     [[a, mean], [mean, d]]

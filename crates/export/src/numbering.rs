@@ -14,12 +14,12 @@ pub(crate) struct Numbering {
 
 impl Numbering {
     /// None yet; what has no number of its own is numbered from `first`.
-    pub fn from(first: u64) -> Self {
+    pub(crate) fn from(first: u64) -> Self {
         Numbering { nodes: Vec::new(), next: first }
     }
 
     /// A node that the model has already.
-    pub fn existing(&mut self, number: u64, x: f64, says: String) -> Result<u64, ExportError> {
+    pub(crate) fn existing(&mut self, number: u64, x: f64, says: String) -> Result<u64, ExportError> {
         if number == 0 || number > LARGEST {
             return Err(ExportError::NodeNumber(number));
         }
@@ -31,7 +31,7 @@ impl Numbering {
     }
 
     /// The node of a point, defined in the file: its name, where that is a number that is free.
-    pub fn point(&mut self, name: &str, x: f64, says: &str) -> u64 {
+    pub(crate) fn point(&mut self, name: &str, x: f64, says: &str) -> u64 {
         let own = name.parse().ok().filter(|number: &u64| (1..=LARGEST).contains(number));
         let number = match own.filter(|number| self.is_free(*number)) {
             Some(number) => number,
@@ -41,13 +41,13 @@ impl Numbering {
     }
 
     /// A node on a body that is defined in the file, numbered from the first free one.
-    pub fn on_body(&mut self, x: f64, says: &str) -> u64 {
+    pub(crate) fn on_body(&mut self, x: f64, says: &str) -> u64 {
         let number = self.free();
         self.define(number, x, tied(says), false)
     }
 
     /// A node on no body, which moves along y only.
-    pub fn along_y(&mut self, x: f64, says: String) -> u64 {
+    pub(crate) fn along_y(&mut self, x: f64, says: String) -> u64 {
         let number = self.free();
         self.define(number, x, says, true)
     }
@@ -70,7 +70,7 @@ impl Numbering {
     }
 
     /// The nodes, ascending, and the first number for everything else: from it on none is taken.
-    pub fn finish(mut self) -> (Vec<Node>, u64) {
+    pub(crate) fn finish(mut self) -> (Vec<Node>, u64) {
         self.nodes.sort_by_key(|node| node.number);
         let above = self.nodes.last().map_or(1, |node| node.number + 1);
         (self.nodes, self.next.max(above))

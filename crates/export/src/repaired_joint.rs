@@ -36,7 +36,7 @@ pub(crate) struct RepairedJoint<'a> {
 }
 
 impl<'a> RepairedJoint<'a> {
-    pub fn new(fixture: &'a Fixture, joint: &'a Joint) -> Result<Self, FixtureError> {
+    pub(crate) fn new(fixture: &'a Fixture, joint: &'a Joint) -> Result<Self, FixtureError> {
         let effects: Vec<&Effect> = fixture.physics().iter().filter(|e| is_on(fixture, joint, e)).collect();
         let kept = |keep: &dyn Fn(&Effect) -> bool| -> Vec<Effect> {
             effects.iter().filter(|effect| keep(effect)).map(|effect| (*effect).clone()).collect()
@@ -54,7 +54,7 @@ impl<'a> RepairedJoint<'a> {
     }
 
     /// Whether constant matrices hold at one frequency only.
-    pub fn depends_on_frequency(&self) -> bool {
+    pub(crate) fn depends_on_frequency(&self) -> bool {
         self.effects.iter().any(|effect| match effect.kind {
             Kind::Relaxation | Kind::Springpot => true,
             Kind::InterfaceCompliance | Kind::Footing => effect.value(1) != 0.0,
@@ -63,7 +63,7 @@ impl<'a> RepairedJoint<'a> {
     }
 
     /// The matrices; those that depend on frequency at `frequency`, Hz.
-    pub fn matrices(&self, frequency: f64) -> Result<Matrices, FixtureError> {
+    pub(crate) fn matrices(&self, frequency: f64) -> Result<Matrices, FixtureError> {
         let read_at = self.depends_on_frequency().then_some(frequency);
         let omega = read_at.map_or(NEAR_ZERO, |hz| TAU * hz);
         let (stiffness, damping, structural) = self.at(omega);
@@ -72,7 +72,7 @@ impl<'a> RepairedJoint<'a> {
     }
 
     /// K and C on lines.
-    pub fn lines(&self, hz: impl Iterator<Item = f64>) -> Vec<JointLine> {
+    pub(crate) fn lines(&self, hz: impl Iterator<Item = f64>) -> Vec<JointLine> {
         hz.map(|frequency| {
             let (stiffness, damping, _) = self.at(TAU * frequency);
             JointLine { frequency, stiffness, damping }

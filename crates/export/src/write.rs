@@ -143,7 +143,7 @@ pub(crate) type Coordinate = (u64, u8);
 pub(crate) struct Sparse(BTreeMap<(Coordinate, Coordinate), f64>);
 
 impl Sparse {
-    pub fn add(&mut self, joint: &Joint, matrix: &Matrix4) {
+    pub(crate) fn add(&mut self, joint: &Joint, matrix: &Matrix4) {
         let (from, to) = (joint.from.node, joint.to.node);
         let coordinates = [(from, 2), (from, 6), (to, 2), (to, 6)];
         for i in 0..4 {
@@ -157,7 +157,7 @@ impl Sparse {
     }
 
     /// The columns with their rows, both ascending.
-    pub fn columns(&self) -> BTreeMap<Coordinate, Vec<(Coordinate, f64)>> {
+    pub(crate) fn columns(&self) -> BTreeMap<Coordinate, Vec<(Coordinate, f64)>> {
         let mut columns: BTreeMap<Coordinate, Vec<(Coordinate, f64)>> = BTreeMap::new();
         for ((column, row), value) in &self.0 {
             columns.entry(*column).or_default().push((*row, *value));
@@ -165,7 +165,7 @@ impl Sparse {
         columns
     }
 
-    pub fn is_empty(&self) -> bool {
+    pub(crate) fn is_empty(&self) -> bool {
         self.0.is_empty()
     }
 }
@@ -183,7 +183,7 @@ pub(crate) const KINDS: [Kind; 4] = [Kind::Stiffness, Kind::Damping, Kind::Struc
 
 impl Kind {
     /// A joint's matrix on both ends, if it has one.
-    pub fn of(self, joint: &Joint) -> Option<Matrix4> {
+    pub(crate) fn of(self, joint: &Joint) -> Option<Matrix4> {
         let matrix = match self {
             Kind::Stiffness => &joint.stiffness,
             Kind::Damping => &joint.damping,

@@ -1,14 +1,14 @@
 //! The 20-node serendipity brick: shape functions, stiffness and consistent mass.
 
 /// Nodes of an element.
-pub const NODES: usize = 20;
+pub(crate) const NODES: usize = 20;
 
 /// Equations of an element: three displacements a node, node after node.
-pub const EQUATIONS: usize = 3 * NODES;
+pub(crate) const EQUATIONS: usize = 3 * NODES;
 
 /// Natural coordinates of the nodes: corners of the lower face, of the upper face, midsides of the lower face, of the upper face, of the
 /// upright edges. This is the order of Abaqus' and CalculiX' C3D20.
-pub const NATURAL: [[f64; 3]; NODES] = [
+pub(crate) const NATURAL: [[f64; 3]; NODES] = [
     [-1.0, -1.0, -1.0],
     [1.0, -1.0, -1.0],
     [1.0, 1.0, -1.0],
@@ -53,7 +53,7 @@ impl Elasticity {
 }
 
 /// Shape functions N_i at natural coordinates.
-pub fn shape(at: [f64; 3]) -> [f64; NODES] {
+pub(crate) fn shape(at: [f64; 3]) -> [f64; NODES] {
     NATURAL.map(|node| {
         let factor = |a: usize| if node[a] == 0.0 { 1.0 - at[a] * at[a] } else { 1.0 + node[a] * at[a] };
         let product = factor(0) * factor(1) * factor(2);
@@ -67,7 +67,7 @@ pub fn shape(at: [f64; 3]) -> [f64; NODES] {
 }
 
 /// ∂N_i/∂ξ_a at natural coordinates.
-pub fn shape_gradient(at: [f64; 3]) -> [[f64; 3]; NODES] {
+pub(crate) fn shape_gradient(at: [f64; 3]) -> [[f64; 3]; NODES] {
     NATURAL.map(|node| {
         let factor = |a: usize| if node[a] == 0.0 { 1.0 - at[a] * at[a] } else { 1.0 + node[a] * at[a] };
         let slope = |a: usize| if node[a] == 0.0 { -2.0 * at[a] } else { node[a] };
@@ -93,10 +93,10 @@ const GAUSS: [(f64, f64); 3] =
 
 /// An element with a Jacobian that is not positive somewhere: its nodes are out of order or too distorted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Degenerate;
+pub(crate) struct Degenerate;
 
 /// Gradients ∂N_i/∂x_a of the shape functions in space, and the Jacobian's determinant (m³ per natural volume).
-pub fn gradient_in_space(
+pub(crate) fn gradient_in_space(
     nodes: &[[f64; 3]; NODES],
     at: [f64; 3],
 ) -> Result<([[f64; 3]; NODES], f64), Degenerate> {
@@ -125,7 +125,7 @@ pub fn gradient_in_space(
 }
 
 /// Stiffness and consistent mass of an element with these nodes, row-major of order [`EQUATIONS`], by 3×3×3 Gauss points.
-pub fn matrices(
+pub(crate) fn matrices(
     nodes: &[[f64; 3]; NODES],
     material: &Elasticity,
 ) -> Result<(Vec<f64>, Vec<f64>), Degenerate> {
@@ -179,7 +179,7 @@ pub fn matrices(
 
 /// Strain energy (twice, J) of a displacement field given node by node, from the strains at the Gauss points: a rigid motion has none but
 /// for rounding squared, where the element's matrix would leave rounding itself.
-pub fn strain_energy(
+pub(crate) fn strain_energy(
     nodes: &[[f64; 3]; NODES],
     material: &Elasticity,
     displacement: &[f64; EQUATIONS],

@@ -2,7 +2,7 @@
 
 /// Ends of an interval at which elements are small, with their size there (m).
 #[derive(Debug, Clone, Copy, Default)]
-pub struct Ends {
+pub(crate) struct Ends {
     /// At its start.
     pub start: Option<f64>,
     /// At its end.
@@ -10,7 +10,7 @@ pub struct Ends {
 }
 
 /// Inner lines of an interval, ascending, its ends left out. Elements grow by `growth` from the fine ends and never exceed `longest` (m) by much.
-pub fn divide(from: f64, to: f64, ends: Ends, growth: f64, longest: f64) -> Vec<f64> {
+pub(crate) fn divide(from: f64, to: f64, ends: Ends, growth: f64, longest: f64) -> Vec<f64> {
     let length = to - from;
     let longest = longest.min(length);
     let (mut left, mut right): (Vec<f64>, Vec<f64>) = (Vec::new(), Vec::new());
@@ -53,7 +53,7 @@ pub fn divide(from: f64, to: f64, ends: Ends, growth: f64, longest: f64) -> Vec<
 }
 
 /// Values in ascending order, those that are equal to rounding once.
-pub fn distinct(mut values: Vec<f64>) -> Vec<f64> {
+pub(crate) fn distinct(mut values: Vec<f64>) -> Vec<f64> {
     values.sort_by(f64::total_cmp);
     let span = values.last().unwrap_or(&0.0) - values.first().unwrap_or(&0.0);
     values.dedup_by(|a, b| (*a - *b).abs() <= 1e-9 * span);

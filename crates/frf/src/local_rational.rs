@@ -34,13 +34,13 @@ pub(crate) struct LocalRationalFit {
 }
 
 impl LocalRationalFit {
-    pub fn new() -> Self {
+    pub(crate) fn new() -> Self {
         LocalRationalFit { lu: LuWorkspace::new(), columns: Vec::new() }
     }
 
     /// The function about `line` from the lines within `half` of it (moved inwards at the ends); the distance x is 1 at `half`
     /// lines. `None` where there are too few lines, or they do not determine it.
-    pub fn about(
+    pub(crate) fn about(
         &mut self,
         hz: &[f64],
         values: &[Complex64],
@@ -136,13 +136,13 @@ fn transposed(columns: &mut [Complex64]) -> &mut [Complex64] {
 
 impl LocalRational {
     /// The function `distance` Hz from its line.
-    pub fn at(&self, distance: f64) -> Complex64 {
+    pub(crate) fn at(&self, distance: f64) -> Complex64 {
         let [b0, b1, b2] = self.numerator;
         (b0 + (b1 + b2 * distance) * distance) / (1.0 + self.pole * distance)
     }
 
     /// The pole: its distance from the line and its half-width, Hz, and the variance of the distance, Hz².
-    pub fn resonance(&self) -> (f64, f64, f64) {
+    pub(crate) fn resonance(&self) -> (f64, f64, f64) {
         let place = -self.pole.inv();
         (place.re, place.im.abs(), 0.5 * self.pole_variance * self.pole.inv().norm_sqr().powi(2))
     }

@@ -341,7 +341,7 @@ pub(crate) mod tests {
             ((self.0 >> 11) as f64 + 0.5) / (1u64 << 53) as f64
         }
 
-        pub fn complex(&mut self, variance: f64) -> Complex64 {
+        pub(crate) fn complex(&mut self, variance: f64) -> Complex64 {
             let radius = (-variance * self.uniform().ln()).sqrt();
             Complex64::from_polar(radius, std::f64::consts::TAU * self.uniform())
         }

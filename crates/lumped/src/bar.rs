@@ -13,12 +13,12 @@ pub(crate) struct BarShape {
 
 impl BarShape {
     /// The bar of mass `mass` and central inertia `inertia`: its length is √(12 I/m).
-    pub fn new(mass: f64, inertia: f64, centre: f64) -> Self {
+    pub(crate) fn new(mass: f64, inertia: f64, centre: f64) -> Self {
         BarShape { centre, length: (12.0 * inertia / mass).sqrt() }
     }
 
     /// Deflection and slope of the shape at abscissa `x`, 1 and 1/m.
-    pub fn at(&self, x: f64) -> (f64, f64) {
+    pub(crate) fn at(&self, x: f64) -> (f64, f64) {
         let half = 0.5 * self.length;
         let offset = x - self.centre;
         let inside = offset.clamp(-half, half);

@@ -23,7 +23,7 @@ pub(crate) struct FarModes {
 
 impl FarModes {
     /// The modes far above |s| ≤ `limit`; `None` where they are too few to matter.
-    pub fn of(modes: &[Denominator], limit: f64) -> Option<Self> {
+    pub(crate) fn of(modes: &[Denominator], limit: f64) -> Option<Self> {
         let far = |mode: &Denominator| {
             mode.stiffness.re > 0.0 && limit * (limit + mode.viscous.abs()) <= SHARE * mode.stiffness.norm()
         };
@@ -33,18 +33,18 @@ impl FarModes {
     }
 
     /// Whether the series holds at `s`.
-    pub fn hold(&self, s: Complex64) -> bool {
+    pub(crate) fn hold(&self, s: Complex64) -> bool {
         s.norm_sqr() <= self.limit * self.limit
     }
 
     /// Whether mode `index` is one of them.
-    pub fn contain(&self, index: usize) -> bool {
+    pub(crate) fn contain(&self, index: usize) -> bool {
         self.series.binary_search_by_key(&index, |(mode, _)| *mode).is_ok()
     }
 
     /// Sums of `products` of participations (a row over `count` entries for each mode) with the series' coefficients: a real row for
     /// each power of s and, where there is structural damping, an imaginary one after each.
-    pub fn rows(&self, products: &[f64], count: usize) -> Vec<f64> {
+    pub(crate) fn rows(&self, products: &[f64], count: usize) -> Vec<f64> {
         if self.series.iter().all(|(_, coefficients)| coefficients.iter().all(|c| c.im == 0.0)) {
             let mut rows = vec![0.0; POWERS * count];
             for (mode, coefficients) in &self.series {
@@ -69,7 +69,7 @@ impl FarModes {
 
     /// Adds the series at `s`, made of `rows`, to the sums.
     #[inline(always)]
-    pub fn add<T: Lines>(&self, s: T, rows: &[f64], sums: &mut [T]) {
+    pub(crate) fn add<T: Lines>(&self, s: T, rows: &[f64], sums: &mut [T]) {
         let count = sums.len();
         let mut power = T::ONE;
         let structural = rows.len() > POWERS * count;

@@ -44,7 +44,7 @@ pub(crate) struct JointDynamics {
 }
 
 impl JointDynamics {
-    pub fn new(fixture: &Fixture, joint: &Joint) -> Self {
+    pub(crate) fn new(fixture: &Fixture, joint: &Joint) -> Self {
         let length = fixture.joint_length(joint);
         let (bending_stiffness, dashpots) = match &joint.law {
             JointLaw::Beam { youngs_modulus, second_moment } => {
@@ -107,28 +107,28 @@ impl JointDynamics {
     }
 
     /// Whether anything differs from what the modes of the free assembly hold already.
-    pub fn is_altered(&self) -> bool {
+    pub(crate) fn is_altered(&self) -> bool {
         self.altered
     }
 
     /// Whether mass of its own keeps it from being a stiffness on the relative motion of its ends alone.
-    pub fn is_heavy(&self) -> bool {
+    pub(crate) fn is_heavy(&self) -> bool {
         self.mass != 0.0
     }
 
     /// The length over which its far end's motion is compared with its near end's: with what an effect adds, or as the modes have it.
-    pub fn lengths(&self) -> (f64, f64) {
+    pub(crate) fn lengths(&self) -> (f64, f64) {
         (self.length + self.extra_length, self.length)
     }
 
     /// The part that the modes of the free assembly hold: k(1 + iη) of the fixture on d, without its viscous damping.
-    pub fn in_the_modes(&self) -> ComplexMatrix2 {
+    pub(crate) fn in_the_modes(&self) -> ComplexMatrix2 {
         self.nominal.to_complex().scale(Complex64::new(1.0, self.base_loss))
     }
 
     /// The stiffness at s = iω (or decay + iω) on d = u_to − R·u_from of a joint without mass, effects included.
     #[inline(always)]
-    pub fn on_relative_motion<T: Lines>(&self, s: T) -> Matrix2<T> {
+    pub(crate) fn on_relative_motion<T: Lines>(&self, s: T) -> Matrix2<T> {
         let length = self.length + self.extra_length;
         let modulus = self.modulus(s);
         let elastic = match self.bending_stiffness {
@@ -155,7 +155,7 @@ impl JointDynamics {
 
     /// The dynamic stiffness at s = iω (or decay + iω) on the motions of both ends, effects and mass included.
     #[inline(always)]
-    pub fn on_both_ends<T: Lines>(&self, s: T) -> TwoEnds<T> {
+    pub(crate) fn on_both_ends<T: Lines>(&self, s: T) -> TwoEnds<T> {
         // Interfaces are springs in series with a beam's ends.
         if let Some(beam) = &self.heavy_beam {
             return self.interfaces.iter().fold(beam.at(s, self.modulus(s)), |ends, interface| {
@@ -200,7 +200,7 @@ fn in_series<T: Lines>(stiffness: Matrix2<T>, direction: [f64; 2], spring: T) ->
 impl<T: Lines> TwoEnds<T> {
     /// `[−R, I]ᵀ k [−R, I]`.
     #[inline(always)]
-    pub fn from_end(stiffness: Matrix2<T>, length: f64) -> Self {
+    pub(crate) fn from_end(stiffness: Matrix2<T>, length: f64) -> Self {
         let transport = transport(length).map(|element| T::ONE * element);
         let back = transport.transpose() * stiffness;
         TwoEnds { near: back * transport, cross: back.map(|e| -e), far: stiffness }
@@ -208,7 +208,7 @@ impl<T: Lines> TwoEnds<T> {
 
     /// The element in row `i`, column `j` of the 4×4 matrix.
     #[inline(always)]
-    pub fn at(&self, i: usize, j: usize) -> T {
+    pub(crate) fn at(&self, i: usize, j: usize) -> T {
         match (i / 2, j / 2) {
             (0, 0) => self.near.at(i, j),
             (0, _) => self.cross.at(i, j - 2),

@@ -7,7 +7,7 @@ use num_complex::Complex64;
 use std::ops::{Add, Mul, Neg, Sub};
 
 /// Lines that are computed together.
-pub const WIDTH: usize = 4;
+pub(crate) const WIDTH: usize = 4;
 
 /// A complex number on one spectral line, or one on each of several.
 pub trait Lines: Field + Mul<f64, Output = Self> {

@@ -45,7 +45,7 @@ impl Mesh {
     ///
     /// # Errors
     /// The number of elements that would be needed, where that is more than [`MOST`].
-    pub fn new(
+    pub(crate) fn new(
         from: f64,
         to: f64,
         bending_stiffness: f64,
@@ -88,7 +88,7 @@ impl Mesh {
     }
 
     /// All elements in stretches, of a beam whose coordinates begin with `first`.
-    pub fn stretches(&self, first: usize) -> impl Iterator<Item = Stretch> {
+    pub(crate) fn stretches(&self, first: usize) -> impl Iterator<Item = Stretch> {
         let stretch = move |pair: &[usize]| Stretch {
             first: first + 2 * pair[0],
             nodes: self.nodes[pair[0]..=pair[1]].to_vec(),
@@ -97,13 +97,13 @@ impl Mesh {
     }
 
     /// Number of coordinates: y and θ of each node.
-    pub fn coordinates(&self) -> usize {
+    pub(crate) fn coordinates(&self) -> usize {
         2 * self.nodes.len()
     }
 
     /// Adds the shape-function values at `x` to `row`, which covers the body's coordinates. Beyond the
     /// ends the beam goes on along its tangent.
-    pub fn interpolate(&self, x: f64, dof: Dof, row: &mut [f64]) {
+    pub(crate) fn interpolate(&self, x: f64, dof: Dof, row: &mut [f64]) {
         let last = self.nodes.len() - 2;
         let element = self.nodes.partition_point(|&n| n <= x).saturating_sub(1).min(last);
         let (left, right) = (self.nodes[element], self.nodes[element + 1]);

@@ -23,7 +23,7 @@ pub(crate) struct ModalSystem {
 }
 
 impl ModalSystem {
-    pub fn new(
+    pub(crate) fn new(
         denominators: Vec<Denominator>,
         outputs: &[Vec<f64>],
         inputs: &[Vec<f64>],
@@ -36,7 +36,7 @@ impl ModalSystem {
     /// Writes the receptance of each (output, input) at `s`, given Δ(s) with its elements that are not zero; `false` where a line has
     /// no solution. `solution` is memory for the modes' coordinates, a row for each input.
     #[inline(always)]
-    pub fn at<T: Lines>(
+    pub(crate) fn at<T: Lines>(
         &self,
         s: T,
         delta: &[T],

@@ -24,7 +24,7 @@ pub(crate) enum PointLaw {
 
 impl PointLaw {
     #[inline(always)]
-    pub fn at<T: Lines>(&self, s: T) -> T {
+    pub(crate) fn at<T: Lines>(&self, s: T) -> T {
         match *self {
             PointLaw::Spring { stiffness, damping } => T::ONE * stiffness + s * damping,
             PointLaw::Mass(mass) => s * s * mass,
@@ -74,12 +74,12 @@ pub(crate) struct TermStation {
 
 impl TermStation {
     /// One motion by itself.
-    pub fn single(station: Station) -> Self {
+    pub(crate) fn single(station: Station) -> Self {
         TermStation { parts: [(1.0, station), (0.0, station), (0.0, station)], rigid_only: false }
     }
 
     /// d = u_to − R·u_from over `length`: its deflection, then its rotation.
-    pub fn relative(from: (usize, f64), to: (usize, f64), length: f64, rigid_only: bool) -> [Self; 2] {
+    pub(crate) fn relative(from: (usize, f64), to: (usize, f64), length: f64, rigid_only: bool) -> [Self; 2] {
         let [near, far] = [from, to].map(|(body, x)| Station::both(body, x));
         [
             TermStation { parts: [(1.0, far[0]), (-1.0, near[0]), (-length, near[1])], rigid_only },
@@ -88,19 +88,19 @@ impl TermStation {
     }
 
     /// How far two places move apart.
-    pub fn between(one: (usize, f64), other: (usize, f64)) -> Self {
+    pub(crate) fn between(one: (usize, f64), other: (usize, f64)) -> Self {
         let [one, other] = [one, other].map(|(body, x)| Station::transverse(body, x));
         TermStation { parts: [(1.0, other), (-1.0, one), (0.0, one)], rigid_only: false }
     }
 
     /// Motions and their weights.
-    pub fn parts(&self) -> impl Iterator<Item = &(f64, Station)> {
+    pub(crate) fn parts(&self) -> impl Iterator<Item = &(f64, Station)> {
         self.parts.iter().filter(|(weight, _)| *weight != 0.0)
     }
 }
 
 impl Terms {
-    pub fn of(fixture: &Fixture, flexible: &[bool]) -> Self {
+    pub(crate) fn of(fixture: &Fixture, flexible: &[bool]) -> Self {
         let mut all = Terms::default();
         let in_the_modes = in_the_modes(fixture);
         for Held { station, stiffness, damping } in supports(fixture) {
@@ -168,7 +168,7 @@ impl Terms {
     }
 
     /// (row, column) of the elements of Δ that are not zero by themselves, row by row.
-    pub fn elements(&self) -> Vec<(usize, usize)> {
+    pub(crate) fn elements(&self) -> Vec<(usize, usize)> {
         let block = |first: usize, size: usize| {
             (0..size).flat_map(move |i| (0..size).map(move |j| (first + i, first + j)))
         };
@@ -181,7 +181,7 @@ impl Terms {
 
     /// Writes Δ(s), order × order row-major, over `delta`.
     #[inline(always)]
-    pub fn write<T: Lines>(&self, s: T, delta: &mut [T]) {
+    pub(crate) fn write<T: Lines>(&self, s: T, delta: &mut [T]) {
         let order = self.stations.len();
         delta.fill(T::ZERO);
         for term in &self.terms {

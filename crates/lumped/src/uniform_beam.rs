@@ -94,7 +94,7 @@ pub(crate) struct BeamModes {
 
 impl BeamModes {
     /// The shares of the plain modes in mode `r`; `None` where it is plain itself.
-    pub fn shares(&self, r: usize) -> Option<&[f64]> {
+    pub(crate) fn shares(&self, r: usize) -> Option<&[f64]> {
         let n = self.basis.order();
         self.of_plain.as_ref().map(|coupled| &coupled.shares[r * n..(r + 1) * n])
     }
@@ -134,7 +134,7 @@ impl UniformBeam {
     ///
     /// # Errors
     /// Matrices without modes, as those of an impossible mass or shear stiffness are.
-    pub fn modes(&self) -> Result<BeamModes, LumpedError> {
+    pub(crate) fn modes(&self) -> Result<BeamModes, LumpedError> {
         let plain = dimensionless(&self.mesh)?;
         let n = plain.order;
         let altered = self.shear != 0.0 || self.rotary_inertia != 0.0;

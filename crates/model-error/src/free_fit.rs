@@ -60,19 +60,19 @@ struct FrfFit {
 
 impl FreeFit {
     /// Whether more than noise is left.
-    pub fn is_poor(&self, recording: Recording) -> bool {
+    pub(crate) fn is_poor(&self, recording: Recording) -> bool {
         self.chi2_per_dof(recording) > LACKS_A_POLE
     }
 
     /// Whether the residual terms that `more` has are worth their number by Akaike's criterion. What too few of them leave biases the poles
     /// long before χ² as a whole looks poor.
-    pub fn lacks(&self, more: &FreeFit, recording: Recording) -> bool {
+    pub(crate) fn lacks(&self, more: &FreeFit, recording: Recording) -> bool {
         let coefficients = 2.0 * ((more.terms - self.terms) * self.fits.len()) as f64;
         self.chi2 - more.chi2 > 2.0 * coefficients * more.chi2_per_dof(recording).max(1.0)
     }
 
     /// With one pole more outside the band, where the fit is poor without it and better for it.
-    pub fn with(self, recording: Recording, pole: Pole) -> Self {
+    pub(crate) fn with(self, recording: Recording, pole: Pole) -> Self {
         if !self.is_poor(recording) {
             return self;
         }
@@ -84,7 +84,7 @@ impl FreeFit {
 
     /// With a pole that a model has, in the band or below it, where that is worth its number of unknowns by Akaike's criterion: what it takes from χ² as a whole may
     /// be little, and without it mass lines are off by ten of their deviations.
-    pub fn with_expected(self, recording: Recording, pole: Pole) -> Self {
+    pub(crate) fn with_expected(self, recording: Recording, pole: Pole) -> Self {
         let (inside, outside) = self.poles.split_at(self.inside);
         let (mut inside, mut outside) = (inside.to_vec(), outside.to_vec());
         let is_below = pole.omega < TAU * recording.frfs.lines().hz()[0];
@@ -95,7 +95,7 @@ impl FreeFit {
 
     /// With a pole more in the band, where the fit misses most: two modes close to each other, seen on few lines, pass for one. It is kept where little is left with it of what was missed, and if
     /// the lines resolve it: a tone on one line is no mode.
-    pub fn with_missed(self, recording: Recording) -> Self {
+    pub(crate) fn with_missed(self, recording: Recording) -> Self {
         if !self.is_poor(recording) {
             return self;
         }
@@ -117,7 +117,7 @@ impl FreeFit {
     }
 
     /// Whether another fit of the same recording is better by Akaike's criterion.
-    pub fn is_worse(&self, other: &FreeFit, recording: Recording) -> bool {
+    pub(crate) fn is_worse(&self, other: &FreeFit, recording: Recording) -> bool {
         let unknowns = self.unknowns() as f64 - other.unknowns() as f64;
         let richer = if unknowns > 0.0 { self } else { other };
         self.chi2 - other.chi2 + 2.0 * unknowns * richer.chi2_per_dof(recording).max(1.0) > 0.0
@@ -133,7 +133,7 @@ impl FreeFit {
     }
 
     /// With the poles that Gauss–Newton steps lead to.
-    pub fn converged(
+    pub(crate) fn converged(
         recording: Recording,
         inside: Vec<Pole>,
         outside: &[Pole],
@@ -231,7 +231,7 @@ impl FreeFit {
     }
 
     /// What it says of the modes in the band.
-    pub fn recorded_modes(&self, recording: Recording) -> Option<RecordedModes> {
+    pub(crate) fn recorded_modes(&self, recording: Recording) -> Option<RecordedModes> {
         let lines = recording.frfs.lines();
         let frfs = self.fits.len();
         let modes = self.inside;

@@ -37,7 +37,7 @@ const GRID_PER_MODE: usize = 24;
 
 impl Outline {
     /// Of a recording that was fitted with `poles`, the first `inside` of them in the band, and so many residual terms.
-    pub fn of(
+    pub(crate) fn of(
         recording: Recording,
         (poles, inside): (&[Pole], usize),
         terms: usize,

@@ -16,7 +16,7 @@ pub(crate) struct Projection {
 
 impl Projection {
     /// From rows of B and a weight each; `None` where the columns are dependent to working precision.
-    pub fn new(rows: &[Vec<Complex64>], weights: &[f64]) -> Option<Self> {
+    pub(crate) fn new(rows: &[Vec<Complex64>], weights: &[f64]) -> Option<Self> {
         let (lines, columns) = (rows.len(), rows.first()?.len());
         let roots: Vec<f64> = weights.iter().map(|w| w.sqrt()).collect();
         let mut q = vec![Complex64::ZERO; lines * columns];
@@ -48,7 +48,7 @@ impl Projection {
         Some(Projection { lines, columns, q, inverse: upper_inverse(columns, &r), roots })
     }
 
-    pub fn columns(&self) -> usize {
+    pub(crate) fn columns(&self) -> usize {
         self.columns
     }
 
@@ -67,12 +67,12 @@ impl Projection {
     }
 
     /// The coefficients of the combination nearest to `values`.
-    pub fn coefficients(&self, values: &[Complex64]) -> Vec<Complex64> {
+    pub(crate) fn coefficients(&self, values: &[Complex64]) -> Vec<Complex64> {
         self.coefficients_of(&self.components(values).1)
     }
 
     /// The coefficients, and what the combination leaves of √w·`values`.
-    pub fn split(&self, values: &[Complex64]) -> (Vec<Complex64>, Vec<Complex64>) {
+    pub(crate) fn split(&self, values: &[Complex64]) -> (Vec<Complex64>, Vec<Complex64>) {
         let (mut left, components) = self.components(values);
         for (q, along) in self.q.chunks_exact(self.lines).zip(&components) {
             left.iter_mut().zip(q).for_each(|(value, q)| *value -= along * q);
@@ -81,7 +81,7 @@ impl Projection {
     }
 
     /// (BᴴWB)⁻¹, row-major: its real part is the covariance of the coefficients' real parts where the weights are 1/variance of one part.
-    pub fn covariance(&self) -> Vec<Complex64> {
+    pub(crate) fn covariance(&self) -> Vec<Complex64> {
         let n = self.columns;
         let mut all = vec![Complex64::ZERO; n * n];
         for i in 0..n {

@@ -17,19 +17,19 @@ pub(crate) struct Terms {
 
 impl Terms {
     /// What an analyst adds by hand: a rigid mass and a static flexibility.
-    pub const USUAL: Terms = Terms { lower: 1, upper: 1 };
+    pub(crate) const USUAL: Terms = Terms { lower: 1, upper: 1 };
 
-    pub fn count(self) -> usize {
+    pub(crate) fn count(self) -> usize {
         self.lower + self.upper
     }
 
     /// Powers of s² that the terms of the accelerance are, the lower residual's own, 0, first.
-    pub fn powers(self) -> impl Iterator<Item = i32> {
+    pub(crate) fn powers(self) -> impl Iterator<Item = i32> {
         (0..self.lower as i32).map(|k| -k).chain(1..=self.upper as i32)
     }
 
     /// The accelerances of the terms at `omega`, each of size one at the highest line.
-    pub fn values(self, omega: f64, highest: f64) -> impl Iterator<Item = f64> {
+    pub(crate) fn values(self, omega: f64, highest: f64) -> impl Iterator<Item = f64> {
         let squared = (omega / highest).powi(2);
         self.powers().map(move |power| squared.powi(power))
     }
@@ -48,7 +48,7 @@ pub(crate) const OF_MODE: usize = 4;
 
 impl Gram {
     /// The products for `poles` (rad/s) with so many residual terms.
-    pub fn of(observed: &Observed, poles: &[Complex64], terms: Terms) -> Self {
+    pub(crate) fn of(observed: &Observed, poles: &[Complex64], terms: Terms) -> Self {
         let (n, frfs) = (observed.lines(), observed.frfs());
         let data = OF_MODE * poles.len() + 2 * terms.count();
         let width = data + 1;
@@ -94,7 +94,7 @@ impl Gram {
     }
 
     /// Inner product of two combinations of columns.
-    pub fn product(&self, frf: usize, left: &[(usize, f64)], right: &[(usize, f64)]) -> f64 {
+    pub(crate) fn product(&self, frf: usize, left: &[(usize, f64)], right: &[(usize, f64)]) -> f64 {
         let row = |&(a, x): &(usize, f64)| -> f64 {
             x * right.iter().map(|&(b, y)| y * self.at(frf, a, b)).sum::<f64>()
         };
@@ -102,12 +102,12 @@ impl Gram {
     }
 
     /// The first of the residual terms' columns.
-    pub fn first_term(&self) -> usize {
+    pub(crate) fn first_term(&self) -> usize {
         OF_MODE * self.modes
     }
 
     /// The column of what was measured.
-    pub fn data(&self) -> usize {
+    pub(crate) fn data(&self) -> usize {
         self.width - 1
     }
 }

@@ -24,7 +24,7 @@ pub(crate) struct Poles {
 }
 
 impl Poles {
-    pub fn keep(&self, keep: impl Fn(usize) -> bool) -> Self {
+    pub(crate) fn keep(&self, keep: impl Fn(usize) -> bool) -> Self {
         let kept: Vec<usize> = (0..self.poles.len()).filter(|&r| keep(r)).collect();
         Poles {
             poles: kept.iter().map(|&r| self.poles[r]).collect(),
@@ -101,7 +101,7 @@ impl LeastSquares for Search<'_> {
 
 impl Likelihood {
     /// Searches from `start`; `None` where the equations have no solution, as with more unknowns than numbers.
-    pub fn search(
+    pub(crate) fn search(
         observed: &Observed,
         start: Poles,
         terms: Terms,
@@ -122,7 +122,7 @@ impl Likelihood {
     }
 
     /// Variance of δω/σ and of δ ln σ, and their covariance, for each mode: the Cramér–Rao bound at the estimate.
-    pub fn pole_covariance(&self) -> Vec<[[f64; 2]; 2]> {
+    pub(crate) fn pole_covariance(&self) -> Vec<[[f64; 2]; 2]> {
         let inverse = self.information.inverse();
         let n = self.information.order();
         let at = |a: usize, b: usize| inverse[a * n + b];
@@ -135,14 +135,14 @@ impl Likelihood {
     }
 
     /// Number of real unknowns.
-    pub fn unknowns(&self) -> usize {
+    pub(crate) fn unknowns(&self) -> usize {
         let entries: usize = self.entries.iter().map(|e| 2 * e.len()).sum();
         let terms: usize = self.residual_terms.iter().map(|t| 2 * t.len()).sum();
         self.information.order() + entries + terms
     }
 
     /// χ² per degree of freedom.
-    pub fn chi2_per_dof(&self, observed: &Observed) -> f64 {
+    pub(crate) fn chi2_per_dof(&self, observed: &Observed) -> f64 {
         self.chi2 / observed.degrees().saturating_sub(self.unknowns()).max(1) as f64
     }
 }

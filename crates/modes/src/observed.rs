@@ -69,7 +69,7 @@ pub(crate) struct Observed {
 
 impl Observed {
     /// The lines above 0 Hz of `wanted` of a set that carries variances; `None` where there are none.
-    pub fn of(frfs: &FrfSet, wanted: impl Fn(f64) -> bool) -> Option<Self> {
+    pub(crate) fn of(frfs: &FrfSet, wanted: impl Fn(f64) -> bool) -> Option<Self> {
         let hz = frfs.lines().hz();
         let lines: Vec<usize> = (0..hz.len()).filter(|&i| hz[i] > 0.0 && wanted(hz[i])).collect();
         if lines.is_empty() {
@@ -102,36 +102,36 @@ impl Observed {
         })
     }
 
-    pub fn lines(&self) -> usize {
+    pub(crate) fn lines(&self) -> usize {
         self.omegas.len()
     }
 
-    pub fn frfs(&self) -> usize {
+    pub(crate) fn frfs(&self) -> usize {
         self.values.len() / self.lines()
     }
 
-    pub fn values(&self, frf: usize) -> &[Complex64] {
+    pub(crate) fn values(&self, frf: usize) -> &[Complex64] {
         &self.values[frf * self.lines()..(frf + 1) * self.lines()]
     }
 
-    pub fn weights(&self, frf: usize) -> &[f64] {
+    pub(crate) fn weights(&self, frf: usize) -> &[f64] {
         &self.weights[frf * self.lines()..(frf + 1) * self.lines()]
     }
 
     /// Variances E|ε|² of all values; those that are not used get the largest.
-    pub fn variances(&self) -> Vec<f64> {
+    pub(crate) fn variances(&self) -> Vec<f64> {
         let least = self.weights.iter().copied().filter(|w| *w > 0.0).fold(f64::INFINITY, f64::min);
         let least = if least.is_finite() { least } else { 1.0 };
         self.weights.iter().map(|w| 1.0 / if *w > 0.0 { *w } else { least }).collect()
     }
 
     /// Number of real numbers that count.
-    pub fn degrees(&self) -> usize {
+    pub(crate) fn degrees(&self) -> usize {
         2 * self.weights.iter().filter(|w| **w > 0.0).count()
     }
 
     /// One FRF by itself.
-    pub fn single(&self, frf: usize) -> Self {
+    pub(crate) fn single(&self, frf: usize) -> Self {
         Observed {
             grid: Grid::single(),
             omegas: self.omegas.clone(),
@@ -142,7 +142,7 @@ impl Observed {
 
     /// The same with neighbouring lines averaged where the FRFs are smooth: far from every one of the `poles`. A sum of weighted lines keeps
     /// what they tell of everything that is straight over them.
-    pub fn condensed(&self, poles: &[Complex64]) -> Self {
+    pub(crate) fn condensed(&self, poles: &[Complex64]) -> Self {
         let n = self.lines();
         if n <= FEW_LINES {
             return self.clone();

@@ -44,7 +44,7 @@ pub(crate) struct Track {
 
 impl Track {
     /// The member in the middle of the others, by frequency and damping.
-    pub fn middle(&self) -> (Complex64, Vec<Complex64>) {
+    pub(crate) fn middle(&self) -> (Complex64, Vec<Complex64>) {
         let median = |value: fn(&Complex64) -> f64| {
             let mut all: Vec<f64> = self.members.iter().map(|m| value(&m.1)).collect();
             all.sort_by(f64::total_cmp);

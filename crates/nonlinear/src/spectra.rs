@@ -14,24 +14,24 @@ pub(crate) struct Windowed {
 
 impl Windowed {
     /// Signals as long as the window.
-    pub fn new(window: Vec<f64>, interval_s: f64) -> Self {
+    pub(crate) fn new(window: Vec<f64>, interval_s: f64) -> Self {
         Windowed { fourier: Fourier::new(window.len()), window, interval_s }
     }
 
     /// Signals followed by as many zeros, so that what filters smear past the end does not come back at the beginning.
-    pub fn padded(window: Vec<f64>, interval_s: f64) -> Self {
+    pub(crate) fn padded(window: Vec<f64>, interval_s: f64) -> Self {
         Windowed { fourier: Fourier::new(2 * window.len()), window, interval_s }
     }
 
     /// All lines of a signal of at least the window's length.
-    pub fn lines(&self, values: &[f64]) -> Vec<Complex64> {
+    pub(crate) fn lines(&self, values: &[f64]) -> Vec<Complex64> {
         let mut windowed: Vec<f64> = values.iter().zip(&self.window).map(|(v, w)| v * w).collect();
         windowed.resize(self.fourier.length(), 0.0);
         self.fourier.lines(&mut windowed)
     }
 
     /// Those of a band.
-    pub fn band(&self, values: &[f64], band: &Range<usize>) -> Vec<Complex64> {
+    pub(crate) fn band(&self, values: &[f64], band: &Range<usize>) -> Vec<Complex64> {
         let mut lines = self.lines(values);
         lines.truncate(band.end);
         lines.drain(..band.start);
@@ -39,7 +39,7 @@ impl Windowed {
     }
 
     /// The signal of these lines, still under its window.
-    pub fn signal(&self, mut lines: Vec<Complex64>) -> Vec<f64> {
+    pub(crate) fn signal(&self, mut lines: Vec<Complex64>) -> Vec<f64> {
         let length = self.fourier.length();
         let mut values = InverseFourier::new(length).signal(&mut lines);
         values.truncate(self.window.len());
@@ -48,16 +48,16 @@ impl Windowed {
     }
 
     /// Σ of the window's squares: what white noise of unit variance comes to on a line.
-    pub fn power(&self) -> f64 {
+    pub(crate) fn power(&self) -> f64 {
         self.window.iter().map(|w| w * w).sum()
     }
 
-    pub fn frequency_hz(&self, line: usize) -> f64 {
+    pub(crate) fn frequency_hz(&self, line: usize) -> f64 {
         line as f64 / (self.fourier.length() as f64 * self.interval_s)
     }
 
     /// iω of a line.
-    pub fn s(&self, line: usize) -> Complex64 {
+    pub(crate) fn s(&self, line: usize) -> Complex64 {
         Complex64::new(0.0, TAU * self.frequency_hz(line))
     }
 }

@@ -24,7 +24,7 @@ pub(crate) struct ExpectedNoise {
 
 impl ExpectedNoise {
     /// That of a recording.
-    pub fn of(observation: &Observation) -> Self {
+    pub(crate) fn of(observation: &Observation) -> Self {
         let count = observation.lines().len();
         let frfs: Vec<(&[Complex64], Vec<f64>, f64)> = observation
             .values()
@@ -49,12 +49,12 @@ impl ExpectedNoise {
     }
 
     /// Of a test that nobody has made, with these shares of |H| and of its root mean square as standard deviations.
-    pub fn assumed(lines: usize, share: f64, floor: f64) -> Self {
+    pub(crate) fn assumed(lines: usize, share: f64, floor: f64) -> Self {
         ExpectedNoise { share: share * share, floor: vec![0.0; lines], relative: vec![floor * floor; lines] }
     }
 
     /// Variances of an FRF of these squared magnitudes.
-    pub fn variance(&self, squares: &[f64]) -> Vec<f64> {
+    pub(crate) fn variance(&self, squares: &[f64]) -> Vec<f64> {
         let size = squares.iter().sum::<f64>() / squares.len().max(1) as f64;
         let of = |(line, square): (usize, &f64)| {
             self.floor[line].max(self.relative[line] * size) + self.share * square

@@ -22,7 +22,7 @@ pub(crate) struct ModelErrorNoise {
 
 impl ModelErrorNoise {
     /// That of a model which an observation was compared with by modes.
-    pub fn of(error: &ModelError, model: &Hypothesis, observation: &Observation) -> Self {
+    pub(crate) fn of(error: &ModelError, model: &Hypothesis, observation: &Observation) -> Self {
         let hz = observation.lines().hz();
         let (first, last) = (hz[0], hz[hz.len() - 1]);
         let within = |assembly: &Assembly| {
@@ -39,7 +39,7 @@ impl ModelErrorNoise {
     }
 
     /// What it adds to the variances of FRFs as `model` predicts them; `None` where it predicts none.
-    pub fn variance(
+    pub(crate) fn variance(
         &self,
         model: &Hypothesis,
         pairs: &[FrfPair],
@@ -57,7 +57,11 @@ impl ModelErrorNoise {
     }
 
     /// An observation with that in its noise.
-    pub fn with_model_error(&self, model: &Hypothesis, observation: &Observation) -> Option<Observation> {
+    pub(crate) fn with_model_error(
+        &self,
+        model: &Hypothesis,
+        observation: &Observation,
+    ) -> Option<Observation> {
         let predicted = model.predict(observation).ok()?;
         let more = self.variance(model, observation.pairs(), observation.lines(), &predicted)?;
         // What has no weight has no coherence, and is no value.

@@ -118,7 +118,7 @@ pub(crate) struct Names {
 
 impl Names {
     /// Fits every name to the present measurement, on a fixture that knows all points which are considered.
-    pub fn fitted(
+    pub(crate) fn fitted(
         remaining: &Remaining,
         observation: &Observation,
         fixture: &Fixture,
@@ -170,7 +170,7 @@ impl Names {
     }
 
     /// Takes what the present measurement tells of every name's coordinates.
-    pub fn informed(mut self, scene: &Scene, observation: &Observation) -> Result<Self, PlanError> {
+    pub(crate) fn informed(mut self, scene: &Scene, observation: &Observation) -> Result<Self, PlanError> {
         let predict = |name: &mut Name| {
             let products = scene.products_of(std::slice::from_ref(&name.hypothesis), observation)?;
             name.information = with_priors(&name.hypothesis, products.information(0));
@@ -183,23 +183,23 @@ impl Names {
     }
 
     /// Weights now, one for the best: by the fits' costs, as the diagnosis has them.
-    pub fn weights(&self) -> Vec<f64> {
+    pub(crate) fn weights(&self) -> Vec<f64> {
         let least = self.names.iter().map(|name| name.cost).fold(f64::INFINITY, f64::min);
         self.names.iter().map(|name| (-0.5 * (name.cost - least)).exp()).collect()
     }
 
     /// The hypotheses.
-    pub fn hypotheses(&self) -> Vec<Hypothesis> {
+    pub(crate) fn hypotheses(&self) -> Vec<Hypothesis> {
         self.names.iter().map(|name| name.hypothesis.clone()).collect()
     }
 
     /// Factors of the information on every name's coordinates.
-    pub fn known(&self) -> Option<Vec<Cholesky>> {
+    pub(crate) fn known(&self) -> Option<Vec<Cholesky>> {
         self.names.iter().map(|name| factor(&name.information)).collect()
     }
 
     /// The same for other states of the structure: coordinates that are the same are as well known, others as their priors say.
-    pub fn known_in(&self, others: &[Hypothesis]) -> Option<Vec<Cholesky>> {
+    pub(crate) fn known_in(&self, others: &[Hypothesis]) -> Option<Vec<Cholesky>> {
         let of = |(name, other): (&Name, &Hypothesis)| {
             factor(&carried(&name.information, &name.hypothesis, other))
         };

@@ -22,13 +22,13 @@ pub(crate) struct Products {
 
 impl Products {
     /// Of a measurement that tells nothing.
-    pub fn none(widths: &[usize]) -> Self {
+    pub(crate) fn none(widths: &[usize]) -> Self {
         let order = widths.iter().sum::<usize>() + widths.len();
         Products { widths: widths.to_vec(), entries: vec![0.0; order * order] }
     }
 
     /// Of predictions on the values in `range`, with their weights 2/σ².
-    pub fn of(names: &[Predicted], range: std::ops::Range<usize>, weights: &[f64]) -> Self {
+    pub(crate) fn of(names: &[Predicted], range: std::ops::Range<usize>, weights: &[f64]) -> Self {
         let first = &names[0].values[range.clone()];
         let away = |name: &Predicted| -> Vec<Complex64> {
             name.values[range.clone()].iter().zip(first).map(|(value, first)| value - first).collect()
@@ -42,7 +42,7 @@ impl Products {
     }
 
     /// Of one real number of variance one over `weight`: its value by each name, and its derivatives by that name's coordinates.
-    pub fn of_number(names: &[(f64, Vec<f64>)], weight: f64) -> Self {
+    pub(crate) fn of_number(names: &[(f64, Vec<f64>)], weight: f64) -> Self {
         let derivatives = names.iter().flat_map(|(_, derivatives)| derivatives.iter().copied());
         let column: Vec<f64> = derivatives.chain(names.iter().map(|(value, _)| value - names[0].0)).collect();
         let entries = column.iter().flat_map(|a| column.iter().map(move |b| weight * a * b)).collect();
@@ -50,31 +50,31 @@ impl Products {
     }
 
     /// Number of columns.
-    pub fn order(&self) -> usize {
+    pub(crate) fn order(&self) -> usize {
         self.widths.iter().sum::<usize>() + self.widths.len()
     }
 
     /// The first column of a name's derivatives.
-    pub fn first(&self, name: usize) -> usize {
+    pub(crate) fn first(&self, name: usize) -> usize {
         self.widths[..name].iter().sum()
     }
 
     /// The column of a name's values.
-    pub fn value(&self, name: usize) -> usize {
+    pub(crate) fn value(&self, name: usize) -> usize {
         self.first(self.widths.len()) + name
     }
 
-    pub fn at(&self, row: usize, column: usize) -> f64 {
+    pub(crate) fn at(&self, row: usize, column: usize) -> f64 {
         self.entries[row * self.order() + column]
     }
 
     /// Adds those of an independent measurement.
-    pub fn add(&mut self, other: &Products) {
+    pub(crate) fn add(&mut self, other: &Products) {
         self.entries.iter_mut().zip(&other.entries).for_each(|(own, other)| *own += other);
     }
 
     /// The same measured so many times.
-    pub fn times(&self, count: f64) -> Self {
+    pub(crate) fn times(&self, count: f64) -> Self {
         Products {
             widths: self.widths.clone(),
             entries: self.entries.iter().map(|entry| count * entry).collect(),
@@ -82,7 +82,7 @@ impl Products {
     }
 
     /// A name's own information JᵀΣ⁻¹J.
-    pub fn information(&self, name: usize) -> Vec<f64> {
+    pub(crate) fn information(&self, name: usize) -> Vec<f64> {
         let (first, width) = (self.first(name), self.widths[name]);
         (0..width * width).map(|e| self.at(first + e / width, first + e % width)).collect()
     }

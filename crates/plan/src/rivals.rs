@@ -45,7 +45,7 @@ pub(crate) struct Outlook {
 impl Rivals {
     /// From the products of a measurement and, of each name, the factor of the information that there is of its coordinates before. `None` where products
     /// are not finite.
-    pub fn of(products: &Products, known: &[Cholesky]) -> Option<Self> {
+    pub(crate) fn of(products: &Products, known: &[Cholesky]) -> Option<Self> {
         let order = products.order();
         let mut entries = products.entries.clone();
         // A = J·R⁻ᵀ with the information R·Rᵀ: rows first, then columns, which are rows of the transpose.
@@ -77,7 +77,7 @@ impl Rivals {
     }
 
     /// D_ij: expected ln of the Bayes factor for i against j if i is true.
-    pub fn divergence(&self, i: usize, j: usize) -> f64 {
+    pub(crate) fn divergence(&self, i: usize, j: usize) -> f64 {
         let p = &self.products;
         let (of_i, of_j) = (p.first(i)..p.first(i) + p.widths[i], p.first(j)..p.first(j) + p.widths[j]);
         let (at_i, at_j) = (p.value(i), p.value(j));
@@ -101,7 +101,7 @@ impl Rivals {
     }
 
     /// What the measurement would do: names have the weights `weights` now, up to a factor, and physics that none covers has `unlisted` against one for the best.
-    pub fn outlook(&self, weights: &[f64], unlisted: f64, seed: u64) -> Outlook {
+    pub(crate) fn outlook(&self, weights: &[f64], unlisted: f64, seed: u64) -> Outlook {
         let count = weights.len();
         let divergence = (0..count)
             .map(|i| (0..count).map(|j| if i == j { 0.0 } else { self.divergence(i, j) }).collect())

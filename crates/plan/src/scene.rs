@@ -29,7 +29,7 @@ pub(crate) struct Scene {
 
 impl Scene {
     /// What each name predicts of FRFs, and their products by FRF; `None` where one of them predicts none.
-    pub fn products(&self, names: &[Hypothesis], pairs: &[FrfPair]) -> Option<Vec<Products>> {
+    pub(crate) fn products(&self, names: &[Hypothesis], pairs: &[FrfPair]) -> Option<Vec<Products>> {
         // Of a longer set lines would be left out.
         let together = (MOST_VALUES / self.lines.len()).max(1);
         let parts = pairs.par_chunks(together).map(|pairs| self.products_of_few(names, pairs));
@@ -70,7 +70,7 @@ impl Scene {
     }
 
     /// The products of a measurement that was made.
-    pub fn products_of(&self, names: &[Hypothesis], observation: &Observation) -> Option<Products> {
+    pub(crate) fn products_of(&self, names: &[Hypothesis], observation: &Observation) -> Option<Products> {
         let predicted = predicted(names, observation)?;
         let weights: Vec<f64> = observation.weights().iter().map(|w| w / self.inflation).collect();
         Some(Products::of(&predicted, 0..weights.len(), &weights))

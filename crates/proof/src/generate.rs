@@ -202,7 +202,7 @@ pub(crate) struct Draw<'a> {
 
 impl<'a> Draw<'a> {
     /// A case of the route with a key.
-    pub fn of(plan: &'a Plan, key: &str, index: usize, number: usize) -> Self {
+    pub(crate) fn of(plan: &'a Plan, key: &str, index: usize, number: usize) -> Self {
         let source = format!("seed {} {}", plan.seed, key.replace('_', " "));
         let seed = seed_of(&source, number);
         Draw { plan, index, number, source, seed }

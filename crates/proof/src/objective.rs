@@ -8,7 +8,7 @@ use jointscope_spectra::FrfSet;
 use num_complex::Complex64;
 
 /// Standard deviations beyond which a quantity's departure is worth telling.
-pub const STRAINED: f64 = 4.0;
+pub(crate) const STRAINED: f64 = 4.0;
 
 /// A quantity of the believed fixture that may depart from its statement; Young's modulus and second moment of a beam
 /// count as their product.
@@ -26,7 +26,7 @@ pub(crate) struct Tolerance {
 
 impl Tolerance {
     /// The quantities of a fixture that are not exact.
-    pub fn all(believed: &Fixture) -> Vec<Tolerance> {
+    pub(crate) fn all(believed: &Fixture) -> Vec<Tolerance> {
         let quantities = believed.quantities();
         let mut all: Vec<Tolerance> = Vec::new();
         for (index, quantity) in quantities.iter().enumerate() {
@@ -52,23 +52,23 @@ impl Tolerance {
     }
 
     /// Departure of the quantity in standard deviations, zero where that is unknown; `values` are those of all quantities.
-    pub fn departure(&self, values: &[f64]) -> f64 {
+    pub(crate) fn departure(&self, values: &[f64]) -> f64 {
         self.std.map_or(0.0, |std| (self.value(values) - self.nominal) / std)
     }
 
     /// Its value, of the product where there is one.
-    pub fn value(&self, values: &[f64]) -> f64 {
+    pub(crate) fn value(&self, values: &[f64]) -> f64 {
         values[self.index] * self.with.map_or(1.0, |other| values[other])
     }
 
     /// Change of the first value that is one standard deviation, a tenth of it where that is unknown.
-    pub fn step(&self, values: &[f64]) -> f64 {
+    pub(crate) fn step(&self, values: &[f64]) -> f64 {
         let scale = self.with.map_or(1.0, |other| values[other]);
         self.std.map_or(0.1 * values[self.index].abs().max(1e-9), |std| std / scale)
     }
 
     /// Whether a departure costs anything.
-    pub fn is_known(&self) -> bool {
+    pub(crate) fn is_known(&self) -> bool {
         self.std.is_some()
     }
 }
@@ -105,25 +105,25 @@ pub(crate) struct Judge<'a> {
 
 impl<'a> Judge<'a> {
     /// `None` where the recording has no noise that could be judged by.
-    pub fn of(case: &'a Case) -> Option<Self> {
+    pub(crate) fn of(case: &'a Case) -> Option<Self> {
         let observation = Observation::new(&case.recorded, |_| true).ok()?;
         Some(Judge { believed: &case.believed, tolerances: Tolerance::all(&case.believed), observation })
     }
 
     /// The objective of a fixture, read as the recording was.
-    pub fn objective(&self, fixture: &Fixture) -> Option<f64> {
+    pub(crate) fn objective(&self, fixture: &Fixture) -> Option<f64> {
         let (pairs, lines) = (self.observation.pairs(), self.observation.lines());
         let set = synthesize(fixture, pairs, lines, Instrument::AsRecorded).ok()?;
         Some(self.objective_of(set.all_values(), fixture))
     }
 
     /// The objective of FRFs, with the departures of a fixture's quantities.
-    pub fn objective_of(&self, predicted: &[Complex64], fixture: &Fixture) -> f64 {
+    pub(crate) fn objective_of(&self, predicted: &[Complex64], fixture: &Fixture) -> f64 {
         objective(&self.observation, predicted, &self.tolerances, &values(fixture))
     }
 
     /// The same of noise-free FRFs on all lines of the recording.
-    pub fn objective_of_clean(&self, clean: &FrfSet, fixture: &Fixture) -> Option<f64> {
+    pub(crate) fn objective_of_clean(&self, clean: &FrfSet, fixture: &Fixture) -> Option<f64> {
         // Exactly the lines in use: of many a diagnosis thins out.
         let (hz, in_use) = (clean.lines().hz(), self.observation.lines().hz());
         let is_used = |line: usize| in_use.iter().any(|used| (used - hz[line]).abs() <= 1e-6 * hz[line]);
@@ -131,12 +131,12 @@ impl<'a> Judge<'a> {
     }
 
     /// The best fit about a fixture, by the laboratory's own model.
-    pub fn best(&self, start: &Fixture) -> Option<Reference> {
+    pub(crate) fn best(&self, start: &Fixture) -> Option<Reference> {
         Reference::of(self.believed, start, &self.observation)
     }
 
     /// Objectives of the best fits about a fixture without each of its effects.
-    pub fn without_each(&self, fixture: &Fixture) -> Vec<f64> {
+    pub(crate) fn without_each(&self, fixture: &Fixture) -> Vec<f64> {
         let without = |index: usize| {
             let mut fewer = fixture.physics().to_vec();
             fewer.remove(index);
@@ -147,7 +147,7 @@ impl<'a> Judge<'a> {
     }
 
     /// Quantities that lie farther than so many standard deviations from what was stated.
-    pub fn strained(&self, fixture: &Fixture, beyond: f64) -> Vec<(String, f64)> {
+    pub(crate) fn strained(&self, fixture: &Fixture, beyond: f64) -> Vec<(String, f64)> {
         let (quantities, values) = (self.believed.quantities(), values(fixture));
         let departure = |t: &Tolerance| (quantities[t.index].path.clone(), t.departure(&values));
         self.tolerances.iter().map(departure).filter(|(_, by)| by.abs() > beyond).collect()

@@ -49,7 +49,7 @@ pub(crate) struct Scene<H> {
 
 impl<H: Hides> Scene<H> {
     /// A case with its truth, not numbered yet; `None` where the fixture that was drawn has no place for what is to be hidden.
-    pub fn draw(&self, random: &mut impl Rng) -> Result<Option<(Case, Truth)>, GenerationError> {
+    pub(crate) fn draw(&self, random: &mut impl Rng) -> Result<Option<(Case, Truth)>, GenerationError> {
         let mut believed = self.family.draw("concealed case", random)?;
         let truth = drawn_within_tolerance(&believed, random)?;
         let pairs = self.hides.pairs(random, self.family);

@@ -49,7 +49,7 @@ impl<'a> Sensitivity<'a> {
     /// weights 2/σ².
     ///
     /// `None` where the fixture has no finite FRFs.
-    pub fn of(
+    pub(crate) fn of(
         believed: &Fixture,
         at: &'a Fixture,
         recorded: &'a FrfSet,
@@ -106,7 +106,7 @@ impl<'a> Sensitivity<'a> {
     }
 
     /// What `effect` does by unit of its strength while it is weak; `None` where it does nothing, or the fixture cannot have it.
-    pub fn direction(&self, effect: &Effect) -> Option<Direction> {
+    pub(crate) fn direction(&self, effect: &Effect) -> Option<Direction> {
         // What tolerances leave may be a thousandth of what it does, and a strong effect bends by as much, while of a weak one rounding leaves
         // no more: of two strengths in between the bend is taken out.
         let mut weak = effect.clone();
@@ -125,7 +125,7 @@ impl<'a> Sensitivity<'a> {
     }
 
     /// The same of the effect as strong as it is, bend and all: of what is weaker than first order was taken at, and does not grow in proportion.
-    pub fn direction_as_it_is(&self, effect: &Effect) -> Option<Direction> {
+    pub(crate) fn direction_as_it_is(&self, effect: &Effect) -> Option<Direction> {
         self.imitated(self.change(effect)?)
     }
 
@@ -146,12 +146,12 @@ impl<'a> Sensitivity<'a> {
 
 impl Direction {
     /// Δχ² by the square of the strength, every quantity of the fixture held.
-    pub fn whole(&self, other: &Direction) -> f64 {
+    pub(crate) fn whole(&self, other: &Direction) -> f64 {
         dot(&self.values, &other.values)
     }
 
     /// The same of what is left when the quantities of the fixture have yielded within their tolerances.
-    pub fn beyond_tolerances(&self, other: &Direction) -> f64 {
+    pub(crate) fn beyond_tolerances(&self, other: &Direction) -> f64 {
         let taken: f64 = self.pull.iter().zip(&other.imitation).map(|(p, i)| p * i).sum();
         self.whole(other) - taken
     }

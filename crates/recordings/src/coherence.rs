@@ -36,7 +36,7 @@ pub(crate) enum Uselessness {
 }
 
 impl Coherence {
-    pub fn of(values: Vec<f64>) -> Self {
+    pub(crate) fn of(values: Vec<f64>) -> Self {
         let largest = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         let share = |of: &dyn Fn(f64) -> bool| {
             values.iter().filter(|value| of(**value)).count() as f64 / values.len().max(1) as f64
@@ -72,7 +72,7 @@ pub(crate) struct CoherenceNotes {
 
 impl CoherenceNotes {
     /// The coherence of FRF `name` as far as it says anything.
-    pub fn usable(&mut self, name: String, values: Vec<f64>) -> Option<Vec<f64>> {
+    pub(crate) fn usable(&mut self, name: String, values: Vec<f64>) -> Option<Vec<f64>> {
         match Coherence::of(values) {
             Coherence::Usable(values) => Some(values),
             Coherence::PerCent(values) => {
@@ -86,7 +86,7 @@ impl CoherenceNotes {
         }
     }
 
-    pub fn into_texts(mut self) -> Vec<String> {
+    pub(crate) fn into_texts(mut self) -> Vec<String> {
         let mut texts = Vec::new();
         if !self.per_cent.is_empty() {
             texts.push(format!(

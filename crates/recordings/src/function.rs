@@ -26,16 +26,16 @@ pub(crate) fn functions(sources: &[Source]) -> impl Iterator<Item = Function<'_>
 }
 
 impl<'a> Function<'a> {
-    pub fn response(&self) -> FileChannel {
+    pub(crate) fn response(&self) -> FileChannel {
         FileChannel::from(&self.dataset.response)
     }
 
-    pub fn reference(&self) -> FileChannel {
+    pub(crate) fn reference(&self) -> FileChannel {
         FileChannel::from(&self.dataset.reference)
     }
 
     /// What it is, in messages.
-    pub fn what(&self) -> &'static str {
+    pub(crate) fn what(&self) -> &'static str {
         match self.dataset.function {
             FunctionType::FrequencyResponse => "FRF",
             FunctionType::Coherence => "coherence",
@@ -44,7 +44,7 @@ impl<'a> Function<'a> {
         }
     }
 
-    pub fn place(&self) -> Box<Place> {
+    pub(crate) fn place(&self) -> Box<Place> {
         let (what, response) = (self.what(), self.response());
         let what = match self.dataset.function {
             FunctionType::TimeResponse => format!("{what} of {response}"),
@@ -54,7 +54,7 @@ impl<'a> Function<'a> {
     }
 
     /// Refuses a function that holds fewer points than its header states.
-    pub fn whole(&self) -> Result<(), FunctionError> {
+    pub(crate) fn whole(&self) -> Result<(), FunctionError> {
         match self.dataset.stated_points {
             None => Ok(()),
             Some(stated) => Err(FunctionError::Short { stated, found: self.dataset.data.len() }),
@@ -62,12 +62,12 @@ impl<'a> Function<'a> {
     }
 
     /// Held amplitude, ID line 4.
-    pub fn level(&self) -> Option<HeldAmplitude> {
+    pub(crate) fn level(&self) -> Option<HeldAmplitude> {
         HeldAmplitude::parse(&self.dataset.id_lines[3])
     }
 
     /// Number of averages, ID line 5.
-    pub fn averages(&self) -> Result<Option<u32>, FunctionError> {
+    pub(crate) fn averages(&self) -> Result<Option<u32>, FunctionError> {
         let line = &self.dataset.id_lines[4];
         let mut words = line.split_whitespace();
         if !words.next().is_some_and(|word| word.eq_ignore_ascii_case("averages")) {
@@ -81,7 +81,7 @@ impl<'a> Function<'a> {
 
     /// Decay of the exponential window that lies on force and response, 1/s; ID line 3: `exponential window 12.5 1/s`. 0 where it speaks of
     /// something else.
-    pub fn window_decay(&self) -> Result<f64, FunctionError> {
+    pub(crate) fn window_decay(&self) -> Result<f64, FunctionError> {
         let line = &self.dataset.id_lines[2];
         let Some(rest) = line.to_lowercase().trim().strip_prefix("exponential window").map(str::to_owned)
         else {
@@ -95,7 +95,7 @@ impl<'a> Function<'a> {
     }
 
     /// Complex values.
-    pub fn complex(&self) -> Result<&'a [Complex64], FunctionError> {
+    pub(crate) fn complex(&self) -> Result<&'a [Complex64], FunctionError> {
         match &self.dataset.data {
             Data::Complex(values) => Ok(values),
             Data::Real(_) => Err(FunctionError::NoPhase),
@@ -103,7 +103,7 @@ impl<'a> Function<'a> {
     }
 
     /// Values of a coherence; analysers store some as complex numbers without imaginary part.
-    pub fn coherence(&self) -> Result<Vec<f64>, FunctionError> {
+    pub(crate) fn coherence(&self) -> Result<Vec<f64>, FunctionError> {
         match &self.dataset.data {
             Data::Real(values) => Ok(values.clone()),
             Data::Complex(values) if values.iter().all(|value| value.im == 0.0) => {
@@ -143,7 +143,7 @@ pub(crate) struct LinesCache<'a> {
 }
 
 impl<'a> LinesCache<'a> {
-    pub fn lines(&mut self, dataset: &'a Dataset58) -> Result<SpectralLines, FunctionError> {
+    pub(crate) fn lines(&mut self, dataset: &'a Dataset58) -> Result<SpectralLines, FunctionError> {
         let (abscissa, axis) = (&dataset.abscissa, &dataset.abscissa_axis);
         if let Some((last, last_axis, lines)) = &self.last
             && (*last, *last_axis) == (abscissa, axis)

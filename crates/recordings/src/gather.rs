@@ -45,7 +45,7 @@ pub(crate) struct Gathered<'a> {
 
 impl Gathered<'_> {
     /// Whether the files hold FRFs at all.
-    pub fn has_frfs(&self) -> bool {
+    pub(crate) fn has_frfs(&self) -> bool {
         !(self.frfs.is_empty() && self.elsewhere.is_empty() && self.other_directions.is_empty())
     }
 }
@@ -300,17 +300,17 @@ pub(crate) fn in_order<'a, T>(
 
 impl Entry<'_> {
     /// The function of the same channels and level among others in order.
-    pub fn counterpart<'e, 'a>(&self, others: &'e [Entry<'a>]) -> Option<&'e Entry<'a>> {
+    pub(crate) fn counterpart<'e, 'a>(&self, others: &'e [Entry<'a>]) -> Option<&'e Entry<'a>> {
         others.binary_search_by_key(&self.key, |entry| entry.key).ok().map(|index| &others[index])
     }
 
     /// Whether both are of the same channels and level.
-    pub fn is_of(&self, other: &Entry) -> bool {
+    pub(crate) fn is_of(&self, other: &Entry) -> bool {
         self.key == other.key
     }
 
     /// The error of this function.
-    pub fn refuse(&self, problem: FunctionError) -> RecordingError {
+    pub(crate) fn refuse(&self, problem: FunctionError) -> RecordingError {
         RecordingError::function(self.function.place(), problem)
     }
 }

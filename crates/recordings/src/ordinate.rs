@@ -29,7 +29,7 @@ pub(crate) struct UnitNotes {
 
 impl UnitNotes {
     /// The sentences, beginning with that on an analyst's word that was given in vain.
-    pub fn into_texts(self, assumed: Option<&AssumedUnits>) -> Vec<String> {
+    pub(crate) fn into_texts(self, assumed: Option<&AssumedUnits>) -> Vec<String> {
         let in_vain = assumed.filter(|_| !self.assumed);
         let in_vain =
             in_vain.map(|_| "the files state all their units: `--assume-units` was not needed".to_owned());

@@ -2,23 +2,23 @@
 
 /// Exponents of length, mass, time and voltage; angles have none.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Dimension([i32; 4]);
+pub(crate) struct Dimension([i32; 4]);
 
 impl Dimension {
     /// An angle or a pure number.
-    pub const NONE: Dimension = Dimension([0; 4]);
+    pub(crate) const NONE: Dimension = Dimension([0; 4]);
     /// Of a force.
-    pub const FORCE: Dimension = Dimension([1, 1, -2, 0]);
+    pub(crate) const FORCE: Dimension = Dimension([1, 1, -2, 0]);
     /// Of a moment.
-    pub const MOMENT: Dimension = Dimension([2, 1, -2, 0]);
+    pub(crate) const MOMENT: Dimension = Dimension([2, 1, -2, 0]);
 
     /// Of a length, velocity, acceleration (`order` 0, 1, 2), or of their rotational counterparts.
-    pub const fn motion(order: i32, rotational: bool) -> Dimension {
+    pub(crate) const fn motion(order: i32, rotational: bool) -> Dimension {
         Dimension([if rotational { 0 } else { 1 }, 0, -order, 0])
     }
 
     /// Of a quotient.
-    pub const fn over(self, other: Dimension) -> Dimension {
+    pub(crate) const fn over(self, other: Dimension) -> Dimension {
         self.times(other, -1)
     }
 
@@ -35,7 +35,7 @@ impl Dimension {
 
 /// A unit: what one of it is in SI, and of which dimension.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Unit {
+pub(crate) struct Unit {
     /// SI units in one of it.
     pub si: f64,
     /// Its dimension.
@@ -122,7 +122,7 @@ const NAMES: [(&str, Unit); 47] = [
 impl Unit {
     /// Reads a unit as labels spell it: products (`*`, `·`, `-` or a blank between names), quotients, powers (`^2`, `**2`,
     /// `²` or a digit behind the name) and brackets. `None` for anything else.
-    pub fn parse(label: &str) -> Option<Unit> {
+    pub(crate) fn parse(label: &str) -> Option<Unit> {
         let text = label.trim().replace("**", "^").replace('⁻', "^-").replace('²', "^2").replace('¹', "1");
         let text = text.replace("^-^", "^-");
         let mut parser = Parser { rest: &text };
@@ -132,7 +132,7 @@ impl Unit {
     }
 
     /// Whether this is the SI unit of `dimension`.
-    pub fn is_si(self, dimension: Dimension) -> bool {
+    pub(crate) fn is_si(self, dimension: Dimension) -> bool {
         self.si == 1.0 && self.dimension == dimension
     }
 

@@ -57,7 +57,7 @@ pub(crate) struct SideView<'a> {
 
 impl<'a> SideView<'a> {
     /// A fixture with the sensors and hammer points of some FRFs.
-    pub fn new<'f>(fixture: &'a Fixture, frfs: impl IntoIterator<Item = &'f FrfPair>) -> Self {
+    pub(crate) fn new<'f>(fixture: &'a Fixture, frfs: impl IntoIterator<Item = &'f FrfPair>) -> Self {
         let places: HashMap<&str, usize> =
             fixture.points().iter().enumerate().map(|(index, point)| (point.name.as_str(), index)).collect();
         let at = |name: &str| places.get(name).copied();
@@ -72,7 +72,7 @@ impl<'a> SideView<'a> {
     }
 
     /// The drawing, in the colours of the page it stands in. It scales with its width; labels that would meet are put in rows of their own.
-    pub fn draw(&self) -> Drawing {
+    pub(crate) fn draw(&self) -> Drawing {
         let of = |width, class| svg::draw(self, width, class);
         Drawing { wide: of(layout::WIDTH, "wide"), narrow: Some(of(layout::NARROW, "narrow")) }
     }

@@ -12,7 +12,11 @@ use crate::table::Table;
 
 /// The page of a diagnosis from hits as one self-contained HTML file: the verdict, the laws found with their intervals, levels compared,
 /// force against motion, errors of the three models, and the hits held out. The same input gives the same bytes.
-pub fn hits_report(diagnosis: &NonlinearDiagnosis, fixture: &Fixture, context: &PageContext) -> Report {
+pub(crate) fn hits_report(
+    diagnosis: &NonlinearDiagnosis,
+    fixture: &Fixture,
+    context: &PageContext,
+) -> Report {
     let said = diagnosis.findings.iter().map(|finding| finding.says());
     let verdict = context.verdict(diagnosis.verdict, diagnosis.says(), said.chain(diagnosis.remarks()));
     Report::of(

@@ -52,7 +52,7 @@ pub(crate) struct Page {
 
 impl Page {
     /// An empty page.
-    pub fn new(title: impl Into<String>) -> Self {
+    pub(crate) fn new(title: impl Into<String>) -> Self {
         Self {
             title: title.into(),
             subtitle: String::new(),
@@ -63,23 +63,23 @@ impl Page {
     }
 
     /// A line below the title, such as the fixture's name and the recordings.
-    pub fn subtitle(self, subtitle: impl Into<String>) -> Self {
+    pub(crate) fn subtitle(self, subtitle: impl Into<String>) -> Self {
         Self { subtitle: subtitle.into(), ..self }
     }
 
     /// What came out, above everything else.
-    pub fn verdict(self, verdict: Verdict) -> Self {
+    pub(crate) fn verdict(self, verdict: Verdict) -> Self {
         Self { verdict: Some(verdict), ..self }
     }
 
     /// The next section or sections, or none.
-    pub fn sections(mut self, sections: impl IntoIterator<Item = Section>) -> Self {
+    pub(crate) fn sections(mut self, sections: impl IntoIterator<Item = Section>) -> Self {
         self.sections.extend(sections);
         self
     }
 
     /// Where the page comes from. It has no date, so that the same input gives the same page.
-    pub fn foot(self, program: &str, command: &str, inputs: &[InputFile]) -> Self {
+    pub(crate) fn foot(self, program: &str, command: &str, inputs: &[InputFile]) -> Self {
         let foot = html! {
             footer {
                 p { (program) }
@@ -98,7 +98,7 @@ impl Page {
     ///
     /// # Errors
     /// A series that is not as long as its abscissa, or an abscissa that does not ascend.
-    pub fn to_html(&self) -> Result<String, PageError> {
+    pub(crate) fn to_html(&self) -> Result<String, PageError> {
         let mut plots = PlotBook::default();
         let anchors = self.anchors();
         let sections = self.sections.iter().zip(&anchors);
@@ -147,7 +147,7 @@ impl Page {
     }
 
     /// The sections with their anchors.
-    pub fn parts(&self) -> impl Iterator<Item = (String, &Section)> {
+    pub(crate) fn parts(&self) -> impl Iterator<Item = (String, &Section)> {
         self.anchors().into_iter().zip(&self.sections)
     }
 

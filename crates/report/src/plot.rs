@@ -34,17 +34,17 @@ pub(crate) struct Axis {
 
 impl Axis {
     /// An evenly divided axis. `unit` is that of the values as they are passed (`N/m`); an ordinate is drawn in a prefixed one (`MN/m`) where that reads better.
-    pub fn linear(label: impl Into<String>, unit: impl Into<String>) -> Self {
+    pub(crate) fn linear(label: impl Into<String>, unit: impl Into<String>) -> Self {
         Self { label: label.into(), unit: unit.into(), spacing: Spacing::Linear }
     }
 
     /// A logarithmically divided axis, as for the modulus of a receptance.
-    pub fn logarithmic(label: impl Into<String>, unit: impl Into<String>) -> Self {
+    pub(crate) fn logarithmic(label: impl Into<String>, unit: impl Into<String>) -> Self {
         Self { spacing: Spacing::Logarithmic, ..Self::linear(label, unit) }
     }
 
     /// The frequency axis of most plots here: linear, in Hz.
-    pub fn frequency() -> Self {
+    pub(crate) fn frequency() -> Self {
         Self::linear("Frequency", "Hz")
     }
 
@@ -80,7 +80,7 @@ pub(crate) enum Role {
 
 impl Role {
     /// The name under which the style sheet keeps the colour.
-    pub fn colour(self) -> &'static str {
+    pub(crate) fn colour(self) -> &'static str {
         const TRACES: [&str; 6] = ["trace-1", "trace-2", "trace-3", "trace-4", "trace-5", "trace-6"];
         match self {
             Role::Measured => "measured",
@@ -234,7 +234,7 @@ pub(crate) struct Plot {
 
 impl Plot {
     /// An empty plot. Plots whose abscissae have the same label and unit share cursor and zoom unless they stand [`alone`](Self::alone).
-    pub fn new(title: impl Into<String>, x: Axis, y: Axis) -> Self {
+    pub(crate) fn new(title: impl Into<String>, x: Axis, y: Axis) -> Self {
         Self {
             title: title.into(),
             group: Some(format!("{} ({})", x.label, x.unit)),
@@ -255,33 +255,45 @@ impl Plot {
     }
 
     /// The abscissa of the series added after it, finite and strictly ascending. May be called again for series over other lines.
-    pub fn over(mut self, abscissa: impl Values) -> Self {
+    pub(crate) fn over(mut self, abscissa: impl Values) -> Self {
         self.tables.push(abscissa.gaps_as_nan());
         self
     }
 
     /// A full line, interrupted where a value is missing.
-    pub fn line(self, label: impl Into<String>, role: Role, values: impl Values) -> Self {
+    pub(crate) fn line(self, label: impl Into<String>, role: Role, values: impl Values) -> Self {
         self.series(Style::Line, label, role, values)
     }
 
     /// A dashed line, as for models beside measurements.
-    pub fn dashed(self, label: impl Into<String>, role: Role, values: impl Values) -> Self {
+    pub(crate) fn dashed(self, label: impl Into<String>, role: Role, values: impl Values) -> Self {
         self.series(Style::Dashed, label, role, values)
     }
 
     /// Unconnected points.
-    pub fn points(self, label: impl Into<String>, role: Role, values: impl Values) -> Self {
+    pub(crate) fn points(self, label: impl Into<String>, role: Role, values: impl Values) -> Self {
         self.series(Style::Points, label, role, values)
     }
 
     /// A translucent band between two edges, such as a 95 % interval. Where either edge is missing, so is the band.
-    pub fn band(self, label: impl Into<String>, role: Role, low: impl Values, high: impl Values) -> Self {
+    pub(crate) fn band(
+        self,
+        label: impl Into<String>,
+        role: Role,
+        low: impl Values,
+        high: impl Values,
+    ) -> Self {
         self.add(Style::Band, label.into(), role, low.gaps_as_nan(), high.gaps_as_nan())
     }
 
     /// A series in the style given.
-    pub fn series(self, style: Style, label: impl Into<String>, role: Role, values: impl Values) -> Self {
+    pub(crate) fn series(
+        self,
+        style: Style,
+        label: impl Into<String>,
+        role: Role,
+        values: impl Values,
+    ) -> Self {
         self.add(style, label.into(), role, Vec::new(), values.gaps_as_nan())
     }
 
@@ -292,74 +304,74 @@ impl Plot {
     }
 
     /// A horizontal reference line at an ordinate; left out when that is not finite.
-    pub fn horizontal(mut self, label: impl Into<String>, colour: Role, at: f64) -> Self {
+    pub(crate) fn horizontal(mut self, label: impl Into<String>, colour: Role, at: f64) -> Self {
         let line = at.is_finite().then(|| Mark::Horizontal { label: label.into(), colour, at });
         self.marks.extend(line);
         self
     }
 
     /// A vertical line at an abscissa, such as a natural frequency; left out when that is not finite.
-    pub fn vertical(mut self, label: impl Into<String>, colour: Role, at: f64) -> Self {
+    pub(crate) fn vertical(mut self, label: impl Into<String>, colour: Role, at: f64) -> Self {
         self.marks.extend(at.is_finite().then(|| Mark::Vertical { label: label.into(), colour, at }));
         self
     }
 
     /// A shaded part of the abscissa, such as the band over which averages are taken; left out when an end is not finite. What has no label has no entry in
     /// the legend.
-    pub fn shaded(mut self, label: impl Into<String>, from: f64, to: f64) -> Self {
+    pub(crate) fn shaded(mut self, label: impl Into<String>, from: f64, to: f64) -> Self {
         let ends = Some((from.min(to), from.max(to))).filter(|_| from.is_finite() && to.is_finite());
         self.marks.extend(ends.map(|(from, to)| Mark::Shaded { label: label.into(), from, to }));
         self
     }
 
     /// The part of the ordinate that is drawn at first.
-    pub fn y_range(self, y_range: YRange) -> Self {
+    pub(crate) fn y_range(self, y_range: YRange) -> Self {
         Self { y_range, ..self }
     }
 
     /// One sentence which says what is seen; without it the sentence is made of the labels.
-    pub fn caption(self, caption: impl Into<String>) -> Self {
+    pub(crate) fn caption(self, caption: impl Into<String>) -> Self {
         Self { caption: Some(caption.into()), ..self }
     }
 
     /// Shares cursor and zoom with no other plot.
-    pub fn alone(self) -> Self {
+    pub(crate) fn alone(self) -> Self {
         Self { group: None, ..self }
     }
 
     /// Height of the drawing in CSS pixels (240 unless said otherwise).
-    pub fn height(self, height: u32) -> Self {
+    pub(crate) fn height(self, height: u32) -> Self {
         Self { height, ..self }
     }
 
     /// A strip below the first of the plots before it: in rows of several, nothing stands beside it.
-    pub fn strip(self) -> Self {
+    pub(crate) fn strip(self) -> Self {
         Self { is_strip: true, ..self }
     }
 
     /// How many lines are said to be masked. Unless stated, that is the number of gaps of the series with most of them, which
     /// is wrong where one curve is split into two series.
-    pub fn masked(self, lines: usize) -> Self {
+    pub(crate) fn masked(self, lines: usize) -> Self {
         Self { masked: Some(lines), ..self }
     }
 
     /// Digits of the ordinates on the page (5 unless said otherwise).
-    pub fn digits(self, digits: usize) -> Self {
+    pub(crate) fn digits(self, digits: usize) -> Self {
         Self { digits, ..self }
     }
 
     /// Rounds the ordinates on the page to multiples of a step.
-    pub fn rounded_to(self, step: f64) -> Self {
+    pub(crate) fn rounded_to(self, step: f64) -> Self {
         Self { step: Some(step), ..self }
     }
 
     /// Its heading.
-    pub fn title(&self) -> &str {
+    pub(crate) fn title(&self) -> &str {
         &self.title
     }
 
     /// Lines above which the plot is drawn thinned, its peaks kept.
-    pub fn line_limit(self, line_limit: usize) -> Self {
+    pub(crate) fn line_limit(self, line_limit: usize) -> Self {
         Self { line_limit, ..self }
     }
 }

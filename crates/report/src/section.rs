@@ -21,7 +21,7 @@ pub(crate) enum Tone {
 }
 
 impl Tone {
-    pub fn class(self) -> &'static str {
+    pub(crate) fn class(self) -> &'static str {
         match self {
             Tone::Ok => "ok",
             Tone::Attention => "attention",
@@ -82,23 +82,28 @@ pub(crate) struct Card {
 
 impl Card {
     /// A quantity in SI with its standard deviation; see [`quantity`](crate::format::quantity) for how it is printed.
-    pub fn quantity(label: impl Into<String>, value: f64, std: impl Into<Option<f64>>, unit: &str) -> Self {
+    pub(crate) fn quantity(
+        label: impl Into<String>,
+        value: f64,
+        std: impl Into<Option<f64>>,
+        unit: &str,
+    ) -> Self {
         Self { label: label.into(), value: QuantityText::new(value, std, unit), note: None, tone: None }
     }
 
     /// A figure that is no quantity, such as `412 of 644 lines`.
-    pub fn text(label: impl Into<String>, text: impl Into<String>) -> Self {
+    pub(crate) fn text(label: impl Into<String>, text: impl Into<String>) -> Self {
         let value = QuantityText { number: text.into(), unit: String::new(), note: None };
         Self { label: label.into(), value, note: None, tone: None }
     }
 
     /// A line below the figure, such as the nominal value.
-    pub fn note(self, note: impl Into<String>) -> Self {
+    pub(crate) fn note(self, note: impl Into<String>) -> Self {
         Self { note: Some(note.into()), ..self }
     }
 
     /// Marks the card at its edge.
-    pub fn tone(self, tone: Option<Tone>) -> Self {
+    pub(crate) fn tone(self, tone: Option<Tone>) -> Self {
         Self { tone, ..self }
     }
 }
@@ -153,38 +158,38 @@ pub(crate) struct Section {
 
 impl Section {
     /// A section with nothing below its heading yet.
-    pub fn new(heading: impl Into<String>) -> Self {
+    pub(crate) fn new(heading: impl Into<String>) -> Self {
         Self { heading: heading.into(), blocks: Vec::new() }
     }
 
     /// A [`Table`], or markup.
-    pub fn with(mut self, part: impl Into<Block>) -> Self {
+    pub(crate) fn with(mut self, part: impl Into<Block>) -> Self {
         self.blocks.push(part.into());
         self
     }
 
     /// What stands below the heading.
-    pub fn blocks(&self) -> &[Block] {
+    pub(crate) fn blocks(&self) -> &[Block] {
         &self.blocks
     }
 
     /// A paragraph of plain text.
-    pub fn paragraph(self, text: impl AsRef<str>) -> Self {
+    pub(crate) fn paragraph(self, text: impl AsRef<str>) -> Self {
         self.with(html! { p { (text.as_ref()) } })
     }
 
     /// Key figures side by side.
-    pub fn cards(self, cards: impl IntoIterator<Item = Card>) -> Self {
+    pub(crate) fn cards(self, cards: impl IntoIterator<Item = Card>) -> Self {
         self.with(html! { dl.cards { @for card in cards { (card) } } })
     }
 
     /// A list of remarks; nothing where there are none.
-    pub fn notes(self, notes: impl IntoIterator<Item: Render>) -> Self {
+    pub(crate) fn notes(self, notes: impl IntoIterator<Item: Render>) -> Self {
         self.list("notes", notes)
     }
 
     /// A list of what the reader should mind; nothing where there is none.
-    pub fn warnings(self, warnings: impl IntoIterator<Item: Render>) -> Self {
+    pub(crate) fn warnings(self, warnings: impl IntoIterator<Item: Render>) -> Self {
         self.list("notes warnings", warnings)
     }
 
@@ -197,23 +202,23 @@ impl Section {
     }
 
     /// A command line, as typed.
-    pub fn command(self, line: &str) -> Self {
+    pub(crate) fn command(self, line: &str) -> Self {
         self.with(html! { pre.command { (line) } })
     }
 
     /// An SVG image with its caption.
-    pub fn drawing(mut self, svg: impl Into<Drawing>, caption: impl Into<String>) -> Self {
+    pub(crate) fn drawing(mut self, svg: impl Into<Drawing>, caption: impl Into<String>) -> Self {
         self.blocks.push(Block::Drawing(svg.into(), caption.into()));
         self
     }
 
     /// One plot over the full width.
-    pub fn plot(self, plot: Plot) -> Self {
+    pub(crate) fn plot(self, plot: Plot) -> Self {
         self.plots(1, [plot])
     }
 
     /// Plots in rows of so many `columns`, 1 to 4, where there are any; a narrow window shows fewer side by side.
-    pub fn plots(mut self, columns: usize, plots: impl IntoIterator<Item = Plot>) -> Self {
+    pub(crate) fn plots(mut self, columns: usize, plots: impl IntoIterator<Item = Plot>) -> Self {
         let plots: Vec<Plot> = plots.into_iter().collect();
         if !plots.is_empty() {
             self.blocks.push(Block::Plots(columns.clamp(1, 4), plots));
@@ -221,7 +226,7 @@ impl Section {
         self
     }
 
-    pub fn render(&self, anchor: &str, book: &mut PlotBook) -> Result<Markup, PageError> {
+    pub(crate) fn render(&self, anchor: &str, book: &mut PlotBook) -> Result<Markup, PageError> {
         let mut blocks = Vec::with_capacity(self.blocks.len());
         for block in &self.blocks {
             blocks.push(match block {

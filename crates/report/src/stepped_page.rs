@@ -14,7 +14,11 @@ use crate::table::Table;
 
 /// The page of a diagnosis from FRFs at several levels as one self-contained HTML file: the verdict, frequency and damping against the amplitude
 /// of the joint's motion, the levels' table, and every law tried. The same input gives the same bytes.
-pub fn stepped_report(diagnosis: &SteppedDiagnosis, fixture: &Fixture, context: &PageContext) -> Report {
+pub(crate) fn stepped_report(
+    diagnosis: &SteppedDiagnosis,
+    fixture: &Fixture,
+    context: &PageContext,
+) -> Report {
     let said = diagnosis.findings.iter().map(|finding| finding.says());
     let verdict = context.verdict(diagnosis.verdict, diagnosis.says(), said.chain(diagnosis.remarks()));
     Report::of(

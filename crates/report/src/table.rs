@@ -29,13 +29,13 @@ impl Cell {
     }
 
     /// χ² per value (or per degree of freedom), shaded from 1, which is noise; a dash where there is none.
-    pub fn misfit(chi2: Option<f64>) -> Self {
+    pub(crate) fn misfit(chi2: Option<f64>) -> Self {
         let Some(chi2) = chi2.filter(|chi2| chi2.is_finite()) else { return "–".into() };
         Cell::Shaded(short(chi2), STRONGEST * (chi2.max(1.0).ln() / FULL.ln()).min(1.0))
     }
 
     /// A count shaded by its share of `all`; what is zero is left empty.
-    pub fn count(count: f64, all: f64) -> Self {
+    pub(crate) fn count(count: f64, all: f64) -> Self {
         if count > 0.0 {
             Cell::Shaded(fixed(count, 0), STRONGEST * (count / all).min(1.0))
         } else {
@@ -103,7 +103,7 @@ pub(crate) struct TableText {
 
 impl<T> Table<T> {
     /// A row per item, without columns.
-    pub fn of(items: impl IntoIterator<Item = T>) -> Self {
+    pub(crate) fn of(items: impl IntoIterator<Item = T>) -> Self {
         let items: Vec<T> = items.into_iter().collect();
         let (rows, marks) = (vec![Vec::new(); items.len()], vec![None; items.len()]);
         Self { items, text: TableText { rows, marks, ..TableText::default() } }
@@ -116,12 +116,12 @@ impl<T> Table<T> {
     }
 
     /// A column of words, aligned left.
-    pub fn words<C: Into<Cell>>(self, heading: impl Into<String>, cell: impl Fn(&T) -> C) -> Self {
+    pub(crate) fn words<C: Into<Cell>>(self, heading: impl Into<String>, cell: impl Fn(&T) -> C) -> Self {
         self.column(Kind::Words, (heading.into(), ""), cell)
     }
 
     /// A column of numbers, aligned right, with its unit (empty for a pure number) in the header.
-    pub fn numbers<C: Into<Cell>>(
+    pub(crate) fn numbers<C: Into<Cell>>(
         self,
         heading: impl Into<String>,
         unit: &str,
@@ -131,29 +131,29 @@ impl<T> Table<T> {
     }
 
     /// A column that names the rows of a heat map.
-    pub fn names<C: Into<Cell>>(self, heading: impl Into<String>, cell: impl Fn(&T) -> C) -> Self {
+    pub(crate) fn names<C: Into<Cell>>(self, heading: impl Into<String>, cell: impl Fn(&T) -> C) -> Self {
         self.column(Kind::Name, (heading.into(), ""), cell)
     }
 
     /// A column of a heat map.
-    pub fn shaded(self, heading: impl Into<String>, cell: impl Fn(&T) -> Cell) -> Self {
+    pub(crate) fn shaded(self, heading: impl Into<String>, cell: impl Fn(&T) -> Cell) -> Self {
         self.column(Kind::Shaded, (heading.into(), ""), cell)
     }
 
     /// Marks rows at their edge.
-    pub fn marked(mut self, tone: impl Fn(&T) -> Option<Tone>) -> Self {
+    pub(crate) fn marked(mut self, tone: impl Fn(&T) -> Option<Tone>) -> Self {
         self.text.marks = self.items.iter().map(tone).collect();
         self
     }
 
     /// A sentence above the table.
-    pub fn caption(mut self, caption: impl Into<String>) -> Self {
+    pub(crate) fn caption(mut self, caption: impl Into<String>) -> Self {
         self.text.caption = caption.into();
         self
     }
 
     /// A line below the table.
-    pub fn footnote(mut self, footnote: impl Into<String>) -> Self {
+    pub(crate) fn footnote(mut self, footnote: impl Into<String>) -> Self {
         self.text.footnotes.push(footnote.into());
         self
     }
@@ -173,7 +173,7 @@ impl<T> Render for Table<T> {
 
 impl TableText {
     /// A row of headings and rows of cells, for a file: see [`csv`](crate::report).
-    pub fn cells(&self) -> (Vec<TableColumn<'_>>, Vec<Vec<&str>>) {
+    pub(crate) fn cells(&self) -> (Vec<TableColumn<'_>>, Vec<Vec<&str>>) {
         let columns = self.columns.iter();
         let heads = columns.map(|(kind, heading, unit)| TableColumn {
             heading,

@@ -19,7 +19,7 @@ use crate::recording::{ReadingArguments, RecordingArguments};
 use crate::refusal::Refusal;
 
 #[derive(Debug, Args)]
-pub struct CheckArguments {
+pub(super) struct CheckArguments {
     /// The fixture file (JSON).
     pub fixture: PathBuf,
     /// Recordings of it, if there are any (UFF, UNV): all files of one test, in any order.
@@ -41,7 +41,7 @@ pub struct CheckArguments {
 }
 
 /// Checks, writes `check.json` and `report.html` if a directory is given, and answers with what is odd and the figures that matter.
-pub fn run(arguments: &CheckArguments) -> Result<String, Refusal> {
+pub(super) fn run(arguments: &CheckArguments) -> Result<String, Refusal> {
     let fixture = FixtureFile::read(&arguments.fixture)?;
     let recording = RecordingArguments { files: arguments.files.clone(), reading: arguments.reading.clone() };
     let measurement = match arguments.files.is_empty() {

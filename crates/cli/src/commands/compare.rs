@@ -16,7 +16,7 @@ use crate::refusal::Refusal;
 
 /// Options of `jointscope compare`.
 #[derive(Debug, Args)]
-pub struct CompareArguments {
+pub(super) struct CompareArguments {
     /// Directories with the stiffness.json of a decomposition each; a joint is called by its directory.
     #[arg(required_unless_present = "specimens", value_name = "DIR")]
     pub directories: Vec<PathBuf>,
@@ -32,7 +32,7 @@ pub struct CompareArguments {
 
 /// A kind of joint and the directories of its specimens.
 #[derive(Debug, Clone)]
-pub struct Kind {
+pub(super) struct Kind {
     name: String,
     directories: Vec<PathBuf>,
 }
@@ -81,7 +81,7 @@ fn listed(arguments: &CompareArguments) -> (Vec<PathBuf>, Vec<(String, Vec<usize
 }
 
 /// Compares and writes `comparison.json` and `report.html`; answers with ratios, orders and where the page is, or with `comparison.json` itself.
-pub fn run(arguments: &CompareArguments) -> Result<String, Refusal> {
+pub(super) fn run(arguments: &CompareArguments) -> Result<String, Refusal> {
     if let Some((first, again)) = given_twice(&arguments.directories) {
         return Err(Refusal::new(format!(
             "`{}` and `{}` are the same directory: name each decomposition once",

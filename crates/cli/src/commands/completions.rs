@@ -7,13 +7,13 @@ use super::Program;
 use crate::refusal::Refusal;
 
 #[derive(Debug, Args)]
-pub struct CompletionsArguments {
+pub(super) struct CompletionsArguments {
     /// The shell.
     pub shell: Shell,
 }
 
 /// Prints the script.
-pub fn run(arguments: &CompletionsArguments) -> Result<String, Refusal> {
+pub(super) fn run(arguments: &CompletionsArguments) -> Result<String, Refusal> {
     let mut script = Vec::new();
     generate(arguments.shell, &mut Program::arguments(), "jointscope", &mut script);
     Ok(String::from_utf8_lossy(&script).trim_end().to_owned())

@@ -22,7 +22,7 @@ use crate::refusal::Refusal;
 use crate::values::{band, one_of};
 
 #[derive(Debug, Clone, Args)]
-pub struct DecomposeArguments {
+pub(super) struct DecomposeArguments {
     /// The fixture file (JSON); without recordings, a folder of cases or a list of them.
     pub fixture: PathBuf,
     #[command(flatten)]
@@ -51,7 +51,7 @@ const RELATIONS: [(&str, Relation); 2] = [("exact", Relation::Exact), ("paper", 
 
 /// Decomposes and writes `stiffness.json` and `report.html`; answers with what was found and where the page is, or with `stiffness.json` itself.
 /// Many cases each get a directory.
-pub fn run(arguments: &DecomposeArguments) -> Result<Said, Refusal> {
+pub(super) fn run(arguments: &DecomposeArguments) -> Result<Said, Refusal> {
     if arguments.recording.files.is_empty() {
         let task = Task {
             command: Command::Decompose,

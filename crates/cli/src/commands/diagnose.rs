@@ -25,7 +25,7 @@ use crate::refusal::Refusal;
 use crate::values::{band, frf_pair, seconds};
 
 #[derive(Debug, Clone, Args)]
-pub struct DiagnoseArguments {
+pub(crate) struct DiagnoseArguments {
     /// The fixture file (JSON); without recordings, a folder of cases or a list of them.
     pub fixture: PathBuf,
     #[command(flatten)]
@@ -61,7 +61,7 @@ pub struct DiagnoseArguments {
 
 /// Diagnoses, and writes `diagnosis.json`, `refitted.json`, `repaired.json` and `report.html`; answers with what was found and where the page
 /// is, or with `diagnosis.json` itself. Many cases each get a directory.
-pub fn run(arguments: &DiagnoseArguments) -> Result<Said, Refusal> {
+pub(super) fn run(arguments: &DiagnoseArguments) -> Result<Said, Refusal> {
     if arguments.recording.files.is_empty() {
         let task = Task {
             command: Command::Diagnose,
@@ -85,7 +85,7 @@ pub fn run(arguments: &DiagnoseArguments) -> Result<Said, Refusal> {
 }
 
 /// Tells what a diagnosis is doing while it does it.
-pub fn telling<T>(diagnosis: impl FnOnce(&(dyn Fn(Progress) + Sync)) -> T) -> T {
+pub(super) fn telling<T>(diagnosis: impl FnOnce(&(dyn Fn(Progress) + Sync)) -> T) -> T {
     let steps = Steps::new();
     let done = diagnosis(&|progress| match progress {
         Progress::Searching { frfs, lines } => steps.over(&format!("{frfs} FRFs on {lines} lines")),
@@ -106,7 +106,10 @@ fn found(
 }
 
 /// What the fixture leaves out of the recordings, nothing written.
-pub fn diagnosed(arguments: &DiagnoseArguments, watch: impl Fn(Progress) + Sync) -> Result<Answer, Refusal> {
+pub(super) fn diagnosed(
+    arguments: &DiagnoseArguments,
+    watch: impl Fn(Progress) + Sync,
+) -> Result<Answer, Refusal> {
     let fixture = FixtureFile::read(&arguments.fixture)?;
     let measurement = arguments.recording.measurement(&fixture)?;
     let estimate = arguments.estimation.options(ResponseWindow::Auto);

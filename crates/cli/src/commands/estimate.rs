@@ -16,7 +16,7 @@ use crate::recording::RecordingArguments;
 use crate::refusal::Refusal;
 
 #[derive(Debug, Args)]
-pub struct EstimateArguments {
+pub(super) struct EstimateArguments {
     #[command(flatten)]
     pub recording: RecordingArguments,
     /// Write text (dataset 58) instead of binary (58b).
@@ -30,7 +30,7 @@ pub struct EstimateArguments {
 }
 
 /// Estimates the FRFs and writes them; answers with what was seen in the hits and what was written.
-pub fn run(arguments: &EstimateArguments) -> Result<String, Refusal> {
+pub(super) fn run(arguments: &EstimateArguments) -> Result<String, Refusal> {
     let EstimateArguments { recording, estimation, ascii, output } = arguments;
     let sources = recording.sources()?;
     let hits = hits_of(&sources, None, &recording.options()?)

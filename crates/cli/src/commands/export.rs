@@ -15,7 +15,7 @@ use crate::values::one_of;
 
 /// Options of `jointscope export`.
 #[derive(Debug, Args)]
-pub struct ExportArguments {
+pub(super) struct ExportArguments {
     /// The directory that `decompose` or `diagnose` wrote to; or its stiffness.json or diagnosis.json, where it holds both.
     #[arg(value_name = "DIR")]
     pub answer: PathBuf,
@@ -58,7 +58,7 @@ const FORMS: [(&str, Form); 4] =
     [("bush", Form::Bush), ("dmig", Form::Dmig), ("element", Form::Element), ("matrix", Form::Matrix)];
 
 /// Writes the file; answers with what is in it and what is not.
-pub fn run(arguments: &ExportArguments) -> Result<String, Refusal> {
+pub(super) fn run(arguments: &ExportArguments) -> Result<String, Refusal> {
     let answer = Answer::find(&arguments.answer)?;
     let files = answer.files();
     let path = file(&arguments.output, arguments.program);

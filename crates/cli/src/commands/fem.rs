@@ -17,7 +17,7 @@ use crate::refusal::Refusal;
 
 /// Options of `jointscope fem`.
 #[derive(Debug, Args)]
-pub struct FemArguments {
+pub(super) struct FemArguments {
     #[command(flatten)]
     pub frfs: ComputedFrfs,
     /// Superpose only the rigid motions and the first N transverse modes [default: all modes up to twice the last line, and what lies beyond].
@@ -48,7 +48,7 @@ pub struct FemArguments {
 
 /// What can be switched off.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum Omission {
+pub(super) enum Omission {
     /// The mass of strips and layers.
     JointMass,
     /// Shear deformation of strips.
@@ -66,7 +66,7 @@ const DECK_MODES: usize = 16;
 const AGREEMENT: f64 = 0.01;
 
 /// Computes the twin's FRFs and writes them; answers with the modes and what was written.
-pub fn run(arguments: &FemArguments) -> Result<String, Refusal> {
+pub(super) fn run(arguments: &FemArguments) -> Result<String, Refusal> {
     let asked = &arguments.frfs;
     let fixture = FixtureFile::read(&asked.fixture)?;
     let pairs = asked.pairs(&fixture)?;

@@ -20,7 +20,7 @@ MATERIAL is steel, stainless, aluminium, brass, copper, titanium, magnesium, cas
 
 #[derive(Debug, Args)]
 #[command(after_help = BARS, group(ArgGroup::new("structure").required(true).multiple(true).args(["blocks", "frame", "beam", "from_uff"])))]
-pub struct InitArguments {
+pub(super) struct InitArguments {
     /// Two rigid blocks with a strip between them: one bar for both, or the left and the right one.
     #[arg(long, value_name = "BAR", num_args = 1..=2, requires = "strip")]
     pub blocks: Vec<Bar>,
@@ -72,7 +72,7 @@ pub struct InitArguments {
 }
 
 /// Drafts the fixture and writes it; answers with its notes, which also stand in the file.
-pub fn run(arguments: &InitArguments) -> Result<String, Refusal> {
+pub(super) fn run(arguments: &InitArguments) -> Result<String, Refusal> {
     let mut lines = Vec::new();
     let (points, placed) = match arguments.from_uff.is_empty() {
         true => (points(&arguments.points_from, &mut lines)?, Vec::new()),

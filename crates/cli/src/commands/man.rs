@@ -10,14 +10,14 @@ use crate::output::{Outputs, counted};
 use crate::refusal::Refusal;
 
 #[derive(Debug, Args)]
-pub struct ManArguments {
+pub(super) struct ManArguments {
     /// The directory to write a page a command to [default: the program's own page to standard output].
     #[arg(short, long, value_name = "DIR")]
     pub output: Option<PathBuf>,
 }
 
 /// Prints or writes the pages.
-pub fn run(arguments: &ManArguments) -> Result<String, Refusal> {
+pub(super) fn run(arguments: &ManArguments) -> Result<String, Refusal> {
     let mut program = Program::arguments();
     program.build();
     let Some(folder) = &arguments.output else {

@@ -23,7 +23,7 @@ use crate::refusal::Refusal;
 /// Options for many cases.
 #[derive(Debug, Clone, Default, Args)]
 #[command(next_help_heading = "Many cases (FIXTURE is a folder of them or a list, without recordings)")]
-pub struct ManyArguments {
+pub(crate) struct ManyArguments {
     /// Try only share I of N of the cases, for job I of a cluster's job array; `jointscope summary DIR` joins the shares.
     #[arg(long, value_name = "I/N")]
     pub shard: Option<Shard>,
@@ -34,7 +34,7 @@ pub struct ManyArguments {
 
 impl ManyArguments {
     /// Refuses what has no meaning for one test.
-    pub fn unused(&self) -> Result<(), Refusal> {
+    pub(crate) fn unused(&self) -> Result<(), Refusal> {
         match self.shard.is_some() || self.jobs.is_some() {
             false => Ok(()),
             true => Err(Refusal::new(
@@ -45,7 +45,7 @@ impl ManyArguments {
 }
 
 /// One case as a command of its own.
-pub struct OneCase<'a> {
+pub(super) struct OneCase<'a> {
     pub fixture: PathBuf,
     pub recordings: Vec<PathBuf>,
     /// The command line that gives this answer alone.
@@ -53,7 +53,7 @@ pub struct OneCase<'a> {
 }
 
 /// What is to be done with every case.
-pub struct Task<'a> {
+pub(super) struct Task<'a> {
     pub command: Command,
     /// A folder or a list.
     pub cases: &'a Path,
@@ -62,7 +62,7 @@ pub struct Task<'a> {
 }
 
 /// Tries the cases that have no answer yet; answers with what came of all, or of the share.
-pub fn run(
+pub(super) fn run(
     task: &Task,
     answer: impl Fn(&OneCase) -> Result<Answered, Refusal> + Sync,
 ) -> Result<Said, Refusal> {

@@ -21,7 +21,7 @@ use crate::refusal::Refusal;
 use crate::values::{band, positive};
 
 #[derive(Debug, Args)]
-pub struct ModesArguments {
+pub(super) struct ModesArguments {
     #[command(flatten)]
     pub recording: RecordingArguments,
     /// The band to use, in Hz [default: all lines].
@@ -44,7 +44,7 @@ pub struct ModesArguments {
 }
 
 /// Finds the modes and writes `modes.json` and `report.html`; answers with what was found and where the page is, or with `modes.json` itself.
-pub fn run(arguments: &ModesArguments) -> Result<String, Refusal> {
+pub(super) fn run(arguments: &ModesArguments) -> Result<String, Refusal> {
     let fixture = arguments.fixture.as_ref().map(|path| FixtureFile::read(path)).transpose()?;
     let recording = match &fixture {
         Some(fixture) => arguments.recording.recording(fixture)?,

@@ -25,7 +25,7 @@ use crate::values::{band, spectral_lines};
 
 /// Options of `jointscope plan`.
 #[derive(Debug, Args)]
-pub struct PlanArguments {
+pub(super) struct PlanArguments {
     /// The fixture file (JSON).
     pub fixture: PathBuf,
     /// What was recorded of it (UFF, UNV, CSV, MAT), which is diagnosed first; or the directory of a diagnosis, which is made again from its files.
@@ -84,7 +84,7 @@ struct Planned {
 }
 
 /// Plans; answers with the suggestions, the best first.
-pub fn run(arguments: &PlanArguments) -> Result<String, Refusal> {
+pub(super) fn run(arguments: &PlanArguments) -> Result<String, Refusal> {
     let folder = arguments.output.iter();
     let names = folder.flat_map(|folder| FILES.iter().map(|name| folder.join(name)));
     Outputs::foresee(std::iter::once(&arguments.fixture), names)?;

@@ -23,10 +23,10 @@ use crate::refusal::Refusal;
 use cases::Concealed;
 use pages::CasePages;
 
-pub use arguments::ProveArguments;
+pub(super) use arguments::ProveArguments;
 
 /// Has all cases diagnosed, opens the truths and scores; answers with the table.
-pub fn run(arguments: &ProveArguments) -> Result<String, Refusal> {
+pub(super) fn run(arguments: &ProveArguments) -> Result<String, Refusal> {
     if let Some(directory) = &arguments.real.recordings {
         return recordings::run(directory, arguments);
     }

@@ -9,14 +9,14 @@ use crate::output::{Outputs, pretty};
 use crate::refusal::Refusal;
 
 #[derive(Debug, Args)]
-pub struct SchemaArguments {
+pub(super) struct SchemaArguments {
     /// The file to write it to [default: standard output].
     #[arg(short, long, value_name = "OUT.json")]
     pub output: Option<PathBuf>,
 }
 
 /// Prints or writes the schema.
-pub fn run(arguments: &SchemaArguments) -> Result<String, Refusal> {
+pub(super) fn run(arguments: &SchemaArguments) -> Result<String, Refusal> {
     let schema = fixture_schema();
     let Some(path) = &arguments.output else { return Ok(pretty(&schema).trim_end().to_owned()) };
     Outputs::one(path.clone(), &schema)?;

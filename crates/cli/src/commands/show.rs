@@ -11,7 +11,7 @@ use crate::recording::{ReadingArguments, RecordingArguments, column_entry};
 use crate::refusal::Refusal;
 
 #[derive(Debug, Args)]
-pub struct ShowArguments {
+pub(super) struct ShowArguments {
     /// The files (UFF, UNV, CSV, MAT); `-` is standard input.
     #[arg(required = true, value_name = "FILE")]
     pub files: Vec<PathBuf>,
@@ -24,7 +24,7 @@ pub struct ShowArguments {
 }
 
 /// Answers with functions, units, geometry and modes of each file.
-pub fn run(arguments: &ShowArguments) -> Result<String, Refusal> {
+pub(super) fn run(arguments: &ShowArguments) -> Result<String, Refusal> {
     let columns = arguments.columns.clone();
     let sources = RecordingArguments {
         files: arguments.files.clone(),

@@ -15,7 +15,7 @@ use crate::refusal::Refusal;
 use crate::values::one_channel;
 
 #[derive(Debug, Args)]
-pub struct SimulateArguments {
+pub(super) struct SimulateArguments {
     /// The fixture file (JSON).
     pub fixture: PathBuf,
     /// The forces (UFF time histories, ordinate type 13), one for each hit.
@@ -39,7 +39,7 @@ pub struct SimulateArguments {
 const NOTABLE: f64 = 1e-4;
 
 /// Simulates and writes the responses; answers with what was written.
-pub fn run(arguments: &SimulateArguments) -> Result<String, Refusal> {
+pub(super) fn run(arguments: &SimulateArguments) -> Result<String, Refusal> {
     let SimulateArguments { fixture: path, force, at, with_force, ascii, output } = arguments;
     let fixture = FixtureFile::read(path)?;
     let sources = [input::source(force)?];

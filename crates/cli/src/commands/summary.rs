@@ -17,7 +17,7 @@ use crate::output::{Outputs, pretty};
 use crate::refusal::Refusal;
 
 #[derive(Debug, Args)]
-pub struct SummaryArguments {
+pub(super) struct SummaryArguments {
     /// The directory that `diagnose` or `decompose` wrote the answers of many cases to.
     #[arg(value_name = "DIR")]
     pub directory: PathBuf,
@@ -27,7 +27,7 @@ pub struct SummaryArguments {
 }
 
 /// Writes `summary.csv` and `summary.html`; answers with what came of the cases.
-pub fn run(arguments: &SummaryArguments) -> Result<Said, Refusal> {
+pub(super) fn run(arguments: &SummaryArguments) -> Result<Said, Refusal> {
     let directory = &arguments.directory;
     let lists = manifests(directory)?;
     let Some((_, Manifest { command, .. })) = lists.first() else {
@@ -96,7 +96,7 @@ fn known(path: &Path, command: &str) -> Result<Command, Refusal> {
 }
 
 /// Refuses a directory that holds cases of another command, whose pages would be overwritten.
-pub fn belongs_to(directory: &Path, command: Command) -> Result<(), Refusal> {
+pub(super) fn belongs_to(directory: &Path, command: Command) -> Result<(), Refusal> {
     if !directory.is_dir() {
         return Ok(());
     }
@@ -113,7 +113,12 @@ pub fn belongs_to(directory: &Path, command: Command) -> Result<(), Refusal> {
 }
 
 /// Reads what came of the cases, writes table and page; answers with them in words, or as JSON.
-pub fn written(directory: &Path, command: Command, cases: &[Case], json: bool) -> Result<String, Refusal> {
+pub(super) fn written(
+    directory: &Path,
+    command: Command,
+    cases: &[Case],
+    json: bool,
+) -> Result<String, Refusal> {
     let summary = Summary { command, rows: rows(directory, command, cases) };
     let context = origin::context([], Vec::new(), None)?;
     let page = summary_page(&summary, &context).map_err(Refusal::new)?;

@@ -8,7 +8,7 @@ use crate::input::FixtureFile;
 use crate::refusal::Refusal;
 
 #[derive(Debug, Args)]
-pub struct SynthesizeArguments {
+pub(super) struct SynthesizeArguments {
     #[command(flatten)]
     frfs: ComputedFrfs,
     /// As a perfect instrument would read them, without the effects of sensors and analyser.
@@ -17,7 +17,7 @@ pub struct SynthesizeArguments {
 }
 
 /// Computes the FRFs and writes them; answers with what was written.
-pub fn run(arguments: &SynthesizeArguments) -> Result<String, Refusal> {
+pub(super) fn run(arguments: &SynthesizeArguments) -> Result<String, Refusal> {
     let SynthesizeArguments { frfs: asked, perfect } = arguments;
     let fixture = FixtureFile::read(&asked.fixture)?;
     let instrument = if *perfect { Instrument::Perfect } else { Instrument::AsRecorded };

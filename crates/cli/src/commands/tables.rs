@@ -13,7 +13,7 @@ use crate::refusal::Refusal;
 
 /// Options of `jointscope tables`.
 #[derive(Debug, Args)]
-pub struct TablesArguments {
+pub(super) struct TablesArguments {
     /// Your own decomposition of an example (a directory with stiffness.json, made with `--relation paper`), for the column EXP.
     #[arg(long, value_name = "E2=DIR", num_args = 1.., value_parser = measured)]
     pub measured: Vec<(String, PathBuf)>,
@@ -29,7 +29,7 @@ pub struct TablesArguments {
 }
 
 /// Computes the tables; answers with them, or with the file that holds them.
-pub fn run(arguments: &TablesArguments) -> Result<String, Refusal> {
+pub(super) fn run(arguments: &TablesArguments) -> Result<String, Refusal> {
     let mut measured = Vec::new();
     let mut inputs = Vec::new();
     for (example, directory) in &arguments.measured {

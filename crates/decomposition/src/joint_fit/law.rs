@@ -65,7 +65,7 @@ pub(super) enum Form {
 }
 
 impl Form {
-    pub fn count(self) -> usize {
+    pub(super) fn count(self) -> usize {
         match self {
             Form::Scalar => 1,
             Form::Symmetric => 3,
@@ -123,7 +123,7 @@ pub(super) struct Dynamics {
 pub(super) const MOST: usize = 12;
 
 impl Dynamics {
-    pub fn new(kind: LawKind, unit: RealMatrix2, middle: f64, scalar: bool) -> Self {
+    pub(super) fn new(kind: LawKind, unit: RealMatrix2, middle: f64, scalar: bool) -> Self {
         let matrix = if scalar { Form::Scalar } else { Form::Symmetric };
         Dynamics {
             kind,
@@ -136,33 +136,33 @@ impl Dynamics {
     }
 
     /// A law of another kind in the same units.
-    pub fn of_kind(self, kind: LawKind) -> Self {
+    pub(super) fn of_kind(self, kind: LawKind) -> Self {
         Dynamics::new(kind, self.unit, self.middle, self.stiffness == Form::Scalar)
     }
 
     /// The same with K and the damping matrix free of symmetry; a law without damping stays without.
-    pub fn free(self) -> Self {
+    pub(super) fn free(self) -> Self {
         let damping = if self.damping == Form::Zero { Form::Zero } else { Form::Free };
         Dynamics { stiffness: Form::Free, damping, ..self }
     }
 
     /// Number of elements by which [`free`](Self::free) has more.
-    pub fn asymmetries(&self) -> usize {
+    pub(super) fn asymmetries(&self) -> usize {
         1 + usize::from(self.damping != Form::Zero)
     }
 
     /// Number of coordinates: K, damping, K₁, then ln(ωτ) in the middle of the band, or α − ½.
-    pub fn count(&self) -> usize {
+    pub(super) fn count(&self) -> usize {
         self.stiffness.count() + self.damping.count() + self.change.count() + self.shapes()
     }
 
     /// Whether the law has a time or an exponent besides its matrices.
-    pub fn shapes(&self) -> usize {
+    pub(super) fn shapes(&self) -> usize {
         usize::from(matches!(self.kind, LawKind::StandardLinearSolid | LawKind::Fractional))
     }
 
     /// Which of k11, k12, k22, c11, c12, c22 in the middle of the band its first coordinates are, in their order.
-    pub fn slots(&self) -> &'static [usize] {
+    pub(super) fn slots(&self) -> &'static [usize] {
         match (self.stiffness == Form::Scalar, self.damping == Form::Zero) {
             (true, true) => &[0],
             (true, false) => &[0, 3],
@@ -189,20 +189,20 @@ impl Dynamics {
     }
 
     /// K and the damping matrix as an imaginary stiffness, both in the middle of the band; K₁·ω there. N/m and so on.
-    pub fn matrices(&self, at: &[f64]) -> [RealMatrix2; 3] {
+    pub(super) fn matrices(&self, at: &[f64]) -> [RealMatrix2; 3] {
         let [k, d, l, _] = self.split(at);
         [self.stiffness.matrix(k), self.damping.matrix(d), self.change.matrix(l)].map(|m| self.in_units(m))
     }
 
     /// τ in s, or α.
-    pub fn shape(&self, at: &[f64]) -> Option<f64> {
+    pub(super) fn shape(&self, at: &[f64]) -> Option<f64> {
         let [.., shape] = self.split(at);
         let shape = shape.first()?;
         Some(if self.kind == LawKind::Fractional { 0.5 + shape } else { shape.exp() / self.middle })
     }
 
     /// The same with its standard deviation, from that of its coordinate.
-    pub fn shape_with_std(&self, at: &[f64], std: impl Fn(usize) -> f64) -> Option<(f64, f64)> {
+    pub(super) fn shape_with_std(&self, at: &[f64], std: impl Fn(usize) -> f64) -> Option<(f64, f64)> {
         let (shape, own) = (self.shape(at)?, std(self.count() - 1));
         Some((shape, if self.kind == LawKind::Fractional { own } else { shape * own }))
     }
@@ -231,7 +231,7 @@ impl Dynamics {
     }
 
     /// By how much less than K in the middle of the band the law's own K is, as a share of the damping matrix.
-    pub fn stiffening(&self, at: &[f64]) -> f64 {
+    pub(super) fn stiffening(&self, at: &[f64]) -> f64 {
         let [.., shape] = self.split(at);
         match (self.kind, shape.first()) {
             (LawKind::StandardLinearSolid, Some(x)) => x.exp(),
@@ -241,7 +241,7 @@ impl Dynamics {
     }
 
     /// What the damping matrix in units of stiffness is multiplied by to be the law's own: C, H, D of the solid, D of the springpot.
-    pub fn own_damping(&self, at: &[f64]) -> f64 {
+    pub(super) fn own_damping(&self, at: &[f64]) -> f64 {
         let [.., shape] = self.split(at);
         match (self.kind, shape.first()) {
             (LawKind::StandardLinearSolid, Some(x)) => (1.0 + (2.0 * x).exp()) / x.exp(),
@@ -254,7 +254,7 @@ impl Dynamics {
     }
 
     /// The law at these coordinates, ready for many lines.
-    pub fn placed<'a>(&'a self, at: &'a [f64]) -> Placed<'a> {
+    pub(super) fn placed<'a>(&'a self, at: &'a [f64]) -> Placed<'a> {
         let [.., shape] = self.split(at);
         Placed { law: self, at, matrices: self.matrices(at), shape: shape.first().copied().unwrap_or(0.0) }
     }
@@ -270,13 +270,13 @@ pub(super) struct Placed<'a> {
 
 impl Placed<'_> {
     /// Number of coordinates.
-    pub fn count(&self) -> usize {
+    pub(super) fn count(&self) -> usize {
         self.law.count()
     }
 
     /// K + losses·D + K₁·(ω − ω₀) at s, ω₀ being the middle of the band, on all of these lines.
     #[inline(always)]
-    pub fn stiffness<T: Lines>(&self, s: &[Complex64]) -> Matrix2<T> {
+    pub(super) fn stiffness<T: Lines>(&self, s: &[Complex64]) -> Matrix2<T> {
         let [k, d, l] = &self.matrices;
         let losses: T = on_lines(s, |s| self.law.losses(s, self.shape));
         let relative: T = on_lines(s, |s| self.law.change(s));
@@ -288,7 +288,7 @@ impl Placed<'_> {
 
     /// Losses at s, their derivative by the law's time or exponent, and what K₁ is multiplied by: what derivatives need of lines.
     #[inline(always)]
-    pub fn factors<T: Lines>(&self, s: &[Complex64]) -> [T; 3] {
+    pub(super) fn factors<T: Lines>(&self, s: &[Complex64]) -> [T; 3] {
         const STEP: f64 = 1e-5;
         let by_shape = match self.law.shapes() {
             0 => T::ZERO,
@@ -303,7 +303,7 @@ impl Placed<'_> {
 
     /// Writes derivatives by the coordinates over `slots`, from those by the elements (11, 12, 21, 22) of the dynamic stiffness.
     #[inline(always)]
-    pub fn chain<T: Lines>(&self, by: [T; 4], [losses, by_shape, relative]: [T; 3], slots: &mut [T]) {
+    pub(super) fn chain<T: Lines>(&self, by: [T; 4], [losses, by_shape, relative]: [T; 3], slots: &mut [T]) {
         let u = &self.law.unit;
         let scaled = [by[0] * u.at(0, 0), by[1] * u.at(0, 1), by[2] * u.at(1, 0), by[3] * u.at(1, 1)];
         let [k, d, l, _] = self.law.split(self.at);

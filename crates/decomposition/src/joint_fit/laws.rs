@@ -91,7 +91,7 @@ pub(super) struct Spread {
 
 impl Spread {
     /// `kind`, `heavy`: the law that the headline follows and whether with mass. Nothing where it is not among the laws.
-    pub fn of(laws: &[LawFit], kind: LawKind, heavy: bool) -> Option<Self> {
+    pub(super) fn of(laws: &[LawFit], kind: LawKind, heavy: bool) -> Option<Self> {
         let stated = laws.iter().find(|fit| fit.kind == kind && fit.mass.is_some() == heavy)?;
         let six = |fit: &LawFit| {
             let (k, c) = fit.in_the_middle();
@@ -307,7 +307,7 @@ fn variances(parameters: &[Parameter]) -> Vec<f64> {
 
 impl Candidate {
     /// A joint's law at the optimum of all; `None` where that is not determined.
-    pub fn of(problem: &Problem, at: &Fitted, joint: usize) -> Option<Self> {
+    pub(super) fn of(problem: &Problem, at: &Fitted, joint: usize) -> Option<Self> {
         let information = at.equations(problem).information;
         let evidence = laplace_evidence(at.point.objective, &information, &variances(&problem.parameters))?;
         let (first, law) = problem.places().nth(joint)?;

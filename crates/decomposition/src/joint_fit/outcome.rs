@@ -25,14 +25,14 @@ pub(super) struct Inflated {
 }
 
 impl Inflated {
-    pub fn of(problem: &Problem, first: &Fitted) -> Self {
+    pub(super) fn of(problem: &Problem, first: &Fitted) -> Self {
         let by = problem.inflation(&first.point);
         let weights = problem.test.weights.iter().map(|weight| weight / by).collect();
         Inflated { chi2_per_dof: problem.per_degree(&first.point), by, weights }
     }
 
     /// The optimum under these weights, from that without.
-    pub fn refitted(&self, problem: &Problem, first: Fitted) -> Option<Fitted> {
+    pub(super) fn refitted(&self, problem: &Problem, first: Fitted) -> Option<Fitted> {
         if self.by <= 1.0 {
             return Some(first);
         }
@@ -72,7 +72,7 @@ struct Slot {
 
 impl Outcome<'_> {
     /// From the optimum with every c free. `asymmetry` tells by how much χ² falls where k and the damping matrix of a joint may be unsymmetric, variances counting so many times.
-    pub fn of(
+    pub(super) fn of(
         self,
         free: &Fitted,
         asymmetry: &dyn Fn(usize, f64) -> Option<f64>,

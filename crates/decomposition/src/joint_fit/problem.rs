@@ -53,7 +53,7 @@ pub(super) struct Point {
 
 impl Point {
     /// The same joints and fixture in the coordinates of other laws.
-    pub fn with(&self, coordinates: Vec<f64>) -> Self {
+    pub(super) fn with(&self, coordinates: Vec<f64>) -> Self {
         let (uncoupled, predicted) = (Arc::clone(&self.uncoupled), self.predicted.clone());
         Point { coordinates, uncoupled, predicted, objective: self.objective }
     }
@@ -89,7 +89,7 @@ impl Fitted {
     /// Takes the derivatives by the quantities at the optimum, which those of the fit were taken near, and goes on where they promise more.
     ///
     /// `None` where there are none.
-    pub fn refresh(&mut self, problem: &Problem) -> Option<()> {
+    pub(super) fn refresh(&mut self, problem: &Problem) -> Option<()> {
         for look in 0.. {
             self.others = problem.other_columns(&self.point)?;
             let promised = problem.promised(&self.point, &self.equations(problem));
@@ -105,12 +105,12 @@ impl Fitted {
         Some(())
     }
 
-    pub fn equations(&self, problem: &Problem) -> NormalEquations {
+    pub(super) fn equations(&self, problem: &Problem) -> NormalEquations {
         problem.equations_of(&self.point, &self.others, problem.test.weights)
     }
 
     /// How far the coordinates move when each of eight blocks of lines is left out, to first order.
-    pub fn jackknifed(&self, problem: &Problem) -> Option<Covariance> {
+    pub(super) fn jackknifed(&self, problem: &Problem) -> Option<Covariance> {
         let lines = problem.test.setup.recorded.s.len();
         jackknifed_by(lines, problem.test.weights, &self.point.coordinates, |weights| {
             problem.equations_of(&self.point, &self.others, weights).step(0.0)
@@ -125,13 +125,13 @@ pub(super) fn lower(a: Fitted, b: Fitted) -> Fitted {
 
 impl<'a> Problem<'a> {
     /// Joints of whose stiffness and losses nothing is known beforehand, with a mass of the first if there is a scale for it (kg).
-    pub fn open(test: Test<'a>, laws: Vec<Dynamics>, mass: Option<f64>) -> Self {
+    pub(super) fn open(test: Test<'a>, laws: Vec<Dynamics>, mass: Option<f64>) -> Self {
         let own = laws.iter().flat_map(laws::open_parameters).collect();
         Problem::of(test, laws, mass, own)
     }
 
     /// Joints of any laws, with what is known beforehand of their stiffness and losses.
-    pub fn lawful(test: Test<'a>, laws: Vec<Dynamics>, mass: Option<f64>) -> Self {
+    pub(super) fn lawful(test: Test<'a>, laws: Vec<Dynamics>, mass: Option<f64>) -> Self {
         let own = laws.iter().flat_map(laws::own_parameters).collect();
         Problem::of(test, laws, mass, own)
     }
@@ -143,12 +143,12 @@ impl<'a> Problem<'a> {
     }
 
     /// The same with the joints' matrices in other forms.
-    pub fn with_forms(&self, laws: Vec<Dynamics>) -> Self {
+    pub(super) fn with_forms(&self, laws: Vec<Dynamics>) -> Self {
         Problem::open(self.test, laws, self.mass)
     }
 
     /// The same for values of these weights.
-    pub fn weighted<'b>(&self, weights: &'b [f64]) -> Problem<'b>
+    pub(super) fn weighted<'b>(&self, weights: &'b [f64]) -> Problem<'b>
     where
         'a: 'b,
     {
@@ -157,17 +157,17 @@ impl<'a> Problem<'a> {
     }
 
     /// Number of coordinates of the laws.
-    pub fn of_laws(&self) -> usize {
+    pub(super) fn of_laws(&self) -> usize {
         self.laws.iter().map(Dynamics::count).sum()
     }
 
     /// Number of coordinates before those of the fixture's quantities.
-    pub fn own(&self) -> usize {
+    pub(super) fn own(&self) -> usize {
         self.of_laws() + usize::from(self.mass.is_some())
     }
 
     /// Each joint's law with the place of its first coordinate.
-    pub fn places(&self) -> impl Iterator<Item = (usize, &Dynamics)> {
+    pub(super) fn places(&self) -> impl Iterator<Item = (usize, &Dynamics)> {
         self.laws.iter().scan(0, |next, law| {
             let first = *next;
             *next += law.count();
@@ -176,19 +176,19 @@ impl<'a> Problem<'a> {
     }
 
     /// The first joint's mass at these coordinates, kg.
-    pub fn mass_at(&self, coordinates: &[f64]) -> f64 {
+    pub(super) fn mass_at(&self, coordinates: &[f64]) -> f64 {
         self.mass.map_or(0.0, |scale| scale * coordinates[self.of_laws()])
     }
 
     /// The laws' coordinates with the fixture as stated.
-    pub fn whole(&self, own: &[f64]) -> Vec<f64> {
+    pub(super) fn whole(&self, own: &[f64]) -> Vec<f64> {
         let mut all = own.to_vec();
         all.resize(self.parameters.len(), 0.0);
         all
     }
 
     /// Coordinates of the same joints and fixture where K and the damping matrix of the same laws have other forms.
-    pub fn converted(&self, at: &[f64], laws: &[Dynamics]) -> Vec<f64> {
+    pub(super) fn converted(&self, at: &[f64], laws: &[Dynamics]) -> Vec<f64> {
         let own = self.places().zip(laws).flat_map(|((first, law), other)| {
             let own = &at[first..first + law.count()];
             let [k, d, _] = law.matrices(own);
@@ -210,7 +210,7 @@ impl<'a> Problem<'a> {
     }
 
     /// `None` where nothing finite is predicted.
-    pub fn point(&self, coordinates: Vec<f64>, before: Option<&Uncoupled>) -> Option<Point> {
+    pub(super) fn point(&self, coordinates: Vec<f64>, before: Option<&Uncoupled>) -> Option<Point> {
         let recorded = self.test.setup.recorded;
         let uncoupled = Arc::new(self.uncoupled(&coordinates, before)?);
         let predicted = uncoupled.coupled(recorded, &self.placed(&coordinates), None)?;
@@ -229,7 +229,7 @@ impl<'a> Problem<'a> {
     }
 
     /// Derivatives by the mass and the quantities, by forward differences of what is left without the joints.
-    pub fn other_columns(&self, at: &Point) -> Option<Columns> {
+    pub(super) fn other_columns(&self, at: &Point) -> Option<Columns> {
         let laws = self.placed(&at.coordinates);
         let column = |index: usize| {
             let mut coordinates = at.coordinates.clone();
@@ -246,7 +246,12 @@ impl<'a> Problem<'a> {
     }
 
     /// Normal equations with these weights.
-    pub fn equations_of(&self, at: &Point, others: &[Vec<Complex64>], weights: &[f64]) -> NormalEquations {
+    pub(super) fn equations_of(
+        &self,
+        at: &Point,
+        others: &[Vec<Complex64>],
+        weights: &[f64],
+    ) -> NormalEquations {
         let own = self.own_columns(at);
         let columns: Vec<&[Complex64]> = own.iter().chain(others).map(Vec::as_slice).collect();
         let priors = |m: usize| (self.parameters[m].precision, at.coordinates[m]);
@@ -262,7 +267,7 @@ impl<'a> Problem<'a> {
 
     /// Coordinates of `law` by which it comes nearest to what the one joint's law here does at a point, with what that leaves of the FRFs: the FRFs are taken
     /// as linear in the dynamic stiffness, so that resonances weigh most. K, damping matrix and K₁ alone; `shape` is the law's time or exponent.
-    pub fn imitated(&self, at: &Point, law: &Dynamics, shape: f64) -> Option<(Vec<f64>, f64)> {
+    pub(super) fn imitated(&self, at: &Point, law: &Dynamics, shape: f64) -> Option<(Vec<f64>, f64)> {
         let recorded = self.test.setup.recorded;
         let mut columns = self.own_columns(at);
         let mut target = recorded.residual(&at.predicted);
@@ -286,12 +291,17 @@ impl<'a> Problem<'a> {
     }
 
     /// The optimum next to `start`, with derivatives by the quantities known from nearby where there are any.
-    pub fn fit(&self, start: Vec<f64>, nearby: Option<Columns>) -> Option<Fitted> {
+    pub(super) fn fit(&self, start: Vec<f64>, nearby: Option<Columns>) -> Option<Fitted> {
         self.fit_within(start, nearby, STEPS)
     }
 
     /// The same within a number of steps.
-    pub fn fit_within(&self, start: Vec<f64>, nearby: Option<Columns>, steps: usize) -> Option<Fitted> {
+    pub(super) fn fit_within(
+        &self,
+        start: Vec<f64>,
+        nearby: Option<Columns>,
+        steps: usize,
+    ) -> Option<Fitted> {
         self.fit_from(self.point(start, None)?, nearby, steps)
     }
 
@@ -311,7 +321,7 @@ impl<'a> Problem<'a> {
     }
 
     /// A fit by stages in which less and less of the signal counts as noise, so that sharp resonances do not decide where it goes.
-    pub fn searched(&self, start: Vec<f64>) -> Option<Fitted> {
+    pub(super) fn searched(&self, start: Vec<f64>) -> Option<Fitted> {
         let mut at = start;
         for share in SHARES_AS_NOISE {
             let weights = self.test.setup.recorded.weights_with(share);
@@ -326,12 +336,12 @@ impl<'a> Problem<'a> {
     }
 
     /// The objective over what is left of the values by the parameters.
-    pub fn per_degree(&self, point: &Point) -> f64 {
+    pub(super) fn per_degree(&self, point: &Point) -> f64 {
         self.test.setup.recorded.per_degree(point.objective, self.own(), &self.parameters)
     }
 
     /// What the noise is multiplied by so that it explains what is left, correlated from line to line as that is.
-    pub fn inflation(&self, point: &Point) -> f64 {
+    pub(super) fn inflation(&self, point: &Point) -> f64 {
         self.test.setup.recorded.inflation(self.per_degree(point), &point.predicted)
     }
 }

@@ -32,7 +32,7 @@ const UNKNOWN_NOISE: f64 = 1e-3;
 
 impl Recorded {
     /// `None` where nothing can be used.
-    pub fn of(frfs: &FrfSet, fixture: &Fixture, band: Option<Band>) -> Option<Self> {
+    pub(super) fn of(frfs: &FrfSet, fixture: &Fixture, band: Option<Band>) -> Option<Self> {
         let decay = window_decay(fixture);
         let readable = |pair: &FrfPair| {
             let chain = MeasuringChain::of(fixture, std::slice::from_ref(pair), Instrument::AsRecorded);
@@ -88,17 +88,17 @@ impl Recorded {
     }
 
     /// Circular frequency in the middle of the lines, rad/s.
-    pub fn middle(&self) -> f64 {
+    pub(super) fn middle(&self) -> f64 {
         self.s.iter().map(|s| s.im).sum::<f64>() / self.s.len() as f64
     }
 
     /// What is left of the values.
-    pub fn residual(&self, predicted: &[Complex64]) -> Vec<Complex64> {
+    pub(super) fn residual(&self, predicted: &[Complex64]) -> Vec<Complex64> {
         self.values.iter().zip(predicted).map(|(m, p)| m - p).collect()
     }
 
     /// χ² with these weights, and what is known of the coordinates beforehand.
-    pub fn objective(
+    pub(super) fn objective(
         &self,
         predicted: &[Complex64],
         weights: &[f64],
@@ -111,18 +111,18 @@ impl Recorded {
     }
 
     /// Σ w|a|² of a change of the values.
-    pub fn size(&self, change: &[Complex64]) -> f64 {
+    pub(super) fn size(&self, change: &[Complex64]) -> f64 {
         change.iter().zip(&self.weights).map(|(value, weight)| weight * value.norm_sqr()).sum()
     }
 
     /// Weights with this share of the signal counted as noise besides.
-    pub fn weights_with(&self, share: f64) -> Vec<f64> {
+    pub(super) fn weights_with(&self, share: f64) -> Vec<f64> {
         let values = self.values.iter().zip(&self.weights);
         values.map(|(value, weight)| inflated_weight(*weight, value.norm_sqr(), share)).collect()
     }
 
     /// An objective over what is left of the values by parameters, the first `own` of which are not the fixture's.
-    pub fn per_degree(&self, objective: f64, own: usize, parameters: &[Parameter]) -> f64 {
+    pub(super) fn per_degree(&self, objective: f64, own: usize, parameters: &[Parameter]) -> f64 {
         // Priors count one degree for each quantity that has one.
         let quantities = parameters.iter().skip(own);
         let free = own + quantities.filter(|parameter| parameter.precision == 0.0).count();
@@ -130,7 +130,7 @@ impl Recorded {
     }
 
     /// What the noise is multiplied by so that it explains what is left, correlated from line to line as that is.
-    pub fn inflation(&self, per_degree: f64, predicted: &[Complex64]) -> f64 {
+    pub(super) fn inflation(&self, per_degree: f64, predicted: &[Complex64]) -> f64 {
         if per_degree <= EXPLAINED {
             return 1.0;
         }
@@ -140,7 +140,7 @@ impl Recorded {
     }
 
     /// Number of real values that count.
-    pub fn degrees(&self) -> usize {
+    pub(super) fn degrees(&self) -> usize {
         2 * self.weights.iter().filter(|weight| **weight > 0.0).count()
     }
 }

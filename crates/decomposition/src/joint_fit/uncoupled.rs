@@ -59,7 +59,12 @@ impl Uncoupled {
     /// A fixture without its joints but with the mass (kg, uniform) of the first of them. Pieces that `before` has already are taken from there.
     ///
     /// `None` where a piece has no finite receptances.
-    pub fn of(setup: &Setup, fixture: &Fixture, mass: f64, before: Option<&Uncoupled>) -> Option<Self> {
+    pub(super) fn of(
+        setup: &Setup,
+        fixture: &Fixture,
+        mass: f64,
+        before: Option<&Uncoupled>,
+    ) -> Option<Self> {
         let recorded = setup.recorded;
         let chain = MeasuringChain::of(fixture, &recorded.pairs, Instrument::AsRecorded).ok()?;
         let joints: Vec<_> = setup.joints.iter().map(|&joint| &fixture.joints()[joint]).collect();
@@ -189,7 +194,7 @@ impl Uncoupled {
     /// other's, over `columns`, if wanted.
     ///
     /// `None` where a line has no finite response.
-    pub fn coupled(
+    pub(super) fn coupled(
         &self,
         recorded: &Recorded,
         laws: &[Placed],

@@ -52,7 +52,7 @@ const ROUNDS: usize = 12;
 const SETTLED: f64 = 1e-6;
 
 impl Data {
-    pub fn new(
+    pub(super) fn new(
         frfs: &FrfSet,
         (layout, taken_apart): (&BlockLayout, &Sides),
         spectrum: &JointSpectrum,
@@ -63,7 +63,7 @@ impl Data {
     }
 
     /// The same for other sides than those that the spectrum was found with.
-    pub fn on(
+    pub(super) fn on(
         frfs: &FrfSet,
         (layout, taken_apart): (&BlockLayout, &Sides),
         sides: &Compliances,
@@ -109,19 +109,19 @@ impl Data {
         Ok(data)
     }
 
-    pub fn lines(&self) -> usize {
+    pub(super) fn lines(&self) -> usize {
         self.lines.len()
     }
 
-    pub fn values(&self) -> usize {
+    pub(super) fn values(&self) -> usize {
         self.measured.len()
     }
 
-    pub fn whole(&self) -> Part<'_> {
+    pub(super) fn whole(&self) -> Part<'_> {
         self.without(0..0)
     }
 
-    pub fn without(&self, left_out: Range<usize>) -> Part<'_> {
+    pub(super) fn without(&self, left_out: Range<usize>) -> Part<'_> {
         Part { data: self, left_out }
     }
 
@@ -148,7 +148,7 @@ impl Data {
         factor.is_finite().then(|| [inverse(left), inverse(right)])
     }
 
-    pub fn linear(&self, spectrum: &JointSpectrum) -> Linear {
+    pub(super) fn linear(&self, spectrum: &JointSpectrum) -> Linear {
         let of_line = |line: &Line| {
             let measured = spectrum.h41.values[line.index];
             let x = if self.scalar {
@@ -163,7 +163,7 @@ impl Data {
     }
 
     /// Rounds of the linear problem t_pᵀ β43 [X − (I − X T) k] (I + T k₀)⁻¹ R α21 t_q = 0 for k, k₀ being the last round's.
-    pub fn linear_rounds(&self, linear: &Linear, start: Parameters) -> Parameters {
+    pub(super) fn linear_rounds(&self, linear: &Linear, start: Parameters) -> Parameters {
         let mut current = start;
         for _ in 0..ROUNDS {
             let joint_of = (current.stiffness(), current.damping());
@@ -206,7 +206,7 @@ pub(super) fn lines_of(spectrum: &JointSpectrum, band: Option<Band>) -> Vec<usiz
 
 impl Part<'_> {
     /// χ²; infinite where a line has no finite response.
-    pub fn chi2(&self, parameters: &Parameters) -> f64 {
+    pub(super) fn chi2(&self, parameters: &Parameters) -> f64 {
         let mut chi2 = 0.0;
         let finite = self.visit(parameters, |_, own| {
             chi2 += own.residuals().map(|(_, weight, residual)| weight * residual.norm_sqr()).sum::<f64>();
@@ -215,7 +215,7 @@ impl Part<'_> {
     }
 
     /// The sums of all lines; `None` where one has no finite response.
-    pub fn sums(&self, parameters: &Parameters) -> Option<Sums> {
+    pub(super) fn sums(&self, parameters: &Parameters) -> Option<Sums> {
         let mut sums = Sums::default();
         let finite = self.visit(parameters, |s, own| {
             let mut line = OfLine::default();
@@ -229,7 +229,7 @@ impl Part<'_> {
     }
 
     /// Minus half of the gradient by the free parameters; `None` where a line has no finite response.
-    pub fn right(&self, parameters: &Parameters) -> Option<Vec<f64>> {
+    pub(super) fn right(&self, parameters: &Parameters) -> Option<Vec<f64>> {
         let mut sums = Sums::default();
         let finite = self.visit(parameters, |s, own| {
             let mut line = OfLine::default();

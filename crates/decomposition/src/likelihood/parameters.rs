@@ -12,7 +12,7 @@ pub(super) struct Parameters {
 
 impl Parameters {
     /// `None` for a start that is no joint.
-    pub fn of(k: RealMatrix2, c: RealMatrix2, scalar: bool) -> Option<Self> {
+    pub(super) fn of(k: RealMatrix2, c: RealMatrix2, scalar: bool) -> Option<Self> {
         let elements = |m: RealMatrix2| {
             if scalar { [m.at(0, 0), 0.0, 0.0] } else { [m.at(0, 0), m.at(0, 1), m.at(1, 1)] }
         };
@@ -21,7 +21,7 @@ impl Parameters {
     }
 
     /// Which of the slots (k11, k12, k22, c11 or v1, c12 or v2, c22) are free.
-    pub fn active(&self) -> &'static [usize] {
+    pub(super) fn active(&self) -> &'static [usize] {
         match (self.scalar, self.boundary) {
             (true, None) => &[0, 3],
             (true, Some(_)) => &[0],
@@ -31,26 +31,26 @@ impl Parameters {
     }
 
     /// Values of all slots from those of the free ones; zero of the others.
-    pub fn slots(&self, active: &[f64]) -> [f64; 6] {
+    pub(super) fn slots(&self, active: &[f64]) -> [f64; 6] {
         let mut slots = [0.0; 6];
         self.active().iter().zip(active).for_each(|(&m, value)| slots[m] = *value);
         slots
     }
 
-    pub fn stiffness(&self) -> RealMatrix2 {
+    pub(super) fn stiffness(&self) -> RealMatrix2 {
         Matrix2::new(self.k[0], self.k[1], self.k[1], self.k[2])
     }
 
-    pub fn damping(&self) -> RealMatrix2 {
+    pub(super) fn damping(&self) -> RealMatrix2 {
         Matrix2::new(self.c[0], self.c[1], self.c[1], self.c[2])
     }
 
-    pub fn is_passive(&self) -> bool {
+    pub(super) fn is_passive(&self) -> bool {
         self.c[0] >= 0.0 && self.c[2] >= 0.0 && self.c[1] * self.c[1] <= self.c[0] * self.c[2]
     }
 
     /// The nearest c on the boundary, both dofs scaled to equal stiffness.
-    pub fn on_the_boundary(&self) -> Self {
+    pub(super) fn on_the_boundary(&self) -> Self {
         let unit = [self.k[0].sqrt(), self.k[2].sqrt()];
         if self.scalar {
             return Parameters { c: [0.0; 3], boundary: Some([0.0; 2]), ..*self };
@@ -73,7 +73,7 @@ impl Parameters {
     }
 
     /// Derivatives of (k11, k12, k22, c11, c12, c22) by the free slots, one row a slot.
-    pub fn derivatives(&self) -> Vec<[f64; 6]> {
+    pub(super) fn derivatives(&self) -> Vec<[f64; 6]> {
         let row = |&slot: &usize| {
             let mut row = [0.0; 6];
             match (slot, self.boundary) {
@@ -87,14 +87,14 @@ impl Parameters {
     }
 
     /// Whether k differs by less than a share of √(k_ii k_jj).
-    pub fn is_near(&self, other: &Parameters, share: f64) -> bool {
+    pub(super) fn is_near(&self, other: &Parameters, share: f64) -> bool {
         let root = [self.k[0], self.k[2]].map(|k| k.abs().sqrt());
         let units = [root[0] * root[0], root[0] * root[1], root[1] * root[1]];
         let units = if self.scalar { [units[0], f64::INFINITY, f64::INFINITY] } else { units };
         self.k.iter().zip(&other.k).zip(units).all(|((a, b), unit)| (a - b).abs() <= share * unit)
     }
 
-    pub fn stepped(&self, step: &[f64; 6]) -> Self {
+    pub(super) fn stepped(&self, step: &[f64; 6]) -> Self {
         let mut next = *self;
         for m in 0..3 {
             next.k[m] += step[m];

@@ -27,7 +27,7 @@ const STEP: f64 = 1e-3;
 
 impl<'a> Optimum<'a> {
     /// `None` where the FRFs leave a combination of the parameters undetermined.
-    pub fn of(
+    pub(crate) fn of(
         frfs: &'a FrfSet,
         (plan, sides): (&MeasurementPlan, &Sides),
         spectrum: &JointSpectrum,
@@ -45,7 +45,7 @@ impl<'a> Optimum<'a> {
     }
 
     /// By how much k and c move with sides that differ by a little; `None` where these have no finite response.
-    pub fn moved(
+    pub(crate) fn moved(
         &self,
         (plan, sides): (&MeasurementPlan, &Sides),
         compliances: &Compliances,

@@ -24,7 +24,7 @@ const PAIRS: [(usize, usize); 6] = [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 
 
 impl OfLine {
     /// Adds a residual of the model aᵀ (k + sc) b, both matrices symmetric.
-    pub fn add(&mut self, weight: f64, residual: Complex64, a: [Complex64; 2], b: [Complex64; 2]) {
+    pub(super) fn add(&mut self, weight: f64, residual: Complex64, a: [Complex64; 2], b: [Complex64; 2]) {
         let (by, weighted) = self.add_right(weight, residual, a, b);
         for (sum, (m, n)) in self.products.iter_mut().zip(PAIRS) {
             *sum += weighted[m] * by[n];
@@ -33,7 +33,7 @@ impl OfLine {
 
     /// Adds it to the gradient alone; answers with its derivatives by k11, k12, k22, and these conjugate and weighted.
     #[inline]
-    pub fn add_right(
+    pub(super) fn add_right(
         &mut self,
         weight: f64,
         residual: Complex64,
@@ -49,7 +49,7 @@ impl OfLine {
 
 impl Sums {
     /// Adds a line at s.
-    pub fn add(&mut self, s: Complex64, line: &OfLine) {
+    pub(super) fn add(&mut self, s: Complex64, line: &OfLine) {
         for (product, (m, n)) in line.products.into_iter().zip(PAIRS) {
             let own = [product.re, s.norm_sqr() * product.re];
             let across = [(s * product).re, (s * product.conj()).re];
@@ -70,7 +70,7 @@ impl Sums {
     }
 
     /// Adds a line's gradient alone.
-    pub fn add_right(&mut self, s: Complex64, line: &OfLine) {
+    pub(super) fn add_right(&mut self, s: Complex64, line: &OfLine) {
         for (m, right) in line.right.into_iter().enumerate() {
             self.right[m] += right.re;
             self.right[3 + m] += (s.conj() * right).re;
@@ -78,13 +78,13 @@ impl Sums {
     }
 
     /// Minus half of the gradient by the free parameters.
-    pub fn right(&self, parameters: &Parameters) -> Vec<f64> {
+    pub(super) fn right(&self, parameters: &Parameters) -> Vec<f64> {
         let along = |row: &[f64; 6]| row.iter().zip(self.right).map(|(d, r)| d * r).sum();
         parameters.derivatives().iter().map(along).collect()
     }
 
     /// Gauss and Newton's normal equations of the free parameters.
-    pub fn equations(&self, parameters: &Parameters) -> NormalEquations {
+    pub(super) fn equations(&self, parameters: &Parameters) -> NormalEquations {
         let rows = parameters.derivatives();
         let mut equations = NormalEquations::zero(rows.len());
         equations.right = self.right(parameters);

@@ -40,7 +40,7 @@ pub(super) type Equation = (Vec<(usize, f64)>, f64, f64);
 const RIDGE: f64 = 1e-10;
 
 impl Fit {
-    pub fn of(equations: &[Equation], unknowns: usize) -> Option<Self> {
+    pub(super) fn of(equations: &[Equation], unknowns: usize) -> Option<Self> {
         let mut normal = vec![0.0; unknowns * unknowns];
         let mut values = vec![0.0; unknowns];
         for (row, right, variance) in equations {
@@ -70,17 +70,17 @@ impl Fit {
 
 impl Table {
     /// Column of a response's constant for a mode.
-    pub fn constant(&self, cell: &Cell) -> usize {
+    pub(super) fn constant(&self, cell: &Cell) -> usize {
         cell.mode * self.responses + cell.response
     }
 
     /// Number of such columns.
-    pub fn constants(&self) -> usize {
+    pub(super) fn constants(&self) -> usize {
         self.modes.len() * self.responses
     }
 
     /// Equations with a constant for each response and mode, and `more` columns besides.
-    pub fn equations(&self, more: impl Fn(&Cell) -> Vec<(usize, f64)>) -> Vec<Equation> {
+    pub(super) fn equations(&self, more: impl Fn(&Cell) -> Vec<(usize, f64)>) -> Vec<Equation> {
         let equation = |cell: &Cell| {
             let mut row = vec![(self.constant(cell), 1.0)];
             row.extend(more(cell));
@@ -91,7 +91,7 @@ impl Table {
 
     /// χ² of what each response's own constants leave, references that are alike (by `kept`) taken as one: the others have a constant of their own for
     /// each mode.
-    pub fn by_reference(&self, kept: impl Fn(usize) -> bool) -> Option<Fit> {
+    pub(super) fn by_reference(&self, kept: impl Fn(usize) -> bool) -> Option<Fit> {
         let first = self.constants();
         let more = |cell: &Cell| match kept(cell.reference) {
             true => Vec::new(),
@@ -101,7 +101,7 @@ impl Table {
     }
 
     /// The largest difference of a natural frequency among these references, as a share of the half-width.
-    pub fn farthest(&self, among: &[usize]) -> f64 {
+    pub(super) fn farthest(&self, among: &[usize]) -> f64 {
         let Some(fit) = self.by_reference(|_| false) else { return f64::INFINITY };
         let first = self.constants();
         let mut farthest: f64 = 0.0;
@@ -139,7 +139,7 @@ impl Table {
     }
 
     /// Degrees of freedom of what references differ by, and of what is left beside responses and references.
-    pub fn degrees(&self) -> (usize, usize) {
+    pub(super) fn degrees(&self) -> (usize, usize) {
         let (mut of_references, mut left) = (0, 0);
         for mode in 0..self.modes.len() {
             let cells = self.cells.iter().filter(|cell| cell.mode == mode).count();
@@ -153,7 +153,7 @@ impl Table {
     /// Responses of one reference, at the most. Where they were recorded in the same hits they share the noise of the force, and all of them together tell a
     /// natural frequency no better than one. Whether they were no recording says: variances of what goes with references are multiplied by this number, which is
     /// the most that any correlation makes of them.
-    pub fn shared(&self) -> f64 {
+    pub(super) fn shared(&self) -> f64 {
         let responses = |mode: usize, reference: usize| {
             self.cells.iter().filter(|cell| cell.mode == mode && cell.reference == reference).count()
         };
@@ -162,7 +162,7 @@ impl Table {
     }
 
     /// What variances have to be multiplied by for FRFs that agree neither by response nor by reference; at least 1.
-    pub fn inflation(&self) -> f64 {
+    pub(super) fn inflation(&self) -> f64 {
         let (_, left) = self.degrees();
         match self.by_reference(|_| false) {
             Some(fit) if left > 0 => (fit.chi2 / left as f64).max(1.0),
@@ -171,7 +171,7 @@ impl Table {
     }
 
     /// Probability by chance of references that differ as much beside what goes with the responses; `None` where nothing tells one from the other.
-    pub fn chance(&self) -> Option<f64> {
+    pub(super) fn chance(&self) -> Option<f64> {
         let (of_references, left) = self.degrees();
         if of_references == 0 {
             return None;

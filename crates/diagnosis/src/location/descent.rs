@@ -54,13 +54,13 @@ pub(super) struct Descent<'a> {
 }
 
 impl<'a> Descent<'a> {
-    pub fn from(problem: &'a Problem<'a>, state: Iterate) -> Self {
+    pub(super) fn from(problem: &'a Problem<'a>, state: Iterate) -> Self {
         Descent { problem, state, tangent: None }
     }
 
     /// Up to `steps` steps with the given weights: what is left, and where. `None` where there are no derivatives. `on_the_way` to other
     /// weights old derivatives are believed when they say that it has converged.
-    pub fn descend(self, weights: &[f64], steps: usize, on_the_way: bool) -> Option<(f64, Self)> {
+    pub(super) fn descend(self, weights: &[f64], steps: usize, on_the_way: bool) -> Option<(f64, Self)> {
         let settings = &self.problem.settings().location;
         // Free scalars are those of other weights.
         let state = self.problem.state(&self.state.parameters, weights)?;
@@ -77,7 +77,7 @@ impl<'a> Descent<'a> {
     }
 
     /// Goes on by stages with inflated noise; with what is left of the last.
-    pub fn through(self, inflations: &[f64]) -> Option<(f64, Self)> {
+    pub(super) fn through(self, inflations: &[f64]) -> Option<(f64, Self)> {
         let mut reached = (f64::INFINITY, self);
         for inflation in inflations {
             let weights = reached.1.problem.recorded.inflated(*inflation, &reached.1.state.modelled);
@@ -88,7 +88,7 @@ impl<'a> Descent<'a> {
     }
 
     /// The last stages, with and without inflated noise; with what is left.
-    pub fn ended(self) -> Option<(f64, Iterate)> {
+    pub(super) fn ended(self) -> Option<(f64, Iterate)> {
         let problem = self.problem;
         let settings = &problem.settings().location;
         let (_, descent) = self.through(&settings.inflation[settings.dropped_after..])?;
@@ -99,14 +99,14 @@ impl<'a> Descent<'a> {
 
 impl Problem<'_> {
     /// What all sites have in common at a hypothesis.
-    pub fn start(&self, hypothesis: &Hypothesis) -> Option<Start> {
+    pub(super) fn start(&self, hypothesis: &Hypothesis) -> Option<Start> {
         let centre = self.model(hypothesis)?;
         Some(Start { hypothesis: hypothesis.clone(), centre, surroundings: self.surroundings(hypothesis)? })
     }
 
     /// Fits from each of several starts with inflated noise, of each from the most promising of `sites`, and some way on from the best
     /// of their ends; with what is left, noise still inflated.
-    pub fn approached(&self, starts: &[Start], sites: &[Site]) -> Option<(f64, Descent<'_>)> {
+    pub(super) fn approached(&self, starts: &[Start], sites: &[Site]) -> Option<(f64, Descent<'_>)> {
         let settings = &self.settings().location;
         let weights = self.recorded.inflated(settings.inflation[0], &self.recorded.measured);
         let states: Vec<(f64, &Start, Iterate)> = starts
@@ -127,7 +127,7 @@ impl Problem<'_> {
     }
 
     /// The fit without inflated noise.
-    pub fn descended(&self, state: Iterate, steps: usize) -> Option<(f64, Iterate)> {
+    pub(super) fn descended(&self, state: Iterate, steps: usize) -> Option<(f64, Iterate)> {
         let (left, descent) = Descent::from(self, state).descend(&self.recorded.weights, steps, false)?;
         Some((left, descent.state))
     }

@@ -81,7 +81,7 @@ impl Problem<'_> {
     }
 
     /// The law as it is stated, on the lines `stated`, where free scalars leave `lowest`; `None` where its parameters are not determined.
-    pub fn stated(&self, fit: &FittedLaw, lowest: f64, stated: &[usize]) -> Option<LawFit> {
+    pub(super) fn stated(&self, fit: &FittedLaw, lowest: f64, stated: &[usize]) -> Option<LawFit> {
         let bound = Problem { law: Some(fit.law), ..*self };
         let tangent = bound.tangent(&fit.state, true)?;
         let normal = bound.normal(&fit.state, &tangent, &bound.recorded.weights);

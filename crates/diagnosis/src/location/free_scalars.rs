@@ -19,7 +19,7 @@ pub(super) struct FreeScalars {
 
 impl Problem<'_> {
     /// What is known about a free state; `exactly` where it will be stated.
-    pub fn free_scalars(&self, state: Iterate, exactly: bool) -> Option<FreeScalars> {
+    pub(super) fn free_scalars(&self, state: Iterate, exactly: bool) -> Option<FreeScalars> {
         let tangent = self.tangent(&state, exactly)?;
         let weights = &self.recorded.weights;
         let normal = self.normal(&state, &tangent, weights);

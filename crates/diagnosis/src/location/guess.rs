@@ -36,7 +36,7 @@ pub(super) struct Guess {
 }
 
 impl<'a> Measured<'a> {
-    pub fn new(free_scalars: &'a FreeScalars, omegas: &[f64], settings: &'a LawSettings) -> Self {
+    pub(super) fn new(free_scalars: &'a FreeScalars, omegas: &[f64], settings: &'a LawSettings) -> Self {
         let n = free_scalars.order;
         let share = settings.relative_noise;
         // A weight is that of a real part here, of variance 1/weight.
@@ -60,7 +60,7 @@ impl<'a> Measured<'a> {
     }
 
     /// The law at its best; `None` where no start leads anywhere.
-    pub fn guess(&self, law: &Law) -> Option<Guess> {
+    pub(super) fn guess(&self, law: &Law) -> Option<Guess> {
         let (low, high) = (self.lines.first()?.omega, self.lines.last()?.omega);
         let mut starts: Vec<(f64, Vec<f64>)> = (law.starts)(low, high)
             .into_iter()

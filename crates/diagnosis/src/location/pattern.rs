@@ -23,7 +23,7 @@ pub(super) struct RationalResponse {
 
 impl RationalResponse {
     /// The value at z.
-    pub fn at(&self, z: Complex64) -> Complex64 {
+    pub(super) fn at(&self, z: Complex64) -> Complex64 {
         if self.is_linear() {
             return self.start + z * self.linear;
         }
@@ -33,7 +33,7 @@ impl RationalResponse {
     }
 
     /// The value at z and its derivative there.
-    pub fn with_slope(&self, z: Complex64) -> (Complex64, Complex64) {
+    pub(super) fn with_slope(&self, z: Complex64) -> (Complex64, Complex64) {
         if self.is_linear() {
             return (self.start + z * self.linear, self.linear);
         }
@@ -46,7 +46,7 @@ impl RationalResponse {
     }
 
     /// Whether z enters linearly.
-    pub fn is_linear(&self) -> bool {
+    pub(super) fn is_linear(&self) -> bool {
         let zero = Complex64::ZERO;
         self.square == zero && self.lower_linear == zero && self.lower_square == zero
     }
@@ -64,17 +64,17 @@ pub(super) struct Inversion {
 
 impl Inversion {
     /// The component of z.
-    pub fn delta(&self, z: Complex64) -> Complex64 {
+    pub(super) fn delta(&self, z: Complex64) -> Complex64 {
         self.sign * z / (1.0 - self.feedback * z)
     }
 
     /// z of the component.
-    pub fn scalar(&self, delta: Complex64) -> Complex64 {
+    pub(super) fn scalar(&self, delta: Complex64) -> Complex64 {
         delta / (self.sign + self.feedback * delta)
     }
 
     /// The derivative of z with respect to the component.
-    pub fn scalar_slope(&self, delta: Complex64) -> Complex64 {
+    pub(super) fn scalar_slope(&self, delta: Complex64) -> Complex64 {
         let lower = self.sign + self.feedback * delta;
         self.sign / (lower * lower)
     }
@@ -161,7 +161,7 @@ pub(super) struct Pattern<'a> {
 impl<'a> Pattern<'a> {
     /// Prepares the pattern of `site` for the FRFs `pairs` on `model`, which is that of `fixture`. `None` where the site does not exist there, or is
     /// not of the form that this file knows.
-    pub fn new(fixture: &Fixture, model: &'a Model, site: &Site, pairs: &[FrfPair]) -> Option<Self> {
+    pub(super) fn new(fixture: &Fixture, model: &'a Model, site: &Site, pairs: &[FrfPair]) -> Option<Self> {
         let chain = MeasuringChain::of(fixture, pairs, Instrument::AsRecorded).ok()?;
         let mut wanted = Wanted::default();
         let (stations, mut action) = action(fixture, site, pairs)?;
@@ -194,7 +194,7 @@ impl<'a> Pattern<'a> {
     }
 
     /// Writes every FRF's response on the line at `omega` (rad/s); `None` on an undamped resonance.
-    pub fn at(&mut self, omega: f64, responses: &mut [RationalResponse]) -> Option<Inversion> {
+    pub(super) fn at(&mut self, omega: f64, responses: &mut [RationalResponse]) -> Option<Inversion> {
         let s = self.chain.s(omega);
         if !self.receptances.at(s, &mut self.values) {
             return None;

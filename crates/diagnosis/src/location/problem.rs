@@ -56,19 +56,19 @@ pub(super) struct Iterate {
 
 impl Problem<'_> {
     /// The settings of the search.
-    pub fn settings(&self) -> &Settings {
+    pub(super) fn settings(&self) -> &Settings {
         self.recorded.settings
     }
 
     /// The fixture and its model at a hypothesis; `None` where it is impossible.
-    pub fn model(&self, hypothesis: &Hypothesis) -> Option<Modelled> {
+    pub(super) fn model(&self, hypothesis: &Hypothesis) -> Option<Modelled> {
         let fixture = hypothesis.to_fixture().ok()?;
         let model = Model::new(&fixture, *self.recorded.observation.lines().hz().last()?).ok()?;
         Some(Modelled { fixture, model })
     }
 
     /// Calls `of` with every line's responses; `None` where the site does not exist there.
-    pub fn on_lines(
+    pub(super) fn on_lines(
         &self,
         Modelled { fixture, model }: &Modelled,
         site: &Site,
@@ -84,18 +84,29 @@ impl Problem<'_> {
     }
 
     /// The scalar that the law means on a line.
-    pub fn bound(&self, law: &Law, parameters: &[f64], line: usize, inversion: &Inversion) -> Complex64 {
+    pub(super) fn bound(
+        &self,
+        law: &Law,
+        parameters: &[f64],
+        line: usize,
+        inversion: &Inversion,
+    ) -> Complex64 {
         let line = Line { omega: self.recorded.omegas[line], driving: inversion.driving };
         inversion.scalar((law.value)(line, parameters))
     }
 
     /// The iterate at `parameters`, free scalars at their best for the given weights.
-    pub fn state(&self, parameters: &Parameters, weights: &[f64]) -> Option<Iterate> {
+    pub(super) fn state(&self, parameters: &Parameters, weights: &[f64]) -> Option<Iterate> {
         self.state_on(&self.model(&parameters.hypothesis)?, parameters, weights)
     }
 
     /// As [`Problem::state`], with their model given.
-    pub fn state_on(&self, modelled: &Modelled, parameters: &Parameters, weights: &[f64]) -> Option<Iterate> {
+    pub(super) fn state_on(
+        &self,
+        modelled: &Modelled,
+        parameters: &Parameters,
+        weights: &[f64],
+    ) -> Option<Iterate> {
         let (lines, values) = (self.recorded.lines(), weights.len());
         let mut state = Iterate {
             parameters: parameters.clone(),
@@ -130,14 +141,14 @@ impl Problem<'_> {
     }
 
     /// What is minimised: χ² and the tolerances' priors.
-    pub fn objective(&self, state: &Iterate, weights: &[f64]) -> f64 {
+    pub(super) fn objective(&self, state: &Iterate, weights: &[f64]) -> f64 {
         let terms = state.modelled.iter().zip(&self.recorded.measured).zip(weights);
         let chi2: f64 = terms.map(|((value, measured), weight)| weight * (measured - value).norm_sqr()).sum();
         chi2 + state.parameters.penalty()
     }
 
     /// The unit in which the abscissa moves, where it does, and its bounds.
-    pub fn abscissa(&self, parameters: &Parameters) -> Option<(f64, f64, f64)> {
+    pub(super) fn abscissa(&self, parameters: &Parameters) -> Option<(f64, f64, f64)> {
         let Site::Body { body, .. } = &parameters.site else { return None };
         if !self.moves {
             return None;
@@ -152,7 +163,7 @@ impl Problem<'_> {
     }
 
     /// The parameters moved by a step of tolerances, abscissa and parameters, as far as bounds let it.
-    pub fn moved(&self, from: &Parameters, step: &[f64]) -> Parameters {
+    pub(super) fn moved(&self, from: &Parameters, step: &[f64]) -> Parameters {
         let tolerances = from.hypothesis.tolerances().len().min(step.len());
         let (own, rest) = step.split_at(tolerances);
         let mut whole = own.to_vec();
@@ -171,12 +182,12 @@ impl Problem<'_> {
 
 impl Parameters {
     /// A free scalar at `site`.
-    pub fn free(hypothesis: &Hypothesis, site: &Site) -> Self {
+    pub(super) fn free(hypothesis: &Hypothesis, site: &Site) -> Self {
         Parameters { hypothesis: hypothesis.clone(), site: site.clone(), of_law: Vec::new() }
     }
 
     /// What the priors charge.
-    pub fn penalty(&self) -> f64 {
+    pub(super) fn penalty(&self) -> f64 {
         let tolerances = 0..self.hypothesis.tolerances().len();
         tolerances.map(|a| self.hypothesis.prior(a) * self.hypothesis.coordinates[a].powi(2)).sum()
     }

@@ -17,7 +17,7 @@ pub(super) struct Recorded<'a> {
 }
 
 impl<'a> Recorded<'a> {
-    pub fn of(fitter: Fitter<'a>) -> Self {
+    pub(super) fn of(fitter: Fitter<'a>) -> Self {
         let Fitter { observation, settings, .. } = fitter;
         let (lines, frfs) = (observation.lines().len(), observation.pairs().len());
         let indices = || (0..lines).flat_map(move |line| (0..frfs).map(move |k| k * lines + line));
@@ -30,21 +30,21 @@ impl<'a> Recorded<'a> {
         }
     }
 
-    pub fn frfs(&self) -> usize {
+    pub(super) fn frfs(&self) -> usize {
         self.observation.pairs().len()
     }
 
-    pub fn lines(&self) -> usize {
+    pub(super) fn lines(&self) -> usize {
         self.omegas.len()
     }
 
     /// Values of one line among those of all.
-    pub fn places(&self, line: usize) -> std::ops::Range<usize> {
+    pub(super) fn places(&self, line: usize) -> std::ops::Range<usize> {
         line * self.frfs()..(line + 1) * self.frfs()
     }
 
     /// The weights when a share `epsilon` of the values counts as noise.
-    pub fn inflated(&self, epsilon: f64, modelled: &[Complex64]) -> Vec<f64> {
+    pub(super) fn inflated(&self, epsilon: f64, modelled: &[Complex64]) -> Vec<f64> {
         if epsilon == 0.0 {
             return self.weights.clone();
         }

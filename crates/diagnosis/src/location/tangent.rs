@@ -21,7 +21,7 @@ pub(super) struct Tangent {
 
 impl Tangent {
     /// The derivatives by one coordinate.
-    pub fn column(&self, coordinate: usize) -> &[Complex64] {
+    pub(super) fn column(&self, coordinate: usize) -> &[Complex64] {
         let places = self.values.len() / self.order.max(1);
         &self.values[coordinate * places..(coordinate + 1) * places]
     }
@@ -29,14 +29,14 @@ impl Tangent {
 
 impl Problem<'_> {
     /// The models a step up each tolerance from a hypothesis: what all sites' derivatives there have in common.
-    pub fn surroundings(&self, hypothesis: &Hypothesis) -> Option<Vec<Modelled>> {
+    pub(super) fn surroundings(&self, hypothesis: &Hypothesis) -> Option<Vec<Modelled>> {
         let beside = |a| self.model(&hypothesis.moved(a, self.settings().fit.difference));
         (0..hypothesis.tolerances().len()).map(beside).collect()
     }
 
     /// Differences about a state. A free scalar follows its component δ as bᵀZ⁻¹b changes. `central` ones where uncertainties are to be
     /// stated; forward ones, at half the cost, show the way well enough.
-    pub fn tangent(&self, at: &Iterate, central: bool) -> Option<Tangent> {
+    pub(super) fn tangent(&self, at: &Iterate, central: bool) -> Option<Tangent> {
         if !central {
             return self.tangent_amid(at, &self.surroundings(&at.parameters.hypothesis)?);
         }
@@ -51,7 +51,7 @@ impl Problem<'_> {
     }
 
     /// Forward differences about a state of which the surroundings are known.
-    pub fn tangent_amid(&self, at: &Iterate, surroundings: &[Modelled]) -> Option<Tangent> {
+    pub(super) fn tangent_amid(&self, at: &Iterate, surroundings: &[Modelled]) -> Option<Tangent> {
         let mut values = self.differences(at, surroundings, 1.0, 1.0 / self.settings().fit.difference)?;
         for column in values.chunks_exact_mut(at.modelled.len()) {
             column
@@ -133,7 +133,7 @@ impl Problem<'_> {
     }
 
     /// The normal matrix with priors, what a free scalar takes up projected out.
-    pub fn normal(&self, at: &Iterate, tangent: &Tangent, weights: &[f64]) -> NormalEquations {
+    pub(super) fn normal(&self, at: &Iterate, tangent: &Tangent, weights: &[f64]) -> NormalEquations {
         let n = tangent.order;
         let roots: Vec<f64> = weights.iter().map(|w| w.sqrt()).collect();
         let units = if self.law.is_none() { self.units(at, &roots) } else { Vec::new() };

@@ -9,7 +9,11 @@ use jointscope_model_error::ErrorSizes;
 
 impl Problem<'_> {
     /// The most probable parameters at given sizes of the error, with the covariance of their coordinates.
-    pub fn at_sizes(&self, fit: &ModalFit, sizes: &ErrorSizes) -> Option<(Hypothesis, Option<Covariance>)> {
+    pub(crate) fn at_sizes(
+        &self,
+        fit: &ModalFit,
+        sizes: &ErrorSizes,
+    ) -> Option<(Hypothesis, Option<Covariance>)> {
         let descent = self.descent_at(fit, &fit.priors, sizes)?;
         let start = Iterate {
             hypothesis: fit.hypothesis.clone(),

@@ -20,7 +20,7 @@ pub(super) struct States<'a> {
 
 impl States<'_> {
     /// The modes of both, with what `found` makes of them, ascending.
-    pub fn modes(&self, found: &Named) -> Vec<ModeChange> {
+    pub(super) fn modes(&self, found: &Named) -> Vec<ModeChange> {
         let of_baseline = &self.calibrated.standing.pairing.pairs;
         let modelled = |b: usize| of_baseline.iter().find(|(other, _)| *other == b).map(|(_, m)| *m);
         let recorded = |m: usize| self.own.pairs.iter().find(|(_, other)| *other == m).map(|(r, _)| *r);

@@ -18,18 +18,22 @@ pub(crate) struct Features {
 
 impl Features {
     /// Those of a recording; `None` where it has no modes that could be compared.
-    pub fn of(observation: &Observation, nominal: &Hypothesis, settings: &ModalSettings) -> Option<Self> {
+    pub(crate) fn of(
+        observation: &Observation,
+        nominal: &Hypothesis,
+        settings: &ModalSettings,
+    ) -> Option<Self> {
         let known = known(settings, &nominal.to_fixture().ok()?);
         Some(Features::new(recorded(observation, nominal)?, known))
     }
 
     /// Those of modes, with what is known of the sizes of error.
-    pub fn new(recorded: RecordedModes, known: SizePrior) -> Self {
+    pub(crate) fn new(recorded: RecordedModes, known: SizePrior) -> Self {
         Features { values: recorded.features(), recorded, known }
     }
 
     /// What hypotheses are fitted to; the work done for that is counted in `work`.
-    pub fn problem<'a>(&'a self, work: &'a Work) -> Problem<'a> {
+    pub(crate) fn problem<'a>(&'a self, work: &'a Work) -> Problem<'a> {
         Problem {
             recorded: &self.recorded,
             features: &self.values,
@@ -40,7 +44,7 @@ impl Features {
     }
 
     /// Whether the modes tell a part of the recording only.
-    pub fn tells_little(&self, settings: &ModalSettings) -> bool {
+    pub(crate) fn tells_little(&self, settings: &ModalSettings) -> bool {
         self.recorded.chi2_per_dof > settings.free_fit || self.recorded.is_strained()
     }
 }

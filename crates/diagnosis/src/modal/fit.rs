@@ -100,14 +100,14 @@ const REUSE: f64 = 0.2;
 
 impl ModalFit {
     /// The largest departure of the fixture's quantities, in standard deviations.
-    pub fn largest_pull(&self) -> f64 {
+    pub(crate) fn largest_pull(&self) -> f64 {
         let pulls = self.hypothesis.coordinates.iter().zip(&self.priors);
         let pulls = pulls.take(self.hypothesis.tolerances().len());
         pulls.map(|(at, prior)| ((at - prior.mean) / prior.std).abs()).fold(0.0, f64::max)
     }
 
     /// Whether the features' misfit, errors of the model at their sizes and departures counted, is no larger than chance makes it.
-    pub fn leaves_chance(&self) -> bool {
+    pub(crate) fn leaves_chance(&self) -> bool {
         let comparison = &self.standing.comparison;
         let Some(factor) = Cholesky::of(comparison.count(), &comparison.covariance(&self.evidence.sizes))
         else {
@@ -120,7 +120,7 @@ impl ModalFit {
     }
 
     /// Covariance of the coordinates of the linear model where an error has these sizes.
-    pub fn covariance_at(&self, sizes: &ErrorSizes) -> Option<Covariance> {
+    pub(crate) fn covariance_at(&self, sizes: &ErrorSizes) -> Option<Covariance> {
         let comparison = &self.standing.comparison;
         let factor = Cholesky::of(comparison.count(), &comparison.covariance(sizes))?;
         let white = |slope: &Vec<f64>| {
@@ -145,12 +145,12 @@ impl ModalFit {
 
 impl<'a> Problem<'a> {
     /// What is known of the sizes of the error beforehand.
-    pub fn prior(&self) -> SizePrior {
+    pub(crate) fn prior(&self) -> SizePrior {
         SizePrior { scales: *self.sizes, stated: self.stated }
     }
 
     /// Where a hypothesis stands, its poles found anew.
-    pub fn standing(&self, hypothesis: &Hypothesis) -> Option<Standing> {
+    pub(crate) fn standing(&self, hypothesis: &Hypothesis) -> Option<Standing> {
         let fixture = hypothesis.to_fixture().ok()?;
         self.work.count(SEARCHED * self.recorded.frfs());
         let modelled = ModelledModes::of(&fixture, self.recorded)?;
@@ -172,12 +172,12 @@ impl<'a> Problem<'a> {
     }
 
     /// Recorded less modelled features, of the modes that are paired.
-    pub fn residual(&self, standing: &Standing, modelled: &ModelledModes) -> Vec<f64> {
+    pub(crate) fn residual(&self, standing: &Standing, modelled: &ModelledModes) -> Vec<f64> {
         standing.comparison.residual(self.recorded, self.features, modelled, &standing.pairing)
     }
 
     /// Derivatives of the model's features by coordinates `of`, for a step of one.
-    pub fn slopes(
+    pub(crate) fn slopes(
         &self,
         hypothesis: &Hypothesis,
         standing: &Standing,
@@ -199,12 +199,12 @@ impl<'a> Problem<'a> {
     }
 
     /// The most probable parameters from where `start` stands, and the sizes of the error there.
-    pub fn fitted(&self, start: &Hypothesis, priors: &[Prior]) -> Option<ModalFit> {
+    pub(crate) fn fitted(&self, start: &Hypothesis, priors: &[Prior]) -> Option<ModalFit> {
         self.fitted_from(start, self.standing(start)?, priors, (None, SetOut::Both, ANY))
     }
 
     /// [`Problem::fitted`], and from pairings beside the most likely one at the start where errors of the usual size do not do.
-    pub fn fitted_however_paired(&self, start: &Hypothesis, priors: &[Prior]) -> Option<ModalFit> {
+    pub(crate) fn fitted_however_paired(&self, start: &Hypothesis, priors: &[Prior]) -> Option<ModalFit> {
         let standing = self.standing(start)?;
         let others = standing.pairing.others(self.recorded, &standing.modelled);
         let modelled = standing.modelled.clone();
@@ -222,7 +222,7 @@ impl<'a> Problem<'a> {
 
     /// [`Problem::fitted`] from where `start` is known to stand, with derivatives known from nearby where there are any. What stays below `least` in ln p is not followed to
     /// its rest, nor from other sizes of error.
-    pub fn fitted_from(
+    pub(crate) fn fitted_from(
         &self,
         start: &Hypothesis,
         mut standing: Standing,

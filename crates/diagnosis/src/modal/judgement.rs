@@ -60,7 +60,7 @@ pub(crate) struct Before {
 impl ModalJudgement {
     /// Compares a fixture with a recording by modes; `None` where there are no modes to compare. Of a recording that lacks what is held out of
     /// another, those effects are tried that were `known` there.
-    pub fn of(
+    pub(crate) fn of(
         fitter: &Fitter,
         nominal: &Hypothesis,
         candidates: &[Candidate],
@@ -89,7 +89,7 @@ impl ModalJudgement {
 
     /// What has changed since a `baseline` of the same structure: the fixture is calibrated on it, its error there is taken off, and what differs beyond
     /// repetition is searched for. `None` where the two have no modes in common.
-    pub fn since(
+    pub(crate) fn since(
         fitter: &Fitter,
         baseline: &Observation,
         nominal: &Hypothesis,
@@ -259,18 +259,18 @@ impl ModalJudgement {
     }
 
     /// Whether the modes need nothing, neither an effect nor an error of the model: what is left, if anything, only lines can show.
-    pub fn needs_nothing(&self) -> bool {
+    pub(crate) fn needs_nothing(&self) -> bool {
         self.verdict == Verdict::Consistent && self.search.best.exact
     }
 
     /// Whether errors of the usual size explain the modes, with what was found or but for the lesser part.
-    pub fn explains(&self) -> bool {
+    pub(crate) fn explains(&self) -> bool {
         self.verdict != Verdict::Unexplained
     }
 
     /// Whether the comparison rests on modes that may not be all there are, a free fit short of the noise or modes without a partner, or on records that
     /// are not alike, and a search by lines may do better.
-    pub fn is_dubious(&self, fitter: &Fitter) -> bool {
+    pub(crate) fn is_dubious(&self, fitter: &Fitter) -> bool {
         let alone = self.search.best.fit.standing.pairing.alone();
         // Records taken one after another, their noise told by scatter alone: an outlier among their gains passes for an error of all gains.
         let unsure = self.is_unexplained() && fitter.observation.has_scatter_for_noise();
@@ -279,19 +279,19 @@ impl ModalJudgement {
     }
 
     /// Whether frequencies, damping and shapes of the best hypothesis are right to the noise, and gains of records are not known to be wrong: lines know of none.
-    pub fn has_right_modes(&self) -> bool {
+    pub(crate) fn has_right_modes(&self) -> bool {
         self.errors[1].is_none() && !self.states_gain
     }
 
     /// Whether modes tell a part of the recording only.
-    pub fn tells_little(&self, fitter: &Fitter) -> bool {
+    pub(crate) fn tells_little(&self, fitter: &Fitter) -> bool {
         let ModalSettings { free_fit, hopeless, .. } = fitter.settings.modal;
         (self.free_fit > free_fit || self.strained) && self.free_fit <= hopeless
     }
 
     /// Whether a free fit that needed all it may for the noise, as what relaxes or damps heavily makes it need, leaves no doubt of the names: these explain the modes,
     /// and none else comes near.
-    pub fn stands_out(&self, fitter: &Fitter) -> bool {
+    pub(crate) fn stands_out(&self, fitter: &Fitter) -> bool {
         let ModalSettings { free_fit, told, .. } = fitter.settings.modal;
         let best = &self.search.best;
         let alone = |index: usize| {
@@ -310,7 +310,7 @@ impl ModalJudgement {
 
     /// What explains the recording without any error of the model, by its modes and down to the noise of its lines: the best of those that do. Where
     /// errors of the usual size do not explain the modes either, or these are dubious or right whatever their evidence says, lines decide alone, but more strictly.
-    pub fn exact(&self, fitter: &Fitter) -> Option<Fit> {
+    pub(crate) fn exact(&self, fitter: &Fitter) -> Option<Fit> {
         let by_lines = self.is_unexplained() || self.is_dubious(fitter) || self.has_right_modes();
         // What modes tell from the best is no better on lines.
         let best = self.search.best.fit.ln;
@@ -331,7 +331,7 @@ impl ModalJudgement {
     }
 
     /// Names that lines may be asked for where errors of the usual size do not explain the modes: the most probable by themselves, and quantities that are wrong.
-    pub fn in_question(&self, fitter: &Fitter) -> Vec<Candidate> {
+    pub(crate) fn in_question(&self, fitter: &Fitter) -> Vec<Candidate> {
         if !self.is_unexplained() {
             return Vec::new();
         }
@@ -345,13 +345,13 @@ impl ModalJudgement {
     }
 
     /// What was found, and the most probable effects by themselves.
-    pub fn known(&self, count: usize) -> Vec<Effect> {
+    pub(crate) fn known(&self, count: usize) -> Vec<Effect> {
         let singles = self.search.singles.iter().take(count).flat_map(|s| s.fit.hypothesis.effects());
         self.search.best.fit.hypothesis.effects().into_iter().chain(singles).collect()
     }
 
     /// The most probable effects by themselves.
-    pub fn tried(&self, count: usize) -> Vec<Tried> {
+    pub(crate) fn tried(&self, count: usize) -> Vec<Tried> {
         let of = |single: &Named| {
             let ln_gain = single.fit.ln - self.search.none.ln;
             Some(Tried { effect: single.fit.hypothesis.effects().pop()?, ln_gain })
@@ -360,7 +360,12 @@ impl ModalJudgement {
     }
 
     /// The models that the comparison ended with, as stated or as they predict, on lines; `within` is the fixture refitted on lines.
-    pub fn search_on(&self, observation: &Observation, within: &Search, models: &[Hypothesis; 2]) -> Search {
+    pub(crate) fn search_on(
+        &self,
+        observation: &Observation,
+        within: &Search,
+        models: &[Hypothesis; 2],
+    ) -> Search {
         let on_lines = |hypothesis: &Hypothesis| Fit::at(hypothesis.clone(), observation);
         let nominal = on_lines(&within.nominal.hypothesis).unwrap_or_else(|| within.nominal.clone());
         let refitted = on_lines(&models[0]).unwrap_or_else(|| nominal.clone());
@@ -370,7 +375,12 @@ impl ModalJudgement {
 
     /// Candidates that modes tell from the one effect of `hypothesis`, each fitted to them by itself, by more than `told` in ln p, or not even fitted, so far below
     /// did it start.
-    pub fn told_from(&self, hypothesis: &Hypothesis, candidates: &[Candidate], told: f64) -> Vec<usize> {
+    pub(crate) fn told_from(
+        &self,
+        hypothesis: &Hypothesis,
+        candidates: &[Candidate],
+        told: f64,
+    ) -> Vec<usize> {
         let [effect] = &hypothesis.effects()[..] else { return Vec::new() };
         let of = |named: &&Named| named.names.iter().any(|&c| candidates[c].names(effect));
         let Some(own) = self.search.singles.iter().find(of) else { return Vec::new() };
@@ -383,7 +393,7 @@ impl ModalJudgement {
     }
 
     /// The findings, the strongest first.
-    pub fn findings(&self, candidates: &[Candidate]) -> Vec<Finding> {
+    pub(crate) fn findings(&self, candidates: &[Candidate]) -> Vec<Finding> {
         let ([_, hypothesis], covariance) = (&self.stated, &self.covariance);
         let finding = |(index, effect): (usize, Effect)| {
             let names = self.names.get(index)?;

@@ -20,7 +20,7 @@ use jointscope_model_error::ErrorSizes;
 impl ModalJudgement {
     /// The comparison with its models as they predict lines; `within` is the fixture refitted on them. What explains the modes in part only, and leaves more than a part of what lines
     /// miss without it, is not stated.
-    pub fn predicted(&self, fitter: &Fitter, within: &Search) -> (Self, Search) {
+    pub(crate) fn predicted(&self, fitter: &Fitter, within: &Search) -> (Self, Search) {
         let settings = &fitter.settings.modal;
         let models = self.predicting(fitter.observation.work(), settings);
         let search = self.search_on(fitter.observation, within, &models);

@@ -59,7 +59,7 @@ fn best_of_each(mut fits: Vec<Named>) -> Vec<Named> {
 impl ModalSearch {
     /// Whether each of several effects gains as much as `needed` in ln p over the others, as far as these were tried: one that does not may imitate an error of
     /// the model.
-    pub fn needs_all_of(&self, named: &Named, needed: f64) -> bool {
+    pub(crate) fn needs_all_of(&self, named: &Named, needed: f64) -> bool {
         let part = |fewer: &&Named| {
             fewer.names.len() + 1 == named.names.len() && fewer.names.iter().all(|c| named.names.contains(c))
         };
@@ -69,13 +69,13 @@ impl ModalSearch {
 
 impl Searcher<'_> {
     /// The fixture by itself; `None` where it has no modes that could be compared.
-    pub fn fixture_alone(&self) -> Option<ModalFit> {
+    pub(super) fn fixture_alone(&self) -> Option<ModalFit> {
         self.watch.stage("fitting the fixture to the modes");
         self.problem.fitted_however_paired(self.nominal, &self.priors(self.nominal, &[]))
     }
 
     /// Searches for effects beside the fixture `alone`.
-    pub fn search(&self, alone: ModalFit) -> ModalSearch {
+    pub(super) fn search(&self, alone: ModalFit) -> ModalSearch {
         let none = alone;
         let start = Named { names: Vec::new(), exact: self.is_exact(&none), fit: none };
         self.watch.stage("comparing effects by modes");

@@ -73,7 +73,7 @@ pub(super) fn known(settings: &ModalSettings, fixture: &Fixture) -> SizePrior {
 
 impl Problem<'_> {
     /// The sizes that the recording asks for, those that are stated included: what is stated may be too little.
-    pub fn seen(&self, fit: &ModalFit) -> Evidence {
+    pub(crate) fn seen(&self, fit: &ModalFit) -> Evidence {
         if !self.stated.contains(&true) {
             return fit.evidence;
         }
@@ -83,7 +83,7 @@ impl Problem<'_> {
 
     /// Whether what a fit needs of errors, as multiples of what is usual, and of departures, in standard deviations, is no more than `adequate`, and what these
     /// leave of the features is chance: of a mass line that is off by a dozen times what is usual, errors of nothing are as probable as ones that large.
-    pub fn is_adequate(&self, fit: &ModalFit, adequate: (f64, f64)) -> bool {
+    pub(crate) fn is_adequate(&self, fit: &ModalFit, adequate: (f64, f64)) -> bool {
         self.largest_size(fit) <= adequate.0 && fit.largest_pull() <= adequate.1 && fit.leaves_chance()
     }
 
@@ -94,13 +94,13 @@ impl Problem<'_> {
 
     /// Sizes of the errors as multiples of what is usual, or of what is stated: the sizes that the recording asks for.
     /// Gains are the test's, not the model's.
-    pub fn relative_sizes(&self, fit: &ModalFit) -> Vec<f64> {
+    pub(crate) fn relative_sizes(&self, fit: &ModalFit) -> Vec<f64> {
         let without = ErrorSizes { gain: 0.0, ..self.seen(fit).sizes };
         self.over_usual(&without)
     }
 
     /// The same with the gains of records among them.
-    pub fn relative_sizes_with_gains(&self, fit: &ModalFit) -> Vec<f64> {
+    pub(crate) fn relative_sizes_with_gains(&self, fit: &ModalFit) -> Vec<f64> {
         self.over_usual(&self.seen(fit).sizes)
     }
 
@@ -110,7 +110,7 @@ impl Problem<'_> {
     }
 
     /// The error of a fitted model. A stated size is told as stated, unless the recording asks for more than `adequate` times as much.
-    pub fn error(&self, fit: &ModalFit, adequate: f64) -> ModelError {
+    pub(crate) fn error(&self, fit: &ModalFit, adequate: f64) -> ModelError {
         let seen = self.seen(fit);
         let (sizes, found) = (self.sizes.to_array(), seen.sizes.to_array());
         let usual = ErrorSizes::default().to_array();

@@ -4,7 +4,7 @@ use crate::common::Matrix4;
 use std::collections::BTreeMap;
 
 /// Entries of a Nastran deck: name and fields from the second on, blank ones included.
-pub fn entries(text: &str) -> Vec<(String, Vec<String>)> {
+pub(crate) fn entries(text: &str) -> Vec<(String, Vec<String>)> {
     let mut entries: Vec<(String, Vec<String>)> = Vec::new();
     for line in text.lines().filter(|line| !line.starts_with('$')) {
         let (name, rest) = line.split_at(line.len().min(8));
@@ -24,7 +24,7 @@ pub fn entries(text: &str) -> Vec<(String, Vec<String>)> {
 }
 
 /// A real number of Nastran: 1.5+3, 1.5D-3.
-pub fn real(field: &str) -> f64 {
+pub(crate) fn real(field: &str) -> f64 {
     if field.is_empty() {
         return 0.0;
     }
@@ -46,7 +46,7 @@ fn add(matrix: &mut Matrix4, v: [f64; 4], value: f64) {
 }
 
 /// K and C of a bush at its place between GRIDs 2 and 3.
-pub fn nastran_bush(text: &str) -> (Matrix4, Matrix4) {
+pub(crate) fn nastran_bush(text: &str) -> (Matrix4, Matrix4) {
     let entries = entries(text);
     let of = |name: &str| entries.iter().find(|(n, _)| n == name).map(|(_, fields)| fields).unwrap();
     let x = |node: &str| {
@@ -81,7 +81,7 @@ fn place(node: &str, dof: &str) -> usize {
 }
 
 /// A symmetric DMIG matrix.
-pub fn nastran_dmig(text: &str, name: &str) -> Matrix4 {
+pub(crate) fn nastran_dmig(text: &str, name: &str) -> Matrix4 {
     let entries = entries(text);
     let of: Vec<_> = entries.iter().filter(|(n, f)| n == "DMIG" && f[0] == name).map(|(_, f)| f).collect();
     assert_eq!(of[0][1..4], ["0", "6", "2"], "header: symmetric, double precision");
@@ -99,7 +99,7 @@ pub fn nastran_dmig(text: &str, name: &str) -> Matrix4 {
 }
 
 /// MATRIX27 elements by KEYOPT(3).
-pub fn ansys(text: &str) -> BTreeMap<u8, Matrix4> {
+pub(crate) fn ansys(text: &str) -> BTreeMap<u8, Matrix4> {
     let mut found = BTreeMap::new();
     let (mut option, mut constants) = (0, Vec::new());
     for line in text.lines() {
@@ -131,7 +131,7 @@ pub fn ansys(text: &str) -> BTreeMap<u8, Matrix4> {
 }
 
 /// Keyword blocks of Abaqus and CalculiX: the keyword line and its data lines.
-pub fn blocks(text: &str) -> Vec<(String, Vec<Vec<String>>)> {
+pub(crate) fn blocks(text: &str) -> Vec<(String, Vec<Vec<String>>)> {
     let mut blocks: Vec<(String, Vec<Vec<String>>)> = Vec::new();
     for line in text.lines().filter(|line| !line.starts_with("**")) {
         match line.starts_with('*') {
@@ -147,7 +147,7 @@ pub fn blocks(text: &str) -> Vec<(String, Vec<Vec<String>>)> {
 }
 
 /// Matrices of a linear user element by TYPE: column after column from the top to the diagonal.
-pub fn abaqus_element(text: &str) -> BTreeMap<String, Matrix4> {
+pub(crate) fn abaqus_element(text: &str) -> BTreeMap<String, Matrix4> {
     let mut found = BTreeMap::new();
     for (keyword, data) in blocks(text) {
         let Some(kind) = keyword.strip_prefix("*MATRIX, TYPE=") else { continue };
@@ -167,7 +167,7 @@ pub fn abaqus_element(text: &str) -> BTreeMap<String, Matrix4> {
 }
 
 /// Matrices of *MATRIX INPUT by what *MATRIX ASSEMBLE makes of them.
-pub fn abaqus_matrix(text: &str) -> BTreeMap<String, Matrix4> {
+pub(crate) fn abaqus_matrix(text: &str) -> BTreeMap<String, Matrix4> {
     let blocks = blocks(text);
     let assembled = blocks.iter().find_map(|(k, _)| k.strip_prefix("*MATRIX ASSEMBLE, ")).unwrap();
     let mut found = BTreeMap::new();
@@ -187,7 +187,7 @@ pub fn abaqus_matrix(text: &str) -> BTreeMap<String, Matrix4> {
 }
 
 /// K and C of springs and dashpots on motions that equations make; rotations are nodes of their own, named in the notes.
-pub fn calculix(text: &str) -> (Matrix4, Matrix4) {
+pub(crate) fn calculix(text: &str) -> (Matrix4, Matrix4) {
     let comment: String = text.lines().filter_map(|l| l.strip_prefix("**")).collect::<Vec<_>>().join(" ");
     let words: Vec<&str> = comment.split_whitespace().collect();
     let rotation = |node: &str| {
@@ -225,7 +225,7 @@ pub fn calculix(text: &str) -> (Matrix4, Matrix4) {
 }
 
 /// A 4×4 matrix of a table.
-pub fn csv(text: &str, quantity: &str) -> Matrix4 {
+pub(crate) fn csv(text: &str, quantity: &str) -> Matrix4 {
     let order = ["y from", "theta from", "y to", "theta to"];
     let mut matrix = [[f64::NAN; 4]; 4];
     for line in text.lines().filter(|l| !l.starts_with('#')) {

@@ -15,7 +15,7 @@ pub(super) enum Part {
 }
 
 impl Part {
-    pub fn name(self) -> &'static str {
+    pub(super) fn name(self) -> &'static str {
         match self {
             Part::Frequency => "frequency",
             Part::Real => "real",
@@ -54,7 +54,7 @@ pub(super) struct Column {
 
 impl Column {
     /// Radians in one of a phase's unit.
-    pub fn radians(&self, table: &Table) -> Result<f64, ImportError> {
+    pub(super) fn radians(&self, table: &Table) -> Result<f64, ImportError> {
         match self.unit.to_lowercase().as_str() {
             "deg" | "degree" | "degrees" | "°" => Ok(std::f64::consts::PI / 180.0),
             "rad" | "radian" | "radians" => Ok(1.0),

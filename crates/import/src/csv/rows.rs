@@ -23,7 +23,7 @@ enum Delimiter {
 }
 
 impl Rows {
-    pub fn of(bytes: &[u8]) -> Result<Self, ImportError> {
+    pub(super) fn of(bytes: &[u8]) -> Result<Self, ImportError> {
         let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
         // Columns of old analysers are in Latin-1.
         let text = match std::str::from_utf8(bytes) {
@@ -141,7 +141,7 @@ pub(super) struct Table {
 
 impl Table {
     /// The header is the last line above the first row of numbers that has as many fields; a line of units may stand between.
-    pub fn of(rows: &Rows) -> Result<Self, ImportError> {
+    pub(super) fn of(rows: &Rows) -> Result<Self, ImportError> {
         let all = &rows.rows;
         let is_numbers =
             |row: &Row| row.fields.len() > 1 && row.fields.iter().all(|field| rows.number(field).is_some());
@@ -247,7 +247,7 @@ impl Table {
     }
 
     /// The numbers of a column.
-    pub fn values(&self, column: usize) -> Result<Vec<f64>, ImportError> {
+    pub(super) fn values(&self, column: usize) -> Result<Vec<f64>, ImportError> {
         Ok(self.numbers.iter().filter_map(|row| row.get(column).copied()).collect())
     }
 
@@ -256,12 +256,12 @@ impl Table {
     }
 
     /// The error of a field, by its row of numbers.
-    pub fn field_error(&self, row: usize, column: usize, problem: &str) -> ImportError {
+    pub(super) fn field_error(&self, row: usize, column: usize, problem: &str) -> ImportError {
         self.error(self.lines.get(row).copied().unwrap_or(0), column, problem.to_owned())
     }
 
     /// The error of a column.
-    pub fn column_error(&self, column: usize, problem: impl Into<String>) -> ImportError {
+    pub(super) fn column_error(&self, column: usize, problem: impl Into<String>) -> ImportError {
         ImportError::Column {
             line: self.line,
             column: column + 1,

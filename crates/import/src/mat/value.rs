@@ -17,7 +17,7 @@ pub(crate) enum Value {
 
 impl Value {
     /// The fields of a structure that is no array.
-    pub fn fields(&self) -> Option<&[(String, Value)]> {
+    pub(super) fn fields(&self) -> Option<&[(String, Value)]> {
         match self {
             Value::Structs(elements) => match elements.as_slice() {
                 [one] => Some(one),
@@ -28,7 +28,7 @@ impl Value {
     }
 
     /// A field along a path such as `y_values.quantity.label`.
-    pub fn field(&self, path: &str) -> Option<&Value> {
+    pub(super) fn field(&self, path: &str) -> Option<&Value> {
         path.split('.').try_fold(self, |value, name| {
             let same = |(field, _): &&(String, Value)| field.eq_ignore_ascii_case(name);
             value.fields()?.iter().find(same).map(|(_, value)| value)
@@ -36,7 +36,7 @@ impl Value {
     }
 
     /// One real number.
-    pub fn number(&self) -> Option<f64> {
+    pub(super) fn number(&self) -> Option<f64> {
         match self {
             Value::Numbers { re, .. } => match re.as_slice() {
                 [one] => Some(*one),
@@ -47,7 +47,7 @@ impl Value {
     }
 
     /// All texts in it: rows of text, or those of the cells.
-    pub fn texts(&self) -> Vec<String> {
+    pub(super) fn texts(&self) -> Vec<String> {
         match self {
             Value::Text(rows) => rows.clone(),
             Value::Cells(cells) => cells.iter().flat_map(Value::texts).collect(),
@@ -56,7 +56,7 @@ impl Value {
     }
 
     /// What it is, for messages.
-    pub fn what(&self) -> String {
+    pub(super) fn what(&self) -> String {
         match self {
             Value::Numbers { dims, im, .. } => {
                 let size = dims.iter().map(usize::to_string).collect::<Vec<_>>().join("×");

@@ -1,6 +1,7 @@
 //! What is asked of any input (`fuzz/`), asked of the inputs that are kept.
 
 #[path = "../../../../fuzz/src/targets.rs"]
+#[allow(unreachable_pub)] // a crate of its own elsewhere
 #[allow(clippy::expect_used)] // what cannot fail
 mod targets;
 

@@ -10,14 +10,14 @@ use jointscope::spectra::{FrfForm, FrfPair, FrfSet, SpectralLines};
 use jointscope_rig::{Instrument, drawn_within_tolerance, generator};
 use num_complex::Complex64;
 
-pub const EIGHT: [(&str, &str); 8] =
+pub(crate) const EIGHT: [(&str, &str); 8] =
     [("4", "1"), ("3", "1"), ("4", "2"), ("3", "2"), ("1", "1"), ("2", "1"), ("4", "4"), ("3", "4")];
 
 /// A deterministic stream of circular complex normals.
-pub struct Noise(u64);
+pub(crate) struct Noise(u64);
 
 impl Noise {
-    pub fn new(seed: u64) -> Self {
+    pub(crate) fn new(seed: u64) -> Self {
         Noise(seed.wrapping_mul(0x9E3779B97F4A7C15) | 1)
     }
 
@@ -51,7 +51,7 @@ impl Noise {
 
 /// What the joint is.
 #[derive(Clone, Copy)]
-pub struct Case {
+pub(crate) struct Case {
     /// k11, k12, k22.
     pub stiffness: [f64; 3],
     /// c11, c12, c22; nothing where they are zero.
@@ -61,7 +61,7 @@ pub struct Case {
 }
 
 impl Case {
-    pub fn ordinary() -> Self {
+    pub(crate) fn ordinary() -> Self {
         Case { stiffness: [2.4e6, -8.4e4, 4.1e3], damping: [12.0, -0.35, 0.02], beam: false }
     }
 
@@ -72,7 +72,7 @@ impl Case {
 }
 
 /// Two blocks on a joint, tolerances as of a weighed and measured fixture.
-pub fn fixture(case: &Case, physics: &str) -> Fixture {
+pub(crate) fn fixture(case: &Case, physics: &str) -> Fixture {
     let q = |value: f64, std: f64| format!(r#"{{"value": {value}, "std": {std}}}"#);
     let block = |mass: f64, inertia: f64, x: f64| {
         format!(
@@ -119,13 +119,13 @@ fn lines() -> SpectralLines {
     SpectralLines::even(4.0, 4.0, 300).unwrap()
 }
 
-pub fn recorded(truth: &Fixture, noise: &mut Noise, relative: f64, pairs: &[(&str, &str)]) -> FrfSet {
+pub(crate) fn recorded(truth: &Fixture, noise: &mut Noise, relative: f64, pairs: &[(&str, &str)]) -> FrfSet {
     let pairs: Vec<FrfPair> = pairs.iter().map(|(o, i)| FrfPair::transverse(o, i)).collect();
     noise.on(&jointscope_rig::frfs(truth, &pairs, &lines(), Instrument::Perfect).unwrap(), relative)
 }
 
 /// k11, k12, k22, c11, c12, c22 that a fixture states.
-pub fn six(fixture: &Fixture) -> [f64; 6] {
+pub(crate) fn six(fixture: &Fixture) -> [f64; 6] {
     match &fixture.joints()[0].law {
         JointLaw::Stiffness { stiffness: [a, b, d], damping: Some([e, f, g]) } => {
             [a, b, d, e, f, g].map(|q| q.value)
@@ -176,12 +176,12 @@ fn run(case: &Case, count: u64, seed: u64) -> Runs {
     runs
 }
 
-pub fn rms(values: impl Iterator<Item = f64>) -> f64 {
+pub(crate) fn rms(values: impl Iterator<Item = f64>) -> f64 {
     let (sum, count) = values.fold((0.0, 0), |(sum, count), v| (sum + v * v, count + 1));
     (sum / f64::from(count)).sqrt()
 }
 
-pub const NAMES: [&str; 6] = ["k11", "k12", "k22", "c11", "c12", "c22"];
+pub(crate) const NAMES: [&str; 6] = ["k11", "k12", "k22", "c11", "c12", "c22"];
 
 fn report(runs: &Runs) {
     let n = runs.scores.len();
@@ -259,7 +259,7 @@ fn frfs_on_one_side_of_the_joint_make_it_several_times_better_known_than_those_a
 }
 
 /// Largest difference between the share of p-values below a probability and that probability.
-pub fn from_uniform(p: &[f64]) -> f64 {
+pub(crate) fn from_uniform(p: &[f64]) -> f64 {
     let mut p = p.to_vec();
     p.sort_by(f64::total_cmp);
     let n = p.len() as f64;

@@ -24,7 +24,7 @@ fn diagnosed(fixture: &Fixture, frfs: &FrfSet, baseline: Option<FrfSet>) -> Diag
     Diagnosis::of(fixture, frfs, &DiagnosisOptions { baseline, ..DiagnosisOptions::default() }).unwrap()
 }
 
-pub fn told(diagnosis: &Diagnosis) -> String {
+pub(crate) fn told(diagnosis: &Diagnosis) -> String {
     let names = diagnosis.findings.iter().map(|f| format!("{:?} {:.2}", f.effect, f.probability));
     format!("{:?} {:?} {:?}", diagnosis.verdict, diagnosis.model_error, names.collect::<Vec<_>>())
 }
@@ -72,7 +72,7 @@ fn another_structure_is_no_baseline() {
 }
 
 /// A case that lies beside the workspace: its fixture, recording and truth.
-pub fn solid(name: &str) -> Option<(Fixture, FrfSet)> {
+pub(crate) fn solid(name: &str) -> Option<(Fixture, FrfSet)> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/concealed/solids").join(name);
     let Ok(json) = std::fs::read_to_string(folder.join("fixture.json")) else {
         println!("skipped: no solids beside the workspace");

@@ -1,7 +1,7 @@
 use jointscope_linalg::{SparsePattern, SparseSymmetric};
 
 /// A free chain of n unit masses on unit springs, stiffness scaled.
-pub fn free_chain(n: usize, stiffness: f64) -> (SparseSymmetric, SparseSymmetric) {
+pub(crate) fn free_chain(n: usize, stiffness: f64) -> (SparseSymmetric, SparseSymmetric) {
     let couples: Vec<Vec<usize>> = (1..n).map(|i| vec![i - 1, i]).collect();
     let pattern = SparsePattern::of_elements(n, couples.iter().map(Vec::as_slice)).unwrap();
     let (mut k, mut m) = (SparseSymmetric::zero(&pattern), SparseSymmetric::zero(&pattern));

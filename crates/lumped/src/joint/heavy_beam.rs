@@ -24,7 +24,7 @@ pub(super) struct HeavyBeam {
 
 impl HeavyBeam {
     /// Of bending stiffness EI, shear stiffness where it shears, mass and length.
-    pub fn new(bending: f64, shear: Option<f64>, mass: f64, length: f64) -> Self {
+    pub(super) fn new(bending: f64, shear: Option<f64>, mass: f64, length: f64) -> Self {
         let of = |doublings: usize| length / f64::from(1u32 << doublings);
         let first = of(DOUBLINGS);
         HeavyBeam {
@@ -36,7 +36,7 @@ impl HeavyBeam {
 
     /// On the motions of both ends at s, its modulus times a complex factor.
     #[inline(always)]
-    pub fn at<T: Lines>(&self, s: T, modulus: T) -> TwoEnds<T> {
+    pub(super) fn at<T: Lines>(&self, s: T, modulus: T) -> TwoEnds<T> {
         let scale = s * s * modulus.reciprocal();
         let mut added = self.mass.map(|mass| scale * mass);
         for short in &self.short {

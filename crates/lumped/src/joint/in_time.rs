@@ -29,7 +29,7 @@ impl JointDynamics {
     /// The joint over time; `Err` with the name of the effect that has no form there.
     ///
     /// The fixture's own loss factor is not part of it: over time its modes are damped by its viscous equivalent.
-    pub fn in_time(&self) -> Result<JointInTime, &'static str> {
+    pub(crate) fn in_time(&self) -> Result<JointInTime, &'static str> {
         if self.loss != 0.0 {
             return Err("loss_factor");
         }

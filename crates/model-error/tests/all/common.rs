@@ -14,7 +14,7 @@ use rand_chacha::rand_core::SeedableRng;
 use std::f64::consts::TAU;
 
 /// Masses of 2 kg and 3 kg on a spring of 5 MN/m, with modal damping.
-pub fn two_masses(damping_ratio: f64, physics: &str) -> Fixture {
+pub(crate) fn two_masses(damping_ratio: f64, physics: &str) -> Fixture {
     Fixture::from_json(&format!(
         r#"{{ "bodies": {{ "A": {{ "mass": 2.0, "rotates": false }}, "B": {{ "mass": 3.0, "rotates": false }} }},
           "points": {{ "1": {{ "body": "A", "x": 0 }}, "2": {{ "body": "B", "x": 0.1 }} }},
@@ -25,12 +25,12 @@ pub fn two_masses(damping_ratio: f64, physics: &str) -> Fixture {
 }
 
 /// Two rigid blocks of about a kilogram on a steel beam of 65 mm (EI = 76 N·m²): modes at 247 Hz and 908 Hz.
-pub fn blocks(physics: &str) -> Fixture {
+pub(crate) fn blocks(physics: &str) -> Fixture {
     blocks_with_sensor_at(0.125, physics)
 }
 
 /// The same with point 4 at another abscissa, m.
-pub fn blocks_with_sensor_at(x: f64, physics: &str) -> Fixture {
+pub(crate) fn blocks_with_sensor_at(x: f64, physics: &str) -> Fixture {
     Fixture::from_json(&format!(
         r#"{{ "bodies": {{ "A": {{ "mass": 1.1, "inertia": 9.5e-4, "x_cg": -0.03 }},
                            "B": {{ "mass": 1.2, "inertia": 9.9e-4, "x_cg": 0.095 }} }},
@@ -43,7 +43,7 @@ pub fn blocks_with_sensor_at(x: f64, physics: &str) -> Fixture {
 }
 
 /// Blocks on soft supports: two modes at 2.4 Hz and 3.2 Hz.
-pub fn suspended() -> Fixture {
+pub(crate) fn suspended() -> Fixture {
     Fixture::from_json(
         r#"{ "bodies": { "A": { "mass": 2.1, "inertia": 1.9e-3, "x_cg": -0.03 },
                            "B": { "mass": 2.3, "inertia": 2.1e-3, "x_cg": 0.095 } },
@@ -57,7 +57,7 @@ pub fn suspended() -> Fixture {
 }
 
 /// `count` masses of one kilogram in a row on springs of 5 MN/m: `count` − 1 elastic modes below 712 Hz.
-pub fn chain(count: usize) -> Fixture {
+pub(crate) fn chain(count: usize) -> Fixture {
     let list = |of: &dyn Fn(usize) -> String, n: usize| (1..=n).map(of).collect::<Vec<_>>().join(", ");
     let bodies = list(&|k| format!(r#""B{k}": {{ "mass": 1.0, "rotates": false }}"#), count);
     let points = list(&|k| format!(r#""{k}": {{ "body": "B{k}", "x": {k} }}"#), count);
@@ -74,23 +74,23 @@ pub fn chain(count: usize) -> Fixture {
 }
 
 /// Transverse FRFs by their points, response first.
-pub fn pairs(names: &[(&str, &str)]) -> Vec<FrfPair> {
+pub(crate) fn pairs(names: &[(&str, &str)]) -> Vec<FrfPair> {
     names.iter().map(|(response, reference)| FrfPair::transverse(response, reference)).collect()
 }
 
 /// The FRFs of the blocks: responses 4 and 3, references 1 and 2.
-pub fn four() -> Vec<FrfPair> {
+pub(crate) fn four() -> Vec<FrfPair> {
     pairs(&[("4", "1"), ("3", "1"), ("4", "2"), ("3", "2")])
 }
 
 /// Spectral lines 2.5 Hz apart from 20 Hz to `to`.
-pub fn lines(to: f64) -> SpectralLines {
+pub(crate) fn lines(to: f64) -> SpectralLines {
     SpectralLines::even(20.0, 2.5, ((to - 20.0) / 2.5) as usize + 1).unwrap()
 }
 
 /// Noise of each FRF value: a floor, (m/s²)/N, and a share of the value.
 #[derive(Clone, Copy)]
-pub struct Noise {
+pub(crate) struct Noise {
     pub floor: f64,
     pub share: f64,
     /// None: the recording states the noise's variance and has none.
@@ -98,18 +98,18 @@ pub struct Noise {
 }
 
 /// 0.25 % and a floor of 10⁻³ (m/s²)/N.
-pub fn noise(seed: Option<u64>) -> Noise {
+pub(crate) fn noise(seed: Option<u64>) -> Noise {
     Noise { floor: 1e-3, share: 0.0025, seed }
 }
 
 /// A recording with the weight of each value.
-pub struct Recorded {
+pub(crate) struct Recorded {
     pub set: FrfSet,
     pub weights: Vec<f64>,
 }
 
 impl Recorded {
-    pub fn of(fixture: &Fixture, pairs: &[FrfPair], lines: &SpectralLines, noise: Noise) -> Self {
+    pub(crate) fn of(fixture: &Fixture, pairs: &[FrfPair], lines: &SpectralLines, noise: Noise) -> Self {
         let clean = synthesize(fixture, pairs, lines, Instrument::AsRecorded).unwrap();
         let variance = |v: &Complex64| noise.floor.powi(2) + noise.share.powi(2) * v.norm_sqr();
         let variances: Vec<f64> = clean.all_values().iter().map(variance).collect();
@@ -125,7 +125,7 @@ impl Recorded {
     }
 
     /// The same recording with weights and variances as if the noise were `times` as large.
-    pub fn with_noise_stated_as(self, times: f64) -> Self {
+    pub(crate) fn with_noise_stated_as(self, times: f64) -> Self {
         let frfs = 0..self.set.pairs().len();
         let variances =
             frfs.flat_map(|frf| self.set.variance(frf).unwrap()).map(|v| v * times * times).collect();
@@ -133,25 +133,25 @@ impl Recorded {
         Recorded { set: self.set.with_variance(variances).unwrap(), weights }
     }
 
-    pub fn modes(&self) -> RecordedModes {
+    pub(crate) fn modes(&self) -> RecordedModes {
         let recording = Recording { frfs: &self.set, weights: &self.weights };
         RecordedModes::of(recording, &ModesOptions::default(), |_| Expected::default()).unwrap()
     }
 }
 
 /// A complex normal of variance one.
-pub fn circular(random: &mut ChaCha8Rng) -> Complex64 {
+pub(crate) fn circular(random: &mut ChaCha8Rng) -> Complex64 {
     let (u, v): (f64, f64) = (random.random(), random.random());
     Complex64::from_polar((-(1.0 - u).ln()).sqrt(), TAU * v)
 }
 
 /// A real normal of variance one.
-pub fn normal(random: &mut ChaCha8Rng) -> f64 {
+pub(crate) fn normal(random: &mut ChaCha8Rng) -> f64 {
     circular(random).re * 2f64.sqrt()
 }
 
 /// A recording's modes compared with those of a model.
-pub struct Compared {
+pub(crate) struct Compared {
     pub recorded: RecordedModes,
     pub modelled: ModelledModes,
     pub pairing: Pairing,
@@ -159,7 +159,7 @@ pub struct Compared {
 }
 
 impl Compared {
-    pub fn of(fixture: &Fixture, recorded: RecordedModes) -> Self {
+    pub(crate) fn of(fixture: &Fixture, recorded: RecordedModes) -> Self {
         let modelled = modelled(fixture, &recorded);
         let pairing = Pairing::of(&recorded, &modelled);
         let shapes = Shapes::of(fixture, &recorded, &modelled.poles()).unwrap();
@@ -168,24 +168,24 @@ impl Compared {
     }
 
     /// Recorded less modelled features.
-    pub fn difference(&self) -> Vec<f64> {
+    pub(crate) fn difference(&self) -> Vec<f64> {
         self.comparison.residual(&self.recorded, &self.recorded.features(), &self.modelled, &self.pairing)
     }
 
     /// The model's features alone.
-    pub fn model(&self) -> Vec<f64> {
+    pub(crate) fn model(&self) -> Vec<f64> {
         let nothing = vec![0.0; self.recorded.count()];
         let negative = self.comparison.residual(&self.recorded, &nothing, &self.modelled, &self.pairing);
         negative.into_iter().map(|f| -f).collect()
     }
 
     /// Covariance of the recorded features.
-    pub fn noise(&self) -> Vec<f64> {
+    pub(crate) fn noise(&self) -> Vec<f64> {
         self.comparison.covariance(&ErrorSizes::from_array([0.0; 7]))
     }
 
     /// What each compared feature is: its kind, and its name for messages.
-    pub fn names(&self) -> Vec<(&'static str, String)> {
+    pub(crate) fn names(&self) -> Vec<(&'static str, String)> {
         let mut names = Vec::new();
         let hz = |r: usize| self.recorded.modes[r].pole.omega / TAU;
         for &(r, _) in &self.pairing.pairs {
@@ -207,18 +207,18 @@ impl Compared {
     }
 
     /// Each difference over its standard deviation.
-    pub fn normalised(&self) -> Vec<f64> {
+    pub(crate) fn normalised(&self) -> Vec<f64> {
         let (n, noise) = (self.comparison.count(), self.noise());
         self.difference().iter().enumerate().map(|(k, d)| d / noise[k * (n + 1)].sqrt()).collect()
     }
 }
 
-pub fn modelled(fixture: &Fixture, recorded: &RecordedModes) -> ModelledModes {
+pub(crate) fn modelled(fixture: &Fixture, recorded: &RecordedModes) -> ModelledModes {
     ModelledModes::of(fixture, recorded).unwrap()
 }
 
 /// χ² = dᵀS⁻¹d and ln det S by Gaussian elimination of the dense matrix.
-pub fn chi2_and_ln_determinant(covariance: &[f64], difference: &[f64]) -> (f64, f64) {
+pub(crate) fn chi2_and_ln_determinant(covariance: &[f64], difference: &[f64]) -> (f64, f64) {
     let n = difference.len();
     let (mut a, mut b) = (covariance.to_vec(), difference.to_vec());
     let mut ln_determinant = 0.0;

@@ -32,7 +32,12 @@ pub(super) struct Point {
 }
 
 impl Point {
-    pub fn of(observed: &Observed, mut poles: Poles, terms: Terms, prior: Option<&Prior>) -> Option<Self> {
+    pub(super) fn of(
+        observed: &Observed,
+        mut poles: Poles,
+        terms: Terms,
+        prior: Option<&Prior>,
+    ) -> Option<Self> {
         poles.participations.iter_mut().for_each(|l| normalize(l));
         let gram = Gram::of(observed, &poles.poles, terms);
         let count = poles.poles.len();
@@ -58,7 +63,7 @@ impl Point {
         point.chi2.is_finite().then_some(point)
     }
 
-    pub fn target(&self) -> f64 {
+    pub(super) fn target(&self) -> f64 {
         self.chi2 + self.penalty
     }
 
@@ -209,7 +214,7 @@ impl Point {
     }
 
     /// The parameters a step further; no pole moves by more than a few half-widths at once.
-    pub fn moved(&self, step: &[f64]) -> Poles {
+    pub(super) fn moved(&self, step: &[f64]) -> Poles {
         let mut poles = self.poles.clone();
         let count = poles.poles.len();
         let columns = poles.participations.first().map_or(1, Vec::len);

@@ -20,19 +20,19 @@ pub(crate) struct Fit {
 
 impl Fit {
     /// From `start`, derivatives being taken `renewals` times at the most; `None` where the start has no finite motion.
-    pub fn of(view: &View, start: &Hypothesis, renewals: usize) -> Option<Self> {
+    pub(super) fn of(view: &View, start: &Hypothesis, renewals: usize) -> Option<Self> {
         Self::sloped(view, view, start, renewals)
     }
 
     /// The same, with derivatives of a view of the same records that steps more coarsely: they need not be as exact as what they lead to.
-    pub fn sloped(view: &View, slopes: &View, start: &Hypothesis, renewals: usize) -> Option<Self> {
+    pub(super) fn sloped(view: &View, slopes: &View, start: &Hypothesis, renewals: usize) -> Option<Self> {
         let start = Iterate::at(view, start.clone())?;
         let fit = descend(&Problem { view, slopes }, start, None, &settings(renewals))?;
         Some(Self::with(fit.point, fit.derivatives))
     }
 
     /// A hypothesis as it is, with what a view tells of it.
-    pub fn at(view: &View, slopes: &View, hypothesis: &Hypothesis) -> Option<Self> {
+    pub(super) fn at(view: &View, slopes: &View, hypothesis: &Hypothesis) -> Option<Self> {
         let point = Iterate::at(view, hypothesis.clone())?;
         let derivatives = Problem { view, slopes }.derivatives(&point, Precision::Rough)?;
         Some(Self::with(point, derivatives))
@@ -45,7 +45,7 @@ impl Fit {
 
     /// Covariance of the coordinates, the data's noise being `scale` times what was assumed; `None` where neither data nor priors determine
     /// them.
-    pub fn covariance(&self, scale: f64) -> Option<Covariance> {
+    pub(super) fn covariance(&self, scale: f64) -> Option<Covariance> {
         let information = self.information.iter().map(|e| e / scale).collect();
         equations(&self.hypothesis, information, vec![0.0; self.hypothesis.coordinates.len()]).covariance()
     }

@@ -28,7 +28,7 @@ const LONGEST_OF_EFFECT: f64 = 0.4;
 
 impl Hypothesis {
     /// The fixture as stated. Points that no joint, support or channel uses stay where they are.
-    pub fn nominal(fixture: &Fixture, exact: bool, channels: &[String]) -> Self {
+    pub(crate) fn nominal(fixture: &Fixture, exact: bool, channels: &[String]) -> Self {
         let mut quantities = Tolerance::all(fixture, exact);
         quantities.retain(|tolerance| is_used(fixture, &tolerance.quantity, channels));
         Hypothesis {
@@ -41,7 +41,7 @@ impl Hypothesis {
     }
 
     /// The same with one more effect, at the parameters it is given with.
-    pub fn with(&self, effect: Effect) -> Self {
+    pub(crate) fn with(&self, effect: Effect) -> Self {
         let mut more = self.clone();
         for (transform, quantity) in transforms(&effect).into_iter().zip(&effect.parameters) {
             more.parameters.push(Parameter::new(transform));
@@ -52,7 +52,7 @@ impl Hypothesis {
     }
 
     /// The same quantities without any effect.
-    pub fn without_effects(&self) -> Self {
+    pub(crate) fn without_effects(&self) -> Self {
         let mut less = self.clone();
         less.coordinates.truncate(less.quantities.len());
         less.parameters.truncate(less.quantities.len());
@@ -61,7 +61,7 @@ impl Hypothesis {
     }
 
     /// The effects at the present coordinates.
-    pub fn effects(&self) -> Vec<Effect> {
+    pub(crate) fn effects(&self) -> Vec<Effect> {
         let all = self.parameters.iter().zip(&self.coordinates).skip(self.quantities.len());
         let mut values = all.filter_map(|(parameter, at)| parameter.transform.value(*at));
         let at = |effect: &Effect| {
@@ -72,24 +72,24 @@ impl Hypothesis {
     }
 
     /// The parameters of effect `index`: transform of each, and its coordinate's place.
-    pub fn parameters_of(&self, index: usize) -> impl Iterator<Item = (Transform, usize)> {
+    pub(crate) fn parameters_of(&self, index: usize) -> impl Iterator<Item = (Transform, usize)> {
         let before = self.effects[..index].iter().map(|e| e.parameters.len()).sum::<usize>();
         let first = self.quantities.len() + before;
         (first..first + self.effects[index].parameters.len())
             .map(|place| (self.parameters[place].transform, place))
     }
 
-    pub fn parameters(&self) -> &[Parameter] {
+    pub(crate) fn parameters(&self) -> &[Parameter] {
         &self.parameters
     }
 
     /// What departures from the stated values cost: Σ (departure/std)².
-    pub fn penalty(&self) -> f64 {
+    pub(crate) fn penalty(&self) -> f64 {
         self.parameters.iter().zip(&self.coordinates).map(|(p, at)| p.penalty(*at)).sum()
     }
 
     /// Step of coordinate `index` for a difference quotient.
-    pub fn difference(&self, index: usize) -> f64 {
+    pub(crate) fn difference(&self, index: usize) -> f64 {
         let Some(Tolerance { quantity, parameter, .. }) = self.quantities.get(index) else { return 1e-3 };
         let unit = parameter.transform.slope(quantity.value);
         match quantity.nature {
@@ -100,14 +100,14 @@ impl Hypothesis {
         }
     }
 
-    pub fn moved(&self, index: usize, step: f64) -> Self {
+    pub(crate) fn moved(&self, index: usize, step: f64) -> Self {
         let mut moved = self.clone();
         moved.coordinates[index] += step;
         moved
     }
 
     /// Moved by `step`, no coordinate farther than derivatives reach; damping stops at zero.
-    pub fn stepped(&self, step: &[f64]) -> Self {
+    pub(crate) fn stepped(&self, step: &[f64]) -> Self {
         let mut next = self.clone();
         for (i, (coordinate, step)) in next.coordinates.iter_mut().zip(step).enumerate() {
             let longest = if i < self.quantities.len() { LONGEST } else { LONGEST_OF_EFFECT };
@@ -117,7 +117,7 @@ impl Hypothesis {
     }
 
     /// The fixture at these coordinates, the effects in its physics.
-    pub fn to_fixture(&self) -> Result<Fixture, FixtureError> {
+    pub(crate) fn to_fixture(&self) -> Result<Fixture, FixtureError> {
         let fixture = moved(&self.fixture, &self.quantities, &self.coordinates);
         let physics = [fixture.physics(), &self.effects()].concat();
         fixture.with_physics(physics)

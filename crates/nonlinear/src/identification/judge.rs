@@ -47,7 +47,12 @@ pub(super) struct Judged {
 
 impl Judgement<'_> {
     /// Of the fixture as stated and refitted without laws, and of the best fit with laws; `None` for models without a finite motion.
-    pub fn of(&self, [nominal, refitted]: [&Hypothesis; 2], best: &Fit, steps: &[Step]) -> Option<Judged> {
+    pub(super) fn of(
+        &self,
+        [nominal, refitted]: [&Hypothesis; 2],
+        best: &Fit,
+        steps: &[Step],
+    ) -> Option<Judged> {
         let records: Vec<&Record> = self.all.iter().collect();
         let focus = Focus { halvings: 4, ..self.search.focus(self.span.periods) };
         let ends = horizons(&records, &focus, best, self.search.shortest_s());

@@ -64,7 +64,7 @@ pub(crate) struct Jacobian {
 
 impl<'a> View<'a> {
     /// The records, each up to its own end or to where it has died away.
-    pub fn new(records: &[&'a Record], focus: &Focus, ends: &[usize]) -> Self {
+    pub(crate) fn new(records: &[&'a Record], focus: &Focus, ends: &[usize]) -> Self {
         let mut setups: Vec<&Record> = Vec::new();
         for record in records {
             if !setups.iter().any(|other| other.has_setup_of(record)) {
@@ -92,7 +92,7 @@ impl<'a> View<'a> {
 
     /// What every response of every record reads in the model, under the recorded force and `disturbance` times its noise; nothing for a
     /// hypothesis without a finite motion.
-    pub fn histories(&self, hypothesis: &Hypothesis, disturbance: f64) -> Option<Vec<Vec<Vec<f64>>>> {
+    pub(crate) fn histories(&self, hypothesis: &Hypothesis, disturbance: f64) -> Option<Vec<Vec<Vec<f64>>>> {
         let steppers = self.steppers(hypothesis)?;
         let history = |trace: &Trace| {
             let hit = &trace.record.hit;
@@ -107,28 +107,28 @@ impl<'a> View<'a> {
     }
 
     /// Number of real values compared.
-    pub fn degrees(&self) -> f64 {
+    pub(crate) fn degrees(&self) -> f64 {
         self.traces.iter().map(|trace| (2 * trace.weights.len() * trace.lines.len()) as f64).sum()
     }
 
     /// χ² of the data; `None` for a hypothesis without a finite motion.
-    pub fn chi2(&self, hypothesis: &Hypothesis) -> Option<f64> {
+    pub(crate) fn chi2(&self, hypothesis: &Hypothesis) -> Option<f64> {
         self.residuals(hypothesis).map(|residuals| sum_of_squares(&residuals))
     }
 
     /// χ² of the data and the priors.
-    pub fn objective(&self, hypothesis: &Hypothesis) -> Option<f64> {
+    pub(crate) fn objective(&self, hypothesis: &Hypothesis) -> Option<f64> {
         self.chi2(hypothesis).map(|chi2| chi2 + hypothesis.penalty())
     }
 
     /// The residuals; `None` for a hypothesis without a finite motion.
-    pub fn residuals(&self, hypothesis: &Hypothesis) -> Option<Residuals> {
+    pub(crate) fn residuals(&self, hypothesis: &Hypothesis) -> Option<Residuals> {
         let steppers = self.steppers(hypothesis)?;
         self.traces.par_iter().map(|trace| trace.residuals(&steppers)).collect()
     }
 
     /// √(Σ|simulated − recorded|²/Σ|recorded|²) in the band, over all responses.
-    pub fn nrmse(&self, hypothesis: &Hypothesis) -> Option<f64> {
+    pub(crate) fn nrmse(&self, hypothesis: &Hypothesis) -> Option<f64> {
         let residuals = self.residuals(hypothesis)?;
         let (mut difference, mut power) = (0.0, 0.0);
         for (trace, residuals) in self.traces.iter().zip(residuals) {
@@ -141,7 +141,7 @@ impl<'a> View<'a> {
     }
 
     /// Derivatives of the residuals with respect to every coordinate, by differences.
-    pub fn jacobian(&self, hypothesis: &Hypothesis, residuals: &Residuals) -> Option<Jacobian> {
+    pub(crate) fn jacobian(&self, hypothesis: &Hypothesis, residuals: &Residuals) -> Option<Jacobian> {
         let count = hypothesis.coordinates.len();
         let steps: Vec<f64> = (0..count).map(|i| hypothesis.difference(i)).collect();
         let moved: Vec<Vec<Stepper>> =
@@ -166,7 +166,7 @@ impl<'a> View<'a> {
 
 impl Jacobian {
     /// −Jᵀr.
-    pub fn descent(&self, residuals: &Residuals) -> Vec<f64> {
+    pub(crate) fn descent(&self, residuals: &Residuals) -> Vec<f64> {
         let mut right = vec![0.0; self.columns.first().map_or(0, Vec::len)];
         for (columns, r) in self.columns.iter().zip(residuals) {
             right.iter_mut().zip(columns).for_each(|(sum, column)| *sum -= dot(column, r));

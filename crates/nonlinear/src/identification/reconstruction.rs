@@ -157,19 +157,19 @@ impl Seen {
     }
 
     /// e^{−at} from the blow on.
-    pub fn window(&self) -> &[f64] {
+    pub(super) fn window(&self) -> &[f64] {
         &self.lines.window
     }
 
     /// Every value compared at a location, in the order of responses and lines: line in the band, h·weight, target.
-    pub fn each_value(&self, location: usize, mut visit: impl FnMut(usize, Complex64, Complex64)) {
+    pub(super) fn each_value(&self, location: usize, mut visit: impl FnMut(usize, Complex64, Complex64)) {
         for (transfer, target) in self.locations[location].transfer.iter().zip(&self.target) {
             transfer.iter().zip(target).enumerate().for_each(|(k, (h, target))| visit(k, *h, *target));
         }
     }
 
     /// Lines in the band of a force history on a joint's motion.
-    pub fn force(&self, values: &[f64]) -> Vec<Complex64> {
+    pub(super) fn force(&self, values: &[f64]) -> Vec<Complex64> {
         self.lines.band(values, &self.band)
     }
 }

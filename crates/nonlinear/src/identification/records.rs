@@ -41,18 +41,18 @@ impl Record {
         }
     }
 
-    pub fn struck(&self) -> &Channel {
+    pub(crate) fn struck(&self) -> &Channel {
         self.hit.struck()
     }
 
     /// Whether another hit was struck, read and sampled alike.
-    pub fn has_setup_of(&self, other: &Record) -> bool {
+    pub(crate) fn has_setup_of(&self, other: &Record) -> bool {
         let interval = |record: &Record| record.hit.interval().to_bits();
         (self.struck(), &self.readings, interval(self)) == (other.struck(), &other.readings, interval(other))
     }
 
     /// Whether another hit is of the same strength at the same point.
-    pub fn is_like(&self, other: &Record) -> bool {
+    pub(crate) fn is_like(&self, other: &Record) -> bool {
         self.struck() == other.struck() && self.level == other.level
     }
 }

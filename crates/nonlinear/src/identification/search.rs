@@ -52,7 +52,7 @@ const RENEWALS: usize = 20;
 const FINALISTS: usize = 3;
 
 impl<'a> Search<'a> {
-    pub fn new(records: Vec<&'a Record>, band: (f64, f64), elastic_hz: (f64, f64)) -> Self {
+    pub(super) fn new(records: Vec<&'a Record>, band: (f64, f64), elastic_hz: (f64, f64)) -> Self {
         let interval = records.iter().map(|r| r.hit.interval()).fold(0.0, f64::max);
         // Thirty steps in a period of the fastest elastic motion.
         let within = (30.0 * elastic_hz.1.min(band.1) * interval).ceil().clamp(2.0, 16.0) as usize;
@@ -62,13 +62,13 @@ impl<'a> Search<'a> {
     }
 
     /// How a window of so many periods is compared; whole records without a number.
-    pub fn focus(&self, periods: Option<f64>) -> Focus {
+    pub(super) fn focus(&self, periods: Option<f64>) -> Focus {
         let decay = periods.map_or(0.0, |periods| 1.0 / (periods * self.period_s));
         Focus { decay, band: self.band, within: self.within, halvings: 3 }
     }
 
     /// All records, as far as they are followed.
-    pub fn view(&self, span: &Span) -> View<'a> {
+    pub(super) fn view(&self, span: &Span) -> View<'a> {
         View::new(&self.records, &self.focus(span.periods), &span.ends)
     }
 
@@ -78,12 +78,12 @@ impl<'a> Search<'a> {
     }
 
     /// So many periods of the slowest motion, s.
-    pub fn time_s(&self, periods: f64) -> f64 {
+    pub(super) fn time_s(&self, periods: f64) -> f64 {
         periods * self.period_s
     }
 
     /// Time after a blow, s, that is always followed.
-    pub fn shortest_s(&self) -> f64 {
+    pub(super) fn shortest_s(&self) -> f64 {
         self.time_s(SHORT)
     }
 
@@ -93,7 +93,7 @@ impl<'a> Search<'a> {
     }
 
     /// The fixture without any law, refitted within its tolerances.
-    pub fn refitted(&self, nominal: &Hypothesis) -> Option<Fit> {
+    pub(super) fn refitted(&self, nominal: &Hypothesis) -> Option<Fit> {
         let first = Fit::of(&self.window(MEDIUM, &[]), nominal, 5)?;
         let second = Fit::of(&self.window(LONG, &[]), &first.hypothesis, 5)?;
         let whole = self.view(&Span::default());
@@ -124,7 +124,7 @@ impl<'a> Search<'a> {
     }
 
     /// Fits with one more effect beside those of `base`, the best first, and how much of the records decided between them.
-    pub fn hypotheses(&self, fixture: &Fixture, base: &Hypothesis) -> (Vec<Fit>, Span) {
+    pub(super) fn hypotheses(&self, fixture: &Fixture, base: &Hypothesis) -> (Vec<Fit>, Span) {
         let kinds = self.suggested(fixture, base);
         let short = self.window(SHORT, &[]);
         let of_kind = |kind: &Suggestion| {

@@ -19,7 +19,7 @@ pub(crate) struct Suggestion {
 
 impl Suggestion {
     /// Takes the best effect of another suggestion, and all of them if it explains more.
-    pub fn join(&mut self, mut other: Suggestion) {
+    pub(super) fn join(&mut self, mut other: Suggestion) {
         if other.share > self.share {
             std::mem::swap(self, &mut other);
         }

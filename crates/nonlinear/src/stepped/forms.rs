@@ -22,13 +22,13 @@ pub(crate) struct Fitted {
 
 impl Fitted {
     /// Names of the effects, `linear` for none.
-    pub fn name(&self) -> String {
+    pub(super) fn name(&self) -> String {
         let names: Vec<&str> = self.change.laws.iter().map(|law| law.kind().name()).collect();
         if names.is_empty() { "linear".to_owned() } else { names.join("+") }
     }
 
     /// Whether friction and a cubic spring act together, which follow more by chance than one law does.
-    pub fn is_double(&self) -> bool {
+    pub(super) fn is_double(&self) -> bool {
         self.change.laws.len() > 1
     }
 }

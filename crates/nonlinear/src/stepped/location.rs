@@ -21,20 +21,20 @@ pub(crate) struct LineModel {
 }
 
 impl LineModel {
-    pub fn accelerance(&self, frf: usize, delta: Complex64) -> Complex64 {
+    pub(super) fn accelerance(&self, frf: usize, delta: Complex64) -> Complex64 {
         let (plain, from_joint) = self.frfs[frf];
         plain - from_joint * delta * self.across[frf] / (1.0 + delta * self.own)
     }
 
     /// δ that gives the accelerance `value`.
-    pub fn delta(&self, frf: usize, value: Complex64) -> Complex64 {
+    pub(super) fn delta(&self, frf: usize, value: Complex64) -> Complex64 {
         let (plain, from_joint) = self.frfs[frf];
         let lacking = plain - value;
         lacking / (from_joint * self.across[frf] - lacking * self.own)
     }
 
     /// Relative motion d over the acceleration of the FRF's response.
-    pub fn motion_per_response(&self, frf: usize, delta: Complex64) -> f64 {
+    pub(super) fn motion_per_response(&self, frf: usize, delta: Complex64) -> f64 {
         (self.across[frf] / (1.0 + delta * self.own) / self.accelerance(frf, delta)).norm()
     }
 }

@@ -31,17 +31,17 @@ pub(crate) struct Judged {
 
 impl Judged {
     /// Laws are tried where there is a change to explain.
-    pub fn of(problem: Problem, linear: Fitted, changed: bool) -> Self {
+    pub(super) fn of(problem: Problem, linear: Fitted, changed: bool) -> Self {
         let tried = |form: &&&[_]| changed && (problem.levels.len() >= LEVELS.0 || form.len() == 1);
         let laws = FORMS.iter().filter(tried).filter_map(|form| fitted(&problem, form)).collect();
         Judged { problem, linear, laws }
     }
 
-    pub fn best(&self) -> &Fitted {
+    pub(super) fn best(&self) -> &Fitted {
         self.laws.iter().fold(&self.linear, |best, fit| if fit.nrmse < best.nrmse { fit } else { best })
     }
 
-    pub fn tried(&self) -> impl Iterator<Item = Tried> {
+    pub(super) fn tried(&self) -> impl Iterator<Item = Tried> {
         std::iter::once(&self.linear).chain(&self.laws).map(|fit| Tried {
             joint: self.problem.joint.clone(),
             dof: self.problem.dof,
@@ -119,7 +119,7 @@ fn best_of(parts: &[(usize, Judged)], count: usize) -> Option<Named> {
 
 impl Named {
     /// `by_fixture`: the fixture, and whether its bare numbers are exact.
-    pub fn findings(&self, judged: &[Judged], by_fixture: (&Fixture, bool)) -> Vec<LevelFinding> {
+    pub(super) fn findings(&self, judged: &[Judged], by_fixture: (&Fixture, bool)) -> Vec<LevelFinding> {
         let effect = |index: usize, law: &RestoringLaw| {
             law.to_effect(&judged[index].problem.joint, judged[index].problem.dof)
         };
@@ -181,7 +181,7 @@ impl Named {
     }
 
     /// Root-mean-square relative errors at levels that the fit did not see.
-    pub fn held_out(&self) -> Option<HeldOut> {
+    pub(super) fn held_out(&self) -> Option<HeldOut> {
         let levels = &self.problem.levels;
         let error = |fit: &Fitted| {
             let of = |l: usize| Some(self.problem.error(&levels[l], &self.without(l, fit)?).powi(2));

@@ -50,7 +50,7 @@ pub(crate) const BASE: usize = 3;
 
 impl Change {
     /// What a fit moves: gain, base stiffness and loss, then the laws' parameters, by their logarithms where they are positive.
-    pub fn parameters(&self) -> Vec<f64> {
+    pub(super) fn parameters(&self) -> Vec<f64> {
         let of_law = |law: &RestoringLaw| {
             let positive = law.is_positive();
             law.values().into_iter().map(move |value| if positive { value.ln() } else { value })
@@ -62,7 +62,7 @@ impl Change {
     }
 
     /// The change of this form at the parameters `x`.
-    pub fn at(&self, x: &[f64]) -> Self {
+    pub(super) fn at(&self, x: &[f64]) -> Self {
         let mut rest = x[BASE..].iter();
         let of_law = |law: &RestoringLaw| {
             let positive = law.is_positive();
@@ -74,7 +74,7 @@ impl Change {
     }
 
     /// The complex stiffness across the joint at an amplitude of its motion.
-    pub fn delta(&self, motion: f64, yields: f64) -> Complex64 {
+    pub(super) fn delta(&self, motion: f64, yields: f64) -> Complex64 {
         self.base + self.laws.iter().map(|law| equivalent(law, motion, yields)).sum::<Complex64>()
     }
 }
@@ -109,7 +109,7 @@ impl Level {
     }
 
     /// Amplitude of d at the peak.
-    pub fn motion(&self) -> f64 {
+    pub(super) fn motion(&self) -> f64 {
         self.motions[self.peak_line()]
     }
 
@@ -211,7 +211,7 @@ impl Level {
 
 impl Problem {
     /// `None` where no δ follows the levels.
-    pub fn new(location: Location, measured: &[&SteppedLevel]) -> Option<Self> {
+    pub(super) fn new(location: Location, measured: &[&SteppedLevel]) -> Option<Self> {
         let Location { joint, dof, lines, yields } = location;
         let levels = measured.iter().zip(lines).map(|(level, lines)| Level::new(level, lines)).collect();
         let (log_gain, floor, frozen) = (0.0, f64::NAN, false);
@@ -268,24 +268,24 @@ impl Problem {
     }
 
     /// The problem with laws read at the motions that the levels' own δ give: close, and four times as fast.
-    pub fn frozen(&self) -> Self {
+    pub(super) fn frozen(&self) -> Self {
         Problem { frozen: true, ..self.clone() }
     }
 
     /// The first `count` levels alone.
-    pub fn up_to(&self, count: usize) -> Option<Self> {
+    pub(super) fn up_to(&self, count: usize) -> Option<Self> {
         Problem { levels: self.levels[..count].to_vec(), ..self.clone() }.with_own_deltas()
     }
 
     /// All levels but one.
-    pub fn without(&self, left_out: usize) -> Self {
+    pub(super) fn without(&self, left_out: usize) -> Self {
         let mut less = self.clone();
         less.levels.remove(left_out);
         less
     }
 
     /// The problem with every value weighed by its own deviation, and the levels' δ that follow; `None` where values carry none.
-    pub fn by_noise(&self) -> Option<Self> {
+    pub(super) fn by_noise(&self) -> Option<Self> {
         let mut other = self.clone();
         for level in &mut other.levels {
             level.weights = level.weights_by_noise()?;
@@ -294,7 +294,7 @@ impl Problem {
     }
 
     /// A change without laws: base stiffness and gain that suit the levels' own δ less what `laws` make of them, with these laws.
-    pub fn begun(&self, laws: Vec<RestoringLaw>) -> Change {
+    pub(super) fn begun(&self, laws: Vec<RestoringLaw>) -> Change {
         let mut change = Change { log_gain: self.log_gain, laws, ..Change::default() };
         let rest = |level: &Level| level.delta - change.delta(level.motion(), self.yields);
         change.base = self.levels.iter().map(rest).sum::<Complex64>() / self.levels.len() as f64;
@@ -302,7 +302,7 @@ impl Problem {
     }
 
     /// A change fitted to another problem, moved by what the levels' own δ and the gain differ by.
-    pub fn carried_from(&self, other: &Problem, change: &Change) -> Change {
+    pub(super) fn carried_from(&self, other: &Problem, change: &Change) -> Change {
         let pairs = self.levels.iter().zip(&other.levels);
         let moved = pairs.map(|(here, there)| here.delta - there.delta).sum::<Complex64>();
         Change {
@@ -318,32 +318,32 @@ impl Problem {
     }
 
     /// All levels' residuals under a change.
-    pub fn residuals(&self, change: &Change) -> Option<Vec<f64>> {
+    pub(super) fn residuals(&self, change: &Change) -> Option<Vec<f64>> {
         finite(self.levels.iter().flat_map(|level| self.residual(level, change)).collect())
     }
 
     /// Relative error of a level under a change.
-    pub fn error(&self, level: &Level, change: &Change) -> f64 {
+    pub(super) fn error(&self, level: &Level, change: &Change) -> f64 {
         sum_of_squares(&self.residual(level, change)).sqrt()
     }
 
     /// Relative error of a level with its own δ.
-    pub fn own_error(&self, level: &Level) -> f64 {
+    pub(super) fn own_error(&self, level: &Level) -> f64 {
         sum_of_squares(&level.residual(self.log_gain, &|_| level.delta)).sqrt()
     }
 
     /// Root mean square of an error over the levels.
-    pub fn mean(&self, error: impl Fn(&Level) -> f64) -> f64 {
+    pub(super) fn mean(&self, error: impl Fn(&Level) -> f64) -> f64 {
         (self.levels.iter().map(|level| error(level).powi(2)).sum::<f64>() / self.levels.len() as f64).sqrt()
     }
 
     /// Root mean square over the levels of the relative errors under a change.
-    pub fn nrmse(&self, change: &Change) -> f64 {
+    pub(super) fn nrmse(&self, change: &Change) -> f64 {
         self.mean(|level| self.error(level, change))
     }
 
     /// χ² per degree of freedom under a change, of a problem that is weighed by its noise; `None` where it is not finite.
-    pub fn chi2_per_dof(&self, change: &Change, fitted: usize) -> Option<f64> {
+    pub(super) fn chi2_per_dof(&self, change: &Change, fitted: usize) -> Option<f64> {
         let squares = self.levels.iter().map(|level| self.error(level, change).powi(2));
         // The noise of a complex value has half of its variance in each part.
         let chi2 = 2.0 * squares.sum::<f64>() / (self.count().max(fitted + 1) - fitted) as f64;
@@ -351,21 +351,21 @@ impl Problem {
     }
 
     /// Fits the change from `start`; what is left of the squared residuals beside it.
-    pub fn fitted(&self, start: &Change) -> Option<(Change, f64)> {
+    pub(super) fn fitted(&self, start: &Change) -> Option<(Change, f64)> {
         let residual = |x: &[f64]| self.residuals(&start.at(x));
         let fit = minimum(&residual, &start.parameters(), &self.scales(start))?;
         Some((start.at(&fit.x), fit.cost))
     }
 
     /// Standard deviations of a change's parameters by the scatter of the lines.
-    pub fn deviations(&self, change: &Change) -> Option<Vec<f64>> {
+    pub(super) fn deviations(&self, change: &Change) -> Option<Vec<f64>> {
         let x = change.parameters();
         let degrees = self.count().max(x.len() + 1) - x.len();
         deviations(&|x: &[f64]| self.residuals(&change.at(x)), &x, &self.scales(change), degrees)
     }
 
     /// Standard deviations of a level's δ, from what its own fit leaves.
-    pub fn delta_deviations(&self, level: &Level) -> Option<Vec<f64>> {
+    pub(super) fn delta_deviations(&self, level: &Level) -> Option<Vec<f64>> {
         let residual = |x: &[f64]| level.residual_of(self.log_gain, Complex64::new(x[0], x[1]));
         let degrees = (2 * level.weights.len()).max(3) - 2;
         deviations(&residual, &[level.delta.re, level.delta.im], &[self.span(); 2], degrees)
@@ -383,7 +383,7 @@ impl Problem {
     }
 
     /// How much the levels' δ differ.
-    pub fn span(&self) -> f64 {
+    pub(super) fn span(&self) -> f64 {
         let deltas = || self.levels.iter().map(|level| level.delta);
         let apart = deltas().flat_map(|a| deltas().map(move |b| (a - b).norm()));
         let size = deltas().fold(0.0, |most: f64, d| d.norm().max(most));
@@ -391,7 +391,7 @@ impl Problem {
     }
 
     /// Number of real values measured.
-    pub fn count(&self) -> usize {
+    pub(super) fn count(&self) -> usize {
         2 * self.levels.iter().map(|level| level.weights.len()).sum::<usize>()
     }
 }

@@ -57,7 +57,7 @@ pub(crate) struct Stepper(Box<dyn Kernel>);
 
 impl Stepper {
     /// `None` for more states or elements than there is room for, or a system whose exponential is not finite.
-    pub fn new(system: &System, steps: Steps) -> Option<Self> {
+    pub(crate) fn new(system: &System, steps: Steps) -> Option<Self> {
         macro_rules! of_size {
             ($($n:literal),*) => {
                 match (system.load.len(), system.elements.len()) {
@@ -74,7 +74,7 @@ impl Stepper {
 
     /// The history of each output from rest, through a force given at every step (`within` values an output interval); outputs are written at
     /// every `within`-th of them.
-    pub fn run(&self, force: &[f64], samples: usize) -> Vec<Vec<f64>> {
+    pub(crate) fn run(&self, force: &[f64], samples: usize) -> Vec<Vec<f64>> {
         self.0.run(force, samples)
     }
 }

@@ -23,7 +23,7 @@ const UNMOVED: f64 = 1e-9;
 
 impl<'a> Structure<'a> {
     /// The fixture with all its structural effects, for motions up to `highest_hz`.
-    pub fn new(fixture: &'a Fixture, highest_hz: f64) -> Result<Self, SimulationError> {
+    pub(crate) fn new(fixture: &'a Fixture, highest_hz: f64) -> Result<Self, SimulationError> {
         let mut structure =
             Structure { fixture, space: StateSpace::new(fixture, highest_hz)?, elements: Vec::new() };
         for effect in fixture.physics() {
@@ -40,19 +40,19 @@ impl<'a> Structure<'a> {
     }
 
     /// One component of the motion across a joint: the row over all states that reads it, and the load of a force pair of 1 that drives it.
-    pub fn across(&self, joint: &str, dof: Dof) -> Option<(Vec<f64>, Vec<f64>)> {
+    pub(crate) fn across(&self, joint: &str, dof: Dof) -> Option<(Vec<f64>, Vec<f64>)> {
         let [deflection, rotation] = self.space.across(joint)?;
         Some(if dof == Dof::Rotation { rotation } else { deflection })
     }
 
     /// The load over all states of a force of 1 at `struck`.
-    pub fn load(&self, struck: &Channel) -> Result<Vec<f64>, SimulationError> {
+    pub(crate) fn load(&self, struck: &Channel) -> Result<Vec<f64>, SimulationError> {
         Ok(self.space.load(&station(self.fixture, struck)?))
     }
 
     /// The system under a load, read by `readings` and by rows over all states of the assembly. Rigid motions that nothing holds and no
     /// element feels are no states of it: their accelerations follow from the force at once.
-    pub fn system(
+    pub(crate) fn system(
         &self,
         load: Vec<f64>,
         readings: &[Reading],

@@ -35,7 +35,7 @@ pub(super) fn entries(fixture: &Fixture) -> Vec<Entry> {
 
 impl Entry {
     /// The entry as the effect that stands for it where it is missing.
-    pub fn as_effect(self, fixture: &Fixture) -> Effect {
+    pub(super) fn as_effect(self, fixture: &Fixture) -> Effect {
         let body = |index: usize| Place::Body(fixture.bodies()[index].name.clone());
         match self {
             Entry::Effect(index) => fixture.physics()[index].clone(),
@@ -53,7 +53,7 @@ impl Entry {
     }
 
     /// Its place in the file.
-    pub fn path(self, fixture: &Fixture) -> String {
+    pub(super) fn path(self, fixture: &Fixture) -> String {
         match self {
             Entry::Effect(index) => format!("physics/{index}"),
             Entry::Mass { body, mass } => format!("bodies/{}/masses/{mass}", fixture.bodies()[body].name),
@@ -62,7 +62,7 @@ impl Entry {
     }
 
     /// The fixture without it.
-    pub fn deleted(self, fixture: &Fixture) -> Result<Fixture, FixtureError> {
+    pub(super) fn deleted(self, fixture: &Fixture) -> Result<Fixture, FixtureError> {
         match self {
             Entry::Effect(index) => {
                 let mut physics = fixture.physics().to_vec();

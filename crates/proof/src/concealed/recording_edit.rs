@@ -11,9 +11,9 @@ pub(super) enum Side {
 }
 
 impl Side {
-    pub const BOTH: [Side; 2] = [Side::Response, Side::Reference];
+    pub(super) const BOTH: [Side; 2] = [Side::Response, Side::Reference];
 
-    pub fn name(self) -> &'static str {
+    pub(super) fn name(self) -> &'static str {
         match self {
             Side::Response => "response",
             Side::Reference => "reference",
@@ -21,7 +21,7 @@ impl Side {
     }
 
     /// The channel of an FRF on this side.
-    pub fn of(self, pair: &FrfPair) -> &Channel {
+    pub(super) fn of(self, pair: &FrfPair) -> &Channel {
         match self {
             Side::Response => &pair.response,
             Side::Reference => &pair.reference,
@@ -29,7 +29,7 @@ impl Side {
     }
 
     /// The channels on this side, in the order of the recording.
-    pub fn channels(self, pairs: &[FrfPair]) -> Vec<Channel> {
+    pub(super) fn channels(self, pairs: &[FrfPair]) -> Vec<Channel> {
         let mut all: Vec<Channel> = Vec::new();
         for pair in pairs {
             if !all.contains(self.of(pair)) {
@@ -40,7 +40,7 @@ impl Side {
     }
 
     /// The FRFs of a channel on this side, by index.
-    pub fn frfs(self, channel: &Channel, pairs: &[FrfPair]) -> Vec<usize> {
+    pub(super) fn frfs(self, channel: &Channel, pairs: &[FrfPair]) -> Vec<usize> {
         (0..pairs.len()).filter(|&i| self.of(&pairs[i]) == channel).collect()
     }
 }

@@ -44,7 +44,7 @@ const FACTOR_MOST: f64 = 1.1;
 
 impl Scene<'_> {
     /// Whether there is anything of a kind to conceal.
-    pub fn has_room_for(&self, kind: ConcealmentKind) -> bool {
+    pub(super) fn has_room_for(&self, kind: ConcealmentKind) -> bool {
         match kind {
             ConcealmentKind::Entry => !entries(self.explaining).is_empty(),
             ConcealmentKind::Mass => true,
@@ -58,7 +58,7 @@ impl Scene<'_> {
     }
 
     /// Conceals something of a kind; `None` where what was drawn is impossible, and another draw may be possible.
-    pub fn draw(
+    pub(super) fn draw(
         &self,
         kind: ConcealmentKind,
         random: &mut impl Rng,

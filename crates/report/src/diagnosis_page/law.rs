@@ -16,7 +16,7 @@ pub(super) struct Law {
 }
 
 impl Law {
-    pub fn of(finding: &Finding, site: &Site, fixture: &Fixture) -> Option<Self> {
+    pub(super) fn of(finding: &Finding, site: &Site, fixture: &Fixture) -> Option<Self> {
         let kind = finding.effect.kind;
         let formula = kind.spec().words.law?;
         let length = match site {
@@ -28,7 +28,7 @@ impl Law {
     }
 
     /// δ at a line.
-    pub fn at(&self, hz: f64) -> Complex64 {
+    pub(super) fn at(&self, hz: f64) -> Complex64 {
         let omega = TAU * hz;
         let value = |index: usize| self.values.get(index).copied().unwrap_or(0.0);
         let i = Complex64::I;

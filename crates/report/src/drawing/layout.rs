@@ -61,7 +61,7 @@ impl Scale {
         }
     }
 
-    pub fn px(&self, x: f64) -> f64 {
+    pub(super) fn px(&self, x: f64) -> f64 {
         if self.per_metre == 0.0 { self.width / 2.0 } else { MARGIN + (x - self.start) * self.per_metre }
     }
 }
@@ -109,7 +109,7 @@ impl Label {
     }
 
     /// Abscissa of the line that ties it to its place; beside the arrow that may end where a circle stands.
-    pub fn leader(&self) -> f64 {
+    pub(super) fn leader(&self) -> f64 {
         if self.tie == Tie::Circle { self.anchor + 11.0 } else { self.anchor }
     }
 
@@ -233,7 +233,7 @@ pub(super) struct Layout {
 }
 
 impl Layout {
-    pub fn new(view: &SideView, width: f64) -> Self {
+    pub(super) fn new(view: &SideView, width: f64) -> Self {
         let outlines = outlines(view.fixture);
         let scale = Scale::new(view, &outlines, width);
         let bodies = place_bodies(view.fixture, &outlines, scale);
@@ -253,7 +253,7 @@ impl Layout {
     }
 
     /// Pixel position of a point.
-    pub fn point(&self, fixture: &Fixture, index: usize) -> Option<(f64, f64)> {
+    pub(super) fn point(&self, fixture: &Fixture, index: usize) -> Option<(f64, f64)> {
         let point = &fixture.points()[index];
         Some((self.scale.px(point.x.value), self.rows[self.bodies[point.body]?.row].middle))
     }

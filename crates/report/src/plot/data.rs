@@ -26,12 +26,12 @@ pub(crate) struct PlotBook {
 }
 
 impl PlotBook {
-    pub fn is_empty(&self) -> bool {
+    pub(crate) fn is_empty(&self) -> bool {
         self.plots.is_empty()
     }
 
     /// The figure of a plot, whose data are kept under its number.
-    pub fn figure(&mut self, plot: &Plot) -> Result<Markup, PageError> {
+    pub(crate) fn figure(&mut self, plot: &Plot) -> Result<Markup, PageError> {
         check(plot)?;
         let (data, drawing) = PlotData::new(plot, self);
         self.plots.push(data);
@@ -47,7 +47,7 @@ impl PlotBook {
     }
 
     /// What the script reads.
-    pub fn to_json(&self) -> String {
+    pub(crate) fn to_json(&self) -> String {
         // Plain data without maps: serialising it cannot fail, and without plots the page would still be readable.
         let described = serde_json::to_string(&self.plots).unwrap_or_else(|_| "[]".to_owned());
         format!("{{\"plots\":{described},\n\"columns\":[{}]}}", self.columns.join(",\n"))

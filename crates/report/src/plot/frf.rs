@@ -58,7 +58,7 @@ pub(crate) fn over_unity(title: impl Into<String>, label: &str) -> Plot {
 
 impl<'a> FrfPanes<'a> {
     /// An accelerance of a set with the noise that its variances tell, and other curves beside it.
-    pub fn recorded(frfs: &'a FrfSet, index: usize, curves: Vec<Curve>) -> Self {
+    pub(crate) fn recorded(frfs: &'a FrfSet, index: usize, curves: Vec<Curve>) -> Self {
         let pair = &frfs.pairs()[index];
         // Each part of a value has half its variance, and the modulus takes one part of the noise.
         let half = |variance: &f64| Some(Z95 * (0.5 * variance).sqrt());
@@ -75,7 +75,7 @@ impl<'a> FrfPanes<'a> {
         }
     }
 
-    pub fn magnitude(&self) -> Plot {
+    pub(crate) fn magnitude(&self) -> Plot {
         let size =
             |values: &[Option<Complex64>]| values.iter().map(|v| v.map(|v| v.norm())).collect::<Vec<_>>();
         let axis = Axis::logarithmic(format!("|{}|", self.symbol), self.unit);
@@ -111,7 +111,7 @@ impl<'a> FrfPanes<'a> {
     }
 
     /// The coherence from 0 to 1 as a strip below magnitude and phase, where it was recorded.
-    pub fn coherence(&self) -> Option<Plot> {
+    pub(crate) fn coherence(&self) -> Option<Plot> {
         let coherence = self.coherence?;
         let plot = over_unity(format!("Coherence of {}", self.symbol), "γ²")
             .strip()
@@ -130,7 +130,7 @@ impl<'a> FrfPanes<'a> {
         })
     }
 
-    pub fn phase(&self) -> Plot {
+    pub(crate) fn phase(&self) -> Plot {
         let axis = Axis::linear(format!("arg {}", self.symbol), "°");
         let mut phases: Vec<Vec<Option<f64>>> = vec![degrees(&self.measured)];
         phases.extend(self.curves.iter().map(|curve| degrees(&curve.values)));
@@ -149,12 +149,12 @@ impl<'a> FrfPanes<'a> {
     }
 
     /// Everything that there is to draw, in rows of two.
-    pub fn all(&self) -> impl Iterator<Item = Plot> {
+    pub(crate) fn all(&self) -> impl Iterator<Item = Plot> {
         [self.magnitude(), self.phase()].into_iter().chain(self.below())
     }
 
     /// What stands below magnitude and phase: coherence and residuals.
-    pub fn below(&self) -> impl Iterator<Item = Plot> {
+    pub(crate) fn below(&self) -> impl Iterator<Item = Plot> {
         self.coherence().into_iter().chain(self.residuals())
     }
 

@@ -18,10 +18,10 @@ pub(crate) enum YRange {
 }
 
 impl YRange {
-    pub const ROBUST: (f64, f64) = (10.0, 90.0);
+    pub(crate) const ROBUST: (f64, f64) = (10.0, 90.0);
 
     /// A span with some room on either side; the robust range where there is no span to speak of.
-    pub fn about(span: Span, room: f64) -> Self {
+    pub(crate) fn about(span: Span, room: f64) -> Self {
         match span.0 {
             Some((low, high)) if room > 0.0 && room.is_finite() => {
                 YRange::Fixed { low: low - room, high: high + room }
@@ -31,7 +31,7 @@ impl YRange {
     }
 
     /// Whole decades about the values: a model's sharp antiresonance does not squash them, and the axis is labelled with powers of ten.
-    pub fn decades(values: impl IntoIterator<Item = f64>) -> Self {
+    pub(crate) fn decades(values: impl IntoIterator<Item = f64>) -> Self {
         match Span::of(values.into_iter().map(f64::log10)).0 {
             Some((low, high)) => {
                 let (low, high) = ((low - 0.1).floor(), (high + 0.1).ceil());
@@ -48,7 +48,7 @@ pub(crate) struct Span(pub Option<(f64, f64)>);
 
 impl Span {
     /// Of those values that are finite.
-    pub fn of(values: impl IntoIterator<Item = f64>) -> Self {
+    pub(crate) fn of(values: impl IntoIterator<Item = f64>) -> Self {
         values.into_iter().filter(|value| value.is_finite()).fold(Self::default(), |span, value| {
             let (low, high) = span.0.unwrap_or((value, value));
             Span(Some((low.min(value), high.max(value))))
@@ -56,7 +56,7 @@ impl Span {
     }
 
     /// Two percentiles (0 to 100) of those values that are finite.
-    pub fn percentiles(values: impl IntoIterator<Item = f64>, (low, high): (f64, f64)) -> Self {
+    pub(crate) fn percentiles(values: impl IntoIterator<Item = f64>, (low, high): (f64, f64)) -> Self {
         let mut values: Vec<f64> = values.into_iter().filter(|value| value.is_finite()).collect();
         values.sort_unstable_by(f64::total_cmp);
         let last = values.len().saturating_sub(1) as f64;
@@ -64,16 +64,16 @@ impl Span {
         Span(at(low).zip(at(high)))
     }
 
-    pub fn and(self, other: Self) -> Self {
+    pub(crate) fn and(self, other: Self) -> Self {
         Self::of([self.0, other.0].into_iter().flatten().flat_map(|(low, high)| [low, high]))
     }
 
-    pub fn width(self) -> f64 {
+    pub(crate) fn width(self) -> f64 {
         self.0.map_or(0.0, |(low, high)| high - low)
     }
 
     /// Its largest magnitude.
-    pub fn magnitude(self) -> f64 {
+    pub(crate) fn magnitude(self) -> f64 {
         self.0.map_or(0.0, |(low, high)| low.abs().max(high.abs()))
     }
 }

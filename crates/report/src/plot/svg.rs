@@ -107,7 +107,7 @@ impl Canvas<'_> {
 
 impl Plot {
     /// The plot as a drawing.
-    pub fn svg(&self) -> Result<Markup, PageError> {
+    pub(crate) fn svg(&self) -> Result<Markup, PageError> {
         check(self)?;
         let first = limits(self).first;
         let scale = ordinate_scale(self, first);

@@ -6,7 +6,7 @@ use crate::error::PageError;
 
 impl Plot {
     /// The curves over each abscissa: a row of headings with SI units, then a row a line; a gap is empty.
-    pub fn curves(&self) -> Result<Vec<Vec<Vec<String>>>, PageError> {
+    pub(crate) fn curves(&self) -> Result<Vec<Vec<Vec<String>>>, PageError> {
         check(self)?;
         let of_table = |(table, abscissa): (usize, &Vec<f64>)| {
             let members: Vec<_> = self.series.iter().filter(|series| series.table == table).collect();

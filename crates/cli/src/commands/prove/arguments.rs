@@ -13,7 +13,7 @@ use crate::values::band;
 
 /// Options of `jointscope prove`.
 #[derive(Debug, Args)]
-pub struct ProveArguments {
+pub(crate) struct ProveArguments {
     /// Make so many new cases [default: the shipped cases; 40 where only a seed is given; 8 of real recordings].
     #[arg(long, value_name = "N")]
     pub cases: Option<usize>,
@@ -86,14 +86,14 @@ pub struct ProveArguments {
 
 impl ProveArguments {
     /// Whether cases of a route beside the laboratory's are asked for.
-    pub fn asks_for_routes(&self) -> bool {
+    pub(crate) fn asks_for_routes(&self) -> bool {
         let lumped = [self.channel_flaws, self.load_paths, self.unknown_physics];
         let others = [self.solid, self.struck, self.solid_as_is, self.modal_errors];
         others.iter().chain(&lumped).any(Option::is_some)
     }
 
     /// Cases at a time.
-    pub fn workers(&self) -> usize {
+    pub(crate) fn workers(&self) -> usize {
         let cores = || std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
         self.threads.unwrap_or_else(cores).max(1)
     }
@@ -102,7 +102,7 @@ impl ProveArguments {
 /// Options of `jointscope prove --recordings`.
 #[derive(Debug, Args)]
 #[command(next_help_heading = "On real recordings")]
-pub struct RealRecordings {
+pub(crate) struct RealRecordings {
     /// A directory with real recordings (FRFs) and the fixture.json that goes with them: conceal something there.
     #[arg(long, value_name = "DIR", conflicts_with_all = ["also_from", "shipped", "family", "wrong", "graded", "no_case_pages"])]
     pub recordings: Option<PathBuf>,

@@ -18,7 +18,7 @@ use crate::refusal::Refusal;
 const FILES: [&str; 2] = ["fixture.json", "hammer-test.uff"];
 
 /// What is to be diagnosed, and what is true of it under seal.
-pub struct Concealed {
+pub(super) struct Concealed {
     /// Fixtures and recordings by route.
     pub cases: Questions,
     /// The cases' numbers, route after route.
@@ -35,7 +35,7 @@ pub struct Concealed {
 
 impl Concealed {
     /// The cases that the arguments ask for.
-    pub fn of(arguments: &ProveArguments) -> Result<Self, Refusal> {
+    pub(super) fn of(arguments: &ProveArguments) -> Result<Self, Refusal> {
         let asks_for_new = arguments.cases.is_some()
             || arguments.seed.is_some()
             || arguments.graded.is_some()
@@ -115,7 +115,7 @@ impl Concealed {
     }
 
     /// The recording of the case at a position as a universal file: as it came, or in double precision as it was made.
-    pub fn recording(&self, position: usize, case: &Asked) -> Result<Vec<u8>, Refusal> {
+    pub(super) fn recording(&self, position: usize, case: &Asked) -> Result<Vec<u8>, Refusal> {
         match &self.folders {
             Some(folders) => input::bytes(&folders[position].join(FILES[1])),
             None => case.recording(Precision::Double).map_err(Refusal::new),

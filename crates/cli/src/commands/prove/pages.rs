@@ -18,7 +18,7 @@ use crate::refusal::Refusal;
 const RECORDING: &str = "hammer-test.uff";
 
 /// Writes the directories `cases/NNN` as the diagnoses come.
-pub struct CasePages<'a> {
+pub(super) struct CasePages<'a> {
     directory: PathBuf,
     concealed: &'a Concealed,
     fault: Mutex<Option<Refusal>>,
@@ -26,12 +26,12 @@ pub struct CasePages<'a> {
 
 impl<'a> CasePages<'a> {
     /// Below `directory`.
-    pub fn below(directory: &Path, concealed: &'a Concealed) -> Self {
+    pub(super) fn below(directory: &Path, concealed: &'a Concealed) -> Self {
         CasePages { directory: directory.join("cases"), concealed, fault: Mutex::new(None) }
     }
 
     /// Writes fixture, recording and page of the case at a position. The first fault is kept for [`CasePages::finish`].
-    pub fn write(&self, position: usize, answer: &Answer) {
+    pub(super) fn write(&self, position: usize, answer: &Answer) {
         self.keep(self.try_write(position, answer));
     }
 
@@ -66,7 +66,7 @@ impl<'a> CasePages<'a> {
     }
 
     /// Whether all were written.
-    pub fn finish(self) -> Result<(), Refusal> {
+    pub(super) fn finish(self) -> Result<(), Refusal> {
         match self.fault.into_inner() {
             Ok(Some(refusal)) => Err(refusal),
             _ => Ok(()),
@@ -86,6 +86,6 @@ fn notes(believed: &Fixture, recording: &[u8], answer: &Answer) -> Result<Vec<St
 }
 
 /// The directory of a case.
-pub fn name(number: usize) -> String {
+pub(super) fn name(number: usize) -> String {
     format!("{number:03}")
 }

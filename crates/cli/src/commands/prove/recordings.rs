@@ -22,7 +22,7 @@ use crate::refusal::Refusal;
 const CASES: usize = 8;
 
 /// Makes the fixture that explains the recording, conceals, has all cases diagnosed, opens the truths and reckons; answers with the table.
-pub fn run(directory: &Path, arguments: &ProveArguments) -> Result<String, Refusal> {
+pub(super) fn run(directory: &Path, arguments: &ProveArguments) -> Result<String, Refusal> {
     let test = Test::read(directory, &arguments.real)?;
     let kinds = ConcealmentKind::ALL.into_iter().filter(|kind| {
         let asked = &arguments.real.conceal;

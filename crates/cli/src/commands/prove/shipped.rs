@@ -5,19 +5,19 @@ use std::path::{Path, PathBuf};
 use crate::refusal::Refusal;
 
 /// Where they lie in a checkout.
-pub const FOLDER: &str = "fixtures/concealed";
+pub(super) const FOLDER: &str = "fixtures/concealed";
 
 /// Number of cases of the laboratory's FRFs, of solids and of hits over time, numbered in this order.
-pub const COUNTS: [usize; 3] = [20, 4, 3];
+pub(super) const COUNTS: [usize; 3] = [20, 4, 3];
 
 /// SHA-256 of the sealed truths, published with the cases.
-pub const TRUTHS_SHA256: &str = "4cc62f599c45ade5ee8ff96fa921908aefe74c712a168fb6407f6ccd540a23cc";
+pub(super) const TRUTHS_SHA256: &str = "4cc62f599c45ade5ee8ff96fa921908aefe74c712a168fb6407f6ccd540a23cc";
 
 /// Options that make the same cases anew, recordings in double precision.
 const ANEW: &str = "--cases 16 --graded 4 --solid 4 --struck 3 --seed 1 --family two-blocks";
 
 /// The folder of the cases: the one that is named, or that of the checkout around the current folder or the program.
-pub fn folder(named: Option<&Path>) -> Result<PathBuf, Refusal> {
+pub(super) fn folder(named: Option<&Path>) -> Result<PathBuf, Refusal> {
     if let Some(named) = named {
         return Ok(named.to_owned());
     }

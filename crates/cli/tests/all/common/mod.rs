@@ -8,7 +8,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use jointscope::uff::{Data, Dataset58};
 
 /// Two rigid blocks and a beam between points 2 and 3.
-pub const TWO_BLOCKS: &str = r#"{
+pub(crate) const TWO_BLOCKS: &str = r#"{
   "name": "two blocks and a beam",
   "bodies": {
     "A": { "mass": 1.10, "inertia": 9.5e-4, "x_cg": -0.030 },
@@ -23,19 +23,19 @@ pub const TWO_BLOCKS: &str = r#"{
 }"#;
 
 /// Length and bending stiffness EI of [`TWO_BLOCKS`]' beam.
-pub const LENGTH: f64 = 0.065;
-pub const BENDING_STIFFNESS: f64 = 2.07e11 * 3.67e-10;
+pub(crate) const LENGTH: f64 = 0.065;
+pub(crate) const BENDING_STIFFNESS: f64 = 2.07e11 * 3.67e-10;
 
 /// The example that the project ships.
-pub fn shipped() -> PathBuf {
+pub(crate) fn shipped() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fixtures/glued-joint")
 }
 
 /// A directory of its own, removed afterwards.
-pub struct Bench(pub PathBuf);
+pub(crate) struct Bench(pub PathBuf);
 
 impl Bench {
-    pub fn new(name: &str) -> Self {
+    pub(crate) fn new(name: &str) -> Self {
         static MADE: AtomicUsize = AtomicUsize::new(0);
         let count = MADE.fetch_add(1, Ordering::Relaxed);
         let path = std::env::temp_dir().join(format!("jointscope-{name}-{}-{count}", std::process::id()));
@@ -45,7 +45,7 @@ impl Bench {
     }
 
     /// With the shipped example's fixture and recording.
-    pub fn shipped(name: &str) -> Self {
+    pub(crate) fn shipped(name: &str) -> Self {
         let bench = Bench::new(name);
         for file in ["fixture.json", "hammer-test.uff"] {
             fs::copy(shipped().join(file), bench.0.join(file)).unwrap();
@@ -54,33 +54,33 @@ impl Bench {
     }
 
     /// With a fixture, `two.json`, and the FRFs that the program computes of it, `frf.uff`.
-    pub fn synthesized(name: &str, fixture: &str, lines: &str) -> Self {
+    pub(crate) fn synthesized(name: &str, fixture: &str, lines: &str) -> Self {
         let bench = Bench::new(name);
         bench.write("two.json", fixture);
         bench.done(&["synthesize", "two.json", "--lines", lines, "-o", "frf.uff"]);
         bench
     }
 
-    pub fn write(&self, name: &str, contents: impl AsRef<[u8]>) {
+    pub(crate) fn write(&self, name: &str, contents: impl AsRef<[u8]>) {
         fs::write(self.0.join(name), contents).unwrap();
     }
 
-    pub fn text(&self, name: &str) -> String {
+    pub(crate) fn text(&self, name: &str) -> String {
         fs::read_to_string(self.0.join(name)).unwrap()
     }
 
-    pub fn json(&self, name: &str) -> serde_json::Value {
+    pub(crate) fn json(&self, name: &str) -> serde_json::Value {
         serde_json::from_str(&self.text(name)).unwrap()
     }
 
     /// What the program prints as JSON.
     #[track_caller]
-    pub fn json_of(&self, arguments: &[&str]) -> serde_json::Value {
+    pub(crate) fn json_of(&self, arguments: &[&str]) -> serde_json::Value {
         serde_json::from_str(&self.answer(arguments)).unwrap()
     }
 
     /// Names of what the directory itself holds, in order.
-    pub fn names(&self) -> Vec<String> {
+    pub(crate) fn names(&self) -> Vec<String> {
         let entries = fs::read_dir(&self.0).unwrap();
         let mut names: Vec<_> =
             entries.map(|entry| entry.unwrap().file_name().to_string_lossy().into_owned()).collect();
@@ -89,28 +89,28 @@ impl Bench {
     }
 
     /// The functions of a universal file.
-    pub fn datasets(&self, name: &str) -> Vec<Dataset58> {
+    pub(crate) fn datasets(&self, name: &str) -> Vec<Dataset58> {
         jointscope::uff::read(&fs::read(self.0.join(name)).unwrap()).unwrap().datasets
     }
 
     /// Writes the functions of `from`, changed, to `to`.
-    pub fn rewrite(&self, from: &str, to: &str, change: impl FnOnce(&mut Vec<Dataset58>)) {
+    pub(crate) fn rewrite(&self, from: &str, to: &str, change: impl FnOnce(&mut Vec<Dataset58>)) {
         let mut datasets = self.datasets(from);
         change(&mut datasets);
         self.write(to, jointscope::uff::write(&datasets).unwrap());
     }
 
-    pub fn run(&self, arguments: &[&str]) -> Output {
+    pub(crate) fn run(&self, arguments: &[&str]) -> Output {
         Self::run_in(&self.0, arguments)
     }
 
     /// The program in another folder.
-    pub fn run_in(folder: impl AsRef<Path>, arguments: &[&str]) -> Output {
+    pub(crate) fn run_in(folder: impl AsRef<Path>, arguments: &[&str]) -> Output {
         Command::new(env!("CARGO_BIN_EXE_jointscope")).args(arguments).current_dir(folder).output().unwrap()
     }
 
     /// The program with these bytes on its standard input.
-    pub fn run_with_input(&self, arguments: &[&str], input: &[u8]) -> Output {
+    pub(crate) fn run_with_input(&self, arguments: &[&str], input: &[u8]) -> Output {
         use std::io::Write;
         use std::process::Stdio;
         let mut program = Command::new(env!("CARGO_BIN_EXE_jointscope"))
@@ -128,7 +128,7 @@ impl Bench {
 
     /// The program must do it; what a reader at a terminal has of it, progress apart: notices, then the answer.
     #[track_caller]
-    pub fn done(&self, arguments: &[&str]) -> String {
+    pub(crate) fn done(&self, arguments: &[&str]) -> String {
         let (mut notices, answer) = self.notices_and_answer(arguments);
         notices.push_str(&answer);
         notices
@@ -136,7 +136,7 @@ impl Bench {
 
     /// The program must do it; what it puts on standard output.
     #[track_caller]
-    pub fn answer(&self, arguments: &[&str]) -> String {
+    pub(crate) fn answer(&self, arguments: &[&str]) -> String {
         self.notices_and_answer(arguments).1
     }
 
@@ -153,7 +153,7 @@ impl Bench {
 
     /// The program must refuse in one sentence that holds every part, and leave the directory as it was; the sentence.
     #[track_caller]
-    pub fn refused(&self, arguments: &[&str], parts: &[&str]) -> String {
+    pub(crate) fn refused(&self, arguments: &[&str], parts: &[&str]) -> String {
         let before = self.contents();
         let output = self.run(arguments);
         let complaint = String::from_utf8(output.stderr).unwrap();
@@ -170,7 +170,7 @@ impl Bench {
     }
 
     /// Every file below the directory with what it holds.
-    pub fn contents(&self) -> Vec<(PathBuf, Option<Vec<u8>>)> {
+    pub(crate) fn contents(&self) -> Vec<(PathBuf, Option<Vec<u8>>)> {
         let mut found = Vec::new();
         let mut folders = vec![self.0.clone()];
         while let Some(folder) = folders.pop() {
@@ -197,14 +197,14 @@ impl Drop for Bench {
 }
 
 /// Multiplies every value of an FRF.
-pub fn scale(dataset: &mut Dataset58, factor: f64) {
+pub(crate) fn scale(dataset: &mut Dataset58, factor: f64) {
     let Data::Complex(values) = &mut dataset.data else { panic!("an FRF is complex") };
     values.iter_mut().for_each(|value| *value *= factor);
 }
 
 /// A 2×2 matrix of a result file.
 #[track_caller]
-pub fn matrix(value: &serde_json::Value) -> [[f64; 2]; 2] {
+pub(crate) fn matrix(value: &serde_json::Value) -> [[f64; 2]; 2] {
     let rows = value.as_array().unwrap();
     assert_eq!(rows.len(), 2, "{value} has two rows");
     std::array::from_fn(|i| {

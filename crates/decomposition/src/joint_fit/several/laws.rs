@@ -17,7 +17,7 @@ pub(super) struct State {
 
 impl State {
     /// The joints by these laws, of whose matrices nothing is known beforehand, at their optimum; nothing where all are viscous or the FRFs leave them undetermined.
-    pub fn fitted(self, test: Test<'_>) -> Option<(Problem<'_>, Fitted)> {
+    pub(super) fn fitted(self, test: Test<'_>) -> Option<(Problem<'_>, Fitted)> {
         if self.laws.iter().all(|law| law.kind == LawKind::Viscous) {
             return None;
         }

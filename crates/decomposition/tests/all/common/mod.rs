@@ -6,11 +6,11 @@ use jointscope_lumped::{Assembly, Instrument, synthesize};
 use jointscope_spectra::{FrfPair, FrfSet, SpectralLines};
 use num_complex::Complex64;
 
-pub const FOUR: [(&str, &str); 4] = [("4", "1"), ("3", "1"), ("4", "2"), ("3", "2")];
+pub(crate) const FOUR: [(&str, &str); 4] = [("4", "1"), ("3", "1"), ("4", "2"), ("3", "2")];
 
 /// Two blocks and a beam, SI units; blocks are bars of the given half-lengths with the joint at one end.
 #[derive(Debug, Clone)]
-pub struct TwoBlocks {
+pub(crate) struct TwoBlocks {
     pub mass: [f64; 2],
     pub half_length: [f64; 2],
     pub bending_stiffness: f64,
@@ -33,11 +33,11 @@ impl Default for TwoBlocks {
 }
 
 impl TwoBlocks {
-    pub fn inertia(&self, block: usize) -> f64 {
+    pub(crate) fn inertia(&self, block: usize) -> f64 {
         self.mass[block] * self.half_length[block].powi(2) / 3.0
     }
 
-    pub fn fixture(&self) -> Fixture {
+    pub(crate) fn fixture(&self) -> Fixture {
         let [a, b] = self.half_length;
         let l = self.length;
         Fixture::from_json(&format!(
@@ -53,17 +53,17 @@ impl TwoBlocks {
     }
 }
 
-pub fn lines() -> SpectralLines {
+pub(crate) fn lines() -> SpectralLines {
     SpectralLines::even(2.5, 2.5, 400).unwrap()
 }
 
-pub fn frfs(fixture: &Fixture, pairs: &[(&str, &str)], lines: &SpectralLines) -> FrfSet {
+pub(crate) fn frfs(fixture: &Fixture, pairs: &[(&str, &str)], lines: &SpectralLines) -> FrfSet {
     let pairs: Vec<FrfPair> = pairs.iter().map(|(o, i)| FrfPair::transverse(o, i)).collect();
     synthesize(fixture, &pairs, lines, Instrument::AsRecorded).unwrap()
 }
 
 /// The 2×2 viscous matrix of the joint between bodies A and B at point 3, from the assembly's matrix.
-pub fn joint_damping(fixture: &Fixture) -> RealMatrix2 {
+pub(crate) fn joint_damping(fixture: &Fixture) -> RealMatrix2 {
     let assembly = Assembly::new(fixture, 1000.0).unwrap();
     let (c, n) = (assembly.viscous_damping(), assembly.order());
     let block = Matrix2::new(c[2 * n + 2], c[2 * n + 3], c[3 * n + 2], c[3 * n + 3]);
@@ -77,10 +77,10 @@ pub fn joint_damping(fixture: &Fixture) -> RealMatrix2 {
 }
 
 /// A deterministic stream of circular complex normals.
-pub struct Noise(u64);
+pub(crate) struct Noise(u64);
 
 impl Noise {
-    pub fn new(seed: u64) -> Self {
+    pub(crate) fn new(seed: u64) -> Self {
         Noise(seed.wrapping_mul(0x9E3779B97F4A7C15) | 1)
     }
 
@@ -89,13 +89,13 @@ impl Noise {
         ((self.0 >> 11) as f64 + 0.5) / (1u64 << 53) as f64
     }
 
-    pub fn complex(&mut self, variance: f64) -> Complex64 {
+    pub(crate) fn complex(&mut self, variance: f64) -> Complex64 {
         let radius = (-variance * self.uniform().ln()).sqrt();
         Complex64::from_polar(radius, std::f64::consts::TAU * self.uniform())
     }
 
     /// The set with noise of `relative` times each FRF's rms accelerance, and the variances that go with it.
-    pub fn on(&mut self, frfs: &FrfSet, relative: f64) -> FrfSet {
+    pub(crate) fn on(&mut self, frfs: &FrfSet, relative: f64) -> FrfSet {
         let n = frfs.lines().len();
         let mut values = frfs.all_values().to_vec();
         let mut variance = Vec::new();

@@ -7,17 +7,18 @@ use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
 /// Sampling interval, s.
-pub const INTERVAL: f64 = 1.0 / 2048.0;
+pub(crate) const INTERVAL: f64 = 1.0 / 2048.0;
 
 /// A sampled structure of two modes and a direct part, y[n] = d·x[n] + Σ 2 Re Σ_k a p^k x[n − k]: its FRF at any s is known in closed form.
 #[derive(Debug, Clone, Copy)]
-pub struct Structure {
+pub(crate) struct Structure {
     /// Frequency in Hz, decay σ in 1/s and residue of each mode.
     pub modes: [(f64, f64, f64); 2],
     pub direct: f64,
 }
 
-pub const TWO_MODES: Structure = Structure { modes: [(87.3, 9.0, 0.11), (311.7, 14.0, -0.07)], direct: 0.4 };
+pub(crate) const TWO_MODES: Structure =
+    Structure { modes: [(87.3, 9.0, 0.11), (311.7, 14.0, -0.07)], direct: 0.4 };
 
 impl Structure {
     fn poles(&self) -> [(Complex64, f64); 2] {
@@ -27,7 +28,7 @@ impl Structure {
     }
 
     /// The FRF at s = decay + iω.
-    pub fn frf(&self, decay: f64, hz: f64) -> Complex64 {
+    pub(crate) fn frf(&self, decay: f64, hz: f64) -> Complex64 {
         let delay = (-Complex64::new(decay, std::f64::consts::TAU * hz) * INTERVAL).exp();
         let mode = |(pole, a): (Complex64, f64)| {
             a / Complex64::I / (1.0 - pole * delay) - a / Complex64::I / (1.0 - pole.conj() * delay)
@@ -36,7 +37,7 @@ impl Structure {
     }
 
     /// The response to a force, from rest.
-    pub fn answer(&self, force: &[f64]) -> Vec<f64> {
+    pub(crate) fn answer(&self, force: &[f64]) -> Vec<f64> {
         let mut state = [Complex64::ZERO; 2];
         let poles = self.poles();
         let step = |x: &f64| {
@@ -53,7 +54,7 @@ impl Structure {
 
 /// How a test is carried out.
 #[derive(Debug, Clone)]
-pub struct Test {
+pub(crate) struct Test {
     pub structure: Structure,
     pub samples: usize,
     /// Peak force of every hit, N.
@@ -67,7 +68,7 @@ pub struct Test {
 
 impl Test {
     /// Hits of 100 N without noise.
-    pub fn quiet(hits: usize, samples: usize) -> Self {
+    pub(crate) fn quiet(hits: usize, samples: usize) -> Self {
         Test {
             structure: TWO_MODES,
             samples,
@@ -78,7 +79,7 @@ impl Test {
         }
     }
 
-    pub fn hits(&self) -> Vec<Hit> {
+    pub(crate) fn hits(&self) -> Vec<Hit> {
         let mut random = ChaCha8Rng::seed_from_u64(self.seed);
         (0..self.strengths.len())
             .map(|k| {
@@ -96,13 +97,13 @@ impl Test {
 }
 
 /// A hit at 1 with the acceleration at 4.
-pub fn hit(number: u32, force: Vec<f64>, response: Vec<f64>) -> Hit {
+pub(crate) fn hit(number: u32, force: Vec<f64>, response: Vec<f64>) -> Hit {
     let response = Response::new(Channel::transverse("4"), Motion::Acceleration, response);
     Hit::new(number, INTERVAL, 0.0, Channel::transverse("1"), force, vec![response]).unwrap()
 }
 
 /// Half a sine of so many samples.
-pub fn pulse(samples: usize, at: usize, width: usize, peak: f64) -> Vec<f64> {
+pub(crate) fn pulse(samples: usize, at: usize, width: usize, peak: f64) -> Vec<f64> {
     let value = |i: usize| match i.checked_sub(at) {
         Some(i) if i < width => peak * (std::f64::consts::PI * (i as f64 + 0.5) / width as f64).sin(),
         _ => 0.0,
@@ -111,7 +112,7 @@ pub fn pulse(samples: usize, at: usize, width: usize, peak: f64) -> Vec<f64> {
 }
 
 /// A standard normal (Box–Muller).
-pub fn normal(random: &mut ChaCha8Rng) -> f64 {
+pub(crate) fn normal(random: &mut ChaCha8Rng) -> f64 {
     let mut uniform = || ((random.next_u64() >> 11) as f64 + 0.5) / (1u64 << 53) as f64;
     (-2.0 * uniform().ln()).sqrt() * (std::f64::consts::TAU * uniform()).cos()
 }

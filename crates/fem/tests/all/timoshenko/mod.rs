@@ -5,14 +5,14 @@ use std::f64::consts::TAU;
 
 /// How a beam is held.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Ends {
+pub(crate) enum Ends {
     /// Clamped at its start, free at its end.
     Clamped,
     /// Free at both.
     Free,
 }
 
-pub struct Beam {
+pub(crate) struct Beam {
     length: f64,
     bending: f64,
     shear: f64,
@@ -22,7 +22,7 @@ pub struct Beam {
 
 impl Beam {
     /// A box along x that bends in y, with the shear coefficient 5/6 of a rectangle at ν = 0.
-    pub fn of_box(size: [f64; 3], material: &Elasticity) -> Self {
+    pub(crate) fn of_box(size: [f64; 3], material: &Elasticity) -> Self {
         let (area, second) = (size[1] * size[2], size[2] * size[1].powi(3) / 12.0);
         let shear_modulus = 0.5 * material.youngs_modulus / (1.0 + material.poisson_ratio);
         Beam {
@@ -35,7 +35,7 @@ impl Beam {
     }
 
     /// The first natural frequencies, Hz, where the determinant of the end conditions changes sign.
-    pub fn frequencies(&self, ends: Ends, count: usize) -> Vec<f64> {
+    pub(crate) fn frequencies(&self, ends: Ends, count: usize) -> Vec<f64> {
         // A tenth of the first frequency of a slender free or clamped beam.
         let unit = (self.bending / self.mass).sqrt() / self.length.powi(2) / TAU;
         let step = 0.1 * unit;

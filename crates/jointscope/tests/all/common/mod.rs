@@ -6,7 +6,7 @@ use jointscope::{Fixture, FrfPair, FrfSet, SpectralLines};
 use jointscope_rig::{HammerTest, Instrument, drawn_within_tolerance, frfs, generator};
 
 /// The fixture file, with the modal damping ratios of its two elastic modes.
-pub fn believed(ratios: [f64; 2]) -> Fixture {
+pub(crate) fn believed(ratios: [f64; 2]) -> Fixture {
     let [first, second] = ratios;
     Fixture::from_json(&format!(
         r#"{{
@@ -26,20 +26,20 @@ pub fn believed(ratios: [f64; 2]) -> Fixture {
 }
 
 /// The damping of most tests.
-pub const RATIOS: [f64; 2] = [0.006, 0.008];
+pub(crate) const RATIOS: [f64; 2] = [0.006, 0.008];
 
 /// The four FRFs across the joint.
-pub fn four_pairs() -> Vec<FrfPair> {
+pub(crate) fn four_pairs() -> Vec<FrfPair> {
     [("4", "1"), ("3", "1"), ("4", "2"), ("3", "2")].map(|(o, i)| FrfPair::transverse(o, i)).to_vec()
 }
 
 /// 86 lines to 1290 Hz.
-pub fn lines() -> SpectralLines {
+pub(crate) fn lines() -> SpectralLines {
     SpectralLines::even(15.0, 15.0, 86).unwrap()
 }
 
 /// The hammer test of most tests: ten hits, half a per cent of noise.
-pub fn hammer(seed: u64) -> HammerTest {
+pub(crate) fn hammer(seed: u64) -> HammerTest {
     HammerTest {
         averages: 10,
         noise_response: 0.005,
@@ -52,7 +52,7 @@ pub fn hammer(seed: u64) -> HammerTest {
 }
 
 /// What `hammer` records of a fixture with quantities drawn within the tolerances of `believed`, and effects.
-pub fn measured(
+pub(crate) fn measured(
     believed: &Fixture,
     effects: Vec<Effect>,
     (pairs, lines): (&[FrfPair], &SpectralLines),
@@ -64,7 +64,7 @@ pub fn measured(
 }
 
 /// What an analyst would have: the fixture believed, and the four FRFs of one with effects.
-pub fn recorded(effects: Vec<Effect>, seed: u64) -> (Fixture, FrfSet) {
+pub(crate) fn recorded(effects: Vec<Effect>, seed: u64) -> (Fixture, FrfSet) {
     let believed = believed(RATIOS);
     let frfs = measured(&believed, effects, (&four_pairs(), &lines()), &hammer(seed));
     (believed, frfs)

@@ -8,7 +8,7 @@ use num_complex::Complex64;
 use std::f64::consts::TAU;
 
 /// A test that is simulated many times.
-pub struct Scenario {
+pub(crate) struct Scenario {
     pub name: &'static str,
     pub modes: Vec<TrueMode>,
     pub pairs: Vec<(usize, usize)>,
@@ -21,7 +21,7 @@ pub struct Scenario {
 
 /// Of one number of one mode: true value, bound, mean error and spread over the bound, rms of (error/its stated deviation).
 #[derive(Debug, Clone, Copy)]
-pub struct Score {
+pub(crate) struct Score {
     pub truth: f64,
     #[allow(dead_code)] // printed by the example
     pub bound: f64,
@@ -33,7 +33,7 @@ pub struct Score {
 impl Scenario {
     /// Standard deviations that no unbiased estimator beats: (Hz, ratio) of each mode. Unknown are poles, complex entries over responses and references (the first
     /// reference's one), and complex residual terms s⁻² and 1 of each FRF.
-    pub fn bounds(&self) -> Vec<(f64, f64)> {
+    pub(crate) fn bounds(&self) -> Vec<(f64, f64)> {
         let responses = distinct(self.pairs.iter().map(|p| p.0));
         let references = distinct(self.pairs.iter().map(|p| p.1));
         let (no, ni, nm) = (responses.len(), references.len(), self.modes.len());
@@ -118,7 +118,7 @@ impl Scenario {
     }
 
     /// Scores of frequency and damping ratio of each mode over so many seeds, and how often the right number of modes was found.
-    pub fn scores(&self, seeds: u64) -> (Vec<[Score; 2]>, f64) {
+    pub(crate) fn scores(&self, seeds: u64) -> (Vec<[Score; 2]>, f64) {
         let bounds = self.bounds();
         let clean = accelerances(&self.modes, 2.0, &self.pairs, &self.lines);
         let mut errors: Vec<[Vec<(f64, f64)>; 2]> = vec![Default::default(); self.modes.len()];
@@ -164,7 +164,7 @@ fn distinct(all: impl Iterator<Item = usize>) -> Vec<usize> {
 }
 
 /// Damping ratios from 0.01 to 3 %, close pairs, coarse lines, one FRF and four, noise of 1 %.
-pub fn scenarios() -> Vec<Scenario> {
+pub(crate) fn scenarios() -> Vec<Scenario> {
     use super::mode;
     let four = vec![(4, 1), (3, 1), (4, 2), (3, 2)];
     let shapes = [[1.0, 0.2, -0.3, -0.9], [0.8, -0.7, 0.6, 0.9], [0.3, 0.7, 0.9, -0.5]];

@@ -1,6 +1,6 @@
 //! FRFs with known poles and noise, made without the crate under test.
 
-pub mod bound;
+pub(crate) mod bound;
 
 use jointscope_spectra::{FrfForm, FrfPair, FrfSet, SpectralLines};
 use num_complex::Complex64;
@@ -11,18 +11,18 @@ use std::f64::consts::TAU;
 
 /// A mode: natural frequency (Hz), damping ratio, mass-normalised shape over the points.
 #[derive(Debug, Clone)]
-pub struct TrueMode {
+pub(crate) struct TrueMode {
     pub frequency: f64,
     pub ratio: f64,
     pub shape: Vec<f64>,
 }
 
-pub fn mode(frequency: f64, ratio: f64, shape: &[f64]) -> TrueMode {
+pub(crate) fn mode(frequency: f64, ratio: f64, shape: &[f64]) -> TrueMode {
     TrueMode { frequency, ratio, shape: shape.to_vec() }
 }
 
 /// Accelerances of modes and of rigid motions 1/mass, FRF after FRF; points are named 1, 2, ….
-pub fn accelerances(
+pub(crate) fn accelerances(
     modes: &[TrueMode],
     mass: f64,
     pairs: &[(usize, usize)],
@@ -45,7 +45,7 @@ pub fn accelerances(
 }
 
 /// Independent circular noise: a floor and a share of each value; the set carries its variances.
-pub fn noisy(
+pub(crate) fn noisy(
     clean: &[Complex64],
     pairs: &[(usize, usize)],
     lines: &SpectralLines,
@@ -61,12 +61,12 @@ pub fn noisy(
 }
 
 /// A complex normal of variance one.
-pub fn normal(random: &mut ChaCha8Rng) -> Complex64 {
+pub(crate) fn normal(random: &mut ChaCha8Rng) -> Complex64 {
     let (u, v): (f64, f64) = (random.random(), random.random());
     Complex64::from_polar((-(1.0 - u).ln()).sqrt(), TAU * v)
 }
 
 /// The same FRFs, of whose noise nothing is said.
-pub fn without_variances(set: &FrfSet) -> FrfSet {
+pub(crate) fn without_variances(set: &FrfSet) -> FrfSet {
     FrfSet::new(set.lines().clone(), set.form(), set.pairs().to_vec(), set.all_values().to_vec()).unwrap()
 }

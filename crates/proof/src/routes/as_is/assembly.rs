@@ -68,7 +68,7 @@ pub(super) struct Assembly {
 
 impl Assembly {
     /// `None` where what was drawn has no strip of sensible dimensions.
-    pub fn draw(random: &mut impl Rng, wide: bool) -> Result<Option<Self>, GenerationError> {
+    pub(super) fn draw(random: &mut impl Rng, wide: bool) -> Result<Option<Self>, GenerationError> {
         let mut a = Block::draw(random, 0.0);
         a.left = -a.length;
         let length = between(random, GAP);
@@ -112,7 +112,7 @@ impl Assembly {
     }
 
     /// Draws where the blocks are measured, anew where they have other lengths.
-    pub fn place_points(&mut self, random: &mut impl Rng) {
+    pub(super) fn place_points(&mut self, random: &mut impl Rng) {
         let [a, b] = self.blocks;
         let mut at = |block: &Block, share: [f64; 2], mirrored: bool| {
             let share = between(random, share);
@@ -123,7 +123,7 @@ impl Assembly {
     }
 
     /// The fixture without geometry at its true quantities, with the deviations that an analyst states; of the strip what is stated.
-    pub fn lumped(
+    pub(super) fn lumped(
         &self,
         stated: Option<Stated>,
         footings: Option<Footings>,
@@ -184,7 +184,7 @@ impl Assembly {
     }
 
     /// The solid as a fixture with geometry: true quantities, points that no fixture states, and nothing of the strip's physics.
-    pub fn solid(&self) -> Result<Value, GenerationError> {
+    pub(super) fn solid(&self) -> Result<Value, GenerationError> {
         let mut value = self.lumped(None, None)?.to_value();
         for ((name, body), x) in super::APART.iter().zip(["A", "B"]).zip(self.apart) {
             value["points"][*name] = json!({ "body": body, "x": x });
@@ -214,17 +214,17 @@ impl Assembly {
     }
 
     /// Whether either block's face is higher than the strip is thick, twice over.
-    pub fn holds_the_strip(&self) -> bool {
+    pub(super) fn holds_the_strip(&self) -> bool {
         self.blocks.iter().all(|block| 2.0 * self.strip.thickness < block.height)
     }
 
     /// Damping ratio of the modes beyond those that are listed.
-    pub fn last_ratio(&self) -> f64 {
+    pub(super) fn last_ratio(&self) -> f64 {
         self.ratios[1]
     }
 
     /// One of the blocks alone, as a solid.
-    pub fn block_alone(&self, which: usize) -> Result<Fixture, GenerationError> {
+    pub(super) fn block_alone(&self, which: usize) -> Result<Fixture, GenerationError> {
         let (block, name) = (&self.blocks[which], ["A", "B"][which]);
         let (material, modulus, density, _) = MATERIALS[block.material];
         let value = json!({

@@ -56,7 +56,7 @@ const SLENDER: [f64; 2] = [7.0, 12.0];
 
 impl Concealed {
     /// Conceals it where the assembly is changed by it; the effect that says the same follows from [`Concealed::effect`].
-    pub fn within(self, mut assembly: Assembly, random: &mut impl Rng) -> Assembly {
+    pub(super) fn within(self, mut assembly: Assembly, random: &mut impl Rng) -> Assembly {
         match self {
             Concealed::Modulus => {
                 assembly.factor = (sign(random) * between(random, MODULUS)).exp();
@@ -79,7 +79,7 @@ impl Concealed {
     }
 
     /// The effect that says the same; sizes that only the solid itself tells are `found`.
-    pub fn effect(self, assembly: &Assembly, found: Size, random: &mut impl Rng) -> Effect {
+    pub(super) fn effect(self, assembly: &Assembly, found: Size, random: &mut impl Rng) -> Effect {
         let which = random.random_range(0..2);
         let block = &assembly.blocks[which];
         let body = Place::Body(["A", "B"][which].to_owned());

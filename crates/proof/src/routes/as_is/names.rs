@@ -17,7 +17,7 @@ pub(super) struct Gap {
 
 impl Gap {
     /// Leaves out one to three of the strip's mass, its shear and its footings.
-    pub fn drawn(random: &mut impl Rng) -> Self {
+    pub(super) fn drawn(random: &mut impl Rng) -> Self {
         let left_out = random.random_range(1..8);
         Gap {
             strip_mass: left_out & 1 != 0,
@@ -27,11 +27,11 @@ impl Gap {
         }
     }
 
-    pub fn is_any(self) -> bool {
+    pub(super) fn is_any(self) -> bool {
         self != Gap::default()
     }
 
-    pub fn stated(self) -> Stated {
+    pub(super) fn stated(self) -> Stated {
         Stated { strip_mass: !self.strip_mass, shear: !self.shear, footings: !self.footings }
     }
 
@@ -39,7 +39,7 @@ impl Gap {
     ///
     /// Ends of a strip yield across it as well as in rotation, and its shear coefficient is that of an ideal section: both stay true where the
     /// usual shear is stated. A yielding end is a longer strip, or a softer one; a plate is a shorter or a stiffer one.
-    pub fn true_names(self, first_bending: [f64; 2]) -> Vec<TrueName> {
+    pub(super) fn true_names(self, first_bending: [f64; 2]) -> Vec<TrueName> {
         let mut names = vec![
             TrueName::of(EffectKind::ShearDeformation).at(&["J"]),
             TrueName::of(EffectKind::InterfaceCompliance).in_dof(Dof::Translation),

@@ -24,7 +24,7 @@ pub(super) struct Footings {
 
 impl Footings {
     /// Those of a solid's twin.
-    pub fn of(assembly: &Assembly, twin: &Twin) -> Result<Self, GenerationError> {
+    pub(super) fn of(assembly: &Assembly, twin: &Twin) -> Result<Self, GenerationError> {
         let flexibility = Flexibility::of(assembly, twin)?;
         let strip = &assembly.strip;
         let (length, bending) = (strip.length, assembly.factor * strip.modulus() * strip.second_moment());
@@ -36,7 +36,7 @@ impl Footings {
     }
 
     /// Rotational stiffnesses, N·m/rad.
-    pub fn stiffness(&self) -> [f64; 2] {
+    pub(super) fn stiffness(&self) -> [f64; 2] {
         self.rotation.map(f64::recip)
     }
 }

@@ -54,23 +54,23 @@ pub(in crate::routes) struct Strip {
 }
 
 impl Strip {
-    pub fn modulus(&self) -> f64 {
+    pub(crate) fn modulus(&self) -> f64 {
         MATERIALS[self.material].1
     }
 
-    pub fn shear_modulus(&self) -> f64 {
+    pub(crate) fn shear_modulus(&self) -> f64 {
         MATERIALS[self.material].3
     }
 
-    pub fn area(&self) -> f64 {
+    pub(crate) fn area(&self) -> f64 {
         self.width * self.thickness
     }
 
-    pub fn second_moment(&self) -> f64 {
+    pub(crate) fn second_moment(&self) -> f64 {
         self.width * self.thickness.powi(3) / 12.0
     }
 
-    pub fn mass(&self) -> f64 {
+    pub(crate) fn mass(&self) -> f64 {
         MATERIALS[self.material].2 * self.area() * self.length
     }
 }
@@ -88,7 +88,7 @@ pub(in crate::routes) struct Block {
 }
 
 impl Block {
-    pub fn draw(random: &mut impl Rng, left: f64) -> Self {
+    pub(crate) fn draw(random: &mut impl Rng, left: f64) -> Self {
         let material = random.random_range(0..METALS);
         let volume = log_uniform(random, MASS) / MATERIALS[material].2;
         let edge = volume.cbrt();
@@ -96,20 +96,20 @@ impl Block {
         Block { material, left, length, height, depth: volume / (length * height) }
     }
 
-    pub fn mass(&self) -> f64 {
+    pub(crate) fn mass(&self) -> f64 {
         MATERIALS[self.material].2 * self.length * self.height * self.depth
     }
 
-    pub fn at(&self, share: f64) -> f64 {
+    pub(crate) fn at(&self, share: f64) -> f64 {
         self.left + share * self.length
     }
 
-    pub fn stated(&self) -> Value {
+    pub(crate) fn stated(&self) -> Value {
         let inertia = self.mass() * (self.length.powi(2) + self.height.powi(2)) / 12.0;
         json!({ "mass": known_to(self.mass(), 0.001), "inertia": known_to(inertia, 0.005), "x_cg": abscissa(self.at(0.5)) })
     }
 
-    pub fn solid(&self) -> Value {
+    pub(crate) fn solid(&self) -> Value {
         json!({
             "from": self.left, "to": self.left + self.length, "height": self.height, "depth": self.depth,
             "material": MATERIALS[self.material].0,
@@ -128,7 +128,7 @@ pub(super) struct Assembly {
 
 impl Assembly {
     /// `None` where what was drawn has no strip of sensible dimensions.
-    pub fn draw(random: &mut impl Rng, stoutness: Stoutness) -> Result<Option<Self>, GenerationError> {
+    pub(super) fn draw(random: &mut impl Rng, stoutness: Stoutness) -> Result<Option<Self>, GenerationError> {
         let mut a = Block::draw(random, 0.0);
         a.left = -a.length;
         let length = between(random, GAP);
@@ -176,18 +176,18 @@ impl Assembly {
     }
 
     /// Whether an abscissa lies on the block of this name.
-    pub fn is_on(&self, block: &str, x: f64) -> bool {
+    pub(super) fn is_on(&self, block: &str, x: f64) -> bool {
         let block = &self.blocks[usize::from(block != "A")];
         (block.left..=block.left + block.length).contains(&x)
     }
 
     /// Abscissae for points that nobody measures at, one on each block.
-    pub fn apart(&self, random: &mut impl Rng) -> [f64; 2] {
+    pub(super) fn apart(&self, random: &mut impl Rng) -> [f64; 2] {
         [self.blocks[0].at(between(random, [0.4, 0.8])), self.blocks[1].at(between(random, [0.1, 0.5]))]
     }
 
     /// The `geometry` of the solid; `layer` is one end (0 or 1) of the strip, the layer's thickness (m) and Young's modulus (N/m²).
-    pub fn geometry(&self, layer: Option<(usize, f64, f64)>) -> Value {
+    pub(super) fn geometry(&self, layer: Option<(usize, f64, f64)>) -> Value {
         let material = |(name, modulus, density, _): &(&str, f64, f64, f64)| {
             (
                 (*name).to_owned(),

@@ -52,7 +52,7 @@ const AGAINST_TRANSLATION: [f64; 2] = [0.5, 20.0];
 const COEFFICIENT: f64 = 5.0 / 6.0;
 
 impl Concealed {
-    pub fn stoutness(self) -> Stoutness {
+    pub(super) fn stoutness(self) -> Stoutness {
         if self == Concealed::StripShear { Stoutness::Thick } else { Stoutness::Slender }
     }
 }
@@ -79,7 +79,7 @@ pub(super) struct Hidden {
 
 impl Hidden {
     /// Conceals one thing more; `None` where there is no place for it.
-    pub fn conceal(
+    pub(super) fn conceal(
         mut self,
         what: Concealed,
         assembly: &Assembly,

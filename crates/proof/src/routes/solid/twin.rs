@@ -20,7 +20,7 @@ pub struct Shown {
 
 /// Frequencies within 0.1 % of those on a mesh twice as fine. A strip that cannot shear needs many elements along it; its corners do not count,
 /// since the blocks hardly yield.
-pub const MESH: MeshOptions = MeshOptions {
+pub(crate) const MESH: MeshOptions = MeshOptions {
     corner: 4,
     along: 32,
     across: 1,

@@ -5,7 +5,7 @@ use jointscope_fixture::Effect;
 use jointscope_proof::{Answer, Answers, Case, Evidence, Found, Judged, NoAnswer, Plan, Role, Truth};
 
 /// Cases of a plan with their truths, opened against answers that say nothing.
-pub fn opened(plan: &Plan) -> (Vec<Case>, Vec<Truth>) {
+pub(crate) fn opened(plan: &Plan) -> (Vec<Case>, Vec<Truth>) {
     let (cases, sealed) = plan.draw().unwrap();
     let silent = Answers::by(&cases, 1, |_| (), |_| Err(NoAnswer::BrokeDown));
     let truths = sealed.open(&silent).unwrap();
@@ -13,7 +13,7 @@ pub fn opened(plan: &Plan) -> (Vec<Case>, Vec<Truth>) {
 }
 
 /// A finding with its intervals half as wide as `half` says, about the values.
-pub fn found(effect: &Effect, probability: f64, half: impl Fn(f64) -> f64) -> Found {
+pub(crate) fn found(effect: &Effect, probability: f64, half: impl Fn(f64) -> f64) -> Found {
     let interval = |value: f64| Some([value - half(value), value + half(value)]);
     Found {
         effect: effect.clone(),
@@ -24,7 +24,7 @@ pub fn found(effect: &Effect, probability: f64, half: impl Fn(f64) -> f64) -> Fo
 }
 
 /// An answer that finds the given effects.
-pub fn answer(truth: &Truth, findings: Vec<Found>) -> Answer {
+pub(crate) fn answer(truth: &Truth, findings: Vec<Found>) -> Answer {
     let physics = findings.iter().map(|found| found.effect.clone()).collect();
     Answer {
         verdict: if findings.is_empty() { Verdict::Consistent } else { Verdict::Explained },
@@ -38,7 +38,7 @@ pub fn answer(truth: &Truth, findings: Vec<Found>) -> Answer {
 }
 
 /// Evidence by which the hidden effects show, and a bound of a hundredth on each parameter.
-pub fn evidence(truth: &Truth) -> Evidence {
+pub(crate) fn evidence(truth: &Truth) -> Evidence {
     let bound = |effect: &Effect| effect.parameters.iter().map(|q| Some(0.01 * q.value.abs())).collect();
     let nothing = truth.role == Role::Null;
     Evidence {
@@ -53,7 +53,7 @@ pub fn evidence(truth: &Truth) -> Evidence {
 }
 
 /// The effects that `answered` gives, found with certainty.
-pub fn judged(truth: &Truth, answered: &[Effect]) -> Judged {
+pub(crate) fn judged(truth: &Truth, answered: &[Effect]) -> Judged {
     let findings = answered.iter().map(|effect| found(effect, 0.99, |v| 0.0196 * v.abs())).collect();
     Judged { truth: truth.clone(), answer: Ok(answer(truth, findings)), evidence: evidence(truth) }
 }

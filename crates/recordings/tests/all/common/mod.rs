@@ -6,7 +6,7 @@ use jointscope_uff::{Abscissa, Axis, Data, Dataset58, FunctionType, Node, UffFil
 use num_complex::Complex64;
 
 /// Two blocks and a storey that does not rotate, points 1 to 5.
-pub fn fixture() -> Fixture {
+pub(crate) fn fixture() -> Fixture {
     Fixture::from_json(
         r#"{ "name": "two blocks and a storey",
         "bodies": { "A": { "mass": 1.1, "inertia": 9.5e-4, "x_cg": -0.03 },
@@ -19,11 +19,11 @@ pub fn fixture() -> Fixture {
     .unwrap()
 }
 
-pub const VALUES: [Complex64; 3] =
+pub(crate) const VALUES: [Complex64; 3] =
     [Complex64::new(1.0, -0.5), Complex64::new(2.0, 0.25), Complex64::new(-3.0, 4.0)];
 
 /// An accelerance in SI units on 10, 12.5 and 15 Hz.
-pub fn frf(response: (i64, i32), reference: (i64, i32)) -> Dataset58 {
+pub(crate) fn frf(response: (i64, i32), reference: (i64, i32)) -> Dataset58 {
     Dataset58 {
         function: FunctionType::FrequencyResponse,
         response: Node::new(response.0, response.1),
@@ -35,7 +35,7 @@ pub fn frf(response: (i64, i32), reference: (i64, i32)) -> Dataset58 {
     }
 }
 
-pub fn coherence(response: (i64, i32), reference: (i64, i32), values: [f64; 3]) -> Dataset58 {
+pub(crate) fn coherence(response: (i64, i32), reference: (i64, i32), values: [f64; 3]) -> Dataset58 {
     Dataset58 {
         function: FunctionType::Coherence,
         ordinate_axis: Axis::new(data_type::GENERAL, "Coherence", "NONE"),
@@ -45,7 +45,7 @@ pub fn coherence(response: (i64, i32), reference: (i64, i32), values: [f64; 3]) 
     }
 }
 
-pub fn history(node: i64, axis: Axis) -> Dataset58 {
+pub(crate) fn history(node: i64, axis: Axis) -> Dataset58 {
     Dataset58 {
         function: FunctionType::TimeResponse,
         response: Node::new(node, 2),
@@ -56,7 +56,7 @@ pub fn history(node: i64, axis: Axis) -> Dataset58 {
 }
 
 /// Inch and pound-force, as dataset 164 states them.
-pub fn inches() -> Units {
+pub(crate) fn inches() -> Units {
     Units {
         code: 7,
         description: "Inch (pound f)".to_owned(),
@@ -66,11 +66,11 @@ pub fn inches() -> Units {
     }
 }
 
-pub fn source(name: &str, datasets: Vec<Dataset58>) -> Source {
+pub(crate) fn source(name: &str, datasets: Vec<Dataset58>) -> Source {
     Source { name: name.to_owned(), file: UffFile { datasets, ..UffFile::default() } }
 }
 
-pub fn options(map: &[&str], units: Option<&str>) -> ReadOptions {
+pub(crate) fn options(map: &[&str], units: Option<&str>) -> ReadOptions {
     ReadOptions {
         map: ChannelMap::parse(map).unwrap(),
         assume_units: units.map(|units| AssumedUnits::parse(units).unwrap()),
@@ -78,26 +78,29 @@ pub fn options(map: &[&str], units: Option<&str>) -> ReadOptions {
     }
 }
 
-pub fn read_with(datasets: Vec<Dataset58>, options: &ReadOptions) -> Result<Recording, RecordingError> {
+pub(crate) fn read_with(
+    datasets: Vec<Dataset58>,
+    options: &ReadOptions,
+) -> Result<Recording, RecordingError> {
     Recording::of(&[source("test.uff", datasets)], &fixture(), options)
 }
 
-pub fn read(datasets: Vec<Dataset58>) -> Result<Recording, RecordingError> {
+pub(crate) fn read(datasets: Vec<Dataset58>) -> Result<Recording, RecordingError> {
     read_with(datasets, &ReadOptions::default())
 }
 
 /// The first FRF's values.
-pub fn first_values(recording: &Recording) -> Vec<Complex64> {
+pub(crate) fn first_values(recording: &Recording) -> Vec<Complex64> {
     recording.frfs().unwrap().values(0).to_vec()
 }
 
 /// FRF names of the only level.
-pub fn names(recording: &Recording) -> Vec<String> {
+pub(crate) fn names(recording: &Recording) -> Vec<String> {
     recording.frfs().unwrap().pairs().iter().map(|pair| pair.to_string()).collect()
 }
 
 /// The refusal of these functions must hold every part.
-pub fn refused(datasets: Vec<Dataset58>, options: &ReadOptions, parts: &[&str]) {
+pub(crate) fn refused(datasets: Vec<Dataset58>, options: &ReadOptions, parts: &[&str]) {
     let message = match read_with(datasets, options) {
         Err(error) => error.to_string(),
         Ok(recording) => panic!("was read: {recording:?}"),
@@ -107,7 +110,7 @@ pub fn refused(datasets: Vec<Dataset58>, options: &ReadOptions, parts: &[&str]) 
     }
 }
 
-pub fn assert_close(found: &[Complex64], factor: Complex64) {
+pub(crate) fn assert_close(found: &[Complex64], factor: Complex64) {
     for (line, (found, recorded)) in found.iter().zip(VALUES).enumerate() {
         let expected = recorded * factor;
         assert!(

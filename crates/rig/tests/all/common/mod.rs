@@ -6,13 +6,13 @@ use jointscope_rig::smoothed_variance;
 use jointscope_spectra::FrfSet;
 
 /// The FRFs of a universal file, in the order of the fixture's points.
-pub fn frfs_in(bytes: &[u8], fixture: &Fixture) -> FrfSet {
+pub(crate) fn frfs_in(bytes: &[u8], fixture: &Fixture) -> FrfSet {
     let source = Source { name: "recording.uff".into(), file: jointscope_uff::read(bytes).unwrap() };
     Recording::of(&[source], fixture, &ReadOptions::default()).unwrap().frfs().unwrap().clone()
 }
 
 /// χ² and degrees of freedom (two a complex value) of `measured` against `model`, both in the same form and pairs.
-pub fn chi_squared(measured: &FrfSet, model: &FrfSet, half_width: usize) -> (f64, f64) {
+pub(crate) fn chi_squared(measured: &FrfSet, model: &FrfSet, half_width: usize) -> (f64, f64) {
     let (mut chi2, mut dof) = (0.0, 0.0);
     for index in 0..measured.pairs().len() {
         let variance = smoothed_variance(measured, index, half_width).expect("coherence and averages");
@@ -25,7 +25,7 @@ pub fn chi_squared(measured: &FrfSet, model: &FrfSet, half_width: usize) -> (f64
 }
 
 /// Largest difference over FRFs and lines, relative to the rms of that FRF.
-pub fn largest_error(expected: &FrfSet, got: &FrfSet) -> f64 {
+pub(crate) fn largest_error(expected: &FrfSet, got: &FrfSet) -> f64 {
     assert_eq!(expected.pairs(), got.pairs());
     let mut largest = 0.0_f64;
     for index in 0..expected.pairs().len() {
