@@ -269,6 +269,9 @@ fn body_at(fixture: &Fixture, place: &Place) -> Option<usize> {
     }
 }
 
+/// E/ρ of steel, aluminium and titanium alike, within 4 %, m²/s²: of a section whose area is not stated, EI tells ρI by it.
+const MODULUS_OVER_DENSITY: f64 = 2.55e7;
+
 /// What there is at a place, of which starts are multiples.
 struct At<'a> {
     fixture: &'a Fixture,
@@ -289,7 +292,11 @@ impl At<'_> {
         order.push(leading);
         let mut all = vec![vec![0.0; spec.parameters.len()]];
         for index in order {
-            let values = self.values(spec.parameters[index].starts);
+            let parameter = &spec.parameters[index];
+            let values = match parameter.of_bodies_only && self.body.is_none() {
+                true => vec![0.0],
+                false => self.values(parameter.starts),
+            };
             let with = |start: Vec<f64>| {
                 values.iter().map(move |&value| {
                     let mut start = start.clone();
@@ -394,6 +401,13 @@ impl At<'_> {
                     }
                     _ => None,
                 }
+            }
+            Measure::SectionInertia => {
+                let Some(BodyKind::Beam(beam)) = self.body.map(|body| &self.fixture.bodies()[body].kind)
+                else {
+                    return None;
+                };
+                Some(beam.youngs_modulus.value * beam.second_moment.value / MODULUS_OVER_DENSITY)
             }
             Measure::FreeLength => length.filter(|_| bends).map(|length| length.max(0.01)),
             Measure::ShortestTime => {

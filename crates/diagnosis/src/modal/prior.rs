@@ -22,6 +22,9 @@ const SIZE: f64 = 0.6;
 /// The same of a dashpot beside a spring, whose starts are next to nothing.
 const DASHPOT: f64 = 30.0;
 
+/// The same of a rotary inertia, whose start is that of a metal section.
+const SECTION: f64 = 3.0;
+
 /// The priors of a hypothesis whose effects go by the names `candidates`, in their order.
 pub(crate) fn priors(hypothesis: &Hypothesis, candidates: &[&Candidate]) -> Vec<Prior> {
     let tolerance = |index: usize| {
@@ -57,7 +60,8 @@ fn of_effect(hypothesis: &Hypothesis, index: usize, candidate: &Candidate) -> Ve
             }
             // A dashpot beside a spring starts at next to nothing.
             (_, Motion::NonNegative(_)) if place != spec.size.parameter => {
-                Prior { mean: 0.0, std: (DASHPOT * largest).max(f64::MIN_POSITIVE.sqrt()) }
+                let times = if parameter.of_bodies_only { SECTION } else { DASHPOT };
+                Prior { mean: 0.0, std: (times * largest).max(f64::MIN_POSITIVE.sqrt()) }
             }
             _ => Prior { mean: 0.0, std: (SIZE * largest).max(f64::MIN_POSITIVE.sqrt()) },
         })
