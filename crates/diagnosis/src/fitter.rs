@@ -247,10 +247,11 @@ impl<'a> Fitter<'a> {
         self.end(at, f64::INFINITY)
     }
 
-    /// The best of a local and a global fit.
+    /// The best of a global and a local fit; the local one is given up where it will hardly come as low: far from any optimum it creeps.
     pub(crate) fn refitted(&self, start: &Hypothesis) -> Option<Fit> {
-        let both = [self.global(start), self.local(start, None, f64::INFINITY)];
-        both.into_iter().flatten().reduce(better)
+        let global = self.global(start);
+        let limit = global.as_ref().map_or(f64::INFINITY, |fit| fit.objective);
+        [global, self.local(start, None, limit)].into_iter().flatten().reduce(better)
     }
 
     /// The `first` fit or, where that leaves much, the best of it and of global fits from about the start: one deviation up and down each quantity that is widely
