@@ -16,7 +16,8 @@
 //! * [`starts`]: where fits set out;
 //! * [`search`]: every candidate, alone and beside others;
 //! * [`judgement`]: what it comes to: names with their probabilities and intervals, and errors;
-//! * [`predicting`]: models that are to predict where nobody measured.
+//! * [`predicting`]: models that are to predict where nobody measured;
+//! * [`uncertainty`]: what errors of the model leave uncertain of what lines have found.
 
 mod at_sizes;
 mod changes;
@@ -33,6 +34,7 @@ mod starts;
 #[cfg(test)]
 #[allow(clippy::unwrap_used)]
 mod tests;
+mod uncertainty;
 
 pub(crate) use features::recorded;
 pub(crate) use judgement::{ModalJudgement, explains};

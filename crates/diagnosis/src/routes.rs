@@ -20,6 +20,13 @@ use jointscope_spectra::SpectraError;
 const UNSEEN: &str = "the judgement on what is held out";
 const PLACES: &str = "the places of what is left";
 
+/// Share of the work left that one step by lines may take: one more effect is worth less than to know what else would explain the first.
+const FOUND: f64 = 0.5;
+/// The same of a search by lines where modes have told what there is and leave doubts.
+const DOUBTED: f64 = 0.1;
+/// The same of the judgement on held-out data where modes decide.
+const BLIND: f64 = 0.3;
+
 /// What a search by lines of the whole recording sets out from.
 enum Start<'a> {
     /// The fixture alone, or what the search finds that sees less.
@@ -76,7 +83,8 @@ pub(crate) fn judged(
     let may = modal.is_dubious(fitter)
         && !modal.stands_out(fitter)
         && fitter.observation.work().allows("what lines would find");
-    let searched = may.then(|| Search::searched(fitter, within.clone()));
+    let search = || Search::searched(fitter, within.clone());
+    let searched = may.then(|| fitter.observation.work().within_rest(DOUBTED, search));
     let explained = searched.as_ref().is_some_and(|search| explains(fitter, &search.repaired, true));
     // Modes that need no error of the model, or that do not tell all there is, beside lines that are not explained: it is not the modes of the model that
     // are in error.
@@ -150,7 +158,7 @@ fn by_lines(
     let first = if anew { seen(None) } else { None };
     fitter.watch.stage("searching the whole recording");
     let known = if let Start::Modes(modal, _) = &start { Some(*modal) } else { None };
-    let mut search = match (start, &first) {
+    let mut search = observation.work().within_rest(FOUND, || match (start, &first) {
         (Start::Searched(search), _) => *search,
         (Start::Modes(modal, exact), _) => {
             let part = Search { repaired: exact, ..modal.search_on(observation, &within, &modal.stated) };
@@ -162,7 +170,7 @@ fn by_lines(
         (Start::Found(part), _) => Search::continued(fitter, within, &part),
         (Start::Anew, Some(part)) => Search::continued(fitter, within, part),
         (Start::Anew, None) => Search::searched(fitter, within),
-    };
+    });
     let explaining = modal.filter(|modal| modal.explains());
     if let Some(fewer) = without_imitations(fitter, &search, explaining.is_some()) {
         match explaining {
@@ -172,7 +180,13 @@ fn by_lines(
     }
     let findings = match nothing_can_be_stated(fitter, &search.repaired, search.candidates.len()) {
         true => Vec::new(),
-        false => findings(fitter, &mut search),
+        false => observation.work().within_rest(FOUND, || findings(fitter, &mut search)),
+    };
+    let findings = match modal {
+        Some(modal) => {
+            modal.with_errors_of_modes(fitter, &search.repaired.hypothesis, &search.candidates, findings)
+        }
+        None => findings,
     };
     let stated = |f: &Finding| f.probability + f.alternatives.iter().map(|(_, p)| p).sum::<f64>();
     // What the best hypotheses leave may say that none of them is right: they would only adapt the model to the recording.
@@ -235,7 +249,7 @@ fn by_modes(fitter: &Fitter, within: &Search, modal: &ModalJudgement, division: 
     let Fitter { observation, settings, .. } = *fitter;
     let work = observation.work();
     let (modal, search) = modal.predicted(fitter, within);
-    let held_out = division.filter(|_| work.allows(UNSEEN)).and_then(|division| {
+    let judge = |division: &Division| {
         fitter.watch.stage("comparing by modes without what is held out");
         let blind = fitter.on(&division.seen);
         let known = modal.known(settings.modal.blind);
@@ -243,7 +257,9 @@ fn by_modes(fitter: &Fitter, within: &Search, modal: &ModalJudgement, division: 
             ModalJudgement::of(&blind, &within.nominal.hypothesis, &within.candidates, Some(&known))?;
         let (_, blind) = judged.predicted(&blind, within);
         division.judge(&blind, &search, observation)
-    });
+    };
+    let division = division.filter(|_| work.allows(UNSEEN));
+    let held_out = division.and_then(|division| work.within_rest(BLIND, || judge(division)));
     let locations = match modal.verdict {
         Verdict::Unexplained if work.allows(PLACES) => {
             let refitted = Fit::at(modal.stated[0].clone(), observation);

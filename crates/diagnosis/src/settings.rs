@@ -25,7 +25,7 @@ pub struct Settings {
     pub modal: ModalSettings,
     /// The map of places with no law assumed.
     pub location: LocationSettings,
-    /// Predicted values of FRFs after which a search ends with what it has, a model counted as a thousand besides: about a minute on one core. A case of
+    /// Predicted values of FRFs after which a search ends with what it has, a model counted as a thousand besides: about half a minute on one core. A case of
     /// four FRFs on 400 lines takes 5 to 50 million.
     pub work: u64,
 }
@@ -219,10 +219,10 @@ impl Default for ModalSettings {
             exchanged: (4, 2, 30.0),
             farther: 4,
             foremost: (8, 150.0),
-            costly: 0.1,
-            again: 0.15,
+            costly: 0.05,
+            again: 0.075,
             bases: (3, 20.0),
-            share: 0.6,
+            share: 0.3,
             tried: 8,
             blind: 8,
             effects: 3,
@@ -321,7 +321,7 @@ impl Default for Settings {
                 deviated: 8.0,
                 wrong: 3,
                 clear: 2.0,
-                among_few: (0.1, 2),
+                among_few: (0.05, 2),
                 rounds: 5,
                 effects: 3,
                 exchanges: 2,
@@ -340,7 +340,7 @@ impl Default for Settings {
             },
             modal: ModalSettings::default(),
             location: LocationSettings::default(),
-            work: 300_000_000,
+            work: 600_000_000,
         }
     }
 }

@@ -73,6 +73,12 @@ impl Work {
         outcome
     }
 
+    /// What `of` comes to where it may do no more than a share of what is left: something is to follow.
+    pub(crate) fn within_rest<T>(&self, share: f64, of: impl FnOnce() -> T) -> T {
+        let left = self.most.load(Ordering::Relaxed).saturating_sub(self.done.load(Ordering::Relaxed));
+        self.within(share * left as f64 / self.total as f64, of)
+    }
+
     /// The same for what is tried beside the way to an answer: that it did not come to all it would have done is not remembered.
     pub(crate) fn aside<T>(&self, share: f64, of: impl FnOnce() -> T) -> T {
         let before = self.left_out();
@@ -134,6 +140,23 @@ mod tests {
         assert_eq!(done, (0..32).collect::<Vec<_>>());
         assert!(!work.allows("numbers") && !work.allows("letters"));
         assert_eq!(work.left_out(), ["numbers", "letters"]);
+    }
+
+    #[test]
+    fn a_step_that_may_take_half_of_what_is_left_leaves_the_other_half() {
+        let work = Work::of(100 * MODEL, None);
+        work.count(19 * MODEL as usize);
+        let count = || {
+            work.each((0..100).collect(), "numbers", |n| {
+                work.count(0);
+                Some(n)
+            })
+        };
+        // Eighty models are left; of forty, two and a half times sixteen, what has begun is ended.
+        assert_eq!(work.within_rest(0.5, count).len(), 3 * TOGETHER);
+        assert!(work.allows("letters"));
+        assert_eq!(count().len(), 2 * TOGETHER);
+        assert!(!work.allows("letters"));
     }
 
     #[test]

@@ -375,14 +375,19 @@ impl<'a> Problem<'a> {
     }
 
     /// [`Problem::slopes`] by all coordinates.
-    fn slopes_at(&self, point: &Iterate, standing: &Standing, priors: &[Prior]) -> Option<Vec<Vec<f64>>> {
+    pub(super) fn slopes_at(
+        &self,
+        point: &Iterate,
+        standing: &Standing,
+        priors: &[Prior],
+    ) -> Option<Vec<Vec<f64>>> {
         let all = 0..point.hypothesis.coordinates.len();
         self.slopes(&point.hypothesis, standing, &point.modelled, &point.residual, priors, all)
     }
 
     /// The linear model at a point and its evidence. Of a coordinate that stopped at its bound the linear model knows no bound: a spring that would be negative does
     /// not explain what only a negative one explains. The lesser evidence counts, with such coordinates free or where they are.
-    fn evidence(
+    pub(super) fn evidence(
         &self,
         point: &Iterate,
         priors: &[Prior],

@@ -315,8 +315,8 @@ impl ModalJudgement {
         // What modes tell from the best is no better on lines.
         let best = self.search.best.fit.ln;
         let close = |named: &&Named| best - named.fit.ln < fitter.settings.modal.told;
-        let singles = self.search.singles.iter().take(fitter.settings.modal.tried).filter(close);
-        let all = singles.chain(&self.search.more).chain([&self.search.best]);
+        let singles = self.search.singles.iter().take(fitter.settings.modal.tried);
+        let all = singles.chain(&self.search.more).filter(close).chain([&self.search.best]);
         let odds = fitter.settings.modal.odds;
         let all: Vec<&Named> = all
             .filter(|named| by_lines || named.exact && self.search.needs_all_of(named, odds.ln()))

@@ -123,7 +123,7 @@ impl Searcher<'_> {
                 break;
             };
             if count > 1 {
-                more.extend(ranked.iter().take(self.settings.bases.0).cloned());
+                more.extend(ranked.iter().take(self.settings.tried).cloned());
             }
             // A pair may be needed where neither effect alone is, or one of them where the other has led it out of a false minimum.
             let gains = |more: &Named, fewer: &Named| {

@@ -6,7 +6,6 @@ use crate::modal::prior::{Prior, priors};
 use crate::settings::ModalSettings;
 use crate::{Hypothesis, Watch};
 use jointscope_fixture::Effect;
-use jointscope_model_error::ErrorSizes;
 
 /// Standard deviation, in stated ones, that a calibrated quantity keeps.
 const CALIBRATED: f64 = 1e-4;
@@ -76,13 +75,6 @@ impl Searcher<'_> {
 
     /// Whether the evidence is hardly less without any error of the model.
     pub(super) fn is_exact(&self, fit: &ModalFit) -> bool {
-        fit.standing.pairing.alone() == 0.0 && self.gained_by_errors(fit) < self.settings.exact
-    }
-
-    /// What errors of the model gain in ln p.
-    fn gained_by_errors(&self, fit: &ModalFit) -> f64 {
-        let without =
-            fit.linear.ln_density(&fit.standing.comparison, &self.problem.sizes.times(ErrorSizes::LEAST));
-        without.map_or(f64::INFINITY, |ln| self.problem.seen(fit).ln - ln)
+        self.problem.is_exact(fit, self.settings.exact)
     }
 }

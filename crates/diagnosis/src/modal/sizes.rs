@@ -87,6 +87,14 @@ impl Problem<'_> {
         self.largest_size(fit) <= adequate.0 && fit.largest_pull() <= adequate.1 && fit.leaves_chance()
     }
 
+    /// Whether every mode has a partner and errors of the model gain less than this in ln p.
+    pub(crate) fn is_exact(&self, fit: &ModalFit, gain: f64) -> bool {
+        let least = self.sizes.times(ErrorSizes::LEAST);
+        let without = || fit.linear.ln_density(&fit.standing.comparison, &least);
+        let gained = || without().map_or(f64::INFINITY, |ln| self.seen(fit).ln - ln);
+        fit.standing.pairing.alone() == 0.0 && gained() < gain
+    }
+
     /// The largest size of an error, as a multiple of what is usual.
     fn largest_size(&self, fit: &ModalFit) -> f64 {
         self.relative_sizes(fit).into_iter().fold(0.0, f64::max)

@@ -1,3 +1,6 @@
+use crate::catalogue::catalogue;
+use crate::estimates::estimates;
+use crate::finding::{Evidence, Finding};
 use crate::fitter::Fitter;
 use crate::modal::features::Features;
 use crate::modal::fit::{ANY, ModalFit, SetOut};
@@ -6,7 +9,7 @@ use crate::modal::prior::{Prior, priors};
 use crate::search::Search;
 use crate::settings::Settings;
 use crate::{Hypothesis, Observation, Watch};
-use jointscope_findings::Verdict;
+use jointscope_findings::{Estimate, Verdict};
 use jointscope_fixture::{Effect, EffectKind, Fixture, Place};
 use jointscope_lumped::{Instrument, synthesize};
 use jointscope_model_error::ErrorSizes;
@@ -135,4 +138,64 @@ fn a_dashpot_is_known_no_better_than_the_damping_of_the_modes_that_it_damps() {
     let share = with * 3f64.sqrt() / ERROR;
     assert!((0.85..1.3).contains(&share), "known to {with}, the modes' damping to {ERROR}");
     assert!(with > 2.0 * without, "known to {with}, by phases that err in nothing to {without}");
+}
+
+#[test]
+fn a_shear_deformation_leaves_the_rotary_inertia_of_its_section_open() {
+    let plain = bar(SHEAR).with_physics(Vec::new()).unwrap();
+    let nominal = Hypothesis::nominal(&plain, false);
+    let pairs = ["1", "2", "3", "4", "5"].map(|o| FrfPair::transverse(o, "1"));
+    let lines = SpectralLines::even(20.0, 2.5, 430).unwrap();
+    let frfs = synthesize(&bar(SHEAR), &pairs, &lines, Instrument::AsRecorded).unwrap();
+    let variance = frfs.all_values().iter().map(|value| 6e-6 * value.norm_sqr()).collect();
+    let observation = Observation::new(&frfs.with_variance(variance).unwrap(), |_| true).unwrap();
+    let candidates = catalogue(&plain, &observation);
+    let shear = candidates.iter().find(|c| c.kind == EffectKind::ShearDeformation).unwrap();
+    // EI over E/ρ, which the bar's own section has to 3 %.
+    for start in 0..shear.starts.len() {
+        assert!((shear.effect(start).value(1) / 1.18e-5 - 1.0).abs() < 0.03);
+    }
+    let hypothesis = nominal.with(shear.effect(0));
+    let known = priors(&hypothesis, &[shear]).pop().unwrap();
+    // A coordinate of one is the start: none at all and three times as much are both as likely as not to surprise.
+    assert!(known.mean == 0.0 && (2.0..5.0).contains(&known.std), "{known:?}");
+}
+
+/// What is found of a lump on block B of a fixture that is known exactly, `gains` of the four records being off by so much: without and with what errors of the modes leave uncertain of it.
+fn found_with_gains(gains: [f64; 4]) -> [Vec<Estimate>; 2] {
+    let fixture = Fixture::from_json(BLOCKS).unwrap();
+    let nominal = Hypothesis::nominal(&fixture, true);
+    let lump = Effect::new(EffectKind::AddedMass, Place::Body("B".into()), None, &[0.1, 0.2]);
+    let truth = nominal.with(lump.clone());
+    let exact = recorded(&truth);
+    let count = exact.lines().len();
+    let frfs = exact.frfs().clone().with_values(|at, value| value * (1.0 + gains[at / count]));
+    let variance = frfs.all_values().iter().map(|value| 1e-6 * value.norm_sqr()).collect();
+    let observation = Observation::new(&frfs.with_variance(variance).unwrap(), |_| true).unwrap();
+    let settings = Settings::default();
+    let fitter = Fitter { observation: &observation, settings: &settings, watch: Watch::default() };
+    let judged = ModalJudgement::of(&fitter, &nominal, &[], None).unwrap();
+    let covariance = fitter.information(&truth).covariance();
+    let estimates = estimates(&truth, 0, &lump, covariance.as_ref(), 1.0);
+    let evidence = Evidence { gain: 0.0, measured: None };
+    let finding = Finding {
+        effect: lump,
+        estimates: estimates.clone(),
+        probability: 1.0,
+        alternatives: Vec::new(),
+        evidence,
+    };
+    let candidates = catalogue(&fixture, &observation);
+    let mut widened = judged.with_errors_of_modes(&fitter, &truth, &candidates, vec![finding]);
+    [estimates, widened.pop().unwrap().estimates]
+}
+
+#[test]
+fn what_lines_find_is_no_surer_than_the_errors_that_the_modes_need_beside_it() {
+    let [lines, both] = found_with_gains([0.0; 4]);
+    assert_eq!(lines, both, "modes that need no error widen nothing");
+    let [lines, both] = found_with_gains([0.04, -0.03, 0.04, -0.03]);
+    let wider = |place: usize| both[place].std.unwrap() / lines[place].std.unwrap();
+    assert!(wider(1) > 3.0 && wider(0) > 3.0, "{} and {}", wider(1), wider(0));
+    assert_eq!(both[1].value, lines[1].value);
 }

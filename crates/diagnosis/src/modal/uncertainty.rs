@@ -1,0 +1,89 @@
+//! What errors of the model leave uncertain of effects that lines have found.
+//!
+//! Where noise of lines is told from their scatter, a model may leave no more than that and still be in error: its modes, told from many lines each, are off by far more than
+//! their noise. Intervals by the noise of the lines are then too narrow by as much. The errors that the modes need beside what was found, at the very parameters that lines
+//! have led to, make intervals of their own, and the wider of the two counts.
+
+use crate::Hypothesis;
+use crate::catalogue::Candidate;
+use crate::estimates::estimates;
+use crate::finding::Finding;
+use crate::fitter::Fitter;
+use crate::modal::fit::{Iterate, ModalFit, Problem};
+use crate::modal::judgement::ModalJudgement;
+use crate::modal::prior::{Prior, priors};
+use jointscope_findings::Estimate;
+use jointscope_fixture::Effect;
+use jointscope_inference::Covariance;
+
+impl ModalJudgement {
+    /// The findings of `hypothesis`, none of their parameters surer than the errors of its modes allow.
+    pub(crate) fn with_errors_of_modes(
+        &self,
+        fitter: &Fitter,
+        hypothesis: &Hypothesis,
+        candidates: &[Candidate],
+        findings: Vec<Finding>,
+    ) -> Vec<Finding> {
+        let Some(covariance) = self.uncertainty_of(fitter, hypothesis, candidates) else { return findings };
+        let effects = hypothesis.effects();
+        let widened = |finding: Finding| {
+            let name = |effect: &Effect| (effect.kind, effect.place.clone(), effect.dof);
+            let own = |effect: &Effect| name(effect) == name(&finding.effect);
+            let Some(index) = effects.iter().position(own) else { return finding };
+            let by_modes = estimates(hypothesis, index, &finding.effect, Some(&covariance), 1.0);
+            let pairs = finding.estimates.into_iter().zip(by_modes);
+            Finding { estimates: pairs.map(|(lines, modes)| less_sure(lines, modes)).collect(), ..finding }
+        };
+        findings.into_iter().map(widened).collect()
+    }
+
+    /// Covariance of a hypothesis' coordinates by its modes and their errors; `None` where these need none, or are not all told.
+    fn uncertainty_of(
+        &self,
+        fitter: &Fitter,
+        hypothesis: &Hypothesis,
+        candidates: &[Candidate],
+    ) -> Option<Covariance> {
+        let named = |effect: &Effect| candidates.iter().find(|candidate| candidate.names(effect));
+        let company: Option<Vec<&Candidate>> = hypothesis.effects().iter().map(named).collect();
+        let problem = self.features.problem(fitter.observation.work());
+        let fit = problem.unfitted(hypothesis, &priors(hypothesis, &company?))?;
+        let errors_count =
+            fit.standing.pairing.alone() == 0.0 && !problem.is_exact(&fit, fitter.settings.modal.exact);
+        let sizes = || fit.linear.mean_sizes(&fit.standing.comparison, problem.prior(), &fit.evidence);
+        errors_count.then(|| fit.covariance_at(&sizes())).flatten()
+    }
+}
+
+impl Problem<'_> {
+    /// A hypothesis as it is, with the sizes of error that it asks for.
+    fn unfitted(&self, hypothesis: &Hypothesis, priors: &[Prior]) -> Option<ModalFit> {
+        let mut standing = self.standing(hypothesis)?;
+        standing.comparison = standing.comparison.with_ratios_alone();
+        let residual = self.residual(&standing, &standing.modelled);
+        let point = Iterate { hypothesis: hypothesis.clone(), modelled: standing.modelled.clone(), residual };
+        let slopes = self.slopes_at(&point, &standing, priors)?;
+        let (linear, evidence) = self.evidence(&point, priors, &slopes, (&standing.comparison, None))?;
+        let ln = evidence.ln + standing.pairing.alone() - hypothesis.rarity();
+        let Iterate { hypothesis, residual, .. } = point;
+        Some(ModalFit {
+            hypothesis,
+            priors: priors.to_vec(),
+            standing,
+            linear,
+            evidence,
+            slopes,
+            residual,
+            ln,
+        })
+    }
+}
+
+/// The one of two estimates of the same value that is less sure of it; one that is sure of nothing says nothing.
+fn less_sure(a: Estimate, b: Estimate) -> Estimate {
+    match (a.std, b.std) {
+        (Some(own), Some(other)) if other > own => b,
+        _ => a,
+    }
+}
