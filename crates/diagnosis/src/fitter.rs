@@ -283,7 +283,7 @@ impl<'a> Fitter<'a> {
         let without = full.without(index);
         let mut at = without.clone();
         for share in self.settings.fit.fading {
-            let smaller = crate::catalogue::scaled(effect, share).and_then(|effect| without.beside(effect));
+            let smaller = crate::candidate::scaled(effect, share).and_then(|effect| without.beside(effect));
             let Some(smaller) = smaller.map(|h| h.with_coordinates_of(&at)) else { break };
             let Some(fit) = self.local(&smaller, None, limit) else { break };
             if fit.objective > limit {

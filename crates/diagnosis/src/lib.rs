@@ -32,8 +32,10 @@
 
 mod alternatives;
 mod baseline;
+mod candidate;
 mod catalogue;
 mod contradiction;
+mod default_settings;
 mod departures;
 mod diagnosis;
 mod drift;
@@ -70,7 +72,8 @@ mod work;
 
 pub use alternatives::Alternative;
 pub use baseline::{Baseline, ModeChange, ModeState};
-pub use catalogue::{Candidate, catalogue};
+pub use candidate::Candidate;
+pub use catalogue::catalogue;
 pub use contradiction::contradictory_lines;
 pub use departures::Departure;
 pub use diagnosis::Diagnosis;

@@ -35,6 +35,6 @@ mod starts;
 mod tests;
 
 pub(crate) use features::recorded;
-pub(crate) use judgement::{ModalJudgement, explains};
+pub(crate) use judgement::ModalJudgement;
 pub(crate) use needs::without_imitations;
 pub use sizes::{ErrorIntervals, ModelError};

@@ -1,11 +1,57 @@
 //! Which stiffness drifted: by the share of the strain energy that it has in each mode.
 
+use super::drifted::{CALLED_DRIFT, Drifted};
+use super::seen::{references, seen};
 use super::table::{Cell, Fit, Table, chance};
-use super::{Drifted, ModeDrift, ReferenceChange, TestDrift};
+use crate::settings::Settings;
+use crate::{Hypothesis, Observation};
 use jointscope_fixture::{BodyKind, Effect, EffectKind, Fixture, Place};
 use jointscope_inference::interval95;
 use jointscope_model_error::{ModelledModes, Pairing, RecordedModes};
+use jointscope_spectra::{Channel, FrfSet};
+use serde::Serialize;
 use std::f64::consts::TAU;
+
+/// How far one reference's FRFs are from those of the references that agree.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ReferenceChange {
+    /// Where was struck.
+    pub reference: Channel,
+    /// Relative change of the stiffness that drifted while this reference was struck: zero by definition where the references agree.
+    pub change: f64,
+    /// Its standard deviation.
+    pub std: f64,
+    /// Its interval of 95 %.
+    pub ci95: [f64; 2],
+    /// Whether the diagnosis goes on with this reference's FRFs.
+    pub kept: bool,
+}
+
+/// How far one mode moved.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ModeDrift {
+    /// Natural frequency, Hz.
+    pub frequency: f64,
+    /// Relative change of it by reference, in the order of [`TestDrift::references`]; `None` where a reference does not show the mode.
+    pub changes: Vec<Option<f64>>,
+    /// Standard deviations of these.
+    pub std: Vec<Option<f64>>,
+}
+
+/// A test that drifted between references.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct TestDrift {
+    /// Whose stiffness explains it: `joints/J`, `bodies/F` or `all stiffnesses`; `None` where the modes do not tell one.
+    pub what: Option<String>,
+    /// All that explain it, where `what` is `None`; empty where nothing does.
+    pub could_be: Vec<String>,
+    /// The course, in the order in which the recording has the references. Changes are of `what`; without, of all stiffnesses alike.
+    pub references: Vec<ReferenceChange>,
+    /// Probability of poles that differ as much between references by chance.
+    pub p_value: f64,
+    /// The modes that tell it.
+    pub modes: Vec<ModeDrift>,
+}
 
 /// Relative deviation of the shares of strain energy of a model that explains the recording down to its noise, and of any other.
 const SHARE: [f64; 2] = [0.02, 0.1];
@@ -32,7 +78,27 @@ struct Course {
     chi2: f64,
 }
 
-pub(super) fn attributed(drifted: &Drifted, model: &Fixture, explains: bool) -> TestDrift {
+impl TestDrift {
+    /// Probability by chance of poles that differ between references as much as in this recording, drift or not; `None` where nothing can be compared. The FRFs' own
+    /// noise is taken, or estimated where they have none.
+    pub fn chance(fixture: &Fixture, frfs: &FrfSet) -> Option<f64> {
+        let observation = Observation::new(frfs, |_| true).ok()?;
+        let references = references(&observation);
+        let nominal = Hypothesis::nominal(fixture, false);
+        let settings = Settings::default().modal;
+        seen(&observation, &nominal, &settings, (&references, 1.0 + CALLED_DRIFT))?.table.chance()
+    }
+}
+
+impl Drifted {
+    /// What drifted, told by the shares of strain energy in a model of the structure.
+    /// `explains`: whether that model explains the recording down to its noise.
+    pub(crate) fn attributed(&self, model: &Fixture, explains: bool) -> TestDrift {
+        attributed(self, model, explains)
+    }
+}
+
+fn attributed(drifted: &Drifted, model: &Fixture, explains: bool) -> TestDrift {
     let deviation = SHARE[usize::from(!explains)];
     let Drifted { table, kept, .. } = drifted;
     let candidates = candidates(model, &drifted.modes, &table.modes);
