@@ -33,6 +33,7 @@ pub mod format;
 mod hits;
 mod joint;
 mod levels;
+mod misfit;
 mod model_error;
 mod modes;
 mod numbers;

@@ -1,7 +1,8 @@
 //! The verdict where the model's own error decides instead of the noise.
 
 use crate::departures::remaining;
-use crate::diagnosis::{found, it, shows, varies};
+use crate::finding::{found, it};
+use crate::misfit::{shows, varies};
 use crate::numbers::{figures, listed, percent, significant};
 use jointscope_diagnosis::{Diagnosis, ModalSettings, ModelError};
 use jointscope_findings::Verdict;
