@@ -7,8 +7,9 @@ use jointscope_spectra::Channel;
 
 use crate::format::{fixed, significant};
 use crate::plot::{Axis, Plot, Role, Style, YRange};
-use crate::section::{Block, Section, Tone};
+use crate::section::{Block, Section};
 use crate::table::Table;
+use crate::tone::Tone;
 
 /// Hits drawn at one struck point at the most, and struck points.
 const SHOWN: usize = 12;
