@@ -1,5 +1,5 @@
 use crate::{
-    Caution, Compared, Decomposed, ELEMENTS, Equality, Estimate, FittedJoint, Kind, Number, Pair, Ranking,
+    Caution, Compared, Decomposed, ELEMENTS, Equality, Estimate, FiledJoint, Kind, Number, Pair, Ranking,
     Specimens, Together,
 };
 
@@ -36,8 +36,8 @@ impl ElementRanking {
     }
 }
 
-impl From<&FittedJoint> for Estimate {
-    fn from(fit: &FittedJoint) -> Self {
+impl From<&FiledJoint> for Estimate {
+    fn from(fit: &FiledJoint) -> Self {
         let deviation = |e: usize| fit.covariance[e][e].max(0.0).sqrt();
         let matrix = |first: usize| {
             let of = |e: usize| deviation(first + e);
