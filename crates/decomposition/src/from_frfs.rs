@@ -4,8 +4,8 @@ use crate::analysis::{InterfaceSource, interfaces_rest_on};
 use crate::interfaces::interfaces_of_fit;
 use crate::spectrum::scalar_stiffness;
 use crate::{
-    Analysis, Averages, NominalResult, DecompositionError, Interfaces, JointEnds, JointFit, JointFitOptions,
-    JointSpectrum, Judgement, LikelihoodFit, MeasurementPlan, Relation, Sides, ToleranceShare,
+    Analysis, Averages, DecompositionError, Interfaces, JointEnds, JointFit, JointFitOptions, JointSpectrum,
+    Judgement, LikelihoodFit, MeasurementPlan, NominalResult, Relation, Sides, ToleranceShare,
     ToleranceShares, decompose, fit_joint, interfaces, maximum_likelihood, tolerance_shares,
 };
 use jointscope_averaging::Band;
@@ -74,8 +74,13 @@ impl Analysis {
         };
         let averages = Averages::of(&spectrum, options.band, model)?;
         let fitted = likelihood.as_ref().ok().map(|fit| (fit, exact, options.band));
-        let decomposed =
-            NominalResult { frfs: &frfs, sides: &sides, spectrum: &spectrum, band: averages.band, fit: fitted };
+        let decomposed = NominalResult {
+            frfs: &frfs,
+            sides: &sides,
+            spectrum: &spectrum,
+            band: averages.band,
+            fit: fitted,
+        };
         let ToleranceShares { shares: tolerances, lost: lost_tolerances } =
             tolerance_shares(&decomposed, options.exact)?;
         let interfaces = match interfaces_rest_on(&joint_fit, &likelihood) {

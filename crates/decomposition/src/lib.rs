@@ -74,8 +74,8 @@ pub use plan::{MeasurementPlan, PlanError};
 pub use relation::{Compliances, Relation};
 pub use sides::{Sides, SidesError};
 pub use spectrum::{JointLine, JointSpectrum, decompose};
-pub(crate) use tolerances::{NominalResult, ToleranceShares, tolerance_shares};
 pub use tolerances::ToleranceShare;
+pub(crate) use tolerances::{NominalResult, ToleranceShares, tolerance_shares};
 
 /// Why a joint cannot be decomposed.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

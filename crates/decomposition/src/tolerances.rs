@@ -61,7 +61,10 @@ const SMALL: f64 = 1e-3;
 ///
 /// # Errors
 /// A recording that lacks FRFs.
-pub(crate) fn tolerance_shares(of: &NominalResult, exact: bool) -> Result<ToleranceShares, DecompositionError> {
+pub(crate) fn tolerance_shares(
+    of: &NominalResult,
+    exact: bool,
+) -> Result<ToleranceShares, DecompositionError> {
     let fixture = of.sides.fixture();
     let quantities = if exact { fixture.quantities_exact() } else { fixture.quantities() };
     let plan = MeasurementPlan::of(of.frfs, of.sides)?;

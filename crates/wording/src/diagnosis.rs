@@ -49,7 +49,7 @@ fn by_noise(diagnosis: &Diagnosis) -> String {
             it(diagnosis),
             figures(repaired),
             figures(refitted),
-            bent(diagnosis),
+            farthest_quantity(diagnosis),
             percent(error_repaired),
             percent(error_refitted)
         ),
@@ -189,8 +189,8 @@ fn of_observation(observation: &Observation) -> Vec<String> {
 }
 
 /// `, and bodies/A/mass would have to be 33 standard deviations off`, where the refit without effects takes a quantity that far.
-fn bent(diagnosis: &Diagnosis) -> String {
-    diagnosis.bent().map_or_else(String::new, |(path, deviations)| {
+fn farthest_quantity(diagnosis: &Diagnosis) -> String {
+    diagnosis.farthest_quantity().map_or_else(String::new, |(path, deviations)| {
         format!(", and {path} would have to be {} standard deviations off", significant(deviations, 2))
     })
 }
