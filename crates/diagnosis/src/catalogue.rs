@@ -1,8 +1,8 @@
 //! Every effect at every legal place of a fixture, with starts from which a fit may set out.
 
+use crate::bodies::{extent, inertia_of, mass_of, turns};
 use crate::candidate::{Candidate, candidate};
 use crate::departures::departed;
-use crate::freedom::{extent, inertia_of, mass_of, turns};
 use crate::together::inverts;
 use crate::{Hypothesis, Observation};
 use jointscope_fixture::{

@@ -32,6 +32,7 @@
 
 mod alternatives;
 mod baseline;
+mod bodies;
 mod candidate;
 mod catalogue;
 mod contradiction;
@@ -46,7 +47,6 @@ mod finding;
 mod fit;
 mod fitter;
 mod force_noise;
-mod freedom;
 mod held_out;
 mod hypothesis;
 mod idle;
@@ -57,6 +57,7 @@ mod modal;
 mod named;
 mod observation;
 mod options;
+mod parameter_transforms;
 mod penalty;
 mod quantities;
 mod ranking;

@@ -173,7 +173,7 @@ fn location(problem: &Problem, state: &Iterate) -> Location {
             by_frf[k].1 += 2;
             of_line.0 += chi2;
         }
-        of_line.1 = freedoms(recorded, state, line);
+        of_line.1 = degrees_of_freedom(recorded, state, line);
     }
     let total = |range: std::ops::Range<usize>| {
         lines[range].iter().fold((0.0, 0), |sum, line| (sum.0 + line.0, sum.1 + line.1))
@@ -211,7 +211,7 @@ fn location(problem: &Problem, state: &Iterate) -> Location {
 }
 
 /// Degrees of freedom of a line: real values less the scalar, where it is felt. Values of FRFs that parameters alone on a line determine nothing.
-fn freedoms(recorded: &Recorded, state: &Iterate, line: usize) -> usize {
+fn degrees_of_freedom(recorded: &Recorded, state: &Iterate, line: usize) -> usize {
     let valid = recorded.places(line).filter(|p| recorded.weights[*p] > 0.0);
     let felt = valid.clone().any(|p| state.slopes[p] != Complex64::ZERO);
     2 * valid.count().saturating_sub(usize::from(felt))
@@ -228,7 +228,10 @@ fn deltas(free_scalars: &FreeScalars, problem: &Problem) -> Vec<(usize, LineEsti
     let mut spread = vec![Complex64::ZERO; n];
     for line in 0..hz.len() {
         let weight = free_scalars.weights[line];
-        if weight.is_nan() || weight <= 0.0 || freedoms(problem.recorded, &free_scalars.state, line) == 0 {
+        if weight.is_nan()
+            || weight <= 0.0
+            || degrees_of_freedom(problem.recorded, &free_scalars.state, line) == 0
+        {
             continue;
         }
         let sensitivities = &free_scalars.sensitivities[line * n..(line + 1) * n];
