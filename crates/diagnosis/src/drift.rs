@@ -5,8 +5,8 @@
 //! moves those of its own response. Poles that differ between references beyond what responses explain are therefore drift (or a structure that depends on
 //! amplitude, struck differently), and no physics.
 //!
-//! 1. **Quick test** ([`seen`]). Each reference's FRFs are fitted freely by themselves; ln ω of the modes that several references show are compared.
-//! 2. **FRF by FRF** ([`seen`]). Where they differ, each FRF's own poles are taken; what differs by response is no drift ([`table`]).
+//! 1. **Quick test** ([`poles_by_frf`]). Each reference's FRFs are fitted freely by themselves; ln ω of the modes that several references show are compared.
+//! 2. **FRF by FRF** ([`poles_by_frf`]). Where they differ, each FRF's own poles are taken; what differs by response is no drift ([`table`]).
 //! 3. **Agreeing references** ([`agreement`]). The most references whose poles agree; the diagnosis goes on with theirs.
 //! 4. **What drifted** ([`attribution`]). Each stiffness moves each mode by its share of the strain energy, d ln ω/d ln k = s/2. The shares of the model that the diagnosis ends with
 //!    tell which stiffness explains the differences, and by how much.
@@ -14,7 +14,7 @@
 mod agreement;
 mod attribution;
 mod drifted;
-mod seen;
+mod poles_by_frf;
 mod table;
 
 pub use attribution::{ModeDrift, ReferenceChange, TestDrift};

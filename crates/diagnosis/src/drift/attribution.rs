@@ -1,7 +1,7 @@
 //! Which stiffness drifted: by the share of the strain energy that it has in each mode.
 
 use super::drifted::{CALLED_DRIFT, Drifted};
-use super::seen::{references, seen};
+use super::poles_by_frf::{poles_by_frf, references};
 use super::table::{Cell, Fit, Table, chance};
 use crate::settings::Settings;
 use crate::{Hypothesis, Observation};
@@ -86,7 +86,7 @@ impl TestDrift {
         let references = references(&observation);
         let nominal = Hypothesis::nominal(fixture, false);
         let settings = Settings::default().modal;
-        seen(&observation, &nominal, &settings, (&references, 1.0 + CALLED_DRIFT))?.table.chance()
+        poles_by_frf(&observation, &nominal, &settings, (&references, 1.0 + CALLED_DRIFT))?.table.chance()
     }
 }
 

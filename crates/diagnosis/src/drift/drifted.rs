@@ -1,7 +1,7 @@
 //! Whether the references' poles differ, and which of the references agree.
 
 use super::agreement::agreeing;
-use super::seen::{Seen, references, seen};
+use super::poles_by_frf::{PolesByFrf, poles_by_frf, references};
 use super::table::{LEAST, Table};
 use crate::settings::ModalSettings;
 use crate::{Hypothesis, Observation};
@@ -33,7 +33,8 @@ impl Drifted {
         if references.len() < 2 {
             return None;
         }
-        let Seen { modes, table } = seen(observation, nominal, settings, (&references, CALLED_DRIFT))?;
+        let PolesByFrf { modes, table } =
+            poles_by_frf(observation, nominal, settings, (&references, CALLED_DRIFT))?;
         let p_value = table.chance()?;
         let all: Vec<usize> = (0..references.len()).collect();
         if p_value >= CALLED_DRIFT || table.farthest(&all) < LEAST {
