@@ -45,7 +45,7 @@ pub struct TestDrift {
     pub what: Option<String>,
     /// All that explain it, where `what` is `None`; empty where nothing does.
     pub could_be: Vec<String>,
-    /// The course, in the order in which the recording has the references. Changes are of `what`; without, of all stiffnesses alike.
+    /// By reference, in the order in which the recording has them. Changes are of `what`; without, of all stiffnesses alike.
     pub references: Vec<ReferenceChange>,
     /// Probability of poles that differ as much between references by chance.
     pub p_value: f64,
@@ -73,7 +73,7 @@ struct Candidate {
 }
 
 /// Changes of one stiffness in ln k by reference, with their variances, and χ² with its degrees of freedom.
-struct Course {
+struct StiffnessChanges {
     changes: Vec<(f64, f64)>,
     chi2: f64,
 }
@@ -103,27 +103,27 @@ fn attributed(drifted: &Drifted, model: &Fixture, explains: bool) -> TestDrift {
     let Drifted { table, kept, .. } = drifted;
     let candidates = candidates(model, &drifted.modes, &table.modes);
     let inflation = table.inflation() * table.shared();
-    let fitted: Vec<(&Candidate, Course)> = candidates
+    let fitted: Vec<(&Candidate, StiffnessChanges)> = candidates
         .iter()
-        .filter_map(|c| Some((c, course(table, kept, c, [inflation, deviation])?)))
+        .filter_map(|c| Some((c, stiffness_changes(table, kept, c, [inflation, deviation])?)))
         .collect();
     let (degrees, left) = table.degrees();
     let own = table.by_reference(|_| false).map_or(0.0, |fit| fit.chi2);
     let apart = kept.iter().filter(|kept| !**kept).count();
-    let explains = |course: &Course| {
-        let excess = (course.chi2 - own / inflation).max(0.0);
+    let explains = |fit: &StiffnessChanges| {
+        let excess = (fit.chi2 - own / inflation).max(0.0);
         chance(excess, degrees.saturating_sub(apart), 1.0, left) >= EXPLAINS
     };
-    let lowest = fitted.iter().map(|(_, course)| course.chi2).fold(f64::INFINITY, f64::min);
-    let weight = |course: &Course| (-0.5 * (course.chi2 - lowest)).exp();
-    let total: f64 = fitted.iter().map(|(_, course)| weight(course)).sum();
-    let mut able: Vec<&(&Candidate, Course)> = fitted.iter().filter(|(_, c)| explains(c)).collect();
+    let lowest = fitted.iter().map(|(_, fit)| fit.chi2).fold(f64::INFINITY, f64::min);
+    let weight = |fit: &StiffnessChanges| (-0.5 * (fit.chi2 - lowest)).exp();
+    let total: f64 = fitted.iter().map(|(_, fit)| weight(fit)).sum();
+    let mut able: Vec<&(&Candidate, StiffnessChanges)> = fitted.iter().filter(|(_, c)| explains(c)).collect();
     able.sort_by(|a, b| a.1.chi2.total_cmp(&b.1.chi2));
-    let best = able.first().filter(|(_, course)| weight(course) / total > NAMED);
+    let best = able.first().filter(|(_, fit)| weight(fit) / total > NAMED);
     let alike = Candidate { name: ALL.to_owned(), shares: vec![1.0; table.modes.len()] };
-    let told = best.map(|(_, course)| &course.changes);
-    let whole = course(table, kept, &alike, [inflation, deviation]).map(|course| course.changes);
-    let changes = told.or(whole.as_ref());
+    let best_changes = best.map(|(_, fit)| &fit.changes);
+    let whole = stiffness_changes(table, kept, &alike, [inflation, deviation]).map(|fit| fit.changes);
+    let changes = best_changes.or(whole.as_ref());
     let reference = |(index, reference): (usize, &jointscope_spectra::Channel)| {
         let (ln, variance) = changes.map_or((0.0, 0.0), |changes| changes[index]);
         let deviation = variance.sqrt();
@@ -135,7 +135,7 @@ fn attributed(drifted: &Drifted, model: &Fixture, explains: bool) -> TestDrift {
             kept: kept[index],
         }
     };
-    // Where one is told there is nothing else to consider.
+    // Where one is found there is nothing else to consider.
     let considered = able.iter().filter(|_| best.is_none());
     TestDrift {
         what: best.map(|(candidate, _)| candidate.name.clone()),
@@ -147,12 +147,12 @@ fn attributed(drifted: &Drifted, model: &Fixture, explains: bool) -> TestDrift {
 }
 
 /// Changes of one stiffness by reference. The shares of a model that is not exact are off by a factor common to all references of a mode, which is fitted beside them.
-fn course(
+fn stiffness_changes(
     table: &Table,
     kept: &[bool],
     candidate: &Candidate,
     [inflation, deviation]: [f64; 2],
-) -> Option<Course> {
+) -> Option<StiffnessChanges> {
     let first = table.constants();
     let errors = first + table.references;
     let mut changes = vec![0.0; table.references];
@@ -182,15 +182,15 @@ fn course(
         let is_kept = kept[reference];
         if is_kept { (0.0, 0.0) } else { (fit.values[at], fit.covariance[at * (unknowns + 1)]) }
     };
-    Some(Course { changes: (0..table.references).map(of).collect(), chi2: fit.chi2 })
+    Some(StiffnessChanges { changes: (0..table.references).map(of).collect(), chi2: fit.chi2 })
 }
 
-/// The stiffnesses of a model with their shares in the modes `told` of a recording: joints, beams, and all of them together.
-fn candidates(model: &Fixture, recorded: &RecordedModes, told: &[usize]) -> Vec<Candidate> {
+/// The stiffnesses of a model with their shares in these modes of a recording: joints, beams, and all of them together.
+fn candidates(model: &Fixture, recorded: &RecordedModes, modes: &[usize]) -> Vec<Candidate> {
     let Some(modelled) = ModelledModes::of(model, recorded) else { return Vec::new() };
     let pairing = Pairing::of(recorded, &modelled);
     let partner = |r: &usize| pairing.pairs.iter().find(|(own, _)| own == r).map(|(_, m)| *m);
-    let Some(partners) = told.iter().map(partner).collect::<Option<Vec<usize>>>() else { return Vec::new() };
+    let Some(partners) = modes.iter().map(partner).collect::<Option<Vec<usize>>>() else { return Vec::new() };
     // Exactly at a pole of the unchanged model its FRFs have no value to set out from.
     let beside = modelled.beside(BESIDE);
     let ln_omega = |places: &[Place], by: f64| -> Option<Vec<f64>> {
