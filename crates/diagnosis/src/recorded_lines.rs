@@ -22,11 +22,11 @@ pub(crate) fn lines_in_use(frfs: &FrfSet) -> Vec<bool> {
     if n <= LONG.0 && n * searched <= LONG.1 {
         return vec![true; n];
     }
-    telling(frfs, KEPT)
+    most_informative(frfs, KEPT)
 }
 
 /// At most so many lines: those about resonances, ever more sparsely with the distance, and evenly spread ones.
-pub(crate) fn telling(frfs: &FrfSet, most: usize) -> Vec<bool> {
+pub(crate) fn most_informative(frfs: &FrfSet, most: usize) -> Vec<bool> {
     let n = frfs.lines().len();
     if n <= most {
         return vec![true; n];

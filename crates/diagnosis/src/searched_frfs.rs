@@ -4,7 +4,7 @@
 //! mode. The rest confirms: what is found is fitted to all of them, judged on all of them, and its uncertainty is by all of them.
 
 use crate::Observation;
-use crate::recorded_lines::{SEARCHED_FRFS, telling};
+use crate::recorded_lines::{SEARCHED_FRFS, most_informative};
 use jointscope_spectra::{Channel, FrfPair};
 
 /// Values from which not all lines are searched, and how many values then are, with so many lines at the least.
@@ -43,7 +43,7 @@ impl Observation {
         if lines * frfs.pairs().len() <= ENOUGH || lines <= most {
             return part;
         }
-        let kept = telling(frfs.frfs(), most);
+        let kept = most_informative(frfs.frfs(), most);
         let hz = frfs.lines().hz();
         let kept: Vec<f64> = hz.iter().zip(kept).filter(|(_, kept)| *kept).map(|(hz, _)| *hz).collect();
         let is_kept = |hz: f64| kept.binary_search_by(|line| line.total_cmp(&hz)).is_ok();

@@ -4,7 +4,7 @@ use super::descent::{Descent, Start};
 use super::fitted_law::{FittedLaw, fitted_laws};
 use super::free_scalars::FreeScalars;
 use super::problem::{Iterate, Parameters, Problem};
-use super::recorded::{Recorded, telling};
+use super::recorded::{Recorded, most_informative};
 use super::sites::sites;
 use super::{BandMisfit, LineEstimate, Location, Site};
 use crate::evidence::excess;
@@ -34,10 +34,10 @@ pub(crate) fn located(fitter: Fitter, base: &Hypothesis, refitted: &Fit) -> Vec<
     if observation.pairs().len() < 2 {
         return Vec::new();
     }
-    let thinned = telling(observation, settings.most_lines);
+    let thinned = most_informative(observation, settings.most_lines);
     let observation = thinned.as_ref().unwrap_or(observation);
     let Ok(fixture) = base.to_fixture() else { return Vec::new() };
-    let fewer = telling(observation, settings.few_lines);
+    let fewer = most_informative(observation, settings.few_lines);
     let (few, whole) = (
         Recorded::of(fitter.on(fewer.as_ref().unwrap_or(observation))),
         Recorded::of(fitter.on(observation)),
@@ -107,12 +107,12 @@ pub(crate) fn measured(fitter: Fitter, repaired: &Fit, index: usize) -> Option<L
     if observation.pairs().len() < 2 {
         return None;
     }
-    let thinned = telling(observation, settings.most_lines);
+    let thinned = most_informative(observation, settings.most_lines);
     let observation = thinned.as_ref().unwrap_or(observation);
     let effect = repaired.hypothesis.effects().into_iter().nth(index)?;
     let without = repaired.hypothesis.without(index);
     let site = Site::of(&without.to_fixture().ok()?, &effect)?;
-    let fewer = telling(observation, settings.few_lines);
+    let fewer = most_informative(observation, settings.few_lines);
     let (few, whole) = (
         Recorded::of(fitter.on(fewer.as_ref().unwrap_or(observation))),
         Recorded::of(fitter.on(observation)),
