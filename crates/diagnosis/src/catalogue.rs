@@ -29,8 +29,8 @@ pub fn catalogue(fixture: &Fixture, observation: &Observation) -> Vec<Candidate>
                 Place::Between(_, other) => body_at(fixture, &Place::Body(other.clone())),
                 _ => None,
             };
-            let at = At { fixture, observation, body, second, joint, dof };
-            let starts = at.starts(kind);
+            let surroundings = Surroundings { fixture, observation, body, second, joint, dof };
+            let starts = surroundings.starts(kind);
             let possible = |values| {
                 let effect = Effect::new(kind, place.clone(), dof, values);
                 fixture.clone().with_physics(vec![effect]).is_ok()
@@ -186,7 +186,7 @@ fn body_at(fixture: &Fixture, place: &Place) -> Option<usize> {
 }
 
 /// What there is at a place, of which starts are multiples.
-struct At<'a> {
+struct Surroundings<'a> {
     fixture: &'a Fixture,
     observation: &'a Observation,
     body: Option<usize>,
@@ -195,7 +195,7 @@ struct At<'a> {
     dof: Option<Dof>,
 }
 
-impl At<'_> {
+impl Surroundings<'_> {
     /// Every combination of the starts of a kind's parameters; what shapes the effect (a frequency, an abscissa) varies more slowly than its size.
     fn starts(&self, kind: EffectKind) -> Vec<Vec<f64>> {
         let spec = kind.spec();
