@@ -158,7 +158,7 @@ impl<'a> Fitter<'a> {
             exact_at_end: whole,
             limit: (whole && limit.objective.is_finite()).then_some(limit),
             valleys: if whole { own.valleys } else { 0 },
-            bent: if whole { own.bent } else { 0.0 },
+            curved_valley: if whole { own.curved_valley } else { 0.0 },
             ..Default::default()
         };
         let Iterate { hypothesis, predicted, linear } = at;

@@ -58,8 +58,8 @@ pub(super) struct Fitted {
 
 /// Step of forward differences by a quantity, in standard deviations: resonances bend within a tenth of one.
 const DIFFERENCE: f64 = 1e-3;
-/// Share of a promised decrease below which a step follows a bent valley: resonances tie the joint to the blocks along one.
-const BENT: f64 = 0.5;
+/// Share of a promised decrease below which a step follows a curved valley: resonances tie the joint to the blocks along one.
+const CURVED_VALLEY: f64 = 0.5;
 /// Steps of a fit at the most.
 const STEPS: usize = 80;
 /// Change of χ² below which a fit has converged: a thousandth of what one standard deviation makes.
@@ -301,7 +301,7 @@ impl<'a> Problem<'a> {
             convergence: Convergence { gain: CONVERGED, share: NEGLIGIBLE, floor },
             reuse: Some(REUSE),
             trust_old: true,
-            bent: BENT,
+            curved_valley: CURVED_VALLEY,
             ..Settings::default()
         };
         let end = descend(self, start, nearby, &settings)?;
