@@ -74,22 +74,7 @@ pub(super) fn poles_by_frf(
     let is_compared =
         |r: &usize| variance(base, *r).is_some() && partners.iter().filter(|of| of[*r].is_some()).count() > 1;
     let compared: Vec<usize> = (0..base.modes.len()).filter(is_compared).collect();
-    let (mut chi2, mut degrees) = (0.0, 0);
-    for &r in &compared {
-        let values: Vec<(f64, f64)> = struck
-            .iter()
-            .zip(&partners)
-            .filter_map(|(struck, of)| {
-                let (modes, own) = (&struck.as_ref()?.modes, of[r]?);
-                Some(((modes.modes[own].pole.omega / base.modes[r].pole.omega).ln(), variance(modes, own)?))
-            })
-            .collect();
-        let weight: f64 = values.iter().map(|(_, variance)| 1.0 / variance).sum();
-        let mean = values.iter().map(|(x, variance)| x / variance).sum::<f64>() / weight;
-        chi2 += values.iter().map(|(x, variance)| (x - mean).powi(2) / variance).sum::<f64>();
-        degrees += values.len() - 1;
-    }
-    if chance(chi2, degrees, 1.0, 0) >= certain {
+    if probability_by_chance(base, &compared, &struck, &partners) >= certain {
         return None;
     }
     let responses = distinct(observation.pairs().iter().map(|pair| &pair.response));
@@ -124,6 +109,31 @@ pub(super) fn poles_by_frf(
         references: references.len(),
     };
     Some(PolesByFrf { modes: base.clone(), table })
+}
+
+/// Probability of natural frequencies of the `compared` modes of `base` that differ as much between references by chance.
+fn probability_by_chance(
+    base: &RecordedModes,
+    compared: &[usize],
+    struck: &[Option<ReferenceModes>],
+    partners: &[Vec<Option<usize>>],
+) -> f64 {
+    let (mut chi2, mut degrees) = (0.0, 0);
+    for &r in compared {
+        let values: Vec<(f64, f64)> = struck
+            .iter()
+            .zip(partners)
+            .filter_map(|(struck, of)| {
+                let (modes, own) = (&struck.as_ref()?.modes, of[r]?);
+                Some(((modes.modes[own].pole.omega / base.modes[r].pole.omega).ln(), variance(modes, own)?))
+            })
+            .collect();
+        let weight: f64 = values.iter().map(|(_, variance)| 1.0 / variance).sum();
+        let mean = values.iter().map(|(x, variance)| x / variance).sum::<f64>() / weight;
+        chi2 += values.iter().map(|(x, variance)| (x - mean).powi(2) / variance).sum::<f64>();
+        degrees += values.len() - 1;
+    }
+    chance(chi2, degrees, 1.0, 0)
 }
 
 /// Whether two fits' modes can be the same mode of a structure.
