@@ -28,6 +28,7 @@ mod drift;
 mod effects;
 pub mod element;
 mod estimate;
+mod estimation;
 mod finding;
 pub mod format;
 mod hits;
