@@ -6,8 +6,7 @@
 use crate::PlanError;
 use crate::candidates;
 use crate::expected_noise::ExpectedNoise;
-use crate::names::NameNow;
-use crate::names::{Name, Names, Remaining, carried};
+use crate::names::{Name, NameNow, Names, Remaining, carried};
 use crate::plan::PlanOptions;
 use crate::scene::Scene;
 use jointscope_diagnosis::{Hypothesis, Linearisation, Observation, with_idle_points_exact};
