@@ -24,6 +24,7 @@ mod tables;
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 
 use crate::refusal::Refusal;
+use crate::said::Said;
 
 /// Stiffness and damping of a joint from hammer tests on the blocks it connects.
 #[derive(Debug, Parser)]
@@ -36,20 +37,6 @@ pub(crate) struct Program {
 /// What scripts have to know.
 const STATUS: &str = "Answers go to standard output, notices and progress to standard error.
 Exit status: 0 done; 1 done in part (of many cases some have no answer, or standard output took no more); 2 bad usage or bad input: one sentence on standard error, nothing written.";
-
-/// What a command has to say when it is done.
-pub(crate) struct Said {
-    /// For standard output, without the last line end.
-    pub text: String,
-    /// Whether all is done that was asked.
-    pub whole: bool,
-}
-
-impl From<String> for Said {
-    fn from(text: String) -> Self {
-        Said { text, whole: true }
-    }
-}
 
 #[derive(Debug, Subcommand)]
 enum Command {
@@ -131,11 +118,11 @@ impl Program {
             Command::Modes(arguments) => modes::run(arguments),
             Command::Show(arguments) => show::run(arguments),
             Command::Simulate(arguments) => simulate::run(arguments),
-            Command::Plan(arguments) => plan::run(arguments),
+            Command::Plan(arguments) => plan::run(arguments, Program::diagnose_arguments),
             Command::Prove(arguments) => prove::run(arguments),
             Command::Tables(arguments) => tables::run(arguments),
-            Command::Completions(arguments) => completions::run(arguments),
-            Command::Man(arguments) => man::run(arguments),
+            Command::Completions(arguments) => completions::run(arguments, Program::arguments()),
+            Command::Man(arguments) => man::run(arguments, Program::arguments()),
         };
         said.map(Said::from)
     }

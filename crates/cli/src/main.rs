@@ -15,14 +15,16 @@ mod progress;
 mod recording;
 mod refusal;
 mod replacing;
+mod said;
 mod values;
 
 use std::io::{ErrorKind, Write};
 use std::process::ExitCode;
 
-use commands::{Program, Said};
+use commands::Program;
 use progress::{tell, visible};
 use refusal::Refusal;
+use said::Said;
 
 fn main() -> ExitCode {
     let program = match Program::read() {

@@ -4,7 +4,7 @@
 //! uncertainty. Joints of which the same law is the most probable are taken to follow one law, whichever it is: its probability is then the product of those that each joint gives
 //! it, and what it changes in one joint goes with what it changes in the others: Σ pᵢ δᵢδᵢᵀ over the numbers of all of them. It cancels in their ratio but for what the joints differ in.
 
-use crate::{Decomposed, FittedJoint};
+use crate::{Decomposed, FiledJoint};
 
 /// Joints that follow one law.
 #[derive(Debug, Clone, PartialEq)]
@@ -29,7 +29,7 @@ impl CommonLaw {
     }
 
     fn shared(joints: &[Decomposed], all: Vec<usize>) -> Option<Self> {
-        let fits: Vec<&FittedJoint> =
+        let fits: Vec<&FiledJoint> =
             all.iter().map(|&joint| joints[joint].fitted.as_ref()).collect::<Option<_>>()?;
         let (first, others) = fits.split_first()?;
         if others.is_empty() {
@@ -37,7 +37,7 @@ impl CommonLaw {
         }
         let law = |name: &str, probability: f64| {
             let of =
-                |fit: &&FittedJoint| fit.laws.iter().find(|law| law.law == name).map(|law| law.probability);
+                |fit: &&FiledJoint| fit.laws.iter().find(|law| law.law == name).map(|law| law.probability);
             let rest = others.iter().map(of).product::<Option<f64>>()?;
             let departures = fits.iter().map(|fit| fit.departure(name)).collect::<Option<Vec<_>>>()?;
             Some((probability * rest, departures))

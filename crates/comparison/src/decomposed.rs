@@ -1,4 +1,4 @@
-use crate::FittedJoint;
+use crate::FiledJoint;
 use crate::stiffness_file::{EstimateEntry, LineEntry, Matrix, MatrixPair, Nominal, read};
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
@@ -88,7 +88,7 @@ pub struct Decomposed {
     /// Why there is none.
     pub failed: Option<String>,
     /// The joint with the fixture's quantities moving, where the file has it.
-    pub fitted: Option<FittedJoint>,
+    pub fitted: Option<FiledJoint>,
     /// Why it has none, where the file says it.
     pub not_fitted: Option<String>,
     /// SHA-256 of the files of its recording, where the file says what it was made from.
@@ -158,7 +158,7 @@ impl Decomposed {
 }
 
 /// The joint's name, and the joint itself where the file has it: `joint` is a name alone in earlier files, and has `failed` where there is no fit.
-fn joint(file: &Value) -> Option<(String, Option<FittedJoint>)> {
+fn joint(file: &Value) -> Option<(String, Option<FiledJoint>)> {
     let joint = &file["joint"];
     if let Some(name) = joint.as_str() {
         return Some((name.to_owned(), None));

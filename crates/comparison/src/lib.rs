@@ -25,10 +25,12 @@
 mod agreement;
 mod caution;
 mod common_law;
+mod compared;
 mod comparison;
 mod decomposed;
-mod fitted;
+mod filed;
 mod normal;
+mod number;
 mod pair;
 mod ranking;
 mod specimens;
@@ -36,11 +38,11 @@ mod stiffness_file;
 mod together;
 
 pub use caution::Caution;
-pub use comparison::{
-    Compared, Comparison, ComparisonError, ComparisonOptions, ELEMENTS, ElementRanking, Kind, Number,
-};
+pub use compared::Compared;
+pub use comparison::{Comparison, ComparisonError, ComparisonOptions, ElementRanking};
 pub use decomposed::{Decomposed, DecomposedError, End, Ends, Estimate, Judged, Line};
-pub use fitted::{FittedJoint, JointLikelihood, JointTests, StatedQuantity};
+pub use filed::{FiledJoint, FiledLikelihood, FiledTests, StatedQuantity};
+pub use number::{ELEMENTS, Kind, Number};
 pub use pair::{Equality, Figure, Pair, PairedNumber, Ratio};
 pub use ranking::Ranking;
 pub use specimens::{Scatter, Specimens};

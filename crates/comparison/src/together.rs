@@ -15,7 +15,7 @@
 //! physics forbids.
 
 use crate::common_law::CommonLaw;
-use crate::{Decomposed, Estimate, FittedJoint, Number, StatedQuantity};
+use crate::{Decomposed, Estimate, FiledJoint, Number, StatedQuantity};
 use jointscope_inference::NormalEquations;
 use serde::Serialize;
 use statrs::function::gamma::gamma_ur;
@@ -83,7 +83,7 @@ pub enum WhyApart {
 /// How a test's fit enters: where its numbers are and which coordinate each of its quantities is.
 struct Part<'a> {
     joint: usize,
-    fit: &'a FittedJoint,
+    fit: &'a FiledJoint,
     /// By quantity: the body's first test with the same statement, or the joint itself for what is its own.
     owners: Vec<usize>,
 }
@@ -182,7 +182,7 @@ impl Together {
     }
 
     /// A fit as its file states it.
-    fn put_alone(&mut self, joint: usize, fit: &FittedJoint, numbers: &[Number]) {
+    fn put_alone(&mut self, joint: usize, fit: &FiledJoint, numbers: &[Number]) {
         let six = fit.six();
         for (a, number) in numbers.iter().enumerate() {
             self.mean[joint * self.count + a] = six[number.slot()];
@@ -297,7 +297,7 @@ fn strain(departures: impl Iterator<Item = (f64, f64)>) -> f64 {
     if !(expected > 0.0 && ratio > 1.0) || by_chance(ratio) { 1.0 } else { ratio }
 }
 
-impl FittedJoint {
+impl FiledJoint {
     /// What of a covariance is not that of noise and quantities.
     fn added(&self, m: usize, n: usize) -> f64 {
         self.model_error.covariance[m][n] + self.law_covariance[m][n]
@@ -306,9 +306,9 @@ impl FittedJoint {
 
 /// Whether two fits have a body in common: every quantity of it that one of them moved is stated alike by both, and at least one was moved by both. What one fixture takes as exact and the other
 /// does not is not stated alike.
-fn is_same(a: &FittedJoint, b: &FittedJoint, body: &str) -> bool {
+fn is_same(a: &FiledJoint, b: &FiledJoint, body: &str) -> bool {
     let is_stated_by =
-        |other: &FittedJoint, quantity: &StatedQuantity| other.statement(&quantity.path) == Some(quantity);
+        |other: &FiledJoint, quantity: &StatedQuantity| other.statement(&quantity.path) == Some(quantity);
     let moved = |path: &str| b.quantities.iter().any(|other| other.path == path);
     a.of_body(body).all(|quantity| is_stated_by(b, quantity))
         && b.of_body(body).all(|quantity| is_stated_by(a, quantity))
@@ -317,7 +317,7 @@ fn is_same(a: &FittedJoint, b: &FittedJoint, body: &str) -> bool {
 
 /// Paths of bodies' quantities that one fixture states and another one with this body otherwise or not at all.
 fn differing(joints: &[Decomposed]) -> Vec<String> {
-    let fits: Vec<&FittedJoint> = joints.iter().filter_map(|joint| joint.fitted.as_ref()).collect();
+    let fits: Vec<&FiledJoint> = joints.iter().filter_map(|joint| joint.fitted.as_ref()).collect();
     let differs = |quantity: &StatedQuantity, body: &str| {
         let others = fits.iter().filter(|fit| fit.of_body(body).next().is_some());
         others.into_iter().any(|fit| fit.statement(&quantity.path) != Some(quantity))

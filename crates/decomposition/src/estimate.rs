@@ -1,76 +1,7 @@
 use jointscope_inference::Z95;
 use jointscope_linalg::RealMatrix2;
-use serde::Serialize;
 
-use crate::{Analysis, MatrixAverage, Relation};
-
-/// An element of the joint's 2×2 matrices.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-pub struct Element {
-    /// 0 for the force, 1 for the moment.
-    pub row: usize,
-    /// 0 for the displacement, 1 for the rotation.
-    pub column: usize,
-}
-
-const ELEMENTS: [Element; 4] = [
-    Element { row: 0, column: 0 },
-    Element { row: 0, column: 1 },
-    Element { row: 1, column: 0 },
-    Element { row: 1, column: 1 },
-];
-
-impl Element {
-    /// The elements that mean anything: all four, or (1,1) where the blocks do not rotate.
-    pub fn all(scalar: bool) -> &'static [Element] {
-        if scalar { &ELEMENTS[..1] } else { &ELEMENTS }
-    }
-
-    /// The elements of a symmetric matrix: 11, 12, 22.
-    pub fn distinct(scalar: bool) -> impl Iterator<Item = Element> {
-        Self::all(scalar).iter().copied().filter(|e| e.column >= e.row)
-    }
-
-    /// Its value in a matrix.
-    pub fn of(self, matrix: &RealMatrix2) -> f64 {
-        matrix.at(self.row, self.column)
-    }
-}
-
-/// Which of the joint's two matrices is spoken of.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Part {
-    /// K, N/m and so on.
-    Stiffness,
-    /// C, N·s/m and so on.
-    Damping,
-}
-
-impl Part {
-    /// Both.
-    pub const ALL: [Part; 2] = [Part::Stiffness, Part::Damping];
-
-    /// This one of a pair of stiffness and damping.
-    pub fn of<T>(self, (stiffness, damping): (T, T)) -> T {
-        match self {
-            Part::Stiffness => stiffness,
-            Part::Damping => damping,
-        }
-    }
-}
-
-/// Where an estimate comes from.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Method {
-    /// The mean over the band, eq (35) and (42).
-    PlainMean,
-    /// The mean weighted by the noise of each line.
-    WeightedMean,
-    /// The fit of a constant joint to the FRFs across it.
-    MaximumLikelihood,
-    /// The fit of a constant joint to all FRFs, the fixture moving within its tolerances.
-    AllFrfs,
-}
+use crate::{Analysis, Element, MatrixAverage, Method, Part, Relation};
 
 /// K and C with standard deviations from noise and from the fixture's tolerances. The fit's noise holds also what it costs that
 /// a constant joint does not explain the FRFs.

@@ -10,19 +10,23 @@ mod admissible;
 mod found;
 mod law;
 mod laws;
+mod length;
 mod likelihood;
 mod outcome;
+mod priors;
 mod problem;
 mod quantities;
 mod recorded;
+mod setup;
 mod several;
 mod uncertainty;
 mod uncoupled;
 
 pub use admissible::{Admissible, JointTests};
-pub use found::{FittedFrfs, FittedLength, FittedQuantity, Followed, JointFit, UnmovedQuantity};
+pub use found::{FittedFrfs, FittedQuantity, Followed, JointFit, UnmovedQuantity};
 pub use law::LawKind;
 pub use laws::LawFit;
+pub use length::FittedLength;
 pub use likelihood::JointLikelihood;
 pub use several::{FoundJoint, JointsCovariance, JointsFit, SeveralError, fit_joints};
 
@@ -32,10 +36,11 @@ use jointscope_averaging::Band;
 use jointscope_linalg::{Matrix2, RealMatrix2};
 use jointscope_spectra::FrfSet;
 use jointscope_tolerances::Tolerance;
-use law::{Dynamics, Form};
+use law::{Dynamics, coordinates};
 use outcome::{Inflated, Outcome};
-use problem::{Columns, Fitted, Problem, Setup, Test, lower};
+use problem::{Columns, Fitted, Problem, Test, lower};
 use recorded::Recorded;
+use setup::Setup;
 
 /// What a fit of the joint is asked for.
 #[derive(Debug, Clone, Copy, Default)]
@@ -130,29 +135,6 @@ fn units_of(k: RealMatrix2, scalar: bool) -> RealMatrix2 {
     let root = |i: usize| k.at(i, i).abs().max(f64::MIN_POSITIVE).sqrt();
     let unit = |i: usize, j: usize| if scalar && i + j > 0 { 1.0 } else { root(i) * root(j) };
     Matrix2::new(unit(0, 0), unit(0, 1), unit(1, 0), unit(1, 1))
-}
-
-/// Coordinates of K and of an imaginary stiffness D.
-fn coordinates(law: &Dynamics, k: RealMatrix2, d: RealMatrix2) -> Vec<f64> {
-    let of = |form: Form, m: RealMatrix2| {
-        let e = |i: usize, j: usize| m.at(i, j) / law.unit.at(i, j);
-        match form {
-            Form::Scalar => vec![e(0, 0)],
-            Form::Symmetric => vec![e(0, 0), 0.5 * (e(0, 1) + e(1, 0)), e(1, 1)],
-            Form::Free => vec![e(0, 0), e(0, 1), e(1, 1), e(1, 0)],
-            Form::RankOne => rank_one(e(0, 0), 0.5 * (e(0, 1) + e(1, 0)), e(1, 1)),
-            Form::Zero => Vec::new(),
-        }
-    };
-    [of(law.stiffness, k), of(law.damping, d)].concat()
-}
-
-/// v of the nearest v vᵀ to [[a, b], [b, d]].
-fn rank_one(a: f64, b: f64, d: f64) -> Vec<f64> {
-    let (mean, half) = (0.5 * (a + d), 0.5 * (a - d));
-    let largest = (mean + half.hypot(b)).max(0.0).sqrt();
-    let angle = 0.5 * b.atan2(half);
-    vec![largest * angle.cos(), largest * angle.sin()]
 }
 
 const NO_START: DecompositionError = DecompositionError::NoFit("no start gives finite FRFs");

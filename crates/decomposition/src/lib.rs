@@ -39,21 +39,29 @@
 mod analysis;
 mod averages;
 mod by_law;
+mod element;
 mod estimate;
+mod from_frfs;
 mod interfaces;
+mod joint_ends;
 mod joint_fit;
 mod judgement;
+mod judging;
 mod likelihood;
+mod method;
 mod plan;
 mod relation;
 mod sides;
 mod spectrum;
 mod tolerances;
 
-pub use analysis::{Analysis, AnalysisOptions, JointEnd, JointEnds};
+pub use analysis::Analysis;
 pub use averages::{Averages, MatrixAverage};
-pub use estimate::{Element, Estimate, Figure, Method, Part};
+pub use element::{Element, Part};
+pub use estimate::{Estimate, Figure};
+pub use from_frfs::AnalysisOptions;
 pub use interfaces::{Compliance, InterfaceStiffness, Interfaces, interfaces};
+pub use joint_ends::{JointEnd, JointEnds};
 pub use joint_fit::{
     Admissible, FittedFrfs, FittedLength, FittedQuantity, Followed, FoundJoint, JointFit, JointFitOptions,
     JointLikelihood, JointTests, JointsCovariance, JointsFit, LawFit, LawKind, SeveralError, UnmovedQuantity,
@@ -61,12 +69,13 @@ pub use joint_fit::{
 };
 pub use judgement::{Contradiction, Judgement, Use};
 pub use likelihood::{LikelihoodFit, maximum_likelihood};
+pub use method::Method;
 pub use plan::{MeasurementPlan, PlanError};
 pub use relation::{Compliances, Relation};
 pub use sides::{Sides, SidesError};
 pub use spectrum::{JointLine, JointSpectrum, decompose};
-pub(crate) use tolerances::tolerance_shares;
-pub use tolerances::{Decomposed, ToleranceShare, ToleranceShares};
+pub use tolerances::ToleranceShare;
+pub(crate) use tolerances::{NominalResult, ToleranceShares, tolerance_shares};
 
 /// Why a joint cannot be decomposed.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

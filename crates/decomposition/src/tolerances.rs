@@ -30,16 +30,16 @@ pub struct ToleranceShare {
 
 /// The shares of all quantities.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct ToleranceShares {
+pub(crate) struct ToleranceShares {
     /// One by quantity.
     pub shares: Vec<ToleranceShare>,
     /// Paths of quantities whose share could not be found: uncertainties leave them out.
     pub lost: Vec<String>,
 }
 
-/// A joint found, the derivatives of which are wanted.
+/// A joint as found with the fixture at its stated values, from where tolerances move it.
 #[derive(Debug, Clone, Copy)]
-pub struct Decomposed<'a> {
+pub(crate) struct NominalResult<'a> {
     /// The FRFs with the variances that were used.
     pub frfs: &'a FrfSet,
     /// The fixture taken apart.
@@ -61,7 +61,10 @@ const SMALL: f64 = 1e-3;
 ///
 /// # Errors
 /// A recording that lacks FRFs.
-pub(crate) fn tolerance_shares(of: &Decomposed, exact: bool) -> Result<ToleranceShares, DecompositionError> {
+pub(crate) fn tolerance_shares(
+    of: &NominalResult,
+    exact: bool,
+) -> Result<ToleranceShares, DecompositionError> {
     let fixture = of.sides.fixture();
     let quantities = if exact { fixture.quantities_exact() } else { fixture.quantities() };
     let plan = MeasurementPlan::of(of.frfs, of.sides)?;
@@ -103,7 +106,7 @@ type Matrices = (RealMatrix2, RealMatrix2);
 
 /// What the fixture as stated makes of the recording.
 struct Stated<'a> {
-    of: &'a Decomposed<'a>,
+    of: &'a NominalResult<'a>,
     plan: MeasurementPlan,
     mean: Matrices,
     optimum: Option<Optimum<'a>>,
@@ -137,7 +140,7 @@ impl Stated<'_> {
 }
 
 /// Plain means of K and C over the lines that the averages were taken over.
-fn mean(of: &Decomposed, sides: &Sides, h41: &[ComplexMatrix2], compliances: &Compliances) -> Matrices {
+fn mean(of: &NominalResult, sides: &Sides, h41: &[ComplexMatrix2], compliances: &Compliances) -> Matrices {
     let spectrum = of.spectrum;
     let lines = spectrum.solved.iter().filter(|line| of.band.contains(line.frequency));
     let (mut k, mut c, mut count) = (RealMatrix2::zero(), RealMatrix2::zero(), 0.0);

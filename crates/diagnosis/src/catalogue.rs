@@ -1,108 +1,43 @@
 //! Every effect at every legal place of a fixture, with starts from which a fit may set out.
 
+use crate::bodies::{extent, inertia_of, mass_of, turns};
+use crate::candidate::{Candidate, candidate};
 use crate::departures::departed;
-use crate::freedom::{extent, inertia_of, mass_of, turns};
 use crate::together::inverts;
 use crate::{Hypothesis, Observation};
 use jointscope_fixture::{
-    BodyKind, Dof, Effect, EffectKind, EffectSpec, Entry, Fixture, Joint, JointLaw, Measure, Motion,
-    NamedQuantity, ParameterRange, Place, PlaceKind, QuantityKey, QuantityOwner, SizeLaw, Starts,
+    BodyKind, Dof, Effect, EffectKind, EffectSpec, Entry, Fixture, Joint, JointLaw, Measure, NamedQuantity,
+    Place, PlaceKind, QuantityKey, QuantityOwner, Starts,
 };
 use jointscope_lumped::nominal_stiffness;
 use std::f64::consts::TAU;
 
-/// One kind of effect at one place (and dof): a name that a diagnosis can give, with starts for its parameters.
-#[derive(Debug, Clone)]
-pub struct Candidate {
-    /// The kind.
-    pub kind: EffectKind,
-    /// The place.
-    pub place: Place,
-    /// The degree of freedom, for kinds that have one.
-    pub dof: Option<Dof>,
-    /// Parameters to start from: sizes, signs, abscissae, frequencies.
-    pub starts: Vec<Vec<f64>>,
-    /// Parameters of effects so small that what they do is proportional to their size, one for each abscissa, frequency or time.
-    pub directions: Vec<Vec<f64>>,
-}
-
-impl Candidate {
-    /// The effect at start `index`.
-    pub fn effect(&self, index: usize) -> Effect {
-        Effect::new(self.kind, self.place.clone(), self.dof, &self.starts[index])
-    }
-
-    /// The effect that is `times` as large as direction `index`; `None` where there is none of that sign.
-    ///
-    /// Large means what it does to the FRFs to first order: a mass, a deviation, a compliance.
-    pub(crate) fn scaled(&self, index: usize, times: f64) -> Option<Effect> {
-        let effect = Effect::new(self.kind, self.place.clone(), self.dof, &self.directions[index]);
-        scaled(&effect, times)
-    }
-
-    /// Whether `effect` goes by this name.
-    pub fn names(&self, effect: &Effect) -> bool {
-        self.kind == effect.kind && self.place == effect.place && self.dof == effect.dof
-    }
-}
-
-/// The effect made `times` as large in what it does to the FRFs to first order; `None` where none of its kind has that sign.
-pub(crate) fn scaled(effect: &Effect, times: f64) -> Option<Effect> {
-    let spec = effect.kind.spec();
-    let (size, leading) = (spec.size, &spec.parameters[spec.size.parameter]);
-    let either_sign = size.law == SizeLaw::FromOne || matches!(leading.motion, Motion::Signed(_));
-    if !either_sign && times <= 0.0 {
-        return None;
-    }
-    let before = effect.value(size.parameter);
-    let mut after = size.law.scaled(before, times);
-    if leading.range == ParameterRange::Positive && either_sign {
-        // A factor must stay positive: half or double is as far as a line leads.
-        after = after.clamp(0.5, 2.0);
-    }
-    let mut other = effect.clone();
-    other.parameters[size.parameter].value = after;
-    if let Some(dashpot) = size.dashpot {
-        other.parameters[dashpot].value *= after / before;
-    }
-    Some(other)
-}
-
-fn candidate(kind: EffectKind, place: Place, dof: Option<Dof>, starts: Vec<Vec<f64>>) -> Candidate {
-    // Of starts that differ in size alone the first serves as direction, made small.
-    let mut directions: Vec<Vec<f64>> = Vec::new();
-    for start in &starts {
-        let small = made_small(kind, start, &starts);
-        if !directions.iter().any(|d| d == &small) {
-            directions.push(small);
-        }
-    }
-    Candidate { kind, place, dof, starts, directions }
-}
-
-/// The start's shape (abscissa, frequency, time) with a size that depends on its kind alone, too small to bend anything.
-fn made_small(kind: EffectKind, start: &[f64], all: &[Vec<f64>]) -> Vec<f64> {
-    let size = kind.spec().size;
-    let largest = all.iter().map(|start| start[size.parameter]).fold(0.0, f64::max);
-    let mut small = start.to_vec();
-    small[size.parameter] = match size.law {
-        SizeLaw::Value | SizeLaw::FromStated => size.tiny,
-        SizeLaw::FromOne => 1.0 + size.tiny,
-        SizeLaw::Inverse | SizeLaw::InverseSquare => size.tiny * largest,
-    };
-    if let Some(dashpot) = size.dashpot {
-        small[dashpot] = 0.0;
-    }
-    small
-}
-
 /// All linear effects that make sense at the fixture's places and the recording's channels.
 pub fn catalogue(fixture: &Fixture, observation: &Observation) -> Vec<Candidate> {
-    let mut all = Vec::new();
-    let mut add = |kind: EffectKind, place: Place, joint: Option<&Joint>| {
-        let body = body_at(fixture, &place);
+    let mut catalogue = Catalogue { fixture, observation, all: Vec::new() };
+    catalogue.list_structure();
+    catalogue.list_measuring_chain();
+    catalogue.all
+}
+
+/// The kinds of which something holds.
+fn kinds(of: fn(&EffectSpec) -> bool) -> impl Iterator<Item = EffectKind> {
+    EffectKind::ALL.into_iter().filter(move |kind| of(kind.spec()))
+}
+
+/// Candidates as they are listed.
+struct Catalogue<'a> {
+    fixture: &'a Fixture,
+    observation: &'a Observation,
+    all: Vec<Candidate>,
+}
+
+impl Catalogue<'_> {
+    /// Lists a kind at a place, in every degree of freedom that it can have there, where it has starts and is possible.
+    fn add(&mut self, kind: EffectKind, place: Place, joint: Option<&Joint>) {
+        let body = body_at(self.fixture, &place);
         // What holds a whole body against rotation: of a beam there is no such thing.
-        let whole = body.is_some_and(|body| matches!(fixture.bodies()[body].kind, BodyKind::Rigid(_)));
+        let whole = body.is_some_and(|body| matches!(self.fixture.bodies()[body].kind, BodyKind::Rigid(_)));
         let dofs: &[Option<Dof>] = match (kind.spec().has_dof, kind.spec().may_turn && whole) {
             (true, _) => &[Some(Dof::Translation), Some(Dof::Rotation)],
             (false, true) => &[None, Some(Dof::Rotation)],
@@ -110,78 +45,95 @@ pub fn catalogue(fixture: &Fixture, observation: &Observation) -> Vec<Candidate>
         };
         for &dof in dofs {
             let second = match &place {
-                Place::Between(_, other) => body_at(fixture, &Place::Body(other.clone())),
+                Place::Between(_, other) => body_at(self.fixture, &Place::Body(other.clone())),
                 _ => None,
             };
-            let at = At { fixture, observation, body, second, joint, dof };
-            let starts = at.starts(kind);
+            let surroundings = Surroundings {
+                fixture: self.fixture,
+                observation: self.observation,
+                body,
+                second,
+                joint,
+                dof,
+            };
+            let starts = surroundings.starts(kind);
             let possible = |values| {
                 let effect = Effect::new(kind, place.clone(), dof, values);
-                fixture.clone().with_physics(vec![effect]).is_ok()
+                self.fixture.clone().with_physics(vec![effect]).is_ok()
             };
             if starts.first().is_some_and(|values| possible(values)) {
-                all.push(candidate(kind, place.clone(), dof, starts));
-            }
-        }
-    };
-    let kinds = |of: fn(&EffectSpec) -> bool| EffectKind::ALL.into_iter().filter(move |kind| of(kind.spec()));
-    use PlaceKind::{All, Beam, Body, Channel, JointOrBeamBody, Point, ResponseChannel};
-    for body in fixture.bodies() {
-        for kind in kinds(|spec| matches!(spec.place, Body | JointOrBeamBody | Beam)) {
-            add(kind, Place::Body(body.name.clone()), None);
-        }
-    }
-    for joint in fixture.joints() {
-        let of_joints = |spec: &EffectSpec| {
-            matches!(spec.place, PlaceKind::Joint | JointOrBeamBody | Beam) || spec.entry == Entry::InSeries
-        };
-        for kind in kinds(of_joints) {
-            if kind.spec().place != Point {
-                add(kind, Place::Joint(joint.name.clone()), Some(joint));
-                continue;
-            }
-            for point in [joint.from, joint.to] {
-                add(kind, Place::Point(fixture.points()[point].name.clone()), Some(joint));
+                self.all.push(candidate(kind, place.clone(), dof, starts));
             }
         }
     }
-    for (index, one) in fixture.bodies().iter().enumerate() {
-        for other in &fixture.bodies()[index + 1..] {
-            kinds(|spec| spec.place == PlaceKind::TwoBodies)
-                .for_each(|kind| add(kind, Place::Between(one.name.clone(), other.name.clone()), None));
+
+    /// What bodies, joints and pairs of bodies can have.
+    fn list_structure(&mut self) {
+        use PlaceKind::{Beam, Body, JointOrBeamBody, Point};
+        for body in self.fixture.bodies() {
+            for kind in kinds(|spec| matches!(spec.place, Body | JointOrBeamBody | Beam)) {
+                self.add(kind, Place::Body(body.name.clone()), None);
+            }
+        }
+        for joint in self.fixture.joints() {
+            let of_joints = |spec: &EffectSpec| {
+                matches!(spec.place, PlaceKind::Joint | JointOrBeamBody | Beam)
+                    || spec.entry == Entry::InSeries
+            };
+            for kind in kinds(of_joints) {
+                if kind.spec().place != Point {
+                    self.add(kind, Place::Joint(joint.name.clone()), Some(joint));
+                    continue;
+                }
+                for point in [joint.from, joint.to] {
+                    self.add(kind, Place::Point(self.fixture.points()[point].name.clone()), Some(joint));
+                }
+            }
+        }
+        for (index, one) in self.fixture.bodies().iter().enumerate() {
+            for other in &self.fixture.bodies()[index + 1..] {
+                kinds(|spec| spec.place == PlaceKind::TwoBodies).for_each(|kind| {
+                    self.add(kind, Place::Between(one.name.clone(), other.name.clone()), None)
+                });
+            }
         }
     }
-    let pairs = observation.pairs();
-    let responses = sorted(pairs.iter().map(|pair| pair.response.to_string()));
-    let references = sorted(pairs.iter().map(|pair| pair.reference.to_string()));
-    // With one reference only, its gain is that of all responses together: still a name of its own. With several, one hammer struck them all.
-    let force = (references.len() > 1).then_some(Place::Force);
-    let channels = responses.iter().cloned().map(Place::Response);
-    for channel in channels.chain(references.into_iter().map(Place::Reference)).chain(force) {
-        kinds(|spec| spec.place == Channel).for_each(|kind| add(kind, channel.clone(), None));
-    }
-    // A filter of all responses alike, the one sensor's or the analyser's; a gain or a delay of all of them is one of the force.
-    if responses.len() > 1 {
-        let filters = kinds(|spec| spec.place == Channel).filter(|kind| !inverts(*kind));
-        filters.for_each(|kind| add(kind, Place::Responses, None));
-    }
-    // Records that are taken one by one may each have a gain of its own, where the fixture says so.
-    for effect in fixture.channels() {
-        if matches!(effect.place, Place::Record(_)) {
-            add(effect.kind, effect.place.clone(), None);
+
+    /// What channels, records and the test as a whole can have.
+    fn list_measuring_chain(&mut self) {
+        use PlaceKind::{All, Channel, ResponseChannel};
+        let pairs = self.observation.pairs();
+        let responses = sorted(pairs.iter().map(|pair| pair.response.to_string()));
+        let references = sorted(pairs.iter().map(|pair| pair.reference.to_string()));
+        // With one reference only, its gain is that of all responses together: still a name of its own. With several, one hammer struck them all.
+        let force = (references.len() > 1).then_some(Place::Force);
+        let channels = responses.iter().cloned().map(Place::Response);
+        for channel in channels.chain(references.into_iter().map(Place::Reference)).chain(force) {
+            kinds(|spec| spec.place == Channel).for_each(|kind| self.add(kind, channel.clone(), None));
         }
+        // A filter of all responses alike, the one sensor's or the analyser's; a gain or a delay of all of them is one of the force.
+        if responses.len() > 1 {
+            let filters = kinds(|spec| spec.place == Channel).filter(|kind| !inverts(*kind));
+            filters.for_each(|kind| self.add(kind, Place::Responses, None));
+        }
+        // Records that are taken one by one may each have a gain of its own, where the fixture says so.
+        for effect in self.fixture.channels() {
+            if matches!(effect.place, Place::Record(_)) {
+                self.add(effect.kind, effect.place.clone(), None);
+            }
+        }
+        let points =
+            pairs.iter().flat_map(|pair| [pair.response.point.clone(), pair.reference.point.clone()]);
+        for point in sorted(points) {
+            kinds(|spec| spec.entry == Entry::Offset)
+                .for_each(|kind| self.add(kind, Place::Point(point.clone()), None));
+        }
+        for response in responses {
+            let place = || Place::Response(response.clone());
+            kinds(|spec| spec.place == ResponseChannel).for_each(|kind| self.add(kind, place(), None));
+        }
+        kinds(|spec| spec.place == All).for_each(|kind| self.add(kind, Place::All, None));
     }
-    let points = pairs.iter().flat_map(|pair| [pair.response.point.clone(), pair.reference.point.clone()]);
-    for point in sorted(points) {
-        kinds(|spec| spec.entry == Entry::Offset)
-            .for_each(|kind| add(kind, Place::Point(point.clone()), None));
-    }
-    for response in responses {
-        let place = || Place::Response(response.clone());
-        kinds(|spec| spec.place == ResponseChannel).for_each(|kind| add(kind, place(), None));
-    }
-    kinds(|spec| spec.place == All).for_each(|kind| add(kind, Place::All, None));
-    all
 }
 
 /// Departures from which a search for a wrong quantity sets out, as multiples of that which the refit made: what else it bent was bent in its stead.
@@ -273,7 +225,7 @@ fn body_at(fixture: &Fixture, place: &Place) -> Option<usize> {
 const MODULUS_OVER_DENSITY: f64 = 2.55e7;
 
 /// What there is at a place, of which starts are multiples.
-struct At<'a> {
+struct Surroundings<'a> {
     fixture: &'a Fixture,
     observation: &'a Observation,
     body: Option<usize>,
@@ -282,7 +234,7 @@ struct At<'a> {
     dof: Option<Dof>,
 }
 
-impl At<'_> {
+impl Surroundings<'_> {
     /// Every combination of the starts of a kind's parameters; what shapes the effect (a frequency, an abscissa) varies more slowly than its size.
     fn starts(&self, kind: EffectKind) -> Vec<Vec<f64>> {
         let spec = kind.spec();

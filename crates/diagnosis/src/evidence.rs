@@ -60,3 +60,14 @@ pub(crate) fn nothing_can_be_stated(fitter: &Fitter, best: &Fit, candidates: usi
 pub(crate) fn upper_tail(z: f64) -> f64 {
     Normal::standard().sf(z)
 }
+
+/// Whether a fit leaves no more than noise, its quantities no farther than chance; `strictly` not a tenth of the noise more.
+pub(crate) fn explains(fitter: &Fitter, fit: &Fit, strictly: bool) -> bool {
+    let observation = fitter.observation;
+    let chi2_per_dof = fit.chi2_per_dof(observation);
+    let fits = match strictly && !observation.has_scatter_for_noise() {
+        true => excess(chi2_per_dof, observation.degrees(), 0.5 * observation.noise_uncertainty()) < 2.0,
+        false => chi2_per_dof < explained(fitter.observation, fitter.settings),
+    };
+    fits && deviates_by_chance(fitter, &fit.hypothesis)
+}

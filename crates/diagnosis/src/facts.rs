@@ -131,7 +131,7 @@ impl Diagnosis {
 
     /// The quantity that the refit without effects took farthest from what is stated, and by how many standard deviations, where that is
     /// beyond belief.
-    pub fn bent(&self) -> Option<(&str, f64)> {
+    pub fn farthest_quantity(&self) -> Option<(&str, f64)> {
         farthest(&self.stated[0]).filter(|(_, deviations)| *deviations > DEPARTED)
     }
 

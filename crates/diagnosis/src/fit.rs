@@ -1,8 +1,7 @@
-use crate::fitter::Fitter;
 use crate::penalty::parameter_penalty;
 use crate::settings::Settings;
-use crate::{Hypothesis, Observation, Watch};
-use jointscope_inference::{Covariance, variance_inflation};
+use crate::{Hypothesis, Observation};
+use jointscope_inference::variance_inflation;
 use num_complex::Complex64;
 
 /// A hypothesis at its best, and how good that is.
@@ -19,25 +18,11 @@ pub struct Fit {
 }
 
 impl Fit {
-    /// Fits from the hypothesis as it stands with the default settings; from afar (`global`) a share of the signal counts as noise first.
-    ///
-    /// `None` where the start itself predicts no finite FRFs.
-    pub fn of(start: &Hypothesis, observation: &Observation, global: bool) -> Option<Self> {
-        let fitter = Fitter { observation, settings: &Settings::default(), watch: Watch::default() };
-        if global { fitter.global(start) } else { fitter.local(start, None, f64::INFINITY) }
-    }
-
     /// A hypothesis as it stands; `None` where it predicts no finite FRFs.
     pub(crate) fn at(hypothesis: Hypothesis, observation: &Observation) -> Option<Self> {
         let predicted = hypothesis.predict(observation).ok()?;
         let chi2 = observation.chi2(&predicted);
         Some(Fit { objective: chi2 + hypothesis.penalty(), hypothesis, predicted, chi2 })
-    }
-
-    /// Covariance of the coordinates; `None` where the FRFs leave a combination free.
-    pub fn covariance(&self, observation: &Observation) -> Option<Covariance> {
-        let fitter = Fitter { observation, settings: &Settings::default(), watch: Watch::default() };
-        fitter.information(&self.hypothesis).covariance()
     }
 
     /// χ² over the real values that count less the effects' free parameters.

@@ -158,7 +158,7 @@ impl<'a> Fitter<'a> {
             exact_at_end: whole,
             limit: (whole && limit.objective.is_finite()).then_some(limit),
             valleys: if whole { own.valleys } else { 0 },
-            bent: if whole { own.bent } else { 0.0 },
+            curved_valley: if whole { own.curved_valley } else { 0.0 },
             ..Default::default()
         };
         let Iterate { hypothesis, predicted, linear } = at;
@@ -284,7 +284,7 @@ impl<'a> Fitter<'a> {
         let without = full.without(index);
         let mut at = without.clone();
         for share in self.settings.fit.fading {
-            let smaller = crate::catalogue::scaled(effect, share).and_then(|effect| without.beside(effect));
+            let smaller = crate::candidate::scaled(effect, share).and_then(|effect| without.beside(effect));
             let Some(smaller) = smaller.map(|h| h.with_coordinates_of(&at)) else { break };
             let Some(fit) = self.local(&smaller, None, limit) else { break };
             if fit.objective > limit {

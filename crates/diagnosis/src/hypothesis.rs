@@ -1,5 +1,5 @@
 use crate::Observation;
-use crate::freedom::parameters_of;
+use crate::parameter_transforms::parameters_of;
 use jointscope_fixture::{
     Effect, EffectKind, Fixture, FixtureError, NamedQuantity, Place, QuantityOwner, SizeLaw,
 };

@@ -32,8 +32,11 @@
 
 mod alternatives;
 mod baseline;
+mod bodies;
+mod candidate;
 mod catalogue;
 mod contradiction;
+mod default_settings;
 mod departures;
 mod diagnosis;
 mod drift;
@@ -44,7 +47,6 @@ mod finding;
 mod fit;
 mod fitter;
 mod force_noise;
-mod freedom;
 mod held_out;
 mod hypothesis;
 mod idle;
@@ -55,6 +57,7 @@ mod modal;
 mod named;
 mod observation;
 mod options;
+mod parameter_transforms;
 mod penalty;
 mod quantities;
 mod ranking;
@@ -70,7 +73,8 @@ mod work;
 
 pub use alternatives::Alternative;
 pub use baseline::{Baseline, ModeChange, ModeState};
-pub use catalogue::{Candidate, catalogue};
+pub use candidate::Candidate;
+pub use catalogue::catalogue;
 pub use contradiction::contradictory_lines;
 pub use departures::Departure;
 pub use diagnosis::Diagnosis;

@@ -1,6 +1,4 @@
-use crate::fitter::Fitter;
-use crate::settings::Settings;
-use crate::{Hypothesis, Observation, Watch};
+use crate::{Hypothesis, Observation};
 use jointscope_inference::NormalEquations;
 use num_complex::Complex64;
 
@@ -12,12 +10,6 @@ pub struct Linearisation {
 }
 
 impl Linearisation {
-    /// Central differences about a hypothesis by steps so small that every digit counts which rounding leaves, of every coordinate.
-    pub fn of(at: &Hypothesis, observation: &Observation) -> Self {
-        let fitter = Fitter { observation, settings: &Settings::default(), watch: Watch::default() };
-        fitter.linearised_exactly(at)
-    }
-
     /// These derivatives for the first coordinates of `at`, and central differences by `steps` for the rest; one-sided ones where a coordinate
     /// lies on its bound, such as a dashpot of zero. A coordinate that cannot be moved gets zeros.
     pub(crate) fn extended(

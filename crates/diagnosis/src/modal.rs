@@ -37,6 +37,6 @@ mod tests;
 mod uncertainty;
 
 pub(crate) use features::recorded;
-pub(crate) use judgement::{ModalJudgement, explains};
+pub(crate) use judgement::ModalJudgement;
 pub(crate) use needs::without_imitations;
 pub use sizes::{ErrorIntervals, ModelError};

@@ -67,7 +67,7 @@ impl Observation {
         let coherence = coherence.collect();
         let work = Arc::default();
         let whole = Observation { frfs, weight, level, noise, coherence, recorded_lines: n, drift, work };
-        let kept = lines_in_use(&whole.frfs, crate::searched_frfs::count(whole.pairs().len()));
+        let kept = lines_in_use(&whole.frfs);
         let mut used = whole.on(&kept, &vec![true; whole.pairs().len()]).ok_or(SpectraError::NoLines)?;
         used.allow_for_drift(&whole.frfs, &kept);
         Ok(used)

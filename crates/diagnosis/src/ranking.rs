@@ -5,7 +5,7 @@
 //! back: the global search fits every candidate from the nominal quantities besides, with inflated noise on thinned lines, and those that come
 //! near are refined on all lines.
 
-use crate::catalogue::Candidate;
+use crate::candidate::Candidate;
 use crate::fit::Fit;
 use crate::fitter::{Fitter, Iterate};
 use crate::penalty::parameter_penalty;

@@ -3,6 +3,8 @@
 use jointscope_frf::{Drift, resonant_lines};
 use jointscope_spectra::FrfSet;
 
+/// FRFs from which not all of them are searched, unless more are needed to show every channel.
+pub(crate) const SEARCHED_FRFS: usize = 16;
 /// Lines, and values, from which a recording is thinned, and how many lines are kept of it at the most.
 const LONG: (usize, usize) = (4000, 16_000);
 const KEPT: usize = 900;
@@ -12,18 +14,19 @@ const EVENLY: f64 = 0.39;
 /// keeps the limit.
 const GRADES: [usize; 10] = [64, 48, 32, 24, 16, 12, 8, 6, 4, 2];
 
-/// Which lines of a recording are used, of which `searched` FRFs are searched: all of a short one; of a long one those about resonances, ever more
-/// sparsely with the distance, and evenly spread ones.
-pub(crate) fn lines_in_use(frfs: &FrfSet, searched: usize) -> Vec<bool> {
+/// Which lines of a recording are used: all of a short one; of a long one those about resonances, ever more sparsely with the distance, and evenly
+/// spread ones.
+pub(crate) fn lines_in_use(frfs: &FrfSet) -> Vec<bool> {
     let n = frfs.lines().len();
+    let searched = frfs.pairs().len().min(SEARCHED_FRFS);
     if n <= LONG.0 && n * searched <= LONG.1 {
         return vec![true; n];
     }
-    telling(frfs, KEPT)
+    most_informative(frfs, KEPT)
 }
 
 /// At most so many lines: those about resonances, ever more sparsely with the distance, and evenly spread ones.
-pub(crate) fn telling(frfs: &FrfSet, most: usize) -> Vec<bool> {
+pub(crate) fn most_informative(frfs: &FrfSet, most: usize) -> Vec<bool> {
     let n = frfs.lines().len();
     if n <= most {
         return vec![true; n];
@@ -97,7 +100,7 @@ mod tests {
     #[test]
     fn of_a_long_recording_every_line_of_a_peak_is_used_and_few_far_from_it() {
         let frfs = beam(30_000);
-        let kept = lines_in_use(&frfs, 1);
+        let kept = lines_in_use(&frfs);
         let within = |from: f64, to: f64| {
             let hz = frfs.lines().hz();
             let inside: Vec<bool> =
@@ -107,7 +110,7 @@ mod tests {
         assert!(kept.iter().filter(|k| **k).count() <= KEPT);
         assert_eq!([within(111.2, 111.4), within(306.8, 307.0)], [1.0, 1.0]);
         assert!(within(180.0, 240.0) < 0.05 && within(180.0, 240.0) > 0.002);
-        assert!(lines_in_use(&beam(LONG.0), 1).iter().all(|k| *k));
+        assert!(lines_in_use(&beam(LONG.0)).iter().all(|k| *k));
     }
 
     #[test]

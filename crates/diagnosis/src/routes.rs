@@ -1,13 +1,13 @@
 //! The ways to a diagnosis: by the noise of the lines, by the error of the model, by what has changed since a baseline; and which of them a recording
 //! asks for.
 
-use crate::evidence::{excess, nothing_can_be_stated, upper_tail};
+use crate::evidence::{excess, explains, nothing_can_be_stated, upper_tail};
 use crate::finding::{Finding, Tried};
 use crate::fit::Fit;
 use crate::fitter::Fitter;
 use crate::held_out::Division;
 use crate::location::{Location, located};
-use crate::modal::{ModalJudgement, ModelError, explains, without_imitations};
+use crate::modal::{ModalJudgement, ModelError, without_imitations};
 use crate::named::{findings, re_estimated, verdict};
 use crate::options::{DiagnosisError, DiagnosisOptions};
 use crate::search::Search;

@@ -1,6 +1,6 @@
 //! A hypothesis about which effects are tried with its quantities linearised, or held where they are.
 
-use crate::catalogue::Candidate;
+use crate::candidate::Candidate;
 use crate::fitter::Fitter;
 use crate::{Hypothesis, Linearisation};
 use jointscope_fixture::Effect;

@@ -1,10 +1,10 @@
 //! Which effects a recording needs: forward selection with exchange, every candidate fitted with the tolerances.
 
-use crate::catalogue::{Candidate, catalogue, with_wrong_quantities};
-use crate::evidence::{cost, deviates_by_chance, nothing_can_be_stated};
+use crate::candidate::Candidate;
+use crate::catalogue::{catalogue, with_wrong_quantities};
+use crate::evidence::{cost, deviates_by_chance, explains, nothing_can_be_stated};
 use crate::fit::Fit;
 use crate::fitter::Fitter;
-use crate::modal::explains;
 use crate::penalty::{parameter_penalty, penalty};
 use crate::ranking::Ranking;
 use crate::settings::Settings;

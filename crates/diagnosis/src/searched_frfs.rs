@@ -4,21 +4,13 @@
 //! mode. The rest confirms: what is found is fitted to all of them, judged on all of them, and its uncertainty is by all of them.
 
 use crate::Observation;
-use crate::recorded_lines::telling;
+use crate::recorded_lines::{SEARCHED_FRFS, most_informative};
 use jointscope_spectra::{Channel, FrfPair};
-
-/// FRFs from which not all of them are searched, unless more are needed to show every channel.
-const MANY: usize = 16;
 
 /// Values from which not all lines are searched, and how many values then are, with so many lines at the least.
 const ENOUGH: usize = 10_000;
 const VALUES: usize = 8000;
 const FEWEST_LINES: usize = 250;
-
-/// How many of so many FRFs are searched, as far as channels allow.
-pub(crate) fn count(frfs: usize) -> usize {
-    frfs.min(MANY)
-}
 
 /// The FRFs to be searched: those with channels that are shown least so far, one after the other, and all of `besides`.
 fn chosen<'a>(pairs: &'a [FrfPair], besides: &[FrfPair]) -> Vec<&'a FrfPair> {
@@ -33,7 +25,7 @@ fn chosen<'a>(pairs: &'a [FrfPair], besides: &[FrfPair]) -> Vec<&'a FrfPair> {
         };
         let is_new = |pair: &&FrfPair| counts(pair).0 == 0 || counts(pair).1 == 0;
         let left = pairs.iter().filter(|pair| !chosen.contains(pair));
-        let left = left.filter(|pair| chosen.len() < MANY || is_new(pair));
+        let left = left.filter(|pair| chosen.len() < SEARCHED_FRFS || is_new(pair));
         let Some(next) = left.min_by_key(counts) else { break };
         chosen.push(next);
     }
@@ -51,7 +43,7 @@ impl Observation {
         if lines * frfs.pairs().len() <= ENOUGH || lines <= most {
             return part;
         }
-        let kept = telling(frfs.frfs(), most);
+        let kept = most_informative(frfs.frfs(), most);
         let hz = frfs.lines().hz();
         let kept: Vec<f64> = hz.iter().zip(kept).filter(|(_, kept)| *kept).map(|(hz, _)| *hz).collect();
         let is_kept = |hz: f64| kept.binary_search_by(|line| line.total_cmp(&hz)).is_ok();
@@ -72,7 +64,7 @@ mod tests {
     fn few_of_many_frfs_show_every_channel() {
         let pairs = grid(16, 4);
         let few = chosen(&pairs, &pairs[7..8]);
-        assert!(few.len() == MANY && few.contains(&&pairs[7]), "{few:?}");
+        assert!(few.len() == SEARCHED_FRFS && few.contains(&&pairs[7]), "{few:?}");
         assert!(pairs.iter().all(|p| few.iter().any(|f| f.response == p.response)));
         let of = |reference: usize| few.iter().filter(|f| f.reference == pairs[reference].reference).count();
         assert!((0..4).all(|reference| of(reference) >= 3), "references are shown alike");

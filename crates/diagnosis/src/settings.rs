@@ -50,8 +50,8 @@ pub struct FitSettings {
     pub reuse: f64,
     /// How often an undamped step is tried along a flat valley.
     pub valleys: usize,
-    /// Share of what an undamped step promises below which a fit follows a bent valley.
-    pub bent: f64,
+    /// Share of what an undamped step promises below which a fit follows a curved valley.
+    pub curved_valley: f64,
     /// When a fit that competes with others is given up; its objective is the competition's. Small effects are found along flat valleys, a
     /// little at a time: within `reach` no fit is too slow.
     pub limit: Limit,
@@ -286,7 +286,7 @@ impl Default for Settings {
                 inflated_among_many: 0.03,
                 reuse: 0.15,
                 valleys: 3,
-                bent: 0.1,
+                curved_valley: 0.1,
                 limit: Limit {
                     objective: f64::INFINITY,
                     promises: 3.0,

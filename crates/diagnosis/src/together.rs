@@ -3,7 +3,7 @@
 //! What a channel does to its signal is a factor on a row or a column of the FRFs, on all of them (`force`, `responses`) or on one (a record). Equal factors on all rows are one
 //! factor on everything, and so on: two effects found one after another may be one that no step from either leads to.
 
-use crate::catalogue::Candidate;
+use crate::candidate::Candidate;
 use jointscope_fixture::{Effect, EffectKind, Entry, Place};
 use jointscope_lumped::signal_power;
 use jointscope_spectra::FrfPair;

@@ -1,6 +1,6 @@
 //! What a diagnosis is doing, told to whoever waits for it.
 
-use crate::catalogue::Candidate;
+use crate::candidate::Candidate;
 use jointscope_fixture::{EffectKind, Place};
 use std::fmt::{self, Debug, Display, Formatter};
 use std::sync::atomic::{AtomicUsize, Ordering};

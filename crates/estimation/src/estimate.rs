@@ -7,7 +7,9 @@ use crate::average::{Averaged, Pair, averaged, variance_of_unequal_hits, weights
 use crate::band::last_usable;
 use crate::conditioned::{Conditioned, Spectra, Transform};
 use crate::remarks::Remarks;
-use crate::{EstimateError, EstimateOptions, Excitation, ForceWindow, HitReport, ResponseWindow, Weighting};
+use crate::{
+    EstimateError, EstimateOptions, Excitation, ForceWindow, HitReport, Remark, ResponseWindow, Weighting,
+};
 
 /// FRFs of a hammer test, and what was seen on the way to them.
 #[derive(Debug, Clone, PartialEq)]
@@ -22,8 +24,8 @@ pub struct Estimate {
     pub excitations: Vec<Excitation>,
     /// Decay δ of the exponential window, 1/s; 0 without one. The FRFs are those at s = δ + iω.
     pub decay: f64,
-    /// What a reader of the FRFs should know, one plain sentence each.
-    pub remarks: Vec<String>,
+    /// What a reader of the FRFs should know.
+    pub remarks: Vec<Remark>,
 }
 
 /// What an exponential window on demand leaves of the slowest response.
@@ -59,7 +61,7 @@ impl Estimate {
         let mut remarks = Remarks::of_hits(&all, &reports, options, decay);
         let frfs = test.frfs(&excitations, &mut remarks)?;
         remarks.of_frfs(&frfs, &excitations, options.estimator);
-        Ok(Estimate { frfs, hits: reports, excitations, decay, remarks: remarks.texts })
+        Ok(Estimate { frfs, hits: reports, excitations, decay, remarks: remarks.all })
     }
 
     /// The FRFs on the lines above 0 Hz that the hammer excites at every struck point; under a window without the lowest ones, on which what is left of a baseline shows

@@ -45,6 +45,7 @@ mod options;
 mod overload;
 mod plausibility;
 mod pulse;
+mod remark;
 mod remarks;
 mod report;
 
@@ -53,4 +54,5 @@ pub use estimate::Estimate;
 pub use fault::{Fault, Signal};
 pub use options::{Baseline, EstimateOptions, Estimator, ForceWindow, ResponseWindow, Weighting};
 pub use pulse::Pulse;
+pub use remark::Remark;
 pub use report::{Excitation, HitReport};

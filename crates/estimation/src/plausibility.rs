@@ -3,25 +3,22 @@
 use jointscope_spectra::FrfSet;
 use num_complex::Complex64;
 
-use crate::Excitation;
+use crate::{Excitation, Remark};
 
 /// Share of the driving point's |H|² on lines where the force takes energy out, beyond which a sign is wrong.
 const TAKES_OUT: f64 = 0.7;
 /// Relative difference of two FRFs that should be the same.
 const NOT_RECIPROCAL: f64 = 0.3;
 
-/// Sentences about channels that cannot be as they are said to be.
-pub(crate) fn implausible(frfs: &FrfSet, excitations: &[Excitation]) -> Vec<String> {
+/// Channels that cannot be as they are said to be.
+pub(crate) fn implausible(frfs: &FrfSet, excitations: &[Excitation]) -> Vec<Remark> {
     let to = excitations.iter().map(|e| e.usable_to).fold(f64::INFINITY, f64::min);
     let last = frfs.lines().hz().iter().rposition(|hz| *hz <= to).unwrap_or(0);
     let values = |index: usize| &frfs.values(index)[1..last.max(1)];
-    let mut said = Vec::new();
+    let mut remarks = Vec::new();
     for (index, pair) in frfs.pairs().iter().enumerate() {
         if pair.response == pair.reference && takes_energy_out(values(index)) {
-            said.push(format!(
-                "the driving point {pair} moves as if the hammer drew energy from it: the direction of its force or of its sensor is the wrong \
-                 way round, or one of them is another channel"
-            ));
+            remarks.push(Remark::DrawsEnergy(pair.clone()));
         }
         let mirrored = frfs
             .pairs()
@@ -32,19 +29,13 @@ pub(crate) fn implausible(frfs: &FrfSet, excitations: &[Excitation]) -> Vec<Stri
             let mirrored = &frfs.pairs()[other];
             if difference > NOT_RECIPROCAL {
                 let turned: Vec<Complex64> = values(other).iter().map(|v| -v).collect();
-                let remedy = if relative_difference(values(index), &turned) < NOT_RECIPROCAL {
-                    "with the sign of one they would be: a direction is the wrong way round"
-                } else {
-                    "a sensor or a struck point is not where it is said to be, or two channels are swapped"
-                };
-                said.push(format!(
-                    "{pair} and {mirrored} should be the same and differ by {:.0} %: {remedy}",
-                    100.0 * difference
-                ));
+                let is_sign = relative_difference(values(index), &turned) < NOT_RECIPROCAL;
+                let frfs = [pair.clone(), mirrored.clone()];
+                remarks.push(Remark::NotReciprocal { frfs, difference, is_sign });
             }
         }
     }
-    said
+    remarks
 }
 
 /// Whether most of a driving point's accelerance lies below the real axis: the power that a force puts in is ½|F|² Re(A/iω) = ½|F|² Im A/ω.

@@ -1,24 +1,24 @@
-//! What a reader of the FRFs should know, in sentences.
+//! How it is found what a reader of the FRFs should know.
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use jointscope_spectra::{Channel, FrfSet};
+use jointscope_spectra::{Channel, FrfPair, FrfSet};
 
 use crate::band::dips;
 use crate::baseline::Drift;
 use crate::conditioned::Conditioned;
 use crate::plausibility::implausible;
-use crate::{Baseline, EstimateOptions, Estimator, Excitation, HitReport};
+use crate::{Baseline, EstimateOptions, Estimator, Excitation, HitReport, Remark, Signal};
 
-/// Sentences, in the order in which they were found.
+/// Remarks, in the order in which they were found.
 #[derive(Debug, Default)]
 pub(crate) struct Remarks {
-    pub texts: Vec<String>,
+    pub all: Vec<Remark>,
     /// Largest ratio of the hits' noise, and whether it was left unweighed.
     noise_ratio: f64,
     is_plain: bool,
     /// FRFs whose hits scatter beyond their noise, and by how much at the most.
-    scatter: Vec<String>,
+    scatter: Vec<FrfPair>,
     worst_scatter: f64,
 }
 
@@ -55,19 +55,16 @@ impl Remarks {
         for report in reports {
             let (number, why) = (report.number, report.why());
             match why {
-                Some(why) if !report.used => self.texts.push(format!("hit {number} rejected: {why}")),
-                Some(why) => self.texts.push(format!("hit {number} used as `--keep` says, though: {why}")),
+                Some(why) if !report.used => self.all.push(Remark::Rejected { hit: number, why }),
+                Some(why) => self.all.push(Remark::Kept { hit: number, why }),
                 None => {}
             }
         }
         let points: BTreeSet<&Channel> = reports.iter().map(|report| &report.struck).collect();
         for point in points {
             match reports.iter().filter(|report| report.used && report.struck == *point).count() {
-                0 => self.texts.push(format!("no hit at {point} is left: there are no FRFs to it")),
-                1 => self.texts.push(format!(
-                    "one hit at {point}: it has no coherence, so the noise is estimated from the scatter over the lines, which sees neither hits \
-                     that differ nor anything that repeats; three hits or more tell"
-                )),
+                0 => self.all.push(Remark::NoHit(point.clone())),
+                1 => self.all.push(Remark::OneHit(point.clone())),
                 _ => {}
             }
         }
@@ -78,15 +75,10 @@ impl Remarks {
         if let (Some(short), Some(long)) = (samples().min(), samples().max())
             && short < long
         {
-            self.texts.push(format!(
-                "records of {short} to {long} samples: the shorter ones are filled with zeros, which adds nothing to what has died away"
-            ));
+            self.all.push(Remark::Lengths { short, long });
         }
         if options.zero_padding > 1 {
-            let times = options.zero_padding;
-            self.texts.push(format!(
-                "records filled with zeros to {times} times their length: of {times} neighbouring lines one is new, the rest follow from the others"
-            ));
+            self.all.push(Remark::ZeroPadding(options.zero_padding));
         }
     }
 
@@ -98,21 +90,13 @@ impl Remarks {
             *largest = largest.max(signal.left);
         }
         left.retain(|_, left| *left > LEFT_UNNOTICED);
-        let named: Vec<String> =
-            left.iter().map(|(channel, left)| format!("{} % at {channel}", percent(*left))).collect();
-        match (named.is_empty(), decay > 0.0) {
-            (true, false) => {}
-            (true, true) => self.texts.push(window(decay)),
-            (false, true) => self.texts.push(format!(
-                "responses still ring when their records end ({} of their loudest part): {}",
-                named.join(", "),
-                window(decay)
-            )),
-            (false, false) => self.texts.push(format!(
-                "responses still ring when their records end ({} of their loudest part), which bends peaks and fills antiresonances by about as \
-                 much, the same way in every hit, so that no coherence shows it: record longer, or take `--response-window auto`",
-                named.join(", ")
-            )),
+        let left: Vec<(Channel, f64)> =
+            left.into_iter().map(|(channel, left)| (channel.clone(), left)).collect();
+        let window = (decay > 0.0).then_some(decay);
+        if !left.is_empty() {
+            self.all.push(Remark::StillRinging { left, window });
+        } else if let Some(decay) = window {
+            self.all.push(Remark::Window(decay));
         }
     }
 
@@ -138,14 +122,7 @@ impl Remarks {
             }
         }
         if !ringing.is_empty() {
-            let hits: Vec<String> = ringing
-                .iter()
-                .map(|(number, share)| format!("hit {number} ({} % of the peak)", percent(*share)))
-                .collect();
-            self.texts.push(format!(
-                "the structure still rings from the hit before in {}: that counts as noise; wait longer between hits",
-                hits.join(", ")
-            ));
+            self.all.push(Remark::RingingBefore(ringing.into_iter().collect()));
         }
     }
 
@@ -153,21 +130,17 @@ impl Remarks {
         if baseline == Baseline::Drift {
             return;
         }
-        let mut drifting: BTreeSet<String> = BTreeSet::new();
+        let mut drifting: BTreeSet<Signal> = BTreeSet::new();
         for hit in used {
             let drifts = |drift: &Drift, values: &[f64]| drift.significance > DRIFTS && shows(drift, values);
             if drifts(&hit.force_drift, &hit.force) {
-                drifting.insert("the force".to_owned());
+                drifting.insert(Signal::Force);
             }
             let signals = hit.responses.iter().filter(|signal| drifts(&signal.drift, &signal.values));
-            drifting.extend(signals.map(|signal| format!("the response at {}", signal.response.channel)));
+            drifting.extend(signals.map(|signal| Signal::Response(signal.response.channel.clone())));
         }
         if !drifting.is_empty() {
-            let names: Vec<String> = drifting.into_iter().collect();
-            self.texts.push(format!(
-                "the baseline of {} drifts, which shows in the lowest lines: `--detrend drift` takes a straight line off",
-                names.join(", ")
-            ));
+            self.all.push(Remark::DriftingBaselines(drifting.into_iter().collect()));
         }
     }
 
@@ -182,7 +155,7 @@ impl Remarks {
     /// By how much the hits of an FRF scatter beyond the noise before them.
     pub(crate) fn of_scatter(&mut self, response: &Channel, struck: &Channel, ratio: Option<f64>) {
         if let Some(ratio) = ratio.filter(|ratio| *ratio > DISAGREE) {
-            self.scatter.push(format!("{response}/{struck}"));
+            self.scatter.push(FrfPair::new(response.clone(), struck.clone()));
             self.worst_scatter = self.worst_scatter.max(ratio.sqrt());
         }
     }
@@ -190,39 +163,21 @@ impl Remarks {
     /// What only the finished FRFs tell.
     pub(crate) fn of_frfs(&mut self, frfs: &FrfSet, excitations: &[Excitation], estimator: Estimator) {
         if self.noise_ratio > 1.0 {
-            let ratio = two_digits(self.noise_ratio);
-            self.texts.push(match self.is_plain {
-                false => format!(
-                    "the noise of the hits differs by a factor of up to {ratio}: in the averages each hit counts inversely to the power of its noise \
-                     (`--weights plain` takes the textbook's average)"
-                ),
-                true => format!(
-                    "the noise of the hits differs by a factor of up to {ratio}: the variances here know of it, but coherence and averages state less noise \
-                     than a plain average has (`--weights auto` mends that)"
-                ),
-            });
+            self.all.push(Remark::UnequalNoise { ratio: self.noise_ratio, is_plain: self.is_plain });
         }
         if !self.scatter.is_empty() {
-            self.texts.push(format!(
-                "the hits disagree by up to {} times the noise that precedes them ({}): they fell on different places, or the structure does not answer \
-                 in proportion, or it still rang",
-                two_digits(self.worst_scatter),
-                self.scatter.join(", ")
-            ));
+            let frfs = std::mem::take(&mut self.scatter);
+            self.all.push(Remark::Disagreement { ratio: self.worst_scatter, frfs });
         }
         let biased = excitations.iter().filter(|e| e.h1_bias > BIASED && estimator == Estimator::H1);
-        let biased: Vec<String> =
-            biased.map(|e| format!("{} % to {}", percent(e.h1_bias), e.struck)).collect();
+        let biased: Vec<(Channel, f64)> = biased.map(|e| (e.struck.clone(), e.h1_bias)).collect();
         if !biased.is_empty() {
-            self.texts.push(format!(
-                "the force's noise makes H1 read low by up to {} where the force is weakest: a force window lessens it",
-                biased.join(", ")
-            ));
+            self.all.push(Remark::SmallH1(biased));
         }
         for excitation in excitations {
             self.of_dips(excitation, frfs.lines().hz());
         }
-        self.texts.extend(implausible(frfs, excitations));
+        self.all.extend(implausible(frfs, excitations));
     }
 }
 
@@ -241,49 +196,11 @@ const PULSE: f64 = 0.1;
 impl Remarks {
     /// Narrow dips of the force's spectrum, where FRFs rest on little.
     fn of_dips(&mut self, excitation: &Excitation, hz: &[f64]) {
-        const TOLD: usize = 5;
         let power: Vec<f64> = excitation.spectrum.iter().map(|force| force * force).collect();
         let last = hz.iter().rposition(|hz| *hz <= excitation.usable_to).unwrap_or(0);
-        let dips: Vec<String> = dips(&power, last).iter().map(|&line| format!("{:.1}", hz[line])).collect();
-        if dips.is_empty() {
-            return;
+        let dips: Vec<f64> = dips(&power, last).iter().map(|&line| hz[line]).collect();
+        if !dips.is_empty() {
+            self.all.push(Remark::ForceDips { struck: excitation.struck.clone(), hz: dips });
         }
-        let more = if dips.len() > TOLD { " and elsewhere" } else { "" };
-        self.texts.push(format!(
-            "the force's spectrum at {} dips near {} Hz{more}: do not trust the FRFs there, however high their coherence",
-            excitation.struck,
-            dips[..dips.len().min(TOLD)].join(", ")
-        ));
-    }
-}
-
-fn window(decay: f64) -> String {
-    format!(
-        "an exponential window of decay {decay:.4} 1/s lies on force and responses, so the FRFs are those at s = {decay:.4} 1/s + iω and look more damped \
-         than the structure is"
-    )
-}
-
-fn percent(share: f64) -> String {
-    two_digits(100.0 * share)
-}
-
-/// Two significant digits, without an exponent.
-fn two_digits(value: f64) -> String {
-    if !(value.is_finite() && value > 0.0) {
-        return value.to_string();
-    }
-    let decimals = (1 - value.log10().floor() as i32).max(0) as usize;
-    format!("{value:.decimals$}")
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn shares_are_told_with_two_digits() {
-        assert_eq!([0.0123, 0.5, 0.1, 0.00034].map(percent), ["1.2", "50", "10", "0.034"]);
-        assert_eq!(two_digits(14.96), "15");
     }
 }

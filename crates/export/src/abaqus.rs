@@ -1,8 +1,10 @@
 //! Keywords for Abaqus/Standard: linear user elements, or matrices of the model; masses, springs and dashpots.
 
+use crate::Form;
+use crate::body::Body;
+use crate::matrices::{KINDS, Kind, Sparse};
 use crate::numbers::twenty;
 use crate::parts::{Element, dof_number};
-use crate::write::{Body, Form, KINDS, Kind, Sparse};
 use crate::{Export, Joint};
 use jointscope_beam::Matrix4;
 

@@ -1,9 +1,10 @@
 //! Commands for ANSYS Mechanical APDL: MATRIX27 for joints, MASS21 and COMBIN14 for the rest.
 
 use crate::Export;
+use crate::body::Body;
+use crate::matrices::{KINDS, Kind};
 use crate::numbers::exact;
 use crate::parts::{Element, dof_number};
-use crate::write::{Body, KINDS, Kind};
 use jointscope_beam::Matrix4;
 
 /// Where y and θ of the two nodes stand among the twelve degrees of freedom UX, UY, UZ, ROTX, ROTY, ROTZ of node I, then of node J.

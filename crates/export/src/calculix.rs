@@ -4,10 +4,10 @@
 //! translations of a ROT NODE. K = k11·v·vᵀ + k·w·wᵀ with v = (1, a) and w = (0, 1), a the place of the elastic centre: each term is a spring on one
 //! motion, which is the x of an added node.
 
+use crate::body::Body;
 use crate::joint::{ElasticCentre, is_zero};
 use crate::numbers::twenty;
 use crate::parts::Element;
-use crate::write::Body;
 use crate::{Export, ExportError, Joint};
 use jointscope_comparison::Matrix;
 use jointscope_fixture::Dof;

@@ -1,9 +1,9 @@
 //! A table: one value a row, with its standard deviation and unit.
 
+use crate::body::Body;
 use crate::joint::{both_ends, is_zero};
 use crate::numbers::exact;
 use crate::parts::Element;
-use crate::write::Body;
 use crate::{Export, Joint};
 
 const COVARIED: [&str; 6] = ["k11", "k12", "k22", "c11", "c12", "c22"];

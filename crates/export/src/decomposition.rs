@@ -5,7 +5,7 @@ use crate::numbering::Numbering;
 use crate::numbers::short;
 use crate::{Export, ExportError, ExportOptions, Joint, JointEnd, JointLine};
 use jointscope_beam::mass_of_ends;
-use jointscope_comparison::{Decomposed, Ends, FittedJoint, JointTests, Matrix, Uncertain};
+use jointscope_comparison::{Decomposed, Ends, FiledJoint, FiledTests, Matrix, Uncertain};
 
 /// A joint of a decomposition as an export: the joint with the fixture's quantities moving where the file has it, otherwise the maximum-likelihood one.
 ///
@@ -131,13 +131,13 @@ impl Estimate {
 const OF_STIFFNESS: usize = 3;
 
 /// The frequency at which the numbers of a structural joint are stated, Hz.
-fn structural_at(fitted: &FittedJoint) -> Option<f64> {
+fn structural_at(fitted: &FiledJoint) -> Option<f64> {
     let follows = fitted.follows.as_ref().filter(|follows| follows.law.starts_with("structural"))?;
     Some(follows.frequency)
 }
 
 /// What law the numbers are of.
-fn law_of(fitted: &FittedJoint) -> String {
+fn law_of(fitted: &FiledJoint) -> String {
     let words = |law: &str| law.replace('_', " ");
     match (&fitted.follows, fitted.law.as_deref()) {
         (Some(follows), Some(law)) if law == follows.law && follows.is_viscous() => {
@@ -192,7 +192,7 @@ fn judged(decomposed: &Decomposed, anyway: bool) -> Result<Vec<String>, ExportEr
 }
 
 /// Remarks on what physics forbids of the joint that the FRFs speak for.
-fn failed_tests(tests: &JointTests) -> Vec<String> {
+fn failed_tests(tests: &FiledTests) -> Vec<String> {
     let said = |(name, p): (&str, f64)| {
         let (what, but) = match name {
             "reciprocity" => ("a joint that is not reciprocal", "K and C are written symmetric all the same"),

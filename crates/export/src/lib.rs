@@ -21,6 +21,7 @@
 
 mod abaqus;
 mod ansys;
+mod body;
 mod calculix;
 mod csv;
 mod decomposition;
@@ -28,10 +29,12 @@ mod diagnosis;
 mod error;
 mod header;
 mod joint;
+mod matrices;
 mod nastran;
 mod numbering;
 mod numbers;
 mod parts;
+mod program;
 mod repaired_joint;
 mod write;
 
@@ -40,7 +43,8 @@ pub use diagnosis::of_diagnosis;
 pub use error::ExportError;
 pub use joint::{CentreAgreement, Covariance, ElasticCentre, Joint, JointEnd, JointLine, about, both_ends};
 pub use parts::{Element, Export, Node, Omitted, Part};
-pub use write::{Form, Program, json, write};
+pub use program::{Form, Program};
+pub use write::{json, write};
 
 /// What to export and how to number it.
 #[derive(Debug, Clone, PartialEq)]

@@ -1,9 +1,11 @@
 //! Bulk data for Nastran: CBUSH about the elastic centre, or DMIG on both nodes; large fields of 16 characters.
 
+use crate::Form;
+use crate::body::Body;
 use crate::joint::{about, is_zero};
+use crate::matrices::{KINDS, Kind, Sparse};
 use crate::numbers::{nastran as real, nastran_double, short};
 use crate::parts::{Element, dof_number};
-use crate::write::{Body, Form, KINDS, Kind, Sparse};
 use crate::{Export, ExportError, Joint};
 
 /// Shares of the length between which a bush lies on the line between its nodes.

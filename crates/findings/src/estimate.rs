@@ -63,11 +63,6 @@ impl Estimate {
         })
     }
 
-    /// Whether the data leave the value open.
-    pub fn is_undetermined(&self) -> bool {
-        self.interval.is_none_or(|[low, high]| !(low.is_finite() && high.is_finite()))
-    }
-
     /// Whether the whole interval lies above zero.
     pub fn is_positive(&self) -> bool {
         self.interval.is_some_and(|[low, _]| low > 0.0)

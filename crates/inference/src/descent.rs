@@ -43,7 +43,7 @@ pub trait LeastSquares {
     /// The point that a step with the given relative damping leads to; `None` where there is none.
     fn stepped(&self, point: &Self::Point, equations: &Self::Equations, damping: f64) -> Option<Self::Point>;
 
-    /// The point at a share of an undamped step; `None` where there is none. Needed for [`Settings::bent`].
+    /// The point at a share of an undamped step; `None` where there is none. Needed for [`Settings::curved_valley`].
     fn shortened(
         &self,
         _point: &Self::Point,
@@ -120,7 +120,7 @@ pub struct Limit {
 }
 
 impl Limit {
-    /// Whether a fit that stands at `objective` will not reach the limit by what its derivatives promise. Along a bent valley they promise little of what there is, so
+    /// Whether a fit that stands at `objective` will not reach the limit by what its derivatives promise. Along a curved valley they promise little of what there is, so
     /// within reach no promise is too small.
     fn is_out_of_reach(&self, objective: f64, promised: f64) -> bool {
         objective - self.promises * promised > self.objective && objective - self.objective > self.reach
@@ -148,9 +148,9 @@ pub struct Settings {
     pub exact_at_end: bool,
     /// Objective to be reached, for one fit among many.
     pub limit: Option<Limit>,
-    /// Share of what an undamped step promises below which a step with new derivatives follows a bent valley: then shares of the undamped step are tried, which
+    /// Share of what an undamped step promises below which a step with new derivatives follows a curved valley: then shares of the undamped step are tried, which
     /// goes along the valley where damping goes hardly anywhere. Zero tries none.
-    pub bent: f64,
+    pub curved_valley: f64,
     /// How often an undamped step is tried where the damped ones gain little of what is promised, as along a flat valley.
     pub valleys: usize,
 }
@@ -168,7 +168,7 @@ impl Default for Settings {
             trust_old: false,
             exact_at_end: false,
             limit: None,
-            bent: 0.0,
+            curved_valley: 0.0,
             valleys: 0,
         }
     }
@@ -232,12 +232,12 @@ pub fn descend<P: LeastSquares>(
         let gained = next.as_ref().map_or(0.0, |(_, after)| before - after);
         // A fit far from what it competes with follows no valley.
         let near = settings.limit.is_none_or(|limit| before - limit.objective <= limit.reach);
-        let bent = fresh
+        let is_curved = fresh
             && near
             && promised > VALLEY * settings.convergence.needed(before)
-            && gained < settings.bent * promised;
+            && gained < settings.curved_valley * promised;
         let start = (&point, &equations, &derivatives, &weights);
-        let along = if bent { along_valley(problem, start, before - gained) } else { None };
+        let along = if is_curved { along_valley(problem, start, before - gained) } else { None };
         let followed = along.is_some();
         let next = along.or(next);
         let stepped = next.is_some();
@@ -310,7 +310,7 @@ const SHARES: [f64; 4] = [1.0, 0.4, 0.15, 0.05];
 
 /// The point beside the way of an undamped step that lowers the objective below `than`, the lowest of those tried.
 ///
-/// What a share α of the step does across a bent valley grows as α², and its cost as α⁴: damped steps creep. One more step from there, by the same derivatives, takes
+/// What a share α of the step does across a curved valley grows as α², and its cost as α⁴: damped steps creep. One more step from there, by the same derivatives, takes
 /// that back but for what grows as α³ (the geodesic acceleration of Transtrum & Sethna, arXiv:1201.5885, by a finite step).
 fn along_valley<P: LeastSquares>(
     problem: &P,
@@ -474,12 +474,12 @@ mod tests {
     }
 
     #[test]
-    fn a_bent_valley_is_followed_to_its_end_where_damped_steps_creep() {
+    fn a_curved_valley_is_followed_to_its_end_where_damped_steps_creep() {
         let problem = Bent { steep: 1e4 };
         let damping = Damping { initial: 1e-8, decrease: 0.1, least: 1e-13, raised: 0.0, most: 1e7 };
         let convergence = Convergence { gain: 1e-9, share: 0.0, floor: 0.0 };
-        let end = |bent: f64| {
-            let settings = Settings { steps: 40, damping, convergence, bent, ..Settings::default() };
+        let end = |curved_valley: f64| {
+            let settings = Settings { steps: 40, damping, convergence, curved_valley, ..Settings::default() };
             descend(&problem, [-1.2, 1.44], None, &settings).unwrap().objective
         };
         assert!(end(0.0) > 0.1, "{}", end(0.0));

@@ -133,7 +133,7 @@ impl NormalEquations {
         None
     }
 
-    /// The step across a bent valley that corrects a `share` of an undamped one: what an undamped step from where it led (`self`, at `coordinates`) differs from the
+    /// The step across a curved valley that corrects a `share` of an undamped one: what an undamped step from where it led (`self`, at `coordinates`) differs from the
     /// rest of the first one (`before`, at `earlier`).
     pub fn correction(
         &self,

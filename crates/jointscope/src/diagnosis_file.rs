@@ -35,7 +35,9 @@ pub fn diagnosis_file(diagnosis: &Diagnosis) -> Value {
         recording: Recorded::of(diagnosis),
         unnamed: diagnosis.is_unnamed(),
         error_at_ends: diagnosis.end_errors(&diagnosis.search.repaired),
-        bent: diagnosis.bent().map(|(path, deviations)| Bent { path, deviations }),
+        farthest_quantity: diagnosis
+            .farthest_quantity()
+            .map(|(path, deviations)| FarthestQuantity { path, deviations }),
         swapped_points: diagnosis.swapped_points(),
         remarks: diagnosis.remarks(),
         model_error: ModelErrors::of(diagnosis),
@@ -66,7 +68,8 @@ struct DiagnosisFile<'a> {
     #[serde(skip_serializing_if = "Option::is_none")]
     error_at_ends: Option<EndErrors>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    bent: Option<Bent<'a>>,
+    #[serde(rename = "bent")]
+    farthest_quantity: Option<FarthestQuantity<'a>>,
     swapped_points: Vec<[&'a str; 2]>,
     remarks: Vec<String>,
     model_error: ModelErrors,
@@ -109,7 +112,7 @@ impl ModelErrors {
 
 /// The quantity that the refit without effects took farthest from what is stated, beyond belief.
 #[derive(Serialize)]
-struct Bent<'a> {
+struct FarthestQuantity<'a> {
     path: &'a str,
     deviations: f64,
 }

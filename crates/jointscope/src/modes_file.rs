@@ -1,100 +1,216 @@
+use crate::file::value;
 use jointscope_frf::noise::NoiseSource;
-use jointscope_modes::{ModalAnalysis, Mode, Stability};
-use jointscope_spectra::Channel;
+use jointscope_modes::{ChartPole, ModalAnalysis, Mode, Stability};
+use jointscope_spectra::{Channel, FrfPair};
 use jointscope_wording::Remarks;
 use num_complex::Complex64;
-use serde_json::{Map, Value, json};
+use serde::Serialize;
+use serde_json::Value;
 
 /// The contents of `modes.json`: modes with standard deviations, shapes and residues, residual terms, how well the rebuilt FRFs meet the measured ones, and the
 /// stabilisation chart. SI units; complex numbers as `[real, imaginary]`; what is not told is `null`.
 pub fn modes_file(analysis: &ModalAnalysis) -> Value {
-    let mut root = Map::new();
-    let names: Vec<String> = analysis.pairs().iter().map(ToString::to_string).collect();
-    let modes = |modes: &[Mode]| modes.iter().map(|m| mode(m, &names)).collect::<Value>();
-    root.insert("modes".into(), modes(&analysis.modes));
-    root.insert("outside_the_band".into(), modes(&analysis.outside));
-    let count = analysis.modes.len().max(1);
-    root.insert("auto_mac".into(), analysis.auto_mac().chunks(count).map(|row| json!(row)).collect());
-    root.insert("chi2_per_dof".into(), json!(analysis.chi2_per_dof));
-    root.insert("explained".into(), json!(analysis.is_explained()));
+    let pairs = analysis.pairs();
+    let modes = |modes: &[Mode]| modes.iter().map(|mode| ModeEntry::of(mode, pairs)).collect();
     let hz = analysis.lines().hz();
-    root.insert("lines".into(), json!({"from": hz[0], "to": hz[hz.len() - 1], "count": hz.len()}));
-    root.insert("frfs".into(), frfs(analysis, &names));
-    root.insert("stabilization".into(), stabilization(analysis));
-    root.insert("remarks".into(), json!(analysis.remarks()));
-    Value::Object(root)
-}
-
-fn complex(value: &Complex64) -> Value {
-    json!([value.re, value.im])
-}
-
-fn mode(mode: &Mode, names: &[String]) -> Value {
-    let shape = |shape: &[(Channel, Complex64)]| -> Value {
-        shape
-            .iter()
-            .map(|(channel, v)| json!({"channel": channel.to_string(), "value": complex(v)}))
-            .collect()
-    };
-    let residue = |((name, r), std): ((&String, &Complex64), &f64)| json!({"frf": name, "value": complex(r), "std": std});
-    let drift = mode.drift.as_ref().map(|drift| {
-        let of = |&(frf, f, f_std, z, z_std): &(usize, f64, f64, f64, f64)| {
-            json!({"frf": names[frf], "frequency": f, "damping_ratio": z, "std": {"frequency": f_std, "damping_ratio": z_std}})
-        };
-        json!({
-            "frequency": drift.frequency,
-            "damping_ratio": drift.damping_ratio,
-            "frfs": drift.by_frf.iter().map(of).collect::<Value>(),
-        })
-    });
-    json!({
-        "frequency": mode.frequency,
-        "damping_ratio": mode.damping_ratio,
-        "std": {"frequency": mode.frequency_std, "damping_ratio": mode.damping_std},
-        "correlation": mode.correlation,
-        "drift": drift,
-        "pole": complex(&mode.pole),
-        "shape": {"responses": shape(&mode.responses), "references": shape(&mode.references)},
-        "modal_mass": mode.modal_mass,
-        "phase_collinearity": mode.phase_collinearity,
-        "stands_out": mode.stands_out(),
-        "damping_is_vague": mode.is_vaguely_damped(),
-        "residues": names.iter().zip(&mode.residues).zip(&mode.residue_std).map(residue).collect::<Value>(),
+    value(ModesFile {
+        modes: modes(&analysis.modes),
+        outside_the_band: modes(&analysis.outside),
+        auto_mac: analysis.auto_mac().chunks(analysis.modes.len().max(1)).map(<[f64]>::to_vec).collect(),
+        chi2_per_dof: analysis.chi2_per_dof,
+        explained: analysis.is_explained(),
+        lines: LinesEntry { from: hz[0], to: hz[hz.len() - 1], count: hz.len() },
+        frfs: frfs(analysis),
+        stabilization: StabilizationEntry::of(analysis),
+        remarks: analysis.remarks(),
     })
 }
 
-fn frfs(analysis: &ModalAnalysis, names: &[String]) -> Value {
+#[derive(Serialize)]
+struct ModesFile {
+    modes: Vec<ModeEntry>,
+    outside_the_band: Vec<ModeEntry>,
+    /// A row a mode of the band.
+    auto_mac: Vec<Vec<f64>>,
+    chi2_per_dof: f64,
+    /// Whether poles that all FRFs share explain them.
+    explained: bool,
+    lines: LinesEntry,
+    frfs: Vec<FrfEntry>,
+    stabilization: StabilizationEntry,
+    remarks: Vec<String>,
+}
+
+/// The lines in use, Hz.
+#[derive(Serialize)]
+struct LinesEntry {
+    from: f64,
+    to: f64,
+    count: usize,
+}
+
+/// Natural frequency, Hz, and damping ratio: values or standard deviations.
+#[derive(Serialize)]
+struct FrequencyAndRatio {
+    frequency: f64,
+    damping_ratio: f64,
+}
+
+#[derive(Serialize)]
+struct ModeEntry {
+    frequency: f64,
+    damping_ratio: f64,
+    std: FrequencyAndRatio,
+    correlation: f64,
+    drift: Option<DriftEntry>,
+    pole: Complex,
+    shape: ShapeEntry,
+    modal_mass: Option<f64>,
+    phase_collinearity: f64,
+    stands_out: bool,
+    damping_is_vague: bool,
+    residues: Vec<ResidueEntry>,
+}
+
+/// By how much a mode scatters from FRF to FRF, and each FRF's own.
+#[derive(Serialize)]
+struct DriftEntry {
+    frequency: f64,
+    damping_ratio: f64,
+    frfs: Vec<ModeOfFrf>,
+}
+
+#[derive(Serialize)]
+struct ModeOfFrf {
+    frf: FrfPair,
+    frequency: f64,
+    damping_ratio: f64,
+    std: FrequencyAndRatio,
+}
+
+#[derive(Serialize)]
+struct ShapeEntry {
+    responses: Vec<ChannelEntry>,
+    references: Vec<ChannelEntry>,
+}
+
+#[derive(Serialize)]
+struct ChannelEntry {
+    channel: Channel,
+    value: Complex,
+}
+
+#[derive(Serialize)]
+struct ResidueEntry {
+    frf: FrfPair,
+    value: Complex,
+    std: f64,
+}
+
+#[derive(Serialize)]
+struct FrfEntry {
+    frf: FrfPair,
+    nrmse: f64,
+    noise: Option<&'static str>,
+    lower_residuals: Vec<Complex>,
+    upper_residuals: Vec<Complex>,
+}
+
+#[derive(Serialize)]
+struct StabilizationEntry {
+    /// Lowest and highest.
+    orders: (usize, usize),
+    columns: [&'static str; 4],
+    /// A row of these columns a pole.
+    poles: Vec<(usize, f64, f64, &'static str)>,
+}
+
+/// Real and imaginary part.
+#[derive(Serialize)]
+struct Complex(f64, f64);
+
+impl From<&Complex64> for Complex {
+    fn from(value: &Complex64) -> Self {
+        Complex(value.re, value.im)
+    }
+}
+
+impl ModeEntry {
+    fn of(mode: &Mode, pairs: &[FrfPair]) -> Self {
+        let shape = |shape: &[(Channel, Complex64)]| -> Vec<ChannelEntry> {
+            let entry = |(channel, value): &(Channel, Complex64)| ChannelEntry {
+                channel: channel.clone(),
+                value: value.into(),
+            };
+            shape.iter().map(entry).collect()
+        };
+        let residues = pairs.iter().zip(&mode.residues).zip(&mode.residue_std);
+        let residue = |((frf, value), std): ((&FrfPair, &Complex64), &f64)| ResidueEntry {
+            frf: frf.clone(),
+            value: value.into(),
+            std: *std,
+        };
+        let drift = mode.drift.as_ref().map(|drift| {
+            let own = |&(frf, frequency, frequency_std, damping_ratio, damping_std): &(_, _, _, _, _)| {
+                let frf: &FrfPair = &pairs[frf];
+                let std = FrequencyAndRatio { frequency: frequency_std, damping_ratio: damping_std };
+                ModeOfFrf { frf: frf.clone(), frequency, damping_ratio, std }
+            };
+            DriftEntry {
+                frequency: drift.frequency,
+                damping_ratio: drift.damping_ratio,
+                frfs: drift.by_frf.iter().map(own).collect(),
+            }
+        });
+        ModeEntry {
+            frequency: mode.frequency,
+            damping_ratio: mode.damping_ratio,
+            std: FrequencyAndRatio { frequency: mode.frequency_std, damping_ratio: mode.damping_std },
+            correlation: mode.correlation,
+            drift,
+            pole: (&mode.pole).into(),
+            shape: ShapeEntry { responses: shape(&mode.responses), references: shape(&mode.references) },
+            modal_mass: mode.modal_mass,
+            phase_collinearity: mode.phase_collinearity,
+            stands_out: mode.stands_out(),
+            damping_is_vague: mode.is_vaguely_damped(),
+            residues: residues.map(residue).collect(),
+        }
+    }
+}
+
+fn frfs(analysis: &ModalAnalysis) -> Vec<FrfEntry> {
     let errors = analysis.relative_errors();
-    let of = |(index, name): (usize, &String)| {
+    let of = |(index, frf): (usize, &FrfPair)| {
         let terms = &analysis.residual_terms[index];
         let noise = analysis.noise.get(index).map(|noise| match noise {
             NoiseSource::Coherence => "coherence",
             NoiseSource::CoherenceAlone => "coherence, averages by scatter",
             NoiseSource::Scatter => "scatter",
         });
-        json!({
-            "frf": name,
-            "nrmse": errors[index],
-            "noise": noise,
-            "lower_residuals": terms.lower.iter().map(complex).collect::<Value>(),
-            "upper_residuals": terms.upper.iter().map(complex).collect::<Value>(),
-        })
+        FrfEntry {
+            frf: frf.clone(),
+            nrmse: errors[index],
+            noise,
+            lower_residuals: terms.lower.iter().map(Complex::from).collect(),
+            upper_residuals: terms.upper.iter().map(Complex::from).collect(),
+        }
     };
-    names.iter().enumerate().map(of).collect()
+    analysis.pairs().iter().enumerate().map(of).collect()
 }
 
-fn stabilization(analysis: &ModalAnalysis) -> Value {
-    let stability = |stability| match stability {
-        Stability::New => "new",
-        Stability::Frequency => "frequency",
-        Stability::Stable => "stable",
-    };
-    let pole = |p: &jointscope_modes::ChartPole| {
-        json!([p.order, p.frequency, p.damping_ratio, stability(p.stability)])
-    };
-    json!({
-        "orders": [analysis.orders.0, analysis.orders.1],
-        "columns": ["order", "frequency", "damping_ratio", "stability"],
-        "poles": analysis.chart.iter().map(pole).collect::<Value>(),
-    })
+impl StabilizationEntry {
+    fn of(analysis: &ModalAnalysis) -> Self {
+        let stability = |stability| match stability {
+            Stability::New => "new",
+            Stability::Frequency => "frequency",
+            Stability::Stable => "stable",
+        };
+        let pole = |p: &ChartPole| (p.order, p.frequency, p.damping_ratio, stability(p.stability));
+        StabilizationEntry {
+            orders: analysis.orders,
+            columns: ["order", "frequency", "damping_ratio", "stability"],
+            poles: analysis.chart.iter().map(pole).collect(),
+        }
+    }
 }

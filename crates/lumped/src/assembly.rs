@@ -3,15 +3,16 @@ use crate::effects::{Action, Change, actions};
 use crate::held::{held_by_modes, in_the_modes};
 use crate::mesh::{Attachment, Mesh};
 use crate::modes_cache::modes;
+use crate::nominal_stiffness::nominal_stiffness;
 use crate::uniform_beam::{UniformBeam, UnitMesh};
 use crate::{LumpedError, Station};
 use jointscope_beam::{
-    Matrix4, consistent_mass, consistent_rotary_inertia, element_stiffness, end_stiffness,
-    from_end_stiffness, shear_element_stiffness,
+    Matrix4, consistent_mass, consistent_rotary_inertia, element_stiffness, from_end_stiffness,
+    shear_element_stiffness,
 };
 use jointscope_damping::{DampingLaw, HeldMode, ModeDamping, elastic_modes, viscous_matrix};
-use jointscope_fixture::{BeamBody, Body, BodyKind, Damping, Fixture, Joint, JointLaw};
-use jointscope_linalg::{Matrix2, ModalBasis, RealMatrix2, products};
+use jointscope_fixture::{BeamBody, Body, BodyKind, Damping, Fixture, Joint};
+use jointscope_linalg::{ModalBasis, products};
 use jointscope_spectra::Dof;
 use std::f64::consts::TAU;
 
@@ -378,16 +379,6 @@ fn attachments(fixture: &Fixture, body: usize) -> Vec<Attachment> {
     let masses = fixture.bodies()[body].masses.iter();
     let masses = masses.map(|mass| (body, Attachment { x: mass.x.value, turns: false }));
     joints.chain(supports).chain(masses).filter(|(b, _)| *b == body).map(|(_, at)| at).collect()
-}
-
-/// Stiffness of a joint as the fixture states it, without effects, on d = u_to − R·u_from.
-pub fn nominal_stiffness(law: &JointLaw, length: f64) -> RealMatrix2 {
-    match law {
-        JointLaw::Beam { youngs_modulus, second_moment } => {
-            end_stiffness(youngs_modulus.value * second_moment.value, length)
-        }
-        JointLaw::Stiffness { stiffness: [a, b, d], .. } => Matrix2::new(a.value, b.value, b.value, d.value),
-    }
 }
 
 pub(crate) fn damping_law(damping: &Damping) -> DampingLaw {

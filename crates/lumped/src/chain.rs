@@ -1,10 +1,19 @@
 //! What stands between the structure and a recorded value: where sensors sit, their masses, gains, delays, window.
 
 use crate::effects::{Action, SignalFilter, actions};
-use crate::{Instrument, LumpedError, Station};
+use crate::{LumpedError, Station};
 use jointscope_fixture::{BodyKind, Fixture, Place};
 use jointscope_spectra::{Channel, Dof, FrfPair};
 use num_complex::Complex64;
+
+/// Whether the measuring chain's effects are part of what is synthesised.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Instrument {
+    /// As this test's sensors and analyser would record it: offsets, gains, delays, sensor masses, window.
+    AsRecorded,
+    /// As a perfect instrument at the stated points would read it.
+    Perfect,
+}
 
 /// How one FRF is read from the structure.
 #[derive(Debug, Clone)]

@@ -1,7 +1,8 @@
 //! What each effect does to the model: the one place that knows.
 
 use crate::Station;
-use crate::terms::{PointLaw, TermStation};
+use crate::point_law::PointLaw;
+use crate::term_station::TermStation;
 use jointscope_fixture::{Dof, Effect, EffectKind as Kind, Fixture, Joint, Place};
 use num_complex::Complex64;
 use std::f64::consts::TAU;

@@ -1,7 +1,7 @@
 //! Modes far above the band, whose terms are smooth there: one short power series for all of them together.
 
+use crate::denominator::Denominator;
 use crate::lanes::Lines;
-use crate::model::Denominator;
 use num_complex::Complex64;
 
 /// Powers of s that are kept.

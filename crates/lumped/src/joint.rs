@@ -2,25 +2,18 @@
 
 mod heavy_beam;
 mod in_time;
+mod two_ends;
 
 pub(crate) use in_time::JointInTime;
+pub(crate) use two_ends::TwoEnds;
 
-use crate::assembly::nominal_stiffness;
 use crate::effects::{Action, Change, Interface, actions};
 use crate::lanes::Lines;
+use crate::nominal_stiffness::nominal_stiffness;
 use heavy_beam::HeavyBeam;
-use jointscope_beam::transport;
 use jointscope_fixture::{Damping, Dof, Fixture, Joint, JointLaw};
 use jointscope_linalg::{ComplexMatrix2, Matrix2, RealMatrix2};
 use num_complex::Complex64;
-
-/// A complex 4×4 matrix on (y, θ) at the joint's near end, (y, θ) at its far end, by 2×2 blocks.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct TwoEnds<T> {
-    near: Matrix2<T>,
-    cross: Matrix2<T>,
-    far: Matrix2<T>,
-}
 
 /// Everything that the fixture says of one joint's dynamic stiffness.
 #[derive(Debug, Clone)]
@@ -195,52 +188,6 @@ fn in_series<T: Lines>(stiffness: Matrix2<T>, direction: [f64; 2], spring: T) ->
         c - column[1] * row[0] * factor,
         d - column[1] * row[1] * factor,
     )
-}
-
-impl<T: Lines> TwoEnds<T> {
-    /// `[−R, I]ᵀ k [−R, I]`.
-    #[inline(always)]
-    pub(crate) fn from_end(stiffness: Matrix2<T>, length: f64) -> Self {
-        let transport = transport(length).map(|element| T::ONE * element);
-        let back = transport.transpose() * stiffness;
-        TwoEnds { near: back * transport, cross: back.map(|e| -e), far: stiffness }
-    }
-
-    /// The element in row `i`, column `j` of the 4×4 matrix.
-    #[inline(always)]
-    pub(crate) fn at(&self, i: usize, j: usize) -> T {
-        match (i / 2, j / 2) {
-            (0, 0) => self.near.at(i, j),
-            (0, _) => self.cross.at(i, j - 2),
-            (_, 0) => self.cross.at(j, i - 2),
-            _ => self.far.at(i - 2, j - 2),
-        }
-    }
-
-    #[inline(always)]
-    fn add_half_masses(&mut self, inertia: T) {
-        self.near.0[0][0] = self.near.0[0][0] + inertia;
-        self.far.0[0][0] = self.far.0[0][0] + inertia;
-    }
-
-    /// With a spring in series with one of its four end motions.
-    #[inline(always)]
-    fn in_series_with(self, interface: &Interface, spring: T) -> Self {
-        let e = 2 * usize::from(interface.at_far_end) + usize::from(interface.dof == Dof::Rotation);
-        let column = [self.at(0, e), self.at(1, e), self.at(2, e), self.at(3, e)];
-        let factor = (spring + column[e]).reciprocal();
-        let [a, b, c, d] = column;
-        let [fa, fb, fc, fd] = [a * factor, b * factor, c * factor, d * factor];
-        let [[n00, n01], [_, n11]] = self.near.0;
-        let [[c00, c01], [c10, c11]] = self.cross.0;
-        let [[f00, f01], [_, f11]] = self.far.0;
-        let (n01, f01) = (n01 - a * fb, f01 - c * fd);
-        TwoEnds {
-            near: Matrix2::new(n00 - a * fa, n01, n01, n11 - b * fb),
-            cross: Matrix2::new(c00 - a * fc, c01 - a * fd, c10 - b * fc, c11 - b * fd),
-            far: Matrix2::new(f00 - c * fc, f01, f01, f11 - d * fd),
-        }
-    }
 }
 
 #[cfg(test)]

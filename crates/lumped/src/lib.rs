@@ -38,6 +38,7 @@ mod assembly;
 mod bar;
 mod chain;
 mod condensed;
+mod denominator;
 mod effects;
 mod far_modes;
 mod held;
@@ -48,23 +49,27 @@ mod mesh;
 mod modal_system;
 mod model;
 mod modes_cache;
+mod nominal_stiffness;
+mod point_law;
 mod receptances;
 mod state_space;
 mod station;
 mod synthesis;
+mod term_station;
 mod terms;
 mod uniform_beam;
 
-pub use assembly::{Assembly, nominal_stiffness};
-pub use chain::{MeasuringChain, Reading, channel_station, signal_power, window_decay};
+pub use assembly::Assembly;
+pub use chain::{Instrument, MeasuringChain, Reading, channel_station, signal_power, window_decay};
 pub use effects::SignalFilter;
 pub use joint_element::JointElement;
 pub use lanes::{Lanes, Lines};
 pub use model::Model;
+pub use nominal_stiffness::nominal_stiffness;
 pub use receptances::Receptances;
 pub use state_space::StateSpace;
 pub use station::Station;
-pub use synthesis::{ContinuedFrfs, Instrument, ModelledTest, accelerances, synthesize};
+pub use synthesis::{ContinuedFrfs, ModelledTest, accelerances, synthesize};
 
 /// Why an assembly cannot be modelled.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

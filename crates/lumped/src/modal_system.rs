@@ -1,7 +1,7 @@
 //! Receptances of few modes with changes of high rank: one solution in the modes' own coordinates.
 
+use crate::denominator::Denominator;
 use crate::lanes::Lines;
-use crate::model::Denominator;
 use num_complex::Complex64;
 
 /// Modes up to which there is a solution of fixed size, which the compiler unrolls.

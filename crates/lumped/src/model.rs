@@ -1,7 +1,9 @@
 use crate::bar::BarShape;
+use crate::denominator::Denominator;
 use crate::effects::{Action, actions};
-use crate::terms::{TermStation, Terms};
-use crate::{Assembly, LumpedError, Receptances, Station};
+use crate::term_station::TermStation;
+use crate::terms::Terms;
+use crate::{Assembly, LumpedError};
 use jointscope_fixture::{BodyKind, Fixture};
 use jointscope_spectra::Dof;
 use num_complex::Complex64;
@@ -25,13 +27,6 @@ struct BendingCoordinate {
     modal_mass: f64,
     eigenvalue: f64,
     viscous: f64,
-}
-
-/// A mode's denominator λ + i·structural + s·viscous + s², shared by modes that have the same one.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Denominator {
-    pub stiffness: Complex64,
-    pub viscous: f64,
 }
 
 impl Model {
@@ -59,22 +54,6 @@ impl Model {
             terms: Terms::of(fixture, &flexible),
             highest_hz,
         })
-    }
-
-    /// Prepares the receptances from every one of `inputs` to every one of `outputs`.
-    pub fn receptances(&self, outputs: &[Station], inputs: &[Station]) -> Receptances<'_> {
-        let pairs = (0..outputs.len()).flat_map(|o| (0..inputs.len()).map(move |i| (o, i))).collect();
-        self.receptances_of(outputs, inputs, pairs)
-    }
-
-    /// Prepares the receptances of `pairs` of indices (output, input).
-    pub fn receptances_of(
-        &self,
-        outputs: &[Station],
-        inputs: &[Station],
-        pairs: Vec<(usize, usize)>,
-    ) -> Receptances<'_> {
-        Receptances::new(self, outputs, inputs, pairs)
     }
 
     /// What is not a proportional part of the free assembly.

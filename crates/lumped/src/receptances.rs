@@ -1,11 +1,13 @@
 //! Receptances between fixed stations, several spectral lines at once.
 
 use crate::Station;
+use crate::denominator::Denominator;
 use crate::far_modes::FarModes;
 use crate::lanes::{Lanes, Lines, WIDTH};
 use crate::modal_system::{FEW_MODES, ModalSystem};
-use crate::model::{Denominator, Model};
-use crate::terms::{TermStation, Terms};
+use crate::model::Model;
+use crate::term_station::TermStation;
+use crate::terms::Terms;
 use jointscope_linalg::{Field, LuWorkspace};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
@@ -58,13 +60,26 @@ const HIGH_RANK: usize = 3;
 /// How far beyond the highest line s may lie, the decay of a response window included.
 const BEYOND: f64 = 1.1;
 
-impl<'a> Receptances<'a> {
-    pub(crate) fn new(
-        model: &'a Model,
+impl Model {
+    /// Prepares the receptances from every one of `inputs` to every one of `outputs`.
+    pub fn receptances(&self, outputs: &[Station], inputs: &[Station]) -> Receptances<'_> {
+        let pairs = (0..outputs.len()).flat_map(|o| (0..inputs.len()).map(move |i| (o, i))).collect();
+        self.receptances_of(outputs, inputs, pairs)
+    }
+
+    /// Prepares the receptances of `pairs` of indices (output, input).
+    pub fn receptances_of(
+        &self,
         outputs: &[Station],
         inputs: &[Station],
         pairs: Vec<(usize, usize)>,
-    ) -> Self {
+    ) -> Receptances<'_> {
+        Receptances::new(self, outputs, inputs, pairs)
+    }
+}
+
+impl<'a> Receptances<'a> {
+    fn new(model: &'a Model, outputs: &[Station], inputs: &[Station], pairs: Vec<(usize, usize)>) -> Self {
         let prepared = Prepared::new(model, outputs, inputs, pairs);
         Receptances { prepared, single: Memory::new(), several: Memory::new() }
     }

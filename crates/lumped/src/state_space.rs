@@ -1,7 +1,9 @@
 //! The assembly over time: ẋ = A x + b f in modal coordinates, effects included.
 
 use crate::joint::{JointDynamics, JointInTime};
-use crate::terms::{PointLaw, Term, TermStation};
+use crate::point_law::PointLaw;
+use crate::term_station::TermStation;
+use crate::terms::Term;
 use crate::{LumpedError, Model, Station};
 use jointscope_fixture::Fixture;
 use jointscope_linalg::{Cholesky, Matrix2, RealMatrix2};

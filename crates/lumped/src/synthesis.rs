@@ -1,18 +1,9 @@
 use crate::lanes::{Lines, WIDTH};
-use crate::{LumpedError, MeasuringChain, Model, Receptances, Station};
+use crate::{Instrument, LumpedError, MeasuringChain, Model, Receptances, Station};
 use jointscope_fixture::Fixture;
 use jointscope_spectra::{FrfForm, FrfPair, FrfSet, SpectralLines};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
-
-/// Whether the measuring chain's effects are part of what is synthesised.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Instrument {
-    /// As this test's sensors and analyser would record it: offsets, gains, delays, sensor masses, window.
-    AsRecorded,
-    /// As a perfect instrument at the stated points would read it.
-    Perfect,
-}
 
 /// Accelerances stand in for their limit at 0 Hz by their value this close to it.
 const NEARLY_ZERO_HZ: f64 = 1e-5;

@@ -5,44 +5,11 @@ use crate::effects::{Action, actions};
 use crate::held::{Held, in_the_modes, supports};
 use crate::joint::{JointDynamics, TwoEnds};
 use crate::lanes::Lines;
+use crate::point_law::PointLaw;
+use crate::term_station::TermStation;
 use jointscope_fixture::Fixture;
 use jointscope_linalg::ComplexMatrix2;
 use num_complex::Complex64;
-
-/// The dynamic stiffness that one thing adds through one station.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) enum PointLaw {
-    /// k + s c.
-    Spring { stiffness: f64, damping: f64 },
-    /// s² m.
-    Mass(f64),
-    /// k sᵅ, between a spring and a dashpot.
-    Springpot { stiffness: f64, exponent: f64 },
-    /// A mass on a spring: s² m (ω_a² + 2ζω_a s)/(s² + 2ζω_a s + ω_a²).
-    Resonator { mass: f64, omega: f64, ratio: f64 },
-}
-
-impl PointLaw {
-    #[inline(always)]
-    pub(crate) fn at<T: Lines>(&self, s: T) -> T {
-        match *self {
-            PointLaw::Spring { stiffness, damping } => T::ONE * stiffness + s * damping,
-            PointLaw::Mass(mass) => s * s * mass,
-            PointLaw::Springpot { stiffness, exponent } => {
-                let mut value = T::ZERO;
-                for line in 0..T::COUNT {
-                    value.set_line(line, stiffness * s.line(line).powf(exponent));
-                }
-                value
-            }
-            PointLaw::Resonator { mass, omega, ratio } => {
-                let spring = T::ONE * (omega * omega) + s * (2.0 * ratio * omega);
-                let squared = s * s;
-                squared * mass * spring * (squared + spring).reciprocal()
-            }
-        }
-    }
-}
 
 /// One term of Δ, by the first of its stations in the list of [`Terms`].
 #[derive(Debug, Clone)]
@@ -64,41 +31,6 @@ pub(crate) struct Terms {
     pub terms: Vec<Term>,
 }
 
-/// What a term acts through: a weighted sum of motions.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct TermStation {
-    parts: [(f64, Station); 3],
-    /// What is subtracted because the modes hold it already acts on the rigid coordinates alone, without the bending of blocks.
-    pub rigid_only: bool,
-}
-
-impl TermStation {
-    /// One motion by itself.
-    pub(crate) fn single(station: Station) -> Self {
-        TermStation { parts: [(1.0, station), (0.0, station), (0.0, station)], rigid_only: false }
-    }
-
-    /// d = u_to − R·u_from over `length`: its deflection, then its rotation.
-    pub(crate) fn relative(from: (usize, f64), to: (usize, f64), length: f64, rigid_only: bool) -> [Self; 2] {
-        let [near, far] = [from, to].map(|(body, x)| Station::both(body, x));
-        [
-            TermStation { parts: [(1.0, far[0]), (-1.0, near[0]), (-length, near[1])], rigid_only },
-            TermStation { parts: [(1.0, far[1]), (-1.0, near[1]), (0.0, near[1])], rigid_only },
-        ]
-    }
-
-    /// How far two places move apart.
-    pub(crate) fn between(one: (usize, f64), other: (usize, f64)) -> Self {
-        let [one, other] = [one, other].map(|(body, x)| Station::transverse(body, x));
-        TermStation { parts: [(1.0, other), (-1.0, one), (0.0, one)], rigid_only: false }
-    }
-
-    /// Motions and their weights.
-    pub(crate) fn parts(&self) -> impl Iterator<Item = &(f64, Station)> {
-        self.parts.iter().filter(|(weight, _)| *weight != 0.0)
-    }
-}
-
 impl Terms {
     pub(crate) fn of(fixture: &Fixture, flexible: &[bool]) -> Self {
         let mut all = Terms::default();
@@ -109,7 +41,7 @@ impl Terms {
             // The modes hold a spring by the body's rigid motion alone.
             if in_the_modes && bends {
                 let held = PointLaw::Spring { stiffness: -stiffness, damping: 0.0 };
-                all.point(TermStation { rigid_only: true, ..motion }, held);
+                all.point(motion.of_rigid_motion(), held);
             }
             let stiffness = if in_the_modes && !bends { 0.0 } else { stiffness };
             if stiffness != 0.0 || damping != 0.0 {

@@ -3,11 +3,15 @@
 //!
 //! At given poles each FRF is linear in its coefficients c, which a [`Projection`] gives. A pole parameter p moves the fit by the part of c·∂b/∂p that lies across the
 //! columns (Kaufman's approximation), and c by the part along them.
+//!
+//! The steps are not those of `descend` in `inference`: value, step and covariance come out of one and the same projection of each FRF, every step is undamped and held
+//! to a few per cent of a frequency, and a fit ends where its step is small beside the deviations of its poles, as these and not χ² are what is wanted.
 
 use crate::basis::{MASS_LINE, Pole, UPPER, row};
 use crate::outline::Outline;
 use crate::projection::Projection;
-use crate::recorded::{RecordedMode, RecordedModes, Recording, resolved_from};
+use crate::recorded::{RecordedMode, RecordedModes};
+use crate::recording::{Recording, resolved_from};
 use jointscope_linalg::Cholesky;
 use num_complex::Complex64;
 use std::f64::consts::TAU;

@@ -64,18 +64,26 @@
 mod basis;
 mod errors;
 mod evidence;
+mod expected;
 mod free_fit;
 mod matching;
 mod modelled;
+mod of_recording;
 mod outline;
+mod poles;
 mod projection;
 mod recorded;
+mod recording;
+mod relative;
 mod shapes;
 
 pub use basis::Pole;
 pub use errors::{Comparison, ErrorSizes, GAIN, KINDS, SizePrior};
 pub use evidence::{Evidence, Linear};
+pub use expected::Expected;
 pub use matching::Pairing;
-pub use modelled::{ModelledMode, ModelledModes, modes_within};
-pub use recorded::{Expected, RecordedMode, RecordedModes, Recording};
+pub use modelled::ModelledModes;
+pub use poles::{ModelledMode, modes_within};
+pub use recorded::{RecordedMode, RecordedModes};
+pub use recording::Recording;
 pub use shapes::Shapes;

@@ -1,7 +1,8 @@
 //! Which mode of a model is which of a recording: the assignment of least cost that keeps the order of both, by dynamic programming, with a cost for modes left
 //! alone. Frequencies cost by their distance, shapes by their modal assurance criterion (MAC).
 
-use crate::modelled::{ModelledMode, ModelledModes};
+use crate::modelled::ModelledModes;
+use crate::poles::ModelledMode;
 use crate::recorded::{RecordedMode, RecordedModes};
 use jointscope_modes::mac;
 use std::f64::consts::{PI, TAU};

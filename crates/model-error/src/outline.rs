@@ -3,7 +3,7 @@
 
 use crate::basis::{Pole, row};
 use crate::projection::Projection;
-use crate::recorded::Recording;
+use crate::recording::Recording;
 use jointscope_spectra::SpectralLines;
 use num_complex::Complex64;
 use std::f64::consts::TAU;

@@ -3,7 +3,7 @@
 //! A pole of the measuring chain, as a sensor's mounting makes one, is none of the structure's: it has residues but no shape. Amplitudes whose products are of the
 //! size of these stand for one, so that what errs in them by a share errs in the residues by that share.
 
-use crate::modelled::mode;
+use crate::poles::mode;
 use crate::recorded::RecordedModes;
 use jointscope_fixture::Fixture;
 use jointscope_lumped::{Instrument, ModelledTest};

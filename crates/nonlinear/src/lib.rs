@@ -47,15 +47,15 @@ mod time;
 
 pub use error::{ChannelError, DiagnoseError, ForceStateError, SimulationError, SteppedError};
 pub use force_state::{ForceState, ForceStateMap, MotionSource};
-pub use identification::diagnosis::{
-    HitEvidence, HitFinding, ModelFit, NonlinearDiagnosis, NonlinearOptions, Reach,
-};
+pub use identification::diagnosis::{NonlinearDiagnosis, NonlinearOptions, Reach};
 pub(crate) use identification::homogeneity::CHANGED;
 pub use identification::homogeneity::{HitLevel, Homogeneity};
+pub use identification::judge::{HitEvidence, HitFinding, ModelFit};
 pub use jointscope_findings::{Estimate, HeldOut, Verdict};
 pub use stepped::course::{DampingCourse, FrequencyCourse};
-pub use stepped::diagnosis::{LevelEvidence, LevelFinding, LevelResult, SteppedDiagnosis, Tried};
+pub use stepped::diagnosis::{LevelResult, SteppedDiagnosis};
 pub use stepped::level::{Held, SteppedLevel};
+pub use stepped::naming::{LevelEvidence, LevelFinding, Tried};
 pub use stepped::pooled::pooled;
 pub use stepped::resonance::Resonance;
 pub use time::law::RestoringLaw;

@@ -6,6 +6,7 @@ use jointscope_fixture::{Effect, EffectKind, Fixture, FixtureError, Place};
 use jointscope_recordings::{Hits, Recording};
 use jointscope_screening::{Oddity, screened};
 use jointscope_spectra::FrfSet;
+use jointscope_wording::Says;
 
 /// The FRFs of a test at one level, recorded as such or estimated from its hits.
 #[derive(Debug, Clone, PartialEq)]
@@ -53,7 +54,7 @@ impl MeasuredFrfs {
         let frfs = test.estimate.usable().ok_or(Error::NothingExcited)?;
         let mut notes = hits.notes.clone();
         notes.push(test.says(&frfs, options.estimator));
-        notes.extend(test.estimate.remarks.iter().cloned());
+        notes.extend(test.estimate.remarks.iter().map(Says::says));
         Ok(MeasuredFrfs { frfs, notes, window_decay: test.estimate.decay, hammer_test: Some(test) })
     }
 

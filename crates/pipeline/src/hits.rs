@@ -1,6 +1,6 @@
 //! Whether anything changes with the strength of the hits.
 
-use crate::route::Homogeneity;
+use crate::homogeneity::{Homogeneity, not_judged};
 use crate::{Answer, Error, MeasuredFrfs, Options};
 use jointscope_fixture::Fixture;
 use jointscope_nonlinear::{NonlinearDiagnosis, Verdict};
@@ -26,9 +26,4 @@ pub(crate) fn homogeneity(fixture: &Fixture, hits: &Hits, options: &Options) -> 
         }
     };
     Ok(Homogeneity::Linear(Box::new(measured), p_value))
-}
-
-/// The note on a test of homogeneity that failed.
-pub(crate) fn not_judged(why: &dyn std::error::Error) -> String {
-    format!("whether anything depends on amplitude could not be judged: {why}")
 }

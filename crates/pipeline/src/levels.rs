@@ -1,7 +1,6 @@
 //! Whether anything changes from level to level of a stepped-sine test.
 
-use crate::hits::not_judged;
-use crate::route::Homogeneity;
+use crate::homogeneity::{Homogeneity, not_judged};
 use crate::{Answer, Error, MeasuredFrfs, Options};
 use jointscope_fixture::Fixture;
 use jointscope_nonlinear::{Held, SteppedDiagnosis, SteppedError, SteppedLevel, Verdict, pooled};

@@ -51,9 +51,11 @@ mod error;
 mod frfs;
 mod hammer_test;
 mod hits;
+mod homogeneity;
 mod levels;
 mod measurement;
 mod modal_damping;
+mod options;
 mod route;
 
 pub use answer::{Answer, Outcome};
@@ -63,4 +65,5 @@ pub use frfs::MeasuredFrfs;
 pub use hammer_test::HammerTest;
 pub use measurement::Measurement;
 pub use modal_damping::{MeasuredDamping, MeasuredDampingError, measured_damping};
-pub use route::{Options, Progress, diagnose};
+pub use options::Options;
+pub use route::{Progress, diagnose};

@@ -6,8 +6,8 @@
 use crate::PlanError;
 use crate::candidates;
 use crate::expected_noise::ExpectedNoise;
-use crate::names::{Name, Names, Remaining, carried};
-use crate::plan::{NameNow, PlanOptions};
+use crate::names::{Name, NameNow, Names, Remaining, carried};
+use crate::plan::PlanOptions;
 use crate::scene::Scene;
 use jointscope_diagnosis::{Hypothesis, Linearisation, Observation, with_idle_points_exact};
 use jointscope_fixture::Fixture;

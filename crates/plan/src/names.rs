@@ -7,6 +7,17 @@ use jointscope_fixture::{Effect, Fixture, Place};
 use jointscope_linalg::Cholesky;
 use jointscope_wording::effect_name;
 use rayon::prelude::*;
+use serde::Serialize;
+
+/// A name that is left.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct NameNow {
+    /// Kind, place and dof.
+    #[serde(flatten, serialize_with = "jointscope_findings::effect_name")]
+    pub effect: Effect,
+    /// Its probability, as the diagnosis states it.
+    pub probability: f64,
+}
 
 /// Probability below which a name is left aside.
 const LISTED: f64 = 0.005;

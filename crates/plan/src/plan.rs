@@ -5,7 +5,7 @@ use crate::error::PlanError;
 use crate::expected_noise::ExpectedNoise;
 use crate::measure::Measure;
 use crate::model_error::ModelErrorNoise;
-use crate::names::{Names, Remaining};
+use crate::names::{NameNow, Names, Remaining};
 use crate::products::Products;
 use crate::rivals::{Outlook, Rivals, SURE};
 use crate::says;
@@ -48,16 +48,6 @@ pub struct Plan {
     pub remarks: Vec<String>,
     /// The FRFs recorded so far.
     pub recorded: Vec<FrfPair>,
-}
-
-/// A name that is left.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct NameNow {
-    /// Kind, place and dof.
-    #[serde(flatten, serialize_with = "jointscope_findings::effect_name")]
-    pub effect: Effect,
-    /// Its probability, as the diagnosis states it.
-    pub probability: f64,
 }
 
 /// What one more FRF would bring.

@@ -1,7 +1,7 @@
-//! Sentences of a plan.
+//! Sentences of a plan. They stand here and not in the crate of all other wording: a plan holds them, and stands above it.
 
 use crate::measure::Measure;
-use crate::plan::NameNow;
+use crate::names::NameNow;
 use crate::rivals::SURE;
 use crate::suggestion::{BEYOND_DOUBT, ExpectedInterval, Suggestion};
 use jointscope_spectra::FrfPair;

@@ -1,6 +1,6 @@
 //! What was answered: plain data, as a diagnosis hands it back.
 
-use crate::case::{effect_value, in_file};
+use crate::effect_file::{effect_value, in_file};
 use crate::{Case, Name};
 use jointscope_diagnosis::{Estimate, Verdict};
 use jointscope_fixture::{Effect, Fixture};

@@ -15,7 +15,7 @@ pub use methods::{Method, Methods};
 pub use updating::{Updated, WIDER};
 
 use crate::Case;
-use crate::answers::on_workers;
+use crate::workers::on_workers;
 use jointscope_diagnosis::Observation;
 use serde::Serialize;
 

@@ -1,6 +1,6 @@
 //! A case in a line, and what else an account of it tells.
 
-use crate::case::describe;
+use crate::name::describe;
 use crate::{Found, Name};
 use serde::{Serialize, Serializer};
 use serde_json::{Value, json};

@@ -1,14 +1,13 @@
 //! Cases from a seed: random assemblies, true quantities within tolerances, hidden physics, hammer tests.
 
-use crate::answers::on_workers;
+use crate::random::seed_of;
 use crate::scene::{Hides, Scene};
+use crate::workers::on_workers;
 use crate::{Case, GenerationError, Role, SealedTruths, Truth};
 use jointscope_fixture::{Effect, EffectKind, Fixture};
-use jointscope_rig::{Family, HammerTest, Outside, generator, random_effect};
-use jointscope_spectra::{FrfPair, SpectraError, SpectralLines};
-use rand::seq::SliceRandom;
+use jointscope_rig::{Family, Outside, generator, random_effect};
+use jointscope_spectra::FrfPair;
 use rand::{Rng, RngExt};
-use sha2::{Digest, Sha256};
 
 /// The kinds that cases hide, in the order in which seeds draw them: what a seed stands for must not change when a kind is added.
 pub const HIDDEN_KINDS: [EffectKind; 16] = [
@@ -105,13 +104,8 @@ const ROLES: [Role; 8] = [
     Role::Outside,
 ];
 
-/// Spectral lines of every recording: number and spacing in Hz.
-const LINES: (usize, f64) = (400, 2.5);
 /// Draws of a case before giving up.
 const DRAWS: usize = 60;
-/// FRFs that nobody records, at the most.
-const UNSEEN: usize = 6;
-
 impl Plan {
     /// Number of fresh cases: a quarter where there is a text to draw them from.
     pub fn fresh(&self) -> usize {
@@ -209,45 +203,11 @@ impl<'a> Draw<'a> {
     }
 }
 
-/// The spectral lines of every recording.
-pub(crate) fn recorded_lines() -> Result<SpectralLines, SpectraError> {
-    SpectralLines::even(LINES.1, LINES.1, LINES.0)
-}
-
-/// A seed of its own for every case.
-pub(crate) fn seed_of(source: &str, number: usize) -> u64 {
-    let digest = Sha256::digest(format!("{source} case {number}").as_bytes());
-    digest.iter().take(8).fold(0, |seed, byte| seed << 8 | u64::from(*byte))
-}
-
 /// How many cases before this one have its role, of roles that repeat.
 pub(crate) fn turn<R: PartialEq>(roles: &[R], number: usize) -> usize {
     let (rounds, place) = (number / roles.len(), number % roles.len());
     let count = |of: &[R]| of.iter().filter(|role| **role == roles[place]).count();
     rounds * count(roles) + count(&roles[..place])
-}
-
-/// Uniform between two bounds.
-pub(crate) fn between(random: &mut impl Rng, [from, to]: [f64; 2]) -> f64 {
-    random.random_range(from..to)
-}
-
-/// Uniform in the logarithm between two positive bounds.
-pub(crate) fn log_uniform(random: &mut impl Rng, [from, to]: [f64; 2]) -> f64 {
-    between(random, [from.ln(), to.ln()]).exp()
-}
-
-/// How a case is measured.
-pub(crate) fn drawn_hammer(random: &mut impl Rng, seed: u64) -> HammerTest {
-    HammerTest {
-        averages: [5, 8, 10, 16, 20][random.random_range(0..5)],
-        noise_response: random.random_range(0.004..0.015),
-        noise_force: random.random_range(0.0005..0.0015),
-        corner: random.random_range(900.0..1300.0),
-        spread: 0.25,
-        common_hits: false,
-        seed,
-    }
 }
 
 /// What the laboratory's own cases hide: the kinds in turn, by the case's number.
@@ -287,22 +247,4 @@ impl Hides for InTurn {
     fn outside(&self, random: &mut impl Rng, truth: &Fixture, pairs: &[FrfPair]) -> Option<Outside> {
         Outside::draw(random, truth, self.number / ROLES.len(), pairs)
     }
-}
-
-/// Pairs of points of which neither the FRF nor its reciprocal is recorded.
-pub(crate) fn unseen_pairs(fixture: &Fixture, recorded: &[FrfPair], random: &mut impl Rng) -> Vec<FrfPair> {
-    let names: Vec<&str> = fixture.points().iter().map(|point| point.name.as_str()).collect();
-    let mut all = Vec::new();
-    for (i, response) in names.iter().enumerate() {
-        for reference in &names[..=i] {
-            let (pair, back) =
-                (FrfPair::transverse(response, reference), FrfPair::transverse(reference, response));
-            if !recorded.contains(&pair) && !recorded.contains(&back) {
-                all.push(pair);
-            }
-        }
-    }
-    all.shuffle(random);
-    all.truncate(UNSEEN);
-    all
 }

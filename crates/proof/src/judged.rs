@@ -1,10 +1,11 @@
 //! Truth and answer side by side, with the objectives that decide which names are right.
 
-use crate::answers::on_workers;
-use crate::case::describe;
 use crate::case_line::{in_full, is_worse, marked, named};
-use crate::objective::{Judge, relative_error};
-use crate::seal::Sealable;
+use crate::judge::Judge;
+use crate::name::describe;
+use crate::objective::relative_error;
+use crate::sealable::Sealable;
+use crate::workers::on_workers;
 use crate::{Answer, Answers, Case, CaseLine, Found, Name, NoAnswer, Role};
 use jointscope_diagnosis::Verdict;
 use jointscope_fixture::{Effect, Fixture};

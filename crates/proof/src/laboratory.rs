@@ -1,8 +1,9 @@
 //! How answers to the laboratory's cases are judged.
 
 use crate::case_line::errors;
+use crate::judge::Judge;
 use crate::judged::error_on;
-use crate::objective::{Judge, STRAINED};
+use crate::objective::STRAINED;
 use crate::{AS_GOOD, Answer, Case, CaseLine, Evidence, Found, Judgeable, Judged, Name, Role, Truth};
 use jointscope_fixture::{Effect, Fixture};
 use std::collections::BTreeMap;

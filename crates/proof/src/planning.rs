@@ -4,8 +4,9 @@
 //! plan suggests first is measured in the laboratory, with noise of its own, and everything is diagnosed again; the plan never sees the truth. It promised a probability with which the
 //! hidden name would then have 0.9 or more.
 
-use crate::answers::on_workers;
-use crate::generate::{drawn_hammer, recorded_lines, seed_of};
+use crate::hammer_test::{drawn_hammer, recorded_lines};
+use crate::random::seed_of;
+use crate::workers::on_workers;
 use crate::{FAMILIES, GenerationError, HIDDEN_KINDS, Name, Share};
 use jointscope_diagnosis::{Diagnosis, Observation};
 use jointscope_fixture::{Fixture, Quantity, Spread};

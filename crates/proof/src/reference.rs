@@ -37,7 +37,7 @@ const SETTINGS: Settings = Settings {
     exact_at_end: false,
     limit: None,
     valleys: 0,
-    bent: 0.0,
+    curved_valley: 0.0,
 };
 
 /// A coordinate that moves.

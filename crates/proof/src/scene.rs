@@ -1,8 +1,9 @@
 //! One case of the laboratory: an assembly, what is true of it, what is hidden in it, a hammer test.
 
-use crate::generate::{drawn_hammer, log_uniform, recorded_lines, unseen_pairs};
 use crate::graded::scaled_to;
+use crate::hammer_test::{drawn_hammer, recorded_lines, unseen_pairs};
 use crate::objective::relative_error;
+use crate::random::log_uniform;
 use crate::{Case, GenerationError, Role, Truth};
 use jointscope_fixture::{Effect, Fixture};
 use jointscope_rig::{Family, Instrument, Outside, StructureError, drawn_within_tolerance, frfs};

@@ -1,32 +1,9 @@
 //! Truths under seal: known by their hash, opened only against answers.
 
-use crate::{Answers, Truth};
+use crate::Truth;
+use crate::sealable::{Filed, Given, Sealable};
 use serde_json::Value;
 use sha2::{Digest, Sha256};
-
-/// What can be sealed: a truth that says all of itself as JSON.
-pub trait Sealable {
-    /// The truth as JSON.
-    fn to_value(&self) -> Value;
-}
-
-/// A truth that can be read back from what was sealed.
-pub trait Filed: Sealable + Sized {
-    /// The truth that [`Sealable::to_value`] has written; `None` of anything else.
-    fn from_value(value: &Value) -> Option<Self>;
-}
-
-/// Answers against which truths are opened.
-pub trait Given {
-    /// Number of cases that were answered, refusals included.
-    fn count(&self) -> usize;
-}
-
-impl Given for Answers {
-    fn count(&self) -> usize {
-        self.all().len()
-    }
-}
 
 /// Truths that cannot be read until the answers are there: [`SealedTruths::open`] asks for them.
 ///

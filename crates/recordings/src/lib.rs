@@ -58,6 +58,7 @@ mod level;
 mod nodes;
 mod ordinate;
 mod recording;
+mod source;
 mod unit;
 mod units_error;
 
@@ -71,5 +72,6 @@ pub use histories::hits_to_datasets;
 pub use hits::{Hits, hits_of};
 pub use hits_error::HitsError;
 pub use level::HeldAmplitude;
-pub use recording::{Level, ReadOptions, Recording, Source, TimeHistories};
+pub use recording::{Level, ReadOptions, Recording, TimeHistories};
+pub use source::Source;
 pub use units_error::UnitsError;

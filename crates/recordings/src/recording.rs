@@ -2,7 +2,6 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use jointscope_fixture::Fixture;
 use jointscope_spectra::{FrfForm, FrfSet, SpectralLines, in_text};
-use jointscope_uff::UffFile;
 use num_complex::Complex64;
 
 use crate::coherence::CoherenceNotes;
@@ -11,16 +10,7 @@ use crate::error::enumeration;
 use crate::function::{LinesCache, append_accelerances, functions};
 use crate::gather::{Entry, Gathered, example, gather, in_order, points};
 use crate::ordinate::{Ordinate, UnitNotes, may_be_force, ordinate};
-use crate::{AssumedUnits, ChannelMap, FileChannel, FunctionError, HeldAmplitude, RecordingError};
-
-/// A universal file and the name it goes by in messages.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Source {
-    /// Name for messages, usually the file's.
-    pub name: String,
-    /// What it holds.
-    pub file: UffFile,
-}
+use crate::{AssumedUnits, ChannelMap, FileChannel, FunctionError, HeldAmplitude, RecordingError, Source};
 
 /// What the analyst says where the files do not.
 #[derive(Debug, Clone, PartialEq, Default)]

@@ -10,11 +10,11 @@ use jointscope_fixture::Fixture;
 use crate::context::PageContext;
 use crate::drawing::SideView;
 use crate::error::PageError;
-use crate::format::{in_column, percent, significant};
+use crate::format::{percent, significant};
 use crate::report::Report;
-use crate::section::{Card, Section, Tone};
+use crate::section::{Card, Section};
 use crate::table::Table;
-use crate::unit::Scale;
+use crate::tone::Tone;
 
 /// The page of a check as one self-contained HTML file.
 ///
@@ -110,9 +110,4 @@ fn mass_of(recording: &RecordingCheck) -> Option<Card> {
 
 fn millimetres(x: Option<f64>) -> String {
     x.map_or("–".to_owned(), |x| format!("{:.2}", 1e3 * x))
-}
-
-/// A figure in a column of Hz.
-fn hertz(value: f64, std: Option<f64>) -> String {
-    in_column(value, std, &Scale::plain("Hz"))
 }

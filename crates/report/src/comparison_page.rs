@@ -1,19 +1,20 @@
 //! The page of several joints side by side: in what ratio they are, who is stiffer, how sure that is, and their spectra in common plots.
 
+mod elements;
 mod spectra;
 
-use jointscope_comparison::{
-    Comparison, ELEMENTS, ElementRanking, Kind, Pair, PairedNumber, Scatter, Specimens,
-};
+use jointscope_comparison::{Comparison, ElementRanking, Kind, Pair, PairedNumber, Scatter, Specimens};
 use jointscope_wording::{Says, capitalised, comparison as says};
 
 use crate::context::PageContext;
 use crate::error::PageError;
 use crate::format::{in_column, interval, percent, quantity};
 use crate::report::Report;
-use crate::section::{Section, Tone, Verdict};
+use crate::section::{Section, Verdict};
 use crate::table::Table;
+use crate::tone::Tone;
 use crate::unit::Scale;
+use elements::{elements, name_of};
 use spectra::{compliance_section, spectra_section};
 
 /// The page of a comparison as one self-contained HTML file: ratios, orders with probabilities, the scatter of specimens, values, and the spectra of H41, K and C
@@ -43,11 +44,6 @@ pub fn comparison_report(comparison: &Comparison, context: &PageContext) -> Repo
 
 fn symbol(entry: &ElementRanking) -> String {
     name_of(entry.kind, entry.element)
-}
-
-fn name_of(kind: Kind, (i, j): (usize, usize)) -> String {
-    const DIGITS: [&str; 2] = ["₁", "₂"];
-    format!("{}{}{}", kind.symbol(), DIGITS[i], DIGITS[j])
 }
 
 /// A number of a pair as the page writes it.
@@ -246,12 +242,6 @@ fn specimen_section(specimens: &Specimens) -> Section {
             specimens.joints.join(", ")
         ))
         .with(table)
-}
-
-/// The elements that any joint has: the first alone of bodies that do not rotate.
-fn elements(comparison: &Comparison) -> &'static [(usize, usize)] {
-    let is_scalar = comparison.numbers.iter().all(|number| number.element == (0, 0));
-    if is_scalar { &ELEMENTS[..1] } else { &ELEMENTS }
 }
 
 fn value_section(comparison: &Comparison) -> Section {

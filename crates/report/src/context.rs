@@ -4,8 +4,10 @@ use jointscope_fixture::Fixture;
 use jointscope_pipeline::HammerTest;
 
 use crate::hammer_test;
+use crate::input_file::InputFile;
 use crate::page::Page;
-use crate::section::{Section, Tone, Verdict};
+use crate::section::{Section, Verdict};
+use crate::tone::Tone;
 
 /// Where a page comes from: what its foot states, and what was noticed on the way.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -20,15 +22,6 @@ pub struct PageContext {
     pub notes: Vec<String>,
     /// The hammer hits, where the FRFs were estimated from them; a section of its own.
     pub hits: Option<HammerTest>,
-}
-
-/// A file that was read.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct InputFile {
-    /// Its name.
-    pub name: String,
-    /// SHA-256 of its contents, in hexadecimal digits.
-    pub sha256: String,
 }
 
 impl PageContext {

@@ -9,56 +9,27 @@ mod joints;
 mod omitted;
 mod result;
 mod shares;
+mod subject;
 
 pub use joints::joints_report;
 
-use jointscope_decomposition::{Analysis, Estimate, Relation, Use};
-use jointscope_fixture::{Fixture, Joint};
+use jointscope_decomposition::{Analysis, Estimate, Use};
+use jointscope_fixture::Fixture;
 use jointscope_pipeline::{Decomposition, Joints};
 use jointscope_wording::decomposition;
 
 use crate::context::PageContext;
 use crate::error::PageError;
 use crate::report::Report;
-use crate::section::{Tone, Verdict};
+use crate::section::Verdict;
+use crate::tone::Tone;
+use subject::Subject;
 
 /// The page of the joint in a measurement, or of all joints.
 pub fn joint_report(decomposition: &Decomposition, context: &PageContext) -> Report {
     match &decomposition.found {
         Joints::One(analysis) => decomposition_report(analysis, &decomposition.fixture, context),
         Joints::AtOnce(joints) => joints_report(joints, &decomposition.fixture, context),
-    }
-}
-
-/// What the sections of the page are made from.
-#[derive(Clone, Copy)]
-struct Subject<'a> {
-    analysis: &'a Analysis,
-    fixture: &'a Fixture,
-    best: &'a Estimate,
-}
-
-impl<'a> Subject<'a> {
-    fn joint(&self) -> Option<&'a Joint> {
-        self.fixture.joint(&self.analysis.joint)
-    }
-
-    fn is_paper(&self) -> bool {
-        self.analysis.spectrum.relation == Relation::Paper
-    }
-
-    fn is_scalar(&self) -> bool {
-        self.analysis.spectrum.scalar
-    }
-
-    /// Whether the joint from all FRFs was found with nothing of the fixture moving.
-    fn is_exact(&self) -> bool {
-        self.analysis.joint_fit.as_ref().is_ok_and(|fit| fit.quantities.is_empty())
-    }
-
-    /// What K by line is called in captions.
-    fn relation_words(&self) -> &'static str {
-        if self.is_paper() { "eq (7)" } else { "the exact relation" }
     }
 }
 

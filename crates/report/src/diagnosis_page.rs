@@ -12,46 +12,20 @@ mod law;
 mod misfit;
 mod model_error;
 mod noise;
+mod subject;
 mod tolerances;
 mod two_states;
 
-use jointscope_diagnosis::{Diagnosis, Fit, Hypothesis};
+use jointscope_diagnosis::Diagnosis;
 use jointscope_fixture::Fixture;
 use jointscope_wording::Says;
 
 use crate::context::PageContext;
 use crate::error::PageError;
 use crate::report::Report;
-use crate::section::{Tone, Verdict};
-
-/// Places that are shown at the most; the page says how many there are.
-const SHOWN: usize = 12;
-
-/// What the sections of the page are made from.
-#[derive(Clone, Copy)]
-struct Subject<'a> {
-    diagnosis: &'a Diagnosis,
-    fixture: &'a Fixture,
-}
-
-impl<'a> Subject<'a> {
-    /// The models that are compared, by name. The repaired one is there only where it is another than the refitted.
-    fn models(&self) -> Vec<(&'static str, &'a Fit)> {
-        let search = &self.diagnosis.search;
-        let mut models = vec![("nominal", &search.nominal), ("refitted", &search.refitted)];
-        if !self.diagnosis.findings.is_empty() {
-            models.push(("repaired", &search.repaired));
-        }
-        models
-    }
-
-    /// The refitted and, where it is another, the repaired model, as quantities are stated of them.
-    fn stated(&self) -> Vec<(&'static str, &'a Hypothesis)> {
-        let [refitted, repaired] = &self.diagnosis.stated;
-        let found = (!self.diagnosis.findings.is_empty()).then_some(("repaired", repaired));
-        [("refitted", refitted)].into_iter().chain(found).collect()
-    }
-}
+use crate::section::Verdict;
+use crate::tone::Tone;
+use subject::Subject;
 
 /// The page of a diagnosis as one self-contained HTML file: the verdict in a sentence; what was found, how sure, how much better, what to do, and the fixture with the places marked; findings with
 /// intervals, probabilities and look-alikes; with a baseline the modes then and now; the error of the model and the departures, where there are any; errors before and after, held-out lines included; δ(ω) with the law that names it; the FRFs of all

@@ -4,11 +4,13 @@ use jointscope_estimation::{Excitation, Fault, HitReport};
 use jointscope_hits::Hit;
 use jointscope_pipeline::HammerTest;
 use jointscope_spectra::Channel;
+use jointscope_wording::Says;
 
 use crate::format::{fixed, significant};
 use crate::plot::{Axis, Plot, Role, Style, YRange};
-use crate::section::{Block, Section, Tone};
+use crate::section::{Block, Section};
 use crate::table::Table;
+use crate::tone::Tone;
 
 /// Hits drawn at one struck point at the most, and struck points.
 const SHOWN: usize = 12;
@@ -45,7 +47,7 @@ pub(crate) fn section(test: &HammerTest) -> Section {
         section =
             section.paragraph(format!("The first {SHOWN} of {} struck points are drawn.", points.len()));
     }
-    section.notes(&estimate.remarks)
+    section.notes(estimate.remarks.iter().map(Says::says))
 }
 
 fn table(hits: &[HitReport]) -> impl Into<Block> {

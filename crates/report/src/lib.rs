@@ -41,6 +41,7 @@ mod error;
 mod force_state;
 mod hammer_test;
 mod hits_page;
+mod input_file;
 mod json;
 mod mode_indicator;
 mod modes_page;
@@ -56,6 +57,7 @@ mod summary_page;
 mod table;
 #[cfg(test)]
 mod tests;
+mod tone;
 
 pub use jointscope_wording::format;
 use jointscope_wording::unit;
@@ -63,10 +65,11 @@ use jointscope_wording::unit;
 pub use answer_page::{answer_page, answer_report};
 pub use check_page::{check_page, check_report};
 pub use comparison_page::{comparison_page, comparison_report};
-pub use context::{InputFile, PageContext};
+pub use context::PageContext;
 pub use decomposition_page::{decomposition_page, decomposition_report, joint_report, joints_report};
 pub use diagnosis_page::diagnosis_page;
 pub use error::PageError;
+pub use input_file::InputFile;
 pub use modes_page::{modes_page, modes_report};
 pub use plan_page::plan_page;
 pub use proof_page::{ProofContext, ProofResults, proof_page};

@@ -13,10 +13,8 @@ use jointscope_wording::Remarks;
 use crate::context::PageContext;
 use crate::error::PageError;
 use crate::report::Report;
-use crate::section::{Section, Tone};
-
-/// FRFs and shapes that are shown at the most; the page says how many there are.
-const SHOWN: usize = 12;
+use crate::section::Section;
+use crate::tone::Tone;
 
 /// The page of a modal analysis as one self-contained HTML file: stabilisation chart, table of modes, shapes, auto-MAC, residual terms, and rebuilt FRFs over measured
 /// ones.

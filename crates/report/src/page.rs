@@ -6,9 +6,9 @@ use base64::{Engine, prelude::BASE64_STANDARD};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use sha2::{Digest, Sha256};
 
-use crate::context::InputFile;
 use crate::error::PageError;
 use crate::format::hides;
+use crate::input_file::InputFile;
 use crate::json::script_safe;
 use crate::plot::PlotBook;
 use crate::section::{Section, Verdict};

@@ -10,8 +10,9 @@ use crate::context::PageContext;
 use crate::drawing::{Drawing, Highlight, SideView};
 use crate::error::PageError;
 use crate::format::{percent, quantity, significant};
-use crate::section::{Section, Tone};
+use crate::section::Section;
 use crate::table::{Cell, Table};
+use crate::tone::Tone;
 
 /// Suggestions that are drawn and listed.
 const LISTED: usize = 12;

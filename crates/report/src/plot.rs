@@ -1,6 +1,7 @@
 //! A plot as a page describes it: axes, series over spectral lines, reference lines and bands of frequency.
 
 mod data;
+mod drawing;
 mod figure;
 mod frf;
 mod range;

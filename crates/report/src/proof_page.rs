@@ -2,32 +2,22 @@
 
 mod calibration;
 mod cases;
+mod cells;
+mod context;
 mod detection;
 mod methods;
 mod routes;
 mod scores;
 
-use jointscope_proof::{Judged, Methods, Rate, Role, RouteScores, Score, Share};
+pub use context::ProofContext;
+
+use jointscope_proof::{Judged, Methods, Rate, Role, RouteScores, Score};
 
 use crate::error::PageError;
 use crate::page::Page;
-use crate::section::{Section, Tone, Verdict};
-use crate::table::Cell;
-
-/// Where the page comes from.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct ProofContext {
-    /// The program and its version.
-    pub program: String,
-    /// The command line.
-    pub command: String,
-    /// Which cases these are, in a line.
-    pub cases: String,
-    /// SHA-256 of the sealed truths.
-    pub sealed: String,
-    /// Whether `cases/NNN/report.html` lie beside the page.
-    pub pages: bool,
-}
+use crate::section::{Section, Verdict};
+use crate::tone::Tone;
+use cells::counted;
 
 /// What the page shows.
 #[derive(Debug, Clone, Copy)]
@@ -74,11 +64,6 @@ pub fn proof_page(results: &ProofResults, context: &ProofContext) -> Result<Stri
 /// Whether other routes alone were asked for.
 fn is_left_out(results: &ProofResults) -> bool {
     results.judged.is_empty() && !results.routes.0.is_empty()
-}
-
-/// "46 of 48", or that there is none.
-fn counted(share: Share) -> String {
-    if share.all == 0 { "no case".to_owned() } else { format!("{} of {}", share.of, share.all) }
 }
 
 fn verdict(results: &ProofResults) -> Verdict {
@@ -135,26 +120,4 @@ fn seal(context: &ProofContext) -> Section {
 
 fn roles() -> String {
     Role::ALL.map(|role| role.name()).join(", ")
-}
-
-/// A case's number, which leads to its page where it has one.
-fn case_number(index: usize, has_page: bool) -> Cell {
-    match has_page {
-        true => Cell::Link(format!("{index:03}"), format!("cases/{index:03}/report.html")),
-        false => format!("{index:03}").into(),
-    }
-}
-
-/// Green where all is right (and something was `asked` for), red where a fault would mislead a reader, amber where it is of the second order.
-fn tone(faults: &[String], asked: bool, lesser: &[&str]) -> Option<Tone> {
-    if faults.is_empty() {
-        return asked.then_some(Tone::Ok);
-    }
-    let grave = faults.iter().any(|fault| !lesser.contains(&fault.as_str()));
-    Some(if grave { Tone::Problem } else { Tone::Attention })
-}
-
-/// A number where there is one.
-fn or_dash(text: Option<String>) -> String {
-    text.unwrap_or_else(|| "–".to_owned())
 }

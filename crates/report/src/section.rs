@@ -1,6 +1,5 @@
 //! A section: a heading and what stands below it, in the order in which it was added; and the verdict above all of them.
 
-use jointscope_diagnosis::Verdict as Conclusion;
 use maud::{Markup, Render, html};
 
 use crate::drawing::Drawing;
@@ -8,46 +7,7 @@ use crate::error::PageError;
 use crate::format::QuantityText;
 use crate::plot::{Plot, PlotBook};
 use crate::table::{Table, TableText};
-
-/// How a statement is meant to be taken.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Tone {
-    /// As it should be.
-    Ok,
-    /// To be looked at.
-    Attention,
-    /// Not usable as it is.
-    Problem,
-}
-
-impl Tone {
-    pub(crate) fn class(self) -> &'static str {
-        match self {
-            Tone::Ok => "ok",
-            Tone::Attention => "attention",
-            Tone::Problem => "problem",
-        }
-    }
-
-    /// The tone in one character, so that it does not hang on the colour alone.
-    fn sign(self) -> &'static str {
-        match self {
-            Tone::Ok => "✓",
-            Tone::Attention => "!",
-            Tone::Problem => "✕",
-        }
-    }
-}
-
-impl From<Conclusion> for Tone {
-    fn from(conclusion: Conclusion) -> Self {
-        match conclusion {
-            Conclusion::Consistent => Tone::Ok,
-            Conclusion::Explained => Tone::Attention,
-            Conclusion::PartlyExplained | Conclusion::Unexplained => Tone::Problem,
-        }
-    }
-}
+use crate::tone::Tone;
 
 /// What came out: how to take it, in one sentence, and what is to be said besides.
 #[derive(Debug, Clone)]

@@ -5,8 +5,9 @@ use jointscope_cases::{Command, DecomposedCase, DiagnosedCase, Row, State, Summa
 use crate::context::PageContext;
 use crate::error::PageError;
 use crate::format::{in_column, significant};
-use crate::section::{Card, Section, Tone, Verdict};
+use crate::section::{Card, Section, Verdict};
 use crate::table::{Cell, Table};
+use crate::tone::Tone;
 use crate::unit::Scale;
 
 /// The page of many cases as one self-contained HTML file: how many came to what, and a row a case; each leads to the page beside it, `<case>/report.html`.

@@ -3,7 +3,7 @@
 use maud::{Markup, Render, html};
 
 use crate::format::{NOT_DETERMINED, fixed};
-use crate::section::Tone;
+use crate::tone::Tone;
 use crate::unit::typeset;
 
 /// χ² from which on the shade of a [heat map](Table::shaded) is full: from there on it is all the same how bad it is.

@@ -1,7 +1,7 @@
 //! Physics that an analyst might have left out: random effects of sensible sizes.
 
 use crate::StructureError;
-use crate::families::elastic_frequencies;
+use crate::families::elastic::elastic_frequencies;
 use crate::random::{choice, log_uniform, sign, uniform};
 use jointscope_fixture::{Body, BodyKind, Dof, Effect, EffectKind, Fixture, Joint, JointLaw, Nature, Place};
 use jointscope_spectra::FrfPair;

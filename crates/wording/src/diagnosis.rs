@@ -1,11 +1,11 @@
 //! A diagnosis in sentences: what is left out, or where what has no name sits and how it goes with frequency.
 
 use crate::departures::departed;
-use crate::effects::named_with_size;
-use crate::numbers::{figures, listed, percent, plain, significant};
-use crate::places::variation;
+use crate::finding::{found, it};
+use crate::misfit::{sits, varies};
+use crate::numbers::{figures, listed, percent, significant};
 use crate::{Remarks, Says, model_error};
-use jointscope_diagnosis::{Diagnosis, Fit, Location, Observation, Trend};
+use jointscope_diagnosis::{Diagnosis, Observation};
 use jointscope_findings::Verdict;
 use jointscope_frf::noise::NoiseSource;
 
@@ -49,7 +49,7 @@ fn by_noise(diagnosis: &Diagnosis) -> String {
             it(diagnosis),
             figures(repaired),
             figures(refitted),
-            bent(diagnosis),
+            farthest_quantity(diagnosis),
             percent(error_repaired),
             percent(error_refitted)
         ),
@@ -77,16 +77,6 @@ fn by_noise(diagnosis: &Diagnosis) -> String {
             varies(diagnosis, &diagnosis.search.refitted)
         ),
     }
-}
-
-/// The effects found, with their sizes.
-pub(crate) fn found(diagnosis: &Diagnosis) -> String {
-    listed(&diagnosis.findings.iter().map(named_with_size).collect::<Vec<_>>())
-}
-
-/// `it` or `them`, the effects found.
-pub(crate) fn it(diagnosis: &Diagnosis) -> &'static str {
-    if diagnosis.findings.len() == 1 { "it" } else { "them" }
 }
 
 /// What the reader must know of the test itself: too few FRFs, noise that had to be estimated.
@@ -199,54 +189,8 @@ fn of_observation(observation: &Observation) -> Vec<String> {
 }
 
 /// `, and bodies/A/mass would have to be 33 standard deviations off`, where the refit without effects takes a quantity that far.
-fn bent(diagnosis: &Diagnosis) -> String {
-    diagnosis.bent().map_or_else(String::new, |(path, deviations)| {
+fn farthest_quantity(diagnosis: &Diagnosis) -> String {
+    diagnosis.farthest_quantity().map_or_else(String::new, |(path, deviations)| {
         format!(", and {path} would have to be {} standard deviations off", significant(deviations, 2))
     })
-}
-
-/// `most clearly in FRF 4/1 from 180 Hz to 240 Hz`, and the best place with what it leaves.
-fn sits(diagnosis: &Diagnosis, fit: &Fit) -> String {
-    let place = diagnosis.best_place().map_or_else(String::new, |location| {
-        format!("{} (χ² per degree of freedom {})", best(location), figures(location.chi2_per_dof))
-    });
-    format!("{}{place}", most_clearly(diagnosis, fit))
-}
-
-/// `most clearly in FRF 4/1 from 180 Hz to 240 Hz`, and the best place.
-pub(crate) fn shows(diagnosis: &Diagnosis, fit: &Fit) -> String {
-    format!("{}{}", most_clearly(diagnosis, fit), diagnosis.best_place().map_or_else(String::new, best))
-}
-
-fn best(location: &Location) -> String {
-    format!("; of all single places {} would explain most", location.site.says())
-}
-
-fn most_clearly(diagnosis: &Diagnosis, fit: &Fit) -> String {
-    match diagnosis.worst_band(fit) {
-        Some((frf, band)) => {
-            format!("most clearly in FRF {frf} from {} to {}", plain(band.from, "Hz"), plain(band.to, "Hz"))
-        }
-        None => "in no line that counts".to_owned(),
-    }
-}
-
-/// How the mismatch goes with frequency: by δ(ω) of the best place, or by the relative error at both ends of the band.
-pub(crate) fn varies(diagnosis: &Diagnosis, fit: &Fit) -> String {
-    if let Some(variation) = diagnosis.best_place().and_then(variation) {
-        return format!(", where what is missing, δ(ω), {variation}");
-    }
-    let Some(errors) = diagnosis.end_errors(fit) else { return String::new() };
-    let course = match errors.trend() {
-        Trend::Grows => "grows with frequency",
-        Trend::Falls => "falls with frequency",
-        Trend::Level => "is about as large at both ends of the band",
-    };
-    format!(
-        ", and {course} (relative error {} below {}, {} above {})",
-        percent(errors.low),
-        plain(errors.below, "Hz"),
-        percent(errors.high),
-        plain(errors.above, "Hz")
-    )
 }

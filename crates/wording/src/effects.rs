@@ -1,9 +1,7 @@
 //! Effects: the name and the sentence that the table of effects has for every kind, with what was found filled in.
 
-use crate::estimate::{rounded_value, size_of};
-use crate::finding::or_look_alike;
+use crate::estimate::size_of;
 use crate::numbers::plain;
-use jointscope_diagnosis::Finding;
 use jointscope_findings::Estimate;
 use jointscope_fixture::{Case, Dof, Effect, ParameterRange, Place};
 use std::f64::consts::TAU;
@@ -14,20 +12,6 @@ const UNPLACED: f64 = 0.1;
 /// An effect's kind and place in a few words: `added mass on body B`.
 pub fn effect_name(effect: &Effect) -> String {
     filled(effect.kind.spec().words.name, |key| word(effect, key), |_| true)
-}
-
-/// `added mass on body B (49.8 g)`.
-pub(crate) fn named_with_size(finding: &Finding) -> String {
-    let spec = finding.effect.kind.spec();
-    let main = spec.parameters[spec.size.parameter].name;
-    let size = finding.estimate(main).map_or_else(String::new, |estimate| {
-        let what = match main {
-            "factor" | "loss_factor" | "ratio" => format!("{} ", main.replace('_', " ")),
-            _ => String::new(),
-        };
-        format!(" ({what}{})", rounded_value(estimate))
-    });
-    format!("{}{size}{}", effect_name(&finding.effect), or_look_alike(finding))
 }
 
 /// The sentence of an effect without its look-alikes and full stop, its parameters as the `data` know them.

@@ -1,9 +1,10 @@
 //! Findings: one sentence each.
 
 use crate::effects::{effect_name, meaning};
+use crate::estimate::rounded_value;
 use crate::numbers::{Short, listed};
 use crate::{Says, amplitude};
-use jointscope_diagnosis::Finding as FrfFinding;
+use jointscope_diagnosis::{Diagnosis, Finding as FrfFinding};
 use jointscope_findings::Finding;
 use jointscope_fixture::Dof;
 use jointscope_nonlinear::{HitFinding, LevelFinding};
@@ -33,6 +34,30 @@ pub(crate) fn or_look_alike<E>(finding: &Finding<E>) -> &'static str {
         1 => " or its look-alike",
         _ => " or one of its look-alikes",
     }
+}
+
+/// `added mass on body B (49.8 g)`.
+fn named_with_size(finding: &FrfFinding) -> String {
+    let spec = finding.effect.kind.spec();
+    let main = spec.parameters[spec.size.parameter].name;
+    let size = finding.estimate(main).map_or_else(String::new, |estimate| {
+        let what = match main {
+            "factor" | "loss_factor" | "ratio" => format!("{} ", main.replace('_', " ")),
+            _ => String::new(),
+        };
+        format!(" ({what}{})", rounded_value(estimate))
+    });
+    format!("{}{size}{}", effect_name(&finding.effect), or_look_alike(finding))
+}
+
+/// The effects found, with their sizes.
+pub(crate) fn found(diagnosis: &Diagnosis) -> String {
+    listed(&diagnosis.findings.iter().map(named_with_size).collect::<Vec<_>>())
+}
+
+/// `it` or `them`, the effects found.
+pub(crate) fn it(diagnosis: &Diagnosis) -> &'static str {
+    if diagnosis.findings.len() == 1 { "it" } else { "them" }
 }
 
 /// What, where, how much with its 95 % interval, what that means, and what the data cannot tell from it.

@@ -1,7 +1,8 @@
 //! The verdict where the model's own error decides instead of the noise.
 
 use crate::departures::remaining;
-use crate::diagnosis::{found, it, shows, varies};
+use crate::finding::{found, it};
+use crate::misfit::{shows, varies};
 use crate::numbers::{figures, listed, percent, significant};
 use jointscope_diagnosis::{Diagnosis, ModalSettings, ModelError};
 use jointscope_findings::Verdict;
@@ -22,7 +23,7 @@ pub(crate) fn verdict(diagnosis: &Diagnosis, [refitted, repaired]: &[ModelError;
             "The fixture leaves out {}: check {it}. Without {it} the model would be off by {}{}, with {it} by {}.",
             found(diagnosis),
             without,
-            bent(diagnosis),
+            farthest_quantity(diagnosis),
             with,
             it = it(diagnosis)
         ),
@@ -40,7 +41,7 @@ pub(crate) fn verdict(diagnosis: &Diagnosis, [refitted, repaired]: &[ModelError;
              shows {}{}.",
             found(diagnosis),
             without,
-            bent(diagnosis),
+            farthest_quantity(diagnosis),
             with,
             excess(diagnosis, repaired),
             shows(diagnosis, &diagnosis.search.repaired),
@@ -181,9 +182,10 @@ fn known_by(error: &ErrorInWords) -> &'static str {
 
 /// ` (and bodies/A/mass 33 standard deviations from what is stated)`, where the refit without effects takes a quantity that far and the effects
 /// bring it back.
-fn bent(diagnosis: &Diagnosis) -> String {
-    let bent =
-        diagnosis.bent().filter(|(path, _)| remaining(diagnosis).all(|departure| departure.path != *path));
+fn farthest_quantity(diagnosis: &Diagnosis) -> String {
+    let bent = diagnosis
+        .farthest_quantity()
+        .filter(|(path, _)| remaining(diagnosis).all(|departure| departure.path != *path));
     bent.map_or_else(String::new, |(path, deviations)| {
         format!(" (and {path} {} standard deviations from what is stated)", significant(deviations, 2))
     })

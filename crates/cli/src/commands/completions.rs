@@ -3,7 +3,6 @@
 use clap::Args;
 use clap_complete::{Shell, generate};
 
-use super::Program;
 use crate::refusal::Refusal;
 
 #[derive(Debug, Args)]
@@ -12,9 +11,9 @@ pub(super) struct CompletionsArguments {
     pub shell: Shell,
 }
 
-/// Prints the script.
-pub(super) fn run(arguments: &CompletionsArguments) -> Result<String, Refusal> {
+/// Prints the script for a program with these commands.
+pub(super) fn run(arguments: &CompletionsArguments, mut program: clap::Command) -> Result<String, Refusal> {
     let mut script = Vec::new();
-    generate(arguments.shell, &mut Program::arguments(), "jointscope", &mut script);
+    generate(arguments.shell, &mut program, "jointscope", &mut script);
     Ok(String::from_utf8_lossy(&script).trim_end().to_owned())
 }

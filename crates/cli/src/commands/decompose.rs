@@ -10,7 +10,6 @@ use jointscope::report::joint_report;
 use jointscope::wording::Summary;
 use jointscope::{AnalysisOptions, Band, Relation, Remarks, fitted_frfs, joint_file};
 
-use super::Said;
 use super::many::{self, ManyArguments, Task};
 use crate::answered::{Also, Answered, Destination, PAGE};
 use crate::estimation_arguments::EstimationArguments;
@@ -19,6 +18,7 @@ use crate::origin;
 use crate::output::pretty;
 use crate::recording::RecordingArguments;
 use crate::refusal::Refusal;
+use crate::said::Said;
 use crate::values::{band, one_of};
 
 #[derive(Debug, Clone, Args)]

@@ -12,7 +12,6 @@ use jointscope::report::answer_report;
 use jointscope::spectra::FrfPair;
 use jointscope::{Answer, Band, DiagnosisOptions, answer_file, diagnose, model_frfs};
 
-use super::Said;
 use super::many::{self, ManyArguments, Task};
 use crate::answered::{Also, Answered, Destination, PAGE};
 use crate::estimation_arguments::EstimationArguments;
@@ -22,6 +21,7 @@ use crate::output::pretty;
 use crate::progress::Steps;
 use crate::recording::RecordingArguments;
 use crate::refusal::Refusal;
+use crate::said::Said;
 use crate::values::{band, frf_pair, seconds};
 
 #[derive(Debug, Clone, Args)]

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use jointscope::Says;
 use jointscope::estimation::{Estimate, EstimateError, ResponseWindow};
 use jointscope::pipeline::{Error, HammerTest};
 use jointscope::recordings::{hits_of, to_datasets};
@@ -57,7 +58,7 @@ pub(super) fn run(arguments: &EstimateArguments) -> Result<String, Refusal> {
             excitation.struck, excitation.usable_to
         ));
     }
-    lines.extend(estimate.remarks.iter().cloned());
+    lines.extend(estimate.remarks.iter().map(Says::says));
     lines.push(output.display().to_string());
     Ok(lines.join("\n"))
 }

@@ -5,7 +5,6 @@ use std::path::PathBuf;
 use clap::Args;
 use clap_mangen::Man;
 
-use super::Program;
 use crate::output::{Outputs, counted};
 use crate::refusal::Refusal;
 
@@ -16,9 +15,8 @@ pub(super) struct ManArguments {
     pub output: Option<PathBuf>,
 }
 
-/// Prints or writes the pages.
-pub(super) fn run(arguments: &ManArguments) -> Result<String, Refusal> {
-    let mut program = Program::arguments();
+/// Prints or writes the pages of a program with these commands.
+pub(super) fn run(arguments: &ManArguments, mut program: clap::Command) -> Result<String, Refusal> {
     program.build();
     let Some(folder) = &arguments.output else {
         return Ok(page(program)?.trim_end().to_owned());

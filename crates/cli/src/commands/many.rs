@@ -12,13 +12,14 @@ use clap::Args;
 use jointscope::cases::{Case, Command, FolderOfFiles, Shard, State, listed, of_folders};
 use serde_json::{Value, json};
 
-use super::{Said, summary};
+use super::summary;
 use crate::answered::{Answered, Destination, PAGE, REFUSED};
 use crate::input;
 use crate::origin;
 use crate::output::{Outputs, counted, pretty};
 use crate::progress::tell;
 use crate::refusal::Refusal;
+use crate::said::Said;
 
 /// Options for many cases.
 #[derive(Debug, Clone, Default, Args)]

@@ -11,7 +11,6 @@ use jointscope::report::{PageContext, plan_page};
 use jointscope::{Answer, Band, Fixture, Outcome, SpectralLines, effect_name, plan_file};
 
 use crate::answered::Destination;
-use crate::commands::Program;
 use crate::commands::diagnose::{self, DiagnoseArguments};
 use crate::commands::many::ManyArguments;
 use crate::estimation_arguments::EstimationArguments;
@@ -83,15 +82,18 @@ struct Planned {
     notes: Vec<String>,
 }
 
+/// The arguments of a command line that diagnoses; `None` of any other.
+type ReadDiagnose = fn(&[String]) -> Option<DiagnoseArguments>;
+
 /// Plans; answers with the suggestions, the best first.
-pub(super) fn run(arguments: &PlanArguments) -> Result<String, Refusal> {
+pub(super) fn run(arguments: &PlanArguments, read: ReadDiagnose) -> Result<String, Refusal> {
     let folder = arguments.output.iter();
     let names = folder.flat_map(|folder| FILES.iter().map(|name| folder.join(name)));
     Outputs::foresee(std::iter::once(&arguments.fixture), names)?;
     let planned = match &arguments.interval {
         Some(wanted) => for_interval(arguments, wanted)?,
         None => {
-            let diagnosed = diagnosed(arguments)?;
+            let diagnosed = diagnosed(arguments, read)?;
             match arguments.also.as_slice() {
                 [state, recording] => return weighed(arguments, &diagnosed, state, recording),
                 _ => between(arguments, diagnosed)?,
@@ -127,7 +129,7 @@ impl Diagnosed {
 }
 
 /// The diagnosis of the recordings, or the one of a directory made again.
-fn diagnosed(arguments: &PlanArguments) -> Result<Diagnosed, Refusal> {
+fn diagnosed(arguments: &PlanArguments, read: ReadDiagnose) -> Result<Diagnosed, Refusal> {
     let of_directory =
         |path: &PathBuf| path.is_dir() || path.extension().is_some_and(|ending| ending == "json");
     let directory = arguments.diagnosis.as_ref().or_else(|| match arguments.files.as_slice() {
@@ -135,7 +137,7 @@ fn diagnosed(arguments: &PlanArguments) -> Result<Diagnosed, Refusal> {
         _ => None,
     });
     let again = match directory {
-        Some(path) => of_diagnosis(path, &arguments.fixture)?,
+        Some(path) => of_diagnosis(path, &arguments.fixture, read)?,
         None if arguments.files.is_empty() => {
             return Err(Refusal::new(
                 "nothing was recorded that could be diagnosed; give the recordings or the directory of a diagnosis, or ask for an interval with `--interval JOINT/k11=1%`",
@@ -165,7 +167,7 @@ fn recording(arguments: &PlanArguments) -> RecordingArguments {
 }
 
 /// The arguments of the diagnosis that wrote a file, its inputs as they were then.
-fn of_diagnosis(path: &Path, fixture: &Path) -> Result<DiagnoseArguments, Refusal> {
+fn of_diagnosis(path: &Path, fixture: &Path, read: ReadDiagnose) -> Result<DiagnoseArguments, Refusal> {
     let directory = path.is_dir().then_some(path);
     let path = directory.map_or(path.to_owned(), |directory| directory.join("diagnosis.json"));
     if let Some(directory) = directory.filter(|_| !path.exists()) {
@@ -180,7 +182,7 @@ fn of_diagnosis(path: &Path, fixture: &Path) -> Result<DiagnoseArguments, Refusa
     };
     let command = file["made"]["command"].as_str().ok_or_else(not_one)?;
     let words = origin::words(command);
-    let arguments = Program::diagnose_arguments(&words).ok_or_else(not_one)?;
+    let arguments = read(&words).ok_or_else(not_one)?;
     for made_of in file["made"]["inputs"].as_array().into_iter().flatten() {
         let (Some(name), Some(hash)) = (made_of["file"].as_str(), made_of["sha256"].as_str()) else {
             return Err(not_one());

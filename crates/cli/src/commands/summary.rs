@@ -9,12 +9,12 @@ use jointscope::report::summary_page;
 use serde::Deserialize;
 use serde_json::{Value, json};
 
-use super::Said;
 use crate::answered::REFUSED;
 use crate::input;
 use crate::origin;
 use crate::output::{Outputs, pretty};
 use crate::refusal::Refusal;
+use crate::said::Said;
 
 #[derive(Debug, Args)]
 pub(super) struct SummaryArguments {

@@ -1,6 +1,7 @@
 //! What a fit of the joint finds.
 
 use super::laws::CERTAIN;
+use super::length::FittedLength;
 use super::{Admissible, JointLikelihood, JointTests, LawFit, LawKind};
 use jointscope_linalg::{Matrix2, RealMatrix2};
 use jointscope_spectra::{FrfPair, FrfSet};
@@ -128,23 +129,6 @@ pub struct UnmovedQuantity {
     pub stated: f64,
     /// Its stated standard deviation; nothing where it is unknown.
     pub std: Option<f64>,
-}
-
-/// The joint's length as a fit has it.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct FittedLength {
-    /// L, m.
-    pub value: f64,
-    /// Its variance after the fit, m²; zero where both ends are exact.
-    #[serde(rename = "std", serialize_with = "root")]
-    pub variance: f64,
-    /// Its covariance with (k11, k12, k22).
-    #[serde(skip)]
-    pub with_stiffness: [f64; 3],
-}
-
-fn root<S: Serializer>(variance: &f64, serializer: S) -> Result<S::Ok, S::Error> {
-    variance.max(0.0).sqrt().serialize(serializer)
 }
 
 fn uncertain<S: Serializer>(mass: &Option<(f64, f64)>, serializer: S) -> Result<S::Ok, S::Error> {

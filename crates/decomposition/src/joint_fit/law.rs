@@ -328,3 +328,26 @@ fn on_lines<T: Lines>(s: &[Complex64], value: impl Fn(Complex64) -> Complex64) -
     s.iter().enumerate().for_each(|(line, s)| all.set_line(line, value(*s)));
     all
 }
+
+/// Coordinates of K and of an imaginary stiffness D.
+pub(super) fn coordinates(law: &Dynamics, k: RealMatrix2, d: RealMatrix2) -> Vec<f64> {
+    let of = |form: Form, m: RealMatrix2| {
+        let e = |i: usize, j: usize| m.at(i, j) / law.unit.at(i, j);
+        match form {
+            Form::Scalar => vec![e(0, 0)],
+            Form::Symmetric => vec![e(0, 0), 0.5 * (e(0, 1) + e(1, 0)), e(1, 1)],
+            Form::Free => vec![e(0, 0), e(0, 1), e(1, 1), e(1, 0)],
+            Form::RankOne => rank_one(e(0, 0), 0.5 * (e(0, 1) + e(1, 0)), e(1, 1)),
+            Form::Zero => Vec::new(),
+        }
+    };
+    [of(law.stiffness, k), of(law.damping, d)].concat()
+}
+
+/// v of the nearest v vᵀ to [[a, b], [b, d]].
+fn rank_one(a: f64, b: f64, d: f64) -> Vec<f64> {
+    let (mean, half) = (0.5 * (a + d), 0.5 * (a - d));
+    let largest = (mean + half.hypot(b)).max(0.0).sqrt();
+    let angle = 0.5 * b.atan2(half);
+    vec![largest * angle.cos(), largest * angle.sin()]
+}

@@ -3,9 +3,10 @@
 use super::admissible::{boundary, by_chance, not_negative, refitted};
 use super::law::{Dynamics, Form};
 use super::laws::Spread;
+use super::length::length_between;
 use super::likelihood::ELEMENTS;
 use super::problem::{Fitted, Problem};
-use super::uncertainty::{length_between, strain, total, units};
+use super::uncertainty::{strain, total, units};
 use super::{
     FittedFrfs, FittedQuantity, Followed, JointFit, JointLikelihood, JointTests, LawFit, SeveralError,
     UnmovedQuantity,

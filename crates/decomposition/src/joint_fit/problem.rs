@@ -1,28 +1,16 @@
 //! The fit itself: the coordinates of every joint's law, perhaps the first joint's mass, and the fixture's uncertain quantities.
 
-use super::law::{Dynamics, Placed};
-use super::recorded::Recorded;
+use super::law::{Dynamics, Placed, coordinates};
+use super::priors::{mass_parameter, open_parameters, own_parameters};
+use super::setup::Setup;
 use super::uncertainty::jackknifed_by;
 use super::uncoupled::Uncoupled;
-use super::{coordinates, laws};
-use jointscope_fixture::Fixture;
 use jointscope_inference::{
     Convergence, Covariance, Damping, LeastSquares, NormalEquations, Parameter, Precision, Settings, descend,
 };
 use jointscope_tolerances::{Tolerance, moved};
 use num_complex::Complex64;
 use std::sync::Arc;
-
-/// What all fits of one recording share.
-#[derive(Clone, Copy)]
-pub(super) struct Setup<'a> {
-    pub recorded: &'a Recorded,
-    pub fixture: &'a Fixture,
-    /// Places of the joints that are looked for among the fixture's.
-    pub joints: &'a [usize],
-    /// By body, the piece that it is in without these joints; pieces are numbered from 0.
-    pub pieces: &'a [usize],
-}
 
 /// What joints are fitted to, whatever their laws.
 #[derive(Clone, Copy)]
@@ -70,8 +58,8 @@ pub(super) struct Fitted {
 
 /// Step of forward differences by a quantity, in standard deviations: resonances bend within a tenth of one.
 const DIFFERENCE: f64 = 1e-3;
-/// Share of a promised decrease below which a step follows a bent valley: resonances tie the joint to the blocks along one.
-const BENT: f64 = 0.5;
+/// Share of a promised decrease below which a step follows a curved valley: resonances tie the joint to the blocks along one.
+const CURVED_VALLEY: f64 = 0.5;
 /// Steps of a fit at the most.
 const STEPS: usize = 80;
 /// Change of χ² below which a fit has converged: a thousandth of what one standard deviation makes.
@@ -126,18 +114,18 @@ pub(super) fn lower(a: Fitted, b: Fitted) -> Fitted {
 impl<'a> Problem<'a> {
     /// Joints of whose stiffness and losses nothing is known beforehand, with a mass of the first if there is a scale for it (kg).
     pub(super) fn open(test: Test<'a>, laws: Vec<Dynamics>, mass: Option<f64>) -> Self {
-        let own = laws.iter().flat_map(laws::open_parameters).collect();
+        let own = laws.iter().flat_map(open_parameters).collect();
         Problem::of(test, laws, mass, own)
     }
 
     /// Joints of any laws, with what is known beforehand of their stiffness and losses.
     pub(super) fn lawful(test: Test<'a>, laws: Vec<Dynamics>, mass: Option<f64>) -> Self {
-        let own = laws.iter().flat_map(laws::own_parameters).collect();
+        let own = laws.iter().flat_map(own_parameters).collect();
         Problem::of(test, laws, mass, own)
     }
 
     fn of(test: Test<'a>, laws: Vec<Dynamics>, mass: Option<f64>, mut parameters: Vec<Parameter>) -> Self {
-        parameters.extend(mass.map(|_| laws::mass_parameter()));
+        parameters.extend(mass.map(|_| mass_parameter()));
         parameters.extend(test.quantities.iter().map(|quantity| quantity.parameter));
         Problem { test, laws, parameters, mass }
     }
@@ -313,7 +301,7 @@ impl<'a> Problem<'a> {
             convergence: Convergence { gain: CONVERGED, share: NEGLIGIBLE, floor },
             reuse: Some(REUSE),
             trust_old: true,
-            bent: BENT,
+            curved_valley: CURVED_VALLEY,
             ..Settings::default()
         };
         let end = descend(self, start, nearby, &settings)?;

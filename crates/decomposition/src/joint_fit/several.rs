@@ -13,13 +13,14 @@ mod laws;
 pub use found::{FoundJoint, JointsCovariance, JointsFit, SeveralError};
 
 use super::admissible::first_order_asymmetry;
-use super::law::{Dynamics, LawKind};
+use super::law::{Dynamics, LawKind, coordinates};
 use super::outcome::{Inflated, Outcome};
-use super::problem::{Fitted, Point, Problem, Setup, Test, lower};
+use super::problem::{Fitted, Point, Problem, Test, lower};
 use super::quantities::uncertain;
 use super::recorded::Recorded;
+use super::setup::Setup;
 use super::uncoupled::MOST_JOINTS;
-use super::{DOUBTFUL, JointFitOptions, START_LOSS, coordinates, that_matter, units_of};
+use super::{DOUBTFUL, JointFitOptions, START_LOSS, that_matter, units_of};
 use crate::JointEnds;
 use crate::sides::{check_instruments, with_effects_of};
 use jointscope_fixture::{BodyKind, Fixture, Joint, Place};

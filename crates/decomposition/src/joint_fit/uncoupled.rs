@@ -7,8 +7,8 @@
 //! whatever the joints, G stays; it does not matter whether they form a chain or loops. Without them the fixture falls into pieces, of which a quantity moves but the one that it belongs to.
 
 use super::law::{MOST, Placed};
-use super::problem::Setup;
 use super::recorded::Recorded;
+use super::setup::Setup;
 use crate::sides::with_effects_of;
 use jointscope_beam::{Matrix4, mass_of_ends};
 use jointscope_fixture::Fixture;

@@ -1,7 +1,6 @@
 //! References whose poles agree.
 
-use super::LEAST;
-use super::table::{Table, chance};
+use super::table::{LEAST, Table, chance};
 
 /// Probability by chance from which two references agree.
 const AGREE: f64 = 0.01;

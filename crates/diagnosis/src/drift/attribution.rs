@@ -1,11 +1,57 @@
 //! Which stiffness drifted: by the share of the strain energy that it has in each mode.
 
+use super::drifted::{CALLED_DRIFT, Drifted};
+use super::poles_by_frf::{poles_by_frf, references};
 use super::table::{Cell, Fit, Table, chance};
-use super::{Drifted, ModeDrift, ReferenceChange, TestDrift};
+use crate::settings::Settings;
+use crate::{Hypothesis, Observation};
 use jointscope_fixture::{BodyKind, Effect, EffectKind, Fixture, Place};
 use jointscope_inference::interval95;
 use jointscope_model_error::{ModelledModes, Pairing, RecordedModes};
+use jointscope_spectra::{Channel, FrfSet};
+use serde::Serialize;
 use std::f64::consts::TAU;
+
+/// How far one reference's FRFs are from those of the references that agree.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ReferenceChange {
+    /// Where was struck.
+    pub reference: Channel,
+    /// Relative change of the stiffness that drifted while this reference was struck: zero by definition where the references agree.
+    pub change: f64,
+    /// Its standard deviation.
+    pub std: f64,
+    /// Its interval of 95 %.
+    pub ci95: [f64; 2],
+    /// Whether the diagnosis goes on with this reference's FRFs.
+    pub kept: bool,
+}
+
+/// How far one mode moved.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ModeDrift {
+    /// Natural frequency, Hz.
+    pub frequency: f64,
+    /// Relative change of it by reference, in the order of [`TestDrift::references`]; `None` where a reference does not show the mode.
+    pub changes: Vec<Option<f64>>,
+    /// Standard deviations of these.
+    pub std: Vec<Option<f64>>,
+}
+
+/// A test that drifted between references.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct TestDrift {
+    /// Whose stiffness explains it: `joints/J`, `bodies/F` or `all stiffnesses`; `None` where the modes do not tell one.
+    pub what: Option<String>,
+    /// All that explain it, where `what` is `None`; empty where nothing does.
+    pub could_be: Vec<String>,
+    /// By reference, in the order in which the recording has them. Changes are of `what`; without, of all stiffnesses alike.
+    pub references: Vec<ReferenceChange>,
+    /// Probability of poles that differ as much between references by chance.
+    pub p_value: f64,
+    /// The modes that tell it.
+    pub modes: Vec<ModeDrift>,
+}
 
 /// Relative deviation of the shares of strain energy of a model that explains the recording down to its noise, and of any other.
 const SHARE: [f64; 2] = [0.02, 0.1];
@@ -27,37 +73,57 @@ struct Candidate {
 }
 
 /// Changes of one stiffness in ln k by reference, with their variances, and χ² with its degrees of freedom.
-struct Course {
+struct StiffnessChanges {
     changes: Vec<(f64, f64)>,
     chi2: f64,
 }
 
-pub(super) fn attributed(drifted: &Drifted, model: &Fixture, explains: bool) -> TestDrift {
+impl TestDrift {
+    /// Probability by chance of poles that differ between references as much as in this recording, drift or not; `None` where nothing can be compared. The FRFs' own
+    /// noise is taken, or estimated where they have none.
+    pub fn chance(fixture: &Fixture, frfs: &FrfSet) -> Option<f64> {
+        let observation = Observation::new(frfs, |_| true).ok()?;
+        let references = references(&observation);
+        let nominal = Hypothesis::nominal(fixture, false);
+        let settings = Settings::default().modal;
+        poles_by_frf(&observation, &nominal, &settings, (&references, 1.0 + CALLED_DRIFT))?.table.chance()
+    }
+}
+
+impl Drifted {
+    /// What drifted, told by the shares of strain energy in a model of the structure.
+    /// `explains`: whether that model explains the recording down to its noise.
+    pub(crate) fn attributed(&self, model: &Fixture, explains: bool) -> TestDrift {
+        attributed(self, model, explains)
+    }
+}
+
+fn attributed(drifted: &Drifted, model: &Fixture, explains: bool) -> TestDrift {
     let deviation = SHARE[usize::from(!explains)];
     let Drifted { table, kept, .. } = drifted;
     let candidates = candidates(model, &drifted.modes, &table.modes);
     let inflation = table.inflation() * table.shared();
-    let fitted: Vec<(&Candidate, Course)> = candidates
+    let fitted: Vec<(&Candidate, StiffnessChanges)> = candidates
         .iter()
-        .filter_map(|c| Some((c, course(table, kept, c, [inflation, deviation])?)))
+        .filter_map(|c| Some((c, stiffness_changes(table, kept, c, [inflation, deviation])?)))
         .collect();
     let (degrees, left) = table.degrees();
     let own = table.by_reference(|_| false).map_or(0.0, |fit| fit.chi2);
     let apart = kept.iter().filter(|kept| !**kept).count();
-    let explains = |course: &Course| {
-        let excess = (course.chi2 - own / inflation).max(0.0);
+    let explains = |fit: &StiffnessChanges| {
+        let excess = (fit.chi2 - own / inflation).max(0.0);
         chance(excess, degrees.saturating_sub(apart), 1.0, left) >= EXPLAINS
     };
-    let lowest = fitted.iter().map(|(_, course)| course.chi2).fold(f64::INFINITY, f64::min);
-    let weight = |course: &Course| (-0.5 * (course.chi2 - lowest)).exp();
-    let total: f64 = fitted.iter().map(|(_, course)| weight(course)).sum();
-    let mut able: Vec<&(&Candidate, Course)> = fitted.iter().filter(|(_, c)| explains(c)).collect();
+    let lowest = fitted.iter().map(|(_, fit)| fit.chi2).fold(f64::INFINITY, f64::min);
+    let weight = |fit: &StiffnessChanges| (-0.5 * (fit.chi2 - lowest)).exp();
+    let total: f64 = fitted.iter().map(|(_, fit)| weight(fit)).sum();
+    let mut able: Vec<&(&Candidate, StiffnessChanges)> = fitted.iter().filter(|(_, c)| explains(c)).collect();
     able.sort_by(|a, b| a.1.chi2.total_cmp(&b.1.chi2));
-    let best = able.first().filter(|(_, course)| weight(course) / total > NAMED);
+    let best = able.first().filter(|(_, fit)| weight(fit) / total > NAMED);
     let alike = Candidate { name: ALL.to_owned(), shares: vec![1.0; table.modes.len()] };
-    let told = best.map(|(_, course)| &course.changes);
-    let whole = course(table, kept, &alike, [inflation, deviation]).map(|course| course.changes);
-    let changes = told.or(whole.as_ref());
+    let best_changes = best.map(|(_, fit)| &fit.changes);
+    let whole = stiffness_changes(table, kept, &alike, [inflation, deviation]).map(|fit| fit.changes);
+    let changes = best_changes.or(whole.as_ref());
     let reference = |(index, reference): (usize, &jointscope_spectra::Channel)| {
         let (ln, variance) = changes.map_or((0.0, 0.0), |changes| changes[index]);
         let deviation = variance.sqrt();
@@ -69,7 +135,7 @@ pub(super) fn attributed(drifted: &Drifted, model: &Fixture, explains: bool) -> 
             kept: kept[index],
         }
     };
-    // Where one is told there is nothing else to consider.
+    // Where one is found there is nothing else to consider.
     let considered = able.iter().filter(|_| best.is_none());
     TestDrift {
         what: best.map(|(candidate, _)| candidate.name.clone()),
@@ -81,12 +147,12 @@ pub(super) fn attributed(drifted: &Drifted, model: &Fixture, explains: bool) -> 
 }
 
 /// Changes of one stiffness by reference. The shares of a model that is not exact are off by a factor common to all references of a mode, which is fitted beside them.
-fn course(
+fn stiffness_changes(
     table: &Table,
     kept: &[bool],
     candidate: &Candidate,
     [inflation, deviation]: [f64; 2],
-) -> Option<Course> {
+) -> Option<StiffnessChanges> {
     let first = table.constants();
     let errors = first + table.references;
     let mut changes = vec![0.0; table.references];
@@ -116,15 +182,15 @@ fn course(
         let is_kept = kept[reference];
         if is_kept { (0.0, 0.0) } else { (fit.values[at], fit.covariance[at * (unknowns + 1)]) }
     };
-    Some(Course { changes: (0..table.references).map(of).collect(), chi2: fit.chi2 })
+    Some(StiffnessChanges { changes: (0..table.references).map(of).collect(), chi2: fit.chi2 })
 }
 
-/// The stiffnesses of a model with their shares in the modes `told` of a recording: joints, beams, and all of them together.
-fn candidates(model: &Fixture, recorded: &RecordedModes, told: &[usize]) -> Vec<Candidate> {
+/// The stiffnesses of a model with their shares in these modes of a recording: joints, beams, and all of them together.
+fn candidates(model: &Fixture, recorded: &RecordedModes, modes: &[usize]) -> Vec<Candidate> {
     let Some(modelled) = ModelledModes::of(model, recorded) else { return Vec::new() };
     let pairing = Pairing::of(recorded, &modelled);
     let partner = |r: &usize| pairing.pairs.iter().find(|(own, _)| own == r).map(|(_, m)| *m);
-    let Some(partners) = told.iter().map(partner).collect::<Option<Vec<usize>>>() else { return Vec::new() };
+    let Some(partners) = modes.iter().map(partner).collect::<Option<Vec<usize>>>() else { return Vec::new() };
     // Exactly at a pole of the unchanged model its FRFs have no value to set out from.
     let beside = modelled.beside(BESIDE);
     let ln_omega = |places: &[Place], by: f64| -> Option<Vec<f64>> {

@@ -4,11 +4,10 @@ use super::descent::{Descent, Start};
 use super::fitted_law::{FittedLaw, fitted_laws};
 use super::free_scalars::FreeScalars;
 use super::problem::{Iterate, Parameters, Problem};
-use super::recorded::{Recorded, telling};
+use super::recorded::{Recorded, most_informative};
 use super::sites::sites;
 use super::{BandMisfit, LineEstimate, Location, Site};
-use crate::evidence::excess;
-use crate::evidence::upper_tail;
+use crate::evidence::{excess, upper_tail};
 use crate::fit::Fit;
 use crate::fitter::Fitter;
 use crate::settings::Settings;
@@ -34,10 +33,10 @@ pub(crate) fn located(fitter: Fitter, base: &Hypothesis, refitted: &Fit) -> Vec<
     if observation.pairs().len() < 2 {
         return Vec::new();
     }
-    let thinned = telling(observation, settings.most_lines);
+    let thinned = most_informative(observation, settings.most_lines);
     let observation = thinned.as_ref().unwrap_or(observation);
     let Ok(fixture) = base.to_fixture() else { return Vec::new() };
-    let fewer = telling(observation, settings.few_lines);
+    let fewer = most_informative(observation, settings.few_lines);
     let (few, whole) = (
         Recorded::of(fitter.on(fewer.as_ref().unwrap_or(observation))),
         Recorded::of(fitter.on(observation)),
@@ -107,12 +106,12 @@ pub(crate) fn measured(fitter: Fitter, repaired: &Fit, index: usize) -> Option<L
     if observation.pairs().len() < 2 {
         return None;
     }
-    let thinned = telling(observation, settings.most_lines);
+    let thinned = most_informative(observation, settings.most_lines);
     let observation = thinned.as_ref().unwrap_or(observation);
     let effect = repaired.hypothesis.effects().into_iter().nth(index)?;
     let without = repaired.hypothesis.without(index);
     let site = Site::of(&without.to_fixture().ok()?, &effect)?;
-    let fewer = telling(observation, settings.few_lines);
+    let fewer = most_informative(observation, settings.few_lines);
     let (few, whole) = (
         Recorded::of(fitter.on(fewer.as_ref().unwrap_or(observation))),
         Recorded::of(fitter.on(observation)),
@@ -173,7 +172,7 @@ fn location(problem: &Problem, state: &Iterate) -> Location {
             by_frf[k].1 += 2;
             of_line.0 += chi2;
         }
-        of_line.1 = freedoms(recorded, state, line);
+        of_line.1 = degrees_of_freedom(recorded, state, line);
     }
     let total = |range: std::ops::Range<usize>| {
         lines[range].iter().fold((0.0, 0), |sum, line| (sum.0 + line.0, sum.1 + line.1))
@@ -211,7 +210,7 @@ fn location(problem: &Problem, state: &Iterate) -> Location {
 }
 
 /// Degrees of freedom of a line: real values less the scalar, where it is felt. Values of FRFs that parameters alone on a line determine nothing.
-fn freedoms(recorded: &Recorded, state: &Iterate, line: usize) -> usize {
+fn degrees_of_freedom(recorded: &Recorded, state: &Iterate, line: usize) -> usize {
     let valid = recorded.places(line).filter(|p| recorded.weights[*p] > 0.0);
     let felt = valid.clone().any(|p| state.slopes[p] != Complex64::ZERO);
     2 * valid.count().saturating_sub(usize::from(felt))
@@ -228,7 +227,10 @@ fn deltas(free_scalars: &FreeScalars, problem: &Problem) -> Vec<(usize, LineEsti
     let mut spread = vec![Complex64::ZERO; n];
     for line in 0..hz.len() {
         let weight = free_scalars.weights[line];
-        if weight.is_nan() || weight <= 0.0 || freedoms(problem.recorded, &free_scalars.state, line) == 0 {
+        if weight.is_nan()
+            || weight <= 0.0
+            || degrees_of_freedom(problem.recorded, &free_scalars.state, line) == 0
+        {
             continue;
         }
         let sensitivities = &free_scalars.sensitivities[line * n..(line + 1) * n];

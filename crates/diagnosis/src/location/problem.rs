@@ -8,7 +8,7 @@ use super::pattern::{Inversion, Pattern, RationalResponse};
 use super::recorded::Recorded;
 use super::scalar::eliminated;
 use crate::Hypothesis;
-use crate::freedom::{extent, turns};
+use crate::bodies::{extent, turns};
 use crate::settings::Settings;
 use jointscope_fixture::Fixture;
 use jointscope_lumped::Model;

@@ -2,7 +2,7 @@
 
 use super::Site;
 use crate::Observation;
-use crate::freedom::{extent, turns};
+use crate::bodies::{extent, turns};
 use jointscope_fixture::{BodyKind, Dof, Effect, Entry, Fixture, Joint, Place};
 use jointscope_lumped::{JointElement, nominal_stiffness};
 use jointscope_spectra::Channel;

@@ -28,8 +28,8 @@ impl States<'_> {
         let mut shared = Vec::new();
         for (b, was) in self.before.modes.iter().enumerate() {
             let model = modelled(b);
-            let told = model.and_then(recorded);
-            let now = told.or_else(|| self.untold(b));
+            let paired = model.and_then(recorded);
+            let now = paired.or_else(|| self.unpaired(b));
             shared.extend(now);
             let ratio = |r: usize| ratio(&self.now.modes[r].pole, &was.pole);
             let deviation = |r: usize| self.deviation(b, r);
@@ -39,7 +39,7 @@ impl States<'_> {
                 now: now.map(|r| state(&self.now.modes[r])),
                 change: now.map(ratio),
                 change_std: now.map(deviation),
-                predicted: told.zip(model).and_then(predicted),
+                predicted: paired.zip(model).and_then(predicted),
             });
         }
         let new = self.now.modes.iter().enumerate().filter(|(r, _)| !shared.contains(r));
@@ -62,7 +62,7 @@ impl States<'_> {
     }
 
     /// The mode that is now what mode `b` was, of those that the model does not have: the nearest of either to the other.
-    fn untold(&self, b: usize) -> Option<usize> {
+    fn unpaired(&self, b: usize) -> Option<usize> {
         let of_baseline = &self.calibrated.standing.pairing.pairs;
         let was = |b: &usize| !of_baseline.iter().any(|(other, _)| other == b);
         let now = |r: &usize| !self.own.pairs.iter().any(|(other, _)| other == r);

@@ -93,8 +93,8 @@ const STILL: f64 = 1.0;
 const BY_CHANCE: f64 = 6.0;
 /// Gauss–Newton steps, at most.
 const STEPS: usize = 40;
-/// Share of what an undamped step promises below which a fit follows a bent valley.
-const BENT: f64 = 0.1;
+/// Share of what an undamped step promises below which a fit follows a curved valley.
+const CURVED_VALLEY: f64 = 0.1;
 /// A step that gains less than this share of what the first one with its derivatives gained asks for new ones.
 const REUSE: f64 = 0.2;
 
@@ -465,7 +465,7 @@ pub(super) fn settings(derivatives: usize) -> Settings {
         damping: Damping { initial: 1e-6, decrease: 0.1, least: 1e-9, raised: 1e-3, most: 1e5 },
         convergence: Convergence { gain: 0.2 * STILL, share: 1e-3, floor: 0.0 },
         reuse: Some(REUSE),
-        bent: BENT,
+        curved_valley: CURVED_VALLEY,
         trust_old: true,
         ..Settings::default()
     }

@@ -1,8 +1,9 @@
 //! What a comparison by modes comes to.
 
-use crate::catalogue::{Candidate, with_wrong_quantities};
+use crate::candidate::Candidate;
+use crate::catalogue::with_wrong_quantities;
 use crate::estimates::estimates;
-use crate::evidence::{cost, deviates_by_chance, excess, explained};
+use crate::evidence::{cost, explained, explains};
 use crate::finding::{Evidence, Finding, Tried};
 use crate::fit::Fit;
 use crate::fitter::Fitter;
@@ -128,17 +129,6 @@ impl ModalJudgement {
         let modes = states.modes(&judged.search.best);
         Some((judged, Before { calibrated: calibrated.hypothesis.clone(), error: before_error, modes }))
     }
-}
-
-/// Whether a fit leaves no more than noise, its quantities no farther than chance; `strictly` not a tenth of the noise more.
-pub(crate) fn explains(fitter: &Fitter, fit: &Fit, strictly: bool) -> bool {
-    let observation = fitter.observation;
-    let chi2_per_dof = fit.chi2_per_dof(observation);
-    let fits = match strictly && !observation.has_scatter_for_noise() {
-        true => excess(chi2_per_dof, observation.degrees(), 0.5 * observation.noise_uncertainty()) < 2.0,
-        false => chi2_per_dof < explained(fitter.observation, fitter.settings),
-    };
-    fits && deviates_by_chance(fitter, &fit.hypothesis)
 }
 
 /// What the modes led to, fitted to lines, where that leaves no more than noise: the more strictly if the modes seem to need an error of the model.

@@ -5,7 +5,7 @@
 //! there still gains 7 in ln p and more (effects hidden in lumped structures), and what imitates an error gains 3 at the most and mostly loses.
 
 use crate::Hypothesis;
-use crate::catalogue::Candidate;
+use crate::candidate::Candidate;
 use crate::fitter::Fitter;
 use crate::modal::features::Features;
 use crate::modal::fit::ModalFit;

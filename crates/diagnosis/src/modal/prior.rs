@@ -1,7 +1,7 @@
 //! What is known of a hypothesis' coordinates before the recording: normal distributions.
 
 use crate::Hypothesis;
-use crate::catalogue::Candidate;
+use crate::candidate::Candidate;
 use jointscope_fixture::{Motion, ParameterSpec};
 use jointscope_inference::{Parameter, Transform};
 

@@ -1,7 +1,7 @@
 //! Which effects the recorded modes need: every candidate fitted to them, alone and beside others.
 
 use crate::Hypothesis;
-use crate::catalogue::Candidate;
+use crate::candidate::Candidate;
 use crate::modal::fit::{ANY, ModalFit, SetOut};
 use crate::modal::searcher::{Named, STARTS, Searcher};
 use crate::modal::starts::{Start, own_frequency};

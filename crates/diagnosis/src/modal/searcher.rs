@@ -1,6 +1,6 @@
 //! A comparison by modes under way: what all its steps share, and when a fit says enough.
 
-use crate::catalogue::Candidate;
+use crate::candidate::Candidate;
 use crate::modal::fit::{ModalFit, Problem};
 use crate::modal::prior::{Prior, priors};
 use crate::settings::ModalSettings;

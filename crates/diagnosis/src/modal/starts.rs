@@ -1,7 +1,7 @@
 //! Where fits by modes set out: every candidate's starts, with the density of the recorded features there.
 
 use crate::Hypothesis;
-use crate::catalogue::Candidate;
+use crate::candidate::Candidate;
 use crate::modal::fit::{ModalFit, Standing, linear};
 use crate::modal::prior::Prior;
 use crate::modal::searcher::{Named, STARTS, Searcher};

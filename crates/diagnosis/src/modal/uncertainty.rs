@@ -5,7 +5,7 @@
 //! have led to, make intervals of their own, and the wider of the two counts.
 
 use crate::Hypothesis;
-use crate::catalogue::Candidate;
+use crate::candidate::Candidate;
 use crate::estimates::estimates;
 use crate::finding::Finding;
 use crate::fitter::Fitter;

@@ -1,7 +1,7 @@
 //! What is wrong with a hit, and what becomes of it.
 
 use crate::common::{self, INTERVAL, TWO_MODES, Test, hit, pulse};
-use jointscope_estimation::{Estimate, EstimateError, EstimateOptions, Fault, Signal};
+use jointscope_estimation::{Estimate, EstimateError, EstimateOptions, Fault, Remark, Signal};
 use jointscope_hits::{Hit, Motion, Response};
 use jointscope_spectra::Channel;
 
@@ -30,12 +30,12 @@ fn a_double_hit_is_rejected_with_when_and_how_hard_and_kept_on_request() {
     let [Fault::DoubleHit { after, ratio }] = faults(&estimate) else { panic!("{:?}", faults(&estimate)) };
     assert!((after - 60.0 * INTERVAL).abs() < 1e-9 && (ratio - 0.3).abs() < 1e-9);
     assert_eq!(estimate.frfs.averages(0), Some(2));
-    let said = &estimate.remarks[0];
-    assert!(said.contains("hit 3 rejected") && said.contains("29.3 ms later, 30 % as hard"), "{said}");
+    let Remark::Rejected { hit: 3, why } = &estimate.remarks[0] else { panic!("{:?}", estimate.remarks) };
+    assert!(why.contains("29.3 ms later, 30 % as hard"), "{why}");
     let keep = EstimateOptions { keep: vec![3], ..EstimateOptions::default() };
     let kept = Estimate::of(&hits, &keep).unwrap();
     assert_eq!(kept.frfs.averages(0), Some(3));
-    assert!(kept.remarks[0].contains("hit 3 used as `--keep` says"), "{:?}", kept.remarks);
+    assert!(matches!(kept.remarks[0], Remark::Kept { hit: 3, .. }), "{:?}", kept.remarks);
 }
 
 #[test]
@@ -126,17 +126,29 @@ fn both_ways(change: impl Fn(&str, &str, f64) -> f64) -> Estimate {
 #[test]
 fn a_reversed_sensor_is_told_by_the_driving_point_and_by_reciprocity() {
     assert!(both_ways(|_, _, v| v).remarks.is_empty());
-    let reversed = both_ways(|point, _, v| if point == "2" { -v } else { v }).remarks.join("; ");
-    assert!(reversed.contains("driving point 2/2") && !reversed.contains("driving point 1/1"), "{reversed}");
-    assert!(reversed.contains("1/2 and 2/1") || reversed.contains("2/1 and 1/2"), "{reversed}");
-    assert!(reversed.contains("a direction is the wrong way round"), "{reversed}");
+    let reversed = both_ways(|point, _, v| if point == "2" { -v } else { v }).remarks;
+    let drawing: Vec<String> = reversed
+        .iter()
+        .filter_map(|remark| match remark {
+            Remark::DrawsEnergy(pair) => Some(pair.to_string()),
+            _ => None,
+        })
+        .collect();
+    assert_eq!(drawing, ["2/2"], "{reversed:?}");
+    let is_across = |remark: &Remark| match remark {
+        Remark::NotReciprocal { frfs, is_sign: true, .. } => {
+            frfs.iter().all(|pair| pair.response != pair.reference)
+        }
+        _ => false,
+    };
+    assert!(reversed.iter().any(is_across), "{reversed:?}");
 }
 
 #[test]
 fn swapped_sensors_break_reciprocity() {
     let swapped = both_ways(|point, struck, v| if point != struck && struck == "1" { 2.0 * v } else { v });
     assert!(
-        swapped.remarks.iter().any(|r| r.contains("differ by") && r.contains("swapped")),
+        swapped.remarks.iter().any(|r| matches!(r, Remark::NotReciprocal { is_sign: false, .. })),
         "{:?}",
         swapped.remarks
     );
@@ -149,11 +161,12 @@ fn ringing_from_the_hit_before_and_a_drift_are_remarked() {
     let ringing: Vec<f64> =
         hits[1].responses()[0].values.iter().enumerate().map(|(i, v)| v + old(i)).collect();
     hits[1] = hit(2, hits[1].force().to_vec(), ringing);
-    let remarks = of(&hits).unwrap().remarks.join("; ");
-    assert!(remarks.contains("rings from the hit before in hit 2"), "{remarks}");
+    let remarks = of(&hits).unwrap().remarks;
+    let rings = |r: &Remark| matches!(r, Remark::RingingBefore(hits) if hits[0].0 == 2);
+    assert!(remarks.iter().any(rings), "{remarks:?}");
     let drifting = |i: usize| 2e-3 * i as f64;
     let force: Vec<f64> = hits[2].force().iter().enumerate().map(|(i, f)| f + drifting(i)).collect();
     hits[2] = hit(3, force, hits[2].responses()[0].values.clone());
-    let remarks = of(&hits).unwrap().remarks.join("; ");
-    assert!(remarks.contains("the baseline of the force drifts"), "{remarks}");
+    let remarks = of(&hits).unwrap().remarks;
+    assert!(remarks.contains(&Remark::DriftingBaselines(vec![Signal::Force])), "{remarks:?}");
 }

@@ -6,8 +6,10 @@
 //!   `4/1 coherence`, `H(4:+z/1:+z) re`. A column's unit stands in brackets behind its name, or in a line of units below the header.
 //! * A file of one FRF may leave the pair away (`frequency,real,imag`); a [`ColumnMap`] says which FRF it is.
 
+mod columns;
 mod header;
 mod rows;
+mod table;
 
 use std::collections::BTreeSet;
 
@@ -17,7 +19,8 @@ use num_complex::Complex64;
 use crate::function::{Values, function};
 use crate::{ChannelPair, ColumnMap, ImportError};
 use header::{Column, Part};
-use rows::{Rows, Table};
+use rows::Rows;
+use table::Table;
 
 /// Reads the FRFs of a table.
 pub(crate) fn read(
@@ -27,7 +30,7 @@ pub(crate) fn read(
     used: &mut BTreeSet<usize>,
 ) -> Result<UffFile, ImportError> {
     let table = Table::of(&Rows::of(bytes)?)?;
-    let columns = header::columns(&table)?;
+    let columns = columns::columns(&table)?;
     let Some(frequency) = columns.iter().find(|column| column.part == Part::Frequency) else {
         return Err(ImportError::NoTable { why: "no column is named `frequency`".into() });
     };

@@ -2,7 +2,7 @@
 
 use num_complex::Complex64;
 
-use super::Sink;
+use super::sink::Sink;
 use super::value::Value;
 use crate::function::{Values, function};
 use crate::{ChannelPair, ImportError, PairError};

@@ -14,6 +14,7 @@
 //! is the FRF 4/1; any other name is given its FRF by a [`ColumnMap`]: `H=4/1 [m/s^2/N]`, or `H(2)=3/1` and `H(2,1)=3/1` for the columns and slices of a matrix.
 
 mod arrays;
+mod sink;
 mod testlab;
 mod v5;
 mod v73;
@@ -24,14 +25,7 @@ use std::collections::BTreeSet;
 use jointscope_uff::UffFile;
 
 use crate::{ColumnMap, Format, ImportError};
-
-/// Where functions go, and what the analyst says of them.
-pub(super) struct Sink<'a> {
-    file_name: &'a str,
-    map: &'a ColumnMap,
-    used: &'a mut BTreeSet<usize>,
-    file: UffFile,
-}
+use sink::Sink;
 
 /// Reads the FRFs of a MATLAB file.
 pub(crate) fn read(

@@ -3,7 +3,7 @@
 use jointscope_uff::{Dataset58, FunctionType};
 use num_complex::Complex64;
 
-use super::Sink;
+use super::sink::Sink;
 use super::value::Value;
 use crate::function::{Values, function};
 use crate::pair::{channel, direction};

@@ -6,6 +6,7 @@ mod common;
 mod comparison;
 mod diagnosis;
 mod drift;
+mod files;
 mod fuzzed;
 mod joint_fit;
 mod joints_fit;

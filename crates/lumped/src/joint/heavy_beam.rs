@@ -3,7 +3,7 @@
 //! A short element is as much stiffer as the cube of its share of the length, and what its mass adds is then lost in the rounding of its stiffness: to 1e-11 of the whole beam's, which
 //! near a pole moves residues by 1e-7. So what is doubled is what mass adds; the static stiffness of each length is known in closed form.
 
-use super::TwoEnds;
+use super::two_ends::TwoEnds;
 use crate::lanes::Lines;
 use jointscope_beam::{consistent_mass, end_compliance};
 use jointscope_linalg::Matrix2;

@@ -4,7 +4,7 @@ use jointscope_inference::NormalEquations;
 use jointscope_linalg::Cholesky;
 use num_complex::Complex64;
 
-use super::{Poles, Prior};
+use super::poles::{Poles, Prior};
 use crate::gram::{Gram, OF_MODE, Terms};
 use crate::observed::Observed;
 use crate::polynomial::normalize;

@@ -3,45 +3,16 @@
 use super::fit::Fit;
 use super::homogeneity::{CHANGED, Homogeneity, homogeneity};
 use super::hypothesis::Hypothesis;
-use super::judge::{Judged, Judgement, Step};
+use super::judge::{HitFinding, Judged, Judgement, ModelFit, Step};
 use super::locations::{JointLocation, locations};
 use super::records::{Record, held_out, records};
 use super::search::{Search, Span};
 use crate::{DiagnoseError, ForceStateError, ForceStateMap, SimulationError};
-use jointscope_findings::{Finding, HeldOut, Verdict};
-use jointscope_fixture::{BodyKind, Dof, Fixture, NamedQuantity};
+use jointscope_findings::{HeldOut, Verdict};
+use jointscope_fixture::{BodyKind, Dof, Fixture};
 use jointscope_hits::{Fourier, Hit};
 use jointscope_lumped::{Assembly, StateSpace};
 use serde::Serialize;
-
-/// A law that the hits need.
-pub type HitFinding = Finding<HitEvidence>;
-
-/// What hits tell of a law beyond its name, size and probability.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-#[non_exhaustive]
-pub struct HitEvidence {
-    /// What χ² and priors lose without it.
-    #[serde(rename = "gain_chi2")]
-    pub gain: f64,
-    /// Largest relative motion d of its joint under the hits, m or rad.
-    #[serde(rename = "largest_relative_motion")]
-    pub reach: f64,
-}
-
-/// A fixture and how well it follows the recorded responses.
-#[derive(Debug, Clone, PartialEq)]
-#[non_exhaustive]
-pub struct ModelFit {
-    /// The fixture at its fitted quantities.
-    pub fixture: Fixture,
-    /// √(Σ|simulated − recorded|²/Σ|recorded|²) over all hits in the band.
-    pub nrmse: f64,
-    /// χ² per degree of freedom.
-    pub chi2_per_dof: f64,
-    /// Quantities that could move, and where each ended in its standard deviations.
-    pub quantities: Vec<(NamedQuantity, f64)>,
-}
 
 /// Component of a joint and the largest motion that the hits drive it to.
 #[derive(Debug, Clone, PartialEq, Serialize)]

@@ -1,6 +1,5 @@
 //! What the laws found come to: quantities from all hits, what each law is known to, and how hits fare that no fit saw.
 
-use super::diagnosis::{HitEvidence, HitFinding, ModelFit};
 use super::fit::Fit;
 use super::horizon::horizons;
 use super::hypothesis::Hypothesis;
@@ -9,13 +8,43 @@ use super::misfit::{Focus, View};
 use super::records::Record;
 use super::search::{Search, Span, contradicts};
 use crate::estimates::estimates;
-use jointscope_findings::{HeldOut, Verdict};
-use jointscope_fixture::{Effect, Place};
+use jointscope_findings::{Finding, HeldOut, Verdict};
+use jointscope_fixture::{Effect, Fixture, NamedQuantity, Place};
+use serde::Serialize;
 
 /// χ² per degree of freedom above which a model leaves something unexplained.
 const LEFT_OVER: f64 = 1.5;
 /// How much finer the last fit steps than the search.
 const FINER: usize = 2;
+
+/// A law that the hits need.
+pub type HitFinding = Finding<HitEvidence>;
+
+/// What hits tell of a law beyond its name, size and probability.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[non_exhaustive]
+pub struct HitEvidence {
+    /// What χ² and priors lose without it.
+    #[serde(rename = "gain_chi2")]
+    pub gain: f64,
+    /// Largest relative motion d of its joint under the hits, m or rad.
+    #[serde(rename = "largest_relative_motion")]
+    pub reach: f64,
+}
+
+/// A fixture and how well it follows the recorded responses.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct ModelFit {
+    /// The fixture at its fitted quantities.
+    pub fixture: Fixture,
+    /// √(Σ|simulated − recorded|²/Σ|recorded|²) over all hits in the band.
+    pub nrmse: f64,
+    /// χ² per degree of freedom.
+    pub chi2_per_dof: f64,
+    /// Quantities that could move, and where each ended in its standard deviations.
+    pub quantities: Vec<(NamedQuantity, f64)>,
+}
 
 /// A law found.
 pub(super) struct Step {

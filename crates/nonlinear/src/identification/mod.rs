@@ -5,7 +5,7 @@ mod fit;
 pub(crate) mod homogeneity;
 mod horizon;
 mod hypothesis;
-mod judge;
+pub(crate) mod judge;
 mod locations;
 pub(crate) mod misfit;
 mod reconstruction;

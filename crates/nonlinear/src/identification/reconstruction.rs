@@ -9,7 +9,6 @@
 use super::locations::JointLocation;
 use super::misfit::Focus;
 use super::records::Record;
-use super::shapes::{Suggestion, suggested};
 use crate::spectra::{Windowed, oversampled_for_lines};
 use crate::time::kernel::{Stepper, Steps};
 use crate::time::structure::Structure;
@@ -44,23 +43,18 @@ pub(super) struct SeenLocation {
     pub lines: Vec<Complex64>,
 }
 
-/// For every location, suggestions for each kind of law that helps there. `model` is the fixture as far as it is known, laws found already
-/// included.
-pub(crate) fn suggestions(
+/// The records seen through `model`, the fixture as far as it is known, laws found already included.
+pub(super) fn seen(
     model: &Fixture,
     records: &[&Record],
     locations: &[JointLocation],
     focus: &Focus,
-) -> Option<Vec<Suggestion>> {
+) -> Option<Vec<Seen>> {
     let linear = model.physics().iter().filter(|effect| !effect.kind.is_nonlinear()).cloned().collect();
     let linear = model.clone().with_physics(linear).ok()?;
     let highest = 2.0 * focus.band.1;
     let structures = [Structure::new(model, highest).ok()?, Structure::new(&linear, highest).ok()?];
-    let seen: Option<Vec<Seen>> =
-        records.par_iter().map(|record| Seen::of(&structures, record, locations, focus)).collect();
-    let seen = seen?;
-    let of = |(index, location)| suggested(&seen, index, location);
-    Some(locations.par_iter().enumerate().map(of).collect::<Vec<_>>().concat())
+    records.par_iter().map(|record| Seen::of(&structures, record, locations, focus)).collect()
 }
 
 /// Where in the record a pulse is put to learn what a force pair of 1 does.
@@ -180,7 +174,7 @@ mod tests {
     use super::super::hypothesis::same_name;
     use super::super::locations::locations;
     use super::super::records::records;
-    use super::super::shapes::is_like;
+    use super::super::shapes::{is_like, suggestions};
     use super::*;
     use crate::{RestoringLaw, simulate};
     use jointscope_fixture::{Dof, Effect};

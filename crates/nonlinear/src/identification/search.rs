@@ -5,9 +5,8 @@ use super::horizon::horizons;
 use super::hypothesis::{Hypothesis, same_name};
 use super::locations::locations;
 use super::misfit::{Focus, View};
-use super::reconstruction::suggestions;
 use super::records::Record;
-use super::shapes::Suggestion;
+use super::shapes::{Suggestion, suggestions};
 use jointscope_fixture::Fixture;
 use rayon::prelude::*;
 

@@ -2,11 +2,14 @@
 
 use super::hypothesis::same_name;
 use super::locations::JointLocation;
-use super::reconstruction::Seen;
+use super::misfit::Focus;
+use super::reconstruction::{Seen, seen};
+use super::records::Record;
 use crate::RestoringLaw;
-use jointscope_fixture::Effect;
+use jointscope_fixture::{Effect, Fixture};
 use jointscope_linalg::solve_positive_definite;
 use num_complex::Complex64;
+use rayon::prelude::*;
 
 /// Effects at one location to begin with.
 #[derive(Debug, Clone)]
@@ -77,8 +80,21 @@ struct Regression<'a> {
     taken: f64,
 }
 
+/// For every location, suggestions for each kind of law that helps there. `model` is the fixture as far as it is known, laws found already
+/// included.
+pub(crate) fn suggestions(
+    model: &Fixture,
+    records: &[&Record],
+    locations: &[JointLocation],
+    focus: &Focus,
+) -> Option<Vec<Suggestion>> {
+    let seen = seen(model, records, locations, focus)?;
+    let of = |(index, location)| suggested(&seen, index, location);
+    Some(locations.par_iter().enumerate().map(of).collect::<Vec<_>>().concat())
+}
+
 /// Suggestions for each kind of law that helps at a location.
-pub(super) fn suggested(seen: &[Seen], index: usize, location: &JointLocation) -> Vec<Suggestion> {
+fn suggested(seen: &[Seen], index: usize, location: &JointLocation) -> Vec<Suggestion> {
     let largest = seen
         .iter()
         .flat_map(|one| one.locations[index].motion.iter().zip(one.window()))

@@ -1,6 +1,7 @@
 //! How a resonance goes with level, beyond the scatter of the fits.
 
-use super::diagnosis::{LevelResult, SteppedDiagnosis, Tried};
+use super::diagnosis::{LevelResult, SteppedDiagnosis};
+use super::naming::Tried;
 
 /// How the natural frequency goes from the lowest level to the highest.
 #[derive(Debug, Clone, Copy, PartialEq)]

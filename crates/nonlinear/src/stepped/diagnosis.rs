@@ -3,13 +3,13 @@
 use super::forms::{Fitted, fitted};
 use super::level::{Held, SteppedLevel};
 use super::location::locations;
-use super::naming::{Judged, named_law};
+use super::naming::{Judged, LevelFinding, Tried, named_law};
 use super::pooled::noisy;
 use super::problem::{Change, Level, Problem};
 use super::resonance::{Resonance, resonance};
 use crate::distribution::f_tail;
 use crate::{CHANGED, NonlinearOptions, SteppedError};
-use jointscope_findings::{Finding, HeldOut, Verdict};
+use jointscope_findings::{HeldOut, Verdict};
 use jointscope_fixture::{Fixture, QuantityKey, QuantityOwner};
 use jointscope_spectra::Dof;
 use rayon::prelude::*;
@@ -44,39 +44,6 @@ pub struct LevelResult {
 fn by_model<S: Serializer>(values: &[f64; 4], serializer: S) -> Result<S::Ok, S::Error> {
     let names = ["nominal", "refitted", "repaired", "stiffness_of_its_own"];
     serializer.collect_map(names.into_iter().zip(values))
-}
-
-/// A form tried at a component of a joint.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Tried {
-    /// Names of the effects, `linear` for none.
-    #[serde(rename = "kind")]
-    pub form: String,
-    /// The joint.
-    #[serde(rename = "place")]
-    pub joint: String,
-    /// Which component of d.
-    pub dof: Dof,
-    /// Root mean square over the levels of the relative errors.
-    pub nrmse: f64,
-    /// Share of the change with level that it explains, 0 to 1.
-    #[serde(rename = "share_explained")]
-    pub share: f64,
-}
-
-/// A law that the levels need.
-pub type LevelFinding = Finding<LevelEvidence>;
-
-/// What levels tell of a law beyond its name, size and probability.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-#[non_exhaustive]
-pub struct LevelEvidence {
-    /// Share of the change with level that the laws found explain over the range.
-    #[serde(rename = "share_explained")]
-    pub share: f64,
-    /// Relative motions of the joint over the range, m or rad.
-    #[serde(rename = "relative_motions")]
-    pub motions: (f64, f64),
 }
 
 /// The diagnosis of stepped-sine FRFs at several levels.

@@ -7,7 +7,7 @@ mod forms;
 mod least_squares;
 pub(crate) mod level;
 mod location;
-mod naming;
+pub(crate) mod naming;
 pub(crate) mod pooled;
 mod problem;
 pub(crate) mod resonance;

@@ -1,14 +1,15 @@
 //! Laws as they are named: over which levels one holds, how sure, and with which parameters.
 
-use super::diagnosis::{LevelEvidence, LevelFinding, Tried};
 use super::forms::{FORMS, Fitted, fitted, share};
 use super::problem::{BASE, Change, Problem};
 use super::tolerances::tolerance_variances;
 use crate::RestoringLaw;
 use crate::estimates::estimates;
-use jointscope_findings::HeldOut;
+use jointscope_findings::{Finding, HeldOut};
 use jointscope_fixture::{Effect, Fixture};
 use jointscope_inference::jackknife;
+use jointscope_spectra::Dof;
+use serde::Serialize;
 
 /// Share of the change with level that a law must explain to be named.
 const NAMED: f64 = 0.75;
@@ -20,6 +21,39 @@ const LEVELS: (usize, usize) = (3, 6);
 /// Relative deviation of a law's parameters from what the balance of one harmonic leaves out: against the laboratory's nine harmonics, a tenth of
 /// the usual noise and a fixture that is exact, they err by 0.1 to 0.7 %.
 const INEXACT: f64 = 5e-3;
+
+/// A form tried at a component of a joint.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Tried {
+    /// Names of the effects, `linear` for none.
+    #[serde(rename = "kind")]
+    pub form: String,
+    /// The joint.
+    #[serde(rename = "place")]
+    pub joint: String,
+    /// Which component of d.
+    pub dof: Dof,
+    /// Root mean square over the levels of the relative errors.
+    pub nrmse: f64,
+    /// Share of the change with level that it explains, 0 to 1.
+    #[serde(rename = "share_explained")]
+    pub share: f64,
+}
+
+/// A law that the levels need.
+pub type LevelFinding = Finding<LevelEvidence>;
+
+/// What levels tell of a law beyond its name, size and probability.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[non_exhaustive]
+pub struct LevelEvidence {
+    /// Share of the change with level that the laws found explain over the range.
+    #[serde(rename = "share_explained")]
+    pub share: f64,
+    /// Relative motions of the joint over the range, m or rad.
+    #[serde(rename = "relative_motions")]
+    pub motions: (f64, f64),
+}
 
 /// All forms at one component of a joint.
 #[derive(Clone)]

@@ -1,6 +1,6 @@
 //! The nearest of a library of simulated signatures.
 
-use crate::case::in_file;
+use crate::effect_file::in_file;
 use jointscope_diagnosis::{Observation, catalogue};
 use jointscope_fixture::{Effect, Fixture};
 use jointscope_lumped::{Instrument, synthesize};

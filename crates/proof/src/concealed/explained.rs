@@ -1,6 +1,6 @@
 //! The fixture that explains a recording.
 
-use crate::case::describe;
+use crate::name::describe;
 use crate::{Answer, Answers, Case, NoAnswer};
 use jointscope_diagnosis::Verdict;
 use jointscope_fixture::Fixture;

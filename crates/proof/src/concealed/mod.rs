@@ -32,6 +32,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod error;
 mod explained;
 mod fixture_edit;
 mod outcome;
@@ -42,8 +43,9 @@ mod scene;
 mod table;
 mod truth;
 
+pub use error::ConcealmentError;
 pub use explained::Explained;
 pub use outcome::Outcome;
-pub use plan::{ConcealmentError, ConcealmentPlan};
+pub use plan::ConcealmentPlan;
 pub use reckoning::{Reckoned, Reckoning};
 pub use truth::{Concealed, ConcealmentKind, Expected};

@@ -2,8 +2,8 @@
 
 use super::outcome::{Excess, extra, outcome, sizes};
 use super::{Concealed, Outcome};
-use crate::answers::on_workers;
-use crate::objective::Judge;
+use crate::judge::Judge;
+use crate::workers::on_workers;
 use crate::{Answer, Answers, Case, Name, NoAnswer, Share, Size, VISIBLE};
 
 /// A case after the truth was opened.

@@ -6,7 +6,7 @@ use super::fixture_edit::{
 use super::recording_edit::{Side, exchanged, with_signal};
 use super::{ConcealmentError, ConcealmentKind, Expected};
 use crate::Case;
-use crate::generate::log_uniform;
+use crate::random::log_uniform;
 use jointscope_fixture::{
     BodyKind, Effect, EffectKind, Fixture, NamedQuantity, Place, QuantityKey, QuantityOwner, SupportPlace,
 };

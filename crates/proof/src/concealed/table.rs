@@ -1,7 +1,7 @@
 //! A reckoning as text and as JSON.
 
 use super::{ConcealmentKind, ConcealmentPlan, Reckoned, Reckoning};
-use crate::case::describe;
+use crate::name::describe;
 use crate::sheet::Line;
 use crate::{Found, Name, Rate, Sealable, Size};
 use serde_json::{Map, Value, json};

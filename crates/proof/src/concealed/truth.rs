@@ -1,6 +1,7 @@
 //! What was concealed in a case.
 
-use crate::case::{describe, effect_value};
+use crate::effect_file::effect_value;
+use crate::name::describe;
 use crate::{Name, Sealable};
 use jointscope_fixture::Effect;
 use serde_json::{Value, json};

@@ -26,10 +26,11 @@ pub use score::{RouteScore, RouteScores};
 pub use solid::{Shown, SolidJudged, SolidTruth};
 pub use struck::{StruckAnswer, StruckAnswers, StruckCase, StruckJudged, StruckRole, StruckTruth};
 
-use crate::answers::{Timed, on_workers};
+use crate::answers::Timed;
 use crate::generate::Draw;
-use crate::seal::{Filed, Given, Sealable};
+use crate::sealable::{Filed, Given, Sealable};
 use crate::size::SizeScore;
+use crate::workers::on_workers;
 use crate::{
     Answer, Answers, Case, FileError, GenerationError, Judged, Plan, Precision, SealedTruths, Sheet, Truth,
 };

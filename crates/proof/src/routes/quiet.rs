@@ -1,6 +1,6 @@
 //! A test with so little noise that a model's own error is what is left.
 
-use crate::generate::between;
+use crate::random::between;
 use jointscope_rig::HammerTest;
 use rand::Rng;
 

@@ -4,8 +4,9 @@ use jointscope_check::{DrivingPointVerdict, FrfCheck, RecordingCheck};
 
 use crate::format::{percent, quantity, significant, trimmed};
 use crate::plot::{Curve, FrfPanes, Role, Style, worst};
-use crate::section::{Section, Tone};
+use crate::section::Section;
 use crate::table::Table;
+use crate::tone::Tone;
 
 /// FRFs that are drawn at the most.
 const SHOWN: usize = 12;

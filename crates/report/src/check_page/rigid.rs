@@ -2,12 +2,11 @@
 
 use jointscope_check::{ModelModes, RecordingCheck};
 
-use crate::format::{percent, significant};
+use crate::format::{in_column, percent, significant};
 use crate::mode_indicator;
 use crate::section::Section;
 use crate::table::Table;
-
-use super::hertz;
+use crate::unit::Scale;
 
 pub(super) fn modes(modes: &ModelModes, recording: Option<&RecordingCheck>) -> Section {
     let table = Table::of(&modes.modes)
@@ -53,4 +52,9 @@ pub(super) fn modes(modes: &ModelModes, recording: Option<&RecordingCheck>) -> S
 pub(super) fn indicator(recording: &RecordingCheck) -> Option<Section> {
     let plot = mode_indicator::plot(&recording.measured, recording.fixture_frfs().as_ref())?;
     Some(Section::new("How many modes there are").plot(plot))
+}
+
+/// A figure in a column of Hz.
+fn hertz(value: f64, std: Option<f64>) -> String {
+    in_column(value, std, &Scale::plain("Hz"))
 }

@@ -3,7 +3,7 @@
 use jointscope_comparison::{Comparison, Decomposed, Kind, Line, Matrix};
 use jointscope_inference::Z95;
 
-use super::{elements, name_of};
+use super::elements::{elements, name_of};
 use crate::plot::{Axis, Plot, Role, Span, YRange};
 use crate::section::Section;
 

@@ -4,10 +4,11 @@ use jointscope_decomposition::{FittedQuantity, JointFit, JointTests, LawFit};
 use jointscope_fixture::Fixture;
 use jointscope_wording::{Remarks, Says, capitalised};
 
-use super::Subject;
+use super::subject::Subject;
 use crate::format::{quantity, significant};
-use crate::section::{Block, Section, Tone};
+use crate::section::{Block, Section};
 use crate::table::Table;
+use crate::tone::Tone;
 
 /// Probability below which a law is left out of the table.
 const NEGLIGIBLE: f64 = 1e-3;

@@ -3,7 +3,7 @@
 use jointscope_decomposition::{Analysis, Element, Estimate, Method, Part};
 use jointscope_inference::interval95;
 
-use super::Subject;
+use super::subject::Subject;
 use crate::plot::{Axis, Plot, Role, Span, YRange};
 use crate::section::Section;
 use jointscope_wording::element::{meaning, symbol, unit};

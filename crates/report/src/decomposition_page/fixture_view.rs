@@ -1,6 +1,6 @@
 //! The fixture from the side, with what was used of the test.
 
-use super::Subject;
+use super::subject::Subject;
 use crate::drawing::SideView;
 use crate::section::Section;
 

@@ -5,7 +5,7 @@ use jointscope_linalg::ComplexMatrix2;
 use jointscope_spectra::FrfSet;
 use num_complex::Complex64;
 
-use super::Subject;
+use super::subject::Subject;
 use crate::plot::{Axis, Curve, FrfPanes, Plot, Role, Style, Values, YRange, over_unity};
 use crate::section::Section;
 use jointscope_wording::element::index;

@@ -2,7 +2,7 @@
 
 use jointscope_decomposition::{Compliance, InterfaceStiffness, Method};
 
-use super::Subject;
+use super::subject::Subject;
 use crate::format::{interval, magnitude, quantity};
 use crate::section::Section;
 use crate::table::Table;

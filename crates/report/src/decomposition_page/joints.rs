@@ -9,8 +9,9 @@ use crate::context::PageContext;
 use crate::drawing::SideView;
 use crate::format::{quantity, significant};
 use crate::report::Report;
-use crate::section::{Section, Tone, Verdict};
+use crate::section::{Section, Verdict};
 use crate::table::Table;
+use crate::tone::Tone;
 use jointscope_wording::element::{symbol, unit};
 
 /// Correlation of two numbers from which it is listed.

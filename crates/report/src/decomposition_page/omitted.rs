@@ -1,6 +1,6 @@
 //! What was left out, what was remarked, and how hard the lines are to decompose.
 
-use super::Subject;
+use super::subject::Subject;
 use crate::context::PageContext;
 use crate::plot::{Axis, Plot, Role, YRange};
 use crate::section::{Block, Section};

@@ -2,10 +2,11 @@
 
 use jointscope_decomposition::{Element, Estimate, Figure, Part};
 
-use super::Subject;
+use super::subject::Subject;
 use crate::format::{in_parts, quantity, significant};
-use crate::section::{Card, Section, Tone};
+use crate::section::{Card, Section};
 use crate::table::Table;
+use crate::tone::Tone;
 use crate::unit::Scale;
 use jointscope_wording::decomposition::{band, share};
 use jointscope_wording::element::{meaning, method, symbol, unit};

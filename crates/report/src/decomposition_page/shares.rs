@@ -4,7 +4,7 @@ use jointscope_decomposition::{Element, Estimate, Method, Part, ToleranceShare};
 use jointscope_fixture::{Dof, Fixture, NamedQuantity, Nature, QuantityKey as Key, QuantityOwner};
 use jointscope_linalg::RealMatrix2;
 
-use super::Subject;
+use super::subject::Subject;
 use crate::format::{NOT_DETERMINED, magnitude, significant};
 use crate::section::Section;
 use crate::table::Table;

@@ -2,10 +2,11 @@
 
 use jointscope_diagnosis::{ModeChange, ModeState};
 
-use super::Subject;
+use super::subject::Subject;
 use crate::format::significant;
-use crate::section::{Section, Tone};
+use crate::section::Section;
 use crate::table::Table;
+use crate::tone::Tone;
 
 /// Standard deviation, %, below which none is told.
 const SMALLEST: f64 = 1e-3;

@@ -6,8 +6,8 @@ use jointscope_inference::Z95;
 use jointscope_wording::{Says, effect_name};
 use num_complex::Complex64;
 
-use super::Subject;
 use super::law::Law;
+use super::subject::Subject;
 use crate::format::{NOT_DETERMINED, quantity, significant};
 use crate::plot::{Axis, Plot, Role, Span, YRange};
 use crate::section::Section;

@@ -1,6 +1,6 @@
 //! Quantities that the models take farther from what is stated than chance does.
 
-use super::Subject;
+use super::subject::Subject;
 use crate::format::{quantity, significant};
 use crate::section::Section;
 use crate::table::Table;

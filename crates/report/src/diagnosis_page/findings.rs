@@ -3,8 +3,8 @@
 use jointscope_diagnosis::{Estimate, Finding, Verdict};
 use jointscope_wording::effect_name;
 
-use super::Subject;
 use super::glance::chance;
+use super::subject::Subject;
 use crate::format::{self, NOT_DETERMINED, quantity, significant};
 use crate::section::{Block, Section};
 use crate::table::Table;

@@ -3,7 +3,7 @@
 use jointscope_diagnosis::Site;
 use jointscope_fixture::{BodyKind, Effect, EffectKind, Fixture, Place};
 
-use super::Subject;
+use super::subject::Subject;
 use crate::drawing::{Drawing, Highlight, SideView};
 
 /// The drawing and its caption.

@@ -5,7 +5,7 @@ use std::cmp::Ordering;
 
 use jointscope_spectra::Dof;
 
-use super::Subject;
+use super::subject::Subject;
 use crate::format::{significant, trimmed};
 use crate::plot::{Curve, FrfPanes, Plot, Role, Style};
 use crate::section::Section;

@@ -4,10 +4,12 @@ use jointscope_diagnosis::{Departure, Estimate, Finding, Verdict};
 use jointscope_wording::{Remarks, capitalised, effect_name};
 use maud::{Markup, html};
 
+use super::fixture_view;
 use super::judgement::{gain, spoken};
-use super::{Subject, fixture_view};
+use super::subject::Subject;
 use crate::format::{NOT_DETERMINED, ends, percent, significant};
-use crate::section::{Card, Section, Tone};
+use crate::section::{Card, Section};
+use crate::tone::Tone;
 use crate::unit::Scale;
 
 /// Findings that are shown at the most, and names beside each.

@@ -1,6 +1,6 @@
 //! Before and after: errors of the three models, on what was fitted and on what was not.
 
-use super::Subject;
+use super::subject::Subject;
 use crate::format::{percent, significant};
 use crate::section::{Card, Section};
 use crate::table::Table;

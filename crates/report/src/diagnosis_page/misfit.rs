@@ -3,10 +3,13 @@
 use jointscope_diagnosis::{BandMisfit, Fit};
 use jointscope_wording::Says;
 
-use super::{SHOWN, Subject};
+use super::subject::Subject;
 use crate::format::{significant, trimmed};
 use crate::section::Section;
 use crate::table::{Cell, Table};
+
+/// Places that are shown at the most; the page says how many there are.
+const SHOWN: usize = 12;
 
 pub(super) fn section(subject: &Subject) -> Section {
     let diagnosis = subject.diagnosis;

@@ -2,9 +2,10 @@
 
 use jointscope_wording::{ErrorInWords, error_in_words};
 
-use super::Subject;
-use crate::section::{Section, Tone};
+use super::subject::Subject;
+use crate::section::Section;
 use crate::table::Table;
+use crate::tone::Tone;
 
 pub(super) fn section(subject: &Subject) -> Option<Section> {
     let [refitted, repaired] = subject.diagnosis.model_error.as_ref()?.each_ref().map(error_in_words);

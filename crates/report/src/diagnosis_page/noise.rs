@@ -1,6 +1,6 @@
 //! The noise of the FRFs, and whether it holds.
 
-use super::Subject;
+use super::subject::Subject;
 use crate::format::{fixed, significant};
 use crate::section::{Block, Section};
 use crate::table::Table;

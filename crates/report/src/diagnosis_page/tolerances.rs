@@ -1,9 +1,10 @@
 //! The tolerances used, and where they ended.
 
-use super::Subject;
+use super::subject::Subject;
 use crate::format::{quantity, significant};
-use crate::section::{Section, Tone};
+use crate::section::Section;
 use crate::table::Table;
+use crate::tone::Tone;
 
 pub(super) fn section(subject: &Subject) -> Option<Section> {
     let models = subject.stated();

@@ -3,8 +3,8 @@
 use jointscope_diagnosis::{Baseline, Fit, Observation};
 use num_complex::Complex64;
 
-use super::Subject;
 use super::frfs::{panes, shown, shown_of, with_held_out};
+use super::subject::Subject;
 use crate::plot::{Axis, Curve, FrfPanes, Plot, Role, Style, YRange};
 use crate::section::Section;
 

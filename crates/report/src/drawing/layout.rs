@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use jointscope_fixture::{Body, BodyKind, Fixture};
 
 use super::outline::outlines;
-use super::{ChannelKind, SideView};
+use super::side_view::{ChannelKind, SideView};
 use crate::format::{fixed, trimmed};
 use crate::plot::Span;
 

@@ -6,7 +6,7 @@ use maud::{Markup, PreEscaped, html};
 use super::layout::{
     ARROW, LANE, Label, Layout, MOST_LABELS, POINT_LANE, Row, SUPPORT, Tie, body_name, name_fits, text_width,
 };
-use super::{ChannelKind, Highlight, SideView};
+use super::side_view::{ChannelKind, Highlight, SideView};
 use crate::format::significant;
 
 /// Colours come from the page's variables; without a page the drawing is dark on light.

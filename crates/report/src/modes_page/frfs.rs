@@ -2,9 +2,11 @@
 
 use jointscope_modes::ModalAnalysis;
 
-use super::SHOWN;
 use crate::plot::{Curve, FrfPanes, Role, Style, worst};
 use crate::section::Section;
+
+/// FRFs and shapes that are shown at the most; the page says how many there are.
+pub(super) const SHOWN: usize = 12;
 
 pub(super) fn section(analysis: &ModalAnalysis) -> Section {
     let errors = analysis.relative_errors();

@@ -6,7 +6,7 @@ use jointscope_spectra::{Channel, Dof};
 use maud::{Markup, PreEscaped, html};
 use num_complex::Complex64;
 
-use super::SHOWN;
+use super::frfs::SHOWN;
 use crate::format::{fixed, significant};
 use crate::plot::Span;
 use crate::section::{Block, Section};

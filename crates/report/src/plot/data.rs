@@ -5,6 +5,7 @@ use std::collections::HashMap;
 use maud::Markup;
 use serde::Serialize;
 
+use super::drawing::Drawing;
 use super::range::{Limits, limits};
 use super::thin::kept_lines;
 use super::{Axis, Mark, Plot, Role, Style, YRange};
@@ -52,16 +53,6 @@ impl PlotBook {
         let described = serde_json::to_string(&self.plots).unwrap_or_else(|_| "[]".to_owned());
         format!("{{\"plots\":{described},\n\"columns\":[{}]}}", self.columns.join(",\n"))
     }
-}
-
-/// What the figure around a plot has to say of how it is drawn.
-pub(super) struct Drawing {
-    /// Display unit of the ordinates.
-    pub scale: Scale,
-    /// Whether only a part of the ordinate is drawn at first.
-    pub is_cut: bool,
-    /// What the reader must know.
-    pub remarks: Vec<String>,
 }
 
 /// What the script needs to know of one plot. Ordinates are in the display unit.
@@ -128,13 +119,6 @@ pub(super) fn ordinate_scale(plot: &Plot, first: (f64, f64)) -> Scale {
         return Scale::plain(&plot.y.unit);
     }
     Scale::for_values([first.0 * 0.95, first.1 * 0.95], &plot.y.unit)
-}
-
-impl Drawing {
-    fn remark(&mut self, count: usize, one: &str, several: &str, what: &str) {
-        let noun = if count == 1 { one } else { several };
-        self.remarks.extend((count > 0).then(|| format!("{count} {noun} {what}")));
-    }
 }
 
 impl Mark {

@@ -3,7 +3,7 @@
 use jointscope_wording::capitalised;
 use maud::{Markup, html};
 
-use super::data::Drawing;
+use super::drawing::Drawing;
 use super::{Mark, Plot, Series, Style};
 use crate::format::{significant, trimmed};
 use crate::unit::{Scale, typeset};

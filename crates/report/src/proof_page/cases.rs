@@ -2,7 +2,8 @@
 
 use jointscope_proof::{Judged, Role};
 
-use super::{ProofContext, case_number, tone};
+use super::cells::{case_number, tone};
+use super::context::ProofContext;
 use crate::section::Section;
 use crate::table::Table;
 

@@ -2,7 +2,7 @@
 
 use jointscope_proof::{Method, Methods, Share, WIDER};
 
-use super::or_dash;
+use super::cells::or_dash;
 use crate::section::Section;
 use crate::table::Table;
 

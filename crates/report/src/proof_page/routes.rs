@@ -2,7 +2,9 @@
 
 use jointscope_proof::{CaseLine, RouteScore};
 
-use super::{ProofContext, case_number, counted, scores, tone};
+use super::cells::{case_number, counted, tone};
+use super::context::ProofContext;
+use super::scores;
 use crate::section::{Block, Card, Section};
 use crate::table::Table;
 

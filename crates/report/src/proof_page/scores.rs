@@ -2,9 +2,10 @@
 
 use jointscope_proof::{Figure, Rate, Score, Share, TargetStatus};
 
-use super::or_dash;
-use crate::section::{Block, Card, Section, Tone};
+use super::cells::or_dash;
+use crate::section::{Block, Card, Section};
 use crate::table::Table;
+use crate::tone::Tone;
 
 fn tone(status: Option<TargetStatus>) -> Option<Tone> {
     Some(match status? {

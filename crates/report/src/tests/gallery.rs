@@ -8,13 +8,14 @@ use jointscope_fixture::Fixture;
 use jointscope_spectra::FrfPair;
 
 use super::drawing::{chain, frame, two_blocks};
-use crate::context::InputFile;
 use crate::drawing::{Drawing, Highlight, SideView};
 use crate::format::{fixed, in_column};
+use crate::input_file::InputFile;
 use crate::page::Page;
 use crate::plot::{Axis, Plot, Role, YRange};
-use crate::section::{Card, Section, Tone, Verdict};
+use crate::section::{Card, Section, Verdict};
 use crate::table::Table;
+use crate::tone::Tone;
 use crate::unit::Scale;
 
 const STIFFNESS: f64 = 3.32e6;

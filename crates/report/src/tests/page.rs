@@ -2,12 +2,13 @@
 
 use maud::html;
 
-use crate::context::InputFile;
 use crate::error::PageError;
+use crate::input_file::InputFile;
 use crate::page::Page;
 use crate::plot::{Axis, Plot, Role};
-use crate::section::{Card, Section, Tone, Verdict};
+use crate::section::{Card, Section, Verdict};
 use crate::table::{Cell, Table};
+use crate::tone::Tone;
 
 const HOSTILE: &str = "</script><img src=\"http://evil\" onerror='x'>&\u{2028}";
 

@@ -1,4 +1,4 @@
-use super::elastic_frequencies;
+use super::elastic::elastic_frequencies;
 use super::statement::{abscissa, damping, known_to, stated, steel_beam};
 use crate::StructureError;
 use crate::random::{log_uniform, uniform};

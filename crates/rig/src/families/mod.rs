@@ -1,10 +1,12 @@
 //! Random assemblies of several kinds, as an analyst would state them.
 
 mod blocks;
+pub(crate) mod elastic;
 mod frame;
 mod statement;
 
-use crate::{Structure, StructureError};
+use crate::StructureError;
+use elastic::elastic_frequencies;
 use jointscope_fixture::Fixture;
 use jointscope_spectra::FrfPair;
 use rand::Rng;
@@ -88,14 +90,4 @@ impl Family {
         };
         pairs.iter().map(|(response, reference)| FrfPair::transverse(response, reference)).collect()
     }
-}
-
-/// Natural frequencies in Hz, ascending, of the free assembly without effects; rigid motions are left out.
-pub(crate) fn elastic_frequencies(fixture: &Fixture) -> Result<Vec<f64>, StructureError> {
-    let modes = Structure::of(&fixture.clone().with_physics(Vec::new())?)?.natural_frequencies()?;
-    let supported = !fixture.supports().is_empty();
-    let highest = modes.last().copied().unwrap_or(0.0);
-    // On supports the rigid motions are slow but not still; they are soft by intent.
-    let still = if supported { 12.0 } else { 2e-6 * highest };
-    Ok(modes.into_iter().filter(|f| *f > still).collect())
 }

@@ -130,6 +130,18 @@ impl<'a> Cursor<'a> {
     }
 }
 
+impl Cursor<'_> {
+    /// Passes everything up to and with the next closing delimiter.
+    pub(super) fn skip_to_delimiter(&mut self) -> Result<(), ReadError> {
+        while let Some(line) = self.next_line() {
+            if is_delimiter(line.bytes) {
+                return Ok(());
+            }
+        }
+        Err(self.truncated("the `    -1` line that closes the dataset"))
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -3,7 +3,8 @@
 use super::cursor::Cursor;
 use super::fields::BinaryForm;
 use super::header;
-use super::{Identification, ascii, binary};
+use super::identification::Identification;
+use super::{ascii, binary};
 use crate::{Abscissa, ByteOrder, Dataset58, Encoding, ReadError, TextProblem, Units};
 
 /// Reads a dataset 58 from behind its identification line to behind its closing delimiter.

@@ -7,6 +7,7 @@ mod dataset58;
 mod fields;
 mod geometry;
 mod header;
+mod identification;
 mod integers;
 mod nodal;
 mod number;
@@ -14,7 +15,8 @@ mod units;
 mod values;
 
 use crate::{Nodes, ReadError, UffFile, Units, Unreadable};
-use cursor::{Cursor, Line, excerpt, is_delimiter};
+use cursor::{Cursor, excerpt, is_delimiter};
+use identification::Identification;
 
 /// Reads every function (dataset 58 and 58b), the geometry and the mode shapes of a universal file.
 ///
@@ -101,34 +103,6 @@ fn closes(cursor: &Cursor) -> bool {
     next.is_some_and(|line| is_delimiter(line.bytes)) && Identification::read(&mut ahead).is_ok()
 }
 
-/// The line after the delimiter: dataset number, and for binary datasets how they are stored.
-struct Identification<'a> {
-    line: Line<'a>,
-    number: u32,
-    /// What follows the `b` in column 7, if there is one.
-    binary: Option<&'a [u8]>,
-}
-
-impl<'a> Identification<'a> {
-    fn read(cursor: &mut Cursor<'a>) -> Result<Self, ReadError> {
-        let line = cursor.expect_line("a dataset number")?;
-        let text = line.bytes.trim_ascii_start();
-        let digits = text.iter().take_while(|byte| byte.is_ascii_digit()).count();
-        let (number, rest) = text.split_at(digits);
-        let binary = match rest {
-            [b'b' | b'B', form @ ..] => Some(Some(form)),
-            [] => Some(None),
-            [blank, ..] if blank.is_ascii_whitespace() => Some(None),
-            _ => None,
-        };
-        let number = std::str::from_utf8(number).ok().and_then(|number| number.parse().ok());
-        match (number, binary) {
-            (Some(number), Some(binary)) => Ok(Identification { line, number, binary }),
-            _ => Err(cursor.unexpected(line, "a dataset number in columns 1 to 6", line.bytes)),
-        }
-    }
-}
-
 /// Passes a dataset this crate does not read, to behind its closing delimiter.
 fn skip(cursor: &mut Cursor, identification: &Identification) -> Result<(), ReadError> {
     if let Some(form) = identification.binary
@@ -137,17 +111,7 @@ fn skip(cursor: &mut Cursor, identification: &Identification) -> Result<(), Read
         cursor.position = after;
         return Ok(());
     }
-    skip_to_delimiter(cursor)
-}
-
-/// Passes everything up to and with the next closing delimiter.
-fn skip_to_delimiter(cursor: &mut Cursor) -> Result<(), ReadError> {
-    while let Some(line) = cursor.next_line() {
-        if is_delimiter(line.bytes) {
-            return Ok(());
-        }
-    }
-    Err(cursor.truncated("the `    -1` line that closes the dataset"))
+    cursor.skip_to_delimiter()
 }
 
 /// Where a binary dataset of another number ends, by the text lines and bytes it states.

@@ -4,10 +4,10 @@ use std::f64::consts::TAU;
 
 use num_complex::Complex64;
 
+use super::ascii;
 use super::cursor::{Cursor, is_delimiter};
 use super::fields::line_text;
 use super::integers::{list, record};
-use super::{ascii, skip_to_delimiter};
 use crate::{Analysis, Location, NodalData, NodeValues, ReadError};
 
 /// Columns of single-precision and double-precision values.
@@ -158,7 +158,7 @@ pub(super) fn read2414(cursor: &mut Cursor) -> Result<NodalData, ReadError> {
     if data.location == Location::Nodes {
         values(cursor, &mut data, widths)?;
     } else {
-        skip_to_delimiter(cursor)?;
+        cursor.skip_to_delimiter()?;
     }
     Ok(data)
 }

@@ -2,7 +2,9 @@
 
 use std::io::Write;
 
-use super::{DELIMITER, WriteProblem, number, values_per_point};
+use super::layout::{DELIMITER, values_per_point};
+use super::number;
+use super::write_error::WriteProblem;
 use crate::{Abscissa, Axis, ByteOrder, Data, Dataset58, Encoding, Node, Precision, TemperatureMode, Units};
 
 /// Writes everything from the opening delimiter to record 11.

@@ -2,12 +2,14 @@
 
 mod data;
 mod header;
+mod layout;
 mod number;
 mod write_error;
 
 pub use write_error::{WriteError, WriteProblem};
 
 use crate::{Abscissa, Data, Dataset58, Encoding, Precision, Units};
+use layout::{DELIMITER, values_per_point};
 
 /// Writes functions as one universal file, each in its own precision and encoding, in the given order. A dataset 164
 /// precedes the first function and every function whose units differ from those before.
@@ -53,8 +55,6 @@ fn write_function<'d>(
     Ok(())
 }
 
-const DELIMITER: &[u8] = b"    -1\n";
-
 fn size_estimate(function: &Dataset58) -> usize {
     let width = match (function.encoding, function.precision) {
         (Encoding::Ascii, _) => 21,
@@ -62,17 +62,6 @@ fn size_estimate(function: &Dataset58) -> usize {
         (Encoding::Binary(_), Precision::Double) => 8,
     };
     1100 + function.data.len() * values_per_point(function) * width
-}
-
-fn values_per_point(function: &Dataset58) -> usize {
-    let parts = match function.data {
-        Data::Real(_) => 1,
-        Data::Complex(_) => 2,
-    };
-    match function.abscissa {
-        Abscissa::Even { .. } => parts,
-        Abscissa::Uneven(_) => parts + 1,
-    }
 }
 
 /// Refuses what no reader could take for a value.

@@ -3,8 +3,7 @@
 //! Trying all combinations would take 6ᵐ fits of m joints. All joints begin with K + sC; in each round every joint is fitted with every law, the others keeping theirs, and
 //! the one change that gains most evidence is made. A joint that takes the blame for another's law is so overtaken by the other.
 
-use super::super::coordinates;
-use super::super::law::{Dynamics, LawKind};
+use super::super::law::{Dynamics, LawKind, coordinates};
 use super::super::laws::{Candidate, LawFit, probable};
 use super::super::problem::{Columns, Fitted, Problem, Test};
 

@@ -1,8 +1,8 @@
 //! Two solid blocks on a strip with nothing idealised, and the fixture that an honest analyst writes of them.
 
-use super::statics::Footings;
+use super::footings::Footings;
 use crate::GenerationError;
-use crate::generate::{between, log_uniform};
+use crate::random::{between, log_uniform};
 use crate::routes::solid::assembly::{
     Block, GAP, HIGHEST, LOWEST, MATERIALS, METALS, POISSON, Strip, abscissa, elastic, known_to,
 };
@@ -14,6 +14,8 @@ use std::f64::consts::TAU;
 
 /// Names of the strip's ends.
 pub(super) const ENDS: [&str; 2] = ["10", "11"];
+/// Points of the solid that no fixture states.
+pub(super) const UNSTATED: [&str; 2] = ["91", "92"];
 /// Width of the strip over its thickness: narrow enough to bend as a beam, or a plate.
 const NARROW: [f64; 2] = [1.5, 3.0];
 const WIDE: [f64; 2] = [4.0, 8.0];
@@ -186,7 +188,7 @@ impl Assembly {
     /// The solid as a fixture with geometry: true quantities, points that no fixture states, and nothing of the strip's physics.
     pub(super) fn solid(&self) -> Result<Value, GenerationError> {
         let mut value = self.lumped(None, None)?.to_value();
-        for ((name, body), x) in super::APART.iter().zip(["A", "B"]).zip(self.apart) {
+        for ((name, body), x) in UNSTATED.iter().zip(["A", "B"]).zip(self.apart) {
             value["points"][*name] = json!({ "body": body, "x": x });
         }
         let material = |index: usize, factor: f64| {

@@ -1,7 +1,7 @@
 //! What can be hidden in a solid as it is, or in the chain that measures it.
 
 use super::assembly::{Assembly, Layer};
-use crate::generate::{between, log_uniform};
+use crate::random::{between, log_uniform};
 use jointscope_fixture::{Dof, Effect, EffectKind, Place};
 use rand::{Rng, RngExt};
 use serde_json::{Value, json};

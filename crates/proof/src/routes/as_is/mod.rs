@@ -6,6 +6,7 @@
 
 mod assembly;
 mod concealed;
+mod footings;
 mod names;
 mod statics;
 #[cfg(test)]
@@ -16,14 +17,15 @@ use super::by_name::{Nameable, TrueName};
 use super::quiet::quiet_hammer;
 use super::solid::twin::read;
 use super::solid::{transverse, with_points};
-use crate::case::{effect_value, filed_effects};
+use crate::effect_file::{effect_value, filed_effects};
 use crate::generate::{Draw, turn};
+use crate::judge::Judge;
 use crate::judged::error_on;
-use crate::objective::Judge;
-use crate::seal::{Filed, Sealable};
+use crate::sealable::{Filed, Sealable};
 use crate::{Answer, Case, Evidence, GenerationError, Judgeable, Judged, Role};
-use assembly::Assembly;
+use assembly::{Assembly, UNSTATED};
 use concealed::{CONCEALED, Concealed, Size, mount};
+use footings::Footings;
 use jointscope_fem::{MeshOptions, ModeKind, ModeRange, Omissions, Twin};
 use jointscope_fixture::{Effect, Fixture};
 use jointscope_rig::{HammerTest, StructureError, drawn_within_tolerance, generator};
@@ -31,7 +33,6 @@ use jointscope_spectra::{FrfSet, SpectraError, SpectralLines};
 use names::Gap;
 use serde::Deserialize;
 use serde_json::{Value, json};
-use statics::Footings;
 
 /// How much is hidden.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -57,8 +58,7 @@ const LINES: (f64, f64, usize) = (20.0, 2.5, 481);
 const MODES: f64 = 2.0;
 /// FRFs of the test, in the order in which a file of them is read.
 const RECORDED: [(&str, &str); 4] = [("3", "1"), ("3", "2"), ("4", "1"), ("4", "2")];
-/// Points of the solid that no fixture states, and FRFs there.
-const APART: [&str; 2] = ["91", "92"];
+/// FRFs at points of the solid that no fixture states.
 const UNSEEN: [(&str, &str); 5] = [("91", "91"), ("92", "92"), ("92", "91"), ("91", "1"), ("4", "91")];
 
 /// Fine where strips meet blocks, for their footing is part of the solid; what is left of the mesh's error the static solve has too.
@@ -241,7 +241,7 @@ impl Judgeable for AsIsTruth {
     fn evidence(&self, case: &Case, answer: &Answer) -> Option<Evidence> {
         let [clean, unseen] = self.frfs().ok()?;
         let judge = Judge::of(case)?;
-        let error = |fixture: &Fixture| error_on(&unseen, &with_points(fixture, &self.solid, APART)?);
+        let error = |fixture: &Fixture| error_on(&unseen, &with_points(fixture, &self.solid, UNSTATED)?);
         Some(Evidence {
             truth: judge.objective_of_clean(&clean, &self.lumped)?,
             unseen: error(&answer.refitted).zip(error(&answer.repaired)).map(Into::into),

@@ -6,21 +6,13 @@
 //! them apart.
 
 use super::assembly::Assembly;
+use super::footings::Footings;
 use crate::GenerationError;
 use jointscope_fem::Twin;
 
 /// Shares of a block's length, from its outer end, at which forces act, and at which its motion is read.
 const LOADED: [f64; 2] = [0.05, 0.65];
 const READ: [f64; 2] = [0.25, 0.45];
-
-/// Compliances of a strip in its blocks beyond its bending.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Footings {
-    /// In rotation at either end, rad/(N·m).
-    pub rotation: [f64; 2],
-    /// Across the strip: its shear and both ends, m/N.
-    pub across: f64,
-}
 
 impl Footings {
     /// Those of a solid's twin.
@@ -33,11 +25,6 @@ impl Footings {
             rotation: [start, flexibility.rotation - length / bending - start],
             across: flexibility.translation - length.powi(3) / (3.0 * bending) - length * length * start,
         })
-    }
-
-    /// Rotational stiffnesses, N·m/rad.
-    pub(super) fn stiffness(&self) -> [f64; 2] {
-        self.rotation.map(f64::recip)
     }
 }
 

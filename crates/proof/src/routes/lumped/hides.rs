@@ -1,6 +1,6 @@
 //! What the cases of a route hide, by kind in turn.
 
-use super::LumpedRoute;
+use super::route::LumpedRoute;
 use crate::scene::Hides;
 use crate::{GenerationError, Role};
 use jointscope_fixture::{Effect, EffectKind, Fixture, Place};

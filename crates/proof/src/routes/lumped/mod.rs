@@ -4,13 +4,16 @@
 //! measuring chain, and more of what no fixture file describes have routes of their own here.
 
 mod hides;
+mod route;
 mod same;
 
+pub use route::LumpedRoute;
+
 use super::by_name::Nameable;
-use crate::case::filed_pairs;
 use crate::generate::{Draw, turn};
 use crate::scene::Scene;
-use crate::seal::{Filed, Sealable};
+use crate::sealable::{Filed, Sealable};
+use crate::truth::filed_pairs;
 use crate::{AS_GOOD, Answer, Case, Evidence, GenerationError, Judgeable, Name, Role, Truth};
 use hides::OneOf;
 use jointscope_fixture::{Effect, EffectKind};
@@ -19,38 +22,12 @@ use jointscope_spectra::FrfPair;
 use rand::RngExt;
 use serde_json::{Value, json};
 
-/// What a route of lumped cases hides.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum LumpedRoute {
-    /// A flaw of the measuring chain.
-    ChannelFlaws,
-    /// A load path beside a joint or to ground, or the footing of a joint.
-    LoadPaths,
-    /// Physics that no effect of a fixture file is.
-    UnknownPhysics,
-}
-
 /// Roles by case number, repeating, where something has a name.
 const ROLES: [Role; 4] = [Role::Single, Role::Null, Role::Single, Role::Single];
 /// Draws of a case before giving up: a table under supports needs supports.
 const DRAWS: usize = 400;
 /// A resonator has the frequency of a cable's resonance within this, relative.
 const NEAR: f64 = 0.05;
-
-impl LumpedRoute {
-    /// Every route, in the order in which cases are numbered.
-    pub const ALL: [LumpedRoute; 3] =
-        [LumpedRoute::ChannelFlaws, LumpedRoute::LoadPaths, LumpedRoute::UnknownPhysics];
-
-    /// Its name in files.
-    pub fn key(self) -> &'static str {
-        match self {
-            LumpedRoute::ChannelFlaws => "channel_flaws",
-            LumpedRoute::LoadPaths => "load_paths",
-            LumpedRoute::UnknownPhysics => "unknown_physics",
-        }
-    }
-}
 
 /// What is true of a lumped case.
 #[derive(Debug, Clone, PartialEq)]

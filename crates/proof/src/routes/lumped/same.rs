@@ -1,7 +1,7 @@
 //! Names that are exactly the same thing in a recording: a hammer's gain and that of the only reference, a sensor's mass and mass on the body that
 //! is read nowhere else.
 
-use crate::generate::recorded_lines;
+use crate::hammer_test::recorded_lines;
 use crate::objective::relative_error;
 use jointscope_fixture::{Effect, EffectKind, Fixture, Place};
 use jointscope_rig::{Instrument, frfs};

@@ -5,11 +5,13 @@
 
 use super::by_name::Nameable;
 use super::quiet::quiet_hammer;
-use crate::generate::{Draw, HIDDEN_KINDS, log_uniform, recorded_lines, turn, unseen_pairs};
+use crate::generate::{Draw, HIDDEN_KINDS, turn};
+use crate::hammer_test::{recorded_lines, unseen_pairs};
+use crate::judge::Judge;
 use crate::judged::error_on;
 use crate::laboratory::others;
-use crate::objective::Judge;
-use crate::seal::{Filed, Sealable};
+use crate::random::log_uniform;
+use crate::sealable::{Filed, Sealable};
 use crate::{AS_GOOD, Answer, Case, Evidence, GenerationError, Judgeable, Judged, Name, Role, Truth};
 use jointscope_fixture::{Effect, Fixture};
 use jointscope_rig::{

@@ -1,7 +1,7 @@
 //! Two solid blocks on a strip, random, and the lumped fixture that says the same of them.
 
 use crate::GenerationError;
-use crate::generate::{between, log_uniform};
+use crate::random::{between, log_uniform};
 use jointscope_fixture::Fixture;
 use jointscope_rig::{Structure, StructureError};
 use rand::{Rng, RngExt};

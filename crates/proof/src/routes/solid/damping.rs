@@ -5,7 +5,7 @@
 
 use super::twin::{MESH, Shown, twin};
 use crate::GenerationError;
-use crate::generate::recorded_lines;
+use crate::hammer_test::recorded_lines;
 use jointscope_fem::ModeKind;
 use jointscope_fixture::{Effect, EffectKind, Fixture};
 use jointscope_linalg::LuWorkspace;

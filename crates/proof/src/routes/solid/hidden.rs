@@ -3,7 +3,7 @@
 use super::assembly::{Assembly, Stoutness};
 use super::twin::Shown;
 use crate::GenerationError;
-use crate::generate::log_uniform;
+use crate::random::log_uniform;
 use jointscope_fixture::{Dof, Effect, EffectKind, Place};
 use jointscope_rig::random_effect;
 use jointscope_spectra::FrfPair;

@@ -1,8 +1,8 @@
 //! How answers to solid cases are judged.
 
 use super::{APART, SolidTruth, with_points};
+use crate::judge::Judge;
 use crate::judged::error_on;
-use crate::objective::Judge;
 use crate::{Answer, Case, Evidence, Judgeable, Judged, Name, Role};
 use jointscope_fixture::{Dof, Effect, EffectKind, Fixture};
 

@@ -17,9 +17,10 @@ pub(super) mod twin;
 pub use judged::SolidJudged;
 pub use twin::Shown;
 
-use crate::case::{effect_value, filed_effects};
-use crate::generate::{Draw, drawn_hammer, recorded_lines, turn};
-use crate::seal::{Filed, Sealable};
+use crate::effect_file::{effect_value, filed_effects};
+use crate::generate::{Draw, turn};
+use crate::hammer_test::{drawn_hammer, recorded_lines};
+use crate::sealable::{Filed, Sealable};
 use crate::{Case, GenerationError, Judgeable, Role};
 use assembly::{Assembly, Stoutness};
 use hidden::{CONCEALED, Hidden, IN_THE_SOLID};

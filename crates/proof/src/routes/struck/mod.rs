@@ -9,9 +9,10 @@ mod score;
 pub use answer::{StruckAnswer, StruckAnswers};
 pub use judged::StruckJudged;
 
-use crate::case::{describe, effect_value};
+use crate::effect_file::effect_value;
 use crate::generate::{Draw, turn};
-use crate::seal::{Filed, Sealable};
+use crate::name::describe;
+use crate::sealable::{Filed, Sealable};
 use crate::{Case, GenerationError, Plan};
 use jointscope_fixture::{Damping, Dof, Effect, EffectKind, Fixture, JointLaw};
 use jointscope_hits::Hit;

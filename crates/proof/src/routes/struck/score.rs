@@ -1,9 +1,9 @@
 //! The scores of cases of hits.
 
 use super::{StruckJudged, StruckRole};
-use crate::case::describe;
 use crate::case_line::{errors, in_full, is_worse, marked, named};
-use crate::seal::Sealable;
+use crate::name::describe;
+use crate::sealable::Sealable;
 use crate::sheet::Line;
 use crate::sheet::Target::{AtLeast, AtMost, Within};
 use crate::size::{Size, SizeScore};

@@ -1,12 +1,12 @@
-//! What `stiffness.json` says of the joint from all FRFs.
+//! What `stiffness.json` says of the joint from all FRFs: `JointFit` of the decomposition as it is read back, with less in files of earlier versions.
 
 use crate::stiffness_file::{ComparedLaw, FollowedLaw, Matrix, ModelError, Uncertain};
 use jointscope_inference::{QuadraticLikelihood, SIGNIFICANT};
 use serde::Deserialize;
 
-/// The joint from all FRFs, the fixture's quantities moving within their deviations.
+/// The joint from all FRFs, the fixture's quantities moving within their deviations, as a file has it.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
-pub struct FittedJoint {
+pub struct FiledJoint {
     /// K.
     pub stiffness: Matrix,
     /// C.
@@ -33,7 +33,7 @@ pub struct FittedJoint {
     pub length: Option<Uncertain>,
     /// What the FRFs alone tell of it and of the quantities; files of earlier versions do not say.
     #[serde(default)]
-    pub likelihood: Option<JointLikelihood>,
+    pub likelihood: Option<FiledLikelihood>,
     /// How it is damped, as far as the file says.
     #[serde(default)]
     pub law: Option<String>,
@@ -48,7 +48,7 @@ pub struct FittedJoint {
     pub mass: Option<Uncertain>,
     /// Whether physics allows it.
     #[serde(default)]
-    pub tests: JointTests,
+    pub tests: FiledTests,
     /// Whether C was held where it just gives out no energy: what the FRFs alone ask for is then another C.
     #[serde(default)]
     pub on_the_boundary_of_passive: bool,
@@ -56,7 +56,7 @@ pub struct FittedJoint {
 
 /// Probabilities of FRFs that speak at least as much against a property, if the joint has it; nothing where it was not tested.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Deserialize)]
-pub struct JointTests {
+pub struct FiledTests {
     /// k12 = k21 and c12 = c21.
     #[serde(default)]
     pub reciprocity: Option<f64>,
@@ -68,7 +68,7 @@ pub struct JointTests {
     pub passive: Option<f64>,
 }
 
-impl JointTests {
+impl FiledTests {
     /// Names and probabilities of the tests that fail.
     pub fn failed(&self) -> impl Iterator<Item = (&'static str, f64)> {
         let all = [("reciprocity", self.reciprocity), ("definite", self.definite), ("passive", self.passive)];
@@ -92,7 +92,7 @@ pub struct StatedQuantity {
 
 /// The likelihood of the joint's numbers and of the quantities, Gaussian about a point, without the quantities' priors.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
-pub struct JointLikelihood {
+pub struct FiledLikelihood {
     elements: Vec<String>,
     at: Vec<f64>,
     gradient: Vec<f64>,
@@ -102,7 +102,7 @@ pub struct JointLikelihood {
 /// Names of the six numbers.
 const ELEMENTS: [&str; 6] = ["k11", "k12", "k22", "c11", "c12", "c22"];
 
-impl FittedJoint {
+impl FiledJoint {
     /// The likelihood of the joint's numbers, by their places among the six, and after them of the quantities; nothing where the file has none that fits
     /// its quantities.
     pub(crate) fn likelihood(&self) -> Option<(Vec<usize>, QuadraticLikelihood)> {

@@ -12,7 +12,7 @@ use rayon::prelude::*;
 const REACH: f64 = 0.05;
 /// Farthest that the damping ratio of the same mode may differ: a pole that only follows what a fit leaves has any damping.
 const DAMPING: f64 = 2.0;
-/// A natural frequency is told where it is known to this share of its half-width.
+/// A natural frequency counts where it is known to this share of its half-width.
 const KNOWN: f64 = 0.3;
 
 /// The recording's references, in its order.
@@ -31,38 +31,38 @@ fn distinct<'a>(channels: impl Iterator<Item = &'a Channel>) -> Vec<Channel> {
 }
 
 /// Modes of one reference, and what all FRFs say of them.
-pub(super) struct Seen {
+pub(super) struct PolesByFrf {
     pub modes: RecordedModes,
     pub table: Table,
 }
 
 /// One reference's FRFs and their modes.
-struct Struck {
+struct ReferenceModes {
     part: Observation,
     modes: RecordedModes,
 }
 
 /// What the FRFs say; `None` where the references' modes differ no more than chance makes with the probability `certain`, each reference's FRFs taken together.
-pub(super) fn seen(
+pub(super) fn poles_by_frf(
     observation: &Observation,
     nominal: &Hypothesis,
     settings: &ModalSettings,
     (references, certain): (&[Channel], f64),
-) -> Option<Seen> {
+) -> Option<PolesByFrf> {
     let of = |reference: &Channel| {
         let part = observation.reduced(|_| true, |pair| pair.reference == *reference)?;
         // Where modes do not tell all there is in the FRFs, what they leave moves them too.
         let modes = recorded(&part, nominal).filter(|m| m.chi2_per_dof < settings.free_fit)?;
-        Some(Struck { part, modes })
+        Some(ReferenceModes { part, modes })
     };
-    let struck: Vec<Option<Struck>> = references.par_iter().map(of).collect();
-    // The reference that tells most modes is the one that the others are compared with.
-    let told = |struck: &Option<Struck>| {
+    let struck: Vec<Option<ReferenceModes>> = references.par_iter().map(of).collect();
+    // The reference that shows most modes well is the one that the others are compared with.
+    let known_poles = |struck: &Option<ReferenceModes>| {
         struck
             .as_ref()
             .map_or(0, |s| (0..s.modes.modes.len()).filter(|&r| variance(&s.modes, r).is_some()).count())
     };
-    let (first, _) = struck.iter().enumerate().rev().max_by_key(|(_, struck)| told(struck))?;
+    let (first, _) = struck.iter().enumerate().rev().max_by_key(|(_, struck)| known_poles(struck))?;
     let base = &struck[first].as_ref()?.modes;
     let mut partners: Vec<Vec<Option<usize>>> = Vec::new();
     for struck in &struck {
@@ -74,28 +74,13 @@ pub(super) fn seen(
     let is_compared =
         |r: &usize| variance(base, *r).is_some() && partners.iter().filter(|of| of[*r].is_some()).count() > 1;
     let compared: Vec<usize> = (0..base.modes.len()).filter(is_compared).collect();
-    let (mut chi2, mut degrees) = (0.0, 0);
-    for &r in &compared {
-        let values: Vec<(f64, f64)> = struck
-            .iter()
-            .zip(&partners)
-            .filter_map(|(struck, of)| {
-                let (modes, own) = (&struck.as_ref()?.modes, of[r]?);
-                Some(((modes.modes[own].pole.omega / base.modes[r].pole.omega).ln(), variance(modes, own)?))
-            })
-            .collect();
-        let weight: f64 = values.iter().map(|(_, variance)| 1.0 / variance).sum();
-        let mean = values.iter().map(|(x, variance)| x / variance).sum::<f64>() / weight;
-        chi2 += values.iter().map(|(x, variance)| (x - mean).powi(2) / variance).sum::<f64>();
-        degrees += values.len() - 1;
-    }
-    if chance(chi2, degrees, 1.0, 0) >= certain {
+    if probability_by_chance(base, &compared, &struck, &partners) >= certain {
         return None;
     }
     let responses = distinct(observation.pairs().iter().map(|pair| &pair.response));
     let mut cells = Vec::new();
     for (reference, (struck, of)) in struck.iter().zip(&partners).enumerate() {
-        let Some(Struck { part, modes }) = struck else { continue };
+        let Some(ReferenceModes { part, modes }) = struck else { continue };
         let alone = match part.pairs().len() {
             1 => vec![Some(modes.clone())],
             _ => modes.one_by_one(Recording { frfs: part.frfs(), weights: part.weights() }),
@@ -123,7 +108,32 @@ pub(super) fn seen(
         responses: responses.len(),
         references: references.len(),
     };
-    Some(Seen { modes: base.clone(), table })
+    Some(PolesByFrf { modes: base.clone(), table })
+}
+
+/// Probability of natural frequencies of the `compared` modes of `base` that differ as much between references by chance.
+fn probability_by_chance(
+    base: &RecordedModes,
+    compared: &[usize],
+    struck: &[Option<ReferenceModes>],
+    partners: &[Vec<Option<usize>>],
+) -> f64 {
+    let (mut chi2, mut degrees) = (0.0, 0);
+    for &r in compared {
+        let values: Vec<(f64, f64)> = struck
+            .iter()
+            .zip(partners)
+            .filter_map(|(struck, of)| {
+                let (modes, own) = (&struck.as_ref()?.modes, of[r]?);
+                Some(((modes.modes[own].pole.omega / base.modes[r].pole.omega).ln(), variance(modes, own)?))
+            })
+            .collect();
+        let weight: f64 = values.iter().map(|(_, variance)| 1.0 / variance).sum();
+        let mean = values.iter().map(|(x, variance)| x / variance).sum::<f64>() / weight;
+        chi2 += values.iter().map(|(x, variance)| (x - mean).powi(2) / variance).sum::<f64>();
+        degrees += values.len() - 1;
+    }
+    chance(chi2, degrees, 1.0, 0)
 }
 
 /// Whether two fits' modes can be the same mode of a structure.
@@ -133,13 +143,13 @@ fn same(own: &RecordedMode, begun: &RecordedMode) -> bool {
         && apart(own.pole.damping_ratio, begun.pole.damping_ratio) < DAMPING.ln()
 }
 
-/// Variance of ln ω of a mode; `None` where it is not well told.
+/// Variance of ln ω of a mode; `None` where it is not known well enough.
 fn variance(modes: &RecordedModes, r: usize) -> Option<f64> {
     let mode = &modes.modes[r];
     let [deviation, _] = modes.deviations(r);
     let half_width = mode.pole.damping_ratio;
-    let told = mode.resolved && deviation < KNOWN * half_width;
-    told.then(|| deviation.powi(2))
+    let is_known = mode.resolved && deviation < KNOWN * half_width;
+    is_known.then(|| deviation.powi(2))
 }
 
 /// For each mode of `base` the mode that is nearest among `other`'s and has it nearest too.

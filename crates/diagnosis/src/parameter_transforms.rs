@@ -1,5 +1,6 @@
 //! How the parameters of an effect move in a fit: by themselves or by their logarithms, and between which bounds.
 
+use crate::bodies::{extent, mass_of, turns};
 use jointscope_fixture::{BodyKind, Effect, Fixture, Motion, ParameterSpec, Place, Possible, Quantity};
 use jointscope_inference::{Parameter, Transform};
 
@@ -91,50 +92,5 @@ fn possible(possible: Possible, fixture: &Fixture, place: &Place) -> (f64, f64) 
             joint.map_or(any, |joint| (-MISSING * fixture.joint_length(joint), f64::INFINITY))
         }
         _ => any,
-    }
-}
-
-/// Mass of a body without what is stated to sit on it, kg.
-pub(crate) fn mass_of(fixture: &Fixture, body: usize) -> f64 {
-    match &fixture.bodies()[body].kind {
-        BodyKind::Rigid(rigid) => rigid.mass.value,
-        BodyKind::Beam(beam) => beam.mass_per_length.value * (beam.to.value - beam.from.value),
-    }
-}
-
-/// Moment of inertia of a body about its middle, kg·m²; zero of one that does not rotate.
-pub(crate) fn inertia_of(fixture: &Fixture, body: usize) -> f64 {
-    match &fixture.bodies()[body].kind {
-        BodyKind::Rigid(rigid) => rigid.inertia.filter(|_| rigid.rotates).map_or(0.0, |q| q.value),
-        BodyKind::Beam(beam) => {
-            let length = beam.to.value - beam.from.value;
-            beam.mass_per_length.value * length.powi(3) / 12.0
-        }
-    }
-}
-
-/// Whether a body has slopes.
-pub(crate) fn turns(fixture: &Fixture, body: usize) -> bool {
-    match &fixture.bodies()[body].kind {
-        BodyKind::Rigid(rigid) => rigid.rotates,
-        BodyKind::Beam(_) => true,
-    }
-}
-
-/// Abscissae between which something may sit on a body: a bar of its mass and inertia, and its points.
-pub(crate) fn extent(fixture: &Fixture, body: usize) -> (f64, f64) {
-    let points = fixture.points().iter().filter(|p| p.body == body).map(|p| p.x.value);
-    let (low, high) = points.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(x), h.max(x)));
-    match &fixture.bodies()[body].kind {
-        BodyKind::Beam(beam) => (beam.from.value, beam.to.value),
-        BodyKind::Rigid(rigid) => match (rigid.rotates, rigid.x_cg, rigid.inertia) {
-            (true, Some(x_cg), Some(inertia)) => {
-                let half = (3.0 * inertia.value / rigid.mass.value).sqrt();
-                (low.min(x_cg.value - half), high.max(x_cg.value + half))
-            }
-            // Any place of it is as good; one where the structure is can be shown.
-            _ if low.is_finite() => (low, high),
-            _ => (0.0, 0.0),
-        },
     }
 }

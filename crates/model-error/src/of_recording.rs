@@ -1,0 +1,143 @@
+//! From a recording to its modes: where the free fits of poles, residues and residual terms to all FRFs start, and which of them is taken.
+
+use crate::basis::{Pole, TERMS};
+use crate::expected::Expected;
+use crate::free_fit::FreeFit;
+use crate::recorded::RecordedModes;
+use crate::recording::{RESOLVED, Recording, resolved_from};
+use jointscope_modes::{ModalAnalysis, ModesOptions};
+use jointscope_spectra::FrfSet;
+use std::f64::consts::TAU;
+
+/// Where modes above the band are looked for, as multiples of its upper end.
+const BEYOND: [f64; 2] = [1.06, 1.3];
+
+/// The free fit that is begun with poles in and out of the band, with what else the recording asks for: modes just outside the band, then more residual terms, then modes
+/// in the band that were missed.
+fn free_fit(recording: Recording, inside: Vec<Pole>, outside: &[Pole]) -> Option<FreeFit> {
+    let mut fit = FreeFit::converged(recording, inside, outside, TERMS.0)?;
+    let lines = recording.frfs.lines().hz();
+    let (low, high) = (TAU * lines[0], TAU * lines[lines.len() - 1]);
+    let beyond = |by: f64| Pole { omega: high * by, damping_ratio: 0.01 };
+    let outside = BEYOND.into_iter().map(beyond).chain([Pole { omega: 0.7 * low, damping_ratio: 0.02 }]);
+    for pole in outside {
+        fit = fit.with(recording, pole);
+    }
+    while fit.terms < TERMS.1 {
+        let (inside, outside) = fit.poles.split_at(fit.inside);
+        match FreeFit::converged(recording, inside.to_vec(), outside, fit.terms + 1) {
+            Some(more) if fit.is_poor(recording) || fit.lacks(&more, recording) => fit = more,
+            _ => break,
+        }
+    }
+    Some(fit.with_missed(recording))
+}
+
+/// A free fit with poles that a model expects besides, one after the other. Where that leaves more than noise, the model's modes by themselves are another place to begin
+/// from: what the recording showed by itself, on few lines or with next to no noise, may be none of its modes.
+fn with_expected(recording: Recording, fit: FreeFit, besides: &[Pole], all: &[Pole]) -> FreeFit {
+    let fit = besides.iter().fold(fit, |fit, pole| fit.with_expected(recording, *pole));
+    if !fit.is_poor(recording) {
+        return fit;
+    }
+    let lowest = TAU * recording.frfs.lines().hz()[0];
+    let (below, inside): (Vec<Pole>, Vec<Pole>) = all.iter().partition(|pole| pole.omega < lowest);
+    let other = free_fit(recording, inside, &below);
+    other.filter(|other| fit.is_worse(other, recording)).unwrap_or(fit)
+}
+
+/// A recording without its lowest lines.
+struct Above {
+    frfs: FrfSet,
+    weights: Vec<f64>,
+}
+
+impl Above {
+    /// The lines above modes too low to be told from a mass line, as far as the others stay told from one; `None` where there are no such modes, and where lines are so
+    /// uneven that more than the lowest few would have to go.
+    fn of(recording: Recording, poles: &[Pole]) -> Option<Self> {
+        let hz = recording.frfs.lines().hz();
+        let (from, reach) = (resolved_from(hz), resolved_from(hz) - hz[0]);
+        let is_low = |pole: &&Pole| pole.omega <= TAU * from;
+        poles.iter().find(is_low)?;
+        let lowest = poles.iter().filter(|pole| !is_low(pole)).map(|pole| pole.omega / TAU);
+        let cut = lowest.fold(from, |cut, resolved| cut.min(resolved - reach));
+        let first = hz.partition_point(|hz| *hz < cut * (1.0 - 1e-9));
+        if first == 0 || first > 2 * RESOLVED as usize {
+            return None;
+        }
+        Above::line(recording, first)
+    }
+
+    fn line(recording: Recording, first: usize) -> Option<Self> {
+        let of_frf = recording.weights.chunks_exact(recording.frfs.lines().len());
+        let weights = of_frf.flat_map(|weights| &weights[first..]).copied().collect();
+        Some(Above { frfs: recording.frfs.on_lines(|line| line >= first)?, weights })
+    }
+
+    fn recording(&self) -> Recording<'_> {
+        Recording { frfs: &self.frfs, weights: &self.weights }
+    }
+}
+
+impl RecordedModes {
+    /// The modes of a recording; `None` where it has none that can be told.
+    ///
+    /// Poles that a model `expected` besides what they show by themselves are tried too: two modes on a few lines look like one. So are the model's alone, where more than
+    /// noise is left. Where there are modes too low to be
+    /// told from a mass line, the band begins above them: where they are on a few lines many poles fit as well, and mass lines differ with them by many deviations.
+    pub fn of(
+        recording: Recording,
+        options: &ModesOptions,
+        expected: impl FnOnce(&RecordedModes) -> Expected,
+    ) -> Option<Self> {
+        let analysis = ModalAnalysis::of(recording.frfs, options).ok()?;
+        let poles = |modes: &[jointscope_modes::Mode]| -> Vec<Pole> {
+            let pole = |m: &jointscope_modes::Mode| Pole {
+                omega: TAU * m.frequency,
+                damping_ratio: m.damping_ratio,
+            };
+            modes.iter().map(pole).filter(|p| p.damping_ratio > 0.0 && p.damping_ratio < 1.0).collect()
+        };
+        let fit = free_fit(recording, poles(&analysis.modes), &poles(&analysis.outside))?;
+        let alone = fit.recorded_modes(recording)?;
+        let expected = expected(&alone);
+        let Expected { all, unpaired } = expected;
+        let told_or_expected: Vec<Pole> = fit.poles[..fit.inside].iter().chain(&unpaired).copied().collect();
+        let Some(above) = Above::of(recording, &told_or_expected) else {
+            return match all.is_empty() {
+                true => Some(alone),
+                false => with_expected(recording, fit, &unpaired, &all).recorded_modes(recording),
+            };
+        };
+        let (recording, from) = (above.recording(), TAU * above.frfs.lines().hz()[0]);
+        let (low, within): (Vec<Pole>, Vec<Pole>) =
+            fit.poles[..fit.inside].iter().partition(|p| p.omega < from);
+        let fit = free_fit(recording, within, &fit.poles[fit.inside..])?;
+        let besides: Vec<Pole> = low.into_iter().chain(unpaired).collect();
+        let fit = with_expected(recording, fit, &besides, &all);
+        let mut modes = fit.recorded_modes(recording)?;
+        let below = alone.misfit.len() - modes.misfit.len();
+        (modes.lowest, modes.outline.grid) = (alone.lowest, alone.outline.grid);
+        modes.misfit.splice(..0, alone.misfit[..below].iter().copied());
+        Some(modes)
+    }
+
+    /// The same modes as each FRF of the `recording` has them by itself, the free fit begun at the common poles; `None` for an FRF whose fit fails.
+    ///
+    /// Where a structure stays the same they differ by their noise.
+    pub fn one_by_one(&self, recording: Recording) -> Vec<Option<RecordedModes>> {
+        let below = recording.frfs.lines().hz().partition_point(|hz| *hz < self.band.0);
+        let Some(above) = Above::line(recording, below) else { return Vec::new() };
+        let n = above.frfs.lines().len();
+        let poles: Vec<Pole> = self.modes.iter().map(|mode| mode.pole).collect();
+        let (outside, terms) = &self.surroundings;
+        let of = |index: usize| {
+            let frfs = above.frfs.of_frfs(|frf| frf == index)?;
+            let weights = above.weights.get(index * n..(index + 1) * n)?;
+            let alone = Recording { frfs: &frfs, weights };
+            FreeFit::converged(alone, poles.clone(), outside, *terms)?.recorded_modes(alone)
+        };
+        (0..recording.frfs.pairs().len()).map(of).collect()
+    }
+}

@@ -1,0 +1,20 @@
+//! FRFs with a weight for each value.
+
+use jointscope_spectra::FrfSet;
+
+/// FRFs to take the modes of: accelerances, with a weight for each value.
+#[derive(Debug, Clone, Copy)]
+pub struct Recording<'a> {
+    /// Accelerances with their variances, on lines above 0 Hz.
+    pub frfs: &'a FrfSet,
+    /// 1/variance of the real part, and of the imaginary part, of each value, FRF after FRF: 2/E|ε|². Zero where a value does not count.
+    pub weights: &'a [f64],
+}
+
+/// Lines above the lowest one from which a mode can be told from a residual term.
+pub(crate) const RESOLVED: f64 = 4.0;
+
+/// Frequency, Hz, from which on modes are told from residual terms.
+pub(crate) fn resolved_from(hz: &[f64]) -> f64 {
+    hz[0] + RESOLVED * (hz[hz.len() - 1] - hz[0]) / (hz.len() as f64 - 1.0).max(1.0)
+}
