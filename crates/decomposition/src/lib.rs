@@ -40,6 +40,7 @@ mod analysis;
 mod averages;
 mod by_law;
 mod estimate;
+mod idle_points;
 mod interfaces;
 mod joint_fit;
 mod judgement;
@@ -53,6 +54,7 @@ mod tolerances;
 pub use analysis::{Analysis, AnalysisOptions, JointEnd, JointEnds};
 pub use averages::{Averages, MatrixAverage};
 pub use estimate::{Element, Estimate, Figure, Method, Part};
+pub(crate) use idle_points::IdlePoints;
 pub use interfaces::{Compliance, InterfaceStiffness, Interfaces, interfaces};
 pub use joint_fit::{
     Admissible, FittedFrfs, FittedLength, FittedQuantity, Followed, FoundJoint, JointFit, JointFitOptions,
