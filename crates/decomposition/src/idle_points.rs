@@ -21,8 +21,7 @@ impl IdlePoints {
             Place::Point(name) | Place::Response(name) | Place::Reference(name) => Some(name.as_str()),
             _ => None,
         });
-        let names: HashSet<&str> =
-            channels.map(|channel| channel.point.as_str()).chain(of_effects).collect();
+        let names: HashSet<&str> = channels.map(|channel| channel.point.as_str()).chain(of_effects).collect();
         let all = fixture.points().iter().enumerate();
         let named = all.filter(|(_, point)| names.contains(point.name.as_str())).map(|(index, _)| index);
         IdlePoints { used: named.chain(fixture.held_points()).collect() }

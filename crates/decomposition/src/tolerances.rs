@@ -6,7 +6,9 @@
 use crate::interfaces::left_over;
 use crate::likelihood::Optimum;
 use crate::spectrum::{dynamic_stiffness_on, read_at_s};
-use crate::{Compliances, DecompositionError, IdlePoints, JointSpectrum, LikelihoodFit, MeasurementPlan, Sides};
+use crate::{
+    Compliances, DecompositionError, IdlePoints, JointSpectrum, LikelihoodFit, MeasurementPlan, Sides,
+};
 use jointscope_averaging::Band;
 use jointscope_fixture::{Fixture, JointLaw};
 use jointscope_frf::fit_rigid_motion;

@@ -6,6 +6,7 @@ use jointscope_wording::{Remarks, Says, effect_name};
 
 use crate::context::PageContext;
 use crate::force_state;
+use crate::format::significant;
 use crate::report::Report;
 use crate::section::Section;
 use crate::table::Table;
@@ -50,12 +51,12 @@ fn laws(diagnosis: &NonlinearDiagnosis) -> Section {
         finding.estimates.iter().map(move |estimate| (finding, estimate))
     };
     let end = |interval: Option<[f64; 2]>, i: usize| {
-        interval.map_or("not determined".to_owned(), |ends| format!("{:.4e}", ends[i]))
+        interval.map_or("not determined".to_owned(), |ends| significant(ends[i], 4))
     };
     let table = Table::of(diagnosis.findings.iter().flat_map(of_finding))
         .words("law", |(finding, _)| effect_name(&finding.effect))
         .words("parameter", |(_, estimate)| estimate.parameter.name)
-        .words("value", |(_, estimate)| format!("{:.4e}", estimate.value))
+        .words("value", |(_, estimate)| significant(estimate.value, 5))
         .words("from (95 %)", |(_, estimate)| end(estimate.interval, 0))
         .words("to", |(_, estimate)| end(estimate.interval, 1))
         .words("unit", |(_, estimate)| estimate.unit)
@@ -68,7 +69,7 @@ fn judgement(diagnosis: &NonlinearDiagnosis) -> Section {
     let table = Table::of(names.into_iter().zip(diagnosis.models.iter().flatten()))
         .words("model", |(name, _)| *name)
         .words("relative error of the responses", |(_, model)| format!("{:.4}", model.nrmse))
-        .words("χ² per degree of freedom", |(_, model)| format!("{:.4e}", model.chi2_per_dof));
+        .words("χ² per degree of freedom", |(_, model)| significant(model.chi2_per_dof, 4));
     let section = Section::new("Is it better?").with(table);
     match &diagnosis.held_out {
         Some(held) => section.paragraph(format!(

@@ -6,7 +6,7 @@ use jointscope_nonlinear::{LevelResult, SteppedDiagnosis};
 use jointscope_wording::{Remarks, Says};
 
 use crate::context::PageContext;
-use crate::format::quantity;
+use crate::format::{quantity, significant};
 use crate::plot::{Axis, Plot, Role};
 use crate::report::Report;
 use crate::section::Section;
@@ -67,9 +67,9 @@ fn levels(diagnosis: &SteppedDiagnosis) -> Section {
         .words("level", |l| l.held.to_string())
         .words("frequency, Hz", |l| text(l.resonance.frequency))
         .words("damping, %", |l| text(in_percent(l)))
-        .words("relative motion", |l| format!("{:.3e}", l.motion))
-        .words("stiffness beyond the fixture", |l| format!("{:.3e}", l.stiffness.0))
-        .words("loss stiffness beyond it", |l| format!("{:.3e}", l.loss.0))
+        .words("relative motion", |l| significant(l.motion, 4))
+        .words("stiffness beyond the fixture", |l| significant(l.stiffness.0, 4))
+        .words("loss stiffness beyond it", |l| significant(l.loss.0, 4))
         .words("error refitted", |l| format!("{:.3}", l.nrmse[1]))
         .words("repaired", |l| format!("{:.3}", l.nrmse[2]))
         .words("own stiffness", |l| format!("{:.3}", l.nrmse[3]))

@@ -1,5 +1,6 @@
 //! Joints side by side, in words.
 
+use crate::format::{fixed, significant};
 use crate::{Says, Summary};
 use jointscope_comparison::{
     Caution, Compared, Comparison, Equality, Pair, Ratio, Scatter, Specimens, WhyApart,
@@ -21,8 +22,9 @@ pub fn main_pairs(comparison: &Comparison) -> impl Iterator<Item = &Pair> {
 /// `93.02 % (92.98 to 93.06 %)`.
 pub fn percents(ratio: &Ratio) -> String {
     let decimals = decimals(ratio.std * 100.0);
-    let [low, high] = ratio.ci95.map(|end| 100.0 * end);
-    format!("{:.decimals$} % ({low:.decimals$} to {high:.decimals$} %)", 100.0 * ratio.value)
+    let [value, low, high] =
+        [ratio.value, ratio.ci95[0], ratio.ci95[1]].map(|share| fixed(100.0 * share, decimals));
+    format!("{value} % ({low} to {high} %)")
 }
 
 /// Digits after the point that show two of a standard deviation.
@@ -33,8 +35,8 @@ fn decimals(std: f64) -> usize {
 /// A p-value, or what it is below.
 pub fn p_value(p: f64) -> String {
     match p {
-        p if p < 1e-15 => "p < 1e-15".to_owned(),
-        p if p < 1e-3 => format!("p = {p:.0e}"),
+        p if p < 1e-15 => "p < 10⁻¹⁵".to_owned(),
+        p if p < 1e-3 => format!("p = {}", significant(p, 1)),
         p => format!("p = {p:.3}"),
     }
 }

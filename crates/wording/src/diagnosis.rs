@@ -3,7 +3,7 @@
 use crate::departures::departed;
 use crate::effects::named_with_size;
 use crate::numbers::{figures, listed, percent, plain, significant};
-use crate::places::variation;
+use crate::places::{quantity_name, variation};
 use crate::{Remarks, Says, model_error};
 use jointscope_diagnosis::{Diagnosis, Fit, Location, Observation, Trend};
 use jointscope_findings::Verdict;
@@ -198,10 +198,11 @@ fn of_observation(observation: &Observation) -> Vec<String> {
     remarks
 }
 
-/// `, and bodies/A/mass would have to be 33 standard deviations off`, where the refit without effects takes a quantity that far.
+/// `, and the mass of A would have to be 33 standard deviations off`, where the refit without effects takes a quantity that far.
 fn bent(diagnosis: &Diagnosis) -> String {
     diagnosis.bent().map_or_else(String::new, |(path, deviations)| {
-        format!(", and {path} would have to be {} standard deviations off", significant(deviations, 2))
+        let quantity = quantity_name(path);
+        format!(", and {quantity} would have to be {} standard deviations off", significant(deviations, 2))
     })
 }
 

@@ -96,8 +96,12 @@ impl fmt::Display for Short {
     }
 }
 
-/// A text with its first letter as a capital.
+/// A text with its first letter as a capital; a symbol that it begins with, such as k, stays what it is.
 pub fn capitalised(text: &str) -> String {
+    let first = text.split(' ').next().unwrap_or_default();
+    if first != "a" && first.chars().filter(|c| c.is_alphabetic()).count() == 1 {
+        return text.to_owned();
+    }
     let mut letters = text.chars();
     letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
 }

@@ -134,14 +134,14 @@ impl Label {
 fn assign_lanes(labels: &mut [Label], width: f64) -> usize {
     labels.sort_by(|a, b| (a.anchor.total_cmp(&b.anchor)).then_with(|| a.text.cmp(&b.text)));
     // How many others' leaders it would cover, at the place where it covers the fewest.
-    let covered = |label: &Label, (from, to): Stretch, others: &[usize]| -> usize {
-        let leaders = others.iter().map(|other| labels[*other].leader());
-        leaders.filter(|x| *x != label.leader() && (from - 3.0..to + 3.0).contains(x)).count()
+    let covered = |index: usize, (from, to): Stretch, others: &[usize]| -> usize {
+        let leaders = others.iter().filter(|other| **other != index).map(|other| labels[*other].leader());
+        leaders.filter(|x| (from - 3.0..to + 3.0).contains(x)).count()
     };
     let all: Vec<usize> = (0..labels.len()).collect();
     let in_the_way = |index: &usize| {
         let label = &labels[*index];
-        label.stretches(width).map(|stretch| covered(label, stretch, &all)).into_iter().min()
+        label.stretches(width).map(|stretch| covered(*index, stretch, &all)).into_iter().min()
     };
     // The leaders of far lanes pass the near ones, so labels that are in no leader's way, and short ones, go near.
     let mut order = all.clone();
@@ -151,7 +151,7 @@ fn assign_lanes(labels: &mut [Label], width: f64) -> usize {
     let place = |(at, index): (usize, &usize)| {
         let label = &labels[*index];
         let mut stretches = label.stretches(width);
-        stretches.sort_by_key(|stretch| covered(label, *stretch, &order[at + 1..]));
+        stretches.sort_by_key(|stretch| covered(*index, *stretch, &order[at + 1..]));
         let leader = label.leader();
         (*index, lanes.take(&stretches, (leader - 3.0, leader + 3.0)))
     };

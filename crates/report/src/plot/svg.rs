@@ -3,7 +3,7 @@
 use maud::{Markup, PreEscaped, html};
 
 use super::data::{check, ordinate_scale};
-use super::figure::{caption, mark_key, series_swatch};
+use super::figure::{caption, mark_key, seen, series_swatch};
 use super::range::limits;
 use super::thin::kept_lines;
 use super::{Axis, Mark, Plot, Series, Style};
@@ -128,7 +128,7 @@ impl Plot {
         let end = WIDTH - RIGHT;
         Ok(html! {
             svg.pl xmlns="http://www.w3.org/2000/svg" width=(WIDTH) height=(floor + BOTTOM)
-                viewBox={ "0 0 " (WIDTH) " " (floor + BOTTOM) } role="img" aria-label=(self.title) {
+                viewBox={ "0 0 " (WIDTH) " " (floor + BOTTOM) } role="img" aria-label={ (self.title) ". " (caption(self)) (seen(self, &scale)) } {
                 title { (self.title) }
                 desc { (caption(self)) }
                 (PreEscaped(STYLE))
