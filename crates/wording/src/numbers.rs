@@ -50,7 +50,7 @@ pub(crate) fn significant(value: f64, digits: i32) -> String {
     if (-4..5).contains(&exponent) {
         rounded(value, digits - 1 - exponent)
     } else {
-        format!("{value:.*e}", (digits - 1).max(0) as usize)
+        crate::format::significant(value, digits.max(1) as usize)
     }
 }
 
@@ -62,7 +62,7 @@ pub(crate) fn decimals(half_width: f64) -> i32 {
 /// A number with so many decimals, negative ones meaning tens and hundreds; never a negative zero.
 pub(crate) fn rounded(value: f64, decimals: i32) -> String {
     if value != 0.0 && value.abs() < 1e-4 {
-        return format!("{value:.2e}").replace('-', "−");
+        return crate::format::significant(value, 3);
     }
     // Negative decimals round to tens and hundreds.
     let step = 10f64.powi(-decimals.min(0));

@@ -91,6 +91,8 @@ pub(super) struct Label {
     pub tie: Tie,
     /// Whether it stands to the right of its place rather than centred on it.
     aside: bool,
+    /// How far right of its place the line goes that ties it to it, px.
+    lean: f64,
     /// Filled by [`assign_lanes`].
     pub centre: f64,
     /// Filled by [`assign_lanes`]; 0 is next to the body.
@@ -100,7 +102,18 @@ pub(super) struct Label {
 impl Label {
     fn new(text: impl Into<String>, class: &'static str, tie: Tie, anchor: f64) -> Self {
         let (below, half) = (None, 0.5 * BLOCK);
-        Self { text: text.into(), below, class, anchor, half, tie, aside: false, centre: anchor, lane: 0 }
+        Self {
+            text: text.into(),
+            below,
+            class,
+            anchor,
+            half,
+            tie,
+            aside: false,
+            lean: 0.0,
+            centre: anchor,
+            lane: 0,
+        }
     }
 
     fn width(&self) -> f64 {
@@ -108,9 +121,9 @@ impl Label {
         text_width(&self.text).max(below)
     }
 
-    /// Abscissa of the line that ties it to its place; beside the arrow that may end where a circle stands.
+    /// Abscissa of the line that ties it to its place.
     pub(super) fn leader(&self) -> f64 {
-        if self.tie == Tie::Circle { self.anchor + 11.0 } else { self.anchor }
+        self.anchor + self.lean
     }
 
     /// Where it may stand along x: about its leader, at its side.
@@ -246,7 +259,8 @@ impl Layout {
             let row = highlight.body.and_then(|body| layout.bodies[body]).map_or(0, |body| body.row);
             let anchor = layout.scale.px(highlight.x);
             let label = Label::new(&highlight.label, "fx-highlight-name", Tie::Circle, anchor);
-            layout.rows[row].above.push(label);
+            let lean = beside_arrows(anchor, &layout.rows[row].above);
+            layout.rows[row].above.push(Label { lean, ..label });
         }
         layout.stack();
         layout
@@ -337,6 +351,15 @@ impl Layout {
         // The scale bar and the axes, and a line on what has no label.
         self.height = top + 40.0 + if self.unlabelled > 0 { LANE } else { 0.0 };
     }
+}
+
+/// Px from a circle's middle at which the line to it runs beside the arrow that may end there: to its right, or where another arrow is in the way to its left.
+fn beside_arrows(anchor: f64, labels: &[Label]) -> f64 {
+    const BESIDE: f64 = 11.0;
+    const APART: f64 = 5.0;
+    let arrows = || labels.iter().filter(|label| matches!(label.tie, Tie::Arrow(_)));
+    let is_free = |lean: &f64| arrows().all(|arrow| (arrow.anchor - anchor - lean).abs() > APART);
+    [BESIDE, -BESIDE].into_iter().find(is_free).unwrap_or(BESIDE)
 }
 
 /// As many of some things as there is room for, evenly from the first to the last.

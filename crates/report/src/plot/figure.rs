@@ -4,7 +4,7 @@ use jointscope_wording::capitalised;
 use maud::{Markup, html};
 
 use super::data::Drawing;
-use super::{AVERAGING_BAND, Mark, Plot, Series, Style};
+use super::{AVERAGING_BAND, Mark, Plot, Role, Series, Style};
 use crate::format::{percent, significant, trimmed};
 use crate::unit::{Scale, typeset};
 
@@ -93,7 +93,9 @@ const MOSTLY: [usize; 2] = [5, 95];
 /// What is seen of the curves, for who does not see them: on a logarithmic axis where each is highest, and how often it exceeds a line drawn across, on
 /// a linear one between which values it mostly lies, over the averaging band where there is one. Of phases nothing: where they turn the magnitude peaks.
 pub(super) fn seen(plot: &Plot, scale: &Scale) -> String {
-    let curves = plot.series.iter().filter(|series| series.style != Style::Band);
+    // Points in the colour of a reference mark lines of a curve.
+    let is_mark = |series: &Series| series.style == Style::Points && series.role == Role::Reference;
+    let curves = plot.series.iter().filter(|series| series.style != Style::Band && !is_mark(series));
     let told: Vec<String> = curves.filter_map(|series| seen_of(series, plot, scale)).take(TOLD).collect();
     let how = match (plot.y.is_logarithmic(), averaged(plot)) {
         (true, _) => "Highest".to_owned(),
