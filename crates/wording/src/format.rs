@@ -64,8 +64,8 @@ fn with_power_of_ten(value: f64, usable: Option<f64>, stated: Option<f64>) -> St
     let digits = if stated == Some(0.0) { 6 } else { DIGITS_WITHOUT_STD };
     let magnitude = value.abs().max(usable.unwrap_or(0.0));
     let exponent = decimal_exponent(magnitude);
-    // Beyond five decimals zeros are what one sees: 0.0010200 ± 0.0000050.
-    let fine = exponent < 0 && usable.is_some_and(|std| decimals_for(std, 2) > 5);
+    // Beyond six decimals zeros are what one sees: 0.0010200 ± 0.0000050.
+    let fine = exponent < 0 && usable.is_some_and(|std| decimals_for(std, 2) > 6);
     let plain = magnitude == 0.0 || (-3..6).contains(&exponent) && !fine;
     // Two steps: 10^-exponent alone overflows for subnormal values.
     let half = exponent / 2;

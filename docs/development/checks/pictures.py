@@ -69,12 +69,6 @@ def screen(browser, page, height, picture):
             [browser, "--headless", "--no-sandbox", "--disable-gpu", "--hide-scrollbars", f"--user-data-dir={profile}",
              "--virtual-time-budget=3000", f"--window-size=1100,{height}", f"--screenshot={picture}", f"file://{page}"],
             check=True, capture_output=True)
-    try:
-        from PIL import Image
-    except ImportError:
-        return
-    # 64 colours are all that text and lines need.
-    Image.open(picture).convert("RGB").quantize(64, dither=0).save(picture, optimize=True)
 
 
 def main():
@@ -95,7 +89,7 @@ def main():
             run("diagnose", "fixtures/two-blocks/fixture.json", "fixtures/two-blocks/hammer-test.uff", "-o", str(folder / "two"))
             screen(browser, folder / "two/report.html", 800, IMAGES / "diagnosis.png")
             run("decompose", "fixtures/glued-joint/fixture.json", "fixtures/glued-joint/hammer-test.uff", "-o", str(folder / "glued"))
-            screen(browser, folder / "glued/report.html", 1350, IMAGES / "decomposition.png")
+            screen(browser, folder / "glued/report.html", 980, IMAGES / "decomposition.png")
 
 
 main()

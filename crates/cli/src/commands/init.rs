@@ -191,7 +191,7 @@ fn points(files: &[PathBuf], lines: &mut Vec<String>) -> Result<Vec<String>, Ref
 fn has_places(files: &[PathBuf], named: &[String]) -> Result<Option<String>, Refusal> {
     let sources = files.iter().map(|path| input::source(path)).collect::<Result<Vec<_>, _>>()?;
     let mut nodes = sources.iter().flat_map(|source| &source.file.nodes).flat_map(|nodes| &nodes.nodes);
-    let has = nodes.any(|node| named.contains(&node.number.to_string()));
+    let has = nodes.any(|node| named.contains(&node.label.to_string()));
     let sentence = "the recording has a geometry: `--from-uff` in place of `--points-from` puts the points where it has them";
     Ok(has.then(|| sentence.to_owned()))
 }

@@ -110,8 +110,8 @@ fn mass_line(recording: &RecordingCheck) -> Section {
     section
         .paragraph(format!(
             "From {} to {} Hz the assembly moves nearly as one rigid body; what is left there at 0 Hz is its accelerance as such. {mass}",
-            significant(line.band.0, 4),
-            significant(line.band.1, 4)
+            trimmed(&significant(line.band.0, 4)),
+            trimmed(&significant(line.band.1, 4))
         ))
         .with(
             Table::of(&line.frfs)

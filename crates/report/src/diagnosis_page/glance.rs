@@ -2,12 +2,12 @@
 
 use jointscope_diagnosis::{Departure, Estimate, Finding, Verdict};
 use jointscope_wording::{Remarks, capitalised, effect_name};
-use maud::{Markup, html};
+use maud::html;
 
 use super::judgement::{gain, spoken};
 use super::{Subject, fixture_view};
 use crate::format::{NOT_DETERMINED, ends, percent, significant};
-use crate::section::{Card, Section, Tone};
+use crate::section::{Card, Section, Tone, with_commands};
 use crate::unit::Scale;
 
 /// Findings that are shown at the most, and names beside each.
@@ -26,11 +26,6 @@ pub(super) fn section(subject: &Subject, notes: &[String]) -> Section {
         false => section.with(html! { div.next { strong { "What to do next" } ul { @for step in &steps { li { (with_commands(step)) } } } } }),
     };
     section.drawing(drawing, caption).notes(subject.diagnosis.remarks().iter().chain(notes))
-}
-
-/// What stands between backticks is what one types.
-fn with_commands(text: &str) -> Markup {
-    html! { @for (at, part) in text.split('`').enumerate() { @if at % 2 == 1 { code { (part) } } @else { (part) } } }
 }
 
 /// A probability without digits that nobody can vouch for.
