@@ -2,7 +2,7 @@
 
 use crate::departures::departed;
 use crate::effects::named_with_size;
-use crate::numbers::{figures, listed, percent, plain, significant};
+use crate::numbers::{apart, figures, listed, percent, plain, significant};
 use crate::places::{quantity_name, variation};
 use crate::{Remarks, Says, model_error};
 use jointscope_diagnosis::{Diagnosis, Fit, Location, Observation, Trend};
@@ -42,17 +42,17 @@ fn by_noise(diagnosis: &Diagnosis) -> String {
             "Nothing is left out: the fixture explains the FRFs down to their noise (χ² per degree of freedom {}).",
             figures(refitted)
         ),
-        Verdict::Explained => format!(
-            "The fixture leaves out {}; with {} the FRFs are explained down to their noise (χ² per degree of freedom {}; without {}{}; \
-             error {}, without {}).",
-            found(diagnosis),
-            it(diagnosis),
-            figures(repaired),
-            figures(refitted),
-            bent(diagnosis),
-            percent(error_repaired),
-            percent(error_refitted)
-        ),
+        Verdict::Explained => {
+            let [with, without] = apart([repaired, refitted], 3);
+            let [error_with, error_without] = apart([100.0 * error_repaired, 100.0 * error_refitted], 2);
+            format!(
+                "The fixture leaves out {}; with {} the FRFs are explained down to their noise (χ² per degree of freedom {with}; without \
+                 {without}{}; error {error_with} %, without {error_without} %).",
+                found(diagnosis),
+                it(diagnosis),
+                bent(diagnosis)
+            )
+        }
         Verdict::PartlyExplained if diagnosis.is_unnamed() => format!(
             "Something is left out that none of the effects known here accounts for: the closest, {}, takes χ² per degree of freedom from {} \
              to {} only, and what is left sits {}{}.",

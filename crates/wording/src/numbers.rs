@@ -75,6 +75,12 @@ pub(crate) fn figures(chi2: f64) -> String {
     significant(chi2, 3)
 }
 
+/// Two numbers with as many digits, from `digits` on and up to six, as it takes to tell them apart.
+pub(crate) fn apart(pair: [f64; 2], digits: i32) -> [String; 2] {
+    let told = |digits: i32| pair.map(|value| significant(value, digits));
+    (digits..6).map(told).find(|[a, b]| a != b).unwrap_or_else(|| told(digits))
+}
+
 pub(crate) fn percent(share: f64) -> String {
     format!("{} %", significant(100.0 * share, 2))
 }
@@ -104,4 +110,23 @@ pub fn capitalised(text: &str) -> String {
     }
     let mut letters = text.chars();
     letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn two_numbers_have_the_digits_that_tell_them_apart() {
+        assert_eq!(apart([1.0477, 3.5596], 3), ["1.05", "3.56"]);
+        assert_eq!(apart([1.0212, 1.0214], 3), ["1.0212", "1.0214"]);
+        assert_eq!(apart([0.5, 0.5], 3), ["0.500", "0.500"]);
+    }
+
+    #[test]
+    fn a_sentence_begins_with_a_capital_and_a_symbol_stays_what_it_is() {
+        assert_eq!(capitalised("the FRFs show"), "The FRFs show");
+        assert_eq!(capitalised("k, c and the tests"), "k, c and the tests");
+        assert_eq!(capitalised("a mass"), "A mass");
+    }
 }

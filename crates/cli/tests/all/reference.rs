@@ -120,5 +120,5 @@ fn every_key_of_a_result_file_is_described_and_every_example_is_what_its_command
             assert!(missing.is_empty(), "{}: described and not written: {missing:?}", part.heading);
         }
     }
-    assert!(examples >= 5, "{examples}");
+    assert!(examples >= 6, "{examples}");
 }
