@@ -356,7 +356,7 @@ impl Layout {
 /// Px from a circle's middle at which the line to it runs beside the arrow that may end there, and beside others.
 fn beside_arrows(anchor: f64, labels: &[Label]) -> f64 {
     const BESIDE: [f64; 4] = [11.0, 7.0, -7.0, -11.0];
-    const APART: f64 = 5.0;
+    const APART: f64 = 4.0;
     let arrows = || labels.iter().filter(|label| matches!(label.tie, Tie::Arrow(_)));
     let is_free = |lean: &f64| arrows().all(|arrow| (arrow.anchor - anchor - lean).abs() > APART);
     BESIDE.into_iter().find(is_free).unwrap_or(BESIDE[0])
