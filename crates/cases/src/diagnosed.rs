@@ -47,6 +47,16 @@ impl FindingRow {
         parts.into_iter().flatten().map(String::as_str).collect::<Vec<_>>().join(" ")
     }
 
+    /// Its parameters: name, value, standard deviation and unit.
+    pub fn estimates(&self) -> impl Iterator<Item = (&str, f64, Option<f64>, &str)> {
+        let parameters = self.parameters.as_object().into_iter().flatten();
+        parameters.filter_map(|(name, parameter)| {
+            let number = |key: &str| parameter.get(key).and_then(Value::as_f64);
+            let unit = parameter.get("unit").and_then(Value::as_str).unwrap_or("1");
+            Some((name.as_str(), number("value")?, number("std"), unit))
+        })
+    }
+
     /// Parameters in words: `stiffness 9141 ± 91 N*m/rad; damping …`.
     pub fn parameters(&self) -> String {
         let Some(parameters) = self.parameters.as_object() else { return String::new() };

@@ -30,7 +30,7 @@ const MOST_LINES: f64 = 1e7;
 
 /// Reads `FROM:TO:STEP` in Hz; the last line is the last step not beyond TO.
 pub(crate) fn spectral_lines(text: &str) -> Result<SpectralLines, String> {
-    let form = "first line, last line and step in Hz are needed, such as 2.5:1000:2.5";
+    let form = "first line, last line and step in Hz are needed, with decimal points, such as 2.5:1000:2.5";
     let mut fields = text.split(':');
     let (Some(from), Some(to), Some(step), None) =
         (fields.next(), fields.next(), fields.next(), fields.next())

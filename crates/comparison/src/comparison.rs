@@ -92,7 +92,9 @@ pub struct Comparison {
 #[non_exhaustive]
 pub enum ComparisonError {
     /// Fewer than two.
-    #[error("a comparison needs two decompositions or more")]
+    #[error(
+        "a comparison needs two decompositions or more; name the directories that two runs of `jointscope decompose` wrote to"
+    )]
     TooFew,
     /// Some were found by eq (7), some by the exact relation.
     #[error(

@@ -31,7 +31,7 @@ pub use likelihood::JointLikelihood;
 pub use several::{FoundJoint, JointsCovariance, JointsFit, SeveralError, fit_joints};
 
 use crate::likelihood::EXPLAINED;
-use crate::{DecompositionError, LikelihoodFit, Sides};
+use crate::{DecompositionError, IdlePoints, LikelihoodFit, Sides};
 use jointscope_averaging::Band;
 use jointscope_linalg::{Matrix2, RealMatrix2};
 use jointscope_spectra::FrfSet;
@@ -154,6 +154,9 @@ fn that_matter(
     quantities: Vec<Tolerance>,
 ) -> Option<(Vec<Tolerance>, Vec<Tolerance>, Option<Columns>)> {
     let recorded = setup.recorded;
+    let idle = IdlePoints::of(setup.fixture, &recorded.pairs);
+    let (idle, quantities): (Vec<_>, Vec<_>) =
+        quantities.into_iter().partition(|tolerance| idle.have(tolerance.quantity.owner));
     let test = Test { setup, quantities: &quantities, weights: &recorded.weights };
     let problem = Problem::open(test, laws, None);
     let columns = |start: &Vec<f64>| problem.other_columns(&problem.point(problem.whole(start), None)?);
@@ -162,7 +165,9 @@ fn that_matter(
     let all = quantities.into_iter().zip(columns);
     let (matter, others): (Vec<_>, Vec<_>) = all.partition(|(_, column)| recorded.size(column) > NEGLIGIBLE);
     let (matter, columns): (Vec<_>, Vec<_>) = matter.into_iter().unzip();
-    let others = others.into_iter().map(|(quantity, _)| quantity).collect();
+    let others = others.into_iter().map(|(quantity, _)| quantity);
+    let mut others: Vec<Tolerance> = others.chain(idle).collect();
+    others.sort_by_key(|tolerance| tolerance.index);
     Some((matter, others, (place == 0).then_some(columns)))
 }
 

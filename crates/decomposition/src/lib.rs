@@ -42,6 +42,7 @@ mod by_law;
 mod element;
 mod estimate;
 mod from_frfs;
+mod idle_points;
 mod interfaces;
 mod joint_ends;
 mod joint_fit;
@@ -60,6 +61,7 @@ pub use averages::{Averages, MatrixAverage};
 pub use element::{Element, Part};
 pub use estimate::{Estimate, Figure};
 pub use from_frfs::AnalysisOptions;
+pub(crate) use idle_points::IdlePoints;
 pub use interfaces::{Compliance, InterfaceStiffness, Interfaces, interfaces};
 pub use joint_ends::{JointEnd, JointEnds};
 pub use joint_fit::{

@@ -6,7 +6,9 @@
 use crate::interfaces::left_over;
 use crate::likelihood::Optimum;
 use crate::spectrum::{dynamic_stiffness_on, read_at_s};
-use crate::{Compliances, DecompositionError, JointSpectrum, LikelihoodFit, MeasurementPlan, Sides};
+use crate::{
+    Compliances, DecompositionError, IdlePoints, JointSpectrum, LikelihoodFit, MeasurementPlan, Sides,
+};
 use jointscope_averaging::Band;
 use jointscope_fixture::{Fixture, JointLaw};
 use jointscope_frf::fit_rigid_motion;
@@ -72,6 +74,8 @@ pub(crate) fn tolerance_shares(
         of.fit.and_then(|(fit, spectrum, band)| Optimum::of(of.frfs, (&plan, of.sides), spectrum, band, fit));
     let mean = mean(of, of.sides, &of.spectrum.h41.values, &of.spectrum.sides);
     let here = Stated { of, plan, mean, optimum };
+    let idle = IdlePoints::of(fixture, of.frfs.pairs());
+    let mut of_idle: Option<Option<ToleranceShare>> = None;
     let mut result = ToleranceShares::default();
     for (index, quantity) in quantities.iter().enumerate() {
         let Some(std) = quantity.std.filter(|s| *s > 0.0) else { continue };
@@ -80,24 +84,19 @@ pub(crate) fn tolerance_shares(
             other.set_quantities([(index, quantity.value + share * std)]);
             other
         };
-        let Some((plain, likelihood)) = here.change(&moved(SMALL)) else {
+        // All idle points do the same, nothing: what the first one does serves for all.
+        let share = match idle.have(quantity.owner) {
+            true => of_idle.get_or_insert_with(|| here.share(&moved)).clone(),
+            false => here.share(&moved),
+        };
+        let Some(share) = share else {
             result.lost.push(quantity.path.clone());
             continue;
         };
-        if of.fit.is_some() && likelihood.is_none() {
+        if of.fit.is_some() && share.likelihood.is_none() {
             result.lost.push(quantity.path.clone());
         }
-        let compliance = likelihood.zip(of.fit).and_then(|((k, _), (fit, ..))| {
-            let at = |sign: f64| of_interfaces(&moved(sign), of.sides, fit.stiffness + k.scale(sign));
-            at(1.0).zip(at(-1.0)).map(|(up, down)| std::array::from_fn(|e| 0.5 * (up[e] - down[e])))
-        });
-        result.shares.push(ToleranceShare {
-            path: quantity.path.clone(),
-            std,
-            plain,
-            likelihood,
-            compliance,
-        });
+        result.shares.push(ToleranceShare { path: quantity.path.clone(), std, ..share });
     }
     Ok(result)
 }
@@ -113,6 +112,16 @@ struct Stated<'a> {
 }
 
 impl Stated<'_> {
+    /// The share of a quantity of which `moved` gives the fixture with it off by a number of standard deviations; its path and deviation are left open.
+    fn share(&self, moved: &dyn Fn(f64) -> Fixture) -> Option<ToleranceShare> {
+        let (plain, likelihood) = self.change(&moved(SMALL))?;
+        let compliance = likelihood.zip(self.of.fit).and_then(|((k, _), (fit, ..))| {
+            let at = |sign: f64| of_interfaces(&moved(sign), self.of.sides, fit.stiffness + k.scale(sign));
+            at(1.0).zip(at(-1.0)).map(|(up, down)| std::array::from_fn(|e| 0.5 * (up[e] - down[e])))
+        });
+        Some(ToleranceShare { path: String::new(), std: 0.0, plain, likelihood, compliance })
+    }
+
     /// Changes of the plain averages and of the fit by a standard deviation, from a fixture in which a quantity is moved by a small share of it.
     fn change(&self, fixture: &Fixture) -> Option<(Matrices, Option<Matrices>)> {
         let of = self.of;

@@ -24,6 +24,14 @@ pub enum BarError {
         "`{0}` is not LENGTHxWIDTHxHEIGHT:MATERIAL with three lengths in mm above zero, such as 60x40x6:steel"
     )]
     Dimensions(String),
+    /// A comma for a point.
+    #[error("`{0}` has a comma within a number; write it with a decimal point, such as 60.5x40x6:steel")]
+    Comma(String),
+    /// Lengths that no block has.
+    #[error(
+        "`{0}` has no side of a millimetre, so its lengths look like metres; give them in mm, such as 60x40x6:steel"
+    )]
+    Metres(String),
     /// No material.
     #[error(transparent)]
     Material(#[from] MaterialError),
@@ -36,11 +44,17 @@ impl FromStr for Bar {
     fn from_str(text: &str) -> Result<Self, BarError> {
         let bad = || BarError::Dimensions(text.to_owned());
         let (dimensions, material) = text.split_once(':').ok_or_else(bad)?;
+        if dimensions.contains(',') {
+            return Err(BarError::Comma(text.to_owned()));
+        }
         let millimetres = |text: &str| {
             text.trim().parse::<f64>().ok().filter(|mm| mm.is_finite() && *mm > 0.0).map(|mm| 1e-3 * mm)
         };
         let sides: Option<Vec<f64>> = dimensions.split(['x', 'X', '×', '*']).map(millimetres).collect();
         let [length, width, height] = <[f64; 3]>::try_from(sides.ok_or_else(bad)?).map_err(|_| bad())?;
+        if [length, width, height].iter().all(|side| *side < 1e-3) {
+            return Err(BarError::Metres(text.to_owned()));
+        }
         Ok(Bar { length, width, height, material: material.parse()? })
     }
 }

@@ -4,6 +4,7 @@ use jointscope_fixture::{Damping, EffectKind, Fixture, FixtureError, Quantity, R
 use jointscope_lumped::{Assembly, LumpedError, Station};
 use jointscope_modes::{ExpectedMode, Matches, ModalAnalysis, match_modes};
 use jointscope_spectra::Channel;
+use jointscope_wording::format::with_sign;
 use std::collections::BTreeSet;
 
 /// A fixture with measured damping ratios.
@@ -127,11 +128,11 @@ fn remarks(analysis: &ModalAnalysis, matches: &Matches, elastic: &[f64], last: u
         .iter()
         .map(|pair| {
             format!(
-                "elastic mode {} of the fixture ({:.2} Hz) is the measured mode at {:.2} Hz ({:+.1} %, MAC {:.2})",
+                "elastic mode {} of the fixture ({:.2} Hz) is the measured mode at {:.2} Hz ({} %, MAC {:.2})",
                 pair.expected + 1,
                 elastic[pair.expected],
                 analysis.modes[pair.measured].frequency,
-                100.0 * pair.shift,
+                with_sign(100.0 * pair.shift, 1),
                 pair.mac
             )
         })

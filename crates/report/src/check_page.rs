@@ -10,7 +10,7 @@ use jointscope_fixture::Fixture;
 use crate::context::PageContext;
 use crate::drawing::SideView;
 use crate::error::PageError;
-use crate::format::{percent, significant};
+use crate::format::{fixed, percent, significant};
 use crate::report::Report;
 use crate::section::{Card, Section};
 use crate::table::Table;
@@ -56,8 +56,8 @@ fn tone(weight: Weight) -> Tone {
 
 fn remarks(remarks: &[Remark]) -> Section {
     let table = Table::of(remarks)
-        .words("where", |remark| remark.place.clone())
-        .words("what", |remark| remark.says.clone())
+        .words("Where", |remark| remark.place.clone())
+        .words("What", |remark| remark.says.clone())
         .marked(|remark| Some(tone(remark.weight)));
     Section::new("What is odd").with(table)
 }
@@ -81,10 +81,10 @@ fn assembly(check: &Check, fixture: &Fixture) -> Section {
     }
     let pairs = check.recording.iter().flat_map(|recording| recording.measured.pairs());
     let table = Table::of(&totals.parts)
-        .words("part", |part| part.path.clone())
-        .numbers("mass", "kg", |part| significant(part.mass, 5))
-        .numbers("x of its centre", "mm", |part| millimetres(part.x_cg))
-        .numbers("inertia about it", "kg*m^2", |part| {
+        .words("Part", |part| part.path.clone())
+        .numbers("Mass", "kg", |part| significant(part.mass, 5))
+        .numbers("x of its centre of gravity", "mm", |part| millimetres(part.x_cg))
+        .numbers("Inertia about it", "kg*m^2", |part| {
             part.inertia.map_or("–".to_owned(), |i| significant(i, 4))
         });
     let channels = if check.recording.is_some() {
@@ -109,5 +109,5 @@ fn mass_of(recording: &RecordingCheck) -> Option<Card> {
 }
 
 fn millimetres(x: Option<f64>) -> String {
-    x.map_or("–".to_owned(), |x| format!("{:.2}", 1e3 * x))
+    x.map_or("–".to_owned(), |x| fixed(1e3 * x, 2))
 }

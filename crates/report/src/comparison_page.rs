@@ -8,7 +8,7 @@ use jointscope_wording::{Says, capitalised, comparison as says};
 
 use crate::context::PageContext;
 use crate::error::PageError;
-use crate::format::{in_column, interval, percent, quantity};
+use crate::format::{fixed, in_column, interval, percent, quantity, significant};
 use crate::report::Report;
 use crate::section::{Section, Verdict};
 use crate::table::Table;
@@ -163,12 +163,12 @@ fn pair_table<'a>(comparison: &Comparison, pair: &'a Pair) -> Table<&'a PairedNu
         format!("{name} ({})", sure(p))
     };
     let correlation =
-        |number: &&PairedNumber| number.correlation.map_or("–".to_owned(), |value| format!("{value:.4}"));
+        |number: &&PairedNumber| number.correlation.map_or("–".to_owned(), |value| fixed(value, 4));
     let same = match pair.equality {
         Some(equality) => format!(
-            "{} (χ² {:.1} of {} degrees of freedom).",
+            "{} (χ² {} of {} degrees of freedom).",
             says::equality(&equality, [&pair.first, &pair.second]),
-            equality.chi2,
+            significant(equality.chi2, 4),
             equality.degrees
         ),
         None if comparison.together.has_covariances => {

@@ -6,6 +6,7 @@ use jointscope_wording::{Remarks, Says, effect_name};
 
 use crate::context::PageContext;
 use crate::force_state;
+use crate::format::significant;
 use crate::report::Report;
 use crate::section::Section;
 use crate::table::Table;
@@ -38,8 +39,8 @@ fn levels(diagnosis: &NonlinearDiagnosis) -> Section {
         .words("hits", |(_, level)| level.hits.to_string());
     Section::new("Do FRFs change with strength?")
         .paragraph(format!(
-            "One FRF for all hits at a point is compared with one a level. Levels differ {:.2} times as much as noise makes them (variance); the probability of as much by chance is {:.2e}. They differ the most between {:.0} and {:.0} Hz.",
-            homogeneity.ratio, homogeneity.p_value, homogeneity.band.0, homogeneity.band.1
+            "One FRF for all hits at a point is compared with one a level. Levels differ {:.2} times as much as noise makes them (variance); the probability of as much by chance is {}. They differ the most between {:.0} and {:.0} Hz.",
+            homogeneity.ratio, significant(homogeneity.p_value, 2), homogeneity.band.0, homogeneity.band.1
         ))
         .with(table)
 }
@@ -50,12 +51,12 @@ fn laws(diagnosis: &NonlinearDiagnosis) -> Section {
         finding.estimates.iter().map(move |estimate| (finding, estimate))
     };
     let end = |interval: Option<[f64; 2]>, i: usize| {
-        interval.map_or("not determined".to_owned(), |ends| format!("{:.4e}", ends[i]))
+        interval.map_or("not determined".to_owned(), |ends| significant(ends[i], 4))
     };
     let table = Table::of(diagnosis.findings.iter().flat_map(of_finding))
         .words("law", |(finding, _)| effect_name(&finding.effect))
         .words("parameter", |(_, estimate)| estimate.parameter.name)
-        .words("value", |(_, estimate)| format!("{:.4e}", estimate.value))
+        .words("value", |(_, estimate)| significant(estimate.value, 5))
         .words("from (95 %)", |(_, estimate)| end(estimate.interval, 0))
         .words("to", |(_, estimate)| end(estimate.interval, 1))
         .words("unit", |(_, estimate)| estimate.unit)
@@ -68,7 +69,7 @@ fn judgement(diagnosis: &NonlinearDiagnosis) -> Section {
     let table = Table::of(names.into_iter().zip(diagnosis.models.iter().flatten()))
         .words("model", |(name, _)| *name)
         .words("relative error of the responses", |(_, model)| format!("{:.4}", model.nrmse))
-        .words("χ² per degree of freedom", |(_, model)| format!("{:.4e}", model.chi2_per_dof));
+        .words("χ² per degree of freedom", |(_, model)| significant(model.chi2_per_dof, 4));
     let section = Section::new("Is it better?").with(table);
     match &diagnosis.held_out {
         Some(held) => section.paragraph(format!(

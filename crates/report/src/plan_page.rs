@@ -115,15 +115,31 @@ fn places(fixture: &Fixture, suggestion: &Suggestion) -> Vec<(f64, Option<usize>
     }
 }
 
-const WIDTH: f64 = 860.0;
 const ROW: f64 = 26.0;
-const LEFT: f64 = 270.0;
-const RIGHT: f64 = 150.0;
+/// Room for a letter of a label.
+const LETTER: f64 = 7.5;
 const STYLE: &str = "<style>.pl{font:13px system-ui,-apple-system,'Segoe UI',Roboto,'Noto Sans','DejaVu Sans',sans-serif;fill:var(--ink,#1b1f24)}\
 .pl-name{text-anchor:end}.pl-bar{fill:var(--measured,#0072b2)}.pl-line{stroke:var(--soft,#5a636e);stroke-dasharray:4 3;fill:none}.pl-base{stroke:var(--rule,#d9dde2)}</style>";
 
+/// Widths of the chart of bars: all of it, the names' and the figures'.
+#[derive(Debug, Clone, Copy)]
+struct Widths {
+    all: f64,
+    left: f64,
+    right: f64,
+    class: &'static str,
+}
+
+const WIDE: Widths = Widths { all: 860.0, left: 270.0, right: 150.0, class: "pl wide" };
+/// For narrow windows, with letters as large.
+const NARROW: Widths = Widths { all: 400.0, left: 132.0, right: 140.0, class: "pl narrow" };
+
 /// A bar a suggestion: what it is expected to bring, or the interval that it leaves beside the present one.
-fn bars(all: &[&Suggestion]) -> Markup {
+fn bars(all: &[&Suggestion]) -> Drawing {
+    Drawing { wide: bars_within(all, WIDE), narrow: Some(bars_within(all, NARROW)) }
+}
+
+fn bars_within(all: &[&Suggestion], Widths { all: width, left, right, class }: Widths) -> Markup {
     let intervals = || all.iter().filter_map(|suggestion| suggestion.interval.as_ref());
     let now = intervals().filter_map(|interval| interval.now).fold(0.0, f64::max);
     let widest = intervals().map(|interval| interval.then).fold(now, f64::max).max(f64::MIN_POSITIVE);
@@ -141,31 +157,31 @@ fn bars(all: &[&Suggestion]) -> Markup {
         }
     };
     let height = ROW * all.len() as f64 + 8.0;
-    let room = WIDTH - LEFT - RIGHT;
+    let room = width - left - right;
     // What all bars are held against: the present interval.
-    let mark = (now > 0.0).then(|| LEFT + room * now / widest);
+    let mark = (now > 0.0).then(|| left + room * now / widest);
     let said: Vec<String> = all.iter().map(|s| format!("{}: {}", s.measure, figure(s))).collect();
     html! {
-        svg.pl xmlns="http://www.w3.org/2000/svg" viewBox={ "0 0 " (WIDTH) " " (height) } role="img" aria-label=(said.join("; ")) {
+        svg class=(class) xmlns="http://www.w3.org/2000/svg" viewBox={ "0 0 " (width) " " (height) } role="img" aria-label=(said.join("; ")) {
             (PreEscaped(STYLE))
             @for (row, suggestion) in all.iter().enumerate() {
                 @let top = ROW * row as f64 + 4.0;
-                @let width = (room * share(suggestion)).clamp(0.0, room);
-                text.pl-name x=(LEFT - 10.0) y=(top + 16.0) { (row + 1) ". " (short(&suggestion.measure)) }
-                rect.pl-bar x=(LEFT) y=(top + 4.0) width=(format!("{width:.1}")) height=(ROW - 8.0) {}
-                text x=(format!("{:.1}", LEFT + width + 8.0)) y=(top + 16.0) { (figure(suggestion)) }
+                @let long = (room * share(suggestion)).clamp(0.0, room);
+                text.pl-name x=(left - 10.0) y=(top + 16.0) { (row + 1) ". " (short(&suggestion.measure, left)) }
+                rect.pl-bar x=(left) y=(top + 4.0) width=(format!("{long:.1}")) height=(ROW - 8.0) {}
+                text x=(format!("{:.1}", left + long + 8.0)) y=(top + 16.0) { (figure(suggestion)) }
             }
-            path.pl-base d={ "M" (LEFT) " 0V" (height) } {}
+            path.pl-base d={ "M" (left) " 0V" (height) } {}
             @if let Some(mark) = mark { path.pl-line d=(format!("M{mark:.1} 0V{height}")) {} }
         }
     }
 }
 
-/// A label that fits beside its bar.
-fn short(text: &str) -> String {
-    const MOST: usize = 36;
-    match text.chars().count() > MOST {
-        true => text.chars().take(MOST - 1).chain(['…']).collect(),
+/// A label that fits into `room`, px, beside its number.
+fn short(text: &str, room: f64) -> String {
+    let most = (room / LETTER) as usize;
+    match text.chars().count() > most {
+        true => text.chars().take(most - 1).chain(['…']).collect(),
         false => text.to_owned(),
     }
 }

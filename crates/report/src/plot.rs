@@ -195,6 +195,9 @@ enum Mark {
     },
 }
 
+/// What the shaded band is called over which averages are taken.
+pub(crate) const AVERAGING_BAND: &str = "averaging band";
+
 /// Digits of the ordinates; more than a screen can show at any sensible zoom.
 const DIGITS: usize = 5;
 

@@ -24,11 +24,16 @@ impl Render for Verdict {
                 span.sign aria-hidden="true" { (self.tone.sign()) }
                 div {
                     p.headline { (self.headline) }
-                    @for detail in &self.details { p { (detail) } }
+                    @for detail in &self.details { p { (with_commands(detail)) } }
                 }
             }
         }
     }
+}
+
+/// What stands between backticks is what one types.
+pub(crate) fn with_commands(text: &str) -> Markup {
+    html! { @for (at, part) in text.split('`').enumerate() { @if at % 2 == 1 { code { (part) } } @else { (part) } } }
 }
 
 /// A key figure: label, value with uncertainty and unit, and a note.
@@ -135,7 +140,7 @@ impl Section {
 
     /// A paragraph of plain text.
     pub(crate) fn paragraph(self, text: impl AsRef<str>) -> Self {
-        self.with(html! { p { (text.as_ref()) } })
+        self.with(html! { p { (with_commands(text.as_ref())) } })
     }
 
     /// Key figures side by side.

@@ -20,7 +20,9 @@ pub(crate) fn stepped_report(
     context: &PageContext,
 ) -> Report {
     let said = diagnosis.findings.iter().map(|finding| finding.says());
-    let verdict = context.verdict(diagnosis.verdict, diagnosis.says(), said.chain(diagnosis.remarks()));
+    // Levels are told as recordings spell their units.
+    let says = diagnosis.says().replace("m/s^2", "m/s²");
+    let verdict = context.verdict(diagnosis.verdict, says, said.chain(diagnosis.remarks()));
     Report::of(
         context
             .page("Diagnosis: what changes from level to level", context.subtitle(fixture), verdict)
@@ -63,13 +65,17 @@ fn in_percent(level: &LevelResult) -> (f64, f64) {
 
 fn levels(diagnosis: &SteppedDiagnosis) -> Section {
     let text = |(value, std): (f64, f64)| quantity(value, std, "");
+    let (motion, stiffness) = match diagnosis.place.1.name() {
+        "rotation" => ("rad", "N*m/rad"),
+        _ => ("m", "N/m"),
+    };
     let table = Table::of(&diagnosis.levels)
-        .words("level", |l| l.held.to_string())
+        .words("level", |l| l.held.to_string().replace("^2", "²"))
         .words("frequency, Hz", |l| text(l.resonance.frequency))
         .words("damping, %", |l| text(in_percent(l)))
-        .words("relative motion", |l| format!("{:.3e}", l.motion))
-        .words("stiffness beyond the fixture", |l| format!("{:.3e}", l.stiffness.0))
-        .words("loss stiffness beyond it", |l| format!("{:.3e}", l.loss.0))
+        .words("relative motion", |l| quantity(l.motion, None, motion))
+        .words("stiffness beyond the fixture", |l| quantity(l.stiffness.0, None, stiffness))
+        .words("loss stiffness beyond it", |l| quantity(l.loss.0, None, stiffness))
         .words("error refitted", |l| format!("{:.3}", l.nrmse[1]))
         .words("repaired", |l| format!("{:.3}", l.nrmse[2]))
         .words("own stiffness", |l| format!("{:.3}", l.nrmse[3]))

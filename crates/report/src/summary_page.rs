@@ -1,10 +1,10 @@
 //! The page of many cases: what came of each, with the way to its own page.
 
-use jointscope_cases::{Command, DecomposedCase, DiagnosedCase, Row, State, Summary};
+use jointscope_cases::{Command, DecomposedCase, DiagnosedCase, FindingRow, Row, State, Summary};
 
 use crate::context::PageContext;
 use crate::error::PageError;
-use crate::format::{in_column, significant};
+use crate::format::{in_column, quantity, significant};
 use crate::section::{Card, Section, Verdict};
 use crate::table::{Cell, Table};
 use crate::tone::Tone;
@@ -61,6 +61,22 @@ fn verdict(row: &&Row) -> String {
     row.state.verdict().replace('_', " ")
 }
 
+/// Kind, place and dof as they are spoken: `shear deformation J1`.
+fn name_of(finding: &FindingRow) -> String {
+    // The name of a place keeps its underscores.
+    let kind = finding.kind.replace('_', " ");
+    let others = [finding.place.as_deref(), finding.dof.as_deref()].into_iter().flatten();
+    std::iter::once(kind.as_str()).chain(others).collect::<Vec<_>>().join(" ")
+}
+
+/// Every parameter with its deviation in a unit that reads well.
+fn parameters(finding: &FindingRow) -> String {
+    let told = finding
+        .estimates()
+        .map(|(name, value, std, unit)| format!("{} {}", name.replace('_', " "), quantity(value, std, unit)));
+    told.collect::<Vec<_>>().join("; ")
+}
+
 fn diagnosed(summary: &Summary) -> Table<&Row> {
     fn of<'a>(row: &&'a Row) -> Option<&'a DiagnosedCase> {
         match &row.state {
@@ -77,12 +93,12 @@ fn diagnosed(summary: &Summary) -> Table<&Row> {
         .words("Case", |row| name(row))
         .words("Verdict", verdict)
         .words("What is missing", |row| {
-            of(row).map_or(String::new(), |case| case.findings.iter().map(|finding| finding.name()).collect::<Vec<_>>().join("; "))
+            of(row).map_or(String::new(), |case| case.findings.iter().map(name_of).collect::<Vec<_>>().join("; "))
         })
         .numbers("Probability", "", |row| {
             of(row).and_then(|case| case.findings.first()?.probability).map_or(String::new(), |p| format!("{p:.2}"))
         })
-        .words("Parameters", |row| of(row).and_then(|case| case.findings.first()).map_or(String::new(), |finding| finding.parameters()))
+        .words("Parameters", |row| of(row).and_then(|case| case.findings.first()).map_or(String::new(), parameters))
         .numbers("Error, as stated", "%", |row| error(row, 0))
         .numbers("refitted", "%", |row| error(row, 1))
         .numbers("repaired", "%", |row| error(row, 2))

@@ -34,6 +34,14 @@ impl Cell {
         Cell::Shaded(short(chi2), STRONGEST * (chi2.max(1.0).ln() / FULL.ln()).min(1.0))
     }
 
+    /// A share from 0 to 1 as per cent, shaded by it.
+    pub(crate) fn share(share: f64) -> Self {
+        if !share.is_finite() {
+            return "–".into();
+        }
+        Cell::Shaded(fixed(100.0 * share, 1), STRONGEST * share.clamp(0.0, 1.0))
+    }
+
     /// A count shaded by its share of `all`; what is zero is left empty.
     pub(crate) fn count(count: f64, all: f64) -> Self {
         if count > 0.0 {

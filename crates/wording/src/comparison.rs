@@ -1,5 +1,6 @@
 //! Joints side by side, in words.
 
+use crate::format::{fixed, quantity, significant};
 use crate::{Says, Summary};
 use jointscope_comparison::{
     Caution, Compared, Comparison, Equality, Pair, Ratio, Scatter, Specimens, WhyApart,
@@ -21,8 +22,9 @@ pub fn main_pairs(comparison: &Comparison) -> impl Iterator<Item = &Pair> {
 /// `93.02 % (92.98 to 93.06 %)`.
 pub fn percents(ratio: &Ratio) -> String {
     let decimals = decimals(ratio.std * 100.0);
-    let [low, high] = ratio.ci95.map(|end| 100.0 * end);
-    format!("{:.decimals$} % ({low:.decimals$} to {high:.decimals$} %)", 100.0 * ratio.value)
+    let [value, low, high] =
+        [ratio.value, ratio.ci95[0], ratio.ci95[1]].map(|share| fixed(100.0 * share, decimals));
+    format!("{value} % ({low} to {high} %)")
 }
 
 /// Digits after the point that show two of a standard deviation.
@@ -33,8 +35,8 @@ fn decimals(std: f64) -> usize {
 /// A p-value, or what it is below.
 pub fn p_value(p: f64) -> String {
     match p {
-        p if p < 1e-15 => "p < 1e-15".to_owned(),
-        p if p < 1e-3 => format!("p = {p:.0e}"),
+        p if p < 1e-15 => "p < 10⁻¹⁵".to_owned(),
+        p if p < 1e-3 => format!("p = {}", significant(p, 1)),
         p => format!("p = {p:.3}"),
     }
 }
@@ -134,7 +136,7 @@ pub fn share(value: f64, mean: f64) -> String {
     let percent = 100.0 * (value / mean).abs();
     match percent {
         p if p == 0.0 || !p.is_finite() => "0 %".to_owned(),
-        p if p < 1e-4 => format!("{p:.1e} %"),
+        p if p < 1e-4 => format!("{} %", significant(p, 2)),
         p => format!("{p:.*} %", (2 - p.log10().floor() as i32).clamp(0, 6) as usize),
     }
 }
@@ -143,10 +145,9 @@ pub fn share(value: f64, mean: f64) -> String {
 pub fn scatter(scatter: &Scatter) -> String {
     let relative = |value: f64| share(value, scatter.mean.value);
     format!(
-        "{}: mean {:.4e} {}, specimens differ by {} (95 %: {}), measured to {}; the same specimen has {}",
+        "{}: mean {}, specimens differ by {} (95 %: {}), measured to {}; the same specimen has {}",
         scatter.element,
-        scatter.mean.value,
-        scatter.unit,
+        quantity(scatter.mean.value, None, scatter.unit),
         relative(scatter.between),
         between(scatter),
         relative(scatter.measurement),
@@ -246,7 +247,7 @@ fn short(value: f64) -> String {
         v if v >= 1000.0 => format!("{value:.0}"),
         v if v >= 10.0 => format!("{value:.1}"),
         v if v >= 0.01 => format!("{value:.2}"),
-        _ => format!("{value:.1e}"),
+        _ => significant(value, 2),
     }
 }
 

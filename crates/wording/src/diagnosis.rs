@@ -3,7 +3,8 @@
 use crate::departures::departed;
 use crate::finding::{found, it};
 use crate::misfit::{sits, varies};
-use crate::numbers::{figures, listed, percent, significant};
+use crate::numbers::{apart, figures, listed, significant};
+use crate::places::quantity_name;
 use crate::{Remarks, Says, model_error};
 use jointscope_diagnosis::{Diagnosis, Observation};
 use jointscope_findings::Verdict;
@@ -42,17 +43,17 @@ fn by_noise(diagnosis: &Diagnosis) -> String {
             "Nothing is left out: the fixture explains the FRFs down to their noise (χ² per degree of freedom {}).",
             figures(refitted)
         ),
-        Verdict::Explained => format!(
-            "The fixture leaves out {}; with {} the FRFs are explained down to their noise (χ² per degree of freedom {}; without {}{}; \
-             error {}, without {}).",
-            found(diagnosis),
-            it(diagnosis),
-            figures(repaired),
-            figures(refitted),
-            farthest_quantity(diagnosis),
-            percent(error_repaired),
-            percent(error_refitted)
-        ),
+        Verdict::Explained => {
+            let [with, without] = apart([repaired, refitted], 3);
+            let [error_with, error_without] = apart([100.0 * error_repaired, 100.0 * error_refitted], 2);
+            format!(
+                "The fixture leaves out {}; with {} the FRFs are explained down to their noise (χ² per degree of freedom {with}; without \
+                 {without}{}; error {error_with} %, without {error_without} %).",
+                found(diagnosis),
+                it(diagnosis),
+                farthest_quantity(diagnosis)
+            )
+        }
         Verdict::PartlyExplained if diagnosis.is_unnamed() => format!(
             "Something is left out that none of the effects known here accounts for: the closest, {}, takes χ² per degree of freedom from {} \
              to {} only, and what is left sits {}{}.",
@@ -188,9 +189,10 @@ fn of_observation(observation: &Observation) -> Vec<String> {
     remarks
 }
 
-/// `, and bodies/A/mass would have to be 33 standard deviations off`, where the refit without effects takes a quantity that far.
+/// `, and the mass of A would have to be 33 standard deviations off`, where the refit without effects takes a quantity that far.
 fn farthest_quantity(diagnosis: &Diagnosis) -> String {
     diagnosis.farthest_quantity().map_or_else(String::new, |(path, deviations)| {
-        format!(", and {path} would have to be {} standard deviations off", significant(deviations, 2))
+        let quantity = quantity_name(path);
+        format!(", and {quantity} would have to be {} standard deviations off", significant(deviations, 2))
     })
 }

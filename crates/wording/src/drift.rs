@@ -59,11 +59,11 @@ fn frequencies(drift: &TestDrift, own: &ReferenceChange) -> Option<String> {
     Some(format!("{range} while reference {} was struck", own.reference))
 }
 
-/// `of 0.0003`, or `below 1e-9`.
+/// `of 0.0003`, or `below 10⁻⁹`.
 fn by_chance(p_value: f64) -> String {
     match p_value < 1e-9 {
-        true => "below 1e-9".to_owned(),
-        false => format!("of {p_value:.1e}"),
+        true => "below 10⁻⁹".to_owned(),
+        false => format!("of {}", crate::format::significant(p_value, 2)),
     }
 }
 

@@ -2,6 +2,7 @@
 
 use crate::effects::{effect_name, meaning};
 use crate::estimate::rounded_value;
+use crate::format::quantity;
 use crate::numbers::{Short, listed};
 use crate::{Says, amplitude};
 use jointscope_diagnosis::{Diagnosis, Finding as FrfFinding};
@@ -86,10 +87,10 @@ impl Says for LevelFinding {
     fn says(&self) -> String {
         let (motion, _) = amplitude::units(self.effect.dof.unwrap_or(Dof::Translation));
         format!(
-            "{}; seen at relative motions of {:.3e} to {:.3e} {motion}{}.",
+            "{}; seen at relative motions of {} to {}{}.",
             meaning(&self.effect, &self.estimates, "levels"),
-            self.evidence.motions.0,
-            self.evidence.motions.1,
+            quantity(self.evidence.motions.0, None, motion),
+            quantity(self.evidence.motions.1, None, motion),
             look_alikes(self, "levels")
         )
     }

@@ -64,15 +64,18 @@ fn with_power_of_ten(value: f64, usable: Option<f64>, stated: Option<f64>) -> St
     let digits = if stated == Some(0.0) { 6 } else { DIGITS_WITHOUT_STD };
     let magnitude = value.abs().max(usable.unwrap_or(0.0));
     let exponent = decimal_exponent(magnitude);
-    let plain = magnitude == 0.0 || (-3..6).contains(&exponent);
+    // Beyond six decimals zeros are what one sees: 0.0010200 ± 0.0000050.
+    let fine = exponent < 0 && usable.is_some_and(|std| decimals_for(std, 2) > 6);
+    let plain = magnitude == 0.0 || (-3..6).contains(&exponent) && !fine;
+    // Two steps: 10^-exponent alone overflows for subnormal values.
+    let half = exponent / 2;
+    let shift = |x: f64| x / 10f64.powi(half) / 10f64.powi(exponent - half);
     match (usable, plain) {
         (None, _) if stated == Some(0.0) => trimmed(&significant(value, digits)),
-        (None, _) => significant(value, digits),
+        (None, true) => significant(value, digits),
+        (None, false) => format!("{}{}", significant(shift(value), digits), power_of_ten(exponent)),
         (Some(std), true) => plus_minus(value, std),
         (Some(std), false) => {
-            // Two steps: 10^-exponent alone overflows for subnormal values.
-            let half = exponent / 2;
-            let shift = |x: f64| x / 10f64.powi(half) / 10f64.powi(exponent - half);
             format!("({}){}", plus_minus(shift(value), shift(std)), power_of_ten(exponent))
         }
     }
@@ -160,6 +163,13 @@ pub fn significant(value: f64, digits: usize) -> String {
 /// A number with a fixed count of decimals; never a negative zero.
 pub fn fixed(value: f64, decimals: usize) -> String {
     if value.is_finite() { rounded(value, decimals as i32) } else { NOT_DETERMINED.to_owned() }
+}
+
+/// The same with its sign, `+` where it is positive; none on what rounds to zero.
+pub fn with_sign(value: f64, decimals: usize) -> String {
+    let text = fixed(value, decimals);
+    let is_zero = text.chars().all(|c| matches!(c, '0' | '.'));
+    if value > 0.0 && value.is_finite() && !is_zero { format!("+{text}") } else { text }
 }
 
 /// A share such as a coherence or a probability as a percentage: `0.972` reads `97.2 %`.
@@ -259,6 +269,12 @@ mod tests {
     }
 
     #[test]
+    fn a_change_has_its_sign_and_none_has_none() {
+        let told = [1.234, -3.86, -0.004].map(|change| with_sign(change, 2));
+        assert_eq!(told, ["+1.23", "−3.86", "0.00"]);
+    }
+
+    #[test]
     fn an_exact_value_has_no_plus_minus_and_no_trailing_zeros() {
         check(1.1, 0.0, "kg", "1.1 kg (exact)");
         check(2.07e11, 0.0, "Pa", "207 GPa (exact)");
@@ -281,6 +297,14 @@ mod tests {
     fn a_standard_deviation_larger_than_the_value_sets_the_prefix() {
         check(1.0, 2.5e5, "N/m", "0 ± 250 kN/m");
         check(-40.0, 2.5e5, "N/m", "0 ± 250 kN/m");
+    }
+
+    #[test]
+    fn what_would_be_a_row_of_zeros_has_a_power_of_ten() {
+        check(0.00102, 5e-6, "kg*m^2", "(1.0200 ± 0.0050)×10⁻³ kg·m²");
+        check(5.928e-4, None, "kg*m^2", "5.928×10⁻⁴ kg·m²");
+        check(0.0040, 1e-3, "1", "0.0040 ± 0.0010");
+        check(806.5552, 1.4e-4, "Hz", "806.55520 ± 0.00014 Hz");
     }
 
     #[test]

@@ -1,5 +1,6 @@
 //! What a reader should know of the joint found from all FRFs.
 
+use crate::format::quantity;
 use crate::numbers::{listed, percent, plain, significant};
 use crate::{Remarks, Says};
 use jointscope_decomposition::{Analysis, FoundJoint, JointFit, JointTests, JointsFit, LawFit, LawKind};
@@ -133,11 +134,10 @@ fn of_law(fit: &JointFit) -> Vec<String> {
     all.extend(in_its_terms(fit));
     all.extend(fit.mass.map(|(mass, std)| {
             format!(
-                "the FRFs {} a mass of the joint of {} ± {}; k and c are those of a joint with it, and K and C by line, which hold its inertia, are not \
+                "the FRFs {} a mass of the joint of {}; k and c are those of a joint with it, and K and C by line, which hold its inertia, are not \
                  compared with them",
                 if fit.has_certain_mass() { "show" } else { "most probably show" },
-                plain(mass, "kg"),
-                plain(std, "kg")
+                quantity(mass, std, "kg")
             )
         }));
     all

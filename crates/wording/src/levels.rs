@@ -1,5 +1,6 @@
 //! A diagnosis of stepped-sine FRFs at several levels in sentences.
 
+use crate::format::quantity;
 use crate::numbers::capitalised;
 use crate::{Remarks, Says, amplitude};
 use jointscope_findings::Verdict;
@@ -98,12 +99,19 @@ impl Remarks for SteppedDiagnosis {
         let (motion, force) = amplitude::units(self.place.1);
         if let (Some(first), Some(last)) = (self.levels.first(), self.levels.last()) {
             remarks.push(format!(
-                "The relative motion of joint {} in {} runs from {:.3e} to {:.3e} {}; with one resonance its components and other joints that the mode moves keep a fixed ratio, so which of them changes cannot be told by these FRFs alone.",
-                self.place.0, self.place.1.name(), first.motion, last.motion, motion
+                "The relative motion of joint {} in {} runs from {} to {}; with one resonance its components and other joints that the mode moves keep a fixed ratio, so which of them changes cannot be told by these FRFs alone.",
+                self.place.0,
+                self.place.1.name(),
+                quantity(first.motion, None, motion),
+                quantity(last.motion, None, motion)
             ));
+            let stiffness = |value: f64| quantity(value, None, &format!("{force}/{motion}"));
             remarks.push(format!(
-                "Beyond the fixture's, the joint's stiffness goes from {:.3e} to {:.3e} {force}/{motion} and its loss stiffness from {:.3e} to {:.3e} {force}/{motion}.",
-                first.stiffness.0, last.stiffness.0, first.loss.0, last.loss.0
+                "Beyond the fixture's, the joint's stiffness goes from {} to {} and its loss stiffness from {} to {}.",
+                stiffness(first.stiffness.0),
+                stiffness(last.stiffness.0),
+                stiffness(first.loss.0),
+                stiffness(last.loss.0)
             ));
         }
         if self.levels.iter().any(|l| matches!(l.held, Held::Force(_))) {

@@ -50,7 +50,7 @@ pub(crate) fn significant(value: f64, digits: i32) -> String {
     if (-4..5).contains(&exponent) {
         rounded(value, digits - 1 - exponent)
     } else {
-        format!("{value:.*e}", (digits - 1).max(0) as usize)
+        crate::format::significant(value, digits.max(1) as usize)
     }
 }
 
@@ -62,7 +62,7 @@ pub(crate) fn decimals(half_width: f64) -> i32 {
 /// A number with so many decimals, negative ones meaning tens and hundreds; never a negative zero.
 pub(crate) fn rounded(value: f64, decimals: i32) -> String {
     if value != 0.0 && value.abs() < 1e-4 {
-        return format!("{value:.2e}").replace('-', "−");
+        return crate::format::significant(value, 3);
     }
     // Negative decimals round to tens and hundreds.
     let step = 10f64.powi(-decimals.min(0));
@@ -73,6 +73,12 @@ pub(crate) fn rounded(value: f64, decimals: i32) -> String {
 /// χ² per degree of freedom: three digits, no decimals once they mean nothing.
 pub(crate) fn figures(chi2: f64) -> String {
     significant(chi2, 3)
+}
+
+/// Two numbers with as many digits, from `digits` on and up to six, as it takes to tell them apart.
+pub(crate) fn apart(pair: [f64; 2], digits: i32) -> [String; 2] {
+    let told = |digits: i32| pair.map(|value| significant(value, digits));
+    (digits..6).map(told).find(|[a, b]| a != b).unwrap_or_else(|| told(digits))
 }
 
 pub(crate) fn percent(share: f64) -> String {
@@ -96,8 +102,31 @@ impl fmt::Display for Short {
     }
 }
 
-/// A text with its first letter as a capital.
+/// A text with its first letter as a capital; a symbol that it begins with, such as k, stays what it is.
 pub fn capitalised(text: &str) -> String {
+    let first = text.split(' ').next().unwrap_or_default();
+    if first != "a" && first.chars().filter(|c| c.is_alphabetic()).count() == 1 {
+        return text.to_owned();
+    }
     let mut letters = text.chars();
     letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn two_numbers_have_the_digits_that_tell_them_apart() {
+        assert_eq!(apart([1.0477, 3.5596], 3), ["1.05", "3.56"]);
+        assert_eq!(apart([1.0212, 1.0214], 3), ["1.0212", "1.0214"]);
+        assert_eq!(apart([0.5, 0.5], 3), ["0.500", "0.500"]);
+    }
+
+    #[test]
+    fn a_sentence_begins_with_a_capital_and_a_symbol_stays_what_it_is() {
+        assert_eq!(capitalised("the FRFs show"), "The FRFs show");
+        assert_eq!(capitalised("k, c and the tests"), "k, c and the tests");
+        assert_eq!(capitalised("a mass"), "A mass");
+    }
 }

@@ -24,6 +24,22 @@ impl Says for Site {
     }
 }
 
+/// A quantity by its path in the file, as one would say it: `the mass of B` for `bodies/B/mass`; the path itself where there are no words for it.
+pub(crate) fn quantity_name(path: &str) -> String {
+    let parts: Vec<&str> = path.split('/').collect();
+    let (what, whose) = match parts.as_slice() {
+        ["bodies", body, "mass"] => ("mass", body),
+        ["bodies", body, "inertia"] => ("inertia", body),
+        ["bodies", body, "x_cg"] => ("centre of gravity", body),
+        ["points", point, "x"] => return format!("the place of point {point}"),
+        ["joints", joint, "beam", "youngs_modulus"] => {
+            return format!("Young's modulus of joint {joint}");
+        }
+        _ => return path.to_owned(),
+    };
+    format!("the {what} of {whose}")
+}
+
 /// How δ(ω) of a place varies, with no physics named: `grows as frequency to the power 2.0, real and negative`.
 pub(crate) fn variation(location: &Location) -> Option<String> {
     let Variation { power, phase } = location.variation()?;
@@ -49,6 +65,13 @@ mod tests {
     use super::*;
     use jointscope_diagnosis::LineEstimate;
     use num_complex::Complex64;
+
+    #[test]
+    fn a_quantity_is_said_in_words_and_by_its_path_where_there_are_none() {
+        assert_eq!(quantity_name("bodies/B/mass"), "the mass of B");
+        assert_eq!(quantity_name("points/3/x"), "the place of point 3");
+        assert_eq!(quantity_name("supports/left/stiffness"), "supports/left/stiffness");
+    }
 
     #[test]
     fn a_missing_dynamic_stiffness_is_told_by_its_power_of_frequency_and_phase() {

@@ -1,8 +1,14 @@
 //! What was found, a line each, for a terminal.
 
+use crate::format::significant;
 use crate::{Remarks, Says, Summary, model_error};
 use jointscope_diagnosis::Diagnosis;
 use jointscope_nonlinear::{NonlinearDiagnosis, SteppedDiagnosis};
+
+/// A relative error as a percentage of three digits.
+fn share(error: f64) -> String {
+    format!("{} %", significant(100.0 * error, 3))
+}
 
 /// The verdict, and each finding with its probability.
 fn found(verdict: &str, says: String, findings: impl Iterator<Item = (String, f64)>) -> Vec<String> {
@@ -19,8 +25,11 @@ impl Summary for Diagnosis {
         let [nominal, refitted, repaired] = self.nrmse();
         let [chi2_nominal, chi2_refitted, chi2_repaired] = self.chi2_per_dof();
         let row = |name: &str, error: f64, chi2: f64| {
-            let chi2 = if chi2 < 1e3 { format!("{chi2:.3}") } else { format!("{chi2:.2e}") };
-            format!("{name}: relative error of the FRFs {error:.2e}, chi2 per degree of freedom {chi2}")
+            format!(
+                "{name}: relative error of the FRFs {}, chi2 per degree of freedom {}",
+                share(error),
+                significant(chi2, 4)
+            )
         };
         lines.push(row("fixture as stated", nominal, chi2_nominal));
         lines.push(row("refitted within its tolerances", refitted, chi2_refitted));
@@ -34,10 +43,10 @@ impl Summary for Diagnosis {
         }
         if let Some(held_out) = self.held_out.as_ref().filter(|_| !self.findings.is_empty()) {
             lines.push(format!(
-                "held out ({}): relative error {:.2e} refitted, {:.2e} repaired",
+                "held out ({}): relative error {} refitted, {} repaired",
                 held_out.what.join(", "),
-                held_out.nrmse_refitted,
-                held_out.nrmse_repaired
+                share(held_out.nrmse_refitted),
+                share(held_out.nrmse_repaired)
             ));
         }
         lines.extend(self.remarks());
@@ -52,16 +61,17 @@ impl Summary for NonlinearDiagnosis {
         let models = ["fixture as stated", "refitted within its tolerances", "repaired"];
         for (name, model) in models.iter().zip(self.models.iter().flatten()) {
             lines.push(format!(
-                "{name}: relative error of the responses {:.2e}, chi2 per degree of freedom {:.3e}",
-                model.nrmse, model.chi2_per_dof
+                "{name}: relative error of the responses {}, chi2 per degree of freedom {}",
+                share(model.nrmse),
+                significant(model.chi2_per_dof, 4)
             ));
         }
         if let Some(held) = &self.held_out {
             lines.push(format!(
-                "held out ({} hits): relative error {:.2e} refitted, {:.2e} repaired",
+                "held out ({} hits): relative error {} refitted, {} repaired",
                 held.what.len(),
-                held.nrmse_refitted,
-                held.nrmse_repaired
+                share(held.nrmse_refitted),
+                share(held.nrmse_repaired)
             ));
         }
         lines.extend(self.remarks());
@@ -91,7 +101,8 @@ impl Summary for SteppedDiagnosis {
             .map(|t| format!("{} at {} in {} {:.3}", t.form, t.joint, t.dof.name(), t.nrmse));
         lines.push(format!("relative errors over all levels: {}", tried.collect::<Vec<_>>().join(", ")));
         for (name, chi2) in ["fixture as stated", "refitted", "repaired"].iter().zip(self.chi2_per_dof) {
-            lines.extend(chi2.map(|chi2| format!("{name}: chi2 per degree of freedom {chi2:.4e}")));
+            let told = |chi2| format!("{name}: chi2 per degree of freedom {}", significant(chi2, 4));
+            lines.extend(chi2.map(told));
         }
         if let Some(held) = &self.held_out {
             lines.push(format!(

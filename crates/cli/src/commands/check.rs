@@ -6,7 +6,7 @@ use clap::Args;
 use jointscope::check::{Check, CheckOptions, Figure, Weight};
 use jointscope::estimation::ResponseWindow;
 use jointscope::report::check_report;
-use jointscope::report::format::quantity;
+use jointscope::report::format::{quantity, with_sign};
 use jointscope::{check_file, checked_frfs};
 use serde_json::Value;
 
@@ -155,7 +155,8 @@ fn of_recording(recording: &jointscope::check::RecordingCheck) -> Vec<String> {
     if let Some(modes) = &recording.modes {
         let shown = modes.modes.iter().map(|mode| match mode.fixture {
             Some(fixture) => {
-                format!("{:.1} Hz ({:+.1} %)", mode.frequency, 100.0 * (mode.frequency / fixture - 1.0))
+                let change = 100.0 * (mode.frequency / fixture - 1.0);
+                format!("{:.1} Hz ({} %)", mode.frequency, with_sign(change, 1))
             }
             None => format!("{:.1} Hz (none of the fixture's)", mode.frequency),
         });

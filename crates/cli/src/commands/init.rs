@@ -75,7 +75,11 @@ pub(super) struct InitArguments {
 pub(super) fn run(arguments: &InitArguments) -> Result<String, Refusal> {
     let mut lines = Vec::new();
     let (points, placed) = match arguments.from_uff.is_empty() {
-        true => (points(&arguments.points_from, &mut lines)?, Vec::new()),
+        true => {
+            let named = points(&arguments.points_from, &mut lines)?;
+            lines.extend(has_places(&arguments.points_from, &named)?);
+            (named, Vec::new())
+        }
         false => placed(arguments, &mut lines)?,
     };
     let draft = Draft {
@@ -181,6 +185,15 @@ fn points(files: &[PathBuf], lines: &mut Vec<String>) -> Result<Vec<String>, Ref
         ));
     }
     Ok(nodes.iter().map(i64::to_string).collect())
+}
+
+/// That recordings know the places of points as well, where they do.
+fn has_places(files: &[PathBuf], named: &[String]) -> Result<Option<String>, Refusal> {
+    let sources = files.iter().map(|path| input::source(path)).collect::<Result<Vec<_>, _>>()?;
+    let mut nodes = sources.iter().flat_map(|source| &source.file.nodes).flat_map(|nodes| &nodes.nodes);
+    let has = nodes.any(|node| named.contains(&node.label.to_string()));
+    let sentence = "the recording has a geometry: `--from-uff` in place of `--points-from` puts the points where it has them";
+    Ok(has.then(|| sentence.to_owned()))
 }
 
 /// Points whose names alone are known, and those whose places are, by name and abscissa in m.

@@ -92,6 +92,11 @@ fn what_cannot_be_drafted_is_refused_in_a_sentence_and_work_is_not_overwritten()
     bench.refused(&["init", "-o", "new.json"], &["--blocks", "--frame", "--beam"]);
     bench.refused(&["init", "--blocks", "50x50x80:steel", "-o", "new.json"], &["--strip"]);
     bench.refused(&["init", "--beam", "500x40:steel", "-o", "new.json"], &["LENGTHxWIDTHxHEIGHT"]);
+    bench.refused(&["init", "--beam", "500,5x40x6:steel", "-o", "new.json"], &["comma", "decimal point"]);
+    bench.refused(
+        &["init", "--beam", "0.5x0.04x0.006:steel", "-o", "new.json"],
+        &["look like metres", "in mm"],
+    );
     bench.refused(&["init", "--beam", "500x40x6:stel", "-o", "new.json"], &["no material `stel`", "steel"]);
     bench.refused(
         &["init", "--beam", "500x40x6:steel", "--points-from", "none.uff", "-o", "new.json"],
@@ -187,6 +192,9 @@ fn nodes_of_a_recording_become_points_at_the_places_of_its_geometry() {
         let x_of = points[name]["x"]["value"].as_f64().or(points[name]["x"].as_f64()).unwrap();
         assert!(points[name]["body"] == body && (x_of - x).abs() < 1e-9, "{points}");
     }
+    // Who takes the names alone is told that there is more.
+    let names = [&OF_BLOCKS[..5], &["--points-from", "with.uff", "-o", "names.json"]].concat();
+    assert!(bench.done(&names).contains("the recording has a geometry: `--from-uff`"));
     let checked = bench.done(&["check", "own.json", "with.uff"]);
     assert!(!checked.contains("its place is unknown"), "{checked}");
     // By itself: points, and masses to be filled in.

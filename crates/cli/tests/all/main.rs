@@ -24,6 +24,7 @@ mod plan;
 mod prove;
 mod prove_floors;
 mod prove_recordings;
+mod reference;
 mod results;
 mod shared_inputs;
 mod streams;

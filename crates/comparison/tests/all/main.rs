@@ -425,7 +425,7 @@ fn joints_over_different_lengths_are_told() {
 fn a_share_is_said_with_its_significant_digits() {
     assert_eq!(share(2.0, 1000.0), "0.200 %");
     assert_eq!(share(0.012, -1000.0), "0.00120 %");
-    assert_eq!(share(1e-7, 1000.0), "1.0e-8 %");
+    assert_eq!(share(1e-7, 1000.0), "1.0×10⁻⁸ %");
     assert_eq!((share(0.0, 3.0), share(12.0, 10.0)), ("0 %".into(), "120 %".into()));
 }
 

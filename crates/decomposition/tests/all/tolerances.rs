@@ -122,3 +122,38 @@ fn tolerances_are_independent_and_add_as_squares() {
     let both = of_the_mean([0.004, 0.006]);
     assert!((both / a.hypot(b) - 1.0).abs() < 1e-9, "{both} N/m from {a} and {b}");
 }
+
+#[test]
+fn points_that_no_frf_depends_on_have_no_share_and_change_nothing_else() {
+    let plain =
+        TwoBlocks { damping: r#"{"modal_ratios": [0.00716, 0.00172]}"#.into(), ..TwoBlocks::default() };
+    let frfs = Noise::new(7).on(&frfs(&plain.fixture(), &FOUR, &lines()), 1e-3);
+    let stated = plain.fixture();
+    // Before and between the points in use.
+    let text = stated.to_json();
+    let idle = |name: &str| format!(r#""idle-{name}": {{ "body": "A", "x": -0.01 }}, "{name}": {{"#);
+    let text = text.replacen("\"1\": {", &idle("1"), 1).replacen("\"3\": {", &idle("3"), 1);
+    let with_idle = Fixture::from_json(&text).unwrap();
+    assert_eq!(with_idle.points().len(), 6);
+    let options = AnalysisOptions { laws: false, ..AnalysisOptions::default() };
+    let [without, with] =
+        [&stated, &with_idle].map(|fixture| Analysis::of(fixture, &frfs, &options).unwrap());
+    assert_eq!(with.tolerances.len(), without.tolerances.len() + 2);
+    let is_idle = |path: &str| path.contains("idle");
+    for share in with.tolerances.iter().filter(|share| is_idle(&share.path)) {
+        let (k, c) = share.plain;
+        let (fitted_k, fitted_c) = share.likelihood.unwrap();
+        let largest = [k, c, fitted_k, fitted_c]
+            .map(|m| elements((m, m)).into_iter().fold(0.0, |a: f64, b| a.max(b.abs())));
+        assert!(largest.iter().all(|change| *change < 1e-9), "{}: {largest:?}", share.path);
+    }
+    let others = with.tolerances.iter().filter(|share| !is_idle(&share.path));
+    assert!(others.eq(without.tolerances.iter()), "the shares of the others change");
+    let (with, without) = (with.joint_fit.unwrap(), without.joint_fit.unwrap());
+    assert_eq!(with.stiffness, without.stiffness);
+    assert_eq!(with.quantities, without.quantities);
+    // In the order of the file, as all that stays where it is.
+    let idle: Vec<&str> =
+        with.unmoved.iter().map(|own| own.path.as_str()).filter(|path| is_idle(path)).collect();
+    assert_eq!(idle, ["points/idle-1/x", "points/idle-3/x"]);
+}

@@ -259,21 +259,27 @@ fn placed(fixture: &Fixture, problem: &Problem, change: &Change, omega: f64) -> 
             entry.quantity.value = value.max(0.0);
         }
     }
-    let unit = if dof == Dof::Rotation { "N*m/rad" } else { "N/m" };
+    let unit = if dof == Dof::Rotation { "N·m/rad" } else { "N/m" };
     let mut unplaced = Vec::new();
     if !stiff {
         unplaced.push(format!(
-            "The levels ask for {:.4e} {unit} more in {} of joint {joint} than its beam has; refitted.json and repaired.json cannot state that of a beam and leave it out.",
-            change.base.re, dof.name()
+            "The levels ask for {} {unit} more in {} of joint {joint} than its beam has; refitted.json and repaired.json cannot state that of a beam and leave it out.",
+            four_digits(change.base.re), dof.name()
         ));
     }
     if !damped {
         unplaced.push(format!(
-            "The levels ask for a loss stiffness of {:.4e} {unit} in {} of joint {joint} beyond the fixture's damping at {:.2} Hz; the joint states no `damping` that could take it, so the written fixtures leave it out.",
-            change.base.im, dof.name(), omega / TAU
+            "The levels ask for a loss stiffness of {} {unit} in {} of joint {joint} beyond the fixture's damping at {:.2} Hz; the joint states no `damping` that could take it, so the written fixtures leave it out.",
+            four_digits(change.base.im), dof.name(), omega / TAU
         ));
     }
     (refitted, unplaced)
+}
+
+/// A stiffness of four significant digits.
+fn four_digits(value: f64) -> String {
+    let decimals = 3.0 - value.abs().max(f64::MIN_POSITIVE).log10().floor();
+    format!("{value:.*}", decimals.clamp(0.0, 9.0) as usize)
 }
 
 fn with_laws(fixture: &Fixture, problem: &Problem, change: &Change, omega: f64) -> Fixture {

@@ -2,7 +2,7 @@
 
 use jointscope_check::{DrivingPointVerdict, FrfCheck, RecordingCheck};
 
-use crate::format::{percent, quantity, significant, trimmed};
+use crate::format::{percent, quantity, significant, trimmed, with_sign};
 use crate::plot::{Curve, FrfPanes, Role, Style, worst};
 use crate::section::Section;
 use crate::table::Table;
@@ -34,7 +34,7 @@ fn frfs(recording: &RecordingCheck) -> Section {
         .words("noise from", |frf| frf.noise_from.says())
         .numbers("nrmse", "", |frf| or_dash(frf.nrmse.map(|nrmse| percent(nrmse, 1))))
         .numbers("level", "", |frf| or_dash(frf.level.map(|level| significant(level, 3))))
-        .numbers("sign", "", |frf| or_dash(frf.sign.map(|sign| format!("{sign:+.2}"))))
+        .numbers("sign", "", |frf| or_dash(frf.sign.map(|sign| with_sign(sign, 2))))
         .footnote(
             "nrmse: distance from the fixture's FRF as it stands. A narrow resonance that has moved by its width makes 100 % and more. Level: median of recorded over the fixture's. Sign: mean cosine of the angle between them, 1 alike, −1 turned round. Noise: median over the lines.",
         );
@@ -111,8 +111,8 @@ fn mass_line(recording: &RecordingCheck) -> Section {
     section
         .paragraph(format!(
             "From {} to {} Hz the assembly moves nearly as one rigid body; what is left there at 0 Hz is its accelerance as such. {mass}",
-            significant(line.band.0, 4),
-            significant(line.band.1, 4)
+            trimmed(&significant(line.band.0, 4)),
+            trimmed(&significant(line.band.1, 4))
         ))
         .with(
             Table::of(&line.frfs)

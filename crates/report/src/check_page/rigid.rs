@@ -2,7 +2,7 @@
 
 use jointscope_check::{ModelModes, RecordingCheck};
 
-use crate::format::{in_column, percent, significant};
+use crate::format::{fixed, in_column, significant, with_sign};
 use crate::mode_indicator;
 use crate::section::Section;
 use crate::table::Table;
@@ -10,8 +10,8 @@ use crate::unit::Scale;
 
 pub(super) fn modes(modes: &ModelModes, recording: Option<&RecordingCheck>) -> Section {
     let table = Table::of(&modes.modes)
-        .numbers("natural frequency", "Hz", |mode| hertz(mode.frequency.value, mode.frequency.std))
-        .numbers("damping ratio", "%", |mode| significant(100.0 * mode.damping_ratio, 3))
+        .numbers("Natural frequency", "Hz", |mode| hertz(mode.frequency.value, mode.frequency.std))
+        .numbers("Damping ratio", "%", |mode| significant(100.0 * mode.damping_ratio, 3))
         .words("", |mode| if mode.on_supports { "as rigid on its supports" } else { "" })
         .footnote(format!(
             "{} rigid-body mode{} at 0 Hz; modes up to {} Hz. The deviations are those that the fixture's own tolerances leave.",
@@ -26,16 +26,16 @@ pub(super) fn modes(modes: &ModelModes, recording: Option<&RecordingCheck>) -> S
         return section.paragraph(format!("No modes of the recording beside them: {why}."));
     };
     let shift = |mode: &&jointscope_check::ModePair| {
-        mode.fixture
-            .map_or("–".to_owned(), |fixture| format!("{:+.2} %", 100.0 * (mode.frequency / fixture - 1.0)))
+        let share = mode.fixture.map(|fixture| 100.0 * (mode.frequency / fixture - 1.0));
+        share.map_or("–".to_owned(), |share| format!("{} %", with_sign(share, 2)))
     };
     let beside = Table::of(&found.modes)
         .caption("Modes of the recording, and the fixture's that they are by frequency and shape")
-        .numbers("recorded", "Hz", |mode| hertz(mode.frequency, Some(mode.std)))
-        .numbers("damping ratio", "%", |mode| significant(100.0 * mode.damping_ratio, 3))
-        .numbers("fixture", "Hz", |mode| mode.fixture.map_or("–".to_owned(), |hz| hertz(hz, None)))
-        .numbers("recorded is", "", shift)
-        .numbers("MAC", "", |mode| mode.mac.map_or("–".to_owned(), |mac| percent(mac, 0)));
+        .numbers("Recorded", "Hz", |mode| hertz(mode.frequency, Some(mode.std)))
+        .numbers("Damping ratio", "%", |mode| significant(100.0 * mode.damping_ratio, 3))
+        .numbers("Fixture", "Hz", |mode| mode.fixture.map_or("–".to_owned(), |hz| hertz(hz, None)))
+        .numbers("Recorded differs by", "", shift)
+        .numbers("MAC", "", |mode| mode.mac.map_or("–".to_owned(), |mac| fixed(mac, 2)));
     let section = section.with(beside);
     if found.missing.is_empty() {
         return section;

@@ -4,7 +4,7 @@ use jointscope_decomposition::{Analysis, Element, Estimate, Method, Part};
 use jointscope_inference::interval95;
 
 use super::subject::Subject;
-use crate::plot::{Axis, Plot, Role, Span, YRange};
+use crate::plot::{AVERAGING_BAND, Axis, Plot, Role, Span, YRange};
 use crate::section::Section;
 use jointscope_wording::element::{meaning, symbol, unit};
 
@@ -86,7 +86,7 @@ fn plot(subject: &Subject, part: Part, element: Element) -> Plot {
             }
         }
     }
-    plot.shaded("averaging band", band.from, band.to)
+    plot.shaded(AVERAGING_BAND, band.from, band.to)
         .y_range(range)
         .masked(analysis.spectrum.masked.len())
         .caption(caption(subject, part, element))

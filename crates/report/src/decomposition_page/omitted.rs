@@ -2,7 +2,7 @@
 
 use super::subject::Subject;
 use crate::context::PageContext;
-use crate::plot::{Axis, Plot, Role, YRange};
+use crate::plot::{AVERAGING_BAND, Axis, Plot, Role, YRange};
 use crate::section::{Block, Section};
 use crate::table::Table;
 use jointscope_wording::decomposition::plain;
@@ -78,7 +78,7 @@ fn condition(subject: &Subject) -> Plot {
     Plot::new("Condition", Axis::frequency(), Axis::logarithmic("Condition number", ""))
         .over(spectrum.h41.lines.hz())
         .line("worst element", Role::Measured, &values)
-        .shaded("averaging band", band.from, band.to)
+        .shaded(AVERAGING_BAND, band.from, band.to)
         .y_range(YRange::decades(values.iter().flatten().copied()))
         .height(180)
         .caption(

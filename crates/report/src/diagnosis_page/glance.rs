@@ -2,13 +2,13 @@
 
 use jointscope_diagnosis::{Departure, Estimate, Finding, Verdict};
 use jointscope_wording::{Remarks, capitalised, effect_name};
-use maud::{Markup, html};
+use maud::html;
 
 use super::fixture_view;
 use super::judgement::{gain, spoken};
 use super::subject::Subject;
 use crate::format::{NOT_DETERMINED, ends, percent, significant};
-use crate::section::{Card, Section};
+use crate::section::{Card, Section, with_commands};
 use crate::tone::Tone;
 use crate::unit::Scale;
 
@@ -28,11 +28,6 @@ pub(super) fn section(subject: &Subject, notes: &[String]) -> Section {
         false => section.with(html! { div.next { strong { "What to do next" } ul { @for step in &steps { li { (with_commands(step)) } } } } }),
     };
     section.drawing(drawing, caption).notes(subject.diagnosis.remarks().iter().chain(notes))
-}
-
-/// What stands between backticks is what one types.
-fn with_commands(text: &str) -> Markup {
-    html! { @for (at, part) in text.split('`').enumerate() { @if at % 2 == 1 { code { (part) } } @else { (part) } } }
 }
 
 /// A probability without digits that nobody can vouch for.

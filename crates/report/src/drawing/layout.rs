@@ -91,6 +91,8 @@ pub(super) struct Label {
     pub tie: Tie,
     /// Whether it stands to the right of its place rather than centred on it.
     aside: bool,
+    /// How far right of its place the line goes that ties it to it, px.
+    lean: f64,
     /// Filled by [`assign_lanes`].
     pub centre: f64,
     /// Filled by [`assign_lanes`]; 0 is next to the body.
@@ -100,7 +102,18 @@ pub(super) struct Label {
 impl Label {
     fn new(text: impl Into<String>, class: &'static str, tie: Tie, anchor: f64) -> Self {
         let (below, half) = (None, 0.5 * BLOCK);
-        Self { text: text.into(), below, class, anchor, half, tie, aside: false, centre: anchor, lane: 0 }
+        Self {
+            text: text.into(),
+            below,
+            class,
+            anchor,
+            half,
+            tie,
+            aside: false,
+            lean: 0.0,
+            centre: anchor,
+            lane: 0,
+        }
     }
 
     fn width(&self) -> f64 {
@@ -108,9 +121,9 @@ impl Label {
         text_width(&self.text).max(below)
     }
 
-    /// Abscissa of the line that ties it to its place; beside the arrow that may end where a circle stands.
+    /// Abscissa of the line that ties it to its place.
     pub(super) fn leader(&self) -> f64 {
-        if self.tie == Tie::Circle { self.anchor + 11.0 } else { self.anchor }
+        self.anchor + self.lean
     }
 
     /// Where it may stand along x: about its leader, at its side.
@@ -134,14 +147,14 @@ impl Label {
 fn assign_lanes(labels: &mut [Label], width: f64) -> usize {
     labels.sort_by(|a, b| (a.anchor.total_cmp(&b.anchor)).then_with(|| a.text.cmp(&b.text)));
     // How many others' leaders it would cover, at the place where it covers the fewest.
-    let covered = |label: &Label, (from, to): Stretch, others: &[usize]| -> usize {
-        let leaders = others.iter().map(|other| labels[*other].leader());
-        leaders.filter(|x| *x != label.leader() && (from - 3.0..to + 3.0).contains(x)).count()
+    let covered = |index: usize, (from, to): Stretch, others: &[usize]| -> usize {
+        let leaders = others.iter().filter(|other| **other != index).map(|other| labels[*other].leader());
+        leaders.filter(|x| (from - 3.0..to + 3.0).contains(x)).count()
     };
     let all: Vec<usize> = (0..labels.len()).collect();
     let in_the_way = |index: &usize| {
         let label = &labels[*index];
-        label.stretches(width).map(|stretch| covered(label, stretch, &all)).into_iter().min()
+        label.stretches(width).map(|stretch| covered(*index, stretch, &all)).into_iter().min()
     };
     // The leaders of far lanes pass the near ones, so labels that are in no leader's way, and short ones, go near.
     let mut order = all.clone();
@@ -151,7 +164,7 @@ fn assign_lanes(labels: &mut [Label], width: f64) -> usize {
     let place = |(at, index): (usize, &usize)| {
         let label = &labels[*index];
         let mut stretches = label.stretches(width);
-        stretches.sort_by_key(|stretch| covered(label, *stretch, &order[at + 1..]));
+        stretches.sort_by_key(|stretch| covered(*index, *stretch, &order[at + 1..]));
         let leader = label.leader();
         (*index, lanes.take(&stretches, (leader - 3.0, leader + 3.0)))
     };
@@ -246,7 +259,8 @@ impl Layout {
             let row = highlight.body.and_then(|body| layout.bodies[body]).map_or(0, |body| body.row);
             let anchor = layout.scale.px(highlight.x);
             let label = Label::new(&highlight.label, "fx-highlight-name", Tie::Circle, anchor);
-            layout.rows[row].above.push(label);
+            let lean = beside_arrows(anchor, &layout.rows[row].above);
+            layout.rows[row].above.push(Label { lean, ..label });
         }
         layout.stack();
         layout
@@ -337,6 +351,15 @@ impl Layout {
         // The scale bar and the axes, and a line on what has no label.
         self.height = top + 40.0 + if self.unlabelled > 0 { LANE } else { 0.0 };
     }
+}
+
+/// Px from a circle's middle at which the line to it runs beside the arrow that may end there, and beside others.
+fn beside_arrows(anchor: f64, labels: &[Label]) -> f64 {
+    const BESIDE: [f64; 4] = [11.0, 7.0, -7.0, -11.0];
+    const APART: f64 = 4.0;
+    let arrows = || labels.iter().filter(|label| matches!(label.tie, Tie::Arrow(_)));
+    let is_free = |lean: &f64| arrows().all(|arrow| (arrow.anchor - anchor - lean).abs() > APART);
+    BESIDE.into_iter().find(is_free).unwrap_or(BESIDE[0])
 }
 
 /// As many of some things as there is room for, evenly from the first to the last.

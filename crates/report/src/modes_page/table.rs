@@ -40,7 +40,7 @@ pub(super) fn auto_mac(analysis: &ModalAnalysis) -> Section {
     let count = analysis.modes.len();
     let mac = analysis.auto_mac();
     let map = (0..count).fold(Table::of(0..count).names("MAC, %", |row| heads(*row)), |map, column| {
-        map.shaded(heads(column), |row| Cell::misfit(Some(100.0 * mac[row * count + column])))
+        map.shaded(heads(column), |row| Cell::share(mac[row * count + column]))
     });
     Section::new("Auto-MAC")
         .paragraph(

@@ -4,13 +4,14 @@ use jointscope_wording::capitalised;
 use maud::{Markup, html};
 
 use super::drawing::Drawing;
-use super::{Mark, Plot, Series, Style};
-use crate::format::{significant, trimmed};
+use super::{AVERAGING_BAND, Mark, Plot, Role, Series, Style};
+use crate::format::{percent, significant, trimmed};
 use crate::unit::{Scale, typeset};
 
 /// The figure of a plot; the script finds it by its number and draws into it.
 pub(super) fn figure(number: usize, plot: &Plot, drawing: &Drawing) -> Markup {
     let caption = caption(plot);
+    let seen = seen(plot, &drawing.scale);
     let remarks = drawing.remarks.join("; ");
     html! {
         figure.plot.strip[plot.is_strip] data-plot=(number) {
@@ -35,7 +36,7 @@ pub(super) fn figure(number: usize, plot: &Plot, drawing: &Drawing) -> Markup {
                 }
             }
             div.drawing tabindex="0" role="group" aria-roledescription="plot"
-                aria-label={ (plot.title) ". " (caption) } {}
+                aria-label={ (plot.title) ". " (caption) (seen) } {}
             figcaption { (caption) @if !remarks.is_empty() { " " small { (capitalised(&remarks)) "." } } }
         }
     }
@@ -82,6 +83,69 @@ pub(super) fn mark_key<'a>(mark: &'a Mark, plot: &Plot, scale: &Scale) -> (&'a s
 
 fn with_unit(number: String, unit: &str) -> String {
     if unit.is_empty() { number } else { format!("{number} {unit}") }
+}
+
+/// Curves of which it is said what is seen of them, at the most.
+const TOLD: usize = 6;
+/// Per cent of a curve's values that lie between the two that are told of it, from the one end and from the other.
+const MOSTLY: [usize; 2] = [5, 95];
+
+/// What is seen of the curves, for who does not see them: on a logarithmic axis where each is highest, and how often it exceeds a line drawn across, on
+/// a linear one between which values it mostly lies, over the averaging band where there is one. Of phases nothing: where they turn the magnitude peaks.
+pub(super) fn seen(plot: &Plot, scale: &Scale) -> String {
+    // Points in the colour of a reference mark lines of a curve.
+    let is_mark = |series: &Series| series.style == Style::Points && series.role == Role::Reference;
+    let curves = plot.series.iter().filter(|series| series.style != Style::Band && !is_mark(series));
+    let told: Vec<String> = curves.filter_map(|series| seen_of(series, plot, scale)).take(TOLD).collect();
+    let how = match (plot.y.is_logarithmic(), averaged(plot)) {
+        (true, _) => "Highest".to_owned(),
+        (false, None) => "Mostly".to_owned(),
+        (false, Some((from, to))) => {
+            let [from, to] = [from, to].map(|end| trimmed(&significant(end, 4)));
+            format!("Mostly, from {}", with_unit(format!("{from} to {to}"), &typeset(&plot.x.unit)))
+        }
+    };
+    if told.is_empty() || plot.y.unit == "°" {
+        String::new()
+    } else {
+        format!(" {how}: {}.", told.join("; "))
+    }
+}
+
+/// The band over which averages are taken, where the plot shades it.
+fn averaged(plot: &Plot) -> Option<(f64, f64)> {
+    plot.marks.iter().find_map(|mark| match mark {
+        Mark::Shaded { label, from, to } if label == AVERAGING_BAND => Some((*from, *to)),
+        _ => None,
+    })
+}
+
+fn seen_of(series: &Series, plot: &Plot, scale: &Scale) -> Option<String> {
+    let abscissa = plot.tables.get(series.table)?;
+    let lines = abscissa.iter().zip(&series.values).filter(|(_, y)| plot.y.can_show(**y));
+    let lines = lines.map(|(x, y)| (*x, scale.of(*y)));
+    let band = averaged(plot).filter(|_| !plot.y.is_logarithmic());
+    let mut lines: Vec<(f64, f64)> =
+        lines.filter(|(x, _)| band.is_none_or(|(from, to)| (from..=to).contains(x))).collect();
+    lines.sort_by(|a, b| a.1.total_cmp(&b.1));
+    let (last, label) = (lines.len().checked_sub(1)?, &series.label);
+    let number = |y: f64| trimmed(&significant(y, 3));
+    if !plot.y.is_logarithmic() {
+        let [low, high] = MOSTLY.map(|share| number(lines[last * share / 100].1));
+        let range = if low == high { low } else { format!("{low} to {high}") };
+        return Some(format!("{label} {}", with_unit(range, scale.unit())));
+    }
+    let (x, y) = lines[last];
+    let (height, place) = (with_unit(number(y), scale.unit()), trimmed(&significant(x, 4)));
+    let exceeded = plot.marks.iter().find_map(|mark| match mark {
+        Mark::Horizontal { label, at, .. } if !label.is_empty() => Some(scale.of(*at)),
+        _ => None,
+    });
+    let exceeded = exceeded.map_or_else(String::new, |at| {
+        let above = lines.iter().filter(|(_, y)| *y > at).count();
+        format!(", above {} on {} of the lines", number(at), percent(above as f64 / lines.len() as f64, 0))
+    });
+    Some(format!("{label} {height} at {}{exceeded}", with_unit(place, &typeset(&plot.x.unit))))
 }
 
 /// The caller's sentence, or one made of the labels.

@@ -3,11 +3,12 @@
 use maud::{Markup, PreEscaped, html};
 
 use super::data::{check, ordinate_scale};
-use super::figure::{caption, mark_key, series_swatch};
+use super::figure::{caption, mark_key, seen, series_swatch};
 use super::range::limits;
 use super::thin::kept_lines;
 use super::{Axis, Mark, Plot, Series, Style};
 use crate::error::PageError;
+use crate::format::{fixed, significant, trimmed};
 use crate::unit::{Scale, superscript, typeset};
 
 const WIDTH: f64 = 900.0;
@@ -16,6 +17,8 @@ const RIGHT: f64 = 18.0;
 /// Below the drawing: numbers and name of the abscissa.
 const BOTTOM: f64 = 46.0;
 const LEGEND_ROW: f64 = 20.0;
+/// What a decade may miss an end of an axis by.
+const ROUNDING: f64 = 1e-9;
 /// Width of a letter of the legend, a little more than most have.
 const LETTER: f64 = 7.2;
 
@@ -58,7 +61,7 @@ impl Ruler {
         let last = (self.high / step).floor() as i64;
         let decimals = (-step.log10().floor()).clamp(0.0, 9.0) as usize;
         let label = |tick: f64| match tick.abs() >= 1e6 || step < 1e-9 {
-            true => format!("{tick:.1e}"),
+            true => significant(tick, 2),
             false => format!("{tick:.decimals$}").replace('-', "−"),
         };
         (first..=last).map(|i| i as f64 * step).map(|tick| (tick, label(tick))).collect()
@@ -68,8 +71,12 @@ impl Ruler {
         let (first, last) = (self.low.log10(), self.high.log10());
         let every = ((last - first) / 8.0).ceil().max(1.0) as i64;
         let powers = (first.ceil() as i64)..=(last.floor() as i64);
-        let label =
-            |power: i64| format!("10{}", power.to_string().chars().map(superscript).collect::<String>());
+        // As on the page: powers of ten once plain numbers have many zeros.
+        let is_plain = first >= -3.0 - ROUNDING && last <= 5.0 + ROUNDING;
+        let label = |power: i64| match is_plain {
+            true => trimmed(&fixed(10f64.powi(power as i32), (-power).max(0) as usize)),
+            false => format!("10{}", power.to_string().chars().map(superscript).collect::<String>()),
+        };
         let whole: Vec<_> = powers
             .filter(|power| power.rem_euclid(every) == 0)
             .map(|power| (10f64.powi(power as i32), label(power)))
@@ -128,7 +135,7 @@ impl Plot {
         let end = WIDTH - RIGHT;
         Ok(html! {
             svg.pl xmlns="http://www.w3.org/2000/svg" width=(WIDTH) height=(floor + BOTTOM)
-                viewBox={ "0 0 " (WIDTH) " " (floor + BOTTOM) } role="img" aria-label=(self.title) {
+                viewBox={ "0 0 " (WIDTH) " " (floor + BOTTOM) } role="img" aria-label={ (self.title) ". " (caption(self)) (seen(self, &scale)) } {
                 title { (self.title) }
                 desc { (caption(self)) }
                 (PreEscaped(STYLE))

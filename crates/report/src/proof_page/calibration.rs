@@ -2,6 +2,7 @@
 
 use jointscope_proof::{Bin, Score, Share};
 
+use crate::format::fixed;
 use crate::plot::{Axis, Plot, Role};
 use crate::section::Section;
 
@@ -11,7 +12,8 @@ pub(super) fn section(score: &Score) -> Section {
     let mut said = Vec::new();
     if let Some(mean) = log_score {
         said.push(format!(
-            "The mean logarithm of the probability that was given to the true name is {mean:.3}; certainty and always right would be 0, a coin −0.693."
+            "The mean logarithm of the probability that was given to the true name is {}; certainty and always right would be 0, a coin −0.693.",
+            fixed(mean, 3)
         ));
     }
     if let Some(width) = width {

@@ -3,6 +3,7 @@
 use jointscope_proof::{Figure, Rate, Score, Share, TargetStatus};
 
 use super::cells::or_dash;
+use crate::format::fixed;
 use crate::section::{Block, Card, Section};
 use crate::table::Table;
 use crate::tone::Tone;
@@ -51,7 +52,7 @@ pub(super) fn figures(figures: &[Figure]) -> impl Into<Block> {
         |figure: &Figure| figure.target.zip(figure.value).map(|(target, value)| target.is_met(value));
     Table::of(figures)
         .words("figure", |figure| figure.what)
-        .numbers("value", "", |figure| or_dash(figure.value.map(|value| format!("{value:.3}"))))
+        .numbers("value", "", |figure| or_dash(figure.value.map(|value| fixed(value, 3))))
         .numbers("from", "", |figure| figure.from.to_string())
         .words("target", |figure| figure.target.map_or_else(String::new, |target| target.to_string()))
         .words("", |figure| is_met(figure).map_or("", |met| if met { "met" } else { "missed" }))
