@@ -8,7 +8,7 @@
 //!
 //! let mass = EffectKind::JointMass.spec().parameters[0];
 //! let unknown = Estimate::of(mass, None, 0.077);
-//! assert!(unknown.is_undetermined());
+//! assert_eq!(unknown.interval, None);
 //! assert!(unknown.within(0.002).is_positive());
 //! ```
 
