@@ -45,6 +45,7 @@ pub mod unit;
 pub use effects::effect_name;
 pub use model_error::{ErrorInWords, error_in_words};
 pub use numbers::{capitalised, counted, listed};
+pub use places::held_out_part;
 
 /// Something that can be said in one plain sentence, or in a few words.
 pub trait Says {

@@ -1,7 +1,7 @@
 //! Places in words, and how what is missing there goes with frequency.
 
 use crate::Says;
-use crate::numbers::plain;
+use crate::numbers::{plain, significant};
 use jointscope_diagnosis::{Location, Phase, Site, Variation};
 
 /// Exponents up to this size count as level.
@@ -21,6 +21,20 @@ impl Says for Site {
             Site::Reference(point) => format!("reference {point}"),
             Site::Position(point) => format!("the position of point {point}"),
         }
+    }
+}
+
+/// A part of a recording that is held out, as one would say it: `180 to 240 Hz` for `band 180:240`, `FRF 4/2` for `frf 4/2`.
+pub fn held_out_part(name: &str) -> String {
+    if let Some(frf) = name.strip_prefix("frf ") {
+        return format!("FRF {frf}");
+    }
+    let band = name.strip_prefix("band ").and_then(|band| band.split_once(':'));
+    let ends = band.and_then(|(from, to)| Some((from.parse().ok()?, to.parse().ok()?)));
+    match ends {
+        // Lines lie at odd fractions of one hertz.
+        Some((from, to)) => format!("{} to {} Hz", significant(from, 5), significant(to, 5)),
+        None => name.to_owned(),
     }
 }
 
@@ -105,5 +119,11 @@ mod tests {
         let mut unknown = spring.clone();
         unknown.delta.truncate(3);
         assert_eq!(variation(&unknown), None);
+    }
+
+    #[test]
+    fn bands_that_are_held_out_are_said_in_as_many_digits_as_one_reads() {
+        assert_eq!(held_out_part("band 302.51953125:307.59765625"), "302.52 to 307.60 Hz");
+        assert_eq!(held_out_part("frf 4/2"), "FRF 4/2");
     }
 }

@@ -1,6 +1,7 @@
 //! What was found, a line each, for a terminal.
 
 use crate::format::significant;
+use crate::places::held_out_part;
 use crate::{Remarks, Says, Summary, model_error};
 use jointscope_diagnosis::Diagnosis;
 use jointscope_nonlinear::{NonlinearDiagnosis, SteppedDiagnosis};
@@ -44,7 +45,7 @@ impl Summary for Diagnosis {
         if let Some(held_out) = self.held_out.as_ref().filter(|_| !self.findings.is_empty()) {
             lines.push(format!(
                 "held out ({}): relative error {} refitted, {} repaired",
-                held_out.what.join(", "),
+                held_out.what.iter().map(|part| held_out_part(part)).collect::<Vec<_>>().join(", "),
                 share(held_out.nrmse_refitted),
                 share(held_out.nrmse_repaired)
             ));

@@ -5,14 +5,15 @@
 //! that are stated, and quantities that follow recorded natural frequencies and damping more closely: as closely as takes none of them farther from what is stated than
 //! chance, or than it already is.
 
-use crate::Hypothesis;
 use crate::departures::{DEPARTED, farthest};
+use crate::fit::Fit;
 use crate::fitter::Fitter;
 use crate::modal::fit::{Iterate, ModalFit, Problem, settings};
 use crate::modal::judgement::ModalJudgement;
 use crate::search::Search;
 use crate::settings::ModalSettings;
 use crate::work::Work;
+use crate::{Hypothesis, Observation};
 use jointscope_findings::Verdict;
 use jointscope_inference::descend;
 use jointscope_model_error::ErrorSizes;
@@ -24,11 +25,28 @@ impl ModalJudgement {
         let settings = &fitter.settings.modal;
         let models = self.predicting(fitter.observation.work(), settings);
         let search = self.search_on(fitter.observation, within, &models);
+        let search = self.no_farther(fitter.observation, search);
         let misses = search.repaired.chi2 >= settings.part * search.refitted.chi2;
         if self.verdict == Verdict::PartlyExplained && misses {
             return (self.withdrawn(), Search { repaired: search.refitted.clone(), ..search });
         }
         (self.clone(), search)
+    }
+
+    /// The same with the model as it is stated where that comes closer to the recorded lines than one that follows frequencies, and with the fixture as it was given where that
+    /// does: where frequencies stay far off, following them says nothing of what is between them.
+    fn no_farther(&self, observation: &Observation, search: Search) -> Search {
+        let closer = |fit: Fit, stated: &Hypothesis| match Fit::at(stated.clone(), observation) {
+            Some(other) if other.chi2 < fit.chi2 => other,
+            _ => fit,
+        };
+        let [none, best] = &self.stated;
+        let refitted = closer(closer(search.refitted, none), &search.nominal.hypothesis);
+        let repaired = match best.effect_count() {
+            0 => refitted.clone(),
+            _ => closer(search.repaired, best),
+        };
+        Search { refitted, repaired, ..search }
     }
 
     /// The fixture by itself and the best hypothesis as they are to predict; what that takes is counted in `work`.

@@ -67,8 +67,8 @@ fn parameters(subject: &Subject) -> impl Into<Block> {
         "Intervals hold noise, the fixture's tolerances and the error of the model. Evidence gained: ln of the odds that the recorded modes lose \
          without the finding."
     } else {
-        "Intervals hold noise and the fixture's tolerances; where the best model leaves χ² per degree of freedom above 1 they are widened by its \
-         root. χ² gained: what the fit loses without the finding, priors included."
+        "Intervals hold noise, the fixture's tolerances and errors of the model's modes where these are larger; where the best model leaves χ² per \
+         degree of freedom above 1 they are widened by its root. χ² gained: what the fit loses without the finding, priors included."
     };
     by_finding(subject, |finding| finding.estimates.iter().collect())
         .words("Parameter", |(_, estimate)| estimate.parameter.name.replace('_', " "))

@@ -1,11 +1,11 @@
 //! What a reader wants first: what is missing and how sure that is, how much better the model is for it, what to do next; and where it sits.
 
 use jointscope_diagnosis::{Departure, Estimate, Finding, Verdict};
-use jointscope_wording::{Remarks, capitalised, effect_name};
+use jointscope_wording::{Remarks, capitalised, effect_name, held_out_part};
 use maud::html;
 
 use super::fixture_view;
-use super::judgement::{gain, spoken};
+use super::judgement::gain;
 use super::subject::Subject;
 use crate::format::{NOT_DETERMINED, ends, percent, significant};
 use crate::section::{Card, Section, with_commands};
@@ -105,7 +105,8 @@ fn error(subject: &Subject) -> Card {
         None => ("Error of what was fitted", refitted, repaired),
     };
     let told = |error: f64| format!("{} %", significant(100.0 * error, 2));
-    let what: Vec<String> = held_out.iter().flat_map(|own| &own.what).map(|what| spoken(what)).collect();
+    let what: Vec<String> =
+        held_out.iter().flat_map(|own| &own.what).map(|what| held_out_part(what)).collect();
     let what = if what.is_empty() { "nothing could be held out".to_owned() } else { what.join(", ") };
     match diagnosis.findings.is_empty() {
         true => Card::text(label, told(refitted)).note(format!("of the refitted fixture; {what}")),

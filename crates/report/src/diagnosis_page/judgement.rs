@@ -4,6 +4,7 @@ use super::subject::Subject;
 use crate::format::{percent, significant};
 use crate::section::{Card, Section};
 use crate::table::Table;
+use jointscope_wording::held_out_part;
 
 pub(super) fn section(subject: &Subject) -> Section {
     let diagnosis = subject.diagnosis;
@@ -43,7 +44,7 @@ pub(super) fn section(subject: &Subject) -> Section {
                     "Without them the search finds other names: the findings hang on what was held out."
                 }
             };
-            let what: Vec<String> = held_out.what.iter().map(|what| spoken(what)).collect();
+            let what: Vec<String> = held_out.what.iter().map(|what| held_out_part(what)).collect();
             let mut cards = vec![Card::text("Held out, refitted", percent(held_out.nrmse_refitted, 2))];
             if !diagnosis.findings.is_empty() {
                 cards.push(
@@ -64,17 +65,6 @@ pub(super) fn section(subject: &Subject) -> Section {
                 ))
                 .cards(cards)
         }
-    }
-}
-
-/// `band 180:240` as `180 to 240 Hz`, `frf 4/2` as `FRF 4/2`.
-pub(super) fn spoken(what: &str) -> String {
-    if let Some(frf) = what.strip_prefix("frf ") {
-        return format!("FRF {frf}");
-    }
-    match what.strip_prefix("band ").and_then(|band| band.split_once(':')) {
-        Some((from, to)) => format!("{from} to {to} Hz"),
-        None => what.to_owned(),
     }
 }
 
