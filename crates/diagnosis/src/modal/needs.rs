@@ -11,7 +11,15 @@ use crate::modal::features::Features;
 use crate::modal::fit::ModalFit;
 use crate::modal::prior::priors;
 use crate::search::Search;
-use jointscope_fixture::Effect;
+use jointscope_fixture::{Effect, EffectKind};
+
+/// Multiple of the usual error of gains beyond which a channel's is no error of them: one record of many that is a tenth too large is the very thing that a name says.
+const BEYOND_ERRORS: f64 = 4.0;
+
+/// Whether an effect is a gain larger than records' gains are wrong by: no error of a model is one, and to allow for errors as large would be to hold it against itself.
+fn is_gain_beyond_errors(effect: &Effect, usual: f64) -> bool {
+    effect.kind == EffectKind::ChannelGain && (effect.value(0) - 1.0).abs() > BEYOND_ERRORS * usual
+}
 
 /// A search on lines but for the effects that modes do not need and lines hardly miss; `None` where there are none, or modes do not tell. Modes that are `explained`
 /// by other names tell in any case, others only where errors of the usual size would do in an effect's stead.
@@ -61,7 +69,28 @@ fn least_needed(
         let without = fitted(&hypothesis.without(index)).filter(tells)?;
         Some((index, with - without.ln))
     };
-    let gains = (0..hypothesis.effect_count()).filter_map(gain);
+    let effects = hypothesis.effects();
+    let may_imitate = |index: &usize| !is_gain_beyond_errors(&effects[*index], problem.sizes.gain);
+    let gains = (0..effects.len()).filter(may_imitate).filter_map(gain);
     let (index, gain) = gains.min_by(|a, b| a.1.total_cmp(&b.1))?;
     (gain < settings.odds.ln()).then_some(index)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use jointscope_fixture::Place;
+
+    #[test]
+    fn a_gain_of_a_tenth_is_no_error_of_gains_that_are_usually_right_to_one_hundredth() {
+        let gain =
+            |factor: f64| Effect::new(EffectKind::ChannelGain, Place::Reference("2".into()), None, &[factor]);
+        for factor in [0.903, 1.06, -1.0] {
+            assert!(is_gain_beyond_errors(&gain(factor), 0.01), "{factor}");
+        }
+        assert!(!is_gain_beyond_errors(&gain(1.02), 0.01));
+        assert!(!is_gain_beyond_errors(&gain(0.9), 0.1), "where records are known to a tenth");
+        let delay = Effect::new(EffectKind::ChannelDelay, Place::Force, None, &[1.0]);
+        assert!(!is_gain_beyond_errors(&delay, 0.01));
+    }
 }
