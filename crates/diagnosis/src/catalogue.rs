@@ -318,6 +318,16 @@ impl Surroundings<'_> {
         (0..count).map(|i| (from + (to - from) * (i as f64 + 0.5) / count as f64).exp()).collect()
     }
 
+    /// Bending stiffness EI, N·m², and length of the body where it is a beam.
+    fn beam(&self) -> Option<(f64, f64)> {
+        match &self.fixture.bodies()[self.body?].kind {
+            BodyKind::Beam(beam) => {
+                Some((beam.youngs_modulus.value * beam.second_moment.value, beam.to.value - beam.from.value))
+            }
+            BodyKind::Rigid(_) => None,
+        }
+    }
+
     fn measure(&self, measure: Measure) -> Option<f64> {
         let mass = |body: usize| mass_of(self.fixture, body);
         let point = |point: usize| &self.fixture.points()[point];
@@ -345,22 +355,13 @@ impl Surroundings<'_> {
                 stiffness.map(|stiffness| stiffness.at(dof, dof))
             }
             Measure::BendingForce => {
-                match (stiffness, self.body.map(|body| &self.fixture.bodies()[body].kind)) {
-                    (Some(stiffness), _) => length.map(|length| stiffness.at(0, 0) * length),
-                    (None, Some(BodyKind::Beam(beam))) => {
-                        let bending = beam.youngs_modulus.value * beam.second_moment.value;
-                        Some(12.0 * bending / (beam.to.value - beam.from.value).powi(2))
-                    }
-                    _ => None,
+                let of_beam = || self.beam().map(|(bending, length)| 12.0 * bending / length.powi(2));
+                match stiffness {
+                    Some(stiffness) => length.map(|length| stiffness.at(0, 0) * length),
+                    None => of_beam(),
                 }
             }
-            Measure::SectionInertia => {
-                let Some(BodyKind::Beam(beam)) = self.body.map(|body| &self.fixture.bodies()[body].kind)
-                else {
-                    return None;
-                };
-                Some(beam.youngs_modulus.value * beam.second_moment.value / MODULUS_OVER_DENSITY)
-            }
+            Measure::SectionInertia => self.beam().map(|(bending, _)| bending / MODULUS_OVER_DENSITY),
             Measure::FreeLength => length.filter(|_| bends).map(|length| length.max(0.01)),
             Measure::ShortestTime => {
                 let hz = self.observation.lines().hz();

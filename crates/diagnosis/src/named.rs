@@ -93,10 +93,7 @@ pub(crate) fn re_estimated(fitter: &Fitter, search: &Search, findings: Vec<Findi
     let widening = repaired.inflation(fitter.observation).sqrt();
     let effects = repaired.hypothesis.effects();
     let again = |finding: Finding| {
-        let same = |effect: &Effect| {
-            let name = |e: &Effect| (e.kind, e.place.clone(), e.dof);
-            name(effect) == name(&finding.effect)
-        };
+        let same = |effect: &Effect| effect.is_named_as(&finding.effect);
         let Some(index) = effects.iter().position(same) else { return finding };
         let effect = effects[index].clone();
         let estimates = estimates(&repaired.hypothesis, index, &effect, covariance.as_ref(), widening);

@@ -182,12 +182,6 @@ fn by_lines(
         true => Vec::new(),
         false => observation.work().within_rest(FOUND, || findings(fitter, &mut search)),
     };
-    let findings = match modal {
-        Some(modal) => {
-            modal.with_errors_of_modes(fitter, &search.repaired.hypothesis, &search.candidates, findings)
-        }
-        None => findings,
-    };
     let stated = |f: &Finding| f.probability + f.alternatives.iter().map(|(_, p)| p).sum::<f64>();
     // What the best hypotheses leave may say that none of them is right: they would only adapt the model to the recording.
     let doubtful = findings.iter().any(|finding| stated(finding) < settings.evidence.stated);
@@ -195,6 +189,12 @@ fn by_lines(
     if findings.is_empty() {
         search.repaired = search.refitted.clone();
     }
+    let findings = match modal {
+        Some(modal) if !findings.is_empty() => {
+            modal.with_errors_of_modes(fitter, &search.repaired.hypothesis, &search.candidates, findings)
+        }
+        _ => findings,
+    };
     let blind = if anew { first } else { seen(known) };
     let held_out = division.zip(blind).and_then(|(d, blind)| d.judge(&blind, &search, observation));
     let unlikely = chance(observation, &search.refitted).1 < settings.evidence.located;

@@ -70,8 +70,7 @@ impl Remaining {
             return Err(PlanError::NoAlternatives(effect_name(&finding.effect)));
         }
         let repaired = diagnosis.search.repaired.hypothesis.clone();
-        let name = |effect: &Effect| (effect.kind, effect.place.clone(), effect.dof);
-        let index = repaired.effects().iter().position(|effect| name(effect) == name(&finding.effect));
+        let index = repaired.effects().iter().position(|effect| effect.is_named_as(&finding.effect));
         let index = index.ok_or(PlanError::NothingFound)?;
         let model_error =
             diagnosis.model_error.map(|[_, repaired]| repaired).filter(|error| !error.is_none());

@@ -225,14 +225,13 @@ impl<'a> Problem<'a> {
     pub(crate) fn fitted_from(
         &self,
         start: &Hypothesis,
-        mut standing: Standing,
+        standing: Standing,
         priors: &[Prior],
         (nearby, set_out, least): (Option<Vec<Vec<f64>>>, SetOut, f64),
     ) -> Option<ModalFit> {
-        standing.comparison = standing.comparison.with_ratios_alone();
-        let residual = self.residual(&standing, &standing.modelled);
-        let nearby = nearby.filter(|slopes| slopes.iter().all(|slope| slope.len() == residual.len()));
-        let point = Iterate { hypothesis: start.clone(), modelled: standing.modelled.clone(), residual };
+        let (point, standing) = self.at_start(start, standing);
+        let count = point.residual.len();
+        let nearby = nearby.filter(|slopes| slopes.iter().all(|slope| slope.len() == count));
         let derivatives = match nearby {
             Some(nearby) => nearby,
             None => self.slopes_at(&point, &standing, priors)?,
@@ -252,6 +251,14 @@ impl<'a> Problem<'a> {
             return best;
         }
         more_probable(best, from(None))
+    }
+
+    /// Where a fit from `start` sets out, errors of its damping counted as those of ratios alone.
+    pub(super) fn at_start(&self, start: &Hypothesis, standing: Standing) -> (Iterate, Standing) {
+        let standing = Standing { comparison: standing.comparison.with_ratios_alone(), ..standing };
+        let residual = self.residual(&standing, &standing.modelled);
+        let point = Iterate { hypothesis: start.clone(), modelled: standing.modelled.clone(), residual };
+        (point, standing)
     }
 
     /// Whether no error is larger than the usual one.

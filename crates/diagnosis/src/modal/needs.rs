@@ -9,7 +9,7 @@ use crate::candidate::Candidate;
 use crate::fitter::Fitter;
 use crate::modal::features::Features;
 use crate::modal::fit::ModalFit;
-use crate::modal::prior::priors;
+use crate::modal::prior::priors_among;
 use crate::search::Search;
 use jointscope_fixture::{Effect, EffectKind};
 
@@ -58,11 +58,7 @@ fn least_needed(
 ) -> Option<usize> {
     let settings = &fitter.settings.modal;
     let problem = features.problem(fitter.observation.work());
-    let fitted = |hypothesis: &Hypothesis| {
-        let named = |effect: &Effect| candidates.iter().find(|candidate| candidate.names(effect));
-        let company: Option<Vec<&Candidate>> = hypothesis.effects().iter().map(named).collect();
-        problem.fitted(hypothesis, &priors(hypothesis, &company?))
-    };
+    let fitted = |hypothesis: &Hypothesis| problem.fitted(hypothesis, &priors_among(hypothesis, candidates)?);
     let with = fitted(hypothesis)?.ln;
     let tells = |fit: &ModalFit| explained || problem.is_adequate(fit, settings.adequate);
     let gain = |index: usize| {

@@ -2,7 +2,7 @@
 
 use crate::Hypothesis;
 use crate::candidate::Candidate;
-use jointscope_fixture::{Motion, ParameterSpec};
+use jointscope_fixture::{Effect, Motion, ParameterSpec};
 use jointscope_inference::{Parameter, Transform};
 
 /// Mean and standard deviation of a coordinate.
@@ -36,6 +36,13 @@ pub(crate) fn priors(hypothesis: &Hypothesis, candidates: &[&Candidate]) -> Vec<
         all.extend(of_effect(hypothesis, index, candidate));
     }
     all
+}
+
+/// The priors of a hypothesis each of whose effects goes by one of the names `all`; `None` where one goes by none.
+pub(crate) fn priors_among(hypothesis: &Hypothesis, all: &[Candidate]) -> Option<Vec<Prior>> {
+    let named = |effect: &Effect| all.iter().find(|candidate| candidate.names(effect));
+    let candidates: Option<Vec<&Candidate>> = hypothesis.effects().iter().map(named).collect();
+    Some(priors(hypothesis, &candidates?))
 }
 
 /// Priors of the free parameters of effect `index`: logarithms over the range of a search's starts, abscissae over the body, sizes of either sign about

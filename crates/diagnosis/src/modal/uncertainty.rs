@@ -11,9 +11,8 @@ use crate::finding::Finding;
 use crate::fitter::Fitter;
 use crate::modal::fit::{Iterate, ModalFit, Problem};
 use crate::modal::judgement::ModalJudgement;
-use crate::modal::prior::{Prior, priors};
+use crate::modal::prior::{Prior, priors_among};
 use jointscope_findings::Estimate;
-use jointscope_fixture::Effect;
 use jointscope_inference::Covariance;
 
 impl ModalJudgement {
@@ -28,9 +27,8 @@ impl ModalJudgement {
         let Some(covariance) = self.uncertainty_of(fitter, hypothesis, candidates) else { return findings };
         let effects = hypothesis.effects();
         let widened = |finding: Finding| {
-            let name = |effect: &Effect| (effect.kind, effect.place.clone(), effect.dof);
-            let own = |effect: &Effect| name(effect) == name(&finding.effect);
-            let Some(index) = effects.iter().position(own) else { return finding };
+            let own = effects.iter().position(|effect| effect.is_named_as(&finding.effect));
+            let Some(index) = own else { return finding };
             let by_modes = estimates(hypothesis, index, &finding.effect, Some(&covariance), 1.0);
             let pairs = finding.estimates.into_iter().zip(by_modes);
             Finding { estimates: pairs.map(|(lines, modes)| less_sure(lines, modes)).collect(), ..finding }
@@ -45,10 +43,8 @@ impl ModalJudgement {
         hypothesis: &Hypothesis,
         candidates: &[Candidate],
     ) -> Option<Covariance> {
-        let named = |effect: &Effect| candidates.iter().find(|candidate| candidate.names(effect));
-        let company: Option<Vec<&Candidate>> = hypothesis.effects().iter().map(named).collect();
         let problem = self.features.problem(fitter.observation.work());
-        let fit = problem.unfitted(hypothesis, &priors(hypothesis, &company?))?;
+        let fit = problem.unfitted(hypothesis, &priors_among(hypothesis, candidates)?)?;
         let errors_count =
             fit.standing.pairing.alone() == 0.0 && !problem.is_exact(&fit, fitter.settings.modal.exact);
         let sizes = || fit.linear.mean_sizes(&fit.standing.comparison, problem.prior(), &fit.evidence);
@@ -59,10 +55,7 @@ impl ModalJudgement {
 impl Problem<'_> {
     /// A hypothesis as it is, with the sizes of error that it asks for.
     fn unfitted(&self, hypothesis: &Hypothesis, priors: &[Prior]) -> Option<ModalFit> {
-        let mut standing = self.standing(hypothesis)?;
-        standing.comparison = standing.comparison.with_ratios_alone();
-        let residual = self.residual(&standing, &standing.modelled);
-        let point = Iterate { hypothesis: hypothesis.clone(), modelled: standing.modelled.clone(), residual };
+        let (point, standing) = self.at_start(hypothesis, self.standing(hypothesis)?);
         let slopes = self.slopes_at(&point, &standing, priors)?;
         let (linear, evidence) = self.evidence(&point, priors, &slopes, (&standing.comparison, None))?;
         let ln = evidence.ln + standing.pairing.alone() - hypothesis.rarity();
