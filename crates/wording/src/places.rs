@@ -29,13 +29,14 @@ pub fn held_out_part(name: &str) -> String {
     if let Some(frf) = name.strip_prefix("frf ") {
         return format!("FRF {frf}");
     }
+    // Lines of long recordings lie at odd fractions of one hertz.
+    let said = |text: &str| {
+        let short = significant(text.parse().ok()?, 5);
+        Some(if text.len() > short.len() { short } else { text.to_owned() })
+    };
     let band = name.strip_prefix("band ").and_then(|band| band.split_once(':'));
-    let ends = band.and_then(|(from, to)| Some((from.parse().ok()?, to.parse().ok()?)));
-    match ends {
-        // Lines lie at odd fractions of one hertz.
-        Some((from, to)) => format!("{} to {} Hz", significant(from, 5), significant(to, 5)),
-        None => name.to_owned(),
-    }
+    let ends = band.and_then(|(from, to)| Some((said(from)?, said(to)?)));
+    ends.map_or_else(|| name.to_owned(), |(from, to)| format!("{from} to {to} Hz"))
 }
 
 /// A quantity by its path in the file, as one would say it: `the mass of B` for `bodies/B/mass`; the path itself where there are no words for it.
@@ -124,6 +125,7 @@ mod tests {
     #[test]
     fn bands_that_are_held_out_are_said_in_as_many_digits_as_one_reads() {
         assert_eq!(held_out_part("band 302.51953125:307.59765625"), "302.52 to 307.60 Hz");
+        assert_eq!(held_out_part("band 305:365"), "305 to 365 Hz");
         assert_eq!(held_out_part("frf 4/2"), "FRF 4/2");
     }
 }
