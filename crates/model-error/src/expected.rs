@@ -32,16 +32,18 @@ impl RecordedModes {
         }
     }
 
-    /// With the modes of the fixture that are too low to be told from a mass line: they are a part of it, with the errors of their shapes. Those of the fixture by itself
-    /// count for all hypotheses: one with a mode just below the band must not gain by it.
-    pub fn with_low_modes_of(mut self, fixture: &Fixture) -> Self {
-        self.low = self.shared_by_low_modes_of(fixture).unwrap_or_default();
+    /// Beside the fixture by itself. Its modes that are too low to be told from a mass line are a part of that, with the errors of their shapes, and
+    /// count for all hypotheses: one with a mode just below the band must not gain by it. Where its modes out of the band need as many residual
+    /// terms as the recording's free fit took, that many are no sign of anything else.
+    pub fn beside(mut self, fixture: &Fixture) -> Self {
+        let Some(modelled) = ModelledModes::of(fixture, &self) else { return self };
+        self.strained &= !modelled.needs_last_term();
+        self.low = self.shared_by_low_modes(fixture, &modelled.modes).unwrap_or_default();
         self
     }
 
     /// Covariance of mass lines by the errors of the shapes of a fixture's low modes; `None` where it has no such modes, or they have no shapes.
-    fn shared_by_low_modes_of(&self, fixture: &Fixture) -> Option<Vec<f64>> {
-        let modes = ModelledModes::of(fixture, self)?.modes;
+    fn shared_by_low_modes(&self, fixture: &Fixture, modes: &[ModelledMode]) -> Option<Vec<f64>> {
         let is_low = |mode: &&ModelledMode| mode.pole.omega <= TAU * self.resolved_from;
         let low: Vec<Complex64> = modes.iter().filter(is_low).map(|mode| mode.pole.lambda()).collect();
         if low.is_empty() {

@@ -7,7 +7,7 @@
 //! The steps are not those of `descend` in `inference`: value, step and covariance come out of one and the same projection of each FRF, every step is undamped and held
 //! to a few per cent of a frequency, and a fit ends where its step is small beside the deviations of its poles, as these and not χ² are what is wanted.
 
-use crate::basis::{MASS_LINE, Pole, UPPER, row};
+use crate::basis::{MASS_LINE, Pole, TERMS, UPPER, row};
 use crate::outline::Outline;
 use crate::projection::Projection;
 use crate::recorded::{RecordedMode, RecordedModes};
@@ -271,6 +271,7 @@ impl FreeFit {
             residual_scales,
             low: Vec::new(),
             covariance,
+            strained: self.terms >= TERMS.1,
             outline: Outline::of(recording, (&self.poles, self.inside), self.terms, mass_line)?,
             surroundings: (self.poles[modes..].to_vec(), self.terms),
             modes: recorded,

@@ -7,7 +7,7 @@
 //! 1. **Recording.** [`RecordedModes::of`] fits all FRFs freely with common poles,
 //!    H(s) = Σ s²A/(s² + 2ζωs + ω²) + residual terms, and gives the *features*: ln ω and ln ζ of each mode, its residue A in each FRF, each FRF's mass line and
 //!    upper residual. Their covariance is the Cramér–Rao bound times χ² per degree of freedom where that is above one. Modes too low to be told from a mass line are a part of it;
-//!    where there are any, lines begin above them, and mass lines have the errors of their shapes ([`RecordedModes::with_low_modes_of`]).
+//!    where there are any, lines begin above them, and mass lines have the errors of their shapes ([`RecordedModes::beside`]).
 //! 2. **Model.** [`ModelledModes::of`] finds a fixture's poles by the peaks of its FRFs and the modes of the recording, follows them by analytic continuation of the FRFs as they would be
 //!    recorded, and takes residues by contour integrals; [`ModelledModes::near`] sets out from poles that are known. [`modes_within`] counts the modes in a band.
 //! 3. **Pairing.** [`Pairing::of`] tells which mode of the model is which of the recording, by frequency and shape, and what modes without a partner cost.

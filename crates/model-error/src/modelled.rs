@@ -42,6 +42,8 @@ pub struct ModelledModes {
     /// What a free fit with the recording's poles adds to the residue of each of them, FRF by FRF, as the residual terms cannot write all that
     /// the modes out of the band do.
     pub(crate) leaks: Vec<Vec<Complex64>>,
+    /// By how much the last residual term lowers χ² of what the modes leave, over all FRFs and lines of the recording.
+    last_term: f64,
 }
 
 impl RecordedModes {
@@ -85,6 +87,7 @@ impl ModelledModes {
         let recorded_poles = recorded.outline.poles;
         let mut residual_terms = Vec::with_capacity(recorded.frfs());
         let mut leaks = Vec::with_capacity(recorded.frfs());
+        let mut last_term = 0.0;
         for (frf, values) in left.chunks_exact_mut(lines.len()).enumerate() {
             for (value, omega) in values.iter_mut().zip(lines.omegas()) {
                 let s = Complex64::new(0.0, omega);
@@ -96,8 +99,15 @@ impl ModelledModes {
             let mass_line: f64 = recorded.outline.mass_line.iter().map(|&c| coefficients[c].re).sum();
             residual_terms.push([mass_line + low, coefficients[recorded_poles + UPPER].re]);
             leaks.push(coefficients[..recorded.outline.inside].to_vec());
+            last_term += recorded.outline.projections[frf].lowered_by_last(values);
         }
-        Some(ModelledModes { modes, parts, residual_terms, leaks })
+        last_term *= recorded.outline.recorded as f64 / lines.len() as f64;
+        Some(ModelledModes { modes, parts, residual_terms, leaks, last_term })
+    }
+
+    /// Whether a free fit of the model's own FRFs would take the last of the recording's residual terms, by Akaike's criterion: modes out of the band ask for it.
+    pub(crate) fn needs_last_term(&self) -> bool {
+        self.last_term > 4.0 * self.residual_terms.len() as f64
     }
 
     /// Whether both count their modes as the same.

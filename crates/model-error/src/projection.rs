@@ -66,6 +66,11 @@ impl Projection {
             .collect()
     }
 
+    /// By how much the last column lowers what the others leave of Σ w|values|².
+    pub(crate) fn lowered_by_last(&self, values: &[Complex64]) -> f64 {
+        self.components(values).1.last().map_or(0.0, |along| along.norm_sqr())
+    }
+
     /// The coefficients of the combination nearest to `values`.
     pub(crate) fn coefficients(&self, values: &[Complex64]) -> Vec<Complex64> {
         self.coefficients_of(&self.components(values).1)

@@ -1,6 +1,6 @@
 //! The modes of a recording, and the features that they give.
 
-use crate::basis::{Pole, TERMS};
+use crate::basis::Pole;
 use crate::outline::Outline;
 use jointscope_spectra::FrfPair;
 use num_complex::Complex64;
@@ -42,6 +42,8 @@ pub struct RecordedModes {
     pub(crate) low: Vec<f64>,
     /// Covariance of the [features](RecordedModes::features), row-major.
     pub(crate) covariance: Vec<f64>,
+    /// Whether residual terms were taken that neither noise nor the model asks for.
+    pub(crate) strained: bool,
     pub(crate) outline: Outline,
     /// Poles outside the band, and number of residual terms of each FRF.
     pub(crate) surroundings: (Vec<Pole>, usize),
@@ -54,9 +56,9 @@ impl RecordedModes {
         [first, first + 1].map(|at| self.covariance[at * (n + 1)].max(0.0).sqrt())
     }
 
-    /// Whether the free fit took all the residual terms it may: then something smooth that is no mode is in the FRFs.
+    /// Whether the free fit took all the residual terms it may, and the model beside it needs fewer: then something smooth that is no mode is in the FRFs.
     pub fn is_strained(&self) -> bool {
-        self.outline.projections[0].columns() - self.outline.poles >= TERMS.1
+        self.strained
     }
 
     /// Number of FRFs.

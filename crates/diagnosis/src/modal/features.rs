@@ -58,5 +58,5 @@ pub(crate) fn recorded(observation: &Observation, nominal: &Hypothesis) -> Optio
     let orders = observation.has_scatter_for_noise().then(expected).flatten().map(|modes| (2, 2 * modes + 8));
     let options = ModesOptions { orders, ..ModesOptions::default() };
     let recorded = RecordedModes::of(recording, &options, |alone| alone.expected_by(&fixture))?;
-    Some(recorded.with_low_modes_of(&fixture))
+    Some(recorded.beside(&fixture))
 }
