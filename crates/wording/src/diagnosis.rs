@@ -1,12 +1,12 @@
 //! A diagnosis in sentences: what is left out, or where what has no name sits and how it goes with frequency.
 
 use crate::departures::departed;
-use crate::finding::{found, it};
+use crate::finding::{found, it, with_fitted_size};
 use crate::misfit::{sits, varies};
 use crate::numbers::{apart, figures, listed, significant};
 use crate::places::quantity_name;
 use crate::{Remarks, Says, model_error};
-use jointscope_diagnosis::{Diagnosis, Observation};
+use jointscope_diagnosis::{Diagnosis, Observation, Tried};
 use jointscope_findings::Verdict;
 use jointscope_frf::noise::NoiseSource;
 
@@ -143,6 +143,7 @@ impl Remarks for Diagnosis {
                 listed(&names)
             ));
         }
+        remarks.extend(nearest(self));
         remarks.extend(of_observation(&self.observation));
         // Among modes correlation is a part of the likelihood.
         if self.model_error.is_none() && !self.is_white() {
@@ -154,6 +155,23 @@ impl Remarks for Diagnosis {
         }
         remarks
     }
+}
+
+/// What came nearest to a finding where nothing is needed, if a search among as many names comes on something as good in less than every other test: a Bayes
+/// factor of b or more has under the null hypothesis a probability of 1/b at the most (Markov's inequality), for each of the names.
+fn nearest(diagnosis: &Diagnosis) -> Option<String> {
+    let consistent = diagnosis.verdict == Verdict::Consistent;
+    let Tried { effect, ln_gain } = diagnosis.tried.first().filter(|_| consistent)?;
+    let names = diagnosis.search.candidates.len();
+    let by_chance = names as f64 * (-ln_gain).exp();
+    (by_chance < 0.5).then(|| {
+        format!(
+            "Nearest to a finding came {}, which is too little to be named: among {names} names one explains as much by chance in up to {} % of tests. If \
+             that may be, test it first: another channel, another sensor, or a quantity known more narrowly would tell.",
+            with_fitted_size(effect),
+            significant(100.0 * by_chance, 2)
+        )
+    })
 }
 
 /// What the reader must know of the lines and the noise.

@@ -3,11 +3,11 @@
 use crate::effects::{effect_name, meaning};
 use crate::estimate::rounded_value;
 use crate::format::quantity;
-use crate::numbers::{Short, listed};
+use crate::numbers::{Short, listed, plain};
 use crate::{Says, amplitude};
 use jointscope_diagnosis::{Diagnosis, Finding as FrfFinding};
 use jointscope_findings::Finding;
-use jointscope_fixture::Dof;
+use jointscope_fixture::{Dof, Effect};
 use jointscope_nonlinear::{HitFinding, LevelFinding};
 
 /// Names of alternatives that a sentence holds at the most.
@@ -37,18 +37,35 @@ pub(crate) fn or_look_alike<E>(finding: &Finding<E>) -> &'static str {
     }
 }
 
-/// `added mass on body B (49.8 g)`.
+/// `added mass on body B (49.8 g) or its look-alike`.
 fn named_with_size(finding: &FrfFinding) -> String {
-    let spec = finding.effect.kind.spec();
-    let main = spec.parameters[spec.size.parameter].name;
-    let size = finding.estimate(main).map_or_else(String::new, |estimate| {
-        let what = match main {
-            "factor" | "loss_factor" | "ratio" => format!("{} ", main.replace('_', " ")),
+    let size = finding.estimate(main_parameter(&finding.effect));
+    let named = with_size(&finding.effect, size.map(rounded_value));
+    format!("{named}{}", or_look_alike(finding))
+}
+
+/// The parameter by which what an effect does grows from nothing.
+fn main_parameter(effect: &Effect) -> &'static str {
+    let spec = effect.kind.spec();
+    spec.parameters[spec.size.parameter].name
+}
+
+/// `added mass on body B (49.8 g)`.
+fn with_size(effect: &Effect, size: Option<String>) -> String {
+    let size = size.map_or_else(String::new, |size| {
+        let what = match main_parameter(effect) {
+            main @ ("factor" | "loss_factor" | "ratio") => format!("{} ", main.replace('_', " ")),
             _ => String::new(),
         };
-        format!(" ({what}{})", rounded_value(estimate))
+        format!(" ({what}{size})")
     });
-    format!("{}{size}{}", effect_name(&finding.effect), or_look_alike(finding))
+    format!("{}{size}", effect_name(effect))
+}
+
+/// `added mass on body B (49.8 g)`, of an effect of which no more is known than where a fit ended.
+pub(crate) fn with_fitted_size(effect: &Effect) -> String {
+    let index = effect.kind.spec().size.parameter;
+    with_size(effect, Some(plain(effect.value(index), effect.unit(index))))
 }
 
 /// The effects found, with their sizes.
