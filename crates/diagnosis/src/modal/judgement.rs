@@ -194,8 +194,14 @@ impl Judge<'_> {
         // Errors of the model, or these and those of the records' gains: a channel of the wrong sign looks like gains that are off by all they are.
         let model = |fit: &ModalFit| squares(self.searcher.problem.relative_sizes(fit));
         let all = |fit: &ModalFit| squares(self.searcher.problem.relative_sizes_with_gains(fit));
+        // Or those of the modes in the band alone, if no others grow for that: what lies above the band is the model's affair too, but not what a name is about.
+        let modes = |fit: &ModalFit| squares(self.searcher.problem.relative_sizes_of_modes(fit));
         let part = self.searcher.settings.part;
-        let in_part = || model(&best.fit) < part * model(none) || all(&best.fit) < part * all(none);
+        let in_part = || {
+            model(&best.fit) < part * model(none)
+                || all(&best.fit) < part * all(none)
+                || modes(&best.fit) < part * modes(none) && model(&best.fit) < model(none)
+        };
         match (best.names.is_empty(), adequate) {
             (true, true) => Verdict::Consistent,
             (true, false) => Verdict::Unexplained,

@@ -107,6 +107,16 @@ impl Problem<'_> {
         self.over_usual(&without)
     }
 
+    /// The same without those of mass lines and upper residuals.
+    pub(crate) fn relative_sizes_of_modes(&self, fit: &ModalFit) -> Vec<f64> {
+        self.over_usual(&ErrorSizes {
+            mass_line: 0.0,
+            upper_residual: 0.0,
+            gain: 0.0,
+            ..self.seen(fit).sizes
+        })
+    }
+
     /// The same with the gains of records among them.
     pub(crate) fn relative_sizes_with_gains(&self, fit: &ModalFit) -> Vec<f64> {
         self.over_usual(&self.seen(fit).sizes)
