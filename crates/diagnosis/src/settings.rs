@@ -164,6 +164,10 @@ pub struct ModalSettings {
     pub effects: usize,
     /// Odds that an effect must gain beyond those of one among all candidates, and by themselves where lines ask for it.
     pub odds: f64,
+    /// The same beyond what errors and departures refute that chance does not make: the odds are against those already.
+    pub odds_over_refuted: f64,
+    /// How often the best effects are exchanged for what explains more beside the others.
+    pub exchanges: usize,
     /// Objective per degree of freedom that may be left without an effect that imitates an error of the model: about three times the noise.
     pub slight: f64,
     /// Standard deviations that the size of an effect must be from nothing, the model's errors as large as they may well be.
@@ -201,13 +205,6 @@ pub struct ModalSettings {
     pub followed: [f64; 3],
 }
 
-impl ModalSettings {
-    /// What one of so many effects must gain in ln p.
-    pub(crate) fn needed(&self, candidates: usize) -> f64 {
-        (candidates as f64).ln() + self.odds.ln()
-    }
-}
-
 impl Default for ModalSettings {
     fn default() -> Self {
         ModalSettings {
@@ -227,6 +224,8 @@ impl Default for ModalSettings {
             blind: 8,
             effects: 3,
             odds: 100.0,
+            odds_over_refuted: 10.0,
+            exchanges: 2,
             slight: 10.0,
             least: 3.0,
             undoubted: 200.0,

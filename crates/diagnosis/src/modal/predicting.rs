@@ -20,13 +20,15 @@ use jointscope_model_error::ErrorSizes;
 
 impl ModalJudgement {
     /// The comparison with its models as they predict lines; `within` is the fixture refitted on them. What explains the modes in part only, and leaves more than a part of what lines
-    /// miss without it, is not stated.
+    /// miss without it, is not stated, unless the fixture by itself comes as close only by a departure beyond chance.
     pub(crate) fn predicted(&self, fitter: &Fitter, within: &Search) -> (Self, Search) {
         let settings = &fitter.settings.modal;
         let models = self.predicting(fitter.observation.work(), settings);
         let search = self.search_on(fitter.observation, within, &models);
         let search = self.no_farther(fitter.observation, search);
-        let misses = search.repaired.chi2 >= settings.part * search.refitted.chi2;
+        let departs = |fit: &ModalFit| fit.largest_pull() > settings.adequate.1;
+        let bought = departs(&self.search.none) && !departs(&self.search.best.fit);
+        let misses = search.repaired.chi2 >= settings.part * search.refitted.chi2 && !bought;
         if self.verdict == Verdict::PartlyExplained && misses {
             return (self.withdrawn(), Search { repaired: search.refitted.clone(), ..search });
         }

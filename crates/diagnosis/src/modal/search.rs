@@ -85,7 +85,7 @@ impl Searcher<'_> {
         let none = start.fit.clone();
         // Where neither the fixture nor any effect explains the modes, the right one may have set out from the wrong place.
         let explains = |named: &Named| {
-            named.fit.ln - none.ln > self.needed()
+            named.fit.ln - none.ln > self.needed_beyond(&start, named)
                 && self.is_adequate(&named.fit)
                 && self.is_told(named, &none)
         };
@@ -128,7 +128,7 @@ impl Searcher<'_> {
             // A pair may be needed where neither effect alone is, or one of them where the other has led it out of a false minimum.
             let gains = |more: &Named, fewer: &Named| {
                 let added = (more.names.len() - fewer.names.len()) as f64;
-                more.fit.ln - fewer.fit.ln > added * self.needed()
+                more.fit.ln - fewer.fit.ln > added * self.needed_beyond(fewer, more)
             };
             let mut led_out = false;
             if count > 1 && gains(first, &best) {
@@ -147,7 +147,15 @@ impl Searcher<'_> {
             }
         }
         self.watch.stage("asking by modes what else would explain a finding");
-        let (alternatives, without) = self.alternatives(&best, &singles, &none);
+        let (mut alternatives, mut without) = self.alternatives(&best, &singles, &none);
+        // What explains more in the stead of one effect, beside the others, is what was searched for.
+        for _ in 0..self.settings.exchanges {
+            let higher = |other: &Named| other.names.len() == best.names.len() && other.fit.ln > best.fit.ln;
+            let others = alternatives.iter().flatten().filter(|other| higher(other)).cloned();
+            let Some(other) = highest(others) else { break };
+            best = other;
+            (alternatives, without) = self.alternatives(&best, &singles, &none);
+        }
         ModalSearch { none, best, singles, far, more, alternatives, without }
     }
 

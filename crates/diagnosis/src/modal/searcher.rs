@@ -49,9 +49,12 @@ impl Searcher<'_> {
         all
     }
 
-    /// What an effect must gain in ln p.
-    pub(super) fn needed(&self) -> f64 {
-        self.settings.needed(self.candidates.len())
+    /// What each effect that `more` has beyond `fewer` must gain in ln p: less where errors and departures beyond chance refute what has fewer and not what
+    /// has more.
+    pub(super) fn needed_beyond(&self, fewer: &Named, more: &Named) -> f64 {
+        let refuted = !self.is_adequate(&fewer.fit) && self.is_adequate(&more.fit);
+        let odds = if refuted { self.settings.odds_over_refuted } else { self.settings.odds };
+        (self.candidates.len() as f64).ln() + odds.ln()
     }
 
     /// Whether the size of every effect is told from nothing, the model's errors as large as they may well be: with few modes the most probable errors are

@@ -1,3 +1,5 @@
+mod search;
+
 use crate::catalogue::catalogue;
 use crate::estimates::estimates;
 use crate::finding::{Evidence, Finding};
