@@ -158,20 +158,23 @@ fn by_lines(
     let first = if anew { seen(None) } else { None };
     fitter.watch.stage("searching the whole recording");
     let known = if let Start::Modes(modal, _) = &start { Some(*modal) } else { None };
+    let explaining = modal.filter(|modal| modal.explains());
+    // Modes that explain the recording decide as soon as lines ask for what these do not need.
+    let imitates =
+        |search: &Search| explaining.is_some() && without_imitations(fitter, search, true).is_some();
     let mut search = observation.work().within_rest(FOUND, || match (start, &first) {
         (Start::Searched(search), _) => *search,
         (Start::Modes(modal, exact), _) => {
             let part = Search { repaired: exact, ..modal.search_on(observation, &within, &modal.stated) };
-            let mut search = Search::continued(fitter, within, &part);
+            let mut search = Search::continued_until(fitter, within, &part, imitates);
             search.told_apart =
                 modal.told_from(&search.repaired.hypothesis, &search.candidates, settings.modal.bases.1);
             search
         }
         (Start::Found(part), _) => Search::continued(fitter, within, &part),
-        (Start::Anew, Some(part)) => Search::continued(fitter, within, part),
+        (Start::Anew, Some(part)) => Search::continued_until(fitter, within, part, imitates),
         (Start::Anew, None) => Search::searched(fitter, within),
     });
-    let explaining = modal.filter(|modal| modal.explains());
     if let Some(fewer) = without_imitations(fitter, &search, explaining.is_some()) {
         match explaining {
             Some(modal) => return by_modes(fitter, &search, modal, division.as_ref()),

@@ -97,13 +97,23 @@ impl Search {
     /// Searches for effects from the fixture as it stands and refitted.
     pub(crate) fn searched(fitter: &Fitter, start: Search) -> Self {
         let mut search = start;
-        search.extend(fitter);
+        search.extend(fitter, |_| false);
         search
     }
 
     /// As [`Search::searched`], from `start`, which is the fixture as it stands and refitted, and from what was found elsewhere: in a part of
     /// the observation, or among its modes. The effects are fitted to the whole, exchanged, dropped and added to as the whole demands.
     pub(crate) fn continued(fitter: &Fitter, start: Search, part: &Search) -> Self {
+        Search::continued_until(fitter, start, part, |_| false)
+    }
+
+    /// The same, at an end as soon as what was found has `led_astray`.
+    pub(crate) fn continued_until(
+        fitter: &Fitter,
+        start: Search,
+        part: &Search,
+        led_astray: impl Fn(&Search) -> bool,
+    ) -> Self {
         let mut search = start;
         let local = |fit: &Fit| fitter.local(&fit.hypothesis, None, f64::INFINITY);
         if let Some(refitted) = local(&part.refitted).filter(|fit| fit.objective < search.refitted.objective)
@@ -121,13 +131,16 @@ impl Search {
             if !full || !nothing_can_be_stated(fitter, &search.repaired, search.candidates.len()) {
                 search.improve(fitter);
             }
+            if led_astray(&search) {
+                return search;
+            }
         }
-        search.extend(fitter);
+        search.extend(fitter, led_astray);
         search
     }
 
-    /// Adds effects one at a time as long as they are worth it.
-    fn extend(&mut self, fitter: &Fitter) {
+    /// Adds effects one at a time as long as they are worth it and have not `led_astray`.
+    fn extend(&mut self, fitter: &Fitter, led_astray: impl Fn(&Search) -> bool) {
         let settings = &fitter.settings.selection;
         for _ in 0..settings.rounds {
             fitter.watch.stage(match self.repaired.hypothesis.effect_count() {
@@ -143,6 +156,9 @@ impl Search {
             let Some(better) = best.filter(|best| self.is_worth(fitter, best, &self.repaired)) else { break };
             self.repaired = better;
             self.improve(fitter);
+            if led_astray(self) {
+                break;
+            }
         }
     }
 
