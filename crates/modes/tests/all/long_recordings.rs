@@ -3,6 +3,7 @@
 use crate::common::*;
 use jointscope_modes::{ModalAnalysis, Mode, ModesOptions};
 use jointscope_spectra::{FrfForm, FrfPair, FrfSet, SpectralLines};
+use jointscope_wording::Remarks;
 use num_complex::Complex64;
 
 const FOUR: [(usize, usize); 4] = [(4, 1), (3, 1), (4, 2), (3, 2)];
@@ -102,11 +103,14 @@ fn a_band_of_a_long_recording_tells_what_a_recording_of_that_band_tells() {
 }
 
 #[test]
-fn the_relative_error_is_that_over_all_recorded_lines() {
+fn lines_merged_are_told_and_the_relative_error_is_that_over_all_recorded_ones() {
     let (lines, pairs) = (lines(12_800), [(4, 1), (3, 1)]);
     let clean = accelerances(&two(), 2.0, &pairs, &lines);
     let set = noisy(&clean, &pairs, &lines, 0.05, 0.0, 3);
-    for (frf, error) in analyse(&set).relative_errors().into_iter().enumerate() {
+    let analysis = analyse(&set);
+    let remarks = analysis.remarks();
+    assert!(remarks.iter().any(|remark| remark.starts_with("of 12800 lines")), "{remarks:?}");
+    for (frf, error) in analysis.relative_errors().into_iter().enumerate() {
         let squares =
             |value: &dyn Fn(usize) -> Complex64| (0..12_800).map(|i| value(i).norm_sqr()).sum::<f64>();
         let truth = &clean[frf * 12_800..(frf + 1) * 12_800];
