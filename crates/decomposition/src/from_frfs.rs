@@ -52,7 +52,7 @@ impl Analysis {
     ) -> Result<Self, DecompositionError> {
         let sides = Sides::of(fixture, options.joint.as_deref())?;
         let plan = MeasurementPlan::of(frfs, &sides)?;
-        let KnownNoise { frfs, noise, merged_from } =
+        let KnownNoise { frfs, noise, merged_from, .. } =
             KnownNoise::of(frfs, options.band.map(|band| (band.from, band.to)))
                 .map_err(jointscope_frf::RigidMotionError::from)?;
         let joint = sides.joint().name.clone();

@@ -45,6 +45,10 @@ pub struct KnownNoise {
     pub noise: Vec<NoiseSource>,
     /// Number of lines recorded, where they were merged.
     pub merged_from: Option<usize>,
+    /// How many recorded lines each line stands for, which need not be a whole number; they add up to all.
+    pub stands_for: Vec<f64>,
+    /// FRF after FRF, each line's part of Σ|ε|² over the recorded lines of what merging took out of them, in the square of the set's unit.
+    pub taken_out: Vec<f64>,
 }
 
 impl KnownNoise {
@@ -56,11 +60,11 @@ impl KnownNoise {
     pub fn of(frfs: &FrfSet, band: Option<(f64, f64)>) -> Result<Self, SpectraError> {
         let recorded = frfs.lines().len();
         if recorded > MANY {
-            let (frfs, noise) = merged(frfs, band)?;
-            return Ok(KnownNoise { frfs, noise, merged_from: Some(recorded) });
+            return merged(frfs, band);
         }
         let (frfs, noise) = noise::known(frfs)?;
-        Ok(KnownNoise { frfs, noise, merged_from: None })
+        let taken_out = vec![0.0; frfs.all_values().len()];
+        Ok(KnownNoise { frfs, noise, merged_from: None, stands_for: vec![1.0; recorded], taken_out })
     }
 }
 
@@ -131,7 +135,7 @@ struct Block {
     frfs: Vec<([Complex64; NODES], f64)>,
 }
 
-fn merged(frfs: &FrfSet, band: Option<(f64, f64)>) -> Result<(FrfSet, Vec<NoiseSource>), SpectraError> {
+fn merged(frfs: &FrfSet, band: Option<(f64, f64)>) -> Result<KnownNoise, SpectraError> {
     let (hz, count) = (frfs.lines().hz(), frfs.lines().len());
     let mut pieces: Vec<Piece> = Vec::new();
     let mut basis = Basis::default();
@@ -184,8 +188,12 @@ fn merged(frfs: &FrfSet, band: Option<(f64, f64)>) -> Result<(FrfSet, Vec<NoiseS
         }));
     }
     let mut set = FrfSet::new(lines, frfs.form(), frfs.pairs().to_vec(), values)?.with_variance(variances)?;
-    let mut noise = Vec::new();
+    let stands_for = on_all(&|kept| vec![1.0; kept.len()], &|block| block.weights);
+    let (mut noise, mut taken_out) = (Vec::new(), Vec::new());
     for frf in 0..frfs.pairs().len() {
+        let taken =
+            |block: &Block| [block.frfs[frf].1 * (block.lines.len() - NODES) as f64 / NODES as f64; NODES];
+        taken_out.extend(on_all(&|kept| vec![0.0; kept.len()], &taken));
         set.set_averages(frf, frfs.averages(frf));
         if let Some(coherence) = frfs.coherence(frf) {
             let mean = |block: &Block| {
@@ -199,7 +207,7 @@ fn merged(frfs: &FrfSet, band: Option<(f64, f64)>) -> Result<(FrfSet, Vec<NoiseS
             Known::Scatter => Some(NoiseSource::Scatter),
         });
     }
-    Ok((set, noise))
+    Ok(KnownNoise { frfs: set, noise, merged_from: Some(count), stands_for, taken_out })
 }
 
 /// Polynomials that are orthonormal over the lines of a block, with room for those of the next.
@@ -404,6 +412,22 @@ mod tests {
         for (hz, value) in frfs.lines().hz().iter().zip(frfs.values(0)) {
             assert!((value - truth(*hz)).norm() < 1e-6 * truth(*hz).norm(), "{value} at {hz} Hz");
         }
+    }
+
+    #[test]
+    fn what_is_left_stands_for_all_lines_and_squares_over_them_are_those_of_all() {
+        let all = recorded(truth, 1e-2, 3);
+        let known = KnownNoise::of(&all, None).unwrap();
+        assert!((known.stands_for.iter().sum::<f64>() / COUNT as f64 - 1.0).abs() < 1e-9);
+        // Of a model that is off by a little everywhere.
+        let squares = |set: &FrfSet, lines: &mut dyn Iterator<Item = f64>| -> f64 {
+            let values = set.lines().hz().iter().zip(set.values(0)).zip(lines);
+            values.map(|((hz, value), lines)| lines * (value - 1.01 * truth(*hz)).norm_sqr()).sum()
+        };
+        let of_all = squares(&all, &mut std::iter::repeat(1.0));
+        let of_left = squares(&known.frfs, &mut known.stands_for.iter().copied());
+        let together = of_left + known.taken_out.iter().sum::<f64>();
+        assert!((together / of_all - 1.0).abs() < 1e-6, "{together} of {of_all}");
     }
 
     #[test]

@@ -19,7 +19,11 @@ pub fn modes_file(analysis: &ModalAnalysis) -> Value {
         auto_mac: analysis.auto_mac().chunks(analysis.modes.len().max(1)).map(<[f64]>::to_vec).collect(),
         chi2_per_dof: analysis.chi2_per_dof,
         explained: analysis.is_explained(),
-        lines: LinesEntry { from: hz[0], to: hz[hz.len() - 1], count: hz.len() },
+        lines: LinesEntry {
+            from: hz[0],
+            to: hz[hz.len() - 1],
+            count: analysis.merged_from.unwrap_or(hz.len()),
+        },
         frfs: frfs(analysis),
         stabilization: StabilizationEntry::of(analysis),
         remarks: analysis.remarks(),
@@ -41,7 +45,7 @@ struct ModesFile {
     remarks: Vec<String>,
 }
 
-/// The lines in use, Hz.
+/// The lines in use, Hz; before neighbours were merged, if they were.
 #[derive(Serialize)]
 struct LinesEntry {
     from: f64,

@@ -1,11 +1,14 @@
-use jointscope_frf::noise::{NoiseSource, known};
+use jointscope_frf::KnownNoise;
+use jointscope_frf::noise::NoiseSource;
 use jointscope_spectra::{FrfForm, FrfPair, FrfSet, SpectralLines};
 use num_complex::Complex64;
+use std::borrow::Cow;
 
 use crate::gram::Terms;
 use crate::likelihood::{Likelihood, MOST_STEPS, Poles};
 use crate::mode::{Mode, modes_of};
 use crate::model::rebuilt;
+use crate::moved::one_at_each_place;
 use crate::noise;
 use crate::observed::Observed;
 use crate::polynomial::poles_by_order;
@@ -56,8 +59,13 @@ pub struct ModalAnalysis {
     pub columns: usize,
     /// Whether every response was measured to every reference.
     pub complete: bool,
+    /// Number of lines recorded in the band, where they were merged.
+    pub merged_from: Option<usize>,
     /// The FRFs used, as accelerances with their variances.
     measured: FrfSet,
+    /// How many recorded lines each line stands for, and FRF after FRF each line's part of the squares that merging took out.
+    stands_for: Vec<f64>,
+    taken_out: Vec<f64>,
     /// The same rebuilt from the modes.
     rebuilt: Vec<Complex64>,
 }
@@ -85,11 +93,10 @@ impl ModalAnalysis {
     /// # Errors
     /// See [`ModesError`].
     pub fn of(frfs: &FrfSet, options: &ModesOptions) -> Result<Self, ModesError> {
-        let (frfs, noise) = known(frfs)?;
-        let (observed, measured) = in_use(&frfs, options)?;
+        let InUse { observed, measured, noise, merged_from, taken_out } = InUse::of(frfs, options)?;
         let orders = orders(&observed, options)?;
-        let spacing =
-            (observed.omegas[observed.lines() - 1] - observed.omegas[0]) / (observed.lines() - 1) as f64;
+        let recorded = merged_from.unwrap_or(observed.lines());
+        let spacing = (observed.omegas[observed.lines() - 1] - observed.omegas[0]) / (recorded - 1) as f64;
         let by_order = poles_by_order(&observed, orders);
         let (chart, tracks) = follow(&by_order, spacing);
         let nothing = ModesError::NothingStable {
@@ -104,7 +111,10 @@ impl ModalAnalysis {
         }
         let condensed = observed.condensed(&start.poles);
         let by_hand = !options.pick.is_empty();
-        let fit = refine(&condensed, start, by_hand)?;
+        let mut fit = refine(&condensed, start, by_hand)?;
+        if merged_from.is_some() && !by_hand {
+            fit = one_at_each_place(&condensed, fit);
+        }
         let (observed, condensed, fit) = if noise.iter().any(|source| source.is_by_scatter()) {
             with_residual_noise(observed, condensed, fit, &noise)
         } else {
@@ -127,7 +137,10 @@ impl ModalAnalysis {
             chi2_per_dof: fit.chi2_per_dof(&condensed),
             columns: observed.grid.columns,
             complete: !observed.grid.row_channels.is_empty(),
+            merged_from,
             measured,
+            stands_for: observed.stands_for,
+            taken_out,
             rebuilt,
         })
     }
@@ -153,12 +166,18 @@ impl ModalAnalysis {
         &self.rebuilt[frf * n..(frf + 1) * n]
     }
 
-    /// √(Σ|rebuilt − measured|²/Σ|measured|²) of each FRF, as accelerance.
+    /// √(Σ|rebuilt − measured|²/Σ|measured|²) of each FRF over the recorded lines, as accelerance.
     pub fn relative_errors(&self) -> Vec<f64> {
         let error = |frf: usize| {
             let (model, data) = (self.rebuilt(frf), self.measured.values(frf));
-            let apart: f64 = model.iter().zip(data).map(|(a, b)| (a - b).norm_sqr()).sum();
-            let size: f64 = data.iter().map(|v| v.norm_sqr()).sum();
+            let over_lines = |squares: &mut dyn Iterator<Item = f64>| -> f64 {
+                squares.zip(&self.stands_for).map(|(square, lines)| square * lines).sum()
+            };
+            let left = over_lines(&mut model.iter().zip(data).map(|(a, b)| (a - b).norm_sqr()));
+            let kept = over_lines(&mut data.iter().map(|v| v.norm_sqr()));
+            let n = self.stands_for.len();
+            let taken_out: f64 = self.taken_out[frf * n..(frf + 1) * n].iter().sum();
+            let (apart, size) = (left + taken_out, kept + taken_out);
             if size > 0.0 { (apart / size).sqrt() } else { 0.0 }
         };
         (0..self.pairs().len()).map(error).collect()
@@ -176,20 +195,50 @@ impl ModalAnalysis {
     }
 }
 
-fn in_use(frfs: &FrfSet, options: &ModesOptions) -> Result<(Observed, FrfSet), ModesError> {
-    let wanted = |hz: f64| hz > 0.0 && options.band.is_none_or(|(from, to)| hz >= from && hz <= to);
-    let hz = frfs.lines().hz();
-    let too_few =
-        |lines| ModesError::TooFewLines { lines, from: hz[0], to: hz[hz.len() - 1], needed: FEWEST_LINES };
-    let measured = frfs.on_lines(|line| wanted(hz[line])).ok_or(too_few(0))?.to_form(FrfForm::Accelerance)?;
-    let observed = Observed::of(&measured, |_| true).ok_or(too_few(0))?;
-    if observed.lines() < FEWEST_LINES {
-        return Err(too_few(observed.lines()));
+/// What is analysed: the lines in the band.
+struct InUse {
+    observed: Observed,
+    /// Accelerances with their variances.
+    measured: FrfSet,
+    noise: Vec<NoiseSource>,
+    /// Number of lines recorded, where they were merged.
+    merged_from: Option<usize>,
+    /// FRF after FRF, by line, what merging took out.
+    taken_out: Vec<f64>,
+}
+
+impl InUse {
+    fn of(frfs: &FrfSet, options: &ModesOptions) -> Result<Self, ModesError> {
+        let hz = frfs.lines().hz();
+        let too_few = |lines| ModesError::TooFewLines {
+            lines,
+            from: hz[0],
+            to: hz[hz.len() - 1],
+            needed: FEWEST_LINES,
+        };
+        let wanted = |hz: f64| hz > 0.0 && options.band.is_none_or(|(from, to)| hz >= from && hz <= to);
+        let accelerances = match frfs.form() {
+            FrfForm::Accelerance => Cow::Borrowed(frfs),
+            _ => Cow::Owned(frfs.to_form(FrfForm::Accelerance)?),
+        };
+        let KnownNoise { frfs, noise, merged_from, stands_for, taken_out } =
+            KnownNoise::of(&accelerances, options.band)?;
+        let kept: Vec<bool> = frfs.lines().hz().iter().map(|hz| wanted(*hz)).collect();
+        let pick = |all: Vec<f64>| -> Vec<f64> {
+            all.into_iter().zip(kept.iter().cycle()).filter(|(_, kept)| **kept).map(|(v, _)| v).collect()
+        };
+        let measured = frfs.on_lines(|line| kept[line]).ok_or(too_few(0))?;
+        let observed = Observed::of(&measured, &pick(stands_for)).ok_or(too_few(0))?;
+        if observed.lines() < FEWEST_LINES {
+            return Err(too_few(observed.lines()));
+        }
+        if observed.values.iter().all(|v| v.norm_sqr() == 0.0) {
+            return Err(ModesError::Silent);
+        }
+        let recorded = || hz.iter().filter(|hz| wanted(**hz)).count();
+        let merged_from = merged_from.map(|_| recorded()).filter(|recorded| *recorded > observed.lines());
+        Ok(InUse { observed, measured, noise, merged_from, taken_out: pick(taken_out) })
     }
-    if observed.values.iter().all(|v| v.norm_sqr() == 0.0) {
-        return Err(ModesError::Silent);
-    }
-    Ok((observed, measured))
 }
 
 fn orders(observed: &Observed, options: &ModesOptions) -> Result<(usize, usize), ModesError> {

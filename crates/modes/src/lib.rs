@@ -48,6 +48,7 @@ mod likelihood;
 mod matching;
 mod mode;
 mod model;
+mod moved;
 mod noise;
 mod observed;
 mod polynomial;

@@ -27,7 +27,7 @@ const LEAST: f64 = 1e-5;
 /// What others of the FRFs say of the share counts this much of what an FRF says itself: an FRF without a line on which the share shows believes the others.
 const FROM_OTHERS: f64 = 0.3;
 
-/// Variances E|ε|² of the accelerances of `frfs` on all lines, from what is left of them by modes at their own places for each FRF, so that resonances that moved between records
+/// Variances E|ε|² of the accelerances of `frfs` on all lines, merged ones as what they leave and not as their own scatter tells it, from what is left of them by modes at their own places for each FRF, so that resonances that moved between records
 /// are not taken for noise. FRFs that the modes cannot be fitted to are left out.
 pub(crate) fn variances(
     observed: &Observed,
@@ -55,7 +55,8 @@ pub(crate) fn variances(
             .iter()
             .zip(&model)
             .zip(&followed)
-            .map(|((v, m), followed)| (v - m).norm_sqr() / (1.0 - followed.min(FOLLOWED)))
+            .zip(&observed.stands_for)
+            .map(|(((v, m), followed), lines)| lines * (v - m).norm_sqr() / (1.0 - followed.min(FOLLOWED)))
             .collect();
         left.push(Left {
             squares,
@@ -64,7 +65,9 @@ pub(crate) fn variances(
         });
         fitted.push(frf);
     }
-    fitted.into_iter().zip(floors_and_shares(&left)).collect()
+    // Of the recorded lines; what stands for several of them is as much better.
+    let of_lines = |all: Vec<f64>| all.iter().zip(&observed.stands_for).map(|(v, lines)| v / lines).collect();
+    fitted.into_iter().zip(floors_and_shares(&left).into_iter().map(of_lines)).collect()
 }
 
 /// A line whose own noise the modes follow to more than this share tells nothing about it.

@@ -65,13 +65,15 @@ pub(crate) struct Observed {
     pub values: Vec<Complex64>,
     /// One over the variance E|ε|² of each value; zero where it is not used.
     pub weights: Vec<f64>,
+    /// How many recorded lines each line stands for: 1 where none were merged.
+    pub stands_for: Vec<f64>,
 }
 
 impl Observed {
-    /// The lines above 0 Hz of `wanted` of a set that carries variances; `None` where there are none.
-    pub(crate) fn of(frfs: &FrfSet, wanted: impl Fn(f64) -> bool) -> Option<Self> {
+    /// The lines above 0 Hz of a set that carries variances, each of which stands for so many; `None` where there are none.
+    pub(crate) fn of(frfs: &FrfSet, stands_for: &[f64]) -> Option<Self> {
         let hz = frfs.lines().hz();
-        let lines: Vec<usize> = (0..hz.len()).filter(|&i| hz[i] > 0.0 && wanted(hz[i])).collect();
+        let lines: Vec<usize> = (0..hz.len()).filter(|&i| hz[i] > 0.0).collect();
         if lines.is_empty() {
             return None;
         }
@@ -99,6 +101,7 @@ impl Observed {
             omegas: lines.iter().map(|&i| TAU * hz[i]).collect(),
             values,
             weights,
+            stands_for: lines.iter().map(|&i| stands_for[i]).collect(),
         })
     }
 
@@ -137,6 +140,7 @@ impl Observed {
             omegas: self.omegas.clone(),
             values: self.values(frf).to_vec(),
             weights: self.weights(frf).to_vec(),
+            stands_for: self.stands_for.clone(),
         }
     }
 
@@ -161,25 +165,32 @@ impl Observed {
             }
         }
         starts.push(n);
-        let count = starts.len() - 1;
+        // By the lines that each stands for and alike for all FRFs, so that a point's frequency is their mean.
+        let many: Vec<f64> =
+            starts.windows(2).map(|ends| self.stands_for[ends[0]..ends[1]].iter().sum()).collect();
+        let count = many.len();
         let frfs = self.frfs();
         let mut values = Vec::with_capacity(count * frfs);
         let mut weights = Vec::with_capacity(count * frfs);
+        let shares = |ends: &[usize], many: f64| {
+            self.stands_for[ends[0]..ends[1]].iter().map(move |lines| lines / many)
+        };
         for frf in 0..frfs {
             let (all, weight) = (self.values(frf), self.weights(frf));
-            for ends in starts.windows(2) {
-                // Alike for all lines of a point, so that its frequency is their mean.
+            for (ends, many) in starts.windows(2).zip(&many) {
                 let lines = ends[0]..ends[1];
-                let many = lines.len() as f64;
-                values.push(all[lines.clone()].iter().sum::<Complex64>() / many);
-                let variance: f64 =
-                    weight[lines.clone()].iter().map(|w| 1.0 / w).sum::<f64>() / (many * many);
+                let mean = all[lines.clone()].iter().zip(shares(ends, *many)).map(|(v, share)| v * share);
+                values.push(mean.sum::<Complex64>());
+                let parts = weight[lines].iter().zip(shares(ends, *many));
+                let variance: f64 = parts.map(|(weight, share)| share * share / weight).sum();
                 weights.push(if variance.is_finite() { 1.0 / variance } else { 0.0 });
             }
         }
-        let mean =
-            |ends: &[usize]| self.omegas[ends[0]..ends[1]].iter().sum::<f64>() / (ends[1] - ends[0]) as f64;
-        Observed { grid: self.grid.clone(), omegas: starts.windows(2).map(mean).collect(), values, weights }
+        let omegas = starts.windows(2).zip(&many).map(|(ends, many)| {
+            let parts = self.omegas[ends[0]..ends[1]].iter().zip(shares(ends, *many));
+            parts.map(|(omega, share)| omega * share).sum()
+        });
+        Observed { grid: self.grid.clone(), omegas: omegas.collect(), values, weights, stands_for: many }
     }
 }
 

@@ -37,7 +37,7 @@ fn lost_tolerances(analysis: &Analysis) -> Option<String> {
 }
 
 /// That `recorded` lines were merged into `left`; nothing where none was.
-fn merging(recorded: usize, left: usize) -> Option<String> {
+pub(crate) fn merging(recorded: usize, left: usize) -> Option<String> {
     (left < recorded).then(|| {
         format!(
             "of {recorded} lines, neighbours over which every FRF is smooth to its noise are merged: {left} are left, which tell the same; results by line are theirs"

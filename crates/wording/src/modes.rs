@@ -1,11 +1,13 @@
 //! What a reader of the modes should know.
 
 use crate::Remarks;
+use crate::joint::merging;
 use jointscope_modes::ModalAnalysis;
 
 /// How far to trust the modes.
 impl Remarks for ModalAnalysis {
     fn remarks(&self) -> Vec<String> {
+        let merged = self.merged_from.and_then(|recorded| merging(recorded, self.lines().len()));
         let mut all = Vec::new();
         if self.pairs().len() == 1 {
             all.push(
@@ -30,6 +32,7 @@ impl Remarks for ModalAnalysis {
                 "no coherence and averages for {of_all} FRFs: their noise is what the modes leave of each"
             ));
         }
+        all.extend(merged);
         let drifting: Vec<String> = self
             .modes
             .iter()

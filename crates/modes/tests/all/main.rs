@@ -4,4 +4,5 @@
 mod behaviour;
 mod common;
 mod indicator;
+mod long_recordings;
 mod statistics;
