@@ -19,6 +19,7 @@ mod quantities;
 mod recorded;
 mod setup;
 mod several;
+mod smallest_eigenvalue;
 mod uncertainty;
 mod uncoupled;
 

@@ -75,6 +75,15 @@ struct Slot {
     unit: f64,
 }
 
+/// The covariance of the first coordinates, those after them being exact.
+fn with_the_fixture_exact(equations: &NormalEquations, own: usize) -> Option<Covariance> {
+    let mut bare = NormalEquations::zero(own);
+    for (row, whole) in bare.information.chunks_mut(own).zip(equations.information.chunks(equations.order)) {
+        row.copy_from_slice(&whole[..own]);
+    }
+    bare.covariance()
+}
+
 impl Slot {
     /// The number by its name, with that of its joint before it where there are several.
     fn told(&self, joint: Option<&str>) -> Told {
@@ -100,6 +109,8 @@ impl Outcome<'_> {
         let setup = problem.test.setup;
         let equations = free.equations(problem);
         let covariance = equations.covariance().ok_or_else(|| self.undetermined(&equations))?;
+        let noise =
+            with_the_fixture_exact(&equations, problem.own()).ok_or_else(|| self.undetermined(&equations))?;
         let strain = strain(&problem.parameters, problem.own(), &free.point.coordinates, &covariance);
         let (held, passive) = self.held(free)?;
         let at = held.as_ref().unwrap_or(free);
@@ -151,7 +162,7 @@ impl Outcome<'_> {
         let joints = problem.places().zip(&self.laws).enumerate().map(|(place, ((first, law), laws))| {
             let [k, d, _] = law.matrices(&at.point.coordinates[first..first + law.count()]);
             let lowest = |form: Form, first: usize| {
-                not_negative(form, &free.point.coordinates, first, (&covariance, strain))
+                not_negative(form, &free.point.coordinates, first, (&covariance, &noise, strain))
             };
             let shape = law.shape_with_std(&at.point.coordinates[first..first + law.count()], |own| {
                 total.std(first + own)
