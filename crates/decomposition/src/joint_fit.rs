@@ -7,6 +7,7 @@
 //! mass-proportional damping, all other losses being the joint's.
 
 mod admissible;
+mod evidence;
 mod found;
 mod law;
 mod laws;

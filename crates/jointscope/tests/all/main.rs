@@ -10,6 +10,7 @@ mod files;
 mod fuzzed;
 mod joint_fit;
 mod joints_fit;
+mod laws;
 mod layers;
 mod links;
 mod location;
