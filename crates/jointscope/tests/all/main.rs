@@ -9,6 +9,7 @@ mod drift;
 mod files;
 mod fuzzed;
 mod joint_fit;
+mod joint_of_hits;
 mod joints_fit;
 mod laws;
 mod layers;
