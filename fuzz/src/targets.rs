@@ -164,15 +164,15 @@ pub fn answers(bytes: &[u8]) {
         }
         return;
     }
-    let Ok(joint) = Decomposed::of("a", &value) else { return };
-    if let Ok(found) = export::of_decomposition(&joint, &options) {
+    let Ok(joints) = Decomposed::all("a", &value) else { return };
+    if let Ok(found) = export::of_decompositions(&joints, &options) {
         exported(&found, bytes);
     }
-    let mut other = joint.clone();
-    other.name = "b".to_owned();
+    let renamed = |joint: &Decomposed| Decomposed { name: format!("b{}", joint.name), ..joint.clone() };
+    let both: Vec<Decomposed> = joints.iter().cloned().chain(joints.iter().map(renamed)).collect();
     for independent in [false, true] {
         let options = ComparisonOptions { independent, specimens: vec![("ab".to_owned(), vec![0, 1])] };
-        if let Ok(comparison) = Comparison::with(vec![joint.clone(), other.clone()], &options) {
+        if let Ok(comparison) = Comparison::with(both.clone(), &options) {
             comparison.summary();
         }
     }

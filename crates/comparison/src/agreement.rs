@@ -14,9 +14,9 @@ const UNTOLD: f64 = 1e-4;
 
 impl Together {
     /// The test that contradicts most others on the bodies they share, of as many the one of the least probable agreement; nothing where all agree. The more pairs are
-    /// looked at, the less probable each has to be.
-    pub(crate) fn most_at_odds(&self, joints: &[Decomposed]) -> Option<usize> {
-        let all = (0..joints.len()).flat_map(|a| (a + 1..joints.len()).map(move |b| [a, b]));
+    /// looked at, the less probable each has to be. Each test stands by its first joint.
+    pub(crate) fn most_at_odds(&self, joints: &[Decomposed], firsts: &[usize]) -> Option<usize> {
+        let all = firsts.iter().enumerate().flat_map(|(i, &a)| firsts[i + 1..].iter().map(move |&b| [a, b]));
         let looked_at: Vec<([usize; 2], f64)> =
             all.filter_map(|[a, b]| Some(([a, b], self.agreement(&joints[a], &joints[b])?))).collect();
         let disagree = DISAGREE / looked_at.len() as f64;
@@ -26,7 +26,7 @@ impl Together {
             let count = own.count();
             (count > 0).then_some((joint, count, least))
         };
-        let all = (0..joints.len()).filter_map(at_odds);
+        let all = firsts.iter().filter_map(|&joint| at_odds(joint));
         all.max_by(|a, b| a.1.cmp(&b.1).then(b.2.total_cmp(&a.2))).map(|(joint, ..)| joint)
     }
 

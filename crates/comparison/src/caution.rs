@@ -182,8 +182,10 @@ fn of_other_frequencies(joints: &[Decomposed]) -> Option<Caution> {
 fn of_one_recording(joints: &[Decomposed]) -> Vec<Caution> {
     let likelihood = |joint: &Decomposed| joint.fitted.as_ref().and_then(|fit| fit.likelihood.clone());
     let is_one = |a: &Decomposed, b: &Decomposed| {
-        a.recording.iter().any(|file| b.recording.contains(file))
-            || (likelihood(a).is_some() && likelihood(a) == likelihood(b))
+        // How the errors of joints found at once go together is known.
+        !a.is_of_the_fit_of(b)
+            && (a.recording.iter().any(|file| b.recording.contains(file))
+                || (likelihood(a).is_some() && likelihood(a) == likelihood(b)))
     };
     let pairs = joints.iter().enumerate().flat_map(|(i, a)| joints[i + 1..].iter().map(move |b| (a, b)));
     pairs

@@ -17,12 +17,20 @@ impl Compared {
     pub(crate) fn of(relation: &str, joints: &[Decomposed]) -> Self {
         // Fits are of the exact relation.
         let fits = relation == "exact";
-        if fits && joints.iter().all(|joint| joint.fitted.is_some()) {
+        if fits && joints.iter().all(|joint| Compared::AllFrfs.is_had_by(joint)) {
             Compared::AllFrfs
-        } else if fits && joints.iter().all(|joint| joint.likelihood.is_some()) {
+        } else if fits && joints.iter().all(|joint| Compared::Likelihood.is_had_by(joint)) {
             Compared::Likelihood
         } else {
             Compared::Average
+        }
+    }
+
+    pub(crate) fn is_had_by(self, joint: &Decomposed) -> bool {
+        match self {
+            Compared::AllFrfs => joint.fitted.is_some(),
+            Compared::Likelihood => joint.likelihood.is_some(),
+            Compared::Average => joint.average.is_some(),
         }
     }
 

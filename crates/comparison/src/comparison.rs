@@ -110,11 +110,23 @@ pub enum ComparisonError {
         /// Its relation.
         other: String,
     },
+    /// No estimate that all of them have.
+    #[error(
+        "`{found_at_once}` was found together with other joints by a fit to all FRFs alone, and `{other}` has no such fit: compare it with joints that have one, or decompose anew with `--joint`"
+    )]
+    NothingInCommon {
+        /// A joint without averages.
+        found_at_once: String,
+        /// A joint without a fit to all FRFs.
+        other: String,
+    },
     /// A name twice.
     #[error("two decompositions are called `{0}`")]
     Twice(String),
     /// A kind of one specimen.
-    #[error("`{0}` has one specimen, whose scatter nothing tells: name two or more")]
+    #[error(
+        "`{0}` has one specimen, whose scatter nothing tells: name two directories or more, or one of several joints"
+    )]
     OneSpecimen(String),
 }
 
@@ -132,6 +144,9 @@ impl Comparison {
     /// # Errors
     /// See [`ComparisonError`].
     pub fn with(joints: Vec<Decomposed>, options: &ComparisonOptions) -> Result<Self, ComparisonError> {
+        if let Some((name, _)) = options.specimens.iter().find(|(_, places)| places.len() < 2) {
+            return Err(ComparisonError::OneSpecimen(name.clone()));
+        }
         let [first, others @ ..] = joints.as_slice() else { return Err(ComparisonError::TooFew) };
         if others.is_empty() {
             return Err(ComparisonError::TooFew);
@@ -147,11 +162,15 @@ impl Comparison {
         if let Some(i) = (1..joints.len()).find(|&i| joints[..i].iter().any(|j| j.name == joints[i].name)) {
             return Err(ComparisonError::Twice(joints[i].name.clone()));
         }
-        if let Some((name, _)) = options.specimens.iter().find(|(_, places)| places.len() < 2) {
-            return Err(ComparisonError::OneSpecimen(name.clone()));
-        }
         let relation = first.relation.clone();
         let compared = Compared::of(&relation, &joints);
+        if let Some(joint) = joints.iter().find(|joint| !compared.is_had_by(joint)) {
+            let other = joints.iter().find(|joint| !Compared::AllFrfs.is_had_by(joint));
+            return Err(ComparisonError::NothingInCommon {
+                found_at_once: joint.name.clone(),
+                other: other.map_or(String::new(), |other| other.name.clone()),
+            });
+        }
         let (numbers, together) = numbers(&joints, compared, options.independent);
         let estimates: Vec<Estimate> = joints.iter().map(|joint| stated(joint, compared)).collect();
         let cautions = Caution::of(&joints, &estimates, (compared, &numbers), &together);
@@ -234,7 +253,7 @@ fn stated(joint: &Decomposed, compared: Compared) -> Estimate {
         Compared::Likelihood => joint.likelihood,
         Compared::Average => None,
     };
-    found.unwrap_or(joint.average)
+    found.or(joint.average.map(|average| average.estimate)).unwrap_or_default()
 }
 
 /// The numbers that any of the joints has, and all of them in one Gaussian.

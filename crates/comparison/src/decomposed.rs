@@ -1,11 +1,12 @@
-use crate::FiledJoint;
 use crate::stiffness_file::{EstimateEntry, LineEntry, Matrix, MatrixPair, Nominal, read};
+use crate::{AtOnce, FiledJoint, Place};
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
+use std::sync::Arc;
 
 /// K and C with standard deviations, SI.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Estimate {
     /// K.
     pub stiffness: Matrix,
@@ -77,12 +78,10 @@ pub struct Decomposed {
     pub ends: Option<Ends>,
     /// `exact` or `paper`: how lines and averages were found.
     pub relation: String,
-    /// Lines that were solved, ascending.
+    /// Lines that were solved, ascending; none of joints that one fit found at once.
     pub lines: Vec<Line>,
-    /// Band of the averages, Hz.
-    pub band: (f64, f64),
-    /// Plain averages over the band.
-    pub average: Estimate,
+    /// Plain averages; none of joints that one fit found at once.
+    pub average: Option<Average>,
     /// The maximum-likelihood joint, by the exact relation, where there is one.
     pub likelihood: Option<Estimate>,
     /// Why there is none.
@@ -97,35 +96,82 @@ pub struct Decomposed {
     pub judgement: Option<Judged>,
     /// The fixture's own joint, where the file says it.
     pub nominal: Option<Nominal>,
+    /// Its place among joints that one fit found at once, where it did.
+    pub at_once: Option<Place>,
 }
 
-/// Why a `stiffness.json` cannot be read as one joint's.
+/// Plain averages of K and C over a band.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Average {
+    /// Hz.
+    pub band: (f64, f64),
+    /// K and C.
+    pub estimate: Estimate,
+}
+
+/// Why a `stiffness.json` cannot be read, or not as one joint's.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum DecomposedError {
     /// The place in the file of what is missing.
     #[error("`{0}` is missing or not what it should be; make the file anew with `jointscope decompose`")]
     Missing(String),
-    /// The file is of several joints found at once, or of one in a loop.
-    #[error(
-        "the file holds joints found at once by a fit to all FRFs ({}), and one joint taken out of its assembly is read here; where a joint alone connects its sides, `jointscope decompose --joint` makes such a file",
-        .0.join(", ")
-    )]
+    /// One joint is asked for, and the file is of several.
+    #[error("the file holds several joints ({}), and one is wanted here: name it", .0.join(", "))]
     Several(Vec<String>),
+    /// There is no joint of this name in it.
+    #[error("the file has no joint `{name}`; it has {}", known.join(", "))]
+    NoSuchJoint {
+        /// The name asked for.
+        name: String,
+        /// The joints there are.
+        known: Vec<String>,
+    },
 }
 
 impl Decomposed {
-    /// From the contents of a `stiffness.json`.
+    /// From the contents of a `stiffness.json` of one joint.
+    ///
+    /// # Errors
+    /// The first entry that is missing; several joints.
+    pub fn of(name: impl Into<String>, file: &Value) -> Result<Self, DecomposedError> {
+        let mut all = Decomposed::all(name, file)?;
+        match all.len() {
+            1 => Ok(all.remove(0)),
+            _ => Err(DecomposedError::Several(all.into_iter().map(|joint| joint.joint).collect())),
+        }
+    }
+
+    /// The joint of this name in a `stiffness.json` of one joint or of several; it is called `name`.
+    ///
+    /// # Errors
+    /// The first entry that is missing; no joint of this name.
+    pub fn one(name: impl Into<String>, file: &Value, joint: &str) -> Result<Self, DecomposedError> {
+        let all = Decomposed::all("", file)?;
+        let known = all.iter().map(|found| found.joint.clone()).collect();
+        let found = all.into_iter().find(|found| found.joint == joint);
+        let found = found.ok_or_else(|| DecomposedError::NoSuchJoint { name: joint.to_owned(), known })?;
+        Ok(Decomposed { name: name.into(), ..found })
+    }
+
+    /// From the contents of a `stiffness.json`: its joint, called `name`, or all of several, called `name/J`.
     ///
     /// # Errors
     /// The first entry that is missing.
-    pub fn of(name: impl Into<String>, file: &Value) -> Result<Self, DecomposedError> {
-        let missing = |what: &str| DecomposedError::Missing(what.to_owned());
-        if let Some(joints) = file["joints"].as_array() {
-            return Err(DecomposedError::Several(
-                joints.iter().filter_map(|joint| read(&joint["name"])).collect(),
-            ));
+    pub fn all(name: impl Into<String>, file: &Value) -> Result<Vec<Self>, DecomposedError> {
+        match file["joints"].is_array() {
+            true => found_at_once(&name.into(), file),
+            false => Ok(vec![Decomposed::alone(name.into(), file)?]),
         }
+    }
+
+    /// Whether one fit found both.
+    pub(crate) fn is_of_the_fit_of(&self, other: &Decomposed) -> bool {
+        self.at_once.as_ref().zip(other.at_once.as_ref()).is_some_and(|(a, b)| a.fit == b.fit)
+    }
+
+    /// A joint that was taken out of its assembly.
+    fn alone(name: String, file: &Value) -> Result<Self, DecomposedError> {
         let lines = file["lines"].as_array().ok_or_else(|| missing("lines"))?;
         let lines = lines.iter().enumerate().map(|(i, entry)| {
             let line: LineEntry = read(entry).ok_or_else(|| missing(&format!("lines/{i}")))?;
@@ -139,13 +185,12 @@ impl Decomposed {
         let average: EstimateEntry = read(&file["average"]).ok_or_else(|| missing("average"))?;
         let (joint, fitted) = joint(file).ok_or_else(|| missing("joint"))?;
         Ok(Decomposed {
-            name: name.into(),
+            name,
             joint,
             ends: optional(file, "ends")?,
             relation: read(&file["relation"]).ok_or_else(|| missing("relation"))?,
             lines,
-            band,
-            average: average.into(),
+            average: Some(Average { band, estimate: average.into() }),
             likelihood: likelihood(file)?,
             failed: read(&file["maximum_likelihood"]["failed"]),
             fitted,
@@ -153,8 +198,47 @@ impl Decomposed {
             recording: recording(file),
             judgement: optional(file, "judgement")?,
             nominal: optional(file, "nominal")?,
+            at_once: None,
         })
     }
+}
+
+fn missing(what: &str) -> DecomposedError {
+    DecomposedError::Missing(what.to_owned())
+}
+
+/// The joints that one fit found at once; a single one, of a loop, has the name of its test.
+fn found_at_once(name: &str, file: &Value) -> Result<Vec<Decomposed>, DecomposedError> {
+    let all = file["joints"].as_array().filter(|all| !all.is_empty()).ok_or_else(|| missing("joints"))?;
+    let fit = Arc::new(AtOnce::of(file).ok_or_else(|| missing("covariance"))?);
+    let is_alone = all.len() == 1;
+    let of = |(place, entry): (usize, &Value)| {
+        let joint = fit.joints[place].clone();
+        let at = |what: &str| format!("joints/{place}/{what}");
+        let fitted: FiledJoint = read(entry).ok_or_else(|| missing(&format!("joints/{place}")))?;
+        let nominal: Option<[[f64; 2]; 2]> = read(&entry["nominal_stiffness"]);
+        Ok(Decomposed {
+            name: if is_alone { name.to_owned() } else { format!("{name}/{joint}") },
+            joint,
+            ends: optional(entry, "ends").map_err(|_| missing(&at("ends")))?,
+            // The fit knows of no other.
+            relation: "exact".to_owned(),
+            lines: Vec::new(),
+            average: None,
+            likelihood: None,
+            failed: None,
+            fitted: Some(fitted),
+            not_fitted: None,
+            recording: recording(file),
+            judgement: None,
+            nominal: nominal.map(|k| Nominal {
+                stiffness: k.map(|row| row.map(Some)),
+                damping: Nominal::default().damping,
+            }),
+            at_once: Some(Place { fit: Arc::clone(&fit), joint: place }),
+        })
+    };
+    all.iter().enumerate().map(of).collect()
 }
 
 /// The joint's name, and the joint itself where the file has it: `joint` is a name alone in earlier files, and has `failed` where there is no fit.

@@ -93,14 +93,31 @@ pub struct StatedQuantity {
 /// The likelihood of the joint's numbers and of the quantities, Gaussian about a point, without the quantities' priors.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 pub struct FiledLikelihood {
-    elements: Vec<String>,
+    pub(crate) elements: Vec<String>,
     at: Vec<f64>,
     gradient: Vec<f64>,
     information: Vec<Vec<f64>>,
 }
 
+impl FiledLikelihood {
+    /// With its information as a whole matrix; nothing where it is not of `n` parameters.
+    pub(crate) fn whole(&self, n: usize) -> Option<QuadraticLikelihood> {
+        let triangular = self.information.iter().enumerate().all(|(i, row)| row.len() == i + 1);
+        if !triangular || [self.at.len(), self.gradient.len(), self.information.len()] != [n; 3] {
+            return None;
+        }
+        let rows = &self.information;
+        let entry = |e: usize| rows[(e / n).max(e % n)][(e / n).min(e % n)];
+        Some(QuadraticLikelihood {
+            at: self.at.clone(),
+            gradient: self.gradient.clone(),
+            information: (0..n * n).map(entry).collect(),
+        })
+    }
+}
+
 /// Names of the six numbers.
-const ELEMENTS: [&str; 6] = ["k11", "k12", "k22", "c11", "c12", "c22"];
+pub(crate) const ELEMENTS: [&str; 6] = ["k11", "k12", "k22", "c11", "c12", "c22"];
 
 impl FiledJoint {
     /// The likelihood of the joint's numbers, by their places among the six, and after them of the quantities; nothing where the file has none that fits
@@ -113,18 +130,7 @@ impl FiledJoint {
         if slots.is_empty() || is_repeated {
             return None;
         }
-        let n = slots.len() + self.quantities.len();
-        let triangular = written.information.iter().enumerate().all(|(i, row)| row.len() == i + 1);
-        if !triangular || [written.at.len(), written.gradient.len(), written.information.len()] != [n; 3] {
-            return None;
-        }
-        let rows = &written.information;
-        let entry = |e: usize| rows[(e / n).max(e % n)][(e / n).min(e % n)];
-        let likelihood = QuadraticLikelihood {
-            at: written.at.clone(),
-            gradient: written.gradient.clone(),
-            information: (0..n * n).map(entry).collect(),
-        };
+        let likelihood = written.whole(slots.len() + self.quantities.len())?;
         Some((slots, likelihood))
     }
 

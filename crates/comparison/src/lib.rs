@@ -23,6 +23,8 @@
 //! ```
 
 mod agreement;
+mod at_once;
+mod bodies;
 mod caution;
 mod common_law;
 mod compared;
@@ -37,10 +39,12 @@ mod specimens;
 mod stiffness_file;
 mod together;
 
+pub use at_once::{AtOnce, Place};
+pub use bodies::{Apart, SharedBody, WhyApart};
 pub use caution::Caution;
 pub use compared::Compared;
 pub use comparison::{Comparison, ComparisonError, ComparisonOptions, ElementRanking};
-pub use decomposed::{Decomposed, DecomposedError, End, Ends, Estimate, Judged, Line};
+pub use decomposed::{Average, Decomposed, DecomposedError, End, Ends, Estimate, Judged, Line};
 pub use filed::{FiledJoint, FiledLikelihood, FiledTests, StatedQuantity};
 pub use number::{ELEMENTS, Kind, Number};
 pub use pair::{Equality, Figure, Pair, PairedNumber, Ratio};
@@ -50,4 +54,4 @@ pub use stiffness_file::{
     ComparedLaw, EstimateEntry, FollowedLaw, LineEntry, LossFactor, Matrix, MatrixPair, ModelError, Nominal,
     Uncertain,
 };
-pub use together::{Apart, SharedBody, Together, WhyApart};
+pub use together::Together;

@@ -7,6 +7,7 @@
 //! mass-proportional damping, all other losses being the joint's.
 
 mod admissible;
+mod evidence;
 mod found;
 mod law;
 mod laws;
@@ -19,6 +20,7 @@ mod quantities;
 mod recorded;
 mod setup;
 mod several;
+mod smallest_eigenvalue;
 mod uncertainty;
 mod uncoupled;
 

@@ -1,4 +1,4 @@
-//! The joint of a decomposition.
+//! The joint of a decomposition, or all that one fit found at once.
 
 use crate::joint::symmetric;
 use crate::numbering::Numbering;
@@ -6,20 +6,71 @@ use crate::numbers::short;
 use crate::{Export, ExportError, ExportOptions, Joint, JointEnd, JointLine};
 use jointscope_beam::mass_of_ends;
 use jointscope_comparison::{Decomposed, Ends, FiledJoint, FiledTests, Matrix, Uncertain};
+use std::collections::BTreeMap;
 
 /// A joint of a decomposition as an export: the joint with the fixture's quantities moving where the file has it, otherwise the maximum-likelihood one.
 ///
 /// # Errors
 /// A file that does not say where its joint acts, an estimate judged unusable, numbers that cannot be.
 pub fn of_decomposition(decomposed: &Decomposed, options: &ExportOptions) -> Result<Export, ExportError> {
-    if let Some(name) = options.joint.as_ref().filter(|name| **name != decomposed.joint) {
-        return Err(ExportError::NoSuchJoint { name: name.clone(), known: decomposed.joint.clone() });
+    of_decompositions(std::slice::from_ref(decomposed), options)
+}
+
+/// All joints of a decomposition, or the one that the options name; where joints meet at a point they share its node.
+///
+/// # Errors
+/// As of one joint; node numbers for more than one.
+pub fn of_decompositions(decomposed: &[Decomposed], options: &ExportOptions) -> Result<Export, ExportError> {
+    let names = |all: &[&Decomposed]| all.iter().map(|one| one.joint.as_str()).collect::<Vec<_>>().join(", ");
+    let is_wanted = |one: &&Decomposed| options.joint.as_ref().is_none_or(|name| *name == one.joint);
+    let chosen: Vec<&Decomposed> = decomposed.iter().filter(is_wanted).collect();
+    let known = || names(&decomposed.iter().collect::<Vec<_>>());
+    let several = match (chosen.as_slice(), &options.joint) {
+        ([], Some(name)) => {
+            return Err(ExportError::NoSuchJoint { name: name.clone(), known: known() });
+        }
+        ([], None) => return Err(ExportError::Nothing),
+        ([_], _) => false,
+        _ => true,
+    };
+    if several && options.nodes.is_some() {
+        return Err(ExportError::WhichJoint { known: known() });
     }
+    let mut notes: Vec<String> = Vec::new();
+    let mut joints = Vec::new();
+    let mut nodes = Nodes { numbering: Numbering::from(options.first_id), points: BTreeMap::new() };
+    for one in &chosen {
+        let (joint, remarks) = exported(one, options, &mut nodes)?;
+        let of_it = |note: String| if several { format!("joint {}: {note}", joint.name) } else { note };
+        notes.extend(remarks.into_iter().map(of_it));
+        joints.push(joint);
+    }
+    if several {
+        notes.push("errors of these joints go together, since one fit found them: the covariance of all is in stiffness.json".to_owned());
+    }
+    let (nodes, first_id) = nodes.numbering.finish();
+    let joint = if several { "joints" } else { "joint" };
+    let title = format!("{joint} {} of a decomposition", names(&chosen));
+    let (parts, not_exported) = (Vec::new(), Vec::new());
+    Export { title, notes, nodes, joints, parts, not_exported, first_id }.checked()
+}
+
+/// The nodes given so far, those of points by their names.
+struct Nodes {
+    numbering: Numbering,
+    points: BTreeMap<String, u64>,
+}
+
+/// A joint with remarks on what it is worth.
+fn exported(
+    decomposed: &Decomposed,
+    options: &ExportOptions,
+    nodes: &mut Nodes,
+) -> Result<(Joint, Vec<String>), ExportError> {
     let ends = decomposed.ends.as_ref().ok_or(ExportError::NoEnds)?;
     let mut notes = judged(decomposed, options.anyway)?;
     let estimate = Estimate::best(decomposed)?;
-    let mut numbering = Numbering::from(options.first_id);
-    let mut joint = placed(decomposed, ends, estimate, options, &mut numbering)?;
+    let mut joint = placed(decomposed, ends, estimate, options, nodes)?;
     notes.extend(joint.indefinite());
     notes.extend(decomposed.fitted.iter().flat_map(|fitted| failed_tests(&fitted.tests)));
     if options.by_line {
@@ -37,17 +88,7 @@ pub fn of_decomposition(decomposed: &Decomposed, options: &ExportOptions) -> Res
             notes.push(format!("{noisy} lines that noise dominates are left out of K and C by line"));
         }
     }
-    let (nodes, first_id) = numbering.finish();
-    Export {
-        title: format!("joint {} of a decomposition", decomposed.joint),
-        notes,
-        nodes,
-        joints: vec![joint],
-        parts: Vec::new(),
-        not_exported: Vec::new(),
-        first_id,
-    }
-    .checked()
+    Ok((joint, notes))
 }
 
 /// What is exported of several estimates.
@@ -95,8 +136,9 @@ impl Estimate {
             Some(estimate) => ("the maximum-likelihood joint".to_owned(), estimate),
             None if decomposed.relation == "paper" => return Err(ExportError::OnlyPaper),
             None => {
-                let (from, to) = decomposed.band;
-                (format!("the plain average over {} to {} Hz", short(from), short(to)), &decomposed.average)
+                let average = decomposed.average.as_ref().ok_or(ExportError::NoEstimate)?;
+                let (from, to) = average.band;
+                (format!("the plain average over {} to {} Hz", short(from), short(to)), &average.estimate)
             }
         };
         Ok(Estimate {
@@ -171,7 +213,10 @@ fn law_of(fitted: &FiledJoint) -> String {
 
 /// Remarks on what the estimate is worth; refuses one that is of no use.
 fn judged(decomposed: &Decomposed, anyway: bool) -> Result<Vec<String>, ExportError> {
-    let Some(judgement) = &decomposed.judgement else { return Ok(Vec::new()) };
+    let Some(judgement) = &decomposed.judgement else {
+        let at_once = decomposed.fitted.as_ref().filter(|_| decomposed.at_once.is_some());
+        return Ok(at_once.map_or(Vec::new(), fitted_with_others));
+    };
     let why = match (judgement.poor_fit, &decomposed.failed) {
         (_, Some(failed)) => failed.clone(),
         (Some(chi2), None) => format!("a constant joint leaves chi2 per degree of freedom {chi2:.3}"),
@@ -189,6 +234,22 @@ fn judged(decomposed: &Decomposed, anyway: bool) -> Result<Vec<String>, ExportEr
         }
         _ => Ok(Vec::new()),
     }
+}
+
+/// Remarks on what a fit of several joints leaves unexplained; no judgement is passed on one of them.
+fn fitted_with_others(fitted: &FiledJoint) -> Vec<String> {
+    let error = &fitted.model_error;
+    let chi2 = fitted.chi2_per_dof.filter(|_| error.inflation > 1.0);
+    let unexplained = chi2.map(|chi2| {
+        format!("use with care: the fit leaves chi2 per degree of freedom {chi2:.3}, so noise and tolerances do not explain the test in full")
+    });
+    let strained = (error.strain > 1.0).then(|| {
+        format!(
+            "use with care: the fit moves the fixture's quantities {:.1} times as far as chance does",
+            error.strain.sqrt()
+        )
+    });
+    unexplained.into_iter().chain(strained).collect()
 }
 
 /// Remarks on what physics forbids of the joint that the FRFs speak for.
@@ -209,14 +270,16 @@ fn placed(
     ends: &Ends,
     estimate: Estimate,
     options: &ExportOptions,
-    numbering: &mut Numbering,
+    nodes: &mut Nodes,
 ) -> Result<Joint, ExportError> {
     let mut end = |end: &jointscope_comparison::End, existing: Option<u64>| {
         let says = format!("point {} of body {}", end.point, end.body);
-        let node = match existing {
-            Some(number) => numbering.existing(number, end.x, says)?,
-            None => numbering.point(&end.point, end.x, &says),
+        let node = match (existing, nodes.points.get(&end.point)) {
+            (Some(number), _) => nodes.numbering.existing(number, end.x, says)?,
+            (None, Some(number)) => *number,
+            (None, None) => nodes.numbering.point(&end.point, end.x, &says),
         };
+        nodes.points.insert(end.point.clone(), node);
         Ok::<_, ExportError>(JointEnd { point: end.point.clone(), body: end.body.clone(), x: end.x, node })
     };
     let [[_, k12], [_, k22]] = estimate.stiffness;
@@ -241,6 +304,10 @@ fn placed(
 fn lines(decomposed: &Decomposed) -> Result<Vec<JointLine>, ExportError> {
     if decomposed.relation != "exact" {
         return Err(ExportError::PaperLines);
+    }
+    if decomposed.at_once.is_some() {
+        let why = "joints that one fit found at once have none; `jointscope decompose --joint` solves the lines of one joint that alone connects its sides";
+        return Err(ExportError::NoLines(why.to_owned()));
     }
     let lines: Vec<JointLine> = decomposed
         .lines

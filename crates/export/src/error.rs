@@ -22,6 +22,9 @@ pub enum ExportError {
         "there is no fitted joint, and averages by eq (7) are not the joint's own matrices; decompose with `--relation exact`"
     )]
     OnlyPaper,
+    /// No estimate at all.
+    #[error("the file has no estimate of the joint; make it anew with `jointscope decompose`")]
+    NoEstimate,
     /// Lines of another relation.
     #[error(
         "the lines are by eq (7), which are not the joint's own matrices; decompose with `--relation exact` for `--by-line`"

@@ -15,6 +15,7 @@ struct File<'a> {
     shared: &'a [SharedBody],
     apart: &'a [Apart],
     differing: &'a [String],
+    at_once: &'a [Vec<String>],
     one_law: &'a [Vec<String>],
     joints: Vec<Joint<'a>>,
     equality: Option<Equality>,
@@ -38,7 +39,7 @@ struct Joint<'a> {
     stiffness: Matrix,
     damping: Matrix,
     std: Matrices,
-    band: [f64; 2],
+    band: Option<(f64, f64)>,
 }
 
 #[derive(Serialize)]
@@ -69,7 +70,7 @@ pub fn comparison_file(comparison: &Comparison) -> Value {
             stiffness: estimate.stiffness,
             damping: estimate.damping,
             std: Matrices { stiffness: estimate.stiffness_std, damping: estimate.damping_std },
-            band: [joint.band.0, joint.band.1],
+            band: joint.average.map(|average| average.band),
         }
     });
     let order = |entry: &'_ ElementRanking| entry.ranking.order.iter().map(|index| name(*index)).collect();
@@ -96,6 +97,7 @@ pub fn comparison_file(comparison: &Comparison) -> Value {
         shared: &comparison.together.shared,
         apart: &comparison.together.apart,
         differing: &comparison.together.differing,
+        at_once: &comparison.together.at_once,
         one_law: &comparison.together.one_law,
         joints: joints.collect(),
         equality: comparison.equality,

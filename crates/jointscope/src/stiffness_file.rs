@@ -72,6 +72,7 @@ pub fn joints_file(joints: &JointsFit) -> Value {
     json!({
         "joints": joints.joints.iter().map(of).collect::<Vec<_>>(),
         "covariance": joints.covariance_of_all(),
+        "likelihood": joints.likelihood,
     })
 }
 

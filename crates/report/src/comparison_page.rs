@@ -38,7 +38,11 @@ pub fn comparison_report(comparison: &Comparison, context: &PageContext) -> Repo
             .sections(comparison.specimens.iter().map(specimen_section))
             .sections([value_section(comparison)])
             .sections(compliance_section(comparison))
-            .sections([Kind::Stiffness, Kind::Damping].map(|kind| spectra_section(comparison, kind))),
+            .sections(
+                [Kind::Stiffness, Kind::Damping]
+                    .into_iter()
+                    .filter_map(|kind| spectra_section(comparison, kind)),
+            ),
     )
 }
 

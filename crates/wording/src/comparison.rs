@@ -101,6 +101,12 @@ pub fn shared(comparison: &Comparison) -> Vec<String> {
         };
         all.push(format!("taken as on blocks of their own: {}, {reason}", names.join(", ")));
     }
+    for joints in &together.at_once {
+        all.push(format!(
+            "found at once by one fit, whose file says how their errors go together: {}",
+            joints.join(", ")
+        ));
+    }
     for joints in &together.one_law {
         all.push(format!(
             "taken to follow one law over frequency, the same being the most probable of each: {}",

@@ -140,8 +140,8 @@ impl Answer {
         match self {
             Answer::Decomposition(path) => {
                 let contents = whole(path, "decompose")?;
-                let decomposed = Decomposed::of("", &contents).map_err(|error| Refusal::at(path, error))?;
-                export::of_decomposition(&decomposed, options).map_err(|error| Refusal::at(path, error))
+                let joints = Decomposed::all("", &contents).map_err(|error| Refusal::at(path, error))?;
+                export::of_decompositions(&joints, options).map_err(|error| Refusal::at(path, error))
             }
             Answer::Diagnosis { diagnosis, repaired } => {
                 let contents = whole(diagnosis, "diagnose")?;

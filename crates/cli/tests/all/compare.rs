@@ -146,3 +146,83 @@ fn what_cannot_be_compared_is_refused() {
     bench.refused(&["compare", "sim", "bad", "-o", "out"], &["bad/stiffness.json", "`lines`"]);
     assert!(!bench.0.join("out").exists());
 }
+
+/// Three storeys on two joints, of which `upper` is as stiff as said, decomposed at once into `answer`.
+fn storeys(bench: &Bench, answer: &str, upper: &str) {
+    bench.write("truth.json", STOREYS.replace("5e6", upper));
+    bench.write("storeys.json", STOREYS);
+    let frfs = ["--frf", "1/1", "--frf", "2/1", "--frf", "3/1", "--frf", "3/3"];
+    bench.done(&[&["synthesize", "truth.json", "--lines", "20:400:5", "-o", "frf.uff"], &frfs[..]].concat());
+    bench.done(&["decompose", "storeys.json", "frf.uff", "-o", answer]);
+}
+
+const STOREYS: &str = r#"{
+  "bodies": {
+    "F1": { "mass": { "value": 7.0, "std": 0.007 }, "rotates": false }, "F2": { "mass": { "value": 6.0, "std": 0.006 }, "rotates": false },
+    "F3": { "mass": { "value": 5.0, "std": 0.005 }, "rotates": false }
+  },
+  "points": { "1": { "body": "F1", "x": 0 }, "2": { "body": "F2", "x": 0.2 }, "3": { "body": "F3", "x": 0.4 } },
+  "joints": {
+    "lower": { "from": "1", "to": "2", "stiffness": [[3e6, 0], [0, 0]], "damping": [[300, 0], [0, 0]] },
+    "upper": { "from": "2", "to": "3", "stiffness": [[5e6, 0], [0, 0]], "damping": [[300, 0], [0, 0]] }
+  }
+}"#;
+
+#[test]
+fn joints_found_at_once_are_compared_all_or_by_name() {
+    let bench = Bench::new("compare-at-once");
+    storeys(&bench, "before", "5e6");
+    storeys(&bench, "after", "4e6");
+    let summary = bench.done(&["compare", "before", "after", "-o", "all"]);
+    let file = bench.json("all/comparison.json");
+    let names: Vec<&str> =
+        file["joints"].as_array().unwrap().iter().map(|j| j["name"].as_str().unwrap()).collect();
+    assert_eq!(names, ["before/lower", "before/upper", "after/lower", "after/upper"]);
+    assert_eq!(file["at_once"][0], serde_json::json!(["before/lower", "before/upper"]));
+    assert_eq!(file["shared"][0]["joints"].as_array().unwrap().len(), 4, "{summary}");
+    assert!(!file["cautions"].as_array().unwrap().iter().any(|c| c["what"] == "same_recording"), "{summary}");
+    let summary = bench.done(&["compare", "before/upper", "after/upper", "-o", "one"]);
+    assert!(summary.contains("K11: after/upper is 80.0"), "{summary}");
+    let ratio = &bench.json("one/comparison.json")["pairs"][0]["numbers"][0]["ratio"];
+    assert!((ratio["value"].as_f64().unwrap() - 0.8).abs() < 1e-4, "{ratio}");
+    assert!(bench.text("one/report.html").contains("2 joints side by side"));
+    // Specimens of one kind by the names of joints, or as a whole directory's.
+    let summary = bench.done(&["compare", "--specimens", "columns=before/upper,after/upper", "-o", "kind"]);
+    assert!(summary.contains("columns: 2 specimens"), "{summary}");
+    let summary = bench.done(&["compare", "--specimens", "columns=before", "-o", "kind"]);
+    assert!(summary.contains("columns: 2 specimens"), "{summary}");
+    bench.refused(&["compare", "before/middle", "after", "-o", "none"], &["middle", "lower, upper"]);
+    bench.refused(&["compare", "before/upper", "before/upper", "-o", "none"], &["same directory"]);
+}
+
+#[test]
+fn joints_found_at_once_are_exported_all_or_by_name() {
+    let bench = Bench::new("export-at-once");
+    storeys(&bench, "answer", "5e6");
+    for program in ["nastran", "ansys", "abaqus", "calculix", "csv"] {
+        let summary = bench.done(&["export", "answer", "--to", program, "-o", program]);
+        assert!(summary.contains("2 joints, 0 other parts"), "{summary}");
+    }
+    bench.done(&["export", "answer", "--to", "json", "-o", "all.json"]);
+    let (all, found) = (bench.json("all.json"), bench.json("answer/stiffness.json"));
+    for joint in 0..2 {
+        assert_eq!(all["joints"][joint]["stiffness"], found["joints"][joint]["stiffness"]);
+    }
+    // Both joints meet at point 2 of the storey between them: one node.
+    assert_eq!(all["joints"][0]["to"]["node"], all["joints"][1]["from"]["node"]);
+    assert_eq!(all["nodes"].as_array().unwrap().len(), 3);
+    bench.done(&[
+        "export", "answer", "--to", "json", "--joint", "upper", "--nodes", "12,13", "-o", "one.json",
+    ]);
+    let one = bench.json("one.json");
+    assert_eq!((&one["joints"][0]["name"], &one["joints"][0]["to"]["node"]), (&"upper".into(), &13.into()));
+    bench.refused(
+        &["export", "answer", "--to", "json", "--nodes", "12,13", "-o", "x.json"],
+        &["lower, upper", "--joint"],
+    );
+    bench.refused(
+        &["export", "answer", "--to", "json", "--joint", "middle", "-o", "x.json"],
+        &["lower, upper"],
+    );
+    bench.refused(&["export", "answer", "--to", "json", "--by-line", "-o", "x.json"], &["decompose --joint"]);
+}

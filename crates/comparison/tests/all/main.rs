@@ -2,7 +2,9 @@
 
 #![allow(clippy::unwrap_used)]
 
-use jointscope_comparison::{Caution, Comparison, ComparisonOptions, Decomposed, DecomposedError, WhyApart};
+mod at_once;
+
+use jointscope_comparison::{Caution, Comparison, ComparisonOptions, Decomposed, WhyApart};
 use jointscope_wording::Says;
 use jointscope_wording::comparison::{share, shared};
 use serde_json::{Value, json};
@@ -427,11 +429,4 @@ fn a_share_is_said_with_its_significant_digits() {
     assert_eq!(share(0.012, -1000.0), "0.00120 %");
     assert_eq!(share(1e-7, 1000.0), "1.0×10⁻⁸ %");
     assert_eq!((share(0.0, 3.0), share(12.0, 10.0)), ("0 %".into(), "120 %".into()));
-}
-
-#[test]
-fn a_file_of_joints_found_at_once_is_refused_by_their_names() {
-    let file = serde_json::json!({ "joints": [{ "name": "J" }, { "name": "K" }], "covariance": {} });
-    let error = Decomposed::of("ring", &file).unwrap_err();
-    assert_eq!(error, DecomposedError::Several(vec!["J".into(), "K".into()]));
 }

@@ -1,10 +1,11 @@
 //! Laws of a joint's stiffness and damping over frequency, compared by their evidence.
 
+use super::evidence::Fit;
 use super::law::{Dynamics, Form, LawKind};
 use super::problem::{Fitted, Problem};
 use crate::Sides;
 use jointscope_fixture::BodyKind;
-use jointscope_inference::{Parameter, laplace_evidence};
+use jointscope_inference::Parameter;
 use jointscope_linalg::{ComplexMatrix2, RealMatrix2};
 use num_complex::Complex64;
 
@@ -122,9 +123,10 @@ const STEPS: usize = 40;
 /// or not at all.
 const FEW_STEPS: usize = 10;
 const HOPELESS: f64 = 1000.0;
-/// So many of the most probable laws without mass are tried with mass, and all if one of them gains as much by it.
-const WITH_MASS: usize = 2;
-const WORTHWHILE: f64 = 20.0;
+/// Laws without mass whose logarithm of the evidence is as near to that of the most probable one are fitted until they have converged and tried with mass, and all if χ² of one of them falls as much by it: what a
+/// mass explains takes laws without it far from the FRFs, the true one too.
+const NEAR: f64 = 300.0;
+const WORTHWHILE: f64 = 10.0;
 /// Coordinate of the mass that they begin with.
 pub(super) const FIRST_MASS: f64 = 0.05;
 
@@ -176,7 +178,6 @@ fn candidates(
     known: Option<(&Problem, &Fitted)>,
     scale: f64,
 ) -> Vec<Candidate> {
-    let mut all: Vec<(Candidate, Vec<f64>)> = Vec::new();
     let own = viscous.laws[0];
     let starts: Vec<(Dynamics, Vec<f64>, f64)> = LawKind::ALL
         .into_iter()
@@ -184,6 +185,7 @@ fn candidates(
         .filter_map(|law| nearest_start(viscous, first, &law).map(|(start, misfit)| (law, start, misfit)))
         .collect();
     let least = starts.iter().map(|(.., misfit)| *misfit).fold(f64::INFINITY, f64::min);
+    let mut all: Vec<(Candidate, Fitted)> = Vec::new();
     for (law, mut start, misfit) in starts {
         let problem = Problem::lawful(viscous.test, vec![law], None);
         start.extend_from_slice(&first.point.coordinates[own.count()..]);
@@ -191,10 +193,23 @@ fn candidates(
         let steps = if hopeless { FEW_STEPS } else { STEPS };
         let Some(fitted) = problem.fit_within(start, Some(first.others.clone()), steps) else { continue };
         let candidate = Candidate::of(&problem, &fitted, 0);
-        all.extend(candidate.map(|candidate| (candidate, fitted.point.coordinates)));
+        all.extend(candidate.map(|candidate| (candidate, fitted)));
+    }
+    let most = |all: &[(Candidate, Fitted)]| {
+        all.iter().map(|(candidate, _)| candidate.evidence).fold(f64::NEG_INFINITY, f64::max)
+    };
+    let nearest = most(&all);
+    for (candidate, fitted) in &mut all {
+        if nearest - candidate.evidence > NEAR {
+            continue;
+        }
+        let problem = Problem::lawful(viscous.test, vec![candidate.fit.law], None);
+        if let Some(better) = Candidate::converged(&problem, fitted) {
+            *candidate = better;
+        }
     }
     all.sort_by(|a, b| b.0.evidence.total_cmp(&a.0.evidence));
-    let with_mass = |(light, at): &(Candidate, Vec<f64>)| {
+    let with_mass = |light: &Candidate| {
         let law = light.fit.law;
         let problem = Problem::lawful(viscous.test, vec![law], Some(scale));
         let start = match known {
@@ -204,19 +219,21 @@ fn candidates(
                 start
             }
             None => {
-                let mut start = at.clone();
-                start.insert(law.count(), FIRST_MASS);
+                // A joint without mass is one of those with it: from there no fit ends farther from the FRFs.
+                let mut start = light.at.clone();
+                start.insert(law.count(), 0.0);
                 start
             }
         };
-        let fitted = problem.fit_within(start, None, STEPS)?;
-        let gain = light.fit.objective - fitted.point.objective;
-        Some((Candidate::of(&problem, &fitted, 0)?, gain))
+        let mut fitted = problem.fit_within(start, None, STEPS)?;
+        let candidate = Candidate::converged(&problem, &mut fitted)?;
+        Some((candidate, light.fit.objective - fitted.point.objective))
     };
+    let nearest = most(&all);
     let (mut heavy, mut most): (Vec<Candidate>, f64) = (Vec::new(), 0.0);
-    for (place, light) in all.iter().filter(|(light, _)| light.fit.kind != LawKind::Constant).enumerate() {
+    for (light, _) in &all {
         // Where mass gains nothing for the laws nearest to the FRFs, it does not for the others.
-        if place >= WITH_MASS && most < WORTHWHILE {
+        if nearest - light.evidence > NEAR && most < WORTHWHILE {
             break;
         }
         if let Some((candidate, gain)) = with_mass(light) {
@@ -259,11 +276,24 @@ fn variances(parameters: &[Parameter]) -> Vec<f64> {
 }
 
 impl Candidate {
+    /// The law of the one joint, its fit gone on with until it has converged by derivatives taken there: evidence is of optima, and one that is missed by ten in χ² decides
+    /// between laws.
+    fn converged(problem: &Problem, fitted: &mut Fitted) -> Option<Self> {
+        fitted.refresh(problem)?;
+        Candidate::of(problem, fitted, 0)
+    }
+
     /// A joint's law at the optimum of all; `None` where that is not determined.
     pub(super) fn of(problem: &Problem, at: &Fitted, joint: usize) -> Option<Self> {
-        let information = at.equations(problem).information;
-        let evidence = laplace_evidence(at.point.objective, &information, &variances(&problem.parameters))?;
         let (first, law) = problem.places().nth(joint)?;
+        let fit = Fit {
+            objective: at.point.objective,
+            at: &at.point.coordinates,
+            equations: &at.equations(problem),
+            parameters: &problem.parameters,
+        };
+        let place_of_mass = problem.mass.map(|_| problem.of_laws());
+        let evidence = fit.evidence((first, law), place_of_mass, &variances(&problem.parameters))?;
         let own = &at.point.coordinates[first..first + law.count()];
         let mass = problem.mass.map(|_| problem.mass_at(&at.point.coordinates));
         let fit = LawFit::of(law, own, at.point.objective, mass);

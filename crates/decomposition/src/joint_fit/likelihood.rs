@@ -1,21 +1,19 @@
-//! What the FRFs alone tell of the joint and of the fixture's quantities: two joints on the same blocks share these, and only with the likelihood of both, their prior
+//! What the FRFs alone tell of joints and of the fixture's quantities: two joints on the same blocks share these, and only with the likelihood of both, their prior
 //! entering once, is the difference of the joints as well known as it is.
 
-use super::law::Dynamics;
-use super::uncertainty::units;
 use jointscope_inference::{NormalEquations, Parameter, QuadraticLikelihood};
 use serde::Serialize;
 
 /// Names of the six numbers of a joint.
 pub(super) const ELEMENTS: [&str; 6] = ["k11", "k12", "k22", "c11", "c12", "c22"];
 
-/// The likelihood of a joint's numbers and of the fixture's quantities, Gaussian about a point, without the quantities' priors; the joint's mass, if it has one, is
+/// The likelihood of joints' numbers and of the fixture's quantities, Gaussian about a point, without the quantities' priors; a joint's mass, if it has one, is
 /// integrated out. c is free of constraints in it.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct JointLikelihood {
-    /// The joint's numbers, SI; after them come the coordinates of [`JointFit::quantities`](super::JointFit::quantities): standard deviations from what is stated
-    /// (tenths of it where its deviation is unknown), of ln(value) where a positive quantity is known to 12 % or better.
-    pub elements: Vec<&'static str>,
+    /// The joints' numbers, SI: `k11` of one joint, `J1/k11` of several; after them come the coordinates of [`JointFit::quantities`](super::JointFit::quantities): standard
+    /// deviations from what is stated (tenths of it where its deviation is unknown), of ln(value) where a positive quantity is known to 12 % or better.
+    pub elements: Vec<String>,
     /// Where it is taken.
     pub at: Vec<f64>,
     /// Gradient of ln L there.
@@ -24,12 +22,22 @@ pub struct JointLikelihood {
     pub information: Vec<Vec<f64>>,
 }
 
+/// A number of a joint among the coordinates of a fit.
+pub(super) struct Told {
+    /// What it is called.
+    pub name: String,
+    pub coordinate: usize,
+    /// SI units for one unit of the coordinate.
+    pub unit: f64,
+}
+
 impl JointLikelihood {
-    /// From the normal equations at an optimum with c free: of the joint whose law's coordinates come first among those `kept`, and of the quantities; what is not kept is
+    /// From the normal equations at an optimum with c free: of these numbers and of the quantities, whose coordinates begin at `own`; what is neither is
     /// integrated out. Nothing where the FRFs leave that undetermined.
     pub(super) fn of(
-        law: &Dynamics,
-        (coordinates, kept): (&[f64], Vec<usize>),
+        numbers: &[Told],
+        own: usize,
+        coordinates: &[f64],
         equations: &NormalEquations,
         parameters: &[Parameter],
     ) -> Option<Self> {
@@ -38,14 +46,14 @@ impl JointLikelihood {
         // At the optimum data and priors pull against each other. That derivatives by differences give a little more or less must not move the joint.
         let pull_of_priors = coordinates.iter().enumerate().map(|(m, at)| precision(m) * at);
         all.gradient = pull_of_priors.collect();
-        let slots = law.slots();
-        let scales = units(law);
+        let kept: Vec<usize> =
+            numbers.iter().map(|number| number.coordinate).chain(own..parameters.len()).collect();
         let si = all
             .marginal(&kept, precision)?
-            .scaled(|index| slots.get(index).map_or(1.0, |&slot| scales[slot]));
+            .scaled(|index| numbers.get(index).map_or(1.0, |number| number.unit));
         let n = si.order();
         Some(JointLikelihood {
-            elements: slots.iter().map(|&slot| ELEMENTS[slot]).collect(),
+            elements: numbers.iter().map(|number| number.name.clone()).collect(),
             information: (0..n).map(|i| si.information[i * n..=i * n + i].to_vec()).collect(),
             at: si.at,
             gradient: si.gradient,

@@ -4,7 +4,7 @@ use super::admissible::{boundary, by_chance, not_negative, refitted};
 use super::law::{Dynamics, Form};
 use super::laws::Spread;
 use super::length::length_between;
-use super::likelihood::ELEMENTS;
+use super::likelihood::{ELEMENTS, Told};
 use super::problem::{Fitted, Problem};
 use super::uncertainty::{strain, total, units};
 use super::{
@@ -58,6 +58,10 @@ pub(super) struct Found {
     /// Place of a joint and of one of its six numbers, for each row of the covariance.
     pub elements: Vec<(usize, &'static str)>,
     pub covariance: Vec<Vec<f64>>,
+    /// What of it comes from a model that does not explain the FRFs.
+    pub model_covariance: Vec<Vec<f64>>,
+    /// What the FRFs alone tell of all of them.
+    pub likelihood: Option<JointLikelihood>,
 }
 
 /// A number of a joint.
@@ -71,6 +75,29 @@ struct Slot {
     unit: f64,
 }
 
+/// The covariance of the first coordinates, those after them being exact.
+fn with_the_fixture_exact(equations: &NormalEquations, own: usize) -> Option<Covariance> {
+    let mut bare = NormalEquations::zero(own);
+    for (row, whole) in bare.information.chunks_mut(own).zip(equations.information.chunks(equations.order)) {
+        row.copy_from_slice(&whole[..own]);
+    }
+    bare.covariance()
+}
+
+impl Slot {
+    /// The number by its name, with that of its joint before it where there are several.
+    fn told(&self, joint: Option<&str>) -> Told {
+        let element = ELEMENTS[self.place];
+        let name = joint.map_or(element.to_owned(), |joint| numbered(joint, element));
+        Told { name, coordinate: self.coordinate, unit: self.unit }
+    }
+}
+
+/// Name of a number of one of several joints.
+pub(super) fn numbered(joint: &str, element: &str) -> String {
+    format!("{joint}/{element}")
+}
+
 impl Outcome<'_> {
     /// From the optimum with every c free. `asymmetry` tells by how much χ² falls where k and the damping matrix of a joint may be unsymmetric, variances counting so many times.
     pub(super) fn of(
@@ -82,6 +109,8 @@ impl Outcome<'_> {
         let setup = problem.test.setup;
         let equations = free.equations(problem);
         let covariance = equations.covariance().ok_or_else(|| self.undetermined(&equations))?;
+        let noise =
+            with_the_fixture_exact(&equations, problem.own()).ok_or_else(|| self.undetermined(&equations))?;
         let strain = strain(&problem.parameters, problem.own(), &free.point.coordinates, &covariance);
         let (held, passive) = self.held(free)?;
         let at = held.as_ref().unwrap_or(free);
@@ -125,10 +154,15 @@ impl Outcome<'_> {
             self.unmoved.iter().map(|own| UnmovedQuantity::of(own, setup.fixture)).collect();
         let (measured, modelled) = (setup.recorded.frfs.clone(), at.point.predicted.clone());
         let fitted = Arc::new(FittedFrfs { measured, modelled });
+        let name = |joint: usize| setup.fixture.joints()[setup.joints[joint]].name.as_str();
+        let matrix = |of: &dyn Fn(&Slot, &Slot) -> f64| {
+            slots.iter().map(|a| slots.iter().map(|b| of(a, b)).collect()).collect()
+        };
+        let of_model = |a: &Slot, b: &Slot| model.as_ref().map_or(0.0, |model| in_si(model, a, b));
         let joints = problem.places().zip(&self.laws).enumerate().map(|(place, ((first, law), laws))| {
             let [k, d, _] = law.matrices(&at.point.coordinates[first..first + law.count()]);
             let lowest = |form: Form, first: usize| {
-                not_negative(form, &free.point.coordinates, first, (&covariance, strain))
+                not_negative(form, &free.point.coordinates, first, (&covariance, &noise, strain))
             };
             let shape = law.shape_with_std(&at.point.coordinates[first..first + law.count()], |own| {
                 total.std(first + own)
@@ -145,7 +179,7 @@ impl Outcome<'_> {
                 stiffness: k,
                 damping: d.scale(1.0 / law.middle),
                 covariance: six(&element, place),
-                model_covariance: six(&|a, b| model.as_ref().map_or(0.0, |model| in_si(model, a, b)), place),
+                model_covariance: six(&of_model, place),
                 law_covariance: spreads[place].covariance,
                 length: length_between(
                     (setup.fixture, &setup.fixture.joints()[setup.joints[place]]),
@@ -172,13 +206,23 @@ impl Outcome<'_> {
                 fitted: Arc::clone(&fitted),
                 mass: mass.map(|(mass, std)| (mass, std.hypot(spreads[place].mass.sqrt()))),
                 scalar: law.stiffness == Form::Scalar,
-                likelihood: self.likelihood((first, law), &free.point.coordinates, &equations),
+                likelihood: self.likelihood(
+                    slots.iter().filter(|slot| slot.joint == place).map(|slot| slot.told(None)),
+                    &free.point.coordinates,
+                    &equations,
+                ),
             }
         });
         Ok(Found {
             joints: joints.collect(),
             elements: slots.iter().map(|slot| (slot.joint, ELEMENTS[slot.place])).collect(),
-            covariance: slots.iter().map(|a| slots.iter().map(|b| element(a, b)).collect()).collect(),
+            covariance: matrix(&element),
+            model_covariance: matrix(&of_model),
+            likelihood: self.likelihood(
+                slots.iter().map(|slot| slot.told(Some(name(slot.joint)))),
+                &free.point.coordinates,
+                &equations,
+            ),
         })
     }
 
@@ -239,17 +283,15 @@ impl Outcome<'_> {
         test.quantities.iter().enumerate().map(of).collect()
     }
 
-    /// What the FRFs alone tell of one joint's numbers and of the quantities, the other joints, a mass and the rest of the law integrated out.
+    /// What the FRFs alone tell of these numbers and of the quantities, other joints, a mass and the rest of the laws integrated out.
     fn likelihood(
         &self,
-        (first, law): (usize, &Dynamics),
+        numbers: impl Iterator<Item = Told>,
         free: &[f64],
         equations: &NormalEquations,
     ) -> Option<JointLikelihood> {
-        let problem = self.problem;
-        let kept =
-            (first..first + law.slots().len()).chain(problem.own()..problem.parameters.len()).collect();
-        JointLikelihood::of(law, (free, kept), equations, &problem.parameters)
+        let numbers: Vec<Told> = numbers.collect();
+        JointLikelihood::of(&numbers, self.problem.own(), free, equations, &self.problem.parameters)
     }
 
     /// Which joints the FRFs leave undetermined, the others being given; all, if none by itself.

@@ -14,7 +14,7 @@ pub use found::{FoundJoint, JointsCovariance, JointsFit, SeveralError};
 
 use super::admissible::first_order_asymmetry;
 use super::law::{Dynamics, LawKind, coordinates};
-use super::outcome::{Inflated, Outcome};
+use super::outcome::{Inflated, Outcome, numbered};
 use super::problem::{Fitted, Point, Problem, Test, lower};
 use super::quantities::uncertain;
 use super::recorded::Recorded;
@@ -101,12 +101,14 @@ pub fn fit_joints(
         }
     });
     let joints: Vec<FoundJoint> = named.collect();
-    let name = |(joint, element): &(usize, &str)| format!("{}/{element}", joints[*joint].name);
+    let name = |(joint, element): &(usize, &str)| numbered(&joints[*joint].name, element);
     Ok(JointsFit {
         merged: known.merged_from.map(|recorded| (recorded, known.frfs.lines().len())),
         elements: found.elements.iter().map(name).collect(),
         joints,
         covariance: found.covariance,
+        model_covariance: found.model_covariance,
+        likelihood: found.likelihood,
     })
 }
 

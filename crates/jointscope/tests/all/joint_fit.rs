@@ -21,18 +21,18 @@ impl Noise {
         Noise(seed.wrapping_mul(0x9E3779B97F4A7C15) | 1)
     }
 
-    fn uniform(&mut self) -> f64 {
+    pub(crate) fn uniform(&mut self) -> f64 {
         self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
         ((self.0 >> 11) as f64 + 0.5) / (1u64 << 53) as f64
     }
 
-    fn complex(&mut self, variance: f64) -> Complex64 {
+    pub(crate) fn complex(&mut self, variance: f64) -> Complex64 {
         let radius = (-variance * self.uniform().ln()).sqrt();
         Complex64::from_polar(radius, std::f64::consts::TAU * self.uniform())
     }
 
     /// The set with noise of `relative` times each FRF's rms accelerance, and the variances that go with it.
-    fn on(&mut self, frfs: &FrfSet, relative: f64) -> FrfSet {
+    pub(crate) fn on(&mut self, frfs: &FrfSet, relative: f64) -> FrfSet {
         let n = frfs.lines().len();
         let mut values = frfs.all_values().to_vec();
         let mut variance = Vec::new();
@@ -115,7 +115,7 @@ pub(crate) fn fixture(case: &Case, physics: &str) -> Fixture {
     .unwrap()
 }
 
-fn lines() -> SpectralLines {
+pub(crate) fn lines() -> SpectralLines {
     SpectralLines::even(4.0, 4.0, 300).unwrap()
 }
 
@@ -139,7 +139,7 @@ fn found(fit: &JointFit) -> [f64; 6] {
     [k.at(0, 0), k.at(0, 1), k.at(1, 1), c.at(0, 0), c.at(0, 1), c.at(1, 1)]
 }
 
-fn fit(fixture: &Fixture, frfs: &FrfSet, laws: bool) -> JointFit {
+pub(crate) fn fit(fixture: &Fixture, frfs: &FrfSet, laws: bool) -> JointFit {
     let sides = Sides::of(fixture, None).unwrap();
     let spectrum = decompose(frfs, &sides, Relation::Exact).unwrap();
     let nominal = nominal_stiffness(&sides.joint().law, sides.length());

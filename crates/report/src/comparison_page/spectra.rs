@@ -39,7 +39,11 @@ pub(super) fn compliance_section(comparison: &Comparison) -> Option<Section> {
     )
 }
 
-pub(super) fn spectra_section(comparison: &Comparison, kind: Kind) -> Section {
+/// K or C of all joints by line; nothing where no file has lines.
+pub(super) fn spectra_section(comparison: &Comparison, kind: Kind) -> Option<Section> {
+    if comparison.joints.iter().all(|joint| joint.lines.is_empty()) {
+        return None;
+    }
     let word = match kind {
         Kind::Stiffness => "Stiffness by line",
         Kind::Damping => "Damping by line",
@@ -49,11 +53,12 @@ pub(super) fn spectra_section(comparison: &Comparison, kind: Kind) -> Section {
         _ => "the exact relation",
     };
     let elements = elements(comparison);
-    Section::new(word)
+    let section = Section::new(word)
         .paragraph(format!(
             "By {relation}. Bands are 95 % intervals from noise alone; gaps are masked lines."
         ))
-        .plots(elements.len().min(2), elements.iter().map(|&element| plot(comparison, kind, element)))
+        .plots(elements.len().min(2), elements.iter().map(|&element| plot(comparison, kind, element)));
+    Some(section)
 }
 
 fn at(kind: Kind, stiffness: &Matrix, damping: &Matrix, (i, j): (usize, usize)) -> f64 {
@@ -116,7 +121,8 @@ const SAME: f64 = 1e-3;
 /// What is drawn at first: the estimates and the middle of the lines in the joints' averaging bands, which poles and noise would squash.
 fn range(comparison: &Comparison, kind: Kind, element: (usize, usize)) -> YRange {
     let of_joint = |(index, joint): (usize, &Decomposed)| {
-        let inside = joint.lines.iter().filter(|l| (joint.band.0..=joint.band.1).contains(&l.frequency));
+        let (from, to) = joint.average.map_or((0.0, f64::INFINITY), |average| average.band);
+        let inside = joint.lines.iter().filter(|line| (from..=to).contains(&line.frequency));
         let values = inside.map(|line| at(kind, &line.stiffness, &line.damping, element));
         let level = kind.of(&comparison.estimate(index), element).0;
         Span::percentiles(values, YRange::ROBUST).and(Span::of([level]))

@@ -1,6 +1,6 @@
 //! What a fit of several joints finds.
 
-use super::super::JointFit;
+use super::super::{JointFit, JointLikelihood};
 use crate::{JointEnds, SidesError};
 use jointscope_frf::RigidMotionError;
 use jointscope_linalg::RealMatrix2;
@@ -15,6 +15,10 @@ pub struct JointsFit {
     pub elements: Vec<String>,
     /// Posterior covariance of the numbers of all joints, SI, the fixture's quantities integrated out; with what the model's error and the laws compared add.
     pub covariance: Vec<Vec<f64>>,
+    /// What of it comes from a model that does not explain the FRFs.
+    pub model_covariance: Vec<Vec<f64>>,
+    /// What the FRFs alone tell of all joints and of the fixture's quantities; nothing where that is undetermined.
+    pub likelihood: Option<JointLikelihood>,
     /// Numbers of lines recorded and left, where they were merged.
     pub merged: Option<(usize, usize)>,
 }
@@ -105,6 +109,8 @@ pub struct JointsCovariance<'a> {
     pub elements: &'a [String],
     /// SI.
     pub matrix: &'a [Vec<f64>],
+    /// What of it comes from a model that does not explain the FRFs.
+    pub model: &'a [Vec<f64>],
 }
 
 impl JointsFit {
@@ -115,6 +121,6 @@ impl JointsFit {
 
     /// The covariance of all joints with the names of its rows.
     pub fn covariance_of_all(&self) -> JointsCovariance<'_> {
-        JointsCovariance { elements: &self.elements, matrix: &self.covariance }
+        JointsCovariance { elements: &self.elements, matrix: &self.covariance, model: &self.model_covariance }
     }
 }
