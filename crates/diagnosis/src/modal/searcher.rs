@@ -58,10 +58,12 @@ impl Searcher<'_> {
     }
 
     /// Whether the size of every effect is told from nothing, the model's errors as large as they may well be: with few modes the most probable errors are
-    /// none, and whatever fits them exactly seems to be needed. What gains very much over nothing is told in any case.
+    /// none, and whatever fits them exactly seems to be needed. What gains very much over nothing is told in any case, for a fixture may have ended in a false minimum; not
+    /// over a calibrated one, which stays where it is.
     pub(super) fn is_told(&self, named: &Named, none: &ModalFit) -> bool {
         let fit = &named.fit;
-        if fit.ln - none.ln > self.settings.undoubted * named.names.len() as f64 {
+        let undoubted = self.settings.undoubted * named.names.len() as f64;
+        if !self.calibrated && fit.ln - none.ln > undoubted {
             return true;
         }
         let sizes = fit.linear.mean_sizes(&fit.standing.comparison, self.problem.prior(), &fit.evidence);

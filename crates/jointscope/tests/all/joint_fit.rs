@@ -521,7 +521,7 @@ fn truths() -> [(LawKind, bool, &'static str); 5] {
     ]
 }
 
-fn parameters_of(kind: LawKind, heavy: bool) -> usize {
+pub(crate) fn parameters_of(kind: LawKind, heavy: bool) -> usize {
     let own = match kind {
         LawKind::Constant => 3,
         LawKind::Viscous | LawKind::Structural => 6,

@@ -1,7 +1,7 @@
 //! What probabilities of laws are worth, on joints whose dynamic stiffness is any function of frequency: two rigid blocks on a joint, solved here by elimination of
 //! four equations a line, which share nothing with the model fitted.
 
-use crate::joint_fit::{Case, EIGHT, Noise, fit, fixture, lines};
+use crate::joint_fit::{Case, EIGHT, Noise, fit, fixture, lines, parameters_of};
 use jointscope::decomposition::{LawFit, LawKind};
 use jointscope::fixture::{BodyKind, Fixture, JointLaw};
 use jointscope::spectra::{FrfForm, FrfPair, FrfSet};
@@ -196,16 +196,6 @@ impl Draw<'_> {
     }
 }
 
-fn parameters(kind: LawKind, heavy: bool) -> usize {
-    let own = match kind {
-        LawKind::Constant => 3,
-        LawKind::Viscous | LawKind::Structural => 6,
-        LawKind::StandardLinearSolid | LawKind::Fractional => 7,
-        LawKind::LinearStiffness => 9,
-    };
-    own + usize::from(heavy)
-}
-
 /// What one run says.
 struct Named {
     /// Of the laws in [`all_laws`]: its probability, and whether it is the truth.
@@ -245,9 +235,9 @@ fn run(truth: (LawKind, bool), seed: u64) -> Named {
     });
     let heavy = truth.mass > 0.0;
     let own = of(truth.kind, heavy).map_or(f64::INFINITY, |law| law.objective);
-    let most = parameters(truth.kind, heavy);
+    let most = parameters_of(truth.kind, heavy);
     let others =
-        fit.laws.iter().filter(|law| !truth.is(law) && parameters(law.kind, law.mass.is_some()) <= most);
+        fit.laws.iter().filter(|law| !truth.is(law) && parameters_of(law.kind, law.mass.is_some()) <= most);
     let least = others.map(|law| law.objective).fold(f64::INFINITY, f64::min);
     let best = fit.law().map_or((0.0, false), |law| (law.probability, truth.is(law)));
     if std::env::var("EACH_RUN").is_ok() {

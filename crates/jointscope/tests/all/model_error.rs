@@ -1,9 +1,9 @@
 //! Models that are a little wrong in every mode: what is left out is told from the model's own error.
 
 use crate::common;
-use jointscope::diagnosis::{Diagnosis, DiagnosisOptions, Hypothesis, Verdict};
+use jointscope::diagnosis::{Diagnosis, DiagnosisOptions, Hypothesis, Tried, Verdict};
 use jointscope::fixture::{Effect, EffectKind, Place};
-use jointscope::{Fixture, FrfPair, FrfSet};
+use jointscope::{Fixture, FrfPair, FrfSet, Remarks};
 use jointscope_rig::{Instrument, drawn_within_tolerance, frfs, generator};
 use std::path::Path;
 
@@ -48,6 +48,28 @@ fn a_baseline_of_itself_has_not_changed() {
     let diagnosis = diagnosed(&fixture, &frfs, Some(frfs.clone()));
     assert_eq!(diagnosis.verdict, Verdict::Consistent, "{}", told(&diagnosis));
     assert!(diagnosis.findings.is_empty(), "{}", told(&diagnosis));
+}
+
+#[test]
+fn what_came_nearest_to_a_finding_is_told_where_it_is_no_chance_of_a_search() {
+    let (fixture, frfs) = common::recorded(everywhere_a_little_wrong(), 5);
+    let mut diagnosis = diagnosed(&fixture, &frfs, Some(frfs.clone()));
+    let names = diagnosis.search.candidates.len() as f64;
+    let effect = Effect::new(EffectKind::ChannelGain, Place::Response("4".into()), None, &[1.07]);
+    let mut nearest = |by_chance: f64| {
+        diagnosis.tried = vec![Tried { effect: effect.clone(), ln_gain: (names / by_chance).ln() }];
+        diagnosis.remarks().into_iter().find(|remark| remark.starts_with("Nearest to a finding"))
+    };
+    let said = nearest(0.04).unwrap();
+    assert!(
+        said.contains("gain of response 4 (factor 1.07)") && said.contains("in up to 4.0 % of tests"),
+        "{said}"
+    );
+    assert_eq!(
+        nearest(0.6),
+        None,
+        "a search among as many names comes on as much in more than every other test"
+    );
 }
 
 #[test]
