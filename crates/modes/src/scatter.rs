@@ -127,7 +127,11 @@ fn of_mode(by_frf: Vec<(usize, f64, f64, f64, f64)>, half_width: f64) -> Scatter
     }
 }
 
-/// Measurements of one thing that may have changed between them (random effects; DerSimonian and Laird 1986).
+/// Relative precision of that variance.
+const PRECISION: f64 = 1e-9;
+
+/// Measurements of one thing that may have changed between them (random effects). Its variance is the one with which they scatter as much as they should (Paule and
+/// Mandel 1982): where it is large they count alike, the precise as those that noise leaves less sure.
 struct Heterogeneity {
     mean: f64,
     mean_variance: f64,
@@ -147,13 +151,28 @@ impl Heterogeneity {
             }
             (sum / weights, weights)
         };
-        let (fixed, weights) = weighted(0.0);
-        let count = measured.clone().count() as f64;
-        let q: f64 = measured.clone().map(|(value, std)| ((value - fixed) / std).powi(2)).sum();
-        let squares: f64 = measured.clone().map(|(_, std)| std.powi(-4)).sum();
-        let between = ((q - (count - 1.0)) / (weights - squares / weights)).max(0.0);
+        let degrees = measured.clone().count() as f64 - 1.0;
+        let squares = |between: f64| -> f64 {
+            let (mean, _) = weighted(between);
+            measured
+                .clone()
+                .map(|(value, std)| (value - mean).powi(2) / (std * std + between).max(f64::MIN_POSITIVE))
+                .sum()
+        };
+        let q = squares(0.0);
+        // Were all of the scatter the thing's own.
+        let mean = measured.clone().map(|(value, _)| value).sum::<f64>() / (degrees + 1.0);
+        let most = measured.clone().map(|(value, _)| (value - mean).powi(2)).sum::<f64>() / degrees;
+        let mut between = 0.0;
+        if q > degrees {
+            let (mut low, mut high) = (0.0, most);
+            while high - low > PRECISION * most {
+                let middle = 0.5 * (low + high);
+                if squares(middle) > degrees { low = middle } else { high = middle }
+            }
+            between = 0.5 * (low + high);
+        }
         let (mean, weights) = weighted(between);
-        let degrees = count - 1.0;
         Heterogeneity {
             mean,
             mean_variance: 1.0 / weights,
@@ -200,6 +219,17 @@ mod tests {
         assert!(moving.certain);
         let value = moving.value();
         assert!((value.value - 1.05).abs() < 1e-3 && (0.3..0.45).contains(&value.std), "{value:?}");
+    }
+
+    #[test]
+    fn what_moves_far_moves_as_far_whether_the_records_near_each_other_are_the_precise_ones_or_not() {
+        // A real beam's fourth mode in nine records, Hz above 974: 0.031 is their deviation.
+        let values = [0.1778, 0.1775, 0.1565, 0.1409, 0.1317, 0.1292, 0.1260, 0.1275, 0.0784];
+        let precise = [0.009, 0.004, 9e-4, 1e-3, 1e-3, 2e-3, 2e-3, 4e-3, 6e-3];
+        for stds in [precise, [1e-3; 9]] {
+            let moving = Heterogeneity::of(values.into_iter().zip(stds));
+            assert!((0.027..0.034).contains(&moving.between.sqrt()), "{}", moving.between.sqrt());
+        }
     }
 
     #[test]
