@@ -56,7 +56,7 @@ fn kind(text: &str) -> Result<Kind, String> {
 pub(super) fn run(arguments: &CompareArguments) -> Result<String, Refusal> {
     let mut listed = Listed::default();
     for path in &arguments.directories {
-        listed.add(path)?;
+        listed.add(path);
     }
     if let Some([first, again]) = listed.given_twice() {
         return Err(Refusal::new(format!(
@@ -67,10 +67,10 @@ pub(super) fn run(arguments: &CompareArguments) -> Result<String, Refusal> {
     }
     let mut kinds = Vec::new();
     for kind in &arguments.specimens {
-        let places = kind.directories.iter().map(|path| listed.add(path)).collect::<Result<Vec<_>, _>>()?;
+        let places: Vec<usize> = kind.directories.iter().map(|path| listed.add(path)).collect();
         kinds.push((kind.name.clone(), places));
     }
-    let files = listed.files();
+    let files = listed.files()?;
     arguments.destination.without_frfs("compare")?;
     arguments.destination.foresee(&files, &[FILE, PAGE])?;
     let found = listed.read()?;

@@ -36,14 +36,14 @@ pub(super) struct Found {
 
 impl Listed {
     /// Adds what a path names, unless it is there already; its place.
-    pub(super) fn add(&mut self, path: &Path) -> Result<usize, Refusal> {
-        let named = Named::of(path)?;
+    pub(super) fn add(&mut self, path: &Path) -> usize {
+        let named = Named::of(path);
         if let Some(place) = self.named.iter().position(|other| other.is_same(&named)) {
             self.twice.get_or_insert_with(|| [self.named[place].path.clone(), named.path]);
-            return Ok(place);
+            return place;
         }
         self.named.push(named);
-        Ok(self.named.len() - 1)
+        self.named.len() - 1
     }
 
     /// What was named twice, under one name or two.
@@ -51,16 +51,19 @@ impl Listed {
         self.twice.as_ref()
     }
 
-    /// The files to be read, each once.
-    pub(super) fn files(&self) -> Vec<PathBuf> {
+    /// The files to be read, each once. Of what is not there at all reading tells.
+    pub(super) fn files(&self) -> Result<Vec<PathBuf>, Refusal> {
         let mut files: Vec<PathBuf> = Vec::new();
         for named in &self.named {
             let file = named.directory.join(FILE);
+            if named.directory.is_dir() && !file.exists() {
+                return Err(Refusal::holding_no(&named.directory, FILE, "decompose"));
+            }
             if !files.contains(&file) {
                 files.push(file);
             }
         }
-        files
+        Ok(files)
     }
 
     /// Reads them. A joint named by itself and with all of its directory is there once.
@@ -113,21 +116,19 @@ impl Found {
 
 impl Named {
     /// A directory with a decomposition, or such a directory and a joint in it.
-    fn of(path: &Path) -> Result<Self, Refusal> {
+    fn of(path: &Path) -> Self {
         let named = |directory: &Path, joint: Option<String>| Named {
             path: path.to_owned(),
             directory: directory.to_owned(),
             joint,
         };
         if path.join(FILE).exists() {
-            return Ok(named(path, None));
+            return named(path, None);
         }
         let parent = path.parent().filter(|parent| !path.exists() && parent.join(FILE).exists());
         match (parent, path.file_name()) {
-            (Some(parent), Some(joint)) => Ok(named(parent, Some(joint.to_string_lossy().into_owned()))),
-            _ if path.is_dir() => Err(Refusal::holding_no(path, FILE, "decompose")),
-            // What is missing is told where it is read.
-            _ => Ok(named(path, None)),
+            (Some(parent), Some(joint)) => named(parent, Some(joint.to_string_lossy().into_owned())),
+            _ => named(path, None),
         }
     }
 
