@@ -114,7 +114,7 @@ fn of_mode(by_frf: Vec<(usize, f64, f64, f64, f64)>, half_width: f64) -> Scatter
     }
     let frequency = Heterogeneity::of(by_frf.iter().map(|o| (o.1, o.2)));
     let ratio = Heterogeneity::of(by_frf.iter().map(|o| (o.3, o.4)));
-    if !frequency.certain || frequency.between.sqrt() < MOVED * half_width {
+    if !frequency.certain || frequency.of_the_precise.sqrt() < MOVED * half_width {
         return Scatter::default();
     }
     Scatter {
@@ -137,6 +137,8 @@ struct Heterogeneity {
     mean_variance: f64,
     /// Variance of the thing itself.
     between: f64,
+    /// The same by weights of the measurements' own deviations (DerSimonian and Laird 1986): a few that noise leaves unsure, and says little of, do not make it large.
+    of_the_precise: f64,
     certain: bool,
 }
 
@@ -160,6 +162,9 @@ impl Heterogeneity {
                 .sum()
         };
         let q = squares(0.0);
+        let (_, weights) = weighted(0.0);
+        let squared_weights: f64 = measured.clone().map(|(_, std)| std.powi(-4)).sum();
+        let of_the_precise = ((q - degrees) / (weights - squared_weights / weights)).max(0.0);
         // Were all of the scatter the thing's own.
         let mean = measured.clone().map(|(value, _)| value).sum::<f64>() / (degrees + 1.0);
         let most = measured.clone().map(|(value, _)| (value - mean).powi(2)).sum::<f64>() / degrees;
@@ -172,11 +177,15 @@ impl Heterogeneity {
             }
             between = 0.5 * (low + high);
         }
-        let (mean, weights) = weighted(between);
+        // The mean leans on the precise ones, and is as sure as all of the scatter leaves it.
+        let (mean, weights) = weighted(of_the_precise);
+        let share = |std: f64| 1.0 / ((std * std + of_the_precise).max(f64::MIN_POSITIVE) * weights);
+        let mean_variance = measured.clone().map(|(_, std)| share(std).powi(2) * (std * std + between)).sum();
         Heterogeneity {
             mean,
-            mean_variance: 1.0 / weights,
+            mean_variance,
             between,
+            of_the_precise,
             certain: q > degrees + BEYOND_NOISE * (2.0 * degrees).sqrt(),
         }
     }
