@@ -161,7 +161,7 @@ fn by_lines(
     let explaining = modal.filter(|modal| modal.explains());
     // Modes that explain the recording decide as soon as lines ask for what these do not need.
     let imitates =
-        |search: &Search| explaining.is_some() && without_imitations(fitter, search, true).is_some();
+        |search: &Search| explaining.is_some() && without_imitations(fitter, search, modal).is_some();
     let mut search = observation.work().within_rest(FOUND, || match (start, &first) {
         (Start::Searched(search), _) => *search,
         (Start::Modes(modal, exact), _) => {
@@ -175,7 +175,7 @@ fn by_lines(
         (Start::Anew, Some(part)) => Search::continued_until(fitter, within, part, imitates),
         (Start::Anew, None) => Search::searched(fitter, within),
     });
-    if let Some(fewer) = without_imitations(fitter, &search, explaining.is_some()) {
+    if let Some(fewer) = without_imitations(fitter, &search, modal) {
         match explaining {
             Some(modal) => return by_modes(fitter, &search, modal, division.as_ref()),
             None => search = fewer,

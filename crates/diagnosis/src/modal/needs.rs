@@ -9,6 +9,7 @@ use crate::candidate::Candidate;
 use crate::fitter::Fitter;
 use crate::modal::features::Features;
 use crate::modal::fit::ModalFit;
+use crate::modal::judgement::ModalJudgement;
 use crate::modal::prior::priors_among;
 use crate::search::Search;
 use jointscope_fixture::{Effect, EffectKind};
@@ -21,19 +22,30 @@ fn is_gain_beyond_errors(effect: &Effect, usual: f64) -> bool {
     effect.kind == EffectKind::ChannelGain && (effect.value(0) - 1.0).abs() > BEYOND_ERRORS * usual
 }
 
-/// A search on lines but for the effects that modes do not need and lines hardly miss; `None` where there are none, or modes do not tell. Modes that are `explained`
-/// by other names tell in any case, others only where errors of the usual size would do in an effect's stead.
-pub(crate) fn without_imitations(fitter: &Fitter, search: &Search, explained: bool) -> Option<Search> {
+/// A search on lines but for the effects that modes do not need and lines hardly miss; `None` where there are none, or modes do not tell. Modes that the comparison `by_modes` of
+/// the same recording explains tell in any case, others only where errors of the usual size would do in an effect's stead.
+pub(crate) fn without_imitations(
+    fitter: &Fitter,
+    search: &Search,
+    by_modes: Option<&ModalJudgement>,
+) -> Option<Search> {
     if search.repaired.hypothesis.effect_count() == 0 {
         return None;
     }
     let settings = &fitter.settings.modal;
-    let features = Features::of(fitter.observation, &search.nominal.hypothesis, settings)?;
+    let anew;
+    let features = match by_modes {
+        Some(modal) => &modal.features,
+        None => {
+            anew = Features::of(fitter.observation, &search.nominal.hypothesis, settings)?;
+            &anew
+        }
+    };
     if features.tells_little(settings) {
         return None;
     }
     let mut repaired = search.repaired.clone();
-    let of = (&features, explained);
+    let of = (features, by_modes.is_some_and(ModalJudgement::explains));
     while let Some(index) = least_needed(fitter, of, &search.candidates, &repaired.hypothesis) {
         let without = repaired.hypothesis.without(index);
         let without = match without.effect_count() {
