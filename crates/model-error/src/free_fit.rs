@@ -49,8 +49,8 @@ pub(crate) struct FreeFit {
 
 /// The columns whose coefficients make up mass line and upper residual. Modes too low to be told from a mass line, a suspension's, are a part of it: what they and
 /// the residual term by itself are no recording tells apart, what they are together it tells well.
-fn residual_columns(poles: &[Pole], hz: &[f64]) -> [Vec<usize>; 2] {
-    let low = (0..poles.len()).filter(|&p| poles[p].omega <= TAU * resolved_from(hz));
+fn residual_columns(poles: &[Pole], resolved_from: f64) -> [Vec<usize>; 2] {
+    let low = (0..poles.len()).filter(|&p| poles[p].omega <= TAU * resolved_from);
     [low.chain([poles.len() + MASS_LINE]).collect(), vec![poles.len() + UPPER]]
 }
 
@@ -236,6 +236,15 @@ impl FreeFit {
 
     /// What it says of the modes in the band.
     pub(crate) fn recorded_modes(&self, recording: Recording) -> Option<RecordedModes> {
+        self.recorded_modes_from(recording, resolved_from(recording.frfs.lines().hz()))
+    }
+
+    /// The same where modes above a frequency, Hz, are told from residual terms.
+    pub(crate) fn recorded_modes_from(
+        &self,
+        recording: Recording,
+        resolved_from: f64,
+    ) -> Option<RecordedModes> {
         let lines = recording.frfs.lines();
         let frfs = self.fits.len();
         let modes = self.inside;
@@ -245,7 +254,7 @@ impl FreeFit {
             .map(|r| {
                 let residues = residues(r);
                 let sizes: Vec<f64> = residues.iter().map(|a| a.norm()).collect();
-                let resolved = self.poles[r].omega / TAU > resolved_from(lines.hz());
+                let resolved = self.poles[r].omega / TAU > resolved_from;
                 let scale = scale(&sizes).max(f64::MIN_POSITIVE);
                 RecordedMode { pole: self.poles[r], scale, residues, resolved }
             })
@@ -254,7 +263,7 @@ impl FreeFit {
             let of_frf = |f: &FrfFit| columns.iter().map(|&c| f.coefficients[c].re).sum();
             self.fits.iter().map(of_frf).collect()
         };
-        let columns = residual_columns(&self.poles, lines.hz());
+        let columns = residual_columns(&self.poles, resolved_from);
         let terms = columns.each_ref().map(sum);
         let residual_scales = [0, 1].map(|k| scale(&terms[k]).max(f64::MIN_POSITIVE));
         let chi2_per_dof = self.chi2_per_dof(recording);
@@ -264,7 +273,7 @@ impl FreeFit {
             pairs: recording.frfs.pairs().to_vec(),
             band: (lines.hz()[0], lines.hz()[lines.len() - 1]),
             lowest: lines.hz()[0],
-            resolved_from: resolved_from(lines.hz()),
+            resolved_from,
             chi2_per_dof,
             misfit: self.misfit.iter().map(|sum| sum / (2 * frfs) as f64).collect(),
             residual_terms: (0..frfs).map(|j| [terms[0][j], terms[1][j]]).collect(),

@@ -12,6 +12,13 @@ use std::f64::consts::TAU;
 /// Where modes above the band are looked for, as multiples of its upper end.
 const BEYOND: [f64; 2] = [1.06, 1.3];
 
+/// Lines above the lowest one beyond which a mode may stand clear of the mass line.
+const CLEAR_LINES: f64 = 2.0;
+/// Deviations of ln ω and ln ζ up to which it does: what a mass line may be taken for is told far worse.
+const CLEAR: (f64, f64) = (1e-3, 0.1);
+/// Difference in ln ω within which a model's mode may be the recorded one: a suspension is known to a third.
+const NEIGHBOUR: f64 = 0.5;
+
 /// The free fit that is begun with poles in and out of the band, with what else the recording asks for: modes just outside the band, then more residual terms, then modes
 /// in the band that were missed.
 fn free_fit(recording: Recording, inside: Vec<Pole>, outside: &[Pole]) -> Option<FreeFit> {
@@ -85,7 +92,8 @@ impl RecordedModes {
     ///
     /// Poles that a model `expected` besides what they show by themselves are tried too: two modes on a few lines look like one. So are the model's alone, where more than
     /// noise is left. Where there are modes too low to be
-    /// told from a mass line, the band begins above them: where they are on a few lines many poles fit as well, and mass lines differ with them by many deviations.
+    /// told from a mass line, the band begins above them: where they are on a few lines many poles fit as well, and mass lines differ with them by many deviations. A mode that the
+    /// model has not, told as sharply as others, is kept.
     pub fn of(
         recording: Recording,
         options: &ModesOptions,
@@ -104,6 +112,9 @@ impl RecordedModes {
         let expected = expected(&alone);
         let Expected { all, unpaired } = expected;
         let told_or_expected: Vec<Pole> = fit.poles[..fit.inside].iter().chain(&unpaired).copied().collect();
+        if let Some(from) = alone.clear_of_the_lower_end(&all) {
+            return with_expected(recording, fit, &unpaired, &all).recorded_modes_from(recording, from);
+        }
         let Some(above) = Above::of(recording, &told_or_expected) else {
             return match all.is_empty() {
                 true => Some(alone),
@@ -123,6 +134,23 @@ impl RecordedModes {
         Some(modes)
     }
 
+    /// Frequency, Hz, below a mode of this recording that lies near the lowest line and yet is told from a mass line, where a model `expects` none near it: the spring that nobody
+    /// stated shows in nothing else. `None` where there is no such mode.
+    fn clear_of_the_lower_end(&self, expected: &[Pole]) -> Option<f64> {
+        let spacing = (self.resolved_from - self.lowest) / RESOLVED;
+        let is_expected =
+            |omega: f64| expected.iter().any(|pole| (pole.omega / omega).ln().abs() < NEIGHBOUR);
+        let is_clear = |&index: &usize| {
+            let mode = &self.modes[index];
+            let [frequency, damping] = self.deviations(index);
+            let is_told = frequency < CLEAR.0 && damping < CLEAR.1;
+            let above = mode.pole.omega / TAU - self.lowest;
+            !mode.resolved && above > CLEAR_LINES * spacing && is_told && !is_expected(mode.pole.omega)
+        };
+        let lowest = (0..self.modes.len()).find(is_clear)?;
+        Some(0.5 * (self.lowest + self.modes[lowest].pole.omega / TAU))
+    }
+
     /// The same modes as each FRF of the `recording` has them by itself, the free fit begun at the common poles; `None` for an FRF whose fit fails.
     ///
     /// Where a structure stays the same they differ by their noise.
@@ -136,7 +164,8 @@ impl RecordedModes {
             let frfs = above.frfs.of_frfs(|frf| frf == index)?;
             let weights = above.weights.get(index * n..(index + 1) * n)?;
             let alone = Recording { frfs: &frfs, weights };
-            FreeFit::converged(alone, poles.clone(), outside, *terms)?.recorded_modes(alone)
+            FreeFit::converged(alone, poles.clone(), outside, *terms)?
+                .recorded_modes_from(alone, self.resolved_from)
         };
         (0..recording.frfs.pairs().len()).map(of).collect()
     }

@@ -3,6 +3,7 @@
 use crate::common::*;
 use jointscope_model_error::{Expected, ModelledModes, Pairing, RecordedModes, Recording};
 use jointscope_modes::ModesOptions;
+use jointscope_spectra::SpectralLines;
 use num_complex::Complex64;
 use proptest::prelude::*;
 use std::f64::consts::TAU;
@@ -161,4 +162,27 @@ proptest! {
         prop_assert!(pairs.windows(2).all(|w| w[0].0 < w[1].0 && w[0].1 < w[1].1), "{pairs:?}");
         prop_assert!(pairs.iter().all(|&(r, m)| r < recorded.modes.len() && m < model.modes.len()), "{pairs:?}");
     }
+}
+
+#[test]
+fn a_mode_just_above_the_lowest_line_counts_where_the_model_has_none() {
+    // On a spring that nobody stated, 52 Hz, on lines from 20 Hz: the third line above the lowest.
+    let spring = r#"{"kind": "support", "place": "A", "x": 0, "stiffness": 5.4e5, "damping": 10}"#;
+    let lines = SpectralLines::even(20.0, 9.5, 120).unwrap();
+    let set =
+        Recorded::of(&two_masses(0.004, spring), &pairs(&[("1", "1"), ("2", "1")]), &lines, noise(Some(1)));
+    let recording = Recording { frfs: &set.set, weights: &set.weights };
+    let beside = |physics: &str| {
+        let fixture = two_masses(0.004, physics);
+        let expected = |alone: &RecordedModes| alone.expected_by(&fixture);
+        RecordedModes::of(recording, &ModesOptions::default(), expected).unwrap()
+    };
+    let recorded = beside("");
+    let lowest = &recorded.modes[0];
+    assert!(lowest.resolved && (lowest.pole.omega / TAU - 52.0).abs() < 3.0, "{lowest:?}");
+    let alone = |physics: &str| Compared::of(&two_masses(0.004, physics), recorded.clone()).pairing.alone();
+    assert!(alone("") < -5.0, "the model without the spring lacks it: {}", alone(""));
+    assert_eq!(alone(spring), 0.0);
+    // Of a model that states it, it stays a part of the mass line, as a suspension is.
+    assert!(beside(spring).modes.iter().all(|mode| mode.pole.omega > TAU * 58.0));
 }
