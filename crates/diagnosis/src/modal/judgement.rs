@@ -18,7 +18,7 @@ use crate::search::Search;
 use crate::settings::ModalSettings;
 use crate::{Hypothesis, ModeChange, Observation};
 use jointscope_findings::Verdict;
-use jointscope_fixture::{Effect, EffectKind};
+use jointscope_fixture::{Effect, EffectKind, Entry};
 use jointscope_inference::Covariance;
 use jointscope_model_error::{ErrorSizes, KINDS, Pairing, SizePrior};
 
@@ -139,6 +139,12 @@ fn fitted_to_lines(fitter: &Fitter, named: &Named) -> Option<Fit> {
     explains(fitter, &fit, !named.exact).then_some(fit)
 }
 
+/// Whether all that a fit adds to the fixture are factors on channels' signals.
+fn is_of_signals(fit: &ModalFit) -> bool {
+    let effects = fit.hypothesis.effects();
+    !effects.is_empty() && effects.iter().all(|effect| effect.kind.spec().entry == Entry::Signal)
+}
+
 struct Judge<'a> {
     searcher: Searcher<'a>,
     search: ModalSearch,
@@ -196,9 +202,12 @@ impl Judge<'_> {
         let all = |fit: &ModalFit| squares(self.searcher.problem.relative_sizes_with_gains(fit));
         // Or those of the modes in the band alone, if no others grow for that: what lies above the band is the model's affair too, but not what a name is about.
         let modes = |fit: &ModalFit| squares(self.searcher.problem.relative_sizes_of_modes(fit));
+        // A channel's signal has no part in natural frequencies: whatever these are wrong by, a factor on it may be all that residues lack.
+        let signals = |fit: &ModalFit| squares(self.searcher.problem.relative_sizes_of_signals(fit));
         let part = self.searcher.settings.part;
         let in_part = || {
             model(&best.fit) < part * model(none)
+                || is_of_signals(&best.fit) && signals(&best.fit) < part * signals(none)
                 || all(&best.fit) < part * all(none)
                 || modes(&best.fit) < part * modes(none) && model(&best.fit) < model(none)
         };
@@ -225,7 +234,11 @@ impl Judge<'_> {
     /// needs, the more.
     fn unlisted(&self, best: &ModalFit) -> f64 {
         let (usual, most) = self.searcher.settings.unlisted;
-        let sizes = self.searcher.problem.relative_sizes(best);
+        let problem = &self.searcher.problem;
+        let sizes = match is_of_signals(best) {
+            true => problem.relative_sizes_of_signals(best),
+            false => problem.relative_sizes(best),
+        };
         let strain: f64 = sizes.iter().map(|s| 0.5 * (s * s - 1.0).max(0.0)).sum();
         let pull = 0.5 * (best.largest_pull().powi(2) - self.searcher.settings.adequate.1.powi(2)).max(0.0);
         // What no poles explain in the recording itself is nothing that a name could be held against.

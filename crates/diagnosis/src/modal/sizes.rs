@@ -117,6 +117,11 @@ impl Problem<'_> {
         })
     }
 
+    /// The same without those of natural frequencies and damping, but with the gains of records: the errors in whose stead a factor on channels' signals may stand.
+    pub(crate) fn relative_sizes_of_signals(&self, fit: &ModalFit) -> Vec<f64> {
+        self.over_usual(&ErrorSizes { frequency: 0.0, damping: 0.0, ..self.seen(fit).sizes })
+    }
+
     /// The same with the gains of records among them.
     pub(crate) fn relative_sizes_with_gains(&self, fit: &ModalFit) -> Vec<f64> {
         self.over_usual(&self.seen(fit).sizes)

@@ -8,7 +8,7 @@ use crate::search::Search;
 use crate::settings::Settings;
 use crate::{Hypothesis, Observation, Watch};
 use jointscope_findings::Verdict;
-use jointscope_fixture::{EffectKind, Fixture};
+use jointscope_fixture::{Effect, EffectKind, Fixture, Place};
 use jointscope_lumped::{Instrument, synthesize};
 use jointscope_spectra::{FrfPair, SpectralLines};
 
@@ -49,4 +49,23 @@ fn a_stiffness_that_refutes_what_is_stated_of_it_is_named() {
     let (predicted, search) = judged.predicted(&fitter, &within);
     assert!(search.repaired.chi2 > 0.5 * search.refitted.chi2);
     assert_eq!(predicted.verdict, Verdict::PartlyExplained);
+}
+
+#[test]
+fn a_gain_is_named_whatever_the_model_is_off_by_in_natural_frequency() {
+    let fixture = Fixture::from_json(BLOCKS).unwrap();
+    // Both natural frequencies are 3 % lower than the model's, ten times as much as is usual, and no name is tried that says so.
+    let truth = BLOCKS.replace("2.07e11", "1.95e11");
+    let gain = Effect::new(EffectKind::ChannelGain, Place::Response("3".into()), None, &[1.08]);
+    let truth = Fixture::from_json(&truth).unwrap().with_physics(vec![gain]).unwrap();
+    let observation = recorded(&truth, &["1", "2", "3", "4"]);
+    let settings = Settings::default();
+    let fitter = Fitter { observation: &observation, settings: &settings, watch: Watch::default() };
+    let nominal = Hypothesis::nominal(&fixture, true);
+    let mut gains = catalogue(&fixture, &observation);
+    gains.retain(|candidate| candidate.kind == EffectKind::ChannelGain);
+    let judged = ModalJudgement::of(&fitter, &nominal, &gains, None).unwrap();
+    let effects = judged.search.best.fit.hypothesis.effects();
+    assert_eq!(effects.iter().map(|e| e.kind).collect::<Vec<_>>(), [EffectKind::ChannelGain]);
+    assert_eq!(judged.verdict, Verdict::PartlyExplained);
 }
