@@ -23,7 +23,7 @@ import tempfile
 import numpy as np
 import pyuff
 
-STEEL, ALUMINIUM = (207e9, 0.3, 7850.0), (71e9, 0.33, 2700.0)
+STEEL, ALUMINIUM, EPOXY = (207e9, 0.3, 7850.0), (71e9, 0.33, 2700.0), (3e9, 0.36, 1200.0)
 MODES, AVERAGES, SCATTER = 36, 8, 0.007
 NEIGHBOUR = 1.5e-3  # least distance of grid lines, m
 
@@ -244,6 +244,8 @@ class Case:
         self.clamped = self.family == "clamped"
         for n in range(count):
             name, length, height = "ABC"[n], r.uniform(45e-3, 75e-3), r.uniform(30e-3, 45e-3)
+            if n == 1 and self.hidden == "flexible":  # a plate in place of a block
+                length, height = r.uniform(105e-3, 135e-3), r.uniform(9e-3, 11e-3)
             mass = density * length * width * height
             inertia = mass * (length**2 + height**2) / 12
             self.boxes.append(dict(name=name, x=(x, x + length), width=width, height=height, material=material))
@@ -305,6 +307,18 @@ class Case:
             self.right.append([("support", body)])
             self.size = {"support": ("stiffness", stiffness)}
             self.said = f"{stiffness / 1e3:.0f} kN/m under {body} at {1e3 * x:.0f} mm"
+        elif kind == "glue":
+            joint = str(r.choice(list(self.joints)))
+            strip = next(b for b in self.boxes if b["name"] == joint)
+            at_end, thick = int(r.integers(2)), float(r.uniform(0.15e-3, 0.4e-3))
+            low, high = strip["x"]
+            layer = (high - thick, high) if at_end else (low, low + thick)
+            self.boxes.insert(0, {**strip, "name": "G", "x": layer, "material": EPOXY})
+            self.right.append([("interface_compliance", self.joints[joint][at_end])])
+            self.said = f"{1e3 * thick:.2f} mm of epoxy at {self.joints[joint][at_end]}"
+        elif kind == "flexible":
+            self.right.append([("body_flexibility", "B")])
+            self.said = "B is a plate that bends"
         elif kind == "modulus":
             joint = str(r.choice(list(self.joints)))
             factor = float(r.choice([0.8, 0.85, 0.9, 1.15]))
@@ -335,6 +349,8 @@ class Case:
                 for end in ends:
                     yields = {"kind": "interface_compliance", "place": end, "dof": "rotation"}
                     self.fixture["physics"].append({**yields, "stiffness": self.known_to(0.08, value)})
+        if self.hidden == "plain":  # an analyst who takes strips for massless Euler beams on rigid blocks
+            self.fixture["physics"] = []
         springs, lumps = self.hide()
         solid = Solid(self.boxes, places + self.extra, walls)
         names = list(shown) + list(self.unseen)
@@ -445,16 +461,30 @@ FAMILIES = {
 }
 
 
+# Asked for by --more: what the lists above do not have.
+MORE = {
+    "pair": ["glue", "flexible", "plain"],
+    "chain": ["glue", "plain"],
+    "clamped": ["glue", "gain"],
+    "wide": ["plain", "two"],
+}
+# What is true of every solid that states footings and shear, and of one that states nothing of its strips.
+TRUE = ["shear_deformation", "interface_compliance"]
+TRUE_OF_PLAIN = TRUE + ["joint_mass", "joint_length", "stiffness_change", "footing"]
+
+
 def main():
     arguments = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     arguments.add_argument("program")
     arguments.add_argument("--cases", type=int, default=len(sum(FAMILIES.values(), [])))
+    arguments.add_argument("--more", action="store_true", help="glue, plates in place of blocks, strips of which nothing is stated")
     arguments.add_argument("--seed", type=int, default=1)
     arguments.add_argument("--only", nargs="*")
     arguments.add_argument("--keep", type=pathlib.Path)
     given = arguments.parse_args()
     program = pathlib.Path(shutil.which(given.program) or given.program).resolve()
-    kinds = [(family, hidden) for family, some in FAMILIES.items() for hidden in some]
+    families = MORE if given.more else FAMILIES
+    kinds = [(family, hidden) for family, some in families.items() for hidden in some]
     told = clean = hidden = nulls = named = held = sized = 0
     for n in range(given.cases):
         family, what = kinds[n % len(kinds)]
@@ -477,7 +507,8 @@ def main():
             is_right = lambda f: any(f["kind"] == name["kind"] and f["place"] in name["place"] for name in names)
             taken |= {next((i for i, f in enumerate(findings) if i not in taken and is_right(f)), None)}
         found = None not in taken
-        untrue = [f for i, f in enumerate(findings) if i not in taken and f["kind"] not in ("shear_deformation", "interface_compliance")]
+        true = TRUE_OF_PLAIN if what == "plain" else TRUE
+        untrue = [f for i, f in enumerate(findings) if i not in taken and f["kind"] not in true]
         for kind, (parameter, value) in truth["sizes"].items():
             for f in (findings[i] for i in taken - {None}):
                 if f["kind"] == kind and "ci95" in f["parameters"][parameter]:
