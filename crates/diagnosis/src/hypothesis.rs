@@ -1,7 +1,7 @@
 use crate::Observation;
 use crate::parameter_transforms::parameters_of;
 use jointscope_fixture::{
-    Effect, EffectKind, Fixture, FixtureError, NamedQuantity, Place, QuantityOwner, SizeLaw,
+    Effect, EffectKind, Entry, Fixture, FixtureError, NamedQuantity, Place, QuantityOwner, SizeLaw,
 };
 use jointscope_inference::{Covariance, Parameter, Transform};
 use jointscope_lumped::{Instrument, LumpedError, accelerances};
@@ -308,6 +308,30 @@ impl Hypothesis {
         let mut physics = fixture.physics().to_vec();
         physics.extend(self.effects());
         fixture.with_physics(physics)
+    }
+
+    /// The same with the springs and masses of its effects alone; `None` where no effect is one, or one dissipates by itself.
+    pub(crate) fn to_fixture_without_dashpots(&self) -> Option<Fixture> {
+        use EffectKind::{AddedMass, JointLength, JointMass, ShearDeformation, StiffnessChange};
+        let mut effects = self.effects();
+        let mut any = false;
+        for effect in &mut effects {
+            let spec = effect.kind.spec();
+            match (spec.size.dashpot, effect.kind, spec.entry) {
+                (Some(dashpot), ..) => {
+                    effect.parameters[dashpot].value = 0.0;
+                    any = true;
+                }
+                (_, AddedMass | JointLength | JointMass | ShearDeformation | StiffnessChange, _) => {
+                    any = true
+                }
+                (_, _, Entry::Signal | Entry::Restated | Entry::Offset) => {}
+                _ => return None,
+            }
+        }
+        let fixture = moved(&self.fixture, &self.tolerances, &self.coordinates);
+        let physics = fixture.physics().iter().cloned().chain(effects).collect();
+        if any { fixture.with_physics(physics).ok() } else { None }
     }
 
     /// The accelerances this hypothesis predicts for an observation, as its instruments would record them.

@@ -29,6 +29,8 @@ pub struct ErrorSizes {
 
 /// Number of kinds.
 pub const KINDS: usize = 7;
+/// Place of the damping among them.
+const DAMPING: usize = 1;
 /// Place of the gain among them.
 pub const GAIN: usize = 6;
 
@@ -115,6 +117,9 @@ pub struct Comparison {
     pub(crate) noise: Vec<f64>,
     /// What of the paired modes' residues is in quadrature because of the structure's damping, FRF by FRF.
     turned: Vec<f64>,
+    /// What of the features in quadrature would be otherwise if the structure's damping were distributed otherwise: all of it or nothing, as one unknown of size one. Empty where that is
+    /// not in question.
+    distributed: Vec<(usize, f64)>,
     /// Place of the first residue among the compared features.
     first_residue: usize,
     /// By kind, the covariance for a size of one: the entries that are not zero, by their place in the matrix.
@@ -154,13 +159,7 @@ impl Comparison {
         for (k, &(r, m)) in pairing.pairs.iter().enumerate() {
             let scale = recorded.modes[r].scale;
             let first = 2 * matched + 2 * k * frfs;
-            // The damping that turns a shape's phases is as wrong as that which makes the mode die away.
             turned.extend(shapes.quadrature[m].iter().map(|quadrature| quadrature / scale));
-            let parts = turned[k * frfs..].iter().enumerate().map(|(frf, part)| (first + 2 * frf + 1, *part));
-            let of_damping: Vec<(usize, f64)> = std::iter::once((2 * k + 1, 1.0)).chain(parts).collect();
-            for &(i, a) in &of_damping {
-                of_damping.iter().for_each(|&(j, b)| kinds[1][i * n + j] = a * b);
-            }
             for a in 0..frfs {
                 // Near a node of a channel the product of both errors is all there is.
                 let product = (shapes.mean_square(m) / scale).powi(2);
@@ -205,26 +204,51 @@ impl Comparison {
         }
         let entries =
             |kind: Vec<f64>| kind.into_iter().enumerate().filter(|(_, value)| *value != 0.0).collect();
-        let kinds = kinds.into_iter().map(entries).collect();
-        Comparison { places, noise, turned, first_residue: 2 * matched, kinds, both }
+        let mut kinds: Vec<Vec<(usize, f64)>> = kinds.into_iter().map(entries).collect();
+        kinds[DAMPING] = of_damping(n, frfs, &turned);
+        Comparison { places, noise, turned, distributed: Vec::new(), first_residue: 2 * matched, kinds, both }
+    }
+
+    /// The same where nobody knows how the structure's damping is distributed: whether as these `shapes` of the paired modes have it, or so that it turns no phases.
+    pub fn with_damping_distributed_otherwise(
+        mut self,
+        recorded: &RecordedModes,
+        pairing: &Pairing,
+        shapes: &Shapes,
+    ) -> Self {
+        let frfs = recorded.frfs();
+        for (k, &(r, m)) in pairing.pairs.iter().enumerate() {
+            let first = self.first_residue + 2 * k * frfs;
+            for (frf, quadrature) in shapes.quadrature[m].iter().enumerate() {
+                let part = quadrature / recorded.modes[r].scale;
+                self.distributed.push((first + 2 * frf + 1, part));
+                self.turned[k * frfs + frf] -= part;
+            }
+        }
+        self.kinds[DAMPING] = of_damping(self.count(), frfs, &self.turned);
+        self
     }
 
     /// The same with errors of the damping that change the modes' damping ratios alone, and no phases: for a fit that sets out from where damping may be far more or
     /// less than where it ends.
     pub fn with_ratios_alone(mut self) -> Self {
         let (n, ratios) = (self.count(), self.first_residue);
-        self.kinds[1].retain(|(place, _)| place % (n + 1) == 0 && place / n < ratios);
+        self.kinds[DAMPING].retain(|(place, _)| place % (n + 1) == 0 && place / n < ratios);
         self.turned.fill(0.0);
+        self.distributed.clear();
         self
     }
 
-    /// Whether errors of the damping, of the size `damping`, make as much of the quadrature of the same modes here as there, but for less than noise does.
+    /// Whether errors of the damping, of the size `damping`, and another distribution of it make as much of the quadrature of the same modes here as there, but for less than noise does.
     pub fn damps_like(&self, other: &Comparison, damping: f64) -> bool {
         let (n, first) = (self.count(), self.first_residue);
         let noise = |k: usize| self.noise[(first + 2 * k + 1) * (n + 1)].sqrt();
         let apart = |(k, (a, b)): (usize, (&f64, &f64))| damping * (a - b).abs() > noise(k);
+        let part = |of: &Comparison, k: usize| of.distributed.get(k).map_or(0.0, |(_, value)| *value);
+        let otherwise = |k: usize| (part(self, k) - part(other, k)).abs() > noise(k);
         self.turned.len() == other.turned.len()
             && !self.turned.iter().zip(&other.turned).enumerate().any(apart)
+            && !(0..self.turned.len()).any(otherwise)
     }
 
     /// Recorded features less those of the model: ln ω and ln ζ of the paired modes, their residues FRF by FRF, then all residual terms. Residues and
@@ -275,7 +299,27 @@ impl Comparison {
         for (both, size) in self.both.iter().zip([shape * shape, 2.0 * shape * quadrature]) {
             both.iter().for_each(|&(place, value)| sum[place] += size * value);
         }
+        let n = self.count();
+        for &(i, a) in &self.distributed {
+            self.distributed.iter().for_each(|&(j, b)| sum[i * n + j] += a * b);
+        }
     }
+}
+
+/// What errors of the modes' damping make of `n` features, for a size of one, entries that are not zero by their place: the damping that turns a shape's phases, which puts so much of each
+/// residue in quadrature, is as wrong as that which makes the mode die away.
+fn of_damping(n: usize, frfs: usize, turned: &[f64]) -> Vec<(usize, f64)> {
+    let matched = turned.len().checked_div(frfs).unwrap_or(0);
+    let mut all = Vec::new();
+    for (k, turned) in turned.chunks_exact(frfs.max(1)).enumerate() {
+        let first = 2 * matched + 2 * k * frfs;
+        let parts = turned.iter().enumerate().map(|(frf, part)| (first + 2 * frf + 1, *part));
+        let of_mode: Vec<(usize, f64)> = std::iter::once((2 * k + 1, 1.0)).chain(parts).collect();
+        let products =
+            of_mode.iter().flat_map(|&(i, a)| of_mode.iter().map(move |&(j, b)| (i * n + j, a * b)));
+        all.extend(products.filter(|(_, value)| *value != 0.0));
+    }
+    all
 }
 
 /// Square of the share of the root mean square from which a residual term counts as much as it is.

@@ -155,12 +155,22 @@ impl<'a> Problem<'a> {
         self.work.count(SEARCHED * self.recorded.frfs());
         let modelled = ModelledModes::of(&fixture, self.recorded)?;
         let pairing = Pairing::of(self.recorded, &modelled);
-        self.paired(&fixture, modelled, pairing)
+        self.paired((hypothesis, &fixture), modelled, pairing)
     }
 
-    fn paired(&self, fixture: &Fixture, modelled: ModelledModes, pairing: Pairing) -> Option<Standing> {
-        let shapes = Shapes::of(fixture, self.recorded, &modelled.poles())?;
-        let comparison = Comparison::new(self.recorded, &pairing, &modelled, &shapes);
+    fn paired(
+        &self,
+        (hypothesis, fixture): (&Hypothesis, &Fixture),
+        modelled: ModelledModes,
+        pairing: Pairing,
+    ) -> Option<Standing> {
+        let shapes = |fixture: &Fixture| Shapes::of(fixture, self.recorded, &modelled.poles());
+        let mut comparison = Comparison::new(self.recorded, &pairing, &modelled, &shapes(fixture)?);
+        // The damping of the fixture by itself is no proportional one of a structure with effects; which of both it is, if either, nobody knows.
+        let springs = hypothesis.to_fixture_without_dashpots();
+        if let Some(shapes) = springs.and_then(|fixture| shapes(&fixture)) {
+            comparison = comparison.with_damping_distributed_otherwise(self.recorded, &pairing, &shapes);
+        }
         Some(Standing { modelled, pairing, comparison })
     }
 
@@ -214,7 +224,7 @@ impl<'a> Problem<'a> {
         }
         let fixture = start.to_fixture().ok()?;
         let fitted = |pairing: Pairing| {
-            let standing = self.paired(&fixture, modelled.clone(), pairing)?;
+            let standing = self.paired((start, &fixture), modelled.clone(), pairing)?;
             self.fitted_from(start, standing, priors, (None, SetOut::Both, ANY))
         };
         others.into_iter().map(fitted).fold(first, more_probable)

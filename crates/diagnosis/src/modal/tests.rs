@@ -12,7 +12,7 @@ use crate::search::Search;
 use crate::settings::Settings;
 use crate::{Hypothesis, Observation, Watch};
 use jointscope_findings::{Estimate, Verdict};
-use jointscope_fixture::{Effect, EffectKind, Fixture, Place};
+use jointscope_fixture::{Dof, Effect, EffectKind, Fixture, Place};
 use jointscope_lumped::{Instrument, synthesize};
 use jointscope_model_error::ErrorSizes;
 use jointscope_spectra::{FrfPair, SpectralLines};
@@ -140,6 +140,34 @@ fn a_dashpot_is_known_no_better_than_the_damping_of_the_modes_that_it_damps() {
     let share = with * 3f64.sqrt() / ERROR;
     assert!((0.85..1.3).contains(&share), "known to {with}, the modes' damping to {ERROR}");
     assert!(with > 2.0 * without, "known to {with}, by phases that err in nothing to {without}");
+}
+
+#[test]
+fn a_joint_that_is_softer_than_stated_may_be_damped_in_proportion_all_the_same() {
+    // The strip turns on a rotational spring at its far end, and damping ratios are those of the assembly with that. An effect leaves the fixture's damping matrix as it stands.
+    let (length, bending, spring) = (0.065_f64, 2.07e11 * 3.67e-10, 1200.0);
+    let [a, b, d] =
+        [length.powi(3) / 3.0 / bending, length.powi(2) / 2.0 / bending, length / bending + 1.0 / spring];
+    let determinant = a * d - b * b;
+    let [a, b, d] = [d, -b, a].map(|entry| entry / determinant);
+    let blocks = BLOCKS.replace("\"value\": 0.006", "\"value\": 0.02");
+    let beam = r#""beam": { "youngs_modulus": 2.07e11, "second_moment": 3.67e-10 }"#;
+    let softer = blocks.replace(beam, &format!(r#""stiffness": [[{a}, {b}], [{b}, {d}]]"#));
+    assert_ne!(softer, blocks);
+    let observation = recorded(&Hypothesis::nominal(&Fixture::from_json(&softer).unwrap(), true));
+    let nominal = Hypothesis::nominal(&Fixture::from_json(&blocks).unwrap(), true);
+    let features = Features::of(&observation, &nominal, &Settings::default().modal).unwrap();
+    let problem = features.problem(observation.work());
+    let place = Place::Point("3".into());
+    let kind = EffectKind::InterfaceCompliance;
+    let start = nominal.with(Effect::new(kind, place, Some(Dof::Rotation), &[spring, 0.0]));
+    let own = start.coordinates[nominal.coordinates.len()..].iter().map(|at| Prior { mean: *at, std: 1.0 });
+    let priors: Vec<Prior> = priors(&nominal, &[]).into_iter().chain(own).collect();
+    let fit = problem.fitted(&start, &priors).unwrap();
+    let found = fit.hypothesis.effects()[0].value(0);
+    let quadrature = fit.evidence.sizes.quadrature / problem.sizes.quadrature;
+    assert!(quadrature < 0.1, "shapes' phases are off by {quadrature:.2} times what is usual");
+    assert!((found / spring - 1.0).abs() < 0.02, "{found} N m/rad");
 }
 
 #[test]
