@@ -35,6 +35,9 @@ struct Catalogue<'a> {
 impl Catalogue<'_> {
     /// Lists a kind at a place, in every degree of freedom that it can have there, where it has starts and is possible.
     fn add(&mut self, kind: EffectKind, place: Place, joint: Option<&Joint>) {
+        if is_stated(self.fixture, kind, &place) {
+            return;
+        }
         let body = body_at(self.fixture, &place);
         // What holds a whole body against rotation: of a beam there is no such thing.
         let whole = body.is_some_and(|body| matches!(self.fixture.bodies()[body].kind, BodyKind::Rigid(_)));
@@ -134,6 +137,12 @@ impl Catalogue<'_> {
         }
         kinds(|spec| spec.place == All).for_each(|kind| self.add(kind, Place::All, None));
     }
+}
+
+/// Whether a fixture states what the name says that it leaves out: a strip's mass, or that it shears. What is wrong there is the quantity.
+fn is_stated(fixture: &Fixture, kind: EffectKind, place: &Place) -> bool {
+    matches!(kind, EffectKind::JointMass | EffectKind::ShearDeformation)
+        && fixture.physics().iter().any(|own| own.kind == kind && own.place == *place)
 }
 
 /// Departures from which a search for a wrong quantity sets out, as multiples of that which the refit made: what else it bent was bent in its stead.

@@ -67,17 +67,17 @@ pub(crate) fn judged(
     let of = (fixture, options.exact);
     let known = modal.as_ref();
     let Some(modal) = known.filter(|modal| !modal.needs_nothing()) else {
-        return Ok(by_lines(fitter, within, of, (Start::Anew, known), division));
+        return Ok(by_lines(fitter, within, of, (Start::Anew, known), division.as_ref()));
     };
     // What explains the lines down to their noise without any error of the model needs none: found among the modes, or, where these are dubious, by a
     // search on lines.
     if let Some(exact) = modal.exact(fitter) {
-        return Ok(by_lines(fitter, within, of, (Start::Modes(modal, exact), known), division));
+        return Ok(by_lines(fitter, within, of, (Start::Modes(modal, exact), known), division.as_ref()));
     }
     // Where errors of the usual size do not explain the modes, these may have rested in a false minimum, and the names that they hold most probable, or quantities that
     // are wrong, explain the lines down to their noise.
     if let Some(found) = within.explained_among(fitter, modal.in_question(fitter)) {
-        return Ok(by_lines(fitter, within, of, (Start::Found(Box::new(found)), known), division));
+        return Ok(by_lines(fitter, within, of, (Start::Found(Box::new(found)), known), division.as_ref()));
     }
     // Where a free fit that needed all it may leaves no doubt of the names, lines find nothing better.
     let may = modal.is_dubious(fitter)
@@ -92,7 +92,11 @@ pub(crate) fn judged(
     let not_in_error = modal.search.best.exact || modal.has_right_modes() || !told;
     if explained || not_in_error {
         let start = searched.map_or(Start::Anew, |search| Start::Searched(Box::new(search)));
-        return Ok(by_lines(fitter, within, of, (start, known), division));
+        let parts = by_lines(fitter, within.clone(), of, (start, known), division.as_ref());
+        // What explains the modes stands where lines come to nothing but quantities far off.
+        if parts.verdict != Verdict::Unexplained || !modal.names_all() {
+            return Ok(parts);
+        }
     }
     Ok(by_modes(fitter, &within, modal, division.as_ref()))
 }
@@ -146,11 +150,11 @@ fn by_lines(
     within: Search,
     (fixture, exact): (&Fixture, bool),
     (start, modal): (Start, Option<&ModalJudgement>),
-    division: Option<Division>,
+    division: Option<&Division>,
 ) -> Parts {
     let Fitter { observation, settings, .. } = *fitter;
     let seen = |known: Option<&ModalJudgement>| {
-        let division = division.as_ref().filter(|_| observation.work().allows(UNSEEN))?;
+        let division = division.filter(|_| observation.work().allows(UNSEEN))?;
         blind(&fitter.on(&division.seen), (fixture, exact), known)
     };
     // What sees less goes first where nothing is known, and the whole recording only has to confirm or correct it.
@@ -177,7 +181,7 @@ fn by_lines(
     });
     if let Some(fewer) = without_imitations(fitter, &search, modal) {
         match explaining {
-            Some(modal) => return by_modes(fitter, &search, modal, division.as_ref()),
+            Some(modal) => return by_modes(fitter, &search, modal, division),
             None => search = fewer,
         }
     }

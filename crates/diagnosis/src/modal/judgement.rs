@@ -202,12 +202,10 @@ impl Judge<'_> {
         let all = |fit: &ModalFit| squares(self.searcher.problem.relative_sizes_with_gains(fit));
         // Or those of the modes in the band alone, if no others grow for that: what lies above the band is the model's affair too, but not what a name is about.
         let modes = |fit: &ModalFit| squares(self.searcher.problem.relative_sizes_of_modes(fit));
-        // A channel's signal has no part in natural frequencies: whatever these are wrong by, a factor on it may be all that residues lack.
-        let signals = |fit: &ModalFit| squares(self.searcher.problem.relative_sizes_of_signals(fit));
         let part = self.searcher.settings.part;
         let in_part = || {
             model(&best.fit) < part * model(none)
-                || is_of_signals(&best.fit) && signals(&best.fit) < part * signals(none)
+                || is_of_signals(&best.fit) && !self.made_up_for_by_signals(&best.fit).is_empty()
                 || all(&best.fit) < part * all(none)
                 || modes(&best.fit) < part * modes(none) && model(&best.fit) < model(none)
         };
@@ -218,6 +216,23 @@ impl Judge<'_> {
             (false, false) if in_part() => Verdict::PartlyExplained,
             (false, false) => Verdict::Unexplained,
         }
+    }
+
+    /// What is left, as multiples of what is usual, of the kinds of error in whose stead factors on channels' signals stand: those that are beyond what is usual without them,
+    /// and with them no more than the lesser part. A signal has no part in natural frequencies, a gain none in what lies above the band: whatever these are wrong by, the factor may
+    /// be all that the others lack. Nothing where others grow for it.
+    fn made_up_for_by_signals(&self, best: &ModalFit) -> Vec<f64> {
+        let of = |fit: &ModalFit| self.searcher.problem.relative_sizes_of_signals(fit);
+        let (without, with) = (of(&self.search.none), of(best));
+        let sum = |sizes: &[f64]| sizes.iter().map(|s| s * s).sum::<f64>();
+        if sum(&with) > sum(&without) {
+            return Vec::new();
+        }
+        let part = self.searcher.settings.part;
+        let both = without.iter().zip(with);
+        both.filter(|(without, with)| **without > 1.0 && with * with < part * *without * *without)
+            .map(|(_, with)| with)
+            .collect()
     }
 
     /// Probabilities of the names that may stand in one effect's stead; the rest to one is something not listed.
@@ -236,7 +251,7 @@ impl Judge<'_> {
         let (usual, most) = self.searcher.settings.unlisted;
         let problem = &self.searcher.problem;
         let sizes = match is_of_signals(best) {
-            true => problem.relative_sizes_of_signals(best),
+            true => self.made_up_for_by_signals(best),
             false => problem.relative_sizes(best),
         };
         let strain: f64 = sizes.iter().map(|s| 0.5 * (s * s - 1.0).max(0.0)).sum();
@@ -275,6 +290,11 @@ impl ModalJudgement {
     /// Whether errors of the usual size explain the modes, with what was found or but for the lesser part.
     pub(crate) fn explains(&self) -> bool {
         self.verdict != Verdict::Unexplained
+    }
+
+    /// Whether effects explain the modes.
+    pub(crate) fn names_all(&self) -> bool {
+        self.verdict == Verdict::Explained
     }
 
     /// Whether the comparison rests on modes that may not be all there are, a free fit short of the noise or modes without a partner, or on records that

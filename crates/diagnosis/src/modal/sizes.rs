@@ -117,7 +117,7 @@ impl Problem<'_> {
         })
     }
 
-    /// The same without those of natural frequencies and damping, but with the gains of records: the errors in whose stead a factor on channels' signals may stand.
+    /// The same by kind, gains of records among them and without those of natural frequencies and damping, in which a channel's signal has no part.
     pub(crate) fn relative_sizes_of_signals(&self, fit: &ModalFit) -> Vec<f64> {
         self.over_usual(&ErrorSizes { frequency: 0.0, damping: 0.0, ..self.seen(fit).sizes })
     }
