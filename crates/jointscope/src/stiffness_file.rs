@@ -110,26 +110,35 @@ struct JointEntry<'a> {
     laws: Vec<ComparedLaw>,
 }
 
-/// Parameters of a law over frequency; the matrix of its losses has a name of its own in each.
+/// Parameters of a law over frequency.
 #[derive(Serialize)]
 struct LawParameters {
     stiffness: RealMatrix2,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    damping: Option<RealMatrix2>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    imaginary_stiffness: Option<RealMatrix2>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    relaxing_stiffness: Option<RealMatrix2>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    springpot: Option<RealMatrix2>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    time: Option<f64>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    exponent: Option<f64>,
+    #[serde(flatten)]
+    losses: Option<Losses>,
+    #[serde(flatten)]
+    shape: Option<Shape>,
     #[serde(skip_serializing_if = "Option::is_none")]
     stiffness_per_rad_per_s: Option<RealMatrix2>,
     #[serde(skip_serializing_if = "Option::is_none")]
     mass: Option<f64>,
+}
+
+/// The matrix of a law's losses, which has a name of its own in each.
+#[derive(Serialize)]
+#[serde(rename_all = "snake_case")]
+enum Losses {
+    Damping(RealMatrix2),
+    ImaginaryStiffness(RealMatrix2),
+    RelaxingStiffness(RealMatrix2),
+    Springpot(RealMatrix2),
+}
+
+#[derive(Serialize)]
+#[serde(rename_all = "snake_case")]
+enum Shape {
+    Time(f64),
+    Exponent(f64),
 }
 
 /// The joint from the FRFs across it.
@@ -164,19 +173,21 @@ struct RestOn {
     explains_the_frfs: bool,
 }
 
-/// An interface's stiffness, as far as its compliance tells one.
 #[derive(Serialize)]
 struct InterfaceEntry {
-    #[serde(skip_serializing_if = "Option::is_none")]
-    stiffness: Option<f64>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    ci95: Option<[f64; 2]>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    above: Option<f64>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    says: Option<&'static str>,
+    #[serde(flatten)]
+    stiffness: StiffnessEntry,
     unit: &'static str,
     compliance: Compliance,
+}
+
+/// An interface's stiffness, as far as its compliance tells one.
+#[derive(Serialize)]
+#[serde(untagged)]
+enum StiffnessEntry {
+    Found { stiffness: f64, ci95: [f64; 2] },
+    StifferThan { above: f64 },
+    StifferThanTheBeam { says: &'static str },
 }
 
 /// Which FRFs of the recording were used, and how well they are known.
@@ -282,27 +293,17 @@ fn follows(fit: &JointFit) -> FollowedLaw {
 }
 
 fn law(law: &LawFit) -> ComparedLaw {
-    let mut parameters = LawParameters {
-        stiffness: law.stiffness,
-        damping: None,
-        imaginary_stiffness: None,
-        relaxing_stiffness: None,
-        springpot: None,
-        time: None,
-        exponent: None,
-        stiffness_per_rad_per_s: law.change,
-        mass: law.mass,
-    };
-    let losses = Some(law.damping);
-    match law.kind {
-        LawKind::Constant => {}
-        LawKind::Viscous | LawKind::LinearStiffness => parameters.damping = losses,
-        LawKind::Structural => parameters.imaginary_stiffness = losses,
+    let (losses, shape) = match law.kind {
+        LawKind::Constant => (None, None),
+        LawKind::Viscous | LawKind::LinearStiffness => (Some(Losses::Damping(law.damping)), None),
+        LawKind::Structural => (Some(Losses::ImaginaryStiffness(law.damping)), None),
         LawKind::StandardLinearSolid => {
-            (parameters.relaxing_stiffness, parameters.time) = (losses, law.shape)
+            (Some(Losses::RelaxingStiffness(law.damping)), law.shape.map(Shape::Time))
         }
-        LawKind::Fractional => (parameters.springpot, parameters.exponent) = (losses, law.shape),
-    }
+        LawKind::Fractional => (Some(Losses::Springpot(law.damping)), law.shape.map(Shape::Exponent)),
+    };
+    let (stiffness, stiffness_per_rad_per_s, mass) = (law.stiffness, law.change, law.mass);
+    let parameters = LawParameters { stiffness, losses, shape, stiffness_per_rad_per_s, mass };
     ComparedLaw {
         law: law.name(),
         probability: law.probability,
@@ -394,18 +395,16 @@ impl InterfaceEntries {
 
 impl InterfaceEntry {
     fn of(compliance: Compliance, unit: &'static str) -> Self {
-        let nothing =
-            InterfaceEntry { stiffness: None, ci95: None, above: None, says: None, unit, compliance };
-        match compliance.stiffness() {
+        let stiffness = match compliance.stiffness() {
             InterfaceStiffness::Found { stiffness, interval } => {
-                InterfaceEntry { stiffness: Some(stiffness), ci95: Some(interval), ..nothing }
+                StiffnessEntry::Found { stiffness, ci95: interval }
             }
-            InterfaceStiffness::StifferThan { above } => InterfaceEntry { above: Some(above), ..nothing },
-            InterfaceStiffness::StifferThanTheBeam => InterfaceEntry {
-                says: Some("the joint is stiffer than the beam it is said to be"),
-                ..nothing
+            InterfaceStiffness::StifferThan { above } => StiffnessEntry::StifferThan { above },
+            InterfaceStiffness::StifferThanTheBeam => StiffnessEntry::StifferThanTheBeam {
+                says: "the joint is stiffer than the beam it is said to be",
             },
-        }
+        };
+        InterfaceEntry { stiffness, unit, compliance }
     }
 }
 
