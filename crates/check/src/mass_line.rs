@@ -6,7 +6,7 @@
 
 use crate::figure::deviations;
 use crate::{Figure, ModelModes, RecordedModes, Totals};
-use jointscope_fixture::{BodyKind, Fixture};
+use jointscope_fixture::Fixture;
 use jointscope_linalg::LeastSquares;
 use jointscope_spectra::{Dof, FrfPair, FrfSet};
 use num_complex::Complex64;
@@ -155,8 +155,7 @@ fn largest(lines: &[MassLineFrf]) -> f64 {
 
 /// The mass with its deviation that the recording tells, and that which the fixture's own FRFs do, kg.
 fn masses(fixture: &Fixture, lines: &[MassLineFrf], totals: &Totals) -> (Option<(f64, f64)>, Option<f64>) {
-    let rotating =
-        fixture.bodies().iter().all(|body| !matches!(&body.kind, BodyKind::Rigid(r) if !r.rotates));
+    let rotating = fixture.bodies().iter().all(|body| body.kind.rotates());
     let at_best = AT_BEST * largest(lines);
     let recorded = |line: &MassLineFrf| (line.recorded.value, line.recorded.std.unwrap_or(0.0).max(at_best));
     let fixtures = |line: &MassLineFrf| (line.fixture, at_best);

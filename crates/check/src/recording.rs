@@ -96,12 +96,7 @@ impl RecordingCheck {
         if with_own_effects.physics().iter().any(|effect| effect.kind.is_nonlinear()) {
             notes.push("effects of the fixture that depend on amplitude have no FRF: they are left aside beside the recording's".to_owned());
         }
-        let mut contradictory = Vec::new();
-        if screened.frfs.all_values().len() > MOST_VALUES {
-            notes.push("there are too many FRFs and lines for a quick look at lines that contradict all others: `jointscope diagnose` takes its time".to_owned());
-        } else {
-            contradictory = contradictory_lines(fixture, &screened.frfs).unwrap_or_default();
-        }
+        let contradictory = contradictory(fixture, &screened.frfs, &mut notes);
         remarks.extend(frfs.iter().filter_map(of_coherence));
         let hz = measured_frfs.lines().hz();
         Ok(RecordingCheck {
@@ -238,6 +233,15 @@ fn with_force_as_meant(
         ));
     }
     Ok((measured, screened))
+}
+
+/// Bands of lines that contradict all others, where there are few enough to look for them.
+fn contradictory(fixture: &Fixture, frfs: &FrfSet, notes: &mut Vec<String>) -> Vec<(f64, f64)> {
+    if frfs.all_values().len() > MOST_VALUES {
+        notes.push("there are too many FRFs and lines for a quick look at lines that contradict all others: `jointscope diagnose` takes its time".to_owned());
+        return Vec::new();
+    }
+    contradictory_lines(fixture, frfs).unwrap_or_default()
 }
 
 /// Points of the fixture at which nothing was recorded, but for those that joints and supports are at.
