@@ -75,7 +75,7 @@ impl LawFit {
     }
 
     /// K(ω) and C(ω) of the dynamic stiffness K + sC on d at s = δ + iω, without the mass.
-    pub fn stiffness_and_damping(&self, s: Complex64) -> (RealMatrix2, RealMatrix2) {
+    fn stiffness_and_damping(&self, s: Complex64) -> (RealMatrix2, RealMatrix2) {
         let dynamic = self.dynamic_stiffness(s);
         let damping = dynamic.im().scale(1.0 / s.im);
         (dynamic.re() - damping.scale(s.re), damping)

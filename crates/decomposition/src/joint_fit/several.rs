@@ -141,10 +141,7 @@ fn bodies(fixture: &Fixture, joint: &Joint) -> [usize; 2] {
 
 /// Whether each joint's bodies do not rotate.
 fn scalars(fixture: &Fixture, joints: &[usize]) -> Result<Vec<bool>, SeveralError> {
-    let rotates = |body: usize| match &fixture.bodies()[body].kind {
-        BodyKind::Rigid(rigid) => rigid.rotates,
-        BodyKind::Beam(_) => true,
-    };
+    let rotates = |body: usize| fixture.bodies()[body].kind.rotates();
     let scalar = |&joint: &usize| {
         let joint = &fixture.joints()[joint];
         match bodies(fixture, joint).map(rotates) {
