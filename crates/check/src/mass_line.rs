@@ -6,7 +6,7 @@
 
 use crate::figure::deviations;
 use crate::{Figure, ModelModes, RecordedModes, Totals};
-use jointscope_fixture::{BodyKind, Fixture};
+use jointscope_fixture::Fixture;
 use jointscope_linalg::LeastSquares;
 use jointscope_spectra::{Dof, FrfPair, FrfSet};
 use num_complex::Complex64;
@@ -67,33 +67,64 @@ pub(crate) fn of(
     modes: &ModelModes,
     recorded: Option<&RecordedModes>,
 ) -> Result<MassLine, String> {
-    if modes.rigid == 0 && modes.highest_on_supports() == 0.0 {
-        return Err("the structure is held: it has no rigid-body motion to weigh it by".to_owned());
+    let rigid = RigidBand::of(frfs.lines().hz(), modes, recorded)?;
+    let frfs = intercepts(frfs, modelled, &rigid);
+    let (mass, fixture_mass) = masses(fixture, &frfs, totals);
+    let odd = mass.is_some_and(|(mass, std)| {
+        let apart = (mass - totals.mass.value).abs();
+        apart > OFF * totals.mass.value && apart > BEYOND * std.hypot(totals.mass.std.unwrap_or(0.0))
+    });
+    let mass = mass.map(|(value, std)| Figure { value, std: Some(std), unit: "kg" });
+    Ok(MassLine { band: rigid.band, frfs, mass, fixture_mass, odd })
+}
+
+/// The lines on which the structure moves as one rigid body.
+struct RigidBand {
+    /// Lines in use, by their places.
+    used: Vec<usize>,
+    /// The first and the last of them, Hz.
+    band: (f64, f64),
+    /// Whether supports hold the structure.
+    supported: bool,
+    /// The recording's own first bending mode, and the fixture's first elastic one, Hz.
+    bending: f64,
+    elastic: f64,
+}
+
+impl RigidBand {
+    fn of(hz: &[f64], modes: &ModelModes, recorded: Option<&RecordedModes>) -> Result<Self, String> {
+        let on_supports = modes.highest_on_supports();
+        if modes.rigid == 0 && on_supports == 0.0 {
+            return Err("the structure is held: it has no rigid-body motion to weigh it by".to_owned());
+        }
+        let elastic =
+            modes.first_elastic().ok_or("the model has no elastic mode above which a mass line would end")?;
+        // The recording's own first bending mode may lie lower than the fixture's.
+        let bending = recorded.iter().flat_map(|recorded| &recorded.modes).map(|mode| mode.frequency);
+        let bending = bending.filter(|hz| *hz > BAND.0 * on_supports).reduce(f64::min).unwrap_or(elastic);
+        let lowest = bending.min(elastic);
+        let (low, high) = (BAND.0 * on_supports, BAND.1 * lowest);
+        let used: Vec<usize> =
+            (0..hz.len()).filter(|&k| hz[k] > 0.0 && hz[k] >= low && hz[k] <= high).collect();
+        if low >= high {
+            return Err(format!(
+                "the highest mode on the supports, {on_supports:.1} Hz, is too near the first bending mode, {lowest:.1} Hz: at no frequency between them does the structure move as one rigid body; a softer suspension would weigh it"
+            ));
+        }
+        if used.len() < FEWEST {
+            return Err(format!(
+                "{} of the recording lie between {low:.1} and {high:.1} Hz, where the structure moves as one rigid body: a finer resolution or a lower first line would weigh it",
+                if used.is_empty() { "no lines".to_owned() } else { format!("only {} lines", used.len()) },
+            ));
+        }
+        let band = (hz[used[0]], hz[used[used.len() - 1]]);
+        Ok(RigidBand { used, band, supported: on_supports > 0.0, bending, elastic })
     }
-    let first =
-        modes.first_elastic().ok_or("the model has no elastic mode above which a mass line would end")?;
-    // The recording's own first bending mode may lie lower than the fixture's.
-    let bending = recorded.iter().flat_map(|recorded| &recorded.modes).map(|mode| mode.frequency);
-    let lowest = bending.filter(|hz| *hz > BAND.0 * modes.highest_on_supports()).reduce(f64::min);
-    let own = lowest.unwrap_or(first);
-    let (low, high) = (BAND.0 * modes.highest_on_supports(), BAND.1 * own.min(first));
+}
+
+/// The transverse FRFs as a rigid body's, recorded and modelled, and whether the two are odd beside each other.
+fn intercepts(frfs: &FrfSet, modelled: &[Complex64], rigid: &RigidBand) -> Vec<MassLineFrf> {
     let hz = frfs.lines().hz();
-    let used: Vec<usize> = (0..hz.len()).filter(|&k| hz[k] > 0.0 && hz[k] >= low && hz[k] <= high).collect();
-    if low >= high {
-        return Err(format!(
-            "the highest mode on the supports, {:.1} Hz, is too near the first bending mode, {:.1} Hz: at no frequency between them does the structure move as one rigid body; a softer suspension would weigh it",
-            modes.highest_on_supports(),
-            own.min(first)
-        ));
-    }
-    if used.len() < FEWEST {
-        return Err(format!(
-            "{} of the recording lie between {low:.1} and {high:.1} Hz, where the structure moves as one rigid body: a finer resolution or a lower first line would weigh it",
-            if used.is_empty() { "no lines".to_owned() } else { format!("only {} lines", used.len()) },
-        ));
-    }
-    let band = (hz[used[0]], hz[used[used.len() - 1]]);
-    let supported = modes.highest_on_supports() > 0.0;
     let transverse =
         |pair: &FrfPair| pair.response.dof == Dof::Translation && pair.reference.dof == Dof::Translation;
     let mut all = Vec::new();
@@ -101,43 +132,47 @@ pub(crate) fn of(
         let variance = frfs.variance(index).unwrap_or_default();
         let weight = |k: usize| variance.get(k).map_or(1.0, |v| 1.0 / (0.5 * v).max(f64::MIN_POSITIVE));
         let fixtures = &modelled[index * hz.len()..(index + 1) * hz.len()];
-        let recorded = intercept(hz, frfs.values(index), &used, weight, (supported, own));
-        let model = intercept(hz, fixtures, &used, weight, (supported, first));
+        let fitted = |values: &[Complex64], first: f64| {
+            intercept(hz, values, &rigid.used, weight, (rigid.supported, first))
+        };
+        let (recorded, model) = (fitted(frfs.values(index), rigid.bending), fitted(fixtures, rigid.elastic));
         if let (Some((value, std)), Some((fixture, _))) = (recorded, model) {
             let recorded = Figure { value, std: Some(std), unit: "1/kg" };
             all.push(MassLineFrf { frf: frfs.pairs()[index].clone(), recorded, fixture, odd: false });
         }
     }
-    let largest = all.iter().map(|line| line.fixture.abs()).fold(0.0, f64::max);
+    let largest = largest(&all);
     for line in &mut all {
         let apart = (line.recorded.value - line.fixture).abs();
         line.odd = apart > OFF_FRF * largest && apart > BEYOND * line.recorded.std.unwrap_or(0.0);
     }
-    let rotating =
-        fixture.bodies().iter().all(|body| !matches!(&body.kind, BodyKind::Rigid(r) if !r.rotates));
-    let recorded =
-        |line: &MassLineFrf| (line.recorded.value, line.recorded.std.unwrap_or(0.0).max(AT_BEST * largest));
-    let fixtures = |line: &MassLineFrf| (line.fixture, AT_BEST * largest);
-    let ends = all.iter().flat_map(|line| [&line.frf.response.point, &line.frf.reference.point]);
+    all
+}
+
+fn largest(lines: &[MassLineFrf]) -> f64 {
+    lines.iter().map(|line| line.fixture.abs()).fold(0.0, f64::max)
+}
+
+/// The mass with its deviation that the recording tells, and that which the fixture's own FRFs do, kg.
+fn masses(fixture: &Fixture, lines: &[MassLineFrf], totals: &Totals) -> (Option<(f64, f64)>, Option<f64>) {
+    let rotating = fixture.bodies().iter().all(|body| body.kind.rotates());
+    let at_best = AT_BEST * largest(lines);
+    let recorded = |line: &MassLineFrf| (line.recorded.value, line.recorded.std.unwrap_or(0.0).max(at_best));
+    let fixtures = |line: &MassLineFrf| (line.fixture, at_best);
+    let ends = lines.iter().flat_map(|line| [&line.frf.response.point, &line.frf.reference.point]);
     let channels: BTreeSet<&str> = ends.map(String::as_str).collect();
     // Places that are not quite where they are said to be weigh more than noise.
     let places = |mass: f64| {
-        let moved = |moved: &Fixture| Some(vec![weighed(moved, &all, recorded, rotating)?.0]);
+        let moved = |moved: &Fixture| Some(vec![weighed(moved, lines, recorded, rotating)?.0]);
         deviations(fixture, &[mass], &channels, moved)[0].unwrap_or(f64::INFINITY)
     };
-    let mass = weighed(fixture, &all, recorded, rotating);
-    let mass =
-        mass.map(|(mass, std)| (mass, std.hypot(places(mass)))).filter(|(mass, std)| *std < TOLD * mass);
-    let fixture_mass = weighed(fixture, &all, fixtures, rotating).map(|(mass, _)| mass);
+    let mass = weighed(fixture, lines, recorded, rotating)
+        .map(|(mass, std)| (mass, std.hypot(places(mass))))
+        .filter(|(mass, std)| *std < TOLD * mass);
+    let fixture_mass = weighed(fixture, lines, fixtures, rotating).map(|(mass, _)| mass);
     // Where the fixture's own FRFs do not tell its mass, the recording's do not either.
     let fixture_mass = fixture_mass.filter(|mass| (mass / totals.mass.value - 1.0).abs() < OWN);
-    let mass = mass.filter(|_| fixture_mass.is_some());
-    let odd = mass.is_some_and(|(mass, std)| {
-        let apart = (mass - totals.mass.value).abs();
-        apart > OFF * totals.mass.value && apart > BEYOND * std.hypot(totals.mass.std.unwrap_or(0.0))
-    });
-    let mass = mass.map(|(value, std)| Figure { value, std: Some(std), unit: "kg" });
-    Ok(MassLine { band, frfs: all, mass, fixture_mass, odd })
+    (mass.filter(|_| fixture_mass.is_some()), fixture_mass)
 }
 
 /// a₀ of the real parts on the lines `used`, with its standard deviation, that of the noise or of what the fit leaves, whichever is larger.

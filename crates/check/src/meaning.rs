@@ -40,21 +40,7 @@ pub(crate) fn of(fixture: &Fixture, quantity: &NamedQuantity, total_mass: f64) -
                 millimetres(12f64.sqrt() * gyration)
             ))
         }
-        (QuantityOwner::Body(body), Key::CentreOfGravity) => {
-            let points = fixture.points().iter().filter(|point| point.body == body);
-            let (low, high) = points.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), point| {
-                (low.min(point.x.value), high.max(point.x.value))
-            });
-            (low <= high).then(|| match value {
-                x if x < low => format!("left of its points by {}", millimetres(low - x)),
-                x if x > high => format!("right of its points by {}", millimetres(x - high)),
-                x => format!(
-                    "{} right of its first point, {} left of its last",
-                    millimetres(x - low),
-                    millimetres(high - x)
-                ),
-            })
-        }
+        (QuantityOwner::Body(body), Key::CentreOfGravity) => among_points(fixture, body, value),
         (_, Key::YoungsModulus) => Some(match material(value) {
             Some(material) => format!("{:.1} GPa, as of {}", 1e-9 * value, material.name),
             None => format!("{:.1} GPa", 1e-9 * value),
@@ -90,6 +76,23 @@ pub(crate) fn of(fixture: &Fixture, quantity: &NamedQuantity, total_mass: f64) -
         (_, Key::ModalRatio(_)) => Some(format!("{:.3} % of critical", 100.0 * value)),
         _ => None,
     }
+}
+
+/// Where an abscissa lies among the points of a body.
+fn among_points(fixture: &Fixture, body: usize, x: f64) -> Option<String> {
+    let points = fixture.points().iter().filter(|point| point.body == body);
+    let (low, high) = points.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), point| {
+        (low.min(point.x.value), high.max(point.x.value))
+    });
+    (low <= high).then(|| match x {
+        x if x < low => format!("left of its points by {}", millimetres(low - x)),
+        x if x > high => format!("right of its points by {}", millimetres(x - high)),
+        x => format!(
+            "{} right of its first point, {} left of its last",
+            millimetres(x - low),
+            millimetres(high - x)
+        ),
+    })
 }
 
 /// A beam body's section as a rectangle, where its modulus tells the material and that its density.

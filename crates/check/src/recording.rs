@@ -12,7 +12,7 @@ use jointscope_fixture::{Damping, Effect, Fixture, Quantity, RatiosOf};
 use jointscope_frf::noise::with_variances;
 use jointscope_lumped::{Instrument, accelerances};
 use jointscope_pipeline::{Error, MeasuredFrfs, Measurement};
-use jointscope_screening::{Oddity, screened};
+use jointscope_screening::{Oddity, Screened, screened};
 use jointscope_spectra::{FrfForm, FrfSet, in_text};
 use num_complex::Complex64;
 use serde::Serialize;
@@ -69,19 +69,8 @@ impl RecordingCheck {
         options: &CheckOptions,
         remarks: &mut Vec<Remark>,
     ) -> Result<Self, Error> {
-        let mut measured = at_one_level(measurement, options)?;
-        let mut screened = self::screened(measured.frfs.clone(), fixture)?;
-        // A receptance that is called an accelerance has the opposite sign as well.
-        let of_another_form = screened.oddities.iter().any(|oddity| matches!(oddity, Oddity::Form(_)));
-        if !of_another_form && is_turned(&measured.frfs, fixture) {
-            // FRFs of the wrong sign are like none of the fixture's, and labels would be looked for that suit them better.
-            measured.frfs = measured.frfs.with_values(|_, value| -value);
-            screened = self::screened(measured.frfs.clone(), fixture)?;
-            remarks.push(Remark::wrong(
-                "force",
-                "next to all FRFs have the opposite sign to the fixture's: the force is recorded the other way round; turn it with --map, or in the file (for all that follows here it is turned)",
-            ));
-        }
+        let (measured, screened) =
+            with_force_as_meant(at_one_level(measurement, options)?, fixture, remarks)?;
         remarks.extend(screened.oddities.iter().map(of_oddity));
         let with_own_effects = fixture;
         let fixture = &drawn(measured.as_recorded(fixture)?);
@@ -90,25 +79,14 @@ impl RecordingCheck {
             Err(_) => (screened.frfs.clone(), Vec::new()),
         };
         let modelled =
-            match accelerances(fixture, measured_frfs.pairs(), measured_frfs.lines(), Instrument::AsRecorded)
-            {
-                Ok(values) => Some(values),
-                Err(error) => {
-                    remarks.push(Remark::wrong(
-                        "fixture",
-                        format!("it has no FRFs to lay beside the recording's: {error}"),
-                    ));
-                    None
-                }
-            };
+            accelerances(fixture, measured_frfs.pairs(), measured_frfs.lines(), Instrument::AsRecorded)
+                .map_err(|error| {
+                    let says = format!("it has no FRFs to lay beside the recording's: {error}");
+                    remarks.push(Remark::wrong("fixture", says));
+                })
+                .ok();
         let frfs = frfs::of(&measured_frfs, &sources, modelled.as_deref());
-        for (index, pair) in measured_frfs.pairs().iter().enumerate() {
-            remarks.extend(crate::frfs::absurd(&measured_frfs, index).map(|hz| {
-                let hz = in_text(hz);
-                let says = format!("its value at {hz} Hz is more than a million times what the lines about it have: no structure has that; export it again, or leave that line out of a diagnosis with --exclude");
-                Remark::wrong(pair.to_string(), says)
-            }));
-        }
+        remarks.extend(of_absurd_values(&measured_frfs));
         let channels = channels::of(&frfs, remarks);
         let driving_points = driving_point::of(&measured_frfs, measured.window_decay);
         remarks.extend(driving_points.iter().filter_map(of_driving_point));
@@ -118,27 +96,13 @@ impl RecordingCheck {
         if with_own_effects.physics().iter().any(|effect| effect.kind.is_nonlinear()) {
             notes.push("effects of the fixture that depend on amplitude have no FRF: they are left aside beside the recording's".to_owned());
         }
-        let mut contradictory = Vec::new();
-        if screened.frfs.all_values().len() > MOST_VALUES {
-            notes.push("there are too many FRFs and lines for a quick look at lines that contradict all others: `jointscope diagnose` takes its time".to_owned());
-        } else {
-            contradictory = contradictory_lines(fixture, &screened.frfs).unwrap_or_default();
-        }
+        let contradictory = contradictory(fixture, &screened.frfs, &mut notes);
         remarks.extend(frfs.iter().filter_map(of_coherence));
         let hz = measured_frfs.lines().hz();
-        let recorded = |name: &str| {
-            let of = |pair: &jointscope_spectra::FrfPair| {
-                pair.response.point == name || pair.reference.point == name
-            };
-            measured_frfs.pairs().iter().any(of)
-        };
-        let joined: Vec<usize> = fixture.held_points().collect();
-        let points = fixture.points().iter().enumerate();
-        let without = points.filter(|(index, point)| !recorded(&point.name) && !joined.contains(index));
         Ok(RecordingCheck {
             notes,
             lines: (hz[0], hz[hz.len() - 1], hz.len()),
-            without_recording: without.map(|(_, point)| point.name.clone()).collect(),
+            without_recording: without_recording(fixture, &measured_frfs),
             nrmse: modelled
                 .as_deref()
                 .and_then(|modelled| crate::frfs::nrmse(measured_frfs.all_values(), modelled)),
@@ -250,6 +214,48 @@ fn set_like(measured: &FrfSet, values: Vec<Complex64>) -> Option<FrfSet> {
     FrfSet::new(measured.lines().clone(), FrfForm::Accelerance, measured.pairs().to_vec(), values).ok()
 }
 
+/// The FRFs screened; turned round, with a remark, where next to all of them have the wrong sign.
+fn with_force_as_meant(
+    mut measured: MeasuredFrfs,
+    fixture: &Fixture,
+    remarks: &mut Vec<Remark>,
+) -> Result<(MeasuredFrfs, Screened), Error> {
+    let mut screened = self::screened(measured.frfs.clone(), fixture)?;
+    // A receptance that is called an accelerance has the opposite sign as well.
+    let of_another_form = screened.oddities.iter().any(|oddity| matches!(oddity, Oddity::Form(_)));
+    if !of_another_form && is_turned(&measured.frfs, fixture) {
+        // FRFs of the wrong sign are like none of the fixture's, and labels would be looked for that suit them better.
+        measured.frfs = measured.frfs.with_values(|_, value| -value);
+        screened = self::screened(measured.frfs.clone(), fixture)?;
+        remarks.push(Remark::wrong(
+            "force",
+            "next to all FRFs have the opposite sign to the fixture's: the force is recorded the other way round; turn it with --map, or in the file (for all that follows here it is turned)",
+        ));
+    }
+    Ok((measured, screened))
+}
+
+/// Bands of lines that contradict all others, where there are few enough to look for them.
+fn contradictory(fixture: &Fixture, frfs: &FrfSet, notes: &mut Vec<String>) -> Vec<(f64, f64)> {
+    if frfs.all_values().len() > MOST_VALUES {
+        notes.push("there are too many FRFs and lines for a quick look at lines that contradict all others: `jointscope diagnose` takes its time".to_owned());
+        return Vec::new();
+    }
+    contradictory_lines(fixture, frfs).unwrap_or_default()
+}
+
+/// Points of the fixture at which nothing was recorded, but for those that joints and supports are at.
+fn without_recording(fixture: &Fixture, measured: &FrfSet) -> Vec<String> {
+    let is_recorded = |name: &str| {
+        let mut pairs = measured.pairs().iter();
+        pairs.any(|pair| pair.response.point == name || pair.reference.point == name)
+    };
+    let held: Vec<usize> = fixture.held_points().collect();
+    let points = fixture.points().iter().enumerate();
+    let without = points.filter(|(index, point)| !is_recorded(&point.name) && !held.contains(index));
+    without.map(|(_, point)| point.name.clone()).collect()
+}
+
 /// Whether next to all FRFs have the opposite sign to the fixture's.
 fn is_turned(measured: &FrfSet, fixture: &Fixture) -> bool {
     let modelled =
@@ -327,6 +333,14 @@ fn of_oddity(oddity: &Oddity) -> Remark {
         }
         oddity => Remark::wrong("recording", format!("{oddity} (here and in a diagnosis)")),
     }
+}
+
+fn of_absurd_values(measured: &FrfSet) -> impl Iterator<Item = Remark> {
+    measured.pairs().iter().enumerate().filter_map(|(index, pair)| {
+        let hz = in_text(frfs::absurd(measured, index)?);
+        let says = format!("its value at {hz} Hz is more than a million times what the lines about it have: no structure has that; export it again, or leave that line out of a diagnosis with --exclude");
+        Some(Remark::wrong(pair.to_string(), says))
+    })
 }
 
 fn of_driving_point(point: &DrivingPoint) -> Option<Remark> {

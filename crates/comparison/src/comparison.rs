@@ -147,22 +147,7 @@ impl Comparison {
         if let Some((name, _)) = options.specimens.iter().find(|(_, places)| places.len() < 2) {
             return Err(ComparisonError::OneSpecimen(name.clone()));
         }
-        let [first, others @ ..] = joints.as_slice() else { return Err(ComparisonError::TooFew) };
-        if others.is_empty() {
-            return Err(ComparisonError::TooFew);
-        }
-        if let Some(other) = others.iter().find(|joint| joint.relation != first.relation) {
-            return Err(ComparisonError::Relations {
-                first: first.name.clone(),
-                one: first.relation.clone(),
-                second: other.name.clone(),
-                other: other.relation.clone(),
-            });
-        }
-        if let Some(i) = (1..joints.len()).find(|&i| joints[..i].iter().any(|j| j.name == joints[i].name)) {
-            return Err(ComparisonError::Twice(joints[i].name.clone()));
-        }
-        let relation = first.relation.clone();
+        let relation = common_relation(&joints)?;
         let compared = Compared::of(&relation, &joints);
         if let Some(joint) = joints.iter().find(|joint| !compared.is_had_by(joint)) {
             let other = joints.iter().find(|joint| !Compared::AllFrfs.is_had_by(joint));
@@ -243,6 +228,26 @@ impl Comparison {
         let mut stiffness = self.rankings.iter().filter(|entry| entry.kind == Kind::Stiffness).peekable();
         let settled = stiffness.peek().is_some() && stiffness.all(ElementRanking::is_settled);
         settled && self.is_sound() && self.compared == Compared::AllFrfs
+    }
+}
+
+/// The relation of all joints, two or more, no two of one name.
+fn common_relation(joints: &[Decomposed]) -> Result<String, ComparisonError> {
+    let [first, others @ ..] = joints else { return Err(ComparisonError::TooFew) };
+    if others.is_empty() {
+        return Err(ComparisonError::TooFew);
+    }
+    if let Some(other) = others.iter().find(|joint| joint.relation != first.relation) {
+        return Err(ComparisonError::Relations {
+            first: first.name.clone(),
+            one: first.relation.clone(),
+            second: other.name.clone(),
+            other: other.relation.clone(),
+        });
+    }
+    match (1..joints.len()).find(|&i| joints[..i].iter().any(|j| j.name == joints[i].name)) {
+        Some(twice) => Err(ComparisonError::Twice(joints[twice].name.clone())),
+        None => Ok(first.relation.clone()),
     }
 }
 

@@ -17,8 +17,7 @@
 use crate::bodies::{Part, connected, differing, in_company, parts, shared, tests, told};
 use crate::common_law::CommonLaw;
 use crate::{Apart, Decomposed, Estimate, Number, SharedBody, WhyApart};
-use jointscope_inference::NormalEquations;
-use statrs::function::gamma::gamma_ur;
+use jointscope_inference::{NormalEquations, birge_ratio};
 use std::collections::BTreeMap;
 
 /// The numbers of all joints with their covariance.
@@ -40,6 +39,36 @@ pub struct Together {
     pub one_law: Vec<Vec<String>>,
     /// Paths of quantities that not all fixtures state alike, where that keeps a body from being the same.
     pub differing: Vec<String>,
+}
+
+/// Takes the joints of a test apart.
+fn part(test: &[usize], why: &mut [Option<WhyApart>], reason: WhyApart) {
+    test.iter().for_each(|&joint| why[joint] = Some(reason));
+}
+
+/// Why joints are apart before anything is said of their bodies; and which would have company but for being on the boundary.
+fn apart_beforehand(
+    joints: &[Decomposed],
+    tests: &[Vec<usize>],
+    asked_apart: bool,
+) -> (Vec<Option<WhyApart>>, Vec<bool>) {
+    let mut why: Vec<Option<WhyApart>> = vec![None; joints.len()];
+    for test in tests {
+        match told(joints, test) {
+            _ if asked_apart => part(test, &mut why, WhyApart::Asked),
+            Some(_) => {}
+            None => part(test, &mut why, WhyApart::NotStated),
+        }
+    }
+    let has_company = in_company(joints, &why);
+    let is_held =
+        |joint: &usize| joints[*joint].fitted.as_ref().is_some_and(|fit| fit.on_the_boundary_of_passive);
+    for test in tests {
+        if why[test[0]].is_none() && test.iter().any(is_held) {
+            part(test, &mut why, WhyApart::OnTheBoundary);
+        }
+    }
+    (why, has_company)
 }
 
 impl Together {
@@ -65,25 +94,7 @@ impl Together {
         for test in &tests {
             together.put_test(joints, test, numbers);
         }
-        let mut why: Vec<Option<WhyApart>> = vec![None; joints.len()];
-        let part = |test: &[usize], why: &mut [Option<WhyApart>], reason: WhyApart| {
-            test.iter().for_each(|&joint| why[joint] = Some(reason));
-        };
-        for test in &tests {
-            match told(joints, test) {
-                _ if asked_apart => part(test, &mut why, WhyApart::Asked),
-                Some(_) => {}
-                None => part(test, &mut why, WhyApart::NotStated),
-            }
-        }
-        let has_company = in_company(joints, &why);
-        let is_held =
-            |joint: &usize| joints[*joint].fitted.as_ref().is_some_and(|fit| fit.on_the_boundary_of_passive);
-        for test in &tests {
-            if why[test[0]].is_none() && test.iter().any(is_held) {
-                part(test, &mut why, WhyApart::OnTheBoundary);
-            }
-        }
+        let (mut why, has_company) = apart_beforehand(joints, &tests, asked_apart);
         let groups = loop {
             let parts = parts(joints, &why);
             together.shared = shared(joints, &parts);
@@ -261,14 +272,9 @@ impl Together {
     }
 }
 
-/// Probability below which the quantities' departures are no chance, as in the decomposition.
-const NO_CHANCE: f64 = 0.01;
-
 /// Birge's ratio of quantities' squared departures from what is stated to what chance makes of them (each given with it); 1 where chance explains them.
 fn strain(departures: impl Iterator<Item = (f64, f64)>) -> f64 {
     let (squares, expected) =
         departures.fold((0.0, 0.0), |(s, e), (square, chance)| (s + square, e + chance.clamp(0.0, 1.0)));
-    let ratio: f64 = squares / expected;
-    let by_chance = |ratio: f64| gamma_ur(0.5 * expected, 0.5 * ratio * expected) >= NO_CHANCE;
-    if !(expected > 0.0 && ratio > 1.0) || by_chance(ratio) { 1.0 } else { ratio }
+    birge_ratio(squares, expected)
 }

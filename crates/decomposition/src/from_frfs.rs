@@ -37,6 +37,13 @@ impl Default for AnalysisOptions {
     }
 }
 
+impl AnalysisOptions {
+    /// What a fit to all FRFs is asked for.
+    pub fn of_fit(&self) -> JointFitOptions {
+        JointFitOptions { band: self.band, exact: self.exact, laws: self.laws }
+    }
+}
+
 impl Analysis {
     /// Decomposes `frfs` for a joint of `fixture`.
     ///
@@ -65,15 +72,11 @@ impl Analysis {
         let exact = of_paper.as_ref().unwrap_or(&spectrum);
         let nominal_stiffness = jointscope_lumped::nominal_stiffness(&sides.joint().law, sides.length());
         let likelihood = maximum_likelihood(&frfs, &sides, exact, options.band, Some(nominal_stiffness));
-        let fit_options = JointFitOptions { band: options.band, exact: options.exact, laws: options.laws };
         let near = likelihood.as_ref().ok();
-        let joint_fit = fit_joint(&frfs, &sides, exact.scalar, near, nominal_stiffness, fit_options);
-        let model = match &likelihood {
-            Ok(fit) => (fit.stiffness, fit.damping),
-            Err(_) => (nominal_stiffness, RealMatrix2::zero()),
-        };
+        let joint_fit = fit_joint(&frfs, &sides, exact.scalar, near, nominal_stiffness, options.of_fit());
+        let model = near.map_or((nominal_stiffness, RealMatrix2::zero()), |fit| (fit.stiffness, fit.damping));
         let averages = Averages::of(&spectrum, options.band, model)?;
-        let fitted = likelihood.as_ref().ok().map(|fit| (fit, exact, options.band));
+        let fitted = near.map(|fit| (fit, exact, options.band));
         let decomposed = NominalResult {
             frfs: &frfs,
             sides: &sides,
@@ -83,11 +86,10 @@ impl Analysis {
         };
         let ToleranceShares { shares: tolerances, lost: lost_tolerances } =
             tolerance_shares(&decomposed, options.exact)?;
-        let interfaces = match interfaces_rest_on(&joint_fit, &likelihood) {
-            Some(InterfaceSource::AllFrfs(fit)) => fitted_interfaces(fit, &sides, options.exact),
-            Some(InterfaceSource::Across(fit)) => joint_interfaces(fit, &sides, &tolerances),
-            None => None,
-        };
+        let interfaces = interfaces_rest_on(&joint_fit, &likelihood).and_then(|fit| match fit {
+            InterfaceSource::AllFrfs(fit) => fitted_interfaces(fit, &sides, options.exact),
+            InterfaceSource::Across(fit) => joint_interfaces(fit, &sides, &tolerances),
+        });
         let nominal = predicted(&sides, &plan, &spectrum)?;
         let mut analysis = Analysis {
             joint,

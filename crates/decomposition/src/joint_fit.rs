@@ -34,6 +34,7 @@ pub use several::{FoundJoint, JointsCovariance, JointsFit, SeveralError, fit_joi
 
 use crate::likelihood::EXPLAINED;
 use crate::{DecompositionError, IdlePoints, LikelihoodFit, Sides};
+use admissible::Freed;
 use jointscope_averaging::Band;
 use jointscope_linalg::{Matrix2, RealMatrix2};
 use jointscope_spectra::FrfSet;
@@ -107,15 +108,9 @@ pub fn fit_joint(
         true => laws::compared((&problem, &first), heavy.as_ref().map(|heavy| (&with_mass, heavy)), mass),
         false => (Vec::new(), Vec::new()),
     };
-    // Under a law that the FRFs refute, what it leaves would be taken for what physics forbids.
-    let followed = laws.first().filter(|best| best.kind != LawKind::Viscous || best.mass.is_some());
-    let followed = followed.and_then(|best| {
+    let followed = laws.first().and_then(|best| {
         let problem = Problem::open(test, vec![law.of_kind(best.kind)], best.mass.map(|_| mass));
-        let known = heavy.filter(|_| best.kind == LawKind::Viscous);
-        let fitted = problem.fit(at, None).into_iter().chain(known).reduce(lower)?;
-        let (fitted, free) = admissible::settled(&problem, fitted)?;
-        fitted.equations(&problem).covariance()?;
-        Some((problem, fitted, free))
+        by_its_law(problem, at, heavy)
     });
     let (problem, first, free) = followed.unwrap_or((problem, first, free));
     let asymmetry = admissible::asymmetry(&problem, &first, free);
@@ -171,6 +166,24 @@ fn that_matter(
     let mut others: Vec<Tolerance> = others.chain(idle).collect();
     others.sort_by_key(|tolerance| tolerance.index);
     Some((matter, others, (place == 0).then_some(columns)))
+}
+
+/// The fit by the most probable law, from where laws were compared; `None` for the viscous law without mass, of which the first fit is. Under a law that the FRFs refute, what it leaves would
+/// be taken for what physics forbids.
+fn by_its_law<'a>(
+    problem: Problem<'a>,
+    at: Vec<f64>,
+    heavy: Option<Fitted>,
+) -> Option<(Problem<'a>, Fitted, Freed)> {
+    let is_viscous = problem.laws[0].kind == LawKind::Viscous;
+    if is_viscous && problem.mass.is_none() {
+        return None;
+    }
+    let known = heavy.filter(|_| is_viscous);
+    let fitted = problem.fit(at, None).into_iter().chain(known).reduce(lower)?;
+    let (fitted, free) = admissible::settled(&problem, fitted)?;
+    fitted.equations(&problem).covariance()?;
+    Some((problem, fitted, free))
 }
 
 /// The lowest optimum of a viscous joint without mass; the last start is the nominal joint.

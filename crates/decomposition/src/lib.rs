@@ -39,6 +39,7 @@
 mod analysis;
 mod averages;
 mod by_law;
+mod criteria;
 mod element;
 mod estimate;
 mod from_frfs;
@@ -47,7 +48,6 @@ mod interfaces;
 mod joint_ends;
 mod joint_fit;
 mod judgement;
-mod judging;
 mod likelihood;
 mod method;
 mod plan;

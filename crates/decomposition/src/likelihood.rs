@@ -5,6 +5,7 @@ mod parameters;
 mod shift;
 mod sums;
 
+pub(crate) use data::UNKNOWN_NOISE;
 pub(crate) use shift::Optimum;
 
 use crate::{DecompositionError, JointSpectrum, MeasurementPlan, Sides};
@@ -70,7 +71,7 @@ pub fn maximum_likelihood(
     let data = Data::new(frfs, (&plan.layout, sides), spectrum, band)?;
     let all = data.whole();
     let starts = [Some(start_of(spectrum)), nominal].into_iter().flatten();
-    let starts = starts.filter_map(|k| Parameters::of(k, k.scale(START_LOSS), spectrum.scalar));
+    let starts = starts.filter_map(|k| Parameters::of(k, k.scale(START_DAMPING_TIME), spectrum.scalar));
     let linear = data.linear(spectrum);
     // The linear rounds mislead where the model is far from right; plain steps do where the start is.
     let starts = starts.flat_map(|start| [(start, true), (start, false)]);
@@ -116,10 +117,10 @@ impl LikelihoodFit {
 /// are themselves known to a few per cent.
 pub(crate) const EXPLAINED: f64 = 1.2;
 /// Blocks of neighbouring lines that the jackknife leaves out in turn.
-const BLOCKS: usize = 8;
+pub(crate) const BLOCKS: usize = 8;
 
 /// c/k of the start, s: a loss factor of 0.6 % at 300 Hz.
-const START_LOSS: f64 = 3e-6;
+const START_DAMPING_TIME: f64 = 3e-6;
 
 /// Robust start: medians over the solved lines.
 fn start_of(spectrum: &JointSpectrum) -> RealMatrix2 {

@@ -118,10 +118,7 @@ impl MeasurementPlan {
         beta: usize,
     ) -> Result<Self, PlanError> {
         let fixture = sides.fixture();
-        let rotates = |body: usize| match &fixture.bodies()[body].kind {
-            BodyKind::Rigid(rigid) => rigid.rotates,
-            BodyKind::Beam(_) => true,
-        };
+        let rotates = |body: usize| fixture.bodies()[body].kind.rotates();
         if rotates(alpha) != rotates(beta) {
             let (rotating, other) = if rotates(alpha) { (alpha, beta) } else { (beta, alpha) };
             return Err(PlanError::Mixed {

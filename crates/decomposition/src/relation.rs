@@ -1,8 +1,10 @@
 use jointscope_beam::transport;
 use jointscope_linalg::{ComplexMatrix2, Matrix2};
+use serde::Serialize;
 
 /// Which relation connects the assembly's FRFs with the joint.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Relation {
     /// k⁻¹ = R α21 H41⁻¹ β43 − β33 − R α22 Rᵀ: the stiffness on d = u_to − R·u_from.
     Exact,

@@ -13,6 +13,18 @@ const RATIO: f64 = 0.003;
 /// rounding.
 const CLAMP: f64 = 1e5;
 
+/// A point by its number from 0, of those spread evenly over the beam.
+fn evenly_spaced(index: usize, length: f64, ruler: f64, clamped: bool) -> (String, Value) {
+    // The clamped end itself does not move.
+    let share = match clamped {
+        true => (index + 1) as f64 / POINTS as f64,
+        false => index as f64 / (POINTS - 1) as f64,
+    };
+    // A point at an end lies on it, however long the beam is.
+    let std = if share == 0.0 || share == 1.0 { 0.0 } else { ruler };
+    ((index + 1).to_string(), json!({ "body": "beam", "x": known(share * length, std) }))
+}
+
 pub(crate) fn file(draft: &Draft, bar: &Bar, clamped: bool) -> Result<Value, DraftError> {
     let number = |(value, std)| known(value, std);
     let (modulus, moment) = (bar.modulus(), bar.second_moment(draft.ruler));
@@ -35,19 +47,7 @@ pub(crate) fn file(draft: &Draft, bar: &Bar, clamped: bool) -> Result<Value, Dra
         notes.extend(points::put(draft, &body, &mut all)?);
     }
     if draft.points.is_empty() && draft.placed.is_empty() {
-        for index in 0..POINTS {
-            // The clamped end itself does not move.
-            let share = match clamped {
-                true => (index + 1) as f64 / POINTS as f64,
-                false => index as f64 / (POINTS - 1) as f64,
-            };
-            // A point at an end lies on it, however long the beam is.
-            let std = if share == 0.0 || share == 1.0 { 0.0 } else { draft.ruler };
-            all.insert(
-                (index + 1).to_string(),
-                json!({ "body": "beam", "x": known(share * bar.length, std) }),
-            );
-        }
+        all.extend((0..POINTS).map(|index| evenly_spaced(index, bar.length, draft.ruler, clamped)));
         notes.push(
             "points 1 to 5 are evenly spaced; move them to where sensors and hammer really are, in metres"
                 .to_owned(),

@@ -54,15 +54,6 @@ pub(crate) fn file(draft: &Draft, blocks: &[Bar; 2], strip: &Bar) -> Result<Valu
             ["end at A", "end at B"]
         }
     };
-    let solid = |bar: &Bar, from: f64, to: f64| json!({ "from": rounded(from), "to": rounded(to), "height": rounded(bar.height), "depth": rounded(bar.width), "material": bar.material.name });
-    let materials: Map<String, Value> = [a, b, strip]
-        .into_iter()
-        .map(|bar| {
-            let material = &bar.material;
-            let entry = json!({ "youngs_modulus": material.youngs_modulus, "poisson_ratio": material.poisson_ratio, "density": material.density });
-            (material.name.clone(), entry)
-        })
-        .collect();
     let mut file = json!({
         "name": "two blocks and a strip",
         "notes": notes,
@@ -71,15 +62,29 @@ pub(crate) fn file(draft: &Draft, blocks: &[Bar; 2], strip: &Bar) -> Result<Valu
         "joints": { "J": { "from": ends[0], "to": ends[1], "beam": { "youngs_modulus": number(strip.modulus()), "second_moment": number(strip.second_moment(ruler)) } } },
         "damping": { "modal_ratios": [unknown(RATIO), unknown(RATIO)] }
     });
-    // One name cannot stand for two materials.
-    let same =
-        |one: &Bar, other: &Bar| one.material.name != other.material.name || one.material == other.material;
-    if same(a, b) && same(a, strip) && same(b, strip) {
-        file["geometry"] = json!({
-            "materials": materials,
-            "bodies": { "A": solid(a, left, 0.0), "B": solid(b, gap, right) },
-            "joints": { "J": { "thickness": rounded(strip.height), "width": rounded(strip.width), "material": strip.material.name } }
-        });
+    if let Some(geometry) = geometry([a, b], strip) {
+        file["geometry"] = geometry;
     }
     Ok(file)
+}
+
+/// The assembly as a solid; nothing where one name would stand for two materials.
+fn geometry([a, b]: [&Bar; 2], strip: &Bar) -> Option<Value> {
+    let same =
+        |one: &Bar, other: &Bar| one.material.name != other.material.name || one.material == other.material;
+    if !(same(a, b) && same(a, strip) && same(b, strip)) {
+        return None;
+    }
+    let solid = |bar: &Bar, from: f64, to: f64| json!({ "from": rounded(from), "to": rounded(to), "height": rounded(bar.height), "depth": rounded(bar.width), "material": bar.material.name });
+    let material = |bar: &Bar| {
+        let material = &bar.material;
+        let entry = json!({ "youngs_modulus": material.youngs_modulus, "poisson_ratio": material.poisson_ratio, "density": material.density });
+        (material.name.clone(), entry)
+    };
+    let materials: Map<String, Value> = [a, b, strip].into_iter().map(material).collect();
+    Some(json!({
+        "materials": materials,
+        "bodies": { "A": solid(a, -a.length, 0.0), "B": solid(b, strip.length, strip.length + b.length) },
+        "joints": { "J": { "thickness": rounded(strip.height), "width": rounded(strip.width), "material": strip.material.name } }
+    }))
 }

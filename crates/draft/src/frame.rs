@@ -9,6 +9,27 @@ const MOST: usize = 100;
 /// Damping ratio to begin with; a fit finds its own.
 const RATIO: f64 = 0.01;
 
+/// What the columns weigh and how they are taken to be held, and which storeys the recording's points are taken to be on.
+fn notes_on_columns(draft: &Draft, column: &Bar, columns: usize, relative: f64) -> Vec<String> {
+    let column_mass = column.mass(draft.ruler).0 * columns as f64;
+    let mut notes = vec![
+        format!(
+            "the columns between two storeys weigh {column_mass:.3} kg together: half of it belongs to the storey above, half to that below; weigh the storeys and add it"
+        ),
+        format!(
+            "columns are taken as fixed at both ends (12 E I/L^3 each); bolted ones are softer, which a fit finds within their deviation of {:.1} % or names; the damping ratios are a guess that a fit leaves free",
+            100.0 * relative
+        ),
+    ];
+    if !draft.points.is_empty() {
+        notes.push(format!(
+            "FILL IN: the recording's points {} were given to the storeys from below, as far as there are storeys; correct which is which",
+            draft.points.join(", ")
+        ));
+    }
+    notes
+}
+
 /// Columns fixed at both ends resist a storey's shift by n · 12 E I/L³.
 pub(crate) fn file(
     draft: &Draft,
@@ -48,26 +69,11 @@ pub(crate) fn file(
             );
         }
     }
-    let column_mass = column.mass(draft.ruler).0 * columns as f64;
-    let mut notes = vec![
-        format!(
-            "drafted from {storeys} storeys of {mass} kg on {columns} columns each, {}: length is the storey's height, height the side along the motion. x runs upwards from the ground, y is the motion",
-            column.says()
-        ),
-        format!(
-            "the columns between two storeys weigh {column_mass:.3} kg together: half of it belongs to the storey above, half to that below; weigh the storeys and add it"
-        ),
-        format!(
-            "columns are taken as fixed at both ends (12 E I/L^3 each); bolted ones are softer, which a fit finds within their deviation of {:.1} % or names; the damping ratios are a guess that a fit leaves free",
-            100.0 * relative
-        ),
-    ];
-    if !draft.points.is_empty() {
-        notes.push(format!(
-            "FILL IN: the recording's points {} were given to the storeys from below, as far as there are storeys; correct which is which",
-            draft.points.join(", ")
-        ));
-    }
+    let mut notes = vec![format!(
+        "drafted from {storeys} storeys of {mass} kg on {columns} columns each, {}: length is the storey's height, height the side along the motion. x runs upwards from the ground, y is the motion",
+        column.says()
+    )];
+    notes.extend(notes_on_columns(draft, column, columns, relative));
     let ground =
         json!({ "ground": { "point": name(1), "stiffness": known(stiffness, relative * stiffness) } });
     Ok(json!({

@@ -4,7 +4,7 @@ use jointscope_hits::Hit;
 use jointscope_spectra::Channel;
 
 use crate::overload::is_cut_off;
-use crate::pulse::{FILTER_RINGING, Pulse};
+use crate::pulse::{EDGE, FILTER_RINGING, Pulse};
 
 /// Why a hit is no good for an FRF.
 #[derive(Debug, Clone, PartialEq)]
@@ -114,9 +114,6 @@ pub(crate) fn faults(hit: &Hit, force: &[f64], pulse: Option<&Pulse>) -> Vec<Fau
     }
     faults
 }
-
-/// Force at the first sample, relative to the peak, above which the record has missed the onset, halved.
-const EDGE: f64 = 0.05;
 
 /// Energy to the other side, relative to that to the peak's side, above which a signal rings.
 const TO_AND_FRO: f64 = 0.3;

@@ -1,7 +1,7 @@
 //! The pulse of a hit: where it begins and ends, and what the channel shows apart from it.
 
 /// Share of the peak at which a pulse begins and ends.
-const EDGE: f64 = 0.05;
+pub(crate) const EDGE: f64 = 0.05;
 /// Samples about a pulse in which an anti-alias filter rings.
 pub(crate) const FILTER_RINGING: usize = 16;
 

@@ -188,29 +188,14 @@ impl Exporter<'_> {
             .map_err(|error| ExportError::Diagnosis(error.to_string()))?;
         let centre = self.band.map_or(1.0, |(from, to)| (from * to).sqrt());
         let matrices = element.matrices(centre).map_err(|error| ExportError::Diagnosis(error.to_string()))?;
-        let on_it: Vec<String> = self
-            .fixture
-            .physics()
-            .iter()
-            .filter(|effect| is_on(self.fixture, joint, effect))
-            .map(|effect| self.says(effect))
-            .collect();
+        let on_it = self.fixture.physics().iter().filter(|effect| is_on(self.fixture, joint, effect));
+        let on_it: Vec<String> = on_it.map(|effect| self.says(effect)).collect();
         let effects = match on_it.is_empty() {
             true => "no effects".to_owned(),
             false => on_it.join("; "),
         };
         if let Some(hz) = matrices.read_at {
-            let mut note = format!(
-                "joint {} depends on frequency: K and C are those at {} Hz, the middle of the recording's band",
-                joint.name,
-                short(hz)
-            );
-            if let Some((from, to)) = self.band {
-                let ends = element.lines([from, to].into_iter());
-                let k11 = [0, 1].map(|i| short(ends[i].stiffness[0][0]));
-                let (from, to) = (short(from), short(to));
-                note += &format!("; k11 goes from {} N/m at {from} Hz to {} N/m at {to} Hz", k11[0], k11[1]);
-            }
+            let note = depends_on_frequency(&joint.name, &element, hz, self.band);
             self.notes.push(note);
         }
         let lines = match (by_line, self.band) {
@@ -461,4 +446,19 @@ fn why_not(effect: &Effect) -> &'static str {
         }
         _ => "it has no counterpart",
     }
+}
+
+/// That a joint's matrices are those of one frequency, and how far k11 goes over the band.
+fn depends_on_frequency(name: &str, element: &RepairedJoint, hz: f64, band: Option<(f64, f64)>) -> String {
+    let mut note = format!(
+        "joint {name} depends on frequency: K and C are those at {} Hz, the middle of the recording's band",
+        short(hz)
+    );
+    if let Some((from, to)) = band {
+        let ends = element.lines([from, to].into_iter());
+        let k11 = [0, 1].map(|i| short(ends[i].stiffness[0][0]));
+        let (from, to) = (short(from), short(to));
+        note += &format!("; k11 goes from {} N/m at {from} Hz to {} N/m at {to} Hz", k11[0], k11[1]);
+    }
+    note
 }

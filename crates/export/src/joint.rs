@@ -199,45 +199,51 @@ impl Joint {
     }
 }
 
+/// Deviations of K and C.
+#[derive(Serialize)]
+struct Pair<M> {
+    stiffness: M,
+    damping: M,
+}
+
+/// The matrices on the motions of both ends.
+#[derive(Serialize)]
+struct BothEnds {
+    order: [&'static str; 4],
+    stiffness: Matrix4,
+    damping: Matrix4,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    structural_damping: Option<Matrix4>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    mass: Option<Matrix4>,
+}
+
+/// A joint as a file has it.
+#[derive(Serialize)]
+struct Written<'a> {
+    name: &'a str,
+    says: &'a str,
+    from: &'a JointEnd,
+    to: &'a JointEnd,
+    length: f64,
+    rotates: bool,
+    stiffness: Matrix,
+    damping: Matrix,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    structural_damping: Option<Matrix>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    std: Option<Pair<Matrix>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    covariance: Option<&'a Covariance>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    elastic_centre: Option<ElasticCentre>,
+    both_ends: BothEnds,
+    #[serde(skip_serializing_if = "<[_]>::is_empty")]
+    lines: &'a [JointLine],
+}
+
 impl Serialize for Joint {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        #[derive(Serialize)]
-        struct Pair<M> {
-            stiffness: M,
-            damping: M,
-        }
-        #[derive(Serialize)]
-        struct BothEnds {
-            order: [&'static str; 4],
-            stiffness: Matrix4,
-            damping: Matrix4,
-            #[serde(skip_serializing_if = "Option::is_none")]
-            structural_damping: Option<Matrix4>,
-            #[serde(skip_serializing_if = "Option::is_none")]
-            mass: Option<Matrix4>,
-        }
-        #[derive(Serialize)]
-        struct Written<'a> {
-            name: &'a str,
-            says: &'a str,
-            from: &'a JointEnd,
-            to: &'a JointEnd,
-            length: f64,
-            rotates: bool,
-            stiffness: Matrix,
-            damping: Matrix,
-            #[serde(skip_serializing_if = "Option::is_none")]
-            structural_damping: Option<Matrix>,
-            #[serde(skip_serializing_if = "Option::is_none")]
-            std: Option<Pair<Matrix>>,
-            #[serde(skip_serializing_if = "Option::is_none")]
-            covariance: Option<&'a Covariance>,
-            #[serde(skip_serializing_if = "Option::is_none")]
-            elastic_centre: Option<ElasticCentre>,
-            both_ends: BothEnds,
-            #[serde(skip_serializing_if = "<[_]>::is_empty")]
-            lines: &'a [JointLine],
-        }
         let structural = (!is_zero(&self.structural)).then_some(self.structural);
         Written {
             name: &self.name,

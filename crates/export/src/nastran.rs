@@ -102,18 +102,7 @@ fn bush_cards(joint: &Joint, id: &mut u64, notes: &mut Vec<String>) -> Result<St
     let Some(centre) = joint.centre() else { return Ok(String::new()) };
     let element = next(id).to_string();
     let (from, to) = (joint.from.node.to_string(), joint.to.node.to_string());
-    let share = 1.0 + centre.offset / joint.length;
-    let on_the_line = joint.length > COINCIDENT && ON_THE_LINE.contains(&share);
-    let place = match (on_the_line, joint.centre_x()) {
-        (false, Some(x)) => ["".into(), "0".into(), real(x), real(0.0), real(0.0)],
-        _ => [real(share), String::new(), String::new(), String::new(), String::new()],
-    };
-    if !on_the_line {
-        notes.push(format!(
-            "joint {}: its elastic centre does not lie between its nodes and is stated in basic coordinates (OCID 0): the nodes must lie where this header says",
-            joint.name
-        ));
-    }
+    let place = place_of_centre(joint, centre.offset, notes);
     let mut text = large(
         "CBUSH",
         &[
@@ -159,6 +148,22 @@ fn bush_cards(joint: &Joint, id: &mut u64, notes: &mut Vec<String>) -> Result<St
         text += &tables(joint, centre.offset, &element, id, notes);
     }
     Ok(text)
+}
+
+/// Fields S, OCID, S1, S2 and S3: the elastic centre on the line between the nodes, or in basic coordinates.
+fn place_of_centre(joint: &Joint, offset: f64, notes: &mut Vec<String>) -> [String; 5] {
+    let share = 1.0 + offset / joint.length;
+    let on_the_line = joint.length > COINCIDENT && ON_THE_LINE.contains(&share);
+    if !on_the_line {
+        notes.push(format!(
+            "joint {}: its elastic centre does not lie between its nodes and is stated in basic coordinates (OCID 0): the nodes must lie where this header says",
+            joint.name
+        ));
+    }
+    match (on_the_line, joint.centre_x()) {
+        (false, Some(x)) => ["".into(), "0".into(), real(x), real(0.0), real(0.0)],
+        _ => [real(share), String::new(), String::new(), String::new(), String::new()],
+    }
 }
 
 /// Says what a bush cannot hold, where it is not zero.

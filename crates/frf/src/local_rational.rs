@@ -5,6 +5,7 @@
 
 use jointscope_linalg::LuWorkspace;
 use num_complex::Complex64;
+use std::ops::Add;
 
 /// Unknowns of the function.
 const UNKNOWNS: usize = 4;
@@ -59,12 +60,46 @@ impl LocalRationalFit {
         if level <= 0.0 || !level.is_finite() {
             return None;
         }
+        let [b0, b1, b2, pole] = self.solved(used.clone().map(|i| (x(i), values[i] / level)))?;
+        // Two columns of the inverse: of the value at the line itself, and of the pole.
+        self.columns.clear();
+        self.columns.resize(2 * UNKNOWNS, Complex64::ZERO);
+        self.columns[0] = Complex64::ONE;
+        self.columns[2 * UNKNOWNS - 1] = Complex64::ONE;
+        self.lu.solve_columns_in_place(transposed(&mut self.columns), 2);
+        let found = LocalRational {
+            numerator: [b0 * level, b1 * level / unit, b2 * level / (unit * unit)],
+            pole: pole / unit,
+            residual: Complex64::ZERO,
+            leverage: self.columns[0].re.clamp(0.0, 1.0),
+            variance: 0.0,
+            pole_variance: 0.0,
+        };
+        let misfit = used.map(|i| (values[i] - found.at(hz[i] - hz[line])).norm_sqr()).fold(0.0, Add::add);
+        let variance = misfit / (2 * half + 1 - UNKNOWNS) as f64;
+        let pole_variance =
+            self.columns[2 * UNKNOWNS - 1].re.max(0.0) * variance / (level * level * unit * unit);
+        let residual = values[line] - found.at(0.0);
+        (variance.is_finite() && residual.is_finite()).then_some(LocalRational {
+            residual,
+            variance,
+            pole_variance,
+            ..found
+        })
+    }
+}
+
+impl LocalRationalFit {
+    /// b₀, b₁, b₂ and a from values at their distances, weighted by the denominator of the pass before; leaves the last matrix factorised.
+    fn solved(
+        &mut self,
+        values: impl Iterator<Item = (f64, Complex64)> + Clone,
+    ) -> Option<[Complex64; UNKNOWNS]> {
         let mut solution = [Complex64::ZERO; UNKNOWNS];
         for pass in 0..PASSES {
             let mut matrix = [Complex64::ZERO; UNKNOWNS * UNKNOWNS];
             let mut right = [Complex64::ZERO; UNKNOWNS];
-            for i in used.clone() {
-                let (x, value) = (x(i), values[i] / level);
+            for (x, value) in values.clone() {
                 let row = [Complex64::ONE, x.into(), (x * x).into(), -value * x];
                 let denominator = 1.0 + solution[3] * x;
                 let weight = if pass == 0 { 1.0 } else { 1.0 / denominator.norm_sqr().max(1e-12) };
@@ -80,39 +115,7 @@ impl LocalRationalFit {
             solution = right;
             self.lu.solve_in_place(&mut solution);
         }
-        let [b0, b1, b2, pole] = solution;
-        // Two columns of the inverse: of the value at the line itself, and of the pole.
-        self.columns.clear();
-        self.columns.resize(2 * UNKNOWNS, Complex64::ZERO);
-        self.columns[0] = Complex64::ONE;
-        self.columns[2 * UNKNOWNS - 1] = Complex64::ONE;
-        self.lu.solve_columns_in_place(transposed(&mut self.columns), 2);
-        let mut misfit = 0.0;
-        let found = LocalRational {
-            numerator: [b0 * level, b1 * level, b2 * level],
-            pole: pole / unit,
-            residual: Complex64::ZERO,
-            leverage: self.columns[0].re.clamp(0.0, 1.0),
-            variance: 0.0,
-            pole_variance: 0.0,
-        };
-        let found = LocalRational {
-            numerator: [found.numerator[0], b1 * level / unit, b2 * level / (unit * unit)],
-            ..found
-        };
-        for i in used {
-            misfit += (values[i] - found.at(hz[i] - hz[line])).norm_sqr();
-        }
-        let variance = misfit / (2 * half + 1 - UNKNOWNS) as f64;
-        let pole_variance =
-            self.columns[2 * UNKNOWNS - 1].re.max(0.0) * variance / (level * level * unit * unit);
-        let residual = values[line] - found.at(0.0);
-        (variance.is_finite() && residual.is_finite()).then_some(LocalRational {
-            residual,
-            variance,
-            pole_variance,
-            ..found
-        })
+        Some(solution)
     }
 }
 
@@ -151,7 +154,7 @@ impl LocalRational {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::noise::tests::Normals;
+    use jointscope_samples::Noise;
 
     /// One mode at 20.3 Hz of half-width 0.9 Hz and a smooth rest, on lines 0.5 Hz apart.
     fn frf(hz: f64) -> Complex64 {
@@ -198,7 +201,7 @@ mod tests {
     #[test]
     fn noise_is_told_by_what_is_left_and_moves_the_pole_as_far_as_is_said() {
         let (hz, noise, runs) = (lines(), 1e-3, 400);
-        let mut random = Normals(3);
+        let mut random = Noise::from_state(3);
         let mut fit = LocalRationalFit::new();
         let [mut places, mut stated, mut variance, mut left] = [0.0; 4];
         for _ in 0..runs {

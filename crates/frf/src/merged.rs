@@ -135,8 +135,9 @@ struct Block {
     frfs: Vec<([Complex64; NODES], f64)>,
 }
 
-fn merged(frfs: &FrfSet, band: Option<(f64, f64)>) -> Result<KnownNoise, SpectraError> {
-    let (hz, count) = (frfs.lines().hz(), frfs.lines().len());
+/// All lines in pieces: blocks over which all FRFs are smooth, and lines that are kept.
+fn pieces(frfs: &FrfSet, band: Option<(f64, f64)>) -> Vec<Piece> {
+    let count = frfs.lines().len();
     let mut pieces: Vec<Piece> = Vec::new();
     let mut basis = Basis::default();
     let inside = band.map_or(0..count, |(from, to)| frfs.lines().range(from, to));
@@ -165,6 +166,11 @@ fn merged(frfs: &FrfSet, band: Option<(f64, f64)>) -> Result<KnownNoise, Spectra
             }
         }
     }
+    pieces
+}
+
+fn merged(frfs: &FrfSet, band: Option<(f64, f64)>) -> Result<KnownNoise, SpectraError> {
+    let (hz, count, pieces) = (frfs.lines().hz(), frfs.lines().len(), pieces(frfs, band));
     let on_all = |kept: &dyn Fn(&Range<usize>) -> Vec<f64>, block: &dyn Fn(&Block) -> [f64; NODES]| {
         let of = |piece: &Piece| match piece {
             Piece::Kept(lines) => kept(lines),
@@ -329,7 +335,7 @@ impl Basis {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::noise::tests::Normals;
+    use jointscope_samples::Noise;
     use jointscope_spectra::{FrfForm, FrfPair};
 
     const COUNT: usize = 20_000;
@@ -347,7 +353,7 @@ mod tests {
     /// One FRF of `frf` with noise of this standard deviation, 50 to 1050 Hz.
     fn recorded(frf: impl Fn(f64) -> Complex64, noise: f64, seed: u64) -> FrfSet {
         let lines = SpectralLines::even(50.0, 1000.0 / COUNT as f64, COUNT).unwrap();
-        let mut normals = Normals(seed);
+        let mut normals = Noise::from_state(seed);
         let values = lines.hz().iter().map(|hz| frf(*hz) + noise * normals.complex(1.0)).collect();
         FrfSet::new(lines, FrfForm::Accelerance, vec![FrfPair::transverse("2", "1")], values).unwrap()
     }

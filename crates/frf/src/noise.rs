@@ -131,7 +131,7 @@ const STEPS: usize = 6;
 ///
 /// A file says nothing of the force, whose power falls by decades within few lines before a soft tip's first zero, and the variances rise by as much. So what the lines
 /// show against a noise that varies slowly is followed over no more of them than tell a level: with n averages each has 2(n − 1) degrees of freedom.
-pub fn from_coherence(values: &[Complex64], coherence: &[f64], averages: u32) -> Vec<f64> {
+pub(crate) fn from_coherence(values: &[Complex64], coherence: &[f64], averages: u32) -> Vec<f64> {
     let raw = of_lines(values, coherence, averages);
     let slow = smoothed(values, &raw, coherence, &[], 1.0);
     let ratios: Vec<f64> = raw.iter().zip(&slow).map(|(raw, slow)| raw / slow).collect();
@@ -329,23 +329,9 @@ fn fit_window(
 }
 
 #[cfg(test)]
-pub(crate) mod tests {
+mod tests {
     use super::*;
-
-    /// A deterministic stream of standard normals (a linear congruential generator and Box–Muller).
-    pub(crate) struct Normals(pub u64);
-
-    impl Normals {
-        fn uniform(&mut self) -> f64 {
-            self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-            ((self.0 >> 11) as f64 + 0.5) / (1u64 << 53) as f64
-        }
-
-        pub(crate) fn complex(&mut self, variance: f64) -> Complex64 {
-            let radius = (-variance * self.uniform().ln()).sqrt();
-            Complex64::from_polar(radius, std::f64::consts::TAU * self.uniform())
-        }
-    }
+    use jointscope_samples::Noise;
 
     fn resonance(line: usize) -> Complex64 {
         let x = line as f64 / 400.0;
@@ -354,7 +340,7 @@ pub(crate) mod tests {
     }
 
     /// Hits of one FRF: H1 and coherence of `n` averages with response noise `floor` and force noise `share`.
-    fn measure(random: &mut Normals, truth: Complex64, n: u32, floor: f64, share: f64) -> (Complex64, f64) {
+    fn measure(random: &mut Noise, truth: Complex64, n: u32, floor: f64, share: f64) -> (Complex64, f64) {
         let (mut xx, mut yy, mut xy) = (0.0, 0.0, Complex64::ZERO);
         for _ in 0..n {
             let x = Complex64::ONE + random.complex(share);
@@ -369,7 +355,7 @@ pub(crate) mod tests {
     #[test]
     fn smoothed_variances_of_few_averages_normalise_the_errors_to_one() {
         for averages in [5, 8, 20] {
-            let mut random = Normals(averages as u64);
+            let mut random = Noise::from_state(averages as u64);
             let (mut chi2, mut count) = (0.0, 0.0);
             for _ in 0..20 {
                 let lines: Vec<(Complex64, f64)> =
@@ -389,7 +375,7 @@ pub(crate) mod tests {
 
     #[test]
     fn without_coherence_the_scatter_of_the_lines_gives_the_floor() {
-        let mut random = Normals(7);
+        let mut random = Noise::from_state(7);
         let (mut chi2, mut count) = (0.0, 0.0);
         for _ in 0..20 {
             let values: Vec<Complex64> = (1..401).map(|l| resonance(l) + random.complex(1e-4)).collect();
@@ -414,7 +400,7 @@ pub(crate) mod tests {
             -x * x / Complex64::new(130.3 * 130.3 - x * x, 2.0 * 0.3 * x)
                 - 0.7 * x * x / Complex64::new(341.6 * 341.6 - x * x, 0.5 * x)
         };
-        let mut random = Normals(11);
+        let mut random = Noise::from_state(11);
         let (mut all, mut peak) = ((0.0, 0.0), (0.0, 0.0));
         for _ in 0..40 {
             let values: Vec<Complex64> =
@@ -447,11 +433,11 @@ pub(crate) mod tests {
     #[test]
     fn where_the_force_dies_away_within_the_band_errors_are_normalised_to_one_all_the_same() {
         for averages in [5, 10] {
-            let mut random = Normals(40 + u64::from(averages));
+            let mut random = Noise::from_state(40 + u64::from(averages));
             // χ² and number of lines, where the blow is strong and where it is weak.
             let mut sums = [(0.0, 0.0); 2];
             for _ in 0..40 {
-                let blow = |l: usize, random: &mut Normals| {
+                let blow = |l: usize, random: &mut Noise| {
                     let share = soft(l);
                     measure(random, resonance(l), averages, 1e-4 / (share * share), 1e-9)
                 };

@@ -132,14 +132,11 @@ pub fn fit_rigid_motion(frfs: &FrfSet, layout: &BlockLayout) -> Result<BlockFrf,
         residual: vec![0.0; count],
         lines: lines.clone(),
     };
-    let design: Vec<Vec<f64>> = layout
-        .channels
-        .iter()
-        .map(|(_, response, reference)| {
-            let (out, input) = (response.row(), reference.row());
-            unknown.iter().map(|&(i, j)| out[i] * input[j]).collect()
-        })
-        .collect();
+    let coefficients = |(_, response, reference): &(usize, BlockChannel, BlockChannel)| -> Vec<f64> {
+        let (out, input) = (response.row(), reference.row());
+        unknown.iter().map(|&(i, j)| out[i] * input[j]).collect()
+    };
+    let design: Vec<Vec<f64>> = layout.channels.iter().map(coefficients).collect();
     let mut problem = LeastSquares::new();
     let mut solution = vec![Complex64::ZERO; unknown.len()];
     for line in 0..count {
@@ -151,12 +148,7 @@ pub fn fit_rigid_motion(frfs: &FrfSet, layout: &BlockLayout) -> Result<BlockFrf,
         let mut size = 0.0;
         for ((index, ..), coefficients) in layout.channels.iter().zip(&design) {
             let value = frfs.values(*index)[line] * factor;
-            let coherent = frfs.coherence(*index).is_none_or(|c| c[line] > 0.0);
-            let weight = match frfs.variance(*index) {
-                _ if !coherent => 0.0,
-                Some(variance) if variance[line] > 0.0 => 1.0 / (variance[line] * factor.norm_sqr()),
-                Some(_) | None => 1.0,
-            };
+            let weight = weight(frfs, (*index, line), factor.norm_sqr());
             size += weight * value.norm_sqr();
             problem.equation(coefficients, value, weight);
         }
@@ -187,6 +179,16 @@ pub fn fit_rigid_motion(frfs: &FrfSet, layout: &BlockLayout) -> Result<BlockFrf,
         }
     }
     Ok(result)
+}
+
+/// Weight of an FRF's receptance on a line, `scale` times the variance being that of the receptance; zero without coherence.
+fn weight(frfs: &FrfSet, (index, line): (usize, usize), scale: f64) -> f64 {
+    let coherent = frfs.coherence(index).is_none_or(|c| c[line] > 0.0);
+    match frfs.variance(index) {
+        _ if !coherent => 0.0,
+        Some(variance) if variance[line] > 0.0 => 1.0 / (variance[line] * scale),
+        Some(_) | None => 1.0,
+    }
 }
 
 fn check_geometry(layout: &BlockLayout, needed: usize) -> Result<(), RigidMotionError> {

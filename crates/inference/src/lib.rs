@@ -12,9 +12,9 @@
 //! * [`inflated_weight`]: weights that count a share of the signal as noise, so that sharp resonances do not decide
 //!   where a fit from afar goes;
 //! * [`Covariance`], [`jackknife`], [`autocorrelation`], [`variance_inflation`]: uncertainty;
+//! * [`birge_ratio`]: by how much departures exceed what chance makes of them;
 //! * [`interval95`], [`Z95`], [`SIGNIFICANT`]: the one convention of intervals and tests;
 //! * [`QuadraticLikelihood`]: what one recording tells of parameters that others tell of as well, put together in closed form;
-//! * [`laplace_evidence`]: marginal likelihood of a hypothesis at its optimum.
 //!
 //! ```
 //! use jointscope_inference::{LeastSquares, NormalEquations, Precision, Settings, descend};
@@ -49,8 +49,8 @@
 //! assert!((fit.point - 0.5).abs() < 1e-6);
 //! ```
 
+mod birge;
 mod descent;
-mod evidence;
 mod interval;
 mod likelihood;
 mod noise;
@@ -59,8 +59,8 @@ mod parameter;
 mod products;
 mod uncertainty;
 
+pub use birge::birge_ratio;
 pub use descent::{Convergence, Damping, Descent, LeastSquares, Limit, Precision, Settings, descend};
-pub use evidence::laplace_evidence;
 pub use interval::{SIGNIFICANT, Z95, interval95};
 pub use likelihood::QuadraticLikelihood;
 pub use noise::inflated_weight;

@@ -1,4 +1,6 @@
-use crate::{diagnosis_file, nonlinear_file, stepped_file};
+use crate::diagnosis_file;
+use crate::nonlinear_file::nonlinear_file;
+use crate::stepped_file::stepped_file;
 use jointscope_pipeline::{Answer, Outcome};
 use serde_json::Value;
 

@@ -46,7 +46,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! [`answer_file`] writes it as `diagnosis.json`, [`answer_page`](report::answer_page) as a page.
+//! [`answer_file`] writes it as `diagnosis.json`, [`answer_report`](report::answer_report) makes its page.
 //!
 //! The other way round, [`synthesize`] gives the FRFs that a fixture should show:
 //!
@@ -130,9 +130,7 @@ pub use comparison_file::comparison_file;
 pub use diagnosis_file::diagnosis_file;
 pub use frf_files::{checked_frfs, fitted_frfs, model_frfs, rebuilt_frfs};
 pub use modes_file::modes_file;
-pub use nonlinear_file::nonlinear_file;
 pub use plan_file::plan_file;
-pub use stepped_file::stepped_file;
 pub use stiffness_file::{joint_file, joints_file, stiffness_file};
 
 /// Why the bytes of a file are no recording of a fixture.

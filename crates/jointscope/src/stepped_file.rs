@@ -8,7 +8,7 @@ use serde_json::Value;
 
 /// The contents of `diagnosis.json` for stepped-sine FRFs at several levels: as [`crate::diagnosis_file`], and beyond the contract the table
 /// `levels` and every law `tried`. Errors are root mean squares over the levels.
-pub fn stepped_file(diagnosis: &SteppedDiagnosis) -> Value {
+pub(crate) fn stepped_file(diagnosis: &SteppedDiagnosis) -> Value {
     let [nominal, refitted, repaired, stiffness_of_its_own_a_level] = diagnosis.nrmse;
     let holds: Vec<String> =
         diagnosis.levels.iter().filter(|level| level.explained).map(|level| level.held.to_string()).collect();

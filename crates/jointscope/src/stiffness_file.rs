@@ -4,13 +4,17 @@ use jointscope_comparison::{
     Uncertain,
 };
 use jointscope_decomposition::{
-    Analysis, Compliance, Element, FoundJoint, InterfaceStiffness, JointFit, JointLine, JointsFit, LawFit,
-    LawKind, MatrixAverage, Method, Part, Relation,
+    Analysis, Compliance, DecompositionError, Element, FoundJoint, InterfaceStiffness, Interfaces, JointEnds,
+    JointFit, JointLikelihood, JointLine, JointsCovariance, JointsFit, Judgement, LawFit, LawKind,
+    LikelihoodFit, MatrixAverage, Method, Part, Relation,
 };
+use jointscope_frf::MaskReason;
 use jointscope_inference::interval95;
 use jointscope_linalg::RealMatrix2;
 use jointscope_pipeline::{Decomposition, Joints};
-use serde_json::{Value, json};
+use jointscope_spectra::FrfPair;
+use serde::Serialize;
+use serde_json::{Map, Value};
 
 /// The contents of `stiffness.json`, of one joint or of several.
 pub fn joint_file(decomposition: &Decomposition) -> Value {
@@ -25,78 +29,242 @@ pub fn joint_file(decomposition: &Decomposition) -> Value {
 /// `std` is what the FRFs' noise leaves uncertain, `std_fixture` what the fixture's tolerances do, `std_model` what it
 /// costs that a constant joint does not explain the FRFs.
 pub fn stiffness_file(analysis: &Analysis) -> Value {
-    let spectrum = &analysis.spectrum;
-    let frequencies = spectrum.h41.lines.hz();
-    let masked =
-        spectrum.masked.iter().map(|(i, why)| json!({"frequency": frequencies[*i], "why": why.why()}));
-    let mut file = json!({
-        "joint": joint(analysis),
-        "ends": analysis.ends,
-        "relation": spectrum.relation.name(),
-        "lines": spectrum.solved.iter().map(|solved| line(analysis, solved)).collect::<Vec<_>>(),
-        "masked": masked.collect::<Value>(),
-        "average": averages(analysis),
-        "maximum_likelihood": likelihood(analysis),
-        "judgement": analysis.judgement,
-        "nominal_stiffness": analysis.nominal_stiffness,
-        "nominal": nominal(analysis),
-        "recording": recording(analysis),
-    });
-    if let Some(weighted) = &analysis.averages.weighted {
-        file["weighted_average"] = value(average(weighted));
-    }
-    if let Some(interfaces) = &analysis.interfaces {
-        let rest_on = |(method, explains)| json!({"fit": method_name(method), "explains_the_frfs": explains});
-        file["interfaces"] = json!({
-            "rest_on": analysis.interfaces_rest_on().map(rest_on),
-            "translation_both": stiffness(&interfaces.translation, "N/m"),
-            "rotation_from": stiffness(&interfaces.near_rotation, "N*m/rad"),
-            "rotation_to": stiffness(&interfaces.far_rotation, "N*m/rad"),
-            "scalar_11": stiffness(&interfaces.scalar[0], "N/m"),
-            "scalar_22": stiffness(&interfaces.scalar[1], "N*m/rad"),
-        });
-    }
-    file
+    value(OneJoint::of(analysis))
 }
 
 /// The contents of `stiffness.json` where several joints were found at once, or one in a loop: every joint as `joint` has it, and the covariance of all.
 pub fn joints_file(joints: &JointsFit) -> Value {
-    let of = |found: &FoundJoint| {
-        let mut entry = fitted(&found.fit);
-        entry["name"] = json!(found.name);
-        entry["ends"] = json!(found.ends);
-        entry["in_a_loop"] = json!(found.is_in_a_loop);
-        entry["nominal_stiffness"] = json!(found.nominal);
-        entry
-    };
-    json!({
-        "joints": joints.joints.iter().map(of).collect::<Vec<_>>(),
-        "covariance": joints.covariance_of_all(),
-        "likelihood": joints.likelihood,
+    value(JointsAtOnce {
+        joints: joints.joints.iter().map(JointAtOnce::of).collect(),
+        covariance: joints.covariance_of_all(),
+        likelihood: &joints.likelihood,
     })
 }
 
-/// The joint from all FRFs, by the name it has in the fixture.
-fn joint(analysis: &Analysis) -> Value {
-    let mut entry = match &analysis.joint_fit {
-        Ok(fit) => fitted(fit),
-        Err(error) => json!({"failed": error.to_string()}),
-    };
-    entry["name"] = json!(analysis.joint);
-    entry
+/// The file of one joint.
+#[derive(Serialize)]
+struct OneJoint<'a> {
+    joint: Named<'a>,
+    ends: &'a JointEnds,
+    relation: Relation,
+    lines: Vec<LineEntry>,
+    masked: Vec<MaskedLine>,
+    average: EstimateEntry,
+    maximum_likelihood: Fitted<AcrossJoint>,
+    judgement: Judgement,
+    nominal_stiffness: RealMatrix2,
+    nominal: Nominal,
+    recording: UsedRecording<'a>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    weighted_average: Option<EstimateEntry>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    interfaces: Option<InterfaceEntries>,
 }
 
-fn fitted(fit: &JointFit) -> Value {
-    let mut entry = value(fit);
-    entry["std"] = value(pair(fit.std()));
-    let (inflation, strain) = (fit.inflation, fit.strain);
-    entry["model_error"] = value(ModelError { inflation, strain, covariance: fit.model_covariance });
-    entry["follows"] = value(follows(fit));
-    if let Some(best) = fit.law() {
-        entry["law"] = json!(best.name());
-        entry["laws"] = value(fit.laws.iter().map(law).collect::<Vec<_>>());
+/// The file of joints that one fit found.
+#[derive(Serialize)]
+struct JointsAtOnce<'a> {
+    joints: Vec<JointAtOnce<'a>>,
+    covariance: JointsCovariance<'a>,
+    likelihood: &'a Option<JointLikelihood>,
+}
+
+/// One of the joints that one fit found.
+#[derive(Serialize)]
+struct JointAtOnce<'a> {
+    #[serde(flatten)]
+    fit: JointEntry<'a>,
+    name: &'a str,
+    ends: &'a JointEnds,
+    in_a_loop: bool,
+    nominal_stiffness: RealMatrix2,
+}
+
+/// The joint from all FRFs, by the name it has in the fixture.
+#[derive(Serialize)]
+struct Named<'a> {
+    #[serde(flatten)]
+    fit: Fitted<JointEntry<'a>>,
+    name: &'a str,
+}
+
+/// What a fit found, or why there is none.
+#[derive(Serialize)]
+#[serde(untagged)]
+enum Fitted<T> {
+    Found(T),
+    Failed { failed: String },
+}
+
+/// A joint from all FRFs, with what follows from its fit.
+#[derive(Serialize)]
+struct JointEntry<'a> {
+    #[serde(flatten)]
+    fit: &'a JointFit,
+    std: MatrixPair,
+    model_error: ModelError,
+    follows: FollowedLaw,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    law: Option<String>,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    laws: Vec<ComparedLaw>,
+}
+
+/// Parameters of a law over frequency.
+#[derive(Serialize)]
+struct LawParameters {
+    stiffness: RealMatrix2,
+    #[serde(flatten)]
+    losses: Option<Losses>,
+    #[serde(flatten)]
+    shape: Option<Shape>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    stiffness_per_rad_per_s: Option<RealMatrix2>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    mass: Option<f64>,
+}
+
+/// The matrix of a law's losses, which has a name of its own in each.
+#[derive(Serialize)]
+#[serde(rename_all = "snake_case")]
+enum Losses {
+    Damping(RealMatrix2),
+    ImaginaryStiffness(RealMatrix2),
+    RelaxingStiffness(RealMatrix2),
+    Springpot(RealMatrix2),
+}
+
+#[derive(Serialize)]
+#[serde(rename_all = "snake_case")]
+enum Shape {
+    Time(f64),
+    Exponent(f64),
+}
+
+/// The joint from the FRFs across it.
+#[derive(Serialize)]
+struct AcrossJoint {
+    #[serde(flatten)]
+    estimate: EstimateEntry,
+    relation: Relation,
+}
+
+/// A line that could not be solved, Hz.
+#[derive(Serialize)]
+struct MaskedLine {
+    frequency: f64,
+    why: &'static str,
+}
+
+/// The joint's interfaces, and the fit that they are taken from.
+#[derive(Serialize)]
+struct InterfaceEntries {
+    rest_on: Option<RestOn>,
+    translation_both: InterfaceEntry,
+    rotation_from: InterfaceEntry,
+    rotation_to: InterfaceEntry,
+    scalar_11: InterfaceEntry,
+    scalar_22: InterfaceEntry,
+}
+
+#[derive(Serialize)]
+struct RestOn {
+    fit: Method,
+    explains_the_frfs: bool,
+}
+
+#[derive(Serialize)]
+struct InterfaceEntry {
+    #[serde(flatten)]
+    stiffness: StiffnessEntry,
+    unit: &'static str,
+    compliance: Compliance,
+}
+
+/// An interface's stiffness, as far as its compliance tells one.
+#[derive(Serialize)]
+#[serde(untagged)]
+enum StiffnessEntry {
+    Found { stiffness: f64, ci95: [f64; 2] },
+    StifferThan { above: f64 },
+    StifferThanTheBeam { says: &'static str },
+}
+
+/// Which FRFs of the recording were used, and how well they are known.
+#[derive(Serialize)]
+struct UsedRecording<'a> {
+    used: Vec<&'a FrfPair>,
+    unused: &'a [FrfPair],
+    noise_from: Map<String, Value>,
+    reference_points: ReferencePoints<'a>,
+    rigid_motion_chi2_per_dof: Option<f64>,
+    noisy_lines: usize,
+    tolerances_not_followed: &'a [String],
+}
+
+#[derive(Serialize)]
+struct ReferencePoints<'a> {
+    responding: &'a str,
+    loaded: &'a str,
+}
+
+impl<'a> OneJoint<'a> {
+    fn of(analysis: &'a Analysis) -> Self {
+        let spectrum = &analysis.spectrum;
+        let frequencies = spectrum.h41.lines.hz();
+        let masked =
+            |&(line, why): &(usize, MaskReason)| MaskedLine { frequency: frequencies[line], why: why.why() };
+        OneJoint {
+            joint: Named { fit: Fitted::of(&analysis.joint_fit, JointEntry::of), name: &analysis.joint },
+            ends: &analysis.ends,
+            relation: spectrum.relation,
+            lines: spectrum.solved.iter().map(|solved| line(analysis, solved)).collect(),
+            masked: spectrum.masked.iter().map(masked).collect(),
+            average: averages(analysis),
+            maximum_likelihood: Fitted::of(&analysis.likelihood, |fit| across(analysis, fit)),
+            judgement: analysis.judgement,
+            nominal_stiffness: analysis.nominal_stiffness,
+            nominal: nominal(analysis),
+            recording: UsedRecording::of(analysis),
+            weighted_average: analysis.averages.weighted.as_ref().map(average),
+            interfaces: analysis.interfaces.as_ref().map(|found| InterfaceEntries::of(analysis, found)),
+        }
     }
-    entry
+}
+
+impl<T> Fitted<T> {
+    fn of<'a, F>(fit: &'a Result<F, DecompositionError>, entry: impl Fn(&'a F) -> T) -> Self {
+        match fit {
+            Ok(fit) => Fitted::Found(entry(fit)),
+            Err(error) => Fitted::Failed { failed: error.to_string() },
+        }
+    }
+}
+
+impl<'a> JointAtOnce<'a> {
+    fn of(found: &'a FoundJoint) -> Self {
+        JointAtOnce {
+            fit: JointEntry::of(&found.fit),
+            name: &found.name,
+            ends: &found.ends,
+            in_a_loop: found.is_in_a_loop,
+            nominal_stiffness: found.nominal,
+        }
+    }
+}
+
+impl<'a> JointEntry<'a> {
+    fn of(fit: &'a JointFit) -> Self {
+        let (inflation, strain) = (fit.inflation, fit.strain);
+        JointEntry {
+            fit,
+            std: pair(fit.std()),
+            model_error: ModelError { inflation, strain, covariance: fit.model_covariance },
+            follows: follows(fit),
+            law: fit.law().map(LawFit::name),
+            laws: fit.laws.iter().map(law).collect(),
+        }
+    }
 }
 
 /// The law that the joint's numbers are of, the frequency at which they are stated, and its losses in its own terms.
@@ -125,30 +293,21 @@ fn follows(fit: &JointFit) -> FollowedLaw {
 }
 
 fn law(law: &LawFit) -> ComparedLaw {
-    let mut parameters = json!({"stiffness": law.stiffness});
-    let (damping, shape) = match law.kind {
+    let (losses, shape) = match law.kind {
         LawKind::Constant => (None, None),
-        LawKind::Viscous | LawKind::LinearStiffness => (Some("damping"), None),
-        LawKind::Structural => (Some("imaginary_stiffness"), None),
-        LawKind::StandardLinearSolid => (Some("relaxing_stiffness"), Some("time")),
-        LawKind::Fractional => (Some("springpot"), Some("exponent")),
+        LawKind::Viscous | LawKind::LinearStiffness => (Some(Losses::Damping(law.damping)), None),
+        LawKind::Structural => (Some(Losses::ImaginaryStiffness(law.damping)), None),
+        LawKind::StandardLinearSolid => {
+            (Some(Losses::RelaxingStiffness(law.damping)), law.shape.map(Shape::Time))
+        }
+        LawKind::Fractional => (Some(Losses::Springpot(law.damping)), law.shape.map(Shape::Exponent)),
     };
-    if let Some(key) = damping {
-        parameters[key] = json!(law.damping);
-    }
-    if let Some((key, value)) = shape.zip(law.shape) {
-        parameters[key] = json!(value);
-    }
-    if let Some(change) = &law.change {
-        parameters["stiffness_per_rad_per_s"] = json!(change);
-    }
-    if let Some(mass) = law.mass {
-        parameters["mass"] = json!(mass);
-    }
+    let (stiffness, stiffness_per_rad_per_s, mass) = (law.stiffness, law.change, law.mass);
+    let parameters = LawParameters { stiffness, losses, shape, stiffness_per_rad_per_s, mass };
     ComparedLaw {
         law: law.name(),
         probability: law.probability,
-        parameters,
+        parameters: value(parameters),
         in_the_middle: Some(pair(law.in_the_middle())),
     }
 }
@@ -210,56 +369,57 @@ fn nominal(analysis: &Analysis) -> Nominal {
     Nominal { stiffness: of(Part::Stiffness), damping: of(Part::Damping) }
 }
 
-fn likelihood(analysis: &Analysis) -> Value {
-    let fit = match &analysis.likelihood {
-        Ok(fit) => fit,
-        Err(error) => return json!({"failed": error.to_string()}),
-    };
-    let mut entry = value(EstimateEntry {
+fn across(analysis: &Analysis, fit: &LikelihoodFit) -> AcrossJoint {
+    let estimate = EstimateEntry {
         std_fixture: Some(pair(analysis.tolerance_of_likelihood())),
         std_model: Some(pair(fit.model_std())),
         chi2_per_dof: Some(fit.chi2_per_dof),
         ..estimate((fit.stiffness, fit.damping), (fit.stiffness_std, fit.damping_std))
-    });
-    entry["relation"] = json!(Relation::Exact.name());
-    entry
+    };
+    AcrossJoint { estimate, relation: Relation::Exact }
 }
 
-/// The entry of the file that an estimate stands in.
-fn method_name(method: Method) -> &'static str {
-    match method {
-        Method::AllFrfs => "joint",
-        Method::MaximumLikelihood => "maximum_likelihood",
-        Method::WeightedMean => "weighted_average",
-        Method::PlainMean => "average",
+impl InterfaceEntries {
+    fn of(analysis: &Analysis, found: &Interfaces) -> Self {
+        let rest_on = |(fit, explains_the_frfs)| RestOn { fit, explains_the_frfs };
+        InterfaceEntries {
+            rest_on: analysis.interfaces_rest_on().map(rest_on),
+            translation_both: InterfaceEntry::of(found.translation, "N/m"),
+            rotation_from: InterfaceEntry::of(found.near_rotation, "N*m/rad"),
+            rotation_to: InterfaceEntry::of(found.far_rotation, "N*m/rad"),
+            scalar_11: InterfaceEntry::of(found.scalar[0], "N/m"),
+            scalar_22: InterfaceEntry::of(found.scalar[1], "N*m/rad"),
+        }
     }
 }
 
-fn stiffness(compliance: &Compliance, unit: &str) -> Value {
-    let mut entry = match compliance.stiffness() {
-        InterfaceStiffness::Found { stiffness, interval } => {
-            json!({"stiffness": stiffness, "ci95": interval})
-        }
-        InterfaceStiffness::StifferThan { above } => json!({"above": above}),
-        InterfaceStiffness::StifferThanTheBeam => {
-            json!({"says": "the joint is stiffer than the beam it is said to be"})
-        }
-    };
-    entry["unit"] = json!(unit);
-    entry["compliance"] = json!(compliance);
-    entry
+impl InterfaceEntry {
+    fn of(compliance: Compliance, unit: &'static str) -> Self {
+        let stiffness = match compliance.stiffness() {
+            InterfaceStiffness::Found { stiffness, interval } => {
+                StiffnessEntry::Found { stiffness, ci95: interval }
+            }
+            InterfaceStiffness::StifferThan { above } => StiffnessEntry::StifferThan { above },
+            InterfaceStiffness::StifferThanTheBeam => StiffnessEntry::StifferThanTheBeam {
+                says: "the joint is stiffer than the beam it is said to be",
+            },
+        };
+        InterfaceEntry { stiffness, unit, compliance }
+    }
 }
 
-fn recording(analysis: &Analysis) -> Value {
-    let (plan, pairs) = (&analysis.plan, analysis.frfs.pairs());
-    let noise = pairs.iter().zip(&analysis.noise).map(|(pair, source)| (pair.to_string(), json!(source)));
-    json!({
-        "used": plan.layout.channels.iter().map(|(index, ..)| json!(pairs[*index])).collect::<Value>(),
-        "unused": plan.unused,
-        "noise_from": noise.collect::<Value>(),
-        "reference_points": {"responding": plan.responding.2, "loaded": plan.loaded.2},
-        "rigid_motion_chi2_per_dof": analysis.spectrum.h41.rigidity(),
-        "noisy_lines": analysis.noisy_lines(),
-        "tolerances_not_followed": analysis.lost_tolerances,
-    })
+impl<'a> UsedRecording<'a> {
+    fn of(analysis: &'a Analysis) -> Self {
+        let (plan, pairs) = (&analysis.plan, analysis.frfs.pairs());
+        let noise = pairs.iter().zip(&analysis.noise).map(|(pair, source)| (pair.to_string(), value(source)));
+        UsedRecording {
+            used: plan.layout.channels.iter().map(|(index, ..)| &pairs[*index]).collect(),
+            unused: &plan.unused,
+            noise_from: noise.collect(),
+            reference_points: ReferencePoints { responding: &plan.responding.2, loaded: &plan.loaded.2 },
+            rigid_motion_chi2_per_dof: analysis.spectrum.h41.rigidity(),
+            noisy_lines: analysis.noisy_lines(),
+            tolerances_not_followed: &analysis.lost_tolerances,
+        }
+    }
 }

@@ -126,15 +126,7 @@ pub fn lowest_modes(
             outside.push(space.remainder(image.to_vec()));
         }
         let ritz = ritz_pairs(&columns, size)?;
-        let first_new = size - block.len();
-        // One product with M for each of them, and none for each pair.
-        let gram = products_by_mass(space.mass, &outside);
-        let residual_of = |pair: &RitzPair| {
-            let weights = &pair.vector[first_new..];
-            let of_row = |(row, weight): (&Vec<f64>, &f64)| weight * dot(row, weights);
-            gram.iter().zip(weights).map(of_row).sum::<f64>().max(0.0).sqrt() / pair.value
-        };
-        let converged = ritz.iter().take_while(|pair| residual_of(pair) <= CONVERGED).count();
+        let converged = converged(&ritz, space.mass, &outside, size - block.len());
         let eigenvalues: Vec<f64> = ritz[..converged].iter().map(|pair| 1.0 / pair.value - shift).collect();
         progress(converged.min(at_least), at_least);
         if size + rigid.len() >= order {
@@ -159,17 +151,8 @@ pub fn lowest_modes(
             if found == census.counted {
                 return modes(space, stiffness, &ritz[..count], factor, shift, below);
             }
-            let due = size >= census.fresh_after;
-            if found > census.counted || (due && census.fresh_blocks == FRESH_BLOCKS) {
-                return Err(missing(found, census.counted, below));
-            }
-            if due {
-                let fresh = (census.counted - found).clamp(BLOCK, FRESH);
-                census.fresh_blocks += 1;
-                // A block of that many more needs as many more vectors for each of its steps.
-                census.fresh_after = size + STEPS_A_FRESH_BLOCK * (block.len() + fresh);
-                (0..fresh).for_each(|_| space.start(&mut random, &factor, &mut next));
-            }
+            let fresh = census.fresh_vectors(found, size, block.len(), below)?;
+            (0..fresh).for_each(|_| space.start(&mut random, &factor, &mut next));
         } else {
             // Ritz values lie above the eigenvalues: there are at least so many modes.
             let known = ritz.iter().filter(|pair| 1.0 / pair.value - shift <= wanted.up_to).count();
@@ -182,13 +165,10 @@ pub fn lowest_modes(
             }
         }
         for rest in outside {
-            let vector = match space.normalised(rest, 1e-10) {
-                Some(vector) => vector,
-                // The block has run dry in this direction: another one.
-                None => match space.normalised(random.vector(order), 1e-8) {
-                    Some(vector) => vector,
-                    None => continue,
-                },
+            // Where the block has run dry in a direction, another one.
+            let vector = space.normalised(rest, 1e-10);
+            let Some(vector) = vector.or_else(|| space.normalised(random.vector(order), 1e-8)) else {
+                continue;
             };
             space.vectors.push(vector.clone());
             next.push(vector);
@@ -198,6 +178,18 @@ pub fn lowest_modes(
         }
         block = next;
     }
+}
+
+/// How many of the first Ritz pairs have converged: their residuals are made of what the newest vectors, from `first_new` on, have `outside` the space.
+fn converged(ritz: &[RitzPair], mass: &SparseSymmetric, outside: &[Vec<f64>], first_new: usize) -> usize {
+    // One product with M for each of them, and none for each pair.
+    let gram = products_by_mass(mass, outside);
+    let residual_of = |pair: &RitzPair| {
+        let weights = &pair.vector[first_new..];
+        let of_row = |(row, weight): (&Vec<f64>, &f64)| weight * dot(row, weights);
+        gram.iter().zip(weights).map(of_row).sum::<f64>().max(0.0).sqrt() / pair.value
+    };
+    ritz.iter().take_while(|pair| residual_of(pair) <= CONVERGED).count()
 }
 
 /// The count of eigenvalues below a shift, and what was done because of it.
@@ -210,6 +202,31 @@ struct Census {
 }
 
 impl Census {
+    /// How many new start vectors a space of `size` vectors needs beside a block of `block` to find what is missing; none while the last ones are still at work.
+    ///
+    /// # Errors
+    /// More modes than counted, or modes that do not turn up.
+    fn fresh_vectors(
+        &mut self,
+        found: usize,
+        size: usize,
+        block: usize,
+        below: f64,
+    ) -> Result<usize, SparseError> {
+        let due = size >= self.fresh_after;
+        if found > self.counted || (due && self.fresh_blocks == FRESH_BLOCKS) {
+            return Err(missing(found, self.counted, below));
+        }
+        if !due {
+            return Ok(0);
+        }
+        let fresh = (self.counted - found).clamp(BLOCK, FRESH);
+        self.fresh_blocks += 1;
+        // A block of that many more needs as many more vectors for each of its steps.
+        self.fresh_after = size + STEPS_A_FRESH_BLOCK * (block + fresh);
+        Ok(fresh)
+    }
+
     fn at(
         stiffness: &SparseSymmetric,
         mass: &SparseSymmetric,

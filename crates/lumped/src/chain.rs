@@ -2,7 +2,7 @@
 
 use crate::effects::{Action, SignalFilter, actions};
 use crate::{LumpedError, Station};
-use jointscope_fixture::{BodyKind, Fixture, Place};
+use jointscope_fixture::{Fixture, Place};
 use jointscope_spectra::{Channel, Dof, FrfPair};
 use num_complex::Complex64;
 
@@ -182,8 +182,7 @@ fn placed(
             point: channel.point.clone(),
             known: fixture.points().iter().map(|p| p.name.as_str()).collect::<Vec<_>>().join(", "),
         })?;
-    let fixed = matches!(&fixture.bodies()[station.body].kind, BodyKind::Rigid(rigid) if !rigid.rotates);
-    if channel.dof == Dof::Rotation && fixed {
+    if channel.dof == Dof::Rotation && !fixture.bodies()[station.body].kind.rotates() {
         return Err(LumpedError::NoRotation { frf: pair.to_string(), point: channel.point.clone() });
     }
     Ok(station)

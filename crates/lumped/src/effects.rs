@@ -122,6 +122,7 @@ fn action<'a>(fixture: &'a Fixture, effect: &'a Effect) -> Option<Action<'a>> {
         Some(joint) => Some(Action::OnJoint { joint, change }),
         None => Some(Action::OnBeam { body: body_of(fixture, &effect.place)?, change }),
     };
+    let filtered = |filter: SignalFilter| Some(Action::Filtered { channel: &effect.place, filter });
     match effect.kind {
         Kind::AddedMass => on_body(PointLaw::Mass(value(1))),
         Kind::Support => on_body(PointLaw::Spring { stiffness: value(1), damping: value(2) }),
@@ -132,12 +133,7 @@ fn action<'a>(fixture: &'a Fixture, effect: &'a Effect) -> Option<Action<'a>> {
             let body = body_of(fixture, &effect.place)?;
             Some(Action::Bending { body, omega: TAU * value(0), ratio: value(1) })
         }
-        Kind::InterfaceCompliance => {
-            let (joint, at_far_end) = end_of(fixture, &effect.place)?;
-            let dof = effect.dof.unwrap_or(Dof::Translation);
-            let interface = Interface { at_far_end, dof, stiffness: value(0), damping: value(1) };
-            Some(Action::OnJoint { joint, change: Change::Interface(interface) })
-        }
+        Kind::InterfaceCompliance => interface(fixture, effect),
         Kind::ShearDeformation => changed(Change::Shear { stiffness: value(0), rotary_inertia: value(1) }),
         Kind::JointMass => changed(Change::Mass(value(0))),
         Kind::StiffnessChange => changed(Change::Factor(value(0))),
@@ -157,25 +153,31 @@ fn action<'a>(fixture: &'a Fixture, effect: &'a Effect) -> Option<Action<'a>> {
         Kind::ExponentialWindow => Some(Action::Window { decay: value(0) }),
         Kind::ParallelStiffness => on_joint(PointLaw::Spring { stiffness: value(0), damping: value(1) }),
         Kind::Springpot => on_joint(PointLaw::Springpot { stiffness: value(0), exponent: value(1) }),
-        Kind::Bypass => {
-            let Place::Between(one, other) = &effect.place else { return None };
-            let body = |name: &String| fixture.bodies().iter().position(|body| body.name == *name);
-            let motion = TermStation::between((body(one)?, value(0)), (body(other)?, value(1)));
-            let law = PointLaw::Spring { stiffness: value(2), damping: value(3) };
-            Some(Action::Through { motion, law })
-        }
-        Kind::ChannelHighpass => {
-            let filter = SignalFilter::HighPass(TAU * value(0));
-            Some(Action::Filtered { channel: &effect.place, filter })
-        }
-        Kind::ChannelResonance => {
-            let filter = SignalFilter::Resonance(TAU * value(0), value(1));
-            Some(Action::Filtered { channel: &effect.place, filter })
-        }
+        Kind::Bypass => bypass(fixture, effect),
+        Kind::ChannelHighpass => filtered(SignalFilter::HighPass(TAU * value(0))),
+        Kind::ChannelResonance => filtered(SignalFilter::Resonance(TAU * value(0), value(1))),
         // A footing does two things at once; a wrong quantity has its value in the fixture already.
         Kind::Footing | Kind::QuantityError => None,
         Kind::CubicStiffness | Kind::Friction | Kind::Gap => Some(Action::Amplitude),
     }
+}
+
+/// A yielding end of a joint.
+fn interface<'a>(fixture: &Fixture, effect: &Effect) -> Option<Action<'a>> {
+    let (joint, at_far_end) = end_of(fixture, &effect.place)?;
+    let dof = effect.dof.unwrap_or(Dof::Translation);
+    let interface = Interface { at_far_end, dof, stiffness: effect.value(0), damping: effect.value(1) };
+    Some(Action::OnJoint { joint, change: Change::Interface(interface) })
+}
+
+/// A spring and dashpot from one body to another.
+fn bypass<'a>(fixture: &Fixture, effect: &Effect) -> Option<Action<'a>> {
+    let Place::Between(one, other) = &effect.place else { return None };
+    let value = |index: usize| effect.value(index);
+    let body = |name: &String| fixture.bodies().iter().position(|body| body.name == *name);
+    let motion = TermStation::between((body(one)?, value(0)), (body(other)?, value(1)));
+    let law = PointLaw::Spring { stiffness: value(2), damping: value(3) };
+    Some(Action::Through { motion, law })
 }
 
 /// d = u_to − R·u_from over the joint's free length, all that lengthens it included.

@@ -201,30 +201,38 @@ impl<'a> Prepared<'a> {
         let input: Vec<Vec<f64>> = inputs.iter().map(with_bending).collect();
         let change: Vec<Vec<f64>> = model.terms().stations.iter().map(|s| model.participation(s)).collect();
         let single = model.denominators();
-        let elements = model.terms().elements();
-        let (outputs, inputs) = (out.len(), input.len());
+        let mut prepared = Prepared {
+            terms: model.terms(),
+            elements: model.terms().elements(),
+            denominators: Vec::new(),
+            pairs,
+            outputs: out.len(),
+            inputs: input.len(),
+            products: Vec::new(),
+            entries: 0,
+            far: None,
+            near: 0,
+            system: None,
+        };
         if single.len() <= FEW_MODES && change.len() >= HIGH_RANK {
-            let system = Some(ModalSystem::new(single, &out, &input, &change));
-            let (terms, denominators, products) = (model.terms(), Vec::new(), Vec::new());
-            let (entries, far, near) = (0, None, 0);
-            return Prepared {
-                terms,
-                elements,
-                denominators,
-                pairs,
-                outputs,
-                inputs,
-                products,
-                entries,
-                far,
-                near,
-                system,
-            };
+            prepared.system = Some(ModalSystem::new(single, &out, &input, &change));
+        } else {
+            prepared.sum_over_modes(model, &single, [&out, &change, &input]);
         }
-        let far = FarModes::of(&single, BEYOND * TAU * model.highest_hz);
+        prepared
+    }
+
+    /// Prepares modal sums between stations, the change's among them; far modes as a power series.
+    fn sum_over_modes(
+        &mut self,
+        model: &Model,
+        single: &[Denominator],
+        [out, change, input]: [&[Vec<f64>]; 3],
+    ) {
+        let far = FarModes::of(single, BEYOND * TAU * model.highest_hz);
         let is_far = |mode: usize| far.as_ref().is_some_and(|far| far.contain(mode));
-        let (denominators, group, near) = merge(&single, is_far);
-        let count = pairs.len() + change.len() * (out.len() + change.len() + input.len());
+        let (denominators, group, near) = merge(single, is_far);
+        let count = self.pairs.len() + change.len() * (out.len() + change.len() + input.len());
         let distinct = denominators.len();
         let mut products = vec![0.0; count * distinct];
         let mut by_mode = vec![0.0; if far.is_some() { count * single.len() } else { 0 }];
@@ -239,29 +247,17 @@ impl<'a> Prepared<'a> {
             next += 1;
         };
         // The order of the entries: wanted pairs, then G_oV, G_VV, G_Vi where there is a change.
-        pairs.iter().for_each(|&(o, i)| entry(&out[o], &input[i]));
+        self.pairs.iter().for_each(|&(o, i)| entry(&out[o], &input[i]));
         if !change.is_empty() {
             out.iter().for_each(|o| change.iter().for_each(|v| entry(o, v)));
             change.iter().for_each(|v| change.iter().for_each(|w| entry(v, w)));
             change.iter().for_each(|v| input.iter().for_each(|i| entry(v, i)));
         }
-        let far = far.map(|far| {
+        self.far = far.map(|far| {
             let rows = far.rows(&by_mode, count);
             (far, rows)
         });
-        Prepared {
-            terms: model.terms(),
-            elements,
-            denominators,
-            pairs,
-            outputs,
-            inputs,
-            products,
-            entries: count,
-            far,
-            near,
-            system: None,
-        }
+        (self.denominators, self.products, self.entries, self.near) = (denominators, products, count, near);
     }
 
     /// Writes the receptances over `values`; `false` where a line has no solution.

@@ -263,6 +263,21 @@ struct LocalLaw {
     rates: Vec<Vec<f64>>,
 }
 
+/// Forces that resist each slip's rate by the rate of each: those of the joint's dashpots along them, and each one's own.
+fn slip_damping(law: &JointInTime, dashpots: &RealMatrix2) -> Vec<f64> {
+    let along = |direction: &[f64; 2], other: &[f64; 2]| -> f64 {
+        (0..2).map(|a| (0..2).map(|b| direction[a] * dashpots.at(a, b) * other[b]).sum::<f64>()).sum()
+    };
+    let slips = law.slips.len();
+    let mut matrix = vec![0.0; slips * slips];
+    for (i, (r, _, damping)) in law.slips.iter().enumerate() {
+        for (j, (other, ..)) in law.slips.iter().enumerate() {
+            matrix[i * slips + j] = along(r, other) + if i == j { *damping } else { 0.0 };
+        }
+    }
+    matrix
+}
+
 impl LocalLaw {
     fn of(law: &JointInTime, motions: &[Vec<f64>; 2], states: usize, n: usize, first: usize) -> Option<Self> {
         let slips = law.slips.len();
@@ -292,16 +307,7 @@ impl LocalLaw {
             }
             row
         });
-        let along = |direction: &[f64; 2], other: &[f64; 2]| -> f64 {
-            (0..2).map(|a| (0..2).map(|b| direction[a] * dashpots.at(a, b) * other[b]).sum::<f64>()).sum()
-        };
-        let mut matrix = vec![0.0; slips * slips];
-        for (i, (r, _, damping)) in law.slips.iter().enumerate() {
-            for (j, (other, ..)) in law.slips.iter().enumerate() {
-                matrix[i * slips + j] = along(r, other) + if i == j { *damping } else { 0.0 };
-            }
-        }
-        let inverted = Cholesky::of(slips, &matrix)?.inverse();
+        let inverted = Cholesky::of(slips, &slip_damping(law, &dashpots))?.inverse();
         let right: Vec<Vec<f64>> = law
             .slips
             .iter()

@@ -128,6 +128,48 @@ pub struct Comparison {
     both: [Vec<(usize, f64)>; 2],
 }
 
+/// Errors of the terms below and above the band, the first of them at `first` among `n` features: as shapes' errors make them, and relative to their sizes.
+fn add_residual_terms(kinds: &mut [Vec<f64>], recorded: &RecordedModes, (n, first): (usize, usize)) {
+    let frfs = recorded.frfs();
+    for (e, shared) in recorded.low.iter().enumerate() {
+        let (a, b) = (e / frfs, e % frfs);
+        kinds[2][(first + 2 * a) * n + first + 2 * b] = shared / recorded.residual_scales[0].powi(2);
+    }
+    for frf in 0..frfs {
+        for (term, kind) in [(0, 4), (1, 5)] {
+            let at = first + 2 * frf + term;
+            // Relative to what is there, and where little is there to the others.
+            let value = recorded.residual_terms[frf][term] / recorded.residual_scales[term];
+            kinds[kind][at * (n + 1)] = value.powi(2).max(LITTLE);
+        }
+    }
+}
+
+/// An FRF's gain changes its features in proportion to what the model makes of them.
+fn add_gains(
+    kind: &mut [f64],
+    recorded: &RecordedModes,
+    (pairing, modelled): (&Pairing, &ModelledModes),
+    (n, first): (usize, usize),
+) {
+    let frfs = recorded.frfs();
+    for frf in 0..frfs {
+        let mut of_frf = Vec::new();
+        for (k, &(r, m)) in pairing.pairs.iter().enumerate() {
+            let at = 2 * pairing.pairs.len() + 2 * k * frfs + 2 * frf;
+            let residue = modelled.modes[m].residues[frf] / recorded.modes[r].scale;
+            of_frf.extend([(at, residue.re), (at + 1, residue.im)]);
+        }
+        for term in 0..2 {
+            let value = modelled.residual_terms[frf][term] / recorded.residual_scales[term];
+            of_frf.push((first + 2 * frf + term, value));
+        }
+        for &(i, a) in &of_frf {
+            of_frf.iter().for_each(|&(j, b)| kind[i * n + j] = a * b);
+        }
+    }
+}
+
 impl Comparison {
     /// Of the modes that are paired, with the model's modes and shapes.
     pub fn new(
@@ -174,34 +216,8 @@ impl Comparison {
             }
         }
         let first = 2 * matched + 2 * matched * frfs;
-        for (e, shared) in recorded.low.iter().enumerate() {
-            let (a, b) = (e / frfs, e % frfs);
-            kinds[2][(first + 2 * a) * n + first + 2 * b] = shared / recorded.residual_scales[0].powi(2);
-        }
-        for frf in 0..frfs {
-            for (term, kind) in [(0, 4), (1, 5)] {
-                let at = first + 2 * frf + term;
-                // Relative to what is there, and where little is there to the others.
-                let value = recorded.residual_terms[frf][term] / recorded.residual_scales[term];
-                kinds[kind][at * (n + 1)] = value.powi(2).max(LITTLE);
-            }
-        }
-        // An FRF's gain changes its features in proportion to what the model makes of them.
-        for frf in 0..frfs {
-            let mut of_frf = Vec::new();
-            for (k, &(r, m)) in pairing.pairs.iter().enumerate() {
-                let at = 2 * matched + 2 * k * frfs + 2 * frf;
-                let residue = modelled.modes[m].residues[frf] / recorded.modes[r].scale;
-                of_frf.extend([(at, residue.re), (at + 1, residue.im)]);
-            }
-            for term in 0..2 {
-                let value = modelled.residual_terms[frf][term] / recorded.residual_scales[term];
-                of_frf.push((first + 2 * frf + term, value));
-            }
-            for &(i, a) in &of_frf {
-                of_frf.iter().for_each(|&(j, b)| kinds[GAIN][i * n + j] = a * b);
-            }
-        }
+        add_residual_terms(&mut kinds, recorded, (n, first));
+        add_gains(&mut kinds[GAIN], recorded, (pairing, modelled), (n, first));
         let entries =
             |kind: Vec<f64>| kind.into_iter().enumerate().filter(|(_, value)| *value != 0.0).collect();
         let mut kinds: Vec<Vec<(usize, f64)>> = kinds.into_iter().map(entries).collect();

@@ -319,24 +319,7 @@ impl FreeFit {
                 with_poles[(2 * m + k) * order + p] = if *im { change.im } else { change.re } / scale;
             }
         }
-        let mut moved = vec![0.0; count * order];
-        for i in 0..count {
-            for p in 0..order {
-                let value = with_poles[i * order + p];
-                if value != 0.0 {
-                    for q in 0..order {
-                        moved[i * order + q] += value * of_poles[p * order + q];
-                    }
-                }
-            }
-        }
-        let mut covariance = vec![0.0; count * count];
-        for i in 0..count {
-            for j in 0..count {
-                let dot: f64 = (0..order).map(|p| moved[i * order + p] * with_poles[j * order + p]).sum();
-                covariance[i * count + j] = dot;
-            }
-        }
+        let mut covariance = propagated(&with_poles, &of_poles, (count, order));
         let own: Vec<Vec<Complex64>> = self.fits.iter().map(|f| f.projection.covariance()).collect();
         for (i, (frf, of_a, im_a, scale_a)) in parts.iter().enumerate() {
             for (j, (other, of_b, im_b, scale_b)) in parts.iter().enumerate() {
@@ -356,6 +339,24 @@ impl FreeFit {
         covariance.iter_mut().for_each(|value| *value *= inflation);
         Some(covariance)
     }
+}
+
+/// J C Jᵀ of `count` features that move with `order` coordinates as J says, whose covariance is C.
+fn propagated(jacobian: &[f64], covariance: &[f64], (count, order): (usize, usize)) -> Vec<f64> {
+    let mut moved = vec![0.0; count * order];
+    for i in 0..count {
+        for p in 0..order {
+            let value = jacobian[i * order + p];
+            if value != 0.0 {
+                for q in 0..order {
+                    moved[i * order + q] += value * covariance[p * order + q];
+                }
+            }
+        }
+    }
+    let dot =
+        |i: usize, j: usize| (0..order).map(|p| moved[i * order + p] * jacobian[j * order + p]).sum::<f64>();
+    (0..count * count).map(|e| dot(e / count, e % count)).collect()
 }
 
 #[cfg(test)]

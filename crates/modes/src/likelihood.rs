@@ -125,22 +125,23 @@ impl Likelihood {
 
 pub(crate) const MOST_STEPS: usize = STEPS;
 
+/// The factor of an information matrix; directions that nothing is known of get a deviation that says so.
+fn factorised(n: usize, information: &[f64]) -> Option<Cholesky> {
+    Cholesky::of(n, information).or_else(|| {
+        let mut loosened = information.to_vec();
+        for i in 0..n {
+            loosened[i * n + i] = loosened[i * n + i] * (1.0 + 1e-9) + 1e-12;
+        }
+        Cholesky::of(n, &loosened)
+    })
+}
+
 impl Point {
     fn finish(self, observed: &Observed) -> Option<Likelihood> {
         let count = self.poles.poles.len();
         let own = 2 * self.terms.count();
         let n = self.normal.order;
-        let information = match Cholesky::of(n, &self.normal.information) {
-            Some(factor) => factor,
-            None => {
-                // Directions that nothing is known of get a deviation that says so.
-                let mut loosened = self.normal.information.clone();
-                for i in 0..n {
-                    loosened[i * n + i] = loosened[i * n + i] * (1.0 + 1e-9) + 1e-12;
-                }
-                Cholesky::of(n, &loosened)?
-            }
-        };
+        let information = factorised(n, &self.normal.information)?;
         let complex = |x: &[f64], k: usize| Complex64::new(x[2 * k], x[2 * k + 1]);
         let mut entries = vec![Vec::new(); count];
         let mut entry_std = vec![Vec::new(); count];
@@ -163,19 +164,17 @@ impl Point {
                         + entry.im * entry.im * caa)
                         / determinant;
                 }
-                let own_variance: f64 = [a, b]
-                    .iter()
-                    .map(|&u| {
-                        // A_ll⁻¹ and what the poles' uncertainty brings along.
-                        let gain: Vec<f64> = (0..n)
-                            .map(|k| (0..size).map(|j| covariance[u * size + j] * mixed[k * size + j]).sum())
-                            .collect();
-                        let through: f64 = (0..n)
-                            .map(|k| gain[k] * (0..n).map(|m| parameters[k * n + m] * gain[m]).sum::<f64>())
-                            .sum();
-                        covariance[u * size + u] + through
-                    })
-                    .sum();
+                // A_ll⁻¹ and what the poles' uncertainty brings along.
+                let variance = |u: usize| {
+                    let gain: Vec<f64> = (0..n)
+                        .map(|k| (0..size).map(|j| covariance[u * size + j] * mixed[k * size + j]).sum())
+                        .collect();
+                    let through: f64 = (0..n)
+                        .map(|k| gain[k] * (0..n).map(|m| parameters[k * n + m] * gain[m]).sum::<f64>())
+                        .sum();
+                    covariance[u * size + u] + through
+                };
+                let own_variance: f64 = [a, b].into_iter().map(variance).sum();
                 entry_std[mode].push((0.5 * own_variance).max(0.0).sqrt());
             }
             for (i, &frf) in frfs.iter().enumerate() {

@@ -71,47 +71,63 @@ struct Equations {
     lu: LuWorkspace,
 }
 
+/// Toeplitz coefficients of a row of FRFs, sums over the lines of powers of z.
+struct Toeplitz {
+    /// Of the weights.
+    r: Vec<Complex64>,
+    /// Of H, with positive and with negative powers.
+    s: Vec<Complex64>,
+    /// Of HᴴH.
+    t: Vec<Complex64>,
+}
+
+impl Toeplitz {
+    fn of(observed: &Observed, frfs: &[usize], circle: &Circle, powers: usize) -> Self {
+        let (p, n) = (observed.grid.columns, observed.lines());
+        let mut power = vec![Complex64::ZERO; powers];
+        let mut row = vec![Complex64::ZERO; p];
+        let mut r = vec![Complex64::ZERO; powers];
+        let mut s = vec![Complex64::ZERO; 2 * p * powers];
+        let mut t = vec![Complex64::ZERO; p * p * powers];
+        for line in 0..n {
+            // One weight for a row, that of its noisiest entry.
+            let weight = frfs.iter().map(|&f| observed.weights[f * n + line]).fold(f64::INFINITY, f64::min);
+            if weight <= 0.0 {
+                continue;
+            }
+            let z = circle.at(observed.omegas[line]);
+            let mut current = Complex64::from(weight);
+            for value in &mut power {
+                *value = current;
+                current *= z;
+            }
+            for (value, &f) in row.iter_mut().zip(frfs) {
+                *value = observed.values[f * n + line];
+            }
+            add(&mut r, &power, Complex64::ONE);
+            for (i, h) in row.iter().enumerate() {
+                add(&mut s[2 * i * powers..][..powers], &power, *h);
+                // Conjugated, the negative powers.
+                add(&mut s[(2 * i + 1) * powers..][..powers], &power, h.conj());
+                for (j, g) in row.iter().enumerate() {
+                    add(&mut t[(i * p + j) * powers..][..powers], &power, h.conj() * g);
+                }
+            }
+        }
+        Toeplitz { r, s, t }
+    }
+}
+
 impl Equations {
     fn of(observed: &Observed, highest: usize) -> Self {
-        let (p, n) = (observed.grid.columns, observed.lines());
+        let p = observed.grid.columns;
         let powers = highest + 1;
         let size = powers * p;
         let circle = Circle::of(&observed.omegas);
         let mut reduced = vec![Complex64::ZERO; size * size];
         let mut eliminated = Vec::with_capacity(observed.grid.rows.len());
-        let mut power = vec![Complex64::ZERO; powers];
-        let mut row = vec![Complex64::ZERO; p];
         for frfs in &observed.grid.rows {
-            // Toeplitz coefficients: of the weights, of H with positive and negative powers, of HᴴH.
-            let mut r = vec![Complex64::ZERO; powers];
-            let mut s = vec![Complex64::ZERO; 2 * p * powers];
-            let mut t = vec![Complex64::ZERO; p * p * powers];
-            for line in 0..n {
-                // One weight for a row, that of its noisiest entry.
-                let weight =
-                    frfs.iter().map(|&f| observed.weights[f * n + line]).fold(f64::INFINITY, f64::min);
-                if weight <= 0.0 {
-                    continue;
-                }
-                let z = circle.at(observed.omegas[line]);
-                let mut current = Complex64::from(weight);
-                for value in &mut power {
-                    *value = current;
-                    current *= z;
-                }
-                for (value, &f) in row.iter_mut().zip(frfs) {
-                    *value = observed.values[f * n + line];
-                }
-                add(&mut r, &power, Complex64::ONE);
-                for (i, h) in row.iter().enumerate() {
-                    add(&mut s[2 * i * powers..][..powers], &power, *h);
-                    // Conjugated, the negative powers.
-                    add(&mut s[(2 * i + 1) * powers..][..powers], &power, h.conj());
-                    for (j, g) in row.iter().enumerate() {
-                        add(&mut t[(i * p + j) * powers..][..powers], &power, h.conj() * g);
-                    }
-                }
-            }
+            let Toeplitz { r, s, t } = Toeplitz::of(observed, frfs, &circle, powers);
             // Element (a, b) of the normal equations carries z^(b − a).
             let toeplitz_s = |a: usize, b: usize, i: usize| {
                 if b >= a { s[2 * i * powers + b - a] } else { s[(2 * i + 1) * powers + a - b].conj() }

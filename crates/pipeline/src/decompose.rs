@@ -2,8 +2,7 @@
 
 use crate::{Error, HammerTest, MeasuredFrfs, Measurement};
 use jointscope_decomposition::{
-    Analysis, AnalysisOptions, DecompositionError, JointFit, JointFitOptions, JointsFit, Relation,
-    SidesError, fit_joints,
+    Analysis, AnalysisOptions, DecompositionError, JointFit, JointsFit, Relation, SidesError, fit_joints,
 };
 use jointscope_estimation::EstimateOptions;
 use jointscope_fixture::Fixture;
@@ -107,8 +106,7 @@ pub fn decompose(
         Some(analysis) => Joints::One(Box::new(analysis)),
         None => {
             let names = asked.joint.as_ref().map(std::slice::from_ref);
-            let of_fit = JointFitOptions { band: asked.band, exact: asked.exact, laws: asked.laws };
-            Joints::AtOnce(Box::new(fit_joints(&fixture, &frfs, names, of_fit)?))
+            Joints::AtOnce(Box::new(fit_joints(&fixture, &frfs, names, asked.of_fit())?))
         }
     };
     let relation_unused = asked.relation == Relation::Paper;

@@ -3,7 +3,7 @@
 use jointscope_fixture::{Damping, EffectKind, Fixture, FixtureError, Quantity, RatiosOf, Spread};
 use jointscope_lumped::{Assembly, LumpedError, Station};
 use jointscope_modes::{ExpectedMode, Matches, ModalAnalysis, match_modes};
-use jointscope_spectra::Channel;
+use jointscope_spectra::{Channel, FrfPair};
 use jointscope_wording::format::with_sign;
 use std::collections::BTreeSet;
 
@@ -72,21 +72,7 @@ pub fn measured_damping(
     let frequencies = assembly.natural_frequencies_hz();
     let elastic = assembly.elastic_modes();
     let shown = elastic.iter().filter(|&&r| frequencies[r] <= highest).count();
-    let participation = |channel: &Channel| -> Result<Vec<f64>, MeasuredDampingError> {
-        let point = fixture.point(&channel.point);
-        let point = point.ok_or_else(|| MeasuredDampingError::Point(channel.point.clone()))?;
-        Ok(assembly.participation(&Station { body: point.body, x: point.x.value, dof: channel.dof }))
-    };
-    let mut expected: Vec<ExpectedMode> = elastic[..shown]
-        .iter()
-        .map(|&r| ExpectedMode { frequency: frequencies[r], products: Vec::new() })
-        .collect();
-    for pair in analysis.pairs() {
-        let (response, reference) = (participation(&pair.response)?, participation(&pair.reference)?);
-        for (mode, &r) in expected.iter_mut().zip(elastic) {
-            mode.products.push(response[r] * reference[r]);
-        }
-    }
+    let expected = expected_modes(fixture, &assembly, analysis.pairs(), shown)?;
     let matches = match_modes(&analysis.modes, &expected);
     let elastic_hz: Vec<f64> = expected.iter().map(|mode| mode.frequency).collect();
     let Some(last) = matches.pairs.iter().map(|pair| pair.expected).max() else {
@@ -119,6 +105,32 @@ pub fn measured_damping(
     remarks.extend(without_effects(fixture));
     let fixture = fixture.clone().with_damping(as_it_stands(ratios))?;
     Ok(MeasuredDamping { fixture, matches, elastic: elastic_hz, remarks })
+}
+
+/// The first elastic modes of the assembly, with what each FRF has of them.
+fn expected_modes(
+    fixture: &Fixture,
+    assembly: &Assembly,
+    pairs: &[FrfPair],
+    shown: usize,
+) -> Result<Vec<ExpectedMode>, MeasuredDampingError> {
+    let participation = |channel: &Channel| -> Result<Vec<f64>, MeasuredDampingError> {
+        let point = fixture.point(&channel.point);
+        let point = point.ok_or_else(|| MeasuredDampingError::Point(channel.point.clone()))?;
+        Ok(assembly.participation(&Station { body: point.body, x: point.x.value, dof: channel.dof }))
+    };
+    let (frequencies, elastic) = (assembly.natural_frequencies_hz(), assembly.elastic_modes());
+    let mut expected: Vec<ExpectedMode> = elastic[..shown]
+        .iter()
+        .map(|&r| ExpectedMode { frequency: frequencies[r], products: Vec::new() })
+        .collect();
+    for pair in pairs {
+        let (response, reference) = (participation(&pair.response)?, participation(&pair.reference)?);
+        for (mode, &r) in expected.iter_mut().zip(elastic) {
+            mode.products.push(response[r] * reference[r]);
+        }
+    }
+    Ok(expected)
 }
 
 fn remarks(analysis: &ModalAnalysis, matches: &Matches, elastic: &[f64], last: usize) -> Vec<String> {

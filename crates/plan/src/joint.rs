@@ -184,27 +184,9 @@ impl Joints<'_> {
             with_wide_priors(self.hypothesis, again.clone().unwrap_or_else(|| vec![0.0; count * count]));
         let frfs = candidates::frfs(points, present);
         let by_frf = self.scene.products(names, &frfs).ok_or_else(not_comparable)?;
-        let mut all: Vec<Candidate> = Vec::new();
-        for measure in candidates::of_frfs(points, present) {
-            let mut sum = Products::none(&[count]);
-            for frf in measure.frfs() {
-                frfs.iter().position(|own| *own == frf).into_iter().for_each(|at| sum.add(&by_frf[at]));
-            }
-            all.push(Candidate { measure, information: sum.information(0), known: None });
-        }
-        if let (Some(again), averages @ Measure::Averages { times }) = (&again, candidates::averages()) {
-            let information = again.iter().map(|entry| f64::from(times - 1) * entry).collect();
-            all.push(Candidate { measure: averages, information, known: None });
-        }
-        all.extend(candidates::quantities(self.hypothesis).into_iter().filter_map(|m| self.of_quantity(m)));
-        if !present.is_empty() {
-            let changes = candidates::changes(&self.scene.fixture, points);
-            all.extend(changes.into_iter().filter_map(|measure| self.of_change(measure, present, &known)));
-        }
+        let all = self.candidates(points, (&frfs, &by_frf), again.as_deref(), (present, &known));
         // Before anything is recorded there is no interval.
         let now = again.as_ref().and_then(|_| self.interval(self.hypothesis, &known));
-        let value = self.value();
-        let at_most = |interval: f64| now.is_none_or(|now| interval <= (1.0 - WORTH) * now);
         let mut ranked: Vec<(f64, &Candidate)> = all
             .par_iter()
             .filter_map(|candidate| {
@@ -214,36 +196,12 @@ impl Joints<'_> {
             })
             .collect();
         ranked.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let gain = |(interval, candidate): &(f64, &Candidate)| match &candidate.measure {
-            Measure::Frf { frf } => {
-                Some(FrfGain { frf: frf.clone(), gain: interval / now.unwrap_or(*interval) })
-            }
-            _ => None,
+        let gain = |(interval, candidate): &(f64, &Candidate)| {
+            FrfGain::of(&candidate.measure, interval / now.unwrap_or(*interval))
         };
-        let mut gains: Vec<FrfGain> = ranked.iter().filter_map(gain).collect();
-        gains.sort_by_key(|gain| frfs.iter().position(|frf| *frf == gain.frf));
-        let reached_now = now.is_some_and(|now| self.wanted.reached(now, value));
-        let suggestions: Vec<Suggestion> = match reached_now {
-            true => Vec::new(),
-            false => {
-                let mut ranked: Vec<(f64, &Candidate)> =
-                    ranked.iter().filter(|(interval, _)| at_most(*interval)).copied().collect();
-                // Of what reaches the interval the least effort; of the rest the narrowest.
-                let effort = |candidate: &Candidate| candidate.measure.effort(present.len());
-                let key =
-                    |(interval, candidate): &(f64, &Candidate)| match self.wanted.reached(*interval, value) {
-                        true => (0.0, effort(candidate), *interval),
-                        false => (1.0, *interval, 0.0),
-                    };
-                ranked.sort_by(|a, b| key(a).partial_cmp(&key(b)).unwrap_or(std::cmp::Ordering::Equal));
-                ranked
-                    .into_iter()
-                    .map(|(then, candidate)| {
-                        self.suggestion(&candidate.measure, now, then, effort(candidate))
-                    })
-                    .collect()
-            }
-        };
+        let gains = FrfGain::in_order(ranked.iter().filter_map(gain), &frfs);
+        let reached_now = now.is_some_and(|now| self.wanted.reached(now, self.value()));
+        let suggestions = if reached_now { Vec::new() } else { self.suggestions(ranked, now, present.len()) };
         let alone =
             suggestions.first().and_then(|first| first.interval.as_ref()).is_some_and(|first| first.reaches);
         let together = (!reached_now && !alone).then(|| self.together(&all, &known)).flatten();
@@ -267,6 +225,56 @@ impl Joints<'_> {
             remarks,
             recorded: present.to_vec(),
         })
+    }
+
+    /// Everything that could be measured, with what it would tell.
+    fn candidates(
+        &self,
+        points: &[String],
+        (frfs, by_frf): (&[FrfPair], &[Products]),
+        again: Option<&[f64]>,
+        (present, known): (&[FrfPair], &[f64]),
+    ) -> Vec<Candidate> {
+        let count = self.hypothesis.parameters().len();
+        let mut all: Vec<Candidate> = Vec::new();
+        for measure in candidates::of_frfs(points, present) {
+            let mut sum = Products::none(&[count]);
+            for frf in measure.frfs() {
+                frfs.iter().position(|own| *own == frf).into_iter().for_each(|at| sum.add(&by_frf[at]));
+            }
+            all.push(Candidate { measure, information: sum.information(0), known: None });
+        }
+        if let (Some(again), averages @ Measure::Averages { times }) = (again, candidates::averages()) {
+            let information = again.iter().map(|entry| f64::from(times - 1) * entry).collect();
+            all.push(Candidate { measure: averages, information, known: None });
+        }
+        all.extend(candidates::quantities(self.hypothesis).into_iter().filter_map(|m| self.of_quantity(m)));
+        if !present.is_empty() {
+            let changes = candidates::changes(&self.scene.fixture, points);
+            all.extend(changes.into_iter().filter_map(|measure| self.of_change(measure, present, known)));
+        }
+        all
+    }
+
+    /// What narrows the interval by enough: of what reaches it the least effort first, of the rest the narrowest.
+    fn suggestions(
+        &self,
+        mut ranked: Vec<(f64, &Candidate)>,
+        now: Option<f64>,
+        recorded: usize,
+    ) -> Vec<Suggestion> {
+        ranked.retain(|(interval, _)| now.is_none_or(|now| *interval <= (1.0 - WORTH) * now));
+        let value = self.value();
+        let effort = |candidate: &Candidate| candidate.measure.effort(recorded);
+        let key = |(interval, candidate): &(f64, &Candidate)| match self.wanted.reached(*interval, value) {
+            true => (0.0, effort(candidate), *interval),
+            false => (1.0, *interval, 0.0),
+        };
+        ranked.sort_by(|a, b| key(a).partial_cmp(&key(b)).unwrap_or(std::cmp::Ordering::Equal));
+        let suggestion = |(then, candidate): (f64, &Candidate)| {
+            self.suggestion(&candidate.measure, now, then, effort(candidate))
+        };
+        ranked.into_iter().map(suggestion).collect()
     }
 
     fn comes_to(

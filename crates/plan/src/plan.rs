@@ -59,6 +59,23 @@ pub struct FrfGain {
     pub gain: f64,
 }
 
+impl FrfGain {
+    /// What a measurement of one FRF gains; nothing of another measurement.
+    pub(crate) fn of(measure: &Measure, gain: f64) -> Option<Self> {
+        match measure {
+            Measure::Frf { frf } => Some(FrfGain { frf: frf.clone(), gain }),
+            _ => None,
+        }
+    }
+
+    /// Gains in the order of these FRFs.
+    pub(crate) fn in_order(gains: impl Iterator<Item = Self>, frfs: &[FrfPair]) -> Vec<Self> {
+        let mut gains: Vec<Self> = gains.collect();
+        gains.sort_by_key(|gain| frfs.iter().position(|frf| *frf == gain.frf));
+        gains
+    }
+}
+
 /// Expected ln of the odds below which a measurement is not worth being told, nats.
 const WORTH: f64 = 0.1;
 /// Probability that two names are told apart from which they count as separated.
@@ -140,12 +157,8 @@ impl Judge<'_> {
             .collect();
         ranked.sort_by(|a, b| b.0.total_cmp(&a.0));
         let both = self.pairs_of_frfs(&ranked);
-        let single = |(gain, candidate, _): &(f64, Candidate, Rivals)| match &candidate.measure {
-            Measure::Frf { frf } => Some(FrfGain { frf: frf.clone(), gain: *gain }),
-            _ => None,
-        };
-        let mut gains: Vec<FrfGain> = ranked.iter().filter_map(single).collect();
-        gains.sort_by_key(|gain| frfs.iter().position(|frf| *frf == gain.frf));
+        let single = |(gain, candidate, _): &(f64, Candidate, Rivals)| FrfGain::of(&candidate.measure, *gain);
+        let gains = FrfGain::in_order(ranked.iter().filter_map(single), &frfs);
         ranked.retain(|(gain, ..)| *gain >= WORTH);
         ranked.truncate(DRAWN);
         let weights = self.names.weights();
@@ -167,15 +180,7 @@ impl Judge<'_> {
             suggestions.par_extend(both.par_iter().map(drawn));
         }
         suggestions.sort_by(|a, b| order(b).partial_cmp(&order(a)).unwrap_or(std::cmp::Ordering::Equal));
-        let mut whole =
-            Products::none(&by_frf.first().map_or_else(Vec::new, |products| products.widths.clone()));
-        by_frf.iter().for_each(|products| whole.add(products));
-        let not_by_frfs = match Rivals::of(&whole, &known) {
-            Some(rivals) if !by_frf.is_empty() => {
-                self.pairs(&rivals.outlook(&weights, self.names.unlisted, SEED), |apart| apart < SEPARATED)
-            }
-            _ => Vec::new(),
-        };
+        let not_by_frfs = self.not_by_frfs(&by_frf, &known);
         let names = self.names.names.iter();
         let names: Vec<NameNow> = names
             .map(|name| NameNow { effect: name.effect.clone(), probability: name.probability })
@@ -193,6 +198,17 @@ impl Judge<'_> {
             names,
             not_by_frfs,
             frfs: gains,
+        })
+    }
+
+    /// The names that all FRFs together leave unseparated.
+    fn not_by_frfs(&self, by_frf: &[Products], known: &[Cholesky]) -> Vec<[String; 2]> {
+        let Some(first) = by_frf.first() else { return Vec::new() };
+        let mut whole = Products::none(&first.widths);
+        by_frf.iter().for_each(|products| whole.add(products));
+        Rivals::of(&whole, known).map_or_else(Vec::new, |rivals| {
+            let outlook = rivals.outlook(&self.names.weights(), self.names.unlisted, SEED);
+            self.pairs(&outlook, |apart| apart < SEPARATED)
         })
     }
 

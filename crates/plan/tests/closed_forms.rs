@@ -5,7 +5,8 @@ use jointscope_diagnosis::{Hypothesis, Observation};
 use jointscope_fixture::{Effect, EffectKind, Fixture, Place, QuantityKey};
 use jointscope_lumped::{Instrument, synthesize};
 use jointscope_plan::{Measure, Plan, PlanError, PlanOptions, Remaining, Start, weighed_by};
-use jointscope_spectra::{FrfPair, SpectralLines};
+use jointscope_samples::transverse;
+use jointscope_spectra::SpectralLines;
 use num_complex::Complex64;
 
 /// Masses of 2 kg and 3 kg on a spring of 5 MN/m, everything exact.
@@ -33,7 +34,7 @@ fn lines() -> SpectralLines {
 
 /// What `truth` shows, without noise but with the variance of some.
 fn recorded(truth: &Fixture, pairs: &[(&str, &str)]) -> Observation {
-    let pairs: Vec<FrfPair> = pairs.iter().map(|(o, i)| FrfPair::transverse(o, i)).collect();
+    let pairs = transverse(pairs);
     let frfs = synthesize(truth, &pairs, &lines(), Instrument::AsRecorded).unwrap();
     let variance = frfs.all_values().iter().map(|v| NOISE * NOISE * v.norm_sqr()).collect();
     Observation::new(&frfs.with_variance(variance).unwrap(), |_| true).unwrap()

@@ -105,7 +105,7 @@ const ROLES: [Role; 8] = [
 ];
 
 /// Draws of a case before giving up.
-const DRAWS: usize = 60;
+pub(crate) const DRAWS: usize = 60;
 impl Plan {
     /// Number of fresh cases: a quarter where there is a text to draw them from.
     pub fn fresh(&self) -> usize {

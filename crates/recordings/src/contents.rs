@@ -214,27 +214,7 @@ impl Contents {
     pub fn says(&self) -> Vec<String> {
         let mut lines: Vec<String> = self.written_by.iter().map(|who| format!("written by {who}")).collect();
         lines.extend(self.units.iter().map(|units| format!("units (dataset 164): {units}")));
-        for kind in &self.functions {
-            let stated = kind.stated_values.map_or(String::new(), |stated| {
-                format!(" of the {} that the header states", thousands(stated))
-            });
-            let quantity = kind.quantity.as_ref().map_or(String::new(), |quantity| format!(" of {quantity}"));
-            let units = match kind.units.as_str() {
-                // A coherence has none.
-                "" if kind.function_type == FunctionType::Coherence.code() => String::new(),
-                "" => ", no unit stated".to_owned(),
-                units => format!(" in {units}"),
-            };
-            lines.push(format!(
-                "{}{quantity}{units}: {} values{stated} from {} to {} {}; channels {}",
-                counted(kind.count, &kind.what),
-                thousands(kind.values),
-                short(kind.from),
-                short(kind.to),
-                kind.abscissa_units,
-                enumeration(&kind.channels),
-            ));
-        }
+        lines.extend(self.functions.iter().map(FunctionKind::says));
         let reach = self.extent.map_or(String::new(), |extent| {
             let along = ["x", "y", "z"].iter().zip(extent).filter(|(_, [from, to])| from != to);
             let along =
@@ -434,6 +414,31 @@ fn short(value: f64) -> String {
     match text.contains('.') {
         true => text.trim_end_matches('0').trim_end_matches('.').to_owned(),
         false => text,
+    }
+}
+
+impl FunctionKind {
+    /// How many functions of which kind, in a line.
+    fn says(&self) -> String {
+        let stated = self
+            .stated_values
+            .map_or(String::new(), |stated| format!(" of the {} that the header states", thousands(stated)));
+        let quantity = self.quantity.as_ref().map_or(String::new(), |quantity| format!(" of {quantity}"));
+        let units = match self.units.as_str() {
+            // A coherence has none.
+            "" if self.function_type == FunctionType::Coherence.code() => String::new(),
+            "" => ", no unit stated".to_owned(),
+            units => format!(" in {units}"),
+        };
+        format!(
+            "{}{quantity}{units}: {} values{stated} from {} to {} {}; channels {}",
+            counted(self.count, &self.what),
+            thousands(self.values),
+            short(self.from),
+            short(self.to),
+            self.abscissa_units,
+            enumeration(&self.channels),
+        )
     }
 }
 

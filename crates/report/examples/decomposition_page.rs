@@ -5,7 +5,7 @@
 use jointscope_decomposition::{Analysis, AnalysisOptions, Relation};
 use jointscope_fixture::Fixture;
 use jointscope_recordings::{ReadOptions, Recording, Source};
-use jointscope_report::{InputFile, PageContext, decomposition_page};
+use jointscope_report::{InputFile, PageContext, decomposition_report};
 use jointscope_uff::read;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -35,6 +35,6 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         notes: recording.notes.clone(),
         hits: None,
     };
-    std::fs::write(page_path, decomposition_page(&analysis, &fixture, &context)?)?;
+    std::fs::write(page_path, decomposition_report(&analysis, &fixture, &context).html()?)?;
     Ok(())
 }

@@ -9,22 +9,13 @@ use jointscope_fixture::Fixture;
 
 use crate::context::PageContext;
 use crate::drawing::SideView;
-use crate::error::PageError;
 use crate::format::{fixed, percent, significant};
 use crate::report::Report;
 use crate::section::{Card, Section};
 use crate::table::Table;
 use crate::tone::Tone;
 
-/// The page of a check as one self-contained HTML file.
-///
-/// # Errors
-/// A recording whose lists do not fit its spectral lines.
-pub fn check_page(check: &Check, fixture: &Fixture, context: &PageContext) -> Result<String, PageError> {
-    check_report(check, fixture, context).html()
-}
-
-/// The same with its tables, curves and figures to be had apart.
+/// The page of a check.
 pub fn check_report(check: &Check, fixture: &Fixture, context: &PageContext) -> Report {
     let tone = match check.remarks.first().map(|remark| remark.weight) {
         None => Tone::Ok,

@@ -7,7 +7,6 @@ use jointscope_comparison::{Comparison, ElementRanking, Kind, Pair, PairedNumber
 use jointscope_wording::{Says, capitalised, comparison as says};
 
 use crate::context::PageContext;
-use crate::error::PageError;
 use crate::format::{fixed, in_column, interval, percent, quantity, significant};
 use crate::report::Report;
 use crate::section::{Section, Verdict};
@@ -17,18 +16,10 @@ use crate::unit::Scale;
 use elements::{elements, name_of};
 use spectra::{compliance_section, spectra_section};
 
-/// The page of a comparison as one self-contained HTML file: ratios, orders with probabilities, the scatter of specimens, values, and the spectra of H41, K and C
+/// The page of a comparison: ratios, orders with probabilities, the scatter of specimens, values, and the spectra of H41, K and C
 /// (Figures 4–9).
 ///
 /// The same input gives the same bytes.
-///
-/// # Errors
-/// Joints whose lists do not fit their spectral lines.
-pub fn comparison_page(comparison: &Comparison, context: &PageContext) -> Result<String, PageError> {
-    comparison_report(comparison, context).html()
-}
-
-/// The same with its tables, curves and figures to be had apart.
 pub fn comparison_report(comparison: &Comparison, context: &PageContext) -> Report {
     let names: Vec<&str> = comparison.joints.iter().map(|joint| joint.name.as_str()).collect();
     Report::of(

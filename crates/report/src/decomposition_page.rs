@@ -11,18 +11,16 @@ mod result;
 mod shares;
 mod subject;
 
-pub use joints::joints_report;
-
 use jointscope_decomposition::{Analysis, Estimate, Use};
 use jointscope_fixture::Fixture;
 use jointscope_pipeline::{Decomposition, Joints};
 use jointscope_wording::decomposition;
 
 use crate::context::PageContext;
-use crate::error::PageError;
 use crate::report::Report;
 use crate::section::Verdict;
 use crate::tone::Tone;
+use joints::joints_report;
 use subject::Subject;
 
 /// The page of the joint in a measurement, or of all joints.
@@ -41,22 +39,10 @@ fn tone(analysis: &Analysis) -> Tone {
     }
 }
 
-/// The page of a joint's decomposition as one self-contained HTML file: verdict, fixture, key figures with noise and
+/// The page of a joint's decomposition: verdict, fixture, key figures with noise and
 /// tolerances apart, the joint from all FRFs with its laws and tests, K and C by line, the FRFs behind them, interfaces, what the tolerances do, what was left out.
 ///
 /// `fixture` is the one that `analysis` was made with. The same input gives the same bytes.
-///
-/// # Errors
-/// An analysis whose lists do not fit its spectral lines.
-pub fn decomposition_page(
-    analysis: &Analysis,
-    fixture: &Fixture,
-    context: &PageContext,
-) -> Result<String, PageError> {
-    decomposition_report(analysis, fixture, context).html()
-}
-
-/// The same with its tables, curves and figures to be had apart.
 pub fn decomposition_report(analysis: &Analysis, fixture: &Fixture, context: &PageContext) -> Report {
     let best = Estimate::best(analysis);
     let subject = Subject { analysis, fixture, best: &best };

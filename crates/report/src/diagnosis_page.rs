@@ -21,30 +21,17 @@ use jointscope_fixture::Fixture;
 use jointscope_wording::Says;
 
 use crate::context::PageContext;
-use crate::error::PageError;
 use crate::report::Report;
 use crate::section::Verdict;
 use crate::tone::Tone;
 use subject::Subject;
 
-/// The page of a diagnosis as one self-contained HTML file: the verdict in a sentence; what was found, how sure, how much better, what to do, and the fixture with the places marked; findings with
+/// The page of a diagnosis: the verdict in a sentence; what was found, how sure, how much better, what to do, and the fixture with the places marked; findings with
 /// intervals, probabilities and look-alikes; with a baseline the modes then and now; the error of the model and the departures, where there are any; errors before and after, held-out lines included; δ(ω) with the law that names it; the FRFs of all
 /// models; maps of the misfit; tolerances and where they ended; the noise.
 ///
 /// `fixture` is the one that `diagnosis` was made with. The same input gives the same bytes.
-///
-/// # Errors
-/// A diagnosis whose lists do not fit its spectral lines.
-pub fn diagnosis_page(
-    diagnosis: &Diagnosis,
-    fixture: &Fixture,
-    context: &PageContext,
-) -> Result<String, PageError> {
-    diagnosis_report(diagnosis, fixture, context).html()
-}
-
-/// The same with its tables, curves and figures to be had apart.
-pub(crate) fn diagnosis_report(diagnosis: &Diagnosis, fixture: &Fixture, context: &PageContext) -> Report {
+pub fn diagnosis_report(diagnosis: &Diagnosis, fixture: &Fixture, context: &PageContext) -> Report {
     let subject = Subject { diagnosis, fixture };
     let said = diagnosis.findings.iter().map(|finding| finding.says());
     // A quantity far from what is stated is to be looked at even where nothing else is missing.

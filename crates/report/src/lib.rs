@@ -1,22 +1,22 @@
 //! Self-contained report pages: verdict, figures of merit, tables, fixture drawings and interactive plots in one HTML file.
 //!
-//! A page takes what a library found and a [`PageContext`], and is returned as a `String`; this crate reads and writes no files, and a page shows
+//! A page takes what a library found and a [`PageContext`]; this crate reads and writes no files, and a page shows
 //! decisions rather than taking any. The page needs no network and cannot use one: its Content-Security-Policy is `default-src 'none'`. Everything it
 //! shows is escaped, so names from fixture files may contain anything. The same input gives the same bytes.
 //!
 //! | page | of |
 //! |---|---|
-//! | [`decomposition_page`] | a joint's stiffness and damping by line and as an estimate |
-//! | [`joints_report`] | several joints found at once |
-//! | [`diagnosis_page`] | what a fixture leaves out |
-//! | [`answer_page`] | the same, or what changes with amplitude: whichever the test answers |
-//! | [`modes_page`] | natural frequencies, damping ratios, shapes |
-//! | [`check_page`] | a fixture, and its recording before any diagnosis |
-//! | [`comparison_page`] | joints side by side |
+//! | [`decomposition_report`] | a joint's stiffness and damping by line and as an estimate |
+//! | [`joint_report`] | the same, or several joints found at once |
+//! | [`diagnosis_report`] | what a fixture leaves out |
+//! | [`answer_report`] | the same, or what changes with amplitude: whichever the test answers |
+//! | [`modes_report`] | natural frequencies, damping ratios, shapes |
+//! | [`check_report`] | a fixture, and its recording before any diagnosis |
+//! | [`comparison_report`] | joints side by side |
 //! | [`summary_page`] | many cases, a row each |
 //! | [`proof_page`] | concealed cases: what the diagnosis is worth |
 //!
-//! Those of one test are also had as a [`Report`] (`decomposition_report` and so on), which gives its tables and curves as CSV and its figures as SVG.
+//! A [`Report`] is had as one HTML file ([`Report::html`]), its tables and curves as CSV, its figures as SVG; the pages of many cases are HTML alone.
 //!
 //! Inside, a page is a list of sections (`section`) made of paragraphs, key figures, tables (`table`: one row per item, a column for each question asked of
 //! it), plots (`plot`) and drawings (`drawing`, `scatter`). [`format`](mod@format) prints numbers with their uncertainty.
@@ -62,15 +62,15 @@ mod tone;
 pub use jointscope_wording::format;
 use jointscope_wording::unit;
 
-pub use answer_page::{answer_page, answer_report};
-pub use check_page::{check_page, check_report};
-pub use comparison_page::{comparison_page, comparison_report};
+pub use answer_page::answer_report;
+pub use check_page::check_report;
+pub use comparison_page::comparison_report;
 pub use context::PageContext;
-pub use decomposition_page::{decomposition_page, decomposition_report, joint_report, joints_report};
-pub use diagnosis_page::diagnosis_page;
+pub use decomposition_page::{decomposition_report, joint_report};
+pub use diagnosis_page::diagnosis_report;
 pub use error::PageError;
 pub use input_file::InputFile;
-pub use modes_page::{modes_page, modes_report};
+pub use modes_page::modes_report;
 pub use plan_page::plan_page;
 pub use proof_page::{ProofContext, ProofResults, proof_page};
 pub use report::{Report, ReportFile};

@@ -11,29 +11,15 @@ use jointscope_spectra::FrfSet;
 use jointscope_wording::Remarks;
 
 use crate::context::PageContext;
-use crate::error::PageError;
 use crate::report::Report;
 use crate::section::Section;
 use crate::tone::Tone;
 
-/// The page of a modal analysis as one self-contained HTML file: stabilisation chart, table of modes, shapes, auto-MAC, residual terms, and rebuilt FRFs over measured
+/// The page of a modal analysis: stabilisation chart, table of modes, shapes, auto-MAC, residual terms, and rebuilt FRFs over measured
 /// ones.
 ///
 /// `fixture` tells where the channels are, if there is one, `matches` what was found of its elastic modes, one sentence each, and `modelled` are its FRFs on the channels and
 /// lines in use. The same input gives the same bytes.
-///
-/// # Errors
-/// An analysis whose lists do not fit its spectral lines.
-pub fn modes_page(
-    analysis: &ModalAnalysis,
-    fixture: Option<&Fixture>,
-    (matches, modelled): (&[String], Option<&FrfSet>),
-    context: &PageContext,
-) -> Result<String, PageError> {
-    modes_report(analysis, fixture, (matches, modelled), context).html()
-}
-
-/// The same with its tables, curves and figures to be had apart.
 pub fn modes_report(
     analysis: &ModalAnalysis,
     fixture: Option<&Fixture>,

@@ -11,7 +11,7 @@
 //! | hammer hits and noise | [`HammerTest`] |
 //! | hits over time on joints that depend on amplitude | [`StrikeTest`], [`random_law`] |
 //! | stepped sines at several levels on such joints | [`SteppedSines`] |
-//! | random assemblies | [`Family`], [`drawn_within_tolerance`], [`random_effect`], [`random_rotational_support`] |
+//! | random assemblies | [`Family`], [`drawn_within_tolerance`], [`random_effect`], [`random_rotational_support`], [`extent`] |
 //! | physics without a name in fixture files | [`Outside`] |
 //! | structures a little wrong in every mode | [`ModalErrors`] |
 //! | a worked case | [`glued_joint`]: two steel blocks and a glued strip |
@@ -59,7 +59,7 @@ pub use modal_errors::{ModalErrors, UsualErrors};
 pub use outside::Outside;
 pub use physical::{Assembly, BeamElement, Law, Row, Station, Structure};
 pub use random::generator;
-pub use random_effect::{random_effect, random_rotational_support};
+pub use random_effect::{extent, random_effect, random_rotational_support};
 pub use stepped_sines::{Control, SteppedSines};
 pub use strikes::{StrikeTest, random_law, reach};
 pub use tolerance::drawn_within_tolerance;

@@ -4,6 +4,7 @@
 //! keep what they do beyond that. This changes nothing: damping and laws are carried over whole, VᵀCV. Then every natural frequency,
 //! damping ratio and shape gets an error of its own.
 
+use crate::physical::RIGID;
 use crate::random::normal;
 use crate::{Assembly, Instrument, Law, Row, Structure, StructureError, read};
 use jointscope_fixture::Fixture;
@@ -11,9 +12,6 @@ use jointscope_linalg::{Cholesky, generalized_symmetric_eigen};
 use jointscope_spectra::{FrfPair, FrfSet, SpectralLines};
 use rand::Rng;
 use serde::{Deserialize, Serialize};
-
-/// An eigenvalue below this fraction of the largest belongs to a rigid motion, which has no frequency to be wrong.
-const RIGID: f64 = 1e-12;
 
 /// Standard deviations of the errors, relative.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]

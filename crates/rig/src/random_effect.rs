@@ -216,10 +216,7 @@ impl Scene<'_> {
 
     fn of_a_joint(&self, rng: &mut impl Rng, kind: EffectKind) -> Option<Effect> {
         // Between storeys that do not rotate a longer spring is the same spring.
-        let rotates = |point: usize| {
-            let body = &self.fixture.bodies()[self.fixture.points()[point].body];
-            !matches!(&body.kind, BodyKind::Rigid(rigid) if !rigid.rotates)
-        };
+        let rotates = |point: usize| self.fixture.bodies()[self.fixture.points()[point].body].kind.rotates();
         let suits = |joint: &&Joint| {
             let shows =
                 matches!(joint.law, JointLaw::Beam { .. }) || rotates(joint.from) || rotates(joint.to);
@@ -312,7 +309,7 @@ impl Scene<'_> {
 
 /// First and last abscissa (m) of a body, that of the uniform bar with its mass and inertia for a block, and its
 /// mass (kg).
-fn extent(body: &Body) -> (f64, f64, f64) {
+pub fn extent(body: &Body) -> (f64, f64, f64) {
     match &body.kind {
         BodyKind::Beam(beam) => {
             let (from, to) = (beam.from.value, beam.to.value);

@@ -193,7 +193,6 @@ impl Shaken {
             let start = at.across * driven(Complex64::ZERO);
             (motion[1], motion[2]) = (start.re, start.im);
         }
-        let n = motion.len();
         let mut left = open(motion);
         for _ in 0..STEPS {
             let amplitude = size(motion);
@@ -201,16 +200,8 @@ impl Shaken {
                 break;
             }
             let mut lu = LuWorkspace::new();
-            let mut matrix = vec![Complex64::ZERO; n * n];
-            for column in 0..n {
-                let mut moved = motion.clone();
-                let step = 1e-6 * amplitude;
-                moved[column] += step;
-                for (row, (after, before)) in open(&moved).iter().zip(&left).enumerate() {
-                    matrix[row * n + column] = ((after - before) / step).into();
-                }
-            }
-            lu.factorize(n, |into| into.copy_from_slice(&matrix)).ok()?;
+            let slope = slope(&open, motion, &left, 1e-6 * amplitude);
+            lu.factorize(motion.len(), |into| into.copy_from_slice(&slope)).ok()?;
             let mut step: Vec<Complex64> = left.iter().map(|v| Complex64::from(-v)).collect();
             lu.solve_in_place(&mut step);
             let mut share = 1.0;
@@ -273,6 +264,20 @@ impl Shaken {
 
 fn read(row: &Row, motions: &[Complex64]) -> Complex64 {
     row.terms().iter().map(|&(i, value)| motions[i] * value).sum()
+}
+
+/// Derivatives of a function that is `before` at a point, by differences with this step, row-major.
+fn slope(of: &dyn Fn(&[f64]) -> Vec<f64>, at: &[f64], before: &[f64], step: f64) -> Vec<Complex64> {
+    let n = at.len();
+    let mut matrix = vec![Complex64::ZERO; n * n];
+    for column in 0..n {
+        let mut moved = at.to_vec();
+        moved[column] += step;
+        for (row, (after, before)) in of(&moved).iter().zip(before).enumerate() {
+            matrix[row * n + column] = ((after - before) / step).into();
+        }
+    }
+    matrix
 }
 
 #[cfg(test)]

@@ -4,6 +4,7 @@
 
 use jointscope_fixture::Fixture;
 use jointscope_lumped::{Instrument, synthesize};
+use jointscope_samples::{ACROSS, transverse};
 use jointscope_screening::{Oddity, ScreeningError, screened};
 use jointscope_spectra::{FrfForm, FrfPair, FrfSet, SpectralLines};
 use num_complex::Complex64;
@@ -20,7 +21,7 @@ fn fixture(physics: &str) -> Fixture {
 }
 
 fn pairs() -> Vec<FrfPair> {
-    [("4", "1"), ("3", "1"), ("4", "2"), ("3", "2")].map(|(o, i)| FrfPair::transverse(o, i)).to_vec()
+    transverse(&ACROSS)
 }
 
 /// FRFs of a structure with physics that its fixture does not have: resonances are elsewhere.

@@ -77,7 +77,13 @@ impl Units {
 
     /// What the values of an FRF are multiplied by to become SI: `numerator` along the direction of the response over
     /// `denominator` along that of the reference.
-    pub fn si_per_ratio(&self, numerator: &Axis, response: i32, denominator: &Axis, reference: i32) -> f64 {
+    pub(crate) fn si_per_ratio(
+        &self,
+        numerator: &Axis,
+        response: i32,
+        denominator: &Axis,
+        reference: i32,
+    ) -> f64 {
         self.si_per_unit(numerator.unit_exponents(response))
             / self.si_per_unit(denominator.unit_exponents(reference))
     }

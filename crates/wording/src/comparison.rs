@@ -84,22 +84,7 @@ pub fn shared(comparison: &Comparison) -> Vec<String> {
         if names.is_empty() {
             continue;
         }
-        let reason = match why {
-            WhyApart::Asked => "as asked for",
-            WhyApart::NotStated => {
-                "since their files do not say how the fixture acts on them; make them anew with `jointscope decompose`"
-            }
-            WhyApart::OnTheBoundary => {
-                "since C is held where it just gives out no energy, which what the FRFs alone tell knows nothing of"
-            }
-            WhyApart::LeftAlone => "since the other tests on the same bodies are taken apart",
-            WhyApart::OtherBodies => "since no other fixture states a body as theirs do",
-            WhyApart::Singular => {
-                "since their numbers and the fixture's cannot be told apart to working precision"
-            }
-            WhyApart::Disagrees => "since their FRFs contradict those of another test",
-        };
-        all.push(format!("taken as on blocks of their own: {}, {reason}", names.join(", ")));
+        all.push(format!("taken as on blocks of their own: {}, {}", names.join(", "), reason(why)));
     }
     for joints in &together.at_once {
         all.push(format!(
@@ -125,6 +110,25 @@ pub fn shared(comparison: &Comparison) -> Vec<String> {
         ));
     }
     all
+}
+
+/// Why joints are taken as tested on blocks of their own.
+fn reason(why: WhyApart) -> &'static str {
+    match why {
+        WhyApart::Asked => "as asked for",
+        WhyApart::NotStated => {
+            "since their files do not say how the fixture acts on them; make them anew with `jointscope decompose`"
+        }
+        WhyApart::OnTheBoundary => {
+            "since C is held where it just gives out no energy, which what the FRFs alone tell knows nothing of"
+        }
+        WhyApart::LeftAlone => "since the other tests on the same bodies are taken apart",
+        WhyApart::OtherBodies => "since no other fixture states a body as theirs do",
+        WhyApart::Singular => {
+            "since their numbers and the fixture's cannot be told apart to working precision"
+        }
+        WhyApart::Disagrees => "since their FRFs contradict those of another test",
+    }
 }
 
 /// `0.53 % to 2.1 %` of the mean: the interval of what specimens differ by.

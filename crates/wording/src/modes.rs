@@ -2,7 +2,7 @@
 
 use crate::Remarks;
 use crate::joint::merging;
-use jointscope_modes::ModalAnalysis;
+use jointscope_modes::{ModalAnalysis, Mode};
 
 /// How far to trust the modes.
 impl Remarks for ModalAnalysis {
@@ -57,21 +57,24 @@ impl Remarks for ModalAnalysis {
                 self.chi2_per_dof
             ));
         }
-        for mode in &self.modes {
-            if !mode.stands_out() {
-                all.push(format!(
-                    "the pole picked at {:.2} Hz does not stand out of the noise: the FRFs are explained as well without it",
-                    mode.frequency
-                ));
-            }
-            if mode.is_vaguely_damped() {
-                all.push(format!(
-                    "the damping ratio of the mode at {:.2} Hz is known to {:.0} % only",
-                    mode.frequency,
-                    100.0 * mode.damping_std / mode.damping_ratio
-                ));
-            }
-        }
+        all.extend(self.modes.iter().flat_map(of_mode));
         all
     }
+}
+
+fn of_mode(mode: &Mode) -> impl Iterator<Item = String> {
+    let faint = (!mode.stands_out()).then(|| {
+        format!(
+            "the pole picked at {:.2} Hz does not stand out of the noise: the FRFs are explained as well without it",
+            mode.frequency
+        )
+    });
+    let vague = mode.is_vaguely_damped().then(|| {
+        format!(
+            "the damping ratio of the mode at {:.2} Hz is known to {:.0} % only",
+            mode.frequency,
+            100.0 * mode.damping_std / mode.damping_ratio
+        )
+    });
+    faint.into_iter().chain(vague)
 }

@@ -9,7 +9,8 @@ mod shipped;
 use std::path::Path;
 
 use jointscope::proof::{
-    Baseline, Judged, Limits, Methods, Opened, Planning, Replies, RouteScores, Score, Timing,
+    Baseline, CaseLine, Judged, Limits, Methods, Opened, Planning, Questions, Replies, RouteScores, Score,
+    Timing, Truth,
 };
 use jointscope::report::{ProofContext, ProofResults, proof_page};
 use serde_json::json;
@@ -57,18 +58,11 @@ pub(super) fn run(arguments: &ProveArguments) -> Result<String, Refusal> {
     }
     let truths = concealed.truths.open(&answers).ok_or_else(|| Refusal::new("answers are missing"))?;
     let mut truths: Opened = truths.into_iter().collect();
-    let judged = {
-        let bar = progress::cases(concealed.cases.laboratory.len(), "judged");
-        let progress = |done: usize| bar.set_position(done as u64);
-        let own = std::mem::take(&mut truths.laboratory);
-        Judged::all(&concealed.cases.laboratory, own, &answers.laboratory, threads, progress)
-    };
-    let routes = {
-        let cases = &concealed.cases;
-        let frfs = concealed.numbers.len() - cases.laboratory.len() - cases.struck.len();
-        let bar = progress::cases(frfs, "judged");
-        RouteScores::of(cases, truths, &answers, threads, |done| bar.set_position(done as u64))
-    };
+    let own = std::mem::take(&mut truths.laboratory);
+    let cases = &concealed.cases;
+    let frfs = concealed.numbers.len() - cases.laboratory.len() - cases.struck.len();
+    let judged = judged(cases, own, &answers, threads);
+    let routes = routes((cases, frfs), truths, &answers, threads);
     let timing = Timing::of(&answers.seconds());
     tell(&timing.to_string());
     let score = Score::of(&judged);
@@ -103,18 +97,41 @@ pub(super) fn run(arguments: &ProveArguments) -> Result<String, Refusal> {
         text.push_str(&format!("\n{score}\n{methods}"));
     }
     text.push_str(&routes.to_string());
-    if arguments.wrong || arguments.only.is_some() {
-        let all = arguments.only.is_some();
-        let sheets = std::iter::once(&score.sheet).chain(routes.0.iter().map(|route| &route.sheet));
-        let lines = sheets.flat_map(|sheet| &sheet.lines);
-        for line in lines.filter(|line| all || !line.faults.is_empty()) {
-            text.push_str(&format!("\n{line}"));
-        }
-    }
+    text.extend(cases_asked_for(arguments, &score, &routes).map(|line| format!("\n{line}")));
     if let Some(directory) = &arguments.output {
         text.push_str(&format!("\n{}", directory.join("report.html").display()));
     }
     Ok(text.trim_end().to_owned())
+}
+
+/// The laboratory's cases judged, each with its truth.
+fn judged(cases: &Questions, truths: Vec<Truth>, answers: &Replies, threads: usize) -> Vec<Judged> {
+    let cases = &cases.laboratory;
+    let bar = progress::cases(cases.len(), "judged");
+    Judged::all(cases, truths, &answers.laboratory, threads, |done| bar.set_position(done as u64))
+}
+
+/// The other routes' cases judged and scored, so many of them by their FRFs.
+fn routes(
+    (cases, frfs): (&Questions, usize),
+    truths: Opened,
+    answers: &Replies,
+    threads: usize,
+) -> RouteScores {
+    let bar = progress::cases(frfs, "judged");
+    RouteScores::of(cases, truths, answers, threads, |done| bar.set_position(done as u64))
+}
+
+/// The cases that were asked for: the only one, or with `--wrong` those with a fault.
+fn cases_asked_for<'a>(
+    arguments: &ProveArguments,
+    score: &'a Score,
+    routes: &'a RouteScores,
+) -> impl Iterator<Item = &'a CaseLine> {
+    let (all, wrong) = (arguments.only.is_some(), arguments.wrong);
+    let sheets = std::iter::once(&score.sheet).chain(routes.0.iter().map(|route| &route.sheet));
+    let lines = sheets.flat_map(|sheet| &sheet.lines);
+    lines.filter(move |line| all || (wrong && !line.faults.is_empty()))
 }
 
 /// All cases diagnosed, and a page written of each where a directory was given.

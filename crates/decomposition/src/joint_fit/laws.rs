@@ -2,7 +2,7 @@
 
 use super::evidence::Fit;
 use super::law::{Dynamics, Form, LawKind};
-use super::problem::{Fitted, Problem};
+use super::problem::{Fitted, Problem, Test};
 use crate::Sides;
 use jointscope_fixture::BodyKind;
 use jointscope_inference::Parameter;
@@ -75,7 +75,7 @@ impl LawFit {
     }
 
     /// K(ω) and C(ω) of the dynamic stiffness K + sC on d at s = δ + iω, without the mass.
-    pub fn stiffness_and_damping(&self, s: Complex64) -> (RealMatrix2, RealMatrix2) {
+    fn stiffness_and_damping(&self, s: Complex64) -> (RealMatrix2, RealMatrix2) {
         let dynamic = self.dynamic_stiffness(s);
         let damping = dynamic.im().scale(1.0 / s.im);
         (dynamic.re() - damping.scale(s.re), damping)
@@ -178,6 +178,17 @@ fn candidates(
     known: Option<(&Problem, &Fitted)>,
     scale: f64,
 ) -> Vec<Candidate> {
+    let light = without_mass(viscous, first);
+    let heavy = with_mass(viscous.test, known, scale, &light);
+    light.into_iter().chain(heavy).collect()
+}
+
+fn most_evidence<'a>(all: impl Iterator<Item = &'a Candidate>) -> f64 {
+    all.map(|candidate| candidate.evidence).fold(f64::NEG_INFINITY, f64::max)
+}
+
+/// Every law of a joint without mass, the most probable first; those that are far from the nearest are fitted in few steps.
+fn without_mass(viscous: &Problem, first: &Fitted) -> Vec<Candidate> {
     let own = viscous.laws[0];
     let starts: Vec<(Dynamics, Vec<f64>, f64)> = LawKind::ALL
         .into_iter()
@@ -195,10 +206,7 @@ fn candidates(
         let candidate = Candidate::of(&problem, &fitted, 0);
         all.extend(candidate.map(|candidate| (candidate, fitted)));
     }
-    let most = |all: &[(Candidate, Fitted)]| {
-        all.iter().map(|(candidate, _)| candidate.evidence).fold(f64::NEG_INFINITY, f64::max)
-    };
-    let nearest = most(&all);
+    let nearest = most_evidence(all.iter().map(|(candidate, _)| candidate));
     for (candidate, fitted) in &mut all {
         if nearest - candidate.evidence > NEAR {
             continue;
@@ -208,10 +216,21 @@ fn candidates(
             *candidate = better;
         }
     }
-    all.sort_by(|a, b| b.0.evidence.total_cmp(&a.0.evidence));
+    let mut all: Vec<Candidate> = all.into_iter().map(|(candidate, _)| candidate).collect();
+    all.sort_by(|a, b| b.evidence.total_cmp(&a.evidence));
+    all
+}
+
+/// The laws of a joint with mass, from those without.
+fn with_mass(
+    test: Test,
+    known: Option<(&Problem, &Fitted)>,
+    scale: f64,
+    light: &[Candidate],
+) -> Vec<Candidate> {
     let with_mass = |light: &Candidate| {
         let law = light.fit.law;
-        let problem = Problem::lawful(viscous.test, vec![law], Some(scale));
+        let problem = Problem::lawful(test, vec![law], Some(scale));
         let start = match known {
             Some((heavy, optimum)) => {
                 let (mut start, _) = nearest_start(heavy, optimum, &law)?;
@@ -229,9 +248,9 @@ fn candidates(
         let candidate = Candidate::converged(&problem, &mut fitted)?;
         Some((candidate, light.fit.objective - fitted.point.objective))
     };
-    let nearest = most(&all);
+    let nearest = most_evidence(light.iter());
     let (mut heavy, mut most): (Vec<Candidate>, f64) = (Vec::new(), 0.0);
-    for (light, _) in &all {
+    for light in light {
         // Where mass gains nothing for the laws nearest to the FRFs, it does not for the others.
         if nearest - light.evidence > NEAR && most < WORTHWHILE {
             break;
@@ -241,7 +260,7 @@ fn candidates(
             most = most.max(gain);
         }
     }
-    all.into_iter().map(|(candidate, _)| candidate).chain(heavy).collect()
+    heavy
 }
 
 /// The start of a law from which the viscous joint is imitated best, and what χ² it promises, up to what all laws have in common.

@@ -98,6 +98,73 @@ pub(super) fn numbered(joint: &str, element: &str) -> String {
     format!("{joint}/{element}")
 }
 
+/// The optimum with every c free, of which the tests are.
+struct Free<'a> {
+    fitted: &'a Fitted,
+    equations: NormalEquations,
+    covariance: Covariance,
+    /// Of the joints' own coordinates, the fixture's quantities being exact.
+    noise: Covariance,
+    strain: f64,
+}
+
+/// The optimum that is stated, and how uncertain its numbers are.
+struct Stated<'a> {
+    at: &'a Fitted,
+    quantities: Vec<FittedQuantity>,
+    frfs: Arc<FittedFrfs>,
+    /// Of all coordinates, with what the model's error adds.
+    total: Covariance,
+    /// What the model's error adds.
+    model: Option<Covariance>,
+    /// The first joint's, kg, with its deviation.
+    mass: Option<(f64, f64)>,
+    /// By how much the laws compared differ, by joint.
+    spreads: Vec<Spread>,
+    slots: Vec<Slot>,
+}
+
+impl Stated<'_> {
+    /// Covariance of two numbers, with what the laws compared add.
+    fn covariance(&self, a: &Slot, b: &Slot) -> f64 {
+        let of_laws =
+            if a.joint == b.joint { self.spreads[a.joint].covariance[a.place][b.place] } else { 0.0 };
+        in_si(&self.total, a, b) + of_laws
+    }
+
+    /// What of it the model's error adds.
+    fn of_model(&self, a: &Slot, b: &Slot) -> f64 {
+        self.model.as_ref().map_or(0.0, |model| in_si(model, a, b))
+    }
+
+    /// Covariances of the six numbers of one joint.
+    fn six(&self, of: &dyn Fn(&Slot, &Slot) -> f64, joint: usize) -> [[f64; 6]; 6] {
+        let mut six = [[0.0; 6]; 6];
+        let own = || self.slots.iter().filter(|slot| slot.joint == joint);
+        own().for_each(|a| own().for_each(|b| six[a.place][b.place] = of(a, b)));
+        six
+    }
+
+    /// Covariances of the numbers of all joints.
+    fn matrix(&self, of: &dyn Fn(&Slot, &Slot) -> f64) -> Vec<Vec<f64>> {
+        self.slots.iter().map(|a| self.slots.iter().map(|b| of(a, b)).collect()).collect()
+    }
+}
+
+fn in_si(of: &Covariance, a: &Slot, b: &Slot) -> f64 {
+    of.at(a.coordinate, b.coordinate) * a.unit * b.unit
+}
+
+/// A law with the probability that it has among those compared; 1 where none were.
+fn as_compared(mut stated: LawFit, laws: &[LawFit]) -> LawFit {
+    let is_same = |fit: &&LawFit| fit.kind == stated.kind && fit.mass.is_some() == stated.mass.is_some();
+    stated.probability = match laws.is_empty() {
+        true => 1.0,
+        false => laws.iter().find(is_same).map_or(0.0, |fit| fit.probability),
+    };
+    stated
+}
+
 impl Outcome<'_> {
     /// From the optimum with every c free. `asymmetry` tells by how much χ² falls where k and the damping matrix of a joint may be unsymmetric, variances counting so many times.
     pub(super) fn of(
@@ -105,125 +172,123 @@ impl Outcome<'_> {
         free: &Fitted,
         asymmetry: &dyn Fn(usize, f64) -> Option<f64>,
     ) -> Result<Found, SeveralError> {
+        let setup = self.problem.test.setup;
+        let free = self.free(free)?;
+        let (held, passive) = self.held(free.fitted)?;
+        let stated = self.stated(held.as_ref(), &free)?;
+        let joint = |(place, passive): (usize, bool)| {
+            let reciprocity = asymmetry(place, free.strain);
+            JointFit { is_on_the_boundary: !passive, ..self.joint(place, &free, &stated, reciprocity) }
+        };
+        let name = |joint: usize| setup.fixture.joints()[setup.joints[joint]].name.as_str();
+        let told = stated.slots.iter().map(|slot| slot.told(Some(name(slot.joint))));
+        Ok(Found {
+            joints: passive.into_iter().enumerate().map(joint).collect(),
+            elements: stated.slots.iter().map(|slot| (slot.joint, ELEMENTS[slot.place])).collect(),
+            covariance: stated.matrix(&|a, b| stated.covariance(a, b)),
+            model_covariance: stated.matrix(&|a, b| stated.of_model(a, b)),
+            likelihood: self.likelihood(told, &free),
+        })
+    }
+
+    /// What is known at the optimum with every c free.
+    fn free<'a>(&self, fitted: &'a Fitted) -> Result<Free<'a>, SeveralError> {
+        let (problem, equations) = (self.problem, fitted.equations(self.problem));
+        let undetermined = || self.undetermined(&equations);
+        let covariance = equations.covariance().ok_or_else(undetermined)?;
+        let noise = with_the_fixture_exact(&equations, problem.own()).ok_or_else(undetermined)?;
+        let strain = strain(&problem.parameters, problem.own(), &fitted.point.coordinates, &covariance);
+        Ok(Free { fitted, equations, covariance, noise, strain })
+    }
+
+    /// The numbers that are stated: those with every c held that would give out energy, if there is such a c.
+    fn stated<'a>(&self, held: Option<&'a Fitted>, free: &Free<'a>) -> Result<Stated<'a>, SeveralError> {
         let problem = self.problem;
-        let setup = problem.test.setup;
-        let equations = free.equations(problem);
-        let covariance = equations.covariance().ok_or_else(|| self.undetermined(&equations))?;
-        let noise =
-            with_the_fixture_exact(&equations, problem.own()).ok_or_else(|| self.undetermined(&equations))?;
-        let strain = strain(&problem.parameters, problem.own(), &free.point.coordinates, &covariance);
-        let (held, passive) = self.held(free)?;
-        let at = held.as_ref().unwrap_or(free);
+        let at = held.unwrap_or(free.fitted);
         // Deviations are those of free elements, on the boundary too.
-        let posterior = match &held {
+        let posterior = match held {
             Some(held) => {
                 let equations = held.equations(problem);
                 equations.covariance().ok_or_else(|| self.undetermined(&equations))?
             }
-            None => covariance.clone(),
+            None => free.covariance.clone(),
         };
         let model = if self.inflated.by > 1.0 { at.jackknifed(problem) } else { None };
-        let total = total(&posterior, strain, model.as_ref());
+        let total = total(&posterior, free.strain, model.as_ref());
         let mass = problem
             .mass
             .map(|scale| (problem.mass_at(&at.point.coordinates), scale * total.std(problem.of_laws())));
-        let spreads: Vec<Spread> = self
-            .laws
-            .iter()
-            .zip(&problem.laws)
-            .map(|(laws, law)| {
-                let none = Spread { covariance: [[0.0; 6]; 6], mass: 0.0 };
-                Spread::of(laws, law.kind, mass.is_some()).unwrap_or(none)
-            })
-            .collect();
-        let slots = self.slots();
-        let in_si = |of: &Covariance, a: &Slot, b: &Slot| of.at(a.coordinate, b.coordinate) * a.unit * b.unit;
-        let element = |a: &Slot, b: &Slot| {
-            let of_laws =
-                if a.joint == b.joint { spreads[a.joint].covariance[a.place][b.place] } else { 0.0 };
-            in_si(&total, a, b) + of_laws
+        let spread = |(laws, law): (&Vec<LawFit>, &Dynamics)| {
+            let none = Spread { covariance: [[0.0; 6]; 6], mass: 0.0 };
+            Spread::of(laws, law.kind, mass.is_some()).unwrap_or(none)
         };
-        let six = |of: &dyn Fn(&Slot, &Slot) -> f64, joint: usize| {
-            let mut six = [[0.0; 6]; 6];
-            let own = || slots.iter().filter(|slot| slot.joint == joint);
-            own().for_each(|a| own().for_each(|b| six[a.place][b.place] = of(a, b)));
-            six
-        };
-        let quantities = self.quantities(&at.point.coordinates, &total);
-        let unmoved: Vec<UnmovedQuantity> =
-            self.unmoved.iter().map(|own| UnmovedQuantity::of(own, setup.fixture)).collect();
-        let (measured, modelled) = (setup.recorded.frfs.clone(), at.point.predicted.clone());
-        let fitted = Arc::new(FittedFrfs { measured, modelled });
-        let name = |joint: usize| setup.fixture.joints()[setup.joints[joint]].name.as_str();
-        let matrix = |of: &dyn Fn(&Slot, &Slot) -> f64| {
-            slots.iter().map(|a| slots.iter().map(|b| of(a, b)).collect()).collect()
-        };
-        let of_model = |a: &Slot, b: &Slot| model.as_ref().map_or(0.0, |model| in_si(model, a, b));
-        let joints = problem.places().zip(&self.laws).enumerate().map(|(place, ((first, law), laws))| {
-            let [k, d, _] = law.matrices(&at.point.coordinates[first..first + law.count()]);
-            let lowest = |form: Form, first: usize| {
-                not_negative(form, &free.point.coordinates, first, (&covariance, &noise, strain))
-            };
-            let shape = law.shape_with_std(&at.point.coordinates[first..first + law.count()], |own| {
-                total.std(first + own)
-            });
-            let mass = mass.filter(|_| place == 0);
-            let own = &at.point.coordinates[first..first + law.count()];
-            let mut stated = LawFit::of(law, own, at.point.objective, mass.map(|(mass, _)| mass));
-            let same = |fit: &&LawFit| fit.kind == law.kind && fit.mass.is_some() == stated.mass.is_some();
-            stated.probability = match laws.is_empty() {
-                true => 1.0,
-                false => laws.iter().find(same).map_or(0.0, |fit| fit.probability),
-            };
-            JointFit {
-                stiffness: k,
-                damping: d.scale(1.0 / law.middle),
-                covariance: six(&element, place),
-                model_covariance: six(&of_model, place),
-                law_covariance: spreads[place].covariance,
-                length: length_between(
-                    (setup.fixture, &setup.fixture.joints()[setup.joints[place]]),
-                    (problem.test.quantities, &at.point.coordinates),
-                    (problem.own(), first, law),
-                    &total,
-                ),
-                chi2_per_dof: self.inflated.chi2_per_dof,
-                inflation: self.inflated.by,
-                strain,
-                is_on_the_boundary: !passive[place],
-                quantities: quantities.clone(),
-                unmoved: unmoved.clone(),
-                tests: JointTests {
-                    reciprocity: asymmetry(place, strain).map(|gain| by_chance(law, gain)),
-                    definite: lowest(law.stiffness, first),
-                    passive: lowest(law.damping, first + law.stiffness.count()),
-                },
-                admissible: None,
-                laws: laws.clone(),
-                follows: Followed { law: law.kind, fit: stated, omega: law.middle, shape },
-                frfs: setup.recorded.pairs.clone(),
-                lines: setup.recorded.s.len(),
-                fitted: Arc::clone(&fitted),
-                mass: mass.map(|(mass, std)| (mass, std.hypot(spreads[place].mass.sqrt()))),
-                scalar: law.stiffness == Form::Scalar,
-                likelihood: self.likelihood(
-                    slots.iter().filter(|slot| slot.joint == place).map(|slot| slot.told(None)),
-                    &free.point.coordinates,
-                    &equations,
-                ),
-            }
-        });
-        Ok(Found {
-            joints: joints.collect(),
-            elements: slots.iter().map(|slot| (slot.joint, ELEMENTS[slot.place])).collect(),
-            covariance: matrix(&element),
-            model_covariance: matrix(&of_model),
-            likelihood: self.likelihood(
-                slots.iter().map(|slot| slot.told(Some(name(slot.joint)))),
-                &free.point.coordinates,
-                &equations,
-            ),
+        let spreads = self.laws.iter().zip(&problem.laws).map(spread).collect();
+        let recorded = problem.test.setup.recorded;
+        let (measured, modelled) = (recorded.frfs.clone(), at.point.predicted.clone());
+        Ok(Stated {
+            at,
+            quantities: self.quantities(&at.point.coordinates, &total),
+            frfs: Arc::new(FittedFrfs { measured, modelled }),
+            total,
+            model,
+            mass,
+            spreads,
+            slots: self.slots(),
         })
+    }
+
+    /// A joint by its place among those that are looked for; `asymmetry` is by how much χ² falls where its k and damping matrix may be unsymmetric.
+    fn joint(&self, place: usize, free: &Free, stated: &Stated, asymmetry: Option<f64>) -> JointFit {
+        let (problem, setup) = (self.problem, self.problem.test.setup);
+        let (first, law) = problem.places().nth(place).unwrap_or((0, &problem.laws[0]));
+        let coordinates = &stated.at.point.coordinates;
+        let own = &coordinates[first..first + law.count()];
+        let [k, d, _] = law.matrices(own);
+        let lowest = |form: Form, first: usize| {
+            let (covariance, noise) = (&free.covariance, &free.noise);
+            not_negative(form, &free.fitted.point.coordinates, first, (covariance, noise, free.strain))
+        };
+        let (laws, spread) = (&self.laws[place], &stated.spreads[place]);
+        let mass = stated.mass.filter(|_| place == 0);
+        let slots = stated.slots.iter().filter(|slot| slot.joint == place);
+        JointFit {
+            stiffness: k,
+            damping: d.scale(1.0 / law.middle),
+            covariance: stated.six(&|a, b| stated.covariance(a, b), place),
+            model_covariance: stated.six(&|a, b| stated.of_model(a, b), place),
+            law_covariance: spread.covariance,
+            length: length_between(
+                (setup.fixture, &setup.fixture.joints()[setup.joints[place]]),
+                (problem.test.quantities, coordinates),
+                (problem.own(), first, law),
+                &stated.total,
+            ),
+            chi2_per_dof: self.inflated.chi2_per_dof,
+            inflation: self.inflated.by,
+            strain: free.strain,
+            is_on_the_boundary: false,
+            quantities: stated.quantities.clone(),
+            unmoved: self.unmoved.iter().map(|own| UnmovedQuantity::of(own, setup.fixture)).collect(),
+            tests: JointTests {
+                reciprocity: asymmetry.map(|gain| by_chance(law, gain)),
+                definite: lowest(law.stiffness, first),
+                passive: lowest(law.damping, first + law.stiffness.count()),
+            },
+            admissible: None,
+            laws: laws.clone(),
+            follows: Followed {
+                law: law.kind,
+                fit: as_compared(LawFit::of(law, own, stated.at.point.objective, mass.map(|of| of.0)), laws),
+                omega: law.middle,
+                shape: law.shape_with_std(own, |own| stated.total.std(first + own)),
+            },
+            frfs: setup.recorded.pairs.clone(),
+            lines: setup.recorded.s.len(),
+            fitted: Arc::clone(&stated.frfs),
+            mass: mass.map(|(mass, std)| (mass, std.hypot(spread.mass.sqrt()))),
+            scalar: law.stiffness == Form::Scalar,
+            likelihood: self.likelihood(slots.map(|slot| slot.told(None)), free),
+        }
     }
 
     fn slots(&self) -> Vec<Slot> {
@@ -284,14 +349,9 @@ impl Outcome<'_> {
     }
 
     /// What the FRFs alone tell of these numbers and of the quantities, other joints, a mass and the rest of the laws integrated out.
-    fn likelihood(
-        &self,
-        numbers: impl Iterator<Item = Told>,
-        free: &[f64],
-        equations: &NormalEquations,
-    ) -> Option<JointLikelihood> {
-        let numbers: Vec<Told> = numbers.collect();
-        JointLikelihood::of(&numbers, self.problem.own(), free, equations, &self.problem.parameters)
+    fn likelihood(&self, numbers: impl Iterator<Item = Told>, free: &Free) -> Option<JointLikelihood> {
+        let (numbers, at): (Vec<Told>, _) = (numbers.collect(), &free.fitted.point.coordinates);
+        JointLikelihood::of(&numbers, self.problem.own(), at, &free.equations, &self.problem.parameters)
     }
 
     /// Which joints the FRFs leave undetermined, the others being given; all, if none by itself.

@@ -1,6 +1,6 @@
 //! The FRFs that a joint is fitted to: every one whose channels the fixture has, as accelerances with weights.
 
-use crate::likelihood::EXPLAINED;
+use crate::likelihood::{EXPLAINED, UNKNOWN_NOISE};
 use jointscope_averaging::Band;
 use jointscope_fixture::Fixture;
 use jointscope_inference::{Parameter, autocorrelation, inflated_weight, variance_inflation};
@@ -26,9 +26,6 @@ pub(super) struct Recorded {
     pub responses: Vec<usize>,
     pub references: Vec<usize>,
 }
-
-/// Relative deviation of a value whose noise is not known.
-const UNKNOWN_NOISE: f64 = 1e-3;
 
 impl Recorded {
     /// `None` where nothing can be used.

@@ -20,7 +20,7 @@ use super::quantities::uncertain;
 use super::recorded::Recorded;
 use super::setup::Setup;
 use super::uncoupled::MOST_JOINTS;
-use super::{DOUBTFUL, JointFitOptions, START_LOSS, that_matter, units_of};
+use super::{DOUBTFUL, JointFit, JointFitOptions, START_LOSS, that_matter, units_of};
 use crate::JointEnds;
 use crate::sides::{check_instruments, with_effects_of};
 use jointscope_fixture::{BodyKind, Fixture, Joint, Place};
@@ -51,13 +51,7 @@ pub fn fit_joints(
         .map_err(RigidMotionError::from)?;
     let recorded = Recorded::of(&known.frfs, fixture, options.band).ok_or(SeveralError::NothingRecorded)?;
     let middle = recorded.middle();
-    let nominal: Vec<RealMatrix2> = joints
-        .iter()
-        .map(|&joint| {
-            let joint = &fixture.joints()[joint];
-            jointscope_lumped::nominal_stiffness(&joint.law, fixture.joint_length(joint))
-        })
-        .collect();
+    let nominal: Vec<RealMatrix2> = joints.iter().map(|&joint| nominal_stiffness(fixture, joint)).collect();
     let law = |(k, &scalar): (&RealMatrix2, &bool)| {
         Dynamics::new(LawKind::Viscous, units_of(*k, scalar), middle, scalar)
     };
@@ -90,17 +84,8 @@ pub fn fit_joints(
     let found = outcome.of(&free, &|joint, strain| {
         first_order_asymmetry(&problem, &free, joint).map(|gain| gain / strain)
     })?;
-    let named = joints.iter().zip(nominal).zip(found.joints).map(|((&place, nominal), fit)| {
-        let joint = &fixture.joints()[place];
-        FoundJoint {
-            name: joint.name.clone(),
-            ends: JointEnds::of(fixture, joint),
-            is_in_a_loop: is_in_a_loop(fixture, place),
-            nominal,
-            fit,
-        }
-    });
-    let joints: Vec<FoundJoint> = named.collect();
+    let fits = joints.iter().zip(found.joints);
+    let joints: Vec<FoundJoint> = fits.map(|(&joint, fit)| FoundJoint::of(fixture, joint, fit)).collect();
     let name = |(joint, element): &(usize, &str)| numbered(&joints[*joint].name, element);
     Ok(JointsFit {
         merged: known.merged_from.map(|recorded| (recorded, known.frfs.lines().len())),
@@ -110,6 +95,24 @@ pub fn fit_joints(
         model_covariance: found.model_covariance,
         likelihood: found.likelihood,
     })
+}
+
+impl FoundJoint {
+    fn of(fixture: &Fixture, place: usize, fit: JointFit) -> Self {
+        let joint = &fixture.joints()[place];
+        FoundJoint {
+            name: joint.name.clone(),
+            ends: JointEnds::of(fixture, joint),
+            is_in_a_loop: is_in_a_loop(fixture, place),
+            nominal: nominal_stiffness(fixture, place),
+            fit,
+        }
+    }
+}
+
+fn nominal_stiffness(fixture: &Fixture, joint: usize) -> RealMatrix2 {
+    let joint = &fixture.joints()[joint];
+    jointscope_lumped::nominal_stiffness(&joint.law, fixture.joint_length(joint))
 }
 
 /// The joints that are looked for.
@@ -138,10 +141,7 @@ fn bodies(fixture: &Fixture, joint: &Joint) -> [usize; 2] {
 
 /// Whether each joint's bodies do not rotate.
 fn scalars(fixture: &Fixture, joints: &[usize]) -> Result<Vec<bool>, SeveralError> {
-    let rotates = |body: usize| match &fixture.bodies()[body].kind {
-        BodyKind::Rigid(rigid) => rigid.rotates,
-        BodyKind::Beam(_) => true,
-    };
+    let rotates = |body: usize| fixture.bodies()[body].kind.rotates();
     let scalar = |&joint: &usize| {
         let joint = &fixture.joints()[joint];
         match bodies(fixture, joint).map(rotates) {

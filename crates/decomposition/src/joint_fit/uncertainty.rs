@@ -1,11 +1,8 @@
 //! How well the joint is known: by noise and tolerances, by what the model gets wrong, by a fixture stated too surely.
 
 use super::law::Dynamics;
-use jointscope_inference::{Covariance, Parameter, jackknife};
-use statrs::function::gamma::gamma_ur;
-
-/// Blocks of neighbouring lines that the jackknife leaves out in turn.
-const BLOCKS: usize = 8;
+use crate::likelihood::BLOCKS;
+use jointscope_inference::{Covariance, Parameter, birge_ratio, jackknife};
 
 /// k11, k12, k22, c11, c12, c22 in SI units for one unit of a viscous law's coordinates.
 pub(super) fn units(law: &Dynamics) -> [f64; 6] {
@@ -41,9 +38,6 @@ pub(super) fn total(posterior: &Covariance, strain: f64, model: Option<&Covarian
     Covariance::new(posterior.order(), entries.map(sum).collect())
 }
 
-/// Probability below which the quantities' departures are no chance.
-const NO_CHANCE: f64 = 0.01;
-
 /// Squared departures of the quantities (those after the first `own` parameters) from what is stated, per what chance would make of them (Birge's ratio): what of a quantity the FRFs tell may depart, what
 /// they do not tell stays. 1 where chance explains them.
 pub(super) fn strain(parameters: &[Parameter], own: usize, at: &[f64], covariance: &Covariance) -> f64 {
@@ -54,12 +48,7 @@ pub(super) fn strain(parameters: &[Parameter], own: usize, at: &[f64], covarianc
             expected += (1.0 - parameter.precision * covariance.at(index, index)).clamp(0.0, 1.0);
         }
     }
-    let ratio = squares / expected;
-    if !(expected > 0.0 && ratio > 1.0) {
-        return 1.0;
-    }
-    let by_chance = gamma_ur(0.5 * expected, 0.5 * squares);
-    if by_chance < NO_CHANCE { ratio } else { 1.0 }
+    birge_ratio(squares, expected)
 }
 
 #[cfg(test)]

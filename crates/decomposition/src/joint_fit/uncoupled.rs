@@ -82,19 +82,10 @@ impl Uncoupled {
             Piece::of(setup, fixture, (&responding, &loaded), piece, known)
         };
         let pieces = (0..count).map(piece).collect::<Option<Vec<_>>>()?;
-        let same = before.filter(|before| {
-            let readings = before.chain.readings.iter().zip(&chain.readings);
-            before.chain.decay() == chain.decay() && readings.into_iter().all(|(a, b)| a.has_signals_of(b))
-        });
-        let factors = same.map_or_else(
-            || {
-                let values = (0..recorded.pairs.len())
-                    .flat_map(|frf| recorded.s.iter().map(move |s| (frf, s.im)))
-                    .map(|(frf, omega)| chain.factor(frf, omega));
-                Arc::new(values.collect())
-            },
-            |before| Arc::clone(&before.factors),
-        );
+        let factors = match before.filter(|before| has_the_same_factors(&before.chain, &chain)) {
+            Some(before) => Arc::clone(&before.factors),
+            None => Arc::new(factors(&chain, recorded)),
+        };
         let lengths: Vec<f64> = joints.iter().map(|joint| fixture.joint_length(joint)).collect();
         let masses =
             if mass > 0.0 { square_root(&mass_of_ends(mass, lengths[0])).to_vec() } else { Vec::new() };
@@ -369,6 +360,17 @@ impl Piece {
         model.receptances_of(&outputs, &inputs, wanted).on_lines(&recorded.s, &mut values).ok()?;
         Some(Arc::new(Piece { fixture, outputs, inputs, pairs, values }))
     }
+}
+
+/// Recorded accelerance per receptance, FRF after FRF.
+fn factors(chain: &MeasuringChain, recorded: &Recorded) -> Vec<Complex64> {
+    let values = (0..recorded.pairs.len()).flat_map(|frf| recorded.s.iter().map(move |s| (frf, s.im)));
+    values.map(|(frf, omega)| chain.factor(frf, omega)).collect()
+}
+
+fn has_the_same_factors(one: &MeasuringChain, other: &MeasuringChain) -> bool {
+    let mut readings = one.readings.iter().zip(&other.readings);
+    one.decay() == other.decay() && readings.all(|(a, b)| a.has_signals_of(b))
 }
 
 /// What the motion of a joint's end is a part of, and with what weight: d_j = u_to − R·u_from, and for the first joint the coordinates of its mass, which are those of all d

@@ -45,7 +45,7 @@ pub(super) struct Part<'a> {
 pub(super) struct Linear(Vec<Option<[ComplexMatrix2; 2]>>);
 
 /// Relative standard deviation of a value without a variance.
-const UNKNOWN_NOISE: f64 = 1e-3;
+pub(crate) const UNKNOWN_NOISE: f64 = 1e-3;
 /// Rounds of the linear fit that finds the start.
 const ROUNDS: usize = 12;
 /// Change of k in a round, in units of √(k_ii k_jj), below which further rounds are not worth while.

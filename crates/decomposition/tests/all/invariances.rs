@@ -1,10 +1,11 @@
 //! What a decomposition must not depend on: the units of mass, length and time, the side from which the fixture is drawn, the order of the FRFs and how often they are given, which
 //! end of a reciprocal pair was struck.
 
-use crate::common::{FOUR, Noise, TwoBlocks, frfs};
+use crate::common::{TwoBlocks, frfs};
 use jointscope_decomposition::{Analysis, AnalysisOptions, JointFit};
 use jointscope_fixture::Fixture;
 use jointscope_linalg::RealMatrix2;
+use jointscope_samples::{ACROSS, Noise};
 use jointscope_spectra::{FrfPair, FrfSet, SpectralLines};
 use proptest::prelude::*;
 
@@ -78,7 +79,7 @@ proptest! {
             bending_stiffness: blocks.bending_stiffness * mass * length.powi(3) / time.powi(2),
             ..blocks.clone()
         };
-        let recorded = Noise::new(seed).on(&frfs(&blocks.fixture(), &FOUR, &lines()), 1e-3);
+        let recorded = Noise::new(seed).on(&frfs(&blocks.fixture(), &ACROSS, &lines()), 1e-3);
         // An accelerance is one over a mass.
         let other = relabelled(&recorded, &AS_THEY_ARE, FrfPair::clone, 1.0 / mass, 1.0 / time);
         let force = mass / time.powi(2);
@@ -89,7 +90,7 @@ proptest! {
     #[test]
     fn the_order_of_the_frfs_means_nothing(order in Just(AS_THEY_ARE.to_vec()).prop_shuffle(), seed in 1..1000_u64) {
         let fixture = TwoBlocks::default().fixture();
-        let recorded = Noise::new(seed).on(&frfs(&fixture, &FOUR, &lines()), 1e-3);
+        let recorded = Noise::new(seed).on(&frfs(&fixture, &ACROSS, &lines()), 1e-3);
         let other = relabelled(&recorded, &order, FrfPair::clone, 1.0, 1.0);
         agrees(found(&fit(&fixture, &recorded)), found(&fit(&fixture, &other)), SAME)?;
     }
@@ -97,7 +98,7 @@ proptest! {
     #[test]
     fn force_and_response_of_an_frf_can_be_exchanged(seed in 1..1000_u64) {
         let fixture = TwoBlocks::default().fixture();
-        let recorded = Noise::new(seed).on(&frfs(&fixture, &FOUR, &lines()), 1e-3);
+        let recorded = Noise::new(seed).on(&frfs(&fixture, &ACROSS, &lines()), 1e-3);
         let exchanged = |pair: &FrfPair| FrfPair::new(pair.reference.clone(), pair.response.clone());
         let other = relabelled(&recorded, &AS_THEY_ARE, exchanged, 1.0, 1.0);
         agrees(found(&fit(&fixture, &recorded)), found(&fit(&fixture, &other)), SAME)?;
@@ -106,7 +107,7 @@ proptest! {
     #[test]
     fn frfs_given_twice_with_half_their_weight_count_as_once(seed in 1..1000_u64) {
         let fixture = TwoBlocks::default().fixture();
-        let recorded = Noise::new(seed).on(&frfs(&fixture, &FOUR, &lines()), 1e-3);
+        let recorded = Noise::new(seed).on(&frfs(&fixture, &ACROSS, &lines()), 1e-3);
         let exchanged = |pair: &FrfPair| FrfPair::new(pair.reference.clone(), pair.response.clone());
         let again = relabelled(&recorded, &AS_THEY_ARE, exchanged, 1.0, 1.0);
         let pairs = [recorded.pairs(), again.pairs()].concat();
@@ -128,7 +129,7 @@ proptest! {
             half_length: [blocks.half_length[1], blocks.half_length[0]],
             ..blocks.clone()
         };
-        let recorded = Noise::new(seed).on(&frfs(&blocks.fixture(), &FOUR, &lines()), 1e-3);
+        let recorded = Noise::new(seed).on(&frfs(&blocks.fixture(), &ACROSS, &lines()), 1e-3);
         let turned = |name: &str| ["4", "3", "2", "1"][name.parse::<usize>().unwrap() - 1].to_owned();
         let label = |pair: &FrfPair| FrfPair::transverse(&turned(&pair.response.point), &turned(&pair.reference.point));
         let other = relabelled(&recorded, &AS_THEY_ARE, label, 1.0, 1.0);

@@ -1,10 +1,11 @@
 //! Synthesis followed by decomposition.
 
-use crate::common::{FOUR, TwoBlocks, frfs, joint_damping, lines};
+use crate::common::{TwoBlocks, frfs, joint_damping, lines};
 use jointscope_beam::end_stiffness;
 use jointscope_decomposition::{JointSpectrum, Relation, Sides, decompose};
 use jointscope_fixture::Fixture;
 use jointscope_linalg::{Matrix2, RealMatrix2};
+use jointscope_samples::ACROSS;
 use jointscope_spectra::SpectralLines;
 use proptest::prelude::*;
 
@@ -83,14 +84,14 @@ proptest! {
         let fixture = blocks.fixture();
         let c = joint_damping(&fixture);
         let k = end_stiffness(blocks.bending_stiffness, blocks.length);
-        check(&spectrum(&fixture, &FOUR, Relation::Exact), k, |_| c, 0.0)?;
+        check(&spectrum(&fixture, &ACROSS, Relation::Exact), k, |_| c, 0.0)?;
     }
 
     #[test]
     fn the_exact_relation_returns_a_joint_with_a_loss_factor(mut blocks in blocks(), eta in 1e-3f64..0.1) {
         blocks.damping = format!(r#"{{"loss_factor": {eta}}}"#);
         let k = end_stiffness(blocks.bending_stiffness, blocks.length);
-        check(&spectrum(&blocks.fixture(), &FOUR, Relation::Exact), k, |omega| k.scale(eta / omega), 0.0)?;
+        check(&spectrum(&blocks.fixture(), &ACROSS, Relation::Exact), k, |omega| k.scale(eta / omega), 0.0)?;
     }
 
     #[test]
@@ -104,7 +105,7 @@ proptest! {
             "T": {{"body": "B", "x": {}, "stiffness": {support}, "rotational_stiffness": 3, "damping": 0.4}} }},
             "physics": [{{"kind": "added_mass", "place": "A", "x": {}, "mass": {mass}}}]"#, blocks.length + b, -a);
         let k = end_stiffness(blocks.bending_stiffness, blocks.length);
-        let mut found = spectrum(&blocks.fixture(), &FOUR, Relation::Exact);
+        let mut found = spectrum(&blocks.fixture(), &ACROSS, Relation::Exact);
         // Below a side's resonance on its supports its compliance is the difference of two large numbers: up to
         // support/(ω²m) times the rounding comes on top of the relation's own condition, and that of taking supports and masses off each side.
         for line in &mut found.solved {
@@ -122,14 +123,14 @@ fn on_the_papers_kind_of_fixture_nearly_every_line_is_well_conditioned_and_exact
     let k = end_stiffness(blocks.bending_stiffness, blocks.length);
     let fixture = blocks.fixture();
     let c = joint_damping(&fixture);
-    check(&spectrum(&fixture, &FOUR, Relation::Exact), k, |_| c, 0.95).unwrap();
+    check(&spectrum(&fixture, &ACROSS, Relation::Exact), k, |_| c, 0.95).unwrap();
 }
 
 #[test]
 fn hammer_and_sensors_may_change_sides() {
     let fixture = TwoBlocks::default().fixture();
-    let there = spectrum(&fixture, &FOUR, Relation::Exact);
-    let swapped: Vec<(&str, &str)> = FOUR.iter().map(|(o, i)| (*i, *o)).collect();
+    let there = spectrum(&fixture, &ACROSS, Relation::Exact);
+    let swapped: Vec<(&str, &str)> = ACROSS.iter().map(|(o, i)| (*i, *o)).collect();
     let back = spectrum(&fixture, &swapped, Relation::Exact);
     for (a, b) in there.solved.iter().zip(&back.solved) {
         for (x, y) in a.stiffness.0.iter().flatten().zip(b.stiffness.0.iter().flatten()) {
@@ -171,7 +172,7 @@ fn check_paper(blocks: &TwoBlocks, eta: f64) -> Result<f64, TestCaseError> {
     hz.sort_by(f64::total_cmp);
     hz.dedup();
     let fixture = blocks.fixture();
-    let set = frfs(&fixture, &FOUR, &SpectralLines::new(hz).unwrap());
+    let set = frfs(&fixture, &ACROSS, &SpectralLines::new(hz).unwrap());
     let found = decompose(&set, &Sides::of(&fixture, None).unwrap(), Relation::Paper).unwrap();
     let mut beside_the_peak = f64::INFINITY;
     for line in &found.solved {

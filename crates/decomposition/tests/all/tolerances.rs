@@ -1,11 +1,12 @@
 //! What the fixture's own uncertainty does to the joint found.
 
-use crate::common::{FOUR, Noise, TwoBlocks, frfs, lines};
+use crate::common::{TwoBlocks, frfs, lines};
 use jointscope_averaging::Band;
 use jointscope_decomposition::{Analysis, AnalysisOptions, Relation, Sides, decompose, maximum_likelihood};
 use jointscope_fixture::{Fixture, Spread};
 use jointscope_linalg::RealMatrix2;
 use jointscope_lumped::{Instrument, synthesize};
+use jointscope_samples::{ACROSS, Noise};
 use jointscope_spectra::{FrfPair, SpectralLines};
 
 const MASSES: [f64; 2] = [2.0, 3.0];
@@ -70,7 +71,7 @@ fn changes_of_the_fit(left_out: &str, index: usize) -> ([[f64; 6]; 3], f64) {
         damping: r#"{"modal_ratios": [0.00716, 0.00172]}"#.into(),
         extra: extra.into(),
     };
-    let frfs = Noise::new(5).on(&frfs(&blocks(left_out).fixture(), &FOUR, &lines()), 1e-4);
+    let frfs = Noise::new(5).on(&frfs(&blocks(left_out).fixture(), &ACROSS, &lines()), 1e-4);
     let mut stated = blocks("").fixture();
     let value = stated.quantities()[index].value;
     stated.quantities_mut()[index].quantity.spread = Spread::Stated(MOVED * value.abs());
@@ -127,7 +128,7 @@ fn tolerances_are_independent_and_add_as_squares() {
 fn points_that_no_frf_depends_on_have_no_share_and_change_nothing_else() {
     let plain =
         TwoBlocks { damping: r#"{"modal_ratios": [0.00716, 0.00172]}"#.into(), ..TwoBlocks::default() };
-    let frfs = Noise::new(7).on(&frfs(&plain.fixture(), &FOUR, &lines()), 1e-3);
+    let frfs = Noise::new(7).on(&frfs(&plain.fixture(), &ACROSS, &lines()), 1e-3);
     let stated = plain.fixture();
     // Before and between the points in use.
     let text = stated.to_json();

@@ -1,6 +1,6 @@
 //! Whether stated uncertainties are true, by simulation with fixed seeds.
 
-use crate::common::{FOUR, Noise, TwoBlocks, frfs, joint_damping, lines};
+use crate::common::{TwoBlocks, frfs, joint_damping, lines};
 use jointscope_averaging::Band;
 use jointscope_beam::end_stiffness;
 use jointscope_decomposition::{
@@ -8,6 +8,7 @@ use jointscope_decomposition::{
 };
 use jointscope_fixture::Fixture;
 use jointscope_linalg::RealMatrix2;
+use jointscope_samples::{ACROSS, Noise};
 use jointscope_spectra::FrfSet;
 
 struct Truth {
@@ -31,7 +32,7 @@ fn truth() -> Truth {
     let fixture = blocks.fixture();
     Truth {
         sides: Sides::of(&fixture, None).unwrap(),
-        frfs: frfs(&fixture, &FOUR, &lines()),
+        frfs: frfs(&fixture, &ACROSS, &lines()),
         k: end_stiffness(blocks.bending_stiffness, blocks.length),
         c: joint_damping(&fixture),
         fixture,
@@ -204,7 +205,7 @@ fn where_a_constant_joint_explains_nothing_its_model_covariance_is_the_scatter_o
     truth.sides = Sides::of(&truth.fixture, None).unwrap();
     truth.k = end_stiffness(damped.bending_stiffness, damped.length);
     let coarse = jointscope_spectra::SpectralLines::even(20.0, 20.0, 50).unwrap();
-    let noisy = Noise::new(5).on(&frfs(&truth.fixture, &FOUR, &coarse), 1e-3);
+    let noisy = Noise::new(5).on(&frfs(&truth.fixture, &ACROSS, &coarse), 1e-3);
     let whole = fit(&truth, &noisy);
     assert!(!whole.explains(), "{}", whole.chi2_per_dof);
     let parts: Vec<[f64; 6]> = (0..8)
@@ -225,6 +226,6 @@ fn where_a_constant_joint_explains_nothing_its_model_covariance_is_the_scatter_o
         assert!((found / expected - 1.0).abs() < 1e-3, "{m}: {found} for {expected}");
     }
     // Noise that covers the difference gives no reason to look.
-    let covered = fit(&truth, &Noise::new(5).on(&frfs(&truth.fixture, &FOUR, &coarse), 0.3));
+    let covered = fit(&truth, &Noise::new(5).on(&frfs(&truth.fixture, &ACROSS, &coarse), 0.3));
     assert!(covered.explains() && covered.model_covariance == [[0.0; 6]; 6], "{}", covered.chi2_per_dof);
 }

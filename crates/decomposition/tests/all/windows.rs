@@ -1,12 +1,13 @@
 //! FRFs under an exponential window: sides and joint are read at s = decay + iω, where they hold exactly.
 
-use crate::common::{FOUR, Noise, TwoBlocks, frfs, joint_damping, lines};
+use crate::common::{TwoBlocks, frfs, joint_damping, lines};
 use jointscope_beam::end_stiffness;
 use jointscope_decomposition::{
     Analysis, AnalysisOptions, JointSpectrum, Relation, Sides, decompose, maximum_likelihood,
 };
 use jointscope_fixture::Fixture;
 use jointscope_linalg::RealMatrix2;
+use jointscope_samples::{ACROSS, Noise};
 use jointscope_spectra::{FrfForm, FrfSet, SpectralLines};
 use std::f64::consts::TAU;
 
@@ -54,7 +55,7 @@ fn errors(found: &JointSpectrum) -> (f64, f64, f64) {
 fn under_a_window_synthesis_and_decomposition_give_the_joint_to_1e_9_in_every_form_of_frf() {
     for decay in [0.5, DECAY, 400.0] {
         let fixture = windowed(decay);
-        let set = frfs(&fixture, &FOUR, &lines());
+        let set = frfs(&fixture, &ACROSS, &lines());
         for form in [FrfForm::Accelerance, FrfForm::Mobility, FrfForm::Receptance] {
             let (of_k, of_c, well) = errors(&spectrum(&fixture, &set.to_form(form).unwrap()));
             assert!(of_k < 1e-9 && of_c < 1e-9, "{decay} 1/s, {}: {of_k:e} {of_c:e}", form.name());
@@ -65,7 +66,7 @@ fn under_a_window_synthesis_and_decomposition_give_the_joint_to_1e_9_in_every_fo
 
 #[test]
 fn a_window_that_nobody_states_spoils_the_damping() {
-    let set = frfs(&windowed(DECAY), &FOUR, &lines());
+    let set = frfs(&windowed(DECAY), &ACROSS, &lines());
     let (_, of_c, _) = errors(&spectrum(&TwoBlocks::default().fixture(), &set));
     assert!(of_c > 0.5, "{of_c}");
 }
@@ -74,7 +75,7 @@ fn a_window_that_nobody_states_spoils_the_damping() {
 fn a_window_closes_the_paper_relations_own_round_trip_too() {
     let fixture = windowed(DECAY);
     let options = AnalysisOptions { relation: Relation::Paper, ..AnalysisOptions::default() };
-    let analysis = Analysis::of(&fixture, &frfs(&fixture, &FOUR, &lines()), &options).unwrap();
+    let analysis = Analysis::of(&fixture, &frfs(&fixture, &ACROSS, &lines()), &options).unwrap();
     // What the fixture predicts is what the FRFs are, at the same s.
     for line in &analysis.spectrum.solved {
         let (h41, nominal) = analysis.nominal[line.line].unwrap();
@@ -94,7 +95,7 @@ fn a_window_closes_the_paper_relations_own_round_trip_too() {
 fn under_a_window_the_fit_gives_the_joint_and_its_intervals_hold() {
     let fixture = windowed(DECAY);
     let sides = Sides::of(&fixture, None).unwrap();
-    let set = frfs(&fixture, &FOUR, &lines());
+    let set = frfs(&fixture, &ACROSS, &lines());
     let (k, c) = truth();
     let (mut by_line, mut fitted, mut all) = ([0usize; 2], [0usize; 2], [0usize; 2]);
     let mut noise = Noise::new(5);
@@ -127,7 +128,7 @@ fn under_a_window_the_fit_gives_the_joint_and_its_intervals_hold() {
 #[test]
 fn a_line_at_0_hz_stays_masked_under_a_window() {
     let fixture = windowed(DECAY);
-    let set = frfs(&fixture, &FOUR, &SpectralLines::even(0.0, 50.0, 8).unwrap());
+    let set = frfs(&fixture, &ACROSS, &SpectralLines::even(0.0, 50.0, 8).unwrap());
     let found = spectrum(&fixture, &set);
     assert_eq!(found.masked.iter().map(|m| m.0).collect::<Vec<_>>(), [0]);
 }

@@ -1,7 +1,8 @@
 //! Resonances that move among FRFs of one response, and lines that break off.
 
-use crate::common::{Normals, accelerances, mode};
+use crate::common::{accelerances, mode};
 use jointscope_frf::{Drift, breaks, resonant_lines};
+use jointscope_samples::Noise;
 use jointscope_spectra::{FrfForm, FrfSet, SpectralLines};
 use num_complex::Complex64;
 
@@ -21,7 +22,7 @@ fn resonance(hz: f64, natural: f64) -> Complex64 {
 
 /// Two modes; in FRF i those move by `shift[i]` of their half-widths.
 fn drifting(channels: &[(&str, &str)], shift: &[f64], noise: f64, seed: u64) -> FrfSet {
-    let mut random = Normals(seed);
+    let mut random = Noise::from_state(seed);
     accelerances(&lines(), channels, |frf, hz| {
         let modes: Complex64 =
             NATURAL.iter().map(|natural| resonance(hz, natural + shift[frf] * WIDTH)).sum();
@@ -86,7 +87,7 @@ fn noise_as_large_as_what_resonances_differ_by_is_no_drift_and_noise_alone_is_no
 #[test]
 fn an_frf_struck_at_a_resonances_node_has_no_say_in_where_it_is() {
     let shift = [-0.3, 0.0, 0.3];
-    let mut random = Normals(9);
+    let mut random = Noise::from_state(9);
     let set = accelerances(&lines(), &ONE_RESPONSE, |frf, hz| {
         let lower = shift.get(frf).map_or(Complex64::ZERO, |by| resonance(hz, NATURAL[0] + by * WIDTH));
         lower + resonance(hz, NATURAL[1]) + random.complex(NOISE)
@@ -149,7 +150,7 @@ fn resonances_are_the_peaks_that_stand_out_of_their_neighbourhood() {
 fn lines_break_off_where_half_of_the_frfs_leave_their_course_and_not_where_one_of_three_does() {
     let channels = [("4", "1"), ("3", "1"), ("2", "1")];
     let broken = |frfs: usize, by: f64| {
-        let mut random = Normals(8);
+        let mut random = Noise::from_state(8);
         let set = accelerances(&lines(), &channels, |frf, hz| {
             let hum = if frf < frfs && hz == 150.0 { by } else { 0.0 };
             resonance(hz, NATURAL[0]) + random.complex(NOISE) + hum

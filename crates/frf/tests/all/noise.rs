@@ -1,7 +1,8 @@
 //! Variances: where they come from, that no form of the FRFs changes them, and what is done about dips of the force.
 
-use crate::common::{Normals, accelerances, mode};
+use crate::common::{accelerances, mode};
 use jointscope_frf::noise::{NoiseSource, from_scatter, of_lines, smoothed, with_variances};
+use jointscope_samples::Noise;
 use jointscope_spectra::{FrfForm, FrfSet, SpectralLines};
 use num_complex::Complex64;
 
@@ -11,7 +12,7 @@ fn lines() -> SpectralLines {
 
 /// One noisy FRF whose noise is `variance`, with the coherence that `averages` hits of it have, over and over.
 fn noisy(variance: f64, averages: u32) -> FrfSet {
-    let mut random = Normals(5);
+    let mut random = Noise::from_state(5);
     let mut coherence = Vec::new();
     let mut set = accelerances(&lines(), &[("4", "1")], |_, hz| {
         let hits: Vec<Complex64> = (0..averages)
@@ -95,7 +96,7 @@ fn a_line_states_its_noise_by_coherence_and_averages() {
 fn where_the_force_dips_the_same_noise_of_the_sensor_counts_for_more() {
     // The sensor's noise is 1e-4 of the strongest line's force; on every third line the hammer gives a hundredth of that power.
     let power = |line: usize| if line.is_multiple_of(3) { 0.02 } else { 2.0 };
-    let mut random = Normals(6);
+    let mut random = Noise::from_state(6);
     let (mut values, mut raw) = (Vec::new(), Vec::new());
     for line in 0..3000 {
         let variance = 1e-4 * 2.0 / power(line);
@@ -131,7 +132,7 @@ fn lines_without_coherence_lend_their_noise_to_nobody() {
 
 #[test]
 fn lines_that_tell_the_same_are_averaged_over_more_of_them() {
-    let mut random = Normals(7);
+    let mut random = Noise::from_state(7);
     let values = vec![Complex64::ONE; 2000];
     let raw: Vec<f64> = (0..2000).map(|_| random.complex(1.0).norm_sqr()).collect();
     let spread = |alike| {
@@ -147,7 +148,7 @@ fn lines_that_tell_the_same_are_averaged_over_more_of_them() {
 #[test]
 fn scatter_is_told_from_eleven_lines_on_in_any_unit_and_a_hundredth_of_the_loudest_is_taken_below() {
     let hz: Vec<f64> = (1..=60).map(f64::from).collect();
-    let mut random = Normals(8);
+    let mut random = Noise::from_state(8);
     let values: Vec<Complex64> =
         hz.iter().map(|hz| Complex64::from(0.1 * hz) + random.complex(1e-6)).collect();
     for lines in [3, 8, 10] {

@@ -1,8 +1,9 @@
 //! The 2×2 matrix of a block's motion: what noise does to it, in whatever form FRFs come.
 
-use crate::common::{Normals, accelerances};
+use crate::common::accelerances;
 use jointscope_frf::{BlockChannel, BlockLayout, MaskReason, RigidMotionError, fit_rigid_motion};
 use jointscope_linalg::{ComplexMatrix2, Matrix2};
+use jointscope_samples::Noise;
 use jointscope_spectra::{Dof, FrfForm, FrfPair, FrfSet, SpectralLines};
 use num_complex::Complex64;
 
@@ -35,7 +36,7 @@ fn measured(
     lines: &SpectralLines,
     seats: &BlockLayout,
     variance: impl Fn(usize) -> f64,
-    random: &mut Normals,
+    random: &mut Noise,
 ) -> FrfSet {
     let h = known();
     let mut values = Vec::new();
@@ -56,7 +57,7 @@ fn chi2_of_a_rigid_motion_is_one_a_degree_of_freedom_and_the_covariance_is_that_
     let lines = SpectralLines::even(1.0, 1.0, 4000).unwrap();
     let variance = |index: usize| 1e-4 * (1.0 + index as f64);
     let all = layout(&SENSORS, &HITS);
-    let set = measured(FrfForm::Receptance, &lines, &all, variance, &mut Normals(1));
+    let set = measured(FrfForm::Receptance, &lines, &all, variance, &mut Noise::from_state(1));
     let fit = fit_rigid_motion(&set, &all).unwrap();
     assert_eq!(fit.surplus, 5);
     // 40,000 degrees of freedom: ±0.007 is one standard deviation.
@@ -88,7 +89,7 @@ fn two_sensors_and_two_hits_have_the_covariance_of_the_differences_that_they_are
     let variance = [1.0, 9.0, 4.0, 0.5];
     let lines = SpectralLines::new(vec![3.0]).unwrap();
     let four = layout(&SENSORS[..2], &HITS[..2]);
-    let set = measured(FrfForm::Receptance, &lines, &four, |i| variance[i], &mut Normals(2));
+    let set = measured(FrfForm::Receptance, &lines, &four, |i| variance[i], &mut Noise::from_state(2));
     let covariance = fit_rigid_motion(&set, &four).unwrap().covariance.unwrap()[0];
     let rows = [
         [1.0, 0.0, 0.0, 0.0],
@@ -109,7 +110,7 @@ fn two_sensors_and_two_hits_have_the_covariance_of_the_differences_that_they_are
 fn mobilities_and_accelerances_give_the_receptances_their_covariance_and_chi2() {
     let lines = SpectralLines::new(vec![20.0, 70.0, 300.0]).unwrap();
     let all = layout(&SENSORS, &HITS);
-    let set = measured(FrfForm::Receptance, &lines, &all, |_| 1e-4, &mut Normals(3));
+    let set = measured(FrfForm::Receptance, &lines, &all, |_| 1e-4, &mut Noise::from_state(3));
     let expected = fit_rigid_motion(&set, &all).unwrap();
     for form in [FrfForm::Mobility, FrfForm::Accelerance] {
         let fit = fit_rigid_motion(&set.to_form(form).unwrap(), &all).unwrap();
@@ -142,7 +143,7 @@ fn without_variances_the_misfit_is_a_share_of_what_was_measured() {
 fn lines_that_tell_nothing_are_masked_and_do_not_count() {
     let lines = SpectralLines::new(vec![0.0, 1.0, 2.0]).unwrap();
     let all = layout(&SENSORS, &HITS);
-    let receptances = measured(FrfForm::Receptance, &lines, &all, |_| 1e-4, &mut Normals(4));
+    let receptances = measured(FrfForm::Receptance, &lines, &all, |_| 1e-4, &mut Noise::from_state(4));
     let set = FrfSet::new(
         lines.clone(),
         FrfForm::Accelerance,
@@ -203,7 +204,7 @@ fn seats_that_cannot_tell_a_rotation_are_refused_and_those_that_can_are_not() {
 fn a_line_whose_variance_is_stated_as_nothing_weighs_its_frfs_alike() {
     let lines = SpectralLines::new(vec![5.0]).unwrap();
     let all = layout(&SENSORS, &HITS);
-    let set = measured(FrfForm::Receptance, &lines, &all, |_| 1e-4, &mut Normals(5));
+    let set = measured(FrfForm::Receptance, &lines, &all, |_| 1e-4, &mut Noise::from_state(5));
     let alike = fit_rigid_motion(&set.clone().with_variance(vec![3.0; 9]).unwrap(), &all).unwrap();
     let none = fit_rigid_motion(&set.with_variance(vec![0.0; 9]).unwrap(), &all).unwrap();
     assert!(none.masked.is_empty() && (none.values[0] - alike.values[0]).norm_squared().sqrt() < 1e-9);

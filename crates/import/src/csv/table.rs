@@ -15,24 +15,21 @@ pub(super) struct Table {
     lines: Vec<u64>,
 }
 
+fn no_numbers(rows: &[Row]) -> ImportError {
+    let found = rows.first().map_or(String::new(), |row| {
+        let beginning: String = row.fields.join(" ").chars().take(40).collect();
+        format!("; line {} reads `{beginning}`", row.line)
+    });
+    ImportError::NoTable { why: format!("no line holds a frequency and numbers beside it{found}") }
+}
+
 impl Table {
     /// The header is the last line above the first row of numbers that has as many fields; a line of units may stand between.
     pub(super) fn of(rows: &Rows) -> Result<Self, ImportError> {
         let all = &rows.rows;
         let is_numbers =
             |row: &Row| row.fields.len() > 1 && row.fields.iter().all(|field| rows.number(field).is_some());
-        let Some(first) = all.iter().position(is_numbers) else {
-            let found = all.first().map_or(String::new(), |row| {
-                format!(
-                    "; line {} reads `{}`",
-                    row.line,
-                    row.fields.join(" ").chars().take(40).collect::<String>()
-                )
-            });
-            return Err(ImportError::NoTable {
-                why: format!("no line holds a frequency and numbers beside it{found}"),
-            });
-        };
+        let first = all.iter().position(is_numbers).ok_or_else(|| no_numbers(all))?;
         let width = all[first].fields.len();
         // A row with a field that is no number, above the first that has none, is a row of the table all the same.
         let holds_number = |row: &Row| row.fields.iter().any(|field| rows.number(field).is_some());
@@ -50,22 +47,13 @@ impl Table {
                 format!("no header of {width} names stands above the numbers of line {}", all[first].line);
             return Err(ImportError::NoTable { why });
         };
-        let (header, units) = match above.next() {
-            Some(header)
-                if is_line_of_units(&header.fields, &nearest.fields, |field| {
-                    rows.number(field).is_some()
-                }) =>
-            {
-                (
-                    header,
-                    nearest
-                        .fields
-                        .iter()
-                        .map(|unit| unit.trim_matches(['[', ']', '(', ')']).to_owned())
-                        .collect(),
-                )
-            }
-            _ => (nearest, vec![String::new(); width]),
+        let is_number = |field: &str| rows.number(field).is_some();
+        let with_units =
+            above.next().filter(|header| is_line_of_units(&header.fields, &nearest.fields, is_number));
+        let unit = |stated: &String| stated.trim_matches(['[', ']', '(', ')']).to_owned();
+        let (header, units) = match with_units {
+            Some(header) => (header, nearest.fields.iter().map(unit).collect()),
+            None => (nearest, vec![String::new(); width]),
         };
         let mut table = Table {
             headers: header.fields.clone(),

@@ -90,25 +90,10 @@ fn array(
                 format!("{name}({})", index.iter().map(|i| (i + 1).to_string()).collect::<Vec<_>>().join(","))
             }
         };
-        let last = name.rsplit('.').next().unwrap_or(name);
-        let entry = sink.map.of_name(&key);
-        let entry = entry.or_else(|| sink.map.of_file(sink.file_name).filter(|_| slices.len() == 1 && only));
-        let (pair, label) = match entry {
-            Some((used, entry)) => {
-                sink.used.insert(used);
-                (entry.pair.clone(), entry.unit.clone().unwrap_or_default())
-            }
-            None => match pair_of(last).filter(|_| slices.len() == 1) {
-                Some(pair) => {
-                    let stated = sink.map.of_pair(&pair);
-                    sink.used.extend(stated.map(|(used, _)| used));
-                    (pair, stated.and_then(|(_, entry)| entry.unit.clone()).unwrap_or_default())
-                }
-                None => {
-                    unnamed.get_or_insert(key);
-                    continue;
-                }
-            },
+        let is_alone = slices.len() == 1;
+        let Some((pair, label)) = channels(&key, name, (is_alone, is_alone && only), sink) else {
+            unnamed.get_or_insert(key);
+            continue;
         };
         taken += 1;
         let values = slice.at.iter().map(|at| Complex64::new(re[*at], im[*at])).collect();
@@ -121,6 +106,24 @@ fn array(
         }
         _ => Ok(()),
     }
+}
+
+/// Channels and unit of a function: as the map states them, or else by the array's own name where it is the array's only one, or the file's.
+fn channels(
+    key: &str,
+    array: &str,
+    (of_array, of_file): (bool, bool),
+    sink: &mut Sink,
+) -> Option<(ChannelPair, String)> {
+    let entry = sink.map.of_name(key);
+    if let Some((used, entry)) = entry.or_else(|| sink.map.of_file(sink.file_name).filter(|_| of_file)) {
+        sink.used.insert(used);
+        return Some((entry.pair.clone(), entry.unit.clone().unwrap_or_default()));
+    }
+    let pair = pair_of(array.rsplit('.').next().unwrap_or(array)).filter(|_| of_array)?;
+    let stated = sink.map.of_pair(&pair);
+    sink.used.extend(stated.map(|(used, _)| used));
+    Some((pair, stated.and_then(|(_, entry)| entry.unit.clone()).unwrap_or_default()))
 }
 
 /// The values of one function within an array.

@@ -44,56 +44,26 @@ pub(super) fn read(variable: &str, block: &Value, sink: &mut Sink) -> Result<(),
         return Err(wrong("holds time histories; export them as UFF (dataset 58)"));
     }
     let unit = text("y_values.quantity.label").into_iter().next().unwrap_or_default();
-    let factor = match block.field("y_values.quantity.unit_transformation.factor") {
-        None => 1.0,
-        Some(factor) => {
-            factor.number().filter(|factor| factor.is_finite() && *factor > 0.0).ok_or_else(|| {
-                wrong("the factor of `y_values.quantity.unit_transformation` is no number above zero")
-            })?
-        }
-    };
-    // Values are stored in SI: the factor brings them to the unit of the label, or one of the two is wrong.
-    if block.field("y_values.quantity.unit_transformation.factor").is_some()
-        && let Some(si) = si_of(&unit)
-        && (factor * si - 1.0).abs() > DISPUTED
-    {
-        let problem = format!(
-            "the factor {factor} of `y_values.quantity.unit_transformation` does not bring SI values to `{unit}`, as {:.6} would; export it again in SI units, or as UFF (dataset 58)",
-            si.recip()
-        );
-        return Err(ImportError::Variable { variable: variable.to_owned(), problem });
-    }
+    let factor = factor(block, &unit)
+        .map_err(|problem| ImportError::Variable { variable: variable.to_owned(), problem })?;
     let names = text("function_record.name");
     let columns = re.len() / lines.len();
     for at in 0..columns {
         let range = at * lines.len()..(at + 1) * lines.len();
         let key = if columns == 1 { variable.to_owned() } else { format!("{variable}({})", at + 1) };
         let name = names.get(at).cloned().unwrap_or_default();
-        if re[range.clone()]
-            .iter()
-            .chain(im.iter().flat_map(|im| &im[range.clone()]))
-            .any(|value| !value.is_finite())
-        {
-            return Err(ImportError::Variable {
-                variable: key,
-                problem: "a value is not finite; mask or remove it before export".into(),
-            });
+        let imaginary = im.iter().flat_map(|im| &im[range.clone()]);
+        if re[range.clone()].iter().chain(imaginary).any(|value| !value.is_finite()) {
+            let problem = "a value is not finite; mask or remove it before export".into();
+            return Err(ImportError::Variable { variable: key, problem });
         }
-        let entry = sink.map.of_name(&key).or_else(|| sink.map.of_name(&name));
-        let entry = entry.or_else(|| sink.map.of_file(sink.file_name).filter(|_| columns == 1));
-        let pair = match entry {
-            Some((used, entry)) => {
-                sink.used.insert(used);
-                entry.pair.clone()
+        let pair = match (channels(&key, &name, columns == 1, sink), &im) {
+            (Some(pair), _) => pair,
+            // What is no FRF is told of, and nobody asks for its nodes.
+            (None, None) => ChannelPair { response: Node::default(), reference: Node::default() },
+            (None, Some(_)) => {
+                return Err(ImportError::Pair { variable: key, problem: PairError(name) });
             }
-            None => match (pair_of(&name), &im) {
-                (Some(pair), _) => pair,
-                // What is no FRF is told of, and nobody asks for its nodes.
-                (None, None) => ChannelPair { response: Node::default(), reference: Node::default() },
-                (None, Some(_)) => {
-                    return Err(ImportError::Pair { variable: key, problem: PairError(name) });
-                }
-            },
         };
         let title = if name.is_empty() { &key } else { &name };
         let dataset = match &im {
@@ -109,6 +79,34 @@ pub(super) fn read(variable: &str, block: &Value, sink: &mut Sink) -> Result<(),
         sink.file.datasets.push(dataset);
     }
     Ok(())
+}
+
+/// What values have to be multiplied by to be in the unit of their label; else what is wrong.
+fn factor(block: &Value, unit: &str) -> Result<f64, String> {
+    let Some(factor) = block.field("y_values.quantity.unit_transformation.factor") else { return Ok(1.0) };
+    let factor = factor.number().filter(|factor| factor.is_finite() && *factor > 0.0).ok_or_else(|| {
+        "the factor of `y_values.quantity.unit_transformation` is no number above zero".to_owned()
+    })?;
+    // Values are stored in SI: the factor brings them to the unit of the label, or one of the two is wrong.
+    match si_of(unit) {
+        Some(si) if (factor * si - 1.0).abs() > DISPUTED => Err(format!(
+            "the factor {factor} of `y_values.quantity.unit_transformation` does not bring SI values to `{unit}`, as {:.6} would; export it again in SI units, or as UFF (dataset 58)",
+            si.recip()
+        )),
+        _ => Ok(factor),
+    }
+}
+
+/// Channels of a function: as the map states them by its names, or the file's where it is the only one, or as its own name has them.
+fn channels(key: &str, name: &str, of_file: bool, sink: &mut Sink) -> Option<ChannelPair> {
+    let entry = sink.map.of_name(key).or_else(|| sink.map.of_name(name));
+    match entry.or_else(|| sink.map.of_file(sink.file_name).filter(|_| of_file)) {
+        Some((used, entry)) => {
+            sink.used.insert(used);
+            Some(entry.pair.clone())
+        }
+        None => pair_of(name),
+    }
 }
 
 /// Real functions: coherences by their name, anything else of no stated type.

@@ -1,11 +1,12 @@
 //! Two joints on the same blocks, compared as the program does it: recordings of the simulated laboratory, decomposed, written, read and set side by side.
 
-use crate::joint_fit::{Case, EIGHT, Noise, fixture, from_uniform, recorded, rms, six};
+use crate::joint_fit::{Case, EIGHT, fixture, from_uniform, recorded, rms, six};
 use jointscope::comparison::{Comparison, ComparisonOptions, Decomposed};
 use jointscope::fixture::Fixture;
 use jointscope::linalg::Cholesky;
 use jointscope::{Analysis, AnalysisOptions, stiffness_file};
 use jointscope_rig::{drawn_within_tolerance, generator};
+use jointscope_samples::Noise;
 
 /// The fixture with its joint's stiffness so many times what it is.
 fn stiffened(fixture: &Fixture, times: f64) -> Fixture {

@@ -1,9 +1,10 @@
 //! The joint from FRFs that were estimated as H1 of hits whose force is noisy too: noise of the force makes H1 too small, and is the same in all FRFs that were struck at once.
 
-use crate::joint_fit::{Case, EIGHT, NAMES, Noise, fit, fixture, recorded, rms, six};
+use crate::joint_fit::{Case, EIGHT, NAMES, fit, fixture, recorded, rms, six};
 use jointscope::frf::noise;
 use jointscope::spectra::FrfSet;
 use jointscope_rig::{drawn_within_tolerance, generator};
+use jointscope_samples::Noise;
 use num_complex::Complex64;
 
 /// Hits averaged.

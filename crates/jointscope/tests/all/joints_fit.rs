@@ -1,6 +1,6 @@
 //! Several joints at once, in a chain and in a ring, on recordings that the simulated laboratory makes: it shares no mechanics with the model fitted.
 
-use crate::joint_fit::{NAMES, Noise, recorded, rms};
+use crate::joint_fit::{NAMES, recorded, rms};
 use jointscope::comparison::{Comparison, Decomposed};
 use jointscope::decomposition::{
     JointFitOptions, JointsFit, LawKind, SeveralError, Sides, SidesError, fit_joints,
@@ -8,6 +8,7 @@ use jointscope::decomposition::{
 use jointscope::fixture::{Fixture, JointLaw};
 use jointscope::joints_file;
 use jointscope_rig::{drawn_within_tolerance, generator};
+use jointscope_samples::Noise;
 
 /// Ways that three blocks are connected.
 #[derive(Clone, Copy, PartialEq)]

@@ -1,11 +1,12 @@
 //! What probabilities of laws are worth, on joints whose dynamic stiffness is any function of frequency: two rigid blocks on a joint, solved here by elimination of
 //! four equations a line, which share nothing with the model fitted.
 
-use crate::joint_fit::{Case, EIGHT, Noise, fit, fixture, lines, parameters_of};
+use crate::joint_fit::{Case, EIGHT, fit, fixture, lines, parameters_of};
 use jointscope::decomposition::{LawFit, LawKind};
 use jointscope::fixture::{BodyKind, Fixture, JointLaw};
-use jointscope::spectra::{FrfForm, FrfPair, FrfSet};
+use jointscope::spectra::{FrfForm, FrfSet};
 use jointscope_rig::{drawn_within_tolerance, generator};
+use jointscope_samples::{Noise, transverse};
 use num_complex::Complex64;
 
 type Real2 = [[f64; 2]; 2];
@@ -85,7 +86,7 @@ impl Truth {
             let arm = x[index] - centre;
             if blocks.points()[index].body == 0 { [1.0, arm, 0.0, 0.0] } else { [0.0, 0.0, 1.0, arm] }
         };
-        let pairs: Vec<FrfPair> = EIGHT.iter().map(|(o, i)| FrfPair::transverse(o, i)).collect();
+        let pairs = transverse(&EIGHT);
         let lines = lines();
         let omegas: Vec<f64> = lines.omegas().collect();
         let middle = 0.5 * (omegas[0] + omegas[omegas.len() - 1]);

@@ -14,6 +14,7 @@ const FLOORS: [&[&str]; 12] = [
         "jointscope-hits",
         "jointscope-import",
         "jointscope-inference",
+        "jointscope-samples",
     ],
     &[
         "jointscope-damping",
@@ -91,6 +92,11 @@ fn the_program_depends_on_the_facade_only() {
     let ours =
         program.dependencies.iter().filter(|(d, only_tests)| d.starts_with("jointscope") && !only_tests);
     assert_eq!(ours.map(|(d, _)| d.as_str()).collect::<Vec<_>>(), ["jointscope"]);
+}
+
+#[test]
+fn nothing_but_tests_stands_on_the_samples_of_tests() {
+    assert!(standing_on("jointscope-samples").is_empty(), "{:?}", standing_on("jointscope-samples"));
 }
 
 #[test]

@@ -3,9 +3,9 @@
 use jointscope::fixture::Damping;
 use jointscope::recordings::{ReadOptions, Recording, Source};
 use jointscope::{
-    Fixture, FrfPair, Instrument, ModalAnalysis, ModesOptions, SpectralLines, measured_damping, modes_file,
-    synthesize,
+    Fixture, Instrument, ModalAnalysis, ModesOptions, SpectralLines, measured_damping, modes_file, synthesize,
 };
+use jointscope_samples::{ACROSS, transverse};
 use std::path::{Path, PathBuf};
 
 fn shared(part: &str) -> PathBuf {
@@ -21,7 +21,7 @@ const BLOCKS: &str = r#"{
 #[test]
 fn the_ratios_of_a_synthesized_test_go_back_into_its_fixture_without_a_file() {
     let fixture = Fixture::from_json(BLOCKS).unwrap();
-    let pairs = [("4", "1"), ("3", "1"), ("4", "2"), ("3", "2")].map(|(o, i)| FrfPair::transverse(o, i));
+    let pairs = transverse(&ACROSS);
     let lines = SpectralLines::even(2.5, 2.5, 600).unwrap();
     let frfs = synthesize(&fixture, &pairs, &lines, Instrument::Perfect).unwrap();
     let analysis = ModalAnalysis::of(&frfs, &ModesOptions::default()).unwrap();
@@ -43,7 +43,7 @@ fn the_ratios_of_a_synthesized_test_go_back_into_its_fixture_without_a_file() {
 #[test]
 fn a_band_that_holds_the_second_mode_alone_leaves_the_first_ratio_as_it_was() {
     let fixture = Fixture::from_json(BLOCKS).unwrap();
-    let pairs = [("4", "1"), ("3", "1"), ("4", "2"), ("3", "2")].map(|(o, i)| FrfPair::transverse(o, i));
+    let pairs = transverse(&ACROSS);
     let lines = SpectralLines::even(2.5, 2.5, 600).unwrap();
     let frfs = synthesize(&fixture, &pairs, &lines, Instrument::Perfect).unwrap();
     let all = ModalAnalysis::of(&frfs, &ModesOptions::default()).unwrap();
@@ -67,7 +67,7 @@ fn frequencies_that_leave_out_a_fixtures_effects_say_so() {
     let plain = Fixture::from_json(BLOCKS).unwrap();
     let yielding = BLOCKS.replace(r#""damping": { "modal_ratios": [0.003, 0.0045] } }"#, soft);
     let yielding = Fixture::from_json(&yielding).unwrap();
-    let pairs = [("4", "1"), ("3", "1"), ("4", "2"), ("3", "2")].map(|(o, i)| FrfPair::transverse(o, i));
+    let pairs = transverse(&ACROSS);
     let lines = SpectralLines::even(2.5, 2.5, 600).unwrap();
     let frfs = synthesize(&yielding, &pairs, &lines, Instrument::Perfect).unwrap();
     let analysis = ModalAnalysis::of(&frfs, &ModesOptions::default()).unwrap();

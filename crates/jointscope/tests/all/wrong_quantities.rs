@@ -4,7 +4,8 @@ use crate::common::{self, believed, four_pairs, hammer, lines, measured};
 use crate::model_error::told;
 use jointscope::diagnosis::{Diagnosis, DiagnosisOptions, Finding, Verdict};
 use jointscope::fixture::{Effect, EffectKind, Place};
-use jointscope::{Fixture, FrfPair, FrfSet, SpectralLines};
+use jointscope::{Fixture, FrfSet, SpectralLines};
+use jointscope_samples::transverse;
 use serde_json::json;
 
 /// What is believed of two blocks, with other values at these places of the file.
@@ -83,7 +84,7 @@ fn a_storey_too_heavy_is_a_wrong_mass_or_an_added_one() {
         }))
         .unwrap()
     };
-    let pairs = [("1", "1"), ("2", "1"), ("3", "1")].map(|(o, i)| FrfPair::transverse(o, i));
+    let pairs = transverse(&[("1", "1"), ("2", "1"), ("3", "1")]);
     let lines = SpectralLines::even(5.0, 0.25, 600).unwrap();
     let frfs = measured(&frame(4.6), Vec::new(), (&pairs, &lines), &hammer(8));
     let diagnosis = Diagnosis::of(&frame(3.5), &frfs, &DiagnosisOptions::default()).unwrap();
@@ -118,7 +119,7 @@ fn a_mass_anywhere_on_a_beam_with_many_modes_is_found() {
         .unwrap()
     };
     let hidden = Effect::new(EffectKind::AddedMass, Place::Body("A".into()), None, &[0.33, 0.03]);
-    let pairs = [("1", "1"), ("2", "1"), ("3", "1")].map(|(o, i)| FrfPair::transverse(o, i));
+    let pairs = transverse(&[("1", "1"), ("2", "1"), ("3", "1")]);
     let lines = SpectralLines::even(20.0, 5.0, 397).unwrap();
     let frfs = measured(&beam(2.09e11), vec![hidden], (&pairs, &lines), &hammer(6));
     let diagnosis = Diagnosis::of(&beam(2.07e11), &frfs, &DiagnosisOptions::default()).unwrap();

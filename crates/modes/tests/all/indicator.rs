@@ -1,6 +1,7 @@
 //! The mode indicator against the closed form of two equal masses.
 
 use jointscope_modes::ModeIndicator;
+use jointscope_samples::transverse;
 use jointscope_spectra::{Channel, Dof, FrfForm, FrfPair, FrfSet, SpectralLines};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
@@ -34,10 +35,6 @@ fn set(pairs: Vec<FrfPair>) -> FrfSet {
         .flat_map(|pair| lines.omegas().map(|omega| accelerance(pair, omega)).collect::<Vec<_>>());
     let values = values.collect();
     FrfSet::new(lines, FrfForm::Accelerance, pairs, values).unwrap()
-}
-
-fn transverse(names: &[(&str, &str)]) -> Vec<FrfPair> {
-    names.iter().map(|(response, reference)| FrfPair::transverse(response, reference)).collect()
 }
 
 const ALL: [(&str, &str); 4] = [("1", "1"), ("2", "1"), ("1", "2"), ("2", "2")];

@@ -46,7 +46,7 @@ pub(crate) const CHANGED: f64 = 2e-3;
 const WINDOW: f64 = 10.0;
 /// Error of every spectral value relative to itself, beside its noise: what sampling and the end of the record leave of a hit's exact instant. It is
 /// alike on many lines, and no difference as small tells anything of a joint.
-const INEXACT: f64 = 3e-3;
+const SAMPLING_ERROR: f64 = 3e-3;
 /// Force lines below this share of the strongest are left out.
 const WEAK: f64 = 0.03;
 /// Degrees of freedom within levels from which they tell the noise.
@@ -203,7 +203,7 @@ impl Comparison {
         };
         let weight = |s: &Signal| {
             let noise = s.variance + gain * s.record.force_noise.powi(2);
-            2.0 / (noise * self.power + INEXACT * INEXACT * s.response[line].norm_sqr())
+            2.0 / (noise * self.power + SAMPLING_ERROR * SAMPLING_ERROR * s.response[line].norm_sqr())
         };
         let misfit = |level: Option<usize>| {
             let (mut cross, mut force, mut square, mut count) = (Complex64::ZERO, 0.0, 0.0, 0usize);

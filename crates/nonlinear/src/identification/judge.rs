@@ -186,7 +186,7 @@ impl Judgement<'_> {
                 .iter()
                 .filter(|l| effect.dof == Some(l.dof) && effect.place == Place::Joint(l.joint.clone()));
             HitFinding {
-                estimates: estimates(&effect, &deviations, INEXACT),
+                estimates: estimates(&effect, &deviations, PARAMETER_ERROR),
                 probability,
                 alternatives,
                 evidence: HitEvidence {
@@ -201,7 +201,7 @@ impl Judgement<'_> {
 }
 
 /// Relative deviation that steps and sampling leave in a parameter beside noise, as measured on the simulated laboratory.
-const INEXACT: f64 = 2.5e-3;
+const PARAMETER_ERROR: f64 = 2.5e-3;
 
 /// Probability of the best fit's effect, and the others with theirs: by how much worse they fit, noise being as large as the best fit's residuals.
 /// The more the best leaves unexplained, the more is left for something not listed.

@@ -47,9 +47,9 @@ pub(crate) struct Focus {
 }
 
 /// Departure of every line that is not held against a model: what sampling, sensors and steps leave of it, relative to the line.
-const INEXACT: f64 = 2e-3;
-/// e^{−at} at which a windowed record is cut off.
-const CUT: f64 = 6.0;
+const LINE_ERROR: f64 = 2e-3;
+/// e^{−at} at which a windowed record is cut off, as an exponent.
+pub(super) const CUT: f64 = 6.0;
 
 /// (simulated − recorded)·weight, trace by trace, real and imaginary parts side by side.
 pub(crate) type Residuals = Vec<Vec<f64>>;
@@ -236,7 +236,7 @@ impl<'a> Trace<'a> {
             let variance = |(y, f): (&Complex64, &Complex64)| {
                 let through =
                     if f.norm_sqr() > 25.0 * force_noise { y.norm_sqr() / f.norm_sqr() } else { 0.0 };
-                own + through * force_noise + INEXACT * INEXACT * y.norm_sqr()
+                own + through * force_noise + LINE_ERROR * LINE_ERROR * y.norm_sqr()
             };
             self.weights.push(lines.iter().zip(&force).map(variance).map(|v| (2.0 / v).sqrt()).collect());
             self.power += lines.iter().map(|y| y.norm_sqr()).sum::<f64>();

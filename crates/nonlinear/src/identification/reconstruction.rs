@@ -7,7 +7,7 @@
 //! fixture states a little wrongly are columns beside it. All signals are multiplied by e^{−at}, under which the above stays exact.
 
 use super::locations::JointLocation;
-use super::misfit::Focus;
+use super::misfit::{CUT, Focus};
 use super::records::Record;
 use crate::spectra::{Windowed, oversampled_for_lines};
 use crate::time::kernel::{Stepper, Steps};
@@ -18,9 +18,7 @@ use rayon::prelude::*;
 use std::ops::Range;
 
 /// Departure of every line that is not held against a model whose quantities are known within tolerances, relative to the line.
-const INEXACT: f64 = 0.03;
-/// e^{−aT} at which a record is cut off, as an exponent.
-const CUT: f64 = 6.0;
+const LINE_ERROR_WITHIN_TOLERANCES: f64 = 0.03;
 
 /// A record seen through the linear fixture.
 pub(super) struct Seen {
@@ -62,6 +60,20 @@ const PULSE_AT: usize = 24;
 /// Three samples: what is above half of the rate does not ring ahead of it.
 const PULSE: [f64; 3] = [0.25, 0.5, 0.25];
 
+/// Weights of lines, recorded and simulated, by noise and by what a model gets wrong at best; and the weighted difference of the two.
+fn weighted_difference(
+    [recorded, simulated]: &[Vec<Complex64>; 2],
+    noise: f64,
+) -> (Vec<f64>, Vec<Complex64>) {
+    let pairs = || recorded.iter().zip(simulated);
+    let variance = |(y, y0): (&Complex64, &Complex64)| {
+        noise + LINE_ERROR_WITHIN_TOLERANCES * LINE_ERROR_WITHIN_TOLERANCES * (y.norm_sqr() + y0.norm_sqr())
+    };
+    let weights: Vec<f64> = pairs().map(|pair| variance(pair).sqrt().recip()).collect();
+    let difference = pairs().zip(&weights).map(|((y, y0), w)| (y0 - y) * *w).collect();
+    (weights, difference)
+}
+
 impl Seen {
     fn of(
         [structure, linear]: &[Structure; 2],
@@ -86,17 +98,13 @@ impl Seen {
         let run = Stepper::new(&system, steps)?.run(&force, samples);
         let (simulated, unmoved) = run.split_at(record.readings.len());
         let energy = lines.power();
-        let (mut weights, mut target): (Vec<Vec<f64>>, Vec<Vec<Complex64>>) = Default::default();
-        for ((response, noise), simulated) in hit.responses().iter().zip(&record.noise).zip(simulated) {
-            let (recorded, simulated) = (lines.band(&response.values, &band), lines.band(simulated, &band));
-            let pairs = || recorded.iter().zip(&simulated);
-            let variance = |(y, y0): (&Complex64, &Complex64)| {
-                noise * noise * energy + INEXACT * INEXACT * (y.norm_sqr() + y0.norm_sqr())
-            };
-            let weight: Vec<f64> = pairs().map(|pair| variance(pair).sqrt().recip()).collect();
-            target.push(pairs().zip(&weight).map(|((y, y0), w)| (y0 - y) * *w).collect());
-            weights.push(weight);
-        }
+        let responses = hit.responses().iter().zip(&record.noise).zip(simulated);
+        let (weights, target): (Vec<Vec<f64>>, Vec<Vec<Complex64>>) = responses
+            .map(|((response, noise), simulated)| {
+                let spectra = [&response.values, simulated].map(|values| lines.band(values, &band));
+                weighted_difference(&spectra, noise * noise * energy)
+            })
+            .unzip();
         let mut pulse = vec![0.0; samples];
         pulse.get_mut(PULSE_AT..PULSE_AT + PULSE.len())?.copy_from_slice(&PULSE);
         let pulse_lines = lines.lines(&pulse);

@@ -121,31 +121,14 @@ impl SteppedDiagnosis {
         let best = judged.iter().min_by(|a, b| a.best().nrmse.total_cmp(&b.best().nrmse));
         let best = best.ok_or(SteppedError::NoJoint)?;
         let named = if changes { named_law(&judged) } else { None };
-        let verdict = match &named {
-            _ if !changes => Verdict::Consistent,
-            None => Verdict::Unexplained,
-            Some(n) if n.count == levels.len() && n.share >= ALL => Verdict::Explained,
-            Some(_) => Verdict::PartlyExplained,
-        };
+        let verdict = verdict(changes, named.as_ref().map(|n| n.count == levels.len() && n.share >= ALL));
         let Judged { problem, linear, .. } = named.as_ref().map_or(best, |n| &judged[n.index]);
         let repaired = named.as_ref().map_or(linear, |n| &n.fit);
         let holds = named.as_ref().map_or(0, |n| n.count);
         let models = [&Change::default(), &linear.change, &repaired.change];
-        let row = |(index, level): (usize, &Level)| {
-            let deviations = problem.delta_deviations(level);
-            let std = |k: usize| deviations.as_ref().map(|std| std[k]);
-            let [nominal, refitted, repaired] = models.map(|change| problem.error(level, change));
-            LevelResult {
-                held: level.measured.held,
-                resonance: resonances[index],
-                motion: level.motion(),
-                stiffness: (level.delta.re, std(0)),
-                loss: (level.delta.im, std(1)),
-                nrmse: [nominal, refitted, repaired, problem.own_error(level)],
-                explained: index < holds,
-            }
-        };
-        let rows: Vec<LevelResult> = problem.levels.iter().enumerate().map(row).collect();
+        let of_levels = problem.levels.iter().zip(resonances.iter().copied()).enumerate();
+        let row = |(index, (level, resonance))| of_level(problem, (level, resonance), models, index < holds);
+        let rows: Vec<LevelResult> = of_levels.map(row).collect();
         let mean =
             |k: usize| (rows.iter().map(|r| r.nrmse[k].powi(2)).sum::<f64>() / rows.len() as f64).sqrt();
         let mut tried: Vec<Tried> = judged.iter().flat_map(Judged::tried).collect();
@@ -177,6 +160,36 @@ impl SteppedDiagnosis {
             fixtures: [refitted, repaired_fixture],
             unplaced,
         })
+    }
+}
+
+fn verdict(changes: bool, explains_all: Option<bool>) -> Verdict {
+    match explains_all {
+        _ if !changes => Verdict::Consistent,
+        None => Verdict::Unexplained,
+        Some(true) => Verdict::Explained,
+        Some(false) => Verdict::PartlyExplained,
+    }
+}
+
+/// What one level shows, and how far the three models are from it.
+fn of_level(
+    problem: &Problem,
+    (level, resonance): (&Level, Resonance),
+    models: [&Change; 3],
+    explained: bool,
+) -> LevelResult {
+    let deviations = problem.delta_deviations(level);
+    let std = |k: usize| deviations.as_ref().map(|std| std[k]);
+    let [nominal, refitted, repaired] = models.map(|change| problem.error(level, change));
+    LevelResult {
+        held: level.measured.held,
+        resonance,
+        motion: level.motion(),
+        stiffness: (level.delta.re, std(0)),
+        loss: (level.delta.im, std(1)),
+        nrmse: [nominal, refitted, repaired, problem.own_error(level)],
+        explained,
     }
 }
 

@@ -20,7 +20,7 @@ const LEVELS: (usize, usize) = (3, 6);
 
 /// Relative deviation of a law's parameters from what the balance of one harmonic leaves out: against the laboratory's nine harmonics, a tenth of
 /// the usual noise and a fixture that is exact, they err by 0.1 to 0.7 %.
-const INEXACT: f64 = 5e-3;
+const HARMONIC_BALANCE_ERROR: f64 = 5e-3;
 
 /// A form tried at a component of a joint.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -185,7 +185,7 @@ impl Named {
             let own: Vec<Option<f64>> = deviations.by_ref().take(law.values().len()).collect();
             LevelFinding {
                 probability: probability(&self.fit),
-                estimates: estimates(&effect, &own, INEXACT),
+                estimates: estimates(&effect, &own, HARMONIC_BALANCE_ERROR),
                 effect,
                 alternatives,
                 evidence: LevelEvidence { share: self.share, motions },

@@ -1,7 +1,7 @@
 //! Edits of a fixture's entries: what an analyst who forgets or misstates something would have written.
 
 use jointscope_fixture::{
-    Body, BodyKind, Effect, EffectKind, Fixture, FixtureError, Place, QuantityKey, QuantityOwner, Spread,
+    Effect, EffectKind, Fixture, FixtureError, Place, QuantityKey, QuantityOwner, Spread,
 };
 use serde_json::{Value, json};
 
@@ -109,28 +109,6 @@ pub(super) fn with_stiffness(
 /// Whether the stiffness of a joint or beam body is proportional to a quantity of it.
 pub(super) fn is_stiffness(key: QuantityKey) -> bool {
     matches!(key, QuantityKey::JointStiffness(..) | QuantityKey::YoungsModulus)
-}
-
-/// First and last abscissa (m) at which something may sit on a body, and its mass (kg).
-pub(super) fn extent(fixture: &Fixture, index: usize) -> (f64, f64, f64) {
-    let Body { kind, .. } = &fixture.bodies()[index];
-    match kind {
-        BodyKind::Beam(beam) => {
-            let (from, to) = (beam.from.value, beam.to.value);
-            (from, to, beam.mass_per_length.value * (to - from))
-        }
-        BodyKind::Rigid(rigid) => {
-            // A uniform bar of the same mass and inertia.
-            let half = rigid.inertia.map_or(0.0, |inertia| (3.0 * inertia.value / rigid.mass.value).sqrt());
-            let centre = rigid.x_cg.map_or(0.0, |x| x.value);
-            (centre - half, centre + half, rigid.mass.value)
-        }
-    }
-}
-
-/// Whether a body's points move apart when it moves.
-pub(super) fn rotates(fixture: &Fixture, index: usize) -> bool {
-    !matches!(&fixture.bodies()[index].kind, BodyKind::Rigid(rigid) if !rigid.rotates)
 }
 
 /// Changes the quantities that are `asked` for, stated deviations by `wider`.

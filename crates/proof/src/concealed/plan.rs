@@ -2,6 +2,7 @@
 
 use super::scene::Scene;
 use super::{Concealed, ConcealmentError, ConcealmentKind};
+use crate::generate::DRAWS;
 use crate::random::seed_of;
 use crate::{Case, SealedTruths};
 use jointscope_fixture::Fixture;
@@ -30,8 +31,6 @@ impl Default for ConcealmentPlan {
 
 /// Of so many cases the first is a control.
 const CONTROLS: usize = 4;
-/// Draws of a case before giving up.
-const DRAWS: usize = 60;
 
 impl ConcealmentPlan {
     /// Whether the plan has cases, and the one asked for.

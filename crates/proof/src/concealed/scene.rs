@@ -1,8 +1,6 @@
 //! What there is to conceal in a fixture and a recording, and the drawing of it.
 
-use super::fixture_edit::{
-    entries, extent, is_stiffness, rotates, with_mass, with_point_moved, with_stiffness,
-};
+use super::fixture_edit::{entries, is_stiffness, with_mass, with_point_moved, with_stiffness};
 use super::recording_edit::{Side, exchanged, with_signal};
 use super::{ConcealmentError, ConcealmentKind, Expected};
 use crate::Case;
@@ -10,6 +8,7 @@ use crate::random::log_uniform;
 use jointscope_fixture::{
     BodyKind, Effect, EffectKind, Fixture, NamedQuantity, Place, QuantityKey, QuantityOwner, SupportPlace,
 };
+use jointscope_rig::extent;
 use jointscope_spectra::{Channel, Dof, FrfSet};
 use num_complex::Complex64;
 use rand::{Rng, RngExt};
@@ -85,7 +84,7 @@ impl Scene<'_> {
     fn mass(&self, random: &mut impl Rng) -> Result<Option<Drawn>, ConcealmentError> {
         let index = random.random_range(0..self.explaining.bodies().len());
         let name = &self.explaining.bodies()[index].name;
-        let (from, to, whole) = extent(self.explaining, index);
+        let (from, to, whole) = extent(&self.explaining.bodies()[index]);
         let x = if to > from { random.random_range(from..to) } else { from };
         let mass = whole * log_uniform(random, MASS);
         let believed = with_mass(self.explaining, name, x, mass)?;
@@ -224,7 +223,7 @@ impl Scene<'_> {
             })
         };
         let plain = [one, other].into_iter().all(|channel| only_here(channel) && !corrected(channel));
-        if a.body != b.body || !rotates(self.explaining, a.body) || !plain {
+        if a.body != b.body || !self.explaining.bodies()[a.body].kind.rotates() || !plain {
             return Vec::new();
         }
         let offset = |point: &str, dx: f64| Expected {
@@ -268,7 +267,7 @@ impl Scene<'_> {
             let point = &fixture.points()[index];
             let read =
                 pairs.iter().any(|p| [&p.response, &p.reference].iter().any(|c| c.point == point.name));
-            !holds && !rests && read && rotates(fixture, point.body)
+            !holds && !rests && read && fixture.bodies()[point.body].kind.rotates()
         };
         let known = |quantity: NamedQuantity| match quantity.owner {
             QuantityOwner::Point(index) if is_free(index) => Some((index, quantity.std?)),

@@ -2,8 +2,10 @@
 
 use jointscope_comparison::{Comparison, ELEMENTS, Kind};
 
+/// Row or column, as a subscript.
+pub(super) const DIGITS: [&str; 2] = ["₁", "₂"];
+
 pub(super) fn name_of(kind: Kind, (i, j): (usize, usize)) -> String {
-    const DIGITS: [&str; 2] = ["₁", "₂"];
     format!("{}{}{}", kind.symbol(), DIGITS[i], DIGITS[j])
 }
 

@@ -3,7 +3,7 @@
 use jointscope_comparison::{Comparison, Decomposed, Kind, Line, Matrix};
 use jointscope_inference::Z95;
 
-use super::elements::{elements, name_of};
+use super::elements::{DIGITS, elements, name_of};
 use crate::plot::{Axis, Plot, Role, Span, YRange};
 use crate::section::Section;
 
@@ -18,7 +18,6 @@ pub(super) fn compliance_section(comparison: &Comparison) -> Option<Section> {
     }
     let elements = elements(comparison);
     let plots = elements.iter().map(|&(i, j)| {
-        const DIGITS: [&str; 2] = ["₁", "₂"];
         let symbol = format!("H41{}{}", DIGITS[i], DIGITS[j]);
         let axis = Axis::logarithmic(format!("|{symbol}|"), COMPLIANCE[i][j]);
         let mut plot = Plot::new(symbol.clone(), Axis::frequency(), axis);

@@ -23,7 +23,7 @@ const LISTED: usize = 12;
 /// different joints that are known together, and where the fixture moved.
 ///
 /// `fixture` is the one that the joints were found with. The same input gives the same bytes.
-pub fn joints_report(fit: &JointsFit, fixture: &Fixture, context: &PageContext) -> Report {
+pub(crate) fn joints_report(fit: &JointsFit, fixture: &Fixture, context: &PageContext) -> Report {
     let names: Vec<&str> = fit.joints.iter().map(|joint| joint.name.as_str()).collect();
     let sections = fit.joints.iter().map(joint_section);
     let page = context

@@ -5,8 +5,9 @@ use jointscope_decomposition::{Analysis, AnalysisOptions, DecompositionError, Ju
 use jointscope_fixture::Fixture;
 use jointscope_lumped::{Instrument, synthesize};
 use jointscope_report::format::quantity;
-use jointscope_report::{InputFile, PageContext, decomposition_page};
-use jointscope_spectra::{FrfPair, FrfSet, SpectralLines};
+use jointscope_report::{InputFile, PageContext, decomposition_report};
+use jointscope_samples::transverse;
+use jointscope_spectra::{FrfSet, SpectralLines};
 use jointscope_wording::Says;
 use num_complex::Complex64;
 
@@ -42,7 +43,7 @@ fn recorded(fixture: &Fixture, pairs: &[(&str, &str)]) -> FrfSet {
 }
 
 fn recorded_on(fixture: &Fixture, pairs: &[(&str, &str)], lines: SpectralLines) -> FrfSet {
-    let pairs: Vec<FrfPair> = pairs.iter().map(|(o, i)| FrfPair::transverse(o, i)).collect();
+    let pairs = transverse(pairs);
     let frfs = synthesize(fixture, &pairs, &lines, Instrument::AsRecorded).unwrap();
     let mut state = 1_u64;
     let mut uniform = || {
@@ -93,7 +94,7 @@ fn context() -> PageContext {
 
 fn page(fixture: &Fixture, analysis: &Analysis) -> String {
     // Apostrophes are escaped in text; the sentences below read better without.
-    decomposition_page(analysis, fixture, &context()).unwrap().replace("&#39;", "'")
+    decomposition_report(analysis, fixture, &context()).html().unwrap().replace("&#39;", "'")
 }
 
 /// The JSON from which the plots are drawn.

@@ -3,7 +3,7 @@
 use jointscope_diagnosis::{Departure, Diagnosis, DiagnosisOptions, ModelError, Verdict};
 use jointscope_fixture::Fixture;
 use jointscope_lumped::{Instrument, synthesize};
-use jointscope_report::{InputFile, PageContext, diagnosis_page};
+use jointscope_report::{InputFile, PageContext, diagnosis_report};
 use jointscope_spectra::{FrfPair, FrfSet, SpectralLines};
 use jointscope_wording::Says;
 use num_complex::Complex64;
@@ -63,8 +63,9 @@ fn rendered(diagnosis: &Diagnosis) -> String {
         notes: vec!["one remark".into()],
         hits: None,
     };
-    let html = diagnosis_page(diagnosis, &believed, &context).unwrap();
-    assert_eq!(html, diagnosis_page(diagnosis, &believed, &context).unwrap(), "the same input, other bytes");
+    let page = || diagnosis_report(diagnosis, &believed, &context).html().unwrap();
+    let html = page();
+    assert_eq!(html, page(), "the same input, other bytes");
     html
 }
 

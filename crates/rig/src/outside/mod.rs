@@ -165,7 +165,7 @@ impl Outside {
             }
             "gyroscope" => {
                 let turning: Vec<_> =
-                    fixture.points().iter().filter(|p| turns(&fixture.bodies()[p.body])).collect();
+                    fixture.points().iter().filter(|p| fixture.bodies()[p.body].kind.rotates()).collect();
                 let point = choice(rng, &turning)?;
                 let arm = 0.03 * mass(&fixture.bodies()[point.body].kind);
                 let coupling = sign(rng) * arm * TAU * log_uniform(rng, 3.0, 100.0);
@@ -185,7 +185,7 @@ impl Outside {
                 let blocks: Vec<&Body> = fixture
                     .bodies()
                     .iter()
-                    .filter(|body| matches!(body.kind, BodyKind::Rigid(_)) && turns(body))
+                    .filter(|body| matches!(body.kind, BodyKind::Rigid(_)) && body.kind.rotates())
                     .collect();
                 Outside::SecondBending {
                     body: choice(rng, &blocks)?.name.clone(),
@@ -288,10 +288,6 @@ impl std::fmt::Display for Outside {
             }
         }
     }
-}
-
-fn turns(body: &Body) -> bool {
-    !matches!(&body.kind, BodyKind::Rigid(rigid) if !rigid.rotates)
 }
 
 fn mass(body: &BodyKind) -> f64 {

@@ -3,7 +3,7 @@
 use super::Outside;
 use crate::physical::{BodyMode, Order};
 use crate::{Assembly, Law, Row, Station, Structure, StructureError};
-use jointscope_fixture::Fixture;
+use jointscope_fixture::{Fixture, Support};
 use jointscope_spectra::Channel;
 use std::f64::consts::{PI, TAU};
 
@@ -64,21 +64,12 @@ impl Outside {
                 cable(&mut assembly, &tied, *mass, *frequency, *damping_ratio);
             }
             Outside::BaseMotion { mass, frequency, damping_ratio } => {
-                let (omega, table) = (TAU * frequency, Row::coordinate(assembly.coordinate()));
-                assembly.inertia(&table, *mass);
-                assembly.spring(&table, mass * omega * omega, Law::ELASTIC);
-                assembly.dashpot(&table, 2.0 * damping_ratio * mass * omega);
-                for support in fixture.supports() {
+                let place = |support| {
                     let (body, x) = fixture.support_place(support);
-                    let place = bodies.station(body, x)?.y;
-                    let stretch = place.minus(&table);
-                    let damping = support.damping.map_or(0.0, |damping| damping.value);
-                    // What was to ground is to the table.
-                    assembly.spring(&place, -support.stiffness.value, Law::ELASTIC);
-                    assembly.spring(&stretch, support.stiffness.value, Law::ELASTIC);
-                    assembly.dashpot(&place, -damping);
-                    assembly.dashpot(&stretch, damping);
-                }
+                    Ok((bodies.station(body, x)?.y, support))
+                };
+                let held = fixture.supports().iter().map(place).collect::<Result<_, StructureError>>()?;
+                table(&mut assembly, held, *mass, *frequency, *damping_ratio);
             }
         }
         let points: Vec<(String, Station)> = fixture
@@ -106,6 +97,23 @@ fn springpot(assembly: &mut Assembly, relative: &Row, stiffness: f64, order: f64
         let dashpot = Row::coordinate(assembly.coordinate());
         assembly.spring(&relative.minus(&dashpot), spring, Law::ELASTIC);
         assembly.dashpot(&dashpot, spring / rate);
+    }
+}
+
+/// A table of `mass` (kg) on a suspension of `frequency` (Hz), which carries the supports.
+fn table(assembly: &mut Assembly, held: Vec<(Row, &Support)>, mass: f64, frequency: f64, damping_ratio: f64) {
+    let (omega, table) = (TAU * frequency, Row::coordinate(assembly.coordinate()));
+    assembly.inertia(&table, mass);
+    assembly.spring(&table, mass * omega * omega, Law::ELASTIC);
+    assembly.dashpot(&table, 2.0 * damping_ratio * mass * omega);
+    for (place, support) in held {
+        let stretch = place.minus(&table);
+        let damping = support.damping.map_or(0.0, |damping| damping.value);
+        // What was to ground is to the table.
+        assembly.spring(&place, -support.stiffness.value, Law::ELASTIC);
+        assembly.spring(&stretch, support.stiffness.value, Law::ELASTIC);
+        assembly.dashpot(&place, -damping);
+        assembly.dashpot(&stretch, damping);
     }
 }
 

@@ -4,7 +4,7 @@ use jointscope_fixture::{Damping, Quantity, RatiosOf};
 use jointscope_linalg::generalized_symmetric_eigen;
 
 /// An eigenvalue below this fraction of the largest belongs to a rigid motion.
-const RIGID: f64 = 1e-12;
+pub(crate) const RIGID: f64 = 1e-12;
 /// Share of a mode's strain energy in bodies and joints below which its frequency is the suspension's.
 const LEAST_STRAIN: f64 = 0.05;
 

@@ -17,7 +17,7 @@ mod structure;
 pub use assembly::{Assembly, Law};
 pub(crate) use bar_mode::{BodyMode, FIRST_TO_SECOND, Order};
 pub use beam_element::BeamElement;
-pub(crate) use damping::add_viscous;
+pub(crate) use damping::{RIGID, add_viscous};
 pub use station::{Row, Station};
 pub use structure::Structure;
 pub(crate) use structure::window_decay;

@@ -3,6 +3,7 @@
 use crate::common::largest_error;
 use jointscope_fixture::Fixture;
 use jointscope_rig::{Assembly, BeamElement, Instrument, Law, Row, Station, Structure, frfs};
+use jointscope_samples::transverse;
 use jointscope_spectra::{Channel, FrfForm, FrfPair, FrfSet, SpectralLines};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
@@ -128,10 +129,6 @@ fn storeys(physics: &str) -> Fixture {
 
 fn lines() -> SpectralLines {
     SpectralLines::even(10.0, 5.0, 150).unwrap()
-}
-
-fn transverse(pairs: &[(&str, &str)]) -> Vec<FrfPair> {
-    pairs.iter().map(|(a, b)| FrfPair::transverse(a, b)).collect()
 }
 
 /// Two masses joined by a complex stiffness, accelerances 1/1 and 2/1.

@@ -6,7 +6,7 @@ use std::sync::Mutex;
 use jointscope::Answer;
 use jointscope::fixture::Fixture;
 use jointscope::recordings::{ReadOptions, Source, hits_of};
-use jointscope::report::{InputFile, PageContext, answer_page};
+use jointscope::report::{InputFile, PageContext, answer_report};
 
 use super::cases::Concealed;
 use crate::input;
@@ -56,7 +56,7 @@ impl<'a> CasePages<'a> {
             notes: notes(believed, &files[1].1, answer)?,
             hits: answer.hammer_test.clone(),
         };
-        let page = answer_page(answer, &context).map_err(Refusal::new)?;
+        let page = answer_report(answer, &context).html().map_err(Refusal::new)?;
         let mut outputs = Outputs::default();
         for (name, bytes) in files {
             outputs.add(folder.join(name), bytes);

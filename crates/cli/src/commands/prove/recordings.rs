@@ -24,16 +24,7 @@ const CASES: usize = 8;
 /// Makes the fixture that explains the recording, conceals, has all cases diagnosed, opens the truths and reckons; answers with the table.
 pub(super) fn run(directory: &Path, arguments: &ProveArguments) -> Result<String, Refusal> {
     let test = Test::read(directory, &arguments.real)?;
-    let kinds = ConcealmentKind::ALL.into_iter().filter(|kind| {
-        let asked = &arguments.real.conceal;
-        asked.is_empty() || asked.iter().any(|name| name == kind.name())
-    });
-    let plan = ConcealmentPlan {
-        cases: arguments.cases.unwrap_or(CASES),
-        seed: arguments.seed.unwrap_or(1),
-        only: arguments.only,
-        kinds: kinds.collect(),
-    };
+    let plan = plan(arguments);
     // Found out before the first diagnosis, which takes its time.
     plan.check().map_err(Refusal::new)?;
     Outputs::foresee(test.files(), arguments.output.iter().map(|directory| directory.join("seal.json")))?;
@@ -87,6 +78,18 @@ pub(super) fn run(directory: &Path, arguments: &ProveArguments) -> Result<String
         reckoning.to_string(),
     ];
     Ok(lines.join("\n").trim_end().to_owned())
+}
+
+/// What is to be concealed.
+fn plan(arguments: &ProveArguments) -> ConcealmentPlan {
+    let asked = &arguments.real.conceal;
+    let is_asked = |kind: &ConcealmentKind| asked.is_empty() || asked.iter().any(|name| name == kind.name());
+    ConcealmentPlan {
+        cases: arguments.cases.unwrap_or(CASES),
+        seed: arguments.seed.unwrap_or(1),
+        only: arguments.only,
+        kinds: ConcealmentKind::ALL.into_iter().filter(is_asked).collect(),
+    }
 }
 
 /// A test as its directory holds it.

@@ -4,6 +4,7 @@
 use jointscope::fixture::Effect;
 use jointscope::{Fixture, FrfPair, FrfSet, SpectralLines};
 use jointscope_rig::{HammerTest, Instrument, drawn_within_tolerance, frfs, generator};
+use jointscope_samples::{ACROSS, transverse};
 
 /// The fixture file, with the modal damping ratios of its two elastic modes.
 pub(crate) fn believed(ratios: [f64; 2]) -> Fixture {
@@ -30,7 +31,7 @@ pub(crate) const RATIOS: [f64; 2] = [0.006, 0.008];
 
 /// The four FRFs across the joint.
 pub(crate) fn four_pairs() -> Vec<FrfPair> {
-    [("4", "1"), ("3", "1"), ("4", "2"), ("3", "2")].map(|(o, i)| FrfPair::transverse(o, i)).to_vec()
+    transverse(&ACROSS)
 }
 
 /// 86 lines to 1290 Hz.

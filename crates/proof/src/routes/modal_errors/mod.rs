@@ -5,7 +5,7 @@
 
 use super::by_name::Nameable;
 use super::quiet::quiet_hammer;
-use crate::generate::{Draw, HIDDEN_KINDS, turn};
+use crate::generate::{DRAWS, Draw, HIDDEN_KINDS, turn};
 use crate::hammer_test::{recorded_lines, unseen_pairs};
 use crate::judge::Judge;
 use crate::judged::error_on;
@@ -30,8 +30,6 @@ const DAMPING: [f64; 2] = [0.01, 0.1];
 const SHAPE: [f64; 2] = [0.001, 0.01];
 /// How many times as large as with it χ² must be without what is hidden for that to show: the model's error is then three times as large.
 const SHOWS: f64 = 10.0;
-/// Draws of a case before giving up.
-const DRAWS: usize = 60;
 
 /// What is true of a case with errors in its modes.
 #[derive(Debug, Clone, PartialEq)]

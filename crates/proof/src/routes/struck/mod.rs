@@ -10,7 +10,7 @@ pub use answer::{StruckAnswer, StruckAnswers};
 pub use judged::StruckJudged;
 
 use crate::effect_file::effect_value;
-use crate::generate::{Draw, turn};
+use crate::generate::{DRAWS, Draw, turn};
 use crate::name::describe;
 use crate::sealable::{Filed, Sealable};
 use crate::{Case, GenerationError, Plan};
@@ -111,8 +111,6 @@ const STEPS: usize = 8;
 const IDLE: [f64; 2] = [1.5, 4.0];
 /// Share of the joint's own force that an idle cubic spring adds at the most.
 const NEGLIGIBLE: f64 = 1e-5;
-/// Draws of a case before giving up.
-const DRAWS: usize = 60;
 
 impl StruckTruth {
     /// The case of a number, and apart from it what is true of it.

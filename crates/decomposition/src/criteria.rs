@@ -1,4 +1,4 @@
-//! How an analysis is judged: by its fit, by what fit and means say of each other, by the fixture.
+//! The criteria by which an analysis is judged: its fit, what fit and means say of each other, the fixture.
 
 use crate::{Analysis, Contradiction, Element, Estimate, Judgement, Method, Part, Relation, Use};
 use jointscope_fixture::{Fixture, JointLaw, Nature, Quantity};
