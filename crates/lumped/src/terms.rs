@@ -12,7 +12,7 @@ use jointscope_linalg::ComplexMatrix2;
 use num_complex::Complex64;
 
 /// One term of Δ, by the first of its stations in the list of [`Terms`].
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Term {
     /// A rank-one change at one station.
     Point { station: usize, law: PointLaw },
