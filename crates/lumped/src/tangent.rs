@@ -42,9 +42,9 @@ use through::Through;
 /// let tangent = Tangent::new(with(5e6)?, &pairs, &lines, Instrument::AsRecorded).ok_or("no tangent")?;
 /// let step = 1.0; // N/m
 /// let slope = tangent.toward(&with(5e6 + step)?, step, None).ok_or("another structure")?[0];
-/// // Closed form of two masses on a spring: −ω² k / (k (m1 + m2) − ω² m1 m2).
+/// // Closed form of two masses on a spring, A = k / (k (m1 + m2) − ω² m1 m2).
 /// let omega2 = (2.0 * std::f64::consts::PI * 100.0_f64).powi(2);
-/// let expected = omega2 * omega2 * 6.0 / (5e6 * 5.0 - omega2 * 6.0).powi(2);
+/// let expected = -omega2 * 6.0 / (5e6 * 5.0 - omega2 * 6.0).powi(2);
 /// assert!((slope.re / expected - 1.0).abs() < 1e-5);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```

@@ -64,6 +64,22 @@ impl Terms {
         all
     }
 
+    /// The terms of both that are not the same in `other`, which has as many.
+    pub(crate) fn where_they_differ(&self, other: &Terms) -> (Terms, Terms) {
+        let differ: Vec<bool> = self.terms.iter().zip(&other.terms).map(|(own, its)| own != its).collect();
+        let chosen = |all: &Terms| Terms {
+            stations: all.stations.clone(),
+            terms: all
+                .terms
+                .iter()
+                .zip(&differ)
+                .filter(|(_, differs)| **differs)
+                .map(|(t, _)| t.clone())
+                .collect(),
+        };
+        (chosen(self), chosen(other))
+    }
+
     fn point(&mut self, motion: TermStation, law: PointLaw) {
         let station = self.push(&[motion]);
         self.terms.push(Term::Point { station, law });

@@ -144,21 +144,28 @@ impl Assembly {
         for (row, motion) in change.mixing.chunks_exact(n).zip(participation) {
             all.iter_mut().zip(row).for_each(|(all, share)| *all += share * motion);
         }
-        let mut row = vec![0.0; n];
-        let mut added = vec![0.0; n];
-        for (places, parts, sign) in [
-            (&change.places, after.into_iter().collect::<Vec<_>>(), 1.0),
-            (&self.places, before.into_iter().collect(), -1.0),
-        ] {
-            for (weight, part) in parts {
-                added.fill(0.0);
-                places[part.body].read(part.x, part.dof, &mut added);
-                row.iter_mut().zip(&added).for_each(|(row, t)| *row += sign * weight * t / change.step);
-            }
-        }
-        for (i, t) in row.iter().enumerate().filter(|(_, t)| **t != 0.0) {
+        let here = self.read(&self.places, before);
+        let there = self.read(&change.places, after);
+        // Sums before differences: what stays the same leaves exactly nothing, which stiff joints would multiply.
+        let row = there.iter().zip(&here).map(|(there, here)| (there - here) / change.step);
+        for (i, t) in row.enumerate().filter(|(_, t)| *t != 0.0) {
             all.iter_mut().enumerate().for_each(|(r, all)| *all += self.basis.shape(r)[i] * t);
         }
         all
+    }
+
+    /// The row that reads weighted motions where coordinates stand at `places`.
+    fn read<'s>(
+        &self,
+        places: &[Coordinates],
+        parts: impl IntoIterator<Item = &'s (f64, Station)>,
+    ) -> Vec<f64> {
+        let (mut row, mut of_part) = (vec![0.0; self.order], vec![0.0; self.order]);
+        for (weight, part) in parts {
+            of_part.fill(0.0);
+            places[part.body].read(part.x, part.dof, &mut of_part);
+            row.iter_mut().zip(&of_part).for_each(|(row, t)| *row += weight * t);
+        }
+        row
     }
 }

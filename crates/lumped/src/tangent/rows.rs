@@ -89,24 +89,40 @@ impl Rows {
             .collect();
         let laws = laws(model, &modes);
         let count = 2 * distinct.len() + next;
-        let mut table = Vec::with_capacity(count * blocks.len());
+        let mut rows = Rows { group, groups: distinct.len(), elastic, laws, count, table: Vec::new() };
+        rows.table = pulp::Arch::new().dispatch(
+            #[inline(always)]
+            || rows.functions(&modes, &distinct, blocks),
+        );
+        rows
+    }
+
+    /// All functions on all blocks.
+    #[inline(always)]
+    fn functions(&self, modes: &[Denominator], distinct: &[Denominator], blocks: &[Lanes]) -> Vec<Lanes> {
+        let is_structural =
+            |g: usize| self.group.iter().zip(&self.laws).any(|(own, law)| *own == g && law.is_structural);
+        let structural: Vec<bool> = (0..self.groups).map(is_structural).collect();
+        let mut table = Vec::with_capacity(self.count * blocks.len());
         for &s in blocks {
             let first = table.len();
-            let value = |mode: &Denominator| Lanes::constant(mode.stiffness) + s * mode.viscous + s * s;
-            table.extend(distinct.iter().map(|mode| value(mode).reciprocal()));
-            for (r, mode) in modes.iter().enumerate().filter(|(_, mode)| is_elastic(mode)) {
-                let inverse: Lanes = table[first + group[r]];
-                let follows = if laws[r].is_structural { 0.0 } else { laws[r].slope };
+            for mode in distinct {
+                let value = Lanes::constant(mode.stiffness) + s * mode.viscous + s * s;
+                table.push(value.reciprocal());
+            }
+            for (r, mode) in modes.iter().enumerate().filter(|(r, _)| self.elastic[*r].is_some()) {
+                let inverse: Lanes = table[first + self.group[r]];
+                let follows = if self.laws[r].is_structural { 0.0 } else { self.laws[r].slope };
                 let factor = Complex64::new(1.0, mode.stiffness.im / mode.stiffness.re);
                 table.push((Lanes::constant(factor) + s * follows) * (inverse * inverse));
             }
-            for (g, inverse) in (0..distinct.len()).map(|g| (g, table[first + g])).collect::<Vec<_>>() {
-                let is_structural = group.iter().zip(&laws).any(|(own, law)| *own == g && law.is_structural);
-                let by = if is_structural { Lanes::constant(Complex64::I) } else { s };
+            for (g, structural) in structural.iter().enumerate() {
+                let inverse = table[first + g];
+                let by = if *structural { Lanes::constant(Complex64::I) } else { s };
                 table.push(by * (inverse * inverse));
             }
         }
-        Rows { group, groups: distinct.len(), elastic, laws, count, table }
+        table
     }
 
     /// The functions on one block.

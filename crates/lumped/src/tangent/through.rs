@@ -27,6 +27,14 @@ pub(super) struct Memory {
 impl Through {
     /// `None` where a line has no solution.
     pub(super) fn new(test: &ModelledTest, motions: &Motions, rows: &Rows, blocks: &[Lanes]) -> Option<Self> {
+        pulp::Arch::new().dispatch(
+            #[inline(always)]
+            || Through::solved(test, motions, rows, blocks),
+        )
+    }
+
+    #[inline(always)]
+    fn solved(test: &ModelledTest, motions: &Motions, rows: &Rows, blocks: &[Lanes]) -> Option<Self> {
         let (outputs, inputs, rank) = (motions.outputs.len(), motions.inputs.len(), motions.change.len());
         let mut through = Through { outputs, inputs, rank, table: Vec::new() };
         if rank == 0 {
@@ -81,17 +89,26 @@ impl Through {
         blocks: &[Lanes],
         step: f64,
     ) -> Vec<Lanes> {
-        if self.rank == 0 || before.terms == after.terms {
+        let (before, after) = before.where_they_differ(after);
+        if after.terms.is_empty() {
             return Vec::new();
         }
         let elements = self.rank * self.rank;
         let mut all = vec![Lanes::ZERO; elements * blocks.len()];
         let mut here = vec![Lanes::ZERO; elements];
-        for (there, &s) in all.chunks_exact_mut(elements).zip(blocks) {
-            after.write(s, there);
-            before.write(s, &mut here);
-            there.iter_mut().zip(&here).for_each(|(there, here)| *there = (*there - *here) * (1.0 / step));
-        }
+        pulp::Arch::new().dispatch(
+            #[inline(always)]
+            || {
+                for (there, &s) in all.chunks_exact_mut(elements).zip(blocks) {
+                    after.write(s, there);
+                    before.write(s, &mut here);
+                    there
+                        .iter_mut()
+                        .zip(&here)
+                        .for_each(|(there, here)| *there = (*there - *here) * (1.0 / step));
+                }
+            },
+        );
         all
     }
 

@@ -139,7 +139,7 @@ proptest! {
                 let level = predicted(made, &numbers, by, 0.0).iter().map(|value| value.norm()).fold(0.0, f64::max);
                 for (line, (found, expected)) in found.iter().zip(expected).enumerate() {
                     prop_assert!(
-                        (found - expected).norm() < 3e-5 * size + 1e-7 * level,
+                        (found - expected).norm() < 3e-5 * size + 1e-8 * level,
                         "number {by}, FRF {}, {} Hz: {found} and {expected}, at most {size:e}, FRF {level:e}", pairs[frf], lines.hz()[line]
                     );
                 }
