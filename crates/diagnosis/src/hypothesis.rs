@@ -4,7 +4,7 @@ use jointscope_fixture::{
     Effect, EffectKind, Entry, Fixture, FixtureError, NamedQuantity, Place, QuantityOwner, SizeLaw,
 };
 use jointscope_inference::{Covariance, Parameter, Transform};
-use jointscope_lumped::{Instrument, LumpedError, accelerances};
+use jointscope_lumped::{Instrument, LumpedError, Tangent, accelerances};
 use jointscope_spectra::FrfPair;
 use jointscope_tolerances::{Tolerance, moved};
 use num_complex::Complex64;
@@ -24,6 +24,9 @@ pub enum PredictionError {
 /// Least standard deviation of a quantity that is wrong, in stated ones: a slip of the calliper or the scales is many of them. One that sets out farther, as a wrong sign
 /// or decimal point asks for, may lie anywhere that far: a narrower expectation would bend the rest of the fixture to bring it back.
 const WRONG: f64 = 10.0;
+
+/// Step of a coordinate, in its units, to a neighbouring fixture whose matrices tell derivatives: halfway between what they curve by and what rounding leaves of them.
+const SMALL: f64 = 1e-6;
 
 /// The fixture with quantities and effects to be fitted: coordinates in units of which one is a typical step.
 #[derive(Debug, Clone)]
@@ -368,6 +371,39 @@ impl Hypothesis {
             }
         }
         Ok(all)
+    }
+
+    /// What derivatives of an observation's FRFs are taken from; `None` where they have to be differences.
+    pub(crate) fn tangent<'o>(&self, observation: &'o Observation) -> Option<Tangent<'o>> {
+        Tangent::new(
+            self.to_fixture().ok()?,
+            observation.pairs(),
+            observation.lines(),
+            Instrument::AsRecorded,
+        )
+    }
+
+    /// Derivatives by coordinate `index` from one solution. They count as the work of the `predictions` that differences would take, so that a limit of work means the
+    /// same however derivatives come about.
+    pub(crate) fn derivative(
+        &self,
+        index: usize,
+        solution: &Tangent,
+        observation: &Observation,
+        predictions: usize,
+    ) -> Option<Vec<Complex64>> {
+        let step = self.inward(index, SMALL);
+        let fixture = self.moved(index, step).to_fixture().ok()?;
+        let some = self.depending(index, observation);
+        let derivatives = solution.toward(&fixture, step, some.as_deref())?;
+        let count = observation.lines().len();
+        (0..predictions).for_each(|_| observation.work().count(derivatives.len()));
+        let Some(frfs) = some else { return Some(derivatives) };
+        let mut all = vec![Complex64::ZERO; observation.values().len()];
+        for (values, &i) in derivatives.chunks_exact(count).zip(&frfs) {
+            all[i * count..(i + 1) * count].copy_from_slice(values);
+        }
+        Some(all)
     }
 
     /// The FRFs that coordinate `index` acts on, where that is told by its name: where a channel's point sits, if nothing but channels

@@ -10,42 +10,40 @@ pub struct Linearisation {
 }
 
 impl Linearisation {
-    /// These derivatives for the first coordinates of `at`, and central differences by `steps` for the rest; one-sided ones where a coordinate
-    /// lies on its bound, such as a dashpot of zero. A coordinate that cannot be moved gets zeros.
+    /// These derivatives for the first coordinates of `at`, and those of one solution for the rest; where that has none, central differences by `steps`, or one-sided
+    /// ones where a coordinate lies on its bound, such as a dashpot of zero. A coordinate that cannot be moved gets zeros.
     pub(crate) fn extended(
         mut self,
         at: &Hypothesis,
         observation: &Observation,
         steps: impl Fn(usize) -> f64,
     ) -> Self {
-        for m in self.derivatives.len()..at.coordinates.len() {
-            let step = steps(m);
-            let moved = |sign: f64| at.predict_moved(m, sign * step, None, observation);
-            let slope = |up: Vec<Complex64>, down: Vec<Complex64>, width: f64| {
-                up.iter().zip(&down).map(|(u, d)| (u - d) / width).collect()
-            };
-            let derivative = match (moved(1.0), moved(-1.0)) {
-                (Ok(up), Ok(down)) => Some(slope(up, down, 2.0 * step)),
-                (Ok(up), Err(_)) => moved(0.0).ok().map(|here| slope(up, here, step)),
-                (Err(_), Ok(down)) => moved(0.0).ok().map(|here| slope(here, down, step)),
-                (Err(_), Err(_)) => None,
-            };
-            self.derivatives.push(derivative.unwrap_or(vec![Complex64::ZERO; observation.values().len()]));
+        let first = self.derivatives.len();
+        let solution = if first < at.coordinates.len() { at.tangent(observation) } else { None };
+        for m in first..at.coordinates.len() {
+            let exact = solution.as_ref().and_then(|solution| at.derivative(m, solution, observation, 2));
+            self.derivatives.push(exact.unwrap_or_else(|| central(at, observation, m, steps(m))));
         }
         self
     }
 
-    /// Forward differences from `predicted`, which `at` predicts: half the price, right to a thousandth, which is enough to find
-    /// the way but not to state an uncertainty.
+    /// The derivatives of one solution; where that has none, forward differences from `predicted`, which `at` predicts: half the price of central ones, right to a
+    /// thousandth, which is enough to find the way but not to state an uncertainty.
     pub(crate) fn forward(
         at: &Hypothesis,
         predicted: &[Complex64],
         observation: &Observation,
         difference: f64,
     ) -> Self {
+        let solution = at.tangent(observation);
         let derivatives = (0..at.coordinates.len()).map(|m| {
             if at.is_held(m) {
                 return vec![Complex64::ZERO; predicted.len()];
+            }
+            if let Some(exact) =
+                solution.as_ref().and_then(|solution| at.derivative(m, solution, observation, 1))
+            {
+                return exact;
             }
             let step = at.inward(m, difference);
             match at.predict_moved(m, step, Some(predicted), observation) {
@@ -66,4 +64,19 @@ impl Linearisation {
         let prior = |m: usize| (at.prior(m), at.coordinates[m]);
         NormalEquations::of_columns(&self.derivatives, residual, weights, |m| at.is_held(m), prior)
     }
+}
+
+/// Central differences by coordinate `m`.
+fn central(at: &Hypothesis, observation: &Observation, m: usize, step: f64) -> Vec<Complex64> {
+    let moved = |sign: f64| at.predict_moved(m, sign * step, None, observation);
+    let slope = |up: Vec<Complex64>, down: Vec<Complex64>, width: f64| {
+        up.iter().zip(&down).map(|(u, d)| (u - d) / width).collect()
+    };
+    let derivative = match (moved(1.0), moved(-1.0)) {
+        (Ok(up), Ok(down)) => Some(slope(up, down, 2.0 * step)),
+        (Ok(up), Err(_)) => moved(0.0).ok().map(|here| slope(up, here, step)),
+        (Err(_), Ok(down)) => moved(0.0).ok().map(|here| slope(here, down, step)),
+        (Err(_), Err(_)) => None,
+    };
+    derivative.unwrap_or(vec![Complex64::ZERO; observation.values().len()])
 }

@@ -46,7 +46,7 @@ pub struct FitSettings {
     pub inflated: f64,
     /// The same where many such fits are compared.
     pub inflated_among_many: f64,
-    /// Derivatives are taken anew when a step gains less than this share of their first one's gain. They cost as much as twenty predictions.
+    /// Derivatives are taken anew when a step gains less than this share of their first one's gain. They cost as much as several predictions.
     pub reuse: f64,
     /// How often an undamped step is tried along a flat valley.
     pub valleys: usize,

@@ -1,3 +1,7 @@
+mod change;
+
+pub(crate) use change::AssemblyChange;
+
 use crate::condensed::Stretch;
 use crate::effects::{Action, Change, actions};
 use crate::held::{held_by_modes, in_the_modes};
@@ -463,29 +467,34 @@ impl Matrices {
     fn add_joint(&mut self, fixture: &Fixture, joint: &Joint, places: &[Coordinates]) {
         let length = fixture.joint_length(joint);
         let matrix = from_end_stiffness(nominal_stiffness(&joint.law, length), length);
-        let rows: Vec<Vec<f64>> = [joint.from, joint.to]
-            .into_iter()
-            .flat_map(|point| [Dof::Translation, Dof::Rotation].map(|dof| (point, dof)))
-            .map(|(point, dof)| {
-                let point = &fixture.points()[point];
-                let mut row = vec![0.0; self.order];
-                places[point.body].read(point.x.value, dof, &mut row);
-                row
-            })
-            .collect();
+        let mut row = vec![0.0; self.order];
+        let mut read = |point: usize, dof: Dof| {
+            let point = &fixture.points()[point];
+            row.fill(0.0);
+            places[point.body].read(point.x.value, dof, &mut row);
+            not_zero(&row)
+        };
+        let ends =
+            [joint.from, joint.to].map(|point| [Dof::Translation, Dof::Rotation].map(|dof| (point, dof)));
+        let rows = ends.as_flattened().iter().map(|&(point, dof)| read(point, dof)).collect::<Vec<_>>();
         for (a, b) in (0..4).flat_map(|a| (0..4).map(move |b| (a, b))) {
-            for i in (0..self.order).filter(|&i| rows[a][i] != 0.0) {
-                for j in (0..self.order).filter(|&j| rows[b][j] != 0.0) {
-                    self.stiffness[i * self.order + j] += rows[a][i] * matrix[a][b] * rows[b][j];
+            for &(i, of_a) in &rows[a] {
+                for &(j, of_b) in &rows[b] {
+                    self.stiffness[i * self.order + j] += of_a * matrix[a][b] * of_b;
                 }
             }
         }
     }
 }
 
+/// The few entries of a row that are not zero, with their places.
+fn not_zero(row: &[f64]) -> Vec<(usize, f64)> {
+    row.iter().copied().enumerate().filter(|(_, t)| *t != 0.0).collect()
+}
+
 /// Adds `factor` times the product of a row, of which few entries are not zero, with itself.
 fn add_product(matrix: &mut [f64], row: &[f64], factor: f64) {
-    let read: Vec<(usize, f64)> = row.iter().copied().enumerate().filter(|(_, t)| *t != 0.0).collect();
+    let read = not_zero(row);
     for (i, a) in &read {
         read.iter().for_each(|(j, b)| matrix[i * row.len() + j] += factor * a * b);
     }

@@ -75,7 +75,7 @@ pub(crate) enum Change {
 }
 
 /// A spring and dashpot in series with one end of a joint.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Interface {
     pub at_far_end: bool,
     pub dof: Dof,

@@ -16,7 +16,7 @@ use jointscope_linalg::{ComplexMatrix2, Matrix2, RealMatrix2};
 use num_complex::Complex64;
 
 /// Everything that the fixture says of one joint's dynamic stiffness.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq)]
 pub(crate) struct JointDynamics {
     nominal: RealMatrix2,
     length: f64,

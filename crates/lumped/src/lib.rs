@@ -13,7 +13,8 @@
 //! * [`Model`]: the assembly with supports and effects, and its receptances between any [`Station`]s;
 //! * [`StateSpace`]: the assembly over time, for what has no FRF;
 //! * [`MeasuringChain`]: what stands between the structure and a recorded value;
-//! * [`ModelledTest`]: the model with a test's channels; [`ContinuedFrfs`], its FRFs at complex frequencies;
+//! * [`ModelledTest`]: the model with a test's channels; [`ContinuedFrfs`], its FRFs at complex frequencies; [`Tangent`], what small
+//!   changes of the fixture make of them;
 //! * [`synthesize`], [`accelerances`]: the FRFs an analyser would record (eq 18, 41), measuring-chain effects included.
 //!
 //! ```
@@ -55,6 +56,7 @@ mod receptances;
 mod state_space;
 mod station;
 mod synthesis;
+mod tangent;
 mod term_station;
 mod terms;
 mod uniform_beam;
@@ -70,6 +72,7 @@ pub use receptances::Receptances;
 pub use state_space::StateSpace;
 pub use station::Station;
 pub use synthesis::{ContinuedFrfs, ModelledTest, accelerances, synthesize};
+pub use tangent::Tangent;
 
 /// Why an assembly cannot be modelled.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

@@ -1,3 +1,5 @@
+mod change;
+
 use crate::bar::BarShape;
 use crate::denominator::Denominator;
 use crate::effects::{Action, actions};
@@ -61,20 +63,18 @@ impl Model {
         &self.terms
     }
 
+    /// How the assembly is damped.
+    pub(crate) fn damping_law(&self) -> &jointscope_damping::DampingLaw {
+        self.assembly.damping_law()
+    }
+
     pub(crate) fn participation(&self, station: &TermStation) -> Vec<f64> {
         let mut all = vec![0.0; self.assembly.order() + self.bending.len()];
         for (weight, part) in station.parts() {
-            let (modes, bending) = all.split_at_mut(self.assembly.order());
-            self.assembly.add_participation(part, *weight, modes);
-            for (value, mode) in bending.iter_mut().zip(&self.bending) {
-                if station.rigid_only || mode.body != part.body {
-                    continue;
-                }
-                let (deflection, slope) = mode.shape.at(part.x);
-                let motion = if part.dof == Dof::Translation { deflection } else { slope };
-                *value += weight * motion / mode.modal_mass.sqrt();
-            }
+            self.assembly.add_participation(part, *weight, &mut all[..self.assembly.order()]);
         }
+        let bending = all[self.assembly.order()..].iter_mut().zip(&self.bending);
+        bending.for_each(|(value, mode)| *value = mode.motion(station));
         all
     }
 
@@ -89,6 +89,18 @@ impl Model {
             .iter()
             .map(|b| Denominator { stiffness: Complex64::new(b.eigenvalue, 0.0), viscous: b.viscous });
         assembly.chain(bending).collect()
+    }
+}
+
+impl BendingCoordinate {
+    /// What it contributes to a motion, for a modal mass of one.
+    fn motion(&self, station: &TermStation) -> f64 {
+        let of = |(weight, part): &(f64, crate::Station)| {
+            let (deflection, slope) = self.shape.at(part.x);
+            weight * if part.dof == Dof::Translation { deflection } else { slope } / self.modal_mass.sqrt()
+        };
+        let own = station.parts().filter(|(_, part)| !station.rigid_only && part.body == self.body);
+        own.fold(0.0, |sum, part| sum + of(part))
     }
 }
 

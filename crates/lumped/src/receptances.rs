@@ -322,9 +322,8 @@ impl<'a> Prepared<'a> {
                 *to = *to + factor * right[column * self.inputs + input];
             }
         }
-        if rank <= 2 {
-            divide_small(&memory.delta, middle, &mut memory.right);
-        } else if !self.divide(&memory.delta, middle, &mut memory.right, &mut memory.lu) {
+        let columns = (&mut memory.right[..], self.inputs);
+        if !divided(&self.elements, &memory.delta, middle, columns, &mut memory.lu) {
             return false;
         }
         for (value, &(o, i)) in values.iter_mut().zip(&self.pairs) {
@@ -334,30 +333,52 @@ impl<'a> Prepared<'a> {
         }
         true
     }
+}
 
-    /// Overwrites `right` (rank rows) with (I + ΔG)⁻¹·right, line by line.
-    fn divide<T: Lines>(&self, delta: &[T], g: &[T], right: &mut [T], lu: &mut LuWorkspace) -> bool {
-        let rank = self.terms.stations.len();
-        let mut single: Vec<Complex64> = vec![Complex64::ZERO; right.len()];
-        (0..T::COUNT).all(|line| {
-            let factorized = lu.factorize(rank, |matrix| {
-                for &(row, inner) in &self.elements {
-                    let factor = delta[row * rank + inner].line(line);
-                    for column in 0..rank {
-                        matrix[row * rank + column] += factor * g[inner * rank + column].line(line);
-                    }
-                }
-                (0..rank).for_each(|i| matrix[i * rank + i] += 1.0);
-            });
-            if factorized.is_err() {
-                return false;
-            }
-            single.iter_mut().zip(right.iter()).for_each(|(to, value)| *to = value.line(line));
-            lu.solve_columns_in_place(&mut single, self.inputs);
-            right.iter_mut().zip(&single).for_each(|(to, value)| to.set_line(line, *value));
-            true
-        })
+/// Overwrites `right`, a row over its columns for each station of the change, with (I + ΔG)⁻¹·right; `false` where a line has no solution.
+#[inline(always)]
+pub(crate) fn divided<T: Lines>(
+    elements: &[(usize, usize)],
+    delta: &[T],
+    g: &[T],
+    (right, columns): (&mut [T], usize),
+    lu: &mut LuWorkspace,
+) -> bool {
+    if delta.len() <= 4 {
+        divide_small(delta, g, right);
+        return true;
     }
+    divide(elements, delta, g, (right, columns), lu)
+}
+
+/// The same line by line.
+fn divide<T: Lines>(
+    elements: &[(usize, usize)],
+    delta: &[T],
+    g: &[T],
+    (right, columns): (&mut [T], usize),
+    lu: &mut LuWorkspace,
+) -> bool {
+    let rank = right.len() / columns;
+    let mut single: Vec<Complex64> = vec![Complex64::ZERO; right.len()];
+    (0..T::COUNT).all(|line| {
+        let factorized = lu.factorize(rank, |matrix| {
+            for &(row, inner) in elements {
+                let factor = delta[row * rank + inner].line(line);
+                for column in 0..rank {
+                    matrix[row * rank + column] += factor * g[inner * rank + column].line(line);
+                }
+            }
+            (0..rank).for_each(|i| matrix[i * rank + i] += 1.0);
+        });
+        if factorized.is_err() {
+            return false;
+        }
+        single.iter_mut().zip(right.iter()).for_each(|(to, value)| *to = value.line(line));
+        lu.solve_columns_in_place(&mut single, columns);
+        right.iter_mut().zip(&single).for_each(|(to, value)| to.set_line(line, *value));
+        true
+    })
 }
 
 impl<T> Memory<T> {
@@ -392,7 +413,10 @@ fn divide_small<T: Lines>(delta: &[T], g: &[T], right: &mut [T]) {
 
 /// Neighbours with one denominator (all rigid motions, above all) share one term of the sum: the distinct denominators, those of far modes
 /// last, each mode's place among them, and the number of those before the far ones.
-fn merge(all: &[Denominator], is_far: impl Fn(usize) -> bool) -> (Vec<Denominator>, Vec<usize>, usize) {
+pub(crate) fn merge(
+    all: &[Denominator],
+    is_far: impl Fn(usize) -> bool,
+) -> (Vec<Denominator>, Vec<usize>, usize) {
     let mut distinct: Vec<Denominator> = Vec::new();
     let mut group = vec![0; all.len()];
     let mut near = 0;

@@ -1,5 +1,5 @@
 use crate::lanes::{Lines, WIDTH};
-use crate::{Instrument, LumpedError, MeasuringChain, Model, Receptances, Station};
+use crate::{Instrument, LumpedError, MeasuringChain, Model, Reading, Receptances, Station};
 use jointscope_fixture::Fixture;
 use jointscope_spectra::{FrfForm, FrfPair, FrfSet, SpectralLines};
 use num_complex::Complex64;
@@ -41,11 +41,11 @@ pub fn accelerances(
 /// A model with the channels of a test, ready to tell what would be recorded: on spectral lines, or anywhere on the plane of complex frequencies.
 #[derive(Debug, Clone)]
 pub struct ModelledTest {
-    model: Model,
-    chain: MeasuringChain,
-    stations: Stations,
+    pub(crate) model: Model,
+    pub(crate) chain: MeasuringChain,
+    pub(crate) stations: Stations,
     /// (output, input) of each receptance that is needed, those of the FRFs first.
-    wanted: Vec<(usize, usize)>,
+    pub(crate) wanted: Vec<(usize, usize)>,
     loads: Vec<Option<SensorLoad>>,
 }
 
@@ -62,11 +62,7 @@ impl ModelledTest {
     ) -> Result<Self, LumpedError> {
         let model = Model::new(fixture, highest_hz)?;
         let chain = MeasuringChain::of(fixture, pairs, instrument)?;
-        let mut stations = Stations::default();
-        let mut wanted = Vec::with_capacity(pairs.len());
-        for reading in &chain.readings {
-            wanted.push((stations.output(reading.output), stations.input(reading.input)));
-        }
+        let (mut stations, mut wanted) = channels(&chain);
         let mut loads = Vec::with_capacity(pairs.len());
         for (index, reading) in chain.readings.iter().enumerate() {
             loads.push(reading.load.map(|(seat, mass)| stations.sensor(mass, seat, &mut wanted, index)));
@@ -151,9 +147,17 @@ impl ContinuedFrfs<'_> {
 
 /// Stations in use, each once.
 #[derive(Debug, Clone, Default)]
-struct Stations {
-    outputs: Vec<Station>,
-    inputs: Vec<Station>,
+pub(crate) struct Stations {
+    pub outputs: Vec<Station>,
+    pub inputs: Vec<Station>,
+}
+
+/// The stations that a chain reads and pushes at, and the (output, input) of each FRF among them.
+pub(crate) fn channels(chain: &MeasuringChain) -> (Stations, Vec<(usize, usize)>) {
+    let mut stations = Stations::default();
+    let of = |reading: &Reading| (stations.output(reading.output), stations.input(reading.input));
+    let wanted = chain.readings.iter().map(of).collect();
+    (stations, wanted)
 }
 
 impl Stations {

@@ -12,7 +12,7 @@ use jointscope_linalg::ComplexMatrix2;
 use num_complex::Complex64;
 
 /// One term of Δ, by the first of its stations in the list of [`Terms`].
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Term {
     /// A rank-one change at one station.
     Point { station: usize, law: PointLaw },
@@ -62,6 +62,22 @@ impl Terms {
             }
         }
         all
+    }
+
+    /// The terms of both that are not the same in `other`, which has as many.
+    pub(crate) fn where_they_differ(&self, other: &Terms) -> (Terms, Terms) {
+        let differ: Vec<bool> = self.terms.iter().zip(&other.terms).map(|(own, its)| own != its).collect();
+        let chosen = |all: &Terms| Terms {
+            stations: all.stations.clone(),
+            terms: all
+                .terms
+                .iter()
+                .zip(&differ)
+                .filter(|(_, differs)| **differs)
+                .map(|(t, _)| t.clone())
+                .collect(),
+        };
+        (chosen(self), chosen(other))
     }
 
     fn point(&mut self, motion: TermStation, law: PointLaw) {

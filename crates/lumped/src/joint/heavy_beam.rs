@@ -12,7 +12,7 @@ use jointscope_linalg::Matrix2;
 const DOUBLINGS: usize = 4;
 
 /// Real parts of what a beam is on every line.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq)]
 pub(super) struct HeavyBeam {
     /// Static stiffness of an element at each doubling, without the complex factor of the modulus.
     short: [MirrorBeam<f64>; DOUBLINGS],
@@ -49,7 +49,7 @@ impl HeavyBeam {
 
 /// A matrix of a beam that is the same seen from either end, where a rotation of the one is the opposite of the other's: near [[a, b], [b, d]],
 /// far [[a, −b], [−b, d]], cross [[p, q], [−q, t]].
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 struct MirrorBeam<T> {
     a: T,
     b: T,

@@ -7,7 +7,7 @@ use jointscope_fixture::Dof;
 use jointscope_linalg::Matrix2;
 
 /// A complex 4×4 matrix on (y, θ) at the joint's near end, (y, θ) at its far end, by 2×2 blocks.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct TwoEnds<T> {
     pub(super) near: Matrix2<T>,
     pub(super) cross: Matrix2<T>,
