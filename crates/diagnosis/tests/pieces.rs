@@ -161,6 +161,20 @@ fn the_catalogue_has_every_linear_effect_that_the_fixture_can_have() {
 }
 
 #[test]
+fn what_a_fixture_states_of_a_joint_is_not_among_what_it_leaves_out() {
+    let values = [(EffectKind::JointMass, vec![0.01]), (EffectKind::ShearDeformation, vec![2e6, 0.0])];
+    let stated = values.map(|(kind, values)| Effect::new(kind, Place::Joint("J".into()), None, &values));
+    let stated = fixture().with_physics(stated.to_vec()).unwrap();
+    let kinds = |fixture: &Fixture| {
+        let all = catalogue(fixture, &observation(fixture));
+        all.iter().map(|candidate| candidate.kind).collect::<Vec<_>>()
+    };
+    for kind in [EffectKind::JointMass, EffectKind::ShearDeformation] {
+        assert!(kinds(&fixture()).contains(&kind) && !kinds(&stated).contains(&kind), "{}", kind.name());
+    }
+}
+
+#[test]
 fn what_resonates_between_two_starts_is_within_the_reach_of_one() {
     // Lines whose lowest is less than a fiftieth of the highest: no band has starts farther apart.
     let observation = observation(&fixture());
