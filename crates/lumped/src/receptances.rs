@@ -203,7 +203,7 @@ impl<'a> Prepared<'a> {
         let single = model.denominators();
         let elements = model.terms().elements();
         let (outputs, inputs) = (out.len(), input.len());
-        if single.len() <= FEW_MODES && change.len() >= HIGH_RANK {
+        if is_solved_by_modes(single.len(), change.len()) {
             let system = Some(ModalSystem::new(single, &out, &input, &change));
             let (terms, denominators, products) = (model.terms(), Vec::new(), Vec::new());
             let (entries, far, near) = (0, None, 0);
@@ -337,6 +337,11 @@ impl<'a> Prepared<'a> {
         }
         true
     }
+}
+
+/// Whether a change of this rank is solved for in the coordinates of so many modes.
+pub(crate) fn is_solved_by_modes(modes: usize, rank: usize) -> bool {
+    modes <= FEW_MODES && rank >= HIGH_RANK
 }
 
 /// Overwrites `right`, a row over its columns for each station of the change, with (I + ΔG)⁻¹·right; `false` where a line has no solution.
