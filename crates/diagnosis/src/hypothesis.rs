@@ -375,7 +375,7 @@ impl Hypothesis {
 
     /// What derivatives of an observation's FRFs are taken from; `None` where they have to be differences.
     pub(crate) fn tangent<'o>(&self, observation: &'o Observation) -> Option<Tangent<'o>> {
-        Tangent::new(
+        Tangent::where_it_pays(
             self.to_fixture().ok()?,
             observation.pairs(),
             observation.lines(),

@@ -214,7 +214,7 @@ impl<'a> Prepared<'a> {
             near: 0,
             system: None,
         };
-        if single.len() <= FEW_MODES && change.len() >= HIGH_RANK {
+        if is_solved_by_modes(single.len(), change.len()) {
             prepared.system = Some(ModalSystem::new(single, &out, &input, &change));
         } else {
             prepared.sum_over_modes(model, &single, [&out, &change, &input]);
@@ -333,6 +333,11 @@ impl<'a> Prepared<'a> {
         }
         true
     }
+}
+
+/// Whether a change of this rank is solved for in the coordinates of so many modes.
+pub(crate) fn is_solved_by_modes(modes: usize, rank: usize) -> bool {
+    modes <= FEW_MODES && rank >= HIGH_RANK
 }
 
 /// Overwrites `right`, a row over its columns for each station of the change, with (I + ΔG)⁻¹·right; `false` where a line has no solution.

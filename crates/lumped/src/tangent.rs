@@ -11,16 +11,19 @@
 //!
 //! Damping follows λ by its law, dv = τ dλ, in almost every change, and then dλ (1 + s τ)/D² is one function too.
 
+mod motions;
 mod rows;
 mod through;
 
 use crate::lanes::{Lanes, Lines, WIDTH};
+use crate::receptances::is_solved_by_modes;
 use crate::synthesis::channels;
 use crate::term_station::TermStation;
-use crate::{Instrument, MeasuringChain, Model, ModelledTest};
-use jointscope_fixture::Fixture;
+use crate::{Instrument, MeasuringChain, ModelledTest};
+use jointscope_fixture::{Body, BodyKind, Fixture};
 use jointscope_linalg::Field;
 use jointscope_spectra::{FrfPair, SpectralLines};
+use motions::Motions;
 use num_complex::Complex64;
 use rows::{Coefficients, Rows, sums};
 use std::f64::consts::TAU;
@@ -64,34 +67,6 @@ pub struct Tangent<'a> {
     through: Through,
 }
 
-/// Participations of what is read, of what is pushed and of what changes act through, a row over the modes each.
-#[derive(Debug, Clone)]
-pub(crate) struct Motions {
-    pub outputs: Vec<Vec<f64>>,
-    pub inputs: Vec<Vec<f64>>,
-    pub change: Vec<Vec<f64>>,
-}
-
-impl Motions {
-    /// The pairs of motions whose G is needed: the wanted ones, then G_oV, G_VV, G_Vi where there is a change.
-    fn entries(&self, wanted: &[(usize, usize)]) -> Vec<[usize; 2]> {
-        let (outputs, inputs, rank) = (self.outputs.len(), self.inputs.len(), self.change.len());
-        let (first_input, first_change) = (outputs, outputs + inputs);
-        let mut all: Vec<[usize; 2]> = wanted.iter().map(|&(o, i)| [o, first_input + i]).collect();
-        if rank > 0 {
-            all.extend((0..outputs).flat_map(|o| (0..rank).map(move |v| [o, first_change + v])));
-            all.extend((0..rank).flat_map(|v| (0..rank).map(move |w| [first_change + v, first_change + w])));
-            all.extend((0..rank).flat_map(|v| (0..inputs).map(move |i| [first_change + v, first_input + i])));
-        }
-        all
-    }
-
-    /// All of them by the numbers of [`Motions::entries`].
-    fn all(&self) -> Vec<&[f64]> {
-        self.outputs.iter().chain(&self.inputs).chain(&self.change).map(Vec::as_slice).collect()
-    }
-}
-
 impl<'a> Tangent<'a> {
     /// About the fixture, between the channels of `pairs`; `None` where it has no finite FRFs on these lines, for sensors that load what they measure, and for meshed
     /// beams.
@@ -101,12 +76,31 @@ impl<'a> Tangent<'a> {
         lines: &SpectralLines,
         instrument: Instrument,
     ) -> Option<Self> {
-        let is_meshed =
-            |body: &jointscope_fixture::Body| matches!(body.kind, jointscope_fixture::BodyKind::Beam(_));
-        if fixture.bodies().iter().any(is_meshed) {
+        let test = test(&fixture, pairs, lines, instrument)?;
+        Tangent::of(fixture, test, (pairs, lines), instrument)
+    }
+
+    /// [`Tangent::new`] where it takes less time than models of neighbouring fixtures: not where few modes and a change of high rank are solved in the modes' own
+    /// coordinates, which costs a line less than all entries of G that the change acts through.
+    pub fn where_it_pays(
+        fixture: Fixture,
+        pairs: &'a [FrfPair],
+        lines: &SpectralLines,
+        instrument: Instrument,
+    ) -> Option<Self> {
+        let test = test(&fixture, pairs, lines, instrument)?;
+        if is_solved_by_modes(test.model.modes(), test.model.terms().stations.len()) {
             return None;
         }
-        let test = ModelledTest::new(&fixture, pairs, lines.hz()[lines.len() - 1], instrument).ok()?;
+        Tangent::of(fixture, test, (pairs, lines), instrument)
+    }
+
+    fn of(
+        fixture: Fixture,
+        test: ModelledTest,
+        (pairs, lines): (&'a [FrfPair], &SpectralLines),
+        instrument: Instrument,
+    ) -> Option<Self> {
         if test.chain.readings.iter().any(|reading| reading.load.is_some()) {
             return None;
         }
@@ -118,7 +112,7 @@ impl<'a> Tangent<'a> {
             all.chunks(WIDTH).map(Lanes::of).collect::<Vec<_>>()
         };
         let factors = (0..pairs.len()).flat_map(factor).collect();
-        let motions = motions(&test.model, &test.stations);
+        let motions = Motions::of(&test.model, &test.stations);
         let rows = Rows::new(&test.model, &blocks);
         let through = Through::new(&test, &motions, &rows, &blocks)?;
         let lines = s.len();
@@ -225,13 +219,16 @@ impl pulp::WithSimd for Evaluation<'_> {
     }
 }
 
-fn motions(model: &Model, stations: &crate::synthesis::Stations) -> Motions {
-    let single = |all: &[crate::Station]| -> Vec<Vec<f64>> {
-        all.iter().map(|station| model.participation(&TermStation::single(*station))).collect()
-    };
-    Motions {
-        outputs: single(&stations.outputs),
-        inputs: single(&stations.inputs),
-        change: model.terms().stations.iter().map(|station| model.participation(station)).collect(),
+/// The model with its channels, of rigid bodies alone.
+fn test(
+    fixture: &Fixture,
+    pairs: &[FrfPair],
+    lines: &SpectralLines,
+    instrument: Instrument,
+) -> Option<ModelledTest> {
+    let is_meshed = |body: &Body| matches!(body.kind, BodyKind::Beam(_));
+    if fixture.bodies().iter().any(is_meshed) {
+        return None;
     }
+    ModelledTest::new(fixture, pairs, lines.hz()[lines.len() - 1], instrument).ok()
 }

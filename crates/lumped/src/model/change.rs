@@ -61,6 +61,11 @@ impl Model {
         all
     }
 
+    /// How many modes there are, those of bending blocks included.
+    pub(crate) fn modes(&self) -> usize {
+        self.assembly.order() + self.bending.len()
+    }
+
     /// How many of the modes are those of the assembly: the first ones.
     pub(crate) fn assembly_modes(&self) -> usize {
         self.assembly.order()

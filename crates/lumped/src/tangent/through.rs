@@ -1,6 +1,6 @@
 //! What supports and effects pass on: R and g of every channel, by block of lines.
 
-use super::Motions;
+use super::motions::Motions;
 use super::rows::{Rows, sums};
 use crate::ModelledTest;
 use crate::lanes::Lanes;

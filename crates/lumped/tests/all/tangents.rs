@@ -162,3 +162,14 @@ fn what_changes_the_measuring_chain_or_adds_to_the_model_has_no_derivative_here(
         tangent.toward(&fixture(made(0), &one), 1.0, None).unwrap().iter().all(|value| value.norm() == 0.0)
     );
 }
+
+#[test]
+fn a_tangent_pays_where_a_change_is_of_low_rank() {
+    let (pairs, lines) = (pairs(), lines());
+    let pays = |supports: bool, effects: usize| {
+        let fixture = fixture(Made { damping: 1, supports, effects }, &[1.0; NUMBERS]);
+        Tangent::where_it_pays(fixture, &pairs, &lines, Instrument::AsRecorded).is_some()
+    };
+    assert!(pays(false, 0) && pays(false, 1) && pays(true, 0));
+    assert!(!pays(true, 1) && !pays(false, 3));
+}
