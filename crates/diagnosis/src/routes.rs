@@ -1,7 +1,7 @@
 //! The ways to a diagnosis: by the noise of the lines, by the error of the model, by what has changed since a baseline; and which of them a recording
 //! asks for.
 
-use crate::evidence::{excess, explains, nothing_can_be_stated, upper_tail};
+use crate::evidence::{self, excess, explains, nothing_can_be_stated, upper_tail};
 use crate::finding::{Finding, Tried};
 use crate::fit::Fit;
 use crate::fitter::Fitter;
@@ -93,8 +93,11 @@ pub(crate) fn judged(
     if explained || not_in_error {
         let start = searched.map_or(Start::Anew, |search| Start::Searched(Box::new(search)));
         let parts = by_lines(fitter, within.clone(), of, (start, known), division.as_ref());
-        // What explains the modes stands where lines come to nothing but quantities far off.
-        if parts.verdict != Verdict::Unexplained || !modal.names_all() {
+        // What explains the modes stands where lines come down to the noise by quantities far off alone.
+        let left = parts.search.refitted.chi2_per_dof(fitter.observation);
+        let bent = parts.verdict == Verdict::Unexplained
+            && left < evidence::explained(fitter.observation, fitter.settings);
+        if !bent || !modal.names_all() {
             return Ok(parts);
         }
     }
