@@ -91,13 +91,18 @@ pub(crate) fn judged(
     let told = !modal.tells_little(fitter) || modal.stands_out(fitter);
     let not_in_error = modal.search.best.exact || modal.has_right_modes() || !told;
     if explained || not_in_error {
-        let start = searched.map_or(Start::Anew, |search| Start::Searched(Box::new(search)));
+        let nearly = if explained { None } else { modal.nearly_exact(fitter) };
+        let stands = nearly.is_some();
+        let start = match (nearly, searched) {
+            (Some(fit), _) => Start::Modes(modal, fit),
+            (None, Some(search)) => Start::Searched(Box::new(search)),
+            (None, None) => Start::Anew,
+        };
         let parts = by_lines(fitter, within.clone(), of, (start, known), division.as_ref());
-        // What explains the modes stands where lines come down to the noise by quantities far off alone.
+        // What explains the modes stands where it leaves little of the lines, or these come down to the noise by quantities far off alone.
         let left = parts.search.refitted.chi2_per_dof(fitter.observation);
-        let bent = parts.verdict == Verdict::Unexplained
-            && left < evidence::explained(fitter.observation, fitter.settings);
-        if !bent || !modal.names_all() {
+        let bent = left < evidence::explained(fitter.observation, fitter.settings);
+        if parts.verdict != Verdict::Unexplained || !modal.names_all() || !(stands || bent) {
             return Ok(parts);
         }
     }

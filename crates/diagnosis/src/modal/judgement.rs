@@ -359,6 +359,19 @@ impl ModalJudgement {
         })
     }
 
+    /// What explains the modes without any error of the model, fitted to lines, where it leaves little more than noise there: lines show what is beside the modes of a real
+    /// structure too, and need not refute what these are sure of.
+    pub(crate) fn nearly_exact(&self, fitter: &Fitter) -> Option<Fit> {
+        let best = &self.search.best;
+        if !self.names_all() || !best.exact {
+            return None;
+        }
+        let slight = fitter.settings.modal.slight;
+        let most = slight * fitter.observation.degrees() as f64;
+        let fit = fitter.local(&best.fit.hypothesis, None, most)?;
+        (fit.chi2_per_dof(fitter.observation) < slight).then_some(fit)
+    }
+
     /// Names that lines may be asked for where errors of the usual size do not explain the modes: the most probable by themselves, and quantities that are wrong.
     pub(crate) fn in_question(&self, fitter: &Fitter) -> Vec<Candidate> {
         if !self.is_unexplained() {
