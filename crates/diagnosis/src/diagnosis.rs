@@ -7,7 +7,7 @@ use crate::fitter::Fitter;
 use crate::force_noise::Shortfall;
 use crate::location::Location;
 use crate::mismatch::{FrfMismatch, mismatch};
-use crate::modal::ModelError;
+use crate::modal::{Features, ModelError};
 use crate::options::{DiagnosisError, DiagnosisOptions};
 use crate::routes::{self, Parts, chance};
 use crate::search::Search;
@@ -59,6 +59,8 @@ pub struct Diagnosis {
     pub contradictory: Vec<(f64, f64)>,
     /// The largest share by which FRFs fell short because of noise of the force, where that explains the recording better: the observation is without it.
     pub falls_short: Option<f64>,
+    /// What no modes explain of the recording, as a share of its FRFs, where it had to count as noise for anything to be explained: the observation has so much.
+    pub beside_modes: Option<f64>,
     /// How the structure changed from reference to reference, where it did: the diagnosis is of the references that agree.
     pub drift: Option<TestDrift>,
     /// Effects that were tried by themselves where the model's error decides, the most probable first.
@@ -139,7 +141,9 @@ impl Diagnosis {
         };
         let diagnosis = diagnosed(observation)?;
         let diagnosis = match options.baseline {
-            None => diagnosis.without_shortfall(&options.settings, diagnosed)?,
+            None => diagnosis
+                .without_shortfall(&options.settings, &diagnosed)?
+                .beside_modes(&options.settings, &diagnosed)?,
             Some(_) => diagnosis,
         };
         let diagnosis = Diagnosis { contradictory, ..diagnosis };
@@ -164,6 +168,7 @@ impl Diagnosis {
             stated,
             contradictory: Vec::new(),
             falls_short: None,
+            beside_modes: None,
             drift: None,
             stopped: observation.work().left_out(),
             observation,
@@ -211,6 +216,34 @@ impl Diagnosis {
             }
         }
         Ok(self)
+    }
+
+    /// The same, or, where nothing explains the recording and no poles do either, what is `diagnosed` in part with that as its noise: leakage and filters leave what no structure has in
+    /// its FRFs, and no name is to be held against it.
+    fn beside_modes(
+        self,
+        settings: &Settings,
+        diagnosed: impl Fn(Observation) -> Result<Self, DiagnosisError>,
+    ) -> Result<Self, DiagnosisError> {
+        if self.verdict != Verdict::Unexplained {
+            return Ok(self);
+        }
+        let nominal = &self.search.nominal.hypothesis;
+        let Some(features) = Features::of(&self.observation, nominal, &settings.modal) else {
+            return Ok(self);
+        };
+        let left = features.recorded.chi2_per_dof;
+        let noisier = self.observation.with_variance_times(left);
+        let share = noisier.relative_noise();
+        if left <= settings.modal.free_fit || share > settings.modal.beside_modes {
+            return Ok(self);
+        }
+        let other = diagnosed(noisier)?;
+        let explains = matches!(other.verdict, Verdict::Explained | Verdict::PartlyExplained);
+        Ok(match explains {
+            true => Diagnosis { verdict: Verdict::PartlyExplained, beside_modes: Some(share), ..other },
+            false => self,
+        })
     }
 
     /// The same where the fixture as refitted explains all that there is to explain.

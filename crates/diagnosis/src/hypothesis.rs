@@ -1,7 +1,8 @@
 use crate::Observation;
 use crate::parameter_transforms::parameters_of;
 use jointscope_fixture::{
-    Effect, EffectKind, Entry, Fixture, FixtureError, NamedQuantity, Place, QuantityOwner, SizeLaw,
+    Effect, EffectKind, Entry, Fixture, FixtureError, NamedQuantity, Place, QuantityKey, QuantityOwner,
+    SizeLaw,
 };
 use jointscope_inference::{Covariance, Parameter, Transform};
 use jointscope_lumped::{Instrument, LumpedError, Tangent, accelerances};
@@ -307,14 +308,19 @@ impl Hypothesis {
     /// # Errors
     /// Quantities or parameters that are impossible.
     pub fn to_fixture(&self) -> Result<Fixture, FixtureError> {
+        self.to_fixture_with(self.effects())
+    }
+
+    /// The same with other effects in the stead of its own.
+    pub(crate) fn to_fixture_with(&self, effects: Vec<Effect>) -> Result<Fixture, FixtureError> {
         let fixture = moved(&self.fixture, &self.tolerances, &self.coordinates);
         let mut physics = fixture.physics().to_vec();
-        physics.extend(self.effects());
+        physics.extend(effects);
         fixture.with_physics(physics)
     }
 
-    /// The same with the springs and masses of its effects alone; `None` where no effect is one, or one dissipates by itself.
-    pub(crate) fn to_fixture_without_dashpots(&self) -> Option<Fixture> {
+    /// Its effects without their dashpots, which leaves springs and masses; `None` where no effect is one, or one dissipates by itself.
+    pub(crate) fn springs_and_masses(&self) -> Option<Vec<Effect>> {
         use EffectKind::{AddedMass, JointLength, JointMass, ShearDeformation, StiffnessChange};
         let mut effects = self.effects();
         let mut any = false;
@@ -332,9 +338,23 @@ impl Hypothesis {
                 _ => return None,
             }
         }
-        let fixture = moved(&self.fixture, &self.tolerances, &self.coordinates);
-        let physics = fixture.physics().iter().cloned().chain(effects).collect();
-        if any { fixture.with_physics(physics).ok() } else { None }
+        any.then_some(effects)
+    }
+
+    /// Root mean square of the relative deviations to which the fixture states the damping of its modes; zero where they do not move.
+    pub(crate) fn deviation_of_damping(&self) -> f64 {
+        use QuantityKey::{LossFactor, ModalRatio, RayleighMass, RayleighStiffness};
+        let relative = |tolerance: &Tolerance| match tolerance.quantity {
+            NamedQuantity {
+                key: ModalRatio(_) | RayleighMass | RayleighStiffness | LossFactor,
+                value,
+                std,
+                ..
+            } => Some(std? / value),
+            _ => None,
+        };
+        let all: Vec<f64> = self.tolerances.iter().filter_map(relative).filter(|d| d.is_finite()).collect();
+        (all.iter().map(|d| d * d).sum::<f64>() / all.len().max(1) as f64).sqrt()
     }
 
     /// The accelerances this hypothesis predicts for an observation, as its instruments would record them.

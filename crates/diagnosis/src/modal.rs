@@ -36,7 +36,7 @@ mod starts;
 mod tests;
 mod uncertainty;
 
-pub(crate) use features::recorded;
-pub(crate) use judgement::ModalJudgement;
+pub(crate) use features::{Features, recorded};
+pub(crate) use judgement::{Explaining, ModalJudgement};
 pub(crate) use needs::without_imitations;
 pub use sizes::{ErrorIntervals, ModelError};

@@ -158,6 +158,22 @@ impl Observation {
         Some(Observation { frfs, weight, level, ..self.clone() })
     }
 
+    /// The same observation with so many times the variance of its noise.
+    pub(crate) fn with_variance_times(&self, factor: f64) -> Self {
+        let weight = self.weight.iter().map(|weight| weight / factor).collect();
+        Observation { weight, ..self.clone() }
+    }
+
+    /// Root mean square of the noise over that of the FRFs.
+    pub(crate) fn relative_noise(&self) -> f64 {
+        let counted = self.weight.iter().zip(self.values()).filter(|(weight, _)| **weight > 0.0);
+        let sum = |sum: (f64, f64), (weight, value): (&f64, &Complex64)| {
+            (sum.0 + 2.0 / weight, sum.1 + value.norm_sqr())
+        };
+        let (noise, signal) = counted.fold((0.0, 0.0), sum);
+        if signal > 0.0 { (noise / signal).sqrt() } else { f64::INFINITY }
+    }
+
     /// The FRFs in use, accelerances.
     pub fn frfs(&self) -> &FrfSet {
         &self.frfs

@@ -62,6 +62,14 @@ impl Ranking<'_> {
         self.best_of_each(fits)
     }
 
+    /// The same from where `base` stands alone, of few candidates: where nothing large is left out, linear steps tell which gain most.
+    pub(crate) fn nearby(&self, base: &Hypothesis, limit: f64) -> Vec<(usize, Fit)> {
+        let few = self.fitter.settings.ranking.few;
+        let Some(scan) = Scan::about(self.fitter, base.clone(), 0.0, true) else { return Vec::new() };
+        let chosen = self.hopeful(self.first_order(base, &scan, few, 1), &scan, limit);
+        self.best_of_each(self.fitted_beside(base, chosen, &scan, limit))
+    }
+
     /// Every candidate fitted from where `base` stands, which is where an effect that is looked for would leave the quantities; fits that
     /// will not come near `limit` are left unfinished.
     pub(crate) fn look_alikes(&self, base: &Hypothesis, limit: f64) -> Vec<(usize, Fit)> {
@@ -102,16 +110,37 @@ impl Ranking<'_> {
     ) -> Vec<(usize, Fit)> {
         let Some(scan) = Scan::about(self.fitter, base.clone(), 0.0, true) else { return Vec::new() };
         let objective = scan.objective();
-        let promises = self.fitter.settings.fit.limit.promises;
-        let hopeful = |gain: f64| objective - promises * gain <= limit;
         let mut chosen = self.first_order(base, &scan, count, each);
-        chosen.retain(|(gain, _, _)| hopeful(*gain));
         let scores = scan.scores(starts, self.candidates);
         let grid = self.best_starts(starts, &scores, 1).into_iter().take(count).flatten();
-        chosen.extend(grid.map(|(score, c, effect)| (objective - score, c, effect)).filter(|g| hopeful(g.0)));
+        chosen.extend(grid.map(|(score, c, effect)| (objective - score, c, effect)));
+        let chosen = self.hopeful(chosen, &scan, limit);
+        self.fitted_beside(base, chosen, &scan, limit)
+    }
+
+    /// Those of the effects, with what each gains at first, that may still come below `limit`.
+    fn hopeful(
+        &self,
+        mut gains: Vec<(f64, usize, Effect)>,
+        scan: &Scan,
+        limit: f64,
+    ) -> Vec<(f64, usize, Effect)> {
+        let (objective, promises) = (scan.objective(), self.fitter.settings.fit.limit.promises);
+        gains.retain(|(gain, _, _)| objective - promises * gain <= limit);
+        gains
+    }
+
+    /// Fits of `base` with each of the effects beside it, derivatives of the base being those of the scan.
+    fn fitted_beside(
+        &self,
+        base: &Hypothesis,
+        effects: Vec<(f64, usize, Effect)>,
+        scan: &Scan,
+        limit: f64,
+    ) -> Vec<(usize, Fit)> {
         let start =
             |(_, candidate, effect): (f64, usize, Effect)| Start { candidate, hypothesis: base.with(effect) };
-        self.fitted(chosen.into_iter().map(start).collect(), Some(&scan.linear), limit)
+        self.fitted(effects.into_iter().map(start).collect(), Some(&scan.linear), limit)
     }
 
     /// Candidates in question that `base` does not have yet.

@@ -7,7 +7,7 @@ use crate::fit::Fit;
 use crate::fitter::Fitter;
 use crate::held_out::Division;
 use crate::location::{Location, located};
-use crate::modal::{ModalJudgement, ModelError, without_imitations};
+use crate::modal::{Explaining, ModalJudgement, ModelError, without_imitations};
 use crate::named::{findings, re_estimated, verdict};
 use crate::options::{DiagnosisError, DiagnosisOptions};
 use crate::search::Search;
@@ -32,7 +32,7 @@ enum Start<'a> {
     /// The fixture alone, or what the search finds that sees less.
     Anew,
     /// What was found among the modes.
-    Modes(&'a ModalJudgement, Fit),
+    Modes(&'a ModalJudgement, Explaining),
     /// What was found among few names.
     Found(Box<Search>),
     /// It was made already.
@@ -88,13 +88,13 @@ pub(crate) fn judged(
     let explained = searched.as_ref().is_some_and(|search| explains(fitter, &search.repaired, true));
     // Modes that need no error of the model, or that do not tell all there is, beside lines that are not explained: it is not the modes of the model that
     // are in error.
-    let told = !modal.tells_little(fitter) || modal.stands_out(fitter);
+    let told = !modal.tells_little(fitter) || modal.has_no_rival(fitter);
     let not_in_error = modal.search.best.exact || modal.has_right_modes() || !told;
     if explained || not_in_error {
         let nearly = if explained { None } else { modal.nearly_exact(fitter) };
         let stands = nearly.is_some();
         let start = match (nearly, searched) {
-            (Some(fit), _) => Start::Modes(modal, fit),
+            (Some(nearly), _) => Start::Modes(modal, nearly),
             (None, Some(search)) => Start::Searched(Box::new(search)),
             (None, None) => Start::Anew,
         };
@@ -132,11 +132,11 @@ impl Parts {
             true => fitter.local(&fit.hypothesis, None, f64::INFINITY),
             false => Fit::at(fit.hypothesis.clone(), fitter.observation),
         };
-        let Search { nominal, refitted, repaired, candidates, told_apart } = self.search;
+        let Search { nominal, refitted, repaired, candidates, told_apart, is_sure } = self.search;
         let nominal = Fit::at(nominal.hypothesis.clone(), fitter.observation).unwrap_or(nominal);
         let refitted = again(&refitted).unwrap_or(refitted);
         let repaired = again(&repaired).unwrap_or(repaired);
-        self.search = Search { nominal, refitted, repaired, candidates, told_apart };
+        self.search = Search { nominal, refitted, repaired, candidates, told_apart, is_sure };
         if by_lines {
             self.findings = re_estimated(fitter, &self.search, self.findings);
             self.verdict = verdict(fitter, &self.search, &self.findings);
@@ -176,8 +176,9 @@ fn by_lines(
         |search: &Search| explaining.is_some() && without_imitations(fitter, search, modal).is_some();
     let mut search = observation.work().within_rest(FOUND, || match (start, &first) {
         (Start::Searched(search), _) => *search,
-        (Start::Modes(modal, exact), _) => {
-            let part = Search { repaired: exact, ..modal.search_on(observation, &within, &modal.stated) };
+        (Start::Modes(modal, Explaining { fit, is_sure }), _) => {
+            let part = Search { repaired: fit, ..modal.search_on(observation, &within, &modal.stated) };
+            let within = Search { is_sure, ..within };
             let mut search = Search::continued_until(fitter, within, &part, imitates);
             search.told_apart =
                 modal.told_from(&search.repaired.hypothesis, &search.candidates, settings.modal.bases.1);
@@ -250,11 +251,12 @@ fn blind(
         ModalJudgement::of(fitter, &alone.nominal.hypothesis, &alone.candidates, Some(&known))
     });
     let found = modal.and_then(|modal| {
-        let exact = modal.exact(fitter)?;
-        Some(Search { repaired: exact, ..modal.search_on(fitter.observation, &alone, &modal.stated) })
+        let Explaining { fit, is_sure } = modal.exact(fitter)?;
+        let part = modal.search_on(fitter.observation, &alone, &modal.stated);
+        Some((Search { repaired: fit, ..part }, is_sure))
     });
     Some(match found {
-        Some(part) => Search::continued(fitter, alone, &part),
+        Some((part, is_sure)) => Search::continued(fitter, Search { is_sure, ..alone }, &part),
         None => Search::searched(fitter, alone),
     })
 }

@@ -25,6 +25,8 @@ pub struct Search {
     pub candidates: Vec<Candidate>,
     /// Those that modes tell from what was found: they need not be asked for on lines.
     pub(crate) told_apart: Vec<usize>,
+    /// Whether modes are sure of what was found, so that nothing large can be left out beside it.
+    pub(crate) is_sure: bool,
 }
 
 impl Search {
@@ -38,6 +40,7 @@ impl Search {
             nominal,
             candidates,
             told_apart: Vec::new(),
+            is_sure: false,
         })
     }
 
@@ -155,6 +158,10 @@ impl Search {
             let best = self.ranked(fitter, &self.repaired).into_iter().next().map(|(_, fit)| fit);
             let Some(better) = best.filter(|best| self.is_worth(fitter, best, &self.repaired)) else { break };
             self.repaired = better;
+            // Beside what modes are sure of, an effect that they do not need is not worth being fitted closely.
+            if self.is_sure && led_astray(self) {
+                break;
+            }
             self.improve(fitter);
             if led_astray(self) {
                 break;
@@ -228,6 +235,9 @@ impl Search {
     fn ranked(&self, fitter: &Fitter, base: &Fit) -> Vec<(usize, Fit)> {
         // What gains less than the price of looking is not believed.
         let limit = base.objective - penalty(&fitter.settings.selection, 0.0, self.candidates.len());
+        if self.is_sure {
+            return self.ranking(fitter).nearby(&base.hypothesis, limit);
+        }
         self.ranking(fitter).of(&base.hypothesis, self.lacks_much(fitter, base), limit)
     }
 

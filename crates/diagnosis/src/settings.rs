@@ -78,6 +78,8 @@ pub struct FitSettings {
 pub struct RankingSettings {
     /// Candidates of the local search that are refined, and starts of each.
     pub local: (usize, usize),
+    /// Candidates that are refined beside what modes are sure of.
+    pub few: usize,
     /// Candidates of the global search that are kept after the stages on thinned lines, and those of them kept from two starts.
     pub thinned: (usize, usize),
     /// The same after the stage on all lines.
@@ -189,6 +191,9 @@ pub struct ModalSettings {
     pub free_fit: f64,
     /// χ² per degree of freedom of a free fit from which no poles explain the recording: names say nothing then.
     pub hopeless: f64,
+    /// Share of the FRFs up to which what no poles explain in a recording counts as its noise where nothing else explains it: leakage, filters and strikes beside the point leave some
+    /// tenths of a per cent to a per cent that no model of a structure has.
+    pub beside_modes: f64,
     /// ln of the weight of physics that no candidate covers, against one for the best: usually, and at the most, however badly it fits.
     pub unlisted: (f64, f64),
     /// What each effect beside the first adds to that: pairs of effects can imitate much.
@@ -236,6 +241,7 @@ impl Default for ModalSettings {
             exact: 5.0,
             free_fit: 1.3,
             hopeless: 100.0,
+            beside_modes: 0.02,
             unlisted: (-3.5, -0.7),
             company: 1.6,
             told: 50.0,
@@ -304,6 +310,7 @@ impl Default for Settings {
             },
             ranking: RankingSettings {
                 local: (12, 2),
+                few: 4,
                 thinned: (16, 6),
                 whole: (10, 3),
                 dropped: [12.0, 10.0, 4.0, 3.0],

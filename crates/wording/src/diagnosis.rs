@@ -63,6 +63,15 @@ fn by_noise(diagnosis: &Diagnosis) -> String {
             sits(diagnosis, &diagnosis.search.repaired),
             varies(diagnosis, &diagnosis.search.repaired)
         ),
+        Verdict::PartlyExplained if diagnosis.beside_modes.is_some() => {
+            let [error_with, error_without] = apart([100.0 * error_repaired, 100.0 * error_refitted], 2);
+            format!(
+                "The fixture leaves out {}; with {} the FRFs are explained but for {error_with} % of them (without {error_without} %). No structure's modes explain them to better than {} %.",
+                found(diagnosis),
+                it(diagnosis),
+                significant(100.0 * diagnosis.beside_modes.unwrap_or_default(), 2)
+            )
+        }
         Verdict::PartlyExplained => format!(
             "The fixture leaves out {}, but that is not all: χ² per degree of freedom falls from {} to {}, and what is left sits {}{}.",
             found(diagnosis),
@@ -127,6 +136,13 @@ impl Remarks for Diagnosis {
             remarks.push(format!(
                 "Noise of the force made the FRFs too small where the blow is weak, as it does to H1, by up to {} %: they were corrected by what explains them best. A harder \
                  tip, or FRFs estimated as Hv, tell more there.",
+                significant(100.0 * share, 2)
+            ));
+        }
+        if let Some(share) = self.beside_modes {
+            remarks.push(format!(
+                "No modes explain the recording to better than {} % of its FRFs, whatever the structure: so much counts as noise here. Leakage, a filter or strikes beside the point leave \
+                 such a rest.",
                 significant(100.0 * share, 2)
             ));
         }

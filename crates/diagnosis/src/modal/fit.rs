@@ -165,11 +165,16 @@ impl<'a> Problem<'a> {
         pairing: Pairing,
     ) -> Option<Standing> {
         let shapes = |fixture: &Fixture| Shapes::of(fixture, self.recorded, &modelled.poles());
-        let mut comparison = Comparison::new(self.recorded, &pairing, &modelled, &shapes(fixture)?);
+        let own = shapes(fixture)?;
+        let mut comparison = Comparison::new(self.recorded, &pairing, &modelled, &own);
         // The damping of the fixture by itself is no proportional one of a structure with effects; which of both it is, if either, nobody knows.
-        let springs = hypothesis.to_fixture_without_dashpots();
-        if let Some(shapes) = springs.and_then(|fixture| shapes(&fixture)) {
-            comparison = comparison.with_damping_distributed_otherwise(self.recorded, &pairing, &shapes);
+        let springs = match hypothesis.springs_and_masses() {
+            Some(effects) if effects == hypothesis.effects() => Some(own),
+            Some(effects) => hypothesis.to_fixture_with(effects).ok().and_then(|fixture| shapes(&fixture)),
+            None => None,
+        };
+        if let Some(springs) = springs {
+            comparison = comparison.with_damping_distributed_otherwise(self.recorded, &pairing, &springs);
         }
         Some(Standing { modelled, pairing, comparison })
     }

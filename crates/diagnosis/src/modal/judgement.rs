@@ -47,6 +47,14 @@ pub(crate) struct ModalJudgement {
     pub features: Features,
 }
 
+/// A hypothesis found among the modes, fitted to lines.
+#[derive(Debug, Clone)]
+pub(crate) struct Explaining {
+    pub fit: Fit,
+    /// Whether it explains the modes without any error of the model, so that nothing large can be left out beside it.
+    pub is_sure: bool,
+}
+
 /// What a baseline says of the fixture.
 #[derive(Debug, Clone)]
 pub(crate) struct Before {
@@ -252,7 +260,7 @@ impl Judge<'_> {
         let problem = &self.searcher.problem;
         let sizes = match is_of_signals(best) {
             true => self.made_up_for_by_signals(best),
-            false => problem.relative_sizes(best),
+            false => problem.relative_sizes_as_stated(best),
         };
         let strain: f64 = sizes.iter().map(|s| 0.5 * (s * s - 1.0).max(0.0)).sum();
         let pull = 0.5 * (best.largest_pull().powi(2) - self.searcher.settings.adequate.1.powi(2)).max(0.0);
@@ -318,9 +326,13 @@ impl ModalJudgement {
         (self.free_fit > free_fit || self.strained) && self.free_fit <= hopeless
     }
 
-    /// Whether a free fit that needed all it may for the noise, as what relaxes or damps heavily makes it need, leaves no doubt of the names: these explain the modes,
-    /// and none else comes near.
+    /// Whether a free fit that needed all it may for the noise, as what relaxes or damps heavily makes it need, leaves no doubt of the names, and these explain the modes.
     pub(crate) fn stands_out(&self, fitter: &Fitter) -> bool {
+        self.verdict == Verdict::Explained && self.has_no_rival(fitter)
+    }
+
+    /// Whether modes are far less probable without any of the names, at least in part explained by them, and by no others nearly as well.
+    pub(crate) fn has_no_rival(&self, fitter: &Fitter) -> bool {
         let ModalSettings { free_fit, told, .. } = fitter.settings.modal;
         let best = &self.search.best;
         let alone = |index: usize| {
@@ -329,7 +341,7 @@ impl ModalJudgement {
                 .filter(|other| other.names.last() != Some(&best.names[index]));
             others.count() == 0 && best.fit.ln - self.search.without[index] > told
         };
-        self.verdict == Verdict::Explained && self.free_fit <= free_fit && (0..best.names.len()).all(alone)
+        !best.names.is_empty() && self.free_fit <= free_fit && (0..best.names.len()).all(alone)
     }
 
     /// Whether errors of the usual size explain the modes of no hypothesis.
@@ -339,7 +351,7 @@ impl ModalJudgement {
 
     /// What explains the recording without any error of the model, by its modes and down to the noise of its lines: the best of those that do. Where
     /// errors of the usual size do not explain the modes either, or these are dubious or right whatever their evidence says, lines decide alone, but more strictly.
-    pub(crate) fn exact(&self, fitter: &Fitter) -> Option<Fit> {
+    pub(crate) fn exact(&self, fitter: &Fitter) -> Option<Explaining> {
         let by_lines = self.is_unexplained() || self.is_dubious(fitter) || self.has_right_modes();
         // What modes tell from the best is no better on lines.
         let best = self.search.best.fit.ln;
@@ -350,8 +362,9 @@ impl ModalJudgement {
         let all: Vec<&Named> = all
             .filter(|named| by_lines || named.exact && self.search.needs_all_of(named, odds.ln()))
             .collect();
-        let explaining = |named: &&Named| fitted_to_lines(fitter, named);
-        let cost = |fit: &Fit| cost(fitter, fit, 1.0);
+        let explaining =
+            |named: &&Named| Some(Explaining { fit: fitted_to_lines(fitter, named)?, is_sure: named.exact });
+        let cost = |found: &Explaining| cost(fitter, &found.fit, 1.0);
         // More effects than explain the lines are for the lines to ask for.
         (0..=fitter.settings.modal.effects).find_map(|count| {
             let of_count = all.iter().filter(|named| named.names.len() == count);
@@ -359,17 +372,18 @@ impl ModalJudgement {
         })
     }
 
-    /// What explains the modes without any error of the model, fitted to lines, where it leaves little more than noise there: lines show what is beside the modes of a real
-    /// structure too, and need not refute what these are sure of.
-    pub(crate) fn nearly_exact(&self, fitter: &Fitter) -> Option<Fit> {
-        let best = &self.search.best;
-        if !self.names_all() || !best.exact {
+    /// What explains the modes, fitted to lines, where it leaves little more than noise there: lines show what is beside the modes of a real structure too, and need not refute what
+    /// these say.
+    pub(crate) fn nearly_exact(&self, fitter: &Fitter) -> Option<Explaining> {
+        if !self.names_all() {
             return None;
         }
+        let Named { fit, exact, .. } = &self.search.best;
         let slight = fitter.settings.modal.slight;
         let most = slight * fitter.observation.degrees() as f64;
-        let fit = fitter.local(&best.fit.hypothesis, None, most)?;
-        (fit.chi2_per_dof(fitter.observation) < slight).then_some(fit)
+        let on_lines = fitter.local(&fit.hypothesis, None, most)?;
+        let is_near = on_lines.chi2_per_dof(fitter.observation) < slight;
+        is_near.then_some(Explaining { fit: on_lines, is_sure: *exact })
     }
 
     /// Names that lines may be asked for where errors of the usual size do not explain the modes: the most probable by themselves, and quantities that are wrong.

@@ -97,7 +97,18 @@ impl Problem<'_> {
 
     /// The largest size of an error, as a multiple of what is usual.
     fn largest_size(&self, fit: &ModalFit) -> f64 {
-        self.relative_sizes(fit).into_iter().fold(0.0, f64::max)
+        self.relative_sizes_as_stated(fit).into_iter().fold(0.0, f64::max)
+    }
+
+    /// The sizes of [`Problem::relative_sizes`], that of damping ratios by no less than the fixture's own deviations of them where effects have made other modes than those of which
+    /// it states ratios: whatever these get from the others' damping, nobody claimed to know it better.
+    pub(crate) fn relative_sizes_as_stated(&self, fit: &ModalFit) -> Vec<f64> {
+        let mut sizes = self.relative_sizes(fit);
+        let stated = fit.hypothesis.deviation_of_damping();
+        if stated > self.sizes.damping && fit.hypothesis.springs_and_masses().is_some() {
+            sizes[DAMPING] *= self.sizes.damping / stated;
+        }
+        sizes
     }
 
     /// Sizes of the errors as multiples of what is usual, or of what is stated: the sizes that the recording asks for.

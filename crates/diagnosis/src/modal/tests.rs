@@ -10,12 +10,12 @@ use crate::modal::judgement::ModalJudgement;
 use crate::modal::prior::{Prior, priors};
 use crate::search::Search;
 use crate::settings::Settings;
-use crate::{Hypothesis, Observation, Watch};
+use crate::{Diagnosis, DiagnosisOptions, Hypothesis, Observation, Watch};
 use jointscope_findings::{Estimate, Verdict};
 use jointscope_fixture::{Dof, Effect, EffectKind, Fixture, Place};
 use jointscope_lumped::{Instrument, synthesize};
 use jointscope_model_error::ErrorSizes;
-use jointscope_spectra::{FrfPair, SpectralLines};
+use jointscope_spectra::{FrfPair, FrfSet, SpectralLines};
 
 const SHEAR: f64 = 1.88e7;
 
@@ -228,4 +228,52 @@ fn what_lines_find_is_no_surer_than_the_errors_that_the_modes_need_beside_it() {
     let wider = |place: usize| both[place].std.unwrap() / lines[place].std.unwrap();
     assert!(wider(1) > 3.0 && wider(0) > 3.0, "{} and {}", wider(1), wider(0));
     assert_eq!(both[1].value, lines[1].value);
+}
+
+/// Two blocks on a strip with one of them held to ground by a spring, N/m, and a ripple over frequency on all records that is none of a structure's.
+fn rippled(spring: f64, ripple: f64) -> FrfSet {
+    let fixture = Fixture::from_json(BLOCKS).unwrap();
+    let support = Effect::new(EffectKind::Support, Place::Body("B".into()), None, &[0.11, spring, 0.0]);
+    let exact = recorded(&Hypothesis::nominal(&fixture, false).with(support));
+    let hz = exact.lines().hz().to_vec();
+    let factor = |at: usize| 1.0 + ripple * (hz[at % hz.len()] / 3.7 + (at / hz.len()) as f64).cos();
+    let frfs = exact.frfs().clone().with_values(|at, value| value * factor(at));
+    let variance = exact.frfs().all_values().iter().map(|value| 1e-6 * value.norm_sqr()).collect();
+    frfs.with_variance(variance).unwrap()
+}
+
+#[test]
+fn what_no_structure_has_in_its_frfs_is_not_held_against_a_name() {
+    // The noise is a thousandth; a spring of which the mode is in the band, and one of which it is below.
+    for (spring, ripple) in [(1.65e5, 0.003), (1.65e5, 0.01), (1.65e4, 0.005)] {
+        let fixture = Fixture::from_json(BLOCKS).unwrap();
+        let frfs = rippled(spring, ripple);
+        let diagnosis = Diagnosis::of(&fixture, &frfs, &DiagnosisOptions::default()).unwrap();
+        let case = format!("{spring} N/m beside {ripple}: {:?}", diagnosis.verdict);
+        let [finding] = &diagnosis.findings[..] else { panic!("{case}, {:?}", diagnosis.findings) };
+        let stiffness = &finding.estimates[1];
+        assert_eq!(finding.effect.kind, EffectKind::Support, "{case}");
+        assert!(finding.probability > 0.8, "{case}: {}", finding.probability);
+        assert!((stiffness.value / spring - 1.0).abs() < 0.01, "{case}: {} N/m", stiffness.value);
+        assert!(diagnosis.nrmse()[2] < ripple, "{case}");
+    }
+}
+
+#[test]
+fn damping_that_effects_leave_open_is_off_by_no_more_than_was_stated_of_it() {
+    let fixture = Fixture::from_json(BLOCKS).unwrap();
+    let nominal = Hypothesis::nominal(&fixture, false);
+    let observation = recorded(&nominal);
+    let features = Features::of(&observation, &nominal, &Settings::default().modal).unwrap();
+    let problem = features.problem(observation.work());
+    let mut fit = problem.fitted(&nominal, &priors(&nominal, &[])).unwrap();
+    // Ratios are stated to 15 %, and models of which nothing is stated have them to 10 %.
+    fit.evidence.sizes.damping = 2.5 * problem.sizes.damping;
+    let is_adequate = |fit: &ModalFit| problem.is_adequate(fit, (2.0, 4.0));
+    assert!(!is_adequate(&fit), "the fixture's own modes");
+    let lump = Effect::new(EffectKind::AddedMass, Place::Body("B".into()), None, &[0.1, 1e-6]);
+    fit.hypothesis = nominal.with(lump);
+    assert!(is_adequate(&fit), "those of a structure with a lump");
+    fit.evidence.sizes.damping = 3.5 * problem.sizes.damping;
+    assert!(!is_adequate(&fit), "more than was stated");
 }
