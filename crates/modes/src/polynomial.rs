@@ -18,12 +18,19 @@ const ARC: f64 = 0.85;
 struct Circle {
     first: f64,
     period: f64,
+    /// Distance of the lines, rad/s.
+    spacing: f64,
 }
+
+/// Growth, as a share of the lines' spacing, up to which a pole that does not decay may be one that hardly does: noise makes either of it. What is mere arithmetic grows faster.
+const UNDAMPED: f64 = 0.1;
 
 impl Circle {
     fn of(omegas: &[f64]) -> Self {
         let (first, last) = (omegas[0], omegas[omegas.len() - 1]);
-        Circle { first, period: TAU * ARC / (last - first).max(f64::MIN_POSITIVE) }
+        let band = (last - first).max(f64::MIN_POSITIVE);
+        let spacing = band / omegas.len().saturating_sub(1).max(1) as f64;
+        Circle { first, period: TAU * ARC / band, spacing }
     }
 
     fn at(&self, omega: f64) -> Complex64 {
@@ -45,7 +52,7 @@ pub(crate) struct OrderPoles {
     pub poles: Vec<(Complex64, Vec<Complex64>)>,
 }
 
-/// Poles that are damped, of every order from `orders.0` to `orders.1`; orders whose equations are singular are left out.
+/// Poles that are damped, or hardly grow, of every order from `orders.0` to `orders.1`; orders whose equations are singular are left out.
 pub(crate) fn poles_by_order(observed: &Observed, orders: (usize, usize)) -> Vec<OrderPoles> {
     let mut equations = Equations::of(observed, orders.1);
     let mut all = Vec::new();
@@ -203,8 +210,9 @@ impl Equations {
         let mut poles = Vec::new();
         for u in roots {
             let pole = self.circle.pole(u.inv());
-            if u.norm() > 1.0 && pole.is_finite() && pole.im > 0.0 {
-                poles.push((pole, self.participation(&coefficients, order, u)));
+            if pole.re < UNDAMPED * self.circle.spacing && pole.is_finite() && pole.im > 0.0 {
+                let decaying = Complex64::new(-pole.re.abs(), pole.im);
+                poles.push((decaying, self.participation(&coefficients, order, u)));
             }
         }
         poles.sort_by(|a, b| a.0.im.total_cmp(&b.0.im));

@@ -135,6 +135,19 @@ fn modes_on_both_sides_of_a_band_do_not_bend_those_inside() {
 }
 
 #[test]
+fn a_mode_that_hardly_decays_is_found_whichever_way_noise_turns_it() {
+    let mut modes = three();
+    modes[0] = mode(62.654, 1e-5, &[1.0, 0.2, -0.3, -0.9]);
+    let lines = SpectralLines::even(20.0, 1.25, 800).unwrap();
+    for seed in 0..20 {
+        let found = analyse(&of(&modes, &FOUR, &lines, seed));
+        let hz: Vec<f64> = found.modes.iter().map(|mode| mode.frequency).collect();
+        assert!(hz.len() == 3 && (hz[0] - 62.654).abs() < 0.01, "seed {seed}: {hz:?} Hz");
+        assert!(found.chi2_per_dof < 1.2, "seed {seed}: {}", found.chi2_per_dof);
+    }
+}
+
+#[test]
 fn noise_alone_and_a_rigid_mass_alone_have_no_modes() {
     let refused = |set: &FrfSet| {
         let error = ModalAnalysis::of(set, &ModesOptions::default()).unwrap_err();
