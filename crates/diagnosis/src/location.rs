@@ -25,7 +25,8 @@ mod tangent;
 pub use map::{locate, measure};
 pub(crate) use map::{located, measured};
 
-use jointscope_fixture::Dof;
+use crate::candidate::Candidate;
+use jointscope_fixture::{Dof, Effect, Fixture, Motion, ParameterSpec};
 use jointscope_spectra::FrfPair;
 use num_complex::Complex64;
 use serde::{Serialize, Serializer};
@@ -153,6 +154,32 @@ pub struct LineEstimate {
 }
 
 impl Location {
+    /// The effects that the laws of this place are, the closest law first: those of `candidates` that act through it and of which a law tells every parameter but an abscissa and what
+    /// is nothing unless stated.
+    pub(crate) fn effects(&self, candidates: &[Candidate], fixture: &Fixture) -> Vec<Effect> {
+        let of_law = |law: &LawFit| {
+            let told =
+                |name: &str| law.parameters.iter().find(|told| told.name == name).map(|told| told.value);
+            let of = |candidate: &Candidate| {
+                let effect = candidate.effect(0);
+                let spec = effect.kind.spec();
+                let known = spec.parameters.iter().filter(|parameter| told(parameter.name).is_some()).count();
+                if !self.site.holds(&effect, fixture) || known < law.parameters.len() {
+                    return None;
+                }
+                let value = |parameter: &ParameterSpec| match (&self.site, told(parameter.name)) {
+                    (_, Some(value)) => Some(value),
+                    (Site::Body { x, .. }, None) if parameter.motion == Motion::AlongBody => Some(*x),
+                    (_, None) => parameter.default,
+                };
+                let values: Vec<f64> = spec.parameters.iter().map(value).collect::<Option<_>>()?;
+                Some(Effect::new(effect.kind, effect.place.clone(), effect.dof, &values))
+            };
+            candidates.iter().filter_map(of).collect::<Vec<_>>()
+        };
+        self.laws.iter().flat_map(of_law).collect()
+    }
+
     /// χ² left and what the priors charge for the tolerances.
     pub(crate) fn cost(&self) -> f64 {
         self.chi2_per_dof * self.degrees as f64 + self.departures

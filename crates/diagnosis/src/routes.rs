@@ -13,7 +13,7 @@ use crate::options::{DiagnosisError, DiagnosisOptions};
 use crate::search::Search;
 use crate::{Baseline, Hypothesis, Observation};
 use jointscope_findings::{HeldOut, Verdict};
-use jointscope_fixture::Fixture;
+use jointscope_fixture::{Effect, Fixture};
 use jointscope_spectra::SpectraError;
 
 /// Names of what a search may not come to any more.
@@ -65,19 +65,50 @@ pub(crate) fn judged(
         None => refitted.refitted_widely(fitter).with_wrong_quantities(fitter),
     };
     let of = (fixture, options.exact);
-    let known = modal.as_ref();
-    let Some(modal) = known.filter(|modal| !modal.needs_nothing()) else {
-        return Ok(by_lines(fitter, within, of, (Start::Anew, known), division.as_ref()));
+    let parts = routed(fitter, &within, of, modal.as_ref(), division.as_ref());
+    Ok(match parts.verdict {
+        Verdict::Unexplained => as_located(fitter, within, of, modal.as_ref(), division.as_ref(), parts),
+        _ => parts,
+    })
+}
+
+/// The diagnosis by lines or by modes, whichever the comparison by modes calls for. What explains the modes is stated where lines find nothing: for good where it leaves little of
+/// them or these come down to the noise by quantities far off alone, else as a part.
+fn routed(
+    fitter: &Fitter,
+    within: &Search,
+    of: (&Fixture, bool),
+    known: Option<&ModalJudgement>,
+    division: Option<&Division>,
+) -> Parts {
+    let by_lines = |start: Start| by_lines(fitter, within.clone(), of, (start, known), division);
+    let Some(modal) = known.filter(|modal| !modal.needs_nothing()) else { return by_lines(Start::Anew) };
+    let Some((start, is_near)) = from_modes(fitter, within, modal) else {
+        return by_modes(fitter, within, modal, division);
     };
+    let parts = by_lines(start);
+    if parts.verdict != Verdict::Unexplained || !modal.names_all() {
+        return parts;
+    }
+    let left = parts.search.refitted.chi2_per_dof(fitter.observation);
+    let bent = left < evidence::explained(fitter.observation, fitter.settings);
+    match is_near || bent {
+        true => by_modes(fitter, within, modal, division),
+        false => by_modes(fitter, within, &modal.doubted(), division),
+    }
+}
+
+/// Where lines set out from after a comparison by modes, and whether what explains the modes leaves little of the lines; `None` where lines have no say.
+fn from_modes<'a>(fitter: &Fitter, within: &Search, modal: &'a ModalJudgement) -> Option<(Start<'a>, bool)> {
     // What explains the lines down to their noise without any error of the model needs none: found among the modes, or, where these are dubious, by a
     // search on lines.
     if let Some(exact) = modal.exact(fitter) {
-        return Ok(by_lines(fitter, within, of, (Start::Modes(modal, exact), known), division.as_ref()));
+        return Some((Start::Modes(modal, exact), true));
     }
     // Where errors of the usual size do not explain the modes, these may have rested in a false minimum, and the names that they hold most probable, or quantities that
     // are wrong, explain the lines down to their noise.
     if let Some(found) = within.explained_among(fitter, modal.in_question(fitter)) {
-        return Ok(by_lines(fitter, within, of, (Start::Found(Box::new(found)), known), division.as_ref()));
+        return Some((Start::Found(Box::new(found)), false));
     }
     // Where a free fit that needed all it may leaves no doubt of the names, lines find nothing better.
     let may = modal.is_dubious(fitter)
@@ -90,23 +121,36 @@ pub(crate) fn judged(
     // are in error.
     let told = !modal.tells_little(fitter) || modal.has_no_rival(fitter);
     let not_in_error = modal.search.best.exact || modal.has_right_modes() || !told;
-    if explained || not_in_error {
-        let nearly = if explained { None } else { modal.nearly_exact(fitter) };
-        let stands = nearly.is_some();
-        let start = match (nearly, searched) {
-            (Some(nearly), _) => Start::Modes(modal, nearly),
-            (None, Some(search)) => Start::Searched(Box::new(search)),
-            (None, None) => Start::Anew,
-        };
-        let parts = by_lines(fitter, within.clone(), of, (start, known), division.as_ref());
-        // What explains the modes stands where it leaves little of the lines, or these come down to the noise by quantities far off alone.
-        let left = parts.search.refitted.chi2_per_dof(fitter.observation);
-        let bent = left < evidence::explained(fitter.observation, fitter.settings);
-        if parts.verdict != Verdict::Unexplained || !modal.names_all() || !(stands || bent) {
-            return Ok(parts);
-        }
+    if !explained && !not_in_error {
+        return None;
     }
-    Ok(by_modes(fitter, &within, modal, division.as_ref()))
+    let nearly = if explained { None } else { modal.nearly_exact(fitter) };
+    Some(match (nearly, searched) {
+        (Some(nearly), _) => (Start::Modes(modal, nearly), true),
+        (None, Some(search)) => (Start::Searched(Box::new(search)), false),
+        (None, None) => (Start::Anew, false),
+    })
+}
+
+/// What nothing explained, once more from the laws that were read at the places which explain most of it: where free scalars find a way, a search is to find it too.
+fn as_located(
+    fitter: &Fitter,
+    within: Search,
+    of: (&Fixture, bool),
+    known: Option<&ModalJudgement>,
+    division: Option<&Division>,
+    parts: Parts,
+) -> Parts {
+    let part = fitter.settings.location.part * within.refitted.objective;
+    let degrees = fitter.observation.degrees() as f64;
+    let places = parts.locations.iter().filter(|place| place.chi2_per_dof * degrees < part);
+    let effects = places.flat_map(|place| place.effects(&within.candidates, of.0));
+    let fit = |effect: Effect| fitter.local(&within.nominal.hypothesis.with(effect), None, part);
+    let fits = effects.filter_map(fit).filter(|fit| fit.objective < part);
+    let Some(repaired) = fits.min_by(|a, b| a.objective.total_cmp(&b.objective)) else { return parts };
+    let found = Box::new(Search { repaired, ..within.clone() });
+    let again = by_lines(fitter, within, of, (Start::Found(found), known), division);
+    if again.verdict == Verdict::Unexplained { parts } else { again }
 }
 
 /// A diagnosis but for what follows from its models and the observation.

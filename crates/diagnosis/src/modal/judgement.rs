@@ -153,6 +153,9 @@ fn is_of_signals(fit: &ModalFit) -> bool {
     !effects.is_empty() && effects.iter().all(|effect| effect.kind.spec().entry == Entry::Signal)
 }
 
+/// Probability of names that explain the modes, and not the lines: what a usual finding has beside the largest weight of something that is not listed.
+const DOUBTED: f64 = 2.0 / 3.0;
+
 struct Judge<'a> {
     searcher: Searcher<'a>,
     search: ModalSearch,
@@ -288,6 +291,16 @@ impl ModalJudgement {
             search: nothing,
             ..self.clone()
         }
+    }
+
+    /// The same where lines are at odds with it: stated as a part, and something that is not listed as probable as it is at the most.
+    pub(crate) fn doubted(&self) -> Self {
+        let names = self.names.iter().map(|all| {
+            let stated: f64 = all.iter().map(|(_, probability, _)| probability).sum();
+            let share = (DOUBTED / stated.max(f64::MIN_POSITIVE)).min(1.0);
+            all.iter().map(|(name, p, hypothesis)| (*name, share * p, hypothesis.clone())).collect()
+        });
+        ModalJudgement { verdict: Verdict::PartlyExplained, names: names.collect(), ..self.clone() }
     }
 
     /// Whether the modes need nothing, neither an effect nor an error of the model: what is left, if anything, only lines can show.

@@ -277,3 +277,20 @@ fn damping_that_effects_leave_open_is_off_by_no_more_than_was_stated_of_it() {
     fit.evidence.sizes.damping = 3.5 * problem.sizes.damping;
     assert!(!is_adequate(&fit), "more than was stated");
 }
+
+#[test]
+fn names_that_lines_are_at_odds_with_are_stated_as_a_part_and_no_surer_than_something_not_listed_lets_them_be() {
+    let fixture = Fixture::from_json(BLOCKS).unwrap();
+    let nominal = Hypothesis::nominal(&fixture, false);
+    let lump = Effect::new(EffectKind::AddedMass, Place::Body("B".into()), None, &[0.1, 0.2]);
+    let observation = recorded(&nominal.with(lump));
+    let settings = Settings::default();
+    let fitter = Fitter { observation: &observation, settings: &settings, watch: Watch::default() };
+    let judged = ModalJudgement::of(&fitter, &nominal, &catalogue(&fixture, &observation), None).unwrap();
+    let stated = |judged: &ModalJudgement| judged.names[0].iter().map(|(_, p, _)| p).sum::<f64>();
+    assert!(judged.verdict == Verdict::Explained && stated(&judged) > 0.9, "{}", stated(&judged));
+    let doubted = judged.doubted();
+    assert_eq!(doubted.verdict, Verdict::PartlyExplained);
+    assert!((stated(&doubted) - 2.0 / 3.0).abs() < 1e-9, "{}", stated(&doubted));
+    assert_eq!(doubted.doubted().names[0][0].1, doubted.names[0][0].1);
+}

@@ -36,6 +36,8 @@ pub struct LocationSettings {
     pub stated: (usize, f64),
     /// Gain in χ² for which a free scalar sets out again from where a law has led.
     pub elsewhere: f64,
+    /// Share of what the refitted fixture leaves that a place, and then its law, may leave for a search to set out from it.
+    pub part: f64,
     /// 1 − γ·bᵀZ⁻¹b, and the compliance of what is in series, must be known to this share of themselves for δ to be stated.
     pub known: f64,
     /// Laws over frequency.
@@ -81,6 +83,7 @@ impl Default for LocationSettings {
             bands: 12,
             stated: (3, 1.2),
             elsewhere: 1.0,
+            part: 0.1,
             known: 1.0 / 3.0,
             law: LawSettings {
                 guesses: (2, 12),
