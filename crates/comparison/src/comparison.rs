@@ -30,6 +30,18 @@ impl ElementRanking {
         self.has_deviations && self.ranking.is_settled()
     }
 
+    /// Whether the whole order may be stated: more likely right than wrong, or with nothing that tells how sure it is.
+    pub fn is_stated(&self) -> bool {
+        !self.has_deviations || self.ranking.is_stated()
+    }
+
+    /// Pairs of joints whose order is as good as sure, the smaller first; none where nothing tells how sure that is.
+    pub fn decided(&self) -> impl Iterator<Item = (usize, &[usize])> {
+        let of_joint =
+            self.ranking.order.iter().zip(&self.ranking.decided).filter(|(_, larger)| !larger.is_empty());
+        of_joint.filter(|_| self.has_deviations).map(|(joint, larger)| (*joint, larger.as_slice()))
+    }
+
     /// Of each joint in the order but the first: whether it is as good as sure that it is larger than the one before it.
     pub fn settled_neighbours(&self) -> impl Iterator<Item = bool> {
         self.ranking.settled_neighbours().map(|settled| self.has_deviations && settled)

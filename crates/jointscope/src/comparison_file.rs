@@ -56,6 +56,8 @@ struct Order<'a> {
     adjacent: &'a [f64],
     rank_probabilities: BTreeMap<&'a str, &'a [f64]>,
     settled: bool,
+    stated: bool,
+    decided: Vec<[&'a str; 2]>,
 }
 
 /// The contents of `comparison.json`: the joints' matrices with standard deviations, what they share, every two of them, the order by each number with its probability,
@@ -87,6 +89,11 @@ pub fn comparison_file(comparison: &Comparison) -> Value {
             .map(|(index, ranks)| (name(index), ranks.as_slice()))
             .collect(),
         settled: entry.is_settled(),
+        stated: entry.is_stated(),
+        decided: entry
+            .decided()
+            .flat_map(|(joint, larger)| larger.iter().map(move |&behind| [name(joint), name(behind)]))
+            .collect(),
     });
     let said = |caution| Said { caution, says: Says::says(caution) };
     json!(File {

@@ -51,6 +51,9 @@ fn typeset(element: &str) -> String {
 }
 
 fn order_words(comparison: &Comparison, entry: &ElementRanking) -> String {
+    if !entry.is_stated() {
+        return says::decided(comparison, entry);
+    }
     let signs = entry.settled_neighbours().map(|settled| if settled { " < " } else { " ≲ " });
     let names = entry.ranking.order.iter().map(|index| comparison.joints[*index].name.as_str());
     std::iter::once("").chain(signs).zip(names).flat_map(|(sign, name)| [sign, name]).collect()
@@ -77,11 +80,12 @@ fn verdict(comparison: &Comparison) -> Verdict {
                 ),
             });
             let order = order_words(comparison, first);
-            let right = match first.has_deviations {
-                true => format!("right with a probability of {}", sure(first.ranking.probability)),
-                false => "nothing tells how sure that is".to_owned(),
+            let right = match (first.has_deviations, first.is_stated()) {
+                (true, true) => format!(" (right with a probability of {})", sure(first.ranking.probability)),
+                (true, false) => String::new(),
+                (false, _) => " (nothing tells how sure that is)".to_owned(),
             };
-            format!("By {}, from the most compliant to the stiffest: {order} ({right}).", symbol(first))
+            format!("By {}, from the most compliant to the stiffest: {order}{right}.", symbol(first))
         }
         _ => "There is nothing to compare.".to_owned(),
     };
@@ -189,15 +193,19 @@ fn order_section(comparison: &Comparison) -> Section {
         true => sure(p),
         false => "–".to_owned(),
     };
-    let each = |entry: &ElementRanking| -> Vec<String> {
-        entry.ranking.adjacent.iter().map(|p| stated(entry, *p)).collect()
+    let each = |entry: &&ElementRanking| match entry.is_stated() {
+        true => entry.ranking.adjacent.iter().map(|p| stated(entry, *p)).collect::<Vec<_>>().join(", "),
+        false => "–".to_owned(),
     };
     let table = Table::of(&comparison.rankings)
         .words("element", |entry| symbol(entry))
         .words("from the smallest magnitude to the largest", |entry| order_words(comparison, entry))
-        .words("whole order right", |entry| stated(entry, entry.ranking.probability))
-        .words("each larger than the one before", |entry| each(entry).join(", "))
-        .footnote("≲ : less than 95 % sure. Probabilities by 20 000 draws of all joints at once, errors in common included.");
+        .words("whole order right", |entry| match entry.is_stated() {
+            true => stated(entry, entry.ranking.probability),
+            false => "below 50 %".to_owned(),
+        })
+        .words("each larger than the one before", each)
+        .footnote("≲ : less than 95 % sure. An order less than 50 % sure is not stated. Probabilities by 20 000 draws of all joints at once, errors in common included.");
     let ranks =
         Table::of(0..comparison.joints.len()).words("joint", |&joint| comparison.joints[joint].name.clone());
     let ranks = comparison.rankings.iter().fold(ranks, |table, entry| {

@@ -3,11 +3,14 @@
 use crate::format::{fixed, quantity, significant};
 use crate::{Says, Summary};
 use jointscope_comparison::{
-    Caution, Compared, Comparison, Equality, Pair, Ratio, Scatter, Specimens, WhyApart,
+    Caution, Compared, Comparison, ElementRanking, Equality, Pair, Ratio, Scatter, Specimens, WhyApart,
 };
 
 /// Pairs beyond which only those with the first joint are listed.
 const MANY: usize = 6;
+
+/// Joints up to which decided pairs are listed one by one.
+const FEW: usize = 8;
 
 /// Paths listed at the most.
 const LISTED: usize = 4;
@@ -165,6 +168,26 @@ pub fn scatter(scatter: &Scatter) -> String {
     )
 }
 
+/// What can be told of an order that is not stated as a whole: `a < c, d; b < d; the order of the others cannot be told`, or how many pairs of many.
+pub fn decided(comparison: &Comparison, entry: &ElementRanking) -> String {
+    let name = |joint: &usize| comparison.joints[*joint].name.as_str();
+    let count: usize = entry.decided().map(|(_, larger)| larger.len()).sum();
+    let all = comparison.pairs.len();
+    match count {
+        0 => "the order cannot be told, no two of them being decided (95 %)".to_owned(),
+        _ if comparison.joints.len() > FEW => {
+            format!("{count} of {all} pairs are decided (95 %), the order of the others cannot be told")
+        }
+        _ => {
+            let larger = |larger: &[usize]| larger.iter().map(name).collect::<Vec<_>>().join(", ");
+            let each =
+                entry.decided().map(|(joint, behind)| format!("{} < {}", name(&joint), larger(behind)));
+            let each = each.collect::<Vec<_>>().join("; ");
+            format!("{each} (each 95 % or more); the order of the others cannot be told")
+        }
+    }
+}
+
 /// What is compared, in words.
 pub fn estimate_words(comparison: &Comparison) -> &'static str {
     match comparison.compared {
@@ -272,6 +295,9 @@ impl Summary for Comparison {
         }
         lines.push("from the smallest magnitude to the largest:".to_owned());
         lines.extend(self.rankings.iter().map(|entry| {
+            if !entry.is_stated() {
+                return format!("{}: {}", entry.number().name(), decided(self, entry));
+            }
             let order: Vec<&str> =
                 entry.ranking.order.iter().map(|i| self.joints[*i].name.as_str()).collect();
             // No order is certain.
