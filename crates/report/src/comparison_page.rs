@@ -7,7 +7,7 @@ use jointscope_comparison::{Comparison, ElementRanking, Kind, Pair, PairedNumber
 use jointscope_wording::{Says, capitalised, comparison as says};
 
 use crate::context::PageContext;
-use crate::format::{fixed, in_column, interval, percent, quantity, significant};
+use crate::format::{fixed, in_column, interval, percent, quantity, quantity_in, significant};
 use crate::report::Report;
 use crate::section::{Section, Verdict};
 use crate::table::Table;
@@ -149,8 +149,8 @@ fn pair_table<'a>(comparison: &Comparison, pair: &'a Pair) -> Table<&'a PairedNu
         |number: &&PairedNumber| number.ratio.map_or("–".to_owned(), |ratio| says::percents(&ratio));
     let difference = |number: &&PairedNumber| {
         let figure = number.difference;
-        let scale = Scale::for_magnitude(figure.ci95[0].abs().max(figure.ci95[1].abs()), number.unit);
-        let text = quantity(figure.value, figure.std, number.unit);
+        let scale = Scale::for_values(figure.ci95.into_iter().chain([figure.value, figure.std]), number.unit);
+        let text = quantity_in(figure.value, figure.std, &scale);
         format!("{text} ({})", interval(figure.ci95, &scale, 3))
     };
     let larger = |number: &&PairedNumber| {

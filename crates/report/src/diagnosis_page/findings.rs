@@ -5,7 +5,7 @@ use jointscope_wording::effect_name;
 
 use super::glance::chance;
 use super::subject::Subject;
-use crate::format::{self, NOT_DETERMINED, quantity, significant};
+use crate::format::{self, NOT_DETERMINED, quantity_in, significant};
 use crate::section::{Block, Section};
 use crate::table::Table;
 use crate::unit::Scale;
@@ -72,7 +72,7 @@ fn parameters(subject: &Subject) -> impl Into<Block> {
     };
     by_finding(subject, |finding| finding.estimates.iter().collect())
         .words("Parameter", |(_, estimate)| estimate.parameter.name.replace('_', " "))
-        .words("Value ± standard deviation", |(_, e)| quantity(e.value, e.std, e.unit))
+        .words("Value ± standard deviation", |(_, e)| quantity_in(e.value, e.std, &scale(e)))
         .words("95 % interval", |(_, estimate)| interval(estimate))
         .numbers("Probability", "", |(finding, _)| {
             finding.map_or(String::new(), |(_, finding)| chance(finding.probability))
@@ -88,12 +88,20 @@ fn interval(estimate: &Estimate) -> String {
         return "not sought".to_owned();
     }
     match estimate.interval.filter(|[low, high]| low.is_finite() && high.is_finite()) {
-        Some([low, high]) => {
-            let scale = Scale::for_values([low, high, estimate.value], estimate.unit);
-            format::ends([low, high], &scale)
-        }
+        Some(ends) => format::ends(ends, &scale(estimate)),
         None => NOT_DETERMINED.to_owned(),
     }
+}
+
+/// An end of an interval beyond so many times the value is no part of what its unit has to suit.
+const FAR: f64 = 1e3;
+
+/// The unit of a parameter and of its interval.
+pub(super) fn scale(estimate: &Estimate) -> Scale {
+    let known = estimate.interval.into_iter().flatten().chain(estimate.std);
+    let value = estimate.value;
+    let near = known.filter(|other| value == 0.0 || other.abs() < FAR * value.abs());
+    Scale::for_values(near.chain([value]), estimate.unit)
 }
 
 fn names(subject: &Subject) -> impl Into<Block> {

@@ -4,13 +4,13 @@ use jointscope_diagnosis::{Departure, Estimate, Finding, Verdict};
 use jointscope_wording::{Remarks, capitalised, effect_name, held_out_part};
 use maud::html;
 
+use super::findings::scale;
 use super::fixture_view;
 use super::judgement::gain;
 use super::subject::Subject;
 use crate::format::{NOT_DETERMINED, ends, percent, significant};
 use crate::section::{Card, Section, with_commands};
 use crate::tone::Tone;
-use crate::unit::Scale;
 
 /// Findings that are shown at the most, and names beside each.
 const SHOWN: usize = 3;
@@ -66,7 +66,7 @@ fn main_parameter(finding: &Finding) -> Option<&Estimate> {
 fn size(index: usize, finding: &Finding) -> Card {
     let label = format!("{}. {}", index + 1, effect_name(&finding.effect));
     match main_parameter(finding) {
-        Some(main) => Card::quantity(label, main.value, main.std, main.unit),
+        Some(main) => Card::quantity_in(label, main.value, main.std, &scale(main)),
         None => Card::text(label, NOT_DETERMINED),
     }
 }
@@ -75,7 +75,7 @@ fn known(finding: &Finding) -> String {
     let interval = main_parameter(finding).and_then(|main| Some((main, main.interval?)));
     match interval.filter(|(_, interval)| interval.iter().all(|end| end.is_finite())) {
         Some((main, interval)) => {
-            format!("95 %: {}", ends(interval, &Scale::for_magnitude(main.value, main.unit)))
+            format!("95 %: {}", ends(interval, &scale(main)))
         }
         None => format!("95 %: {NOT_DETERMINED}"),
     }
