@@ -26,14 +26,14 @@ pub(super) struct SynthesizeArguments {
 #[derive(Debug, Args)]
 struct NoiseArguments {
     /// As a hammer test reads them, with coherence: noise of every blow, in per cent of each response's rms over the lines, and a tenth of that on the force.
-    #[arg(long, value_name = "PERCENT", value_parser = percent)]
+    #[arg(long, value_name = "PERCENT", value_parser = percent, allow_negative_numbers = true)]
     noise: Option<f64>,
     /// Blows averaged for an FRF (with `--noise`).
-    #[arg(long, value_name = "N", requires = "noise", default_value_t = 10,
+    #[arg(long, value_name = "N", requires = "noise", default_value_t = 10, allow_negative_numbers = true,
         value_parser = clap::value_parser!(u32).range(2..=10_000))]
     averages: u32,
     /// Seed of the noise (with `--noise`): the same seed gives the same file.
-    #[arg(long, value_name = "N", requires = "noise", default_value_t = 1)]
+    #[arg(long, value_name = "N", requires = "noise", default_value_t = 1, allow_negative_numbers = true)]
     seed: u64,
 }
 

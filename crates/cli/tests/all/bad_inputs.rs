@@ -162,7 +162,13 @@ fn a_fixture_that_cannot_be_is_refused_by_the_path_of_what_is_wrong() {
         cases.changed(from, to, words);
     }
     cases.fixture("nothing in it", "{}", "`bodies` is missing");
-    cases.fixture("no bodies", "{ \"bodies\": {}, \"points\": {} }", "bodies|there are no bodies");
+    cases.fixture("no bodies", "{ \"bodies\": {}, \"points\": {} }", "bodies|there are no bodies|state one");
+    cases.fixture("a list alone", "[1, 2]", "a list stands|jointscope init");
+    cases.fixture(
+        "a deviation below zero",
+        TWO_BLOCKS.replacen("\"mass\": 1.10,", "\"mass\": {\"value\": 1.10, \"std\": -0.01},", 1),
+        "bodies/A/mass/std|below zero|unknown",
+    );
     cases.fixture("bodies in a list", "{ \"bodies\": [], \"points\": {} }", "bodies|a list stands|object");
     cases.finish();
 }
@@ -567,6 +573,9 @@ const ARGUMENTS: &[(&str, &str)] = &[
     ("synthesize two.json --lines 10:100:0 -o o.uff", "--lines|above 0 Hz"),
     ("synthesize two.json --lines 10:1e9:0.0001 -o o.uff", "--lines|larger step"),
     ("synthesize two.json --lines ten -o o.uff", "--lines"),
+    ("synthesize two.json --noise -1 -o o.uff", "--noise|above zero"),
+    ("synthesize two.json --noise 1 --seed -4 -o o.uff", "--seed"),
+    ("synthesize two.json --noise 1 --averages -2 -o o.uff", "--averages"),
     ("synthesize two.json --frf 9/1 -o o.uff", "`9`|1, 2, 3, 4"),
     ("synthesize two.json --frf 41 -o o.uff", "response over reference"),
     ("synthesize two.json", "--output"),

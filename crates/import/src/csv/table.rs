@@ -82,7 +82,10 @@ impl Table {
             let Some(value) = rows.number(field) else {
                 let problem = match field.is_empty() {
                     true => "the field is blank; fill it in or leave the line out".to_owned(),
-                    false => format!("`{}` is no finite number", field.chars().take(40).collect::<String>()),
+                    false => format!(
+                        "`{}` is no finite number; write one or leave the line out",
+                        field.chars().take(40).collect::<String>()
+                    ),
                 };
                 return Err(self.error(row.line, at, problem));
             };
