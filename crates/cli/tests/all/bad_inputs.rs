@@ -585,6 +585,8 @@ const ARGUMENTS: &[(&str, &str)] = &[
     ("diagnose frf.uff two.json -o out", "frf.uff|is a universal file|the fixture first"),
     ("diagnose text.uff two.json -o out", "text.uff|is a universal file|the fixture first"),
     ("synthesize two.json -o two.json", "two.json"),
+    ("compare two.json frf.uff -o out", "two.json|is a file|jointscope decompose"),
+    ("export two.json --to csv -o out", "two.json|jointscope decompose"),
     ("init", "--output"),
     ("init --blocks a -o i.json", "60x40x6:steel"),
     ("init --blocks 60x40x0:steel -o i.json", "above zero"),

@@ -56,6 +56,12 @@ impl Listed {
         let mut files: Vec<PathBuf> = Vec::new();
         for named in &self.named {
             let file = named.directory.join(FILE);
+            if named.directory.is_file() {
+                return Err(Refusal::at(
+                    &named.directory,
+                    "is a file where a directory is needed; give the one that `jointscope decompose` wrote to",
+                ));
+            }
             if named.directory.is_dir() && !file.exists() {
                 return Err(Refusal::holding_no(&named.directory, FILE, "decompose"));
             }
