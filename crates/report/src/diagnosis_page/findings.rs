@@ -3,12 +3,11 @@
 use jointscope_diagnosis::{Estimate, Finding, Verdict};
 use jointscope_wording::effect_name;
 
-use super::glance::chance;
+use super::glance::{chance, scale};
 use super::subject::Subject;
 use crate::format::{self, NOT_DETERMINED, quantity_in, significant};
 use crate::section::{Block, Section};
 use crate::table::Table;
-use crate::unit::Scale;
 
 /// Look-alikes below this probability are not listed.
 const LISTED: f64 = 1e-3;
@@ -91,17 +90,6 @@ fn interval(estimate: &Estimate) -> String {
         Some(ends) => format::ends(ends, &scale(estimate)),
         None => NOT_DETERMINED.to_owned(),
     }
-}
-
-/// An end of an interval beyond so many times the value is no part of what its unit has to suit.
-const FAR: f64 = 1e3;
-
-/// The unit of a parameter and of its interval.
-pub(super) fn scale(estimate: &Estimate) -> Scale {
-    let known = estimate.interval.into_iter().flatten().chain(estimate.std);
-    let value = estimate.value;
-    let near = known.filter(|other| value == 0.0 || other.abs() < FAR * value.abs());
-    Scale::for_values(near.chain([value]), estimate.unit)
 }
 
 fn names(subject: &Subject) -> impl Into<Block> {

@@ -4,13 +4,13 @@ use jointscope_diagnosis::{Departure, Estimate, Finding, Verdict};
 use jointscope_wording::{Remarks, capitalised, effect_name, held_out_part};
 use maud::html;
 
-use super::findings::scale;
 use super::fixture_view;
 use super::judgement::gain;
 use super::subject::Subject;
 use crate::format::{NOT_DETERMINED, ends, percent, significant};
 use crate::section::{Card, Section, with_commands};
 use crate::tone::Tone;
+use crate::unit::Scale;
 
 /// Findings that are shown at the most, and names beside each.
 const SHOWN: usize = 3;
@@ -61,6 +61,17 @@ fn findings(findings: &[Finding]) -> Vec<Card> {
 fn main_parameter(finding: &Finding) -> Option<&Estimate> {
     let spec = finding.effect.kind.spec();
     finding.estimate(spec.parameters[spec.size.parameter].name)
+}
+
+/// An end of an interval beyond so many times the value is no part of what its unit has to suit.
+const FAR: f64 = 1e3;
+
+/// The unit of a parameter and of its interval.
+pub(super) fn scale(estimate: &Estimate) -> Scale {
+    let known = estimate.interval.into_iter().flatten().chain(estimate.std);
+    let value = estimate.value;
+    let near = known.filter(|other| value == 0.0 || other.abs() < FAR * value.abs());
+    Scale::for_values(near.chain([value]), estimate.unit)
 }
 
 fn size(index: usize, finding: &Finding) -> Card {
