@@ -101,6 +101,13 @@ pub(crate) fn of_names(
     )
 }
 
+/// That a fixture with the joint free is not the structure recorded.
+pub(crate) fn not_met() -> String {
+    "The fixture does not meet the recording even with the joint free, so that an interval about this fit says nothing: `jointscope decompose` finds the joint with its damping, `jointscope diagnose` what the \
+     fixture leaves out; plan with a fixture that states it"
+        .to_owned()
+}
+
 pub(crate) fn of_interval(measure: &Measure, interval: &ExpectedInterval) -> String {
     let reaches = if interval.reaches { ", as narrow as wanted" } else { "" };
     let scale = Scale::for_values(interval.now.into_iter().chain([interval.then]), interval.unit);
