@@ -1,5 +1,5 @@
 use jointscope_comparison::{
-    Apart, Caution, Comparison, ElementRanking, Equality, Matrix, Pair, SharedBody, Specimens,
+    Apart, Caution, Comparison, ElementRanking, Equality, LawOfAll, Matrix, Pair, SharedBody, Specimens,
 };
 use jointscope_wording::Says;
 use serde::Serialize;
@@ -17,6 +17,8 @@ struct File<'a> {
     differing: &'a [String],
     at_once: &'a [Vec<String>],
     one_law: &'a [Vec<String>],
+    #[serde(skip_serializing_if = "Option::is_none")]
+    law: Option<&'a LawOfAll>,
     joints: Vec<Joint<'a>>,
     equality: Option<Equality>,
     pairs: &'a [Pair],
@@ -106,6 +108,7 @@ pub fn comparison_file(comparison: &Comparison) -> Value {
         differing: &comparison.together.differing,
         at_once: &comparison.together.at_once,
         one_law: &comparison.together.one_law,
+        law: comparison.law.as_ref(),
         joints: joints.collect(),
         equality: comparison.equality,
         pairs: &comparison.pairs,

@@ -65,7 +65,7 @@ fn verdict(comparison: &Comparison) -> Verdict {
     let mut details = Vec::new();
     let headline = match (comparison.pairs.as_slice(), comparison.rankings.first()) {
         ([pair], _) if pair.numbers.first().is_some_and(|number| number.ratio.is_some()) => {
-            details.extend(pair.equality.map(|e| sentence(&says::equality(&e, [&pair.first, &pair.second]))));
+            details.extend(pair.equality.map(|_| sentence(&says::tested(comparison, pair))));
             ratio_words(pair)
         }
         (_, Some(first)) => {
@@ -149,6 +149,9 @@ fn pair_table<'a>(comparison: &Comparison, pair: &'a Pair) -> Table<&'a PairedNu
         |number: &&PairedNumber| number.ratio.map_or("–".to_owned(), |ratio| says::percents(&ratio));
     let difference = |number: &&PairedNumber| {
         let figure = number.difference;
+        if figure.std == 0.0 && figure.value == 0.0 {
+            return "not determined of either".to_owned();
+        }
         let scale = Scale::for_values(figure.ci95.into_iter().chain([figure.value, figure.std]), number.unit);
         let text = quantity_in(figure.value, figure.std, &scale);
         format!("{text} ({})", interval(figure.ci95, &scale, 3))
@@ -166,15 +169,11 @@ fn pair_table<'a>(comparison: &Comparison, pair: &'a Pair) -> Table<&'a PairedNu
     let same = match pair.equality {
         Some(equality) => format!(
             "{} (χ² {} of {} degrees of freedom).",
-            says::equality(&equality, [&pair.first, &pair.second]),
+            says::tested(comparison, pair),
             significant(equality.chi2, 4),
             equality.degrees
         ),
-        None if comparison.together.has_covariances => {
-            "No number has a standard deviation: equality cannot be tested.".to_owned()
-        }
-        None => "The files do not say how the errors of these estimates go together: equality is not tested."
-            .to_owned(),
+        None => sentence(&says::tested(comparison, pair)),
     };
     let differs = |number: &&PairedNumber| number.differs().then_some(Tone::Attention);
     let table = Table::of(&pair.numbers)

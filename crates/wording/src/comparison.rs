@@ -55,6 +55,53 @@ pub fn equality(equality: &Equality, names: [&str; 2]) -> String {
     }
 }
 
+/// Whether the joints of a pair are the same, and what is left out of the test; or why it is not tested.
+pub fn tested(comparison: &Comparison, pair: &Pair) -> String {
+    let names = [pair.first.as_str(), pair.second.as_str()];
+    let [first, second] = names;
+    let untold = pair.untold.join(", ");
+    match pair.equality {
+        Some(tested) if untold.is_empty() => equality(&tested, names),
+        Some(tested) => {
+            format!(
+                "{}; {untold}, of which neither's FRFs tell anything, are left out",
+                equality(&tested, names)
+            )
+        }
+        None if comparison.compared != Compared::AllFrfs => {
+            "the files do not say how the errors of these estimates go together: equality is not tested"
+                .to_owned()
+        }
+        None if !untold.is_empty() => {
+            "no number has a standard deviation: equality cannot be tested".to_owned()
+        }
+        None => format!(
+            "it is not tested whether {first} and {second} are the same: their files tell of no law over frequency that is probable for both, and numbers of different laws \
+             are not the same numbers; of files of earlier versions `jointscope decompose` makes them anew"
+        ),
+    }
+}
+
+/// The law over frequency of all joints, or the groups that follow one.
+fn laws(comparison: &Comparison) -> Vec<String> {
+    let Some(law) = &comparison.law else {
+        let groups = comparison.together.one_law.iter();
+        let said = |joints: &Vec<String>| {
+            format!(
+                "taken to follow one law over frequency, the same being the most probable of each: {}",
+                joints.join(", ")
+            )
+        };
+        return groups.map(said).collect();
+    };
+    let name = law.law.replace('_', " ");
+    let moved = match law.moved.is_empty() {
+        true => String::new(),
+        false => format!("; by its own FRFs another is the most probable of {}", law.moved.join(", ")),
+    };
+    vec![format!("compared at one law over frequency, the most probable of all together: {name}{moved}")]
+}
+
 /// What the tests share, and which share nothing.
 pub fn shared(comparison: &Comparison) -> Vec<String> {
     let together = &comparison.together;
@@ -95,12 +142,7 @@ pub fn shared(comparison: &Comparison) -> Vec<String> {
             joints.join(", ")
         ));
     }
-    for joints in &together.one_law {
-        all.push(format!(
-            "taken to follow one law over frequency, the same being the most probable of each: {}",
-            joints.join(", ")
-        ));
-    }
+    all.extend(laws(comparison));
     let differing = &together.differing;
     if !differing.is_empty() {
         let listed = differing.iter().take(LISTED).map(String::as_str).collect::<Vec<_>>().join(", ");
@@ -291,7 +333,7 @@ impl Summary for Comparison {
         lines.push(format!("by {}", estimate_words(self)));
         lines.extend(shared(self));
         for pair in main_pairs(self) {
-            lines.extend(paired(pair));
+            lines.extend(paired(self, pair));
         }
         lines.push("from the smallest magnitude to the largest:".to_owned());
         lines.extend(self.rankings.iter().map(|entry| {
@@ -313,13 +355,13 @@ impl Summary for Comparison {
     }
 }
 
-fn paired(pair: &Pair) -> Vec<String> {
+fn paired(comparison: &Comparison, pair: &Pair) -> Vec<String> {
     let ratios = pair.numbers.iter().filter_map(|number| {
         let ratio = number.ratio?;
         Some(format!("{}: {} is {} of {}", number.element, pair.second, percents(&ratio), pair.first))
     });
-    let equality = pair.equality.map(|tested| equality(&tested, [&pair.first, &pair.second]));
-    ratios.chain(equality).collect()
+    let is_of_fits = comparison.compared == Compared::AllFrfs;
+    ratios.chain(is_of_fits.then(|| tested(comparison, pair))).collect()
 }
 
 fn scatters(specimens: &Specimens) -> Vec<String> {
