@@ -41,10 +41,18 @@ impl ComputedFrfs {
         }
     }
 
-    /// The universal file, to be written.
-    pub(crate) fn outputs(&self, fixture: &FixtureFile, frfs: &FrfSet) -> Result<Outputs, Refusal> {
-        let datasets = to_datasets(frfs, fixture.name(), encoding(self.ascii))
+    /// The universal file, to be written; ID line 2 says `how` the FRFs were made.
+    pub(crate) fn outputs(
+        &self,
+        fixture: &FixtureFile,
+        frfs: &FrfSet,
+        how: Option<&str>,
+    ) -> Result<Outputs, Refusal> {
+        let mut datasets = to_datasets(frfs, fixture.name(), encoding(self.ascii))
             .map_err(|error| fixture.refusal(error))?;
+        if let Some(how) = how {
+            datasets.iter_mut().for_each(|dataset| how.clone_into(&mut dataset.id_lines[1]));
+        }
         let mut outputs = Outputs::new([&self.fixture]);
         outputs.add_datasets(&self.output, &datasets)?;
         Ok(outputs)

@@ -61,6 +61,12 @@ pub(crate) fn seconds(text: &str) -> Result<Duration, String> {
     duration.ok_or_else(|| "a number of seconds above zero is needed, such as 30".to_owned())
 }
 
+/// Reads a percentage above zero.
+pub(crate) fn percent(text: &str) -> Result<f64, String> {
+    let percent = positive(text.trim().trim_end_matches('%')).filter(|percent| *percent <= 100.0);
+    percent.ok_or_else(|| "per cent are needed, above zero and at most 100, such as 0.5".to_owned())
+}
+
 /// A finite number of Hz, zero or above.
 pub(crate) fn frequency(text: &str) -> Option<f64> {
     text.trim().parse().ok().filter(|hz: &f64| hz.is_finite() && *hz >= 0.0)

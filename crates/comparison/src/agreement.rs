@@ -1,7 +1,10 @@
 //! Whether two tests agree on the bodies that they are said to share.
 //!
 //! Each test by itself, with the prior, has the shared quantities q at m = E(q) with the covariance S, in standard deviations of the prior. If q is the same in both, m₁ − m₂ is
-//! normal with mean zero and the covariance A₁ + A₂ − A₁A₂ − A₂A₁, A = 1 − S being what a test has told of q: what neither tells does not count.
+//! normal with mean zero and the covariance A₁ + A₂ − A₁A₂ − A₂A₁, A = 1 − S being what a test has told of q.
+//!
+//! Only combinations of q count of which the tests tell something. Along the others a fit lies in a flat, curved valley: where in it the fit ends is known to a few tenths of the prior's
+//! deviation, since χ² hardly changes there, and not to the hundredth that A leaves it.
 
 use crate::normal::chi2_above;
 use crate::{Decomposed, Together};
@@ -9,8 +12,10 @@ use jointscope_linalg::{Cholesky, generalized_symmetric_eigen};
 
 /// Probability below which two tests do not agree; of several pairs, divided by their number.
 const DISAGREE: f64 = 0.01;
-/// Variance of a combination, in those of the prior, below which the tests tell nothing of it.
-const UNTOLD: f64 = 1e-4;
+/// Share of the prior's variance that the tests take away on average, below which they tell nothing of a combination.
+const TOLD: f64 = 0.01;
+/// Variance of a difference, in those of the prior, below which it is as far from zero as two fits are from linear.
+const LINEAR: f64 = 1e-4;
 
 impl Together {
     /// The test that contradicts most others on the bodies they share, of as many the one of the least probable agreement; nothing where all agree. The more pairs are
@@ -54,17 +59,36 @@ impl Together {
             x[e] + y[e] - 0.5 * (dot(x, y, i, j) + dot(x, y, j, i) + dot(y, x, i, j) + dot(y, x, j, i))
         };
         let covariance: Vec<f64> = (0..n * n).map(entry).collect();
-        let unit: Vec<f64> = (0..n * n).map(|e| f64::from(u8::from(e / n == e % n))).collect();
-        let basis = generalized_symmetric_eigen(n, &unit, &covariance).ok()?;
+        let told = told(n, x, y)?;
+        let m = told.len();
+        let between =
+            |a: &[f64], b: &[f64]| -> f64 { (0..n * n).map(|e| a[e / n] * covariance[e] * b[e % n]).sum() };
+        let projected: Vec<f64> = told.iter().flat_map(|a| told.iter().map(|b| between(a, b))).collect();
+        let basis = generalized_symmetric_eigen(m, &unit(m), &projected).ok()?;
         let apart: Vec<f64> = first.0.iter().zip(&second.0).map(|(a, b)| a - b).collect();
+        let along = |a: &[f64]| a.iter().zip(&apart).map(|(a, d)| a * d).sum::<f64>();
+        let apart: Vec<f64> = told.iter().map(|a| along(a)).collect();
         let (mut chi2, mut degrees) = (0.0, 0);
-        for (mode, variance) in basis.eigenvalues().iter().enumerate().filter(|(_, v)| **v > UNTOLD) {
+        for (mode, variance) in basis.eigenvalues().iter().enumerate().filter(|(_, v)| **v > LINEAR) {
             let along: f64 = basis.shape(mode).iter().zip(&apart).map(|(s, d)| s * d).sum();
             chi2 += along * along / variance;
             degrees += 1;
         }
         (degrees > 0).then(|| chi2_above(chi2, degrees))
     }
+}
+
+fn unit(n: usize) -> Vec<f64> {
+    (0..n * n).map(|e| f64::from(u8::from(e / n == e % n))).collect()
+}
+
+/// The combinations of the quantities, of length one, of which two tests tell something: `x` and `y` are what each tells, 1 − S.
+fn told(n: usize, x: &[f64], y: &[f64]) -> Option<Vec<Vec<f64>>> {
+    let mean: Vec<f64> = x.iter().zip(y).map(|(x, y)| 0.5 * (x + y)).collect();
+    let basis = generalized_symmetric_eigen(n, &unit(n), &mean).ok()?;
+    let all = basis.eigenvalues().iter().enumerate().filter(|(_, share)| **share > TOLD);
+    let told: Vec<Vec<f64>> = all.map(|(mode, _)| basis.shape(mode).to_vec()).collect();
+    (!told.is_empty()).then_some(told)
 }
 
 /// The posterior mean of these quantities by one test, and 1 − S.

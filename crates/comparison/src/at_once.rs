@@ -1,6 +1,6 @@
 //! What `stiffness.json` says of joints that one fit found at once: what their numbers have in common.
 
-use crate::filed::{ELEMENTS, FiledLikelihood};
+use crate::filed_likelihood::{ELEMENTS, FiledLikelihood};
 use crate::stiffness_file::read;
 use jointscope_inference::QuadraticLikelihood;
 use serde_json::Value;

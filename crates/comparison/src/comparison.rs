@@ -1,6 +1,7 @@
+use crate::tests_of_equality::Tests;
 use crate::{
-    Caution, Compared, Decomposed, ELEMENTS, Equality, Estimate, FiledJoint, Kind, Number, Pair, Ranking,
-    Specimens, Together,
+    Caution, Compared, Decomposed, ELEMENTS, Equality, Estimate, FiledJoint, Kind, LawOfAll, Number, Pair,
+    Ranking, Specimens, Together,
 };
 
 /// Those of a symmetric matrix.
@@ -28,6 +29,18 @@ impl ElementRanking {
     /// Whether the whole order is as good as sure.
     pub fn is_settled(&self) -> bool {
         self.has_deviations && self.ranking.is_settled()
+    }
+
+    /// Whether the whole order may be stated: more likely right than wrong, or with nothing that tells how sure it is.
+    pub fn is_stated(&self) -> bool {
+        !self.has_deviations || self.ranking.is_stated()
+    }
+
+    /// Pairs of joints whose order is as good as sure, the smaller first; none where nothing tells how sure that is.
+    pub fn decided(&self) -> impl Iterator<Item = (usize, &[usize])> {
+        let of_joint =
+            self.ranking.order.iter().zip(&self.ranking.decided).filter(|(_, larger)| !larger.is_empty());
+        of_joint.filter(|_| self.has_deviations).map(|(joint, larger)| (*joint, larger.as_slice()))
     }
 
     /// Of each joint in the order but the first: whether it is as good as sure that it is larger than the one before it.
@@ -65,7 +78,7 @@ pub struct ComparisonOptions {
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Comparison {
-    /// The joints, as given.
+    /// The joints, as given, with the fits by the law of all of them.
     pub joints: Vec<Decomposed>,
     /// The relation of all of them.
     pub relation: String,
@@ -73,6 +86,8 @@ pub struct Comparison {
     pub compared: Compared,
     /// The numbers compared: six of symmetric matrices, eight of averages.
     pub numbers: Vec<Number>,
+    /// The law over frequency at which they are compared; nothing where no one law is probable enough for all, or where less than fits to all FRFs are compared. Each is then of its own law.
+    pub law: Option<LawOfAll>,
     /// All joints in one Gaussian.
     pub together: Together,
     /// Every two of them, in the order given.
@@ -156,12 +171,21 @@ impl Comparison {
                 other: other.map_or(String::new(), |other| other.name.clone()),
             });
         }
+        let law = LawOfAll::of(&joints).filter(|_| compared == Compared::AllFrfs);
+        let given = joints;
+        let joints = law.as_ref().map_or_else(|| given.clone(), |law| law.placed(&given));
         let (numbers, together) = numbers(&joints, compared, options.independent);
+        let tests = Tests::of((&given, &joints), law.is_some(), &numbers, (compared, options.independent));
         let estimates: Vec<Estimate> = joints.iter().map(|joint| stated(joint, compared)).collect();
         let cautions = Caution::of(&joints, &estimates, (compared, &numbers), &together);
         let all: Vec<usize> = (0..joints.len()).collect();
         let name = |joint: usize| joints[joint].name.as_str();
-        let pair = |(a, b): (usize, usize)| Pair::of(&together, &numbers, (a, b), [name(a), name(b)]);
+        let pair = |(a, b): (usize, usize)| {
+            let own = tests.of_pair((a, b));
+            let of_all = tests.of_all.as_ref().map(|by| (by, [a, b]));
+            let tested = of_all.or_else(|| own.as_ref().map(|by| (by, [0, 1])));
+            Pair::of(&together, &numbers, (a, b), [name(a), name(b)], tested)
+        };
         let pairs = all.iter().flat_map(|&a| (a + 1..joints.len()).map(move |b| (a, b))).map(pair).collect();
         let rankings = numbers.iter().enumerate().map(|(n, number)| {
             let values: Vec<f64> = all.iter().map(|&joint| together.value(joint, n)).collect();
@@ -179,10 +203,11 @@ impl Comparison {
             Specimens::of(kind, &together, &numbers, &named)
         });
         let (rankings, specimens) = (rankings.collect(), specimens.collect());
-        let equality = Equality::of_all(&together, &all, &numbers);
+        let equality = tests.of_all.as_ref().and_then(|by| Equality::of_all(by, &all, &numbers));
         Ok(Comparison {
             relation,
             compared,
+            law,
             pairs,
             equality,
             rankings,

@@ -1,5 +1,6 @@
 //! What `stiffness.json` says of the joint from all FRFs: `JointFit` of the decomposition as it is read back, with less in files of earlier versions.
 
+use crate::filed_likelihood::FiledLikelihood;
 use crate::stiffness_file::{ComparedLaw, FollowedLaw, Matrix, ModelError, Uncertain};
 use jointscope_inference::{QuadraticLikelihood, SIGNIFICANT};
 use serde::Deserialize;
@@ -90,48 +91,11 @@ pub struct StatedQuantity {
     pub std: Option<f64>,
 }
 
-/// The likelihood of the joint's numbers and of the quantities, Gaussian about a point, without the quantities' priors.
-#[derive(Debug, Clone, PartialEq, Deserialize)]
-pub struct FiledLikelihood {
-    pub(crate) elements: Vec<String>,
-    at: Vec<f64>,
-    gradient: Vec<f64>,
-    information: Vec<Vec<f64>>,
-}
-
-impl FiledLikelihood {
-    /// With its information as a whole matrix; nothing where it is not of `n` parameters.
-    pub(crate) fn whole(&self, n: usize) -> Option<QuadraticLikelihood> {
-        let triangular = self.information.iter().enumerate().all(|(i, row)| row.len() == i + 1);
-        if !triangular || [self.at.len(), self.gradient.len(), self.information.len()] != [n; 3] {
-            return None;
-        }
-        let rows = &self.information;
-        let entry = |e: usize| rows[(e / n).max(e % n)][(e / n).min(e % n)];
-        Some(QuadraticLikelihood {
-            at: self.at.clone(),
-            gradient: self.gradient.clone(),
-            information: (0..n * n).map(entry).collect(),
-        })
-    }
-}
-
-/// Names of the six numbers.
-pub(crate) const ELEMENTS: [&str; 6] = ["k11", "k12", "k22", "c11", "c12", "c22"];
-
 impl FiledJoint {
     /// The likelihood of the joint's numbers, by their places among the six, and after them of the quantities; nothing where the file has none that fits
     /// its quantities.
     pub(crate) fn likelihood(&self) -> Option<(Vec<usize>, QuadraticLikelihood)> {
-        let written = self.likelihood.as_ref()?;
-        let place = |name: &String| ELEMENTS.iter().position(|element| element == name);
-        let slots: Vec<usize> = written.elements.iter().map(place).collect::<Option<_>>()?;
-        let is_repeated = (1..slots.len()).any(|i| slots[..i].contains(&slots[i]));
-        if slots.is_empty() || is_repeated {
-            return None;
-        }
-        let likelihood = written.whole(slots.len() + self.quantities.len())?;
-        Some((slots, likelihood))
+        self.likelihood.as_ref()?.of_six(self.quantities.len())
     }
 
     /// What its fixture states under a path, if the file says it.
@@ -149,14 +113,19 @@ impl FiledJoint {
         six(&self.stiffness, &self.damping)
     }
 
+    /// The law that its numbers are of.
+    pub(crate) fn stated_law(&self) -> &str {
+        let earlier = if self.mass.is_some() { "viscous_with_mass" } else { "viscous" };
+        self.follows.as_ref().map_or(earlier, |follows| &follows.law)
+    }
+
     /// By how much a law is off the joint stated in the middle of the band; nothing where the file does not have it.
     pub(crate) fn departure(&self, law: &str) -> Option<[f64; 6]> {
         let of = |name: &str| {
             let law = self.laws.iter().find(|other| other.law == name)?.in_the_middle?;
             Some(six(&law.stiffness, &law.damping))
         };
-        let earlier = if self.mass.is_some() { "viscous_with_mass" } else { "viscous" };
-        let stated = of(self.follows.as_ref().map_or(earlier, |follows| &follows.law))?;
+        let stated = of(self.stated_law())?;
         let own = of(law)?;
         Some(std::array::from_fn(|e| own[e] - stated[e]))
     }

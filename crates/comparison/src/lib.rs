@@ -8,6 +8,7 @@
 //! * [`Comparison`]: several of them, by one relation and one estimate;
 //! * [`Together`]: their numbers in one Gaussian, the quantities of shared bodies in it once;
 //! * [`Pair`]: difference and ratio of two with intervals, who is the larger, whether they are the same ([`Equality`]);
+//! * [`LawOfAll`]: the law over frequency at which they are compared, the most probable of all of them together;
 //! * [`Ranking`]: the order by each number with its probability;
 //! * [`Specimens`]: the scatter between specimens of one kind, apart from that of measurement;
 //! * [`Caution`]: why a comparison may not be taken as it stands.
@@ -23,6 +24,7 @@
 //! ```
 
 mod agreement;
+mod at_law;
 mod at_once;
 mod bodies;
 mod caution;
@@ -31,21 +33,26 @@ mod compared;
 mod comparison;
 mod decomposed;
 mod filed;
+mod filed_likelihood;
 mod normal;
 mod number;
+mod one_slope;
 mod pair;
 mod ranking;
 mod specimens;
 mod stiffness_file;
+mod tests_of_equality;
 mod together;
 
+pub use at_law::LawOfAll;
 pub use at_once::{AtOnce, Place};
 pub use bodies::{Apart, SharedBody, WhyApart};
 pub use caution::Caution;
 pub use compared::Compared;
 pub use comparison::{Comparison, ComparisonError, ComparisonOptions, ElementRanking};
 pub use decomposed::{Average, Decomposed, DecomposedError, End, Ends, Estimate, Judged, Line};
-pub use filed::{FiledJoint, FiledLikelihood, FiledTests, StatedQuantity};
+pub use filed::{FiledJoint, FiledTests, StatedQuantity};
+pub use filed_likelihood::FiledLikelihood;
 pub use number::{ELEMENTS, Kind, Number};
 pub use pair::{Equality, Figure, Pair, PairedNumber, Ratio};
 pub use ranking::Ranking;

@@ -120,6 +120,9 @@ pub struct Pair {
     /// Whether all numbers of both are the same; nothing where none has a deviation, or where averages and fits to the FRFs across are compared, whose files do not say
     /// how the errors of their numbers go together.
     pub equality: Option<Equality>,
+    /// Numbers that this test leaves out, since neither joint's FRFs tell anything of them.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub untold: Vec<String>,
 }
 
 /// A function of a joint's numbers with its derivatives.
@@ -147,12 +150,13 @@ const DERIVED: [Derived; 2] = [
 ];
 
 impl Pair {
-    /// Of two joints of all.
+    /// Of two joints of all; `tested` is by what they are tested for being the same.
     pub(crate) fn of(
         together: &Together,
         numbers: &[Number],
         (first, second): (usize, usize),
         names: [&str; 2],
+        tested: Option<(&Together, [usize; 2])>,
     ) -> Self {
         let mut all: Vec<PairedNumber> = (0..numbers.len())
             .map(|n| {
@@ -169,7 +173,8 @@ impl Pair {
             first: names[0].to_owned(),
             second: names[1].to_owned(),
             numbers: all,
-            equality: Equality::of_all(together, &[first, second], numbers),
+            equality: tested.and_then(|(by, joints)| Equality::of_all(by, &joints, numbers)),
+            untold: tested.map_or_else(Vec::new, |(by, joints)| untold(by, joints, numbers)),
         }
     }
 
@@ -177,6 +182,12 @@ impl Pair {
     pub fn number(&self, element: &str) -> Option<&PairedNumber> {
         self.numbers.iter().find(|number| number.element == element)
     }
+}
+
+/// The numbers of which two joints' FRFs tell nothing.
+fn untold(together: &Together, joints: [usize; 2], numbers: &[Number]) -> Vec<String> {
+    let is_untold = |n: usize| joints.iter().all(|&joint| together.std(joint, n) == 0.0);
+    (0..numbers.len()).filter(|&n| is_untold(n)).map(|n| numbers[n].name()).collect()
 }
 
 fn derived(together: &Together, numbers: &[Number], (first, second): (usize, usize)) -> Vec<PairedNumber> {

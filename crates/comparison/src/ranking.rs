@@ -14,6 +14,8 @@ pub struct Ranking {
     pub adjacent: Vec<f64>,
     /// For each quantity (as given), the probability of each rank.
     pub ranks: Vec<Vec<f64>>,
+    /// For each quantity in the order, the quantities behind it that are larger than it as good as surely.
+    pub decided: Vec<Vec<usize>>,
 }
 
 /// Draws behind the probabilities: their own standard error is below 0.0036.
@@ -22,10 +24,18 @@ const DRAWS: usize = 20_000;
 /// Probability from which an order counts as settled.
 const SURE: f64 = 0.95;
 
+/// Probability from which an order is stated: below, it is more likely wrong than right.
+const STATED: f64 = 0.5;
+
 impl Ranking {
     /// Whether the whole order is settled.
     pub fn is_settled(&self) -> bool {
         self.probability >= SURE
+    }
+
+    /// Whether the whole order is at least as likely right as wrong.
+    pub fn is_stated(&self) -> bool {
+        self.probability >= STATED
     }
 
     /// Of each but the first: whether it is settled that it is larger than the one before it.
@@ -50,7 +60,8 @@ impl Ranking {
         let mut random = ChaCha8Rng::seed_from_u64(1);
         // What is drawn alike is in either order as often.
         let mut right = 0.0;
-        let mut adjacent = vec![0.0; count.saturating_sub(1)];
+        // How often what stands at one place of the order is smaller than what stands at a later one.
+        let mut smaller = vec![vec![0.0; count]; count];
         let mut ranks = vec![vec![0.0; count]; count];
         let (mut drawn, mut normals) = (vec![0.0; count], vec![0.0; count]);
         let mut sorted: Vec<usize> = order.clone();
@@ -62,17 +73,13 @@ impl Ranking {
                 let error: f64 = row.iter().zip(&normals).map(|(a, b)| a * b).sum();
                 *draw = (value + error).abs();
             }
-            let mut all = 1.0;
-            for (pair, count) in order.windows(2).zip(&mut adjacent) {
-                let larger = match drawn[pair[1]].total_cmp(&drawn[pair[0]]) {
-                    Ordering::Greater => 1.0,
-                    Ordering::Equal => 0.5,
-                    Ordering::Less => 0.0,
-                };
-                *count += larger;
-                all *= larger;
+            right +=
+                order.windows(2).map(|pair| share_larger(drawn[pair[0]], drawn[pair[1]])).product::<f64>();
+            for (place, counts) in smaller.iter_mut().enumerate() {
+                for later in place + 1..count {
+                    counts[later] += share_larger(drawn[order[place]], drawn[order[later]]);
+                }
             }
-            right += all;
             sorted.sort_by(|a, b| drawn[*a].total_cmp(&drawn[*b]).then(a.cmp(b)));
             let mut rank = 0;
             for alike in sorted.chunk_by(|a, b| drawn[*a] == drawn[*b]) {
@@ -84,12 +91,26 @@ impl Ranking {
             }
         }
         let share = |count: f64| count / DRAWS as f64;
+        let sure = |place: usize| -> Vec<usize> {
+            let later = (place + 1..count).filter(|&later| share(smaller[place][later]) >= SURE);
+            later.map(|later| order[later]).collect()
+        };
         Ranking {
+            decided: (0..count).map(sure).collect(),
+            adjacent: (1..count).map(|place| share(smaller[place - 1][place])).collect(),
             order,
             probability: share(right),
-            adjacent: adjacent.into_iter().map(share).collect(),
             ranks: ranks.into_iter().map(|row| row.into_iter().map(share).collect()).collect(),
         }
+    }
+}
+
+/// 1 where `second` is larger than `first`, a half where they are equal.
+fn share_larger(first: f64, second: f64) -> f64 {
+    match second.total_cmp(&first) {
+        Ordering::Greater => 1.0,
+        Ordering::Equal => 0.5,
+        Ordering::Less => 0.0,
     }
 }
 
@@ -136,6 +157,18 @@ mod tests {
         let ranking = Ranking::of(&[(2.0, 0.0), (2.0, 0.0), (1.0, 0.0)]);
         assert_eq!((ranking.probability, ranking.adjacent.as_slice()), (0.5, [1.0, 0.5].as_slice()));
         assert_eq!(ranking.ranks, [[0.0, 0.5, 0.5], [0.0, 0.5, 0.5], [1.0, 0.0, 0.0]]);
+    }
+
+    #[test]
+    fn of_an_order_that_cannot_be_told_the_pairs_that_are_far_apart_are_decided() {
+        // Three that are alike to their deviations and one far above.
+        let ranking = Ranking::of(&[(10.0, 1.0), (20.0, 1.0), (10.2, 1.0), (10.1, 1.0)]);
+        assert_eq!(ranking.order, [0, 3, 2, 1]);
+        assert!(!ranking.is_stated(), "{}", ranking.probability);
+        assert_eq!(ranking.decided, [vec![1], vec![1], vec![1], vec![]]);
+        let apart = Ranking::of(&[(1.0, 0.1), (3.0, 0.1), (2.0, 0.1)]);
+        assert!(apart.is_stated());
+        assert_eq!(apart.decided, [vec![2, 1], vec![1], vec![]]);
     }
 
     #[test]

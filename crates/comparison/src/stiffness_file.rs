@@ -1,5 +1,6 @@
 //! Entries of `stiffness.json` as they are written and read.
 
+use crate::filed_likelihood::FiledLikelihood;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Deserializer, Serialize};
 use serde_json::Value;
@@ -123,6 +124,18 @@ pub struct FollowedLaw {
 }
 
 impl FollowedLaw {
+    /// A law of which nothing is stated but its name.
+    pub(crate) fn plain(law: &str, probability: f64, frequency: f64) -> Self {
+        FollowedLaw {
+            law: law.to_owned(),
+            probability: Some(probability),
+            frequency,
+            exponent: None,
+            time: None,
+            loss_factor: None,
+        }
+    }
+
     /// Whether K and C are the same at every frequency.
     pub fn is_viscous(&self) -> bool {
         self.law.starts_with("viscous")
@@ -154,6 +167,16 @@ pub struct ComparedLaw {
     /// K and C in the middle of the band; files of earlier versions do not say.
     #[serde(default, deserialize_with = "where_whole")]
     pub in_the_middle: Option<MatrixPair>,
+    /// What the FRFs tell of K and C there under this law, of probable laws that the joint's numbers are not of; files of earlier versions do not say.
+    #[serde(default, deserialize_with = "where_whole", skip_serializing_if = "Option::is_none")]
+    pub likelihood: Option<FiledLikelihood>,
+}
+
+impl ComparedLaw {
+    /// The joint's own mass, of a law that has one; how well it is known is not stated.
+    pub(crate) fn mass(&self) -> Option<Uncertain> {
+        read(&self.parameters["mass"]).map(|value| Uncertain { value, std: 0.0 })
+    }
 }
 
 /// An entry of a file, if it is what it should be.

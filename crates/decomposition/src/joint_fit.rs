@@ -116,6 +116,8 @@ pub fn fit_joint(
     let asymmetry = admissible::asymmetry(&problem, &first, free);
     let inflated = Inflated::of(&problem, &first);
     let problem = problem.weighted(&inflated.weights);
+    let stated = (problem.laws[0].kind, problem.mass.is_some());
+    let laws: Vec<LawFit> = laws.into_iter().map(|fit| fit.beside(stated, inflated.by)).collect();
     let free = inflated.refitted(&problem, first).ok_or(NO_START)?;
     let outcome = Outcome { problem: &problem, unmoved: &unmoved, inflated: &inflated, laws: vec![laws] };
     let found = outcome.of(&free, &|_, _| asymmetry).map_err(|error| match error {

@@ -1,5 +1,5 @@
 use jointscope_comparison::{
-    Apart, Caution, Comparison, ElementRanking, Equality, Matrix, Pair, SharedBody, Specimens,
+    Apart, Caution, Comparison, ElementRanking, Equality, LawOfAll, Matrix, Pair, SharedBody, Specimens,
 };
 use jointscope_wording::Says;
 use serde::Serialize;
@@ -17,6 +17,8 @@ struct File<'a> {
     differing: &'a [String],
     at_once: &'a [Vec<String>],
     one_law: &'a [Vec<String>],
+    #[serde(skip_serializing_if = "Option::is_none")]
+    law: Option<&'a LawOfAll>,
     joints: Vec<Joint<'a>>,
     equality: Option<Equality>,
     pairs: &'a [Pair],
@@ -56,6 +58,8 @@ struct Order<'a> {
     adjacent: &'a [f64],
     rank_probabilities: BTreeMap<&'a str, &'a [f64]>,
     settled: bool,
+    stated: bool,
+    decided: Vec<[&'a str; 2]>,
 }
 
 /// The contents of `comparison.json`: the joints' matrices with standard deviations, what they share, every two of them, the order by each number with its probability,
@@ -87,6 +91,11 @@ pub fn comparison_file(comparison: &Comparison) -> Value {
             .map(|(index, ranks)| (name(index), ranks.as_slice()))
             .collect(),
         settled: entry.is_settled(),
+        stated: entry.is_stated(),
+        decided: entry
+            .decided()
+            .flat_map(|(joint, larger)| larger.iter().map(move |&behind| [name(joint), name(behind)]))
+            .collect(),
     });
     let said = |caution| Said { caution, says: Says::says(caution) };
     json!(File {
@@ -99,6 +108,7 @@ pub fn comparison_file(comparison: &Comparison) -> Value {
         differing: &comparison.together.differing,
         at_once: &comparison.together.at_once,
         one_law: &comparison.together.one_law,
+        law: comparison.law.as_ref(),
         joints: joints.collect(),
         equality: comparison.equality,
         pairs: &comparison.pairs,

@@ -63,7 +63,7 @@
 //!
 //! The parts are crates of their own, re-exported as modules for what this page leaves out: [`uff`], [`import`], [`recordings`],
 //! [`fixture`], [`schema`], [`draft`], [`spectra`], [`frf`], [`hits`], [`estimation`], [`beam`], [`damping`], [`lumped`], [`modes`], [`averaging`],
-//! [`decomposition`], [`diagnosis`], [`nonlinear`], [`findings`], [`pipeline`], [`plan`], [`check`], [`cases`], [`fem`], [`comparison`], [`export`], [`tables`], [`proof`], [`report`].
+//! [`decomposition`], [`diagnosis`], [`nonlinear`], [`findings`], [`pipeline`], [`plan`], [`check`], [`cases`], [`fem`], [`comparison`], [`export`], [`tables`], [`rig`], [`proof`], [`report`].
 
 pub use jointscope_averaging as averaging;
 pub use jointscope_beam as beam;
@@ -91,6 +91,7 @@ pub use jointscope_plan as plan;
 pub use jointscope_proof as proof;
 pub use jointscope_recordings as recordings;
 pub use jointscope_report as report;
+pub use jointscope_rig as rig;
 pub use jointscope_schema as schema;
 pub use jointscope_screening as screening;
 pub use jointscope_spectra as spectra;

@@ -1,7 +1,7 @@
 use crate::file::value;
 use jointscope_comparison::{
-    ComparedLaw, EstimateEntry, FollowedLaw, LineEntry, LossFactor, MatrixPair, ModelError, Nominal,
-    Uncertain,
+    ComparedLaw, EstimateEntry, FiledLikelihood, FollowedLaw, LineEntry, LossFactor, MatrixPair, ModelError,
+    Nominal, Uncertain,
 };
 use jointscope_decomposition::{
     Analysis, Compliance, DecompositionError, Element, FoundJoint, InterfaceStiffness, Interfaces, JointEnds,
@@ -309,6 +309,16 @@ fn law(law: &LawFit) -> ComparedLaw {
         probability: law.probability,
         parameters: value(parameters),
         in_the_middle: Some(pair(law.in_the_middle())),
+        likelihood: law.likelihood.as_ref().map(likelihood),
+    }
+}
+
+fn likelihood(told: &JointLikelihood) -> FiledLikelihood {
+    FiledLikelihood {
+        elements: told.elements.clone(),
+        at: told.at.clone(),
+        gradient: told.gradient.clone(),
+        information: told.information.clone(),
     }
 }
 

@@ -1,6 +1,6 @@
 mod change;
 
-pub(crate) use change::AssemblyChange;
+pub(crate) use change::{AssemblyChange, has_meshed_bodies};
 
 use crate::condensed::Stretch;
 use crate::effects::{Action, Change, actions};

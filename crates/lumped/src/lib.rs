@@ -50,6 +50,7 @@ mod mesh;
 mod modal_system;
 mod model;
 mod modes_cache;
+mod motions;
 mod nominal_stiffness;
 mod point_law;
 mod receptances;

@@ -6,7 +6,7 @@ use crate::far_modes::FarModes;
 use crate::lanes::{Lanes, Lines, WIDTH};
 use crate::modal_system::{FEW_MODES, ModalSystem};
 use crate::model::Model;
-use crate::term_station::TermStation;
+use crate::motions::Motions;
 use crate::terms::Terms;
 use jointscope_linalg::{Field, LuWorkspace};
 use num_complex::Complex64;
@@ -196,62 +196,46 @@ impl<F: FnMut(usize, Lanes, &mut [Lanes])> pulp::WithSimd for Read<'_, F> {
 
 impl<'a> Prepared<'a> {
     fn new(model: &'a Model, outputs: &[Station], inputs: &[Station], pairs: Vec<(usize, usize)>) -> Self {
-        let with_bending = |s: &Station| model.participation(&TermStation::single(*s));
-        let out: Vec<Vec<f64>> = outputs.iter().map(with_bending).collect();
-        let input: Vec<Vec<f64>> = inputs.iter().map(with_bending).collect();
-        let change: Vec<Vec<f64>> = model.terms().stations.iter().map(|s| model.participation(s)).collect();
+        let motions = Motions::of(model, outputs, inputs);
         let single = model.denominators();
         let mut prepared = Prepared {
             terms: model.terms(),
             elements: model.terms().elements(),
             denominators: Vec::new(),
             pairs,
-            outputs: out.len(),
-            inputs: input.len(),
+            outputs: outputs.len(),
+            inputs: inputs.len(),
             products: Vec::new(),
             entries: 0,
             far: None,
             near: 0,
             system: None,
         };
-        if is_solved_by_modes(single.len(), change.len()) {
-            prepared.system = Some(ModalSystem::new(single, &out, &input, &change));
+        if is_solved_by_modes(single.len(), motions.change.len()) {
+            let Motions { outputs, inputs, change } = &motions;
+            prepared.system = Some(ModalSystem::new(single, outputs, inputs, change));
         } else {
-            prepared.sum_over_modes(model, &single, [&out, &change, &input]);
+            prepared.sum_over_modes(model, &single, &motions);
         }
         prepared
     }
 
     /// Prepares modal sums between stations, the change's among them; far modes as a power series.
-    fn sum_over_modes(
-        &mut self,
-        model: &Model,
-        single: &[Denominator],
-        [out, change, input]: [&[Vec<f64>]; 3],
-    ) {
+    fn sum_over_modes(&mut self, model: &Model, single: &[Denominator], motions: &Motions) {
         let far = FarModes::of(single, BEYOND * TAU * model.highest_hz);
         let is_far = |mode: usize| far.as_ref().is_some_and(|far| far.contain(mode));
         let (denominators, group, near) = merge(single, is_far);
-        let count = self.pairs.len() + change.len() * (out.len() + change.len() + input.len());
-        let distinct = denominators.len();
+        let (all, entries) = (motions.all(), motions.entries(&self.pairs));
+        let (count, distinct) = (entries.len(), denominators.len());
         let mut products = vec![0.0; count * distinct];
         let mut by_mode = vec![0.0; if far.is_some() { count * single.len() } else { 0 }];
-        let mut next = 0;
-        let mut entry = |a: &[f64], b: &[f64]| {
-            for (mode, (x, y)) in a.iter().zip(b).enumerate() {
-                products[next * distinct + group[mode]] += x * y;
-                if let Some(product) = by_mode.get_mut(mode * count + next) {
+        for (entry, [p, q]) in entries.into_iter().enumerate() {
+            for (mode, (x, y)) in all[p].iter().zip(all[q]).enumerate() {
+                products[entry * distinct + group[mode]] += x * y;
+                if let Some(product) = by_mode.get_mut(mode * count + entry) {
                     *product = x * y;
                 }
             }
-            next += 1;
-        };
-        // The order of the entries: wanted pairs, then G_oV, G_VV, G_Vi where there is a change.
-        self.pairs.iter().for_each(|&(o, i)| entry(&out[o], &input[i]));
-        if !change.is_empty() {
-            out.iter().for_each(|o| change.iter().for_each(|v| entry(o, v)));
-            change.iter().for_each(|v| change.iter().for_each(|w| entry(v, w)));
-            change.iter().for_each(|v| input.iter().for_each(|i| entry(v, i)));
         }
         self.far = far.map(|far| {
             let rows = far.rows(&by_mode, count);

@@ -11,19 +11,19 @@
 //!
 //! Damping follows λ by its law, dv = τ dλ, in almost every change, and then dλ (1 + s τ)/D² is one function too.
 
-mod motions;
 mod rows;
 mod through;
 
+use crate::assembly::has_meshed_bodies;
 use crate::lanes::{Lanes, Lines, WIDTH};
+use crate::motions::Motions;
 use crate::receptances::is_solved_by_modes;
 use crate::synthesis::channels;
 use crate::term_station::TermStation;
 use crate::{Instrument, MeasuringChain, ModelledTest};
-use jointscope_fixture::{Body, BodyKind, Fixture};
+use jointscope_fixture::Fixture;
 use jointscope_linalg::Field;
 use jointscope_spectra::{FrfPair, SpectralLines};
-use motions::Motions;
 use num_complex::Complex64;
 use rows::{Coefficients, Rows, sums};
 use std::f64::consts::TAU;
@@ -112,7 +112,7 @@ impl<'a> Tangent<'a> {
             all.chunks(WIDTH).map(Lanes::of).collect::<Vec<_>>()
         };
         let factors = (0..pairs.len()).flat_map(factor).collect();
-        let motions = Motions::of(&test.model, &test.stations);
+        let motions = Motions::of(&test.model, &test.stations.outputs, &test.stations.inputs);
         let rows = Rows::new(&test.model, &blocks);
         let through = Through::new(&test, &motions, &rows, &blocks)?;
         let lines = s.len();
@@ -226,8 +226,7 @@ fn test(
     lines: &SpectralLines,
     instrument: Instrument,
 ) -> Option<ModelledTest> {
-    let is_meshed = |body: &Body| matches!(body.kind, BodyKind::Beam(_));
-    if fixture.bodies().iter().any(is_meshed) {
+    if has_meshed_bodies(fixture) {
         return None;
     }
     ModelledTest::new(fixture, pairs, lines.hz()[lines.len() - 1], instrument).ok()

@@ -57,6 +57,16 @@ pub enum Error {
         /// Its last line, Hz.
         last: f64,
     },
+    /// Lines from which no mode and no misfit can be told.
+    #[error(
+        "has too few lines: {lines} in use, and a diagnosis needs {needed}; record or export more spectral lines, or choose `--band` and `--exclude` anew"
+    )]
+    TooFewLines {
+        /// Lines in use.
+        lines: usize,
+        /// Lines that are needed.
+        needed: usize,
+    },
     /// Excluded bands leave no line of a level.
     #[error("`--exclude` leaves no spectral line of level {0}; choose it anew")]
     NoLineOfLevel(Held),

@@ -6,6 +6,9 @@ use jointscope_estimation::{EstimateOptions, ResponseWindow};
 use jointscope_nonlinear::NonlinearOptions;
 use jointscope_spectra::FrfSet;
 
+/// Spectral lines that a diagnosis needs: as many as the blocks by which the error of a model is judged.
+const FEWEST_LINES: usize = 8;
+
 /// What to use of a measurement.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Options {
@@ -34,7 +37,7 @@ impl Options {
         NonlinearOptions { band: self.diagnosis.band, exact: self.diagnosis.exact }
     }
 
-    /// Refuses a choice of lines that leaves none.
+    /// Refuses a choice of lines that leaves none, or so few that they tell neither a mode nor a misfit from noise.
     pub(crate) fn check(&self, frfs: &FrfSet) -> Result<(), Error> {
         let within = |hz: f64, &(from, to): &(f64, f64)| hz >= from && hz <= to;
         let in_use = |hz: f64| {
@@ -43,11 +46,34 @@ impl Options {
                 && !self.diagnosis.exclude.iter().any(|band| within(hz, band))
         };
         let hz = frfs.lines().hz();
-        match (hz.first(), hz.last()) {
-            (Some(&first), Some(&last)) if !hz.iter().any(|hz| in_use(*hz)) => {
-                Err(Error::NoLineInUse { first, last })
-            }
+        match (hz.first(), hz.last(), hz.iter().filter(|hz| in_use(**hz)).count()) {
+            (Some(&first), Some(&last), 0) => Err(Error::NoLineInUse { first, last }),
+            (.., lines) if lines < FEWEST_LINES => Err(Error::TooFewLines { lines, needed: FEWEST_LINES }),
             _ => Ok(()),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use jointscope_spectra::{FrfForm, FrfPair, SpectralLines};
+    use num_complex::Complex64;
+
+    fn on_lines(count: usize) -> FrfSet {
+        let lines = SpectralLines::even(10.0, 10.0, count).unwrap_or_else(|error| panic!("{error}"));
+        let pairs = vec![FrfPair::transverse("1", "1")];
+        FrfSet::new(lines, FrfForm::Accelerance, pairs, vec![Complex64::ONE; count])
+            .unwrap_or_else(|error| panic!("{error}"))
+    }
+
+    #[test]
+    fn a_recording_of_one_spectral_line_is_refused_for_too_few_lines() {
+        let check = |count: usize| Options::default().check(&on_lines(count));
+        assert_eq!(check(1), Err(Error::TooFewLines { lines: 1, needed: FEWEST_LINES }));
+        assert_eq!(check(FEWEST_LINES), Ok(()));
+        let mut options = Options::default();
+        options.diagnosis.band = Some((0.0, 30.0));
+        assert_eq!(options.check(&on_lines(20)), Err(Error::TooFewLines { lines: 3, needed: FEWEST_LINES }));
     }
 }

@@ -74,6 +74,8 @@ pub fn diagnose(
         Homogeneity::Changes(answer) => return Ok(*answer),
         Homogeneity::Linear(measured, p_value) => (*measured, p_value),
     };
+    // Before anything is said of the fixture's numbers: on a few lines they look like any others.
+    options.check(&measured.frfs)?;
     let mut measured =
         if options.as_stated { measured.screened(fixture)? } else { measured.plausible(fixture)? };
     let fixture = measured.as_recorded(fixture)?;

@@ -26,6 +26,10 @@ use std::str::FromStr;
 const ASSUMED: (f64, f64) = (3e-3, 3e-3);
 /// Share of the present interval that a measurement must leave out to be worth being told.
 const WORTH: f64 = 0.01;
+/// Half an interval beyond which the element is not determined, in stated values: what is left is what was taken to be known of it beforehand, or a fit that ran away.
+const UNDETERMINED: f64 = 10.0;
+/// Variance inflation from which a fit does not meet its recording.
+const NOT_MET: f64 = 100.0;
 /// Measurements that are put together at the most.
 const TOGETHER: usize = 5;
 
@@ -207,6 +211,9 @@ impl Joints<'_> {
         let together = (!reached_now && !alone).then(|| self.together(&all, &known)).flatten();
         let question = format!("What makes the interval narrower: {}?", self.wanted.says());
         let (says, mut remarks) = self.comes_to(reached_now, now, &suggestions, together);
+        if now.is_none() && self.scene.inflation > NOT_MET {
+            remarks.push(says::not_met());
+        }
         remarks.extend(says::remarks(&suggestions, self.scene.inflation, false));
         if let Start::Lines(_) = self.start {
             remarks.push(format!(
@@ -285,13 +292,19 @@ impl Joints<'_> {
         together: Option<(Vec<String>, f64)>,
     ) -> (String, Vec<String>) {
         let unit = self.wanted.key().unit();
-        let at_present =
-            now.map_or_else(String::new, |now| format!(" It is ± {} {unit} at present.", says::three(now)));
+        let at_present = match (now, self.start) {
+            (Some(now), _) => format!(" It is ± {} {unit} at present.", says::three(now)),
+            (None, Start::Recorded(_)) => " What was recorded does not determine it.".to_owned(),
+            (None, Start::Lines(_)) => String::new(),
+        };
         if reached_now {
             return (format!("The interval is as narrow as wanted already.{at_present}"), Vec::new());
         }
         let alone = suggestions.iter().any(|s| s.interval.as_ref().is_some_and(|interval| interval.reaches));
         let says = match (suggestions.first(), alone) {
+            (None, _) if now.is_none() => {
+                format!("Nothing that was considered determines the element.{at_present}")
+            }
             (None, _) => format!("Nothing that was considered makes the interval narrower.{at_present}"),
             (Some(best), true) => format!("{}.{at_present}", says::to_do(&best.action)),
             (Some(best), false) => {
@@ -322,7 +335,7 @@ impl Joints<'_> {
         self.index(self.hypothesis).map_or(f64::NAN, |index| self.hypothesis.ended_at(index))
     }
 
-    /// Half of the 95 % interval with this information.
+    /// Half of the 95 % interval with this information; nothing where the element is not determined.
     fn interval(&self, hypothesis: &Hypothesis, information: &[f64]) -> Option<f64> {
         let index = self.index(hypothesis)?;
         let order = hypothesis.parameters().len();
@@ -332,7 +345,9 @@ impl Joints<'_> {
         factor.solve_lower_in_place(&mut unit);
         let std = unit.iter().map(|u| u * u).sum::<f64>().sqrt();
         let slope = hypothesis.parameters()[index].transform.slope(hypothesis.ended_at(index));
-        Some(Z95 * std * slope.abs()).filter(|interval| interval.is_finite())
+        let stated = hypothesis.tolerances().get(index)?.quantity.value.abs();
+        // What is not a number is no interval either.
+        Some(Z95 * std * slope.abs()).filter(|interval| *interval <= UNDETERMINED * stated)
     }
 
     fn suggestion(&self, measure: &Measure, now: Option<f64>, then: f64, effort: f64) -> Suggestion {

@@ -5,6 +5,7 @@ use crate::names::NameNow;
 use crate::rivals::SURE;
 use crate::suggestion::{BEYOND_DOUBT, ExpectedInterval, Suggestion};
 use jointscope_spectra::FrfPair;
+use jointscope_wording::unit::Scale;
 use jointscope_wording::{effect_name, listed};
 
 pub(crate) fn percent(share: f64) -> String {
@@ -68,12 +69,9 @@ pub(crate) fn to_do(measure: &Measure) -> String {
         }
         Measure::Quantity { path, std, unit } => {
             let verb = if *unit == "kg" { "Weigh" } else { "Measure" };
-            let (factor, unit) = match *unit {
-                "kg" => (1e3, "g"),
-                "m" => (1e3, "mm"),
-                other => (1.0, other),
-            };
-            format!("{verb} {path} to ± {} {unit} (one standard deviation)", three(factor * std))
+            let scale = Scale::of_stated([*std], unit);
+            let to = format!("{} {}", three(scale.of(*std)), scale.unit());
+            format!("{verb} {path} to ± {} (one standard deviation)", to.trim_end())
         }
     }
 }
@@ -103,15 +101,24 @@ pub(crate) fn of_names(
     )
 }
 
+/// That a fixture with the joint free is not the structure recorded.
+pub(crate) fn not_met() -> String {
+    "The fixture does not meet the recording even with the joint free, so that an interval about this fit says nothing: `jointscope decompose` finds the joint with its damping, `jointscope diagnose` what the \
+     fixture leaves out; plan with a fixture that states it"
+        .to_owned()
+}
+
 pub(crate) fn of_interval(measure: &Measure, interval: &ExpectedInterval) -> String {
     let reaches = if interval.reaches { ", as narrow as wanted" } else { "" };
-    let now = interval.now.map_or_else(String::new, |now| format!(", after ± {} now", three(now)));
+    let scale = Scale::for_values(interval.now.into_iter().chain([interval.then]), interval.unit);
+    let unit = scale.unit();
+    let now =
+        interval.now.map_or_else(String::new, |now| format!(", after ± {} {unit} now", three(scale.of(now))));
     format!(
-        "{}. The 95 % interval of {} is then ± {} {}{reaches}{now}.",
+        "{}. The 95 % interval of {} is then ± {} {unit}{reaches}{now}.",
         to_do(measure),
         interval.element,
-        three(interval.then),
-        interval.unit
+        three(scale.of(interval.then)),
     )
 }
 

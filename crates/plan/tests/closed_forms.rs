@@ -197,3 +197,22 @@ fn with_one_reference_the_force_of_all_references_is_a_name_too_and_takes_two_fr
     let alone = plan.suggestions.iter().filter(|s| matches!(s.action, Measure::Frf { .. }));
     alone.for_each(|s| assert!(s.sure.unwrap() < 0.7, "{}", s.says));
 }
+
+#[test]
+fn a_stiffness_that_the_recording_does_not_determine_is_said_to_be_so_instead_of_an_interval_without_end() {
+    let wanted = "J/k11=1%".parse().unwrap();
+    // One mass alone in a band far below the only resonance: the spring between the masses is not seen.
+    let far_below = SpectralLines::even(1e-3, 1e-3, 20).unwrap();
+    let pairs = transverse(&[("1", "1")]);
+    let frfs = synthesize(&chain(), &pairs, &far_below, Instrument::AsRecorded).unwrap();
+    let variance = frfs.all_values().iter().map(|v| NOISE * NOISE * v.norm_sqr()).collect();
+    let blind = Observation::new(&frfs.with_variance(variance).unwrap(), |_| true).unwrap();
+    let plan =
+        Plan::for_interval(&chain(), &Start::Recorded(&blind), &wanted, &PlanOptions::default()).unwrap();
+    assert!(plan.says.ends_with("What was recorded does not determine it."), "{}", plan.says);
+    assert!(plan.suggestions.iter().all(|s| s.interval.as_ref().is_none_or(|i| i.then <= 5e7)));
+    let seen = recorded(&chain(), &[("1", "1")]);
+    let plan =
+        Plan::for_interval(&chain(), &Start::Recorded(&seen), &wanted, &PlanOptions::default()).unwrap();
+    assert!(!plan.says.contains("does not determine"), "{}", plan.says);
+}

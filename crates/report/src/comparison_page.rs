@@ -7,7 +7,7 @@ use jointscope_comparison::{Comparison, ElementRanking, Kind, Pair, PairedNumber
 use jointscope_wording::{Says, capitalised, comparison as says};
 
 use crate::context::PageContext;
-use crate::format::{fixed, in_column, interval, percent, quantity, significant};
+use crate::format::{fixed, in_column, interval, percent, quantity, quantity_in, significant};
 use crate::report::Report;
 use crate::section::{Section, Verdict};
 use crate::table::Table;
@@ -51,6 +51,9 @@ fn typeset(element: &str) -> String {
 }
 
 fn order_words(comparison: &Comparison, entry: &ElementRanking) -> String {
+    if !entry.is_stated() {
+        return says::decided(comparison, entry);
+    }
     let signs = entry.settled_neighbours().map(|settled| if settled { " < " } else { " ≲ " });
     let names = entry.ranking.order.iter().map(|index| comparison.joints[*index].name.as_str());
     std::iter::once("").chain(signs).zip(names).flat_map(|(sign, name)| [sign, name]).collect()
@@ -62,7 +65,7 @@ fn verdict(comparison: &Comparison) -> Verdict {
     let mut details = Vec::new();
     let headline = match (comparison.pairs.as_slice(), comparison.rankings.first()) {
         ([pair], _) if pair.numbers.first().is_some_and(|number| number.ratio.is_some()) => {
-            details.extend(pair.equality.map(|e| sentence(&says::equality(&e, [&pair.first, &pair.second]))));
+            details.extend(pair.equality.map(|_| sentence(&says::tested(comparison, pair))));
             ratio_words(pair)
         }
         (_, Some(first)) => {
@@ -77,11 +80,12 @@ fn verdict(comparison: &Comparison) -> Verdict {
                 ),
             });
             let order = order_words(comparison, first);
-            let right = match first.has_deviations {
-                true => format!("right with a probability of {}", sure(first.ranking.probability)),
-                false => "nothing tells how sure that is".to_owned(),
+            let right = match (first.has_deviations, first.is_stated()) {
+                (true, true) => format!(" (right with a probability of {})", sure(first.ranking.probability)),
+                (true, false) => String::new(),
+                (false, _) => " (nothing tells how sure that is)".to_owned(),
             };
-            format!("By {}, from the most compliant to the stiffest: {order} ({right}).", symbol(first))
+            format!("By {}, from the most compliant to the stiffest: {order}{right}.", symbol(first))
         }
         _ => "There is nothing to compare.".to_owned(),
     };
@@ -145,8 +149,11 @@ fn pair_table<'a>(comparison: &Comparison, pair: &'a Pair) -> Table<&'a PairedNu
         |number: &&PairedNumber| number.ratio.map_or("–".to_owned(), |ratio| says::percents(&ratio));
     let difference = |number: &&PairedNumber| {
         let figure = number.difference;
-        let scale = Scale::for_magnitude(figure.ci95[0].abs().max(figure.ci95[1].abs()), number.unit);
-        let text = quantity(figure.value, figure.std, number.unit);
+        if figure.std == 0.0 && figure.value == 0.0 {
+            return "not determined of either".to_owned();
+        }
+        let scale = Scale::for_values(figure.ci95.into_iter().chain([figure.value, figure.std]), number.unit);
+        let text = quantity_in(figure.value, figure.std, &scale);
         format!("{text} ({})", interval(figure.ci95, &scale, 3))
     };
     let larger = |number: &&PairedNumber| {
@@ -162,15 +169,11 @@ fn pair_table<'a>(comparison: &Comparison, pair: &'a Pair) -> Table<&'a PairedNu
     let same = match pair.equality {
         Some(equality) => format!(
             "{} (χ² {} of {} degrees of freedom).",
-            says::equality(&equality, [&pair.first, &pair.second]),
+            says::tested(comparison, pair),
             significant(equality.chi2, 4),
             equality.degrees
         ),
-        None if comparison.together.has_covariances => {
-            "No number has a standard deviation: equality cannot be tested.".to_owned()
-        }
-        None => "The files do not say how the errors of these estimates go together: equality is not tested."
-            .to_owned(),
+        None => sentence(&says::tested(comparison, pair)),
     };
     let differs = |number: &&PairedNumber| number.differs().then_some(Tone::Attention);
     let table = Table::of(&pair.numbers)
@@ -189,15 +192,19 @@ fn order_section(comparison: &Comparison) -> Section {
         true => sure(p),
         false => "–".to_owned(),
     };
-    let each = |entry: &ElementRanking| -> Vec<String> {
-        entry.ranking.adjacent.iter().map(|p| stated(entry, *p)).collect()
+    let each = |entry: &&ElementRanking| match entry.is_stated() {
+        true => entry.ranking.adjacent.iter().map(|p| stated(entry, *p)).collect::<Vec<_>>().join(", "),
+        false => "–".to_owned(),
     };
     let table = Table::of(&comparison.rankings)
         .words("element", |entry| symbol(entry))
         .words("from the smallest magnitude to the largest", |entry| order_words(comparison, entry))
-        .words("whole order right", |entry| stated(entry, entry.ranking.probability))
-        .words("each larger than the one before", |entry| each(entry).join(", "))
-        .footnote("≲ : less than 95 % sure. Probabilities by 20 000 draws of all joints at once, errors in common included.");
+        .words("whole order right", |entry| match entry.is_stated() {
+            true => stated(entry, entry.ranking.probability),
+            false => "below 50 %".to_owned(),
+        })
+        .words("each larger than the one before", each)
+        .footnote("≲ : less than 95 % sure. An order less than 50 % sure is not stated. Probabilities by 20 000 draws of all joints at once, errors in common included.");
     let ranks =
         Table::of(0..comparison.joints.len()).words("joint", |&joint| comparison.joints[joint].name.clone());
     let ranks = comparison.rankings.iter().fold(ranks, |table, entry| {

@@ -1,7 +1,7 @@
 //! The page of a plan: the first thing to do, what every other would bring, and every FRF that could be recorded.
 
 use jointscope_fixture::Fixture;
-use jointscope_plan::{BEYOND_DOUBT, FrfGain, Measure, Plan, Suggestion};
+use jointscope_plan::{BEYOND_DOUBT, ExpectedInterval, FrfGain, Measure, Plan, Suggestion};
 use jointscope_spectra::FrfPair;
 use jointscope_wording::effect_name;
 use maud::{Markup, PreEscaped, html};
@@ -9,10 +9,11 @@ use maud::{Markup, PreEscaped, html};
 use crate::context::PageContext;
 use crate::drawing::{Drawing, Highlight, SideView};
 use crate::error::PageError;
-use crate::format::{percent, quantity, significant};
+use crate::format::{in_column, percent, quantity_in, significant};
 use crate::section::Section;
 use crate::table::{Cell, Table};
 use crate::tone::Tone;
+use crate::unit::Scale;
 
 /// Suggestions that are drawn and listed.
 const LISTED: usize = 12;
@@ -58,9 +59,12 @@ fn suggestions(plan: &Plan, fixture: &Fixture) -> Section {
     );
     let table = Table::of(listed()).words("What to do", |suggestion| suggestion.to_do.clone());
     let table = match plan.names.is_empty() {
-        true => table.numbers("95 % interval, ±", "", |suggestion| {
-            suggestion.interval.as_ref().map_or(String::new(), |i| quantity(i.then, None, i.unit))
-        }),
+        true => {
+            let scale = unit_of(listed());
+            table.numbers("95 % interval, ±", scale.unit(), |suggestion| {
+                suggestion.interval.as_ref().map_or(String::new(), |i| in_column(i.then, None, &scale))
+            })
+        }
         false => table
             .numbers("One name ≥ 90 %", "", |suggestion| suggestion.sure.map_or(String::new(), promise))
             .numbers("Expected ln of the odds", "nats", |suggestion| {
@@ -68,6 +72,13 @@ fn suggestions(plan: &Plan, fixture: &Fixture) -> Section {
             }),
     };
     section.with(table.numbers("Effort", "FRFs", |suggestion| format!("{:.0}", suggestion.effort)))
+}
+
+/// The unit of the intervals that suggestions leave, which are all of one number of the joint.
+fn unit_of<'a>(suggestions: impl Iterator<Item = &'a Suggestion>) -> Scale {
+    let intervals: Vec<&ExpectedInterval> = suggestions.filter_map(|s| s.interval.as_ref()).collect();
+    let unit = intervals.first().map_or("", |interval| interval.unit);
+    Scale::for_values(intervals.iter().map(|interval| interval.then), unit)
 }
 
 /// A probability that a few hundred draws tell.
@@ -149,8 +160,9 @@ fn bars_within(all: &[&Suggestion], Widths { all: width, left, right, class }: W
         Some(interval) => interval.then / widest,
         None => suggestion.expected_log_odds.unwrap_or(0.0).min(BEYOND_DOUBT) / most,
     };
+    let scale = unit_of(all.iter().copied());
     let figure = |suggestion: &Suggestion| match &suggestion.interval {
-        Some(interval) => format!("± {}", quantity(interval.then, None, interval.unit)),
+        Some(interval) => format!("± {}", quantity_in(interval.then, None, &scale)),
         None => {
             let odds = nats(suggestion.expected_log_odds.unwrap_or(0.0));
             format!("{odds} nats, {}", promise(suggestion.sure.unwrap_or(0.0)))

@@ -8,6 +8,7 @@ use crate::format::QuantityText;
 use crate::plot::{Plot, PlotBook};
 use crate::table::{Table, TableText};
 use crate::tone::Tone;
+use crate::unit::Scale;
 
 /// What came out: how to take it, in one sentence, and what is to be said besides.
 #[derive(Debug, Clone)]
@@ -54,6 +55,16 @@ impl Card {
         unit: &str,
     ) -> Self {
         Self { label: label.into(), value: QuantityText::new(value, std, unit), note: None, tone: None }
+    }
+
+    /// The same in a given unit, that of its note.
+    pub(crate) fn quantity_in(
+        label: impl Into<String>,
+        value: f64,
+        std: impl Into<Option<f64>>,
+        scale: &Scale,
+    ) -> Self {
+        Self { label: label.into(), value: QuantityText::on(value, std, scale), note: None, tone: None }
     }
 
     /// A figure that is no quantity, such as `412 of 644 lines`.

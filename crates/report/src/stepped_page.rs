@@ -6,11 +6,12 @@ use jointscope_nonlinear::{LevelResult, SteppedDiagnosis};
 use jointscope_wording::{Remarks, Says};
 
 use crate::context::PageContext;
-use crate::format::quantity;
+use crate::format::{in_column, quantity};
 use crate::plot::{Axis, Plot, Role};
 use crate::report::Report;
 use crate::section::Section;
 use crate::table::Table;
+use crate::unit::Scale;
 
 /// The page of a diagnosis from FRFs at several levels as one self-contained HTML file: the verdict, frequency and damping against the amplitude
 /// of the joint's motion, the levels' table, and every law tried. The same input gives the same bytes.
@@ -35,17 +36,17 @@ fn against_amplitude(diagnosis: &SteppedDiagnosis) -> Section {
     levels.sort_by(|a, b| a.motion.total_cmp(&b.motion));
     levels.dedup_by(|a, b| a.motion <= b.motion);
     let (joint, dof) = (&diagnosis.place.0, diagnosis.place.1.name());
-    let unit = if dof == "rotation" { "rad" } else { "m" };
+    let scale = scale(&levels, if dof == "rotation" { "rad" } else { "m" }, |level| level.motion);
     let plot = |title: &str, unit_y: &str, value: &dyn Fn(&LevelResult) -> (f64, f64)| {
         let of = |times: f64| levels.iter().map(|l| value(l).0 + times * value(l).1).collect::<Vec<f64>>();
-        let motion = Axis::linear(format!("Relative motion of joint {joint} in {dof}"), unit);
+        let motion = Axis::linear(format!("Relative motion of joint {joint} in {dof}"), scale.unit());
         let plot = Plot::new(title, motion, Axis::linear(title, unit_y))
-            .over(levels.iter().map(|level| level.motion))
+            .over(levels.iter().map(|level| scale.of(level.motion)))
             .band("95 % interval", Role::Uncertainty, of(-Z95), of(Z95))
             .line("measured", Role::Measured, of(0.0));
         match levels.get(diagnosis.holds.wrapping_sub(1)) {
             Some(last) if diagnosis.holds < levels.len() => {
-                plot.vertical("the law found holds up to here", Role::Highlight, last.motion)
+                plot.vertical("the law found holds up to here", Role::Highlight, scale.of(last.motion))
             }
             _ => plot,
         }
@@ -56,6 +57,15 @@ fn against_amplitude(diagnosis: &SteppedDiagnosis) -> Section {
         )
         .plot(plot("Natural frequency", "Hz", &|l| l.resonance.frequency))
         .plot(plot("Damping ratio", "%", &in_percent))
+}
+
+/// The unit in which all levels are told.
+fn scale<'a>(
+    levels: impl IntoIterator<Item = &'a &'a LevelResult>,
+    unit: &str,
+    value: fn(&LevelResult) -> f64,
+) -> Scale {
+    Scale::for_values(levels.into_iter().map(|level| value(level)), unit)
 }
 
 /// Damping ratio and its standard deviation, %.
@@ -69,13 +79,17 @@ fn levels(diagnosis: &SteppedDiagnosis) -> Section {
         "rotation" => ("rad", "N*m/rad"),
         _ => ("m", "N/m"),
     };
+    let all: Vec<&LevelResult> = diagnosis.levels.iter().collect();
+    let motion = scale(&all, motion, |level| level.motion);
+    let beyond = scale(&all, stiffness, |level| level.stiffness.0);
+    let loss = scale(&all, stiffness, |level| level.loss.0);
     let table = Table::of(&diagnosis.levels)
         .words("level", |l| l.held.to_string().replace("^2", "²"))
         .words("frequency, Hz", |l| text(l.resonance.frequency))
         .words("damping, %", |l| text(in_percent(l)))
-        .words("relative motion", |l| quantity(l.motion, None, motion))
-        .words("stiffness beyond the fixture", |l| quantity(l.stiffness.0, None, stiffness))
-        .words("loss stiffness beyond it", |l| quantity(l.loss.0, None, stiffness))
+        .numbers("relative motion", motion.unit(), |l| in_column(l.motion, None, &motion))
+        .numbers("stiffness beyond the fixture", beyond.unit(), |l| in_column(l.stiffness.0, None, &beyond))
+        .numbers("loss stiffness beyond it", loss.unit(), |l| in_column(l.loss.0, None, &loss))
         .words("error refitted", |l| format!("{:.3}", l.nrmse[1]))
         .words("repaired", |l| format!("{:.3}", l.nrmse[2]))
         .words("own stiffness", |l| format!("{:.3}", l.nrmse[3]))

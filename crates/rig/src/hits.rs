@@ -42,7 +42,25 @@ mod as_text {
     }
 }
 
+/// Noise of the force channel as a share of that of the responses, both relative to what their channel reads.
+const NOISE_OF_FORCE: f64 = 0.1;
+
 impl HammerTest {
+    /// A hammer test as those of the concealed cases are: `noise` on the responses and a tenth of it on the force, each relative to the channel's
+    /// rms, white over the lines; blows whose force has fallen to about 70 % at `highest_hz` and whose strength scatters by a quarter; hits of its own for
+    /// every FRF.
+    pub fn ordinary(noise: f64, averages: u32, highest_hz: f64, seed: u64) -> Self {
+        HammerTest {
+            averages,
+            noise_response: noise,
+            noise_force: NOISE_OF_FORCE * noise,
+            corner: highest_hz.max(f64::MIN_POSITIVE),
+            spread: 0.25,
+            common_hits: false,
+            seed,
+        }
+    }
+
     /// Measures noise-free FRFs: H1 = S_xf/S_ff over the hits, with coherence and the number of averages, as
     /// accelerance.
     ///

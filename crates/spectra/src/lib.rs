@@ -46,7 +46,9 @@ pub enum SpectraError {
         frequency: f64,
     },
     /// Lines out of order or twice.
-    #[error("spectral lines must ascend: {frequency} Hz at index {index} follows {previous} Hz")]
+    #[error(
+        "spectral lines must ascend: {frequency} Hz at index {index} follows {previous} Hz; sort them by frequency, each once"
+    )]
     NotAscending {
         /// Index of the offending line, from 0.
         index: usize,

@@ -3,11 +3,14 @@
 use crate::format::{fixed, quantity, significant};
 use crate::{Says, Summary};
 use jointscope_comparison::{
-    Caution, Compared, Comparison, Equality, Pair, Ratio, Scatter, Specimens, WhyApart,
+    Caution, Compared, Comparison, ElementRanking, Equality, Pair, Ratio, Scatter, Specimens, WhyApart,
 };
 
 /// Pairs beyond which only those with the first joint are listed.
 const MANY: usize = 6;
+
+/// Joints up to which decided pairs are listed one by one.
+const FEW: usize = 8;
 
 /// Paths listed at the most.
 const LISTED: usize = 4;
@@ -52,6 +55,53 @@ pub fn equality(equality: &Equality, names: [&str; 2]) -> String {
     }
 }
 
+/// Whether the joints of a pair are the same, and what is left out of the test; or why it is not tested.
+pub fn tested(comparison: &Comparison, pair: &Pair) -> String {
+    let names = [pair.first.as_str(), pair.second.as_str()];
+    let [first, second] = names;
+    let untold = pair.untold.join(", ");
+    match pair.equality {
+        Some(tested) if untold.is_empty() => equality(&tested, names),
+        Some(tested) => {
+            format!(
+                "{}; {untold}, of which neither's FRFs tell anything, are left out",
+                equality(&tested, names)
+            )
+        }
+        None if comparison.compared != Compared::AllFrfs => {
+            "the files do not say how the errors of these estimates go together: equality is not tested"
+                .to_owned()
+        }
+        None if !untold.is_empty() => {
+            "no number has a standard deviation: equality cannot be tested".to_owned()
+        }
+        None => format!(
+            "it is not tested whether {first} and {second} are the same: their files tell of no law over frequency that is probable for both, and numbers of different laws \
+             are not the same numbers; of files of earlier versions `jointscope decompose` makes them anew"
+        ),
+    }
+}
+
+/// The law over frequency of all joints, or the groups that follow one.
+fn laws(comparison: &Comparison) -> Vec<String> {
+    let Some(law) = &comparison.law else {
+        let groups = comparison.together.one_law.iter();
+        let said = |joints: &Vec<String>| {
+            format!(
+                "taken to follow one law over frequency, the same being the most probable of each: {}",
+                joints.join(", ")
+            )
+        };
+        return groups.map(said).collect();
+    };
+    let name = law.law.replace('_', " ");
+    let moved = match law.moved.is_empty() {
+        true => String::new(),
+        false => format!("; by its own FRFs another is the most probable of {}", law.moved.join(", ")),
+    };
+    vec![format!("compared at one law over frequency, the most probable of all together: {name}{moved}")]
+}
+
 /// What the tests share, and which share nothing.
 pub fn shared(comparison: &Comparison) -> Vec<String> {
     let together = &comparison.together;
@@ -92,12 +142,7 @@ pub fn shared(comparison: &Comparison) -> Vec<String> {
             joints.join(", ")
         ));
     }
-    for joints in &together.one_law {
-        all.push(format!(
-            "taken to follow one law over frequency, the same being the most probable of each: {}",
-            joints.join(", ")
-        ));
-    }
+    all.extend(laws(comparison));
     let differing = &together.differing;
     if !differing.is_empty() {
         let listed = differing.iter().take(LISTED).map(String::as_str).collect::<Vec<_>>().join(", ");
@@ -163,6 +208,26 @@ pub fn scatter(scatter: &Scatter) -> String {
         relative(scatter.measurement),
         p_value(scatter.p_value)
     )
+}
+
+/// What can be told of an order that is not stated as a whole: `a < c, d; b < d; the order of the others cannot be told`, or how many pairs of many.
+pub fn decided(comparison: &Comparison, entry: &ElementRanking) -> String {
+    let name = |joint: &usize| comparison.joints[*joint].name.as_str();
+    let count: usize = entry.decided().map(|(_, larger)| larger.len()).sum();
+    let all = comparison.pairs.len();
+    match count {
+        0 => "the order cannot be told, no two of them being decided (95 %)".to_owned(),
+        _ if comparison.joints.len() > FEW => {
+            format!("{count} of {all} pairs are decided (95 %), the order of the others cannot be told")
+        }
+        _ => {
+            let larger = |larger: &[usize]| larger.iter().map(name).collect::<Vec<_>>().join(", ");
+            let each =
+                entry.decided().map(|(joint, behind)| format!("{} < {}", name(&joint), larger(behind)));
+            let each = each.collect::<Vec<_>>().join("; ");
+            format!("{each} (each 95 % or more); the order of the others cannot be told")
+        }
+    }
 }
 
 /// What is compared, in words.
@@ -268,10 +333,13 @@ impl Summary for Comparison {
         lines.push(format!("by {}", estimate_words(self)));
         lines.extend(shared(self));
         for pair in main_pairs(self) {
-            lines.extend(paired(pair));
+            lines.extend(paired(self, pair));
         }
         lines.push("from the smallest magnitude to the largest:".to_owned());
         lines.extend(self.rankings.iter().map(|entry| {
+            if !entry.is_stated() {
+                return format!("{}: {}", entry.number().name(), decided(self, entry));
+            }
             let order: Vec<&str> =
                 entry.ranking.order.iter().map(|i| self.joints[*i].name.as_str()).collect();
             // No order is certain.
@@ -287,13 +355,13 @@ impl Summary for Comparison {
     }
 }
 
-fn paired(pair: &Pair) -> Vec<String> {
+fn paired(comparison: &Comparison, pair: &Pair) -> Vec<String> {
     let ratios = pair.numbers.iter().filter_map(|number| {
         let ratio = number.ratio?;
         Some(format!("{}: {} is {} of {}", number.element, pair.second, percents(&ratio), pair.first))
     });
-    let equality = pair.equality.map(|tested| equality(&tested, [&pair.first, &pair.second]));
-    ratios.chain(equality).collect()
+    let is_of_fits = comparison.compared == Compared::AllFrfs;
+    ratios.chain(is_of_fits.then(|| tested(comparison, pair))).collect()
 }
 
 fn scatters(specimens: &Specimens) -> Vec<String> {

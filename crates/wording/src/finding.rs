@@ -2,8 +2,9 @@
 
 use crate::effects::{effect_name, meaning};
 use crate::estimate::rounded_value;
-use crate::format::quantity;
+use crate::format::quantity_in;
 use crate::numbers::{Short, listed, plain};
+use crate::unit::Scale;
 use crate::{Says, amplitude};
 use jointscope_diagnosis::{Diagnosis, Finding as FrfFinding};
 use jointscope_findings::Finding;
@@ -103,11 +104,13 @@ impl Says for HitFinding {
 impl Says for LevelFinding {
     fn says(&self) -> String {
         let (motion, _) = amplitude::units(self.effect.dof.unwrap_or(Dof::Translation));
+        let (least, most) = self.evidence.motions;
+        let scale = Scale::for_values([least, most], motion);
         format!(
             "{}; seen at relative motions of {} to {}{}.",
             meaning(&self.effect, &self.estimates, "levels"),
-            quantity(self.evidence.motions.0, None, motion),
-            quantity(self.evidence.motions.1, None, motion),
+            quantity_in(least, None, &scale),
+            quantity_in(most, None, &scale),
             look_alikes(self, "levels")
         )
     }

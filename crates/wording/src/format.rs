@@ -21,11 +21,30 @@ const DIGITS_WITHOUT_STD: usize = 4;
 /// assert_eq!(quantity(f64::NAN, 1.0, "N/m"), "not determined");
 /// ```
 pub fn quantity(value: f64, std: impl Into<Option<f64>>, unit: &str) -> String {
-    let QuantityText { number, unit, note } = QuantityText::new(value, std, unit);
-    // A percent sign follows its number as other units do (ISO 80000-1).
-    let unit = if unit.is_empty() { unit } else { format!(" {unit}") };
-    let note = note.map_or(String::new(), |note| format!(" ({note})"));
-    format!("{number}{unit}{note}")
+    QuantityText::new(value, std, unit).line()
+}
+
+/// The same in a given unit, for values that are read beside each other: a row, a pair, a value and its interval.
+///
+/// ```
+/// use jointscope_wording::format::quantity_in;
+/// use jointscope_wording::unit::Scale;
+/// let scale = Scale::of_stated([0.0, 1e-4, -2.926e-3], "m");
+/// assert_eq!(quantity_in(0.0, 1e-4, &scale), "0.00 ± 0.10 mm");
+/// assert_eq!(quantity_in(-2.926e-3, None, &scale), "−2.926 mm");
+/// ```
+pub fn quantity_in(value: f64, std: impl Into<Option<f64>>, scale: &Scale) -> String {
+    QuantityText::on(value, std, scale).line()
+}
+
+impl QuantityText {
+    fn line(self) -> String {
+        let QuantityText { number, unit, note } = self;
+        // A percent sign follows its number as other units do (ISO 80000-1).
+        let unit = if unit.is_empty() { unit } else { format!(" {unit}") };
+        let note = note.map_or(String::new(), |note| format!(" ({note})"));
+        format!("{number}{unit}{note}")
+    }
 }
 
 /// A quantity in the parts a page typesets apart from each other.
@@ -42,13 +61,17 @@ pub struct QuantityText {
 impl QuantityText {
     /// See [`quantity`] for what the arguments mean.
     pub fn new(value: f64, std: impl Into<Option<f64>>, unit: &str) -> Self {
+        let std = std.into();
+        Self::on(value, std, &Scale::for_values([value, std.unwrap_or(0.0)], unit))
+    }
+
+    /// The same in a given unit.
+    pub fn on(value: f64, std: impl Into<Option<f64>>, scale: &Scale) -> Self {
         if !value.is_finite() {
             return Self { number: NOT_DETERMINED.to_owned(), unit: String::new(), note: None };
         }
         let std = std.into();
         let usable = std.filter(|std| std.is_finite() && *std > 0.0);
-        let magnitude = value.abs().max(usable.unwrap_or(0.0));
-        let scale = Scale::for_magnitude(magnitude, unit);
         let number = with_power_of_ten(scale.of(value), usable.map(|std| scale.of(std)), std);
         let note = match std {
             Some(0.0) => Some("exact"),

@@ -1,7 +1,8 @@
 //! A diagnosis of stepped-sine FRFs at several levels in sentences.
 
-use crate::format::quantity;
+use crate::format::quantity_in;
 use crate::numbers::capitalised;
+use crate::unit::Scale;
 use crate::{Remarks, Says, amplitude};
 use jointscope_findings::Verdict;
 use jointscope_fixture::EffectKind;
@@ -98,20 +99,23 @@ impl Remarks for SteppedDiagnosis {
         let mut remarks = self.unplaced.clone();
         let (motion, force) = amplitude::units(self.place.1);
         if let (Some(first), Some(last)) = (self.levels.first(), self.levels.last()) {
+            let moved = Scale::for_values([first.motion, last.motion], motion);
             remarks.push(format!(
                 "The relative motion of joint {} in {} runs from {} to {}; with one resonance its components and other joints that the mode moves keep a fixed ratio, so which of them changes cannot be told by these FRFs alone.",
                 self.place.0,
                 self.place.1.name(),
-                quantity(first.motion, None, motion),
-                quantity(last.motion, None, motion)
+                quantity_in(first.motion, None, &moved),
+                quantity_in(last.motion, None, &moved)
             ));
-            let stiffness = |value: f64| quantity(value, None, &format!("{force}/{motion}"));
+            let of = |values: [f64; 2]| Scale::for_values(values, &format!("{force}/{motion}"));
+            let beyond = of([first.stiffness.0, last.stiffness.0]);
+            let loss = of([first.loss.0, last.loss.0]);
             remarks.push(format!(
                 "Beyond the fixture's, the joint's stiffness goes from {} to {} and its loss stiffness from {} to {}.",
-                stiffness(first.stiffness.0),
-                stiffness(last.stiffness.0),
-                stiffness(first.loss.0),
-                stiffness(last.loss.0)
+                quantity_in(first.stiffness.0, None, &beyond),
+                quantity_in(last.stiffness.0, None, &beyond),
+                quantity_in(first.loss.0, None, &loss),
+                quantity_in(last.loss.0, None, &loss)
             ));
         }
         if self.levels.iter().any(|l| matches!(l.held, Held::Force(_))) {

@@ -58,6 +58,15 @@ impl Scale {
         Self::for_magnitude(largest, unit)
     }
 
+    /// The unit of a quantity that a fixture states: places and lengths in mm, as drawings have them, however small their deviations; all else as in [`Scale::for_values`].
+    pub fn of_stated(values: impl IntoIterator<Item = f64>, unit: &str) -> Self {
+        let scale = Self::for_values(values, unit);
+        if unit == "m" && scale.factor < 1.0 {
+            return Self { factor: 1e-3, unit: "mm".to_owned() };
+        }
+        scale
+    }
+
     /// The SI kilogram already has a prefix, so masses below 0.1 kg go by the gram. An inertia in kg·m² stays: nobody reads mg·m².
     fn for_mass(magnitude: f64) -> Self {
         let (factor, symbol) = match magnitude {
@@ -145,6 +154,15 @@ mod tests {
         check(1000.0, "N/m", "kN/m");
         check(4.7e-3, "N*m*s/rad", "mN·m·s/rad");
         check(2.0e-5, "m", "µm");
+    }
+
+    #[test]
+    fn places_are_in_millimetres_as_drawings_have_them() {
+        for values in [[0.0, 1e-4], [0.131, 2e-4], [-3.4e-6, 0.0]] {
+            assert_eq!(Scale::of_stated(values, "m").unit(), "mm", "{values:?}");
+        }
+        assert_eq!(Scale::of_stated([12.0, 0.1], "m").unit(), "m");
+        assert_eq!(Scale::of_stated([0.02], "kg").unit(), "g");
     }
 
     #[test]

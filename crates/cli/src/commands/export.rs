@@ -110,7 +110,7 @@ impl Answer {
                 (_, true) => Ok(of_diagnosis(path.to_owned())),
                 _ => Err(Refusal::at(
                     path,
-                    "is neither a stiffness.json nor a diagnosis.json, nor a directory with one",
+                    "is neither a stiffness.json nor a diagnosis.json; give the directory that `jointscope decompose` or `jointscope diagnose` wrote to",
                 )),
             };
         }

@@ -102,7 +102,7 @@ pub(super) fn run(arguments: &FemArguments) -> Result<String, Refusal> {
         Some(count) => Superposition::First(count),
     };
     let frfs = twin.frfs(&pairs, &asked.lines, superposition).map_err(|error| fixture.refusal(error))?;
-    let mut outputs = asked.outputs(&fixture, &frfs)?;
+    let mut outputs = asked.outputs(&fixture, &frfs, None)?;
     if let Some(deck) = &arguments.deck {
         outputs.add(deck, calculix_deck(&twin.mesh, fixture.name(), DECK_MODES));
     }

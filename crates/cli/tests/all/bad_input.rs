@@ -403,3 +403,22 @@ const STOREY: &str = r#"{
   "points": { "1": { "body": "low", "x": 0 }, "2": { "body": "high", "x": 0.18 } },
   "joints": { "C": { "from": "1", "to": "2", "stiffness": [[3.4e6, 0], [0, 0]] } },
   "damping": { "modal_ratios": [0.02] } }"#;
+
+#[test]
+fn a_table_that_is_no_recording_is_refused_with_the_line_and_what_to_do() {
+    let bench = Bench::new("bad-tables");
+    bench.write("two.json", TWO_BLOCKS);
+    let check = |rows: &str, parts: &[&str]| {
+        bench.write("t.csv", format!("frequency [Hz],3/1 real [m/s^2/N],3/1 imag\n{rows}"));
+        bench.refused(&["diagnose", "two.json", "t.csv", "-o", "out"], parts);
+    };
+    check("10,1,2\n20,NaN,3\n", &["t.csv: line 3, column 2", "`NaN`", "leave the line out"]);
+    check("10,1e400,2\n20,1,3\n", &["t.csv: line 2, column 2", "`1e400`", "leave the line out"]);
+    check("30,1,2\n20,1,3\n", &["t.csv", "20 Hz", "sort them by frequency"]);
+    check("10,1,2\n10,1,3\n", &["t.csv", "10 Hz", "each once"]);
+    check("-10,1,2\n20,1,3\n", &["t.csv", "-10 Hz", "zero or above"]);
+    bench.write("t.csv", "frequency [Hz],3/1 real [m/s^2/N],3/1 imag\n10,1,2\n20,1,3\n");
+    bench.write("u.csv", "frequency [Hz],4/1 real [m/s^2/N],4/1 imag\n10,1,2\n25,1,3\n30,1,3\n");
+    bench
+        .refused(&["diagnose", "two.json", "t.csv", "u.csv", "-o", "out"], &["u.csv", "t.csv", "same lines"]);
+}

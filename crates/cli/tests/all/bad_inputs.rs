@@ -162,7 +162,13 @@ fn a_fixture_that_cannot_be_is_refused_by_the_path_of_what_is_wrong() {
         cases.changed(from, to, words);
     }
     cases.fixture("nothing in it", "{}", "`bodies` is missing");
-    cases.fixture("no bodies", "{ \"bodies\": {}, \"points\": {} }", "bodies|there are no bodies");
+    cases.fixture("no bodies", "{ \"bodies\": {}, \"points\": {} }", "bodies|there are no bodies|state one");
+    cases.fixture("a list alone", "[1, 2]", "a list stands|jointscope init");
+    cases.fixture(
+        "a deviation below zero",
+        TWO_BLOCKS.replacen("\"mass\": 1.10,", "\"mass\": {\"value\": 1.10, \"std\": -0.01},", 1),
+        "bodies/A/mass/std|below zero|unknown",
+    );
     cases.fixture("bodies in a list", "{ \"bodies\": [], \"points\": {} }", "bodies|a list stands|object");
     cases.finish();
 }
@@ -567,6 +573,9 @@ const ARGUMENTS: &[(&str, &str)] = &[
     ("synthesize two.json --lines 10:100:0 -o o.uff", "--lines|above 0 Hz"),
     ("synthesize two.json --lines 10:1e9:0.0001 -o o.uff", "--lines|larger step"),
     ("synthesize two.json --lines ten -o o.uff", "--lines"),
+    ("synthesize two.json --noise -1 -o o.uff", "--noise|above zero"),
+    ("synthesize two.json --noise 1 --seed -4 -o o.uff", "--seed"),
+    ("synthesize two.json --noise 1 --averages -2 -o o.uff", "--averages"),
     ("synthesize two.json --frf 9/1 -o o.uff", "`9`|1, 2, 3, 4"),
     ("synthesize two.json --frf 41 -o o.uff", "response over reference"),
     ("synthesize two.json", "--output"),
@@ -576,6 +585,8 @@ const ARGUMENTS: &[(&str, &str)] = &[
     ("diagnose frf.uff two.json -o out", "frf.uff|is a universal file|the fixture first"),
     ("diagnose text.uff two.json -o out", "text.uff|is a universal file|the fixture first"),
     ("synthesize two.json -o two.json", "two.json"),
+    ("compare two.json frf.uff -o out", "two.json|is a file|jointscope decompose"),
+    ("export two.json --to csv -o out", "two.json|jointscope decompose"),
     ("init", "--output"),
     ("init --blocks a -o i.json", "60x40x6:steel"),
     ("init --blocks 60x40x0:steel -o i.json", "above zero"),

@@ -46,6 +46,61 @@ fn joints_are_ranked_with_the_probability_of_the_order() {
 }
 
 #[test]
+fn an_order_that_is_more_likely_wrong_than_right_is_not_stated_but_its_decided_pairs_are() {
+    let bench = Bench::new("compare-undecided");
+    let d0 = include_str!("../../../../fixtures/paper/D0.json");
+    bench.write("d0.json", d0);
+    bench.write("soft.json", d0.replacen("2.864708e-10", "2.3e-10", 1));
+    // One joint tested three times, and a softer one.
+    for (name, fixture, seed) in
+        [("a", "d0.json", "1"), ("b", "d0.json", "2"), ("c", "d0.json", "3"), ("soft", "soft.json", "4")]
+    {
+        bench.done(&["synthesize", fixture, "--noise", "0.5", "--seed", seed, "-o", "test.uff"]);
+        bench.done(&["decompose", "d0.json", "test.uff", "--band", "474:843", "-o", name]);
+    }
+    let summary = bench.done(&["compare", "a", "b", "c", "soft", "-o", "out"]);
+    let file = bench.json("out/comparison.json");
+    let open: Vec<_> =
+        file["rankings"].as_array().unwrap().iter().filter(|entry| entry["stated"] == false).collect();
+    assert!(!open.is_empty(), "{summary}");
+    for entry in open {
+        assert!(entry["probability"].as_f64().unwrap() < 0.5, "{entry}");
+        let element = entry["element"].as_str().unwrap();
+        let line = summary.lines().find(|line| {
+            line.starts_with(&format!("{element}: ")) && !line.contains(" is ") // not the line of a ratio
+        });
+        assert!(
+            line.is_some_and(|line| line.contains("cannot be told") && !line.contains("probability")),
+            "{summary}"
+        );
+        for pair in entry["decided"].as_array().unwrap() {
+            let smaller = format!("{} < ", pair[0].as_str().unwrap());
+            assert!(line.unwrap().contains(&smaller), "{summary}");
+        }
+    }
+    let k11 = &file["rankings"][0];
+    let decided: Vec<_> =
+        k11["decided"].as_array().unwrap().iter().filter(|pair| pair[0] == "soft").collect();
+    assert_eq!(decided.len(), 3, "{k11}");
+    assert!(bench.text("out/report.html").contains("the order of the others cannot be told"));
+}
+
+#[cfg(unix)]
+#[test]
+fn a_file_of_which_two_joints_are_named_is_read_once() {
+    let bench = Bench::new("compare-once");
+    storeys(&bench, "answer", "5e6");
+    let contents = bench.text("answer/stiffness.json");
+    // What is no file can be read once only.
+    let pipe = bench.0.join("answer/stiffness.json");
+    std::fs::remove_file(&pipe).unwrap();
+    assert!(std::process::Command::new("mkfifo").arg(&pipe).status().unwrap().success());
+    let writer = std::thread::spawn(move || std::fs::write(pipe, contents).unwrap());
+    bench.done(&["compare", "answer/lower", "answer/upper", "-o", "out"]);
+    writer.join().unwrap();
+}
+
+#[test]
 fn what_a_fit_does_not_explain_gets_a_caution_and_no_approval() {
     let bench = bench("cautions");
     let summary = bench.done(&["compare", "sim", "fem", "-o", "bad"]);

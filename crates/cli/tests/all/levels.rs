@@ -65,6 +65,11 @@ fn a_cubic_spring_is_named_from_levels_with_an_interval_that_holds_it() {
     assert_eq!(bench.json("out/repaired.json")["physics"][0]["kind"], "cubic_stiffness");
     let page = bench.text("out/report.html");
     assert!(page.contains("Frequency and damping against amplitude") && !page.contains("± 0.000<"), "digits");
+    // The axis of motions and the column of them are in one unit.
+    let unit = page.split("Relative motion of joint C in translation\",\"unit\":\"").nth(1).unwrap();
+    let unit = unit.split('"').next().unwrap();
+    let heading = page.split("relative motion").nth(1).unwrap().split("</th>").next().unwrap();
+    assert!(unit.ends_with('m') && heading.contains(unit), "{unit}: {heading}");
 }
 
 #[test]

@@ -58,6 +58,20 @@ fn a_browser_draws_every_plot_without_a_complaint_and_takes_no_name_for_markup()
     }
 }
 
+#[test]
+fn a_place_and_where_models_take_it_are_in_millimetres() {
+    let bench = Bench::new("pages-places");
+    bench.write("two.json", include_str!("../../../../fixtures/two-blocks/fixture.json"));
+    bench.write("hammer-test.uff", include_bytes!("../../../../fixtures/two-blocks/hammer-test.uff"));
+    bench.done(&["diagnose", "two.json", "hammer-test.uff", "-o", "out"]);
+    let page = bench.text("out/report.html");
+    let rows: Vec<&str> = page.split("<tr").filter(|row| row.contains(">points/2/x<")).collect();
+    assert!(rows.len() >= 2, "departures and tolerances have a row each");
+    for row in rows {
+        assert!(row.contains("0.00 ± 0.10 mm") && !row.contains("µm"), "{row}");
+    }
+}
+
 /// What a page says: its text without scripts, styles, commands and markup.
 fn spoken(page: &str) -> String {
     let mut text = page.to_owned();

@@ -98,6 +98,92 @@ fn text_and_binary_hold_the_same_frfs() {
     }
 }
 
+/// The FRFs, without their coherence.
+fn frfs_of(bench: &Bench, file: &str) -> Vec<jointscope::uff::Dataset58> {
+    let of_type = |dataset: &jointscope::uff::Dataset58| dataset.function == FunctionType::FrequencyResponse;
+    bench.datasets(file).into_iter().filter(of_type).collect()
+}
+
+#[test]
+fn the_coherence_of_noisy_frfs_says_the_noise_that_is_in_them() {
+    let bench = bench("noise", FIXTURE);
+    let answer = bench.done(&[
+        "synthesize",
+        "two.json",
+        "--noise",
+        "0.8",
+        "--averages",
+        "16",
+        "--seed",
+        "7",
+        "-o",
+        "n.uff",
+    ]);
+    assert!(
+        answer.contains("noise 0.8 %, 16 averages, seed 7: on average each FRF is off by 0.2"),
+        "{answer}"
+    );
+    bench.done(&["synthesize", "two.json", "-o", "clean.uff"]);
+    let all = bench.datasets("n.uff");
+    let coherences = all.iter().filter(|dataset| dataset.function == FunctionType::Coherence);
+    let (clean, noisy) = (frfs_of(&bench, "clean.uff"), frfs_of(&bench, "n.uff"));
+    assert_eq!((noisy.len(), coherences.clone().count()), (4, 4));
+    for ((clean, noisy), coherence) in clean.iter().zip(&noisy).zip(coherences) {
+        assert_eq!(noisy.id_lines[1], "noise 0.8 %, 16 averages, seed 7");
+        assert_eq!(noisy.id_lines[4], "averages 16");
+        let Data::Real(coherence) = &coherence.data else { panic!("a coherence is real") };
+        // Squared errors, and what (1 − γ²)/((n − 1)γ²)·|H|² says they are.
+        let (mut error, mut said) = (0.0, 0.0);
+        for (line, gamma2) in coherence.iter().enumerate() {
+            let ((a, b), (c, d)) = (value(clean, line), value(noisy, line));
+            error += (a - c).powi(2) + (b - d).powi(2);
+            said += (1.0 - gamma2) / (15.0 * gamma2) * (c * c + d * d);
+        }
+        let ratio = error / said;
+        assert!(
+            (0.7..1.4).contains(&ratio),
+            "{}: errors are {ratio} of what the coherence says",
+            noisy.id_lines[0]
+        );
+    }
+}
+
+#[test]
+fn the_same_seed_makes_the_same_bytes_and_another_one_other_noise() {
+    let bench = bench("seed", FIXTURE);
+    let made = |seed: &[&str]| {
+        bench.done(&[["synthesize", "two.json", "--noise", "1", "-o", "n.uff"].as_slice(), seed].concat());
+        fs::read(bench.0.join("n.uff")).unwrap()
+    };
+    let first = made(&[]);
+    assert!(first == made(&["--seed", "1"]) && first != made(&["--seed", "2"]));
+}
+
+#[test]
+fn a_shipped_fixture_is_consistent_with_its_own_noisy_frfs() {
+    let bench = Bench::new("synthesize-rehearsal");
+    let two = include_str!("../../../../fixtures/two-blocks/fixture.json");
+    bench.write("two.json", two);
+    bench.done(&["synthesize", "two.json", "--lines", "5:1000:5", "--noise", "0.5", "-o", "n.uff"]);
+    bench.done(&["diagnose", "two.json", "n.uff", "-o", "out"]);
+    let answer = bench.json("out/diagnosis.json");
+    assert_eq!(answer["verdict"], "consistent", "{answer}");
+    let chi2 = answer["mismatch"]["chi2_per_dof"].as_f64().unwrap();
+    assert!((0.8..1.2).contains(&chi2), "{chi2}");
+}
+
+#[test]
+fn a_noise_that_no_test_has_is_refused() {
+    let bench = bench("no-noise", FIXTURE);
+    let check = |options: &[&str], parts: &[&str]| {
+        bench.refused(&[["synthesize", "two.json", "-o", "n.uff"].as_slice(), options].concat(), parts);
+    };
+    check(&["--noise", "0"], &["--noise", "above zero"]);
+    check(&["--noise", "NaN"], &["--noise", "such as 0.5"]);
+    check(&["--noise", "1", "--averages", "1"], &["--averages", "2"]);
+    check(&["--seed", "3"], &["--noise"]);
+}
+
 #[test]
 fn the_output_may_lie_in_a_directory_that_does_not_exist_yet() {
     let bench = bench("directory", FIXTURE);

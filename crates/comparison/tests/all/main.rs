@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used)]
 
 mod at_once;
+mod equality;
 
 use jointscope_comparison::{Caution, Comparison, ComparisonOptions, Decomposed, WhyApart};
 use jointscope_wording::Says;

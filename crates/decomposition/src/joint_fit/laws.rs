@@ -2,6 +2,7 @@
 
 use super::evidence::Fit;
 use super::law::{Dynamics, Form, LawKind};
+use super::likelihood::{JointLikelihood, told};
 use super::problem::{Fitted, Problem, Test};
 use crate::Sides;
 use jointscope_fixture::BodyKind;
@@ -28,17 +29,28 @@ pub struct LawFit {
     pub change: Option<RealMatrix2>,
     /// τ (s) or α, of the laws that have one.
     pub shape: Option<f64>,
+    /// What the FRFs tell of its K and C in the middle of the band, of a law that the joint's numbers are not of: for a comparison with joints that follow it. Nothing of improbable laws.
+    pub likelihood: Option<JointLikelihood>,
     law: Dynamics,
     coordinates: Vec<f64>,
 }
 
 /// Probability from which a law, or the mass of a joint, is said to hold, rather than to be the most probable one.
 pub(super) const CERTAIN: f64 = 0.95;
+/// Probability from which it is kept what FRFs tell under a law: that of the joint's own law is seldom lower.
+const PROBABLE: f64 = 1e-3;
 
 impl LawFit {
     /// Whether it is said to hold, rather than to be the most probable of the laws compared.
     pub fn is_certain(&self) -> bool {
         self.probability >= CERTAIN
+    }
+
+    /// The same as one of the laws beside that of the joint's numbers, `stated`, with noise whose variance counts `inflation` times.
+    pub(super) fn beside(mut self, stated: (LawKind, bool), inflation: f64) -> Self {
+        let is_stated = (self.kind, self.mass.is_some()) == stated;
+        self.likelihood = self.likelihood.filter(|_| !is_stated).map(|told| told.inflated(inflation));
+        self
     }
 
     /// A law at these coordinates of its own.
@@ -53,6 +65,7 @@ impl LawFit {
             damping: d.scale(law.own_damping(own)),
             change: (law.change != Form::Zero).then(|| l.scale(1.0 / law.middle)),
             shape: law.shape(own),
+            likelihood: None,
             law: *law,
             coordinates: own.to_vec(),
         }
@@ -167,6 +180,9 @@ fn ranked(mut all: Vec<Candidate>) -> (Vec<LawFit>, Vec<f64>) {
     let total: f64 = all.iter().map(|candidate| (candidate.evidence - most).exp()).sum();
     for candidate in &mut all {
         candidate.fit.probability = (candidate.evidence - most).exp() / total;
+        if candidate.fit.probability < PROBABLE {
+            candidate.fit.likelihood = None;
+        }
     }
     all.sort_by(|a, b| b.evidence.total_cmp(&a.evidence));
     let first = all.first().map_or_else(Vec::new, |first| first.at.clone());
@@ -305,17 +321,23 @@ impl Candidate {
     /// A joint's law at the optimum of all; `None` where that is not determined.
     pub(super) fn of(problem: &Problem, at: &Fitted, joint: usize) -> Option<Self> {
         let (first, law) = problem.places().nth(joint)?;
+        let equations = at.equations(problem);
         let fit = Fit {
             objective: at.point.objective,
             at: &at.point.coordinates,
-            equations: &at.equations(problem),
+            equations: &equations,
             parameters: &problem.parameters,
         };
         let place_of_mass = problem.mass.map(|_| problem.of_laws());
         let evidence = fit.evidence((first, law), place_of_mass, &variances(&problem.parameters))?;
         let own = &at.point.coordinates[first..first + law.count()];
         let mass = problem.mass.map(|_| problem.mass_at(&at.point.coordinates));
-        let fit = LawFit::of(law, own, at.point.objective, mass);
+        let mut fit = LawFit::of(law, own, at.point.objective, mass);
+        if problem.laws.len() == 1 {
+            let (numbers, at) = (told(law), &at.point.coordinates);
+            fit.likelihood =
+                JointLikelihood::of(&numbers, problem.own(), at, &equations, &problem.parameters);
+        }
         let whole = at.point.coordinates.clone();
         Some(Candidate { fit, evidence, inflation: problem.inflation(&at.point), at: whole })
     }
@@ -344,6 +366,7 @@ mod tests {
                 damping,
                 change,
                 shape,
+                likelihood: None,
                 law,
                 coordinates,
             }

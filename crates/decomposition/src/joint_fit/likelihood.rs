@@ -1,6 +1,8 @@
 //! What the FRFs alone tell of joints and of the fixture's quantities: two joints on the same blocks share these, and only with the likelihood of both, their prior
 //! entering once, is the difference of the joints as well known as it is.
 
+use super::law::Dynamics;
+use super::uncertainty::units;
 use jointscope_inference::{NormalEquations, Parameter, QuadraticLikelihood};
 use serde::Serialize;
 
@@ -31,7 +33,25 @@ pub(super) struct Told {
     pub unit: f64,
 }
 
+/// The numbers of the only joint in the middle of the band, by its law.
+pub(super) fn told(law: &Dynamics) -> Vec<Told> {
+    let units = units(law);
+    let number = |(coordinate, &place): (usize, &usize)| Told {
+        name: ELEMENTS[place].to_owned(),
+        coordinate,
+        unit: units[place],
+    };
+    law.slots().iter().enumerate().map(number).collect()
+}
+
 impl JointLikelihood {
+    /// The same where the variance of the noise counts so many times.
+    pub(super) fn inflated(mut self, by: f64) -> Self {
+        self.gradient.iter_mut().for_each(|entry| *entry /= by);
+        self.information.iter_mut().flatten().for_each(|entry| *entry /= by);
+        self
+    }
+
     /// From the normal equations at an optimum with c free: of these numbers and of the quantities, whose coordinates begin at `own`; what is neither is
     /// integrated out. Nothing where the FRFs leave that undetermined.
     pub(super) fn of(

@@ -23,6 +23,17 @@ fn no_numbers(rows: &[Row]) -> ImportError {
     ImportError::NoTable { why: format!("no line holds a frequency and numbers beside it{found}") }
 }
 
+/// No row above the first one of numbers has as many fields: a header of another width says that this row lacks some, or has too many.
+fn no_header(above: &[Row], numbers: &Row) -> ImportError {
+    let (line, found) = (numbers.line, numbers.fields.len());
+    match above.iter().rev().find(|row| row.fields.len() > 1 && is_header(&row.fields)) {
+        Some(header) => ImportError::Width { line, found, expected: header.fields.len() },
+        None => ImportError::NoTable {
+            why: format!("no header of {found} names stands above the numbers of line {line}"),
+        },
+    }
+}
+
 impl Table {
     /// The header is the last line above the first row of numbers that has as many fields; a line of units may stand between.
     pub(super) fn of(rows: &Rows) -> Result<Self, ImportError> {
@@ -43,9 +54,7 @@ impl Table {
         }
         let mut above = all[..first].iter().rev().filter(|row| row.fields.len() == width);
         let Some(nearest) = above.next() else {
-            let why =
-                format!("no header of {width} names stands above the numbers of line {}", all[first].line);
-            return Err(ImportError::NoTable { why });
+            return Err(no_header(&all[..first], &all[first]));
         };
         let is_number = |field: &str| rows.number(field).is_some();
         let with_units =
@@ -55,6 +64,11 @@ impl Table {
             Some(header) => (header, nearest.fields.iter().map(unit).collect()),
             None => (nearest, vec![String::new(); width]),
         };
+        for row in all[..first].iter().filter(|row| row.line > nearest.line && holds_number(row)) {
+            if row.fields.len() != width {
+                return Err(ImportError::Width { line: row.line, found: row.fields.len(), expected: width });
+            }
+        }
         let mut table = Table {
             headers: header.fields.clone(),
             line: header.line,
@@ -82,7 +96,10 @@ impl Table {
             let Some(value) = rows.number(field) else {
                 let problem = match field.is_empty() {
                     true => "the field is blank; fill it in or leave the line out".to_owned(),
-                    false => format!("`{}` is no finite number", field.chars().take(40).collect::<String>()),
+                    false => format!(
+                        "`{}` is no finite number; write one or leave the line out",
+                        field.chars().take(40).collect::<String>()
+                    ),
                 };
                 return Err(self.error(row.line, at, problem));
             };

@@ -167,3 +167,12 @@ fn a_column_with_decimal_commas_and_points_is_refused() {
     // A column of its own program may have its own sign.
     check("f;4/1 real [m/s^2/N];4/1 imag\n10;0,0;2.0\n12,5;-1,5;0.0\n", &[], "m/s^2/N");
 }
+
+#[test]
+fn a_first_row_with_too_few_cells_is_named_and_not_taken_for_a_missing_header() {
+    let table = |row: &str| format!("frequency,4/1 real,4/1 imag\n{row}\n12.5,-1.5,0\n15,1,1\n");
+    for (row, found) in [("10,0", 2), ("10", 1), ("10,0,2,7", 4)] {
+        refused(&table(row), &[], &[&format!("line 2: {found} fields where the header has 3")]);
+    }
+    refused("f;4/1 real;4/1 imag\nHz;g/N;g/N\n10;0\n20;1;2\n", &[], &["line 3: 2 fields"]);
+}

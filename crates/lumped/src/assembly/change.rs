@@ -29,12 +29,16 @@ pub(crate) struct AssemblyChange {
     pub damping: Vec<ModeDamping>,
 }
 
+/// Whether a fixture has meshed bodies, of whose modes not all are known.
+pub(crate) fn has_meshed_bodies(fixture: &Fixture) -> bool {
+    fixture.bodies().iter().any(|body| matches!(body.kind, BodyKind::Beam(_)))
+}
+
 impl Assembly {
     /// What a `step` changes that leads from `fixture`, whose assembly this is, to `moved`, a fixture of the same bodies, joints and supports; `None` for meshed
     /// bodies, and where the change has no derivative.
     pub(crate) fn change(&self, fixture: &Fixture, moved: &Fixture, step: f64) -> Option<AssemblyChange> {
-        let is_meshed = |body: &jointscope_fixture::Body| matches!(body.kind, BodyKind::Beam(_));
-        if moved.bodies().iter().any(is_meshed) || in_the_modes(fixture) != in_the_modes(moved) {
+        if has_meshed_bodies(moved) || in_the_modes(fixture) != in_the_modes(moved) {
             return None;
         }
         let places = coordinates(moved, 0.0).ok()?;

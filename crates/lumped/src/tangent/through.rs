@@ -1,9 +1,9 @@
 //! What supports and effects pass on: R and g of every channel, by block of lines.
 
-use super::motions::Motions;
 use super::rows::{Rows, sums};
 use crate::ModelledTest;
 use crate::lanes::Lanes;
+use crate::motions::Motions;
 use crate::receptances::divided;
 use crate::terms::Terms;
 use jointscope_linalg::{Field, LuWorkspace};

@@ -2,16 +2,17 @@
 
 use jointscope_check::{Check, Known};
 
-use crate::format::quantity;
+use crate::format::quantity_in;
 use crate::section::Section;
 use crate::table::Table;
+use crate::unit::Scale;
 
 pub(super) fn section(check: &Check) -> Section {
     let table = Table::of(&check.numbers)
         .words("number", |number| number.path.clone())
         .words("value", |number| {
             let std = number.std.filter(|std| *std > 0.0);
-            quantity(number.value, std, number.unit)
+            quantity_in(number.value, std, &Scale::of_stated([number.value], number.unit))
         })
         .words("its deviation", |number| match number.known {
             Known::Stated => "stated",

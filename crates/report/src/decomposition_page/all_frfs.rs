@@ -5,10 +5,11 @@ use jointscope_fixture::Fixture;
 use jointscope_wording::{Remarks, Says, capitalised};
 
 use super::subject::Subject;
-use crate::format::{quantity, significant};
+use crate::format::{quantity, quantity_in, significant};
 use crate::section::{Block, Section};
 use crate::table::Table;
 use crate::tone::Tone;
+use crate::unit::Scale;
 
 /// Probability below which a law is left out of the table.
 const NEGLIGIBLE: f64 = 1e-3;
@@ -81,10 +82,13 @@ pub(super) fn moved(fixture: &Fixture, fit: &JointFit) -> impl Into<Block> {
     let mut rows: Vec<(&FittedQuantity, &'static str)> =
         fit.quantities.iter().map(|quantity| (quantity, unit(&quantity.path))).collect();
     rows.sort_by(|a, b| b.0.deviations.abs().total_cmp(&a.0.deviations.abs()));
+    let scale = |own: &FittedQuantity, unit: &str| {
+        Scale::of_stated([own.stated, own.fitted, own.fitted_std].into_iter().chain(own.std), unit)
+    };
     Table::of(rows)
         .words("Quantity", |(own, _)| own.path.clone())
-        .words("Stated", |(own, unit)| quantity(own.stated, own.std, unit))
-        .words("With the FRFs", |(own, unit)| quantity(own.fitted, own.fitted_std, unit))
+        .words("Stated", move |(own, unit)| quantity_in(own.stated, own.std, &scale(own, unit)))
+        .words("With the FRFs", move |(own, unit)| quantity_in(own.fitted, own.fitted_std, &scale(own, unit)))
         .numbers("moved by", "std", |(own, _)| match own.std {
             Some(_) => significant(own.deviations, 2),
             None => "free".to_owned(),

@@ -22,7 +22,7 @@ pub(super) fn section(subject: &Subject) -> Section {
     });
     let phases = panes
         .iter()
-        .map(|panes| panes.phase().height(180).caption("Phase, in the turn that the curves cross least."));
+        .map(|panes| panes.phase().height(180).caption("Phase, in the turn that the curves cross least; a curve that crosses it is followed a little way."));
     let section = Section::new("FRFs")
         .paragraph(introduction(subject))
         .plots(columns, magnitudes)

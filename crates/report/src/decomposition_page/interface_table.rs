@@ -3,7 +3,7 @@
 use jointscope_decomposition::{Compliance, InterfaceStiffness, Method};
 
 use super::subject::Subject;
-use crate::format::{interval, magnitude, quantity};
+use crate::format::{interval, magnitude, quantity, significant};
 use crate::section::Section;
 use crate::table::Table;
 use crate::unit::{Scale, typeset};
@@ -58,6 +58,12 @@ type Units = (&'static str, &'static str);
 const TRANSLATION: Units = ("N/m", "m/N");
 const ROTATION: Units = ("N*m/rad", "rad/(N*m)");
 
+/// The unit of a stiffness and of its interval, whose upper end may lie far off.
+fn scale(stiffness: f64, ends: [f64; 2], unit: &str) -> Scale {
+    let near = ends.into_iter().filter(|end| *end < 1e3 * stiffness);
+    Scale::for_values(near.chain([stiffness]), unit)
+}
+
 /// Name, compliance and units.
 type Row = (String, Compliance, Units);
 
@@ -65,15 +71,18 @@ fn table(heading: &str, rows: impl IntoIterator<Item = Row>) -> Table<Row> {
     Table::of(rows)
         .words(heading, |(name, ..)| name.clone())
         .words("Stiffness", |(_, compliance, (unit, _))| match compliance.stiffness() {
-            InterfaceStiffness::Found { stiffness, .. } => magnitude(stiffness, unit, 3),
+            InterfaceStiffness::Found { stiffness, interval } => {
+                let scale = scale(stiffness, interval, unit);
+                format!("{} {}", significant(scale.of(stiffness), 3), scale.unit())
+            }
             InterfaceStiffness::StifferThan { .. } => "stiffer than this test can see".to_owned(),
             InterfaceStiffness::StifferThanTheBeam => {
                 "none: the joint is stiffer than the beam it is said to be".to_owned()
             }
         })
         .words("95 % interval", |(_, compliance, (unit, _))| match compliance.stiffness() {
-            InterfaceStiffness::Found { interval: ends, .. } => {
-                interval(ends, &Scale::for_magnitude(ends[0], unit), 3)
+            InterfaceStiffness::Found { stiffness, interval: ends } => {
+                interval(ends, &scale(stiffness, ends, unit), 3)
             }
             InterfaceStiffness::StifferThan { above } => format!("above {}", magnitude(above, unit, 3)),
             InterfaceStiffness::StifferThanTheBeam => "–".to_owned(),

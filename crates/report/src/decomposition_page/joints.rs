@@ -7,11 +7,12 @@ use jointscope_wording::{Remarks, capitalised};
 use super::all_frfs::{laws, moved, tests};
 use crate::context::PageContext;
 use crate::drawing::SideView;
-use crate::format::{quantity, significant};
+use crate::format::{quantity, quantity_in, significant};
 use crate::report::Report;
 use crate::section::{Section, Verdict};
 use crate::table::Table;
 use crate::tone::Tone;
+use crate::unit::Scale;
 use jointscope_wording::element::{symbol, unit};
 
 /// Correlation of two numbers from which it is listed.
@@ -86,14 +87,22 @@ fn result(fit: &JointsFit) -> Section {
         .words("", |(_, part, element)| symbol(*part, *element, false).to_string())
         .words("From all FRFs", |(joint, part, element)| {
             let value = element.of(&part.of((joint.fit.stiffness, joint.fit.damping)));
-            quantity(value, element.of(&part.of(joint.fit.std())), unit(*part, *element))
+            quantity_in(value, element.of(&part.of(joint.fit.std())), &scale(joint, *part, *element))
         })
         .words("The fixture's", |(joint, part, element)| match part {
-            Part::Stiffness => quantity(element.of(&joint.nominal), None, unit(*part, *element)),
+            Part::Stiffness => quantity_in(element.of(&joint.nominal), None, &scale(joint, *part, *element)),
             Part::Damping => String::new(),
         })
         .caption("On d = u_to − R·u_from at each joint's far end. The ± hold noise, tolerances and what the model gets wrong.");
     Section::new("Result").with(table)
+}
+
+/// The unit of a number's row.
+fn scale(joint: &FoundJoint, part: Part, element: Element) -> Scale {
+    let found = element.of(&part.of((joint.fit.stiffness, joint.fit.damping)));
+    let std = element.of(&part.of(joint.fit.std()));
+    let nominal = (part == Part::Stiffness).then(|| element.of(&joint.nominal));
+    Scale::for_values(nominal.into_iter().chain([found, std]), unit(part, element))
 }
 
 fn joint_section(joint: &FoundJoint) -> Section {

@@ -3,7 +3,7 @@
 use jointscope_decomposition::{Element, Estimate, Figure, Part};
 
 use super::subject::Subject;
-use crate::format::{in_parts, quantity, significant};
+use crate::format::{in_parts, quantity_in, significant};
 use crate::section::{Card, Section};
 use crate::table::Table;
 use crate::tone::Tone;
@@ -56,8 +56,10 @@ fn card(subject: &Subject, part: Part, element: Element) -> Card {
     if figure.may_be_zero() {
         notes.push("cannot be told from zero".to_owned());
     }
-    if let Some(nominal) = subject.analysis.nominal_average(part, element, best.paper) {
-        let text = quantity(nominal, None, unit);
+    let nominal = subject.analysis.nominal_average(part, element, best.paper);
+    let scale = Scale::for_values(nominal.into_iter().chain([figure.value, figure.total()]), unit);
+    if let Some(nominal) = nominal {
+        let text = quantity_in(nominal, None, &scale);
         match part {
             Part::Stiffness if nominal != 0.0 && !figure.may_be_zero() => {
                 notes.push(format!("{} of nominal {text}", share(figure.value / nominal)));
@@ -65,7 +67,7 @@ fn card(subject: &Subject, part: Part, element: Element) -> Card {
             _ => notes.push(format!("nominal {text}")),
         }
     }
-    Card::quantity(label, figure.value, figure.total(), unit)
+    Card::quantity_in(label, figure.value, figure.total(), &scale)
         .note(notes.join(" · "))
         .tone(figure.may_be_zero().then_some(Tone::Attention))
 }

@@ -3,12 +3,11 @@
 use jointscope_diagnosis::{Estimate, Finding, Verdict};
 use jointscope_wording::effect_name;
 
-use super::glance::chance;
+use super::glance::{chance, scale};
 use super::subject::Subject;
-use crate::format::{self, NOT_DETERMINED, quantity, significant};
+use crate::format::{self, NOT_DETERMINED, quantity_in, significant};
 use crate::section::{Block, Section};
 use crate::table::Table;
-use crate::unit::Scale;
 
 /// Look-alikes below this probability are not listed.
 const LISTED: f64 = 1e-3;
@@ -72,7 +71,7 @@ fn parameters(subject: &Subject) -> impl Into<Block> {
     };
     by_finding(subject, |finding| finding.estimates.iter().collect())
         .words("Parameter", |(_, estimate)| estimate.parameter.name.replace('_', " "))
-        .words("Value ± standard deviation", |(_, e)| quantity(e.value, e.std, e.unit))
+        .words("Value ± standard deviation", |(_, e)| quantity_in(e.value, e.std, &scale(e)))
         .words("95 % interval", |(_, estimate)| interval(estimate))
         .numbers("Probability", "", |(finding, _)| {
             finding.map_or(String::new(), |(_, finding)| chance(finding.probability))
@@ -88,10 +87,7 @@ fn interval(estimate: &Estimate) -> String {
         return "not sought".to_owned();
     }
     match estimate.interval.filter(|[low, high]| low.is_finite() && high.is_finite()) {
-        Some([low, high]) => {
-            let scale = Scale::for_values([low, high, estimate.value], estimate.unit);
-            format::ends([low, high], &scale)
-        }
+        Some(ends) => format::ends(ends, &scale(estimate)),
         None => NOT_DETERMINED.to_owned(),
     }
 }

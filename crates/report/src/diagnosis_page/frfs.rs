@@ -20,7 +20,7 @@ pub(super) fn section(subject: &Subject) -> Section {
     for index in shown {
         let panes = panes(subject, index, models(subject, index));
         let magnitude = panes.magnitude().caption(judged(subject, index));
-        let phase = panes.phase().caption("Phase, in the turn that the curves cross least.");
+        let phase = panes.phase().caption("Phase, in the turn that the curves cross least; a curve that crosses it is followed a little way.");
         section = section
             .plots(2, with_held_out(subject, index, [magnitude, phase].into_iter().chain(panes.below())));
     }

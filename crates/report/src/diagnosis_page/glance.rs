@@ -63,10 +63,21 @@ fn main_parameter(finding: &Finding) -> Option<&Estimate> {
     finding.estimate(spec.parameters[spec.size.parameter].name)
 }
 
+/// An end of an interval beyond so many times the value is no part of what its unit has to suit.
+const FAR: f64 = 1e3;
+
+/// The unit of a parameter and of its interval.
+pub(super) fn scale(estimate: &Estimate) -> Scale {
+    let known = estimate.interval.into_iter().flatten().chain(estimate.std);
+    let value = estimate.value;
+    let near = known.filter(|other| value == 0.0 || other.abs() < FAR * value.abs());
+    Scale::for_values(near.chain([value]), estimate.unit)
+}
+
 fn size(index: usize, finding: &Finding) -> Card {
     let label = format!("{}. {}", index + 1, effect_name(&finding.effect));
     match main_parameter(finding) {
-        Some(main) => Card::quantity(label, main.value, main.std, main.unit),
+        Some(main) => Card::quantity_in(label, main.value, main.std, &scale(main)),
         None => Card::text(label, NOT_DETERMINED),
     }
 }
@@ -75,7 +86,7 @@ fn known(finding: &Finding) -> String {
     let interval = main_parameter(finding).and_then(|main| Some((main, main.interval?)));
     match interval.filter(|(_, interval)| interval.iter().all(|end| end.is_finite())) {
         Some((main, interval)) => {
-            format!("95 %: {}", ends(interval, &Scale::for_magnitude(main.value, main.unit)))
+            format!("95 %: {}", ends(interval, &scale(main)))
         }
         None => format!("95 %: {NOT_DETERMINED}"),
     }

@@ -1,10 +1,13 @@
 //! The tolerances used, and where they ended.
 
+use jointscope_fixture::NamedQuantity;
+
 use super::subject::Subject;
-use crate::format::{quantity, significant};
+use crate::format::{quantity_in, significant};
 use crate::section::Section;
 use crate::table::Table;
 use crate::tone::Tone;
+use crate::unit::Scale;
 
 pub(super) fn section(subject: &Subject) -> Option<Section> {
     let models = subject.stated();
@@ -17,15 +20,19 @@ pub(super) fn section(subject: &Subject) -> Option<Section> {
     }
     let is_far = |index: usize| models.iter().any(|(_, model)| model.is_far(index));
     let far = (0..tolerances.len()).filter(|index| is_far(*index)).count();
+    let scale = |index: usize, own: &NamedQuantity| {
+        let ended = models.iter().map(|(_, model)| model.ended_at(index));
+        Scale::of_stated(ended.chain([own.value]).chain(own.std), own.key.unit())
+    };
     let mut table = Table::of(tolerances.iter().map(|tolerance| &tolerance.quantity).enumerate())
         .words("Quantity", |(_, own)| own.path.clone())
-        .words("Stated", |(_, own)| {
-            let stated = quantity(own.value, own.std, own.key.unit());
+        .words("Stated", |(index, own)| {
+            let stated = quantity_in(own.value, own.std, &scale(*index, own));
             if own.std.is_some() { stated } else { format!("{stated} (unknown, left free)") }
         });
     for (name, model) in &models {
         table = table
-            .words(*name, |(index, own)| quantity(model.ended_at(*index), None, own.key.unit()))
+            .words(*name, |(index, own)| quantity_in(model.ended_at(*index), None, &scale(*index, own)))
             .numbers(format!("departure, {name}"), "std", |(index, own)| match own.std {
                 Some(_) => significant(model.departure(*index), 2),
                 None => "free".to_owned(),

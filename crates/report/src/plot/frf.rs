@@ -225,8 +225,11 @@ fn degrees(values: &[Option<Complex64>]) -> Vec<Option<f64>> {
     values.iter().map(|v| v.filter(|v| *v != Complex64::ZERO).map(|v| v.arg().to_degrees())).collect()
 }
 
-/// Moves the phases (degrees) of several curves into one turn, cut where the fewest neighbouring lines jump over the cut: noise about ±180°
-/// would fill the pane.
+/// How far, °, a curve may be drawn beyond either end of its turn rather than jump over it.
+const BEYOND: f64 = 120.0;
+
+/// Moves the phases (degrees) of several curves, the measured one first, into one turn, cut where the fewest neighbouring lines jump over the cut: noise about ±180°
+/// would fill the pane. Beyond the cut a curve is followed a little way, and models are drawn beside what was measured.
 fn in_the_quietest_turn(curves: &mut [Vec<Option<f64>>]) {
     let jumps = |cut: f64| -> usize {
         let of = |values: &Vec<Option<f64>>| {
@@ -237,12 +240,84 @@ fn in_the_quietest_turn(curves: &mut [Vec<Option<f64>>]) {
     };
     let cuts = [180.0, 90.0, 60.0, 45.0, 120.0, 135.0, 150.0, 210.0, 225.0, 240.0, 270.0, 30.0];
     let cut = cuts.into_iter().min_by_key(|cut| jumps(*cut)).unwrap_or(180.0);
-    for value in curves.iter_mut().flatten().flatten() {
-        *value = below(*value, cut);
+    let Some((measured, models)) = curves.split_first_mut() else { return };
+    let mut before = None;
+    for value in measured.iter_mut().flatten() {
+        *value = beside(below(*value, cut), before, cut);
+        before = Some(*value);
     }
+    for model in models {
+        let mut before = None;
+        for (value, measured) in model.iter_mut().zip(&*measured) {
+            let Some(value) = value else { continue };
+            let own = below(*value, cut);
+            let off = |measured: f64| below(own - measured, 180.0);
+            // Opposite to what was measured a model is on either side of it.
+            let near = measured.filter(|measured| off(*measured).abs() < 90.0);
+            *value = near.map_or_else(|| beside(own, before, cut), |measured| measured + off(measured));
+            before = Some(*value);
+        }
+    }
+}
+
+/// The phase as near to another one as the ends of the turn let it be.
+fn beside(degrees: f64, other: Option<f64>, cut: f64) -> f64 {
+    let turns = other.map_or(0.0, |other| ((other - degrees) / 360.0).round());
+    let nearest = degrees + 360.0 * turns;
+    if (cut - 360.0 - BEYOND..=cut + BEYOND).contains(&nearest) { nearest } else { degrees }
 }
 
 /// The phase in the turn that ends at `cut`, degrees.
 fn below(degrees: f64, cut: f64) -> f64 {
     cut - (cut - degrees).rem_euclid(360.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Phases whose neighbours lie more than half a turn apart.
+    fn jumps(phases: &[Option<f64>]) -> usize {
+        let pairs = phases.windows(2).filter_map(|pair| pair[0].zip(pair[1]));
+        pairs.filter(|(a, b)| (a - b).abs() > 180.0).count()
+    }
+
+    /// Degrees as `arg` gives them.
+    fn wrapped(degrees: f64) -> Option<f64> {
+        Some(below(degrees, 180.0))
+    }
+
+    #[test]
+    fn wide_noise_about_both_signs_of_half_a_turn_leaves_no_jumps() {
+        // From −180° over a resonance's 0° to −180° again, each with noise of up to 85° to either side.
+        let noise = |line: usize| 85.0 * ((line * 37 % 100) as f64 / 50.0 - 1.0);
+        let course = |line: usize| match line {
+            0..100 => -180.0,
+            100..200 => 0.0,
+            _ => 180.0,
+        };
+        let measured: Vec<_> = (0..300).map(|line| wrapped(course(line) + noise(line))).collect();
+        let model: Vec<_> = (0..300).map(|line| wrapped(course(line) + 1.0)).collect();
+        assert!(jumps(&measured) > 50);
+        let mut curves = [measured.clone(), model];
+        in_the_quietest_turn(&mut curves);
+        assert!(curves.iter().all(|curve| jumps(curve) <= 2), "{} {}", jumps(&curves[0]), jumps(&curves[1]));
+        for (line, (drawn, given)) in curves[0].iter().zip(&measured).enumerate() {
+            let turns = (drawn.unwrap() - given.unwrap()) / 360.0;
+            assert!((turns - turns.round()).abs() < 1e-9, "line {line} is drawn at another phase");
+        }
+        for (line, (measured, model)) in curves[0].iter().zip(&curves[1]).enumerate() {
+            let apart = (measured.unwrap() - model.unwrap()).abs();
+            assert!(apart < 90.0, "line {line}: the model is drawn {apart}° from what was measured");
+        }
+    }
+
+    #[test]
+    fn a_phase_that_turns_on_and_on_stays_in_the_pane() {
+        let turning: Vec<_> = (0..400).map(|line| wrapped(-10.0 * f64::from(line))).collect();
+        let mut curves = [turning];
+        in_the_quietest_turn(&mut curves);
+        let span = Span::of(curves[0].iter().copied().flatten());
+        assert!(span.width() <= 360.0 + 2.0 * BEYOND, "{}", span.width());
+    }
 }

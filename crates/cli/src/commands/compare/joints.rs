@@ -56,27 +56,38 @@ impl Listed {
         let mut files: Vec<PathBuf> = Vec::new();
         for named in &self.named {
             let file = named.directory.join(FILE);
+            if named.directory.is_file() {
+                return Err(Refusal::at(
+                    &named.directory,
+                    "is a file where a directory is needed; give the one that `jointscope decompose` wrote to",
+                ));
+            }
             if named.directory.is_dir() && !file.exists() {
                 return Err(Refusal::holding_no(&named.directory, FILE, "decompose"));
             }
-            if !files.contains(&file) {
+            if !files.iter().any(|other| is_same(other, &file)) {
                 files.push(file);
             }
         }
         Ok(files)
     }
 
-    /// Reads them. A joint named by itself and with all of its directory is there once.
+    /// Reads them, each file once. A joint named by itself and with all of its directory is there once.
     pub(super) fn read(&self) -> Result<Found, Refusal> {
         let mut found = Found { joints: Vec::new(), places: Vec::new() };
+        let files = self.files()?;
+        let contents = files.iter().map(|file| input::json(file)).collect::<Result<Vec<_>, _>>()?;
         for named in &self.named {
             let file = named.directory.join(FILE);
-            let contents = input::json(&file)?;
+            let Some((_, contents)) = files.iter().zip(&contents).find(|(other, _)| is_same(other, &file))
+            else {
+                continue;
+            };
             let refused = |error| Refusal::at(&file, error);
             let name = self.name(named);
             let all = match &named.joint {
-                None => Decomposed::all(name, &contents).map_err(refused)?,
-                Some(joint) => vec![Decomposed::one(name, &contents, joint).map_err(refused)?],
+                None => Decomposed::all(name, contents).map_err(refused)?,
+                Some(joint) => vec![Decomposed::one(name, contents, joint).map_err(refused)?],
             };
             let places = all.into_iter().map(|joint| {
                 let place = found.joints.iter().position(|other| other.name == joint.name);

@@ -1,0 +1,186 @@
+//! Joints at one law over frequency.
+//!
+//! K and C of different laws are different numbers of one joint, each with the deviation that it has if its law holds. So joints are compared at one law: of those under
+//! which every file says what its FRFs tell, the one with the largest product of probabilities, which is the most probable one if all joints follow one law.
+//!
+//! Whether joints are the same is tested by what FRFs alone tell under this law, with C free: of a C that is held where it gives out no energy the estimate is no longer normal about
+//! the true one, of a free C it is. What other laws would change belongs to no such test: under the law that holds it is no error of either joint.
+
+use crate::stiffness_file::Matrix;
+use crate::{Decomposed, FiledJoint, FiledLikelihood, FollowedLaw};
+use jointscope_inference::NormalEquations;
+use serde::Serialize;
+
+/// The law over frequency at which joints are compared.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct LawOfAll {
+    /// Its name.
+    pub law: String,
+    /// Joints of which another one is the most probable by their own FRFs.
+    pub moved: Vec<String>,
+}
+
+impl LawOfAll {
+    /// The most probable law of all these joints together; nothing where there is none under which every file says what its FRFs tell.
+    pub(crate) fn of(joints: &[Decomposed]) -> Option<Self> {
+        let fits: Vec<&FiledJoint> =
+            joints.iter().map(|joint| joint.fitted.as_ref()).collect::<Option<_>>()?;
+        let first = fits.first()?;
+        let beside = first.laws.iter().map(|entry| entry.law.as_str());
+        let laws = beside.filter(|law| *law != first.stated_law()).chain([first.stated_law()]);
+        let evidence =
+            |law: &str| fits.iter().map(|fit| fit.probability_under(law).map(f64::ln)).sum::<Option<f64>>();
+        let known = laws.filter_map(|law| Some((law, evidence(law)?)));
+        let (law, _) = known.max_by(|a, b| a.1.total_cmp(&b.1))?;
+        let is_moved = |joint: &&Decomposed| joint.fitted.as_ref().is_some_and(|fit| fit.stated_law() != law);
+        let moved = joints.iter().filter(is_moved).map(|joint| joint.name.clone()).collect();
+        Some(LawOfAll { law: law.to_owned(), moved })
+    }
+
+    /// The joints at this law.
+    pub(crate) fn placed(&self, joints: &[Decomposed]) -> Vec<Decomposed> {
+        let at = |joint: &Decomposed| {
+            let moved = joint.fitted.as_ref().and_then(|fit| fit.at_law(&self.law));
+            Decomposed { fitted: moved.or_else(|| joint.fitted.clone()), ..joint.clone() }
+        };
+        joints.iter().map(at).collect()
+    }
+}
+
+/// The joints as their FRFs alone tell of them under the laws that their numbers are of, C free. What one fit found at once stays as it is.
+pub(crate) fn freed(joints: &[Decomposed]) -> Vec<Decomposed> {
+    let free = |joint: &Decomposed| {
+        let own = joint.fitted.as_ref().filter(|_| joint.at_once.is_none());
+        let freed = own.and_then(FiledJoint::freed);
+        Decomposed { fitted: freed.or_else(|| joint.fitted.clone()), ..joint.clone() }
+    };
+    joints.iter().map(free).collect()
+}
+
+/// Mean and covariance of the six numbers.
+type Six = ([f64; 6], [[f64; 6]; 6]);
+
+impl FiledJoint {
+    /// Probability of a law under which the file says what the FRFs tell.
+    fn probability_under(&self, law: &str) -> Option<f64> {
+        let entry = self.laws.iter().find(|entry| entry.law == law);
+        let is_stated = law == self.stated_law();
+        let told = entry.filter(|entry| is_stated || entry.likelihood.is_some());
+        let probability = told.map(|entry| entry.probability).filter(|p| *p > 0.0);
+        probability.or_else(|| (is_stated && self.laws.is_empty()).then_some(1.0))
+    }
+
+    /// The six numbers as FRFs and the fixture's tolerances tell, those that are not told being zero without a deviation.
+    fn posterior(&self, told: &FiledLikelihood) -> Option<Six> {
+        let (slots, likelihood) = told.of_six(self.quantities.len())?;
+        let precision = |m: usize| f64::from(u8::from(self.quantities[m - slots.len()].std.is_some()));
+        let own: Vec<usize> = (0..slots.len()).collect();
+        let own = likelihood.marginal(&own, precision)?;
+        let mut equations = NormalEquations::zero(slots.len());
+        own.add_to(&mut equations, &own.at, &(0..slots.len()).collect::<Vec<_>>());
+        let (step, covariance) = (equations.step(0.0)?, equations.covariance()?);
+        let (mut mean, mut of) = ([0.0; 6], [[0.0; 6]; 6]);
+        for (i, &slot) in slots.iter().enumerate() {
+            mean[slot] = own.at[i] + step[i];
+            for (j, &with) in slots.iter().enumerate() {
+                of[slot][with] =
+                    self.model_error.strain * covariance.at(i, j) + self.model_error.covariance[slot][with];
+            }
+        }
+        Some((mean, of))
+    }
+
+    /// The joint with C free and its law for certain.
+    fn freed(&self) -> Option<Self> {
+        let (mean, covariance) = self.posterior(self.likelihood.as_ref()?)?;
+        let (stiffness, damping) = matrices(&mean);
+        Some(FiledJoint {
+            stiffness,
+            damping,
+            covariance,
+            law_covariance: [[0.0; 6]; 6],
+            laws: Vec::new(),
+            on_the_boundary_of_passive: false,
+            ..self.clone()
+        })
+    }
+
+    /// The joint by another of the laws compared.
+    fn at_law(&self, law: &str) -> Option<Self> {
+        let named = Some(law.to_owned());
+        if law == self.stated_law() {
+            // Files of earlier versions state a law that is not the most probable one.
+            let law = if self.follows.is_some() { named } else { self.law.clone() };
+            return Some(FiledJoint { law, ..self.clone() });
+        }
+        let entry = self.laws.iter().find(|entry| entry.law == law)?;
+        let likelihood = entry.likelihood.clone();
+        let (mean, mut covariance) = self.posterior(likelihood.as_ref()?)?;
+        let follows = self.follows.as_ref()?;
+        let (stiffness, free) = matrices(&mean);
+        let damping = passive(&free, &stiffness);
+        let mut moved = FiledJoint {
+            stiffness,
+            damping,
+            likelihood,
+            law: named,
+            follows: Some(FollowedLaw::plain(law, entry.probability, follows.frequency)),
+            on_the_boundary_of_passive: damping != free,
+            mass: entry.mass(),
+            ..self.clone()
+        };
+        moved.law_covariance = moved.spread();
+        for (row, of_laws) in covariance.iter_mut().zip(moved.law_covariance) {
+            row.iter_mut().zip(of_laws).for_each(|(entry, of_law)| *entry += of_law);
+        }
+        Some(FiledJoint { covariance, ..moved })
+    }
+
+    /// Mean products of what the laws compared differ by from the one stated.
+    fn spread(&self) -> [[f64; 6]; 6] {
+        let mut spread = [[0.0; 6]; 6];
+        for entry in &self.laws {
+            let Some(by) = self.departure(&entry.law) else { continue };
+            for (row, a) in spread.iter_mut().zip(by) {
+                row.iter_mut().zip(by).for_each(|(sum, b)| *sum += entry.probability * a * b);
+            }
+        }
+        spread
+    }
+}
+
+fn matrices(six: &[f64; 6]) -> (Matrix, Matrix) {
+    let matrix = |first: usize| [[six[first], six[first + 1]], [six[first + 1], six[first + 2]]];
+    (matrix(0), matrix(3))
+}
+
+/// The nearest C that gives out no energy, its elements in units of those of K.
+fn passive(c: &Matrix, k: &Matrix) -> Matrix {
+    let unit = |i: usize| if k[i][i] == 0.0 { 1.0 } else { k[i][i].abs().sqrt() };
+    let (u, v) = (unit(0), unit(1));
+    let (a, b, d) = (c[0][0] / (u * u), c[0][1] / (u * v), c[1][1] / (v * v));
+    let (mean, radius) = (0.5 * (a + d), (0.5 * (a - d)).hypot(b));
+    if mean - radius >= 0.0 {
+        return *c;
+    }
+    // What is left is the larger eigenvalue, if it is positive, along its vector.
+    let (largest, angle) = ((mean + radius).max(0.0), 0.5 * b.atan2(0.5 * (a - d)));
+    let (x, y) = (angle.cos() * u, angle.sin() * v);
+    [[largest * x * x, largest * x * y], [largest * x * y, largest * y * y]]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_c_that_gives_out_energy_is_moved_to_the_nearest_that_does_not() {
+        let k = [[4.0, 0.0], [0.0, 1.0]];
+        assert_eq!(passive(&[[4.0, 0.5], [0.5, 1.0]], &k), [[4.0, 0.5], [0.5, 1.0]]);
+        let held = passive(&[[8.0, 0.0], [0.0, -1.0]], &k);
+        assert!((held[0][0] - 8.0).abs() < 1e-12 && held[1][1].abs() < 1e-12, "{held:?}");
+        assert_eq!(passive(&[[-8.0, 0.0], [0.0, -1.0]], &k), [[0.0; 2]; 2]);
+        // Bodies that do not rotate.
+        assert_eq!(passive(&[[-1.0, 0.0], [0.0, 0.0]], &[[4.0, 0.0], [0.0, 0.0]]), [[0.0; 2]; 2]);
+    }
+}
