@@ -218,14 +218,14 @@ impl Diagnosis {
         Ok(self)
     }
 
-    /// The same, or, where nothing explains the recording and no poles do either, what is `diagnosed` in part with that as its noise: leakage and filters leave what no structure has in
+    /// The same, or, where nothing explains the whole recording and no poles do either, what is `diagnosed` in part with that as its noise: leakage and filters leave what no structure has in
     /// its FRFs, and no name is to be held against it.
     fn beside_modes(
         self,
         settings: &Settings,
         diagnosed: impl Fn(Observation) -> Result<Self, DiagnosisError>,
     ) -> Result<Self, DiagnosisError> {
-        if self.verdict != Verdict::Unexplained {
+        if !matches!(self.verdict, Verdict::Unexplained | Verdict::PartlyExplained) {
             return Ok(self);
         }
         let nominal = &self.search.nominal.hypothesis;
@@ -238,12 +238,20 @@ impl Diagnosis {
         if left <= settings.modal.free_fit || share > settings.modal.beside_modes {
             return Ok(self);
         }
-        let other = diagnosed(noisier)?;
-        let explains = matches!(other.verdict, Verdict::Explained | Verdict::PartlyExplained);
-        Ok(match explains {
-            true => Diagnosis { verdict: Verdict::PartlyExplained, beside_modes: Some(share), ..other },
-            false => self,
+        let other = Diagnosis { beside_modes: Some(share), ..diagnosed(noisier)? };
+        Ok(match other.verdict {
+            Verdict::Explained | Verdict::PartlyExplained if other.surest() > self.surest() => {
+                Diagnosis { verdict: Verdict::PartlyExplained, ..other }
+            }
+            // No more than models usually have for errors of shapes.
+            Verdict::Consistent if self.findings.is_empty() && share <= settings.modal.usual.shape => other,
+            _ => self,
         })
+    }
+
+    /// The largest probability of a finding.
+    fn surest(&self) -> f64 {
+        self.findings.iter().map(|finding| finding.probability).fold(0.0, f64::max)
     }
 
     /// The same where the fixture as refitted explains all that there is to explain.
