@@ -142,8 +142,8 @@ impl Diagnosis {
         let diagnosis = diagnosed(observation)?;
         let diagnosis = match options.baseline {
             None => diagnosis
-                .without_shortfall(&options.settings, &diagnosed)?
-                .beside_modes(&options.settings, &diagnosed)?,
+                .without_shortfall(&options.settings, diagnosed)?
+                .beside_modes(&options.settings, diagnosed)?,
             Some(_) => diagnosis,
         };
         let diagnosis = Diagnosis { contradictory, ..diagnosis };

@@ -37,6 +37,11 @@ impl Circle {
         Complex64::from_polar(1.0, (omega - self.first) * self.period)
     }
 
+    /// Whether a frequency lies within the lines: beyond them what hardly grows writes what is out of the band, and is no mode.
+    fn holds(&self, omega: f64) -> bool {
+        (0.0..=TAU * ARC).contains(&((omega - self.first) * self.period))
+    }
+
     /// The pole λ of z = exp((λ − iω₁)T).
     fn pole(&self, z: Complex64) -> Complex64 {
         let before = -0.5 * TAU * (1.0 - ARC);
@@ -210,7 +215,8 @@ impl Equations {
         let mut poles = Vec::new();
         for u in roots {
             let pole = self.circle.pole(u.inv());
-            if pole.re < UNDAMPED * self.circle.spacing && pole.is_finite() && pole.im > 0.0 {
+            let hardly_grows = pole.re < UNDAMPED * self.circle.spacing && self.circle.holds(pole.im);
+            if (pole.re < 0.0 || hardly_grows) && pole.is_finite() && pole.im > 0.0 {
                 let decaying = Complex64::new(-pole.re.abs(), pole.im);
                 poles.push((decaying, self.participation(&coefficients, order, u)));
             }
