@@ -197,3 +197,64 @@ impl Site {
         }
     }
 }
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+    use jointscope_fixture::{EffectKind, Place};
+
+    const BLOCKS: &str = r#"{
+      "bodies": { "A": { "mass": 1.1, "inertia": 9.5e-4, "x_cg": -0.03 }, "B": { "mass": 1.2, "inertia": 9.9e-4, "x_cg": 0.095 } },
+      "points": { "2": { "body": "A", "x": 0 }, "3": { "body": "B", "x": 0.065 } },
+      "joints": { "J": { "from": "2", "to": "3", "beam": { "youngs_modulus": 2.07e11, "second_moment": 3.67e-10 } } } }"#;
+
+    fn location(site: Site, parameters: &[(&'static str, f64)]) -> Location {
+        let told = |&(name, value)| LawParameter { name, value, std: 0.0, unit: "" };
+        let parameters = parameters.iter().map(told).collect();
+        let law =
+            LawFit { name: "", formula: "", parameters, chi2_per_dof: 1.0, degrees: 1, values: Vec::new() };
+        let (bands, frfs, delta, laws) = (Vec::new(), Vec::new(), Vec::new(), vec![law]);
+        Location {
+            site,
+            chi2_per_dof: 1.0,
+            departures: 0.0,
+            degrees: 1,
+            p_value: 1.0,
+            bands,
+            frfs,
+            delta,
+            masked: 0,
+            laws,
+        }
+    }
+
+    #[test]
+    fn a_law_at_a_place_is_every_effect_there_of_which_it_tells_all() {
+        let fixture = Fixture::from_json(BLOCKS).unwrap();
+        let on = |body: &str| Site::Body { body: body.into(), x: 0.11 };
+        let of = |kind, place, values: &[f64]| {
+            crate::candidate::candidate(kind, place, None, vec![values.to_vec()])
+        };
+        let body = |name: &str| Place::Body(name.into());
+        let candidates = [
+            of(EffectKind::AddedMass, body("B"), &[0.1, 0.01]),
+            of(EffectKind::Support, body("A"), &[0.0, 1e4, 0.0]),
+            of(EffectKind::Support, body("B"), &[0.1, 1e4, 0.0]),
+            of(EffectKind::AttachedResonator, body("B"), &[0.1, 0.01, 300.0, 0.01]),
+        ];
+        let told = |site, parameters: &[(&'static str, f64)]| {
+            location(site, parameters).effects(&candidates, &fixture)
+        };
+        let support = |stiffness, damping| {
+            vec![Effect::new(EffectKind::Support, body("B"), None, &[0.11, stiffness, damping])]
+        };
+        assert_eq!(told(on("B"), &[("stiffness", 1.6e5)]), support(1.6e5, 0.0));
+        assert_eq!(told(on("B"), &[("stiffness", 1.6e5), ("damping", 0.5)]), support(1.6e5, 0.5));
+        // A resonator has a mass too, and a frequency of which this law tells nothing.
+        let lump = vec![Effect::new(EffectKind::AddedMass, body("B"), None, &[0.11, 0.06])];
+        assert_eq!(told(on("B"), &[("mass", 0.06)]), lump);
+        assert!(told(on("B"), &[("damping", 0.5)]).is_empty(), "a support without its spring");
+        assert!(told(Site::Joint("J".into()), &[("stiffness", 1.0)]).is_empty());
+    }
+}
