@@ -233,12 +233,12 @@ impl Diagnosis {
             return Ok(self);
         };
         let left = features.recorded.chi2_per_dof;
-        let noisier = self.observation.with_variance_times(left);
-        let share = noisier.relative_noise();
+        let share = left.sqrt() * self.observation.relative_noise();
         if left <= settings.modal.free_fit || share > settings.modal.beside_modes {
             return Ok(self);
         }
-        let other = Diagnosis { beside_modes: Some(share), ..diagnosed(noisier)? };
+        let other =
+            Diagnosis { beside_modes: Some(share), ..diagnosed(self.observation.with_variance_times(left))? };
         Ok(match other.verdict {
             Verdict::Explained | Verdict::PartlyExplained if other.surest() > self.surest() => {
                 Diagnosis { verdict: Verdict::PartlyExplained, ..other }

@@ -29,6 +29,13 @@ const WRONG: f64 = 10.0;
 /// Step of a coordinate, in its units, to a neighbouring fixture whose matrices tell derivatives: halfway between what they curve by and what rounding leaves of them.
 const SMALL: f64 = 1e-6;
 
+/// Writes the values of `some` FRFs, those of the places `frfs`, where they belong among `all`, each of so many `lines`.
+fn write_frfs(all: &mut [Complex64], some: &[Complex64], frfs: &[usize], lines: usize) {
+    for (values, &i) in some.chunks_exact(lines).zip(frfs) {
+        all[i * lines..(i + 1) * lines].copy_from_slice(values);
+    }
+}
+
 /// The fixture with quantities and effects to be fitted: coordinates in units of which one is a typical step.
 #[derive(Debug, Clone)]
 pub struct Hypothesis {
@@ -386,9 +393,7 @@ impl Hypothesis {
             let fixture = moved.to_fixture()?;
             observation.work().count(count * pairs.len());
             let some = accelerances(&fixture, &pairs, observation.lines(), Instrument::AsRecorded)?;
-            for (values, &i) in some.chunks_exact(count).zip(&frfs) {
-                all[i * count..(i + 1) * count].copy_from_slice(values);
-            }
+            write_frfs(&mut all, &some, &frfs, count);
         }
         Ok(all)
     }
@@ -420,9 +425,7 @@ impl Hypothesis {
         (0..predictions).for_each(|_| observation.work().count(derivatives.len()));
         let Some(frfs) = some else { return Some(derivatives) };
         let mut all = vec![Complex64::ZERO; observation.values().len()];
-        for (values, &i) in derivatives.chunks_exact(count).zip(&frfs) {
-            all[i * count..(i + 1) * count].copy_from_slice(values);
-        }
+        write_frfs(&mut all, &derivatives, &frfs, count);
         Some(all)
     }
 

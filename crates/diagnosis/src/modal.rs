@@ -9,6 +9,7 @@
 //! * [`changes`]: the modes of two states side by side;
 //! * [`features`]: a recording as its modes tell it;
 //! * [`fit`]: one hypothesis at its most probable parameters and sizes of error;
+//! * [`turns`]: how its sizes of error go on from round to round;
 //! * [`prior`]: what is known of parameters beforehand;
 //! * [`sizes`]: what is known of the sizes of error, and what a fit says of them;
 //! * [`needs`]: which effects modes need that were found on lines;
@@ -34,6 +35,7 @@ mod starts;
 #[cfg(test)]
 #[allow(clippy::unwrap_used)]
 mod tests;
+mod turns;
 mod uncertainty;
 
 pub(crate) use features::{Features, recorded};

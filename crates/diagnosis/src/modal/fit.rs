@@ -2,6 +2,7 @@
 
 use crate::Hypothesis;
 use crate::modal::prior::Prior;
+use crate::modal::turns::{Turns, are_alike};
 use crate::work::Work;
 use jointscope_fixture::Fixture;
 use jointscope_inference::{
@@ -79,11 +80,6 @@ const PATIENCE: usize = 2;
 const GAINING: f64 = 0.25;
 /// Factor by which a size may shrink from one round to the next: where errors are next to none, a fit that starts far away hangs on whatever is recorded most sharply.
 const SHRINK: f64 = 0.1;
-/// Factors of the share that a size goes of the way to what is asked for, where it turns back and where it does not.
-const TURNED: f64 = 0.4;
-const ONWARD: f64 = 1.25;
-/// Relative difference of sizes that are as good as the same: they are searched no closer.
-const ALIKE: f64 = 0.1;
 /// How often a mode that has strayed into the band or out of it is counted anew, and damping that turns phases by far more or less than before: a mode at the very end of the
 /// band may stray for ever.
 const STRAYS: usize = 2;
@@ -442,40 +438,6 @@ impl<'a> Problem<'a> {
 /// The more probable of two fits, as far as there are any.
 fn more_probable(a: Option<ModalFit>, b: Option<ModalFit>) -> Option<ModalFit> {
     a.into_iter().chain(b).reduce(|best, fit| if fit.ln > best.ln { fit } else { best })
-}
-
-/// Whether parameters fitted at one of these sizes are as good as fitted at the other.
-fn are_alike(a: &ErrorSizes, b: &ErrorSizes) -> bool {
-    a.to_array().iter().zip(b.to_array()).all(|(a, b)| (a / b).ln().abs() < ALIKE)
-}
-
-/// How a fit goes from sizes to those that it asks for.
-struct Turns {
-    /// The change of each size's logarithm that was made last.
-    last: [f64; KINDS],
-    /// Share of what is asked for that is gone.
-    shares: [f64; KINDS],
-}
-
-impl Turns {
-    /// The whole way, for a start.
-    fn none() -> Self {
-        Turns { last: [0.0; KINDS], shares: [1.0; KINDS] }
-    }
-
-    /// The sizes to go on with. Where one turns back it goes less far, and a little farther again where it does not: parameters and sizes that ask for each other in turn come to no
-    /// rest otherwise.
-    fn toward(&mut self, asked: &ErrorSizes, from: &ErrorSizes) -> ErrorSizes {
-        let (from, asked) = (from.to_array(), asked.to_array());
-        ErrorSizes::from_array(std::array::from_fn(|kind| {
-            let change = (asked[kind] / from[kind]).ln();
-            let share = &mut self.shares[kind];
-            *share =
-                if change * self.last[kind] < 0.0 { TURNED * *share } else { (ONWARD * *share).min(1.0) };
-            self.last[kind] = *share * change;
-            if *share == 1.0 { asked[kind] } else { from[kind] * self.last[kind].exp() }
-        }))
-    }
 }
 
 /// How parameters are fitted with at most so many sets of derivatives, the first taken at the start.

@@ -154,7 +154,11 @@ fn is_of_signals(fit: &ModalFit) -> bool {
 }
 
 /// Probability of names that explain the modes, and not the lines: what a usual finding has beside the largest weight of something that is not listed.
-const DOUBTED: f64 = 2.0 / 3.0;
+const AT_ODDS: f64 = 2.0 / 3.0;
+
+fn squares(sizes: &[f64]) -> f64 {
+    sizes.iter().map(|size| size * size).sum()
+}
 
 struct Judge<'a> {
     searcher: Searcher<'a>,
@@ -207,12 +211,11 @@ impl Judge<'_> {
         if hopeless && !self.searcher.calibrated && !(best.names.is_empty() && adequate) {
             return Verdict::Unexplained;
         }
-        let squares = |sizes: Vec<f64>| sizes.iter().map(|s| s * s).sum::<f64>();
         // Errors of the model, or these and those of the records' gains: a channel of the wrong sign looks like gains that are off by all they are.
-        let model = |fit: &ModalFit| squares(self.searcher.problem.relative_sizes(fit));
-        let all = |fit: &ModalFit| squares(self.searcher.problem.relative_sizes_with_gains(fit));
+        let model = |fit: &ModalFit| squares(&self.searcher.problem.relative_sizes(fit));
+        let all = |fit: &ModalFit| squares(&self.searcher.problem.relative_sizes_with_gains(fit));
         // Or those of the modes in the band alone, if no others grow for that: what lies above the band is the model's affair too, but not what a name is about.
-        let modes = |fit: &ModalFit| squares(self.searcher.problem.relative_sizes_of_modes(fit));
+        let modes = |fit: &ModalFit| squares(&self.searcher.problem.relative_sizes_of_modes(fit));
         let part = self.searcher.settings.part;
         let in_part = || {
             model(&best.fit) < part * model(none)
@@ -235,8 +238,7 @@ impl Judge<'_> {
     fn made_up_for_by_signals(&self, best: &ModalFit) -> Vec<f64> {
         let of = |fit: &ModalFit| self.searcher.problem.relative_sizes_of_signals(fit);
         let (without, with) = (of(&self.search.none), of(best));
-        let sum = |sizes: &[f64]| sizes.iter().map(|s| s * s).sum::<f64>();
-        if sum(&with) > sum(&without) {
+        if squares(&with) > squares(&without) {
             return Vec::new();
         }
         let part = self.searcher.settings.part;
@@ -297,7 +299,7 @@ impl ModalJudgement {
     pub(crate) fn doubted(&self) -> Self {
         let names = self.names.iter().map(|all| {
             let stated: f64 = all.iter().map(|(_, probability, _)| probability).sum();
-            let share = (DOUBTED / stated.max(f64::MIN_POSITIVE)).min(1.0);
+            let share = (AT_ODDS / stated.max(f64::MIN_POSITIVE)).min(1.0);
             all.iter().map(|(name, p, hypothesis)| (*name, share * p, hypothesis.clone())).collect()
         });
         ModalJudgement { verdict: Verdict::PartlyExplained, names: names.collect(), ..self.clone() }
