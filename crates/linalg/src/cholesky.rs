@@ -1,10 +1,13 @@
-use faer::{MatRef, Side};
+use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::linalg::cholesky::llt::factor::{LltRegularization, cholesky_in_place, cholesky_in_place_scratch};
+use faer::{MatMut, Par, Spec};
 
 /// Cholesky factor of a symmetric positive definite matrix of any order, scaled to a unit diagonal first so that parameters of different
 /// units can share it.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone)]
 pub struct Cholesky {
     order: usize,
+    /// L, column after column; what is above its diagonal means nothing.
     lower: Vec<f64>,
     unit: Vec<f64>,
 }
@@ -12,29 +15,44 @@ pub struct Cholesky {
 /// Of a unit diagonal, less than this left of a pivot is rounding.
 const ROUNDING: f64 = 1e-15;
 
-/// Order from which the library's blocks pay for copying to them and back.
+/// Order from which the library's blocks pay.
 const MANY: usize = 64;
 
 impl Cholesky {
     /// Factorises `matrix`, row-major of order `order`, of which only the lower triangle is read; `None` where it is not positive definite to
     /// working precision.
     pub fn of(order: usize, matrix: &[f64]) -> Option<Self> {
-        if matrix.len() != order * order {
+        let mut factor = Cholesky::identity(order);
+        factor.anew(matrix).is_some().then_some(factor)
+    }
+
+    /// The factor of the unit matrix.
+    pub fn identity(order: usize) -> Self {
+        let mut lower = vec![0.0; order * order];
+        (0..order).for_each(|j| lower[j * order + j] = 1.0);
+        Cholesky { order, lower, unit: vec![1.0; order] }
+    }
+
+    /// [`Cholesky::of`] another matrix of the same order, in this one's memory. Where there is `None`, this is no matrix' factor any more.
+    pub fn anew(&mut self, matrix: &[f64]) -> Option<&Self> {
+        let n = self.order;
+        if matrix.len() != n * n {
             return None;
         }
-        let diagonal = (0..order).map(|i| matrix[i * order + i]);
-        let unit: Vec<f64> = diagonal.map(|d| (d > 0.0).then(|| d.sqrt().recip())).collect::<Option<_>>()?;
-        let mut lower = vec![0.0; order * order];
-        for i in 0..order {
-            for j in 0..=i {
-                lower[i * order + j] = matrix[i * order + j] * unit[i] * unit[j];
+        for (i, unit) in self.unit.iter_mut().enumerate() {
+            let own = matrix[i * n + i];
+            *unit = (own > 0.0).then(|| own.sqrt().recip())?;
+        }
+        for i in 0..n {
+            for (j, entry) in matrix[i * n..=i * n + i].iter().enumerate() {
+                self.lower[j * n + i] = entry * self.unit[i] * self.unit[j];
             }
         }
-        let positive = match order < MANY {
-            true => factorise(order, order, &mut lower, ROUNDING),
-            false => factorise_many(order, &mut lower),
+        let positive = match n < MANY {
+            true => factorise(n, &mut self.lower),
+            false => factorise_many(n, &mut self.lower),
         };
-        positive.then_some(Cholesky { order, lower, unit })
+        positive.then_some(self)
     }
 
     /// The matrix' order.
@@ -42,28 +60,30 @@ impl Cholesky {
         self.order
     }
 
+    /// L's column `j` from its diagonal down.
+    fn column(&self, j: usize) -> &[f64] {
+        &self.lower[j * self.order + j..(j + 1) * self.order]
+    }
+
     /// Overwrites `b` by the solution of L x = b, with L the scaled factor of the unscaled matrix A = L Lᵀ.
     pub fn solve_lower_in_place(&self, b: &mut [f64]) {
-        let n = self.order;
-        for i in 0..n {
-            let dot: f64 = self.lower[i * n..i * n + i].iter().zip(b.iter()).map(|(a, b)| a * b).sum();
-            b[i] = (b[i] * self.unit[i] - dot) / self.lower[i * n + i];
+        b.iter_mut().zip(&self.unit).for_each(|(value, unit)| *value *= unit);
+        for j in 0..self.order {
+            let column = self.column(j);
+            let value = b[j] / column[0];
+            b[j] = value;
+            b[j + 1..].iter_mut().zip(&column[1..]).for_each(|(rest, factor)| *rest -= factor * value);
         }
     }
 
     /// Overwrites `b` by the solution of Lᵀ x = b.
     pub fn solve_upper_in_place(&self, b: &mut [f64]) {
-        let n = self.order;
-        for i in (0..n).rev() {
-            b[i] /= self.lower[i * n + i];
-            let value = b[i];
-            for (target, factor) in b[..i].iter_mut().zip(&self.lower[i * n..i * n + i]) {
-                *target -= factor * value;
-            }
+        for j in (0..self.order).rev() {
+            let column = self.column(j);
+            let known: f64 = column[1..].iter().zip(&b[j + 1..]).map(|(a, b)| a * b).sum();
+            b[j] = (b[j] - known) / column[0];
         }
-        for (value, unit) in b.iter_mut().zip(&self.unit) {
-            *value *= unit;
-        }
+        b.iter_mut().zip(&self.unit).for_each(|(value, unit)| *value *= unit);
     }
 
     /// Overwrites `b` by the solution of A x = b.
@@ -74,8 +94,7 @@ impl Cholesky {
 
     /// ln det A.
     pub fn ln_determinant(&self) -> f64 {
-        let n = self.order;
-        2.0 * (0..n).map(|i| (self.lower[i * n + i] / self.unit[i]).ln()).sum::<f64>()
+        2.0 * (0..self.order).map(|j| (self.column(j)[0] / self.unit[j]).ln()).sum::<f64>()
     }
 
     /// A⁻¹, row-major: the covariance of parameters of which A is the information.
@@ -91,35 +110,36 @@ impl Cholesky {
     }
 }
 
-/// Overwrites the lower triangle of the leading `order` × `order` part of a matrix, row-major in rows of `width`, with its Cholesky factor; false
-/// where a pivot is not larger than `least`.
-pub(crate) fn factorise(order: usize, width: usize, matrix: &mut [f64], least: f64) -> bool {
-    for i in 0..order {
-        let (above, row) = matrix.split_at_mut(i * width);
-        for j in 0..=i {
-            let left = if j < i { &above[j * width..j * width + j] } else { &row[..i] };
-            let rest = row[j] - row[..j].iter().zip(left).map(|(a, b)| a * b).sum::<f64>();
-            if j < i {
-                row[j] = rest / above[j * width + j];
-            } else if rest > least && rest.is_finite() {
-                row[i] = rest.sqrt();
-            } else {
-                return false;
-            }
+/// Overwrites the lower triangle of a matrix with a unit diagonal, column after column, with its Cholesky factor; false where it is not positive definite.
+fn factorise(order: usize, columns: &mut [f64]) -> bool {
+    for j in 0..order {
+        let (before, own) = columns.split_at_mut(j * order);
+        let own = &mut own[j..order];
+        for column in before.chunks_exact(order) {
+            let factor = column[j];
+            own.iter_mut().zip(&column[j..]).for_each(|(entry, a)| *entry -= factor * a);
         }
+        if !is_left(own[0]) {
+            return false;
+        }
+        let pivot = own[0].sqrt();
+        own.iter_mut().for_each(|entry| *entry /= pivot);
     }
     true
 }
 
-/// [`factorise`] of a whole matrix with a unit diagonal, by the library.
-fn factorise_many(order: usize, matrix: &mut [f64]) -> bool {
-    let rows = MatRef::from_row_major_slice(&*matrix, order, order).to_owned();
-    let Ok(factor) = rows.llt(Side::Lower) else { return false };
-    let lower = factor.L();
-    for (i, row) in matrix.chunks_exact_mut(order).enumerate() {
-        row[..=i].iter_mut().enumerate().for_each(|(j, entry)| *entry = lower[(i, j)]);
-    }
-    (0..order).all(|i| lower[(i, i)].powi(2) > ROUNDING && lower[(i, i)].is_finite())
+/// [`factorise`] by the library.
+fn factorise_many(order: usize, columns: &mut [f64]) -> bool {
+    let mut memory = MemBuffer::new(cholesky_in_place_scratch::<f64>(order, Par::Seq, Spec::default()));
+    let matrix = MatMut::from_column_major_slice_mut(&mut *columns, order, order);
+    let stack = MemStack::new(&mut memory);
+    cholesky_in_place(matrix, LltRegularization::default(), Par::Seq, stack, Spec::default()).is_ok()
+        && (0..order).all(|j| is_left(columns[j * order + j].powi(2)))
+}
+
+/// Whether what is left of a pivot is more than rounding.
+fn is_left(pivot: f64) -> bool {
+    pivot > ROUNDING && pivot.is_finite()
 }
 
 /// Overwrites `b` by the solution of A x = b for a symmetric positive definite A, row-major of order `b.len()`; false where A is not positive

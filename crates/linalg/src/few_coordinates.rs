@@ -4,7 +4,6 @@
 //! Cyclic Jacobi rotations (Golub and Van Loan, Matrix Computations, 8.5) on L⁻¹KL⁻ᵀ: nothing is faster at this size, and nothing more
 //! accurate.
 
-use crate::cholesky::factorise;
 use crate::modal_basis::{EigenError, ModalBasis, judged};
 
 /// Largest number of coordinates.
@@ -20,7 +19,7 @@ type Square = [[f64; FEW]; FEW];
 /// coordinate and mode.
 fn solve(n: usize, mass: &Square, stiffness: &Square) -> Result<([f64; FEW], Square), EigenError> {
     let mut lower = *mass;
-    if !factorise(n, FEW, lower.as_flattened_mut(), 0.0) {
+    if !factorise(n, &mut lower) {
         return Err(EigenError::MassNotPositive);
     }
     let mut a = *stiffness;
@@ -51,6 +50,24 @@ fn solve(n: usize, mass: &Square, stiffness: &Square) -> Result<([f64; FEW], Squ
         }
     }
     Ok((values, shapes))
+}
+
+/// Overwrites the lower triangle of the leading `n` × `n` part of a matrix with its Cholesky factor; false where it is not positive definite.
+fn factorise(n: usize, matrix: &mut Square) -> bool {
+    for i in 0..n {
+        for j in 0..=i {
+            let known: f64 = (0..j).map(|k| matrix[i][k] * matrix[j][k]).sum();
+            let rest = matrix[i][j] - known;
+            if j < i {
+                matrix[i][j] = rest / matrix[j][j];
+            } else if rest > 0.0 && rest.is_finite() {
+                matrix[i][i] = rest.sqrt();
+            } else {
+                return false;
+            }
+        }
+    }
+    true
 }
 
 /// Rotates `a` until it is diagonal; the product of the rotations, whose columns are the eigenvectors.

@@ -201,13 +201,14 @@ struct Density<'a> {
     /// Noise and J·Jᵀ, lower triangle.
     fixed: Vec<f64>,
     covariance: Vec<f64>,
+    factor: Cholesky,
     white: Vec<f64>,
 }
 
 impl<'a> Density<'a> {
     fn of(linear: &'a Linear, comparison: &'a Comparison) -> Self {
         let n = comparison.count();
-        let mut fixed = comparison.noise.clone();
+        let mut fixed = comparison.noise.to_vec();
         for slope in &linear.slopes {
             for i in 0..n {
                 let a = slope[i];
@@ -217,17 +218,17 @@ impl<'a> Density<'a> {
             }
         }
         let covariance = vec![0.0; n * n];
-        Density { comparison, difference: &linear.difference, fixed, covariance, white: vec![0.0; n] }
+        let (factor, white) = (Cholesky::identity(n), vec![0.0; n]);
+        Density { comparison, difference: &linear.difference, fixed, covariance, factor, white }
     }
 
     fn ln(&mut self, sizes: &ErrorSizes) -> Option<f64> {
         self.covariance.copy_from_slice(&self.fixed);
         self.comparison.add_errors(sizes, &mut self.covariance);
-        let n = self.comparison.count();
-        let factor = Cholesky::of(n, &self.covariance)?;
+        let factor = self.factor.anew(&self.covariance)?;
         self.white.copy_from_slice(self.difference);
         factor.solve_lower_in_place(&mut self.white);
         let chi2: f64 = self.white.iter().map(|v| v * v).sum();
-        Some(-0.5 * (chi2 + factor.ln_determinant() + n as f64 * TAU.ln()))
+        Some(-0.5 * (chi2 + factor.ln_determinant() + self.white.len() as f64 * TAU.ln()))
     }
 }

@@ -75,7 +75,22 @@ fn the_library_factorises_as_the_few_lines_here_do() {
     (0..n).for_each(|k| singular[(n - 1) * n + k] = singular[(n - 2) * n + k]);
     singular[n * n - 1] = singular[(n - 2) * n + n - 2];
     singular[(n - 1) * n + n - 2] = singular[n * n - 1];
-    assert_eq!(Cholesky::of(n, &singular), None);
+    assert!(Cholesky::of(n, &singular).is_none());
+}
+
+#[test]
+fn a_factor_made_anew_is_that_of_the_new_matrix_alone() {
+    for n in [3, 80] {
+        let entry =
+            |e: usize, own: f64| if e % (n + 1) == 0 { own } else { (0.3 * e as f64).sin() / n as f64 };
+        let [first, second] = [2.0, 5.0].map(|own| (0..n * n).map(|e| entry(e, own)).collect::<Vec<f64>>());
+        let identity: Vec<f64> = (0..n * n).map(|e| f64::from(u8::from(e % (n + 1) == 0))).collect();
+        let mut factor = Cholesky::of(n, &first).unwrap();
+        assert!(factor.anew(&vec![-1.0; n * n]).is_none());
+        assert_eq!(factor.anew(&second).unwrap().inverse(), Cholesky::of(n, &second).unwrap().inverse());
+        assert_eq!(Cholesky::identity(n).inverse(), Cholesky::of(n, &identity).unwrap().inverse());
+        assert!(factor.anew(&[1.0]).is_none());
+    }
 }
 
 #[test]
@@ -84,12 +99,12 @@ fn an_indefinite_or_singular_matrix_is_refused() {
     assert!(!solve_positive_definite(&mut [1.0, 1.0, 1.0, 1.0], &mut [1.0, 1.0]));
     assert!(!solve_positive_definite(&mut [0.0], &mut [1.0]));
     assert!(!solve_positive_definite(&mut [f64::NAN], &mut [1.0]));
-    assert_eq!(Cholesky::of(2, &[1.0, 2.0, 2.0, 1.0]), None);
-    assert_eq!(Cholesky::of(2, &[1.0, 1.0, 1.0, 1.0]), None);
-    assert_eq!(Cholesky::of(1, &[0.0]), None);
-    assert_eq!(Cholesky::of(1, &[f64::NAN]), None);
-    assert_eq!(Cholesky::of(1, &[f64::INFINITY]), None);
-    assert_eq!(Cholesky::of(2, &[1.0]), None);
+    assert!(Cholesky::of(2, &[1.0, 2.0, 2.0, 1.0]).is_none());
+    assert!(Cholesky::of(2, &[1.0, 1.0, 1.0, 1.0]).is_none());
+    assert!(Cholesky::of(1, &[0.0]).is_none());
+    assert!(Cholesky::of(1, &[f64::NAN]).is_none());
+    assert!(Cholesky::of(1, &[f64::INFINITY]).is_none());
+    assert!(Cholesky::of(2, &[1.0]).is_none());
 }
 
 #[test]
