@@ -7,6 +7,7 @@ use crate::matching::Pairing;
 use crate::modelled::ModelledModes;
 use crate::recorded::RecordedModes;
 use crate::shapes::Shapes;
+use std::sync::Arc;
 
 /// Sizes of a model's error by kind, as relative standard deviations (0.003 is 0.3 %): what is known of them before, or what a recording says.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -29,9 +30,16 @@ pub struct ErrorSizes {
 
 /// Number of kinds.
 pub const KINDS: usize = 7;
-/// Place of the damping among them.
-const DAMPING: usize = 1;
-/// Place of the gain among them.
+/// Place of natural frequencies among them.
+pub const FREQUENCY: usize = 0;
+/// Place of damping ratios among them.
+pub const DAMPING: usize = 1;
+/// Place of shapes among them.
+pub const SHAPE: usize = 2;
+const QUADRATURE: usize = 3;
+const MASS_LINE: usize = 4;
+const UPPER_RESIDUAL: usize = 5;
+/// Place of gains among them.
 pub const GAIN: usize = 6;
 
 impl Default for ErrorSizes {
@@ -114,7 +122,7 @@ pub struct Comparison {
     /// Places of the compared features among the recording's.
     pub(crate) places: Vec<usize>,
     /// Covariance of the recorded features.
-    pub(crate) noise: Vec<f64>,
+    pub(crate) noise: Arc<[f64]>,
     /// What of the paired modes' residues is in quadrature because of the structure's damping, FRF by FRF.
     turned: Vec<f64>,
     /// What of the features in quadrature would be otherwise if the structure's damping were distributed otherwise: all of it or nothing, as one unknown of size one. Empty where that is
@@ -122,32 +130,42 @@ pub struct Comparison {
     distributed: Vec<(usize, f64)>,
     /// Place of the first residue among the compared features.
     first_residue: usize,
-    /// By kind, the covariance for a size of one: the entries that are not zero, by their place in the matrix.
-    pub(crate) kinds: Vec<Vec<(usize, f64)>>,
+    /// By kind, the covariance for a size of one.
+    kinds: Vec<Entries>,
     /// What errors of a shape at both channels of an FRF make together, for a size of one each: of residues' real parts, and of their imaginary parts.
-    both: [Vec<(usize, f64)>; 2],
+    both: [Entries; 2],
+}
+
+/// Entries of the lower triangle of a symmetric matrix that are not zero, by their place in it, row-major.
+type Entries = Vec<(usize, f64)>;
+
+/// Puts an entry of a matrix of order `n` among the others, if it is of the lower triangle and not zero.
+fn put(entries: &mut Entries, n: usize, (i, j): (usize, usize), value: f64) {
+    if j <= i && value != 0.0 {
+        entries.push((i * n + j, value));
+    }
 }
 
 /// Errors of the terms below and above the band, the first of them at `first` among `n` features: as shapes' errors make them, and relative to their sizes.
-fn add_residual_terms(kinds: &mut [Vec<f64>], recorded: &RecordedModes, (n, first): (usize, usize)) {
+fn add_residual_terms(kinds: &mut [Entries], recorded: &RecordedModes, (n, first): (usize, usize)) {
     let frfs = recorded.frfs();
     for (e, shared) in recorded.low.iter().enumerate() {
-        let (a, b) = (e / frfs, e % frfs);
-        kinds[2][(first + 2 * a) * n + first + 2 * b] = shared / recorded.residual_scales[0].powi(2);
+        let place = (first + 2 * (e / frfs), first + 2 * (e % frfs));
+        put(&mut kinds[SHAPE], n, place, shared / recorded.residual_scales[0].powi(2));
     }
     for frf in 0..frfs {
-        for (term, kind) in [(0, 4), (1, 5)] {
+        for (term, kind) in [(0, MASS_LINE), (1, UPPER_RESIDUAL)] {
             let at = first + 2 * frf + term;
             // Relative to what is there, and where little is there to the others.
             let value = recorded.residual_terms[frf][term] / recorded.residual_scales[term];
-            kinds[kind][at * (n + 1)] = value.powi(2).max(LITTLE);
+            put(&mut kinds[kind], n, (at, at), value.powi(2).max(LITTLE));
         }
     }
 }
 
 /// An FRF's gain changes its features in proportion to what the model makes of them.
 fn add_gains(
-    kind: &mut [f64],
+    kind: &mut Entries,
     recorded: &RecordedModes,
     (pairing, modelled): (&Pairing, &ModelledModes),
     (n, first): (usize, usize),
@@ -165,7 +183,7 @@ fn add_gains(
             of_frf.push((first + 2 * frf + term, value));
         }
         for &(i, a) in &of_frf {
-            of_frf.iter().for_each(|&(j, b)| kind[i * n + j] = a * b);
+            of_frf.iter().for_each(|&(j, b)| put(kind, n, (i, j), a * b));
         }
     }
 }
@@ -191,12 +209,12 @@ impl Comparison {
         let n = places.len();
         let entry = |e: usize| recorded.covariance[places[e / n] * all + places[e % n]];
         let noise = (0..n * n).map(entry).collect();
-        let mut kinds = vec![vec![0.0; n * n]; KINDS];
+        let mut kinds = vec![Entries::new(); KINDS];
         let matched = pairing.pairs.len();
         let mut turned = Vec::with_capacity(matched * frfs);
-        let mut both = [Vec::new(), Vec::new()];
+        let mut both = [Entries::new(), Entries::new()];
         for k in 0..matched {
-            kinds[0][2 * k * (n + 1)] = 1.0;
+            put(&mut kinds[FREQUENCY], n, (2 * k, 2 * k), 1.0);
         }
         for (k, &(r, m)) in pairing.pairs.iter().enumerate() {
             let scale = recorded.modes[r].scale;
@@ -208,19 +226,17 @@ impl Comparison {
                 for (part, both) in both.iter_mut().enumerate() {
                     both.push(((first + 2 * a + part) * (n + 1), product));
                 }
-                for b in 0..frfs {
+                for b in 0..=a {
                     let shared = shapes.shared(m, a, b) / scale.powi(2);
-                    kinds[2][(first + 2 * a) * n + first + 2 * b] = shared;
-                    kinds[3][(first + 2 * a + 1) * n + first + 2 * b + 1] = shared;
+                    let (a, b) = (first + 2 * a, first + 2 * b);
+                    put(&mut kinds[SHAPE], n, (a, b), shared);
+                    put(&mut kinds[QUADRATURE], n, (a + 1, b + 1), shared);
                 }
             }
         }
         let first = 2 * matched + 2 * matched * frfs;
         add_residual_terms(&mut kinds, recorded, (n, first));
         add_gains(&mut kinds[GAIN], recorded, (pairing, modelled), (n, first));
-        let entries =
-            |kind: Vec<f64>| kind.into_iter().enumerate().filter(|(_, value)| *value != 0.0).collect();
-        let mut kinds: Vec<Vec<(usize, f64)>> = kinds.into_iter().map(entries).collect();
         kinds[DAMPING] = of_damping(n, frfs, &turned);
         Comparison { places, noise, turned, distributed: Vec::new(), first_residue: 2 * matched, kinds, both }
     }
@@ -301,12 +317,16 @@ impl Comparison {
 
     /// S = noise + Σ size²·kind, row-major: the covariance of the features of a model whose error has these sizes.
     pub fn covariance(&self, sizes: &ErrorSizes) -> Vec<f64> {
-        let mut sum = self.noise.clone();
+        let mut sum = self.noise.to_vec();
         self.add_errors(sizes, &mut sum);
+        let n = self.count();
+        for i in 0..n {
+            (0..i).for_each(|j| sum[j * n + i] = sum[i * n + j]);
+        }
         sum
     }
 
-    /// Adds the covariance that errors of these sizes make, row-major, to `sum`.
+    /// Adds the covariance that errors of these sizes make, row-major, to the lower triangle of `sum`.
     pub(crate) fn add_errors(&self, sizes: &ErrorSizes, sum: &mut [f64]) {
         for (kind, size) in self.kinds.iter().zip(sizes.to_array()) {
             kind.iter().for_each(|&(place, value)| sum[place] += size * size * value);
@@ -316,24 +336,24 @@ impl Comparison {
             both.iter().for_each(|&(place, value)| sum[place] += size * value);
         }
         let n = self.count();
-        for &(i, a) in &self.distributed {
-            self.distributed.iter().for_each(|&(j, b)| sum[i * n + j] += a * b);
+        for (k, &(i, a)) in self.distributed.iter().enumerate() {
+            self.distributed[..=k].iter().for_each(|&(j, b)| sum[i * n + j] += a * b);
         }
     }
 }
 
 /// What errors of the modes' damping make of `n` features, for a size of one, entries that are not zero by their place: the damping that turns a shape's phases, which puts so much of each
 /// residue in quadrature, is as wrong as that which makes the mode die away.
-fn of_damping(n: usize, frfs: usize, turned: &[f64]) -> Vec<(usize, f64)> {
+fn of_damping(n: usize, frfs: usize, turned: &[f64]) -> Entries {
     let matched = turned.len().checked_div(frfs).unwrap_or(0);
-    let mut all = Vec::new();
+    let mut all = Entries::new();
     for (k, turned) in turned.chunks_exact(frfs.max(1)).enumerate() {
         let first = 2 * matched + 2 * k * frfs;
         let parts = turned.iter().enumerate().map(|(frf, part)| (first + 2 * frf + 1, *part));
         let of_mode: Vec<(usize, f64)> = std::iter::once((2 * k + 1, 1.0)).chain(parts).collect();
-        let products =
-            of_mode.iter().flat_map(|&(i, a)| of_mode.iter().map(move |&(j, b)| (i * n + j, a * b)));
-        all.extend(products.filter(|(_, value)| *value != 0.0));
+        for &(i, a) in &of_mode {
+            of_mode.iter().for_each(|&(j, b)| put(&mut all, n, (i, j), a * b));
+        }
     }
     all
 }

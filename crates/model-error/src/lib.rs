@@ -78,7 +78,7 @@ mod relative;
 mod shapes;
 
 pub use basis::Pole;
-pub use errors::{Comparison, ErrorSizes, GAIN, KINDS, SizePrior};
+pub use errors::{Comparison, DAMPING, ErrorSizes, FREQUENCY, GAIN, KINDS, SHAPE, SizePrior};
 pub use evidence::{Evidence, Linear};
 pub use expected::Expected;
 pub use matching::Pairing;
