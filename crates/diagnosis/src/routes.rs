@@ -291,7 +291,7 @@ fn blind(
     let alone =
         if known.is_none() { alone.refitted_widely(fitter) } else { alone }.with_wrong_quantities(fitter);
     let modal = known.and_then(|modal| {
-        let known = modal.known(fitter.settings.modal.blind);
+        let known = modal.known(&fitter.settings.modal);
         ModalJudgement::of(fitter, &alone.nominal.hypothesis, &alone.candidates, Some(&known))
     });
     let found = modal.and_then(|modal| {
@@ -313,7 +313,9 @@ fn by_modes(fitter: &Fitter, within: &Search, modal: &ModalJudgement, division: 
     let judge = |division: &Division| {
         fitter.watch.stage("comparing by modes without what is held out");
         let blind = fitter.on(&division.seen);
-        let known = modal.known(settings.modal.blind);
+        // Of what names nothing, only the refitted fixture is judged.
+        let named = search.repaired.hypothesis.effect_count() > 0;
+        let known = if named { modal.known(&settings.modal) } else { Vec::new() };
         let judged =
             ModalJudgement::of(&blind, &within.nominal.hypothesis, &within.candidates, Some(&known))?;
         let (_, blind) = judged.predicted(&blind, within);

@@ -415,9 +415,12 @@ impl ModalJudgement {
         self.candidates.iter().enumerate().filter_map(of).collect()
     }
 
-    /// What was found, and the most probable effects by themselves.
-    pub(crate) fn known(&self, count: usize) -> Vec<Effect> {
-        let singles = self.search.singles.iter().take(count).flat_map(|s| s.fit.hypothesis.effects());
+    /// What was found, and the most probable effects by themselves: what a search of a part of the recording may choose from.
+    pub(crate) fn known(&self, settings: &ModalSettings) -> Vec<Effect> {
+        let singles = &self.search.singles;
+        let least = singles.first().map_or(0.0, |first| first.fit.ln) - settings.told;
+        let probable = singles.iter().take(settings.blind).filter(|single| single.fit.ln >= least);
+        let singles = probable.flat_map(|single| single.fit.hypothesis.effects());
         self.search.best.fit.hypothesis.effects().into_iter().chain(singles).collect()
     }
 
