@@ -3,7 +3,7 @@
 use crate::modal::fit::{ModalFit, Problem};
 use crate::settings::ModalSettings;
 use jointscope_fixture::{Fixture, Place, StatedError};
-use jointscope_model_error::{ErrorSizes, Evidence, GAIN, KINDS, SizePrior};
+use jointscope_model_error::{DAMPING, ErrorSizes, Evidence, FREQUENCY, GAIN, KINDS, SHAPE, SizePrior};
 use serde::Serialize;
 
 /// How wrong a model is, as relative standard deviations over its modes; zero where the noise explains what is left.
@@ -40,11 +40,6 @@ impl ModelError {
         [self.frequency, self.damping, self.residue] == [0.0; 3]
     }
 }
-
-/// Places of frequency, damping and shape among [`ErrorSizes`].
-const FREQUENCY: usize = 0;
-const DAMPING: usize = 1;
-const SHAPE: usize = 2;
 
 /// Share of the usual size below which an error is none: ten times the least that is tried.
 const NEGLIGIBLE: f64 = 10.0 * ErrorSizes::LEAST;
@@ -100,13 +95,14 @@ impl Problem<'_> {
         self.relative_sizes_as_stated(fit).into_iter().fold(0.0, f64::max)
     }
 
-    /// The sizes of [`Problem::relative_sizes`], that of damping ratios by no less than the fixture's own deviations of them where effects have made other modes than those of which
-    /// it states ratios: whatever these get from the others' damping, nobody claimed to know it better.
+    /// The sizes of [`Problem::relative_sizes`], that of damping ratios by no less than half of what the fixture states as their deviations: nobody claimed to know them better than these.
+    /// Where effects have made other modes than those of which it states ratios, by no less than the whole: these get theirs from the others' damping.
     pub(crate) fn relative_sizes_as_stated(&self, fit: &ModalFit) -> Vec<f64> {
         let mut sizes = self.relative_sizes(fit);
         let stated = fit.hypothesis.deviation_of_damping();
-        if stated > self.sizes.damping && fit.hypothesis.springs_and_masses().is_some() {
-            sizes[DAMPING] *= self.sizes.damping / stated;
+        let usual = if fit.hypothesis.has_other_modes() { stated } else { 0.5 * stated };
+        if usual > self.sizes.damping {
+            sizes[DAMPING] *= self.sizes.damping / usual;
         }
         sizes
     }
