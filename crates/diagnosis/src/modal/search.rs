@@ -293,7 +293,9 @@ impl Searcher<'_> {
         let mut starts = starts.into_iter();
         let first: Vec<Start> = starts.by_ref().take(1).collect();
         let mut fits = self.problem.work.each(first, STARTS, |start| fit(start, ANY));
-        let least = fits.first().map_or(ANY, |first| first.fit.ln - self.settings.foremost.1);
+        let far = fits.first().map_or(ANY, |first| first.fit.ln - self.settings.foremost.1);
+        // What the base explains needs nothing that explains less.
+        let least = if self.is_adequate(&base.fit) { far.max(base.fit.ln) } else { far };
         fits.extend(self.problem.work.each(starts.collect(), STARTS, |start| fit(start, least)));
         best_of_each(fits)
     }
