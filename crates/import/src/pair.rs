@@ -23,7 +23,7 @@ impl ChannelPair {
     ///
     /// # Errors
     /// Anything else.
-    pub fn parse(text: &str) -> Result<Self, PairError> {
+    pub(crate) fn parse(text: &str) -> Result<Self, PairError> {
         let parsed = text.split_once('/').and_then(|(response, reference)| {
             Some(ChannelPair { response: channel(response)?, reference: channel(reference)? })
         });
