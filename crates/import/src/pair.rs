@@ -6,11 +6,11 @@ use jointscope_uff::Node;
 
 /// Response over reference.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct ChannelPair {
+pub(crate) struct ChannelPair {
     /// The response's node and direction.
-    pub response: Node,
+    pub(crate) response: Node,
     /// The reference's.
-    pub reference: Node,
+    pub(crate) reference: Node,
 }
 
 /// Why a text is no pair of channels.
