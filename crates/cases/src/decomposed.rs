@@ -39,7 +39,7 @@ pub(crate) const NUMBERS: [(&str, &str, (usize, usize)); 6] = [
 
 impl DecomposedCase {
     /// Of the contents of `stiffness.json`; `None` where they are no decomposition.
-    pub fn of(file: &Value) -> Option<Self> {
+    pub(crate) fn of(file: &Value) -> Option<Self> {
         let only = |joints: &'_ Value| match joints.as_array().map(Vec::as_slice) {
             Some([only]) => Some(only.clone()),
             _ => None,

@@ -42,7 +42,7 @@ pub struct FindingRow {
 
 impl FindingRow {
     /// Kind, place and dof in words: `interface_compliance 2 rotation`.
-    pub fn name(&self) -> String {
+    pub(crate) fn name(&self) -> String {
         let parts = [Some(&self.kind), self.place.as_ref(), self.dof.as_ref()];
         parts.into_iter().flatten().map(String::as_str).collect::<Vec<_>>().join(" ")
     }
@@ -58,7 +58,7 @@ impl FindingRow {
     }
 
     /// Parameters in words: `stiffness 9141 ± 91 N*m/rad; damping …`.
-    pub fn parameters(&self) -> String {
+    pub(crate) fn parameters(&self) -> String {
         let Some(parameters) = self.parameters.as_object() else { return String::new() };
         let one = |(name, parameter): (&String, &Value)| {
             let value = parameter.get("value")?.as_f64()?;
@@ -91,7 +91,7 @@ pub(crate) fn spelled(value: f64) -> String {
 
 impl DiagnosedCase {
     /// Of the contents of `diagnosis.json`; `None` where they are no diagnosis.
-    pub fn of(file: &Value) -> Option<Self> {
+    pub(crate) fn of(file: &Value) -> Option<Self> {
         let text = |key: &str| file.get(key).and_then(Value::as_str).map(str::to_owned);
         let by_model = |key: &str| {
             ["nominal", "refitted", "repaired"]

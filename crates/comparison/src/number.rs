@@ -62,7 +62,7 @@ impl Number {
     }
 
     /// Its unit, SI.
-    pub fn unit(self) -> &'static str {
+    pub(crate) fn unit(self) -> &'static str {
         self.kind.unit(self.element)
     }
 

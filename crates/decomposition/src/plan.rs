@@ -85,7 +85,7 @@ impl MeasurementPlan {
     ///
     /// # Errors
     /// See [`PlanError`].
-    pub fn of(frfs: &FrfSet, sides: &Sides) -> Result<Self, PlanError> {
+    pub(crate) fn of(frfs: &FrfSet, sides: &Sides) -> Result<Self, PlanError> {
         let crossings = crossings(frfs, sides);
         if crossings.is_empty() {
             return Err(nothing_crosses(frfs, sides));
@@ -154,7 +154,7 @@ impl MeasurementPlan {
     }
 
     /// Whether the blocks do not rotate, so that the joint is the scalar of eq (5).
-    pub fn is_scalar(&self) -> bool {
+    pub(crate) fn is_scalar(&self) -> bool {
         !self.layout.rotate[0]
     }
 }

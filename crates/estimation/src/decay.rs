@@ -57,14 +57,14 @@ fn straight_line(points: &[(f64, f64)]) -> (f64, f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use jointscope_samples::Noise;
 
     fn ringing(decay: f64, noise: f64) -> Vec<f64> {
-        let mut state = 1u64;
+        let mut random = Noise::from_state(1);
         (0..8000)
             .map(|i| {
-                state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-                let random = (state >> 11) as f64 / (1u64 << 53) as f64 - 0.5;
-                (-decay * i as f64 / 8000.0).exp() * (0.4 * i as f64).sin() + noise * random * 12f64.sqrt()
+                (-decay * i as f64 / 8000.0).exp() * (0.4 * i as f64).sin()
+                    + noise * (random.uniform() - 0.5) * 12f64.sqrt()
             })
             .collect()
     }

@@ -53,6 +53,5 @@ pub use error::EstimateError;
 pub use estimate::Estimate;
 pub use fault::{Fault, Signal};
 pub use options::{Baseline, EstimateOptions, Estimator, ForceWindow, ResponseWindow, Weighting};
-pub use pulse::Pulse;
 pub use remark::Remark;
 pub use report::{Excitation, HitReport};

@@ -7,7 +7,7 @@ pub(crate) const FILTER_RINGING: usize = 16;
 
 /// The main pulse of a force without offset.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Pulse {
+pub(crate) struct Pulse {
     /// First sample above a twentieth of the peak.
     pub begin: usize,
     /// First sample after the pulse.
@@ -22,7 +22,7 @@ pub struct Pulse {
 
 impl Pulse {
     /// The pulse about the largest value; `None` where all samples are zero.
-    pub fn of(force: &[f64]) -> Option<Self> {
+    pub(crate) fn of(force: &[f64]) -> Option<Self> {
         let largest = |best: usize, i: usize| if force[i].abs() > force[best].abs() { i } else { best };
         let peak_at = (0..force.len()).fold(0, largest);
         let peak = *force.get(peak_at)?;
@@ -38,12 +38,12 @@ impl Pulse {
     }
 
     /// Samples from begin to end.
-    pub fn width(&self) -> usize {
+    pub(crate) fn width(&self) -> usize {
         self.end - self.begin
     }
 
     /// Samples before the hit that neither it nor a filter's ringing reaches.
-    pub fn before(&self) -> usize {
+    pub(crate) fn before(&self) -> usize {
         self.begin.saturating_sub(FILTER_RINGING.max(2 * self.width()))
     }
 }

@@ -91,7 +91,7 @@ impl ElasticCentre {
 }
 
 /// A symmetric matrix on the relative motion at another place, `offset` from the far end along x.
-pub fn about(matrix: &Matrix, offset: f64) -> Matrix {
+pub(crate) fn about(matrix: &Matrix, offset: f64) -> Matrix {
     let [[k11, k12], [_, k22]] = *matrix;
     let coupling = k12 - offset * k11;
     [[k11, coupling], [coupling, k22 - 2.0 * offset * k12 + offset * offset * k11]]
@@ -124,7 +124,7 @@ pub(crate) fn symmetric(matrix: &Matrix) -> Matrix {
 
 /// How far the centre of C, or of the structural damping, is from that of K.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct CentreAgreement {
+pub(crate) struct CentreAgreement {
     /// c12 − (k12/k11)·c11: zero where both share their centre.
     pub coupling: f64,
     /// Its standard deviation, where it is known.
@@ -135,7 +135,7 @@ pub struct CentreAgreement {
 
 impl Joint {
     /// Elastic centre of K.
-    pub fn centre(&self) -> Option<ElasticCentre> {
+    pub(crate) fn centre(&self) -> Option<ElasticCentre> {
         ElasticCentre::of(&self.stiffness)
     }
 

@@ -21,7 +21,7 @@ pub enum Program {
 
 impl Program {
     /// The name on the command line.
-    pub fn name(self) -> &'static str {
+    pub(crate) fn name(self) -> &'static str {
         match self {
             Program::Nastran => "nastran",
             Program::Ansys => "ansys",

@@ -39,7 +39,8 @@ use std::collections::BTreeSet;
 pub use error::ImportError;
 pub use format::Format;
 pub use map::{ColumnEntry, ColumnMap, ColumnMapError};
-pub use pair::{ChannelPair, PairError};
+pub(crate) use pair::ChannelPair;
+pub use pair::PairError;
 
 use jointscope_uff::UffFile;
 

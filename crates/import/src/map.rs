@@ -12,11 +12,11 @@ pub struct ColumnMap {
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ColumnEntry {
     /// Name of the column, variable or file; `None` for a file that holds one FRF.
-    pub name: Option<String>,
+    pub(crate) name: Option<String>,
     /// Which FRF it is.
-    pub pair: ChannelPair,
+    pub(crate) pair: ChannelPair,
     /// Its unit, if stated.
-    pub unit: Option<String>,
+    pub(crate) unit: Option<String>,
     /// The entry as it was written.
     pub text: String,
 }

@@ -6,11 +6,11 @@ use jointscope_uff::Node;
 
 /// Response over reference.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct ChannelPair {
+pub(crate) struct ChannelPair {
     /// The response's node and direction.
-    pub response: Node,
+    pub(crate) response: Node,
     /// The reference's.
-    pub reference: Node,
+    pub(crate) reference: Node,
 }
 
 /// Why a text is no pair of channels.
@@ -23,7 +23,7 @@ impl ChannelPair {
     ///
     /// # Errors
     /// Anything else.
-    pub fn parse(text: &str) -> Result<Self, PairError> {
+    pub(crate) fn parse(text: &str) -> Result<Self, PairError> {
         let parsed = text.split_once('/').and_then(|(response, reference)| {
             Some(ChannelPair { response: channel(response)?, reference: channel(reference)? })
         });

@@ -217,29 +217,15 @@ pub fn descend<P: LeastSquares>(
     let mut taken = 1;
     let mut pace = Pace::default();
     for _ in 0..settings.steps {
-        let weights = problem.weights(&point);
-        let before = if P::FIXED_WEIGHTS { objective } else { problem.objective(&point, &weights) };
-        let equations = problem.equations(&point, &derivatives, &weights);
-        let promised = if fresh { problem.promised(&point, &equations) } else { 0.0 };
+        let at = At::of(problem, &point, &derivatives, objective, fresh);
+        let (before, promised) = (at.objective, at.promised.unwrap_or(0.0));
         if let Some(limit) = settings.limit.filter(|_| fresh)
             && (limit.is_out_of_reach(before, promised) || pace.is_too_slow(before, &limit))
         {
             objective = before;
             break;
         }
-        let attempts = if fresh { usize::MAX } else { ATTEMPTS_WITH_OLD };
-        let next = lower(problem, &point, (&equations, &weights, before), (&mut damping, attempts), settings);
-        let gained = next.as_ref().map_or(0.0, |(_, after)| before - after);
-        // A fit far from what it competes with follows no valley.
-        let near = settings.limit.is_none_or(|limit| before - limit.objective <= limit.reach);
-        let is_curved = fresh
-            && near
-            && promised > VALLEY * settings.convergence.needed(before)
-            && gained < settings.curved_valley * promised;
-        let start = (&point, &equations, &derivatives, &weights);
-        let along = if is_curved { along_valley(problem, start, before - gained) } else { None };
-        let followed = along.is_some();
-        let next = along.or(next);
+        let (next, followed) = at.next(problem, &mut damping, settings);
         let stepped = next.is_some();
         if let Some((next, after)) = next {
             (point, objective) = (next, after);
@@ -281,18 +267,62 @@ pub fn descend<P: LeastSquares>(
     Some(Descent { point, derivatives, objective })
 }
 
+/// Where a descent stands, before its next step.
+struct At<'a, P: LeastSquares> {
+    point: &'a P::Point,
+    derivatives: &'a P::Derivatives,
+    weights: P::Weights,
+    equations: P::Equations,
+    objective: f64,
+    /// What an undamped step should gain; nothing where the derivatives are old.
+    promised: Option<f64>,
+}
+
+impl<'a, P: LeastSquares> At<'a, P> {
+    /// At a point where `objective` is that of the weights before; `fresh` where the derivatives are those of the point.
+    fn of(
+        problem: &P,
+        point: &'a P::Point,
+        derivatives: &'a P::Derivatives,
+        objective: f64,
+        fresh: bool,
+    ) -> Self {
+        let weights = problem.weights(point);
+        let objective = if P::FIXED_WEIGHTS { objective } else { problem.objective(point, &weights) };
+        let equations = problem.equations(point, derivatives, &weights);
+        let promised = fresh.then(|| problem.promised(point, &equations));
+        At { point, derivatives, weights, equations, objective, promised }
+    }
+
+    /// The next point with its objective, and whether it lies along a curved valley, where a damped step gained much less than was promised.
+    fn next(&self, problem: &P, damping: &mut f64, settings: &Settings) -> (Option<(P::Point, f64)>, bool) {
+        let attempts = if self.promised.is_some() { usize::MAX } else { ATTEMPTS_WITH_OLD };
+        let next = lower(problem, self, (damping, attempts), settings);
+        let gained = next.as_ref().map_or(0.0, |(_, after)| self.objective - after);
+        // A fit far from what it competes with follows no valley.
+        let near = settings.limit.is_none_or(|limit| self.objective - limit.objective <= limit.reach);
+        let is_curved = near
+            && self.promised.is_some_and(|promised| {
+                promised > VALLEY * settings.convergence.needed(self.objective)
+                    && gained < settings.curved_valley * promised
+            });
+        let along = if is_curved { along_valley(problem, self, self.objective - gained) } else { None };
+        let followed = along.is_some();
+        (along.or(next), followed)
+    }
+}
+
 /// The first step, ever more damped, that lowers the objective.
 fn lower<P: LeastSquares>(
     problem: &P,
-    point: &P::Point,
-    (equations, weights, before): (&P::Equations, &P::Weights, f64),
+    at: &At<P>,
     (damping, attempts): (&mut f64, usize),
     settings: &Settings,
 ) -> Option<(P::Point, f64)> {
     for _ in 0..attempts {
-        if let Some(next) = problem.stepped(point, equations, *damping) {
-            let after = problem.objective(&next, weights);
-            if after < before {
+        if let Some(next) = problem.stepped(at.point, &at.equations, *damping) {
+            let after = problem.objective(&next, &at.weights);
+            if after < at.objective {
                 *damping = (*damping * settings.damping.decrease).max(settings.damping.least);
                 return Some((next, after));
             }
@@ -312,19 +342,15 @@ const SHARES: [f64; 4] = [1.0, 0.4, 0.15, 0.05];
 ///
 /// What a share α of the step does across a curved valley grows as α², and its cost as α⁴: damped steps creep. One more step from there, by the same derivatives, takes
 /// that back but for what grows as α³ (the geodesic acceleration of Transtrum & Sethna, arXiv:1201.5885, by a finite step).
-fn along_valley<P: LeastSquares>(
-    problem: &P,
-    (point, equations, derivatives, weights): (&P::Point, &P::Equations, &P::Derivatives, &P::Weights),
-    than: f64,
-) -> Option<(P::Point, f64)> {
+fn along_valley<P: LeastSquares>(problem: &P, at: &At<P>, than: f64) -> Option<(P::Point, f64)> {
     let mut best: Option<(P::Point, f64)> = None;
     for share in SHARES {
-        let next = problem.shortened(point, equations, share).and_then(|there| {
-            let own = problem.equations(&there, derivatives, weights);
-            problem.corrected(&there, point, [&own, equations], share)
+        let next = problem.shortened(at.point, &at.equations, share).and_then(|there| {
+            let own = problem.equations(&there, at.derivatives, &at.weights);
+            problem.corrected(&there, at.point, [&own, &at.equations], share)
         });
         let Some(next) = next else { continue };
-        let after = problem.objective(&next, weights);
+        let after = problem.objective(&next, &at.weights);
         let lowest = best.as_ref().map_or(than, |(_, lowest)| *lowest);
         if after < lowest {
             best = Some((next, after));

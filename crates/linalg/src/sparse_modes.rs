@@ -116,15 +116,9 @@ pub fn lowest_modes(
     let mut census: Option<Census> = None;
     loop {
         let size = space.vectors.len();
-        let mut images: Vec<f64> = block.iter().flat_map(|(_, image)| image.iter().copied()).collect();
-        factor.solve_in_place(&mut images);
+        // Residuals of Ritz pairs are made of what the images of the newest vectors have outside the space.
+        let outside = space.images(&factor, &block, &mut columns);
         let mut next = Vec::with_capacity(block.len());
-        // Components of the new vectors outside the space: the residuals of Ritz pairs are made of them.
-        let mut outside = Vec::with_capacity(block.len());
-        for image in images.chunks(order) {
-            columns.push(space.coefficients(image));
-            outside.push(space.remainder(image.to_vec()));
-        }
         let ritz = ritz_pairs(&columns, size)?;
         let converged = converged(&ritz, space.mass, &outside, size - block.len());
         let eigenvalues: Vec<f64> = ritz[..converged].iter().map(|pair| 1.0 / pair.value - shift).collect();
@@ -156,13 +150,7 @@ pub fn lowest_modes(
         } else {
             // Ritz values lie above the eigenvalues: there are at least so many modes.
             let known = ritz.iter().filter(|pair| 1.0 / pair.value - shift <= wanted.up_to).count();
-            let most = MOST_MODES.max(2 * at_least);
-            if known > most {
-                return Err(SparseError::TooMany { most, hz: wanted.up_to.max(0.0).sqrt() / TAU });
-            }
-            if size >= VECTORS_A_MODE * known.max(converged).max(at_least) + 60 {
-                return Err(EigenError::NoConvergence.into());
-            }
+            within_limits(size, known, converged.max(at_least), at_least, wanted.up_to)?;
         }
         for rest in outside {
             // Where the block has run dry in a direction, another one.
@@ -178,6 +166,24 @@ pub fn lowest_modes(
         }
         block = next;
     }
+}
+
+/// Whether a search that has not found all goes on: a space of `size` vectors, in which `known` modes lie below `up_to` and `sought` are looked for.
+fn within_limits(
+    size: usize,
+    known: usize,
+    sought: usize,
+    at_least: usize,
+    up_to: f64,
+) -> Result<(), SparseError> {
+    let most = MOST_MODES.max(2 * at_least);
+    if known > most {
+        return Err(SparseError::TooMany { most, hz: up_to.max(0.0).sqrt() / TAU });
+    }
+    if size >= VECTORS_A_MODE * known.max(sought) + 60 {
+        return Err(EigenError::NoConvergence.into());
+    }
+    Ok(())
 }
 
 /// How many of the first Ritz pairs have converged: their residuals are made of what the newest vectors, from `first_new` on, have `outside` the space.

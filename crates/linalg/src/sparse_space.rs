@@ -12,6 +12,23 @@ impl Space<'_> {
         self.vectors.iter().map(|(_, image)| dot(image, vector)).collect()
     }
 
+    /// (K + sM)⁻¹M of the newest vectors, those of `block`: adds their components in the space to `columns`, and returns what lies outside.
+    pub(crate) fn images(
+        &self,
+        factor: &SparseCholesky,
+        block: &[(Vec<f64>, Vec<f64>)],
+        columns: &mut Vec<Vec<f64>>,
+    ) -> Vec<Vec<f64>> {
+        let mut images: Vec<f64> = block.iter().flat_map(|(_, image)| image.iter().copied()).collect();
+        factor.solve_in_place(&mut images);
+        let mut outside = Vec::with_capacity(block.len());
+        for image in images.chunks(self.mass.order()) {
+            columns.push(self.coefficients(image));
+            outside.push(self.remainder(image.to_vec()));
+        }
+        outside
+    }
+
     /// What is left of a vector outside the space; twice, because once leaves rounding of the removed part.
     pub(crate) fn remainder(&self, mut vector: Vec<f64>) -> Vec<f64> {
         for _ in 0..2 {

@@ -34,7 +34,7 @@ pub struct Reading {
 
 impl Reading {
     /// Product of the filters at s, those of reference and force inverted.
-    pub fn filtered(&self, s: Complex64) -> Complex64 {
+    pub(crate) fn filtered(&self, s: Complex64) -> Complex64 {
         self.filters.iter().fold(Complex64::ONE, |all, (filter, divides)| {
             let own = filter.at(s);
             // At 0 Hz a high-pass passes nothing: no recorded value says anything there.

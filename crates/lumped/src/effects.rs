@@ -43,7 +43,7 @@ pub enum SignalFilter {
 
 impl SignalFilter {
     /// Its value at s; one where it is no filter at all.
-    pub fn at(self, s: Complex64) -> Complex64 {
+    pub(crate) fn at(self, s: Complex64) -> Complex64 {
         match self {
             SignalFilter::HighPass(0.0) => Complex64::ONE,
             SignalFilter::HighPass(corner) => s / (s + corner),

@@ -138,6 +138,7 @@ pub(crate) fn smooth_length(length: usize, most: usize) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use jointscope_samples::Noise;
 
     #[test]
     fn a_smooth_pulse_is_met_between_its_samples_and_on_them() {
@@ -166,11 +167,8 @@ mod tests {
 
     #[test]
     fn noise_is_met_beside_what_still_rings() {
-        let mut seed = 1u64;
-        let mut uniform = || {
-            seed = seed.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-            (seed >> 11) as f64 / (1u64 << 53) as f64 - 0.5
-        };
+        let mut random = Noise::from_state(1);
+        let mut uniform = || random.uniform() - 0.5;
         let std = (1.0f64 / 12.0).sqrt();
         let values: Vec<f64> = (0..8192).map(|i| uniform() + 30.0 * (0.2 * f64::from(i)).sin()).collect();
         assert!((noise(&values) / std - 1.0).abs() < 0.1, "{}", noise(&values));

@@ -102,7 +102,7 @@ impl Measure {
     }
 
     /// How much work it is, in FRFs that are to be recorded; `present` were. What is weighed or measured with a calliper counts as one.
-    pub fn effort(&self, present: usize) -> f64 {
+    pub(crate) fn effort(&self, present: usize) -> f64 {
         match self {
             Measure::Frf { .. } | Measure::Quantity { .. } => 1.0,
             Measure::Frfs { frfs } | Measure::HammerAt { frfs, .. } | Measure::SensorAt { frfs, .. } => {

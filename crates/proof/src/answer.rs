@@ -31,7 +31,7 @@ fn with_probabilities<S: Serializer>(names: &[(Effect, f64)], serializer: S) -> 
 
 impl Found {
     /// Its name and the alternatives' with their probabilities.
-    pub fn names(&self) -> impl Iterator<Item = (Name, f64)> {
+    pub(crate) fn names(&self) -> impl Iterator<Item = (Name, f64)> {
         let own = std::iter::once((&self.effect, self.probability));
         own.chain(self.alternatives.iter().map(|(e, p)| (e, *p))).map(|(e, p)| (Name::of(e), p))
     }
@@ -129,12 +129,12 @@ impl Answer {
     ///
     /// # Errors
     /// [`NoAnswer`], where the diagnosis refuses.
-    pub fn of(case: &Case) -> Result<Self, NoAnswer> {
+    pub(crate) fn of(case: &Case) -> Result<Self, NoAnswer> {
         Answer::of_diagnosed(&diagnosed(case)?).ok_or(NoAnswer::BrokeDown)
     }
 
     /// The names found, the strongest first.
-    pub fn names(&self) -> Vec<Name> {
+    pub(crate) fn names(&self) -> Vec<Name> {
         self.findings.iter().map(|found| Name::of(&found.effect)).collect()
     }
 }

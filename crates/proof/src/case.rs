@@ -18,7 +18,7 @@ impl Case {
     ///
     /// # Errors
     /// A point whose name is no node number.
-    pub fn recording(&self, precision: Precision) -> Result<Vec<u8>, FileError> {
+    pub(crate) fn recording(&self, precision: Precision) -> Result<Vec<u8>, FileError> {
         to_bytes("hammer test", &self.recorded, precision)
     }
 }

@@ -15,7 +15,7 @@ pub struct Confusion(pub BTreeMap<&'static str, BTreeMap<&'static str, usize>>);
 
 impl Confusion {
     /// Counts nulls, and single effects that show.
-    pub fn of<'a>(judged: impl Iterator<Item = &'a Judged>) -> Self {
+    pub(crate) fn of<'a>(judged: impl Iterator<Item = &'a Judged>) -> Self {
         let mut counts: BTreeMap<&'static str, BTreeMap<&'static str, usize>> = BTreeMap::new();
         for judged in judged {
             let asked = match judged.truth.role {

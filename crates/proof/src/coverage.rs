@@ -35,7 +35,7 @@ pub(crate) struct Interval {
 
 impl Coverage {
     /// Collects the intervals of the given cases.
-    pub fn of<'a>(judged: impl Iterator<Item = &'a Judged>) -> Self {
+    pub(crate) fn of<'a>(judged: impl Iterator<Item = &'a Judged>) -> Self {
         let mut intervals = Vec::new();
         for judged in judged {
             for (hidden, bounds) in judged.truth.effects().iter().zip(&judged.evidence.bounds) {
@@ -58,7 +58,7 @@ impl Coverage {
     }
 
     /// How many hold.
-    pub fn share(&self) -> Share {
+    pub(crate) fn share(&self) -> Share {
         Share::count(&self.0, |interval| interval.holds)
     }
 
@@ -71,7 +71,7 @@ impl Coverage {
     }
 
     /// Widths over those by the Cramér–Rao bound.
-    pub fn widths(&self) -> Vec<f64> {
+    pub(crate) fn widths(&self) -> Vec<f64> {
         self.0.iter().filter_map(|interval| interval.width).collect()
     }
 }

@@ -63,7 +63,7 @@ fn kind_name<S: Serializer>(kind: &EffectKind, serializer: S) -> Result<S::Ok, S
 
 impl SizeClass {
     /// The class in words: `20 to 35`.
-    pub fn name(&self) -> String {
+    pub(crate) fn name(&self) -> String {
         if self.to.is_finite() {
             format!("{} to {}", self.from, self.to)
         } else {
@@ -101,7 +101,7 @@ type Trial = (f64, bool);
 
 impl Detection {
     /// Collects the single and the graded effects of the cases.
-    pub fn of<'a>(judged: impl Iterator<Item = &'a Judged>) -> Self {
+    pub(crate) fn of<'a>(judged: impl Iterator<Item = &'a Judged>) -> Self {
         let singles: Vec<&Judged> =
             judged.filter(|judged| judged.truth.role.is_of_one() && judged.answer.is_ok()).collect();
         let trials: Vec<Trial> = singles.iter().map(|judged| (judged.size(), judged.is_named())).collect();

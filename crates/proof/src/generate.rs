@@ -108,7 +108,7 @@ const ROLES: [Role; 8] = [
 pub(crate) const DRAWS: usize = 60;
 impl Plan {
     /// Number of fresh cases: a quarter where there is a text to draw them from.
-    pub fn fresh(&self) -> usize {
+    pub(crate) fn fresh(&self) -> usize {
         if self.fresh_from.is_some() { self.cases.div_ceil(4) } else { 0 }
     }
 

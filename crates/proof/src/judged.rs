@@ -134,7 +134,7 @@ impl<T: Judgeable> Judged<T> {
     }
 
     /// What was found, the strongest first; nothing where there is no answer.
-    pub fn findings(&self) -> &[Found] {
+    pub(crate) fn findings(&self) -> &[Found] {
         self.answer.as_ref().map_or(&[], |answer| &answer.findings)
     }
 

@@ -106,12 +106,12 @@ impl Judged {
     }
 
     /// Whether a name counts as right among those found.
-    pub fn is_named(&self) -> bool {
+    pub(crate) fn is_named(&self) -> bool {
         self.found().iter().any(|name| self.accepts(name))
     }
 
     /// The stated probability of a name, the largest where it was stated for several findings; zero where it was not named.
-    pub fn stated(&self, name: &Name) -> f64 {
+    pub(crate) fn stated(&self, name: &Name) -> f64 {
         let all = self.findings().iter().flat_map(|found| found.names());
         all.filter(|(other, _)| other == name).fold(0.0, |most, (_, p)| p.max(most))
     }
@@ -163,7 +163,7 @@ impl Judged {
     }
 
     /// The case in a line; its details are the findings and the objectives.
-    pub fn line(&self) -> CaseLine {
+    pub(crate) fn line(&self) -> CaseLine {
         let mut line = self.line_of(self.faults(), |found: &Found| self.accepts(&Name::of(&found.effect)));
         let fresh = if self.truth.fresh { ", fresh" } else { "" };
         line.role = format!("{}{fresh}", self.truth.role.name());

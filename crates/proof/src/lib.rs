@@ -9,7 +9,7 @@
 //! | theme | items |
 //! |---|---|
 //! | making cases | [`Plan`], [`Case`], [`Truth`], [`Role`], [`SealedTruths`] |
-//! | cases by other routes | [`Plan::draw_routes`], [`Questions`], [`RouteTruth`], [`Replies`], [`Opened`]; [`SolidTruth`], [`SolidJudged`]; [`StruckCase`], [`StruckTruth`], [`StruckJudged`]; [`AsIsTruth`]; [`ModalErrorsTruth`]; [`LumpedTruth`] |
+//! | cases by other routes | [`Plan::draw_routes`], [`Questions`], [`RouteTruth`], [`Replies`], [`Opened`]; [`SolidTruth`]; [`StruckCase`], [`StruckTruth`]; [`AsIsTruth`]; [`ModalErrorsTruth`]; [`LumpedTruth`] |
 //! | answers | [`Answers`], [`Answer`], [`Reply`], [`Found`], [`Timing`] |
 //! | judging | [`Judged`], [`Evidence`], [`Reference`], [`Name`] |
 //! | what else one could do | [`Baseline`], [`Methods`] |
@@ -89,15 +89,16 @@ pub use jointscope_rig::Family;
 pub use jointscope_rig::universal_file::{FileError, Precision};
 pub use judged::{AS_GOOD, Evidence, Judgeable, Judged, PLAIN, VISIBLE};
 pub use limits::{Alike, Limits, SmallestShown};
-pub use name::{Name, describe};
+pub use name::Name;
+pub(crate) use name::describe;
 pub use planning::{PlannedCase, Planning, PromiseClass};
 pub use reference::Reference;
 pub use reliability::{Bin, Reliability};
 pub use role::Role;
 pub use routes::{
     AsIsTruth, Asked, LumpedRoute, LumpedTruth, ModalErrorsTruth, Nameable, Opened, Questions, Replies,
-    RouteScore, RouteScores, RouteTruth, Shown, SolidJudged, SolidTruth, StruckAnswer, StruckAnswers,
-    StruckCase, StruckJudged, StruckRole, StruckTruth, TrueName,
+    RouteScore, RouteScores, RouteTruth, Shown, SolidTruth, StruckAnswer, StruckAnswers, StruckCase,
+    StruckRole, StruckTruth, TrueName,
 };
 pub use score::{CHANCE, Comparison, Score, VerdictCounts};
 pub use seal::{BrokenSeal, SealedTruths};

@@ -39,7 +39,7 @@ impl fmt::Display for Name {
 }
 
 /// An effect with its parameters, in one line.
-pub fn describe(effect: &Effect) -> String {
+pub(crate) fn describe(effect: &Effect) -> String {
     let parameters = effect.kind.spec().parameters.iter().zip(&effect.parameters);
     let values: Vec<String> = parameters.map(|(spec, q)| format!("{}={:.4e}", spec.name, q.value)).collect();
     format!("{} ({})", Name::of(effect), values.join(" "))

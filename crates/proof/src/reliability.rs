@@ -29,7 +29,7 @@ pub struct Reliability(pub Vec<Bin>);
 
 impl Reliability {
     /// Collects the names of the cases' findings.
-    pub fn of<'a>(judged: impl Iterator<Item = &'a Judged>) -> Self {
+    pub(crate) fn of<'a>(judged: impl Iterator<Item = &'a Judged>) -> Self {
         let mut bins: Vec<Bin> =
             EDGES.windows(2).map(|edge| Bin { from: edge[0], to: edge[1], ..Bin::default() }).collect();
         for judged in judged {

@@ -63,7 +63,7 @@ fn truths_of<T: Filed>(text: &str, only: Option<usize>) -> Option<Vec<T>> {
 
 impl<T: Sealable> SealedTruths<T> {
     /// Seals truths.
-    pub fn new(truths: Vec<T>) -> Self {
+    pub(crate) fn new(truths: Vec<T>) -> Self {
         let digest = sha256(text_of(&truths).as_bytes());
         SealedTruths { digest, truths: Contents::Drawn(truths) }
     }

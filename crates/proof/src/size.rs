@@ -40,7 +40,7 @@ impl Size {
     }
 
     /// Relative error.
-    pub fn error(&self) -> f64 {
+    pub(crate) fn error(&self) -> f64 {
         self.found / self.truth - 1.0
     }
 
@@ -50,7 +50,7 @@ impl Size {
     }
 
     /// Whether the interval holds the truth; one that is not stated does not.
-    pub fn is_held(&self) -> bool {
+    pub(crate) fn is_held(&self) -> bool {
         self.interval.is_some_and(|[low, high]| (low..=high).contains(&self.truth))
     }
 

@@ -31,7 +31,7 @@ impl From<Share> for StatedShare {
 
 impl Share {
     /// Counts the items for which `so` holds.
-    pub fn count<T>(items: impl IntoIterator<Item = T>, so: impl Fn(T) -> bool) -> Self {
+    pub(crate) fn count<T>(items: impl IntoIterator<Item = T>, so: impl Fn(T) -> bool) -> Self {
         let mut share = Share::default();
         for item in items {
             share.all += 1;
@@ -63,7 +63,7 @@ impl Share {
     }
 
     /// Probability, were both shares drawn alike, of two that differ at least as much (Fisher's exact test).
-    pub fn agreement(self, other: Share) -> f64 {
+    pub(crate) fn agreement(self, other: Share) -> f64 {
         let (all, right) = ((self.all + other.all) as u64, (self.of + other.of) as u64);
         // More right ones, or more drawn, than there are: two shares of the same cases have neither.
         let Ok(drawn) = Hypergeometric::new(all, right, self.all as u64) else { return f64::NAN };

@@ -57,7 +57,7 @@ impl Truth {
     ///
     /// # Errors
     /// As [`jointscope_rig::frfs`].
-    pub fn frfs(
+    pub(crate) fn frfs(
         &self,
         pairs: &[FrfPair],
         lines: &SpectralLines,
@@ -72,7 +72,7 @@ impl Truth {
     /// The FRFs that nobody recorded, as a perfect instrument would read them, without noise.
     ///
     /// # Errors
-    /// As [`Truth::frfs`].
+    /// As [`jointscope_rig::frfs`].
     pub fn unseen(&self) -> Result<FrfSet, GenerationError> {
         Ok(self.frfs(&self.unseen, &recorded_lines()?, Instrument::Perfect)?)
     }

@@ -189,7 +189,7 @@ impl ChannelMap {
     }
 
     /// The fixture's channel that a channel of the file is by an entry, and the sign between them.
-    pub fn find(&self, file: FileChannel) -> Option<(Channel, f64)> {
+    pub(crate) fn find(&self, file: FileChannel) -> Option<(Channel, f64)> {
         let entry = self.entries_of(file).next()?;
         let channel = Channel { point: entry.point(file.node)?, dof: entry.dof };
         Some((channel, entry.sign * file.sign()))

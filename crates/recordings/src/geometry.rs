@@ -184,7 +184,7 @@ impl Geometry {
     }
 
     /// How far the nodes reach along x, y and z, in m.
-    pub fn extent(&self) -> [[f64; 2]; 3] {
+    pub(crate) fn extent(&self) -> [[f64; 2]; 3] {
         std::array::from_fn(|axis| {
             let values = || self.nodes.iter().map(|node| node.position[axis]);
             [values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max)]

@@ -138,7 +138,7 @@ impl GluedJoint {
     ///
     /// # Errors
     /// See [`GluedJointError`].
-    pub fn noise_free(&self) -> Result<FrfSet, GluedJointError> {
+    pub(crate) fn noise_free(&self) -> Result<FrfSet, GluedJointError> {
         let lines = SpectralLines::even(2.5, 2.5, 400).map_err(StructureError::from)?;
         let pairs = PAIRS.map(|(response, reference)| FrfPair::transverse(response, reference));
         Ok(read(&self.structure, &[], &pairs, &lines)?)

@@ -284,20 +284,13 @@ fn slope(of: &dyn Fn(&[f64]) -> Vec<f64>, at: &[f64], before: &[f64], step: f64)
 mod tests {
     use super::*;
     use crate::strikes::build;
+    use jointscope_samples::{two_blocks_damped, with};
     use jointscope_spectra::Channel;
 
-    const FIXTURE: &str = r#"{
-      "bodies": { "A": { "mass": 1.10, "inertia": 9.5e-4, "x_cg": -0.030 }, "B": { "mass": 1.10, "inertia": 9.5e-4, "x_cg": 0.095 } },
-      "points": { "1": { "body": "A", "x": -0.060 }, "2": { "body": "A", "x": 0.0 },
-                  "3": { "body": "B", "x": 0.065 }, "4": { "body": "B", "x": 0.125 } },
-      "joints": { "J": { "from": "2", "to": "3", "beam": { "youngs_modulus": 2.07e11, "second_moment": 3.67e-10 } } },
-      "damping": { "modal_ratios": [0.02] } }"#;
-
     fn bent(kind: &str, parameters: &str) -> Fixture {
-        let effect = format!(
-            r#", "physics": [{{ "kind": "{kind}", "place": "J", "dof": "rotation", {parameters} }}] }}"#
-        );
-        Fixture::from_json(&format!("{}{effect}", FIXTURE.trim_end().trim_end_matches('}'))).unwrap()
+        let effect = format!(r#"{{ "kind": "{kind}", "place": "J", "dof": "rotation", {parameters} }}"#);
+        let file = with(&two_blocks_damped(&[0.02]), &format!(r#""physics": [{effect}]"#));
+        Fixture::from_json(&file).unwrap()
     }
 
     /// First harmonic of the acceleration at 4 over a force of `force` N at 4, by integrating the equations of motion until they are steady.

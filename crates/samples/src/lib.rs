@@ -1,4 +1,4 @@
-//! What tests of several crates are made of: FRFs by their points, and noise that is the same every time.
+//! What tests of several crates are made of: fixture files, FRFs by their points, and noise that is the same every time.
 //!
 //! Nothing but tests stands on this crate, and it knows of no mechanics: what it hands out shares nothing with what is tested.
 //!
@@ -13,10 +13,14 @@
 // Only tests call it, and a test ends where its sample cannot be made.
 #![allow(clippy::unwrap_used)]
 
+mod fixtures;
+
+pub use fixtures::{TWO_BLOCKS, TWO_STOREYS, two_blocks_damped, with};
+
 use jointscope_spectra::{FrfPair, FrfSet};
 use num_complex::Complex64;
 
-/// The four FRFs across the joint of two blocks that have points 1 and 2, 3 and 4.
+/// The four FRFs across the joint of [`TWO_BLOCKS`].
 pub const ACROSS: [(&str, &str); 4] = [("4", "1"), ("3", "1"), ("4", "2"), ("3", "2")];
 
 /// Transverse FRFs by their points, response first.

@@ -30,15 +30,6 @@ impl FrfForm {
         }
     }
 
-    /// The unit of a transverse response to a transverse force.
-    pub fn unit(self) -> &'static str {
-        match self {
-            FrfForm::Receptance => "m/N",
-            FrfForm::Mobility => "m/(N s)",
-            FrfForm::Accelerance => "m/(N s^2)",
-        }
-    }
-
     /// The factor (iω)ⁿ that turns a value of this form into `target`, `omega` in rad/s; `None`
     /// at 0 Hz where a division would be needed.
     pub fn factor_to(self, target: FrfForm, omega: f64) -> Option<Complex64> {

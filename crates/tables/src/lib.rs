@@ -7,7 +7,7 @@
 //! * [`paper`]: the printed values, with their units;
 //! * [`examples`]: fixtures with their bands and inferences;
 //! * [`ProgramRow`]: SIM and FEM averages of an example by eq (7) and by the exact relation;
-//! * [`Reach`]: on which side of its poles eq (7) can give a printed row, [`Witness`]: a fixture that does;
+//! * [`Witness`]: a fixture whose eq (7) gives a printed row, on a side of its poles where it can;
 //! * [`Tables`]: all of it as text or JSON.
 //!
 //! ```
@@ -33,7 +33,8 @@ mod text;
 pub use cells::{Extracted, ProgramRow};
 pub use example::{Example, Inference, examples};
 pub use measured::{Measured, MeasuredError};
-pub use reach::{Reach, Side, Witness};
+pub use reach::Witness;
+pub(crate) use reach::{Reach, Side};
 pub use tables::Tables;
 
 /// Why a table cannot be made.

@@ -26,7 +26,7 @@ impl JointType {
 pub type Elements = [f64; 4];
 
 /// Names of the elements in the order of [`Elements`].
-pub const ELEMENTS: [&str; 4] = ["11", "12", "21", "22"];
+pub(crate) const ELEMENTS: [&str; 4] = ["11", "12", "21", "22"];
 
 /// Units in which Tables 2 and 3 print the elements of K, and what one of them is in SI.
 pub const STIFFNESS_UNITS: [(&str, f64); 4] =
@@ -122,7 +122,7 @@ use Model::{Exp, Fem, Sim};
 
 impl Model {
     /// The word of the tables.
-    pub fn name(self) -> &'static str {
+    pub(crate) fn name(self) -> &'static str {
         match self {
             Model::Sim => "SIM",
             Model::Exp => "EXP",
@@ -131,7 +131,7 @@ impl Model {
     }
 
     /// Its cells in a row of Tables 2 and 3.
-    pub fn cells(self, row: &StiffnessRow) -> Option<Elements> {
+    pub(crate) fn cells(self, row: &StiffnessRow) -> Option<Elements> {
         match self {
             Model::Sim => row.sim,
             Model::Exp => row.exp,

@@ -15,7 +15,7 @@ use jointscope_averaging::Band;
 
 /// Where a band lies.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Side {
+pub(crate) enum Side {
     /// Above the upper pole.
     Above,
     /// Between the poles.
@@ -26,10 +26,10 @@ pub enum Side {
 
 impl Side {
     /// All of them.
-    pub const ALL: [Side; 3] = [Side::Above, Side::Between, Side::Below];
+    pub(crate) const ALL: [Side; 3] = [Side::Above, Side::Between, Side::Below];
 
     /// As tables and files write it.
-    pub fn name(self) -> &'static str {
+    pub(crate) fn name(self) -> &'static str {
         match self {
             Side::Above => "above the upper pole",
             Side::Between => "between the poles",
@@ -49,7 +49,7 @@ impl Side {
 
 /// K11·K22/(K12·K21) of a printed row, against what eq (7) can give.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Reach {
+pub(crate) struct Reach {
     /// The ratio as printed.
     pub ratio: f64,
     /// Smallest and largest ratio that rounds to the printed cells.
@@ -66,7 +66,7 @@ impl Reach {
     }
 
     /// The ratio of four cells printed with one decimal.
-    pub fn of(cells: &Elements) -> Self {
+    pub(crate) fn of(cells: &Elements) -> Self {
         // MN/m · kN·m/rad over kN/rad · kN·m/m.
         let ratio = |shift: f64| {
             let [k11, k12, k21, k22] = *cells;
@@ -76,14 +76,14 @@ impl Reach {
     }
 
     /// On which sides of the poles a band without one can have a ratio that rounds to the printed one.
-    pub fn sides(&self) -> Vec<Side> {
+    pub(crate) fn sides(&self) -> Vec<Side> {
         let (low, high) = self.rounding;
         let meets = |side: &Side| low < side.ratios().1 && high > side.ratios().0;
         Side::ALL.into_iter().filter(meets).collect()
     }
 
     /// What it means for the row, in words.
-    pub fn says(&self) -> String {
+    pub(crate) fn says(&self) -> String {
         let names: Vec<&str> = self.sides().into_iter().map(Side::name).collect();
         match names.as_slice() {
             [] => "in no band without a pole".to_owned(),
@@ -164,7 +164,7 @@ impl Witness {
     }
 
     /// It in words.
-    pub fn says(&self) -> String {
+    pub(crate) fn says(&self) -> String {
         format!(
             "EI {:.0} N*m^2 over {:.1} mm, blocks of {:.5} kg*m^2 with {:.1} mm to the centre, {:.0}-{:.0} Hz",
             self.bending_stiffness,

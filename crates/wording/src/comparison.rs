@@ -45,7 +45,7 @@ pub fn p_value(p: f64) -> String {
 }
 
 /// Whether joints are the same.
-pub fn equality(equality: &Equality, names: [&str; 2]) -> String {
+pub(crate) fn equality(equality: &Equality, names: [&str; 2]) -> String {
     let [first, second] = names;
     let p = p_value(equality.p_value);
     let degrees = equality.degrees;
@@ -197,7 +197,7 @@ pub fn share(value: f64, mean: f64) -> String {
 }
 
 /// How a number scatters between specimens.
-pub fn scatter(scatter: &Scatter) -> String {
+pub(crate) fn scatter(scatter: &Scatter) -> String {
     let relative = |value: f64| share(value, scatter.mean.value);
     format!(
         "{}: mean {}, specimens differ by {} (95 %: {}), measured to {}; the same specimen has {}",

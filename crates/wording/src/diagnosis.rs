@@ -101,25 +101,7 @@ impl Remarks for Diagnosis {
                  one more response or reference point."
             ));
         }
-        let noise = self.observation.noise().iter().zip(pairs);
-        let scatter: Vec<String> = noise
-            .filter(|(source, _)| **source == NoiseSource::Scatter)
-            .map(|(_, pair)| pair.to_string())
-            .collect();
-        if self.observation.noise().contains(&NoiseSource::CoherenceAlone) {
-            remarks.push(
-                "The number of averages is not stated: it was taken from the scatter over neighbouring lines, and with it the noise from the \
-                 coherence. State it by --averages, and χ² and intervals are more certain."
-                    .to_owned(),
-            );
-        }
-        if !scatter.is_empty() {
-            remarks.push(format!(
-                "The noise of {} was estimated from the scatter over neighbouring lines, for want of coherence over several averages: χ² \
-                 and intervals are that much less certain.",
-                if scatter.len() == pairs.len() { "all FRFs".to_owned() } else { listed(&scatter) }
-            ));
-        }
+        remarks.extend(of_noise(&self.observation));
         if !self.contradictory.is_empty() {
             let band = |(from, to): &(f64, f64)| match from == to {
                 true => format!("{} Hz", significant(*from, 4)),
@@ -171,6 +153,32 @@ impl Remarks for Diagnosis {
         }
         remarks
     }
+}
+
+/// From what the noise of the FRFs had to be estimated where no coherence over a stated number of averages tells it.
+fn of_noise(observation: &Observation) -> Vec<String> {
+    let mut remarks = Vec::new();
+    let pairs = observation.pairs();
+    let noise = observation.noise().iter().zip(pairs);
+    let scatter: Vec<String> = noise
+        .filter(|(source, _)| **source == NoiseSource::Scatter)
+        .map(|(_, pair)| pair.to_string())
+        .collect();
+    if observation.noise().contains(&NoiseSource::CoherenceAlone) {
+        remarks.push(
+            "The number of averages is not stated: it was taken from the scatter over neighbouring lines, and with it the noise from the \
+             coherence. State it by --averages, and χ² and intervals are more certain."
+                .to_owned(),
+        );
+    }
+    if !scatter.is_empty() {
+        remarks.push(format!(
+            "The noise of {} was estimated from the scatter over neighbouring lines, for want of coherence over several averages: χ² \
+             and intervals are that much less certain.",
+            if scatter.len() == pairs.len() { "all FRFs".to_owned() } else { listed(&scatter) }
+        ));
+    }
+    remarks
 }
 
 /// What came nearest to a finding where nothing is needed, if a search among as many names comes on something as good in less than every other test: a Bayes

@@ -19,7 +19,7 @@ impl Scale {
 
     /// The prefix in which a value of this `magnitude` (SI, sign ignored) reads as 1 to 999. Units that take no prefix (`%`, `dB`, `1/s`, `m^4`, one
     /// that already has a prefix) stay as they are, and so do magnitudes for which no usual prefix exists.
-    pub fn for_magnitude(magnitude: f64, unit: &str) -> Self {
+    pub(crate) fn for_magnitude(magnitude: f64, unit: &str) -> Self {
         let magnitude = magnitude.abs();
         if !magnitude.is_finite() || magnitude == 0.0 {
             return Self::plain(unit);

@@ -5,6 +5,7 @@ use jointscope_check::{Check, CheckOptions, DrivingPointVerdict, Weight};
 use jointscope_fixture::Fixture;
 use jointscope_lumped::{Instrument, synthesize};
 use jointscope_pipeline::Measurement;
+use jointscope_samples::Noise;
 use jointscope_spectra::{FrfPair, FrfSet, SpectralLines};
 use num_complex::Complex64;
 use serde_json::{Value, json};
@@ -37,11 +38,8 @@ fn recorded(fixture: &Fixture) -> FrfSet {
         .collect();
     let lines = SpectralLines::even(5.0, 2.5, 400).unwrap();
     let frfs = synthesize(fixture, &pairs, &lines, Instrument::AsRecorded).unwrap();
-    let mut state = 7_u64;
-    let mut random = move || {
-        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (state >> 33) as f64 / (1_u64 << 31) as f64 - 0.5
-    };
+    let mut noise = Noise::from_state(7);
+    let mut random = move || noise.uniform() - 0.5;
     let noise: Vec<Complex64> =
         (0..frfs.all_values().len()).map(|_| 0.03 * Complex64::new(random(), random())).collect();
     frfs.with_values(|at, value| value * (1.0 + noise[at]))

@@ -5,6 +5,7 @@ use std::fs;
 
 use crate::common::{BENDING_STIFFNESS, Bench, LENGTH, TWO_BLOCKS, matrix, scale};
 use jointscope::uff::{Abscissa, Data, FunctionType};
+use jointscope_samples::two_blocks_damped;
 use serde_json::Value;
 
 const ON_SHIPPED: [&str; 3] = ["decompose", "fixture.json", "hammer-test.uff"];
@@ -153,7 +154,7 @@ fn the_exact_relation_gives_back_what_was_synthesized() {
 
 #[test]
 fn the_papers_relation_gives_its_own_closed_form_signs_included() {
-    let fixture = TWO_BLOCKS.replace(r#"{ "loss_factor": 0.006 }"#, r#"{ "modal_ratios": [0] }"#);
+    let fixture = two_blocks_damped(&[0.0]);
     let bench = Bench::synthesized("paper", &fixture, "400:1000:2.5");
     bench.done(&decompose(ON_TWO_BLOCKS, &["--relation", "paper", "-o", "out"]));
     let file = bench.json("out/stiffness.json");

@@ -2,28 +2,15 @@
 
 use crate::common::{self, Bench};
 use jointscope::uff::{Axis, Data, Dataset58, FunctionType, data_type};
+use jointscope_samples::{Noise, TWO_STOREYS, with};
 use num_complex::Complex64;
 use serde_json::Value;
-
-/// Two storeys that do not rotate: few quantities, few places, quick searches.
-const STOREYS: &str = r#"{
-  "name": "two storeys",
-  "bodies": {
-    "low": { "mass": {"value": 6.9, "std": 0.007}, "rotates": false },
-    "high": { "mass": {"value": 6.0, "std": 0.006}, "rotates": false }
-  },
-  "points": { "1": { "body": "low", "x": 0 }, "2": { "body": "high", "x": 0.18 } },
-  "joints": { "C": { "from": "1", "to": "2", "stiffness": [[{"value": 3.4e6, "std": 2e4}, 0], [0, 0]] } },
-  "damping": { "modal_ratios": [{"value": 0.02, "std": 0.004}] }
-}"#;
 
 /// Recordings of the storeys: FRFs 1/1, 2/1, with noise that is the same each time, and effects in `physics` where given.
 fn storeys(name: &str, physics: &str) -> Bench {
     let bench = Bench::new(name);
-    bench.write("believed.json", STOREYS);
-    let truth =
-        STOREYS.trim_end().strip_suffix('}').unwrap().to_owned() + &format!(", \"physics\": [{physics}] }}");
-    bench.write("truth.json", truth);
+    bench.write("believed.json", TWO_STOREYS);
+    bench.write("truth.json", with(TWO_STOREYS, &format!(r#""physics": [{physics}]"#)));
     bench.done(&[
         "synthesize",
         "truth.json",
@@ -39,15 +26,12 @@ fn storeys(name: &str, physics: &str) -> Bench {
     bench
 }
 
-/// Noise of half a per cent from a linear congruential generator, and the coherence of ten averages that belongs to it.
+/// Noise of half a per cent, and the coherence of ten averages that belongs to it.
 fn noise(datasets: &mut Vec<Dataset58>) {
     const SHARE: f64 = 0.005;
     const AVERAGES: f64 = 10.0;
-    let mut state = 7_u64;
-    let mut uniform = move || {
-        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (state >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
-    };
+    let mut noise = Noise::from_state(7);
+    let mut uniform = move || noise.uniform() - 0.5;
     let mut coherences = Vec::new();
     for dataset in datasets.iter_mut() {
         let Data::Complex(values) = &mut dataset.data else { panic!("an FRF is complex") };
@@ -222,7 +206,7 @@ fn without_coherence_the_noise_is_estimated_from_the_scatter_and_that_is_said() 
 #[test]
 fn a_fixture_that_is_grossly_wrong_gets_a_plain_answer() {
     let bench = storeys("diagnose-gross", "");
-    bench.write("believed.json", STOREYS.replace("3.4e6", "10.2e6"));
+    bench.write("believed.json", TWO_STOREYS.replace("3.4e6", "10.2e6"));
     let told = bench.done(&DIAGNOSE);
     assert!(!told.starts_with("consistent") && !told.contains("NaN") && !told.contains("inf"), "{told}");
     assert!(bench.text("out/report.html").contains("</html>"));

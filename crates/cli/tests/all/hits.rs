@@ -1,19 +1,18 @@
 //! `simulate` and `diagnose` of time histories: what depends on amplitude, from files to files.
 
-use crate::common::{self, Bench, TWO_BLOCKS};
+use crate::common::{self, Bench};
 use jointscope::hits::Hit;
 use jointscope::recordings::hits_to_datasets;
 use jointscope::spectra::Channel;
 use jointscope::uff::{Data, Encoding};
+use jointscope_samples::{Noise, two_blocks_damped, with};
 
 const CUBIC: &str =
     r#"{ "kind": "cubic_stiffness", "place": "J", "dof": "translation", "stiffness3": 4e13 }"#;
 
-/// [`TWO_BLOCKS`] with modal damping, which has a form over time, and an effect.
+/// Two blocks with modal damping, which has a form over time, and an effect.
 fn fixture(physics: &str) -> String {
-    let damped = TWO_BLOCKS.replacen(r#""loss_factor": 0.006 }"#, r#""modal_ratios": [0.02] }"#, 1);
-    let end = damped.rfind('}').unwrap();
-    format!(r#"{}, "physics": [{physics}] }}"#, &damped[..end])
+    with(&two_blocks_damped(&[0.02]), &format!(r#""physics": [{physics}]"#))
 }
 
 /// Blows of these peaks, N, in `force.uff`, at the points in turn.
@@ -44,11 +43,8 @@ fn strike(bench: &Bench, hits: usize) {
     let simulate = ["simulate", "true.json", "--force", "force.uff", "--at", "3", "4", "--with-force"];
     let said = bench.done(&[&simulate[..], &["-o", "exact.uff"]].concat());
     assert!(said.contains(&format!("under {hits} hits of 2048 samples")), "{said}");
-    let mut seed = 7u64;
-    let mut uniform = move || {
-        seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (seed >> 11) as f64 / (1u64 << 53) as f64 - 0.5
-    };
+    let mut noise = Noise::from_state(7);
+    let mut uniform = move || noise.uniform() - 0.5;
     bench.rewrite("exact.uff", "hits.uff", |datasets| {
         for dataset in datasets {
             let Data::Real(values) = &mut dataset.data else { panic!("a history is real") };

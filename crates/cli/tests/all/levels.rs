@@ -6,6 +6,7 @@ use jointscope::recordings::to_datasets;
 use jointscope::spectra::{FrfPair, SpectralLines};
 use jointscope::uff::{Dataset58, Encoding};
 use jointscope_rig::{Control, SteppedSines, generator};
+use jointscope_samples::with;
 
 /// Two storeys with one elastic mode at 232.6 Hz.
 const STOREYS: &str = r#"{
@@ -19,8 +20,7 @@ const CUBIC: &str =
 
 /// FRFs 2/2 and 1/2 of the storeys with `physics` at levels of held response, m/s², with 0.5 % noise.
 fn recorded(physics: &str, levels: &[f64]) -> Vec<Dataset58> {
-    let whole = STOREYS.strip_suffix('}').unwrap();
-    let fixture = Fixture::from_json(&format!(r#"{whole}, "physics": [{physics}] }}"#)).unwrap();
+    let fixture = Fixture::from_json(&with(STOREYS, &format!(r#""physics": [{physics}]"#))).unwrap();
     let lines = SpectralLines::even(222.0, 0.25, 101).unwrap();
     let test = SteppedSines { control: Control::Response, harmonics: 7, noise: 0.005 };
     let pairs = [FrfPair::transverse("2", "2"), FrfPair::transverse("1", "2")];

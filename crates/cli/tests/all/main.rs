@@ -1,7 +1,6 @@
 //! The tests of this crate's public functions, in one program: linking is what costs time.
 #![allow(clippy::unwrap_used)] // helpers of tests fail as tests do
 
-mod bad_input;
 mod bad_inputs;
 mod check;
 mod common;
@@ -25,6 +24,7 @@ mod prove;
 mod prove_floors;
 mod prove_recordings;
 mod reference;
+mod refusals;
 mod results;
 mod shared_inputs;
 mod streams;

@@ -1,15 +1,12 @@
 //! `jointscope modes` as a user runs it.
 
-use crate::common::{Bench, TWO_BLOCKS};
+use crate::common::Bench;
 use jointscope::uff::Data;
+use jointscope_samples::{Noise, two_blocks_damped};
 use num_complex::Complex64;
 
-/// The shipped blocks' test, and what its fixture says of its damping.
-const RATIOS: &str = r#""damping": { "modal_ratios": [0.004, 0.006] }"#;
-
 fn bench(name: &str) -> Bench {
-    let fixture = TWO_BLOCKS.replace(r#""damping": { "loss_factor": 0.006 }"#, RATIOS);
-    Bench::synthesized(name, &fixture, "2.5:1500:2.5")
+    Bench::synthesized(name, &two_blocks_damped(&[0.004, 0.006]), "2.5:1500:2.5")
 }
 
 #[test]
@@ -108,11 +105,8 @@ fn noise_alone_is_refused_and_nodes_in_any_direction_do() {
     });
     let file = bench.json_of(&["modes", "z.uff", "--json"]);
     assert_eq!(file["modes"].as_array().unwrap().len(), 2);
-    let mut state = 1_u64;
-    let mut uniform = || {
-        state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-        (state >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
-    };
+    let mut noise = Noise::from_state(1);
+    let mut uniform = || noise.uniform() - 0.5;
     bench.rewrite("frf.uff", "noise.uff", |datasets| {
         for dataset in datasets.iter_mut() {
             let Data::Complex(values) = &mut dataset.data else { panic!("an FRF is complex") };

@@ -5,21 +5,13 @@ use std::process::{Command, Stdio};
 
 use crate::common::Bench;
 use jointscope::uff::{Abscissa, Data, Encoding, FunctionType};
+use jointscope_samples::{two_blocks_damped, with};
 
-const FIXTURE: &str = r#"{
-  "name": "two blocks and a beam",
-  "bodies": {
-    "A": { "mass": 1.10, "inertia": 9.5e-4, "x_cg": -0.030 },
-    "B": { "mass": 1.10, "inertia": 9.5e-4, "x_cg": 0.095 }
-  },
-  "points": {
-    "1": { "body": "A", "x": -0.060 }, "2": { "body": "A", "x": 0.0 },
-    "3": { "body": "B", "x": 0.065 },  "4": { "body": "B", "x": 0.125 }
-  },
-  "joints": { "J": { "from": "2", "to": "3", "beam": { "youngs_modulus": 2.07e11, "second_moment": 3.67e-10 } } },
-  "damping": { "modal_ratios": [0.002, 0.003] },
-  "physics": [ { "kind": "channel_gain", "place": "response 4", "factor": -2.0 } ]
-}"#;
+/// Two blocks whose response 4 was recorded with the sign turned and twice as large.
+fn fixture() -> String {
+    let gain = r#""physics": [ { "kind": "channel_gain", "place": "response 4", "factor": -2.0 } ]"#;
+    with(&two_blocks_damped(&[0.002, 0.003]), gain)
+}
 
 /// A directory with a fixture, `two.json`, in it.
 fn bench(name: &str, fixture: &str) -> Bench {
@@ -38,7 +30,7 @@ fn value(dataset: &jointscope::uff::Dataset58, line: usize) -> (f64, f64) {
 
 #[test]
 fn the_default_is_four_frfs_across_the_joint_on_four_hundred_lines() {
-    let bench = bench("default", FIXTURE);
+    let bench = bench("default", &fixture());
     let summary = bench.done(&["synthesize", "two.json", "-o", "frf.uff"]);
     assert!(
         summary.starts_with("frf.uff: FRFs 4/1, 3/1, 4/2, 3/2 on 400 lines, 2.5 to 1000 Hz"),
@@ -58,7 +50,7 @@ fn the_default_is_four_frfs_across_the_joint_on_four_hundred_lines() {
 
 #[test]
 fn rigid_body_lines_come_out_in_closed_form() {
-    let bench = bench("closed-form", FIXTURE);
+    let bench = bench("closed-form", &fixture());
     bench.done(&["synthesize", "two.json", "--perfect", "--frf", "1/1", "--lines", "0:1:0.5", "-o", "f.uff"]);
     // At 0 Hz the two blocks move as one body: 1/M + (x − x_cg)²/I.
     let (mass, x_cg) = (2.2_f64, 0.0325_f64);
@@ -71,7 +63,7 @@ fn rigid_body_lines_come_out_in_closed_form() {
 
 #[test]
 fn a_perfect_instrument_leaves_out_the_effects_of_the_channels() {
-    let bench = bench("perfect", FIXTURE);
+    let bench = bench("perfect", &fixture());
     bench.done(&["synthesize", "two.json", "-o", "recorded.uff"]);
     bench.done(&["synthesize", "two.json", "--perfect", "-o", "perfect.uff"]);
     let (recorded, perfect) = (bench.datasets("recorded.uff"), bench.datasets("perfect.uff"));
@@ -83,7 +75,7 @@ fn a_perfect_instrument_leaves_out_the_effects_of_the_channels() {
 
 #[test]
 fn text_and_binary_hold_the_same_frfs() {
-    let bench = bench("ascii", FIXTURE);
+    let bench = bench("ascii", &fixture());
     let frfs = ["--frf", "4:theta/1", "3/2", "--lines", "10:500:0.25"];
     bench.done(&[["synthesize", "two.json", "-o", "b.uff"].as_slice(), &frfs].concat());
     bench.done(&[["synthesize", "two.json", "--ascii", "-o", "a.uff"].as_slice(), &frfs].concat());
@@ -106,7 +98,7 @@ fn frfs_of(bench: &Bench, file: &str) -> Vec<jointscope::uff::Dataset58> {
 
 #[test]
 fn the_coherence_of_noisy_frfs_says_the_noise_that_is_in_them() {
-    let bench = bench("noise", FIXTURE);
+    let bench = bench("noise", &fixture());
     let answer = bench.done(&[
         "synthesize",
         "two.json",
@@ -150,7 +142,7 @@ fn the_coherence_of_noisy_frfs_says_the_noise_that_is_in_them() {
 
 #[test]
 fn the_same_seed_makes_the_same_bytes_and_another_one_other_noise() {
-    let bench = bench("seed", FIXTURE);
+    let bench = bench("seed", &fixture());
     let made = |seed: &[&str]| {
         bench.done(&[["synthesize", "two.json", "--noise", "1", "-o", "n.uff"].as_slice(), seed].concat());
         fs::read(bench.0.join("n.uff")).unwrap()
@@ -174,7 +166,7 @@ fn a_shipped_fixture_is_consistent_with_its_own_noisy_frfs() {
 
 #[test]
 fn a_noise_that_no_test_has_is_refused() {
-    let bench = bench("no-noise", FIXTURE);
+    let bench = bench("no-noise", &fixture());
     let check = |options: &[&str], parts: &[&str]| {
         bench.refused(&[["synthesize", "two.json", "-o", "n.uff"].as_slice(), options].concat(), parts);
     };
@@ -186,14 +178,14 @@ fn a_noise_that_no_test_has_is_refused() {
 
 #[test]
 fn the_output_may_lie_in_a_directory_that_does_not_exist_yet() {
-    let bench = bench("directory", FIXTURE);
+    let bench = bench("directory", &fixture());
     bench.done(&["synthesize", "two.json", "-o", "new/deep/f.uff"]);
     assert_eq!(bench.datasets("new/deep/f.uff").len(), 4);
 }
 
 #[test]
 fn a_missing_fixture_is_named() {
-    let bench = bench("missing", FIXTURE);
+    let bench = bench("missing", &fixture());
     bench.refused(&["synthesize", "three.json", "-o", "f.uff"], &["three.json", "no such file"]);
     bench.refused(&["synthesize", ".", "-o", "f.uff"], &["directory"]);
 }
@@ -201,7 +193,7 @@ fn a_missing_fixture_is_named() {
 #[test]
 fn a_bad_fixture_names_file_place_and_remedy() {
     let check = |name: &str, from: &str, to: &str, parts: &[&str]| {
-        let bench = bench(name, &FIXTURE.replacen(from, to, 1));
+        let bench = bench(name, &fixture().replacen(from, to, 1));
         bench.refused(&["synthesize", "two.json", "-o", "f.uff"], parts);
     };
     check("typo", "\"inertia\"", "\"innertia\"", &["two.json: bodies/A", "did you mean `inertia`?"]);
@@ -211,7 +203,7 @@ fn a_bad_fixture_names_file_place_and_remedy() {
 
 #[test]
 fn an_unknown_point_is_named_with_the_points_there_are() {
-    let bench = bench("point", FIXTURE);
+    let bench = bench("point", &fixture());
     bench.refused(
         &["synthesize", "two.json", "--frf", "9/1", "-o", "f.uff"],
         &["two.json: FRF 9/1", "`9`", "1, 2, 3, 4"],
@@ -220,7 +212,7 @@ fn an_unknown_point_is_named_with_the_points_there_are() {
 
 #[test]
 fn a_fixture_without_the_default_points_is_told_to_choose_frfs() {
-    let fixture = FIXTURE.replace("\"4\":", "\"40\":").replace("response 4", "response 40");
+    let fixture = fixture().replace("\"4\":", "\"40\":").replace("response 4", "response 40");
     let bench = bench("default-points", &fixture);
     bench.refused(&["synthesize", "two.json", "-o", "f.uff"], &["two.json", "1, 2, 3, 40", "`--frf 40/1`"]);
     bench.done(&["synthesize", "two.json", "--frf", "40/1", "-o", "f.uff"]);
@@ -228,14 +220,14 @@ fn a_fixture_without_the_default_points_is_told_to_choose_frfs() {
 
 #[test]
 fn a_point_that_is_no_node_number_cannot_be_written() {
-    let fixture = FIXTURE.replace("\"4\":", "\"tip\":").replace("response 4", "response tip");
+    let fixture = fixture().replace("\"4\":", "\"tip\":").replace("response 4", "response tip");
     let bench = bench("tip", &fixture);
     bench.refused(&["synthesize", "two.json", "--frf", "tip/1", "-o", "f.uff"], &["`tip`", "whole numbers"]);
 }
 
 #[test]
 fn bad_arguments_are_refused_in_one_sentence() {
-    let bench = bench("usage", FIXTURE);
+    let bench = bench("usage", &fixture());
     let check = |arguments: &[&str], parts: &[&str]| bench.refused(arguments, parts);
     check(&[], &["no command", "--help"]);
     check(&["synthesise"], &["synthesise", "synthesize"]);
@@ -249,16 +241,16 @@ fn bad_arguments_are_refused_in_one_sentence() {
 
 #[test]
 fn neither_inputs_nor_directories_are_overwritten() {
-    let bench = bench("overwrite", FIXTURE);
+    let bench = bench("overwrite", &fixture());
     bench.refused(&["synthesize", "two.json", "-o", "two.json"], &["two.json", "overwritten"]);
     bench.refused(&["synthesize", "two.json", "-o", "."], &["directory"]);
     bench.refused(&["synthesize", "two.json", "-o", "two.json/f.uff"], &["two.json/f.uff"]);
-    assert_eq!(fs::read_to_string(bench.0.join("two.json")).unwrap(), FIXTURE);
+    assert_eq!(fs::read_to_string(bench.0.join("two.json")).unwrap(), fixture());
 }
 
 #[test]
 fn a_refusal_leaves_an_earlier_result_as_it_was() {
-    let bench = bench("earlier", FIXTURE);
+    let bench = bench("earlier", &fixture());
     bench.done(&["synthesize", "two.json", "-o", "f.uff"]);
     let before = fs::read(bench.0.join("f.uff")).unwrap();
     bench.refused(&["synthesize", "two.json", "--frf", "9/1", "-o", "f.uff"], &["9/1"]);
@@ -267,7 +259,7 @@ fn a_refusal_leaves_an_earlier_result_as_it_was() {
 
 #[test]
 fn help_and_version_are_no_errors() {
-    let bench = bench("help", FIXTURE);
+    let bench = bench("help", &fixture());
     assert!(bench.done(&["--help"]).contains("synthesize"));
     assert!(bench.done(&["synthesize", "--help"]).contains("FROM:TO:STEP"));
     assert!(bench.done(&["--version"]).starts_with("jointscope "));
@@ -275,7 +267,7 @@ fn help_and_version_are_no_errors() {
 
 #[test]
 fn a_reader_that_has_gone_away_is_no_panic() {
-    let bench = bench("pipe", FIXTURE);
+    let bench = bench("pipe", &fixture());
     let mut child = Command::new(env!("CARGO_BIN_EXE_jointscope"))
         .args(["synthesize", "two.json", "-o", "f.uff"])
         .current_dir(&bench.0)

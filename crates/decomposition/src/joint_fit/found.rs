@@ -141,11 +141,6 @@ impl JointFit {
         deviations(&self.covariance)
     }
 
-    /// Standard deviations of K and C from the model's error alone.
-    pub fn model_std(&self) -> (RealMatrix2, RealMatrix2) {
-        deviations(&self.model_covariance)
-    }
-
     /// Whether noise and tolerances explain the FRFs.
     pub fn explains(&self) -> bool {
         self.inflation == 1.0 && self.strain == 1.0

@@ -83,7 +83,7 @@ impl LawFit {
     }
 
     /// The dynamic stiffness on d at s = δ + iω, without the mass.
-    pub fn dynamic_stiffness(&self, s: Complex64) -> ComplexMatrix2 {
+    pub(crate) fn dynamic_stiffness(&self, s: Complex64) -> ComplexMatrix2 {
         self.law.placed(&self.coordinates).stiffness(&[s])
     }
 

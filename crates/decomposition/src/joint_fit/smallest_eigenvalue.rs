@@ -149,6 +149,7 @@ fn nearest_on_the_edge(found: Elements, solved: &dyn Fn(Elements) -> Elements) -
 #[cfg(test)]
 mod tests {
     use super::*;
+    use jointscope_samples::Noise;
     use proptest::prelude::*;
 
     /// P(z ≤ λ/σ): right where the eigenvector does not turn.
@@ -184,11 +185,8 @@ mod tests {
     #[test]
     fn p_values_are_uniform_on_the_edge_where_noise_turns_the_eigenvector() {
         // A stream of normal numbers by sums, fixed.
-        let mut state = 7_u64;
-        let mut uniform = || {
-            state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-            ((state >> 11) as f64 + 0.5) / (1_u64 << 53) as f64
-        };
+        let mut noise = Noise::from_state(7);
+        let mut uniform = || noise.uniform();
         let mut normal = || (-2.0 * uniform().ln()).sqrt() * (std::f64::consts::TAU * uniform()).cos();
         let runs = 1500;
         // Deviations of all elements of v vᵀ = [1, −0.8, 0.64] or of zero, and what of their variance is left along the gradient of the smallest eigenvalue.

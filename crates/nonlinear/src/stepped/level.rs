@@ -15,7 +15,7 @@ pub enum Held {
 
 impl Held {
     /// The number alone.
-    pub fn amplitude(self) -> f64 {
+    pub(crate) fn amplitude(self) -> f64 {
         match self {
             Held::Force(value) | Held::Response(value) => value,
         }

@@ -49,7 +49,7 @@ pub(crate) enum Branch {
 
 impl RestoringLaw {
     /// The law of an effect; `None` for one whose force is linear.
-    pub fn of(effect: &Effect) -> Option<Self> {
+    pub(crate) fn of(effect: &Effect) -> Option<Self> {
         Self::of_kind(effect.kind, |index| effect.value(index))
     }
 

@@ -3,6 +3,7 @@
 use jointscope_fixture::{EffectKind, Fixture};
 use jointscope_nonlinear::{Held, NonlinearOptions, SteppedDiagnosis, SteppedLevel, Verdict};
 use jointscope_recordings::{HeldAmplitude, ReadOptions, Recording, Source};
+use jointscope_samples::Noise;
 use jointscope_spectra::{FrfForm, FrfPair, FrfSet, SpectralLines};
 use jointscope_wording::Says;
 use num_complex::Complex64;
@@ -69,14 +70,9 @@ fn equivalent(law: Law, amplitude: f64) -> Complex64 {
 
 /// Driving-point FRFs of mass B at levels of held response, with 0.5 % noise of the largest value.
 fn levels(law: Law, held: &[f64], seed: u64) -> Vec<SteppedLevel> {
-    let mut state = seed;
-    let mut noise = move || {
-        // Twelve uniform numbers less six: nearly normal.
-        (0..12).fold(-6.0, |sum, _| {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            sum + (state >> 11) as f64 / (1u64 << 53) as f64
-        })
-    };
+    let mut uniform = Noise::from_state(seed);
+    // Twelve uniform numbers less six: nearly normal.
+    let mut noise = move || (0..12).fold(-6.0, |sum, _| sum + uniform.uniform());
     let (m1, m2) = MASSES;
     let natural = (STIFFNESS * (m1 + m2) / (m1 * m2)).sqrt() / TAU;
     let hz: Vec<f64> = (0..81).map(|i| natural + 12.0 * (f64::from(i) / 40.0 - 1.0)).collect();

@@ -22,7 +22,7 @@ pub struct Updated {
 
 impl Updated {
     /// The best of a fit from afar and one from nearby, under tolerances `wider` than stated; `None` where the fixture predicts nothing.
-    pub fn of(believed: &Fixture, wider: f64, observation: &Observation) -> Option<Self> {
+    pub(crate) fn of(believed: &Fixture, wider: f64, observation: &Observation) -> Option<Self> {
         let start = Hypothesis::nominal(&widened(believed, wider), false);
         let fits = [true, false].into_iter().filter_map(|far| Fit::of(&start, observation, far));
         let best = fits.min_by(|a, b| a.objective.total_cmp(&b.objective))?;

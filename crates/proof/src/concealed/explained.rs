@@ -42,7 +42,7 @@ impl Explained {
     }
 
     /// Whether the last diagnosis found nothing more.
-    pub fn is_settled(&self) -> bool {
+    pub(crate) fn is_settled(&self) -> bool {
         self.rounds.last().is_some_and(|last| last.verdict == Verdict::Consistent)
     }
 

@@ -38,7 +38,7 @@ pub enum Outcome {
 
 impl Outcome {
     /// The outcome in words.
-    pub fn name(self) -> &'static str {
+    pub(crate) fn name(self) -> &'static str {
         match self {
             Outcome::Quiet => "quiet",
             Outcome::FalseAlarm => "false alarm",

@@ -130,7 +130,7 @@ impl Reckoning {
 
 impl Reckoned {
     /// The case as JSON.
-    pub fn to_value(&self) -> Value {
+    pub(crate) fn to_value(&self) -> Value {
         let answer = self.answer.as_ref().ok();
         let findings = answer.map_or(&[][..], |answer| &answer.findings);
         let found =

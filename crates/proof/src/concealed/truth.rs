@@ -72,7 +72,7 @@ pub struct Expected {
 
 impl Expected {
     /// The expected effect, or one that is the same in this recording, of this name.
-    pub fn named(&self, name: &Name) -> Option<&Effect> {
+    pub(crate) fn named(&self, name: &Name) -> Option<&Effect> {
         std::iter::once(&self.effect).chain(&self.same).find(|effect| Name::of(effect) == *name)
     }
 }

@@ -23,8 +23,9 @@ pub use by_name::{Nameable, TrueName};
 pub use lumped::{LumpedRoute, LumpedTruth};
 pub use modal_errors::ModalErrorsTruth;
 pub use score::{RouteScore, RouteScores};
-pub use solid::{Shown, SolidJudged, SolidTruth};
-pub use struck::{StruckAnswer, StruckAnswers, StruckCase, StruckJudged, StruckRole, StruckTruth};
+pub use solid::{Shown, SolidTruth};
+pub(crate) use struck::StruckJudged;
+pub use struck::{StruckAnswer, StruckAnswers, StruckCase, StruckRole, StruckTruth};
 
 use crate::answers::Timed;
 use crate::generate::Draw;

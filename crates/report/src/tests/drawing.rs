@@ -1,6 +1,7 @@
 //! The side view of a fixture: what is drawn, and that labels keep clear of each other.
 
 use jointscope_fixture::Fixture;
+use jointscope_samples::TWO_BLOCKS;
 use jointscope_spectra::FrfPair;
 use serde_json::{Value, json};
 
@@ -25,12 +26,9 @@ fn frfs(fixture: &Fixture, references: usize) -> Vec<FrfPair> {
 }
 
 fn two_blocks_named(body: &str, point_1: &str) -> Fixture {
-    fixture(&json!({
-        "bodies": { body: block(-0.030), "B": block(0.095) },
-        "points": { point_1: point(body, -0.060), "2": point(body, 0.0),
-                    "3": point("B", 0.065), "4": point("B", 0.125) },
-        "joints": { "J": { "from": "2", "to": "3", "beam": { "youngs_modulus": 2.07e11, "second_moment": 3.67e-10 } } }
-    }))
+    let [body, point_1] = [body, point_1].map(|name| json!(name).to_string());
+    let file = TWO_BLOCKS.replace(r#""A""#, &body).replacen(r#""1""#, &point_1, 1);
+    Fixture::from_json(&file).expect("a fixture")
 }
 
 pub(super) fn two_blocks() -> Fixture {

@@ -5,6 +5,7 @@
 use std::f64::consts::PI;
 
 use jointscope_fixture::Fixture;
+use jointscope_samples::Noise;
 use jointscope_spectra::FrfPair;
 
 use super::drawing::{chain, frame, two_blocks};
@@ -117,21 +118,13 @@ fn receptance(frequency: f64) -> (f64, f64) {
 }
 
 /// A reproducible number between −1 and 1, roughly bell-shaped.
-struct Noise(u64);
-
-impl Noise {
-    fn next(&mut self) -> f64 {
-        let mut uniform = || {
-            self.0 = self.0.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-            (self.0 >> 11) as f64 / (1u64 << 53) as f64
-        };
-        (0..4).map(|_| uniform()).sum::<f64>() / 2.0 - 1.0
-    }
+fn bell(noise: &mut Noise) -> f64 {
+    (0..4).map(|_| noise.uniform()).sum::<f64>() / 2.0 - 1.0
 }
 
 fn by_line() -> Section {
     let frequency: Vec<f64> = (0..6400).map(|line| 100.0 + 0.15625 * f64::from(line)).collect();
-    let mut noise = Noise(1);
+    let mut noise = Noise::from_state(1);
     let mut series = |level: f64, slope: f64, scatter: f64| {
         let (mut values, mut low, mut high) = (Vec::new(), Vec::new(), Vec::new());
         for &f in &frequency {
@@ -139,7 +132,7 @@ fn by_line() -> Section {
                 + 400.0 / (1.0 + ((f - 312.0) / 0.6).powi(2))
                 + 60.0 / (1.0 + ((f - 934.0) / 1.5).powi(2));
             let std = scatter * (1.0 + (500.0 / f).powi(2)) * wild;
-            let value = level + slope * f + 2.0 * std * noise.next();
+            let value = level + slope * f + 2.0 * std * bell(&mut noise);
             let masked = (610.0..622.0).contains(&f);
             values.push((!masked).then_some(value));
             low.push((!masked).then_some(value - 1.96 * std));
@@ -171,13 +164,15 @@ fn by_line() -> Section {
 
 fn frfs() -> Section {
     let frequency: Vec<f64> = (1..=50_000).map(|line| 0.04 * f64::from(line)).collect();
-    let mut noise = Noise(2);
+    let mut noise = Noise::from_state(2);
     let mut plots = Vec::new();
     for (name, factor) in [("4/1", 1.0), ("3/1", 0.7), ("4/2", 0.8), ("3/2", 0.5)] {
         let model: Vec<f64> =
             frequency.iter().map(|f| receptance(*f)).map(|(re, im)| factor * re.hypot(im)).collect();
-        let measured: Vec<f64> =
-            model.iter().map(|h| (h * (1.0 + 0.02 * noise.next()) + 4e-10 * noise.next()).abs()).collect();
+        let measured: Vec<f64> = model
+            .iter()
+            .map(|h| (h * (1.0 + 0.02 * bell(&mut noise)) + 4e-10 * bell(&mut noise)).abs())
+            .collect();
         plots.push(
             Plot::new(
                 format!("Receptance {name}"),

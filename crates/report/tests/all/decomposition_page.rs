@@ -6,7 +6,7 @@ use jointscope_fixture::Fixture;
 use jointscope_lumped::{Instrument, synthesize};
 use jointscope_report::format::quantity;
 use jointscope_report::{InputFile, PageContext, decomposition_report};
-use jointscope_samples::transverse;
+use jointscope_samples::{Noise, TWO_STOREYS, transverse};
 use jointscope_spectra::{FrfSet, SpectralLines};
 use jointscope_wording::Says;
 use num_complex::Complex64;
@@ -27,16 +27,6 @@ fn blocks(extra: &str) -> Fixture {
     .unwrap()
 }
 
-fn storeys() -> Fixture {
-    Fixture::from_json(
-        r#"{ "bodies": { "low": { "mass": 6.9, "rotates": false }, "high": { "mass": 6.0, "rotates": false } },
-             "points": { "1": { "body": "low", "x": 0 }, "2": { "body": "high", "x": 0.18 } },
-             "joints": { "C": { "from": "1", "to": "2", "stiffness": [[3.4e6, 0], [0, 0]] } },
-             "damping": { "modal_ratios": [0.009] } }"#,
-    )
-    .unwrap()
-}
-
 /// FRFs of a fixture with half a per cent of noise, always the same.
 fn recorded(fixture: &Fixture, pairs: &[(&str, &str)]) -> FrfSet {
     recorded_on(fixture, pairs, SpectralLines::even(0.0, 2.5, 401).unwrap())
@@ -45,11 +35,8 @@ fn recorded(fixture: &Fixture, pairs: &[(&str, &str)]) -> FrfSet {
 fn recorded_on(fixture: &Fixture, pairs: &[(&str, &str)], lines: SpectralLines) -> FrfSet {
     let pairs = transverse(pairs);
     let frfs = synthesize(fixture, &pairs, &lines, Instrument::AsRecorded).unwrap();
-    let mut state = 1_u64;
-    let mut uniform = || {
-        state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-        (state >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
-    };
+    let mut noise = Noise::from_state(1);
+    let mut uniform = || noise.uniform() - 0.5;
     let mut variance = Vec::new();
     let values = frfs
         .all_values()
@@ -212,7 +199,7 @@ fn four_thousand_lines_stay_below_three_megabytes_and_exact_fixtures_have_no_tol
 
 #[test]
 fn bodies_that_do_not_rotate_show_one_element_and_no_interfaces() {
-    let fixture = storeys();
+    let fixture = Fixture::from_json(TWO_STOREYS).unwrap();
     let analysis = analysis(&fixture, &recorded(&fixture, &[("2", "1")]), Relation::Exact);
     let html = page(&fixture, &analysis);
     assert!(html.contains("k₁₁") && !html.contains("k₁₂") && !html.contains("k₂₂"));

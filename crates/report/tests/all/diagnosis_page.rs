@@ -4,20 +4,14 @@ use jointscope_diagnosis::{Departure, Diagnosis, DiagnosisOptions, ModelError, V
 use jointscope_fixture::Fixture;
 use jointscope_lumped::{Instrument, synthesize};
 use jointscope_report::{InputFile, PageContext, diagnosis_report};
+use jointscope_samples::{Noise, TWO_STOREYS, with};
 use jointscope_spectra::{FrfPair, FrfSet, SpectralLines};
 use jointscope_wording::Says;
 use num_complex::Complex64;
 
 fn storeys(physics: &str) -> Fixture {
-    Fixture::from_json(&format!(
-        r#"{{ "name": "two <storeys>",
-             "bodies": {{ "low": {{ "mass": {{"value": 6.9, "std": 0.007}}, "rotates": false }},
-                          "high": {{ "mass": {{"value": 6.0, "std": 0.006}}, "rotates": false }} }},
-             "points": {{ "1": {{ "body": "low", "x": 0 }}, "2": {{ "body": "high", "x": 0.18 }} }},
-             "joints": {{ "C": {{ "from": "1", "to": "2", "stiffness": [[{{"value": 3.4e6, "std": 2e4}}, 0], [0, 0]] }} }},
-             "damping": {{ "modal_ratios": [{{"value": 0.02, "std": 0.004}}] }}, "physics": [{physics}] }}"#
-    ))
-    .unwrap()
+    let named = TWO_STOREYS.replacen("two storeys", "two <storeys>", 1);
+    Fixture::from_json(&with(&named, &format!(r#""physics": [{physics}]"#))).unwrap()
 }
 
 /// FRFs 1/1 and 2/1 with half a per cent of noise that is the same each time, changed by `change` (FRF, line's share of the band).
@@ -25,11 +19,8 @@ fn recorded(truth: &Fixture, change: impl Fn(usize, f64) -> Complex64) -> FrfSet
     let pairs = [("1", "1"), ("2", "1")].map(|(o, i)| FrfPair::transverse(o, i));
     let lines = SpectralLines::even(20.0, 5.0, 77).unwrap();
     let frfs = synthesize(truth, &pairs, &lines, Instrument::AsRecorded).unwrap();
-    let mut state = 3_u64;
-    let mut uniform = || {
-        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (state >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
-    };
+    let mut noise = Noise::from_state(3);
+    let mut uniform = || noise.uniform() - 0.5;
     let mut variance = Vec::new();
     let n = lines.len();
     let values = frfs

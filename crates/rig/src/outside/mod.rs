@@ -1,15 +1,12 @@
 //! Physics that no effect of a fixture file describes: what a diagnosis must not give a wrong name to.
 
+mod drawn;
 mod reading;
 mod structure;
 
 use crate::physical::FIRST_TO_SECOND;
-use crate::random::{choice, log_uniform, sign, uniform};
-use jointscope_fixture::{Body, BodyKind, Effect, EffectKind, Fixture, Joint, JointLaw, Place};
-use jointscope_spectra::FrfPair;
-use rand::Rng;
+use jointscope_fixture::{Effect, EffectKind, Place};
 use serde::{Deserialize, Serialize};
-use std::f64::consts::TAU;
 
 /// A piece of physics outside the vocabulary of fixture files, with its place and size.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -107,120 +104,7 @@ pub enum Outside {
     },
 }
 
-/// The kinds that [`Outside::draw`] counts, in their order: what a seed stands for must not change when a kind is added.
-const COUNTED: [&str; 5] = ["inerter", "drift", "bypass", "gyroscope", "springpot"];
-
 impl Outside {
-    /// Number of kinds that [`Outside::draw`] counts.
-    pub const KINDS: usize = COUNTED.len();
-    /// Kinds that no effect of a fixture file is: those of [`Outside::draw`] but a bypass and a springpot, which files have names for, and more.
-    pub const UNLISTED: [&str; 8] = [
-        "cross_axis",
-        "inerter",
-        "clock_error",
-        "second_bending",
-        "cable",
-        "drift",
-        "base_motion",
-        "gyroscope",
-    ];
-
-    /// A random one of kind `kind` (counted modulo [`Outside::KINDS`]); `None` where the fixture has no place for it or `recorded` has
-    /// one reference only. Whether it shows is for the caller to judge: sizes run over two decades.
-    pub fn draw(rng: &mut impl Rng, fixture: &Fixture, kind: usize, recorded: &[FrfPair]) -> Option<Self> {
-        Self::draw_kind(rng, fixture, COUNTED[kind % COUNTED.len()], recorded)
-    }
-
-    /// A random one of the kind of this name; `None` as of [`Outside::draw`], and of a kind that there is not.
-    pub fn draw_kind(
-        rng: &mut impl Rng,
-        fixture: &Fixture,
-        kind: &str,
-        recorded: &[FrfPair],
-    ) -> Option<Self> {
-        let joint = choice(rng, fixture.joints())?;
-        let stiffness = transverse_stiffness(fixture, joint);
-        let name = joint.name.clone();
-        Some(match kind {
-            "inerter" => {
-                let masses = fixture.bodies().iter().map(|body| mass(&body.kind));
-                let lightest = masses.fold(f64::INFINITY, f64::min);
-                Outside::Inerter { joint: name, inertance: lightest * log_uniform(rng, 0.003, 0.3) }
-            }
-            "drift" => {
-                let last = &recorded.last()?.reference;
-                if recorded.iter().all(|pair| pair.reference == *last) {
-                    return None;
-                }
-                let factor = (sign(rng) * log_uniform(rng, 0.005, 0.2)).exp();
-                Outside::Drift { joint: name, reference: last.point.clone(), factor }
-            }
-            "bypass" => {
-                let points = fixture.points();
-                Outside::Bypass {
-                    from: points.first()?.name.clone(),
-                    to: points.last()?.name.clone(),
-                    stiffness: stiffness * log_uniform(rng, 0.0003, 0.1),
-                }
-            }
-            "gyroscope" => {
-                let turning: Vec<_> =
-                    fixture.points().iter().filter(|p| fixture.bodies()[p.body].kind.rotates()).collect();
-                let point = choice(rng, &turning)?;
-                let arm = 0.03 * mass(&fixture.bodies()[point.body].kind);
-                let coupling = sign(rng) * arm * TAU * log_uniform(rng, 3.0, 100.0);
-                Outside::Gyroscope { point: point.name.clone(), coupling }
-            }
-            "springpot" => Outside::Springpot {
-                joint: name,
-                stiffness: stiffness * log_uniform(rng, 0.003, 0.3),
-                order: uniform(rng, 0.25, 0.75),
-            },
-            "cross_axis" => Outside::CrossAxis {
-                response: choice(rng, recorded)?.response.point.clone(),
-                coupling: sign(rng) * log_uniform(rng, 3e-4, 0.1),
-                ratio: (sign(rng) * log_uniform(rng, 0.3, 3.0)).exp(),
-            },
-            "second_bending" => {
-                let blocks: Vec<&Body> = fixture
-                    .bodies()
-                    .iter()
-                    .filter(|body| matches!(body.kind, BodyKind::Rigid(_)) && body.kind.rotates())
-                    .collect();
-                Outside::SecondBending {
-                    body: choice(rng, &blocks)?.name.clone(),
-                    frequency: log_uniform(rng, 700.0, 15e3),
-                    damping_ratio: log_uniform(rng, 0.002, 0.01),
-                }
-            }
-            "cable" => {
-                let on = choice(rng, fixture.points())?;
-                let body = &fixture.bodies()[on.body];
-                Outside::Cable {
-                    body: body.name.clone(),
-                    x: on.x.value,
-                    mass: mass(&body.kind) * log_uniform(rng, 3e-4, 0.03),
-                    frequency: log_uniform(rng, 15.0, 250.0),
-                    damping_ratio: log_uniform(rng, 0.01, 0.05),
-                }
-            }
-            "clock_error" => Outside::ClockError {
-                response: choice(rng, recorded)?.response.point.clone(),
-                rate: sign(rng) * log_uniform(rng, 1e-6, 3e-3),
-            },
-            "base_motion" => {
-                fixture.supports().first()?;
-                let whole: f64 = fixture.bodies().iter().map(|body| mass(&body.kind)).sum();
-                Outside::BaseMotion {
-                    mass: whole * log_uniform(rng, 1.0, 100.0),
-                    frequency: log_uniform(rng, 3.0, 50.0),
-                    damping_ratio: log_uniform(rng, 0.01, 0.1),
-                }
-            }
-            _ => return None,
-        })
-    }
-
     /// What an analyst knows of it and states, as effects: of a second bending mode the first, of all else nothing.
     pub fn known(&self) -> Vec<Effect> {
         match self {
@@ -286,23 +170,6 @@ impl std::fmt::Display for Outside {
             Outside::BaseMotion { mass, frequency, .. } => {
                 write!(f, "supports on a table of {mass:.2e} kg that bounces at {frequency:.1} Hz")
             }
-        }
-    }
-}
-
-fn mass(body: &BodyKind) -> f64 {
-    match body {
-        BodyKind::Rigid(rigid) => rigid.mass.value,
-        BodyKind::Beam(beam) => beam.mass_per_length.value * (beam.to.value - beam.from.value),
-    }
-}
-
-/// Transverse stiffness of a joint at its far end, its rotation held, N/m.
-fn transverse_stiffness(fixture: &Fixture, joint: &Joint) -> f64 {
-    match &joint.law {
-        JointLaw::Stiffness { stiffness, .. } => stiffness[0].value,
-        JointLaw::Beam { youngs_modulus, second_moment } => {
-            12.0 * youngs_modulus.value * second_moment.value / fixture.joint_length(joint).powi(3)
         }
     }
 }

@@ -20,7 +20,7 @@ impl Law {
         Law { loss_factor: 0.0, relaxation_ratio: 0.0, relaxation_time: 0.0, exponent: 0.0 };
 
     /// The part of K(s)/K beyond one, at s in rad/s.
-    pub fn excess(&self, s: Complex64) -> Complex64 {
+    pub(crate) fn excess(&self, s: Complex64) -> Complex64 {
         if self.exponent != 0.0 {
             let (size, angle) = s.to_polar();
             return Complex64::from_polar(size.powf(self.exponent), self.exponent * angle) - 1.0;
@@ -55,7 +55,7 @@ impl Assembly {
     }
 
     /// Adds a coordinate and returns its index.
-    pub fn coordinate(&mut self) -> usize {
+    pub(crate) fn coordinate(&mut self) -> usize {
         self.order += 1;
         self.order - 1
     }
@@ -66,12 +66,12 @@ impl Assembly {
     }
 
     /// An inertia (kg, or kg·m² on a rotation) that follows a motion.
-    pub fn inertia(&mut self, motion: &Row, inertia: f64) {
+    pub(crate) fn inertia(&mut self, motion: &Row, inertia: f64) {
         add(&mut self.mass, std::slice::from_ref(motion), &[inertia]);
     }
 
     /// A mass matrix, row by row, on several motions.
-    pub fn masses(&mut self, motions: &[Row], matrix: &[f64]) {
+    pub(crate) fn masses(&mut self, motions: &[Row], matrix: &[f64]) {
         add(&mut self.mass, motions, matrix);
     }
 
@@ -81,7 +81,7 @@ impl Assembly {
     }
 
     /// A stiffness matrix, row by row, on several motions.
-    pub fn springs(&mut self, motions: &[Row], matrix: &[f64], law: Law) {
+    pub(crate) fn springs(&mut self, motions: &[Row], matrix: &[f64], law: Law) {
         add(&mut self.stiffness, motions, matrix);
         if law == Law::ELASTIC {
             return;
@@ -97,12 +97,12 @@ impl Assembly {
     }
 
     /// A dashpot (N·s/m, N·m·s/rad) that resists a motion.
-    pub fn dashpot(&mut self, motion: &Row, damping: f64) {
+    pub(crate) fn dashpot(&mut self, motion: &Row, damping: f64) {
         add(&mut self.damping, std::slice::from_ref(motion), &[damping]);
     }
 
     /// A viscous damping matrix, row by row, on several motions.
-    pub fn dashpots(&mut self, motions: &[Row], matrix: &[f64]) {
+    pub(crate) fn dashpots(&mut self, motions: &[Row], matrix: &[f64]) {
         add(&mut self.damping, motions, matrix);
     }
 

@@ -43,7 +43,7 @@ impl BeamElement {
     ///
     /// # Errors
     /// A length or a stiffness that is not above zero.
-    pub fn end_stiffness(&self) -> Result<[[f64; 2]; 2], StructureError> {
+    pub(crate) fn end_stiffness(&self) -> Result<[[f64; 2]; 2], StructureError> {
         let above_zero = |what, value: f64| {
             let needed = "a value above zero";
             if value > 0.0 { Ok(()) } else { Err(StructureError::Impossible { what, value, needed }) }
@@ -60,7 +60,7 @@ impl BeamElement {
     ///
     /// # Errors
     /// As [`BeamElement::end_stiffness`].
-    pub fn shapes(&self, x: f64) -> Result<[[f64; 4]; 2], StructureError> {
+    pub(crate) fn shapes(&self, x: f64) -> Result<[[f64; 4]; 2], StructureError> {
         let k = self.end_stiffness()?;
         let bent = self.cantilever(x);
         // d = u_right − R·u_left as a combination of the four end motions.
@@ -83,7 +83,7 @@ impl BeamElement {
     ///
     /// # Errors
     /// As [`BeamElement::end_stiffness`].
-    pub fn consistent_mass(&self) -> Result<[f64; 16], StructureError> {
+    pub(crate) fn consistent_mass(&self) -> Result<[f64; 16], StructureError> {
         let mut mass = [0.0; 16];
         for (abscissa, weight) in GAUSS {
             let [deflection, rotation] = self.shapes(abscissa * self.length)?;
@@ -102,7 +102,7 @@ impl BeamElement {
     /// Puts the element between two stations, its stiffness following `law`.
     ///
     /// # Errors
-    /// As [`BeamElement::end_stiffness`].
+    /// A length or a stiffness that is not above zero.
     pub fn assemble(
         &self,
         assembly: &mut Assembly,

@@ -14,7 +14,7 @@ impl Row {
     }
 
     /// This motion plus `factor` times `other`.
-    pub fn plus(&self, factor: f64, other: &Row) -> Self {
+    pub(crate) fn plus(&self, factor: f64, other: &Row) -> Self {
         let mut sum = self.0.clone();
         for &(index, value) in &other.0 {
             match sum.iter_mut().find(|(i, _)| *i == index) {
@@ -27,7 +27,7 @@ impl Row {
     }
 
     /// The relative motion `self − other`.
-    pub fn minus(&self, other: &Row) -> Self {
+    pub(crate) fn minus(&self, other: &Row) -> Self {
         self.plus(-1.0, other)
     }
 
@@ -48,7 +48,7 @@ pub struct Station {
 
 impl Station {
     /// A node with two coordinates of its own.
-    pub fn node(y: usize, theta: usize) -> Self {
+    pub(crate) fn node(y: usize, theta: usize) -> Self {
         Station { y: Row::coordinate(y), theta: Row::coordinate(theta) }
     }
 
@@ -58,7 +58,7 @@ impl Station {
     }
 
     /// The relative motion u − R·u_from across `length`, in translation and rotation.
-    pub fn relative_to(&self, from: &Station, length: f64) -> [Row; 2] {
+    pub(crate) fn relative_to(&self, from: &Station, length: f64) -> [Row; 2] {
         let carried = from.rigidly_at(length);
         [self.y.minus(&carried.y), self.theta.minus(&carried.theta)]
     }

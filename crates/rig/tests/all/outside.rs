@@ -2,6 +2,7 @@
 
 use jointscope_fixture::Fixture;
 use jointscope_rig::{Family, Instrument, Outside, frfs, generator};
+use jointscope_samples::TWO_BLOCKS;
 use jointscope_spectra::{FrfPair, SpectralLines};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
@@ -199,16 +200,7 @@ fn every_kind_that_has_no_name_is_drawn_where_there_is_room_for_it() {
 
 #[test]
 fn a_gyroscope_breaks_reciprocity() {
-    let fixture = Fixture::from_json(
-        r#"{
-          "bodies": { "A": { "mass": 1.1, "inertia": 9.5e-4, "x_cg": -0.03 }, "B": { "mass": 1.1, "inertia": 9.5e-4, "x_cg": 0.095 } },
-          "points": { "1": { "body": "A", "x": -0.06 }, "2": { "body": "A", "x": 0.0 },
-                      "3": { "body": "B", "x": 0.065 }, "4": { "body": "B", "x": 0.125 } },
-          "joints": { "J": { "from": "2", "to": "3", "beam": { "youngs_modulus": 2.07e11, "second_moment": 3.67e-10 } } },
-          "damping": { "loss_factor": 0.006 }
-        }"#,
-    )
-    .unwrap();
+    let fixture = Fixture::from_json(TWO_BLOCKS).unwrap();
     let lines = lines();
     let pairs = [FrfPair::transverse("4", "1"), FrfPair::transverse("1", "4")];
     let outside = Outside::Gyroscope { point: "2".into(), coupling: 5.0 };

@@ -7,20 +7,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 use jointscope::uff::{Data, Dataset58};
 
-/// Two rigid blocks and a beam between points 2 and 3.
-pub(crate) const TWO_BLOCKS: &str = r#"{
-  "name": "two blocks and a beam",
-  "bodies": {
-    "A": { "mass": 1.10, "inertia": 9.5e-4, "x_cg": -0.030 },
-    "B": { "mass": 1.10, "inertia": 9.5e-4, "x_cg": 0.095 }
-  },
-  "points": {
-    "1": { "body": "A", "x": -0.060 }, "2": { "body": "A", "x": 0.0 },
-    "3": { "body": "B", "x": 0.065 },  "4": { "body": "B", "x": 0.125 }
-  },
-  "joints": { "J": { "from": "2", "to": "3", "beam": { "youngs_modulus": 2.07e11, "second_moment": 3.67e-10 } } },
-  "damping": { "loss_factor": 0.006 }
-}"#;
+pub(crate) use jointscope_samples::TWO_BLOCKS;
 
 /// Length and bending stiffness EI of [`TWO_BLOCKS`]' beam.
 pub(crate) const LENGTH: f64 = 0.065;

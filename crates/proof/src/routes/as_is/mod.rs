@@ -143,7 +143,7 @@ impl AsIsTruth {
     ///
     /// # Errors
     /// A solid that cannot be meshed or whose modes cannot be found; none of a case that was drawn.
-    pub fn frfs(&self) -> Result<[FrfSet; 2], GenerationError> {
+    pub(crate) fn frfs(&self) -> Result<[FrfSet; 2], GenerationError> {
         let lines = lines()?;
         let twin = twin(&self.solid, ModeRange { at_least: 4, up_to: MODES * last_line()? })?;
         Ok([

@@ -24,7 +24,7 @@ pub struct TrueName {
 
 impl TrueName {
     /// A kind wherever it is and however large.
-    pub fn of(kind: EffectKind) -> Self {
+    pub(crate) fn of(kind: EffectKind) -> Self {
         TrueName { kind: kind.name().to_owned(), dof: None, place: Vec::new(), above: None, below: None }
     }
 
@@ -34,22 +34,22 @@ impl TrueName {
     }
 
     /// At these places only.
-    pub fn at(self, places: &[&str]) -> Self {
+    pub(crate) fn at(self, places: &[&str]) -> Self {
         TrueName { place: places.iter().map(|place| (*place).to_owned()).collect(), ..self }
     }
 
     /// With a first parameter above this only.
-    pub fn above(self, value: f64) -> Self {
+    pub(crate) fn above(self, value: f64) -> Self {
         TrueName { above: Some(value), ..self }
     }
 
     /// With a first parameter below this only.
-    pub fn below(self, value: f64) -> Self {
+    pub(crate) fn below(self, value: f64) -> Self {
         TrueName { below: Some(value), ..self }
     }
 
     /// Whether an effect bears this name.
-    pub fn is_of(&self, effect: &Effect) -> bool {
+    pub(crate) fn is_of(&self, effect: &Effect) -> bool {
         let place = effect.place.to_string();
         self.kind == effect.kind.name()
             && self.dof.as_deref().is_none_or(|dof| effect.dof.is_some_and(|own| own.name() == dof))

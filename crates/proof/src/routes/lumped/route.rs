@@ -13,11 +13,11 @@ pub enum LumpedRoute {
 
 impl LumpedRoute {
     /// Every route, in the order in which cases are numbered.
-    pub const ALL: [LumpedRoute; 3] =
+    pub(crate) const ALL: [LumpedRoute; 3] =
         [LumpedRoute::ChannelFlaws, LumpedRoute::LoadPaths, LumpedRoute::UnknownPhysics];
 
     /// Its name in files.
-    pub fn key(self) -> &'static str {
+    pub(crate) fn key(self) -> &'static str {
         match self {
             LumpedRoute::ChannelFlaws => "channel_flaws",
             LumpedRoute::LoadPaths => "load_paths",

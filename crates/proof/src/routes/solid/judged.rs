@@ -7,7 +7,7 @@ use crate::{Answer, Case, Evidence, Judgeable, Judged, Name, Role};
 use jointscope_fixture::{Dof, Effect, EffectKind, Fixture};
 
 /// A solid case after its truth was opened.
-pub type SolidJudged = Judged<SolidTruth>;
+pub(crate) type SolidJudged = Judged<SolidTruth>;
 
 impl Judgeable for SolidTruth {
     fn index(&self) -> usize {
@@ -45,7 +45,7 @@ impl SolidJudged {
     }
 
     /// Whether all that was hidden was found at its place.
-    pub fn is_named(&self) -> bool {
+    pub(crate) fn is_named(&self) -> bool {
         self.finds_all(are_the_same)
     }
 
@@ -65,7 +65,7 @@ impl SolidJudged {
     }
 
     /// What went wrong, in a phrase each. Hidden effects that do not show are not asked for.
-    pub fn faults(&self) -> Vec<String> {
+    pub(crate) fn faults(&self) -> Vec<String> {
         let Ok(answer) = &self.answer else { return vec!["no answer".to_owned()] };
         let mut faults = Vec::new();
         if self.truth.role == Role::Null {

@@ -14,7 +14,7 @@ mod score;
 mod tests;
 pub(super) mod twin;
 
-pub use judged::SolidJudged;
+pub(crate) use judged::SolidJudged;
 pub use twin::Shown;
 
 use crate::effect_file::{effect_value, filed_effects};
@@ -115,7 +115,7 @@ impl SolidTruth {
     ///
     /// # Errors
     /// A solid that cannot be meshed or whose modes cannot be found; none of a case that was drawn.
-    pub fn frfs(&self) -> Result<[FrfSet; 2], GenerationError> {
+    pub(crate) fn frfs(&self) -> Result<[FrfSet; 2], GenerationError> {
         self.frfs_on(&twin::MESH)
     }
 

@@ -9,7 +9,7 @@ use jointscope_nonlinear::Verdict;
 
 /// A case of hits after its truth was opened.
 #[derive(Debug, Clone, PartialEq)]
-pub struct StruckJudged {
+pub(crate) struct StruckJudged {
     /// What was true.
     pub truth: StruckTruth,
     /// What was answered.
@@ -18,13 +18,13 @@ pub struct StruckJudged {
 
 impl StruckJudged {
     /// Lays truths and answers side by side.
-    pub fn all(truths: Vec<StruckTruth>, answers: &StruckAnswers) -> Vec<StruckJudged> {
+    pub(crate) fn all(truths: Vec<StruckTruth>, answers: &StruckAnswers) -> Vec<StruckJudged> {
         let pairs = truths.into_iter().zip(answers.all());
         pairs.map(|(truth, answer)| StruckJudged { truth, answer: answer.clone() }).collect()
     }
 
     /// The laws found, the strongest first.
-    pub fn findings(&self) -> &[Found] {
+    pub(crate) fn findings(&self) -> &[Found] {
         self.answer.as_ref().map_or(&[], |answer| &answer.findings)
     }
 
@@ -39,7 +39,7 @@ impl StruckJudged {
     }
 
     /// Whether the hidden law was found, and nothing else.
-    pub fn is_named(&self) -> bool {
+    pub(crate) fn is_named(&self) -> bool {
         matches!(self.findings(), [found] if self.is_hidden(found))
     }
 
@@ -64,7 +64,7 @@ impl StruckJudged {
     }
 
     /// What went wrong, in a phrase each.
-    pub fn faults(&self) -> Vec<String> {
+    pub(crate) fn faults(&self) -> Vec<String> {
         if self.answer.is_err() {
             return vec!["no answer".to_owned()];
         }

@@ -7,7 +7,7 @@ mod judged;
 mod score;
 
 pub use answer::{StruckAnswer, StruckAnswers};
-pub use judged::StruckJudged;
+pub(crate) use judged::StruckJudged;
 
 use crate::effect_file::effect_value;
 use crate::generate::{DRAWS, Draw, turn};
@@ -57,10 +57,10 @@ pub enum StruckRole {
 
 impl StruckRole {
     /// Every role.
-    pub const ALL: [StruckRole; 3] = [StruckRole::Linear, StruckRole::Law, StruckRole::Idle];
+    pub(crate) const ALL: [StruckRole; 3] = [StruckRole::Linear, StruckRole::Law, StruckRole::Idle];
 
     /// The role in a word.
-    pub fn name(self) -> &'static str {
+    pub(crate) fn name(self) -> &'static str {
         match self {
             StruckRole::Linear => "linear",
             StruckRole::Law => "law",
@@ -161,7 +161,7 @@ impl StruckTruth {
     }
 
     /// What was hidden, in words.
-    pub fn hidden(&self) -> String {
+    pub(crate) fn hidden(&self) -> String {
         let Some(law) = self.law() else { return "nothing".to_owned() };
         let reach = self.reach.unwrap_or(0.0);
         let idle = if self.role == StruckRole::Idle { ", idle" } else { "" };

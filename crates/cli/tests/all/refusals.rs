@@ -1,9 +1,11 @@
-//! The built program on bad input: one plain sentence with file, place and remedy, status 2, nothing written.
+//! The built program on recordings, fixtures and joints that do not go together: one plain sentence with file, place and remedy, status 2, nothing
+//! written. What goes wrong within one file, by the hundred, is in `bad_inputs`.
 
 use std::fs;
 
 use crate::common::{Bench, TWO_BLOCKS};
 use jointscope::uff::{Abscissa, Axis, Data, Dataset58, FunctionType};
+use jointscope_samples::TWO_STOREYS;
 
 const LINES: &str = "50:1000:5";
 
@@ -381,7 +383,7 @@ fn a_recording_of_another_fixture_is_refused_by_file_and_point() {
 fn a_fixture_that_would_be_overwritten_and_a_folder_that_is_a_file_are_refused() {
     // Before the search, which may take long.
     let bench = Bench::new("bad-diagnose-write");
-    bench.write("refitted.json", STOREY);
+    bench.write("refitted.json", TWO_STOREYS);
     bench.write("plain", "a file, no folder");
     bench.done(&[
         "synthesize",
@@ -397,12 +399,6 @@ fn a_fixture_that_would_be_overwritten_and_a_folder_that_is_a_file_are_refused()
     bench.refused(&["diagnose", "refitted.json", "frf.uff", "-o", "."], &["refitted.json", "overwritten"]);
     bench.refused(&["diagnose", "refitted.json", "frf.uff", "-o", "plain"], &["plain"]);
 }
-
-const STOREY: &str = r#"{
-  "bodies": { "low": { "mass": 6.9, "rotates": false }, "high": { "mass": 6.0, "rotates": false } },
-  "points": { "1": { "body": "low", "x": 0 }, "2": { "body": "high", "x": 0.18 } },
-  "joints": { "C": { "from": "1", "to": "2", "stiffness": [[3.4e6, 0], [0, 0]] } },
-  "damping": { "modal_ratios": [0.02] } }"#;
 
 #[test]
 fn a_table_that_is_no_recording_is_refused_with_the_line_and_what_to_do() {
