@@ -163,8 +163,8 @@ impl<'a> Problem<'a> {
         let shapes = |fixture: &Fixture| Shapes::of(fixture, self.recorded, &modelled.poles());
         let own = shapes(fixture)?;
         let mut comparison = Comparison::new(self.recorded, &pairing, &modelled, &own);
-        // Dashpots turn phases as the fixture has them, or, if its damping is that of the modes as they stand, not at all; nobody knows which.
-        let springs = match hypothesis.without_dashpots() {
+        // The damping of the fixture by itself is no proportional one of a structure with effects; which of both it is, if either, nobody knows.
+        let springs = match hypothesis.springs_and_masses() {
             Some(effects) if effects == hypothesis.effects() => Some(own),
             Some(effects) => hypothesis.to_fixture_with(effects).ok().and_then(|fixture| shapes(&fixture)),
             None => None,

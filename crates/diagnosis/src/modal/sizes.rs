@@ -100,7 +100,7 @@ impl Problem<'_> {
     pub(crate) fn relative_sizes_as_stated(&self, fit: &ModalFit) -> Vec<f64> {
         let mut sizes = self.relative_sizes(fit);
         let stated = fit.hypothesis.deviation_of_damping();
-        let usual = if fit.hypothesis.has_other_modes() { stated } else { 0.5 * stated };
+        let usual = if fit.hypothesis.springs_and_masses().is_some() { stated } else { 0.5 * stated };
         if usual > self.sizes.damping {
             sizes[DAMPING] *= self.sizes.damping / usual;
         }

@@ -81,10 +81,11 @@ fn the_library_factorises_as_the_few_lines_here_do() {
 #[test]
 fn a_factor_made_anew_is_that_of_the_new_matrix_alone() {
     for n in [3, 80] {
-        let entry =
-            |e: usize, own: f64| if e % (n + 1) == 0 { own } else { (0.3 * e as f64).sin() / n as f64 };
+        let entry = |e: usize, own: f64| {
+            if e.is_multiple_of(n + 1) { own } else { (0.3 * e as f64).sin() / n as f64 }
+        };
         let [first, second] = [2.0, 5.0].map(|own| (0..n * n).map(|e| entry(e, own)).collect::<Vec<f64>>());
-        let identity: Vec<f64> = (0..n * n).map(|e| f64::from(u8::from(e % (n + 1) == 0))).collect();
+        let identity: Vec<f64> = (0..n * n).map(|e| f64::from(u8::from(e.is_multiple_of(n + 1)))).collect();
         let mut factor = Cholesky::of(n, &first).unwrap();
         assert!(factor.anew(&vec![-1.0; n * n]).is_none());
         assert_eq!(factor.anew(&second).unwrap().inverse(), Cholesky::of(n, &second).unwrap().inverse());
