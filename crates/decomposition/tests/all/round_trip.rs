@@ -214,7 +214,7 @@ proptest! {
         };
         // Undamped, 1e-3 from the pole, K is hundreds of times its asymptote and must still have been compared.
         let condition = check_paper(&blocks, eta)?;
-        prop_assert!(condition < 1e10, "{condition:e}");
+        prop_assert!(condition < 1e8, "{condition:e}");
     }
 }
 
