@@ -1,6 +1,7 @@
 //! What a diagnosis names, and what it tried.
 
 use crate::location::Location;
+use jointscope_findings::Estimate;
 use jointscope_fixture::Effect;
 use serde::Serialize;
 
@@ -13,10 +14,22 @@ pub struct Evidence {
     /// What χ² and priors lose without it.
     #[serde(rename = "gain_chi2")]
     pub gain: f64,
+    /// The same at other places of its body, where the recording does not tell them apart, the most probable first.
+    pub elsewhere: Vec<Elsewhere>,
     /// Its place with one free scalar a line in its stead, beside the other findings: the measured δ(ω) that its law has to follow. `None`
     /// where its place is not of rank one.
     #[serde(skip)]
     pub measured: Option<Location>,
+}
+
+/// A finding at another place of its body.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Elsewhere {
+    /// Parameters there, with their uncertainty.
+    #[serde(rename = "parameters", serialize_with = "jointscope_findings::parameters")]
+    pub estimates: Vec<Estimate>,
+    /// Probability that it is there if it is what its name says; the rest is for where the finding states it, and other places.
+    pub share: f64,
 }
 
 /// An effect that was tried by itself.

@@ -5,8 +5,10 @@
 //! than no name. So the error is a part of the likelihood, common to all hypotheses, its sizes estimated for each
 //! ([`jointscope_model_error`]): a name wins by making it smaller.
 //!
+//! * [`along`]: what is known of an effect along the ridge that its place and sizes share;
 //! * [`at_sizes`]: a fitted hypothesis where the sizes of error are given;
 //! * [`changes`]: the modes of two states side by side;
+//! * [`elsewhere`]: where else along its body an effect explains the modes;
 //! * [`features`]: a recording as its modes tell it;
 //! * [`fit`]: one hypothesis at its most probable parameters and sizes of error;
 //! * [`turns`]: how its sizes of error go on from round to round;
@@ -20,8 +22,10 @@
 //! * [`predicting`]: models that are to predict where nobody measured;
 //! * [`uncertainty`]: what errors of the model leave uncertain of what lines have found.
 
+mod along;
 mod at_sizes;
 mod changes;
+mod elsewhere;
 mod features;
 mod fit;
 mod judgement;

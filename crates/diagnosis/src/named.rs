@@ -76,6 +76,7 @@ pub(crate) fn findings(fitter: &Fitter, search: &mut Search) -> Vec<Finding> {
             alternatives: all_names[index].iter().filter(|a| !own(a)).filter_map(alternative).collect(),
             evidence: Evidence {
                 gain: without.map_or(0.0, |fit| fit.objective - repaired.objective),
+                elsewhere: Vec::new(),
                 measured: measured(*fitter, repaired, index),
             },
             effect,

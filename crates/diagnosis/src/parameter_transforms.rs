@@ -63,21 +63,35 @@ pub(crate) fn parameters_of(fixture: &Fixture, effect: &Effect, wrong: Parameter
 
 /// Share of a joint's length that may be missing.
 const MISSING: f64 = 0.95;
+/// Share of a beam's mass that may be missing at one place: a hole that takes more is no point, and takes stiffness with it.
+const HOLE: f64 = 0.1;
 /// Masses of the whole structure that may be added.
 const ADDED: f64 = 2.0;
 
 /// Share of a bar's length by which a body of the bar's mass and inertia is longer at either end if half of its mass is in its middle.
 const LONGER: f64 = 0.5 * (std::f64::consts::SQRT_2 - 1.0);
 
+/// The most that a body may lack at one place, kg: a block all of it, a beam a hole and the heaviest of the masses that sit on it.
+fn most_missing(fixture: &Fixture, body: usize) -> f64 {
+    let mass = mass_of(fixture, body);
+    match &fixture.bodies()[body].kind {
+        BodyKind::Rigid(_) => mass,
+        BodyKind::Beam(_) => {
+            let on_it = fixture.bodies()[body].masses.iter().map(|point| point.mass.value);
+            HOLE * mass + on_it.fold(0.0, f64::max)
+        }
+    }
+}
+
 /// Between which values a parameter of either sign is possible at a place.
 fn possible(possible: Possible, fixture: &Fixture, place: &Place) -> (f64, f64) {
     let any = (f64::NEG_INFINITY, f64::INFINITY);
     match (possible, place) {
         (Possible::MassOfBody, Place::Body(name)) => {
-            let masses =
-                || fixture.bodies().iter().enumerate().map(|(index, body)| (body, mass_of(fixture, index)));
-            let own: f64 = masses().filter(|(body, _)| body.name == *name).map(|(_, mass)| mass).sum();
-            (-own, ADDED * masses().map(|(_, mass)| mass).sum::<f64>())
+            let masses = || (0..fixture.bodies().len()).map(|body| mass_of(fixture, body));
+            let own = fixture.bodies().iter().position(|body| body.name == *name);
+            let own = own.map_or(0.0, |body| most_missing(fixture, body));
+            (-own, ADDED * masses().sum::<f64>())
         }
         (Possible::OnBody, Place::Point(name)) => fixture.point(name).map_or(any, |point| {
             let (low, high) = extent(fixture, point.body);

@@ -6,13 +6,15 @@ use crate::format::quantity_in;
 use crate::numbers::{Short, listed, plain};
 use crate::unit::Scale;
 use crate::{Says, amplitude};
-use jointscope_diagnosis::{Diagnosis, Finding as FrfFinding};
-use jointscope_findings::Finding;
-use jointscope_fixture::{Dof, Effect};
+use jointscope_diagnosis::{Diagnosis, Elsewhere, Finding as FrfFinding};
+use jointscope_findings::{Estimate, Finding};
+use jointscope_fixture::{Dof, Effect, Motion};
 use jointscope_nonlinear::{HitFinding, LevelFinding};
 
 /// Names of alternatives that a sentence holds at the most.
 const NAMES: usize = 3;
+/// Share of a finding's probability from which another place of it is worth a word.
+const LIKELY_PLACE: f64 = 0.05;
 
 /// `; these FRFs cannot tell it from gain of response 3 (12 %)`, or nothing where no other name is likely.
 fn look_alikes<E>(finding: &Finding<E>, data: &str) -> String {
@@ -27,6 +29,30 @@ fn look_alikes<E>(finding: &Finding<E>, data: &str) -> String {
         (false, 0) => format!("; these {data} cannot tell it from {listed}"),
         (false, _) => format!("; these {data} cannot tell it from {listed} and {more} more"),
     }
+}
+
+/// `at x = 72.0 mm (mass −7.14 g)`: a place and what the effect would be there.
+pub fn place_and_sizes(place: &Elsewhere) -> String {
+    let known = |estimate: &&Estimate| estimate.std.is_some();
+    let (along, sizes): (Vec<&Estimate>, Vec<&Estimate>) =
+        place.estimates.iter().filter(known).partition(|e| e.parameter.motion == Motion::AlongBody);
+    let at: Vec<String> =
+        along.iter().map(|e| format!("{} = {}", e.parameter.name, rounded_value(e))).collect();
+    let sizes: Vec<String> = sizes
+        .iter()
+        .map(|e| format!("{} {}", e.parameter.name.replace('_', " "), rounded_value(e)))
+        .collect();
+    format!("at {} ({})", listed(&at), listed(&sizes))
+}
+
+/// `; as well at x = 72.0 mm (mass −7.14 g), 27 % of its probability`, or nothing where every other place is refuted.
+fn other_places(finding: &FrfFinding) -> String {
+    let likely = finding.evidence.elsewhere.iter().filter(|place| place.share >= LIKELY_PLACE);
+    let places: Vec<String> = likely
+        .take(NAMES)
+        .map(|place| format!("{}, {:.0} % of its probability", place_and_sizes(place), 100.0 * place.share))
+        .collect();
+    if places.is_empty() { String::new() } else { format!("; it may also sit {}", listed(&places)) }
 }
 
 /// ` or its look-alike`, where other names are likely.
@@ -84,7 +110,7 @@ impl Says for FrfFinding {
     fn says(&self) -> String {
         let doubt = if self.is_doubtful() { "Doubtful, for something not listed is likelier: " } else { "" };
         let meaning = meaning(&self.effect, &self.estimates, "FRFs");
-        format!("{doubt}{meaning}{}.", look_alikes(self, "FRFs"))
+        format!("{doubt}{meaning}{}{}.", other_places(self), look_alikes(self, "FRFs"))
     }
 }
 
@@ -121,7 +147,6 @@ impl Says for LevelFinding {
 mod tests {
     use super::*;
     use jointscope_diagnosis::Evidence;
-    use jointscope_findings::Estimate;
     use jointscope_fixture::{Effect, EffectKind, Place};
 
     fn finding(kind: EffectKind, place: Place, dof: Option<Dof>, values: &[f64], share: f64) -> FrfFinding {
@@ -137,7 +162,7 @@ mod tests {
             effect,
             probability: 0.9,
             alternatives: Vec::new(),
-            evidence: Evidence { gain: 100.0, measured: None },
+            evidence: Evidence { gain: 100.0, elsewhere: Vec::new(), measured: None },
         }
     }
 
@@ -148,6 +173,19 @@ mod tests {
         parts
             .iter()
             .for_each(|part| assert!(sentence.contains(part), "`{part}` is missing from: {sentence}"));
+    }
+
+    #[test]
+    fn another_place_on_the_body_is_said_with_its_size_and_share() {
+        let at = |x: f64, mass: f64| {
+            finding(EffectKind::AddedMass, Place::Body("beam".into()), None, &[x, mass], 0.02)
+        };
+        let elsewhere = |x: f64, mass: f64, share: f64| Elsewhere { estimates: at(x, mass).estimates, share };
+        let mut found = at(0.306, -0.0224);
+        assert!(!found.says().contains("also"));
+        found.evidence.elsewhere = vec![elsewhere(0.072, -0.00714, 0.27), elsewhere(0.2, -0.001, 0.01)];
+        says(&found, &["lacks", "; it may also sit at x = 72.0 mm (mass −7.14 g), 27 % of its probability."]);
+        assert!(!found.says().contains("200"), "{}", found.says());
     }
 
     #[test]

@@ -9,6 +9,7 @@
 //! * [`comparison`], [`decomposition`]: joints side by side, and one by itself;
 //! * [`format`](mod@format), [`unit`](mod@unit): numbers with their deviations and units;
 //! * [`effect_name`]: an effect's kind and place in a few words;
+//! * [`place_and_sizes`]: another place of a finding, and its sizes there;
 //! * [`error_in_words`]: how wrong a model is, beside what is usual.
 //!
 //! ```
@@ -43,6 +44,7 @@ mod summary;
 pub mod unit;
 
 pub use effects::effect_name;
+pub use finding::place_and_sizes;
 pub use model_error::{ErrorInWords, error_in_words};
 pub use numbers::{capitalised, counted, listed};
 pub use places::held_out_part;

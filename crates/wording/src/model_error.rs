@@ -269,7 +269,7 @@ mod tests {
                 .collect(),
             probability,
             alternatives: Vec::new(),
-            evidence: Evidence { gain: 70.0, measured: None },
+            evidence: Evidence { gain: 70.0, elsewhere: Vec::new(), measured: None },
         }
     }
 

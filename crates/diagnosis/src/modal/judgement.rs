@@ -4,9 +4,10 @@ use crate::candidate::Candidate;
 use crate::catalogue::with_wrong_quantities;
 use crate::estimates::estimates;
 use crate::evidence::{cost, explained, explains};
-use crate::finding::{Evidence, Finding, Tried};
+use crate::finding::{Elsewhere, Evidence, Finding, Tried};
 use crate::fit::Fit;
 use crate::fitter::Fitter;
+use crate::modal::along::Along;
 use crate::modal::changes::States;
 use crate::modal::features::{Features, recorded};
 use crate::modal::fit::ModalFit;
@@ -31,6 +32,8 @@ pub(crate) struct ModalJudgement {
     pub verdict: Verdict,
     /// By effect of the best hypothesis: probability of its name, and other names with theirs.
     pub names: Vec<Vec<(usize, f64, Hypothesis)>>,
+    /// By effect of the best hypothesis: what is known of it along its body.
+    pub places: Vec<Places>,
     /// χ² per degree of freedom of the free fit that the recorded modes are from.
     pub free_fit: f64,
     /// Whether that fit took all the residual terms it may.
@@ -45,6 +48,15 @@ pub(crate) struct ModalJudgement {
     pub covariance: Option<Covariance>,
     /// What hypotheses were held against.
     pub features: Features,
+}
+
+/// Where along its body an effect may sit.
+#[derive(Debug, Clone)]
+pub(crate) struct Places {
+    /// About the most probable place; `None` where derivatives there tell as much.
+    own: Option<Along>,
+    /// The other places.
+    elsewhere: Vec<Elsewhere>,
 }
 
 /// A hypothesis found among the modes, fitted to lines.
@@ -118,7 +130,7 @@ impl ModalJudgement {
         let change = now.relative_to(&before.recorded, model, [&own, &calibrated.standing.pairing])?;
         // What is stated is the error that both states share; the change has its own.
         let shared = before.known.scales;
-        let scales = ErrorSizes { gain: shared.gain, ..shared.times(settings.modal.own) };
+        let scales = ErrorSizes { gain: shared.gain, ..settings.modal.repeated };
         let features = Features::new(change, SizePrior { scales, stated: [false; KINDS] });
         let nominal = &calibrated.hypothesis;
         let searcher = Searcher {
@@ -172,14 +184,14 @@ impl Judge<'_> {
             let exact = self.searcher.is_exact(&self.search.none);
             self.search.best = Named { names: Vec::new(), fit: self.search.none.clone(), exact };
             self.search.alternatives.clear();
+            self.search.elsewhere.clear();
             self.search.without.clear();
         }
         let adequate = self.searcher.settings.adequate.0;
         let error = |fit: &ModalFit| self.searcher.problem.error(fit, adequate);
         let best = &self.search.best.fit;
-        let widened =
-            best.linear.mean_sizes(&best.standing.comparison, self.searcher.problem.prior(), &best.evidence);
         let problem = &self.searcher.problem;
+        let widened = self.searcher.widened(best);
         let nearest = |fit: &ModalFit| {
             let fitted = problem.at_sizes(fit, &fit.evidence.sizes);
             fitted.map_or_else(|| fit.hypothesis.clone(), |(hypothesis, _)| hypothesis)
@@ -187,9 +199,12 @@ impl Judge<'_> {
         let covariance = problem.at_sizes(best, &widened).and_then(|(_, covariance)| covariance);
         let none = &self.search.none;
         let stated = [none, best].map(nearest);
-        let names = self.search.alternatives.iter().map(|all| self.probabilities(all)).collect();
+        let names = self.search.alternatives.iter().zip(&self.search.elsewhere);
+        let names = names.map(|(all, elsewhere)| self.probabilities(all, elsewhere)).collect();
+        let places = (0..self.search.best.names.len()).map(|index| self.places(index)).collect();
         ModalJudgement {
             verdict,
+            places,
             candidates: self.searcher.candidates.to_vec(),
             names,
             free_fit: self.searcher.problem.recorded.chi2_per_dof,
@@ -248,14 +263,53 @@ impl Judge<'_> {
             .collect()
     }
 
-    /// Probabilities of the names that may stand in one effect's stead; the rest to one is something not listed.
-    fn probabilities(&self, all: &[Named]) -> Vec<(usize, f64, Hypothesis)> {
+    /// Probabilities of the names that may stand in one effect's stead, the best one's at all of its places; the rest to one is something not listed.
+    fn probabilities(&self, all: &[Named], elsewhere: &[Named]) -> Vec<(usize, f64, Hypothesis)> {
         let highest = all.iter().map(|n| n.fit.ln).fold(f64::NEG_INFINITY, f64::max);
-        let weight = |named: &Named| (named.fit.ln - highest).exp();
+        let own = elsewhere.first().and_then(|place| place.names.last());
+        let weight = |named: &Named| {
+            let other = |place: &Named| (place.fit.ln - highest).exp();
+            let others = elsewhere.iter().filter(|_| named.names.last() == own).map(other);
+            (named.fit.ln - highest).exp() + others.sum::<f64>()
+        };
         let total = all.iter().map(weight).sum::<f64>() + self.unlisted(&self.search.best.fit);
         let of =
             |named: &Named| Some((*named.names.last()?, weight(named) / total, named.fit.hypothesis.clone()));
         all.iter().filter_map(of).collect()
+    }
+
+    /// Where along its body effect `index` of the best hypothesis may sit, each place with its share of the probability of all.
+    fn places(&self, index: usize) -> Places {
+        let best = &self.search.best;
+        let own = self.searcher.along(best, index);
+        let last = |named: &Named| named.fit.hypothesis.effect_count() - 1;
+        // What the ridge about the best place leads to is no other place.
+        let apart = |named: &&Named| {
+            own.as_ref().is_none_or(|along| !along.holds(&named.fit.hypothesis, last(named)))
+        };
+        let others: Vec<(&Named, Option<Along>)> = self.search.elsewhere[index]
+            .iter()
+            .filter(apart)
+            .map(|named| (named, self.searcher.along(named, last(named))))
+            .collect();
+        let ln = |named: &Named, along: &Option<Along>| match (along, &own) {
+            (Some(along), Some(own)) => along.ln - own.ln,
+            _ => named.fit.ln - best.fit.ln,
+        };
+        let total = 1.0 + others.iter().map(|(named, along)| ln(named, along).exp()).sum::<f64>();
+        let elsewhere = |(named, along): &(&Named, Option<Along>)| {
+            let hypothesis = &named.fit.hypothesis;
+            let effect = hypothesis.effects().pop()?;
+            let estimates = match along {
+                Some(along) => along.estimates(hypothesis, last(named), &effect),
+                None => {
+                    let covariance = named.fit.covariance_at(&self.searcher.widened(&named.fit));
+                    estimates(hypothesis, last(named), &effect, covariance.as_ref(), 1.0)
+                }
+            };
+            Some(Elsewhere { estimates, share: ln(named, along).exp() / total })
+        };
+        Places { elsewhere: others.iter().filter_map(elsewhere).collect(), own }
     }
 
     /// The weight, against one for the best hypothesis, of physics that none covers: the larger the errors and departures that even the best
@@ -282,11 +336,17 @@ impl ModalJudgement {
     /// The same with nothing stated beyond the fixture by itself.
     pub(super) fn withdrawn(&self) -> Self {
         let best = Named { names: Vec::new(), fit: self.search.none.clone(), exact: false };
-        let nothing =
-            ModalSearch { best, alternatives: Vec::new(), without: Vec::new(), ..self.search.clone() };
+        let nothing = ModalSearch {
+            best,
+            alternatives: Vec::new(),
+            elsewhere: Vec::new(),
+            without: Vec::new(),
+            ..self.search.clone()
+        };
         ModalJudgement {
             verdict: Verdict::Unexplained,
             names: Vec::new(),
+            places: Vec::new(),
             errors: [self.errors[0]; 2],
             stated: [self.stated[0].clone(), self.stated[0].clone()],
             covariance: None,
@@ -475,12 +535,16 @@ impl ModalJudgement {
             let other = |(c, probability, hypothesis): &(usize, f64, Hypothesis)| {
                 (!own(*c)).then(|| Some((hypothesis.effects().pop()?, *probability)))?
             };
+            let places = self.places.get(index)?;
+            let along = places.own.as_ref().map(|along| along.estimates(hypothesis, index, &effect));
+            let linear = || estimates(hypothesis, index, &effect, covariance.as_ref(), 1.0);
             Some(Finding {
-                estimates: estimates(hypothesis, index, &effect, covariance.as_ref(), 1.0),
+                estimates: along.unwrap_or_else(linear),
                 probability: names.iter().find(|(c, _, _)| own(*c)).map_or(0.0, |(_, p, _)| *p),
                 alternatives: names.iter().filter_map(other).collect(),
                 evidence: Evidence {
                     gain: 2.0 * (self.search.best.fit.ln - self.search.without[index]),
+                    elsewhere: places.elsewhere.clone(),
                     measured: None,
                 },
                 effect,

@@ -22,6 +22,8 @@ pub(crate) struct ModalSearch {
     pub more: Vec<Named>,
     /// What else may stand in the stead of each effect of the best, itself included, the most probable first.
     pub alternatives: Vec<Vec<Named>>,
+    /// Where else along its body each effect of the best explains the modes, the most probable place first.
+    pub elsewhere: Vec<Vec<Named>>,
     /// ln p of the best without each of its effects.
     pub without: Vec<f64>,
 }
@@ -41,6 +43,16 @@ fn farther(hypothesis: &Hypothesis, candidate: &Candidate) -> Option<Hypothesis>
     let moved = hypothesis.without(last).with(effect);
     let released = stopped.iter().any(|at| !moved.stopped().contains(at));
     (spanned && released).then_some(moved)
+}
+
+/// What may stand in the stead of one of several effects.
+struct InStead {
+    /// Other names and its own, the most probable first.
+    names: Vec<Named>,
+    /// Its own name at other places of its body.
+    elsewhere: Vec<Named>,
+    /// ln p without it.
+    without: f64,
 }
 
 /// The most probable of several fits.
@@ -82,6 +94,7 @@ impl Searcher<'_> {
         let (mut singles, mut far) = self.extended(&start, self.settings.refined.0, self.settings.starts.0);
         singles = self.exchanged(singles);
         let start = self.at_its_best(start, &singles);
+        singles = self.at_other_places(&start, singles);
         let none = start.fit.clone();
         // Where neither the fixture nor any effect explains the modes, the right one may have set out from the wrong place.
         let explains = |named: &Named| {
@@ -147,16 +160,18 @@ impl Searcher<'_> {
             }
         }
         self.watch.stage("asking by modes what else would explain a finding");
-        let (mut alternatives, mut without) = self.alternatives(&best, &singles, &none);
+        let mut instead = self.in_stead_of_each(&best, &singles, &none);
         // What explains more in the stead of one effect, beside the others, is what was searched for.
         for _ in 0..self.settings.exchanges {
             let higher = |other: &Named| other.names.len() == best.names.len() && other.fit.ln > best.fit.ln;
-            let others = alternatives.iter().flatten().filter(|other| higher(other)).cloned();
-            let Some(other) = highest(others) else { break };
+            let others = instead.iter().flat_map(|effect| effect.names.iter().chain(&effect.elsewhere));
+            let Some(other) = highest(others.filter(|other| higher(other)).cloned()) else { break };
             best = other;
-            (alternatives, without) = self.alternatives(&best, &singles, &none);
+            instead = self.in_stead_of_each(&best, &singles, &none);
         }
-        ModalSearch { none, best, singles, far, more, alternatives, without }
+        let without = instead.iter().map(|effect| effect.without).collect();
+        let (alternatives, elsewhere) = instead.into_iter().map(|i| (i.names, i.elsewhere)).unzip();
+        ModalSearch { none, best, singles, far, more, alternatives, elsewhere, without }
     }
 
     /// Singles with the most probable ones fitted from each other's quantities and sizes of error too: names are compared where all have set out alike.
@@ -212,29 +227,31 @@ impl Searcher<'_> {
         all
     }
 
-    /// For each effect what may stand in its stead in the company of the others, and ln p without it.
-    fn alternatives(&self, best: &Named, singles: &[Named], none: &ModalFit) -> (Vec<Vec<Named>>, Vec<f64>) {
-        let count = best.names.len();
-        let of = |index: usize| {
-            let own = best.names[index];
-            let (mut all, without) = if count == 1 {
-                (singles.to_vec(), none.ln)
-            } else {
-                match self.without(best, index) {
-                    Some(base) => (self.extended(&base, self.settings.refined.1, 1).0, base.fit.ln),
-                    None => (Vec::new(), f64::NEG_INFINITY),
-                }
-            };
-            all.retain(|other| other.names.last() != Some(&own));
-            all.push(Named { names: vec![own], fit: best.fit.clone(), exact: best.exact });
-            all.sort_by(|a, b| b.fit.ln.total_cmp(&a.fit.ln));
-            all.retain(|other| {
-                let close = best.fit.ln - other.fit.ln < self.settings.listed;
-                other.names.last() == Some(&own) || (close && self.is_told(other, none))
-            });
-            (all, without)
+    /// What may stand in the stead of each effect of `best`, in the company of its others.
+    fn in_stead_of_each(&self, best: &Named, singles: &[Named], none: &ModalFit) -> Vec<InStead> {
+        (0..best.names.len()).map(|index| self.in_stead_of(best, index, singles, none)).collect()
+    }
+
+    fn in_stead_of(&self, best: &Named, index: usize, singles: &[Named], none: &ModalFit) -> InStead {
+        let own = best.names[index];
+        let base = match best.names.len() {
+            1 => Some(Named { names: Vec::new(), exact: self.is_exact(none), fit: none.clone() }),
+            _ => self.without(best, index),
         };
-        (0..count).map(of).unzip()
+        let mut names = match &base {
+            _ if best.names.len() == 1 => singles.to_vec(),
+            Some(base) => self.extended(base, self.settings.refined.1, 1).0,
+            None => Vec::new(),
+        };
+        names.retain(|other| other.names.last() != Some(&own));
+        names.push(Named { names: vec![own], fit: best.fit.clone(), exact: best.exact });
+        names.sort_by(|a, b| b.fit.ln.total_cmp(&a.fit.ln));
+        names.retain(|other| {
+            let close = best.fit.ln - other.fit.ln < self.settings.listed;
+            other.names.last() == Some(&own) || (close && self.is_told(other, none))
+        });
+        let elsewhere = base.as_ref().map_or_else(Vec::new, |base| self.elsewhere(base, best, index, none));
+        InStead { names, elsewhere, without: base.map_or(f64::NEG_INFINITY, |base| base.fit.ln) }
     }
 
     /// Fits of `base` with one effect more, the most probable first: the `refined` best candidates, each from so many starts; and the candidates all of whose starts
@@ -270,25 +287,9 @@ impl Searcher<'_> {
     /// Fits from starts with one effect more than `base`, the best of each candidate, the most probable first. What lies far below the first of them is not fitted closely.
     fn fitted(&self, base: &Named, starts: Vec<Start>, set_out: SetOut) -> Vec<Named> {
         let tried = self.watch.count(starts.len());
-        let fit = |Start { candidate: c, hypothesis, .. }: Start, least: f64| {
-            tried.trying(&self.candidates[c]);
-            let names: Vec<usize> = base.names.iter().copied().chain([c]).collect();
-            let company: Vec<&Candidate> = names.iter().map(|&c| &self.candidates[c]).collect();
-            let standing = self.problem.standing(&hypothesis)?;
-            let nearby = self.nearby(&hypothesis, &standing, &base.fit);
-            let priors = self.priors(&hypothesis, &company);
-            let mut fit =
-                self.problem.fitted_from(&hypothesis, standing, &priors, (nearby, set_out, least))?;
-            // The end of a reach is no place to rest, whatever the evidence says that has a parameter less there.
-            for _ in 0..self.settings.farther {
-                let next = farther(&fit.hypothesis, &self.candidates[c]).and_then(|start| {
-                    let standing = self.problem.standing(&start)?;
-                    self.problem.fitted_from(&start, standing, &priors, (None, set_out, least))
-                });
-                let Some(next) = next else { break };
-                fit = next;
-            }
-            Some(Named { names, exact: self.is_exact(&fit), fit })
+        let fit = |start: Start, least: f64| {
+            tried.trying(&self.candidates[start.candidate]);
+            self.fitted_from(base, start, set_out, least)
         };
         let mut starts = starts.into_iter();
         let first: Vec<Start> = starts.by_ref().take(1).collect();
@@ -298,5 +299,34 @@ impl Searcher<'_> {
         let least = if self.is_adequate(&base.fit) { far.max(base.fit.ln) } else { far };
         fits.extend(self.problem.work.each(starts.collect(), STARTS, |start| fit(start, least)));
         best_of_each(fits)
+    }
+
+    /// One fit of a start with one effect more than `base`; `None` where it will not come up to `least`.
+    pub(super) fn fitted_from(
+        &self,
+        base: &Named,
+        Start { candidate: c, hypothesis, .. }: Start,
+        set_out: SetOut,
+        least: f64,
+    ) -> Option<Named> {
+        let names: Vec<usize> = base.names.iter().copied().chain([c]).collect();
+        let company: Vec<&Candidate> = names.iter().map(|&c| &self.candidates[c]).collect();
+        let standing = self.problem.standing(&hypothesis)?;
+        let nearby = self.nearby(&hypothesis, &standing, &base.fit);
+        let priors = self.priors(&hypothesis, &company);
+        let mut fit = self.problem.fitted_from(&hypothesis, standing, &priors, (nearby, set_out, least))?;
+        // The end of a reach is no place to rest, whatever the evidence says that has a parameter less there.
+        for _ in 0..self.settings.farther {
+            let next = farther(&fit.hypothesis, &self.candidates[c]).and_then(|start| {
+                let standing = self.problem.standing(&start)?;
+                self.problem.fitted_from(&start, standing, &priors, (None, set_out, least))
+            });
+            let Some(next) = next else { break };
+            fit = next;
+        }
+        // Modes that both recordings show are modes of both: no change loses one.
+        let pairs = |fit: &ModalFit| fit.standing.pairing.pairs.len();
+        let loses_modes = self.calibrated && pairs(&fit) < pairs(&base.fit);
+        (!loses_modes).then(|| Named { names, exact: self.is_exact(&fit), fit })
     }
 }

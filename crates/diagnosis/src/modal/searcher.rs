@@ -6,6 +6,7 @@ use crate::modal::prior::{Prior, priors};
 use crate::settings::ModalSettings;
 use crate::{Hypothesis, Watch};
 use jointscope_fixture::Effect;
+use jointscope_model_error::ErrorSizes;
 
 /// Standard deviation, in stated ones, that a calibrated quantity keeps.
 const CALIBRATED: f64 = 1e-4;
@@ -66,11 +67,34 @@ impl Searcher<'_> {
         if !self.calibrated && fit.ln - none.ln > undoubted {
             return true;
         }
-        let sizes = fit.linear.mean_sizes(&fit.standing.comparison, self.problem.prior(), &fit.evidence);
+        let sizes = self.widened(fit);
+        // Of a calibrated fixture nothing else moves: what the effect gains is its own.
+        let alone = self.calibrated && named.names.len() == 1;
+        if alone && self.gains_at(&sizes, fit, none) > self.odds_of_one() {
+            return true;
+        }
         let Some(covariance) = fit.covariance_at(&sizes) else { return false };
         let least = self.settings.least;
         (0..fit.hypothesis.effect_count())
             .all(|index| fit.hypothesis.deviations_of(index, &covariance) >= least)
+    }
+
+    /// Sizes of the model's error that may be larger than the most probable ones: what uncertainties are stated with.
+    pub(super) fn widened(&self, fit: &ModalFit) -> ErrorSizes {
+        fit.linear.mean_sizes(&fit.standing.comparison, self.problem.prior(), &fit.evidence)
+    }
+
+    /// What a fit gains in ln p over another where errors of the model have these sizes; nothing where the two compare other modes. Along the ridge of a mass that grows as it comes
+    /// nearer to a clamp its deviation says little, and this all the same that it is there.
+    fn gains_at(&self, sizes: &ErrorSizes, fit: &ModalFit, none: &ModalFit) -> f64 {
+        let density = |fit: &ModalFit| fit.linear.ln_density(&fit.standing.comparison, sizes);
+        let alike = fit.standing.pairing.pairs == none.standing.pairing.pairs;
+        density(fit).zip(density(none)).filter(|_| alike).map_or(0.0, |(with, without)| with - without)
+    }
+
+    /// ln of the odds that one effect among all candidates has to gain.
+    fn odds_of_one(&self) -> f64 {
+        (self.candidates.len() as f64).ln() + self.settings.odds.ln()
     }
 
     /// Whether what a fit needs of errors and departures is no more than chance makes.

@@ -59,7 +59,11 @@ impl Searcher<'_> {
         // What resonates makes a mode more: where every mode has its partner, nothing of the kind is there.
         let partners = base.fit.standing.pairing.alone() == 0.0;
         let idle = |c: usize| partners && self.candidates[c].kind == EffectKind::AttachedResonator;
-        let free = |c: &usize| !base.names.contains(c) && !idle(*c);
+        self.starts_of(base, |c| !base.names.contains(&c) && !idle(c))
+    }
+
+    /// The same of these candidates alone.
+    pub(super) fn starts_of(&self, base: &Named, among: impl Fn(usize) -> bool) -> Vec<Start> {
         let bases = match base.names.is_empty() {
             true => vec![self.nominal, &base.fit.hypothesis],
             false => vec![&base.fit.hypothesis],
@@ -67,7 +71,7 @@ impl Searcher<'_> {
         let unmatched = self.unmatched(&base.fit);
         let count = bases.len();
         let starts: Vec<(usize, Effect, usize)> = (0..self.candidates.len())
-            .filter(free)
+            .filter(|&c| among(c))
             .flat_map(|c| {
                 let candidate = &self.candidates[c];
                 let own = (0..candidate.starts.len()).map(|start| candidate.effect(start));

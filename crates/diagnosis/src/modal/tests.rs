@@ -207,7 +207,7 @@ fn found_with_gains(gains: [f64; 4]) -> [Vec<Estimate>; 2] {
     let judged = ModalJudgement::of(&fitter, &nominal, &[], None).unwrap();
     let covariance = fitter.information(&truth).covariance();
     let estimates = estimates(&truth, 0, &lump, covariance.as_ref(), 1.0);
-    let evidence = Evidence { gain: 0.0, measured: None };
+    let evidence = Evidence { gain: 0.0, elsewhere: Vec::new(), measured: None };
     let finding = Finding {
         effect: lump,
         estimates: estimates.clone(),

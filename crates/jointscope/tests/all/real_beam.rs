@@ -43,6 +43,39 @@ fn of_a_beam_whose_masses_were_moved_nothing_is_said_to_have_changed_that_may_be
     assert_ne!(diagnosis.verdict, Verdict::Consistent);
 }
 
+/// What is said of a recording of a real clamped beam, another one its baseline.
+fn since(baseline: &str, now: &str) -> Option<Diagnosis> {
+    let (fixture, baseline) = recorded(&format!("clamped-beam-masses/{baseline}"))?;
+    let (_, frfs) = recorded(&format!("clamped-beam-masses/{now}"))?;
+    let options = DiagnosisOptions { baseline: Some(baseline), ..DiagnosisOptions::default() };
+    Some(Diagnosis::of(&fixture, &frfs, &options).unwrap())
+}
+
+#[test]
+fn a_mass_that_a_clamped_beam_has_lost_is_named_alone_and_may_sit_where_it_was() {
+    // 10.65 g at 50 mm, or 300 mm, which only the first mode would tell from it; one FRF that shows three modes of both states.
+    let Some(diagnosis) = since("healthy-1", "loss-1") else { return };
+    let [finding] = &diagnosis.findings[..] else { panic!("{}", diagnosis.says()) };
+    assert_eq!(finding.effect.kind, EffectKind::AddedMass, "{}", diagnosis.says());
+    let [place, mass] = ["x", "mass"].map(|parameter| finding.estimate(parameter).unwrap());
+    let [low, high] = place.interval.unwrap();
+    assert!(low < 0.05 && 0.05 < high && high - low < 0.04, "{}", finding.says());
+    assert!((place.value - 0.05).abs() < 0.03, "{}", finding.says());
+    // The lightest of the masses that would do is the one that was taken off, within a fifth.
+    let [_, least] = mass.interval.unwrap();
+    assert!((-0.0165..-0.0087).contains(&least), "{}", finding.says());
+}
+
+#[test]
+fn what_would_change_every_frequency_by_a_third_is_no_change_between_like_modes() {
+    // The other way round: with a modulus of 1.9 times no mode of the model has a partner, and nothing is left to contradict it.
+    let Some(diagnosis) = since("healthy-2", "healthy-1") else { return };
+    for finding in &diagnosis.findings {
+        let size = finding.estimates[finding.effect.kind.spec().size.parameter].value;
+        assert!(finding.effect.kind != EffectKind::StiffnessChange || size < 1.2, "{}", diagnosis.says());
+    }
+}
+
 #[test]
 fn the_real_beam_is_told_its_shear_and_its_low_channel_with_intervals_that_hold_them() {
     let Some((fixture, frfs)) = free_beam() else { return };

@@ -1,7 +1,7 @@
 //! What was found: parameters with intervals, probability, look-alikes.
 
 use jointscope_diagnosis::{Estimate, Finding, Verdict};
-use jointscope_wording::effect_name;
+use jointscope_wording::{effect_name, place_and_sizes};
 
 use super::glance::{chance, scale};
 use super::subject::Subject;
@@ -94,9 +94,13 @@ fn interval(estimate: &Estimate) -> String {
 
 fn names(subject: &Subject) -> impl Into<Block> {
     let others = |finding: &Finding| {
-        let listed = finding.alternatives.iter().filter(|(_, probability)| *probability >= LISTED);
-        let listed: Vec<_> =
-            listed.map(|(effect, probability)| (effect_name(effect), chance(*probability))).collect();
+        let places = finding.evidence.elsewhere.iter();
+        let places =
+            places.map(|p| (format!("the same {}", place_and_sizes(p)), finding.probability * p.share));
+        let names =
+            finding.alternatives.iter().map(|(effect, probability)| (effect_name(effect), *probability));
+        let listed = places.chain(names).filter(|(_, probability)| *probability >= LISTED);
+        let listed: Vec<_> = listed.map(|(name, probability)| (name, chance(probability))).collect();
         let nothing = || vec![("nothing that was tried".to_owned(), String::new())];
         if listed.is_empty() { nothing() } else { listed }
     };

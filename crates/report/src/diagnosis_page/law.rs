@@ -75,7 +75,7 @@ mod tests {
             estimates: Vec::new(),
             probability: 1.0,
             alternatives: Vec::new(),
-            evidence: Evidence { gain: 0.0, measured: None },
+            evidence: Evidence { gain: 0.0, elsewhere: Vec::new(), measured: None },
         };
         Law::of(&finding, &Site::Body { body: "A".into(), x: 0.0 }, &fixture).unwrap()
     }

@@ -1,0 +1,237 @@
+//! What is known of an effect along the ridge that its place and its sizes share.
+//!
+//! A mass that is heavier the nearer it is to a clamp does much the same to every mode, and so do a mass and a spring whose places are traded for their sizes. Derivatives where a fit came
+//! to rest say how the ridge sets out there, and nothing of where it leads or ends. So the fit is repeated with the effect held at places on either side, as far as these are
+//! credible: the evidence at each is the density of the place, and what the sizes are there, with the deviations that they have there, makes up theirs.
+
+use crate::Hypothesis;
+use crate::estimates::estimates_within;
+use crate::modal::elsewhere::abscissa;
+use crate::modal::fit::{ANY, ModalFit, SetOut};
+use crate::modal::prior::Prior;
+use crate::modal::searcher::{Named, Searcher};
+use jointscope_findings::Estimate;
+use jointscope_fixture::{BodyKind, Effect, Place};
+use statrs::function::erf::erfc;
+use std::f64::consts::SQRT_2;
+
+/// Standard deviation, in coordinates, about a place at which an effect is held.
+const HELD: f64 = 1e-4;
+/// First step away from where a fit came to rest, in deviations by its derivatives there and at most in coordinates.
+const STEP: (f64, f64) = (0.7, 0.5);
+/// Steps on either side, at most.
+const STEPS: usize = 14;
+/// ln of the density below the highest at which a place is not credible any more: three standard deviations.
+const INCREDIBLE: f64 = 4.5;
+/// Fall of ln of the density over a step below which the next is longer, and above which it is shorter, and by what factor.
+const EVEN: f64 = 0.5;
+const STEEP: f64 = 1.5;
+const LONGER: f64 = 1.6;
+/// Parts of a step between whose ends everything is interpolated.
+const PARTS: usize = 16;
+/// Halvings that find an end of an interval.
+const HALVINGS: usize = 60;
+/// Probability below and above a 95 % interval.
+const TAIL: f64 = 0.025;
+
+/// An effect held at a place: ln of the density there, and what its free coordinates are, with their standard deviations.
+#[derive(Debug, Clone)]
+struct Held {
+    ln: f64,
+    means: Vec<f64>,
+    stds: Vec<f64>,
+}
+
+/// What is known of an effect along its body.
+#[derive(Debug, Clone)]
+pub(super) struct Along {
+    /// Interpolated, with the share of the probability of each.
+    parts: Vec<(f64, Held)>,
+    /// ln of the evidence, of all places about where the fit came to rest.
+    pub ln: f64,
+    /// Index of the place among the effect's free coordinates, and where the least and the greatest of them that is credible lies.
+    at: usize,
+    range: [f64; 2],
+}
+
+impl Along {
+    /// From places in their order; `at` is the index of the place among an effect's free coordinates.
+    fn of(all: &[Held], at: usize) -> Option<Self> {
+        let highest = all.iter().map(|held| held.ln).fold(f64::NEG_INFINITY, f64::max);
+        let mix = |a: &[f64], b: &[f64], t: f64| a.iter().zip(b).map(|(a, b)| a + t * (b - a)).collect();
+        let mut parts = Vec::new();
+        for pair in all.windows(2) {
+            let (a, b) = (&pair[0], &pair[1]);
+            let width = (b.means[at] - a.means[at]) / PARTS as f64;
+            for part in 0..PARTS {
+                let t = (part as f64 + 0.5) / PARTS as f64;
+                let held = Held {
+                    ln: a.ln + t * (b.ln - a.ln),
+                    means: mix(&a.means, &b.means, t),
+                    stds: mix(&a.stds, &b.stds, t),
+                };
+                parts.push((width * (held.ln - highest).exp(), held));
+            }
+        }
+        let total: f64 = parts.iter().map(|(weight, _)| weight).sum();
+        if total.is_nan() || total <= 0.0 {
+            return None;
+        }
+        parts.iter_mut().for_each(|(weight, _)| *weight /= total);
+        let range = [all.first()?.means[at], all.last()?.means[at]];
+        Some(Along { parts, ln: highest + total.ln(), at, range })
+    }
+
+    /// The 95 % interval of free coordinate `index`.
+    fn interval(&self, index: usize) -> [f64; 2] {
+        let least = |held: &Held| held.stds[index].max(f64::MIN_POSITIVE);
+        let below = |x: f64| -> f64 {
+            let of = |(weight, held): &(f64, Held)| {
+                0.5 * weight * erfc((held.means[index] - x) / (SQRT_2 * least(held)))
+            };
+            self.parts.iter().map(of).sum()
+        };
+        let reach = |sign: f64| {
+            let ends =
+                self.parts.iter().map(move |(_, held)| held.means[index] + sign * 5.0 * held.stds[index]);
+            ends.fold(-sign * f64::INFINITY, |a, b| if sign * (b - a) > 0.0 { b } else { a })
+        };
+        [TAIL, 1.0 - TAIL].map(|share| {
+            let (mut low, mut high) = (reach(-1.0), reach(1.0));
+            for _ in 0..HALVINGS {
+                let middle = 0.5 * (low + high);
+                if below(middle) < share { low = middle } else { high = middle }
+            }
+            0.5 * (low + high)
+        })
+    }
+
+    /// Whether effect `index` of a hypothesis sits among these places.
+    pub(super) fn holds(&self, hypothesis: &Hypothesis, index: usize) -> bool {
+        let place = hypothesis.coordinates[hypothesis.range_of(index).start + self.at];
+        self.range[0] <= place && place <= self.range[1]
+    }
+
+    /// The parameters of effect `index` of a hypothesis, with these intervals.
+    pub(super) fn estimates(&self, hypothesis: &Hypothesis, index: usize, effect: &Effect) -> Vec<Estimate> {
+        let count = hypothesis.range_of(index).len();
+        let intervals: Vec<[f64; 2]> = (0..count).map(|coordinate| self.interval(coordinate)).collect();
+        estimates_within(hypothesis, index, effect, &intervals)
+    }
+}
+
+impl Searcher<'_> {
+    /// Effect `index` of `named` along its body, if it sits on one that bends: elsewhere a place and its sizes are as good as linear.
+    pub(super) fn along(&self, named: &Named, index: usize) -> Option<Along> {
+        let hypothesis = &named.fit.hypothesis;
+        let effect = hypothesis.effects().into_iter().nth(index)?;
+        let place = abscissa(&effect).filter(|place| effect.has_parameter(*place))?;
+        if !self.bends(&effect) || self.known.is_some() {
+            return None;
+        }
+        let own = hypothesis.range_of(index);
+        let moves = hypothesis.effect_parameters_of(index);
+        let at = moves[..place].iter().filter(|parameter| parameter.is_free()).count();
+        let (low, high) = (moves[place].low, moves[place].high);
+        let coordinate = own.start + at;
+        let sizes = self.widened(&named.fit);
+        let step = named.fit.covariance_at(&sizes)?.std(coordinate);
+        let step = (STEP.0 * step).min(STEP.1);
+        let held = |from: &ModalFit, to: f64| {
+            let mut start = from.hypothesis.clone();
+            start.coordinates[coordinate] = to;
+            let mut priors = named.fit.priors.clone();
+            priors[coordinate] = Prior { mean: to, std: HELD };
+            let standing = self.problem.standing(&start)?;
+            let set_out = (None, SetOut::Beside(from.evidence.sizes), ANY);
+            let fit = self.problem.fitted_from(&start, standing, &priors, set_out)?;
+            let covariance = fit.covariance_at(&self.widened(&fit))?;
+            // Beyond its bound nothing is possible, whatever derivatives say.
+            let stopped = fit.hypothesis.stopped();
+            let held = Held {
+                ln: fit.ln,
+                means: fit.hypothesis.coordinates[own.clone()].to_vec(),
+                stds: own
+                    .clone()
+                    .map(|c| if stopped.contains(&c) { 0.0 } else { covariance.std(c) })
+                    .collect(),
+            };
+            Some((fit, held))
+        };
+        let middle = held(&named.fit, hypothesis.coordinates[coordinate])?;
+        let side = |sign: f64| {
+            let (mut from, mut all, mut step) = (middle.clone(), Vec::new(), step);
+            for _ in 0..STEPS {
+                let was = from.0.hypothesis.coordinates[coordinate];
+                let to = (was + sign * step).clamp(low, high);
+                if (to - was).abs() < HELD {
+                    break;
+                }
+                let Some(next) = held(&from.0, to) else { break };
+                let fall = from.1.ln - next.1.ln;
+                all.push(next.1.clone());
+                if middle.1.ln - next.1.ln > INCREDIBLE {
+                    break;
+                }
+                step *= if fall.abs() < EVEN { LONGER } else { 1.0 };
+                step /= if fall.abs() > STEEP { LONGER } else { 1.0 };
+                from = next;
+            }
+            all
+        };
+        let mut all = side(-1.0);
+        all.reverse();
+        all.push(middle.1.clone());
+        all.extend(side(1.0));
+        Along::of(&all, at)
+    }
+
+    /// Whether an effect sits on a body that bends.
+    fn bends(&self, effect: &Effect) -> bool {
+        let bodies = self.nominal.fixture().bodies();
+        let Place::Body(name) = &effect.place else { return false };
+        bodies.iter().any(|body| body.name == *name && matches!(body.kind, BodyKind::Beam(_)))
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+
+    /// Places about nothing with a density of ln −x²/2, and a size of 3 x ± 4 at each.
+    fn ridge(places: &[f64]) -> Along {
+        let held = |x: &f64| Held { ln: -0.5 * x * x, means: vec![*x, 3.0 * x], stds: vec![0.0, 4.0] };
+        Along::of(&places.iter().map(held).collect::<Vec<_>>(), 0).unwrap()
+    }
+
+    fn evenly(from: f64, to: f64) -> Vec<f64> {
+        (0..=40).map(|k| from + (to - from) * f64::from(k) / 40.0).collect()
+    }
+
+    #[test]
+    fn along_a_ridge_a_size_is_as_uncertain_as_its_place_and_itself_together() {
+        let along = ridge(&evenly(-4.5, 4.5));
+        let [low, high] = along.interval(0);
+        assert!((low + 1.96).abs() < 0.02 && (high - 1.96).abs() < 0.02, "{low} {high}");
+        let [low, high] = along.interval(1);
+        let expected = 1.96 * 3f64.hypot(4.0);
+        assert!((low / expected + 1.0).abs() < 0.01 && (high / expected - 1.0).abs() < 0.01, "{low} {high}");
+        let evidence = (2.0 * std::f64::consts::PI).sqrt().ln();
+        assert!((along.ln - evidence).abs() < 0.01, "{}", along.ln);
+    }
+
+    #[test]
+    fn where_a_body_ends_so_does_the_interval() {
+        // Half a normal distribution: 2.24 deviations hold 97.5 % of it, 0.0313 leave 2.5 % below.
+        let along = ridge(&evenly(0.0, 4.5));
+        let [low, high] = along.interval(0);
+        assert!((low - 0.0313).abs() < 0.01 && (high - 2.2414).abs() < 0.02, "{low} {high}");
+    }
+
+    #[test]
+    fn one_place_alone_has_no_interval() {
+        let held = Held { ln: 0.0, means: vec![1.0], stds: vec![0.0] };
+        assert!(Along::of(&[held], 0).is_none());
+    }
+}
