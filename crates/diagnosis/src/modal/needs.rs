@@ -6,11 +6,14 @@
 
 use crate::Hypothesis;
 use crate::candidate::Candidate;
+use crate::evidence::explains;
+use crate::fit::Fit;
 use crate::fitter::Fitter;
 use crate::modal::features::Features;
 use crate::modal::fit::ModalFit;
 use crate::modal::judgement::ModalJudgement;
 use crate::modal::prior::priors_among;
+use crate::penalty::{parameter_penalty, penalty};
 use crate::search::Search;
 use jointscope_fixture::{Effect, EffectKind};
 
@@ -41,12 +44,13 @@ pub(crate) fn without_imitations(
             &anew
         }
     };
-    if features.tells_little(settings) {
+    if features.tells_little(settings) || explains_more_than_errors(fitter, search, features) {
         return None;
     }
     let mut repaired = search.repaired.clone();
     let of = (features, by_modes.is_some_and(ModalJudgement::explains));
-    while let Some(index) = least_needed(fitter, of, &search.candidates, &repaired.hypothesis) {
+    let needed = settings.odds.ln() - gain_below_modes(fitter, search, features);
+    while let Some(index) = least_needed(fitter, of, (&search.candidates, needed), &repaired.hypothesis) {
         let without = repaired.hypothesis.without(index);
         let without = match without.effect_count() {
             0 => search.refitted.clone(),
@@ -61,11 +65,53 @@ pub(crate) fn without_imitations(
     fewer.then(|| Search { repaired, ..search.clone() })
 }
 
-/// The effect of a hypothesis that modes need least, by its index; `None` where they need all. That it is one name of many has been paid for on lines.
+/// Standard deviations of χ² for so many unknowns that an effect must leave less than errors of the model do.
+const CERTAIN: f64 = 3.0;
+
+/// Whether one effect brings the lines down to their noise and errors of a structure's model, however large, do not: what a filter does to a mass line, or a sensor that loads one
+/// FRF and not the other, no mode tells, and no error imitates.
+fn explains_more_than_errors(fitter: &Fitter, search: &Search, features: &Features) -> bool {
+    let Fitter { observation, settings, .. } = *fitter;
+    let repaired = &search.repaired;
+    if repaired.hypothesis.effect_count() != 1 || !explains(fitter, repaired, true) {
+        return false;
+    }
+    let Some(structural) = features.structural(observation) else { return false };
+    let (chi2, _) = observation.chi2_from(&repaired.predicted, structural.from);
+    // Each unknown takes one from χ² by chance.
+    let unknowns = structural.unknowns as f64;
+    let errors = structural.chi2 + unknowns - CERTAIN * (2.0 * unknowns).sqrt();
+    let parameters = parameter_penalty(&settings.selection, &repaired.hypothesis);
+    let needed = penalty(&settings.selection, parameters, search.candidates.len());
+    errors - chi2 > needed * repaired.inflation(observation)
+}
+
+/// What one effect gains in ln p on lines that modes leave out, those of a suspension, where it brings all lines down to their noise: over values that err there all by the size that suits
+/// them best, without it.
+fn gain_below_modes(fitter: &Fitter, search: &Search, features: &Features) -> f64 {
+    let observation = fitter.observation;
+    let repaired = &search.repaired;
+    if repaired.hypothesis.effect_count() != 1 || !explains(fitter, repaired, true) {
+        return 0.0;
+    }
+    let below = |fit: &Fit| {
+        let (above, counted) = observation.chi2_from(&fit.predicted, features.recorded.band.0);
+        (fit.chi2 - above, (observation.degrees() - counted) as f64)
+    };
+    let ((without, values), (with, _)) = (below(&search.refitted), below(repaired));
+    if values == 0.0 {
+        return 0.0;
+    }
+    // ln of normal densities of variance 1 and `variance`, which is the most probable one.
+    let variance = (without / values).max(1.0);
+    (0.5 * (values * variance.ln() + without / variance - with)).max(0.0)
+}
+
+/// The effect of a hypothesis that modes need least, by its index; `None` where each gains as much as is `needed`. That it is one name of many has been paid for on lines.
 fn least_needed(
     fitter: &Fitter,
     (features, explained): (&Features, bool),
-    candidates: &[Candidate],
+    (candidates, needed): (&[Candidate], f64),
     hypothesis: &Hypothesis,
 ) -> Option<usize> {
     let settings = &fitter.settings.modal;
@@ -81,7 +127,7 @@ fn least_needed(
     let may_imitate = |index: &usize| !is_gain_beyond_errors(&effects[*index], problem.sizes.gain);
     let gains = (0..effects.len()).filter(may_imitate).filter_map(gain);
     let (index, gain) = gains.min_by(|a, b| a.1.total_cmp(&b.1))?;
-    (gain < settings.odds.ln()).then_some(index)
+    (gain < needed).then_some(index)
 }
 
 #[cfg(test)]
