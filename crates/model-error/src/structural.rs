@@ -100,7 +100,7 @@ impl RecordedModes {
             chi2 += dot(&left, &left);
             let slope = |k: usize| {
                 let mode = &self.modes[k / 2];
-                let by = if k % 2 == 0 { Pole::by_frequency } else { Pole::by_damping };
+                let by = if k.is_multiple_of(2) { Pole::by_frequency } else { Pole::by_damping };
                 let at = |omega: &f64| by(&mode.pole, Complex64::new(0.0, *omega)) * mode.residues[frf];
                 basis.left(omegas.iter().map(at))
             };
