@@ -10,6 +10,7 @@ use crate::fitter::Fitter;
 use crate::modal::changes::States;
 use crate::modal::features::{Features, recorded};
 use crate::modal::fit::ModalFit;
+use crate::modal::needs::BEYOND_ERRORS;
 use crate::modal::prior::priors;
 use crate::modal::search::ModalSearch;
 use crate::modal::searcher::{Named, Searcher};
@@ -327,7 +328,10 @@ impl ModalJudgement {
         // Records taken one after another, their noise told by scatter alone: an outlier among their gains passes for an error of all gains.
         let unsure = self.is_unexplained() && fitter.observation.has_scatter_for_noise();
         let told = self.free_fit <= fitter.settings.modal.hopeless;
-        self.tells_little(fitter) || (told && (alone != 0.0 || unsure || self.is_beyond_errors(fitter)))
+        // Errors of gains may be of any size among modes, one channel's gain for instance, which then is held against itself.
+        let gain = self.search.best.fit.evidence.sizes.gain > BEYOND_ERRORS * self.features.known.scales.gain;
+        let told_otherwise = || alone != 0.0 || unsure || gain || self.is_beyond_errors(fitter);
+        self.tells_little(fitter) || (told && told_otherwise())
     }
 
     /// Whether errors of a structure's model, however large, leave more than noise: a sensor that loads some FRFs and others not gives these other poles, which no hypothesis without it
