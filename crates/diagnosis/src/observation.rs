@@ -260,6 +260,15 @@ impl Observation {
         self.weighted_squares(modelled, &self.weight)
     }
 
+    /// χ² of modelled values on the lines from a frequency on, Hz, and the number of real values that count there.
+    pub(crate) fn chi2_from(&self, modelled: &[Complex64], from: f64) -> (f64, usize) {
+        let hz = self.lines().hz();
+        let counts = |index: &usize| hz[index % hz.len()] >= from && self.weight[*index] > 0.0;
+        let values = (0..self.weight.len()).filter(counts);
+        let square = |index: usize| self.weight[index] * (self.values()[index] - modelled[index]).norm_sqr();
+        values.fold((0.0, 0), |(chi2, count), index| (chi2 + square(index), count + 2))
+    }
+
     /// √(Σ|H_model − H_measured|² / Σ|H_measured|²) over all FRFs and lines.
     pub fn nrmse(&self, modelled: &[Complex64]) -> f64 {
         let (mut error, mut size) = (0.0, 0.0);

@@ -110,8 +110,9 @@ fn from_modes<'a>(fitter: &Fitter, within: &Search, modal: &'a ModalJudgement) -
     if let Some(found) = within.explained_among(fitter, modal.in_question(fitter)) {
         return Some((Start::Found(Box::new(found)), false));
     }
-    // Where a free fit that needed all it may leaves no doubt of the names, lines find nothing better.
-    let may = modal.is_dubious(fitter)
+    // Where a free fit that needed all it may leaves no doubt of the names, lines find nothing better. Where modes find none and lines lack little, one of all names may do.
+    let little = fitter.settings.modal.slight * fitter.observation.degrees() as f64;
+    let may = (modal.is_dubious(fitter) || modal.is_unexplained() && within.refitted.objective < little)
         && !modal.stands_out(fitter)
         && fitter.observation.work().allows("what lines would find");
     let search = || Search::searched(fitter, within.clone());

@@ -202,6 +202,32 @@ fn what_resonates_between_two_starts_is_within_the_reach_of_one() {
     assert!(seen > 0);
 }
 
+/// Multiple of the highest line below which sensors may resonate on their mountings: bands end at a fifth of that, or before.
+const MOUNTED: f64 = 6.0;
+
+#[test]
+fn a_channel_that_resonates_at_six_times_the_band_is_within_the_reach_of_a_start() {
+    let fixture = fixture();
+    let observation = observation(&fixture);
+    let highest = *observation.lines().hz().last().unwrap();
+    let mut seen = 0;
+    for candidate in catalogue(&fixture, &observation) {
+        if candidate.kind != EffectKind::ChannelResonance {
+            continue;
+        }
+        let Motion::Logarithm { reach } = candidate.kind.spec().parameters[0].motion else { continue };
+        let last = candidate.starts.iter().map(|start| start[0]).fold(0.0, f64::max);
+        let end = last * reach.exp();
+        assert!(
+            end >= MOUNTED * highest,
+            "{:?}: no farther than {end:.0} Hz on lines to {highest} Hz",
+            candidate.place
+        );
+        seen += 1;
+    }
+    assert!(seen > 0);
+}
+
 #[test]
 fn an_observation_on_fewer_lines_and_frfs_keeps_the_noise_of_what_is_left() {
     let all = observation(&fixture());

@@ -56,6 +56,11 @@ pub(crate) const TERMS: (usize, usize) = (5, POWERS.len());
 pub(crate) const MASS_LINE: usize = 0;
 pub(crate) const UPPER: usize = 1;
 
+/// The power of frequency of a residual term.
+pub(crate) fn power_of_term(term: usize) -> i32 {
+    POWERS[term]
+}
+
 /// The values of all modes' accelerances and of the first `terms` residual terms at a line, those in powers of ω/`reference`.
 pub(crate) fn row(
     poles: &[Pole],

@@ -76,6 +76,7 @@ mod recorded;
 mod recording;
 mod relative;
 mod shapes;
+mod structural;
 
 pub use basis::Pole;
 pub use errors::{Comparison, DAMPING, ErrorSizes, FREQUENCY, GAIN, KINDS, SHAPE, SizePrior};
@@ -87,3 +88,4 @@ pub use poles::{ModelledMode, modes_within};
 pub use recorded::{RecordedMode, RecordedModes};
 pub use recording::Recording;
 pub use shapes::Shapes;
+pub use structural::Structural;

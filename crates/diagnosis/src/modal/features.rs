@@ -5,7 +5,7 @@ use crate::modal::sizes::known;
 use crate::settings::ModalSettings;
 use crate::work::Work;
 use crate::{Hypothesis, Observation};
-use jointscope_model_error::{RecordedModes, Recording, SizePrior};
+use jointscope_model_error::{RecordedModes, Recording, SizePrior, Structural};
 use jointscope_modes::ModesOptions;
 
 /// Features of a recording's modes, and sizes of error.
@@ -43,16 +43,25 @@ impl Features {
         }
     }
 
+    /// What errors of a structure's model, however large, leave of the recording.
+    pub(crate) fn structural(&self, observation: &Observation) -> Option<Structural> {
+        self.recorded.structural(of(observation))
+    }
+
     /// Whether the modes tell a part of the recording only.
     pub(crate) fn tells_little(&self, settings: &ModalSettings) -> bool {
         self.recorded.chi2_per_dof > settings.free_fit || self.recorded.is_strained()
     }
 }
 
+fn of(observation: &Observation) -> Recording<'_> {
+    Recording { frfs: observation.frfs(), weights: observation.weights() }
+}
+
 /// The recording's modes, with the help of the model's where they are not resolved.
 pub(crate) fn recorded(observation: &Observation, nominal: &Hypothesis) -> Option<RecordedModes> {
     let fixture = nominal.to_fixture().ok()?;
-    let recording = Recording { frfs: observation.frfs(), weights: observation.weights() };
+    let recording = of(observation);
     // Where nothing but the FRFs tells their noise, every ripple looks like a mode: no more are asked for than a model may have.
     let expected = || jointscope_model_error::modes_within(&fixture, observation.frfs());
     let orders = observation.has_scatter_for_noise().then(expected).flatten().map(|modes| (2, 2 * modes + 8));

@@ -11,6 +11,7 @@ use crate::modal::along::Along;
 use crate::modal::changes::States;
 use crate::modal::features::{Features, recorded};
 use crate::modal::fit::ModalFit;
+use crate::modal::needs::BEYOND_ERRORS;
 use crate::modal::prior::priors;
 use crate::modal::search::ModalSearch;
 use crate::modal::searcher::{Named, Searcher};
@@ -387,7 +388,20 @@ impl ModalJudgement {
         // Records taken one after another, their noise told by scatter alone: an outlier among their gains passes for an error of all gains.
         let unsure = self.is_unexplained() && fitter.observation.has_scatter_for_noise();
         let told = self.free_fit <= fitter.settings.modal.hopeless;
-        self.tells_little(fitter) || (told && (alone != 0.0 || unsure))
+        // Errors of gains may be of any size among modes, one channel's gain for instance, which then is held against itself.
+        let gain = self.search.best.fit.evidence.sizes.gain > BEYOND_ERRORS * self.features.known.scales.gain;
+        let told_otherwise = || alone != 0.0 || unsure || gain || self.is_beyond_errors(fitter);
+        self.tells_little(fitter) || (told && told_otherwise())
+    }
+
+    /// Whether errors of a structure's model, however large, leave more than noise: a sensor that loads some FRFs and others not gives these other poles, which no hypothesis without it
+    /// has, and names that stand for errors are no better.
+    fn is_beyond_errors(&self, fitter: &Fitter) -> bool {
+        let observation = fitter.observation;
+        let Some(structural) = self.features.structural(observation) else { return false };
+        let (_, count) = observation.chi2_from(observation.values(), structural.from);
+        let degrees = count.saturating_sub(structural.unknowns).max(1) as f64;
+        structural.chi2 / degrees > explained(observation, fitter.settings)
     }
 
     /// Whether frequencies, damping and shapes of the best hypothesis are right to the noise, and gains of records are not known to be wrong: lines know of none.
@@ -420,7 +434,7 @@ impl ModalJudgement {
     }
 
     /// Whether errors of the usual size explain the modes of no hypothesis.
-    fn is_unexplained(&self) -> bool {
+    pub(crate) fn is_unexplained(&self) -> bool {
         !matches!(self.verdict, Verdict::Consistent | Verdict::Explained)
     }
 

@@ -6,16 +6,19 @@
 
 use crate::Hypothesis;
 use crate::candidate::Candidate;
+use crate::evidence::explains;
+use crate::fit::Fit;
 use crate::fitter::Fitter;
 use crate::modal::features::Features;
 use crate::modal::fit::ModalFit;
 use crate::modal::judgement::ModalJudgement;
 use crate::modal::prior::priors_among;
+use crate::penalty::{parameter_penalty, penalty};
 use crate::search::Search;
 use jointscope_fixture::{Effect, EffectKind};
 
 /// Multiple of the usual error of gains beyond which a channel's is no error of them: one record of many that is a tenth too large is the very thing that a name says.
-const BEYOND_ERRORS: f64 = 4.0;
+pub(super) const BEYOND_ERRORS: f64 = 4.0;
 
 /// Whether an effect is a gain larger than records' gains are wrong by: no error of a model is one, and to allow for errors as large would be to hold it against itself.
 fn is_gain_beyond_errors(effect: &Effect, usual: f64) -> bool {
@@ -41,12 +44,13 @@ pub(crate) fn without_imitations(
             &anew
         }
     };
-    if features.tells_little(settings) {
+    if features.tells_little(settings) || explains_more_than_errors(fitter, search, features) {
         return None;
     }
     let mut repaired = search.repaired.clone();
     let of = (features, by_modes.is_some_and(ModalJudgement::explains));
-    while let Some(index) = least_needed(fitter, of, &search.candidates, &repaired.hypothesis) {
+    let needed = settings.odds.ln() - gain_below_modes(fitter, search, features);
+    while let Some(index) = least_needed(fitter, of, (&search.candidates, needed), &repaired.hypothesis) {
         let without = repaired.hypothesis.without(index);
         let without = match without.effect_count() {
             0 => search.refitted.clone(),
@@ -61,11 +65,53 @@ pub(crate) fn without_imitations(
     fewer.then(|| Search { repaired, ..search.clone() })
 }
 
-/// The effect of a hypothesis that modes need least, by its index; `None` where they need all. That it is one name of many has been paid for on lines.
+/// Standard deviations of χ² for so many unknowns that an effect must leave less than errors of the model do.
+const CERTAIN: f64 = 3.0;
+
+/// Whether one effect brings the lines down to their noise and errors of a structure's model, however large, do not: what a filter does to a mass line, or a sensor that loads one
+/// FRF and not the other, no mode tells, and no error imitates.
+fn explains_more_than_errors(fitter: &Fitter, search: &Search, features: &Features) -> bool {
+    let Fitter { observation, settings, .. } = *fitter;
+    let repaired = &search.repaired;
+    if repaired.hypothesis.effect_count() != 1 || !explains(fitter, repaired, true) {
+        return false;
+    }
+    let Some(structural) = features.structural(observation) else { return false };
+    let (chi2, _) = observation.chi2_from(&repaired.predicted, structural.from);
+    // Each unknown takes one from χ² by chance.
+    let unknowns = structural.unknowns as f64;
+    let errors = structural.chi2 + unknowns - CERTAIN * (2.0 * unknowns).sqrt();
+    let parameters = parameter_penalty(&settings.selection, &repaired.hypothesis);
+    let needed = penalty(&settings.selection, parameters, search.candidates.len());
+    errors - chi2 > needed * repaired.inflation(observation)
+}
+
+/// What one effect gains in ln p on lines that modes leave out, those of a suspension, where it brings all lines down to their noise: over values that err there all by the size that suits
+/// them best, without it.
+fn gain_below_modes(fitter: &Fitter, search: &Search, features: &Features) -> f64 {
+    let observation = fitter.observation;
+    let repaired = &search.repaired;
+    if repaired.hypothesis.effect_count() != 1 || !explains(fitter, repaired, true) {
+        return 0.0;
+    }
+    let below = |fit: &Fit| {
+        let (above, counted) = observation.chi2_from(&fit.predicted, features.recorded.band.0);
+        (fit.chi2 - above, (observation.degrees() - counted) as f64)
+    };
+    let ((without, values), (with, _)) = (below(&search.refitted), below(repaired));
+    if values == 0.0 {
+        return 0.0;
+    }
+    // ln of normal densities of variance 1 and `variance`, which is the most probable one.
+    let variance = (without / values).max(1.0);
+    (0.5 * (values * variance.ln() + without / variance - with)).max(0.0)
+}
+
+/// The effect of a hypothesis that modes need least, by its index; `None` where each gains as much as is `needed`. That it is one name of many has been paid for on lines.
 fn least_needed(
     fitter: &Fitter,
     (features, explained): (&Features, bool),
-    candidates: &[Candidate],
+    (candidates, needed): (&[Candidate], f64),
     hypothesis: &Hypothesis,
 ) -> Option<usize> {
     let settings = &fitter.settings.modal;
@@ -81,13 +127,75 @@ fn least_needed(
     let may_imitate = |index: &usize| !is_gain_beyond_errors(&effects[*index], problem.sizes.gain);
     let gains = (0..effects.len()).filter(may_imitate).filter_map(gain);
     let (index, gain) = gains.min_by(|a, b| a.1.total_cmp(&b.1))?;
-    (gain < settings.odds.ln()).then_some(index)
+    (gain < needed).then_some(index)
 }
 
 #[cfg(test)]
+#[allow(clippy::unwrap_used)]
 mod tests {
     use super::*;
-    use jointscope_fixture::Place;
+    use crate::settings::Settings;
+    use crate::{Observation, Watch};
+    use jointscope_fixture::{Fixture, Place};
+    use jointscope_lumped::{Instrument, synthesize};
+    use jointscope_spectra::{FrfPair, SpectralLines};
+
+    /// Two blocks on a strip, on supports of 2 to 4 Hz where these are `held`.
+    fn blocks(held: bool) -> Fixture {
+        let known = |value: f64| format!(r#"{{"value": {value}, "std": {}}}"#, 2e-3 * value);
+        let supports = r#""supports": { "left": { "point": "1", "stiffness": 600, "damping": 1.0 }, "right": { "point": "4", "stiffness": 600, "damping": 1.0 } },"#;
+        let text = format!(
+            r#"{{ "bodies": {{ "A": {{ "mass": {}, "inertia": {}, "x_cg": -0.03 }}, "B": {{ "mass": {}, "inertia": {}, "x_cg": 0.095 }} }},
+                 "points": {{ "1": {{ "body": "A", "x": -0.06 }}, "2": {{ "body": "A", "x": 0 }}, "3": {{ "body": "B", "x": 0.065 }}, "4": {{ "body": "B", "x": 0.125 }} }},
+                 "joints": {{ "J": {{ "from": "2", "to": "3", "beam": {{ "youngs_modulus": 2.07e11, "second_moment": 3.67e-10 }} }} }}, {}
+                 "damping": {{ "modal_ratios": [0.004, 0.006] }} }}"#,
+            known(1.1),
+            known(9.5e-4),
+            known(1.2),
+            known(9.9e-4),
+            if held { supports } else { "" },
+        );
+        Fixture::from_json(&text).unwrap()
+    }
+
+    /// What is asked of the effect that is hidden in the blocks, fitted to lines: 400 of them to 1 kHz, known to 0.4 %.
+    fn of_hidden<T>(effect: &Effect, held: bool, asked: impl Fn(&Fitter, &Search, &Features) -> T) -> T {
+        let truth = blocks(held).with_physics(vec![effect.clone()]).unwrap();
+        let pairs = [("3", "1"), ("4", "1")].map(|(o, i)| FrfPair::transverse(o, i));
+        let lines = SpectralLines::even(2.5, 2.5, 400).unwrap();
+        let frfs = synthesize(&truth, &pairs, &lines, Instrument::AsRecorded).unwrap();
+        let variance = frfs.all_values().iter().map(|value| 1.6e-5 * value.norm_sqr()).collect();
+        let observation = Observation::new(&frfs.with_variance(variance).unwrap(), |_| true).unwrap();
+        let settings = Settings::default();
+        let fitter = Fitter { observation: &observation, settings: &settings, watch: Watch::default() };
+        let search = Search::without_effects(&fitter, &blocks(held), false).unwrap();
+        let nominal = &search.nominal.hypothesis;
+        let repaired = fitter.local(&nominal.with(effect.clone()), None, f64::INFINITY).unwrap();
+        let features = Features::of(&observation, nominal, &settings.modal).unwrap();
+        asked(&fitter, &Search { repaired, ..search }, &features)
+    }
+
+    fn high_pass(corner: f64) -> Effect {
+        Effect::new(EffectKind::ChannelHighpass, Place::Response("4".into()), None, &[corner])
+    }
+
+    #[test]
+    fn a_filter_does_what_no_error_of_a_structure_does_and_a_mass_does_not() {
+        let mass = Effect::new(EffectKind::AddedMass, Place::Body("B".into()), None, &[0.1, 0.02]);
+        for (effect, expected) in [(high_pass(0.6), true), (mass, false)] {
+            assert_eq!(of_hidden(&effect, false, explains_more_than_errors), expected, "{:?}", effect.kind);
+        }
+    }
+
+    #[test]
+    fn lines_of_a_suspension_count_for_what_modes_above_do_not_tell() {
+        assert!(of_hidden(&high_pass(0.3), true, gain_below_modes) > 10.0);
+        assert_eq!(
+            of_hidden(&high_pass(0.3), false, gain_below_modes),
+            0.0,
+            "modes are compared on all lines"
+        );
+    }
 
     #[test]
     fn a_gain_of_a_tenth_is_no_error_of_gains_that_are_usually_right_to_one_hundredth() {

@@ -4,7 +4,6 @@
 //! their noise. Intervals by the noise of the lines are then too narrow by as much. The errors that the modes need beside what was found, at the very parameters that lines
 //! have led to, make intervals of their own, and the wider of the two counts.
 
-use crate::Hypothesis;
 use crate::candidate::Candidate;
 use crate::estimates::estimates;
 use crate::finding::Finding;
@@ -12,7 +11,9 @@ use crate::fitter::Fitter;
 use crate::modal::fit::{Iterate, ModalFit, Problem};
 use crate::modal::judgement::ModalJudgement;
 use crate::modal::prior::{Prior, priors_among};
+use crate::{Hypothesis, Observation};
 use jointscope_findings::Estimate;
+use jointscope_fixture::EffectKind;
 use jointscope_inference::Covariance;
 
 impl ModalJudgement {
@@ -36,13 +37,16 @@ impl ModalJudgement {
         findings.into_iter().map(widened).collect()
     }
 
-    /// Covariance of a hypothesis' coordinates by its modes and their errors; `None` where these need none, or are not all told.
+    /// Covariance of a hypothesis' coordinates by its modes and their errors; `None` where these need none, or are not all told, or where FRFs have no modes in common.
     fn uncertainty_of(
         &self,
         fitter: &Fitter,
         hypothesis: &Hypothesis,
         candidates: &[Candidate],
     ) -> Option<Covariance> {
+        if has_moved_sensor(hypothesis, fitter.observation) {
+            return None;
+        }
         let problem = self.features.problem(fitter.observation.work());
         let fit = problem.unfitted(hypothesis, &priors_among(hypothesis, candidates)?)?;
         let errors_count =
@@ -50,6 +54,13 @@ impl ModalJudgement {
         let sizes = || fit.linear.mean_sizes(&fit.standing.comparison, problem.prior(), &fit.evidence);
         errors_count.then(|| fit.covariance_at(&sizes())).flatten()
     }
+}
+
+/// Whether a sensor loads the structure in some FRFs and not in others: each has poles of its own then, and the common ones of a recording are of no structure.
+fn has_moved_sensor(hypothesis: &Hypothesis, observation: &Observation) -> bool {
+    let pairs = observation.pairs();
+    let several = pairs.iter().any(|pair| pair.response != pairs[0].response);
+    several && hypothesis.effects().iter().any(|effect| effect.kind == EffectKind::SensorMass)
 }
 
 impl Problem<'_> {

@@ -71,6 +71,12 @@ fn a_softly_mounted_sensor_resonates_above_the_band() {
 }
 
 #[test]
+fn a_hammer_that_resonates_far_above_the_band_is_not_late() {
+    let resonance = on(EffectKind::ChannelResonance, Place::Force, &[5800.0, 0.04]);
+    named(&resonance, &four_pairs(), 26, 0.05);
+}
+
+#[test]
 fn a_sensor_may_resonate_in_the_band_or_just_above_it_too() {
     for (hz, seed) in [(690.0, 24), (1250.0, 25)] {
         let resonance = on(EffectKind::ChannelResonance, Place::Response("3".into()), &[hz, 0.025]);

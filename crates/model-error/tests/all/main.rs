@@ -7,3 +7,4 @@ mod common;
 mod effects;
 mod evidence;
 mod pairing;
+mod structural;
