@@ -19,17 +19,23 @@
 //! * [`starts`]: where fits set out;
 //! * [`search`]: every candidate, alone and beside others;
 //! * [`judgement`]: what it comes to: names with their probabilities and intervals, and errors;
+//! * [`judge`]: the decision for that;
+//! * [`places`]: where along its body a finding may sit;
+//! * [`beside_lines`]: what it leaves to the lines;
 //! * [`predicting`]: models that are to predict where nobody measured;
 //! * [`uncertainty`]: what errors of the model leave uncertain of what lines have found.
 
 mod along;
 mod at_sizes;
+mod beside_lines;
 mod changes;
 mod elsewhere;
 mod features;
 mod fit;
+mod judge;
 mod judgement;
 mod needs;
+mod places;
 mod predicting;
 mod prior;
 mod search;
@@ -42,7 +48,8 @@ mod tests;
 mod turns;
 mod uncertainty;
 
+pub(crate) use beside_lines::Explaining;
 pub(crate) use features::{Features, recorded};
-pub(crate) use judgement::{Explaining, ModalJudgement};
+pub(crate) use judgement::ModalJudgement;
 pub(crate) use needs::without_imitations;
 pub use sizes::{ErrorIntervals, ModelError};

@@ -1,0 +1,138 @@
+//! What a comparison by modes leaves to the lines: whether it is in doubt, and what of it lines are asked for.
+
+use crate::candidate::Candidate;
+use crate::evidence::{cost, explained, explains};
+use crate::fit::Fit;
+use crate::fitter::Fitter;
+use crate::modal::judgement::ModalJudgement;
+use crate::modal::needs::BEYOND_ERRORS;
+use crate::modal::searcher::Named;
+use crate::settings::ModalSettings;
+use jointscope_findings::Verdict;
+use jointscope_fixture::EffectKind;
+
+/// A hypothesis found among the modes, fitted to lines.
+#[derive(Debug, Clone)]
+pub(crate) struct Explaining {
+    pub fit: Fit,
+    /// Whether it explains the modes without any error of the model, so that nothing large can be left out beside it.
+    pub is_sure: bool,
+}
+
+/// What the modes led to, fitted to lines, where that leaves no more than noise: the more strictly if the modes seem to need an error of the model.
+pub(super) fn fitted_to_lines(fitter: &Fitter, named: &Named) -> Option<Fit> {
+    // What will hardly come down to the noise is given up.
+    let noise = explained(fitter.observation, fitter.settings) * fitter.observation.degrees() as f64;
+    let fit = fitter.local(&named.fit.hypothesis, None, noise)?;
+    explains(fitter, &fit, !named.exact).then_some(fit)
+}
+
+impl ModalJudgement {
+    /// Whether the comparison rests on modes that may not be all there are, a free fit short of the noise or modes without a partner, or on records that
+    /// are not alike, and a search by lines may do better.
+    pub(crate) fn is_dubious(&self, fitter: &Fitter) -> bool {
+        let alone = self.search.best.fit.standing.pairing.alone();
+        // Records taken one after another, their noise told by scatter alone: an outlier among their gains passes for an error of all gains.
+        let unsure = self.is_unexplained() && fitter.observation.has_scatter_for_noise();
+        let told = self.free_fit <= fitter.settings.modal.hopeless;
+        // Errors of gains may be of any size among modes, one channel's gain for instance, which then is held against itself.
+        let gain = self.search.best.fit.evidence.sizes.gain > BEYOND_ERRORS * self.features.known.scales.gain;
+        let told_otherwise = || alone != 0.0 || unsure || gain || self.is_beyond_errors(fitter);
+        self.tells_little(fitter) || (told && told_otherwise())
+    }
+
+    /// Whether errors of a structure's model, however large, leave more than noise: a sensor that loads some FRFs and others not gives these other poles, which no hypothesis without it
+    /// has, and names that stand for errors are no better.
+    fn is_beyond_errors(&self, fitter: &Fitter) -> bool {
+        let observation = fitter.observation;
+        let Some(structural) = self.features.structural(observation) else { return false };
+        let (_, count) = observation.chi2_from(observation.values(), structural.from);
+        let degrees = count.saturating_sub(structural.unknowns).max(1) as f64;
+        structural.chi2 / degrees > explained(observation, fitter.settings)
+    }
+
+    /// Whether frequencies, damping and shapes of the best hypothesis are right to the noise, and gains of records are not known to be wrong: lines know of none.
+    pub(crate) fn has_right_modes(&self) -> bool {
+        self.errors[1].is_none() && !self.states_gain
+    }
+
+    /// Whether modes tell a part of the recording only.
+    pub(crate) fn tells_little(&self, fitter: &Fitter) -> bool {
+        let ModalSettings { free_fit, hopeless, .. } = fitter.settings.modal;
+        (self.free_fit > free_fit || self.strained) && self.free_fit <= hopeless
+    }
+
+    /// Whether a free fit that needed all it may for the noise, as what relaxes or damps heavily makes it need, leaves no doubt of the names, and these explain the modes.
+    pub(crate) fn stands_out(&self, fitter: &Fitter) -> bool {
+        self.verdict == Verdict::Explained && self.has_no_rival(fitter)
+    }
+
+    /// Whether modes are far less probable without any of the names, at least in part explained by them, and by no others nearly as well.
+    pub(crate) fn has_no_rival(&self, fitter: &Fitter) -> bool {
+        let ModalSettings { free_fit, told, .. } = fitter.settings.modal;
+        let best = &self.search.best;
+        let alone = |index: usize| {
+            let others = self.search.alternatives[index]
+                .iter()
+                .filter(|other| other.names.last() != Some(&best.names[index]));
+            others.count() == 0 && best.fit.ln - self.search.without[index] > told
+        };
+        !best.names.is_empty() && self.free_fit <= free_fit && (0..best.names.len()).all(alone)
+    }
+
+    /// Whether errors of the usual size explain the modes of no hypothesis.
+    pub(crate) fn is_unexplained(&self) -> bool {
+        !matches!(self.verdict, Verdict::Consistent | Verdict::Explained)
+    }
+
+    /// What explains the recording without any error of the model, by its modes and down to the noise of its lines: the best of those that do. Where
+    /// errors of the usual size do not explain the modes either, or these are dubious or right whatever their evidence says, lines decide alone, but more strictly.
+    pub(crate) fn exact(&self, fitter: &Fitter) -> Option<Explaining> {
+        let by_lines = self.is_unexplained() || self.is_dubious(fitter) || self.has_right_modes();
+        // What modes tell from the best is no better on lines.
+        let best = self.search.best.fit.ln;
+        let close = |named: &&Named| best - named.fit.ln < fitter.settings.modal.told;
+        let singles = self.search.singles.iter().take(fitter.settings.modal.tried);
+        let all = singles.chain(&self.search.more).filter(close).chain([&self.search.best]);
+        let odds = fitter.settings.modal.odds;
+        let all: Vec<&Named> = all
+            .filter(|named| by_lines || named.exact && self.search.needs_all_of(named, odds.ln()))
+            .collect();
+        let explaining =
+            |named: &&Named| Some(Explaining { fit: fitted_to_lines(fitter, named)?, is_sure: named.exact });
+        let cost = |found: &Explaining| cost(fitter, &found.fit, 1.0);
+        // More effects than explain the lines are for the lines to ask for.
+        (0..=fitter.settings.modal.effects).find_map(|count| {
+            let of_count = all.iter().filter(|named| named.names.len() == count);
+            of_count.filter_map(explaining).min_by(|a, b| cost(a).total_cmp(&cost(b)))
+        })
+    }
+
+    /// What explains the modes, fitted to lines, where it leaves little more than noise there: lines show what is beside the modes of a real structure too, and need not refute what
+    /// these say.
+    pub(crate) fn nearly_exact(&self, fitter: &Fitter) -> Option<Explaining> {
+        if !self.names_all() {
+            return None;
+        }
+        let Named { fit, exact, .. } = &self.search.best;
+        let slight = fitter.settings.modal.slight;
+        let most = slight * fitter.observation.degrees() as f64;
+        let on_lines = fitter.local(&fit.hypothesis, None, most)?;
+        let is_near = on_lines.chi2_per_dof(fitter.observation) < slight;
+        is_near.then_some(Explaining { fit: on_lines, is_sure: *exact })
+    }
+
+    /// Names that lines may be asked for where errors of the usual size do not explain the modes: the most probable by themselves, and quantities that are wrong.
+    pub(crate) fn in_question(&self, fitter: &Fitter) -> Vec<Candidate> {
+        if !self.is_unexplained() {
+            return Vec::new();
+        }
+        let tried = self.search.singles.iter().take(fitter.settings.modal.tried);
+        let probable: Vec<usize> = tried.flat_map(|single| single.names.clone()).collect();
+        let of = |(index, candidate): (usize, &Candidate)| {
+            let asked = probable.contains(&index) || candidate.kind == EffectKind::QuantityError;
+            asked.then(|| candidate.clone())
+        };
+        self.candidates.iter().enumerate().filter_map(of).collect()
+    }
+}

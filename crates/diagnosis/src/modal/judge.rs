@@ -1,0 +1,150 @@
+//! The decision at the end of a comparison by modes: verdict, probabilities, errors.
+
+use crate::Hypothesis;
+use crate::modal::features::Features;
+use crate::modal::fit::ModalFit;
+use crate::modal::judgement::ModalJudgement;
+use crate::modal::search::ModalSearch;
+use crate::modal::searcher::{Named, Searcher};
+use jointscope_findings::Verdict;
+use jointscope_fixture::Entry;
+
+fn squares(sizes: &[f64]) -> f64 {
+    sizes.iter().map(|size| size * size).sum()
+}
+
+/// Whether all that a fit adds to the fixture are factors on channels' signals.
+fn is_of_signals(fit: &ModalFit) -> bool {
+    let effects = fit.hypothesis.effects();
+    !effects.is_empty() && effects.iter().all(|effect| effect.kind.spec().entry == Entry::Signal)
+}
+
+/// A comparison by modes that is to be judged.
+pub(super) struct Judge<'a> {
+    pub searcher: Searcher<'a>,
+    pub search: ModalSearch,
+}
+
+impl Judge<'_> {
+    /// What it comes to.
+    pub(super) fn judged(mut self, features: Features) -> ModalJudgement {
+        let verdict = self.verdict();
+        if matches!(verdict, Verdict::Consistent | Verdict::Unexplained) {
+            let exact = self.searcher.is_exact(&self.search.none);
+            self.search.best = Named { names: Vec::new(), fit: self.search.none.clone(), exact };
+            self.search.alternatives.clear();
+            self.search.elsewhere.clear();
+            self.search.without.clear();
+        }
+        let adequate = self.searcher.settings.adequate.0;
+        let error = |fit: &ModalFit| self.searcher.problem.error(fit, adequate);
+        let best = &self.search.best.fit;
+        let problem = &self.searcher.problem;
+        let widened = self.searcher.widened(best);
+        let nearest = |fit: &ModalFit| {
+            let fitted = problem.at_sizes(fit, &fit.evidence.sizes);
+            fitted.map_or_else(|| fit.hypothesis.clone(), |(hypothesis, _)| hypothesis)
+        };
+        let covariance = problem.at_sizes(best, &widened).and_then(|(_, covariance)| covariance);
+        let none = &self.search.none;
+        let stated = [none, best].map(nearest);
+        let names = self.search.alternatives.iter().zip(&self.search.elsewhere);
+        let names = names.map(|(all, elsewhere)| self.probabilities(all, elsewhere)).collect();
+        let places = (0..self.search.best.names.len())
+            .map(|index| self.searcher.places(&self.search, index))
+            .collect();
+        ModalJudgement {
+            verdict,
+            places,
+            candidates: self.searcher.candidates.to_vec(),
+            names,
+            free_fit: self.searcher.problem.recorded.chi2_per_dof,
+            strained: self.searcher.problem.recorded.is_strained(),
+            errors: [&self.search.none, &self.search.best.fit].map(error),
+            states_gain: false,
+            stated,
+            covariance,
+            features,
+            search: self.search,
+        }
+    }
+
+    fn verdict(&self) -> Verdict {
+        let (none, best) = (&self.search.none, &self.search.best);
+        let adequate = self.searcher.is_adequate(&best.fit);
+        // Of a recording that no poles explain, names say nothing, but for what has changed since another one like it.
+        let hopeless = self.searcher.problem.recorded.chi2_per_dof > self.searcher.settings.hopeless;
+        if hopeless && !self.searcher.calibrated && !(best.names.is_empty() && adequate) {
+            return Verdict::Unexplained;
+        }
+        // Errors of the model, or these and those of the records' gains: a channel of the wrong sign looks like gains that are off by all they are.
+        let model = |fit: &ModalFit| squares(&self.searcher.problem.relative_sizes(fit));
+        let all = |fit: &ModalFit| squares(&self.searcher.problem.relative_sizes_with_gains(fit));
+        // Or those of the modes in the band alone, if no others grow for that: what lies above the band is the model's affair too, but not what a name is about.
+        let modes = |fit: &ModalFit| squares(&self.searcher.problem.relative_sizes_of_modes(fit));
+        let part = self.searcher.settings.part;
+        let in_part = || {
+            model(&best.fit) < part * model(none)
+                || is_of_signals(&best.fit) && !self.made_up_for_by_signals(&best.fit).is_empty()
+                || all(&best.fit) < part * all(none)
+                || modes(&best.fit) < part * modes(none) && model(&best.fit) < model(none)
+        };
+        match (best.names.is_empty(), adequate) {
+            (true, true) => Verdict::Consistent,
+            (true, false) => Verdict::Unexplained,
+            (false, true) => Verdict::Explained,
+            (false, false) if in_part() => Verdict::PartlyExplained,
+            (false, false) => Verdict::Unexplained,
+        }
+    }
+
+    /// What is left, as multiples of what is usual, of the kinds of error in whose stead factors on channels' signals stand: those that are beyond what is usual without them,
+    /// and with them no more than the lesser part. A signal has no part in natural frequencies, a gain none in what lies above the band: whatever these are wrong by, the factor may
+    /// be all that the others lack. Nothing where others grow for it.
+    fn made_up_for_by_signals(&self, best: &ModalFit) -> Vec<f64> {
+        let of = |fit: &ModalFit| self.searcher.problem.relative_sizes_of_signals(fit);
+        let (without, with) = (of(&self.search.none), of(best));
+        if squares(&with) > squares(&without) {
+            return Vec::new();
+        }
+        let part = self.searcher.settings.part;
+        let both = without.iter().zip(with);
+        both.filter(|(without, with)| **without > 1.0 && with * with < part * *without * *without)
+            .map(|(_, with)| with)
+            .collect()
+    }
+
+    /// Probabilities of the names that may stand in one effect's stead, the best one's at all of its places; the rest to one is something not listed.
+    fn probabilities(&self, all: &[Named], elsewhere: &[Named]) -> Vec<(usize, f64, Hypothesis)> {
+        let highest = all.iter().map(|n| n.fit.ln).fold(f64::NEG_INFINITY, f64::max);
+        let own = elsewhere.first().and_then(|place| place.names.last());
+        let weight = |named: &Named| {
+            let other = |place: &Named| (place.fit.ln - highest).exp();
+            let others = elsewhere.iter().filter(|_| named.names.last() == own).map(other);
+            (named.fit.ln - highest).exp() + others.sum::<f64>()
+        };
+        let total = all.iter().map(weight).sum::<f64>() + self.unlisted(&self.search.best.fit);
+        let of =
+            |named: &Named| Some((*named.names.last()?, weight(named) / total, named.fit.hypothesis.clone()));
+        all.iter().filter_map(of).collect()
+    }
+
+    /// The weight, against one for the best hypothesis, of physics that none covers: the larger the errors and departures that even the best
+    /// needs, the more.
+    fn unlisted(&self, best: &ModalFit) -> f64 {
+        let (usual, most) = self.searcher.settings.unlisted;
+        let problem = &self.searcher.problem;
+        let sizes = match is_of_signals(best) {
+            true => self.made_up_for_by_signals(best),
+            false => problem.relative_sizes_as_stated(best),
+        };
+        let strain: f64 = sizes.iter().map(|s| 0.5 * (s * s - 1.0).max(0.0)).sum();
+        let pull = 0.5 * (best.largest_pull().powi(2) - self.searcher.settings.adequate.1.powi(2)).max(0.0);
+        // What no poles explain in the recording itself is nothing that a name could be held against.
+        let untold = 0.5 * self.searcher.problem.recorded.chi2_per_dof.max(1.0).ln();
+        // Several effects together imitate much, as among lines.
+        let company =
+            self.searcher.settings.company * best.hypothesis.effect_count().saturating_sub(1) as f64;
+        (usual + company + strain + pull + untold).min(most).exp()
+    }
+}
