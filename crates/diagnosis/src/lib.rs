@@ -30,6 +30,7 @@
 //! # Ok(()) }
 //! ```
 
+mod along_body;
 mod alternatives;
 mod baseline;
 mod bodies;
@@ -40,6 +41,7 @@ mod default_settings;
 mod departures;
 mod diagnosis;
 mod drift;
+mod elsewhere;
 mod estimates;
 mod evidence;
 mod facts;

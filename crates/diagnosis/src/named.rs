@@ -2,6 +2,7 @@
 
 use crate::alternatives::{Alternative, alternatives};
 use crate::departures::has_departed;
+use crate::elsewhere::elsewhere;
 use crate::estimates::estimates;
 use crate::evidence::explained;
 use crate::finding::{Evidence, Finding};
@@ -76,7 +77,7 @@ pub(crate) fn findings(fitter: &Fitter, search: &mut Search) -> Vec<Finding> {
             alternatives: all_names[index].iter().filter(|a| !own(a)).filter_map(alternative).collect(),
             evidence: Evidence {
                 gain: without.map_or(0.0, |fit| fit.objective - repaired.objective),
-                elsewhere: Vec::new(),
+                elsewhere: elsewhere(fitter, search, index),
                 measured: measured(*fitter, repaired, index),
             },
             effect,

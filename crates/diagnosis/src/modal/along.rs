@@ -5,13 +5,13 @@
 //! credible: the evidence at each is the density of the place, and what the sizes are there, with the deviations that they have there, makes up theirs.
 
 use crate::Hypothesis;
+use crate::along_body::{abscissa, is_on_beam};
 use crate::estimates::estimates_within;
-use crate::modal::elsewhere::abscissa;
 use crate::modal::fit::{ANY, ModalFit, SetOut};
 use crate::modal::prior::Prior;
 use crate::modal::searcher::{Named, Searcher};
 use jointscope_findings::Estimate;
-use jointscope_fixture::{BodyKind, Effect, Place};
+use jointscope_fixture::Effect;
 use statrs::function::erf::erfc;
 use std::f64::consts::SQRT_2;
 
@@ -125,8 +125,8 @@ impl Searcher<'_> {
     pub(super) fn along(&self, named: &Named, index: usize) -> Option<Along> {
         let hypothesis = &named.fit.hypothesis;
         let effect = hypothesis.effects().into_iter().nth(index)?;
-        let place = abscissa(&effect).filter(|place| effect.has_parameter(*place))?;
-        if !self.bends(&effect) || self.known.is_some() {
+        let place = abscissa(&effect)?;
+        if !is_on_beam(self.nominal.fixture(), &effect) || self.known.is_some() {
             return None;
         }
         let own = hypothesis.range_of(index);
@@ -184,13 +184,6 @@ impl Searcher<'_> {
         all.push(middle.1.clone());
         all.extend(side(1.0));
         Along::of(&all, at)
-    }
-
-    /// Whether an effect sits on a body that bends.
-    fn bends(&self, effect: &Effect) -> bool {
-        let bodies = self.nominal.fixture().bodies();
-        let Place::Body(name) = &effect.place else { return false };
-        bodies.iter().any(|body| body.name == *name && matches!(body.kind, BodyKind::Beam(_)))
     }
 }
 

@@ -20,4 +20,5 @@ mod modes;
 mod real_beam;
 mod slips;
 mod stated;
+mod where_along;
 mod wrong_quantities;
