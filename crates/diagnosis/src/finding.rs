@@ -2,7 +2,7 @@
 
 use crate::location::Location;
 use jointscope_findings::Estimate;
-use jointscope_fixture::Effect;
+use jointscope_fixture::{Effect, Motion};
 use serde::Serialize;
 
 /// A piece of physics that the FRFs need.
@@ -22,6 +22,16 @@ pub struct Evidence {
     pub measured: Option<Location>,
 }
 
+/// Share of a finding's probability from which another place of it is to be reckoned with.
+const LIKELY: f64 = 0.05;
+
+impl Evidence {
+    /// The other places of the finding that are likely enough to be reckoned with.
+    pub fn likely_places(&self) -> impl Iterator<Item = &Elsewhere> {
+        self.elsewhere.iter().filter(|place| place.share >= LIKELY)
+    }
+}
+
 /// A finding at another place of its body.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Elsewhere {
@@ -30,6 +40,14 @@ pub struct Elsewhere {
     pub estimates: Vec<Estimate>,
     /// Probability that it is there if it is what its name says; the rest is for where the finding states it, and other places.
     pub share: f64,
+}
+
+impl Elsewhere {
+    /// The abscissa, m.
+    pub fn abscissa(&self) -> Option<f64> {
+        let along = |estimate: &&Estimate| estimate.parameter.motion == Motion::AlongBody;
+        self.estimates.iter().find(along).map(|estimate| estimate.value)
+    }
 }
 
 /// An effect that was tried by itself.

@@ -13,8 +13,6 @@ use jointscope_nonlinear::{HitFinding, LevelFinding};
 
 /// Names of alternatives that a sentence holds at the most.
 const NAMES: usize = 3;
-/// Share of a finding's probability from which another place of it is worth a word.
-const LIKELY_PLACE: f64 = 0.05;
 
 /// `; these FRFs cannot tell it from gain of response 3 (12 %)`, or nothing where no other name is likely.
 fn look_alikes<E>(finding: &Finding<E>, data: &str) -> String {
@@ -47,8 +45,9 @@ pub fn place_and_sizes(place: &Elsewhere) -> String {
 
 /// `; as well at x = 72.0 mm (mass −7.14 g), 27 % of its probability`, or nothing where every other place is refuted.
 fn other_places(finding: &FrfFinding) -> String {
-    let likely = finding.evidence.elsewhere.iter().filter(|place| place.share >= LIKELY_PLACE);
-    let places: Vec<String> = likely
+    let places: Vec<String> = finding
+        .evidence
+        .likely_places()
         .take(NAMES)
         .map(|place| format!("{}, {:.0} % of its probability", place_and_sizes(place), 100.0 * place.share))
         .collect();

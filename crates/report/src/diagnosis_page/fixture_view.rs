@@ -19,6 +19,10 @@ pub(super) fn drawing(subject: &Subject) -> (Drawing, String) {
             let label = format!("{}. {}", index + 1, effect.kind.name().replace('_', " "));
             Highlight { x, body, label }
         }));
+        let body = place(fixture, effect).and_then(|(_, body)| body);
+        let others = finding.evidence.likely_places().filter_map(|other| other.abscissa());
+        let label = format!("{}. or here", index + 1);
+        view.highlights.extend(others.map(|x| Highlight { x, body, label: label.clone() }));
         // What sits at one place has one label.
         if let [.., earlier, last] = view.highlights.as_mut_slice()
             && (earlier.x, earlier.body) == (last.x, last.body)
@@ -38,6 +42,10 @@ pub(super) fn drawing(subject: &Subject) -> (Drawing, String) {
         (1, _) => "marked is where the finding sits",
         _ => "marked is where the findings sit, by their numbers",
     };
+    let elsewhere = match diagnosis.findings.iter().any(|f| f.evidence.likely_places().next().is_some()) {
+        true => ", and where it may sit as well",
+        false => "",
+    };
     let everywhere = diagnosis
         .findings
         .iter()
@@ -46,7 +54,7 @@ pub(super) fn drawing(subject: &Subject) -> (Drawing, String) {
     (
         view.draw(),
         format!(
-            "Side view with the channels in use, responses (sensors) in blue and references (hammer) in green; {marked}.{all} The outlines of \
+            "Side view with the channels in use, responses (sensors) in blue and references (hammer) in green; {marked}{elsewhere}.{all} The outlines of \
              blocks are sketched."
         ),
     )

@@ -143,6 +143,14 @@ fn steps(subject: &Subject) -> Vec<String> {
         let names: Vec<String> = alike.iter().map(|finding| effect_name(&finding.effect)).collect();
         steps.push(format!("{}: {}.", capitalised(&names.join(", ")), advice(&alike[0])));
     }
+    let elsewhere = |finding: &&Finding| finding.evidence.likely_places().next().is_some();
+    let several: Vec<String> = shown.iter().filter(elsewhere).map(|f| effect_name(&f.effect)).collect();
+    if !several.is_empty() {
+        steps.push(format!(
+            "An FRF of one more point tells where it sits ({}): away from the places marked, and no mirror image of a point in use.",
+            several.join(", ")
+        ));
+    }
     if diagnosis.findings.iter().any(Finding::is_open) {
         steps.push("`jointscope plan` with this fixture and this folder ranks the measurements that tell the names apart.".to_owned());
     }
