@@ -93,7 +93,12 @@ impl Searcher<'_> {
         self.watch.stage("comparing effects by modes");
         let (mut singles, mut far) = self.extended(&start, self.settings.refined.0, self.settings.starts.0);
         singles = self.exchanged(singles);
+        let before = start.fit.ln;
         let start = self.at_its_best(start, &singles);
+        // Where an effect led the fixture to a better place, the others set out from there as well.
+        if start.fit.ln > before {
+            singles = self.fitted_beside(std::slice::from_ref(&start), singles, usize::MAX);
+        }
         singles = self.at_other_places(&start, singles);
         let none = start.fit.clone();
         // Where neither the fixture nor any effect explains the modes, the right one may have set out from the wrong place.
@@ -176,11 +181,18 @@ impl Searcher<'_> {
 
     /// Singles with the most probable ones fitted from each other's quantities and sizes of error too: names are compared where all have set out alike.
     fn exchanged(&self, singles: Vec<Named>) -> Vec<Named> {
-        let (targets, sources, far) = self.settings.exchanged;
+        let (targets, sources, _) = self.settings.exchanged;
+        let sources = singles[..singles.len().min(sources)].to_vec();
+        self.fitted_beside(&sources, singles, targets)
+    }
+
+    /// Singles with the most probable ones, so many at the most, fitted from the quantities and sizes of error of these fits too.
+    fn fitted_beside(&self, sources: &[Named], singles: Vec<Named>, targets: usize) -> Vec<Named> {
+        let far = self.settings.exchanged.2;
         let best = singles.first().map_or(0.0, |first| first.fit.ln);
         let close = singles.iter().take(targets).filter(|single| best - single.fit.ln < far);
         let starts: Vec<(&Named, &Named)> = close
-            .flat_map(|to| singles.iter().take(sources).map(move |from| (to, from)))
+            .flat_map(|to| sources.iter().map(move |from| (to, from)))
             .filter(|(to, from)| to.names != from.names && !(to.exact && from.exact))
             .collect();
         let fit = |(to, from): (&Named, &Named)| {
