@@ -7,7 +7,7 @@
 
 use crate::{Decomposed, FiledJoint, FiledLikelihood};
 use jointscope_inference::QuadraticLikelihood;
-use jointscope_linalg::Cholesky;
+use jointscope_linalg::{Cholesky, dot};
 
 /// A likelihood by the slope of its valley.
 struct Valley {
@@ -59,10 +59,6 @@ impl Valley {
         }
         other
     }
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
 /// Whether two fits are of the same numbers and quantities, stated alike.
