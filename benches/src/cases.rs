@@ -3,7 +3,7 @@
 
 use jointscope_decomposition::{Compliances, Sides};
 use jointscope_fixture::{Effect, EffectKind, Fixture, Place};
-use jointscope_linalg::{ComplexMatrix2, Matrix2};
+use jointscope_linalg::{ComplexMatrix2, Matrix2, Uniform};
 use jointscope_lumped::{Instrument, Model, Station, synthesize};
 use jointscope_recordings::to_datasets;
 use jointscope_spectra::{FrfPair, FrfSet, SpectralLines};
@@ -154,13 +154,13 @@ pub fn test_of_two_blocks(count: usize) -> FrfSet {
 fn noisy(fixture: &Fixture, pairs: &[FrfPair], count: usize) -> FrfSet {
     let clean = synthesize(fixture, pairs, &lines(count), Instrument::AsRecorded)
         .expect("the fixture can be synthesised");
-    let mut random = Random(20_240_229);
+    let mut random = Uniform::from_state(20_240_229);
     let mut values = clean.all_values().to_vec();
     let mut variance = Vec::with_capacity(values.len());
     for frf in values.chunks_exact_mut(count) {
         let mean = frf.iter().map(|h| h.norm_sqr()).sum::<f64>() / count as f64;
         let own = 1e-8 * mean;
-        frf.iter_mut().for_each(|h| *h += random.complex() * own.sqrt());
+        frf.iter_mut().for_each(|h| *h += complex(&mut random) * own.sqrt());
         variance.resize(variance.len() + count, own);
     }
     FrfSet::new(clean.lines().clone(), clean.form(), clean.pairs().to_vec(), values)
@@ -189,20 +189,11 @@ pub fn universal_file(count: usize, encoding: Encoding) -> Vec<u8> {
     jointscope_uff::write(&datasets).expect("finite values")
 }
 
-/// A repeatable source of values of unit variance.
-struct Random(u64);
-
-impl Random {
-    /// Real and imaginary part each uniform, |z|² one on average.
-    fn complex(&mut self) -> Complex64 {
-        let width = 6.0_f64.sqrt();
-        Complex64::new((self.uniform() - 0.5) * width, (self.uniform() - 0.5) * width)
-    }
-
-    fn uniform(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 11) as f64 / (1u64 << 53) as f64
-    }
+/// Real and imaginary part each uniform, |z|² one on average.
+fn complex(random: &mut Uniform) -> Complex64 {
+    let width = 6.0_f64.sqrt();
+    let mut part = || (random.next_number() - 0.5) * width;
+    Complex64::new(part(), part())
 }
 
 #[cfg(test)]

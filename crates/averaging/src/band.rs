@@ -52,11 +52,14 @@ const SMALLEST_SHARE: f64 = 0.2;
 /// They must come from a model of the noise, not from the values.
 ///
 /// # Errors
-/// [`AveragingError::NoLines`] where there are no lines or no finite deviations.
+/// [`AveragingError::NoLines`] where there are no lines or no finite deviations, [`AveragingError::Lengths`] where a quantity has not one for each line.
 pub fn quietest_band(frequencies: &[f64], deviations: &[Vec<f64>]) -> Result<Band, AveragingError> {
     let n = frequencies.len();
     if n == 0 || deviations.is_empty() {
         return Err(AveragingError::NoLines);
+    }
+    if let Some(other) = deviations.iter().find(|all| all.len() != n) {
+        return Err(AveragingError::Lengths { lines: n, deviations: other.len() });
     }
     // Running sums of variances make every candidate band one subtraction.
     let sums: Vec<Vec<f64>> = deviations
@@ -101,6 +104,12 @@ mod tests {
         let deviations = vec![frequencies.iter().map(|&f| noisy(f)).collect::<Vec<_>>()];
         let band = quietest_band(&frequencies, &deviations).unwrap();
         assert!((300.0..330.0).contains(&band.from) && (770.0..=800.0).contains(&band.to), "{band:?}");
+    }
+
+    #[test]
+    fn deviations_of_other_lines_are_refused() {
+        let short = quietest_band(&[10.0, 20.0, 30.0], &[vec![1.0; 3], vec![1.0; 2]]);
+        assert_eq!(short, Err(AveragingError::Lengths { lines: 3, deviations: 2 }));
     }
 
     proptest! {

@@ -51,6 +51,14 @@ pub enum AveragingError {
     /// Nothing to average.
     #[error("there is no usable spectral line")]
     NoLines,
+    /// Deviations of fewer or more lines than there are.
+    #[error("{deviations} standard deviations do not go with {lines} spectral lines: one for each is needed")]
+    Lengths {
+        /// Lines.
+        lines: usize,
+        /// Deviations of a quantity.
+        deviations: usize,
+    },
     /// A weighted mean needs positive standard deviations.
     #[error("a standard deviation of {0} cannot weigh a line")]
     BadDeviation(f64),

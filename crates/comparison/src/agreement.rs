@@ -59,15 +59,16 @@ impl Together {
             x[e] + y[e] - 0.5 * (dot(x, y, i, j) + dot(x, y, j, i) + dot(y, x, i, j) + dot(y, x, j, i))
         };
         let covariance: Vec<f64> = (0..n * n).map(entry).collect();
-        let told = told(n, x, y)?;
-        let m = told.len();
+        let directions = determined_directions(n, x, y)?;
+        let m = directions.len();
         let between =
             |a: &[f64], b: &[f64]| -> f64 { (0..n * n).map(|e| a[e / n] * covariance[e] * b[e % n]).sum() };
-        let projected: Vec<f64> = told.iter().flat_map(|a| told.iter().map(|b| between(a, b))).collect();
+        let projected: Vec<f64> =
+            directions.iter().flat_map(|a| directions.iter().map(|b| between(a, b))).collect();
         let basis = generalized_symmetric_eigen(m, &unit(m), &projected).ok()?;
         let apart: Vec<f64> = first.0.iter().zip(&second.0).map(|(a, b)| a - b).collect();
         let along = |a: &[f64]| a.iter().zip(&apart).map(|(a, d)| a * d).sum::<f64>();
-        let apart: Vec<f64> = told.iter().map(|a| along(a)).collect();
+        let apart: Vec<f64> = directions.iter().map(|a| along(a)).collect();
         let (mut chi2, mut degrees) = (0.0, 0);
         for (mode, variance) in basis.eigenvalues().iter().enumerate().filter(|(_, v)| **v > LINEAR) {
             let along: f64 = basis.shape(mode).iter().zip(&apart).map(|(s, d)| s * d).sum();
@@ -83,12 +84,12 @@ fn unit(n: usize) -> Vec<f64> {
 }
 
 /// The combinations of the quantities, of length one, of which two tests tell something: `x` and `y` are what each tells, 1 − S.
-fn told(n: usize, x: &[f64], y: &[f64]) -> Option<Vec<Vec<f64>>> {
+fn determined_directions(n: usize, x: &[f64], y: &[f64]) -> Option<Vec<Vec<f64>>> {
     let mean: Vec<f64> = x.iter().zip(y).map(|(x, y)| 0.5 * (x + y)).collect();
     let basis = generalized_symmetric_eigen(n, &unit(n), &mean).ok()?;
     let all = basis.eigenvalues().iter().enumerate().filter(|(_, share)| **share > TOLD);
-    let told: Vec<Vec<f64>> = all.map(|(mode, _)| basis.shape(mode).to_vec()).collect();
-    (!told.is_empty()).then_some(told)
+    let directions: Vec<Vec<f64>> = all.map(|(mode, _)| basis.shape(mode).to_vec()).collect();
+    (!directions.is_empty()).then_some(directions)
 }
 
 /// The posterior mean of these quantities by one test, and 1 − S.

@@ -65,14 +65,14 @@ impl FiledJoint {
     fn probability_under(&self, law: &str) -> Option<f64> {
         let entry = self.laws.iter().find(|entry| entry.law == law);
         let is_stated = law == self.stated_law();
-        let told = entry.filter(|entry| is_stated || entry.likelihood.is_some());
-        let probability = told.map(|entry| entry.probability).filter(|p| *p > 0.0);
+        let usable = entry.filter(|entry| is_stated || entry.likelihood.is_some());
+        let probability = usable.map(|entry| entry.probability).filter(|p| *p > 0.0);
         probability.or_else(|| (is_stated && self.laws.is_empty()).then_some(1.0))
     }
 
     /// The six numbers as FRFs and the fixture's tolerances tell, those that are not told being zero without a deviation.
-    fn posterior(&self, told: &FiledLikelihood) -> Option<Six> {
-        let (slots, likelihood) = told.of_six(self.quantities.len())?;
+    fn posterior(&self, filed: &FiledLikelihood) -> Option<Six> {
+        let (slots, likelihood) = filed.of_six(self.quantities.len())?;
         let precision = |m: usize| f64::from(u8::from(self.quantities[m - slots.len()].std.is_some()));
         let own: Vec<usize> = (0..slots.len()).collect();
         let own = likelihood.marginal(&own, precision)?;

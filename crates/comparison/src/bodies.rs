@@ -72,7 +72,7 @@ pub(crate) fn tests(joints: &[Decomposed]) -> Vec<Vec<usize>> {
 
 /// What the FRFs of a test tell of its joints' numbers, each given by its joint and its place among the six, and after them of the quantities; nothing where its file does
 /// not have it.
-pub(crate) fn told(
+pub(crate) fn likelihood(
     joints: &[Decomposed],
     test: &[usize],
 ) -> Option<(Vec<(usize, usize)>, QuadraticLikelihood)> {
@@ -157,9 +157,9 @@ pub(crate) fn connected(parts: Vec<Part>) -> (Vec<Vec<Part>>, Vec<usize>) {
 }
 
 impl Part<'_> {
-    /// What the test's FRFs tell, see [`told`].
-    pub(crate) fn told(&self) -> Option<(Vec<(usize, usize)>, QuadraticLikelihood)> {
-        told(self.all, &self.joints)
+    /// What the test's FRFs tell, see [`likelihood`].
+    pub(crate) fn likelihood(&self) -> Option<(Vec<(usize, usize)>, QuadraticLikelihood)> {
+        likelihood(self.all, &self.joints)
     }
 
     /// What of the covariance of two of its numbers is not that of noise and quantities.

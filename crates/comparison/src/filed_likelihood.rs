@@ -21,10 +21,15 @@ pub(crate) const ELEMENTS: [&str; 6] = ["k11", "k12", "k22", "c11", "c12", "c22"
 
 impl FiledLikelihood {
     /// Of these numbers and of quantities after them.
-    pub(crate) fn of(elements: Vec<String>, told: &QuadraticLikelihood) -> Self {
-        let n = told.order();
-        let information = (0..n).map(|i| told.information[i * n..=i * n + i].to_vec()).collect();
-        FiledLikelihood { elements, at: told.at.clone(), gradient: told.gradient.clone(), information }
+    pub(crate) fn of(elements: Vec<String>, likelihood: &QuadraticLikelihood) -> Self {
+        let n = likelihood.order();
+        let information = (0..n).map(|i| likelihood.information[i * n..=i * n + i].to_vec()).collect();
+        FiledLikelihood {
+            elements,
+            at: likelihood.at.clone(),
+            gradient: likelihood.gradient.clone(),
+            information,
+        }
     }
 
     /// With its information as a whole matrix; nothing where it is not of `n` parameters.

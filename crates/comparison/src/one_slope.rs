@@ -7,45 +7,45 @@
 
 use crate::{Decomposed, FiledJoint, FiledLikelihood};
 use jointscope_inference::QuadraticLikelihood;
-use jointscope_linalg::Cholesky;
+use jointscope_linalg::{Cholesky, dot};
 
 /// A likelihood by the slope of its valley.
 struct Valley {
     numbers: usize,
-    told: QuadraticLikelihood,
+    likelihood: QuadraticLikelihood,
     /// S, by columns: one for each quantity.
     slope: Vec<Vec<f64>>,
 }
 
 impl Valley {
     fn of(fit: &FiledJoint) -> Option<Self> {
-        let (slots, told) = fit.likelihood()?;
-        let (m, n) = (slots.len(), told.order());
-        let own: Vec<f64> = (0..m * m).map(|e| told.information[e / m * n + e % m]).collect();
+        let (slots, likelihood) = fit.likelihood()?;
+        let (m, n) = (slots.len(), likelihood.order());
+        let own: Vec<f64> = (0..m * m).map(|e| likelihood.information[e / m * n + e % m]).collect();
         let factor = Cholesky::of(m, &own)?;
         let column = |q: usize| {
-            let mut column: Vec<f64> = (0..m).map(|i| told.information[i * n + q]).collect();
+            let mut column: Vec<f64> = (0..m).map(|i| likelihood.information[i * n + q]).collect();
             factor.solve_in_place(&mut column);
             column
         };
         let slope = (m..n).map(column).collect();
-        Some(Valley { numbers: m, told, slope })
+        Some(Valley { numbers: m, likelihood, slope })
     }
 
     /// J_θθ times a column of slopes.
     fn pulled(&self, column: &[f64]) -> Vec<f64> {
-        let n = self.told.order();
-        let row = |i: usize| &self.told.information[i * n..i * n + self.numbers];
+        let n = self.likelihood.order();
+        let row = |i: usize| &self.likelihood.information[i * n..i * n + self.numbers];
         (0..self.numbers).map(|i| dot(row(i), column)).collect()
     }
 
     /// The same with another slope: what is told of θ + S q and of q by itself stays.
     fn with(&self, slope: &[Vec<f64>]) -> QuadraticLikelihood {
-        let (m, n) = (self.numbers, self.told.order());
-        let mut other = self.told.clone();
+        let (m, n) = (self.numbers, self.likelihood.order());
+        let mut other = self.likelihood.clone();
         let before: Vec<Vec<f64>> = self.slope.iter().map(|column| self.pulled(column)).collect();
         let after: Vec<Vec<f64>> = slope.iter().map(|column| self.pulled(column)).collect();
-        let gradient = &self.told.gradient[..m];
+        let gradient = &self.likelihood.gradient[..m];
         for p in 0..n - m {
             other.gradient[m + p] += dot(&slope[p], gradient) - dot(&self.slope[p], gradient);
             for i in 0..m {
@@ -61,13 +61,9 @@ impl Valley {
     }
 }
 
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
-}
-
 /// Whether two fits are of the same numbers and quantities, stated alike.
 fn is_alike(a: &FiledJoint, b: &FiledJoint) -> bool {
-    let elements = |fit: &FiledJoint| fit.likelihood.as_ref().map(|told| told.elements.clone());
+    let elements = |fit: &FiledJoint| fit.likelihood.as_ref().map(|filed| filed.elements.clone());
     elements(a).is_some() && elements(a) == elements(b) && a.quantities == b.quantities
 }
 
@@ -91,7 +87,7 @@ pub(crate) fn of_one_slope(joints: &[Decomposed]) -> Vec<Decomposed> {
         };
         let slope: Vec<Vec<f64>> =
             (0..valley.slope.len()).map(|p| (0..valley.numbers).map(|i| mean(p, i)).collect()).collect();
-        let elements = fit.likelihood.as_ref().map_or_else(Vec::new, |told| told.elements.clone());
+        let elements = fit.likelihood.as_ref().map_or_else(Vec::new, |filed| filed.elements.clone());
         let likelihood = Some(FiledLikelihood::of(elements, &valley.with(&slope)));
         Decomposed { fitted: Some(FiledJoint { likelihood, ..fit.clone() }), ..joint.clone() }
     };

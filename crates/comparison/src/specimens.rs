@@ -7,7 +7,7 @@
 use crate::normal::{chi2_above, chi2_quantile};
 use crate::{Figure, Number, Together};
 use jointscope_inference::{SIGNIFICANT, Z95};
-use jointscope_linalg::Cholesky;
+use jointscope_linalg::{Cholesky, dot};
 use serde::Serialize;
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
@@ -121,7 +121,6 @@ impl Contrasts {
                 .collect()
         };
         let rows: Vec<Vec<f64>> = (1..n).map(row).collect();
-        let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
         let product = |a: &[f64], b: &[f64]| -> f64 {
             a.iter().zip(covariance.chunks_exact(n)).map(|(a, row)| a * dot(row, b)).sum()
         };

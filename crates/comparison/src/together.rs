@@ -14,7 +14,7 @@
 //! A joint whose C is held where it just gives out no energy keeps what its file states: the likelihood is that of a C without this constraint, and with it the joint would be one that
 //! physics forbids.
 
-use crate::bodies::{Part, connected, differing, in_company, parts, shared, tests, told};
+use crate::bodies::{Part, connected, differing, in_company, likelihood, parts, shared, tests};
 use crate::common_law::CommonLaw;
 use crate::{Apart, Decomposed, Estimate, Number, SharedBody, WhyApart};
 use jointscope_inference::{NormalEquations, birge_ratio};
@@ -54,7 +54,7 @@ fn apart_beforehand(
 ) -> (Vec<Option<WhyApart>>, Vec<bool>) {
     let mut why: Vec<Option<WhyApart>> = vec![None; joints.len()];
     for test in tests {
-        match told(joints, test) {
+        match likelihood(joints, test) {
             _ if asked_apart => part(test, &mut why, WhyApart::Asked),
             Some(_) => {}
             None => part(test, &mut why, WhyApart::NotStated),
@@ -206,10 +206,10 @@ impl Together {
         // The joints' numbers come first.
         let mut order = 0;
         for part in parts {
-            let (told, likelihood) = part.told()?;
-            let own: Vec<usize> = (order..order + told.len()).collect();
-            order += told.len();
-            tests.push((part, told, likelihood, own));
+            let (own_numbers, likelihood) = part.likelihood()?;
+            let own: Vec<usize> = (order..order + own_numbers.len()).collect();
+            order += own_numbers.len();
+            tests.push((part, own_numbers, likelihood, own));
         }
         let mut precision = Vec::new();
         for part in parts {
@@ -222,8 +222,9 @@ impl Together {
         }
         // About the joints as fitted, the quantities as stated.
         let mut reference = vec![0.0; order + precision.len()];
-        for (_, told, likelihood, own) in &tests {
-            reference[own[0]..own[0] + told.len()].copy_from_slice(&likelihood.at[..told.len()]);
+        for (_, own_numbers, likelihood, own) in &tests {
+            reference[own[0]..own[0] + own_numbers.len()]
+                .copy_from_slice(&likelihood.at[..own_numbers.len()]);
         }
         let mut equations = NormalEquations::zero(reference.len());
         for (part, _, likelihood, own) in &tests {
@@ -239,8 +240,9 @@ impl Together {
         let strain = strain(departures);
         // Each number compared: its test, its joint and place there, its coordinate.
         let numbered = |slot: usize| numbers.iter().position(|number| number.slot() == slot);
-        let all = tests.iter().enumerate().flat_map(|(test, (_, told, _, own))| {
-            told.iter()
+        let all = tests.iter().enumerate().flat_map(|(test, (_, own_numbers, _, own))| {
+            own_numbers
+                .iter()
                 .zip(own)
                 .filter_map(move |(&(joint, slot), &row)| Some((test, (joint, slot), numbered(slot)?, row)))
         });

@@ -53,7 +53,11 @@ impl Averages {
                 let column = |&(i, j): &(usize, usize)| expected.iter().map(|s| s.at(i, j)).collect();
                 quietest_band(&frequencies, &elements.iter().map(column).collect::<Vec<_>>())?
             }
-            (None, None) => Band { from: frequencies[0], to: frequencies[frequencies.len() - 1] },
+            (None, None) => {
+                let ends = frequencies.first().zip(frequencies.last());
+                let (&from, &to) = ends.ok_or(AveragingError::NoLines)?;
+                Band { from, to }
+            }
         };
         let range = band.lines(&frequencies)?;
         // Deviations of single lines are made from their own readings; the model's are free of that.

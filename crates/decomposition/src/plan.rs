@@ -62,7 +62,7 @@ pub enum PlanError {
 /// FRFs with the hammer on β and the sensor on α count by reciprocity.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MeasurementPlan {
-    /// The FRFs and their seats, as [`jointscope_frf::fit_rigid_motion`] wants them.
+    /// The FRFs and their positions, as [`jointscope_frf::fit_rigid_motion`] wants them.
     pub layout: BlockLayout,
     /// Body and abscissa (m) of the loaded block's reference point, "1", and the point's name.
     pub loaded: (usize, f64, String),
@@ -75,8 +75,8 @@ pub struct MeasurementPlan {
 /// An FRF that crosses the joint: index, channel on α, channel on β.
 struct Crossing<'a> {
     index: usize,
-    alpha: Seat<'a>,
-    beta: Seat<'a>,
+    alpha: Position<'a>,
+    beta: Position<'a>,
 }
 
 impl MeasurementPlan {
@@ -136,10 +136,14 @@ impl MeasurementPlan {
         else {
             return Err(nothing_crosses(frfs, sides));
         };
-        let seat =
-            |(_, x, channel): Seat, reference: f64| BlockChannel { offset: x - reference, dof: channel.dof };
-        let channels =
-            used.iter().map(|c| (c.index, seat(c.beta, responding.1), seat(c.alpha, loaded.1))).collect();
+        let position = |(_, x, channel): Position, reference: f64| BlockChannel {
+            offset: x - reference,
+            dof: channel.dof,
+        };
+        let channels = used
+            .iter()
+            .map(|c| (c.index, position(c.beta, responding.1), position(c.alpha, loaded.1)))
+            .collect();
         let layout = BlockLayout { channels, rotate: [rotates(beta), rotates(alpha)] };
         check_complete(frfs, sides, &used, &layout)?;
         let unused = frfs
@@ -149,7 +153,7 @@ impl MeasurementPlan {
             .filter(|(index, _)| used.iter().all(|c| c.index != *index))
             .map(|(_, pair)| pair.clone())
             .collect();
-        let named = |(body, x, channel): Seat| (body, x, channel.point.clone());
+        let named = |(body, x, channel): Position| (body, x, channel.point.clone());
         Ok(MeasurementPlan { layout, loaded: named(loaded), responding: named(responding), unused })
     }
 
@@ -160,23 +164,23 @@ impl MeasurementPlan {
 }
 
 /// A channel's body, abscissa and name.
-type Seat<'a> = (usize, f64, &'a Channel);
+type Position<'a> = (usize, f64, &'a Channel);
 
-/// The seat farthest from the joint's end, the first of equals: the paper's points 1 and 4.
-fn farthest<'a>(seats: impl Iterator<Item = Seat<'a>>, end: f64) -> Option<Seat<'a>> {
-    seats.fold(None, |best: Option<Seat<'a>>, seat| match best {
-        Some(b) if (b.1 - end).abs() >= (seat.1 - end).abs() => Some(b),
-        _ => Some(seat),
+/// The position farthest from the joint's end, the first of equals: the paper's points 1 and 4.
+fn farthest<'a>(positions: impl Iterator<Item = Position<'a>>, end: f64) -> Option<Position<'a>> {
+    positions.fold(None, |best: Option<Position<'a>>, position| match best {
+        Some(b) if (b.1 - end).abs() >= (position.1 - end).abs() => Some(b),
+        _ => Some(position),
     })
 }
 
 fn crossings<'a>(frfs: &'a FrfSet, sides: &Sides) -> Vec<Crossing<'a>> {
-    let seat = |channel: &'a Channel| {
+    let position = |channel: &'a Channel| {
         sides.fixture().point(&channel.point).map(|point| (point.body, point.x.value, channel))
     };
     let mut all = Vec::new();
     for (index, pair) in frfs.pairs().iter().enumerate() {
-        let (Some(response), Some(reference)) = (seat(&pair.response), seat(&pair.reference)) else {
+        let (Some(response), Some(reference)) = (position(&pair.response), position(&pair.reference)) else {
             continue;
         };
         match (sides.is_on_alpha(reference.0), sides.is_on_alpha(response.0)) {

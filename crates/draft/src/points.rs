@@ -73,7 +73,8 @@ pub(crate) fn put(
             between.push(name.as_str());
             continue;
         };
-        let x = x.clamp(*from, *to);
+        // A length that no body has, for the fixture to refuse, has ends in the wrong order, which `clamp` does not take.
+        let x = x.max(*from).min(*to);
         // A point at an end lies on it, however long the body is.
         let std = if x == *from || x == *to { 0.0 } else { draft.ruler };
         points.insert(name.clone(), json!({ "body": body, "x": known(x, std) }));

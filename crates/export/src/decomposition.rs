@@ -38,7 +38,7 @@ pub fn of_decompositions(decomposed: &[Decomposed], options: &ExportOptions) -> 
     }
     let mut notes: Vec<String> = Vec::new();
     let mut joints = Vec::new();
-    let mut nodes = Nodes { numbering: Numbering::from(options.first_id), points: BTreeMap::new() };
+    let mut nodes = Nodes { numbering: Numbering::from(options.first_id)?, points: BTreeMap::new() };
     for one in &chosen {
         let (joint, remarks) = exported(one, options, &mut nodes)?;
         let of_it = |note: String| if several { format!("joint {}: {note}", joint.name) } else { note };

@@ -74,7 +74,7 @@ pub fn of_diagnosis(
     let mut exporter = Exporter {
         fixture: repaired,
         shifts: shifts(repaired),
-        numbering: Numbering::from(options.first_id),
+        numbering: Numbering::from(options.first_id)?,
         numbers_are_the_models: options.nodes.is_some(),
         points: BTreeMap::new(),
         notes: vec![format!("verdict of the diagnosis: {}", diagnosis.verdict)],

@@ -53,7 +53,7 @@ pub struct ExportOptions {
     pub joint: Option<String>,
     /// Nodes of the model at the joint's ends.
     pub nodes: Option<[u64; 2]>,
-    /// First number of what has none of its own.
+    /// First number of what has none of its own, 1 to 99,000,000.
     pub first_id: u64,
     /// K and C by line too.
     pub by_line: bool,

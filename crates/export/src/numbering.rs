@@ -14,15 +14,16 @@ pub(crate) struct Numbering {
 
 impl Numbering {
     /// None yet; what has no number of its own is numbered from `first`.
-    pub(crate) fn from(first: u64) -> Self {
-        Numbering { nodes: Vec::new(), next: first }
+    ///
+    /// # Errors
+    /// A first number that programs do not read.
+    pub(crate) fn from(first: u64) -> Result<Self, ExportError> {
+        Ok(Numbering { nodes: Vec::new(), next: readable(first)? })
     }
 
     /// A node that the model has already.
     pub(crate) fn existing(&mut self, number: u64, x: f64, says: String) -> Result<u64, ExportError> {
-        if number == 0 || number > LARGEST {
-            return Err(ExportError::NodeNumber(number));
-        }
+        let number = readable(number)?;
         if self.nodes.iter().any(|node| node.number == number) {
             return Err(ExportError::NodeTwice(number));
         }
@@ -32,7 +33,7 @@ impl Numbering {
 
     /// The node of a point, defined in the file: its name, where that is a number that is free.
     pub(crate) fn point(&mut self, name: &str, x: f64, says: &str) -> u64 {
-        let own = name.parse().ok().filter(|number: &u64| (1..=LARGEST).contains(number));
+        let own = name.parse().ok().and_then(|number: u64| readable(number).ok());
         let number = match own.filter(|number| self.is_free(*number)) {
             Some(number) => number,
             None => self.free(),
@@ -75,6 +76,11 @@ impl Numbering {
         let above = self.nodes.last().map_or(1, |node| node.number + 1);
         (self.nodes, self.next.max(above))
     }
+}
+
+/// A number that programs read.
+fn readable(number: u64) -> Result<u64, ExportError> {
+    if (1..=LARGEST).contains(&number) { Ok(number) } else { Err(ExportError::NodeNumber(number)) }
 }
 
 /// What a node defined in the file needs, for nothing there holds it to its body.

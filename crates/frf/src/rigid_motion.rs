@@ -13,7 +13,7 @@ pub struct BlockChannel {
 
 impl BlockChannel {
     /// The row t that reads the channel from the block's (y, θ): (1, offset) or (0, 1).
-    fn row(&self) -> [f64; 2] {
+    pub fn row(&self) -> [f64; 2] {
         match self.dof {
             Dof::Translation => [1.0, self.offset],
             Dof::Rotation => [0.0, 1.0],
@@ -24,7 +24,7 @@ impl BlockChannel {
 /// Which FRFs of a set tell the motion of one block due to loads on another, and from where.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BlockLayout {
-    /// Index of each FRF in its set, its response's and its reference's seat.
+    /// Index of each FRF in its set, where its response and its reference are.
     pub channels: Vec<(usize, BlockChannel, BlockChannel)>,
     /// Whether the responding block and the loaded one rotate; blocks that do not have one coordinate.
     pub rotate: [bool; 2],
@@ -234,7 +234,7 @@ mod tests {
         BlockLayout { channels, rotate: [true, true] }
     }
 
-    /// Receptances of a known matrix at the given seats, `error` added to the last one.
+    /// Receptances of a known matrix at the given channels, `error` added to the last one.
     fn frfs(known: ComplexMatrix2, sensors: &[f64], hits: &[f64], error: f64) -> FrfSet {
         let mut pairs = Vec::new();
         let mut values = Vec::new();
@@ -315,10 +315,10 @@ mod tests {
         values[1] = values[1] - values[0];
         values[3] = values[3] - values[2];
         let set = FrfSet::new(set.lines().clone(), set.form(), set.pairs().to_vec(), values).unwrap();
-        let mut seats = layout(&[0.0, 0.0], &HITS[..2]);
-        seats.channels[1].1.dof = Dof::Rotation;
-        seats.channels[3].1.dof = Dof::Rotation;
-        let fit = fit_rigid_motion(&set, &seats).unwrap();
+        let mut layout = layout(&[0.0, 0.0], &HITS[..2]);
+        layout.channels[1].1.dof = Dof::Rotation;
+        layout.channels[3].1.dof = Dof::Rotation;
+        let fit = fit_rigid_motion(&set, &layout).unwrap();
         assert!((fit.values[0] - known()).norm_squared().sqrt() < 1e-10);
     }
 
@@ -331,8 +331,8 @@ mod tests {
             vec![FrfPair::transverse("2", "1")],
             vec![Complex64::new(0.3, 0.1)],
         );
-        let seats = BlockLayout { channels: vec![(0, channel(0.0), channel(0.0))], rotate: [false, false] };
-        let fit = fit_rigid_motion(&set.unwrap(), &seats).unwrap();
+        let layout = BlockLayout { channels: vec![(0, channel(0.0), channel(0.0))], rotate: [false, false] };
+        let fit = fit_rigid_motion(&set.unwrap(), &layout).unwrap();
         assert_eq!(fit.values[0].at(0, 0), Complex64::new(0.3, 0.1));
     }
 }

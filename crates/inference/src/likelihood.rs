@@ -5,7 +5,7 @@
 //! are integrated out beforehand, with their own priors.
 
 use crate::NormalEquations;
-use jointscope_linalg::Cholesky;
+use jointscope_linalg::{Cholesky, dot};
 
 /// What data tell of parameters, as a Gaussian near a point; without any prior.
 #[derive(Debug, Clone, PartialEq)]
@@ -65,7 +65,6 @@ impl QuadraticLikelihood {
             column
         });
         let columns: Vec<Vec<f64>> = columns.collect();
-        let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
         let k = kept.len();
         for i in 0..k {
             marginal.gradient[i] -= dot(&columns[i], &pull);

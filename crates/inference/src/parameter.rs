@@ -84,9 +84,15 @@ impl Parameter {
         self.transform != Transform::Fixed
     }
 
-    /// The nearest coordinate within the bounds.
+    /// The nearest coordinate within the bounds; a bound that is no number bounds nothing, and of bounds that exclude each other the one that is passed holds.
     pub fn clamp(&self, coordinate: f64) -> f64 {
-        coordinate.clamp(self.low, self.high)
+        if coordinate < self.low {
+            self.low
+        } else if coordinate > self.high {
+            self.high
+        } else {
+            coordinate
+        }
     }
 
     /// What the prior adds to the objective.
@@ -99,6 +105,15 @@ impl Parameter {
 mod tests {
     use super::*;
     use proptest::prelude::*;
+
+    #[test]
+    fn bounds_that_exclude_each_other_or_are_no_numbers_stop_no_program() {
+        let free = Parameter::new(Transform::Linear { centre: 0.0, scale: 1.0 });
+        assert_eq!(free.between(2.0, 1.0).clamp(1.5), 2.0);
+        assert_eq!(free.between(f64::NAN, 1.0).clamp(5.0), 1.0);
+        assert_eq!(free.between(-1.0, 1.0).clamp(-3.0), -1.0);
+        assert!(free.between(-1.0, 1.0).clamp(f64::NAN).is_nan());
+    }
 
     proptest! {
         #[test]

@@ -66,4 +66,4 @@ pub use sparse_cholesky::SparseCholesky;
 pub use sparse_inertia::eigenvalues_below;
 #[cfg(feature = "sparse")]
 pub use sparse_modes::{ModesWanted, SparseModes, lowest_modes};
-pub use vectors::{dot, normal_pair};
+pub use vectors::{Uniform, dot, normal_pair};

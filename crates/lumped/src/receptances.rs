@@ -129,8 +129,8 @@ impl<'a> Receptances<'a> {
     pub fn on_lines(&mut self, s: &[Complex64], values: &mut [Complex64]) -> Result<(), usize> {
         self.in_blocks(s, |first, _, block| {
             let last = (first + WIDTH).min(s.len());
-            for (course, lanes) in values.chunks_exact_mut(s.len()).zip(block) {
-                lanes.write(&mut course[first..last]);
+            for (receptance, lanes) in values.chunks_exact_mut(s.len()).zip(block) {
+                lanes.write(&mut receptance[first..last]);
             }
         })
     }

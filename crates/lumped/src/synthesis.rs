@@ -65,7 +65,8 @@ impl ModelledTest {
         let (mut stations, mut wanted) = channels(&chain);
         let mut loads = Vec::with_capacity(pairs.len());
         for (index, reading) in chain.readings.iter().enumerate() {
-            loads.push(reading.load.map(|(seat, mass)| stations.sensor(mass, seat, &mut wanted, index)));
+            loads
+                .push(reading.load.map(|(station, mass)| stations.sensor(mass, station, &mut wanted, index)));
         }
         Ok(ModelledTest { model, chain, stations, wanted, loads })
     }
@@ -86,7 +87,7 @@ impl ModelledTest {
     pub fn continued(&self) -> ContinuedFrfs<'_> {
         let receptances = self.receptances();
         let values = vec![Complex64::ZERO; receptances.count()];
-        ContinuedFrfs { test: self, receptances, values, courses: Vec::new() }
+        ContinuedFrfs { test: self, receptances, values, side_by_side: Vec::new() }
     }
 }
 
@@ -98,7 +99,7 @@ pub struct ContinuedFrfs<'a> {
     receptances: Receptances<'a>,
     values: Vec<Complex64>,
     /// Receptances at several frequencies, one after another of each.
-    courses: Vec<Complex64>,
+    side_by_side: Vec<Complex64>,
 }
 
 impl ContinuedFrfs<'_> {
@@ -111,14 +112,17 @@ impl ContinuedFrfs<'_> {
     pub fn at_each(&mut self, frequencies: &[Complex64], frfs: &mut [Complex64]) -> bool {
         let (count, decay) = (frequencies.len(), self.test.chain.decay());
         let read: Vec<Complex64> = frequencies.iter().map(|s| s + decay).collect();
-        self.courses.resize(self.receptances.count() * count, Complex64::ZERO);
-        if self.receptances.on_lines(&read, &mut self.courses).is_err() {
+        self.side_by_side.resize(self.receptances.count() * count, Complex64::ZERO);
+        if self.receptances.on_lines(&read, &mut self.side_by_side).is_err() {
             return false;
         }
         frequencies.iter().zip(frfs.chunks_exact_mut(self.test.loads.len())).enumerate().all(
             |(place, (s, frfs))| {
-                let courses = self.courses.chunks_exact(count);
-                self.values.iter_mut().zip(courses).for_each(|(value, course)| *value = course[place]);
+                let receptances = self.side_by_side.chunks_exact(count);
+                self.values
+                    .iter_mut()
+                    .zip(receptances)
+                    .for_each(|(value, receptance)| *value = receptance[place]);
                 self.recorded(*s, frfs)
             },
         )
@@ -174,14 +178,14 @@ impl Stations {
     fn sensor(
         &mut self,
         mass: f64,
-        seat: Station,
+        station: Station,
         wanted: &mut Vec<(usize, usize)>,
         frf: usize,
     ) -> SensorLoad {
         let (response, reference) = wanted[frf];
-        let (seat_in, seat_out) = (self.input(seat), self.output(seat));
+        let (sensor_in, sensor_out) = (self.input(station), self.output(station));
         let first = wanted.len();
-        wanted.extend([(seat_out, seat_in), (response, seat_in), (seat_out, reference)]);
+        wanted.extend([(sensor_out, sensor_in), (response, sensor_in), (sensor_out, reference)]);
         SensorLoad { mass, first }
     }
 }
@@ -231,8 +235,8 @@ fn record(
         #[inline(always)]
         |first, s, block| {
             let squared = s * s;
-            let courses = re.chunks_exact_mut(padded).zip(im.chunks_exact_mut(padded));
-            for (index, ((re, im), reading)) in courses.zip(&chain.readings).enumerate() {
+            let frfs = re.chunks_exact_mut(padded).zip(im.chunks_exact_mut(padded));
+            for (index, ((re, im), reading)) in frfs.zip(&chain.readings).enumerate() {
                 let receptance = match &loads[index] {
                     Some(load) => load.change(s, block[index], block),
                     None => block[index],
@@ -247,17 +251,16 @@ fn record(
     for (re, im) in parts[0].chunks_exact(padded).zip(parts[1].chunks_exact(padded)) {
         values.extend(re.iter().zip(im).take(count).map(|(re, im)| Complex64::new(*re, *im)));
     }
-    for (course, reading) in
-        values.chunks_exact_mut(count).zip(&chain.readings).filter(|(_, r)| r.delay != 0.0)
+    for (frf, reading) in values.chunks_exact_mut(count).zip(&chain.readings).filter(|(_, r)| r.delay != 0.0)
     {
-        for (value, s) in course.iter_mut().zip(&s) {
+        for (value, s) in frf.iter_mut().zip(&s) {
             *value *= Complex64::cis(-s.im * reading.delay);
         }
     }
-    for (course, reading) in
+    for (frf, reading) in
         values.chunks_exact_mut(count).zip(&chain.readings).filter(|(_, r)| !r.filters.is_empty())
     {
-        course.iter_mut().zip(&s).for_each(|(value, s)| *value *= reading.filtered(*s));
+        frf.iter_mut().zip(&s).for_each(|(value, s)| *value *= reading.filtered(*s));
     }
     Ok(values)
 }

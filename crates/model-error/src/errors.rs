@@ -315,14 +315,11 @@ impl Comparison {
         self.places.len()
     }
 
-    /// S = noise + Σ size²·kind, row-major: the covariance of the features of a model whose error has these sizes.
+    /// S = noise + Σ size²·kind, the covariance of the features of a model whose error has these sizes: row-major, its lower triangle, which is all that a Cholesky
+    /// factor reads. What stands above the diagonal means nothing.
     pub fn covariance(&self, sizes: &ErrorSizes) -> Vec<f64> {
         let mut sum = self.noise.to_vec();
         self.add_errors(sizes, &mut sum);
-        let n = self.count();
-        for i in 0..n {
-            (0..i).for_each(|j| sum[j * n + i] = sum[i * n + j]);
-        }
         sum
     }
 

@@ -5,10 +5,10 @@ use super::sums::{OfLine, Sums};
 use crate::averages::dynamic_stiffness;
 use crate::{Compliances, DecompositionError, JointSpectrum, Sides};
 use jointscope_averaging::Band;
-use jointscope_frf::{BlockChannel, BlockLayout};
+use jointscope_frf::BlockLayout;
 use jointscope_inference::NormalEquations;
 use jointscope_linalg::{ComplexMatrix2, Matrix2};
-use jointscope_spectra::{Dof, FrfForm, FrfSet};
+use jointscope_spectra::{FrfForm, FrfSet};
 use num_complex::Complex64;
 use std::ops::Range;
 
@@ -73,15 +73,11 @@ impl Data {
         if lines.is_empty() {
             return Err(DecompositionError::NoFit("the band holds no usable spectral line"));
         }
-        let row = |seat: &BlockChannel| match seat.dof {
-            Dof::Translation => [1.0, seat.offset],
-            Dof::Rotation => [0.0, 1.0],
-        };
         let count = lines.len() * layout.channels.len();
         let across = crate::Relation::Exact.transport(sides.length);
         let mut data = Data {
             lines: Vec::with_capacity(lines.len()),
-            rows: layout.channels.iter().map(|(_, out, input)| (row(out), row(input))).collect(),
+            rows: layout.channels.iter().map(|(_, out, input)| (out.row(), input.row())).collect(),
             measured: Vec::with_capacity(count),
             weights: Vec::with_capacity(count),
             scalar,

@@ -1,8 +1,9 @@
 //! Synthesis followed by decomposition.
 
 use crate::common::{TwoBlocks, frfs, joint_damping, lines};
+use jointscope_averaging::AveragingError;
 use jointscope_beam::end_stiffness;
-use jointscope_decomposition::{JointSpectrum, Relation, Sides, decompose};
+use jointscope_decomposition::{Averages, DecompositionError, JointSpectrum, Relation, Sides, decompose};
 use jointscope_fixture::Fixture;
 use jointscope_linalg::{Matrix2, RealMatrix2};
 use jointscope_samples::ACROSS;
@@ -276,4 +277,12 @@ fn a_storeys_column_is_the_scalar_of_eq_5() {
         }
         assert!(found.solved.iter().filter(|line| line.condition < WELL_CONDITIONED).count() > 300);
     }
+}
+
+#[test]
+fn without_a_solved_line_there_is_no_average() {
+    let mut spectrum = spectrum(&TwoBlocks::default().fixture(), &ACROSS, Relation::Exact);
+    spectrum.solved.clear();
+    let none = Averages::of(&spectrum, None, (RealMatrix2::zero(), RealMatrix2::zero()));
+    assert!(matches!(none, Err(DecompositionError::Averaging(AveragingError::NoLines))), "{none:?}");
 }

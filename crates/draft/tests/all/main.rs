@@ -215,6 +215,15 @@ fn points_that_no_body_reaches_are_refused_with_their_places() {
 }
 
 #[test]
+fn a_bar_of_negative_length_is_refused_wherever_its_points_are() {
+    let shortened = Bar { length: -1e-4, ..bar("60x50x50:steel") };
+    let structure =
+        Structure::Blocks { blocks: [shortened, bar("60x50x50:steel")], strip: bar("65x30x5:steel") };
+    let draft = Draft { placed: vec![("1".into(), 0.0)], origin: Some(0.0), ..Draft::new(structure) };
+    assert!(matches!(draft.fixture(), Err(DraftError::Fixture(_))), "{:?}", draft.fixture());
+}
+
+#[test]
 fn points_alone_make_a_fixture_whose_masses_are_free() {
     let placed: Vec<(String, f64)> = vec![("5".into(), 0.2), ("6".into(), 0.5)];
     let fixture = Draft { placed, ..Draft::new(Structure::Unknown) }.fixture().unwrap();

@@ -155,6 +155,16 @@ fn numbers_of_the_models_nodes_are_not_given_again() {
 }
 
 #[test]
+fn a_first_number_that_programs_do_not_read_is_refused() {
+    let mut named = plain();
+    named["ends"]["to"]["point"] = json!("end");
+    for first_id in [0, 99_000_001, u64::MAX] {
+        let options = ExportOptions { first_id, ..ExportOptions::default() };
+        assert_eq!(exported(&named, &options), Err(ExportError::NodeNumber(first_id)));
+    }
+}
+
+#[test]
 fn without_a_joint_from_all_frfs_the_maximum_likelihood_joint_is_exported() {
     let mut file = plain();
     file["joint"] = json!({"name": "weld", "failed": "the fit did not converge"});

@@ -9,7 +9,9 @@
 //! it, and c_kr = −½ φ_kᵀ dM φ_r keeps them orthonormal. dM, dK and the rows that read stations are differences between two fixtures: these matrices are smooth where
 //! FRFs are not, and a step far too small for FRFs leaves them eight digits.
 
-use super::{Assembly, Coordinates, Matrices, coordinates, damping_law};
+use super::coordinates::{Coordinates, coordinates};
+use super::matrices::Matrices;
+use super::{Assembly, damping_law};
 use crate::Station;
 use crate::held::{held_by_modes, in_the_modes};
 use jointscope_damping::{HeldMode, ModeDamping, elastic_modes};

@@ -133,7 +133,7 @@ fn an_error_of_the_shape_moves_residues_by_both_channels() {
     let compared = Compared::of(&fixture, Recorded::of(&fixture, &pairs, &lines(600.0), noise(None)).modes());
     let n = compared.comparison.count();
     let of = |sizes| {
-        let with = compared.comparison.covariance(&sizes);
+        let with = compared.covariance(&sizes);
         with.iter().zip(compared.noise()).map(|(a, b)| a - b).collect::<Vec<f64>>()
     };
     let none = ErrorSizes::from_array([0.0; 7]);
@@ -182,7 +182,7 @@ fn an_error_of_the_damping_is_one_of_ratios_and_of_what_is_in_quadrature() {
     assert_eq!(compared.pairing.pairs.len(), 2);
     let n = compared.comparison.count();
     let sizes = ErrorSizes { damping: 1.0, ..ErrorSizes::from_array([0.0; 7]) };
-    let (with, without) = (compared.comparison.covariance(&sizes), compared.noise());
+    let (with, without) = (compared.covariance(&sizes), compared.noise());
     // What a common error of both modes' damping makes of each feature.
     let of_all = |feature: usize| -> f64 {
         [1, 3].iter().map(|ratio| with[ratio * n + feature] - without[ratio * n + feature]).sum()
@@ -216,8 +216,7 @@ fn an_error_of_the_shape_of_a_suspension_mode_is_one_of_mass_lines() {
     let compared = Compared::of(&fixture, recorded.beside(&fixture));
     assert_eq!((compared.modelled.modes.len(), compared.recorded.modes.len()), (2, 1));
     let sizes = ErrorSizes { shape: 1.0, ..ErrorSizes::from_array([0.0; 7]) };
-    let (with, without, n) =
-        (compared.comparison.covariance(&sizes), compared.noise(), compared.comparison.count());
+    let (with, without, n) = (compared.covariance(&sizes), compared.noise(), compared.comparison.count());
     let first = n - 4;
     for (i, row) in [[4.0, 2.0], [2.0, 2.0]].iter().enumerate() {
         for (j, expected) in row.iter().enumerate() {

@@ -179,9 +179,18 @@ impl Compared {
         negative.into_iter().map(|f| -f).collect()
     }
 
+    /// Covariance of the features of a model whose error has these sizes, both triangles.
+    pub(crate) fn covariance(&self, sizes: &ErrorSizes) -> Vec<f64> {
+        let (n, mut whole) = (self.comparison.count(), self.comparison.covariance(sizes));
+        for i in 0..n {
+            (0..i).for_each(|j| whole[j * n + i] = whole[i * n + j]);
+        }
+        whole
+    }
+
     /// Covariance of the recorded features.
     pub(crate) fn noise(&self) -> Vec<f64> {
-        self.comparison.covariance(&ErrorSizes::from_array([0.0; 7]))
+        self.covariance(&ErrorSizes::from_array([0.0; 7]))
     }
 
     /// What each compared feature is: its kind, and its name for messages.

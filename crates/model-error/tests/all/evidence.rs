@@ -22,7 +22,7 @@ static NINE: LazyLock<Compared> = LazyLock::new(|| {
 fn drawn(frequency_error: f64, seed: u64) -> Linear {
     let n = NINE.comparison.count();
     let sizes = ErrorSizes::from_array([0.0; 7]);
-    let covariance = NINE.comparison.covariance(&ErrorSizes { frequency: frequency_error, ..sizes });
+    let covariance = NINE.covariance(&ErrorSizes { frequency: frequency_error, ..sizes });
     let mut random = ChaCha8Rng::seed_from_u64(seed);
     let white: Vec<f64> = (0..n).map(|_| normal(&mut random)).collect();
     let factor = lower(n, &covariance);
@@ -192,7 +192,7 @@ proptest! {
         let prior = ErrorSizes::default().to_array();
         let sizes = ErrorSizes::from_array(std::array::from_fn(|k| times[k] * prior[k]));
         let linear = Linear { difference: sized(&values), slopes: slopes.iter().map(|s| sized(s)).collect() };
-        let mut covariance = NINE.comparison.covariance(&sizes);
+        let mut covariance = NINE.covariance(&sizes);
         for slope in &linear.slopes {
             for i in 0..n {
                 for j in 0..n {

@@ -6,6 +6,7 @@ use crate::spectra::{Windowed, oversampled_for_lines, smooth_length};
 use crate::time::kernel::{Stepper, Steps};
 use crate::time::structure::Structure;
 use jointscope_inference::dot;
+use jointscope_linalg::Uniform;
 use num_complex::Complex64;
 use rayon::prelude::*;
 use std::ops::Range;
@@ -272,13 +273,9 @@ fn fading(sample: usize, onset: usize, end: usize) -> f64 {
 
 /// White noise of unit variance, the same every time: it asks what the noise of a force may do, and is no draw of it.
 fn white(samples: usize) -> impl Iterator<Item = f64> {
-    let mut state = 0x9E37_79B9_7F4A_7C15_u64;
-    let mut uniform = move || {
-        state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-        (state >> 11) as f64 / (1u64 << 53) as f64 - 0.5
-    };
+    let mut uniform = Uniform::from_state(0x9E37_79B9_7F4A_7C15);
     // The sum of twelve has a variance of one.
-    (0..samples).map(move |_| (0..12).map(|_| uniform()).sum())
+    (0..samples).map(move |_| (0..12).map(|_| uniform.next_number() - 0.5).sum())
 }
 
 /// Samples until every response has sunk into its noise, with a tenth on top.

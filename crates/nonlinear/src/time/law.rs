@@ -112,7 +112,7 @@ impl RestoringLaw {
             RestoringLaw::Cubic { stiffness3 } => stiffness3 * motion.powi(3),
             RestoringLaw::Gap { clearance, stiffness } => (stiffness * (motion - clearance)).max(0.0),
             RestoringLaw::Friction { slip_force, stiffness } => {
-                (before.force + stiffness * (motion - before.motion)).clamp(-slip_force, slip_force)
+                no_more_than(slip_force, before.force + stiffness * (motion - before.motion))
             }
         }
     }
@@ -139,7 +139,7 @@ impl RestoringLaw {
             }
             RestoringLaw::Friction { slip_force, stiffness } => {
                 let stuck = (before.force + stiffness * (free - before.motion)) / (1.0 + stiffness * yields);
-                stuck.clamp(-slip_force, slip_force)
+                no_more_than(slip_force, stuck)
             }
         };
         Memory { motion: free - yields * force, force }
@@ -155,6 +155,18 @@ impl RestoringLaw {
             RestoringLaw::Friction { slip_force, .. } if now.force <= -slip_force => Branch::SlipsBackward,
             RestoringLaw::Friction { .. } => Branch::Stuck,
         }
+    }
+}
+
+/// What of a force a Jenkins element bears before it slips.
+#[inline]
+fn no_more_than(slip_force: f64, force: f64) -> f64 {
+    if force > slip_force {
+        slip_force
+    } else if force < -slip_force {
+        -slip_force
+    } else {
+        force
     }
 }
 
@@ -180,6 +192,14 @@ mod tests {
         }
         let expected = 4.0 * slip_force * (amplitude - slip_force / stiffness);
         assert!((work / expected - 1.0).abs() < 1e-6, "{work} J against {expected} J");
+    }
+
+    #[test]
+    fn a_slip_force_that_no_joint_has_stops_no_program() {
+        for slip_force in [-1.0, f64::NAN] {
+            let law = RestoringLaw::Friction { slip_force, stiffness: 1e6 };
+            assert_eq!(law.forces(&[0.0, 1e-6, -1e-6]).len(), 3);
+        }
     }
 
     #[test]
