@@ -18,6 +18,7 @@
 //! * [`searcher`]: what all steps of a search share;
 //! * [`starts`]: where fits set out;
 //! * [`search`]: every candidate, alone and beside others;
+//! * [`compared`]: a fixture compared with a recording, or with what has changed;
 //! * [`judgement`]: what it comes to: names with their probabilities and intervals, and errors;
 //! * [`judge`]: the decision for that;
 //! * [`places`]: where along its body a finding may sit;
@@ -29,6 +30,7 @@ mod along;
 mod at_sizes;
 mod beside_lines;
 mod changes;
+mod compared;
 mod elsewhere;
 mod features;
 mod fit;

@@ -1,27 +1,20 @@
 //! What a comparison by modes comes to.
 
 use crate::candidate::Candidate;
-use crate::catalogue::with_wrong_quantities;
 use crate::estimates::estimates;
 use crate::finding::{Evidence, Finding, Tried};
 use crate::fit::Fit;
-use crate::fitter::Fitter;
-use crate::modal::beside_lines::fitted_to_lines;
-use crate::modal::changes::States;
-use crate::modal::features::{Features, recorded};
-use crate::modal::judge::Judge;
+use crate::modal::features::Features;
 use crate::modal::places::Places;
-use crate::modal::prior::priors;
 use crate::modal::search::ModalSearch;
-use crate::modal::searcher::{Named, Searcher};
+use crate::modal::searcher::Named;
 use crate::modal::sizes::ModelError;
 use crate::search::Search;
 use crate::settings::ModalSettings;
-use crate::{Hypothesis, ModeChange, Observation};
+use crate::{Hypothesis, Observation};
 use jointscope_findings::Verdict;
 use jointscope_fixture::Effect;
 use jointscope_inference::Covariance;
-use jointscope_model_error::{ErrorSizes, KINDS, Pairing, SizePrior};
 
 /// The outcome of a comparison by modes.
 #[derive(Debug, Clone)]
@@ -48,90 +41,6 @@ pub(crate) struct ModalJudgement {
     pub covariance: Option<Covariance>,
     /// What hypotheses were held against.
     pub features: Features,
-}
-
-/// What a baseline says of the fixture.
-#[derive(Debug, Clone)]
-pub(crate) struct Before {
-    /// The fixture as calibrated on it.
-    pub calibrated: Hypothesis,
-    /// Error of that model.
-    pub error: ModelError,
-    /// The modes then and now.
-    pub modes: Vec<ModeChange>,
-}
-
-impl ModalJudgement {
-    /// Compares a fixture with a recording by modes; `None` where there are no modes to compare. Of a recording that lacks what is held out of
-    /// another, those effects are tried that were `known` there.
-    pub(crate) fn of(
-        fitter: &Fitter,
-        nominal: &Hypothesis,
-        candidates: &[Candidate],
-        known: Option<&[Effect]>,
-    ) -> Option<Self> {
-        let Fitter { observation, settings, watch } = fitter;
-        watch.stage("fitting the modes of the recording");
-        let features = Features::of(observation, nominal, &settings.modal)?;
-        let searcher = Searcher {
-            problem: features.problem(observation.work()),
-            candidates,
-            nominal,
-            settings: &settings.modal,
-            known,
-            calibrated: false,
-            suffices: &|named| fitted_to_lines(fitter, named).is_some(),
-            watch: fitter.watch,
-        };
-        let alone = searcher.fixture_alone()?;
-        let candidates = with_wrong_quantities(candidates, &alone.hypothesis, settings.selection.wrong);
-        let searcher = Searcher { candidates: &candidates, ..searcher };
-        let search = searcher.search(alone);
-        let states_gain = nominal.to_fixture().is_ok_and(|fixture| fixture.record_gain().is_some());
-        Some(ModalJudgement { states_gain, ..Judge { searcher, search }.judged(features.clone()) })
-    }
-
-    /// What has changed since a `baseline` of the same structure: the fixture is calibrated on it, its error there is taken off, and what differs beyond
-    /// repetition is searched for. `None` where the two have no modes in common.
-    pub(crate) fn since(
-        fitter: &Fitter,
-        baseline: &Observation,
-        nominal: &Hypothesis,
-        candidates: &[Candidate],
-    ) -> Option<(Self, Before)> {
-        let Fitter { observation, settings, watch } = fitter;
-        watch.stage("fitting the modes of the baseline");
-        let before = Features::of(baseline, nominal, &settings.modal)?;
-        let problem = before.problem(observation.work());
-        watch.stage("calibrating the fixture on the baseline");
-        let calibrated = problem.fitted(nominal, &priors(nominal, &[]))?;
-        let before_error = problem.error(&calibrated, settings.modal.adequate.0);
-        watch.stage("fitting the modes of the recording");
-        let now = recorded(observation, &calibrated.hypothesis)?;
-        let model = &calibrated.standing.modelled;
-        let own = Pairing::of(&now, model);
-        let change = now.relative_to(&before.recorded, model, [&own, &calibrated.standing.pairing])?;
-        // What is stated is the error that both states share; the change has its own.
-        let shared = before.known.scales;
-        let scales = ErrorSizes { gain: shared.gain, ..settings.modal.repeated };
-        let features = Features::new(change, SizePrior { scales, stated: [false; KINDS] });
-        let nominal = &calibrated.hypothesis;
-        let searcher = Searcher {
-            problem: features.problem(observation.work()),
-            candidates,
-            nominal,
-            settings: &settings.modal,
-            known: None,
-            calibrated: true,
-            suffices: &|_| false,
-            watch: fitter.watch,
-        };
-        let search = searcher.search(searcher.fixture_alone()?);
-        let judged = Judge { searcher, search }.judged(features.clone());
-        let states = States { before: &before.recorded, now: &now, own: &own, calibrated: &calibrated };
-        let modes = states.modes(&judged.search.best);
-        Some((judged, Before { calibrated: calibrated.hypothesis.clone(), error: before_error, modes }))
-    }
 }
 
 /// Probability of names that explain the modes, and not the lines: what a usual finding has beside the largest weight of something that is not listed.

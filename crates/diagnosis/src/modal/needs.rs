@@ -13,12 +13,10 @@ use crate::modal::features::Features;
 use crate::modal::fit::ModalFit;
 use crate::modal::judgement::ModalJudgement;
 use crate::modal::prior::priors_among;
+use crate::modal::sizes::BEYOND_ERRORS;
 use crate::penalty::{parameter_penalty, penalty};
 use crate::search::Search;
 use jointscope_fixture::{Effect, EffectKind};
-
-/// Multiple of the usual error of gains beyond which a channel's is no error of them: one record of many that is a tenth too large is the very thing that a name says.
-pub(super) const BEYOND_ERRORS: f64 = 4.0;
 
 /// Whether an effect is a gain larger than records' gains are wrong by: no error of a model is one, and to allow for errors as large would be to hold it against itself.
 fn is_gain_beyond_errors(effect: &Effect, usual: f64) -> bool {

@@ -44,6 +44,9 @@ impl ModelError {
 /// Share of the usual size below which an error is none: ten times the least that is tried.
 const NEGLIGIBLE: f64 = 10.0 * ErrorSizes::LEAST;
 
+/// Multiple of the usual error of gains beyond which a channel's is no error of them: one record of many that is a tenth too large is the very thing that a name says.
+pub(super) const BEYOND_ERRORS: f64 = 4.0;
+
 /// The sizes that are usual but for those that the fixture states.
 pub(super) fn known(settings: &ModalSettings, fixture: &Fixture) -> SizePrior {
     let StatedError { frequency, damping, residue } = fixture.model_error();
