@@ -14,6 +14,7 @@ use jointscope_findings::Estimate;
 use jointscope_fixture::Effect;
 use statrs::function::erf::erfc;
 use std::f64::consts::SQRT_2;
+use std::ops::Range;
 
 /// Standard deviation, in coordinates, about a place at which an effect is held.
 const HELD: f64 = 1e-4;
@@ -120,6 +121,62 @@ impl Along {
     }
 }
 
+/// An effect whose place is held here and there along its body.
+struct Ridge<'a> {
+    searcher: &'a Searcher<'a>,
+    named: &'a Named,
+    /// The effect's coordinates, and among all coordinates that of its place, with its bounds.
+    own: Range<usize>,
+    coordinate: usize,
+    bounds: [f64; 2],
+}
+
+impl Ridge<'_> {
+    /// The fit with the effect held at a place, set out from another one.
+    fn held(&self, from: &ModalFit, to: f64) -> Option<(ModalFit, Held)> {
+        let problem = &self.searcher.problem;
+        let mut start = from.hypothesis.clone();
+        start.coordinates[self.coordinate] = to;
+        let mut priors = self.named.fit.priors.clone();
+        priors[self.coordinate] = Prior { mean: to, std: HELD };
+        let standing = problem.standing(&start)?;
+        let set_out = (None, SetOut::Beside(from.evidence.sizes), ANY);
+        let fit = problem.fitted_from(&start, standing, &priors, set_out)?;
+        let covariance = fit.covariance_at(&self.searcher.widened(&fit))?;
+        // Beyond its bound nothing is possible, whatever derivatives say.
+        let stopped = fit.hypothesis.stopped();
+        let std = |c: usize| if stopped.contains(&c) { 0.0 } else { covariance.std(c) };
+        let held = Held {
+            ln: fit.ln,
+            means: fit.hypothesis.coordinates[self.own.clone()].to_vec(),
+            stds: self.own.clone().map(std).collect(),
+        };
+        Some((fit, held))
+    }
+
+    /// Places away from the `middle`, by steps of about this size to the side of its sign, as far as they are credible.
+    fn side(&self, middle: &(ModalFit, Held), mut step: f64) -> Vec<Held> {
+        let (mut from, mut all) = (middle.clone(), Vec::new());
+        for _ in 0..STEPS {
+            let was = from.0.hypothesis.coordinates[self.coordinate];
+            let to = (was + step).clamp(self.bounds[0], self.bounds[1]);
+            if (to - was).abs() < HELD {
+                break;
+            }
+            let Some(next) = self.held(&from.0, to) else { break };
+            let fall = (from.1.ln - next.1.ln).abs();
+            all.push(next.1.clone());
+            if middle.1.ln - next.1.ln > INCREDIBLE {
+                break;
+            }
+            step *= if fall < EVEN { LONGER } else { 1.0 };
+            step /= if fall > STEEP { LONGER } else { 1.0 };
+            from = next;
+        }
+        all
+    }
+}
+
 impl Searcher<'_> {
     /// Effect `index` of `named` along its body, if it sits on one that bends: elsewhere a place and its sizes are as good as linear.
     pub(super) fn along(&self, named: &Named, index: usize) -> Option<Along> {
@@ -132,57 +189,16 @@ impl Searcher<'_> {
         let own = hypothesis.range_of(index);
         let moves = hypothesis.effect_parameters_of(index);
         let at = moves[..place].iter().filter(|parameter| parameter.is_free()).count();
-        let (low, high) = (moves[place].low, moves[place].high);
         let coordinate = own.start + at;
-        let sizes = self.widened(&named.fit);
-        let step = named.fit.covariance_at(&sizes)?.std(coordinate);
-        let step = (STEP.0 * step).min(STEP.1);
-        let held = |from: &ModalFit, to: f64| {
-            let mut start = from.hypothesis.clone();
-            start.coordinates[coordinate] = to;
-            let mut priors = named.fit.priors.clone();
-            priors[coordinate] = Prior { mean: to, std: HELD };
-            let standing = self.problem.standing(&start)?;
-            let set_out = (None, SetOut::Beside(from.evidence.sizes), ANY);
-            let fit = self.problem.fitted_from(&start, standing, &priors, set_out)?;
-            let covariance = fit.covariance_at(&self.widened(&fit))?;
-            // Beyond its bound nothing is possible, whatever derivatives say.
-            let stopped = fit.hypothesis.stopped();
-            let held = Held {
-                ln: fit.ln,
-                means: fit.hypothesis.coordinates[own.clone()].to_vec(),
-                stds: own
-                    .clone()
-                    .map(|c| if stopped.contains(&c) { 0.0 } else { covariance.std(c) })
-                    .collect(),
-            };
-            Some((fit, held))
-        };
-        let middle = held(&named.fit, hypothesis.coordinates[coordinate])?;
-        let side = |sign: f64| {
-            let (mut from, mut all, mut step) = (middle.clone(), Vec::new(), step);
-            for _ in 0..STEPS {
-                let was = from.0.hypothesis.coordinates[coordinate];
-                let to = (was + sign * step).clamp(low, high);
-                if (to - was).abs() < HELD {
-                    break;
-                }
-                let Some(next) = held(&from.0, to) else { break };
-                let fall = from.1.ln - next.1.ln;
-                all.push(next.1.clone());
-                if middle.1.ln - next.1.ln > INCREDIBLE {
-                    break;
-                }
-                step *= if fall.abs() < EVEN { LONGER } else { 1.0 };
-                step /= if fall.abs() > STEEP { LONGER } else { 1.0 };
-                from = next;
-            }
-            all
-        };
-        let mut all = side(-1.0);
+        let bounds = [moves[place].low, moves[place].high];
+        let ridge = Ridge { searcher: self, named, own, coordinate, bounds };
+        let deviation = named.fit.covariance_at(&self.widened(&named.fit))?.std(coordinate);
+        let step = (STEP.0 * deviation).min(STEP.1);
+        let middle = ridge.held(&named.fit, hypothesis.coordinates[coordinate])?;
+        let mut all = ridge.side(&middle, -step);
         all.reverse();
         all.push(middle.1.clone());
-        all.extend(side(1.0));
+        all.extend(ridge.side(&middle, step));
         Along::of(&all, at)
     }
 }
