@@ -1,5 +1,6 @@
 //! Places along a body: where a search sets out, and when two places are one.
 
+use crate::Hypothesis;
 use crate::candidate::Candidate;
 use jointscope_fixture::{BodyKind, Effect, Fixture, Motion, Place};
 
@@ -8,6 +9,12 @@ pub(crate) fn abscissa(effect: &Effect) -> Option<usize> {
     let at =
         effect.kind.spec().parameters.iter().position(|parameter| parameter.motion == Motion::AlongBody)?;
     effect.has_parameter(at).then_some(at)
+}
+
+/// Where the last effect of a hypothesis sits along its body.
+pub(crate) fn place_of_last(hypothesis: &Hypothesis) -> Option<f64> {
+    let effect = hypothesis.effects().pop()?;
+    Some(effect.value(abscissa(&effect)?))
 }
 
 /// Whether an effect sits on a body that bends.
@@ -52,7 +59,6 @@ impl Abscissae {
             taken.extend(own);
             own.is_some()
         };
-        let mut is_new = is_new;
-        fits.into_iter().filter(|fit| is_new(fit)).collect()
+        fits.into_iter().filter(is_new).collect()
     }
 }

@@ -3,7 +3,7 @@
 //! A beam that is alike at both ends has places that mirror each other: FRFs between mirrored points are the same whichever of the two carries a mass.
 
 use crate::Hypothesis;
-use crate::along_body::{Abscissae, abscissa, is_on_beam};
+use crate::along_body::{Abscissae, is_on_beam, place_of_last};
 use crate::estimates::estimates;
 use crate::finding::Elsewhere;
 use crate::fit::Fit;
@@ -42,11 +42,7 @@ pub(crate) fn elsewhere(fitter: &Fitter, search: &Search, index: usize) -> Vec<E
     };
     let mut fits = fitter.observation.work().each(others, "other places of effects found", fit);
     fits.sort_by(|a, b| a.objective.total_cmp(&b.objective));
-    let place = |fit: &Fit| {
-        let effects = fit.hypothesis.effects();
-        effects.last().and_then(|effect| Some(effect.value(abscissa(effect)?)))
-    };
-    let fits = along.each_once(here, fits, place);
+    let fits = along.each_once(here, fits, |fit| place_of_last(&fit.hypothesis));
     let weight = |fit: &Fit| (-0.5 * (fit.objective - repaired.objective) / inflation).exp();
     let total = 1.0 + fits.iter().map(weight).sum::<f64>();
     let of = |fit: &Fit| {

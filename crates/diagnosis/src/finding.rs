@@ -30,6 +30,11 @@ impl Evidence {
     pub fn likely_places(&self) -> impl Iterator<Item = &Elsewhere> {
         self.elsewhere.iter().filter(|place| place.share >= LIKELY)
     }
+
+    /// Whether there are any.
+    pub fn may_be_elsewhere(&self) -> bool {
+        self.likely_places().next().is_some()
+    }
 }
 
 /// A finding at another place of its body.

@@ -3,17 +3,10 @@
 //! A mass near a node of one mode and one near a node of another may do the same to all natural frequencies there are, and on a beam that is held alike at both ends two
 //! places mirror each other. A fit comes to rest at one of them, and an interval about that says nothing of the others.
 
-use crate::along_body::{Abscissae, abscissa};
+use crate::along_body::{Abscissae, place_of_last};
 use crate::modal::fit::{ModalFit, SetOut};
 use crate::modal::searcher::{Named, STARTS, Searcher};
 use crate::modal::starts::Start;
-use jointscope_fixture::Effect;
-
-/// Where the last effect of a start or fit sits.
-fn place_of_last(effects: &[Effect]) -> Option<f64> {
-    let effect = effects.last()?;
-    Some(effect.value(abscissa(effect)?))
-}
 
 impl Searcher<'_> {
     /// Singles with other places of those that are the most probable, where the recording needs any: one whose size is told from nothing is to be had at a place that is a little less
@@ -43,7 +36,7 @@ impl Searcher<'_> {
         let here = effect.value(along.at);
         let starts = self.starts_of(base, |c| c == own);
         let densest = |place: f64| {
-            let at_place = |start: &&Start| place_of_last(&start.hypothesis.effects()) == Some(place);
+            let at_place = |start: &&Start| place_of_last(&start.hypothesis) == Some(place);
             starts.iter().find(at_place).cloned()
         };
         let others = along.places.iter().copied().filter(|place| along.are_apart(*place, here));
@@ -54,6 +47,6 @@ impl Searcher<'_> {
         let mut fits = self.problem.work.each(chosen, STARTS, fit);
         fits.retain(|named| named.fit.ln > least && self.is_told(named, none));
         fits.sort_by(|a, b| b.fit.ln.total_cmp(&a.fit.ln));
-        along.each_once(here, fits, |named| place_of_last(&named.fit.hypothesis.effects()))
+        along.each_once(here, fits, |named| place_of_last(&named.fit.hypothesis))
     }
 }

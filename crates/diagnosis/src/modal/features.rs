@@ -7,6 +7,7 @@ use crate::work::Work;
 use crate::{Hypothesis, Observation};
 use jointscope_model_error::{RecordedModes, Recording, SizePrior, Structural};
 use jointscope_modes::ModesOptions;
+use std::sync::OnceLock;
 
 /// Features of a recording's modes, and sizes of error.
 #[derive(Debug, Clone)]
@@ -14,6 +15,8 @@ pub(crate) struct Features {
     pub recorded: RecordedModes,
     values: Vec<f64>,
     pub known: SizePrior,
+    /// Fitted when it is first asked for.
+    structural: OnceLock<Option<Structural>>,
 }
 
 impl Features {
@@ -29,7 +32,7 @@ impl Features {
 
     /// Those of modes, with what is known of the sizes of error.
     pub(crate) fn new(recorded: RecordedModes, known: SizePrior) -> Self {
-        Features { values: recorded.features(), recorded, known }
+        Features { values: recorded.features(), recorded, known, structural: OnceLock::new() }
     }
 
     /// What hypotheses are fitted to; the work done for that is counted in `work`.
@@ -45,7 +48,7 @@ impl Features {
 
     /// What errors of a structure's model, however large, leave of the recording.
     pub(crate) fn structural(&self, observation: &Observation) -> Option<Structural> {
-        self.recorded.structural(of(observation))
+        *self.structural.get_or_init(|| self.recorded.structural(of(observation)))
     }
 
     /// Whether the modes tell a part of the recording only.

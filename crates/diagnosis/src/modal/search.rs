@@ -246,14 +246,14 @@ impl Searcher<'_> {
 
     fn in_stead_of(&self, best: &Named, index: usize, singles: &[Named], none: &ModalFit) -> InStead {
         let own = best.names[index];
-        let base = match best.names.len() {
-            1 => Some(Named { names: Vec::new(), exact: self.is_exact(none), fit: none.clone() }),
-            _ => self.without(best, index),
-        };
-        let mut names = match &base {
-            _ if best.names.len() == 1 => singles.to_vec(),
-            Some(base) => self.extended(base, self.settings.refined.1, 1).0,
-            None => Vec::new(),
+        let extended = |base: &Named| self.extended(base, self.settings.refined.1, 1).0;
+        let (base, mut names) = if best.names.len() == 1 {
+            let alone = Named { names: Vec::new(), exact: self.is_exact(none), fit: none.clone() };
+            (Some(alone), singles.to_vec())
+        } else {
+            let base = self.without(best, index);
+            let names = base.as_ref().map_or_else(Vec::new, extended);
+            (base, names)
         };
         names.retain(|other| other.names.last() != Some(&own));
         names.push(Named { names: vec![own], fit: best.fit.clone(), exact: best.exact });

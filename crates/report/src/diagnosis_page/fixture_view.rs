@@ -15,14 +15,13 @@ pub(super) fn drawing(subject: &Subject) -> (Drawing, String) {
         if let Place::Joint(name) = &effect.place {
             view.joints.push(name);
         }
-        view.highlights.extend(place(fixture, effect).map(|(x, body)| {
+        if let Some((x, body)) = place(fixture, effect) {
             let label = format!("{}. {}", index + 1, effect.kind.name().replace('_', " "));
-            Highlight { x, body, label }
-        }));
-        let body = place(fixture, effect).and_then(|(_, body)| body);
-        let others = finding.evidence.likely_places().filter_map(|other| other.abscissa());
-        let label = format!("{}. or here", index + 1);
-        view.highlights.extend(others.map(|x| Highlight { x, body, label: label.clone() }));
+            view.highlights.push(Highlight { x, body, label });
+            let others = finding.evidence.likely_places().filter_map(|other| other.abscissa());
+            let other = |x: f64| Highlight { x, body, label: format!("{}. or here", index + 1) };
+            view.highlights.extend(others.map(other));
+        }
         // What sits at one place has one label.
         if let [.., earlier, last] = view.highlights.as_mut_slice()
             && (earlier.x, earlier.body) == (last.x, last.body)
@@ -42,7 +41,7 @@ pub(super) fn drawing(subject: &Subject) -> (Drawing, String) {
         (1, _) => "marked is where the finding sits",
         _ => "marked is where the findings sit, by their numbers",
     };
-    let elsewhere = match diagnosis.findings.iter().any(|f| f.evidence.likely_places().next().is_some()) {
+    let elsewhere = match diagnosis.findings.iter().any(|finding| finding.evidence.may_be_elsewhere()) {
         true => ", and where it may sit as well",
         false => "",
     };

@@ -143,7 +143,7 @@ fn steps(subject: &Subject) -> Vec<String> {
         let names: Vec<String> = alike.iter().map(|finding| effect_name(&finding.effect)).collect();
         steps.push(format!("{}: {}.", capitalised(&names.join(", ")), advice(&alike[0])));
     }
-    let elsewhere = |finding: &&Finding| finding.evidence.likely_places().next().is_some();
+    let elsewhere = |finding: &&Finding| finding.evidence.may_be_elsewhere();
     let several: Vec<String> = shown.iter().filter(elsewhere).map(|f| effect_name(&f.effect)).collect();
     if !several.is_empty() {
         steps.push(format!(
