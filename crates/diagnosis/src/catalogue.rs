@@ -139,10 +139,23 @@ impl Catalogue<'_> {
     }
 }
 
-/// Whether a fixture states what the name says that it leaves out: a strip's mass, or that it shears. What is wrong there is the quantity.
+/// Whether a fixture states what the name says that it leaves out: a strip's mass, that it shears, or that both its ends turn on what they are fixed to. What is wrong there is the quantity.
 fn is_stated(fixture: &Fixture, kind: EffectKind, place: &Place) -> bool {
-    matches!(kind, EffectKind::JointMass | EffectKind::ShearDeformation)
-        && fixture.physics().iter().any(|own| own.kind == kind && own.place == *place)
+    let states = |kind: EffectKind, place: &Place, dof: Option<Dof>| {
+        fixture.physics().iter().any(|own| own.kind == kind && own.place == *place && own.dof == dof)
+    };
+    let turns = |end: usize| {
+        let point = Place::Point(fixture.points()[end].name.clone());
+        states(EffectKind::InterfaceCompliance, &point, Some(Dof::Rotation))
+    };
+    match (kind, place) {
+        (EffectKind::JointMass | EffectKind::ShearDeformation, _) => states(kind, place, None),
+        (EffectKind::Footing, Place::Joint(name)) => {
+            let joint = fixture.joints().iter().find(|joint| joint.name == *name);
+            states(kind, place, None) || joint.is_some_and(|joint| turns(joint.from) && turns(joint.to))
+        }
+        _ => false,
+    }
 }
 
 /// Departures from which a search for a wrong quantity sets out, as multiples of that which the refit made: what else it bent was bent in its stead.
@@ -291,6 +304,10 @@ impl Surroundings<'_> {
             Starts::AlongSecondBody(shares) => self.along(self.second, shares),
             Starts::OverBand { count, low, high } => self.frequencies(count, low, high),
             Starts::OfLeading(_) => vec![0.0],
+            Starts::WhereItBends(values) => match self.joint.map(|joint| &joint.law) {
+                Some(JointLaw::Beam { .. }) if self.dof == Some(Dof::Rotation) => values.to_vec(),
+                _ => vec![0.0],
+            },
         }
     }
 

@@ -34,6 +34,7 @@ pub(crate) fn parameters_of(fixture: &Fixture, effect: &Effect, wrong: Parameter
         _ if parameter.of_bodies_only && body.is_none() => fixed,
         // What holds a whole body against rotation does so anywhere.
         Motion::AlongBody if effect.kind.spec().may_turn && effect.dof.is_some() => fixed,
+        Motion::None => fixed,
         Motion::AlongBody => along(body),
         Motion::AlongSecondBody => along(second),
         Motion::OfQuantity => wrong,

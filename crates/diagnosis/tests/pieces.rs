@@ -236,3 +236,33 @@ fn an_observation_on_fewer_lines_and_frfs_keeps_the_noise_of_what_is_left() {
     assert_eq!(fewer.weights()[60], all.weights()[2 * 120 + 60]);
     assert!(all.reduced(|_| false, |_| true).is_none() && all.reduced(|_| true, |_| false).is_none());
 }
+
+#[test]
+fn ends_that_are_stated_to_turn_are_no_footing_that_is_left_out() {
+    let turning = |point: &str| {
+        Effect::new(EffectKind::InterfaceCompliance, Place::Point(point.into()), Some(Dof::Rotation), &[3e4])
+    };
+    let listed = |physics: Vec<Effect>| {
+        let fixture = fixture().with_physics(physics).unwrap();
+        let kinds = catalogue(&fixture, &observation(&fixture)).into_iter().map(|candidate| candidate.kind);
+        kinds.filter(|kind| *kind == EffectKind::Footing).count()
+    };
+    assert_eq!(listed(Vec::new()), 1);
+    assert_eq!(listed(vec![turning("2")]), 1, "the other end is clamped still");
+    assert_eq!(listed(vec![turning("2"), turning("3")]), 0);
+}
+
+#[test]
+fn an_end_of_a_beam_is_tried_as_a_hinge_and_as_a_layer_along_its_foot() {
+    let fixture = fixture();
+    let all = catalogue(&fixture, &observation(&fixture));
+    let spreads = |dof: Dof| -> Vec<f64> {
+        let ends = all.iter().filter(|c| c.kind == EffectKind::InterfaceCompliance && c.dof == Some(dof));
+        let mut spreads: Vec<f64> = ends.flat_map(|c| c.starts.iter().map(|start| start[2])).collect();
+        spreads.sort_by(f64::total_cmp);
+        spreads.dedup();
+        spreads
+    };
+    assert_eq!(spreads(Dof::Rotation), [0.0, 1.0]);
+    assert_eq!(spreads(Dof::Translation), [0.0]);
+}

@@ -81,6 +81,8 @@ pub(crate) struct Interface {
     pub dof: Dof,
     pub stiffness: f64,
     pub damping: f64,
+    /// Zero where it turns at the joint's very end, one where it yields all along the foot of a joint that bends.
+    pub spread: f64,
 }
 
 /// What the effects of a fixture do, in the order of its file.
@@ -98,7 +100,7 @@ pub(crate) fn actions(fixture: &Fixture) -> impl Iterator<Item = Action<'_>> {
 fn footing<'a>(fixture: &'a Fixture, effect: &'a Effect) -> [Option<Action<'a>>; 2] {
     let (stiffness, damping) = (effect.value(0), effect.value(1));
     [false, true].map(|at_far_end| {
-        let interface = Interface { at_far_end, dof: Dof::Rotation, stiffness, damping };
+        let interface = Interface { at_far_end, dof: Dof::Rotation, stiffness, damping, spread: 0.0 };
         let joint = joint_of(fixture, &effect.place)?;
         Some(Action::OnJoint { joint, change: Change::Interface(interface) })
     })
@@ -166,7 +168,8 @@ fn action<'a>(fixture: &'a Fixture, effect: &'a Effect) -> Option<Action<'a>> {
 fn interface<'a>(fixture: &Fixture, effect: &Effect) -> Option<Action<'a>> {
     let (joint, at_far_end) = end_of(fixture, &effect.place)?;
     let dof = effect.dof.unwrap_or(Dof::Translation);
-    let interface = Interface { at_far_end, dof, stiffness: effect.value(0), damping: effect.value(1) };
+    let [stiffness, damping, spread] = [0, 1, 2].map(|index| effect.value(index));
+    let interface = Interface { at_far_end, dof, stiffness, damping, spread };
     Some(Action::OnJoint { joint, change: Change::Interface(interface) })
 }
 

@@ -136,11 +136,7 @@ impl JointDynamics {
             stiffness = in_series(stiffness, [1.0, 0.0], modulus * (shear / length));
         }
         for interface in &self.interfaces {
-            let direction = match (interface.dof, interface.at_far_end) {
-                (Dof::Translation, _) => [1.0, 0.0],
-                (Dof::Rotation, true) => [0.0, 1.0],
-                (Dof::Rotation, false) => [length, 1.0],
-            };
+            let direction = self.slip(interface, length);
             stiffness = in_series(stiffness, direction, T::ONE * interface.stiffness + s * interface.damping);
         }
         stiffness
@@ -152,7 +148,8 @@ impl JointDynamics {
         // Interfaces are springs in series with a beam's ends.
         if let Some(beam) = &self.heavy_beam {
             return self.interfaces.iter().fold(beam.at(s, self.modulus(s)), |ends, interface| {
-                ends.in_series_with(interface, T::ONE * interface.stiffness + s * interface.damping)
+                let reach = self.reach(interface);
+                ends.in_series_with((interface, reach), T::ONE * interface.stiffness + s * interface.damping)
             });
         }
         let length = self.length + self.extra_length;
@@ -161,6 +158,25 @@ impl JointDynamics {
             ends.add_half_masses(s * s * (0.5 * self.mass));
         }
         ends
+    }
+
+    /// How far inside the body the centre lies about which an interface turns, m.
+    ///
+    /// A foot that a layer holds along its length is a beam on an elastic foundation. At the edge of a long one, with β = (k'/4EI)^¼, a moment turns it by M/(EIβ) and moves
+    /// it by M/(2EIβ²) (Hetényi 1946): it turns on k = EIβ about a centre 1/(2β) = EI/(2k) behind the edge. What a force moves it by beyond that, a
+    /// length of 1/(2β) in bending, is left out.
+    fn reach(&self, interface: &Interface) -> f64 {
+        let bending = self.bending_stiffness.unwrap_or(0.0);
+        interface.spread * bending / (2.0 * interface.stiffness)
+    }
+
+    /// What the slip of an interface adds to d = u_to − R·u_from, over this length.
+    fn slip(&self, interface: &Interface, length: f64) -> [f64; 2] {
+        match (interface.dof, interface.at_far_end) {
+            (Dof::Translation, _) => [1.0, 0.0],
+            (Dof::Rotation, true) => [-self.reach(interface), 1.0],
+            (Dof::Rotation, false) => [length + self.reach(interface), 1.0],
+        }
     }
 
     /// Complex factor of the elastic stiffness: stiffness change, loss factors, relaxation.
@@ -284,6 +300,54 @@ mod tests {
                 let added = with.at(i, j).re - without.at(i, j);
                 assert!((added / expected[i][j] - 1.0).abs() < 1e-9, "({i},{j}): {added}");
             }
+        }
+    }
+
+    #[test]
+    fn a_layer_along_a_foot_turns_it_as_an_elastic_foundation_does() {
+        // A long beam on a foundation of k' per length, at its edge (Hetényi 1946): θ = M/(EIβ), y = ±M/(2EIβ²), with β = (k'/4EI)^¼.
+        let bending = 2.07e11 * 3.67e-10;
+        let beta = 400.0;
+        let spring = bending * beta;
+        for (point, outward) in [("2", -1.0), ("3", 1.0)] {
+            let at = |mass: &str| {
+                dynamics(&format!(
+                    r#"{{"kind": "interface_compliance", "place": "{point}", "dof": "rotation", "stiffness": {spring}, "spread": 1}}{mass}"#
+                ))
+            };
+            let joint = at("");
+            let added = |i: usize, j: usize| {
+                let with = joint.on_relative_motion(Complex64::new(0.0, 1.0)).inverse().unwrap();
+                with.at(i, j).re - joint.nominal.inverse().unwrap().at(i, j)
+            };
+            // At the far end itself, or carried to it over the joint's length from the near end.
+            let arm = if outward > 0.0 { 0.0 } else { 0.06 };
+            let (turned, moved) = (1.0 / (bending * beta), -outward / (2.0 * bending * beta * beta));
+            assert!((added(1, 1) / turned - 1.0).abs() < 1e-9);
+            assert!((added(0, 1) / (moved + arm * turned) - 1.0).abs() < 1e-9, "{}", added(0, 1));
+            let heavy = at(r#", {"kind": "joint_mass", "place": "J", "mass": 1e-12}"#);
+            let s = Complex64::new(0.0, 3000.0);
+            let error = largest_difference(joint.on_both_ends(s), heavy.on_both_ends(s));
+            assert!(error < 1e-9, "{error}");
+        }
+    }
+
+    #[test]
+    fn a_layer_along_a_foot_does_what_a_joint_as_much_longer_does() {
+        // A massless strip that ends δ farther inside the body, seen from where its end is said to be.
+        let (bending, length, longer) = (2.07e11 * 3.67e-10, 0.06, 2e-4);
+        let spring = bending / longer;
+        let joint = dynamics(&format!(
+            r#"{{"kind": "interface_compliance", "place": "3", "dof": "rotation", "stiffness": {spring}, "spread": 1}}"#
+        ));
+        let found = joint.on_relative_motion(Complex64::new(0.0, 1.0)).inverse().unwrap();
+        let total: f64 = length + longer;
+        let [yy, yt, tt] = [total.powi(3) / 3.0, total.powi(2) / 2.0, total].map(|c| c / bending);
+        let expected =
+            [[yy - 2.0 * longer * yt + longer.powi(2) * tt, yt - longer * tt], [yt - longer * tt, tt]];
+        for (i, j) in [(0, 0), (0, 1), (1, 1)] {
+            let error = found.at(i, j).re / expected[i][j] - 1.0;
+            assert!(error.abs() < 2.0 * (longer / length).powi(2), "({i},{j}): {error}");
         }
     }
 }

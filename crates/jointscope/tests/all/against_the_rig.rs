@@ -56,6 +56,48 @@ fn every_linear_effect_at_random_places_of_random_fixtures_means_the_same_to_bot
 }
 
 #[test]
+fn a_layer_along_a_foot_means_the_same_to_both() {
+    let strip = |physics: &str| {
+        let text = format!(
+            r#"{{ "bodies": {{ "A": {{ "mass": 1.1, "inertia": 9.5e-4, "x_cg": -0.03 }}, "B": {{ "mass": 1.2, "inertia": 9.9e-4, "x_cg": 0.095 }} }},
+                 "points": {{ "1": {{ "body": "A", "x": -0.06 }}, "2": {{ "body": "A", "x": 0 }}, "3": {{ "body": "B", "x": 0.065 }}, "4": {{ "body": "B", "x": 0.125 }} }},
+                 "joints": {{ "J": {{ "from": "2", "to": "3", "beam": {{ "youngs_modulus": 2.07e11, "second_moment": 3.67e-10 }} }} }},
+                 "damping": {{ "modal_ratios": [0.005] }}, "physics": [{physics}] }}"#
+        );
+        Fixture::from_json(&text).unwrap()
+    };
+    let end = |point: &str, spread: f64| {
+        format!(
+            r#"{{"kind": "interface_compliance", "place": "{point}", "dof": "rotation", "stiffness": 5e3, "damping": 0.2, "spread": {spread}}}"#
+        )
+    };
+    let mass = r#"{"kind": "joint_mass", "place": "J", "mass": 0.05}"#;
+    let lines = SpectralLines::even(5.0, 5.0, 400).unwrap();
+    let pairs = [("4", "1"), ("1", "1"), ("4", "4")].map(|(o, i)| jointscope::FrfPair::transverse(o, i));
+    for (spreads, mass) in [([1.0, 0.0], ""), ([0.0, 1.0], ""), ([1.0, 0.7], ""), ([1.0, 1.0], mass)] {
+        let mut physics = vec![end("2", spreads[0]), end("3", spreads[1])];
+        physics.extend((!mass.is_empty()).then(|| mass.to_owned()));
+        let fixture = strip(&physics.join(", "));
+        let lumped = synthesize(&fixture, &pairs, &lines, Instrument::Perfect).unwrap();
+        let rig = frfs(&fixture, &pairs, &lines, jointscope_rig::Instrument::Perfect).unwrap();
+        let hinged = synthesize(
+            &strip(&[end("2", 0.0), end("3", 0.0)].join(", ")),
+            &pairs,
+            &lines,
+            Instrument::Perfect,
+        );
+        for index in 0..pairs.len() {
+            let error = relative_error(&lumped, &rig, index);
+            assert!(error < 1e-5, "{spreads:?}: FRF {} differs by {error:e}", pairs[index]);
+            assert!(
+                relative_error(&lumped, hinged.as_ref().unwrap(), index) > 1e-3,
+                "a spread that does nothing"
+            );
+        }
+    }
+}
+
+#[test]
 fn the_open_cases_true_structures_respond_as_their_simulator_says() {
     let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/concealed/open");
     let Ok(entries) = std::fs::read_dir(&folder) else {

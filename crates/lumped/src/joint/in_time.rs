@@ -2,7 +2,6 @@
 
 use super::{JointDynamics, in_series};
 use jointscope_beam::end_stiffness;
-use jointscope_fixture::Dof;
 use jointscope_linalg::{ComplexMatrix2, RealMatrix2};
 use num_complex::Complex64;
 
@@ -49,11 +48,7 @@ impl JointDynamics {
         let dynamic = self.dashpots.is_some() || !self.relaxations.is_empty();
         let mut slips = Vec::new();
         for interface in &self.interfaces {
-            let direction = match (interface.dof, interface.at_far_end) {
-                (Dof::Translation, _) => [1.0, 0.0],
-                (Dof::Rotation, true) => [0.0, 1.0],
-                (Dof::Rotation, false) => [length, 1.0],
-            };
+            let direction = self.slip(interface, length);
             if dynamic || interface.damping > 0.0 {
                 let dashpot = interface.damping.max(INSTANT * interface.stiffness);
                 slips.push((direction, interface.stiffness, dashpot));

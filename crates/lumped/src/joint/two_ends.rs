@@ -40,12 +40,18 @@ impl<T: Lines> TwoEnds<T> {
         self.far.0[0][0] = self.far.0[0][0] + inertia;
     }
 
-    /// With a spring in series with one of its four end motions.
+    /// With a spring in series with one of its four end motions, a rotation about a centre that lies `reach` beyond the end.
     #[inline(always)]
-    pub(super) fn in_series_with(self, interface: &Interface, spring: T) -> Self {
-        let e = 2 * usize::from(interface.at_far_end) + usize::from(interface.dof == Dof::Rotation);
-        let column = [self.at(0, e), self.at(1, e), self.at(2, e), self.at(3, e)];
-        let factor = (spring + column[e]).reciprocal();
+    pub(super) fn in_series_with(self, (interface, reach): (&Interface, f64), spring: T) -> Self {
+        let first = 2 * usize::from(interface.at_far_end);
+        // What the slip moves the end by, in y and in θ.
+        let [y, theta] = match (interface.dof, interface.at_far_end) {
+            (Dof::Translation, _) => [1.0, 0.0],
+            (Dof::Rotation, false) => [reach, 1.0],
+            (Dof::Rotation, true) => [-reach, 1.0],
+        };
+        let column = [0, 1, 2, 3].map(|i| self.at(i, first) * y + self.at(i, first + 1) * theta);
+        let factor = (spring + column[first] * y + column[first + 1] * theta).reciprocal();
         let [a, b, c, d] = column;
         let [fa, fb, fc, fd] = [a * factor, b * factor, c * factor, d * factor];
         let [[n00, n01], [_, n11]] = self.near.0;

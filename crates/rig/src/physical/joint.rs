@@ -108,6 +108,7 @@ fn joint_end(
     point: usize,
     effects: &[Effect],
 ) -> Result<Station, StructureError> {
+    let is_far = point == joint.to;
     let point = &fixture.points()[point];
     let mut end = bodies.station(point.body, point.x.value)?;
     let interfaces = at(effects, EffectKind::InterfaceCompliance, Place::Point(point.name.clone()));
@@ -120,6 +121,13 @@ fn joint_end(
         assembly.spring(&slip, interface.value(0), Law::ELASTIC);
         assembly.dashpot(&slip, interface.value(1));
         *held = beyond;
+        let JointLaw::Beam { youngs_modulus, second_moment } = &joint.law else { continue };
+        if interface.kind == EffectKind::InterfaceCompliance && interface.value(2) != 0.0 {
+            // A layer along the foot turns about a centre inside the body: the end itself moves as well.
+            let bending_stiffness = youngs_modulus.value * second_moment.value;
+            let behind = interface.value(2) * bending_stiffness / (2.0 * interface.value(0));
+            end.y = end.y.plus(if is_far { -behind } else { behind }, &slip);
+        }
     }
     Ok(end)
 }
