@@ -257,18 +257,12 @@ impl Hypothesis {
         &self.effects[index].1
     }
 
-    /// ln of how much rarer the effects are than the commonest, nats: by kind, and a quantity that is expected twice as far off is wrong half as often.
-    pub(crate) fn rarity(&self) -> f64 {
-        let of = |(effect, parameters): &(Effect, Vec<Parameter>)| {
-            let far = match effect.kind {
-                EffectKind::QuantityError => {
-                    parameters.iter().map(|p| -(p.precision.sqrt() * WRONG).ln()).sum()
-                }
-                _ => 0.0,
-            };
-            effect.kind.spec().rarity + far
-        };
-        self.effects.iter().map(of).sum()
+    /// Standard deviations, as multiples of [`WRONG`], that quantity of effect `index` is expected to be off by; `None` where the effect is about none.
+    pub(crate) fn expected_error(&self, index: usize) -> Option<f64> {
+        let (effect, parameters) = &self.effects[index];
+        let is_about_one = effect.kind == EffectKind::QuantityError;
+        let parameter = parameters.first().filter(|_| is_about_one)?;
+        Some((parameter.precision.sqrt() * WRONG).recip())
     }
 
     /// The coordinates that are at a bound.
@@ -276,6 +270,16 @@ impl Hypothesis {
         let at_bound = |(at, parameter): (&f64, &Parameter)| *at <= parameter.low || *at >= parameter.high;
         let all = self.coordinates.iter().zip(self.parameters.iter()).enumerate();
         all.filter(|(_, pair)| at_bound(*pair)).map(|(index, _)| index).collect()
+    }
+
+    /// The coordinates of dashpots that go with the effects' springs.
+    pub(crate) fn dashpots(&self) -> Vec<usize> {
+        let of = |(index, (effect, parameters)): (usize, &(Effect, Vec<Parameter>))| {
+            let dashpot = effect.kind.spec().size.dashpot.filter(|at| parameters[*at].is_free())?;
+            let before = parameters[..dashpot].iter().filter(|parameter| parameter.is_free()).count();
+            Some(self.range_of(index).start + before)
+        };
+        self.effects.iter().enumerate().filter_map(of).collect()
     }
 
     /// How many standard deviations the size of effect `index`, or that of its dashpot, is from nothing.

@@ -63,6 +63,7 @@ mod parameter_transforms;
 mod penalty;
 mod quantities;
 mod ranking;
+mod rarity;
 mod recorded_lines;
 mod routes;
 mod scan;

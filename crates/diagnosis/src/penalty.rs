@@ -1,6 +1,7 @@
 //! What effects must gain in χ² before they are believed.
 
 use crate::Hypothesis;
+use crate::rarity::rarity;
 use crate::settings::SelectionSettings;
 
 /// What an effect must gain in χ² to be believed, given the penalty of its parameters. A search over many candidates at several starts each gains
@@ -13,5 +14,5 @@ pub(crate) fn penalty(settings: &SelectionSettings, parameters: f64, candidates:
 /// that is searched over a range (a frequency, a time) has as many chances as the range has resolvable values, and what is rare has the odds against it.
 pub(crate) fn parameter_penalty(settings: &SelectionSettings, hypothesis: &Hypothesis) -> f64 {
     let ranges: f64 = hypothesis.effects().iter().map(|effect| effect.kind.spec().range_penalty).sum();
-    settings.parameter_penalty * hypothesis.effect_parameters() as f64 + ranges + 2.0 * hypothesis.rarity()
+    settings.parameter_penalty * hypothesis.effect_parameters() as f64 + ranges + 2.0 * rarity(hypothesis)
 }

@@ -3,6 +3,7 @@
 use crate::Hypothesis;
 use crate::modal::prior::Prior;
 use crate::modal::turns::{Turns, are_alike};
+use crate::rarity::rarity;
 use crate::work::Work;
 use jointscope_fixture::Fixture;
 use jointscope_inference::{
@@ -285,7 +286,7 @@ impl<'a> Problem<'a> {
         priors: &[Prior],
         (sizes, least): (Option<ErrorSizes>, f64),
     ) -> Option<ModalFit> {
-        let rarity = point.hypothesis.rarity();
+        let rarity = rarity(&point.hypothesis);
         let mut sizes = match sizes {
             Some(sizes) => sizes,
             None => self.evidence(&point, priors, &derivatives, (&standing.comparison, None))?.1.sizes,
@@ -403,9 +404,36 @@ impl<'a> Problem<'a> {
         self.slopes(&point.hypothesis, standing, &point.modelled, &point.residual, priors, all)
     }
 
+    /// The linear model at a point and its evidence. Whether an effect's spring is damped beyond the fixture's damping nobody knows beforehand: it is as probable that
+    /// it is not, and what has no dashpot pays for none.
+    pub(super) fn evidence(
+        &self,
+        point: &Iterate,
+        priors: &[Prior],
+        slopes: &[Vec<f64>],
+        at: (&Comparison, Option<&ErrorSizes>),
+    ) -> Option<(Linear, Evidence)> {
+        let (linear, damped) = self.evidence_within_bounds(point, priors, slopes, at)?;
+        let dashpots = point.hypothesis.dashpots();
+        if dashpots.is_empty() {
+            return Some((linear, damped));
+        }
+        let mut elastic = priors.to_vec();
+        dashpots.iter().for_each(|&index| elastic[index] = Prior { mean: 0.0, std: 0.0 });
+        let (_, elastic) = self.evidence_within_bounds(point, &elastic, slopes, at)?;
+        let mean = |a: f64, b: f64| a.max(b) + (0.5 * (1.0 + (-(a - b).abs()).exp())).ln();
+        let likelier = if elastic.ln > damped.ln { elastic } else { damped };
+        let evidence = Evidence {
+            ln: mean(damped.ln, elastic.ln),
+            ln_at_start: mean(damped.ln_at_start, elastic.ln_at_start),
+            sizes: likelier.sizes,
+        };
+        Some((linear, evidence))
+    }
+
     /// The linear model at a point and its evidence. Of a coordinate that stopped at its bound the linear model knows no bound: a spring that would be negative does
     /// not explain what only a negative one explains. The lesser evidence counts, with such coordinates free or where they are.
-    pub(super) fn evidence(
+    fn evidence_within_bounds(
         &self,
         point: &Iterate,
         priors: &[Prior],
@@ -426,6 +454,9 @@ impl<'a> Problem<'a> {
         let mut held = of(linear(&point.hypothesis, priors, &point.residual, &slopes))?;
         let pull = |&index: &usize| {
             let prior = priors[index];
+            if prior.std == 0.0 {
+                return 0.0;
+            }
             0.5 * ((point.hypothesis.coordinates[index] - prior.mean) / prior.std).powi(2)
         };
         let pulls: f64 = stopped.iter().map(pull).sum();

@@ -2,7 +2,7 @@
 
 use crate::Hypothesis;
 use crate::candidate::Candidate;
-use jointscope_fixture::{Effect, Motion, ParameterSpec};
+use jointscope_fixture::{Effect, Motion, ParameterSpec, Starts};
 use jointscope_inference::{Parameter, Transform};
 
 /// Mean and standard deviation of a coordinate.
@@ -49,6 +49,7 @@ pub(crate) fn priors_among(hypothesis: &Hypothesis, all: &[Candidate]) -> Option
 /// nothing.
 fn of_effect(hypothesis: &Hypothesis, index: usize, candidate: &Candidate) -> Vec<Prior> {
     let spec = candidate.kind.spec();
+    let in_series = matches!(spec.parameters[spec.size.parameter].motion, Motion::Logarithm { .. });
     let parameters = spec.parameters.iter().zip(hypothesis.effect_parameters_of(index));
     let prior = |(place, (parameter, moves)): (usize, (&ParameterSpec, &Parameter))| {
         let coordinate = |start: &Vec<f64>| moves.transform.coordinate(start[place]);
@@ -65,7 +66,10 @@ fn of_effect(hypothesis: &Hypothesis, index: usize, candidate: &Candidate) -> Ve
                 let (from, to) = (moves.low, moves.high);
                 Prior { mean: 0.5 * (from + to), std: (to - from) / 12f64.sqrt() }
             }
-            // A dashpot beside a spring starts at next to nothing.
+            // What yields in series may be far stiffer or softer than the joint, and its dashpot with it.
+            (_, Motion::NonNegative(_)) if in_series && matches!(parameter.starts, Starts::OfLeading(_)) => {
+                Prior { mean: 0.0, std: DASHPOT }
+            }
             (_, Motion::NonNegative(_)) if place != spec.size.parameter => {
                 let times = if parameter.of_bodies_only { SECTION } else { DASHPOT };
                 Prior { mean: 0.0, std: (times * largest).max(f64::MIN_POSITIVE.sqrt()) }

@@ -11,6 +11,7 @@ use crate::fitter::Fitter;
 use crate::modal::fit::{Iterate, ModalFit, Problem};
 use crate::modal::judgement::ModalJudgement;
 use crate::modal::prior::{Prior, priors_among};
+use crate::rarity::rarity;
 use crate::{Hypothesis, Observation};
 use jointscope_findings::Estimate;
 use jointscope_fixture::EffectKind;
@@ -69,7 +70,7 @@ impl Problem<'_> {
         let (point, standing) = self.at_start(hypothesis, self.standing(hypothesis)?);
         let slopes = self.slopes_at(&point, &standing, priors)?;
         let (linear, evidence) = self.evidence(&point, priors, &slopes, (&standing.comparison, None))?;
-        let ln = evidence.ln + standing.pairing.alone() - hypothesis.rarity();
+        let ln = evidence.ln + standing.pairing.alone() - rarity(hypothesis);
         let Iterate { hypothesis, residual, .. } = point;
         Some(ModalFit {
             hypothesis,

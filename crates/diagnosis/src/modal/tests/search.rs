@@ -3,12 +3,14 @@
 use super::BLOCKS;
 use crate::catalogue::catalogue;
 use crate::fitter::Fitter;
+use crate::modal::features::Features;
 use crate::modal::judgement::ModalJudgement;
+use crate::modal::prior::{Prior, priors};
 use crate::search::Search;
 use crate::settings::Settings;
 use crate::{Hypothesis, Observation, Watch};
 use jointscope_findings::Verdict;
-use jointscope_fixture::{Effect, EffectKind, Fixture, Place};
+use jointscope_fixture::{Dof, Effect, EffectKind, Fixture, Place};
 use jointscope_lumped::{Instrument, synthesize};
 use jointscope_spectra::{FrfPair, SpectralLines};
 
@@ -68,4 +70,49 @@ fn a_gain_is_named_whatever_the_model_is_off_by_in_natural_frequency() {
     let effects = judged.search.best.fit.hypothesis.effects();
     assert_eq!(effects.iter().map(|e| e.kind).collect::<Vec<_>>(), [EffectKind::ChannelGain]);
     assert_eq!(judged.verdict, Verdict::PartlyExplained);
+}
+
+#[test]
+fn glue_that_yields_along_a_foot_is_no_joint_whose_end_was_measured_wrong() {
+    // What a layer along the foot does to the strip, a strip that is longer does but for a length of half a millimetre cubed.
+    let fixture = Fixture::from_json(BLOCKS).unwrap();
+    let values = [3e4, 0.0, 1.0];
+    let place = Place::Point("3".into());
+    let glue = Effect::new(EffectKind::InterfaceCompliance, place.clone(), Some(Dof::Rotation), &values);
+    let observation = recorded(&fixture.clone().with_physics(vec![glue]).unwrap(), &["1", "2", "3", "4"]);
+    let settings = Settings::default();
+    let fitter = Fitter { observation: &observation, settings: &settings, watch: Watch::default() };
+    let nominal = Hypothesis::nominal(&fixture, false);
+    let judged = ModalJudgement::of(&fitter, &nominal, &catalogue(&fixture, &observation), None).unwrap();
+    let effects = judged.search.best.fit.hypothesis.effects();
+    let [found] = &effects[..] else { panic!("{effects:?}") };
+    assert!(found.kind == EffectKind::InterfaceCompliance && found.place == place, "{found:?}");
+    assert!((found.value(0) / values[0] - 1.0).abs() < 0.1, "{found:?}");
+}
+
+#[test]
+fn a_spring_without_a_dashpot_pays_for_none_however_large_it_might_have_been() {
+    let fixture = Fixture::from_json(BLOCKS).unwrap();
+    let spring =
+        Effect::new(EffectKind::InterfaceCompliance, Place::Point("3".into()), Some(Dof::Rotation), &[3e4]);
+    let observation = recorded(&fixture.clone().with_physics(vec![spring]).unwrap(), &["1", "2", "3", "4"]);
+    let nominal = Hypothesis::nominal(&fixture, false);
+    let features = Features::of(&observation, &nominal, &Settings::default().modal).unwrap();
+    let problem = features.problem(observation.work());
+    let place = Place::Point("3".into());
+    let effect = Effect::new(EffectKind::InterfaceCompliance, place, Some(Dof::Rotation), &[3e4, 0.03]);
+    let start = nominal.with(effect);
+    let ln = |dashpot: f64| {
+        let own = [
+            Prior { mean: start.coordinates[nominal.coordinates.len()], std: 1.4 },
+            Prior { mean: 0.0, std: dashpot },
+        ];
+        let priors: Vec<Prior> = priors(&nominal, &[]).into_iter().chain(own).collect();
+        problem.fitted(&start, &priors).unwrap().ln
+    };
+    let (narrow, wide) = (ln(30.0), ln(3e5));
+    assert!(
+        (narrow - wide).abs() < 0.7,
+        "{narrow} and {wide}: half of the probability is that of no dashpot"
+    );
 }
