@@ -3,7 +3,7 @@
 use super::law::{Dynamics, Form};
 use super::problem::{Fitted, Point, Problem};
 use super::smallest_eigenvalue::as_low_if_zero;
-use super::uncertainty::strain;
+use super::uncertainty::tolerance_inflation;
 use crate::likelihood::EXPLAINED;
 use jointscope_inference::{Covariance, NormalEquations, SIGNIFICANT};
 use serde::Serialize;
@@ -47,22 +47,22 @@ pub struct Admissible {
 }
 
 /// P(a smallest eigenvalue as low as that of the symmetric or scalar matrix whose coordinates begin at `first` | zero). `noise` is the covariance with the fixture exact; variances
-/// count `strain` times.
+/// count `inflation` times.
 pub(super) fn not_negative(
     form: Form,
     at: &[f64],
     first: usize,
-    (covariance, noise, strain): (&Covariance, &Covariance, f64),
+    (covariance, noise, inflation): (&Covariance, &Covariance, f64),
 ) -> Option<f64> {
     if form == Form::Zero {
         return None;
     }
     if form == Form::Scalar {
-        return below_zero(at[first], (strain * covariance.at(first, first)).sqrt());
+        return below_zero(at[first], (inflation * covariance.at(first, first)).sqrt());
     }
     let place = |e: usize| first + e;
     let own = |of: &Covariance| {
-        std::array::from_fn(|i| std::array::from_fn(|j| strain * of.at(place(i), place(j))))
+        std::array::from_fn(|i| std::array::from_fn(|j| inflation * of.at(place(i), place(j))))
     };
     as_low_if_zero([0, 1, 2].map(|e| at[place(e)]), own(covariance), own(noise))
 }
@@ -168,7 +168,7 @@ fn promised(problem: &Problem, at: &Fitted) -> Option<f64> {
     let rest = at.point.coordinates.iter().skip(problem.own()).zip(step.iter().skip(free.own()));
     let mut moved = vec![0.0; free.own()];
     moved.extend(rest.map(|(at, step)| at + step));
-    Some(gain.max(0.0) / strain(&free.parameters, free.own(), &moved, &equations.covariance()?))
+    Some(gain.max(0.0) / tolerance_inflation(&free.parameters, free.own(), &moved, &equations.covariance()?))
 }
 
 /// The optimum with k and c free of symmetry.
@@ -196,7 +196,8 @@ pub(super) fn asymmetry(problem: &Problem, symmetric: &Fitted, known: Freed) -> 
     let others = free.other_columns(&point)?;
     let at = Fitted { point, others };
     let covariance = at.equations(&free).covariance()?;
-    let scale = inflation * strain(&free.parameters, free.own(), &at.point.coordinates, &covariance);
+    let scale =
+        inflation * tolerance_inflation(&free.parameters, free.own(), &at.point.coordinates, &covariance);
     Some((symmetric.point.objective - at.point.objective).max(0.0) / scale)
 }
 

@@ -75,24 +75,24 @@ impl Fit<'_> {
     fn under(&self, variances: &[f64], mass: Option<usize>) -> Option<f64> {
         let n = self.equations.order;
         let mut information = self.equations.information.clone();
-        let mut pull = vec![0.0; n];
+        let mut gradient = vec![0.0; n];
         let mut objective = self.objective;
         for (index, parameter) in self.parameters.iter().enumerate() {
             // What nothing is known of keeps its precision of zero.
             let precision = if parameter.precision > 0.0 { 1.0 / variances[index] } else { 0.0 };
             let change = precision - parameter.precision;
             information[index * n + index] += change;
-            pull[index] = -change * self.at[index];
+            gradient[index] = -change * self.at[index];
             objective += change * self.at[index] * self.at[index];
         }
         if let Some(index) = mass.filter(|&index| self.at[index] <= 0.0) {
-            // Elsewhere nothing pulls at an optimum.
-            pull[index] += self.equations.right[index].min(0.0);
+            // Elsewhere the gradient vanishes at an optimum.
+            gradient[index] += self.equations.right[index].min(0.0);
         }
         let factor = Cholesky::of(n, &information)?;
-        let mut step = pull.clone();
+        let mut step = gradient.clone();
         factor.solve_in_place(&mut step);
-        objective -= pull.iter().zip(&step).map(|(pull, step)| pull * step).sum::<f64>();
+        objective -= gradient.iter().zip(&step).map(|(gradient, step)| gradient * step).sum::<f64>();
         let widths: f64 = variances.iter().map(|variance| variance.ln()).sum();
         let positive = mass.map_or(0.0, |index| {
             let mut unit = vec![0.0; n];
@@ -141,14 +141,14 @@ mod tests {
         let mut equations = NormalEquations::zero(n);
         let (mut at, mut objective) = (vec![0.0; n], 0.0);
         for (index, (y, sigma)) in data[..n].iter().enumerate() {
-            let (told, known) = (1.0 / (sigma * sigma), parameters[index].precision);
-            at[index] = told * y / (told + known);
+            let (data, prior) = (1.0 / (sigma * sigma), parameters[index].precision);
+            at[index] = data * y / (data + prior);
             if index == 2 {
                 at[index] = at[index].max(0.0);
             }
-            objective += told * (y - at[index]).powi(2) + known * at[index] * at[index];
-            equations.information[index * n + index] = told + known;
-            equations.right[index] = told * (y - at[index]) - known * at[index];
+            objective += data * (y - at[index]).powi(2) + prior * at[index] * at[index];
+            equations.information[index * n + index] = data + prior;
+            equations.right[index] = data * (y - at[index]) - prior * at[index];
         }
         let fit = Fit { objective, at: &at, equations: &equations, parameters: &parameters };
         let variances: Vec<f64> = stds[..n].iter().map(|std| std * std).collect();

@@ -2,7 +2,7 @@
 
 use super::evidence::Fit;
 use super::law::{Dynamics, Form, LawKind};
-use super::likelihood::{JointLikelihood, told};
+use super::likelihood::{JointLikelihood, named_coordinates};
 use super::problem::{Fitted, Problem, Test};
 use crate::Sides;
 use jointscope_fixture::BodyKind;
@@ -49,7 +49,8 @@ impl LawFit {
     /// The same as one of the laws beside that of the joint's numbers, `stated`, with noise whose variance counts `inflation` times.
     pub(super) fn beside(mut self, stated: (LawKind, bool), inflation: f64) -> Self {
         let is_stated = (self.kind, self.mass.is_some()) == stated;
-        self.likelihood = self.likelihood.filter(|_| !is_stated).map(|told| told.inflated(inflation));
+        self.likelihood =
+            self.likelihood.filter(|_| !is_stated).map(|likelihood| likelihood.inflated(inflation));
         self
     }
 
@@ -334,7 +335,7 @@ impl Candidate {
         let mass = problem.mass.map(|_| problem.mass_at(&at.point.coordinates));
         let mut fit = LawFit::of(law, own, at.point.objective, mass);
         if problem.laws.len() == 1 {
-            let (numbers, at) = (told(law), &at.point.coordinates);
+            let (numbers, at) = (named_coordinates(law), &at.point.coordinates);
             fit.likelihood =
                 JointLikelihood::of(&numbers, problem.own(), at, &equations, &problem.parameters);
         }

@@ -81,8 +81,8 @@ pub fn fit_joints(
     let problem = problem.weighted(&inflated.weights);
     let free = inflated.refitted(&problem, first).ok_or(SeveralError::NoStart)?;
     let outcome = Outcome { problem: &problem, unmoved: &unmoved, inflated: &inflated, laws };
-    let found = outcome.of(&free, &|joint, strain| {
-        first_order_asymmetry(&problem, &free, joint).map(|gain| gain / strain)
+    let found = outcome.of(&free, &|joint, inflation| {
+        first_order_asymmetry(&problem, &free, joint).map(|gain| gain / inflation)
     })?;
     let fits = joints.iter().zip(found.joints);
     let joints: Vec<FoundJoint> = fits.map(|(&joint, fit)| FoundJoint::of(fixture, joint, fit)).collect();

@@ -121,8 +121,8 @@ fn nearest_on_the_edge(found: Elements, solved: &dyn Fn(Elements) -> Elements) -
     for _ in 0..ROUNDS {
         let [v, w] = at;
         let columns = [[2.0 * v, w, 0.0], [0.0, v, 2.0 * w]];
-        let pulled = solved(less(found, of(at)));
-        let right = columns.map(|column| dot(column, pulled));
+        let projected = solved(less(found, of(at)));
+        let right = columns.map(|column| dot(column, projected));
         let weighted = columns.map(solved);
         let own = |i: usize, j: usize| dot(columns[i], weighted[j]);
         let (p, q, r) = (own(0, 0) * (1.0 + damping), own(0, 1), own(1, 1) * (1.0 + damping));
