@@ -8,8 +8,8 @@ use crate::expected_noise::ExpectedNoise;
 use crate::measure::Measure;
 use crate::names::{carried, with_wide_priors};
 use crate::plan::{FrfGain, Plan, PlanOptions};
+use crate::planned_test::PlannedTest;
 use crate::products::Products;
-use crate::scene::Scene;
 use crate::suggestion::{ExpectedInterval, Suggestion};
 use crate::{PlanError, says};
 use jointscope_diagnosis::{Fit, Hypothesis, Observation};
@@ -149,14 +149,14 @@ impl Plan {
                 (nominal, (*lines).clone(), ExpectedNoise::assumed(lines.len(), ASSUMED.0, ASSUMED.1), 1.0)
             }
         };
-        let scene =
-            Scene { fixture: freed, exact: options.exact, lines, noise, inflation, model_error: None };
-        Joints { scene: &scene, hypothesis: &hypothesis, start, wanted }.plan(&points)
+        let test =
+            PlannedTest { fixture: freed, exact: options.exact, lines, noise, inflation, model_error: None };
+        Joints { test: &test, hypothesis: &hypothesis, start, wanted }.plan(&points)
     }
 }
 
 struct Joints<'a> {
-    scene: &'a Scene,
+    test: &'a PlannedTest,
     hypothesis: &'a Hypothesis,
     start: &'a Start<'a>,
     wanted: &'a Wanted,
@@ -180,14 +180,14 @@ impl Joints<'_> {
         let count = self.hypothesis.parameters().len();
         let again = match self.start {
             Start::Recorded(observation) => {
-                Some(self.scene.products_of(names, observation).ok_or_else(not_comparable)?.information(0))
+                Some(self.test.products_of(names, observation).ok_or_else(not_comparable)?.information(0))
             }
             Start::Lines(_) => None,
         };
         let known =
             with_wide_priors(self.hypothesis, again.clone().unwrap_or_else(|| vec![0.0; count * count]));
         let frfs = candidates::frfs(points, present);
-        let by_frf = self.scene.products(names, &frfs).ok_or_else(not_comparable)?;
+        let by_frf = self.test.products(names, &frfs).ok_or_else(not_comparable)?;
         let all = self.candidates(points, (&frfs, &by_frf), again.as_deref(), (present, &known));
         // Before anything is recorded there is no interval.
         let now = again.as_ref().and_then(|_| self.interval(self.hypothesis, &known));
@@ -211,10 +211,10 @@ impl Joints<'_> {
         let together = (!reached_now && !alone).then(|| self.together(&all, &known)).flatten();
         let question = format!("What makes the interval narrower: {}?", self.wanted.says());
         let (says, mut remarks) = self.comes_to(reached_now, now, &suggestions, together);
-        if now.is_none() && self.scene.inflation > NOT_MET {
+        if now.is_none() && self.test.inflation > NOT_MET {
             remarks.push(says::not_met());
         }
-        remarks.extend(says::remarks(&suggestions, self.scene.inflation, false));
+        remarks.extend(says::remarks(&suggestions, self.test.inflation, false));
         if let Start::Lines(_) = self.start {
             remarks.push(format!(
                 "Nothing was recorded yet: the noise is taken as {} % of each value and {} % of each FRF's root mean square",
@@ -257,7 +257,7 @@ impl Joints<'_> {
         }
         all.extend(candidates::quantities(self.hypothesis).into_iter().filter_map(|m| self.of_quantity(m)));
         if !present.is_empty() {
-            let changes = candidates::changes(&self.scene.fixture, points);
+            let changes = candidates::changes(&self.test.fixture, points);
             all.extend(changes.into_iter().filter_map(|measure| self.of_change(measure, present, known)));
         }
         all
@@ -387,9 +387,9 @@ impl Joints<'_> {
     }
 
     fn of_change(&self, measure: Measure, present: &[FrfPair], known: &[f64]) -> Option<Candidate> {
-        let fixture = measure.changed(&self.scene.fixture)?;
-        let hypothesis = self.hypothesis.in_fixture(&fixture, self.scene.exact);
-        let by_frf = self.scene.products(std::slice::from_ref(&hypothesis), present)?;
+        let fixture = measure.changed(&self.test.fixture)?;
+        let hypothesis = self.hypothesis.in_fixture(&fixture, self.test.exact);
+        let by_frf = self.test.products(std::slice::from_ref(&hypothesis), present)?;
         let mut sum = Products::none(&by_frf.first()?.widths);
         by_frf.iter().for_each(|own| sum.add(own));
         let carried = carried(known, self.hypothesis, &hypothesis);

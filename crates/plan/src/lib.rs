@@ -36,10 +36,10 @@ mod measure;
 mod model_error;
 mod names;
 mod plan;
+mod planned_test;
 mod products;
 mod rivals;
 mod says;
-mod scene;
 mod suggestion;
 
 pub use error::PlanError;

@@ -1,7 +1,7 @@
 //! The names that a diagnosis has left for one finding, each at its best fit, with what the present measurement tells of its parameters.
 
 use crate::PlanError;
-use crate::scene::Scene;
+use crate::planned_test::PlannedTest;
 use jointscope_diagnosis::{Diagnosis, Fit, Hypothesis, ModelError, Observation};
 use jointscope_fixture::{Effect, Fixture, Place};
 use jointscope_linalg::Cholesky;
@@ -139,8 +139,8 @@ impl Names {
         let listed: f64 = names.iter().map(|(_, probability)| probability).sum();
         let highest = names.iter().map(|(_, probability)| *probability).fold(f64::MIN_POSITIVE, f64::max);
         names.truncate(NAMES);
-        let company = remaining.repaired.without(remaining.index).in_fixture(fixture, exact);
-        let start = |effect: &Effect| company.with(effect.clone());
+        let other_effects = remaining.repaired.without(remaining.index).in_fixture(fixture, exact);
+        let start = |effect: &Effect| other_effects.with(effect.clone());
         let fit = |effect: &Effect| {
             Fit::of(&start(effect), observation, false)
                 .ok_or_else(|| PlanError::NotComparable(effect_name(effect)))
@@ -180,9 +180,13 @@ impl Names {
     }
 
     /// Takes what the present measurement tells of every name's coordinates.
-    pub(crate) fn informed(mut self, scene: &Scene, observation: &Observation) -> Result<Self, PlanError> {
+    pub(crate) fn with_information(
+        mut self,
+        test: &PlannedTest,
+        observation: &Observation,
+    ) -> Result<Self, PlanError> {
         let predict = |name: &mut Name| {
-            let products = scene.products_of(std::slice::from_ref(&name.hypothesis), observation)?;
+            let products = test.products_of(std::slice::from_ref(&name.hypothesis), observation)?;
             name.information = with_priors(&name.hypothesis, products.information(0));
             Some(())
         };

@@ -12,7 +12,7 @@ use rayon::prelude::*;
 const MOST_VALUES: usize = 16_000;
 
 /// The structure as it is to be tested.
-pub(crate) struct Scene {
+pub(crate) struct PlannedTest {
     /// The fixture, with the deviations of all points that are considered.
     pub fixture: Fixture,
     /// Whether bare numbers are exact.
@@ -27,7 +27,7 @@ pub(crate) struct Scene {
     pub model_error: Option<ModelErrorNoise>,
 }
 
-impl Scene {
+impl PlannedTest {
     /// What each name predicts of FRFs, and their products by FRF; `None` where one of them predicts none.
     pub(crate) fn products(&self, names: &[Hypothesis], pairs: &[FrfPair]) -> Option<Vec<Products>> {
         // Of a longer set lines would be left out.
