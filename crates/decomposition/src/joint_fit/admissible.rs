@@ -4,7 +4,8 @@ use super::law::{Dynamics, Form};
 use super::problem::{Fitted, Point, Problem};
 use super::smallest_eigenvalue::as_low_if_zero;
 use super::uncertainty::tolerance_inflation;
-use crate::likelihood::EXPLAINED;
+use crate::settings::noise::EXPLAINED;
+use crate::settings::symmetry::{ANOTHER_OPTIMUM, LARGE_GAIN, MOST_ROUNDS};
 use jointscope_inference::{Covariance, NormalEquations, SIGNIFICANT};
 use serde::Serialize;
 use std::f64::consts::SQRT_2;
@@ -81,13 +82,6 @@ fn below_zero(value: f64, std: f64) -> Option<f64> {
     (std > 0.0).then(|| 0.5 * statrs::function::erf::erfc(-value / (std * SQRT_2)))
 }
 
-/// Gain by freedom of symmetry from which it is asked whether the symmetric optimum is one: one time in twenty by chance.
-const LARGE_GAIN: f64 = 5.99;
-/// Decrease by which a symmetric optimum is another than the one before.
-const ANOTHER: f64 = 0.1;
-/// Times that it is asked.
-const ROUNDS: usize = 4;
-
 /// What is known of a joint whose k and c are free of symmetry.
 pub(super) enum Freed {
     /// By how much it lowers χ² to first order, in the units of [`asymmetry`]: too little for its optimum to be sought.
@@ -104,7 +98,7 @@ pub(super) enum Freed {
 /// `None` where an optimum has no derivatives.
 pub(super) fn settled(problem: &Problem, mut at: Fitted) -> Option<(Fitted, Freed)> {
     at.refresh(problem)?;
-    for _ in 0..ROUNDS {
+    for _ in 0..MOST_ROUNDS {
         if let Some(gain) = promised(problem, &at) {
             return Some((at, Freed::Promised(gain)));
         }
@@ -119,7 +113,7 @@ pub(super) fn settled(problem: &Problem, mut at: Fitted) -> Option<(Fitted, Free
             _ => return Some((at, Freed::Fitted(free))),
         }
         at.refresh(problem)?;
-        if at.point.objective > before - ANOTHER {
+        if at.point.objective > before - ANOTHER_OPTIMUM {
             return Some((at, Freed::Fitted(free)));
         }
     }

@@ -9,18 +9,10 @@
 //! (A + Δ) y = r − Δa, and is lower by (r − Δa)ᵀy − aᵀΔa, r being what pulls at a coordinate that stands at its bound.
 
 use super::law::{Dynamics, Form};
+use crate::settings::priors::{CHANGE_RANGE, LOSS_RANGE, MASS_RANGE, WIDTHS};
 use jointscope_inference::{NormalEquations, Parameter};
 use jointscope_linalg::Cholesky;
 use std::ops::Range;
-
-/// Least and largest standard deviation beforehand of a loss factor.
-const LOSSES: [f64; 2] = [1e-4, 0.3];
-/// Of the change of stiffness up to the middle of the band, as a share.
-const CHANGES: [f64; 2] = [3e-4, 0.3];
-/// Of the mass in units of its coordinate, that is of a fiftieth of the lighter side's: 0.06 to 5 % of that side.
-const MASSES: [f64; 2] = [0.03, 2.5];
-/// Widths tried of each.
-const WIDTHS: usize = 9;
 
 /// Coordinates with one unknown width.
 struct Block {
@@ -51,8 +43,9 @@ impl Fit<'_> {
             let coordinates = from..from + form.count();
             (form != Form::Zero).then_some(Block { coordinates, sizes })
         };
-        let of_mass = mass.map(|index| Block { coordinates: index..index + 1, sizes: MASSES });
-        let blocks = [block(law.damping, damping, LOSSES), block(law.change, change, CHANGES), of_mass];
+        let of_mass = mass.map(|index| Block { coordinates: index..index + 1, sizes: MASS_RANGE });
+        let blocks =
+            [block(law.damping, damping, LOSS_RANGE), block(law.change, change, CHANGE_RANGE), of_mass];
         let blocks: Vec<Block> = blocks.into_iter().flatten().collect();
         let count = WIDTHS.pow(blocks.len() as u32);
         let mut all = Vec::with_capacity(count);
@@ -165,7 +158,7 @@ mod tests {
     fn the_evidence_is_the_mean_over_the_sizes_that_losses_may_have() {
         for (datum, noise) in [(0.002, 0.0001), (0.05, 0.001), (0.0, 0.01), (-0.02, 0.03)] {
             let mean: f64 =
-                (0..WIDTHS).map(|place| of_width(datum, noise, width(LOSSES, place)).exp()).sum::<f64>()
+                (0..WIDTHS).map(|place| of_width(datum, noise, width(LOSS_RANGE, place)).exp()).sum::<f64>()
                     / WIDTHS as f64;
             let expected = mean.ln() + of_width(0.9, 0.01, 2.0);
             let found = evidence(datum, noise, None);
@@ -178,7 +171,7 @@ mod tests {
         for datum in [2.0, 0.1, -0.4] {
             let by_width = |place: usize| {
                 // ∫₀^∞ N(y; m, σ²) 2 N(m; 0, w²) dm, by small steps.
-                let (w, sigma) = (width(MASSES, place), 0.3_f64);
+                let (w, sigma) = (width(MASS_RANGE, place), 0.3_f64);
                 let steps = 200_000;
                 let h = 8.0 * w / f64::from(steps);
                 let sum: f64 = (0..steps)

@@ -1,7 +1,7 @@
 //! How well the joint is known: by noise and tolerances, by what the model gets wrong, by a fixture stated too surely.
 
 use super::law::Dynamics;
-use crate::likelihood::BLOCKS;
+use crate::settings::noise::JACKKNIFE_BLOCKS;
 use jointscope_inference::{Covariance, Parameter, birge_ratio, jackknife};
 
 /// k11, k12, k22, c11, c12, c22 in SI units for one unit of a viscous law's coordinates.
@@ -18,7 +18,7 @@ pub(super) fn jackknifed_by(
     coordinates: &[f64],
     step: impl Fn(&[f64]) -> Option<Vec<f64>>,
 ) -> Option<Covariance> {
-    let blocks = BLOCKS.min(lines);
+    let blocks = JACKKNIFE_BLOCKS.min(lines);
     let without = |block: usize| {
         let (from, to) = (block * lines / blocks, (block + 1) * lines / blocks);
         let outside = |i: usize| i % lines < from || i % lines >= to;
