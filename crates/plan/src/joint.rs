@@ -10,6 +10,8 @@ use crate::names::{carried, with_wide_priors};
 use crate::plan::{FrfGain, Plan, PlanOptions};
 use crate::planned_test::PlannedTest;
 use crate::products::Products;
+use crate::settings::interval::{LEAST_REDUCTION, MOST_TOGETHER, POOR_FIT, UNDETERMINED};
+use crate::settings::noise::ASSUMED;
 use crate::suggestion::{ExpectedInterval, Suggestion};
 use crate::{PlanError, says};
 use jointscope_diagnosis::{Fit, Hypothesis, Observation};
@@ -21,17 +23,6 @@ use jointscope_spectra::{FrfPair, SpectralLines};
 use rayon::prelude::*;
 use serde_json::{Value, json};
 use std::str::FromStr;
-
-/// Noise of a test that nobody has made: shares of |H| and of its root mean square, as standard deviations of the average.
-const ASSUMED: (f64, f64) = (3e-3, 3e-3);
-/// Share of the present interval that a measurement must leave out to be worth being told.
-const WORTH: f64 = 0.01;
-/// Half an interval beyond which the element is not determined, in stated values: what is left is what was taken to be known of it beforehand, or a fit that ran away.
-const UNDETERMINED: f64 = 10.0;
-/// Variance inflation from which a fit does not meet its recording.
-const NOT_MET: f64 = 100.0;
-/// Measurements that are put together at the most.
-const TOGETHER: usize = 5;
 
 /// An interval that is wanted of one element of a joint: `J/k11=1%` or `J/k11=2e4`, half of it, 95 %.
 #[derive(Debug, Clone, PartialEq)]
@@ -211,7 +202,7 @@ impl Joints<'_> {
         let together = (!reached_now && !alone).then(|| self.together(&all, &known)).flatten();
         let question = format!("What makes the interval narrower: {}?", self.wanted.says());
         let (says, mut remarks) = self.comes_to(reached_now, now, &suggestions, together);
-        if now.is_none() && self.test.inflation > NOT_MET {
+        if now.is_none() && self.test.inflation > POOR_FIT {
             remarks.push(says::not_met());
         }
         remarks.extend(says::remarks(&suggestions, self.test.inflation, false));
@@ -270,7 +261,7 @@ impl Joints<'_> {
         now: Option<f64>,
         recorded: usize,
     ) -> Vec<Suggestion> {
-        ranked.retain(|(interval, _)| now.is_none_or(|now| *interval <= (1.0 - WORTH) * now));
+        ranked.retain(|(interval, _)| now.is_none_or(|now| *interval <= (1.0 - LEAST_REDUCTION) * now));
         let value = self.value();
         let effort = |candidate: &Candidate| candidate.measure.effort(recorded);
         let key = |(interval, candidate): &(f64, &Candidate)| match self.wanted.reached(*interval, value) {
@@ -404,12 +395,12 @@ impl Joints<'_> {
         let mut left: Vec<&Candidate> = all.iter().filter(single).collect();
         let (mut known, mut chosen) = (known.to_vec(), Vec::new());
         let mut interval = f64::INFINITY;
-        while chosen.len() < TOGETHER && !self.wanted.reached(interval, self.value()) {
+        while chosen.len() < MOST_TOGETHER && !self.wanted.reached(interval, self.value()) {
             let with = |(place, candidate): (usize, &&Candidate)| {
                 Some((self.interval(self.hypothesis, &added(&known, &candidate.information))?, place))
             };
             let best = left.iter().enumerate().filter_map(with).min_by(|a, b| a.0.total_cmp(&b.0));
-            let (narrowest, place) = best.filter(|(narrowest, _)| *narrowest < (1.0 - WORTH) * interval)?;
+            let (narrowest, place) = best.filter(|(narrowest, _)| *narrowest < (1.0 - LEAST_REDUCTION) * interval)?;
             let candidate = left.swap_remove(place);
             known = added(&known, &candidate.information);
             chosen.push(candidate.measure.to_string());

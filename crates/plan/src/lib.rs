@@ -40,6 +40,7 @@ mod planned_test;
 mod products;
 mod rivals;
 mod says;
+mod settings;
 mod suggestion;
 
 pub use error::PlanError;
@@ -49,5 +50,5 @@ pub use measure::Measure;
 pub use names::NameNow;
 pub use names::Remaining;
 pub use plan::{FrfGain, Plan, PlanOptions};
-pub use rivals::SURE;
-pub use suggestion::{BEYOND_DOUBT, ExpectedInterval, Suggestion};
+pub use settings::outcome::{BEYOND_DOUBT, SURE};
+pub use suggestion::{ExpectedInterval, Suggestion};

@@ -8,8 +8,10 @@ use crate::model_error::ModelErrorNoise;
 use crate::names::{NameNow, Names, Remaining};
 use crate::planned_test::PlannedTest;
 use crate::products::Products;
-use crate::rivals::{ExpectedOutcome, Rivals, SURE};
+use crate::rivals::{ExpectedOutcome, Rivals};
 use crate::says;
+use crate::settings::outcome::{SEED, SURE};
+use crate::settings::ranking::{LEAST_LOG_ODDS, MOST_COMBINED, MOST_DRAWN, PROMISE_STEPS, SEPARATED};
 use crate::suggestion::Suggestion;
 use jointscope_diagnosis::{Hypothesis, Observation};
 use jointscope_fixture::{Effect, Fixture, Place};
@@ -75,18 +77,6 @@ impl FrfGain {
         gains
     }
 }
-
-/// Expected ln of the odds below which a measurement is not worth being told, nats.
-const WORTH: f64 = 0.1;
-/// Probability that two names are told apart from which they count as separated.
-const SEPARATED: f64 = 0.9;
-/// Steps of the promise within which the effort decides.
-const STEPS: f64 = 50.0;
-/// Candidates of which measurements are drawn: the best by expectation.
-const DRAWN: usize = 24;
-const SEED: u64 = 18;
-/// FRFs that others are put beside, at the most.
-const COMBINED: usize = 4;
 
 impl Plan {
     /// Plans what separates the names that a diagnosis has left. `fixture` is the one that was diagnosed.
@@ -159,8 +149,8 @@ impl Judge<'_> {
         let both = self.pairs_of_frfs(&ranked);
         let single = |(gain, candidate, _): &(f64, Candidate, Rivals)| FrfGain::of(&candidate.measure, *gain);
         let gains = FrfGain::in_order(ranked.iter().filter_map(single), &frfs);
-        ranked.retain(|(gain, ..)| *gain >= WORTH);
-        ranked.truncate(DRAWN);
+        ranked.retain(|(gain, ..)| *gain >= LEAST_LOG_ODDS);
+        ranked.truncate(MOST_DRAWN);
         let weights = self.names.weights();
         let drawn = |(gain, candidate, rivals): &(f64, Candidate, Rivals)| {
             let outcome = rivals.expected_outcome(&weights, self.names.unlisted, SEED);
@@ -175,7 +165,7 @@ impl Judge<'_> {
                     let rivals = rivals(&candidate)?;
                     Some((self.expected(&rivals), candidate, rivals))
                 })
-                .filter(|(gain, ..)| *gain >= WORTH)
+                .filter(|(gain, ..)| *gain >= LEAST_LOG_ODDS)
                 .collect();
             suggestions.par_extend(both.par_iter().map(drawn));
         }
@@ -261,7 +251,7 @@ impl Judge<'_> {
             let most = (0..single.len()).max_by(|a, b| divergence(a).total_cmp(&divergence(b)));
             best.extend(most.filter(|at| !best.contains(at)));
         }
-        best.truncate(COMBINED);
+        best.truncate(MOST_COMBINED);
         let both = |(a, b): (usize, usize)| {
             let mut products = single[a].1.clone();
             products.add(single[b].1);
@@ -356,7 +346,7 @@ impl Judge<'_> {
 
 /// The better first: the promise; among those that keep it, the less effort; then what is expected.
 fn order(suggestion: &Suggestion) -> (f64, f64, f64) {
-    let sure = (suggestion.sure.unwrap_or(0.0) * STEPS).round() / STEPS;
+    let sure = (suggestion.sure.unwrap_or(0.0) * PROMISE_STEPS).round() / PROMISE_STEPS;
     let effort = if sure >= SURE { -suggestion.effort } else { 0.0 };
     (sure, effort, suggestion.expected_log_odds.unwrap_or(0.0))
 }

@@ -3,13 +3,11 @@
 use crate::expected_noise::ExpectedNoise;
 use crate::model_error::ModelErrorNoise;
 use crate::products::{Predicted, Products};
+use crate::settings::noise::MOST_VALUES;
 use jointscope_diagnosis::{Hypothesis, Linearisation, Observation};
 use jointscope_fixture::Fixture;
 use jointscope_spectra::{FrfForm, FrfPair, FrfSet, SpectralLines};
 use rayon::prelude::*;
-
-/// Values of an observation from which lines would be left out of it.
-const MOST_VALUES: usize = 16_000;
 
 /// The structure as it is to be tested.
 pub(crate) struct PlannedTest {

@@ -13,16 +13,10 @@
 //! of its χ² and priors, as the diagnosis weighs names.
 
 use crate::products::Products;
+use crate::settings::outcome::{DRAWS, ROUNDING, SURE};
 use jointscope_linalg::{Cholesky, normal_pair, semidefinite_factor};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-
-/// Draws of a measurement by each name.
-const DRAWS: usize = 400;
-/// Probability from which a name is sure, and a promise counts as one.
-pub const SURE: f64 = 0.9;
-/// Share of the largest pivot below which a column adds nothing but rounding.
-const ROUNDING: f64 = 1e-12;
 
 /// Names over one measurement.
 pub(crate) struct Rivals {
