@@ -2,6 +2,9 @@
 
 use crate::FrfCheck;
 use crate::remark::Remark;
+use crate::settings::channels::{
+    FORCE_SHARE, LEAST_NOISE, LEVEL_FACTOR, NOISE_FACTOR, TURNED_COSINE, UPRIGHT_COSINE,
+};
 use jointscope_screening::median;
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -23,28 +26,16 @@ pub struct ChannelCheck {
     pub odd: Vec<String>,
 }
 
-/// Mean cosine below which an FRF is turned round, and from which it is not.
-const TURNED: f64 = -0.6;
-const UPRIGHT: f64 = 0.3;
-/// Factor from which a channel's level is odd beside the others'.
-const OFF: f64 = 1.25;
-/// Noise of a channel, relative to that of the others, from which it is odd, and its least size.
-const NOISIER: f64 = 5.0;
-const NOISE: f64 = 0.05;
-
-/// Share of FRFs that must be turned for the force, which all have in common, to be so.
-const ALL: f64 = 0.8;
-
 /// Whether next to all FRFs have the opposite sign to the fixture's: then it is the force that is recorded the other way round.
 pub(crate) fn all_turned(frfs: &[FrfCheck]) -> bool {
-    let turned = frfs.iter().filter(|frf| frf.sign.is_some_and(|sign| sign < TURNED)).count();
-    frfs.len() > 1 && turned as f64 > ALL * frfs.len() as f64
+    let turned = frfs.iter().filter(|frf| frf.sign.is_some_and(|sign| sign < TURNED_COSINE)).count();
+    frfs.len() > 1 && turned as f64 > FORCE_SHARE * frfs.len() as f64
 }
 
 /// Responses, then references, each in the order of the FRFs.
 pub(crate) fn of(frfs: &[FrfCheck], remarks: &mut Vec<Remark>) -> Vec<ChannelCheck> {
-    let turned = |frf: &FrfCheck| frf.sign.is_some_and(|sign| sign < TURNED);
-    let upright = |frf: &FrfCheck| frf.sign.is_some_and(|sign| sign > UPRIGHT);
+    let turned = |frf: &FrfCheck| frf.sign.is_some_and(|sign| sign < TURNED_COSINE);
+    let upright = |frf: &FrfCheck| frf.sign.is_some_and(|sign| sign > UPRIGHT_COSINE);
     let mut channels = Vec::new();
     for is_reference in [false, true] {
         let name = |frf: &FrfCheck| match is_reference {
@@ -128,7 +119,7 @@ fn checked(
         odd.push(SAYS_TURNED.to_owned());
     }
     if let Some(level) = level
-        && !(OFF.recip()..=OFF).contains(&level)
+        && !(LEVEL_FACTOR.recip()..=LEVEL_FACTOR).contains(&level)
         && own.len() > 1
     {
         odd.push(format!(
@@ -136,8 +127,8 @@ fn checked(
         ));
     }
     if let Some(others) = noise_of(others)
-        && noise > NOISE
-        && noise > NOISIER * others
+        && noise > LEAST_NOISE
+        && noise > NOISE_FACTOR * others
     {
         odd.push(format!(
             "its noise is {:.0} % of the signal, {:.0} times that of the other channels: a loose sensor, a bad cable or a range set too high",

@@ -3,6 +3,7 @@
 //! A passive structure takes in power through a driving point at every frequency, so the real part of its mobility is never negative. With the accelerance A
 //! that is Re(A/s) ≥ 0, s = iω (or δ + iω under an exponential window): its imaginary part has one sign throughout, at resonances and between them.
 
+use crate::settings::driving_points::{FEWEST_LINES, MIXED_SHARE, STANDS_OUT, TURNED_SHARE};
 use jointscope_spectra::{FrfPair, FrfSet};
 use num_complex::Complex64;
 use serde::Serialize;
@@ -34,13 +35,6 @@ pub struct DrivingPoint {
     pub verdict: DrivingPointVerdict,
 }
 
-/// Standard deviations from which a real part stands out.
-const STANDS_OUT: f64 = 3.0;
-/// Lines that must, and shares of negative ones from which signs are mixed, and turned.
-const FEWEST: usize = 8;
-const MIXED: f64 = 0.03;
-const TURNED: f64 = 0.8;
-
 /// The driving points among accelerances with variances; `decay` (1/s) of the window over them.
 pub(crate) fn of(frfs: &FrfSet, decay: f64) -> Vec<DrivingPoint> {
     let at_one_point = |index: &usize| frfs.pairs()[*index].response == frfs.pairs()[*index].reference;
@@ -63,9 +57,9 @@ fn judged(frfs: &FrfSet, index: usize, decay: f64) -> DrivingPoint {
     }
     let share = negative as f64 / f64::max(lines as f64, 1.0);
     let verdict = match share {
-        _ if lines < FEWEST => DrivingPointVerdict::NotJudged,
-        share if share > TURNED => DrivingPointVerdict::Turned,
-        share if share > MIXED => DrivingPointVerdict::Mixed,
+        _ if lines < FEWEST_LINES => DrivingPointVerdict::NotJudged,
+        share if share > TURNED_SHARE => DrivingPointVerdict::Turned,
+        share if share > MIXED_SHARE => DrivingPointVerdict::Mixed,
         _ => DrivingPointVerdict::Passive,
     };
     DrivingPoint { frf: frfs.pairs()[index].clone(), judged_lines: lines, negative: share, verdict }

@@ -1,5 +1,6 @@
 //! Figures with the deviations that a fixture's tolerances leave them.
 
+use crate::settings::figures::{LEAST_CHANGE, RELATIVE_STEP};
 use jointscope_fixture::{Fixture, Place, QuantityOwner};
 use serde::Serialize;
 use std::collections::BTreeSet;
@@ -14,11 +15,6 @@ pub struct Figure {
     /// Its unit.
     pub unit: &'static str,
 }
-
-/// Step by which a number of unknown deviation is moved to see whether a figure rests on it, relative; and of one that is zero.
-const STEP: f64 = 1e-3;
-/// Relative change of a figure from which it rests on a number.
-const RESTS: f64 = 1e-9;
 
 /// Standard deviations of what `of` makes of a fixture, as a Taylor series of first order has them: each uncertain number is moved by its deviation, the
 /// changes are added as squares. `None` where the figure rests on a number of unknown deviation, or where the moved fixture has no such figure. Points that
@@ -36,7 +32,7 @@ pub(crate) fn deviations(
         if matches!(quantity.owner, QuantityOwner::Point(point) if !held[point]) {
             continue;
         }
-        let unknown = STEP * if quantity.value == 0.0 { 1.0 } else { quantity.value.abs() };
+        let unknown = RELATIVE_STEP * if quantity.value == 0.0 { 1.0 } else { quantity.value.abs() };
         let (owner, key) = (quantity.owner, quantity.key);
         moved.set_quantity(owner, key, quantity.value + quantity.std.unwrap_or(unknown));
         let figures = of(&moved);
@@ -51,7 +47,7 @@ pub(crate) fn deviations(
             let change = figure - nominal;
             match quantity.std {
                 Some(_) => *square = square.map(|square| square + change * change),
-                None if change.abs() > RESTS * nominal.abs() => *square = None,
+                None if change.abs() > LEAST_CHANGE * nominal.abs() => *square = None,
                 None => {}
             }
         }

@@ -1,5 +1,6 @@
 //! Every FRF by itself: averages, coherence, noise, and how far it is from what the fixture makes of it.
 
+use crate::settings::frfs::{ABSURD_RATIO, NEIGHBOURS, POOR_COHERENCE};
 use jointscope_frf::noise::NoiseSource;
 use jointscope_screening::median;
 use jointscope_spectra::{FrfPair, FrfSet};
@@ -36,9 +37,6 @@ pub struct FrfCheck {
     /// Mean over the lines of the cosine of the angle between H and Ĥ: 1 alike, −1 turned round.
     pub sign: Option<f64>,
 }
-
-/// Coherence below which a line is poor.
-const POOR_COHERENCE: f64 = 0.8;
 
 /// The FRFs of a set of accelerances with variances, beside the fixture's, FRF after FRF.
 pub(crate) fn of(frfs: &FrfSet, sources: &[NoiseSource], modelled: Option<&[Complex64]>) -> Vec<FrfCheck> {
@@ -79,18 +77,13 @@ pub(crate) fn nrmse(measured: &[Complex64], modelled: &[Complex64]) -> Option<f6
     (size > 0.0 && apart.is_finite()).then(|| (apart / size).sqrt())
 }
 
-/// Times the median of the values about it from which a value is none of a structure's: the highest peak of a damping ratio of 1e-5 is less.
-const ABSURD: f64 = 1e6;
-/// Lines on either side that are about one: over a whole band the FRFs of a row of masses may well fall by more than that.
-const ABOUT: usize = 20;
-
 /// The frequency (Hz) of a value that no structure has beside the others about it.
 pub(crate) fn absurd(frfs: &FrfSet, index: usize) -> Option<f64> {
     let sizes: Vec<f64> = frfs.values(index).iter().map(|value| value.norm()).collect();
     let all = median(sizes.clone())?;
     let is_absurd = |&line: &usize| {
-        let about = line.saturating_sub(ABOUT)..(line + ABOUT + 1).min(sizes.len());
-        let beyond = |usual: f64| usual > 0.0 && sizes[line] > ABSURD * usual;
+        let about = line.saturating_sub(NEIGHBOURS)..(line + NEIGHBOURS + 1).min(sizes.len());
+        let beyond = |usual: f64| usual > 0.0 && sizes[line] > ABSURD_RATIO * usual;
         beyond(all) && median(sizes[about].to_vec()).is_some_and(beyond)
     };
     let line = (0..sizes.len()).find(is_absurd)?;

@@ -38,6 +38,7 @@ mod reciprocity;
 mod recorded_modes;
 mod recording;
 mod remark;
+mod settings;
 mod totals;
 
 pub use channels::ChannelCheck;
@@ -57,9 +58,6 @@ use jointscope_estimation::{EstimateOptions, ResponseWindow};
 use jointscope_fixture::{Damping, Fixture};
 use jointscope_pipeline::{Error, Measurement};
 use serde::Serialize;
-
-/// Values of FRFs above which modes, and lines that contradict others, take longer to find than one waits for a check.
-pub(crate) const MOST_VALUES: usize = 30_000;
 
 /// How FRFs follow from hits, where a recording holds hits.
 #[derive(Debug, Clone, PartialEq)]

@@ -5,6 +5,10 @@
 //! FRFs at different places give mass, centre of gravity and inertia as the recording weighs them, linear in 1/M + x_G²/J, x_G/J and 1/J.
 
 use crate::figure::deviations;
+use crate::settings::mass_line::{
+    BAND, FEWEST_LINES, FIXTURE_SHARE, FRF_TOLERANCE, LEAST_DEVIATIONS, LEAST_ERROR, MASS_TOLERANCE,
+    RECORDED_SHARE,
+};
 use crate::{Figure, ModelModes, RecordedModes, Totals};
 use jointscope_fixture::Fixture;
 use jointscope_linalg::LeastSquares;
@@ -41,20 +45,6 @@ pub struct MassLine {
     pub odd: bool,
 }
 
-/// Lines from this many times the highest mode on supports up to this share of the first elastic mode.
-const BAND: (f64, f64) = (2.5, 0.5);
-/// Fewest lines.
-const FEWEST: usize = 5;
-/// How far off an FRF's line may be, of the largest, and the mass, relative; deviations that it must be off by.
-const OFF_FRF: f64 = 0.1;
-const OFF: f64 = 0.03;
-const BEYOND: f64 = 3.0;
-/// A mass is told where the fixture's own FRFs tell its mass to this share, and the recording's to that.
-const OWN: f64 = 0.03;
-const TOLD: f64 = 0.2;
-/// What a fit of few lines gets wrong at best, relative to the largest a₀.
-const AT_BEST: f64 = 0.005;
-
 /// The mass line of accelerances with variances, `modelled` the fixture's of the same FRFs.
 ///
 /// # Errors
@@ -72,7 +62,8 @@ pub(crate) fn of(
     let (mass, fixture_mass) = masses(fixture, &frfs, totals);
     let odd = mass.is_some_and(|(mass, std)| {
         let apart = (mass - totals.mass.value).abs();
-        apart > OFF * totals.mass.value && apart > BEYOND * std.hypot(totals.mass.std.unwrap_or(0.0))
+        apart > MASS_TOLERANCE * totals.mass.value
+            && apart > LEAST_DEVIATIONS * std.hypot(totals.mass.std.unwrap_or(0.0))
     });
     let mass = mass.map(|(value, std)| Figure { value, std: Some(std), unit: "kg" });
     Ok(MassLine { band: rigid.band, frfs, mass, fixture_mass, odd })
@@ -111,7 +102,7 @@ impl RigidBand {
                 "the highest mode on the supports, {on_supports:.1} Hz, is too near the first bending mode, {lowest:.1} Hz: at no frequency between them does the structure move as one rigid body; a softer suspension would weigh it"
             ));
         }
-        if used.len() < FEWEST {
+        if used.len() < FEWEST_LINES {
             return Err(format!(
                 "{} of the recording lie between {low:.1} and {high:.1} Hz, where the structure moves as one rigid body: a finer resolution or a lower first line would weigh it",
                 if used.is_empty() { "no lines".to_owned() } else { format!("only {} lines", used.len()) },
@@ -144,7 +135,8 @@ fn intercepts(frfs: &FrfSet, modelled: &[Complex64], rigid: &RigidBand) -> Vec<M
     let largest = largest(&all);
     for line in &mut all {
         let apart = (line.recorded.value - line.fixture).abs();
-        line.odd = apart > OFF_FRF * largest && apart > BEYOND * line.recorded.std.unwrap_or(0.0);
+        line.odd =
+            apart > FRF_TOLERANCE * largest && apart > LEAST_DEVIATIONS * line.recorded.std.unwrap_or(0.0);
     }
     all
 }
@@ -156,7 +148,7 @@ fn largest(lines: &[MassLineFrf]) -> f64 {
 /// The mass with its deviation that the recording tells, and that which the fixture's own FRFs do, kg.
 fn masses(fixture: &Fixture, lines: &[MassLineFrf], totals: &Totals) -> (Option<(f64, f64)>, Option<f64>) {
     let rotating = fixture.bodies().iter().all(|body| body.kind.rotates());
-    let at_best = AT_BEST * largest(lines);
+    let at_best = LEAST_ERROR * largest(lines);
     let recorded = |line: &MassLineFrf| (line.recorded.value, line.recorded.std.unwrap_or(0.0).max(at_best));
     let fixtures = |line: &MassLineFrf| (line.fixture, at_best);
     let ends = lines.iter().flat_map(|line| [&line.frf.response.point, &line.frf.reference.point]);
@@ -168,10 +160,10 @@ fn masses(fixture: &Fixture, lines: &[MassLineFrf], totals: &Totals) -> (Option<
     };
     let mass = weighed(fixture, lines, recorded, rotating)
         .map(|(mass, std)| (mass, std.hypot(places(mass))))
-        .filter(|(mass, std)| *std < TOLD * mass);
+        .filter(|(mass, std)| *std < RECORDED_SHARE * mass);
     let fixture_mass = weighed(fixture, lines, fixtures, rotating).map(|(mass, _)| mass);
     // Where the fixture's own FRFs do not tell its mass, the recording's do not either.
-    let fixture_mass = fixture_mass.filter(|mass| (mass / totals.mass.value - 1.0).abs() < OWN);
+    let fixture_mass = fixture_mass.filter(|mass| (mass / totals.mass.value - 1.0).abs() < FIXTURE_SHARE);
     (mass.filter(|_| fixture_mass.is_some()), fixture_mass)
 }
 

@@ -3,6 +3,9 @@
 use crate::Figure;
 use crate::figure::deviations;
 use crate::has_dashpots;
+use crate::settings::model_modes::{
+    BEYOND_BAND, EXTENSION, FOLLOWED_SHARE, HIGHEST_HZ, LAST_HZ, MOST_LISTED, SAME_FREQUENCY, ZERO_POLE,
+};
 use jointscope_fixture::{Damping, Fixture, Quantity, RatiosOf};
 use jointscope_linalg::complex_eigenvalues;
 use jointscope_lumped::{Assembly, LumpedError, StateSpace};
@@ -33,33 +36,18 @@ pub struct ModelModes {
     pub to: f64,
 }
 
-/// Frequency up to which modes are looked for without a recording, Hz, the factor by which it grows where there is no mode, and where that ends.
-const TO: f64 = 2000.0;
-const FARTHER: f64 = 4.0;
-const FARTHEST: f64 = 1e6;
-/// Share of the highest frequency up to which modes are followed where a number is moved.
-const FARTHER_MOVED: f64 = 1.5;
-/// Modes that are listed at the most.
-const LISTED: usize = 20;
-/// Beyond the last line of a recording modes matter as well.
-const BEYOND: f64 = 1.2;
-/// Share of the highest frequency below which a pole is at zero: rounding of a double one is the root of the machine's.
-const ZERO: f64 = 1e-6;
-/// Relative distance of natural frequencies with and without effects up to which a mode is the same one.
-const SAME: f64 = 0.1;
-
 impl ModelModes {
     /// The modes up to beyond `highest` (Hz), or up to where there are some.
     pub(crate) fn of(fixture: &Fixture, highest: Option<f64>) -> Result<Self, LumpedError> {
-        let mut to = highest.map_or(TO, |highest| BEYOND * highest);
+        let mut to = highest.map_or(HIGHEST_HZ, |highest| BEYOND_BAND * highest);
         let stands = Some(fixture).filter(|fixture| is_held(fixture)).and_then(as_it_stands);
         let mut poles = Poles::of(fixture, stands.as_ref(), to)?;
-        while poles.up_to(to).is_empty() && to < FARTHEST {
-            to *= FARTHER;
+        while poles.up_to(to).is_empty() && to < LAST_HZ {
+            to *= EXTENSION;
             poles = Poles::of(fixture, stands.as_ref(), to)?;
         }
         let (rigid, mut found) = (poles.rigid, poles.up_to(to));
-        found.truncate(LISTED);
+        found.truncate(MOST_LISTED);
         let nominal: Vec<f64> = found.iter().map(|pole| pole.norm() / TAU).collect();
         let std = deviations(fixture, &nominal, &BTreeSet::new(), |moved| {
             let moved =
@@ -70,7 +58,7 @@ impl ModelModes {
             same.then(|| moved.oscillating.iter().map(|pole| pole.norm() / TAU).collect())
         });
         let suspended = on_supports(fixture, to);
-        let soft = |k: usize| suspended.iter().any(|hz| (hz / nominal[k] - 1.0).abs() < SAME);
+        let soft = |k: usize| suspended.iter().any(|hz| (hz / nominal[k] - 1.0).abs() < SAME_FREQUENCY);
         let modes = found.iter().zip(std).enumerate().map(|(k, (pole, std))| ModelMode {
             frequency: Figure { value: nominal[k], std, unit: "Hz" },
             damping_ratio: (-pole.re / pole.norm()).max(0.0),
@@ -132,11 +120,11 @@ fn held(fixture: &Fixture, stands: &Fixture, highest: f64) -> Result<Poles, Lump
         let row = |i: usize| -> f64 { (0..n).map(|j| matrix[i * n + j] * shape[j]).sum() };
         (0..n).map(|i| shape[i] * row(i)).sum()
     };
-    let limit = TAU * FARTHER_MOVED * highest;
+    let limit = TAU * FOLLOWED_SHARE * highest;
     let mut poles = Poles { rigid: 0, overdamped: 0, oscillating: Vec::new() };
     for (r, &eigenvalue) in stands.modes().eigenvalues().iter().enumerate() {
         let omega = eigenvalue.max(0.0).sqrt();
-        if omega <= ZERO * TAU * highest {
+        if omega <= ZERO_POLE * TAU * highest {
             poles.rigid += 1;
             continue;
         }
@@ -170,9 +158,9 @@ fn in_time(fixture: &Fixture, highest: f64) -> Result<Poles, LumpedError> {
         .collect();
     let mut all = complex_eigenvalues(size, &matrix)?;
     all.sort_by(|a, b| a.norm().total_cmp(&b.norm()));
-    let zero = ZERO * omega;
+    let zero = ZERO_POLE * omega;
     let rigid = all.iter().filter(|pole| pole.norm() <= zero).count().div_ceil(2);
-    all.retain(|pole| pole.norm() > zero && pole.norm() <= FARTHER_MOVED * omega);
+    all.retain(|pole| pole.norm() > zero && pole.norm() <= FOLLOWED_SHARE * omega);
     let overdamped = all.iter().filter(|pole| pole.im.abs() <= zero).count();
     all.retain(|pole| pole.im > zero);
     Ok(Poles { rigid, overdamped, oscillating: all })

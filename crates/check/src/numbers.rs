@@ -1,5 +1,6 @@
 //! Every number of a fixture file.
 
+use crate::settings::numbers::{HIGH_DAMPING, PLACE_DEVIATION, VAGUE_DEVIATION};
 use crate::{Remark, Totals, meaning};
 use jointscope_fixture::{Fixture, NamedQuantity, QuantityKey, QuantityOwner, Spread};
 use serde::Serialize;
@@ -34,11 +35,6 @@ pub struct Number {
     /// What it means, in a few words.
     pub means: Option<String>,
 }
-
-/// Damping ratio above which joints of metal are rarely found.
-const MUCH: f64 = 0.1;
-/// Relative deviation from which a number says little.
-const VAGUE: f64 = 0.5;
 
 /// Every number of the file in its order; what is odd about them is added to `remarks`.
 pub(crate) fn of(fixture: &Fixture, remarks: &mut Vec<Remark>) -> Vec<Number> {
@@ -82,7 +78,7 @@ pub(crate) fn of(fixture: &Fixture, remarks: &mut Vec<Remark>) -> Vec<Number> {
 
 fn odd(quantity: &NamedQuantity, known: Known, remarks: &mut Vec<Remark>) {
     if let QuantityKey::ModalRatio(_) = quantity.key
-        && quantity.value > MUCH
+        && quantity.value > HIGH_DAMPING
     {
         remarks.push(Remark::odd(
             &quantity.path,
@@ -103,14 +99,14 @@ fn odd(quantity: &NamedQuantity, known: Known, remarks: &mut Vec<Remark>) {
     if let (Known::Stated, Some(std)) = (known, quantity.std)
         && !of_place
         && quantity.value != 0.0
-        && std > VAGUE * quantity.value.abs()
+        && std > VAGUE_DEVIATION * quantity.value.abs()
     {
         remarks.push(Remark::odd(
             &quantity.path,
             format!("its standard deviation is {:.0} % of it: a deviation is in the number's own unit; write \"unknown\" where nothing is known", 100.0 * std / quantity.value.abs()),
         ));
     }
-    if of_place && known == Known::Stated && quantity.std.is_some_and(|std| std > FAR) {
+    if of_place && known == Known::Stated && quantity.std.is_some_and(|std| std > PLACE_DEVIATION) {
         let std = quantity.std.unwrap_or_default();
         remarks.push(Remark::odd(
             &quantity.path,
@@ -118,9 +114,6 @@ fn odd(quantity: &NamedQuantity, known: Known, remarks: &mut Vec<Remark>) {
         ));
     }
 }
-
-/// Deviation of a place (m) that no ruler has.
-const FAR: f64 = 0.05;
 
 #[cfg(test)]
 #[allow(clippy::unwrap_used)]

@@ -1,5 +1,6 @@
 //! Reciprocity: what is measured at i for a blow at j is what is measured at j for a blow at i.
 
+use crate::settings::reciprocity::{LEAST_DIFFERENCE, TIMES_EXPECTED};
 use jointscope_screening::median;
 use jointscope_spectra::{FrfPair, FrfSet};
 use serde::Serialize;
@@ -20,10 +21,6 @@ pub struct Reciprocity {
     /// Whether the difference is more than noise.
     pub odd: bool,
 }
-
-/// Times its expected size, and size, from which a difference is more than noise.
-const BEYOND: f64 = 3.0;
-const LEAST: f64 = 0.05;
 
 /// All reciprocal pairs among accelerances with variances.
 pub(crate) fn of(frfs: &FrfSet) -> Vec<Reciprocity> {
@@ -53,6 +50,6 @@ fn of_pair(frfs: &FrfSet, i: usize, j: usize) -> Reciprocity {
         difference,
         expected,
         level: median(levels.collect()).unwrap_or(1.0),
-        odd: difference > LEAST && difference > BEYOND * expected,
+        odd: difference > LEAST_DIFFERENCE && difference > TIMES_EXPECTED * expected,
     }
 }

@@ -1,6 +1,8 @@
 //! The recording's modes beside the fixture's.
 
-use crate::{MOST_VALUES, ModelModes};
+use crate::ModelModes;
+use crate::settings::recorded_modes::FURTHER_ORDERS;
+use crate::settings::work::MOST_VALUES;
 use jointscope_fixture::Fixture;
 use jointscope_modes::{ModalAnalysis, ModesError, ModesOptions};
 use jointscope_pipeline::measured_damping;
@@ -31,9 +33,6 @@ pub struct RecordedModes {
     pub missing: Vec<f64>,
 }
 
-/// Orders beyond two for every mode of the model.
-const MORE: usize = 10;
-
 /// The modes of accelerances.
 ///
 /// # Errors
@@ -45,7 +44,7 @@ pub(crate) fn of(fixture: &Fixture, frfs: &FrfSet, model: &ModelModes) -> Result
     let last = frfs.lines().hz()[frfs.lines().len() - 1];
     let expected = model.modes.iter().filter(|mode| mode.frequency.value <= last).count();
     // No more than the model may have, and some: with all orders that a chart can have, ripples of the noise are looked at one by one.
-    let orders = Some((2, 2 * expected + MORE));
+    let orders = Some((2, 2 * expected + FURTHER_ORDERS));
     let quick = ModalAnalysis::of(frfs, &ModesOptions { orders, ..ModesOptions::default() });
     let analysis = match quick {
         Err(ModesError::Orders { .. }) => ModalAnalysis::of(frfs, &ModesOptions::default()),

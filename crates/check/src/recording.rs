@@ -4,9 +4,11 @@ use crate::channels::{self, ChannelCheck};
 use crate::driving_point::{self, DrivingPoint, DrivingPointVerdict};
 use crate::reciprocity::{self, Reciprocity};
 use crate::recorded_modes::{self, RecordedModes};
-use crate::{
-    CheckOptions, FrfCheck, MOST_VALUES, MassLine, ModelModes, Remark, Totals, frfs, has_dashpots, mass_line,
-};
+use crate::settings::contradictions::AT_START;
+use crate::settings::drawn::ASSUMED_RATIO;
+use crate::settings::frfs::MANY_POOR_LINES;
+use crate::settings::work::MOST_VALUES;
+use crate::{CheckOptions, FrfCheck, MassLine, ModelModes, Remark, Totals, frfs, has_dashpots, mass_line};
 use jointscope_diagnosis::contradictory_lines;
 use jointscope_fixture::{Damping, Effect, Fixture, Quantity, RatiosOf};
 use jointscope_frf::noise::with_variances;
@@ -58,9 +60,6 @@ pub struct RecordingCheck {
     #[serde(skip)]
     pub modelled: Option<Vec<Complex64>>,
 }
-
-/// Damping ratio with which the FRFs of a fixture without any are drawn.
-const ASSUMED: f64 = 0.005;
 
 impl RecordingCheck {
     pub(crate) fn of(
@@ -292,7 +291,8 @@ fn drawn(fixture: Fixture) -> Fixture {
     if *fixture.damping() != Damping::Undamped || has_dashpots(&fixture) {
         return fixture;
     }
-    let ratios = Damping::ModalRatios { ratios: vec![Quantity::bare(ASSUMED)], of: RatiosOf::AsItStands };
+    let ratios =
+        Damping::ModalRatios { ratios: vec![Quantity::bare(ASSUMED_RATIO)], of: RatiosOf::AsItStands };
     fixture.clone().with_damping(ratios).unwrap_or(fixture)
 }
 
@@ -374,9 +374,6 @@ fn of_reciprocity(pair: &Reciprocity) -> Remark {
     )
 }
 
-/// Steps of lines from the first within which a band starts at it: the line just there may fit by chance.
-const AT_START: f64 = 2.5;
-
 /// Of a band; `suspended` where it could be that of a suspension.
 fn of_contradiction(from: f64, to: f64, suspended: bool) -> Remark {
     let (from, to) = (in_text(from), in_text(to));
@@ -400,9 +397,6 @@ fn of_contradiction(from: f64, to: f64, suspended: bool) -> Remark {
         ),
     }
 }
-
-/// Share of poor lines from which an FRF's coherence is worth a word.
-const MANY_POOR_LINES: f64 = 0.3;
 
 fn of_coherence(frf: &FrfCheck) -> Option<Remark> {
     let coherence = frf.coherence.filter(|coherence| coherence.low > MANY_POOR_LINES)?;

@@ -48,11 +48,11 @@ impl LawOfAll {
 }
 
 /// The joints as their FRFs alone tell of them under the laws that their numbers are of, C free. What one fit found at once stays as it is.
-pub(crate) fn freed(joints: &[Decomposed]) -> Vec<Decomposed> {
+pub(crate) fn with_free_damping(joints: &[Decomposed]) -> Vec<Decomposed> {
     let free = |joint: &Decomposed| {
         let own = joint.fitted.as_ref().filter(|_| joint.at_once.is_none());
-        let freed = own.and_then(FiledJoint::freed);
-        Decomposed { fitted: freed.or_else(|| joint.fitted.clone()), ..joint.clone() }
+        let with_free_damping = own.and_then(FiledJoint::with_free_damping);
+        Decomposed { fitted: with_free_damping.or_else(|| joint.fitted.clone()), ..joint.clone() }
     };
     joints.iter().map(free).collect()
 }
@@ -91,7 +91,7 @@ impl FiledJoint {
     }
 
     /// The joint with C free and its law for certain.
-    fn freed(&self) -> Option<Self> {
+    fn with_free_damping(&self) -> Option<Self> {
         let (mean, covariance) = self.posterior(self.likelihood.as_ref()?)?;
         let (stiffness, damping) = matrices(&mean);
         Some(FiledJoint {

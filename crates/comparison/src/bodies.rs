@@ -135,7 +135,7 @@ pub(crate) fn parts<'a>(joints: &'a [Decomposed], why: &[Option<WhyApart>]) -> V
 }
 
 /// Which joints have a body in common with another test's fixture, whatever becomes of the other one.
-pub(crate) fn in_company(joints: &[Decomposed], why: &[Option<WhyApart>]) -> Vec<bool> {
+pub(crate) fn sharing_a_body(joints: &[Decomposed], why: &[Option<WhyApart>]) -> Vec<bool> {
     let unless_asked: Vec<Option<WhyApart>> =
         why.iter().map(|why| why.filter(|why| *why == WhyApart::Asked)).collect();
     let shared = shared(joints, &parts(joints, &unless_asked));

@@ -33,7 +33,7 @@ impl Valley {
     }
 
     /// J_θθ times a column of slopes.
-    fn pulled(&self, column: &[f64]) -> Vec<f64> {
+    fn information_times(&self, column: &[f64]) -> Vec<f64> {
         let n = self.likelihood.order();
         let row = |i: usize| &self.likelihood.information[i * n..i * n + self.numbers];
         (0..self.numbers).map(|i| dot(row(i), column)).collect()
@@ -43,8 +43,8 @@ impl Valley {
     fn with(&self, slope: &[Vec<f64>]) -> QuadraticLikelihood {
         let (m, n) = (self.numbers, self.likelihood.order());
         let mut other = self.likelihood.clone();
-        let before: Vec<Vec<f64>> = self.slope.iter().map(|column| self.pulled(column)).collect();
-        let after: Vec<Vec<f64>> = slope.iter().map(|column| self.pulled(column)).collect();
+        let before: Vec<Vec<f64>> = self.slope.iter().map(|column| self.information_times(column)).collect();
+        let after: Vec<Vec<f64>> = slope.iter().map(|column| self.information_times(column)).collect();
         let gradient = &self.likelihood.gradient[..m];
         for p in 0..n - m {
             other.gradient[m + p] += dot(&slope[p], gradient) - dot(&self.slope[p], gradient);

@@ -174,7 +174,7 @@ impl Pair {
             second: names[1].to_owned(),
             numbers: all,
             equality: tested.and_then(|(by, joints)| Equality::of_all(by, &joints, numbers)),
-            untold: tested.map_or_else(Vec::new, |(by, joints)| untold(by, joints, numbers)),
+            untold: tested.map_or_else(Vec::new, |(by, joints)| undetermined_by_both(by, joints, numbers)),
         }
     }
 
@@ -185,9 +185,9 @@ impl Pair {
 }
 
 /// The numbers of which two joints' FRFs tell nothing.
-fn untold(together: &Together, joints: [usize; 2], numbers: &[Number]) -> Vec<String> {
-    let is_untold = |n: usize| joints.iter().all(|&joint| together.std(joint, n) == 0.0);
-    (0..numbers.len()).filter(|&n| is_untold(n)).map(|n| numbers[n].name()).collect()
+fn undetermined_by_both(together: &Together, joints: [usize; 2], numbers: &[Number]) -> Vec<String> {
+    let is_undetermined = |n: usize| joints.iter().all(|&joint| together.std(joint, n) == 0.0);
+    (0..numbers.len()).filter(|&n| is_undetermined(n)).map(|n| numbers[n].name()).collect()
 }
 
 fn derived(together: &Together, numbers: &[Number], (first, second): (usize, usize)) -> Vec<PairedNumber> {

@@ -1,6 +1,6 @@
 //! By what joints are tested for being the same: FRFs alone, at one law, with C free, as if on one valley of the quantities.
 
-use crate::at_law::freed;
+use crate::at_law::with_free_damping;
 use crate::one_slope::of_one_slope;
 use crate::{Compared, Decomposed, LawOfAll, Number, Together};
 
@@ -25,7 +25,7 @@ impl<'a> Tests<'a> {
     ) -> Self {
         let is_of_fits = compared == Compared::AllFrfs;
         let of_all = (is_of_fits && is_of_one_law)
-            .then(|| Together::of(&freed(&of_one_slope(placed)), numbers, independent));
+            .then(|| Together::of(&with_free_damping(&of_one_slope(placed)), numbers, independent));
         Tests { of_all, given, numbers, independent, is_of_fits }
     }
 
@@ -36,6 +36,6 @@ impl<'a> Tests<'a> {
         }
         let two = [self.given[a].clone(), self.given[b].clone()];
         let placed = LawOfAll::of(&two)?.placed(&two);
-        Some(Together::of(&freed(&of_one_slope(&placed)), self.numbers, self.independent))
+        Some(Together::of(&with_free_damping(&of_one_slope(&placed)), self.numbers, self.independent))
     }
 }

@@ -14,7 +14,7 @@
 //! A joint whose C is held where it just gives out no energy keeps what its file states: the likelihood is that of a C without this constraint, and with it the joint would be one that
 //! physics forbids.
 
-use crate::bodies::{Part, connected, differing, in_company, likelihood, parts, shared, tests};
+use crate::bodies::{Part, connected, differing, likelihood, parts, shared, sharing_a_body, tests};
 use crate::common_law::CommonLaw;
 use crate::{Apart, Decomposed, Estimate, Number, SharedBody, WhyApart};
 use jointscope_inference::{NormalEquations, birge_ratio};
@@ -46,7 +46,7 @@ fn part(test: &[usize], why: &mut [Option<WhyApart>], reason: WhyApart) {
     test.iter().for_each(|&joint| why[joint] = Some(reason));
 }
 
-/// Why joints are apart before anything is said of their bodies; and which would have company but for being on the boundary.
+/// Why joints are apart before anything is said of their bodies; and which would share a body with another test but for being on the boundary.
 fn apart_beforehand(
     joints: &[Decomposed],
     tests: &[Vec<usize>],
@@ -60,7 +60,7 @@ fn apart_beforehand(
             None => part(test, &mut why, WhyApart::NotStated),
         }
     }
-    let has_company = in_company(joints, &why);
+    let shares_a_body = sharing_a_body(joints, &why);
     let is_held =
         |joint: &usize| joints[*joint].fitted.as_ref().is_some_and(|fit| fit.on_the_boundary_of_passive);
     for test in tests {
@@ -68,7 +68,7 @@ fn apart_beforehand(
             part(test, &mut why, WhyApart::OnTheBoundary);
         }
     }
-    (why, has_company)
+    (why, shares_a_body)
 }
 
 impl Together {
@@ -94,7 +94,7 @@ impl Together {
         for test in &tests {
             together.put_test(joints, test, numbers);
         }
-        let (mut why, has_company) = apart_beforehand(joints, &tests, asked_apart);
+        let (mut why, shares_a_body) = apart_beforehand(joints, &tests, asked_apart);
         let groups = loop {
             let parts = parts(joints, &why);
             together.shared = shared(joints, &parts);
@@ -108,7 +108,7 @@ impl Together {
             // Joints of the only test have nothing to be apart from.
             for joint in alone.into_iter().filter(|_| tests.len() > 1) {
                 why[joint] =
-                    Some(if has_company[joint] { WhyApart::LeftAlone } else { WhyApart::OtherBodies });
+                    Some(if shares_a_body[joint] { WhyApart::LeftAlone } else { WhyApart::OtherBodies });
             }
             break groups;
         };
@@ -237,7 +237,7 @@ impl Together {
         let (step, covariance) = (equations.step(0.0)?, equations.covariance()?);
         let quantities = precision.iter().enumerate().filter(|(_, p)| **p > 0.0).map(|(i, _)| order + i);
         let departures = quantities.map(|i| (step[i] * step[i], 1.0 - covariance.at(i, i)));
-        let strain = strain(departures);
+        let inflation = tolerance_inflation(departures);
         // Each number compared: its test, its joint and place there, its coordinate.
         let numbered = |slot: usize| numbers.iter().position(|number| number.slot() == slot);
         let all = tests.iter().enumerate().flat_map(|(test, (_, own_numbers, _, own))| {
@@ -251,7 +251,7 @@ impl Together {
             self.mean[a.0 * self.count + number] = reference[row] + step[row];
             for &(other, b, with, column) in &all {
                 let own = if one == other { parts[one].added(a, b) } else { 0.0 };
-                self.put((a.0, number), (b.0, with), strain * covariance.at(row, column) + own);
+                self.put((a.0, number), (b.0, with), inflation * covariance.at(row, column) + own);
             }
         }
         Some(())
@@ -275,7 +275,7 @@ impl Together {
 }
 
 /// Birge's ratio of quantities' squared departures from what is stated to what chance makes of them (each given with it); 1 where chance explains them.
-fn strain(departures: impl Iterator<Item = (f64, f64)>) -> f64 {
+fn tolerance_inflation(departures: impl Iterator<Item = (f64, f64)>) -> f64 {
     let (squares, expected) =
         departures.fold((0.0, 0.0), |(s, e), (square, chance)| (s + square, e + chance.clamp(0.0, 1.0)));
     birge_ratio(squares, expected)

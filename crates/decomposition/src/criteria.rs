@@ -1,15 +1,9 @@
 //! The criteria by which an analysis is judged: its fit, what fit and means say of each other, the fixture.
 
+use crate::settings::estimates::{BEYOND_CHANCE, NOT_RIGID, ON_THE_BOUNDARY};
 use crate::{Analysis, Contradiction, Element, Estimate, Judgement, Method, Part, Relation, Use};
 use jointscope_fixture::{Fixture, JointLaw, Nature, Quantity};
 use jointscope_inference::Z95;
-
-/// χ² per degree of freedom above which blocks are said not to have moved rigidly.
-const NOT_RIGID: f64 = 2.0;
-/// Standard deviations beyond which fit and means contradict each other.
-const BEYOND_CHANCE: f64 = 3.0;
-/// A determinant of c this small against c₁₁·c₂₂ lies on the boundary of what is passive.
-const ON_THE_BOUNDARY: f64 = 1e-9;
 
 impl Judgement {
     /// Judges an analysis made with this fixture.

@@ -1,3 +1,4 @@
+use crate::settings::estimates::NOT_DETERMINED;
 use jointscope_inference::Z95;
 use jointscope_linalg::RealMatrix2;
 
@@ -26,9 +27,6 @@ pub struct Figure {
     /// Standard deviation by the fixture's tolerances; not known for weighted means, part of the other one for the joint from all FRFs.
     pub tolerance: Option<f64>,
 }
-
-/// Relative uncertainty above which a figure counts as not determined.
-const NOT_DETERMINED: f64 = 0.5;
 
 impl Figure {
     /// Noise and tolerance together, independent of each other.

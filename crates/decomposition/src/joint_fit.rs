@@ -32,7 +32,9 @@ pub use length::FittedLength;
 pub use likelihood::JointLikelihood;
 pub use several::{FoundJoint, JointsCovariance, JointsFit, SeveralError, fit_joints};
 
-use crate::likelihood::EXPLAINED;
+use crate::settings::laws::FIRST_MASS;
+use crate::settings::noise::EXPLAINED;
+use crate::settings::starts::{DOUBTFUL_FIT, NO_DEPENDENCE, START_LOSS};
 use crate::{DecompositionError, IdlePoints, LikelihoodFit, Sides};
 use admissible::Freed;
 use jointscope_averaging::Band;
@@ -55,11 +57,6 @@ pub struct JointFitOptions {
     /// Whether laws over frequency are compared.
     pub laws: bool,
 }
-
-/// χ² per degree of freedom above which another start is tried.
-const DOUBTFUL: f64 = 1.3;
-/// Damping of a start without any, as a loss factor.
-const START_LOSS: f64 = 3e-3;
 
 /// Fits the joint that `sides` were taken apart at to every FRF whose channels the fixture has.
 ///
@@ -139,8 +136,6 @@ fn units_of(k: RealMatrix2, scalar: bool) -> RealMatrix2 {
 const NO_START: DecompositionError = DecompositionError::NoFit("no start gives finite FRFs");
 const UNDETERMINED: DecompositionError =
     DecompositionError::NoFit("the FRFs leave an element of k or c undetermined");
-/// Weighted squared change by one standard deviation of a quantity below which the FRFs do not depend on it.
-const NEGLIGIBLE: f64 = 1e-9;
 
 /// The quantities that the FRFs depend on, the others, and the derivatives by the first ones at the first start, if they were taken there.
 ///
@@ -162,7 +157,8 @@ fn that_matter(
     let (place, columns) =
         starts.iter().enumerate().find_map(|(place, start)| Some((place, columns(start)?)))?;
     let all = quantities.into_iter().zip(columns);
-    let (matter, others): (Vec<_>, Vec<_>) = all.partition(|(_, column)| recorded.size(column) > NEGLIGIBLE);
+    let (matter, others): (Vec<_>, Vec<_>) =
+        all.partition(|(_, column)| recorded.size(column) > NO_DEPENDENCE);
     let (matter, columns): (Vec<_>, Vec<_>) = matter.into_iter().unzip();
     let others = others.into_iter().map(|(quantity, _)| quantity);
     let mut others: Vec<Tolerance> = others.chain(idle).collect();
@@ -191,8 +187,9 @@ fn by_its_law<'a>(
 /// The lowest optimum of a viscous joint without mass; the last start is the nominal joint.
 fn lowest(problem: &Problem, starts: &[Vec<f64>], mut nearby: Option<Columns>) -> Option<Fitted> {
     let mut best: Option<Fitted> = None;
-    let is_doubtful =
-        |best: &Option<Fitted>| best.as_ref().is_none_or(|best| problem.per_degree(&best.point) > DOUBTFUL);
+    let is_doubtful = |best: &Option<Fitted>| {
+        best.as_ref().is_none_or(|best| problem.per_degree(&best.point) > DOUBTFUL_FIT)
+    };
     for start in starts {
         let found = problem.fit(problem.whole(start), nearby.take());
         best = best.into_iter().chain(found).reduce(lower);
@@ -210,11 +207,11 @@ fn lowest(problem: &Problem, starts: &[Vec<f64>], mut nearby: Option<Columns>) -
 /// The fit of a joint with mass from that without and, if wanted, from afar: a mass left out bends the blocks, and on the way back lie other optima.
 fn heavy(problem: &Problem, light: &Fitted, afar: Option<&Vec<f64>>) -> Option<Fitted> {
     let mut start = light.point.coordinates.clone();
-    start.insert(problem.of_laws(), laws::FIRST_MASS);
+    start.insert(problem.of_laws(), FIRST_MASS);
     let near = problem.fit(start, None);
     let afar = afar.and_then(|start| {
         let mut start = problem.whole(start);
-        start[problem.of_laws()] = laws::FIRST_MASS;
+        start[problem.of_laws()] = FIRST_MASS;
         problem.searched(start)
     });
     near.into_iter().chain(afar).reduce(lower)

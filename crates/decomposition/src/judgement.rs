@@ -1,10 +1,9 @@
 //! What the best estimate of a joint is worth: the verdict and its grounds.
 
 use crate::Element;
+use crate::settings::estimates::CONTRADICTED;
 use serde::Serialize;
 
-/// Share of √(k_ii k_jj) by which fit and means may differ before neither is of use.
-const CONTRADICTED: f64 = 0.5;
 /// How an analysis may be used.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]

@@ -52,6 +52,7 @@ mod likelihood;
 mod method;
 mod plan;
 mod relation;
+mod settings;
 mod sides;
 mod spectrum;
 mod tolerances;

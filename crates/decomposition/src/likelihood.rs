@@ -5,13 +5,14 @@ mod parameters;
 mod shift;
 mod sums;
 
-pub(crate) use data::UNKNOWN_NOISE;
 pub(crate) use shift::Optimum;
 
+use crate::settings::constant_joint::{POOR_FIT, START_DAMPING_TIME, STEP_DAMPING};
+use crate::settings::noise::{EXPLAINED, JACKKNIFE_BLOCKS};
 use crate::{DecompositionError, JointSpectrum, MeasurementPlan, Sides};
 use data::{Data, Part};
 use jointscope_averaging::Band;
-use jointscope_inference::{Damping, LeastSquares, NormalEquations, Precision, Settings, descend, jackknife};
+use jointscope_inference::{LeastSquares, NormalEquations, Precision, Settings, descend, jackknife};
 use jointscope_linalg::{Cholesky, Matrix2, RealMatrix2};
 use jointscope_spectra::FrfSet;
 use parameters::Parameters;
@@ -41,11 +42,6 @@ pub struct LikelihoodFit {
     /// Complex values fitted.
     pub values: usize,
 }
-
-/// χ² per degree of freedom above which a constant joint does not explain the FRFs within their noise.
-const POOR_FIT: f64 = 1.3;
-/// Near the optimum χ² is nearly quadratic: undamped steps converge within a few.
-const DAMPING: Damping = Damping { initial: 1e-6, decrease: 0.03, least: 1e-15, raised: 0.0, most: 1e8 };
 
 /// Fits a constant k + sc (s = iω, or δ + iω under an exponential window) to the FRFs across the joint on the lines in `band` (all usable ones without).
 ///
@@ -113,15 +109,6 @@ impl LikelihoodFit {
     }
 }
 
-/// χ² per degree of freedom up to which a joint counts as explaining the FRFs, so that noise is taken as it is stated: variances from few averages
-/// are themselves known to a few per cent.
-pub(crate) const EXPLAINED: f64 = 1.2;
-/// Blocks of neighbouring lines that the jackknife leaves out in turn.
-pub(crate) const BLOCKS: usize = 8;
-
-/// c/k of the start, s: a loss factor of 0.6 % at 300 Hz.
-const START_DAMPING_TIME: f64 = 3e-6;
-
 /// Robust start: medians over the solved lines.
 fn start_of(spectrum: &JointSpectrum) -> RealMatrix2 {
     let at = |i: usize, j: usize| {
@@ -140,7 +127,7 @@ impl Data {
     /// The spread of the fits without each of the blocks, as a covariance of the fit to all.
     fn jackknife(&self, at: &Parameters) -> [[f64; 6]; 6] {
         let lines = self.lines();
-        let blocks = BLOCKS.min(lines);
+        let blocks = JACKKNIFE_BLOCKS.min(lines);
         let without = |block: usize| {
             let left_out = block * lines / blocks..(block + 1) * lines / blocks;
             let Parameters { k, c, .. } = self.without(left_out).fit(*at).1;
@@ -192,7 +179,7 @@ impl Data {
 impl Part<'_> {
     /// χ² and parameters at the optimum next to `start`.
     fn fit(&self, start: Parameters) -> (f64, Parameters) {
-        let settings = Settings { damping: DAMPING, ..Settings::default() };
+        let settings = Settings { damping: STEP_DAMPING, ..Settings::default() };
         descend(self, self.placed(start), None, &settings).map_or((f64::INFINITY, start), |fit| fit.point)
     }
 

@@ -1,12 +1,10 @@
+use crate::settings::spectra::{INDICATIVE_NOISE, SINGULAR_CONDITION};
 use crate::{Compliances, DecompositionError, MeasurementPlan, Relation, Sides};
 use jointscope_frf::{BlockFrf, MaskReason, fit_rigid_motion};
 use jointscope_linalg::{ComplexMatrix2, Matrix2, RealMatrix2};
 use jointscope_spectra::FrfSet;
 use num_complex::Complex64;
 use serde::Serialize;
-
-/// H41 beyond this balanced condition number counts as singular: its inverse is rounding.
-const SINGULAR: f64 = 1e12;
 
 /// The joint at one spectral line.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -30,9 +28,6 @@ pub struct JointLine {
     pub condition: f64,
 }
 
-/// Above this share of noise in an element, its interval is only indicative: the propagation is of first order.
-const NOISY: f64 = 0.3;
-
 impl JointLine {
     /// The largest standard deviation of an element of K relative to √|k_ii k_jj|; zero without variances.
     pub fn noise_share(&self) -> f64 {
@@ -51,7 +46,7 @@ impl JointLine {
 
     /// Whether noise dominates the line, so that its first-order intervals are only indicative.
     pub fn is_noisy(&self) -> bool {
-        self.noise_share() > NOISY
+        self.noise_share() > INDICATIVE_NOISE
     }
 }
 
@@ -155,7 +150,8 @@ fn spectrum(
             continue;
         }
         let h = h41.values[line];
-        let singular = if scalar { h.at(0, 0) == Complex64::ZERO } else { h.balanced_condition() > SINGULAR };
+        let singular =
+            if scalar { h.at(0, 0) == Complex64::ZERO } else { h.balanced_condition() > SINGULAR_CONDITION };
         if singular || !stiffness[line].is_finite() {
             reasons[line] = Some(MaskReason::SingularFrf);
             continue;

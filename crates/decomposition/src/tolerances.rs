@@ -5,6 +5,7 @@
 
 use crate::interfaces::left_over;
 use crate::likelihood::Optimum;
+use crate::settings::differences::TOLERANCE_STEP;
 use crate::spectrum::{dynamic_stiffness_on, read_at_s};
 use crate::{
     Compliances, DecompositionError, IdlePoints, JointSpectrum, LikelihoodFit, MeasurementPlan, Sides,
@@ -53,9 +54,6 @@ pub(crate) struct NominalResult<'a> {
     /// The fit with the spectrum of the exact relation that it began with and the band fitted, all lines without.
     pub fit: Option<(&'a LikelihoodFit, &'a JointSpectrum, Option<Band>)>,
 }
-
-/// Share of a standard deviation that a quantity is moved by.
-const SMALL: f64 = 1e-3;
 
 /// What every quantity of the fixture that has a standard deviation does to the joint found. `exact` takes bare numbers of the fixture as exact.
 ///
@@ -114,7 +112,7 @@ struct Stated<'a> {
 impl Stated<'_> {
     /// The share of a quantity of which `moved` gives the fixture with it off by a number of standard deviations; its path and deviation are left open.
     fn share(&self, moved: &dyn Fn(f64) -> Fixture) -> Option<ToleranceShare> {
-        let (plain, likelihood) = self.change(&moved(SMALL))?;
+        let (plain, likelihood) = self.change(&moved(TOLERANCE_STEP))?;
         let compliance = likelihood.zip(self.of.fit).and_then(|((k, _), (fit, ..))| {
             let at = |sign: f64| of_interfaces(&moved(sign), self.of.sides, fit.stiffness + k.scale(sign));
             at(1.0).zip(at(-1.0)).map(|(up, down)| std::array::from_fn(|e| 0.5 * (up[e] - down[e])))
@@ -137,14 +135,14 @@ impl Stated<'_> {
         };
         let h41 = read.as_ref().unwrap_or(&of.spectrum.h41);
         let there = mean(of, &sides, &h41.values, &compliances);
-        let scaled = |a: RealMatrix2, b: RealMatrix2| (a - b).scale(1.0 / SMALL);
+        let scaled = |a: RealMatrix2, b: RealMatrix2| (a - b).scale(1.0 / TOLERANCE_STEP);
         let plain = (scaled(there.0, self.mean.0), scaled(there.1, self.mean.1));
         if !(plain.0.is_finite() && plain.1.is_finite()) {
             return None;
         }
         let optimum = self.optimum.as_ref();
         let fitted = optimum.and_then(|optimum| optimum.moved((&plan, &sides), &compliances));
-        Some((plain, fitted.map(|(k, c)| (k.scale(1.0 / SMALL), c.scale(1.0 / SMALL)))))
+        Some((plain, fitted.map(|(k, c)| (k.scale(1.0 / TOLERANCE_STEP), c.scale(1.0 / TOLERANCE_STEP)))))
     }
 }
 

@@ -1,61 +1,24 @@
 //! What a diagnosis found: the repaired fixture's joints, supports and effects, with what `diagnosis.json` says of their uncertainty.
 
+mod entry;
+mod nodes;
+mod omitted;
+
 use crate::numbering::Numbering;
 use crate::numbers::short;
 use crate::parts::{Element, Omitted, Part};
 use crate::repaired_joint::{RepairedJoint, is_on};
-use crate::{Export, ExportError, ExportOptions, Joint, JointEnd};
-use jointscope_fixture::{Damping, Dof, Effect, EffectKind as Kind, Fixture, Place};
+use crate::{Export, ExportError, ExportOptions, Joint};
+use entry::{DiagnosisEntry, FindingEntry, says};
+use jointscope_fixture::{Dof, Effect, EffectKind as Kind, Fixture, Place};
+use nodes::FixtureNodes;
+use omitted::{damping, findings_beside_effects, why_not};
 use serde::Deserialize;
 use serde_json::Value;
-use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
 /// Lines of K and C by frequency over the recording's band.
 const LINES: usize = 201;
-/// Abscissae that are one, m.
-const SAME_PLACE: f64 = 1e-9;
-
-/// What is read of a `diagnosis.json`.
-#[derive(Deserialize)]
-struct DiagnosisEntry {
-    verdict: String,
-    findings: Vec<FindingEntry>,
-    #[serde(default)]
-    unnamed: bool,
-    #[serde(default)]
-    recording: BandEntry,
-    #[serde(default)]
-    band: Option<(f64, f64)>,
-}
-
-#[derive(Default, Deserialize)]
-struct BandEntry {
-    #[serde(default)]
-    from: Option<f64>,
-    #[serde(default)]
-    to: Option<f64>,
-}
-
-#[derive(Deserialize)]
-struct FindingEntry {
-    kind: String,
-    place: String,
-    #[serde(default)]
-    dof: Option<String>,
-    #[serde(default)]
-    parameters: BTreeMap<String, ParameterEntry>,
-    #[serde(default)]
-    probability: Option<f64>,
-}
-
-#[derive(Deserialize)]
-struct ParameterEntry {
-    #[serde(default)]
-    value: Option<f64>,
-    #[serde(default)]
-    std: Option<f64>,
-}
 
 /// A diagnosis as an export, of the contents of its `diagnosis.json` and its repaired fixture.
 ///
@@ -72,11 +35,7 @@ pub fn of_diagnosis(
         return Err(ExportError::Unexplained);
     }
     let mut exporter = Exporter {
-        fixture: repaired,
-        shifts: shifts(repaired),
-        numbering: Numbering::from(options.first_id)?,
-        numbers_are_the_models: options.nodes.is_some(),
-        points: BTreeMap::new(),
+        nodes: FixtureNodes::new(repaired, Numbering::from(options.first_id)?, options.nodes.is_some()),
         notes: vec![format!("verdict of the diagnosis: {}", diagnosis.verdict)],
         parts: Vec::new(),
         omitted: Vec::new(),
@@ -92,12 +51,12 @@ pub fn of_diagnosis(
     exporter.notes.extend(joints.iter().filter_map(Joint::indefinite));
     exporter.supports();
     repaired.physics().iter().for_each(|effect| exporter.effect(effect));
-    exporter.findings_beside_effects();
-    exporter.damping();
+    exporter.omitted.extend(findings_beside_effects(&diagnosis.findings, repaired.physics()));
+    exporter.omitted.extend(damping(repaired.damping()));
     if joints.is_empty() && exporter.parts.is_empty() {
         return Err(ExportError::Nothing);
     }
-    let (nodes, first_id) = exporter.numbering.finish();
+    let (nodes, first_id) = exporter.nodes.numbering.finish();
     Export {
         title: format!("the repaired fixture of a diagnosis, {}", repaired.name()),
         notes: exporter.notes,
@@ -110,42 +69,8 @@ pub fn of_diagnosis(
     .checked()
 }
 
-impl DiagnosisEntry {
-    /// The recording's band, Hz.
-    fn band(&self) -> Option<(f64, f64)> {
-        let band = self.recording.from.zip(self.recording.to).or(self.band)?;
-        let (from, to) = (band.0.max(1e-3 * band.1), band.1);
-        (from > 0.0 && from < to).then_some((from, to))
-    }
-}
-
-/// How far a longer joint moves the bodies beyond it, m, by body.
-fn shifts(fixture: &Fixture) -> Vec<f64> {
-    let mut shifts = vec![0.0; fixture.bodies().len()];
-    let body = |point: usize| fixture.points()[point].body;
-    for (index, joint) in fixture.joints().iter().enumerate() {
-        let longer = |e: &&Effect| e.kind == Kind::JointLength && is_on(fixture, joint, e);
-        let dx: f64 = fixture.physics().iter().filter(longer).map(|effect| effect.value(0)).sum();
-        let mut beyond = vec![false; shifts.len()];
-        beyond[body(joint.to)] = true;
-        loop {
-            let others = fixture.joints().iter().enumerate().filter(|(other, _)| *other != index);
-            let reached = others.map(|(_, other)| (body(other.from), body(other.to)));
-            let Some((a, b)) = reached.into_iter().find(|(a, b)| beyond[*a] != beyond[*b]) else { break };
-            (beyond[a], beyond[b]) = (true, true);
-        }
-        shifts.iter_mut().zip(&beyond).filter(|(_, beyond)| **beyond).for_each(|(shift, _)| *shift += dx);
-    }
-    shifts
-}
-
 struct Exporter<'a> {
-    fixture: &'a Fixture,
-    shifts: Vec<f64>,
-    numbering: Numbering,
-    numbers_are_the_models: bool,
-    /// Nodes of points by their index.
-    points: BTreeMap<usize, u64>,
+    nodes: FixtureNodes<'a>,
     notes: Vec<String>,
     parts: Vec<Part>,
     omitted: Vec<Omitted>,
@@ -155,7 +80,7 @@ struct Exporter<'a> {
 
 impl Exporter<'_> {
     fn joints(&mut self, options: &ExportOptions) -> Result<Vec<Joint>, ExportError> {
-        let fixture = self.fixture;
+        let fixture = self.nodes.fixture;
         let known = || fixture.joints().iter().map(|j| j.name.as_str()).collect::<Vec<_>>().join(", ");
         let chosen: Vec<_> = fixture
             .joints()
@@ -172,8 +97,7 @@ impl Exporter<'_> {
         }
         if let (Some(nodes), [joint]) = (options.nodes, chosen.as_slice()) {
             for (point, number) in [joint.from, joint.to].into_iter().zip(nodes) {
-                let (x, says) = (self.x_of(point), self.point_says(point));
-                self.points.insert(point, self.numbering.existing(number, x, says)?);
+                self.nodes.existing(point, number)?;
             }
         }
         for joint in fixture.joints().iter().filter(|joint| !chosen.iter().any(|c| c.name == joint.name)) {
@@ -184,12 +108,13 @@ impl Exporter<'_> {
     }
 
     fn joint(&mut self, joint: &jointscope_fixture::Joint, by_line: bool) -> Result<Joint, ExportError> {
-        let element = RepairedJoint::new(self.fixture, joint)
+        let element = RepairedJoint::new(self.nodes.fixture, joint)
             .map_err(|error| ExportError::Diagnosis(error.to_string()))?;
         let centre = self.band.map_or(1.0, |(from, to)| (from * to).sqrt());
         let matrices = element.matrices(centre).map_err(|error| ExportError::Diagnosis(error.to_string()))?;
-        let on_it = self.fixture.physics().iter().filter(|effect| is_on(self.fixture, joint, effect));
-        let on_it: Vec<String> = on_it.map(|effect| self.says(effect)).collect();
+        let on_it =
+            self.nodes.fixture.physics().iter().filter(|effect| is_on(self.nodes.fixture, joint, effect));
+        let on_it: Vec<String> = on_it.map(|effect| says(self.findings, effect)).collect();
         let effects = match on_it.is_empty() {
             true => "no effects".to_owned(),
             false => on_it.join("; "),
@@ -210,7 +135,9 @@ impl Exporter<'_> {
                 element.lines((0..LINES).map(|i| from + step * i as f64))
             }
         };
-        let rotates = |point: usize| self.fixture.bodies()[self.fixture.points()[point].body].kind.rotates();
+        let rotates = |point: usize| {
+            self.nodes.fixture.bodies()[self.nodes.fixture.points()[point].body].kind.rotates()
+        };
         let scalar = !(rotates(joint.from) && rotates(joint.to));
         let cut = |[[a, b], [c, d]]: jointscope_comparison::Matrix| match scalar {
             true => [[a, 0.0], [0.0, 0.0]],
@@ -219,8 +146,8 @@ impl Exporter<'_> {
         Ok(Joint {
             name: joint.name.clone(),
             says: format!("of the repaired fixture, with {effects}"),
-            from: self.end(joint.from),
-            to: self.end(joint.to),
+            from: self.nodes.end(joint.from),
+            to: self.nodes.end(joint.to),
             length: matrices.length,
             scalar,
             stiffness: cut(matrices.stiffness),
@@ -233,52 +160,10 @@ impl Exporter<'_> {
         })
     }
 
-    fn end(&mut self, point: usize) -> JointEnd {
-        let node = self.node_of(point);
-        let named = &self.fixture.points()[point];
-        let body = self.fixture.bodies()[named.body].name.clone();
-        JointEnd { point: named.name.clone(), body, x: self.x_of(point), node }
-    }
-
-    fn x_of(&self, point: usize) -> f64 {
-        let point = &self.fixture.points()[point];
-        point.x.value + self.shifts[point.body]
-    }
-
-    fn point_says(&self, point: usize) -> String {
-        let point = &self.fixture.points()[point];
-        format!("point {} of body {}", point.name, self.fixture.bodies()[point.body].name)
-    }
-
-    fn node_of(&mut self, point: usize) -> u64 {
-        if let Some(node) = self.points.get(&point) {
-            return *node;
-        }
-        let (x, says) = (self.x_of(point), self.point_says(point));
-        // Beside nodes of the model, names of points are no numbers of its nodes.
-        let node = match self.numbers_are_the_models {
-            true => self.numbering.on_body(x, &says),
-            false => self.numbering.point(&self.fixture.points()[point].name, x, &says),
-        };
-        self.points.insert(point, node);
-        node
-    }
-
-    /// The node at an abscissa of a body: a point's where there is one.
-    fn node_at(&mut self, body: usize, x: f64) -> u64 {
-        let here =
-            |point: &jointscope_fixture::Point| point.body == body && (point.x.value - x).abs() <= SAME_PLACE;
-        if let Some(point) = self.fixture.points().iter().position(here) {
-            return self.node_of(point);
-        }
-        let says = format!("on body {}", self.fixture.bodies()[body].name);
-        self.numbering.on_body(x + self.shifts[body], &says)
-    }
-
     fn supports(&mut self) {
-        for support in self.fixture.supports() {
-            let (body, x) = self.fixture.support_place(support);
-            let node = self.node_at(body, x);
+        for support in self.nodes.fixture.supports() {
+            let (body, x) = self.nodes.fixture.support_place(support);
+            let node = self.nodes.node_at(body, x);
             let says = format!("support {} of the repaired fixture", support.name);
             let value = |q: &Option<jointscope_fixture::Quantity>| q.map_or(0.0, |q| q.value);
             let mut add = |dof: Dof, stiffness: f64, damping: f64| {
@@ -294,33 +179,33 @@ impl Exporter<'_> {
 
     /// An effect as a part, or why it is none; those of joints are in their matrices.
     fn effect(&mut self, effect: &Effect) {
-        if self.fixture.joints().iter().any(|joint| is_on(self.fixture, joint, effect)) {
+        if self.nodes.fixture.joints().iter().any(|joint| is_on(self.nodes.fixture, joint, effect)) {
             return;
         }
-        let says = self.says(effect);
+        let says = says(self.findings, effect);
         let value = |index: usize| effect.value(index);
         match (effect.kind, &effect.place) {
             (Kind::AddedMass, Place::Body(name)) => {
-                let Some(body) = self.body(name) else { return };
-                let node = self.node_at(body, value(0));
+                let Some(body) = self.nodes.body(name) else { return };
+                let node = self.nodes.node_at(body, value(0));
                 self.parts.push(Part { says, element: Element::Mass { node, mass: value(1) } });
             }
             (Kind::Support, Place::Body(name)) => {
-                let Some(body) = self.body(name) else { return };
+                let Some(body) = self.nodes.body(name) else { return };
                 let dof = effect.dof.unwrap_or(Dof::Translation);
                 let node = match dof {
-                    Dof::Translation => self.node_at(body, value(0)),
-                    Dof::Rotation => self.any_node_of(body),
+                    Dof::Translation => self.nodes.node_at(body, value(0)),
+                    Dof::Rotation => self.nodes.any_node_of(body),
                 };
                 let element = Element::Ground { node, dof, stiffness: value(1), damping: value(2) };
                 self.parts.push(Part { says, element });
             }
             (Kind::AttachedResonator, Place::Body(name)) => {
-                let Some(body) = self.body(name) else { return };
-                let from = self.node_at(body, value(0));
+                let Some(body) = self.nodes.body(name) else { return };
+                let from = self.nodes.node_at(body, value(0));
                 let (mass, omega, ratio) = (value(1), TAU * value(2), value(3));
                 let on = format!("mass of the resonator on node {from}, moves along y only");
-                let to = self.numbering.along_y(value(0) + self.shifts[body], on);
+                let to = self.nodes.along_y(body, value(0), on);
                 let stiffness = mass * omega * omega;
                 let damping = 2.0 * ratio * mass * omega;
                 self.parts.push(Part {
@@ -331,120 +216,13 @@ impl Exporter<'_> {
                 self.parts.push(Part { says: format!("{says}: its spring and dashpot"), element });
             }
             (Kind::Bypass, Place::Between(one, other)) => {
-                let (Some(one), Some(other)) = (self.body(one), self.body(other)) else { return };
-                let (from, to) = (self.node_at(one, value(0)), self.node_at(other, value(1)));
+                let (Some(one), Some(other)) = (self.nodes.body(one), self.nodes.body(other)) else { return };
+                let (from, to) = (self.nodes.node_at(one, value(0)), self.nodes.node_at(other, value(1)));
                 let element = Element::Spring { from, to, stiffness: value(2), damping: value(3) };
                 self.parts.push(Part { says, element });
             }
             _ => self.omitted.push(Omitted { what: says, why: why_not(effect).to_owned() }),
         }
-    }
-
-    fn body(&self, name: &str) -> Option<usize> {
-        self.fixture.bodies().iter().position(|body| body.name == *name)
-    }
-
-    /// Some node of a body that turns as one.
-    fn any_node_of(&mut self, body: usize) -> u64 {
-        match self.fixture.points().iter().position(|point| point.body == body) {
-            Some(point) => self.node_of(point),
-            None => self.node_at(body, 0.0),
-        }
-    }
-
-    /// Findings that are no effects: quantities of the fixture that are wrong.
-    fn findings_beside_effects(&mut self) {
-        for finding in self.findings {
-            let stands_for = |effect: &Effect| {
-                finding.kind == effect.kind.name() && finding.place == effect.place.to_string()
-            };
-            if self.fixture.physics().iter().any(stands_for) {
-                continue;
-            }
-            let value = finding.parameters.get("value").and_then(|parameter| parameter.value);
-            let value = value.map_or(String::new(), |value| format!(" = {}", short(value)));
-            self.omitted.push(Omitted {
-                what: format!("{} of {}{value}", finding.kind.replace('_', " "), finding.place),
-                why: "it is a quantity of your own model: correct it there; where it is a joint's or a support's, what is written here has it".to_owned(),
-            });
-        }
-    }
-
-    fn damping(&mut self) {
-        let (what, why) = match self.fixture.damping() {
-            Damping::Undamped => return,
-            Damping::LossFactor(factor) if factor.value == 0.0 => return,
-            Damping::ModalRatios { ratios, .. } => {
-                let ratios: Vec<String> = ratios.iter().map(|ratio| short(ratio.value)).collect();
-                (
-                    format!("modal damping of the assembly, ratios {}", ratios.join(", ")),
-                    "it belongs to no element: state it in the analysis (modal damping)",
-                )
-            }
-            Damping::Rayleigh { mass, stiffness } => (
-                format!(
-                    "C = {} 1/s·M + {} s·K of bodies and joints",
-                    short(mass.value),
-                    short(stiffness.value)
-                ),
-                "it belongs to all elements: state it in the analysis (proportional damping)",
-            ),
-            Damping::LossFactor(factor) => (
-                format!("loss factor {} of the bodies", short(factor.value)),
-                "only the joints are exported, and they have it: give the bodies' material the same",
-            ),
-        };
-        self.omitted.push(Omitted { what, why: why.to_owned() });
-    }
-
-    /// An effect with its size, uncertainty and probability, or that it was stated.
-    fn says(&self, effect: &Effect) -> String {
-        let dof = effect.dof.map(|dof| dof.name());
-        let finding = self.findings.iter().find(|finding| {
-            finding.kind == effect.kind.name()
-                && finding.place == effect.place.to_string()
-                && finding.dof.as_deref() == dof
-        });
-        let parameters = effect.kind.spec().parameters.iter().enumerate().map(|(index, spec)| {
-            let std = finding.and_then(|finding| finding.parameters.get(spec.name)).and_then(|p| p.std);
-            let std = std.map_or(String::new(), |std| format!(" ± {}", short(std)));
-            format!("{} = {}{std} {}", spec.name, short(effect.value(index)), spec.unit_in(effect.dof))
-                .trim_end()
-                .to_owned()
-        });
-        let origin = match finding.map(|finding| finding.probability) {
-            Some(Some(probability)) => format!("found, probability {probability:.2}"),
-            Some(None) => "found".to_owned(),
-            None => "stated in the fixture".to_owned(),
-        };
-        let kind = effect.kind.name().replace('_', " ");
-        let dof = dof.map_or(String::new(), |dof| format!(", {dof}"));
-        let parameters = parameters.collect::<Vec<_>>().join(", ");
-        format!("{kind} of {}{dof} ({parameters}; {origin})", effect.place)
-    }
-}
-
-/// Why an effect is no element.
-fn why_not(effect: &Effect) -> &'static str {
-    match effect.kind {
-        Kind::BodyFlexibility => {
-            "a meshed body bends by itself: check its first free bending frequency against this one"
-        }
-        Kind::ShearDeformation => "it belongs to the body's own elements: let them deform in shear",
-        Kind::StiffnessChange => {
-            "it belongs to the body's own elements: multiply their Young's modulus by the factor"
-        }
-        Kind::PointOffset => "a sensor or an impact sits elsewhere: move the node that you compare with",
-        Kind::SensorMass => "the mass is there only while that response is measured",
-        Kind::ChannelGain
-        | Kind::ChannelDelay
-        | Kind::ChannelHighpass
-        | Kind::ChannelResonance
-        | Kind::ExponentialWindow => "it is of the measuring chain, not of the structure",
-        Kind::CubicStiffness | Kind::Friction | Kind::Gap => {
-            "it depends on amplitude and has no constant matrix: model it as a nonlinear spring, a slider or a gap"
-        }
-        _ => "it has no counterpart",
     }
 }
 

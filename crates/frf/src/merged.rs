@@ -12,29 +12,21 @@
 //! Blocks are halved until the last three coefficients of every FRF are noise: the coefficients of a function with poles fall geometrically, so what the first
 //! one left out holds is below noise too. Blocks too short for that, at resonances, keep their lines.
 
-use crate::noise::{self, FLOOR, NoiseSource, from_coherence, from_scatter, of_lines};
-use jointscope_linalg::generalized_symmetric_eigen;
+mod block;
+mod line_noise;
+
+use crate::noise::{self, NoiseSource};
+use block::{Basis, Block, NODES};
 use jointscope_spectra::{FrfSet, SpectraError, SpectralLines};
-use num_complex::Complex64;
+use line_noise::LineNoise;
 use std::ops::Range;
 
 /// A recording up to so many lines keeps them.
 const MANY: usize = 6400;
-/// Nodes of a block, one more than its polynomials' degree.
-const NODES: usize = 8;
 /// Fewest lines of a block: so many more than nodes that a peak in it does not pass for noise.
 const FEWEST: usize = 64;
 /// Blocks that a recording is cut into at first.
 const BLOCKS: usize = 32;
-/// Last coefficients that have to be noise, and their squares over its variance at the most.
-const LAST: usize = 3;
-const IS_NOISE: f64 = 9.0;
-/// Squared error of a line over their mean beyond which it is no noise.
-const PEAK: f64 = 20.0;
-/// Correlation of neighbouring errors beyond which they are no noise.
-const CORRELATED: f64 = 0.5;
-/// Lines on either side that the noise of lines kept is taken from too.
-const AROUND: usize = 30;
 
 /// FRFs with the variances that their noise gives them.
 #[derive(Debug, Clone, PartialEq)]
@@ -68,71 +60,10 @@ impl KnownNoise {
     }
 }
 
-/// What is known of an FRF's noise.
-enum Known<'a> {
-    Variance(&'a [f64]),
-    Coherence(&'a [f64], u32),
-    Scatter,
-}
-
-impl<'a> Known<'a> {
-    fn of(frfs: &'a FrfSet, index: usize) -> Self {
-        match (frfs.variance(index), frfs.coherence(index), frfs.averages(index)) {
-            (Some(variance), ..) => Known::Variance(variance),
-            (None, Some(coherence), Some(averages @ 2..)) => Known::Coherence(coherence, averages),
-            _ => Known::Scatter,
-        }
-    }
-
-    /// Variance of a line in the mean over some, of which `left` is that of what a polynomial leaves.
-    fn over(&self, lines: Range<usize>, values: &[Complex64], left: f64) -> f64 {
-        let mean = |all: &[f64]| all.iter().sum::<f64>() / all.len() as f64;
-        match self {
-            Known::Variance(variance) => mean(&variance[lines]),
-            Known::Coherence(coherence, averages) => {
-                let (values, coherence) = (&values[lines.clone()], &coherence[lines]);
-                mean(&of_lines(values, coherence, *averages)).max(believed(values))
-            }
-            Known::Scatter => left,
-        }
-    }
-
-    /// Variances of lines that are kept.
-    fn by_line(&self, lines: Range<usize>, hz: &[f64], values: &[Complex64]) -> Vec<f64> {
-        let near = lines.start.saturating_sub(AROUND)..(lines.end + AROUND).min(hz.len());
-        let own = lines.start - near.start..lines.end - near.start;
-        let all = match self {
-            Known::Variance(variance) => return variance[lines].to_vec(),
-            Known::Coherence(coherence, averages) => {
-                from_coherence(&values[near.clone()], &coherence[near], *averages)
-            }
-            Known::Scatter => from_scatter(&hz[near.clone()], &values[near]),
-        };
-        all[own].to_vec()
-    }
-}
-
-/// Smallest variance that is believed of a line.
-fn believed(values: &[Complex64]) -> f64 {
-    let size = values.iter().map(|v| v.norm_sqr()).sum::<f64>() / values.len() as f64;
-    (FLOOR * FLOOR * size).max(f64::MIN_POSITIVE)
-}
-
 /// What stands for some neighbouring lines.
 enum Piece {
     Kept(Range<usize>),
     Merged(Block),
-}
-
-/// A block of lines, by its nodes.
-struct Block {
-    lines: Range<usize>,
-    /// Frequencies of the nodes, Hz.
-    hz: [f64; NODES],
-    /// W_k.
-    weights: [f64; NODES],
-    /// By FRF, values at the nodes and the variance of what is left of a line.
-    frfs: Vec<([Complex64; NODES], f64)>,
 }
 
 /// All lines in pieces: blocks over which all FRFs are smooth, and lines that are kept.
@@ -181,7 +112,7 @@ fn merged(frfs: &FrfSet, band: Option<(f64, f64)>) -> Result<KnownNoise, Spectra
     let lines = SpectralLines::new(on_all(&|kept| hz[kept.clone()].to_vec(), &|block| block.hz))?;
     let (mut values, mut variances) = (Vec::new(), Vec::new());
     for frf in 0..frfs.pairs().len() {
-        let (all, known) = (frfs.values(frf), Known::of(frfs, frf));
+        let (all, known) = (frfs.values(frf), LineNoise::of(frfs, frf));
         for piece in &pieces {
             match piece {
                 Piece::Kept(lines) => values.extend_from_slice(&all[lines.clone()]),
@@ -207,129 +138,13 @@ fn merged(frfs: &FrfSet, band: Option<(f64, f64)>) -> Result<KnownNoise, Spectra
             };
             set.set_coherence(frf, on_all(&|kept| coherence[kept.clone()].to_vec(), &mean))?;
         }
-        noise.extend(match Known::of(frfs, frf) {
-            Known::Variance(_) => None,
-            Known::Coherence(..) => Some(NoiseSource::Coherence),
-            Known::Scatter => Some(NoiseSource::Scatter),
+        noise.extend(match LineNoise::of(frfs, frf) {
+            LineNoise::Variance(_) => None,
+            LineNoise::Coherence(..) => Some(NoiseSource::Coherence),
+            LineNoise::Scatter => Some(NoiseSource::Scatter),
         });
     }
     Ok(KnownNoise { frfs: set, noise, merged_from: Some(count), stands_for, taken_out })
-}
-
-/// Polynomials that are orthonormal over the lines of a block, with room for those of the next.
-#[derive(Default)]
-struct Basis {
-    /// α_j and β_j of β_{j+1} p_{j+1} = (x − α_j) p_j − β_j p_{j−1}; β_0 is that of p_0.
-    diagonal: [f64; NODES],
-    beside: [f64; NODES],
-    /// p_j on every line, polynomial after polynomial.
-    values: Vec<f64>,
-    x: Vec<f64>,
-    left: Vec<Complex64>,
-}
-
-impl Basis {
-    /// The block by its nodes; `None` where an FRF is no polynomial over it, or has a line without coherence.
-    fn block(&mut self, frfs: &FrfSet, lines: Range<usize>) -> Option<Block> {
-        let count = lines.len();
-        let hz = &frfs.lines().hz()[lines.clone()];
-        let (middle, half) = (0.5 * (hz[0] + hz[count - 1]), 0.5 * (hz[count - 1] - hz[0]));
-        self.orthonormal(hz, middle, half);
-        let mut coefficients = Vec::with_capacity(frfs.pairs().len());
-        for frf in 0..frfs.pairs().len() {
-            if frfs.coherence(frf).is_some_and(|coherence| coherence[lines.clone()].contains(&0.0)) {
-                return None;
-            }
-            coefficients.push(self.coefficients(&frfs.values(frf)[lines.clone()])?);
-        }
-        let nodes = self.nodes()?;
-        let at: [[f64; NODES]; NODES] = nodes.map(|x| self.at(x));
-        let on_nodes = |c: [Complex64; NODES]| at.map(|p| c.iter().zip(p).map(|(c, p)| c * p).sum());
-        Some(Block {
-            lines,
-            hz: nodes.map(|x| middle + half * x),
-            weights: at.map(|p| 1.0 / p.iter().map(|p| p * p).sum::<f64>()),
-            frfs: coefficients.into_iter().map(|(c, left)| (on_nodes(c), left)).collect(),
-        })
-    }
-
-    /// Makes the polynomials of x = (f − middle)/half (Stieltjes).
-    fn orthonormal(&mut self, hz: &[f64], middle: f64, half: f64) {
-        let count = hz.len();
-        self.x.clear();
-        self.x.extend(hz.iter().map(|hz| (hz - middle) / half));
-        self.values.clear();
-        self.values.resize(NODES * count, 0.0);
-        self.values[..count].fill((count as f64).sqrt().recip());
-        self.beside[0] = (count as f64).sqrt();
-        for j in 0..NODES {
-            let (done, rest) = self.values.split_at_mut((j + 1) * count);
-            let own = &done[j * count..];
-            let alpha: f64 = own.iter().zip(&self.x).map(|(p, x)| p * p * x).sum();
-            self.diagonal[j] = alpha;
-            let Some(next) = rest.get_mut(..count) else { break };
-            let mut square = 0.0;
-            for (i, next) in next.iter_mut().enumerate() {
-                let before = if j > 0 { self.beside[j] * done[(j - 1) * count + i] } else { 0.0 };
-                *next = (self.x[i] - alpha) * own[i] - before;
-                square += *next * *next;
-            }
-            self.beside[j + 1] = square.sqrt();
-            next.iter_mut().for_each(|p| *p /= square.sqrt());
-        }
-    }
-
-    /// Coefficients of an FRF and the variance of what they leave of a line; `None` where that is more than noise.
-    fn coefficients(&mut self, values: &[Complex64]) -> Option<([Complex64; NODES], f64)> {
-        let count = values.len();
-        let polynomial = |j: usize| &self.values[j * count..(j + 1) * count];
-        let coefficients: [Complex64; NODES] =
-            std::array::from_fn(|j| values.iter().zip(polynomial(j)).map(|(v, p)| v * p).sum());
-        self.left.clear();
-        self.left.extend_from_slice(values);
-        for (j, c) in coefficients.iter().enumerate() {
-            self.left.iter_mut().zip(polynomial(j)).for_each(|(left, p)| *left -= c * p);
-        }
-        let (mut sum, mut most, mut together) = (0.0, 0.0_f64, 0.0);
-        let mut before = Complex64::ZERO;
-        for left in &self.left {
-            sum += left.norm_sqr();
-            most = most.max(left.norm_sqr());
-            together += (left * before.conj()).re;
-            before = *left;
-        }
-        let variance = (sum / (count - NODES) as f64).max(believed(values));
-        let is_noise = coefficients[NODES - LAST..].iter().all(|c| c.norm_sqr() <= IS_NOISE * variance)
-            && most <= PEAK * variance
-            && together <= CORRELATED * count as f64 * variance;
-        is_noise.then_some((coefficients, variance))
-    }
-
-    /// The zeros of the polynomial after the last: eigenvalues of the recurrence's matrix.
-    fn nodes(&self) -> Option<[f64; NODES]> {
-        let (mut unit, mut matrix) = ([0.0; NODES * NODES], [0.0; NODES * NODES]);
-        for j in 0..NODES {
-            unit[j * NODES + j] = 1.0;
-            matrix[j * NODES + j] = self.diagonal[j];
-            if j > 0 {
-                matrix[j * NODES + j - 1] = self.beside[j];
-                matrix[(j - 1) * NODES + j] = self.beside[j];
-            }
-        }
-        let basis = generalized_symmetric_eigen(NODES, &unit, &matrix).ok()?;
-        basis.eigenvalues().try_into().ok()
-    }
-
-    /// All polynomials at x.
-    fn at(&self, x: f64) -> [f64; NODES] {
-        let mut p = [0.0; NODES];
-        p[0] = 1.0 / self.beside[0];
-        for j in 1..NODES {
-            let before = if j > 1 { self.beside[j - 1] * p[j - 2] } else { 0.0 };
-            p[j] = ((x - self.diagonal[j - 1]) * p[j - 1] - before) / self.beside[j];
-        }
-        p
-    }
 }
 
 #[cfg(test)]
@@ -337,6 +152,7 @@ mod tests {
     use super::*;
     use jointscope_samples::Noise;
     use jointscope_spectra::{FrfForm, FrfPair};
+    use num_complex::Complex64;
 
     const COUNT: usize = 20_000;
     const POLES: [(f64, f64); 2] = [(130.0, 0.004), (641.3, 0.002)];

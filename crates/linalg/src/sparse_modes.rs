@@ -1,3 +1,8 @@
+//! The lowest modes of a sparse pencil.
+//!
+//! faer's own partial eigensolver is as exact, must be told how many modes there are, and is faster only where there are ten or more
+//! (`docs/records/2026-11-26-partial-eigensolver.md`).
+
 use crate::sparse::SparseError;
 use crate::sparse_inertia::count_below;
 use crate::sparse_space::{Random, Space};

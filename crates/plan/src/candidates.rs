@@ -2,27 +2,13 @@
 
 use crate::PlanError;
 use crate::measure::{Measure, two_digits};
+use crate::settings::candidates::{
+    ADDED_MASS, ADDED_MASS_DEVIATION, ADDED_MASS_PLACE_DEVIATION, AVERAGES, CALLIPER, KNIFE_EDGE,
+    MASS_PLACES, MOST_POINTS, NARROWER, PENDULUM, SCALES,
+};
 use jointscope_diagnosis::Hypothesis;
 use jointscope_fixture::{BodyKind, Fixture, QuantityKey};
 use jointscope_spectra::{Channel, Dof, FrfPair};
-
-/// Points that are considered, where none are named.
-const POINTS: usize = 12;
-/// Places of a mass.
-const PLACES: usize = 6;
-/// An added mass as a share of its body's, and how well it and its place are known: a kitchen scale, a ruler.
-const MASS: f64 = 0.1;
-const MASS_KNOWN: f64 = 2e-3;
-const PLACE_KNOWN: f64 = 3e-4;
-/// Averages in all.
-const AVERAGES: u32 = 4;
-/// What scales, callipers, a knife edge and a pendulum reach: shares of a mass and an inertia, and lengths in m.
-const WEIGHED: f64 = 1e-4;
-const CALLIPER: f64 = 5e-5;
-const KNIFE_EDGE: f64 = 1e-4;
-const PENDULUM: f64 = 2e-3;
-/// Share of its present deviation to which a quantity must come to be worth a measurement.
-const NARROWER: f64 = 0.5;
 
 /// The points between which FRFs are considered: those that are named, or all of a small structure; of many those where something is, and others evenly.
 pub(crate) fn points(
@@ -32,8 +18,8 @@ pub(crate) fn points(
 ) -> Result<Vec<String>, PlanError> {
     let all: Vec<&String> = fixture.points().iter().map(|point| &point.name).collect();
     if let Some(point) = named.iter().find(|name| !all.contains(name)) {
-        let known: Vec<&str> = all.iter().take(POINTS).map(|name| name.as_str()).collect();
-        let more = if all.len() > POINTS { ", …" } else { "" };
+        let known: Vec<&str> = all.iter().take(MOST_POINTS).map(|name| name.as_str()).collect();
+        let more = if all.len() > MOST_POINTS { ", …" } else { "" };
         return Err(PlanError::UnknownPoint {
             point: point.clone(),
             known: format!("{}{more}", known.join(", ")),
@@ -42,7 +28,7 @@ pub(crate) fn points(
     if !named.is_empty() {
         return Ok(named.to_vec());
     }
-    if all.len() <= POINTS {
+    if all.len() <= MOST_POINTS {
         return Ok(all.into_iter().cloned().collect());
     }
     let is_channel = |name: &String| {
@@ -54,7 +40,7 @@ pub(crate) fn points(
     others.sort_by_key(|i| !held.contains(i));
     let free = others.split_off(others.iter().filter(|i| held.contains(i)).count());
     chosen.extend(others);
-    let left = POINTS.saturating_sub(chosen.len());
+    let left = MOST_POINTS.saturating_sub(chosen.len());
     chosen.extend((0..left).filter_map(|k| free.get(k * free.len() / left.max(1))));
     chosen.sort_unstable();
     chosen.dedup();
@@ -125,14 +111,20 @@ pub(crate) fn changes(fixture: &Fixture, points: &[String]) -> Vec<Measure> {
             places.push((point.body, point.x.value));
         }
     }
-    if places.len() > PLACES {
+    if places.len() > MASS_PLACES {
         let count = places.len();
-        places = (0..PLACES).map(|k| places[k * (count - 1) / (PLACES - 1)]).collect();
+        places = (0..MASS_PLACES).map(|k| places[k * (count - 1) / (MASS_PLACES - 1)]).collect();
     }
     let of = |(body, x): (usize, f64)| {
         let name = fixture.bodies()[body].name.clone();
-        let mass = one_two_five(MASS * mass_of(fixture, body));
-        Measure::AddedMass { mass, mass_std: MASS_KNOWN * mass, body: name, x, x_std: PLACE_KNOWN }
+        let mass = one_two_five(ADDED_MASS * mass_of(fixture, body));
+        Measure::AddedMass {
+            mass,
+            mass_std: ADDED_MASS_DEVIATION * mass,
+            body: name,
+            x,
+            x_std: ADDED_MASS_PLACE_DEVIATION,
+        }
     };
     let off_its_supports = (!fixture.supports().is_empty()).then_some(Measure::HungFreely);
     places.into_iter().map(of).chain(off_its_supports).collect()
@@ -142,7 +134,7 @@ pub(crate) fn changes(fixture: &Fixture, points: &[String]) -> Vec<Measure> {
 pub(crate) fn quantities(hypothesis: &Hypothesis) -> Vec<Measure> {
     let of = |quantity: &jointscope_fixture::NamedQuantity| {
         let reached = match quantity.key {
-            QuantityKey::Mass | QuantityKey::PointMass(_) => WEIGHED * quantity.value.abs(),
+            QuantityKey::Mass | QuantityKey::PointMass(_) => SCALES * quantity.value.abs(),
             QuantityKey::Inertia => PENDULUM * quantity.value.abs(),
             QuantityKey::Abscissa
             | QuantityKey::PointMassAbscissa(_)

@@ -3,13 +3,9 @@
 //! Response noise is a floor in the accelerance, force noise a share of |H|². A floor belongs to a sensor and its range: of an FRF that was never measured it is either
 //! as high as that of the present ones or in proportion to its own size, whichever is more.
 
+use crate::settings::noise::{FLOOR_WINDOW, FORCE_SHARE};
 use jointscope_diagnosis::Observation;
 use num_complex::Complex64;
-
-/// Lines on each side over which the floor is taken.
-const WINDOW: usize = 20;
-/// Share of a variance that the force may make where the rest of it tells the floor.
-const OF_FORCE: f64 = 0.5;
 
 /// Variance of an FRF by line: floor and share.
 #[derive(Debug, Clone, PartialEq)]
@@ -91,7 +87,7 @@ fn floors(values: &[Complex64], variance: &[f64], share: f64) -> Vec<f64> {
     let count = values.len();
     let own = |line: usize| {
         let force = share * values[line].norm_sqr();
-        (variance[line] > 0.0 && force < OF_FORCE * variance[line]).then(|| variance[line] - force)
+        (variance[line] > 0.0 && force < FORCE_SHARE * variance[line]).then(|| variance[line] - force)
     };
     let all: Vec<Option<f64>> = (0..count).map(own).collect();
     let mean = |all: &mut dyn Iterator<Item = f64>| {
@@ -100,7 +96,7 @@ fn floors(values: &[Complex64], variance: &[f64], share: f64) -> Vec<f64> {
     };
     // Where the force makes all of it there is no floor to be seen.
     let whole = mean(&mut all.iter().flatten().copied()).unwrap_or(0.0);
-    let near = |line: usize| line.saturating_sub(WINDOW)..(line + WINDOW + 1).min(count);
+    let near = |line: usize| line.saturating_sub(FLOOR_WINDOW)..(line + FLOOR_WINDOW + 1).min(count);
     (0..count).map(|line| mean(&mut all[near(line)].iter().flatten().copied()).unwrap_or(whole)).collect()
 }
 

@@ -8,7 +8,7 @@ use crate::candidates;
 use crate::expected_noise::ExpectedNoise;
 use crate::names::{Name, NameNow, Names, Remaining, carried};
 use crate::plan::PlanOptions;
-use crate::scene::Scene;
+use crate::planned_test::PlannedTest;
 use jointscope_diagnosis::{Hypothesis, Linearisation, Observation, with_idle_points_exact};
 use jointscope_fixture::Fixture;
 use jointscope_inference::{LeastSquares, NormalEquations, Precision, Settings, descend};
@@ -36,7 +36,7 @@ pub fn weighed_by(
     let known = |fixture: &Fixture| with_idle_points_exact(fixture.clone(), &channels);
     let base = known(fixture);
     let names = Names::fitted(remaining, observation, &base, options.exact)?;
-    let scene = Scene {
+    let test = PlannedTest {
         fixture: base,
         exact: options.exact,
         lines: observation.lines().clone(),
@@ -44,7 +44,7 @@ pub fn weighed_by(
         inflation: names.inflation,
         model_error: None,
     };
-    let names = names.informed(&scene, observation)?;
+    let names = names.with_information(&test, observation)?;
     let (state, observation) = (known(further.0), further.1);
     let cost = |name: &Name| {
         let hypothesis = name.hypothesis.in_fixture(&state, options.exact);
@@ -89,13 +89,13 @@ impl Problem<'_> {
         Some(descend(self, start, None, &Settings::default())?.objective)
     }
 
-    fn away(&self, at: &At) -> Vec<f64> {
+    fn departure(&self, at: &At) -> Vec<f64> {
         at.hypothesis.coordinates().iter().zip(&self.centre).map(|(at, centre)| at - centre).collect()
     }
 
-    fn pull(&self, away: &[f64]) -> Vec<f64> {
-        let rows = self.information.chunks_exact(away.len().max(1));
-        rows.map(|row| row.iter().zip(away).map(|(entry, away)| entry * away).sum()).collect()
+    fn prior_gradient(&self, departure: &[f64]) -> Vec<f64> {
+        let rows = self.information.chunks_exact(departure.len().max(1));
+        rows.map(|row| row.iter().zip(departure).map(|(entry, departure)| entry * departure).sum()).collect()
     }
 }
 
@@ -109,8 +109,13 @@ impl LeastSquares for Problem<'_> {
     fn weights(&self, _: &At) {}
 
     fn objective(&self, at: &At, (): &()) -> f64 {
-        let away = self.away(at);
-        let known: f64 = self.pull(&away).iter().zip(&away).map(|(pull, away)| pull * away).sum();
+        let departure = self.departure(at);
+        let known: f64 = self
+            .prior_gradient(&departure)
+            .iter()
+            .zip(&departure)
+            .map(|(gradient, departure)| gradient * departure)
+            .sum();
         self.observation.chi2(&at.predicted) + known
     }
 
@@ -130,8 +135,8 @@ impl LeastSquares for Problem<'_> {
         let mut equations =
             NormalEquations::of_columns(&linear.derivatives, &residual, weights, |_| false, |_| (0.0, 0.0));
         equations.information.iter_mut().zip(&self.information).for_each(|(own, known)| *own += known);
-        let pull = self.pull(&self.away(at));
-        equations.right.iter_mut().zip(&pull).for_each(|(own, pull)| *own -= pull);
+        let gradient = self.prior_gradient(&self.departure(at));
+        equations.right.iter_mut().zip(&gradient).for_each(|(own, gradient)| *own -= gradient);
         equations
     }
 

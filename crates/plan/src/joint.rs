@@ -3,112 +3,29 @@
 //! The joint's own numbers are taken as free, whatever the fixture states of them; everything else is known as the fixture says. Near the fit of the present FRFs, or of the
 //! fixture as it stands where there are none, information adds up: J + J_new, with the covariance (J + J_new)⁻¹.
 
+mod free;
+mod wanted;
+
+pub use wanted::{HalfWidth, Wanted};
+
 use crate::candidates;
 use crate::expected_noise::ExpectedNoise;
 use crate::measure::Measure;
 use crate::names::{carried, with_wide_priors};
 use crate::plan::{FrfGain, Plan, PlanOptions};
+use crate::planned_test::PlannedTest;
 use crate::products::Products;
-use crate::scene::Scene;
+use crate::settings::interval::{LEAST_REDUCTION, MOST_TOGETHER, POOR_FIT, UNDETERMINED};
+use crate::settings::noise::ASSUMED;
 use crate::suggestion::{ExpectedInterval, Suggestion};
 use crate::{PlanError, says};
+use free::with_free_joint;
 use jointscope_diagnosis::{Fit, Hypothesis, Observation};
-use jointscope_fixture::{Fixture, Joint, JointLaw, QuantityKey};
+use jointscope_fixture::Fixture;
 use jointscope_inference::Z95;
 use jointscope_linalg::Cholesky;
-use jointscope_lumped::nominal_stiffness;
 use jointscope_spectra::{FrfPair, SpectralLines};
 use rayon::prelude::*;
-use serde_json::{Value, json};
-use std::str::FromStr;
-
-/// Noise of a test that nobody has made: shares of |H| and of its root mean square, as standard deviations of the average.
-const ASSUMED: (f64, f64) = (3e-3, 3e-3);
-/// Share of the present interval that a measurement must leave out to be worth being told.
-const WORTH: f64 = 0.01;
-/// Half an interval beyond which the element is not determined, in stated values: what is left is what was taken to be known of it beforehand, or a fit that ran away.
-const UNDETERMINED: f64 = 10.0;
-/// Variance inflation from which a fit does not meet its recording.
-const NOT_MET: f64 = 100.0;
-/// Measurements that are put together at the most.
-const TOGETHER: usize = 5;
-
-/// An interval that is wanted of one element of a joint: `J/k11=1%` or `J/k11=2e4`, half of it, 95 %.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Wanted {
-    /// The joint.
-    pub joint: String,
-    /// `k` or `c`, and the element's row and column, from 1.
-    element: (char, usize, usize),
-    /// Half the width, relative or in the element's unit.
-    pub half_width: HalfWidth,
-}
-
-/// Half the width of an interval.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum HalfWidth {
-    /// As a share of the value.
-    Relative(f64),
-    /// In the unit of the value.
-    Absolute(f64),
-}
-
-impl FromStr for Wanted {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        let form = || {
-            "a joint's element and half of its 95 % interval are needed, such as J/k11=1% or J/k11=2e4"
-                .to_owned()
-        };
-        let (path, width) = text.rsplit_once('=').ok_or_else(form)?;
-        let (joint, element) = path.rsplit_once('/').ok_or_else(form)?;
-        let element = match element.trim() {
-            "k11" => ('k', 1, 1),
-            "k12" | "k21" => ('k', 1, 2),
-            "k22" => ('k', 2, 2),
-            "c11" => ('c', 1, 1),
-            "c12" | "c21" => ('c', 1, 2),
-            "c22" => ('c', 2, 2),
-            other => return Err(format!("`{other}` is none of k11, k12, k22, c11, c12 and c22")),
-        };
-        let positive = |text: &str| text.trim().parse().ok().filter(|v: &f64| v.is_finite() && *v > 0.0);
-        let half_width = match width.trim().strip_suffix('%') {
-            Some(percent) => HalfWidth::Relative(positive(percent).ok_or_else(form)? / 100.0),
-            None => HalfWidth::Absolute(positive(width).ok_or_else(form)?),
-        };
-        let joint = joint.trim();
-        let joint = joint.strip_prefix("joints/").unwrap_or(joint).to_owned();
-        if joint.is_empty() { Err(form()) } else { Ok(Wanted { joint, element, half_width }) }
-    }
-}
-
-impl Wanted {
-    fn key(&self) -> QuantityKey {
-        let (which, row, column) = self.element;
-        match which {
-            'k' => QuantityKey::JointStiffness(row - 1, column - 1),
-            _ => QuantityKey::JointDamping(row - 1, column - 1),
-        }
-    }
-
-    fn reached(&self, interval: f64, value: f64) -> bool {
-        interval
-            <= match self.half_width {
-                HalfWidth::Relative(share) => share * value.abs(),
-                HalfWidth::Absolute(width) => width,
-            }
-    }
-
-    fn says(&self) -> String {
-        let (which, row, column) = self.element;
-        let width = match self.half_width {
-            HalfWidth::Relative(share) => format!("{} %", says::three(100.0 * share)),
-            HalfWidth::Absolute(width) => format!("{} {}", says::three(width), self.key().unit()),
-        };
-        format!("{which}{row}{column} of joint {} to within ± {width} (95 %)", self.joint)
-    }
-}
 
 /// What a plan for an interval starts from.
 #[derive(Debug, Clone)]
@@ -149,14 +66,14 @@ impl Plan {
                 (nominal, (*lines).clone(), ExpectedNoise::assumed(lines.len(), ASSUMED.0, ASSUMED.1), 1.0)
             }
         };
-        let scene =
-            Scene { fixture: freed, exact: options.exact, lines, noise, inflation, model_error: None };
-        Joints { scene: &scene, hypothesis: &hypothesis, start, wanted }.plan(&points)
+        let test =
+            PlannedTest { fixture: freed, exact: options.exact, lines, noise, inflation, model_error: None };
+        Joints { test: &test, hypothesis: &hypothesis, start, wanted }.plan(&points)
     }
 }
 
 struct Joints<'a> {
-    scene: &'a Scene,
+    test: &'a PlannedTest,
     hypothesis: &'a Hypothesis,
     start: &'a Start<'a>,
     wanted: &'a Wanted,
@@ -180,14 +97,14 @@ impl Joints<'_> {
         let count = self.hypothesis.parameters().len();
         let again = match self.start {
             Start::Recorded(observation) => {
-                Some(self.scene.products_of(names, observation).ok_or_else(not_comparable)?.information(0))
+                Some(self.test.products_of(names, observation).ok_or_else(not_comparable)?.information(0))
             }
             Start::Lines(_) => None,
         };
         let known =
             with_wide_priors(self.hypothesis, again.clone().unwrap_or_else(|| vec![0.0; count * count]));
         let frfs = candidates::frfs(points, present);
-        let by_frf = self.scene.products(names, &frfs).ok_or_else(not_comparable)?;
+        let by_frf = self.test.products(names, &frfs).ok_or_else(not_comparable)?;
         let all = self.candidates(points, (&frfs, &by_frf), again.as_deref(), (present, &known));
         // Before anything is recorded there is no interval.
         let now = again.as_ref().and_then(|_| self.interval(self.hypothesis, &known));
@@ -211,10 +128,10 @@ impl Joints<'_> {
         let together = (!reached_now && !alone).then(|| self.together(&all, &known)).flatten();
         let question = format!("What makes the interval narrower: {}?", self.wanted.says());
         let (says, mut remarks) = self.comes_to(reached_now, now, &suggestions, together);
-        if now.is_none() && self.scene.inflation > NOT_MET {
+        if now.is_none() && self.test.inflation > POOR_FIT {
             remarks.push(says::not_met());
         }
-        remarks.extend(says::remarks(&suggestions, self.scene.inflation, false));
+        remarks.extend(says::remarks(&suggestions, self.test.inflation, false));
         if let Start::Lines(_) = self.start {
             remarks.push(format!(
                 "Nothing was recorded yet: the noise is taken as {} % of each value and {} % of each FRF's root mean square",
@@ -257,7 +174,7 @@ impl Joints<'_> {
         }
         all.extend(candidates::quantities(self.hypothesis).into_iter().filter_map(|m| self.of_quantity(m)));
         if !present.is_empty() {
-            let changes = candidates::changes(&self.scene.fixture, points);
+            let changes = candidates::changes(&self.test.fixture, points);
             all.extend(changes.into_iter().filter_map(|measure| self.of_change(measure, present, known)));
         }
         all
@@ -270,7 +187,7 @@ impl Joints<'_> {
         now: Option<f64>,
         recorded: usize,
     ) -> Vec<Suggestion> {
-        ranked.retain(|(interval, _)| now.is_none_or(|now| *interval <= (1.0 - WORTH) * now));
+        ranked.retain(|(interval, _)| now.is_none_or(|now| *interval <= (1.0 - LEAST_REDUCTION) * now));
         let value = self.value();
         let effort = |candidate: &Candidate| candidate.measure.effort(recorded);
         let key = |(interval, candidate): &(f64, &Candidate)| match self.wanted.reached(*interval, value) {
@@ -387,9 +304,9 @@ impl Joints<'_> {
     }
 
     fn of_change(&self, measure: Measure, present: &[FrfPair], known: &[f64]) -> Option<Candidate> {
-        let fixture = measure.changed(&self.scene.fixture)?;
-        let hypothesis = self.hypothesis.in_fixture(&fixture, self.scene.exact);
-        let by_frf = self.scene.products(std::slice::from_ref(&hypothesis), present)?;
+        let fixture = measure.changed(&self.test.fixture)?;
+        let hypothesis = self.hypothesis.in_fixture(&fixture, self.test.exact);
+        let by_frf = self.test.products(std::slice::from_ref(&hypothesis), present)?;
         let mut sum = Products::none(&by_frf.first()?.widths);
         by_frf.iter().for_each(|own| sum.add(own));
         let carried = carried(known, self.hypothesis, &hypothesis);
@@ -404,12 +321,13 @@ impl Joints<'_> {
         let mut left: Vec<&Candidate> = all.iter().filter(single).collect();
         let (mut known, mut chosen) = (known.to_vec(), Vec::new());
         let mut interval = f64::INFINITY;
-        while chosen.len() < TOGETHER && !self.wanted.reached(interval, self.value()) {
+        while chosen.len() < MOST_TOGETHER && !self.wanted.reached(interval, self.value()) {
             let with = |(place, candidate): (usize, &&Candidate)| {
                 Some((self.interval(self.hypothesis, &added(&known, &candidate.information))?, place))
             };
             let best = left.iter().enumerate().filter_map(with).min_by(|a, b| a.0.total_cmp(&b.0));
-            let (narrowest, place) = best.filter(|(narrowest, _)| *narrowest < (1.0 - WORTH) * interval)?;
+            let (narrowest, place) =
+                best.filter(|(narrowest, _)| *narrowest < (1.0 - LEAST_REDUCTION) * interval)?;
             let candidate = left.swap_remove(place);
             known = added(&known, &candidate.information);
             chosen.push(candidate.measure.to_string());
@@ -421,47 +339,4 @@ impl Joints<'_> {
 
 fn added(known: &[f64], information: &[f64]) -> Vec<f64> {
     known.iter().zip(information).map(|(known, information)| known + information).collect()
-}
-
-/// The fixture with the elements of a joint free, those that are zero apart.
-fn with_free_joint(fixture: &Fixture, wanted: &Wanted) -> Result<Fixture, PlanError> {
-    let known = || fixture.joints().iter().map(|joint| joint.name.as_str()).collect::<Vec<_>>().join(", ");
-    let joint = fixture
-        .joint(&wanted.joint)
-        .ok_or_else(|| PlanError::UnknownJoint { joint: wanted.joint.clone(), known: known() })?;
-    let stiffness = nominal_stiffness(&joint.law, fixture.joint_length(joint));
-    let free = |value: f64| match value {
-        0.0 => json!({ "value": 0.0, "std": 0.0 }),
-        value => json!({ "value": value, "std": "unknown" }),
-    };
-    let matrix = |at: &dyn Fn(usize, usize) -> f64| {
-        json!([[free(at(0, 0)), free(at(0, 1))], [free(at(0, 1)), free(at(1, 1))]])
-    };
-    let stiffness_entry = matrix(&|i, j| stiffness.at(i, j));
-    let dashpots = dashpots(joint);
-    let (which, row, column) = wanted.element;
-    let element = match (which, dashpots) {
-        ('k', _) => stiffness.at(row - 1, column - 1),
-        (_, Some(damping)) => damping[row + column - 2],
-        (_, None) => return Err(PlanError::NoDashpot(wanted.joint.clone())),
-    };
-    if element == 0.0 {
-        return Err(PlanError::NoElement(wanted.says()));
-    }
-    let mut value = fixture.to_value();
-    let entry: &mut Value = &mut value["joints"][&wanted.joint];
-    let ends = [entry["from"].clone(), entry["to"].clone()];
-    let [from, to] = ends;
-    *entry = json!({ "from": from, "to": to, "stiffness": stiffness_entry });
-    if let Some(damping) = dashpots {
-        entry["damping"] = matrix(&|i, j| damping[i + j]);
-    }
-    Fixture::from_value(&value).map_err(|error| PlanError::Prediction(error.into()))
-}
-
-fn dashpots(joint: &Joint) -> Option<[f64; 3]> {
-    match &joint.law {
-        JointLaw::Stiffness { damping: Some(damping), .. } => Some(damping.map(|quantity| quantity.value)),
-        _ => None,
-    }
 }

@@ -3,13 +3,11 @@
 //! Where no fixture is right to the noise, names are weighed with an error of the model: of natural frequencies, damping ratios and residues. Between lines such an error is
 //! not independent: of one FRF it has three values a mode, not two a line. So it counts as noise so many times larger that all lines together tell no more than those values would.
 
+use crate::settings::noise::VALUES_OF_A_MODE;
 use jointscope_diagnosis::{Hypothesis, ModelError, Observation};
 use jointscope_lumped::{Assembly, Instrument, accelerances};
 use jointscope_spectra::{FrfPair, SpectralLines};
 use num_complex::Complex64;
-
-/// Values of an FRF that a mode's errors move: its frequency, damping and residue.
-const VALUES: f64 = 3.0;
 
 /// Relative errors of a model, and how many times the lines of an FRF are more than the values that these move.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -30,7 +28,7 @@ impl ModelErrorNoise {
         };
         let assembly = model.to_fixture().ok().and_then(|fixture| Assembly::new(&fixture, last).ok());
         let modes = assembly.map_or(1, |assembly| within(&assembly).max(1));
-        let times = 2.0 * hz.len() as f64 / (VALUES * modes as f64);
+        let times = 2.0 * hz.len() as f64 / (VALUES_OF_A_MODE * modes as f64);
         ModelErrorNoise {
             frequency: error.frequency,
             size: error.damping.hypot(error.residue),

@@ -1,7 +1,10 @@
 //! The names that a diagnosis has left for one finding, each at its best fit, with what the present measurement tells of its parameters.
 
 use crate::PlanError;
-use crate::scene::Scene;
+use crate::planned_test::PlannedTest;
+use crate::settings::names::{
+    FALSE_MINIMUM, LEAST_PROBABILITY, MOST_NAMES, SOUGHT_DEVIATION, UNKNOWN_DEVIATION,
+};
 use jointscope_diagnosis::{Diagnosis, Fit, Hypothesis, ModelError, Observation};
 use jointscope_fixture::{Effect, Fixture, Place};
 use jointscope_linalg::Cholesky;
@@ -18,16 +21,6 @@ pub struct NameNow {
     /// Its probability, as the diagnosis states it.
     pub probability: f64,
 }
-
-/// Probability below which a name is left aside.
-const LISTED: f64 = 0.005;
-/// Names that are compared, at the most.
-const NAMES: usize = 8;
-/// Cost above what its probability says at which a fit has ended in a false minimum.
-const SHORT: f64 = 1.0;
-/// Standard deviation, in steps of a coordinate, of what nothing is known of.
-const UNKNOWN: f64 = 3.0;
-const SOUGHT: f64 = 1e3;
 
 /// What a diagnosis has left open of one finding.
 #[derive(Debug, Clone)]
@@ -63,7 +56,7 @@ impl Remaining {
                 open.or(findings.first()).ok_or(PlanError::NothingFound)?
             }
         };
-        let others = finding.alternatives.iter().filter(|(_, probability)| *probability >= LISTED);
+        let others = finding.alternatives.iter().filter(|(_, probability)| *probability >= LEAST_PROBABILITY);
         let own = (finding.effect.clone(), finding.probability);
         let names: Vec<(Effect, f64)> = std::iter::once(own).chain(others.cloned()).collect();
         if names.len() < 2 {
@@ -138,9 +131,9 @@ impl Names {
         names.sort_by(|a, b| b.1.total_cmp(&a.1));
         let listed: f64 = names.iter().map(|(_, probability)| probability).sum();
         let highest = names.iter().map(|(_, probability)| *probability).fold(f64::MIN_POSITIVE, f64::max);
-        names.truncate(NAMES);
-        let company = remaining.repaired.without(remaining.index).in_fixture(fixture, exact);
-        let start = |effect: &Effect| company.with(effect.clone());
+        names.truncate(MOST_NAMES);
+        let other_effects = remaining.repaired.without(remaining.index).in_fixture(fixture, exact);
+        let start = |effect: &Effect| other_effects.with(effect.clone());
         let fit = |effect: &Effect| {
             Fit::of(&start(effect), observation, false)
                 .ok_or_else(|| PlanError::NotComparable(effect_name(effect)))
@@ -152,7 +145,7 @@ impl Names {
         let least = fits.iter().zip(&names).map(|(fit, (_, p))| cost(fit) + 2.0 * (p / highest).ln());
         let least = least.fold(f64::INFINITY, f64::min);
         fits.par_iter_mut().zip(&names).for_each(|(own, (effect, probability))| {
-            if cost(own) > least - 2.0 * (probability / highest).ln() + SHORT
+            if cost(own) > least - 2.0 * (probability / highest).ln() + FALSE_MINIMUM
                 && let Some(other) = Fit::of(&start(effect), observation, true)
                 && other.objective < own.objective
             {
@@ -180,9 +173,13 @@ impl Names {
     }
 
     /// Takes what the present measurement tells of every name's coordinates.
-    pub(crate) fn informed(mut self, scene: &Scene, observation: &Observation) -> Result<Self, PlanError> {
+    pub(crate) fn with_information(
+        mut self,
+        test: &PlannedTest,
+        observation: &Observation,
+    ) -> Result<Self, PlanError> {
         let predict = |name: &mut Name| {
-            let products = scene.products_of(std::slice::from_ref(&name.hypothesis), observation)?;
+            let products = test.products_of(std::slice::from_ref(&name.hypothesis), observation)?;
             name.information = with_priors(&name.hypothesis, products.information(0));
             Some(())
         };
@@ -219,12 +216,12 @@ impl Names {
 
 /// Information with the priors of a hypothesis; what nothing is known of has a wide one.
 pub(crate) fn with_priors(hypothesis: &Hypothesis, information: Vec<f64>) -> Vec<f64> {
-    with_widths(hypothesis, information, UNKNOWN)
+    with_widths(hypothesis, information, UNKNOWN_DEVIATION)
 }
 
 /// The same where what nothing is known of is looked for.
 pub(crate) fn with_wide_priors(hypothesis: &Hypothesis, information: Vec<f64>) -> Vec<f64> {
-    with_widths(hypothesis, information, SOUGHT)
+    with_widths(hypothesis, information, SOUGHT_DEVIATION)
 }
 
 fn with_widths(hypothesis: &Hypothesis, mut information: Vec<f64>, unknown: f64) -> Vec<f64> {
@@ -257,7 +254,7 @@ pub(crate) fn carried(information: &[f64], from: &Hypothesis, to: &Hypothesis) -
                     carried[i * order + j] = other.map_or(0.0, |other| information[own * count + other]);
                 }
             }
-            None => carried[i * order + i] = to.parameters()[i].precision.max(UNKNOWN.powi(-2)),
+            None => carried[i * order + i] = to.parameters()[i].precision.max(UNKNOWN_DEVIATION.powi(-2)),
         }
     }
     carried

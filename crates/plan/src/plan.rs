@@ -6,10 +6,12 @@ use crate::expected_noise::ExpectedNoise;
 use crate::measure::Measure;
 use crate::model_error::ModelErrorNoise;
 use crate::names::{NameNow, Names, Remaining};
+use crate::planned_test::PlannedTest;
 use crate::products::Products;
-use crate::rivals::{Outlook, Rivals, SURE};
+use crate::rivals::{ExpectedOutcome, Rivals};
 use crate::says;
-use crate::scene::Scene;
+use crate::settings::outcome::{SEED, SURE};
+use crate::settings::ranking::{LEAST_LOG_ODDS, MOST_COMBINED, MOST_DRAWN, PROMISE_STEPS, SEPARATED};
 use crate::suggestion::Suggestion;
 use jointscope_diagnosis::{Hypothesis, Observation};
 use jointscope_fixture::{Effect, Fixture, Place};
@@ -76,18 +78,6 @@ impl FrfGain {
     }
 }
 
-/// Expected ln of the odds below which a measurement is not worth being told, nats.
-const WORTH: f64 = 0.1;
-/// Probability that two names are told apart from which they count as separated.
-const SEPARATED: f64 = 0.9;
-/// Steps of the promise within which the effort decides.
-const STEPS: f64 = 50.0;
-/// Candidates of which measurements are drawn: the best by expectation.
-const DRAWN: usize = 24;
-const SEED: u64 = 18;
-/// FRFs that others are put beside, at the most.
-const COMBINED: usize = 4;
-
 impl Plan {
     /// Plans what separates the names that a diagnosis has left. `fixture` is the one that was diagnosed.
     ///
@@ -108,7 +98,7 @@ impl Plan {
             model_error.and_then(|model_error| model_error.with_model_error(&model, observation));
         let observation = with_model_error.as_ref().unwrap_or(observation);
         let names = Names::fitted(remaining, observation, &fixture, options.exact)?;
-        let scene = Scene {
+        let test = PlannedTest {
             fixture,
             exact: options.exact,
             lines: observation.lines().clone(),
@@ -116,8 +106,8 @@ impl Plan {
             inflation: names.inflation,
             model_error,
         };
-        let names = names.informed(&scene, observation)?;
-        let judge = Judge { scene: &scene, names: &names, observation, hypotheses: names.hypotheses() };
+        let names = names.with_information(&test, observation)?;
+        let judge = Judge { test: &test, names: &names, observation, hypotheses: names.hypotheses() };
         judge.plan(&points)
     }
 }
@@ -131,7 +121,7 @@ struct Candidate {
 }
 
 struct Judge<'a> {
-    scene: &'a Scene,
+    test: &'a PlannedTest,
     names: &'a Names,
     observation: &'a Observation,
     hypotheses: Vec<Hypothesis>,
@@ -143,7 +133,7 @@ impl Judge<'_> {
         let known = self.names.known().ok_or_else(not_comparable)?;
         let present = self.observation.pairs();
         let frfs = candidates::frfs(points, present);
-        let by_frf = self.scene.products(&self.hypotheses, &frfs).ok_or_else(not_comparable)?;
+        let by_frf = self.test.products(&self.hypotheses, &frfs).ok_or_else(not_comparable)?;
         let rivals = |candidate: &Candidate| {
             Rivals::of(&candidate.products, candidate.known.as_deref().unwrap_or(&known))
         };
@@ -159,12 +149,12 @@ impl Judge<'_> {
         let both = self.pairs_of_frfs(&ranked);
         let single = |(gain, candidate, _): &(f64, Candidate, Rivals)| FrfGain::of(&candidate.measure, *gain);
         let gains = FrfGain::in_order(ranked.iter().filter_map(single), &frfs);
-        ranked.retain(|(gain, ..)| *gain >= WORTH);
-        ranked.truncate(DRAWN);
+        ranked.retain(|(gain, ..)| *gain >= LEAST_LOG_ODDS);
+        ranked.truncate(MOST_DRAWN);
         let weights = self.names.weights();
         let drawn = |(gain, candidate, rivals): &(f64, Candidate, Rivals)| {
-            let outlook = rivals.outlook(&weights, self.names.unlisted, SEED);
-            self.suggestion(candidate, *gain, &outlook)
+            let outcome = rivals.expected_outcome(&weights, self.names.unlisted, SEED);
+            self.suggestion(candidate, *gain, &outcome)
         };
         let mut suggestions: Vec<Suggestion> = ranked.par_iter().map(drawn).collect();
         // Where one measurement does not do it, two FRFs may.
@@ -175,7 +165,7 @@ impl Judge<'_> {
                     let rivals = rivals(&candidate)?;
                     Some((self.expected(&rivals), candidate, rivals))
                 })
-                .filter(|(gain, ..)| *gain >= WORTH)
+                .filter(|(gain, ..)| *gain >= LEAST_LOG_ODDS)
                 .collect();
             suggestions.par_extend(both.par_iter().map(drawn));
         }
@@ -191,7 +181,7 @@ impl Judge<'_> {
             remarks: says::sure_already(&names)
                 .into_iter()
                 .chain(self.names.added.then(says::added_names))
-                .chain(says::remarks(&suggestions, self.names.inflation, self.scene.model_error.is_some()))
+                .chain(says::remarks(&suggestions, self.names.inflation, self.test.model_error.is_some()))
                 .collect(),
             recorded: present.to_vec(),
             suggestions,
@@ -207,8 +197,8 @@ impl Judge<'_> {
         let mut whole = Products::none(&first.widths);
         by_frf.iter().for_each(|products| whole.add(products));
         Rivals::of(&whole, known).map_or_else(Vec::new, |rivals| {
-            let outlook = rivals.outlook(&self.names.weights(), self.names.unlisted, SEED);
-            self.pairs(&outlook, |apart| apart < SEPARATED)
+            let outcome = rivals.expected_outcome(&self.names.weights(), self.names.unlisted, SEED);
+            self.pairs(&outcome, |apart| apart < SEPARATED)
         })
     }
 
@@ -232,7 +222,7 @@ impl Judge<'_> {
                 here(measure, products)
             })
             .collect();
-        if let Some(again) = self.scene.products_of(&self.hypotheses, self.observation)
+        if let Some(again) = self.test.products_of(&self.hypotheses, self.observation)
             && let averages @ Measure::Averages { times } = candidates::averages()
         {
             all.push(here(averages, again.times(f64::from(times) - 1.0)));
@@ -240,7 +230,7 @@ impl Judge<'_> {
         for measure in candidates::quantities(&self.hypotheses[0]) {
             all.extend(self.of_quantity(&measure).map(|products| here(measure, products)));
         }
-        let changes = candidates::changes(&self.scene.fixture, points);
+        let changes = candidates::changes(&self.test.fixture, points);
         all.extend(changes.into_iter().filter_map(|measure| self.of_change(measure, present)));
         all
     }
@@ -261,7 +251,7 @@ impl Judge<'_> {
             let most = (0..single.len()).max_by(|a, b| divergence(a).total_cmp(&divergence(b)));
             best.extend(most.filter(|at| !best.contains(at)));
         }
-        best.truncate(COMBINED);
+        best.truncate(MOST_COMBINED);
         let both = |(a, b): (usize, usize)| {
             let mut products = single[a].1.clone();
             products.add(single[b].1);
@@ -275,10 +265,10 @@ impl Judge<'_> {
 
     /// The present FRFs of the structure with something fixed to it.
     fn of_change(&self, measure: Measure, present: &[FrfPair]) -> Option<Candidate> {
-        let fixture = measure.changed(&self.scene.fixture)?;
+        let fixture = measure.changed(&self.test.fixture)?;
         let hypotheses: Vec<Hypothesis> =
-            self.hypotheses.iter().map(|own| own.in_fixture(&fixture, self.scene.exact)).collect();
-        let by_frf = self.scene.products(&hypotheses, present)?;
+            self.hypotheses.iter().map(|own| own.in_fixture(&fixture, self.test.exact)).collect();
+        let by_frf = self.test.products(&hypotheses, present)?;
         let mut products = Products::none(&by_frf.first()?.widths);
         by_frf.iter().for_each(|own| products.add(own));
         Some(Candidate { measure, products, known: Some(self.names.known_in(&hypotheses)?) })
@@ -322,14 +312,14 @@ impl Judge<'_> {
         (0..count).map(|i| weights[i] / total * nearest(i)).sum()
     }
 
-    fn suggestion(&self, candidate: &Candidate, expected: f64, outlook: &Outlook) -> Suggestion {
+    fn suggestion(&self, candidate: &Candidate, expected: f64, outcome: &ExpectedOutcome) -> Suggestion {
         let weights = self.names.weights();
         let total: f64 = weights.iter().sum();
         let count = weights.len();
-        let pair = |i: usize, j: usize| weights[i] * weights[j] / total / total * outlook.divergence[i][j];
+        let pair = |i: usize, j: usize| weights[i] * weights[j] / total / total * outcome.divergence[i][j];
         let box_hill =
             (0..count).flat_map(|i| (0..count).map(move |j| (i, j))).map(|(i, j)| pair(i, j)).sum();
-        let separates = self.pairs(outlook, |apart| apart >= SEPARATED);
+        let separates = self.pairs(outcome, |apart| apart >= SEPARATED);
         let effort = candidate.measure.effort(self.observation.pairs().len());
         Suggestion {
             measure: candidate.measure.to_string(),
@@ -337,8 +327,8 @@ impl Judge<'_> {
             action: candidate.measure.clone(),
             expected_log_odds: Some(expected),
             box_hill: Some(box_hill),
-            sure: Some(outlook.sure),
-            says: says::of_names(&candidate.measure, expected, outlook.sure, &separates, count),
+            sure: Some(outcome.sure),
+            says: says::of_names(&candidate.measure, expected, outcome.sure, &separates, count),
             separates,
             interval: None,
             effort,
@@ -346,17 +336,17 @@ impl Judge<'_> {
     }
 
     /// The pairs of names of which this holds true, the more probable first.
-    fn pairs(&self, outlook: &Outlook, holds: impl Fn(f64) -> bool) -> Vec<[String; 2]> {
+    fn pairs(&self, outcome: &ExpectedOutcome, holds: impl Fn(f64) -> bool) -> Vec<[String; 2]> {
         let label = |i: usize| effect_name(&self.names.names[i].effect);
         let count = self.names.names.len();
         let all = (0..count).flat_map(|i| (i + 1..count).map(move |j| (i, j)));
-        all.filter(|&(i, j)| holds(outlook.separated[i][j])).map(|(i, j)| [label(i), label(j)]).collect()
+        all.filter(|&(i, j)| holds(outcome.separated[i][j])).map(|(i, j)| [label(i), label(j)]).collect()
     }
 }
 
 /// The better first: the promise; among those that keep it, the less effort; then what is expected.
 fn order(suggestion: &Suggestion) -> (f64, f64, f64) {
-    let sure = (suggestion.sure.unwrap_or(0.0) * STEPS).round() / STEPS;
+    let sure = (suggestion.sure.unwrap_or(0.0) * PROMISE_STEPS).round() / PROMISE_STEPS;
     let effort = if sure >= SURE { -suggestion.effort } else { 0.0 };
     (sure, effort, suggestion.expected_log_odds.unwrap_or(0.0))
 }

@@ -13,16 +13,10 @@
 //! of its χ² and priors, as the diagnosis weighs names.
 
 use crate::products::Products;
+use crate::settings::outcome::{DRAWS, ROUNDING, SURE};
 use jointscope_linalg::{Cholesky, normal_pair, semidefinite_factor};
 use rand::{Rng, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-
-/// Draws of a measurement by each name.
-const DRAWS: usize = 400;
-/// Probability from which a name is sure, and a promise counts as one.
-pub const SURE: f64 = 0.9;
-/// Share of the largest pivot below which a column adds nothing but rounding.
-const ROUNDING: f64 = 1e-12;
 
 /// Names over one measurement.
 pub(crate) struct Rivals {
@@ -33,7 +27,7 @@ pub(crate) struct Rivals {
 
 /// What one measurement would do for a set of names.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Outlook {
+pub(crate) struct ExpectedOutcome {
     /// D_ij, nats.
     pub divergence: Vec<Vec<f64>>,
     /// Probability that the true name is sure thereafter.
@@ -101,7 +95,7 @@ impl Rivals {
     }
 
     /// What the measurement would do: names have the weights `weights` now, up to a factor, and physics that none covers has `unlisted` against one for the best.
-    pub(crate) fn outlook(&self, weights: &[f64], unlisted: f64, seed: u64) -> Outlook {
+    pub(crate) fn expected_outcome(&self, weights: &[f64], unlisted: f64, seed: u64) -> ExpectedOutcome {
         let count = weights.len();
         let divergence = (0..count)
             .map(|i| (0..count).map(|j| if i == j { 0.0 } else { self.divergence(i, j) }).collect())
@@ -129,7 +123,7 @@ impl Rivals {
         }
         let both = |i: usize, j: usize| if i == j { 0.0 } else { f64::min(separated[i][j], separated[j][i]) };
         let separated = (0..count).map(|i| (0..count).map(|j| both(i, j)).collect()).collect();
-        Outlook { divergence, sure, separated }
+        ExpectedOutcome { divergence, sure, separated }
     }
 
     /// (y − m_j)ᵀS_j⁻¹(y − m_j) of every name, less yᵀy, for a measurement y drawn by the name `truth`.
@@ -190,11 +184,11 @@ mod tests {
             let rivals =
                 Rivals::of(&products, &[Cholesky::of(0, &[]).unwrap(), Cholesky::of(0, &[]).unwrap()])
                     .unwrap();
-            let outlook = rivals.outlook(&[0.5, 0.5], 0.0, 1);
-            assert!((outlook.divergence[0][1] - d * d / 2.0).abs() < 1e-12);
+            let outcome = rivals.expected_outcome(&[0.5, 0.5], 0.0, 1);
+            assert!((outcome.divergence[0][1] - d * d / 2.0).abs() < 1e-12);
             let expected = normal_cdf((d * d / 2.0 - 9f64.ln()) / d);
-            assert!((outlook.sure - expected).abs() < 0.05, "d = {d}: {} for {expected}", outlook.sure);
-            assert!((outlook.separated[0][1] - expected).abs() < 0.08);
+            assert!((outcome.sure - expected).abs() < 0.05, "d = {d}: {} for {expected}", outcome.sure);
+            assert!((outcome.separated[0][1] - expected).abs() < 0.08);
         }
     }
 
@@ -203,11 +197,12 @@ mod tests {
         // Name 1 differs by 3, and has a parameter of deviation 100 that moves the same number.
         let products = Products::of_number(&[(0.0, vec![1.0]), (3.0, vec![1.0])], 1.0);
         let wide = || Cholesky::of(1, &[1e-4]).unwrap();
-        let outlook = Rivals::of(&products, &[wide(), wide()]).unwrap().outlook(&[0.5, 0.5], 0.0, 1);
-        assert!(outlook.divergence[0][1] < 1e-3 && outlook.sure < 0.01, "{outlook:?}");
+        let outcome = Rivals::of(&products, &[wide(), wide()]).unwrap().expected_outcome(&[0.5, 0.5], 0.0, 1);
+        assert!(outcome.divergence[0][1] < 1e-3 && outcome.sure < 0.01, "{outcome:?}");
         let narrow = || Cholesky::of(1, &[1e6]).unwrap();
-        let outlook = Rivals::of(&products, &[narrow(), narrow()]).unwrap().outlook(&[0.5, 0.5], 0.0, 1);
-        assert!((outlook.divergence[0][1] - 4.5).abs() < 1e-3);
+        let outcome =
+            Rivals::of(&products, &[narrow(), narrow()]).unwrap().expected_outcome(&[0.5, 0.5], 0.0, 1);
+        assert!((outcome.divergence[0][1] - 4.5).abs() < 1e-3);
     }
 
     /// ½[tr(S₁⁻¹S₀) − n + dᵀS₁⁻¹d + ln det S₁/S₀] by dense matrices of order four.

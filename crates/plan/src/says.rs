@@ -2,8 +2,8 @@
 
 use crate::measure::Measure;
 use crate::names::NameNow;
-use crate::rivals::SURE;
-use crate::suggestion::{BEYOND_DOUBT, ExpectedInterval, Suggestion};
+use crate::settings::outcome::{BEYOND_DOUBT, SURE};
+use crate::suggestion::{ExpectedInterval, Suggestion};
 use jointscope_spectra::FrfPair;
 use jointscope_wording::unit::Scale;
 use jointscope_wording::{effect_name, listed};

@@ -1,9 +1,6 @@
 use crate::measure::Measure;
-use crate::rivals::SURE;
+use crate::settings::outcome::SURE;
 use serde::Serialize;
-
-/// ln of odds, nats, beyond which no figure means anything: linear predictions do not reach so far.
-pub const BEYOND_DOUBT: f64 = 100.0;
 
 /// One measurement and what it would bring.
 #[derive(Debug, Clone, PartialEq, Serialize)]

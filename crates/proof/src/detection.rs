@@ -9,12 +9,12 @@ use std::fmt::{self, Display, Formatter};
 
 /// Edges of the classes of Δχ².
 const EDGES: [f64; 11] = [0.0, 5.0, 10.0, 20.0, 35.0, 50.0, 100.0, 200.0, 1e3, 1e4, f64::INFINITY];
-/// Share of effects found that counts as sure, in the fitted course.
+/// Share of effects found that counts as sure, in the fitted curve.
 const SURE: f64 = 0.95;
-/// Precision of the prior that keeps the fitted course finite where all large effects are found and no small one: slopes beyond
+/// Precision of the prior that keeps the fitted curve finite where all large effects are found and no small one: slopes beyond
 /// five a decade cannot be told from a step.
 const PRIOR: f64 = 0.02;
-/// Δχ² by which the smallest detectable effects are stated where no course could be fitted.
+/// Δχ² by which the smallest detectable effects are stated where no curve could be fitted.
 const USUAL: f64 = 50.0;
 
 /// Single effects, graded ones included, of about the same size.
@@ -85,10 +85,11 @@ impl Smallest {
 pub struct Detection {
     /// Classes of Δχ², from the smallest.
     pub classes: Vec<SizeClass>,
-    /// Course of the share that is named over ln Δχ²: 1/(1 + exp(−(a + b·ln Δχ²))), by maximum of likelihood; `None` where nothing was
+    /// Logistic curve of the share that is named over ln Δχ²: 1/(1 + exp(−(a + b·ln Δχ²))), by maximum of likelihood; `None` where nothing was
     /// hidden.
-    pub course: Option<[f64; 2]>,
-    /// Δχ² from which half are found; `None` where the course does not rise to it.
+    #[serde(rename = "course")]
+    pub curve: Option<[f64; 2]>,
+    /// Δχ² from which half are found; `None` where the curve does not rise to it.
     pub half_named_from: Option<f64>,
     /// Δχ² from which nineteen of twenty are found.
     pub sure_from: Option<f64>,
@@ -105,21 +106,21 @@ impl Detection {
         let singles: Vec<&Judged> =
             judged.filter(|judged| judged.truth.role.is_of_one() && judged.answer.is_ok()).collect();
         let trials: Vec<Trial> = singles.iter().map(|judged| (judged.size(), judged.is_named())).collect();
-        let course = course(&trials);
-        let [half_named_from, sure_from] = [0.5, SURE].map(|share| size_of_share(course, share));
+        let curve = logistic_fit(&trials);
+        let [half_named_from, sure_from] = [0.5, SURE].map(|share| size_of_share(curve, share));
         let smallest = smallest(&singles, sure_from.unwrap_or(USUAL));
-        Detection { classes: classes(&singles), course, half_named_from, sure_from, smallest }
+        Detection { classes: classes(&singles), curve, half_named_from, sure_from, smallest }
     }
 
     /// The fitted share of effects of a size that are found under their names.
     pub fn share_at(&self, size: f64) -> Option<f64> {
-        self.course.map(|[a, b]| logistic(a + b * size.max(1.0).ln()))
+        self.curve.map(|[a, b]| logistic(a + b * size.max(1.0).ln()))
     }
 }
 
-/// Δχ² from which a share of the effects is found; `None` where the course does not rise to it.
-fn size_of_share(course: Option<[f64; 2]>, share: f64) -> Option<f64> {
-    let [a, b] = course?;
+/// Δχ² from which a share of the effects is found; `None` where the curve does not rise to it.
+fn size_of_share(curve: Option<[f64; 2]>, share: f64) -> Option<f64> {
+    let [a, b] = curve?;
     (b > 0.0).then(|| (((share / (1.0 - share)).ln() - a) / b).exp())
 }
 
@@ -143,8 +144,8 @@ fn logistic(x: f64) -> f64 {
     1.0 / (1.0 + (-x).exp())
 }
 
-/// The logistic course by Newton's method, with a weak prior on its slope; its middle is free where there are found and missed effects.
-fn course(trials: &[Trial]) -> Option<[f64; 2]> {
+/// The logistic curve by Newton's method, with a weak prior on its slope; its middle is free where there are found and missed effects.
+fn logistic_fit(trials: &[Trial]) -> Option<[f64; 2]> {
     if trials.is_empty() {
         return None;
     }
@@ -244,21 +245,21 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_course_goes_through_the_shares_that_it_was_made_of() {
+    fn the_curve_goes_through_the_shares_that_it_was_made_of() {
         // 20 % of many at Δχ² 10, 80 % at 40.
         let at = |size: f64, share: usize| (0..500).map(move |i| (size, i % 10 < share));
         let trials: Vec<Trial> = at(10.0, 2).chain(at(40.0, 8)).collect();
-        let [a, b] = course(&trials).unwrap();
+        let [a, b] = logistic_fit(&trials).unwrap();
         assert!((logistic(a + b * 10f64.ln()) - 0.2).abs() < 0.01);
         assert!((logistic(a + b * 40f64.ln()) - 0.8).abs() < 0.01);
     }
 
     #[test]
-    fn a_clean_step_has_a_finite_course_with_its_middle_on_the_step() {
+    fn a_clean_step_has_a_finite_curve_with_its_middle_on_the_step() {
         let trials: Vec<Trial> = (1..100).map(|i| (f64::from(i), i > 30)).collect();
-        let [a, b] = course(&trials).unwrap();
+        let [a, b] = logistic_fit(&trials).unwrap();
         let middle = (-a / b).exp();
         assert!((25.0..36.0).contains(&middle), "{middle}");
-        assert_eq!(course(&[]), None);
+        assert_eq!(logistic_fit(&[]), None);
     }
 }

@@ -1,7 +1,7 @@
 //! Cases from a seed: random assemblies, true quantities within tolerances, hidden physics, hammer tests.
 
+use crate::case_draft::{CaseDraft, HiddenPhysics};
 use crate::random::seed_of;
-use crate::scene::{Hides, Scene};
 use crate::workers::on_workers;
 use crate::{Case, GenerationError, Role, SealedTruths, Truth};
 use jointscope_fixture::{Effect, EffectKind, Fixture};
@@ -173,8 +173,8 @@ impl Plan {
         let role = if index >= self.cases { Role::Graded } else { ROLES[number % ROLES.len()] };
         for _ in 0..DRAWS {
             let family = self.families[random.random_range(0..self.families.len())];
-            let scene = Scene { family, role, seed, hides: InTurn { role, number } };
-            if let Some((case, drawn)) = scene.draw(&mut random)? {
+            let draft = CaseDraft { family, role, seed, hidden: InTurn { role, number } };
+            if let Some((case, drawn)) = draft.draw(&mut random)? {
                 return Ok((case, Truth { index, source, fresh, ..drawn }));
             }
         }
@@ -216,7 +216,7 @@ struct InTurn {
     number: usize,
 }
 
-impl Hides for InTurn {
+impl HiddenPhysics for InTurn {
     fn effects(
         &self,
         random: &mut impl Rng,

@@ -60,7 +60,7 @@ impl<'a> Judge<'a> {
     }
 
     /// Quantities that lie farther than so many standard deviations from what was stated.
-    pub(crate) fn strained(&self, fixture: &Fixture, beyond: f64) -> Vec<(String, f64)> {
+    pub(crate) fn beyond_tolerance(&self, fixture: &Fixture, beyond: f64) -> Vec<(String, f64)> {
         let (quantities, values) = (self.believed.quantities(), values(fixture));
         let departure = |t: &Tolerance| (quantities[t.index].path.clone(), t.departure(&values));
         self.tolerances.iter().map(departure).filter(|(_, by)| by.abs() > beyond).collect()

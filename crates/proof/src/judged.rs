@@ -81,7 +81,7 @@ pub struct Evidence {
     pub values: usize,
     /// Quantities of the repaired fixture that lie far from what was stated, in standard deviations.
     #[serde(skip)]
-    pub strained: Vec<(String, f64)>,
+    pub beyond_tolerance: Vec<(String, f64)>,
 }
 
 fn by_name<S: Serializer>(others: &BTreeMap<Name, f64>, serializer: S) -> Result<S::Ok, S::Error> {

@@ -3,7 +3,7 @@
 use crate::case_line::errors;
 use crate::judge::Judge;
 use crate::judged::error_on;
-use crate::objective::STRAINED;
+use crate::objective::FAR_BEYOND_TOLERANCE;
 use crate::{AS_GOOD, Answer, Case, CaseLine, Evidence, Found, Judgeable, Judged, Name, Role, Truth};
 use jointscope_fixture::{Effect, Fixture};
 use std::collections::BTreeMap;
@@ -37,7 +37,7 @@ impl Judgeable for Truth {
             unseen: error_on(&unseen, &answer.refitted)
                 .zip(error_on(&unseen, &answer.repaired))
                 .map(Into::into),
-            strained: judge.strained(&answer.repaired, STRAINED),
+            beyond_tolerance: judge.beyond_tolerance(&answer.repaired, FAR_BEYOND_TOLERANCE),
             without: judge.without_each(&self.fixture),
             ..Evidence::of_answer(&judge, answer)?
         };
@@ -168,7 +168,8 @@ impl Judged {
         let fresh = if self.truth.fresh { ", fresh" } else { "" };
         line.role = format!("{}{fresh}", self.truth.role.name());
         let Ok(answer) = &self.answer else { return line };
-        let Evidence { refitted, repaired, truth, others, without, unseen, strained, .. } = &self.evidence;
+        let Evidence { refitted, repaired, truth, others, without, unseen, beyond_tolerance, .. } =
+            &self.evidence;
         let [stated_refitted, stated_repaired] = answer.objectives;
         line.details.push(format!(
             "objective: refitted {refitted:.1}, repaired {repaired:.1}, fit from the truth {truth:.1} \
@@ -178,10 +179,10 @@ impl Judged {
         line.details.extend(alone);
         let hidden = self.hidden().into_iter().zip(without);
         line.details.extend(hidden.map(|(name, objective)| format!("  without {name}: {objective:.1}")));
-        let bent = strained
+        let departures = beyond_tolerance
             .iter()
             .map(|(path, by)| format!("  repaired bends {path} by {by:+.1} standard deviations"));
-        line.details.extend(bent);
+        line.details.extend(departures);
         line.details.extend(errors("unseen FRFs", *unseen));
         line.details.extend(errors("held out", answer.held_out));
         line

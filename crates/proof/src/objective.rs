@@ -6,7 +6,7 @@ use jointscope_spectra::FrfSet;
 use num_complex::Complex64;
 
 /// Standard deviations beyond which a quantity's departure is worth telling.
-pub(crate) const STRAINED: f64 = 4.0;
+pub(crate) const FAR_BEYOND_TOLERANCE: f64 = 4.0;
 
 /// A quantity of the believed fixture that may depart from its statement; Young's modulus and second moment of a beam
 /// count as their product.

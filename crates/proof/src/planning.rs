@@ -173,9 +173,9 @@ impl fmt::Display for PlannedCase {
 
 /// A case of a number, planned and carried out; `None` where its name is not open.
 fn planned(seed: u64, number: usize) -> Result<Option<PlannedCase>, GenerationError> {
-    let Some(scene) = Scene::draw(seed, number)? else { return Ok(None) };
-    let recorded = scene.measured(&scene.truth, &scene.pairs, 0)?;
-    let Some((fixture, diagnosis)) = linear(&scene.believed, &recorded) else { return Ok(None) };
+    let Some(case) = PlanningCase::draw(seed, number)? else { return Ok(None) };
+    let recorded = case.measured(&case.truth, &case.pairs, 0)?;
+    let Some((fixture, diagnosis)) = linear(&case.believed, &recorded) else { return Ok(None) };
     let [finding] = diagnosis.findings.as_slice() else { return Ok(None) };
     // By modes the name has an error of the model beside it.
     if finding.probability >= SURE || diagnosis.model_error.is_some() {
@@ -187,15 +187,15 @@ fn planned(seed: u64, number: usize) -> Result<Option<PlannedCase>, GenerationEr
     let before = remaining.names.iter().map(|(effect, p)| (Name::of(effect), *p)).collect();
     let first = plan.suggestions.first();
     let after = match first {
-        Some(first) => scene.carried_out(&first.action, &recorded, &fixture, &remaining)?,
+        Some(first) => case.carried_out(&first.action, &recorded, &fixture, &remaining)?,
         None => Vec::new(),
     };
-    let hidden = scene.hidden();
+    let hidden = case.hidden();
     let separated = after.iter().any(|(name, probability)| *name == hidden && *probability >= SURE);
     Ok(Some(PlannedCase {
         case: number,
         hidden,
-        recorded: scene.pairs.clone(),
+        recorded: case.pairs.clone(),
         before,
         first: first.map(|first| first.measure.clone()),
         promise: first.and_then(|first| first.sure).unwrap_or(0.0),
@@ -224,15 +224,15 @@ fn names(diagnosis: &Diagnosis) -> Vec<(Name, f64)> {
 }
 
 /// An assembly, what is hidden in it, and how it is measured.
-struct Scene {
+struct PlanningCase {
     believed: Fixture,
     truth: Fixture,
     pairs: Vec<FrfPair>,
     hammer: HammerTest,
 }
 
-impl Scene {
-    /// The scene of a number; `None` where the fixture has no place for what is to be hidden.
+impl PlanningCase {
+    /// The case of a number; `None` where the fixture has no place for what is to be hidden.
     fn draw(seed: u64, number: usize) -> Result<Option<Self>, GenerationError> {
         let seed = seed_of(&format!("seed {seed} plan"), number);
         let mut random = generator(seed);
@@ -252,7 +252,7 @@ impl Scene {
         let Some(effect) = random_effect(&mut random, &truth, kind, &pairs)? else { return Ok(None) };
         let truth = truth.with_physics(vec![effect]).map_err(StructureError::from)?;
         let hammer = drawn_hammer(&mut random, seed);
-        Ok(Some(Scene { believed, truth, pairs, hammer }))
+        Ok(Some(PlanningCase { believed, truth, pairs, hammer }))
     }
 
     fn hidden(&self) -> Name {
@@ -297,7 +297,7 @@ impl Scene {
             }
             Measure::Averages { times } => {
                 let hammer = HammerTest { averages: self.hammer.averages * (times - 1), ..self.hammer };
-                let more = Scene {
+                let more = PlanningCase {
                     hammer,
                     truth: self.truth.clone(),
                     believed: self.believed.clone(),

@@ -35,7 +35,7 @@ pub(crate) struct Sensitivity<'a> {
 pub(crate) struct Direction {
     values: Vec<Complex64>,
     /// Its products with the tolerances' columns.
-    pull: Vec<f64>,
+    projections: Vec<f64>,
     /// The tolerances that imitate it best.
     imitation: Vec<f64>,
 }
@@ -130,11 +130,11 @@ impl<'a> Sensitivity<'a> {
     }
 
     fn imitated(&self, values: Vec<Complex64>) -> Option<Direction> {
-        let pull: Vec<f64> = self.columns.iter().map(|column| dot(column, &values)).collect();
-        let mut imitation = pull.clone();
+        let projections: Vec<f64> = self.columns.iter().map(|column| dot(column, &values)).collect();
+        let mut imitation = projections.clone();
         let usable = values.iter().all(|v| v.is_finite());
         (usable && solve_positive_definite(&mut self.information.clone(), &mut imitation))
-            .then_some(Direction { values, pull, imitation })
+            .then_some(Direction { values, projections, imitation })
     }
 
     /// The change that an effect makes, over its strength.
@@ -152,7 +152,7 @@ impl Direction {
 
     /// The same of what is left when the quantities of the fixture have yielded within their tolerances.
     pub(crate) fn beyond_tolerances(&self, other: &Direction) -> f64 {
-        let taken: f64 = self.pull.iter().zip(&other.imitation).map(|(p, i)| p * i).sum();
+        let taken: f64 = self.projections.iter().zip(&other.imitation).map(|(p, i)| p * i).sum();
         self.whole(other) - taken
     }
 }

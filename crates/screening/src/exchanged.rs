@@ -1,20 +1,14 @@
 //! FRFs under each other's labels.
 
 use crate::levels::median;
+use crate::settings::exchanged::{FEWEST_LINES, LIKE_FIXTURE, REMAINING_SHARE};
 use jointscope_spectra::{FrfPair, FrfSet};
 use num_complex::Complex64;
-
-/// Median |ln(H/Ĥ)|² over the lines up to which an FRF is like a modelled one, and from which it is not.
-const LIKE: f64 = 0.15;
-/// What is left of that by an exchange, at most.
-const LEFT: f64 = 0.1;
-/// Fewest lines that tell.
-const FEWEST: usize = 20;
 
 /// Pairs of FRFs, by place, each of which is like what the fixture makes of the other one, and neither like its own.
 pub(crate) fn exchanged(frfs: &FrfSet, modelled: &[Complex64]) -> Vec<(usize, usize)> {
     let (count, lines) = (frfs.pairs().len(), frfs.lines().len());
-    if lines < FEWEST {
+    if lines < FEWEST_LINES {
         return Vec::new();
     }
     let distance = |recorded: usize, model: usize| {
@@ -28,11 +22,14 @@ pub(crate) fn exchanged(frfs: &FrfSet, modelled: &[Complex64]) -> Vec<(usize, us
     let mut found = Vec::new();
     for a in 0..count {
         for b in a + 1..count {
-            if taken[a] || taken[b] || own[a] < LIKE || own[b] < LIKE {
+            if taken[a] || taken[b] || own[a] < LIKE_FIXTURE || own[b] < LIKE_FIXTURE {
                 continue;
             }
             let (there, back) = (distance(a, b), distance(b, a));
-            if there < LIKE && back < LIKE && there + back < LEFT * (own[a] + own[b]) {
+            if there < LIKE_FIXTURE
+                && back < LIKE_FIXTURE
+                && there + back < REMAINING_SHARE * (own[a] + own[b])
+            {
                 (taken[a], taken[b]) = (true, true);
                 found.push((a, b));
             }

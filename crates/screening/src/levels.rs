@@ -1,5 +1,6 @@
 //! Medians, and whether FRFs are like others.
 
+use crate::settings::levels::{BETTER_SHARE, CALIBRATION};
 use num_complex::Complex64;
 
 /// The median; `None` of nothing.
@@ -13,14 +14,7 @@ pub(crate) fn ratios_apart(recorded: &[Complex64], modelled: &[Complex64]) -> Ve
     apart.filter(|apart| apart.is_finite()).collect()
 }
 
-/// Median |ln(|H|/|Ĥ|)| up to which FRFs are like a fixture's.
-pub(crate) const LIKE: f64 = 0.2;
-/// Share of a median below which another reading is the better one: what a fixture leaves out takes part in both.
-const BETTER: f64 = 1.0 / 3.0;
-/// Medians below which FRFs are alike: calibration is no better.
-const NOTHING: f64 = 0.01;
-
 /// Whether a reading that leaves `apart` is better than one that leaves `other` by more than what the fixture leaves out.
 pub(crate) fn better(apart: f64, other: f64) -> bool {
-    apart.max(NOTHING) < BETTER * other
+    apart.max(CALIBRATION) < BETTER_SHARE * other
 }

@@ -24,6 +24,7 @@ mod levels;
 mod masses;
 mod oddity;
 mod plausibility;
+mod settings;
 mod steps;
 mod unexcited;
 mod unit;
@@ -33,6 +34,7 @@ pub use oddity::Oddity;
 pub use plausibility::{Implausible, implausible, plausible};
 pub use steps::Steps;
 
+use crate::settings::dead::RMS_RATIO;
 use jointscope_fixture::Fixture;
 use jointscope_lumped::{Instrument, accelerances};
 use jointscope_spectra::{FrfForm, FrfPair, FrfSet, SpectraError};
@@ -68,9 +70,6 @@ pub enum ScreeningError {
     #[error(transparent)]
     Spectra(#[from] SpectraError),
 }
-
-/// An FRF's root mean square over that of the median one below which it has no signal.
-const DEAD: f64 = 1e-9;
 
 /// The FRFs of a test of `fixture` as they are meant.
 ///
@@ -163,7 +162,7 @@ fn alive(frfs: FrfSet, oddities: &mut Vec<Oddity>) -> Result<FrfSet, ScreeningEr
     let sizes: Vec<f64> = (0..frfs.pairs().len()).map(size).collect();
     let recorded: Vec<f64> = sizes.iter().copied().filter(|size| *size > 0.0).collect();
     let usual = levels::median(recorded).ok_or(ScreeningError::NothingRecorded)?;
-    let dead = |index: usize| sizes[index] <= DEAD * usual;
+    let dead = |index: usize| sizes[index] <= RMS_RATIO * usual;
     let names: Vec<FrfPair> =
         (0..sizes.len()).filter(|i| dead(*i)).map(|i| frfs.pairs()[i].clone()).collect();
     if names.is_empty() {

@@ -5,18 +5,12 @@
 //! its levels are off by the same factor; stiffness tells the two apart, since other masses move all natural frequencies and another unit of the FRFs moves none.
 
 use crate::levels::{better, median, ratios_apart};
+use crate::settings::masses::{MOST_BODIES, MOST_LINES, UNLIKE_FIXTURE};
 use crate::{Implausible, plausible};
 use jointscope_fixture::{Fixture, Nature, QuantityKey, QuantityOwner};
 use jointscope_lumped::{Instrument, accelerances};
 use jointscope_spectra::FrfSet;
 use num_complex::Complex64;
-
-/// Median |ln(|H|/|Ĥ|)| up to which FRFs are like the fixture's: what a fixture leaves out moves resonances, and levels between them by less than half.
-const UNLIKE: f64 = 0.35;
-/// Lines on which readings are compared: medians need no more.
-const LINES: usize = 200;
-/// Bodies of which each is tried by itself, at most.
-const BODIES: usize = 8;
 
 /// What masses are multiplied by to be in kg, and what they look like before.
 const MASSES: [(f64, &str); 7] = [
@@ -62,7 +56,7 @@ pub(crate) fn slip(
 ) -> Option<Implausible> {
     let stated = median(ratios_apart(frfs.all_values(), modelled))?;
     // Numbers that do not belong together are told by themselves.
-    if stated < UNLIKE || plausible(fixture).is_err() {
+    if stated < UNLIKE_FIXTURE || plausible(fixture).is_err() {
         return None;
     }
     let some = thinned(frfs)?;
@@ -73,7 +67,7 @@ pub(crate) fn slip(
     };
     let read = readings(fixture).into_iter().filter_map(|reading| Some((apart(&reading)?, reading)));
     let (apart, reading) = read.min_by(|a, b| a.0.total_cmp(&b.0))?;
-    if apart > UNLIKE || !better(apart, stated) {
+    if apart > UNLIKE_FIXTURE || !better(apart, stated) {
         return None;
     }
     let also = match in_another_unit {
@@ -98,7 +92,7 @@ pub(crate) fn slip(
 
 /// The FRFs on fewer lines.
 fn thinned(frfs: &FrfSet) -> Option<FrfSet> {
-    let every = frfs.lines().len().div_ceil(LINES);
+    let every = frfs.lines().len().div_ceil(MOST_LINES);
     let hz = frfs.lines().hz();
     frfs.on_lines(|line| line % every == 0 && hz[line] > 0.0)
 }
@@ -116,7 +110,7 @@ fn readings(fixture: &Fixture) -> Vec<Reading> {
         let looks = format!("all inertias look like {unit}");
         all.push(Reading { place: bodies(), looks, body: None, mass: 1.0, inertia: factor });
     }
-    for (index, body) in fixture.bodies().iter().enumerate().take(BODIES) {
+    for (index, body) in fixture.bodies().iter().enumerate().take(MOST_BODIES) {
         for factor in DECIMAL {
             let off = match factor < 1.0 {
                 true => format!("{} times too large", factor.recip()),

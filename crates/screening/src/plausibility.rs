@@ -3,6 +3,9 @@
 //! A mass in grams beside an inertia in kg·m², abscissae in mm, a modulus in GPa: each number by itself is possible, together they are of no structure, and a diagnosis would
 //! explain the slip as physics. Where a change of unit alone makes them fit, that is said.
 
+use crate::settings::plausibility::{
+    DENSITY, LEAST_MODULUS, MOST_DEPTH, SECTION_AREA, SPAN, USUAL_DENSITY, USUAL_SPAN,
+};
 use jointscope_fixture::{BodyKind, Fixture, JointLaw};
 
 /// A number that no structure has beside the others.
@@ -16,23 +19,6 @@ pub struct Implausible {
     /// What it may have been meant as, `: it looks like grams`; empty where nothing fits.
     pub advice: String,
 }
-
-/// Distances from the centre of gravity to a body's points, over its radius of gyration, that bodies have: a bar with points at its ends has √3, one with points near its
-/// middle alone next to none.
-const SPAN: (f64, f64) = (0.01, 8.0);
-/// The same of a body whose numbers are in the right units, and its mass over the cube of a bar as long as its radius of gyration asks for, kg/m³: of slender bars that is less
-/// than their density, of foam and of lead between these.
-const USUAL_SPAN: (f64, f64) = (0.3, 6.0);
-const USUAL_DENSITY: (f64, f64) = (1.0, 1e5);
-/// Young's moduli below which nothing is that carries a structure, Pa.
-const SOFT: f64 = 5e5;
-/// Depth of a section, (12 I)^¼, over the length of its beam above which that is none.
-const DEEP: f64 = 10.0;
-
-/// Densities that no beam has, kg/m³: lighter than foam, heavier than any metal.
-const DENSITY: (f64, f64) = (20.0, 25e3);
-/// A section's area over the square root of its second moment: 3.5 of a square, down to a quarter of that of a tall one or a thin tube, up to ten times that of a strip.
-const AREA: (f64, f64) = (0.8, 35.0);
 
 /// The first number of a fixture that cannot belong to the same structure as the others.
 ///
@@ -117,7 +103,7 @@ fn millimetres(metres: f64) -> String {
 }
 
 fn section(place: &str, length: f64, modulus: f64, second_moment: f64) -> Result<(), Implausible> {
-    if modulus > 0.0 && modulus < SOFT {
+    if modulus > 0.0 && modulus < LEAST_MODULUS {
         let metal = |modulus: f64| (1e9..1.5e12).contains(&modulus);
         let advice = match (metal(1e9 * modulus), metal(1e6 * modulus)) {
             (true, _) => ": it looks like GPa",
@@ -131,7 +117,7 @@ fn section(place: &str, length: f64, modulus: f64, second_moment: f64) -> Result
         });
     }
     let depth = |second_moment: f64| (12.0 * second_moment).sqrt().sqrt();
-    if second_moment > 0.0 && length > 0.0 && depth(second_moment) > DEEP * length {
+    if second_moment > 0.0 && length > 0.0 && depth(second_moment) > MOST_DEPTH * length {
         let advice = if depth(1e-12 * second_moment) < length { ": it looks like mm⁴" } else { "" };
         return Err(Implausible {
             place: format!("{place}/second_moment"),
@@ -151,8 +137,8 @@ fn density(place: &str, mass_per_length: f64, second_moment: f64) -> Result<(), 
         return Ok(());
     }
     // Of the largest area the section can have, and of the least.
-    let at_least = |mass_per_length: f64| mass_per_length / (AREA.1 * second_moment.sqrt());
-    let at_most = |mass_per_length: f64| mass_per_length / (AREA.0 * second_moment.sqrt());
+    let at_least = |mass_per_length: f64| mass_per_length / (SECTION_AREA.1 * second_moment.sqrt());
+    let at_most = |mass_per_length: f64| mass_per_length / (SECTION_AREA.0 * second_moment.sqrt());
     let possible = |mass: f64| at_least(mass) <= DENSITY.1 && at_most(mass) >= DENSITY.0;
     if possible(mass_per_length) {
         return Ok(());

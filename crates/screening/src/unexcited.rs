@@ -2,14 +2,8 @@
 
 use crate::Oddity;
 use crate::levels::median;
+use crate::settings::unexcited::{LEAST_COHERENCE, LEAST_SHARE, WINDOW_LINES};
 use jointscope_spectra::{FrfPair, FrfSet};
-
-/// Coherence below which nothing is told.
-const NONE: f64 = 0.5;
-/// Lines whose median counts.
-const WINDOW: usize = 9;
-/// Least share of the lines that is worth a word.
-const SHARE: f64 = 0.1;
 
 /// Channels whose FRFs all lack coherence from some line to the end of the band.
 pub(crate) fn unexcited(frfs: &FrfSet) -> Vec<Oddity> {
@@ -45,15 +39,15 @@ pub(crate) fn unexcited(frfs: &FrfSet) -> Vec<Oddity> {
 
 /// The first line from which on there is no coherence, where that is a part of the band worth a word.
 fn start(coherence: &[f64]) -> Option<usize> {
-    let windows = coherence.chunks(WINDOW).map(|window| median(window.to_vec()).unwrap_or(1.0));
+    let windows = coherence.chunks(WINDOW_LINES).map(|window| median(window.to_vec()).unwrap_or(1.0));
     let windows: Vec<f64> = windows.collect();
-    let none = windows.iter().rev().take_while(|value| **value < NONE).count();
-    let mut first = ((windows.len() - none) * WINDOW).min(coherence.len());
+    let none = windows.iter().rev().take_while(|value| **value < LEAST_COHERENCE).count();
+    let mut first = ((windows.len() - none) * WINDOW_LINES).min(coherence.len());
     // The first window without may begin with lines that have some, the last one with may end with lines that have none.
-    first += coherence[first..].iter().take_while(|gamma| **gamma >= NONE).count();
-    first -= coherence[..first].iter().rev().take_while(|gamma| **gamma < NONE).count();
+    first += coherence[first..].iter().take_while(|gamma| **gamma >= LEAST_COHERENCE).count();
+    first -= coherence[..first].iter().rev().take_while(|gamma| **gamma < LEAST_COHERENCE).count();
     let share = (coherence.len().saturating_sub(first)) as f64 / coherence.len().max(1) as f64;
-    (share > SHARE && first > 0).then_some(first)
+    (share > LEAST_SHARE && first > 0).then_some(first)
 }
 
 /// The FRFs without the lines on which references are [unexcited](Oddity::Unexcited): left out where none is excited, without weight otherwise. A coherence of zero is one of a

@@ -1,6 +1,7 @@
 //! FRFs in another unit than their file says: all of them larger than the fixture's by what lies between two units.
 
 use crate::levels::{median, ratios_apart};
+use crate::settings::unit::{FACTOR_TOLERANCE, FRF_SPREAD};
 use jointscope_spectra::FrfSet;
 use num_complex::Complex64;
 
@@ -12,9 +13,6 @@ const BETWEEN: [(f64, &str); 5] = [
     (4.44822, "lbf and N"),
     (1000.0, "mm and m, N and kN, or g and mV"),
 ];
-/// How near to one of them, relative, the levels must be, and how far FRFs may be from each other, as ln.
-const NEAR: f64 = 0.06;
-const ALIKE: f64 = 0.25;
 
 /// Median |ln(|H|/|Ĥ|)| that is left of FRFs over a factor.
 pub(crate) fn left(frfs: &FrfSet, modelled: &[Complex64], factor: f64) -> Option<f64> {
@@ -32,9 +30,9 @@ pub(crate) fn off_by_units(frfs: &FrfSet, modelled: &[Complex64]) -> Option<(f64
     };
     let ratios: Vec<f64> = (0..frfs.pairs().len()).map(ratio).collect::<Option<_>>()?;
     let all = median(ratios.clone())?;
-    if ratios.iter().any(|ratio| (ratio - all).abs() > ALIKE) {
+    if ratios.iter().any(|ratio| (ratio - all).abs() > FRF_SPREAD) {
         return None;
     }
     let both = BETWEEN.iter().flat_map(|(factor, units)| [(*factor, *units), (factor.recip(), *units)]);
-    both.into_iter().find(|(factor, _)| (all - factor.ln()).abs() < NEAR)
+    both.into_iter().find(|(factor, _)| (all - factor.ln()).abs() < FACTOR_TOLERANCE)
 }

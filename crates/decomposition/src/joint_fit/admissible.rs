@@ -3,8 +3,9 @@
 use super::law::{Dynamics, Form};
 use super::problem::{Fitted, Point, Problem};
 use super::smallest_eigenvalue::as_low_if_zero;
-use super::uncertainty::strain;
-use crate::likelihood::EXPLAINED;
+use super::uncertainty::tolerance_inflation;
+use crate::settings::noise::EXPLAINED;
+use crate::settings::symmetry::{ANOTHER_OPTIMUM, LARGE_GAIN, MOST_ROUNDS};
 use jointscope_inference::{Covariance, NormalEquations, SIGNIFICANT};
 use serde::Serialize;
 use std::f64::consts::SQRT_2;
@@ -47,22 +48,22 @@ pub struct Admissible {
 }
 
 /// P(a smallest eigenvalue as low as that of the symmetric or scalar matrix whose coordinates begin at `first` | zero). `noise` is the covariance with the fixture exact; variances
-/// count `strain` times.
+/// count `inflation` times.
 pub(super) fn not_negative(
     form: Form,
     at: &[f64],
     first: usize,
-    (covariance, noise, strain): (&Covariance, &Covariance, f64),
+    (covariance, noise, inflation): (&Covariance, &Covariance, f64),
 ) -> Option<f64> {
     if form == Form::Zero {
         return None;
     }
     if form == Form::Scalar {
-        return below_zero(at[first], (strain * covariance.at(first, first)).sqrt());
+        return below_zero(at[first], (inflation * covariance.at(first, first)).sqrt());
     }
     let place = |e: usize| first + e;
     let own = |of: &Covariance| {
-        std::array::from_fn(|i| std::array::from_fn(|j| strain * of.at(place(i), place(j))))
+        std::array::from_fn(|i| std::array::from_fn(|j| inflation * of.at(place(i), place(j))))
     };
     as_low_if_zero([0, 1, 2].map(|e| at[place(e)]), own(covariance), own(noise))
 }
@@ -81,13 +82,6 @@ fn below_zero(value: f64, std: f64) -> Option<f64> {
     (std > 0.0).then(|| 0.5 * statrs::function::erf::erfc(-value / (std * SQRT_2)))
 }
 
-/// Gain by freedom of symmetry from which it is asked whether the symmetric optimum is one: one time in twenty by chance.
-const LARGE_GAIN: f64 = 5.99;
-/// Decrease by which a symmetric optimum is another than the one before.
-const ANOTHER: f64 = 0.1;
-/// Times that it is asked.
-const ROUNDS: usize = 4;
-
 /// What is known of a joint whose k and c are free of symmetry.
 pub(super) enum Freed {
     /// By how much it lowers χ² to first order, in the units of [`asymmetry`]: too little for its optimum to be sought.
@@ -104,7 +98,7 @@ pub(super) enum Freed {
 /// `None` where an optimum has no derivatives.
 pub(super) fn settled(problem: &Problem, mut at: Fitted) -> Option<(Fitted, Freed)> {
     at.refresh(problem)?;
-    for _ in 0..ROUNDS {
+    for _ in 0..MOST_ROUNDS {
         if let Some(gain) = promised(problem, &at) {
             return Some((at, Freed::Promised(gain)));
         }
@@ -119,7 +113,7 @@ pub(super) fn settled(problem: &Problem, mut at: Fitted) -> Option<(Fitted, Free
             _ => return Some((at, Freed::Fitted(free))),
         }
         at.refresh(problem)?;
-        if at.point.objective > before - ANOTHER {
+        if at.point.objective > before - ANOTHER_OPTIMUM {
             return Some((at, Freed::Fitted(free)));
         }
     }
@@ -168,7 +162,7 @@ fn promised(problem: &Problem, at: &Fitted) -> Option<f64> {
     let rest = at.point.coordinates.iter().skip(problem.own()).zip(step.iter().skip(free.own()));
     let mut moved = vec![0.0; free.own()];
     moved.extend(rest.map(|(at, step)| at + step));
-    Some(gain.max(0.0) / strain(&free.parameters, free.own(), &moved, &equations.covariance()?))
+    Some(gain.max(0.0) / tolerance_inflation(&free.parameters, free.own(), &moved, &equations.covariance()?))
 }
 
 /// The optimum with k and c free of symmetry.
@@ -196,7 +190,8 @@ pub(super) fn asymmetry(problem: &Problem, symmetric: &Fitted, known: Freed) -> 
     let others = free.other_columns(&point)?;
     let at = Fitted { point, others };
     let covariance = at.equations(&free).covariance()?;
-    let scale = inflation * strain(&free.parameters, free.own(), &at.point.coordinates, &covariance);
+    let scale =
+        inflation * tolerance_inflation(&free.parameters, free.own(), &at.point.coordinates, &covariance);
     Some((symmetric.point.objective - at.point.objective).max(0.0) / scale)
 }
 

@@ -9,18 +9,10 @@
 //! (A + Δ) y = r − Δa, and is lower by (r − Δa)ᵀy − aᵀΔa, r being what pulls at a coordinate that stands at its bound.
 
 use super::law::{Dynamics, Form};
+use crate::settings::priors::{CHANGE_RANGE, LOSS_RANGE, MASS_RANGE, WIDTHS};
 use jointscope_inference::{NormalEquations, Parameter};
 use jointscope_linalg::Cholesky;
 use std::ops::Range;
-
-/// Least and largest standard deviation beforehand of a loss factor.
-const LOSSES: [f64; 2] = [1e-4, 0.3];
-/// Of the change of stiffness up to the middle of the band, as a share.
-const CHANGES: [f64; 2] = [3e-4, 0.3];
-/// Of the mass in units of its coordinate, that is of a fiftieth of the lighter side's: 0.06 to 5 % of that side.
-const MASSES: [f64; 2] = [0.03, 2.5];
-/// Widths tried of each.
-const WIDTHS: usize = 9;
 
 /// Coordinates with one unknown width.
 struct Block {
@@ -51,8 +43,9 @@ impl Fit<'_> {
             let coordinates = from..from + form.count();
             (form != Form::Zero).then_some(Block { coordinates, sizes })
         };
-        let of_mass = mass.map(|index| Block { coordinates: index..index + 1, sizes: MASSES });
-        let blocks = [block(law.damping, damping, LOSSES), block(law.change, change, CHANGES), of_mass];
+        let of_mass = mass.map(|index| Block { coordinates: index..index + 1, sizes: MASS_RANGE });
+        let blocks =
+            [block(law.damping, damping, LOSS_RANGE), block(law.change, change, CHANGE_RANGE), of_mass];
         let blocks: Vec<Block> = blocks.into_iter().flatten().collect();
         let count = WIDTHS.pow(blocks.len() as u32);
         let mut all = Vec::with_capacity(count);
@@ -75,24 +68,24 @@ impl Fit<'_> {
     fn under(&self, variances: &[f64], mass: Option<usize>) -> Option<f64> {
         let n = self.equations.order;
         let mut information = self.equations.information.clone();
-        let mut pull = vec![0.0; n];
+        let mut gradient = vec![0.0; n];
         let mut objective = self.objective;
         for (index, parameter) in self.parameters.iter().enumerate() {
             // What nothing is known of keeps its precision of zero.
             let precision = if parameter.precision > 0.0 { 1.0 / variances[index] } else { 0.0 };
             let change = precision - parameter.precision;
             information[index * n + index] += change;
-            pull[index] = -change * self.at[index];
+            gradient[index] = -change * self.at[index];
             objective += change * self.at[index] * self.at[index];
         }
         if let Some(index) = mass.filter(|&index| self.at[index] <= 0.0) {
-            // Elsewhere nothing pulls at an optimum.
-            pull[index] += self.equations.right[index].min(0.0);
+            // Elsewhere the gradient vanishes at an optimum.
+            gradient[index] += self.equations.right[index].min(0.0);
         }
         let factor = Cholesky::of(n, &information)?;
-        let mut step = pull.clone();
+        let mut step = gradient.clone();
         factor.solve_in_place(&mut step);
-        objective -= pull.iter().zip(&step).map(|(pull, step)| pull * step).sum::<f64>();
+        objective -= gradient.iter().zip(&step).map(|(gradient, step)| gradient * step).sum::<f64>();
         let widths: f64 = variances.iter().map(|variance| variance.ln()).sum();
         let positive = mass.map_or(0.0, |index| {
             let mut unit = vec![0.0; n];
@@ -141,14 +134,14 @@ mod tests {
         let mut equations = NormalEquations::zero(n);
         let (mut at, mut objective) = (vec![0.0; n], 0.0);
         for (index, (y, sigma)) in data[..n].iter().enumerate() {
-            let (told, known) = (1.0 / (sigma * sigma), parameters[index].precision);
-            at[index] = told * y / (told + known);
+            let (data, prior) = (1.0 / (sigma * sigma), parameters[index].precision);
+            at[index] = data * y / (data + prior);
             if index == 2 {
                 at[index] = at[index].max(0.0);
             }
-            objective += told * (y - at[index]).powi(2) + known * at[index] * at[index];
-            equations.information[index * n + index] = told + known;
-            equations.right[index] = told * (y - at[index]) - known * at[index];
+            objective += data * (y - at[index]).powi(2) + prior * at[index] * at[index];
+            equations.information[index * n + index] = data + prior;
+            equations.right[index] = data * (y - at[index]) - prior * at[index];
         }
         let fit = Fit { objective, at: &at, equations: &equations, parameters: &parameters };
         let variances: Vec<f64> = stds[..n].iter().map(|std| std * std).collect();
@@ -165,7 +158,7 @@ mod tests {
     fn the_evidence_is_the_mean_over_the_sizes_that_losses_may_have() {
         for (datum, noise) in [(0.002, 0.0001), (0.05, 0.001), (0.0, 0.01), (-0.02, 0.03)] {
             let mean: f64 =
-                (0..WIDTHS).map(|place| of_width(datum, noise, width(LOSSES, place)).exp()).sum::<f64>()
+                (0..WIDTHS).map(|place| of_width(datum, noise, width(LOSS_RANGE, place)).exp()).sum::<f64>()
                     / WIDTHS as f64;
             let expected = mean.ln() + of_width(0.9, 0.01, 2.0);
             let found = evidence(datum, noise, None);
@@ -178,7 +171,7 @@ mod tests {
         for datum in [2.0, 0.1, -0.4] {
             let by_width = |place: usize| {
                 // ∫₀^∞ N(y; m, σ²) 2 N(m; 0, w²) dm, by small steps.
-                let (w, sigma) = (width(MASSES, place), 0.3_f64);
+                let (w, sigma) = (width(MASS_RANGE, place), 0.3_f64);
                 let steps = 200_000;
                 let h = 8.0 * w / f64::from(steps);
                 let sum: f64 = (0..steps)

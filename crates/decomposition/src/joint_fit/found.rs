@@ -1,8 +1,8 @@
 //! What a fit of the joint finds.
 
-use super::laws::CERTAIN;
 use super::length::FittedLength;
 use super::{Admissible, JointLikelihood, JointTests, LawFit, LawKind};
+use crate::settings::laws::CERTAIN;
 use jointscope_linalg::{Matrix2, RealMatrix2};
 use jointscope_spectra::{FrfPair, FrfSet};
 use num_complex::Complex64;

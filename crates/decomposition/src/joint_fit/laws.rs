@@ -2,9 +2,13 @@
 
 use super::evidence::Fit;
 use super::law::{Dynamics, Form, LawKind};
-use super::likelihood::{JointLikelihood, told};
+use super::likelihood::{JointLikelihood, named_coordinates};
 use super::problem::{Fitted, Problem, Test};
 use crate::Sides;
+use crate::settings::laws::{
+    CERTAIN, FEW_STEPS, HOPELESS, KEPT_PROBABILITY, MASS_GAIN, MOST_STEPS, NEAR_LOG_EVIDENCE,
+};
+use crate::settings::priors::{MASS, UNKNOWN_VARIANCE};
 use jointscope_fixture::BodyKind;
 use jointscope_inference::Parameter;
 use jointscope_linalg::{ComplexMatrix2, RealMatrix2};
@@ -35,11 +39,6 @@ pub struct LawFit {
     coordinates: Vec<f64>,
 }
 
-/// Probability from which a law, or the mass of a joint, is said to hold, rather than to be the most probable one.
-pub(super) const CERTAIN: f64 = 0.95;
-/// Probability from which it is kept what FRFs tell under a law: that of the joint's own law is seldom lower.
-const PROBABLE: f64 = 1e-3;
-
 impl LawFit {
     /// Whether it is said to hold, rather than to be the most probable of the laws compared.
     pub fn is_certain(&self) -> bool {
@@ -49,7 +48,8 @@ impl LawFit {
     /// The same as one of the laws beside that of the joint's numbers, `stated`, with noise whose variance counts `inflation` times.
     pub(super) fn beside(mut self, stated: (LawKind, bool), inflation: f64) -> Self {
         let is_stated = (self.kind, self.mass.is_some()) == stated;
-        self.likelihood = self.likelihood.filter(|_| !is_stated).map(|told| told.inflated(inflation));
+        self.likelihood =
+            self.likelihood.filter(|_| !is_stated).map(|likelihood| likelihood.inflated(inflation));
         self
     }
 
@@ -125,24 +125,6 @@ impl Spread {
     }
 }
 
-/// Standard deviation beforehand of the joint's mass as a share of the lighter side's.
-const MASS: f64 = 0.02;
-/// Variance of what nothing is known of, the same for every law.
-const UNKNOWN: f64 = 1e4;
-
-/// Most steps of a law's fit: one that needs more is far from the FRFs.
-const STEPS: usize = 40;
-/// Steps of a law that promises a χ² larger by so much than the best one, and of the one without damping, whose resonances are infinite: it is near at once
-/// or not at all.
-const FEW_STEPS: usize = 10;
-const HOPELESS: f64 = 1000.0;
-/// Laws without mass whose logarithm of the evidence is as near to that of the most probable one are fitted until they have converged and tried with mass, and all if χ² of one of them falls as much by it: what a
-/// mass explains takes laws without it far from the FRFs, the true one too.
-const NEAR: f64 = 300.0;
-const WORTHWHILE: f64 = 10.0;
-/// Coordinate of the mass that they begin with.
-pub(super) const FIRST_MASS: f64 = 0.05;
-
 /// A law at its optimum.
 pub(super) struct Candidate {
     pub fit: LawFit,
@@ -180,7 +162,7 @@ fn ranked(mut all: Vec<Candidate>) -> (Vec<LawFit>, Vec<f64>) {
     let total: f64 = all.iter().map(|candidate| (candidate.evidence - most).exp()).sum();
     for candidate in &mut all {
         candidate.fit.probability = (candidate.evidence - most).exp() / total;
-        if candidate.fit.probability < PROBABLE {
+        if candidate.fit.probability < KEPT_PROBABILITY {
             candidate.fit.likelihood = None;
         }
     }
@@ -217,14 +199,14 @@ fn without_mass(viscous: &Problem, first: &Fitted) -> Vec<Candidate> {
         let problem = Problem::lawful(viscous.test, vec![law], None);
         start.extend_from_slice(&first.point.coordinates[own.count()..]);
         let hopeless = misfit - least > HOPELESS || law.kind == LawKind::Constant;
-        let steps = if hopeless { FEW_STEPS } else { STEPS };
+        let steps = if hopeless { FEW_STEPS } else { MOST_STEPS };
         let Some(fitted) = problem.fit_within(start, Some(first.others.clone()), steps) else { continue };
         let candidate = Candidate::of(&problem, &fitted, 0);
         all.extend(candidate.map(|candidate| (candidate, fitted)));
     }
     let nearest = most_evidence(all.iter().map(|(candidate, _)| candidate));
     for (candidate, fitted) in &mut all {
-        if nearest - candidate.evidence > NEAR {
+        if nearest - candidate.evidence > NEAR_LOG_EVIDENCE {
             continue;
         }
         let problem = Problem::lawful(viscous.test, vec![candidate.fit.law], None);
@@ -260,7 +242,7 @@ fn with_mass(
                 start
             }
         };
-        let mut fitted = problem.fit_within(start, None, STEPS)?;
+        let mut fitted = problem.fit_within(start, None, MOST_STEPS)?;
         let candidate = Candidate::converged(&problem, &mut fitted)?;
         Some((candidate, light.fit.objective - fitted.point.objective))
     };
@@ -268,7 +250,7 @@ fn with_mass(
     let (mut heavy, mut most): (Vec<Candidate>, f64) = (Vec::new(), 0.0);
     for light in light {
         // Where mass gains nothing for the laws nearest to the FRFs, it does not for the others.
-        if nearest - light.evidence > NEAR && most < WORTHWHILE {
+        if nearest - light.evidence > NEAR_LOG_EVIDENCE && most < MASS_GAIN {
             break;
         }
         if let Some((candidate, gain)) = with_mass(light) {
@@ -305,8 +287,9 @@ pub(super) fn mass_scale(sides: &Sides) -> f64 {
 
 /// Prior variances, those of quantities of which nothing is known being large.
 fn variances(parameters: &[Parameter]) -> Vec<f64> {
-    let variance =
-        |parameter: &Parameter| if parameter.precision > 0.0 { 1.0 / parameter.precision } else { UNKNOWN };
+    let variance = |parameter: &Parameter| {
+        if parameter.precision > 0.0 { 1.0 / parameter.precision } else { UNKNOWN_VARIANCE }
+    };
     parameters.iter().map(variance).collect()
 }
 
@@ -334,7 +317,7 @@ impl Candidate {
         let mass = problem.mass.map(|_| problem.mass_at(&at.point.coordinates));
         let mut fit = LawFit::of(law, own, at.point.objective, mass);
         if problem.laws.len() == 1 {
-            let (numbers, at) = (told(law), &at.point.coordinates);
+            let (numbers, at) = (named_coordinates(law), &at.point.coordinates);
             fit.likelihood =
                 JointLikelihood::of(&numbers, problem.own(), at, &equations, &problem.parameters);
         }

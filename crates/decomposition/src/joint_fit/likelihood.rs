@@ -25,7 +25,7 @@ pub struct JointLikelihood {
 }
 
 /// A number of a joint among the coordinates of a fit.
-pub(super) struct Told {
+pub(super) struct NamedCoordinate {
     /// What it is called.
     pub name: String,
     pub coordinate: usize,
@@ -34,9 +34,9 @@ pub(super) struct Told {
 }
 
 /// The numbers of the only joint in the middle of the band, by its law.
-pub(super) fn told(law: &Dynamics) -> Vec<Told> {
+pub(super) fn named_coordinates(law: &Dynamics) -> Vec<NamedCoordinate> {
     let units = units(law);
-    let number = |(coordinate, &place): (usize, &usize)| Told {
+    let number = |(coordinate, &place): (usize, &usize)| NamedCoordinate {
         name: ELEMENTS[place].to_owned(),
         coordinate,
         unit: units[place],
@@ -55,7 +55,7 @@ impl JointLikelihood {
     /// From the normal equations at an optimum with c free: of these numbers and of the quantities, whose coordinates begin at `own`; what is neither is
     /// integrated out. Nothing where the FRFs leave that undetermined.
     pub(super) fn of(
-        numbers: &[Told],
+        numbers: &[NamedCoordinate],
         own: usize,
         coordinates: &[f64],
         equations: &NormalEquations,
@@ -64,8 +64,8 @@ impl JointLikelihood {
         let precision = |m: usize| parameters[m].precision;
         let mut all = QuadraticLikelihood::without_priors(equations, coordinates, precision);
         // At the optimum data and priors pull against each other. That derivatives by differences give a little more or less must not move the joint.
-        let pull_of_priors = coordinates.iter().enumerate().map(|(m, at)| precision(m) * at);
-        all.gradient = pull_of_priors.collect();
+        let gradient_of_priors = coordinates.iter().enumerate().map(|(m, at)| precision(m) * at);
+        all.gradient = gradient_of_priors.collect();
         let kept: Vec<usize> =
             numbers.iter().map(|number| number.coordinate).chain(own..parameters.len()).collect();
         let si = all

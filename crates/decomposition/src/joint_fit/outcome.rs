@@ -4,9 +4,9 @@ use super::admissible::{boundary, by_chance, not_negative, refitted};
 use super::law::{Dynamics, Form};
 use super::laws::Spread;
 use super::length::length_between;
-use super::likelihood::{ELEMENTS, Told};
+use super::likelihood::{ELEMENTS, NamedCoordinate};
 use super::problem::{Fitted, Problem};
-use super::uncertainty::{strain, total, units};
+use super::uncertainty::{tolerance_inflation, total, units};
 use super::{
     FittedFrfs, FittedQuantity, Followed, JointFit, JointLikelihood, JointTests, LawFit, SeveralError,
     UnmovedQuantity,
@@ -86,10 +86,10 @@ fn with_the_fixture_exact(equations: &NormalEquations, own: usize) -> Option<Cov
 
 impl Slot {
     /// The number by its name, with that of its joint before it where there are several.
-    fn told(&self, joint: Option<&str>) -> Told {
+    fn named(&self, joint: Option<&str>) -> NamedCoordinate {
         let element = ELEMENTS[self.place];
         let name = joint.map_or(element.to_owned(), |joint| numbered(joint, element));
-        Told { name, coordinate: self.coordinate, unit: self.unit }
+        NamedCoordinate { name, coordinate: self.coordinate, unit: self.unit }
     }
 }
 
@@ -105,7 +105,7 @@ struct Free<'a> {
     covariance: Covariance,
     /// Of the joints' own coordinates, the fixture's quantities being exact.
     noise: Covariance,
-    strain: f64,
+    tolerance_inflation: f64,
 }
 
 /// The optimum that is stated, and how uncertain its numbers are.
@@ -177,17 +177,17 @@ impl Outcome<'_> {
         let (held, passive) = self.held(free.fitted)?;
         let stated = self.stated(held.as_ref(), &free)?;
         let joint = |(place, passive): (usize, bool)| {
-            let reciprocity = asymmetry(place, free.strain);
+            let reciprocity = asymmetry(place, free.tolerance_inflation);
             JointFit { is_on_the_boundary: !passive, ..self.joint(place, &free, &stated, reciprocity) }
         };
         let name = |joint: usize| setup.fixture.joints()[setup.joints[joint]].name.as_str();
-        let told = stated.slots.iter().map(|slot| slot.told(Some(name(slot.joint))));
+        let named = stated.slots.iter().map(|slot| slot.named(Some(name(slot.joint))));
         Ok(Found {
             joints: passive.into_iter().enumerate().map(joint).collect(),
             elements: stated.slots.iter().map(|slot| (slot.joint, ELEMENTS[slot.place])).collect(),
             covariance: stated.matrix(&|a, b| stated.covariance(a, b)),
             model_covariance: stated.matrix(&|a, b| stated.of_model(a, b)),
-            likelihood: self.likelihood(told, &free),
+            likelihood: self.likelihood(named, &free),
         })
     }
 
@@ -197,8 +197,9 @@ impl Outcome<'_> {
         let undetermined = || self.undetermined(&equations);
         let covariance = equations.covariance().ok_or_else(undetermined)?;
         let noise = with_the_fixture_exact(&equations, problem.own()).ok_or_else(undetermined)?;
-        let strain = strain(&problem.parameters, problem.own(), &fitted.point.coordinates, &covariance);
-        Ok(Free { fitted, equations, covariance, noise, strain })
+        let tolerance_inflation =
+            tolerance_inflation(&problem.parameters, problem.own(), &fitted.point.coordinates, &covariance);
+        Ok(Free { fitted, equations, covariance, noise, tolerance_inflation })
     }
 
     /// The numbers that are stated: those with every c held that would give out energy, if there is such a c.
@@ -214,7 +215,7 @@ impl Outcome<'_> {
             None => free.covariance.clone(),
         };
         let model = if self.inflated.by > 1.0 { at.jackknifed(problem) } else { None };
-        let total = total(&posterior, free.strain, model.as_ref());
+        let total = total(&posterior, free.tolerance_inflation, model.as_ref());
         let mass = problem
             .mass
             .map(|scale| (problem.mass_at(&at.point.coordinates), scale * total.std(problem.of_laws())));
@@ -246,7 +247,12 @@ impl Outcome<'_> {
         let [k, d, _] = law.matrices(own);
         let lowest = |form: Form, first: usize| {
             let (covariance, noise) = (&free.covariance, &free.noise);
-            not_negative(form, &free.fitted.point.coordinates, first, (covariance, noise, free.strain))
+            not_negative(
+                form,
+                &free.fitted.point.coordinates,
+                first,
+                (covariance, noise, free.tolerance_inflation),
+            )
         };
         let (laws, spread) = (&self.laws[place], &stated.spreads[place]);
         let mass = stated.mass.filter(|_| place == 0);
@@ -265,7 +271,7 @@ impl Outcome<'_> {
             ),
             chi2_per_dof: self.inflated.chi2_per_dof,
             inflation: self.inflated.by,
-            strain: free.strain,
+            strain: free.tolerance_inflation,
             is_on_the_boundary: false,
             quantities: stated.quantities.clone(),
             unmoved: self.unmoved.iter().map(|own| UnmovedQuantity::of(own, setup.fixture)).collect(),
@@ -287,7 +293,7 @@ impl Outcome<'_> {
             fitted: Arc::clone(&stated.frfs),
             mass: mass.map(|(mass, std)| (mass, std.hypot(spread.mass.sqrt()))),
             scalar: law.stiffness == Form::Scalar,
-            likelihood: self.likelihood(slots.map(|slot| slot.told(None)), free),
+            likelihood: self.likelihood(slots.map(|slot| slot.named(None)), free),
         }
     }
 
@@ -349,8 +355,12 @@ impl Outcome<'_> {
     }
 
     /// What the FRFs alone tell of these numbers and of the quantities, other joints, a mass and the rest of the laws integrated out.
-    fn likelihood(&self, numbers: impl Iterator<Item = Told>, free: &Free) -> Option<JointLikelihood> {
-        let (numbers, at): (Vec<Told>, _) = (numbers.collect(), &free.fitted.point.coordinates);
+    fn likelihood(
+        &self,
+        numbers: impl Iterator<Item = NamedCoordinate>,
+        free: &Free,
+    ) -> Option<JointLikelihood> {
+        let (numbers, at): (Vec<NamedCoordinate>, _) = (numbers.collect(), &free.fitted.point.coordinates);
         JointLikelihood::of(&numbers, self.problem.own(), at, &free.equations, &self.problem.parameters)
     }
 

@@ -1,18 +1,8 @@
 //! What is known of a joint before any FRF: how its coordinates move in a fit.
 
 use super::law::{Dynamics, LawKind};
+use crate::settings::priors::{EXPONENT, EXPONENT_MARGIN, LN_TIME, LOSS, STIFFNESS};
 use jointscope_inference::{Parameter, Transform};
-
-/// Standard deviation beforehand of an element of K, in units of the diagonal of a joint nearby.
-const STIFFNESS: f64 = 2.0;
-/// Of a loss factor in the middle of the band, and of the change of stiffness up to there as a share.
-const LOSS: f64 = 0.1;
-/// Of ln(ωτ) in the middle of the band.
-const TIME: f64 = 1.5;
-/// Of the exponent about ½: that of a uniform distribution.
-const EXPONENT: f64 = 0.29;
-/// The exponent stays this far from 0 and 1, where a springpot is a spring or a dashpot.
-const FROM_LIMITS: f64 = 0.02;
 
 /// How a joint's mass moves in a fit.
 pub(super) fn mass_parameter() -> Parameter {
@@ -45,8 +35,8 @@ fn shape_parameter(law: &Dynamics) -> Option<Parameter> {
         Parameter::new(Transform::Linear { centre: 0.0, scale: 1.0 }).with_precision(1.0 / (std * std))
     };
     match law.kind {
-        LawKind::Fractional => Some(own(EXPONENT).between(FROM_LIMITS - 0.5, 0.5 - FROM_LIMITS)),
-        LawKind::StandardLinearSolid => Some(own(TIME)),
+        LawKind::Fractional => Some(own(EXPONENT).between(EXPONENT_MARGIN - 0.5, 0.5 - EXPONENT_MARGIN)),
+        LawKind::StandardLinearSolid => Some(own(LN_TIME)),
         _ => None,
     }
 }

@@ -5,6 +5,10 @@ use super::priors::{mass_parameter, open_parameters, own_parameters};
 use super::setup::Setup;
 use super::uncertainty::jackknifed_by;
 use super::uncoupled::Uncoupled;
+use crate::settings::differences::QUANTITY_STEP;
+use crate::settings::fit::{
+    CONVERGED, CONVERGED_SHARE, CURVED_VALLEY, MOST_RESUMPTIONS, MOST_STEPS, REUSE, SIGNAL_AS_NOISE,
+};
 use jointscope_inference::{
     Convergence, Covariance, Damping, LeastSquares, NormalEquations, Parameter, Precision, Settings, descend,
 };
@@ -56,23 +60,6 @@ pub(super) struct Fitted {
     pub others: Columns,
 }
 
-/// Step of forward differences by a quantity, in standard deviations: resonances bend within a tenth of one.
-const DIFFERENCE: f64 = 1e-3;
-/// Share of a promised decrease below which a step follows a curved valley: resonances tie the joint to the blocks along one.
-const CURVED_VALLEY: f64 = 0.5;
-/// Steps of a fit at the most.
-const STEPS: usize = 80;
-/// Change of χ² below which a fit has converged: a thousandth of what one standard deviation makes.
-const CONVERGED: f64 = 1e-3;
-/// The same as a share of what χ² exceeds noise by: what the model gets wrong is counted as noise anyway.
-const NEGLIGIBLE: f64 = 1e-4;
-/// Differences by quantities serve for as long as steps gain this share of the first one's.
-const REUSE: f64 = 0.02;
-/// Shares of the signal that count as noise in the stages of a fit from afar.
-const SHARES_AS_NOISE: [f64; 4] = [1.0, 0.3, 0.06, 0.01];
-/// Times that an optimum is gone on from with derivatives taken there.
-const LOOKS: usize = 3;
-
 impl Fitted {
     /// Takes the derivatives by the quantities at the optimum, which those of the fit were taken near, and goes on where they promise more.
     ///
@@ -81,11 +68,11 @@ impl Fitted {
         for look in 0.. {
             self.others = problem.other_columns(&self.point)?;
             let promised = problem.promised(&self.point, &self.equations(problem));
-            if look == LOOKS || promised < problem.needed(self.point.objective) {
+            if look == MOST_RESUMPTIONS || promised < problem.needed(self.point.objective) {
                 break;
             }
             let here = self.point.with(self.point.coordinates.clone());
-            match problem.fit_from(here, Some(self.others.clone()), STEPS) {
+            match problem.fit_from(here, Some(self.others.clone()), MOST_STEPS) {
                 Some(next) if next.point.objective < self.point.objective => self.point = next.point,
                 _ => break,
             }
@@ -221,13 +208,13 @@ impl<'a> Problem<'a> {
         let laws = self.placed(&at.coordinates);
         let column = |index: usize| {
             let mut coordinates = at.coordinates.clone();
-            coordinates[index] += DIFFERENCE;
+            coordinates[index] += QUANTITY_STEP;
             let moved = self.uncoupled(&coordinates, Some(&at.uncoupled))?;
             let mut column = moved.coupled(self.test.setup.recorded, &laws, None)?;
             column
                 .iter_mut()
                 .zip(&at.predicted)
-                .for_each(|(there, here)| *there = (*there - here) / DIFFERENCE);
+                .for_each(|(there, here)| *there = (*there - here) / QUANTITY_STEP);
             Some(column)
         };
         (self.of_laws()..at.coordinates.len()).map(column).collect()
@@ -280,7 +267,7 @@ impl<'a> Problem<'a> {
 
     /// The optimum next to `start`, with derivatives by the quantities known from nearby where there are any.
     pub(super) fn fit(&self, start: Vec<f64>, nearby: Option<Columns>) -> Option<Fitted> {
-        self.fit_within(start, nearby, STEPS)
+        self.fit_within(start, nearby, MOST_STEPS)
     }
 
     /// The same within a number of steps.
@@ -298,7 +285,7 @@ impl<'a> Problem<'a> {
         let settings = Settings {
             steps,
             damping: Damping { initial: 1e-6, decrease: 0.03, least: 1e-15, raised: 0.0, most: 1e8 },
-            convergence: Convergence { gain: CONVERGED, share: NEGLIGIBLE, floor },
+            convergence: Convergence { gain: CONVERGED, share: CONVERGED_SHARE, floor },
             reuse: Some(REUSE),
             trust_old: true,
             curved_valley: CURVED_VALLEY,
@@ -311,7 +298,7 @@ impl<'a> Problem<'a> {
     /// A fit by stages in which less and less of the signal counts as noise, so that sharp resonances do not decide where it goes.
     pub(super) fn searched(&self, start: Vec<f64>) -> Option<Fitted> {
         let mut at = start;
-        for share in SHARES_AS_NOISE {
+        for share in SIGNAL_AS_NOISE {
             let weights = self.test.setup.recorded.weights_with(share);
             at = self.weighted(&weights).fit(at, None)?.point.coordinates;
         }
@@ -320,7 +307,7 @@ impl<'a> Problem<'a> {
 
     /// Decrease of an objective that is worth another step.
     fn needed(&self, objective: f64) -> f64 {
-        CONVERGED.max(NEGLIGIBLE * (objective - self.test.setup.recorded.degrees() as f64))
+        CONVERGED.max(CONVERGED_SHARE * (objective - self.test.setup.recorded.degrees() as f64))
     }
 
     /// The objective over what is left of the values by the parameters.

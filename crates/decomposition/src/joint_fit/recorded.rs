@@ -1,6 +1,6 @@
 //! The FRFs that a joint is fitted to: every one whose channels the fixture has, as accelerances with weights.
 
-use crate::likelihood::{EXPLAINED, UNKNOWN_NOISE};
+use crate::settings::noise::{EXPLAINED, UNKNOWN_NOISE};
 use jointscope_averaging::Band;
 use jointscope_fixture::Fixture;
 use jointscope_inference::{Parameter, autocorrelation, inflated_weight, variance_inflation};

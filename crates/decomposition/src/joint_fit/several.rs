@@ -10,6 +10,7 @@
 mod found;
 mod laws;
 
+use crate::settings::starts::{DOUBTFUL_FIT, PLAUSIBLE_DEPARTURE, START_LOSS, STIFFNESS_SHARES};
 pub use found::{FoundJoint, JointsCovariance, JointsFit, SeveralError};
 
 use super::admissible::first_order_asymmetry;
@@ -20,7 +21,7 @@ use super::quantities::uncertain;
 use super::recorded::Recorded;
 use super::setup::Setup;
 use super::uncoupled::MOST_JOINTS;
-use super::{DOUBTFUL, JointFit, JointFitOptions, START_LOSS, that_matter, units_of};
+use super::{JointFit, JointFitOptions, that_matter, units_of};
 use crate::JointEnds;
 use crate::sides::{check_instruments, with_effects_of};
 use jointscope_fixture::{BodyKind, Fixture, Joint, Place};
@@ -81,8 +82,8 @@ pub fn fit_joints(
     let problem = problem.weighted(&inflated.weights);
     let free = inflated.refitted(&problem, first).ok_or(SeveralError::NoStart)?;
     let outcome = Outcome { problem: &problem, unmoved: &unmoved, inflated: &inflated, laws };
-    let found = outcome.of(&free, &|joint, strain| {
-        first_order_asymmetry(&problem, &free, joint).map(|gain| gain / strain)
+    let found = outcome.of(&free, &|joint, inflation| {
+        first_order_asymmetry(&problem, &free, joint).map(|gain| gain / inflation)
     })?;
     let fits = joints.iter().zip(found.joints);
     let joints: Vec<FoundJoint> = fits.map(|(&joint, fit)| FoundJoint::of(fixture, joint, fit)).collect();
@@ -206,15 +207,10 @@ fn connected(fixture: &Fixture) -> Vec<usize> {
     pieces.iter().map(|piece| numbers.partition_point(|number| number < piece)).collect()
 }
 
-/// Mean square departure of the quantities, in standard deviations, above which another start is tried.
-const PLAUSIBLE: f64 = 4.0;
-/// Stiffness of the starts as shares of the fixture's.
-const SHARES: [f64; 3] = [1.0, 0.5, 2.0];
-
 /// The lowest optimum of viscous joints.
 fn lowest(problem: &Problem, start: &dyn Fn(f64) -> Vec<f64>) -> Option<Fitted> {
     let mut best: Option<Fitted> = None;
-    let attempts = std::iter::once((1.0, false)).chain(SHARES.map(|share| (share, true)));
+    let attempts = std::iter::once((1.0, false)).chain(STIFFNESS_SHARES.map(|share| (share, true)));
     for (share, from_afar) in attempts {
         let start = problem.whole(&start(share));
         let found = if from_afar { problem.searched(start) } else { problem.fit(start, None) };
@@ -233,5 +229,5 @@ fn is_plausible(problem: &Problem, point: &Point) -> bool {
     let known = known.filter(|(parameter, _)| parameter.precision > 0.0);
     let (squares, count) =
         known.fold((0.0, 0.0), |(sum, count), (parameter, at)| (sum + parameter.penalty(*at), count + 1.0));
-    problem.per_degree(point) < DOUBTFUL && squares <= PLAUSIBLE * f64::max(count, 1.0)
+    problem.per_degree(point) < DOUBTFUL_FIT && squares <= PLAUSIBLE_DEPARTURE * f64::max(count, 1.0)
 }

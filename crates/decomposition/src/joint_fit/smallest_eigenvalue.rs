@@ -10,6 +10,7 @@
 //! So it is with noise. What the fixture's quantities do to a matrix turns it as a whole, k as T k Tᵀ where a place is off, and does not lead away from the edge however far it goes: of their part
 //! of the covariance only what λ varies by to first order counts.
 
+use crate::settings::symmetry::PROJECTION_ROUNDS;
 use jointscope_linalg::Cholesky;
 
 /// Elements 11, 12, 22 of a symmetric matrix.
@@ -101,9 +102,6 @@ fn rest(covariance: &[[f64; 3]; 3], along: f64) -> [Elements; 2] {
     factors
 }
 
-/// Rounds of Gauss and Newton's method, each as long as it comes nearer.
-const ROUNDS: usize = 60;
-
 /// v vᵀ nearest to a matrix in the metric of its covariance, `solved` being multiplied by its inverse.
 fn nearest_on_the_edge(found: Elements, solved: &dyn Fn(Elements) -> Elements) -> Elements {
     let of = |[v, w]: [f64; 2]| [v * v, v * w, w * w];
@@ -118,11 +116,11 @@ fn nearest_on_the_edge(found: Elements, solved: &dyn Fn(Elements) -> Elements) -
     let length = largest.max(0.0).sqrt();
     let mut at = [length * angle.cos(), length * angle.sin()];
     let (mut least, mut damping) = (distance(at), 1e-6);
-    for _ in 0..ROUNDS {
+    for _ in 0..PROJECTION_ROUNDS {
         let [v, w] = at;
         let columns = [[2.0 * v, w, 0.0], [0.0, v, 2.0 * w]];
-        let pulled = solved(less(found, of(at)));
-        let right = columns.map(|column| dot(column, pulled));
+        let projected = solved(less(found, of(at)));
+        let right = columns.map(|column| dot(column, projected));
         let weighted = columns.map(solved);
         let own = |i: usize, j: usize| dot(columns[i], weighted[j]);
         let (p, q, r) = (own(0, 0) * (1.0 + damping), own(0, 1), own(1, 1) * (1.0 + damping));

@@ -1,7 +1,7 @@
 //! How well the joint is known: by noise and tolerances, by what the model gets wrong, by a fixture stated too surely.
 
 use super::law::Dynamics;
-use crate::likelihood::BLOCKS;
+use crate::settings::noise::JACKKNIFE_BLOCKS;
 use jointscope_inference::{Covariance, Parameter, birge_ratio, jackknife};
 
 /// k11, k12, k22, c11, c12, c22 in SI units for one unit of a viscous law's coordinates.
@@ -18,7 +18,7 @@ pub(super) fn jackknifed_by(
     coordinates: &[f64],
     step: impl Fn(&[f64]) -> Option<Vec<f64>>,
 ) -> Option<Covariance> {
-    let blocks = BLOCKS.min(lines);
+    let blocks = JACKKNIFE_BLOCKS.min(lines);
     let without = |block: usize| {
         let (from, to) = (block * lines / blocks, (block + 1) * lines / blocks);
         let outside = |i: usize| i % lines < from || i % lines >= to;
@@ -31,16 +31,21 @@ pub(super) fn jackknifed_by(
     Some(jackknife(&fits?))
 }
 
-/// Covariance of all coordinates with what strain and the model's error add.
-pub(super) fn total(posterior: &Covariance, strain: f64, model: Option<&Covariance>) -> Covariance {
+/// Covariance of all coordinates with what the inflation by tolerances and the model's error add.
+pub(super) fn total(posterior: &Covariance, inflation: f64, model: Option<&Covariance>) -> Covariance {
     let entries = posterior.entries().iter().enumerate();
-    let sum = |(e, v): (usize, &f64)| strain * v + model.map_or(0.0, |model| model.entries()[e]);
+    let sum = |(e, v): (usize, &f64)| inflation * v + model.map_or(0.0, |model| model.entries()[e]);
     Covariance::new(posterior.order(), entries.map(sum).collect())
 }
 
 /// Squared departures of the quantities (those after the first `own` parameters) from what is stated, per what chance would make of them (Birge's ratio): what of a quantity the FRFs tell may depart, what
 /// they do not tell stays. 1 where chance explains them.
-pub(super) fn strain(parameters: &[Parameter], own: usize, at: &[f64], covariance: &Covariance) -> f64 {
+pub(super) fn tolerance_inflation(
+    parameters: &[Parameter],
+    own: usize,
+    at: &[f64],
+    covariance: &Covariance,
+) -> f64 {
     let (mut squares, mut expected) = (0.0, 0.0);
     for (index, parameter) in parameters.iter().enumerate().skip(own) {
         if parameter.precision > 0.0 {
@@ -56,7 +61,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn strain_widens_every_coordinate_and_the_models_error_is_added_to_it() {
+    fn inflation_widens_every_coordinate_and_the_models_error_is_added_to_it() {
         let posterior = Covariance::new(2, vec![4.0, 1.0, 1.0, 9.0]);
         let model = Covariance::new(2, vec![0.0, 0.5, 0.5, 7.0]);
         assert_eq!(total(&posterior, 2.0, Some(&model)).entries(), [8.0, 2.5, 2.5, 25.0]);
@@ -97,7 +102,7 @@ mod tests {
     }
 
     #[test]
-    fn quantities_that_depart_further_than_chance_takes_them_strain_by_birges_ratio_of_what_is_told_of_them()
+    fn quantities_that_depart_further_than_chance_takes_them_inflate_by_birges_ratio_of_what_is_told_of_them()
     {
         let stated = Parameter::new(jointscope_inference::Transform::Linear { centre: 0.0, scale: 1.0 })
             .with_precision(1.0);
@@ -112,13 +117,18 @@ mod tests {
             }),
         );
         let of = |departures: [f64; 3]| {
-            strain(&parameters, 1, &[100.0, departures[0], departures[1], departures[2]], &covariance)
+            tolerance_inflation(
+                &parameters,
+                1,
+                &[100.0, departures[0], departures[1], departures[2]],
+                &covariance,
+            )
         };
         assert!((of([3.0, 1.0, 80.0]) - 10.0 / 0.75).abs() < 1e-12);
         // Chance: χ² of 0.75 degrees of freedom above 2.25 once in twelve times.
         assert_eq!(of([1.5, 0.0, 80.0]), 1.0);
         assert_eq!(of([0.1, 0.0, 0.0]), 1.0);
-        let untold = Covariance::new(4, (0..16).map(|e| f64::from(u8::from(e % 5 == 0))).collect());
-        assert_eq!(strain(&parameters, 1, &[0.0, 9.0, 9.0, 9.0], &untold), 1.0);
+        let undetermined = Covariance::new(4, (0..16).map(|e| f64::from(u8::from(e % 5 == 0))).collect());
+        assert_eq!(tolerance_inflation(&parameters, 1, &[0.0, 9.0, 9.0, 9.0], &undetermined), 1.0);
     }
 }

@@ -3,6 +3,8 @@
 use super::parameters::Parameters;
 use super::sums::{OfLine, Sums};
 use crate::averages::dynamic_stiffness;
+use crate::settings::constant_joint::{LINEAR_ROUNDS, LINEAR_SETTLED};
+use crate::settings::noise::UNKNOWN_NOISE;
 use crate::{Compliances, DecompositionError, JointSpectrum, Sides};
 use jointscope_averaging::Band;
 use jointscope_frf::BlockLayout;
@@ -43,13 +45,6 @@ pub(super) struct Part<'a> {
 
 /// What the linear rounds need of a line: β43 (I − X T) and β43 X with the measured X; nothing where a matrix is singular.
 pub(super) struct Linear(Vec<Option<[ComplexMatrix2; 2]>>);
-
-/// Relative standard deviation of a value without a variance.
-pub(crate) const UNKNOWN_NOISE: f64 = 1e-3;
-/// Rounds of the linear fit that finds the start.
-const ROUNDS: usize = 12;
-/// Change of k in a round, in units of √(k_ii k_jj), below which further rounds are not worth while.
-const SETTLED: f64 = 1e-6;
 
 impl Data {
     pub(super) fn new(
@@ -161,7 +156,7 @@ impl Data {
     /// Rounds of the linear problem t_pᵀ β43 [X − (I − X T) k] (I + T k₀)⁻¹ R α21 t_q = 0 for k, k₀ being the last round's.
     pub(super) fn linear_rounds(&self, linear: &Linear, start: Parameters) -> Parameters {
         let mut current = start;
-        for _ in 0..ROUNDS {
+        for _ in 0..LINEAR_ROUNDS {
             let joint_of = (current.stiffness(), current.damping());
             let mut sums = Sums::default();
             for (index, (line, measured)) in self.lines.iter().zip(&linear.0).enumerate() {
@@ -184,7 +179,7 @@ impl Data {
             }
             let [k, c] = [0, 3].map(|first| std::array::from_fn(|m| solution[first + m]));
             let next = Parameters { k, c, ..current };
-            let is_settled = next.is_near(&current, SETTLED);
+            let is_settled = next.is_near(&current, LINEAR_SETTLED);
             current = next;
             if is_settled {
                 break;

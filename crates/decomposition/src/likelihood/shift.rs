@@ -6,6 +6,7 @@
 use super::LikelihoodFit;
 use super::data::{Data, lines_of};
 use super::parameters::Parameters;
+use crate::settings::differences::GRADIENT_STEP;
 use crate::{Compliances, JointSpectrum, MeasurementPlan, Sides};
 use jointscope_averaging::Band;
 use jointscope_linalg::{Cholesky, Matrix2, RealMatrix2};
@@ -21,9 +22,6 @@ pub(crate) struct Optimum<'a> {
     /// Half of the second derivatives.
     curvature: Cholesky,
 }
-
-/// Steps of differences of the gradient, in standard deviations of each parameter.
-const STEP: f64 = 1e-3;
 
 impl<'a> Optimum<'a> {
     /// `None` where the FRFs leave a combination of the parameters undetermined.
@@ -72,7 +70,7 @@ fn curvature(data: &Data, (at, here): (&Parameters, &[f64]), gauss_newton: &Chol
     let mut all = vec![0.0; n * n];
     for m in 0..n {
         let mut active = vec![0.0; n];
-        active[m] = STEP * covariance[m * n + m].sqrt();
+        active[m] = GRADIENT_STEP * covariance[m * n + m].sqrt();
         let moved = at.stepped(&at.slots(&active));
         let there = data.whole().right(&moved)?;
         for k in 0..n {

@@ -3,15 +3,15 @@
 //! No fixture fits a real recording to its noise by itself. [`Explained`] is the fixture that does: the given one, or what a first
 //! diagnosis repairs it to. A [`ConcealmentPlan`] then deletes an entry of that fixture, misstates one, or alters a channel of the
 //! recording; some cases stay as they are, as controls. As with simulated cases the diagnosis is handed a [`Case`](crate::Case) and nothing else, and
-//! the [`Concealed`] truths come out of their seal against the answers to all cases. [`Reckoning`] then lays both side by side.
+//! the [`Concealed`] truths come out of their seal against the answers to all cases. [`ConcealmentScores`] then lays both side by side.
 //!
 //! Case 0 is always a control: what is found in it is the recording's own, and no false alarm elsewhere.
 //!
 //! Nothing here is built of the diagnosis' own parts or of the model: cases are edits of a fixture's entries and of recorded values.
-//! Only [`Reckoning`] evaluates objectives.
+//! Only [`ConcealmentScores`] evaluates objectives.
 //!
 //! ```
-//! use jointscope_proof::concealed::{ConcealmentPlan, Reckoning};
+//! use jointscope_proof::concealed::{ConcealmentPlan, ConcealmentScores};
 //! use jointscope_proof::{Answers, NoAnswer};
 //! # use jointscope_fixture::Fixture;
 //! # use jointscope_rig::{Instrument, frfs};
@@ -27,19 +27,19 @@
 //! // Somebody who never answers, in place of `Answers::by(&cases, 1, |_| (), Answer::of)`.
 //! let answers = Answers::by(&cases, 1, |_| (), |_| Err(NoAnswer::BrokeDown));
 //! let truths = sealed.open(&answers).ok_or("answers are missing")?;
-//! let reckoning = Reckoning::of(&cases, truths, &answers, 1);
-//! assert_eq!((reckoning.share("found").of, reckoning.share("found").all), (0, 3));
+//! let scores = ConcealmentScores::of(&cases, truths, &answers, 1);
+//! assert_eq!((scores.share("found").of, scores.share("found").all), (0, 3));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod base_test;
 mod error;
 mod explained;
 mod fixture_edit;
 mod outcome;
 mod plan;
-mod reckoning;
 mod recording_edit;
-mod scene;
+mod scores;
 mod table;
 mod truth;
 
@@ -47,5 +47,5 @@ pub use error::ConcealmentError;
 pub use explained::Explained;
 pub use outcome::Outcome;
 pub use plan::ConcealmentPlan;
-pub use reckoning::{Reckoned, Reckoning};
+pub use scores::{ConcealmentScores, ScoredConcealment};
 pub use truth::{Concealed, ConcealmentKind, Expected};

@@ -1,6 +1,6 @@
 //! Which cases are made of a recording and the fixture that explains it.
 
-use super::scene::Scene;
+use super::base_test::BaseTest;
 use super::{Concealed, ConcealmentError, ConcealmentKind};
 use crate::generate::DRAWS;
 use crate::random::seed_of;
@@ -62,12 +62,12 @@ impl ConcealmentPlan {
             Some(only) => vec![0, only],
             None => (0..self.cases).collect(),
         };
-        let scene = Scene { explaining, recorded };
-        let kinds = self.kinds_in_turn(&scene)?;
+        let base = BaseTest { explaining, recorded };
+        let kinds = self.kinds_in_turn(&base)?;
         let mut cases = Vec::with_capacity(indices.len());
         let mut truths = Vec::with_capacity(indices.len());
         for index in indices {
-            let (case, truth) = self.case(index, &kinds, &scene)?;
+            let (case, truth) = self.case(index, &kinds, &base)?;
             cases.push(case);
             truths.push(truth);
         }
@@ -75,9 +75,9 @@ impl ConcealmentPlan {
     }
 
     /// The kinds that there is room for, in the order in which cases take them.
-    fn kinds_in_turn(&self, scene: &Scene) -> Result<Vec<ConcealmentKind>, ConcealmentError> {
+    fn kinds_in_turn(&self, base: &BaseTest) -> Result<Vec<ConcealmentKind>, ConcealmentError> {
         let there: Vec<_> =
-            ConcealmentKind::ALL.into_iter().filter(|kind| scene.has_room_for(*kind)).collect();
+            ConcealmentKind::ALL.into_iter().filter(|kind| base.has_room_for(*kind)).collect();
         let mut kinds: Vec<_> = there.iter().copied().filter(|kind| self.kinds.contains(kind)).collect();
         if kinds.is_empty() {
             let names =
@@ -92,9 +92,9 @@ impl ConcealmentPlan {
         &self,
         index: usize,
         kinds: &[ConcealmentKind],
-        scene: &Scene,
+        base: &BaseTest,
     ) -> Result<(Case, Concealed), ConcealmentError> {
-        let as_it_is = Case { believed: scene.explaining.clone(), recorded: scene.recorded.clone() };
+        let as_it_is = Case { believed: base.explaining.clone(), recorded: base.recorded.clone() };
         let mut random = generator(seed_of(&format!("seed {} concealment", self.seed), index));
         let control =
             |what: &str| Concealed { index, kind: None, what: what.to_owned(), expected: Vec::new() };
@@ -102,14 +102,14 @@ impl ConcealmentPlan {
             return Ok((as_it_is, control("nothing")));
         }
         if index.is_multiple_of(CONTROLS) {
-            let believed = drawn_within_tolerance(scene.explaining, &mut random)?;
+            let believed = drawn_within_tolerance(base.explaining, &mut random)?;
             let restated = control("nothing, quantities stated anew within their deviations");
             return Ok((Case { believed, ..as_it_is }, restated));
         }
         let number = index - 1 - index / CONTROLS;
         let kind = kinds[number % kinds.len()];
         for _ in 0..DRAWS {
-            if let Some(drawn) = scene.draw(kind, &mut random)? {
+            if let Some(drawn) = base.draw(kind, &mut random)? {
                 let truth = Concealed { index, kind: Some(kind), what: drawn.what, expected: drawn.expected };
                 return Ok((drawn.case, truth));
             }

@@ -1,6 +1,6 @@
-//! A reckoning as text and as JSON.
+//! The scores as text and as JSON.
 
-use super::{ConcealmentKind, ConcealmentPlan, Reckoned, Reckoning};
+use super::{ConcealmentKind, ConcealmentPlan, ConcealmentScores, ScoredConcealment};
 use crate::name::describe;
 use crate::sheet::Line;
 use crate::{Found, Name, Rate, Sealable, Size};
@@ -42,7 +42,7 @@ impl ConcealmentPlan {
     }
 }
 
-impl Display for Reckoning {
+impl Display for ConcealmentScores {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         let own = if self.own.is_empty() { "nothing".to_owned() } else { listed(&self.own) };
         writeln!(f, "found in the recording with nothing concealed, hence its own: {own}")?;
@@ -62,7 +62,7 @@ impl Display for Reckoning {
     }
 }
 
-impl Display for Reckoned {
+impl Display for ScoredConcealment {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         let kind = self.truth.kind.map_or("control", ConcealmentKind::name);
         writeln!(f, "case {}, {kind}: {}", self.truth.index, self.outcome.name())?;
@@ -113,22 +113,22 @@ fn size_line(size: &Size) -> String {
     format!("{}: true {:.5e}, found {:.5e} ({interval})", size.what, size.truth, size.found)
 }
 
-impl Reckoning {
+impl ConcealmentScores {
     /// The shares of all keys.
     fn rates(&self) -> Vec<Rate> {
         Rate::all(&SHARES, |key| self.share(key))
     }
 
-    /// The reckoning as JSON.
+    /// The scores as JSON.
     pub fn to_value(&self) -> Value {
         let shares: Map<String, Value> =
             self.rates().iter().map(|rate| (rate.key.to_owned(), json!(rate))).collect();
-        let cases: Value = self.cases.iter().map(Reckoned::to_value).collect();
+        let cases: Value = self.cases.iter().map(ScoredConcealment::to_value).collect();
         json!({ "own": self.own, "shares": shares, "cases": cases })
     }
 }
 
-impl Reckoned {
+impl ScoredConcealment {
     /// The case as JSON.
     pub(crate) fn to_value(&self) -> Value {
         let answer = self.answer.as_ref().ok();

@@ -177,7 +177,10 @@ fn the_truth_as_an_answer_is_right_in_every_respect() {
     let evidence = &judged[0].evidence;
     assert!(evidence.repaired >= evidence.truth && evidence.repaired < evidence.truth + 60.0, "{evidence:?}");
     assert!(evidence.refitted > evidence.repaired, "{evidence:?}");
-    assert!(evidence.strained.is_empty(), "true quantities lie within their tolerances: {evidence:?}");
+    assert!(
+        evidence.beyond_tolerance.is_empty(),
+        "true quantities lie within their tolerances: {evidence:?}"
+    );
     let [refitted, repaired] = evidence.unseen.unwrap();
     assert!(repaired < 1e-6 && refitted > 1e-4, "unseen FRFs: {refitted}, {repaired}");
 }

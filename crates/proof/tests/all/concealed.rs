@@ -1,11 +1,11 @@
-//! How things are concealed in a recording that a fixture explains, and how the answers are reckoned. A simulated recording stands in
+//! How things are concealed in a recording that a fixture explains, and how the answers are scored. A simulated recording stands in
 //! for a real one.
 
 use crate::common::found;
 use jointscope_diagnosis::Verdict;
 use jointscope_fixture::{Effect, EffectKind, Fixture, Place};
 use jointscope_proof::concealed::{
-    Concealed, ConcealmentError, ConcealmentKind, ConcealmentPlan, Explained, Outcome, Reckoning,
+    Concealed, ConcealmentError, ConcealmentKind, ConcealmentPlan, ConcealmentScores, Explained, Outcome,
 };
 use jointscope_proof::{Answer, Answers, Case, NoAnswer};
 use jointscope_rig::{HammerTest, Instrument, frfs};
@@ -77,15 +77,15 @@ fn answer(case: &Case, effects: &[Effect]) -> Answer {
     }
 }
 
-/// The reckoning of answers that find what `finds` says of each case's truth.
-fn reckoned(cases: usize, finds: impl Fn(&Concealed) -> Vec<Effect> + Sync) -> Reckoning {
+/// The scores of answers that find what `finds` says of each case's truth.
+fn scored(cases: usize, finds: impl Fn(&Concealed) -> Vec<Effect> + Sync) -> ConcealmentScores {
     let (cases, truths) = opened(&plan(cases), &measured(&explaining()));
     let effects = |case: &Case| {
         let index = cases.iter().position(|other| other == case).unwrap();
         finds(&truths[index])
     };
     let answers = Answers::by(&cases, 1, |_| (), |case| Ok(answer(case, &effects(case))));
-    Reckoning::of(&cases, truths.clone(), &answers, 1)
+    ConcealmentScores::of(&cases, truths.clone(), &answers, 1)
 }
 
 fn truth_of(truth: &Concealed) -> Vec<Effect> {
@@ -167,16 +167,16 @@ fn a_channel_read_in_the_same_frfs_is_the_same_channel() {
 
 #[test]
 fn who_finds_everything_is_told_so_and_who_finds_nothing_too() {
-    let all = reckoned(9, truth_of);
+    let all = scored(9, truth_of);
     assert_eq!((all.share("found").of, all.share("quiet").of), (all.share("found").all, 2));
     assert!(all.share("found").all >= 4, "{all}");
     assert_eq!(all.share("extra").of, 0);
     let intervals = all.share("intervals");
     assert!(intervals.all > 0 && intervals.of == intervals.all, "{all}");
-    let none = reckoned(9, |_| Vec::new());
+    let none = scored(9, |_| Vec::new());
     assert_eq!((none.share("found").of, none.share("quiet").of), (0, 2));
     let missed =
-        |reckoning: &Reckoning| reckoning.cases.iter().filter(|c| c.outcome == Outcome::Missed).count();
+        |scores: &ConcealmentScores| scores.cases.iter().filter(|c| c.outcome == Outcome::Missed).count();
     assert!(missed(&none) >= 4, "{none}");
     assert!(none.to_string().contains("missed") && all.to_string().contains("holds it"));
 }
@@ -184,11 +184,11 @@ fn who_finds_everything_is_told_so_and_who_finds_nothing_too() {
 #[test]
 fn what_the_control_has_too_is_no_false_alarm_and_what_it_has_not_is() {
     let window = Effect::new(EffectKind::ExponentialWindow, Place::All, None, &[1.0]);
-    let always = reckoned(5, |_| vec![window.clone()]);
+    let always = scored(5, |_| vec![window.clone()]);
     assert_eq!(always.own.len(), 1);
     assert_eq!((always.share("quiet").of, always.cases[4].outcome), (1, Outcome::Quiet));
     assert!(always.cases.iter().all(|case| case.extra.is_empty()));
-    let sometimes = reckoned(5, |truth| if truth.index == 4 { vec![window.clone()] } else { Vec::new() });
+    let sometimes = scored(5, |truth| if truth.index == 4 { vec![window.clone()] } else { Vec::new() });
     assert_eq!((sometimes.share("quiet").of, sometimes.cases[4].outcome), (0, Outcome::FalseAlarm));
 }
 
@@ -214,8 +214,8 @@ fn another_place_is_told_from_another_kind() {
             cases.iter().zip(&truths).map(|(case, truth)| answer(case, &finds(truth))).collect::<Vec<_>>();
         let index = |case: &Case| cases.iter().position(|other| other == case).unwrap();
         let answers = Answers::by(&cases, 1, |_| (), |case| Ok(all[index(case)].clone()));
-        let reckoning = Reckoning::of(&cases, truths.clone(), &answers, 1);
-        reckoning.cases.iter().skip(1).map(|case| case.outcome).collect::<Vec<_>>()
+        let scores = ConcealmentScores::of(&cases, truths.clone(), &answers, 1);
+        scores.cases.iter().skip(1).map(|case| case.outcome).collect::<Vec<_>>()
     };
     assert_eq!(by(&elsewhere), [Outcome::Elsewhere; 3]);
     let window = Effect::new(EffectKind::ExponentialWindow, Place::All, None, &[1.0]);
@@ -254,7 +254,7 @@ fn a_deleted_entry_and_a_scaled_channel_are_found_in_a_recording_that_the_fixtur
     let plan = ConcealmentPlan { kinds, ..plan(3) };
     let (cases, sealed) = plan.conceal(&explained.fixture, &recorded).unwrap();
     let answers = explained.answers(&cases, 2, |_| ());
-    let reckoning = Reckoning::of(&cases, sealed.open(&answers).unwrap(), &answers, 2);
-    assert_eq!(reckoning.own, []);
-    assert_eq!((reckoning.share("found").of, reckoning.share("found").all), (2, 2), "{reckoning}");
+    let scores = ConcealmentScores::of(&cases, sealed.open(&answers).unwrap(), &answers, 2);
+    assert_eq!(scores.own, []);
+    assert_eq!((scores.share("found").of, scores.share("found").all), (2, 2), "{scores}");
 }

@@ -10,9 +10,9 @@ use crate::section::{Block, Section};
 use crate::table::{Cell, Table};
 use crate::unit::typeset;
 
-/// Ends of the drawn course, Δχ², the second at the least.
+/// Ends of the drawn curve, Δχ², the second at the least.
 const DRAWN: [f64; 2] = [1.0, 1e4];
-/// Points of the drawn course.
+/// Points of the drawn curve.
 const POINTS: usize = 120;
 
 pub(super) fn section(detection: &Detection) -> Section {
@@ -51,12 +51,12 @@ fn plot(detection: &Detection) -> Option<Plot> {
     )
     .height(300)
     .alone();
-    if detection.course.is_some() {
+    if detection.curve.is_some() {
         let end = sizes.iter().copied().fold(DRAWN[1], f64::max);
         let step = (end / DRAWN[0]).ln() / (POINTS - 1) as f64;
-        let course: Vec<f64> = (0..POINTS).map(|i| DRAWN[0] * (step * i as f64).exp()).collect();
-        let shares: Vec<Option<f64>> = course.iter().map(|size| detection.share_at(*size)).collect();
-        plot = plot.over(course).line("fitted course, named", Role::Estimate, shares);
+        let sizes: Vec<f64> = (0..POINTS).map(|i| DRAWN[0] * (step * i as f64).exp()).collect();
+        let shares: Vec<Option<f64>> = sizes.iter().map(|size| detection.share_at(*size)).collect();
+        plot = plot.over(sizes).line("fitted course, named", Role::Estimate, shares);
     }
     Some(plot.caption(match (detection.half_named_from, detection.sure_from) {
         (Some(half), Some(sure)) => format!(

@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use jointscope::proof::Timing;
-use jointscope::proof::concealed::{ConcealmentKind, ConcealmentPlan, Explained, Reckoning};
+use jointscope::proof::concealed::{ConcealmentKind, ConcealmentPlan, ConcealmentScores, Explained};
 use jointscope::recordings::{HeldAmplitude, Level, Recording};
 use jointscope::spectra::{FrfSet, in_text};
 use serde_json::json;
@@ -21,7 +21,7 @@ use crate::refusal::Refusal;
 /// Cases where no number is given: each takes a whole diagnosis of the recording.
 const CASES: usize = 8;
 
-/// Makes the fixture that explains the recording, conceals, has all cases diagnosed, opens the truths and reckons; answers with the table.
+/// Makes the fixture that explains the recording, conceals, has all cases diagnosed, opens the truths and scores them; answers with the table.
 pub(super) fn run(directory: &Path, arguments: &ProveArguments) -> Result<String, Refusal> {
     let test = Test::read(directory, &arguments.real)?;
     let plan = plan(arguments);
@@ -54,10 +54,10 @@ pub(super) fn run(directory: &Path, arguments: &ProveArguments) -> Result<String
         Outputs::one(directory.join("answers.json"), &answers.to_value())?;
     }
     let truths = truths.open(&answers).ok_or_else(|| Refusal::new("answers are missing"))?;
-    let reckoning = Reckoning::of(&cases, truths, &answers, threads);
+    let scores = ConcealmentScores::of(&cases, truths, &answers, threads);
     let timing = Timing::of(answers.seconds());
     tell(&timing.to_string());
-    let mut value = reckoning.to_value();
+    let mut value = scores.to_value();
     value["recording"] = json!({ "inputs": inputs, "notes": test.notes, "in_words": test.to_string() });
     value["explained"] = explained.to_value();
     value["plan"] = plan.to_value();
@@ -75,7 +75,7 @@ pub(super) fn run(directory: &Path, arguments: &ProveArguments) -> Result<String
         format!("{}: {test}", directory.display()),
         explained.to_string(),
         format!("{plan}\ntruths sealed before the first answer, SHA-256 {digest}\n"),
-        reckoning.to_string(),
+        scores.to_string(),
     ];
     Ok(lines.join("\n").trim_end().to_owned())
 }

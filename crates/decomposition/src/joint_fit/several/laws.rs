@@ -6,6 +6,7 @@
 use super::super::law::{Dynamics, LawKind, coordinates};
 use super::super::laws::{Candidate, LawFit, probable};
 use super::super::problem::{Columns, Fitted, Problem, Test};
+use crate::settings::several::{FEW_STEPS, MOST_STEPS};
 
 /// Laws of all joints at their optimum.
 pub(super) struct State {
@@ -27,11 +28,6 @@ impl State {
         Some((problem, fitted))
     }
 }
-
-/// Steps of a law's fit: one that needs more is far from the FRFs.
-const STEPS: usize = 40;
-/// Of the law without damping, whose resonances are infinite: it is near at once or not at all.
-const FEW_STEPS: usize = 8;
 
 /// Every joint's laws, the most probable first, the other joints following their most probable law, and the laws that all follow; without the joints' masses.
 pub(super) fn compared(viscous: &Problem, first: &Fitted) -> (Vec<Vec<LawFit>>, State) {
@@ -120,7 +116,7 @@ fn candidate(
     }
     start.extend_from_slice(after);
     let problem = Problem::lawful(test, laws, None);
-    let steps = if kind == LawKind::Constant { FEW_STEPS } else { STEPS };
+    let steps = if kind == LawKind::Constant { FEW_STEPS } else { MOST_STEPS };
     let fitted = problem.fit_within(start, Some(current.others.clone()), steps)?;
     let candidate = Candidate::of(&problem, &fitted, joint)?;
     let Fitted { point, others } = fitted;

@@ -3,19 +3,19 @@
 //! The laboratory's own cases take sixteen kinds in turn, and what a seed draws of them must stay the same. Kinds that came later, all flaws of the
 //! measuring chain, and more of what no fixture file describes have routes of their own here.
 
-mod hides;
+mod hidden;
 mod route;
 mod same;
 
 pub use route::LumpedRoute;
 
 use super::by_name::Nameable;
+use crate::case_draft::CaseDraft;
 use crate::generate::{Draw, turn};
-use crate::scene::Scene;
 use crate::sealable::{Filed, Sealable};
 use crate::truth::filed_pairs;
 use crate::{AS_GOOD, Answer, Case, Evidence, GenerationError, Judgeable, Name, Role, Truth};
-use hides::OneOf;
+use hidden::OneOf;
 use jointscope_fixture::{Effect, EffectKind};
 use jointscope_rig::{Outside, generator};
 use jointscope_spectra::FrfPair;
@@ -51,8 +51,8 @@ impl LumpedTruth {
         };
         for _ in 0..DRAWS {
             let family = plan.families[random.random_range(0..plan.families.len())];
-            let scene = Scene { family, role, seed, hides: OneOf { route, role, turn } };
-            if let Some((case, truth)) = scene.draw(&mut random)? {
+            let draft = CaseDraft { family, role, seed, hidden: OneOf { route, role, turn } };
+            if let Some((case, truth)) = draft.draw(&mut random)? {
                 let truth = Truth { index, source, ..truth };
                 let recorded = case.recorded.pairs().to_vec();
                 return Ok((case, LumpedTruth { route, truth, recorded }));

@@ -33,7 +33,7 @@ const RATIO: [f64; 2] = [0.004, 0.015];
 
 /// What the strip is to be like.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Stoutness {
+pub(super) enum StripShape {
     /// A metal strip, slender enough that its bending is what counts.
     Slender,
     /// Thick against its length, of any material.
@@ -128,15 +128,15 @@ pub(super) struct Assembly {
 
 impl Assembly {
     /// `None` where what was drawn has no strip of sensible dimensions.
-    pub(super) fn draw(random: &mut impl Rng, stoutness: Stoutness) -> Result<Option<Self>, GenerationError> {
+    pub(super) fn draw(random: &mut impl Rng, shape: StripShape) -> Result<Option<Self>, GenerationError> {
         let mut a = Block::draw(random, 0.0);
         a.left = -a.length;
         let length = between(random, GAP);
         let b = Block::draw(random, length);
         let blocks = [a, b];
-        let material = match stoutness {
-            Stoutness::Slender => random.random_range(0..METALS),
-            Stoutness::Thick => random.random_range(0..MATERIALS.len()),
+        let material = match shape {
+            StripShape::Slender => random.random_range(0..METALS),
+            StripShape::Thick => random.random_range(0..MATERIALS.len()),
         };
         let ends = [a.at(between(random, [0.05, 0.3])), b.at(between(random, [0.6, 0.95]))];
         let ratio = log_uniform(random, RATIO);
@@ -150,20 +150,20 @@ impl Assembly {
         let second_moment = TRIED * (target / highest).powi(2);
         let depth = a.depth.min(b.depth);
         let height = a.height.min(b.height);
-        let (width, thickness) = match stoutness {
-            Stoutness::Slender => {
+        let (width, thickness) = match shape {
+            StripShape::Slender => {
                 let width = depth * (0.25 + 0.55 * proportion);
                 (width, (12.0 * second_moment / width).cbrt())
             }
-            Stoutness::Thick => {
+            StripShape::Thick => {
                 let thickness = length * (0.15 + 0.25 * proportion);
                 (12.0 * second_moment / thickness.powi(3), thickness)
             }
         };
-        let stout = stoutness == Stoutness::Thick || thickness < 0.2 * length;
+        let thick = shape == StripShape::Thick || thickness < 0.2 * length;
         // ζω alike: a matrix proportional to the blocks' masses, which couples no modes whatever yields between them.
         let lumped = lumped(second_moment, [ratio, ratio * lowest / highest])?;
-        if !(stout
+        if !(thick
             && thickness < 0.5 * height
             && width > 0.004
             && width < 0.9 * depth

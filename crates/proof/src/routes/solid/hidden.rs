@@ -1,6 +1,6 @@
 //! What a solid has that its lumped fixture leaves out, with the effect that says the same in closed form.
 
-use super::assembly::{Assembly, Stoutness};
+use super::assembly::{Assembly, StripShape};
 use super::twin::Shown;
 use crate::GenerationError;
 use crate::random::log_uniform;
@@ -52,8 +52,8 @@ const AGAINST_TRANSLATION: [f64; 2] = [0.5, 20.0];
 const COEFFICIENT: f64 = 5.0 / 6.0;
 
 impl Concealed {
-    pub(super) fn stoutness(self) -> Stoutness {
-        if self == Concealed::StripShear { Stoutness::Thick } else { Stoutness::Slender }
+    pub(super) fn shape(self) -> StripShape {
+        if self == Concealed::StripShear { StripShape::Thick } else { StripShape::Slender }
     }
 }
 

@@ -22,7 +22,7 @@ use crate::generate::{Draw, turn};
 use crate::hammer_test::{drawn_hammer, recorded_lines};
 use crate::sealable::{Filed, Sealable};
 use crate::{Case, GenerationError, Judgeable, Role};
-use assembly::{Assembly, Stoutness};
+use assembly::{Assembly, StripShape};
 use hidden::{CONCEALED, Hidden, IN_THE_SOLID};
 use jointscope_fixture::{Effect, EffectKind, Fixture, Place};
 use jointscope_rig::{HammerTest, StructureError, drawn_within_tolerance, generator};
@@ -85,8 +85,8 @@ impl SolidTruth {
         let pairs = transverse(RECORDED);
         for _ in 0..DRAWS {
             let what = concealed(role, number, &mut random);
-            let stoutness = what.iter().map(|what| what.stoutness()).find(|s| *s == Stoutness::Thick);
-            let Some(assembly) = Assembly::draw(&mut random, stoutness.unwrap_or(Stoutness::Slender))? else {
+            let shape = what.iter().map(|what| what.shape()).find(|s| *s == StripShape::Thick);
+            let Some(assembly) = Assembly::draw(&mut random, shape.unwrap_or(StripShape::Slender))? else {
                 continue;
             };
             let mut hidden = Some(Hidden::default());

@@ -17,7 +17,7 @@ const OUTSIDE_SHOWS: [f64; 2] = [0.03, 0.8];
 const GRADED: [f64; 2] = [3.0, 300.0];
 
 /// What a case hides, and which FRFs of it are recorded.
-pub(crate) trait Hides {
+pub(crate) trait HiddenPhysics {
     /// The FRFs that are recorded.
     fn pairs(&self, _: &mut impl Rng, family: Family) -> Vec<FrfPair> {
         family.usual_pairs()
@@ -41,21 +41,21 @@ pub(crate) trait Hides {
 }
 
 /// A case of the laboratory that is to be drawn.
-pub(crate) struct Scene<H> {
+pub(crate) struct CaseDraft<H> {
     pub family: Family,
     pub role: Role,
     pub seed: u64,
-    pub hides: H,
+    pub hidden: H,
 }
 
-impl<H: Hides> Scene<H> {
+impl<H: HiddenPhysics> CaseDraft<H> {
     /// A case with its truth, not numbered yet; `None` where the fixture that was drawn has no place for what is to be hidden.
     pub(crate) fn draw(&self, random: &mut impl Rng) -> Result<Option<(Case, Truth)>, GenerationError> {
         let mut believed = self.family.draw("concealed case", random)?;
         let truth = drawn_within_tolerance(&believed, random)?;
-        let pairs = self.hides.pairs(random, self.family);
+        let pairs = self.hidden.pairs(random, self.family);
         let lines = recorded_lines()?;
-        let Some(effects) = self.hides.effects(random, &truth, &pairs)? else { return Ok(None) };
+        let Some(effects) = self.hidden.effects(random, &truth, &pairs)? else { return Ok(None) };
         let mut truth = truth.with_physics(effects).map_err(StructureError::from)?;
         let read = |truth: &Fixture| frfs(truth, &pairs, &lines, Instrument::AsDescribed);
         let plain = match read(&truth) {
@@ -65,7 +65,7 @@ impl<H: Hides> Scene<H> {
             Err(error) => return Err(error.into()),
         };
         let (mut clean, outside) = if self.role == Role::Outside {
-            let Some(outside) = self.hides.outside(random, &truth, &pairs) else { return Ok(None) };
+            let Some(outside) = self.hidden.outside(random, &truth, &pairs) else { return Ok(None) };
             let stated = |fixture: Fixture| fixture.with_physics(outside.known());
             let mut without = plain;
             if !outside.known().is_empty() {
@@ -74,7 +74,7 @@ impl<H: Hides> Scene<H> {
                 without = read(&truth)?;
             }
             let clean = outside.frfs(&truth, &pairs, &lines, Instrument::AsDescribed)?;
-            let ([least, most], change) = (self.hides.outside_shows(), relative_error(&clean, &without));
+            let ([least, most], change) = (self.hidden.outside_shows(), relative_error(&clean, &without));
             if !(least..=most).contains(&change) {
                 return Ok(None);
             }

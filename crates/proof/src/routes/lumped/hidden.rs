@@ -1,7 +1,7 @@
 //! What the cases of a route hide, by kind in turn.
 
 use super::route::LumpedRoute;
-use crate::scene::Hides;
+use crate::case_draft::HiddenPhysics;
 use crate::{GenerationError, Role};
 use jointscope_fixture::{Effect, EffectKind, Fixture, Place};
 use jointscope_rig::{Family, Outside, random_effect, random_rotational_support};
@@ -67,7 +67,7 @@ pub(super) struct OneOf {
     pub turn: usize,
 }
 
-impl Hides for OneOf {
+impl HiddenPhysics for OneOf {
     fn pairs(&self, random: &mut impl Rng, family: Family) -> Vec<FrfPair> {
         let mut pairs = family.usual_pairs();
         if self.route == LumpedRoute::ChannelFlaws {

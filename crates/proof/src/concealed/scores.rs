@@ -8,7 +8,7 @@ use crate::{Answer, Answers, Case, Name, NoAnswer, Share, Size, VISIBLE};
 
 /// A case after the truth was opened.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Reckoned {
+pub struct ScoredConcealment {
     /// What was concealed.
     pub truth: Concealed,
     /// What was answered.
@@ -30,14 +30,14 @@ pub struct Reckoned {
 
 /// All cases of a recording.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Reckoning {
+pub struct ConcealmentScores {
     /// What is found in the recording with nothing concealed: its own.
     pub own: Vec<Name>,
     /// The cases, the first control first.
-    pub cases: Vec<Reckoned>,
+    pub cases: Vec<ScoredConcealment>,
 }
 
-impl Reckoning {
+impl ConcealmentScores {
     /// Lays truths and answers side by side, on `threads` workers. The first case is the control that decides what is the recording's own.
     pub fn of(cases: &[Case], truths: Vec<Concealed>, answers: &Answers, threads: usize) -> Self {
         let work: Vec<_> = cases.iter().zip(answers.all()).collect();
@@ -50,11 +50,11 @@ impl Reckoning {
         objectives.resize_with(truths.len(), || None);
         let control = objectives.first().and_then(|first| first.as_ref().map(Objectives::of_control));
         let each = truths.into_iter().zip(answers.all()).zip(&objectives);
-        let reckoned = each.map(|((truth, answer), objectives)| {
+        let scored = each.map(|((truth, answer), objectives)| {
             let excess = objectives.as_ref().zip(control).and_then(|(of, control)| of.over(control));
-            reckoned(truth, answer.clone(), &own, excess)
+            scored(truth, answer.clone(), &own, excess)
         });
-        Reckoning { cases: reckoned.collect(), own }
+        ConcealmentScores { cases: scored.collect(), own }
     }
 
     /// A share by its key: `quiet` of the controls but the first; `found` (kind and place), `kind` and `extra` (further findings) of the
@@ -65,14 +65,14 @@ impl Reckoning {
         let concealed = || self.cases.iter().filter(|case| !case.truth.is_control());
         // By the same measure whether it was found or not: what is found below it is luck, what is missed there no fault.
         let asked = || {
-            let there = |case: &&Reckoned| {
+            let there = |case: &&ScoredConcealment| {
                 let shows = case.shows.is_none_or(|shows| shows >= VISIBLE);
                 shows && case.outcome != Outcome::Own && !case.truth.expected.is_empty()
             };
             concealed().filter(there)
         };
         let sizes = |planted: bool| {
-            let of = move |case: &&Reckoned| {
+            let of = move |case: &&ScoredConcealment| {
                 case.outcome == Outcome::Found
                     && case.truth.kind.is_some_and(|kind| kind.is_planted() == planted)
             };
@@ -89,7 +89,8 @@ impl Reckoning {
                 Share::count(asked(), |case| right.contains(&case.outcome))
             }
             "extra" => {
-                let also = |case: &Reckoned| case.outcome == Outcome::Found && !case.extra.is_empty();
+                let also =
+                    |case: &ScoredConcealment| case.outcome == Outcome::Found && !case.extra.is_empty();
                 Share::count(asked(), also)
             }
             "noticed" => {
@@ -103,19 +104,28 @@ impl Reckoning {
     }
 }
 
-fn reckoned(
+fn scored(
     truth: Concealed,
     answer: Result<Answer, NoAnswer>,
     own: &[Name],
     excess: Option<Excess>,
-) -> Reckoned {
+) -> ScoredConcealment {
     let Ok(given) = &answer else {
         let (sizes, extra) = (Vec::new(), Vec::new());
         let outcome = Outcome::NoAnswer;
-        return Reckoned { truth, answer, outcome, sizes, extra, own: Vec::new(), shows: None, left: None };
+        return ScoredConcealment {
+            truth,
+            answer,
+            outcome,
+            sizes,
+            extra,
+            own: Vec::new(),
+            shows: None,
+            left: None,
+        };
     };
     // In the first control what is found is by definition the recording's own.
-    Reckoned {
+    ScoredConcealment {
         outcome: outcome(&truth, given, own, excess),
         sizes: sizes(&truth, given),
         extra: extra(&truth, given, own),

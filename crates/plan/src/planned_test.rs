@@ -3,16 +3,14 @@
 use crate::expected_noise::ExpectedNoise;
 use crate::model_error::ModelErrorNoise;
 use crate::products::{Predicted, Products};
+use crate::settings::noise::MOST_VALUES;
 use jointscope_diagnosis::{Hypothesis, Linearisation, Observation};
 use jointscope_fixture::Fixture;
 use jointscope_spectra::{FrfForm, FrfPair, FrfSet, SpectralLines};
 use rayon::prelude::*;
 
-/// Values of an observation from which lines would be left out of it.
-const MOST_VALUES: usize = 16_000;
-
 /// The structure as it is to be tested.
-pub(crate) struct Scene {
+pub(crate) struct PlannedTest {
     /// The fixture, with the deviations of all points that are considered.
     pub fixture: Fixture,
     /// Whether bare numbers are exact.
@@ -27,7 +25,7 @@ pub(crate) struct Scene {
     pub model_error: Option<ModelErrorNoise>,
 }
 
-impl Scene {
+impl PlannedTest {
     /// What each name predicts of FRFs, and their products by FRF; `None` where one of them predicts none.
     pub(crate) fn products(&self, names: &[Hypothesis], pairs: &[FrfPair]) -> Option<Vec<Products>> {
         // Of a longer set lines would be left out.

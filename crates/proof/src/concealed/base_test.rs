@@ -14,7 +14,7 @@ use num_complex::Complex64;
 use rand::{Rng, RngExt};
 
 /// The fixture that explains a recording, and the recording.
-pub(super) struct Scene<'a> {
+pub(super) struct BaseTest<'a> {
     pub explaining: &'a Fixture,
     pub recorded: &'a FrfSet,
 }
@@ -41,7 +41,7 @@ const FACTOR_DEVIATIONS: f64 = 5.0;
 /// |ln factor| beyond which a structure is no longer recognised.
 const FACTOR_MOST: f64 = 1.1;
 
-impl Scene<'_> {
+impl BaseTest<'_> {
     /// Whether there is anything of a kind to conceal.
     pub(super) fn has_room_for(&self, kind: ConcealmentKind) -> bool {
         match kind {
