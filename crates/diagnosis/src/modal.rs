@@ -5,6 +5,7 @@
 //! than no name. So the error is a part of the likelihood, common to all hypotheses, its sizes estimated for each
 //! ([`jointscope_model_error`]): a name wins by making it smaller.
 //!
+//! * [`again`]: what was found in the whole of a recording, in a part of it;
 //! * [`along`]: what is known of an effect along the ridge that its place and sizes share;
 //! * [`at_sizes`]: a fitted hypothesis where the sizes of error are given;
 //! * [`changes`]: the modes of two states side by side;
@@ -17,6 +18,7 @@
 //! * [`needs`]: which effects modes need that were found on lines;
 //! * [`searcher`]: what all steps of a search share;
 //! * [`starts`]: where fits set out;
+//! * [`every_joint`]: what a model leaves out of every joint alike;
 //! * [`search`]: every candidate, alone and beside others;
 //! * [`compared`]: a fixture compared with a recording, or with what has changed;
 //! * [`judgement`]: what it comes to: names with their probabilities and intervals, and errors;
@@ -26,12 +28,14 @@
 //! * [`predicting`]: models that are to predict where nobody measured;
 //! * [`uncertainty`]: what errors of the model leave uncertain of what lines have found.
 
+mod again;
 mod along;
 mod at_sizes;
 mod beside_lines;
 mod changes;
 mod compared;
 mod elsewhere;
+mod every_joint;
 mod features;
 mod fit;
 mod judge;
@@ -50,6 +54,7 @@ mod tests;
 mod turns;
 mod uncertainty;
 
+pub(crate) use again::Known;
 pub(crate) use beside_lines::Explaining;
 pub(crate) use features::{Features, recorded};
 pub(crate) use judgement::ModalJudgement;

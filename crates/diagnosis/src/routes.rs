@@ -7,7 +7,7 @@ use crate::fit::Fit;
 use crate::fitter::Fitter;
 use crate::held_out::Division;
 use crate::location::{Location, located};
-use crate::modal::{Explaining, ModalJudgement, ModelError, without_imitations};
+use crate::modal::{Explaining, Known, ModalJudgement, ModelError, without_imitations};
 use crate::named::{findings, re_estimated, verdict};
 use crate::options::{DiagnosisError, DiagnosisOptions};
 use crate::search::Search;
@@ -316,7 +316,7 @@ fn by_modes(fitter: &Fitter, within: &Search, modal: &ModalJudgement, division: 
         let blind = fitter.on(&division.seen);
         // Of what names nothing, only the refitted fixture is judged.
         let named = search.repaired.hypothesis.effect_count() > 0;
-        let known = if named { modal.known(&settings.modal) } else { Vec::new() };
+        let known = if named { modal.known(&settings.modal) } else { Known::default() };
         let judged =
             ModalJudgement::of(&blind, &within.nominal.hypothesis, &within.candidates, Some(&known))?;
         let (_, blind) = judged.predicted(&blind, within);

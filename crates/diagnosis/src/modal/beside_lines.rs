@@ -102,7 +102,8 @@ impl ModalJudgement {
             |named: &&Named| Some(Explaining { fit: fitted_to_lines(fitter, named)?, is_sure: named.exact });
         let cost = |found: &Explaining| cost(fitter, &found.fit, 1.0);
         // More effects than explain the lines are for the lines to ask for.
-        (0..=fitter.settings.modal.effects).find_map(|count| {
+        let most = all.iter().map(|named| named.names.len()).max().unwrap_or(0);
+        (0..=most).find_map(|count| {
             let of_count = all.iter().filter(|named| named.names.len() == count);
             of_count.filter_map(explaining).min_by(|a, b| cost(a).total_cmp(&cost(b)))
         })

@@ -3,6 +3,7 @@
 use crate::candidate::Candidate;
 use crate::catalogue::with_wrong_quantities;
 use crate::fitter::Fitter;
+use crate::modal::again::Known;
 use crate::modal::beside_lines::fitted_to_lines;
 use crate::modal::changes::States;
 use crate::modal::features::{Features, recorded};
@@ -12,7 +13,6 @@ use crate::modal::prior::priors;
 use crate::modal::searcher::Searcher;
 use crate::modal::sizes::ModelError;
 use crate::{Hypothesis, ModeChange, Observation};
-use jointscope_fixture::Effect;
 use jointscope_model_error::{ErrorSizes, KINDS, Pairing, SizePrior};
 
 /// What a baseline says of the fixture.
@@ -33,7 +33,7 @@ impl ModalJudgement {
         fitter: &Fitter,
         nominal: &Hypothesis,
         candidates: &[Candidate],
-        known: Option<&[Effect]>,
+        known: Option<&Known>,
     ) -> Option<Self> {
         let Fitter { observation, settings, watch } = fitter;
         watch.stage("fitting the modes of the recording");

@@ -13,7 +13,7 @@ impl Searcher<'_> {
     /// probable than the first.
     pub(super) fn at_other_places(&self, none: &Named, singles: Vec<Named>) -> Vec<Named> {
         let Some(first) = singles.first() else { return singles };
-        if first.fit.ln - none.fit.ln < self.needed_beyond(none, first) {
+        if first.fit.ln - none.fit.ln < self.needed_over(none, first) {
             return singles;
         }
         let least = first.fit.ln - self.settings.listed;

@@ -49,7 +49,8 @@ impl Judge<'_> {
         let none = &self.search.none;
         let stated = [none, best].map(nearest);
         let names = self.search.alternatives.iter().zip(&self.search.elsewhere);
-        let names = names.map(|(all, elsewhere)| self.probabilities(all, elsewhere)).collect();
+        let names = self.search.best.names.iter().zip(names);
+        let names = names.map(|(&own, (all, elsewhere))| self.probabilities(own, all, elsewhere)).collect();
         let places = (0..self.search.best.names.len())
             .map(|index| self.searcher.places(&self.search, index))
             .collect();
@@ -115,18 +116,37 @@ impl Judge<'_> {
     }
 
     /// Probabilities of the names that may stand in one effect's stead, the best one's at all of its places; the rest to one is something not listed.
-    fn probabilities(&self, all: &[Named], elsewhere: &[Named]) -> Vec<(usize, f64, Hypothesis)> {
+    fn probabilities(&self, own: usize, all: &[Named], elsewhere: &[Named]) -> Vec<(usize, f64, Hypothesis)> {
         let highest = all.iter().map(|n| n.fit.ln).fold(f64::NEG_INFINITY, f64::max);
-        let own = elsewhere.first().and_then(|place| place.names.last());
         let weight = |named: &Named| {
             let other = |place: &Named| (place.fit.ln - highest).exp();
-            let others = elsewhere.iter().filter(|_| named.names.last() == own).map(other);
+            let others = elsewhere.iter().filter(|_| named.names.last() == Some(&own)).map(other);
             (named.fit.ln - highest).exp() + others.sum::<f64>()
         };
         let total = all.iter().map(weight).sum::<f64>() + self.unlisted(&self.search.best.fit);
-        let of =
-            |named: &Named| Some((*named.names.last()?, weight(named) / total, named.fit.hypothesis.clone()));
+        let of = |named: &Named| {
+            let (name, hypothesis) = self.named_at(own, named)?;
+            Some((name, weight(named) / total, hypothesis))
+        };
         all.iter().filter_map(of).collect()
+    }
+
+    /// The name by which a hypothesis stands in the stead of `own`, and the hypothesis with that effect as its last: of a kind at every joint the one at the same joint, else what was added
+    /// last.
+    fn named_at(&self, own: usize, named: &Named) -> Option<(usize, Hypothesis)> {
+        let last = named.names.len().checked_sub(1)?;
+        let candidates = self.searcher.candidates;
+        let statements = self.searcher.statements(&named.names);
+        let added = statements.iter().find(|statement| statement.contains(&last))?;
+        let is_here = |&&at: &&usize| candidates[named.names[at]].place == candidates[own].place;
+        let at = added.iter().find(is_here).copied().unwrap_or(last);
+        let hypothesis = &named.fit.hypothesis;
+        // Its own entry goes by one name alone, whatever else the hypothesis has.
+        if named.names.len() < hypothesis.effect_count() || at == last {
+            return Some((named.names[at], hypothesis.clone()));
+        }
+        let effect = hypothesis.effects().swap_remove(at);
+        Some((named.names[at], hypothesis.without(at).with(effect)))
     }
 
     /// The weight, against one for the best hypothesis, of physics that none covers: the larger the errors and departures that even the best
@@ -143,8 +163,8 @@ impl Judge<'_> {
         // What no poles explain in the recording itself is nothing that a name could be held against.
         let untold = 0.5 * self.searcher.problem.recorded.chi2_per_dof.max(1.0).ln();
         // Several effects together imitate much, as among lines.
-        let company =
-            self.searcher.settings.company * best.hypothesis.effect_count().saturating_sub(1) as f64;
+        let statements = self.searcher.statements(&self.search.best.names).len();
+        let company = self.searcher.settings.company * statements.saturating_sub(1) as f64;
         (usual + company + strain + pull + untold).min(most).exp()
     }
 }

@@ -4,6 +4,7 @@ use crate::candidate::Candidate;
 use crate::estimates::estimates;
 use crate::finding::{Evidence, Finding, Tried};
 use crate::fit::Fit;
+use crate::modal::again::Known;
 use crate::modal::features::Features;
 use crate::modal::places::Places;
 use crate::modal::search::ModalSearch;
@@ -95,12 +96,14 @@ impl ModalJudgement {
     }
 
     /// What was found, and the most probable effects by themselves: what a search of a part of the recording may choose from.
-    pub(crate) fn known(&self, settings: &ModalSettings) -> Vec<Effect> {
+    pub(crate) fn known(&self, settings: &ModalSettings) -> Known {
         let singles = &self.search.singles;
         let least = singles.first().map_or(0.0, |first| first.fit.ln) - settings.told;
         let probable = singles.iter().take(settings.blind).filter(|single| single.fit.ln >= least);
-        let singles = probable.flat_map(|single| single.fit.hypothesis.effects());
-        self.search.best.fit.hypothesis.effects().into_iter().chain(singles).collect()
+        Known {
+            found: self.search.best.fit.hypothesis.effects(),
+            probable: probable.flat_map(|single| single.fit.hypothesis.effects()).collect(),
+        }
     }
 
     /// The most probable effects by themselves.

@@ -89,6 +89,9 @@ impl Searcher<'_> {
     /// Searches for effects beside the fixture `alone`.
     pub(super) fn search(&self, alone: ModalFit) -> ModalSearch {
         let none = alone;
+        if let Some(found) = self.found_again(&none) {
+            return found;
+        }
         let start = Named { names: Vec::new(), exact: self.is_exact(&none), fit: none };
         self.watch.stage("comparing effects by modes");
         let (mut singles, mut far) = self.extended(&start, self.settings.refined.0, self.settings.starts.0);
@@ -102,13 +105,8 @@ impl Searcher<'_> {
         singles = self.at_other_places(&start, singles);
         let none = start.fit.clone();
         // Where neither the fixture nor any effect explains the modes, the right one may have set out from the wrong place.
-        let explains = |named: &Named| {
-            named.fit.ln - none.ln > self.needed_beyond(&start, named)
-                && self.is_adequate(&named.fit)
-                && self.is_told(named, &none)
-        };
         let little = self.problem.work.spent() < self.settings.again;
-        if little && !self.is_adequate(&none) && !singles.iter().any(explains) {
+        if little && !self.is_adequate(&none) && !singles.iter().any(|single| self.explains(single, &start)) {
             let (again, _) = self.extended(&start, self.settings.tried, self.settings.starts.1);
             singles = best_of_each(singles.into_iter().chain(again).collect());
             far.retain(|c| singles.iter().all(|single| single.names.last() != Some(c)));
@@ -130,11 +128,7 @@ impl Searcher<'_> {
                 }
                 self.watch.stage("comparing several effects together by modes");
             }
-            let ranked = match count {
-                1 => singles.clone(),
-                2 => self.pairs(&singles),
-                _ => self.extended(&best, self.settings.refined.1, 1).0,
-            };
+            let ranked = self.with_one_more(count, (&best, &start), &singles);
             let Some(first) =
                 ranked.iter().take(self.settings.tried).find(|named| self.is_told(named, &none))
             else {
@@ -144,21 +138,18 @@ impl Searcher<'_> {
                 more.extend(ranked.iter().take(self.settings.tried).cloned());
             }
             // A pair may be needed where neither effect alone is, or one of them where the other has led it out of a false minimum.
-            let gains = |more: &Named, fewer: &Named| {
-                let added = (more.names.len() - fewer.names.len()) as f64;
-                more.fit.ln - fewer.fit.ln > added * self.needed_beyond(fewer, more)
-            };
             let mut led_out = false;
-            if count > 1 && gains(first, &best) {
-                let parts = (0..first.names.len()).filter_map(|index| self.without(first, index));
+            if count > 1 && self.gains(first, &best) {
+                let statements = self.statements(&first.names);
+                let parts = statements.iter().filter_map(|statement| self.without(first, statement));
                 let is_better = |fewer: &Named| {
-                    fewer.fit.ln > best.fit.ln && gains(fewer, &best) && self.is_told(fewer, &none)
+                    fewer.fit.ln > best.fit.ln && self.gains(fewer, &best) && self.is_told(fewer, &none)
                 };
                 if let Some(fewer) = highest(parts).filter(is_better) {
                     (best, led_out) = (fewer, true);
                 }
             }
-            if gains(first, &best) {
+            if self.gains(first, &best) {
                 best = first.clone();
             } else if count > 1 && !led_out {
                 break;
@@ -168,7 +159,9 @@ impl Searcher<'_> {
         let mut instead = self.in_stead_of_each(&best, &singles, &none);
         // What explains more in the stead of one effect, beside the others, is what was searched for.
         for _ in 0..self.settings.exchanges {
-            let higher = |other: &Named| other.names.len() == best.names.len() && other.fit.ln > best.fit.ln;
+            let stated = self.statements(&best.names).len();
+            let higher =
+                |other: &Named| self.statements(&other.names).len() == stated && other.fit.ln > best.fit.ln;
             let others = instead.iter().flat_map(|effect| effect.names.iter().chain(&effect.elsewhere));
             let Some(other) = highest(others.filter(|other| higher(other)).cloned()) else { break };
             best = other;
@@ -177,6 +170,44 @@ impl Searcher<'_> {
         let without = instead.iter().map(|effect| effect.without).collect();
         let (alternatives, elsewhere) = instead.into_iter().map(|i| (i.names, i.elsewhere)).unzip();
         ModalSearch { none, best, singles, far, more, alternatives, elsewhere, without }
+    }
+
+    /// Whether a hypothesis explains what `none`, the fixture by itself, does not, by as much as its names have to.
+    fn explains(&self, named: &Named, none: &Named) -> bool {
+        self.gains(named, none) && self.is_adequate(&named.fit) && self.is_told(named, &none.fit)
+    }
+
+    /// Whether a hypothesis gains what it has to over one that states less.
+    fn gains(&self, more: &Named, fewer: &Named) -> bool {
+        more.fit.ln - fewer.fit.ln > self.needed_over(fewer, more)
+    }
+
+    /// The best with one effect more, or with one at every joint, the most probable first; for the second of several effects all of the best singles with one more, for neither of two need explain anything
+    /// alone.
+    fn with_one_more(&self, count: usize, (best, none): (&Named, &Named), singles: &[Named]) -> Vec<Named> {
+        let by_ln = |all: &mut Vec<Named>| all.sort_by(|a, b| b.fit.ln.total_cmp(&a.fit.ln));
+        let explained = match best.names.is_empty() {
+            true => self.is_adequate(&best.fit) || singles.iter().any(|single| self.explains(single, none)),
+            false => self.is_adequate(&best.fit),
+        };
+        let mut ranked = if explained { Vec::new() } else { self.at_every_joint(best) };
+        // What explains the recording so is compared with single names when these are tried in its stead.
+        if ranked.first().is_some_and(|first| self.explains(first, none)) {
+            return ranked;
+        }
+        ranked.extend(match (count, best.names.len()) {
+            (1, _) => singles.to_vec(),
+            (2, 0 | 1) => self.pairs(singles),
+            _ => self.extended(best, self.settings.refined.1, 1).0,
+        });
+        by_ln(&mut ranked);
+        // Of what explains the recording already the rest may be asked for by a channel, or by every joint.
+        if explained && !best.names.is_empty() && ranked.first().is_some_and(|first| self.gains(first, best))
+        {
+            ranked.extend(self.at_every_joint(best));
+            by_ln(&mut ranked);
+        }
+        ranked
     }
 
     /// Singles with the most probable ones fitted from each other's quantities and sizes of error too: names are compared where all have set out alike.
@@ -208,16 +239,20 @@ impl Searcher<'_> {
 
     /// The fixture by itself from where the best effects left its quantities too.
     fn at_its_best(&self, none: Named, singles: &[Named]) -> Named {
-        let alone = singles.iter().take(self.settings.bases.0).filter_map(|single| self.without(single, 0));
+        let alone =
+            singles.iter().take(self.settings.bases.0).filter_map(|single| self.without(single, &[0]));
         highest(alone).filter(|alone| alone.fit.ln > none.fit.ln).unwrap_or(none)
     }
 
-    /// The same without its effect `index`, from where it stands and with errors as large: what gains much at a size of nothing has only led out of a false minimum.
-    fn without(&self, named: &Named, index: usize) -> Option<Named> {
+    /// The same without its effects at these places in ascending order, from where it stands and with errors as large: what gains much at a size of nothing has only led out of a false minimum.
+    pub(super) fn without(&self, named: &Named, statement: &[usize]) -> Option<Named> {
         let mut names = named.names.clone();
-        names.remove(index);
+        let mut start = named.fit.hypothesis.clone();
+        for &index in statement.iter().rev() {
+            names.remove(index);
+            start = start.without(index);
+        }
         let company: Vec<&Candidate> = names.iter().map(|&c| &self.candidates[c]).collect();
-        let start = named.fit.hypothesis.without(index);
         let set_out = (None, SetOut::Beside(named.fit.evidence.sizes), ANY);
         let standing = self.problem.standing(&start)?;
         let fit = self.problem.fitted_from(&start, standing, &self.priors(&start, &company), set_out)?;
@@ -241,29 +276,50 @@ impl Searcher<'_> {
 
     /// What may stand in the stead of each effect of `best`, in the company of its others.
     fn in_stead_of_each(&self, best: &Named, singles: &[Named], none: &ModalFit) -> Vec<InStead> {
-        (0..best.names.len()).map(|index| self.in_stead_of(best, index, singles, none)).collect()
+        let mut each: Vec<(usize, InStead)> = self
+            .statements(&best.names)
+            .iter()
+            .flat_map(|statement| self.in_stead_of(best, statement, singles, none))
+            .collect();
+        each.sort_by_key(|(index, _)| *index);
+        each.into_iter().map(|(_, in_stead)| in_stead).collect()
     }
 
-    fn in_stead_of(&self, best: &Named, index: usize, singles: &[Named], none: &ModalFit) -> InStead {
-        let own = best.names[index];
+    /// The same for each effect of one statement, by its place.
+    fn in_stead_of(
+        &self,
+        best: &Named,
+        statement: &[usize],
+        singles: &[Named],
+        none: &ModalFit,
+    ) -> Vec<(usize, InStead)> {
         let extended = |base: &Named| self.extended(base, self.settings.refined.1, 1).0;
-        let (base, mut names) = if best.names.len() == 1 {
+        let (base, mut others) = if best.names.len() == statement.len() {
             let alone = Named { names: Vec::new(), exact: self.is_exact(none), fit: none.clone() };
             (Some(alone), singles.to_vec())
         } else {
-            let base = self.without(best, index);
-            let names = base.as_ref().map_or_else(Vec::new, extended);
-            (base, names)
+            let base = self.without(best, statement);
+            let others = base.as_ref().map_or_else(Vec::new, extended);
+            (base, others)
         };
-        names.retain(|other| other.names.last() != Some(&own));
-        names.push(Named { names: vec![own], fit: best.fit.clone(), exact: best.exact });
-        names.sort_by(|a, b| b.fit.ln.total_cmp(&a.fit.ln));
-        names.retain(|other| {
+        if let (Some(base), true) = (&base, statement.len() > 1) {
+            others.extend(self.at_every_joint(base));
+        }
+        let is_own = |c: &usize| statement.iter().any(|&index| best.names[index] == *c);
+        others.retain(|other| {
             let close = best.fit.ln - other.fit.ln < self.settings.listed;
-            other.names.last() == Some(&own) || (close && self.is_told(other, none))
+            close && !other.names.last().is_some_and(is_own) && self.is_told(other, none)
         });
-        let elsewhere = base.as_ref().map_or_else(Vec::new, |base| self.elsewhere(base, best, index, none));
-        InStead { names, elsewhere, without: base.map_or(f64::NEG_INFINITY, |base| base.fit.ln) }
+        let without = base.as_ref().map_or(f64::NEG_INFINITY, |base| base.fit.ln);
+        let of_effect = |&index: &usize| {
+            let own = Named { names: vec![best.names[index]], fit: best.fit.clone(), exact: best.exact };
+            let mut names: Vec<Named> = others.iter().cloned().chain([own]).collect();
+            names.sort_by(|a, b| b.fit.ln.total_cmp(&a.fit.ln));
+            let places = |base: &Named| self.elsewhere(base, best, index, none);
+            let elsewhere = base.as_ref().filter(|_| statement.len() == 1).map_or_else(Vec::new, places);
+            (index, InStead { names, elsewhere, without })
+        };
+        statement.iter().map(of_effect).collect()
     }
 
     /// Fits of `base` with one effect more, the most probable first: the `refined` best candidates, each from so many starts; and the candidates all of whose starts
@@ -321,12 +377,8 @@ impl Searcher<'_> {
         set_out: SetOut,
         least: f64,
     ) -> Option<Named> {
-        let names: Vec<usize> = base.names.iter().copied().chain([c]).collect();
-        let company: Vec<&Candidate> = names.iter().map(|&c| &self.candidates[c]).collect();
-        let standing = self.problem.standing(&hypothesis)?;
-        let nearby = self.nearby(&hypothesis, &standing, &base.fit);
-        let priors = self.priors(&hypothesis, &company);
-        let mut fit = self.problem.fitted_from(&hypothesis, standing, &priors, (nearby, set_out, least))?;
+        let Named { names, mut fit, .. } = self.fitted_with(base, &[c], &hypothesis, (set_out, least))?;
+        let priors = fit.priors.clone();
         // The end of a reach is no place to rest, whatever the evidence says that has a parameter less there.
         for _ in 0..self.settings.farther {
             let next = farther(&fit.hypothesis, &self.candidates[c]).and_then(|start| {
@@ -340,5 +392,22 @@ impl Searcher<'_> {
         let pairs = |fit: &ModalFit| fit.standing.pairing.pairs.len();
         let loses_modes = self.calibrated && pairs(&fit) < pairs(&base.fit);
         (!loses_modes).then(|| Named { names, exact: self.is_exact(&fit), fit })
+    }
+
+    /// One fit of `hypothesis`, which is `base` with effects of these names `added`.
+    pub(super) fn fitted_with(
+        &self,
+        base: &Named,
+        added: &[usize],
+        hypothesis: &Hypothesis,
+        (set_out, least): (SetOut, f64),
+    ) -> Option<Named> {
+        let names: Vec<usize> = base.names.iter().chain(added).copied().collect();
+        let company: Vec<&Candidate> = names.iter().map(|&c| &self.candidates[c]).collect();
+        let standing = self.problem.standing(hypothesis)?;
+        let nearby = self.nearby(hypothesis, &standing, &base.fit);
+        let priors = self.priors(hypothesis, &company);
+        let fit = self.problem.fitted_from(hypothesis, standing, &priors, (nearby, set_out, least))?;
+        Some(Named { names, exact: self.is_exact(&fit), fit })
     }
 }

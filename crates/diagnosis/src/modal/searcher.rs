@@ -1,11 +1,11 @@
 //! A comparison by modes under way: what all its steps share, and when a fit says enough.
 
 use crate::candidate::Candidate;
+use crate::modal::again::Known;
 use crate::modal::fit::{ModalFit, Problem};
 use crate::modal::prior::{Prior, priors};
 use crate::settings::ModalSettings;
 use crate::{Hypothesis, Watch};
-use jointscope_fixture::Effect;
 use jointscope_model_error::ErrorSizes;
 
 /// Standard deviation, in stated ones, that a calibrated quantity keeps.
@@ -31,7 +31,7 @@ pub(crate) struct Searcher<'a> {
     pub nominal: &'a Hypothesis,
     pub settings: &'a ModalSettings,
     /// Where to set out from in place of all candidates' starts: the effects found in more than what is searched here.
-    pub known: Option<&'a [Effect]>,
+    pub known: Option<&'a Known>,
     /// Whether the fixture's quantities are where another recording of the structure put them, and stay there.
     pub calibrated: bool,
     /// Whether a hypothesis leaves no more than noise on lines.
@@ -50,12 +50,20 @@ impl Searcher<'_> {
         all
     }
 
-    /// What each effect that `more` has beyond `fewer` must gain in ln p: less where errors and departures beyond chance refute what has fewer and not what
+    /// What each statement that `more` has beyond `fewer` must gain in ln p: less where errors and departures beyond chance refute what has fewer and not what
     /// has more.
-    pub(super) fn needed_beyond(&self, fewer: &Named, more: &Named) -> f64 {
+    fn needed_beyond(&self, fewer: &Named, more: &Named) -> f64 {
         let refuted = !self.is_adequate(&fewer.fit) && self.is_adequate(&more.fit);
         let odds = if refuted { self.settings.odds_over_refuted } else { self.settings.odds };
         (self.candidates.len() as f64).ln() + odds.ln()
+    }
+
+    /// What `more` must gain in ln p over `fewer`: for each statement that it makes beyond those the odds of one name among all, and for each effect that only completes one its own.
+    pub(super) fn needed_over(&self, fewer: &Named, more: &Named) -> f64 {
+        let [before, after] = [fewer, more].map(|named| self.statements(&named.names).len());
+        let beyond = after.saturating_sub(before);
+        let completing = more.names.len().saturating_sub(fewer.names.len() + beyond);
+        beyond as f64 * self.needed_beyond(fewer, more) + completing as f64 * self.settings.odds.ln()
     }
 
     /// Whether the size of every effect is told from nothing, the model's errors as large as they may well be: with few modes the most probable errors are
@@ -63,7 +71,7 @@ impl Searcher<'_> {
     /// over a calibrated one, which stays where it is.
     pub(super) fn is_told(&self, named: &Named, none: &ModalFit) -> bool {
         let fit = &named.fit;
-        let undoubted = self.settings.undoubted * named.names.len() as f64;
+        let undoubted = self.settings.undoubted * self.statements(&named.names).len() as f64;
         if !self.calibrated && fit.ln - none.ln > undoubted {
             return true;
         }

@@ -2,6 +2,7 @@
 
 use crate::Hypothesis;
 use crate::candidate::Candidate;
+use crate::modal::again::Known;
 use crate::modal::fit::{ModalFit, Standing, linear};
 use crate::modal::prior::Prior;
 use crate::modal::searcher::{Named, STARTS, Searcher};
@@ -126,15 +127,15 @@ impl Searcher<'_> {
     }
 
     /// Starts at effects that are known, of names that `base` does not have.
-    pub(super) fn starts_at(&self, base: &Named, known: &[Effect]) -> Vec<Start> {
+    pub(super) fn starts_at(&self, base: &Named, known: &Known) -> Vec<Start> {
         let start = |effect: &Effect| {
             let c = self.candidates.iter().position(|candidate| candidate.names(effect))?;
             (!base.names.contains(&c)).then(|| Start::of(c, base.fit.hypothesis.with(effect.clone())))
         };
-        known.iter().filter_map(start).collect()
+        known.all().filter_map(start).collect()
     }
 
-    fn rescored(&self, scored: Vec<Start>) -> Vec<Start> {
+    pub(super) fn rescored(&self, scored: Vec<Start>) -> Vec<Start> {
         let (mut apart, mut alike): (Vec<Start>, Vec<Start>) =
             scored.into_iter().partition(|start| start.apart);
         by_density(&mut apart);
@@ -169,7 +170,7 @@ impl Searcher<'_> {
     }
 
     /// A start with the density of the recorded features there, everything else linear about `base`.
-    fn scored(&self, candidate: usize, hypothesis: Hypothesis, base: &ModalFit) -> Option<Start> {
+    pub(super) fn scored(&self, candidate: usize, hypothesis: Hypothesis, base: &ModalFit) -> Option<Start> {
         let problem = &self.problem;
         let standing = problem.standing(&hypothesis)?;
         let residual = problem.residual(&standing, &standing.modelled);

@@ -1,3 +1,4 @@
+mod every_joint;
 mod search;
 
 use crate::catalogue::catalogue;
