@@ -185,14 +185,13 @@ impl Searcher<'_> {
     /// The best with one effect more, or with one at every joint, the most probable first; for the second of several effects all of the best singles with one more, for neither of two need explain anything
     /// alone.
     fn with_one_more(&self, count: usize, (best, none): (&Named, &Named), singles: &[Named]) -> Vec<Named> {
-        let by_ln = |all: &mut Vec<Named>| all.sort_by(|a, b| b.fit.ln.total_cmp(&a.fit.ln));
-        let explained = match best.names.is_empty() {
-            true => self.is_adequate(&best.fit) || singles.iter().any(|single| self.explains(single, none)),
-            false => self.is_adequate(&best.fit),
-        };
-        let mut ranked = if explained { Vec::new() } else { self.at_every_joint(best) };
-        // What explains the recording so is compared with single names when these are tried in its stead.
-        if ranked.first().is_some_and(|first| self.explains(first, none)) {
+        // No joint is asked where one effect does.
+        let single = best.names.is_empty()
+            && (self.is_adequate(&best.fit) || singles.iter().any(|single| self.explains(single, none)));
+        let mut ranked = if single { Vec::new() } else { self.at_every_joint(best) };
+        // What explains what the best does not is compared with single names when these are tried in its stead.
+        let explains = |first: &Named| !self.is_adequate(&best.fit) && self.explains(first, none);
+        if ranked.first().is_some_and(explains) {
             return ranked;
         }
         ranked.extend(match (count, best.names.len()) {
@@ -200,13 +199,7 @@ impl Searcher<'_> {
             (2, 0 | 1) => self.pairs(singles),
             _ => self.extended(best, self.settings.refined.1, 1).0,
         });
-        by_ln(&mut ranked);
-        // Of what explains the recording already the rest may be asked for by a channel, or by every joint.
-        if explained && !best.names.is_empty() && ranked.first().is_some_and(|first| self.gains(first, best))
-        {
-            ranked.extend(self.at_every_joint(best));
-            by_ln(&mut ranked);
-        }
+        ranked.sort_by(|a, b| b.fit.ln.total_cmp(&a.fit.ln));
         ranked
     }
 
