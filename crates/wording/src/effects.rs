@@ -3,7 +3,7 @@
 use crate::estimate::size_of;
 use crate::numbers::plain;
 use jointscope_findings::Estimate;
-use jointscope_fixture::{Case, Dof, Effect, ParameterRange, Place};
+use jointscope_fixture::{Case, Dof, Effect, Motion, ParameterRange, Place};
 use std::f64::consts::TAU;
 
 /// Standard deviation of an abscissa, m, beyond which it is not told.
@@ -35,9 +35,10 @@ impl Sized<'_> {
         self.estimates.iter().find(|estimate| estimate.parameter.name == parameter)
     }
 
-    /// Whether a parameter that may be zero is beyond doubt not.
+    /// Whether a parameter that may be zero is beyond doubt not, or has been given another value.
     fn is_sure(&self, parameter: &str) -> bool {
-        self.estimate(parameter).is_some_and(Estimate::is_positive)
+        let is_given = |e: &Estimate| e.parameter.motion == Motion::None && e.value > 0.0;
+        self.estimate(parameter).is_some_and(|estimate| estimate.is_positive() || is_given(estimate))
     }
 
     fn is_case(&self, case: Case) -> bool {

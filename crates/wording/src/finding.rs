@@ -192,7 +192,7 @@ mod tests {
         let body = || Place::Body("B".into());
         let joint = || Place::Joint("J".into());
         type Case<'a> = (EffectKind, Place, Option<Dof>, &'a [f64], &'a [&'a str]);
-        let cases: [Case; 21] = [
+        let cases: [Case; 22] = [
             (
                 EffectKind::AddedMass,
                 body(),
@@ -229,6 +229,13 @@ mod tests {
                 Some(Dof::Rotation),
                 &[12e3, 0.0],
                 &["12.00 kN·m/rad", "bending"],
+            ),
+            (
+                EffectKind::InterfaceCompliance,
+                Place::Point("3".into()),
+                Some(Dof::Rotation),
+                &[12e3, 0.0, 1.0],
+                &["12.00 kN·m/rad", "spread along its foot", "(spread 1.000"],
             ),
             (EffectKind::ShearDeformation, joint(), None, &[1e7, 0.0], &["10.00 MN", "Euler–Bernoulli"]),
             (EffectKind::JointMass, joint(), None, &[0.077], &["77.0", "massless"]),
