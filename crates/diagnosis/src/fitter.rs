@@ -126,7 +126,8 @@ impl<'a> Fitter<'a> {
         let difference = self.settings.fit.difference;
         let (change, least) = self.settings.fit.small_difference;
         let small = |m: usize| {
-            let predicted = [0.0, difference].map(|step| at.predict_moved(m, step, None, self.observation));
+            let predicted =
+                [0.0, difference].map(|step| at.predict_moved(m, step, (None, None), self.observation));
             let [Ok(here), Ok(there)] = predicted else { return difference };
             let relative = |(a, b): (&Complex64, &Complex64)| (a - b).norm() / a.norm().max(b.norm());
             let changes = here.iter().zip(&there).map(relative).filter(|c| c.is_finite());

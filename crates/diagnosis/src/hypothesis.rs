@@ -5,7 +5,7 @@ use jointscope_fixture::{
     SizeLaw,
 };
 use jointscope_inference::{Covariance, Parameter, Transform};
-use jointscope_lumped::{Instrument, LumpedError, Tangent, accelerances};
+use jointscope_lumped::{Instrument, LumpedError, Tangent, Vicinity, accelerances};
 use jointscope_spectra::FrfPair;
 use jointscope_tolerances::{Tolerance, moved};
 use num_complex::Complex64;
@@ -379,27 +379,42 @@ impl Hypothesis {
     }
 
     /// What is predicted with coordinate `index` moved by `step`. FRFs that do not depend on it are not predicted again: they are
-    /// those of `predicted`, or zero without.
+    /// those of `predicted`, or zero without. Of a step that is small enough for a derivative modes may follow from those that it leads `away` from.
     pub(crate) fn predict_moved(
         &self,
         index: usize,
         step: f64,
-        predicted: Option<&[Complex64]>,
+        (predicted, away): (Option<&[Complex64]>, Option<&Vicinity>),
         observation: &Observation,
     ) -> Result<Vec<Complex64>, PredictionError> {
         let moved = self.moved(index, step);
-        let Some(frfs) = self.depending(index, observation) else { return moved.predict(observation) };
-        let count = observation.lines().len();
+        let lines = observation.lines();
+        let count = lines.len();
+        let by = |fixture: &Fixture, pairs: &[FrfPair]| match away {
+            Some(away) => away.beside(fixture, pairs, Instrument::AsRecorded)?.accelerances(lines),
+            None => accelerances(fixture, pairs, lines, Instrument::AsRecorded),
+        };
+        let Some(frfs) = self.depending(index, observation) else {
+            let fixture = moved.to_fixture()?;
+            observation.work().count(observation.values().len());
+            return Ok(by(&fixture, observation.pairs())?);
+        };
         let mut all =
             predicted.map_or_else(|| vec![Complex64::ZERO; observation.values().len()], <[_]>::to_vec);
         let pairs: Vec<FrfPair> = frfs.iter().map(|&i| observation.pairs()[i].clone()).collect();
         if !pairs.is_empty() {
             let fixture = moved.to_fixture()?;
             observation.work().count(count * pairs.len());
-            let some = accelerances(&fixture, &pairs, observation.lines(), Instrument::AsRecorded)?;
+            let some = by(&fixture, &pairs)?;
             write_frfs(&mut all, &some, &frfs, count);
         }
         Ok(all)
+    }
+
+    /// What differences of an observation's FRFs set out from; `None` where whole solutions cost as little.
+    pub(crate) fn vicinity(&self, observation: &Observation) -> Option<Vicinity> {
+        let hz = observation.lines().hz();
+        Vicinity::where_it_pays(self.to_fixture().ok()?, hz[hz.len() - 1])
     }
 
     /// What derivatives of an observation's FRFs are taken from; `None` where they have to be differences.

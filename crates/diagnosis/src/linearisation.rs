@@ -1,5 +1,6 @@
 use crate::{Hypothesis, Observation};
 use jointscope_inference::NormalEquations;
+use jointscope_lumped::Vicinity;
 use num_complex::Complex64;
 
 /// What the coordinates of a hypothesis do to the FRFs, to first order.
@@ -20,9 +21,11 @@ impl Linearisation {
     ) -> Self {
         let first = self.derivatives.len();
         let solution = if first < at.coordinates.len() { at.tangent(observation) } else { None };
+        let about = if first < at.coordinates.len() { at.vicinity(observation) } else { None };
         for m in first..at.coordinates.len() {
             let exact = solution.as_ref().and_then(|solution| at.derivative(m, solution, observation, 2));
-            self.derivatives.push(exact.unwrap_or_else(|| central(at, observation, m, steps(m))));
+            self.derivatives
+                .push(exact.unwrap_or_else(|| central((at, about.as_ref()), observation, m, steps(m))));
         }
         self
     }
@@ -36,6 +39,7 @@ impl Linearisation {
         difference: f64,
     ) -> Self {
         let solution = at.tangent(observation);
+        let about = at.vicinity(observation);
         let derivatives = (0..at.coordinates.len()).map(|m| {
             if at.is_held(m) {
                 return vec![Complex64::ZERO; predicted.len()];
@@ -46,7 +50,7 @@ impl Linearisation {
                 return exact;
             }
             let step = at.inward(m, difference);
-            match at.predict_moved(m, step, Some(predicted), observation) {
+            match at.predict_moved(m, step, (Some(predicted), about.as_ref()), observation) {
                 Ok(moved) => moved.iter().zip(predicted).map(|(u, p)| (u - p) / step).collect(),
                 Err(_) => vec![Complex64::ZERO; predicted.len()],
             }
@@ -67,8 +71,13 @@ impl Linearisation {
 }
 
 /// Central differences by coordinate `m`.
-fn central(at: &Hypothesis, observation: &Observation, m: usize, step: f64) -> Vec<Complex64> {
-    let moved = |sign: f64| at.predict_moved(m, sign * step, None, observation);
+fn central(
+    (at, about): (&Hypothesis, Option<&Vicinity>),
+    observation: &Observation,
+    m: usize,
+    step: f64,
+) -> Vec<Complex64> {
+    let moved = |sign: f64| at.predict_moved(m, sign * step, (None, about), observation);
     let slope = |up: Vec<Complex64>, down: Vec<Complex64>, width: f64| {
         up.iter().zip(&down).map(|(u, d)| (u - d) / width).collect()
     };

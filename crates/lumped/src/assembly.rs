@@ -1,9 +1,11 @@
 //! An assembly: its matrices, its modes and what damps them.
 
+mod beside;
 mod change;
 mod coordinates;
 mod matrices;
 
+pub(crate) use beside::by_coordinate;
 pub(crate) use change::{AssemblyChange, has_meshed_bodies};
 
 use crate::condensed::Stretch;
@@ -12,12 +14,14 @@ use crate::held::{held_by_modes, in_the_modes};
 use crate::modes_cache::modes;
 use crate::uniform_beam::{UniformBeam, UnitMesh};
 use crate::{LumpedError, Station};
+use beside::Turned;
 use coordinates::{Coordinates, coordinates, is_bare, stretches};
 use jointscope_damping::{DampingLaw, HeldMode, ModeDamping, elastic_modes, viscous_matrix};
 use jointscope_fixture::{BodyKind, Damping, Fixture};
 use jointscope_linalg::{ModalBasis, products};
 use matrices::{BodyEffects, Matrices};
 use std::f64::consts::TAU;
+use std::sync::Arc;
 
 /// The assembly as its modes have it: bodies with their known masses, and joints; the springs of supports where damping ratios are those of the assembly as it
 /// stands, otherwise none; no effects but those that rebuild a beam body (its shear, its stiffness factor).
@@ -30,7 +34,10 @@ pub struct Assembly {
     places: Vec<Coordinates>,
     mass: Vec<f64>,
     stiffness: Vec<f64>,
-    basis: ModalBasis,
+    basis: Arc<ModalBasis>,
+    /// What the modes differ by from the basis, where they were found beside another assembly's.
+    turned: Option<Turned>,
+    is_free_beam: bool,
     damping: Vec<ModeDamping>,
     elastic: Vec<usize>,
     law: DampingLaw,
@@ -73,6 +80,8 @@ impl Assembly {
             mass: plain.mass,
             stiffness: plain.stiffness,
             basis,
+            turned: None,
+            is_free_beam: false,
             damping: Vec::new(),
             elastic: Vec::new(),
             law,
@@ -135,7 +144,9 @@ impl Assembly {
             places,
             mass: with.mass,
             stiffness: with.stiffness,
-            basis,
+            basis: Arc::new(basis),
+            turned: None,
+            is_free_beam: true,
             damping,
             elastic,
             law,
@@ -162,7 +173,7 @@ impl Assembly {
 
     /// The modes with what supports are to them; nothing where no mode holds supports.
     fn held_modes(&self, fixture: &Fixture) -> Vec<HeldMode> {
-        let eigenvalues = self.basis.eigenvalues().iter();
+        let eigenvalues = self.eigenvalues().iter();
         let mut modes: Vec<HeldMode> =
             eigenvalues.map(|&eigenvalue| HeldMode { eigenvalue, in_supports: 0.0, dashpots: 0.0 }).collect();
         for held in held_by_modes(fixture) {
@@ -211,6 +222,11 @@ impl Assembly {
         &self.basis
     }
 
+    /// λ of each mode, in no order where they were found beside another assembly's.
+    pub(crate) fn eigenvalues(&self) -> &[f64] {
+        self.turned.as_ref().map_or(self.basis.eigenvalues(), |turned| &turned.eigenvalues)
+    }
+
     /// Damping of each mode.
     pub fn mode_damping(&self) -> &[ModeDamping] {
         &self.damping
@@ -247,13 +263,21 @@ impl Assembly {
 
     /// Adds `weight` times the station's participation in each mode to `all`.
     pub(crate) fn add_participation(&self, station: &Station, weight: f64, all: &mut [f64]) {
-        let row = self.station_row(station);
+        let mut row = self.station_row(station);
+        if let Some(turned) = &self.turned {
+            turned.scale(&mut row);
+        }
         // A station reads a few coordinates only.
         let read: Vec<(usize, f64)> = row.into_iter().enumerate().filter(|(_, t)| *t != 0.0).collect();
-        for (r, value) in all.iter_mut().enumerate() {
+        let of_mode = |r: usize| {
             let shape = self.basis.shape(r);
-            *value += weight * read.iter().map(|(i, t)| shape[*i] * t).sum::<f64>();
+            read.iter().map(|(i, t)| shape[*i] * t).sum::<f64>()
+        };
+        if let Some(turned) = &self.turned {
+            let own: Vec<f64> = (0..self.order).map(of_mode).collect();
+            return turned.add(&own, weight, all);
         }
+        all.iter_mut().enumerate().for_each(|(r, value)| *value += weight * of_mode(r));
     }
 }
 

@@ -14,7 +14,7 @@
 //! * [`StateSpace`]: the assembly over time, for what has no FRF;
 //! * [`MeasuringChain`]: what stands between the structure and a recorded value;
 //! * [`ModelledTest`]: the model with a test's channels; [`ContinuedFrfs`], its FRFs at complex frequencies; [`Tangent`], what small
-//!   changes of the fixture make of them;
+//!   changes of the fixture make of them; [`Vicinity`], tests of fixtures beside one another for differences;
 //! * [`synthesize`], [`accelerances`]: the FRFs an analyser would record (eq 18, 41), measuring-chain effects included.
 //!
 //! ```
@@ -61,6 +61,7 @@ mod tangent;
 mod term_station;
 mod terms;
 mod uniform_beam;
+mod vicinity;
 
 pub use assembly::Assembly;
 pub use chain::{Instrument, MeasuringChain, Reading, channel_station, signal_power, window_decay};
@@ -74,6 +75,7 @@ pub use state_space::StateSpace;
 pub use station::Station;
 pub use synthesis::{ContinuedFrfs, ModelledTest, accelerances, synthesize};
 pub use tangent::Tangent;
+pub use vicinity::Vicinity;
 
 /// Why an assembly cannot be modelled.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]

@@ -96,6 +96,11 @@ impl Mesh {
         self.ends.windows(2).map(stretch)
     }
 
+    /// m.
+    pub(crate) fn length(&self) -> f64 {
+        self.nodes[self.nodes.len() - 1] - self.nodes[0]
+    }
+
     /// Number of coordinates: y and θ of each node.
     pub(crate) fn coordinates(&self) -> usize {
         2 * self.nodes.len()

@@ -7,6 +7,7 @@ use crate::term_station::TermStation;
 use crate::terms::Terms;
 use crate::{Assembly, LumpedError};
 use jointscope_fixture::{BodyKind, Fixture};
+use jointscope_linalg::ModalBasis;
 use jointscope_spectra::Dof;
 use num_complex::Complex64;
 
@@ -37,25 +38,48 @@ impl Model {
     /// # Errors
     /// Modes that cannot be computed; an effect that depends on amplitude.
     pub fn new(fixture: &Fixture, highest_hz: f64) -> Result<Self, LumpedError> {
-        if let Some((index, effect)) =
-            fixture.physics().iter().enumerate().find(|(_, e)| e.kind.is_nonlinear())
-        {
-            return Err(LumpedError::NonLinear { index, kind: effect.kind.name() });
-        }
+        refuse_nonlinear(fixture)?;
         Self::linear_part(fixture, highest_hz)
     }
 
     /// As [`Model::new`], effects that depend on amplitude left aside.
     pub(crate) fn linear_part(fixture: &Fixture, highest_hz: f64) -> Result<Self, LumpedError> {
+        Ok(Self::with(Assembly::condensed(fixture, highest_hz)?, fixture, highest_hz))
+    }
+
+    /// The model of a fixture `moved` by next to nothing from this one's, modes to first order where they follow from those at hand, given also coordinate after
+    /// coordinate: for derivatives alone.
+    ///
+    /// # Errors
+    /// Those of [`Model::new`].
+    pub(crate) fn beside(&self, here: (&Fixture, &[f64]), moved: &Fixture) -> Result<Self, LumpedError> {
+        refuse_nonlinear(moved)?;
+        let assembly = match self.assembly.beside(here, moved, self.highest_hz) {
+            Some(assembly) => assembly,
+            None => Assembly::condensed(moved, self.highest_hz)?,
+        };
+        Ok(Self::with(assembly, moved, self.highest_hz))
+    }
+
+    /// Whether models of fixtures next to this one may take their modes from its own.
+    pub(crate) fn has_neighbours(fixture: &Fixture) -> bool {
+        Assembly::has_neighbours(fixture)
+    }
+
+    pub(crate) fn is_first_order(&self) -> bool {
+        self.assembly.is_first_order()
+    }
+
+    fn with(assembly: Assembly, fixture: &Fixture, highest_hz: f64) -> Self {
         let bending = bending_coordinates(fixture);
         let flexible: Vec<bool> =
             (0..fixture.bodies().len()).map(|body| bending.iter().any(|b| b.body == body)).collect();
-        Ok(Model {
-            assembly: Assembly::condensed(fixture, highest_hz)?,
-            bending,
-            terms: Terms::of(fixture, &flexible),
-            highest_hz,
-        })
+        Model { assembly, bending, terms: Terms::of(fixture, &flexible), highest_hz }
+    }
+
+    /// The undamped modes of the assembly.
+    pub(crate) fn modes_of_assembly(&self) -> &ModalBasis {
+        self.assembly.modes()
     }
 
     /// What is not a proportional part of the free assembly.
@@ -79,7 +103,7 @@ impl Model {
     }
 
     pub(crate) fn denominators(&self) -> Vec<Denominator> {
-        let assembly = self.assembly.modes().eigenvalues().iter().zip(self.assembly.mode_damping());
+        let assembly = self.assembly.eigenvalues().iter().zip(self.assembly.mode_damping());
         let assembly = assembly.map(|(&eigenvalue, damping)| Denominator {
             stiffness: Complex64::new(eigenvalue, damping.structural),
             viscous: damping.viscous,
@@ -89,6 +113,13 @@ impl Model {
             .iter()
             .map(|b| Denominator { stiffness: Complex64::new(b.eigenvalue, 0.0), viscous: b.viscous });
         assembly.chain(bending).collect()
+    }
+}
+
+fn refuse_nonlinear(fixture: &Fixture) -> Result<(), LumpedError> {
+    match fixture.physics().iter().enumerate().find(|(_, e)| e.kind.is_nonlinear()) {
+        Some((index, effect)) => Err(LumpedError::NonLinear { index, kind: effect.kind.name() }),
+        None => Ok(()),
     }
 }
 

@@ -7,7 +7,7 @@ use crate::condensed::{Stretch, condensed_modes};
 use jointscope_linalg::{EigenError, ModalBasis};
 use std::cell::RefCell;
 use std::collections::VecDeque;
-use std::rc::Rc;
+use std::sync::Arc;
 
 /// Problems remembered by a thread, the latest first; of meshed beams so many more, as far as their matrices have no more entries together than these: a fit of theirs comes back to
 /// where its last two sets of derivatives were taken.
@@ -19,7 +19,7 @@ struct Solved {
     condensed: bool,
     mass: Vec<f64>,
     stiffness: Vec<f64>,
-    basis: Rc<ModalBasis>,
+    basis: Arc<ModalBasis>,
 }
 
 thread_local! {
@@ -35,7 +35,7 @@ pub(crate) fn modes(
     mass: &[f64],
     stiffness: &[f64],
     stretches: &[Stretch],
-) -> Result<ModalBasis, EigenError> {
+) -> Result<Arc<ModalBasis>, EigenError> {
     let known = SOLVED.with_borrow_mut(|solved| {
         let diagonal = |a: &[f64], b: &[f64]| a.iter().step_by(order + 1).eq(b.iter().step_by(order + 1));
         // Most problems differ in one of the two only, and show it there at once.
@@ -47,18 +47,18 @@ pub(crate) fn modes(
         let same = |s: &Solved| alike(s) && s.stiffness == stiffness && s.mass == mass;
         let found = solved.iter().position(same)?;
         let latest = solved.remove(found)?;
-        let basis = Rc::clone(&latest.basis);
+        let basis = Arc::clone(&latest.basis);
         solved.push_front(latest);
         Some(basis)
     });
     if let Some(basis) = known {
-        return Ok((*basis).clone());
+        return Ok(basis);
     }
     let kept = match stretches {
         [] => KEPT,
         _ => (ENTRIES / mass.len()).clamp(KEPT, KEPT_OF_BEAMS),
     };
-    let basis = condensed_modes(order, mass, stiffness, stretches)?;
+    let basis = Arc::new(condensed_modes(order, mass, stiffness, stretches)?);
     SOLVED.with_borrow_mut(|solved| {
         solved.truncate(kept - 1);
         let (mass, stiffness) = (mass.to_vec(), stiffness.to_vec());
@@ -66,7 +66,7 @@ pub(crate) fn modes(
             condensed: !stretches.is_empty(),
             mass,
             stiffness,
-            basis: Rc::new(basis.clone()),
+            basis: Arc::clone(&basis),
         });
     });
     Ok(basis)

@@ -60,7 +60,16 @@ impl ModelledTest {
         highest_hz: f64,
         instrument: Instrument,
     ) -> Result<Self, LumpedError> {
-        let model = Model::new(fixture, highest_hz)?;
+        ModelledTest::of(Model::new(fixture, highest_hz)?, fixture, pairs, instrument)
+    }
+
+    /// A model of the fixture with the channels of `pairs`.
+    pub(crate) fn of(
+        model: Model,
+        fixture: &Fixture,
+        pairs: &[FrfPair],
+        instrument: Instrument,
+    ) -> Result<Self, LumpedError> {
         let chain = MeasuringChain::of(fixture, pairs, instrument)?;
         let (mut stations, mut wanted) = channels(&chain);
         let mut loads = Vec::with_capacity(pairs.len());
@@ -69,6 +78,11 @@ impl ModelledTest {
                 .push(reading.load.map(|(station, mass)| stations.sensor(mass, station, &mut wanted, index)));
         }
         Ok(ModelledTest { model, chain, stations, wanted, loads })
+    }
+
+    /// Whether modes were found to first order beside others, as a [`Vicinity`](crate::Vicinity) does where it can.
+    pub fn is_first_order(&self) -> bool {
+        self.model.is_first_order()
     }
 
     fn receptances(&self) -> Receptances<'_> {

@@ -16,6 +16,8 @@ use std::rc::Rc;
 
 /// Problems of each kind remembered by a thread: a fit moves many quantities that leave them alone.
 const KEPT: usize = 8;
+/// Of those with shear: derivatives solve several beside the one that they are taken at.
+const KEPT_COUPLED: usize = 32;
 
 /// A beam with everything that decides its modes.
 #[derive(Debug, Clone, PartialEq)]
@@ -190,11 +192,17 @@ impl UniformBeam {
         }
         found.sort_by(|a, b| a.0.total_cmp(&b.0));
         let mut shapes = vec![0.0; n * n];
-        for (to, (_, row)) in shapes.chunks_exact_mut(n).zip(&found) {
-            for (share, shape) in row.iter().zip(plain.shapes.chunks_exact(n)).filter(|(c, _)| **c != 0.0) {
-                to.iter_mut().zip(shape).for_each(|(to, s)| *to += share * s);
-            }
-        }
+        pulp::Arch::new().dispatch(
+            #[inline(always)]
+            || {
+                for (to, (_, row)) in shapes.chunks_exact_mut(n).zip(&found) {
+                    let shares = row.iter().zip(plain.shapes.chunks_exact(n));
+                    for (share, shape) in shares.filter(|(share, _)| **share != 0.0) {
+                        to.iter_mut().zip(shape).for_each(|(to, s)| *to += share * s);
+                    }
+                }
+            },
+        );
         let coupled = Rc::new(Coupled {
             mesh: self.mesh.clone(),
             shear,
@@ -204,7 +212,7 @@ impl UniformBeam {
             shares: found.into_iter().flat_map(|(_, row)| row).collect(),
         });
         COUPLED.with_borrow_mut(|all| {
-            all.truncate(KEPT - 1);
+            all.truncate(KEPT_COUPLED - 1);
             all.push_front(Rc::clone(&coupled));
         });
         Ok(coupled)

@@ -4,7 +4,7 @@ use crate::basis::{Pole, UPPER};
 use crate::poles::{ModelledMode, mode, poles};
 use crate::recorded::RecordedModes;
 use jointscope_fixture::Fixture;
-use jointscope_lumped::{Instrument, ModelledTest};
+use jointscope_lumped::{Instrument, ModelledTest, Vicinity};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 
@@ -47,6 +47,11 @@ pub struct ModelledModes {
 }
 
 impl RecordedModes {
+    /// What [`ModelledModes::after_step`] sets out from to fixtures about this one; `None` where [`ModelledModes::near`] costs as little.
+    pub fn about(&self, fixture: Fixture) -> Option<Vicinity> {
+        Vicinity::where_it_pays(fixture, self.band.1)
+    }
+
     /// A fixture as this recording's test would have read it.
     fn modelled(&self, fixture: &Fixture) -> Option<ModelledTest> {
         ModelledTest::new(fixture, &self.pairs, self.band.1, Instrument::AsRecorded).ok()
@@ -66,6 +71,16 @@ impl ModelledModes {
     /// The modes of a fixture near those of another one, as which they count; `None` where a pole cannot be followed or the model has no finite FRFs.
     pub fn near(fixture: &Fixture, recorded: &RecordedModes, other: &ModelledModes) -> Option<Self> {
         ModelledModes::followed(&recorded.modelled(fixture)?, recorded, &other.poles(), Some(&other.parts))
+    }
+
+    /// As [`ModelledModes::near`] of a fixture that differs from the one of `about` by a step of a difference alone, for derivatives.
+    pub fn after_step(
+        fixture: &Fixture,
+        recorded: &RecordedModes,
+        (about, other): (&Vicinity, &ModelledModes),
+    ) -> Option<Self> {
+        let test = about.beside(fixture, &recorded.pairs, Instrument::AsRecorded).ok()?;
+        ModelledModes::followed(&test, recorded, &other.poles(), Some(&other.parts))
     }
 
     fn followed(

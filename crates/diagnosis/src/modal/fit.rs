@@ -198,11 +198,20 @@ impl<'a> Problem<'a> {
         priors: &[Prior],
         of: std::ops::Range<usize>,
     ) -> Option<Vec<Vec<f64>>> {
+        let about = self.recorded.about(hypothesis.to_fixture().ok()?);
+        let beside = |hypothesis: &Hypothesis| {
+            let fixture = hypothesis.to_fixture().ok()?;
+            self.work.count(FOLLOWED * self.recorded.frfs());
+            match &about {
+                Some(about) => ModelledModes::after_step(&fixture, self.recorded, (about, modelled)),
+                None => ModelledModes::near(&fixture, self.recorded, modelled),
+            }
+        };
         of.map(|index| {
             let size = (DIFFERENCE.0 * priors[index].std).min(DIFFERENCE.1);
             let inward = hypothesis.inward(index, size);
             // A beam that ends at a support cannot become shorter: then longer.
-            let moved = |step: f64| Some((step, self.modelled(&hypothesis.moved(index, step), modelled)?));
+            let moved = |step: f64| Some((step, beside(&hypothesis.moved(index, step))?));
             let (step, moved) = moved(inward).or_else(|| moved(-inward))?;
             let there = self.residual(standing, &moved);
             Some(residual.iter().zip(&there).map(|(at, there)| (at - there) / step).collect())

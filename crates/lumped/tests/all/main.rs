@@ -5,3 +5,4 @@ mod against_direct_solution;
 mod recorded_and_perfect;
 mod state_space;
 mod tangents;
+mod vicinity;
