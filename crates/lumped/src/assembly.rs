@@ -4,6 +4,7 @@ mod beside;
 mod change;
 mod coordinates;
 mod matrices;
+mod turned;
 
 pub(crate) use beside::by_coordinate;
 pub(crate) use change::{AssemblyChange, has_meshed_bodies};
@@ -14,7 +15,6 @@ use crate::held::{held_by_modes, in_the_modes};
 use crate::modes_cache::modes;
 use crate::uniform_beam::{UniformBeam, UnitMesh};
 use crate::{LumpedError, Station};
-use beside::Turned;
 use coordinates::{Coordinates, coordinates, is_bare, stretches};
 use jointscope_damping::{DampingLaw, HeldMode, ModeDamping, elastic_modes, viscous_matrix};
 use jointscope_fixture::{BodyKind, Damping, Fixture};
@@ -22,6 +22,7 @@ use jointscope_linalg::{ModalBasis, products};
 use matrices::{BodyEffects, Matrices};
 use std::f64::consts::TAU;
 use std::sync::Arc;
+use turned::Turned;
 
 /// The assembly as its modes have it: bodies with their known masses, and joints; the springs of supports where damping ratios are those of the assembly as it
 /// stands, otherwise none; no effects but those that rebuild a beam body (its shear, its stiffness factor).

@@ -12,6 +12,7 @@
 
 use super::coordinates::{Coordinates, coordinates};
 use super::matrices::Matrices;
+use super::turned::Turned;
 use super::{Assembly, has_meshed_bodies};
 use crate::effects::{Action, actions};
 use crate::held::in_the_modes;
@@ -27,32 +28,6 @@ const FAR: f64 = 10.0;
 const TURNED: f64 = 2e-3;
 /// Rounding of a node's place as a share of the length. One that moves along with what turns the beam there leaves shapes behind that have their kinks elsewhere.
 const ROUNDING: f64 = 1e-12;
-
-/// How modes differ from the basis beside which they were found.
-#[derive(Debug, Clone)]
-pub(super) struct Turned {
-    pub(super) eigenvalues: Vec<f64>,
-    /// What shapes are multiplied by at each coordinate before they mix.
-    scales: Vec<f64>,
-    /// c_kr, a row over r for each k; nothing where the matrices are the same.
-    mixing: Vec<f64>,
-}
-
-impl Turned {
-    /// What a row that reads coordinates reads of the basis.
-    pub(super) fn scale(&self, row: &mut [f64]) {
-        row.iter_mut().zip(&self.scales).for_each(|(t, scale)| *t *= scale);
-    }
-
-    /// Adds `weight` times the participation of a motion, which the basis itself answers with `own`.
-    pub(super) fn add(&self, own: &[f64], weight: f64, all: &mut [f64]) {
-        all.iter_mut().zip(own).for_each(|(all, own)| *all += weight * own);
-        for (row, own) in self.mixing.chunks_exact(own.len()).zip(own) {
-            let share = weight * own;
-            all.iter_mut().zip(row).for_each(|(all, c)| *all += share * c);
-        }
-    }
-}
 
 impl Assembly {
     /// Whether the modes were found beside another assembly's.
