@@ -15,6 +15,7 @@
 //! * [`turns`]: how its sizes of error go on from round to round;
 //! * [`prior`]: what is known of parameters beforehand;
 //! * [`sizes`]: what is known of the sizes of error, and what a fit says of them;
+//! * [`known`]: what a search of a part of a recording may choose from;
 //! * [`needs`]: which effects modes need that were found on lines;
 //! * [`searcher`]: what all steps of a search share;
 //! * [`starts`]: where fits set out;
@@ -40,6 +41,7 @@ mod features;
 mod fit;
 mod judge;
 mod judgement;
+mod known;
 mod needs;
 mod places;
 mod predicting;
@@ -54,9 +56,9 @@ mod tests;
 mod turns;
 mod uncertainty;
 
-pub(crate) use again::Known;
 pub(crate) use beside_lines::Explaining;
 pub(crate) use features::{Features, recorded};
 pub(crate) use judgement::ModalJudgement;
+pub(crate) use known::Known;
 pub(crate) use needs::without_imitations;
 pub use sizes::{ErrorIntervals, ModelError};

@@ -3,32 +3,10 @@
 //! The part does not see what is held out, and has to need by itself what it is to predict that with. Several effects need not be found one by one again: all of them are
 //! fitted at once, and whatever this part does not need is left out, statement by statement.
 
-use crate::candidate::Candidate;
 use crate::modal::fit::{ANY, ModalFit, SetOut};
 use crate::modal::search::ModalSearch;
 use crate::modal::searcher::{Named, Searcher};
 use jointscope_fixture::Effect;
-
-/// Effects that were found in more than what is searched.
-#[derive(Debug, Clone, Default)]
-pub(crate) struct Known {
-    /// Those that were found, one beside the other.
-    pub found: Vec<Effect>,
-    /// Those that were the most probable by themselves.
-    pub probable: Vec<Effect>,
-}
-
-impl Known {
-    /// All of them, what was found first.
-    pub(super) fn all(&self) -> impl Iterator<Item = &Effect> {
-        self.found.iter().chain(&self.probable)
-    }
-
-    /// The effect that goes by this name.
-    pub(super) fn of(&self, candidate: &Candidate) -> Option<&Effect> {
-        self.all().find(|effect| candidate.names(effect))
-    }
-}
 
 impl Searcher<'_> {
     /// A search that needs nothing but several effects found before, or some of them; `None` where there are none such, or this recording needs none of them.

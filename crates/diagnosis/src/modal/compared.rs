@@ -3,12 +3,12 @@
 use crate::candidate::Candidate;
 use crate::catalogue::with_wrong_quantities;
 use crate::fitter::Fitter;
-use crate::modal::again::Known;
 use crate::modal::beside_lines::fitted_to_lines;
 use crate::modal::changes::States;
 use crate::modal::features::{Features, recorded};
 use crate::modal::judge::Judge;
 use crate::modal::judgement::ModalJudgement;
+use crate::modal::known::Known;
 use crate::modal::prior::priors;
 use crate::modal::searcher::Searcher;
 use crate::modal::sizes::ModelError;

@@ -1,8 +1,8 @@
 //! A comparison by modes under way: what all its steps share, and when a fit says enough.
 
 use crate::candidate::Candidate;
-use crate::modal::again::Known;
 use crate::modal::fit::{ModalFit, Problem};
+use crate::modal::known::Known;
 use crate::modal::prior::{Prior, priors};
 use crate::settings::ModalSettings;
 use crate::{Hypothesis, Watch};

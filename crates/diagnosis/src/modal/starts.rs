@@ -2,8 +2,8 @@
 
 use crate::Hypothesis;
 use crate::candidate::Candidate;
-use crate::modal::again::Known;
 use crate::modal::fit::{ModalFit, Standing, linear};
+use crate::modal::known::Known;
 use crate::modal::prior::Prior;
 use crate::modal::searcher::{Named, STARTS, Searcher};
 use jointscope_fixture::{Effect, EffectKind, Starts};

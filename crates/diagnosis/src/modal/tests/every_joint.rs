@@ -2,8 +2,8 @@
 
 use crate::catalogue::catalogue;
 use crate::fitter::Fitter;
-use crate::modal::again::Known;
 use crate::modal::judgement::ModalJudgement;
+use crate::modal::known::Known;
 use crate::settings::Settings;
 use crate::{Hypothesis, Observation, Watch};
 use jointscope_findings::Verdict;
