@@ -38,7 +38,6 @@ pub struct Assembly {
     basis: Arc<ModalBasis>,
     /// What the modes differ by from the basis, where they were found beside another assembly's.
     turned: Option<Turned>,
-    is_free_beam: bool,
     damping: Vec<ModeDamping>,
     elastic: Vec<usize>,
     law: DampingLaw,
@@ -67,8 +66,7 @@ impl Assembly {
     ) -> Result<Self, LumpedError> {
         let places = coordinates(fixture, highest_hz)?;
         let order = places.iter().map(Coordinates::count).sum();
-        let free_beam = if in_the_modes(fixture) { None } else { free_beam(fixture, &places) };
-        if let Some((beam, first)) = free_beam {
+        if let Some((beam, first)) = free_beam(fixture, &places) {
             return Assembly::of_free_beam(fixture, places, order, beam, &first);
         }
         let plain = Matrices::of(fixture, &places, order, false);
@@ -82,7 +80,6 @@ impl Assembly {
             stiffness: plain.stiffness,
             basis,
             turned: None,
-            is_free_beam: false,
             damping: Vec::new(),
             elastic: Vec::new(),
             law,
@@ -147,7 +144,6 @@ impl Assembly {
             stiffness: with.stiffness,
             basis: Arc::new(basis),
             turned: None,
-            is_free_beam: true,
             damping,
             elastic,
             law,
@@ -282,11 +278,18 @@ impl Assembly {
     }
 }
 
+/// Whether the modes are those of one body without known masses.
+fn is_one_free_body(fixture: &Fixture) -> bool {
+    matches!(fixture.bodies(), [body] if body.masses.is_empty())
+        && fixture.joints().is_empty()
+        && !in_the_modes(fixture)
+}
+
 /// The fixture's only body where that is a beam without known masses, and its name. Supports are no part of the free assembly.
 fn free_beam(fixture: &Fixture, places: &[Coordinates]) -> Option<(UniformBeam, String)> {
     let ([body], [Coordinates::Beam { mesh, .. }]) = (fixture.bodies(), places) else { return None };
     let BodyKind::Beam(beam) = &body.kind else { return None };
-    if !body.masses.is_empty() || !fixture.joints().is_empty() {
+    if !is_one_free_body(fixture) {
         return None;
     }
     let length = beam.to.value - beam.from.value;

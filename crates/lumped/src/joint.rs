@@ -136,7 +136,7 @@ impl JointDynamics {
             stiffness = in_series(stiffness, [1.0, 0.0], modulus * (shear / length));
         }
         for interface in &self.interfaces {
-            let direction = self.slip(interface, length);
+            let direction = self.slip_at_far_end(interface, length);
             stiffness = in_series(stiffness, direction, T::ONE * interface.stiffness + s * interface.damping);
         }
         stiffness
@@ -148,8 +148,8 @@ impl JointDynamics {
         // Interfaces are springs in series with a beam's ends.
         if let Some(beam) = &self.heavy_beam {
             return self.interfaces.iter().fold(beam.at(s, self.modulus(s)), |ends, interface| {
-                let reach = self.reach(interface);
-                ends.in_series_with((interface, reach), T::ONE * interface.stiffness + s * interface.damping)
+                let spring = T::ONE * interface.stiffness + s * interface.damping;
+                ends.in_series_with(interface.at_far_end, self.slip(interface), spring)
             });
         }
         let length = self.length + self.extra_length;
@@ -160,23 +160,25 @@ impl JointDynamics {
         ends
     }
 
-    /// How far inside the body the centre lies about which an interface turns, m.
+    /// What the slip of an interface moves the joint's end by against its body, in y and in θ.
     ///
     /// A foot that a layer holds along its length is a beam on an elastic foundation. At the edge of a long one, with β = (k'/4EI)^¼, a moment turns it by M/(EIβ) and moves
     /// it by M/(2EIβ²) (Hetényi 1946): it turns on k = EIβ about a centre 1/(2β) = EI/(2k) behind the edge. What a force moves it by beyond that, a
     /// length of 1/(2β) in bending, is left out.
-    fn reach(&self, interface: &Interface) -> f64 {
+    fn slip(&self, interface: &Interface) -> [f64; 2] {
         let bending = self.bending_stiffness.unwrap_or(0.0);
-        interface.spread * bending / (2.0 * interface.stiffness)
-    }
-
-    /// What the slip of an interface adds to d = u_to − R·u_from, over this length.
-    fn slip(&self, interface: &Interface, length: f64) -> [f64; 2] {
+        let reach = interface.spread * bending / (2.0 * interface.stiffness);
         match (interface.dof, interface.at_far_end) {
             (Dof::Translation, _) => [1.0, 0.0],
-            (Dof::Rotation, true) => [-self.reach(interface), 1.0],
-            (Dof::Rotation, false) => [length + self.reach(interface), 1.0],
+            (Dof::Rotation, false) => [reach, 1.0],
+            (Dof::Rotation, true) => [-reach, 1.0],
         }
+    }
+
+    /// The same in d = u_to − R·u_from, over this length.
+    fn slip_at_far_end(&self, interface: &Interface, length: f64) -> [f64; 2] {
+        let [y, theta] = self.slip(interface);
+        if interface.at_far_end { [y, theta] } else { [y + length * theta, theta] }
     }
 
     /// Complex factor of the elastic stiffness: stiffness change, loss factors, relaxation.

@@ -13,7 +13,7 @@
 use super::coordinates::{Coordinates, coordinates};
 use super::matrices::Matrices;
 use super::turned::Turned;
-use super::{Assembly, has_meshed_bodies};
+use super::{Assembly, has_meshed_bodies, is_one_free_body};
 use crate::effects::{Action, actions};
 use crate::held::in_the_modes;
 use jointscope_damping::elastic_modes;
@@ -37,11 +37,8 @@ impl Assembly {
 
     /// Whether assemblies of fixtures next to this one may take their modes from its own: there is an eigenproblem to be saved, and no effect that rebuilds a beam.
     pub(crate) fn has_neighbours(fixture: &Fixture) -> bool {
-        let alone = matches!(fixture.bodies(), [body] if body.masses.is_empty())
-            && fixture.joints().is_empty()
-            && !in_the_modes(fixture);
         let rebuilds = |action| matches!(action, Action::OnBeam { .. });
-        has_meshed_bodies(fixture) && !alone && !actions(fixture).any(rebuilds)
+        has_meshed_bodies(fixture) && !is_one_free_body(fixture) && !actions(fixture).any(rebuilds)
     }
 
     /// The assembly of `moved`, which differs next to nothing from `fixture`, whose assembly this is: modes to first order from those at hand, which `rows` holds coordinate after
@@ -54,7 +51,6 @@ impl Assembly {
         highest_hz: f64,
     ) -> Option<Self> {
         if self.turned.is_some()
-            || self.is_free_beam
             || !Assembly::has_neighbours(moved)
             || in_the_modes(fixture) != in_the_modes(moved)
         {
@@ -84,7 +80,6 @@ impl Assembly {
             stiffness: there.stiffness,
             basis: Arc::clone(&self.basis),
             turned: Some(turned),
-            is_free_beam: false,
             damping: Vec::new(),
             elastic: Vec::new(),
             law: super::damping_law(moved.damping()),

@@ -48,7 +48,7 @@ impl JointDynamics {
         let dynamic = self.dashpots.is_some() || !self.relaxations.is_empty();
         let mut slips = Vec::new();
         for interface in &self.interfaces {
-            let direction = self.slip(interface, length);
+            let direction = self.slip_at_far_end(interface, length);
             if dynamic || interface.damping > 0.0 {
                 let dashpot = interface.damping.max(INSTANT * interface.stiffness);
                 slips.push((direction, interface.stiffness, dashpot));

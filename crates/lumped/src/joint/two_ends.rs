@@ -1,9 +1,7 @@
 //! A matrix on the motions of both ends of a joint.
 
-use crate::effects::Interface;
 use crate::lanes::Lines;
 use jointscope_beam::transport;
-use jointscope_fixture::Dof;
 use jointscope_linalg::Matrix2;
 
 /// A complex 4×4 matrix on (y, θ) at the joint's near end, (y, θ) at its far end, by 2×2 blocks.
@@ -40,16 +38,10 @@ impl<T: Lines> TwoEnds<T> {
         self.far.0[0][0] = self.far.0[0][0] + inertia;
     }
 
-    /// With a spring in series with one of its four end motions, a rotation about a centre that lies `reach` beyond the end.
+    /// With a spring in series with a motion (y, θ) of one end.
     #[inline(always)]
-    pub(super) fn in_series_with(self, (interface, reach): (&Interface, f64), spring: T) -> Self {
-        let first = 2 * usize::from(interface.at_far_end);
-        // What the slip moves the end by, in y and in θ.
-        let [y, theta] = match (interface.dof, interface.at_far_end) {
-            (Dof::Translation, _) => [1.0, 0.0],
-            (Dof::Rotation, false) => [reach, 1.0],
-            (Dof::Rotation, true) => [-reach, 1.0],
-        };
+    pub(super) fn in_series_with(self, at_far_end: bool, [y, theta]: [f64; 2], spring: T) -> Self {
+        let first = 2 * usize::from(at_far_end);
         let column = [0, 1, 2, 3].map(|i| self.at(i, first) * y + self.at(i, first + 1) * theta);
         let factor = (spring + column[first] * y + column[first + 1] * theta).reciprocal();
         let [a, b, c, d] = column;
