@@ -12,6 +12,7 @@
 //! * [`elsewhere`]: where else along its body an effect explains the modes;
 //! * [`features`]: a recording as its modes tell it;
 //! * [`fit`]: one hypothesis at its most probable parameters and sizes of error;
+//! * [`evidence`]: how probable it makes what was recorded;
 //! * [`turns`]: how its sizes of error go on from round to round;
 //! * [`prior`]: what is known of parameters beforehand;
 //! * [`sizes`]: what is known of the sizes of error, and what a fit says of them;
@@ -37,6 +38,7 @@ mod changes;
 mod compared;
 mod elsewhere;
 mod every_joint;
+mod evidence;
 mod features;
 mod fit;
 mod judge;

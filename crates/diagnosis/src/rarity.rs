@@ -1,7 +1,7 @@
 //! How much rarer some effects are than others before anything is recorded.
 
 use crate::Hypothesis;
-use jointscope_fixture::{Effect, EffectKind, Fixture, Place};
+use jointscope_fixture::{Effect, EffectKind, Place, QuantityOwner};
 
 /// ln of the odds against a joint that is longer than the points at its ends say: what gives way at an end, a layer of glue above all, makes it seem longer, and is held for five times
 /// as common as a length that somebody got wrong.
@@ -12,21 +12,28 @@ const LONGER: f64 = 1.6;
 pub(crate) fn rarity(hypothesis: &Hypothesis) -> f64 {
     let of = |(index, effect): (usize, &Effect)| {
         let far = hypothesis.expected_error(index).map_or(0.0, f64::ln);
-        let longer = if makes_a_joint_longer(hypothesis.fixture(), effect) { LONGER } else { 0.0 };
+        let longer = if makes_a_joint_longer(hypothesis, effect) { LONGER } else { 0.0 };
         effect.kind.spec().rarity + far + longer
     };
     hypothesis.effects().iter().enumerate().map(of).sum()
 }
 
-fn makes_a_joint_longer(fixture: &Fixture, effect: &Effect) -> bool {
+fn makes_a_joint_longer(hypothesis: &Hypothesis, effect: &Effect) -> bool {
+    let fixture = hypothesis.fixture();
     match (&effect.place, effect.kind) {
         (_, EffectKind::JointLength) => effect.value(0) > 0.0,
-        (Place::Quantity(path, _), _) => fixture.joints().iter().any(|joint| {
-            let [from, to] = [joint.from, joint.to].map(|end| &fixture.points()[end]);
-            let is_end = |name: &str| *path == format!("points/{name}/x");
-            is_end(&from.name) && effect.value(0) < from.x.value
-                || is_end(&to.name) && effect.value(0) > to.x.value
-        }),
+        (Place::Quantity(path, _), _) => {
+            let quantity = hypothesis.tolerances().iter().map(|t| &t.quantity).find(|q| q.path == *path);
+            // A point has no quantity but its abscissa.
+            let Some(QuantityOwner::Point(point)) = quantity.map(|quantity| quantity.owner) else {
+                return false;
+            };
+            let outward = effect.value(0) - fixture.points()[point].x.value;
+            fixture
+                .joints()
+                .iter()
+                .any(|joint| (joint.from == point && outward < 0.0) || (joint.to == point && outward > 0.0))
+        }
         _ => false,
     }
 }
@@ -35,6 +42,7 @@ fn makes_a_joint_longer(fixture: &Fixture, effect: &Effect) -> bool {
 #[allow(clippy::unwrap_used)]
 mod tests {
     use super::*;
+    use jointscope_fixture::Fixture;
 
     #[test]
     fn a_joint_is_longer_than_its_points_say_less_often_than_shorter() {

@@ -6,17 +6,16 @@
 use crate::modal::fit::{ANY, ModalFit, SetOut};
 use crate::modal::search::ModalSearch;
 use crate::modal::searcher::{Named, Searcher};
-use jointscope_fixture::Effect;
 
 impl Searcher<'_> {
     /// A search that needs nothing but several effects found before, or some of them; `None` where there are none such, or this recording needs none of them.
     pub(super) fn found_again(&self, none: &ModalFit) -> Option<ModalSearch> {
         let known = self.known.filter(|known| known.found.len() > 1)?;
-        let name = |effect: &Effect| self.candidates.iter().position(|candidate| candidate.names(effect));
-        let names: Vec<usize> = known.found.iter().map(name).collect::<Option<_>>()?;
+        let names: Vec<usize> =
+            known.found.iter().map(|effect| self.name_of(effect)).collect::<Option<_>>()?;
         let start =
             known.found.iter().fold(none.hypothesis.clone(), |rest, effect| rest.with(effect.clone()));
-        let alone = Named { names: Vec::new(), exact: self.is_exact(none), fit: none.clone() };
+        let alone = self.alone(none.clone());
         let mut best = self.fitted_with(&alone, &names, &start, (SetOut::Both, ANY))?;
         while !best.names.is_empty() {
             let statements = self.statements(&best.names);

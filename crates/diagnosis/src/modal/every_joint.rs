@@ -6,8 +6,8 @@
 use crate::candidate::Candidate;
 use crate::modal::fit::{ANY, SetOut};
 use crate::modal::searcher::{Named, STARTS, Searcher};
-use crate::modal::starts::Start;
 use jointscope_fixture::{Effect, Place};
+use std::collections::BTreeSet;
 
 impl Searcher<'_> {
     /// The candidates of each kind that a model leaves out of every joint, one for each joint, where several joints may lack it.
@@ -50,10 +50,7 @@ impl Searcher<'_> {
             return Vec::new();
         }
         self.watch.stage("comparing by modes what every joint may lack");
-        let bases = match base.names.is_empty() {
-            true => vec![self.nominal, &base.fit.hypothesis],
-            false => vec![&base.fit.hypothesis],
-        };
+        let bases = self.bases(base);
         let starts: Vec<(usize, Vec<Effect>)> = groups
             .iter()
             .flat_map(|names| self.starts_at_all(names).into_iter().map(|effects| (names[0], effects)))
@@ -63,12 +60,9 @@ impl Searcher<'_> {
             let hypothesis = effects.iter().fold(from.clone(), |rest, effect| rest.with(effect.clone()));
             self.scored(*first, hypothesis, &base.fit)
         });
-        let mut chosen: Vec<Start> = Vec::new();
-        for start in self.rescored(scored) {
-            if chosen.iter().all(|other| other.candidate != start.candidate) {
-                chosen.push(start);
-            }
-        }
+        let mut chosen = self.rescored(scored);
+        let mut seen = BTreeSet::new();
+        chosen.retain(|start| seen.insert(start.candidate));
         let mut fits = self.problem.work.each(chosen, STARTS, |start| {
             let names = groups.iter().find(|names| names[0] == start.candidate)?;
             self.fitted_with(base, names, &start.hypothesis, (SetOut::Both, ANY))

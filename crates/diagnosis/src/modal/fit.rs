@@ -200,12 +200,10 @@ impl<'a> Problem<'a> {
     ) -> Option<Vec<Vec<f64>>> {
         let about = self.recorded.about(hypothesis.to_fixture().ok()?);
         let beside = |hypothesis: &Hypothesis| {
+            let Some(about) = &about else { return self.modelled(hypothesis, modelled) };
             let fixture = hypothesis.to_fixture().ok()?;
             self.work.count(FOLLOWED * self.recorded.frfs());
-            match &about {
-                Some(about) => ModelledModes::after_step(&fixture, self.recorded, (about, modelled)),
-                None => ModelledModes::near(&fixture, self.recorded, modelled),
-            }
+            ModelledModes::after_step(&fixture, self.recorded, (about, modelled))
         };
         of.map(|index| {
             let size = (DIFFERENCE.0 * priors[index].std).min(DIFFERENCE.1);
@@ -412,67 +410,6 @@ impl<'a> Problem<'a> {
         let all = 0..point.hypothesis.coordinates.len();
         self.slopes(&point.hypothesis, standing, &point.modelled, &point.residual, priors, all)
     }
-
-    /// The linear model at a point and its evidence. Whether an effect's spring is damped beyond the fixture's damping nobody knows beforehand: it is as probable that
-    /// it is not, and what has no dashpot pays for none.
-    pub(super) fn evidence(
-        &self,
-        point: &Iterate,
-        priors: &[Prior],
-        slopes: &[Vec<f64>],
-        at: (&Comparison, Option<&ErrorSizes>),
-    ) -> Option<(Linear, Evidence)> {
-        let (linear, damped) = self.evidence_within_bounds(point, priors, slopes, at)?;
-        let dashpots = point.hypothesis.dashpots();
-        if dashpots.is_empty() {
-            return Some((linear, damped));
-        }
-        let mut elastic = priors.to_vec();
-        dashpots.iter().for_each(|&index| elastic[index] = Prior { mean: 0.0, std: 0.0 });
-        let (_, elastic) = self.evidence_within_bounds(point, &elastic, slopes, at)?;
-        let mean = |a: f64, b: f64| a.max(b) + (0.5 * (1.0 + (-(a - b).abs()).exp())).ln();
-        let likelier = if elastic.ln > damped.ln { elastic } else { damped };
-        let evidence = Evidence {
-            ln: mean(damped.ln, elastic.ln),
-            ln_at_start: mean(damped.ln_at_start, elastic.ln_at_start),
-            sizes: likelier.sizes,
-        };
-        Some((linear, evidence))
-    }
-
-    /// The linear model at a point and its evidence. Of a coordinate that stopped at its bound the linear model knows no bound: a spring that would be negative does
-    /// not explain what only a negative one explains. The lesser evidence counts, with such coordinates free or where they are.
-    fn evidence_within_bounds(
-        &self,
-        point: &Iterate,
-        priors: &[Prior],
-        slopes: &[Vec<f64>],
-        (comparison, known): (&Comparison, Option<&ErrorSizes>),
-    ) -> Option<(Linear, Evidence)> {
-        let of = |linear: Linear| {
-            let evidence = linear.evidence(comparison, self.prior(), known)?;
-            Some((linear, evidence))
-        };
-        let free = of(linear(&point.hypothesis, priors, &point.residual, slopes))?;
-        let stopped = point.hypothesis.stopped();
-        if stopped.is_empty() {
-            return Some(free);
-        }
-        let mut slopes = slopes.to_vec();
-        stopped.iter().for_each(|&index| slopes[index].fill(0.0));
-        let mut held = of(linear(&point.hypothesis, priors, &point.residual, &slopes))?;
-        let pull = |&index: &usize| {
-            let prior = priors[index];
-            if prior.std == 0.0 {
-                return 0.0;
-            }
-            0.5 * ((point.hypothesis.coordinates[index] - prior.mean) / prior.std).powi(2)
-        };
-        let pulls: f64 = stopped.iter().map(pull).sum();
-        held.1.ln -= pulls;
-        held.1.ln_at_start -= pulls;
-        Some(if held.1.ln < free.1.ln { held } else { free })
-    }
 }
 
 /// The more probable of two fits, as far as there are any.
@@ -601,22 +538,4 @@ impl LeastSquares for Descent<'_> {
     fn promised(&self, point: &Iterate, equations: &NormalEquations) -> f64 {
         equations.promised(&point.hypothesis.coordinates, point.hypothesis.parameters())
     }
-}
-
-/// The linearised model, in prior standard deviations.
-pub(crate) fn linear(
-    hypothesis: &Hypothesis,
-    priors: &[Prior],
-    residual: &[f64],
-    slopes: &[Vec<f64>],
-) -> Linear {
-    let mut difference = residual.to_vec();
-    let mut scaled = Vec::with_capacity(slopes.len());
-    for ((slope, prior), at) in slopes.iter().zip(priors).zip(&hypothesis.coordinates) {
-        for (value, slope) in difference.iter_mut().zip(slope) {
-            *value += slope * (at - prior.mean);
-        }
-        scaled.push(slope.iter().map(|s| s * prior.std).collect());
-    }
-    Linear { difference, slopes: scaled }
 }

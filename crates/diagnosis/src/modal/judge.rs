@@ -30,8 +30,7 @@ impl Judge<'_> {
     pub(super) fn judged(mut self, features: Features) -> ModalJudgement {
         let verdict = self.verdict();
         if matches!(verdict, Verdict::Consistent | Verdict::Unexplained) {
-            let exact = self.searcher.is_exact(&self.search.none);
-            self.search.best = Named { names: Vec::new(), fit: self.search.none.clone(), exact };
+            self.search.best = self.searcher.alone(self.search.none.clone());
             self.search.alternatives.clear();
             self.search.elsewhere.clear();
             self.search.without.clear();
@@ -141,12 +140,11 @@ impl Judge<'_> {
         let is_here = |&&at: &&usize| candidates[named.names[at]].place == candidates[own].place;
         let at = added.iter().find(is_here).copied().unwrap_or(last);
         let hypothesis = &named.fit.hypothesis;
-        // Its own entry goes by one name alone, whatever else the hypothesis has.
-        if named.names.len() < hypothesis.effect_count() || at == last {
-            return Some((named.names[at], hypothesis.clone()));
-        }
-        let effect = hypothesis.effects().swap_remove(at);
-        Some((named.names[at], hypothesis.without(at).with(effect)))
+        let with_it_last = match at == last {
+            true => hypothesis.clone(),
+            false => hypothesis.without(at).with(hypothesis.effects().swap_remove(at)),
+        };
+        Some((named.names[at], with_it_last))
     }
 
     /// The weight, against one for the best hypothesis, of physics that none covers: the larger the errors and departures that even the best

@@ -88,11 +88,10 @@ impl Searcher<'_> {
 
     /// Searches for effects beside the fixture `alone`.
     pub(super) fn search(&self, alone: ModalFit) -> ModalSearch {
-        let none = alone;
-        if let Some(found) = self.found_again(&none) {
+        if let Some(found) = self.found_again(&alone) {
             return found;
         }
-        let start = Named { names: Vec::new(), exact: self.is_exact(&none), fit: none };
+        let start = self.alone(alone);
         self.watch.stage("comparing effects by modes");
         let (mut singles, mut far) = self.extended(&start, self.settings.refined.0, self.settings.starts.0);
         singles = self.exchanged(singles);
@@ -182,13 +181,13 @@ impl Searcher<'_> {
         more.fit.ln - fewer.fit.ln > self.needed_over(fewer, more)
     }
 
-    /// The best with one effect more, or with one at every joint, the most probable first; for the second of several effects all of the best singles with one more, for neither of two need explain anything
-    /// alone.
+    /// The best with one effect more, or with a kind more at every joint, the most probable first. Where two effects are tried together neither need explain anything alone: then the best
+    /// singles are extended, and not the best alone.
     fn with_one_more(&self, count: usize, (best, none): (&Named, &Named), singles: &[Named]) -> Vec<Named> {
-        // No joint is asked where one effect does.
-        let single = best.names.is_empty()
+        // Where the fixture does, or one effect beside it, no joint is asked.
+        let suffices = best.names.is_empty()
             && (self.is_adequate(&best.fit) || singles.iter().any(|single| self.explains(single, none)));
-        let mut ranked = if single { Vec::new() } else { self.at_every_joint(best) };
+        let mut ranked = if suffices { Vec::new() } else { self.at_every_joint(best) };
         // What explains what the best does not is compared with single names when these are tried in its stead.
         let explains = |first: &Named| !self.is_adequate(&best.fit) && self.explains(first, none);
         if ranked.first().is_some_and(explains) {
@@ -288,8 +287,7 @@ impl Searcher<'_> {
     ) -> Vec<(usize, InStead)> {
         let extended = |base: &Named| self.extended(base, self.settings.refined.1, 1).0;
         let (base, mut others) = if best.names.len() == statement.len() {
-            let alone = Named { names: Vec::new(), exact: self.is_exact(none), fit: none.clone() };
-            (Some(alone), singles.to_vec())
+            (Some(self.alone(none.clone())), singles.to_vec())
         } else {
             let base = self.without(best, statement);
             let others = base.as_ref().map_or_else(Vec::new, extended);

@@ -6,6 +6,7 @@ use crate::modal::known::Known;
 use crate::modal::prior::{Prior, priors};
 use crate::settings::ModalSettings;
 use crate::{Hypothesis, Watch};
+use jointscope_fixture::Effect;
 use jointscope_model_error::ErrorSizes;
 
 /// Standard deviation, in stated ones, that a calibrated quantity keeps.
@@ -40,6 +41,24 @@ pub(crate) struct Searcher<'a> {
 }
 
 impl Searcher<'_> {
+    /// A fit of the fixture by itself.
+    pub(super) fn alone(&self, fit: ModalFit) -> Named {
+        Named { names: Vec::new(), exact: self.is_exact(&fit), fit }
+    }
+
+    /// The name that an effect goes by.
+    pub(super) fn name_of(&self, effect: &Effect) -> Option<usize> {
+        self.candidates.iter().position(|candidate| candidate.names(effect))
+    }
+
+    /// Where one effect more may be put: where `base` stands, and beside the fixture by itself at its stated quantities too.
+    pub(super) fn bases<'b>(&'b self, base: &'b Named) -> Vec<&'b Hypothesis> {
+        match base.names.is_empty() {
+            true => vec![self.nominal, &base.fit.hypothesis],
+            false => vec![&base.fit.hypothesis],
+        }
+    }
+
     /// Priors of a hypothesis whose effects go by the names of `company`.
     pub(super) fn priors(&self, hypothesis: &Hypothesis, company: &[&Candidate]) -> Vec<Prior> {
         let mut all = priors(hypothesis, company);

@@ -2,7 +2,8 @@
 
 use crate::Hypothesis;
 use crate::candidate::Candidate;
-use crate::modal::fit::{ModalFit, Standing, linear};
+use crate::modal::evidence::linear;
+use crate::modal::fit::{ModalFit, Standing};
 use crate::modal::known::Known;
 use crate::modal::prior::Prior;
 use crate::modal::searcher::{Named, STARTS, Searcher};
@@ -65,10 +66,7 @@ impl Searcher<'_> {
 
     /// The same of these candidates alone.
     pub(super) fn starts_of(&self, base: &Named, among: impl Fn(usize) -> bool) -> Vec<Start> {
-        let bases = match base.names.is_empty() {
-            true => vec![self.nominal, &base.fit.hypothesis],
-            false => vec![&base.fit.hypothesis],
-        };
+        let bases = self.bases(base);
         let unmatched = self.unmatched(&base.fit);
         let count = bases.len();
         let starts: Vec<(usize, Effect, usize)> = (0..self.candidates.len())
@@ -129,12 +127,13 @@ impl Searcher<'_> {
     /// Starts at effects that are known, of names that `base` does not have.
     pub(super) fn starts_at(&self, base: &Named, known: &Known) -> Vec<Start> {
         let start = |effect: &Effect| {
-            let c = self.candidates.iter().position(|candidate| candidate.names(effect))?;
+            let c = self.name_of(effect)?;
             (!base.names.contains(&c)).then(|| Start::of(c, base.fit.hypothesis.with(effect.clone())))
         };
         known.all().filter_map(start).collect()
     }
 
+    /// Starts the densest first, those that compare other modes than their base by derivatives of their own as far as they are worth it.
     pub(super) fn rescored(&self, scored: Vec<Start>) -> Vec<Start> {
         let (mut apart, mut alike): (Vec<Start>, Vec<Start>) =
             scored.into_iter().partition(|start| start.apart);

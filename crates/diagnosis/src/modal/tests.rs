@@ -81,6 +81,16 @@ const BLOCKS: &str = r#"{
   "joints": { "J": { "from": "2", "to": "3", "beam": { "youngs_modulus": 2.07e11, "second_moment": 3.67e-10 } } },
   "damping": { "modal_ratios": [{ "value": 0.004, "std": 6e-4 }, { "value": 0.006, "std": 9e-4 }] } }"#;
 
+/// What is recorded with noise of a quarter of a per cent and errors of the shapes of half of one, which no two FRFs share.
+fn with_errors_of_shapes(truth: &Fixture, pairs: &[FrfPair], lines: &SpectralLines) -> Observation {
+    let frfs = synthesize(truth, pairs, lines, Instrument::AsRecorded).unwrap();
+    let count = lines.len();
+    let off = |at: usize| 1.0 + 0.005 * (7.0 * (1 + at / count) as f64).sin();
+    let frfs = frfs.with_values(|at, value| value * off(at));
+    let variance = frfs.all_values().iter().map(|value| 6e-6 * value.norm_sqr()).collect();
+    Observation::new(&frfs.with_variance(variance).unwrap(), |_| true).unwrap()
+}
+
 /// What is recorded of two points by hits on two others, with the noise of a thousandth.
 fn recorded(truth: &Hypothesis) -> Observation {
     let pairs = ["1", "2"].iter().flat_map(|i| ["3", "4"].map(|o| FrfPair::transverse(o, i)));

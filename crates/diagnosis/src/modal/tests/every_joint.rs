@@ -1,5 +1,6 @@
 //! What a model leaves out of every joint, and what was found looked for again.
 
+use super::with_errors_of_shapes;
 use crate::catalogue::catalogue;
 use crate::fitter::Fitter;
 use crate::modal::judgement::ModalJudgement;
@@ -8,7 +9,6 @@ use crate::settings::Settings;
 use crate::{Hypothesis, Observation, Watch};
 use jointscope_findings::Verdict;
 use jointscope_fixture::{Effect, EffectKind, Fixture, Place};
-use jointscope_lumped::{Instrument, synthesize};
 use jointscope_spectra::{FrfPair, SpectralLines};
 
 /// Three blocks on two strips of different sections.
@@ -64,12 +64,7 @@ fn recorded(truth: &Fixture) -> Observation {
     let pairs: Vec<FrfPair> =
         ["1"].iter().flat_map(|i| responses.iter().map(move |o| FrfPair::transverse(o, i))).collect();
     let lines = SpectralLines::even(40.0, 7.0, 480).unwrap();
-    let frfs = synthesize(truth, &pairs, &lines, Instrument::AsRecorded).unwrap();
-    let count = lines.len();
-    let off = |at: usize| 1.0 + 0.005 * (7.0 * (1 + at / count) as f64).sin();
-    let frfs = frfs.with_values(|at, value| value * off(at));
-    let variance = frfs.all_values().iter().map(|value| 6e-6 * value.norm_sqr()).collect();
-    Observation::new(&frfs.with_variance(variance).unwrap(), |_| true).unwrap()
+    with_errors_of_shapes(truth, &pairs, &lines)
 }
 
 fn judged(known: Option<&Known>) -> ModalJudgement {

@@ -1,6 +1,6 @@
 //! What a search among modes comes to.
 
-use super::BLOCKS;
+use super::{BLOCKS, with_errors_of_shapes};
 use crate::catalogue::catalogue;
 use crate::fitter::Fitter;
 use crate::modal::features::Features;
@@ -11,7 +11,6 @@ use crate::settings::Settings;
 use crate::{Hypothesis, Observation, Watch};
 use jointscope_findings::Verdict;
 use jointscope_fixture::{Dof, Effect, EffectKind, Fixture, Place};
-use jointscope_lumped::{Instrument, synthesize};
 use jointscope_spectra::{FrfPair, SpectralLines};
 
 /// The recording of the points `responses` by hits on 1 and 2, with noise of a quarter of a per cent and errors of the shapes of half of one, which no two FRFs share.
@@ -19,12 +18,7 @@ fn recorded(truth: &Fixture, responses: &[&str]) -> Observation {
     let pairs: Vec<FrfPair> =
         ["1", "2"].iter().flat_map(|i| responses.iter().map(move |o| FrfPair::transverse(o, i))).collect();
     let lines = SpectralLines::even(20.0, 2.5, 430).unwrap();
-    let frfs = synthesize(truth, &pairs, &lines, Instrument::AsRecorded).unwrap();
-    let count = lines.len();
-    let off = |at: usize| 1.0 + 0.005 * (7.0 * (1 + at / count) as f64).sin();
-    let frfs = frfs.with_values(|at, value| value * off(at));
-    let variance = frfs.all_values().iter().map(|value| 6e-6 * value.norm_sqr()).collect();
-    Observation::new(&frfs.with_variance(variance).unwrap(), |_| true).unwrap()
+    with_errors_of_shapes(truth, &pairs, &lines)
 }
 
 #[test]
