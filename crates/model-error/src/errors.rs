@@ -39,12 +39,14 @@ pub const SHAPE: usize = 2;
 const QUADRATURE: usize = 3;
 const MASS_LINE: usize = 4;
 const UPPER_RESIDUAL: usize = 5;
+/// Place of the upper residual among residual terms.
+const UPPER: usize = 1;
 /// Place of gains among them.
 pub const GAIN: usize = 6;
 
 impl Default for ErrorSizes {
     /// What lumped models of machined parts are wrong by: 0.3 % in natural frequencies, 10 % in damping ratios, 0.5 % in shapes, 0.05 % in quadrature, 0.1 % in
-    /// mass lines, 2 % in upper residuals. Meant as the scales of half-normal priors: fixed beforehand, not fitted.
+    /// mass lines, 15 % in upper residuals. Meant as the scales of half-normal priors: fixed beforehand, not fitted.
     fn default() -> Self {
         ErrorSizes {
             frequency: 0.003,
@@ -52,7 +54,7 @@ impl Default for ErrorSizes {
             shape: 0.005,
             quadrature: 0.0005,
             mass_line: 0.001,
-            upper_residual: 0.02,
+            upper_residual: 0.15,
             gain: 0.01,
         }
     }
@@ -161,6 +163,14 @@ fn add_residual_terms(kinds: &mut [Entries], recorded: &RecordedModes, (n, first
             put(&mut kinds[kind], n, (at, at), value.powi(2).max(LITTLE));
         }
     }
+    // What a model lacks above the band it lacks in all FRFs.
+    let above = |frf: usize| recorded.residual_terms[frf][UPPER] / recorded.residual_scales[UPPER];
+    for a in 0..frfs {
+        for b in 0..=a {
+            let places = (first + 2 * a + UPPER, first + 2 * b + UPPER);
+            put(&mut kinds[UPPER_RESIDUAL], n, places, above(a) * above(b));
+        }
+    }
 }
 
 /// An FRF's gain changes its features in proportion to what the model makes of them.
@@ -228,8 +238,11 @@ impl Comparison {
                 }
                 for b in 0..=a {
                     let shared = shapes.shared(m, a, b) / scale.powi(2);
+                    // A modal mass errs as a shape does, and all residues of its mode with it.
+                    let of_mass =
+                        modelled.modes[m].residues[a].re * modelled.modes[m].residues[b].re / scale.powi(2);
                     let (a, b) = (first + 2 * a, first + 2 * b);
-                    put(&mut kinds[SHAPE], n, (a, b), shared);
+                    put(&mut kinds[SHAPE], n, (a, b), shared + of_mass);
                     put(&mut kinds[QUADRATURE], n, (a + 1, b + 1), shared);
                 }
             }

@@ -142,6 +142,8 @@ fn an_error_of_the_shape_moves_residues_by_both_channels() {
     let scale = compared.recorded.modes[0].scale;
     // With independent errors e₁, e₂ of the two channels, of deviation rms: δ(φ₁φ₁) = 2φ₁e₁, δ(φ₂φ₁) = φ₁e₂ + φ₂e₁.
     let expected = [[4.0 * a * a, 2.0 * a * b], [2.0 * a * b, a * a + b * b]];
+    // A modal mass errs by the same share, and both residues with it.
+    let residues = [a * a, a * b];
     for (sizes, part) in [(ErrorSizes { shape: 1.0, ..none }, 0), (ErrorSizes { quadrature: 1.0, ..none }, 1)]
     {
         let covariance = of(sizes);
@@ -150,7 +152,8 @@ fn an_error_of_the_shape_moves_residues_by_both_channels() {
                 let entry = covariance[(2 + 2 * i + part) * n + 2 + 2 * j + part];
                 // Of shapes in phase, both errors together besides: e₁² and e₁e₂, as if independent.
                 let both = if i == j && part == 0 { rms.powi(4) } else { 0.0 };
-                let value = (value * rms * rms + both) / (scale * scale);
+                let of_mass = if part == 0 { residues[i] * residues[j] } else { 0.0 };
+                let value = (value * rms * rms + both + of_mass) / (scale * scale);
                 assert!(
                     (entry - value).abs() < 1e-6,
                     "covariance of residues {i} and {j}: {entry}, expected {value}"
@@ -166,6 +169,28 @@ fn an_error_of_the_shape_moves_residues_by_both_channels() {
         poles[n + 1]
     );
     assert!(poles[1] == 0.0, "errors of frequency and damping are independent");
+}
+
+#[test]
+fn what_a_model_lacks_above_the_band_it_lacks_in_all_frfs_and_in_each() {
+    let pairs = pairs(&[("1", "1"), ("2", "1"), ("2", "2")]);
+    let fixture = blocks("");
+    let compared = Compared::of(&fixture, Recorded::of(&fixture, &pairs, &lines(600.0), noise(None)).modes());
+    let n = compared.comparison.count();
+    let sizes = ErrorSizes { upper_residual: 0.1, ..ErrorSizes::from_array([0.0; 7]) };
+    let (with, without) = (compared.covariance(&sizes), compared.noise());
+    let features = compared.recorded.features();
+    let above = &features[features.len() - 6..];
+    let of = |i: usize, j: usize| {
+        with[(n - 5 + 2 * i) * n + n - 5 + 2 * j] - without[(n - 5 + 2 * i) * n + n - 5 + 2 * j]
+    };
+    for (i, j) in [(0, 0), (1, 0), (1, 1), (2, 0), (2, 1), (2, 2)] {
+        let common = above[2 * i + 1] * above[2 * j + 1];
+        // By itself, one of less than a third of the root mean square errs as one of a third.
+        let own = if i == j { common.max(0.1) } else { 0.0 };
+        let expected = 0.01 * (common + own);
+        assert!((of(i, j) / expected - 1.0).abs() < 1e-6, "{i} and {j}: {}, expected {expected}", of(i, j));
+    }
 }
 
 #[test]
