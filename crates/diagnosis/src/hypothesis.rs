@@ -1,5 +1,5 @@
 use crate::Observation;
-use crate::parameter_transforms::parameters_of;
+use crate::parameter_transforms::{if_wrong, parameters_of};
 use jointscope_fixture::{
     Effect, EffectKind, Entry, Fixture, FixtureError, NamedQuantity, Place, QuantityKey, QuantityOwner,
     SizeLaw,
@@ -89,7 +89,8 @@ impl Hypothesis {
             Place::Quantity(path, _) => self.tolerances.iter().find(|t| t.quantity.path == *path),
             _ => None,
         };
-        let wrong = wrong.map_or(Parameter::new(Transform::Fixed), |tolerance| tolerance.parameter);
+        let wrong =
+            wrong.map_or(Parameter::new(Transform::Fixed), |tolerance| if_wrong(&self.fixture, tolerance));
         let sets_out = effect.parameters.first().and_then(|value| wrong.transform.coordinate(value.value));
         let expected = sets_out.map_or(WRONG, |at| WRONG.max(at.abs()));
         let parameters = parameters_of(&self.fixture, &effect, wrong.with_precision(expected.powi(-2)));

@@ -1,8 +1,12 @@
 //! How the parameters of an effect move in a fit: by themselves or by their logarithms, and between which bounds.
 
 use crate::bodies::{extent, mass_of, turns};
-use jointscope_fixture::{BodyKind, Effect, Fixture, Motion, ParameterSpec, Place, Possible, Quantity};
+use jointscope_fixture::{
+    BodyKind, Effect, Fixture, Motion, NamedQuantity, ParameterSpec, Place, Possible, Quantity, QuantityKey,
+    QuantityOwner, SupportPlace,
+};
 use jointscope_inference::{Parameter, Transform};
+use jointscope_tolerances::Tolerance;
 
 /// A positive quantity that moves by its logarithm, between bounds of that.
 fn logarithm(low: f64, high: f64) -> Parameter {
@@ -12,6 +16,46 @@ fn logarithm(low: f64, high: f64) -> Parameter {
 /// A quantity that moves in units of `scale`, between bounds of its value.
 fn between(scale: f64, low: f64, high: f64) -> Parameter {
     Parameter::new(Transform::Linear { centre: 0.0, scale }).between(low / scale, high / scale)
+}
+
+/// How a fit moves a quantity that is stated wrong: as within its tolerance, what sits on a body no farther than the body may reach.
+pub(crate) fn if_wrong(fixture: &Fixture, tolerance: &Tolerance) -> Parameter {
+    let parameter = tolerance.parameter;
+    let Some(body) = sits_on(fixture, &tolerance.quantity) else { return parameter };
+    let (low, high) = reach(fixture, body);
+    let bound = |x: f64| parameter.transform.coordinate(x);
+    match (bound(low), bound(high)) {
+        // A body that has no extent says nothing of what it holds.
+        (Some(low), Some(high)) if low < 0.0 && high > 0.0 => {
+            parameter.between(parameter.low.max(low), parameter.high.min(high))
+        }
+        _ => parameter,
+    }
+}
+
+/// The body on which a quantity is a place.
+fn sits_on(fixture: &Fixture, quantity: &NamedQuantity) -> Option<usize> {
+    match (quantity.owner, quantity.key) {
+        (QuantityOwner::Point(point), QuantityKey::Abscissa) => Some(fixture.points()[point].body),
+        (QuantityOwner::Support(support), QuantityKey::Abscissa) => match fixture.supports()[support].place {
+            SupportPlace::Body { body, .. } => Some(body),
+            SupportPlace::Point(point) => Some(fixture.points()[point].body),
+        },
+        (QuantityOwner::Body(body), QuantityKey::PointMassAbscissa(_) | QuantityKey::CentreOfGravity) => {
+            Some(body)
+        }
+        _ => None,
+    }
+}
+
+/// Between which abscissae something may be on a body whose own extent is guessed of its mass and inertia.
+fn reach(fixture: &Fixture, body: usize) -> (f64, f64) {
+    let (low, high) = extent(fixture, body);
+    let beyond = match &fixture.bodies()[body].kind {
+        BodyKind::Rigid(_) => LONGER * (high - low),
+        BodyKind::Beam(_) => 0.0,
+    };
+    (low - beyond, high + beyond)
 }
 
 /// How a fit moves each of an effect's parameters, in their order; the value of a quantity that is `wrong` as that quantity moves.
@@ -95,17 +139,42 @@ fn possible(possible: Possible, fixture: &Fixture, place: &Place) -> (f64, f64) 
             (-own, ADDED * masses().sum::<f64>())
         }
         (Possible::OnBody, Place::Point(name)) => fixture.point(name).map_or(any, |point| {
-            let (low, high) = extent(fixture, point.body);
-            let beyond = match &fixture.bodies()[point.body].kind {
-                BodyKind::Rigid(_) => LONGER * (high - low),
-                BodyKind::Beam(_) => 0.0,
-            };
-            (low - beyond - point.x.value, high + beyond - point.x.value)
+            let (low, high) = reach(fixture, point.body);
+            (low - point.x.value, high - point.x.value)
         }),
         (Possible::LengthOfJoint, Place::Joint(name)) => {
             let joint = fixture.joints().iter().find(|joint| joint.name == *name);
             joint.map_or(any, |joint| (-MISSING * fixture.joint_length(joint), f64::INFINITY))
         }
         _ => any,
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_sits_on_a_body_may_be_wrong_as_far_as_the_body_reaches() {
+        let fixture = Fixture::from_json(
+            r#"{ "bodies": { "A": { "mass": 1.2, "inertia": 1e-3, "x_cg": 0.05 } },
+                 "points": { "1": { "body": "A", "x": {"value": 0.01, "std": 1e-4} } },
+                 "supports": { "wall": { "body": "A", "x": {"value": 0.0, "std": 1e-4}, "stiffness": 1e8 } } }"#,
+        )
+        .unwrap();
+        // A bar of that mass and inertia is 100 mm long.
+        let half = (3.0_f64 * 1e-3 / 1.2).sqrt();
+        let beyond = LONGER * 2.0 * half;
+        let tolerances = Tolerance::all(&fixture, false);
+        let of = |path: &str| tolerances.iter().find(|t| t.quantity.path == path).unwrap();
+        for path in ["points/1/x", "supports/wall/x", "bodies/A/x_cg"] {
+            let moves = if_wrong(&fixture, of(path));
+            let ends = [moves.low, moves.high].map(|at| moves.transform.value(at).unwrap());
+            let expected = [0.05 - half - beyond, 0.05 + half + beyond];
+            assert!(ends.iter().zip(expected).all(|(x, e)| (x - e).abs() < 1e-9), "{path}: {ends:?}");
+        }
+        let mass = of("bodies/A/mass");
+        assert_eq!(if_wrong(&fixture, mass), mass.parameter, "it is no place");
     }
 }
