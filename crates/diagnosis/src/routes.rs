@@ -103,7 +103,8 @@ fn from_modes<'a>(fitter: &Fitter, within: &Search, modal: &'a ModalJudgement) -
     // What explains the lines down to their noise without any error of the model needs none: found among the modes, or, where these are dubious, by a
     // search on lines.
     if let Some(exact) = modal.exact(fitter) {
-        return Some((Start::Modes(modal, exact), true));
+        return (!modal.tells_from(fitter, &exact.fit.hypothesis))
+            .then_some((Start::Modes(modal, exact), true));
     }
     // Where errors of the usual size do not explain the modes, these may have rested in a false minimum, and the names that they hold most probable, or quantities that
     // are wrong, explain the lines down to their noise.
@@ -243,6 +244,9 @@ fn by_lines(
         true => Vec::new(),
         false => observation.work().within_rest(FOUND, || findings(fitter, &mut search)),
     };
+    if let Some(modal) = modal.filter(|modal| modal.tells_from(fitter, &search.repaired.hypothesis)) {
+        return by_modes(fitter, &search, modal, division);
+    }
     let stated = |f: &Finding| f.probability + f.alternatives.iter().map(|(_, p)| p).sum::<f64>();
     // What the best hypotheses leave may say that none of them is right: they would only adapt the model to the recording.
     let doubtful = findings.iter().any(|finding| stated(finding) < settings.evidence.stated);

@@ -1,5 +1,6 @@
 //! What a comparison by modes leaves to the lines: whether it is in doubt, and what of it lines are asked for.
 
+use crate::Hypothesis;
 use crate::candidate::Candidate;
 use crate::evidence::{cost, explained, explains};
 use crate::fit::Fit;
@@ -107,6 +108,21 @@ impl ModalJudgement {
             let of_count = all.iter().filter(|named| named.names.len() == count);
             of_count.filter_map(explaining).min_by(|a, b| cost(a).total_cmp(&cost(b)))
         })
+    }
+
+    /// Whether modes that need no error of the model tell what explains them from `other`, which explains the lines with quantities bent: an antiresonance lies where what is left of
+    /// higher modes puts it, a thousandth of which refutes every name on lines but one that bends enough to follow.
+    pub(crate) fn tells_from(&self, fitter: &Fitter, other: &Hypothesis) -> bool {
+        let Named { fit, exact, names } = &self.search.best;
+        let effects = other.effects();
+        let is_other = |named: &&Named| {
+            let same = |(&name, effect): (&usize, _)| self.candidates[name].names(effect);
+            named.names.len() == effects.len() && named.names.iter().zip(&effects).all(same)
+        };
+        let fitted = self.search.singles.iter().chain(&self.search.more).find(is_other);
+        let told = fitter.settings.modal.odds.ln();
+        let is_told = fitted.is_some_and(|other| other.names != *names && fit.ln - other.fit.ln > told);
+        *exact && is_told && self.nearly_exact(fitter).is_some()
     }
 
     /// What explains the modes, fitted to lines, where it leaves little more than noise there: lines show what is beside the modes of a real structure too, and need not refute what

@@ -85,6 +85,27 @@ fn glue_that_yields_along_a_foot_is_no_joint_whose_end_was_measured_wrong() {
 }
 
 #[test]
+fn modes_tell_glue_from_a_spring_that_lines_may_bend_quantities_for() {
+    let fixture = Fixture::from_json(BLOCKS).unwrap();
+    let glue =
+        Effect::new(EffectKind::InterfaceCompliance, Place::Point("3".into()), Some(Dof::Rotation), &[3e4]);
+    let truth = fixture.clone().with_physics(vec![glue.clone()]).unwrap();
+    let observation = recorded(&truth, &["1", "2", "3", "4"]);
+    let settings = Settings::default();
+    let fitter = Fitter { observation: &observation, settings: &settings, watch: Watch::default() };
+    let nominal = Hypothesis::nominal(&fixture, false);
+    let mut judged = ModalJudgement::of(&fitter, &nominal, &catalogue(&fixture, &observation), None).unwrap();
+    let tells =
+        |judged: &ModalJudgement, effect: &Effect| judged.tells_from(&fitter, &nominal.with(effect.clone()));
+    let beside = EffectKind::ParallelStiffness;
+    let beside = Effect::new(beside, Place::Joint("J".into()), Some(Dof::Translation), &[1e5, 0.0]);
+    assert!(!tells(&judged, &beside), "where modes need an error of the model, lines go their own way");
+    judged.search.best.exact = true;
+    assert!(tells(&judged, &beside));
+    assert!(!tells(&judged, &glue), "it is what modes hold most probable");
+}
+
+#[test]
 fn a_spring_without_a_dashpot_pays_for_none_however_large_it_might_have_been() {
     let fixture = Fixture::from_json(BLOCKS).unwrap();
     let spring =
