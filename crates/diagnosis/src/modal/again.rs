@@ -19,7 +19,7 @@ impl Searcher<'_> {
         let mut best = self.fitted_with(&alone, &names, &start, (SetOut::Both, ANY))?;
         while !best.names.is_empty() {
             let statements = self.statements(&best.names);
-            let fewer = statements.iter().filter_map(|statement| self.without(&best, statement));
+            let fewer = statements.iter().filter_map(|statement| self.without(&best, statement, ANY));
             let Some(fewer) = fewer.max_by(|a, b| a.fit.ln.total_cmp(&b.fit.ln)) else { break };
             if best.fit.ln - fewer.fit.ln > self.needed_over(&fewer, &best) {
                 break;

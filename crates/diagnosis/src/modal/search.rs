@@ -140,7 +140,8 @@ impl Searcher<'_> {
             let mut led_out = false;
             if count > 1 && self.gains(first, &best) {
                 let statements = self.statements(&first.names);
-                let parts = statements.iter().filter_map(|statement| self.without(first, statement));
+                let parts =
+                    statements.iter().filter_map(|statement| self.without(first, statement, best.fit.ln));
                 let is_better = |fewer: &Named| {
                     fewer.fit.ln > best.fit.ln && self.gains(fewer, &best) && self.is_told(fewer, &none)
                 };
@@ -221,7 +222,8 @@ impl Searcher<'_> {
         let fit = |(to, from): (&Named, &Named)| {
             let start = to.fit.hypothesis.with_tolerances_of(&from.fit.hypothesis);
             let standing = self.problem.standing(&start)?;
-            let set_out = (None, SetOut::Beside(from.fit.evidence.sizes), ANY);
+            // What comes to no more than is known already is not followed to its rest.
+            let set_out = (None, SetOut::Beside(from.fit.evidence.sizes), to.fit.ln);
             let fit = self.problem.fitted_from(&start, standing, &to.fit.priors, set_out)?;
             Some(Named { names: to.names.clone(), exact: self.is_exact(&fit), fit })
         };
@@ -231,13 +233,16 @@ impl Searcher<'_> {
 
     /// The fixture by itself from where the best effects left its quantities too.
     fn at_its_best(&self, none: Named, singles: &[Named]) -> Named {
-        let alone =
-            singles.iter().take(self.settings.bases.0).filter_map(|single| self.without(single, &[0]));
+        let alone = singles
+            .iter()
+            .take(self.settings.bases.0)
+            .filter_map(|single| self.without(single, &[0], none.fit.ln));
         highest(alone).filter(|alone| alone.fit.ln > none.fit.ln).unwrap_or(none)
     }
 
     /// The same without its effects at these places in ascending order, from where it stands and with errors as large: what gains much at a size of nothing has only led out of a false minimum.
-    pub(super) fn without(&self, named: &Named, statement: &[usize]) -> Option<Named> {
+    /// What stays below `least` in ln p is not followed to its rest.
+    pub(super) fn without(&self, named: &Named, statement: &[usize], least: f64) -> Option<Named> {
         let mut names = named.names.clone();
         let mut start = named.fit.hypothesis.clone();
         for &index in statement.iter().rev() {
@@ -245,7 +250,7 @@ impl Searcher<'_> {
             start = start.without(index);
         }
         let company: Vec<&Candidate> = names.iter().map(|&c| &self.candidates[c]).collect();
-        let set_out = (None, SetOut::Beside(named.fit.evidence.sizes), ANY);
+        let set_out = (None, SetOut::Beside(named.fit.evidence.sizes), least);
         let standing = self.problem.standing(&start)?;
         let fit = self.problem.fitted_from(&start, standing, &self.priors(&start, &company), set_out)?;
         Some(Named { names, exact: self.is_exact(&fit), fit })
@@ -289,7 +294,7 @@ impl Searcher<'_> {
         let (base, mut others) = if best.names.len() == statement.len() {
             (Some(self.alone(none.clone())), singles.to_vec())
         } else {
-            let base = self.without(best, statement);
+            let base = self.without(best, statement, ANY);
             let others = base.as_ref().map_or_else(Vec::new, extended);
             (base, others)
         };
