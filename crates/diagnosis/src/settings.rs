@@ -138,6 +138,8 @@ pub struct ModalSettings {
     /// Sizes of what changes from one recording to the next of a structure that stays as it is, where its clamp and its cables do not. Of a real clamped beam, natural frequencies
     /// scatter by 0.1 to 0.2 % over 70 recordings, damping ratios by a tenth and more. Shapes, mass lines and what lies above the band are taken as half of what models are wrong by, and phases to repeat no better than sizes.
     pub repeated: ErrorSizes,
+    /// The usual error of upper residuals where all bodies are beams, which have their own modes above the band: what rigid blocks lack there, these have.
+    pub above_of_beams: f64,
     /// Candidates that are fitted alone, and beside others.
     pub refined: (usize, usize),
     /// Starts of each that is fitted alone, and of the best of them (as many as are `tried`) where none explains the modes so.
@@ -223,9 +225,10 @@ impl Default for ModalSettings {
                 shape: 0.0025,
                 quadrature: 0.0025,
                 mass_line: 0.0005,
-                upper_residual: 0.01,
+                upper_residual: 0.075,
                 ..ErrorSizes::default()
             },
+            above_of_beams: 0.02,
             refined: (20, 6),
             starts: (2, 8),
             partnering: 4,

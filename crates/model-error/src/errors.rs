@@ -38,7 +38,8 @@ pub const DAMPING: usize = 1;
 pub const SHAPE: usize = 2;
 const QUADRATURE: usize = 3;
 const MASS_LINE: usize = 4;
-const UPPER_RESIDUAL: usize = 5;
+/// Place of upper residuals among them.
+pub const UPPER_RESIDUAL: usize = 5;
 /// Place of the upper residual among residual terms.
 const UPPER: usize = 1;
 /// Place of gains among them.

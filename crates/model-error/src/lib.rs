@@ -79,7 +79,7 @@ mod shapes;
 mod structural;
 
 pub use basis::Pole;
-pub use errors::{Comparison, DAMPING, ErrorSizes, FREQUENCY, GAIN, KINDS, SHAPE, SizePrior};
+pub use errors::{Comparison, DAMPING, ErrorSizes, FREQUENCY, GAIN, KINDS, SHAPE, SizePrior, UPPER_RESIDUAL};
 pub use evidence::{Evidence, Linear};
 pub use expected::Expected;
 pub use matching::Pairing;

@@ -2,8 +2,10 @@
 
 use crate::modal::fit::{ModalFit, Problem};
 use crate::settings::ModalSettings;
-use jointscope_fixture::{Fixture, Place, StatedError};
-use jointscope_model_error::{DAMPING, ErrorSizes, Evidence, FREQUENCY, GAIN, KINDS, SHAPE, SizePrior};
+use jointscope_fixture::{BodyKind, Fixture, Place, StatedError};
+use jointscope_model_error::{
+    DAMPING, ErrorSizes, Evidence, FREQUENCY, GAIN, KINDS, SHAPE, SizePrior, UPPER_RESIDUAL,
+};
 use serde::Serialize;
 
 /// How wrong a model is, as relative standard deviations over its modes; zero where the noise explains what is left.
@@ -47,6 +49,11 @@ const NEGLIGIBLE: f64 = 10.0 * ErrorSizes::LEAST;
 /// Multiple of the usual error of gains beyond which a channel's is no error of them: one record of many that is a tenth too large is the very thing that a name says.
 pub(super) const BEYOND_ERRORS: f64 = 4.0;
 
+/// Whether all bodies have modes of their own above the band.
+fn all_bend(fixture: &Fixture) -> bool {
+    fixture.bodies().iter().all(|body| matches!(body.kind, BodyKind::Beam(_)))
+}
+
 /// The sizes that are usual but for those that the fixture states.
 pub(super) fn known(settings: &ModalSettings, fixture: &Fixture) -> SizePrior {
     let StatedError { frequency, damping, residue } = fixture.model_error();
@@ -58,6 +65,7 @@ pub(super) fn known(settings: &ModalSettings, fixture: &Fixture) -> SizePrior {
         frequency: frequency.unwrap_or(usual.frequency),
         damping: damping.unwrap_or(usual.damping),
         shape: residue.unwrap_or(usual.shape),
+        upper_residual: if all_bend(fixture) { settings.above_of_beams } else { usual.upper_residual },
         gain: fixture.record_gain().unwrap_or(gain),
         ..usual
     };
@@ -98,7 +106,7 @@ impl Problem<'_> {
         self.relative_sizes_as_stated(fit).into_iter().fold(0.0, f64::max)
     }
 
-    /// The sizes of [`Problem::relative_sizes`], that of damping ratios by no less than half of what the fixture states as their deviations: nobody claimed to know them better than these.
+    /// The sizes of [`Problem::relative_sizes`] by which a hypothesis stands or falls: none of upper residuals where bodies are rigid; that of damping ratios by no less than half of what the fixture states as their deviations: nobody claimed to know them better than these.
     /// Where effects have made other modes than those of which it states ratios, by no less than the whole: these get theirs from the others' damping.
     pub(crate) fn relative_sizes_as_stated(&self, fit: &ModalFit) -> Vec<f64> {
         let mut sizes = self.relative_sizes(fit);
@@ -106,6 +114,10 @@ impl Problem<'_> {
         let usual = if fit.hypothesis.springs_and_masses().is_some() { stated } else { 0.5 * stated };
         if usual > self.sizes.damping {
             sizes[DAMPING] *= self.sizes.damping / usual;
+        }
+        // Where a held block is rigid in the model, all that is above the band may be what it lacks.
+        if !all_bend(fit.hypothesis.fixture()) {
+            sizes[UPPER_RESIDUAL] = 0.0;
         }
         sizes
     }
