@@ -3,6 +3,9 @@
 use num_complex::Complex64;
 
 use crate::Estimator;
+use crate::settings::weights::{
+    FEWEST_LINES, LEAST_FREEDOM, LINES_LOOKED_AT, MOST_RATIO, PASS_RANGE, SETTLED, UNEQUAL, WEIGHT_PASSES,
+};
 
 /// The averaged spectra of one response and force on one line.
 #[derive(Debug, Clone, Copy, Default)]
@@ -55,19 +58,11 @@ pub(crate) fn variance_of_unequal_hits(hits: &[Pair], weights: &[f64], line: usi
     let Some(h1) = sum.frf(Estimator::H1) else { return 0.0 };
     let of_hit = |((force, response), weight): (&Pair, &f64)| {
         let power = weight * force[line].norm_sqr();
-        let rest = (1.0 - power / sum.force).max(1e-3);
+        let rest = (1.0 - power / sum.force).max(LEAST_FREEDOM);
         power * weight * (response[line] - h1 * force[line]).norm_sqr() / rest
     };
     hits.iter().zip(weights).map(of_hit).sum::<f64>() / (sum.force * sum.force)
 }
-
-/// Hits whose noise differs by more than this factor in amplitude are weighted.
-const UNEQUAL: f64 = 1.5;
-/// Lines from which the hits' noise is told.
-const LOOKED_AT: usize = 1_000;
-const PASSES: usize = 40;
-/// Noise of two hits differs by no more than this, or it is not noise.
-const MOST: f64 = 1e4;
 
 /// How much each hit counts on the `lines` that the hammer excites.
 ///
@@ -80,17 +75,17 @@ const MOST: f64 = 1e4;
 pub(crate) fn weights_by_noise(hits: &[Pair], lines: std::ops::Range<usize>) -> Vec<f64> {
     let n = hits.len();
     let plain = vec![1.0; n];
-    let every = (lines.len() / LOOKED_AT).max(1);
+    let every = (lines.len() / LINES_LOOKED_AT).max(1);
     let lines: Vec<usize> = lines.step_by(every).collect();
     // The residuals of two hits are one number per line: they do not tell whose it is.
-    if n < 3 || lines.len() < 10 {
+    if n < 3 || lines.len() < FEWEST_LINES {
         return plain;
     }
     // Hits of very different strength are begun as noisy as they are strong.
     let strength = |force: &[Complex64]| lines.iter().map(|&l| force[l].norm_sqr()).sum::<f64>();
     let mut variance: Vec<f64> =
         hits.iter().map(|(force, _)| strength(force).max(f64::MIN_POSITIVE)).collect();
-    for _ in 0..PASSES {
+    for _ in 0..WEIGHT_PASSES {
         let weights: Vec<f64> = variance.iter().map(|v| 1.0 / v).collect();
         let mut ratio = vec![0.0; n];
         for &line in &lines {
@@ -101,19 +96,19 @@ pub(crate) fn weights_by_noise(hits: &[Pair], lines: std::ops::Range<usize>) -> 
             if mean > 0.0 {
                 for (k, ratio) in ratio.iter_mut().enumerate() {
                     let leverage = weights[k] * hits[k].0[line].norm_sqr() / sum.force;
-                    *ratio += residual(k) / (mean * (1.0 - leverage).max(1e-3));
+                    *ratio += residual(k) / (mean * (1.0 - leverage).max(LEAST_FREEDOM));
                 }
             }
         }
         let mut moved = 0.0f64;
         for (variance, ratio) in variance.iter_mut().zip(&ratio) {
-            let step = (ratio / lines.len() as f64).clamp(0.1, 10.0);
+            let step = (ratio / lines.len() as f64).clamp(PASS_RANGE.0, PASS_RANGE.1);
             moved = moved.max((step - 1.0).abs());
             *variance *= step;
         }
         let mean = variance.iter().map(|v| v.ln()).sum::<f64>() / n as f64;
-        variance.iter_mut().for_each(|v| *v = (*v / mean.exp()).clamp(1.0 / MOST, MOST));
-        if moved < 1e-3 {
+        variance.iter_mut().for_each(|v| *v = (*v / mean.exp()).clamp(1.0 / MOST_RATIO, MOST_RATIO));
+        if moved < SETTLED {
             break;
         }
     }

@@ -1,31 +1,23 @@
 //! Which lines the hammer excites.
 
-/// Power below this share of the largest excites too little: 20 dB.
-const WEAK: f64 = 0.01;
-/// An anti-alias filter falls off above this share of half the sampling rate.
-const FILTER: f64 = 0.8;
-/// Dips narrower than this share of all lines are bridged.
-const DIP: usize = 50;
+use crate::settings::band::{BELOW_FILTER, DEEP, DIP_PARTS, WEAK};
 
 /// The last line, counted from 0, up to which the force's power by line stays within 20 dB of its largest.
 pub(crate) fn last_usable(power: &[f64]) -> usize {
     let n = power.len();
     let largest = power.iter().skip(1).copied().fold(0.0, f64::max);
-    let reach = (n / DIP).max(1);
+    let reach = (n / DIP_PARTS).max(1);
     let strong = |line: usize| power[line] >= WEAK * largest;
     let mut last = (1..n).max_by(|a, b| power[*a].total_cmp(&power[*b])).unwrap_or(0);
     while let Some(next) = (last + 1..(last + 1 + reach).min(n)).rev().find(|&line| strong(line)) {
         last = next;
     }
-    last.min(((n.max(1) - 1) as f64 * FILTER) as usize)
+    last.min(((n.max(1) - 1) as f64 * BELOW_FILTER) as usize)
 }
-
-/// Power below this share of its neighbourhood's median is a dip.
-const DEEP: f64 = 0.03;
 
 /// The deepest line of each narrow dip of the force's power below line `last`.
 pub(crate) fn dips(power: &[f64], last: usize) -> Vec<usize> {
-    let reach = (power.len() / DIP).max(1);
+    let reach = (power.len() / DIP_PARTS).max(1);
     let mut near = Vec::with_capacity(2 * reach + 1);
     let mut is_deep = |line: usize| {
         near.clear();

@@ -2,10 +2,8 @@
 
 use crate::Baseline;
 use crate::pulse::spread;
+use crate::settings::baseline::{FAR, FEWEST_BEFORE, LINE_PASSES};
 use jointscope_spectra::median;
-
-/// Samples beyond so many deviations from the middle belong to the hit or its ringing.
-const FAR: f64 = 3.0;
 
 /// How a baseline drifts.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -15,9 +13,6 @@ pub(crate) struct Drift {
     /// The slope in deviations that it would have in white noise of this spread.
     pub significance: f64,
 }
-
-/// Fewest samples before the hit from which an offset or a mean square is taken.
-pub(crate) const FEWEST_BEFORE: usize = 24;
 
 /// Takes off the baseline of a signal with so many samples `before` the hit; answers with its drift.
 ///
@@ -51,16 +46,13 @@ struct Line {
     significance: f64,
 }
 
-/// Passes, each through the samples near the line of the pass before.
-const PASSES: usize = 3;
-
 impl Line {
     fn through(values: &[f64]) -> Self {
         let mut sorted = values.to_vec();
         let middle = median(&mut sorted).unwrap_or(0.0);
         let mut line = Line { middle, slope: 0.0, significance: 0.0 };
         let mut magnitudes = sorted;
-        for _ in 0..PASSES {
+        for _ in 0..LINE_PASSES {
             magnitudes.clear();
             magnitudes.extend(values.iter().enumerate().map(|(i, v)| (v - line.at(i, values.len())).abs()));
             let near = FAR * spread(&mut magnitudes);

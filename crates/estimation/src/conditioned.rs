@@ -3,9 +3,12 @@
 use jointscope_hits::{Fourier, Hit, Motion, Response};
 use num_complex::Complex64;
 
-use crate::baseline::{Drift, FEWEST_BEFORE};
+use crate::baseline::Drift;
 use crate::decay::left_at_end;
-use crate::pulse::{FILTER_RINGING, Pulse};
+use crate::pulse::Pulse;
+use crate::settings::baseline::FEWEST_BEFORE;
+use crate::settings::pulse::FILTER_RINGING;
+use crate::settings::windows::{FORCE_WINDOW_WIDTHS, TAPER_PARTS};
 use crate::{Baseline, Fault, ForceWindow, baseline, fault};
 
 /// A hit without its baselines, and what was seen in it.
@@ -109,12 +112,12 @@ impl<'a> Conditioned<'a> {
         let pulse = self.pulse?;
         let flat = match window {
             ForceWindow::None => return None,
-            ForceWindow::Auto => (pulse.end - pulse.begin) * 11,
+            ForceWindow::Auto => (pulse.end - pulse.begin) * FORCE_WINDOW_WIDTHS,
             ForceWindow::Length(seconds) => (seconds / self.hit.interval()).round() as usize,
         };
         // Beyond the record's end nothing is left to window.
         let flat = flat.min(self.force.len());
-        Some((pulse.begin + flat, (flat / 4).max(1)))
+        Some((pulse.begin + flat, (flat / TAPER_PARTS).max(1)))
     }
 
     /// Share of the record that the force window lets pass.

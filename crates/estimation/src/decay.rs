@@ -1,9 +1,8 @@
 //! What of a response is left when its record ends.
 
-/// Parts into which the time after the hit is cut.
-const PARTS: usize = 40;
-/// Power above the noise by which a part still shows the ringing.
-const SHOWS: f64 = 3.0;
+use crate::settings::ringing_left::{
+    FEWEST_ON_LINE, FEWEST_SHOWN, NOISE_OVER_QUIETEST, PARTS, RINGING_SHOWS,
+};
 
 /// The amplitude left at the record's end relative to the loudest part, from the course of the power over the record. Where
 /// the ringing is lost in noise before the end it is continued as it last fell.
@@ -22,20 +21,20 @@ pub(crate) fn left_at_end(values: &[f64], begin: usize, noise: Option<f64>) -> f
     if largest <= 0.0 {
         return 0.0;
     }
-    // Quieter than its quietest part the noise cannot be.
+    // Louder than the quietest part the noise cannot be.
     let quietest = powers.iter().copied().fold(f64::INFINITY, f64::min);
-    let floor = noise.map_or(quietest, |noise| noise.min(quietest * 2.0));
-    let shows = |power: &f64| *power > (1.0 + SHOWS) * floor;
+    let floor = noise.map_or(quietest, |noise| noise.min(quietest * NOISE_OVER_QUIETEST));
+    let shows = |power: &f64| *power > (1.0 + RINGING_SHOWS) * floor;
     if noise.is_some() && shows(&last) {
         return (last / largest).sqrt();
     }
     // The last run of parts that show it, its slower half.
     let loudest = powers.iter().position(|p| *p == largest).unwrap_or(0);
     let shown = powers[loudest..].iter().take_while(|p| shows(p)).count();
-    if shown < 4 {
+    if shown < FEWEST_SHOWN {
         return 0.0;
     }
-    let half = shown.div_ceil(2).max(3);
+    let half = shown.div_ceil(2).max(FEWEST_ON_LINE);
     let from = loudest + shown - half;
     let points: Vec<(f64, f64)> =
         (from..loudest + shown).map(|i| (i as f64, (powers[i] - floor).ln())).collect();

@@ -1,5 +1,7 @@
 use jointscope_spectra::SpectraError;
 
+use crate::settings::hits::FEWEST_SAMPLES;
+
 /// Why no FRFs can be made of hits.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum EstimateError {
@@ -39,7 +41,7 @@ pub enum EstimateError {
     #[error("every hit is rejected: {0}; record the test again, or use hits all the same with `--keep`")]
     AllRejected(String),
     /// Too few samples for a spectrum.
-    #[error("a record of {0} samples is too short for an FRF: 16 are needed at the least")]
+    #[error("a record of {0} samples is too short for an FRF: {needed} are needed at the least", needed = FEWEST_SAMPLES)]
     TooShort(usize),
     /// A window of no length, or a decay that is none.
     #[error("{what} of {value} makes no sense: a positive number of {unit} is needed")]

@@ -7,6 +7,8 @@ use crate::average::{Averaged, Pair, averaged, variance_of_unequal_hits, weights
 use crate::band::last_usable;
 use crate::conditioned::{Conditioned, Spectra, Transform};
 use crate::remarks::Remarks;
+use crate::settings::hits::{FEWEST_SAMPLES, SAME_INTERVAL};
+use crate::settings::windows::{LEFT_BY_WINDOW, LOWEST_SPACINGS, MOST_LEFT_OUT};
 use crate::{
     EstimateError, EstimateOptions, Excitation, ForceWindow, HitReport, Remark, ResponseWindow, Weighting,
 };
@@ -27,11 +29,6 @@ pub struct Estimate {
     /// What a reader of the FRFs should know.
     pub remarks: Vec<Remark>,
 }
-
-/// What an exponential window on demand leaves of the slowest response.
-const LEFT_BY_WINDOW: f64 = 1e-4;
-/// Fewest samples of a record.
-const SHORTEST: usize = 16;
 
 impl Estimate {
     /// Estimates FRFs from hits. Hits with faults are rejected unless `options.keep` names them.
@@ -70,21 +67,18 @@ impl Estimate {
         let to = self.excitations.iter().map(|e| e.usable_to).fold(f64::INFINITY, f64::min);
         let hz = self.frfs.lines().hz();
         let spacing = hz.get(1).map_or(0.0, |second| second - hz[0]);
-        let windowed = LOWEST * spacing + self.decay / std::f64::consts::PI;
-        let from = if self.decay > 0.0 { windowed.min(0.1 * to) } else { 0.0 };
+        let windowed = LOWEST_SPACINGS * spacing + self.decay / std::f64::consts::PI;
+        let from = if self.decay > 0.0 { windowed.min(MOST_LEFT_OUT * to) } else { 0.0 };
         self.frfs.on_lines(|line| hz[line] > from && hz[line] <= to)
     }
 }
-
-/// Line spacings below which lines are left out under a window, beside its own width.
-const LOWEST: f64 = 4.0;
 
 fn check(hits: &[Hit], options: &EstimateOptions) -> Result<(), EstimateError> {
     let first = hits.first().ok_or(EstimateError::NoHits)?;
     if hits.iter().all(|hit| hit.responses().is_empty()) {
         return Err(EstimateError::NoResponses);
     }
-    let differs = |hit: &&Hit| (hit.interval() - first.interval()).abs() > 1e-6 * first.interval();
+    let differs = |hit: &&Hit| (hit.interval() - first.interval()).abs() > SAME_INTERVAL * first.interval();
     if let Some(other) = hits.iter().find(differs) {
         return Err(EstimateError::Interval {
             first: first.number(),
@@ -111,7 +105,7 @@ fn check(hits: &[Hit], options: &EstimateOptions) -> Result<(), EstimateError> {
         }
         _ => {}
     }
-    match hits.iter().map(Hit::samples).find(|samples| *samples < SHORTEST) {
+    match hits.iter().map(Hit::samples).find(|samples| *samples < FEWEST_SAMPLES) {
         Some(samples) => Err(EstimateError::TooShort(samples)),
         None => Ok(()),
     }

@@ -4,7 +4,11 @@ use jointscope_hits::Hit;
 use jointscope_spectra::Channel;
 
 use crate::overload::is_cut_off;
-use crate::pulse::{EDGE, FILTER_RINGING, Pulse};
+use crate::pulse::Pulse;
+use crate::settings::faults::{
+    IN_CONTACT, ONE_SIDED, RESPONSE_STANDS_OUT, SECOND_STRIKE, STANDS_OUT, TO_AND_FRO, VALLEY,
+};
+use crate::settings::pulse::{EDGE, FILTER_RINGING};
 
 /// Why a hit is no good for an FRF.
 #[derive(Debug, Clone, PartialEq)]
@@ -77,15 +81,6 @@ impl fmt::Display for Fault {
     }
 }
 
-/// A later strike below this share of the first does no harm that the noise does not.
-const SECOND_STRIKE: f64 = 0.05;
-/// A strike is one-sided; what swings to the other side as far is a filter's ringing.
-const ONE_SIDED: f64 = 1.5;
-/// Between two strikes the force falls below this share of the lower peak.
-const VALLEY: f64 = 0.7;
-/// An impact stands out of the noise by this factor.
-const STANDS_OUT: f64 = 10.0;
-
 /// What is wrong with a hit whose `force` has no offset any more.
 pub(crate) fn faults(hit: &Hit, force: &[f64], pulse: Option<&Pulse>) -> Vec<Fault> {
     let Some(pulse) = pulse else { return vec![Fault::NoImpact] };
@@ -98,7 +93,7 @@ pub(crate) fn faults(hit: &Hit, force: &[f64], pulse: Option<&Pulse>) -> Vec<Fau
     if pulse.peak.abs() < STANDS_OUT * pulse.noise {
         return vec![Fault::NoImpact];
     }
-    if force[0] * pulse.peak.signum() > 2.0 * EDGE * pulse.peak.abs() {
+    if force[0] * pulse.peak.signum() > IN_CONTACT * EDGE * pulse.peak.abs() {
         faults.push(Fault::StartsAfterImpact);
     }
     if let Some((at, peak)) = second_strike(force, pulse) {
@@ -114,9 +109,6 @@ pub(crate) fn faults(hit: &Hit, force: &[f64], pulse: Option<&Pulse>) -> Vec<Fau
     }
     faults
 }
-
-/// Energy to the other side, relative to that to the peak's side, above which a signal rings.
-const TO_AND_FRO: f64 = 0.3;
 
 /// Whether a signal swings to and fro instead of pushing one way.
 fn rings(values: &[f64], pulse: &Pulse) -> bool {
@@ -135,8 +127,9 @@ fn pulse_among_responses(hit: &Hit) -> Option<Channel> {
         let mut values = values.to_vec();
         crate::baseline::remove(&mut values, crate::Baseline::Offset, 0);
         let pulse = Pulse::of(&values);
-        pulse
-            .is_some_and(|pulse| pulse.peak.abs() > 5.0 * STANDS_OUT * pulse.noise && !rings(&values, &pulse))
+        pulse.is_some_and(|pulse| {
+            pulse.peak.abs() > RESPONSE_STANDS_OUT * STANDS_OUT * pulse.noise && !rings(&values, &pulse)
+        })
     };
     hit.responses().iter().find(|r| is_pulse(&r.values)).map(|r| r.channel.clone())
 }

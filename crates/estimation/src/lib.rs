@@ -48,6 +48,7 @@ mod pulse;
 mod remark;
 mod remarks;
 mod report;
+mod settings;
 
 pub use error::EstimateError;
 pub use estimate::Estimate;

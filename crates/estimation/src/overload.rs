@@ -1,11 +1,8 @@
 //! Overload: a signal that its input cut off.
 
-/// Samples at one extreme value that a signal of its own does not hold.
-const HELD: usize = 3;
-/// Steps of the converter by which the samples beside a cut-off top lie below it.
-const STEEP: f64 = 4.0;
-/// Smallest share of the range that such a step is taken to be, for signals that were scaled since.
-const FINEST: f64 = 1e-6;
+use crate::settings::overload::{
+    EXTREME_SHARE, FINEST_STEP, FLANK_STEPS, HELD_SAMPLES, OFF_THE_GRID, SAMPLES_LOOKED_AT,
+};
 
 /// The value at which a signal is cut off, if it is: its extreme held for three samples or more, with steep flanks, so that no
 /// smooth top read by a coarse converter is meant.
@@ -17,19 +14,21 @@ pub(crate) fn is_cut_off(values: &[f64]) -> Option<f64> {
     if high <= low || !(high - low).is_finite() {
         return None;
     }
-    [high, low].into_iter().filter(|extreme| extreme.abs() >= 0.5 * high.abs().max(low.abs())).find(
+    [high, low].into_iter().filter(|extreme| extreme.abs() >= EXTREME_SHARE * high.abs().max(low.abs())).find(
         |&extreme| {
             let at_top = |i: &usize| (values[*i] - extreme).abs() <= 1e-9 * (high - low);
             let tops: Vec<usize> = (0..values.len()).filter(at_top).collect();
-            if tops.len() < HELD {
+            if tops.len() < HELD_SAMPLES {
                 return false;
             }
-            let step = converter_step(values).max(FINEST * (high - low));
+            let step = converter_step(values).max(FINEST_STEP * (high - low));
             tops.chunk_by(|a, b| a + 1 == *b).any(|run| {
                 let flank = |i: Option<usize>| {
-                    i.and_then(|i| values.get(i)).is_none_or(|v| (v - extreme).abs() > STEEP * step)
+                    i.and_then(|i| values.get(i)).is_none_or(|v| (v - extreme).abs() > FLANK_STEPS * step)
                 };
-                run.len() >= HELD && flank(run[0].checked_sub(1)) && flank(run.last().map(|last| last + 1))
+                run.len() >= HELD_SAMPLES
+                    && flank(run[0].checked_sub(1))
+                    && flank(run.last().map(|last| last + 1))
             })
         },
     )
@@ -37,9 +36,7 @@ pub(crate) fn is_cut_off(values: &[f64]) -> Option<f64> {
 
 /// The step of the converter, as far as a sample of the values shows it: the smallest distance between two, if all others are multiples of it.
 fn converter_step(values: &[f64]) -> f64 {
-    const LOOKED_AT: usize = 4096;
-    const OFF_THE_GRID: f64 = 0.05;
-    let mut sorted: Vec<f64> = values.iter().copied().take(LOOKED_AT).collect();
+    let mut sorted: Vec<f64> = values.iter().copied().take(SAMPLES_LOOKED_AT).collect();
     sorted.sort_unstable_by(f64::total_cmp);
     let range = match (sorted.first(), sorted.last()) {
         (Some(first), Some(last)) => last - first,

@@ -3,12 +3,8 @@
 use jointscope_spectra::FrfSet;
 use num_complex::Complex64;
 
+use crate::settings::remarks::{NOT_RECIPROCAL, TAKES_OUT};
 use crate::{Excitation, Remark};
-
-/// Share of the driving point's |H|² on lines where the force takes energy out, beyond which a sign is wrong.
-const TAKES_OUT: f64 = 0.7;
-/// Relative difference of two FRFs that should be the same.
-const NOT_RECIPROCAL: f64 = 0.3;
 
 /// Channels that cannot be as they are said to be.
 pub(crate) fn implausible(frfs: &FrfSet, excitations: &[Excitation]) -> Vec<Remark> {

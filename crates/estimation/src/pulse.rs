@@ -1,9 +1,6 @@
 //! The pulse of a hit: where it begins and ends, and what the channel shows apart from it.
 
-/// Share of the peak at which a pulse begins and ends.
-pub(crate) const EDGE: f64 = 0.05;
-/// Samples about a pulse in which an anti-alias filter rings.
-pub(crate) const FILTER_RINGING: usize = 16;
+use crate::settings::pulse::{EDGE, FILTER_RINGING, WIDTHS_BEFORE};
 
 /// The main pulse of a force without offset.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -44,7 +41,7 @@ impl Pulse {
 
     /// Samples before the hit that neither it nor a filter's ringing reaches.
     pub(crate) fn before(&self) -> usize {
-        self.begin.saturating_sub(FILTER_RINGING.max(2 * self.width()))
+        self.begin.saturating_sub(FILTER_RINGING.max(WIDTHS_BEFORE * self.width()))
     }
 }
 

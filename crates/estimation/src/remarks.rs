@@ -8,6 +8,9 @@ use crate::band::dips;
 use crate::baseline::Drift;
 use crate::conditioned::Conditioned;
 use crate::plausibility::implausible;
+use crate::settings::remarks::{
+    BIASED, DISAGREE, DRIFT_OF_FIRST_LINE, DRIFTS, LEFT_UNNOTICED, PULSE, RINGS_BEFORE, RINGS_OVER_QUIETEST,
+};
 use crate::{Baseline, EstimateOptions, Estimator, Excitation, HitReport, Remark, Signal};
 
 /// Remarks, in the order in which they were found.
@@ -21,17 +24,6 @@ pub(crate) struct Remarks {
     scatter: Vec<FrfPair>,
     worst_scatter: f64,
 }
-
-/// What may be left of a response at its record's end without a remark.
-const LEFT_UNNOTICED: f64 = 3e-3;
-/// Deviations of a baseline's slope from none at which it is called a drift.
-const DRIFTS: f64 = 30.0;
-/// Ringing before a hit relative to its loudest response.
-const RINGS_BEFORE: f64 = 0.01;
-/// Ratio of powers from which hits disagree by more than their noise.
-const DISAGREE: f64 = 4.0;
-/// Bias of H1 that is worth a word.
-const BIASED: f64 = 1e-3;
 
 impl Remarks {
     pub(crate) fn of_hits(
@@ -116,7 +108,7 @@ impl Remarks {
             let (Some(before), Some(quiet)) = (signal.before, quietest.get(channel)) else { continue };
             let peak = signal.values.iter().map(|v| v.abs()).fold(0.0, f64::max);
             let share = before.sqrt() / peak;
-            if share > RINGS_BEFORE && before > 9.0 * quiet {
+            if share > RINGS_BEFORE && before > RINGS_OVER_QUIETEST * quiet {
                 let worst = ringing.entry(number).or_default();
                 *worst = worst.max(share);
             }
@@ -187,11 +179,8 @@ fn shows(drift: &Drift, values: &[f64]) -> bool {
     let first_line = drift.over_record.abs() * values.len() as f64 / std::f64::consts::TAU;
     let peak = values.iter().map(|v| v.abs()).fold(0.0, f64::max);
     let pulse: f64 = values.iter().map(|v| v.abs()).filter(|v| *v > PULSE * peak).sum();
-    first_line > 0.1 * pulse
+    first_line > DRIFT_OF_FIRST_LINE * pulse
 }
-
-/// Share of the peak that is part of the pulse or of the loudest ringing.
-const PULSE: f64 = 0.1;
 
 impl Remarks {
     /// Narrow dips of the force's spectrum, where FRFs rest on little.

@@ -5,7 +5,7 @@ use num_complex::Complex64;
 use std::borrow::Cow;
 
 use crate::gram::Terms;
-use crate::likelihood::{Likelihood, MOST_STEPS, Poles};
+use crate::likelihood::{Likelihood, Poles};
 use crate::mode::{Mode, modes_of};
 use crate::model::rebuilt;
 use crate::moved::one_at_each_place;
@@ -14,6 +14,12 @@ use crate::observed::Observed;
 use crate::polynomial::poles_by_order;
 use crate::scatter::scatter;
 use crate::selection::{candidates, is_inside, picked, prune};
+use crate::settings::likelihood::MOST_STEPS;
+use crate::settings::orders::{
+    FEWEST_LINES, FEWEST_ORDERS, LEAST_HIGHEST_ORDER, LINES_PER_POLE, MOST_POLES, USUAL_POLES,
+};
+use crate::settings::quality::POOR_FIT;
+use crate::settings::residual_terms::{MOST_TERMS, TERM_WORTH};
 use crate::stabilization::{Track, follow};
 use crate::{ChartPole, ModesError};
 
@@ -69,22 +75,6 @@ pub struct ModalAnalysis {
     /// The same rebuilt from the modes.
     rebuilt: Vec<Complex64>,
 }
-
-/// Fewest lines that a mode can be told from.
-const FEWEST_LINES: usize = 8;
-/// Poles of the highest order that is gone to unasked, over all columns, and lines for each.
-const POLES: (usize, usize) = (60, 3);
-/// Highest order that can be asked for.
-const MOST_POLES: usize = 400;
-/// Fewest orders that a pole can be stable over.
-const FEWEST_ORDERS: usize = 3;
-/// Residual terms of each FRF, at most.
-const MOST_TERMS: usize = 8;
-/// Fall of χ² for a further residual term, in natural logarithms of the number of values for each of its unknowns.
-const TERM_WORTH: f64 = 1.0;
-
-/// χ² per degree of freedom above which poles that all FRFs share do not explain them.
-const POOR_FIT: f64 = 1.3;
 
 impl ModalAnalysis {
     /// Finds the modes of a set of FRFs. Variances that the set carries are believed; without, they come from coherence and averages, or
@@ -257,7 +247,11 @@ fn orders(observed: &Observed, options: &ModesOptions) -> Result<(usize, usize),
         Some((from, to)) if from >= 1 && from <= to && to <= most => Ok((from, to)),
         Some((from, to)) => Err(ModesError::Orders { from, to, most }),
         None => {
-            let highest = (POLES.0 / p).max(10).min(observed.lines() / POLES.1).min(most).max(1);
+            let highest = (USUAL_POLES / p)
+                .max(LEAST_HIGHEST_ORDER)
+                .min(observed.lines() / LINES_PER_POLE)
+                .min(most)
+                .max(1);
             Ok((2.min(highest), highest))
         }
     }

@@ -54,6 +54,7 @@ mod observed;
 mod polynomial;
 mod scatter;
 mod selection;
+mod settings;
 mod stabilization;
 
 pub use analysis::{ModalAnalysis, ModesOptions, ResidualTerms};

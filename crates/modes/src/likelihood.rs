@@ -9,12 +9,13 @@ mod poles;
 
 pub(crate) use poles::{Poles, Prior};
 
-use jointscope_inference::{Convergence, Damping, LeastSquares, Precision, Settings, descend};
+use jointscope_inference::{LeastSquares, Precision, Settings, descend};
 use jointscope_linalg::Cholesky;
 use num_complex::Complex64;
 
 use crate::gram::Terms;
 use crate::observed::Observed;
+use crate::settings::likelihood::{CONVERGED, MOST_STEPS, STEP_DAMPING};
 use point::Point;
 
 /// Poles at their most likely place.
@@ -35,12 +36,6 @@ pub(crate) struct Likelihood {
     /// Variance of |entry|²'s parts, mode by mode and row by row, poles included.
     pub entry_std: Vec<Vec<f64>>,
 }
-
-/// Steps of the damped Gauss–Newton search, at most.
-const STEPS: usize = 40;
-const DAMPING: Damping = Damping { initial: 1e-4, decrease: 0.1, least: 1e-12, raised: 1e-4, most: 1e8 };
-/// χ² falls by less than this: done. Noise alone moves it by far more.
-const CONVERGED: Convergence = Convergence { gain: 1e-3, share: 0.0, floor: 0.0 };
 
 /// The most likely poles and participations; everything linear is solved for anew at every point (variable projection).
 struct Search<'a> {
@@ -89,8 +84,8 @@ impl Likelihood {
             return here.finish(observed);
         }
         let settings = Settings {
-            steps: steps.min(STEPS),
-            damping: DAMPING,
+            steps: steps.min(MOST_STEPS),
+            damping: STEP_DAMPING,
             convergence: CONVERGED,
             ..Settings::default()
         };
@@ -122,8 +117,6 @@ impl Likelihood {
         self.chi2 / observed.degrees().saturating_sub(self.unknowns()).max(1) as f64
     }
 }
-
-pub(crate) const MOST_STEPS: usize = STEPS;
 
 /// The factor of an information matrix; directions that nothing is known of get a deviation that says so.
 fn factorised(n: usize, information: &[f64]) -> Option<Cholesky> {

@@ -2,6 +2,7 @@
 
 use num_complex::Complex64;
 
+use crate::settings::matching::{LACKING, LEAST_MAC, MOST_SHIFT, SHIFT_WEIGHT};
 use crate::{Mode, mac};
 
 /// A mode that a model has: its frequency (Hz) and what it should leave in each FRF, the product of its shape at response and reference.
@@ -37,11 +38,6 @@ pub struct Matches {
     pub other_expected: Vec<usize>,
 }
 
-/// Frequencies apart by more than this share are of different modes, and so are shapes of a MAC below that.
-const APART: (f64, f64) = (0.25, 0.6);
-/// What frequency and shape may lack together: a model a quarter off in frequency must at least have the shape.
-const LACKING: f64 = 0.4;
-
 /// Pairs measured with expected modes: near in frequency, alike in shape, the best pair first.
 pub fn match_modes(measured: &[Mode], expected: &[ExpectedMode]) -> Matches {
     let mut possible: Vec<Match> = Vec::new();
@@ -50,13 +46,12 @@ pub fn match_modes(measured: &[Mode], expected: &[ExpectedMode]) -> Matches {
             let products: Vec<Complex64> = other.products.iter().map(|p| Complex64::from(*p)).collect();
             let shift = mode.frequency / other.frequency - 1.0;
             let mac = mac(&mode.residues, &products);
-            if shift.abs() < APART.0 && mac > APART.1 && shift.abs() + 1.0 - mac < LACKING {
+            if shift.abs() < MOST_SHIFT && mac > LEAST_MAC && shift.abs() + 1.0 - mac < LACKING {
                 possible.push(Match { measured: m, expected: e, mac, shift });
             }
         }
     }
-    // A tenth of the frequency counts like shapes that are not alike at all.
-    let distance = |pair: &Match| 1.0 - pair.mac + 10.0 * pair.shift.abs();
+    let distance = |pair: &Match| 1.0 - pair.mac + SHIFT_WEIGHT * pair.shift.abs();
     possible.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
     let mut matches = Matches::default();
     for pair in possible {

@@ -6,6 +6,7 @@ use crate::likelihood::Likelihood;
 use crate::observed::Observed;
 use crate::scatter::{Drift, Scatter, deviations};
 use crate::selection::{is_inside, worth};
+use crate::settings::quality::VAGUE_DAMPING;
 
 /// A mode, with the standard deviations of its numbers.
 #[derive(Debug, Clone, PartialEq)]
@@ -42,9 +43,6 @@ pub struct Mode {
     pub worth: f64,
 }
 
-/// Share of a damping ratio above which its deviation leaves little of it.
-const VAGUE: f64 = 0.3;
-
 impl Mode {
     /// Whether the FRFs cannot be explained as well without it.
     pub fn stands_out(&self) -> bool {
@@ -53,7 +51,7 @@ impl Mode {
 
     /// Whether the damping ratio is known by its order of magnitude only.
     pub fn is_vaguely_damped(&self) -> bool {
-        self.damping_std > VAGUE * self.damping_ratio
+        self.damping_std > VAGUE_DAMPING * self.damping_ratio
     }
 }
 

@@ -5,16 +5,11 @@
 
 use num_complex::Complex64;
 
-use crate::likelihood::{Likelihood, MOST_STEPS, Poles, Prior};
+use crate::likelihood::{Likelihood, Poles, Prior};
 use crate::observed::Observed;
-use crate::scatter::HELD;
-
-/// Fewest FRFs of which a drift is told.
-const FEWEST: usize = 3;
-/// Poles nearer to each other than this share of their half-widths together stand at one place.
-const NEAR: f64 = 0.7;
-/// Steps of each FRF's own search.
-const STEPS: usize = 12;
+use crate::settings::drift::ONE_PLACE;
+use crate::settings::each_frf::{FEWEST_FRFS, HELD, OWN_STEPS};
+use crate::settings::likelihood::MOST_STEPS;
 
 /// The fit with one pole at every place where several explain no more than one that moves from FRF to FRF.
 pub(crate) fn one_at_each_place(observed: &Observed, fit: Likelihood) -> Likelihood {
@@ -26,12 +21,13 @@ pub(crate) fn one_at_each_place(observed: &Observed, fit: Likelihood) -> Likelih
 }
 
 fn with_one_fewer_place(observed: &Observed, fit: &Likelihood) -> Option<Likelihood> {
-    if observed.frfs() < FEWEST {
+    if observed.frfs() < FEWEST_FRFS {
         return None;
     }
     let poles = &fit.poles.poles;
-    let is_near =
-        |r: usize, s: usize| r != s && (poles[r] - poles[s]).norm() < NEAR * -(poles[r].re + poles[s].re);
+    let is_near = |r: usize, s: usize| {
+        r != s && (poles[r] - poles[s]).norm() < ONE_PLACE * -(poles[r].re + poles[s].re)
+    };
     let mut strongest: Vec<usize> = (0..poles.len()).collect();
     strongest.sort_by(|&r, &s| fit.significance[s].total_cmp(&fit.significance[r]));
     // What an unknown must gain, as of any model of so many numbers (Schwarz 1978).
@@ -54,7 +50,8 @@ fn moving(observed: &Observed, fit: &Likelihood, poles: &Poles, needed: f64) -> 
     let one = vec![Complex64::ONE];
     let start = Poles { poles: poles.poles.clone(), participations: vec![one; poles.poles.len()] };
     let of = |frf: usize| {
-        let own = Likelihood::search(&observed.single(frf), start.clone(), fit.terms, STEPS, Some(&prior))?;
+        let own =
+            Likelihood::search(&observed.single(frf), start.clone(), fit.terms, OWN_STEPS, Some(&prior))?;
         Some(own.chi2 + needed * own.unknowns() as f64)
     };
     (0..observed.frfs()).map(of).sum()

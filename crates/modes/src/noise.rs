@@ -10,22 +10,11 @@ use num_complex::Complex64;
 use crate::likelihood::{Likelihood, Poles, Prior};
 use crate::model::rebuilt;
 use crate::observed::Observed;
-use crate::scatter::HELD;
-
-/// Half-width in lines of the window of the floor, and that of the share in parts of all lines.
-const FLOOR_WINDOW: usize = 25;
-const SHARE_WINDOW: usize = 2;
-/// Passes of weights from the fit before.
-const PASSES: usize = 8;
-/// Squared residuals beyond this many times their expected size count as this many.
-const CLIPPED: f64 = 12.0;
-/// Steps of each FRF's own fit.
-const STEPS: usize = 8;
-/// Smallest relative noise that is believed, as in `jointscope_frf::noise`.
-const LEAST: f64 = 1e-5;
-
-/// What others of the FRFs say of the share counts this much of what an FRF says itself: an FRF without a line on which the share shows believes the others.
-const FROM_OTHERS: f64 = 0.3;
+use crate::settings::each_frf::HELD;
+use crate::settings::noise::{
+    EACH_FIT_STEPS, FLOOR_WINDOW, FROM_OTHERS, LEAST_NOISE, MOST_FOLLOWED, MOST_OVER_EXPECTED, PASSES,
+    SHARE_WINDOW_PARTS, UNTOLD_SHARE,
+};
 
 /// Variances E|ε|² of the accelerances of `frfs` on all lines, merged ones as what they leave and not as their own scatter tells it, from what is left of them by modes at their own places for each FRF, so that resonances that moved between records
 /// are not taken for noise. FRFs that the modes cannot be fitted to are left out.
@@ -45,7 +34,8 @@ pub(crate) fn variances(
     let mut left = Vec::new();
     for &frf in frfs.iter().filter(|frf| condensed.weights(**frf).iter().any(|w| *w > 0.0)) {
         let single = condensed.single(frf);
-        let Some(own) = Likelihood::search(&single, poles.clone(), fit.terms, STEPS, Some(&prior)) else {
+        let Some(own) = Likelihood::search(&single, poles.clone(), fit.terms, EACH_FIT_STEPS, Some(&prior))
+        else {
             continue;
         };
         let model = rebuilt(&observed.omegas, &own, 0, 0, 0, highest);
@@ -56,12 +46,14 @@ pub(crate) fn variances(
             .zip(&model)
             .zip(&followed)
             .zip(&observed.stands_for)
-            .map(|(((v, m), followed), lines)| lines * (v - m).norm_sqr() / (1.0 - followed.min(FOLLOWED)))
+            .map(|(((v, m), followed), lines)| {
+                lines * (v - m).norm_sqr() / (1.0 - followed.min(MOST_FOLLOWED))
+            })
             .collect();
         left.push(Left {
             squares,
             size: model.iter().map(|m| m.norm_sqr()).collect(),
-            usable: followed.iter().map(|f| *f < FOLLOWED).collect(),
+            usable: followed.iter().map(|f| *f < MOST_FOLLOWED).collect(),
         });
         fitted.push(frf);
     }
@@ -69,9 +61,6 @@ pub(crate) fn variances(
     let of_lines = |all: Vec<f64>| all.iter().zip(&observed.stands_for).map(|(v, lines)| v / lines).collect();
     fitted.into_iter().zip(floors_and_shares(&left).into_iter().map(of_lines)).collect()
 }
-
-/// A line whose own noise the modes follow to more than this share tells nothing about it.
-const FOLLOWED: f64 = 0.7;
 
 /// What share of each line's own noise residues and poles follow, about: those of a peak of three lines go through them.
 fn followed(observed: &Observed, poles: &[Complex64], frf: usize) -> Vec<f64> {
@@ -97,14 +86,11 @@ struct Left {
     usable: Vec<bool>,
 }
 
-/// A share that is not told at all is taken for this much, a noise of 1 %.
-const MOST_DOUBT: f64 = 1e-4;
-
 /// S + N·|H|² of each FRF, by line.
 fn floors_and_shares(left: &[Left]) -> Vec<Vec<f64>> {
     let mut all: Vec<Fit> = left.iter().map(Fit::begun).collect();
     let Some(n) = left.first().map(|l| l.squares.len()) else { return Vec::new() };
-    let half = (n / SHARE_WINDOW).max(FLOOR_WINDOW);
+    let half = (n / SHARE_WINDOW_PARTS).max(FLOOR_WINDOW);
     for _ in 0..PASSES {
         let sums: Vec<[Running; 2]> = left.iter().zip(&all).map(|(l, fit)| fit.share_sums(l)).collect();
         let pooled = |i: usize, part: usize| -> f64 {
@@ -116,7 +102,7 @@ fn floors_and_shares(left: &[Left]) -> Vec<Vec<f64>> {
                 let [above, below] = [0, 1].map(|part| sums[part].over(window(i, half, n)) + pooled[i][part]);
                 // A standard deviation more than it seems: too little noise on a peak costs more than too much.
                 let below = below.max(f64::MIN_POSITIVE);
-                (above / below).max(0.0) + below.sqrt().recip().min(MOST_DOUBT)
+                (above / below).max(0.0) + below.sqrt().recip().min(UNTOLD_SHARE)
             };
             let share: Vec<f64> = (0..n).map(share).collect();
             fit.update(l, &share);
@@ -151,7 +137,7 @@ impl Fit {
     }
 
     fn least(&self, left: &Left, i: usize) -> f64 {
-        (LEAST * LEAST * left.size[i].max(1e-12 * self.largest)).max(f64::MIN_POSITIVE.sqrt())
+        (LEAST_NOISE * LEAST_NOISE * left.size[i].max(1e-12 * self.largest)).max(f64::MIN_POSITIVE.sqrt())
     }
 
     fn weight(&self, left: &Left, i: usize) -> f64 {
@@ -162,7 +148,7 @@ impl Fit {
     }
 
     fn clipped(&self, left: &Left, i: usize) -> f64 {
-        left.squares[i].min(CLIPPED * self.variance[i])
+        left.squares[i].min(MOST_OVER_EXPECTED * self.variance[i])
     }
 
     /// Sums of which the quotient over a window is the share.

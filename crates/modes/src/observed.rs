@@ -4,6 +4,8 @@ use jointscope_spectra::{Channel, FrfForm, FrfPair, FrfSet};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 
+use crate::settings::merged_lines::{FEW_LINES, SMOOTH};
+
 /// The FRFs as rows of `columns` entries that share their poles' participations.
 ///
 /// The columns are the references or the responses, whichever are fewer: a hammer that roves over thirty points past one sensor is
@@ -193,8 +195,3 @@ impl Observed {
         Observed { grid: self.grid.clone(), omegas: omegas.collect(), values, weights, stands_for: many }
     }
 }
-
-/// So many lines are all kept.
-const FEW_LINES: usize = 2000;
-/// Lines over this share of the distance to the nearest pole are averaged: what is curved over them is 1e-4 of the FRF.
-const SMOOTH: f64 = 0.03;

@@ -9,9 +9,7 @@ use num_complex::Complex64;
 use std::f64::consts::TAU;
 
 use crate::observed::Observed;
-
-/// Share of the unit circle that the band is laid on; poles a little outside of the band lie in the rest.
-const ARC: f64 = 0.85;
+use crate::settings::orders::{BAND_ARC, UNDAMPED_GROWTH};
 
 /// The lines on the unit circle.
 #[derive(Debug, Clone, Copy)]
@@ -22,15 +20,12 @@ struct Circle {
     spacing: f64,
 }
 
-/// Growth, as a share of the lines' spacing, up to which a pole that does not decay may be one that hardly does: noise makes either of it. What is mere arithmetic grows faster.
-const UNDAMPED: f64 = 0.1;
-
 impl Circle {
     fn of(omegas: &[f64]) -> Self {
         let (first, last) = (omegas[0], omegas[omegas.len() - 1]);
         let band = (last - first).max(f64::MIN_POSITIVE);
         let spacing = band / omegas.len().saturating_sub(1).max(1) as f64;
-        Circle { first, period: TAU * ARC / band, spacing }
+        Circle { first, period: TAU * BAND_ARC / band, spacing }
     }
 
     fn at(&self, omega: f64) -> Complex64 {
@@ -39,12 +34,12 @@ impl Circle {
 
     /// Whether a frequency lies within the lines: beyond them what hardly grows writes what is out of the band, and is no mode.
     fn holds(&self, omega: f64) -> bool {
-        (0.0..=TAU * ARC).contains(&((omega - self.first) * self.period))
+        (0.0..=TAU * BAND_ARC).contains(&((omega - self.first) * self.period))
     }
 
     /// The pole λ of z = exp((λ − iω₁)T).
     fn pole(&self, z: Complex64) -> Complex64 {
-        let before = -0.5 * TAU * (1.0 - ARC);
+        let before = -0.5 * TAU * (1.0 - BAND_ARC);
         let turn = if z.arg() < before { z.arg() + TAU } else { z.arg() };
         Complex64::new(z.norm().ln() / self.period, self.first + turn / self.period)
     }
@@ -215,7 +210,7 @@ impl Equations {
         let mut poles = Vec::new();
         for u in roots {
             let pole = self.circle.pole(u.inv());
-            let hardly_grows = pole.re < UNDAMPED * self.circle.spacing && self.circle.holds(pole.im);
+            let hardly_grows = pole.re < UNDAMPED_GROWTH * self.circle.spacing && self.circle.holds(pole.im);
             if (pole.re < 0.0 || hardly_grows) && pole.is_finite() && pole.im > 0.0 {
                 let decaying = Complex64::new(-pole.re.abs(), pole.im);
                 poles.push((decaying, self.participation(&coefficients, order, u)));

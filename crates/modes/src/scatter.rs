@@ -5,6 +5,10 @@ use std::f64::consts::TAU;
 
 use crate::likelihood::{Likelihood, Poles, Prior};
 use crate::observed::Observed;
+use crate::settings::drift::{
+    BEYOND_NOISE, KNOWN_DAMPING, KNOWN_FREQUENCY, LEAST_DRIFT, OWN_POLE_WORTH, VARIANCE_PRECISION,
+};
+use crate::settings::each_frf::{FEWEST_FRFS, HELD, OWN_STEPS};
 
 /// A mode that is not at one place: its frequencies differ among the FRFs by more than their noise, as those of a structure that warms up between hits do.
 #[derive(Debug, Clone, PartialEq)]
@@ -32,23 +36,10 @@ pub(crate) struct Scatter {
     pub drift: Option<Drift>,
 }
 
-/// FRFs from which a scatter is told.
-const FEWEST: usize = 3;
-/// Half-widths by which an FRF's pole may stand off that of all, and by how much (in ln σ) be wider: one standard deviation.
-pub(crate) const HELD: (f64, f64) = (3.0, 1.5);
-/// An FRF counts where it knows its pole to this share of a half-width and this one of σ.
-const KNOWN: (f64, f64) = (0.3, 0.25);
-/// Standard deviations by which the FRFs' differences must exceed their noise.
-const BEYOND_NOISE: f64 = 5.0;
-/// A drift of less than this share of the half-width is left to the noise.
-const MOVED: f64 = 0.02;
-/// Steps of each FRF's own search.
-const STEPS: usize = 12;
-
 /// The scatter of each mode of `fit`.
 pub(crate) fn scatter(observed: &Observed, fit: &Likelihood) -> Vec<Scatter> {
     let count = fit.poles.poles.len();
-    if observed.frfs() < FEWEST {
+    if observed.frfs() < FEWEST_FRFS {
         return vec![Scatter::default(); count];
     }
     let prior = Prior { poles: fit.poles.poles.clone(), std: HELD };
@@ -58,7 +49,7 @@ pub(crate) fn scatter(observed: &Observed, fit: &Likelihood) -> Vec<Scatter> {
     let mut apart = Sharing::default();
     for frf in 0..observed.frfs() {
         let single = observed.single(frf);
-        let Some(own) = Likelihood::search(&single, start.clone(), fit.terms, STEPS, Some(&prior)) else {
+        let Some(own) = Likelihood::search(&single, start.clone(), fit.terms, OWN_STEPS, Some(&prior)) else {
             continue;
         };
         apart.add(&single, &own);
@@ -66,7 +57,7 @@ pub(crate) fn scatter(observed: &Observed, fit: &Likelihood) -> Vec<Scatter> {
         for (mode, covariance) in own.pole_covariance().into_iter().enumerate() {
             let covariance = covariance.map(|row| row.map(|c| c * inflation));
             let pole = own.poles.poles[mode];
-            if covariance[0][0].sqrt() < KNOWN.0 && covariance[1][1].sqrt() < KNOWN.1 {
+            if covariance[0][0].sqrt() < KNOWN_FREQUENCY && covariance[1][1].sqrt() < KNOWN_DAMPING {
                 let [f, z] = deviations(pole, covariance);
                 by_mode[mode].push((frf, pole.norm() / TAU, f.0, -pole.re / pole.norm(), z.0));
             }
@@ -101,20 +92,17 @@ impl Sharing {
         }
         let scale = self.chi2 / self.degrees.saturating_sub(self.unknowns).max(1) as f64;
         let fall = (shared.chi2 - self.chi2) / (self.unknowns - shared.unknowns()) as f64;
-        fall > PAID * scale
+        fall > OWN_POLE_WORTH * scale
     }
 }
 
-/// Fall of χ² for each pole of its own, over its residual noise, that poles of their own must bring.
-const PAID: f64 = 2.5;
-
 fn of_mode(by_frf: Vec<(usize, f64, f64, f64, f64)>, half_width: f64) -> Scatter {
-    if by_frf.len() < FEWEST {
+    if by_frf.len() < FEWEST_FRFS {
         return Scatter::default();
     }
     let frequency = Heterogeneity::of(by_frf.iter().map(|o| (o.1, o.2)));
     let ratio = Heterogeneity::of(by_frf.iter().map(|o| (o.3, o.4)));
-    if !frequency.certain || frequency.of_the_precise.sqrt() < MOVED * half_width {
+    if !frequency.certain || frequency.of_the_precise.sqrt() < LEAST_DRIFT * half_width {
         return Scatter::default();
     }
     Scatter {
@@ -126,9 +114,6 @@ fn of_mode(by_frf: Vec<(usize, f64, f64, f64, f64)>, half_width: f64) -> Scatter
         }),
     }
 }
-
-/// Relative precision of that variance.
-const PRECISION: f64 = 1e-9;
 
 /// Measurements of one thing that may have changed between them (random effects). Its variance is the one with which they scatter as much as they should (Paule and
 /// Mandel 1982): where it is large they count alike, the precise as those that noise leaves less sure.
@@ -171,7 +156,7 @@ impl Heterogeneity {
         let mut between = 0.0;
         if q > degrees {
             let (mut low, mut high) = (0.0, most);
-            while high - low > PRECISION * most {
+            while high - low > VARIANCE_PRECISION * most {
                 let middle = 0.5 * (low + high);
                 if squares(middle) > degrees { low = middle } else { high = middle }
             }

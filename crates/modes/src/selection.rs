@@ -4,30 +4,24 @@ use num_complex::Complex64;
 use std::f64::consts::TAU;
 
 use crate::gram::Terms;
-use crate::likelihood::{Likelihood, MOST_STEPS, Poles};
+use crate::likelihood::{Likelihood, Poles};
 use crate::observed::Observed;
+use crate::settings::likelihood::MOST_STEPS;
+use crate::settings::selection::{
+    DOUBTFUL_DEVIATION, DOUBTFUL_WORTH, FEWEST_SEEN, MOST_CANDIDATES, NEAR_FREQUENCY, NEAR_HALF_WIDTHS,
+    OUTSIDE_BAND, OVERDAMPED, PICK_ALIKE, PICK_REACH, PICK_SPACINGS, SEEN_SHARE, UNSETTLED_STEPS, WORTH,
+};
 use crate::stabilization::Track;
-
-/// Share of the orders that a candidate's track is seen at, and how many at the least.
-const SEEN: (f64, usize) = (0.2, 3);
-/// Candidates that are looked at, those of the longest tracks.
-const MOST: usize = 50;
-/// Damping ratio above which a pole is no resonance.
-const OVERDAMPED: f64 = 0.5;
-/// Rise of χ² that a mode must be worth, in natural logarithms of the number of values for each of its unknowns.
-const WORTH: f64 = 1.5;
-/// How far outside the lines a pole may lie that is kept for what it does inside, as a share of the band.
-const OUTSIDE: f64 = 0.05;
 
 /// Candidates for modes, strongest track first.
 pub(crate) fn candidates(tracks: &[Track], orders: usize, observed: &Observed) -> Poles {
-    let shortest = SEEN.1.max((SEEN.0 * orders as f64).ceil() as usize);
+    let shortest = FEWEST_SEEN.max((SEEN_SHARE * orders as f64).ceil() as usize);
     let mut long: Vec<&Track> = tracks
         .iter()
         .filter(|track| track.members.len() >= shortest && is_resonance(&track.middle().0, observed))
         .collect();
     long.sort_by_key(|track| std::cmp::Reverse(track.members.len()));
-    long.truncate(MOST);
+    long.truncate(MOST_CANDIDATES);
     let middles = long.iter().map(|track| track.middle());
     let (poles, participations) = middles.unzip();
     Poles { poles, participations }
@@ -35,7 +29,7 @@ pub(crate) fn candidates(tracks: &[Track], orders: usize, observed: &Observed) -
 
 fn is_resonance(pole: &Complex64, observed: &Observed) -> bool {
     let (first, last) = (observed.omegas[0], observed.omegas[observed.lines() - 1]);
-    let margin = OUTSIDE * (last - first);
+    let margin = OUTSIDE_BAND * (last - first);
     -pole.re < OVERDAMPED * pole.norm() && pole.im > first - margin && pole.im < last + margin
 }
 
@@ -51,7 +45,7 @@ pub(crate) fn prune(
     loop {
         let steps = match (refine, settled) {
             (_, true) => MOST_STEPS,
-            (true, false) => 4,
+            (true, false) => UNSETTLED_STEPS,
             (false, false) => 0,
         };
         let Some(fit) = Likelihood::search(observed, poles.clone(), terms, steps, None) else {
@@ -86,7 +80,7 @@ pub(crate) fn prune(
         for r in order {
             let near = |other: &usize| {
                 let (a, b) = (fit.poles.poles[r], fit.poles.poles[*other]);
-                (a - b).norm() < 20.0 * (-a.re - b.re) + 0.01 * a.norm()
+                (a - b).norm() < NEAR_HALF_WIDTHS * (-a.re - b.re) + NEAR_FREQUENCY * a.norm()
             };
             if !gone.iter().any(near) {
                 gone.push(r);
@@ -104,14 +98,11 @@ fn nearest_twin(poles: &Poles) -> Option<usize> {
     pairs.min_by(|x, y| distance(*x).total_cmp(&distance(*y))).map(|(_, later)| later)
 }
 
-/// Worth below which a mode must show it, and deviation of a frequency, in half-widths, above which.
-const IN_DOUBT: (f64, f64) = (10.0, 0.5);
-
 /// The poles without one that the others, moved a little, make up for.
 fn without_a_double(observed: &Observed, fit: &Likelihood, worth: &[f64]) -> Option<Poles> {
     let covariance = fit.pole_covariance();
     let mut doubtful: Vec<usize> = (0..worth.len())
-        .filter(|&r| worth[r] < IN_DOUBT.0 || covariance[r][0][0].sqrt() > IN_DOUBT.1)
+        .filter(|&r| worth[r] < DOUBTFUL_WORTH || covariance[r][0][0].sqrt() > DOUBTFUL_DEVIATION)
         .collect();
     doubtful.sort_by(|a, b| worth[*a].total_cmp(&worth[*b]));
     doubtful.into_iter().find_map(|r| {
@@ -151,12 +142,12 @@ pub(crate) fn picked(tracks: &[Track], picks: &[f64], observed: &Observed) -> Re
         };
         let spacing =
             (observed.omegas[observed.lines() - 1] - observed.omegas[0]) / observed.lines() as f64 / TAU;
-        let reach = (PICKED * pick).max(2.0 * spacing);
+        let reach = (PICK_REACH * pick).max(PICK_SPACINGS * spacing);
         if distance(nearest) > reach {
             return Err((pick, nearest.middle().0.norm() / TAU));
         }
         // Near one another in frequency, the column that is seen at most orders.
-        let close = distance(nearest).max(0.1 * reach);
+        let close = distance(nearest).max(PICK_ALIKE * reach);
         let best = tracks
             .iter()
             .filter(|track| distance(track) <= close && !poles.poles.contains(&track.middle().0))
@@ -167,6 +158,3 @@ pub(crate) fn picked(tracks: &[Track], picks: &[f64], observed: &Observed) -> Re
     }
     Ok(poles)
 }
-
-/// How near a pick has to be to a pole, as a share of its frequency.
-const PICKED: f64 = 0.01;

@@ -4,6 +4,10 @@ use num_complex::Complex64;
 use std::f64::consts::TAU;
 
 use crate::polynomial::OrderPoles;
+use crate::settings::stabilization::{
+    FOLLOWED_FREQUENCY, FOLLOWED_HALF_WIDTHS, FOLLOWED_SPACING, MISSED_ORDERS, STABLE_DAMPING,
+    STABLE_FREQUENCY,
+};
 
 /// How a pole compares with that of the order before.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -28,13 +32,6 @@ pub struct ChartPole {
     /// How it compares with the order before.
     pub stability: Stability,
 }
-
-/// Frequencies that agree to this share are stable, and damping ratios that agree to that one.
-const STABLE: (f64, f64) = (0.002, 0.1);
-/// A pole follows one this far away: share of the frequency, half-widths, share of the lines' spacing.
-const FOLLOWS: (f64, f64, f64) = (0.002, 1.0, 0.5);
-/// Orders that a track may miss.
-const MISSING: usize = 2;
 
 /// Poles of one column of the chart, by ascending order.
 #[derive(Debug, Clone)]
@@ -66,7 +63,7 @@ pub(crate) fn follow(orders: &[OrderPoles], spacing: f64) -> (Vec<ChartPole>, Ve
     let mut tracks: Vec<Track> = Vec::new();
     let mut chart = Vec::new();
     for (index, of_order) in orders.iter().enumerate() {
-        let recent = orders[index.saturating_sub(MISSING + 1)].order;
+        let recent = orders[index.saturating_sub(MISSED_ORDERS + 1)].order;
         let mut matches: Vec<(f64, usize, usize)> = Vec::new();
         for (t, track) in tracks.iter().enumerate() {
             let Some((order, last, _)) = track.members.last() else { continue };
@@ -74,7 +71,9 @@ pub(crate) fn follow(orders: &[OrderPoles], spacing: f64) -> (Vec<ChartPole>, Ve
                 continue;
             }
             for (k, (pole, _)) in of_order.poles.iter().enumerate() {
-                let reach = (FOLLOWS.0 * last.im).max(FOLLOWS.1 * -last.re).max(FOLLOWS.2 * spacing);
+                let reach = (FOLLOWED_FREQUENCY * last.im)
+                    .max(FOLLOWED_HALF_WIDTHS * -last.re)
+                    .max(FOLLOWED_SPACING * spacing);
                 let distance = (pole - last).norm() / reach;
                 if distance < 1.0 {
                     matches.push((distance, t, k));
@@ -116,9 +115,9 @@ pub(crate) fn follow(orders: &[OrderPoles], spacing: f64) -> (Vec<ChartPole>, Ve
 
 fn compare(pole: &Complex64, before: &Complex64) -> Stability {
     let (frequency, damping) = (pole.norm(), -pole.re / pole.norm());
-    if (frequency - before.norm()).abs() > STABLE.0 * frequency {
+    if (frequency - before.norm()).abs() > STABLE_FREQUENCY * frequency {
         return Stability::New;
     }
     let other = -before.re / before.norm();
-    if (damping - other).abs() > STABLE.1 * damping { Stability::Frequency } else { Stability::Stable }
+    if (damping - other).abs() > STABLE_DAMPING * damping { Stability::Frequency } else { Stability::Stable }
 }

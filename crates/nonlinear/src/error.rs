@@ -1,3 +1,4 @@
+use crate::settings::levels::{FEWEST_LINES, LEAST_RATIO};
 use jointscope_hits::HitError;
 use jointscope_lumped::LumpedError;
 
@@ -135,7 +136,8 @@ pub enum SteppedError {
     },
     /// Levels of one strength.
     #[error(
-        "the levels, {first} to {last}, differ by less than a factor of 1.2: record a weaker or a stronger one"
+        "the levels, {first} to {last}, differ by less than a factor of {least}: record a weaker or a stronger one",
+        least = LEAST_RATIO
     )]
     Alike {
         /// The first.
@@ -144,7 +146,10 @@ pub enum SteppedError {
         last: String,
     },
     /// Too few lines about the resonance of the level of this amplitude.
-    #[error("level {0} has fewer than 8 spectral lines about the resonance; step finer, or widen `--band`")]
+    #[error(
+        "level {0} has fewer than {needed} spectral lines about the resonance; step finer, or widen `--band`",
+        needed = FEWEST_LINES
+    )]
     TooFewLines(String),
     /// No resonance can be fitted to the level of this amplitude.
     #[error("no resonance can be fitted to the FRFs of level {0}; choose a band about one with `--band`")]

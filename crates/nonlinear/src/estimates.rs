@@ -1,11 +1,9 @@
 //! The parameters of an amplitude-dependent effect with their intervals.
 
 use crate::RestoringLaw;
+use crate::settings::judgement::VAGUE;
 use jointscope_findings::Estimate;
 use jointscope_fixture::{Effect, ParameterSpec};
-
-/// Deviation of a logarithm beyond which a parameter is not determined.
-const VAGUE: f64 = 1.5;
 
 /// The parameters of an effect known to these standard deviations: of the logarithm of what is positive, of the value of a cubic stiffness. `inexact`
 /// is the share of every value that the method itself leaves open.

@@ -5,6 +5,8 @@ use num_complex::Complex64;
 use std::f64::consts::{PI, TAU};
 use std::ops::Range;
 
+use crate::settings::hits::{FEWEST_IN_TAIL, TAIL_PARTS};
+
 /// Signals of one length under one window.
 pub(crate) struct Windowed {
     pub window: Vec<f64>,
@@ -97,15 +99,10 @@ fn filtered(samples: &[f64], factor: usize, gain: impl Fn(f64) -> f64) -> Vec<f6
     inverse.signal(&mut lines)
 }
 
-/// Share of a record at its end in which noise is looked for: a hit's force is over, its response has mostly died away.
-const TAIL: usize = 4;
-/// Fewest samples of a tail.
-const FEWEST: usize = 32;
-
 /// Standard deviation of a signal's white noise, from the median line of its last quarter: what still rings there is a few lines among many, and
 /// the median does not see them.
 pub(crate) fn noise(values: &[f64]) -> f64 {
-    let length = (values.len() / TAIL).max(FEWEST.min(values.len()));
+    let length = (values.len() / TAIL_PARTS).max(FEWEST_IN_TAIL.min(values.len()));
     let tail = &values[values.len() - length..];
     let mean = tail.iter().sum::<f64>() / length as f64;
     let hann = |i: usize| (PI * (i as f64 + 0.5) / length as f64).sin().powi(2);

@@ -8,6 +8,7 @@ use super::poles::{Poles, Prior};
 use crate::gram::{Gram, OF_MODE, Terms};
 use crate::observed::Observed;
 use crate::polynomial::normalize;
+use crate::settings::likelihood::{MOST_GROWTH, MOST_HALF_WIDTHS};
 
 /// What is linear, for given poles and participations.
 #[derive(Debug, Clone)]
@@ -220,7 +221,10 @@ impl Point {
         let columns = poles.participations.first().map_or(1, Vec::len);
         for (mode, pole) in poles.poles.iter_mut().enumerate() {
             let sigma = -pole.re;
-            let (along, growth) = (step[2 * mode].clamp(-4.0, 4.0), step[2 * mode + 1].clamp(-1.0, 1.0));
+            let (along, growth) = (
+                step[2 * mode].clamp(-MOST_HALF_WIDTHS, MOST_HALF_WIDTHS),
+                step[2 * mode + 1].clamp(-MOST_GROWTH, MOST_GROWTH),
+            );
             *pole = Complex64::new(-sigma * growth.exp(), pole.im + sigma * along);
         }
         for mode in 0..count {

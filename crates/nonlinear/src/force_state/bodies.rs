@@ -1,6 +1,7 @@
 //! Accelerations of rigid bodies from sensors, and from the balance of momentum where sensors do not suffice.
 
 use super::sides::free;
+use crate::settings::map::DETERMINED;
 use crate::spectra::Windowed;
 use crate::time::structure::{abscissa_m, effects};
 use jointscope_fixture::{BodyKind, Dof, EffectKind, Fixture, Place, Quantity};
@@ -163,9 +164,6 @@ pub(super) fn applied(fixture: &Fixture, hit: &Hit, x: f64) -> [f64; 2] {
         Dof::Rotation => [0.0, 1.0],
     }
 }
-
-/// Largest condition number, squared, of equations that determine their unknowns.
-const DETERMINED: f64 = 1e7;
 
 /// Least squares of the equations for `unknowns`, a motion a body; `None` where they do not determine them.
 fn solved(equations: &[&Equation], unknowns: &[usize], scale: f64) -> Option<Vec<BodyMotion>> {

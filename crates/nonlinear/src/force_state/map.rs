@@ -2,6 +2,7 @@
 
 use super::bodies::{BodyMotion, Inertia, MotionSource, applied, inertia, measured};
 use super::sides::{check_effects, free, sides};
+use crate::settings::map::{DIED_DOWN, FALLS_FROM, ONSET, RISES_FROM};
 use crate::spectra::{Windowed, rising};
 use crate::time::simulation::simulate_one;
 use crate::time::structure::{Reading, abscissa_m, effects};
@@ -104,11 +105,6 @@ impl ForceState {
     }
 }
 
-/// Share of its largest d below which motion is no longer shown.
-const DIED_DOWN: f64 = 0.1;
-/// Share of the peak force at which a blow begins.
-const ONSET: f64 = 0.02;
-
 impl ForceStateMap {
     /// The map of `joint` under `hit`, with the mass properties, stiffness and laws of `fixture`; `band` is where d is taken from the sensors, Hz.
     ///
@@ -137,7 +133,7 @@ impl ForceStateMap {
         let rates: BodyMotion = across(&to, &from, fixture.joint_length(joint));
         let motion = |component: usize| -> Vec<Complex64> {
             let line = |(i, (rate, slow)): (usize, (&Complex64, &Complex64))| {
-                let high = rising(lines.frequency_hz(i), 0.5 * band.0, band.0);
+                let high = rising(lines.frequency_hz(i), RISES_FROM * band.0, band.0);
                 let fast = if high > 0.0 { rate / lines.s(i).powi(2) * high } else { Complex64::ZERO };
                 (fast + slow * (1.0 - high)) * upper(lines.frequency_hz(i), band.1)
             };
@@ -186,7 +182,7 @@ impl ForceStateMap {
 
 /// 1 up to four fifths of `highest`, then falling to 0 there.
 fn upper(frequency: f64, highest: f64) -> f64 {
-    1.0 - rising(frequency, 0.8 * highest, highest)
+    1.0 - rising(frequency, FALLS_FROM * highest, highest)
 }
 
 /// d = u_to − R·u_from, deflection and rotation.

@@ -1,12 +1,16 @@
 //! The whole answer: does anything change with amplitude, what is it, where, how strong, how sure.
 
 use super::fit::Fit;
-use super::homogeneity::{CHANGED, Homogeneity, homogeneity};
+use super::homogeneity::{Homogeneity, homogeneity};
 use super::hypothesis::Hypothesis;
 use super::judge::{HitFinding, Judged, Judgement, ModelFit, Step};
 use super::locations::{JointLocation, locations};
 use super::records::{Record, held_out, records};
 use super::search::{Search, Span};
+use crate::settings::band::{BEYOND_BAND, BEYOND_ELASTIC, FORCE_ENDS, SAMPLING_ENDS};
+use crate::settings::homogeneity::CHANGED;
+use crate::settings::map::{FROM_LOWEST, HARMONIC, SAMPLED_SHARE};
+use crate::settings::search::{LEAST_GAIN, SEEK_MORE, SEEK_MORE_ERROR, WORTH};
 use crate::{DiagnoseError, ForceStateError, ForceStateMap, SimulationError};
 use jointscope_findings::{HeldOut, Verdict};
 use jointscope_fixture::{BodyKind, Dof, Fixture};
@@ -63,14 +67,6 @@ pub struct NonlinearDiagnosis {
     pub followed: Option<f64>,
 }
 
-/// χ² per degree of freedom, and error relative to the responses, above which a second law is looked for.
-const SEEK_MORE: (f64, f64) = (3.0, 0.05);
-/// Multiple of the highest elastic frequency up to which a force–state map goes.
-const HARMONIC: f64 = 3.5;
-/// Share of what is left of χ² beyond noise that the first law, and a second and last one, must explain to be named: a fit caught in a false
-/// minimum explains a part, and no name should be given for it.
-const WORTH: [f64; 2] = [0.75, 0.1];
-
 impl NonlinearDiagnosis {
     /// Diagnoses `hits` against `fixture`.
     ///
@@ -93,7 +89,7 @@ impl NonlinearDiagnosis {
             findings: Vec::new(),
             models: None,
             held_out: None,
-            reach: locations(fixture, &references, 2.0 * band.1).into_iter().map(reach).collect(),
+            reach: locations(fixture, &references, BEYOND_BAND * band.1).into_iter().map(reach).collect(),
             maps: Vec::new(),
             band,
             followed: None,
@@ -126,8 +122,8 @@ fn judged(fixture: &Fixture, all: &[Record], (band, elastic): Bands, exact: bool
     let mut whole = search.view(&span);
     for worth in WORTH {
         let enough = || {
-            best.chi2 / whole.degrees() < SEEK_MORE.0
-                || whole.nrmse(&best.hypothesis).is_none_or(|e| e < SEEK_MORE.1)
+            best.chi2 / whole.degrees() < SEEK_MORE
+                || whole.nrmse(&best.hypothesis).is_none_or(|e| e < SEEK_MORE_ERROR)
         };
         if !steps.is_empty() && enough() {
             break;
@@ -140,7 +136,8 @@ fn judged(fixture: &Fixture, all: &[Record], (band, elastic): Bands, exact: bool
         whole = search.view(&followed);
         let before = Fit::of(&whole, &best.hypothesis, 1)?;
         let excess = |fit: &Fit| (fit.objective - whole.degrees()).max(0.0);
-        if excess(first) > (1.0 - worth) * excess(&before) || first.objective + 30.0 > before.objective {
+        if excess(first) > (1.0 - worth) * excess(&before) || first.objective + LEAST_GAIN > before.objective
+        {
             break;
         }
         best = first.clone();
@@ -166,8 +163,8 @@ fn maps(
     joints.dedup();
     let of_record = |record: &Record| {
         // Harmonics of the motion, as far as the sampling goes.
-        let highest = (HARMONIC * elastic.1).max(band.1).min(0.45 / record.hit.interval());
-        let band = (0.5 * elastic.0, highest);
+        let highest = (HARMONIC * elastic.1).max(band.1).min(SAMPLED_SHARE / record.hit.interval());
+        let band = (FROM_LOWEST * elastic.0, highest);
         let map = |joint: &String| ForceStateMap::of(&repaired.fixture, joint, &record.hit, band);
         joints.iter().map(map).collect()
     };
@@ -187,9 +184,6 @@ fn elastic_band(fixture: &Fixture, records: &[Record]) -> Result<(f64, f64), Dia
     }
 }
 
-/// Share of its largest line at which a force's spectrum ends.
-const FORCE_ENDS: f64 = 0.03;
-
 /// Where the hammer's force, the sensors' sampling or the fixture's own motions end.
 fn default_highest(fixture: &Fixture, records: &[Record], elastic: f64) -> f64 {
     let mut highest = f64::INFINITY;
@@ -199,8 +193,8 @@ fn default_highest(fixture: &Fixture, records: &[Record], elastic: f64) -> f64 {
         let lines = Fourier::new(force.len()).lines(&mut force.to_vec());
         let most = lines.iter().map(|l| l.norm()).fold(0.0, f64::max);
         let end = lines.iter().position(|l| l.norm() < FORCE_ENDS * most).unwrap_or(lines.len());
-        highest = highest.min(nyquist * (end as f64 / lines.len() as f64)).min(0.8 * nyquist);
+        highest = highest.min(nyquist * (end as f64 / lines.len() as f64)).min(SAMPLING_ENDS * nyquist);
     }
     let rigid = fixture.bodies().iter().all(|b| matches!(b.kind, BodyKind::Rigid(_)));
-    if rigid { highest.min(2.0 * elastic).max(elastic.min(highest)) } else { highest }
+    if rigid { highest.min(BEYOND_ELASTIC * elastic).max(elastic.min(highest)) } else { highest }
 }

@@ -2,9 +2,8 @@
 
 use super::hypothesis::Hypothesis;
 use super::misfit::{Jacobian, Residuals, View, sum_of_squares};
-use jointscope_inference::{
-    Convergence, Covariance, Damping, LeastSquares, NormalEquations, Precision, Settings, descend,
-};
+use crate::settings::fit::{CONVERGED, MOST_STEPS, REUSE, STEP_DAMPING};
+use jointscope_inference::{Covariance, LeastSquares, NormalEquations, Precision, Settings, descend};
 
 /// A hypothesis at which likelihood and prior are largest.
 #[derive(Debug, Clone)]
@@ -114,11 +113,11 @@ fn equations(hypothesis: &Hypothesis, information: Vec<f64>, right: Vec<f64>) ->
 /// tenth in χ² is no gain.
 fn settings(renewals: usize) -> Settings {
     Settings {
-        steps: 100,
+        steps: MOST_STEPS,
         derivatives: renewals,
-        damping: Damping { initial: 1e-3, decrease: 0.1, least: 1e-9, raised: 0.0, most: 1e3 },
-        convergence: Convergence { gain: 0.1, share: 2e-5, floor: 0.0 },
-        reuse: Some(0.05),
+        damping: STEP_DAMPING,
+        convergence: CONVERGED,
+        reuse: Some(REUSE),
         ..Settings::default()
     }
 }

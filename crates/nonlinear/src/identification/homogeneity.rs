@@ -6,6 +6,7 @@
 
 use super::records::{Record, struck_channels};
 use crate::distribution::{chi_squared_tail, f_tail};
+use crate::settings::homogeneity::{FEWEST_WITHIN, NOISE_DOUBT, SAMPLING_ERROR, WEAK_FORCE, WINDOW};
 use crate::spectra::Windowed;
 use num_complex::Complex64;
 use serde::Serialize;
@@ -39,18 +40,6 @@ pub struct HitLevel {
     pub hits: usize,
 }
 
-/// p-value below which FRFs are said to change with level.
-pub(crate) const CHANGED: f64 = 2e-3;
-
-/// e^{−aT} of the window over the record.
-const WINDOW: f64 = 10.0;
-/// Error of every spectral value relative to itself, beside its noise: what sampling and the end of the record leave of a hit's exact instant. It is
-/// alike on many lines, and no difference as small tells anything of a joint.
-const SAMPLING_ERROR: f64 = 3e-3;
-/// Force lines below this share of the strongest are left out.
-const WEAK: f64 = 0.03;
-/// Degrees of freedom within levels from which they tell the noise.
-const FEWEST_WITHIN: f64 = 8.0;
 /// Bands in which the levels are compared, beside all lines together.
 const BANDS: usize = 12;
 
@@ -87,9 +76,6 @@ impl Sums {
         (ratio, f_tail(ratio, share * self.between_degrees, share * self.within_degrees))
     }
 }
-
-/// How far the noise at a record's end may be from that of all of it.
-const NOISE_DOUBT: f64 = 1.25;
 
 pub(crate) fn homogeneity(records: &[Record], highest_hz: f64) -> Homogeneity {
     let mut bands = [Sums::default(); BANDS];
@@ -177,7 +163,7 @@ impl Comparison {
         let strongest = force.iter().map(|line| line.norm()).fold(0.0, f64::max);
         let response = self.windowed.lines(&record.hit.responses()[column].values);
         let variance = record.noise[column].powi(2);
-        Signal { record, force, response, variance, weakest: WEAK * strongest }
+        Signal { record, force, response, variance, weakest: WEAK_FORCE * strongest }
     }
 
     fn add(&self, signals: &[Signal], bands: &mut [Sums; BANDS]) {

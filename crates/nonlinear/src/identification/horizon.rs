@@ -8,19 +8,7 @@ use super::fit::Fit;
 use super::hypothesis::Hypothesis;
 use super::misfit::{Focus, View};
 use super::records::Record;
-
-/// Samples over which departures are averaged.
-const BLOCK: usize = 64;
-/// Disturbances of the force in its noise's deviations: to either side, and so large that contacts which are nearly made are made.
-const DISTURBANCES: [f64; 2] = [3.0, -3.0];
-/// Departure, in deviations of the response's noise, from which on a record is not followed.
-const TOLERATED: f64 = 1.0;
-/// Departures of the same noise in the linear model, which weights allow for, up to which nothing is amiss.
-const LINEAR: f64 = 4.0;
-
-/// Deviations of the effects' parameters, the fixture's quantities following them, that must not be felt: together all records are far more
-/// sensitive than one, so that in a record that can be followed they are not.
-const DEVIATIONS: f64 = 3.0;
+use crate::settings::horizon::{BLOCK, CERTAIN, DEVIATIONS, DISTURBANCES, LINEAR_DEPARTURES, TOLERATED};
 
 /// Samples of each record up to which `fit` can follow it, not below `least` seconds after its blow; no limit where motions stay
 /// together to the end.
@@ -71,7 +59,7 @@ fn departed(fit: &Fit) -> Vec<Hypothesis> {
         }
         moved
     };
-    let certain = |k: &usize| covariance.at(*k, *k) > 0.0 && covariance.at(*k, *k) < 0.01;
+    let certain = |k: &usize| covariance.at(*k, *k) > 0.0 && covariance.at(*k, *k) < CERTAIN;
     (hypothesis.quantities.len()..covariance.order()).filter(certain).map(along).collect()
 }
 
@@ -86,7 +74,7 @@ fn allowed(plain: &[f64], disturbed: &[f64], noise: f64) -> Vec<f64> {
     let mut largest: f64 = 0.0;
     let most = |departure: f64| {
         largest = largest.max(departure);
-        (TOLERATED * noise).max(LINEAR * largest)
+        (TOLERATED * noise).max(LINEAR_DEPARTURES * largest)
     };
     departures(plain, disturbed).into_iter().map(most).collect()
 }
@@ -106,7 +94,7 @@ mod tests {
     fn what_a_linear_structure_makes_of_the_same_disturbance_is_allowed() {
         let plain = vec![0.0; 2 * BLOCK];
         let disturbed = vec![0.5; 2 * BLOCK];
-        assert_eq!(allowed(&plain, &disturbed, 1e-3), [LINEAR * 0.5; 2]);
+        assert_eq!(allowed(&plain, &disturbed, 1e-3), [LINEAR_DEPARTURES * 0.5; 2]);
         assert_eq!(allowed(&plain, &plain, 1e-3), [TOLERATED * 1e-3; 2]);
     }
 }

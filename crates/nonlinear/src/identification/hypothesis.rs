@@ -1,6 +1,7 @@
 //! What a fit may move: quantities of the fixture within their tolerances, and the parameters of amplitude-dependent effects.
 
 use crate::RestoringLaw;
+use crate::settings::fit::{LONGEST, LONGEST_OF_EFFECT};
 use jointscope_fixture::{
     Effect, Fixture, FixtureError, NamedQuantity, Nature, Quantity, QuantityOwner, SupportPlace,
 };
@@ -20,11 +21,6 @@ pub(crate) struct Hypothesis {
     parameters: Vec<Parameter>,
     pub coordinates: Vec<f64>,
 }
-
-/// Longest step of a coordinate: beyond it a linearised model says nothing.
-const LONGEST: f64 = 4.0;
-/// The same of an effect's, a logarithm or a part of where it began: a spring that no longer slips, or never touches, would not find back.
-const LONGEST_OF_EFFECT: f64 = 0.4;
 
 impl Hypothesis {
     /// The fixture as stated. Points that no joint, support or channel uses stay where they are.

@@ -8,14 +8,14 @@ use super::misfit::{Focus, View};
 use super::records::Record;
 use super::search::{Search, Span, contradicts};
 use crate::estimates::estimates;
+use crate::settings::band::BEYOND_BAND;
+use crate::settings::judgement::{
+    FINER, JUDGE_HALVINGS, LEAST_PROBABILITY, LEFT_OVER, MUCH_LEFT_OVER, PARAMETER_COST, PARAMETER_ERROR,
+    UNLISTED, UNLISTED_LEFT_OVER,
+};
 use jointscope_findings::{Finding, HeldOut, Verdict};
 use jointscope_fixture::{Effect, Fixture, NamedQuantity, Place};
 use serde::Serialize;
-
-/// χ² per degree of freedom above which a model leaves something unexplained.
-const LEFT_OVER: f64 = 1.5;
-/// How much finer the last fit steps than the search.
-const FINER: usize = 2;
 
 /// A law that the hits need.
 pub type HitFinding = Finding<HitEvidence>;
@@ -83,7 +83,7 @@ impl Judgement<'_> {
         steps: &[Step],
     ) -> Option<Judged> {
         let records: Vec<&Record> = self.all.iter().collect();
-        let focus = Focus { halvings: 4, ..self.search.focus(self.span.periods) };
+        let focus = Focus { halvings: JUDGE_HALVINGS, ..self.search.focus(self.span.periods) };
         let ends = horizons(&records, &focus, best, self.search.shortest_s());
         let held_out = match self.held.is_empty() {
             true => None,
@@ -171,7 +171,7 @@ impl Judgement<'_> {
         let records: Vec<&Record> = self.all.iter().collect();
         let reached = hypothesis
             .to_fixture()
-            .map_or(Vec::new(), |model| locations(&model, &records, 2.0 * self.search.band.1));
+            .map_or(Vec::new(), |model| locations(&model, &records, BEYOND_BAND * self.search.band.1));
         let finding = |(index, (effect, step)): (usize, (Effect, &Step))| {
             let deviations: Vec<Option<f64>> = hypothesis
                 .parameters_of(index)
@@ -200,9 +200,6 @@ impl Judgement<'_> {
     }
 }
 
-/// Relative deviation that steps and sampling leave in a parameter beside noise, as measured on the simulated laboratory.
-const PARAMETER_ERROR: f64 = 2.5e-3;
-
 /// Probability of the best fit's effect, and the others with theirs: by how much worse they fit, noise being as large as the best fit's residuals.
 /// The more the best leaves unexplained, the more is left for something not listed.
 fn probabilities(fits: &[Fit], chi2_per_dof: f64) -> (f64, Vec<(Effect, f64)>) {
@@ -211,11 +208,11 @@ fn probabilities(fits: &[Fit], chi2_per_dof: f64) -> (f64, Vec<(Effect, f64)>) {
     let count = |fit: &Fit| fit.hypothesis.coordinates.len() as f64;
     let weight = |fit: &Fit| {
         let extra = count(fit) - count(best);
-        (-0.5 * ((fit.objective - best.objective) / scale + 7.0 * extra)).min(0.0).exp()
+        (-0.5 * ((fit.objective - best.objective) / scale + PARAMETER_COST * extra)).min(0.0).exp()
     };
-    let unlisted = 0.01 + 0.3 * ((scale - LEFT_OVER) / 10.0).clamp(0.0, 1.0);
+    let unlisted = UNLISTED + UNLISTED_LEFT_OVER * ((scale - LEFT_OVER) / MUCH_LEFT_OVER).clamp(0.0, 1.0);
     let sum: f64 = fits.iter().map(weight).sum::<f64>() + unlisted;
     let named = |fit: &Fit| Some((fit.hypothesis.effects().pop()?, weight(fit) / sum));
-    let others = fits[1..].iter().filter_map(named).filter(|(_, p)| *p > 1e-6);
+    let others = fits[1..].iter().filter_map(named).filter(|(_, p)| *p > LEAST_PROBABILITY);
     (1.0 / sum, others.collect())
 }

@@ -1,6 +1,7 @@
 //! Where amplitude-dependent laws may act.
 
 use super::records::Record;
+use crate::settings::suggestions::STEPS_OF_REACH;
 use crate::spectra::oversampled_for_lines;
 use crate::time::kernel::{Stepper, Steps};
 use crate::time::structure::Structure;
@@ -49,9 +50,8 @@ pub(crate) fn locations(fixture: &Fixture, records: &[&Record], highest_hz: f64)
 
 /// What `rows` read under the force of a hit.
 fn motions(structure: &Structure, record: &Record, rows: &[Vec<f64>]) -> Option<Vec<Vec<f64>>> {
-    const WITHIN: usize = 4;
     let system = structure.system(structure.load(record.struck()).ok()?, &[], rows).ok()?;
-    let steps = Steps { interval: record.hit.interval(), within: WITHIN, halvings: 0 };
-    let force = oversampled_for_lines(record.hit.force(), WITHIN);
+    let steps = Steps { interval: record.hit.interval(), within: STEPS_OF_REACH, halvings: 0 };
+    let force = oversampled_for_lines(record.hit.force(), STEPS_OF_REACH);
     Some(Stepper::new(&system, steps)?.run(&force, record.hit.samples()))
 }

@@ -2,6 +2,8 @@
 
 use super::hypothesis::Hypothesis;
 use super::records::Record;
+use crate::settings::band::BEYOND_BAND;
+use crate::settings::misfit::{ABOVE_NOISE, CUT, DECAY_BLOCK, FADING_SHARE, FORCE_ABOVE_NOISE, LINE_ERROR};
 use crate::spectra::{Windowed, oversampled_for_lines, smooth_length};
 use crate::time::kernel::{Stepper, Steps};
 use crate::time::structure::Structure;
@@ -47,11 +49,6 @@ pub(crate) struct Focus {
     pub halvings: usize,
 }
 
-/// Departure of every line that is not held against a model: what sampling, sensors and steps leave of it, relative to the line.
-const LINE_ERROR: f64 = 2e-3;
-/// e^{−at} at which a windowed record is cut off, as an exponent.
-pub(super) const CUT: f64 = 6.0;
-
 /// (simulated − recorded)·weight, trace by trace, real and imaginary parts side by side.
 pub(crate) type Residuals = Vec<Vec<f64>>;
 
@@ -81,7 +78,7 @@ impl<'a> View<'a> {
     /// The model ready to be stepped, for each set-up.
     fn steppers(&self, hypothesis: &Hypothesis) -> Option<Vec<Stepper>> {
         let fixture = hypothesis.to_fixture().ok()?;
-        let structure = Structure::new(&fixture, 2.0 * self.focus.band.1).ok()?;
+        let structure = Structure::new(&fixture, BEYOND_BAND * self.focus.band.1).ok()?;
         let stepper = |record: &&Record| {
             let load = structure.load(record.struck()).ok()?;
             let system = structure.system(load, &record.readings, &[]).ok()?;
@@ -235,8 +232,11 @@ impl<'a> Trace<'a> {
             let lines = self.spectrum(&response.values);
             let own = noise * noise * energy;
             let variance = |(y, f): (&Complex64, &Complex64)| {
-                let through =
-                    if f.norm_sqr() > 25.0 * force_noise { y.norm_sqr() / f.norm_sqr() } else { 0.0 };
+                let through = if f.norm_sqr() > FORCE_ABOVE_NOISE * force_noise {
+                    y.norm_sqr() / f.norm_sqr()
+                } else {
+                    0.0
+                };
                 own + through * force_noise + LINE_ERROR * LINE_ERROR * y.norm_sqr()
             };
             self.weights.push(lines.iter().zip(&force).map(variance).map(|v| (2.0 / v).sqrt()).collect());
@@ -265,8 +265,7 @@ impl<'a> Trace<'a> {
 
 /// 1 well before `end`, 0 from there on; half a cosine over the last part of the way from `onset`.
 fn fading(sample: usize, onset: usize, end: usize) -> f64 {
-    const PART: f64 = 0.2;
-    let length = PART * end.saturating_sub(onset) as f64;
+    let length = FADING_SHARE * end.saturating_sub(onset) as f64;
     let left = (end.saturating_sub(sample) as f64 / length.max(1.0)).min(1.0);
     0.5 - 0.5 * (std::f64::consts::PI * left).cos()
 }
@@ -281,13 +280,12 @@ fn white(samples: usize) -> impl Iterator<Item = f64> {
 /// Samples until every response has sunk into its noise, with a tenth on top.
 fn died_away(record: &Record) -> usize {
     let samples = record.hit.samples();
-    const BLOCK: usize = 64;
-    let mut last = record.onset + BLOCK;
+    let mut last = record.onset + DECAY_BLOCK;
     for (response, noise) in record.hit.responses().iter().zip(&record.noise) {
-        for (block, values) in response.values.chunks(BLOCK).enumerate() {
+        for (block, values) in response.values.chunks(DECAY_BLOCK).enumerate() {
             let square = values.iter().map(|v| v * v).sum::<f64>() / values.len() as f64;
-            if square > 1.5 * noise * noise {
-                last = last.max((block + 1) * BLOCK);
+            if square > ABOVE_NOISE * noise * noise {
+                last = last.max((block + 1) * DECAY_BLOCK);
             }
         }
     }

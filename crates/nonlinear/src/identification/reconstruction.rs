@@ -7,8 +7,11 @@
 //! fixture states a little wrongly are columns beside it. All signals are multiplied by e^{−at}, under which the above stays exact.
 
 use super::locations::JointLocation;
-use super::misfit::{CUT, Focus};
+use super::misfit::Focus;
 use super::records::Record;
+use crate::settings::band::BEYOND_BAND;
+use crate::settings::misfit::{CUT, LINE_ERROR_WITHIN_TOLERANCES};
+use crate::settings::suggestions::{PULSE, PULSE_AT};
 use crate::spectra::{Windowed, oversampled_for_lines};
 use crate::time::kernel::{Stepper, Steps};
 use crate::time::structure::Structure;
@@ -16,9 +19,6 @@ use jointscope_fixture::Fixture;
 use num_complex::Complex64;
 use rayon::prelude::*;
 use std::ops::Range;
-
-/// Departure of every line that is not held against a model whose quantities are known within tolerances, relative to the line.
-const LINE_ERROR_WITHIN_TOLERANCES: f64 = 0.03;
 
 /// A record seen through the linear fixture.
 pub(super) struct Seen {
@@ -50,15 +50,10 @@ pub(super) fn seen(
 ) -> Option<Vec<Seen>> {
     let linear = model.physics().iter().filter(|effect| !effect.kind.is_nonlinear()).cloned().collect();
     let linear = model.clone().with_physics(linear).ok()?;
-    let highest = 2.0 * focus.band.1;
+    let highest = BEYOND_BAND * focus.band.1;
     let structures = [Structure::new(model, highest).ok()?, Structure::new(&linear, highest).ok()?];
     records.par_iter().map(|record| Seen::of(&structures, record, locations, focus)).collect()
 }
-
-/// Where in the record a pulse is put to learn what a force pair of 1 does.
-const PULSE_AT: usize = 24;
-/// Three samples: what is above half of the rate does not ring ahead of it.
-const PULSE: [f64; 3] = [0.25, 0.5, 0.25];
 
 /// Weights of lines, recorded and simulated, by noise and by what a model gets wrong at best; and the weighted difference of the two.
 fn weighted_difference(

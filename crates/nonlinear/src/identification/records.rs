@@ -1,6 +1,10 @@
 //! The hits of a test as the diagnosis uses them: noise, levels, what is held out.
 
 use crate::DiagnoseError;
+use crate::settings::hits::{
+    BEFORE_BLOW, BLOW_BEGINS, FEWEST_SAMPLES, FEWEST_TO_HOLD_OUT, HELD_OUT_EVERY, LEAST_NOISE, LEVELS_APART,
+    LEVELS_WITHOUT_GAPS, TELLING,
+};
 use crate::spectra::noise;
 use crate::time::structure::{Reading, station};
 use jointscope_fixture::Fixture;
@@ -27,15 +31,16 @@ pub(crate) struct Record {
 impl Record {
     fn new(hit: &Hit) -> Self {
         let peak = hit.peak_force();
-        let onset = hit.force().iter().position(|f| f.abs() > 0.05 * peak).unwrap_or(0);
+        let onset = hit.force().iter().position(|f| f.abs() > BLOW_BEGINS * peak).unwrap_or(0);
         // A signal without any noise (of a simulation) still is not known beyond its rounding.
-        let floor =
-            |values: &[f64]| 1e-6 * (values.iter().map(|v| v * v).sum::<f64>() / values.len() as f64).sqrt();
+        let floor = |values: &[f64]| {
+            LEAST_NOISE * (values.iter().map(|v| v * v).sum::<f64>() / values.len() as f64).sqrt()
+        };
         Record {
             readings: hit.responses().iter().map(|r| (r.channel.clone(), r.motion)).collect(),
             noise: hit.responses().iter().map(|r| noise(&r.values).max(floor(&r.values))).collect(),
             force_noise: noise(hit.force()).max(floor(hit.force())),
-            onset: onset.saturating_sub(8),
+            onset: onset.saturating_sub(BEFORE_BLOW),
             level: 0,
             hit: hit.clone(),
         }
@@ -57,11 +62,6 @@ impl Record {
     }
 }
 
-/// Ratio of peak forces from which two neighbours belong to different levels.
-const APART: f64 = 1.35;
-/// Ratio of the strongest to the weakest hit below which amplitude cannot be judged.
-pub(crate) const TELLING: f64 = 1.5;
-
 /// The records of a test, checked, with their levels.
 ///
 /// # Errors
@@ -78,9 +78,6 @@ pub(crate) fn records(fixture: &Fixture, hits: &[Hit]) -> Result<Vec<Record>, Di
     }
     Ok(records)
 }
-
-/// Fewest samples of a hit.
-const FEWEST_SAMPLES: usize = 256;
 
 /// Refuses a hit of which nothing follows.
 fn check(fixture: &Fixture, hit: &Hit) -> Result<(), DiagnoseError> {
@@ -115,11 +112,11 @@ fn set_levels(records: &mut [Record]) -> f64 {
         widest = widest.max(ratio);
         let mut levels = vec![0; group.len()];
         for k in 1..group.len() {
-            levels[k] = levels[k - 1] + usize::from(peak(group[k]) > APART * peak(group[k - 1]));
+            levels[k] = levels[k - 1] + usize::from(peak(group[k]) > LEVELS_APART * peak(group[k - 1]));
         }
         if levels[group.len() - 1] == 0 && ratio >= TELLING {
             // Strengths without gaps: thirds of the hits.
-            let count = group.len().min(3);
+            let count = group.len().min(LEVELS_WITHOUT_GAPS);
             (0..group.len()).for_each(|k| levels[k] = k * count / group.len());
         }
         for (k, i) in group.iter().enumerate() {
@@ -143,8 +140,8 @@ pub(crate) fn held_out(records: &[Record]) -> Vec<usize> {
         before.iter().any(alike) && !after.iter().any(alike)
     };
     let held: Vec<usize> = (0..records.len()).filter(last).collect();
-    match held.is_empty() && records.len() >= 6 {
-        true => (0..records.len()).filter(|i| i % 3 == 1).collect(),
+    match held.is_empty() && records.len() >= FEWEST_TO_HOLD_OUT {
+        true => (0..records.len()).filter(|i| i % HELD_OUT_EVERY == 1).collect(),
         false => held,
     }
 }

@@ -7,6 +7,12 @@ use super::locations::locations;
 use super::misfit::{Focus, View};
 use super::records::Record;
 use super::shapes::{Suggestion, suggestions};
+use crate::settings::band::BEYOND_BAND;
+use crate::settings::search::{
+    BEHIND, BEHIND_BESIDE, BEHIND_BY_CHANCE, CONTENDERS, CONTRADICTION, CONTRADICTION_SHARE, FINALISTS,
+    LINEAR_RENEWALS, LONG, MEDIUM, RECONSTRUCTED, RENEWALS, SEARCH_HALVINGS, SHORT, START_RENEWALS,
+    STEPS_IN_INTERVAL, STEPS_IN_PERIOD, WEAK_KIND,
+};
 use jointscope_fixture::Fixture;
 use rayon::prelude::*;
 
@@ -30,31 +36,13 @@ pub(crate) struct Span {
     pub ends: Vec<usize>,
 }
 
-/// Periods of the slowest motion over which the weight of a window falls by e: a short, a medium and a long one.
-const SHORT: f64 = 2.0;
-const MEDIUM: f64 = 5.0;
-const LONG: f64 = 30.0;
-/// The same of the windows from which a joint's force is reconstructed: the shorter, the less the fixture's errors add up; the longer, the more
-/// is seen.
-const RECONSTRUCTED: [f64; 3] = [2.0, 5.0, 12.0];
-/// What a longer window may cost a shorter one in χ² and priors: so much, and so large a part of them.
-const CONTRADICTION: (f64, f64) = (40.0, 3e-3);
-/// Share explained, relative to the best kind's, below which a kind is not fitted.
-const WEAK: f64 = 0.1;
-/// χ² per degree of freedom from which hypotheses are further from the best than any longer window could bring them back.
-const BEHIND: f64 = 1.5;
-/// Kinds of law that are fitted.
-const CONTENDERS: usize = 4;
-/// Derivatives taken at the most for a hypothesis in one window: a fit that is cut short is carried into the next as a false minimum.
-const RENEWALS: usize = 20;
-/// Hypotheses that are fitted to whole records.
-const FINALISTS: usize = 3;
-
 impl<'a> Search<'a> {
     pub(super) fn new(records: Vec<&'a Record>, band: (f64, f64), elastic_hz: (f64, f64)) -> Self {
         let interval = records.iter().map(|r| r.hit.interval()).fold(0.0, f64::max);
         // Thirty steps in a period of the fastest elastic motion.
-        let within = (30.0 * elastic_hz.1.min(band.1) * interval).ceil().clamp(2.0, 16.0) as usize;
+        let within = (STEPS_IN_PERIOD * elastic_hz.1.min(band.1) * interval)
+            .ceil()
+            .clamp(STEPS_IN_INTERVAL.0, STEPS_IN_INTERVAL.1) as usize;
         let first = |i: &usize| !records[..*i].iter().any(|earlier| earlier.is_like(records[*i]));
         let few = (0..records.len()).filter(first).map(|i| records[i]).collect();
         Search { records, few, band, period_s: 1.0 / elastic_hz.0, within }
@@ -63,7 +51,7 @@ impl<'a> Search<'a> {
     /// How a window of so many periods is compared; whole records without a number.
     pub(super) fn focus(&self, periods: Option<f64>) -> Focus {
         let decay = periods.map_or(0.0, |periods| 1.0 / (periods * self.period_s));
-        Focus { decay, band: self.band, within: self.within, halvings: 3 }
+        Focus { decay, band: self.band, within: self.within, halvings: SEARCH_HALVINGS }
     }
 
     /// All records, as far as they are followed.
@@ -93,16 +81,16 @@ impl<'a> Search<'a> {
 
     /// The fixture without any law, refitted within its tolerances.
     pub(super) fn refitted(&self, nominal: &Hypothesis) -> Option<Fit> {
-        let first = Fit::of(&self.window(MEDIUM, &[]), nominal, 5)?;
-        let second = Fit::of(&self.window(LONG, &[]), &first.hypothesis, 5)?;
+        let first = Fit::of(&self.window(MEDIUM, &[]), nominal, LINEAR_RENEWALS)?;
+        let second = Fit::of(&self.window(LONG, &[]), &first.hypothesis, LINEAR_RENEWALS)?;
         let whole = self.view(&Span::default());
-        let fits = [nominal, &second.hypothesis].map(|start| Fit::of(&whole, start, 5));
+        let fits = [nominal, &second.hypothesis].map(|start| Fit::of(&whole, start, LINEAR_RENEWALS));
         best(fits.into_iter().flatten())
     }
 
     /// The kinds of effect beyond those of `base` that explain the most of the reconstructed forces, the best first.
     fn suggested(&self, fixture: &Fixture, base: &Hypothesis) -> Vec<Suggestion> {
-        let locations = locations(fixture, &self.records, 2.0 * self.band.1);
+        let locations = locations(fixture, &self.records, BEYOND_BAND * self.band.1);
         let mut kinds: Vec<Suggestion> = Vec::new();
         for periods in RECONSTRUCTED {
             let focus = self.focus(Some(periods));
@@ -117,7 +105,7 @@ impl<'a> Search<'a> {
         kinds.retain(|kind| !taken.iter().any(|effect| same_name(effect, &kind.effects[0])));
         kinds.sort_by(|a, b| b.share.total_cmp(&a.share));
         kinds.truncate(CONTENDERS);
-        let least = kinds.first().map_or(0.0, |kind| WEAK * kind.share);
+        let least = kinds.first().map_or(0.0, |kind| WEAK_KIND * kind.share);
         kinds.retain(|kind| kind.share >= least);
         kinds
     }
@@ -128,7 +116,7 @@ impl<'a> Search<'a> {
         let short = self.window(SHORT, &[]);
         let of_kind = |kind: &Suggestion| {
             let starts = kind.effects.iter().map(|effect| base.with(effect.clone()));
-            best(starts.filter_map(|start| Fit::of(&short, &start, 4)))
+            best(starts.filter_map(|start| Fit::of(&short, &start, START_RENEWALS)))
         };
         let mut fits: Vec<Fit> = kinds.par_iter().filter_map(of_kind).collect();
         sort(&mut fits);
@@ -160,13 +148,13 @@ impl<'a> Search<'a> {
 /// Whether an objective, of a hypothesis that more of the records led to, is worse than the one before by more than chance and small errors of
 /// the model make.
 pub(crate) fn contradicts(now: Option<f64>, before: f64) -> bool {
-    now.is_none_or(|now| now > before * (1.0 + CONTRADICTION.1) + CONTRADICTION.0)
+    now.is_none_or(|now| now > before * (1.0 + CONTRADICTION_SHARE) + CONTRADICTION)
 }
 
 /// Drops fits that are hopelessly behind.
 fn narrow(fits: &mut Vec<Fit>, view: &View) {
     let Some(best) = fits.first().map(|fit| fit.objective) else { return };
-    let limit = BEHIND * best + 50.0 + 5.0 * view.degrees().sqrt();
+    let limit = BEHIND * best + BEHIND_BESIDE + BEHIND_BY_CHANCE * view.degrees().sqrt();
     fits.retain(|fit| fit.objective < limit);
 }
 

@@ -6,6 +6,7 @@ use super::misfit::Focus;
 use super::reconstruction::{Seen, seen};
 use super::records::Record;
 use crate::RestoringLaw;
+use crate::settings::suggestions::{ALIKE, LARGEST, SEEN_WEIGHT, SHAPES, SIZES, SMALLEST};
 use jointscope_fixture::{Effect, Fixture};
 use jointscope_linalg::solve_positive_definite;
 use num_complex::Complex64;
@@ -41,14 +42,6 @@ pub(super) fn is_like(a: &Effect, b: &Effect, by: f64) -> bool {
     let close = |a: f64, b: f64| (a - b).abs() <= by * a.abs().max(b.abs());
     same_name(a, b) && (0..a.parameters.len()).all(|i| close(a.value(i), b.value(i)))
 }
-
-/// Relative difference of all parameters below which a start is no other one.
-const ALIKE: f64 = 0.1;
-/// Sizes at which a shape is tried, and how far down from the largest motion they go.
-const SIZES: usize = 36;
-const SMALLEST: f64 = 0.004;
-/// Shapes of a kind that are worth a fit.
-const SHAPES: usize = 2;
 
 /// Columns that stand for what the fixture states a little wrongly: stiffness, dashpot and mass across the joint.
 const LINEAR: usize = 3;
@@ -98,7 +91,7 @@ fn suggested(seen: &[Seen], index: usize, location: &JointLocation) -> Vec<Sugge
     let largest = seen
         .iter()
         .flat_map(|one| one.locations[index].motion.iter().zip(one.window()))
-        .filter(|(_, window)| **window > 0.05)
+        .filter(|(_, window)| **window > SEEN_WEIGHT)
         .fold(0.0, |most: f64, (d, _)| most.max(d.abs()));
     if !(largest > 0.0 && largest.is_finite()) {
         return Vec::new();
@@ -106,7 +99,7 @@ fn suggested(seen: &[Seen], index: usize, location: &JointLocation) -> Vec<Sugge
     let regression = Regression::of(seen, index);
     let unit = largest.powi(-2);
     let sizes: Vec<f64> =
-        (0..SIZES).map(|i| largest * SMALLEST.powf(1.0 - i as f64 / (SIZES - 1) as f64) * 0.98).collect();
+        (0..SIZES).map(|i| largest * SMALLEST.powf(1.0 - i as f64 / (SIZES - 1) as f64) * LARGEST).collect();
     let kinds: [(Shape, &[f64]); 3] = [
         (&|_, k| RestoringLaw::Cubic { stiffness3: k * unit }, &sizes[..1]),
         (&|slip, k| RestoringLaw::Friction { slip_force: k * slip, stiffness: k }, &sizes),

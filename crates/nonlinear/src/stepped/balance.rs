@@ -1,6 +1,7 @@
 //! Harmonic balance: the stiffness that a law shows to a sine.
 
 use crate::RestoringLaw;
+use crate::settings::level_model::CONTACT_STEPS;
 use num_complex::Complex64;
 use std::f64::consts::PI;
 
@@ -26,9 +27,6 @@ pub(crate) fn equivalent(law: &RestoringLaw, amplitude: f64, yields: f64) -> Com
     }
 }
 
-/// Newton steps to the mean of d; the function is monotonic and convex, four are usual.
-const STEPS: usize = 40;
-
 /// Half the angle of a period during which the stop is touched, the mean of d being that at which the structure balances the stop's mean force.
 fn contact(clearance: f64, stiffness: f64, amplitude: f64, yields: f64) -> f64 {
     let angle_at = |mean: f64| ((clearance - mean) / amplitude).clamp(-1.0, 1.0).acos();
@@ -37,7 +35,7 @@ fn contact(clearance: f64, stiffness: f64, amplitude: f64, yields: f64) -> f64 {
     }
     // mean + yields·push(mean) = 0.
     let mut mean = 0.0;
-    for _ in 0..STEPS {
+    for _ in 0..CONTACT_STEPS {
         let angle = angle_at(mean);
         let push =
             stiffness * amplitude / PI * (angle.sin() - (clearance - mean) / amplitude * angle).max(0.0);

@@ -2,6 +2,8 @@
 
 use super::diagnosis::{LevelResult, SteppedDiagnosis};
 use super::naming::Tried;
+use crate::settings::levels::{DAMPING_DIFFERS, FREQUENCIES_DIFFER};
+use crate::settings::naming::EXPLAINED_BY_TWO;
 
 /// How the natural frequency goes from the lowest level to the highest.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -29,13 +31,6 @@ pub enum DampingCourse {
     /// It falls.
     Falls,
 }
-
-/// Standard deviations of the difference of two fitted frequencies beyond which they differ.
-const FREQUENCIES_DIFFER: f64 = 5.0;
-/// The same of damping ratios.
-const DAMPING_DIFFERS: f64 = 3.0;
-/// Share of the change with level from which two laws together would explain it.
-const EXPLAINED_BY_TWO: f64 = 0.9;
 
 impl SteppedDiagnosis {
     /// How the natural frequency goes with level.

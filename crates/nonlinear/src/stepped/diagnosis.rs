@@ -8,7 +8,10 @@ use super::pooled::noisy;
 use super::problem::{Change, Level, Problem};
 use super::resonance::{Resonance, resonance};
 use crate::distribution::f_tail;
-use crate::{CHANGED, NonlinearOptions, SteppedError};
+use crate::settings::homogeneity::CHANGED;
+use crate::settings::levels::{ABOUT_PEAK, FEWEST_LINES, LEAST_RATIO, SCATTER_DOUBT, WIDTHS};
+use crate::settings::naming::LEAVES_NOTHING;
+use crate::{NonlinearOptions, SteppedError};
 use jointscope_findings::{HeldOut, Verdict};
 use jointscope_fixture::{Fixture, QuantityKey, QuantityOwner};
 use jointscope_spectra::Dof;
@@ -78,11 +81,6 @@ pub struct SteppedDiagnosis {
     pub unplaced: Vec<String>,
 }
 
-/// Share of the change with level from which a law leaves nothing worth a word.
-const ALL: f64 = 0.95;
-/// Half-power widths about the resonances that are used.
-const WIDTHS: f64 = 10.0;
-
 impl SteppedDiagnosis {
     /// Diagnoses FRFs at two or more levels against `fixture`, on the lines about their strongest resonance within the band.
     ///
@@ -121,7 +119,8 @@ impl SteppedDiagnosis {
         let best = judged.iter().min_by(|a, b| a.best().nrmse.total_cmp(&b.best().nrmse));
         let best = best.ok_or(SteppedError::NoJoint)?;
         let named = if changes { named_law(&judged) } else { None };
-        let verdict = verdict(changes, named.as_ref().map(|n| n.count == levels.len() && n.share >= ALL));
+        let verdict =
+            verdict(changes, named.as_ref().map(|n| n.count == levels.len() && n.share >= LEAVES_NOTHING));
         let Judged { problem, linear, .. } = named.as_ref().map_or(best, |n| &judged[n.index]);
         let repaired = named.as_ref().map_or(linear, |n| &n.fit);
         let holds = named.as_ref().map_or(0, |n| n.count);
@@ -193,9 +192,6 @@ fn of_level(
     }
 }
 
-/// Strengths of levels at the least, as a ratio: closer ones say nothing of amplitude.
-const APART: f64 = 1.2;
-
 /// Refuses levels from which nothing follows.
 fn check(levels: &[SteppedLevel]) -> Result<(), SteppedError> {
     let [first, .., last] = levels else { return Err(SteppedError::OneLevel) };
@@ -206,7 +202,7 @@ fn check(levels: &[SteppedLevel]) -> Result<(), SteppedError> {
     }
     let amplitudes = || levels.iter().map(|level| level.held.amplitude());
     let (least, most) = (amplitudes().fold(f64::INFINITY, f64::min), amplitudes().fold(0.0, f64::max));
-    if most < APART * least {
+    if most < LEAST_RATIO * least {
         return Err(SteppedError::Alike { first: first.held.to_string(), last: last.held.to_string() });
     }
     Ok(())
@@ -222,12 +218,14 @@ fn about_the_resonance(
     let cut = |levels: &[SteppedLevel], from: f64, to: f64| {
         levels
             .iter()
-            .map(|l| l.within(from, to).filter(|l| l.frfs.lines().len() >= 8).ok_or_else(|| too_few(l)))
+            .map(|l| {
+                l.within(from, to).filter(|l| l.frfs.lines().len() >= FEWEST_LINES).ok_or_else(|| too_few(l))
+            })
             .collect::<Result<Vec<_>, _>>()
     };
     let within = cut(levels, from, to)?;
     let (top, _) = within[0].peak();
-    let near = cut(&within, 0.85 * top, 1.15 * top)?;
+    let near = cut(&within, ABOUT_PEAK.0 * top, ABOUT_PEAK.1 * top)?;
     let peaks: Vec<(f64, f64)> = near.iter().map(SteppedLevel::peak).collect();
     let width = WIDTHS * peaks.iter().fold(0.0, |most: f64, p| p.1.max(most));
     let lowest = peaks.iter().fold(top, |least: f64, p| p.0.min(least)) - width;
@@ -237,9 +235,6 @@ fn about_the_resonance(
     let ends = (hz().fold(f64::INFINITY, f64::min), hz().fold(0.0, f64::max));
     Ok((used, ends))
 }
-
-/// By how much variances about a resonance, read from the scatter of the lines, may be too small against those beside it.
-const UNCERTAIN: f64 = 1.25;
 
 /// Probability that one complex stiffness for all levels leaves as much more than one a level by chance, and the ratio of variances. Values are weighed
 /// by their own noise, of which only the variation over lines and FRFs counts: its size is that of what the levels' own stiffnesses leave.
@@ -251,7 +246,7 @@ fn changed(problem: &Problem, linear: &Fitted) -> (f64, f64) {
     let own: f64 = problem.levels.iter().map(|level| problem.own_error(level).powi(2)).sum();
     let more = 2.0 * (count - 1) as f64;
     let left = problem.count() as f64 - 2.0 * count as f64 - 1.0;
-    let ratio = ((common - own) / more) / (own / left) / UNCERTAIN;
+    let ratio = ((common - own) / more) / (own / left) / SCATTER_DOUBT;
     (f_tail(ratio, more, left), ratio)
 }
 

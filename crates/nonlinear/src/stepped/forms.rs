@@ -2,6 +2,9 @@
 
 use super::problem::{Change, Problem};
 use crate::RestoringLaw;
+use crate::settings::level_fit::{
+    FOLLOWED, FRICTION_STARTS, GAP_STARTS, ONSET_FROM, ONSET_TO, ONSETS, POLISHED, SLIGHTLY,
+};
 use jointscope_fixture::EffectKind;
 
 /// The laws tried together at a joint's component, by their kinds.
@@ -33,11 +36,6 @@ impl Fitted {
     }
 }
 
-/// Starts that are followed to their minimum, the motions those of the levels' own stiffnesses.
-const FOLLOWED: usize = 5;
-/// Minima that are followed on, the motions those of the law itself.
-const POLISHED: usize = 2;
-
 /// The best fit of a form.
 pub(crate) fn fitted(problem: &Problem, form: Form) -> Option<Fitted> {
     let frozen = problem.frozen();
@@ -55,15 +53,12 @@ pub(crate) fn fitted(problem: &Problem, form: Form) -> Option<Fitted> {
     fits.filter(|fit| fit.nrmse.is_finite()).min_by(|a, b| a.nrmse.total_cmp(&b.nrmse))
 }
 
-/// Onsets of slip or contact to begin with.
-const ONSETS: u32 = 8;
-
 fn starts(problem: &Problem, form: Form) -> Vec<Vec<RestoringLaw>> {
     let motions = || problem.levels.iter().map(|level| level.motion());
     let most = motions().fold(0.0, f64::max);
     let least = motions().fold(most, f64::min);
     let span = problem.span();
-    let (first, last) = (0.3 * least, 0.95 * most);
+    let (first, last) = (ONSET_FROM * least, ONSET_TO * most);
     let onset = |i: u32| first * (last / first).powf(f64::from(i) / f64::from(ONSETS - 1));
     let each_onset = |times: [f64; 3], law: &dyn Fn(f64, f64) -> RestoringLaw| -> Vec<RestoringLaw> {
         (0..ONSETS).flat_map(|i| times.map(|times| law(onset(i), times * span))).collect()
@@ -73,11 +68,11 @@ fn starts(problem: &Problem, form: Form) -> Vec<Vec<RestoringLaw>> {
             let stiffness3 = span / (0.75 * most * most);
             [-1.0, 1.0].map(|sign| RestoringLaw::Cubic { stiffness3: sign * stiffness3 }).to_vec()
         }
-        Friction => each_onset([0.5, 1.5, 5.0], &|onset, stiffness| RestoringLaw::Friction {
+        Friction => each_onset(FRICTION_STARTS, &|onset, stiffness| RestoringLaw::Friction {
             slip_force: stiffness * onset,
             stiffness,
         }),
-        _ => each_onset([1.0, 3.0, 10.0], &|clearance, stiffness| RestoringLaw::Gap { clearance, stiffness }),
+        _ => each_onset(GAP_STARTS, &|clearance, stiffness| RestoringLaw::Gap { clearance, stiffness }),
     };
     match form {
         [] => vec![Vec::new()],
@@ -88,7 +83,7 @@ fn starts(problem: &Problem, form: Form) -> Vec<Vec<RestoringLaw>> {
             let alone = FORMS.iter().find(|form| ***form == [*one]).and_then(|form| fitted(problem, form));
             let alone = alone.and_then(|fit| fit.change.laws.first().copied());
             let slightly = |law: &RestoringLaw| {
-                law.with_values(&law.values().iter().map(|value| 0.01 * value).collect::<Vec<f64>>())
+                law.with_values(&law.values().iter().map(|value| SLIGHTLY * value).collect::<Vec<f64>>())
             };
             let beside = alone.into_iter().flat_map(|one| others.iter().map(move |o| vec![one, slightly(o)]));
             let plain = of_kind(one).into_iter().flat_map(|one| others.iter().map(move |o| vec![one, *o]));

@@ -1,7 +1,8 @@
 //! Least squares of a few parameters, derivatives by central differences.
 
 use crate::identification::misfit::products;
-use jointscope_inference::{Damping, LeastSquares, NormalEquations, Precision, Settings, descend, dot};
+use crate::settings::level_fit::{DIFFERENCE, STEP_DAMPING};
+use jointscope_inference::{LeastSquares, NormalEquations, Precision, Settings, descend, dot};
 
 /// What residuals a set of parameters leaves; `None` where they are not finite.
 pub(crate) type Residual<'a> = &'a dyn Fn(&[f64]) -> Option<Vec<f64>>;
@@ -15,14 +16,10 @@ pub(crate) struct Iterate {
     pub cost: f64,
 }
 
-/// Step of the differences, relative to each parameter's scale.
-const DIFFERENCE: f64 = 1e-5;
-
 /// Goes down from `start`, parameters measured in `scale`; `None` where nothing finite is found.
 pub(crate) fn minimum(residual: Residual, start: &[f64], scale: &[f64]) -> Option<Iterate> {
     let problem = Problem { residual, scale };
-    let damping = Damping { initial: 1e-3, decrease: 0.2, least: 1e-12, raised: 0.0, most: 1e8 };
-    let settings = Settings { damping, ..Settings::default() };
+    let settings = Settings { damping: STEP_DAMPING, ..Settings::default() };
     descend(&problem, problem.at(start.to_vec())?, None, &settings).map(|fit| fit.point)
 }
 

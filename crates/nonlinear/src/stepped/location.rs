@@ -2,6 +2,7 @@
 
 use super::level::SteppedLevel;
 use crate::SteppedError;
+use crate::settings::level_model::{BESIDE, STATIC, UNMOVED_JOINT};
 use crate::time::structure::station;
 use jointscope_fixture::{Fixture, Joint};
 use jointscope_lumped::{LumpedError, Model, Station};
@@ -50,13 +51,6 @@ pub(crate) struct Location {
     pub yields: f64,
 }
 
-/// Frequency at which statics are read, as a share of the lowest line.
-const STATIC: f64 = 1e-3;
-/// Step off a line on which the fixture's receptances are not finite, relative.
-const BESIDE: f64 = 1e-7;
-/// d's share in the driving-point motion below which a mode does not move the joint, in m or rad per m.
-const UNMOVED: f64 = 1e-9;
-
 /// One component of one joint in a fixture; `None` where the fixture lacks it or cannot be modelled.
 pub(crate) fn location_of(
     fixture: &Fixture,
@@ -77,7 +71,7 @@ pub(crate) fn locations(fixture: &Fixture, levels: &[&SteppedLevel]) -> Result<V
             let location = location(fixture, &model, joint, dof, levels)?;
             let moved = |line: &LineModel| {
                 line.own.norm() > 0.0
-                    && line.motion_per_response(0, Complex64::ZERO) * omega2(highest) > UNMOVED
+                    && line.motion_per_response(0, Complex64::ZERO) * omega2(highest) > UNMOVED_JOINT
             };
             if location.yields.is_finite() && location.lines.iter().flatten().all(moved) {
                 all.push(location);

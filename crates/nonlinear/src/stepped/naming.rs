@@ -5,22 +5,14 @@ use super::problem::{BASE, Change, Problem};
 use super::tolerances::tolerance_variances;
 use crate::RestoringLaw;
 use crate::estimates::estimates;
+use crate::settings::naming::{
+    HARMONIC_BALANCE_ERROR, LEAST_SHOWN, LEVELS_FOR_ONE, LEVELS_FOR_TWO, NAMED, NAMED_TWO,
+};
 use jointscope_findings::{Finding, HeldOut};
 use jointscope_fixture::{Effect, Fixture};
 use jointscope_inference::jackknife;
 use jointscope_spectra::Dof;
 use serde::Serialize;
-
-/// Share of the change with level that a law must explain to be named.
-const NAMED: f64 = 0.75;
-/// The same for two laws together, which follow more by chance.
-const NAMED_TWO: f64 = 0.95;
-/// Levels at the least for a law, and for two.
-const LEVELS: (usize, usize) = (3, 6);
-
-/// Relative deviation of a law's parameters from what the balance of one harmonic leaves out: against the laboratory's nine harmonics, a tenth of
-/// the usual noise and a fixture that is exact, they err by 0.1 to 0.7 %.
-const HARMONIC_BALANCE_ERROR: f64 = 5e-3;
 
 /// A form tried at a component of a joint.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -66,7 +58,7 @@ pub(crate) struct Judged {
 impl Judged {
     /// Laws are tried where there is a change to explain.
     pub(super) fn of(problem: Problem, linear: Fitted, changed: bool) -> Self {
-        let tried = |form: &&&[_]| changed && (problem.levels.len() >= LEVELS.0 || form.len() == 1);
+        let tried = |form: &&&[_]| changed && (problem.levels.len() >= LEVELS_FOR_ONE || form.len() == 1);
         let laws = FORMS.iter().filter(tried).filter_map(|form| fitted(&problem, form)).collect();
         Judged { problem, linear, laws }
     }
@@ -112,7 +104,7 @@ pub(crate) struct Named {
 pub(crate) fn named_law(judged: &[Judged]) -> Option<Named> {
     let levels = judged.first()?.problem.levels.len();
     // Two levels tell a shift from no shift, three whether a law follows it.
-    (LEVELS.0.min(levels)..=levels).rev().find_map(|count| {
+    (LEVELS_FOR_ONE.min(levels)..=levels).rev().find_map(|count| {
         let part = |(index, whole): (usize, &Judged)| {
             if count == levels {
                 return Some((index, whole.clone()));
@@ -139,7 +131,7 @@ fn best_of(parts: &[(usize, Judged)], count: usize) -> Option<Named> {
     }
     let simplest = |double: bool| {
         let explains = |rival: &&Rival| match double {
-            true => rival.share >= NAMED_TWO && count >= LEVELS.1,
+            true => rival.share >= NAMED_TWO && count >= LEVELS_FOR_TWO,
             false => rival.share >= NAMED,
         };
         let of_form = rivals.iter().filter(|rival| rival.fit.is_double() == double).filter(explains);
@@ -179,7 +171,7 @@ impl Named {
                 Some((effect(rival.index, rival.fit.change.laws.get(k)?), probability(&rival.fit)))
             };
             let mut alternatives: Vec<(Effect, f64)> =
-                rivals().filter(other).filter_map(named).filter(|(_, p)| *p >= 5e-4).collect();
+                rivals().filter(other).filter_map(named).filter(|(_, p)| *p >= LEAST_SHOWN).collect();
             alternatives.sort_by(|a, b| b.1.total_cmp(&a.1));
             let effect = effect(self.index, law);
             let own: Vec<Option<f64>> = deviations.by_ref().take(law.values().len()).collect();

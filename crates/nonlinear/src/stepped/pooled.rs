@@ -1,6 +1,7 @@
 //! One set of FRFs of levels that are alike.
 
 use super::level::SteppedLevel;
+use crate::settings::levels::SAME_LINE;
 use jointscope_frf::noise::known;
 use jointscope_spectra::{FrfPair, FrfSet, SpectralLines};
 use num_complex::Complex64;
@@ -19,7 +20,7 @@ pub fn pooled(levels: &[SteppedLevel]) -> Option<FrfSet> {
     // By line of the union: where it stands in each set.
     let mut places: Vec<(f64, Vec<(usize, usize)>)> = Vec::new();
     let apart = sets.iter().flat_map(|set| set.lines().hz().windows(2)).map(|w| w[1] - w[0]);
-    let same = 0.01 * apart.fold(f64::INFINITY, f64::min);
+    let same = SAME_LINE * apart.fold(f64::INFINITY, f64::min);
     let mut all: Vec<(f64, usize, usize)> = sets
         .iter()
         .enumerate()

@@ -5,6 +5,8 @@ use super::least_squares::{deviations, minimum};
 use super::level::{Held, SteppedLevel};
 use super::location::{LineModel, Location};
 use crate::RestoringLaw;
+use crate::settings::level_fit::{GAIN_SCALE, LAW_SCALE};
+use crate::settings::level_model::{FOUND, GAIN_FOUND, GAIN_TURNS, TURNS};
 use jointscope_spectra::Dof;
 use num_complex::Complex64;
 
@@ -86,11 +88,6 @@ fn sum_of_squares(residual: &[f64]) -> f64 {
 fn finite(residual: Vec<f64>) -> Option<Vec<f64>> {
     residual.iter().all(|r| r.is_finite()).then_some(residual)
 }
-
-/// Turns of the loop from d to the joint's stiffness and back, at the most.
-const TURNS: usize = 12;
-/// Change of d, relative, at which it is found.
-const FOUND: f64 = 1e-7;
 
 impl Level {
     fn new(measured: &SteppedLevel, lines: Vec<LineModel>) -> Self {
@@ -204,7 +201,7 @@ impl Level {
         let start = self.lines[line].delta(watched, self.measured.frfs.values(watched)[line]);
         let size = start.norm().max(f64::MIN_POSITIVE);
         let residual = |x: &[f64]| self.residual_of(x[2], Complex64::new(x[0], x[1]));
-        let fit = minimum(&residual, &[start.re, start.im, 0.0], &[size, size, 0.05])?;
+        let fit = minimum(&residual, &[start.re, start.im, 0.0], &[size, size, GAIN_SCALE])?;
         Some((Complex64::new(fit.x[0], fit.x[1]), fit.x[2]))
     }
 }
@@ -240,14 +237,14 @@ impl Problem {
 
     /// δ of each level and the gain common to all, from values close by.
     fn with_one_gain(mut self) -> Option<Self> {
-        for _ in 0..12 {
+        for _ in 0..GAIN_TURNS {
             let log_gain = self.log_gain;
             for level in &mut self.levels {
                 level.delta = level.own_delta(log_gain)?;
             }
             self.log_gain = self.best_gain();
             let moved = (self.log_gain - log_gain).abs();
-            if moved.is_nan() || moved <= 1e-7 {
+            if moved.is_nan() || moved <= GAIN_FOUND {
                 break;
             }
         }
@@ -376,10 +373,10 @@ impl Problem {
         let span = self.span();
         let most = self.levels.iter().fold(0.0, |most: f64, level| level.motion().max(most));
         let of_law = |law: &RestoringLaw| {
-            let scale = if law.is_positive() { 0.3 } else { span / (most * most) };
+            let scale = if law.is_positive() { LAW_SCALE } else { span / (most * most) };
             vec![scale; law.values().len()]
         };
-        [0.05, span, span].into_iter().chain(change.laws.iter().flat_map(of_law)).collect()
+        [GAIN_SCALE, span, span].into_iter().chain(change.laws.iter().flat_map(of_law)).collect()
     }
 
     /// How much the levels' δ differ.

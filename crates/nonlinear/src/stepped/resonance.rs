@@ -2,6 +2,7 @@
 
 use super::least_squares::{deviations, minimum};
 use super::level::SteppedLevel;
+use crate::settings::levels::DAMPING_STARTS;
 use num_complex::Complex64;
 use serde::Serialize;
 use std::f64::consts::TAU;
@@ -45,7 +46,7 @@ pub(crate) fn resonance(level: &SteppedLevel) -> Option<Resonance> {
     };
     let (top, width) = level.peak();
     let scale = [width, 0.5 * width / top];
-    let starts = [0.2, 0.5, 1.5].map(|part| [top, part * width / top]);
+    let starts = DAMPING_STARTS.map(|part| [top, part * width / top]);
     let fits = starts.iter().filter_map(|start| minimum(&residual, start, &scale));
     let best = fits.min_by(|a, b| a.cost.total_cmp(&b.cost))?;
     let std = deviations(&residual, &best.x, &scale, count - unknowns)?;

@@ -3,6 +3,7 @@
 use super::kernel::{Stepper, Steps};
 use super::structure::{Reading, Structure, effects};
 use crate::SimulationError;
+use crate::settings::simulation::{ENOUGH, FEWEST_STEPS, FINE_SAMPLES, HALVINGS, MOST_STEPS};
 use crate::spectra::{oversampled, oversampled_for_lines};
 use jointscope_fixture::{EffectKind, Fixture, Place};
 use jointscope_hits::{Hit, Motion, Response};
@@ -17,14 +18,6 @@ pub struct Simulation {
     /// Estimated error of the time steps, relative to each response's rms: the worst of all.
     pub error: f64,
 }
-
-/// Steps within a sampling interval to begin with and at the most.
-const FEWEST: usize = 4;
-const MOST: usize = 256;
-/// Halvings of a step with an event.
-const HALVINGS: usize = 12;
-/// Error below which steps are not refined, relative to a response's rms.
-const ENOUGH: f64 = 1e-5;
 
 /// Accelerations at `outputs` that the fixture with its effects shows under the force of every hit; the hits' own responses are not
 /// looked at. Each hit starts from rest. Between samples the force is the band-limited signal through them.
@@ -65,7 +58,7 @@ pub(crate) fn simulate_one(
         outputs.iter().flatten().all(|value| value.is_finite()).then_some(outputs)
     };
     let run = |within: usize| run(within).ok_or(SimulationError::Unbounded { hit: hit.number() });
-    let mut within = FEWEST;
+    let mut within = FEWEST_STEPS;
     let mut coarse = run(within)?;
     loop {
         within *= 2;
@@ -73,7 +66,7 @@ pub(crate) fn simulate_one(
         // The error falls at least with the square of the step: that of the finer one is below a third of the difference.
         let error =
             coarse.iter().zip(&fine).map(|(a, b)| relative_difference(a, b) / 3.0).fold(0.0, f64::max);
-        if error < ENOUGH || within >= MOST {
+        if error < ENOUGH || within >= MOST_STEPS {
             return Ok((recorded(fixture, hit, readings, fine)?, error));
         }
         coarse = fine;
@@ -124,15 +117,14 @@ impl Chain {
 
 /// The signal times `gain`, `shift` samples later, band-limited.
 fn shifted(values: &[f64], gain: f64, shift: f64) -> Vec<f64> {
-    const FINE: usize = 64;
     let scaled: Vec<f64> = values.iter().map(|v| v * gain).collect();
     if shift == 0.0 {
         return scaled;
     }
-    let fine = oversampled(&scaled, FINE);
+    let fine = oversampled(&scaled, FINE_SAMPLES);
     let read = |index: f64| if index < 0.0 { 0.0 } else { fine.get(index as usize).copied().unwrap_or(0.0) };
     let value = |i: usize| {
-        let at = (i as f64 - shift) * FINE as f64;
+        let at = (i as f64 - shift) * FINE_SAMPLES as f64;
         let (low, part) = (at.floor(), at - at.floor());
         read(low) * (1.0 - part) + read(low + 1.0) * part
     };

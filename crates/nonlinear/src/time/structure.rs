@@ -2,6 +2,7 @@
 
 use super::kernel::{Element, MOST_ELEMENTS, MOST_STATES, Output, System};
 use super::law::RestoringLaw;
+use crate::settings::simulation::UNFELT_MODE;
 use crate::{ChannelError, SimulationError};
 use jointscope_fixture::{Dof, Effect, EffectKind, Fixture, Place, Point};
 use jointscope_hits::Motion;
@@ -17,9 +18,6 @@ pub(crate) struct Structure<'a> {
     space: StateSpace,
     elements: Vec<Element>,
 }
-
-/// Share of an element's largest participation below which a mode does not move it.
-const UNMOVED: f64 = 1e-9;
 
 impl<'a> Structure<'a> {
     /// The fixture with all its structural effects, for motions up to `highest_hz`.
@@ -93,7 +91,7 @@ impl<'a> Structure<'a> {
         let matrix = self.space.matrix();
         let largest = |row: &[f64]| row.iter().fold(0.0, |most: f64, v| v.abs().max(most));
         let felt = |r: usize| {
-            let element = |e: &Element| e.motion[r].abs() > UNMOVED * largest(&e.motion);
+            let element = |e: &Element| e.motion[r].abs() > UNFELT_MODE * largest(&e.motion);
             self.elements.iter().any(element)
                 || outputs.iter().any(|o| o.row[r] != 0.0 || o.row[n + r] != 0.0)
         };
