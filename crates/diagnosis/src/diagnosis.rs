@@ -211,7 +211,9 @@ impl Diagnosis {
             let Some(short) = short else { continue };
             let Some(corrected) = short.corrected(&self.observation) else { continue };
             let other = diagnosed(corrected)?;
-            if cost(&other) + settings.selection.parameter_penalty < cost(&self) {
+            // What needs nothing is as good as what falls short leaves by itself, whatever models are in error by.
+            let left = if other.verdict == Verdict::Consistent { short.left() } else { f64::INFINITY };
+            if cost(&other).min(left) + settings.selection.parameter_penalty < cost(&self) {
                 return Ok(Diagnosis { falls_short: Some(short.largest), ..other });
             }
         }

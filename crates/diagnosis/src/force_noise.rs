@@ -88,6 +88,11 @@ impl Shortfall {
         self.before - self.fit.objective > needed && left < explained(fitter.observation, fitter.settings)
     }
 
+    /// Objective of the fit beside which it was told, the FRFs corrected.
+    pub(crate) fn left(&self) -> f64 {
+        self.fit.objective
+    }
+
     /// The FRFs as they would be without it.
     pub(crate) fn corrected(&self, observation: &Observation) -> Option<Observation> {
         observation.divided_by(&self.kept)

@@ -106,7 +106,7 @@ impl Problem<'_> {
         self.relative_sizes_as_stated(fit).into_iter().fold(0.0, f64::max)
     }
 
-    /// The sizes of [`Problem::relative_sizes`] by which a hypothesis stands or falls: none of upper residuals where bodies are rigid; that of damping ratios by no less than half of what the fixture states as their deviations: nobody claimed to know them better than these.
+    /// The sizes of [`Problem::relative_sizes`] by which a hypothesis stands or falls: none of upper residuals beside effects where bodies are rigid; that of damping ratios by no less than half of what the fixture states as their deviations: nobody claimed to know them better than these.
     /// Where effects have made other modes than those of which it states ratios, by no less than the whole: these get theirs from the others' damping.
     pub(crate) fn relative_sizes_as_stated(&self, fit: &ModalFit) -> Vec<f64> {
         let mut sizes = self.relative_sizes(fit);
@@ -115,8 +115,8 @@ impl Problem<'_> {
         if usual > self.sizes.damping {
             sizes[DAMPING] *= self.sizes.damping / usual;
         }
-        // Where a held block is rigid in the model, all that is above the band may be what it lacks.
-        if !all_bend(fit.hypothesis.fixture()) {
+        // Where a held block is rigid in the model, all that is above the band may be what it lacks: that refutes no name, and shows none to be needless.
+        if fit.hypothesis.effect_count() > 0 && !all_bend(fit.hypothesis.fixture()) {
             sizes[UPPER_RESIDUAL] = 0.0;
         }
         sizes

@@ -88,7 +88,7 @@ fn the_real_beam_is_told_its_shear_and_its_low_channel_with_intervals_that_hold_
     let holds = |[low, high]: [f64; 2], value: f64| low < value && value < high;
     // An independent fit of the natural frequencies alone: 31.1 MN with the rotary inertia of a metal section, 23.1 MN with none. The records struck beside the sensor are low by 0.825 ± 0.010.
     let shear = interval(EffectKind::ShearDeformation);
-    assert!(holds(shear, 31.1e6) && holds(shear, 23.1e6) && shear[1] < 4.0 * shear[0], "{shear:?} N");
+    assert!(holds(shear, 31.1e6) && holds(shear, 23.1e6) && shear[1] < 5.0 * shear[0], "{shear:?} N");
     let gain = interval(EffectKind::ChannelGain);
     assert!(holds(gain, 1.0 / 0.825) && gain[0] > 1.1 && gain[1] < 1.3, "{gain:?}");
     let allowed = [EffectKind::ShearDeformation, EffectKind::ChannelGain, EffectKind::ChannelHighpass];

@@ -121,7 +121,7 @@ fn a_stated_error_of_the_model_is_taken_as_it_is() {
 
 #[test]
 fn a_model_that_is_farther_off_than_stated_is_not_consistent() {
-    let Some((fixture, frfs)) = solid("null-steel") else { return };
+    let Some((fixture, frfs)) = solid("null-clamped") else { return };
     let stated =
         stating(&fixture, "model_error", json!({"frequency": 1e-6, "damping": 1e-4, "residue": 1e-5}));
     let diagnosis = diagnosed(&stated, &frfs);
