@@ -8,14 +8,15 @@ use crate::fitter::Fitter;
 use crate::modal::features::Features;
 use crate::modal::fit::{ANY, ModalFit, SetOut};
 use crate::modal::judgement::ModalJudgement;
-use crate::modal::prior::{Prior, priors};
+use crate::modal::prior::{Prior, priors, priors_among};
+use crate::modal::sizes::known;
 use crate::search::Search;
 use crate::settings::Settings;
 use crate::{Diagnosis, DiagnosisOptions, Hypothesis, Observation, Watch};
 use jointscope_findings::{Estimate, Verdict};
 use jointscope_fixture::{Dof, Effect, EffectKind, Fixture, Place};
 use jointscope_lumped::{Instrument, synthesize};
-use jointscope_model_error::ErrorSizes;
+use jointscope_model_error::{ErrorSizes, UPPER_RESIDUAL};
 use jointscope_spectra::{FrfPair, FrfSet, SpectralLines};
 
 const SHEAR: f64 = 1.88e7;
@@ -99,6 +100,27 @@ fn recorded(truth: &Hypothesis) -> Observation {
     let frfs = synthesize(&of_truth, &pairs.collect::<Vec<_>>(), &lines, Instrument::AsRecorded).unwrap();
     let variance = frfs.all_values().iter().map(|value| 1e-6 * value.norm_sqr()).collect();
     Observation::new(&frfs.with_variance(variance).unwrap(), |_| true).unwrap()
+}
+
+#[test]
+fn what_is_left_above_the_band_holds_nothing_against_a_name_of_rigid_blocks() {
+    let blocks = Fixture::from_json(BLOCKS).unwrap();
+    let usual = |fixture: &Fixture| known(&Settings::default().modal, fixture).scales.upper_residual;
+    assert!(usual(&bar(SHEAR)) < 0.2 * usual(&blocks), "a beam has modes of its own there");
+    let nominal = Hypothesis::nominal(&blocks, false);
+    let lump = Effect::new(EffectKind::AddedMass, Place::Body("B".into()), None, &[0.1, 0.02]);
+    let observation = recorded(&nominal.with(lump.clone()));
+    let features = Features::of(&observation, &nominal, &Settings::default().modal).unwrap();
+    let problem = features.problem(observation.work());
+    let large_above = |hypothesis: &Hypothesis| {
+        let candidates = catalogue(&blocks, &observation);
+        let priors = priors_among(hypothesis, &candidates).unwrap();
+        let mut fit = problem.fitted(hypothesis, &priors).unwrap();
+        fit.evidence.sizes.upper_residual = 3.0 * usual(&blocks);
+        problem.relative_sizes_as_stated(&fit)[UPPER_RESIDUAL]
+    };
+    assert!((large_above(&nominal) - 3.0).abs() < 1e-9, "the fixture alone is not called consistent");
+    assert_eq!(large_above(&nominal.with(lump)), 0.0);
 }
 
 #[test]
