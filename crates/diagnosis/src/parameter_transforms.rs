@@ -3,7 +3,7 @@
 use crate::bodies::{extent, mass_of, turns};
 use jointscope_fixture::{
     BodyKind, Effect, Fixture, Motion, NamedQuantity, ParameterSpec, Place, Possible, Quantity, QuantityKey,
-    QuantityOwner, SupportPlace,
+    QuantityOwner,
 };
 use jointscope_inference::{Parameter, Transform};
 use jointscope_tolerances::Tolerance;
@@ -37,10 +37,9 @@ pub(crate) fn if_wrong(fixture: &Fixture, tolerance: &Tolerance) -> Parameter {
 fn sits_on(fixture: &Fixture, quantity: &NamedQuantity) -> Option<usize> {
     match (quantity.owner, quantity.key) {
         (QuantityOwner::Point(point), QuantityKey::Abscissa) => Some(fixture.points()[point].body),
-        (QuantityOwner::Support(support), QuantityKey::Abscissa) => match fixture.supports()[support].place {
-            SupportPlace::Body { body, .. } => Some(body),
-            SupportPlace::Point(point) => Some(fixture.points()[point].body),
-        },
+        (QuantityOwner::Support(support), QuantityKey::Abscissa) => {
+            Some(fixture.support_place(&fixture.supports()[support]).0)
+        }
         (QuantityOwner::Body(body), QuantityKey::PointMassAbscissa(_) | QuantityKey::CentreOfGravity) => {
             Some(body)
         }

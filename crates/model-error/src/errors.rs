@@ -16,13 +16,13 @@ pub struct ErrorSizes {
     pub frequency: f64,
     /// Of every damping ratio.
     pub damping: f64,
-    /// Of every mode's shape at every channel, against the shape's root mean square.
+    /// Of every mode's shape at every channel, against the shape's root mean square, and of its modal mass.
     pub shape: f64,
     /// The same in quadrature: the imaginary part of the residues.
     pub quadrature: f64,
     /// Of every FRF's mass line.
     pub mass_line: f64,
-    /// Of every FRF's upper residual.
+    /// Of upper residuals: of all FRFs' alike, and of each by itself.
     pub upper_residual: f64,
     /// Of every FRF's gain, the same in all of its modes: sensors turned, hits off the point.
     pub gain: f64,
@@ -156,20 +156,20 @@ fn add_residual_terms(kinds: &mut [Entries], recorded: &RecordedModes, (n, first
         let place = (first + 2 * (e / frfs), first + 2 * (e % frfs));
         put(&mut kinds[SHAPE], n, place, shared / recorded.residual_scales[0].powi(2));
     }
+    let relative =
+        |frf: usize, term: usize| recorded.residual_terms[frf][term] / recorded.residual_scales[term];
     for frf in 0..frfs {
-        for (term, kind) in [(0, MASS_LINE), (1, UPPER_RESIDUAL)] {
+        for (term, kind) in [(0, MASS_LINE), (UPPER, UPPER_RESIDUAL)] {
             let at = first + 2 * frf + term;
             // Relative to what is there, and where little is there to the others.
-            let value = recorded.residual_terms[frf][term] / recorded.residual_scales[term];
-            put(&mut kinds[kind], n, (at, at), value.powi(2).max(LITTLE));
+            put(&mut kinds[kind], n, (at, at), relative(frf, term).powi(2).max(LITTLE));
         }
     }
     // What a model lacks above the band it lacks in all FRFs.
-    let above = |frf: usize| recorded.residual_terms[frf][UPPER] / recorded.residual_scales[UPPER];
     for a in 0..frfs {
         for b in 0..=a {
             let places = (first + 2 * a + UPPER, first + 2 * b + UPPER);
-            put(&mut kinds[UPPER_RESIDUAL], n, places, above(a) * above(b));
+            put(&mut kinds[UPPER_RESIDUAL], n, places, relative(a, UPPER) * relative(b, UPPER));
         }
     }
 }
