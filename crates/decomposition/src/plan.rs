@@ -1,5 +1,4 @@
 use crate::Sides;
-use jointscope_fixture::BodyKind;
 use jointscope_frf::{BlockChannel, BlockLayout};
 use jointscope_spectra::{Channel, FrfPair, FrfSet};
 
@@ -98,7 +97,7 @@ impl MeasurementPlan {
         let count =
             |pair: &(usize, usize)| crossings.iter().filter(|c| (c.alpha.0, c.beta.0) == *pair).count();
         let own = |pair: &(usize, usize)| usize::from(pair.0 == near) + usize::from(pair.1 == far);
-        let bends = |body: usize| matches!(fixture.bodies()[body].kind, BodyKind::Beam(_));
+        let bends = |body: usize| fixture.bodies()[body].kind.is_beam();
         let rigid: Vec<_> = pairs.iter().filter(|p| !bends(p.0) && !bends(p.1)).copied().collect();
         let Some(&(alpha, beta)) = rigid.iter().max_by_key(|p| (count(p), own(p))) else {
             let body = pairs.iter().flat_map(|p| [p.0, p.1]).find(|&b| bends(b)).unwrap_or(near);

@@ -2,7 +2,7 @@
 
 use crate::Hypothesis;
 use crate::candidate::Candidate;
-use jointscope_fixture::{BodyKind, Effect, Fixture, Motion, Place};
+use jointscope_fixture::{Effect, Fixture, Motion, Place};
 
 /// Index of the parameter that says where along its body an effect sits, if it has one.
 pub(crate) fn abscissa(effect: &Effect) -> Option<usize> {
@@ -21,7 +21,7 @@ pub(crate) fn place_of_last(hypothesis: &Hypothesis) -> Option<f64> {
 pub(crate) fn is_on_beam(fixture: &Fixture, effect: &Effect) -> bool {
     let Place::Body(name) = &effect.place else { return false };
     let mut bodies = fixture.bodies().iter();
-    bodies.any(|body| body.name == *name && matches!(body.kind, BodyKind::Beam(_)))
+    bodies.any(|body| body.name == *name && body.kind.is_beam())
 }
 
 /// The abscissae of an effect's name.

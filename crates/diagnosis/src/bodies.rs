@@ -23,10 +23,7 @@ pub(crate) fn inertia_of(fixture: &Fixture, body: usize) -> f64 {
 
 /// Whether a body has slopes.
 pub(crate) fn turns(fixture: &Fixture, body: usize) -> bool {
-    match &fixture.bodies()[body].kind {
-        BodyKind::Rigid(rigid) => rigid.rotates,
-        BodyKind::Beam(_) => true,
-    }
+    fixture.bodies()[body].kind.rotates()
 }
 
 /// Abscissae between which something may sit on a body: a bar of its mass and inertia, and its points.

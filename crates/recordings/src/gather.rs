@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use jointscope_fixture::{BodyKind, Fixture};
+use jointscope_fixture::Fixture;
 use jointscope_spectra::{Channel, Dof, FrfPair};
 use jointscope_uff::FunctionType;
 
@@ -246,11 +246,7 @@ impl<'f> Locator<'f> {
         let Some(index) = points.iter().position(|point| point.name == channel.point) else {
             return Ok(Located::NoSuchPoint);
         };
-        let rotates = match &fixture.bodies()[points[index].body].kind {
-            BodyKind::Rigid(body) => body.rotates,
-            BodyKind::Beam(_) => true,
-        };
-        if channel.dof == Dof::Rotation && !rotates {
+        if channel.dof == Dof::Rotation && !fixture.bodies()[points[index].body].kind.rotates() {
             return Err(FunctionError::NoRotation { point: channel.point });
         }
         Ok(Located::At { order: (index, channel.dof), channel, sign })

@@ -5,7 +5,7 @@ use super::poles_by_frf::{poles_by_frf, references};
 use super::table::{Cell, Fit, Table, chance};
 use crate::settings::Settings;
 use crate::{Hypothesis, Observation};
-use jointscope_fixture::{BodyKind, Effect, EffectKind, Fixture, Place};
+use jointscope_fixture::{Effect, EffectKind, Fixture, Place};
 use jointscope_inference::interval95;
 use jointscope_model_error::{ModelledModes, Pairing, RecordedModes};
 use jointscope_spectra::{Channel, FrfSet};
@@ -209,7 +209,7 @@ fn candidates(model: &Fixture, recorded: &RecordedModes, modes: &[usize]) -> Vec
         .joints()
         .iter()
         .map(|joint| (format!("joints/{}", joint.name), Place::Joint(joint.name.clone())));
-    let beams = model.bodies().iter().filter(|body| matches!(body.kind, BodyKind::Beam(_)));
+    let beams = model.bodies().iter().filter(|body| body.kind.is_beam());
     let beams = beams.map(|body| (format!("bodies/{}", body.name), Place::Body(body.name.clone())));
     let single: Vec<(String, Place)> = joints.chain(beams).collect();
     let mut all: Vec<Candidate> = single

@@ -2,7 +2,7 @@
 
 use crate::modal::fit::{ModalFit, Problem};
 use crate::settings::ModalSettings;
-use jointscope_fixture::{BodyKind, Fixture, Place, StatedError};
+use jointscope_fixture::{Fixture, Place, StatedError};
 use jointscope_model_error::{
     DAMPING, ErrorSizes, Evidence, FREQUENCY, GAIN, KINDS, SHAPE, SizePrior, UPPER_RESIDUAL,
 };
@@ -51,7 +51,7 @@ pub(super) const BEYOND_ERRORS: f64 = 4.0;
 
 /// Whether all bodies have modes of their own above the band.
 fn all_bend(fixture: &Fixture) -> bool {
-    fixture.bodies().iter().all(|body| matches!(body.kind, BodyKind::Beam(_)))
+    fixture.bodies().iter().all(|body| body.kind.is_beam())
 }
 
 /// The sizes that are usual but for those that the fixture states.

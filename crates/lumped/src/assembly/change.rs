@@ -15,7 +15,7 @@ use super::{Assembly, damping_law};
 use crate::Station;
 use crate::held::{held_by_modes, in_the_modes};
 use jointscope_damping::{HeldMode, ModeDamping, elastic_modes};
-use jointscope_fixture::{BodyKind, Fixture};
+use jointscope_fixture::Fixture;
 use jointscope_linalg::dot;
 
 /// Changes of an assembly, divided by the step from one fixture to the other.
@@ -33,7 +33,7 @@ pub(crate) struct AssemblyChange {
 
 /// Whether a fixture has meshed bodies, of whose modes not all are known.
 pub(crate) fn has_meshed_bodies(fixture: &Fixture) -> bool {
-    fixture.bodies().iter().any(|body| matches!(body.kind, BodyKind::Beam(_)))
+    fixture.bodies().iter().any(|body| body.kind.is_beam())
 }
 
 impl Assembly {

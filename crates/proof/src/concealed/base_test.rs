@@ -6,7 +6,7 @@ use super::{ConcealmentError, ConcealmentKind, Expected};
 use crate::Case;
 use crate::random::log_uniform;
 use jointscope_fixture::{
-    BodyKind, Effect, EffectKind, Fixture, NamedQuantity, Place, QuantityKey, QuantityOwner, SupportPlace,
+    Effect, EffectKind, Fixture, NamedQuantity, Place, QuantityKey, QuantityOwner, SupportPlace,
 };
 use jointscope_rig::extent;
 use jointscope_spectra::{Channel, Dof, FrfSet};
@@ -239,7 +239,7 @@ impl BaseTest<'_> {
         let joints = self.explaining.joints().iter().enumerate();
         let joints = joints.map(|(i, joint)| (Place::Joint(joint.name.clone()), QuantityOwner::Joint(i)));
         let bodies = self.explaining.bodies().iter().enumerate();
-        let beams = bodies.filter(|(_, body)| matches!(body.kind, BodyKind::Beam(_)));
+        let beams = bodies.filter(|(_, body)| body.kind.is_beam());
         let beams = beams.map(|(i, body)| (Place::Body(body.name.clone()), QuantityOwner::Body(i)));
         let quantities = self.explaining.quantities();
         let relative = |q: &NamedQuantity| q.std.map(|std| std / q.value.abs());

@@ -393,7 +393,7 @@ fn place_bodies(fixture: &Fixture, outlines: &[(f64, f64)], scale: Scale) -> Vec
     let narrowest = if scale.per_metre == 0.0 { WITHOUT_EXTENT.min(scale.width) } else { NARROWEST };
     let mut rows: Vec<Vec<Stretch>> = Vec::new();
     let place = |(body, (from, to)): (&Body, &(f64, f64))| {
-        let is_beam = matches!(body.kind, BodyKind::Beam(_));
+        let is_beam = body.kind.is_beam();
         let (mut left, mut right) = Span::of([*from, *to]).0.map(|(a, b)| (scale.px(a), scale.px(b)))?;
         if right - left < narrowest && !is_beam {
             let middle = (0.5 * (left + right)).clamp(0.5 * narrowest, scale.width - 0.5 * narrowest);
