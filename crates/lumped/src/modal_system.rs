@@ -8,8 +8,8 @@ use num_complex::Complex64;
 pub(crate) const FEW_MODES: usize = 12;
 /// A pivot smaller than this share of the largest element is a zero.
 const ZERO: f64 = 1e-15;
-/// A pivot smaller than this share of the largest element, both squared, asks for rows to be exchanged: what is eliminated by it loses as many digits. The last one eliminates
-/// nothing, and near a pole it is small whatever the order.
+/// A pivot smaller than this share of the largest element below it, both squared, asks for rows to be exchanged: what is eliminated by it grows as many times. Against the largest of
+/// all it may well be small: where a change is stiff, all that is left once it has been eliminated is.
 const WEAK: f64 = 1e-6;
 
 /// (D(s) + V Δ(s) Vᵀ) q = Φ_i with D diagonal. The modes are mass-normalised, so that all elements have one unit and none needs scaling.
@@ -139,8 +139,12 @@ fn factorize_symmetric<const N: usize, T: Lines>(matrix: &mut [[T; N]; N]) -> bo
         }
     }
     for k in 0..N {
-        let least = if k + 1 < N { WEAK } else { ZERO * ZERO };
-        if !T::all_exceed(matrix[k][k].sizes(), least, largest) {
+        let pivot = matrix[k][k].sizes();
+        let mut below = pivot;
+        for i in k + 1..N {
+            below = T::larger(below, matrix[i][k].sizes());
+        }
+        if !T::all_exceed(pivot, WEAK, below) || !T::all_exceed(pivot, ZERO * ZERO, largest) {
             return false;
         }
         let inverse = matrix[k][k].reciprocal();
