@@ -61,6 +61,7 @@ mod observation;
 mod options;
 mod parameter_transforms;
 mod penalty;
+mod prediction;
 mod quantities;
 mod ranking;
 mod rarity;
@@ -85,7 +86,7 @@ pub use drift::{ModeDrift, ReferenceChange, TestDrift};
 pub use facts::{EndErrors, FrfMisfit, Phase, Trend, Variation};
 pub use finding::{Elsewhere, Evidence, Finding, Tried};
 pub use fit::Fit;
-pub use hypothesis::{Hypothesis, PredictionError};
+pub use hypothesis::Hypothesis;
 pub use idle::{as_known, with_idle_points_exact};
 pub use jointscope_findings::{Estimate, HeldOut, Verdict};
 pub use jointscope_tolerances::Tolerance;
@@ -95,6 +96,7 @@ pub use mismatch::{BandShare, FrfMismatch};
 pub use modal::{ErrorIntervals, ModelError};
 pub use observation::Observation;
 pub use options::{DiagnosisError, DiagnosisOptions};
+pub use prediction::PredictionError;
 pub use search::Search;
 pub use settings::{
     EvidenceSettings, FitSettings, LawSettings, LocationSettings, ModalSettings, RankingSettings,

@@ -11,6 +11,8 @@
 //! * [`changes`]: the modes of two states side by side;
 //! * [`elsewhere`]: where else along its body an effect explains the modes;
 //! * [`features`]: a recording as its modes tell it;
+//! * [`standing`]: where a hypothesis stands beside the recorded modes;
+//! * [`descent`]: its parameters fitted at given sizes of error;
 //! * [`fit`]: one hypothesis at its most probable parameters and sizes of error;
 //! * [`evidence`]: how probable it makes what was recorded;
 //! * [`turns`]: how its sizes of error go on from round to round;
@@ -36,6 +38,7 @@ mod at_sizes;
 mod beside_lines;
 mod changes;
 mod compared;
+mod descent;
 mod elsewhere;
 mod every_joint;
 mod evidence;
@@ -51,6 +54,7 @@ mod prior;
 mod search;
 mod searcher;
 mod sizes;
+mod standing;
 mod starts;
 #[cfg(test)]
 #[allow(clippy::unwrap_used)]

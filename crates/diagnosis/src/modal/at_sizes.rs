@@ -1,8 +1,10 @@
 //! A fitted hypothesis where the sizes of error are given.
 
 use crate::Hypothesis;
-use crate::modal::fit::{Descent, Iterate, ModalFit, Problem, settings};
+use crate::modal::descent::{Descent, settings};
+use crate::modal::fit::ModalFit;
 use crate::modal::prior::Prior;
+use crate::modal::standing::{Iterate, Problem};
 use jointscope_inference::{Covariance, LeastSquares, Precision, descend};
 use jointscope_linalg::Cholesky;
 use jointscope_model_error::ErrorSizes;

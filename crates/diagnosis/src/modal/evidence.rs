@@ -1,8 +1,8 @@
 //! How probable a hypothesis makes the recorded features, linear about a point.
 
 use crate::Hypothesis;
-use crate::modal::fit::{Iterate, Problem};
 use crate::modal::prior::Prior;
+use crate::modal::standing::{Iterate, Problem};
 use jointscope_model_error::{Comparison, ErrorSizes, Evidence, Linear};
 
 impl Problem<'_> {

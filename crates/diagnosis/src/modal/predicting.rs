@@ -8,8 +8,10 @@
 use crate::departures::{DEPARTED, farthest};
 use crate::fit::Fit;
 use crate::fitter::Fitter;
-use crate::modal::fit::{Iterate, ModalFit, Problem, settings};
+use crate::modal::descent::settings;
+use crate::modal::fit::ModalFit;
 use crate::modal::judgement::ModalJudgement;
+use crate::modal::standing::{Iterate, Problem};
 use crate::search::Search;
 use crate::settings::ModalSettings;
 use crate::work::Work;

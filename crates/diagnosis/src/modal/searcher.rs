@@ -1,9 +1,10 @@
 //! A comparison by modes under way: what all its steps share, and when a fit says enough.
 
 use crate::candidate::Candidate;
-use crate::modal::fit::{ModalFit, Problem};
+use crate::modal::fit::ModalFit;
 use crate::modal::known::Known;
 use crate::modal::prior::{Prior, priors};
+use crate::modal::standing::Problem;
 use crate::settings::ModalSettings;
 use crate::{Hypothesis, Watch};
 use jointscope_fixture::Effect;

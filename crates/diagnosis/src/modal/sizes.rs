@@ -1,6 +1,7 @@
 //! Sizes of a model's error: what is known of them beforehand, and what a fit says of them.
 
-use crate::modal::fit::{ModalFit, Problem};
+use crate::modal::fit::ModalFit;
+use crate::modal::standing::Problem;
 use crate::settings::ModalSettings;
 use jointscope_fixture::{Fixture, Place, StatedError};
 use jointscope_model_error::{

@@ -3,10 +3,11 @@
 use crate::Hypothesis;
 use crate::candidate::Candidate;
 use crate::modal::evidence::linear;
-use crate::modal::fit::{ModalFit, Standing};
+use crate::modal::fit::ModalFit;
 use crate::modal::known::Known;
 use crate::modal::prior::Prior;
 use crate::modal::searcher::{Named, STARTS, Searcher};
+use crate::modal::standing::Standing;
 use jointscope_fixture::{Effect, EffectKind, Starts};
 use jointscope_model_error::Linear;
 use std::f64::consts::TAU;

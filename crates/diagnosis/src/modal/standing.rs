@@ -1,0 +1,120 @@
+//! Where a hypothesis stands beside the recorded modes: its own modes, paired with these, and how they move with its coordinates.
+
+use crate::Hypothesis;
+use crate::modal::prior::Prior;
+use crate::work::Work;
+use jointscope_fixture::Fixture;
+use jointscope_model_error::{
+    Comparison, ErrorSizes, KINDS, ModelledModes, Pairing, RecordedModes, Shapes, SizePrior,
+};
+
+/// The recording's modes and what is known of the model's error.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Problem<'a> {
+    pub recorded: &'a RecordedModes,
+    pub features: &'a [f64],
+    pub sizes: &'a ErrorSizes,
+    /// Which of the sizes are stated.
+    pub stated: [bool; KINDS],
+    /// Work done.
+    pub work: &'a Work,
+}
+
+/// A hypothesis where it stands: its modes, paired with the recording's.
+#[derive(Debug, Clone)]
+pub(crate) struct Standing {
+    pub modelled: ModelledModes,
+    pub pairing: Pairing,
+    pub comparison: Comparison,
+}
+
+/// Where a fit stands on its way.
+#[derive(Clone)]
+pub(super) struct Iterate {
+    pub hypothesis: Hypothesis,
+    pub modelled: ModelledModes,
+    pub residual: Vec<f64>,
+}
+
+/// Values of an FRF that the search for a model's poles, and following known ones, cost about.
+const SEARCHED: usize = 1000;
+const FOLLOWED: usize = 300;
+/// Step of differences, in prior standard deviations and at most in coordinates.
+const DIFFERENCE: (f64, f64) = (1e-3, 2e-3);
+impl Problem<'_> {
+    /// What is known of the sizes of the error beforehand.
+    pub(crate) fn prior(&self) -> SizePrior {
+        SizePrior { scales: *self.sizes, stated: self.stated }
+    }
+
+    /// Where a hypothesis stands, its poles found anew.
+    pub(crate) fn standing(&self, hypothesis: &Hypothesis) -> Option<Standing> {
+        let fixture = hypothesis.to_fixture().ok()?;
+        self.work.count(SEARCHED * self.recorded.frfs());
+        let modelled = ModelledModes::of(&fixture, self.recorded)?;
+        let pairing = Pairing::of(self.recorded, &modelled);
+        self.paired((hypothesis, &fixture), modelled, pairing)
+    }
+
+    pub(super) fn paired(
+        &self,
+        (hypothesis, fixture): (&Hypothesis, &Fixture),
+        modelled: ModelledModes,
+        pairing: Pairing,
+    ) -> Option<Standing> {
+        let shapes = |fixture: &Fixture| Shapes::of(fixture, self.recorded, &modelled.poles());
+        let own = shapes(fixture)?;
+        let mut comparison = Comparison::new(self.recorded, &pairing, &modelled, &own);
+        // The damping of the fixture by itself is no proportional one of a structure with effects; which of both it is, if either, nobody knows.
+        let springs = match hypothesis.springs_and_masses() {
+            Some(effects) if effects == hypothesis.effects() => Some(own),
+            Some(effects) => hypothesis.to_fixture_with(effects).ok().and_then(|fixture| shapes(&fixture)),
+            None => None,
+        };
+        if let Some(springs) = springs {
+            comparison = comparison.with_damping_distributed_otherwise(self.recorded, &pairing, &springs);
+        }
+        Some(Standing { modelled, pairing, comparison })
+    }
+
+    /// The modes of a hypothesis, followed from those of another one near it.
+    pub(super) fn modelled(&self, hypothesis: &Hypothesis, near: &ModelledModes) -> Option<ModelledModes> {
+        let fixture = hypothesis.to_fixture().ok()?;
+        self.work.count(FOLLOWED * self.recorded.frfs());
+        ModelledModes::near(&fixture, self.recorded, near)
+    }
+
+    /// Recorded less modelled features, of the modes that are paired.
+    pub(crate) fn residual(&self, standing: &Standing, modelled: &ModelledModes) -> Vec<f64> {
+        standing.comparison.residual(self.recorded, self.features, modelled, &standing.pairing)
+    }
+
+    /// Derivatives of the model's features by coordinates `of`, for a step of one.
+    pub(crate) fn slopes(
+        &self,
+        hypothesis: &Hypothesis,
+        standing: &Standing,
+        modelled: &ModelledModes,
+        residual: &[f64],
+        priors: &[Prior],
+        of: std::ops::Range<usize>,
+    ) -> Option<Vec<Vec<f64>>> {
+        let about = self.recorded.about(hypothesis.to_fixture().ok()?);
+        let beside = |hypothesis: &Hypothesis| {
+            let Some(about) = &about else { return self.modelled(hypothesis, modelled) };
+            let fixture = hypothesis.to_fixture().ok()?;
+            self.work.count(FOLLOWED * self.recorded.frfs());
+            ModelledModes::after_step(&fixture, self.recorded, (about, modelled))
+        };
+        of.map(|index| {
+            let size = (DIFFERENCE.0 * priors[index].std).min(DIFFERENCE.1);
+            let inward = hypothesis.inward(index, size);
+            // A beam that ends at a support cannot become shorter: then longer.
+            let moved = |step: f64| Some((step, beside(&hypothesis.moved(index, step))?));
+            let (step, moved) = moved(inward).or_else(|| moved(-inward))?;
+            let there = self.residual(standing, &moved);
+            Some(residual.iter().zip(&there).map(|(at, there)| (at - there) / step).collect())
+        })
+        .collect()
+    }
+}
