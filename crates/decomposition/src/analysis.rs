@@ -1,8 +1,8 @@
 //! A recording decomposed for a joint: all that was found.
 
 use crate::{
-    Averages, DecompositionError, Element, Interfaces, JointEnds, JointFit, JointSpectrum, Judgement,
-    LikelihoodFit, MeasurementPlan, Method, Part, Relation, ToleranceShare,
+    Averages, DecompositionError, Element, InterfaceSpectrum, Interfaces, JointEnds, JointFit, JointSpectrum,
+    Judgement, LikelihoodFit, MeasurementPlan, Method, Part, Relation, ToleranceShare,
 };
 use jointscope_frf::noise::NoiseSource;
 use jointscope_linalg::{ComplexMatrix2, RealMatrix2};
@@ -33,6 +33,8 @@ pub struct Analysis {
     pub likelihood: Result<LikelihoodFit, DecompositionError>,
     /// The joint's interfaces, where it is a beam and a fit succeeded; see [`interfaces_rest_on`](Self::interfaces_rest_on).
     pub interfaces: Option<Interfaces>,
+    /// The same line by line, by the exact relation; of a beam between blocks that rotate.
+    pub interface_spectrum: Option<InterfaceSpectrum>,
     /// What the fixture's tolerances do to the results.
     pub tolerances: Vec<ToleranceShare>,
     /// Quantities whose tolerance could not be followed; the deviations leave them out.

@@ -31,6 +31,31 @@ impl Analysis {
     }
 }
 
+impl Analysis {
+    /// K and C that the [interfaces by line](Self::interface_spectrum) would have if the joint were as it was fitted: of the translation, of the near and of the
+    /// far rotation.
+    ///
+    /// `None` without such a fit or without interfaces by line, at 0 Hz, and where a matrix is singular.
+    pub fn fitted_interfaces_at(&self, line: usize) -> Option<[(f64, f64); 3]> {
+        let (of_beam, fit) = (self.interface_spectrum.as_ref()?, self.joint_fit.as_ref().ok()?);
+        let omega = self.spectrum.h41.lines.omega(line);
+        if omega <= 0.0 {
+            return None;
+        }
+        let s = Complex64::new(self.spectrum.decay, omega);
+        let left = fit.follows.fit.dynamic_stiffness(s).inverse()? - of_beam.beam.to_complex();
+        let length = self.spectrum.sides.length;
+        let coupling = (left.at(0, 1) + left.at(1, 0)) * 0.5;
+        let near = coupling / length;
+        let springs = [left.at(0, 0) - coupling * length, near, left.at(1, 1) - near].map(|compliance| {
+            let dynamic = compliance.inv();
+            let damping = dynamic.im / s.im;
+            (dynamic.re - s.re * damping, damping)
+        });
+        springs.iter().all(|(k, c)| k.is_finite() && c.is_finite()).then_some(springs)
+    }
+}
+
 /// H41 of two sides on a joint of dynamic stiffness Z on d = u_to − R·u_from with s²M on its ends: forces on the ends are −(TᵀZT + s²M) u, T = [−R, I].
 fn coupled(
     z: ComplexMatrix2,

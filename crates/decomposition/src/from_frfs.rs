@@ -1,6 +1,7 @@
 //! From the FRFs of an assembly to its joint: every step of a decomposition.
 
 use crate::analysis::{InterfaceSource, interfaces_rest_on};
+use crate::interface_tolerances::interfaces_with_tolerances;
 use crate::interfaces::interfaces_of_fit;
 use crate::spectrum::scalar_stiffness;
 use crate::{
@@ -90,6 +91,8 @@ impl Analysis {
             InterfaceSource::AllFrfs(fit) => fitted_interfaces(fit, &sides, options.exact),
             InterfaceSource::Across(fit) => joint_interfaces(fit, &sides, &tolerances),
         });
+        let mass = joint_fit.as_ref().ok().and_then(|fit| fit.mass).unwrap_or_default();
+        let interface_spectrum = interfaces_with_tolerances(&frfs, &sides, exact, mass, options.exact);
         let nominal = predicted(&sides, &plan, &spectrum)?;
         let mut analysis = Analysis {
             joint,
@@ -103,6 +106,7 @@ impl Analysis {
             joint_fit,
             likelihood,
             interfaces,
+            interface_spectrum,
             tolerances,
             lost_tolerances,
             nominal,

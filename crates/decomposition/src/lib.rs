@@ -17,7 +17,7 @@
 //! * [`maximum_likelihood`]: symmetric, passive k and c straight from the FRFs;
 //! * [`fit_joint`]: the same from every FRF, the fixture's quantities moving within their tolerances; tests of the joint, laws over frequency;
 //! * [`fit_joints`]: several joints at once, in chains and in loops, from every FRF;
-//! * [`interfaces`]: what the joint's ends add to its beam (eq 6, scalar and matrix form).
+//! * [`interfaces`]: what the joint's ends add to its beam (eq 6, scalar and matrix form); [`interface_spectrum`]: the same line by line.
 //!
 //! ```
 //! use jointscope_decomposition::Relation;
@@ -44,6 +44,8 @@ mod element;
 mod estimate;
 mod from_frfs;
 mod idle_points;
+mod interface_spectrum;
+mod interface_tolerances;
 mod interfaces;
 mod joint_ends;
 mod joint_fit;
@@ -63,6 +65,10 @@ pub use element::{Element, Part};
 pub use estimate::{Estimate, Figure};
 pub use from_frfs::AnalysisOptions;
 pub(crate) use idle_points::IdlePoints;
+pub use interface_spectrum::{
+    InterfaceLine, InterfaceMask, InterfaceSpectrum, LineCompliance, LineInterface, LineSpring, Spread,
+    interface_spectrum,
+};
 pub use interfaces::{Compliance, InterfaceStiffness, Interfaces, interfaces};
 pub use joint_ends::{JointEnd, JointEnds};
 pub use joint_fit::{

@@ -2,6 +2,8 @@ mod across;
 mod by_line;
 mod from_all_frfs;
 mod interfaces;
+mod interfaces_by_line;
+mod masked;
 mod pair;
 mod recording;
 
@@ -10,6 +12,7 @@ use across::{AcrossJoint, across, average, averages, nominal};
 use by_line::line;
 use from_all_frfs::JointEntry;
 use interfaces::InterfaceEntries;
+use interfaces_by_line::InterfacesByLine;
 use jointscope_comparison::{EstimateEntry, LineEntry, Nominal};
 use jointscope_decomposition::{
     Analysis, DecompositionError, FoundJoint, JointEnds, JointLikelihood, JointsCovariance, JointsFit,
@@ -18,6 +21,7 @@ use jointscope_decomposition::{
 use jointscope_frf::MaskReason;
 use jointscope_linalg::RealMatrix2;
 use jointscope_pipeline::{Decomposition, Joints};
+use masked::MaskedLine;
 use recording::UsedRecording;
 use serde::Serialize;
 use serde_json::Value;
@@ -30,7 +34,7 @@ pub fn joint_file(decomposition: &Decomposition) -> Value {
     }
 }
 
-/// The contents of `stiffness.json`: K and C by line, averages, the fitted joint and its interfaces, in SI units.
+/// The contents of `stiffness.json`: K and C by line, averages, the fitted joint and its interfaces, also by line, in SI units.
 ///
 /// `std` is what the FRFs' noise leaves uncertain, `std_fixture` what the fixture's tolerances do, `std_model` what it
 /// costs that a constant joint does not explain the FRFs.
@@ -65,6 +69,8 @@ struct OneJoint<'a> {
     weighted_average: Option<EstimateEntry>,
     #[serde(skip_serializing_if = "Option::is_none")]
     interfaces: Option<InterfaceEntries>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    interfaces_by_line: Option<InterfacesByLine>,
 }
 
 /// The file of joints that one fit found.
@@ -102,13 +108,6 @@ enum Fitted<T> {
     Failed { failed: String },
 }
 
-/// A line that could not be solved, Hz.
-#[derive(Serialize)]
-struct MaskedLine {
-    frequency: f64,
-    why: &'static str,
-}
-
 impl<'a> OneJoint<'a> {
     fn of(analysis: &'a Analysis) -> Self {
         let spectrum = &analysis.spectrum;
@@ -129,6 +128,10 @@ impl<'a> OneJoint<'a> {
             recording: UsedRecording::of(analysis),
             weighted_average: analysis.averages.weighted.as_ref().map(average),
             interfaces: analysis.interfaces.as_ref().map(|found| InterfaceEntries::of(analysis, found)),
+            interfaces_by_line: analysis
+                .interface_spectrum
+                .as_ref()
+                .map(|found| InterfacesByLine::of(found, frequencies)),
         }
     }
 }

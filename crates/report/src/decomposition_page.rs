@@ -5,6 +5,7 @@ mod by_line;
 mod fixture_view;
 mod frfs;
 mod interface_table;
+mod interfaces_by_line;
 mod joints;
 mod omitted;
 mod result;
@@ -40,7 +41,7 @@ fn tone(analysis: &Analysis) -> Tone {
 }
 
 /// The page of a joint's decomposition: verdict, fixture, key figures with noise and
-/// tolerances apart, the joint from all FRFs with its laws and tests, K and C by line, the FRFs behind them, interfaces, what the tolerances do, what was left out.
+/// tolerances apart, the joint from all FRFs with its laws and tests, K and C by line, the FRFs behind them, interfaces as single numbers and by line, what the tolerances do, what was left out.
 ///
 /// `fixture` is the one that `analysis` was made with. The same input gives the same bytes.
 pub fn decomposition_report(analysis: &Analysis, fixture: &Fixture, context: &PageContext) -> Report {
@@ -58,6 +59,7 @@ pub fn decomposition_report(analysis: &Analysis, fixture: &Fixture, context: &Pa
             .sections(by_line::sections(&subject))
             .sections([frfs::section(&subject)])
             .sections(interface_table::section(&subject))
+            .sections(interfaces_by_line::section(&subject))
             .sections([shares::section(&subject), omitted::section(&subject, context)]),
     )
 }

@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used)] // helpers of tests fail as tests do
 
 mod common;
+mod interface_spectrum;
 mod invariances;
 mod round_trip;
 mod tolerances;

@@ -203,7 +203,7 @@ fn bodies_that_do_not_rotate_show_one_element_and_no_interfaces() {
     let analysis = analysis(&fixture, &recorded(&fixture, &[("2", "1")]), Relation::Exact);
     let html = page(&fixture, &analysis);
     assert!(html.contains("k₁₁") && !html.contains("k₁₂") && !html.contains("k₂₂"));
-    assert!(!html.contains(">Interfaces<"));
+    assert!(!html.contains(">Interfaces<") && !html.contains(">Interfaces by line<"));
     assert!(html.contains("as the fixture's within uncertainty"));
 }
 
@@ -366,4 +366,48 @@ fn interfaces_name_their_fit_and_are_marked_where_none_explains_the_frfs() {
     analysis.joint_fit.as_mut().unwrap().inflation = 30.0;
     analysis.likelihood.as_mut().unwrap().chi2_per_dof = 75.0;
     assert!(page(&fixture, &analysis).contains(marked));
+}
+
+/// Two blocks with glue at both ends of their beam, weighed and measured well, in low noise.
+fn glued(stiffness: f64) -> (Fixture, Analysis) {
+    let glue = |point: &str| {
+        format!(
+            r#"{{ "kind": "interface_compliance", "place": "{point}", "dof": "rotation", "stiffness": {stiffness}, "damping": 0.05 }}"#
+        )
+    };
+    let fixture = blocks("");
+    let built = blocks(&format!(r#", "physics": [{}, {}]"#, glue("2"), glue("3")));
+    let lines = SpectralLines::even(0.0, 2.5, 401).unwrap();
+    let frfs = synthesize(&built, &transverse(&PAIRS), &lines, Instrument::AsRecorded).unwrap();
+    let options = AnalysisOptions { exact: true, ..AnalysisOptions::default() };
+    let analysis = Analysis::of(&fixture, &Noise::new(3).on(&frfs, 1e-4), &options).unwrap();
+    (fixture, analysis)
+}
+
+#[test]
+fn interfaces_are_drawn_by_line_beside_their_number_and_lines_without_one_are_counted() {
+    let (fixture, analysis) = glued(3e3);
+    let found = analysis.interface_spectrum.as_ref().unwrap();
+    let html = page(&fixture, &analysis);
+    let masked = found.masked.len();
+    assert!(masked > 0 && found.lines.len() + masked == 401, "{masked}");
+    assert!(html.contains(&format!("{} of 401 lines have a D; the others are masked: ", found.lines.len())));
+    assert!(html.contains("no displacement at 0 Hz (1)"));
+    let told = |of: usize| found.lines.len() - found.within_noise()[of];
+    assert!(told(1) > 100, "{:?}", found.within_noise());
+    assert!(html.contains(&format!("rotation at 2 on {}, rotation at 3 on {}", told(1), told(2))));
+    for title in ["K, rotation at 2", "C, rotation at 3", "Real part of the compliance, rotation at 2"] {
+        assert!(html.contains(title), "{title}");
+    }
+    assert!(html.contains("at rest, as tabled"));
+}
+
+#[test]
+fn interfaces_of_which_no_line_tells_a_stiffness_are_named() {
+    let (fixture, analysis) = glued(1e9);
+    let html = page(&fixture, &analysis);
+    assert!(html.contains("No line by itself tells a stiffness of: "));
+    assert!(
+        !html.contains("K, rotation at 2") && html.contains("Real part of the compliance, rotation at 2")
+    );
 }

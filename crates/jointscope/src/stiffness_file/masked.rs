@@ -1,0 +1,8 @@
+use serde::Serialize;
+
+/// A line that could not be solved, Hz.
+#[derive(Serialize)]
+pub(super) struct MaskedLine {
+    pub(super) frequency: f64,
+    pub(super) why: &'static str,
+}
