@@ -63,7 +63,7 @@ pub struct Diagnosis {
     pub beside_modes: Option<f64>,
     /// How the structure changed from reference to reference, where it did: the diagnosis is of the references that agree.
     pub drift: Option<TestDrift>,
-    /// Effects that were tried by themselves where the model's error decides, the most probable first.
+    /// Effects that were tried by themselves where the model's error decides or nothing explains the recording, by what they make of its modes: the most probable first.
     pub tried: Vec<Tried>,
 }
 

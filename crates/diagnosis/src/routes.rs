@@ -270,8 +270,11 @@ fn by_lines(
         }
         false => Vec::new(),
     };
+    let verdict = verdict(fitter, &search, &findings);
+    let tried =
+        modal.filter(|_| verdict == Verdict::Unexplained).map_or_else(Vec::new, ModalJudgement::tried);
     Parts {
-        verdict: verdict(fitter, &search, &findings),
+        verdict,
         findings,
         locations,
         held_out,
@@ -280,7 +283,7 @@ fn by_lines(
         model_error: None,
         baseline_error: None,
         baseline: None,
-        tried: Vec::new(),
+        tried,
     }
 }
 
@@ -345,7 +348,7 @@ fn by_modes(fitter: &Fitter, within: &Search, modal: &ModalJudgement, division: 
         model_error: Some(modal.errors),
         baseline_error: None,
         baseline: None,
-        tried: modal.tried(settings.modal.tried),
+        tried: modal.tried(),
     }
 }
 

@@ -198,6 +198,28 @@ fn nearest(diagnosis: &Diagnosis) -> Option<String> {
     })
 }
 
+/// Effects that are told of those that were tried in vain.
+const RANKED: usize = 3;
+
+/// What came nearest where nothing was found to explain the recording.
+pub(crate) fn ranked(diagnosis: &Diagnosis) -> Option<String> {
+    let in_vain = diagnosis.verdict == Verdict::Unexplained && diagnosis.findings.is_empty();
+    let all = Some(&diagnosis.tried).filter(|all| in_vain && !all.is_empty())?;
+    let told = |tried: &Tried| {
+        format!("{} {}", with_fitted_size(&tried.effect), format!("{:.1}", tried.ln_gain).replace('-', "−"))
+    };
+    let nearest: Vec<String> = all.iter().take(RANKED).map(told).collect();
+    Some(format!(
+        "tried in vain, with what it gains in ln p of the modes over the fixture alone: {}{}",
+        nearest.join(", "),
+        if all.len() > RANKED {
+            format!("; {} more in the result", all.len() - RANKED)
+        } else {
+            String::new()
+        }
+    ))
+}
+
 /// What the reader must know of the lines and the noise.
 fn of_observation(observation: &Observation) -> Vec<String> {
     let mut remarks = Vec::new();

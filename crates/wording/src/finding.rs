@@ -89,7 +89,7 @@ fn with_size(effect: &Effect, size: Option<String>) -> String {
 }
 
 /// `added mass on body B (49.8 g)`, of an effect of which no more is known than where a fit ended.
-pub(crate) fn with_fitted_size(effect: &Effect) -> String {
+pub fn with_fitted_size(effect: &Effect) -> String {
     let index = effect.kind.spec().size.parameter;
     with_size(effect, Some(plain(effect.value(index), effect.unit(index))))
 }

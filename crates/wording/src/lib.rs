@@ -44,7 +44,7 @@ mod summary;
 pub mod unit;
 
 pub use effects::effect_name;
-pub use finding::place_and_sizes;
+pub use finding::{place_and_sizes, with_fitted_size};
 pub use model_error::{ErrorInWords, error_in_words};
 pub use numbers::{capitalised, counted, listed};
 pub use places::held_out_part;

@@ -32,6 +32,7 @@ impl Summary for Diagnosis {
                 significant(chi2, 4)
             )
         };
+        lines.extend(crate::diagnosis::ranked(self));
         lines.push(row("fixture as stated", nominal, chi2_nominal));
         lines.push(row("refitted within its tolerances", refitted, chi2_refitted));
         if !self.findings.is_empty() {

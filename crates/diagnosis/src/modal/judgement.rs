@@ -106,13 +106,20 @@ impl ModalJudgement {
         }
     }
 
-    /// The most probable effects by themselves.
-    pub(crate) fn tried(&self, count: usize) -> Vec<Tried> {
-        let of = |single: &Named| {
-            let ln_gain = single.fit.ln - self.search.none.ln;
-            Some(Tried { effect: single.fit.hypothesis.effects().pop()?, ln_gain })
-        };
-        self.search.singles.iter().take(count).filter_map(of).collect()
+    /// The effects that were fitted by themselves, each kind at each place once and at its best, the most probable first.
+    pub(crate) fn tried(&self) -> Vec<Tried> {
+        let mut all: Vec<Tried> = Vec::new();
+        for single in &self.search.singles {
+            let Some(effect) = single.fit.hypothesis.effects().pop() else { continue };
+            let is_same = |other: &Tried| {
+                let other = &other.effect;
+                other.kind == effect.kind && other.place == effect.place && other.dof == effect.dof
+            };
+            if !all.iter().any(is_same) {
+                all.push(Tried { effect, ln_gain: single.fit.ln - self.search.none.ln });
+            }
+        }
+        all
     }
 
     /// The models that the comparison ended with, as stated or as they predict, on lines; `within` is the fixture refitted on lines.

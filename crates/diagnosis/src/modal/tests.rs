@@ -3,7 +3,7 @@ mod search;
 
 use crate::catalogue::catalogue;
 use crate::estimates::estimates;
-use crate::finding::{Evidence, Finding};
+use crate::finding::{Evidence, Finding, Tried};
 use crate::fitter::Fitter;
 use crate::modal::features::Features;
 use crate::modal::fit::{ANY, ModalFit, SetOut};
@@ -301,6 +301,18 @@ fn a_fixture_is_consistent_with_a_ripple_as_small_as_errors_of_models_are_and_no
         assert_eq!(diagnosis.verdict, verdict, "{ripple}: {:?}", diagnosis.findings);
         assert_eq!(diagnosis.beside_modes.is_some(), verdict == Verdict::Consistent);
     }
+}
+
+#[test]
+fn what_was_tried_in_vain_is_ranked_each_name_once() {
+    let fixture = Fixture::from_json(BLOCKS).unwrap();
+    let diagnosis = Diagnosis::of(&fixture, &rippled(0.0, 0.012), &DiagnosisOptions::default()).unwrap();
+    assert_eq!(diagnosis.verdict, Verdict::Unexplained);
+    let name = |tried: &Tried| (tried.effect.kind, tried.effect.place.clone(), tried.effect.dof);
+    let names: Vec<_> = diagnosis.tried.iter().map(name).collect();
+    assert!(names.len() > 8, "{names:?}");
+    assert!((1..names.len()).all(|k| !names[..k].contains(&names[k])), "{names:?}");
+    assert!(diagnosis.tried.is_sorted_by(|a, b| a.ln_gain >= b.ln_gain), "the nearest first");
 }
 
 #[test]

@@ -3,6 +3,7 @@
 use crate::common;
 use jointscope::diagnosis::{Diagnosis, DiagnosisOptions, Hypothesis, Tried, Verdict};
 use jointscope::fixture::{Effect, EffectKind, Place};
+use jointscope::wording::Summary;
 use jointscope::{Fixture, FrfPair, FrfSet, Remarks};
 use jointscope_rig::{Instrument, drawn_within_tolerance, frfs, generator};
 use std::path::Path;
@@ -48,6 +49,25 @@ fn a_baseline_of_itself_has_not_changed() {
     let diagnosis = diagnosed(&fixture, &frfs, Some(frfs.clone()));
     assert_eq!(diagnosis.verdict, Verdict::Consistent, "{}", told(&diagnosis));
     assert!(diagnosis.findings.is_empty(), "{}", told(&diagnosis));
+}
+
+#[test]
+fn what_was_tried_in_vain_is_ranked_where_nothing_explains_a_recording() {
+    let (fixture, frfs) = common::recorded(everywhere_a_little_wrong(), 5);
+    let mut diagnosis = diagnosed(&fixture, &frfs, Some(frfs.clone()));
+    let gain = |factor, ln_gain| {
+        let effect = Effect::new(EffectKind::ChannelGain, Place::Response("4".into()), None, &[factor]);
+        Tried { effect, ln_gain }
+    };
+    diagnosis.tried = vec![gain(1.07, 12.34), gain(1.05, 3.0), gain(1.03, 1.0), gain(1.01, -2.0)];
+    let ranked = |diagnosis: &Diagnosis| {
+        diagnosis.summary().into_iter().find(|line| line.starts_with("tried in vain"))
+    };
+    assert_eq!(ranked(&diagnosis), None, "nothing was left out");
+    diagnosis.verdict = Verdict::Unexplained;
+    let said = ranked(&diagnosis).unwrap();
+    assert!(said.contains("gain of response 4 (factor 1.07) 12.3, "), "{said}");
+    assert!(said.ends_with("; 1 more in the result"), "{said}");
 }
 
 #[test]

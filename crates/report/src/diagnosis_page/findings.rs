@@ -1,22 +1,24 @@
 //! What was found: parameters with intervals, probability, look-alikes.
 
-use jointscope_diagnosis::{Estimate, Finding, Verdict};
-use jointscope_wording::{effect_name, place_and_sizes};
+use jointscope_diagnosis::{Estimate, Finding, Tried, Verdict};
+use jointscope_wording::{effect_name, place_and_sizes, with_fitted_size};
 
 use super::glance::{chance, scale};
 use super::subject::Subject;
-use crate::format::{self, NOT_DETERMINED, quantity_in, significant};
+use crate::format::{self, NOT_DETERMINED, fixed, quantity_in, significant};
 use crate::section::{Block, Section};
 use crate::table::Table;
 
 /// Look-alikes below this probability are not listed.
 const LISTED: f64 = 1e-3;
+/// Effects that are shown of those that were tried in vain.
+const NEAREST: usize = 8;
 
 pub(super) fn section(subject: &Subject) -> Section {
     let diagnosis = subject.diagnosis;
     let section = Section::new("Findings");
     if diagnosis.findings.is_empty() {
-        return section.paragraph(match diagnosis.verdict {
+        let section = section.paragraph(match diagnosis.verdict {
             Verdict::Consistent if diagnosis.model_error.is_some() => {
                 "None of the effects tried here, at any legal place, makes the error of the model enough smaller: what the refit within the \
                  stated tolerances leaves is as large as such models are usually off by."
@@ -34,11 +36,28 @@ pub(super) fn section(subject: &Subject) -> Section {
                  sits and how it varies with frequency."
             }
         });
+        let in_vain = diagnosis.verdict == Verdict::Unexplained && !diagnosis.tried.is_empty();
+        return if in_vain { section.with(tried(&diagnosis.tried)) } else { section };
     }
     section.with(parameters(subject)).with(names(subject)).paragraph(format!(
         "{} names were tried. A probability is of kind, place and dof together; what is missing to 100 % is something not listed.",
         diagnosis.search.candidates.len()
     ))
+}
+
+/// What was tried in vain, the nearest first.
+fn tried(all: &[Tried]) -> impl Into<Block> {
+    let table = Table::of(all.iter().take(NEAREST))
+        .words("Tried in vain", |tried| with_fitted_size(&tried.effect))
+        .numbers("Gain in ln p", "", |tried| fixed(tried.ln_gain, 1))
+        .footnote(
+            "Gain in ln p: how much more probable the recorded modes are with the effect than with the fixture alone, its quantities fitted and the error of the \
+             model at its most probable size in both. None leaves so small an error that it could be named.",
+        );
+    match all.len() > NEAREST {
+        true => table.footnote(format!("{} more stand in diagnosis.json.", all.len() - NEAREST)),
+        false => table,
+    }
 }
 
 /// One thing of each finding a row; the finding's own cells stand in its first row only.
