@@ -2,6 +2,7 @@
 
 use crate::departures::departed;
 use crate::finding::{found, it, with_fitted_size};
+use crate::format::fixed;
 use crate::misfit::{sits, varies};
 use crate::numbers::{apart, figures, listed, significant};
 use crate::places::quantity_name;
@@ -205,9 +206,7 @@ const RANKED: usize = 3;
 pub(crate) fn ranked(diagnosis: &Diagnosis) -> Option<String> {
     let in_vain = diagnosis.verdict == Verdict::Unexplained && diagnosis.findings.is_empty();
     let all = Some(&diagnosis.tried).filter(|all| in_vain && !all.is_empty())?;
-    let told = |tried: &Tried| {
-        format!("{} {}", with_fitted_size(&tried.effect), format!("{:.1}", tried.ln_gain).replace('-', "−"))
-    };
+    let told = |tried: &Tried| format!("{} {}", with_fitted_size(&tried.effect), fixed(tried.ln_gain, 1));
     let nearest: Vec<String> = all.iter().take(RANKED).map(told).collect();
     Some(format!(
         "tried in vain, with what it gains in ln p of the modes over the fixture alone: {}{}",
