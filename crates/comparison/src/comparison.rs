@@ -1,7 +1,7 @@
 use crate::tests_of_equality::Tests;
 use crate::{
-    Caution, Compared, Decomposed, ELEMENTS, Equality, Estimate, FiledJoint, Kind, LawOfAll, Number, Pair,
-    Ranking, Specimens, Together,
+    Caution, Compared, Decomposed, ELEMENTS, Equality, Estimate, FiledJoint, Kind, LawOfAll, ModelRatios,
+    Number, Pair, Ranking, Specimens, Together,
 };
 
 /// Those of a symmetric matrix.
@@ -96,6 +96,8 @@ pub struct Comparison {
     pub equality: Option<Equality>,
     /// Orders by each number of K, then of C.
     pub rankings: Vec<ElementRanking>,
+    /// Joints of models over measured ones; none where no joint is said to be of a model, or none of a measurement.
+    pub models: Vec<ModelRatios>,
     /// Kinds with several specimens.
     pub specimens: Vec<Specimens>,
     /// What keeps the comparison from being taken as it stands; none where it may be.
@@ -205,6 +207,7 @@ impl Comparison {
         let (rankings, specimens) = (rankings.collect(), specimens.collect());
         let equality = tests.of_all.as_ref().and_then(|by| Equality::of_all(by, &all, &numbers));
         Ok(Comparison {
+            models: ModelRatios::all(&joints, &together, &numbers),
             relation,
             compared,
             law,

@@ -1,5 +1,5 @@
 use crate::stiffness_file::{EstimateEntry, LineEntry, Matrix, MatrixPair, Nominal, read};
-use crate::{AtOnce, FiledJoint, Place};
+use crate::{AtOnce, FiledJoint, Place, Source};
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
 use serde_json::Value;
@@ -98,6 +98,8 @@ pub struct Decomposed {
     pub nominal: Option<Nominal>,
     /// Its place among joints that one fit found at once, where it did.
     pub at_once: Option<Place>,
+    /// Where its FRFs come from, where that is said: no file does.
+    pub source: Option<Source>,
 }
 
 /// Plain averages of K and C over a band.
@@ -199,6 +201,7 @@ impl Decomposed {
             judgement: optional(file, "judgement")?,
             nominal: optional(file, "nominal")?,
             at_once: None,
+            source: None,
         })
     }
 }
@@ -236,6 +239,7 @@ fn found_at_once(name: &str, file: &Value) -> Result<Vec<Decomposed>, Decomposed
                 damping: Nominal::default().damping,
             }),
             at_once: Some(Place { fit: Arc::clone(&fit), joint: place }),
+            source: None,
         })
     };
     all.iter().enumerate().map(of).collect()

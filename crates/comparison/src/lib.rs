@@ -10,6 +10,7 @@
 //! * [`Pair`]: difference and ratio of two with intervals, who is the larger, whether they are the same ([`Equality`]);
 //! * [`LawOfAll`]: the law over frequency at which they are compared, the most probable of all of them together;
 //! * [`Ranking`]: the order by each number with its probability;
+//! * [`ModelRatios`]: joints of models over measured ones, where it is said which is which ([`Source`]);
 //! * [`Specimens`]: the scatter between specimens of one kind, apart from that of measurement;
 //! * [`Caution`]: why a comparison may not be taken as it stands.
 //!
@@ -34,11 +35,13 @@ mod comparison;
 mod decomposed;
 mod filed;
 mod filed_likelihood;
+mod models;
 mod normal;
 mod number;
 mod one_slope;
 mod pair;
 mod ranking;
+mod source;
 mod specimens;
 mod stiffness_file;
 mod tests_of_equality;
@@ -53,9 +56,11 @@ pub use comparison::{Comparison, ComparisonError, ComparisonOptions, ElementRank
 pub use decomposed::{Average, Decomposed, DecomposedError, End, Ends, Estimate, Judged, Line};
 pub use filed::{FiledJoint, FiledTests, StatedQuantity};
 pub use filed_likelihood::FiledLikelihood;
+pub use models::{ModelIs, ModelRatio, ModelRatios};
 pub use number::{ELEMENTS, Kind, Number};
 pub use pair::{Equality, Figure, Pair, PairedNumber, Ratio};
 pub use ranking::Ranking;
+pub use source::Source;
 pub use specimens::{Scatter, Specimens};
 pub use stiffness_file::{
     ComparedLaw, EstimateEntry, FollowedLaw, LineEntry, LossFactor, Matrix, MatrixPair, ModelError, Nominal,

@@ -1,7 +1,8 @@
 use jointscope_comparison::{
-    Apart, Caution, Comparison, ElementRanking, Equality, LawOfAll, Matrix, Pair, SharedBody, Specimens,
+    Apart, Caution, Comparison, ElementRanking, Equality, LawOfAll, Matrix, ModelRatios, Pair, SharedBody,
+    Source, Specimens,
 };
-use jointscope_wording::Says;
+use jointscope_wording::{Says, models};
 use serde::Serialize;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
@@ -22,6 +23,8 @@ struct File<'a> {
     joints: Vec<Joint<'a>>,
     equality: Option<Equality>,
     pairs: &'a [Pair],
+    #[serde(skip_serializing_if = "Option::is_none")]
+    models: Option<Models<'a>>,
     rankings: Vec<Order<'a>>,
     #[serde(skip_serializing_if = "<[Specimens]>::is_empty")]
     specimens: &'a [Specimens],
@@ -38,10 +41,27 @@ struct Said<'a> {
 struct Joint<'a> {
     name: &'a str,
     joint: &'a str,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    kind: Option<Source>,
     stiffness: Matrix,
     damping: Matrix,
     std: Matrices,
     band: Option<(f64, f64)>,
+}
+
+#[derive(Serialize)]
+struct Models<'a> {
+    says: String,
+    as_measured: usize,
+    known: usize,
+    ratios: &'a [ModelRatios],
+}
+
+impl<'a> Models<'a> {
+    fn of(ratios: &'a [ModelRatios]) -> Option<Self> {
+        let (as_measured, known) = ModelRatios::agreement(ratios);
+        Some(Models { says: models::sentence(ratios)?, as_measured, known, ratios })
+    }
 }
 
 #[derive(Serialize)]
@@ -63,7 +83,7 @@ struct Order<'a> {
 }
 
 /// The contents of `comparison.json`: the joints' matrices with standard deviations, what they share, every two of them, the order by each number with its probability,
-/// the scatter of specimens, and what is to be known before any of it.
+/// models over measurements, the scatter of specimens, and what is to be known before any of it.
 pub fn comparison_file(comparison: &Comparison) -> Value {
     let name = |index: usize| comparison.joints[index].name.as_str();
     let joints = comparison.joints.iter().enumerate().map(|(index, joint)| {
@@ -71,6 +91,7 @@ pub fn comparison_file(comparison: &Comparison) -> Value {
         Joint {
             name: &joint.name,
             joint: &joint.joint,
+            kind: joint.source,
             stiffness: estimate.stiffness,
             damping: estimate.damping,
             std: Matrices { stiffness: estimate.stiffness_std, damping: estimate.damping_std },
@@ -112,6 +133,7 @@ pub fn comparison_file(comparison: &Comparison) -> Value {
         joints: joints.collect(),
         equality: comparison.equality,
         pairs: &comparison.pairs,
+        models: Models::of(&comparison.models),
         rankings: rankings.collect(),
         specimens: &comparison.specimens,
     })

@@ -7,6 +7,7 @@
   const root = document.documentElement;
   const dark = matchMedia("(prefers-color-scheme: dark)");
   const GUTTER = 52;
+  const dashes = { dashed: [6, 4], dotted: [2, 3] };
   const drawn = [];
 
   let palette = {};
@@ -146,7 +147,7 @@
       const stroke = () => palette[s.colour];
       const common = { colour: s.colour, scale: "y", stroke, width: 1.4, points: { show: true, size: 3, stroke, fill: stroke, filter: (u, index) => this.isolated(index) } };
       if (this.cyclic) common.gaps = (u, index, from, to, gaps) => this.turns(u, index, from, to, gaps);
-      if (s.style === "dashed") return { ...common, dash: [6, 4] };
+      if (s.style in dashes) return { ...common, dash: dashes[s.style] };
       if (s.style === "points") return { ...common, paths: () => null, points: { show: true, size: 5, stroke, fill: stroke, width: 0 } };
       if (s.style === "band") return { ...common, width: 0, stroke: "transparent", points: { show: false } };
       return common;
@@ -353,7 +354,7 @@
       for (const run of runs) if (run.length) {
         if (s.style === "band") inside.push(`<path fill="${palette[s.colour]}" opacity="0.26" d="M${[...run.map(at(low)), ...run.reverse().map(at(upper))].join("L")}Z"/>`);
         else if (s.style === "points") inside.push(path(s.colour, run.map(line => `M${at(low)(line)}h0`).join(""), 'stroke-linecap="round" style="stroke-width:5"'));
-        else inside.push(path(s.colour, `M${run.map(at(low)).join("L")}${run.length > 1 ? "" : "h1"}`, s.style === "dashed" ? 'stroke-dasharray="6 4"' : ""));
+        else inside.push(path(s.colour, `M${run.map(at(low)).join("L")}${run.length > 1 ? "" : "h1"}`, s.style in dashes ? `stroke-dasharray="${dashes[s.style].join(" ")}"` : ""));
       }
     }
     const outside = [], [abscissae, ordinates] = u.axes, labels = axis => axis._splits.map((split, index) => [split, axis._values[index]]).filter(([split]) => split != null);

@@ -1,10 +1,11 @@
 //! The page of several joints side by side: in what ratio they are, who is stiffer, how sure that is, and their spectra in common plots.
 
 mod elements;
+mod models;
 mod spectra;
 
 use jointscope_comparison::{Comparison, ElementRanking, Kind, Pair, PairedNumber, Scatter, Specimens};
-use jointscope_wording::{Says, capitalised, comparison as says};
+use jointscope_wording::{Says, capitalised, comparison as says, models as model_words};
 
 use crate::context::PageContext;
 use crate::format::{fixed, in_column, interval, percent, quantity, quantity_in, significant};
@@ -13,10 +14,11 @@ use crate::section::{Section, Verdict};
 use crate::table::Table;
 use crate::tone::Tone;
 use crate::unit::Scale;
-use elements::{elements, name_of};
+use elements::{elements, name_of, typeset};
+use models::model_section;
 use spectra::{compliance_section, spectra_section};
 
-/// The page of a comparison: ratios, orders with probabilities, the scatter of specimens, values, and the spectra of H41, K and C
+/// The page of a comparison: models over measurements, ratios, orders with probabilities, the scatter of specimens, values, and the spectra of H41, K and C
 /// (Figures 4–9).
 ///
 /// The same input gives the same bytes.
@@ -25,6 +27,7 @@ pub fn comparison_report(comparison: &Comparison, context: &PageContext) -> Repo
     Report::of(
         context
             .page(format!("{} joints side by side", names.len()), names.join(" · "), verdict(comparison))
+            .sections(model_section(comparison))
             .sections([ratio_section(comparison), order_section(comparison)])
             .sections(comparison.specimens.iter().map(specimen_section))
             .sections([value_section(comparison)])
@@ -39,15 +42,6 @@ pub fn comparison_report(comparison: &Comparison, context: &PageContext) -> Repo
 
 fn symbol(entry: &ElementRanking) -> String {
     name_of(entry.kind, entry.element)
-}
-
-/// A number of a pair as the page writes it.
-fn typeset(element: &str) -> String {
-    match element {
-        "elastic_centre" => "elastic centre".to_owned(),
-        "K22_at_centre" => "K₂₂ at the centre".to_owned(),
-        other => other.replace('1', "₁").replace('2', "₂"),
-    }
 }
 
 fn order_words(comparison: &Comparison, entry: &ElementRanking) -> String {
@@ -89,6 +83,9 @@ fn verdict(comparison: &Comparison) -> Verdict {
         }
         _ => "There is nothing to compare.".to_owned(),
     };
+    let of_models = model_words::sentence(&comparison.models);
+    let of_models = of_models.into_iter().chain(model_words::without_measurement(comparison));
+    details.extend(of_models.map(|text| capitalised(&sentence(&text))));
     details.extend(comparison.cautions.iter().map(|caution| sentence(&caution.says())));
     details.extend(says::shared(comparison).iter().map(|text| capitalised(&sentence(text))));
     let tone = match (comparison.is_unusable(), comparison.is_conclusive()) {

@@ -145,6 +145,8 @@ pub(crate) enum Style {
     Line,
     /// A dashed line, as for models beside measurements.
     Dashed,
+    /// A dotted line, as for a second model.
+    Dotted,
     /// Unconnected points.
     Points,
     /// A translucent area between two edges.

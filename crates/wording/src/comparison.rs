@@ -1,9 +1,11 @@
 //! Joints side by side, in words.
 
-use crate::format::{fixed, quantity, significant};
+use crate::format::{quantity, significant};
+use crate::models;
+pub use crate::ratio::percents;
 use crate::{Says, Summary};
 use jointscope_comparison::{
-    Caution, Compared, Comparison, ElementRanking, Equality, Pair, Ratio, Scatter, Specimens, WhyApart,
+    Caution, Compared, Comparison, ElementRanking, Equality, Pair, Scatter, Specimens, WhyApart,
 };
 
 /// Pairs beyond which only those with the first joint are listed.
@@ -20,19 +22,6 @@ pub fn main_pairs(comparison: &Comparison) -> impl Iterator<Item = &Pair> {
     let few = comparison.pairs.len() <= MANY;
     let first = &comparison.joints[0].name;
     comparison.pairs.iter().filter(move |pair| few || pair.first == *first)
-}
-
-/// `93.02 % (92.98 to 93.06 %)`.
-pub fn percents(ratio: &Ratio) -> String {
-    let decimals = decimals(ratio.std * 100.0);
-    let [value, low, high] =
-        [ratio.value, ratio.ci95[0], ratio.ci95[1]].map(|share| fixed(100.0 * share, decimals));
-    format!("{value} % ({low} to {high} %)")
-}
-
-/// Digits after the point that show two of a standard deviation.
-fn decimals(std: f64) -> usize {
-    if std > 0.0 && std.is_finite() { (1 - std.log10().floor() as i32).clamp(0, 6) as usize } else { 2 }
 }
 
 /// A p-value, or what it is below.
@@ -326,12 +315,13 @@ fn short(value: f64) -> String {
     }
 }
 
-/// What to mind first, ratios, orders, specimens.
+/// What to mind first, models over measurements, ratios, orders, specimens.
 impl Summary for Comparison {
     fn summary(&self) -> Vec<String> {
         let mut lines: Vec<String> = self.cautions.iter().map(|c| format!("caution: {}", c.says())).collect();
         lines.push(format!("by {}", estimate_words(self)));
         lines.extend(shared(self));
+        lines.extend(models::lines(self));
         for pair in main_pairs(self) {
             lines.extend(paired(self, pair));
         }
@@ -356,8 +346,17 @@ impl Summary for Comparison {
 }
 
 fn paired(comparison: &Comparison, pair: &Pair) -> Vec<String> {
+    // Ratios of a model and a measurement stand in a table of their own.
+    let is_in_a_table = |element: &str| {
+        let names = [&pair.first, &pair.second];
+        let mut of_pair = comparison
+            .models
+            .iter()
+            .filter(|one| names.contains(&&one.model) && names.contains(&&one.measurement));
+        of_pair.any(|one| one.numbers.iter().any(|number| number.element == element))
+    };
     let ratios = pair.numbers.iter().filter_map(|number| {
-        let ratio = number.ratio?;
+        let ratio = number.ratio.filter(|_| !is_in_a_table(&number.element))?;
         Some(format!("{}: {} is {} of {}", number.element, pair.second, percents(&ratio), pair.first))
     });
     let is_of_fits = comparison.compared == Compared::AllFrfs;

@@ -6,7 +6,7 @@
 //! * [`Says`]: a result, a finding or a place in one plain sentence or a few words;
 //! * [`Remarks`]: what a reader should know besides;
 //! * [`Summary`]: what was found, a line each, for a terminal;
-//! * [`comparison`], [`decomposition`]: joints side by side, and one by itself;
+//! * [`comparison`], [`models`], [`decomposition`]: joints side by side, models over measurements, and one by itself;
 //! * [`format`](mod@format), [`unit`](mod@unit): numbers with their deviations and units;
 //! * [`effect_name`]: an effect's kind and place in a few words;
 //! * [`place_and_sizes`]: another place of a finding, and its sizes there;
@@ -37,9 +37,11 @@ mod joint;
 mod levels;
 mod misfit;
 mod model_error;
+pub mod models;
 mod modes;
 mod numbers;
 mod places;
+mod ratio;
 mod summary;
 pub mod unit;
 

@@ -5,7 +5,7 @@ mod joints;
 use std::path::PathBuf;
 
 use clap::Args;
-use jointscope::comparison::{Comparison, ComparisonOptions};
+use jointscope::comparison::{Comparison, ComparisonOptions, Source};
 use jointscope::comparison_file;
 use jointscope::report::comparison_report;
 use jointscope::wording::Summary;
@@ -21,8 +21,12 @@ use joints::Listed;
 pub(super) struct CompareArguments {
     /// Directories with the stiffness.json of a decomposition each; a joint is called by its directory. Of several joints found at once all are compared, called DIR/J, or the
     /// one that `DIR/J` names.
-    #[arg(required_unless_present = "specimens", value_name = "DIR")]
+    #[arg(required_unless_present_any = ["specimens", "said"], value_name = "DIR")]
     pub directories: Vec<PathBuf>,
+    /// What a directory is of: `sim=DIR` a simulation, `exp=DIR` a measurement, `fem=DIR` finite elements. Plots draw each kind with dashes of its own, and ratios of models to
+    /// measurements have a table. May be given several times; the directory need not be listed again.
+    #[arg(long = "as", value_name = "KIND=DIR", value_parser = said)]
+    pub said: Vec<Said>,
     /// Directories of several specimens of one kind, whose scatter is wanted: `glued=a1,a2,a3`, or `glued=a/J,a/K`. May be given several times.
     #[arg(long, value_name = "NAME=DIR,DIR…", value_parser = kind)]
     pub specimens: Vec<Kind>,
@@ -31,6 +35,23 @@ pub(super) struct CompareArguments {
     pub independent: bool,
     #[command(flatten)]
     pub destination: Destination,
+}
+
+/// A directory and what it is of.
+#[derive(Debug, Clone)]
+pub(super) struct Said {
+    source: Source,
+    directory: PathBuf,
+}
+
+/// Reads `KIND=DIR`.
+fn said(text: &str) -> Result<Said, String> {
+    let form = "sim, exp or fem and a directory are needed, such as exp=DIR";
+    let (kind, directory) =
+        text.split_once('=').filter(|(_, directory)| !directory.is_empty()).ok_or(form)?;
+    let source = Source::ALL.into_iter().find(|source| source.short() == kind);
+    let source = source.ok_or_else(|| format!("`{kind}` is none of the kinds sim, exp and fem"))?;
+    Ok(Said { source, directory: directory.into() })
 }
 
 /// A kind of joint and the directories of its specimens.
@@ -58,6 +79,8 @@ pub(super) fn run(arguments: &CompareArguments) -> Result<String, Refusal> {
     for path in &arguments.directories {
         listed.add(path);
     }
+    let said: Vec<(usize, Source)> =
+        arguments.said.iter().map(|said| (listed.add(&said.directory), said.source)).collect();
     if let Some([first, again]) = listed.given_twice() {
         return Err(Refusal::new(format!(
             "`{}` and `{}` are the same directory: name each decomposition once",
@@ -73,7 +96,10 @@ pub(super) fn run(arguments: &CompareArguments) -> Result<String, Refusal> {
     let files = listed.files()?;
     arguments.destination.without_frfs("compare")?;
     arguments.destination.foresee(&files, &[FILE, PAGE])?;
-    let found = listed.read()?;
+    let mut found = listed.read()?;
+    for (place, source) in said {
+        found.say(place, source)?;
+    }
     let specimens = kinds.into_iter().map(|(name, places)| {
         let mut all: Vec<usize> = places.iter().flat_map(|&place| found.of(place)).collect();
         all.sort_unstable();

@@ -185,6 +185,82 @@ fn specimens_of_a_kind_scatter() {
 }
 
 #[test]
+fn models_and_measurements_are_drawn_with_dashes_of_their_own_and_set_against_each_other() {
+    let bench = bench("kinds");
+    // The softer strip stands for the test.
+    let arguments =
+        ["compare", "--as", "sim=sim", "--as", "exp=soft", "--as", "fem=fem", "-o", "out", "--also", "svg"];
+    let summary = bench.done(&arguments);
+    let file = bench.json("out/comparison.json");
+    let kinds: Vec<_> =
+        file["joints"].as_array().unwrap().iter().map(|j| (j["name"].clone(), j["kind"].clone())).collect();
+    let expected = [("sim", "simulation"), ("soft", "measurement"), ("fem", "finite_elements")];
+    assert_eq!(kinds, expected.map(|(name, kind)| (name.into(), kind.into())));
+    let models = &file["models"];
+    let says = models["says"].as_str().unwrap();
+    assert!(
+        summary.contains(says) && says.contains("sim is stiffer than soft by K11, K12, K22"),
+        "{summary}"
+    );
+    let k11 = &models["ratios"][0]["numbers"][0];
+    assert_eq!((&k11["element"], &k11["model_is"]), (&"K11".into(), &"larger".into()));
+    let value = k11["ratio"]["value"].as_f64().unwrap();
+    assert!((value - 2.864708 / 2.3).abs() < 1e-4, "{value}");
+    assert_eq!(models["ratios"][1]["kind"], "finite_elements");
+    let numbers = models["ratios"].as_array().unwrap().iter().flat_map(|r| r["numbers"].as_array().unwrap());
+    let of = |is: &str| numbers.clone().filter(|number| number["model_is"] == is).count() as u64;
+    assert_eq!(models["as_measured"], of("as_measured"));
+    assert_eq!(
+        models["known"],
+        ["as_measured", "larger", "smaller", "different"].map(of).iter().sum::<u64>()
+    );
+    // The table has a column a model and a row a number, and the pairs' lines do not say it again.
+    assert!(
+        summary
+            .lines()
+            .any(|line| line.trim_start().starts_with("sim / soft") && line.ends_with("fem / soft")),
+        "{summary}"
+    );
+    assert!(summary.lines().any(|line| line.starts_with("  K11  124.5")), "{summary}");
+    assert!(!summary.contains("K11: soft is") && summary.contains("K11: fem is"), "{summary}");
+    let page = bench.text("out/report.html");
+    for words in
+        ["Models over measurement", "sim (simulation)", "soft (measurement)", "fem (finite elements)"]
+    {
+        assert!(page.contains(words), "{words}");
+    }
+    let figure = bench.text("out/figures/assemblies-h4111.svg");
+    for dashes in ["stroke-dasharray=\"7 4\"", "stroke-dasharray=\"2 3\""] {
+        assert!(figure.contains(dashes), "{dashes}");
+    }
+    // Nobody has said anything of these.
+    bench.done(&["compare", "sim", "soft", "-o", "plain"]);
+    let file = bench.json("plain/comparison.json");
+    assert!(file.get("models").is_none() && file["joints"][0].get("kind").is_none());
+}
+
+#[test]
+fn a_directory_is_said_once_what_it_is_of() {
+    let bench = bench("said");
+    let words = ["`sim` and `", "are the same directory"];
+    bench.refused(&["compare", "sim", "soft", "--as", "sim=./sim", "-o", "out"], &words);
+    bench.refused(&["compare", "--as", "sim=sim", "--as", "exp=sim/", "-o", "out"], &words);
+    bench.refused(&["compare", "--as", "sim=sim", "-o", "out"], &["two decompositions"]);
+    let summary = bench.done(&["compare", "soft", "--as", "sim=sim", "-o", "out"]);
+    assert!(summary.contains("no joint is said to be of a measurement"), "{summary}");
+    storeys(&bench, "frame", "5e6");
+    bench.refused(
+        &["compare", "--as", "sim=frame", "--as", "exp=frame/upper", "-o", "none"],
+        &["`--as` names `frame/upper` twice"],
+    );
+    // Measured specimens of one kind.
+    let specimens = ["--specimens", "tests=soft,fem"];
+    let arguments = ["compare", "--as", "sim=sim", "--as", "exp=soft", "--as", "exp=fem", "-o", "kind"];
+    let summary = bench.done(&[&arguments[..], &specimens].concat());
+    assert!(summary.contains("tests: 2 specimens") && summary.contains("sim / fem"), "{summary}");
+}
+
+#[test]
 fn what_cannot_be_compared_is_refused() {
     let bench = bench("refused");
     bench.refused(&["compare", "sim", "-o", "out"], &["two decompositions"]);

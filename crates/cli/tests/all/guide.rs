@@ -1,4 +1,4 @@
-//! The guides to a structure of one's own and to many tests, typed along: their commands in their order, their excerpts put into the files that they name.
+//! The guides to a structure of one's own, to many tests and to comparisons, typed along: their commands in their order, their excerpts put into the files that they name.
 
 use crate::common::Bench;
 use serde_json::Value;
@@ -102,4 +102,50 @@ fn many_tests_go_from_folders_to_one_table_as_the_guide_says() {
         ["a-test,done,J", "b-test,done,J", "c-test,done,J"].iter().all(|row| decomposed.contains(row)),
         "{decomposed}"
     );
+}
+
+/// Whether a line is the one in a guide, numbers within 2 % of each other: they are the last digits of what noise leaves.
+fn is_line_of_guide(guide: &str, line: &str) -> bool {
+    let words = |text: &str| -> Vec<String> {
+        text.split_whitespace().map(|word| word.trim_matches(['(', ')', ',', ';']).to_owned()).collect()
+    };
+    let same = |(a, b): (&String, &String)| match (a.parse::<f64>(), b.parse::<f64>()) {
+        (Ok(a), Ok(b)) => (a - b).abs() <= 0.02 * b.abs(),
+        _ => a == b,
+    };
+    let (a, b) = (words(guide), words(line));
+    a.len() == b.len() && a.iter().zip(&b).all(same)
+}
+
+#[test]
+fn model_test_and_finite_elements_are_overlaid_as_the_guide_says() {
+    let bench = Bench::new("guide-compare");
+    bench.write("fixture.json", include_str!("../../../../fixtures/paper/D0.json"));
+    let (mut said, mut held) = (String::new(), 0);
+    for (kind, text) in blocks("compare.md") {
+        if let Some(file) = kind.strip_prefix("json excerpt ") {
+            edit(&bench, file, &text);
+            continue;
+        }
+        if kind == "text" {
+            for line in text.lines() {
+                assert!(said.lines().any(|own| is_line_of_guide(line, own)), "{line}\n{said}");
+                held += 1;
+            }
+            continue;
+        }
+        assert_eq!(kind, "sh", "{text}");
+        for line in text.lines() {
+            let words: Vec<&str> = line.split_whitespace().collect();
+            assert_eq!(words[0], "jointscope", "{line}");
+            said = bench.done(&words[1..]);
+        }
+    }
+    assert_eq!(held, 5);
+    let file = bench.json("out/comparison.json");
+    // The weld's strip is 2.5/2.864708 of the model's.
+    let ratio = &file["models"]["ratios"][0]["numbers"][0]["ratio"];
+    let [low, high] = [0, 1].map(|end| ratio["ci95"][end].as_f64().unwrap());
+    let truth = 2.864708 / 2.5;
+    assert!(low < truth && truth < high, "{ratio}");
 }

@@ -1,7 +1,7 @@
 //! Joints that one fit found at once, whose files are made by hand, against closed forms.
 
 use jointscope_comparison::{
-    Comparison, ComparisonError, ComparisonOptions, Decomposed, DecomposedError, WhyApart,
+    Comparison, ComparisonError, ComparisonOptions, Decomposed, DecomposedError, Source, WhyApart,
 };
 use jointscope_wording::comparison::shared;
 use serde_json::{Value, json};
@@ -134,4 +134,16 @@ fn a_file_whose_covariance_does_not_fit_its_joints_is_refused() {
     wrong = file(1000.0, 1050.0);
     wrong["joints"] = json!([]);
     assert_eq!(Decomposed::all("a", &wrong).unwrap_err(), DecomposedError::Missing("joints".into()));
+}
+
+#[test]
+fn of_joints_found_at_once_a_model_is_set_against_the_measured_one_of_its_name() {
+    let mut joints = all(&[("model", file(1000.0, 1100.0)), ("test", file(1000.0, 1100.0))]);
+    for joint in &mut joints {
+        let is_model = joint.name.starts_with("model");
+        joint.source = Some(if is_model { Source::Simulation } else { Source::Measurement });
+    }
+    let found = Comparison::of(joints).unwrap();
+    let set: Vec<_> = found.models.iter().map(|m| (m.model.as_str(), m.measurement.as_str())).collect();
+    assert_eq!(set, [("model/J", "test/J"), ("model/K", "test/K")]);
 }

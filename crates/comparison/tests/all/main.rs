@@ -4,6 +4,7 @@
 
 mod at_once;
 mod equality;
+mod models;
 
 use jointscope_comparison::{Caution, Comparison, ComparisonOptions, Decomposed, WhyApart};
 use jointscope_wording::Says;
@@ -37,10 +38,13 @@ fn file(k11: f64, by_mass: f64, stated: f64) -> Value {
     })
 }
 
-fn compared(files: &[Value], options: &ComparisonOptions) -> Comparison {
+fn joints(files: &[Value]) -> Vec<Decomposed> {
     let names = ["a", "b", "c", "d"];
-    let joints = names.iter().zip(files).map(|(name, file)| Decomposed::of(*name, file).unwrap());
-    Comparison::with(joints.collect(), options).unwrap()
+    names.iter().zip(files).map(|(name, file)| Decomposed::of(*name, file).unwrap()).collect()
+}
+
+fn compared(files: &[Value], options: &ComparisonOptions) -> Comparison {
+    Comparison::with(joints(files), options).unwrap()
 }
 
 /// Standard deviation of the difference of K11 of the first two.

@@ -1,14 +1,49 @@
 //! The spectra of all joints in common plots: K and C (Figures 5–9), and the assemblies' H41 (Figure 4).
 
-use jointscope_comparison::{Comparison, Decomposed, Kind, Line, Matrix};
+use jointscope_comparison::{Comparison, Decomposed, Kind, Line, Matrix, Source};
 use jointscope_inference::Z95;
+use jointscope_wording::models::source;
 
 use super::elements::{DIGITS, elements, name_of};
-use crate::plot::{Axis, Plot, Role, Span, YRange};
+use crate::plot::{Axis, Plot, Role, Span, Style, YRange};
 use crate::section::Section;
 
 /// Units of H41.
 const COMPLIANCE: [[&str; 2]; 2] = [["m/N", "1/N"], ["rad/N", "rad/(N*m)"]];
+
+/// How a joint's lines are drawn, so that models are told from measurements without colours (Figures 4–9).
+fn style(joint: &Decomposed) -> Style {
+    match joint.source {
+        Some(Source::Simulation) => Style::Dashed,
+        Some(Source::FiniteElements) => Style::Dotted,
+        Some(Source::Measurement) | None => Style::Line,
+    }
+}
+
+/// The joints with their places, models last: a line of dots is lost below a measurement's noise, not above it.
+fn in_drawing_order(comparison: &Comparison) -> impl Iterator<Item = (usize, &Decomposed)> {
+    let all = || comparison.joints.iter().enumerate();
+    let is_model = |joint: &Decomposed| joint.source.is_some_and(Source::is_model);
+    all().filter(move |(_, joint)| !is_model(joint)).chain(all().filter(move |(_, joint)| is_model(joint)))
+}
+
+/// The joint in the legend, with what it is of: `fem (finite elements)`.
+fn label(joint: &Decomposed) -> String {
+    match joint.source {
+        Some(of) => format!("{} ({})", joint.name, source(of)),
+        None => joint.name.clone(),
+    }
+}
+
+/// What the dashes stand for, where there are any.
+fn dashes(comparison: &Comparison) -> &'static str {
+    match comparison.joints.iter().any(|joint| joint.source.is_some()) {
+        true => {
+            " Lines of a measurement are full, those of a simulation dashed, those of finite elements dotted."
+        }
+        false => "",
+    }
+}
 
 /// |H41| of each assembly; nothing where no file has it.
 pub(super) fn compliance_section(comparison: &Comparison) -> Option<Section> {
@@ -21,19 +56,20 @@ pub(super) fn compliance_section(comparison: &Comparison) -> Option<Section> {
         let symbol = format!("H41{}{}", DIGITS[i], DIGITS[j]);
         let axis = Axis::logarithmic(format!("|{symbol}|"), COMPLIANCE[i][j]);
         let mut plot = Plot::new(symbol.clone(), Axis::frequency(), axis);
-        for (index, joint) in comparison.joints.iter().enumerate() {
+        for (index, joint) in in_drawing_order(comparison) {
             let size = |line: &Line| line.h41.map(|h41| h41[i][j][0].hypot(h41[i][j][1]));
             plot = plot.over(joint.lines.iter().map(|line| line.frequency));
-            plot = plot.line(&joint.name, Role::Trace(index), joint.lines.iter().map(size));
+            plot = plot.series(style(joint), label(joint), Role::Trace(index), joint.lines.iter().map(size));
         }
         plot.masked(0).caption(format!("|{symbol}| of the assemblies."))
     });
     let columns = if elements.len() == 1 { 1 } else { 2 };
     Some(
         Section::new("Assemblies")
-            .paragraph(
-                "Receptance H41 of each assembly: the motion of the far block due to force and moment on the near one, at the reference points of its decomposition.",
-            )
+            .paragraph(format!(
+                "Receptance H41 of each assembly: the motion of the far block due to force and moment on the near one, at the reference points of its decomposition.{}",
+                dashes(comparison)
+            ))
             .plots(columns, plots),
     )
 }
@@ -54,7 +90,8 @@ pub(super) fn spectra_section(comparison: &Comparison, kind: Kind) -> Option<Sec
     let elements = elements(comparison);
     let section = Section::new(word)
         .paragraph(format!(
-            "By {relation}. Bands are 95 % intervals from noise alone; gaps are masked lines."
+            "By {relation}. Bands are 95 % intervals from noise alone, horizontal dashes the estimates; gaps are masked lines.{}",
+            dashes(comparison)
         ))
         .plots(elements.len().min(2), elements.iter().map(|&element| plot(comparison, kind, element)));
     Some(section)
@@ -72,7 +109,7 @@ fn plot(comparison: &Comparison, kind: Kind, element: (usize, usize)) -> Plot {
     let symbol = name_of(kind, element);
     let mut plot =
         Plot::new(symbol.clone(), Axis::frequency(), Axis::linear(symbol.clone(), kind.unit(element)));
-    for (index, joint) in comparison.joints.iter().enumerate() {
+    for (index, joint) in in_drawing_order(comparison) {
         let role = Role::Trace(index);
         plot = plot.over(joint.lines.iter().map(|line| line.frequency));
         let edge = |sign: f64| {
@@ -85,7 +122,7 @@ fn plot(comparison: &Comparison, kind: Kind, element: (usize, usize)) -> Plot {
             plot = plot.band(format!("{}, 95 %", joint.name), role, edge(-1.0), edge(1.0));
         }
         let values = joint.lines.iter().map(|line| of(&line.stiffness, &line.damping));
-        plot = plot.line(&joint.name, role, values);
+        plot = plot.series(style(joint), label(joint), role, values);
     }
     for (index, joint) in comparison.joints.iter().enumerate() {
         let level = kind.of(&comparison.estimate(index), element).0;

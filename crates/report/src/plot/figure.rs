@@ -52,6 +52,7 @@ pub(super) fn series_swatch(series: &Series) -> Markup {
         @match series.style {
             Style::Line => path d="M1 5H21" stroke=(colour) {},
             Style::Dashed => path d="M1 5H21" stroke=(colour) stroke-dasharray="6 3" {},
+            Style::Dotted => path d="M1 5H21" stroke=(colour) stroke-dasharray="2 2.5" {},
             Style::Points => circle cx="11" cy="5" r="2.6" fill=(colour) {},
             Style::Band => rect x="1" y="0.5" width="20" height="9" fill=(colour) opacity="0.3" {},
         }

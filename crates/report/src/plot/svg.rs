@@ -225,8 +225,12 @@ impl Plot {
                 });
                 html! { path.pl-band style={ "fill:" (colour) } d=(areas.collect::<String>()) {} }
             }
-            Style::Line | Style::Dashed => {
-                let dashes = (series.style == Style::Dashed).then_some("7 4");
+            Style::Line | Style::Dashed | Style::Dotted => {
+                let dashes = match series.style {
+                    Style::Dashed => Some("7 4"),
+                    Style::Dotted => Some("2 3"),
+                    _ => None,
+                };
                 let runs = runs(lines.iter().map(|line| place(&series.values, *line)));
                 // A line between two gaps is a point.
                 let d = runs.into_iter().map(|run| match run.as_slice() {

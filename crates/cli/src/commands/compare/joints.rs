@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use jointscope::comparison::Decomposed;
+use jointscope::comparison::{Decomposed, Source};
 
 use crate::input;
 use crate::refusal::Refusal;
@@ -122,6 +122,20 @@ impl Found {
     /// Places of the joints that a name stands for.
     pub(super) fn of(&self, place: usize) -> impl Iterator<Item = usize> + '_ {
         self.places.get(place).into_iter().flatten().copied()
+    }
+
+    /// Says what the joints are of that a name stands for; refuses a joint of which it is said already, by itself and with all of its directory.
+    pub(super) fn say(&mut self, place: usize, source: Source) -> Result<(), Refusal> {
+        for &joint in self.places.get(place).into_iter().flatten() {
+            let joint = &mut self.joints[joint];
+            if joint.source.replace(source).is_some() {
+                return Err(Refusal::new(format!(
+                    "`--as` names `{}` twice, by itself and with its directory: say once what it is of",
+                    joint.name
+                )));
+            }
+        }
+        Ok(())
     }
 }
 
