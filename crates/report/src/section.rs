@@ -6,7 +6,7 @@ use crate::drawing::Drawing;
 use crate::error::PageError;
 use crate::format::QuantityText;
 use crate::plot::{Plot, PlotBook};
-use crate::table::{Table, TableText};
+use crate::table::{Table, TableText, with_commands};
 use crate::tone::Tone;
 use crate::unit::Scale;
 
@@ -30,11 +30,6 @@ impl Render for Verdict {
             }
         }
     }
-}
-
-/// What stands between backticks is what one types.
-pub(crate) fn with_commands(text: &str) -> Markup {
-    html! { @for (at, part) in text.split('`').enumerate() { @if at % 2 == 1 { code { (part) } } @else { (part) } } }
 }
 
 /// A key figure: label, value with uncertainty and unit, and a note.

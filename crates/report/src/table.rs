@@ -11,6 +11,11 @@ const FULL: f64 = 100.0;
 /// Strength of the full shade, %: the numbers stay readable on it.
 const STRONGEST: f64 = 70.0;
 
+/// What stands between backticks is what one types.
+pub(crate) fn with_commands(text: &str) -> Markup {
+    html! { @for (at, part) in text.split('`').enumerate() { @if at % 2 == 1 { code { (part) } } @else { (part) } } }
+}
+
 /// What a cell shows.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Cell {
@@ -228,7 +233,7 @@ impl Render for TableText {
                         }
                     }
                 }
-                @for footnote in &self.footnotes { p.footnote { (footnote) } }
+                @for footnote in &self.footnotes { p.footnote { (with_commands(footnote)) } }
             }
         }
     }
@@ -274,6 +279,13 @@ mod tests {
         for part in ["shade-10\">3<", "shade-4\">1<", "<td></td>", "shade-14\">2<"] {
             assert!(html.contains(part), "{part} in {html}");
         }
+    }
+
+    #[test]
+    fn what_a_footnote_says_to_type_is_set_as_that() {
+        let table = Table::of([1.0]).names("FRF", |_| "4/1").footnote("`jointscope decompose` <anew>");
+        let html = table.render().into_string();
+        assert!(html.contains("<code>jointscope decompose</code> &lt;anew&gt;"), "{html}");
     }
 
     #[test]

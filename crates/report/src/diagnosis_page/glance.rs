@@ -8,7 +8,8 @@ use super::fixture_view;
 use super::judgement::gain;
 use super::subject::Subject;
 use crate::format::{NOT_DETERMINED, ends, percent, significant};
-use crate::section::{Card, Section, with_commands};
+use crate::section::{Card, Section};
+use crate::table::with_commands;
 use crate::tone::Tone;
 use crate::unit::Scale;
 
