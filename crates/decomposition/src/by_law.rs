@@ -1,9 +1,11 @@
 //! What K and C by line would be if the joint were as it was fitted.
 
 use crate::Analysis;
+use crate::inertia::inertia_of_ends;
+use crate::interface_spectrum::{interfaces_behind, stiffness_and_damping};
 use crate::spectrum::dynamic_stiffness_on;
-use jointscope_beam::{mass_of_ends, transport};
-use jointscope_linalg::{ComplexMatrix2, Matrix2, RealMatrix2};
+use jointscope_beam::transport;
+use jointscope_linalg::{ComplexMatrix2, RealMatrix2};
 use num_complex::Complex64;
 
 impl Analysis {
@@ -19,19 +21,13 @@ impl Analysis {
         }
         let s = Complex64::new(spectrum.decay, omega);
         let sides = &spectrum.sides;
-        let mass = mass_of_ends(fit.mass.map_or(0.0, |(mass, _)| mass), sides.length);
-        let inertia = |row: usize, column: usize| -> ComplexMatrix2 {
-            let of = |i: usize, j: usize| s * s * mass[2 * row + i][2 * column + j];
-            Matrix2::new(of(0, 0), of(0, 1), of(1, 0), of(1, 1))
-        };
+        let inertia = inertia_of_ends(fit.mass.map_or(0.0, |(mass, _)| mass), sides.length, s);
         let receptances = [sides.alpha21[line], sides.alpha22[line], sides.beta33[line], sides.beta43[line]];
         let h41 = coupled(fit.follows.fit.dynamic_stiffness(s), inertia, receptances, sides.length)?;
         let found = dynamic_stiffness_on(spectrum, h41, sides, line);
         found.is_finite().then(|| spectrum.stiffness_and_damping(line, found))
     }
-}
 
-impl Analysis {
     /// K and C that the [interfaces by line](Self::interface_spectrum) would have if the joint were as it was fitted: of the translation, of the near and of the
     /// far rotation.
     ///
@@ -44,14 +40,8 @@ impl Analysis {
         }
         let s = Complex64::new(self.spectrum.decay, omega);
         let left = fit.follows.fit.dynamic_stiffness(s).inverse()? - of_beam.beam.to_complex();
-        let length = self.spectrum.sides.length;
-        let coupling = (left.at(0, 1) + left.at(1, 0)) * 0.5;
-        let near = coupling / length;
-        let springs = [left.at(0, 0) - coupling * length, near, left.at(1, 1) - near].map(|compliance| {
-            let dynamic = compliance.inv();
-            let damping = dynamic.im / s.im;
-            (dynamic.re - s.re * damping, damping)
-        });
+        let springs = interfaces_behind(left, self.spectrum.sides.length)
+            .map(|compliance| stiffness_and_damping(compliance.inv(), s));
         springs.iter().all(|(k, c)| k.is_finite() && c.is_finite()).then_some(springs)
     }
 }
@@ -59,15 +49,15 @@ impl Analysis {
 /// H41 of two sides on a joint of dynamic stiffness Z on d = u_to − R·u_from with s²M on its ends: forces on the ends are −(TᵀZT + s²M) u, T = [−R, I].
 fn coupled(
     z: ComplexMatrix2,
-    inertia: impl Fn(usize, usize) -> ComplexMatrix2,
+    inertia: [[ComplexMatrix2; 2]; 2],
     [alpha21, alpha22, beta33, beta43]: [ComplexMatrix2; 4],
     length: f64,
 ) -> Option<ComplexMatrix2> {
     let (across, one) = (transport(length).to_complex(), ComplexMatrix2::identity());
-    let near = across.transpose() * z * across + inertia(0, 0);
-    let near_by_far = inertia(0, 1) - across.transpose() * z;
-    let far_by_near = inertia(1, 0) - z * across;
-    let far = z + inertia(1, 1);
+    let near = across.transpose() * z * across + inertia[0][0];
+    let near_by_far = inertia[0][1] - across.transpose() * z;
+    let far_by_near = inertia[1][0] - z * across;
+    let far = z + inertia[1][1];
     // u_to by u_from, then u_from by the loads on its side.
     let follows = ComplexMatrix2::zero() - (one + beta33 * far).inverse()? * beta33 * far_by_near;
     let from = (one + alpha22 * (near + near_by_far * follows)).inverse()? * alpha21;
@@ -78,6 +68,7 @@ fn coupled(
 mod tests {
     use super::*;
     use crate::Relation;
+    use jointscope_linalg::Matrix2;
 
     fn matrix(of: [[f64; 2]; 4]) -> ComplexMatrix2 {
         let [a, b, c, d] = of.map(|[re, im]| Complex64::new(re, im));
@@ -96,7 +87,7 @@ mod tests {
         let z = matrix([[2e6, 9e3], [-7e4, -300.0], [-7e4, -300.0], [4e3, 20.0]]);
         let (a, b, length) = (block(1.1, 0.03), block(1.5, -0.02), 0.07);
         let receptances = [a, a, b, b];
-        let none = |_: usize, _: usize| ComplexMatrix2::zero();
+        let none = [[ComplexMatrix2::zero(); 2]; 2];
         let h41 = coupled(z, none, receptances, length).unwrap();
         let synthesized = Relation::synthesize(z, a, a, b, b, length).unwrap();
         let back = Relation::Exact.decompose(h41, a, a, b, b, length).unwrap();
@@ -112,10 +103,8 @@ mod tests {
         let (a, length, s2) = (block(1.1, 0.03), 0.07, Complex64::new(-1.0e6, 2.0e3));
         let (light, heavier) = (block(1.5, 0.0), block(1.6, 0.0));
         // The block's moment of inertia about its point is a thousandth of its mass.
-        let own = |row: usize, column: usize| match (row, column) {
-            (1, 1) => Matrix2::new(s2 * 0.1, Complex64::ZERO, Complex64::ZERO, s2 * 0.1e-3),
-            _ => ComplexMatrix2::zero(),
-        };
+        let mut own = [[ComplexMatrix2::zero(); 2]; 2];
+        own[1][1] = Matrix2::new(s2 * 0.1, Complex64::ZERO, Complex64::ZERO, s2 * 0.1e-3);
         let with = coupled(z, own, [a, a, light, light], length).unwrap();
         let expected = Relation::synthesize(z, a, a, heavier, heavier, length).unwrap();
         for (i, j) in [(0, 0), (0, 1), (1, 0), (1, 1)] {

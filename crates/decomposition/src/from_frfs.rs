@@ -135,11 +135,10 @@ fn fitted_interfaces(fit: &JointFit, sides: &Sides, exact: bool) -> Option<Inter
 }
 
 fn joint_interfaces(fit: &LikelihoodFit, sides: &Sides, tolerances: &[ToleranceShare]) -> Option<Interfaces> {
-    let JointLaw::Beam { youngs_modulus, second_moment } = &sides.joint().law else { return None };
+    let bending_stiffness = sides.joint().law.bending_stiffness()?;
     let covariance =
         std::array::from_fn(|m| std::array::from_fn(|n| fit.covariance[m][n] + fit.model_covariance[m][n]));
     let shifts: Vec<[f64; 5]> = tolerances.iter().filter_map(|share| share.compliance).collect();
-    let bending_stiffness = youngs_modulus.value * second_moment.value;
     interfaces(fit.stiffness, covariance, bending_stiffness, sides.length(), &shifts)
 }
 

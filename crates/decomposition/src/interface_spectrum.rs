@@ -7,11 +7,13 @@
 mod left_over;
 mod line;
 
+pub(crate) use left_over::interfaces_behind;
+pub(crate) use line::stiffness_and_damping;
 pub use line::{LineCompliance, LineSpring, Spread};
 
 use crate::Relation;
 use crate::settings::interfaces::HIDDEN_BY_NOISE;
-use crate::spectrum::JointSpectrum;
+use crate::spectrum::{JointSpectrum, counted};
 use jointscope_beam::end_compliance;
 use jointscope_frf::MaskReason;
 use jointscope_linalg::RealMatrix2;
@@ -93,6 +95,11 @@ pub struct InterfaceSpectrum {
 }
 
 impl InterfaceSpectrum {
+    /// Why lines are masked, with their counts; empty where none is.
+    pub fn masked_summary(&self) -> Vec<(InterfaceMask, usize)> {
+        counted(&self.masked)
+    }
+
     /// Solved lines on which the compliance is within its noise: of the translation, of the near and of the far rotation.
     pub fn within_noise(&self) -> [usize; 3] {
         std::array::from_fn(|of| self.lines.iter().filter(|line| line.all()[of].spring.is_none()).count())

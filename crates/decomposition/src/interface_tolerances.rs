@@ -3,7 +3,7 @@
 use crate::settings::differences::TOLERANCE_STEP;
 use crate::spectrum::read_at_s;
 use crate::{IdlePoints, InterfaceSpectrum, JointSpectrum, MeasurementPlan, Sides, interface_spectrum};
-use jointscope_fixture::{Fixture, JointLaw};
+use jointscope_fixture::Fixture;
 use jointscope_frf::fit_rigid_motion;
 use jointscope_spectra::FrfSet;
 
@@ -22,7 +22,8 @@ pub(crate) fn interfaces_with_tolerances(
     exact: bool,
 ) -> Option<InterfaceSpectrum> {
     let fixture = sides.fixture();
-    let stated = bending_stiffness(fixture, sides.joint_index())?;
+    let bending_stiffness = |fixture: &Fixture| fixture.joints()[sides.joint_index()].law.bending_stiffness();
+    let stated = bending_stiffness(fixture)?;
     let found = interface_spectrum(spectrum, stated, mass)?;
     let quantities = if exact { fixture.quantities_exact() } else { fixture.quantities() };
     let idle = IdlePoints::of(fixture, frfs.pairs());
@@ -30,17 +31,11 @@ pub(crate) fn interfaces_with_tolerances(
         let std = quantity.std.filter(|std| *std > 0.0 && !idle.have(quantity.owner))?;
         let mut other = fixture.clone();
         other.set_quantities([(index, quantity.value + TOLERANCE_STEP * std)]);
-        let stated = bending_stiffness(&other, sides.joint_index())?;
+        let stated = bending_stiffness(&other)?;
         Some((read_with(&other, frfs, sides, spectrum)?, stated, mass))
     });
     let of_mass = (mass_std > 0.0).then(|| (spectrum.clone(), stated, mass + TOLERANCE_STEP * mass_std));
     Some(found.with_tolerances(spectrum, moved.chain(of_mass), TOLERANCE_STEP))
-}
-
-/// EI of a joint's beam as stated, N·m²; nothing of a joint that is no beam.
-fn bending_stiffness(fixture: &Fixture, joint: usize) -> Option<f64> {
-    let JointLaw::Beam { youngs_modulus, second_moment } = &fixture.joints()[joint].law else { return None };
-    Some(youngs_modulus.value * second_moment.value)
 }
 
 /// The spectrum's H41 and sides as another fixture has them; of K and C nothing is asked.

@@ -44,6 +44,7 @@ mod element;
 mod estimate;
 mod from_frfs;
 mod idle_points;
+mod inertia;
 mod interface_spectrum;
 mod interface_tolerances;
 mod interfaces;

@@ -69,17 +69,22 @@ pub struct JointSpectrum {
     pub scalar: bool,
 }
 
+/// Reasons with the lines that they mask, each once, in the order in which they come.
+pub(crate) fn counted<R: Copy + PartialEq>(masked: &[(usize, R)]) -> Vec<(R, usize)> {
+    let mut all: Vec<(R, usize)> = Vec::new();
+    for (_, reason) in masked {
+        match all.iter_mut().find(|(other, _)| other == reason) {
+            Some((_, count)) => *count += 1,
+            None => all.push((*reason, 1)),
+        }
+    }
+    all
+}
+
 impl JointSpectrum {
     /// Reasons for masked lines with their counts, in words; empty where none was masked.
     pub fn masked_summary(&self) -> Vec<(MaskReason, usize)> {
-        let mut all: Vec<(MaskReason, usize)> = Vec::new();
-        for (_, reason) in &self.masked {
-            match all.iter_mut().find(|(r, _)| r == reason) {
-                Some((_, count)) => *count += 1,
-                None => all.push((*reason, 1)),
-            }
-        }
-        all
+        counted(&self.masked)
     }
 
     /// K and C of the dynamic stiffness K + sC on a line of the recording: C = Im/ω, K = Re − δC.

@@ -11,7 +11,7 @@ use crate::{
     Compliances, DecompositionError, IdlePoints, JointSpectrum, LikelihoodFit, MeasurementPlan, Sides,
 };
 use jointscope_averaging::Band;
-use jointscope_fixture::{Fixture, JointLaw};
+use jointscope_fixture::Fixture;
 use jointscope_frf::fit_rigid_motion;
 use jointscope_linalg::{ComplexMatrix2, RealMatrix2};
 use jointscope_spectra::FrfSet;
@@ -165,6 +165,5 @@ fn mean(of: &NominalResult, sides: &Sides, h41: &[ComplexMatrix2], compliances: 
 /// What the beam of a fixture does not account for in a joint of this stiffness; nothing where the joint is no beam.
 fn of_interfaces(fixture: &Fixture, sides: &Sides, stiffness: RealMatrix2) -> Option<[f64; 5]> {
     let joint = &fixture.joints()[sides.joint_index()];
-    let JointLaw::Beam { youngs_modulus, second_moment } = &joint.law else { return None };
-    left_over(stiffness, youngs_modulus.value * second_moment.value, fixture.joint_length(joint))
+    left_over(stiffness, joint.law.bending_stiffness()?, fixture.joint_length(joint))
 }

@@ -2,8 +2,8 @@
 
 use super::line::{LineCompliance, Spread};
 use crate::JointSpectrum;
-use jointscope_beam::mass_of_ends;
-use jointscope_linalg::{ComplexMatrix2, Matrix2, RealMatrix2};
+use crate::inertia::inertia_of_ends;
+use jointscope_linalg::{ComplexMatrix2, RealMatrix2};
 use num_complex::Complex64;
 
 /// Real weights of D11, D12, D21, D22.
@@ -11,6 +11,21 @@ type Weights = [f64; 4];
 
 /// D12 − D21, which is zero.
 const ASYMMETRY: Weights = [0.0, 1.0, -1.0, 0.0];
+
+/// t, r₂ and r₃ over a joint of this length, m.
+fn weights_of_interfaces(length: f64) -> [Weights; 3] {
+    let (arm, turn) = (0.5 * length, 0.5 / length);
+    [[1.0, -arm, -arm, 0.0], [0.0, turn, turn, 0.0], [0.0, -turn, -turn, 1.0]]
+}
+
+fn combined(left: ComplexMatrix2, weights: Weights) -> Complex64 {
+    (0..4).map(|e| left.at(e / 2, e % 2) * weights[e]).sum()
+}
+
+/// t, r₂ and r₃ behind a D without noise, over a joint of this length, m.
+pub(crate) fn interfaces_behind(left: ComplexMatrix2, length: f64) -> [Complex64; 3] {
+    weights_of_interfaces(length).map(|weights| combined(left, weights))
+}
 
 /// D on a line; `None` where it is not finite.
 pub(super) fn left_over_on(
@@ -55,17 +70,13 @@ fn held_by_joint(spectrum: &JointSpectrum, line: usize, mass: f64) -> Option<Hel
     let sides = &spectrum.sides;
     let (alpha22, beta33) = (sides.alpha22[line], sides.beta33[line]);
     let s = Complex64::new(spectrum.decay, spectrum.h41.lines.omega(line));
-    let all = mass_of_ends(mass, sides.length);
-    let inertia = |row: usize, column: usize| -> ComplexMatrix2 {
-        let of = |i: usize, j: usize| s * s * all[2 * row + i][2 * column + j];
-        Matrix2::new(of(0, 0), of(0, 1), of(1, 0), of(1, 1))
-    };
+    let inertia = inertia_of_ends(mass, sides.length, s);
     // The inverse by blocks, the far end eliminated first.
-    let far = (beta33.inverse()? + inertia(1, 1)).inverse()?;
-    let g22 = (alpha22.inverse()? + inertia(0, 0) - inertia(0, 1) * far * inertia(1, 0)).inverse()?;
-    let g32 = ComplexMatrix2::zero() - far * inertia(1, 0) * g22;
-    let g23 = ComplexMatrix2::zero() - g22 * inertia(0, 1) * far;
-    let g33 = far - g32 * inertia(0, 1) * far;
+    let far = (beta33.inverse()? + inertia[1][1]).inverse()?;
+    let g22 = (alpha22.inverse()? + inertia[0][0] - inertia[0][1] * far * inertia[1][0]).inverse()?;
+    let g32 = ComplexMatrix2::zero() - far * inertia[1][0] * g22;
+    let g23 = ComplexMatrix2::zero() - g22 * inertia[0][1] * far;
+    let g33 = far - g32 * inertia[0][1] * far;
     let across = spectrum.relation.transport(sides.length);
     let back = across.transpose();
     let (to_far, to_near) = (g33 - g32 * back, g32 - across * g22);
@@ -119,14 +130,10 @@ pub(super) struct LeftOver {
 }
 
 impl LeftOver {
-    fn combined(&self, weights: Weights) -> Complex64 {
-        (0..4).map(|e| self.value.at(e / 2, e % 2) * weights[e]).sum()
-    }
-
     /// A combination of D's elements by least squares under D12 = D21, weighted with the covariance of the noise: f − cov(f, e)/var(e)·e with
     /// e = D12 − D21. Its variance is smaller by |cov(f, e)|²/var(e).
     pub(super) fn reciprocal(&self, weights: Weights) -> LineCompliance {
-        let (value, tolerance) = (self.combined(weights), Spread::default());
+        let (value, tolerance) = (combined(self.value, weights), Spread::default());
         let Some(noise) = &self.noise else { return LineCompliance { value, std: None, tolerance } };
         let own = noise.covariance(weights, weights).re;
         let surplus = noise.covariance(ASYMMETRY, ASYMMETRY).re;
@@ -136,7 +143,7 @@ impl LeftOver {
         let shared = noise.covariance(weights, ASYMMETRY);
         let variance = own - shared.norm_sqr() / surplus;
         LineCompliance {
-            value: value - shared / surplus * self.combined(ASYMMETRY),
+            value: value - shared / surplus * combined(self.value, ASYMMETRY),
             std: Some((0.5 * variance.max(0.0)).sqrt()),
             tolerance,
         }
@@ -144,14 +151,12 @@ impl LeftOver {
 
     /// t, r₂ and r₃ over a joint of this length, m.
     pub(super) fn interfaces(&self, length: f64) -> [LineCompliance; 3] {
-        let (arm, turn) = (0.5 * length, 0.5 / length);
-        [[1.0, -arm, -arm, 0.0], [0.0, turn, turn, 0.0], [0.0, -turn, -turn, 1.0]]
-            .map(|weights| self.reciprocal(weights))
+        weights_of_interfaces(length).map(|weights| self.reciprocal(weights))
     }
 
     pub(super) fn asymmetry(&self) -> Option<f64> {
         let variance = self.noise.as_ref()?.covariance(ASYMMETRY, ASYMMETRY).re;
-        let left = self.combined(ASYMMETRY).norm_sqr();
+        let left = combined(self.value, ASYMMETRY).norm_sqr();
         (variance > 0.0).then(|| 2.0 * left / variance)
     }
 }

@@ -99,6 +99,12 @@ fn size_nearby(compliances: &[LineCompliance], at: usize) -> f64 {
     if weights > 0.0 { (sum / weights).abs() } else { compliances[at].value.re.abs() }
 }
 
+/// K and C of a dynamic stiffness K + sC.
+pub(crate) fn stiffness_and_damping(dynamic: Complex64, s: Complex64) -> (f64, f64) {
+    let damping = dynamic.im / s.im;
+    (dynamic.re - s.re * damping, damping)
+}
+
 /// One over a compliance at s; `None` where its real part cannot be told from zero well enough for the first-order deviations to hold.
 ///
 /// Its noise is held against what the lines beside it show. Held against its own value, those lines would be stated on which noise happens to make it large,
@@ -113,7 +119,7 @@ pub(super) fn spring(compliances: &[LineCompliance], at: usize, s: Complex64) ->
         return None;
     }
     let dynamic = compliance.value.inv();
-    let damping = dynamic.im / s.im;
+    let (stiffness, damping) = stiffness_and_damping(dynamic, s);
     // δ(1/D) = −δD/D²; of noise, which is circular, only the magnitude counts.
     let part = compliance.std.map(|std| std / (size * size));
     let tolerance = compliance.tolerance.times(-dynamic * dynamic);
@@ -121,7 +127,7 @@ pub(super) fn spring(compliances: &[LineCompliance], at: usize, s: Complex64) ->
     let of_stiffness =
         tolerance.real - 2.0 * windowed * tolerance.both + windowed * windowed * tolerance.imaginary;
     Some(LineSpring {
-        stiffness: dynamic.re - s.re * damping,
+        stiffness,
         damping,
         std: part.map(|std| (std * windowed.hypot(1.0), std / s.im)),
         std_fixture: (of_stiffness.max(0.0).sqrt(), tolerance.imaginary.max(0.0).sqrt() / s.im),

@@ -107,14 +107,9 @@ impl End {
 /// How many lines tell what, and why the others do not.
 fn what_lines_tell(subject: &Subject, found: &InterfaceSpectrum, ends: &Ends) -> String {
     let all = subject.analysis.spectrum.h41.lines.len();
-    let mut reasons: Vec<(&str, usize)> = Vec::new();
-    for (_, mask) in &found.masked {
-        match reasons.iter_mut().find(|(why, _)| *why == mask.why()) {
-            Some((_, count)) => *count += 1,
-            None => reasons.push((mask.why(), 1)),
-        }
-    }
-    let reasons: Vec<String> = reasons.iter().map(|(why, count)| format!("{why} ({count})")).collect();
+    let reasons = found.masked_summary();
+    let reasons: Vec<String> =
+        reasons.iter().map(|(mask, count)| format!("{} ({count})", mask.why())).collect();
     let masked = match reasons.is_empty() {
         true => String::new(),
         false => format!("; the others are masked: {}", reasons.join(", ")),
