@@ -3,7 +3,7 @@
 use crate::departures::{DEPARTED, Departure, farthest};
 use crate::diagnosis::Diagnosis;
 use crate::evidence::explained;
-use crate::finding::Finding;
+use crate::finding::{Finding, Tried};
 use crate::fit::Fit;
 use crate::location::{BandMisfit, Location};
 use crate::mismatch::{BandShare, FrfMismatch};
@@ -108,6 +108,12 @@ impl Diagnosis {
     /// no law, are what there is to see.
     pub fn is_unnamed(&self) -> bool {
         self.findings.iter().all(Finding::is_doubtful)
+    }
+
+    /// What was tried where nothing explains the recording, the nearest first; empty where something does.
+    pub fn tried_in_vain(&self) -> &[Tried] {
+        let in_vain = self.verdict == Verdict::Unexplained && self.findings.is_empty();
+        if in_vain { &self.tried } else { &[] }
     }
 
     /// The place that explains most of a mismatch without a name.

@@ -204,8 +204,7 @@ const RANKED: usize = 3;
 
 /// What came nearest where nothing was found to explain the recording.
 pub(crate) fn ranked(diagnosis: &Diagnosis) -> Option<String> {
-    let in_vain = diagnosis.verdict == Verdict::Unexplained && diagnosis.findings.is_empty();
-    let all = Some(&diagnosis.tried).filter(|all| in_vain && !all.is_empty())?;
+    let all = Some(diagnosis.tried_in_vain()).filter(|all| !all.is_empty())?;
     let told = |tried: &Tried| format!("{} {}", with_fitted_size(&tried.effect), fixed(tried.ln_gain, 1));
     let nearest: Vec<String> = all.iter().take(RANKED).map(told).collect();
     Some(format!(

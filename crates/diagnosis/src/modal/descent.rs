@@ -10,7 +10,7 @@ use jointscope_model_error::{ErrorSizes, Evidence, Linear};
 
 /// Decrease of χ² that a step promises below which a fit stands where it belongs.
 pub(super) const STILL: f64 = 1.0;
-/// Sets of derivatives that a descent may take, of which its sizes of error are taken anew afterwards: what is fitted closely at sizes that are about to change is fitted again.
+/// Sets of derivatives that a descent may take after whose end the sizes of error are taken anew: what is fitted closely at sizes that are about to change is fitted again.
 const DERIVATIVES: usize = 2;
 /// Gauss–Newton steps, at most.
 const STEPS: usize = 40;

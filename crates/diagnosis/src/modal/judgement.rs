@@ -111,11 +111,7 @@ impl ModalJudgement {
         let mut all: Vec<Tried> = Vec::new();
         for single in &self.search.singles {
             let Some(effect) = single.fit.hypothesis.effects().pop() else { continue };
-            let is_same = |other: &Tried| {
-                let other = &other.effect;
-                other.kind == effect.kind && other.place == effect.place && other.dof == effect.dof
-            };
-            if !all.iter().any(is_same) {
+            if !all.iter().any(|other| other.effect.is_named_as(&effect)) {
                 all.push(Tried { effect, ln_gain: single.fit.ln - self.search.none.ln });
             }
         }

@@ -120,11 +120,6 @@ impl Hypothesis {
     }
 }
 
-/// Whether kind, joint and component are the same.
-pub(crate) fn same_name(a: &Effect, b: &Effect) -> bool {
-    (a.kind, &a.place, a.dof) == (b.kind, &b.place, b.dof)
-}
-
 /// How each parameter of an amplitude-dependent effect moves: by its logarithm, or in parts of where it started.
 fn transforms(effect: &Effect) -> Vec<Transform> {
     let positive = RestoringLaw::of(effect).is_none_or(|law| law.is_positive());

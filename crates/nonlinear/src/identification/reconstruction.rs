@@ -174,7 +174,6 @@ impl Seen {
 #[cfg(test)]
 #[allow(clippy::unwrap_used)]
 mod tests {
-    use super::super::hypothesis::same_name;
     use super::super::locations::locations;
     use super::super::records::records;
     use super::super::shapes::{is_like, suggestions};
@@ -232,7 +231,7 @@ mod tests {
             let mut found = suggestions(&stated, &recorded, &locations, &focus).unwrap();
             found.sort_by(|a, b| b.share.total_cmp(&a.share));
             let hidden = law.to_effect("J", dof);
-            assert!(same_name(&found[0].effects[0], &hidden), "{law:?} in {dof:?}: {:?}", found[0]);
+            assert!(found[0].effects[0].is_named_as(&hidden), "{law:?} in {dof:?}: {:?}", found[0]);
             assert!(
                 found[0].effects.iter().any(|suggested| is_like(suggested, &hidden, 1.0 / 3.0)),
                 "{law:?} in {dof:?}: {:?}",

@@ -2,7 +2,7 @@
 
 use super::fit::Fit;
 use super::horizon::horizons;
-use super::hypothesis::{Hypothesis, same_name};
+use super::hypothesis::Hypothesis;
 use super::locations::locations;
 use super::misfit::{Focus, View};
 use super::records::Record;
@@ -95,14 +95,14 @@ impl<'a> Search<'a> {
         for periods in RECONSTRUCTED {
             let focus = self.focus(Some(periods));
             for suggestion in suggestions(fixture, &self.few, &locations, &focus).into_iter().flatten() {
-                match kinds.iter_mut().find(|kind| same_name(&kind.effects[0], &suggestion.effects[0])) {
+                match kinds.iter_mut().find(|kind| kind.effects[0].is_named_as(&suggestion.effects[0])) {
                     Some(kind) => kind.join(suggestion),
                     None => kinds.push(suggestion),
                 }
             }
         }
         let taken = base.effects();
-        kinds.retain(|kind| !taken.iter().any(|effect| same_name(effect, &kind.effects[0])));
+        kinds.retain(|kind| !taken.iter().any(|effect| effect.is_named_as(&kind.effects[0])));
         kinds.sort_by(|a, b| b.share.total_cmp(&a.share));
         kinds.truncate(CONTENDERS);
         let least = kinds.first().map_or(0.0, |kind| WEAK_KIND * kind.share);

@@ -1,6 +1,5 @@
 //! Laws whose strength is linear, compared by what they leave of a reconstructed force: suggestions of where to begin a fit.
 
-use super::hypothesis::same_name;
 use super::locations::JointLocation;
 use super::misfit::Focus;
 use super::reconstruction::{Seen, seen};
@@ -40,7 +39,7 @@ impl Suggestion {
 /// Whether names are the same and no parameter differs by more than a part `by`.
 pub(super) fn is_like(a: &Effect, b: &Effect, by: f64) -> bool {
     let close = |a: f64, b: f64| (a - b).abs() <= by * a.abs().max(b.abs());
-    same_name(a, b) && (0..a.parameters.len()).all(|i| close(a.value(i), b.value(i)))
+    a.is_named_as(b) && (0..a.parameters.len()).all(|i| close(a.value(i), b.value(i)))
 }
 
 /// Columns that stand for what the fixture states a little wrongly: stiffness, dashpot and mass across the joint.

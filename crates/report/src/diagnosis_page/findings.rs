@@ -36,8 +36,10 @@ pub(super) fn section(subject: &Subject) -> Section {
                  sits and how it varies with frequency."
             }
         });
-        let in_vain = diagnosis.verdict == Verdict::Unexplained && !diagnosis.tried.is_empty();
-        return if in_vain { section.with(tried(&diagnosis.tried)) } else { section };
+        return match diagnosis.tried_in_vain() {
+            [] => section,
+            all => section.with(tried(all)),
+        };
     }
     section.with(parameters(subject)).with(names(subject)).paragraph(format!(
         "{} names were tried. A probability is of kind, place and dof together; what is missing to 100 % is something not listed.",
