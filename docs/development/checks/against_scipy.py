@@ -17,6 +17,7 @@ import tempfile
 import numpy as np
 import pyuff
 import scipy.linalg
+import scipy.optimize
 
 EXAMPLE = pathlib.Path(__file__).resolve().parents[3] / "fixtures" / "glued-joint"
 PAIRS = [(4, 1), (3, 1), (4, 2), (3, 2)]
@@ -159,7 +160,23 @@ def smoothed(accelerance, coherence, averages, half=25):
                 floor, share = np.sum(row**2 * raw[w]) / np.sum(row**2), 0
             fresh[i] = floor + share * size[i]
         fit = fresh
-    return fit
+    return fit * levels(raw / fit, 2 * (averages - 1))
+
+
+def levels(ratio, degrees, told=150, shortest=4, fewest=8):
+    """What variances show beside a slow fit, by the most likely exponential over so few lines as tell a level, too large in the mean by the few degrees of freedom that it has."""
+    half = min(max(int(np.ceil(told / degrees / 2)), shortest), 25)
+    at_line = np.ones_like(ratio)
+    for i in range(len(ratio)):
+        near = np.arange(max(0, i - half), min(len(ratio), i + half + 1))
+        if len(near) < fewest:
+            continue
+        away, own = near - i, ratio[near]
+        cost = lambda q: np.sum(q[0] + q[1] * away + own * np.exp(-q[0] - q[1] * away))
+        level = scipy.optimize.minimize(cost, [np.log(own.mean()), 0.0], tol=1e-10).x[0]
+        total = degrees * len(near)
+        at_line[i] = np.exp(level) * total / (total - 2)
+    return at_line
 
 
 def noise(program, blocks, folder):

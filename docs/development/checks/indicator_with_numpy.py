@@ -79,7 +79,7 @@ def main(program):
                 worst = max(worst, departure)
                 print(f"{command[0]:6} σ{symbol}: {curve.min():.3e} to {curve.max():.3e}, largest departure from NumPy's {departure:.1e}")
     print("largest departure", f"{worst:.1e}")
-    return worst > 1e-10
+    return int(worst > 1e-10)
 
 
 if __name__ == "__main__":
