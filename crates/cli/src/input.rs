@@ -108,7 +108,17 @@ pub(crate) fn parsed(path: &Path, bytes: &[u8]) -> Result<Value, Refusal> {
         ));
     }
     serde_json::from_slice(bytes.strip_prefix(MARK.as_bytes()).unwrap_or(bytes))
-        .map_err(|error| Refusal::at(path, error))
+        .map_err(|error| Refusal::at(path, broken(&error)))
+}
+
+/// What is wrong with a file that a command wrote, and what to do.
+fn broken(error: &serde_json::Error) -> String {
+    let (line, column) = (error.line(), error.column());
+    let what = match error.is_eof() {
+        true => "ends in the middle",
+        false => "is no JSON, or no more of it,",
+    };
+    format!("{what} at line {line}, column {column}; make the file anew with the command that wrote it")
 }
 
 /// What was read.

@@ -139,25 +139,18 @@ impl Answer {
     fn export(&self, options: &ExportOptions) -> Result<Export, Refusal> {
         match self {
             Answer::Decomposition(path) => {
-                let contents = whole(path, "decompose")?;
+                let contents = input::json(path)?;
                 let joints = Decomposed::all("", &contents).map_err(|error| Refusal::at(path, error))?;
                 export::of_decompositions(&joints, options).map_err(|error| Refusal::at(path, error))
             }
             Answer::Diagnosis { diagnosis, repaired } => {
-                let contents = whole(diagnosis, "diagnose")?;
+                let contents = input::json(diagnosis)?;
                 let fixture = FixtureFile::read(repaired)?;
                 export::of_diagnosis(&contents, &fixture, options)
                     .map_err(|error| Refusal::at(diagnosis, error))
             }
         }
     }
-}
-
-/// The contents of a file that a command wrote; one that is cut off is to be made anew.
-fn whole(path: &Path, command: &str) -> Result<serde_json::Value, Refusal> {
-    input::parsed(path, &input::bytes(path)?).map_err(|refusal| {
-        Refusal::new(format_args!("{refusal}; make the file anew with `jointscope {command}`"))
-    })
 }
 
 /// The file to write: what is a directory, or looks like one, gets a file of its own in it.
