@@ -108,7 +108,7 @@ pub(crate) fn parameters_of(fixture: &Fixture, effect: &Effect, wrong: Parameter
 /// Share of a joint's length that may be missing.
 const MISSING: f64 = 0.95;
 /// Share of a beam's mass that may be missing at one place: a hole that takes more is no point, and takes stiffness with it.
-const HOLE: f64 = 0.1;
+const HOLE: f64 = 0.05;
 /// Masses of the whole structure that may be added.
 const ADDED: f64 = 2.0;
 

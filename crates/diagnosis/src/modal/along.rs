@@ -53,6 +53,8 @@ pub(super) struct Along {
     /// Index of the place among the effect's free coordinates, and where the least and the greatest of them that is credible lies.
     at: usize,
     range: [f64; 2],
+    /// The hypothesis in the middle of the probability, where the most probable one is as large as is possible: the end of what is credible is no estimate of it.
+    pub middle: Option<Hypothesis>,
 }
 
 impl Along {
@@ -80,11 +82,16 @@ impl Along {
         }
         parts.iter_mut().for_each(|(weight, _)| *weight /= total);
         let range = [all.first()?.means[at], all.last()?.means[at]];
-        Some(Along { parts, ln: highest + total.ln(), at, range })
+        Some(Along { parts, ln: highest + total.ln(), at, range, middle: None })
     }
 
     /// The 95 % interval of free coordinate `index`.
     fn interval(&self, index: usize) -> [f64; 2] {
+        self.quantiles(index, [TAIL, 1.0 - TAIL])
+    }
+
+    /// Below which values of free coordinate `index` these shares of the probability lie.
+    fn quantiles<const N: usize>(&self, index: usize, shares: [f64; N]) -> [f64; N] {
         let least = |held: &Held| held.stds[index].max(f64::MIN_POSITIVE);
         let below = |x: f64| -> f64 {
             let of = |(weight, held): &(f64, Held)| {
@@ -97,7 +104,7 @@ impl Along {
                 self.parts.iter().map(move |(_, held)| held.means[index] + sign * 5.0 * held.stds[index]);
             ends.fold(-sign * f64::INFINITY, |a, b| if sign * (b - a) > 0.0 { b } else { a })
         };
-        [TAIL, 1.0 - TAIL].map(|share| {
+        shares.map(|share| {
             let (mut low, mut high) = (reach(-1.0), reach(1.0));
             for _ in 0..HALVINGS {
                 let middle = 0.5 * (low + high);
@@ -188,8 +195,10 @@ impl Searcher<'_> {
         }
         let own = hypothesis.range_of(index);
         let moves = hypothesis.effect_parameters_of(index);
-        let at = moves[..place].iter().filter(|parameter| parameter.is_free()).count();
+        let free_before = |parameter: usize| moves[..parameter].iter().filter(|p| p.is_free()).count();
+        let at = free_before(place);
         let coordinate = own.start + at;
+        let size = own.start + free_before(effect.kind.spec().size.parameter);
         let bounds = [moves[place].low, moves[place].high];
         let ridge = Ridge { searcher: self, named, own, coordinate, bounds };
         let deviation = named.fit.covariance_at(&self.widened(&named.fit))?.std(coordinate);
@@ -199,7 +208,12 @@ impl Searcher<'_> {
         all.reverse();
         all.push(middle.1.clone());
         all.extend(ridge.side(&middle, step));
-        Along::of(&all, at)
+        let mut along = Along::of(&all, at)?;
+        if hypothesis.stopped().contains(&size) {
+            let [half] = along.quantiles(at, [0.5]);
+            along.middle = ridge.held(&middle.0, half).map(|(fit, _)| fit.hypothesis);
+        }
+        Some(along)
     }
 }
 
@@ -236,6 +250,13 @@ mod tests {
         let along = ridge(&evenly(0.0, 4.5));
         let [low, high] = along.interval(0);
         assert!((low - 0.0313).abs() < 0.01 && (high - 2.2414).abs() < 0.02, "{low} {high}");
+    }
+
+    #[test]
+    fn half_of_the_probability_lies_on_either_side_of_the_middle() {
+        // Half a normal distribution from where the body ends: its median is 0.674 deviations from there.
+        let [half] = ridge(&evenly(0.0, 4.5)).quantiles(0, [0.5]);
+        assert!((half - 0.674).abs() < 0.01, "{half}");
     }
 
     #[test]

@@ -1,9 +1,11 @@
 //! The decision at the end of a comparison by modes: verdict, probabilities, errors.
 
 use crate::Hypothesis;
+use crate::modal::along::Along;
 use crate::modal::features::Features;
 use crate::modal::fit::ModalFit;
 use crate::modal::judgement::ModalJudgement;
+use crate::modal::places::Places;
 use crate::modal::search::ModalSearch;
 use crate::modal::searcher::{Named, Searcher};
 use jointscope_findings::Verdict;
@@ -46,13 +48,16 @@ impl Judge<'_> {
         };
         let covariance = problem.at_sizes(best, &widened).and_then(|(_, covariance)| covariance);
         let none = &self.search.none;
-        let stated = [none, best].map(nearest);
+        let mut stated = [none, best].map(nearest);
         let names = self.search.alternatives.iter().zip(&self.search.elsewhere);
         let names = self.search.best.names.iter().zip(names);
         let names = names.map(|(&own, (all, elsewhere))| self.probabilities(own, all, elsewhere)).collect();
-        let places = (0..self.search.best.names.len())
+        let places: Vec<Places> = (0..self.search.best.names.len())
             .map(|index| self.searcher.places(&self.search, index))
             .collect();
+        if let [Places { own: Some(Along { middle: Some(middle), .. }), .. }] = &places[..] {
+            stated[1] = middle.clone();
+        }
         ModalJudgement {
             verdict,
             places,
