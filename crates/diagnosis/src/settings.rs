@@ -2,8 +2,17 @@
 //!
 //! "Measured" means: by `jointscope prove` on 200 to 500 concealed cases (`docs/records`), where a value was varied by about a factor of two
 //! each way and the one kept that lost no score; times are processor time.
+//!
+//! What a caller may set are the fields of [`Settings`]. What no caller sets are constants:
+//!
+//! | module | numbers of |
+//! |---|---|
+//! | [`modal`] | fits to modes: priors, descents and their rounds, sizes of a model's error, walks along a ridge |
+//!
+//! Limits of rounding and halvings of an interval, which decide nothing, stand where they are used; so do physical constants, sizes of arrays and the starts that belong to a law.
 
 mod location;
+pub(crate) mod modal;
 
 use jointscope_inference::{Damping, Limit};
 use jointscope_model_error::ErrorSizes;

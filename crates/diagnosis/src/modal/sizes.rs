@@ -3,6 +3,7 @@
 use crate::modal::fit::ModalFit;
 use crate::modal::standing::Problem;
 use crate::settings::ModalSettings;
+use crate::settings::modal::sizes::NEGLIGIBLE;
 use jointscope_fixture::{Fixture, Place, StatedError};
 use jointscope_model_error::{
     DAMPING, ErrorSizes, Evidence, FREQUENCY, GAIN, KINDS, SHAPE, SizePrior, UPPER_RESIDUAL,
@@ -43,12 +44,6 @@ impl ModelError {
         [self.frequency, self.damping, self.residue] == [0.0; 3]
     }
 }
-
-/// Share of the usual size below which an error is none: ten times the least that is tried.
-const NEGLIGIBLE: f64 = 10.0 * ErrorSizes::LEAST;
-
-/// Multiple of the usual error of gains beyond which a channel's is no error of them: one record of many that is a tenth too large is the very thing that a name says.
-pub(super) const BEYOND_ERRORS: f64 = 4.0;
 
 /// Whether all bodies have modes of their own above the band.
 fn all_bend(fixture: &Fixture) -> bool {

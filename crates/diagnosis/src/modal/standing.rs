@@ -2,6 +2,7 @@
 
 use crate::Hypothesis;
 use crate::modal::prior::Prior;
+use crate::settings::modal::differences::{MOST_STEP, STEP};
 use crate::work::Work;
 use jointscope_fixture::Fixture;
 use jointscope_model_error::{
@@ -39,8 +40,6 @@ pub(super) struct Iterate {
 /// Values of an FRF that the search for a model's poles, and following known ones, cost about.
 const SEARCHED: usize = 1000;
 const FOLLOWED: usize = 300;
-/// Step of differences, in prior standard deviations and at most in coordinates.
-const DIFFERENCE: (f64, f64) = (1e-3, 2e-3);
 impl Problem<'_> {
     /// What is known of the sizes of the error beforehand.
     pub(crate) fn prior(&self) -> SizePrior {
@@ -107,7 +106,7 @@ impl Problem<'_> {
             ModelledModes::after_step(&fixture, self.recorded, (about, modelled))
         };
         of.map(|index| {
-            let size = (DIFFERENCE.0 * priors[index].std).min(DIFFERENCE.1);
+            let size = (STEP * priors[index].std).min(MOST_STEP);
             let inward = hypothesis.inward(index, size);
             // A beam that ends at a support cannot become shorter: then longer.
             let moved = |step: f64| Some((step, beside(&hypothesis.moved(index, step))?));
