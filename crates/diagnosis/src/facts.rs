@@ -1,6 +1,6 @@
 //! What a diagnosis shows besides its findings: where the mismatch sits, how it goes with frequency, what else the reader must know.
 
-use crate::departures::{DEPARTED, Departure, farthest};
+use crate::departures::{Departure, farthest};
 use crate::diagnosis::Diagnosis;
 use crate::evidence::explained;
 use crate::finding::{Finding, Tried};
@@ -8,6 +8,7 @@ use crate::fit::Fit;
 use crate::location::{BandMisfit, Location};
 use crate::mismatch::{BandShare, FrfMismatch};
 use crate::settings::Settings;
+use crate::settings::effects::quantities::DEPARTED;
 use jointscope_findings::Verdict;
 use jointscope_fixture::{EffectKind, Place};
 use jointscope_spectra::FrfPair;
