@@ -10,6 +10,7 @@
 //! | [`lines`] | what is taken from a recording: FRFs and lines that are searched, their noise, lines that contradict all others |
 //! | [`drift`] | structures that change between references |
 //! | [`effects`] | where a search for effects sets out, how far their parameters may go, how common they are; quantities that are stated wrongly |
+//! | [`location`] | the map of places with no law assumed |
 //! | [`modal`] | fits to modes: priors, descents and their rounds, sizes of a model's error, walks along a ridge |
 //!
 //! Limits of rounding and halvings of an interval, which decide nothing, stand where they are used; so do physical constants, sizes of arrays and the starts that belong to a law.
@@ -17,7 +18,7 @@
 pub(crate) mod drift;
 pub(crate) mod effects;
 pub(crate) mod lines;
-mod location;
+pub(crate) mod location;
 pub(crate) mod modal;
 
 use jointscope_inference::{Damping, Limit};

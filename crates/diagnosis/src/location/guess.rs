@@ -10,11 +10,9 @@ use super::free_scalars::FreeScalars;
 use super::laws::{Law, Line};
 use super::pattern::Inversion;
 use crate::settings::LawSettings;
+use crate::settings::location::differences::PARAMETER_STEP;
 use jointscope_inference::{Convergence, LeastSquares, NormalEquations, Precision, Settings, descend};
 use num_complex::Complex64;
-
-/// Relative step of the parameters' differences.
-const DIFFERENCE: f64 = 1e-5;
 
 /// A site's scalars ready for laws.
 pub(super) struct Measured<'a> {
@@ -140,7 +138,7 @@ impl<'a> Measured<'a> {
         let mut moved = [0.0; 4];
         moved[..parameters.len()].copy_from_slice(parameters);
         for (p, slope) in slopes.iter_mut().enumerate() {
-            let step = DIFFERENCE * parameters[p].abs().max(1e-9);
+            let step = PARAMETER_STEP * parameters[p].abs().max(1e-9);
             moved[p] = parameters[p] + step;
             let up = (law.value)(line, &moved[..parameters.len()]);
             moved[p] = parameters[p] - step;

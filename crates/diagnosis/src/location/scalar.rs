@@ -1,14 +1,9 @@
 //! One line's scalar, eliminated by weighted least squares over the FRFs.
 
 use super::pattern::RationalResponse;
+use crate::settings::location::scalar::{ENOUGH, MOST_STEPS, STARTS};
 use jointscope_inference::{Damping, LeastSquares, Precision, Settings, descend};
 use num_complex::Complex64;
-
-/// Newton steps for a scalar that does not enter linearly, and starts besides its neighbour's and zero.
-const NEWTON: usize = 12;
-const STARTS: [f64; 3] = [-0.3, 0.5, 2.0];
-/// A start that leaves this much per real value needs no others beside it.
-const ENOUGH: f64 = 4.0;
 
 /// The scalar that fits the line's FRFs best; zero where the pattern vanishes.
 pub(super) fn eliminated(
@@ -47,7 +42,7 @@ fn newton(
     start: Complex64,
 ) -> (Complex64, f64) {
     let settings = Settings {
-        steps: NEWTON,
+        steps: MOST_STEPS,
         damping: Damping { initial: 0.0, decrease: 0.0, least: 0.0, raised: 1.0, most: 1e2 },
         ..Settings::default()
     };
