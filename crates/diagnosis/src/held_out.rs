@@ -2,7 +2,7 @@
 
 use crate::fit::Fit;
 use crate::search::Search;
-use crate::settings::lines::held_out::{BANDS, FEWEST_WIDTHS};
+use crate::settings::lines::held_out::{BANDS, FEWEST_FRFS, FEWEST_WIDTHS};
 use crate::{DiagnosisError, DiagnosisOptions, Hypothesis, Observation};
 use jointscope_findings::HeldOut;
 use jointscope_spectra::FrfPair;
@@ -78,7 +78,7 @@ fn held_out_frfs(
         return Err(DiagnosisError::HoldOut(missing.to_string()));
     }
     match (options.hold_out.as_slice(), pairs) {
-        ([], [.., last]) if pairs.len() >= 4 => Ok(vec![last.clone()]),
+        ([], [.., last]) if pairs.len() >= FEWEST_FRFS => Ok(vec![last.clone()]),
         ([], _) => Ok(Vec::new()),
         (named, _) if named.len() >= pairs.len() => Err(DiagnosisError::HoldOut(named[0].to_string())),
         (named, _) => Ok(named.to_vec()),

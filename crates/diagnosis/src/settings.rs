@@ -12,6 +12,7 @@
 //! | [`effects`] | where a search for effects sets out, how far their parameters may go, how common they are; quantities that are stated wrongly |
 //! | [`location`] | the map of places with no law assumed |
 //! | [`modal`] | fits to modes: priors, descents and their rounds, sizes of a model's error, walks along a ridge |
+//! | [`statements`] | what is said of a diagnosis: from when on a difference is worth a word |
 //!
 //! Limits of rounding and halvings of an interval, which decide nothing, stand where they are used; so do physical constants, sizes of arrays and the starts that belong to a law.
 
@@ -20,6 +21,7 @@ pub(crate) mod effects;
 pub(crate) mod lines;
 pub(crate) mod location;
 pub(crate) mod modal;
+pub(crate) mod statements;
 
 use jointscope_inference::{Damping, Limit};
 use jointscope_model_error::ErrorSizes;

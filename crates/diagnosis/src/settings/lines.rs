@@ -33,6 +33,8 @@ pub(crate) mod held_out {
     pub(crate) const BANDS: [f64; 2] = [0.3, 0.62];
     /// Fewest lines, in widths of a band: of fewer nothing can be spared.
     pub(crate) const FEWEST_WIDTHS: usize = 10;
+    /// Fewest FRFs of which one is held out besides.
+    pub(crate) const FEWEST_FRFS: usize = 4;
 }
 
 /// Noise.
