@@ -3,7 +3,8 @@
 //! "Measured" means: by `jointscope prove` on 200 to 500 concealed cases (`docs/records`), where a value was varied by about a factor of two
 //! each way and the one kept that lost no score; times are processor time.
 //!
-//! What a caller may set are the fields of [`Settings`]. What no caller sets are constants:
+//! What a caller may set are the fields of [`Settings`] and of what it holds, with their defaults at the end of this file ([`ModalSettings`] and [`LocationSettings`] have
+//! theirs beside them). What no caller sets are constants, by the question that they decide:
 //!
 //! | module | numbers of |
 //! |---|---|
@@ -13,6 +14,7 @@
 //! | [`location`] | the map of places with no law assumed |
 //! | [`modal`] | fits to modes: priors, descents and their rounds, sizes of a model's error, walks along a ridge |
 //! | [`statements`] | what is said of a diagnosis: from when on a difference is worth a word |
+//! | [`work`] | what things cost, and what share of the work one step may take |
 //!
 //! Limits of rounding and halvings of an interval, which decide nothing, stand where they are used; so do physical constants, sizes of arrays and the starts that belong to a law.
 
@@ -22,6 +24,7 @@ pub(crate) mod lines;
 pub(crate) mod location;
 pub(crate) mod modal;
 pub(crate) mod statements;
+pub(crate) mod work;
 
 use jointscope_inference::{Damping, Limit};
 use jointscope_model_error::ErrorSizes;
