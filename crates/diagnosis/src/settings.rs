@@ -13,6 +13,7 @@
 //! | [`effects`] | where a search for effects sets out, how far their parameters may go, how common they are; quantities that are stated wrongly |
 //! | [`location`] | the map of places with no law assumed |
 //! | [`modal`] | fits to modes: priors, descents and their rounds, sizes of a model's error, walks along a ridge |
+//! | [`evidence`] | probabilities, and what counts as explained |
 //! | [`statements`] | what is said of a diagnosis: from when on a difference is worth a word |
 //! | [`work`] | what things cost, and what share of the work one step may take |
 //!
@@ -20,6 +21,7 @@
 
 pub(crate) mod drift;
 pub(crate) mod effects;
+pub(crate) mod evidence;
 pub(crate) mod lines;
 pub(crate) mod location;
 pub(crate) mod modal;

@@ -11,7 +11,8 @@ use super::laws::{Law, Line};
 use super::pattern::Inversion;
 use crate::settings::LawSettings;
 use crate::settings::location::differences::PARAMETER_STEP;
-use jointscope_inference::{Convergence, LeastSquares, NormalEquations, Precision, Settings, descend};
+use crate::settings::location::guess::CONVERGENCE;
+use jointscope_inference::{LeastSquares, NormalEquations, Precision, Settings, descend};
 use num_complex::Complex64;
 
 /// A site's scalars ready for laws.
@@ -151,11 +152,8 @@ impl<'a> Measured<'a> {
     fn improved(&self, law: &Law, start: Vec<f64>) -> Option<Guess> {
         let departures = vec![0.0; self.free_scalars.order];
         let left = self.left(law, &start, &departures)?;
-        let settings = Settings {
-            steps: self.settings.guesses.1,
-            convergence: Convergence { gain: 1e-4, share: 0.0, floor: 0.0 },
-            ..Settings::default()
-        };
+        let settings =
+            Settings { steps: self.settings.guesses.1, convergence: CONVERGENCE, ..Settings::default() };
         let start = Guess { parameters: start, departures, left };
         descend(&Guessing { measured: self, law }, start, None, &settings).map(|end| end.point)
     }

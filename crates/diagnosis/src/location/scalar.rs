@@ -1,8 +1,8 @@
 //! One line's scalar, eliminated by weighted least squares over the FRFs.
 
 use super::pattern::RationalResponse;
-use crate::settings::location::scalar::{ENOUGH, MOST_STEPS, STARTS};
-use jointscope_inference::{Damping, LeastSquares, Precision, Settings, descend};
+use crate::settings::location::scalar::{DAMPING, ENOUGH, MOST_STEPS, STARTS};
+use jointscope_inference::{LeastSquares, Precision, Settings, descend};
 use num_complex::Complex64;
 
 /// The scalar that fits the line's FRFs best; zero where the pattern vanishes.
@@ -41,11 +41,7 @@ fn newton(
     weights: &[f64],
     start: Complex64,
 ) -> (Complex64, f64) {
-    let settings = Settings {
-        steps: MOST_STEPS,
-        damping: Damping { initial: 0.0, decrease: 0.0, least: 0.0, raised: 1.0, most: 1e2 },
-        ..Settings::default()
-    };
+    let settings = Settings { steps: MOST_STEPS, damping: DAMPING, ..Settings::default() };
     let line = Line { responses, measured, weights };
     let left = line.objective(&start, &());
     descend(&line, start, None, &settings).map_or((start, left), |end| (end.point, end.objective))

@@ -3,7 +3,7 @@
 use crate::modal::fit::ModalFit;
 use crate::modal::standing::Problem;
 use crate::settings::ModalSettings;
-use crate::settings::modal::sizes::NEGLIGIBLE;
+use crate::settings::modal::sizes::{LEAST_OF_STATED_DAMPING, NEGLIGIBLE};
 use jointscope_fixture::{Fixture, Place, StatedError};
 use jointscope_model_error::{
     DAMPING, ErrorSizes, Evidence, FREQUENCY, GAIN, KINDS, SHAPE, SizePrior, UPPER_RESIDUAL,
@@ -102,12 +102,16 @@ impl Problem<'_> {
         self.relative_sizes_as_stated(fit).into_iter().fold(0.0, f64::max)
     }
 
-    /// The sizes of [`Problem::relative_sizes`] by which a hypothesis stands or falls: none of upper residuals beside effects where bodies are rigid; that of damping ratios by no less than half of what the fixture states as their deviations: nobody claimed to know them better than these.
+    /// The sizes of [`Problem::relative_sizes`] by which a hypothesis stands or falls: none of upper residuals beside effects where bodies are rigid; that of damping ratios by no less than a share of what the fixture states as their deviations.
     /// Where effects have made other modes than those of which it states ratios, by no less than the whole: these get theirs from the others' damping.
     pub(crate) fn relative_sizes_as_stated(&self, fit: &ModalFit) -> Vec<f64> {
         let mut sizes = self.relative_sizes(fit);
         let stated = fit.hypothesis.deviation_of_damping();
-        let usual = if fit.hypothesis.springs_and_masses().is_some() { stated } else { 0.5 * stated };
+        let usual = if fit.hypothesis.springs_and_masses().is_some() {
+            stated
+        } else {
+            LEAST_OF_STATED_DAMPING * stated
+        };
         if usual > self.sizes.damping {
             sizes[DAMPING] *= self.sizes.damping / usual;
         }

@@ -30,6 +30,10 @@ pub(crate) mod starts {
 pub(crate) mod bounds {
     /// Unit in which abscissae move, as a share of the body's extent.
     pub(crate) const ABSCISSA_UNIT: f64 = 0.1;
+    /// Least factor that an effect is scaled to where it must stay positive: no farther than this does a straight line lead.
+    pub(crate) const LEAST_FACTOR: f64 = 0.5;
+    /// The largest.
+    pub(crate) const MOST_FACTOR: f64 = 2.0;
     /// Share of a joint's length that may be missing.
     pub(crate) const MISSING_LENGTH: f64 = 0.95;
     /// Share of a beam's mass that may be missing at one place: a hole that takes more is no point, and takes stiffness with it.

@@ -114,12 +114,25 @@ pub(crate) mod sites {
 
 /// A line's scalar that does not enter linearly.
 pub(crate) mod scalar {
+    use jointscope_inference::Damping;
+
+    /// Damping of the steps: none but after one that has failed.
+    pub(crate) const DAMPING: Damping =
+        Damping { initial: 0.0, decrease: 0.0, least: 0.0, raised: 1.0, most: 1e2 };
     /// Newton steps from a start, at most.
     pub(crate) const MOST_STEPS: usize = 12;
     /// Starts besides its neighbour's and zero.
     pub(crate) const STARTS: [f64; 3] = [-0.3, 0.5, 2.0];
     /// A start that leaves this much per real value needs no others beside it.
     pub(crate) const ENOUGH: f64 = 4.0;
+}
+
+/// Laws guessed from the scalars of all lines.
+pub(crate) mod guess {
+    use jointscope_inference::Convergence;
+
+    /// Decrease of χ² below which a guess is improved no further.
+    pub(crate) const CONVERGENCE: Convergence = Convergence { gain: 1e-4, share: 0.0, floor: 0.0 };
 }
 
 /// Derivatives by differences.

@@ -1,5 +1,11 @@
 //! Numbers of fits to the modes of a recording, by the question that each decides. What a caller may set of them stands in `ModalSettings`.
 
+/// Modes of the recording by themselves.
+pub(crate) mod recorded {
+    /// Orders of a free fit beside those of the modes that a model may have, where nothing but the FRFs tells their noise.
+    pub(crate) const SPARE_ORDERS: usize = 8;
+}
+
 /// Sizes of a model's error.
 pub(crate) mod sizes {
     use jointscope_model_error::ErrorSizes;
@@ -8,6 +14,8 @@ pub(crate) mod sizes {
     pub(crate) const NEGLIGIBLE: f64 = 10.0 * ErrorSizes::LEAST;
     /// Multiple of the usual error of gains beyond which a channel's is no error of them: one record of many that is a tenth too large is the very thing that a name says.
     pub(crate) const BEYOND_ERRORS: f64 = 4.0;
+    /// Share of what the fixture states as deviations of damping ratios that counts as the usual error of them at the least: nobody claimed to know them better than these.
+    pub(crate) const LEAST_OF_STATED_DAMPING: f64 = 0.5;
 }
 
 /// What is known of coordinates beforehand, as standard deviations of them.
