@@ -1,5 +1,6 @@
 //! The state of a structure that a change is told from.
 
+use crate::settings::statements::baseline::MORE_THAN_NOISE;
 use crate::{Fit, Observation};
 use serde::Serialize;
 
@@ -37,9 +38,6 @@ pub struct ModeChange {
     /// The same ratios by the model with the findings; absent without any.
     pub predicted: Option<ModeState>,
 }
-
-/// Standard deviations beyond which a change of a mode is more than noise.
-const MORE_THAN_NOISE: f64 = 3.0;
 
 impl ModeChange {
     /// Whether its frequency or damping ratio has changed by more than noise explains.

@@ -1,5 +1,6 @@
 //! One kind of effect at one place: a name that a diagnosis can give.
 
+use crate::settings::effects::bounds::{LEAST_FACTOR, MOST_FACTOR};
 use jointscope_fixture::{Dof, Effect, EffectKind, Motion, ParameterRange, Place, SizeLaw};
 
 /// One kind of effect at one place (and dof): a name that a diagnosis can give, with starts for its parameters.
@@ -48,8 +49,7 @@ pub(crate) fn scaled(effect: &Effect, times: f64) -> Option<Effect> {
     let before = effect.value(size.parameter);
     let mut after = size.law.scaled(before, times);
     if leading.range == ParameterRange::Positive && either_sign {
-        // A factor must stay positive: half or double is as far as a line leads.
-        after = after.clamp(0.5, 2.0);
+        after = after.clamp(LEAST_FACTOR, MOST_FACTOR);
     }
     let mut other = effect.clone();
     other.parameters[size.parameter].value = after;

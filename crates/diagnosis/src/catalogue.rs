@@ -3,6 +3,10 @@
 use crate::bodies::{extent, inertia_of, mass_of, turns};
 use crate::candidate::{Candidate, candidate};
 use crate::departures::departed;
+use crate::settings::effects::quantities::DEPARTURES;
+use crate::settings::effects::starts::{
+    FEWEST_HALF_WAVES, LEAST_LENGTH, LOWEST_FREQUENCY, MOST_HALF_WAVES, PLACES_A_HALF_WAVE,
+};
 use crate::together::inverts;
 use crate::{Hypothesis, Observation};
 use jointscope_fixture::{
@@ -158,9 +162,6 @@ fn is_stated(fixture: &Fixture, kind: EffectKind, place: &Place) -> bool {
     }
 }
 
-/// Departures from which a search for a wrong quantity sets out, as multiples of that which the refit made: what else it bent was bent in its stead.
-const DEPARTURES: [f64; 4] = [0.5, 1.0, 2.0, 4.0];
-
 /// Whether an effect of another kind says the very same of a quantity: a modulus is a factor of stiffness, a support's spring another support, a point that holds
 /// nothing an offset.
 fn has_a_name(fixture: &Fixture, quantity: &NamedQuantity) -> bool {
@@ -209,12 +210,6 @@ pub(crate) fn with_wrong_quantities(
     }
     all
 }
-
-/// Places along a beam from which a search sets out, by half-wave of the highest mode: between two of them what something on the beam does to that mode
-/// changes once.
-const PLACES_A_HALF_WAVE: f64 = 2.0;
-/// Half-waves beyond which no more places are tried.
-const MOST_HALF_WAVES: f64 = 12.0;
 
 /// Middles of so many equal parts of one.
 fn evenly(count: f64) -> impl Iterator<Item = f64> {
@@ -325,7 +320,7 @@ impl Surroundings<'_> {
         }
     }
 
-    /// Half-waves of bending along a beam at the highest line, at least as many as make three places.
+    /// Half-waves of bending along a beam at the highest line.
     fn half_waves(&self, body: usize) -> Option<f64> {
         let BodyKind::Beam(beam) = &self.fixture.bodies()[body].kind else { return None };
         let hz = self.observation.lines().hz();
@@ -333,14 +328,14 @@ impl Surroundings<'_> {
         let bending = beam.youngs_modulus.value * beam.second_moment.value;
         let wave_number = (omega * omega * beam.mass_per_length.value / bending).sqrt().sqrt();
         let waves = wave_number * (beam.to.value - beam.from.value) / std::f64::consts::PI;
-        Some(waves.clamp(1.5, MOST_HALF_WAVES))
+        Some(waves.clamp(FEWEST_HALF_WAVES, MOST_HALF_WAVES))
     }
 
     /// Frequencies over the band, evenly on a logarithmic scale.
     fn frequencies(&self, count: usize, low: f64, high: f64) -> Vec<f64> {
         let hz = self.observation.lines().hz();
         let highest = hz[hz.len() - 1];
-        let (from, to) = ((low * hz[0]).max(0.02 * highest).ln(), (high * highest).ln());
+        let (from, to) = ((low * hz[0]).max(LOWEST_FREQUENCY * highest).ln(), (high * highest).ln());
         (0..count).map(|i| (from + (to - from) * (i as f64 + 0.5) / count as f64).exp()).collect()
     }
 
@@ -388,7 +383,7 @@ impl Surroundings<'_> {
                 }
             }
             Measure::SectionInertia => self.beam().map(|(bending, _)| bending / MODULUS_OVER_DENSITY),
-            Measure::FreeLength => length.filter(|_| bends).map(|length| length.max(0.01)),
+            Measure::FreeLength => length.filter(|_| bends).map(|length| length.max(LEAST_LENGTH)),
             Measure::ShortestTime => {
                 let hz = self.observation.lines().hz();
                 Some(1.0 / (TAU * hz[hz.len() - 1]))

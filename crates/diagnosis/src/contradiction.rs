@@ -4,22 +4,13 @@
 //! FRFs at large, it is these lines that are wrong, and no model has to explain them.
 
 use crate::modal::recorded;
+use crate::settings::lines::contradiction::{
+    CONTRADICTS, MISFIT, MOST_BETWEEN_BREAKS, MOST_SHARE, REMAINING_SHARE, ROUNDS,
+};
 use crate::{DiagnosisError, Hypothesis, Observation};
 use jointscope_fixture::Fixture;
 use jointscope_frf::breaks;
 use jointscope_spectra::FrfSet;
-
-/// χ² of a line, per value, from which it contradicts, as a multiple of the median line's.
-const CONTRADICTS: f64 = 25.0;
-/// Share of the lines that may.
-const MOST: f64 = 0.08;
-/// χ² per degree of freedom of a free fit from which lines are looked for, and what their absence must leave of it.
-const MISFIT: f64 = 2.0;
-const LEFT: f64 = 0.3;
-/// Lines from one break to the next of what was clipped, at most.
-const APART: usize = 12;
-/// Rounds in which more of them are found: a fit that has to follow a wrong line hides its neighbours.
-const ROUNDS: usize = 4;
 
 /// Bands (Hz) of lines of `frfs` that contradict all others: what a diagnosis leaves out before it begins.
 ///
@@ -46,14 +37,15 @@ pub(crate) fn contradictory(observation: &Observation, nominal: &Hypothesis) -> 
         let modes = recorded(&part, nominal)?;
         Some((part, modes))
     };
-    let many = |wrong: &[bool]| wrong.iter().filter(|wrong| **wrong).count() as f64 > MOST * hz.len() as f64;
+    let many =
+        |wrong: &[bool]| wrong.iter().filter(|wrong| **wrong).count() as f64 > MOST_SHARE * hz.len() as f64;
     let mut wrong = vec![false; hz.len()];
     let Some((mut part, mut modes)) = without(&wrong) else { return Vec::new() };
     let before = modes.chi2_per_dof;
     if before < MISFIT {
         return Vec::new();
     }
-    let better = |chi2_per_dof: f64| chi2_per_dof < MISFIT && chi2_per_dof < LEFT * before;
+    let better = |chi2_per_dof: f64| chi2_per_dof < MISFIT && chi2_per_dof < REMAINING_SHARE * before;
     for _ in 0..ROUNDS {
         let mut sorted = modes.misfit.clone();
         sorted.sort_by(f64::total_cmp);
@@ -76,7 +68,7 @@ pub(crate) fn contradictory(observation: &Observation, nominal: &Hypothesis) -> 
     }
     // A wrong peak bends the fit of all lines: then whatever lies between two breaks close to each other.
     let mut between = vec![false; hz.len()];
-    for pair in breaks.windows(2).filter(|pair| pair[1] - pair[0] <= APART) {
+    for pair in breaks.windows(2).filter(|pair| pair[1] - pair[0] <= MOST_BETWEEN_BREAKS) {
         between[pair[0]..=pair[1]].fill(true);
     }
     match without(&between) {

@@ -1,10 +1,8 @@
 //! Quantities that had to leave their stated values.
 
+use crate::settings::effects::quantities::DEPARTED;
 use crate::{Hypothesis, Tolerance};
 use serde::Serialize;
-
-/// Standard deviations beyond which a quantity has departed by more than chance makes: once in sixteen thousand.
-pub(crate) const DEPARTED: f64 = 4.0;
 
 /// A quantity that had to leave its stated value by more than chance makes.
 #[derive(Debug, Clone, PartialEq, Serialize)]

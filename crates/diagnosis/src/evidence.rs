@@ -4,6 +4,8 @@ use crate::fit::Fit;
 use crate::fitter::Fitter;
 use crate::penalty::parameter_penalty;
 use crate::settings::Settings;
+use crate::settings::evidence::strictly::{MOST_EXCESS, UNCERTAINTY_SHARE};
+use crate::settings::evidence::unlisted::LEAST_COST;
 use crate::{Hypothesis, Observation};
 use statrs::distribution::{ContinuousCDF, Normal};
 
@@ -38,7 +40,7 @@ fn unlisted(fitter: &Fitter, best: &Fit) -> f64 {
     let strain = excess(chi2_per_dof, observation.degrees(), observation.noise_uncertainty()).max(0.0);
     let company = best.hypothesis.effect_count().saturating_sub(1) as f64;
     let cost = settings.evidence.unlisted - settings.evidence.company * company - strain * strain;
-    (-0.5 * cost.max(-10.0)).exp()
+    (-0.5 * cost.max(LEAST_COST)).exp()
 }
 
 /// The probabilities of hypotheses of these costs, of which `best` is one. They sum to less than one: the rest is something not listed.
@@ -66,7 +68,10 @@ pub(crate) fn explains(fitter: &Fitter, fit: &Fit, strictly: bool) -> bool {
     let observation = fitter.observation;
     let chi2_per_dof = fit.chi2_per_dof(observation);
     let fits = match strictly && !observation.has_scatter_for_noise() {
-        true => excess(chi2_per_dof, observation.degrees(), 0.5 * observation.noise_uncertainty()) < 2.0,
+        true => {
+            excess(chi2_per_dof, observation.degrees(), UNCERTAINTY_SHARE * observation.noise_uncertainty())
+                < MOST_EXCESS
+        }
         false => chi2_per_dof < explained(fitter.observation, fitter.settings),
     };
     fits && deviates_by_chance(fitter, &fit.hypothesis)

@@ -1,6 +1,6 @@
 //! What a diagnosis shows besides its findings: where the mismatch sits, how it goes with frequency, what else the reader must know.
 
-use crate::departures::{DEPARTED, Departure, farthest};
+use crate::departures::{Departure, farthest};
 use crate::diagnosis::Diagnosis;
 use crate::evidence::explained;
 use crate::finding::{Finding, Tried};
@@ -8,17 +8,16 @@ use crate::fit::Fit;
 use crate::location::{BandMisfit, Location};
 use crate::mismatch::{BandShare, FrfMismatch};
 use crate::settings::Settings;
+use crate::settings::effects::quantities::DEPARTED;
+use crate::settings::statements::findings::EXCHANGED_WITHIN;
+use crate::settings::statements::residuals::{NOT_WHITE, UNEVEN};
+use crate::settings::statements::variation::{
+    FEWEST_LINES, KNOWN, LEAST_VARIANCE, NO_POWER, ONE_PART, ONE_PHASE,
+};
 use jointscope_findings::Verdict;
 use jointscope_fixture::{EffectKind, Place};
 use jointscope_spectra::FrfPair;
 use serde::Serialize;
-
-/// Correlation of neighbouring lines from which residuals are not called white.
-const WHITE: f64 = 0.2;
-/// Ratio of the relative errors at the ends of the band from which they count as different.
-const UNEVEN: f64 = 2.0;
-/// How close to the other point an offset must lead, as a share of the distance between the two.
-const CLOSE: f64 = 0.1;
 
 /// χ² per real value of one FRF, over all lines and in bands; nothing where no value counts.
 #[derive(Debug, Clone, PartialEq)]
@@ -123,7 +122,7 @@ impl Diagnosis {
 
     /// Whether what the best model leaves is as random from line to line as noise is.
     pub fn is_white(&self) -> bool {
-        self.residual_correlation.abs() <= WHITE
+        self.residual_correlation.abs() <= NOT_WHITE
     }
 
     /// Whether all that is amiss are quantities far from what is stated: with them there, the FRFs are explained down to their noise.
@@ -213,7 +212,7 @@ impl Diagnosis {
         let mut pairs = Vec::new();
         for (index, a) in moved.iter().enumerate() {
             for b in &moved[index + 1..] {
-                let near = |to: f64, at: f64| (to - at).abs() <= CLOSE * (a.2 - b.2).abs();
+                let near = |to: f64, at: f64| (to - at).abs() <= EXCHANGED_WITHIN * (a.2 - b.2).abs();
                 if a.1 == b.1 && near(a.3, b.2) && near(b.3, a.2) {
                     pairs.push([a.0, b.0]);
                 }
@@ -223,20 +222,15 @@ impl Diagnosis {
     }
 }
 
-/// Departures of the logarithm from a straight line beyond which a dynamic stiffness follows no power of frequency.
-const NO_POWER: f64 = 0.7;
-/// Fewest lines that tell how δ varies.
-const FEWEST: usize = 8;
-
 impl Location {
     /// How δ(ω) varies with frequency; `None` where too few lines determine it.
     pub fn variation(&self) -> Option<Variation> {
         let known: Vec<_> = self
             .delta
             .iter()
-            .filter(|d| d.frequency > 0.0 && d.std > 0.0 && d.value.norm() > 2.0 * d.std)
+            .filter(|d| d.frequency > 0.0 && d.std > 0.0 && d.value.norm() > KNOWN * d.std)
             .collect();
-        if known.len() < FEWEST {
+        if known.len() < FEWEST_LINES {
             return None;
         }
         // ln|δ| over ln f, weighted by how well it is known.
@@ -244,7 +238,7 @@ impl Location {
             .iter()
             .map(|d| {
                 let (size, share) = (d.value.norm(), d.std / d.value.norm());
-                (d.frequency.ln(), size.ln(), 1.0 / (share * share + 1e-4))
+                (d.frequency.ln(), size.ln(), 1.0 / (share * share + LEAST_VARIANCE))
             })
             .collect();
         let total: f64 = points.iter().map(|p| p.2).sum();
@@ -260,11 +254,11 @@ impl Location {
         let sum: num_complex::Complex64 = known.iter().map(|d| d.value / d.value.norm()).sum();
         let direction = sum / known.len() as f64;
         let (re, im) = (direction.re, direction.im);
-        let phase = if direction.norm() < 0.7 {
+        let phase = if direction.norm() < ONE_PHASE {
             Phase::Changing
-        } else if re.abs() > 2.0 * im.abs() {
+        } else if re.abs() > ONE_PART * im.abs() {
             if re > 0.0 { Phase::RealPositive } else { Phase::RealNegative }
-        } else if im.abs() > 2.0 * re.abs() {
+        } else if im.abs() > ONE_PART * re.abs() {
             if im > 0.0 { Phase::ImaginaryPositive } else { Phase::ImaginaryNegative }
         } else {
             Phase::Mixed

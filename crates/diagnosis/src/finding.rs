@@ -1,6 +1,7 @@
 //! What a diagnosis names, and what it tried.
 
 use crate::location::Location;
+use crate::settings::statements::findings::LIKELY_SHARE;
 use jointscope_findings::Estimate;
 use jointscope_fixture::{Effect, Motion};
 use serde::Serialize;
@@ -22,13 +23,10 @@ pub struct Evidence {
     pub measured: Option<Location>,
 }
 
-/// Share of a finding's probability from which another place of it is to be reckoned with.
-const LIKELY: f64 = 0.05;
-
 impl Evidence {
     /// The other places of the finding that are likely enough to be reckoned with.
     pub fn likely_places(&self) -> impl Iterator<Item = &Elsewhere> {
-        self.elsewhere.iter().filter(|place| place.share >= LIKELY)
+        self.elsewhere.iter().filter(|place| place.share >= LIKELY_SHARE)
     }
 
     /// Whether there are any.

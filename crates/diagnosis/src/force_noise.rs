@@ -10,11 +10,10 @@ use crate::evidence::explained;
 use crate::fit::Fit;
 use crate::fitter::Fitter;
 use crate::penalty::penalty;
+use crate::settings::lines::force_noise::MOST_SHORTFALL;
 
 /// Shares of the possible shortfall at which the fixture is refitted; the best lies where the parabola through them has its least.
 const SHARES: [f64; 3] = [0.0, 0.5, 1.0];
-/// Largest shortfall that is reckoned with: of what is mostly noise nothing is known.
-const MOST: f64 = 0.5;
 
 /// FRFs that fall short, as a hypothesis has it that is fitted to them.
 pub(crate) struct Shortfall {
@@ -45,7 +44,7 @@ fn possible(observation: &Observation) -> Option<Vec<f64>> {
     let pairs = observation.pairs();
     let least = |index: usize, line: usize| {
         let alike = (0..pairs.len()).filter(|other| pairs[*other].reference == pairs[index].reference);
-        alike.map(|other| own[other * count + line]).fold(MOST, f64::min)
+        alike.map(|other| own[other * count + line]).fold(MOST_SHORTFALL, f64::min)
     };
     Some(
         (0..pairs.len())

@@ -2,6 +2,7 @@
 
 use crate::fit::Fit;
 use crate::search::Search;
+use crate::settings::lines::held_out::{BANDS, FEWEST_FRFS, FEWEST_WIDTHS};
 use crate::{DiagnosisError, DiagnosisOptions, Hypothesis, Observation};
 use jointscope_findings::HeldOut;
 use jointscope_spectra::FrfPair;
@@ -25,11 +26,10 @@ impl Division {
         let hz = observation.lines().hz();
         let n = hz.len();
         let width = ((n as f64 * options.settings.evidence.held_out) as usize).max(1);
-        if n < 10 * width {
+        if n < FEWEST_WIDTHS * width {
             return Ok(None);
         }
-        // About a third and two thirds of the lines: neither the stiff nor the massy end alone.
-        let bands = [0.3, 0.62]
+        let bands = BANDS
             .map(|at| ((n as f64 * at) as usize, width))
             .map(|(from, width)| (hz[from], hz[from + width]));
         let outside = |line: f64| !bands.iter().any(|(from, to)| line >= *from && line <= *to);
@@ -78,7 +78,7 @@ fn held_out_frfs(
         return Err(DiagnosisError::HoldOut(missing.to_string()));
     }
     match (options.hold_out.as_slice(), pairs) {
-        ([], [.., last]) if pairs.len() >= 4 => Ok(vec![last.clone()]),
+        ([], [.., last]) if pairs.len() >= FEWEST_FRFS => Ok(vec![last.clone()]),
         ([], _) => Ok(Vec::new()),
         (named, _) if named.len() >= pairs.len() => Err(DiagnosisError::HoldOut(named[0].to_string())),
         (named, _) => Ok(named.to_vec()),

@@ -1,16 +1,13 @@
 //! A fixture with effects beside it, where every quantity and parameter stands, and how these may move.
 
 use crate::parameter_transforms::{if_wrong, parameters_of};
+use crate::settings::effects::quantities::EXPECTED_ERROR;
 use jointscope_fixture::{
     Effect, EffectKind, Entry, Fixture, FixtureError, NamedQuantity, Place, QuantityKey, SizeLaw,
 };
 use jointscope_inference::{Covariance, Parameter, Transform};
 use jointscope_tolerances::{Tolerance, moved};
 use std::sync::Arc;
-
-/// Least standard deviation of a quantity that is wrong, in stated ones: a slip of the calliper or the scales is many of them. One that sets out farther, as a wrong sign
-/// or decimal point asks for, may lie anywhere that far: a narrower expectation would bend the rest of the fixture to bring it back.
-const WRONG: f64 = 10.0;
 
 /// The fixture with quantities and effects to be fitted: coordinates in units of which one is a typical step.
 #[derive(Debug, Clone)]
@@ -68,7 +65,7 @@ impl Hypothesis {
         let wrong =
             wrong.map_or(Parameter::new(Transform::Fixed), |tolerance| if_wrong(&self.fixture, tolerance));
         let sets_out = effect.parameters.first().and_then(|value| wrong.transform.coordinate(value.value));
-        let expected = sets_out.map_or(WRONG, |at| WRONG.max(at.abs()));
+        let expected = sets_out.map_or(EXPECTED_ERROR, |at| EXPECTED_ERROR.max(at.abs()));
         let parameters = parameters_of(&self.fixture, &effect, wrong.with_precision(expected.powi(-2)));
         for (parameter, quantity) in parameters.iter().zip(&effect.parameters) {
             let stated = parameter.transform.coordinate(quantity.value);
@@ -234,12 +231,12 @@ impl Hypothesis {
         &self.effects[index].1
     }
 
-    /// Standard deviations, as multiples of [`WRONG`], that quantity of effect `index` is expected to be off by; `None` where the effect is about none.
+    /// Standard deviations, as multiples of [`EXPECTED_ERROR`], that quantity of effect `index` is expected to be off by; `None` where the effect is about none.
     pub(crate) fn expected_error(&self, index: usize) -> Option<f64> {
         let (effect, parameters) = &self.effects[index];
         let is_about_one = effect.kind == EffectKind::QuantityError;
         let parameter = parameters.first().filter(|_| is_about_one)?;
-        Some((parameter.precision.sqrt() * WRONG).recip())
+        Some((parameter.precision.sqrt() * EXPECTED_ERROR).recip())
     }
 
     /// The coordinates that are at a bound.

@@ -1,4 +1,5 @@
 use crate::recorded_lines::{drift_variance, lines_in_use};
+use crate::settings::lines::noise::{COHERENCE_UNCERTAINTY, LEVEL_SHARE, LEVEL_WINDOW, SCATTER_UNCERTAINTY};
 use crate::work::Work;
 use jointscope_frf::Drift;
 use jointscope_frf::noise::{NoiseSource, known};
@@ -23,12 +24,6 @@ pub struct Observation {
     drift: Option<Drift>,
     work: Arc<Work>,
 }
-
-/// Relative uncertainty of variances from coherence, and from scatter.
-const COHERENCE_UNCERTAINTY: f64 = 0.04;
-const SCATTER_UNCERTAINTY: f64 = 0.2;
-/// Lines on each side over which the local level is taken.
-const LEVEL_WINDOW: usize = 20;
 
 impl Observation {
     /// Takes a recording on the lines for which `in_use` holds (Hz). Variances that the set carries are kept; without
@@ -229,10 +224,10 @@ impl Observation {
         2 * self.weight.iter().filter(|w| **w > 0.0).count()
     }
 
-    /// The weight of value `index` when a share `epsilon` of the measured, the modelled and a tenth of the local level
+    /// The weight of value `index` when a share `epsilon` of the measured, the modelled and some of the local level
     /// counts as noise too: sharp peaks then do not decide where a fit goes.
     pub(crate) fn inflated(&self, index: usize, modelled: Complex64, epsilon: f64) -> f64 {
-        let size = self.values()[index].norm_sqr() + modelled.norm_sqr() + 0.1 * self.level[index];
+        let size = self.values()[index].norm_sqr() + modelled.norm_sqr() + LEVEL_SHARE * self.level[index];
         inflated_weight(self.weight[index], size, epsilon)
     }
 

@@ -1,6 +1,9 @@
 //! How the parameters of an effect move in a fit: by themselves or by their logarithms, and between which bounds.
 
 use crate::bodies::{extent, mass_of, turns};
+use crate::settings::effects::bounds::{
+    ABSCISSA_UNIT, ADDED_MASSES, BEYOND_BAR, MISSING_LENGTH, MISSING_OF_BEAM,
+};
 use jointscope_fixture::{
     BodyKind, Effect, Fixture, Motion, NamedQuantity, ParameterSpec, Place, Possible, Quantity, QuantityKey,
     QuantityOwner,
@@ -51,7 +54,7 @@ fn sits_on(fixture: &Fixture, quantity: &NamedQuantity) -> Option<usize> {
 fn reach(fixture: &Fixture, body: usize) -> (f64, f64) {
     let (low, high) = extent(fixture, body);
     let beyond = match &fixture.bodies()[body].kind {
-        BodyKind::Rigid(_) => LONGER * (high - low),
+        BodyKind::Rigid(_) => BEYOND_BAR * (high - low),
         BodyKind::Beam(_) => 0.0,
     };
     (low - beyond, high + beyond)
@@ -68,7 +71,7 @@ pub(crate) fn parameters_of(fixture: &Fixture, effect: &Effect, wrong: Parameter
     let along = |body: Option<usize>| match body.filter(|b| turns(fixture, *b)) {
         Some(body) => {
             let (low, high) = extent(fixture, body);
-            between(0.1 * (high - low).max(1e-6), low, high)
+            between(ABSCISSA_UNIT * (high - low).max(1e-6), low, high)
         }
         None => Parameter::new(Transform::Fixed),
     };
@@ -105,16 +108,6 @@ pub(crate) fn parameters_of(fixture: &Fixture, effect: &Effect, wrong: Parameter
     effect.kind.spec().parameters.iter().zip(&effect.parameters).map(of).collect()
 }
 
-/// Share of a joint's length that may be missing.
-const MISSING: f64 = 0.95;
-/// Share of a beam's mass that may be missing at one place: a hole that takes more is no point, and takes stiffness with it.
-const HOLE: f64 = 0.05;
-/// Masses of the whole structure that may be added.
-const ADDED: f64 = 2.0;
-
-/// Share of a bar's length by which a body of the bar's mass and inertia is longer at either end if half of its mass is in its middle.
-const LONGER: f64 = 0.5 * (std::f64::consts::SQRT_2 - 1.0);
-
 /// The most that a body may lack at one place, kg: a block all of it, a beam a hole and the heaviest of the masses that sit on it.
 fn most_missing(fixture: &Fixture, body: usize) -> f64 {
     let mass = mass_of(fixture, body);
@@ -122,7 +115,7 @@ fn most_missing(fixture: &Fixture, body: usize) -> f64 {
         BodyKind::Rigid(_) => mass,
         BodyKind::Beam(_) => {
             let on_it = fixture.bodies()[body].masses.iter().map(|point| point.mass.value);
-            HOLE * mass + on_it.fold(0.0, f64::max)
+            MISSING_OF_BEAM * mass + on_it.fold(0.0, f64::max)
         }
     }
 }
@@ -135,7 +128,7 @@ fn possible(possible: Possible, fixture: &Fixture, place: &Place) -> (f64, f64) 
             let masses = || (0..fixture.bodies().len()).map(|body| mass_of(fixture, body));
             let own = fixture.bodies().iter().position(|body| body.name == *name);
             let own = own.map_or(0.0, |body| most_missing(fixture, body));
-            (-own, ADDED * masses().sum::<f64>())
+            (-own, ADDED_MASSES * masses().sum::<f64>())
         }
         (Possible::OnBody, Place::Point(name)) => fixture.point(name).map_or(any, |point| {
             let (low, high) = reach(fixture, point.body);
@@ -143,7 +136,7 @@ fn possible(possible: Possible, fixture: &Fixture, place: &Place) -> (f64, f64) 
         }),
         (Possible::LengthOfJoint, Place::Joint(name)) => {
             let joint = fixture.joints().iter().find(|joint| joint.name == *name);
-            joint.map_or(any, |joint| (-MISSING * fixture.joint_length(joint), f64::INFINITY))
+            joint.map_or(any, |joint| (-MISSING_LENGTH * fixture.joint_length(joint), f64::INFINITY))
         }
         _ => any,
     }
@@ -164,7 +157,7 @@ mod tests {
         .unwrap();
         // A bar of that mass and inertia is 100 mm long.
         let half = (3.0_f64 * 1e-3 / 1.2).sqrt();
-        let beyond = LONGER * 2.0 * half;
+        let beyond = BEYOND_BAR * 2.0 * half;
         let tolerances = Tolerance::all(&fixture, false);
         let of = |path: &str| tolerances.iter().find(|t| t.quantity.path == path).unwrap();
         for path in ["points/1/x", "supports/wall/x", "bodies/A/x_cg"] {

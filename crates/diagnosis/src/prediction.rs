@@ -1,5 +1,6 @@
 //! The FRFs that a hypothesis predicts for an observation, and how they change with its coordinates.
 
+use crate::settings::effects::differences::COORDINATE_STEP;
 use crate::{Hypothesis, Observation};
 use jointscope_fixture::{Fixture, FixtureError, Place, QuantityOwner};
 use jointscope_lumped::{Instrument, LumpedError, Tangent, Vicinity, accelerances};
@@ -16,9 +17,6 @@ pub enum PredictionError {
     #[error(transparent)]
     Model(#[from] LumpedError),
 }
-
-/// Step of a coordinate, in its units, to a neighbouring fixture whose matrices tell derivatives: halfway between what they curve by and what rounding leaves of them.
-const SMALL: f64 = 1e-6;
 
 /// Writes the values of `some` FRFs, those of the places `frfs`, where they belong among `all`, each of so many `lines`.
 fn write_frfs(all: &mut [Complex64], some: &[Complex64], frfs: &[usize], lines: usize) {
@@ -96,7 +94,7 @@ impl Hypothesis {
         observation: &Observation,
         predictions: usize,
     ) -> Option<Vec<Complex64>> {
-        let step = self.inward(index, SMALL);
+        let step = self.inward(index, COORDINATE_STEP);
         let fixture = self.moved(index, step).to_fixture().ok()?;
         let some = self.depending(index, observation);
         let derivatives = solution.toward(&fixture, step, some.as_deref())?;

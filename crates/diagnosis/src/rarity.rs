@@ -1,18 +1,15 @@
 //! How much rarer some effects are than others before anything is recorded.
 
 use crate::Hypothesis;
+use crate::settings::effects::rarity::LONGER_JOINT;
 use jointscope_fixture::{Effect, EffectKind, Place, QuantityOwner};
-
-/// ln of the odds against a joint that is longer than the points at its ends say: what gives way at an end, a layer of glue above all, makes it seem longer, and is held for five times
-/// as common as a length that somebody got wrong.
-const LONGER: f64 = 1.6;
 
 /// ln of how much rarer the effects of a hypothesis are than the commonest, nats: by kind, a joint that is longer than its points say, and a quantity that is expected twice as far off
 /// is wrong half as often.
 pub(crate) fn rarity(hypothesis: &Hypothesis) -> f64 {
     let of = |(index, effect): (usize, &Effect)| {
         let far = hypothesis.expected_error(index).map_or(0.0, f64::ln);
-        let longer = if makes_a_joint_longer(hypothesis, effect) { LONGER } else { 0.0 };
+        let longer = if makes_a_joint_longer(hypothesis, effect) { LONGER_JOINT } else { 0.0 };
         effect.kind.spec().rarity + far + longer
     };
     hypothesis.effects().iter().enumerate().map(of).sum()
@@ -65,7 +62,7 @@ mod tests {
         let far_end = [0.067, 0.063].map(|x| of(EffectKind::QuantityError, &quantity("points/3/x"), x));
         let near_end = [-0.002, 0.002].map(|x| of(EffectKind::QuantityError, &quantity("points/2/x"), x));
         for [longer, shorter] in [length, far_end, near_end] {
-            assert!((longer - shorter - LONGER).abs() < 1e-9, "{longer} beside {shorter}");
+            assert!((longer - shorter - LONGER_JOINT).abs() < 1e-9, "{longer} beside {shorter}");
         }
         let sensor = [-0.058, -0.062].map(|x| of(EffectKind::QuantityError, &quantity("points/1/x"), x));
         assert!((sensor[0] - sensor[1]).abs() < 1e-9, "it ends no joint");

@@ -1,28 +1,20 @@
 //! What of a long recording is used, and what its resonances did while it was made.
 
+use crate::settings::lines::recordings::{
+    ALL_LINES, ALL_VALUES, EVEN_SHARE, KEPT_LINES, ONE_BY_ONE, SEARCHED_FRFS,
+};
 use jointscope_frf::{Drift, resonant_lines};
 use jointscope_spectra::FrfSet;
-
-/// FRFs from which not all of them are searched, unless more are needed to show every channel.
-pub(crate) const SEARCHED_FRFS: usize = 16;
-/// Lines, and values, from which a recording is thinned, and how many lines are kept of it at the most.
-const LONG: (usize, usize) = (4000, 16_000);
-const KEPT: usize = 900;
-/// Share of these that are evenly spread.
-const EVENLY: f64 = 0.39;
-/// Lines about a resonance are kept one by one up to this distance and ever more rarely beyond, in proportion to it: the first that
-/// keeps the limit.
-const GRADES: [usize; 10] = [64, 48, 32, 24, 16, 12, 8, 6, 4, 2];
 
 /// Which lines of a recording are used: all of a short one; of a long one those about resonances, ever more sparsely with the distance, and evenly
 /// spread ones.
 pub(crate) fn lines_in_use(frfs: &FrfSet) -> Vec<bool> {
     let n = frfs.lines().len();
     let searched = frfs.pairs().len().min(SEARCHED_FRFS);
-    if n <= LONG.0 && n * searched <= LONG.1 {
+    if n <= ALL_LINES && n * searched <= ALL_VALUES {
         return vec![true; n];
     }
-    most_informative(frfs, KEPT)
+    most_informative(frfs, KEPT_LINES)
 }
 
 /// At most so many lines: those about resonances, ever more sparsely with the distance, and evenly spread ones.
@@ -31,7 +23,7 @@ pub(crate) fn most_informative(frfs: &FrfSet, most: usize) -> Vec<bool> {
     if n <= most {
         return vec![true; n];
     }
-    let evenly = most as f64 * EVENLY;
+    let evenly = most as f64 * EVEN_SHARE;
     let evenly: Vec<bool> = (0..n).map(|line| line % n.div_ceil(evenly as usize) == 0).collect();
     let resonances = resonant_lines(frfs);
     let graded = |grade: usize| {
@@ -50,7 +42,7 @@ pub(crate) fn most_informative(frfs: &FrfSet, most: usize) -> Vec<bool> {
         kept
     };
     let count = |kept: &Vec<bool>| kept.iter().filter(|keep| **keep).count();
-    GRADES.iter().map(|grade| graded(*grade)).find(|kept| count(kept) <= most).unwrap_or(evenly)
+    ONE_BY_ONE.iter().map(|grade| graded(*grade)).find(|kept| count(kept) <= most).unwrap_or(evenly)
 }
 
 /// The variances that drift adds to `variance` (by used line) of one FRF, given the |change of the FRF|² for one standard deviation.
@@ -107,10 +99,10 @@ mod tests {
                 kept.iter().zip(hz).filter(|(_, hz)| (from..to).contains(*hz)).map(|(k, _)| *k).collect();
             inside.iter().filter(|k| **k).count() as f64 / inside.len() as f64
         };
-        assert!(kept.iter().filter(|k| **k).count() <= KEPT);
+        assert!(kept.iter().filter(|k| **k).count() <= KEPT_LINES);
         assert_eq!([within(111.2, 111.4), within(306.8, 307.0)], [1.0, 1.0]);
         assert!(within(180.0, 240.0) < 0.05 && within(180.0, 240.0) > 0.002);
-        assert!(lines_in_use(&beam(LONG.0)).iter().all(|k| *k));
+        assert!(lines_in_use(&beam(ALL_LINES)).iter().all(|k| *k));
     }
 
     #[test]

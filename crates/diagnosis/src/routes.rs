@@ -11,6 +11,7 @@ use crate::modal::{Explaining, Known, ModalJudgement, ModelError, without_imitat
 use crate::named::{findings, re_estimated, verdict};
 use crate::options::{DiagnosisError, DiagnosisOptions};
 use crate::search::Search;
+use crate::settings::work::shares::{OF_DOUBTS, OF_HELD_OUT, OF_STEP_BY_LINES};
 use crate::{Baseline, Hypothesis, Observation};
 use jointscope_findings::{HeldOut, Verdict};
 use jointscope_fixture::{Effect, Fixture};
@@ -19,13 +20,6 @@ use jointscope_spectra::SpectraError;
 /// Names of what a search may not come to any more.
 const UNSEEN: &str = "the judgement on what is held out";
 const PLACES: &str = "the places of what is left";
-
-/// Share of the work left that one step by lines may take: one more effect is worth less than to know what else would explain the first.
-const FOUND: f64 = 0.5;
-/// The same of a search by lines where modes have told what there is and leave doubts.
-const DOUBTED: f64 = 0.1;
-/// The same of the judgement on held-out data where modes decide.
-const BLIND: f64 = 0.3;
 
 /// What a search by lines of the whole recording sets out from.
 enum Start<'a> {
@@ -117,7 +111,7 @@ fn from_modes<'a>(fitter: &Fitter, within: &Search, modal: &'a ModalJudgement) -
         && !modal.stands_out(fitter)
         && fitter.observation.work().allows("what lines would find");
     let search = || Search::searched(fitter, within.clone());
-    let searched = may.then(|| fitter.observation.work().within_rest(DOUBTED, search));
+    let searched = may.then(|| fitter.observation.work().within_rest(OF_DOUBTS, search));
     let explained = searched.as_ref().is_some_and(|search| explains(fitter, &search.repaired, true));
     // Modes that need no error of the model, or that do not tell all there is, beside lines that are not explained: it is not the modes of the model that
     // are in error.
@@ -220,7 +214,7 @@ fn by_lines(
     // Modes that explain the recording decide as soon as lines ask for what these do not need.
     let imitates =
         |search: &Search| explaining.is_some() && without_imitations(fitter, search, modal).is_some();
-    let mut search = observation.work().within_rest(FOUND, || match (start, &first) {
+    let mut search = observation.work().within_rest(OF_STEP_BY_LINES, || match (start, &first) {
         (Start::Searched(search), _) => *search,
         (Start::Modes(modal, Explaining { fit, is_sure }), _) => {
             let part = Search { repaired: fit, ..modal.search_on(observation, &within, &modal.stated) };
@@ -242,7 +236,7 @@ fn by_lines(
     }
     let findings = match nothing_can_be_stated(fitter, &search.repaired, search.candidates.len()) {
         true => Vec::new(),
-        false => observation.work().within_rest(FOUND, || findings(fitter, &mut search)),
+        false => observation.work().within_rest(OF_STEP_BY_LINES, || findings(fitter, &mut search)),
     };
     if let Some(modal) = modal.filter(|modal| modal.tells_from(fitter, &search.repaired.hypothesis)) {
         return by_modes(fitter, &search, modal, division);
@@ -330,7 +324,7 @@ fn by_modes(fitter: &Fitter, within: &Search, modal: &ModalJudgement, division: 
         division.judge(&blind, &search, observation)
     };
     let division = division.filter(|_| work.allows(UNSEEN));
-    let held_out = division.and_then(|division| work.within_rest(BLIND, || judge(division)));
+    let held_out = division.and_then(|division| work.within_rest(OF_HELD_OUT, || judge(division)));
     let locations = match modal.verdict {
         Verdict::Unexplained if work.allows(PLACES) => {
             let refitted = Fit::at(modal.stated[0].clone(), observation);

@@ -4,13 +4,10 @@
 //! mode. The rest confirms: what is found is fitted to all of them, judged on all of them, and its uncertainty is by all of them.
 
 use crate::Observation;
-use crate::recorded_lines::{SEARCHED_FRFS, most_informative};
+use crate::recorded_lines::most_informative;
+use crate::settings::lines::recordings::SEARCHED_FRFS;
+use crate::settings::lines::searched::{ALL_VALUES, FEWEST_LINES, SEARCHED_VALUES};
 use jointscope_spectra::{Channel, FrfPair};
-
-/// Values from which not all lines are searched, and how many values then are, with so many lines at the least.
-const ENOUGH: usize = 10_000;
-const VALUES: usize = 8000;
-const FEWEST_LINES: usize = 250;
 
 /// The FRFs to be searched: those with channels that are shown least so far, one after the other, and all of `besides`.
 fn chosen<'a>(pairs: &'a [FrfPair], besides: &[FrfPair]) -> Vec<&'a FrfPair> {
@@ -39,8 +36,8 @@ impl Observation {
         let fewer = chosen.len() < self.pairs().len();
         let part = fewer.then(|| self.reduced(|_| true, |pair| chosen.contains(&pair))).flatten();
         let frfs = part.as_ref().unwrap_or(self);
-        let (lines, most) = (frfs.lines().len(), (VALUES / frfs.pairs().len()).max(FEWEST_LINES));
-        if lines * frfs.pairs().len() <= ENOUGH || lines <= most {
+        let (lines, most) = (frfs.lines().len(), (SEARCHED_VALUES / frfs.pairs().len()).max(FEWEST_LINES));
+        if lines * frfs.pairs().len() <= ALL_VALUES || lines <= most {
             return part;
         }
         let kept = most_informative(frfs.frfs(), most);

@@ -2,8 +2,31 @@
 //!
 //! "Measured" means: by `jointscope prove` on 200 to 500 concealed cases (`docs/records`), where a value was varied by about a factor of two
 //! each way and the one kept that lost no score; times are processor time.
+//!
+//! What a caller may set are the fields of [`Settings`] and of what it holds, with their defaults at the end of this file ([`ModalSettings`] and [`LocationSettings`] have
+//! theirs beside them). What no caller sets are constants, by the question that they decide:
+//!
+//! | module | numbers of |
+//! |---|---|
+//! | [`lines`] | what is taken from a recording: FRFs and lines that are searched, their noise, lines that contradict all others |
+//! | [`drift`] | structures that change between references |
+//! | [`effects`] | where a search for effects sets out, how far their parameters may go, how common they are; quantities that are stated wrongly |
+//! | [`location`] | the map of places with no law assumed |
+//! | [`modal`] | fits to modes: priors, descents and their rounds, sizes of a model's error, walks along a ridge |
+//! | [`evidence`] | probabilities, and what counts as explained |
+//! | [`statements`] | what is said of a diagnosis: from when on a difference is worth a word |
+//! | [`work`] | what things cost, and what share of the work one step may take |
+//!
+//! Limits of rounding and halvings of an interval, which decide nothing, stand where they are used; so do physical constants, sizes of arrays and the starts that belong to a law.
 
-mod location;
+pub(crate) mod drift;
+pub(crate) mod effects;
+pub(crate) mod evidence;
+pub(crate) mod lines;
+pub(crate) mod location;
+pub(crate) mod modal;
+pub(crate) mod statements;
+pub(crate) mod work;
 
 use jointscope_inference::{Damping, Limit};
 use jointscope_model_error::ErrorSizes;

@@ -3,17 +3,12 @@
 //! Work is counted in predicted values of FRFs, so that the same input ends at the same place on any machine and any number of threads. It is asked
 //! for only where no others work at the same time. What a search does not come to any more is remembered by name.
 
+use crate::settings::work::costs::{CUBE_OF_COORDINATES, MODEL};
+use crate::settings::work::shares::FITS_TOGETHER;
 use rayon::prelude::*;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
-
-/// Values that a model costs besides those it predicts: its matrices, modes and participations.
-const MODEL: u64 = 1000;
-/// The cube of a meshed model's coordinates whose modes cost as much as one value more.
-const MODES: u64 = 250;
-/// Fits between which the work done is looked at.
-const TOGETHER: usize = 16;
 
 /// Work done and allowed.
 #[derive(Debug)]
@@ -50,7 +45,7 @@ impl Work {
 
     /// The same for models of so many coordinates: modes of a meshed beam cost more than its lines.
     pub(crate) fn for_models_of(self, coordinates: usize) -> Self {
-        Work { model: MODEL + (coordinates as u64).pow(3) / MODES, ..self }
+        Work { model: MODEL + (coordinates as u64).pow(3) / CUBE_OF_COORDINATES, ..self }
     }
 
     /// Counts a model and the values that it predicts.
@@ -117,7 +112,7 @@ impl Work {
         let mut all = Vec::with_capacity(items.len());
         let mut items = items.into_iter();
         loop {
-            let some: Vec<T> = items.by_ref().take(TOGETHER).collect();
+            let some: Vec<T> = items.by_ref().take(FITS_TOGETHER).collect();
             if some.is_empty() || !self.allows(what) {
                 return all;
             }
@@ -153,9 +148,9 @@ mod tests {
             })
         };
         // Eighty models are left; of forty, two and a half times sixteen, what has begun is ended.
-        assert_eq!(work.within_rest(0.5, count).len(), 3 * TOGETHER);
+        assert_eq!(work.within_rest(0.5, count).len(), 3 * FITS_TOGETHER);
         assert!(work.allows("letters"));
-        assert_eq!(count().len(), 2 * TOGETHER);
+        assert_eq!(count().len(), 2 * FITS_TOGETHER);
         assert!(!work.allows("letters"));
     }
 
@@ -168,7 +163,7 @@ mod tests {
                 Some(n)
             })
         });
-        assert_eq!(done.len(), TOGETHER);
+        assert_eq!(done.len(), FITS_TOGETHER);
         assert!(work.allows("letters") && work.left_out().is_empty());
     }
 

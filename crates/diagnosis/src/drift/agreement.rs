@@ -1,9 +1,7 @@
 //! References whose poles agree.
 
-use super::table::{LEAST, Table, chance};
-
-/// Probability by chance from which two references agree.
-const AGREE: f64 = 0.01;
+use super::table::{Table, chance};
+use crate::settings::drift::differences::{AGREE, LEAST_DIFFERENCE};
 
 /// Whether each reference belongs to the most that agree, each with each: of as many the one with more FRFs (`frfs` of each), then the first.
 pub(super) fn agreeing(table: &Table, frfs: &[usize]) -> Vec<bool> {
@@ -39,5 +37,5 @@ fn pair(table: &Table, a: usize, b: usize) -> bool {
     let inflation = part.inflation();
     let between = (together.chi2 - apart.chi2).max(0.0) / part.shared();
     let by_chance = || chance(between, of_references, inflation, left);
-    by_chance() >= AGREE || part.farthest(&[a, b]) < LEAST
+    by_chance() >= AGREE || part.farthest(&[a, b]) < LEAST_DIFFERENCE
 }

@@ -1,9 +1,13 @@
 //! Which stiffness drifted: by the share of the strain energy that it has in each mode.
 
-use super::drifted::{CALLED_DRIFT, Drifted};
+use super::drifted::Drifted;
 use super::poles_by_frf::{poles_by_frf, references};
 use super::table::{Cell, Fit, Table, chance};
 use crate::settings::Settings;
+use crate::settings::drift::attribution::{
+    BESIDE_POLES, DEVIATION_IF_EXPLAINED, DEVIATION_OTHERWISE, EXPLAINS, NAMED, ROUNDS, STIFFNESS_STEP,
+};
+use crate::settings::drift::differences::CALLED_DRIFT;
 use crate::{Hypothesis, Observation};
 use jointscope_fixture::{Effect, EffectKind, Fixture, Place};
 use jointscope_inference::interval95;
@@ -53,17 +57,6 @@ pub struct TestDrift {
     pub modes: Vec<ModeDrift>,
 }
 
-/// Relative deviation of the shares of strain energy of a model that explains the recording down to its noise, and of any other.
-const SHARE: [f64; 2] = [0.02, 0.1];
-/// Step in ln k that shares are taken with.
-const STEP: f64 = 0.005;
-/// Distance from the unchanged model's poles at which those of the changed one are looked for, relative.
-const BESIDE: f64 = 1e-4;
-/// Probability by chance from which a stiffness explains the differences, and probability among those that do from which it is the one.
-const EXPLAINS: f64 = 0.01;
-const NAMED: f64 = 0.9;
-/// Fits of one stiffness: the deviation of shares counts in proportion to the change.
-const ROUNDS: usize = 4;
 const ALL: &str = "all stiffnesses";
 
 /// A stiffness with its share in each mode of the table: 2·d ln ω/d ln k.
@@ -99,7 +92,7 @@ impl Drifted {
 }
 
 fn attributed(drifted: &Drifted, model: &Fixture, explains: bool) -> TestDrift {
-    let deviation = SHARE[usize::from(!explains)];
+    let deviation = if explains { DEVIATION_IF_EXPLAINED } else { DEVIATION_OTHERWISE };
     let Drifted { table, kept, .. } = drifted;
     let candidates = candidates(model, &drifted.modes, &table.modes);
     let inflation = table.inflation() * table.shared();
@@ -192,7 +185,7 @@ fn candidates(model: &Fixture, recorded: &RecordedModes, modes: &[usize]) -> Vec
     let partner = |r: &usize| pairing.pairs.iter().find(|(own, _)| own == r).map(|(_, m)| *m);
     let Some(partners) = modes.iter().map(partner).collect::<Option<Vec<usize>>>() else { return Vec::new() };
     // Exactly at a pole of the unchanged model its FRFs have no value to set out from.
-    let beside = modelled.beside(BESIDE);
+    let beside = modelled.beside(BESIDE_POLES);
     let ln_omega = |places: &[Place], by: f64| -> Option<Vec<f64>> {
         let mut physics = model.physics().to_vec();
         let change =
@@ -202,8 +195,8 @@ fn candidates(model: &Fixture, recorded: &RecordedModes, modes: &[usize]) -> Vec
         Some(partners.iter().map(|&m| changed.modes[m].pole.omega.ln()).collect())
     };
     let shares = |places: &[Place]| -> Option<Vec<f64>> {
-        let (up, down) = (ln_omega(places, STEP)?, ln_omega(places, -STEP)?);
-        Some(up.iter().zip(&down).map(|(up, down)| (up - down) / STEP).collect())
+        let (up, down) = (ln_omega(places, STIFFNESS_STEP)?, ln_omega(places, -STIFFNESS_STEP)?);
+        Some(up.iter().zip(&down).map(|(up, down)| (up - down) / STIFFNESS_STEP).collect())
     };
     let joints = model
         .joints()

@@ -2,14 +2,12 @@
 
 use super::agreement::agreeing;
 use super::poles_by_frf::{PolesByFrf, poles_by_frf, references};
-use super::table::{LEAST, Table};
+use super::table::Table;
 use crate::settings::ModalSettings;
+use crate::settings::drift::differences::{CALLED_DRIFT, LEAST_DIFFERENCE};
 use crate::{Hypothesis, Observation};
 use jointscope_model_error::RecordedModes;
 use jointscope_spectra::Channel;
-
-/// Probability by chance below which poles that differ between references are called drift.
-pub(super) const CALLED_DRIFT: f64 = 1e-3;
 
 /// Drift as the recording alone tells it.
 pub(crate) struct Drifted {
@@ -37,7 +35,7 @@ impl Drifted {
             poles_by_frf(observation, nominal, settings, (&references, CALLED_DRIFT))?;
         let p_value = table.chance()?;
         let all: Vec<usize> = (0..references.len()).collect();
-        if p_value >= CALLED_DRIFT || table.farthest(&all) < LEAST {
+        if p_value >= CALLED_DRIFT || table.farthest(&all) < LEAST_DIFFERENCE {
             return None;
         }
         let frfs = |reference: &Channel| {

@@ -3,17 +3,11 @@
 use super::table::{Cell, Table, chance};
 use crate::modal::recorded;
 use crate::settings::ModalSettings;
+use crate::settings::drift::poles::{KNOWN_SHARE, MOST_DAMPING_FACTOR, MOST_MOVED};
 use crate::{Hypothesis, Observation};
 use jointscope_model_error::{RecordedMode, RecordedModes, Recording};
 use jointscope_spectra::Channel;
 use rayon::prelude::*;
-
-/// Farthest that a mode may have moved between references, in ln ω.
-const REACH: f64 = 0.05;
-/// Farthest that the damping ratio of the same mode may differ: a pole that only follows what a fit leaves has any damping.
-const DAMPING: f64 = 2.0;
-/// A natural frequency counts where it is known to this share of its half-width.
-const KNOWN: f64 = 0.3;
 
 /// The recording's references, in its order.
 pub(super) fn references(observation: &Observation) -> Vec<Channel> {
@@ -139,8 +133,8 @@ fn probability_by_chance(
 /// Whether two fits' modes can be the same mode of a structure.
 fn same(own: &RecordedMode, begun: &RecordedMode) -> bool {
     let apart = |own: f64, begun: f64| (own / begun).ln().abs();
-    apart(own.pole.omega, begun.pole.omega) < REACH
-        && apart(own.pole.damping_ratio, begun.pole.damping_ratio) < DAMPING.ln()
+    apart(own.pole.omega, begun.pole.omega) < MOST_MOVED
+        && apart(own.pole.damping_ratio, begun.pole.damping_ratio) < MOST_DAMPING_FACTOR.ln()
 }
 
 /// Variance of ln ω of a mode; `None` where it is not known well enough.
@@ -148,7 +142,7 @@ fn variance(modes: &RecordedModes, r: usize) -> Option<f64> {
     let mode = &modes.modes[r];
     let [deviation, _] = modes.deviations(r);
     let half_width = mode.pole.damping_ratio;
-    let is_known = mode.resolved && deviation < KNOWN * half_width;
+    let is_known = mode.resolved && deviation < KNOWN_SHARE * half_width;
     is_known.then(|| deviation.powi(2))
 }
 
@@ -156,7 +150,7 @@ fn variance(modes: &RecordedModes, r: usize) -> Option<f64> {
 fn partners_of(base: &RecordedModes, other: &RecordedModes) -> Vec<Option<usize>> {
     let nearest = |to: f64, among: &[RecordedMode]| {
         let apart = |r: &usize| (among[*r].pole.omega / to).ln().abs();
-        (0..among.len()).min_by(|a, b| apart(a).total_cmp(&apart(b))).filter(|r| apart(r) < REACH)
+        (0..among.len()).min_by(|a, b| apart(a).total_cmp(&apart(b))).filter(|r| apart(r) < MOST_MOVED)
     };
     let partner = |r: usize| {
         let own = nearest(base.modes[r].pole.omega, &other.modes)?;

@@ -3,9 +3,6 @@
 use jointscope_linalg::Cholesky;
 use statrs::distribution::{ChiSquared, ContinuousCDF, FisherSnedecor};
 
-/// Differences of natural frequencies, as a share of the half-width, below which nothing is called drift: a free fit's residual terms leave as much wrong.
-pub(super) const LEAST: f64 = 0.005;
-
 /// One FRF's word on one mode.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Cell {

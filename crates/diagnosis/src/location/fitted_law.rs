@@ -7,11 +7,9 @@ use super::laws::{Law, laws_of};
 use super::problem::{Iterate, Parameters, Problem};
 use super::{LawFit, LawParameter, Site};
 use crate::Hypothesis;
+use crate::settings::location::differences::PARAMETER_STEP;
 use jointscope_inference::Covariance;
 use num_complex::Complex64;
-
-/// Relative step of the parameters' differences.
-const DIFFERENCE: f64 = 1e-5;
 
 /// A law at its best.
 pub(super) struct FittedLaw {
@@ -116,7 +114,7 @@ fn parameters(law: &Law, state: &Iterate, covariance: &Covariance) -> Option<Vec
     let values = (law.stated)(own);
     let mut slopes = vec![0.0; p * p];
     for a in 0..p {
-        let step = DIFFERENCE * own[a].abs().max(1e-12);
+        let step = PARAMETER_STEP * own[a].abs().max(1e-12);
         let moved = |sign: f64| {
             let mut parameters = own.clone();
             parameters[a] += sign * step;

@@ -10,11 +10,10 @@ use super::free_scalars::FreeScalars;
 use super::laws::{Law, Line};
 use super::pattern::Inversion;
 use crate::settings::LawSettings;
-use jointscope_inference::{Convergence, LeastSquares, NormalEquations, Precision, Settings, descend};
+use crate::settings::location::differences::PARAMETER_STEP;
+use crate::settings::location::guess::CONVERGENCE;
+use jointscope_inference::{LeastSquares, NormalEquations, Precision, Settings, descend};
 use num_complex::Complex64;
-
-/// Relative step of the parameters' differences.
-const DIFFERENCE: f64 = 1e-5;
 
 /// A site's scalars ready for laws.
 pub(super) struct Measured<'a> {
@@ -140,7 +139,7 @@ impl<'a> Measured<'a> {
         let mut moved = [0.0; 4];
         moved[..parameters.len()].copy_from_slice(parameters);
         for (p, slope) in slopes.iter_mut().enumerate() {
-            let step = DIFFERENCE * parameters[p].abs().max(1e-9);
+            let step = PARAMETER_STEP * parameters[p].abs().max(1e-9);
             moved[p] = parameters[p] + step;
             let up = (law.value)(line, &moved[..parameters.len()]);
             moved[p] = parameters[p] - step;
@@ -153,11 +152,8 @@ impl<'a> Measured<'a> {
     fn improved(&self, law: &Law, start: Vec<f64>) -> Option<Guess> {
         let departures = vec![0.0; self.free_scalars.order];
         let left = self.left(law, &start, &departures)?;
-        let settings = Settings {
-            steps: self.settings.guesses.1,
-            convergence: Convergence { gain: 1e-4, share: 0.0, floor: 0.0 },
-            ..Settings::default()
-        };
+        let settings =
+            Settings { steps: self.settings.guesses.1, convergence: CONVERGENCE, ..Settings::default() };
         let start = Guess { parameters: start, departures, left };
         descend(&Guessing { measured: self, law }, start, None, &settings).map(|end| end.point)
     }

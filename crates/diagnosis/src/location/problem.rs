@@ -10,12 +10,10 @@ use super::scalar::eliminated;
 use crate::Hypothesis;
 use crate::bodies::{extent, turns};
 use crate::settings::Settings;
+use crate::settings::effects::bounds::ABSCISSA_UNIT;
 use jointscope_fixture::Fixture;
 use jointscope_lumped::Model;
 use num_complex::Complex64;
-
-/// Abscissae move in units of this share of a body.
-const ABSCISSA_SHARE: f64 = 0.1;
 
 /// A site and the recording that it should explain.
 #[derive(Clone, Copy)]
@@ -159,7 +157,7 @@ impl Problem<'_> {
             return None;
         }
         let (low, high) = extent(&fixture, body);
-        Some((ABSCISSA_SHARE * (high - low).max(1e-6), low, high))
+        Some((ABSCISSA_UNIT * (high - low).max(1e-6), low, high))
     }
 
     /// The parameters moved by a step of tolerances, abscissa and parameters, as far as bounds let it.

@@ -1,14 +1,9 @@
 //! One line's scalar, eliminated by weighted least squares over the FRFs.
 
 use super::pattern::RationalResponse;
-use jointscope_inference::{Damping, LeastSquares, Precision, Settings, descend};
+use crate::settings::location::scalar::{DAMPING, ENOUGH, MOST_STEPS, STARTS};
+use jointscope_inference::{LeastSquares, Precision, Settings, descend};
 use num_complex::Complex64;
-
-/// Newton steps for a scalar that does not enter linearly, and starts besides its neighbour's and zero.
-const NEWTON: usize = 12;
-const STARTS: [f64; 3] = [-0.3, 0.5, 2.0];
-/// A start that leaves this much per real value needs no others beside it.
-const ENOUGH: f64 = 4.0;
 
 /// The scalar that fits the line's FRFs best; zero where the pattern vanishes.
 pub(super) fn eliminated(
@@ -46,11 +41,7 @@ fn newton(
     weights: &[f64],
     start: Complex64,
 ) -> (Complex64, f64) {
-    let settings = Settings {
-        steps: NEWTON,
-        damping: Damping { initial: 0.0, decrease: 0.0, least: 0.0, raised: 1.0, most: 1e2 },
-        ..Settings::default()
-    };
+    let settings = Settings { steps: MOST_STEPS, damping: DAMPING, ..Settings::default() };
     let line = Line { responses, measured, weights };
     let left = line.objective(&start, &());
     descend(&line, start, None, &settings).map_or((start, left), |end| (end.point, end.objective))

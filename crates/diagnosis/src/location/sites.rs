@@ -3,15 +3,10 @@
 use super::Site;
 use crate::Observation;
 use crate::bodies::{extent, turns};
+use crate::settings::location::sites::{GRID, GRID_OF_BEAM, SAME_PLACE, STRETCH};
 use jointscope_fixture::{BodyKind, Dof, Effect, Entry, Fixture, Joint, Place};
 use jointscope_lumped::{JointElement, nominal_stiffness};
 use jointscope_spectra::Channel;
-
-/// Abscissae of an even grid on each body, its ends included.
-const GRID: usize = 5;
-
-/// Abscissae of one stretch of a body: each stretch is sought through by itself, for between them a search does not find the way.
-const STRETCH: usize = 3;
 
 /// The sites of a fixture and a recording; of each stretch of a body several abscissae from which the best may be sought.
 pub(super) fn sites(fixture: &Fixture, observation: &Observation) -> Vec<Vec<Site>> {
@@ -55,8 +50,7 @@ fn on_body(fixture: &Fixture, body: usize) -> Vec<Site> {
     }
     let count = match &fixture.bodies()[body].kind {
         BodyKind::Rigid(_) => GRID,
-        // Between two nodes of a bending mode there are several places.
-        BodyKind::Beam(_) => 4 * GRID,
+        BodyKind::Beam(_) => GRID_OF_BEAM,
     };
     let mut places: Vec<f64> =
         (0..count).map(|i| low + (high - low) * i as f64 / (count - 1).max(1) as f64).collect();
@@ -65,7 +59,7 @@ fn on_body(fixture: &Fixture, body: usize) -> Vec<Site> {
         places.extend(rigid.x_cg.map(|q| q.value));
     }
     places.sort_by(f64::total_cmp);
-    places.dedup_by(|a, b| (*a - *b).abs() < 0.02 * (high - low));
+    places.dedup_by(|a, b| (*a - *b).abs() < SAME_PLACE * (high - low));
     places.into_iter().map(at).collect()
 }
 

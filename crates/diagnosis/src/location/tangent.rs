@@ -4,11 +4,10 @@ use super::Site;
 use super::pattern::{Inversion, RationalResponse};
 use super::problem::{Iterate, Modelled, Problem};
 use crate::Hypothesis;
+use crate::settings::location::differences::PARAMETER_STEP;
 use jointscope_inference::{NormalEquations, dot};
 use num_complex::Complex64;
 
-/// Relative step of a law's parameters.
-const PARAMETER_DIFFERENCE: f64 = 1e-5;
 /// Parameters that a law may have.
 const MOST: usize = 4;
 
@@ -118,7 +117,7 @@ impl Problem<'_> {
         values.resize(own + count * places, Complex64::ZERO);
         for (p, column) in values[own..].chunks_exact_mut(places).enumerate() {
             moved[..count].copy_from_slice(&at.parameters.of_law[..count]);
-            let step = PARAMETER_DIFFERENCE * moved[p].abs().max(1e-9);
+            let step = PARAMETER_STEP * moved[p].abs().max(1e-9);
             let centre = moved[p];
             for (line, inversion) in at.inversions.iter().enumerate() {
                 moved[p] = centre + step;

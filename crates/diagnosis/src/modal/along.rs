@@ -10,26 +10,15 @@ use crate::estimates::estimates_within;
 use crate::modal::fit::{ANY, ModalFit, SetOut};
 use crate::modal::prior::Prior;
 use crate::modal::searcher::{Named, Searcher};
+use crate::settings::modal::along::{
+    EVEN, FIRST_STEP, HELD, INCREDIBLE, LONGER, MOST_FIRST_STEP, MOST_STEPS, PARTS, STEEP,
+};
 use jointscope_findings::Estimate;
 use jointscope_fixture::Effect;
 use statrs::function::erf::erfc;
 use std::f64::consts::SQRT_2;
 use std::ops::Range;
 
-/// Standard deviation, in coordinates, about a place at which an effect is held.
-const HELD: f64 = 1e-4;
-/// First step away from where a fit came to rest, in deviations by its derivatives there and at most in coordinates.
-const STEP: (f64, f64) = (0.7, 0.5);
-/// Steps on either side, at most.
-const STEPS: usize = 14;
-/// ln of the density below the highest at which a place is not credible any more: three standard deviations.
-const INCREDIBLE: f64 = 4.5;
-/// Fall of ln of the density over a step below which the next is longer, and above which it is shorter, and by what factor.
-const EVEN: f64 = 0.5;
-const STEEP: f64 = 1.5;
-const LONGER: f64 = 1.6;
-/// Parts of a step between whose ends everything is interpolated.
-const PARTS: usize = 16;
 /// Halvings that find an end of an interval.
 const HALVINGS: usize = 60;
 /// Probability below and above a 95 % interval.
@@ -164,7 +153,7 @@ impl Ridge<'_> {
     /// Places away from the `middle`, by steps of about this size to the side of its sign, as far as they are credible.
     fn side(&self, middle: &(ModalFit, Held), mut step: f64) -> Vec<Held> {
         let (mut from, mut all) = (middle.clone(), Vec::new());
-        for _ in 0..STEPS {
+        for _ in 0..MOST_STEPS {
             let was = from.0.hypothesis.coordinates[self.coordinate];
             let to = (was + step).clamp(self.bounds[0], self.bounds[1]);
             if (to - was).abs() < HELD {
@@ -202,7 +191,7 @@ impl Searcher<'_> {
         let bounds = [moves[place].low, moves[place].high];
         let ridge = Ridge { searcher: self, named, own, coordinate, bounds };
         let deviation = named.fit.covariance_at(&self.widened(&named.fit))?.std(coordinate);
-        let step = (STEP.0 * deviation).min(STEP.1);
+        let step = (FIRST_STEP * deviation).min(MOST_FIRST_STEP);
         let middle = ridge.held(&named.fit, hypothesis.coordinates[coordinate])?;
         let mut all = ridge.side(&middle, -step);
         all.reverse();

@@ -7,8 +7,8 @@ use crate::fit::Fit;
 use crate::fitter::Fitter;
 use crate::modal::judgement::ModalJudgement;
 use crate::modal::searcher::Named;
-use crate::modal::sizes::BEYOND_ERRORS;
 use crate::settings::ModalSettings;
+use crate::settings::modal::sizes::BEYOND_ERRORS;
 use jointscope_findings::Verdict;
 use jointscope_fixture::EffectKind;
 

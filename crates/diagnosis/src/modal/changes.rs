@@ -2,12 +2,10 @@
 
 use crate::modal::fit::ModalFit;
 use crate::modal::searcher::Named;
+use crate::settings::modal::changes::SAME;
 use crate::{ModeChange, ModeState};
 use jointscope_model_error::{Pairing, Pole, RecordedMode, RecordedModes};
 use std::f64::consts::TAU;
-
-/// Difference in ln ω within which modes that no model tells apart are taken for one: what a small change moves a frequency by.
-const SAME: f64 = 0.02;
 
 /// Two states of a structure, and the model calibrated on the earlier one.
 pub(super) struct States<'a> {

@@ -2,31 +2,19 @@
 
 use crate::modal::prior::Prior;
 use crate::modal::standing::{Iterate, Problem, Standing};
-use jointscope_inference::{
-    Convergence, Damping, LeastSquares, NormalEquations, Precision, Settings, descend, dot,
-};
+use crate::settings::modal::descent::{CONVERGENCE, CURVED_VALLEY, DAMPING, DERIVATIVES, MOST_STEPS, REUSE};
+use jointscope_inference::{LeastSquares, NormalEquations, Precision, Settings, descend, dot};
 use jointscope_linalg::Cholesky;
 use jointscope_model_error::{ErrorSizes, Evidence, Linear};
-
-/// Decrease of χ² that a step promises below which a fit stands where it belongs.
-pub(super) const STILL: f64 = 1.0;
-/// Sets of derivatives that a descent may take after whose end the sizes of error are taken anew: what is fitted closely at sizes that are about to change is fitted again.
-const DERIVATIVES: usize = 2;
-/// Gauss–Newton steps, at most.
-const STEPS: usize = 40;
-/// Share of what an undamped step promises below which a fit follows a curved valley.
-const CURVED_VALLEY: f64 = 0.1;
-/// A step that gains less than this share of what the first one with its derivatives gained asks for new ones.
-const REUSE: f64 = 0.2;
 
 /// How parameters are fitted with at most so many sets of derivatives, the first taken at the start.
 pub(super) fn settings(derivatives: usize) -> Settings {
     Settings {
-        steps: STEPS,
+        steps: MOST_STEPS,
         derivatives,
         fresh: true,
-        damping: Damping { initial: 1e-6, decrease: 0.1, least: 1e-9, raised: 1e-3, most: 1e5 },
-        convergence: Convergence { gain: 0.2 * STILL, share: 1e-3, floor: 0.0 },
+        damping: DAMPING,
+        convergence: CONVERGENCE,
         reuse: Some(REUSE),
         curved_valley: CURVED_VALLEY,
         trust_old: true,

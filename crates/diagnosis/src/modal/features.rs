@@ -3,6 +3,7 @@
 use crate::modal::sizes::known;
 use crate::modal::standing::Problem;
 use crate::settings::ModalSettings;
+use crate::settings::modal::recorded::SPARE_ORDERS;
 use crate::work::Work;
 use crate::{Hypothesis, Observation};
 use jointscope_model_error::{RecordedModes, Recording, SizePrior, Structural};
@@ -67,7 +68,11 @@ pub(crate) fn recorded(observation: &Observation, nominal: &Hypothesis) -> Optio
     let recording = of(observation);
     // Where nothing but the FRFs tells their noise, every ripple looks like a mode: no more are asked for than a model may have.
     let expected = || jointscope_model_error::modes_within(&fixture, observation.frfs());
-    let orders = observation.has_scatter_for_noise().then(expected).flatten().map(|modes| (2, 2 * modes + 8));
+    let orders = observation
+        .has_scatter_for_noise()
+        .then(expected)
+        .flatten()
+        .map(|modes| (2, 2 * modes + SPARE_ORDERS));
     let options = ModesOptions { orders, ..ModesOptions::default() };
     let recorded = RecordedModes::of(recording, &options, |alone| alone.expected_by(&fixture))?;
     Some(recorded.beside(&fixture))

@@ -1,11 +1,15 @@
 //! One hypothesis at its most probable parameters and sizes of error.
 
 use crate::Hypothesis;
-use crate::modal::descent::STILL;
 use crate::modal::prior::Prior;
 use crate::modal::standing::{Iterate, Problem, Standing};
 use crate::modal::turns::{Turns, are_alike};
 use crate::rarity::rarity;
+use crate::settings::modal::descent::STANDS_STILL;
+use crate::settings::modal::fit::{
+    BY_CHANCE, CONVERGED, IDLE_ROUNDS, MOST_ROUNDS, MOST_SHRINKAGE, MOST_STRAYS, PATIENT_ROUNDS,
+    PROMISING_SHARE,
+};
 use jointscope_inference::{Covariance, dot};
 use jointscope_linalg::Cholesky;
 use jointscope_model_error::{ErrorSizes, Evidence, Linear, Pairing};
@@ -38,23 +42,9 @@ pub(crate) enum SetOut {
     Beside(ErrorSizes),
 }
 
-/// Descents at sizes of the error that are taken anew after each, at most, and the gain in ln p at which that ends.
-const ROUNDS: usize = 20;
-const CONVERGED: f64 = 0.02;
-/// Rounds at whose ends a fit stands still and has gained less, after which it ends.
-const IDLE: usize = 2;
 /// Of a fit whose ln p matters wherever it ends.
 pub(super) const ANY: f64 = f64::NEG_INFINITY;
-/// Rounds after which a fit is given up that is still below what matters, and gains less than this share of what it lacks.
-const PATIENCE: usize = 2;
-const GAINING: f64 = 0.25;
-/// Factor by which a size may shrink from one round to the next: where errors are next to none, a fit that starts far away hangs on whatever is recorded most sharply.
-const SHRINK: f64 = 0.1;
-/// How often a mode that has strayed into the band or out of it is counted anew, and damping that turns phases by far more or less than before: a mode at the very end of the
-/// band may stray for ever.
-const STRAYS: usize = 2;
-/// Standard deviations by which χ² of the features may be larger than their number.
-const BY_CHANCE: f64 = 6.0;
+
 impl ModalFit {
     /// The largest departure of the fixture's quantities, in standard deviations.
     pub(crate) fn largest_pull(&self) -> f64 {
@@ -187,21 +177,21 @@ impl Problem<'_> {
         let mut strayed = 0;
         let (mut idle, mut ahead) = (0, f64::NEG_INFINITY);
         let mut turns = Turns::none();
-        for round in 0..ROUNDS {
+        for round in 0..MOST_ROUNDS {
             // What fails on the way takes nothing from what was found before.
             let Some(end) = self.settled(&standing, point, derivatives, (priors, &sizes)) else { break };
             (point, derivatives) = (end.point, end.derivatives);
             let before = best.as_ref().map(|fit| fit.ln);
             let asked = end.evidence.sizes;
-            let next = asked.larger(sizes.times(SHRINK));
+            let next = asked.larger(sizes.times(MOST_SHRINKAGE));
             // The evidence at sizes that are asked for says nothing of a point from where the parameters are still to move, or the sizes to shrink. At its own a fit may stand still all the
             // same.
             let settled = next == asked;
             let same = settled && are_alike(&next, &sizes);
-            let last = round + 1 == ROUNDS;
-            let evidence = match settled && end.promised < STILL {
+            let last = round + 1 == MOST_ROUNDS;
+            let evidence = match settled && end.promised < STANDS_STILL {
                 true => Some(end.evidence),
-                false => (end.promised_there < STILL).then_some(Evidence {
+                false => (end.promised_there < STANDS_STILL).then_some(Evidence {
                     ln: end.evidence.ln_at_start,
                     sizes,
                     ..end.evidence
@@ -210,7 +200,8 @@ impl Problem<'_> {
             let stands = evidence.is_some();
             sizes = turns.toward(&next, &sizes);
             let ln = end.evidence.ln + standing.pairing.alone() - rarity;
-            let given_up = round >= PATIENCE && ln < least && ln - ahead < GAINING * (least - ln);
+            let given_up =
+                round >= PATIENT_ROUNDS && ln < least && ln - ahead < PROMISING_SHARE * (least - ln);
             ahead = ln;
             let none = (last || given_up) && best.is_none() && otherwise.is_none();
             if let Some(evidence) = evidence.or(none.then_some(end.evidence)) {
@@ -231,9 +222,9 @@ impl Problem<'_> {
             }
             let gained = best.as_ref().zip(before).is_none_or(|(best, before)| best.ln - before >= CONVERGED);
             idle = if gained { 0 } else { idle + usize::from(stands) };
-            let ends = best.is_some() && (same || idle == IDLE);
+            let ends = best.is_some() && (same || idle == IDLE_ROUNDS);
             // Modes may have moved past others on the way, and shapes with them, or into the band or out of it.
-            let strays = strayed < STRAYS && point.modelled.strays(self.recorded);
+            let strays = strayed < MOST_STRAYS && point.modelled.strays(self.recorded);
             if last || !(ends || strays) {
                 continue;
             }
@@ -241,7 +232,7 @@ impl Problem<'_> {
             let alike = anew.pairing.pairs == standing.pairing.pairs;
             // Where the fit set out, damping may have turned the shapes' phases by far more or less than it does here.
             let damped_like = anew.comparison.damps_like(&standing.comparison, self.sizes.damping);
-            let turned = alike && strayed < STRAYS && !damped_like;
+            let turned = alike && strayed < MOST_STRAYS && !damped_like;
             if ends && alike && anew.modelled.counts_like(&standing.modelled) && !turned {
                 break;
             }

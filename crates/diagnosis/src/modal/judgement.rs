@@ -12,6 +12,7 @@ use crate::modal::searcher::Named;
 use crate::modal::sizes::ModelError;
 use crate::search::Search;
 use crate::settings::ModalSettings;
+use crate::settings::modal::judgement::AT_ODDS;
 use crate::{Hypothesis, Observation};
 use jointscope_findings::Verdict;
 use jointscope_fixture::Effect;
@@ -43,9 +44,6 @@ pub(crate) struct ModalJudgement {
     /// What hypotheses were held against.
     pub features: Features,
 }
-
-/// Probability of names that explain the modes, and not the lines: what a usual finding has beside the largest weight of something that is not listed.
-const AT_ODDS: f64 = 2.0 / 3.0;
 
 impl ModalJudgement {
     /// The same with nothing stated beyond the fixture by itself.

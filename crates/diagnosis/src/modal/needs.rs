@@ -13,9 +13,10 @@ use crate::modal::features::Features;
 use crate::modal::fit::ModalFit;
 use crate::modal::judgement::ModalJudgement;
 use crate::modal::prior::priors_among;
-use crate::modal::sizes::BEYOND_ERRORS;
 use crate::penalty::{parameter_penalty, penalty};
 use crate::search::Search;
+use crate::settings::modal::judgement::CERTAIN;
+use crate::settings::modal::sizes::BEYOND_ERRORS;
 use jointscope_fixture::{Effect, EffectKind};
 
 /// Whether an effect is a gain larger than records' gains are wrong by: no error of a model is one, and to allow for errors as large would be to hold it against itself.
@@ -62,9 +63,6 @@ pub(crate) fn without_imitations(
     let fewer = repaired.hypothesis.effect_count() < search.repaired.hypothesis.effect_count();
     fewer.then(|| Search { repaired, ..search.clone() })
 }
-
-/// Standard deviations of χ² for so many unknowns that an effect must leave less than errors of the model do.
-const CERTAIN: f64 = 3.0;
 
 /// Whether one effect brings the lines down to their noise and errors of a structure's model, however large, do not: what a filter does to a mass line, or a sensor that loads one
 /// FRF and not the other, no mode tells, and no error imitates.

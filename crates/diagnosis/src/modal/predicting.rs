@@ -5,7 +5,7 @@
 //! that are stated, and quantities that follow recorded natural frequencies and damping more closely: as closely as takes none of them farther from what is stated than
 //! chance, or than it already is.
 
-use crate::departures::{DEPARTED, farthest};
+use crate::departures::farthest;
 use crate::fit::Fit;
 use crate::fitter::Fitter;
 use crate::modal::descent::settings;
@@ -14,6 +14,7 @@ use crate::modal::judgement::ModalJudgement;
 use crate::modal::standing::{Iterate, Problem};
 use crate::search::Search;
 use crate::settings::ModalSettings;
+use crate::settings::effects::quantities::DEPARTED;
 use crate::work::Work;
 use crate::{Hypothesis, Observation};
 use jointscope_findings::Verdict;

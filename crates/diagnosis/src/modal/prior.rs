@@ -2,6 +2,9 @@
 
 use crate::Hypothesis;
 use crate::candidate::Candidate;
+use crate::settings::modal::prior::{
+    LEAST_OF_LOGARITHM, OF_DASHPOT, OF_ROTARY_INERTIA, OF_SIZE, UNKNOWN_QUANTITY,
+};
 use jointscope_fixture::{Effect, Motion, ParameterSpec, Starts};
 use jointscope_inference::{Parameter, Transform};
 
@@ -12,24 +15,11 @@ pub(crate) struct Prior {
     pub std: f64,
 }
 
-/// Standard deviation, in units of the coordinate, of a quantity of which nothing is known: its own size.
-const FREE: f64 = 10.0;
-/// Least standard deviation of a logarithm: a factor of four either way.
-const LOGARITHM: f64 = 1.4;
-
-/// Standard deviation of a size of either sign, as a share of the largest that a search starts from.
-const SIZE: f64 = 0.6;
-/// The same of a dashpot beside a spring, whose starts are next to nothing.
-const DASHPOT: f64 = 30.0;
-
-/// The same of a rotary inertia, whose start is that of a metal section.
-const SECTION: f64 = 3.0;
-
 /// The priors of a hypothesis whose effects go by the names `candidates`, in their order.
 pub(crate) fn priors(hypothesis: &Hypothesis, candidates: &[&Candidate]) -> Vec<Prior> {
     let tolerance = |index: usize| {
         let precision = hypothesis.prior(index);
-        Prior { mean: 0.0, std: if precision > 0.0 { precision.sqrt().recip() } else { FREE } }
+        Prior { mean: 0.0, std: if precision > 0.0 { precision.sqrt().recip() } else { UNKNOWN_QUANTITY } }
     };
     let mut all: Vec<Prior> = (0..hypothesis.tolerances().len()).map(tolerance).collect();
     for (index, candidate) in candidates.iter().enumerate() {
@@ -60,7 +50,7 @@ fn of_effect(hypothesis: &Hypothesis, index: usize, candidate: &Candidate) -> Ve
         Some(match (moves.transform, parameter.motion) {
             (_, Motion::OfQuantity) => Prior { mean: 0.0, std: moves.precision.sqrt().recip() },
             (Transform::Logarithmic { .. }, _) => {
-                Prior { mean: 0.5 * (low + high), std: (0.5 * (high - low)).max(LOGARITHM) }
+                Prior { mean: 0.5 * (low + high), std: (0.5 * (high - low)).max(LEAST_OF_LOGARITHM) }
             }
             (_, Motion::AlongBody | Motion::AlongSecondBody) => {
                 let (from, to) = (moves.low, moves.high);
@@ -68,13 +58,13 @@ fn of_effect(hypothesis: &Hypothesis, index: usize, candidate: &Candidate) -> Ve
             }
             // What yields in series may be far stiffer or softer than the joint, and its dashpot with it.
             (_, Motion::NonNegative(_)) if in_series && matches!(parameter.starts, Starts::OfLeading(_)) => {
-                Prior { mean: 0.0, std: DASHPOT }
+                Prior { mean: 0.0, std: OF_DASHPOT }
             }
             (_, Motion::NonNegative(_)) if place != spec.size.parameter => {
-                let times = if parameter.of_bodies_only { SECTION } else { DASHPOT };
+                let times = if parameter.of_bodies_only { OF_ROTARY_INERTIA } else { OF_DASHPOT };
                 Prior { mean: 0.0, std: (times * largest).max(f64::MIN_POSITIVE.sqrt()) }
             }
-            _ => Prior { mean: 0.0, std: (SIZE * largest).max(f64::MIN_POSITIVE.sqrt()) },
+            _ => Prior { mean: 0.0, std: (OF_SIZE * largest).max(f64::MIN_POSITIVE.sqrt()) },
         })
     };
     parameters.enumerate().filter_map(prior).collect()

@@ -6,12 +6,10 @@ use crate::modal::known::Known;
 use crate::modal::prior::{Prior, priors};
 use crate::modal::standing::Problem;
 use crate::settings::ModalSettings;
+use crate::settings::modal::prior::CALIBRATED_QUANTITY;
 use crate::{Hypothesis, Watch};
 use jointscope_fixture::Effect;
 use jointscope_model_error::ErrorSizes;
-
-/// Standard deviation, in stated ones, that a calibrated quantity keeps.
-const CALIBRATED: f64 = 1e-4;
 
 /// Name of what a search may not come to any more.
 pub(super) const STARTS: &str = "the less promising effects, by modes";
@@ -65,7 +63,7 @@ impl Searcher<'_> {
         let mut all = priors(hypothesis, company);
         if self.calibrated {
             let stay = all.iter_mut().zip(&self.nominal.coordinates);
-            stay.for_each(|(prior, at)| *prior = Prior { mean: *at, std: CALIBRATED });
+            stay.for_each(|(prior, at)| *prior = Prior { mean: *at, std: CALIBRATED_QUANTITY });
         }
         all
     }

@@ -3,6 +3,7 @@
 use crate::modal::fit::ModalFit;
 use crate::modal::standing::Problem;
 use crate::settings::ModalSettings;
+use crate::settings::modal::sizes::{LEAST_OF_STATED_DAMPING, NEGLIGIBLE};
 use jointscope_fixture::{Fixture, Place, StatedError};
 use jointscope_model_error::{
     DAMPING, ErrorSizes, Evidence, FREQUENCY, GAIN, KINDS, SHAPE, SizePrior, UPPER_RESIDUAL,
@@ -43,12 +44,6 @@ impl ModelError {
         [self.frequency, self.damping, self.residue] == [0.0; 3]
     }
 }
-
-/// Share of the usual size below which an error is none: ten times the least that is tried.
-const NEGLIGIBLE: f64 = 10.0 * ErrorSizes::LEAST;
-
-/// Multiple of the usual error of gains beyond which a channel's is no error of them: one record of many that is a tenth too large is the very thing that a name says.
-pub(super) const BEYOND_ERRORS: f64 = 4.0;
 
 /// Whether all bodies have modes of their own above the band.
 fn all_bend(fixture: &Fixture) -> bool {
@@ -107,12 +102,16 @@ impl Problem<'_> {
         self.relative_sizes_as_stated(fit).into_iter().fold(0.0, f64::max)
     }
 
-    /// The sizes of [`Problem::relative_sizes`] by which a hypothesis stands or falls: none of upper residuals beside effects where bodies are rigid; that of damping ratios by no less than half of what the fixture states as their deviations: nobody claimed to know them better than these.
+    /// The sizes of [`Problem::relative_sizes`] by which a hypothesis stands or falls: none of upper residuals beside effects where bodies are rigid; that of damping ratios by no less than a share of what the fixture states as their deviations.
     /// Where effects have made other modes than those of which it states ratios, by no less than the whole: these get theirs from the others' damping.
     pub(crate) fn relative_sizes_as_stated(&self, fit: &ModalFit) -> Vec<f64> {
         let mut sizes = self.relative_sizes(fit);
         let stated = fit.hypothesis.deviation_of_damping();
-        let usual = if fit.hypothesis.springs_and_masses().is_some() { stated } else { 0.5 * stated };
+        let usual = if fit.hypothesis.springs_and_masses().is_some() {
+            stated
+        } else {
+            LEAST_OF_STATED_DAMPING * stated
+        };
         if usual > self.sizes.damping {
             sizes[DAMPING] *= self.sizes.damping / usual;
         }

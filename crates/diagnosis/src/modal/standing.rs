@@ -2,6 +2,8 @@
 
 use crate::Hypothesis;
 use crate::modal::prior::Prior;
+use crate::settings::modal::differences::{MOST_STEP, STEP};
+use crate::settings::work::costs::{FOLLOWED_POLES, SEARCHED_POLES};
 use crate::work::Work;
 use jointscope_fixture::Fixture;
 use jointscope_model_error::{
@@ -36,11 +38,6 @@ pub(super) struct Iterate {
     pub residual: Vec<f64>,
 }
 
-/// Values of an FRF that the search for a model's poles, and following known ones, cost about.
-const SEARCHED: usize = 1000;
-const FOLLOWED: usize = 300;
-/// Step of differences, in prior standard deviations and at most in coordinates.
-const DIFFERENCE: (f64, f64) = (1e-3, 2e-3);
 impl Problem<'_> {
     /// What is known of the sizes of the error beforehand.
     pub(crate) fn prior(&self) -> SizePrior {
@@ -50,7 +47,7 @@ impl Problem<'_> {
     /// Where a hypothesis stands, its poles found anew.
     pub(crate) fn standing(&self, hypothesis: &Hypothesis) -> Option<Standing> {
         let fixture = hypothesis.to_fixture().ok()?;
-        self.work.count(SEARCHED * self.recorded.frfs());
+        self.work.count(SEARCHED_POLES * self.recorded.frfs());
         let modelled = ModelledModes::of(&fixture, self.recorded)?;
         let pairing = Pairing::of(self.recorded, &modelled);
         self.paired((hypothesis, &fixture), modelled, pairing)
@@ -80,7 +77,7 @@ impl Problem<'_> {
     /// The modes of a hypothesis, followed from those of another one near it.
     pub(super) fn modelled(&self, hypothesis: &Hypothesis, near: &ModelledModes) -> Option<ModelledModes> {
         let fixture = hypothesis.to_fixture().ok()?;
-        self.work.count(FOLLOWED * self.recorded.frfs());
+        self.work.count(FOLLOWED_POLES * self.recorded.frfs());
         ModelledModes::near(&fixture, self.recorded, near)
     }
 
@@ -103,11 +100,11 @@ impl Problem<'_> {
         let beside = |hypothesis: &Hypothesis| {
             let Some(about) = &about else { return self.modelled(hypothesis, modelled) };
             let fixture = hypothesis.to_fixture().ok()?;
-            self.work.count(FOLLOWED * self.recorded.frfs());
+            self.work.count(FOLLOWED_POLES * self.recorded.frfs());
             ModelledModes::after_step(&fixture, self.recorded, (about, modelled))
         };
         of.map(|index| {
-            let size = (DIFFERENCE.0 * priors[index].std).min(DIFFERENCE.1);
+            let size = (STEP * priors[index].std).min(MOST_STEP);
             let inward = hypothesis.inward(index, size);
             // A beam that ends at a support cannot become shorter: then longer.
             let moved = |step: f64| Some((step, beside(&hypothesis.moved(index, step))?));

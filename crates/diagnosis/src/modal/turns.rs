@@ -1,12 +1,7 @@
 //! How sizes of error go on from round to round of a fit: parameters and sizes ask for each other in turn.
 
+use crate::settings::modal::turns::{ALIKE, ONWARD, TURNED_BACK};
 use jointscope_model_error::{ErrorSizes, KINDS};
-
-/// Factors of the share that a size goes of the way to what is asked for, where it turns back and where it does not.
-const TURNED: f64 = 0.4;
-const ONWARD: f64 = 1.25;
-/// Relative difference of sizes that are as good as the same: they are searched no closer.
-const ALIKE: f64 = 0.1;
 
 /// Whether parameters fitted at one of these sizes are as good as fitted at the other.
 pub(super) fn are_alike(a: &ErrorSizes, b: &ErrorSizes) -> bool {
@@ -34,8 +29,11 @@ impl Turns {
         ErrorSizes::from_array(std::array::from_fn(|kind| {
             let change = (asked[kind] / from[kind]).ln();
             let share = &mut self.shares[kind];
-            *share =
-                if change * self.last[kind] < 0.0 { TURNED * *share } else { (ONWARD * *share).min(1.0) };
+            *share = if change * self.last[kind] < 0.0 {
+                TURNED_BACK * *share
+            } else {
+                (ONWARD * *share).min(1.0)
+            };
             self.last[kind] = *share * change;
             if *share == 1.0 { asked[kind] } else { from[kind] * self.last[kind].exp() }
         }))

@@ -1,3 +1,5 @@
+//! Numbers of the map of places with no law assumed: what a caller may set, and what each of its steps needs besides.
+
 use jointscope_inference::{Convergence, Damping};
 
 /// The map of places with no law assumed.
@@ -96,4 +98,45 @@ impl Default for LocationSettings {
             },
         }
     }
+}
+
+/// Places that are tried.
+pub(crate) mod sites {
+    /// Abscissae of an even grid on each rigid body, its ends included.
+    pub(crate) const GRID: usize = 5;
+    /// The same on a beam: between two nodes of a bending mode there are several places.
+    pub(crate) const GRID_OF_BEAM: usize = 20;
+    /// Share of a body's extent within which two abscissae are the same place.
+    pub(crate) const SAME_PLACE: f64 = 0.02;
+    /// Abscissae of one stretch of a body: each stretch is sought through by itself, for between them a search does not find the way.
+    pub(crate) const STRETCH: usize = 3;
+}
+
+/// A line's scalar that does not enter linearly.
+pub(crate) mod scalar {
+    use jointscope_inference::Damping;
+
+    /// Damping of the steps: none but after one that has failed.
+    pub(crate) const DAMPING: Damping =
+        Damping { initial: 0.0, decrease: 0.0, least: 0.0, raised: 1.0, most: 1e2 };
+    /// Newton steps from a start, at most.
+    pub(crate) const MOST_STEPS: usize = 12;
+    /// Starts besides its neighbour's and zero.
+    pub(crate) const STARTS: [f64; 3] = [-0.3, 0.5, 2.0];
+    /// A start that leaves this much per real value needs no others beside it.
+    pub(crate) const ENOUGH: f64 = 4.0;
+}
+
+/// Laws guessed from the scalars of all lines.
+pub(crate) mod guess {
+    use jointscope_inference::Convergence;
+
+    /// Decrease of χ² below which a guess is improved no further.
+    pub(crate) const CONVERGENCE: Convergence = Convergence { gain: 1e-4, share: 0.0, floor: 0.0 };
+}
+
+/// Derivatives by differences.
+pub(crate) mod differences {
+    /// Relative step of a law's parameters.
+    pub(crate) const PARAMETER_STEP: f64 = 1e-5;
 }
