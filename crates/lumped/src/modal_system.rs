@@ -2,6 +2,7 @@
 
 use crate::denominator::Denominator;
 use crate::lanes::Lines;
+use jointscope_linalg::LuWorkspace;
 use num_complex::Complex64;
 
 /// Modes up to which there is a solution of fixed size, which the compiler unrolls.
@@ -39,27 +40,27 @@ impl ModalSystem {
     pub(crate) fn at<T: Lines>(
         &self,
         s: T,
-        delta: &[T],
-        elements: &[(usize, usize)],
-        solution: &mut Vec<T>,
+        change: (&[T], &[(usize, usize)]),
+        (solution, lu): (&mut Vec<T>, &mut LuWorkspace),
         pairs: &[(usize, usize)],
         values: &mut [T],
     ) -> bool {
         let order = self.denominators.len();
         solution.resize(self.inputs.len(), T::ZERO);
+        let memory = (&mut solution[..], lu);
         let solved = match order {
-            1 => self.solve::<1, T>(s, delta, elements, solution),
-            2 => self.solve::<2, T>(s, delta, elements, solution),
-            3 => self.solve::<3, T>(s, delta, elements, solution),
-            4 => self.solve::<4, T>(s, delta, elements, solution),
-            5 => self.solve::<5, T>(s, delta, elements, solution),
-            6 => self.solve::<6, T>(s, delta, elements, solution),
-            7 => self.solve::<7, T>(s, delta, elements, solution),
-            8 => self.solve::<8, T>(s, delta, elements, solution),
-            9 => self.solve::<9, T>(s, delta, elements, solution),
-            10 => self.solve::<10, T>(s, delta, elements, solution),
-            11 => self.solve::<11, T>(s, delta, elements, solution),
-            FEW_MODES => self.solve::<FEW_MODES, T>(s, delta, elements, solution),
+            1 => self.solve::<1, T>(s, change, memory),
+            2 => self.solve::<2, T>(s, change, memory),
+            3 => self.solve::<3, T>(s, change, memory),
+            4 => self.solve::<4, T>(s, change, memory),
+            5 => self.solve::<5, T>(s, change, memory),
+            6 => self.solve::<6, T>(s, change, memory),
+            7 => self.solve::<7, T>(s, change, memory),
+            8 => self.solve::<8, T>(s, change, memory),
+            9 => self.solve::<9, T>(s, change, memory),
+            10 => self.solve::<10, T>(s, change, memory),
+            11 => self.solve::<11, T>(s, change, memory),
+            FEW_MODES => self.solve::<FEW_MODES, T>(s, change, memory),
             _ => false,
         };
         if solved {
@@ -76,22 +77,46 @@ impl ModalSystem {
     fn solve<const N: usize, T: Lines>(
         &self,
         s: T,
-        delta: &[T],
-        elements: &[(usize, usize)],
-        solution: &mut [T],
+        change: (&[T], &[(usize, usize)]),
+        (solution, lu): (&mut [T], &mut LuWorkspace),
     ) -> bool {
-        let mut matrix = self.matrix::<N, T>(s, delta, elements);
-        let inputs = self.inputs.as_chunks::<N>().0;
-        let columns = solution.as_chunks_mut::<N>().0;
+        let mut matrix = self.matrix::<N, T>(s, change);
         if factorize_symmetric(&mut matrix) {
-            for (input, column) in inputs.iter().zip(columns) {
+            let inputs = self.inputs.as_chunks::<N>().0;
+            for (input, column) in inputs.iter().zip(solution.as_chunks_mut::<N>().0) {
                 *column = input.map(|shape| T::constant(Complex64::new(shape, 0.0)));
                 substitute(&matrix, column);
             }
             return true;
         }
-        let matrix = self.matrix::<N, T>(s, delta, elements);
-        (0..T::COUNT).all(|line| solve_line(&matrix, line, inputs, columns))
+        let matrix = self.matrix::<N, T>(s, change);
+        self.solve_line_by_line(matrix.as_flattened(), solution, lu)
+    }
+
+    /// Each line by itself, rows exchanged for the sake of its pivots, from the lower triangle of its matrix.
+    #[inline(never)]
+    fn solve_line_by_line<T: Lines>(&self, lower: &[T], solution: &mut [T], lu: &mut LuWorkspace) -> bool {
+        let order = self.denominators.len();
+        let mut values = vec![Complex64::ZERO; order];
+        (0..T::COUNT).all(|line| {
+            let factorized = lu.factorize(order, |matrix| {
+                for i in 0..order {
+                    for j in 0..=i {
+                        let element = lower[i * order + j].line(line);
+                        (matrix[i * order + j], matrix[j * order + i]) = (element, element);
+                    }
+                }
+            });
+            if factorized.is_err() {
+                return false;
+            }
+            for (input, column) in self.inputs.chunks_exact(order).zip(solution.chunks_exact_mut(order)) {
+                values.iter_mut().zip(input).for_each(|(to, shape)| *to = Complex64::new(*shape, 0.0));
+                lu.solve_in_place(&mut values);
+                column.iter_mut().zip(&values).for_each(|(to, value)| to.set_line(line, *value));
+            }
+            true
+        })
     }
 
     /// The lower triangle of D + V Δ Vᵀ, which is symmetric.
@@ -99,8 +124,7 @@ impl ModalSystem {
     fn matrix<const N: usize, T: Lines>(
         &self,
         s: T,
-        delta: &[T],
-        elements: &[(usize, usize)],
+        (delta, elements): (&[T], &[(usize, usize)]),
     ) -> [[T; N]; N] {
         let change = self.change.as_chunks::<N>().0;
         let mut matrix = [[T::ZERO; N]; N];
@@ -177,76 +201,5 @@ fn substitute<const N: usize, T: Lines>(factors: &[[T; N]; N], values: &mut [T; 
         for j in i + 1..N {
             values[i] = values[i] - factors[j][i] * values[j];
         }
-    }
-}
-
-/// One line by itself, rows exchanged for the sake of its pivots.
-#[inline(never)]
-fn solve_line<const N: usize, T: Lines>(
-    lower: &[[T; N]; N],
-    line: usize,
-    inputs: &[[f64; N]],
-    columns: &mut [[T; N]],
-) -> bool {
-    let mut matrix = [[Complex64::ZERO; N]; N];
-    for i in 0..N {
-        for j in 0..=i {
-            matrix[i][j] = lower[i][j].line(line);
-            matrix[j][i] = matrix[i][j];
-        }
-    }
-    let Some((matrix, pivots)) = factorized(matrix) else { return false };
-    for (input, column) in inputs.iter().zip(columns) {
-        let mut values = input.map(|shape| Complex64::new(shape, 0.0));
-        substitute_exchanged(&matrix, &pivots, &mut values);
-        column.iter_mut().zip(values).for_each(|(to, value)| to.set_line(line, value));
-    }
-    true
-}
-
-/// LU with partial pivoting in place, pivots inverted on the diagonal, and the rows that were exchanged.
-fn factorized<const N: usize>(mut matrix: [[Complex64; N]; N]) -> Option<([[Complex64; N]; N], [usize; N])> {
-    let largest = matrix.iter().flatten().map(|e| e.norm_sqr()).fold(0.0, f64::max);
-    let mut pivots = [0; N];
-    for column in 0..N {
-        let size = |row: usize| matrix[row][column].norm_sqr();
-        let pivot = (column..N).fold(column, |best, row| if size(row) > size(best) { row } else { best });
-        if !largest.is_finite() || size(pivot).is_nan() || size(pivot) <= ZERO * ZERO * largest {
-            return None;
-        }
-        pivots[column] = pivot;
-        matrix.swap(column, pivot);
-        let inverse = matrix[column][column].inv();
-        matrix[column][column] = inverse;
-        let pivot_row = matrix[column];
-        for row in matrix.iter_mut().skip(column + 1) {
-            let factor = row[column] * inverse;
-            row[column] = factor;
-            for n in column + 1..N {
-                row[n] -= factor * pivot_row[n];
-            }
-        }
-    }
-    Some((matrix, pivots))
-}
-
-fn substitute_exchanged<const N: usize>(
-    matrix: &[[Complex64; N]; N],
-    pivots: &[usize; N],
-    values: &mut [Complex64; N],
-) {
-    for row in 0..N {
-        values.swap(row, pivots[row]);
-    }
-    for row in 1..N {
-        for n in 0..row {
-            values[row] -= matrix[row][n] * values[n];
-        }
-    }
-    for row in (0..N).rev() {
-        for n in row + 1..N {
-            values[row] -= matrix[row][n] * values[n];
-        }
-        values[row] *= matrix[row][row];
     }
 }

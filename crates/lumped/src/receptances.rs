@@ -253,7 +253,8 @@ impl<'a> Prepared<'a> {
             self.terms.write(s, &mut memory.delta);
         }
         if let Some(system) = &self.system {
-            return system.at(s, &memory.delta, &self.elements, &mut memory.solution, &self.pairs, values);
+            let change = (&memory.delta[..], &self.elements[..]);
+            return system.at(s, change, (&mut memory.solution, &mut memory.lu), &self.pairs, values);
         }
         memory.sums.resize(self.entries, T::ZERO);
         memory.inverses.resize(self.denominators.len(), T::ZERO);
