@@ -10,7 +10,7 @@ use super::search::{Search, Span};
 use crate::settings::band::{BEYOND_BAND, BEYOND_ELASTIC, FORCE_ENDS, SAMPLING_ENDS};
 use crate::settings::homogeneity::CHANGED;
 use crate::settings::map::{FROM_LOWEST, HARMONIC, SAMPLED_SHARE};
-use crate::settings::search::{LEAST_GAIN, SEEK_MORE, SEEK_MORE_ERROR, WORTH};
+use crate::settings::search::{LEAST_GAIN, RENEWALS, SEEK_MORE, SEEK_MORE_ERROR, WORTH};
 use crate::{DiagnoseError, ForceStateError, ForceStateMap, SimulationError};
 use jointscope_findings::{HeldOut, Verdict};
 use jointscope_fixture::{BodyKind, Dof, Fixture};
@@ -131,10 +131,26 @@ fn judged(fixture: &Fixture, all: &[Record], (band, elastic): Bands, exact: bool
         let base = if steps.is_empty() { &nominal } else { &best.hypothesis };
         let model = base.to_fixture().unwrap_or_else(|_| fixture.clone());
         let (fits, followed) = search.hypotheses(&model, base);
-        let Some(first) = fits.first() else { break };
+        if fits.is_empty() {
+            break;
+        }
         // What is not followed counts for neither.
         whole = search.view(&followed);
-        let before = Fit::of(&whole, &best.hypothesis, 1)?;
+        let mut before = Fit::of(&whole, &best.hypothesis, 1)?;
+        let (idle, fits): (Vec<Fit>, Vec<Fit>) =
+            fits.into_iter().partition(|fit| search.is_idle(&fit.hypothesis));
+        // A law that never acts may have led the quantities beside it out of a false minimum.
+        for fit in idle {
+            let without = Fit::of(&whole, &fit.hypothesis.without_last(), RENEWALS);
+            let Some(better) = without.filter(|fit| fit.objective < before.objective) else { continue };
+            if let Some(Step { fits, gain }) = steps.last_mut() {
+                *gain += before.objective - better.objective;
+                fits[0] = better.clone();
+            }
+            best = better.clone();
+            before = better;
+        }
+        let Some(first) = fits.first() else { break };
         let excess = |fit: &Fit| (fit.objective - whole.degrees()).max(0.0);
         if excess(first) > (1.0 - worth) * excess(&before) || first.objective + LEAST_GAIN > before.objective
         {

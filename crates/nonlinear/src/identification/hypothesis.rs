@@ -56,6 +56,17 @@ impl Hypothesis {
         less
     }
 
+    /// The same without the effect that was added last.
+    pub(crate) fn without_last(&self) -> Self {
+        let mut less = self.clone();
+        if let Some(last) = less.effects.pop() {
+            let left = less.coordinates.len() - last.parameters.len();
+            less.coordinates.truncate(left);
+            less.parameters.truncate(left);
+        }
+        less
+    }
+
     /// The effects at the present coordinates.
     pub(crate) fn effects(&self) -> Vec<Effect> {
         let all = self.parameters.iter().zip(&self.coordinates).skip(self.quantities.len());

@@ -14,7 +14,7 @@ use crate::settings::judgement::{
     UNLISTED, UNLISTED_LEFT_OVER,
 };
 use jointscope_findings::{Finding, HeldOut, Verdict};
-use jointscope_fixture::{Effect, Fixture, NamedQuantity, Place};
+use jointscope_fixture::{Effect, Fixture, NamedQuantity};
 use serde::Serialize;
 
 /// A law that the hits need.
@@ -182,9 +182,7 @@ impl Judgement<'_> {
                 })
                 .collect();
             let (probability, alternatives) = probabilities(&step.fits, chi2_per_dof);
-            let mut reaches = reached
-                .iter()
-                .filter(|l| effect.dof == Some(l.dof) && effect.place == Place::Joint(l.joint.clone()));
+            let mut reaches = reached.iter().filter(|location| location.is_of(&effect));
             HitFinding {
                 estimates: estimates(&effect, &deviations, PARAMETER_ERROR),
                 probability,

@@ -5,7 +5,7 @@ use crate::settings::suggestions::STEPS_OF_REACH;
 use crate::spectra::oversampled_for_lines;
 use crate::time::kernel::{Stepper, Steps};
 use crate::time::structure::Structure;
-use jointscope_fixture::{Dof, Fixture};
+use jointscope_fixture::{Dof, Effect, Fixture, Place};
 use jointscope_lumped::nominal_stiffness;
 
 /// One joint's component that an amplitude-dependent law may act on.
@@ -17,6 +17,13 @@ pub(crate) struct JointLocation {
     pub stiffness: f64,
     /// Largest relative motion that the fixture shows under the hits, m or rad.
     pub reach: f64,
+}
+
+impl JointLocation {
+    /// Whether an effect acts here.
+    pub(super) fn is_of(&self, effect: &Effect) -> bool {
+        effect.dof == Some(self.dof) && matches!(&effect.place, Place::Joint(joint) if *joint == self.joint)
+    }
 }
 
 /// The components of all joints that the hits move, with how far.

@@ -13,6 +13,7 @@ use crate::settings::search::{
     LINEAR_RENEWALS, LONG, MEDIUM, RECONSTRUCTED, RENEWALS, SEARCH_HALVINGS, SHORT, START_RENEWALS,
     STEPS_IN_INTERVAL, STEPS_IN_PERIOD, WEAK_KIND,
 };
+use crate::time::law::RestoringLaw;
 use jointscope_fixture::Fixture;
 use rayon::prelude::*;
 
@@ -108,6 +109,17 @@ impl<'a> Search<'a> {
         let least = kinds.first().map_or(0.0, |kind| WEAK_KIND * kind.share);
         kinds.retain(|kind| kind.share >= least);
         kinds
+    }
+
+    /// Whether the law that was added last to a hypothesis never acts: a gap that no hit closes, friction that none makes slip. What gains by it are the quantities beside it.
+    pub(super) fn is_idle(&self, hypothesis: &Hypothesis) -> bool {
+        let Some((effect, model)) = hypothesis.effects().pop().zip(hypothesis.to_fixture().ok()) else {
+            return false;
+        };
+        let all = locations(&model, &self.records, BEYOND_BAND * self.band.1);
+        let mut own = all.iter().filter(|location| location.is_of(&effect));
+        let from = RestoringLaw::of(&effect).map_or(0.0, |law| law.acts_from());
+        own.next().is_some_and(|location| location.reach < from)
     }
 
     /// Fits with one more effect beside those of `base`, the best first, and how much of the records decided between them.

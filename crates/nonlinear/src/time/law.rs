@@ -62,6 +62,15 @@ impl RestoringLaw {
         })
     }
 
+    /// Relative motion, m or rad, up to which it is a spring or nothing at all.
+    pub(crate) fn acts_from(&self) -> f64 {
+        match *self {
+            RestoringLaw::Cubic { .. } => 0.0,
+            RestoringLaw::Friction { slip_force, stiffness } => slip_force / stiffness,
+            RestoringLaw::Gap { clearance, .. } => clearance,
+        }
+    }
+
     /// The kind of its effect.
     pub(crate) fn kind(&self) -> EffectKind {
         match self {
