@@ -241,16 +241,17 @@ fn by_lines(
     if let Some(modal) = modal.filter(|modal| modal.tells_from(fitter, &search.repaired.hypothesis)) {
         return by_modes(fitter, &search, modal, division);
     }
-    let stated = |f: &Finding| f.probability + f.alternatives.iter().map(|(_, p)| p).sum::<f64>();
     // What the best hypotheses leave may say that none of them is right: they would only adapt the model to the recording.
-    let doubtful = findings.iter().any(|finding| stated(finding) < settings.evidence.stated);
+    let doubtful = findings.iter().any(|finding| finding.stated() < settings.evidence.stated);
     let findings = if doubtful { Vec::new() } else { findings };
     if findings.is_empty() {
         search.repaired = search.refitted.clone();
     }
     let findings = match modal {
         Some(modal) if !findings.is_empty() => {
-            modal.with_errors_of_modes(fitter, &search.repaired.hypothesis, &search.candidates, findings)
+            let found = &search.repaired.hypothesis;
+            let findings = modal.with_errors_of_modes(fitter, found, &search.candidates, findings);
+            modal.with_its_own_name(fitter, findings)
         }
         _ => findings,
     };

@@ -37,7 +37,12 @@ impl<E> Finding<E> {
 
     /// Whether neither it nor any of its look-alikes is likelier than something that is not listed.
     pub fn is_doubtful(&self) -> bool {
-        self.probability + self.alternatives.iter().map(|(_, probability)| probability).sum::<f64>() < 0.5
+        self.stated() < 0.5
+    }
+
+    /// Probability of all names together; the rest is something that is not listed.
+    pub fn stated(&self) -> f64 {
+        self.probability + self.alternatives.iter().map(|(_, probability)| probability).sum::<f64>()
     }
 
     /// A parameter, by its name in files.

@@ -3,6 +3,7 @@
 use crate::Hypothesis;
 use crate::candidate::Candidate;
 use crate::evidence::{cost, explained, explains};
+use crate::finding::Finding;
 use crate::fit::Fit;
 use crate::fitter::Fitter;
 use crate::modal::judgement::ModalJudgement;
@@ -10,7 +11,7 @@ use crate::modal::searcher::Named;
 use crate::settings::ModalSettings;
 use crate::settings::modal::sizes::BEYOND_ERRORS;
 use jointscope_findings::Verdict;
-use jointscope_fixture::EffectKind;
+use jointscope_fixture::{Effect, EffectKind};
 
 /// A hypothesis found among the modes, fitted to lines.
 #[derive(Debug, Clone)]
@@ -123,6 +124,25 @@ impl ModalJudgement {
         let told = fitter.settings.modal.odds.ln();
         let is_told = fitted.is_some_and(|other| other.names != *names && fit.ln - other.fit.ln > told);
         *exact && is_told && self.nearly_exact(fitter).is_some()
+    }
+
+    /// The findings of the lines; beside one alone the one name that the modes hold more probable, where errors of the model as usual leave them so. Each is as probable as the
+    /// other then: what lines hold against that name is the very thing that such errors make.
+    pub(crate) fn with_its_own_name(&self, fitter: &Fitter, mut findings: Vec<Finding>) -> Vec<Finding> {
+        let effects = self.search.best.fit.hypothesis.effects();
+        let ([own], [finding]) = (&effects[..], &mut findings[..]) else { return findings };
+        let named = |effect: &Effect| effect.is_named_as(own);
+        let is_listed = finding.alternatives.iter().any(|(effect, _)| named(effect));
+        let all_told = self.free_fit <= fitter.settings.modal.free_fit && !self.strained;
+        if !self.names_all() || !all_told || named(&finding.effect) || is_listed {
+            return findings;
+        }
+        let stated = finding.stated();
+        finding.probability *= 0.5;
+        finding.alternatives.iter_mut().for_each(|(_, probability)| *probability *= 0.5);
+        finding.alternatives.push((own.clone(), 0.5 * stated));
+        finding.alternatives.sort_by(|a, b| b.1.total_cmp(&a.1));
+        findings
     }
 
     /// What explains the modes, fitted to lines, where it leaves little more than noise there: lines show what is beside the modes of a real structure too, and need not refute what

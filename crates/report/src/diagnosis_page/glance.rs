@@ -97,8 +97,7 @@ fn others(finding: &Finding) -> String {
     let told = finding.alternatives.iter().filter(|(_, p)| *p >= TOLD).take(SHOWN);
     let told: Vec<String> =
         told.map(|(effect, p)| format!("{} {}", effect_name(effect), chance(*p))).collect();
-    let listed = finding.probability + finding.alternatives.iter().map(|(_, p)| p).sum::<f64>();
-    let rest = Some(1.0 - listed)
+    let rest = Some(1.0 - finding.stated())
         .filter(|rest| *rest >= TOLD)
         .map(|rest| format!("something not listed {}", chance(rest)));
     match told.into_iter().chain(rest).collect::<Vec<_>>() {
