@@ -332,13 +332,13 @@
     const px = value => (left + u.valToPos(value, "x")).toFixed(1), py = value => (top + u.valToPos(value, "y")).toFixed(1);
     const path = (colour, d, more = "") => `<path fill="none" stroke="${palette[colour]}" stroke-width="1.4" ${more} d="${d}"/>`;
     const text = (x, y, words, more = "") => `<text x="${x}" y="${y}" ${more}>${escaped(words)}</text>`;
-    const inside = [], width = u.width, dashes = 'stroke-dasharray="4 2"';
+    const inside = [], width = u.width, markDashes = 'stroke-dasharray="4 2"';
     plot.marks.forEach((mark, key) => {
       const { shaded, vertical, horizontal } = mark;
       if (pane.hiddenMarks.has(key)) return;
       if (shaded) inside.push(`<rect x="${px(shaded.from)}" y="${top}" width="${(px(shaded.to) - px(shaded.from)).toFixed(1)}" height="${high}" fill="${palette.shade}"/>`);
-      if (vertical) inside.push(path(vertical.colour, `M${px(vertical.at)} ${top}v${high}`, dashes));
-      if (horizontal) inside.push(path(horizontal.colour, `M${left} ${py(horizontal.at)}h${wide}`, dashes));
+      if (vertical) inside.push(path(vertical.colour, `M${px(vertical.at)} ${top}v${high}`, markDashes));
+      if (horizontal) inside.push(path(horizontal.colour, `M${left} ${py(horizontal.at)}h${wide}`, markDashes));
     });
     const { min, max } = u.scales.x, first = Math.max(0, u.valToIdx(min) - 1), last = Math.min(data[0].length - 1, u.valToIdx(max) + 1);
     const order = plot.series.map((s, key) => [s, key]).sort(([a], [b]) => (b.style === "band") - (a.style === "band"));
