@@ -172,8 +172,9 @@
     ordinates(u, low, high) {
       const { plot } = this;
       if (plot.held) return plot.held;
-      const [from, to] = [u.scales.x.min ?? this.extent[0], u.scales.x.max ?? this.extent[1]];
-      const zoomed = from > this.extent[0] || to < this.extent[1];
+      // The scale of abscissae still has its ends from before a zoom; these are the lines in view after it.
+      const x = this.data[0], [from, to] = [u.series[0].min ?? x[0], u.series[0].max ?? x[x.length - 1]];
+      const zoomed = from > x[0] || to < x[x.length - 1];
       if (!this.fullRange && !zoomed) return plot.first;
       const log = plot.y.spacing === "logarithmic";
       let extent = low == null ? null : [low, high];
