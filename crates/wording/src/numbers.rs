@@ -97,7 +97,7 @@ impl fmt::Display for Short {
             let decimals = (3 - size.log10().floor() as i32).max(0) as usize;
             write!(f, "{:.decimals$}", self.0)
         } else {
-            write!(f, "{:.3e}", self.0)
+            f.write_str(&crate::format::significant(self.0, 4))
         }
     }
 }
