@@ -124,6 +124,13 @@ mod tests {
     }
 
     #[test]
+    fn a_short_number_has_four_digits_and_a_power_of_ten_where_it_is_small_or_large() {
+        let short = |value: f64| Short(value).to_string();
+        assert_eq!([0.0, 324.21, 0.01236].map(short), ["0", "324.2", "0.01236"]);
+        assert_eq!([5.5031e-5, 2.1e9].map(short), ["5.503×10⁻⁵", "2.100×10⁹"]);
+    }
+
+    #[test]
     fn a_sentence_begins_with_a_capital_and_a_symbol_stays_what_it_is() {
         assert_eq!(capitalised("the FRFs show"), "The FRFs show");
         assert_eq!(capitalised("k, c and the tests"), "k, c and the tests");

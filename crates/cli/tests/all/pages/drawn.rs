@@ -27,7 +27,7 @@ fn hostile(fixture: &str, names: &[&str]) -> String {
 /// Demands of every page that nothing is complained of, no name is taken for markup, every plot is drawn, the policy is in force, a narrow window is
 /// wide enough, and a sheet of paper holds everything; then that the page has plots where it is said to.
 #[track_caller]
-fn sound(bench: &Bench, pages: &[(&str, bool)]) {
+pub(crate) fn sound(bench: &Bench, pages: &[(&str, bool)]) {
     let paths: Vec<&str> = pages.iter().map(|(page, _)| *page).collect();
     let Some(seen) = opened(bench, &paths, include_str!("look.js")) else { return };
     assert_eq!(seen.console, Vec::<String>::new());
@@ -53,6 +53,30 @@ fn assert_policy(path: &str, page: &Value) {
     let scripts = policy.split("; ").find_map(|rule| rule.strip_prefix("script-src ")).unwrap();
     let told = |source: &str| source == "'none'" || source.starts_with("'sha256-");
     assert!(scripts.split(' ').all(told) && policy.starts_with("default-src 'none'; "), "{path}: {policy}");
+}
+
+#[test]
+fn what_a_page_should_not_show_is_seen() {
+    let bench = Bench::new("pages-spoilt");
+    let table = "<div class=table><table><tr><td style='min-width:900px'>first<td>last</table></div>";
+    let hidden = "<p style='overflow:hidden;white-space:nowrap'>".to_owned() + &"far ".repeat(300) + "</p>";
+    let spoilt = format!(
+        "<!DOCTYPE html><style>@media print {{ .table {{ overflow: visible }} }} @media screen {{ .table {{ overflow-x: auto }} }}</style>\
+         <main>{table}{hidden}<img alt=''><div class=drawing></div></main><script>console.error('wrong'); document.title = 'taken'</script>"
+    );
+    bench.write("spoilt.html", spoilt);
+    let Some(seen) = opened(&bench, &["spoilt.html"], include_str!("look.js")) else { return };
+    assert!(
+        !seen.console.is_empty() && seen.console.iter().all(|line| line.contains("wrong")),
+        "{:?}",
+        seen.console
+    );
+    let page = &seen.pages[0];
+    let [title, policy, undrawn] = ["title", "policy", "undrawn"].map(|what| &page[what]);
+    assert!(title == "taken" && policy.is_null() && undrawn.as_array().unwrap().len() == 1, "{page}");
+    assert_eq!((page["images"].as_u64(), page["scripts"].as_u64()), (Some(1), Some(1)));
+    let lost = page["lost"].to_string();
+    assert!(lost.contains("TD : last") && lost.contains("P : far"), "{lost}");
 }
 
 #[test]

@@ -4,3 +4,5 @@ mod browser;
 mod drawn;
 mod numbers;
 mod used;
+
+pub(crate) use drawn::sound;
