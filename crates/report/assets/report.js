@@ -47,7 +47,7 @@
     const plain = shown.every(v => v >= 1e-3 && v < 1e5);
     return splits.map(v => {
       if (v == null) return "";
-      if (plain) return String(Number(v.toPrecision(6)));
+      if (plain) return String(Number(v.toPrecision(3))); // the first tick is the low end itself, whatever it is
       const power = Math.round(Math.log10(v)), leading = v / 10 ** power;
       return Math.abs(leading - 1) < 1e-6 ? "10" + raised(power) : "";
     });

@@ -44,6 +44,20 @@ fn a_curve_is_hidden_by_its_key_a_drag_zooms_both_axes_and_a_double_click_restor
 }
 
 #[test]
+fn the_low_end_of_a_logarithmic_axis_has_no_more_than_three_digits_after_a_zoom() {
+    let bench = Bench::synthesized("pages-logarithmic", TWO_BLOCKS, "50:1000:10");
+    bench.done(&["modes", "frf.uff", "--fixture", "two.json", "-o", "modes"]);
+    let Some(seen) = opened(&bench, &["modes/report.html"], include_str!("use.js")) else { return };
+    usable(&seen.pages[0]);
+    for view in ["before", "zoomed", "plus"] {
+        for label in seen.pages[0][view]["y"].as_array().unwrap() {
+            let digits = label.as_str().unwrap().replace('.', "");
+            assert!(digits.trim_matches('0').chars().count() <= 3, "{view}: {label}");
+        }
+    }
+}
+
+#[test]
 fn models_are_drawn_dashed_and_dotted_beside_the_full_line_of_a_measurement() {
     let bench = Bench::new("pages-kinds");
     bench.write("two.json", TWO_BLOCKS);
