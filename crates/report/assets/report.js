@@ -47,7 +47,7 @@
     const plain = shown.every(v => v >= 1e-3 && v < 1e5);
     return splits.map(v => {
       if (v == null) return "";
-      if (plain) return String(Number(v.toPrecision(6)));
+      if (plain) return String(Number(v.toPrecision(3))); // the first tick is the low end itself, whatever it is
       const power = Math.round(Math.log10(v)), leading = v / 10 ** power;
       return Math.abs(leading - 1) < 1e-6 ? "10" + raised(power) : "";
     });
@@ -172,8 +172,9 @@
     ordinates(u, low, high) {
       const { plot } = this;
       if (plot.held) return plot.held;
-      const [from, to] = [u.scales.x.min ?? this.extent[0], u.scales.x.max ?? this.extent[1]];
-      const zoomed = from > this.extent[0] || to < this.extent[1];
+      // The scale of abscissae still has its ends from before a zoom; these are the lines in view after it.
+      const x = this.data[0], [from, to] = [u.series[0].min ?? x[0], u.series[0].max ?? x[x.length - 1]];
+      const zoomed = from > x[0] || to < x[x.length - 1];
       if (!this.fullRange && !zoomed) return plot.first;
       const log = plot.y.spacing === "logarithmic";
       let extent = low == null ? null : [low, high];
@@ -332,13 +333,13 @@
     const px = value => (left + u.valToPos(value, "x")).toFixed(1), py = value => (top + u.valToPos(value, "y")).toFixed(1);
     const path = (colour, d, more = "") => `<path fill="none" stroke="${palette[colour]}" stroke-width="1.4" ${more} d="${d}"/>`;
     const text = (x, y, words, more = "") => `<text x="${x}" y="${y}" ${more}>${escaped(words)}</text>`;
-    const inside = [], width = u.width, dashes = 'stroke-dasharray="4 2"';
+    const inside = [], width = u.width, markDashes = 'stroke-dasharray="4 2"';
     plot.marks.forEach((mark, key) => {
       const { shaded, vertical, horizontal } = mark;
       if (pane.hiddenMarks.has(key)) return;
       if (shaded) inside.push(`<rect x="${px(shaded.from)}" y="${top}" width="${(px(shaded.to) - px(shaded.from)).toFixed(1)}" height="${high}" fill="${palette.shade}"/>`);
-      if (vertical) inside.push(path(vertical.colour, `M${px(vertical.at)} ${top}v${high}`, dashes));
-      if (horizontal) inside.push(path(horizontal.colour, `M${left} ${py(horizontal.at)}h${wide}`, dashes));
+      if (vertical) inside.push(path(vertical.colour, `M${px(vertical.at)} ${top}v${high}`, markDashes));
+      if (horizontal) inside.push(path(horizontal.colour, `M${left} ${py(horizontal.at)}h${wide}`, markDashes));
     });
     const { min, max } = u.scales.x, first = Math.max(0, u.valToIdx(min) - 1), last = Math.min(data[0].length - 1, u.valToIdx(max) + 1);
     const order = plot.series.map((s, key) => [s, key]).sort(([a], [b]) => (b.style === "band") - (a.style === "band"));

@@ -97,7 +97,7 @@ impl fmt::Display for Short {
             let decimals = (3 - size.log10().floor() as i32).max(0) as usize;
             write!(f, "{:.decimals$}", self.0)
         } else {
-            write!(f, "{:.3e}", self.0)
+            f.write_str(&crate::format::significant(self.0, 4))
         }
     }
 }
@@ -121,6 +121,13 @@ mod tests {
         assert_eq!(apart([1.0477, 3.5596], 3), ["1.05", "3.56"]);
         assert_eq!(apart([1.0212, 1.0214], 3), ["1.0212", "1.0214"]);
         assert_eq!(apart([0.5, 0.5], 3), ["0.500", "0.500"]);
+    }
+
+    #[test]
+    fn a_short_number_has_four_digits_and_a_power_of_ten_where_it_is_small_or_large() {
+        let short = |value: f64| Short(value).to_string();
+        assert_eq!([0.0, 324.21, 0.01236].map(short), ["0", "324.2", "0.01236"]);
+        assert_eq!([5.5031e-5, 2.1e9].map(short), ["5.503×10⁻⁵", "2.100×10⁹"]);
     }
 
     #[test]

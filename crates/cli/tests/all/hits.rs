@@ -7,11 +7,11 @@ use jointscope::spectra::Channel;
 use jointscope::uff::{Data, Encoding};
 use jointscope_samples::{Noise, two_blocks_damped, with};
 
-const CUBIC: &str =
+pub(crate) const CUBIC: &str =
     r#"{ "kind": "cubic_stiffness", "place": "J", "dof": "translation", "stiffness3": 4e13 }"#;
 
 /// Two blocks with modal damping, which has a form over time, and an effect.
-fn fixture(physics: &str) -> String {
+pub(crate) fn fixture(physics: &str) -> String {
     with(&two_blocks_damped(&[0.02]), &format!(r#""physics": [{physics}]"#))
 }
 
@@ -29,7 +29,7 @@ fn forces(bench: &Bench, points: &[&str], peaks: &[f64]) {
 }
 
 /// A bench with `plain.json`, and `hits.uff` that `simulate` makes of it with `physics`, with noise of 0.1 % of each signal's peak.
-fn recorded(name: &str, physics: &str, peaks: &[f64]) -> Bench {
+pub(crate) fn recorded(name: &str, physics: &str, peaks: &[f64]) -> Bench {
     let bench = Bench::new(name);
     bench.write("plain.json", fixture(""));
     bench.write("true.json", fixture(physics));

@@ -9,13 +9,13 @@ use jointscope_rig::{Control, SteppedSines, generator};
 use jointscope_samples::with;
 
 /// Two storeys with one elastic mode at 232.6 Hz.
-const STOREYS: &str = r#"{
+pub(crate) const STOREYS: &str = r#"{
   "name": "two storeys",
   "bodies": { "low": { "mass": 2.0, "rotates": false }, "high": { "mass": 3.0, "rotates": false } },
   "points": { "1": { "body": "low", "x": 0 }, "2": { "body": "high", "x": 0.1 } },
   "joints": { "C": { "from": "1", "to": "2", "stiffness": [[2.563e6, 0], [0, 0]], "damping": [[20.0, 0], [0, 0]] } } }"#;
 
-const CUBIC: &str =
+pub(crate) const CUBIC: &str =
     r#"{ "kind": "cubic_stiffness", "place": "C", "dof": "translation", "stiffness3": 1.5e13 }"#;
 
 /// FRFs 2/2 and 1/2 of the storeys with `physics` at levels of held response, m/s², with 0.5 % noise.
@@ -34,14 +34,14 @@ fn recorded(physics: &str, levels: &[f64]) -> Vec<Dataset58> {
     all
 }
 
-fn bench(name: &str, physics: &str, levels: &[f64]) -> Bench {
+pub(crate) fn bench(name: &str, physics: &str, levels: &[f64]) -> Bench {
     let bench = Bench::new(name);
     bench.write("storeys.json", STOREYS);
     bench.write("levels.uff", jointscope::uff::write(&recorded(physics, levels)).unwrap());
     bench
 }
 
-const DIAGNOSE: [&str; 5] = ["diagnose", "storeys.json", "levels.uff", "-o", "out"];
+pub(crate) const DIAGNOSE: [&str; 5] = ["diagnose", "storeys.json", "levels.uff", "-o", "out"];
 
 #[test]
 fn a_cubic_spring_is_named_from_levels_with_an_interval_that_holds_it() {

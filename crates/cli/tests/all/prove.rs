@@ -1,6 +1,7 @@
 //! `jointscope prove` as a user meets it.
 
 use crate::common::Bench;
+use crate::pages::sound;
 
 #[test]
 fn one_case_is_made_diagnosed_and_told_the_same_each_time() {
@@ -129,6 +130,8 @@ fn real_answers_laid_against_the_truths_of_other_cases_score_at_chance() {
     let right = (0..n).filter(|&i| named(singles[i], singles[i])).count();
     let permuted = (0..n).filter(|&i| named(singles[i], singles[(i + 1) % n])).count();
     assert!(n >= 2 && right + 1 >= n && permuted == 0, "{right} of {n} right, {permuted} of another case");
+    // Only a page of several cases has the plots of scores.
+    sound(&bench, &[("proof/report.html", true)]);
 }
 
 #[test]

@@ -31,9 +31,23 @@ const WITHOUT_EXTENT: f64 = 340.0;
 /// Labels of one kind beside a row at the most: what a page has room for. More would stand in dozens of lanes that nobody reads, and labels are placed pair by pair.
 pub(super) const MOST_LABELS: usize = 60;
 
+/// Room a letter takes, px.
+const LETTER: f64 = 7.4;
+
 /// Room a text takes, in pixels at 13 px type. Digits and capitals are wider than the average letter; labels may stand apart but not overlap.
 pub(super) fn text_width(text: &str) -> f64 {
-    7.4 * text.chars().count() as f64 + 4.0
+    LETTER * text.chars().count() as f64 + 4.0
+}
+
+/// The text where there is room for it, px; else without its middle, for names of a kind differ at their ends.
+pub(super) fn shortened(text: &str, room: f64) -> String {
+    if text_width(text) <= room {
+        return text.to_owned();
+    }
+    let characters: Vec<char> = text.chars().collect();
+    let kept = (room / LETTER).max(3.0) as usize - 1;
+    let (front, back) = characters.split_at(kept - kept / 2);
+    front.iter().chain(&['…']).chain(&back[back.len().saturating_sub(kept / 2)..]).collect()
 }
 
 /// From metres to pixels.
@@ -129,22 +143,25 @@ impl Label {
     /// Where it may stand along x: about its leader, at its side.
     fn stretches(&self, width: f64) -> [Stretch; 5] {
         let half = 0.5 * self.width();
-        let most = (width - half - 2.0).max(half);
+        // Names are bold, a little wider than other texts.
+        let edge = 1.05 * half + 2.0;
+        let most = (width - edge).max(half);
         let (over, beside) = ((half - 6.0).max(0.0), half + 9.0);
         let shifts = match self.aside {
             true => [beside, 0.0, -beside, over, -over],
             false => [0.0, over, -over, beside, -beside],
         };
         shifts.map(|shift| {
-            let centre = (self.leader() + shift).clamp(half.min(most) + 2.0, most.max(half + 2.0));
+            let centre = (self.leader() + shift).clamp(edge.min(most), most.max(edge));
             (centre - half, centre + half)
         })
     }
 }
 
 /// Gives each label the lane nearest to the body in which it meets no other label and no other's leader, and its own leader meets no label; keeps it
-/// within a drawing of this width. Returns how many lanes were needed.
+/// within a drawing of this width, in which a text that is longer loses its middle. Returns how many lanes were needed.
 fn assign_lanes(labels: &mut [Label], width: f64) -> usize {
+    labels.iter_mut().for_each(|label| label.text = shortened(&label.text, 0.92 * width));
     labels.sort_by(|a, b| (a.anchor.total_cmp(&b.anchor)).then_with(|| a.text.cmp(&b.text)));
     // How many others' leaders it would cover, at the place where it covers the fewest.
     let covered = |index: usize, (from, to): Stretch, others: &[usize]| -> usize {

@@ -4,7 +4,8 @@ use jointscope_fixture::{Fixture, Joint, JointLaw};
 use maud::{Markup, PreEscaped, html};
 
 use super::layout::{
-    ARROW, LANE, Label, Layout, MOST_LABELS, POINT_LANE, Row, SUPPORT, Tie, body_name, name_fits, text_width,
+    ARROW, LANE, Label, Layout, MOST_LABELS, POINT_LANE, Row, SUPPORT, Tie, body_name, name_fits, shortened,
+    text_width,
 };
 use super::side_view::{ChannelKind, Highlight, SideView};
 use crate::format::significant;
@@ -46,7 +47,7 @@ pub(super) fn draw(view: &SideView, width: f64, class: &str) -> Markup {
             @for row in &layout.rows { (leaders(row)) }
             @for joint in fixture.joints() {
                 @if let Some((from, to)) = point(joint.from).zip(point(joint.to)) {
-                    (line_of_joint(joint, view.joints.contains(&joint.name.as_str()), from, to))
+                    (line_of_joint(joint, view.joints.contains(&joint.name.as_str()), (from, to), width))
                 }
             }
             @for (x, y) in (0..fixture.points().len()).filter_map(point) {
@@ -194,7 +195,7 @@ fn labels(row: &Row) -> Markup {
     }
 }
 
-fn line_of_joint(joint: &Joint, highlight: bool, from: Place, to: Place) -> Markup {
+fn line_of_joint(joint: &Joint, highlight: bool, (from, to): (Place, Place), drawing: f64) -> Markup {
     let (class, name_class) =
         if highlight { ("fx-highlight", "fx-highlight-name") } else { ("fx-joint", "fx-joint-name") };
     let (dx, dy) = (to.0 - from.0, to.1 - from.1);
@@ -207,14 +208,17 @@ fn line_of_joint(joint: &Joint, highlight: bool, from: Place, to: Place) -> Mark
         path(&format!("{class} fx-thick"), start + &zigzag(from, (dx / length, dy / length), length, 7.0))
     };
     let (x, y) = (0.5 * (from.0 + to.0), 0.5 * (from.1 + to.1));
-    let width = text_width(&joint.name);
+    let upwards = dy.abs() > dx.abs();
+    let room = if upwards { x - 14.0 } else { 2.0 * x.min(drawing - x) };
+    let name = shortened(&joint.name, room);
+    let width = text_width(&name);
     // Beside a line that runs upwards, above one that runs along x; above a short joint stand the sensors at its ends.
-    let place = match dy.abs() > dx.abs() {
+    let place = match upwards {
         true => (x - 14.0 - 0.5 * width, y + 4.0),
         false if dx.abs() < width + 14.0 => (x, y + 24.0),
         false => (x, y - 13.0),
     };
-    html! { (line) (text(name_class, place, &joint.name)) }
+    html! { (line) (text(name_class, place, &name)) }
 }
 
 /// The rest of a path along a unit direction: straight ends, zigzag between.

@@ -56,6 +56,21 @@ fn the_drawing_for_narrow_windows_has_everything_within_its_width() {
     }
 }
 
+#[test]
+fn a_name_too_long_for_the_drawing_loses_its_middle_and_stands_whole_in_the_words_for_who_cannot_see_it() {
+    let name = format!("left {} 12", "long ".repeat(40));
+    let fixture = two_blocks_named(&name, "1");
+    let drawing = SideView::new(&fixture, &frfs(&fixture, 1)).draw();
+    for (markup, most) in [(drawing.wide, 860.0), (drawing.narrow.unwrap(), 400.0)] {
+        let markup = markup.into_string();
+        assert!(markup.contains(&format!("Bodies: {name}, B.")), "{markup}");
+        let shown =
+            markup.split('>').find(|text| text.starts_with("left long") && text.contains('…')).unwrap();
+        let shown = shown.split('<').next().unwrap();
+        assert!(shown.ends_with(" 12") && 7.4 * (shown.chars().count() as f64) < most, "{shown}");
+    }
+}
+
 /// Four bodies in a row, eight points, three joints, a support under each body.
 pub(super) fn chain() -> Fixture {
     let (mut bodies, mut points, mut joints, mut supports) = (json!({}), json!({}), json!({}), json!({}));
