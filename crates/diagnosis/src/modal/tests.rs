@@ -357,3 +357,33 @@ fn names_that_lines_are_at_odds_with_are_stated_as_a_part_and_no_surer_than_some
     assert!((stated(&doubted) - 2.0 / 3.0).abs() < 1e-9, "{}", stated(&doubted));
     assert_eq!(doubted.doubted().names[0][0].1, doubted.names[0][0].1);
 }
+
+#[test]
+fn one_finding_of_the_lines_is_no_more_probable_than_the_name_that_the_modes_hold_more_probable() {
+    let fixture = Fixture::from_json(BLOCKS).unwrap();
+    let nominal = Hypothesis::nominal(&fixture, false);
+    let of = |kind, place, values: &[f64]| Effect::new(kind, place, None, values);
+    let lump = of(EffectKind::AddedMass, Place::Body("B".into()), &[0.1, 0.2]);
+    let observation = recorded(&nominal.with(lump.clone()));
+    let settings = Settings::default();
+    let fitter = Fitter { observation: &observation, settings: &settings, watch: Watch::default() };
+    let judged = ModalJudgement::of(&fitter, &nominal, &catalogue(&fixture, &observation), None).unwrap();
+    let other = of(EffectKind::JointMass, Place::Joint("J".into()), &[0.01]);
+    let third = of(EffectKind::StiffnessChange, Place::Joint("J".into()), &[0.9]);
+    let finding = |effect: &Effect| Finding {
+        effect: effect.clone(),
+        estimates: Vec::new(),
+        probability: 0.9,
+        alternatives: vec![(third.clone(), 0.06)],
+        evidence: Evidence { gain: 0.0, elsewhere: Vec::new(), measured: None },
+    };
+    let [found] = &judged.with_its_own_name(&fitter, vec![finding(&other)])[..] else { panic!() };
+    assert!((found.probability - 0.45).abs() < 1e-12 && (found.stated() - 0.96).abs() < 1e-12);
+    assert!(found.alternatives[0].0.is_named_as(&lump) && (found.alternatives[0].1 - 0.48).abs() < 1e-12);
+    assert!(found.alternatives[1].0.is_named_as(&third) && (found.alternatives[1].1 - 0.03).abs() < 1e-12);
+    let unchanged = |findings: Vec<Finding>| {
+        judged.with_its_own_name(&fitter, findings).iter().all(|finding| finding.probability == 0.9)
+    };
+    assert!(unchanged(vec![finding(&lump)]), "the modes' own name");
+    assert!(unchanged(vec![finding(&other), finding(&third)]), "modes have one name for two findings");
+}

@@ -174,8 +174,10 @@ impl Seen {
 #[cfg(test)]
 #[allow(clippy::unwrap_used)]
 mod tests {
+    use super::super::hypothesis::Hypothesis;
     use super::super::locations::locations;
     use super::super::records::records;
+    use super::super::search::Search;
     use super::super::shapes::{is_like, suggestions};
     use super::*;
     use crate::{RestoringLaw, simulate};
@@ -208,6 +210,24 @@ mod tests {
             .map(|i| blow(i + 1, [35.0, 140.0, 500.0][i as usize / 2], ["1", "2"][i as usize % 2]))
             .collect();
         simulate(&fixture, &hits, &[Channel::transverse("3"), Channel::transverse("4")]).unwrap().hits
+    }
+
+    #[test]
+    fn a_gap_wider_than_any_hit_moves_the_joint_and_friction_that_never_slips_are_idle() {
+        let stated = two_blocks(1.0);
+        let hits = struck(RestoringLaw::Cubic { stiffness3: 4e13 }.to_effect("J", Dof::Translation));
+        let recorded = records(&stated, &hits).unwrap();
+        let search = Search::new(recorded.iter().collect(), (0.0, 1500.0), (200.0, 900.0));
+        let all = locations(&stated, &search.records, 4000.0);
+        let reach = all.iter().find(|location| location.dof == Dof::Rotation).unwrap().reach;
+        let nominal = Hypothesis::nominal(&stated, true, &[]);
+        let is_idle = |law: RestoringLaw| search.is_idle(&nominal.with(law.to_effect("J", Dof::Rotation)));
+        let stiffness = 100.0;
+        assert!(is_idle(RestoringLaw::Gap { clearance: 1.5 * reach, stiffness }));
+        assert!(!is_idle(RestoringLaw::Gap { clearance: 0.5 * reach, stiffness }));
+        assert!(is_idle(RestoringLaw::Friction { slip_force: 1.5 * reach * stiffness, stiffness }));
+        assert!(!is_idle(RestoringLaw::Friction { slip_force: 0.5 * reach * stiffness, stiffness }));
+        assert!(!is_idle(RestoringLaw::Cubic { stiffness3: 1.0 }));
     }
 
     #[test]
