@@ -155,21 +155,21 @@ impl Section {
     }
 
     /// A list of remarks; nothing where there are none.
-    pub(crate) fn notes(self, notes: impl IntoIterator<Item: Render>) -> Self {
+    pub(crate) fn notes(self, notes: impl IntoIterator<Item: AsRef<str>>) -> Self {
         self.list("notes", notes)
     }
 
     /// A list of what the reader should mind; nothing where there is none.
-    pub(crate) fn warnings(self, warnings: impl IntoIterator<Item: Render>) -> Self {
+    pub(crate) fn warnings(self, warnings: impl IntoIterator<Item: AsRef<str>>) -> Self {
         self.list("notes warnings", warnings)
     }
 
-    fn list(self, class: &str, items: impl IntoIterator<Item: Render>) -> Self {
+    fn list(self, class: &str, items: impl IntoIterator<Item: AsRef<str>>) -> Self {
         let mut items = items.into_iter().peekable();
         if items.peek().is_none() {
             return self;
         }
-        self.with(html! { ul class=(class) { @for item in items { li { (item) } } } })
+        self.with(html! { ul class=(class) { @for item in items { li { (with_commands(item.as_ref())) } } } })
     }
 
     /// A command line, as typed.
