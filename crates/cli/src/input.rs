@@ -115,8 +115,8 @@ pub(crate) fn parsed(path: &Path, bytes: &[u8]) -> Result<Value, Refusal> {
 fn broken(error: &serde_json::Error) -> String {
     let (line, column) = (error.line(), error.column());
     let what = match error.is_eof() {
-        true => "ends in the middle",
-        false => "is no JSON, or no more of it,",
+        true => "ends in the middle,",
+        false => "is no JSON, or none any more,",
     };
     format!("{what} at line {line}, column {column}; make the file anew with the command that wrote it")
 }

@@ -121,7 +121,7 @@ fn bad_input_is_refused_in_one_sentence_and_nothing_is_written() {
     bench.write("answer/stiffness.json", &whole[..whole.len() / 2]);
     bench.refused(
         &["export", "answer", "--to", "csv", "-o", "out"],
-        &["answer/stiffness.json", "ends in the middle", "line 1,", "make the file anew"],
+        &["answer/stiffness.json", "ends in the middle, at line", "make the file anew"],
     );
     bench.write("answer/stiffness.json", whole);
     let mut old = bench.json("answer/stiffness.json");

@@ -76,7 +76,7 @@ impl Judge<'_> {
 
     fn verdict(&self) -> Verdict {
         let (none, best) = (&self.search.none, &self.search.best);
-        let adequate = self.searcher.is_adequate(&best.fit);
+        let adequate = self.searcher.is_adequate(&best.fit) || self.holds_with_usual_errors();
         // Of a recording that no poles explain, names say nothing, but for what has changed since another one like it.
         let hopeless = self.searcher.problem.recorded.chi2_per_dof > self.searcher.settings.hopeless;
         if hopeless && !self.searcher.calibrated && !(best.names.is_empty() && adequate) {
@@ -101,6 +101,24 @@ impl Judge<'_> {
             (false, false) if in_part() => Verdict::PartlyExplained,
             (false, false) => Verdict::Unexplained,
         }
+    }
+
+    /// Whether a name that asks for errors a little larger than usual gains as much as it must over a fixture which does not, with no larger ones: a size is known to some tenths of
+    /// itself only, and what is more probable than something adequate is no worse for it.
+    fn holds_with_usual_errors(&self) -> bool {
+        let (none, best) = (&self.search.none, &self.search.best);
+        let (largest, pull) = self.searcher.settings.adequate;
+        if best.names.is_empty() || best.fit.largest_pull() > pull || !self.searcher.is_adequate(none) {
+            return false;
+        }
+        let usual = self.searcher.problem.no_larger(&best.fit, largest);
+        let density = |sizes| best.fit.linear.ln_density(&best.fit.standing.comparison, sizes);
+        let Some((before, now)) = density(&best.fit.evidence.sizes).zip(density(&usual)) else {
+            return false;
+        };
+        let ln = best.fit.ln - (before - now).max(0.0);
+        let held = Named { fit: ModalFit { ln, ..best.fit.clone() }, ..best.clone() };
+        self.searcher.gains(&held, &self.searcher.alone(none.clone()))
     }
 
     /// What is left, as multiples of what is usual, of the kinds of error in whose stead factors on channels' signals stand: those that are beyond what is usual without them,

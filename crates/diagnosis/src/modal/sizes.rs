@@ -122,6 +122,15 @@ impl Problem<'_> {
         sizes
     }
 
+    /// The sizes of error of a fit, none of those by which it stands or falls larger than so many times what is usual.
+    pub(crate) fn no_larger(&self, fit: &ModalFit, most: f64) -> ErrorSizes {
+        let mut sizes = fit.evidence.sizes.to_array();
+        for (size, relative) in sizes.iter_mut().zip(self.relative_sizes_as_stated(fit)) {
+            *size *= (most / relative.max(f64::MIN_POSITIVE)).min(1.0);
+        }
+        ErrorSizes::from_array(sizes)
+    }
+
     /// Sizes of the errors as multiples of what is usual, or of what is stated: the sizes that the recording asks for.
     /// Gains are the test's, not the model's.
     pub(crate) fn relative_sizes(&self, fit: &ModalFit) -> Vec<f64> {
