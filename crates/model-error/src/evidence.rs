@@ -5,8 +5,8 @@
 
 use crate::errors::{Comparison, ErrorSizes, GAIN, KINDS, SizePrior};
 use crate::settings::evidence::{
-    COARSE_SIZES, COARSE_SWEEPS, LEAST_OF_INTERVAL, NEXT_TO_NOTHING, REFINEMENTS, SIZES_OF_INTERVAL,
-    SIZES_OF_MEAN,
+    COARSE_SIZES, COARSE_SWEEPS, LEAST_OF_INTERVAL, LEAST_REACH, MOST_STEPS, NEXT_TO_NOTHING,
+    REACH_OF_INTERVAL, REACH_OF_MEAN, REFINEMENTS, SIZES_OF_INTERVAL, SIZES_OF_MEAN,
 };
 use jointscope_linalg::Cholesky;
 use std::f64::consts::TAU;
@@ -54,7 +54,7 @@ impl Linear {
                 return at[kind];
             }
             let (mut total, mut squares) = (0.0, 0.0);
-            let widest = (4.0 * prior[kind]).max(3.0 * at[kind]);
+            let widest = (LEAST_REACH * prior[kind]).max(REACH_OF_MEAN * at[kind]);
             for k in 0..SIZES_OF_MEAN {
                 let size = widest * (k as f64 + 0.5) / SIZES_OF_MEAN as f64;
                 let mut sizes = at;
@@ -84,7 +84,8 @@ impl Linear {
             return [at[kind]; 2];
         }
         let mut density = Density::of(self, comparison);
-        let (low, high) = (LEAST_OF_INTERVAL * prior[kind], (4.0 * prior[kind]).max(6.0 * at[kind]));
+        let low = LEAST_OF_INTERVAL * prior[kind];
+        let high = (LEAST_REACH * prior[kind]).max(REACH_OF_INTERVAL * at[kind]);
         let size = |k: usize| low * (high / low).powf(k as f64 / (SIZES_OF_INTERVAL - 1) as f64);
         let mut weight = |size: f64| {
             let mut sizes = at;
@@ -161,7 +162,7 @@ impl Linear {
         for factor in REFINEMENTS {
             for kind in free.clone() {
                 for step in [factor, 1.0 / factor] {
-                    let mut left = 6;
+                    let mut left = MOST_STEPS;
                     while left > 0 && best[kind] > ErrorSizes::LEAST * prior[kind] * 0.999 {
                         let size = best[kind] * step;
                         if !try_size(&mut best, &mut ln, kind, size) {

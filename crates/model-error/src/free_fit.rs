@@ -14,7 +14,8 @@ use crate::recorded::{RecordedMode, RecordedModes};
 use crate::recording::{Recording, resolved_from};
 use crate::settings::free_fit::{
     CONVERGED, LEFT_BY_MISSED_POLE, LEFT_BY_OUTER_POLE, MISSED_DAMPING_RATIO, MISSED_WITHIN_LINES,
-    MOST_STEPS, POOR, STEP_SHARES, VAGUE_DAMPING, VAGUE_FREQUENCY,
+    MOST_DAMPING_RATIO, MOST_DAMPING_STEP, MOST_FREQUENCY_STEP, MOST_STEPS, POOR, STEP_SHARES, VAGUE_DAMPING,
+    VAGUE_FREQUENCY,
 };
 use jointscope_linalg::Cholesky;
 use num_complex::Complex64;
@@ -147,9 +148,11 @@ impl FreeFit {
                 break;
             }
             let moved = |share: f64| {
+                let factor = |step: f64, most: f64| (share * step.clamp(-most, most)).exp();
                 let step = |(pole, step): (&Pole, &[f64; 2])| Pole {
-                    omega: pole.omega * (share * step[0].clamp(-0.02, 0.02)).exp(),
-                    damping_ratio: (pole.damping_ratio * (share * step[1].clamp(-0.3, 0.3)).exp()).min(0.9),
+                    omega: pole.omega * factor(step[0], MOST_FREQUENCY_STEP),
+                    damping_ratio: (pole.damping_ratio * factor(step[1], MOST_DAMPING_STEP))
+                        .min(MOST_DAMPING_RATIO),
                 };
                 let poles = fit.poles.iter().zip(fit.step.as_chunks::<2>().0).map(step).collect();
                 FreeFit::at(recording, poles, count, terms)

@@ -5,8 +5,8 @@ use crate::modelled::ModelledModes;
 use crate::poles::ModelledMode;
 use crate::recorded::{RecordedMode, RecordedModes};
 use crate::settings::matching::{
-    DAMPING_DECADES, FREQUENCY_BESIDE_SHAPES, FREQUENCY_WITHOUT_SHAPES, MOST_UNSEEN, PLACED_FREQUENCY,
-    UNLIKE_SHAPES, WITHOUT_PARTNER,
+    DAMPING_DECADES, FREQUENCY_BESIDE_SHAPES, FREQUENCY_WITHOUT_SHAPES, MOST_DISTANCE, MOST_UNSEEN,
+    PLACED_FREQUENCY, UNLIKE_SHAPES, WITHOUT_PARTNER,
 };
 use jointscope_modes::mac;
 use std::f64::consts::{PI, TAU};
@@ -31,7 +31,7 @@ impl Pairing {
             match a.residues.len() {
                 1 => FREQUENCY_WITHOUT_SHAPES * apart,
                 _ => {
-                    FREQUENCY_BESIDE_SHAPES * apart.min(1.0)
+                    FREQUENCY_BESIDE_SHAPES * apart.min(MOST_DISTANCE)
                         + UNLIKE_SHAPES * (1.0 - mac(&a.residues, &b.residues))
                 }
             }

@@ -6,7 +6,8 @@ use crate::free_fit::FreeFit;
 use crate::recorded::RecordedModes;
 use crate::recording::{Recording, resolved_from};
 use crate::settings::recorded::{
-    ABOVE_BAND, CLEAR_DAMPING, CLEAR_FREQUENCY, CLEAR_LINES, EXPECTED_WITHIN, RESOLVED_LINES,
+    ABOVE_BAND, BELOW_BAND, CLEAR_DAMPING, CLEAR_FREQUENCY, CLEAR_LINES, DAMPING_RATIO_ABOVE,
+    DAMPING_RATIO_BELOW, EXPECTED_WITHIN, MOST_LINES_LEFT_OUT, RESOLVED_LINES,
 };
 use jointscope_modes::{ModalAnalysis, ModesOptions};
 use jointscope_spectra::FrfSet;
@@ -18,9 +19,9 @@ fn free_fit(recording: Recording, inside: Vec<Pole>, outside: &[Pole]) -> Option
     let mut fit = FreeFit::converged(recording, inside, outside, TERMS.0)?;
     let lines = recording.frfs.lines().hz();
     let (low, high) = (TAU * lines[0], TAU * lines[lines.len() - 1]);
-    let beyond = |by: f64| Pole { omega: high * by, damping_ratio: 0.01 };
-    let outside = ABOVE_BAND.into_iter().map(beyond).chain([Pole { omega: 0.7 * low, damping_ratio: 0.02 }]);
-    for pole in outside {
+    let beyond = |by: f64| Pole { omega: high * by, damping_ratio: DAMPING_RATIO_ABOVE };
+    let below = Pole { omega: BELOW_BAND * low, damping_ratio: DAMPING_RATIO_BELOW };
+    for pole in ABOVE_BAND.into_iter().map(beyond).chain([below]) {
         fit = fit.with(recording, pole);
     }
     while fit.terms < TERMS.1 {
@@ -63,7 +64,7 @@ impl Above {
         let lowest = poles.iter().filter(|pole| !is_low(pole)).map(|pole| pole.omega / TAU);
         let cut = lowest.fold(from, |cut, resolved| cut.min(resolved - reach));
         let first = hz.partition_point(|hz| *hz < cut * (1.0 - 1e-9));
-        if first == 0 || first > 2 * RESOLVED_LINES as usize {
+        if first == 0 || first > MOST_LINES_LEFT_OUT {
             return None;
         }
         Above::line(recording, first)

@@ -4,7 +4,9 @@
 use crate::basis::{Pole, row};
 use crate::projection::Projection;
 use crate::recording::Recording;
-use crate::settings::outline::{GRID_PER_POLE, LEAST_GRID, LEAST_LINES, LINES_PER_COLUMN};
+use crate::settings::outline::{
+    GRID_FROM, GRID_PER_POLE, GRID_TO, LEAST_GRID, LEAST_GRID_FROM, LEAST_LINES, LINES_PER_COLUMN,
+};
 use jointscope_spectra::SpectralLines;
 use num_complex::Complex64;
 use std::f64::consts::TAU;
@@ -68,7 +70,7 @@ impl Outline {
 
 /// Frequencies over the band and a little beyond, evenly on a logarithmic scale.
 pub(crate) fn grid(low: f64, high: f64, poles: usize) -> Option<SpectralLines> {
-    let (from, to) = ((0.6 * low).max(0.002 * high).ln(), (1.4 * high).ln());
+    let (from, to) = ((GRID_FROM * low).max(LEAST_GRID_FROM * high).ln(), (GRID_TO * high).ln());
     let count = LEAST_GRID.max(GRID_PER_POLE * poles);
     let hz = (0..count).map(|k| (from + (to - from) * k as f64 / (count - 1) as f64).exp());
     SpectralLines::new(hz.collect()).ok()

@@ -6,8 +6,9 @@ use crate::basis::Pole;
 use crate::outline::grid;
 use crate::recorded::RecordedModes;
 use crate::settings::poles::{
-    ABOUT_RESONANCE, CONTOUR_POINTS, FARTHEST_ABOVE, FARTHEST_BELOW, HINTED_AT, LAST_STEP, LEAST_RADIUS,
-    MOST_DISTANCE, MOST_STEPS, NARROWEST_RATIO, RADIUS_OF_DECAY, SAME_POLE, UNDAMPED_RATIO,
+    ABOUT_RESONANCE, APART_IN_DECAY, APART_IN_FREQUENCY, CONTOUR_POINTS, FARTHEST_ABOVE, FARTHEST_BELOW,
+    HINTED_AT, LAST_STEP, LEAST_APART_IN_DECAY, LEAST_RADIUS, MOST_DISTANCE, MOST_STEPS, NARROWEST_RATIO,
+    PEAK_STEP, RADIUS_OF_DECAY, SAME_POLE, SINGLE_POLE_WITHIN, UNDAMPED_RATIO,
 };
 use jointscope_fixture::{Effect, Fixture};
 use jointscope_lumped::{ContinuedFrfs, Instrument, ModelledTest};
@@ -85,11 +86,12 @@ fn peaking(test: &ModelledTest, grid: &SpectralLines, count: usize) -> Vec<Compl
     let mut all: Vec<Complex64> = Vec::new();
     for k in (1..hz.len() - 1).filter(|&k| peaks(k)) {
         let guess = Complex64::new(0.0, TAU * hz[k]);
-        let step = Complex64::new(0.0, 0.5 * TAU * (hz[k + 1] - hz[k]));
+        let step = Complex64::new(0.0, PEAK_STEP * TAU * (hz[k + 1] - hz[k]));
         // From the peak a mode that is weak in all FRFs leads to a stronger one; from where a single pole would make it, to itself.
         let about = [k - 1, k, k + 1].map(|k| (Complex64::new(0.0, TAU * hz[k]), k));
         let single = single_pole(about, values.chunks_exact(hz.len()));
-        let near = |pole: &Complex64| (pole - guess).norm() < 2.0 * TAU * (hz[k + 1] - hz[k - 1]);
+        let near =
+            |pole: &Complex64| (pole - guess).norm() < SINGLE_POLE_WITHIN * TAU * (hz[k + 1] - hz[k - 1]);
         let single = single.filter(near).map(|pole| (pole + apart(pole), pole));
         for (before, at) in [(guess + step, guess)].into_iter().chain(single) {
             if let Some((pole, _)) = followed(&mut frfs, before, at, count) {
@@ -132,7 +134,8 @@ fn ascending(all: &mut [Complex64]) {
 
 /// Where the secant method starts beside a pole's guess.
 fn apart(guess: Complex64) -> Complex64 {
-    Complex64::new(-0.01 * guess.re.abs() - 1e-6 * guess.norm(), 1e-4 * guess.norm())
+    let decay = APART_IN_DECAY * guess.re.abs() + LEAST_APART_IN_DECAY * guess.norm();
+    Complex64::new(-decay, APART_IN_FREQUENCY * guess.norm())
 }
 
 /// Growth, as a share of the pole, that rounding makes of no damping at all.

@@ -8,6 +8,8 @@ pub(crate) mod recorded {
     /// Lines above the lowest one from which a mode can be told from a residual term. Two or three lines do not tell a suspension's modes: many poles fit as well, and the mass lines that go with
     /// one choice of them differ from those of another by ten deviations and more.
     pub(crate) const RESOLVED_LINES: f64 = 4.0;
+    /// Lowest lines that may be left out for the sake of modes below these, at most: more are only asked for where lines are uneven.
+    pub(crate) const MOST_LINES_LEFT_OUT: usize = 2 * RESOLVED_LINES as usize;
     /// Lines above the lowest one beyond which a mode may stand clear of the mass line all the same: that of a block on a spring which nobody stated was the third, and showed in nothing else.
     pub(crate) const CLEAR_LINES: f64 = 2.0;
     /// Deviation of ln ω up to which it does: what a mass line may be taken for is told far worse.
@@ -18,6 +20,12 @@ pub(crate) mod recorded {
     pub(crate) const EXPECTED_WITHIN: f64 = 0.5;
     /// Where modes above the band are looked for, as multiples of its upper end, one after the other.
     pub(crate) const ABOVE_BAND: [f64; 2] = [1.06, 1.3];
+    /// Damping ratio that they are looked for with.
+    pub(crate) const DAMPING_RATIO_ABOVE: f64 = 0.01;
+    /// Where a mode below the band is looked for, as a multiple of its lower end.
+    pub(crate) const BELOW_BAND: f64 = 0.7;
+    /// Damping ratio that it is looked for with.
+    pub(crate) const DAMPING_RATIO_BELOW: f64 = 0.02;
 }
 
 /// The free fit of a recording.
@@ -40,6 +48,12 @@ pub(crate) mod free_fit {
     pub(crate) const MOST_STEPS: usize = 12;
     /// Change of ln ω and ln ζ, in their standard deviations, below which a fit ends: its poles, not χ², are what is wanted.
     pub(crate) const CONVERGED: f64 = 0.02;
+    /// Change of ln ω by one step, at most: steps are undamped, and held so to a few per cent of a frequency.
+    pub(crate) const MOST_FREQUENCY_STEP: f64 = 0.02;
+    /// The same of ln ζ.
+    pub(crate) const MOST_DAMPING_STEP: f64 = 0.3;
+    /// Damping ratio that a step may lead to, at most: the pole stays that of an oscillation.
+    pub(crate) const MOST_DAMPING_RATIO: f64 = 0.9;
     /// Shares of a step that are tried in turn until χ² falls.
     pub(crate) const STEP_SHARES: [f64; 3] = [1.0, 0.3, 0.05];
 }
@@ -54,6 +68,12 @@ pub(crate) mod outline {
     pub(crate) const LEAST_GRID: usize = 240;
     /// The same for each pole of the recording's free fit.
     pub(crate) const GRID_PER_POLE: usize = 24;
+    /// Lowest of them, as a multiple of the band's lower end: modes a little out of the band belong to it, too.
+    pub(crate) const GRID_FROM: f64 = 0.6;
+    /// The same as a multiple of the band's upper end, at the least: on a logarithmic scale a band from next to nothing would leave few for its modes.
+    pub(crate) const LEAST_GRID_FROM: f64 = 0.002;
+    /// Highest of them, as a multiple of the band's upper end.
+    pub(crate) const GRID_TO: f64 = 1.4;
 }
 
 /// Poles of a model, and residues by a contour about each.
@@ -62,6 +82,16 @@ pub(crate) mod poles {
     pub(crate) const FARTHEST_BELOW: f64 = 0.5;
     /// The same above its highest line.
     pub(crate) const FARTHEST_ABOVE: f64 = 1.6;
+    /// Distance of the secant method's two first points at a peak of the FRFs, as a share of the distance to the next frequency.
+    pub(crate) const PEAK_STEP: f64 = 0.5;
+    /// How far the single pole that would make a peak may lie from it, as a multiple of the distance between the frequencies on either side: else the peak is made by more than one.
+    pub(crate) const SINGLE_POLE_WITHIN: f64 = 2.0;
+    /// Distance of the two first points beside a known pole, in frequency, as a share of the pole.
+    pub(crate) const APART_IN_FREQUENCY: f64 = 1e-4;
+    /// The same in decay, as a share of the pole's.
+    pub(crate) const APART_IN_DECAY: f64 = 0.01;
+    /// What is added to that for poles that hardly decay, as a share of the pole.
+    pub(crate) const LEAST_APART_IN_DECAY: f64 = 1e-6;
     /// Steps of the secant method, at most.
     pub(crate) const MOST_STEPS: usize = 14;
     /// Largest relative distance of a pole from where it was looked for.
@@ -86,12 +116,14 @@ pub(crate) mod poles {
     pub(crate) const LAST_STEP: f64 = 1e-3;
 }
 
-/// Which mode of a model is which of a recording. Costs count against each other only, but for [`MOST_UNSEEN`].
+/// Which mode of a model is which of a recording. Costs count against each other only; what is in nats counts in the evidence.
 pub(crate) mod matching {
     /// What a difference of one in ln f costs where a single FRF tells no shapes.
     pub(crate) const FREQUENCY_WITHOUT_SHAPES: f64 = 60.0;
     /// The same where several FRFs tell them: then shapes say which is which, and frequencies may be farther off.
     pub(crate) const FREQUENCY_BESIDE_SHAPES: f64 = 10.0;
+    /// Difference in ln f from which that costs no more.
+    pub(crate) const MOST_DISTANCE: f64 = 1.0;
     /// What shapes cost that have nothing in common.
     pub(crate) const UNLIKE_SHAPES: f64 = 5.0;
     /// What a mode without a partner costs. Two of them cost more than the most unlike pair where several FRFs tell shapes; with a single FRF a pair may be 0.27 apart in ln f.
@@ -144,6 +176,14 @@ pub(crate) mod evidence {
     pub(crate) const COARSE_SWEEPS: usize = 2;
     /// Factors by which each size is refined, one after the other: the last settles it to a twentieth.
     pub(crate) const REFINEMENTS: [f64; 4] = [3.0, 1.6, 1.25, 1.1];
+    /// Steps by each factor, at most.
+    pub(crate) const MOST_STEPS: usize = 6;
+    /// How far means and intervals reach at the least: what is larger than that a half-normal prior has with a probability below 10⁻⁴.
+    pub(crate) const LEAST_REACH: f64 = 4.0;
+    /// How far means reach, as a multiple of the most probable size.
+    pub(crate) const REACH_OF_MEAN: f64 = 3.0;
+    /// How far intervals reach, as a multiple of the most probable size: their ends lie farther out than a mean.
+    pub(crate) const REACH_OF_INTERVAL: f64 = 6.0;
     /// Sizes over which a mean is taken.
     pub(crate) const SIZES_OF_MEAN: usize = 24;
     /// Sizes over which an interval is taken, on a logarithmic scale.
