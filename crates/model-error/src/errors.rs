@@ -6,6 +6,10 @@
 use crate::matching::Pairing;
 use crate::modelled::ModelledModes;
 use crate::recorded::RecordedModes;
+use crate::settings::errors::{
+    LEAST_SIZE, LEAST_TERM_SQUARED, USUAL_DAMPING, USUAL_FREQUENCY, USUAL_GAIN, USUAL_MASS_LINE,
+    USUAL_QUADRATURE, USUAL_SHAPE, USUAL_UPPER_RESIDUAL,
+};
 use crate::shapes::Shapes;
 use std::sync::Arc;
 
@@ -47,23 +51,23 @@ pub const GAIN: usize = 6;
 
 impl Default for ErrorSizes {
     /// What lumped models of machined parts are wrong by: 0.3 % in natural frequencies, 10 % in damping ratios, 0.5 % in shapes, 0.05 % in quadrature, 0.1 % in
-    /// mass lines, 15 % in upper residuals. Meant as the scales of half-normal priors: fixed beforehand, not fitted.
+    /// mass lines, 15 % in upper residuals, 1 % in gains. Meant as the scales of half-normal priors, of gains of a half-Cauchy one: fixed beforehand, not fitted.
     fn default() -> Self {
         ErrorSizes {
-            frequency: 0.003,
-            damping: 0.1,
-            shape: 0.005,
-            quadrature: 0.0005,
-            mass_line: 0.001,
-            upper_residual: 0.15,
-            gain: 0.01,
+            frequency: USUAL_FREQUENCY,
+            damping: USUAL_DAMPING,
+            shape: USUAL_SHAPE,
+            quadrature: USUAL_QUADRATURE,
+            mass_line: USUAL_MASS_LINE,
+            upper_residual: USUAL_UPPER_RESIDUAL,
+            gain: USUAL_GAIN,
         }
     }
 }
 
 impl ErrorSizes {
     /// Multiple of its usual size below which an error is none: what is told from noise lies far above.
-    pub const LEAST: f64 = 1e-3;
+    pub const LEAST: f64 = LEAST_SIZE;
 
     /// In the order of the fields.
     pub fn to_array(self) -> [f64; KINDS] {
@@ -162,7 +166,7 @@ fn add_residual_terms(kinds: &mut [Entries], recorded: &RecordedModes, (n, first
         for (term, kind) in [(0, MASS_LINE), (UPPER, UPPER_RESIDUAL)] {
             let at = first + 2 * frf + term;
             // Relative to what is there, and where little is there to the others.
-            put(&mut kinds[kind], n, (at, at), relative(frf, term).powi(2).max(LITTLE));
+            put(&mut kinds[kind], n, (at, at), relative(frf, term).powi(2).max(LEAST_TERM_SQUARED));
         }
     }
     // What a model lacks above the band it lacks in all FRFs.
@@ -368,6 +372,3 @@ fn of_damping(n: usize, frfs: usize, turned: &[f64]) -> Entries {
     }
     all
 }
-
-/// Square of the share of the root mean square from which a residual term counts as much as it is.
-const LITTLE: f64 = 0.1;

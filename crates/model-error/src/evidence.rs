@@ -4,6 +4,10 @@
 //! ln Z = max over τ of [ln N(d; 0, S(τ) + J·Jᵀ) − ½ Σ (τ/s)²]. A size that is stated is taken as it is.
 
 use crate::errors::{Comparison, ErrorSizes, GAIN, KINDS, SizePrior};
+use crate::settings::evidence::{
+    COARSE_SIZES, COARSE_SWEEPS, LEAST_OF_INTERVAL, LEAST_REACH, MOST_STEPS, NEXT_TO_NOTHING,
+    REACH_OF_INTERVAL, REACH_OF_MEAN, REFINEMENTS, SIZES_OF_INTERVAL, SIZES_OF_MEAN,
+};
 use jointscope_linalg::Cholesky;
 use std::f64::consts::TAU;
 
@@ -28,19 +32,6 @@ pub struct Evidence {
     pub ln_at_start: f64,
 }
 
-/// Sizes that are tried first, as multiples of the prior's.
-const COARSE: [f64; 7] = [1e-3, 0.1, 0.4, 1.0, 3.0, 10.0, 40.0];
-/// Factors by which each is refined.
-const FINE: [f64; 4] = [3.0, 1.6, 1.25, 1.1];
-const SWEEPS: usize = 2;
-/// Sizes over which a mean is taken.
-const GRID: usize = 24;
-/// Sizes over which an interval is taken, on a logarithmic scale, and the least of them as a multiple of the prior's.
-const FINE_GRID: usize = 40;
-const FINEST: f64 = 0.02;
-/// Multiple of the prior's below which a size is next to nothing.
-const NEXT_TO_NOTHING: f64 = 0.01;
-
 impl Linear {
     /// ln N(difference; 0, S + J·Jᵀ), nats; `None` where that covariance is not positive definite.
     pub fn ln_density(&self, comparison: &Comparison, sizes: &ErrorSizes) -> Option<f64> {
@@ -63,9 +54,9 @@ impl Linear {
                 return at[kind];
             }
             let (mut total, mut squares) = (0.0, 0.0);
-            let widest = (4.0 * prior[kind]).max(3.0 * at[kind]);
-            for k in 0..GRID {
-                let size = widest * (k as f64 + 0.5) / GRID as f64;
+            let widest = (LEAST_REACH * prior[kind]).max(REACH_OF_MEAN * at[kind]);
+            for k in 0..SIZES_OF_MEAN {
+                let size = widest * (k as f64 + 0.5) / SIZES_OF_MEAN as f64;
                 let mut sizes = at;
                 sizes[kind] = size;
                 let Some(density) = density.ln(&ErrorSizes::from_array(sizes)) else { continue };
@@ -93,8 +84,9 @@ impl Linear {
             return [at[kind]; 2];
         }
         let mut density = Density::of(self, comparison);
-        let (low, high) = (FINEST * prior[kind], (4.0 * prior[kind]).max(6.0 * at[kind]));
-        let size = |k: usize| low * (high / low).powf(k as f64 / (FINE_GRID - 1) as f64);
+        let low = LEAST_OF_INTERVAL * prior[kind];
+        let high = (LEAST_REACH * prior[kind]).max(REACH_OF_INTERVAL * at[kind]);
+        let size = |k: usize| low * (high / low).powf(k as f64 / (SIZES_OF_INTERVAL - 1) as f64);
         let mut weight = |size: f64| {
             let mut sizes = at;
             sizes[kind] = size;
@@ -104,7 +96,7 @@ impl Linear {
         // Below the first size the density is that at none.
         let mut ends = vec![(0.0, 0.0)];
         let (mut before, mut total) = ((0.0, weight(low)), 0.0);
-        for k in 0..FINE_GRID {
+        for k in 0..SIZES_OF_INTERVAL {
             let at = (size(k), weight(size(k)));
             total += 0.5 * (at.0 - before.0) * (at.1 + before.1);
             ends.push((at.0, total));
@@ -159,18 +151,18 @@ impl Linear {
             better
         };
         if start.is_none() {
-            for _ in 0..SWEEPS {
+            for _ in 0..COARSE_SWEEPS {
                 for kind in free.clone() {
-                    for times in COARSE {
+                    for times in COARSE_SIZES {
                         try_size(&mut best, &mut ln, kind, times * prior[kind]);
                     }
                 }
             }
         }
-        for factor in FINE {
+        for factor in REFINEMENTS {
             for kind in free.clone() {
                 for step in [factor, 1.0 / factor] {
-                    let mut left = 6;
+                    let mut left = MOST_STEPS;
                     while left > 0 && best[kind] > ErrorSizes::LEAST * prior[kind] * 0.999 {
                         let size = best[kind] * step;
                         if !try_size(&mut best, &mut ln, kind, size) {

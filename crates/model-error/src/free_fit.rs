@@ -12,24 +12,14 @@ use crate::outline::Outline;
 use crate::projection::Projection;
 use crate::recorded::{RecordedMode, RecordedModes};
 use crate::recording::{Recording, resolved_from};
+use crate::settings::free_fit::{
+    CONVERGED, LEFT_BY_MISSED_POLE, LEFT_BY_OUTER_POLE, MISSED_DAMPING_RATIO, MISSED_WITHIN_LINES,
+    MOST_DAMPING_RATIO, MOST_DAMPING_STEP, MOST_FREQUENCY_STEP, MOST_STEPS, POOR, STEP_SHARES, VAGUE_DAMPING,
+    VAGUE_FREQUENCY,
+};
 use jointscope_linalg::Cholesky;
 use num_complex::Complex64;
 use std::f64::consts::TAU;
-
-/// χ² per degree of freedom of a free fit from which it may lack a pole, and the share of χ² that is left where one is worth it.
-const LACKS_A_POLE: f64 = 1.3;
-const WORTH: f64 = 0.8;
-/// Damping ratio that a pole is tried with where a fit misses most, and the share of χ² that is left where it is a mode; lines between it and where it was tried, at most.
-const MISSED: f64 = 0.01;
-const LEFT: f64 = 0.1;
-const NEAR: f64 = 3.0;
-/// Prior deviations of ln ω and ln ζ about where a free fit starts: they matter only to modes that the lines do not resolve.
-const VAGUE: [f64; 2] = [0.2, 1.0];
-/// Steps of the free fit, at most, and the change of ln ω and ln ζ, in standard deviations, at which it ends.
-const STEPS: usize = 12;
-const CONVERGED: f64 = 0.02;
-/// Shares of a step that are tried in turn until χ² falls.
-const SHARES: [f64; 3] = [1.0, 0.3, 0.05];
 
 /// Poles, and each FRF's fit with them.
 pub(crate) struct FreeFit {
@@ -65,7 +55,7 @@ struct FrfFit {
 impl FreeFit {
     /// Whether more than noise is left.
     pub(crate) fn is_poor(&self, recording: Recording) -> bool {
-        self.chi2_per_dof(recording) > LACKS_A_POLE
+        self.chi2_per_dof(recording) > POOR
     }
 
     /// Whether the residual terms that `more` has are worth their number by Akaike's criterion. What too few of them leave biases the poles
@@ -83,7 +73,7 @@ impl FreeFit {
         let (inside, outside) = self.poles.split_at(self.inside);
         let outside: Vec<Pole> = outside.iter().copied().chain([pole]).collect();
         let more = FreeFit::converged(recording, inside.to_vec(), &outside, self.terms);
-        more.filter(|more| more.chi2 < WORTH * self.chi2).unwrap_or(self)
+        more.filter(|more| more.chi2 < LEFT_BY_OUTER_POLE * self.chi2).unwrap_or(self)
     }
 
     /// With a pole that a model has, in the band or below it, where that is worth its number of unknowns by Akaike's criterion: what it takes from χ² as a whole may
@@ -108,15 +98,15 @@ impl FreeFit {
         let Some((line, _)) = most.filter(|_| lines.len() > 1) else { return self };
         let spacing = (lines[(line + 1).min(lines.len() - 1)] - lines[line.saturating_sub(1)]) / 2.0;
         let (inside, outside) = self.poles.split_at(self.inside);
-        let missed = Pole { omega: TAU * lines[line], damping_ratio: MISSED };
+        let missed = Pole { omega: TAU * lines[line], damping_ratio: MISSED_DAMPING_RATIO };
         let inside: Vec<Pole> = inside.iter().copied().chain([missed]).collect();
         let more = FreeFit::converged(recording, inside, outside, self.terms);
         let is_seen = |more: &FreeFit| {
-            let near = |pole: &&Pole| (pole.omega / TAU - lines[line]).abs() < NEAR * spacing;
+            let near = |pole: &&Pole| (pole.omega / TAU - lines[line]).abs() < MISSED_WITHIN_LINES * spacing;
             let mut near = more.poles[..more.inside].iter().filter(near);
             near.any(|pole| 2.0 * pole.damping_ratio * pole.omega > TAU * spacing)
         };
-        more.filter(|more| more.chi2 < LEFT * self.chi2 && is_seen(more))
+        more.filter(|more| more.chi2 < LEFT_BY_MISSED_POLE * self.chi2 && is_seen(more))
             .map_or(self, |more| more.with_missed(recording))
     }
 
@@ -151,21 +141,23 @@ impl FreeFit {
         poles.sort_by(|a, b| a.omega.total_cmp(&b.omega));
         poles.extend_from_slice(outside);
         let mut fit = FreeFit::at(recording, poles, count, terms)?;
-        for _ in 0..STEPS {
+        for _ in 0..MOST_STEPS {
             let relative = |(i, step): (usize, &f64)| step * fit.information[i * fit.step.len() + i].sqrt();
             let largest = fit.step.iter().enumerate().map(relative).fold(0.0, |m: f64, s| m.max(s.abs()));
             if largest < CONVERGED {
                 break;
             }
             let moved = |share: f64| {
+                let factor = |step: f64, most: f64| (share * step.clamp(-most, most)).exp();
                 let step = |(pole, step): (&Pole, &[f64; 2])| Pole {
-                    omega: pole.omega * (share * step[0].clamp(-0.02, 0.02)).exp(),
-                    damping_ratio: (pole.damping_ratio * (share * step[1].clamp(-0.3, 0.3)).exp()).min(0.9),
+                    omega: pole.omega * factor(step[0], MOST_FREQUENCY_STEP),
+                    damping_ratio: (pole.damping_ratio * factor(step[1], MOST_DAMPING_STEP))
+                        .min(MOST_DAMPING_RATIO),
                 };
                 let poles = fit.poles.iter().zip(fit.step.as_chunks::<2>().0).map(step).collect();
                 FreeFit::at(recording, poles, count, terms)
             };
-            match SHARES.into_iter().find_map(|share| moved(share).filter(|next| next.chi2 < fit.chi2)) {
+            match STEP_SHARES.into_iter().find_map(|share| moved(share).filter(|next| next.chi2 < fit.chi2)) {
                 Some(next) => fit = next,
                 None => break,
             }
@@ -226,8 +218,9 @@ impl FreeFit {
                 information[j * order + i] = information[i * order + j];
             }
         }
+        let vague = [VAGUE_FREQUENCY, VAGUE_DAMPING];
         for k in 0..order {
-            information[k * (order + 1)] += VAGUE[k % 2].powi(-2);
+            information[k * (order + 1)] += vague[k % 2].powi(-2);
         }
         let mut step = right;
         Cholesky::of(order, &information)?.solve_in_place(&mut step);

@@ -75,6 +75,7 @@ mod projection;
 mod recorded;
 mod recording;
 mod relative;
+mod settings;
 mod shapes;
 mod structural;
 

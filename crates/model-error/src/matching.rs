@@ -4,6 +4,10 @@
 use crate::modelled::ModelledModes;
 use crate::poles::ModelledMode;
 use crate::recorded::{RecordedMode, RecordedModes};
+use crate::settings::matching::{
+    DAMPING_DECADES, FREQUENCY_BESIDE_SHAPES, FREQUENCY_WITHOUT_SHAPES, MOST_DISTANCE, MOST_UNSEEN,
+    PLACED_FREQUENCY, UNLIKE_SHAPES, WITHOUT_PARTNER,
+};
 use jointscope_modes::mac;
 use std::f64::consts::{PI, TAU};
 
@@ -18,18 +22,6 @@ pub struct Pairing {
     pub(crate) unseen: f64,
 }
 
-/// What a difference of one in ln f costs, where a single FRF tells no shapes and where several do, and what shapes cost that have nothing in common.
-const FREQUENCY: (f64, f64) = (60.0, 10.0);
-const SHAPE: f64 = 5.0;
-/// What a mode without a partner costs.
-const ALONE: f64 = 8.0;
-/// Deviation of ln ω up to which a mode too low to be resolved counts as one.
-const PLACED: f64 = 0.01;
-/// Decades that the damping ratio of a mode of anything may lie in.
-const DAMPING_DECADES: f64 = 4.0;
-/// Most that an unseen mode may cost, nats: a free fit may miss one.
-const UNSEEN: f64 = 60.0;
-
 impl Pairing {
     /// The pairing of lowest cost that keeps the order of both.
     pub fn of(recorded: &RecordedModes, modelled: &ModelledModes) -> Self {
@@ -37,8 +29,11 @@ impl Pairing {
         let cost = |a: &RecordedMode, b: &ModelledMode| {
             let apart = (a.pole.omega / b.pole.omega).ln().abs();
             match a.residues.len() {
-                1 => FREQUENCY.0 * apart,
-                _ => FREQUENCY.1 * apart.min(1.0) + SHAPE * (1.0 - mac(&a.residues, &b.residues)),
+                1 => FREQUENCY_WITHOUT_SHAPES * apart,
+                _ => {
+                    FREQUENCY_BESIDE_SHAPES * apart.min(MOST_DISTANCE)
+                        + UNLIKE_SHAPES * (1.0 - mac(&a.residues, &b.residues))
+                }
             }
         };
         let (n, m) = (a.len(), b.len());
@@ -48,7 +43,7 @@ impl Pairing {
                 if i == 0 && j == 0 {
                     continue;
                 }
-                let skip_recorded = if i > 0 { best[i - 1][j] + ALONE } else { f64::INFINITY };
+                let skip_recorded = if i > 0 { best[i - 1][j] + WITHOUT_PARTNER } else { f64::INFINITY };
                 let skip_modelled =
                     if j > 0 { best[i][j - 1] + alone(recorded, &b[j - 1]) } else { f64::INFINITY };
                 let both = if i > 0 && j > 0 {
@@ -66,13 +61,13 @@ impl Pairing {
             if i > 0 && j > 0 && best[i][j] == best[i - 1][j - 1] + cost(&a[i - 1], &b[j - 1]) {
                 pairs.push((i - 1, j - 1));
                 (i, j) = (i - 1, j - 1);
-            } else if i > 0 && best[i][j] == best[i - 1][j] + ALONE {
+            } else if i > 0 && best[i][j] == best[i - 1][j] + WITHOUT_PARTNER {
                 // Too low to be compared in its residues, a mode that stands where it stands is there all the same.
-                let is_there = a[i - 1].resolved || recorded.deviations(i - 1)[0] < PLACED;
+                let is_there = a[i - 1].resolved || recorded.deviations(i - 1)[0] < PLACED_FREQUENCY;
                 unmodelled += if is_there { of_anything(recorded, &a[i - 1]) } else { 0.0 };
                 i -= 1;
             } else {
-                unseen -= visible(recorded, &b[j - 1]).min(UNSEEN);
+                unseen -= visible(recorded, &b[j - 1]).min(MOST_UNSEEN);
                 j -= 1;
             }
         }
@@ -84,7 +79,7 @@ impl Pairing {
     /// This pairing with a mode that has no partner in the place of the next one that has, above or below: where a model is far off, its mode may be taken for another's
     /// neighbour, and no fit leads from there.
     pub fn others(&self, recorded: &RecordedModes, modelled: &ModelledModes) -> Vec<Self> {
-        let unseen = |m: usize| visible(recorded, &modelled.modes[m]).min(UNSEEN);
+        let unseen = |m: usize| visible(recorded, &modelled.modes[m]).min(MOST_UNSEEN);
         // The pairs on either side of a mode that has none of its own.
         let beside = |mode: usize, own: fn(&(usize, usize)) -> usize| {
             let above = self.pairs.partition_point(|pair| own(pair) < mode);
@@ -118,7 +113,7 @@ impl Pairing {
 /// What it costs not to see a mode of the model: nothing outside the band.
 fn alone(recorded: &RecordedModes, mode: &ModelledMode) -> f64 {
     let hz = mode.pole.omega / TAU;
-    if hz < recorded.resolved_from || hz > recorded.band.1 { 0.0 } else { ALONE }
+    if hz < recorded.resolved_from || hz > recorded.band.1 { 0.0 } else { WITHOUT_PARTNER }
 }
 
 /// Log-density of a mode's features where it may be a mode of anything: any frequency in the band, any damping ratio of some decades, residues

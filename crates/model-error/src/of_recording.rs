@@ -4,20 +4,14 @@ use crate::basis::{Pole, TERMS};
 use crate::expected::Expected;
 use crate::free_fit::FreeFit;
 use crate::recorded::RecordedModes;
-use crate::recording::{RESOLVED, Recording, resolved_from};
+use crate::recording::{Recording, resolved_from};
+use crate::settings::recorded::{
+    ABOVE_BAND, BELOW_BAND, CLEAR_DAMPING, CLEAR_FREQUENCY, CLEAR_LINES, DAMPING_RATIO_ABOVE,
+    DAMPING_RATIO_BELOW, EXPECTED_WITHIN, MOST_LINES_LEFT_OUT, RESOLVED_LINES,
+};
 use jointscope_modes::{ModalAnalysis, ModesOptions};
 use jointscope_spectra::FrfSet;
 use std::f64::consts::TAU;
-
-/// Where modes above the band are looked for, as multiples of its upper end.
-const BEYOND: [f64; 2] = [1.06, 1.3];
-
-/// Lines above the lowest one beyond which a mode may stand clear of the mass line.
-const CLEAR_LINES: f64 = 2.0;
-/// Deviations of ln ω and ln ζ up to which it does: what a mass line may be taken for is told far worse.
-const CLEAR: (f64, f64) = (1e-3, 0.1);
-/// Difference in ln ω within which a model's mode may be the recorded one: a suspension is known to a third.
-const NEIGHBOUR: f64 = 0.5;
 
 /// The free fit that is begun with poles in and out of the band, with what else the recording asks for: modes just outside the band, then more residual terms, then modes
 /// in the band that were missed.
@@ -25,9 +19,9 @@ fn free_fit(recording: Recording, inside: Vec<Pole>, outside: &[Pole]) -> Option
     let mut fit = FreeFit::converged(recording, inside, outside, TERMS.0)?;
     let lines = recording.frfs.lines().hz();
     let (low, high) = (TAU * lines[0], TAU * lines[lines.len() - 1]);
-    let beyond = |by: f64| Pole { omega: high * by, damping_ratio: 0.01 };
-    let outside = BEYOND.into_iter().map(beyond).chain([Pole { omega: 0.7 * low, damping_ratio: 0.02 }]);
-    for pole in outside {
+    let beyond = |by: f64| Pole { omega: high * by, damping_ratio: DAMPING_RATIO_ABOVE };
+    let below = Pole { omega: BELOW_BAND * low, damping_ratio: DAMPING_RATIO_BELOW };
+    for pole in ABOVE_BAND.into_iter().map(beyond).chain([below]) {
         fit = fit.with(recording, pole);
     }
     while fit.terms < TERMS.1 {
@@ -70,7 +64,7 @@ impl Above {
         let lowest = poles.iter().filter(|pole| !is_low(pole)).map(|pole| pole.omega / TAU);
         let cut = lowest.fold(from, |cut, resolved| cut.min(resolved - reach));
         let first = hz.partition_point(|hz| *hz < cut * (1.0 - 1e-9));
-        if first == 0 || first > 2 * RESOLVED as usize {
+        if first == 0 || first > MOST_LINES_LEFT_OUT {
             return None;
         }
         Above::line(recording, first)
@@ -137,13 +131,13 @@ impl RecordedModes {
     /// Frequency, Hz, below a mode of this recording that lies near the lowest line and yet is told from a mass line, where a model `expects` none near it: the spring that nobody
     /// stated shows in nothing else. `None` where there is no such mode.
     fn clear_of_the_lower_end(&self, expected: &[Pole]) -> Option<f64> {
-        let spacing = (self.resolved_from - self.lowest) / RESOLVED;
+        let spacing = (self.resolved_from - self.lowest) / RESOLVED_LINES;
         let is_expected =
-            |omega: f64| expected.iter().any(|pole| (pole.omega / omega).ln().abs() < NEIGHBOUR);
+            |omega: f64| expected.iter().any(|pole| (pole.omega / omega).ln().abs() < EXPECTED_WITHIN);
         let is_clear = |&index: &usize| {
             let mode = &self.modes[index];
             let [frequency, damping] = self.deviations(index);
-            let is_told = frequency < CLEAR.0 && damping < CLEAR.1;
+            let is_told = frequency < CLEAR_FREQUENCY && damping < CLEAR_DAMPING;
             let above = mode.pole.omega / TAU - self.lowest;
             !mode.resolved && above > CLEAR_LINES * spacing && is_told && !is_expected(mode.pole.omega)
         };

@@ -4,6 +4,9 @@
 use crate::basis::{Pole, row};
 use crate::projection::Projection;
 use crate::recording::Recording;
+use crate::settings::outline::{
+    GRID_FROM, GRID_PER_POLE, GRID_TO, LEAST_GRID, LEAST_GRID_FROM, LEAST_LINES, LINES_PER_COLUMN,
+};
 use jointscope_spectra::SpectralLines;
 use num_complex::Complex64;
 use std::f64::consts::TAU;
@@ -28,13 +31,6 @@ pub(crate) struct Outline {
     pub mass_line: Vec<usize>,
 }
 
-/// Lines of an outline, at least, and for each pole and residual term.
-const OUTLINE: usize = 48;
-const OUTLINE_PER_COLUMN: usize = 4;
-/// Frequencies of a grid, at least, and for each mode of the recording.
-const GRID: usize = 240;
-const GRID_PER_MODE: usize = 24;
-
 impl Outline {
     /// Of a recording that was fitted with `poles`, the first `inside` of them in the band, and so many residual terms.
     pub(crate) fn of(
@@ -45,7 +41,7 @@ impl Outline {
     ) -> Option<Self> {
         let hz = recording.frfs.lines().hz();
         let n = hz.len();
-        let count = OUTLINE.max(OUTLINE_PER_COLUMN * (poles.len() + terms)).min(n);
+        let count = LEAST_LINES.max(LINES_PER_COLUMN * (poles.len() + terms)).min(n);
         let chosen: Vec<usize> = (0..count).map(|k| (k * (n - 1)) / (count - 1).max(1)).collect();
         let reference = TAU * hz[n - 1];
         let rows: Vec<Vec<Complex64>> =
@@ -73,9 +69,9 @@ impl Outline {
 }
 
 /// Frequencies over the band and a little beyond, evenly on a logarithmic scale.
-pub(crate) fn grid(low: f64, high: f64, modes: usize) -> Option<SpectralLines> {
-    let (from, to) = ((0.6 * low).max(0.002 * high).ln(), (1.4 * high).ln());
-    let count = GRID.max(GRID_PER_MODE * modes);
+pub(crate) fn grid(low: f64, high: f64, poles: usize) -> Option<SpectralLines> {
+    let (from, to) = ((GRID_FROM * low).max(LEAST_GRID_FROM * high).ln(), (GRID_TO * high).ln());
+    let count = LEAST_GRID.max(GRID_PER_POLE * poles);
     let hz = (0..count).map(|k| (from + (to - from) * k as f64 / (count - 1) as f64).exp());
     SpectralLines::new(hz.collect()).ok()
 }

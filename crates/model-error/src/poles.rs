@@ -5,6 +5,11 @@
 use crate::basis::Pole;
 use crate::outline::grid;
 use crate::recorded::RecordedModes;
+use crate::settings::poles::{
+    ABOUT_RESONANCE, APART_IN_DECAY, APART_IN_FREQUENCY, CONTOUR_POINTS, FARTHEST_ABOVE, FARTHEST_BELOW,
+    HINTED_AT, LAST_STEP, LEAST_APART_IN_DECAY, LEAST_RADIUS, MOST_DISTANCE, MOST_STEPS, NARROWEST_RATIO,
+    PEAK_STEP, RADIUS_OF_DECAY, SAME_POLE, SINGLE_POLE_WITHIN, UNDAMPED_RATIO,
+};
 use jointscope_fixture::{Effect, Fixture};
 use jointscope_lumped::{ContinuedFrfs, Instrument, ModelledTest};
 use jointscope_spectra::{FrfSet, SpectralLines};
@@ -19,30 +24,6 @@ pub struct ModelledMode {
     /// Residue in each FRF of the recording, as [`RecordedMode::residues`](crate::RecordedMode::residues).
     pub residues: Vec<Complex64>,
 }
-
-/// How far beyond the band's ends a model's mode may lie to be one of the recording's.
-const BEYOND: (f64, f64) = (0.5, 1.6);
-/// Steps of the secant method, at most.
-const STEPS: usize = 14;
-/// Growth, as a share of the pole, that rounding makes of no damping at all.
-const ROUNDING: f64 = 1e-9;
-/// Damping ratio of what has none: its logarithm is finite, and beyond that of anything recorded.
-const UNDAMPED: f64 = 1e-9;
-/// Relative distance below which two poles are one.
-const SAME: f64 = 1e-6;
-/// Relative distance below which a pole is the one that a recorded mode hints at.
-const AT_HAND: f64 = 1e-3;
-/// ln f about a resonator's own frequency within which its mode is looked for, and damping ratio of the narrowest that is not missed.
-const ABOUT: f64 = 0.1;
-const NARROWEST: f64 = 0.003;
-/// Points of the contour about a pole.
-const POINTS: usize = 4;
-/// Its radius as a share of the pole's decay, and at least of the pole: modes that overlap lie well outside of it, rounding well below.
-const RADIUS: (f64, f64) = (0.01, 1e-6);
-/// Last step of the secant method, as a share of the contour's radius: the contour then tells the pole. Of much damping it is no longer than [`SAME`].
-const CLOSE: f64 = 1e-3;
-/// Largest relative step of a pole from where it was looked for.
-const REACH: f64 = 0.5;
 
 /// Number of modes that a fixture has within the lines of FRFs, as far as they make peaks; `None` where it cannot be modelled.
 ///
@@ -59,7 +40,7 @@ pub fn modes_within(fixture: &Fixture, frfs: &FrfSet) -> Option<usize> {
 /// over a grid of frequencies, close by where effects resonate by themselves, and from the recording's own modes.
 pub(crate) fn poles(test: &ModelledTest, fixture: &Fixture, recorded: &RecordedModes) -> Vec<Complex64> {
     let mut all = peaking(test, &recorded.outline.grid, recorded.frfs());
-    let (low, high) = (BEYOND.0 * recorded.lowest, BEYOND.1 * recorded.band.1);
+    let (low, high) = (FARTHEST_BELOW * recorded.lowest, FARTHEST_ABOVE * recorded.band.1);
     let near = |about: &SpectralLines| about.hz()[0] < high && about.hz().iter().any(|hz| *hz > low);
     for about in fixture.effects().filter_map(about_own_resonance).filter(near) {
         peaking(test, &about, recorded.frfs()).into_iter().for_each(|pole| add(&mut all, pole));
@@ -67,7 +48,7 @@ pub(crate) fn poles(test: &ModelledTest, fixture: &Fixture, recorded: &RecordedM
     // A narrow mode that is weak in all FRFs may lie between two frequencies of the grid: then a recorded one shows where to look.
     let mut frfs = test.continued();
     for guess in recorded.modes.iter().map(|mode| mode.pole.lambda()) {
-        if all.iter().all(|pole| (pole - guess).norm() > AT_HAND * guess.norm())
+        if all.iter().all(|pole| (pole - guess).norm() > HINTED_AT * guess.norm())
             && let Some((pole, _)) = followed(&mut frfs, guess + apart(guess), guess, recorded.frfs())
         {
             add(&mut all, pole);
@@ -84,8 +65,8 @@ fn about_own_resonance(effect: &Effect) -> Option<SpectralLines> {
     let parameters = effect.kind.spec().parameters;
     let value = |name: &str| Some(effect.value(parameters.iter().position(|p| p.name == name)?));
     let (hz, ratio) = (value("frequency")?, value("damping_ratio")?);
-    let step = ratio.clamp(NARROWEST, ABOUT / 2.0);
-    let count = (ABOUT / step).ceil() as i32;
+    let step = ratio.clamp(NARROWEST_RATIO, ABOUT_RESONANCE / 2.0);
+    let count = (ABOUT_RESONANCE / step).ceil() as i32;
     let lines = (-count..=count).map(|k| hz * (step * f64::from(k)).exp());
     SpectralLines::new(lines.collect()).ok()
 }
@@ -105,11 +86,12 @@ fn peaking(test: &ModelledTest, grid: &SpectralLines, count: usize) -> Vec<Compl
     let mut all: Vec<Complex64> = Vec::new();
     for k in (1..hz.len() - 1).filter(|&k| peaks(k)) {
         let guess = Complex64::new(0.0, TAU * hz[k]);
-        let step = Complex64::new(0.0, 0.5 * TAU * (hz[k + 1] - hz[k]));
+        let step = Complex64::new(0.0, PEAK_STEP * TAU * (hz[k + 1] - hz[k]));
         // From the peak a mode that is weak in all FRFs leads to a stronger one; from where a single pole would make it, to itself.
         let about = [k - 1, k, k + 1].map(|k| (Complex64::new(0.0, TAU * hz[k]), k));
         let single = single_pole(about, values.chunks_exact(hz.len()));
-        let near = |pole: &Complex64| (pole - guess).norm() < 2.0 * TAU * (hz[k + 1] - hz[k - 1]);
+        let near =
+            |pole: &Complex64| (pole - guess).norm() < SINGLE_POLE_WITHIN * TAU * (hz[k + 1] - hz[k - 1]);
         let single = single.filter(near).map(|pole| (pole + apart(pole), pole));
         for (before, at) in [(guess + step, guess)].into_iter().chain(single) {
             if let Some((pole, _)) = followed(&mut frfs, before, at, count) {
@@ -141,7 +123,7 @@ fn single_pole<'a>(
 
 /// Adds a pole that is not there yet.
 fn add(all: &mut Vec<Complex64>, pole: Complex64) {
-    if all.iter().all(|other| (pole - other).norm() > SAME * pole.norm()) {
+    if all.iter().all(|other| (pole - other).norm() > SAME_POLE * pole.norm()) {
         all.push(pole);
     }
 }
@@ -152,8 +134,12 @@ fn ascending(all: &mut [Complex64]) {
 
 /// Where the secant method starts beside a pole's guess.
 fn apart(guess: Complex64) -> Complex64 {
-    Complex64::new(-0.01 * guess.re.abs() - 1e-6 * guess.norm(), 1e-4 * guess.norm())
+    let decay = APART_IN_DECAY * guess.re.abs() + LEAST_APART_IN_DECAY * guess.norm();
+    Complex64::new(-decay, APART_IN_FREQUENCY * guess.norm())
 }
+
+/// Growth, as a share of the pole, that rounding makes of no damping at all.
+const ROUNDING: f64 = 1e-9;
 
 /// Whether a mode at this pole dies away, or at least does not grow beyond rounding: a suspension may have no damping at all.
 fn is_damped(pole: Complex64) -> bool {
@@ -181,7 +167,7 @@ fn followed(
         }
     };
     let mut earlier = inverse(frfs, before, &mut values);
-    for _ in 0..STEPS {
+    for _ in 0..MOST_STEPS {
         let now = inverse(frfs, at, &mut values);
         if now == Complex64::ZERO {
             return is_damped(at).then_some((at, values));
@@ -190,12 +176,12 @@ fn followed(
             return None;
         }
         let next = at - now * (at - before) / (now - earlier);
-        if !next.is_finite() || (next - guess).norm() > REACH * guess.norm() {
+        if !next.is_finite() || (next - guess).norm() > MOST_DISTANCE * guess.norm() {
             return None;
         }
         (before, earlier) = (at, now);
         at = next;
-        if (at - before).norm() <= (CLOSE * radius(at)).min(SAME * at.norm()) {
+        if (at - before).norm() <= (LAST_STEP * radius(at)).min(SAME_POLE * at.norm()) {
             return is_damped(at).then_some((at, values));
         }
     }
@@ -204,17 +190,17 @@ fn followed(
 
 /// Radius of the contour about a pole.
 fn radius(pole: Complex64) -> f64 {
-    (RADIUS.0 * pole.re.abs()).max(RADIUS.1 * pole.norm())
+    (RADIUS_OF_DECAY * pole.re.abs()).max(LEAST_RADIUS * pole.norm())
 }
 
 /// Pole and residues near `guess`.
 pub(crate) fn mode(frfs: &mut ContinuedFrfs, guess: Complex64, count: usize) -> Option<ModelledMode> {
     let (near, mut values) = followed(frfs, guess + apart(guess), guess, count)?;
     let radius = radius(near);
-    let steps: [Complex64; POINTS] = std::array::from_fn(|point| {
-        Complex64::from_polar(radius, TAU * (point as f64 + 0.5) / POINTS as f64)
+    let steps: [Complex64; CONTOUR_POINTS] = std::array::from_fn(|point| {
+        Complex64::from_polar(radius, TAU * (point as f64 + 0.5) / CONTOUR_POINTS as f64)
     });
-    values.resize(count * POINTS, Complex64::ZERO);
+    values.resize(count * CONTOUR_POINTS, Complex64::ZERO);
     if !frfs.at_each(&steps.map(|step| near + step), &mut values) {
         return None;
     }
@@ -222,7 +208,7 @@ pub(crate) fn mode(frfs: &mut ContinuedFrfs, guess: Complex64, count: usize) -> 
     let mut moments = vec![Complex64::ZERO; count];
     for (step, values) in steps.iter().zip(values.chunks_exact(count)) {
         for ((residue, moment), value) in residues.iter_mut().zip(&mut moments).zip(values) {
-            let share = value * step / POINTS as f64;
+            let share = value * step / CONTOUR_POINTS as f64;
             *residue += share;
             *moment += share * step;
         }
@@ -236,7 +222,7 @@ pub(crate) fn mode(frfs: &mut ContinuedFrfs, guess: Complex64, count: usize) -> 
     let factor = Complex64::new(0.0, 2.0 * at.im) / (at * at);
     residues.iter_mut().for_each(|residue| *residue *= factor);
     let mut pole = Pole::of(at);
-    pole.damping_ratio = pole.damping_ratio.max(UNDAMPED);
+    pole.damping_ratio = pole.damping_ratio.max(UNDAMPED_RATIO);
     Some(ModelledMode { pole, residues })
 }
 

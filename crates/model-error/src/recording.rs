@@ -1,5 +1,6 @@
 //! FRFs with a weight for each value.
 
+use crate::settings::recorded::RESOLVED_LINES;
 use jointscope_spectra::FrfSet;
 
 /// FRFs to take the modes of: accelerances, with a weight for each value.
@@ -11,10 +12,7 @@ pub struct Recording<'a> {
     pub weights: &'a [f64],
 }
 
-/// Lines above the lowest one from which a mode can be told from a residual term.
-pub(crate) const RESOLVED: f64 = 4.0;
-
 /// Frequency, Hz, from which on modes are told from residual terms.
 pub(crate) fn resolved_from(hz: &[f64]) -> f64 {
-    hz[0] + RESOLVED * (hz[hz.len() - 1] - hz[0]) / (hz.len() as f64 - 1.0).max(1.0)
+    hz[0] + RESOLVED_LINES * (hz[hz.len() - 1] - hz[0]) / (hz.len() as f64 - 1.0).max(1.0)
 }

@@ -5,6 +5,7 @@
 
 use crate::poles::mode;
 use crate::recorded::RecordedModes;
+use crate::settings::shapes::{MOST_REFERENCES, NODE_SHARE, SAME_FREQUENCY};
 use jointscope_fixture::Fixture;
 use jointscope_lumped::{Instrument, ModelledTest};
 use jointscope_spectra::{Channel, FrfPair};
@@ -21,13 +22,6 @@ pub struct Shapes {
     pub(crate) quadrature: Vec<Vec<f64>>,
 }
 
-/// Relative distance of natural frequencies below which a pole of the test is one of the structure: an exponential window adds damping alone.
-const SAME: f64 = 1e-3;
-/// References to which the signs of shapes are told, at most.
-const REFERENCES: usize = 4;
-/// Share of a mode's mean square below which a reference does not move in it, and tells no phases.
-const NODE: f64 = 1e-9;
-
 impl Shapes {
     /// The shapes of the modes at `poles`.
     pub fn of(fixture: &Fixture, recorded: &RecordedModes, poles: &[Complex64]) -> Option<Self> {
@@ -43,7 +37,7 @@ impl Shapes {
         let mut references: Vec<usize> = frfs.iter().map(|(_, reference)| *reference).collect();
         references.sort_unstable();
         references.dedup();
-        references.truncate(REFERENCES);
+        references.truncate(MOST_REFERENCES);
         let driving = channels.iter().map(|c| FrfPair::new(c.clone(), c.clone()));
         let across = references.iter().flat_map(|&r| {
             channels.iter().map({
@@ -57,7 +51,7 @@ impl Shapes {
         let n = channels.len();
         let mut of_structure = |pole: &Complex64| -> Option<(Vec<f64>, Vec<f64>)> {
             let mode = mode(&mut continued, *pole, pairs.len())?;
-            if (mode.pole.lambda().im - pole.im).abs() > SAME * pole.norm() {
+            if (mode.pole.lambda().im - pole.im).abs() > SAME_FREQUENCY * pole.norm() {
                 return None;
             }
             let residues = mode.residues;
@@ -67,7 +61,7 @@ impl Shapes {
             let to_largest = &residues[n + largest * n..][..n];
             let amplitude = |channel: usize| squares[channel].sqrt() * to_largest[channel].re.signum();
             let own = residues[references[largest]];
-            let moves = own.norm() > NODE * squares.iter().sum::<f64>() / n as f64;
+            let moves = own.norm() > NODE_SHARE * squares.iter().sum::<f64>() / n as f64;
             // ψ_o·ψ_i = (ψ_o·ψ_r)(ψ_i·ψ_r)/ψ_r²
             let product = |&(o, i): &(usize, usize)| (to_largest[o] * to_largest[i] / own).im;
             let quadrature = frfs.iter().map(|frf| if moves { product(frf) } else { 0.0 });

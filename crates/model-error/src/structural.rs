@@ -7,12 +7,10 @@
 use crate::basis::{Pole, power_of_term, row};
 use crate::recorded::RecordedModes;
 use crate::recording::Recording;
+use crate::settings::structural::UNKNOWN_POLE;
 use jointscope_linalg::{Cholesky, dot};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
-
-/// Deviations of ln ω and ln ζ of modes in the band about those of the free fit: as good as unknown.
-const UNKNOWN: f64 = 1.0;
 
 /// What modes and residual terms of a structure leave of a recording.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -113,7 +111,7 @@ impl RecordedModes {
                     .for_each(|(j, other)| information[i * order + j] += dot(slope, other));
             }
         }
-        (0..order).for_each(|k| information[k * (order + 1)] += UNKNOWN.powi(-2));
+        (0..order).for_each(|k| information[k * (order + 1)] += UNKNOWN_POLE.powi(-2));
         let mut step = right.clone();
         Cholesky::of(order, &information)?.solve_in_place(&mut step);
         Some(Structural { chi2: chi2 - dot(&step, &right), unknowns, from: self.band.0 })
