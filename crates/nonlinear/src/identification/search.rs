@@ -7,13 +7,13 @@ use super::locations::locations;
 use super::misfit::{Focus, View};
 use super::records::Record;
 use super::shapes::{Suggestion, suggestions};
+use crate::RestoringLaw;
 use crate::settings::band::BEYOND_BAND;
 use crate::settings::search::{
     BEHIND, BEHIND_BESIDE, BEHIND_BY_CHANCE, CONTENDERS, CONTRADICTION, CONTRADICTION_SHARE, FINALISTS,
     LINEAR_RENEWALS, LONG, MEDIUM, RECONSTRUCTED, RENEWALS, SEARCH_HALVINGS, SHORT, START_RENEWALS,
     STEPS_IN_INTERVAL, STEPS_IN_PERIOD, WEAK_KIND,
 };
-use crate::time::law::RestoringLaw;
 use jointscope_fixture::Fixture;
 use rayon::prelude::*;
 
