@@ -124,6 +124,21 @@ fn what_is_left_above_the_band_holds_nothing_against_a_name_of_rigid_blocks() {
 }
 
 #[test]
+fn errors_are_held_to_a_multiple_of_what_is_usual_kind_by_kind() {
+    let nominal = Hypothesis::nominal(&Fixture::from_json(BLOCKS).unwrap(), false);
+    let observation = recorded(&nominal);
+    let features = Features::of(&observation, &nominal, &Settings::default().modal).unwrap();
+    let problem = features.problem(observation.work());
+    let mut fit = problem.fitted(&nominal, &priors(&nominal, &[])).unwrap();
+    let usual = features.known.scales;
+    fit.evidence.sizes = ErrorSizes { frequency: 1.5 * usual.frequency, shape: 3.0 * usual.shape, ..usual };
+    let held = problem.no_larger(&fit, 2.0);
+    let expected = ErrorSizes { shape: 2.0 * usual.shape, ..fit.evidence.sizes };
+    let pairs = held.to_array().into_iter().zip(expected.to_array());
+    assert!(pairs.clone().all(|(held, expected)| (held / expected - 1.0).abs() < 1e-12), "{held:?}");
+}
+
+#[test]
 fn what_explains_modes_in_part_is_stated_only_where_lines_too_miss_less_with_it() {
     let fixture = Fixture::from_json(BLOCKS).unwrap();
     let nominal = Hypothesis::nominal(&fixture, false);
