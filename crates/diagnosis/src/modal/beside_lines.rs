@@ -133,8 +133,8 @@ impl ModalJudgement {
         let ([own], [finding]) = (&effects[..], &mut findings[..]) else { return findings };
         let named = |effect: &Effect| effect.is_named_as(own);
         let is_listed = finding.alternatives.iter().any(|(effect, _)| named(effect));
-        let all_told = self.free_fit <= fitter.settings.modal.free_fit && !self.strained;
-        if !self.names_all() || !all_told || named(&finding.effect) || is_listed {
+        let little = self.features.tells_little(&fitter.settings.modal);
+        if !self.names_all() || little || named(&finding.effect) || is_listed {
             return findings;
         }
         let stated = finding.stated();

@@ -116,9 +116,8 @@ impl Judge<'_> {
         let Some((before, now)) = density(&best.fit.evidence.sizes).zip(density(&usual)) else {
             return false;
         };
-        let ln = best.fit.ln - (before - now).max(0.0);
-        let held = Named { fit: ModalFit { ln, ..best.fit.clone() }, ..best.clone() };
-        self.searcher.gains(&held, &self.searcher.alone(none.clone()))
+        let gained = best.fit.ln - (before - now).max(0.0) - none.ln;
+        gained > self.searcher.needed_over(&self.searcher.alone(none.clone()), best)
     }
 
     /// What is left, as multiples of what is usual, of the kinds of error in whose stead factors on channels' signals stand: those that are beyond what is usual without them,

@@ -178,7 +178,7 @@ impl Searcher<'_> {
     }
 
     /// Whether a hypothesis gains what it has to over one that states less.
-    pub(super) fn gains(&self, more: &Named, fewer: &Named) -> bool {
+    fn gains(&self, more: &Named, fewer: &Named) -> bool {
         more.fit.ln - fewer.fit.ln > self.needed_over(fewer, more)
     }
 

@@ -355,16 +355,22 @@ fn damping_is_off_by_no_more_than_was_stated_of_it_or_is_usual() {
     assert!(is_adequate(&fit), "the fixture's own modes, of which it states ratios to 30 %");
 }
 
-#[test]
-fn names_that_lines_are_at_odds_with_are_stated_as_a_part_and_no_surer_than_something_not_listed_lets_them_be()
- {
+/// What `of` makes of a lump on block B, which the modes name.
+fn judged_lump<T>(of: impl FnOnce(&Fitter, &Effect, &ModalJudgement) -> T) -> T {
     let fixture = Fixture::from_json(BLOCKS).unwrap();
     let nominal = Hypothesis::nominal(&fixture, false);
     let lump = Effect::new(EffectKind::AddedMass, Place::Body("B".into()), None, &[0.1, 0.2]);
-    let observation = recorded(&nominal.with(lump));
+    let observation = recorded(&nominal.with(lump.clone()));
     let settings = Settings::default();
     let fitter = Fitter { observation: &observation, settings: &settings, watch: Watch::default() };
     let judged = ModalJudgement::of(&fitter, &nominal, &catalogue(&fixture, &observation), None).unwrap();
+    of(&fitter, &lump, &judged)
+}
+
+#[test]
+fn names_that_lines_are_at_odds_with_are_stated_as_a_part_and_no_surer_than_something_not_listed_lets_them_be()
+ {
+    let judged = judged_lump(|_, _, judged| judged.clone());
     let stated = |judged: &ModalJudgement| judged.names[0].iter().map(|(_, p, _)| p).sum::<f64>();
     assert!(judged.verdict == Verdict::Explained && stated(&judged) > 0.9, "{}", stated(&judged));
     let doubted = judged.doubted();
@@ -375,16 +381,9 @@ fn names_that_lines_are_at_odds_with_are_stated_as_a_part_and_no_surer_than_some
 
 #[test]
 fn one_finding_of_the_lines_is_no_more_probable_than_the_name_that_the_modes_hold_more_probable() {
-    let fixture = Fixture::from_json(BLOCKS).unwrap();
-    let nominal = Hypothesis::nominal(&fixture, false);
-    let of = |kind, place, values: &[f64]| Effect::new(kind, place, None, values);
-    let lump = of(EffectKind::AddedMass, Place::Body("B".into()), &[0.1, 0.2]);
-    let observation = recorded(&nominal.with(lump.clone()));
-    let settings = Settings::default();
-    let fitter = Fitter { observation: &observation, settings: &settings, watch: Watch::default() };
-    let judged = ModalJudgement::of(&fitter, &nominal, &catalogue(&fixture, &observation), None).unwrap();
-    let other = of(EffectKind::JointMass, Place::Joint("J".into()), &[0.01]);
-    let third = of(EffectKind::StiffnessChange, Place::Joint("J".into()), &[0.9]);
+    let of_joint = |kind, value: f64| Effect::new(kind, Place::Joint("J".into()), None, &[value]);
+    let other = of_joint(EffectKind::JointMass, 0.01);
+    let third = of_joint(EffectKind::StiffnessChange, 0.9);
     let finding = |effect: &Effect| Finding {
         effect: effect.clone(),
         estimates: Vec::new(),
@@ -392,13 +391,17 @@ fn one_finding_of_the_lines_is_no_more_probable_than_the_name_that_the_modes_hol
         alternatives: vec![(third.clone(), 0.06)],
         evidence: Evidence { gain: 0.0, elsewhere: Vec::new(), measured: None },
     };
-    let [found] = &judged.with_its_own_name(&fitter, vec![finding(&other)])[..] else { panic!() };
-    assert!((found.probability - 0.45).abs() < 1e-12 && (found.stated() - 0.96).abs() < 1e-12);
-    assert!(found.alternatives[0].0.is_named_as(&lump) && (found.alternatives[0].1 - 0.48).abs() < 1e-12);
-    assert!(found.alternatives[1].0.is_named_as(&third) && (found.alternatives[1].1 - 0.03).abs() < 1e-12);
-    let unchanged = |findings: Vec<Finding>| {
-        judged.with_its_own_name(&fitter, findings).iter().all(|finding| finding.probability == 0.9)
-    };
-    assert!(unchanged(vec![finding(&lump)]), "the modes' own name");
-    assert!(unchanged(vec![finding(&other), finding(&third)]), "modes have one name for two findings");
+    judged_lump(|fitter, lump, judged| {
+        let [found] = &judged.with_its_own_name(fitter, vec![finding(&other)])[..] else { panic!() };
+        assert!((found.probability - 0.45).abs() < 1e-12 && (found.stated() - 0.96).abs() < 1e-12);
+        assert!(found.alternatives[0].0.is_named_as(lump) && (found.alternatives[0].1 - 0.48).abs() < 1e-12);
+        assert!(
+            found.alternatives[1].0.is_named_as(&third) && (found.alternatives[1].1 - 0.03).abs() < 1e-12
+        );
+        let unchanged = |findings: Vec<Finding>| {
+            judged.with_its_own_name(fitter, findings).iter().all(|finding| finding.probability == 0.9)
+        };
+        assert!(unchanged(vec![finding(lump)]), "the modes' own name");
+        assert!(unchanged(vec![finding(&other), finding(&third)]), "modes have one name for two findings");
+    });
 }

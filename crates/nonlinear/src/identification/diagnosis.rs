@@ -10,7 +10,7 @@ use super::search::{Search, Span};
 use crate::settings::band::{BEYOND_BAND, BEYOND_ELASTIC, FORCE_ENDS, SAMPLING_ENDS};
 use crate::settings::homogeneity::CHANGED;
 use crate::settings::map::{FROM_LOWEST, HARMONIC, SAMPLED_SHARE};
-use crate::settings::search::{LEAST_GAIN, RENEWALS, SEEK_MORE, SEEK_MORE_ERROR, WORTH};
+use crate::settings::search::{LEAST_GAIN, SEEK_MORE, SEEK_MORE_ERROR, WORTH};
 use crate::{DiagnoseError, ForceStateError, ForceStateMap, SimulationError};
 use jointscope_findings::{HeldOut, Verdict};
 use jointscope_fixture::{BodyKind, Dof, Fixture};
@@ -137,18 +137,14 @@ fn judged(fixture: &Fixture, all: &[Record], (band, elastic): Bands, exact: bool
         // What is not followed counts for neither.
         whole = search.view(&followed);
         let mut before = Fit::of(&whole, &best.hypothesis, 1)?;
-        let (idle, fits): (Vec<Fit>, Vec<Fit>) =
-            fits.into_iter().partition(|fit| search.is_idle(&fit.hypothesis));
-        // A law that never acts may have led the quantities beside it out of a false minimum.
-        for fit in idle {
-            let without = Fit::of(&whole, &fit.hypothesis.without_last(), RENEWALS);
-            let Some(better) = without.filter(|fit| fit.objective < before.objective) else { continue };
-            if let Some(Step { fits, gain }) = steps.last_mut() {
-                *gain += before.objective - better.objective;
-                fits[0] = better.clone();
+        let (fits, freed) = search.acting(&whole, fits);
+        if let Some(freed) = freed.filter(|freed| freed.objective < before.objective) {
+            if let Some(step) = steps.last_mut() {
+                step.gain += before.objective - freed.objective;
+                step.fits.iter_mut().take(1).for_each(|fit| *fit = freed.clone());
             }
-            best = better.clone();
-            before = better;
+            best = freed.clone();
+            before = freed;
         }
         let Some(first) = fits.first() else { break };
         let excess = |fit: &Fit| (fit.objective - whole.degrees()).max(0.0);

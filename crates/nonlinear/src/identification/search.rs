@@ -122,6 +122,14 @@ impl<'a> Search<'a> {
         own.next().is_some_and(|location| location.reach < from)
     }
 
+    /// Of `fits` those whose last law acts; and the best without it of the others, where a law that never acts may have led the quantities beside it out of a false minimum.
+    pub(super) fn acting(&self, view: &View, fits: Vec<Fit>) -> (Vec<Fit>, Option<Fit>) {
+        let (idle, acting): (Vec<Fit>, Vec<Fit>) =
+            fits.into_iter().partition(|fit| self.is_idle(&fit.hypothesis));
+        let freed = |fit: &Fit| Fit::of(view, &fit.hypothesis.without_last(), RENEWALS);
+        (acting, best(idle.iter().filter_map(freed)))
+    }
+
     /// Fits with one more effect beside those of `base`, the best first, and how much of the records decided between them.
     pub(super) fn hypotheses(&self, fixture: &Fixture, base: &Hypothesis) -> (Vec<Fit>, Span) {
         let kinds = self.suggested(fixture, base);
