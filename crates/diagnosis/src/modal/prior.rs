@@ -60,6 +60,9 @@ fn of_effect(hypothesis: &Hypothesis, index: usize, candidate: &Candidate) -> Ve
             (_, Motion::NonNegative(_)) if in_series && matches!(parameter.starts, Starts::OfLeading(_)) => {
                 Prior { mean: 0.0, std: OF_DASHPOT }
             }
+            (_, Motion::NonNegative(_)) if parameter.usual.is_some() => {
+                Prior { mean: 0.0, std: moves.transform.coordinate(parameter.usual?)? }
+            }
             (_, Motion::NonNegative(_)) if place != spec.size.parameter => {
                 let times = if parameter.of_bodies_only { OF_ROTARY_INERTIA } else { OF_DASHPOT };
                 Prior { mean: 0.0, std: (times * largest).max(f64::MIN_POSITIVE.sqrt()) }

@@ -374,11 +374,12 @@ impl Searcher<'_> {
         least: f64,
     ) -> Option<Named> {
         let Named { names, mut fit, .. } = self.fitted_with(base, &[c], &hypothesis, (set_out, least))?;
-        let priors = fit.priors.clone();
+        let company: Vec<&Candidate> = names.iter().map(|&c| &self.candidates[c]).collect();
         // The end of a reach is no place to rest, whatever the evidence says that has a parameter less there.
         for _ in 0..self.settings.farther {
             let next = farther(&fit.hypothesis, &self.candidates[c]).and_then(|start| {
                 let standing = self.problem.standing(&start)?;
+                let priors = self.priors(&start, &company);
                 self.problem.fitted_from(&start, standing, &priors, (None, set_out, least))
             });
             let Some(next) = next else { break };

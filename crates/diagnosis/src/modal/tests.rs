@@ -368,6 +368,28 @@ fn judged_lump<T>(of: impl FnOnce(&Fitter, &Effect, &ModalJudgement) -> T) -> T 
 }
 
 #[test]
+fn what_is_known_of_a_resonance_is_known_of_it_however_far_a_fit_has_followed_it() {
+    let fixture = Fixture::from_json(BLOCKS).unwrap();
+    let nominal = Hypothesis::nominal(&fixture, false);
+    let response = Place::Response("4".into());
+    let resonance = Effect::new(EffectKind::ChannelResonance, response, None, &[9000.0, 0.25]);
+    let observation = recorded(&nominal.with(resonance));
+    let settings = Settings::default();
+    let fitter = Fitter { observation: &observation, settings: &settings, watch: Watch::default() };
+    let candidates = catalogue(&fixture, &observation);
+    let judged = ModalJudgement::of(&fitter, &nominal, &candidates, None).unwrap();
+    let fits = judged.search.singles.iter().map(|single| &single.fit);
+    let resonances = fits.filter(|fit| fit.hypothesis.effects()[0].kind == EffectKind::ChannelResonance);
+    for fit in resonances {
+        let known = priors_among(&fit.hypothesis, &candidates).unwrap();
+        for (ours, known) in fit.priors.iter().zip(&known) {
+            assert!((ours.std / known.std - 1.0).abs() < 1e-9, "{ours:?} for {known:?}");
+        }
+    }
+    assert!(judged.search.singles.iter().any(|single| single.fit.hypothesis.effects()[0].value(0) > 4000.0));
+}
+
+#[test]
 fn names_that_lines_are_at_odds_with_are_stated_as_a_part_and_no_surer_than_something_not_listed_lets_them_be()
  {
     let judged = judged_lump(|_, _, judged| judged.clone());
