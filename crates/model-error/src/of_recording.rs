@@ -7,7 +7,7 @@ use crate::recorded::RecordedModes;
 use crate::recording::{Recording, resolved_from};
 use crate::settings::recorded::{
     ABOVE_BAND, BELOW_BAND, CLEAR_DAMPING, CLEAR_FREQUENCY, CLEAR_LINES, DAMPING_RATIO_ABOVE,
-    DAMPING_RATIO_BELOW, EXPECTED_WITHIN, MOST_LINES_LEFT_OUT, RESOLVED_LINES,
+    DAMPING_RATIO_BELOW, EXPECTED_WITHIN, MOST_LINES_LEFT_OUT, NARROW, RESOLVED_LINES,
 };
 use jointscope_modes::{ModalAnalysis, ModesOptions};
 use jointscope_spectra::FrfSet;
@@ -129,7 +129,8 @@ impl RecordedModes {
     }
 
     /// Frequency, Hz, below a mode of this recording that lies near the lowest line and yet is told from a mass line, where a model `expects` none near it: the spring that nobody
-    /// stated shows in nothing else. `None` where there is no such mode.
+    /// stated shows in nothing else. `None` where there is no such mode. A peak much narrower than the spacing of the lines tells its frequency alone: that it is so narrow is told
+    /// as well then, which is more than a mass line could be taken for.
     fn clear_of_the_lower_end(&self, expected: &[Pole]) -> Option<f64> {
         let spacing = (self.resolved_from - self.lowest) / RESOLVED_LINES;
         let is_expected =
@@ -137,7 +138,10 @@ impl RecordedModes {
         let is_clear = |&index: &usize| {
             let mode = &self.modes[index];
             let [frequency, damping] = self.deviations(index);
-            let is_told = frequency < CLEAR_FREQUENCY && damping < CLEAR_DAMPING;
+            let Pole { omega, damping_ratio } = mode.pole;
+            let widest = damping_ratio * (1.0 + 2.0 * damping) * omega / TAU;
+            let is_told =
+                frequency < CLEAR_FREQUENCY && (damping < CLEAR_DAMPING || widest < NARROW * spacing);
             let above = mode.pole.omega / TAU - self.lowest;
             !mode.resolved && above > CLEAR_LINES * spacing && is_told && !is_expected(mode.pole.omega)
         };

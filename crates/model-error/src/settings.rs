@@ -16,6 +16,8 @@ pub(crate) mod recorded {
     pub(crate) const CLEAR_FREQUENCY: f64 = 1e-3;
     /// The same of ln ζ.
     pub(crate) const CLEAR_DAMPING: f64 = 0.1;
+    /// Half the width of a peak, two deviations wider than it is, in spacings of lines, up to which it is told to be narrow: no line lies on the peak itself then.
+    pub(crate) const NARROW: f64 = 0.5;
     /// Difference in ln ω within which a model's mode may be the recorded one: a suspension is known to a third.
     pub(crate) const EXPECTED_WITHIN: f64 = 0.5;
     /// Where modes above the band are looked for, as multiples of its upper end, one after the other.

@@ -62,6 +62,7 @@ check "geometry and shapes with pyuff" "numpy pyuff cargo ${recordings:--recordi
 check "MATLAB files of SciPy and h5py" "numpy scipy h5py cargo" "$python" "$here/mat_with_scipy.py" "$folder/mat" "$program"
 check "export with CalculiX" "ccx" "$python" "$here/export_with_calculix.py" "$program"
 check "the finite-element twin with CalculiX" "ccx" "$python" "$here/fem_with_calculix.py" "$program" ${quick:+"$quick"}
+check "the diagnosis of lumped structures by NumPy" "numpy scipy pyuff" "$python" "$here/lumped_with_numpy.py" "$program" --cases $([ "$long" ] && echo 60 || echo 10)
 if [ "$long" ]; then
     check "the diagnosis of solids by CalculiX" "numpy pyuff ccx" "$python" "$here/solids_with_calculix.py" "$program"
     check "the lumped model with the twin" "numpy pyuff" "$python" "$here/sim_against_fem.py" "$program"

@@ -57,7 +57,7 @@ fn by_density(all: &mut [Start]) {
 
 impl Searcher<'_> {
     /// Starts with one effect more than `base`, the densest first. Those that compare other modes than their base are compared with the others by their own derivatives, the
-    /// best of all and the best of each candidate; the rest are left out.
+    /// best of all and the best of each candidate, those with a partner more and the others by themselves; the rest are left out.
     pub(super) fn starts(&self, base: &Named) -> Vec<Start> {
         // What resonates makes a mode more: where every mode has its partner, nothing of the kind is there.
         let partners = base.fit.standing.pairing.alone() == 0.0;
@@ -139,12 +139,13 @@ impl Searcher<'_> {
         let (mut apart, mut alike): (Vec<Start>, Vec<Start>) =
             scored.into_iter().partition(|start| start.apart);
         by_density(&mut apart);
-        let mut seen = vec![false; self.candidates.len()];
-        let (mut rank, mut partnering) = (0, 0);
+        // Those with a partner more and the others by themselves: of a spring to ground a start that makes no mode more says nothing of one that does.
+        let mut seen = vec![[false; 2]; self.candidates.len()];
+        let mut ranks = [0; 2];
         apart.retain(|start| {
-            let place = if start.partners { &mut partnering } else { &mut rank };
-            *place += 1;
-            !std::mem::replace(&mut seen[start.candidate], true) || *place <= self.settings.apart
+            let class = usize::from(start.partners);
+            ranks[class] += 1;
+            !std::mem::replace(&mut seen[start.candidate][class], true) || ranks[class] <= self.settings.apart
         });
         let anew = self.problem.work.each(apart, STARTS, |start| {
             Some(Start { density: self.density_by_itself(&start.hypothesis)?, ..start })

@@ -166,8 +166,16 @@ proptest! {
 
 #[test]
 fn a_mode_just_above_the_lowest_line_counts_where_the_model_has_none() {
+    // Damped so that the lines tell by how much, and so little that they tell no more than that.
+    for dashpot in [10.0, 0.05] {
+        counts_just_above_the_lowest_line(dashpot);
+    }
+}
+
+fn counts_just_above_the_lowest_line(dashpot: f64) {
     // On a spring that nobody stated, 52 Hz, on lines from 20 Hz: the third line above the lowest.
-    let spring = r#"{"kind": "support", "place": "A", "x": 0, "stiffness": 5.4e5, "damping": 10}"#;
+    let spring =
+        &format!(r#"{{"kind": "support", "place": "A", "x": 0, "stiffness": 5.4e5, "damping": {dashpot}}}"#);
     let lines = SpectralLines::even(20.0, 9.5, 120).unwrap();
     let set =
         Recorded::of(&two_masses(0.004, spring), &pairs(&[("1", "1"), ("2", "1")]), &lines, noise(Some(1)));
@@ -179,7 +187,7 @@ fn a_mode_just_above_the_lowest_line_counts_where_the_model_has_none() {
     };
     let recorded = beside("");
     let lowest = &recorded.modes[0];
-    assert!(lowest.resolved && (lowest.pole.omega / TAU - 52.0).abs() < 3.0, "{lowest:?}");
+    assert!(lowest.resolved && (lowest.pole.omega / TAU - 52.0).abs() < 3.0, "{dashpot} N s/m: {lowest:?}");
     let alone = |physics: &str| Compared::of(&two_masses(0.004, physics), recorded.clone()).pairing.alone();
     assert!(alone("") < -5.0, "the model without the spring lacks it: {}", alone(""));
     assert_eq!(alone(spring), 0.0);
