@@ -130,7 +130,9 @@ pub fn lowest_modes(
         let outside = space.images(&factor, &block, &mut columns);
         let mut next = Vec::with_capacity(block.len());
         let ritz = ritz_pairs(&columns, size)?;
-        let converged = converged(&ritz, space.mass, &outside, size - block.len());
+        // One product with M for each of them, and none for each pair.
+        let gram = products_by_mass(space.mass, &outside);
+        let converged = converged(&ritz, &gram, size - block.len());
         let eigenvalues: Vec<f64> = ritz[..converged].iter().map(|pair| 1.0 / pair.value - shift).collect();
         progress(converged.min(at_least), at_least);
         if size + rigid.len() >= order {
@@ -174,9 +176,9 @@ pub fn lowest_modes(
                 return Err(EigenError::NoConvergence.into());
             }
         }
-        for rest in outside {
+        for (index, rest) in outside.into_iter().enumerate() {
             // Where the block has run dry in a direction, another one.
-            let vector = space.normalised(rest, 1e-10);
+            let vector = space.normalised_of(rest, gram[index][index], 1e-10);
             let Some(vector) = vector.or_else(|| space.normalised(random.vector(order), 1e-8)) else {
                 continue;
             };
@@ -190,10 +192,9 @@ pub fn lowest_modes(
     }
 }
 
-/// How many of the first Ritz pairs have converged: their residuals are made of what the newest vectors, from `first_new` on, have `outside` the space.
-fn converged(ritz: &[RitzPair], mass: &SparseSymmetric, outside: &[Vec<f64>], first_new: usize) -> usize {
-    // One product with M for each of them, and none for each pair.
-    let gram = products_by_mass(mass, outside);
+/// How many of the first Ritz pairs have converged: their residuals are made of what the newest vectors, from `first_new` on, have outside the space, of which
+/// `gram` holds the products.
+fn converged(ritz: &[RitzPair], gram: &[Vec<f64>], first_new: usize) -> usize {
     let residual_of = |pair: &RitzPair| {
         let weights = &pair.vector[first_new..];
         let of_row = |(row, weight): (&Vec<f64>, &f64)| weight * dot(row, weights);
@@ -263,11 +264,10 @@ fn complete_set(eigenvalues: &[f64], up_to: f64, at_least: usize) -> Option<(usi
 
 /// Products vᵢᵀ M vⱼ of all vectors, row by row.
 fn products_by_mass(mass: &SparseSymmetric, vectors: &[Vec<f64>]) -> Vec<Vec<f64>> {
-    let row = |vector: &Vec<f64>| {
-        let image = mass.multiply(vector);
-        vectors.iter().map(|other| dot(&image, other)).collect()
-    };
-    vectors.iter().map(row).collect()
+    let (blocks, rest) = vectors.as_chunks::<BLOCK>();
+    let images = blocks.iter().flat_map(|block| mass.multiply_each(block.each_ref().map(Vec::as_slice)));
+    let images = images.chain(rest.iter().map(|vector| mass.multiply(vector)));
+    images.map(|image| vectors.iter().map(|other| dot(&image, other)).collect()).collect()
 }
 
 struct RitzPair {
