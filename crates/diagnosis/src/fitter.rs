@@ -2,9 +2,8 @@
 
 use crate::settings::Settings;
 use crate::{Fit, Hypothesis, Linearisation, Observation, Watch};
-use jointscope_inference::{Convergence, LeastSquares, Limit, NormalEquations, Precision, descend};
+use jointscope_inference::{Convergence, LeastSquares, Limit, NormalEquations, Precision, descend, each};
 use num_complex::Complex64;
-use rayon::prelude::*;
 use std::borrow::Cow;
 
 /// An observation with the settings by which hypotheses are fitted to it.
@@ -269,10 +268,11 @@ impl<'a> Fitter<'a> {
             .filter(is_wide)
             .flat_map(|m| [-1.0, 1.0].map(|sign| start.moved(m, sign)))
             .collect();
-        let mut fits: Vec<Fit> = starts.par_iter().filter_map(|s| thinned.on_thinned_lines(s)).collect();
+        let fits = each(&starts, |start| thinned.on_thinned_lines(start));
+        let mut fits: Vec<Fit> = fits.into_iter().flatten().collect();
         fits.sort_by(|a, b| a.objective.total_cmp(&b.objective));
         fits.truncate(followed);
-        let fits: Vec<Option<Fit>> = fits.par_iter().map(|f| self.after_thinned(&f.hypothesis)).collect();
+        let fits: Vec<Option<Fit>> = each(&fits, |fit| self.after_thinned(&fit.hypothesis));
         fits.into_iter().flatten().fold(first, |best, fit| better(fit, best))
     }
 

@@ -12,7 +12,7 @@ use crate::penalty::parameter_penalty;
 use crate::scan::Scan;
 use crate::{Hypothesis, Linearisation};
 use jointscope_fixture::Effect;
-use rayon::prelude::*;
+use jointscope_inference::{each, each_used_up};
 use std::collections::BTreeMap;
 
 /// Where a fit of a candidate sets out.
@@ -185,10 +185,10 @@ impl Ranking<'_> {
             let (iterate, objective) = thinned.improve_among_many(fit.iterate, inflation)?;
             Some(Thinned { iterate, objective, ..fit })
         };
-        let mut fits: Vec<Thinned> = begun.into_par_iter().filter_map(begin).collect();
+        let mut fits: Vec<Thinned> = each_used_up(begun, begin).into_iter().flatten().collect();
         for (stage, inflation) in inflation.into_iter().enumerate() {
             if stage == settings.joins {
-                fits.par_extend(std::mem::take(&mut joining).into_par_iter().filter_map(begin));
+                fits.extend(each_used_up(std::mem::take(&mut joining), begin).into_iter().flatten());
             }
             let work = self.fitter.observation.work();
             fits = work.each(fits, "effects from afar", |fit| improve(fit, inflation));
@@ -212,14 +212,14 @@ impl Ranking<'_> {
         base: &Hypothesis,
         scan: &Scan,
         count: usize,
-        each: usize,
+        most_each: usize,
     ) -> Vec<(f64, usize, Effect)> {
         let directions: Vec<(usize, usize)> = self
             .names_without(base)
             .flat_map(|c| (0..self.candidates[c].directions.len()).map(move |d| (c, d)))
             .collect();
         let gains: Vec<(f64, Option<Effect>)> =
-            directions.par_iter().map(|&(c, d)| scan.first_order(&self.candidates[c], d)).collect();
+            each(&directions, |&(c, d)| scan.first_order(&self.candidates[c], d));
         let gains = directions.iter().zip(gains);
         let mut by_gain: Vec<(f64, usize, Effect)> =
             gains.filter_map(|(&(c, _), (gain, effect))| Some((gain, c, effect?))).collect();
@@ -228,7 +228,7 @@ impl Ranking<'_> {
         let mut chosen = Vec::new();
         for (gain, candidate, effect) in by_gain {
             let distinct = taken.iter().filter(|t| **t > 0).count();
-            if taken[candidate] < each && (taken[candidate] > 0 || distinct < count) {
+            if taken[candidate] < most_each && (taken[candidate] > 0 || distinct < count) {
                 taken[candidate] += 1;
                 chosen.push((gain, candidate, effect));
             }
@@ -271,7 +271,7 @@ impl Ranking<'_> {
             self.fitter.local(&start.hypothesis, nearby, limit).map(|fit| (start.candidate, fit))
         };
         let (first, rest) = starts.split_at(settings.unlimited.min(starts.len()));
-        let mut fits: Vec<(usize, Fit)> = first.par_iter().filter_map(|s| fit(s, limit)).collect();
+        let mut fits: Vec<(usize, Fit)> = each(first, |s| fit(s, limit)).into_iter().flatten().collect();
         let best = fits.iter().map(|(_, fit)| fit.objective).fold(f64::INFINITY, f64::min);
         let limit = limit.min(best + settings.margin);
         let work = self.fitter.observation.work();

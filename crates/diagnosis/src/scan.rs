@@ -4,10 +4,9 @@ use crate::candidate::Candidate;
 use crate::fitter::Fitter;
 use crate::{Hypothesis, Linearisation};
 use jointscope_fixture::Effect;
-use jointscope_inference::{dot, whitened};
+use jointscope_inference::{dot, each, whitened};
 use jointscope_linalg::solve_positive_definite;
 use num_complex::Complex64;
-use rayon::prelude::*;
 use std::borrow::Cow;
 
 /// A base about which effects are tried with the tolerances linearised, or held where they are.
@@ -92,7 +91,7 @@ impl<'a> Scan<'a> {
 
     /// The score of each (candidate, start).
     pub(crate) fn scores(&self, starts: &[(usize, usize)], candidates: &[Candidate]) -> Vec<f64> {
-        starts.par_iter().map(|&(c, s)| self.score(candidates[c].effect(s))).collect()
+        each(starts, |&(c, s)| self.score(candidates[c].effect(s)))
     }
 
     /// The objective with `effect` added and everything else at its linear best.

@@ -5,7 +5,7 @@
 
 use crate::settings::work::costs::{CUBE_OF_COORDINATES, MODEL};
 use crate::settings::work::shares::FITS_TOGETHER;
-use rayon::prelude::*;
+use jointscope_inference::each_used_up;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
@@ -107,7 +107,7 @@ impl Work {
         &self,
         items: Vec<T>,
         what: &'static str,
-        of: impl Fn(T) -> Option<R> + Sync + Send,
+        of: impl Fn(T) -> Option<R> + Sync,
     ) -> Vec<R> {
         let mut all = Vec::with_capacity(items.len());
         let mut items = items.into_iter();
@@ -116,7 +116,7 @@ impl Work {
             if some.is_empty() || !self.allows(what) {
                 return all;
             }
-            all.par_extend(some.into_par_iter().filter_map(&of));
+            all.extend(each_used_up(some, &of).into_iter().flatten());
         }
     }
 }

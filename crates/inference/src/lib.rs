@@ -15,6 +15,7 @@
 //! * [`birge_ratio`]: by how much departures exceed what chance makes of them;
 //! * [`interval95`], [`Z95`], [`SIGNIFICANT`]: the one convention of intervals and tests;
 //! * [`QuadraticLikelihood`]: what one recording tells of parameters that others tell of as well, put together in closed form;
+//! * [`each`]: many fits on all threads.
 //!
 //! ```
 //! use jointscope_inference::{LeastSquares, NormalEquations, Precision, Settings, descend};
@@ -59,6 +60,7 @@ mod parameter;
 mod problem;
 mod products;
 mod settings;
+mod threads;
 mod uncertainty;
 
 pub use birge::birge_ratio;
@@ -71,4 +73,5 @@ pub use parameter::{Parameter, Transform};
 pub use problem::{LeastSquares, Precision};
 pub use products::{dot, weighted_products, whitened};
 pub use settings::{Convergence, Damping, Limit, Settings};
+pub use threads::{each, each_used_up};
 pub use uncertainty::{Covariance, autocorrelation, jackknife, variance_inflation};

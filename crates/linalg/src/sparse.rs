@@ -185,6 +185,27 @@ impl SparseSymmetric {
         y
     }
 
+    /// A x of several vectors, each as [`multiply`](SparseSymmetric::multiply) has it: the matrix is read once, which is most of the time.
+    pub(crate) fn multiply_each<const N: usize>(&self, vectors: [&[f64]; N]) -> [Vec<f64>; N] {
+        let order = self.order();
+        let x: Vec<[f64; N]> = (0..order).map(|i| vectors.map(|vector| vector[i])).collect();
+        let mut y = vec![[0.0; N]; order];
+        let SparsePattern { starts, rows } = self.pattern.as_ref();
+        for (column, ends) in starts.windows(2).enumerate() {
+            let (below, own) = (ends[0] + 1..ends[1], x[column]);
+            let mut sums = own.map(|own| self.values[ends[0]] * own);
+            for (&row, value) in rows[below.clone()].iter().zip(&self.values[below]) {
+                let (x, y) = (&x[row], &mut y[row]);
+                for k in 0..N {
+                    y[k] += value * own[k];
+                    sums[k] += value * x[k];
+                }
+            }
+            y[column].iter_mut().zip(sums).for_each(|(y, sum)| *y += sum);
+        }
+        std::array::from_fn(|k| y.iter().map(|y| y[k]).collect())
+    }
+
     /// xᵀ A x: twice the energy of a motion.
     pub fn quadratic(&self, x: &[f64]) -> f64 {
         self.multiply(x).iter().zip(x).map(|(a, b)| a * b).sum()

@@ -68,6 +68,9 @@ const VECTORS_A_MODE: usize = 8;
 /// Modes below the wanted frequency that are looked for at the most: a vector of each is held, and every step works on all.
 const MOST_MODES: usize = 400;
 
+/// Modes known to lie below the wanted frequency from which on all of them are counted before the search goes on: of moduli a million times too small every vector is such a mode.
+const MANY_MODES: usize = 64;
+
 /// Residual of a Ritz pair of (K + sM)⁻¹M, relative to its value, at which it counts as found.
 const CONVERGED: f64 = 1e-10;
 
@@ -119,13 +122,17 @@ pub fn lowest_modes(
     // Projection of (K + sM)⁻¹M on the space, columns one by one as the space grows.
     let mut columns: Vec<Vec<f64>> = Vec::new();
     let mut census: Option<Census> = None;
+    let most = MOST_MODES.max(2 * at_least);
+    let mut are_counted = false;
     loop {
         let size = space.vectors.len();
         // Residuals of Ritz pairs are made of what the images of the newest vectors have outside the space.
         let outside = space.images(&factor, &block, &mut columns);
         let mut next = Vec::with_capacity(block.len());
         let ritz = ritz_pairs(&columns, size)?;
-        let converged = converged(&ritz, space.mass, &outside, size - block.len());
+        // One product with M for each of them, and none for each pair.
+        let gram = products_by_mass(space.mass, &outside);
+        let converged = converged(&ritz, &gram, size - block.len());
         let eigenvalues: Vec<f64> = ritz[..converged].iter().map(|pair| 1.0 / pair.value - shift).collect();
         progress(converged.min(at_least), at_least);
         if size + rigid.len() >= order {
@@ -155,11 +162,23 @@ pub fn lowest_modes(
         } else {
             // Ritz values lie above the eigenvalues: there are at least so many modes.
             let known = ritz.iter().filter(|pair| 1.0 / pair.value - shift <= wanted.up_to).count();
-            within_limits(size, known, converged.max(at_least), at_least, wanted.up_to)?;
+            let mut below = known;
+            if known >= MANY_MODES && !are_counted {
+                are_counted = true;
+                // Where the shift is too close to an eigenvalue for a count, the search tells.
+                let all = count_below(stiffness, mass, wanted.up_to, &factor.elimination).unwrap_or(0);
+                below = all.saturating_sub(rigid.len()).max(known);
+            }
+            if below > most {
+                return Err(SparseError::TooMany { most, hz: wanted.up_to.max(0.0).sqrt() / TAU });
+            }
+            if size >= VECTORS_A_MODE * known.max(converged).max(at_least) + 60 {
+                return Err(EigenError::NoConvergence.into());
+            }
         }
-        for rest in outside {
+        for (index, rest) in outside.into_iter().enumerate() {
             // Where the block has run dry in a direction, another one.
-            let vector = space.normalised(rest, 1e-10);
+            let vector = space.normalised_of(rest, gram[index][index], 1e-10);
             let Some(vector) = vector.or_else(|| space.normalised(random.vector(order), 1e-8)) else {
                 continue;
             };
@@ -173,28 +192,9 @@ pub fn lowest_modes(
     }
 }
 
-/// Whether a search that has not found all goes on: a space of `size` vectors, in which `known` modes lie below `up_to` and `sought` are looked for.
-fn within_limits(
-    size: usize,
-    known: usize,
-    sought: usize,
-    at_least: usize,
-    up_to: f64,
-) -> Result<(), SparseError> {
-    let most = MOST_MODES.max(2 * at_least);
-    if known > most {
-        return Err(SparseError::TooMany { most, hz: up_to.max(0.0).sqrt() / TAU });
-    }
-    if size >= VECTORS_A_MODE * known.max(sought) + 60 {
-        return Err(EigenError::NoConvergence.into());
-    }
-    Ok(())
-}
-
-/// How many of the first Ritz pairs have converged: their residuals are made of what the newest vectors, from `first_new` on, have `outside` the space.
-fn converged(ritz: &[RitzPair], mass: &SparseSymmetric, outside: &[Vec<f64>], first_new: usize) -> usize {
-    // One product with M for each of them, and none for each pair.
-    let gram = products_by_mass(mass, outside);
+/// How many of the first Ritz pairs have converged: their residuals are made of what the newest vectors, from `first_new` on, have outside the space, of which
+/// `gram` holds the products.
+fn converged(ritz: &[RitzPair], gram: &[Vec<f64>], first_new: usize) -> usize {
     let residual_of = |pair: &RitzPair| {
         let weights = &pair.vector[first_new..];
         let of_row = |(row, weight): (&Vec<f64>, &f64)| weight * dot(row, weights);
@@ -264,11 +264,10 @@ fn complete_set(eigenvalues: &[f64], up_to: f64, at_least: usize) -> Option<(usi
 
 /// Products vᵢᵀ M vⱼ of all vectors, row by row.
 fn products_by_mass(mass: &SparseSymmetric, vectors: &[Vec<f64>]) -> Vec<Vec<f64>> {
-    let row = |vector: &Vec<f64>| {
-        let image = mass.multiply(vector);
-        vectors.iter().map(|other| dot(&image, other)).collect()
-    };
-    vectors.iter().map(row).collect()
+    let (blocks, rest) = vectors.as_chunks::<BLOCK>();
+    let images = blocks.iter().flat_map(|block| mass.multiply_each(block.each_ref().map(Vec::as_slice)));
+    let images = images.chain(rest.iter().map(|vector| mass.multiply(vector)));
+    images.map(|image| vectors.iter().map(|other| dot(&image, other)).collect()).collect()
 }
 
 struct RitzPair {

@@ -42,7 +42,18 @@ impl Space<'_> {
 
     /// A vector's remainder at unit modal mass, with its image; `None` where less than `least` of it is left.
     pub(crate) fn normalised(&self, vector: Vec<f64>, least: f64) -> Option<(Vec<f64>, Vec<f64>)> {
-        let before = self.mass.quadratic(&vector).max(0.0).sqrt();
+        let square = self.mass.quadratic(&vector);
+        self.normalised_of(vector, square, least)
+    }
+
+    /// The same of a vector of which `square` = vᵀ M v is known.
+    pub(crate) fn normalised_of(
+        &self,
+        vector: Vec<f64>,
+        square: f64,
+        least: f64,
+    ) -> Option<(Vec<f64>, Vec<f64>)> {
+        let before = square.max(0.0).sqrt();
         let mut rest = self.remainder(vector);
         let norm = self.mass.quadratic(&rest).max(0.0).sqrt();
         if !(norm > least * before && norm > 0.0 && norm.is_finite()) {

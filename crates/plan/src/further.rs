@@ -11,11 +11,10 @@ use crate::plan::PlanOptions;
 use crate::planned_test::PlannedTest;
 use jointscope_diagnosis::{Hypothesis, Linearisation, Observation, with_idle_points_exact};
 use jointscope_fixture::Fixture;
-use jointscope_inference::{LeastSquares, NormalEquations, Precision, Settings, descend};
+use jointscope_inference::{LeastSquares, NormalEquations, Precision, Settings, descend, each};
 use jointscope_spectra::FrfPair;
 use jointscope_wording::effect_name;
 use num_complex::Complex64;
-use rayon::prelude::*;
 
 /// The names that a diagnosis has left, with the probabilities that `further`, the FRFs of the structure as the fixture beside them describes it, leaves them together
 /// with the present ones; the most probable first.
@@ -54,7 +53,7 @@ pub fn weighed_by(
             problem.least(hypothesis).ok_or_else(|| PlanError::NotComparable(effect_name(&name.effect)))?;
         Ok(name.cost + cost / names.inflation)
     };
-    let costs: Vec<f64> = names.names.par_iter().map(cost).collect::<Result<_, PlanError>>()?;
+    let costs: Vec<f64> = each(&names.names, cost).into_iter().collect::<Result<_, PlanError>>()?;
     let least = costs.iter().copied().fold(f64::INFINITY, f64::min);
     let weight = |cost: &f64| (-0.5 * (cost - least)).exp();
     let total = costs.iter().map(weight).sum::<f64>() + names.unlisted;

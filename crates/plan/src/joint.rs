@@ -22,10 +22,9 @@ use crate::{PlanError, says};
 use free::with_free_joint;
 use jointscope_diagnosis::{Fit, Hypothesis, Observation};
 use jointscope_fixture::Fixture;
-use jointscope_inference::Z95;
+use jointscope_inference::{Z95, each};
 use jointscope_linalg::Cholesky;
 use jointscope_spectra::{FrfPair, SpectralLines};
-use rayon::prelude::*;
 
 /// What a plan for an interval starts from.
 #[derive(Debug, Clone)]
@@ -108,14 +107,12 @@ impl Joints<'_> {
         let all = self.candidates(points, (&frfs, &by_frf), again.as_deref(), (present, &known));
         // Before anything is recorded there is no interval.
         let now = again.as_ref().and_then(|_| self.interval(self.hypothesis, &known));
-        let mut ranked: Vec<(f64, &Candidate)> = all
-            .par_iter()
-            .filter_map(|candidate| {
-                let (hypothesis, known) =
-                    candidate.known.as_ref().map_or((self.hypothesis, &known), |(h, known)| (h, known));
-                Some((self.interval(hypothesis, &added(known, &candidate.information))?, candidate))
-            })
-            .collect();
+        let ranked = each(&all, |candidate| {
+            let (hypothesis, known) =
+                candidate.known.as_ref().map_or((self.hypothesis, &known), |(h, known)| (h, known));
+            Some((self.interval(hypothesis, &added(known, &candidate.information))?, candidate))
+        });
+        let mut ranked: Vec<(f64, &Candidate)> = ranked.into_iter().flatten().collect();
         ranked.sort_by(|a, b| a.0.total_cmp(&b.0));
         let gain = |(interval, candidate): &(f64, &Candidate)| {
             FrfGain::of(&candidate.measure, interval / now.unwrap_or(*interval))

@@ -7,9 +7,9 @@ use crate::settings::names::{
 };
 use jointscope_diagnosis::{Diagnosis, Fit, Hypothesis, ModelError, Observation};
 use jointscope_fixture::{Effect, Fixture, Place};
+use jointscope_inference::{each, each_used_up};
 use jointscope_linalg::Cholesky;
 use jointscope_wording::effect_name;
-use rayon::prelude::*;
 use serde::Serialize;
 
 /// A name that is left.
@@ -138,19 +138,20 @@ impl Names {
             Fit::of(&start(effect), observation, false)
                 .ok_or_else(|| PlanError::NotComparable(effect_name(effect)))
         };
-        let mut fits: Vec<Fit> = names.par_iter().map(|(effect, _)| fit(effect)).collect::<Result<_, _>>()?;
+        let fits: Vec<Fit> = each(&names, |(effect, _)| fit(effect)).into_iter().collect::<Result<_, _>>()?;
         let inflation = fits[0].inflation(observation);
         // Where its probability says that a name fits better than this fit, another way leads there.
         let cost = |fit: &Fit| fit.cost(inflation);
         let least = fits.iter().zip(&names).map(|(fit, (_, p))| cost(fit) + 2.0 * (p / highest).ln());
         let least = least.fold(f64::INFINITY, f64::min);
-        fits.par_iter_mut().zip(&names).for_each(|(own, (effect, probability))| {
-            if cost(own) > least - 2.0 * (probability / highest).ln() + FALSE_MINIMUM
+        let fits = each_used_up(fits.into_iter().zip(&names).collect(), |(own, (effect, probability))| {
+            if cost(&own) > least - 2.0 * (probability / highest).ln() + FALSE_MINIMUM
                 && let Some(other) = Fit::of(&start(effect), observation, true)
                 && other.objective < own.objective
             {
-                *own = other;
+                return other;
             }
+            own
         });
         let whole = |((effect, probability), fit): (&(Effect, f64), Fit)| {
             // Of a comparison by modes lines tell the parameters, and not the odds.

@@ -15,10 +15,10 @@ use crate::settings::ranking::{LEAST_LOG_ODDS, MOST_COMBINED, MOST_DRAWN, PROMIS
 use crate::suggestion::Suggestion;
 use jointscope_diagnosis::{Hypothesis, Observation};
 use jointscope_fixture::{Effect, Fixture, Place};
+use jointscope_inference::{each, each_used_up};
 use jointscope_linalg::Cholesky;
 use jointscope_spectra::FrfPair;
 use jointscope_wording::effect_name;
-use rayon::prelude::*;
 use serde::Serialize;
 
 /// What to consider.
@@ -137,14 +137,13 @@ impl Judge<'_> {
         let rivals = |candidate: &Candidate| {
             Rivals::of(&candidate.products, candidate.known.as_deref().unwrap_or(&known))
         };
+        let judged = |candidate: Candidate| {
+            let rivals = rivals(&candidate)?;
+            Some((self.expected(&rivals), candidate, rivals))
+        };
         let candidates = self.candidates(points, &frfs, &by_frf);
-        let mut ranked: Vec<(f64, Candidate, Rivals)> = candidates
-            .into_par_iter()
-            .filter_map(|candidate| {
-                let rivals = rivals(&candidate)?;
-                Some((self.expected(&rivals), candidate, rivals))
-            })
-            .collect();
+        let mut ranked: Vec<(f64, Candidate, Rivals)> =
+            each_used_up(candidates, judged).into_iter().flatten().collect();
         ranked.sort_by(|a, b| b.0.total_cmp(&a.0));
         let both = self.pairs_of_frfs(&ranked);
         let single = |(gain, candidate, _): &(f64, Candidate, Rivals)| FrfGain::of(&candidate.measure, *gain);
@@ -156,18 +155,13 @@ impl Judge<'_> {
             let outcome = rivals.expected_outcome(&weights, self.names.unlisted, SEED);
             self.suggestion(candidate, *gain, &outcome)
         };
-        let mut suggestions: Vec<Suggestion> = ranked.par_iter().map(drawn).collect();
+        let mut suggestions: Vec<Suggestion> = each(&ranked, drawn);
         // Where one measurement does not do it, two FRFs may.
         if suggestions.iter().all(|suggestion| suggestion.sure.is_none_or(|sure| sure < SURE)) {
-            let both: Vec<(f64, Candidate, Rivals)> = both
-                .into_par_iter()
-                .filter_map(|candidate| {
-                    let rivals = rivals(&candidate)?;
-                    Some((self.expected(&rivals), candidate, rivals))
-                })
-                .filter(|(gain, ..)| *gain >= LEAST_LOG_ODDS)
-                .collect();
-            suggestions.par_extend(both.par_iter().map(drawn));
+            let both = each_used_up(both, judged).into_iter().flatten();
+            let both: Vec<(f64, Candidate, Rivals)> =
+                both.filter(|(gain, ..)| *gain >= LEAST_LOG_ODDS).collect();
+            suggestions.extend(each(&both, drawn));
         }
         suggestions.sort_by(|a, b| order(b).partial_cmp(&order(a)).unwrap_or(std::cmp::Ordering::Equal));
         let not_by_frfs = self.not_by_frfs(&by_frf, &known);

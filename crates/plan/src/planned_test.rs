@@ -6,8 +6,8 @@ use crate::products::{Predicted, Products};
 use crate::settings::noise::MOST_VALUES;
 use jointscope_diagnosis::{Hypothesis, Linearisation, Observation};
 use jointscope_fixture::Fixture;
+use jointscope_inference::each;
 use jointscope_spectra::{FrfForm, FrfPair, FrfSet, SpectralLines};
-use rayon::prelude::*;
 
 /// The structure as it is to be tested.
 pub(crate) struct PlannedTest {
@@ -30,8 +30,9 @@ impl PlannedTest {
     pub(crate) fn products(&self, names: &[Hypothesis], pairs: &[FrfPair]) -> Option<Vec<Products>> {
         // Of a longer set lines would be left out.
         let together = (MOST_VALUES / self.lines.len()).max(1);
-        let parts = pairs.par_chunks(together).map(|pairs| self.products_of_few(names, pairs));
-        let parts: Vec<Vec<Products>> = parts.collect::<Option<_>>()?;
+        let few: Vec<&[FrfPair]> = pairs.chunks(together).collect();
+        let parts = each(&few, |pairs| self.products_of_few(names, pairs));
+        let parts: Vec<Vec<Products>> = parts.into_iter().collect::<Option<_>>()?;
         Some(parts.concat())
     }
 

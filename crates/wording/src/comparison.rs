@@ -240,17 +240,7 @@ impl Says for Caution {
                 "{joint}: its fit moves the fixture's quantities {} times as far as chance does, so something that the fixture leaves out is in its numbers",
                 short(strain.sqrt())
             ),
-            Caution::Refused { joint, tests } => {
-                let tests: Vec<&str> = tests
-                    .iter()
-                    .map(|test| match *test {
-                        "reciprocity" => "k12 and k21 differ",
-                        "definite" => "its stiffness would push by itself",
-                        _ => "its damping would give out energy",
-                    })
-                    .collect();
-                format!("{joint}: physics forbids what its FRFs ask for: {}", tests.join(", "))
-            }
+            Caution::Refused { joint, tests } => refused(joint, tests),
             Caution::OnTheBoundary { joint } => format!(
                 "{joint}: its C is held where it just gives out no energy, since its FRFs ask for one that would; it is compared as if on blocks of its own, and the intervals \
                  of its C are those without this limit"
@@ -260,50 +250,65 @@ impl Says for Caution {
                     "{joint}: its decomposition is judged unusable; its page says why, and nothing here rests on it"
                 )
             }
-            Caution::Frequencies { joints, frequencies } => {
-                let each: Vec<String> = joints
-                    .iter()
-                    .zip(frequencies)
-                    .map(|(joint, frequency)| format!("{joint} at {frequency:.1} Hz"))
-                    .collect();
-                format!(
-                    "numbers of joints whose stiffness or damping depends on frequency are those in the middle of their bands, and these differ ({}): C, of a structural joint ηK/ω, is \
-                     not of one frequency; compare loss factors, or decompose with the same --band",
-                    each.join(", ")
-                )
-            }
-            Caution::Masses { with, without } => format!(
-                "{} {} a mass of the joint's own and {} none: stiffnesses of joints with and without a mass are not of the same thing",
-                with.join(", "),
-                if with.len() == 1 { "has" } else { "have" },
-                without.join(", ")
-            ),
+            Caution::Frequencies { joints, frequencies } => unlike_frequencies(joints, frequencies),
+            Caution::Masses { with, without } => some_with_mass(with, without),
             Caution::NoFit { joint, why } => format!(
                 "{joint}: there is no fit to all its FRFs ({why}), so all joints are compared by estimates that know less"
             ),
-            Caution::NoDeviations { joint, numbers } => format!(
-                "{joint}: {} {} no standard deviation, so nothing tells how sure what follows from {} is",
-                numbers.join(", "),
-                if numbers.len() == 1 { "has" } else { "have" },
-                if numbers.len() == 1 { "it" } else { "them" },
-            ),
+            Caution::NoDeviations { joint, numbers } => no_deviations(joint, numbers),
             Caution::SameRecording { first, second } => format!(
                 "{first} and {second}: both are of the same recording, so that its noise is in both, and that they agree is no second test"
             ),
-            Caution::Lengths { joints, lengths } => {
-                let each = joints.iter().zip(lengths).map(|(joint, l)| format!("{joint} {:.2} mm", 1e3 * l));
-                let each: Vec<String> = each.collect();
-                format!(
-                    "K and C act over lengths that differ, and are so not of the same thing: {}",
-                    each.join(", ")
-                )
-            }
+            Caution::Lengths { joints, lengths } => unlike_lengths(joints, lengths),
             Caution::BodiesDisagree { joint } => format!(
                 "{joint}: its FRFs contradict those of another test on the blocks that both fixtures state alike, so it is compared as if on blocks of its own: \
                  they may be others, or the fixture leaves something out"
             ),
         }
     }
+}
+
+fn refused(joint: &str, tests: &[&str]) -> String {
+    let said = |test: &&str| match *test {
+        "reciprocity" => "k12 and k21 differ",
+        "definite" => "its stiffness would push by itself",
+        _ => "its damping would give out energy",
+    };
+    let tests: Vec<&str> = tests.iter().map(said).collect();
+    format!("{joint}: physics forbids what its FRFs ask for: {}", tests.join(", "))
+}
+
+fn unlike_frequencies(joints: &[String], frequencies: &[f64]) -> String {
+    let each = joints.iter().zip(frequencies).map(|(joint, hz)| format!("{joint} at {hz:.1} Hz"));
+    let each: Vec<String> = each.collect();
+    format!(
+        "numbers of joints whose stiffness or damping depends on frequency are those in the middle of their bands, and these differ ({}): C, of a structural joint ηK/ω, is \
+         not of one frequency; compare loss factors, or decompose with the same --band",
+        each.join(", ")
+    )
+}
+
+fn some_with_mass(with: &[String], without: &[String]) -> String {
+    format!(
+        "{} {} a mass of the joint's own and {} none: stiffnesses of joints with and without a mass are not of the same thing",
+        with.join(", "),
+        if with.len() == 1 { "has" } else { "have" },
+        without.join(", ")
+    )
+}
+
+fn no_deviations(joint: &str, numbers: &[String]) -> String {
+    let (has, it) = if numbers.len() == 1 { ("has", "it") } else { ("have", "them") };
+    format!(
+        "{joint}: {} {has} no standard deviation, so nothing tells how sure what follows from {it} is",
+        numbers.join(", ")
+    )
+}
+
+fn unlike_lengths(joints: &[String], lengths: &[f64]) -> String {
+    let each = joints.iter().zip(lengths).map(|(joint, l)| format!("{joint} {:.2} mm", 1e3 * l));
+    let each: Vec<String> = each.collect();
+    format!("K and C act over lengths that differ, and are so not of the same thing: {}", each.join(", "))
 }
 
 fn short(value: f64) -> String {

@@ -25,75 +25,95 @@ impl Says for Remark {
                 "records filled with zeros to {times} times their length: of {times} neighbouring lines one is new, the rest follow from the others"
             ),
             Remark::Window(decay) => window(*decay),
-            Remark::StillRinging { left, window: None } => format!(
-                "responses still ring when their records end ({} of their loudest part), which bends peaks and fills antiresonances by about as \
-                 much, the same way in every hit, so that no coherence shows it: record longer, or take `--response-window auto`",
-                shares(left, "at")
-            ),
-            Remark::StillRinging { left, window: Some(decay) } => format!(
-                "responses still ring when their records end ({} of their loudest part): {}",
-                shares(left, "at"),
-                window(*decay)
-            ),
-            Remark::RingingBefore(hits) => {
-                let hits =
-                    hits.iter().map(|(hit, share)| format!("hit {hit} ({} % of the peak)", percent(*share)));
-                format!(
-                    "the structure still rings from the hit before in {}: that counts as noise; wait longer between hits",
-                    joined(hits)
-                )
-            }
-            Remark::DriftingBaselines(signals) => {
-                let mut names: Vec<String> = signals.iter().map(Signal::to_string).collect();
-                names.sort();
-                format!(
-                    "the baseline of {} drifts, which shows in the lowest lines: `--detrend drift` takes a straight line off",
-                    names.join(", ")
-                )
-            }
-            Remark::UnequalNoise { ratio, is_plain: false } => format!(
-                "the noise of the hits differs by a factor of up to {}: in the averages each hit counts inversely to the power of its noise \
-                 (`--weights plain` takes the textbook's average)",
-                two_digits(*ratio)
-            ),
-            Remark::UnequalNoise { ratio, is_plain: true } => format!(
-                "the noise of the hits differs by a factor of up to {}: the variances here know of it, but coherence and averages state less noise \
-                 than a plain average has (`--weights auto` mends that)",
-                two_digits(*ratio)
-            ),
-            Remark::Disagreement { ratio, frfs } => format!(
-                "the hits disagree by up to {} times the noise that precedes them ({}): they fell on different places, or the structure does not answer \
-                 in proportion, or it still rang",
-                two_digits(*ratio),
-                joined(frfs.iter().map(FrfPair::to_string))
-            ),
+            Remark::StillRinging { left, window } => still_ringing(left, *window),
+            Remark::RingingBefore(hits) => ringing_before(hits),
+            Remark::DriftingBaselines(signals) => drifting_baselines(signals),
+            Remark::UnequalNoise { ratio, is_plain } => unequal_noise(*ratio, *is_plain),
+            Remark::Disagreement { ratio, frfs } => disagreement(*ratio, frfs),
             Remark::SmallH1(struck) => format!(
                 "the force's noise makes H1 read low by up to {} where the force is weakest: a force window lessens it",
                 shares(struck, "to")
             ),
-            Remark::ForceDips { struck, hz } => format!(
-                "the force's spectrum at {struck} dips near {} Hz{}: do not trust the FRFs there, however high their coherence",
-                joined(hz.iter().take(DIPS).map(|hz| format!("{hz:.1}"))),
-                if hz.len() > DIPS { " and elsewhere" } else { "" }
-            ),
+            Remark::ForceDips { struck, hz } => force_dips(struck, hz),
             Remark::DrawsEnergy(pair) => format!(
                 "the driving point {pair} moves as if the hammer drew energy from it: the direction of its force or of its sensor is the wrong \
                  way round, or one of them is another channel"
             ),
-            Remark::NotReciprocal { frfs: [one, other], difference, is_sign } => {
-                let remedy = match is_sign {
-                    true => "with the sign of one they would be: a direction is the wrong way round",
-                    false => {
-                        "a sensor or a struck point is not where it is said to be, or two channels are swapped"
-                    }
-                };
-                format!(
-                    "{one} and {other} should be the same and differ by {:.0} %: {remedy}",
-                    100.0 * difference
-                )
+            Remark::NotReciprocal { frfs, difference, is_sign } => {
+                not_reciprocal(frfs, *difference, *is_sign)
             }
         }
     }
+}
+
+fn still_ringing(left: &[(Channel, f64)], decay: Option<f64>) -> String {
+    let share = shares(left, "at");
+    match decay {
+        None => format!(
+            "responses still ring when their records end ({share} of their loudest part), which bends peaks and fills antiresonances by about as \
+             much, the same way in every hit, so that no coherence shows it: record longer, or take `--response-window auto`"
+        ),
+        Some(decay) => format!(
+            "responses still ring when their records end ({share} of their loudest part): {}",
+            window(decay)
+        ),
+    }
+}
+
+fn ringing_before(hits: &[(u32, f64)]) -> String {
+    let hits = hits.iter().map(|(hit, share)| format!("hit {hit} ({} % of the peak)", percent(*share)));
+    format!(
+        "the structure still rings from the hit before in {}: that counts as noise; wait longer between hits",
+        joined(hits)
+    )
+}
+
+fn drifting_baselines(signals: &[Signal]) -> String {
+    let mut names: Vec<String> = signals.iter().map(Signal::to_string).collect();
+    names.sort();
+    format!(
+        "the baseline of {} drifts, which shows in the lowest lines: `--detrend drift` takes a straight line off",
+        names.join(", ")
+    )
+}
+
+fn unequal_noise(ratio: f64, is_plain: bool) -> String {
+    let ratio = two_digits(ratio);
+    match is_plain {
+        false => format!(
+            "the noise of the hits differs by a factor of up to {ratio}: in the averages each hit counts inversely to the power of its noise \
+             (`--weights plain` takes the textbook's average)"
+        ),
+        true => format!(
+            "the noise of the hits differs by a factor of up to {ratio}: the variances here know of it, but coherence and averages state less noise \
+             than a plain average has (`--weights auto` mends that)"
+        ),
+    }
+}
+
+fn disagreement(ratio: f64, frfs: &[FrfPair]) -> String {
+    format!(
+        "the hits disagree by up to {} times the noise that precedes them ({}): they fell on different places, or the structure does not answer \
+         in proportion, or it still rang",
+        two_digits(ratio),
+        joined(frfs.iter().map(FrfPair::to_string))
+    )
+}
+
+fn force_dips(struck: &Channel, hz: &[f64]) -> String {
+    format!(
+        "the force's spectrum at {struck} dips near {} Hz{}: do not trust the FRFs there, however high their coherence",
+        joined(hz.iter().take(DIPS).map(|hz| format!("{hz:.1}"))),
+        if hz.len() > DIPS { " and elsewhere" } else { "" }
+    )
+}
+
+fn not_reciprocal([one, other]: &[FrfPair; 2], difference: f64, is_sign: bool) -> String {
+    let remedy = match is_sign {
+        true => "with the sign of one they would be: a direction is the wrong way round",
+        false => "a sensor or a struck point is not where it is said to be, or two channels are swapped",
+    };
+    format!("{one} and {other} should be the same and differ by {:.0} %: {remedy}", 100.0 * difference)
 }
 
 /// `1.2 % at 3, 4.5 % at 4`.

@@ -1,10 +1,17 @@
 //! The built program: joints side by side.
 
 use crate::common::Bench;
+use std::path::PathBuf;
+use std::sync::LazyLock;
 
 /// The inferred D0 as lumped model and as finite elements, and with a strip a fifth softer.
 fn bench(name: &str) -> Bench {
-    let bench = Bench::new(&format!("compare-{name}"));
+    static FILES: LazyLock<Vec<(PathBuf, Vec<u8>)>> = LazyLock::new(|| decomposed().into_files());
+    Bench::with(&format!("compare-{name}"), &FILES)
+}
+
+fn decomposed() -> Bench {
+    let bench = Bench::new("compare");
     let d0 = include_str!("../../../../fixtures/paper/D0.json");
     bench.write("d0.json", d0);
     let soft = d0.replacen("2.864708e-10", "2.3e-10", 1);

@@ -1,6 +1,8 @@
 //! The built program on hammer hits: `estimate`, and `decompose` and `diagnose` on time histories.
 
 use std::f64::consts::TAU;
+use std::path::PathBuf;
+use std::sync::LazyLock;
 
 use crate::common::{self, Bench, TWO_BLOCKS};
 use jointscope::uff::{Abscissa, Axis, Data, Dataset58, FunctionType, Node};
@@ -12,22 +14,33 @@ const INTERVAL: f64 = 1.0 / 4096.0;
 
 /// [`TWO_BLOCKS`] with its FRFs in `frf.uff`, and two hits at each of 1 and 2 in `hits.uff`, whose responses are those FRFs times the force.
 fn bench(name: &str) -> Bench {
-    let bench = Bench::synthesized(name, TWO_BLOCKS, "2:2046:2");
-    let frfs = bench.datasets("frf.uff");
+    static FILES: LazyLock<Vec<(PathBuf, Vec<u8>)>> = LazyLock::new(|| struck().into_files());
+    Bench::with(name, &FILES)
+}
+
+fn struck() -> Bench {
+    let bench = Bench::synthesized("hits", TWO_BLOCKS, "2:2046:2");
     let force: Vec<f64> =
         (0..SAMPLES).map(|i| if (60..66).contains(&i) { half_sine(i - 60) } else { 0.0 }).collect();
     let spectrum = transform(&force);
+    let responses: Vec<(Node, Node, Vec<f64>)> = bench
+        .datasets("frf.uff")
+        .into_iter()
+        .map(|frf| {
+            let Data::Complex(values) = &frf.data else { unreachable!() };
+            let response = inverse(values, &spectrum);
+            (frf.reference, frf.response, response)
+        })
+        .collect();
     let mut hits = Vec::new();
     for (hit, struck) in [(1, 1), (2, 1), (3, 2), (4, 2)] {
         let strength = 1.0 + 0.1 * hit as f64;
-        let scaled = |values: &[f64]| values.iter().map(|v| v * strength).collect::<Vec<f64>>();
         // The hammer strikes towards −y.
         let push = force.iter().map(|f| -f * strength).collect();
         hits.push(history(hit, Node::new(struck, -2), Axis::excitation_force(), push));
-        for frf in frfs.iter().filter(|frf| frf.reference.number == struck) {
-            let Data::Complex(values) = &frf.data else { unreachable!() };
-            let response = inverse(values, &spectrum);
-            hits.push(history(hit, frf.response.clone(), Axis::acceleration(), scaled(&response)));
+        for (_, node, response) in responses.iter().filter(|(reference, ..)| reference.number == struck) {
+            let scaled = response.iter().map(|v| v * strength).collect();
+            hits.push(history(hit, node.clone(), Axis::acceleration(), scaled));
         }
     }
     bench.write("hits.uff", jointscope::uff::write(&hits).unwrap());
@@ -111,13 +124,13 @@ fn decompose_and_diagnose_take_hits_and_show_them_first() {
     let bench = bench("hits-analysed");
     // These records are periodic: a window that falls over them would find what is no decay.
     let options = ["--band", "200:900", "--response-window", "none", "-o"];
-    let decompose = |file, to| bench.done(&[&["decompose", "two.json", file], &options[..], &[to]].concat());
-    let said = decompose("hits.uff", "joint");
+    let decompose = |file, to| {
+        let said = bench.done(&[&["decompose", "two.json", file], &options[..], &[to]].concat());
+        (said, common::matrix(&bench.json(&format!("{to}/stiffness.json"))["average"]["stiffness"]))
+    };
+    let (said, from_hits) = decompose("hits.uff", "joint");
     assert!(said.contains("FRFs were estimated from the hits"), "{said}");
-    let [from_hits, from_frfs] = [("hits.uff", "joint"), ("frf.uff", "reference")].map(|(file, to)| {
-        decompose(file, to);
-        common::matrix(&bench.json(&format!("{to}/stiffness.json"))["average"]["stiffness"])
-    });
+    let (_, from_frfs) = decompose("frf.uff", "reference");
     for i in 0..2 {
         let error = (from_hits[i][i] / from_frfs[i][i] - 1.0).abs();
         assert!(error < 1e-4, "k{i}{i}: {} and {}", from_hits[i][i], from_frfs[i][i]);

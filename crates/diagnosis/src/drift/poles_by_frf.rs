@@ -5,9 +5,9 @@ use crate::modal::recorded;
 use crate::settings::ModalSettings;
 use crate::settings::drift::poles::{KNOWN_SHARE, MOST_DAMPING_FACTOR, MOST_MOVED};
 use crate::{Hypothesis, Observation};
+use jointscope_inference::each;
 use jointscope_model_error::{RecordedMode, RecordedModes, Recording};
 use jointscope_spectra::Channel;
-use rayon::prelude::*;
 
 /// The recording's references, in its order.
 pub(super) fn references(observation: &Observation) -> Vec<Channel> {
@@ -49,7 +49,7 @@ pub(super) fn poles_by_frf(
         let modes = recorded(&part, nominal).filter(|m| m.chi2_per_dof < settings.free_fit)?;
         Some(ReferenceModes { part, modes })
     };
-    let struck: Vec<Option<ReferenceModes>> = references.par_iter().map(of).collect();
+    let struck: Vec<Option<ReferenceModes>> = each(references, of);
     // The reference that shows most modes well is the one that the others are compared with.
     let known_poles = |struck: &Option<ReferenceModes>| {
         struck

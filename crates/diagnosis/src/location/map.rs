@@ -12,9 +12,9 @@ use crate::fit::Fit;
 use crate::fitter::Fitter;
 use crate::settings::Settings;
 use crate::{Hypothesis, Observation, Watch};
+use jointscope_inference::{each, each_used_up};
 use jointscope_linalg::Cholesky;
 use num_complex::Complex64;
-use rayon::prelude::*;
 
 /// What each site leaves unexplained of a mismatch, the best first by χ² and what it asks of the tolerances; empty with fewer than two FRFs, which over-determine nothing.
 ///
@@ -43,17 +43,16 @@ pub(crate) fn located(fitter: Fitter, base: &Hypothesis, refitted: &Fit) -> Vec<
     );
     let [few, whole] = [&few, &whole].map(|recorded| Problem { recorded, moves: true, law: None });
     let starts: Vec<Start> = [base, &refitted.hypothesis].iter().filter_map(|h| few.start(h)).collect();
+    let sites = sites(&fixture, observation);
     let approached: Vec<(f64, Descent)> =
-        sites(&fixture, observation).par_iter().filter_map(|sites| few.approached(&starts, sites)).collect();
+        each(&sites, |sites| few.approached(&starts, sites)).into_iter().flatten().collect();
     let (promising, besides) = settings.promising;
     let best = least(approached.iter().map(|(left, _)| *left));
-    let mut reached: Vec<(f64, Iterate)> = approached
-        .into_par_iter()
-        .filter_map(|(left, descent)| match left < promising * best + besides {
-            true => descent.ended(),
-            false => Some((settings.hopeless * left, descent.state)),
-        })
-        .collect();
+    let reached = each_used_up(approached, |(left, descent)| match left < promising * best + besides {
+        true => descent.ended(),
+        false => Some((settings.hopeless * left, descent.state)),
+    });
+    let mut reached: Vec<(f64, Iterate)> = reached.into_iter().flatten().collect();
     reached.sort_by(|a, b| a.0.total_cmp(&b.0));
     let mut seen: Vec<Site> = Vec::new();
     reached.retain(|(_, state)| {
@@ -68,22 +67,21 @@ pub(crate) fn located(fitter: Fitter, base: &Hypothesis, refitted: &Fit) -> Vec<
             if left < settings.rival * best { whole.descended(state, settings.steps.1)?.1 } else { state };
         Some((whole.objective(&state, &whole.recorded.weights), on_few, state))
     };
-    let mut ended: Vec<(f64, Iterate, Iterate)> = reached.into_par_iter().filter_map(ended).collect();
+    let mut ended: Vec<(f64, Iterate, Iterate)> =
+        each_used_up(reached, ended).into_iter().flatten().collect();
     ended.sort_by(|a, b| a.0.total_cmp(&b.0));
     let best = least(ended.iter().map(|(left, ..)| *left));
     let (count, multiple) = settings.stated;
-    let mut all: Vec<Location> = ended
-        .into_par_iter()
-        .enumerate()
-        .filter_map(|(rank, (left, on_few, state))| {
-            let stated = rank < count && left < multiple * best;
-            if stated {
-                stated_location(&few, &whole, on_few, state, base)
-            } else {
-                Some(location(&whole, &state))
-            }
-        })
-        .collect();
+    let ranked = ended.into_iter().enumerate().collect();
+    let all = each_used_up(ranked, |(rank, (left, on_few, state))| {
+        let stated = rank < count && left < multiple * best;
+        if stated {
+            stated_location(&few, &whole, on_few, state, base)
+        } else {
+            Some(location(&whole, &state))
+        }
+    });
+    let mut all: Vec<Location> = all.into_iter().flatten().collect();
     all.sort_by(|a, b| a.cost().total_cmp(&b.cost()));
     all
 }

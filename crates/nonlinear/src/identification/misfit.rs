@@ -7,10 +7,9 @@ use crate::settings::misfit::{ABOVE_NOISE, CUT, DECAY_BLOCK, FADING_SHARE, FORCE
 use crate::spectra::{Windowed, oversampled_for_lines, smooth_length};
 use crate::time::kernel::{Stepper, Steps};
 use crate::time::structure::Structure;
-use jointscope_inference::dot;
+use jointscope_inference::{dot, each};
 use jointscope_linalg::Uniform;
 use num_complex::Complex64;
-use rayon::prelude::*;
 use std::ops::Range;
 
 /// Some of the records as they are compared: how much of each, how finely stepped.
@@ -71,8 +70,9 @@ impl<'a> View<'a> {
         }
         let setup = |record: &Record| setups.iter().position(|other| other.has_setup_of(record)).unwrap_or(0);
         let end = |i: usize| ends.get(i).copied().unwrap_or(usize::MAX);
-        let trace = |(i, record): (usize, &&'a Record)| Trace::new(record, setup(record), focus, end(i));
-        View { traces: records.par_iter().enumerate().map(trace).collect(), setups, focus: *focus }
+        let numbered: Vec<(usize, &'a Record)> = records.iter().copied().enumerate().collect();
+        let traces = each(&numbered, |&(i, record)| Trace::new(record, setup(record), focus, end(i)));
+        View { traces, setups, focus: *focus }
     }
 
     /// The model ready to be stepped, for each set-up.
@@ -101,7 +101,7 @@ impl<'a> View<'a> {
             });
             steppers[trace.setup].run(disturbed.as_ref().unwrap_or(&trace.force), trace.samples())
         };
-        Some(self.traces.par_iter().map(history).collect())
+        Some(each(&self.traces, history))
     }
 
     /// Number of real values compared.
@@ -122,7 +122,7 @@ impl<'a> View<'a> {
     /// The residuals; `None` for a hypothesis without a finite motion.
     pub(crate) fn residuals(&self, hypothesis: &Hypothesis) -> Option<Residuals> {
         let steppers = self.steppers(hypothesis)?;
-        self.traces.par_iter().map(|trace| trace.residuals(&steppers)).collect()
+        each(&self.traces, |trace| trace.residuals(&steppers)).into_iter().collect()
     }
 
     /// √(Σ|simulated − recorded|²/Σ|recorded|²) in the band, over all responses.
@@ -144,7 +144,7 @@ impl<'a> View<'a> {
         let steps: Vec<f64> = (0..count).map(|i| hypothesis.difference(i)).collect();
         let moved: Vec<Vec<Stepper>> =
             (0..count).map(|i| self.steppers(&hypothesis.moved(i, steps[i]))).collect::<Option<_>>()?;
-        let derivatives = |(trace, base): (&Trace, &Vec<f64>)| {
+        let derivatives = |&(trace, base): &(&Trace, &Vec<f64>)| {
             let column = |i: usize| {
                 let mut column = trace.residuals(&moved[i])?;
                 let factor = 1.0 / steps[i];
@@ -153,10 +153,10 @@ impl<'a> View<'a> {
             };
             (0..count).map(column).collect::<Option<Vec<_>>>()
         };
-        let columns: Vec<_> =
-            self.traces.par_iter().zip(residuals).map(derivatives).collect::<Option<_>>()?;
-        let each: Vec<Vec<f64>> = columns.par_iter().map(|columns| products(columns)).collect();
-        let entry = |k: usize| each.iter().map(|one| one[k]).sum();
+        let traces: Vec<(&Trace, &Vec<f64>)> = self.traces.iter().zip(residuals).collect();
+        let columns: Vec<_> = each(&traces, derivatives).into_iter().collect::<Option<_>>()?;
+        let by_trace: Vec<Vec<f64>> = each(&columns, |columns| products(columns));
+        let entry = |k: usize| by_trace.iter().map(|one| one[k]).sum();
         let information: Vec<f64> = (0..count * count).map(entry).collect();
         information.iter().all(|e| e.is_finite()).then_some(Jacobian { columns, information })
     }

@@ -16,8 +16,8 @@ use crate::spectra::{Windowed, oversampled_for_lines};
 use crate::time::kernel::{Stepper, Steps};
 use crate::time::structure::Structure;
 use jointscope_fixture::Fixture;
+use jointscope_inference::each;
 use num_complex::Complex64;
-use rayon::prelude::*;
 use std::ops::Range;
 
 /// A record seen through the linear fixture.
@@ -52,7 +52,7 @@ pub(super) fn seen(
     let linear = model.clone().with_physics(linear).ok()?;
     let highest = BEYOND_BAND * focus.band.1;
     let structures = [Structure::new(model, highest).ok()?, Structure::new(&linear, highest).ok()?];
-    records.par_iter().map(|record| Seen::of(&structures, record, locations, focus)).collect()
+    each(records, |record| Seen::of(&structures, record, locations, focus)).into_iter().collect()
 }
 
 /// Weights of lines, recorded and simulated, by noise and by what a model gets wrong at best; and the weighted difference of the two.

@@ -15,7 +15,7 @@ use crate::settings::search::{
     STEPS_IN_INTERVAL, STEPS_IN_PERIOD, WEAK_KIND,
 };
 use jointscope_fixture::Fixture;
-use rayon::prelude::*;
+use jointscope_inference::each;
 
 /// What a search uses of the records.
 pub(crate) struct Search<'a> {
@@ -138,7 +138,7 @@ impl<'a> Search<'a> {
             let starts = kind.effects.iter().map(|effect| base.with(effect.clone()));
             best(starts.filter_map(|start| Fit::of(&short, &start, START_RENEWALS)))
         };
-        let mut fits: Vec<Fit> = kinds.par_iter().filter_map(of_kind).collect();
+        let mut fits: Vec<Fit> = each(&kinds, of_kind).into_iter().flatten().collect();
         sort(&mut fits);
         narrow(&mut fits, &short);
         for window in [&short, &self.window(MEDIUM, &[])] {
@@ -179,8 +179,8 @@ fn narrow(fits: &mut Vec<Fit>, view: &View) {
 }
 
 fn refitted(fits: &[Fit], view: &View) -> Vec<Fit> {
-    let mut again: Vec<Fit> =
-        fits.par_iter().filter_map(|fit| Fit::of(view, &fit.hypothesis, RENEWALS)).collect();
+    let again = each(fits, |fit| Fit::of(view, &fit.hypothesis, RENEWALS));
+    let mut again: Vec<Fit> = again.into_iter().flatten().collect();
     sort(&mut again);
     again
 }

@@ -7,9 +7,9 @@ use super::records::Record;
 use crate::RestoringLaw;
 use crate::settings::suggestions::{ALIKE, LARGEST, SEEN_WEIGHT, SHAPES, SIZES, SMALLEST};
 use jointscope_fixture::{Effect, Fixture};
+use jointscope_inference::each;
 use jointscope_linalg::solve_positive_definite;
 use num_complex::Complex64;
-use rayon::prelude::*;
 
 /// Effects at one location to begin with.
 #[derive(Debug, Clone)]
@@ -81,8 +81,8 @@ pub(crate) fn suggestions(
     focus: &Focus,
 ) -> Option<Vec<Suggestion>> {
     let seen = seen(model, records, locations, focus)?;
-    let of = |(index, location)| suggested(&seen, index, location);
-    Some(locations.par_iter().enumerate().map(of).collect::<Vec<_>>().concat())
+    let numbered: Vec<(usize, &JointLocation)> = locations.iter().enumerate().collect();
+    Some(each(&numbered, |&(index, location)| suggested(&seen, index, location)).concat())
 }
 
 /// Suggestions for each kind of law that helps at a location.

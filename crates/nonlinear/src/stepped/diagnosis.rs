@@ -14,8 +14,8 @@ use crate::settings::naming::LEAVES_NOTHING;
 use crate::{NonlinearOptions, SteppedError};
 use jointscope_findings::{HeldOut, Verdict};
 use jointscope_fixture::{Fixture, QuantityKey, QuantityOwner};
+use jointscope_inference::each_used_up;
 use jointscope_spectra::Dof;
-use rayon::prelude::*;
 use serde::{Serialize, Serializer};
 use std::f64::consts::TAU;
 
@@ -115,7 +115,7 @@ impl SteppedDiagnosis {
         // What does not change is not searched for a law.
         let changes = change.0 < CHANGED;
         let judged: Vec<Judged> =
-            linear.into_par_iter().map(|(problem, linear)| Judged::of(problem, linear, changes)).collect();
+            each_used_up(linear, |(problem, linear)| Judged::of(problem, linear, changes));
         let best = judged.iter().min_by(|a, b| a.best().nrmse.total_cmp(&b.best().nrmse));
         let best = best.ok_or(SteppedError::NoJoint)?;
         let named = if changes { named_law(&judged) } else { None };

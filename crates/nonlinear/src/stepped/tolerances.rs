@@ -3,7 +3,7 @@
 use super::location::location_of;
 use super::problem::{Change, Problem};
 use jointscope_fixture::{Fixture, NamedQuantity};
-use rayon::prelude::*;
+use jointscope_inference::each;
 
 /// Variances of the change's parameters from the fixture's quantities, each moved by its standard deviation and the change fitted again. Base
 /// stiffness, base loss and gain are free in every fit, so that what acts as these costs nothing. `exact` takes bare numbers as exact. A quantity whose
@@ -31,6 +31,7 @@ pub(crate) fn tolerance_variances(
         let std = quantity.1.std?;
         moved(quantity, std).or_else(|| moved(quantity, -std))
     };
-    let shifts: Vec<Vec<f64>> = fixture.uncertain_quantities(exact).par_iter().filter_map(shift).collect();
+    let quantities: Vec<(usize, NamedQuantity)> = fixture.uncertain_quantities(exact);
+    let shifts: Vec<Vec<f64>> = each(&quantities, shift).into_iter().flatten().collect();
     (0..stated.len()).map(|p| shifts.iter().map(|shift| shift[p] * shift[p]).sum()).collect()
 }

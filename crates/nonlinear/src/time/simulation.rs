@@ -7,8 +7,8 @@ use crate::settings::simulation::{ENOUGH, FEWEST_STEPS, FINE_SAMPLES, HALVINGS, 
 use crate::spectra::{oversampled, oversampled_for_lines};
 use jointscope_fixture::{EffectKind, Fixture, Place};
 use jointscope_hits::{Hit, Motion, Response};
+use jointscope_inference::each;
 use jointscope_spectra::Channel;
-use rayon::prelude::*;
 
 /// Hits with simulated responses, and how well their steps resolve them.
 #[derive(Debug, Clone, PartialEq)]
@@ -33,7 +33,7 @@ pub fn simulate(fixture: &Fixture, hits: &[Hit], outputs: &[Channel]) -> Result<
     }
     let readings: Vec<Reading> = outputs.iter().map(|c| (c.clone(), Motion::Acceleration)).collect();
     let simulated: Vec<(Hit, f64)> =
-        hits.par_iter().map(|hit| simulate_one(fixture, hit, &readings)).collect::<Result<_, _>>()?;
+        each(hits, |hit| simulate_one(fixture, hit, &readings)).into_iter().collect::<Result<_, _>>()?;
     let error = simulated.iter().fold(0.0, |worst: f64, (_, error)| error.max(worst));
     Ok(Simulation { hits: simulated.into_iter().map(|(hit, _)| hit).collect(), error })
 }

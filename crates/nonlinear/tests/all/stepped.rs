@@ -9,6 +9,7 @@ use jointscope_wording::Says;
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 use std::path::Path;
+use std::sync::LazyLock;
 
 const MASSES: (f64, f64) = (2.0, 3.0);
 const STIFFNESS: f64 = 5e6;
@@ -39,16 +40,26 @@ fn gap(d: f64, _: &mut f64) -> f64 {
     5e5 * (d - 1e-5).max(0.0)
 }
 
+/// Steps of a period.
+const STEPS: u32 = 2000;
+
+/// cos and the weight of the first harmonic at every step of two periods.
+static PHASES: LazyLock<Vec<(f64, Complex64)>> = LazyLock::new(|| {
+    let of = |i: u32| {
+        let phase = TAU * f64::from(i) / f64::from(STEPS);
+        (phase.cos(), Complex64::from_polar(2.0 / f64::from(STEPS), -phase))
+    };
+    (0..2 * STEPS).map(of).collect()
+});
+
 /// First harmonic and mean of a law's force over two periods of `mean + amplitude·cos`.
 fn harmonics(law: Law, mean: f64, amplitude: f64) -> (Complex64, f64) {
-    let steps = 2000;
     let (mut memory, mut first, mut constant) = (0.0, Complex64::ZERO, 0.0);
-    for i in 0..2 * steps {
-        let phase = TAU * f64::from(i) / f64::from(steps);
-        let force = law(mean + amplitude * phase.cos(), &mut memory);
-        if i >= steps {
-            first += force * Complex64::from_polar(2.0 / f64::from(steps), -phase);
-            constant += force / f64::from(steps);
+    for (i, (cos, weight)) in PHASES.iter().enumerate() {
+        let force = law(mean + amplitude * cos, &mut memory);
+        if i >= STEPS as usize {
+            first += force * weight;
+            constant += force / f64::from(STEPS);
         }
     }
     (first / amplitude, constant)
@@ -68,59 +79,75 @@ fn equivalent(law: Law, amplitude: f64) -> Complex64 {
     harmonics(law, 0.5 * (low + high), amplitude).0
 }
 
-/// Driving-point FRFs of mass B at levels of held response, with 0.5 % noise of the largest value.
-fn levels(law: Law, held: &[f64], seed: u64) -> Vec<SteppedLevel> {
-    let mut uniform = Noise::from_state(seed);
-    // Twelve uniform numbers less six: nearly normal.
-    let mut noise = move || (0..12).fold(-6.0, |sum, _| sum + uniform.uniform());
-    let (m1, m2) = MASSES;
-    let natural = (STIFFNESS * (m1 + m2) / (m1 * m2)).sqrt() / TAU;
-    let hz: Vec<f64> = (0..81).map(|i| natural + 12.0 * (f64::from(i) / 40.0 - 1.0)).collect();
-    let level = |amplitude: &f64| {
-        let mut memory: f64 = 1e-6;
-        let clean: Vec<Complex64> = hz
-            .iter()
-            .map(|hz| {
-                let omega = TAU * hz;
-                let response = amplitude / (omega * omega);
-                let mut stiffness = Complex64::ZERO;
-                let mut motion = Complex64::ZERO;
-                for _ in 0..4 {
-                    stiffness = STIFFNESS + Complex64::new(0.0, omega * 4.0) + equivalent(law, memory);
-                    motion = -omega * omega * m1 * response / (stiffness - omega * omega * m1);
-                    memory = motion.norm();
-                }
-                -omega * omega * response / (stiffness * motion - omega * omega * m2 * response)
-            })
-            .collect();
-        let most = clean.iter().fold(0.0, |most: f64, v| v.norm().max(most));
-        let values = clean.iter().map(|v| v + 0.005 * most * Complex64::new(noise(), noise())).collect();
-        let lines = SpectralLines::new(hz.clone()).unwrap();
-        let frfs = FrfSet::new(lines, FrfForm::Accelerance, vec![FrfPair::transverse("2", "2")], values);
-        SteppedLevel { held: Held::Response(*amplitude), frfs: frfs.unwrap() }
-    };
-    held.iter().map(level).collect()
+/// Driving-point FRFs of mass B at levels of held response.
+struct Clean {
+    held: Vec<f64>,
+    hz: Vec<f64>,
+    levels: Vec<Vec<Complex64>>,
 }
 
-fn diagnosed(law: Law, held: &[f64], seed: u64) -> SteppedDiagnosis {
-    let fixture = Fixture::from_json(FIXTURE).unwrap();
-    SteppedDiagnosis::of(&fixture, &levels(law, held, seed), &NonlinearOptions::default()).unwrap()
+impl Clean {
+    fn of(law: Law, held: &[f64]) -> Self {
+        let (m1, m2) = MASSES;
+        let natural = (STIFFNESS * (m1 + m2) / (m1 * m2)).sqrt() / TAU;
+        let hz: Vec<f64> = (0..81).map(|i| natural + 12.0 * (f64::from(i) / 40.0 - 1.0)).collect();
+        let level = |amplitude: &f64| {
+            let mut memory: f64 = 1e-6;
+            hz.iter()
+                .map(|hz| {
+                    let omega = TAU * hz;
+                    let response = amplitude / (omega * omega);
+                    let mut stiffness = Complex64::ZERO;
+                    let mut motion = Complex64::ZERO;
+                    for _ in 0..4 {
+                        stiffness = STIFFNESS + Complex64::new(0.0, omega * 4.0) + equivalent(law, memory);
+                        motion = -omega * omega * m1 * response / (stiffness - omega * omega * m1);
+                        memory = motion.norm();
+                    }
+                    -omega * omega * response / (stiffness * motion - omega * omega * m2 * response)
+                })
+                .collect()
+        };
+        Clean { held: held.to_vec(), levels: held.iter().map(level).collect(), hz }
+    }
+
+    /// With 0.5 % noise of the largest value.
+    fn noisy(&self, seed: u64) -> Vec<SteppedLevel> {
+        let mut uniform = Noise::from_state(seed);
+        // Twelve uniform numbers less six: nearly normal.
+        let mut noise = move || (0..12).fold(-6.0, |sum, _| sum + uniform.uniform());
+        let level = |(amplitude, clean): (&f64, &Vec<Complex64>)| {
+            let most = clean.iter().fold(0.0, |most: f64, v| v.norm().max(most));
+            let values = clean.iter().map(|v| v + 0.005 * most * Complex64::new(noise(), noise())).collect();
+            let lines = SpectralLines::new(self.hz.clone()).unwrap();
+            let frfs = FrfSet::new(lines, FrfForm::Accelerance, vec![FrfPair::transverse("2", "2")], values);
+            SteppedLevel { held: Held::Response(*amplitude), frfs: frfs.unwrap() }
+        };
+        self.held.iter().zip(&self.levels).map(level).collect()
+    }
+
+    fn diagnosed(&self, seed: u64) -> SteppedDiagnosis {
+        let fixture = Fixture::from_json(FIXTURE).unwrap();
+        SteppedDiagnosis::of(&fixture, &self.noisy(seed), &NonlinearOptions::default()).unwrap()
+    }
 }
 
 const HELD: [f64; 5] = [10.0, 25.0, 50.0, 75.0, 100.0];
 
 #[test]
 fn levels_of_a_linear_joint_are_consistent() {
+    let clean = Clean::of(linear, &HELD);
     for seed in 1..=4 {
-        let found = diagnosed(linear, &HELD, seed);
+        let found = clean.diagnosed(seed);
         assert_eq!(found.verdict, Verdict::Consistent, "seed {seed}: {} {:?}", found.says(), found.change);
         assert!(found.findings.is_empty());
     }
 }
 
 fn holds(law: Law, kind: EffectKind, truth: &[f64]) {
+    let clean = Clean::of(law, &HELD);
     for seed in 1..=3 {
-        let found = diagnosed(law, &HELD, seed);
+        let found = clean.diagnosed(seed);
         assert_eq!(found.verdict, Verdict::Explained, "seed {seed}: {}", found.says());
         let finding = &found.findings[0];
         assert_eq!(finding.effect.kind, kind, "{}", finding.says());
@@ -149,7 +176,7 @@ fn a_gap_is_found_with_its_clearance() {
 
 #[test]
 fn damping_ratio_and_frequency_are_those_of_the_two_masses() {
-    let found = diagnosed(linear, &HELD[..2], 4);
+    let found = Clean::of(linear, &HELD[..2]).diagnosed(4);
     let reduced = MASSES.0 * MASSES.1 / (MASSES.0 + MASSES.1);
     let omega = (STIFFNESS / reduced).sqrt();
     for level in &found.levels {

@@ -31,6 +31,33 @@ impl Bench {
         Bench(path)
     }
 
+    /// With these files, which another one had.
+    pub(crate) fn with(name: &str, files: &[(PathBuf, Vec<u8>)]) -> Self {
+        let bench = Bench::new(name);
+        for (path, contents) in files {
+            let path = bench.0.join(path);
+            fs::create_dir_all(path.parent().unwrap()).unwrap();
+            fs::write(path, contents).unwrap();
+        }
+        bench
+    }
+
+    /// All files, by their paths within it: what several tests set out from is made once.
+    pub(crate) fn into_files(self) -> Vec<(PathBuf, Vec<u8>)> {
+        let (mut folders, mut files) = (vec![self.0.clone()], Vec::new());
+        while let Some(folder) = folders.pop() {
+            for entry in fs::read_dir(folder).unwrap() {
+                let path = entry.unwrap().path();
+                if path.is_dir() {
+                    folders.push(path);
+                } else {
+                    files.push((path.strip_prefix(&self.0).unwrap().to_owned(), fs::read(&path).unwrap()));
+                }
+            }
+        }
+        files
+    }
+
     /// With the shipped example's fixture and recording.
     pub(crate) fn shipped(name: &str) -> Self {
         let bench = Bench::new(name);
