@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
 """Draws solid structures, has CalculiX find their modes, hides things in them, and asks the program what was hidden.
 
-    python3 docs/development/checks/solids_with_calculix.py PROGRAM [--cases 25] [--seed 1] [--only family/hidden|N …] [--keep DIR]
+    python3 docs/development/checks/solids_with_calculix.py PROGRAM [--more | --rarer | --frames] [--noise 1] [--cases 25] [--seed 1] [--only family/hidden|N …] [--keep DIR]
 
 Nothing of the program's own mechanics is used: 20-node bricks, solved by `ccx`, FRFs by the superposition of its modes, one damping ratio a mode, 0.25 % noise with the coherence of
 eight hits. The fixture is an honest analyst's: masses and lengths within their scatter, strips as Timoshenko beams with their mass, what a face yields under a strip within 8 % of
-what the solid without anything hidden shows. Families: `pair` (two blocks, one strip), `wide` (the strip as wide as the blocks), `chain` (three blocks, two strips), `clamped` (a pair on a wall), `beam` (one bar).
+what the solid without anything hidden shows. Families: `pair` (two blocks, one strip), `wide` (the strip as wide as the blocks), `chain` (three blocks, two strips), `clamped` (a pair on a wall), `beam` (one bar),
+`frame` (storeys on columns).
 Right: every hidden thing has a finding of its kind at its place. Untrue: a finding that is neither that nor true of any such solid (shear, what faces yield). A case without an
 answer counts as missed, an unnamed null may still be called unexplained: the verdict stands in its line.
 """
@@ -45,26 +46,38 @@ def grid(stops, longest):
 
 
 class Solid:
-    """Boxes of materials, symmetric about y = 0, of which the half y > 0 is meshed. `lines`: places along x where a node must be."""
+    """Boxes of materials, symmetric about y = 0 and z = 0, of which the half y > 0 is meshed; of a box that is `hollow` (y, z) the four corners beyond these. `lines`: places along x
+    where a node must be."""
 
     def __init__(self, boxes, lines, walls=()):
         self.boxes, self.walls = boxes, walls
-        tops = sorted({box["height"] / 2 for box in boxes})
+        rims = lambda axis: [rim for box in boxes if "hollow" in box for rim in [box["hollow"][axis]]]
+        tops = sorted({box["height"] / 2 for box in boxes} | set(rims(1)) | {(box["hollow"][1] + box["height"] / 2) / 2 for box in boxes if "hollow" in box})
         xs = grid([x for box in boxes for x in box["x"]] + list(lines), 8e-3)
-        ys = grid([0.0] + [box["width"] / 2 for box in boxes], 11e-3)
+        ys = grid([0.0] + [box["width"] / 2 for box in boxes] + rims(0), 11e-3)
         zs = grid([s * top for top in tops for s in (-1, 1)] + [0.0], 9e-3)
         self.nodes, self.elements = {}, {}
         for i, (x0, x1) in enumerate(zip(xs, xs[1:])):
             for j, (y0, y1) in enumerate(zip(ys, ys[1:])):
                 for k, (z0, z1) in enumerate(zip(zs, zs[1:])):
                     centre = ((x0 + x1) / 2, (y0 + y1) / 2, (z0 + z1) / 2)
-                    within = lambda b: b["x"][0] < centre[0] < b["x"][1] and centre[1] < b["width"] / 2
-                    box = next((b for b in boxes if within(b) and abs(centre[2]) < b["height"] / 2), None)
+                    along = lambda b: b["x"][0] < centre[0] < b["x"][1]
+                    across = lambda b: b.get("hollow", (0, 0))[0] < centre[1] < b["width"] / 2
+                    deep = lambda b: b.get("hollow", (0, 0))[1] <= abs(centre[2]) < b["height"] / 2
+                    box = next((b for b in boxes if along(b) and across(b) and deep(b)), None)
                     if box:
                         self.elements.setdefault(box["name"], []).append(self.brick(i, j, k))
         half = lambda values: [v for pair in zip(values, [(a + b) / 2 for a, b in zip(values, values[1:])]) for v in pair] + [values[-1]]
         self.x, self.y, self.z = half(xs), half(ys), half(zs)
-        self.where = {number: (self.x[a], self.y[b], self.z[c]) for (a, b, c), number in self.nodes.items()}
+        self.where = {number: self.tapered(self.x[a], self.y[b], self.z[c]) for (a, b, c), number in self.nodes.items()}
+
+    def tapered(self, x, y, z):
+        """A point of the grid where it comes to lie in a box that is lower at its start than at its end."""
+        for box in self.boxes:
+            (start, end), taper = box["x"], box.get("taper", 0.0)
+            if taper and start - 1e-9 <= x <= end + 1e-9 and abs(z) <= box["height"] / 2 + 1e-9:
+                return x, y, z * (1 + taper * (2 * (x - start) / (end - start) - 1))
+        return x, y, z
 
     def node(self, a, b, c):
         return self.nodes.setdefault((a, b, c), len(self.nodes) + 1)
@@ -185,10 +198,10 @@ def footing_that_gives(of, wanted, low=1e2, high=1e8):
 class Case:
     """A structure of a family, its fixture and what is hidden in it."""
 
-    def __init__(self, random, family, hidden):
-        self.random, self.family, self.hidden = random, family, hidden
+    def __init__(self, random, family, hidden, noise=1.0):
+        self.random, self.family, self.hidden, self.scatter = random, family, hidden, SCATTER * noise
         self.right, self.size = [], {}
-        getattr(self, "beam_" if family == "beam" else "blocks_")()
+        getattr(self, {"beam": "beam_", "frame": "frame_"}.get(family, "blocks_"))()
 
     def about(self, value, std):
         return {"value": value + float(self.random.normal()) * std, "std": std}
@@ -231,6 +244,34 @@ class Case:
         }
         self.elastic = 3
         self.joints, self.clamped, self.footing = {}, False, None
+
+    def frame_(self):
+        """Storeys on four columns each, x upwards, z the motion; stated as a shear building."""
+        r, material = self.random, STEEL if self.random.random() < 0.3 else ALUMINIUM
+        modulus, ratio, density = material
+        count, side, deep = int(r.integers(3, 5)), r.uniform(0.14, 0.2), r.uniform(0.22, 0.3)
+        thick, span, across, slim = r.uniform(20e-3, 28e-3), r.uniform(120e-3, 170e-3), r.uniform(15e-3, 22e-3), r.uniform(4e-3, 6e-3)
+        plate, columns = density * thick * side * deep, 4 * density * span * across * slim
+        stiffness = 4 * 12 * modulus * across * slim**3 / 12 / span**3
+        self.boxes, self.points, self.joints, self.mass, self.hung = [], {}, {}, {}, []
+        self.fixture, self.storeys, x = {"bodies": {}, "joints": {}, "physics": []}, [], 0.0
+        of_columns = [[self.known_to(0.06, stiffness), 0.0], [0.0, 0.0]]
+        for n in range(1, count + 1):
+            corners = dict(width=side, height=deep, hollow=(side / 2 - across, deep / 2 - slim))
+            storey, joint = f"F{n}", f"C{n}"
+            self.boxes.append(dict(name=joint, x=(x, x + span), material=material, **corners))
+            self.boxes.append(dict(name=storey, x=(x + span, x + span + thick), material=material, width=side, height=deep))
+            self.mass[storey] = plate + columns * (1.0 if n < count else 0.5)
+            self.fixture["bodies"][storey] = {"mass": self.known_to(0.003, self.mass[storey]), "rotates": False}
+            x += span + thick
+            self.points[str(n)] = (storey, x - thick / 2)
+            if n > 1:
+                self.fixture["joints"][joint] = {"from": str(n - 1), "to": str(n), "stiffness": of_columns}
+                self.joints[joint] = (str(n - 1), str(n))
+            self.storeys.append((joint, ("stiffness_change", joint) if n > 1 else ("quantity_error", "supports/ground/stiffness")))
+        self.ground = {"ground": {"point": "1", "stiffness": of_columns[0][0]}}
+        self.unseen = {"91": ("F1", self.points["1"][1]), "92": ("F2", self.points["2"][1])}
+        self.elastic, self.clamped, self.footing = count, True, None
 
     def blocks_(self):
         r, chain = self.random, self.family == "chain"
@@ -284,41 +325,56 @@ class Case:
         self.footing = True
 
     def hide(self):
-        """Puts the hidden thing into the solid; the springs and lumps to be solved with."""
-        r, kind = self.random, self.hidden
-        springs, lumps = ([] if self.clamped else [(x, k, "middle") for x, k, _ in self.hung]), []
+        """Puts the hidden things into the solid; the springs and lumps to be solved with."""
+        self.springs, self.lumps = ([] if self.clamped else [(x, k, "middle") for x, k, _ in self.hung]), []
+        self.extra, self.said = [], []
+        for kind in self.hidden.replace("two", "lump").split("+"):
+            self.hide_one(kind)
+        self.said = "; ".join(self.said)
+        return self.springs, self.lumps
+
+    def hide_one(self, kind):
+        r = self.random
         body = str(r.choice([b for b in self.mass if not (self.clamped and b == "A")]))
         box = next(b for b in self.boxes if b["name"] == body)
         inside = lambda: box["x"][0] + (box["x"][1] - box["x"][0]) * float(r.uniform(0.15, 0.85))
-        self.extra = []
-        if kind in ("lump", "two"):
+        if kind == "lump":
             x, mass = inside(), float(r.uniform(0.03, 0.08)) * self.mass[body]
             z = "middle" if r.random() < 0.5 else "top"
-            lumps.append((x, mass, z))
+            self.lumps.append((x, mass, z))
             self.extra.append(x)
             # Near the centre of gravity nothing tells a lump from a wrong mass.
             self.right.append([("added_mass", body), ("quantity_error", f"bodies/{body}/mass")])
-            self.size = {"added_mass": ("mass", mass)}
-            self.said = f"{1e3 * mass:.1f} g on {body} at {1e3 * x:.0f} mm, {z}"
+            self.size["added_mass"] = ("mass", mass)
+            self.said.append(f"{1e3 * mass:.1f} g on {body} at {1e3 * x:.0f} mm, {z}")
         elif kind == "ground":
             x, stiffness = inside(), float(np.exp(r.uniform(np.log(5e4), np.log(4e5))))
-            springs.append((x, stiffness, "middle"))
+            self.springs.append((x, stiffness, "middle"))
             self.extra.append(x)
             self.right.append([("support", body)])
-            self.size = {"support": ("stiffness", stiffness)}
-            self.said = f"{stiffness / 1e3:.0f} kN/m under {body} at {1e3 * x:.0f} mm"
+            self.size["support"] = ("stiffness", stiffness)
+            self.said.append(f"{stiffness / 1e3:.0f} kN/m under {body} at {1e3 * x:.0f} mm")
         elif kind == "glue":
-            joint = str(r.choice(list(self.joints)))
+            joint = str(r.choice([j for j in self.joints if all(b.get("glued") != j for b in self.boxes)]))
             strip = next(b for b in self.boxes if b["name"] == joint)
             at_end, thick = int(r.integers(2)), float(r.uniform(0.15e-3, 0.4e-3))
             low, high = strip["x"]
             layer = (high - thick, high) if at_end else (low, low + thick)
-            self.boxes.insert(0, {**strip, "name": "G", "x": layer, "material": EPOXY})
+            self.boxes.insert(0, {**strip, "name": f"G{joint}", "glued": joint, "x": layer, "material": EPOXY})
             self.right.append([("interface_compliance", self.joints[joint][at_end])])
-            self.said = f"{1e3 * thick:.2f} mm of epoxy at {self.joints[joint][at_end]}"
+            self.said.append(f"{1e3 * thick:.2f} mm of epoxy at {self.joints[joint][at_end]}")
         elif kind == "flexible":
             self.right.append([("body_flexibility", "B")])
-            self.said = "B is a plate that bends"
+            self.said.append("B is a plate that bends")
+        elif kind == "columns":
+            joint, name = self.storeys[int(r.integers(len(self.storeys)))]
+            factor = float(r.choice([0.75, 0.85, 1.15]))
+            for b in self.boxes:
+                if b["name"] == joint:
+                    e, ratio, density = b["material"]
+                    b["material"] = (e * factor, ratio, density)
+            self.right.append([name])
+            self.said.append(f"modulus of columns {joint} times {factor}")
         elif kind == "modulus":
             joint = str(r.choice(list(self.joints)))
             factor = float(r.choice([0.8, 0.85, 0.9, 1.15]))
@@ -327,11 +383,22 @@ class Case:
                     e, ratio, density = b["material"]
                     b["material"] = (e * factor, ratio, density)
             self.right.append([("stiffness_change", joint)])
-            self.size = {"stiffness_change": ("factor", factor)}
-            self.said = f"modulus of {joint} times {factor}"
+            self.size["stiffness_change"] = ("factor", factor)
+            self.said.append(f"modulus of {joint} times {factor}")
+        elif kind == "taper":  # no effect describes it
+            joint = str(r.choice(list(self.joints)))
+            taper = float(r.choice([-1, 1]) * r.uniform(0.1, 0.2))
+            for b in self.boxes:
+                if b["name"] == joint:
+                    b["taper"] = taper
+                    self.said.append(f"{joint} from {1e3 * b['height'] * (1 - taper):.1f} to {1e3 * b['height'] * (1 + taper):.1f} mm")
+        elif kind == "rubber":  # under the block on its wall
+            thick = float(r.uniform(0.3e-3, 1e-3))
+            self.boxes.insert(0, {**self.boxes[0], "name": "R", "x": (-thick, 0.0), "material": EPOXY})
+            self.right.append([(k, p) for k, p in WALL_YIELDS])
+            self.said.append(f"{1e3 * thick:.2f} mm of epoxy between A and the wall")
         else:
-            self.said = kind
-        return springs, lumps
+            self.said.append(kind)
 
     def recorded(self, folder):
         """Writes fixture and recordings into the folder."""
@@ -352,7 +419,8 @@ class Case:
         if self.hidden == "plain":  # an analyst who takes strips for massless Euler beams on rigid blocks
             self.fixture["physics"] = []
         springs, lumps = self.hide()
-        solid = Solid(self.boxes, places + self.extra, walls)
+        wall = min(b["x"][0] for b in self.boxes)
+        solid = Solid(self.boxes, places + self.extra, [wall] if self.clamped else [])
         names = list(shown) + list(self.unseen)
         natural, shapes = solid.modes(folder, springs, lumps, [everything[n][1] for n in names])
         ratios = np.exp(r.uniform(np.log(0.0015), np.log(0.008), len(natural)))
@@ -360,15 +428,19 @@ class Case:
             ratios[natural < 60.0] = 0.01
         elastic = natural > 60.0
         # lines to about the last elastic mode that is meant to be seen
-        top = 1.25 * natural[elastic][self.elastic - 1] if not self.clamped else 1.25 * natural[1]
+        seen = self.elastic if self.family == "frame" else 2
+        top = 1.25 * natural[elastic][self.elastic - 1] if not self.clamped else 1.25 * natural[seen - 1]
         step = max(0.5, np.round(top / 480 * 2) / 2)
-        hz = np.arange(20.0, top, step)
+        hz = np.arange(20.0 if self.family != "frame" else max(step, 0.2 * natural[0]), top, step)
         inputs = [n for n in shown if shown[n][0] == "A"][:2] if not self.clamped else [n for n in shown if shown[n][0] == "B"]
         if self.family == "beam":
             inputs = list(shown)[:2]
-        outputs = list(shown) if self.family in ("chain", "beam") else [n for n in shown if shown[n][0] != "A"]
-        late = {"delay": 8e-6, "two": 10e-6}.get(self.hidden)
-        if self.hidden in ("delay", "two", "gain"):
+        if self.family == "frame":
+            inputs = [list(shown)[0], list(shown)[-1]]
+        outputs = list(shown) if self.family in ("chain", "beam", "frame") else [n for n in shown if shown[n][0] != "A"]
+        kinds = self.hidden.split("+")
+        late = next((late for kind, late in (("delay", 8e-6), ("two", 10e-6)) if kind in kinds), None)
+        if late or "gain" in kinds:
             channel = str(r.choice(outputs))
             self.right.append([("channel_delay" if late else "channel_gain", f"response {channel}")])
             self.said += f"; response {channel} " + ("late" if late else "8 % high")
@@ -377,12 +449,12 @@ class Case:
         for into in inputs:
             for out in outputs:
                 h = of(out, into)
-                if self.hidden in ("delay", "two") and out == channel:
+                if late and out == channel:
                     h = h * np.exp(-2j * np.pi * hz * late)
-                if self.hidden == "gain" and out == channel:
+                if "gain" in kinds and out == channel:
                     h = h * 1.08
                 normal = lambda: r.normal(size=(AVERAGES, len(hz)))
-                draws = h + (normal() + 1j * normal()) * SCATTER / np.sqrt(2) * np.abs(h)
+                draws = h + (normal() + 1j * normal()) * self.scatter / np.sqrt(2) * np.abs(h)
                 mean = draws.mean(axis=0)
                 coherence = np.abs(mean) ** 2 / (np.abs(draws) ** 2).mean(axis=0)
                 sets += [(mean, out, into, 4), (coherence.astype(complex), out, into, 6)]
@@ -395,8 +467,10 @@ class Case:
         seen = ratios[elastic if not self.clamped else slice(None)][: self.elastic]
         self.fixture["damping"] = {"modal_ratios": [self.about(float(z), 0.25 * float(z)) for z in seen]}
         self.fixture["name"] = f"{self.family}-{self.hidden}"
-        if self.clamped:
-            x = self.boxes[0]["x"][0]
+        if self.family == "frame":
+            self.fixture["supports"] = self.ground
+        elif self.clamped:
+            x = walls[0]
             wall = {"stiffness": {"value": 1e10, "std": 3e9}, "rotational_stiffness": {"value": 1e7, "std": 3e6}}
             self.fixture["supports"] = {"wall": {"body": "A", "x": x, **wall}}
         else:
@@ -468,6 +542,18 @@ MORE = {
     "clamped": ["glue", "gain"],
     "wide": ["plain", "two"],
 }
+# Asked for by --rarer: several things at once, and what no effect describes or only a quantity does.
+RARER = {
+    "pair": ["lump+ground", "glue+lump", "modulus+gain", "taper", "ground+delay"],
+    "chain": ["glue+glue", "lump+modulus", "taper", "lump+lump"],
+    "clamped": ["rubber", "lump+gain"],
+    "wide": ["lump+ground", "taper"],
+    "beam": ["lump+ground", "lump+gain"],
+}
+# Asked for by --frames.
+FRAMES = {"frame": ["null", "lump", "columns", "gain", "ground", "lump+columns", "delay"]}
+# Names of a wall that yields.
+WALL_YIELDS = [("quantity_error", f"supports/wall/{quantity}") for quantity in ("stiffness", "rotational_stiffness")]
 # What is true of every solid that states footings and shear, and of one that states nothing of its strips.
 TRUE = ["shear_deformation", "interface_compliance"]
 TRUE_OF_PLAIN = TRUE + ["joint_mass", "joint_length", "stiffness_change", "footing"]
@@ -478,14 +564,17 @@ def main():
     arguments.add_argument("program")
     arguments.add_argument("--cases", type=int, default=len(sum(FAMILIES.values(), [])))
     arguments.add_argument("--more", action="store_true", help="glue, plates in place of blocks, strips of which nothing is stated")
+    arguments.add_argument("--rarer", action="store_true", help="several things at once, strips that taper, walls that yield")
+    arguments.add_argument("--frames", action="store_true", help="storeys on columns, stated as shear buildings")
+    arguments.add_argument("--noise", type=float, default=1.0, help="times the usual 0.25 %%")
     arguments.add_argument("--seed", type=int, default=1)
     arguments.add_argument("--only", nargs="*")
     arguments.add_argument("--keep", type=pathlib.Path)
     given = arguments.parse_args()
     program = pathlib.Path(shutil.which(given.program) or given.program).resolve()
-    families = MORE if given.more else FAMILIES
+    families = MORE if given.more else RARER if given.rarer else FRAMES if given.frames else FAMILIES
     kinds = [(family, hidden) for family, some in families.items() for hidden in some]
-    told = clean = hidden = nulls = named = held = sized = 0
+    told = clean = hidden = nulls = named = sure = held = sized = 0
     for n in range(given.cases):
         family, what = kinds[n % len(kinds)]
         if given.only and f"{family}/{what}" not in given.only and str(n) not in given.only:
@@ -495,7 +584,7 @@ def main():
             folder = given.keep / f"{n:03d}-{family}-{what}" if given.keep else pathlib.Path(scratch)
             folder.mkdir(parents=True, exist_ok=True)
             if not (folder / "truth.json").exists():
-                Case(random, family, what).recorded(folder)
+                Case(random, family, what, given.noise).recorded(folder)
             truth = json.loads((folder / "truth.json").read_text())
             answer, seconds, why = asked(program, folder)
         if answer is None:
@@ -518,12 +607,13 @@ def main():
             hidden, told, clean = hidden + 1, told + found, clean + (found and not untrue)
         else:
             nulls, named = nulls + 1, named + bool(untrue)
+        sure += any(f["probability"] >= 0.9 for f in untrue)
         line = " ".join(f"{f['kind']}@{f['place']}:{f['probability']:.2f}" for f in findings)
         score = ("right" if found else "MISSED") if truth["right"] else "null"
         score += " + untrue" if untrue else ""
         print(f"{n:3d} {family + '/' + what:15s} {truth['hidden'][:46]:46s}", end=" ")
         print(f"{answer['verdict']:16s} {score:14s} {seconds:5.1f} s  {line}", flush=True)
-    print(f"right {told} of {hidden}, nothing untrue beside {clean}; nulls named {named} of {nulls}; intervals {held} of {sized}")
+    print(f"right {told} of {hidden}, nothing untrue beside {clean}; nulls named {named} of {nulls}; intervals {held} of {sized}; untrue with 0.9 or more {sure}")
 
 
 if __name__ == "__main__":
