@@ -162,9 +162,9 @@ fn is_stated(fixture: &Fixture, kind: EffectKind, place: &Place) -> bool {
     }
 }
 
-/// Whether an effect of another kind says the very same of a quantity: a modulus is a factor of stiffness, a support's spring another support, a point that holds
+/// Whether an effect of another kind says the very same of a quantity: a modulus is a factor of stiffness, a support's stiffer spring another support, a point that holds
 /// nothing an offset.
-fn has_a_name(fixture: &Fixture, quantity: &NamedQuantity) -> bool {
+pub(crate) fn has_a_name(fixture: &Fixture, quantity: &NamedQuantity, departure: f64) -> bool {
     match (quantity.owner, quantity.key) {
         (QuantityOwner::Joint(joint), QuantityKey::JointStiffness(..)) => {
             match &fixture.joints()[joint].law {
@@ -175,7 +175,8 @@ fn has_a_name(fixture: &Fixture, quantity: &NamedQuantity) -> bool {
                 JointLaw::Beam { .. } => false,
             }
         }
-        (_, QuantityKey::SupportStiffness(_)) => true,
+        // A spring beside it makes it stiffer, none softer.
+        (_, QuantityKey::SupportStiffness(_)) => departure > 0.0,
         (_, QuantityKey::YoungsModulus | QuantityKey::SecondMoment | QuantityKey::Parameter { .. }) => true,
         (QuantityOwner::Point(point), _) => fixture.held_points().all(|held| held != point),
         _ => false,
@@ -189,7 +190,9 @@ pub(crate) fn with_wrong_quantities(
     count: usize,
 ) -> Vec<Candidate> {
     let tolerances = refitted.tolerances();
-    let is_unnamed = |index: usize| !has_a_name(refitted.fixture(), &tolerances[index].quantity);
+    let is_unnamed = |index: usize| {
+        !has_a_name(refitted.fixture(), &tolerances[index].quantity, refitted.departure(index))
+    };
     let all = (0..tolerances.len()).filter(|&index| departed(refitted, index) && is_unnamed(index));
     let mut farthest: Vec<usize> = all.collect();
     let distance = |index: usize| refitted.departure(index).abs();

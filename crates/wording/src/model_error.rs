@@ -136,10 +136,11 @@ pub struct ErrorInWords {
 /// A model's error by kind.
 pub fn error_in_words(error: &ModelError) -> [ErrorInWords; 3] {
     let settings = ModalSettings::default();
-    let ModelError { frequency, damping, residue, ci95, stated } = error;
+    let ModelError { frequency, damping, residue, ci95, stated, usual_frequency } = error;
     let (usual, ci95) = (settings.usual, ci95.as_ref());
+    let of_frequency = usual_frequency.unwrap_or(usual.frequency);
     let kinds = [
-        ("natural frequency", frequency, usual.frequency, stated.frequency, ci95.map(|ci| ci.frequency)),
+        ("natural frequency", frequency, of_frequency, stated.frequency, ci95.map(|ci| ci.frequency)),
         ("damping ratio", damping, usual.damping, stated.damping, ci95.map(|ci| ci.damping)),
         ("residues", residue, usual.shape, stated.residue, ci95.map(|ci| ci.residue)),
     ];
@@ -349,6 +350,20 @@ mod tests {
             &diagnosis,
             &["none of the effects known here", "with the closest, added mass on body high (50.00 g)"],
             &["χ²"],
+        );
+    }
+
+    #[test]
+    fn an_error_is_held_against_what_models_of_its_kind_are_wrong_by() {
+        let of_storeys = |frequency| ModelError { usual_frequency: Some(0.01), ..error(frequency, 0.0, 0.0) };
+        let [told, ..] = error_in_words(&of_storeys(0.015));
+        assert!(!told.large && told.usual == "1 %", "{told:?}");
+        let [told, ..] = error_in_words(&error(0.015, 0.0, 0.0));
+        assert!(told.large && told.usual == "0.3 %", "{told:?}");
+        says(
+            &judged(Verdict::Unexplained, of_storeys(0.03), of_storeys(0.03)),
+            &["larger than usual in natural frequency (usually 1 %)"],
+            &[],
         );
     }
 

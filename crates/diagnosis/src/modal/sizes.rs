@@ -25,6 +25,9 @@ pub struct ModelError {
     /// Which of them the fixture states.
     #[serde(skip)]
     pub stated: StatedError,
+    /// What such a model's natural frequencies are usually wrong by, where that is more than those of most.
+    #[serde(skip)]
+    pub usual_frequency: Option<f64>,
 }
 
 /// Intervals that hold the sizes of a model's error with a probability of 95 %.
@@ -50,6 +53,11 @@ fn all_bend(fixture: &Fixture) -> bool {
     fixture.bodies().iter().all(|body| body.kind.is_beam())
 }
 
+/// Whether all bodies are storeys of a shear building.
+fn none_turns(fixture: &Fixture) -> bool {
+    fixture.bodies().iter().all(|body| !body.kind.rotates())
+}
+
 /// The sizes that are usual but for those that the fixture states.
 pub(super) fn known(settings: &ModalSettings, fixture: &Fixture) -> SizePrior {
     let StatedError { frequency, damping, residue } = fixture.model_error();
@@ -58,7 +66,11 @@ pub(super) fn known(settings: &ModalSettings, fixture: &Fixture) -> SizePrior {
     let by_record = fixture.channels().iter().any(|effect| matches!(effect.place, Place::Record(_)));
     let gain = if by_record { ErrorSizes::LEAST * usual.gain } else { usual.gain };
     let scales = ErrorSizes {
-        frequency: frequency.unwrap_or(usual.frequency),
+        frequency: frequency.unwrap_or(if none_turns(fixture) {
+            settings.frequency_of_storeys
+        } else {
+            usual.frequency
+        }),
         damping: damping.unwrap_or(usual.damping),
         shape: residue.unwrap_or(usual.shape),
         upper_residual: if all_bend(fixture) { settings.above_of_beams } else { usual.upper_residual },
@@ -193,6 +205,7 @@ impl Problem<'_> {
                 damping: stated(DAMPING),
                 residue: stated(SHAPE),
             },
+            usual_frequency: none_turns(fit.hypothesis.fixture()).then_some(sizes[FREQUENCY]),
         }
     }
 }

@@ -2,13 +2,14 @@
 
 use crate::Hypothesis;
 use crate::candidate::Candidate;
+use crate::catalogue::has_a_name;
 use crate::modal::evidence::linear;
 use crate::modal::fit::ModalFit;
 use crate::modal::known::Known;
 use crate::modal::prior::Prior;
 use crate::modal::searcher::{Named, STARTS, Searcher};
 use crate::modal::standing::Standing;
-use jointscope_fixture::{Effect, EffectKind, Starts};
+use jointscope_fixture::{Effect, EffectKind, NamedQuantity, Place, QuantityKey, QuantityOwner, Starts};
 use jointscope_model_error::Linear;
 use std::f64::consts::TAU;
 
@@ -51,6 +52,44 @@ fn resonating_at(candidate: &Candidate, hz: &[f64]) -> Vec<Effect> {
     others.flat_map(|start| hz.iter().map(move |hz| at(start, *hz))).collect()
 }
 
+/// The same model, stiff as it is by a change of stiffness and not by departures of what it consists of; `None` where these do not depart. From farther off no linear model tells how well the
+/// change makes up for them.
+pub(super) fn relieved(base: &Hypothesis, candidate: &Candidate) -> Option<Hypothesis> {
+    let fixture = base.fixture();
+    let owner = match &candidate.place {
+        _ if candidate.kind != EffectKind::StiffnessChange => return None,
+        Place::Joint(name) => {
+            QuantityOwner::Joint(fixture.joints().iter().position(|joint| joint.name == *name)?)
+        }
+        Place::Body(name) => {
+            QuantityOwner::Body(fixture.bodies().iter().position(|body| body.name == *name)?)
+        }
+        _ => return None,
+    };
+    let tolerances = base.tolerances().iter().enumerate();
+    let departed: Vec<usize> = tolerances
+        .filter(|(index, tolerance)| {
+            let NamedQuantity { owner: own, key, .. } = &tolerance.quantity;
+            let is_factor = matches!(key, QuantityKey::YoungsModulus | QuantityKey::SecondMoment)
+                || matches!(key, QuantityKey::JointStiffness(..))
+                    && has_a_name(fixture, &tolerance.quantity, base.departure(*index));
+            *own == owner && is_factor && base.departure(*index) != 0.0
+        })
+        .map(|(index, _)| index)
+        .collect();
+    if departed.is_empty() {
+        return None;
+    }
+    let ratio = |&index: &usize| {
+        let tolerance = &base.tolerances()[index];
+        tolerance.value(base.departure(index)) / tolerance.value(0.0)
+    };
+    let factor = departed.iter().map(ratio).product();
+    let mut relieved = base.clone();
+    departed.iter().for_each(|&index| relieved.coordinates[index] = 0.0);
+    Some(relieved.with(Effect::new(candidate.kind, candidate.place.clone(), candidate.dof, &[factor])))
+}
+
 fn by_density(all: &mut [Start]) {
     all.sort_by(|a, b| b.density.total_cmp(&a.density));
 }
@@ -80,10 +119,15 @@ impl Searcher<'_> {
             })
             .collect();
         let tried = self.watch.count(starts.len());
-        let scored = self.problem.work.each(starts, STARTS, |(c, effect, b)| {
+        let mut scored = self.problem.work.each(starts, STARTS, |(c, effect, b)| {
             tried.trying(&self.candidates[c]);
             self.scored(c, bases[b].with(effect), &base.fit)
         });
+        let relieved = (0..self.candidates.len()).filter(|&c| among(c)).filter_map(|c| {
+            let hypothesis = relieved(&base.fit.hypothesis, &self.candidates[c])?;
+            self.scored(c, hypothesis, &base.fit)
+        });
+        scored.extend(relieved);
         self.rescored(scored)
     }
 

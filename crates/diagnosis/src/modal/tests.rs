@@ -124,6 +124,21 @@ fn what_is_left_above_the_band_holds_nothing_against_a_name_of_rigid_blocks() {
 }
 
 #[test]
+fn frequencies_of_storeys_that_do_not_turn_are_known_less_well_unless_the_fixture_says_how_well() {
+    let storey = |turns: &str, stated: &str| {
+        let text = format!(
+            r#"{{ "bodies": {{ "F1": {{ "mass": 1.5{turns} }} }}, "points": {{ "1": {{ "body": "F1", "x": 0.1 }} }}, "joints": {{}},
+                  "supports": {{ "ground": {{ "point": "1", "stiffness": 1.4e6 }} }}{stated} }}"#
+        );
+        known(&Settings::default().modal, &Fixture::from_json(&text).unwrap()).scales.frequency
+    };
+    let (still, turning) = (r#", "rotates": false"#, r#", "inertia": 1e-3, "x_cg": 0.1"#);
+    assert_eq!(storey(turning, ""), 0.003);
+    assert_eq!(storey(still, ""), 0.01);
+    assert_eq!(storey(still, r#", "model_error": { "frequency": 0.002 }"#), 0.002);
+}
+
+#[test]
 fn errors_are_held_to_a_multiple_of_what_is_usual_kind_by_kind() {
     let nominal = Hypothesis::nominal(&Fixture::from_json(BLOCKS).unwrap(), false);
     let observation = recorded(&nominal);

@@ -1,11 +1,13 @@
 //! What a search among modes comes to.
 
 use super::{BLOCKS, with_errors_of_shapes};
-use crate::catalogue::catalogue;
+use crate::candidate::Candidate;
+use crate::catalogue::{catalogue, with_wrong_quantities};
 use crate::fitter::Fitter;
 use crate::modal::features::Features;
 use crate::modal::judgement::ModalJudgement;
 use crate::modal::prior::{Prior, priors};
+use crate::modal::starts::relieved;
 use crate::search::Search;
 use crate::settings::Settings;
 use crate::{Hypothesis, Observation, Watch};
@@ -164,4 +166,55 @@ fn a_spring_to_ground_is_tried_where_it_makes_the_mode_that_is_missing() {
     let names: Vec<EffectKind> =
         judged.search.best.fit.hypothesis.effects().iter().map(|effect| effect.kind).collect();
     assert!(names.contains(&EffectKind::Support), "{names:?}");
+}
+
+/// Two storeys on columns, known to 6 %.
+const TWO_STOREYS: &str = r#"{ "bodies": { "F1": { "mass": 1.5, "rotates": false }, "F2": { "mass": 1.5, "rotates": false } },
+             "points": { "1": { "body": "F1", "x": 0.1 }, "2": { "body": "F2", "x": 0.2 } },
+             "joints": { "C2": { "from": "1", "to": "2", "stiffness": [[{ "value": 1.4e6, "std": 8e4 }, 0], [0, 0]] } },
+             "supports": { "ground": { "point": "1", "stiffness": { "value": 1.4e6, "std": 8e4 } } } }"#;
+
+#[test]
+fn a_support_may_be_softer_than_stated_and_is_stiffer_by_another_one() {
+    let mut departed = Hypothesis::nominal(&Fixture::from_json(TWO_STOREYS).unwrap(), false);
+    let mut tolerances = departed.tolerances().iter();
+    let index =
+        tolerances.position(|tolerance| tolerance.quantity.path == "supports/ground/stiffness").unwrap();
+    let wrong = |departed: &Hypothesis| with_wrong_quantities(&[], departed, 3).len();
+    departed.coordinates[index] = 8.0;
+    assert_eq!(wrong(&departed), 0);
+    departed.coordinates[index] = -8.0;
+    assert_eq!(wrong(&departed), 1);
+}
+
+#[test]
+fn a_joint_whose_stiffness_departs_is_tried_as_one_that_is_softer_where_it_stands() {
+    let fixture = Fixture::from_json(TWO_STOREYS).unwrap();
+    let mut departed = Hypothesis::nominal(&fixture, false);
+    let stiffness = |of: &Hypothesis| {
+        let tolerances = of.tolerances().iter();
+        tolerances.clone().position(|tolerance| tolerance.quantity.path.starts_with("joints/C2")).unwrap()
+    };
+    let index = stiffness(&departed);
+    let place = Place::Joint("C2".into());
+    let candidate = Candidate {
+        kind: EffectKind::StiffnessChange,
+        place: place.clone(),
+        dof: None,
+        starts: vec![vec![0.5]],
+        directions: Vec::new(),
+    };
+    assert!(relieved(&departed, &candidate).is_none(), "nothing departs");
+    departed.coordinates[index] = -5.0;
+    let relieved = relieved(&departed, &candidate).unwrap();
+    assert_eq!(relieved.departure(stiffness(&relieved)), 0.0);
+    let recorded = |of: &Hypothesis| {
+        let lines = SpectralLines::even(50.0, 50.0, 4).unwrap();
+        let pairs = [FrfPair::transverse("2", "1")];
+        synthesize(&of.to_fixture().unwrap(), &pairs, &lines, Instrument::AsRecorded).unwrap()
+    };
+    let (ours, theirs) = (recorded(&relieved), recorded(&departed));
+    for (ours, theirs) in ours.values(0).iter().zip(theirs.values(0)) {
+        assert!((ours / theirs - 1.0).norm() < 1e-9, "the same model, {ours} and {theirs}");
+    }
 }
