@@ -395,7 +395,9 @@ class Case:
         elif kind == "rubber":  # under the block on its wall
             thick = float(r.uniform(0.3e-3, 1e-3))
             self.boxes.insert(0, {**self.boxes[0], "name": "R", "x": (-thick, 0.0), "material": EPOXY})
-            self.right.append([(k, p) for k, p in WALL_YIELDS])
+            # A block that moves on its wall moves what is fixed to it as if its own end of the strip gave way.
+            ends = [("interface_compliance", self.joints["J"][0])]
+            self.right.append(WALL_YIELDS + ends)
             self.said.append(f"{1e3 * thick:.2f} mm of epoxy between A and the wall")
         else:
             self.said.append(kind)

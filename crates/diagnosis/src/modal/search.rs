@@ -197,6 +197,12 @@ impl Searcher<'_> {
         ranked.extend(match (count, best.names.len()) {
             (1, _) => singles.to_vec(),
             (2, 0 | 1) => self.pairs(singles),
+            // What is the same at every joint may imitate two effects of which each is at one: it takes no more than one name.
+            (2, _) if self.statements(&best.names).len() == 1 && !self.is_adequate(&best.fit) => {
+                let mut all = self.pairs(singles);
+                all.extend(self.extended(best, self.settings.refined.1, 1).0);
+                all
+            }
             _ => self.extended(best, self.settings.refined.1, 1).0,
         });
         ranked.sort_by(|a, b| b.fit.ln.total_cmp(&a.fit.ln));

@@ -218,3 +218,37 @@ fn a_joint_whose_stiffness_departs_is_tried_as_one_that_is_softer_where_it_stand
         assert!((ours / theirs - 1.0).norm() < 1e-9, "the same model, {ours} and {theirs}");
     }
 }
+
+#[test]
+fn glue_at_two_joints_is_found_where_softer_joints_explain_less() {
+    let block = |x: f64| format!(r#"{{ "mass": 0.9, "inertia": 4e-4, "x_cg": {x} }}"#);
+    let strip = r#""beam": { "youngs_modulus": { "value": 2.07e11, "std": 2e9 }, "second_moment": 1.6e-10 }"#;
+    let fixture = Fixture::from_json(&format!(
+        r#"{{ "bodies": {{ "A": {}, "B": {}, "C": {} }},
+              "points": {{ "1": {{ "body": "A", "x": 0.008 }}, "2": {{ "body": "A", "x": 0.05 }}, "10": {{ "body": "A", "x": 0.06 }},
+                           "11": {{ "body": "B", "x": 0.1 }}, "3": {{ "body": "B", "x": 0.11 }}, "4": {{ "body": "B", "x": 0.155 }}, "12": {{ "body": "B", "x": 0.16 }},
+                           "13": {{ "body": "C", "x": 0.2 }}, "5": {{ "body": "C", "x": 0.21 }}, "6": {{ "body": "C", "x": 0.255 }} }},
+              "joints": {{ "J": {{ "from": "10", "to": "11", {strip} }}, "K": {{ "from": "12", "to": "13", {strip} }} }},
+              "damping": {{ "modal_ratios": [0.004, 0.004, 0.004, 0.004] }} }}"#,
+        block(0.03),
+        block(0.13),
+        block(0.23)
+    ))
+    .unwrap();
+    let glue = |point: &str, stiffness| {
+        let place = Place::Point(point.into());
+        Effect::new(EffectKind::InterfaceCompliance, place, Some(Dof::Rotation), &[stiffness, 0.0])
+    };
+    let truth = fixture.clone().with_physics(vec![glue("10", 2800.0), glue("12", 3200.0)]).unwrap();
+    let pairs: Vec<FrfPair> =
+        ["1", "2", "3", "4", "5", "6"].iter().map(|o| FrfPair::transverse(*o, "1")).collect();
+    let lines = SpectralLines::even(20.0, 10.0, 240).unwrap();
+    let observation = with_errors_of_shapes(&truth, &pairs, &lines);
+    let settings = Settings::default();
+    let fitter = Fitter { observation: &observation, settings: &settings, watch: Watch::default() };
+    let nominal = Hypothesis::nominal(&fixture, false);
+    let judged = ModalJudgement::of(&fitter, &nominal, &catalogue(&fixture, &observation), None).unwrap();
+    let found = judged.search.best.fit.hypothesis.effects();
+    let places: Vec<&Place> = found.iter().map(|effect| &effect.place).collect();
+    assert_eq!(places, [&Place::Point("10".into()), &Place::Point("12".into())], "{found:?}");
+}
