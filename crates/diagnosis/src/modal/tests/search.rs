@@ -241,7 +241,7 @@ fn glue_at_two_joints_is_found_where_softer_joints_explain_less() {
     };
     let truth = fixture.clone().with_physics(vec![glue("10", 2800.0), glue("12", 3200.0)]).unwrap();
     let pairs: Vec<FrfPair> =
-        ["1", "2", "3", "4", "5", "6"].iter().map(|o| FrfPair::transverse(*o, "1")).collect();
+        ["1", "2", "3", "4", "5", "6"].iter().map(|o| FrfPair::transverse(o, "1")).collect();
     let lines = SpectralLines::even(20.0, 10.0, 240).unwrap();
     let observation = with_errors_of_shapes(&truth, &pairs, &lines);
     let settings = Settings::default();
