@@ -333,6 +333,12 @@ class Case:
         self.said = "; ".join(self.said)
         return self.springs, self.lumps
 
+    def stiffen(self, name, factor):
+        for box in self.boxes:
+            if box["name"] == name:
+                modulus, ratio, density = box["material"]
+                box["material"] = (factor * modulus, ratio, density)
+
     def hide_one(self, kind):
         r = self.random
         body = str(r.choice([b for b in self.mass if not (self.clamped and b == "A")]))
@@ -369,19 +375,13 @@ class Case:
         elif kind == "columns":
             joint, name = self.storeys[int(r.integers(len(self.storeys)))]
             factor = float(r.choice([0.75, 0.85, 1.15]))
-            for b in self.boxes:
-                if b["name"] == joint:
-                    e, ratio, density = b["material"]
-                    b["material"] = (e * factor, ratio, density)
+            self.stiffen(joint, factor)
             self.right.append([name])
             self.said.append(f"modulus of columns {joint} times {factor}")
         elif kind == "modulus":
             joint = str(r.choice(list(self.joints)))
             factor = float(r.choice([0.8, 0.85, 0.9, 1.15]))
-            for b in self.boxes:
-                if b["name"] == joint:
-                    e, ratio, density = b["material"]
-                    b["material"] = (e * factor, ratio, density)
+            self.stiffen(joint, factor)
             self.right.append([("stiffness_change", joint)])
             self.size["stiffness_change"] = ("factor", factor)
             self.said.append(f"modulus of {joint} times {factor}")

@@ -194,16 +194,15 @@ impl Searcher<'_> {
         if ranked.first().is_some_and(explains) {
             return ranked;
         }
+        let beside_best = || self.extended(best, self.settings.refined.1, 1).0;
         ranked.extend(match (count, best.names.len()) {
             (1, _) => singles.to_vec(),
             (2, 0 | 1) => self.pairs(singles),
             // What is the same at every joint may imitate two effects of which each is at one: it takes no more than one name.
             (2, _) if self.statements(&best.names).len() == 1 && !self.is_adequate(&best.fit) => {
-                let mut all = self.pairs(singles);
-                all.extend(self.extended(best, self.settings.refined.1, 1).0);
-                all
+                [self.pairs(singles), beside_best()].concat()
             }
-            _ => self.extended(best, self.settings.refined.1, 1).0,
+            _ => beside_best(),
         });
         ranked.sort_by(|a, b| b.fit.ln.total_cmp(&a.fit.ln));
         ranked
@@ -255,10 +254,9 @@ impl Searcher<'_> {
             names.remove(index);
             start = start.without(index);
         }
-        let company: Vec<&Candidate> = names.iter().map(|&c| &self.candidates[c]).collect();
         let set_out = (None, SetOut::Beside(named.fit.evidence.sizes), least);
         let standing = self.problem.standing(&start)?;
-        let fit = self.problem.fitted_from(&start, standing, &self.priors(&start, &company), set_out)?;
+        let fit = self.problem.fitted_from(&start, standing, &self.priors(&start, &names), set_out)?;
         Some(Named { names, exact: self.is_exact(&fit), fit })
     }
 
@@ -380,12 +378,11 @@ impl Searcher<'_> {
         least: f64,
     ) -> Option<Named> {
         let Named { names, mut fit, .. } = self.fitted_with(base, &[c], &hypothesis, (set_out, least))?;
-        let company: Vec<&Candidate> = names.iter().map(|&c| &self.candidates[c]).collect();
         // The end of a reach is no place to rest, whatever the evidence says that has a parameter less there.
         for _ in 0..self.settings.farther {
             let next = farther(&fit.hypothesis, &self.candidates[c]).and_then(|start| {
                 let standing = self.problem.standing(&start)?;
-                let priors = self.priors(&start, &company);
+                let priors = self.priors(&start, &names);
                 self.problem.fitted_from(&start, standing, &priors, (None, set_out, least))
             });
             let Some(next) = next else { break };
@@ -406,10 +403,9 @@ impl Searcher<'_> {
         (set_out, least): (SetOut, f64),
     ) -> Option<Named> {
         let names: Vec<usize> = base.names.iter().chain(added).copied().collect();
-        let company: Vec<&Candidate> = names.iter().map(|&c| &self.candidates[c]).collect();
         let standing = self.problem.standing(hypothesis)?;
         let nearby = self.nearby(hypothesis, &standing, &base.fit);
-        let priors = self.priors(hypothesis, &company);
+        let priors = self.priors(hypothesis, &names);
         let fit = self.problem.fitted_from(hypothesis, standing, &priors, (nearby, set_out, least))?;
         Some(Named { names, exact: self.is_exact(&fit), fit })
     }

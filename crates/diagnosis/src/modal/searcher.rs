@@ -58,9 +58,10 @@ impl Searcher<'_> {
         }
     }
 
-    /// Priors of a hypothesis whose effects go by the names of `company`.
-    pub(super) fn priors(&self, hypothesis: &Hypothesis, company: &[&Candidate]) -> Vec<Prior> {
-        let mut all = priors(hypothesis, company);
+    /// Priors of a hypothesis whose effects go by these names.
+    pub(super) fn priors(&self, hypothesis: &Hypothesis, names: &[usize]) -> Vec<Prior> {
+        let candidates: Vec<&Candidate> = names.iter().map(|&c| &self.candidates[c]).collect();
+        let mut all = priors(hypothesis, &candidates);
         if self.calibrated {
             let stay = all.iter_mut().zip(&self.nominal.coordinates);
             stay.for_each(|(prior, at)| *prior = Prior { mean: *at, std: CALIBRATED_QUANTITY });
