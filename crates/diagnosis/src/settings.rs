@@ -161,7 +161,7 @@ pub struct ModalSettings {
     /// Sizes of what changes from one recording to the next of a structure that stays as it is, where its clamp and its cables do not. Of a real clamped beam, natural frequencies
     /// scatter by 0.1 to 0.2 % over 70 recordings, damping ratios by a tenth and more. Shapes, mass lines and what lies above the band are taken as half of what models are wrong by, and phases to repeat no better than sizes.
     pub repeated: ErrorSizes,
-    /// The usual error of natural frequencies where no body turns: storeys that tilt on columns which lengthen, and columns that swing with their mass, shift those of solid frames by 1 to 2 %
+    /// The usual error of natural frequencies where no body turns: storeys that tilt on columns which lengthen, and columns that swing with their mass, leave those of solid frames 0.5 to 2 %
     /// from those of a shear building (docs/development/checks/solids_with_calculix.py, `--frames`).
     pub frequency_of_storeys: f64,
     /// The usual error of upper residuals where all bodies are beams, which have their own modes above the band: what rigid blocks lack there, these have.

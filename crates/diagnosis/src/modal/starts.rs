@@ -9,7 +9,7 @@ use crate::modal::known::Known;
 use crate::modal::prior::Prior;
 use crate::modal::searcher::{Named, STARTS, Searcher};
 use crate::modal::standing::Standing;
-use jointscope_fixture::{Effect, EffectKind, NamedQuantity, Place, QuantityKey, QuantityOwner, Starts};
+use jointscope_fixture::{Effect, EffectKind, Place, QuantityKey, QuantityOwner, Starts};
 use jointscope_model_error::Linear;
 use std::f64::consts::TAU;
 
@@ -69,11 +69,13 @@ pub(super) fn relieved(base: &Hypothesis, candidate: &Candidate) -> Option<Hypot
     let tolerances = base.tolerances().iter().enumerate();
     let departed: Vec<usize> = tolerances
         .filter(|(index, tolerance)| {
-            let NamedQuantity { owner: own, key, .. } = &tolerance.quantity;
-            let is_factor = matches!(key, QuantityKey::YoungsModulus | QuantityKey::SecondMoment)
-                || matches!(key, QuantityKey::JointStiffness(..))
-                    && has_a_name(fixture, &tolerance.quantity, base.departure(*index));
-            *own == owner && is_factor && base.departure(*index) != 0.0
+            let (quantity, departure) = (&tolerance.quantity, base.departure(*index));
+            let is_stiffness = matches!(
+                quantity.key,
+                QuantityKey::YoungsModulus | QuantityKey::SecondMoment | QuantityKey::JointStiffness(..)
+            );
+            let is_factor = quantity.value != 0.0 && is_stiffness && has_a_name(fixture, quantity, departure);
+            quantity.owner == owner && is_factor && departure != 0.0
         })
         .map(|(index, _)| index)
         .collect();

@@ -220,6 +220,27 @@ fn a_joint_whose_stiffness_departs_is_tried_as_one_that_is_softer_where_it_stand
 }
 
 #[test]
+fn an_element_of_nothing_is_no_part_of_how_stiff_a_joint_is() {
+    let coupled =
+        TWO_STOREYS.replace("0], [0, 0]", r#"{ "value": 0, "std": 1e3 }], [{ "value": 0, "std": 1e3 }, 0]"#);
+    let mut departed = Hypothesis::nominal(&Fixture::from_json(&coupled).unwrap(), false);
+    let stiffness: Vec<usize> = (0..departed.tolerances().len())
+        .filter(|&index| departed.tolerances()[index].quantity.path.starts_with("joints/C2"))
+        .collect();
+    assert!(stiffness.len() > 1);
+    stiffness.iter().for_each(|&index| departed.coordinates[index] = -5.0);
+    let candidate = Candidate {
+        kind: EffectKind::StiffnessChange,
+        place: Place::Joint("C2".into()),
+        dof: None,
+        starts: vec![vec![0.5]],
+        directions: Vec::new(),
+    };
+    let factor = relieved(&departed, &candidate).unwrap().effects()[0].value(0);
+    assert!((factor / (-5.0f64 * 8e4 / 1.4e6).exp() - 1.0).abs() < 0.01, "{factor}");
+}
+
+#[test]
 fn glue_at_two_joints_is_found_where_softer_joints_explain_less() {
     let block = |x: f64| format!(r#"{{ "mass": 0.9, "inertia": 4e-4, "x_cg": {x} }}"#);
     let strip = r#""beam": { "youngs_modulus": { "value": 2.07e11, "std": 2e9 }, "second_moment": 1.6e-10 }"#;
