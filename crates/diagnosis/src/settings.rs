@@ -185,6 +185,8 @@ pub struct ModalSettings {
     pub again: f64,
     /// Singles that are tried with a second effect, at the most, and ln p below the best from which they are not, nor as look-alikes on lines.
     pub bases: (usize, f64),
+    /// The most probable singles that are tried two by two: ten pairs. A stiffer joint beside a window was second and third, 46 and 80 below the relaxation that imitates both.
+    pub two_by_two: usize,
     /// Share of all work by which the comparison ends: modes may be in a false minimum, and lines must come to their turn. With 0.5 three blocks on two strips, of whose masses nothing was
     /// stated, had it spent before two effects together were tried.
     pub share: f64,
@@ -265,6 +267,7 @@ impl Default for ModalSettings {
             costly: 0.05,
             again: 0.075,
             bases: (3, 20.0),
+            two_by_two: 5,
             share: 0.6,
             tried: 8,
             blind: 8,

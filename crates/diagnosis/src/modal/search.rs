@@ -260,7 +260,7 @@ impl Searcher<'_> {
         Some(Named { names, exact: self.is_exact(&fit), fit })
     }
 
-    /// The best singles each with one effect more; all but the best only where that leaves an error of the model.
+    /// The best singles each with one effect more; all but the best, and these two by two, only where that leaves an error of the model.
     fn pairs(&self, singles: &[Named]) -> Vec<Named> {
         let Some(first) = singles.first() else { return Vec::new() };
         let close = |s: &&Named| first.fit.ln - s.fit.ln < self.settings.bases.1;
@@ -271,8 +271,24 @@ impl Searcher<'_> {
             .filter(close)
             .flat_map(|s| self.extended(s, self.settings.refined.1, 1).0)
             .collect();
+        if !first.exact {
+            all.extend(self.two_by_two(singles));
+        }
         all.sort_by(|a, b| b.fit.ln.total_cmp(&a.fit.ln));
         all
+    }
+
+    /// The best singles two by two, from where each stands by itself. What imitates two effects is more probable than either of them, and by more than what is extended otherwise may lie
+    /// below it: a relaxing joint is stiffer and damped like one that is stiffer beside a window over the records.
+    fn two_by_two(&self, singles: &[Named]) -> Vec<Named> {
+        let few = &singles[..singles.len().min(self.settings.two_by_two)];
+        let beside = |(at, one)| few[at + 1..].iter().map(move |other: &Named| (one, other));
+        let both: Vec<(&Named, &Named)> = few.iter().enumerate().flat_map(beside).collect();
+        let least = few.first().map_or(ANY, |first| first.fit.ln);
+        self.problem.work.each(both, STARTS, |(one, other): (&Named, &Named)| {
+            let start = one.fit.hypothesis.with(other.fit.hypothesis.effects().pop()?);
+            self.fitted_with(one, &other.names, &start, (SetOut::Both, least))
+        })
     }
 
     /// What may stand in the stead of each effect of `best`, in the company of its others.

@@ -10,7 +10,7 @@ use crate::modal::prior::{Prior, priors};
 use crate::modal::starts::relieved;
 use crate::search::Search;
 use crate::settings::Settings;
-use crate::{Hypothesis, Observation, Watch};
+use crate::{Diagnosis, DiagnosisOptions, Hypothesis, Observation, Watch};
 use jointscope_findings::Verdict;
 use jointscope_fixture::{Dof, Effect, EffectKind, Fixture, Place};
 use jointscope_lumped::{Instrument, synthesize};
@@ -272,4 +272,39 @@ fn glue_at_two_joints_is_found_where_softer_joints_explain_less() {
     let found = judged.search.best.fit.hypothesis.effects();
     let places: Vec<&Place> = found.iter().map(|effect| &effect.place).collect();
     assert_eq!(places, [&Place::Point("10".into()), &Place::Point("12".into())], "{found:?}");
+}
+
+#[test]
+fn two_effects_are_found_together_that_one_name_imitates() {
+    // A joint that relaxes faster than it swings is stiffer, and damped the more the lower the mode: like a stiffer joint in records behind a window.
+    let known = |value: f64, relative: f64| format!(r#"{{ "value": {value}, "std": {} }}"#, relative * value);
+    let fixture = Fixture::from_json(&format!(
+        r#"{{ "bodies": {{ "A": {{ "mass": 5.98, "inertia": 8.87e-3, "x_cg": -0.0578 }}, "B": {{ "mass": 2.909, "inertia": 2.498e-3, "x_cg": 0.0921 }} }},
+              "points": {{ "1": {{ "body": "A", "x": -0.0858 }}, "2": {{ "body": "A", "x": 0 }}, "3": {{ "body": "B", "x": 0.051 }}, "4": {{ "body": "B", "x": 0.1229 }} }},
+              "joints": {{ "J": {{ "from": "2", "to": "3", "beam": {{ "youngs_modulus": {}, "second_moment": {} }} }} }},
+              "supports": {{ "S1": {{ "point": "1", "stiffness": {}, "damping": {} }}, "S4": {{ "point": "4", "stiffness": {}, "damping": {} }} }},
+              "damping": {{ "loss_factor": {} }} }}"#,
+        known(2.07e11, 0.005),
+        known(3.4e-10, 0.005),
+        known(451.0, 0.09),
+        known(0.4, 0.25),
+        known(305.0, 0.2),
+        known(0.6, 0.16),
+        known(0.007, 0.17)
+    ))
+    .unwrap();
+    let stiffer = Effect::new(EffectKind::StiffnessChange, Place::Joint("J".into()), None, &[1.48]);
+    let window = Effect::new(EffectKind::ExponentialWindow, Place::All, None, &[10.0]);
+    let truth = fixture.clone().with_physics(vec![stiffer, window]).unwrap();
+    let pairs: Vec<FrfPair> =
+        ["1", "2"].iter().flat_map(|i| ["3", "4"].map(|o| FrfPair::transverse(o, i))).collect();
+    let lines = SpectralLines::even(2.5, 2.5, 400).unwrap();
+    let frfs = synthesize(&truth, &pairs, &lines, Instrument::AsRecorded).unwrap();
+    let variance = frfs.all_values().iter().map(|value| 1e-8 * value.norm_sqr()).collect();
+    let frfs = frfs.with_variance(variance).unwrap();
+    let diagnosis = Diagnosis::of(&fixture, &frfs, &DiagnosisOptions::default()).unwrap();
+    let mut found: Vec<EffectKind> = diagnosis.findings.iter().map(|finding| finding.effect.kind).collect();
+    found.sort_by_key(|kind| kind.name());
+    assert_eq!(found, [EffectKind::ExponentialWindow, EffectKind::StiffnessChange]);
+    assert_eq!(diagnosis.verdict, Verdict::Explained);
 }
