@@ -45,7 +45,8 @@ pub(crate) fn judged(
     let within = refitted.clone().with_wrong_quantities(fitter);
     // Where the fixture as refitted leaves more than noise, the comparison by modes says whether the model itself is in error: if it is, the noise
     // of the lines decides nothing.
-    let modal = match within.lacks_much(fitter, &within.refitted) {
+    let may_err = !fixture.model_error().is_exact();
+    let modal = match may_err && within.lacks_much(fitter, &within.refitted) {
         true => fitter.observation.work().within(fitter.settings.modal.share, || {
             ModalJudgement::of(fitter, &within.nominal.hypothesis, &within.candidates, None)
         }),

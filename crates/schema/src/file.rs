@@ -317,13 +317,13 @@ struct Channel {
 #[schemars(deny_unknown_fields)]
 struct ModelError {
     /// Of natural frequencies; 0.3 % is 0.003.
-    #[schemars(extend("exclusiveMinimum" = 0, "exclusiveMaximum" = 1))]
+    #[schemars(extend("minimum" = 0, "exclusiveMaximum" = 1))]
     frequency: Option<f64>,
     /// Of damping ratios.
-    #[schemars(extend("exclusiveMinimum" = 0, "exclusiveMaximum" = 1))]
+    #[schemars(extend("minimum" = 0, "exclusiveMaximum" = 1))]
     damping: Option<f64>,
     /// Of residues, that is of shapes.
-    #[schemars(extend("exclusiveMinimum" = 0, "exclusiveMaximum" = 1))]
+    #[schemars(extend("minimum" = 0, "exclusiveMaximum" = 1))]
     residue: Option<f64>,
 }
 

@@ -31,7 +31,8 @@ pub(crate) fn without_imitations(
     search: &Search,
     by_modes: Option<&ModalJudgement>,
 ) -> Option<Search> {
-    if search.repaired.hypothesis.effect_count() == 0 {
+    let is_exact = search.nominal.hypothesis.fixture().model_error().is_exact();
+    if is_exact || search.repaired.hypothesis.effect_count() == 0 {
         return None;
     }
     let settings = &fitter.settings.modal;

@@ -60,7 +60,9 @@ fn none_turns(fixture: &Fixture) -> bool {
 
 /// The sizes that are usual but for those that the fixture states.
 pub(super) fn known(settings: &ModalSettings, fixture: &Fixture) -> SizePrior {
-    let StatedError { frequency, damping, residue } = fixture.model_error();
+    // What has changed since a baseline is held against sizes of its own, of an exact model too.
+    let stated = Some(fixture.model_error()).filter(|stated| !stated.is_exact());
+    let StatedError { frequency, damping, residue } = stated.unwrap_or_default();
     let usual = settings.usual;
     // Where each record's gain is a quantity of its own, what is stated of it is all that is known: a further error of all gains would hide the one that is off.
     let by_record = fixture.channels().iter().any(|effect| matches!(effect.place, Place::Record(_)));

@@ -3,6 +3,7 @@
 use super::{BLOCKS, with_errors_of_shapes};
 use crate::candidate::Candidate;
 use crate::catalogue::{catalogue, with_wrong_quantities};
+use crate::finding::Finding;
 use crate::fitter::Fitter;
 use crate::modal::features::Features;
 use crate::modal::judgement::ModalJudgement;
@@ -307,4 +308,44 @@ fn two_effects_are_found_together_that_one_name_imitates() {
     found.sort_by_key(|kind| kind.name());
     assert_eq!(found, [EffectKind::ExponentialWindow, EffectKind::StiffnessChange]);
     assert_eq!(diagnosis.verdict, Verdict::Explained);
+}
+
+#[test]
+fn what_shows_above_the_band_only_is_named_where_the_model_is_stated_exact() {
+    // A foot that gives way across the strip moves modes beyond the lines: below these it does what blocks that bend do, by as much as solids differ from blocks.
+    let known = |value: f64, relative: f64| format!(r#"{{ "value": {value}, "std": {} }}"#, relative * value);
+    let body = |mass: f64, inertia: f64, x_cg: f64| {
+        let [mass, inertia] = [(mass, 1e-3), (inertia, 4e-3)].map(|(value, std)| known(value, std));
+        format!(r#"{{ "mass": {mass}, "inertia": {inertia}, "x_cg": {x_cg} }}"#)
+    };
+    let fixture = format!(
+        r#"{{ "bodies": {{ "A": {}, "B": {} }},
+              "points": {{ "1": {{ "body": "A", "x": 0.006 }}, "2": {{ "body": "A", "x": 0.114 }}, "3": {{ "body": "B", "x": 0.152 }}, "4": {{ "body": "B", "x": 0.248 }} }},
+              "joints": {{ "J": {{ "from": "2", "to": "3", "beam": {{ "youngs_modulus": {}, "second_moment": {} }} }} }},
+              "damping": {{ "modal_ratios": [0.0056] }} }}"#,
+        body(1.142, 1.376e-3, 0.0569),
+        body(1.585, 2.269e-3, 0.2149),
+        known(2.07e11, 0.005),
+        known(4.88e-10, 0.005),
+    );
+    let exact = r#"{ "model_error": { "frequency": 0, "damping": 0, "residue": 0 }, "#;
+    let place = Place::Point("2".into());
+    let foot = Effect::new(EffectKind::InterfaceCompliance, place, Some(Dof::Translation), &[1.65e8]);
+    let truth = Fixture::from_json(&fixture).unwrap().with_physics(vec![foot]).unwrap();
+    let pairs: Vec<FrfPair> =
+        ["1", "2"].iter().flat_map(|i| ["3", "4"].map(|o| FrfPair::transverse(o, i))).collect();
+    let lines = SpectralLines::even(2.5, 2.5, 400).unwrap();
+    let frfs = synthesize(&truth, &pairs, &lines, Instrument::AsRecorded).unwrap();
+    let variance = frfs.all_values().iter().map(|value| 6e-6 * value.norm_sqr()).collect();
+    let frfs = frfs.with_variance(variance).unwrap();
+    for (fixture, found) in [(fixture.clone(), 0), (fixture.replacen('{', exact, 1), 1)] {
+        let fixture = Fixture::from_json(&fixture).unwrap();
+        let diagnosis = Diagnosis::of(&fixture, &frfs, &DiagnosisOptions::default()).unwrap();
+        let is_foot = |effect: &Effect| effect.kind == EffectKind::InterfaceCompliance;
+        let names_it = |finding: &Finding| {
+            is_foot(&finding.effect) || finding.alternatives.iter().any(|(effect, _)| is_foot(effect))
+        };
+        assert_eq!(diagnosis.findings.len(), found, "{:?}", fixture.model_error());
+        assert!(diagnosis.findings.iter().all(names_it), "{:?}", diagnosis.findings);
+    }
 }
