@@ -12,7 +12,7 @@ use crate::settings::mass_line::{
 use crate::{Figure, ModelModes, RecordedModes, Totals};
 use jointscope_fixture::Fixture;
 use jointscope_linalg::LeastSquares;
-use jointscope_spectra::{Dof, FrfPair, FrfSet};
+use jointscope_spectra::{Dof, FrfPair, FrfSet, in_sentence};
 use num_complex::Complex64;
 use serde::Serialize;
 use std::collections::BTreeSet;
@@ -99,13 +99,17 @@ impl RigidBand {
             (0..hz.len()).filter(|&k| hz[k] > 0.0 && hz[k] >= low && hz[k] <= high).collect();
         if low >= high {
             return Err(format!(
-                "the highest mode on the supports, {on_supports:.1} Hz, is too near the first bending mode, {lowest:.1} Hz: at no frequency between them does the structure move as one rigid body; a softer suspension would weigh it"
+                "the highest mode on the supports, {} Hz, is too near the first bending mode, {} Hz: at no frequency between them does the structure move as one rigid body; a softer suspension would weigh it",
+                in_sentence(on_supports),
+                in_sentence(lowest)
             ));
         }
         if used.len() < FEWEST_LINES {
             return Err(format!(
-                "{} of the recording lie between {low:.1} and {high:.1} Hz, where the structure moves as one rigid body: a finer resolution or a lower first line would weigh it",
+                "{} of the recording lie between {} and {} Hz, where the structure moves as one rigid body: a finer resolution or a lower first line would weigh it",
                 if used.is_empty() { "no lines".to_owned() } else { format!("only {} lines", used.len()) },
+                in_sentence(low),
+                in_sentence(high)
             ));
         }
         let band = (hz[used[0]], hz[used[used.len() - 1]]);

@@ -15,7 +15,7 @@ use jointscope_frf::noise::with_variances;
 use jointscope_lumped::{Instrument, accelerances};
 use jointscope_pipeline::{Error, MeasuredFrfs, Measurement};
 use jointscope_screening::{Oddity, Screened, screened};
-use jointscope_spectra::{FrfForm, FrfSet, in_text};
+use jointscope_spectra::{FrfForm, FrfSet, in_sentence, in_text};
 use num_complex::Complex64;
 use serde::Serialize;
 
@@ -158,8 +158,9 @@ impl RecordingCheck {
             remarks.push(Remark::odd(
                 "recording",
                 format!(
-                    "its lines end at {} Hz, below the first mode in which the fixture bends, at {first:.1} Hz: record farther, or correct the fixture",
-                    self.lines.1
+                    "its lines end at {} Hz, below the first mode in which the fixture bends, at {} Hz: record farther, or correct the fixture",
+                    in_text(self.lines.1),
+                    in_sentence(first)
                 ),
             ));
         }
@@ -177,9 +178,9 @@ impl RecordingCheck {
             remarks.push(Remark::odd(
                 "mass line",
                 format!(
-                    "from {:.1} to {:.1} Hz the recording weighs {:.3} kg ± {:.3} kg, the fixture {:.3} kg ({:.2} times as much): the calibration of force or sensors, or mass that the fixture lacks or has too much of",
-                    line.band.0,
-                    line.band.1,
+                    "from {} to {} Hz the recording weighs {:.3} kg ± {:.3} kg, the fixture {:.3} kg ({:.2} times as much): the calibration of force or sensors, or mass that the fixture lacks or has too much of",
+                    in_sentence(line.band.0),
+                    in_sentence(line.band.1),
                     mass.value,
                     mass.std.unwrap_or(0.0),
                     totals.mass.value,

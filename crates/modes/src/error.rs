@@ -60,7 +60,7 @@ pub enum ModesError {
         highest: usize,
     },
     /// A pole was picked where the chart has none.
-    #[error("no pole of the stabilisation chart lies near {picked} Hz; the nearest is at {nearest:.6} Hz")]
+    #[error("no pole of the stabilisation chart lies near {picked} Hz; the nearest is at {} Hz", in_text(*nearest))]
     NothingThere {
         /// Frequency picked, Hz.
         picked: f64,

@@ -2,7 +2,7 @@
 
 use jointscope_estimation::{Estimate, EstimateError, EstimateOptions, Estimator};
 use jointscope_hits::Hit;
-use jointscope_spectra::FrfSet;
+use jointscope_spectra::{FrfSet, in_text};
 
 /// Hammer hits and what was estimated from them.
 #[derive(Debug, Clone, PartialEq)]
@@ -37,10 +37,12 @@ impl HammerTest {
         let hz = frfs.lines().hz();
         let (first, last) = (hz.first().copied().unwrap_or(0.0), hz.last().copied().unwrap_or(0.0));
         format!(
-            "FRFs were estimated from the hits: {}, {}, on {} lines from {first:.6} to {last:.6} Hz",
+            "FRFs were estimated from the hits: {}, {}, on {} lines from {} to {} Hz",
             estimator.name(),
             points.join(", "),
-            hz.len()
+            hz.len(),
+            in_text(first),
+            in_text(last)
         )
     }
 }

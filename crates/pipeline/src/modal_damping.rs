@@ -3,7 +3,7 @@
 use jointscope_fixture::{Damping, EffectKind, Fixture, FixtureError, Quantity, RatiosOf, Spread};
 use jointscope_lumped::{Assembly, LumpedError, Station};
 use jointscope_modes::{ExpectedMode, Matches, ModalAnalysis, match_modes};
-use jointscope_spectra::{Channel, FrfPair};
+use jointscope_spectra::{Channel, FrfPair, in_sentence};
 use jointscope_wording::format::with_sign;
 use std::collections::BTreeSet;
 
@@ -140,10 +140,10 @@ fn remarks(analysis: &ModalAnalysis, matches: &Matches, elastic: &[f64], last: u
         .iter()
         .map(|pair| {
             format!(
-                "elastic mode {} of the fixture ({:.2} Hz) is the measured mode at {:.2} Hz ({} %, MAC {:.2})",
+                "elastic mode {} of the fixture ({} Hz) is the measured mode at {} Hz ({} %, MAC {:.2})",
                 pair.expected + 1,
-                elastic[pair.expected],
-                analysis.modes[pair.measured].frequency,
+                in_sentence(elastic[pair.expected]),
+                in_sentence(analysis.modes[pair.measured].frequency),
                 with_sign(100.0 * pair.shift, 1),
                 pair.mac
             )
@@ -183,5 +183,5 @@ fn listed(hz: &[f64]) -> String {
     if hz.is_empty() {
         return "none".to_owned();
     }
-    hz.iter().map(|f| format!("{f:.2}")).collect::<Vec<_>>().join(", ")
+    hz.iter().map(|f| in_sentence(*f).to_string()).collect::<Vec<_>>().join(", ")
 }

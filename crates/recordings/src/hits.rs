@@ -7,6 +7,7 @@ use jointscope_hits::{Hit, Motion, Response};
 use jointscope_spectra::{Channel, Dof, FrfForm};
 use jointscope_uff::{Abscissa, Data, FunctionType};
 
+use crate::completeness;
 use crate::contents::Contents;
 use crate::error::enumeration;
 use crate::function::{Function, functions};
@@ -100,6 +101,7 @@ pub fn hits_of(
     if renumbered {
         notes.push(renumbering(&groups));
     }
+    notes.extend(completeness::of_hits(sources));
     Ok(Hits { hits, notes })
 }
 

@@ -45,6 +45,7 @@
 mod assumed_units;
 mod channel_map;
 mod coherence;
+mod completeness;
 mod contents;
 mod datasets;
 mod error;

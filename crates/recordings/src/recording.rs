@@ -5,6 +5,7 @@ use jointscope_spectra::{FrfForm, FrfSet, SpectralLines, in_text};
 use num_complex::Complex64;
 
 use crate::coherence::CoherenceNotes;
+use crate::completeness;
 use crate::contents::Contents;
 use crate::error::enumeration;
 use crate::function::{LinesCache, append_accelerances, functions};
@@ -86,6 +87,7 @@ impl Recording {
         let mut of_coherence = CoherenceNotes::default();
         let levels = levels(&usable, &gathered.coherences, options, &mut of_coherence)?;
         notes.texts.extend(of_coherence.into_texts());
+        notes.texts.extend(completeness::of_frfs(sources));
         Ok(Recording {
             levels,
             time_histories: TimeHistories {

@@ -284,14 +284,26 @@
       // A curve is hidden in all panes of the section that have it.
       figure.querySelectorAll(".legend button").forEach(key => key.addEventListener("click", () => {
         const show = key.getAttribute("aria-pressed") === "false", alike = pane => pane === this || pane.section === this.section && plot.group != null && pane.plot.group === plot.group;
-        for (const pane of drawn) if (alike(pane)) pane.toggle(key.textContent, show);
+        const name = this.keys().get(key);
+        for (const pane of drawn) if (alike(pane)) pane.toggle(name, show);
       }));
       box.addEventListener("keydown", event => this.key(event));
       new ResizeObserver(() => root.classList.contains("printing") || this.u.setSize(this.size())).observe(box);
     }
 
-    toggle(label, show) {
-      for (const key of this.figure.querySelectorAll(".legend button")) if (key.textContent === label) {
+    // What each key stands for: several may have one label (bands that are held out), and a mark is the one that has the same value elsewhere.
+    keys() {
+      const names = new Map(), counts = {};
+      for (const key of this.figure.querySelectorAll(".legend button")) {
+        const name = key.dataset.series != null ? "curve " + key.textContent : `mark ${key.textContent} ${key.nextElementSibling.textContent}`;
+        counts[name] = (counts[name] ?? 0) + 1;
+        names.set(key, `${name} ${counts[name]}`);
+      }
+      return names;
+    }
+
+    toggle(name, show) {
+      for (const [key, own] of this.keys()) if (own === name) {
         key.setAttribute("aria-pressed", show);
         if (key.dataset.series != null) {
           this.indices[key.dataset.series].forEach(index => this.u.setSeries(index, { show }));

@@ -3,6 +3,7 @@
 use jointscope_fixture::{Dof, Fixture};
 use jointscope_nonlinear::{ForceState, ForceStateError, ForceStateMap, MotionSource, RestoringLaw};
 
+use crate::format::significant;
 use crate::scatter::{Scatter, draw};
 use crate::section::Section;
 
@@ -46,13 +47,13 @@ fn of_source(map: &ForceStateMap, source: MotionSource) -> Vec<&str> {
 
 fn origin(map: &ForceStateMap, fixture: &Fixture) -> String {
     let mut text = format!(
-        "Joint {} under hit {} ({:.0} N). Its force is the inertia force of {} less the hammer's: neither stiffness nor law of the joint enters it. The relative motion d is integrated from accelerations above {:.0} Hz and is the fitted model's below; force and motion are drawn up to {:.0} Hz.",
+        "Joint {} under hit {} ({:.0} N). Its force is the inertia force of {} less the hammer's: neither stiffness nor law of the joint enters it. The relative motion d is integrated from accelerations above {} Hz and is the fitted model's below; force and motion are drawn up to {} Hz.",
         map.joint,
         map.hit,
         map.peak_force,
         map.weighed.join(" and "),
-        map.band.0,
-        map.band.1
+        significant(map.band.0, 4),
+        significant(map.band.1, 4)
     );
     let balanced = of_source(map, MotionSource::Momentum);
     if !balanced.is_empty() {

@@ -39,8 +39,8 @@ fn levels(diagnosis: &NonlinearDiagnosis) -> Section {
         .words("hits", |(_, level)| level.hits.to_string());
     Section::new("Do FRFs change with strength?")
         .paragraph(format!(
-            "One FRF for all hits at a point is compared with one a level. Levels differ {:.2} times as much as noise makes them (variance); the probability of as much by chance is {}. They differ the most between {:.0} and {:.0} Hz.",
-            homogeneity.ratio, significant(homogeneity.p_value, 2), homogeneity.band.0, homogeneity.band.1
+            "One FRF for all hits at a point is compared with one a level. Levels differ {:.2} times as much as noise makes them (variance); the probability of as much by chance is {}. They differ the most between {} and {} Hz.",
+            homogeneity.ratio, significant(homogeneity.p_value, 2), significant(homogeneity.band.0, 4), significant(homogeneity.band.1, 4)
         ))
         .with(table)
 }

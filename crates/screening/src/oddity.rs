@@ -1,7 +1,7 @@
 //! Something odd in a recording, in a sentence.
 
 use crate::Implausible;
-use jointscope_spectra::{FrfForm, FrfPair};
+use jointscope_spectra::{FrfForm, FrfPair, in_sentence};
 use std::fmt;
 
 /// Something odd in a recording, and what was done about it. Shown as one plain sentence, without a full stop.
@@ -80,12 +80,28 @@ impl fmt::Display for Oddity {
             ),
             Oddity::Unexcited { point, is_reference: true, from, lines } => write!(
                 f,
-                "from {from:.4} Hz on the blows at {point} leave no coherence, so they do not excite that band: its {lines} lines are left out of their FRFs; a harder tip excites them, or end the band below with --band"
+                "from {} Hz on the blows at {point} leave no coherence, so they do not excite that band: its {lines} lines are left out of their FRFs; a harder tip excites them, or end the band below with --band",
+                in_sentence(*from)
             ),
             Oddity::Unexcited { point, is_reference: false, from, .. } => write!(
                 f,
-                "above {from:.4} Hz response {point} has no coherence: its sensor or filter ends there; replace it, or use --band"
+                "above {} Hz response {point} has no coherence: its sensor or filter ends there; replace it, or use --band",
+                in_sentence(*from)
             ),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_frequency_in_a_sentence_has_four_digits_however_fine_the_lines_are() {
+        let from = |is_reference| {
+            Oddity::Unexcited { point: "4".to_owned(), is_reference, from: 1034.375, lines: 7 }.to_string()
+        };
+        assert!(from(true).starts_with("from 1034 Hz on the blows at 4"), "{}", from(true));
+        assert!(from(false).starts_with("above 1034 Hz response 4"), "{}", from(false));
     }
 }

@@ -27,7 +27,7 @@ mod serialization;
 
 pub use form::FrfForm;
 pub use frf_set::{Channel, Dof, FrfPair, FrfSet};
-pub use lines::{SpectralLines, in_text};
+pub use lines::{SpectralLines, in_sentence, in_text};
 pub use median::median;
 pub use serialization::complex;
 

@@ -12,7 +12,21 @@ pub struct SpectralLines(Arc<[f64]>);
 /// assert_eq!(jointscope_spectra::in_text(356.80000000000007).to_string(), "356.8");
 /// ```
 pub fn in_text(hz: f64) -> f64 {
-    format!("{hz:.8e}").parse().unwrap_or(hz)
+    to_digits(hz, 9)
+}
+
+/// A frequency for a sentence, Hz: four significant digits, as resonances are told apart by.
+///
+/// ```
+/// assert_eq!(jointscope_spectra::in_sentence(1034.375).to_string(), "1034");
+/// assert_eq!(jointscope_spectra::in_sentence(0.7812500).to_string(), "0.7813");
+/// ```
+pub fn in_sentence(hz: f64) -> f64 {
+    to_digits(hz, 4)
+}
+
+fn to_digits(hz: f64, digits: usize) -> f64 {
+    format!("{hz:.*e}", digits - 1).parse().unwrap_or(hz)
 }
 
 impl SpectralLines {

@@ -279,7 +279,8 @@ fn refused(joint: &str, tests: &[&str]) -> String {
 }
 
 fn unlike_frequencies(joints: &[String], frequencies: &[f64]) -> String {
-    let each = joints.iter().zip(frequencies).map(|(joint, hz)| format!("{joint} at {hz:.1} Hz"));
+    let each =
+        joints.iter().zip(frequencies).map(|(joint, hz)| format!("{joint} at {} Hz", significant(*hz, 4)));
     let each: Vec<String> = each.collect();
     format!(
         "numbers of joints whose stiffness or damping depends on frequency are those in the middle of their bands, and these differ ({}): C, of a structural joint ηK/ω, is \

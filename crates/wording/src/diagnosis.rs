@@ -235,7 +235,8 @@ fn of_observation(observation: &Observation) -> Vec<String> {
             .iter()
             .map(|(hz, deviation, ratio)| {
                 format!(
-                    "{hz:.2} Hz by {:.1} parts in 100,000 ({:.0} % of its half-width)",
+                    "{} Hz by {:.1} parts in 100,000 ({:.0} % of its half-width)",
+                    significant(*hz, 4),
                     1e5 * deviation,
                     100.0 * deviation / ratio.max(f64::MIN_POSITIVE)
                 )

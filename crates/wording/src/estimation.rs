@@ -2,7 +2,7 @@
 
 use crate::Says;
 use jointscope_estimation::{Remark, Signal};
-use jointscope_spectra::{Channel, FrfPair};
+use jointscope_spectra::{Channel, FrfPair, in_sentence};
 
 /// Dips of a force's spectrum that a sentence holds at the most.
 const DIPS: usize = 5;
@@ -103,7 +103,7 @@ fn disagreement(ratio: f64, frfs: &[FrfPair]) -> String {
 fn force_dips(struck: &Channel, hz: &[f64]) -> String {
     format!(
         "the force's spectrum at {struck} dips near {} Hz{}: do not trust the FRFs there, however high their coherence",
-        joined(hz.iter().take(DIPS).map(|hz| format!("{hz:.1}"))),
+        joined(hz.iter().take(DIPS).map(|hz| in_sentence(*hz).to_string())),
         if hz.len() > DIPS { " and elsewhere" } else { "" }
     )
 }
@@ -148,6 +148,15 @@ fn two_digits(value: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn dips_of_a_force_are_told_with_four_digits() {
+        let says = force_dips(&Channel::transverse("1"), &[1034.375, 88.21875]);
+        assert!(
+            says.contains("dips near 1034 and 88.22 Hz") || says.contains("dips near 1034, 88.22 Hz"),
+            "{says}"
+        );
+    }
 
     #[test]
     fn shares_are_told_with_two_digits() {

@@ -4,6 +4,7 @@ use crate::numbers::Short;
 use crate::{Remarks, Says, amplitude};
 use jointscope_findings::Verdict;
 use jointscope_nonlinear::NonlinearDiagnosis;
+use jointscope_spectra::in_sentence;
 
 /// The conclusion in a sentence.
 impl Says for NonlinearDiagnosis {
@@ -29,8 +30,9 @@ impl Says for NonlinearDiagnosis {
                 )
             }
             Verdict::Unexplained => format!(
-                "FRFs change {range} ({chance}), most between {:.0} and {:.0} Hz, and neither a cubic spring nor friction nor a gap at a joint explains it.",
-                homogeneity.band.0, homogeneity.band.1
+                "FRFs change {range} ({chance}), most between {} and {} Hz, and neither a cubic spring nor friction nor a gap at a joint explains it.",
+                in_sentence(homogeneity.band.0),
+                in_sentence(homogeneity.band.1)
             ),
         }
     }

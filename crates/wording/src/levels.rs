@@ -1,7 +1,7 @@
 //! A diagnosis of stepped-sine FRFs at several levels in sentences.
 
 use crate::format::quantity_in;
-use crate::numbers::capitalised;
+use crate::numbers::{capitalised, decimals, rounded};
 use crate::unit::Scale;
 use crate::{Remarks, Says, amplitude};
 use jointscope_findings::Verdict;
@@ -9,6 +9,7 @@ use jointscope_fixture::EffectKind;
 use jointscope_nonlinear::{
     DampingCourse, FrequencyCourse, Held, LevelFinding, LevelResult, SteppedDiagnosis,
 };
+use jointscope_spectra::in_sentence;
 
 /// The conclusion in a sentence or two.
 impl Says for SteppedDiagnosis {
@@ -47,31 +48,39 @@ impl Says for SteppedDiagnosis {
     }
 }
 
+/// A level's natural frequency, Hz, with the digits that its deviation leaves: levels differ in the last ones.
+pub(crate) fn frequency(level: &LevelResult) -> String {
+    let (hz, std) = level.resonance.frequency;
+    // Without noise a deviation is next to nothing, and seven digits are enough.
+    let most = 6 - hz.abs().max(f64::MIN_POSITIVE).log10().floor() as i32;
+    rounded(hz, decimals(std).min(most))
+}
+
 /// How frequency and damping go with level.
 fn course(diagnosis: &SteppedDiagnosis) -> String {
     let (Some(first), Some(last)) = (diagnosis.levels.first(), diagnosis.levels.last()) else {
         return String::new();
     };
-    let hz = |l: &LevelResult| l.resonance.frequency.0;
+    let hz = frequency;
     let percent = |l: &LevelResult| 100.0 * l.resonance.damping_ratio.0;
     let frequency = match diagnosis.frequency_course() {
         FrequencyCourse::Dips(least) => format!(
-            "the frequency falls from {:.3} Hz to {:.3} Hz at {} and rises again to {:.3} Hz",
+            "the frequency falls from {} Hz to {} Hz at {} and rises again to {} Hz",
             hz(first),
             hz(least),
             least.held,
             hz(last)
         ),
         FrequencyCourse::Peaks(most) => format!(
-            "the frequency rises from {:.3} Hz to {:.3} Hz at {} and falls again to {:.3} Hz",
+            "the frequency rises from {} Hz to {} Hz at {} and falls again to {} Hz",
             hz(first),
             hz(most),
             most.held,
             hz(last)
         ),
-        FrequencyCourse::Falls => format!("the frequency falls from {:.3} to {:.3} Hz", hz(first), hz(last)),
-        FrequencyCourse::Rises => format!("the frequency rises from {:.3} to {:.3} Hz", hz(first), hz(last)),
-        _ => format!("the frequency stays: {:.3} to {:.3} Hz", hz(first), hz(last)),
+        FrequencyCourse::Falls => format!("the frequency falls from {} to {} Hz", hz(first), hz(last)),
+        FrequencyCourse::Rises => format!("the frequency rises from {} to {} Hz", hz(first), hz(last)),
+        _ => format!("the frequency stays: {} to {} Hz", hz(first), hz(last)),
     };
     let damping = match diagnosis.damping_course() {
         DampingCourse::Stays => "damping stays at",
@@ -92,8 +101,9 @@ impl Remarks for SteppedDiagnosis {
     fn remarks(&self) -> Vec<String> {
         if self.verdict == Verdict::Consistent {
             return vec![format!(
-                "Levels were compared on the lines from {:.4} to {:.4} Hz, about their strongest resonance.",
-                self.band.0, self.band.1
+                "Levels were compared on the lines from {} to {} Hz, about their strongest resonance.",
+                in_sentence(self.band.0),
+                in_sentence(self.band.1)
             )];
         }
         let mut remarks = self.unplaced.clone();

@@ -3,6 +3,7 @@
 use crate::Remarks;
 use crate::joint::merging;
 use jointscope_modes::{ModalAnalysis, Mode};
+use jointscope_spectra::in_sentence;
 
 /// How far to trust the modes.
 impl Remarks for ModalAnalysis {
@@ -65,14 +66,14 @@ impl Remarks for ModalAnalysis {
 fn of_mode(mode: &Mode) -> impl Iterator<Item = String> {
     let faint = (!mode.stands_out()).then(|| {
         format!(
-            "the pole picked at {:.2} Hz does not stand out of the noise: the FRFs are explained as well without it",
-            mode.frequency
+            "the pole picked at {} Hz does not stand out of the noise: the FRFs are explained as well without it",
+            in_sentence(mode.frequency)
         )
     });
     let vague = mode.is_vaguely_damped().then(|| {
         format!(
-            "the damping ratio of the mode at {:.2} Hz is known to {:.0} % only",
-            mode.frequency,
+            "the damping ratio of the mode at {} Hz is known to {:.0} % only",
+            in_sentence(mode.frequency),
             100.0 * mode.damping_std / mode.damping_ratio
         )
     });

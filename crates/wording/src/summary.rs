@@ -87,9 +87,9 @@ impl Summary for SteppedDiagnosis {
         let mut lines = found(self.verdict.name(), self.says(), findings);
         for level in &self.levels {
             lines.push(format!(
-            "{}: {:.3} Hz, damping {:.4} %, relative motion {:.3e}, relative error {:.3} refitted, {:.3} repaired, {:.3} with a stiffness of its own",
+            "{}: {} Hz, damping {:.4} %, relative motion {:.3e}, relative error {:.3} refitted, {:.3} repaired, {:.3} with a stiffness of its own",
             level.held,
-            level.resonance.frequency.0,
+            crate::levels::frequency(level),
             100.0 * level.resonance.damping_ratio.0,
             level.motion,
             level.nrmse[1],

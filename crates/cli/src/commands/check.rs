@@ -7,6 +7,7 @@ use jointscope::check::{Check, CheckOptions, Figure, Weight};
 use jointscope::estimation::ResponseWindow;
 use jointscope::report::check_report;
 use jointscope::report::format::{quantity, with_sign};
+use jointscope::spectra::in_sentence;
 use jointscope::{check_file, checked_frfs};
 use serde_json::Value;
 
@@ -104,9 +105,9 @@ fn summary(check: &Check) -> Vec<String> {
     lines.push(weighs);
     if let Some(modes) = &check.modes {
         lines.push(format!(
-            "{} at 0 Hz, and up to {:.0} Hz:",
+            "{} at 0 Hz, and up to {} Hz:",
             counted(modes.rigid, "rigid-body mode"),
-            modes.to
+            in_sentence(modes.to)
         ));
         lines.extend(modes.modes.iter().map(|mode| {
             let on_supports = if mode.on_supports { ", as rigid on its supports" } else { "" };
@@ -156,9 +157,9 @@ fn of_recording(recording: &jointscope::check::RecordingCheck) -> Vec<String> {
         let shown = modes.modes.iter().map(|mode| match mode.fixture {
             Some(fixture) => {
                 let change = 100.0 * (mode.frequency / fixture - 1.0);
-                format!("{:.1} Hz ({} %)", mode.frequency, with_sign(change, 1))
+                format!("{} Hz ({} %)", in_sentence(mode.frequency), with_sign(change, 1))
             }
-            None => format!("{:.1} Hz (none of the fixture's)", mode.frequency),
+            None => format!("{} Hz (none of the fixture's)", in_sentence(mode.frequency)),
         });
         let mut shown: Vec<String> = shown.collect();
         if shown.len() > LISTED {
@@ -172,7 +173,11 @@ fn of_recording(recording: &jointscope::check::RecordingCheck) -> Vec<String> {
             let total = line.mass.map_or("does not tell the total mass".to_owned(), |mass| {
                 format!("weighs {}", quantity(mass.value, mass.std, mass.unit))
             });
-            lines.push(format!("from {:.1} to {:.1} Hz the recording {total}", line.band.0, line.band.1));
+            lines.push(format!(
+                "from {} to {} Hz the recording {total}",
+                in_sentence(line.band.0),
+                in_sentence(line.band.1)
+            ));
         }
         (None, Some(why)) => lines.push(format!("mass line not judged: {why}")),
         (None, None) => {}

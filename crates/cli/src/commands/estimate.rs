@@ -7,6 +7,7 @@ use jointscope::Says;
 use jointscope::estimation::{Estimate, EstimateError, ResponseWindow};
 use jointscope::pipeline::{Error, HammerTest};
 use jointscope::recordings::{hits_of, to_datasets};
+use jointscope::spectra::in_sentence;
 use jointscope::uff::{Dataset58, FunctionType};
 
 use crate::computed_frfs::encoding;
@@ -54,8 +55,8 @@ pub(super) fn run(arguments: &EstimateArguments) -> Result<String, Refusal> {
     let mut lines = vec![test.says(&estimate.frfs, options.estimator)];
     for excitation in &estimate.excitations {
         lines.push(format!(
-            "the hits at {} excite up to {:.0} Hz, where their force has fallen by 20 dB or the anti-alias filter begins",
-            excitation.struck, excitation.usable_to
+            "the hits at {} excite up to {} Hz, where their force has fallen by 20 dB or the anti-alias filter begins",
+            excitation.struck, in_sentence(excitation.usable_to)
         ));
     }
     lines.extend(estimate.remarks.iter().map(Says::says));

@@ -15,7 +15,7 @@ use crate::{NonlinearOptions, SteppedError};
 use jointscope_findings::{HeldOut, Verdict};
 use jointscope_fixture::{Fixture, QuantityKey, QuantityOwner};
 use jointscope_inference::each_used_up;
-use jointscope_spectra::Dof;
+use jointscope_spectra::{Dof, in_sentence};
 use serde::{Serialize, Serializer};
 use std::f64::consts::TAU;
 
@@ -277,8 +277,8 @@ fn placed(fixture: &Fixture, problem: &Problem, change: &Change, omega: f64) -> 
     }
     if !damped {
         unplaced.push(format!(
-            "The levels ask for a loss stiffness of {} {unit} in {} of joint {joint} beyond the fixture's damping at {:.2} Hz; the joint states no `damping` that could take it, so the written fixtures leave it out.",
-            four_digits(change.base.im), dof.name(), omega / TAU
+            "The levels ask for a loss stiffness of {} {unit} in {} of joint {joint} beyond the fixture's damping at {} Hz; the joint states no `damping` that could take it, so the written fixtures leave it out.",
+            four_digits(change.base.im), dof.name(), in_sentence(omega / TAU)
         ));
     }
     (refitted, unplaced)

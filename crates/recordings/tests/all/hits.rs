@@ -192,3 +192,13 @@ fn a_channel_that_says_nothing_of_what_it_is_is_refused() {
     let hits = read(&[source("a.uff", vec![labelled, hammer])]).unwrap();
     assert_eq!((hits.hits[0].force()[0], hits.hits[0].responses()[0].values[0]), (1000.0, 9.80665));
 }
+
+#[test]
+fn a_response_that_every_other_hit_has_is_missed_aloud() {
+    let all: Vec<Dataset58> =
+        (1..=3).flat_map(|hit| [force(hit, 1), sensor(hit, 2), sensor(hit, 3), sensor(hit, 4)]).collect();
+    let says = |datasets: &[Dataset58]| read(&[source("a.uff", datasets.to_vec())]).unwrap().notes;
+    assert!(says(&all).is_empty() && says(&all[..8]).is_empty());
+    let expected = "hit 3 has no responses 3:+y, 4:+y, which the 2 other hits have: where a file was cut before it, copy or export that file again";
+    assert_eq!(says(&all[..10]), [expected]);
+}

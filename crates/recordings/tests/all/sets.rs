@@ -248,6 +248,52 @@ fn a_function_cut_short_is_refused_where_it_is_needed_and_only_there() {
     assert_eq!(names(&recording), ["4/1"]);
 }
 
+/// A file of three hammer points and three sensors, each FRF with its coherence behind it.
+fn three_by_three() -> Vec<Dataset58> {
+    let pairs = [1, 2, 5].map(|reference| [2, 3, 4].map(|response| ((response, 2), (reference, 2))));
+    let both =
+        |(response, reference)| [frf(response, reference), coherence(response, reference, [0.9, 0.95, 0.99])];
+    pairs.into_iter().flatten().flat_map(both).collect()
+}
+
+#[test]
+fn a_coherence_that_other_frfs_have_is_missed_aloud() {
+    let says = |datasets: &[Dataset58]| read(datasets.to_vec()).unwrap().notes;
+    let whole = three_by_three();
+    assert!(says(&whole).is_empty(), "{:?}", says(&whole));
+    let expected = "FRF 4:+y/5:+y has no coherence, which 8 others have: where a file was cut before it, copy or export that file again";
+    assert_eq!(says(&whole[..17]), [expected]);
+    // All FRFs first, then their coherences.
+    let (frfs, coherences): (Vec<_>, Vec<_>) =
+        whole.into_iter().partition(|dataset| dataset.function == FunctionType::FrequencyResponse);
+    let apart = [frfs, coherences].concat();
+    assert!(says(&apart).is_empty());
+    let cut = says(&apart[..15]);
+    assert!(
+        cut[0].starts_with("FRFs 2:+y/5:+y, 3:+y/5:+y, 4:+y/5:+y have no coherence, which 6 others"),
+        "{cut:?}"
+    );
+    // None has one: nothing is missing.
+    assert!(says(&apart[..9]).is_empty());
+}
+
+#[test]
+fn an_frf_that_every_other_reference_has_is_missed_aloud() {
+    let says = |datasets: &[Dataset58]| read(datasets.to_vec()).unwrap().notes;
+    let whole = three_by_three();
+    let expected = "there is no FRF 4:+y/5:+y, and the 2 other references have that response: where a file was cut before it, copy or export that file again";
+    assert_eq!(says(&whole[..16]), [expected]);
+    // A whole reference less is another test.
+    assert!(says(&whole[..12]).is_empty());
+    // Beside one other reference it may be meant so, or else the other responses tell.
+    assert!(says(&whole[..8]).is_empty());
+    let cut = says(&whole[..10]);
+    assert!(
+        cut[0].starts_with("there is no FRF 4:+y/2:+y, and the 2 other responses have that reference"),
+        "{cut:?}"
+    );
+}
+
 #[test]
 fn datasets_of_other_numbers_are_counted_over_all_files() {
     let file = |name: &str, datasets| {

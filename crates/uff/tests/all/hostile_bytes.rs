@@ -42,6 +42,29 @@ fn every_truncation_is_survived() {
     (0..bytes.len()).for_each(|length| swallow(&bytes[..length]));
 }
 
+/// Between two datasets a file that was cut is a whole one; what its functions then lack, `jointscope-recordings` tells.
+#[test]
+fn a_file_that_is_cut_inside_a_dataset_is_refused_and_only_there() {
+    let bytes = valid_file();
+    let whole = read(&bytes).unwrap();
+    for length in 0..bytes.len() {
+        let cut = &bytes[..length];
+        let text = cut.trim_ascii_end();
+        let between = text.ends_with(b"    -1") && {
+            // A delimiter closes a dataset where another one, or nothing, follows it.
+            let rest = bytes[text.len()..].trim_ascii_start();
+            rest.is_empty() || rest.starts_with(b"-1\n")
+        };
+        match read(cut) {
+            Ok(file) => {
+                assert!(between, "the first {length} bytes were read");
+                assert!(whole.datasets.starts_with(&file.datasets) && file.unreadable.is_empty());
+            }
+            Err(error) => assert!(!between, "the first {length} bytes: {error}"),
+        }
+    }
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(2000))]
 

@@ -43,6 +43,17 @@ fn a_curve_is_hidden_by_its_key_a_drag_zooms_both_axes_and_a_double_click_restor
     assert!(seen.pages[0]["whole"].as_u64() > Some(0), "some plots leave out at first what is far off");
 }
 
+/// Each band that is held out has a key of its own in the legend, and all have the same label.
+#[test]
+fn of_several_marks_with_one_label_the_one_that_is_clicked_is_hidden() {
+    let bench = Bench::synthesized("pages-alike", TWO_BLOCKS, "50:1000:10");
+    bench.done(&["diagnose", "two.json", "frf.uff", "-o", "found"]);
+    let Some(seen) = opened(&bench, &["found/report.html"], include_str!("use.js")) else { return };
+    assert!(bench.text("found/report.html").matches("held out</button>").count() > 4, "two a pane");
+    assert_eq!(seen.console, Vec::<String>::new());
+    usable(&seen.pages[0]);
+}
+
 #[test]
 fn the_low_end_of_a_logarithmic_axis_has_no_more_than_three_digits_after_a_zoom() {
     let bench = Bench::synthesized("pages-logarithmic", TWO_BLOCKS, "50:1000:10");
